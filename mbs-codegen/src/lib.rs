@@ -1,0 +1,9 @@
+//! Tokens of a mechanism in, tokens of exact straight-line code out.
+#![forbid(unsafe_code)]
+
+use proc_macro2::TokenStream;
+
+/// Expands the text of a mechanism, led by the runtime's path in parentheses.
+pub fn expand(_input: TokenStream) -> TokenStream {
+    TokenStream::new()
+}

@@ -1,0 +1,122 @@
+//! What can go wrong, as values that name the row or the coordinate and its line in the text.
+
+use core::fmt;
+
+use crate::{Entry, Scalar};
+
+/// How the solution of one diagonal block, or of all of them, ended in one lane.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Outcome {
+    /// Every residual is within its tolerance.
+    Converged,
+    /// The residual of `row` stayed above its tolerance.
+    NotConverged {
+        /// Index of the row in Φ.
+        row: u16,
+    },
+    /// The residual or the Jacobian became NaN or infinite.
+    NonFinite {
+        /// Index of the row in Φ.
+        row: u16,
+    },
+}
+
+/// Lane by lane the first of two outcomes that is no success.
+pub fn first_failure<T: Scalar>(first: T::Lanes<Outcome>, second: T::Lanes<Outcome>) -> T::Lanes<Outcome> {
+    let at = |outcomes: &T::Lanes<Outcome>, lane: usize| outcomes.as_ref().get(lane).copied();
+    T::per_lane(|lane| match at(&first, lane) {
+        Some(failure) if failure != Outcome::Converged => failure,
+        _ => at(&second, lane).unwrap_or(Outcome::Converged),
+    })
+}
+
+/// Why a mechanism was not assembled, moved or solved. The caller's state is as it was before the call.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Failure {
+    /// A value that came in, or a row evaluated from finite values, is NaN or infinite.
+    NonFinite {
+        /// The coordinate, parameter, input, time or row.
+        name: &'static str,
+        /// Its line in the text; 0 for the time.
+        line: u32,
+    },
+    /// Newton's method did not reach the tolerance from the previous position.
+    NotConverged {
+        /// The row with the largest residual, in the reference metric.
+        row: Entry,
+        /// Its residual, in the unit of the row.
+        residual: f64,
+        /// The tolerance that it missed, in the unit of the row.
+        required: f64,
+        /// Evaluations of the constraints spent.
+        iterations: u32,
+        /// Time (s) of the position that was sought.
+        time: f64,
+    },
+    /// No start led to a position: the mechanism cannot be assembled as it is dimensioned, or not from there.
+    NotAssemblable {
+        /// The row that holds the least residual found.
+        row: Entry,
+        /// That residual, in the unit of the row.
+        residual: f64,
+        /// Time (s) at which the position was sought.
+        time: f64,
+    },
+    /// The Jacobian is singular, a dead centre or a bifurcation: rates are not determined.
+    Singular {
+        /// A row of the singular block.
+        row: Entry,
+        /// A coordinate that the block does not determine.
+        coordinate: Entry,
+        /// Margin to singularity: 0 where singular, at most 1, independent of units.
+        margin: f64,
+        /// The margin below which rates are refused.
+        required: f64,
+        /// Time (s).
+        time: f64,
+    },
+    /// The position solves the constraints in another assembly than the text's `branch` declares.
+    WrongBranch {
+        /// The branch condition.
+        branch: Entry,
+        /// Its value, which should be positive.
+        value: f64,
+        /// Time (s).
+        time: f64,
+    },
+}
+
+impl fmt::Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Failure::NonFinite { name, line: 0 } => write!(f, "`{name}` is not a finite number"),
+            Failure::NonFinite { name, line } => write!(f, "`{name}` (line {line}) is not a finite number"),
+            Failure::NotConverged { row, residual, required, iterations, time } => write!(
+                f,
+                "no position at t = {time} s: after {iterations} iterations row `{}` (line {}) is still {residual:.3e} {} \
+                 off, required {required:.3e}; take a smaller step, or check that the mechanism can reach this position",
+                row.name, row.line, row.unit
+            ),
+            Failure::NotAssemblable { row, residual, time } => write!(
+                f,
+                "the mechanism cannot be assembled at t = {time} s: row `{}` (line {}) stays {residual:.3e} {} open at \
+                 best; check the dimensions, or start from a better guess",
+                row.name, row.line, row.unit
+            ),
+            Failure::Singular { row, coordinate, margin, required, time } => write!(
+                f,
+                "the mechanism is singular at t = {time} s: rows around `{}` (line {}) do not determine `{}` (line {}); \
+                 margin {margin:.3e}, required {required:.3e}",
+                row.name, row.line, coordinate.name, coordinate.line
+            ),
+            Failure::WrongBranch { branch, value, time } => write!(
+                f,
+                "the assembly found at t = {time} s is not the declared one: branch `{}` (line {}) is {value:.3e}, not \
+                 positive; start from a guess on the other side",
+                branch.name, branch.line
+            ),
+        }
+    }
+}
+
+impl core::error::Error for Failure {}

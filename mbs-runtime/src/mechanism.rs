@@ -1,0 +1,247 @@
+//! What the macro emits: a mechanism as functions of its coordinates.
+
+use crate::{Outcome, Scalar};
+
+/// A name of the text with its unit and its line in the source file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Entry {
+    /// As the text spells it; components of vectors are counted from 0: `closure.1`.
+    pub name: &'static str,
+    /// Coherent SI unit as the text spells it.
+    pub unit: &'static str,
+    /// Line in the source file.
+    pub line: u32,
+}
+
+impl Entry {
+    /// Whether the unit is that of an angle.
+    pub fn is_angle(&self) -> bool {
+        self.unit == "rad"
+    }
+}
+
+/// A measured or commanded quantity with its time derivatives: an `input … , rates`.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Signal<T> {
+    /// Value, in the declared unit.
+    pub value: T,
+    /// First time derivative, in the declared unit per second.
+    pub rate: T,
+    /// Second time derivative, in the declared unit per second squared.
+    pub acceleration: T,
+}
+
+/// A named output with as many exact time derivatives as its definition leaves it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OutputValue<T> {
+    /// Value, in the declared unit.
+    pub value: T,
+    /// First time derivative; `None` where the definition uses `der2`.
+    pub rate: Option<T>,
+    /// Second time derivative; `None` where the definition uses `der` or `der2`.
+    pub acceleration: Option<T>,
+}
+
+/// Φ, Φ_q, Φ_t and γ of one state.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Evaluation<T, const N: usize, const M: usize> {
+    /// Constraint residuals Φ(q, t): M.
+    pub phi: [T; M],
+    /// Jacobian ∂Φ/∂q: M rows of N.
+    pub phi_q: [[T; N]; M],
+    /// Partial time derivative ∂Φ/∂t: M.
+    pub phi_t: [T; M],
+    /// γ = −(Φ_q q̇)_q q̇ − 2 Φ_qt q̇ − Φ_tt: M.
+    pub gamma: [T; M],
+}
+
+/// A mechanism of `N` coordinates and `M` constraint rows, as emitted by [`mechanism!`](crate::mechanism).
+///
+/// Evaluation is staged: [`parameters`](Self::parameters) once a design, [`position`](Self::position) once a
+/// `(q, t)`, everything else from those two.
+pub trait Mechanism<T: Scalar, const N: usize, const M: usize>: Clone {
+    /// Values of the parameters alone.
+    type Parameters: Copy;
+    /// Values of `(q, t)` that more than one function shares.
+    type Position: Copy;
+    /// One value a `branch` of the text.
+    type Branches: AsRef<[T]> + Copy;
+    /// One value a component of an `out` of the text.
+    type Outputs: AsRef<[OutputValue<T>]> + Copy;
+    /// The same design in one lane, for fallbacks and diagnosis.
+    type Lane: Mechanism<T::Real, N, M>;
+
+    /// Name of the mechanism.
+    const NAME: &'static str;
+    /// The text between the braces of the macro; not linked where unused.
+    const SOURCE: &'static str;
+    /// Coordinates in the order of `q`: N.
+    const COORDINATES: &'static [Entry];
+    /// Constraint rows in the order of Φ: M.
+    const ROWS: &'static [Entry];
+    /// Parameters and inputs, the public fields, component by component: the names that [`set`](Self::set) takes.
+    const VARIABLES: &'static [Entry];
+    /// Branch conditions.
+    const BRANCHES: &'static [Entry];
+    /// Outputs, component by component.
+    const OUTPUTS: &'static [Entry];
+
+    /// Value of the parameter or input at `index` of [`VARIABLES`](Self::VARIABLES).
+    fn get(&self, index: usize) -> Option<T>;
+    /// Sets the parameter or input at `index` of [`VARIABLES`](Self::VARIABLES); false where there is none.
+    fn set(&mut self, index: usize, value: T) -> bool;
+    /// The design in lane `lane`.
+    fn lane(&self, lane: usize) -> Self::Lane;
+
+    /// Stage 0: what depends on parameters alone.
+    fn parameters(&self) -> Self::Parameters;
+    /// The text's guess of the coordinates: N.
+    fn guess(&self, parameters: &Self::Parameters) -> [T; N];
+    /// Reference metric, coordinates: 1 for angles and pure numbers, the reference length for lengths: N.
+    fn coordinate_scales(&self, parameters: &Self::Parameters) -> [T; N];
+    /// Reference metric, rows: the reference length to the power that the row's unit has of metres: M.
+    fn row_scales(&self, parameters: &Self::Parameters) -> [T; M];
+
+    /// Stage 1: what depends on `q` (N) and `t` (s).
+    fn position(&self, parameters: &Self::Parameters, q: &[T; N], t: T) -> Self::Position;
+    /// Constraint residuals Φ(q, t): M, in the unit of the row.
+    fn phi(&self, parameters: &Self::Parameters, position: &Self::Position) -> [T; M];
+    /// Jacobian ∂Φ/∂q: M rows of N.
+    fn phi_q(&self, parameters: &Self::Parameters, position: &Self::Position) -> [[T; N]; M];
+    /// Partial time derivative ∂Φ/∂t, rates of inputs included: M.
+    fn phi_t(&self, parameters: &Self::Parameters, position: &Self::Position) -> [T; M];
+    /// Second partial time derivative ∂²Φ/∂t², rates of inputs included: M.
+    fn phi_tt(&self, parameters: &Self::Parameters, position: &Self::Position) -> [T; M];
+    /// Mixed derivative Φ_qt q̇: M.
+    fn phi_qt_qd(&self, parameters: &Self::Parameters, position: &Self::Position, qd: &[T; N]) -> [T; M];
+    /// γ = −(Φ_q q̇)_q q̇ − 2 Φ_qt q̇ − Φ_tt, the right-hand side of Φ_q q̈ = γ: M.
+    fn gamma(&self, parameters: &Self::Parameters, position: &Self::Position, qd: &[T; N]) -> [T; M];
+    /// Branch conditions, each positive where it holds.
+    fn branches(&self, parameters: &Self::Parameters, position: &Self::Position) -> Self::Branches;
+    /// Outputs with their time derivatives.
+    fn outputs(
+        &self,
+        parameters: &Self::Parameters,
+        position: &Self::Position,
+        qd: &[T; N],
+        qdd: &[T; N],
+    ) -> Self::Outputs;
+
+    /// Φ, Φ_q, Φ_t and γ in one call.
+    #[inline]
+    fn evaluate(&self, parameters: &Self::Parameters, q: &[T; N], t: T, qd: &[T; N]) -> Evaluation<T, N, M> {
+        let position = self.position(parameters, q, t);
+        Evaluation {
+            phi: self.phi(parameters, &position),
+            phi_q: self.phi_q(parameters, &position),
+            phi_t: self.phi_t(parameters, &position),
+            gamma: self.gamma(parameters, &position, qd),
+        }
+    }
+
+    /// Index of a parameter or input in [`VARIABLES`](Self::VARIABLES).
+    fn variable(name: &str) -> Option<usize> {
+        Self::VARIABLES.iter().position(|entry| entry.name == name)
+    }
+}
+
+/// Where a diagonal block of the block-triangular order stands in Φ and q, and its share of the metric.
+#[derive(Clone, Copy, Debug)]
+pub struct Block<T, const K: usize> {
+    /// Rows of Φ: K.
+    pub rows: [u16; K],
+    /// Coordinates solved for: K.
+    pub coordinates: [u16; K],
+    /// Whether a coordinate is an angle, whose steps are capped: K.
+    pub angles: [bool; K],
+    /// Reference metric of the rows: K.
+    pub row_scales: [T; K],
+    /// Reference metric of the coordinates: K.
+    pub coordinate_scales: [T; K],
+}
+
+/// How a K × K diagonal block is factorised: closed form for one, two and three unknowns, LU beyond.
+pub trait Factorization<T: Scalar, const K: usize>: Copy {
+    /// Factorises `a` (K rows of K); columns are measured in `coordinate_scales`.
+    ///
+    /// Returns the factors and the margin to singularity: 0 where singular, at most 1, independent of units.
+    /// A singular lane still gets finite factors wherever `a` is finite.
+    fn factorize(a: &[[T; K]; K], coordinate_scales: &[T; K]) -> (Self, T);
+    /// Solves `a x = b`.
+    fn solve(&self, b: &[T; K]) -> [T; K];
+}
+
+/// Solves the nonlinear diagonal blocks as emitted code meets them; the strategy of Newton's method.
+pub trait BlockSolver<T: Scalar> {
+    /// Finds `x` with residual 0 from the start value `x`; `evaluate` gives residual and Jacobian (rows).
+    ///
+    /// A lane that does not converge comes back with any finite `x`; the caller discards it.
+    fn solve<const K: usize, F: Factorization<T, K>>(
+        &mut self,
+        block: &Block<T, K>,
+        x: [T; K],
+        evaluate: impl FnMut(&[T; K]) -> ([T; K], [[T; K]; K]),
+    ) -> ([T; K], T::Lanes<Outcome>);
+}
+
+/// A mechanism whose rows fix every coordinate. Emitted only where the structure says square.
+pub trait Kinematic<T: Scalar, const N: usize>: Mechanism<T, N, N> {
+    /// Factorised diagonal blocks and the entries of Φ_q off them.
+    type Factors: Copy;
+
+    /// Solves Φ(q, t) = 0 block after block in the compile-time order, each to convergence before the next
+    /// begins; coordinates that a row gives explicitly are assigned.
+    ///
+    /// `q`: start values in, solution out; meaningful only in lanes that converged.
+    fn solve_blocks<S: BlockSolver<T>>(
+        &self,
+        parameters: &Self::Parameters,
+        q: &mut [T; N],
+        t: T,
+        solver: &mut S,
+    ) -> T::Lanes<Outcome>;
+
+    /// Factorises Φ_q block by block, once for velocity and acceleration.
+    ///
+    /// Returns the factors and the smallest margin of any block (see [`Factorization::factorize`]).
+    fn factorize(
+        &self,
+        parameters: &Self::Parameters,
+        position: &Self::Position,
+    ) -> (Self::Factors, Margin<T>);
+
+    /// Solves Φ_q x = b with factors from [`factorize`](Self::factorize): `−Φ_t` gives q̇, `γ` gives q̈.
+    fn solve_linear(&self, factors: &Self::Factors, b: &[T; N]) -> [T; N];
+}
+
+/// How near a Jacobian is to singular, and where.
+#[derive(Clone, Copy, Debug)]
+pub struct Margin<T: Scalar> {
+    /// 0 where singular, at most 1, independent of units: the smallest of any diagonal block.
+    pub value: T,
+    /// First row of that block, a lane.
+    pub row: T::Lanes<u16>,
+    /// First coordinate of that block, a lane.
+    pub coordinate: T::Lanes<u16>,
+}
+
+impl<T: Scalar> Margin<T> {
+    /// The margin of a mechanism without any block that could become singular.
+    pub fn regular() -> Self {
+        Margin { value: T::constant(1.0), row: T::per_lane(|_| 0), coordinate: T::per_lane(|_| 0) }
+    }
+
+    /// The smaller one of this margin and that of a block with first row `row` and first coordinate `coordinate`.
+    #[inline(always)]
+    pub fn with_block(self, value: T, row: u16, coordinate: u16) -> Self {
+        let nearer = value.less(self.value);
+        let pick = |lane: usize, new: u16, old: &T::Lanes<u16>| {
+            if T::test(nearer, lane) { new } else { old.as_ref().get(lane).copied().unwrap_or(new) }
+        };
+        Margin {
+            value: T::select(nearer, value, self.value),
+            row: T::per_lane(|lane| pick(lane, row, &self.row)),
+            coordinate: T::per_lane(|lane| pick(lane, coordinate, &self.coordinate)),
+        }
+    }
+}

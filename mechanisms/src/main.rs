@@ -1,0 +1,2 @@
+//! The `mbs` program.
+fn main() {}
