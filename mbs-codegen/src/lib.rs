@@ -1,5 +1,8 @@
 //! Tokens of a mechanism in, tokens of exact straight-line code out.
-#![forbid(unsafe_code)]
+
+pub mod diagnostics;
+pub mod model;
+pub mod syntax;
 
 use proc_macro2::TokenStream;
 

@@ -1,0 +1,377 @@
+//! Expressions as written → scalar expressions: shapes flattened, loops unrolled, units checked.
+
+use proc_macro2::Span;
+
+use super::evaluate;
+use super::expression::{Binary, Expressions, Id, Node, Unary};
+use super::functions::{self, FUNCTIONS};
+use super::names::{Names, Symbol};
+use super::units::{Dimension, with_suffix};
+use crate::diagnostics::{Diagnostics, nearest};
+use crate::syntax::ast::{Expression, Instruction, Operation, Operator};
+
+/// A fault was reported.
+#[derive(Clone, Copy, Debug)]
+pub struct Fault;
+
+/// Most scalar expressions that a text may unroll to.
+const MOST: usize = 400_000;
+/// Longest array.
+const LONGEST: usize = 10_000;
+
+/// Dimension of a scalar, or none: `0` fits any unit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Quantity {
+    Any,
+    Known(Dimension),
+}
+
+impl Quantity {
+    /// The dimension; that of a number where any fits.
+    pub fn dimension(self) -> Dimension {
+        match self {
+            Quantity::Any => Dimension::NUMBER,
+            Quantity::Known(dimension) => dimension,
+        }
+    }
+}
+
+/// A scalar with its unit.
+#[derive(Clone, Copy, Debug)]
+pub struct Scalar {
+    pub id: Id,
+    pub quantity: Quantity,
+    /// Made of bare numbers, `PI` and `TAU` alone: as an initialiser it is in the declared unit.
+    pub bare: bool,
+}
+
+/// A scalar, vector or matrix.
+#[derive(Clone, Debug)]
+pub struct Value {
+    /// None for a scalar.
+    pub shape: Vec<usize>,
+    /// Row by row.
+    pub items: Vec<Scalar>,
+    /// The token that it comes from.
+    pub span: Span,
+}
+
+impl Value {
+    /// A value without shape.
+    pub fn scalar(scalar: Scalar, span: Span) -> Self {
+        Value { shape: Vec::new(), items: vec![scalar], span }
+    }
+
+    /// As a message calls it.
+    pub fn describe(&self) -> String {
+        match self.shape.as_slice() {
+            [] => "a scalar".into(),
+            [length] => format!("a vector of {length}"),
+            shape => {
+                format!("an array of {}", shape.iter().map(usize::to_string).collect::<Vec<_>>().join(" × "))
+            }
+        }
+    }
+}
+
+/// Executes the postfix code of expressions.
+pub struct Elaborator<'a> {
+    pub expressions: &'a mut Expressions,
+    pub names: &'a mut Names,
+    pub diagnostics: &'a mut Diagnostics,
+    /// Whether `der` may stand here.
+    pub rates: bool,
+    /// Largest length written as a number with a suffix so far (m).
+    pub longest: f64,
+}
+
+/// A `sum` that is being unrolled.
+struct Sum {
+    variable: String,
+    count: usize,
+    high: usize,
+    scope: usize,
+    total: Option<Value>,
+}
+
+impl Elaborator<'_> {
+    /// Before: an expression as written. After: its value, or the fault reported.
+    pub fn value(&mut self, expression: &Expression) -> Result<Value, Fault> {
+        let mut stack: Vec<Value> = Vec::new();
+        let mut sums: Vec<Sum> = Vec::new();
+        let mut next = 0;
+        let result = loop {
+            let Some(instruction) = expression.code.get(next) else { break stack.pop().ok_or(Fault) };
+            if self.expressions.len() > MOST {
+                break Err(self.fault(
+                    instruction.span,
+                    format!("the text unrolls to more than {MOST} operations"),
+                    "shorten the loops",
+                ));
+            }
+            match self.step(instruction, next, &mut stack, &mut sums) {
+                Ok(following) => next = following,
+                Err(fault) => break Err(fault),
+            }
+        };
+        if let Some(outermost) = sums.first() {
+            self.names.leave(outermost.scope);
+        }
+        result
+    }
+
+    /// Executes one instruction; returns the index of the next.
+    fn step(
+        &mut self,
+        instruction: &Instruction,
+        index: usize,
+        stack: &mut Vec<Value>,
+        sums: &mut Vec<Sum>,
+    ) -> Result<usize, Fault> {
+        let span = instruction.span;
+        let mut pop = || stack.pop().ok_or(Fault);
+        let value = match &instruction.operation {
+            Operation::Number { value, suffix, .. } => self.literal(*value, suffix.as_deref(), span)?,
+            Operation::Name(name) => self.name(name, span)?,
+            Operation::Negate => {
+                let a = pop()?;
+                self.each(&a, span, |work, item| work.unary_scalar(Unary::Negate, item, item.quantity, span))?
+            }
+            Operation::Binary(operator) => {
+                let (b, a) = (pop()?, pop()?);
+                self.operator(*operator, &a, &b, span)?
+            }
+            Operation::Call { function, arguments } => {
+                let arguments = stack.split_off(stack.len().saturating_sub(*arguments));
+                functions::call(self, function, arguments, span)?
+            }
+            Operation::Array { length } => {
+                let items = stack.split_off(stack.len().saturating_sub(*length));
+                self.array(items, span)?
+            }
+            Operation::Index { indices } => {
+                let indices = stack.split_off(stack.len().saturating_sub(*indices));
+                let base = stack.pop().ok_or(Fault)?;
+                self.index(&base, &indices, span)?
+            }
+            Operation::SumBegin { variable, end } => {
+                let (high, low) = (pop()?, pop()?);
+                let (low, high) = (self.count(&low)?, self.count(&high)?);
+                if low >= high {
+                    stack.push(Value::scalar(self.number_literal(0.0), span));
+                    return Ok(end + 1);
+                }
+                let scope = self.names.enter(&variable.text, Symbol::Count(low));
+                sums.push(Sum { variable: variable.text.clone(), count: low, high, scope, total: None });
+                return Ok(index + 1);
+            }
+            Operation::SumEnd { begin } => {
+                let term = pop()?;
+                let sum = sums.last_mut().ok_or(Fault)?;
+                let total = match sum.total.take() {
+                    None => term,
+                    Some(total) => self.operator(Operator::Add, &total, &term, term.span)?,
+                };
+                sum.count += 1;
+                self.names.leave(sum.scope);
+                if sum.count < sum.high {
+                    self.names.enter(&sum.variable, Symbol::Count(sum.count));
+                    sum.total = Some(total);
+                    return Ok(begin + 1);
+                }
+                sums.pop();
+                Value { span, ..total }
+            }
+        };
+        stack.push(value);
+        Ok(index + 1)
+    }
+
+    /// A number as written, in SI.
+    fn literal(&mut self, value: f64, suffix: Option<&str>, span: Span) -> Result<Value, Fault> {
+        let Some(suffix) = suffix else { return Ok(Value::scalar(self.number_literal(value), span)) };
+        let (value, dimension) =
+            with_suffix(value, suffix).map_err(|(message, help)| self.fault(span, message, help))?;
+        if dimension == Dimension::METRE {
+            self.longest = self.longest.max(value.abs());
+        }
+        let id = self.expressions.push(Node::Number(value));
+        Ok(Value::scalar(Scalar { id, quantity: Quantity::Known(dimension), bare: false }, span))
+    }
+
+    /// A bare number; `0` fits any unit.
+    pub fn number_literal(&mut self, value: f64) -> Scalar {
+        let quantity = if value == 0.0 { Quantity::Any } else { Quantity::Known(Dimension::NUMBER) };
+        Scalar { id: self.expressions.push(Node::Number(value)), quantity, bare: true }
+    }
+
+    fn name(&mut self, name: &str, span: Span) -> Result<Value, Fault> {
+        match self.names.get(name) {
+            Some(Symbol::Value(value)) => return Ok(Value { span, ..value.clone() }),
+            Some(Symbol::Count(count)) => {
+                let count = *count as f64;
+                return Ok(Value::scalar(self.number_literal(count), span));
+            }
+            Some(Symbol::Pending) => {
+                return Err(self.fault(
+                    span,
+                    format!("`{name}` cannot be used here"),
+                    "constants and defaults use constants alone, guesses use constants and parameters",
+                ));
+            }
+            Some(Symbol::Faulty) => return Err(Fault),
+            None => {}
+        }
+        let number = |work: &mut Self, value| {
+            let id = work.expressions.push(Node::Number(value));
+            Value::scalar(Scalar { id, quantity: Quantity::Known(Dimension::NUMBER), bare: true }, span)
+        };
+        match name {
+            "PI" => Ok(number(self, std::f64::consts::PI)),
+            "TAU" => Ok(number(self, std::f64::consts::TAU)),
+            "t" => {
+                let id = self.expressions.push(Node::Time);
+                Ok(Value::scalar(
+                    Scalar { id, quantity: Quantity::Known(Dimension::SECOND), bare: false },
+                    span,
+                ))
+            }
+            _ => {
+                let help = if FUNCTIONS.contains(&name) {
+                    format!("`{name}` is a function; write `{name}(…)`")
+                } else if let Some(known) = nearest(name, self.names.all().chain(["t", "PI", "TAU"])) {
+                    format!("did you mean `{known}`?")
+                } else {
+                    "declare it with `const`, `param`, `input`, `coord` or `let`".into()
+                };
+                Err(self.fault(span, format!("unknown name `{name}`"), help))
+            }
+        }
+    }
+
+    /// A fault at an unknown function.
+    pub fn unknown_function(&mut self, name: &str, span: Span) -> Fault {
+        let help = match nearest(name, FUNCTIONS) {
+            Some(known) => format!("did you mean `{known}`?"),
+            None => format!("known are {}", FUNCTIONS.join(", ")),
+        };
+        self.fault(span, format!("unknown function `{name}`"), help)
+    }
+
+    /// Total time derivative of one scalar or vector.
+    pub fn rate(&mut self, arguments: Vec<Value>, order: u8, span: Span) -> Result<Value, Fault> {
+        let name = if order == 1 { "der" } else { "der2" };
+        let [argument] = self.arguments(name, arguments, span)?;
+        if !self.rates {
+            return Err(self.fault(
+                span,
+                format!("`{name}` stands outside an output"),
+                "write rates in `out` definitions; a drive takes its rates from the time and from inputs with rates",
+            ));
+        }
+        let seconds = Dimension::SECOND.power(f64::from(order)).unwrap_or_default();
+        self.each(&argument, span, |work, item| {
+            let quantity = Quantity::Known(item.quantity.dimension().over(seconds));
+            Ok(Scalar { id: work.expressions.push(Node::Rate(item.id, order)), quantity, bare: false })
+        })
+    }
+
+    /// A value that counts something: a non-negative integer made of literals, constants and loop names.
+    pub fn count(&mut self, value: &Value) -> Result<usize, Fault> {
+        let help = "counts are made of integers, integer constants and loop names";
+        let number = match value.items.as_slice() {
+            [item] if value.shape.is_empty() => match self.expressions.node(item.id) {
+                Node::Number(number) if item.quantity.dimension() == Dimension::NUMBER => Some(number),
+                _ => None,
+            },
+            _ => None,
+        };
+        match number {
+            Some(number) if number >= 0.0 && number <= MOST as f64 && number.fract() == 0.0 => {
+                Ok(number as usize)
+            }
+            Some(number) => Err(self.fault(value.span, format!("{number} is no count"), help)),
+            None => Err(self.fault(value.span, "this is no count", help)),
+        }
+    }
+
+    /// Stacks values of one shape.
+    pub fn array(&mut self, values: Vec<Value>, span: Span) -> Result<Value, Fault> {
+        let first = values.first().ok_or(Fault)?.clone();
+        let mut items = Vec::new();
+        let mut shape = vec![values.len()];
+        shape.extend(&first.shape);
+        if shape.iter().product::<usize>() > LONGEST {
+            return Err(self.fault(
+                span,
+                format!("the array has more than {LONGEST} components"),
+                "split it",
+            ));
+        }
+        for value in values {
+            self.same_shape(&first, &value, "an array", value.span)?;
+            items.extend(value.items);
+        }
+        Ok(Value { shape, items, span })
+    }
+
+    fn index(&mut self, base: &Value, indices: &[Value], span: Span) -> Result<Value, Fault> {
+        if indices.len() > base.shape.len() {
+            let what = base.describe();
+            return Err(self.fault(
+                span,
+                format!("{what} cannot take {} indices", indices.len()),
+                "remove an index",
+            ));
+        }
+        let mut offset = 0;
+        for (value, length) in indices.iter().zip(&base.shape) {
+            let index = self.count(value)?;
+            if index >= *length {
+                return Err(self.fault(
+                    value.span,
+                    format!("index {index} is beyond the last of {length} components"),
+                    format!("components are counted from 0; the last is {}", length - 1),
+                ));
+            }
+            offset = offset * length + index;
+        }
+        let shape: Vec<usize> = base.shape.iter().skip(indices.len()).copied().collect();
+        let length = shape.iter().product::<usize>();
+        let items = base.items.iter().skip(offset * length).take(length).copied().collect();
+        Ok(Value { shape, items, span })
+    }
+
+    /// Reports a fault.
+    pub fn fault(&mut self, span: Span, message: impl Into<String>, help: impl Into<String>) -> Fault {
+        self.diagnostics.report(span, message, help);
+        Fault
+    }
+
+    /// Before: any operands. After: an expression of numbers is folded to its value, which must be finite.
+    pub fn push_unary(&mut self, function: Unary, a: Id, span: Span) -> Result<Id, Fault> {
+        match self.expressions.node(a) {
+            Node::Number(a) => self.folded(evaluate::unary(function, a), span),
+            _ => Ok(self.expressions.push(Node::Unary(function, a))),
+        }
+    }
+
+    /// Before: any operands. After: an expression of numbers is folded to its value, which must be finite.
+    pub fn push_binary(&mut self, function: Binary, a: Id, b: Id, span: Span) -> Result<Id, Fault> {
+        match (self.expressions.node(a), self.expressions.node(b)) {
+            (Node::Number(a), Node::Number(b)) => self.folded(evaluate::binary(function, a, b), span),
+            _ => Ok(self.expressions.push(Node::Binary(function, a, b))),
+        }
+    }
+
+    fn folded(&mut self, value: f64, span: Span) -> Result<Id, Fault> {
+        if value.is_finite() {
+            return Ok(self.expressions.push(Node::Number(value)));
+        }
+        Err(self.fault(
+            span,
+            "this is not a finite number",
+            "check for a division by zero, or a root or logarithm of a negative number",
+        ))
+    }
+}

@@ -1,0 +1,124 @@
+//! Scalar expressions in one arena; operands always stand before what uses them.
+
+/// Index into [`Expressions`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Id(u32);
+
+/// A scalar expression.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Node {
+    /// A number, in SI.
+    Number(f64),
+    /// The time.
+    Time,
+    /// A coordinate by its index.
+    Coordinate(usize),
+    /// A parameter or input by its index.
+    Variable(usize),
+    /// A function of one argument.
+    Unary(Unary, Id),
+    /// A function of two arguments.
+    Binary(Binary, Id, Id),
+    /// Total time derivative of first or second order.
+    Rate(Id, u8),
+}
+
+/// Functions of one argument.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Unary {
+    Negate,
+    Sqrt,
+    Exp,
+    Ln,
+    Sin,
+    Cos,
+    Tan,
+    Asin,
+    Acos,
+    Atan,
+    Sinh,
+    Cosh,
+    Tanh,
+    Abs,
+    Sign,
+}
+
+/// Functions of two arguments.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Binary {
+    Add,
+    Subtract,
+    Multiply,
+    Divide,
+    Power,
+    Atan2,
+    Min,
+    Max,
+    Hypot,
+}
+
+/// The arena.
+#[derive(Debug, Default)]
+pub struct Expressions(Vec<Node>);
+
+impl Expressions {
+    /// Adds an expression.
+    pub fn push(&mut self, node: Node) -> Id {
+        self.0.push(node);
+        Id((self.0.len() - 1) as u32)
+    }
+
+    /// The expression.
+    pub fn node(&self, id: Id) -> Node {
+        self.0.get(id.0 as usize).copied().unwrap_or(Node::Number(f64::NAN))
+    }
+
+    /// Number of expressions.
+    pub fn len(&self) -> usize {
+        self.0.len()
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// All expressions, operands first.
+    pub fn iter(&self) -> impl Iterator<Item = (Id, Node)> + '_ {
+        self.0.iter().enumerate().map(|(index, node)| (Id(index as u32), *node))
+    }
+
+    /// Marks what `roots` are made of, themselves included: one flag an expression.
+    pub fn reachable(&self, roots: impl IntoIterator<Item = Id>) -> Vec<bool> {
+        let mut marked = vec![false; self.0.len()];
+        let mut waiting: Vec<Id> = roots.into_iter().collect();
+        while let Some(id) = waiting.pop() {
+            if let Some(mark) = marked.get_mut(id.index())
+                && !*mark
+            {
+                *mark = true;
+                waiting.extend(self.node(id).operands());
+            }
+        }
+        marked
+    }
+}
+
+impl Id {
+    /// Position in the arena.
+    pub fn index(self) -> usize {
+        self.0 as usize
+    }
+}
+
+impl Node {
+    /// The expressions that it is made of.
+    pub fn operands(self) -> impl Iterator<Item = Id> {
+        let (first, second) = match self {
+            Node::Number(_) | Node::Time | Node::Coordinate(_) | Node::Variable(_) => (None, None),
+            Node::Unary(_, a) | Node::Rate(a, _) => (Some(a), None),
+            Node::Binary(_, a, b) => (Some(a), Some(b)),
+        };
+        first.into_iter().chain(second)
+    }
+}

@@ -1,0 +1,195 @@
+//! The functions of the language: shapes, units, scalar definitions.
+
+use proc_macro2::Span;
+
+use super::elaborate::{Elaborator, Fault, Quantity, Scalar, Value};
+use super::expression::{Binary, Unary};
+use super::units::Dimension;
+
+/// Names of all functions.
+pub const FUNCTIONS: [&str; 28] = [
+    "sqrt", "exp", "ln", "sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "abs",
+    "sign", "min", "max", "hypot", "sum", "dot", "cross", "norm", "det", "rot", "unit", "der", "der2",
+    "rate",
+];
+
+/// Before: arguments as they stand on the stack. After: the value of `function`, or the fault reported.
+pub fn call(
+    work: &mut Elaborator<'_>,
+    function: &str,
+    arguments: Vec<Value>,
+    span: Span,
+) -> Result<Value, Fault> {
+    use Unary::{Abs, Acos, Asin, Atan, Cos, Cosh, Exp, Ln, Sign, Sin, Sinh, Tan, Tanh};
+    let number = |unary| Rule::Number(unary);
+    let rule = match function {
+        "sqrt" => return sqrt(work, arguments, span),
+        "exp" => number(Exp),
+        "ln" => number(Ln),
+        "sin" => number(Sin),
+        "cos" => number(Cos),
+        "tan" => number(Tan),
+        "asin" => number(Asin),
+        "acos" => number(Acos),
+        "atan" => number(Atan),
+        "sinh" => number(Sinh),
+        "cosh" => number(Cosh),
+        "tanh" => number(Tanh),
+        "abs" => Rule::Same(Abs),
+        "sign" => Rule::Sign(Sign),
+        "atan2" => return atan2(work, arguments, span),
+        "min" => return fold(work, "min", Binary::Min, arguments, span),
+        "max" => return fold(work, "max", Binary::Max, arguments, span),
+        "hypot" => return fold(work, "hypot", Binary::Hypot, arguments, span),
+        "dot" => return dot(work, arguments, span),
+        "cross" => return cross(work, arguments, span),
+        "norm" => return norm(work, arguments, span),
+        "det" => return det(work, arguments, span),
+        "unit" => return unit(work, arguments, span),
+        "rot" => return rot(work, arguments, span),
+        "der" => return work.rate(arguments, 1, span),
+        "der2" => return work.rate(arguments, 2, span),
+        unknown => return Err(work.unknown_function(unknown, span)),
+    };
+    let [argument] = work.arguments(function, arguments, span)?;
+    let scalar = work.scalar(&argument, function, span)?;
+    Ok(match rule {
+        Rule::Number(unary) => {
+            work.number(scalar, &format!("the argument of `{function}`"), argument.span)?;
+            work.unary(unary, scalar, Quantity::Known(Dimension::NUMBER), span)?
+        }
+        Rule::Same(unary) => work.unary(unary, scalar, scalar.quantity, span)?,
+        Rule::Sign(unary) => work.unary(unary, scalar, Quantity::Known(Dimension::NUMBER), span)?,
+    })
+}
+
+/// What a function of one argument asks of units.
+enum Rule {
+    /// A number in, a number out.
+    Number(Unary),
+    /// The argument's unit stays.
+    Same(Unary),
+    /// Any unit in, a number out.
+    Sign(Unary),
+}
+
+fn sqrt(work: &mut Elaborator<'_>, arguments: Vec<Value>, span: Span) -> Result<Value, Fault> {
+    let [argument] = work.arguments("sqrt", arguments, span)?;
+    let scalar = work.scalar(&argument, "sqrt", span)?;
+    let quantity = work.root(scalar.quantity, 0.5, span)?;
+    work.unary(Unary::Sqrt, scalar, quantity, span)
+}
+
+fn atan2(work: &mut Elaborator<'_>, arguments: Vec<Value>, span: Span) -> Result<Value, Fault> {
+    let [y, x] = work.arguments("atan2", arguments, span)?;
+    let (a, b) = (work.scalar(&y, "atan2", span)?, work.scalar(&x, "atan2", span)?);
+    work.agree(a, b, x.span)?;
+    work.binary(Binary::Atan2, a, b, Quantity::Known(Dimension::NUMBER), span)
+}
+
+/// `min`, `max` and `hypot` of two or more arguments.
+fn fold(
+    work: &mut Elaborator<'_>,
+    name: &str,
+    function: Binary,
+    arguments: Vec<Value>,
+    span: Span,
+) -> Result<Value, Fault> {
+    if arguments.len() < 2 {
+        return Err(work.arity(name, "two or more", arguments.len(), span));
+    }
+    let mut result: Option<Scalar> = None;
+    for argument in &arguments {
+        let scalar = work.scalar(argument, name, span)?;
+        result = Some(match result {
+            None => scalar,
+            Some(so_far) => {
+                let quantity = work.agree(so_far, scalar, argument.span)?;
+                work.binary_scalar(function, so_far, scalar, quantity, span)?
+            }
+        });
+    }
+    Ok(Value::scalar(result.ok_or(Fault)?, span))
+}
+
+fn dot(work: &mut Elaborator<'_>, arguments: Vec<Value>, span: Span) -> Result<Value, Fault> {
+    let [a, b] = work.arguments("dot", arguments, span)?;
+    work.vector(&a, "dot", span)?;
+    work.same_shape(&a, &b, "dot", b.span)?;
+    let result = work.sum_of_products(a.items.iter().copied().zip(b.items.iter().copied()), b.span)?;
+    Ok(Value::scalar(result, span))
+}
+
+fn cross(work: &mut Elaborator<'_>, arguments: Vec<Value>, span: Span) -> Result<Value, Fault> {
+    let [a, b] = work.arguments("cross", arguments, span)?;
+    work.same_shape(&a, &b, "cross", b.span)?;
+    match (a.items.as_slice(), b.items.as_slice()) {
+        ([ax, ay], [bx, by]) if a.shape.len() == 1 => {
+            Ok(Value::scalar(work.determinant2([*ax, *ay], [*bx, *by], span)?, span))
+        }
+        ([ax, ay, az], [bx, by, bz]) if a.shape.len() == 1 => {
+            let x = work.determinant2([*ay, *az], [*by, *bz], span)?;
+            let y = work.determinant2([*az, *ax], [*bz, *bx], span)?;
+            let z = work.determinant2([*ax, *ay], [*bx, *by], span)?;
+            Ok(Value { shape: vec![3], items: vec![x, y, z], span })
+        }
+        _ => Err(work.wrong_shape("cross", "two vectors of 2 or of 3 components", &a, span)),
+    }
+}
+
+fn norm(work: &mut Elaborator<'_>, arguments: Vec<Value>, span: Span) -> Result<Value, Fault> {
+    let [a] = work.arguments("norm", arguments, span)?;
+    work.vector(&a, "norm", span)?;
+    let components = a.items.iter().map(|item| Value::scalar(*item, a.span)).collect::<Vec<_>>();
+    match components.len() {
+        1 => call(work, "abs", components, span),
+        _ => fold(work, "norm", Binary::Hypot, components, span),
+    }
+}
+
+/// Of a matrix, or of its rows as 2 or 3 vectors.
+fn det(work: &mut Elaborator<'_>, arguments: Vec<Value>, span: Span) -> Result<Value, Fault> {
+    let matrix = match arguments.len() {
+        1 => arguments.into_iter().next().ok_or(Fault)?,
+        2 | 3 => work.array(arguments, span)?,
+        count => return Err(work.arity("det", "one matrix, or two or three vectors", count, span)),
+    };
+    let result = match (matrix.shape.as_slice(), matrix.items.as_slice()) {
+        ([2, 2], [a, b, c, d]) => work.determinant2([*a, *b], [*c, *d], span)?,
+        ([3, 3], [a, b, c, d, e, f, g, h, i]) => {
+            let x = work.determinant2([*e, *f], [*h, *i], span)?;
+            let y = work.determinant2([*f, *d], [*i, *g], span)?;
+            let z = work.determinant2([*d, *e], [*g, *h], span)?;
+            work.sum_of_products([(*a, x), (*b, y), (*c, z)].into_iter(), span)?
+        }
+        _ => return Err(work.wrong_shape("det", "a 2 × 2 or 3 × 3 matrix", &matrix, span)),
+    };
+    Ok(Value::scalar(result, span))
+}
+
+fn sine_cosine(
+    work: &mut Elaborator<'_>,
+    name: &str,
+    arguments: Vec<Value>,
+    span: Span,
+) -> Result<[Scalar; 2], Fault> {
+    let [angle] = work.arguments(name, arguments, span)?;
+    let scalar = work.scalar(&angle, name, span)?;
+    work.number(scalar, &format!("the argument of `{name}`"), angle.span)?;
+    let quantity = Quantity::Known(Dimension::NUMBER);
+    Ok([
+        work.unary_scalar(Unary::Sin, scalar, quantity, span)?,
+        work.unary_scalar(Unary::Cos, scalar, quantity, span)?,
+    ])
+}
+
+fn unit(work: &mut Elaborator<'_>, arguments: Vec<Value>, span: Span) -> Result<Value, Fault> {
+    let [sine, cosine] = sine_cosine(work, "unit", arguments, span)?;
+    Ok(Value { shape: vec![2], items: vec![cosine, sine], span })
+}
+
+fn rot(work: &mut Elaborator<'_>, arguments: Vec<Value>, span: Span) -> Result<Value, Fault> {
+    let [sine, cosine] = sine_cosine(work, "rot", arguments, span)?;
+    let minus = work.unary_scalar(Unary::Negate, sine, sine.quantity, span)?;
+    Ok(Value { shape: vec![2, 2], items: vec![cosine, minus, sine, cosine], span })
+}

@@ -1,0 +1,170 @@
+//! ast → resolved model: every name, shape, unit and loop resolved; after it nothing is mutable.
+
+mod arithmetic;
+mod declarations;
+mod elaborate;
+mod evaluate;
+pub mod expression;
+mod functions;
+mod names;
+mod order;
+mod resolve;
+pub mod units;
+
+use proc_macro2::Span;
+
+use expression::{Expressions, Id};
+pub use resolve::resolve;
+use units::Dimension;
+
+/// A mechanism with every name resolved.
+#[derive(Debug, Default)]
+pub struct Model {
+    /// All scalar expressions.
+    pub expressions: Expressions,
+    /// Public fields, in the order of the text.
+    pub fields: Vec<Field>,
+    /// Coordinates, component by component.
+    pub coordinates: Vec<Coordinate>,
+    /// Declared coordinates, scalar or array, in the order of the text.
+    pub coordinate_fields: Vec<CoordinateField>,
+    /// Parameters and inputs, component by component; inputs with rates count thrice.
+    pub variables: Vec<Variable>,
+    /// Rows of Φ.
+    pub rows: Vec<Row>,
+    /// Branch conditions.
+    pub branches: Vec<Branch>,
+    /// Outputs, component by component.
+    pub outputs: Vec<Output>,
+    /// Largest length among constants, numbers and guesses (m); 0 where there is none.
+    pub longest: f64,
+}
+
+/// A public field of the emitted struct.
+#[derive(Debug)]
+pub struct Field {
+    /// Name and token.
+    pub name: crate::syntax::ast::Name,
+    /// Doc comment.
+    pub docs: Vec<String>,
+    /// Unit as written.
+    pub unit: String,
+    /// Lengths of the array; none for a scalar.
+    pub shape: Vec<usize>,
+    /// Index of the first component's first variable.
+    pub first: usize,
+    /// What it holds.
+    pub role: Role,
+}
+
+/// What a field holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Role {
+    /// Part of the design.
+    Parameter,
+    /// Set before each step.
+    Input,
+    /// Set before each step with its rates.
+    InputWithRates,
+}
+
+/// A scalar coordinate.
+#[derive(Debug)]
+pub struct Coordinate {
+    /// Name, with the component's number for arrays.
+    pub name: String,
+    /// Unit as written.
+    pub unit: String,
+    /// Its dimension.
+    pub dimension: Dimension,
+    /// Start value of the assembly, of parameters alone.
+    pub guess: Option<Id>,
+    /// The declaring token.
+    pub span: Span,
+}
+
+/// A declared coordinate.
+#[derive(Debug)]
+pub struct CoordinateField {
+    /// Name and token.
+    pub name: crate::syntax::ast::Name,
+    /// Doc comment.
+    pub docs: Vec<String>,
+    /// Unit as written.
+    pub unit: String,
+    /// Lengths of the array; none for a scalar.
+    pub shape: Vec<usize>,
+    /// Index of the first component.
+    pub first: usize,
+}
+
+/// A scalar parameter or input.
+#[derive(Debug)]
+pub struct Variable {
+    /// Name, with the component's number for arrays and `rate` or `acceleration` for those of an input.
+    pub name: String,
+    /// Unit as written.
+    pub unit: String,
+    /// Its dimension.
+    pub dimension: Dimension,
+    /// Default value; 0 for inputs.
+    pub default: f64,
+    /// What it is.
+    pub kind: VariableKind,
+    /// The declaring token.
+    pub span: Span,
+}
+
+/// What a [`Variable`] is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum VariableKind {
+    /// Constant in time.
+    Parameter,
+    /// Set before each step; no rates known.
+    Input,
+    /// Value of an input whose rate and acceleration are the next two variables.
+    InputWithRates,
+    /// Rate or acceleration of an input.
+    InputRate,
+}
+
+/// A row of Φ.
+#[derive(Debug)]
+pub struct Row {
+    /// Name of its group, with its number where the group has several.
+    pub name: String,
+    /// Dimension of the residual.
+    pub dimension: Dimension,
+    /// `left − right`.
+    pub residual: Id,
+    /// The `==`.
+    pub span: Span,
+}
+
+/// A branch condition.
+#[derive(Debug)]
+pub struct Branch {
+    /// Its name.
+    pub name: String,
+    /// Dimension of the value.
+    pub dimension: Dimension,
+    /// Whether it is checked at the assembly alone.
+    pub at_start: bool,
+    /// Positive where the condition holds.
+    pub value: Id,
+    /// The declaring token.
+    pub span: Span,
+}
+
+/// A scalar output.
+#[derive(Debug)]
+pub struct Output {
+    /// Name, with the component's number for arrays.
+    pub name: String,
+    /// Unit as written.
+    pub unit: String,
+    /// Its definition.
+    pub value: Id,
+    /// The declaring token.
+    pub span: Span,
+}

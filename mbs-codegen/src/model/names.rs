@@ -1,0 +1,120 @@
+//! What a name of the text stands for.
+
+use std::collections::BTreeMap;
+
+use proc_macro2::Span;
+
+use super::elaborate::Value;
+use super::functions::FUNCTIONS;
+use crate::diagnostics::Diagnostics;
+use crate::syntax::ast::Name;
+
+/// Names with a meaning of their own.
+pub const RESERVED: [&str; 13] = [
+    "t", "PI", "TAU", "der", "der2", "rate", "lambda", "effort", "reaction", "margin", "ratio", "joint",
+    "curve",
+];
+
+/// Words that cannot name a field of a struct, not even as raw identifiers.
+const UNUSABLE: [&str; 5] = ["self", "Self", "super", "crate", "_"];
+
+/// What a name stands for.
+#[derive(Clone, Debug)]
+pub enum Symbol {
+    /// A value: constants, parameters, inputs, coordinates, and `let`s once they are elaborated.
+    Value(Value),
+    /// A count of a loop or a sum.
+    Count(usize),
+    /// Declared, but not usable here yet.
+    Pending,
+    /// Declared with a fault that was reported.
+    Faulty,
+}
+
+/// Names of values, with the scopes of loops and sums.
+#[derive(Debug, Default)]
+pub struct Names {
+    declared: BTreeMap<String, (Symbol, Span)>,
+    scoped: Vec<(String, Symbol)>,
+}
+
+impl Names {
+    /// Before: a declaration. After: the name is known; a clash is reported and the first declaration kept.
+    pub fn declare(&mut self, name: &Name, diagnostics: &mut Diagnostics) -> bool {
+        if !usable(name, diagnostics) {
+            return false;
+        }
+        if let Some((_, first)) = self.declared.get(&name.text) {
+            report_double(name, *first, diagnostics);
+            return false;
+        }
+        self.declared.insert(name.text.clone(), (Symbol::Pending, name.span));
+        true
+    }
+
+    /// Gives a declared name its value.
+    pub fn define(&mut self, name: &str, value: Value) {
+        if let Some((symbol, _)) = self.declared.get_mut(name) {
+            *symbol = Symbol::Value(value);
+        }
+    }
+
+    /// Marks a declared name that got no value, so that its uses are not reported too.
+    pub fn give_up(&mut self, name: &str) {
+        if let Some((symbol @ Symbol::Pending, _)) = self.declared.get_mut(name) {
+            *symbol = Symbol::Faulty;
+        }
+    }
+
+    /// What the name stands for in the innermost scope.
+    pub fn get(&self, name: &str) -> Option<&Symbol> {
+        let scoped = self.scoped.iter().rev().find(|(known, _)| known == name).map(|(_, symbol)| symbol);
+        scoped.or_else(|| self.declared.get(name).map(|(symbol, _)| symbol))
+    }
+
+    /// All declared names.
+    pub fn all(&self) -> impl Iterator<Item = &str> {
+        self.declared.keys().map(String::as_str).chain(self.scoped.iter().map(|(name, _)| name.as_str()))
+    }
+
+    /// Where the name was declared outside any loop.
+    pub fn declared_at(&self, name: &str) -> Option<Span> {
+        self.declared.get(name).map(|(_, span)| *span)
+    }
+
+    /// Opens a scope with one name; returns the mark to close it with.
+    pub fn enter(&mut self, name: &str, symbol: Symbol) -> usize {
+        self.scoped.push((name.to_owned(), symbol));
+        self.scoped.len() - 1
+    }
+
+    /// Closes the scope opened with `mark`.
+    pub fn leave(&mut self, mark: usize) {
+        self.scoped.truncate(mark);
+    }
+}
+
+/// Reports names that the language or Rust keeps for itself.
+pub fn usable(name: &Name, diagnostics: &mut Diagnostics) -> bool {
+    let text = name.text.as_str();
+    let fault = if RESERVED.contains(&text) {
+        format!("`{text}` is reserved by the language")
+    } else if FUNCTIONS.contains(&text) {
+        format!("`{text}` is the name of a function")
+    } else if UNUSABLE.contains(&text) {
+        format!("`{text}` cannot name a field")
+    } else {
+        return true;
+    };
+    diagnostics.report(name.span, fault, format!("choose another name, `{text}_1` for instance"));
+    false
+}
+
+/// Reports a second declaration.
+pub fn report_double(name: &Name, first: Span, diagnostics: &mut Diagnostics) {
+    diagnostics.report(
+        name.span,
+        format!("`{}` is declared twice", name.text),
+        format!("the first declaration is in line {}; rename one of them", first.start().line),
+    );
+}

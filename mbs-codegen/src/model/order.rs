@@ -1,0 +1,95 @@
+//! The order in which definitions that use each other can be elaborated.
+
+use std::collections::BTreeMap;
+
+use crate::diagnostics::Diagnostics;
+use crate::syntax::ast::{Expression, Name, Operation};
+
+/// Before: named definitions in any order. After: their indices, each behind those it uses; definitions that
+/// lead back to themselves are reported and left out.
+pub fn order(definitions: &[(&Name, &Expression)], diagnostics: &mut Diagnostics) -> Vec<usize> {
+    let index: BTreeMap<&str, usize> =
+        definitions.iter().enumerate().rev().map(|(i, (name, _))| (name.text.as_str(), i)).collect();
+    let uses: Vec<Vec<usize>> = definitions
+        .iter()
+        .map(|(_, expression)| {
+            let names = expression.code.iter().filter_map(|instruction| match &instruction.operation {
+                Operation::Name(name) => index.get(name.as_str()).copied(),
+                _ => None,
+            });
+            names.collect()
+        })
+        .collect();
+    let mut sorted = Vec::new();
+    let mut state = vec![State::New; definitions.len()];
+    for root in 0..definitions.len() {
+        visit(root, &uses, &mut state, &mut sorted, |cycle| {
+            let names: Vec<&str> = cycle
+                .iter()
+                .filter_map(|i| definitions.get(*i))
+                .map(|(name, _)| name.text.as_str())
+                .collect();
+            if let Some((name, _)) = cycle.first().and_then(|first| definitions.get(*first)) {
+                diagnostics.report(
+                    name.span,
+                    format!("`{}` is defined by itself: {} → {}", name.text, names.join(" → "), name.text),
+                    "break the circle; unknowns are declared with `coord`",
+                );
+            }
+        });
+    }
+    sorted
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum State {
+    New,
+    Open,
+    Done,
+    Circular,
+}
+
+/// Depth-first search on an explicit stack.
+fn visit(
+    root: usize,
+    uses: &[Vec<usize>],
+    state: &mut [State],
+    sorted: &mut Vec<usize>,
+    mut report: impl FnMut(&[usize]),
+) {
+    let mut path: Vec<(usize, usize)> = vec![(root, 0)];
+    while let Some(&(node, next)) = path.last() {
+        let here = state.get(node).copied().unwrap_or(State::Done);
+        if here == State::Done || here == State::Circular {
+            path.pop();
+            continue;
+        }
+        set(state, node, State::Open);
+        let Some(&used) = uses.get(node).and_then(|uses| uses.get(next)) else {
+            set(state, node, State::Done);
+            sorted.push(node);
+            path.pop();
+            continue;
+        };
+        if let Some(top) = path.last_mut() {
+            top.1 += 1;
+        }
+        match state.get(used) {
+            Some(State::New) => path.push((used, 0)),
+            Some(State::Open) => {
+                let cycle: Vec<usize> = path.iter().map(|(i, _)| *i).skip_while(|i| *i != used).collect();
+                report(&cycle);
+                for member in cycle {
+                    set(state, member, State::Circular);
+                }
+            }
+            _ => {}
+        }
+    }
+}
+
+fn set(state: &mut [State], node: usize, to: State) {
+    if let Some(slot) = state.get_mut(node) {
+        *slot = to;
+    }
+}

@@ -1,0 +1,406 @@
+//! The recipe of the stage: declarations first, then rows, branches and outputs in the order of the text.
+
+use proc_macro2::Span;
+
+use super::declarations::{self, component_names, fits_shape, initialiser, named};
+use super::elaborate::{Elaborator, Fault, Quantity, Scalar, Value};
+use super::expression::{Binary, Id, Node};
+use super::names::{Names, Symbol, report_double, usable};
+use super::units::Dimension;
+use super::{Branch, Model, Output, Row, VariableKind};
+use crate::diagnostics::Diagnostics;
+use crate::syntax::ast::{Equation, Expression, Item, Loop, Name, Statement, StatementKind, Type};
+
+/// Before: statements as written. After: the resolved model; every fault of meaning is reported.
+pub fn resolve(statements: &[Statement], diagnostics: &mut Diagnostics) -> Model {
+    let mut model = Model::default();
+    let mut names = Names::default();
+    declarations::declare(statements, &mut model, &mut names, diagnostics);
+    let mut work =
+        Resolver { model: &mut model, names: &mut names, diagnostics, groups: Vec::new(), loops: Vec::new() };
+    work.run(statements);
+    work.name_rows();
+    work.check_guesses_and_inputs();
+    model
+}
+
+/// A group of rows, branches or outputs under one name.
+struct Group {
+    name: Name,
+    kind: &'static str,
+    rows: Vec<usize>,
+}
+
+struct Frame {
+    begin: usize,
+    variable: String,
+    count: usize,
+    high: usize,
+    scope: usize,
+}
+
+struct Resolver<'a> {
+    model: &'a mut Model,
+    names: &'a mut Names,
+    diagnostics: &'a mut Diagnostics,
+    groups: Vec<Group>,
+    loops: Vec<Frame>,
+}
+
+impl Resolver<'_> {
+    fn elaborate<T>(&mut self, rates: bool, run: impl FnOnce(&mut Elaborator<'_>) -> T) -> T {
+        let mut work = Elaborator {
+            expressions: &mut self.model.expressions,
+            names: self.names,
+            diagnostics: self.diagnostics,
+            rates,
+            longest: self.model.longest,
+        };
+        let result = run(&mut work);
+        self.model.longest = work.longest;
+        result
+    }
+
+    fn run(&mut self, statements: &[Statement]) {
+        let mut next = 0;
+        while let Some(statement) = statements.get(next) {
+            next += 1;
+            match &statement.kind {
+                StatementKind::For(head) => {
+                    let is_end = |s: &Statement| matches!(s.kind, StatementKind::EndFor);
+                    let is_for = |s: &Statement| matches!(s.kind, StatementKind::For(_));
+                    next = self
+                        .enter(head, next)
+                        .unwrap_or_else(|| behind_loop(statements, next, is_for, is_end));
+                }
+                StatementKind::EndFor => next = self.repeat().unwrap_or(next),
+                kind => self.statement(kind),
+            }
+            if self.too_large() {
+                return;
+            }
+        }
+    }
+
+    /// Whether loops unroll to more than anyone wants; reported once.
+    fn too_large(&mut self) -> bool {
+        let large = self.model.rows.len() > 20_000 || self.model.outputs.len() > 20_000;
+        if large {
+            let span = self.groups.last().map_or_else(Span::call_site, |group| group.name.span);
+            self.diagnostics.report(span, "the text unrolls to more than 20000 rows", "shorten the loops");
+        }
+        large
+    }
+
+    fn statement(&mut self, kind: &StatementKind) {
+        let _reported = match kind {
+            StatementKind::Constraint { name, items } => self.constraint(name, items),
+            StatementKind::Drive { name, equation } => self.drive(name, equation),
+            StatementKind::Branch { name, at_start, larger, smaller } => {
+                self.branch(name, *at_start, larger, smaller)
+            }
+            StatementKind::Out { name, kind, value } => self.output(name, kind, value),
+            StatementKind::Let { name, unit, value } if !self.loops.is_empty() => {
+                let value = self.elaborate(false, |work| named(work, unit.as_ref(), value));
+                value.map(|value| {
+                    self.names.enter(&name.text, Symbol::Value(value));
+                })
+            }
+            StatementKind::Const { name, .. }
+            | StatementKind::Param { name, .. }
+            | StatementKind::Input { name, .. }
+            | StatementKind::Coord { name, .. }
+                if !self.loops.is_empty() =>
+            {
+                self.diagnostics.report(
+                    name.span,
+                    format!("`{}` is declared inside a loop", name.text),
+                    "declare an array before the loop: `coord p: [m; 2] = …;`",
+                );
+                self.loops.iter_mut().for_each(|frame| frame.high = 0);
+                Err(Fault)
+            }
+            _ => Ok(()),
+        };
+    }
+
+    /// Begins a loop; `None` where its body is never executed.
+    fn enter(&mut self, head: &Loop, begin: usize) -> Option<usize> {
+        if !usable(&head.variable, self.diagnostics) {
+            return None;
+        }
+        let bounds = self.elaborate(false, |work| {
+            let (low, high) = (work.value(&head.low)?, work.value(&head.high)?);
+            Ok::<_, Fault>((work.count(&low)?, work.count(&high)?))
+        });
+        let (low, high) = bounds.ok().filter(|(low, high)| low < high)?;
+        let variable = head.variable.text.clone();
+        let scope = self.names.enter(&variable, Symbol::Count(low));
+        self.loops.push(Frame { begin, variable, count: low, high, scope });
+        Some(begin)
+    }
+
+    /// At the end of a loop's body: where its next round begins, or `None` behind the last.
+    fn repeat(&mut self) -> Option<usize> {
+        let mut frame = self.loops.pop()?;
+        self.names.leave(frame.scope);
+        frame.count += 1;
+        if frame.count >= frame.high {
+            return None;
+        }
+        self.names.enter(&frame.variable, Symbol::Count(frame.count));
+        let begin = frame.begin;
+        self.loops.push(frame);
+        Some(begin)
+    }
+
+    /// The group of a statement: a new one, or in a loop the one that an earlier round began.
+    fn group(&mut self, name: &Name, kind: &'static str) -> Result<usize, Fault> {
+        let rows = |kind| matches!(kind, "constraint" | "drive");
+        let clash = |group: &Group| {
+            group.name.text == name.text
+                && rows(group.kind) == rows(kind)
+                && (rows(kind) || group.kind == kind)
+        };
+        if let Some(index) = self.groups.iter().position(clash) {
+            let first = self.groups.get(index).map_or(name.span, |group| group.name.span);
+            let same_statement = (first.start().line, first.start().column)
+                == (name.span.start().line, name.span.start().column);
+            if same_statement && !self.loops.is_empty() {
+                return Ok(index);
+            }
+            report_double(name, first, self.diagnostics);
+            return Err(Fault);
+        }
+        self.groups.push(Group { name: name.clone(), kind, rows: Vec::new() });
+        Ok(self.groups.len() - 1)
+    }
+
+    fn constraint(&mut self, name: &Name, items: &[Item]) -> Result<(), Fault> {
+        let group = self.group(name, "constraint")?;
+        if items.is_empty() {
+            self.diagnostics.report(
+                name.span,
+                format!("constraint `{}` has no equation", name.text),
+                "write `lhs == rhs;` in the braces",
+            );
+        }
+        let outer = self.loops.len();
+        let mut next = 0;
+        while let Some(item) = items.get(next) {
+            next += 1;
+            match item {
+                Item::For(head) => {
+                    let is_end = |item: &Item| matches!(item, Item::EndFor);
+                    let is_for = |item: &Item| matches!(item, Item::For(_));
+                    next = self.enter(head, next).unwrap_or_else(|| behind_loop(items, next, is_for, is_end));
+                }
+                Item::EndFor if self.loops.len() > outer => next = self.repeat().unwrap_or(next),
+                Item::EndFor => {}
+                Item::Equation(equation) => {
+                    let _reported = self.equation(equation, group);
+                }
+            }
+            if self.too_large() {
+                return Err(Fault);
+            }
+        }
+        Ok(())
+    }
+
+    fn drive(&mut self, name: &Name, equation: &Equation) -> Result<(), Fault> {
+        let group = self.group(name, "drive")?;
+        let first = self.model.rows.len();
+        self.equation(equation, group)?;
+        if self.model.rows.len() > first + 1 {
+            self.diagnostics.report(
+                equation.span,
+                format!("drive `{}` has {} components", name.text, self.model.rows.len() - first),
+                "drive one scalar at a time: `drive x: p[0] == …;`",
+            );
+        }
+        Ok(())
+    }
+
+    /// Adds one row a component.
+    fn equation(&mut self, equation: &Equation, group: usize) -> Result<(), Fault> {
+        let (left, right) = self.elaborate(false, |work| {
+            let (left, right) = (work.value(&equation.left), work.value(&equation.right));
+            Ok::<_, Fault>((left?, right?))
+        })?;
+        let span = equation.span;
+        // `x == 0` holds for every component of a vector x.
+        let right = spread_zero(right, &left);
+        let left = spread_zero(left, &right);
+        let residuals = self.elaborate(false, |work| {
+            work.same_shape(&left, &right, "`==`", right.span)?;
+            let pairs = left.items.iter().zip(&right.items);
+            pairs.map(|(a, b)| residual(work, *a, *b, right.span, span)).collect::<Result<Vec<_>, Fault>>()
+        })?;
+        for (residual, dimension) in residuals {
+            if let Some(group) = self.groups.get_mut(group) {
+                group.rows.push(self.model.rows.len());
+            }
+            self.model.rows.push(Row { name: String::new(), dimension, residual, span });
+        }
+        Ok(())
+    }
+
+    fn branch(
+        &mut self,
+        name: &Name,
+        at_start: bool,
+        larger: &Expression,
+        smaller: &Expression,
+    ) -> Result<(), Fault> {
+        let group = self.group(name, "branch")?;
+        let (value, dimension) = self.elaborate(false, |work| {
+            let (larger, smaller) = (work.value(larger), work.value(smaller));
+            let (larger, smaller) = (larger?, smaller?);
+            let a = work.scalar(&larger, "a branch", larger.span)?;
+            let b = work.scalar(&smaller, "a branch", smaller.span)?;
+            residual(work, a, b, smaller.span, name.span)
+        })?;
+        if let Some(group) = self.groups.get_mut(group) {
+            group.rows.push(self.model.branches.len());
+        }
+        self.model.branches.push(Branch {
+            name: name.text.clone(),
+            dimension,
+            at_start,
+            value,
+            span: name.span,
+        });
+        Ok(())
+    }
+
+    fn output(&mut self, name: &Name, kind: &Type, value: &Expression) -> Result<(), Fault> {
+        let group = self.group(name, "out")?;
+        let dimension = Dimension::of(&kind.unit, self.diagnostics);
+        let value = self.elaborate(true, |work| {
+            let shape = kind.shape.iter().map(|length| {
+                let value = work.value(length)?;
+                work.count(&value)
+            });
+            let shape = shape.collect::<Result<Vec<_>, Fault>>()?;
+            let value = work.value(value)?;
+            let value = initialiser(work, value, dimension)?;
+            fits_shape(work, &value, &shape)?;
+            Ok::<Value, Fault>(value)
+        })?;
+        let round = self.groups.get(group).map_or(0, |group| group.rows.len());
+        let base = if self.loops.is_empty() { name.text.clone() } else { format!("{}.{round}", name.text) };
+        for (component, item) in component_names(&base, &value.shape).zip(&value.items) {
+            let unit = kind.unit.text.clone();
+            self.model.outputs.push(Output { name: component, unit, value: item.id, span: name.span });
+        }
+        if let Some(group) = self.groups.get_mut(group) {
+            group.rows.push(round);
+        }
+        Ok(())
+    }
+
+    /// A group of one row gives the row its name; rows of larger ones are counted from 0.
+    fn name_rows(&mut self) {
+        for group in self.groups.iter().filter(|group| matches!(group.kind, "constraint" | "drive")) {
+            for (number, row) in group.rows.iter().enumerate() {
+                if let Some(row) = self.model.rows.get_mut(*row) {
+                    row.name = match group.rows.len() {
+                        1 => group.name.text.clone(),
+                        _ => format!("{}.{number}", group.name.text),
+                    };
+                }
+            }
+        }
+    }
+
+    /// Guesses use parameters alone; rows use no input whose rates are unknown.
+    fn check_guesses_and_inputs(&mut self) {
+        let model = &*self.model;
+        for coordinate in &model.coordinates {
+            let Some(guess) = coordinate.guess else { continue };
+            let marked = model.expressions.reachable([guess]);
+            let varies = |node: Node| match node {
+                Node::Time | Node::Coordinate(_) | Node::Rate(..) => true,
+                Node::Variable(i) => {
+                    model.variables.get(i).is_some_and(|v| v.kind != VariableKind::Parameter)
+                }
+                _ => false,
+            };
+            if model
+                .expressions
+                .iter()
+                .any(|(id, node)| marked.get(id.index()) == Some(&true) && varies(node))
+            {
+                self.diagnostics.report(
+                    coordinate.span,
+                    format!("the guess of `{}` varies in time", coordinate.name),
+                    "make guesses of numbers, constants and parameters",
+                );
+            }
+        }
+        let marked = model.expressions.reachable(model.rows.iter().map(|row| row.residual));
+        for (index, variable) in model.variables.iter().enumerate() {
+            let used = |(id, node): (Id, Node)| {
+                node == Node::Variable(index) && marked.get(id.index()) == Some(&true)
+            };
+            if variable.kind == VariableKind::Input && model.expressions.iter().any(used) {
+                self.diagnostics.report(
+                    variable.span,
+                    format!(
+                        "input `{}` stands in a constraint or drive, but its rates are not known",
+                        variable.name
+                    ),
+                    format!("declare `input {}: {}, rates;`", variable.name, variable.unit),
+                );
+            }
+        }
+    }
+}
+
+fn residual(
+    work: &mut Elaborator<'_>,
+    a: Scalar,
+    b: Scalar,
+    operand: Span,
+    span: Span,
+) -> Result<(Id, Dimension), Fault> {
+    let quantity = work.agree(a, b, operand)?;
+    let id = if work.expressions.node(b.id) == Node::Number(0.0) {
+        a.id
+    } else {
+        work.push_binary(Binary::Subtract, a.id, b.id, span)?
+    };
+    Ok((id, quantity.dimension()))
+}
+
+/// A literal 0 in the shape of the other side.
+fn spread_zero(value: Value, other: &Value) -> Value {
+    match value.items.as_slice() {
+        [zero] if value.shape.is_empty() && zero.quantity == Quantity::Any && zero.bare => {
+            Value { shape: other.shape.clone(), items: vec![*zero; other.items.len()], span: value.span }
+        }
+        _ => value,
+    }
+}
+
+/// Index behind the end that matches a loop whose body begins at `next`.
+fn behind_loop<T>(
+    items: &[T],
+    mut next: usize,
+    begins: impl Fn(&T) -> bool,
+    ends: impl Fn(&T) -> bool,
+) -> usize {
+    let mut depth = 1;
+    while let Some(item) = items.get(next) {
+        next += 1;
+        depth += usize::from(begins(item));
+        if ends(item) {
+            depth -= 1;
+            if depth == 0 {
+                break;
+            }
+        }
+    }
+    next
+}

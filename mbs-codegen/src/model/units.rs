@@ -1,0 +1,258 @@
+//! Units: dimensions of declared units and of number suffixes.
+
+use std::f64::consts::{PI, TAU};
+use std::fmt;
+
+use crate::diagnostics::{Diagnostics, nearest};
+use crate::syntax::ast;
+
+/// Exponents of the base units, in sixtieths, so that roots up to the sixth are exact.
+///
+/// Angles are pure numbers; a cycle is kept apart, so that `Hz` is no `rad/s`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Dimension([i16; 8]);
+
+const BASE: [&str; 8] = ["m", "kg", "s", "A", "K", "mol", "cd", "cycle"];
+const WHOLE: i16 = 60;
+const CYCLE: usize = 7;
+
+/// Symbols of coherent SI units with their exponents of m, kg, s, A, K, mol, cd, cycle.
+const SYMBOLS: [(&str, [i16; 8]); 23] = [
+    ("m", [1, 0, 0, 0, 0, 0, 0, 0]),
+    ("kg", [0, 1, 0, 0, 0, 0, 0, 0]),
+    ("s", [0, 0, 1, 0, 0, 0, 0, 0]),
+    ("A", [0, 0, 0, 1, 0, 0, 0, 0]),
+    ("K", [0, 0, 0, 0, 1, 0, 0, 0]),
+    ("mol", [0, 0, 0, 0, 0, 1, 0, 0]),
+    ("cd", [0, 0, 0, 0, 0, 0, 1, 0]),
+    ("rad", [0; 8]),
+    ("N", [1, 1, -2, 0, 0, 0, 0, 0]),
+    ("J", [2, 1, -2, 0, 0, 0, 0, 0]),
+    ("W", [2, 1, -3, 0, 0, 0, 0, 0]),
+    ("Pa", [-1, 1, -2, 0, 0, 0, 0, 0]),
+    ("Hz", [0, 0, -1, 0, 0, 0, 0, 1]),
+    ("V", [2, 1, -3, -1, 0, 0, 0, 0]),
+    ("C", [0, 0, 1, 1, 0, 0, 0, 0]),
+    ("F", [-2, -1, 4, 2, 0, 0, 0, 0]),
+    ("ohm", [2, 1, -3, -2, 0, 0, 0, 0]),
+    ("H", [2, 1, -2, -2, 0, 0, 0, 0]),
+    ("T", [0, 1, -2, -1, 0, 0, 0, 0]),
+    ("Wb", [2, 1, -2, -1, 0, 0, 0, 0]),
+    ("S", [-2, -1, 3, 2, 0, 0, 0, 0]),
+    ("sr", [0; 8]),
+    ("lm", [0, 0, 0, 0, 0, 0, 1, 0]),
+];
+
+/// Suffixes of numbers that are no coherent SI units: value = number · factor / divisor, in the SI unit.
+const SUFFIXES: [(&str, f64, f64, &str); 31] = [
+    ("km", 1e3, 1.0, "m"),
+    ("cm", 1.0, 1e2, "m"),
+    ("mm", 1.0, 1e3, "m"),
+    ("um", 1.0, 1e6, "m"),
+    ("nm", 1.0, 1e9, "m"),
+    ("inch", 254.0, 1e4, "m"),
+    ("gram", 1.0, 1e3, "kg"),
+    ("tonne", 1e3, 1.0, "kg"),
+    ("ms", 1.0, 1e3, "s"),
+    ("us", 1.0, 1e6, "s"),
+    ("ns", 1.0, 1e9, "s"),
+    ("min", 60.0, 1.0, "s"),
+    ("h", 3600.0, 1.0, "s"),
+    ("deg", PI, 180.0, "rad"),
+    ("mrad", 1.0, 1e3, "rad"),
+    ("turn", TAU, 1.0, "rad"),
+    ("rpm", PI, 30.0, "rad/s"),
+    ("kHz", 1e3, 1.0, "Hz"),
+    ("mN", 1.0, 1e3, "N"),
+    ("kN", 1e3, 1.0, "N"),
+    ("MN", 1e6, 1.0, "N"),
+    ("kPa", 1e3, 1.0, "Pa"),
+    ("MPa", 1e6, 1.0, "Pa"),
+    ("GPa", 1e9, 1.0, "Pa"),
+    ("bar", 1e5, 1.0, "Pa"),
+    ("mJ", 1.0, 1e3, "J"),
+    ("kJ", 1e3, 1.0, "J"),
+    ("kW", 1e3, 1.0, "W"),
+    ("mA", 1.0, 1e3, "A"),
+    ("mV", 1.0, 1e3, "V"),
+    // Standard gravity, ISO 80000-3.
+    ("g0", 9.80665, 1.0, "m/s^2"),
+];
+
+impl Dimension {
+    /// Of pure numbers and angles.
+    pub const NUMBER: Self = Dimension([0; 8]);
+    /// Of lengths.
+    pub const METRE: Self = Dimension([WHOLE, 0, 0, 0, 0, 0, 0, 0]);
+    /// Of times.
+    pub const SECOND: Self = Dimension([0, 0, WHOLE, 0, 0, 0, 0, 0]);
+
+    /// Dimension of a product.
+    pub fn times(self, other: Self) -> Self {
+        self.combine(other, 1)
+    }
+
+    /// Dimension of a quotient.
+    pub fn over(self, other: Self) -> Self {
+        self.combine(other, -1)
+    }
+
+    fn combine(self, other: Self, sign: i16) -> Self {
+        let mut sum = self.0;
+        for (exponent, more) in sum.iter_mut().zip(other.0) {
+            *exponent = exponent.saturating_add(more.saturating_mul(sign));
+        }
+        Dimension(sum)
+    }
+
+    /// Dimension of a power; `None` where an exponent is no sixtieth.
+    pub fn power(self, exponent: f64) -> Option<Self> {
+        let mut product = self.0;
+        for power in &mut product {
+            let exact = f64::from(*power) * exponent;
+            if (exact - exact.round()).abs() > 1e-9 || exact.abs() > f64::from(i16::MAX) {
+                return None;
+            }
+            *power = exact.round() as i16;
+        }
+        Some(Dimension(product))
+    }
+
+    /// With a cycle turned into 2π radians.
+    pub fn without_cycles(self) -> Self {
+        let mut exponents = self.0;
+        exponents[CYCLE] = 0;
+        Dimension(exponents)
+    }
+
+    /// Exponent of the metre, where it is the only base unit that counts for a reference length.
+    pub fn metres(self) -> f64 {
+        f64::from(self.0[0]) / f64::from(WHOLE)
+    }
+
+    fn of_symbol(symbol: &str) -> Option<Self> {
+        SYMBOLS
+            .iter()
+            .find(|(known, _)| *known == symbol)
+            .map(|(_, exponents)| Dimension(exponents.map(|e| e * WHOLE)))
+    }
+
+    /// Before: a unit as written. After: its dimension; unknown symbols are reported and count as numbers.
+    pub fn of(unit: &ast::Unit, diagnostics: &mut Diagnostics) -> Self {
+        let mut dimension = Dimension::NUMBER;
+        for (symbol, exponent) in &unit.factors {
+            match Self::of_symbol(&symbol.text) {
+                Some(base) => {
+                    dimension = dimension.times(base.power(f64::from(*exponent)).unwrap_or_default());
+                }
+                None => {
+                    let (message, help) = unknown_unit(&symbol.text);
+                    diagnostics.report(symbol.span, message, help);
+                }
+            }
+        }
+        dimension
+    }
+}
+
+fn unknown_unit(symbol: &str) -> (String, String) {
+    if let Some((_, _, _, coherent)) = SUFFIXES.iter().find(|(suffix, ..)| *suffix == symbol) {
+        return (
+            format!("`{symbol}` is no coherent SI unit"),
+            format!("declare `{coherent}` and write the unit behind the number: `100{symbol}`"),
+        );
+    }
+    let help = match nearest(symbol, SYMBOLS.iter().map(|(known, _)| *known)) {
+        Some(known) => format!("did you mean `{known}`?"),
+        None => format!("known are 1, {}", SYMBOLS.map(|(known, _)| known).join(", ")),
+    };
+    (format!("`{symbol}` is no known unit"), help)
+}
+
+/// Value and dimension of a number with a suffix; `Err` holds message and cure.
+pub fn with_suffix(value: f64, suffix: &str) -> Result<(f64, Dimension), (String, String)> {
+    if let Some(dimension) = Dimension::of_symbol(suffix) {
+        return Ok((value, dimension));
+    }
+    match SUFFIXES.iter().find(|(known, ..)| *known == suffix) {
+        Some((_, factor, divisor, unit)) => {
+            let dimension = match *unit {
+                "rad/s" => Dimension::NUMBER.over(Dimension::SECOND),
+                "m/s^2" => Dimension::METRE.over(Dimension::SECOND).over(Dimension::SECOND),
+                symbol => Dimension::of_symbol(symbol).unwrap_or_default(),
+            };
+            Ok((value * factor / divisor, dimension))
+        }
+        None => {
+            let known =
+                SYMBOLS.iter().map(|(symbol, _)| *symbol).chain(SUFFIXES.iter().map(|(suffix, ..)| *suffix));
+            let help = match nearest(suffix, known) {
+                Some(known) => format!("did you mean `{value}{known}`?"),
+                None => {
+                    format!("known are the SI symbols and {}", SUFFIXES.map(|(suffix, ..)| suffix).join(", "))
+                }
+            };
+            Err((format!("`{suffix}` is no known unit of a number"), help))
+        }
+    }
+}
+
+impl fmt::Display for Dimension {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if *self == Dimension::NUMBER {
+            return f.write_str("1");
+        }
+        let named = SYMBOLS.iter().find(|(_, exponents)| exponents.map(|e| e * WHOLE) == self.0);
+        if let Some((symbol, _)) = named.filter(|(symbol, _)| *symbol != "J") {
+            return f.write_str(symbol);
+        }
+        if *self == Dimension([2 * WHOLE, WHOLE, -2 * WHOLE, 0, 0, 0, 0, 0]) {
+            return f.write_str("N*m");
+        }
+        let factors = |sign: i16| {
+            let parts = BASE.iter().zip(self.0).filter(move |(_, e)| e.signum() == sign);
+            parts.map(|(base, e)| power(base, e.abs())).collect::<Vec<_>>()
+        };
+        let (over, under) = (factors(1), factors(-1));
+        f.write_str(&if over.is_empty() { "1".into() } else { over.join("*") })?;
+        for base in under {
+            write!(f, "/{base}")?;
+        }
+        Ok(())
+    }
+}
+
+fn power(base: &str, sixtieths: i16) -> String {
+    match (sixtieths / WHOLE, sixtieths % WHOLE) {
+        (1, 0) => base.into(),
+        (whole, 0) => format!("{base}^{whole}"),
+        _ => {
+            let divisor = (1..=WHOLE).rev().find(|d| sixtieths % d == 0 && WHOLE % d == 0).unwrap_or(1);
+            format!("{base}^({}/{})", sixtieths / divisor, WHOLE / divisor)
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn suffixes_are_rounded_once() {
+        assert_eq!(with_suffix(100.0, "mm").expect("known"), (0.1, Dimension::METRE));
+        assert_eq!(with_suffix(180.0, "deg").expect("known").0, PI);
+        assert_eq!(with_suffix(3000.0, "rpm").expect("known").0, 100.0 * PI);
+        assert!(with_suffix(1.0, "mmm").expect_err("unknown").1.contains("`1mm`"));
+    }
+
+    #[test]
+    fn dimensions_print_as_an_engineer_writes_them() {
+        let newton = Dimension::of_symbol("N").expect("known");
+        assert_eq!(newton.to_string(), "N");
+        assert_eq!(newton.times(Dimension::METRE).to_string(), "N*m");
+        assert_eq!(Dimension::METRE.over(Dimension::SECOND).to_string(), "m/s");
+        assert_eq!(Dimension::METRE.power(0.5).expect("half").to_string(), "m^(1/2)");
+        assert_eq!(Dimension::NUMBER.over(Dimension::SECOND).to_string(), "1/s");
+        assert_eq!(Dimension::METRE.power(1.0 / 7.0), None);
+    }
+}

@@ -1,0 +1,133 @@
+//! The text as written: statements in order, expressions as postfix code.
+
+use proc_macro2::Span;
+
+/// A name and where it stands.
+#[derive(Clone, Debug)]
+pub struct Name {
+    /// Without the `r#` of a raw identifier.
+    pub text: String,
+    /// Its token.
+    pub span: Span,
+}
+
+/// One instruction of an expression in postfix order: operands stand before their operator.
+#[derive(Clone, Debug)]
+pub struct Instruction {
+    /// What to do with the values on the stack.
+    pub operation: Operation,
+    /// The token that it comes from.
+    pub span: Span,
+}
+
+/// What an [`Instruction`] does to the stack of values.
+#[derive(Clone, Debug)]
+pub enum Operation {
+    /// Pushes a number, in the unit of its suffix.
+    Number { value: f64, suffix: Option<String>, integer: bool },
+    /// Pushes what the name stands for.
+    Name(String),
+    /// Negates one value.
+    Negate,
+    /// Joins two values.
+    Binary(Operator),
+    /// Applies a function to `arguments` values.
+    Call { function: String, arguments: usize },
+    /// Makes an array of `length` values.
+    Array { length: usize },
+    /// Pops `indices` counts and indexes the array below them.
+    Index { indices: usize },
+    /// Pops the bounds and repeats the instructions up to `end` for `variable`; `end` is the matching `SumEnd`.
+    SumBegin { variable: Name, end: usize },
+    /// Adds the body's value to the sum that began at `begin`.
+    SumEnd { begin: usize },
+}
+
+/// Operator between two operands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Operator {
+    Add,
+    Subtract,
+    Multiply,
+    Divide,
+    Power,
+}
+
+/// An expression in postfix order.
+#[derive(Clone, Debug)]
+pub struct Expression {
+    /// Never empty.
+    pub code: Vec<Instruction>,
+    /// Its first token.
+    pub span: Span,
+}
+
+/// A unit as written, parentheses resolved: a product of symbols with exponents.
+#[derive(Clone, Debug)]
+pub struct Unit {
+    /// Symbols and exponents; `1` is left out.
+    pub factors: Vec<(Name, i32)>,
+    /// Without spaces, as written.
+    pub text: String,
+    /// Its first token.
+    pub span: Span,
+}
+
+/// Unit and shape of a declaration.
+#[derive(Clone, Debug)]
+pub struct Type {
+    /// Unit of every component.
+    pub unit: Unit,
+    /// Lengths of the array; none for a scalar.
+    pub shape: Vec<Expression>,
+}
+
+/// `left == right`.
+#[derive(Clone, Debug)]
+pub struct Equation {
+    pub left: Expression,
+    pub right: Expression,
+    /// The `==`.
+    pub span: Span,
+}
+
+/// What stands in the braces of a constraint, loops flattened to begin and end.
+#[derive(Clone, Debug)]
+pub enum Item {
+    Equation(Equation),
+    For(Loop),
+    EndFor,
+}
+
+/// `for variable in low..high`.
+#[derive(Clone, Debug)]
+pub struct Loop {
+    pub variable: Name,
+    pub low: Expression,
+    pub high: Expression,
+}
+
+/// A statement with its doc comment.
+#[derive(Clone, Debug)]
+pub struct Statement {
+    /// Lines of the doc comment.
+    pub docs: Vec<String>,
+    /// What it declares.
+    pub kind: StatementKind,
+}
+
+/// The statements of the language, loops flattened to begin and end.
+#[derive(Clone, Debug)]
+pub enum StatementKind {
+    Const { name: Name, unit: Unit, value: Expression },
+    Param { name: Name, kind: Type, value: Option<Expression> },
+    Input { name: Name, kind: Type, rates: bool },
+    Coord { name: Name, kind: Type, guess: Option<Expression> },
+    Let { name: Name, unit: Option<Unit>, value: Expression },
+    Constraint { name: Name, items: Vec<Item> },
+    Drive { name: Name, equation: Equation },
+    Branch { name: Name, at_start: bool, larger: Expression, smaller: Expression },
+    Out { name: Name, kind: Type, value: Expression },
+    For(Loop),
+    EndFor,
+}

@@ -1,0 +1,351 @@
+//! Expressions: precedence climbing on an explicit stack, so that depth costs no stack frames.
+
+use proc_macro2::Span;
+
+use super::ast::{Expression, Instruction, Name, Operation, Operator};
+use super::parser::{Parser, Read};
+use super::tokens::Kind;
+
+/// What waits for its right operand or its closing bracket.
+enum Pending {
+    Negate(Span),
+    Binary(Operator, Span),
+    Parenthesis,
+    Call { function: String, arguments: usize, span: Span },
+    Array { length: usize, span: Span },
+    Index { indices: usize, span: Span },
+    SumLow { variable: Name, span: Span },
+    SumHigh { variable: Name, span: Span },
+    SumBody { begin: usize, span: Span },
+}
+
+impl Pending {
+    fn is_bracket(&self) -> bool {
+        !matches!(self, Pending::Negate(_) | Pending::Binary(..))
+    }
+}
+
+/// Binding strength; unary minus binds looser than `^` and tighter than `*`.
+fn strength(operator: Operator) -> u8 {
+    match operator {
+        Operator::Add | Operator::Subtract => 1,
+        Operator::Multiply | Operator::Divide => 2,
+        Operator::Power => 4,
+    }
+}
+const NEGATE: u8 = 3;
+
+/// Reads the longest expression from here on.
+pub fn expression(parser: &mut Parser<'_>) -> Read<Expression> {
+    let mut reader = Reader { code: Vec::new(), pending: Vec::new(), span: parser.span() };
+    let mut operand = true;
+    loop {
+        if operand {
+            operand = reader.operand(parser)?;
+        } else if let Some(next) = reader.behind_operand(parser)? {
+            operand = next;
+        } else {
+            return Ok(Expression { code: reader.code, span: reader.span });
+        }
+    }
+}
+
+struct Reader {
+    code: Vec<Instruction>,
+    pending: Vec<Pending>,
+    span: Span,
+}
+
+impl Reader {
+    fn push(&mut self, operation: Operation, span: Span) {
+        self.code.push(Instruction { operation, span });
+    }
+
+    /// Reads where an operand must stand; returns whether an operand must stand next.
+    fn operand(&mut self, parser: &mut Parser<'_>) -> Read<bool> {
+        let span = parser.span();
+        match parser.peek() {
+            Kind::Punctuation('-', _) => {
+                parser.skip(1);
+                self.pending.push(Pending::Negate(span));
+                Ok(true)
+            }
+            Kind::Punctuation('+', _) => {
+                parser.expected("an operand", "remove the `+`; there is no unary plus")
+            }
+            Kind::Open('(') => {
+                parser.skip(1);
+                self.pending.push(Pending::Parenthesis);
+                Ok(true)
+            }
+            Kind::Open('[') => {
+                parser.skip(1);
+                self.pending.push(Pending::Array { length: 1, span });
+                Ok(true)
+            }
+            Kind::Identifier(word) if word == "sum" && *parser.peek_at(1) == Kind::Open('(') => {
+                parser.skip(2);
+                let variable = parser.name(SUM)?;
+                if !parser.take_word("in") {
+                    return parser.expected("`in`", SUM);
+                }
+                self.pending.push(Pending::SumLow { variable, span });
+                Ok(true)
+            }
+            Kind::Identifier(word) => {
+                parser.skip(1);
+                if !parser.take('(') {
+                    self.push(Operation::Name(word.clone()), span);
+                    return Ok(false);
+                }
+                if parser.take(')') {
+                    self.push(Operation::Call { function: word.clone(), arguments: 0 }, span);
+                    return Ok(false);
+                }
+                self.pending.push(Pending::Call { function: word.clone(), arguments: 1, span });
+                Ok(true)
+            }
+            Kind::Literal(text) => {
+                let Some(number) = number(text) else {
+                    return parser.expected("a number", "write numbers as `0.1`, `1e-3`, `100mm` or `30deg`");
+                };
+                parser.skip(1);
+                self.push(number, span);
+                Ok(false)
+            }
+            _ => {
+                parser.expected("an expression", "write a number, a name, a function call, `[x, y]` or `(…)`")
+            }
+        }
+    }
+
+    /// Reads where an operator or the end may stand; returns whether an operand must stand next, or `None` at
+    /// the end of the expression.
+    fn behind_operand(&mut self, parser: &mut Parser<'_>) -> Read<Option<bool>> {
+        let span = parser.span();
+        if let Kind::Punctuation(character, _) = parser.peek() {
+            let operator = match character {
+                '+' => Some(Operator::Add),
+                '-' => Some(Operator::Subtract),
+                '*' => Some(Operator::Multiply),
+                '/' => Some(Operator::Divide),
+                '^' => Some(Operator::Power),
+                _ => None,
+            };
+            if let Some(operator) = operator {
+                parser.skip(1);
+                self.reduce(strength(operator), operator != Operator::Power);
+                self.pending.push(Pending::Binary(operator, span));
+                return Ok(Some(true));
+            }
+        }
+        match parser.peek() {
+            Kind::Open('[') => {
+                parser.skip(1);
+                self.pending.push(Pending::Index { indices: 1, span });
+                Ok(Some(true))
+            }
+            Kind::Punctuation('.', false) => self.component(parser),
+            Kind::Punctuation(',', _) => {
+                self.reduce(0, true);
+                match self.pending.last_mut() {
+                    Some(Pending::Call { arguments: count, .. })
+                    | Some(Pending::Array { length: count, .. })
+                    | Some(Pending::Index { indices: count, .. }) => *count += 1,
+                    None => return Ok(None),
+                    Some(_) => return parser.expected("`)`", "close the parenthesis, or remove the comma"),
+                }
+                parser.skip(1);
+                Ok(Some(true))
+            }
+            _ => self.bracket(parser),
+        }
+    }
+
+    /// `.2` behind a vector.
+    fn component(&mut self, parser: &mut Parser<'_>) -> Read<Option<bool>> {
+        let span = parser.span();
+        parser.skip(1);
+        if let Kind::Literal(text) = parser.peek()
+            && let Some(index) = number(text)
+            && matches!(index, Operation::Number { integer: true, .. })
+        {
+            self.push(index, parser.span());
+            parser.skip(1);
+            self.push(Operation::Index { indices: 1 }, span);
+            return Ok(Some(false));
+        }
+        parser.expected("the number of a component", "write `p.0` or `p[0]`; of a matrix `m[0, 1]`")
+    }
+
+    /// What closes a bracket or separates the parts of a `sum`, or ends the expression.
+    fn bracket(&mut self, parser: &mut Parser<'_>) -> Read<Option<bool>> {
+        self.reduce(0, true);
+        let close = matches!(parser.peek(), Kind::Close(_));
+        match self.pending.pop() {
+            None => return Ok(None),
+            Some(Pending::SumLow { variable, span }) if parser.at_pair('.', '.') => {
+                parser.skip(2);
+                self.pending.push(Pending::SumHigh { variable, span });
+                return Ok(Some(true));
+            }
+            Some(Pending::SumHigh { variable, span })
+                if matches!(parser.peek(), Kind::Punctuation(':', _)) =>
+            {
+                parser.skip(1);
+                let begin = self.code.len();
+                self.push(Operation::SumBegin { variable, end: begin }, span);
+                self.pending.push(Pending::SumBody { begin, span });
+                return Ok(Some(true));
+            }
+            Some(Pending::SumLow { .. } | Pending::SumHigh { .. }) => return parser.expected("a range", SUM),
+            Some(_) if !close => {
+                return parser
+                    .expected("an operator or a closing bracket", "two operands need an operator: `2*x`");
+            }
+            Some(Pending::SumBody { begin, span }) => {
+                let here = self.code.len();
+                if let Some(Instruction { operation: Operation::SumBegin { end, .. }, .. }) =
+                    self.code.get_mut(begin)
+                {
+                    *end = here;
+                }
+                self.push(Operation::SumEnd { begin }, span);
+            }
+            Some(Pending::Call { function, arguments, span }) => {
+                self.push(Operation::Call { function, arguments }, span);
+            }
+            Some(Pending::Array { length, span }) => self.push(Operation::Array { length }, span),
+            Some(Pending::Index { indices, span }) => self.push(Operation::Index { indices }, span),
+            Some(Pending::Parenthesis | Pending::Negate(_) | Pending::Binary(..)) => {}
+        }
+        parser.skip(1);
+        Ok(Some(false))
+    }
+
+    /// Emits the waiting operators that bind at least as strongly (`left`: as strongly counts too).
+    fn reduce(&mut self, limit: u8, left: bool) {
+        while let Some(top) = self.pending.last() {
+            let (waiting, operation, span) = match top {
+                Pending::Negate(span) => (NEGATE, Operation::Negate, *span),
+                Pending::Binary(operator, span) => (strength(*operator), Operation::Binary(*operator), *span),
+                bracket => {
+                    debug_assert!(bracket.is_bracket());
+                    return;
+                }
+            };
+            if waiting < limit || (waiting == limit && !left) {
+                return;
+            }
+            self.pending.pop();
+            self.push(operation, span);
+        }
+    }
+}
+
+const SUM: &str = "write `sum(i in 0..3: x[i])`";
+
+/// A literal as a number with its unit suffix; `None` where it is no decimal number.
+fn number(literal: &str) -> Option<Operation> {
+    let bytes = literal.as_bytes();
+    let digits = |from: usize| {
+        from + bytes.iter().skip(from).take_while(|byte| byte.is_ascii_digit() || **byte == b'_').count()
+    };
+    let at = |index: usize| bytes.get(index).copied().unwrap_or(0);
+    if !at(0).is_ascii_digit() {
+        return None;
+    }
+    let mut end = digits(0);
+    let mut integer = true;
+    if at(end) == b'.' {
+        integer = false;
+        end = digits(end + 1);
+    }
+    if matches!(at(end), b'e' | b'E') {
+        let exponent = end + 1 + usize::from(matches!(at(end + 1), b'+' | b'-'));
+        if at(exponent).is_ascii_digit() {
+            integer = false;
+            end = digits(exponent);
+        }
+    }
+    let value = literal.get(..end)?.replace('_', "").parse().ok()?;
+    let suffix = literal.get(end..).filter(|suffix| !suffix.is_empty()).map(str::to_owned);
+    Some(Operation::Number { value, suffix, integer })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnostics::Diagnostics;
+    use crate::syntax::tokens::flatten;
+
+    /// The expression in postfix notation, or the messages.
+    fn postfix(text: &str) -> String {
+        let mut diagnostics = Diagnostics::default();
+        let tokens = flatten(text.parse().expect("tokens"), &mut diagnostics).expect("flat");
+        let read = expression(&mut Parser::new(&tokens, &mut diagnostics));
+        let Ok(expression) = read else { return diagnostics.to_text() };
+        let mut words = Vec::new();
+        for instruction in &expression.code {
+            words.push(match &instruction.operation {
+                Operation::Number { value, suffix, .. } => {
+                    format!("{value}{}", suffix.clone().unwrap_or_default())
+                }
+                Operation::Name(name) => name.clone(),
+                Operation::Negate => "neg".into(),
+                Operation::Binary(operator) => format!("{operator:?}").to_lowercase(),
+                Operation::Call { function, arguments } => format!("{function}/{arguments}"),
+                Operation::Array { length } => format!("[{length}]"),
+                Operation::Index { indices } => format!("index/{indices}"),
+                Operation::SumBegin { variable, end } => format!("sum {}→{end}", variable.text),
+                Operation::SumEnd { begin } => format!("end←{begin}"),
+            });
+        }
+        words.join(" ")
+    }
+
+    #[test]
+    fn powers_bind_tighter_than_products_and_unary_minus() {
+        assert_eq!(postfix("m*L^2/12"), "m L 2 power multiply 12 divide");
+        assert_eq!(postfix("-x^2"), "x 2 power neg");
+        assert_eq!(postfix("2^-x^2*y"), "2 x 2 power neg power y multiply");
+        assert_eq!(postfix("2^3^2"), "2 3 2 power power");
+        assert_eq!(postfix("a*-b"), "a b neg multiply");
+        assert_eq!(postfix("-a*b"), "a neg b multiply");
+    }
+
+    #[test]
+    fn sums_and_differences_associate_to_the_left() {
+        assert_eq!(postfix("a-b+c"), "a b subtract c add");
+        assert_eq!(postfix("a/b*c"), "a b divide c multiply");
+    }
+
+    #[test]
+    fn numbers_carry_their_suffix() {
+        assert_eq!(postfix("100mm + 1.5e-3 + 30deg + 1_000"), "100mm 0.0015 add 30deg add 1000 add");
+        assert!(postfix("'x'").contains("expected a number"));
+    }
+
+    #[test]
+    fn calls_arrays_indices_and_sums_nest() {
+        assert_eq!(postfix("atan2(y, x)"), "y x atan2/2");
+        assert_eq!(postfix("[a, b][1]"), "a b [2] 1 index/1");
+        assert_eq!(postfix("p.1 + m[0, 1]"), "p 1 index/1 m 0 1 index/2 add");
+        assert_eq!(postfix("sum(i in 0..n: x[i]*2)"), "0 n sum i→8 x i index/1 2 multiply end←2");
+    }
+
+    #[test]
+    fn a_long_chain_needs_no_stack() {
+        let minus = "- ".repeat(50_000);
+        assert!(postfix(&format!("{minus} x")).starts_with("x neg neg"));
+        let sum = "1 + ".repeat(50_000);
+        assert!(postfix(&format!("{sum} x")).ends_with("x add"));
+    }
+
+    #[test]
+    fn a_missing_operand_or_operator_is_reported_at_its_place() {
+        assert!(postfix("a + ;").starts_with("1:5: expected an expression, found `;`"));
+        assert!(postfix("(a b)").starts_with("1:4: expected an operator or a closing bracket, found `b`"));
+        assert!(postfix("f(a,)").starts_with("1:5: expected an expression, found `)`"));
+    }
+}

@@ -1,0 +1,141 @@
+//! A cursor over the flat list of tokens.
+
+use proc_macro2::Span;
+
+use super::ast::Name;
+use super::tokens::{Kind, Token};
+use crate::diagnostics::Diagnostics;
+
+/// A fault was reported; the statement is given up and reading goes on behind it.
+#[derive(Debug)]
+pub struct GivenUp;
+
+/// Result of reading a part of a statement.
+pub type Read<T> = Result<T, GivenUp>;
+
+/// Reads tokens one after the other and reports what does not fit.
+pub struct Parser<'a> {
+    tokens: &'a [Token],
+    next: usize,
+    /// Where faults go.
+    pub diagnostics: &'a mut Diagnostics,
+}
+
+static BEHIND: Kind = Kind::End;
+
+impl<'a> Parser<'a> {
+    /// `tokens` end with [`Kind::End`].
+    pub fn new(tokens: &'a [Token], diagnostics: &'a mut Diagnostics) -> Self {
+        Parser { tokens, next: 0, diagnostics }
+    }
+
+    /// The next token's kind.
+    pub fn peek(&self) -> &'a Kind {
+        self.peek_at(0)
+    }
+
+    /// The kind of the token `ahead` places further on.
+    pub fn peek_at(&self, ahead: usize) -> &'a Kind {
+        self.tokens.get(self.next + ahead).map_or(&BEHIND, |token| &token.kind)
+    }
+
+    /// The next token's span.
+    pub fn span(&self) -> Span {
+        let last = self.tokens.last().map_or_else(Span::call_site, |token| token.span);
+        self.tokens.get(self.next).map_or(last, |token| token.span)
+    }
+
+    /// The tokens from here on.
+    pub fn rest(&self) -> &'a [Token] {
+        self.tokens.get(self.next..).unwrap_or(&[])
+    }
+
+    /// Goes on by `count` tokens.
+    pub fn skip(&mut self, count: usize) {
+        self.next = (self.next + count).min(self.tokens.len().saturating_sub(1));
+    }
+
+    /// Takes the next token if it is this punctuation.
+    pub fn take(&mut self, character: char) -> bool {
+        let found = matches!(self.peek(), Kind::Punctuation(c, _) | Kind::Open(c) | Kind::Close(c) if *c == character);
+        if found {
+            self.skip(1);
+        }
+        found
+    }
+
+    /// Whether the next two tokens are this pair of punctuation.
+    pub fn at_pair(&self, first: char, second: char) -> bool {
+        matches!(self.peek(), Kind::Punctuation(c, true) if *c == first)
+            && matches!(self.peek_at(1), Kind::Punctuation(c, _) if *c == second)
+    }
+
+    /// Takes the next token if it is this word.
+    pub fn take_word(&mut self, word: &str) -> bool {
+        let found = self.at_word(word);
+        if found {
+            self.skip(1);
+        }
+        found
+    }
+
+    /// Whether the next token is this word.
+    pub fn at_word(&self, word: &str) -> bool {
+        matches!(self.peek(), Kind::Identifier(text) if text == word)
+    }
+
+    /// Reports that something else was expected here.
+    pub fn expected<T>(&mut self, what: &str, help: &str) -> Read<T> {
+        let found = self.tokens.get(self.next).map_or_else(|| "the end of the text".into(), Token::describe);
+        let span = self.span();
+        self.diagnostics.report(span, format!("expected {what}, found {found}"), help);
+        Err(GivenUp)
+    }
+
+    /// Takes this punctuation or reports that it is missing.
+    pub fn expect(&mut self, character: char, help: &str) -> Read<()> {
+        if self.take(character) { Ok(()) } else { self.expected(&format!("`{character}`"), help) }
+    }
+
+    /// Takes a name or reports that it is missing.
+    pub fn name(&mut self, help: &str) -> Read<Name> {
+        match self.peek() {
+            Kind::Identifier(text) if text != "_" => {
+                let name = Name { text: text.clone(), span: self.span() };
+                self.skip(1);
+                Ok(name)
+            }
+            _ => self.expected("a name", help),
+        }
+    }
+
+    /// Goes behind the bracket that closes the one just before the cursor, or to the end.
+    pub fn skip_group(&mut self) {
+        let mut depth = 1;
+        while depth > 0 && *self.peek() != Kind::End {
+            match self.peek() {
+                Kind::Open(_) => depth += 1,
+                Kind::Close(_) => depth -= 1,
+                _ => {}
+            }
+            self.skip(1);
+        }
+    }
+}
+
+/// Tokens of `#[doc = "text"]`.
+pub const DOC_ATTRIBUTE: usize = 6;
+
+/// The text where the tokens begin with `#[doc = "text"]`.
+pub fn doc_attribute(tokens: &[Token]) -> Option<String> {
+    let [mark, open, word, equals, literal, close, ..] = tokens else { return None };
+    let is_doc = matches!(mark.kind, Kind::Punctuation('#', _))
+        && open.kind == Kind::Open('[')
+        && word.kind == Kind::Identifier("doc".into())
+        && matches!(equals.kind, Kind::Punctuation('=', _))
+        && close.kind == Kind::Close(']');
+    match &literal.kind {
+        Kind::Literal(text) if is_doc => syn::parse_str::<syn::LitStr>(text).ok().map(|text| text.value()),
+        _ => None,
+    }
+}
