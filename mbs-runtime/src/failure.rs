@@ -40,6 +40,15 @@ pub enum Failure {
         /// Its line in the text; 0 for the time.
         line: u32,
     },
+    /// A coordinate is so large that its number type no longer resolves a thousandth of its scale.
+    Unresolved {
+        /// The coordinate.
+        coordinate: Entry,
+        /// Its value, in its unit.
+        value: f64,
+        /// Time (s).
+        time: f64,
+    },
     /// Newton's method did not reach the tolerance from the previous position.
     NotConverged {
         /// The row with the largest residual, in the reference metric.
@@ -91,6 +100,12 @@ impl fmt::Display for Failure {
         match self {
             Failure::NonFinite { name, line: 0 } => write!(f, "`{name}` is not a finite number"),
             Failure::NonFinite { name, line } => write!(f, "`{name}` (line {line}) is not a finite number"),
+            Failure::Unresolved { coordinate, value, time } => write!(
+                f,
+                "`{}` (line {}) is {value:.3e} {} at t = {time} s, too large for its number type to tell positions \
+                 apart; take off whole turns, or use `f64`",
+                coordinate.name, coordinate.line, coordinate.unit
+            ),
             Failure::NotConverged { row, residual, required, iterations, time } => write!(
                 f,
                 "no position at t = {time} s: after {iterations} iterations row `{}` (line {}) is still {residual:.3e} {} \
@@ -120,3 +135,38 @@ impl fmt::Display for Failure {
 }
 
 impl core::error::Error for Failure {}
+
+#[cfg(test)]
+mod tests {
+    extern crate std;
+    use super::*;
+    use std::string::ToString;
+
+    const ROW: Entry = Entry { name: "closure.0", unit: "m", line: 21 };
+
+    #[test]
+    fn every_failure_names_its_line_in_the_text() {
+        let (time, residual, required) = (0.5, 1e-3, 1e-14);
+        let failures = [
+            Failure::NonFinite { name: "omega", line: 21 },
+            Failure::Unresolved { coordinate: ROW, value: 1e300, time },
+            Failure::NotConverged { row: ROW, residual, required, iterations: 9, time },
+            Failure::NotAssemblable { row: ROW, residual, time },
+            Failure::Singular { row: ROW, coordinate: ROW, margin: 0.0, required, time },
+            Failure::WrongBranch { branch: ROW, value: -1.0, time },
+        ];
+        for failure in failures {
+            assert!(failure.to_string().contains("(line 21)"), "{failure}");
+        }
+        assert_eq!(Failure::NonFinite { name: "t", line: 0 }.to_string(), "`t` is not a finite number");
+    }
+
+    #[test]
+    fn the_first_failure_of_a_lane_stays() {
+        let (converged, first) = (Outcome::Converged, Outcome::NotConverged { row: 1 });
+        let second = Outcome::NonFinite { row: 2 };
+        type Three = crate::Lanes<f64, 3>;
+        let outcomes = first_failure::<Three>([converged, first, converged], [converged, second, second]);
+        assert_eq!(outcomes, [converged, first, second]);
+    }
+}

@@ -7,17 +7,39 @@
 #![no_std]
 #![forbid(unsafe_code)]
 
+pub mod assembly;
+#[cfg(feature = "nalgebra")]
+pub mod boundary;
+pub mod diagnosis;
 pub mod failure;
+pub mod kinematics;
 pub mod lanes;
+pub mod linear;
 pub mod mechanism;
+pub mod newton;
+pub mod newton_raphson;
+pub mod safeguarded;
 pub mod scalar;
+pub mod stepper;
+pub mod sweep;
 
+pub use assembly::{Assembled, assemble};
+#[cfg(feature = "nalgebra")]
+pub use boundary::Matrices;
+pub use diagnosis::{Diagnosis, Statistics, Worst};
 pub use failure::{Failure, Outcome};
+pub use kinematics::{RegularFactors, factorize, solve_acceleration, solve_position, solve_velocity};
 pub use lanes::Lanes;
+pub use linear::{Direct1, Direct2, Direct3, Lu};
 pub use mechanism::{
     Block, BlockSolver, Entry, Evaluation, Factorization, Kinematic, Margin, Mechanism, OutputValue, Signal,
 };
+pub use newton::Newton;
+pub use newton_raphson::newton_raphson;
+pub use safeguarded::Safeguarded;
 pub use scalar::{Real, Scalar};
+pub use stepper::Stepper;
+pub use sweep::{Frame, Sweep};
 
 /// Declares a mechanism; see the grammar in the README.
 #[macro_export]

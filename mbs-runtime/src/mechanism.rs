@@ -55,7 +55,7 @@ pub struct Evaluation<T, const N: usize, const M: usize> {
     pub gamma: [T; M],
 }
 
-/// A mechanism of `N` coordinates and `M` constraint rows, as emitted by [`mechanism!`](crate::mechanism).
+/// A mechanism of `N` coordinates and `M` constraint rows, as emitted by [`mechanism!`](crate::mechanism!).
 ///
 /// Evaluation is staged: [`parameters`](Self::parameters) once a design, [`position`](Self::position) once a
 /// `(q, t)`, everything else from those two.
@@ -83,6 +83,8 @@ pub trait Mechanism<T: Scalar, const N: usize, const M: usize>: Clone {
     const VARIABLES: &'static [Entry];
     /// Branch conditions.
     const BRANCHES: &'static [Entry];
+    /// Of each branch, whether it picks the assembly alone and may change its sign afterwards.
+    const BRANCHES_AT_START: &'static [bool] = &[];
     /// Outputs, component by component.
     const OUTPUTS: &'static [Entry];
 
@@ -162,11 +164,15 @@ pub struct Block<T, const K: usize> {
 
 /// How a K × K diagonal block is factorised: closed form for one, two and three unknowns, LU beyond.
 pub trait Factorization<T: Scalar, const K: usize>: Copy {
-    /// Factorises `a` (K rows of K); columns are measured in `coordinate_scales`.
+    /// Factorises `a` (K rows of K) and measures it in the reference metric: rows over `row_scales` (K), columns
+    /// times `coordinate_scales` (K).
+    ///
+    /// The scales of the rows are the metric's, not the rows' own lengths: at a dead centre with links along an
+    /// axis a whole row vanishes, and made as long as the others it would hide what happens.
     ///
     /// Returns the factors and the margin to singularity: 0 where singular, at most 1, independent of units.
     /// A singular lane still gets finite factors wherever `a` is finite.
-    fn factorize(a: &[[T; K]; K], coordinate_scales: &[T; K]) -> (Self, T);
+    fn factorize(a: &[[T; K]; K], row_scales: &[T; K], coordinate_scales: &[T; K]) -> (Self, T);
     /// Solves `a x = b`.
     fn solve(&self, b: &[T; K]) -> [T; K];
 }

@@ -1,0 +1,168 @@
+//! The block-triangular solution: nonlinear for positions, linear for rates.
+
+use std::collections::BTreeMap;
+use std::fmt::Write;
+
+use super::code::lets;
+use super::scope::{Scope, number};
+use crate::equations::Equations;
+use crate::program::{BlockProgram, Method, Program};
+use crate::symbolic::NodeId;
+
+/// Body of `solve_blocks`.
+pub fn solve(equations: &Equations, program: &Program, scope: &Scope<'_>) -> String {
+    let mut text = String::from("let __outcome = T::per_lane(|_| __mbs::Outcome::Converged);\n");
+    for block in &program.blocks {
+        lets(&block.before, scope, &mut text);
+        match &block.method {
+            Method::Explicit { value, .. } => {
+                for coordinate in &block.coordinates {
+                    let _ = writeln!(text, "__q[{coordinate}] = {};", scope.operand(*value));
+                }
+            }
+            Method::Newton { section, phi, phi_q } => {
+                let inner = Scope { unknowns: &block.coordinates, ..*scope };
+                let starts = list(block.coordinates.iter().map(|c| format!("__q[{c}]")));
+                let (size, kind) = (block.rows.len(), factorization(block.rows.len()));
+                let description = description(equations, block, scope);
+                let _ = writeln!(
+                    text,
+                    "let (__x, __block) = __solver.solve::<{size}, {kind}>(&{description}, {starts}, |__x| {{"
+                );
+                lets(section, &inner, &mut text);
+                let residuals = list(phi.iter().map(|id| inner.operand(*id)));
+                let rows = list(phi_q.iter().map(|row| list(row.iter().map(|id| inner.or_zero(*id)))));
+                let _ = writeln!(text, "({residuals}, {rows})\n}});");
+                for (index, coordinate) in block.coordinates.iter().enumerate() {
+                    let _ = writeln!(text, "__q[{coordinate}] = __x[{index}];");
+                }
+                text += "let __outcome = __mbs::failure::first_failure::<T>(__outcome, __block);\n";
+            }
+        }
+    }
+    text + "__outcome"
+}
+
+/// `Block { … }` with its share of the metric.
+fn description(equations: &Equations, block: &BlockProgram, scope: &Scope<'_>) -> String {
+    let scale = |scales: &[NodeId], index: &usize| scope.or_zero(scales.get(*index).copied());
+    let angle =
+        |c: &usize| scope.model.coordinates.get(*c).is_some_and(|coordinate| coordinate.unit == "rad");
+    format!(
+        "__mbs::Block {{ rows: {}, coordinates: {}, angles: {}, row_scales: {}, coordinate_scales: {} }}",
+        list(block.rows.iter().map(usize::to_string)),
+        list(block.coordinates.iter().map(usize::to_string)),
+        list(block.coordinates.iter().map(|c| angle(c).to_string())),
+        list(block.rows.iter().map(|row| scale(&equations.row_scales, row))),
+        list(block.coordinates.iter().map(|c| scale(&equations.coordinate_scales, c))),
+    )
+}
+
+fn factorization(size: usize) -> String {
+    match size {
+        1..=3 => format!("__mbs::Direct{size}<T>"),
+        _ => format!("__mbs::Lu<T, {size}>"),
+    }
+}
+
+/// Declaration of the factors, body of `factorize`, body of `solve_linear`.
+pub fn linear(equations: &Equations, program: &Program, scope: &Scope<'_>) -> (String, String, String) {
+    let entries = Entries::of(equations, program, scope);
+    let mut fields = format!("/// Entries off the diagonal blocks.\nentries: [T; {}],\n", entries.kept.len());
+    let mut factorize = String::new();
+    lets(&program.phi_q, scope, &mut factorize);
+    factorize += "let __margin = __mbs::Margin::<T>::regular();\n";
+    let mut solve = String::new();
+    let mut names = String::new();
+    for (index, block) in program.blocks.iter().enumerate() {
+        let right_sides: Vec<String> = block.rows.iter().map(|row| entries.right_side(*row, block)).collect();
+        match &block.method {
+            Method::Explicit { coefficient, .. } => {
+                for (coordinate, right_side) in block.coordinates.iter().zip(&right_sides) {
+                    let value = match *coefficient {
+                        1.0 => right_side.clone(),
+                        -1.0 => format!("-({right_side})"),
+                        other => format!("({right_side}) / {}", number(other)),
+                    };
+                    let _ = writeln!(solve, "let __x{coordinate} = {value};");
+                }
+            }
+            Method::Newton { phi_q, .. } => {
+                let (size, kind) = (block.rows.len(), factorization(block.rows.len()));
+                let rows = list(phi_q.iter().map(|row| list(row.iter().map(|id| scope.or_zero(*id)))));
+                let scale = |scales: &[NodeId], index: &usize| scope.or_zero(scales.get(*index).copied());
+                let row_scales = list(block.rows.iter().map(|row| scale(&equations.row_scales, row)));
+                let scales = list(block.coordinates.iter().map(|c| scale(&equations.coordinate_scales, c)));
+                let (row, coordinate) =
+                    (block.rows.first().unwrap_or(&0), block.coordinates.first().unwrap_or(&0));
+                let _ = writeln!(fields, "/// Diagonal block {index}.\nblock{index}: {kind},");
+                let _ = writeln!(
+                    factorize,
+                    "let (__block{index}, __value) = <{kind} as __mbs::Factorization<T, {size}>>::factorize(&{rows}, &{row_scales}, &{scales});\n\
+                     let __margin = __margin.with_block(__value, {row}, {coordinate});"
+                );
+                let _ = write!(names, "block{index}: __block{index}, ");
+                let unknowns = list(block.coordinates.iter().map(|c| format!("__x{c}")));
+                let right_sides = list(right_sides.into_iter());
+                let _ = writeln!(
+                    solve,
+                    "let {unknowns} = <{kind} as __mbs::Factorization<T, {size}>>::solve(&__factors.block{index}, &{right_sides});"
+                );
+            }
+        }
+    }
+    let kept = list(entries.kept.keys().map(|id| scope.operand(*id)));
+    let _ = write!(factorize, "(Factors {{ entries: {kept}, {names} }}, __margin)");
+    solve += &list((0..scope.model.coordinates.len()).map(|c| format!("__x{c}")));
+    let declaration = format!(
+        "/// Factorised diagonal blocks, and the entries of Φ_q off them.\n\
+         #[derive(::core::clone::Clone, ::core::marker::Copy, ::core::fmt::Debug)]\n\
+         pub struct Factors<T: __mbs::Scalar> {{\n{fields}}}"
+    );
+    (declaration, factorize, solve)
+}
+
+/// Entries of Φ_q off the diagonal blocks that are no numbers.
+struct Entries<'a> {
+    equations: &'a Equations,
+    kept: BTreeMap<NodeId, usize>,
+}
+
+impl<'a> Entries<'a> {
+    fn of(equations: &'a Equations, program: &Program, scope: &Scope<'_>) -> Self {
+        let mut kept = BTreeMap::new();
+        for block in &program.blocks {
+            for row in block.rows.iter().filter_map(|row| equations.rows.get(*row)) {
+                for (column, entry) in &row.phi_q {
+                    if !block.coordinates.contains(column) && scope.graph.constant_value(*entry).is_none() {
+                        kept.insert(*entry, 0);
+                    }
+                }
+            }
+        }
+        for (index, slot) in kept.values_mut().enumerate() {
+            *slot = index;
+        }
+        Entries { equations, kept }
+    }
+
+    /// `b − Σ Φ_q x` over coordinates of earlier blocks.
+    fn right_side(&self, row: usize, block: &BlockProgram) -> String {
+        let mut text = format!("__b[{row}]");
+        let entries = self.equations.rows.get(row).map(|row| row.phi_q.as_slice()).unwrap_or_default();
+        for (column, entry) in entries.iter().filter(|(column, _)| !block.coordinates.contains(column)) {
+            match (self.kept.get(entry), self.equations.graph.constant_value(*entry)) {
+                (_, Some(1.0)) => drop(write!(text, " - __x{column}")),
+                (_, Some(-1.0)) => drop(write!(text, " + __x{column}")),
+                (_, Some(value)) => drop(write!(text, " - {} * __x{column}", number(value))),
+                (Some(index), None) => drop(write!(text, " - __factors.entries[{index}] * __x{column}")),
+                (None, None) => {}
+            }
+        }
+        text
+    }
+}
+
+fn list(items: impl Iterator<Item = String>) -> String {
+    format!("[{}]", items.collect::<Vec<_>>().join(", "))
+}

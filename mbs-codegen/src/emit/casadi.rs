@@ -1,0 +1,127 @@
+//! The second back end: a mechanism as a CasADi definition, from the model and not from our derivatives.
+
+use std::fmt::Write;
+
+use crate::model::expression::{Binary, Id, Node, Unary};
+use crate::model::{Model, VariableKind};
+
+/// Before: a model without faults. After: a Python module that defines Φ and the outputs for CasADi to
+/// differentiate.
+///
+/// `define(ca, q, v, t, der)` returns the rows, and the outputs with the number of their time derivatives;
+/// `v` are the parameters and inputs in the order of `VARIABLES`, `der` is the total time derivative.
+pub fn definition(model: &Model, name: &str) -> String {
+    let rates: Vec<String> = model
+        .variables
+        .iter()
+        .enumerate()
+        .filter(|(_, variable)| variable.kind == VariableKind::InputWithRates)
+        .map(|(index, _)| format!("({index}, {}, {})", index + 1, index + 2))
+        .collect();
+    let mut text = String::new();
+    let _ = writeln!(
+        text,
+        "\"\"\"{name}: constraints and outputs, written from the text of the mechanism.\"\"\"\n"
+    );
+    let _ =
+        writeln!(text, "NAME = \"{name}\"\nN = {}\nV = {}", model.coordinates.len(), model.variables.len());
+    let _ = writeln!(text, "RATES = [{}]\n\n", rates.join(", "));
+    let _ = writeln!(text, "def define(ca, q, v, t, der):");
+    let roots =
+        model.rows.iter().map(|row| row.residual).chain(model.outputs.iter().map(|output| output.value));
+    let needed = model.expressions.reachable(roots);
+    for (id, node) in model.expressions.iter() {
+        if needed.get(id.index()) == Some(&true) {
+            let _ = writeln!(text, "    {} = {}", variable(id), operation(node));
+        }
+    }
+    let rows: Vec<String> = model.rows.iter().map(|row| variable(row.residual)).collect();
+    let outputs: Vec<String> = model
+        .outputs
+        .iter()
+        .map(|output| format!("({}, {})", variable(output.value), derivatives(model, output.value)))
+        .collect();
+    let _ = writeln!(text, "    return [{}], [{}]", rows.join(", "), outputs.join(", "));
+    text
+}
+
+fn variable(id: Id) -> String {
+    format!("e{}", id.index())
+}
+
+/// How many time derivatives a definition leaves an output.
+fn derivatives(model: &Model, value: Id) -> u8 {
+    // Differentiations that stand above each expression, found from the root downwards.
+    let mut above: Vec<Option<u8>> = vec![None; value.index() + 1];
+    if let Some(root) = above.last_mut() {
+        *root = Some(0);
+    }
+    let mut most = 0;
+    let nodes: Vec<(Id, Node)> = model.expressions.iter().take(value.index() + 1).collect();
+    for (id, node) in nodes.into_iter().rev() {
+        let Some(order) = above.get(id.index()).copied().flatten() else { continue };
+        let (below, own) = match node {
+            Node::Rate(_, more) => (order + more, 0),
+            Node::Variable(index) => (
+                order,
+                match model.variables.get(index).map(|variable| variable.kind) {
+                    Some(VariableKind::Input) => 2,
+                    Some(VariableKind::InputWithRates) | Some(VariableKind::Parameter) => 0,
+                    Some(VariableKind::InputRate) | None => 2,
+                },
+            ),
+            _ => (order, 0),
+        };
+        let varies = !matches!(node, Node::Number(_))
+            && !matches!(node, Node::Variable(i) if model.variables.get(i).is_some_and(|v| v.kind == VariableKind::Parameter));
+        if varies && node.operands().next().is_none() && node != Node::Time {
+            most = most.max(order + own);
+        }
+        for operand in node.operands() {
+            if let Some(slot) = above.get_mut(operand.index()) {
+                *slot = Some(slot.unwrap_or(0).max(below));
+            }
+        }
+    }
+    2_u8.saturating_sub(most)
+}
+
+fn operation(node: Node) -> String {
+    let v = variable;
+    match node {
+        Node::Number(value) => format!("{value:?}"),
+        Node::Time => "t".into(),
+        Node::Coordinate(index) => format!("q[{index}]"),
+        Node::Variable(index) => format!("v[{index}]"),
+        Node::Rate(a, 1) => format!("der({})", v(a)),
+        Node::Rate(a, _) => format!("der(der({}))", v(a)),
+        Node::Unary(function, a) => match function {
+            Unary::Negate => format!("-{}", v(a)),
+            Unary::Sqrt => format!("ca.sqrt({})", v(a)),
+            Unary::Exp => format!("ca.exp({})", v(a)),
+            Unary::Ln => format!("ca.log({})", v(a)),
+            Unary::Sin => format!("ca.sin({})", v(a)),
+            Unary::Cos => format!("ca.cos({})", v(a)),
+            Unary::Tan => format!("ca.tan({})", v(a)),
+            Unary::Asin => format!("ca.asin({})", v(a)),
+            Unary::Acos => format!("ca.acos({})", v(a)),
+            Unary::Atan => format!("ca.atan({})", v(a)),
+            Unary::Sinh => format!("ca.sinh({})", v(a)),
+            Unary::Cosh => format!("ca.cosh({})", v(a)),
+            Unary::Tanh => format!("ca.tanh({})", v(a)),
+            Unary::Abs => format!("ca.fabs({})", v(a)),
+            Unary::Sign => format!("ca.sign({})", v(a)),
+        },
+        Node::Binary(function, a, b) => match function {
+            Binary::Add => format!("{} + {}", v(a), v(b)),
+            Binary::Subtract => format!("{} - {}", v(a), v(b)),
+            Binary::Multiply => format!("{} * {}", v(a), v(b)),
+            Binary::Divide => format!("{} / {}", v(a), v(b)),
+            Binary::Power => format!("{} ** {}", v(a), v(b)),
+            Binary::Atan2 => format!("ca.atan2({}, {})", v(a), v(b)),
+            Binary::Min => format!("ca.fmin({}, {})", v(a), v(b)),
+            Binary::Max => format!("ca.fmax({}, {})", v(a), v(b)),
+            Binary::Hypot => format!("ca.hypot({}, {})", v(a), v(b)),
+        },
+    }
+}

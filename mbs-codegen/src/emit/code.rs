@@ -1,0 +1,120 @@
+//! Function bodies: printed as text, parsed into tokens once.
+
+use std::fmt::Write;
+
+use proc_macro2::{Group, TokenStream, TokenTree};
+use quote::quote;
+
+use super::scope::Scope;
+use crate::program::{Line, Section};
+use crate::symbolic::{Binary, Node, NodeId, Unary};
+
+/// Text in which `__mbs` stands for the runtime's path.
+pub const RUNTIME: &str = "__mbs";
+
+/// Before: printed code. After: its tokens, [`RUNTIME`] replaced by the path that the wrapper macro passed on.
+pub fn tokens(text: &str, runtime: &TokenStream) -> TokenStream {
+    match text.parse() {
+        Ok(parsed) => with_runtime(parsed, runtime),
+        Err(_) => {
+            quote! { ::core::compile_error! { "the emitted code does not lex; please report the mechanism" } }
+        }
+    }
+}
+
+/// The depth of emitted code is that of its own brackets, a handful.
+fn with_runtime(stream: TokenStream, runtime: &TokenStream) -> TokenStream {
+    let mut replaced = TokenStream::new();
+    for tree in stream {
+        match tree {
+            TokenTree::Ident(name) if name == RUNTIME => replaced.extend(runtime.clone()),
+            TokenTree::Group(group) => {
+                let inner = with_runtime(group.stream(), runtime);
+                replaced.extend([TokenTree::Group(Group::new(group.delimiter(), inner))]);
+            }
+            other => replaced.extend([other]),
+        }
+    }
+    replaced
+}
+
+/// Prints one `let` a line of the section.
+pub fn lets(section: &Section, scope: &Scope<'_>, text: &mut String) {
+    for line in &section.lines {
+        match line {
+            Line::Value(id) => {
+                let value = operation(scope.graph.node(*id), scope);
+                let _ = writeln!(text, "let {} = {value};", local(*id));
+            }
+            Line::SineCosine(angles) => {
+                let name = |id: &Option<NodeId>| id.map_or_else(|| "_".to_owned(), local);
+                let list = |part: &dyn Fn(&(NodeId, Option<NodeId>, Option<NodeId>)) -> String| {
+                    angles.iter().map(part).collect::<Vec<_>>().join(", ")
+                };
+                let _ = writeln!(
+                    text,
+                    "let ([{}], [{}]) = T::sin_cos([{}]);",
+                    list(&|(_, sine, _)| name(sine)),
+                    list(&|(_, _, cosine)| name(cosine)),
+                    list(&|(angle, ..)| scope.operand(*angle)),
+                );
+            }
+        }
+    }
+}
+
+/// Name of the local variable of a node.
+pub fn local(id: NodeId) -> String {
+    format!("__n{}", id.index())
+}
+
+fn operation(node: Node, scope: &Scope<'_>) -> String {
+    let of = |id: NodeId| scope.operand(id);
+    match node {
+        Node::Constant(_) | Node::Leaf(_) => scope.leaf(node),
+        Node::Unary(Unary::Negate, a) => format!("-{}", of(a)),
+        Node::Unary(function, a) => format!("T::{}({})", unary(function), of(a)),
+        Node::Binary(Binary::Add, a, b) => format!("{} + {}", of(a), of(b)),
+        Node::Binary(Binary::Subtract, a, b) => format!("{} - {}", of(a), of(b)),
+        Node::Binary(Binary::Multiply, a, b) => format!("{} * {}", of(a), of(b)),
+        Node::Binary(Binary::Divide, a, b) => format!("{} / {}", of(a), of(b)),
+        Node::Binary(function, a, b) => format!("T::{}({}, {})", binary(function), of(a), of(b)),
+        Node::Select { less, than, yes, no } => {
+            format!("T::select(T::less({}, {}), {}, {})", of(less), of(than), of(yes), of(no))
+        }
+    }
+}
+
+fn unary(function: Unary) -> &'static str {
+    match function {
+        Unary::Negate => "neg",
+        Unary::Sqrt => "sqrt",
+        Unary::Exp => "exp",
+        Unary::Ln => "ln",
+        Unary::Sin => "sin",
+        Unary::Cos => "cos",
+        Unary::Tan => "tan",
+        Unary::Asin => "asin",
+        Unary::Acos => "acos",
+        Unary::Atan => "atan",
+        Unary::Sinh => "sinh",
+        Unary::Cosh => "cosh",
+        Unary::Tanh => "tanh",
+        Unary::Abs => "abs",
+        Unary::Sign => "sign",
+    }
+}
+
+fn binary(function: Binary) -> &'static str {
+    match function {
+        Binary::Add => "add",
+        Binary::Subtract => "sub",
+        Binary::Multiply => "mul",
+        Binary::Divide => "div",
+        Binary::Power => "powf",
+        Binary::Atan2 => "atan2",
+        Binary::Min => "min",
+        Binary::Max => "max",
+        Binary::Hypot => "hypot",
+    }
+}

@@ -1,0 +1,141 @@
+//! The generated doc comment: shapes, sparsity, block order, cost.
+
+use crate::equations::Equations;
+use crate::model::Model;
+use crate::program::{Method, Operations, Program};
+use crate::structure::Structure;
+use crate::symbolic::Stage;
+
+/// Lines that follow the text's own doc comment.
+pub fn structure(
+    model: &Model,
+    equations: &Equations,
+    structure: &Structure,
+    program: &Program,
+) -> Vec<String> {
+    let mut lines = vec![String::new()];
+    shapes(model, &mut lines);
+    sparsity(model, equations, &mut lines);
+    order(model, structure, &mut lines);
+    cost(program, &mut lines);
+    lines.into_iter().map(|line| if line.is_empty() { line } else { format!(" {line}") }).collect()
+}
+
+fn shapes(model: &Model, lines: &mut Vec<String>) {
+    let names = |names: Vec<String>| names.join(", ");
+    lines.push("# Structure".into());
+    lines.push(format!(
+        "{} coordinates: {}.",
+        model.coordinates.len(),
+        names(model.coordinates.iter().map(|c| format!("`{}` ({})", c.name, c.unit)).collect())
+    ));
+    lines.push(format!(
+        "{} rows: {}.",
+        model.rows.len(),
+        names(model.rows.iter().map(|row| format!("`{}` ({})", row.name, row.dimension)).collect())
+    ));
+    if !model.outputs.is_empty() {
+        let outputs =
+            model.outputs.iter().map(|output| format!("`{}` ({})", output.name, output.unit)).collect();
+        lines.push(format!("{} outputs: {}.", model.outputs.len(), names(outputs)));
+    }
+    lines.push(String::new());
+}
+
+/// Widest matrix that is drawn.
+const WIDEST: usize = 40;
+
+fn sparsity(model: &Model, equations: &Equations, lines: &mut Vec<String>) {
+    let (n, m) = (model.coordinates.len(), model.rows.len());
+    let entries: usize = equations.rows.iter().map(|row| row.phi_q.len()).sum();
+    lines.push(format!("`Φ_q` has {entries} of {} entries", n * m));
+    if n > WIDEST {
+        return lines.push(String::new());
+    }
+    let last = lines.len() - 1;
+    if let Some(line) = lines.get_mut(last) {
+        line.push_str(" (1: a number, p: parameters alone, x: varies):");
+    }
+    lines.push("```text".into());
+    let width = model.rows.iter().map(|row| row.name.chars().count()).max().unwrap_or(0);
+    let heads: Vec<&str> = model.coordinates.iter().map(|c| c.name.as_str()).collect();
+    lines.push(format!("{:width$}  {}", "", heads.join(" ")).trim_end().to_owned());
+    for (row, equation) in model.rows.iter().zip(&equations.rows) {
+        let mut line = format!("{:width$} ", row.name);
+        for (column, head) in heads.iter().enumerate() {
+            let mark = equation.phi_q.iter().find(|(c, _)| *c == column).map_or('.', |(_, entry)| {
+                match equations.graph.stage(*entry) {
+                    Stage::Constant => '1',
+                    Stage::Parameter => 'p',
+                    _ => 'x',
+                }
+            });
+            line += &format!(" {mark:^width$}", width = head.chars().count());
+        }
+        lines.push(line.trim_end().to_owned());
+    }
+    lines.push("```".into());
+    lines.push(String::new());
+}
+
+fn order(model: &Model, structure: &Structure, lines: &mut Vec<String>) {
+    lines.push("Solved block after block:".into());
+    for (number, block) in structure.blocks.iter().enumerate() {
+        let rows: Vec<_> = block
+            .rows
+            .iter()
+            .filter_map(|r| model.rows.get(*r))
+            .map(|row| format!("`{}`", row.name))
+            .collect();
+        let coordinates: Vec<_> = block
+            .coordinates
+            .iter()
+            .filter_map(|c| model.coordinates.get(*c))
+            .map(|c| format!("`{}`", c.name))
+            .collect();
+        let how = match (&block.explicit, block.rows.len()) {
+            (Some(_), _) => "explicit".into(),
+            (None, size @ 1..=3) => format!("Newton, {size} × {size} in closed form"),
+            (None, size) => format!("Newton, {size} × {size} by pivoted LU"),
+        };
+        lines.push(format!("{}. {} from {} ({how})", number + 1, coordinates.join(", "), rows.join(", ")));
+    }
+    lines.push(String::new());
+}
+
+fn cost(program: &Program, lines: &mut Vec<String>) {
+    lines.push("# Cost".into());
+    lines.push("Operations of each emitted function, on top of the stages before it:".into());
+    lines.push(String::new());
+    lines.push("| function | + − | × | ÷ | sin, cos | other functions | selections |".into());
+    lines.push("|---|---|---|---|---|---|---|".into());
+    let blocks = program.blocks.iter();
+    let mut before = Operations::default();
+    let mut iteration = Operations::default();
+    for block in blocks {
+        before += block.before.operations;
+        if let Method::Newton { section, .. } = &block.method {
+            iteration += section.operations;
+        }
+    }
+    let table = [
+        ("`parameters` (once a design)", program.parameters.section.operations),
+        ("`position` (once a `(q, t)`)", program.position.section.operations),
+        ("`phi`", program.phi.operations),
+        ("`phi_q`", program.phi_q.operations),
+        ("`phi_t`", program.phi_t.operations),
+        ("`phi_tt`", program.phi_tt.operations),
+        ("`phi_qt_qd`", program.phi_qt_qd.operations),
+        ("`gamma`", program.gamma.operations),
+        ("`branches`", program.branches.operations),
+        ("`outputs`", program.outputs.operations),
+        ("`solve_blocks`, once", before),
+        ("`solve_blocks`, each iteration of every block", iteration),
+    ];
+    for (name, count) in table {
+        let Operations { additions, multiplications, divisions, sine_cosines, functions, selects } = count;
+        lines.push(format!(
+            "| {name} | {additions} | {multiplications} | {divisions} | {sine_cosines} | {functions} | {selects} |"
+        ));
+    }
+}

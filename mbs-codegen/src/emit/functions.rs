@@ -1,0 +1,120 @@
+//! Bodies of the emitted functions.
+
+use std::fmt::Write;
+
+use proc_macro2::TokenStream;
+
+use super::blocks;
+use super::code::{lets, tokens};
+use super::scope::Scope;
+use crate::equations::Equations;
+use crate::model::Model;
+use crate::program::{Program, Section};
+use crate::symbolic::NodeId;
+
+/// The emitted functions, and the lengths of the arrays that stages keep.
+pub struct Bodies {
+    pub kept_parameters: usize,
+    pub kept_position: usize,
+    pub parameters: TokenStream,
+    pub guess: TokenStream,
+    pub coordinate_scales: TokenStream,
+    pub row_scales: TokenStream,
+    pub position: TokenStream,
+    pub phi: TokenStream,
+    pub phi_q: TokenStream,
+    pub phi_t: TokenStream,
+    pub phi_tt: TokenStream,
+    pub phi_qt_qd: TokenStream,
+    pub gamma: TokenStream,
+    pub branches: TokenStream,
+    pub outputs: TokenStream,
+    /// Declaration of the factors' struct.
+    pub factors: TokenStream,
+    pub solve_blocks: TokenStream,
+    pub factorize: TokenStream,
+    pub solve_linear: TokenStream,
+}
+
+/// Before: the program of a model. After: one body a function.
+pub fn bodies(model: &Model, equations: &Equations, program: &Program, runtime: &TokenStream) -> Bodies {
+    let graph = &equations.graph;
+    let bare = Scope { graph, model, parameters: None, position: None, unknowns: &[] };
+    let early = Scope { parameters: Some(&program.parameters.fields), ..bare };
+    let scope = Scope { position: Some(&program.position.fields), ..early };
+    let body = |section: &Section, scope: &Scope<'_>, result: String| {
+        let mut text = String::new();
+        lets(section, scope, &mut text);
+        text += &result;
+        tokens(&text, runtime)
+    };
+    let rows =
+        |part: fn(&crate::equations::Row) -> Option<NodeId>| array(equations.rows.iter().map(part), &scope);
+    let some = |nodes: &[NodeId], scope: &Scope<'_>| array(nodes.iter().map(|id| Some(*id)), scope);
+    // Within the stage itself its values are locals.
+    let kept = |stage: &crate::program::Stage, scope: &Scope<'_>, name: &str| {
+        format!("{name}({})", array(stage.fields.keys().map(|id| Some(*id)), scope))
+    };
+    let (factors, factorize, solve_linear) = blocks::linear(equations, program, &scope);
+    Bodies {
+        kept_parameters: program.parameters.fields.len(),
+        kept_position: program.position.fields.len(),
+        parameters: body(&program.parameters.section, &bare, kept(&program.parameters, &bare, "Parameters")),
+        guess: body(&program.guesses, &early, some(&equations.guesses, &early)),
+        coordinate_scales: body(
+            &program.coordinate_scales,
+            &early,
+            some(&equations.coordinate_scales, &early),
+        ),
+        row_scales: body(&program.row_scales, &early, some(&equations.row_scales, &early)),
+        position: body(&program.position.section, &early, kept(&program.position, &early, "Position")),
+        phi: body(&program.phi, &scope, rows(|row| Some(row.phi))),
+        phi_q: body(&program.phi_q, &scope, matrix(equations, &scope)),
+        phi_t: body(&program.phi_t, &scope, rows(|row| row.phi_t)),
+        phi_tt: body(&program.phi_tt, &scope, rows(|row| row.phi_tt)),
+        phi_qt_qd: body(&program.phi_qt_qd, &scope, rows(|row| row.phi_qt_qd)),
+        gamma: body(&program.gamma, &scope, rows(|row| row.gamma)),
+        branches: body(&program.branches, &scope, some(&equations.branches, &scope)),
+        outputs: body(&program.outputs, &scope, outputs(equations, &scope)),
+        factors: tokens(&factors, runtime),
+        solve_blocks: tokens(&blocks::solve(equations, program, &early), runtime),
+        factorize: tokens(&factorize, runtime),
+        solve_linear: tokens(&solve_linear, runtime),
+    }
+}
+
+fn array(nodes: impl Iterator<Item = Option<NodeId>>, scope: &Scope<'_>) -> String {
+    format!("[{}]", nodes.map(|id| scope.or_zero(id)).collect::<Vec<_>>().join(", "))
+}
+
+fn matrix(equations: &Equations, scope: &Scope<'_>) -> String {
+    let mut text = String::from("[");
+    for row in &equations.rows {
+        let mut entries = vec![None; scope.model.coordinates.len()];
+        for (column, entry) in &row.phi_q {
+            if let Some(slot) = entries.get_mut(*column) {
+                *slot = Some(*entry);
+            }
+        }
+        let _ = writeln!(text, "{},", array(entries.into_iter(), scope));
+    }
+    text + "]"
+}
+
+fn outputs(equations: &Equations, scope: &Scope<'_>) -> String {
+    let rate = |rate: Option<Option<NodeId>>| match rate {
+        Some(value) => format!("::core::option::Option::Some({})", scope.or_zero(value)),
+        None => "::core::option::Option::None".into(),
+    };
+    let mut text = String::from("[");
+    for output in &equations.outputs {
+        let _ = writeln!(
+            text,
+            "__mbs::OutputValue {{ value: {}, rate: {}, acceleration: {} }},",
+            scope.operand(output.value),
+            rate(output.rate),
+            rate(output.acceleration)
+        );
+    }
+    text + "]"
+}

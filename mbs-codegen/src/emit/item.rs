@@ -1,0 +1,342 @@
+//! The emitted items: struct, views, tables, trait implementations.
+
+use proc_macro2::{Ident, Span, TokenStream};
+use quote::{format_ident, quote, quote_spanned};
+
+use super::code::tokens;
+use super::functions::Bodies;
+use super::scope::{field_name, number, subscripts, variable};
+use crate::model::{Field, Model, Role};
+use crate::syntax::Text;
+use crate::syntax::ast::Name;
+
+/// Before: bodies of all functions. After: everything that the user's module gets.
+pub fn item(text: &Text, model: &Model, docs: &[String], bodies: &Bodies) -> TokenStream {
+    let header = &text.header;
+    let (visibility, name, runtime) = (&header.visibility, &header.name, &header.runtime);
+    let attributes = &header.attributes;
+    let fields = model.fields.iter().map(|field| {
+        let (docs, ident, kind) = (field_docs(field, model), ident(&field.name), field_type(field, runtime));
+        quote! { #(#[doc = #docs])* pub #ident: #kind, }
+    });
+    // The parameter of the scalar type needs a use.
+    let (marker, marker_value) = if model.fields.is_empty() {
+        let marker = quote! { ::core::marker::PhantomData };
+        (quote! { #[doc(hidden)] pub scalar: #marker<T>, }, quote! { scalar: #marker, })
+    } else {
+        (TokenStream::new(), TokenStream::new())
+    };
+    let defaults = model.fields.iter().map(|field| {
+        let ident = ident(&field.name);
+        let value = nested(&field.shape, &|component| default(model, field, component));
+        let value = tokens(&value, runtime);
+        quote! { #ident: #value, }
+    });
+    let view = coordinates_view(text, model);
+    let private = implementations(text, model, bodies);
+    quote! {
+        #(#attributes)*
+        #(#[doc = #docs])*
+        #[derive(::core::clone::Clone, ::core::marker::Copy, ::core::fmt::Debug, ::core::cmp::PartialEq)]
+        #visibility struct #name<T = f64> { #(#fields)* #marker }
+
+        impl<T: #runtime::Scalar> ::core::default::Default for #name<T> {
+            fn default() -> Self {
+                Self { #(#defaults)* #marker_value }
+            }
+        }
+
+        #view
+        #private
+    }
+}
+
+/// Trait implementations, with the types that only they name.
+fn implementations(text: &Text, model: &Model, bodies: &Bodies) -> TokenStream {
+    let header = &text.header;
+    let (name, runtime) = (&header.name, &header.runtime);
+    let (n, branches, outputs) = (model.coordinates.len(), model.branches.len(), model.outputs.len());
+    let tables = tables(text, model);
+    let access = access(model, runtime, name);
+    let Bodies {
+        kept_parameters,
+        kept_position,
+        parameters,
+        guess,
+        coordinate_scales,
+        row_scales,
+        position,
+        phi,
+        phi_q,
+        phi_t,
+        phi_tt,
+        phi_qt_qd,
+        gamma,
+        branches: branches_body,
+        outputs: outputs_body,
+        factors,
+        solve_blocks,
+        factorize,
+        solve_linear,
+    } = bodies;
+    quote! {
+        const _: () = {
+            /// Values of parameters alone.
+            #[derive(::core::clone::Clone, ::core::marker::Copy, ::core::fmt::Debug)]
+            pub struct Parameters<T>([T; #kept_parameters]);
+
+            /// Values of `(q, t)` that functions share.
+            #[derive(::core::clone::Clone, ::core::marker::Copy, ::core::fmt::Debug)]
+            pub struct Position<T>([T; #kept_position]);
+
+            #factors
+
+            impl<T: #runtime::Scalar> #runtime::Mechanism<T, #n, #n> for #name<T> {
+                type Parameters = Parameters<T>;
+                type Position = Position<T>;
+                type Branches = [T; #branches];
+                type Outputs = [#runtime::OutputValue<T>; #outputs];
+                type Lane = #name<T::Real>;
+                #tables
+                #access
+                #[inline]
+                fn parameters(&self) -> Parameters<T> { #parameters }
+                #[inline]
+                fn guess(&self, __p: &Parameters<T>) -> [T; #n] { #guess }
+                #[inline]
+                fn coordinate_scales(&self, __p: &Parameters<T>) -> [T; #n] { #coordinate_scales }
+                #[inline]
+                fn row_scales(&self, __p: &Parameters<T>) -> [T; #n] { #row_scales }
+                #[inline]
+                fn position(&self, __p: &Parameters<T>, __q: &[T; #n], __t: T) -> Position<T> { #position }
+                #[inline]
+                fn phi(&self, __p: &Parameters<T>, __s: &Position<T>) -> [T; #n] { #phi }
+                #[inline]
+                fn phi_q(&self, __p: &Parameters<T>, __s: &Position<T>) -> [[T; #n]; #n] { #phi_q }
+                #[inline]
+                fn phi_t(&self, __p: &Parameters<T>, __s: &Position<T>) -> [T; #n] { #phi_t }
+                #[inline]
+                fn phi_tt(&self, __p: &Parameters<T>, __s: &Position<T>) -> [T; #n] { #phi_tt }
+                #[inline]
+                fn phi_qt_qd(&self, __p: &Parameters<T>, __s: &Position<T>, __qd: &[T; #n]) -> [T; #n] { #phi_qt_qd }
+                #[inline]
+                fn gamma(&self, __p: &Parameters<T>, __s: &Position<T>, __qd: &[T; #n]) -> [T; #n] { #gamma }
+                #[inline]
+                fn branches(&self, __p: &Parameters<T>, __s: &Position<T>) -> [T; #branches] { #branches_body }
+                #[inline]
+                fn outputs(
+                    &self,
+                    __p: &Parameters<T>,
+                    __s: &Position<T>,
+                    __qd: &[T; #n],
+                    __qdd: &[T; #n],
+                ) -> [#runtime::OutputValue<T>; #outputs] { #outputs_body }
+            }
+
+            impl<T: #runtime::Scalar> #runtime::Kinematic<T, #n> for #name<T> {
+                type Factors = Factors<T>;
+                #[inline]
+                fn solve_blocks<__S: #runtime::BlockSolver<T>>(
+                    &self,
+                    __p: &Parameters<T>,
+                    __q: &mut [T; #n],
+                    __t: T,
+                    __solver: &mut __S,
+                ) -> T::Lanes<#runtime::Outcome> { #solve_blocks }
+                #[inline]
+                fn factorize(&self, __p: &Parameters<T>, __s: &Position<T>) -> (Factors<T>, #runtime::Margin<T>) {
+                    #factorize
+                }
+                #[inline]
+                fn solve_linear(&self, __factors: &Factors<T>, __b: &[T; #n]) -> [T; #n] { #solve_linear }
+            }
+        };
+    }
+}
+
+/// Names, units and lines as constants.
+fn tables(text: &Text, model: &Model) -> TokenStream {
+    let (runtime, source) = (&text.header.runtime, &text.source);
+    let name = text.header.name.to_string();
+    let entry = |name: &str, unit: &str, span: Span| {
+        let line = quote_spanned!(span=> ::core::line!());
+        quote! { #runtime::Entry { name: #name, unit: #unit, line: #line } }
+    };
+    let coordinates = model.coordinates.iter().map(|c| entry(&c.name, &c.unit, c.span));
+    let rows = model.rows.iter().map(|row| entry(&row.name, &row.dimension.to_string(), row.span));
+    let variables = model.variables.iter().map(|v| entry(&v.name, &v.unit, v.span));
+    let branches = model.branches.iter().map(|b| entry(&b.name, &b.dimension.to_string(), b.span));
+    let at_start = model.branches.iter().map(|branch| branch.at_start);
+    let outputs = model.outputs.iter().map(|output| entry(&output.name, &output.unit, output.span));
+    quote! {
+        const NAME: &'static str = #name;
+        const SOURCE: &'static str = #source;
+        const COORDINATES: &'static [#runtime::Entry] = &[#(#coordinates),*];
+        const ROWS: &'static [#runtime::Entry] = &[#(#rows),*];
+        const VARIABLES: &'static [#runtime::Entry] = &[#(#variables),*];
+        const BRANCHES: &'static [#runtime::Entry] = &[#(#branches),*];
+        const BRANCHES_AT_START: &'static [bool] = &[#(#at_start),*];
+        const OUTPUTS: &'static [#runtime::Entry] = &[#(#outputs),*];
+    }
+}
+
+/// `get`, `set` and `lane`.
+fn access(model: &Model, runtime: &TokenStream, name: &Ident) -> TokenStream {
+    let places: Vec<TokenStream> =
+        (0..model.variables.len()).map(|index| tokens(&variable(model, index), runtime)).collect();
+    let indices: Vec<usize> = (0..places.len()).collect();
+    let lanes = model.fields.iter().map(|field| {
+        let ident = ident(&field.name);
+        let value = nested(&field.shape, &|component| lane(field, component));
+        let value = tokens(&value, runtime);
+        quote! { #ident: #value, }
+    });
+    let marker = if model.fields.is_empty() {
+        quote! { scalar: ::core::marker::PhantomData }
+    } else {
+        TokenStream::new()
+    };
+    let (set, lane_name) = if places.is_empty() {
+        (quote! { (_, _) => false, }, format_ident!("_lane"))
+    } else {
+        let arms = quote! { #((#indices, __value) => { #places = __value; true })* (_, _) => false, };
+        (arms, format_ident!("__lane"))
+    };
+    quote! {
+        #[inline]
+        fn get(&self, index: usize) -> ::core::option::Option<T> {
+            match index {
+                #(#indices => ::core::option::Option::Some(#places),)*
+                _ => ::core::option::Option::None,
+            }
+        }
+        #[inline]
+        fn set(&mut self, index: usize, value: T) -> bool {
+            match (index, value) { #set }
+        }
+        #[inline]
+        fn lane(&self, #lane_name: usize) -> Self::Lane {
+            #name { #(#lanes)* #marker }
+        }
+    }
+}
+
+fn lane(field: &Field, component: usize) -> String {
+    let place = format!("self.{}{}", field_name(&field.name.text), subscripts(component, &field.shape));
+    match field.role {
+        Role::Parameter | Role::Input => format!("T::lane({place}, __lane)"),
+        Role::InputWithRates => {
+            let part = |part: &str| format!("{part}: T::lane({place}.{part}, __lane)");
+            format!("__mbs::Signal {{ {}, {}, {} }}", part("value"), part("rate"), part("acceleration"))
+        }
+    }
+}
+
+fn default(model: &Model, field: &Field, component: usize) -> String {
+    let value = |offset: usize| {
+        number(model.variables.get(field.first + offset).map_or(0.0, |variable| variable.default))
+    };
+    match field.role {
+        Role::Parameter | Role::Input => value(component),
+        Role::InputWithRates => {
+            let zero = number(0.0);
+            format!("__mbs::Signal {{ value: {zero}, rate: {zero}, acceleration: {zero} }}")
+        }
+    }
+}
+
+/// An array literal of any depth, written from its components.
+fn nested(shape: &[usize], component: &dyn Fn(usize) -> String) -> String {
+    let size: usize = shape.iter().product();
+    let mut items: Vec<String> = (0..size).map(component).collect();
+    for length in shape.iter().rev() {
+        items = items.chunks((*length).max(1)).map(|chunk| format!("[{}]", chunk.join(", "))).collect();
+    }
+    items.concat()
+}
+
+/// `T`, `[T; 2]`, `[[T; 3]; 2]`, …
+fn array_type(scalar: TokenStream, shape: &[usize]) -> TokenStream {
+    shape.iter().rev().fold(scalar, |inner, length| quote! { [#inner; #length] })
+}
+
+fn field_type(field: &Field, runtime: &TokenStream) -> TokenStream {
+    let scalar = match field.role {
+        Role::Parameter | Role::Input => quote! { T },
+        Role::InputWithRates => quote! { #runtime::Signal<T> },
+    };
+    array_type(scalar, &field.shape)
+}
+
+fn field_docs(field: &Field, model: &Model) -> Vec<String> {
+    let mut docs = field.docs.clone();
+    let role = match field.role {
+        Role::Parameter => "Parameter",
+        Role::Input => "Input",
+        Role::InputWithRates => "Input with rates",
+    };
+    let default = match (field.role, field.shape.as_slice()) {
+        (Role::Parameter, []) => model
+            .variables
+            .get(field.first)
+            .map_or(String::new(), |variable| format!(", default {}", variable.default)),
+        _ => String::new(),
+    };
+    if !docs.is_empty() {
+        docs.push(String::new());
+    }
+    docs.push(format!(" {role} (`{}`){default}.", field.unit));
+    docs
+}
+
+/// The coordinates by name.
+fn coordinates_view(text: &Text, model: &Model) -> TokenStream {
+    let visibility = &text.header.visibility;
+    let name = format_ident!("{}Coordinates", text.header.name);
+    let n = model.coordinates.len();
+    let title = format!(" Coordinates of [`{}`] by name, in the order of `q`.", text.header.name);
+    let fields = model.coordinate_fields.iter().map(|field| {
+        let mut docs = field.docs.clone();
+        docs.push(format!(" Coordinate (`{}`).", field.unit));
+        let (ident, kind) = (ident(&field.name), array_type(quote! { T }, &field.shape));
+        quote! { #(#[doc = #docs])* pub #ident: #kind, }
+    });
+    let from = model.coordinate_fields.iter().map(|field| {
+        let ident = ident(&field.name);
+        let value = nested(&field.shape, &|component| format!("q[{}]", field.first + component));
+        let value = tokens(&value, &TokenStream::new());
+        quote! { #ident: #value, }
+    });
+    let into = model.coordinate_fields.iter().flat_map(|field| {
+        let size: usize = field.shape.iter().product();
+        (0..size).map(move |component| {
+            let place =
+                format!("named.{}{}", field_name(&field.name.text), subscripts(component, &field.shape));
+            tokens(&place, &TokenStream::new())
+        })
+    });
+    quote! {
+        #[doc = #title]
+        #[derive(::core::clone::Clone, ::core::marker::Copy, ::core::fmt::Debug, ::core::cmp::PartialEq)]
+        #visibility struct #name<T = f64> { #(#fields)* }
+
+        impl<T: ::core::marker::Copy> ::core::convert::From<[T; #n]> for #name<T> {
+            fn from(q: [T; #n]) -> Self {
+                Self { #(#from)* }
+            }
+        }
+
+        impl<T: ::core::marker::Copy> ::core::convert::From<#name<T>> for [T; #n] {
+            fn from(named: #name<T>) -> Self {
+                [#(#into),*]
+            }
+        }
+    }
+}
+
+fn ident(name: &Name) -> Ident {
+    match syn::parse_str::<Ident>(&name.text) {
+        Ok(_) => Ident::new(&name.text, name.span),
+        Err(_) => Ident::new_raw(&name.text, name.span),
+    }
+}

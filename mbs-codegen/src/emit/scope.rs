@@ -1,0 +1,104 @@
+//! How a value is written where it is used.
+
+use std::collections::BTreeMap;
+
+use super::code::local;
+use crate::model::{Model, Role};
+use crate::symbolic::{Graph, Leaf, Node, NodeId};
+
+/// What is at hand within a function.
+pub struct Scope<'a> {
+    /// The graph.
+    pub graph: &'a Graph,
+    /// The model, for the names of fields.
+    pub model: &'a Model,
+    /// Fields of the parameter stage, `__p`.
+    pub parameters: Option<&'a BTreeMap<NodeId, usize>>,
+    /// Fields of the position stage, `__s`.
+    pub position: Option<&'a BTreeMap<NodeId, usize>>,
+    /// Coordinates of the block that is being solved, `__x`.
+    pub unknowns: &'a [usize],
+}
+
+impl Scope<'_> {
+    /// The value as an operand.
+    pub fn operand(&self, id: NodeId) -> String {
+        let field =
+            |fields: Option<&BTreeMap<NodeId, usize>>| fields.and_then(|fields| fields.get(&id)).copied();
+        if let Some(index) = field(self.position) {
+            return format!("__s.0[{index}]");
+        }
+        if let Some(index) = field(self.parameters) {
+            return format!("__p.0[{index}]");
+        }
+        match self.graph.node(id) {
+            node @ (Node::Constant(_) | Node::Leaf(_)) => self.leaf(node),
+            _ => local(id),
+        }
+    }
+
+    /// The value, or 0 where there is none.
+    pub fn or_zero(&self, id: Option<NodeId>) -> String {
+        id.map_or_else(|| number(0.0), |id| self.operand(id))
+    }
+
+    /// A number or a variable.
+    pub fn leaf(&self, node: Node) -> String {
+        match node {
+            Node::Constant(bits) => number(f64::from_bits(bits)),
+            Node::Leaf(Leaf::Parameter(index) | Leaf::Input(index)) => variable(self.model, index as usize),
+            Node::Leaf(Leaf::Time) => "__t".into(),
+            Node::Leaf(Leaf::Position(index)) => {
+                match self.unknowns.iter().position(|i| *i == index as usize) {
+                    Some(unknown) => format!("__x[{unknown}]"),
+                    None => format!("__q[{index}]"),
+                }
+            }
+            Node::Leaf(Leaf::Velocity(index)) => format!("__qd[{index}]"),
+            Node::Leaf(Leaf::Acceleration(index)) => format!("__qdd[{index}]"),
+            _ => number(f64::NAN),
+        }
+    }
+}
+
+/// A number of the scalar type.
+pub fn number(value: f64) -> String {
+    if value.is_nan() {
+        "T::constant(f64::NAN)".into()
+    } else if value.is_infinite() {
+        format!("T::constant(f64::{}INFINITY)", if value < 0.0 { "NEG_" } else { "" })
+    } else {
+        format!("T::constant({value:?}f64)")
+    }
+}
+
+/// The place of a parameter or input in `self`.
+pub fn variable(model: &Model, index: usize) -> String {
+    let Some(field) = model.fields.iter().rev().find(|field| field.first <= index) else {
+        return number(f64::NAN);
+    };
+    let (component, part) = match field.role {
+        Role::InputWithRates => {
+            let offset = index - field.first;
+            (offset / 3, [".value", ".rate", ".acceleration"].get(offset % 3).copied().unwrap_or(""))
+        }
+        Role::Parameter | Role::Input => (index - field.first, ""),
+    };
+    format!("self.{}{}{part}", field_name(&field.name.text), subscripts(component, &field.shape))
+}
+
+/// `[i][j]` of a component of an array.
+pub fn subscripts(component: usize, shape: &[usize]) -> String {
+    let mut rest = component;
+    let mut text = String::new();
+    for length in shape.iter().rev() {
+        text = format!("[{}]{text}", rest % (*length).max(1));
+        rest /= (*length).max(1);
+    }
+    text
+}
+
+/// The name as an identifier of Rust, raw where it is a keyword.
+pub fn field_name(name: &str) -> String {
+    if syn::parse_str::<syn::Ident>(name).is_ok() { name.to_owned() } else { format!("r#{name}") }
+}

@@ -1,0 +1,186 @@
+//! The model's expressions as nodes of the graph.
+
+use crate::model::expression::{self, Id};
+use crate::model::{Model, VariableKind, units::Dimension};
+use crate::symbolic::{Binary, Graph, Leaf, Node, NodeId, Unary, tangent};
+
+/// The graph with everything that needs no differentiation.
+pub struct Lowered {
+    pub graph: Graph,
+    pub residuals: Vec<NodeId>,
+    pub branches: Vec<NodeId>,
+    /// Value, and how many time derivatives its definition leaves it.
+    pub outputs: Vec<(NodeId, u8)>,
+    pub guesses: Vec<NodeId>,
+    pub coordinate_scales: Vec<NodeId>,
+    pub row_scales: Vec<NodeId>,
+    pub clock: Clock,
+}
+
+/// How leaves move in time.
+pub struct Clock {
+    kinds: Vec<VariableKind>,
+}
+
+impl Clock {
+    /// Motion with the coordinates held: time and inputs.
+    pub fn partial(&self, g: &mut Graph, leaf: Leaf) -> Option<NodeId> {
+        match leaf {
+            Leaf::Time => Some(g.constant(1.0)),
+            // The rate stands behind the value, the acceleration behind the rate.
+            Leaf::Input(i) if self.moves(i) => Some(g.leaf(Leaf::Input(i + 1))),
+            _ => None,
+        }
+    }
+
+    /// Motion of everything; `accelerating`: whether q̇ moves too.
+    pub fn total(&self, g: &mut Graph, leaf: Leaf, accelerating: bool) -> Option<NodeId> {
+        match leaf {
+            Leaf::Position(i) => Some(g.leaf(Leaf::Velocity(i))),
+            Leaf::Velocity(i) if accelerating => Some(g.leaf(Leaf::Acceleration(i))),
+            other => self.partial(g, other),
+        }
+    }
+
+    fn kind(&self, index: u32) -> Option<VariableKind> {
+        self.kinds.get(index as usize).copied()
+    }
+
+    /// Whether the next variable is this one's rate.
+    fn moves(&self, index: u32) -> bool {
+        match self.kind(index) {
+            Some(VariableKind::InputWithRates) => true,
+            Some(VariableKind::InputRate) => {
+                self.kind(index.wrapping_sub(1)) == Some(VariableKind::InputWithRates)
+            }
+            _ => false,
+        }
+    }
+
+    /// How many times a leaf was differentiated already, of two.
+    fn order(&self, leaf: Leaf) -> u8 {
+        match leaf {
+            Leaf::Parameter(_) | Leaf::Time | Leaf::Position(_) => 0,
+            Leaf::Velocity(_) => 1,
+            Leaf::Acceleration(_) => 2,
+            Leaf::Input(i) => match self.kind(i) {
+                Some(VariableKind::InputWithRates) => 0,
+                Some(VariableKind::InputRate) if self.moves(i) => 1,
+                _ => 2,
+            },
+        }
+    }
+}
+
+/// Before: a resolved model. After: all its expressions in one graph.
+pub fn lower(model: &Model) -> Lowered {
+    let clock = Clock { kinds: model.variables.iter().map(|variable| variable.kind).collect() };
+    let mut graph = Graph::default();
+    let nodes = expressions(model, &clock, &mut graph);
+    let zero = graph.constant(0.0);
+    let of = |id: Id| nodes.get(id.index()).copied().unwrap_or(zero);
+    let outputs = model.outputs.iter().map(|output| of(output.value));
+    let outputs = outputs.map(|value| (value, derivatives(&graph, &clock, value))).collect();
+    let length = reference_length(model, &mut graph);
+    let mut scale = |dimension: Dimension| {
+        let exponent = graph.constant(dimension.metres());
+        graph.power(length, exponent)
+    };
+    Lowered {
+        residuals: model.rows.iter().map(|row| of(row.residual)).collect(),
+        branches: model.branches.iter().map(|branch| of(branch.value)).collect(),
+        outputs,
+        guesses: model.coordinates.iter().map(|coordinate| coordinate.guess.map_or(zero, of)).collect(),
+        coordinate_scales: model.coordinates.iter().map(|coordinate| scale(coordinate.dimension)).collect(),
+        row_scales: model.rows.iter().map(|row| scale(row.dimension)).collect(),
+        graph,
+        clock,
+    }
+}
+
+/// One node an expression.
+fn expressions(model: &Model, clock: &Clock, g: &mut Graph) -> Vec<NodeId> {
+    let mut nodes: Vec<NodeId> = Vec::with_capacity(model.expressions.len());
+    let zero = g.constant(0.0);
+    for (_, node) in model.expressions.iter() {
+        let of = |id: Id| nodes.get(id.index()).copied().unwrap_or(zero);
+        let node = match node {
+            expression::Node::Number(value) => g.constant(value),
+            expression::Node::Time => g.leaf(Leaf::Time),
+            expression::Node::Coordinate(i) => g.leaf(Leaf::Position(i as u32)),
+            expression::Node::Variable(i) => g.leaf(match clock.kind(i as u32) {
+                Some(VariableKind::Parameter) => Leaf::Parameter(i as u32),
+                _ => Leaf::Input(i as u32),
+            }),
+            expression::Node::Unary(function, a) => g.unary(unary(function), of(a)),
+            expression::Node::Binary(function, a, b) => g.binary(binary(function), of(a), of(b)),
+            expression::Node::Rate(a, order) => {
+                let mut value = of(a);
+                for _ in 0..order {
+                    let rate = tangent(g, &[value], |g, leaf| clock.total(g, leaf, true));
+                    value = rate.into_iter().flatten().next().unwrap_or(zero);
+                }
+                value
+            }
+        };
+        nodes.push(node);
+    }
+    nodes
+}
+
+/// How many exact time derivatives a value has, where q̈ and the accelerations of inputs are the last that is known.
+fn derivatives(graph: &Graph, clock: &Clock, value: NodeId) -> u8 {
+    let orders = graph.reachable([value]).into_iter().filter_map(|id| match graph.node(id) {
+        Node::Leaf(leaf) => Some(clock.order(leaf)),
+        _ => None,
+    });
+    2 - orders.max().unwrap_or(0).min(2)
+}
+
+/// The largest length among constants, numbers, guesses and parameters; 1 m where there is none.
+fn reference_length(model: &Model, g: &mut Graph) -> NodeId {
+    let mut longest = g.constant(model.longest);
+    for (index, variable) in model.variables.iter().enumerate() {
+        if variable.kind == VariableKind::Parameter && variable.dimension == Dimension::METRE {
+            let parameter = g.leaf(Leaf::Parameter(index as u32));
+            let length = g.unary(Unary::Abs, parameter);
+            longest = g.binary(Binary::Max, longest, length);
+        }
+    }
+    let (zero, one) = (g.constant(0.0), g.constant(1.0));
+    g.select(zero, longest, longest, one)
+}
+
+fn unary(function: expression::Unary) -> Unary {
+    match function {
+        expression::Unary::Negate => Unary::Negate,
+        expression::Unary::Sqrt => Unary::Sqrt,
+        expression::Unary::Exp => Unary::Exp,
+        expression::Unary::Ln => Unary::Ln,
+        expression::Unary::Sin => Unary::Sin,
+        expression::Unary::Cos => Unary::Cos,
+        expression::Unary::Tan => Unary::Tan,
+        expression::Unary::Asin => Unary::Asin,
+        expression::Unary::Acos => Unary::Acos,
+        expression::Unary::Atan => Unary::Atan,
+        expression::Unary::Sinh => Unary::Sinh,
+        expression::Unary::Cosh => Unary::Cosh,
+        expression::Unary::Tanh => Unary::Tanh,
+        expression::Unary::Abs => Unary::Abs,
+        expression::Unary::Sign => Unary::Sign,
+    }
+}
+
+fn binary(function: expression::Binary) -> Binary {
+    match function {
+        expression::Binary::Add => Binary::Add,
+        expression::Binary::Subtract => Binary::Subtract,
+        expression::Binary::Multiply => Binary::Multiply,
+        expression::Binary::Divide => Binary::Divide,
+        expression::Binary::Power => Binary::Power,
+        expression::Binary::Atan2 => Binary::Atan2,
+        expression::Binary::Min => Binary::Min,
+        expression::Binary::Max => Binary::Max,
+        expression::Binary::Hypot => Binary::Hypot,
+    }
+}

@@ -1,0 +1,125 @@
+//! Model → roots of one graph: Φ, Φ_q, Φ_t, Φ_tt, Φ_qt q̇, γ, branches, outputs, guesses, metric.
+
+mod lower;
+
+use crate::model::Model;
+use crate::symbolic::{Graph, Leaf, NodeId, tangent};
+
+use lower::Lowered;
+
+/// One graph and its roots. `None` is a structural zero.
+#[derive(Debug)]
+pub struct Equations {
+    /// All functions share it.
+    pub graph: Graph,
+    /// One a row of Φ.
+    pub rows: Vec<Row>,
+    /// One a branch, positive where it holds.
+    pub branches: Vec<NodeId>,
+    /// One an output.
+    pub outputs: Vec<Output>,
+    /// One a coordinate.
+    pub guesses: Vec<NodeId>,
+    /// Reference metric of the coordinates.
+    pub coordinate_scales: Vec<NodeId>,
+    /// Reference metric of the rows.
+    pub row_scales: Vec<NodeId>,
+}
+
+/// A row of Φ with its derivatives.
+#[derive(Debug)]
+pub struct Row {
+    /// Residual.
+    pub phi: NodeId,
+    /// Coordinates and entries of the row of Φ_q, in the order of the coordinates.
+    pub phi_q: Vec<(usize, NodeId)>,
+    /// Φ_t
+    pub phi_t: Option<NodeId>,
+    /// Φ_tt
+    pub phi_tt: Option<NodeId>,
+    /// Φ_qt q̇
+    pub phi_qt_qd: Option<NodeId>,
+    /// γ
+    pub gamma: Option<NodeId>,
+}
+
+/// An output with as many derivatives as its definition leaves it; the inner `None` is a zero.
+#[derive(Debug)]
+pub struct Output {
+    /// Value.
+    pub value: NodeId,
+    /// First time derivative.
+    pub rate: Option<Option<NodeId>>,
+    /// Second time derivative.
+    pub acceleration: Option<Option<NodeId>>,
+}
+
+/// Before: a resolved model. After: every function that is emitted, as roots of one graph.
+pub fn derive(model: &Model) -> Equations {
+    let lowered = lower::lower(model);
+    let Lowered { mut graph, residuals, branches, outputs, guesses, coordinate_scales, row_scales, clock } =
+        lowered;
+    let g = &mut graph;
+    let columns = jacobian(g, &residuals, model.coordinates.len());
+    let phi_t = tangent(g, &residuals, |g, leaf| clock.partial(g, leaf));
+    let phi_tt = again(g, &phi_t, |g, leaf| clock.partial(g, leaf));
+    let along = tangent(g, &residuals, |g, leaf| match leaf {
+        Leaf::Position(i) => Some(g.leaf(Leaf::Velocity(i))),
+        _ => None,
+    });
+    let phi_qt_qd = again(g, &along, |g, leaf| clock.partial(g, leaf));
+    // γ: second derivative along (q̇, 1) with q̈ = 0, its sign turned.
+    let first = tangent(g, &residuals, |g, leaf| clock.total(g, leaf, false));
+    let second = again(g, &first, |g, leaf| clock.total(g, leaf, false));
+    let gamma: Vec<_> = second.into_iter().map(|second| second.map(|second| g.negate(second))).collect();
+
+    let outputs =
+        outputs.into_iter().map(|(value, derivatives)| output(g, &clock, value, derivatives)).collect();
+    let rows = residuals
+        .iter()
+        .zip(columns)
+        .zip(phi_t.into_iter().zip(phi_tt))
+        .zip(phi_qt_qd.into_iter().zip(gamma))
+        .map(|(((phi, phi_q), (phi_t, phi_tt)), (phi_qt_qd, gamma))| Row {
+            phi: *phi,
+            phi_q,
+            phi_t,
+            phi_tt,
+            phi_qt_qd,
+            gamma,
+        })
+        .collect();
+    Equations { graph, rows, branches, outputs, guesses, coordinate_scales, row_scales }
+}
+
+/// Entries of each row, column by column along the coordinate axes.
+fn jacobian(g: &mut Graph, residuals: &[NodeId], coordinates: usize) -> Vec<Vec<(usize, NodeId)>> {
+    let mut rows = vec![Vec::new(); residuals.len()];
+    for column in 0..coordinates {
+        let axis = |g: &mut Graph, leaf| (leaf == Leaf::Position(column as u32)).then(|| g.constant(1.0));
+        for (row, entry) in rows.iter_mut().zip(tangent(g, residuals, axis)) {
+            row.extend(entry.map(|entry| (column, entry)));
+        }
+    }
+    rows
+}
+
+/// Derivative of what may be zero already.
+fn again(
+    g: &mut Graph,
+    roots: &[Option<NodeId>],
+    direction: impl FnMut(&mut Graph, Leaf) -> Option<NodeId>,
+) -> Vec<Option<NodeId>> {
+    let zero = g.constant(0.0);
+    let roots: Vec<NodeId> = roots.iter().map(|root| root.unwrap_or(zero)).collect();
+    tangent(g, &roots, direction)
+}
+
+fn output(g: &mut Graph, clock: &lower::Clock, value: NodeId, derivatives: u8) -> Output {
+    let total = |g: &mut Graph, root: Option<NodeId>| {
+        again(g, &[root], |g, leaf| clock.total(g, leaf, true)).pop().flatten()
+    };
+    let rate = (derivatives >= 1).then(|| total(g, Some(value)));
+    let acceleration = (derivatives >= 2).then(|| total(g, rate.flatten()));
+    Output { value, rate, acceleration }
+}

@@ -1,0 +1,133 @@
+//! The diagonal blocks as code: what is known before a block is computed once, outside its iteration.
+
+use std::collections::BTreeSet;
+
+use super::schedule::{Line, Section, schedule};
+use crate::equations::Equations;
+use crate::structure::{Block, Structure};
+use crate::symbolic::{Graph, Leaf, Node, NodeId};
+
+/// A diagonal block.
+#[derive(Debug)]
+pub struct BlockProgram {
+    /// Rows, ascending.
+    pub rows: Vec<usize>,
+    /// Coordinates, ascending.
+    pub coordinates: Vec<usize>,
+    /// Computed before the block's coordinates are known.
+    pub before: Section,
+    /// How the coordinates are found.
+    pub method: Method,
+}
+
+/// How a block's coordinates are found.
+#[derive(Debug)]
+pub enum Method {
+    /// Assigned.
+    Explicit {
+        /// The coordinate's value.
+        value: NodeId,
+        /// The constant coefficient of the coordinate in its row.
+        coefficient: f64,
+    },
+    /// By Newton's method.
+    Newton {
+        /// Executed at each iterate.
+        section: Section,
+        /// Residuals.
+        phi: Vec<NodeId>,
+        /// Jacobian within the block, row by row.
+        phi_q: Vec<Vec<Option<NodeId>>>,
+    },
+}
+
+/// All roots of all blocks, for the choice of what the parameter stage keeps.
+pub fn roots(equations: &Equations, structure: &Structure) -> Vec<NodeId> {
+    let mut roots = Vec::new();
+    for block in &structure.blocks {
+        match &block.explicit {
+            Some(explicit) => roots.push(explicit.value),
+            None => {
+                let (phi, phi_q) = system(equations, block);
+                roots.extend(phi);
+                roots.extend(phi_q.into_iter().flatten().flatten());
+                roots.extend(block.rows.iter().filter_map(|row| equations.row_scales.get(*row)));
+                roots.extend(block.coordinates.iter().filter_map(|c| equations.coordinate_scales.get(*c)));
+            }
+        }
+    }
+    roots
+}
+
+/// Before: blocks in the order of solution. After: code for each; values of finished coordinates are computed once.
+pub fn order(equations: &Equations, structure: &Structure, known: &BTreeSet<NodeId>) -> Vec<BlockProgram> {
+    let graph = &equations.graph;
+    let mut known = known.clone();
+    let mut programs = Vec::new();
+    for block in &structure.blocks {
+        let (before, method) = match &block.explicit {
+            Some(explicit) => {
+                let before = schedule(graph, &[explicit.value], &known);
+                (before, Method::Explicit { value: explicit.value, coefficient: explicit.coefficient })
+            }
+            None => newton(equations, block, &known),
+        };
+        known.extend(computed(&before));
+        programs.push(BlockProgram {
+            rows: block.rows.clone(),
+            coordinates: block.coordinates.clone(),
+            before,
+            method,
+        });
+    }
+    programs
+}
+
+fn newton(equations: &Equations, block: &Block, known: &BTreeSet<NodeId>) -> (Section, Method) {
+    let graph = &equations.graph;
+    let (phi, phi_q) = system(equations, block);
+    let roots: Vec<NodeId> = phi.iter().copied().chain(phi_q.iter().flatten().copied().flatten()).collect();
+    let moving = moving(graph, &roots, &block.coordinates);
+    // What stands still during the iteration, as far as what moves uses it.
+    let mut still: BTreeSet<NodeId> = roots.iter().copied().filter(|id| !moving.contains(id)).collect();
+    for id in &moving {
+        still.extend(graph.node(*id).operands().filter(|operand| !moving.contains(operand)));
+    }
+    let still: Vec<NodeId> = still.into_iter().collect();
+    let before = schedule(graph, &still, known);
+    let mut known = known.clone();
+    known.extend(computed(&before));
+    let section = schedule(graph, &roots, &known);
+    (before, Method::Newton { section, phi, phi_q })
+}
+
+/// Residuals and Jacobian of a block.
+fn system(equations: &Equations, block: &Block) -> (Vec<NodeId>, Vec<Vec<Option<NodeId>>>) {
+    let rows = || block.rows.iter().filter_map(|row| equations.rows.get(*row));
+    let entry = |row: &crate::equations::Row, coordinate: usize| {
+        row.phi_q.iter().find(|(column, _)| *column == coordinate).map(|(_, entry)| *entry)
+    };
+    let phi_q = rows().map(|row| block.coordinates.iter().map(|c| entry(row, *c)).collect()).collect();
+    (rows().map(|row| row.phi).collect(), phi_q)
+}
+
+/// Nodes that depend on a block's coordinates.
+fn moving(graph: &Graph, roots: &[NodeId], coordinates: &[usize]) -> BTreeSet<NodeId> {
+    let mut moving = BTreeSet::new();
+    for id in graph.reachable(roots.iter().copied()) {
+        let node = graph.node(id);
+        let own = matches!(node, Node::Leaf(Leaf::Position(i)) if coordinates.contains(&(i as usize)));
+        if own || node.operands().any(|operand| moving.contains(&operand)) {
+            moving.insert(id);
+        }
+    }
+    moving
+}
+
+/// Values that a section computes.
+fn computed(section: &Section) -> impl Iterator<Item = NodeId> + '_ {
+    section.lines.iter().flat_map(|line| match line {
+        Line::Value(id) => vec![*id],
+        Line::SineCosine(angles) => angles.iter().flat_map(|(_, s, c)| s.iter().chain(c).copied()).collect(),
+    })
+}

@@ -1,0 +1,123 @@
+//! The order of operations within a function.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::ops::AddAssign;
+
+use crate::symbolic::{Binary, Graph, Leaf, Node, NodeId, Unary};
+
+/// Straight-line code.
+#[derive(Debug, Default)]
+pub struct Section {
+    /// Operands stand before what uses them.
+    pub lines: Vec<Line>,
+    /// What it costs.
+    pub operations: Operations,
+}
+
+/// One `let`.
+#[derive(Debug)]
+pub enum Line {
+    /// One value.
+    Value(NodeId),
+    /// Sines and cosines of angles that are known together: angle, its sine, its cosine.
+    SineCosine(Vec<(NodeId, Option<NodeId>, Option<NodeId>)>),
+}
+
+/// Number of operations.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Operations {
+    /// Sums, differences and changes of sign.
+    pub additions: usize,
+    /// Products.
+    pub multiplications: usize,
+    /// Quotients.
+    pub divisions: usize,
+    /// Angles of which sine, cosine or both are computed.
+    pub sine_cosines: usize,
+    /// Other elementary functions.
+    pub functions: usize,
+    /// Selections by a comparison.
+    pub selects: usize,
+}
+
+impl AddAssign for Operations {
+    fn add_assign(&mut self, other: Self) {
+        self.additions += other.additions;
+        self.multiplications += other.multiplications;
+        self.divisions += other.divisions;
+        self.sine_cosines += other.sine_cosines;
+        self.functions += other.functions;
+        self.selects += other.selects;
+    }
+}
+
+/// Before: roots, and values that are known already. After: the rest in order, all angles of one depth together.
+pub fn schedule(graph: &Graph, roots: &[NodeId], known: &BTreeSet<NodeId>) -> Section {
+    let nodes = needed(graph, roots, known);
+    // How many sines and cosines stand one behind the other up to a node.
+    let mut depths: BTreeMap<NodeId, usize> = BTreeMap::new();
+    let mut by_depth: BTreeMap<usize, (Vec<NodeId>, BTreeMap<NodeId, [Option<NodeId>; 2]>)> = BTreeMap::new();
+    for id in nodes {
+        let node = graph.node(id);
+        let depth = node.operands().filter_map(|operand| depths.get(&operand)).max().copied().unwrap_or(0);
+        match node {
+            Node::Unary(function @ (Unary::Sin | Unary::Cos), angle) => {
+                let pair = by_depth.entry(depth).or_default().1.entry(angle).or_default();
+                let [sine, cosine] = pair;
+                *(if function == Unary::Sin { sine } else { cosine }) = Some(id);
+                depths.insert(id, depth + 1);
+            }
+            _ => {
+                by_depth.entry(depth).or_default().0.push(id);
+                depths.insert(id, depth);
+            }
+        }
+    }
+    let mut section = Section::default();
+    for (values, angles) in by_depth.into_values() {
+        for id in values {
+            count(graph.node(id), &mut section.operations);
+            section.lines.push(Line::Value(id));
+        }
+        if !angles.is_empty() {
+            section.operations.sine_cosines += angles.len();
+            section
+                .lines
+                .push(Line::SineCosine(angles.into_iter().map(|(angle, [s, c])| (angle, s, c)).collect()));
+        }
+    }
+    section
+}
+
+/// Operations below the roots down to known values, operands first.
+fn needed(graph: &Graph, roots: &[NodeId], known: &BTreeSet<NodeId>) -> BTreeSet<NodeId> {
+    let mut found = BTreeSet::new();
+    let mut waiting: Vec<NodeId> = roots.to_vec();
+    while let Some(id) = waiting.pop() {
+        let node = graph.node(id);
+        if known.contains(&id) || matches!(node, Node::Constant(_) | Node::Leaf(_)) || !found.insert(id) {
+            continue;
+        }
+        waiting.extend(node.operands());
+    }
+    found
+}
+
+fn count(node: Node, operations: &mut Operations) {
+    *(match node {
+        Node::Constant(_) | Node::Leaf(Leaf::Parameter(_) | Leaf::Input(_) | Leaf::Time) | Node::Leaf(_) => {
+            return;
+        }
+        Node::Unary(Unary::Negate, _) | Node::Binary(Binary::Add | Binary::Subtract, ..) => {
+            &mut operations.additions
+        }
+        Node::Binary(Binary::Multiply, ..) => &mut operations.multiplications,
+        Node::Binary(Binary::Divide, ..) => &mut operations.divisions,
+        Node::Unary(Unary::Abs | Unary::Sign, _)
+        | Node::Binary(Binary::Min | Binary::Max, ..)
+        | Node::Select { .. } => &mut operations.selects,
+        Node::Unary(..) | Node::Binary(Binary::Power | Binary::Atan2 | Binary::Hypot, ..) => {
+            &mut operations.functions
+        }
+    }) += 1;
+}

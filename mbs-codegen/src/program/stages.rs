@@ -1,0 +1,47 @@
+//! Which values a stage keeps for the stages behind it.
+
+use std::collections::BTreeSet;
+
+use crate::symbolic::{Graph, Leaf, Node, NodeId, Stage};
+
+/// Values of parameters alone that something of a later stage, or a root, uses.
+pub fn parameter_fields(graph: &Graph, functions: &[&[NodeId]]) -> BTreeSet<NodeId> {
+    let mut fields = BTreeSet::new();
+    let early = |id: NodeId| graph.stage(id) == Stage::Parameter && !matches!(graph.node(id), Node::Leaf(_));
+    for roots in functions {
+        fields.extend(roots.iter().copied().filter(|id| early(*id)));
+        for id in graph.reachable(roots.iter().copied()) {
+            if graph.stage(id) > Stage::Parameter {
+                fields.extend(graph.node(id).operands().filter(|operand| early(*operand)));
+            }
+        }
+    }
+    fields
+}
+
+/// Values of `(q, t)` that several functions share, as far as something that is not shared uses them.
+///
+/// Coordinates and time themselves count as shared: functions behind the stage do not get them again.
+pub fn position_fields(graph: &Graph, functions: &[&[NodeId]]) -> BTreeSet<NodeId> {
+    let reached: Vec<Vec<NodeId>> =
+        functions.iter().map(|roots| graph.reachable(roots.iter().copied())).collect();
+    let mut users = vec![0_u32; graph.len()];
+    for id in reached.iter().flatten() {
+        if let Some(count) = users.get_mut(id.index()) {
+            *count += 1;
+        }
+    }
+    let shared = |id: NodeId| match graph.node(id) {
+        Node::Leaf(Leaf::Position(_) | Leaf::Time) => true,
+        Node::Leaf(_) => false,
+        _ => graph.stage(id) == Stage::Position && users.get(id.index()).is_some_and(|count| *count > 1),
+    };
+    let mut fields = BTreeSet::new();
+    for (roots, nodes) in functions.iter().zip(&reached) {
+        fields.extend(roots.iter().copied().filter(|id| shared(*id)));
+        for id in nodes.iter().filter(|id| !shared(**id)) {
+            fields.extend(graph.node(*id).operands().filter(|operand| shared(*operand)));
+        }
+    }
+    fields
+}

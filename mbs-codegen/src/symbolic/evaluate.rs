@@ -1,0 +1,78 @@
+//! Values of graphs: the definition of what a node means.
+
+use super::graph::{Binary, Graph, Leaf, Node, NodeId, Unary};
+
+/// A function of one number, as the runtime computes it.
+pub fn unary(function: Unary, a: f64) -> f64 {
+    match function {
+        Unary::Negate => -a,
+        Unary::Sqrt => libm::sqrt(a),
+        Unary::Exp => libm::exp(a),
+        Unary::Ln => libm::log(a),
+        Unary::Sin => libm::sin(a),
+        Unary::Cos => libm::cos(a),
+        Unary::Tan => libm::tan(a),
+        Unary::Asin => libm::asin(a),
+        Unary::Acos => libm::acos(a),
+        Unary::Atan => libm::atan(a),
+        Unary::Sinh => libm::sinh(a),
+        Unary::Cosh => libm::cosh(a),
+        Unary::Tanh => libm::tanh(a),
+        Unary::Abs => libm::fabs(a),
+        Unary::Sign if a > 0.0 => 1.0,
+        Unary::Sign if a < 0.0 => -1.0,
+        Unary::Sign => a,
+    }
+}
+
+/// A function of two numbers, as the runtime computes it.
+pub fn binary(function: Binary, a: f64, b: f64) -> f64 {
+    match function {
+        Binary::Add => a + b,
+        Binary::Subtract => a - b,
+        Binary::Multiply => a * b,
+        Binary::Divide => a / b,
+        Binary::Power => libm::pow(a, b),
+        Binary::Atan2 => libm::atan2(a, b),
+        Binary::Min => {
+            if a < b {
+                a
+            } else {
+                b
+            }
+        }
+        Binary::Max => {
+            if a < b {
+                b
+            } else {
+                a
+            }
+        }
+        Binary::Hypot => libm::hypot(a, b),
+    }
+}
+
+/// Values of `roots` where the leaves have the values that `leaf` gives.
+pub fn evaluate(graph: &Graph, roots: &[NodeId], leaf: impl Fn(Leaf) -> f64) -> Vec<f64> {
+    let mut values = vec![f64::NAN; graph.len()];
+    for id in graph.reachable(roots.iter().copied()) {
+        let of = |id: NodeId| values.get(id.index()).copied().unwrap_or(f64::NAN);
+        let value = match graph.node(id) {
+            Node::Constant(bits) => f64::from_bits(bits),
+            Node::Leaf(variable) => leaf(variable),
+            Node::Unary(function, a) => unary(function, of(a)),
+            Node::Binary(function, a, b) => binary(function, of(a), of(b)),
+            Node::Select { less, than, yes, no } => {
+                if of(less) < of(than) {
+                    of(yes)
+                } else {
+                    of(no)
+                }
+            }
+        };
+        if let Some(slot) = values.get_mut(id.index()) {
+            *slot = value;
+        }
+    }
+    roots.iter().map(|root| values.get(root.index()).copied().unwrap_or(f64::NAN)).collect()
+}

@@ -1,0 +1,185 @@
+//! The graph: equal terms exist once, operands always stand before what uses them.
+
+use std::collections::BTreeMap;
+
+/// Index into a [`Graph`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct NodeId(u32);
+
+impl NodeId {
+    /// Position in the graph.
+    pub fn index(self) -> usize {
+        self.0 as usize
+    }
+}
+
+/// A variable: its array and its index there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Leaf {
+    /// Constant in time.
+    Parameter(u32),
+    /// Varies with time, from outside: inputs and their rates.
+    Input(u32),
+    /// The time.
+    Time,
+    /// Coordinate.
+    Position(u32),
+    /// Its rate.
+    Velocity(u32),
+    /// Rate of its rate.
+    Acceleration(u32),
+}
+
+/// When a value becomes known; a value is computed once, in its stage.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Stage {
+    Constant,
+    Parameter,
+    Position,
+    Velocity,
+    Acceleration,
+}
+
+/// A scalar function of the leaves. Numbers are kept by their bits, so that nodes have a total order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Node {
+    Constant(u64),
+    Leaf(Leaf),
+    Unary(Unary, NodeId),
+    Binary(Binary, NodeId, NodeId),
+    /// `yes` where `less < than`, else `no`.
+    Select {
+        less: NodeId,
+        than: NodeId,
+        yes: NodeId,
+        no: NodeId,
+    },
+}
+
+/// Functions of one argument.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Unary {
+    Negate,
+    Sqrt,
+    Exp,
+    Ln,
+    Sin,
+    Cos,
+    Tan,
+    Asin,
+    Acos,
+    Atan,
+    Sinh,
+    Cosh,
+    Tanh,
+    Abs,
+    Sign,
+}
+
+/// Functions of two arguments.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Binary {
+    Add,
+    Subtract,
+    Multiply,
+    Divide,
+    Power,
+    Atan2,
+    Min,
+    Max,
+    Hypot,
+}
+
+/// The graph.
+#[derive(Debug, Default)]
+pub struct Graph {
+    nodes: Vec<Node>,
+    stages: Vec<Stage>,
+    index: BTreeMap<Node, NodeId>,
+}
+
+impl Graph {
+    /// The node.
+    pub fn node(&self, id: NodeId) -> Node {
+        self.nodes.get(id.index()).copied().unwrap_or(Node::Constant(f64::NAN.to_bits()))
+    }
+
+    /// The stage in which the node's value becomes known.
+    pub fn stage(&self, id: NodeId) -> Stage {
+        self.stages.get(id.index()).copied().unwrap_or(Stage::Constant)
+    }
+
+    /// Number of nodes.
+    pub fn len(&self) -> usize {
+        self.nodes.len()
+    }
+
+    /// The number, where the node is one.
+    pub fn constant_value(&self, id: NodeId) -> Option<f64> {
+        match self.node(id) {
+            Node::Constant(bits) => Some(f64::from_bits(bits)),
+            _ => None,
+        }
+    }
+
+    /// A number.
+    pub fn constant(&mut self, value: f64) -> NodeId {
+        self.intern(Node::Constant(value.to_bits()))
+    }
+
+    /// A variable.
+    pub fn leaf(&mut self, leaf: Leaf) -> NodeId {
+        self.intern(Node::Leaf(leaf))
+    }
+
+    /// Before: operands of `node` are in the graph. After: so is `node`, once.
+    pub(super) fn intern(&mut self, node: Node) -> NodeId {
+        if let Some(id) = self.index.get(&node) {
+            return *id;
+        }
+        let id = NodeId(self.nodes.len() as u32);
+        let stage = match node {
+            Node::Constant(_) => Stage::Constant,
+            Node::Leaf(Leaf::Parameter(_)) => Stage::Parameter,
+            Node::Leaf(Leaf::Input(_) | Leaf::Time | Leaf::Position(_)) => Stage::Position,
+            Node::Leaf(Leaf::Velocity(_)) => Stage::Velocity,
+            Node::Leaf(Leaf::Acceleration(_)) => Stage::Acceleration,
+            _ => node.operands().map(|operand| self.stage(operand)).max().unwrap_or(Stage::Constant),
+        };
+        self.nodes.push(node);
+        self.stages.push(stage);
+        self.index.insert(node, id);
+        id
+    }
+
+    /// What `roots` are made of, themselves included, operands first.
+    pub fn reachable(&self, roots: impl IntoIterator<Item = NodeId>) -> Vec<NodeId> {
+        let mut marked = vec![false; self.nodes.len()];
+        let mut waiting: Vec<NodeId> = roots.into_iter().collect();
+        let mut found = Vec::new();
+        while let Some(id) = waiting.pop() {
+            if let Some(mark) = marked.get_mut(id.index())
+                && !*mark
+            {
+                *mark = true;
+                found.push(id);
+                waiting.extend(self.node(id).operands());
+            }
+        }
+        found.sort_unstable();
+        found
+    }
+}
+
+impl Node {
+    /// The nodes that it is made of.
+    pub fn operands(self) -> impl Iterator<Item = NodeId> {
+        let operands = match self {
+            Node::Constant(_) | Node::Leaf(_) => [None; 4],
+            Node::Unary(_, a) => [Some(a), None, None, None],
+            Node::Binary(_, a, b) => [Some(a), Some(b), None, None],
+            Node::Select { less, than, yes, no } => [Some(less), Some(than), Some(yes), Some(no)],
+        };
+        operands.into_iter().flatten()
+    }
+}

@@ -1,0 +1,12 @@
+//! Hash-consed graph of scalar functions: construction by numbered rules, exact differentiation, evaluation.
+//!
+//! Knows nothing of mechanisms, of syntax or of Rust: leaves are `(kind, index)`.
+
+pub mod differentiate;
+pub mod evaluate;
+pub mod graph;
+mod rules;
+pub mod substitute;
+
+pub use differentiate::tangent;
+pub use graph::{Binary, Graph, Leaf, Node, NodeId, Stage, Unary};

@@ -1,0 +1,193 @@
+//! What a solver met on its way: effort, and the row that was hardest to close.
+
+use crate::{Block, Real, Scalar};
+
+/// Rounding errors of a row's own terms that a converged residual may hold, in ε times the row's scale.
+///
+/// A closure row sums some ten terms of at most the reference length, each wrong by an ε or two; 64 leaves a
+/// factor of three and is still 1.4e-14 of the length in `f64`.
+const TERM_ROUNDINGS: f64 = 64.0;
+
+/// Rounding errors of a coordinate that a residual may hold, in ε times the coordinate: half an ε for its own
+/// rounding, the same for each sum that it enters.
+const COORDINATE_ROUNDINGS: f64 = 4.0;
+
+/// The residual that counts as zero: ε (64 ρᵢ + 4 Σⱼ |Jᵢⱼ| |xⱼ|), K, in the unit of the row.
+///
+/// ρ is the row's scale in the reference metric, so the tolerance is the same mechanism's in every unit; the
+/// sum is what the rounding of large coordinates (an angle after many turns) makes of the row.
+#[inline(always)]
+pub(crate) fn required<T: Scalar, const K: usize>(
+    row_scales: &[T; K],
+    x: &[T; K],
+    jacobian: &[[T; K]; K],
+) -> [T; K] {
+    let epsilon = T::splat(T::Real::EPSILON);
+    let mut required = *row_scales;
+    for (tolerance, row) in required.iter_mut().zip(jacobian) {
+        let mut reach = T::constant(0.0);
+        for (entry, coordinate) in row.iter().zip(x) {
+            reach = reach + (*entry * *coordinate).abs();
+        }
+        *tolerance =
+            epsilon * (T::constant(TERM_ROUNDINGS) * *tolerance + T::constant(COORDINATE_ROUNDINGS) * reach);
+    }
+    required
+}
+
+/// What coordinates outside the block may add to [`required`]: 4 ε e Σⱼ |Jᵢⱼ| sⱼ with the extent e of all of q.
+///
+/// In relative coordinates a row of the block sees ψ1 + ψ2: its rounding is that of ψ1, which may be turns away
+/// though the block knows ψ2 alone. Granted only to a residual that no longer falls.
+#[inline(always)]
+pub(crate) fn outer_rounding<T: Scalar, const K: usize>(
+    extent: T,
+    coordinate_scales: &[T; K],
+    jacobian: &[[T; K]; K],
+) -> [T; K] {
+    jacobian.map(|row| {
+        let mut reach = T::constant(0.0);
+        for (entry, scale) in row.into_iter().zip(coordinate_scales) {
+            reach = reach + (entry * *scale).abs();
+        }
+        T::splat(T::Real::EPSILON) * T::constant(COORDINATE_ROUNDINGS) * extent * reach
+    })
+}
+
+/// Largest coordinate in the reference metric: maxⱼ |qⱼ|/sⱼ.
+#[inline]
+pub fn extent<T: Scalar, const N: usize>(q: &[T; N], coordinate_scales: &[T; N]) -> T {
+    let mut largest = T::constant(0.0);
+    for (coordinate, scale) in q.iter().zip(coordinate_scales) {
+        largest = largest.max((*coordinate / *scale).abs());
+    }
+    largest
+}
+
+/// The row whose residual is largest against its tolerance, a lane.
+#[derive(Clone, Copy)]
+pub struct Worst<T: Scalar> {
+    /// |residual| over tolerance; above 1 where the row did not converge.
+    pub ratio: T,
+    /// |residual|, in the unit of the row.
+    pub residual: T,
+    /// Tolerance, in the unit of the row.
+    pub required: T,
+    /// Index of the row in Φ.
+    pub row: T::Lanes<u16>,
+}
+
+impl<T: Scalar> Worst<T> {
+    /// No row yet.
+    pub fn none() -> Self {
+        let zero = T::constant(0.0);
+        Worst { ratio: zero, residual: zero, required: zero, row: T::per_lane(|_| 0) }
+    }
+
+    /// The worst row of a block. A NaN is worse than any number, and the first one is kept.
+    #[inline(always)]
+    pub(crate) fn of_block<const K: usize>(
+        block: &Block<T, K>,
+        residuals: &[T; K],
+        required: &[T; K],
+    ) -> Self {
+        let zero = T::constant(0.0);
+        let (mut ratio, mut residual, mut tolerance, mut index) = (zero, zero, zero, zero);
+        let mut position = 0.0;
+        for (r, r_tolerance) in residuals.iter().zip(required) {
+            let r_ratio = r.abs() / *r_tolerance;
+            let worse = ratio.less(r_ratio) | (!r_ratio.is_finite() & ratio.is_finite());
+            ratio = T::select(worse, r_ratio, ratio);
+            residual = T::select(worse, r.abs(), residual);
+            tolerance = T::select(worse, *r_tolerance, tolerance);
+            index = T::select(worse, T::constant(position), index);
+            position += 1.0;
+        }
+        // A float carries the index so that it is selected like everything else; the cast saturates.
+        let row = T::per_lane(|lane| {
+            let at = index.lane(lane).to_f64() as usize;
+            block.rows.get(at).or(block.rows.first()).copied().unwrap_or(0)
+        });
+        Worst { ratio, residual, required: tolerance, row }
+    }
+
+    /// `other` where the mask is true, `self` elsewhere.
+    #[inline(always)]
+    pub(crate) fn replaced(self, mask: T::Mask, other: Self) -> Self {
+        let row = |lane: usize| {
+            let from = if T::test(mask, lane) { &other.row } else { &self.row };
+            from.as_ref().get(lane).copied().unwrap_or(0)
+        };
+        Worst {
+            ratio: T::select(mask, other.ratio, self.ratio),
+            residual: T::select(mask, other.residual, self.residual),
+            required: T::select(mask, other.required, self.required),
+            row: T::per_lane(row),
+        }
+    }
+}
+
+/// What a [`BlockSolver`](crate::BlockSolver) met over all blocks of one position.
+#[derive(Clone, Copy)]
+pub struct Diagnosis<T: Scalar> {
+    /// Evaluations of residual and Jacobian, the most of any block.
+    pub evaluations: u32,
+    /// Whether any block needed more than its first method.
+    pub fallback: bool,
+    /// The worst row; in a lane that failed, of the first block that did.
+    pub worst: Worst<T>,
+    failed: T::Mask,
+}
+
+impl<T: Scalar> Diagnosis<T> {
+    /// Before the first block.
+    #[inline(always)]
+    pub fn new() -> Self {
+        Diagnosis { evaluations: 0, fallback: false, worst: Worst::none(), failed: T::mask(false) }
+    }
+
+    /// Takes up one more block.
+    #[inline(always)]
+    pub fn record(&mut self, evaluations: u32, fallback: bool, worst: Worst<T>, converged: T::Mask) {
+        self.evaluations = self.evaluations.max(evaluations);
+        self.fallback |= fallback;
+        let worse = !converged | self.worst.ratio.less(worst.ratio);
+        self.worst = self.worst.replaced(worse & !self.failed, worst);
+        self.failed = self.failed | !converged;
+    }
+}
+
+impl<T: Scalar> Default for Diagnosis<T> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// What one position cost and how well it closed.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Statistics {
+    /// Evaluations of residual and Jacobian, the most of any block; 0 where every row is explicit.
+    pub evaluations: u32,
+    /// Whether Newton's method alone did not do.
+    pub fallback: bool,
+    /// Largest |residual| over its tolerance, at most 1; of the rows that are solved for, not assigned.
+    pub residual: f64,
+    /// Index in Φ of the row that holds it.
+    pub row: u16,
+    /// Largest difference between the position and its prediction, in the reference metric (rad, or reference
+    /// lengths). Where it jumps, the step is too long for the motion, or the assembly has changed.
+    pub correction: f64,
+}
+
+impl Statistics {
+    /// Those of a single number.
+    pub fn of<R: Real>(diagnosis: &Diagnosis<R>) -> Self {
+        Statistics {
+            evaluations: diagnosis.evaluations,
+            fallback: diagnosis.fallback,
+            residual: diagnosis.worst.ratio.to_f64(),
+            row: diagnosis.worst.row.as_ref().first().copied().unwrap_or(0),
+            correction: 0.0,
+        }
+    }
+}

@@ -1,0 +1,227 @@
+//! Position, velocity and acceleration of one instant, as functions of mechanism and stage values.
+
+use crate::diagnosis::{Diagnosis, Statistics, extent};
+use crate::linear::{determines_rates, least_margin};
+use crate::{Entry, Failure, Kinematic, Margin, Mechanism, Newton, Outcome, Real};
+
+/// Factors of a Jacobian that is regular: the only ones that rates are solved with.
+#[derive(Clone, Copy, Debug)]
+pub struct RegularFactors<F, R> {
+    factors: F,
+    margin: R,
+}
+
+impl<F, R: Copy> RegularFactors<F, R> {
+    /// Margin to singularity, above [`least_margin`], at most 1.
+    pub fn margin(&self) -> R {
+        self.margin
+    }
+}
+
+/// Positions from Φ(q, t) = 0, block after block, by [`Newton`].
+///
+/// `start`: N, near the solution; `t` (s). Returns `q`: N, and what it cost.
+///
+/// # Errors
+/// [`Failure::NotConverged`] with the worst row, [`Failure::NonFinite`] with the row that became NaN.
+#[inline(always)]
+pub fn solve_position<S: Kinematic<R, N>, R: Real, const N: usize>(
+    mechanism: &S,
+    parameters: &S::Parameters,
+    start: &[R; N],
+    t: R,
+) -> Result<([R; N], Statistics), Failure> {
+    let scales = mechanism.coordinate_scales(parameters);
+    let mut solver = Newton::new(extent(start, &scales));
+    let mut q = *start;
+    let outcome = mechanism.solve_blocks(parameters, &mut q, t, &mut solver);
+    if let Some(failure) = position_failure::<S, R, N>(outcome, solver.diagnosis(), t) {
+        return Err(failure);
+    }
+    let mut statistics = Statistics::of(solver.diagnosis());
+    let mut correction = R::constant(0.0);
+    for ((new, old), scale) in q.iter().zip(start).zip(&scales) {
+        correction = correction.max(((*new - *old) / *scale).abs());
+    }
+    statistics.correction = correction.to_f64();
+    Ok((q, statistics))
+}
+
+/// Factorises Φ_q at `position`, once for velocity and acceleration.
+///
+/// # Errors
+/// [`Failure::Singular`] where the margin is below 32 √ε: at a dead centre or a bifurcation.
+#[inline(always)]
+pub fn factorize<S: Kinematic<R, N>, R: Real, const N: usize>(
+    mechanism: &S,
+    parameters: &S::Parameters,
+    position: &S::Position,
+    t: R,
+) -> Result<RegularFactors<S::Factors, R>, Failure> {
+    let (factors, margin) = mechanism.factorize(parameters, position);
+    if determines_rates(margin.value) {
+        return Ok(RegularFactors { factors, margin: margin.value });
+    }
+    Err(singular::<S, R, N>(&margin, t))
+}
+
+/// Velocities from Φ_q q̇ = −Φ_t.
+///
+/// Returns `q̇`: N, in coordinate unit per second.
+/// Source: García de Jalón & Bayo 1994, §3.3.
+///
+/// # Errors
+/// [`Failure::NonFinite`] with the row or coordinate whose rate is NaN or infinite.
+#[inline(always)]
+pub fn solve_velocity<S: Kinematic<R, N>, R: Real, const N: usize>(
+    mechanism: &S,
+    parameters: &S::Parameters,
+    position: &S::Position,
+    factors: &RegularFactors<S::Factors, R>,
+) -> Result<[R; N], Failure> {
+    solve_rates::<S, R, N>(mechanism, factors, &mechanism.phi_t(parameters, position).map(|rate| -rate))
+}
+
+/// Accelerations from Φ_q q̈ = γ.
+///
+/// `qd`: N, from [`solve_velocity`]. Returns `q̈`: N, in coordinate unit per second squared.
+/// Source: García de Jalón & Bayo 1994, §3.3.
+///
+/// # Errors
+/// [`Failure::NonFinite`] with the row or coordinate whose rate is NaN or infinite.
+#[inline(always)]
+pub fn solve_acceleration<S: Kinematic<R, N>, R: Real, const N: usize>(
+    mechanism: &S,
+    parameters: &S::Parameters,
+    position: &S::Position,
+    qd: &[R; N],
+    factors: &RegularFactors<S::Factors, R>,
+) -> Result<[R; N], Failure> {
+    solve_rates::<S, R, N>(mechanism, factors, &mechanism.gamma(parameters, position, qd))
+}
+
+#[inline(always)]
+fn solve_rates<S: Kinematic<R, N>, R: Real, const N: usize>(
+    mechanism: &S,
+    factors: &RegularFactors<S::Factors, R>,
+    right: &[R; N],
+) -> Result<[R; N], Failure> {
+    let rates = mechanism.solve_linear(&factors.factors, right);
+    if all_finite(&rates) {
+        return Ok(rates);
+    }
+    Err(non_finite(right, S::ROWS).or(non_finite(&rates, S::COORDINATES)).unwrap_or(UNNAMED))
+}
+
+/// What an unsuccessful `outcome` means to the caller; `None` for a success.
+#[inline]
+pub(crate) fn position_failure<S: Mechanism<R, N, N>, R: Real, const N: usize>(
+    outcome: R::Lanes<Outcome>,
+    diagnosis: &Diagnosis<R>,
+    t: R,
+) -> Option<Failure> {
+    match outcome.as_ref().first().copied().unwrap_or(Outcome::Converged) {
+        Outcome::Converged => None,
+        Outcome::NotConverged { row } => Some(Failure::NotConverged {
+            row: entry(S::ROWS, row),
+            residual: diagnosis.worst.residual.to_f64(),
+            required: diagnosis.worst.required.to_f64(),
+            iterations: diagnosis.evaluations,
+            time: t.to_f64(),
+        }),
+        Outcome::NonFinite { row } => {
+            let row = entry(S::ROWS, row);
+            Some(Failure::NonFinite { name: row.name, line: row.line })
+        }
+    }
+}
+
+#[cold]
+fn singular<S: Mechanism<R, N, N>, R: Real, const N: usize>(margin: &Margin<R>, t: R) -> Failure {
+    Failure::Singular {
+        row: entry(S::ROWS, margin.row.as_ref().first().copied().unwrap_or(0)),
+        coordinate: entry(S::COORDINATES, margin.coordinate.as_ref().first().copied().unwrap_or(0)),
+        margin: margin.value.to_f64(),
+        required: least_margin::<R>().to_f64(),
+        time: t.to_f64(),
+    }
+}
+
+/// The branch condition that is violated first, if any.
+///
+/// Returns [`Failure::WrongBranch`], or [`Failure::NonFinite`] where the condition is NaN.
+#[inline(always)]
+pub(crate) fn branch_failure<S: Mechanism<R, N, N>, R: Real, const N: usize>(
+    mechanism: &S,
+    parameters: &S::Parameters,
+    position: &S::Position,
+    t: R,
+) -> Option<Failure> {
+    let branches = mechanism.branches(parameters, position);
+    let broken = |value: &R| !R::constant(0.0).less(*value);
+    let index = branches.as_ref().iter().position(broken)?;
+    let branch = entry(S::BRANCHES, u16::try_from(index).unwrap_or(u16::MAX));
+    let value = branches.as_ref().get(index).copied().unwrap_or(R::constant(0.0));
+    Some(match value.is_finite() {
+        true => Failure::WrongBranch { branch, value: value.to_f64(), time: t.to_f64() },
+        false => Failure::NonFinite { name: branch.name, line: branch.line },
+    })
+}
+
+/// The parameter or input that is not finite, if any.
+pub(crate) fn variable_failure<S: Mechanism<R, N, N>, R: Real, const N: usize>(
+    mechanism: &S,
+) -> Option<Failure> {
+    let broken = |index: &usize| mechanism.get(*index).is_some_and(|value| !value.is_finite());
+    let index = (0..S::VARIABLES.len()).find(broken)?;
+    S::VARIABLES.get(index).map(|variable| Failure::NonFinite { name: variable.name, line: variable.line })
+}
+
+/// The time as a failure where it is not finite.
+#[inline(always)]
+pub(crate) fn time_failure<R: Real>(t: R) -> Option<Failure> {
+    (!t.is_finite()).then_some(Failure::NonFinite { name: "t", line: 0 })
+}
+
+/// The first value that is not finite, under the name that `entries` gives it.
+#[inline]
+pub(crate) fn non_finite<R: Real, const N: usize>(values: &[R; N], entries: &[Entry]) -> Option<Failure> {
+    let index = values.iter().position(|value| !value.is_finite())?;
+    let named = entries.get(index).map(|entry| Failure::NonFinite { name: entry.name, line: entry.line });
+    Some(named.unwrap_or(UNNAMED))
+}
+
+/// Coarsest resolution of a coordinate, relative to its scale, that still is a position: 1e-3 rad. An `f64` angle
+/// has it for 7e11 turns, an `f32` angle for 1300 (H11: an `f32` angle at 3000 rpm is worthless after minutes).
+const COARSEST_RESOLUTION: f64 = 1e-3;
+
+/// The first coordinate that is not finite, or too large to be resolved.
+#[inline(always)]
+pub(crate) fn coordinate_failure<S: Mechanism<R, N, N>, R: Real, const N: usize>(
+    q: &[R; N],
+    scales: &[R; N],
+    t: R,
+) -> Option<Failure> {
+    let limit = R::constant(COARSEST_RESOLUTION);
+    let resolved = |(coordinate, scale): (&R, &R)| R::EPSILON * coordinate.abs() <= limit * *scale;
+    if q.iter().zip(scales).fold(true, |all, pair| all & resolved(pair)) {
+        return None;
+    }
+    non_finite(q, S::COORDINATES).or_else(|| {
+        let index = q.iter().zip(scales).position(|pair| !resolved(pair))?;
+        let coordinate = entry(S::COORDINATES, u16::try_from(index).unwrap_or(u16::MAX));
+        Some(Failure::Unresolved { coordinate, value: q.get(index)?.to_f64(), time: t.to_f64() })
+    })
+}
+
+#[inline(always)]
+fn all_finite<R: Real, const N: usize>(values: &[R; N]) -> bool {
+    values.iter().fold(true, |all, value| all & value.is_finite())
+}
+
+/// Only a hand-written mechanism with too short tables can bring it out.
+const UNNAMED: Failure = Failure::NonFinite { name: "?", line: 0 };
+
+pub(crate) fn entry(entries: &[Entry], index: u16) -> Entry {
+    entries.get(usize::from(index)).copied().unwrap_or(Entry { name: "?", unit: "", line: 0 })
+}

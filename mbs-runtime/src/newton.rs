@@ -1,0 +1,329 @@
+//! Newton's method for the next position: fast from a good prediction, safe from a bad one.
+
+use crate::diagnosis::{Diagnosis, Worst, outer_rounding, required};
+use crate::linear::{is_regular, orthogonal::minimum_norm};
+use crate::safeguarded::levenberg_marquardt;
+use crate::{Block, BlockSolver, Factorization, Outcome, Real, Scalar};
+
+/// Iterations before the safeguarded method takes over. Quadratic convergence needs 2 to 6; at a change point it
+/// is linear, a quarter of the residual a step, and 17 were measured (ROBUSTNESS, H01).
+const ITERATIONS: u32 = 30;
+
+/// Iterations that are granted to fall without question; a residual that does not halve after them is rounding.
+const FREE_ITERATIONS: u32 = 3;
+
+/// Largest change of an angle in one step (rad). With it Newton's method adds turns and changes assemblies far
+/// less often (ROBUSTNESS, H06 and H07).
+const LARGEST_ANGLE_STEP: f64 = 0.5;
+
+/// Newton's method with capped steps, falling back to minimum-norm steps where the Jacobian is singular and to
+/// Levenberg–Marquardt from the original start where it does not converge. The solver of the next position.
+///
+/// Success is judged on the residual alone: |rᵢ| ≤ ε (64 ρᵢ + 4 Σⱼ |Jᵢⱼ| |xⱼ|), ρ the row's scale.
+/// Lanes that have converged or failed stand still, so a lane's result does not depend on its neighbours.
+#[derive(Clone, Copy)]
+pub struct Newton<T: Scalar> {
+    extent: T,
+    diagnosis: Diagnosis<T>,
+}
+
+impl<T: Scalar> Newton<T> {
+    /// A solver for coordinates of which the largest is `extent` in the reference metric (see
+    /// [`extent`](crate::diagnosis::extent)): what rounding their sums can leave in a row.
+    #[inline(always)]
+    pub fn new(extent: T) -> Self {
+        Newton { extent, diagnosis: Diagnosis::new() }
+    }
+
+    /// What it met so far.
+    #[inline(always)]
+    pub fn diagnosis(&self) -> &Diagnosis<T> {
+        &self.diagnosis
+    }
+}
+
+impl<T: Scalar> BlockSolver<T> for Newton<T> {
+    #[inline(always)]
+    fn solve<const K: usize, F: Factorization<T, K>>(
+        &mut self,
+        block: &Block<T, K>,
+        x: [T; K],
+        mut evaluate: impl FnMut(&[T; K]) -> ([T; K], [[T; K]; K]),
+    ) -> ([T; K], T::Lanes<Outcome>) {
+        let attempt = newton::<T, K, F>(block, x, T::mask(true), self.extent, &mut evaluate);
+        let plain = T::all(attempt.converged);
+        let attempt = if plain { attempt } else { rescued(attempt, block, x, self.extent, &mut evaluate) };
+        self.diagnosis.record(attempt.evaluations, !plain, attempt.worst, attempt.converged);
+        (attempt.x, attempt.outcomes())
+    }
+}
+
+/// The lanes that did not converge, once more from their start by Levenberg–Marquardt.
+#[cold]
+#[inline(never)]
+fn rescued<T: Scalar, const K: usize>(
+    attempt: Attempt<T, K>,
+    block: &Block<T, K>,
+    start: [T; K],
+    extent: T,
+    evaluate: &mut impl FnMut(&[T; K]) -> ([T; K], [[T; K]; K]),
+) -> Attempt<T, K> {
+    let second = levenberg_marquardt(block, start, !attempt.converged, extent, evaluate);
+    attempt.continued_by(second)
+}
+
+/// What one method reached in the lanes that it was given.
+#[derive(Clone, Copy)]
+pub(crate) struct Attempt<T: Scalar, const K: usize> {
+    pub x: [T; K],
+    pub converged: T::Mask,
+    pub worst: Worst<T>,
+    pub evaluations: u32,
+}
+
+impl<T: Scalar, const K: usize> Attempt<T, K> {
+    /// This attempt where it converged, `second` elsewhere.
+    pub(crate) fn continued_by(self, second: Self) -> Self {
+        Attempt {
+            x: select(self.converged, &self.x, &second.x),
+            converged: self.converged | second.converged,
+            worst: second.worst.replaced(self.converged, self.worst),
+            evaluations: self.evaluations.saturating_add(second.evaluations),
+        }
+    }
+
+    /// The outcome in each lane, with the worst row where it is no success.
+    #[inline(always)]
+    pub(crate) fn outcomes(&self) -> T::Lanes<Outcome> {
+        let finite = self.worst.ratio.is_finite();
+        T::per_lane(|lane| {
+            let row = self.worst.row.as_ref().get(lane).copied().unwrap_or(0);
+            match (T::test(self.converged, lane), T::test(finite, lane)) {
+                (true, _) => Outcome::Converged,
+                (false, true) => Outcome::NotConverged { row },
+                (false, false) => Outcome::NonFinite { row },
+            }
+        })
+    }
+}
+
+/// Newton's method from `start` in the lanes of `active`; the others stay.
+#[inline(always)]
+pub(crate) fn newton<T: Scalar, const K: usize, F: Factorization<T, K>>(
+    block: &Block<T, K>,
+    start: [T; K],
+    active: T::Mask,
+    extent: T,
+    evaluate: &mut impl FnMut(&[T; K]) -> ([T; K], [[T; K]; K]),
+) -> Attempt<T, K> {
+    let one = T::constant(1.0);
+    let mut x = start;
+    let (mut residuals, mut jacobian) = evaluate(&x);
+    let mut evaluations = 1;
+    let mut converged = T::mask(false);
+    let mut open = active;
+    let mut last_ratio = one;
+    let mut tolerances = required(&block.row_scales, &x, &jacobian);
+    for iteration in 0..ITERATIONS {
+        let finite = all_finite(&residuals, &jacobian);
+        let ratio = largest_ratio(&residuals, &tolerances);
+        converged = converged | (open & finite & !one.less(ratio));
+        if iteration > FREE_ITERATIONS {
+            let allowance = outer_rounding(extent, &block.coordinate_scales, &jacobian);
+            let stalled = !(ratio + ratio).less(last_ratio);
+            converged = converged | (open & finite & stalled & within(&residuals, &tolerances, &allowance));
+        }
+        last_ratio = ratio;
+        open = open & finite & !converged;
+        if T::all(!open) {
+            break;
+        }
+        let (factors, margin) = F::factorize(&jacobian, &block.row_scales, &block.coordinate_scales);
+        let mut step = factors.solve(&residuals.map(|r| -r));
+        let singular = open & !is_regular(margin);
+        if !T::all(!singular) {
+            step = shortest_steps(singular, step, &residuals, &jacobian, block);
+        }
+        let step = capped(block, step);
+        let mut next = x;
+        next.iter_mut().zip(step).for_each(|(component, change)| *component = *component + change);
+        x = select(open, &next, &x);
+        (residuals, jacobian) = evaluate(&x);
+        tolerances = required(&block.row_scales, &x, &jacobian);
+        evaluations += 1;
+    }
+    let worst = Worst::of_block(block, &residuals, &tolerances);
+    Attempt { x, converged, worst, evaluations }
+}
+
+/// Minimum-norm steps in the lanes of `singular`, the given steps elsewhere.
+#[cold]
+#[inline(never)]
+fn shortest_steps<T: Scalar, const K: usize>(
+    singular: T::Mask,
+    steps: [T; K],
+    residuals: &[T; K],
+    jacobian: &[[T; K]; K],
+    block: &Block<T, K>,
+) -> [T; K] {
+    let shortest: T::Lanes<[T::Real; K]> = T::per_lane(|lane| {
+        if !T::test(singular, lane) {
+            return steps.map(|step| step.lane(lane));
+        }
+        let a = jacobian.map(|row| row.map(|entry| entry.lane(lane)));
+        let b = residuals.map(|r| -r.lane(lane));
+        let row_scales = block.row_scales.map(|scale| scale.lane(lane));
+        let coordinate_scales = block.coordinate_scales.map(|scale| scale.lane(lane));
+        minimum_norm(&a, &b, &row_scales, &coordinate_scales, T::Real::EPSILON.sqrt()).0
+    });
+    let component = |lane: usize, k: usize| shortest.as_ref().get(lane).and_then(|x| x.get(k)).copied();
+    core::array::from_fn(|k| T::from_lanes(|lane| component(lane, k).unwrap_or(T::Real::constant(0.0))))
+}
+
+/// The step shortened as a whole so that no angle changes by more than [`LARGEST_ANGLE_STEP`].
+#[inline(always)]
+pub(crate) fn capped<T: Scalar, const K: usize>(block: &Block<T, K>, step: [T; K]) -> [T; K] {
+    let limit = T::constant(LARGEST_ANGLE_STEP);
+    let mut largest = T::constant(0.0);
+    for (change, is_angle) in step.iter().zip(block.angles) {
+        if is_angle {
+            largest = largest.max(change.abs());
+        }
+    }
+    let beyond = limit.less(largest);
+    if T::all(!beyond) {
+        return step;
+    }
+    let factor = limit / T::select(beyond, largest, limit);
+    step.map(|change| change * factor)
+}
+
+/// Whether residuals and Jacobian are finite.
+#[inline(always)]
+pub(crate) fn all_finite<T: Scalar, const K: usize>(residuals: &[T; K], jacobian: &[[T; K]; K]) -> T::Mask {
+    let entries = residuals.iter().chain(jacobian.iter().flatten());
+    entries.fold(T::mask(true), |finite, entry| finite & entry.is_finite())
+}
+
+/// Largest |residual| over its tolerance.
+#[inline(always)]
+pub(crate) fn largest_ratio<T: Scalar, const K: usize>(residuals: &[T; K], tolerances: &[T; K]) -> T {
+    let ratios = residuals.iter().zip(tolerances).map(|(r, tolerance)| r.abs() / *tolerance);
+    ratios.fold(T::constant(0.0), |largest, ratio| largest.max(ratio))
+}
+
+/// Whether every residual is within its tolerance plus its allowance.
+#[inline(always)]
+pub(crate) fn within<T: Scalar, const K: usize>(
+    residuals: &[T; K],
+    tolerances: &[T; K],
+    allowances: &[T; K],
+) -> T::Mask {
+    let mut all = T::mask(true);
+    for ((r, tolerance), allowance) in residuals.iter().zip(tolerances).zip(allowances) {
+        all = all & !(*tolerance + *allowance).less(r.abs());
+    }
+    all
+}
+
+/// Component by component `yes` where the mask is true, `no` elsewhere.
+#[inline(always)]
+pub(crate) fn select<T: Scalar, const K: usize>(mask: T::Mask, yes: &[T; K], no: &[T; K]) -> [T; K] {
+    let mut chosen = *no;
+    chosen.iter_mut().zip(yes).for_each(|(component, y)| *component = T::select(mask, *y, *component));
+    chosen
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Direct1, Direct2, Lu};
+
+    fn block<const K: usize>(is_angle: bool) -> Block<f64, K> {
+        let rows = core::array::from_fn(|k| 7 + k as u16);
+        Block {
+            rows,
+            coordinates: rows,
+            angles: [is_angle; K],
+            row_scales: [1.0; K],
+            coordinate_scales: [1.0; K],
+        }
+    }
+
+    #[test]
+    fn an_angle_far_away_is_reached_in_steps_of_half_a_radian() {
+        let mut farthest = 0.0_f64;
+        let mut last = [10.0];
+        let mut newton = Newton::new(10.0);
+        let (x, outcome) = newton.solve::<1, Direct1<f64>>(&block(true), last, |x| {
+            farthest = farthest.max((x[0] - last[0]).abs());
+            last = *x;
+            ([x[0]], [[1.0]])
+        });
+        assert_eq!((x, outcome), ([0.0], [Outcome::Converged]));
+        assert_eq!((farthest, newton.diagnosis().evaluations), (0.5, 21));
+    }
+
+    #[test]
+    fn a_repeated_row_is_solved_with_the_shortest_step() {
+        let repeated = |x: &[f64; 2]| ([x[0] + x[1] - 1.0; 2], [[1.0; 2]; 2]);
+        let mut newton = Newton::new(1.0);
+        let (x, outcome) = newton.solve::<2, Direct2<f64>>(&block(false), [0.0, 0.5], repeated);
+        assert_eq!(outcome, [Outcome::Converged]);
+        assert!((x[0] - 0.25).abs() < 1e-15 && (x[1] - 0.75).abs() < 1e-15 && !newton.diagnosis().fallback);
+    }
+
+    #[test]
+    fn rows_that_contradict_each_other_are_not_converged_with_the_worst_row_named() {
+        let contradicting = |x: &[f64; 2]| ([x[0] + x[1] - 1.0, x[0] + x[1] - 1.5], [[1.0; 2]; 2]);
+        let mut newton = Newton::new(1.0);
+        let (x, outcome) = newton.solve::<2, Direct2<f64>>(&block(false), [0.0, 0.5], contradicting);
+        assert!(matches!(outcome, [Outcome::NotConverged { row: 7 | 8 }]) && x[0].is_finite());
+        let worst = newton.diagnosis().worst;
+        assert!(
+            (worst.residual - 0.25).abs() < 1e-6 && worst.required < 1e-13 && newton.diagnosis().fallback
+        );
+    }
+
+    #[test]
+    fn an_angle_relative_to_one_many_turns_away_converges_to_what_its_sum_can_resolve() {
+        // ψ1 after 1e5 turns is known outside the block alone: sin(ψ1 + ψ2) = 0.3 can hold to its rounding only.
+        let outer = 1e5 * core::f64::consts::TAU;
+        let evaluate = |x: &[f64; 1]| {
+            let (sine, cosine) = libm::sincos(outer + x[0]);
+            ([sine - 0.3], [[cosine]])
+        };
+        let mut newton = Newton::new(outer);
+        let (x, outcome) = newton.solve::<1, Direct1<f64>>(&block(true), [0.7], evaluate);
+        assert_eq!(outcome, [Outcome::Converged]);
+        assert!((evaluate(&x).0[0]).abs() < 2e-10 && !newton.diagnosis().fallback);
+    }
+
+    #[test]
+    fn nan_from_a_row_is_not_finite_and_names_it() {
+        let mut newton = Newton::new(1.0);
+        let (x, outcome) = newton.solve::<2, Direct2<f64>>(&block(false), [1.0, 2.0], |x| {
+            ([x[0], libm::sqrt(-x[1])], [[1.0, 0.0], [0.0, 1.0]])
+        });
+        assert_eq!(outcome, [Outcome::NonFinite { row: 8 }]);
+        assert!(x.iter().all(|x| x.is_finite()));
+    }
+
+    #[test]
+    fn four_unknowns_converge_quadratically_through_lu() {
+        let evaluate = |x: &[f64; 4]| {
+            let mut jacobian = [[0.25; 4]; 4];
+            let mut residuals = [-1.5; 4];
+            for k in 0..4 {
+                residuals[k] += x[k] * x[k] + 0.25 * x.iter().sum::<f64>();
+                jacobian[k][k] += 2.0 * x[k];
+            }
+            (residuals, jacobian)
+        };
+        let mut newton = Newton::new(1.0);
+        let (x, outcome) = newton.solve::<4, Lu<f64, 4>>(&block(false), [1.2, 0.7, 0.9, 1.4], evaluate);
+        assert_eq!(outcome, [Outcome::Converged]);
+        assert!(evaluate(&x).0.iter().all(|r| r.abs() < 1e-13));
+        assert!(newton.diagnosis().evaluations <= 7 && !newton.diagnosis().fallback);
+    }
+}

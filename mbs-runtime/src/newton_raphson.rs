@@ -1,0 +1,97 @@
+//! The lecture's method: full Newton–Raphson on all of Φ from the previous position.
+
+use crate::diagnosis::required;
+use crate::kinematics::{entry, non_finite, time_failure, variable_failure};
+use crate::linear::{Lu, orthogonal::least_independent_column};
+use crate::newton::{all_finite, largest_ratio};
+use crate::{Factorization, Failure, Mechanism, Real};
+
+/// Iterations before giving up; from 0.1 rad away five are enough.
+const ITERATIONS: u32 = 50;
+
+/// Positions from Φ_q Δq = −Φ, q ← q + Δq, on the dense N × N system.
+///
+/// The method of the textbook, for teaching and as a reference: no predictor, no blocks, no safeguard, so a far
+/// start may diverge or end in another assembly. `q`: start, N; `t` (s). Returns the position and the number of
+/// iterations. Source: García de Jalón & Bayo 1994, §3.2.
+///
+/// # Errors
+/// [`Failure::NonFinite`], [`Failure::Singular`], [`Failure::NotConverged`] with the worst row.
+pub fn newton_raphson<S: Mechanism<R, N, N>, R: Real, const N: usize>(
+    mechanism: &S,
+    q: impl Into<[R; N]>,
+    t: R,
+) -> Result<([R; N], u32), Failure> {
+    let mut q = q.into();
+    let broken = time_failure(t).or(variable_failure(mechanism)).or(non_finite(&q, S::COORDINATES));
+    if let Some(failure) = broken {
+        return Err(failure);
+    }
+    let parameters = mechanism.parameters();
+    let scales = mechanism.coordinate_scales(&parameters);
+    let row_scales = mechanism.row_scales(&parameters);
+    let mut missed = None;
+    for iteration in 0..=ITERATIONS {
+        let position = mechanism.position(&parameters, &q, t);
+        let (phi, phi_q) = (mechanism.phi(&parameters, &position), mechanism.phi_q(&parameters, &position));
+        if !all_finite(&phi, &phi_q) {
+            let row = phi.iter().zip(&phi_q).position(|(r, row)| !all_finite(&[*r], &[[sum(row)]]));
+            let row = entry(S::ROWS, u16::try_from(row.unwrap_or(0)).unwrap_or(u16::MAX));
+            return Err(Failure::NonFinite { name: row.name, line: row.line });
+        }
+        let tolerances = required(&row_scales, &q, &phi_q);
+        if largest_ratio(&phi, &tolerances) <= R::constant(1.0) {
+            return Ok((q, iteration));
+        }
+        missed = Some((phi, tolerances));
+        let (factors, margin) = Lu::<R, N>::factorize(&phi_q, &row_scales, &scales);
+        if !crate::linear::is_regular(margin) {
+            return Err(singular::<S, R, N>(&phi_q, &scales, &row_scales, margin, t));
+        }
+        let step = factors.solve(&phi.map(|r| -r));
+        q.iter_mut().zip(step).for_each(|(coordinate, change)| *coordinate = *coordinate + change);
+    }
+    let (mut worst, mut ratio) = ((0, 0.0, 0.0), R::constant(0.0));
+    if let Some((phi, tolerances)) = missed {
+        for (index, (r, tolerance)) in phi.iter().zip(&tolerances).enumerate() {
+            if ratio < r.abs() / *tolerance {
+                ratio = r.abs() / *tolerance;
+                worst = (u16::try_from(index).unwrap_or(u16::MAX), r.abs().to_f64(), tolerance.to_f64());
+            }
+        }
+    }
+    let (row, residual, required) = worst;
+    let time = t.to_f64();
+    Err(Failure::NotConverged { row: entry(S::ROWS, row), residual, required, iterations: ITERATIONS, time })
+}
+
+/// The failure of a dense Jacobian, with the row and the coordinate that the others explain best.
+#[cold]
+fn singular<S: Mechanism<R, N, N>, R: Real, const N: usize>(
+    phi_q: &[[R; N]; N],
+    coordinate_scales: &[R; N],
+    row_scales: &[R; N],
+    margin: R,
+    t: R,
+) -> Failure {
+    let mut transposed = [[R::constant(0.0); N]; N];
+    for (j, row) in transposed.iter_mut().enumerate() {
+        row.iter_mut().zip(phi_q).for_each(|(entry, source)| *entry = source[j]);
+    }
+    let inverse = |scales: &[R; N]| scales.map(|scale| R::constant(1.0) / scale);
+    let row = least_independent_column(&transposed, &inverse(coordinate_scales), &inverse(row_scales));
+    let coordinate = least_independent_column(phi_q, row_scales, coordinate_scales);
+    let index = |column: usize| u16::try_from(column).unwrap_or(u16::MAX);
+    Failure::Singular {
+        row: entry(S::ROWS, index(row)),
+        coordinate: entry(S::COORDINATES, index(coordinate)),
+        margin: margin.to_f64(),
+        required: R::EPSILON.sqrt().to_f64(),
+        time: t.to_f64(),
+    }
+}
+
+/// The sum of a row: not finite where an entry is not.
+fn sum<R: Real, const N: usize>(row: &[R; N]) -> R {
+    row.iter().fold(R::constant(0.0), |sum, entry| sum + *entry)
+}

@@ -1,0 +1,257 @@
+//! Levenberg–Marquardt, the method for far starts: assembly, and the rescue of the next position.
+
+use crate::diagnosis::{Diagnosis, Worst, outer_rounding, required};
+use crate::newton::{Attempt, all_finite, capped, newton, select, within};
+use crate::{Block, BlockSolver, Factorization, Outcome, Real, Scalar};
+
+/// Trial steps a start; one costs as much as a Newton step. 52 were measured from 1000 rad away (ROBUSTNESS, H07).
+const TRIALS: u32 = 120;
+
+/// Damping at the start, relative to the mean of diag JᵀJ: close to Gauss–Newton, so that a good guess is not
+/// led to another assembly.
+const FIRST_DAMPING: f64 = 1e-3;
+
+/// After a step that lowered the residual, and after one that did not (ROBUSTNESS, K1).
+const DAMPING_FALL: f64 = 0.2;
+const DAMPING_RISE: f64 = 4.0;
+
+/// Damping stays above this, where it no longer changes a step in `f64`, and a lane gives up above that, where a
+/// step no longer changes its coordinates.
+const LEAST_DAMPING: f64 = 1e-12;
+const LARGEST_DAMPING: f64 = 1e16;
+
+/// A point is stationary where ‖Jᵀr‖ ≤ 1e-2 √ε ‖J‖ ‖r‖: the residual can fall there by no more than √ε of itself.
+const STATIONARY: f64 = 1e-4;
+
+/// Levenberg–Marquardt from any guess, finished by Newton's method: the solver of the assembly.
+///
+/// Judges success as [`Newton`](crate::Newton) does. A point where the residual is large and can fall no more is
+/// no success; its residual is the least from this start.
+#[derive(Clone, Copy)]
+pub struct Safeguarded<T: Scalar> {
+    extent: T,
+    diagnosis: Diagnosis<T>,
+}
+
+impl<T: Scalar> Safeguarded<T> {
+    /// A solver for coordinates of which the largest is `extent` in the reference metric.
+    pub fn new(extent: T) -> Self {
+        Safeguarded { extent, diagnosis: Diagnosis::new() }
+    }
+
+    /// What it met so far.
+    pub fn diagnosis(&self) -> &Diagnosis<T> {
+        &self.diagnosis
+    }
+}
+
+impl<T: Scalar> BlockSolver<T> for Safeguarded<T> {
+    fn solve<const K: usize, F: Factorization<T, K>>(
+        &mut self,
+        block: &Block<T, K>,
+        x: [T; K],
+        mut evaluate: impl FnMut(&[T; K]) -> ([T; K], [[T; K]; K]),
+    ) -> ([T; K], T::Lanes<Outcome>) {
+        let mut attempt = levenberg_marquardt(block, x, T::mask(true), self.extent, &mut evaluate);
+        let plain = T::all(attempt.converged);
+        if !plain {
+            // Newton's method may close what the damping held back; else the least residual stands.
+            let finish = newton::<T, K, F>(block, attempt.x, !attempt.converged, self.extent, &mut evaluate);
+            let closed = finish.converged & !attempt.converged;
+            attempt = Attempt {
+                x: select(closed, &finish.x, &attempt.x),
+                converged: attempt.converged | closed,
+                worst: attempt.worst.replaced(closed, finish.worst),
+                evaluations: attempt.evaluations.saturating_add(finish.evaluations),
+            };
+        }
+        self.diagnosis.record(attempt.evaluations, !plain, attempt.worst, attempt.converged);
+        (attempt.x, attempt.outcomes())
+    }
+}
+
+/// Minimises ‖W r‖² from `start` in the lanes of `active` with steps from (JᵀJ + μ D²) Δ = −Jᵀr.
+///
+/// In the metric: W divides rows by their scale, D⁻¹ multiplies columns by theirs. μ = λ · min(1, ‖W r‖) times the
+/// mean of diag JᵀJ vanishes with the residual, so that convergence is quadratic at the end.
+/// Source: Levenberg 1944, Marquardt 1963; Yamashita & Fukushima 2001 for μ.
+#[inline(never)]
+pub(crate) fn levenberg_marquardt<T: Scalar, const K: usize>(
+    block: &Block<T, K>,
+    start: [T; K],
+    active: T::Mask,
+    extent: T,
+    evaluate: &mut impl FnMut(&[T; K]) -> ([T; K], [[T; K]; K]),
+) -> Attempt<T, K> {
+    let none = [T::constant(0.0); K];
+    let mut x = start;
+    let (mut residuals, mut jacobian) = evaluate(&x);
+    let mut evaluations = 1;
+    let mut converged = T::mask(false);
+    let mut open = active & all_finite(&residuals, &jacobian);
+    let usable = open;
+    let mut system = NormalEquations::of(block, &residuals, &jacobian);
+    let mut damping = T::constant(FIRST_DAMPING);
+    for _ in 0..TRIALS {
+        let tolerances = required(&block.row_scales, &x, &jacobian);
+        converged = converged | (open & within(&residuals, &tolerances, &none));
+        open = open & !converged & !system.is_stationary() & damping.less(T::constant(LARGEST_DAMPING));
+        if T::all(!open) {
+            break;
+        }
+        let mut trial = x;
+        let step = capped(block, system.step(block, damping));
+        trial.iter_mut().zip(step).for_each(|(component, change)| *component = *component + change);
+        trial = select(open, &trial, &x);
+        let (trial_residuals, trial_jacobian) = evaluate(&trial);
+        evaluations += 1;
+        let trial_system = NormalEquations::of(block, &trial_residuals, &trial_jacobian);
+        let better =
+            open & trial_system.cost.less(system.cost) & all_finite(&trial_residuals, &trial_jacobian);
+        x = select(better, &trial, &x);
+        residuals = select(better, &trial_residuals, &residuals);
+        jacobian.iter_mut().zip(&trial_jacobian).for_each(|(row, trial)| *row = select(better, trial, row));
+        system = system.replaced(better, &trial_system);
+        let eased = (damping * T::constant(DAMPING_FALL)).max(T::constant(LEAST_DAMPING));
+        damping = T::select(better, eased, damping * T::constant(DAMPING_RISE));
+    }
+    // Nothing lowers these residuals any more: those that the rounding of q explains are as good as zero.
+    let tolerances = required(&block.row_scales, &x, &jacobian);
+    let allowances = outer_rounding(extent, &block.coordinate_scales, &jacobian);
+    converged = converged | (usable & within(&residuals, &tolerances, &allowances));
+    Attempt { x, converged, worst: Worst::of_block(block, &residuals, &tolerances), evaluations }
+}
+
+/// JᵀJ and Jᵀr in the reference metric.
+#[derive(Clone, Copy)]
+struct NormalEquations<T, const K: usize> {
+    matrix: [[T; K]; K],
+    gradient: [T; K],
+    /// ‖W r‖².
+    cost: T,
+}
+
+impl<T: Scalar, const K: usize> NormalEquations<T, K> {
+    fn of(block: &Block<T, K>, residuals: &[T; K], jacobian: &[[T; K]; K]) -> Self {
+        let zero = T::constant(0.0);
+        let mut system = NormalEquations { matrix: [[zero; K]; K], gradient: [zero; K], cost: zero };
+        for ((row, residual), row_scale) in jacobian.iter().zip(residuals).zip(block.row_scales) {
+            let weight = T::constant(1.0) / row_scale;
+            let residual = *residual * weight;
+            let mut scaled = *row;
+            scaled
+                .iter_mut()
+                .zip(block.coordinate_scales)
+                .for_each(|(entry, s)| *entry = *entry * s * weight);
+            system.cost = system.cost + residual * residual;
+            for ((line, component), a) in system.matrix.iter_mut().zip(&mut system.gradient).zip(scaled) {
+                *component = *component + a * residual;
+                line.iter_mut().zip(scaled).for_each(|(entry, b)| *entry = *entry + a * b);
+            }
+        }
+        system
+    }
+
+    fn trace(&self) -> T {
+        (0..K).fold(T::constant(0.0), |sum, k| sum + self.matrix[k][k])
+    }
+
+    /// Whether the gradient is zero within rounding.
+    fn is_stationary(&self) -> T::Mask {
+        let gradient = self.gradient.iter().fold(T::constant(0.0), |sum, g| sum + *g * *g);
+        let bound = T::splat(T::Real::EPSILON) * T::constant(STATIONARY) * self.trace() * self.cost;
+        !bound.less(gradient)
+    }
+
+    /// The damped step, in the units of the coordinates.
+    fn step(&self, block: &Block<T, K>, damping: T) -> [T; K] {
+        let (zero, one) = (T::constant(0.0), T::constant(1.0));
+        let mean = self.trace() / T::constant(K as f64);
+        let added = damping * self.cost.sqrt().min(one) * mean;
+        let mut matrix = self.matrix;
+        for (k, row) in matrix.iter_mut().enumerate() {
+            row[k] = row[k] + added;
+        }
+        // Cholesky without square roots, L D Lᵀ in place; a pivot lost to rounding is replaced by the damping.
+        let mut x = self.gradient.map(|g| -g);
+        for k in 0..K {
+            let floor = T::select(zero.less(added), added, one);
+            let pivot = T::select(zero.less(matrix[k][k]), matrix[k][k], floor);
+            matrix[k][k] = pivot;
+            let upper = matrix[k];
+            for i in k + 1..K {
+                let multiplier = upper[i] / pivot;
+                for j in k + 1..K {
+                    matrix[i][j] = matrix[i][j] - multiplier * upper[j];
+                }
+                x[i] = x[i] - multiplier * x[k];
+            }
+        }
+        for k in (0..K).rev() {
+            for j in k + 1..K {
+                x[k] = x[k] - matrix[k][j] * x[j];
+            }
+            x[k] = x[k] / matrix[k][k];
+        }
+        x.iter_mut()
+            .zip(block.coordinate_scales)
+            .for_each(|(component, scale)| *component = *component * scale);
+        x
+    }
+
+    fn replaced(&self, mask: T::Mask, other: &Self) -> Self {
+        let mut matrix = self.matrix;
+        matrix.iter_mut().zip(&other.matrix).for_each(|(row, new)| *row = select(mask, new, row));
+        NormalEquations {
+            matrix,
+            gradient: select(mask, &other.gradient, &self.gradient),
+            cost: T::select(mask, other.cost, self.cost),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Direct1, Direct2, Lanes};
+
+    fn block<T: Scalar, const K: usize>() -> Block<T, K> {
+        let rows = core::array::from_fn(|k| k as u16);
+        let ones = [T::constant(1.0); K];
+        Block { rows, coordinates: rows, angles: [false; K], row_scales: ones, coordinate_scales: ones }
+    }
+
+    #[test]
+    fn a_stationary_point_that_does_not_close_has_the_least_residual() {
+        // x² + 1 is least at 0, and there it is 1.
+        let mut solver = Safeguarded::new(1.0);
+        let parabola = |x: &[f64; 1]| ([x[0] * x[0] + 1.0], [[2.0 * x[0]]]);
+        let (x, outcome) = solver.solve::<1, Direct1<f64>>(&block(), [3.0], parabola);
+        assert_eq!(outcome, [Outcome::NotConverged { row: 0 }]);
+        assert!(x[0].abs() < 1e-4 && (solver.diagnosis().worst.residual - 1.0).abs() < 1e-8);
+        assert!(solver.diagnosis().evaluations < 160, "{}", solver.diagnosis().evaluations);
+    }
+
+    #[test]
+    fn a_double_root_is_found_to_the_root_of_the_tolerance() {
+        let mut solver = Safeguarded::new(1.0);
+        let double = |x: &[f64; 1]| ([(x[0] - 1.0) * (x[0] - 1.0)], [[2.0 * (x[0] - 1.0)]]);
+        let (x, outcome) = solver.solve::<1, Direct1<f64>>(&block(), [3.0], double);
+        assert_eq!(outcome, [Outcome::Converged]);
+        assert!((x[0] - 1.0).abs() < 2e-7);
+    }
+
+    #[test]
+    fn rosenbrock_valley_is_followed_to_its_end_in_every_lane() {
+        let evaluate = |x: &[Lanes<f64, 2>; 2]| {
+            let c = Lanes::constant;
+            let residuals = [c(10.0) * (x[1] - x[0] * x[0]), c(1.0) - x[0]];
+            (residuals, [[c(-20.0) * x[0], c(10.0)], [c(-1.0), c(0.0)]])
+        };
+        let mut solver = Safeguarded::new(Lanes::constant(1.0));
+        let start = [Lanes([-1.2, 5.0]), Lanes([1.0, -7.0])];
+        let (x, outcome) = solver.solve::<2, Direct2<Lanes<f64, 2>>>(&block(), start, evaluate);
+        assert_eq!(outcome, [Outcome::Converged; 2]);
+        assert!(x.iter().flat_map(|x| x.0).all(|x| (x - 1.0).abs() < 1e-13));
+    }
+}

@@ -1,0 +1,86 @@
+//! A motion over a span of time, frame by frame.
+
+use core::iter::FusedIterator;
+
+use crate::{Failure, Kinematic, Real, Statistics, Stepper};
+
+/// One instant of a motion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Frame<R, O, const N: usize> {
+    /// Time (s).
+    pub t: R,
+    /// Coordinates: N.
+    pub q: [R; N],
+    /// Velocities: N, in coordinate unit per second.
+    pub qd: [R; N],
+    /// Accelerations: N, in coordinate unit per second squared.
+    pub qdd: [R; N],
+    /// Outputs with their time derivatives.
+    pub outputs: O,
+    /// What the position cost.
+    pub statistics: Statistics,
+    /// Margin to singularity.
+    pub margin: R,
+    /// Largest |Φᵢ| over its row's scale.
+    pub closure_error: R,
+}
+
+/// Frames of a [`Stepper`] at start + (end − start) k/steps for k = 0 … steps; no rounding accumulates.
+///
+/// The first frame is the state as it stands. After a failure, which is yielded, there is no more; the stepper
+/// then stands at the last good frame.
+pub struct Sweep<'a, S: Kinematic<R, N>, R: Real, const N: usize> {
+    stepper: &'a mut Stepper<S, R, N>,
+    start: R,
+    end: R,
+    steps: u32,
+    next: Option<u32>,
+}
+
+impl<'a, S: Kinematic<R, N>, R: Real, const N: usize> Sweep<'a, S, R, N> {
+    pub(crate) fn new(stepper: &'a mut Stepper<S, R, N>, end: R, steps: u32) -> Self {
+        let start = stepper.t();
+        Sweep { stepper, start, end, steps, next: Some(0) }
+    }
+
+    /// Time (s) of frame `k`; the last one is the end itself.
+    fn time(&self, k: u32) -> R {
+        if k == self.steps {
+            return self.end;
+        }
+        self.start + (self.end - self.start) * R::constant(f64::from(k)) / R::constant(f64::from(self.steps))
+    }
+}
+
+impl<S: Kinematic<R, N>, R: Real, const N: usize> Iterator for Sweep<'_, S, R, N> {
+    type Item = Result<Frame<R, S::Outputs, N>, Failure>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        let k = self.next.take()?;
+        if k > 0
+            && let Err(failure) = self.stepper.advance_to(self.time(k))
+        {
+            return Some(Err(failure));
+        }
+        self.next = k.checked_add(1).filter(|next| *next <= self.steps);
+        Some(Ok(self.stepper.frame()))
+    }
+}
+
+impl<S: Kinematic<R, N>, R: Real, const N: usize> FusedIterator for Sweep<'_, S, R, N> {}
+
+impl<S: Kinematic<R, N>, R: Real, const N: usize> Stepper<S, R, N> {
+    /// The state with its outputs, as a [`Sweep`] yields it.
+    pub fn frame(&self) -> Frame<R, S::Outputs, N> {
+        Frame {
+            t: self.t(),
+            q: *self.q(),
+            qd: *self.qd(),
+            qdd: *self.qdd(),
+            outputs: self.outputs(),
+            statistics: self.statistics(),
+            margin: self.margin(),
+            closure_error: self.closure_error(),
+        }
+    }
+}
