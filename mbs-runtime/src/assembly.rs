@@ -78,7 +78,7 @@ impl Search {
         let failure = position_failure::<S, R, N>(outcome, solver.diagnosis(), t);
         let Some(failure) = failure.or_else(|| coordinate_failure::<S, R, N>(&q, &scales, t)) else {
             let position = mechanism.position(parameters, &q, t);
-            let Some(branch) = branch_failure(mechanism, parameters, &position, t) else {
+            let Some(branch) = branch_failure(mechanism, parameters, &position, t, true) else {
                 return Some((q, Statistics::of(solver.diagnosis())));
             };
             self.wrong = self.wrong.or(Some(branch));

@@ -147,7 +147,7 @@ fn singular<S: Mechanism<R, N, N>, R: Real, const N: usize>(margin: &Margin<R>, 
     }
 }
 
-/// The branch condition that is violated first, if any.
+/// The branch condition that is violated first, if any; `assembling`: those that pick the assembly alone count too.
 ///
 /// Returns [`Failure::WrongBranch`], or [`Failure::NonFinite`] where the condition is NaN.
 #[inline(always)]
@@ -156,10 +156,12 @@ pub(crate) fn branch_failure<S: Mechanism<R, N, N>, R: Real, const N: usize>(
     parameters: &S::Parameters,
     position: &S::Position,
     t: R,
+    assembling: bool,
 ) -> Option<Failure> {
     let branches = mechanism.branches(parameters, position);
-    let broken = |value: &R| !R::constant(0.0).less(*value);
-    let index = branches.as_ref().iter().position(broken)?;
+    let counts = |index: usize| assembling || !S::BRANCHES_AT_START.get(index).copied().unwrap_or(false);
+    let broken = |(index, value): (usize, &R)| counts(index) && !R::constant(0.0).less(*value);
+    let index = branches.as_ref().iter().enumerate().position(broken)?;
     let branch = entry(S::BRANCHES, u16::try_from(index).unwrap_or(u16::MAX));
     let value = branches.as_ref().get(index).copied().unwrap_or(R::constant(0.0));
     Some(match value.is_finite() {
@@ -192,7 +194,7 @@ pub(crate) fn non_finite<R: Real, const N: usize>(values: &[R; N], entries: &[En
 }
 
 /// Coarsest resolution of a coordinate, relative to its scale, that still is a position: 1e-3 rad. An `f64` angle
-/// has it for 7e11 turns, an `f32` angle for 1300 (H11: an `f32` angle at 3000 rpm is worthless after minutes).
+/// has it for 7e11 turns, an `f32` angle for 1300: an `f32` angle at 3000 rpm is worthless after minutes.
 const COARSEST_RESOLUTION: f64 = 1e-3;
 
 /// The first coordinate that is not finite, or too large to be resolved.

@@ -8,7 +8,7 @@ use crate::kinematics::{
 use crate::{Failure, Kinematic, Mechanism, Real, Sweep, assemble};
 
 /// Margin to singularity below which the last regular tangent predicts, not the rates of the state: those are
-/// wrong by the inverse square of the margin, and past a change point pick the assembly by chance (DESIGN, law 5).
+/// wrong by the inverse square of the margin, and past a change point pick the assembly by chance.
 const REGULAR_ZONE: f64 = 1e-2;
 
 /// Largest part of a prediction (rad, or reference lengths) that may come from accelerations: beyond it the step
@@ -244,7 +244,7 @@ impl<R: Real, const N: usize> State<R, N> {
         }
         let position = mechanism.position(parameters, &q, t);
         let factors = factorize(mechanism, parameters, &position, t)?;
-        if let Some(failure) = branch_failure(mechanism, parameters, &position, t) {
+        if let Some(failure) = branch_failure(mechanism, parameters, &position, t, last_regular.is_none()) {
             return Err(failure);
         }
         let qd = solve_velocity(mechanism, parameters, &position, &factors)?;

@@ -78,11 +78,6 @@ impl Expressions {
         self.0.len()
     }
 
-    /// Whether there is none.
-    pub fn is_empty(&self) -> bool {
-        self.0.is_empty()
-    }
-
     /// All expressions, operands first.
     pub fn iter(&self) -> impl Iterator<Item = (Id, Node)> + '_ {
         self.0.iter().enumerate().map(|(index, node)| (Id(index as u32), *node))

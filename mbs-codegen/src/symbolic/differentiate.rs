@@ -188,3 +188,7 @@ fn difference(g: &mut Graph, a: Option<NodeId>, b: Option<NodeId>) -> Option<Nod
         (None, Some(b)) => Some(g.negate(b)),
     }
 }
+
+#[cfg(test)]
+#[path = "differentiate_tests.rs"]
+mod tests;

@@ -1,6 +1,8 @@
 //! Values of graphs: the definition of what a node means.
 
-use super::graph::{Binary, Graph, Leaf, Node, NodeId, Unary};
+use super::graph::{Binary, Unary};
+#[cfg(test)]
+use super::graph::{Graph, Leaf, Node, NodeId};
 
 /// A function of one number, as the runtime computes it.
 pub fn unary(function: Unary, a: f64) -> f64 {
@@ -53,6 +55,7 @@ pub fn binary(function: Binary, a: f64, b: f64) -> f64 {
 }
 
 /// Values of `roots` where the leaves have the values that `leaf` gives.
+#[cfg(test)]
 pub fn evaluate(graph: &Graph, roots: &[NodeId], leaf: impl Fn(Leaf) -> f64) -> Vec<f64> {
     let mut values = vec![f64::NAN; graph.len()];
     for id in graph.reachable(roots.iter().copied()) {

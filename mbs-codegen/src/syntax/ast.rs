@@ -58,8 +58,6 @@ pub enum Operator {
 pub struct Expression {
     /// Never empty.
     pub code: Vec<Instruction>,
-    /// Its first token.
-    pub span: Span,
 }
 
 /// A unit as written, parentheses resolved: a product of symbols with exponents.

@@ -37,7 +37,7 @@ const NEGATE: u8 = 3;
 
 /// Reads the longest expression from here on.
 pub fn expression(parser: &mut Parser<'_>) -> Read<Expression> {
-    let mut reader = Reader { code: Vec::new(), pending: Vec::new(), span: parser.span() };
+    let mut reader = Reader { code: Vec::new(), pending: Vec::new() };
     let mut operand = true;
     loop {
         if operand {
@@ -45,7 +45,7 @@ pub fn expression(parser: &mut Parser<'_>) -> Read<Expression> {
         } else if let Some(next) = reader.behind_operand(parser)? {
             operand = next;
         } else {
-            return Ok(Expression { code: reader.code, span: reader.span });
+            return Ok(Expression { code: reader.code });
         }
     }
 }
@@ -53,7 +53,6 @@ pub fn expression(parser: &mut Parser<'_>) -> Read<Expression> {
 struct Reader {
     code: Vec<Instruction>,
     pending: Vec<Pending>,
-    span: Span,
 }
 
 impl Reader {

@@ -18,23 +18,6 @@ pub struct Header {
     pub name: Ident,
 }
 
-impl Header {
-    /// The mechanism's doc comment, line by line.
-    pub fn docs(&self) -> Vec<String> {
-        self.attributes
-            .iter()
-            .filter(|attribute| attribute.path().is_ident("doc"))
-            .filter_map(|attribute| match &attribute.meta {
-                syn::Meta::NameValue(pair) => {
-                    syn::parse2::<syn::LitStr>(quote::ToTokens::to_token_stream(&pair.value)).ok()
-                }
-                _ => None,
-            })
-            .map(|text| text.value())
-            .collect()
-    }
-}
-
 /// Before: the whole input, measured to be of bounded depth. After: the header and the tokens behind it.
 ///
 /// A leading group in parentheses is the runtime's path; without one it is `::mbs_runtime`.

@@ -22,7 +22,7 @@ const LEAST_MARGIN_SQUARE: f64 = 1024.0;
 /// Margin to singularity below which rates are refused: 32 √ε, 4.8e-7 in `f64`.
 ///
 /// A residual within 64 ε leaves 64 ε/μ of position open at margin μ, and so much is μ itself in doubt. At a
-/// dead centre the position found is √(64 ε) off and looks as if μ = 8 √ε (ROBUSTNESS, finding 7); four times
+/// dead centre the position found is √(64 ε) off and looks as if μ = 8 √ε; four times
 /// that leaves rates wrong by a sixteenth at worst, with the square of the distance less beyond.
 pub fn least_margin<R: Real>() -> R {
     (R::EPSILON * R::constant(LEAST_MARGIN_SQUARE)).sqrt()
