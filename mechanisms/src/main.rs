@@ -1,2 +1,62 @@
-//! The `mbs` program.
-fn main() {}
+//! `mbs`: runs, draws, prints and checks the mechanisms of this crate.
+//!
+//! Exit codes: 0 done; 1 a mechanism could not be moved, a check failed, a file could not be written; 2 the
+//! command line does not make sense.
+
+mod commands;
+
+use std::io::{self, Write};
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+use commands::CommandError;
+use mechanisms::registry;
+
+/// Mechanisms as exact code: run, draw, print and check them.
+#[derive(Parser)]
+#[command(
+    name = "mbs",
+    version,
+    after_help = "Without a command, the four-bar with coupler point runs one turn."
+)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Option<Command>,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// List the mechanisms
+    List,
+    /// Run a mechanism; write a report page and a table of its motion
+    Run(commands::run::Arguments),
+    /// Print the code that a mechanism's text becomes
+    Expand(commands::expand::Arguments),
+    /// Compare a mechanism's derivatives with CasADi's
+    Verify(commands::verify::Arguments),
+}
+
+fn main() -> ExitCode {
+    let command = Arguments::parse().command;
+    let mut out = io::stdout().lock();
+    let result = match command {
+        None => commands::run::run(&commands::run::Arguments::defaults(registry::ALL[0].name), &mut out),
+        Some(Command::List) => commands::list::run(&mut out),
+        Some(Command::Run(arguments)) => commands::run::run(&arguments, &mut out),
+        Some(Command::Expand(arguments)) => commands::expand::run(&arguments, &mut out),
+        Some(Command::Verify(arguments)) => commands::verify::run(&arguments, &mut out),
+    };
+    match result.and_then(|()| out.flush().map_err(CommandError::Output)) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => report(&error),
+    }
+}
+
+fn report(error: &CommandError) -> ExitCode {
+    if error.is_closed_pipe() {
+        return ExitCode::SUCCESS;
+    }
+    // Where nobody can read the message the exit code must do.
+    let _ = writeln!(io::stderr(), "error: {error}");
+    ExitCode::from(error.exit_code())
+}

@@ -6,7 +6,7 @@ use proc_macro2::{Group, TokenStream, TokenTree};
 use quote::quote;
 
 use super::scope::Scope;
-use crate::program::{Line, Section};
+use crate::program::{Angle, Line, Section};
 use crate::symbolic::{Binary, Node, NodeId, Unary};
 
 /// Text in which `__mbs` stands for the runtime's path.
@@ -47,20 +47,20 @@ pub fn lets(section: &Section, scope: &Scope<'_>, text: &mut String) {
                 let _ = writeln!(text, "let {} = {value};", local(*id));
             }
             Line::SineCosine(angles) => {
-                let name = |id: &Option<NodeId>| id.map_or_else(|| "_".to_owned(), local);
-                let list = |part: &dyn Fn(&(NodeId, Option<NodeId>, Option<NodeId>)) -> String| {
-                    angles.iter().map(part).collect::<Vec<_>>().join(", ")
-                };
-                let _ = writeln!(
-                    text,
-                    "let ([{}], [{}]) = T::sin_cos([{}]);",
-                    list(&|(_, sine, _)| name(sine)),
-                    list(&|(_, _, cosine)| name(cosine)),
-                    list(&|(angle, ..)| scope.operand(*angle)),
+                let name = |id: Option<NodeId>| id.map_or_else(|| "_".to_owned(), local);
+                let (sines, cosines, operands) = (
+                    list(angles, |known| name(known.sine)),
+                    list(angles, |known| name(known.cosine)),
+                    list(angles, |known| scope.operand(known.angle)),
                 );
+                let _ = writeln!(text, "let ([{sines}], [{cosines}]) = T::sin_cos([{operands}]);");
             }
         }
     }
+}
+
+fn list(angles: &[Angle], part: impl FnMut(&Angle) -> String) -> String {
+    angles.iter().map(part).collect::<Vec<_>>().join(", ")
 }
 
 /// Name of the local variable of a node.

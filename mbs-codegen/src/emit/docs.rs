@@ -25,21 +25,32 @@ fn shapes(model: &Model, lines: &mut Vec<String>) {
     let names = |names: Vec<String>| names.join(", ");
     lines.push("# Structure".into());
     lines.push(format!(
-        "{} coordinates: {}.",
+        "{} {}: {}.",
         model.coordinates.len(),
+        plural("coordinate", model.coordinates.len()),
         names(model.coordinates.iter().map(|c| format!("`{}` ({})", c.name, c.unit)).collect())
     ));
     lines.push(format!(
-        "{} rows: {}.",
+        "{} {}: {}.",
         model.rows.len(),
-        names(model.rows.iter().map(|row| format!("`{}` ({})", row.name, row.dimension)).collect())
+        plural("row", model.rows.len()),
+        names(model.rows.iter().map(|row| format!("`{}` ({})", row.name, row.unit(model))).collect())
     ));
     if !model.outputs.is_empty() {
         let outputs =
             model.outputs.iter().map(|output| format!("`{}` ({})", output.name, output.unit)).collect();
-        lines.push(format!("{} outputs: {}.", model.outputs.len(), names(outputs)));
+        lines.push(format!(
+            "{} {}: {}.",
+            model.outputs.len(),
+            plural("output", model.outputs.len()),
+            names(outputs)
+        ));
     }
     lines.push(String::new());
+}
+
+fn plural(word: &str, count: usize) -> String {
+    if count == 1 { word.into() } else { format!("{word}s") }
 }
 
 /// Widest matrix that is drawn.

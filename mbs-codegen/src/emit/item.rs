@@ -37,9 +37,11 @@ pub fn item(text: &Text, model: &Model, docs: &[String], bodies: &Bodies) -> Tok
     quote! {
         #(#attributes)*
         #(#[doc = #docs])*
+        #[allow(non_snake_case, reason = "the text names the parameters")]
         #[derive(::core::clone::Clone, ::core::marker::Copy, ::core::fmt::Debug, ::core::cmp::PartialEq)]
         #visibility struct #name<T = f64> { #(#fields)* #marker }
 
+        #[allow(clippy::approx_constant, reason = "numbers of the text stay as they are")]
         impl<T: #runtime::Scalar> ::core::default::Default for #name<T> {
             fn default() -> Self {
                 Self { #(#defaults)* #marker_value }
@@ -80,6 +82,7 @@ fn implementations(text: &Text, model: &Model, bodies: &Bodies) -> TokenStream {
         solve_linear,
     } = bodies;
     quote! {
+        #[allow(clippy::approx_constant, reason = "numbers of the text stay as they are")]
         const _: () = {
             /// Values of parameters alone.
             #[derive(::core::clone::Clone, ::core::marker::Copy, ::core::fmt::Debug)]
@@ -163,7 +166,7 @@ fn tables(text: &Text, model: &Model) -> TokenStream {
         quote! { #runtime::Entry { name: #name, unit: #unit, line: #line } }
     };
     let coordinates = model.coordinates.iter().map(|c| entry(&c.name, &c.unit, c.span));
-    let rows = model.rows.iter().map(|row| entry(&row.name, &row.dimension.to_string(), row.span));
+    let rows = model.rows.iter().map(|row| entry(&row.name, &row.unit(model), row.span));
     let variables = model.variables.iter().map(|v| entry(&v.name, &v.unit, v.span));
     let branches = model.branches.iter().map(|b| entry(&b.name, &b.dimension.to_string(), b.span));
     let at_start = model.branches.iter().map(|branch| branch.at_start);
@@ -317,6 +320,7 @@ fn coordinates_view(text: &Text, model: &Model) -> TokenStream {
     });
     quote! {
         #[doc = #title]
+        #[allow(non_snake_case, reason = "the text names the coordinates")]
         #[derive(::core::clone::Clone, ::core::marker::Copy, ::core::fmt::Debug, ::core::cmp::PartialEq)]
         #visibility struct #name<T = f64> { #(#fields)* }
 

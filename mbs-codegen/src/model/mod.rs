@@ -13,7 +13,7 @@ pub mod units;
 
 use proc_macro2::Span;
 
-use expression::{Expressions, Id};
+use expression::{Binary, Expressions, Id, Node};
 pub use resolve::resolve;
 use units::Dimension;
 
@@ -139,6 +139,24 @@ pub struct Row {
     pub residual: Id,
     /// The `==`.
     pub span: Span,
+}
+
+impl Row {
+    /// Unit of the residual; that of an angle where the row fixes an angle.
+    pub fn unit(&self, model: &Model) -> String {
+        let is_angle = |id: Id| match model.expressions.node(id) {
+            Node::Coordinate(index) => model.coordinates.get(index).is_some_and(|c| c.unit == "rad"),
+            _ => false,
+        };
+        let sides = match model.expressions.node(self.residual) {
+            Node::Binary(Binary::Subtract, a, b) => [a, b],
+            _ => [self.residual; 2],
+        };
+        if self.dimension == Dimension::NUMBER && sides.into_iter().any(is_angle) {
+            return "rad".into();
+        }
+        self.dimension.to_string()
+    }
 }
 
 /// A branch condition.

@@ -128,6 +128,8 @@ fn moving(graph: &Graph, roots: &[NodeId], coordinates: &[usize]) -> BTreeSet<No
 fn computed(section: &Section) -> impl Iterator<Item = NodeId> + '_ {
     section.lines.iter().flat_map(|line| match line {
         Line::Value(id) => vec![*id],
-        Line::SineCosine(angles) => angles.iter().flat_map(|(_, s, c)| s.iter().chain(c).copied()).collect(),
+        Line::SineCosine(angles) => {
+            angles.iter().flat_map(|known| known.sine.into_iter().chain(known.cosine)).collect()
+        }
     })
 }

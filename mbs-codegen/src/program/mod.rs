@@ -11,7 +11,7 @@ use crate::structure::Structure;
 use crate::symbolic::{Graph, NodeId};
 
 pub use blocks::{BlockProgram, Method};
-pub use schedule::{Line, Operations, Section};
+pub use schedule::{Angle, Line, Operations, Section};
 
 /// Everything that is emitted, in the order in which it is computed.
 #[derive(Debug)]

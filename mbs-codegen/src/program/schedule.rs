@@ -19,8 +19,26 @@ pub struct Section {
 pub enum Line {
     /// One value.
     Value(NodeId),
-    /// Sines and cosines of angles that are known together: angle, its sine, its cosine.
-    SineCosine(Vec<(NodeId, Option<NodeId>, Option<NodeId>)>),
+    /// Sines and cosines of angles that are known together.
+    SineCosine(Vec<Angle>),
+}
+
+/// An angle of which sine, cosine or both are computed.
+#[derive(Clone, Copy, Debug)]
+pub struct Angle {
+    /// The angle.
+    pub angle: NodeId,
+    /// Its sine, where it is used.
+    pub sine: Option<NodeId>,
+    /// Its cosine, where it is used.
+    pub cosine: Option<NodeId>,
+}
+
+/// What can be computed once the sines and cosines of lower levels are known.
+#[derive(Default)]
+struct Level {
+    values: Vec<NodeId>,
+    angles: BTreeMap<NodeId, Angle>,
 }
 
 /// Number of operations.
@@ -56,34 +74,32 @@ pub fn schedule(graph: &Graph, roots: &[NodeId], known: &BTreeSet<NodeId>) -> Se
     let nodes = needed(graph, roots, known);
     // How many sines and cosines stand one behind the other up to a node.
     let mut depths: BTreeMap<NodeId, usize> = BTreeMap::new();
-    let mut by_depth: BTreeMap<usize, (Vec<NodeId>, BTreeMap<NodeId, [Option<NodeId>; 2]>)> = BTreeMap::new();
+    let mut levels: BTreeMap<usize, Level> = BTreeMap::new();
     for id in nodes {
         let node = graph.node(id);
         let depth = node.operands().filter_map(|operand| depths.get(&operand)).max().copied().unwrap_or(0);
+        let level = levels.entry(depth).or_default();
         match node {
             Node::Unary(function @ (Unary::Sin | Unary::Cos), angle) => {
-                let pair = by_depth.entry(depth).or_default().1.entry(angle).or_default();
-                let [sine, cosine] = pair;
-                *(if function == Unary::Sin { sine } else { cosine }) = Some(id);
+                let known = level.angles.entry(angle).or_insert(Angle { angle, sine: None, cosine: None });
+                *(if function == Unary::Sin { &mut known.sine } else { &mut known.cosine }) = Some(id);
                 depths.insert(id, depth + 1);
             }
             _ => {
-                by_depth.entry(depth).or_default().0.push(id);
+                level.values.push(id);
                 depths.insert(id, depth);
             }
         }
     }
     let mut section = Section::default();
-    for (values, angles) in by_depth.into_values() {
+    for Level { values, angles } in levels.into_values() {
         for id in values {
             count(graph.node(id), &mut section.operations);
             section.lines.push(Line::Value(id));
         }
         if !angles.is_empty() {
             section.operations.sine_cosines += angles.len();
-            section
-                .lines
-                .push(Line::SineCosine(angles.into_iter().map(|(angle, [s, c])| (angle, s, c)).collect()));
+            section.lines.push(Line::SineCosine(angles.into_values().collect()));
         }
     }
     section

@@ -139,8 +139,16 @@ const BINARY: [Binary; 9] = [
 ];
 const LEAVES: u32 = 4;
 
-/// A random graph, and beside each node its jet at one state.
-fn random_graph(random: &mut Random, size: usize) -> (Graph, Vec<(NodeId, Jet)>, Vec<(f64, f64)>) {
+/// A random graph.
+struct Sample {
+    graph: Graph,
+    /// Each node with its jet at the state.
+    nodes: Vec<(NodeId, Jet)>,
+    /// Value and rate of each leaf.
+    state: Vec<(f64, f64)>,
+}
+
+fn random_graph(random: &mut Random, size: usize) -> Sample {
     let mut graph = Graph::default();
     let state: Vec<(f64, f64)> = (0..LEAVES).map(|_| (random.number(), random.number())).collect();
     let mut nodes: Vec<(NodeId, Jet)> = state
@@ -167,7 +175,7 @@ fn random_graph(random: &mut Random, size: usize) -> (Graph, Vec<(NodeId, Jet)>,
             nodes.push((node, jet));
         }
     }
-    (graph, nodes, state)
+    Sample { graph, nodes, state }
 }
 
 /// Direction (q̇, 0): each coordinate moves by its rate, rates stand still.
@@ -183,7 +191,7 @@ fn first_and_second_directional_derivatives_agree_with_jets() {
     let mut random = Random(7);
     let mut worst = 0.0_f64;
     for _ in 0..400 {
-        let (mut graph, nodes, state) = random_graph(&mut random, 24);
+        let Sample { mut graph, nodes, state } = random_graph(&mut random, 24);
         let roots: Vec<NodeId> = nodes.iter().map(|(id, _)| *id).collect();
         let zero = graph.constant(0.0);
         let first: Vec<NodeId> =
@@ -209,7 +217,7 @@ fn first_and_second_directional_derivatives_agree_with_jets() {
 fn a_derivative_has_at_most_a_fixed_number_of_nodes_for_each_node() {
     let mut random = Random(11);
     for size in [50, 200, 800] {
-        let (mut graph, nodes, _) = random_graph(&mut random, size);
+        let Sample { mut graph, nodes, .. } = random_graph(&mut random, size);
         let roots: Vec<NodeId> = nodes.iter().map(|(id, _)| *id).collect();
         let before = graph.len();
         let first: Vec<NodeId> = tangent(&mut graph, &roots, along).into_iter().flatten().collect();

@@ -1,0 +1,67 @@
+//! The commands of `mbs`, one file each.
+
+pub mod expand;
+pub mod list;
+pub mod run;
+mod table;
+pub mod verify;
+
+use std::fmt;
+use std::io::{self, ErrorKind};
+
+use mechanisms::registry::Mismatch;
+
+/// Why a command did not do what was asked.
+#[derive(Debug)]
+pub enum CommandError {
+    /// The command line names something that does not exist or cannot be.
+    Usage(String),
+    /// The mechanism, the check or the file system says no.
+    Failed(String),
+    /// The output could not be written.
+    Output(io::Error),
+}
+
+impl CommandError {
+    pub fn exit_code(&self) -> u8 {
+        match self {
+            CommandError::Usage(_) => 2,
+            CommandError::Failed(_) | CommandError::Output(_) => 1,
+        }
+    }
+
+    /// Whether the reader of the output has left, as `head` does: no error of ours.
+    pub fn is_closed_pipe(&self) -> bool {
+        matches!(self, CommandError::Output(error) if error.kind() == ErrorKind::BrokenPipe)
+    }
+}
+
+impl fmt::Display for CommandError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            CommandError::Usage(text) | CommandError::Failed(text) => f.write_str(text),
+            CommandError::Output(error) => write!(f, "cannot write the output: {error}"),
+        }
+    }
+}
+
+impl From<io::Error> for CommandError {
+    fn from(error: io::Error) -> Self {
+        CommandError::Output(error)
+    }
+}
+
+impl From<Mismatch> for CommandError {
+    fn from(mismatch: Mismatch) -> Self {
+        CommandError::Usage(mismatch.to_string())
+    }
+}
+
+/// A whole number of at least one.
+fn positive(text: &str) -> Result<usize, String> {
+    match text.parse::<usize>() {
+        Ok(0) => Err("at least 1 is needed".to_string()),
+        Ok(number) => Ok(number),
+        Err(_) => Err("a whole number is needed".to_string()),
+    }
+}

@@ -1,0 +1,125 @@
+//! Motions as comma-separated values.
+
+use core::fmt::Write;
+
+use crate::facade::Motion;
+
+/// The motions of several runs below one header with names and units.
+///
+/// Columns: `run`, `t`, `q`, `q̇`, `q̈` of each coordinate, value and derivatives of each output, and the solver's
+/// figures. Numbers are the shortest that read back as the same bits. All motions are of one mechanism.
+pub fn write(runs: &[(&str, &Motion)]) -> String {
+    let mut text = String::new();
+    if let Some((_, motion)) = runs.first() {
+        let names: Vec<String> = columns(motion).into_iter().map(|(name, _)| quoted(&name)).collect();
+        text.push_str("run,t (s),");
+        text.push_str(&names.join(","));
+        text.push_str(",closure (1),iterations (1),margin (1)\n");
+    }
+    for (label, motion) in runs {
+        let columns = columns(motion);
+        for (row, time) in motion.time.iter().enumerate() {
+            text.push_str(&quoted(label));
+            let numbers = columns.iter().map(|(_, values)| values[row]);
+            let figures = [motion.closure[row], f64::from(motion.iterations[row]), motion.margin[row]];
+            for number in core::iter::once(*time).chain(numbers).chain(figures) {
+                write!(text, ",{number:?}").expect("a string takes all");
+            }
+            text.push('\n');
+        }
+    }
+    text
+}
+
+/// The unit of a time derivative of order `order` of a quantity in `unit`.
+pub fn rate_unit(unit: &str, order: usize) -> String {
+    match (order, unit.contains(['/', '*'])) {
+        (0, _) => unit.to_string(),
+        (1, false) => format!("{unit}/s"),
+        (_, false) => format!("{unit}/s^{order}"),
+        (1, true) => format!("({unit})/s"),
+        (_, true) => format!("({unit})/s^{order}"),
+    }
+}
+
+fn columns(motion: &Motion) -> Vec<(String, &[f64])> {
+    let head = |name: &str, unit: &str, order: usize| {
+        format!("{name}{} ({})", ["", "_d", "_dd"][order], rate_unit(unit, order))
+    };
+    let mut columns = Vec::new();
+    for c in &motion.coordinates {
+        for (order, values) in [&c.q, &c.qd, &c.qdd].into_iter().enumerate() {
+            columns.push((head(c.name, c.unit, order), values.as_slice()));
+        }
+    }
+    for o in &motion.outputs {
+        let values = [Some(&o.value), o.rate.as_ref(), o.acceleration.as_ref()];
+        for (order, values) in values.into_iter().enumerate() {
+            columns.extend(values.map(|values| (head(o.name, o.unit, order), values.as_slice())));
+        }
+    }
+    columns
+}
+
+/// A cell in quotes where it holds a separator.
+fn quoted(cell: &str) -> String {
+    if cell.contains([',', '"', '\n']) {
+        format!("\"{}\"", cell.replace('"', "\"\""))
+    } else {
+        cell.to_string()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::facade::{CoordinateCurve, OutputCurve};
+
+    fn motion() -> Motion {
+        let tenth = 0.1 + 0.2;
+        Motion {
+            time: vec![0.0, tenth],
+            coordinates: vec![CoordinateCurve {
+                name: "phi",
+                unit: "rad",
+                q: vec![1e-300, tenth],
+                qd: vec![-0.0, 1.0 / 3.0],
+                qdd: vec![2.0, 1e22],
+            }],
+            outputs: vec![OutputCurve {
+                name: "v",
+                unit: "m/s",
+                value: vec![1.0, 2.0],
+                rate: Some(vec![3.0, 4.0]),
+                acceleration: None,
+            }],
+            closure: vec![0.0, 1e-17],
+            iterations: vec![3, 2],
+            margin: vec![1.0, 0.5],
+        }
+    }
+
+    #[test]
+    fn the_header_names_columns_with_units() {
+        let text = write(&[("a, b", &motion())]);
+        let header = text.lines().next();
+        let expected = "run,t (s),phi (rad),phi_d (rad/s),phi_dd (rad/s^2),v (m/s),v_d ((m/s)/s),closure (1),\
+                        iterations (1),margin (1)";
+        assert_eq!(header, Some(expected));
+        assert!(text.lines().nth(1).is_some_and(|line| line.starts_with("\"a, b\",0.0,")));
+    }
+
+    #[test]
+    fn numbers_read_back_as_the_same_bits() {
+        let text = write(&[("run", &motion())]);
+        let cells: Vec<f64> = text
+            .lines()
+            .nth(2)
+            .into_iter()
+            .flat_map(|line| line.split(',').skip(1))
+            .map(|cell| cell.parse().expect("a number"))
+            .collect();
+        let expected = [0.1 + 0.2, 0.1 + 0.2, 1.0 / 3.0, 1e22, 2.0, 4.0, 1e-17, 2.0, 0.5];
+        assert_eq!(cells.iter().map(|x| x.to_bits()).collect::<Vec<_>>(), expected.map(f64::to_bits));
+    }
+}

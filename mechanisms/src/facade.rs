@@ -1,0 +1,345 @@
+//! One face for all mechanisms: the emitted types differ in their array lengths, this trait does not.
+
+use core::fmt;
+use core::hint::black_box;
+use std::time::{Duration, Instant};
+
+use mbs_runtime::{Entry, Failure, Frame, Kinematic, OutputValue, Stepper};
+use serde::Serialize;
+
+/// A mechanism of any size, with its parameters. Vectors are in the order of the text.
+pub trait AnyMechanism {
+    /// Name of the emitted type.
+    fn type_name(&self) -> &'static str;
+    /// The text.
+    fn source(&self) -> &'static str;
+    /// Coordinates: N.
+    fn coordinates(&self) -> &'static [Entry];
+    /// Constraint rows: N.
+    fn rows(&self) -> &'static [Entry];
+    /// Parameters and inputs, component by component.
+    fn variables(&self) -> &'static [Entry];
+    /// Outputs, component by component.
+    fn outputs(&self) -> &'static [Entry];
+    /// Value of a parameter or input, in the unit of the text.
+    fn get(&self, index: usize) -> Option<f64>;
+    /// Sets a parameter or input, in the unit of the text; false where there is none at `index`.
+    fn set(&mut self, index: usize, value: f64) -> bool;
+    /// Reference metric of the coordinates: 1 for angles, the reference length for lengths: N.
+    fn coordinate_scales(&self) -> Vec<f64>;
+    /// All functions of one state, which need not satisfy the constraints.
+    ///
+    /// # Panics
+    /// Where the state's vectors do not have N components.
+    fn evaluate(&self, state: &State) -> Functions;
+    /// Assembles the mechanism at the first instant (s) and follows it through the others.
+    ///
+    /// `progress` hears the number of instants done. An empty list gives an empty motion.
+    ///
+    /// # Errors
+    /// The solver's [`Failure`] at the first instant that has no solution.
+    fn follow(&self, times: &[f64], progress: &mut dyn FnMut(usize)) -> Result<Motion, Failure>;
+    /// Time of one step (position, velocity, acceleration and outputs), the mean over `times` (s).
+    ///
+    /// # Errors
+    /// The solver's [`Failure`].
+    fn time_a_step(&self, times: &[f64]) -> Result<Duration, Failure>;
+}
+
+impl fmt::Debug for dyn AnyMechanism {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "AnyMechanism({})", self.type_name())
+    }
+}
+
+/// A state at which functions are evaluated: `q`, `q̇`, `q̈` (N each, coordinate unit per s, s²) and `t` (s).
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct State {
+    /// Coordinates.
+    pub q: Vec<f64>,
+    /// Velocities.
+    pub qd: Vec<f64>,
+    /// Accelerations.
+    pub qdd: Vec<f64>,
+    /// Time (s).
+    pub t: f64,
+}
+
+/// Every emitted function at one state.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Functions {
+    /// Φ: N.
+    pub phi: Vec<f64>,
+    /// Φ_q, row after row: N·N.
+    pub phi_q: Vec<f64>,
+    /// Φ_t: N.
+    pub phi_t: Vec<f64>,
+    /// Φ_tt: N.
+    pub phi_tt: Vec<f64>,
+    /// Φ_qt q̇: N.
+    pub phi_qt_qd: Vec<f64>,
+    /// γ: N.
+    pub gamma: Vec<f64>,
+    /// Outputs with their time derivatives.
+    pub outputs: Vec<OutputValue<f64>>,
+}
+
+/// A motion as plain columns, one value an instant.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Motion {
+    /// Instants (s).
+    pub time: Vec<f64>,
+    /// Coordinates.
+    pub coordinates: Vec<CoordinateCurve>,
+    /// Outputs, component by component.
+    pub outputs: Vec<OutputCurve>,
+    /// Largest residual, each row measured in the reference metric (dimensionless).
+    pub closure: Vec<f64>,
+    /// Evaluations of the constraints that the position took.
+    pub iterations: Vec<u32>,
+    /// Margin to singularity: 0 where singular, at most 1.
+    pub margin: Vec<f64>,
+}
+
+/// A coordinate over the time.
+#[derive(Clone, Debug, Serialize)]
+pub struct CoordinateCurve {
+    /// As the text spells it.
+    pub name: &'static str,
+    /// Unit of `q`; those of `qd` and `qdd` are this per s and per s².
+    pub unit: &'static str,
+    /// Position.
+    pub q: Vec<f64>,
+    /// Velocity.
+    pub qd: Vec<f64>,
+    /// Acceleration.
+    pub qdd: Vec<f64>,
+}
+
+/// A component of an output over the time.
+#[derive(Clone, Debug, Serialize)]
+pub struct OutputCurve {
+    /// As the text spells it, components counted from 0: `P.0`.
+    pub name: &'static str,
+    /// Unit of `value`; those of the derivatives are this per s and per s².
+    pub unit: &'static str,
+    /// Value.
+    pub value: Vec<f64>,
+    /// First derivative, where the definition leaves one.
+    pub rate: Option<Vec<f64>>,
+    /// Second derivative, where the definition leaves one.
+    pub acceleration: Option<Vec<f64>>,
+}
+
+/// A new mechanism of type `S` behind the common face.
+pub fn boxed<S, const N: usize>() -> Box<dyn AnyMechanism>
+where
+    S: Kinematic<f64, N> + Default + 'static,
+{
+    Box::new(Facade::<S, N>(S::default()))
+}
+
+/// A mechanism of `N` coordinates behind the common face.
+#[derive(Clone, Debug)]
+pub struct Facade<S, const N: usize>(pub S);
+
+impl<S: Kinematic<f64, N>, const N: usize> AnyMechanism for Facade<S, N> {
+    fn type_name(&self) -> &'static str {
+        S::NAME
+    }
+    fn source(&self) -> &'static str {
+        S::SOURCE
+    }
+    fn coordinates(&self) -> &'static [Entry] {
+        S::COORDINATES
+    }
+    fn rows(&self) -> &'static [Entry] {
+        S::ROWS
+    }
+    fn variables(&self) -> &'static [Entry] {
+        S::VARIABLES
+    }
+    fn outputs(&self) -> &'static [Entry] {
+        S::OUTPUTS
+    }
+    fn get(&self, index: usize) -> Option<f64> {
+        self.0.get(index)
+    }
+    fn set(&mut self, index: usize, value: f64) -> bool {
+        self.0.set(index, value)
+    }
+    fn coordinate_scales(&self) -> Vec<f64> {
+        self.0.coordinate_scales(&self.0.parameters()).to_vec()
+    }
+
+    fn evaluate(&self, state: &State) -> Functions {
+        let array = |values: &[f64]| <[f64; N]>::try_from(values).expect("a state has N components");
+        let (q, qd, qdd) = (array(&state.q), array(&state.qd), array(&state.qdd));
+        let parameters = self.0.parameters();
+        let position = self.0.position(&parameters, &q, state.t);
+        Functions {
+            phi: self.0.phi(&parameters, &position).to_vec(),
+            phi_q: self.0.phi_q(&parameters, &position).as_flattened().to_vec(),
+            phi_t: self.0.phi_t(&parameters, &position).to_vec(),
+            phi_tt: self.0.phi_tt(&parameters, &position).to_vec(),
+            phi_qt_qd: self.0.phi_qt_qd(&parameters, &position, &qd).to_vec(),
+            gamma: self.0.gamma(&parameters, &position, &qd).to_vec(),
+            outputs: self.0.outputs(&parameters, &position, &qd, &qdd).as_ref().to_vec(),
+        }
+    }
+
+    fn follow(&self, times: &[f64], progress: &mut dyn FnMut(usize)) -> Result<Motion, Failure> {
+        let Some((first, rest)) = times.split_first() else { return Ok(Motion::default()) };
+        let mut stepper = self.assembled(*first)?;
+        let mut motion = Motion::of::<S, N>(times.len(), &stepper);
+        motion.push(&stepper.frame());
+        for (done, time) in rest.iter().enumerate() {
+            progress(done + 1);
+            stepper.advance_to(*time)?;
+            motion.push(&stepper.frame());
+        }
+        progress(times.len());
+        Ok(motion)
+    }
+
+    fn time_a_step(&self, times: &[f64]) -> Result<Duration, Failure> {
+        let Some((first, rest)) = times.split_first() else { return Ok(Duration::ZERO) };
+        let mut stepper = self.assembled(*first)?;
+        let start = Instant::now();
+        for time in rest {
+            stepper.advance_to(*time)?;
+            black_box(stepper.outputs());
+        }
+        Ok(start.elapsed() / u32::try_from(rest.len().max(1)).unwrap_or(u32::MAX))
+    }
+}
+
+impl<S: Kinematic<f64, N>, const N: usize> Facade<S, N> {
+    fn assembled(&self, t: f64) -> Result<Stepper<S, f64, N>, Failure> {
+        Stepper::assemble(self.0.clone(), self.0.guess(&self.0.parameters()), t)
+    }
+}
+
+impl Motion {
+    /// At most `count` instants spread evenly over the motion, first and last included.
+    pub fn thinned(&self, count: usize) -> Motion {
+        let kept = spread(self.time.len(), count);
+        let pick = |values: &Vec<f64>| kept.iter().map(|index| values[*index]).collect::<Vec<_>>();
+        let coordinate = |curve: &CoordinateCurve| CoordinateCurve {
+            q: pick(&curve.q),
+            qd: pick(&curve.qd),
+            qdd: pick(&curve.qdd),
+            ..*curve
+        };
+        let output = |curve: &OutputCurve| OutputCurve {
+            value: pick(&curve.value),
+            rate: curve.rate.as_ref().map(pick),
+            acceleration: curve.acceleration.as_ref().map(pick),
+            ..*curve
+        };
+        Motion {
+            time: pick(&self.time),
+            coordinates: self.coordinates.iter().map(coordinate).collect(),
+            outputs: self.outputs.iter().map(output).collect(),
+            closure: pick(&self.closure),
+            iterations: kept.iter().map(|index| self.iterations[*index]).collect(),
+            margin: pick(&self.margin),
+        }
+    }
+
+    /// No instant yet; outputs have the derivatives that those of `stepper` have.
+    fn of<S: Kinematic<f64, N>, const N: usize>(capacity: usize, stepper: &Stepper<S, f64, N>) -> Self {
+        let column = || Vec::with_capacity(capacity);
+        let coordinate = |e: &Entry| CoordinateCurve {
+            name: e.name,
+            unit: e.unit,
+            q: column(),
+            qd: column(),
+            qdd: column(),
+        };
+        let output = |(e, value): (&Entry, &OutputValue<f64>)| OutputCurve {
+            name: e.name,
+            unit: e.unit,
+            value: column(),
+            rate: value.rate.map(|_| column()),
+            acceleration: value.acceleration.map(|_| column()),
+        };
+        Motion {
+            time: column(),
+            coordinates: S::COORDINATES.iter().map(coordinate).collect(),
+            outputs: S::OUTPUTS.iter().zip(stepper.outputs().as_ref()).map(output).collect(),
+            closure: column(),
+            iterations: Vec::with_capacity(capacity),
+            margin: column(),
+        }
+    }
+
+    fn push<O: AsRef<[OutputValue<f64>]>, const N: usize>(&mut self, frame: &Frame<f64, O, N>) {
+        self.time.push(frame.t);
+        for (index, curve) in self.coordinates.iter_mut().enumerate() {
+            curve.q.push(frame.q[index]);
+            curve.qd.push(frame.qd[index]);
+            curve.qdd.push(frame.qdd[index]);
+        }
+        for (curve, output) in self.outputs.iter_mut().zip(frame.outputs.as_ref()) {
+            curve.value.push(output.value);
+            let derivatives =
+                [(&mut curve.rate, output.rate), (&mut curve.acceleration, output.acceleration)];
+            for (column, value) in derivatives {
+                column.iter_mut().zip(value).for_each(|(column, value)| column.push(value));
+            }
+        }
+        self.closure.push(frame.closure_error);
+        self.iterations.push(frame.statistics.evaluations);
+        self.margin.push(frame.margin);
+    }
+}
+
+/// At most `count` indices below `length`, evenly spread, first and last included.
+pub fn spread(length: usize, count: usize) -> Vec<usize> {
+    let last = length.saturating_sub(1);
+    if length <= count || count < 2 {
+        return (0..length.min(count)).collect();
+    }
+    (0..count).map(|index| index * last / (count - 1)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::registry::{ALL, sweep};
+
+    #[test]
+    fn spread_indices_reach_from_the_first_to_the_last() {
+        assert_eq!(spread(721, 9), [0, 90, 180, 270, 360, 450, 540, 630, 720]);
+        assert_eq!(spread(3, 9), [0, 1, 2]);
+        assert_eq!(spread(1, 9), [0]);
+        assert!(spread(0, 9).is_empty() && spread(9, 0).is_empty());
+    }
+
+    #[test]
+    fn a_thinned_motion_keeps_its_ends_and_every_column() {
+        let mechanism = (ALL[0].make)();
+        let motion = sweep(mechanism.as_ref(), 1.0, 100).expect("it turns");
+        let thinned = motion.thinned(11);
+        assert_eq!(thinned.time, motion.time.iter().copied().step_by(10).collect::<Vec<_>>());
+        let (last, before) = (&thinned.outputs[8], &motion.outputs[8]);
+        assert_eq!(last.value.last(), before.value.last());
+        assert_eq!(last.acceleration.as_ref().map(Vec::len), Some(11));
+        assert_eq!((thinned.iterations.len(), thinned.coordinates[0].qdd.len()), (11, 11));
+    }
+
+    #[test]
+    fn no_instants_are_an_empty_motion() {
+        let motion = (ALL[0].make)().follow(&[], &mut |_| ()).expect("nothing to solve");
+        assert!(motion.time.is_empty());
+    }
+
+    #[test]
+    fn progress_ends_with_all_instants() {
+        let mut heard = Vec::new();
+        let times = crate::registry::instants(0.1, 3);
+        (ALL[0].make)().follow(&times, &mut |count| heard.push(count)).expect("it turns");
+        assert_eq!(heard, [1, 2, 3, 4]);
+    }
+}

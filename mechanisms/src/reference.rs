@@ -1,0 +1,62 @@
+//! What the tests of the mechanisms share: reference tables and comparisons.
+
+use core::f64::consts::{PI, TAU};
+
+use crate::facade::Motion;
+use crate::registry::{Card, Preset, sweep};
+
+/// Rows of numbers of a table with `#` comments and one line of column names.
+pub fn table(text: &str) -> Vec<Vec<f64>> {
+    let lines = text.lines().filter(|line| !line.starts_with('#')).skip(1);
+    lines.map(|line| line.split(',').map(|cell| cell.parse().expect("a number")).collect()).collect()
+}
+
+/// Every entry within `bound` of the expected one, measured by the larger of 1 and the expected magnitude.
+#[track_caller]
+pub fn assert_near(found: &[f64], expected: &[f64], bound: f64) {
+    assert_eq!(found.len(), expected.len());
+    for (index, (found, expected)) in found.iter().zip(expected).enumerate() {
+        let error = (found - expected).abs() / expected.abs().max(1.0);
+        assert!(error <= bound, "entry {index}: {found} instead of {expected}, error {error:e}");
+    }
+}
+
+/// Distance of two angles (rad) on the circle.
+pub fn angle_difference(a: f64, b: f64) -> f64 {
+    ((a - b + PI).rem_euclid(TAU) - PI).abs()
+}
+
+/// The card's run over its span in `steps` steps.
+#[track_caller]
+pub fn one_turn(card: &Card, run: &Preset, steps: usize) -> Motion {
+    let mechanism = card.instance(run).expect("parameters of the preset");
+    let duration = card.duration(mechanism.as_ref()).expect("a duration");
+    match sweep(mechanism.as_ref(), duration, steps) {
+        Ok(motion) => motion,
+        Err(failure) => panic!("{}, {}: {failure}", card.name, run.label),
+    }
+}
+
+/// The motion in steps of `step` (s) passes the reference rows `t, q.., q̇.., q̈..` within `bound`.
+///
+/// Every time of the rows must be a multiple of `step`.
+#[track_caller]
+pub fn assert_follows(card: &Card, run: &Preset, step: f64, rows: &[Vec<f64>], bound: f64) {
+    let mechanism = card.instance(run).expect("parameters of the preset");
+    let index = |t: f64| (t / step).round() as usize;
+    let last = rows.iter().map(|row| index(row[0])).max().unwrap_or(0);
+    let mut times: Vec<f64> = (0..=last).map(|k| k as f64 * step).collect();
+    for row in rows {
+        assert!((times[index(row[0])] - row[0]).abs() < 1e-12, "{} is no multiple of {step}", row[0]);
+        times[index(row[0])] = row[0];
+    }
+    let motion = mechanism.follow(&times, &mut |_| ()).unwrap_or_else(|failure| panic!("{failure}"));
+    for row in rows {
+        let at = index(row[0]);
+        let columns = |pick: fn(&crate::facade::CoordinateCurve) -> &Vec<f64>| {
+            motion.coordinates.iter().map(|coordinate| pick(coordinate)[at]).collect::<Vec<_>>()
+        };
+        let found = [columns(|c| &c.q), columns(|c| &c.qd), columns(|c| &c.qdd)].concat();
+        assert_near(&found, &row[1..], bound);
+    }
+}

@@ -1,0 +1,264 @@
+//! The list of mechanisms. A new one is a file with a [`Card`], its `mod` in `lib.rs` and its line in [`ALL`].
+
+use core::fmt;
+
+use mbs_runtime::Failure;
+
+use crate::drawing::Shape;
+use crate::facade::{AnyMechanism, Motion};
+
+/// Every mechanism; the first one is what `mbs` shows without arguments.
+pub const ALL: &[&Card] = &[
+    &crate::four_bar::CARD,
+    &crate::loop_relative::CARD,
+    &crate::loop_length::CARD,
+    &crate::open_chain::CARD,
+    &crate::slider_crank::CARD,
+];
+
+/// What the program knows of a mechanism beside its text.
+#[derive(Clone, Copy, Debug)]
+pub struct Card {
+    /// Name on the command line.
+    pub name: &'static str,
+    /// Heading.
+    pub title: &'static str,
+    /// One or two sentences.
+    pub description: &'static str,
+    /// What is run: one preset a motion in the report.
+    pub runs: &'static [Preset],
+    /// How long a motion lasts.
+    pub span: Span,
+    /// How it is drawn.
+    pub drawing: &'static [Shape],
+    /// A new instance with default parameters.
+    pub make: fn() -> Box<dyn AnyMechanism>,
+}
+
+/// A motion worth showing: parameters that differ from the text's defaults.
+#[derive(Clone, Copy, Debug)]
+pub struct Preset {
+    /// Short name.
+    pub label: &'static str,
+    /// One phrase.
+    pub description: &'static str,
+    /// Parameters by name, in the unit of the text.
+    pub set: &'static [(&'static str, f64)],
+}
+
+/// How long a motion lasts.
+#[derive(Clone, Copy, Debug)]
+pub enum Span {
+    /// One turn at the angular velocity (rad/s) that a parameter gives.
+    Turn {
+        /// Name of the parameter.
+        rate: &'static str,
+    },
+    /// A fixed time (s).
+    Seconds(f64),
+}
+
+/// A name or a value that does not fit a mechanism.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Mismatch {
+    /// No mechanism of this name.
+    Mechanism {
+        /// The name asked for.
+        name: String,
+    },
+    /// No parameter of this name.
+    Parameter {
+        /// The name asked for.
+        name: String,
+        /// The mechanism.
+        mechanism: &'static str,
+        /// The names that there are.
+        known: Vec<&'static str>,
+    },
+    /// A parameter that is no finite number.
+    NotFinite {
+        /// The parameter.
+        name: String,
+    },
+    /// A turn never ends.
+    NoTurn {
+        /// The parameter that gives the angular velocity.
+        rate: &'static str,
+        /// Its value (rad/s).
+        value: f64,
+    },
+}
+
+/// The mechanism called `name`.
+///
+/// # Errors
+/// [`Mismatch::Mechanism`] where there is none; its text lists the known names.
+pub fn find(name: &str) -> Result<&'static Card, Mismatch> {
+    let found = ALL.iter().copied().find(|card| card.name == name);
+    found.ok_or_else(|| Mismatch::Mechanism { name: name.to_string() })
+}
+
+/// Sets the parameter or input `name` (coherent SI unit of the text).
+///
+/// # Errors
+/// [`Mismatch::Parameter`] and [`Mismatch::NotFinite`]; the mechanism is then as it was.
+pub fn set(mechanism: &mut dyn AnyMechanism, name: &str, value: f64) -> Result<(), Mismatch> {
+    let variables = mechanism.variables();
+    let index = variables.iter().position(|entry| entry.name == name);
+    if !value.is_finite() {
+        return Err(Mismatch::NotFinite { name: name.to_string() });
+    }
+    match index {
+        Some(index) if mechanism.set(index, value) => Ok(()),
+        _ => Err(Mismatch::Parameter {
+            name: name.to_string(),
+            mechanism: mechanism.type_name(),
+            known: variables.iter().map(|entry| entry.name).collect(),
+        }),
+    }
+}
+
+impl Card {
+    /// An instance with the preset's parameters.
+    ///
+    /// # Errors
+    /// [`Mismatch`] where the preset names a parameter that the text does not have.
+    pub fn instance(&self, run: &Preset) -> Result<Box<dyn AnyMechanism>, Mismatch> {
+        let mut mechanism = (self.make)();
+        for (name, value) in run.set {
+            set(mechanism.as_mut(), name, *value)?;
+        }
+        Ok(mechanism)
+    }
+
+    /// Duration (s) of the motion of `mechanism`.
+    ///
+    /// # Errors
+    /// [`Mismatch::NoTurn`] where the angular velocity is zero, [`Mismatch::Parameter`] where its name is unknown.
+    pub fn duration(&self, mechanism: &dyn AnyMechanism) -> Result<f64, Mismatch> {
+        let rate = match self.span {
+            Span::Seconds(seconds) => return Ok(seconds),
+            Span::Turn { rate } => rate,
+        };
+        let index = mechanism.variables().iter().position(|entry| entry.name == rate);
+        let value = index.and_then(|index| mechanism.get(index)).ok_or_else(|| Mismatch::Parameter {
+            name: rate.to_string(),
+            mechanism: self.name,
+            known: mechanism.variables().iter().map(|entry| entry.name).collect(),
+        })?;
+        let turn = core::f64::consts::TAU / value.abs();
+        if turn.is_finite() { Ok(turn) } else { Err(Mismatch::NoTurn { rate, value }) }
+    }
+}
+
+/// `steps` equal steps from 0 to `duration` (s): `steps + 1` instants.
+pub fn instants(duration: f64, steps: usize) -> Vec<f64> {
+    (0..=steps).map(|step| duration * step as f64 / steps.max(1) as f64).collect()
+}
+
+/// Follows `mechanism` through `steps` equal steps over `duration` (s).
+///
+/// # Errors
+/// The solver's [`Failure`].
+pub fn sweep(mechanism: &dyn AnyMechanism, duration: f64, steps: usize) -> Result<Motion, Failure> {
+    mechanism.follow(&instants(duration, steps), &mut |_| ())
+}
+
+/// The name of `known` that is nearest to `name`, if any is near.
+pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    /// Below this Jaro-Winkler similarity a proposal confuses more than it helps.
+    const NEAR: f64 = 0.75;
+    let rated = known.into_iter().map(|known| (strsim::jaro_winkler(name, known), known));
+    rated.filter(|(nearness, _)| *nearness > NEAR).max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, known)| known)
+}
+
+fn write_known(f: &mut fmt::Formatter<'_>, name: &str, known: &[&str]) -> fmt::Result {
+    if let Some(nearest) = nearest(name, known.iter().copied()) {
+        write!(f, "; did you mean `{nearest}`?")?;
+    }
+    write!(f, "\nknown: {}", known.join(", "))
+}
+
+impl fmt::Display for Mismatch {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Mismatch::Mechanism { name } => {
+                write!(f, "there is no mechanism `{name}`")?;
+                write_known(f, name, &ALL.iter().map(|card| card.name).collect::<Vec<_>>())
+            }
+            Mismatch::Parameter { name, mechanism, known } => {
+                write!(f, "`{mechanism}` has no parameter `{name}`")?;
+                write_known(f, name, known)
+            }
+            Mismatch::NotFinite { name } => write!(f, "parameter `{name}` must be a finite number"),
+            Mismatch::NoTurn { rate, value } => {
+                write!(f, "at `{rate}` = {value} rad/s a turn never ends; give `{rate}` another value")
+            }
+        }
+    }
+}
+
+impl core::error::Error for Mismatch {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_unique_and_found() {
+        for (index, card) in ALL.iter().enumerate() {
+            assert!(ALL[..index].iter().all(|other| other.name != card.name));
+            assert_eq!(find(card.name).expect("in the list").title, card.title);
+        }
+    }
+
+    #[test]
+    fn an_unknown_mechanism_gets_a_proposal_and_the_list() {
+        let text = find("fourbar").expect_err("no such name").to_string();
+        assert!(text.contains("did you mean `four_bar`?") && text.contains("slider_crank"), "{text}");
+        let text = find("zzz").expect_err("no such name").to_string();
+        assert!(!text.contains("did you mean") && text.contains("four_bar"), "{text}");
+    }
+
+    #[test]
+    fn every_preset_fits_its_mechanism() {
+        for card in ALL {
+            assert!(!card.runs.is_empty(), "{}", card.name);
+            for run in card.runs {
+                let mechanism = card.instance(run).expect("parameters of the preset");
+                assert!(card.duration(mechanism.as_ref()).expect("a duration") > 0.0);
+            }
+        }
+    }
+
+    #[test]
+    fn every_point_of_a_drawing_is_an_output() {
+        for card in ALL {
+            let mechanism = (card.make)();
+            for point in card.drawing.iter().flat_map(Shape::points) {
+                for component in [".0", ".1"] {
+                    let name = format!("{point}{component}");
+                    let output = mechanism.outputs().iter().find(|output| output.name == name);
+                    assert_eq!(output.map(|output| output.unit), Some("m"), "{}: {name}", card.name);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_bad_parameter_changes_nothing() {
+        let mut mechanism = (ALL[0].make)();
+        let before = mechanism.get(0);
+        assert!(matches!(set(mechanism.as_mut(), "L9", 1.0), Err(Mismatch::Parameter { .. })));
+        let name = mechanism.variables()[0].name;
+        assert!(matches!(set(mechanism.as_mut(), name, f64::NAN), Err(Mismatch::NotFinite { .. })));
+        assert_eq!(mechanism.get(0), before);
+    }
+
+    #[test]
+    fn a_crank_at_rest_never_ends_its_turn() {
+        let mut mechanism = (ALL[0].make)();
+        set(mechanism.as_mut(), "omega", 0.0).expect("a parameter");
+        assert!(matches!(ALL[0].duration(mechanism.as_ref()), Err(Mismatch::NoTurn { .. })));
+    }
+}

@@ -1,0 +1,111 @@
+//! Cross-check of emitted code against CasADi.
+//!
+//! The text of a mechanism goes two ways: the macro emits Rust, [`mbs_codegen::casadi_definition`] prints the bare
+//! constraints and outputs for CasADi, which differentiates them itself. Both are evaluated at random states and
+//! compared entry by entry. Python 3 is needed; its environment is made by [`environment`] below cargo's target
+//! directory.
+
+pub mod compare;
+pub mod environment;
+pub mod oracle;
+pub mod states;
+
+use core::fmt;
+use std::fs;
+use std::path::Path;
+
+pub use compare::{Agreement, BOUND, LargestError};
+pub use environment::EnvironmentError;
+pub use oracle::{Oracle, OracleError};
+
+use crate::facade::AnyMechanism;
+use crate::registry::{self, Card, Mismatch};
+
+/// States a mechanism is compared at unless told otherwise.
+pub const STATES: usize = 1000;
+
+/// Why no comparison was made. A comparison that shows a difference is an [`Agreement`] that does not hold.
+#[derive(Debug)]
+pub enum VerifyError {
+    /// No mechanism of this name.
+    Mechanism(Mismatch),
+    /// The Python environment could not be made.
+    Environment(EnvironmentError),
+    /// The text does not print as a CasADi definition.
+    Definition {
+        /// The mechanism.
+        mechanism: String,
+        /// What the back end says.
+        reason: String,
+    },
+    /// CasADi's side failed or answered in another shape.
+    Oracle(OracleError),
+    /// A file could not be read.
+    File {
+        /// The file.
+        path: String,
+        /// What the system says.
+        reason: String,
+    },
+}
+
+/// Compares the emitted code of the mechanism with CasADi's derivatives of the same text at `states` random states.
+///
+/// # Errors
+/// [`VerifyError`] where the comparison could not be made.
+pub fn verify(card: &Card, oracle: &Oracle, states: usize) -> Result<Agreement, VerifyError> {
+    let mut mechanism = (card.make)();
+    let definition = generated_definition(mechanism.as_ref())?;
+    Ok(compare::compare(mechanism.as_mut(), oracle, &definition, states)?)
+}
+
+/// Compares the emitted code of the mechanism called `name` with the definition in a Python file at
+/// [`STATES`] random states.
+///
+/// # Errors
+/// [`VerifyError`] where the comparison could not be made.
+pub fn verify_against(name: &str, definition: &Path, oracle: &Oracle) -> Result<Agreement, VerifyError> {
+    let card = registry::find(name).map_err(VerifyError::Mechanism)?;
+    let text = fs::read_to_string(definition).map_err(|error| VerifyError::File {
+        path: definition.display().to_string(),
+        reason: error.to_string(),
+    })?;
+    Ok(compare::compare((card.make)().as_mut(), oracle, &text, STATES)?)
+}
+
+/// The CasADi definition that the second back end prints from the mechanism's text.
+///
+/// # Errors
+/// [`VerifyError::Definition`].
+pub fn generated_definition(mechanism: &dyn AnyMechanism) -> Result<String, VerifyError> {
+    mbs_codegen::casadi_definition(mechanism.source())
+        .map_err(|reason| VerifyError::Definition { mechanism: mechanism.type_name().to_string(), reason })
+}
+
+impl fmt::Display for VerifyError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            VerifyError::Mechanism(mismatch) => mismatch.fmt(f),
+            VerifyError::Environment(error) => error.fmt(f),
+            VerifyError::Definition { mechanism, reason } => {
+                write!(f, "`{mechanism}` does not print as a CasADi definition: {reason}")
+            }
+            VerifyError::Oracle(error) => error.fmt(f),
+            VerifyError::File { path, reason } => write!(f, "cannot read {path}: {reason}"),
+        }
+    }
+}
+
+impl core::error::Error for VerifyError {}
+
+impl From<EnvironmentError> for VerifyError {
+    fn from(error: EnvironmentError) -> Self {
+        VerifyError::Environment(error)
+    }
+}
+
+impl From<OracleError> for VerifyError {
+    fn from(error: OracleError) -> Self {
+        VerifyError::Oracle(error)
+    }
+}

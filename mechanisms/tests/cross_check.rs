@@ -1,0 +1,73 @@
+//! Emitted code against CasADi: definitions that the second back end prints from the same text, and definitions
+//! typed by hand from the lecture.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use mechanisms::registry::{ALL, find};
+use mechanisms::verify::compare::compare;
+use mechanisms::verify::{Oracle, STATES, VerifyError, verify, verify_against};
+
+fn oracle() -> Oracle {
+    Oracle::new(&|_| ()).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn by_hand(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/casadi").join(name).with_extension("py")
+}
+
+#[test]
+fn casadi_confirms_every_function_of_every_mechanism() {
+    let oracle = oracle();
+    for card in ALL {
+        let agreement = verify(card, &oracle, STATES).unwrap_or_else(|error| panic!("{error}"));
+        println!("{agreement}");
+        assert!(agreement.holds(), "{agreement}");
+        assert!(agreement.states >= 1000 && agreement.functions.len() == 9);
+    }
+}
+
+#[test]
+fn definitions_typed_by_hand_confirm_every_mechanism() {
+    let oracle = oracle();
+    for card in ALL {
+        let agreement = verify_against(card.name, &by_hand(card.name), &oracle);
+        let agreement = agreement.unwrap_or_else(|error| panic!("{}: {error}", card.name));
+        println!("{agreement}");
+        assert!(agreement.holds() && agreement.states >= 1000, "{agreement}");
+    }
+}
+
+/// The control of the tests above: every one of these slips of the pen must show.
+#[test]
+fn a_slip_in_a_definition_is_found() {
+    let slips = [
+        ("four_bar", "- L3 * ca.sin(phi3)", "+ L3 * ca.sin(phi3)"),
+        ("four_bar", "L5 * ca.cos(alpha + phi2)", "L5 * ca.cos(alpha - phi2)"),
+        ("loop_relative", "psi1 + psi2 + psi3]", "psi1 + psi3]"),
+        ("loop_length", "- L3 * ca.cos(guide)", "+ L3 * ca.cos(guide)"),
+        ("open_chain", "ca.cos(2 * omega * t)", "ca.cos(omega * t)"),
+        ("open_chain", "der(end[1])", "der(end[0])"),
+        ("slider_crank", "- offset,", "+ offset,"),
+    ];
+    let oracle = oracle();
+    for (name, right, wrong) in slips {
+        let text = fs::read_to_string(by_hand(name)).expect("a definition");
+        assert!(text.contains(right), "{name}: {right}");
+        let mut mechanism = (find(name).expect("in the list").make)();
+        let agreement = compare(mechanism.as_mut(), &oracle, &text.replace(right, wrong), 50);
+        assert!(!agreement.expect("values").holds(), "{name}: {wrong}");
+    }
+}
+
+#[test]
+fn what_cannot_be_compared_says_why() {
+    let oracle = oracle();
+    let missing = verify_against("four_bar", Path::new("no/such/file.py"), &oracle);
+    assert!(matches!(missing, Err(VerifyError::File { .. })));
+    let unknown = verify_against("five_bar", &by_hand("four_bar"), &oracle);
+    assert!(matches!(unknown, Err(VerifyError::Mechanism(_))));
+    let another =
+        verify_against("four_bar", &by_hand("slider_crank"), &oracle).expect_err("another mechanism");
+    assert!(another.to_string().contains("`SliderCrank` has 3 coordinates"), "{another}");
+}

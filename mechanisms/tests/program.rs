@@ -1,0 +1,263 @@
+//! The program `mbs` as a person meets it.
+
+use std::fs;
+use std::io::{BufRead, BufReader, Read};
+use std::path::PathBuf;
+use std::process::{Command, Output, Stdio};
+
+/// A directory of this test alone, removed with its owner.
+struct Scratch(PathBuf);
+
+impl Scratch {
+    fn new(name: &str) -> Self {
+        let path = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(format!("{name}-{}", std::process::id()));
+        let _ = fs::remove_dir_all(&path);
+        Scratch(path)
+    }
+
+    fn text(&self, file: &str) -> String {
+        fs::read_to_string(self.0.join(file)).expect("a file of the report")
+    }
+}
+
+impl Drop for Scratch {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}
+
+fn mbs(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_mbs")).args(arguments).output().expect("the program starts")
+}
+
+fn run_into(scratch: &Scratch, arguments: &[&str]) -> Output {
+    let directory = scratch.0.to_str().expect("a path of the build");
+    mbs(&[arguments, &["--out", directory]].concat())
+}
+
+#[track_caller]
+fn standard_output(output: Output) -> String {
+    let errors = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(output.status.success(), "{:?}: {errors}", output.status);
+    String::from_utf8(output.stdout).expect("UTF-8")
+}
+
+/// The message of a command that must fail with `code`, without a panic and with nothing on standard output.
+#[track_caller]
+fn failure(output: Output, code: i32) -> String {
+    let message = String::from_utf8(output.stderr).expect("UTF-8");
+    assert_eq!(output.status.code(), Some(code), "{message}");
+    assert!(!message.contains("panicked"), "{message}");
+    assert_eq!(String::from_utf8_lossy(&output.stdout), "");
+    message
+}
+
+fn cells(line: &str) -> Vec<f64> {
+    line.split(',').skip(1).map(|cell| cell.parse().expect("a number")).collect()
+}
+
+#[test]
+fn without_arguments_the_four_bar_runs_one_turn() {
+    let text = standard_output(mbs(&[]));
+    for part in
+        ["Four-bar", "coupler curve", "open assembly", "crossed assembly", "iterations", "closure error"]
+    {
+        assert!(text.contains(part), "{part} is missing in\n{text}");
+    }
+    let path = text.lines().find_map(|line| line.strip_prefix("report  ")).expect("where the report is");
+    assert!(fs::read_to_string(path).expect("the report").contains("<title>Four-bar"));
+}
+
+#[test]
+fn the_list_names_every_mechanism_with_its_parameters() {
+    let text = standard_output(mbs(&["list"]));
+    for card in mechanisms::registry::ALL {
+        assert!(text.contains(card.name) && text.contains(card.title), "{text}");
+    }
+    assert!(text.contains("omega=30 rad/s"), "{text}");
+}
+
+#[test]
+fn every_mechanism_runs_and_writes_its_report() {
+    for card in mechanisms::registry::ALL {
+        let scratch = Scratch::new(card.name);
+        standard_output(run_into(&scratch, &["run", card.name, "--steps", "24"]));
+        let values = scratch.text("motion.csv");
+        assert_eq!(values.lines().count(), 1 + 25 * card.runs.len(), "{}", card.name);
+        let columns = values.lines().next().map(|line| line.split(',').count());
+        assert!(values.lines().all(|line| Some(line.split(',').count()) == columns));
+        assert!(scratch.text("report.html").contains(&format!("\"name\":\"{}\"", card.name)));
+        let files = fs::read_dir(&scratch.0).expect("the directory").count();
+        assert_eq!(files, 2, "only the report and its values");
+    }
+}
+
+#[test]
+fn a_parameter_changes_the_motion() {
+    let scratch = Scratch::new("parameter");
+    standard_output(run_into(&scratch, &["run", "slider_crank", "--param", "omega=20", "--steps", "4"]));
+    let values = scratch.text("motion.csv");
+    let header = values.lines().next().expect("a header");
+    assert!(header.starts_with("run,t (s),theta (rad),theta_d (rad/s),theta_dd (rad/s^2),"), "{header}");
+    let last = cells(values.lines().last().expect("a row"));
+    assert!((last[0] - core::f64::consts::TAU / 20.0).abs() < 1e-15 && (last[2] - 20.0).abs() < 1e-12);
+}
+
+#[test]
+fn the_values_are_those_of_the_library_bit_by_bit() {
+    let scratch = Scratch::new("bits");
+    standard_output(run_into(&scratch, &["run", "four_bar", "--steps", "7"]));
+    let card = mechanisms::registry::find("four_bar").expect("in the list");
+    let mechanism = card.instance(&card.runs[0]).expect("a preset");
+    let duration = card.duration(mechanism.as_ref()).expect("a duration");
+    let motion = mechanisms::registry::sweep(mechanism.as_ref(), duration, 7).expect("it turns");
+    for (row, line) in scratch.text("motion.csv").lines().skip(1).take(8).enumerate() {
+        let found = cells(line);
+        assert_eq!(found[0].to_bits(), motion.time[row].to_bits());
+        for (index, coordinate) in motion.coordinates.iter().enumerate() {
+            let expected = [coordinate.q[row], coordinate.qd[row], coordinate.qdd[row]];
+            let cells = &found[1 + 3 * index..4 + 3 * index];
+            assert!(
+                cells.iter().zip(expected).all(|(found, expected)| found.to_bits() == expected.to_bits())
+            );
+        }
+    }
+}
+
+#[test]
+fn a_mechanism_that_cannot_be_assembled_says_so_and_leaves_no_report() {
+    let scratch = Scratch::new("impossible");
+    let message = failure(run_into(&scratch, &["run", "four_bar", "--param", "L2=0.05"]), 1);
+    assert!(message.contains("cannot be assembled") && message.contains("closure"), "{message}");
+    assert!(!scratch.0.exists());
+}
+
+#[test]
+fn a_mechanism_that_locks_on_its_way_says_when() {
+    let scratch = Scratch::new("locks");
+    // Shortest and longest link, 0.45 m + 0.75 m, exceed the two others, 1.1 m: the crank cannot pass 180°.
+    let message =
+        failure(run_into(&scratch, &["run", "four_bar", "--param", "L1=0.45", "--param", "L4=0.75"]), 1);
+    assert!(message.contains("t = "), "{message}");
+    assert!(!scratch.0.exists());
+}
+
+#[test]
+fn an_unknown_mechanism_gets_a_proposal() {
+    for command in ["run", "expand", "verify"] {
+        let message = failure(mbs(&[command, "slidercrank"]), 2);
+        assert!(
+            message.contains("did you mean `slider_crank`?") && message.contains("open_chain"),
+            "{message}"
+        );
+    }
+}
+
+#[test]
+fn senseless_arguments_are_refused_in_plain_words() {
+    let cases: [(&[&str], &str); 10] = [
+        (&["run", "four_bar", "--steps", "0"], "at least 1"),
+        (&["run", "four_bar", "--steps", "many"], "whole number"),
+        (&["run", "four_bar", "--param", "omega"], "NAME=VALUE"),
+        (&["run", "four_bar", "--param", "omega=nan"], "finite"),
+        (&["run", "four_bar", "--param", "omega=1e999"], "finite"),
+        (&["run", "four_bar", "--param", "omega=two"], "not a number"),
+        (&["run", "four_bar", "--param", "omgea=2"], "did you mean `omega`?"),
+        (&["run", "four_bar", "--param", "omega=0"], "never ends"),
+        (&["verify"], "required"),
+        (&["verify", "four_bar", "--states", "0"], "at least 1"),
+    ];
+    for (arguments, words) in cases {
+        let message = failure(mbs(arguments), 2);
+        assert!(message.contains(words), "{arguments:?}: {message}");
+    }
+}
+
+#[test]
+fn a_directory_that_cannot_be_made_is_named() {
+    let scratch = Scratch::new("file");
+    fs::create_dir_all(scratch.0.parent().expect("a directory")).expect("a directory");
+    fs::write(&scratch.0, "in the way").expect("a file");
+    let output = run_into(&scratch, &["run", "open_chain", "--steps", "2"]);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("cannot write"));
+    fs::remove_file(&scratch.0).expect("the file");
+}
+
+#[test]
+fn a_reader_that_leaves_is_no_error() {
+    for arguments in [&["list"][..], &["expand", "four_bar"]] {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_mbs"))
+            .args(arguments)
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .expect("the program starts");
+        // The pipe closes before the program writes, or while it does.
+        drop(child.stdout.take());
+        let mut message = String::new();
+        let mut errors = BufReader::new(child.stderr.take().expect("piped"));
+        errors.read_to_string(&mut message).expect("UTF-8");
+        assert!(child.wait().expect("it ends").success(), "{message}");
+        assert_eq!(message, "");
+    }
+}
+
+#[test]
+fn a_reader_that_leaves_still_gets_the_report() {
+    let scratch = Scratch::new("pipe");
+    let mut child = Command::new(env!("CARGO_BIN_EXE_mbs"))
+        .args(["run", "open_chain", "--steps", "2", "--out"])
+        .arg(&scratch.0)
+        .stdout(Stdio::piped())
+        .spawn()
+        .expect("the program starts");
+    drop(child.stdout.take());
+    assert!(child.wait().expect("it ends").success());
+    assert_eq!(scratch.text("motion.csv").lines().count(), 4);
+}
+
+#[test]
+fn a_page_shows_long_motions_thinned_and_the_values_whole() {
+    let scratch = Scratch::new("long");
+    standard_output(run_into(&scratch, &["run", "open_chain", "--steps", "5000"]));
+    assert_eq!(scratch.text("motion.csv").lines().count(), 5002);
+    let page = scratch.text("report.html");
+    let (_, rest) = page.split_once("id=\"data\">").expect("the data");
+    let json = rest.split_once("</script>").expect("its end").0;
+    let data: serde_json::Value = serde_json::from_str(json).expect("JSON");
+    let times = data["runs"][0]["time"].as_array().expect("instants");
+    assert_eq!(times.len(), 2000);
+    assert_eq!((times.first(), times.last()), (Some(&0.0.into()), Some(&1.0.into())));
+}
+
+#[test]
+fn the_emitted_code_is_printed() {
+    let text = standard_output(mbs(&["expand", "four_bar"]));
+    for part in ["pub struct FourBar", "fn phi_q", "fn gamma", "impl"] {
+        assert!(text.contains(part), "{part} is missing");
+    }
+    assert!(text.lines().count() > 100);
+}
+
+#[test]
+fn verify_prints_the_largest_error_of_each_function() {
+    let text = standard_output(mbs(&["verify", "slider_crank"]));
+    for part in ["SliderCrank at 1000 states", "Φ_q", "Φ_tt", "γ", "d² output/dt²", "agrees (bound 1e-13)"]
+    {
+        assert!(text.contains(part), "{part} is missing in\n{text}");
+    }
+    let first = BufReader::new(text.as_bytes()).lines().next().expect("a line").expect("UTF-8");
+    assert!(first.contains("as a part of the row's scale"));
+}
+
+#[test]
+fn verify_without_python_names_the_cure() {
+    let output = Command::new(env!("CARGO_BIN_EXE_mbs"))
+        .args(["verify", "four_bar"])
+        .env("MBS_PYTHON", "no-such-python")
+        .output()
+        .expect("the program starts");
+    let message = failure(output, 1);
+    assert!(message.contains("install Python 3") && message.contains("MBS_PYTHON"), "{message}");
+}
