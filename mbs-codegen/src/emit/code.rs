@@ -38,23 +38,45 @@ fn with_runtime(stream: TokenStream, runtime: &TokenStream) -> TokenStream {
     replaced
 }
 
-/// Prints one `let` a line of the section.
+/// Most `let`s of one function body. One long chain overflows rustc's stack in debug builds near 2 900 and takes its
+/// memory past 30 000; bodies of a few hundred keep both linear.
+const LONGEST_BODY: usize = 200;
+
+/// Prints one `let` a line of the section; a long section is cut into closures that pass on what is used behind them.
 pub fn lets(section: &Section, scope: &Scope<'_>, text: &mut String) {
-    for line in &section.lines {
-        match line {
-            Line::Value(id) => {
-                let value = operation(scope.graph.node(*id), scope);
-                let _ = writeln!(text, "let {} = {value};", local(*id));
-            }
-            Line::SineCosine(angles) => {
-                let name = |id: Option<NodeId>| id.map_or_else(|| "_".to_owned(), local);
-                let (sines, cosines, operands) = (
-                    list(angles, |known| name(known.sine)),
-                    list(angles, |known| name(known.cosine)),
-                    list(angles, |known| scope.operand(known.angle)),
-                );
-                let _ = writeln!(text, "let ([{sines}], [{cosines}]) = T::sin_cos([{operands}]);");
-            }
+    if section.lines.len() <= LONGEST_BODY {
+        return section.lines.iter().for_each(|line| print(line, scope, text));
+    }
+    let chunks: Vec<&[Line]> = section.lines.chunks(LONGEST_BODY).collect();
+    // Values that chunks from here on, or the results, use; collected from the back.
+    let mut used = section.results.clone();
+    let mut exports: Vec<Vec<NodeId>> = Vec::new();
+    for chunk in chunks.iter().rev() {
+        exports.push(chunk.iter().flat_map(Line::values).filter(|id| used.contains(id)).collect());
+        used.extend(chunk.iter().flat_map(|line| line.operands(scope.graph)));
+    }
+    for (chunk, exports) in chunks.into_iter().zip(exports.into_iter().rev()) {
+        let names = exports.iter().map(|id| local(*id)).collect::<Vec<_>>().join(", ");
+        let _ = writeln!(text, "let [{names}] = (|| -> [T; {}] {{", exports.len());
+        chunk.iter().for_each(|line| print(line, scope, text));
+        let _ = writeln!(text, "[{names}]\n}})();");
+    }
+}
+
+fn print(line: &Line, scope: &Scope<'_>, text: &mut String) {
+    match line {
+        Line::Value(id) => {
+            let value = operation(scope.graph.node(*id), scope);
+            let _ = writeln!(text, "let {} = {value};", local(*id));
+        }
+        Line::SineCosine(angles) => {
+            let name = |id: Option<NodeId>| id.map_or_else(|| "_".to_owned(), local);
+            let (sines, cosines, operands) = (
+                list(angles, |known| name(known.sine)),
+                list(angles, |known| name(known.cosine)),
+                list(angles, |known| scope.operand(known.angle)),
+            );
+            let _ = writeln!(text, "let ([{sines}], [{cosines}]) = T::sin_cos([{operands}]);");
         }
     }
 }

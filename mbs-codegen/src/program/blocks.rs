@@ -65,14 +65,16 @@ pub fn order(equations: &Equations, structure: &Structure, known: &BTreeSet<Node
     let mut known = known.clone();
     let mut programs = Vec::new();
     for block in &structure.blocks {
-        let (before, method) = match &block.explicit {
+        let (mut before, method) = match &block.explicit {
             Some(explicit) => {
                 let before = schedule(graph, &[explicit.value], &known);
                 (before, Method::Explicit { value: explicit.value, coefficient: explicit.coefficient })
             }
             None => newton(equations, block, &known),
         };
-        known.extend(computed(&before));
+        // Later blocks use what this one computed.
+        before.results.extend(before.lines.iter().flat_map(Line::values));
+        known.extend(before.computed());
         programs.push(BlockProgram {
             rows: block.rows.clone(),
             coordinates: block.coordinates.clone(),
@@ -96,7 +98,7 @@ fn newton(equations: &Equations, block: &Block, known: &BTreeSet<NodeId>) -> (Se
     let still: Vec<NodeId> = still.into_iter().collect();
     let before = schedule(graph, &still, known);
     let mut known = known.clone();
-    known.extend(computed(&before));
+    known.extend(before.computed());
     let section = schedule(graph, &roots, &known);
     (before, Method::Newton { section, phi, phi_q })
 }
@@ -122,14 +124,4 @@ fn moving(graph: &Graph, roots: &[NodeId], coordinates: &[usize]) -> BTreeSet<No
         }
     }
     moving
-}
-
-/// Values that a section computes.
-fn computed(section: &Section) -> impl Iterator<Item = NodeId> + '_ {
-    section.lines.iter().flat_map(|line| match line {
-        Line::Value(id) => vec![*id],
-        Line::SineCosine(angles) => {
-            angles.iter().flat_map(|known| known.sine.into_iter().chain(known.cosine)).collect()
-        }
-    })
 }

@@ -12,6 +12,15 @@ pub struct Section {
     pub lines: Vec<Line>,
     /// What it costs.
     pub operations: Operations,
+    /// Values that are used behind it.
+    pub results: BTreeSet<NodeId>,
+}
+
+impl Section {
+    /// Values that it computes.
+    pub fn computed(&self) -> impl Iterator<Item = NodeId> + '_ {
+        self.lines.iter().flat_map(Line::values)
+    }
 }
 
 /// One `let`.
@@ -21,6 +30,26 @@ pub enum Line {
     Value(NodeId),
     /// Sines and cosines of angles that are known together.
     SineCosine(Vec<Angle>),
+}
+
+impl Line {
+    /// Values that it computes.
+    pub fn values(&self) -> Vec<NodeId> {
+        match self {
+            Line::Value(id) => vec![*id],
+            Line::SineCosine(angles) => {
+                angles.iter().flat_map(|known| known.sine.into_iter().chain(known.cosine)).collect()
+            }
+        }
+    }
+
+    /// Values that it uses.
+    pub fn operands(&self, graph: &Graph) -> Vec<NodeId> {
+        match self {
+            Line::Value(id) => graph.node(*id).operands().collect(),
+            Line::SineCosine(angles) => angles.iter().map(|known| known.angle).collect(),
+        }
+    }
 }
 
 /// An angle of which sine, cosine or both are computed.
@@ -91,7 +120,7 @@ pub fn schedule(graph: &Graph, roots: &[NodeId], known: &BTreeSet<NodeId>) -> Se
             }
         }
     }
-    let mut section = Section::default();
+    let mut section = Section { results: roots.iter().copied().collect(), ..Section::default() };
     for Level { values, angles } in levels.into_values() {
         for id in values {
             count(graph.node(id), &mut section.operations);
