@@ -3,16 +3,34 @@
 //! Data flows one way, and no folder uses one to its right:
 //! tokens → `syntax` → `model` → `symbolic` → `equations` → `structure` → `program` → `emit` → tokens.
 
+// A text may be anything; the compiler of a user must not see us panic.
+#![cfg_attr(
+    not(test),
+    deny(
+        clippy::expect_used,
+        clippy::indexing_slicing,
+        clippy::panic,
+        clippy::string_slice,
+        clippy::unreachable,
+        clippy::unwrap_used
+    )
+)]
+
 mod diagnostics;
 mod emit;
 mod equations;
 mod model;
 mod program;
+#[cfg(test)]
+mod random;
 mod structure;
 mod symbolic;
 mod syntax;
 
 use diagnostics::Diagnostics;
+pub use emit::formula::Formulas;
+use emit::notation::Notation;
+pub use emit::report::{BlockReport, CoordinateReport, EntryKind, RowReport, StructureReport};
 use proc_macro2::TokenStream;
 
 /// Expands the text of a mechanism, led by the runtime's path in parentheses (without it `::mbs_runtime`).
@@ -70,6 +88,51 @@ pub fn casadi_definition(source: &str) -> Result<String, String> {
         }
         _ => Err(diagnostics.to_text()),
     }
+}
+
+/// Φ and its derivatives as plain text, of a text that is kept as a string; need not be square.
+///
+/// # Errors
+/// The faults, two lines each: `line:column: message` and `help: cure`.
+pub fn formulas(source: &str) -> Result<Formulas, String> {
+    formulas_in(source, Notation::Text)
+}
+
+/// [`formulas`] for LaTeX's mathematical mode; needs the package `amsmath`.
+///
+/// # Errors
+/// The faults, two lines each: `line:column: message` and `help: cure`.
+pub fn latex_formulas(source: &str) -> Result<Formulas, String> {
+    formulas_in(source, Notation::Latex)
+}
+
+fn formulas_in(source: &str, notation: Notation) -> Result<Formulas, String> {
+    let mut diagnostics = Diagnostics::default();
+    match read_source(source, &mut diagnostics) {
+        Some((text, model)) if diagnostics.is_empty() => {
+            let equations = equations::derive(&model);
+            Ok(emit::formula::formulas(&model, &equations, &text.header.name.to_string(), notation))
+        }
+        _ => Err(diagnostics.to_text()),
+    }
+}
+
+/// Sparsity, matching and block-triangular order of a text that is kept as a string.
+///
+/// # Errors
+/// The faults, two lines each: `line:column: message` and `help: cure`.
+pub fn structure_of(source: &str) -> Result<StructureReport, String> {
+    let mut diagnostics = Diagnostics::default();
+    let report = read_source(source, &mut diagnostics).filter(|_| diagnostics.is_empty()).and_then(
+        |(text, model)| {
+            let mut equations = equations::derive(&model);
+            let structure = structure::analyse(&model, &mut equations, &mut diagnostics)?;
+            let program = program::order(&equations, &structure);
+            let name = text.header.name.to_string();
+            Some(emit::report::report(&model, &equations, &structure, &program, &name))
+        },
+    );
+    report.ok_or_else(|| diagnostics.to_text())
 }
 
 fn read_source(source: &str, diagnostics: &mut Diagnostics) -> Option<(syntax::Text, model::Model)> {

@@ -1,0 +1,112 @@
+//! Runs a program as the emitted code runs: stage by stage, line by line, nothing read that was not computed.
+
+use super::oracle::State;
+use crate::equations::Equations;
+use crate::program::{Line, Program, Section, Stage};
+use crate::symbolic::{Graph, Leaf, Node, NodeId, Unary, evaluate};
+
+/// Values by name, in the order of the oracle.
+pub fn run(equations: &Equations, program: &Program, state: &State) -> Vec<(String, f64)> {
+    let machine = Machine { graph: &equations.graph, state };
+    let nothing = vec![None; equations.graph.len()];
+    let parameters = machine.stage(&program.parameters, &nothing);
+    let known = machine.stage(&program.position, &parameters);
+    let mut results = Vec::new();
+    let mut read = |name: &str, section: &Section, roots: Vec<Option<NodeId>>| {
+        let values = machine.section(section, &known);
+        for (index, root) in roots.into_iter().enumerate() {
+            results.push((format!("{name} {index}"), root.map_or(0.0, |root| machine.value(root, &values))));
+        }
+    };
+    let rows = &equations.rows;
+    let entries = rows.iter().flat_map(|row| {
+        (0..rows.len()).map(|column| row.phi_q.iter().find(|(c, _)| *c == column).map(|(_, entry)| *entry))
+    });
+    read("phi", &program.phi, rows.iter().map(|row| Some(row.phi)).collect());
+    read("phi_q", &program.phi_q, entries.collect());
+    read("phi_t", &program.phi_t, rows.iter().map(|row| row.phi_t).collect());
+    read("phi_tt", &program.phi_tt, rows.iter().map(|row| row.phi_tt).collect());
+    read("phi_qt_qd", &program.phi_qt_qd, rows.iter().map(|row| row.phi_qt_qd).collect());
+    read("gamma", &program.gamma, rows.iter().map(|row| row.gamma).collect());
+    read("branch", &program.branches, equations.branches.iter().map(|branch| Some(*branch)).collect());
+    let outputs = equations.outputs.iter();
+    let outputs = outputs.flat_map(|y| [Some(y.value), y.rate.flatten(), y.acceleration.flatten()]);
+    read("output", &program.outputs, outputs.collect());
+    results
+}
+
+struct Machine<'a> {
+    graph: &'a Graph,
+    state: &'a State,
+}
+
+/// One slot a node of the graph, filled once it is computed.
+type Values = Vec<Option<f64>>;
+
+impl Machine<'_> {
+    /// What is known, and the values that a stage keeps.
+    fn stage(&self, stage: &Stage, known: &Values) -> Values {
+        let values = self.section(&stage.section, known);
+        let mut kept = known.clone();
+        for id in stage.fields.keys() {
+            kept[id.index()] = Some(self.value(*id, &values));
+        }
+        kept
+    }
+
+    /// Executes a section on top of what is known.
+    fn section(&self, section: &Section, known: &Values) -> Values {
+        let mut values = known.clone();
+        for line in &section.lines {
+            match line {
+                Line::Value(id) => {
+                    let value = self.operation(*id, &values);
+                    values[id.index()] = Some(value);
+                }
+                Line::SineCosine(angles) => {
+                    for known in angles {
+                        let angle = self.value(known.angle, &values);
+                        for (function, id) in [(Unary::Sin, known.sine), (Unary::Cos, known.cosine)] {
+                            if let Some(id) = id {
+                                values[id.index()] = Some(evaluate::unary(function, angle));
+                            }
+                        }
+                    }
+                }
+            }
+        }
+        values
+    }
+
+    fn operation(&self, id: NodeId, values: &Values) -> f64 {
+        let of = |id: NodeId| self.value(id, values);
+        match self.graph.node(id) {
+            Node::Unary(function, a) => evaluate::unary(function, of(a)),
+            Node::Binary(function, a, b) => evaluate::binary(function, of(a), of(b)),
+            Node::Select { less, than, yes, no } => {
+                if of(less) < of(than) {
+                    of(yes)
+                } else {
+                    of(no)
+                }
+            }
+            Node::Constant(_) | Node::Leaf(_) => of(id),
+        }
+    }
+
+    /// An operand: a number, a variable of the state, or a value that was computed before.
+    fn value(&self, id: NodeId, values: &Values) -> f64 {
+        if let Some(value) = values[id.index()] {
+            return value;
+        }
+        match self.graph.node(id) {
+            Node::Constant(bits) => f64::from_bits(bits),
+            Node::Leaf(Leaf::Parameter(i) | Leaf::Input(i)) => self.state.variables[i as usize],
+            Node::Leaf(Leaf::Time) => self.state.t,
+            Node::Leaf(Leaf::Position(i)) => self.state.q[i as usize],
+            Node::Leaf(Leaf::Velocity(i)) => self.state.qd[i as usize],
+            Node::Leaf(Leaf::Acceleration(i)) => self.state.qdd[i as usize],
+            node => panic!("{node:?} is used before it is computed"),
+        }
+    }
+}

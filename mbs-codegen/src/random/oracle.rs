@@ -1,0 +1,114 @@
+//! The model's expressions in second-order Taylor arithmetic.
+
+use super::Random;
+use super::jet::Jet;
+use crate::model::expression::Node;
+use crate::model::{Model, VariableKind};
+
+/// Data of one evaluation, exact numbers all.
+pub struct State {
+    pub q: Vec<f64>,
+    pub qd: Vec<f64>,
+    pub qdd: Vec<f64>,
+    pub t: f64,
+    pub variables: Vec<f64>,
+}
+
+impl State {
+    pub fn draw(model: &Model, random: &mut Random) -> Self {
+        let mut numbers = |count: usize| (0..count).map(|_| random.number()).collect::<Vec<_>>();
+        let n = model.coordinates.len();
+        State {
+            q: numbers(n),
+            qd: numbers(n),
+            qdd: numbers(n),
+            t: numbers(1)[0],
+            variables: numbers(model.variables.len()),
+        }
+    }
+}
+
+/// A number to be reproduced, and the bound on rounding in units of 2⁻⁵³.
+pub struct Expected {
+    pub value: f64,
+    pub bound: f64,
+    /// Whether rounding decides on which side of a kink it is computed.
+    pub torn: bool,
+}
+
+/// The line along which expressions are followed: how each leaf moves.
+#[derive(Clone, Copy)]
+struct Line {
+    /// Time and inputs move.
+    time: bool,
+    /// Coordinates move with q̇.
+    velocity: bool,
+    /// Coordinates are accelerated by q̈.
+    acceleration: bool,
+    /// The coordinate that moves alone at rate 1.
+    axis: Option<usize>,
+}
+
+/// All functions in the order in which the interpreter gives them: Φ, Φ_q row by row, Φ_t, Φ_tt, Φ_qt q̇, γ,
+/// branches, outputs with rate and acceleration.
+pub fn run(model: &Model, state: &State) -> Vec<Expected> {
+    let still = Line { time: false, velocity: false, acceleration: false, axis: None };
+    let rows: Vec<usize> = model.rows.iter().map(|row| row.residual.index()).collect();
+    let along = |line: Line| {
+        let jets = evaluate(model, state, line);
+        rows.iter().map(|row| jets[*row]).collect::<Vec<Jet>>()
+    };
+    let part = |jets: &[Jet], k: usize, sign: f64| -> Vec<Expected> {
+        jets.iter().map(|jet| Expected { value: sign * jet.v[k], bound: jet.b[k], torn: jet.torn }).collect()
+    };
+    let time = along(Line { time: true, ..still });
+    let motion = along(Line { velocity: true, ..still });
+    let both = along(Line { time: true, velocity: true, ..still });
+    let mut expected = part(&time, 0, 1.0);
+    let columns: Vec<Vec<Jet>> =
+        (0..state.q.len()).map(|axis| along(Line { axis: Some(axis), ..still })).collect();
+    for row in 0..rows.len() {
+        expected.extend(columns.iter().flat_map(|column| part(&column[row..=row], 1, 1.0)));
+    }
+    expected.extend(part(&time, 1, 1.0));
+    expected.extend(part(&time, 2, 1.0));
+    // By polarisation: twice the mixed derivative is what the joint motion has beyond its parts.
+    for ((both, motion), time) in both.iter().zip(&motion).zip(&time) {
+        let value = 0.5 * (both.v[2] - motion.v[2] - time.v[2]);
+        expected.push(Expected { value, bound: both.b[2] + motion.b[2] + time.b[2], torn: both.torn });
+    }
+    expected.extend(part(&both, 2, -1.0));
+    let jets = evaluate(model, state, Line { time: true, velocity: true, acceleration: true, axis: None });
+    expected
+        .extend(model.branches.iter().flat_map(|branch| part(&jets[branch.value.index()..][..1], 0, 1.0)));
+    for output in &model.outputs {
+        expected.extend((0..3).flat_map(|k| part(&jets[output.value.index()..][..1], k, 1.0)));
+    }
+    expected
+}
+
+/// One jet an expression.
+fn evaluate(model: &Model, state: &State, line: Line) -> Vec<Jet> {
+    let mut jets: Vec<Jet> = Vec::with_capacity(model.expressions.len());
+    let moved = |on: bool, rate: f64| if on { rate } else { 0.0 };
+    for (_, node) in model.expressions.iter() {
+        let jet = match node {
+            Node::Number(value) => Jet::constant(value),
+            Node::Time => Jet::new([state.t, moved(line.time, 1.0), 0.0]),
+            Node::Coordinate(i) => {
+                let rate = if line.axis == Some(i) { 1.0 } else { moved(line.velocity, state.qd[i]) };
+                Jet::new([state.q[i], rate, moved(line.acceleration, state.qdd[i])])
+            }
+            Node::Variable(i) => {
+                let moves = line.time && model.variables[i].kind == VariableKind::InputWithRates;
+                let v = |offset: usize| state.variables.get(i + offset).copied().unwrap_or(0.0);
+                Jet::new([v(0), moved(moves, v(1)), moved(moves, v(2))])
+            }
+            Node::Unary(function, a) => jets[a.index()].unary(function),
+            Node::Binary(function, a, b) => jets[a.index()].binary(function, jets[b.index()]),
+            Node::Rate(..) => unreachable!("random texts use no `der`"),
+        };
+        jets.push(jet);
+    }
+    jets
+}

@@ -1,0 +1,120 @@
+//! Texts that use the whole language, each well defined at every state.
+
+use super::Random;
+
+/// A random text: scalar and vector coordinates, parameters, inputs with rates, `let`s, loops, drives, outputs.
+pub fn write(random: &mut Random) -> String {
+    let mut writer = Writer { random, names: Vec::new() };
+    let scalars = 1 + writer.random.below(3) as usize;
+    let mut text = String::from("pub mechanism Random;\nconst C: 1 = 1.25;\nconst N: 1 = 2;\n");
+    for index in 0..3 {
+        text += &format!("param p{index}: 1 = {:?};\n", writer.random.number());
+        writer.names.push(format!("p{index}"));
+    }
+    text += "param L: [1; 3] = [0.5, -1.5, 0.75];\ninput u: 1, rates;\ninput w: [1; 2], rates;\n";
+    writer.names.extend(["L[0]", "L.2", "u", "w[1]", "C", "(t/1s)", "v[0]", "v.1"].map(String::from));
+    for index in 0..scalars {
+        text += &format!("coord q{index}: 1 = 0.1;\n");
+        // Coordinates matter most: name them often.
+        writer.names.extend([format!("q{index}"), format!("q{index}")]);
+    }
+    text += "coord v: [1; 2] = [p0, 1];\n";
+    for index in 0..writer.random.below(4) {
+        text += &format!("let a{index} = {};\n", writer.scalar(3));
+        writer.names.push(format!("a{index}"));
+    }
+    text += &format!("let b = {};\n", writer.vector(2));
+    writer.names.extend(["b[0]", "b.1"].map(String::from));
+    for index in 0..scalars {
+        let (left, right) = (writer.scalar(3), writer.scalar(4));
+        text += &match writer.random.below(3) {
+            0 => format!("drive d{index}: q{index} == {};\n", writer.scalar(4)),
+            1 => format!("drive d{index}: q{index}*(2.5 + sin({left})) == {right};\n"),
+            _ => format!("constraint c{index} {{ {right} == q{index}*(1.1 + ({left})^2); }}\n"),
+        };
+    }
+    text += &match writer.random.below(3) {
+        0 => {
+            format!("constraint pair {{ v*({}) + {} == [v[0], q0]; }}\n", writer.scalar(2), writer.vector(3))
+        }
+        1 => format!(
+            "constraint pair {{ for i in 0..N {{ v[i]*(i + {}) == {}*L[i + 1]; }} }}\n",
+            writer.scalar(2),
+            writer.scalar(3)
+        ),
+        _ => format!("for i in 0..N {{ drive each: v[i] == {} - L[i]*v[1 - i]; }}\n", writer.scalar(3)),
+    };
+    text += &format!("branch open: {} > {};\n", writer.scalar(3), writer.scalar(2));
+    text += &format!("out y: 1 = {};\nout z: [1; 2] = {};\n", writer.scalar(4), writer.vector(3));
+    text
+}
+
+struct Writer<'a> {
+    random: &'a mut Random,
+    names: Vec<String>,
+}
+
+impl Writer<'_> {
+    /// A number at every state, of moderate size.
+    fn scalar(&mut self, depth: u32) -> String {
+        if depth == 0 || self.random.below(8) == 0 {
+            return self.leaf();
+        }
+        let choice = self.random.below(36);
+        let a = self.scalar(depth - 1);
+        let b = if choice >= 18 { self.scalar(depth - 1) } else { String::new() };
+        match choice {
+            0 => format!("sin({a})"),
+            1 => format!("cos({a})"),
+            2 => format!("exp(0.3*sin({a}))"),
+            3 => format!("ln(2 + sin({a}))"),
+            4 => format!("sqrt(1.5 + ({a})^2)"),
+            5 => format!("tan(0.4*sin({a}))"),
+            6 => format!("asin(0.6*sin({a}))"),
+            7 => format!("acos(0.6*cos({a}))"),
+            8 => format!("atan({a})"),
+            9 => format!("sinh(sin({a}))"),
+            10 => format!("cosh(cos({a}))"),
+            11 => format!("tanh({a})"),
+            12 => format!("abs({a})"),
+            13 => format!("sign({a})*C"),
+            14 => format!("-({a})"),
+            15 => format!("(2 + cos({a}))^-1.5"),
+            16 => format!("(1.2 + sin({a}))^3"),
+            17 => format!("sum(k{depth} in 0..3: L[k{depth}]*sin({a} + k{depth}))"),
+            18 | 19 => format!("({a} + {b})"),
+            20 | 21 => format!("({a} - {b})"),
+            22..=24 => format!("{a}*({b})"),
+            25 => format!("({a})/(2.5 + sin({b}))"),
+            26 => format!("min({a}, {b})"),
+            27 => format!("max({a}, {b}, 0.1)"),
+            28 => format!("hypot({a}, 1 + ({b})^2)"),
+            29 => format!("atan2({a}, 2 + cos({b}))"),
+            30 => format!("(1.5 + sin({a}))^tanh({b})"),
+            31 => format!("dot([{a}, C], [{b}, {a}])"),
+            32 => format!("cross([{a}, {b}], [{b}, p1])"),
+            33 => format!("norm([1.5 + cos({a}), {b}])"),
+            34 => format!("det([[{a}, {b}, 1], [p0, {a}, 2], [C, 3, {b}]])"),
+            _ => format!("(rot({a})*[{b}, p2])[{}]", self.random.below(2)),
+        }
+    }
+
+    fn vector(&mut self, depth: u32) -> String {
+        let a = self.scalar(depth);
+        match self.random.below(5) {
+            0 => format!("unit({a})"),
+            1 => format!("rot({a})*v"),
+            2 => format!("({a})*w + v/3"),
+            3 => format!("-[{a}, {}]", self.scalar(depth)),
+            _ => format!("[{a}, {}]", self.scalar(depth)),
+        }
+    }
+
+    fn leaf(&mut self) -> String {
+        if self.random.below(6) == 0 {
+            return format!("({:?})", self.random.number());
+        }
+        let index = self.random.below(self.names.len() as u64) as usize;
+        self.names[index].clone()
+    }
+}
