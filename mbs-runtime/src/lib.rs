@@ -6,6 +6,8 @@
 //! names the row or the coordinate and its line in the text.
 #![no_std]
 #![forbid(unsafe_code)]
+// Whether an index is in range, LLVM decides, and a proof on the linked binary shows that it did (`tests/proofs`).
+#![cfg_attr(not(test), deny(clippy::expect_used, clippy::panic, clippy::unreachable, clippy::unwrap_used))]
 
 pub mod assembly;
 #[cfg(feature = "nalgebra")]
@@ -22,6 +24,8 @@ pub mod safeguarded;
 pub mod scalar;
 pub mod stepper;
 pub mod sweep;
+pub mod trace;
+mod trigonometry;
 
 pub use assembly::{Assembled, assemble};
 #[cfg(feature = "nalgebra")]
@@ -35,11 +39,12 @@ pub use mechanism::{
     Block, BlockSolver, Entry, Evaluation, Factorization, Kinematic, Margin, Mechanism, OutputValue, Signal,
 };
 pub use newton::Newton;
-pub use newton_raphson::newton_raphson;
+pub use newton_raphson::{Iterate, newton_raphson, newton_raphson_watched};
 pub use safeguarded::Safeguarded;
 pub use scalar::{Real, Scalar};
 pub use stepper::Stepper;
 pub use sweep::{Frame, Sweep};
+pub use trace::{Trace, Traced};
 
 /// Declares a mechanism; see the grammar in the README.
 #[macro_export]

@@ -22,6 +22,28 @@ pub fn newton_raphson<S: Mechanism<R, N, N>, R: Real, const N: usize>(
     q: impl Into<[R; N]>,
     t: R,
 ) -> Result<([R; N], u32), Failure> {
+    newton_raphson_watched(mechanism, q, t, |_| ())
+}
+
+/// A position on the way of [`newton_raphson`], before it is judged.
+#[derive(Clone, Copy, Debug)]
+pub struct Iterate<'a, R, const N: usize> {
+    /// Coordinates: N.
+    pub q: &'a [R; N],
+    /// Residuals Φ there: N, in the unit of the row.
+    pub phi: &'a [R; N],
+}
+
+/// [`newton_raphson`], each iterate told to `watch`.
+///
+/// # Errors
+/// Those of [`newton_raphson`].
+pub fn newton_raphson_watched<S: Mechanism<R, N, N>, R: Real, const N: usize>(
+    mechanism: &S,
+    q: impl Into<[R; N]>,
+    t: R,
+    mut watch: impl FnMut(Iterate<'_, R, N>),
+) -> Result<([R; N], u32), Failure> {
     let mut q = q.into();
     let broken = time_failure(t).or(variable_failure(mechanism)).or(non_finite(&q, S::COORDINATES));
     if let Some(failure) = broken {
@@ -34,6 +56,7 @@ pub fn newton_raphson<S: Mechanism<R, N, N>, R: Real, const N: usize>(
     for iteration in 0..=ITERATIONS {
         let position = mechanism.position(&parameters, &q, t);
         let (phi, phi_q) = (mechanism.phi(&parameters, &position), mechanism.phi_q(&parameters, &position));
+        watch(Iterate { q: &q, phi: &phi });
         if !all_finite(&phi, &phi_q) {
             let row = phi.iter().zip(&phi_q).position(|(r, row)| !all_finite(&[*r], &[[sum(row)]]));
             let row = entry(S::ROWS, u16::try_from(row.unwrap_or(0)).unwrap_or(u16::MAX));

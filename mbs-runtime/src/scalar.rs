@@ -3,6 +3,8 @@
 use core::fmt::Debug;
 use core::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
+use crate::trigonometry;
+
 /// A number as emitted code sees it; open to implementations outside this crate.
 ///
 /// Deliberately not `PartialOrd`: comparing gives a mask and branching is [`select`](Scalar::select), so
@@ -114,7 +116,7 @@ pub trait Real: Scalar<Real = Self, Mask = bool> + PartialOrd {
 }
 
 macro_rules! real {
-    ($real:ident, $sqrt:ident, $exp:ident, $ln:ident, $sincos:ident, $tan:ident, $asin:ident, $acos:ident, $atan:ident,
+    ($real:ident, $sincos:path, $sqrt:ident, $exp:ident, $ln:ident, $tan:ident, $asin:ident, $acos:ident, $atan:ident,
      $atan2:ident, $sinh:ident, $cosh:ident, $tanh:ident, $pow:ident, $hypot:ident) => {
         impl Scalar for $real {
             type Real = $real;
@@ -167,11 +169,7 @@ macro_rules! real {
             }
             #[inline(always)]
             fn sin_cos<const K: usize>(angles: [Self; K]) -> ([Self; K], [Self; K]) {
-                let (mut sines, mut cosines) = (angles, angles);
-                for ((sine, cosine), angle) in sines.iter_mut().zip(&mut cosines).zip(angles) {
-                    (*sine, *cosine) = libm::$sincos(angle);
-                }
-                (sines, cosines)
+                $sincos(angles)
             }
             #[inline(always)]
             fn sqrt(self) -> Self {
@@ -237,5 +235,21 @@ macro_rules! real {
     };
 }
 
-real!(f64, sqrt, exp, log, sincos, tan, asin, acos, atan, atan2, sinh, cosh, tanh, pow, hypot);
-real!(f32, sqrtf, expf, logf, sincosf, tanf, asinf, acosf, atanf, atan2f, sinhf, coshf, tanhf, powf, hypotf);
+real!(f64, trigonometry::sin_cos, sqrt, exp, log, tan, asin, acos, atan, atan2, sinh, cosh, tanh, pow, hypot);
+real!(
+    f32,
+    trigonometry::sin_cos_single,
+    sqrtf,
+    expf,
+    logf,
+    tanf,
+    asinf,
+    acosf,
+    atanf,
+    atan2f,
+    sinhf,
+    coshf,
+    tanhf,
+    powf,
+    hypotf
+);

@@ -4,3 +4,6 @@
 #[cfg(doctest)]
 #[doc = include_str!("../../README.md")]
 mod readme {}
+
+pub mod proofs;
+pub mod tools;

@@ -7,7 +7,7 @@ mod direct3;
 mod lu;
 pub mod orthogonal;
 #[cfg(test)]
-mod sequence;
+pub(crate) mod sequence;
 
 pub use direct1::Direct1;
 pub use direct2::Direct2;

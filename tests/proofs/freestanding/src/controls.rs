@@ -1,0 +1,44 @@
+//! What the proof must reject.
+
+/// An index that may be out of range.
+#[cfg(feature = "control-panics")]
+pub fn indexes(index: usize) -> u8 {
+    core::hint::black_box([1, 2, 3])[index]
+}
+
+#[cfg(feature = "control-allocates")]
+pub use allocation::allocates;
+
+#[cfg(feature = "control-allocates")]
+mod allocation {
+    extern crate alloc;
+
+    use core::alloc::{GlobalAlloc, Layout};
+
+    unsafe extern "C" {
+        fn malloc(size: usize) -> *mut u8;
+        fn free(pointer: *mut u8);
+    }
+
+    struct CLibrary;
+
+    // SAFETY: as the C library's; never run.
+    unsafe impl GlobalAlloc for CLibrary {
+        unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+            // SAFETY: see above.
+            unsafe { malloc(layout.size()) }
+        }
+        unsafe fn dealloc(&self, pointer: *mut u8, _: Layout) {
+            // SAFETY: see above.
+            unsafe { free(pointer) }
+        }
+    }
+
+    #[global_allocator]
+    static ALLOCATOR: CLibrary = CLibrary;
+
+    /// A number on the heap.
+    pub fn allocates(number: u64) -> alloc::boxed::Box<u64> {
+        alloc::boxed::Box::new(number)
+    }
+}

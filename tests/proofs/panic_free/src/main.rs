@@ -1,0 +1,32 @@
+//! Links only if no entry point can panic; run, it takes two mechanisms through all of them.
+//!
+//! A binary, because in a `cdylib` no-panic's missing symbol is no error.
+#![forbid(unsafe_code)]
+
+use mbs_runtime::{Failure, Kinematic, Lanes, Real, Scalar};
+use proof_subjects::{FourBar, Platform, Start, exercise_emitted, exercise_solvers};
+
+fn emitted<S: Kinematic<T, N>, T: Scalar, const N: usize>(mechanism: S) {
+    let start = Start::of(&mechanism);
+    exercise_emitted(mechanism, &start);
+}
+
+fn solvers<S: Kinematic<R, N> + Copy, R: Real, const N: usize>(
+    mechanism: S,
+    variable: &str,
+) -> Result<(), Failure> {
+    exercise_solvers(mechanism, &Start::of(&mechanism), variable)
+}
+
+fn main() -> Result<(), Failure> {
+    emitted(FourBar::<f64>::default());
+    emitted(FourBar::<f32>::default());
+    emitted(FourBar::<Lanes<f64, 4>>::default());
+    emitted(Platform::<f64>::default());
+    emitted(Platform::<f32>::default());
+    emitted(Platform::<Lanes<f64, 4>>::default());
+    solvers(FourBar::<f64>::default(), "L5")?;
+    solvers(FourBar::<f32>::default(), "L5")?;
+    solvers(Platform::<f64>::default(), "rod[1]")?;
+    solvers(Platform::<f32>::default(), "rod[1]")
+}

@@ -1,0 +1,208 @@
+//! Every function of emitted code, every solver, each by itself.
+//!
+//! With the feature `no-panic` a function that can panic does not link, and the linker names it.
+
+use mbs_runtime::{
+    Assembled, Evaluation, Failure, Frame, Kinematic, Margin, Mechanism, Newton, Outcome, Real,
+    RegularFactors, Scalar, Statistics, Stepper,
+};
+#[cfg(feature = "no-panic")]
+use no_panic::no_panic;
+
+macro_rules! entry_points {
+    ($($(#[$attribute:meta])* fn $name:ident[$($generics:tt)*]($($argument:ident: $kind:ty),* $(,)?) -> $result:ty $body:block)*) => {
+        $(
+            $(#[$attribute])*
+            #[cfg_attr(feature = "no-panic", no_panic)]
+            #[inline(never)]
+            pub fn $name<$($generics)*>($($argument: $kind),*) -> $result $body
+        )*
+    };
+}
+
+entry_points! {
+    /// Sets every parameter and input to what it is.
+    fn access[S: Mechanism<T, N, N>, T: Scalar, const N: usize](mechanism: &mut S) -> bool {
+        (0..=S::VARIABLES.len()).fold(true, |all, index| match mechanism.get(index) {
+            Some(value) => all & mechanism.set(index, value),
+            None => all & (index == S::VARIABLES.len()),
+        })
+    }
+    /// The design in one lane.
+    fn lane[S: Mechanism<T, N, N>, T: Scalar, const N: usize](mechanism: &S, lane: usize) -> S::Lane {
+        mechanism.lane(lane)
+    }
+    /// Stage 0.
+    fn parameters[S: Mechanism<T, N, N>, T: Scalar, const N: usize](mechanism: &S) -> S::Parameters {
+        mechanism.parameters()
+    }
+    /// The text's guess.
+    fn guess[S: Mechanism<T, N, N>, T: Scalar, const N: usize](
+        mechanism: &S, parameters: &S::Parameters,
+    ) -> [T; N] {
+        mechanism.guess(parameters)
+    }
+    /// Metric of the coordinates.
+    fn coordinate_scales[S: Mechanism<T, N, N>, T: Scalar, const N: usize](
+        mechanism: &S, parameters: &S::Parameters,
+    ) -> [T; N] {
+        mechanism.coordinate_scales(parameters)
+    }
+    /// Metric of the rows.
+    fn row_scales[S: Mechanism<T, N, N>, T: Scalar, const N: usize](
+        mechanism: &S, parameters: &S::Parameters,
+    ) -> [T; N] {
+        mechanism.row_scales(parameters)
+    }
+    /// Stage 1.
+    fn position[S: Mechanism<T, N, N>, T: Scalar, const N: usize](
+        mechanism: &S, parameters: &S::Parameters, q: &[T; N], t: T,
+    ) -> S::Position {
+        mechanism.position(parameters, q, t)
+    }
+    /// Φ.
+    fn phi[S: Mechanism<T, N, N>, T: Scalar, const N: usize](
+        mechanism: &S, parameters: &S::Parameters, position: &S::Position,
+    ) -> [T; N] {
+        mechanism.phi(parameters, position)
+    }
+    /// Φ_q.
+    fn phi_q[S: Mechanism<T, N, N>, T: Scalar, const N: usize](
+        mechanism: &S, parameters: &S::Parameters, position: &S::Position,
+    ) -> [[T; N]; N] {
+        mechanism.phi_q(parameters, position)
+    }
+    /// Φ_t.
+    fn phi_t[S: Mechanism<T, N, N>, T: Scalar, const N: usize](
+        mechanism: &S, parameters: &S::Parameters, position: &S::Position,
+    ) -> [T; N] {
+        mechanism.phi_t(parameters, position)
+    }
+    /// Φ_tt.
+    fn phi_tt[S: Mechanism<T, N, N>, T: Scalar, const N: usize](
+        mechanism: &S, parameters: &S::Parameters, position: &S::Position,
+    ) -> [T; N] {
+        mechanism.phi_tt(parameters, position)
+    }
+    /// Φ_qt q̇.
+    fn phi_qt_qd[S: Mechanism<T, N, N>, T: Scalar, const N: usize](
+        mechanism: &S, parameters: &S::Parameters, position: &S::Position, qd: &[T; N],
+    ) -> [T; N] {
+        mechanism.phi_qt_qd(parameters, position, qd)
+    }
+    /// γ.
+    fn gamma[S: Mechanism<T, N, N>, T: Scalar, const N: usize](
+        mechanism: &S, parameters: &S::Parameters, position: &S::Position, qd: &[T; N],
+    ) -> [T; N] {
+        mechanism.gamma(parameters, position, qd)
+    }
+    /// Branch conditions.
+    fn branches[S: Mechanism<T, N, N>, T: Scalar, const N: usize](
+        mechanism: &S, parameters: &S::Parameters, position: &S::Position,
+    ) -> S::Branches {
+        mechanism.branches(parameters, position)
+    }
+    /// Outputs.
+    fn outputs[S: Mechanism<T, N, N>, T: Scalar, const N: usize](
+        mechanism: &S, parameters: &S::Parameters, position: &S::Position, qd: &[T; N], qdd: &[T; N],
+    ) -> S::Outputs {
+        mechanism.outputs(parameters, position, qd, qdd)
+    }
+    /// Φ, Φ_q, Φ_t, γ in one call.
+    fn evaluate[S: Mechanism<T, N, N>, T: Scalar, const N: usize](
+        mechanism: &S, parameters: &S::Parameters, q: &[T; N], t: T, qd: &[T; N],
+    ) -> Evaluation<T, N, N> {
+        mechanism.evaluate(parameters, q, t, qd)
+    }
+    /// Positions of all lanes at once.
+    fn solve_blocks[S: Kinematic<T, N>, T: Scalar, const N: usize](
+        mechanism: &S, parameters: &S::Parameters, q: &mut [T; N], t: T,
+    ) -> T::Lanes<Outcome> {
+        mechanism.solve_blocks(parameters, q, t, &mut Newton::new(T::constant(1.0)))
+    }
+    /// Factors of all lanes at once.
+    fn factorize_blocks[S: Kinematic<T, N>, T: Scalar, const N: usize](
+        mechanism: &S, parameters: &S::Parameters, position: &S::Position,
+    ) -> (S::Factors, Margin<T>) {
+        mechanism.factorize(parameters, position)
+    }
+    /// Φ_q x = b.
+    fn solve_linear[S: Kinematic<T, N>, T: Scalar, const N: usize](
+        mechanism: &S, factors: &S::Factors, b: &[T; N],
+    ) -> [T; N] {
+        mechanism.solve_linear(factors, b)
+    }
+
+    /// The next position.
+    fn solve_position[S: Kinematic<R, N>, R: Real, const N: usize](
+        mechanism: &S, parameters: &S::Parameters, start: &[R; N], t: R,
+    ) -> Result<([R; N], Statistics), Failure> {
+        mbs_runtime::solve_position(mechanism, parameters, start, t)
+    }
+    /// Factors that rates are solved with.
+    fn factorize[S: Kinematic<R, N>, R: Real, const N: usize](
+        mechanism: &S, parameters: &S::Parameters, position: &S::Position, t: R,
+    ) -> Result<RegularFactors<S::Factors, R>, Failure> {
+        mbs_runtime::factorize(mechanism, parameters, position, t)
+    }
+    /// q̇.
+    fn solve_velocity[S: Kinematic<R, N>, R: Real, const N: usize](
+        mechanism: &S, parameters: &S::Parameters, position: &S::Position, factors: &RegularFactors<S::Factors, R>,
+    ) -> Result<[R; N], Failure> {
+        mbs_runtime::solve_velocity(mechanism, parameters, position, factors)
+    }
+    /// q̈.
+    fn solve_acceleration[S: Kinematic<R, N>, R: Real, const N: usize](
+        mechanism: &S, parameters: &S::Parameters, position: &S::Position, qd: &[R; N],
+        factors: &RegularFactors<S::Factors, R>,
+    ) -> Result<[R; N], Failure> {
+        mbs_runtime::solve_acceleration(mechanism, parameters, position, qd, factors)
+    }
+    /// The first position.
+    fn assemble[S: Kinematic<R, N>, R: Real, const N: usize](
+        mechanism: &S, guess: [R; N], t: R,
+    ) -> Result<Assembled<R, N>, Failure> {
+        mbs_runtime::assemble(mechanism, guess, t)
+    }
+    /// The lecture's method.
+    fn newton_raphson[S: Kinematic<R, N>, R: Real, const N: usize](
+        mechanism: &S, q: [R; N], t: R,
+    ) -> Result<([R; N], u32), Failure> {
+        mbs_runtime::newton_raphson(mechanism, q, t)
+    }
+    /// A stepper in its first position.
+    fn stepper[S: Kinematic<R, N>, R: Real, const N: usize](
+        mechanism: S, guess: [R; N], t: R,
+    ) -> Result<Stepper<S, R, N>, Failure> {
+        Stepper::assemble(mechanism, guess, t)
+    }
+    /// A step.
+    fn advance[S: Kinematic<R, N>, R: Real, const N: usize](
+        stepper: &mut Stepper<S, R, N>, h: R,
+    ) -> Result<Statistics, Failure> {
+        stepper.advance(h)
+    }
+    /// A change of a variable by name.
+    fn change[S: Kinematic<R, N>, R: Real, const N: usize](
+        stepper: &mut Stepper<S, R, N>, name: &str, value: R,
+    ) -> bool {
+        stepper.change(|mechanism| S::variable(name).is_some_and(|index| mechanism.set(index, value)))
+    }
+    /// The state with its outputs.
+    fn frame[S: Kinematic<R, N>, R: Real, const N: usize](
+        stepper: &Stepper<S, R, N>,
+    ) -> Frame<R, S::Outputs, N> {
+        stepper.frame()
+    }
+    /// A motion; the last frame's closure error, and how many frames there were.
+    fn sweep[S: Kinematic<R, N>, R: Real, const N: usize](
+        stepper: &mut Stepper<S, R, N>, until: R, steps: u32,
+    ) -> Result<(R, u32), Failure> {
+        let (mut closure_error, mut frames) = (R::constant(0.0), 0_u32);
+        for frame in stepper.sweep(until, steps) {
+            closure_error = frame?.closure_error;
+            frames = frames.saturating_add(1);
+        }
+        Ok((closure_error, frames))
+    }
+}

@@ -1,0 +1,72 @@
+//! Builds the crates of `tests/proofs`, a workspace of its own.
+
+use std::env;
+use std::fs::{self, File};
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use crate::tools;
+
+/// The workspace of the proof crates.
+pub fn directory() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("proofs")
+}
+
+/// Where the proof crates are built: once for each set of compiler flags, below the tests' own target directory.
+pub struct Workshop {
+    target: PathBuf,
+    flags: &'static str,
+}
+
+impl Workshop {
+    /// A workshop below `scratch`, a test's `CARGO_TARGET_TMPDIR`; `flags` go to the Rust compiler.
+    pub fn new(scratch: &str, name: &str, flags: &'static str) -> Self {
+        Workshop { target: Path::new(scratch).join(name), flags }
+    }
+
+    /// Directory of what is built.
+    pub fn target(&self) -> &Path {
+        &self.target
+    }
+
+    /// Runs `cargo build` with `arguments` and copies `product`, relative to the target directory, to `copy` there.
+    ///
+    /// The product's name does not tell its features, so that only a copy made before the next build is the one.
+    ///
+    /// # Errors
+    /// What the compiler or the linker complains about.
+    ///
+    /// # Panics
+    /// Where cargo does not start or a file cannot be written.
+    pub fn build(&self, arguments: &[&str], product: &str, copy: &str) -> Result<PathBuf, String> {
+        let made = |path: &Path, result: std::io::Result<()>| {
+            result.unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+        };
+        made(&self.target, fs::create_dir_all(&self.target));
+        let lock_file = self.target.join("lock");
+        let lock = File::create(&lock_file);
+        made(&lock_file, lock.as_ref().map_or_else(|_| Ok(()), File::lock));
+        tools::output(self.cargo().args(arguments), "the tests need cargo, which runs them")?;
+        let copy = self.target.join(copy);
+        made(&copy, fs::copy(self.target.join(product), &copy).map(drop));
+        Ok(copy)
+    }
+
+    /// `cargo build` with the proof workspace's own profiles: settings of the outer run do not reach it.
+    fn cargo(&self) -> Command {
+        let mut command = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+        command.arg("build").current_dir(directory());
+        for (name, _) in env::vars_os() {
+            let profile = name.to_string_lossy().starts_with("CARGO_PROFILE_");
+            if profile || OUTER_SETTINGS.iter().any(|setting| name == *setting) {
+                command.env_remove(&name);
+            }
+        }
+        command.env("CARGO_TARGET_DIR", &self.target).env("RUSTFLAGS", self.flags);
+        command
+    }
+}
+
+/// Of cargo and rustc; they would change the code that is proven, or where it lies.
+const OUTER_SETTINGS: [&str; 4] =
+    ["CARGO_ENCODED_RUSTFLAGS", "CARGO_BUILD_RUSTFLAGS", "CARGO_BUILD_TARGET", "CARGO_INCREMENTAL"];

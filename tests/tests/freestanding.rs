@@ -1,0 +1,87 @@
+//! No allocation and no panic, proven by the linker: emitted code and solvers link as a static program without any
+//! library, with no symbol undefined but the four functions on memory that the compiler itself calls.
+//!
+//! The program is `tests/proofs/freestanding`. ELF linkers only.
+#![cfg(target_os = "linux")]
+#![forbid(unsafe_code)]
+
+use std::ffi::OsStr;
+use std::path::PathBuf;
+
+use mbs_tests::{proofs::Workshop, tools};
+
+/// One a mechanism and scalar type: all emitted functions and, but for lanes, all solvers.
+const EXPORTS: [&str; 7] = [
+    "proof_entry",
+    "proof_four_bar_f32",
+    "proof_four_bar_f64",
+    "proof_four_bar_lanes",
+    "proof_platform_f32",
+    "proof_platform_f64",
+    "proof_platform_lanes",
+];
+
+/// The only symbols that may come from elsewhere.
+const MEMORY: [&str; 4] = ["memcpy", "memmove", "memset", "memcmp"];
+
+/// Parts of names that only code with a panic or an allocation contains.
+const FORBIDDEN: [&str; 10] = [
+    "panicking",
+    "panic_fmt",
+    "panic_bounds",
+    "panic_const",
+    "unwrap_failed",
+    "expect_failed",
+    "slice_index",
+    "__rust_alloc",
+    "alloc::",
+    "proof_reached_a_panic",
+];
+
+/// Builds the library with a feature, if any, and links it; the program, or the linker's complaint.
+fn linked(feature: Option<&str>) -> Result<PathBuf, String> {
+    let workshop = Workshop::new(env!("CARGO_TARGET_TMPDIR"), "proofs", "");
+    let name = feature.unwrap_or("proof");
+    let mut arguments = vec!["--profile=freestanding", "--package=proof-freestanding"];
+    let feature = feature.map(|feature| format!("--features={feature}"));
+    arguments.extend(feature.as_deref());
+    let product = "freestanding/libproof_freestanding.a";
+    let library = workshop
+        .build(&arguments, product, &format!("{name}.a"))
+        .unwrap_or_else(|complaint| panic!("the library does not compile:\n{complaint}"));
+    let program = workshop.target().join(name);
+    let mut link: Vec<String> =
+        ["-nostdlib", "-static", "-no-pie", "-Wl,--gc-sections", "-Wl,-e,proof_entry", "-Wl,-u,proof_entry"]
+            .map(str::to_owned)
+            .to_vec();
+    link.extend(MEMORY.map(|function| format!("-Wl,--defsym={function}=0")));
+    let mut link: Vec<&OsStr> = link.iter().map(OsStr::new).collect();
+    link.extend([library.as_os_str(), OsStr::new("-o"), program.as_os_str()]);
+    tools::compile(&link).map(|_| program)
+}
+
+#[test]
+fn emitted_code_and_solvers_link_with_nothing_but_memory_functions() {
+    let program = linked(None).unwrap_or_else(|complaint| panic!("a panic or an allocation:\n{complaint}"));
+    let symbols = tools::symbols(&program);
+    for export in EXPORTS {
+        assert!(symbols.iter().any(|(kind, name)| *kind == 'T' && name == export), "`{export}` is missing");
+    }
+    let undefined: Vec<_> = symbols.iter().filter(|(kind, _)| *kind == 'U').collect();
+    assert!(undefined.is_empty(), "{undefined:?}");
+    let suspicious = |name: &str| FORBIDDEN.iter().any(|part| name.contains(part));
+    let suspicious: Vec<_> = symbols.iter().filter(|(_, name)| suspicious(name)).collect();
+    assert!(suspicious.is_empty(), "{suspicious:?}");
+}
+
+#[test]
+fn an_index_out_of_range_is_rejected() {
+    let complaint = linked(Some("control-panics")).expect_err("a panic path went unnoticed");
+    assert!(complaint.contains("undefined") && complaint.contains("proof_reached_a_panic"), "{complaint}");
+}
+
+#[test]
+fn an_allocation_is_rejected() {
+    let complaint = linked(Some("control-allocates")).expect_err("an allocation went unnoticed");
+    assert!(complaint.contains("undefined") && complaint.contains("malloc"), "{complaint}");
+}
