@@ -1,7 +1,12 @@
 //! Faults of a text, each on the user's own token and with its cure.
 
+use std::collections::BTreeSet;
+
 use proc_macro2::{Span, TokenStream};
 use quote::quote_spanned;
+
+/// Most faults that are kept: nobody reads more, and the compiler takes its time over each.
+const MOST: usize = 100;
 
 /// One fault: what is wrong, where, and what to do.
 #[derive(Clone, Debug)]
@@ -16,22 +21,29 @@ pub struct Diagnostic {
 
 /// All faults found so far; a stage reports as many as it can before it gives up.
 #[derive(Debug, Default)]
-pub struct Diagnostics(Vec<Diagnostic>);
+pub struct Diagnostics {
+    faults: Vec<Diagnostic>,
+    /// Line, column and message of each: what a loop runs into in every round is reported once.
+    known: BTreeSet<(usize, usize, String)>,
+}
 
 impl Diagnostics {
     /// Records a fault.
     pub fn report(&mut self, span: Span, message: impl Into<String>, help: impl Into<String>) {
-        self.0.push(Diagnostic { message: message.into(), help: help.into(), span });
+        let (message, start) = (message.into(), span.start());
+        if self.faults.len() < MOST && self.known.insert((start.line, start.column, message.clone())) {
+            self.faults.push(Diagnostic { message, help: help.into(), span });
+        }
     }
 
     /// Whether nothing is wrong so far.
     pub fn is_empty(&self) -> bool {
-        self.0.is_empty()
+        self.faults.is_empty()
     }
 
     /// The faults in the order of the text.
     pub fn sorted(&self) -> Vec<Diagnostic> {
-        let mut faults = self.0.clone();
+        let mut faults = self.faults.clone();
         faults.sort_by_key(|fault| {
             let start = fault.span.start();
             (start.line, start.column)
@@ -62,35 +74,53 @@ impl Diagnostics {
     }
 }
 
-/// The known name nearest to `name`, if it is near enough to be a slip of the hand.
+/// The known name nearest to `name`, if it is near enough to be a slip of the hand; of several the one that begins
+/// most like it.
 pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
-    let limit = (name.chars().count() / 3).max(1);
+    let letters: Vec<char> = name.chars().take(LONGEST_NAME).collect();
+    let limit = (letters.len() / 3).max(1);
     known
         .into_iter()
-        .map(|candidate| (edit_distance(name, candidate), candidate))
-        .filter(|&(distance, _)| distance <= limit)
+        .filter_map(|candidate| {
+            let other: Vec<char> = candidate.chars().take(LONGEST_NAME).collect();
+            let distance = match name.eq_ignore_ascii_case(candidate) {
+                true => 0,
+                false => edit_distance(&letters, &other),
+            };
+            let common = letters.iter().zip(&other).take_while(|(a, b)| a == b).count();
+            // Of a name of one letter nothing is left when that is replaced.
+            (distance <= limit && distance < letters.len()).then_some((
+                distance,
+                std::cmp::Reverse(common),
+                candidate,
+            ))
+        })
         .min()
-        .map(|(_, candidate)| candidate)
+        .map(|(.., candidate)| candidate)
 }
 
-/// Number of characters to insert, delete or replace to get from `a` to `b`.
-fn edit_distance(a: &str, b: &str) -> usize {
-    let b: Vec<char> = b.chars().take(64).collect();
-    let mut row: Vec<usize> = (0..=b.len()).collect();
-    for (i, from) in a.chars().take(64).enumerate() {
-        let mut diagonal = i;
-        let mut left = i + 1;
-        for (cell, to) in row.iter_mut().skip(1).zip(&b) {
-            let here = (diagonal + usize::from(from != *to)).min(*cell + 1).min(left + 1);
-            diagonal = *cell;
-            *cell = here;
-            left = here;
+/// Letters of a name that are compared.
+const LONGEST_NAME: usize = 64;
+
+/// Number of letters to insert, delete, replace or swap with the next to get from `a` to `b`.
+fn edit_distance(a: &[char], b: &[char]) -> usize {
+    let mut before: Vec<usize> = Vec::new();
+    let mut above: Vec<usize> = (0..=b.len()).collect();
+    for (i, from) in a.iter().enumerate() {
+        let mut row = vec![i + 1];
+        for (j, to) in b.iter().enumerate() {
+            let at = |row: &[usize], column: usize| row.get(column).copied().unwrap_or(usize::MAX / 2);
+            let replaced = at(&above, j) + usize::from(from != to);
+            let mut best = replaced.min(at(&above, j + 1) + 1).min(at(&row, j) + 1);
+            let swaps = i > 0 && j > 0 && a.get(i - 1) == Some(to) && b.get(j - 1) == Some(from);
+            if swaps {
+                best = best.min(at(&before, j - 1) + 1);
+            }
+            row.push(best);
         }
-        if let Some(first) = row.first_mut() {
-            *first = i + 1;
-        }
+        before = std::mem::replace(&mut above, row);
     }
-    row.last().copied().unwrap_or(0)
+    above.last().copied().unwrap_or(0)
 }
 
 #[cfg(test)]
@@ -100,7 +130,10 @@ mod tests {
     #[test]
     fn nearest_finds_slips_and_leaves_strangers() {
         assert_eq!(nearest("ph1", ["phi1", "omega"]), Some("phi1"));
-        assert_eq!(nearest("omgea", ["phi1", "omega"]), None);
+        assert_eq!(nearest("omgea", ["phi1", "omega"]), Some("omega"));
+        assert_eq!(nearest("ph", ["p", "phi"]), Some("phi"));
+        assert_eq!(nearest("R", ["L", "p"]), None);
+        assert_eq!(nearest("l", ["L", "p"]), Some("L"));
         assert_eq!(nearest("omeg", ["phi1", "omega"]), Some("omega"));
         assert_eq!(nearest("zebra", ["phi1", "omega"]), None);
     }

@@ -123,16 +123,25 @@ fn formulas_in(source: &str, notation: Notation) -> Result<Formulas, String> {
 /// The faults, two lines each: `line:column: message` and `help: cure`.
 pub fn structure_of(source: &str) -> Result<StructureReport, String> {
     let mut diagnostics = Diagnostics::default();
-    let report = read_source(source, &mut diagnostics).filter(|_| diagnostics.is_empty()).and_then(
-        |(text, model)| {
-            let mut equations = equations::derive(&model);
-            let structure = structure::analyse(&model, &mut equations, &mut diagnostics)?;
-            let program = program::order(&equations, &structure);
-            let name = text.header.name.to_string();
-            Some(emit::report::report(&model, &equations, &structure, &program, &name))
-        },
-    );
+    let report = read_source(source, &mut diagnostics)
+        .and_then(|(text, model)| structured(&text, &model, &mut diagnostics));
     report.ok_or_else(|| diagnostics.to_text())
+}
+
+/// The stages up to the report; `None` where a fault is known.
+fn structured(
+    text: &syntax::Text,
+    model: &model::Model,
+    diagnostics: &mut Diagnostics,
+) -> Option<StructureReport> {
+    if !diagnostics.is_empty() {
+        return None;
+    }
+    let mut equations = equations::derive(model);
+    let structure = structure::analyse(model, &mut equations, diagnostics)?;
+    let program = program::order(&equations, &structure);
+    let name = text.header.name.to_string();
+    Some(emit::report::report(model, &equations, &structure, &program, &name))
 }
 
 fn read_source(source: &str, diagnostics: &mut Diagnostics) -> Option<(syntax::Text, model::Model)> {

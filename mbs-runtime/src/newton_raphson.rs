@@ -74,6 +74,15 @@ pub fn newton_raphson_watched<S: Mechanism<R, N, N>, R: Real, const N: usize>(
         let step = factors.solve(&phi.map(|r| -r));
         q.iter_mut().zip(step).for_each(|(coordinate, change)| *coordinate = *coordinate + change);
     }
+    Err(not_converged::<S, R, N>(missed, t))
+}
+
+/// The failure of a start that leads nowhere, with the row that is farthest above its tolerance.
+#[cold]
+fn not_converged<S: Mechanism<R, N, N>, R: Real, const N: usize>(
+    missed: Option<([R; N], [R; N])>,
+    t: R,
+) -> Failure {
     let (mut worst, mut ratio) = ((0, 0.0, 0.0), R::constant(0.0));
     if let Some((phi, tolerances)) = missed {
         for (index, (r, tolerance)) in phi.iter().zip(&tolerances).enumerate() {
@@ -85,7 +94,7 @@ pub fn newton_raphson_watched<S: Mechanism<R, N, N>, R: Real, const N: usize>(
     }
     let (row, residual, required) = worst;
     let time = t.to_f64();
-    Err(Failure::NotConverged { row: entry(S::ROWS, row), residual, required, iterations: ITERATIONS, time })
+    Failure::NotConverged { row: entry(S::ROWS, row), residual, required, iterations: ITERATIONS, time }
 }
 
 /// The failure of a dense Jacobian, with the row and the coordinate that the others explain best.

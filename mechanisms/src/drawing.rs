@@ -1,8 +1,14 @@
 //! How a mechanism is drawn: shapes between points, which are vector outputs of the text.
+//!
+//! The report's page gets the shapes as JSON, one object a shape: `kind` is the variant's name in lower case, the
+//! other members are its fields. A point is the name of an `out` with two components in metres; what turns does so
+//! with its points, so that a shape has no lengths of its own and follows the parameters. A point whose name has an
+//! underscore (`slot_end`) helps to draw; its name does not stand beside it. A shape with an empty label is a further
+//! part of the body before it and has its colour.
 
 use serde::Serialize;
 
-/// A shape of the picture. Points are named by their `out` in the text, two components in metres.
+/// A shape of the picture.
 #[derive(Clone, Copy, Debug, Serialize)]
 #[serde(tag = "kind", rename_all = "lowercase")]
 pub enum Shape {
@@ -25,24 +31,86 @@ pub enum Shape {
         /// Name beside the plate.
         label: &'static str,
     },
+    /// A bar with a slot along its whole length, in which a slider or a pin runs.
+    Slot {
+        /// Points from one end to the other.
+        points: &'static [&'static str],
+        /// Name beside the bar.
+        label: &'static str,
+    },
     /// A revolute joint.
     Joint {
         /// Centre of the joint.
         at: &'static str,
     },
-    /// A block that slides on a rail.
+    /// A block that slides on a rail, a bar or in a slot.
     Slider {
         /// Centre of the block.
         at: &'static str,
         /// Direction of the rail.
-        along: [f64; 2],
+        along: Along,
     },
     /// A fixed rail along the whole path of a point.
     Rail {
         /// The point that moves on the rail.
         at: &'static str,
         /// Direction of the rail.
-        along: [f64; 2],
+        along: Along,
+    },
+    /// A smooth wheel or roller with a mark on its rim.
+    Wheel {
+        /// Centre.
+        at: &'static str,
+        /// The mark; its distance from the centre is the radius.
+        rim: &'static str,
+        /// Name beside the wheel.
+        label: &'static str,
+    },
+    /// A gear.
+    Gear {
+        /// Centre.
+        at: &'static str,
+        /// A point on the pitch circle in the middle of a tooth, of a gap where the teeth point inwards.
+        rim: &'static str,
+        /// Number of teeth.
+        teeth: u32,
+        /// Whether the teeth point inwards, as those of a ring gear.
+        inside: bool,
+        /// Name beside the gear.
+        label: &'static str,
+    },
+    /// A disc cam. Its profile is what `contact` draws on the cam during the run, which turns the cam once.
+    Cam {
+        /// Centre of rotation.
+        at: &'static str,
+        /// The point where the follower touches.
+        contact: &'static str,
+        /// Angle of the cam (rad): a coordinate or a scalar output.
+        turn: &'static str,
+        /// Name beside the cam.
+        label: &'static str,
+    },
+    /// The flat face of a follower with its stem.
+    Face {
+        /// Ends of the face.
+        points: [&'static str; 2],
+        /// End of the stem, on the side away from the cam.
+        back: &'static str,
+        /// Name beside the follower.
+        label: &'static str,
+    },
+    /// A Geneva drive: the driver with its pin and locking disc, and the slotted wheel.
+    Geneva {
+        /// Centre of the driver.
+        at: &'static str,
+        /// The driver's pin.
+        pin: &'static str,
+        /// Centre of the slotted wheel.
+        wheel: &'static str,
+        /// A point on the wheel's rim in the middle of a slot.
+        rim: &'static str,
+        /// Number of slots.
+        slots: u32,
     },
     /// The path that a point draws.
     Trace {
@@ -53,16 +121,45 @@ pub enum Shape {
     },
 }
 
+/// Direction of a slide.
+#[derive(Clone, Copy, Debug, Serialize)]
+#[serde(untagged)]
+pub enum Along {
+    /// Fixed: two components.
+    Fixed([f64; 2]),
+    /// Turning: an angle (rad), as the name of a coordinate or of a scalar output, or a direction as that of a vector
+    /// output.
+    Named(&'static str),
+}
+
 impl Shape {
     /// Names of the points that the shape needs.
-    pub fn points(&self) -> &[&'static str] {
-        match self {
-            Shape::Link { points, .. } | Shape::Plate { points, .. } => points,
+    pub fn points(&self) -> Vec<&'static str> {
+        match *self {
+            Shape::Link { points, .. } | Shape::Plate { points, .. } | Shape::Slot { points, .. } => {
+                points.to_vec()
+            }
             Shape::Ground { at }
             | Shape::Joint { at }
             | Shape::Slider { at, .. }
-            | Shape::Rail { at, .. } => core::slice::from_ref(at),
-            Shape::Trace { of, .. } => core::slice::from_ref(of),
+            | Shape::Rail { at, .. } => {
+                vec![at]
+            }
+            Shape::Wheel { at, rim, .. } | Shape::Gear { at, rim, .. } => vec![at, rim],
+            Shape::Cam { at, contact, .. } => vec![at, contact],
+            Shape::Face { points: [left, right], back, .. } => vec![left, right, back],
+            Shape::Geneva { at, pin, wheel, rim, .. } => vec![at, pin, wheel, rim],
+            Shape::Trace { of, .. } => vec![of],
+        }
+    }
+
+    /// Name of the angle or direction that turns the shape, where its points do not.
+    pub fn direction(&self) -> Option<&'static str> {
+        match *self {
+            Shape::Slider { along: Along::Named(name), .. }
+            | Shape::Rail { along: Along::Named(name), .. }
+            | Shape::Cam { turn: name, .. } => Some(name),
+            _ => None,
         }
     }
 }

@@ -7,6 +7,8 @@ use std::time::{Duration, Instant};
 use mbs_runtime::{Entry, Failure, Frame, Kinematic, OutputValue, Stepper};
 use serde::Serialize;
 
+use crate::lecture::experiment::Experiment;
+
 /// A mechanism of any size, with its parameters. Vectors are in the order of the text.
 pub trait AnyMechanism {
     /// Name of the emitted type.
@@ -44,9 +46,11 @@ pub trait AnyMechanism {
     /// # Errors
     /// The solver's [`Failure`].
     fn time_a_step(&self, times: &[f64]) -> Result<Duration, Failure>;
+    /// Single steps of the solvers, for teaching.
+    fn experiment(&self) -> &dyn Experiment;
 }
 
-impl fmt::Debug for dyn AnyMechanism {
+impl fmt::Debug for dyn AnyMechanism + '_ {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "AnyMechanism({})", self.type_name())
     }
@@ -211,6 +215,10 @@ impl<S: Kinematic<f64, N>, const N: usize> AnyMechanism for Facade<S, N> {
             black_box(stepper.outputs());
         }
         Ok(start.elapsed() / u32::try_from(rest.len().max(1)).unwrap_or(u32::MAX))
+    }
+
+    fn experiment(&self) -> &dyn Experiment {
+        self
     }
 }
 

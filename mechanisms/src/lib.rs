@@ -2,7 +2,8 @@
 //!
 //! Every mechanism is one file: its text, how it is drawn, and tests against a closed form or a reference
 //! solution. [`registry::ALL`] lists them; [`facade::AnyMechanism`] runs any of them; [`report`] and [`csv`] write
-//! motions down; [`verify`] compares the emitted code with CasADi.
+//! motions down; [`verify`] compares the emitted code with CasADi; [`lecture`] is what the
+//! teaching commands compute.
 //!
 //! ```
 //! let card = mechanisms::registry::find("four_bar").expect("in the list");
@@ -11,19 +12,39 @@
 //! assert!(motion.closure.iter().all(|error| *error < 1e-12));
 //! ```
 
+pub mod cam_flat;
+pub mod cam_oscillating;
+pub mod cam_roller;
+pub mod determinant_guide;
+pub mod five_angle_loop;
 pub mod four_bar;
+pub mod four_bar_mixed;
+pub mod four_bar_natural;
+pub mod four_bar_reference_point;
+pub mod geneva;
+pub mod jansen;
 pub mod loop_length;
 pub mod loop_relative;
 pub mod open_chain;
+pub mod peaucellier;
+pub mod planetary_gear;
+pub mod quick_return;
+pub mod scotch_yoke;
 pub mod slider_crank;
+pub mod stephenson;
+pub mod three_rrr;
+pub mod watt;
 
 pub mod csv;
 pub mod drawing;
 pub mod facade;
+pub mod lecture;
 pub mod registry;
 pub mod report;
 pub mod target_directory;
 pub mod verify;
 
+#[cfg(test)]
+mod closed_form;
 #[cfg(test)]
 mod reference;

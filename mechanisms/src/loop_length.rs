@@ -22,7 +22,7 @@
 
 use mbs_runtime::mechanism;
 
-use crate::drawing::Shape;
+use crate::drawing::{Along, Shape};
 use crate::facade;
 use crate::registry::{Card, Preset, Span};
 
@@ -54,6 +54,7 @@ mechanism! {
     out B: [m; 2] = b;
     out D: [m; 2] = [OD, 0];
     out G: [m; 2] = a + 180mm*unit(psi1 + psi2);
+    out guide: rad = psi1 + psi2;
 }
 
 /// How the mechanism is drawn.
@@ -61,6 +62,7 @@ pub const DRAWING: &[Shape] = &[
     Shape::Ground { at: "O" },
     Shape::Ground { at: "D" },
     Shape::Link { points: &["O", "A"], label: "crank" },
+    Shape::Slider { at: "B", along: Along::Named("guide") },
     Shape::Link { points: &["A", "G"], label: "guide" },
     Shape::Link { points: &["B", "D"], label: "link 3" },
     Shape::Joint { at: "O" },

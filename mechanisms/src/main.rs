@@ -34,6 +34,22 @@ enum Command {
     Expand(commands::expand::Arguments),
     /// Compare a mechanism's derivatives with CasADi's
     Verify(commands::verify::Arguments),
+    /// Print Φ, Φ_q, Φ_t, γ with names on rows and columns: numbers at a time, or formulas
+    Print(commands::print::Arguments),
+    /// Write Φ, Φ_q, Φ_t, γ as a LaTeX document
+    Latex(commands::latex::Arguments),
+    /// Print sparsity, matching and the order of solution; draw the ordered Jacobian
+    Structure(commands::structure::Arguments),
+    /// Print Newton's iterations from a guess and the assembly that they end in
+    Newton(commands::newton::Arguments),
+    /// Draw which assembly is found from which guess
+    Basins(commands::basins::Arguments),
+    /// Print how large a step the previous position bears as the guess of the next
+    Next(commands::next::Arguments),
+    /// Print degrees of freedom, ranks, independent and dependent coordinates
+    Dof(commands::dof::Arguments),
+    /// Compare one linkage in several kinds of coordinates
+    Compare(commands::compare::Arguments),
 }
 
 fn main() -> ExitCode {
@@ -45,6 +61,14 @@ fn main() -> ExitCode {
         Some(Command::Run(arguments)) => commands::run::run(&arguments, &mut out),
         Some(Command::Expand(arguments)) => commands::expand::run(&arguments, &mut out),
         Some(Command::Verify(arguments)) => commands::verify::run(&arguments, &mut out),
+        Some(Command::Print(arguments)) => commands::print::run(&arguments, &mut out),
+        Some(Command::Latex(arguments)) => commands::latex::run(&arguments, &mut out),
+        Some(Command::Structure(arguments)) => commands::structure::run(&arguments, &mut out),
+        Some(Command::Newton(arguments)) => commands::newton::run(&arguments, &mut out),
+        Some(Command::Basins(arguments)) => commands::basins::run(&arguments, &mut out),
+        Some(Command::Next(arguments)) => commands::next::run(&arguments, &mut out),
+        Some(Command::Dof(arguments)) => commands::dof::run(&arguments, &mut out),
+        Some(Command::Compare(arguments)) => commands::compare::run(&arguments, &mut out),
     };
     match result.and_then(|()| out.flush().map_err(CommandError::Output)) {
         Ok(()) => ExitCode::SUCCESS,

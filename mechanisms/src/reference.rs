@@ -2,6 +2,7 @@
 
 use core::f64::consts::{PI, TAU};
 
+use crate::closed_form::{Jet, assert_moves_as, column};
 use crate::facade::Motion;
 use crate::registry::{Card, Preset, sweep};
 
@@ -58,5 +59,19 @@ pub fn assert_follows(card: &Card, run: &Preset, step: f64, rows: &[Vec<f64>], b
         };
         let found = [columns(|c| &c.q), columns(|c| &c.qd), columns(|c| &c.qdd)].concat();
         assert_near(&found, &row[1..], bound);
+    }
+}
+
+/// Over a turn of each preset the columns `names` of one mechanism are those of another, within `bound`.
+#[track_caller]
+pub fn assert_moves_like(card: &Card, other: &Card, names: &[&str], bound: f64) {
+    for (run, other_run) in card.runs.iter().zip(other.runs) {
+        let (motion, expected) = (one_turn(card, run, 180), one_turn(other, other_run, 180));
+        let columns: Vec<_> = names.iter().map(|name| column(&expected, name).1).collect();
+        let mut steps = 0..;
+        assert_moves_as(&motion, names, bound, |_| {
+            let step = steps.next().expect("it never ends");
+            columns.iter().map(|[q, qd, qdd]| Jet([q[step], qd[step], qdd[step]])).collect()
+        });
     }
 }

@@ -82,6 +82,7 @@ fn escaped(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::drawing::Along;
 
     fn page(source: &str) -> String {
         let motion = Motion { time: vec![0.0], closure: vec![1e-17], ..Motion::default() };
@@ -95,8 +96,10 @@ mod tests {
             runs: &[Run { label: "one", description: "", motion: &motion }],
             drawing: &[
                 Shape::Joint { at: "O" },
-                Shape::Slider { at: "S", along: [1.0, 0.0] },
+                Shape::Slider { at: "S", along: Along::Fixed([1.0, 0.0]) },
                 Shape::Trace { of: "P", label: "curve" },
+                Shape::Slider { at: "S", along: Along::Named("phi") },
+                Shape::Face { points: ["L", "R"], back: "G", label: "follower" },
             ],
         })
     }
@@ -114,6 +117,8 @@ mod tests {
         assert_eq!(data["runs"][0]["closure"][0], 1e-17);
         assert_eq!(data["facts"][0], serde_json::json!(["steps", "1"]));
         assert_eq!(data["drawing"][1], serde_json::json!({"kind": "slider", "at": "S", "along": [1.0, 0.0]}));
+        assert_eq!(data["drawing"][3]["along"], "phi");
+        assert_eq!(data["drawing"][4]["points"], serde_json::json!(["L", "R"]));
         assert_eq!(data["drawing"][2], serde_json::json!({"kind": "trace", "of": "P", "label": "curve"}));
     }
 

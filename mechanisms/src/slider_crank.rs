@@ -19,7 +19,7 @@
 
 use mbs_runtime::mechanism;
 
-use crate::drawing::Shape;
+use crate::drawing::{Along, Shape};
 use crate::facade;
 use crate::registry::{Card, Preset, Span};
 
@@ -52,8 +52,8 @@ mechanism! {
 /// How the mechanism is drawn.
 pub const DRAWING: &[Shape] = &[
     Shape::Ground { at: "O" },
-    Shape::Rail { at: "S", along: [1.0, 0.0] },
-    Shape::Slider { at: "S", along: [1.0, 0.0] },
+    Shape::Rail { at: "S", along: Along::Fixed([1.0, 0.0]) },
+    Shape::Slider { at: "S", along: Along::Fixed([1.0, 0.0]) },
     Shape::Link { points: &["O", "A"], label: "crank" },
     Shape::Link { points: &["A", "S"], label: "rod" },
     Shape::Joint { at: "O" },

@@ -49,6 +49,11 @@ fn a_slip_in_a_definition_is_found() {
         ("open_chain", "ca.cos(2 * omega * t)", "ca.cos(omega * t)"),
         ("open_chain", "der(end[1])", "der(end[0])"),
         ("slider_crank", "- offset,", "+ offset,"),
+        ("four_bar_natural", "- c * (xb - xa) + s", "- c * (xb - xa) - s"),
+        ("determinant_guide", "[*b, 1], [*c, 1]]", "[*c, 1], [*b, 1]]"),
+        ("stephenson", "- n * c]", "+ n * c]"),
+        ("cam_flat", "2 * ca.sin(c) - ca.sin(2 * c)", "2 * ca.sin(c) + ca.sin(2 * c)"),
+        ("planetary_gear", "rs + 2 * rp", "rs + rp"),
     ];
     let oracle = oracle();
     for (name, right, wrong) in slips {

@@ -20,4 +20,4 @@ def define(ca, q, v, t, der):
     a = [L1 * ca.cos(psi1), L1 * ca.sin(psi1)]
     b = [a[0] + psi3 * ca.cos(guide), a[1] + psi3 * ca.sin(guide)]
     end = [a[0] + 0.18 * ca.cos(guide), a[1] + 0.18 * ca.sin(guide)]
-    return phi, [(e, 2) for e in [zero, zero, *a, *b, OD, zero, *end]]
+    return phi, [(e, 2) for e in [zero, zero, *a, *b, OD, zero, *end, guide]]

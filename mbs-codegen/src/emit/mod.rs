@@ -1,13 +1,17 @@
-//! Program → Rust tokens; model → CasADi definition.
+//! Program → Rust tokens; model → CasADi definition; equations → formulas; structure → report.
 
 mod blocks;
 pub mod casadi;
 mod code;
 mod docs;
+pub mod formula;
 mod functions;
 mod item;
+pub mod notation;
+pub mod report;
 mod scope;
 mod stub;
+mod terms;
 
 use proc_macro2::TokenStream;
 

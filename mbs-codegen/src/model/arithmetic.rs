@@ -37,7 +37,7 @@ impl Elaborator<'_> {
         }
         let mut items = Vec::new();
         for (x, y) in a.items.iter().zip(&b.items) {
-            let quantity = self.agree(*x, *y, b.span)?;
+            let quantity = self.agree(*x, *y)?;
             items.push(self.binary_scalar(function, *x, *y, quantity, span)?);
         }
         Ok(Value { shape: a.shape.clone(), items, span })
@@ -137,7 +137,7 @@ impl Elaborator<'_> {
         quantity: Quantity,
         span: Span,
     ) -> Result<Scalar, Fault> {
-        Ok(Scalar { id: self.push_unary(function, a.id, span)?, quantity, bare: a.bare })
+        Ok(Scalar { id: self.push_unary(function, a.id, span)?, quantity, bare: a.bare, span })
     }
 
     /// A function of two scalars.
@@ -161,7 +161,12 @@ impl Elaborator<'_> {
         quantity: Quantity,
         span: Span,
     ) -> Result<Scalar, Fault> {
-        Ok(Scalar { id: self.push_binary(function, a.id, b.id, span)?, quantity, bare: a.bare && b.bare })
+        Ok(Scalar {
+            id: self.push_binary(function, a.id, b.id, span)?,
+            quantity,
+            bare: a.bare && b.bare,
+            span,
+        })
     }
 
     /// `Σ aᵢ bᵢ`, all terms of one unit.
@@ -176,7 +181,7 @@ impl Elaborator<'_> {
             total = Some(match total {
                 None => term,
                 Some(total) => {
-                    let quantity = self.agree(total, term, span)?;
+                    let quantity = self.agree(total, term)?;
                     self.binary_scalar(Binary::Add, total, term, quantity, span)?
                 }
             });
@@ -187,12 +192,12 @@ impl Elaborator<'_> {
     /// `a₀ b₁ − a₁ b₀`.
     pub fn determinant2(&mut self, a: [Scalar; 2], b: [Scalar; 2], span: Span) -> Result<Scalar, Fault> {
         let (first, second) = (self.multiply(a[0], b[1], span)?, self.multiply(a[1], b[0], span)?);
-        let quantity = self.agree(first, second, span)?;
+        let quantity = self.agree(first, second)?;
         self.binary_scalar(Binary::Subtract, first, second, quantity, span)
     }
 
     /// Two operands of one unit; otherwise both units are printed at the second.
-    pub fn agree(&mut self, a: Scalar, b: Scalar, span: Span) -> Result<Quantity, Fault> {
+    pub fn agree(&mut self, a: Scalar, b: Scalar) -> Result<Quantity, Fault> {
         match (a.quantity, b.quantity) {
             (Quantity::Any, other) | (other, Quantity::Any) => Ok(other),
             (Quantity::Known(x), Quantity::Known(y)) if x == y => Ok(a.quantity),
@@ -204,7 +209,8 @@ impl Elaborator<'_> {
                 } else {
                     "bring both sides to one unit"
                 };
-                Err(self.fault(span, format!("units differ: `{y}` here, `{x}` on the other side"), help))
+                let message = format!("units differ: `{y}` here, `{x}` on the other side");
+                Err(self.fault(b.span, message, help))
             }
         }
     }
@@ -251,11 +257,16 @@ impl Elaborator<'_> {
 
     /// Reports a wrong number of arguments.
     pub fn arity(&mut self, function: &str, expected: &str, found: usize, span: Span) -> Fault {
-        self.fault(
-            span,
-            format!("`{function}` takes {expected} arguments, not {found}"),
-            "add or remove arguments",
-        )
+        let parameters = match function {
+            "atan2" => "y, x",
+            "unit" | "rot" => "phi",
+            "det" => "m",
+            "norm" => "v",
+            "dot" | "cross" | "min" | "max" | "hypot" => "a, b",
+            _ => "x",
+        };
+        let message = format!("`{function}` takes {expected}, not {found}");
+        self.fault(span, message, format!("write `{function}({parameters})`"))
     }
 
     /// As many arguments as the function takes.
@@ -266,13 +277,7 @@ impl Elaborator<'_> {
         span: Span,
     ) -> Result<[Value; K], Fault> {
         let found = arguments.len();
-        arguments.try_into().map_err(|_| match K {
-            1 => self.fault(
-                span,
-                format!("`{function}` takes 1 argument, not {found}"),
-                "add or remove arguments",
-            ),
-            _ => self.arity(function, &K.to_string(), found, span),
-        })
+        let expected = if K == 1 { "1 argument".into() } else { format!("{K} arguments") };
+        arguments.try_into().map_err(|_| self.arity(function, &expected, found, span))
     }
 }

@@ -1,16 +1,16 @@
 //! Declarations: constants, parameters, inputs, coordinates and `let`s.
 
-use super::elaborate::{Elaborator, Fault, Quantity, Scalar, Value};
+use super::elaborate::{Elaborator, Fault, LONGEST, Quantity, Scalar, Value};
 use super::expression::{Id, Node};
-use super::names::Names;
+use super::names::{Names, Symbol};
 use super::order::order;
 use super::units::Dimension;
 use super::{Coordinate, CoordinateField, Field, Model, Role, Variable, VariableKind};
 use crate::diagnostics::Diagnostics;
-use crate::syntax::ast::{Expression, Name, Statement, StatementKind, Type, Unit};
+use crate::syntax::ast::{Declares, Expression, Name, Operation, Statement, StatementKind, Type, Unit};
 
-/// Most components of one declaration.
-const MOST: usize = 10_000;
+/// Most coordinates: Φ_q is a dense array.
+const MOST_COORDINATES: usize = 400;
 
 /// Before: statements in any order. After: all declarations outside loops are in `model` and `names`.
 pub fn declare(
@@ -20,7 +20,9 @@ pub fn declare(
     diagnostics: &mut Diagnostics,
 ) {
     let mut work = Declarations { model, names, diagnostics };
-    let top: Vec<&Statement> = outside_loops(statements).collect();
+    let (top, in_loops) = split_at_loops(statements);
+    let (faulty, top): (Vec<&Statement>, Vec<&Statement>) =
+        top.into_iter().partition(|statement| matches!(statement.kind, StatementKind::Faulty { .. }));
     for statement in &top {
         if let Some(name) = declared_name(statement) {
             work.names.declare(name, work.diagnostics);
@@ -43,14 +45,25 @@ pub fn declare(
         }
     }
     work.give_up(&top, |kind| matches!(kind, StatementKind::Coord { .. }));
+    if let Some(beyond) = work.model.coordinates.get(MOST_COORDINATES) {
+        let message = format!("the mechanism has more than {MOST_COORDINATES} coordinates");
+        work.diagnostics.report(
+            beyond.span,
+            message,
+            "split it: Φ_q is an array of all coordinates by all rows",
+        );
+    }
+    for statement in faulty.into_iter().chain(in_loops) {
+        work.stand_in(statement);
+    }
     work.lets(&top);
     work.give_up(&top, |_| true);
 }
 
-/// The statements that stand in no loop.
-fn outside_loops(statements: &[Statement]) -> impl Iterator<Item = &Statement> {
+/// The statements that stand in no loop, and those that stand in one.
+fn split_at_loops(statements: &[Statement]) -> (Vec<&Statement>, Vec<&Statement>) {
     let mut depth = 0_usize;
-    statements.iter().filter(move |statement| {
+    statements.iter().partition(|statement| {
         match statement.kind {
             StatementKind::For(_) => depth += 1,
             StatementKind::EndFor => depth = depth.saturating_sub(1),
@@ -108,20 +121,38 @@ impl Declarations<'_> {
             .filter(|(name, ..)| self.owns(name))
             .collect();
         let definitions: Vec<_> = constants.iter().map(|(name, _, value)| (*name, *value)).collect();
-        for index in order(&definitions, self.diagnostics) {
+        for index in self.order(&definitions) {
             let Some((name, unit, expression)) = constants.get(index) else { continue };
             let dimension = Dimension::of(unit, self.diagnostics);
             let value = self.elaborate(|work| {
                 let value = work.value(expression)?;
-                let value = initialiser(work, value, dimension)?;
-                numbers(work, &value, "a constant")?;
+                let value = initialiser(work, value, dimension.ok_or(Fault)?)?;
+                numbers(work, expression, &value, "a constant")?;
                 Ok::<_, Fault>(value)
             });
-            if let Ok(value) = value {
-                self.note_lengths(&value);
-                self.names.define(&name.text, value);
+            match value {
+                Ok(value) => {
+                    self.note_lengths(&value);
+                    self.names.define(&name.text, value);
+                }
+                Err(Fault) => self.names.give_up(&name.text),
             }
         }
+    }
+
+    /// Definitions behind those that they use; those that lead back to themselves are given up.
+    fn order(&mut self, definitions: &[(&Name, &Expression)]) -> Vec<usize> {
+        let sorted = order(definitions, self.diagnostics);
+        let mut circular = vec![true; definitions.len()];
+        for index in &sorted {
+            if let Some(mark) = circular.get_mut(*index) {
+                *mark = false;
+            }
+        }
+        for ((name, _), _) in definitions.iter().zip(&circular).filter(|(_, circular)| **circular) {
+            self.names.give_up(&name.text);
+        }
+        sorted
     }
 
     /// Whether this declaration, not an earlier one of the same name, stands behind the name.
@@ -139,7 +170,10 @@ impl Declarations<'_> {
         }
     }
 
-    fn shape(&mut self, kind: &Type) -> Option<(Vec<usize>, usize)> {
+    /// Before: a type as written. After: its dimension and lengths; what is faulty is reported and replaced by an
+    /// array of one component, a number.
+    fn declared(&mut self, kind: &Type) -> Declared {
+        let dimension = Dimension::of(&kind.unit, self.diagnostics);
         let shape = self.elaborate(|work| {
             kind.shape
                 .iter()
@@ -156,58 +190,75 @@ impl Declarations<'_> {
                 })
                 .collect::<Result<Vec<_>, Fault>>()
         });
-        let shape = shape.ok()?;
-        let size = shape.iter().try_fold(1_usize, |size, length| size.checked_mul(*length));
-        match size.filter(|size| *size <= MOST) {
-            Some(size) => Some((shape, size)),
-            None => {
-                let message = format!("the array has more than {MOST} components");
+        let sized = shape.ok().and_then(|shape| {
+            let size = shape.iter().try_fold(1_usize, |size, length| size.checked_mul(*length));
+            let size = size.filter(|size| *size <= LONGEST);
+            if size.is_none() {
+                let message = format!("the array has more than {LONGEST} components");
                 self.diagnostics.report(kind.unit.span, message, "split it");
-                None
             }
-        }
+            Some((shape, size?))
+        });
+        let faulty = dimension.is_none() || sized.is_none();
+        let (shape, size) = sized.unwrap_or_else(|| (vec![1; kind.shape.len()], 1));
+        Declared { dimension: dimension.unwrap_or_default(), shape, size, faulty }
     }
 
     fn parameter(&mut self, name: &Name, docs: Vec<String>, kind: &Type, value: Option<&Expression>) {
-        let dimension = Dimension::of(&kind.unit, self.diagnostics);
-        let Some((shape, size)) = self.shape(kind) else { return };
+        let declared = self.declared(kind);
         if !self.owns(name) {
             return;
         }
-        let Some(expression) = value else {
-            self.diagnostics.report(
-                name.span,
-                format!("parameter `{}` has no default", name.text),
-                format!(
-                    "write `param {}: {} = …;`, or `input` for what is set before each step",
-                    name.text, kind.unit.text
-                ),
-            );
-            return;
+        let defaults = match value {
+            None => {
+                self.diagnostics.report(
+                    name.span,
+                    format!("parameter `{}` has no default", name.text),
+                    format!(
+                        "write `param {}: {} = …;`, or `input` for what is set before each step",
+                        name.text, kind.unit.text
+                    ),
+                );
+                None
+            }
+            Some(_) if declared.faulty => None,
+            Some(expression) => self
+                .elaborate(|work| {
+                    let value = work.value(expression)?;
+                    let value = initialiser(work, value, declared.dimension)?;
+                    fits_shape(work, &value, &declared.shape)?;
+                    numbers(work, expression, &value, "a default")
+                })
+                .ok(),
         };
-        let defaults = self.elaborate(|work| {
-            let value = work.value(expression)?;
-            let value = initialiser(work, value, dimension)?;
-            fits_shape(work, &value, &shape)?;
-            numbers(work, &value, "a default")
-        });
-        let defaults = defaults.unwrap_or_else(|_| vec![0.0; size]);
+        let defaults = defaults.unwrap_or_else(|| vec![0.0; declared.size]);
+        self.parameter_field(name, docs, kind, declared, defaults);
+    }
+
+    fn parameter_field(
+        &mut self,
+        name: &Name,
+        docs: Vec<String>,
+        kind: &Type,
+        declared: Declared,
+        defaults: Vec<f64>,
+    ) {
         let first = self.model.variables.len();
-        for (component, default) in component_names(&name.text, &shape).zip(defaults) {
-            self.variable(component, kind, dimension, default, VariableKind::Parameter, name);
+        let items = first..first + declared.size;
+        for (component, default) in component_names(&name.text, &declared.shape).zip(defaults) {
+            self.variable(component, kind, declared.dimension, default, VariableKind::Parameter, name);
         }
-        let (items, role) = (first..first + size, Role::Parameter);
-        self.field(name, docs, kind, shape, items.collect(), role);
+        self.field(name, docs, kind, declared, items.collect(), Role::Parameter);
     }
 
     fn input(&mut self, name: &Name, docs: Vec<String>, kind: &Type, rates: bool) {
-        let dimension = Dimension::of(&kind.unit, self.diagnostics);
-        let Some((shape, _)) = self.shape(kind) else { return };
+        let declared = self.declared(kind);
         if !self.owns(name) {
             return;
         }
+        let dimension = declared.dimension;
         let mut items = Vec::new();
-        for component in component_names(&name.text, &shape) {
+        for component in component_names(&name.text, &declared.shape) {
             items.push(self.model.variables.len());
             if !rates {
                 self.variable(component, kind, dimension, 0.0, VariableKind::Input, name);
@@ -227,7 +278,7 @@ impl Declarations<'_> {
             }
         }
         let role = if rates { Role::InputWithRates } else { Role::Input };
-        self.field(name, docs, kind, shape, items, role);
+        self.field(name, docs, kind, declared, items, role);
     }
 
     fn variable(
@@ -255,31 +306,38 @@ impl Declarations<'_> {
         name: &Name,
         docs: Vec<String>,
         kind: &Type,
-        shape: Vec<usize>,
+        declared: Declared,
         items: Vec<usize>,
         role: Role,
     ) {
         let unit = kind.unit.text.clone();
         let first = items.first().copied().unwrap_or(0);
-        let dimension =
-            self.model.variables.get(first).map_or(Dimension::NUMBER, |variable| variable.dimension);
         let ids = items.into_iter().map(|index| self.model.expressions.push(Node::Variable(index))).collect();
-        let value = leaves(ids, &shape, dimension, name);
-        self.model.fields.push(Field { name: name.clone(), docs, unit, shape, first, role });
-        self.names.define(&name.text, value);
+        self.define(name, &declared, ids);
+        self.model.fields.push(Field { name: name.clone(), docs, unit, shape: declared.shape, first, role });
+    }
+
+    /// Gives the name its value; a faulty declaration's uses are not reported.
+    fn define(&mut self, name: &Name, declared: &Declared, ids: Vec<Id>) {
+        if declared.faulty {
+            return self.names.give_up(&name.text);
+        }
+        let quantity = Quantity::Known(declared.dimension);
+        let items = ids.into_iter().map(|id| Scalar { id, quantity, bare: false, span: name.span }).collect();
+        self.names.define(&name.text, Value { shape: declared.shape.clone(), items, span: name.span });
     }
 
     fn coordinate(&mut self, name: &Name, docs: Vec<String>, kind: &Type, guess: Option<&Expression>) {
-        let dimension = Dimension::of(&kind.unit, self.diagnostics);
-        let Some((shape, size)) = self.shape(kind) else { return };
+        let declared = self.declared(kind);
         if !self.owns(name) {
             return;
         }
-        let guesses = guess.map(|expression| {
+        let (dimension, size) = (declared.dimension, declared.size);
+        let guesses = guess.filter(|_| !declared.faulty).map(|expression| {
             self.elaborate(|work| {
                 let value = work.value(expression)?;
                 let value = initialiser(work, value, dimension)?;
-                fits_shape(work, &value, &shape)?;
+                fits_shape(work, &value, &declared.shape)?;
                 Ok::<_, Fault>(value)
             })
         });
@@ -288,12 +346,12 @@ impl Declarations<'_> {
                 self.note_lengths(&value);
                 value.items.iter().map(|item| Some(item.id)).collect()
             }
-            Some(Err(_)) => vec![Some(self.model.expressions.push(Node::Number(0.0))); size],
+            Some(Err(Fault)) => vec![Some(self.model.expressions.push(Node::Number(0.0))); size],
             None => vec![None; size],
         };
         let first = self.model.coordinates.len();
         let unit = kind.unit.text.clone();
-        for (component, guess) in component_names(&name.text, &shape).zip(guesses) {
+        for (component, guess) in component_names(&name.text, &declared.shape).zip(guesses) {
             let unit = unit.clone();
             self.model.coordinates.push(Coordinate {
                 name: component,
@@ -304,9 +362,9 @@ impl Declarations<'_> {
             });
         }
         let ids = (first..first + size).map(|i| self.model.expressions.push(Node::Coordinate(i))).collect();
-        let value = leaves(ids, &shape, dimension, name);
+        self.define(name, &declared, ids);
+        let shape = declared.shape;
         self.model.coordinate_fields.push(CoordinateField { name: name.clone(), docs, unit, shape, first });
-        self.names.define(&name.text, value);
     }
 
     fn lets(&mut self, top: &[&Statement]) {
@@ -319,13 +377,67 @@ impl Declarations<'_> {
             .filter(|(name, ..)| self.owns(name))
             .collect();
         let definitions: Vec<_> = lets.iter().map(|(name, _, value)| (*name, *value)).collect();
-        for index in order(&definitions, self.diagnostics) {
+        for index in self.order(&definitions) {
             let Some((name, unit, expression)) = lets.get(index) else { continue };
-            if let Ok(value) = self.elaborate(|work| named(work, *unit, expression)) {
-                self.names.define(&name.text, value);
+            match self.elaborate(|work| named(work, *unit, expression)) {
+                Ok(value) => self.names.define(&name.text, value),
+                Err(Fault) => self.names.give_up(&name.text),
             }
         }
     }
+
+    /// A declaration in a loop, which is reported, or one that could not be read to its end: declared nevertheless,
+    /// so that neither its uses in the text nor those of its field are reported too.
+    fn stand_in(&mut self, statement: &Statement) {
+        let (name, declares, kind) = match &statement.kind {
+            StatementKind::Faulty { name, declares, kind } => (name, *declares, kind.as_ref()),
+            StatementKind::Const { name, .. } => (name, Declares::Value, None),
+            StatementKind::Param { name, kind, .. } => (name, Declares::Param, Some(kind)),
+            StatementKind::Input { name, kind, rates } => {
+                (name, Declares::Input { rates: *rates }, Some(kind))
+            }
+            StatementKind::Coord { name, kind, .. } => (name, Declares::Coord, Some(kind)),
+            _ => return,
+        };
+        if !matches!(statement.kind, StatementKind::Faulty { .. }) {
+            self.diagnostics.report(
+                name.span,
+                format!("`{}` is declared inside a loop", name.text),
+                "declare an array before the loop: `coord p: [m; 2] = …;`",
+            );
+        }
+        if self.names.declared_at(&name.text).is_some() {
+            return;
+        }
+        self.names.declare(name, self.diagnostics);
+        self.names.give_up(&name.text);
+        if !self.owns(name) {
+            return;
+        }
+        let number =
+            Type { unit: Unit { factors: Vec::new(), text: "1".into(), span: name.span }, shape: Vec::new() };
+        let kind = kind.unwrap_or(&number);
+        let docs = statement.docs.clone();
+        match declares {
+            Declares::Param => {
+                let declared = self.declared(kind);
+                let defaults = vec![0.0; declared.size];
+                self.parameter_field(name, docs, kind, declared, defaults);
+            }
+            Declares::Input { rates } => self.input(name, docs, kind, rates),
+            Declares::Coord => self.coordinate(name, docs, kind, None),
+            Declares::Value => {}
+        }
+    }
+}
+
+/// A type that was declared.
+struct Declared {
+    dimension: Dimension,
+    shape: Vec<usize>,
+    size: usize,
+    /// Reported; the rest is a guess.
+    faulty: bool,
 }
 
 /// The value of a `let`, in its unit where one is declared.
@@ -338,7 +450,7 @@ pub fn named(
     match unit {
         None => Ok(value),
         Some(unit) => {
-            let dimension = Dimension::of(unit, work.diagnostics);
+            let dimension = Dimension::of(unit, work.diagnostics).ok_or(Fault)?;
             initialiser(work, value, dimension)
         }
     }
@@ -351,7 +463,7 @@ pub fn initialiser(work: &mut Elaborator<'_>, value: Value, declared: Dimension)
     for item in &value.items {
         if !item.bare && item.quantity != Quantity::Any {
             let expected = Scalar { quantity: Quantity::Known(declared), ..*item };
-            work.agree(expected, *item, value.span)?;
+            work.agree(expected, *item)?;
         }
         items.push(Scalar { quantity: Quantity::Known(declared), bare: false, ..*item });
     }
@@ -368,24 +480,33 @@ pub fn fits_shape(work: &mut Elaborator<'_>, value: &Value, shape: &[usize]) -> 
     Err(work.fault(value.span, message, "declare the shape as `[m; 2]`, give the components as `[x, y]`"))
 }
 
-fn numbers(work: &mut Elaborator<'_>, value: &Value, what: &str) -> Result<Vec<f64>, Fault> {
-    let found: Option<Vec<f64>> = value
-        .items
-        .iter()
-        .map(|item| match work.expressions.node(item.id) {
-            Node::Number(number) => Some(number),
-            _ => None,
-        })
-        .collect();
-    found.ok_or_else(|| {
-        work.fault(value.span, format!("{what} must be a number"), "use numbers and constants alone")
+/// The components, all numbers; otherwise the first name that is none is reported.
+fn numbers(
+    work: &mut Elaborator<'_>,
+    expression: &Expression,
+    value: &Value,
+    what: &str,
+) -> Result<Vec<f64>, Fault> {
+    let number = |item: &Scalar| match work.expressions.node(item.id) {
+        Node::Number(number) => Some(number),
+        _ => None,
+    };
+    if let Some(found) = value.items.iter().map(number).collect() {
+        return Ok(found);
+    }
+    let is_variable = |name: &str| match work.names.get(name) {
+        Some(Symbol::Value(value)) => value.items.iter().any(|item| number(item).is_none()),
+        _ => name == "t",
+    };
+    let variable = expression.code.iter().find_map(|instruction| match &instruction.operation {
+        Operation::Name(name) if is_variable(name) => Some((name, instruction.span)),
+        _ => None,
+    });
+    let help = "use numbers and constants alone; what depends on parameters is a `let`";
+    Err(match variable {
+        Some((name, span)) => work.fault(span, format!("`{name}` cannot stand in {what}"), help),
+        None => work.fault(value.span, format!("{what} must be a number"), help),
     })
-}
-
-fn leaves(ids: Vec<Id>, shape: &[usize], dimension: Dimension, name: &Name) -> Value {
-    let quantity = Quantity::Known(dimension);
-    let items = ids.into_iter().map(|id| Scalar { id, quantity, bare: false }).collect();
-    Value { shape: shape.to_vec(), items, span: name.span }
 }
 
 /// `p`, or `p.0`, `p.1`, …, or `p.0.0`, … for the components of an array.

@@ -14,10 +14,16 @@ use crate::syntax::ast::{Expression, Instruction, Operation, Operator};
 #[derive(Clone, Copy, Debug)]
 pub struct Fault;
 
-/// Most scalar expressions that a text may unroll to.
-const MOST: usize = 400_000;
+/// Most scalar expressions that a text may unroll to: a debug build of the macro takes about a second over the
+/// derivatives of as many.
+const MOST: usize = 30_000;
 /// Longest array.
-const LONGEST: usize = 10_000;
+pub const LONGEST: usize = 2_000;
+/// Largest count, and most rounds of all loops together.
+pub const MOST_ROUNDS: usize = 100_000;
+
+/// Names that have a value without a declaration.
+const CONSTANTS: [&str; 3] = ["t", "PI", "TAU"];
 
 /// Dimension of a scalar, or none: `0` fits any unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,6 +49,8 @@ pub struct Scalar {
     pub quantity: Quantity,
     /// Made of bare numbers, `PI` and `TAU` alone: as an initialiser it is in the declared unit.
     pub bare: bool,
+    /// The token that it comes from.
+    pub span: Span,
 }
 
 /// A scalar, vector or matrix.
@@ -111,13 +119,39 @@ impl Elaborator<'_> {
             }
             match self.step(instruction, next, &mut stack, &mut sums) {
                 Ok(following) => next = following,
-                Err(fault) => break Err(fault),
+                Err(fault) => {
+                    self.unknown_names(expression, next + 1);
+                    break Err(fault);
+                }
             }
         };
         if let Some(outermost) = sums.first() {
             self.names.leave(outermost.scope);
         }
         result
+    }
+
+    /// Reports the unknown names behind a fault, which nothing evaluates any more.
+    fn unknown_names(&mut self, expression: &Expression, from: usize) {
+        let is_variable = |name: &str| {
+            expression.code.iter().any(|instruction| {
+                matches!(&instruction.operation, Operation::SumBegin { variable, .. } if variable.text == name)
+            })
+        };
+        for instruction in expression.code.iter().skip(from) {
+            match &instruction.operation {
+                Operation::Name(name) if !is_variable(name) => {
+                    let known = self.names.get(name).is_some() || CONSTANTS.contains(&name.as_str());
+                    if !known {
+                        self.unknown_name(name, instruction.span);
+                    }
+                }
+                Operation::Call { function, .. } if !FUNCTIONS.contains(&function.as_str()) => {
+                    self.unknown_function(function, instruction.span);
+                }
+                _ => {}
+            }
+        }
     }
 
     /// Executes one instruction; returns the index of the next.
@@ -157,8 +191,11 @@ impl Elaborator<'_> {
             Operation::SumBegin { variable, end } => {
                 let (high, low) = (pop()?, pop()?);
                 let (low, high) = (self.count(&low)?, self.count(&high)?);
+                if !self.names.is_free(variable, self.diagnostics) {
+                    return Err(Fault);
+                }
                 if low >= high {
-                    stack.push(Value::scalar(self.number_literal(0.0), span));
+                    stack.push(Value::scalar(self.number_literal(0.0, span), span));
                     return Ok(end + 1);
                 }
                 let scope = self.names.enter(&variable.text, Symbol::Count(low));
@@ -189,28 +226,35 @@ impl Elaborator<'_> {
 
     /// A number as written, in SI.
     fn literal(&mut self, value: f64, suffix: Option<&str>, span: Span) -> Result<Value, Fault> {
-        let Some(suffix) = suffix else { return Ok(Value::scalar(self.number_literal(value), span)) };
+        let Some(suffix) = suffix else { return Ok(Value::scalar(self.number_literal(value, span), span)) };
         let (value, dimension) =
             with_suffix(value, suffix).map_err(|(message, help)| self.fault(span, message, help))?;
+        if !value.is_finite() {
+            return Err(self.fault(span, "this number is too large in SI units", "choose another unit"));
+        }
         if dimension == Dimension::METRE {
             self.longest = self.longest.max(value.abs());
         }
         let id = self.expressions.push(Node::Number(value));
-        Ok(Value::scalar(Scalar { id, quantity: Quantity::Known(dimension), bare: false }, span))
+        let scalar = Scalar { id, quantity: Quantity::Known(dimension), bare: false, span };
+        Ok(Value::scalar(scalar, span))
     }
 
     /// A bare number; `0` fits any unit.
-    pub fn number_literal(&mut self, value: f64) -> Scalar {
+    pub fn number_literal(&mut self, value: f64, span: Span) -> Scalar {
         let quantity = if value == 0.0 { Quantity::Any } else { Quantity::Known(Dimension::NUMBER) };
-        Scalar { id: self.expressions.push(Node::Number(value)), quantity, bare: true }
+        Scalar { id: self.expressions.push(Node::Number(value)), quantity, bare: true, span }
     }
 
     fn name(&mut self, name: &str, span: Span) -> Result<Value, Fault> {
         match self.names.get(name) {
-            Some(Symbol::Value(value)) => return Ok(Value { span, ..value.clone() }),
+            Some(Symbol::Value(value)) => {
+                let items = value.items.iter().map(|item| Scalar { span, ..*item }).collect();
+                return Ok(Value { shape: value.shape.clone(), items, span });
+            }
             Some(Symbol::Count(count)) => {
                 let count = *count as f64;
-                return Ok(Value::scalar(self.number_literal(count), span));
+                return Ok(Value::scalar(self.number_literal(count, span), span));
             }
             Some(Symbol::Pending) => {
                 return Err(self.fault(
@@ -224,29 +268,31 @@ impl Elaborator<'_> {
         }
         let number = |work: &mut Self, value| {
             let id = work.expressions.push(Node::Number(value));
-            Value::scalar(Scalar { id, quantity: Quantity::Known(Dimension::NUMBER), bare: true }, span)
+            let quantity = Quantity::Known(Dimension::NUMBER);
+            Value::scalar(Scalar { id, quantity, bare: true, span }, span)
         };
         match name {
             "PI" => Ok(number(self, std::f64::consts::PI)),
             "TAU" => Ok(number(self, std::f64::consts::TAU)),
             "t" => {
                 let id = self.expressions.push(Node::Time);
-                Ok(Value::scalar(
-                    Scalar { id, quantity: Quantity::Known(Dimension::SECOND), bare: false },
-                    span,
-                ))
+                let quantity = Quantity::Known(Dimension::SECOND);
+                Ok(Value::scalar(Scalar { id, quantity, bare: false, span }, span))
             }
-            _ => {
-                let help = if FUNCTIONS.contains(&name) {
-                    format!("`{name}` is a function; write `{name}(…)`")
-                } else if let Some(known) = nearest(name, self.names.all().chain(["t", "PI", "TAU"])) {
-                    format!("did you mean `{known}`?")
-                } else {
-                    "declare it with `const`, `param`, `input`, `coord` or `let`".into()
-                };
-                Err(self.fault(span, format!("unknown name `{name}`"), help))
-            }
+            _ => Err(self.unknown_name(name, span)),
         }
+    }
+
+    /// A fault at an unknown name.
+    fn unknown_name(&mut self, name: &str, span: Span) -> Fault {
+        let help = if FUNCTIONS.contains(&name) {
+            format!("`{name}` is a function; write `{name}(…)`")
+        } else if let Some(known) = nearest(name, self.names.all().chain(CONSTANTS)) {
+            format!("did you mean `{known}`?")
+        } else {
+            "declare it with `const`, `param`, `input`, `coord` or `let`".into()
+        };
+        self.fault(span, format!("unknown name `{name}`"), help)
     }
 
     /// A fault at an unknown function.
@@ -272,7 +318,7 @@ impl Elaborator<'_> {
         let seconds = Dimension::SECOND.power(f64::from(order)).unwrap_or_default();
         self.each(&argument, span, |work, item| {
             let quantity = Quantity::Known(item.quantity.dimension().over(seconds));
-            Ok(Scalar { id: work.expressions.push(Node::Rate(item.id, order)), quantity, bare: false })
+            Ok(Scalar { id: work.expressions.push(Node::Rate(item.id, order)), quantity, bare: false, span })
         })
     }
 
@@ -287,9 +333,14 @@ impl Elaborator<'_> {
             _ => None,
         };
         match number {
-            Some(number) if number >= 0.0 && number <= MOST as f64 && number.fract() == 0.0 => {
+            Some(number) if number >= 0.0 && number <= MOST_ROUNDS as f64 && number.fract() == 0.0 => {
                 Ok(number as usize)
             }
+            Some(number) if number > MOST_ROUNDS as f64 => Err(self.fault(
+                value.span,
+                format!("this count is larger than {MOST_ROUNDS}"),
+                "shorten the loop or the array",
+            )),
             Some(number) => Err(self.fault(value.span, format!("{number} is no count"), help)),
             None => Err(self.fault(value.span, "this is no count", help)),
         }

@@ -52,7 +52,7 @@ pub fn call(
         unknown => return Err(work.unknown_function(unknown, span)),
     };
     let [argument] = work.arguments(function, arguments, span)?;
-    let scalar = work.scalar(&argument, function, span)?;
+    let scalar = work.scalar(&argument, &format!("`{function}`"), argument.span)?;
     Ok(match rule {
         Rule::Number(unary) => {
             work.number(scalar, &format!("the argument of `{function}`"), argument.span)?;
@@ -75,15 +75,15 @@ enum Rule {
 
 fn sqrt(work: &mut Elaborator<'_>, arguments: Vec<Value>, span: Span) -> Result<Value, Fault> {
     let [argument] = work.arguments("sqrt", arguments, span)?;
-    let scalar = work.scalar(&argument, "sqrt", span)?;
+    let scalar = work.scalar(&argument, "`sqrt`", argument.span)?;
     let quantity = work.root(scalar.quantity, 0.5, span)?;
     work.unary(Unary::Sqrt, scalar, quantity, span)
 }
 
 fn atan2(work: &mut Elaborator<'_>, arguments: Vec<Value>, span: Span) -> Result<Value, Fault> {
     let [y, x] = work.arguments("atan2", arguments, span)?;
-    let (a, b) = (work.scalar(&y, "atan2", span)?, work.scalar(&x, "atan2", span)?);
-    work.agree(a, b, x.span)?;
+    let (a, b) = (work.scalar(&y, "`atan2`", y.span)?, work.scalar(&x, "`atan2`", x.span)?);
+    work.agree(a, b)?;
     work.binary(Binary::Atan2, a, b, Quantity::Known(Dimension::NUMBER), span)
 }
 
@@ -96,15 +96,15 @@ fn fold(
     span: Span,
 ) -> Result<Value, Fault> {
     if arguments.len() < 2 {
-        return Err(work.arity(name, "two or more", arguments.len(), span));
+        return Err(work.arity(name, "two or more arguments", arguments.len(), span));
     }
     let mut result: Option<Scalar> = None;
     for argument in &arguments {
-        let scalar = work.scalar(argument, name, span)?;
+        let scalar = work.scalar(argument, &format!("`{name}`"), argument.span)?;
         result = Some(match result {
             None => scalar,
             Some(so_far) => {
-                let quantity = work.agree(so_far, scalar, argument.span)?;
+                let quantity = work.agree(so_far, scalar)?;
                 work.binary_scalar(function, so_far, scalar, quantity, span)?
             }
         });
@@ -114,15 +114,15 @@ fn fold(
 
 fn dot(work: &mut Elaborator<'_>, arguments: Vec<Value>, span: Span) -> Result<Value, Fault> {
     let [a, b] = work.arguments("dot", arguments, span)?;
-    work.vector(&a, "dot", span)?;
-    work.same_shape(&a, &b, "dot", b.span)?;
+    work.vector(&a, "`dot`", a.span)?;
+    work.same_shape(&a, &b, "`dot`", b.span)?;
     let result = work.sum_of_products(a.items.iter().copied().zip(b.items.iter().copied()), b.span)?;
     Ok(Value::scalar(result, span))
 }
 
 fn cross(work: &mut Elaborator<'_>, arguments: Vec<Value>, span: Span) -> Result<Value, Fault> {
     let [a, b] = work.arguments("cross", arguments, span)?;
-    work.same_shape(&a, &b, "cross", b.span)?;
+    work.same_shape(&a, &b, "`cross`", b.span)?;
     match (a.items.as_slice(), b.items.as_slice()) {
         ([ax, ay], [bx, by]) if a.shape.len() == 1 => {
             Ok(Value::scalar(work.determinant2([*ax, *ay], [*bx, *by], span)?, span))
@@ -133,13 +133,13 @@ fn cross(work: &mut Elaborator<'_>, arguments: Vec<Value>, span: Span) -> Result
             let z = work.determinant2([*ax, *ay], [*bx, *by], span)?;
             Ok(Value { shape: vec![3], items: vec![x, y, z], span })
         }
-        _ => Err(work.wrong_shape("cross", "two vectors of 2 or of 3 components", &a, span)),
+        _ => Err(work.wrong_shape("`cross`", "two vectors of 2 or of 3 components", &a, a.span)),
     }
 }
 
 fn norm(work: &mut Elaborator<'_>, arguments: Vec<Value>, span: Span) -> Result<Value, Fault> {
     let [a] = work.arguments("norm", arguments, span)?;
-    work.vector(&a, "norm", span)?;
+    work.vector(&a, "`norm`", a.span)?;
     let components = a.items.iter().map(|item| Value::scalar(*item, a.span)).collect::<Vec<_>>();
     match components.len() {
         1 => call(work, "abs", components, span),
@@ -162,7 +162,7 @@ fn det(work: &mut Elaborator<'_>, arguments: Vec<Value>, span: Span) -> Result<V
             let z = work.determinant2([*d, *e], [*g, *h], span)?;
             work.sum_of_products([(*a, x), (*b, y), (*c, z)].into_iter(), span)?
         }
-        _ => return Err(work.wrong_shape("det", "a 2 × 2 or 3 × 3 matrix", &matrix, span)),
+        _ => return Err(work.wrong_shape("`det`", "a 2 × 2 or 3 × 3 matrix", &matrix, matrix.span)),
     };
     Ok(Value::scalar(result, span))
 }
@@ -174,7 +174,7 @@ fn sine_cosine(
     span: Span,
 ) -> Result<[Scalar; 2], Fault> {
     let [angle] = work.arguments(name, arguments, span)?;
-    let scalar = work.scalar(&angle, name, span)?;
+    let scalar = work.scalar(&angle, &format!("`{name}`"), angle.span)?;
     work.number(scalar, &format!("the argument of `{name}`"), angle.span)?;
     let quantity = Quantity::Known(Dimension::NUMBER);
     Ok([

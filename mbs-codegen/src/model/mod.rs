@@ -137,6 +137,8 @@ pub struct Row {
     pub dimension: Dimension,
     /// `left − right`.
     pub residual: Id,
+    /// Whether a `drive` declares it.
+    pub driven: bool,
     /// The `==`.
     pub span: Span,
 }

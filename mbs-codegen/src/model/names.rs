@@ -39,8 +39,20 @@ pub struct Names {
 }
 
 impl Names {
-    /// Before: a declaration. After: the name is known; a clash is reported and the first declaration kept.
-    pub fn declare(&mut self, name: &Name, diagnostics: &mut Diagnostics) -> bool {
+    /// Before: a declaration. After: the name is known, as faulty where it is taken; a clash is reported and the
+    /// first declaration kept.
+    pub fn declare(&mut self, name: &Name, diagnostics: &mut Diagnostics) {
+        if let Some((_, first)) = self.declared.get(&name.text) {
+            return report_double(name, *first, diagnostics);
+        }
+        let symbol = if usable(name, diagnostics) { Symbol::Pending } else { Symbol::Faulty };
+        if !UNUSABLE.contains(&name.text.as_str()) {
+            self.declared.insert(name.text.clone(), (symbol, name.span));
+        }
+    }
+
+    /// Whether a loop, a sum or a `let` in a loop may use this name; otherwise the clash is reported.
+    pub fn is_free(&self, name: &Name, diagnostics: &mut Diagnostics) -> bool {
         if !usable(name, diagnostics) {
             return false;
         }
@@ -48,13 +60,20 @@ impl Names {
             report_double(name, *first, diagnostics);
             return false;
         }
-        self.declared.insert(name.text.clone(), (Symbol::Pending, name.span));
-        true
+        let free = self.scoped.iter().all(|(known, _)| *known != name.text);
+        if !free {
+            diagnostics.report(
+                name.span,
+                format!("`{}` has a meaning in this loop already", name.text),
+                "choose another name",
+            );
+        }
+        free
     }
 
     /// Gives a declared name its value.
     pub fn define(&mut self, name: &str, value: Value) {
-        if let Some((symbol, _)) = self.declared.get_mut(name) {
+        if let Some((symbol @ Symbol::Pending, _)) = self.declared.get_mut(name) {
             *symbol = Symbol::Value(value);
         }
     }
@@ -95,14 +114,14 @@ impl Names {
 }
 
 /// Reports names that the language or Rust keeps for itself.
-pub fn usable(name: &Name, diagnostics: &mut Diagnostics) -> bool {
+fn usable(name: &Name, diagnostics: &mut Diagnostics) -> bool {
     let text = name.text.as_str();
     let fault = if RESERVED.contains(&text) {
         format!("`{text}` is reserved by the language")
     } else if FUNCTIONS.contains(&text) {
         format!("`{text}` is the name of a function")
     } else if UNUSABLE.contains(&text) {
-        format!("`{text}` cannot name a field")
+        format!("`{text}` is a word of Rust that cannot be a name")
     } else {
         return true;
     };

@@ -3,26 +3,35 @@
 use proc_macro2::Span;
 
 use super::declarations::{self, component_names, fits_shape, initialiser, named};
-use super::elaborate::{Elaborator, Fault, Quantity, Scalar, Value};
+use super::elaborate::{Elaborator, Fault, MOST_ROUNDS, Quantity, Scalar, Value};
 use super::expression::{Binary, Id, Node};
-use super::names::{Names, Symbol, report_double, usable};
+use super::names::{Names, Symbol, report_double};
 use super::units::Dimension;
-use super::{Branch, Model, Output, Row, VariableKind};
+use super::{Branch, Model, Output, Role, Row, VariableKind};
 use crate::diagnostics::Diagnostics;
-use crate::syntax::ast::{Equation, Expression, Item, Loop, Name, Statement, StatementKind, Type};
+use crate::syntax::ast::{Equation, Expression, Item, Loop, Name, Statement, StatementKind, Type, Unit};
 
 /// Before: statements as written. After: the resolved model; every fault of meaning is reported.
 pub fn resolve(statements: &[Statement], diagnostics: &mut Diagnostics) -> Model {
     let mut model = Model::default();
     let mut names = Names::default();
     declarations::declare(statements, &mut model, &mut names, diagnostics);
-    let mut work =
-        Resolver { model: &mut model, names: &mut names, diagnostics, groups: Vec::new(), loops: Vec::new() };
+    let mut work = Resolver {
+        model: &mut model,
+        names: &mut names,
+        diagnostics,
+        groups: Vec::new(),
+        loops: Vec::new(),
+        rounds: 0,
+    };
     work.run(statements);
     work.name_rows();
     work.check_guesses_and_inputs();
     model
 }
+
+/// Most rows, and most outputs.
+const MOST_ROWS: usize = 1_000;
 
 /// A group of rows, branches or outputs under one name.
 struct Group {
@@ -33,7 +42,7 @@ struct Group {
 
 struct Frame {
     begin: usize,
-    variable: String,
+    variable: Name,
     count: usize,
     high: usize,
     scope: usize,
@@ -45,6 +54,7 @@ struct Resolver<'a> {
     diagnostics: &'a mut Diagnostics,
     groups: Vec<Group>,
     loops: Vec<Frame>,
+    rounds: usize,
 }
 
 impl Resolver<'_> {
@@ -84,12 +94,13 @@ impl Resolver<'_> {
 
     /// Whether loops unroll to more than anyone wants; reported once.
     fn too_large(&mut self) -> bool {
-        let large = self.model.rows.len() > 20_000 || self.model.outputs.len() > 20_000;
+        let large = self.model.rows.len().max(self.model.outputs.len()) > MOST_ROWS;
         if large {
             let span = self.groups.last().map_or_else(Span::call_site, |group| group.name.span);
-            self.diagnostics.report(span, "the text unrolls to more than 20000 rows", "shorten the loops");
+            let message = format!("the text unrolls to more than {MOST_ROWS} rows or outputs");
+            self.diagnostics.report(span, message, "shorten the loops");
         }
-        large
+        large || self.rounds >= MOST_ROUNDS
     }
 
     fn statement(&mut self, kind: &StatementKind) {
@@ -101,32 +112,26 @@ impl Resolver<'_> {
             }
             StatementKind::Out { name, kind, value } => self.output(name, kind, value),
             StatementKind::Let { name, unit, value } if !self.loops.is_empty() => {
-                let value = self.elaborate(false, |work| named(work, unit.as_ref(), value));
-                value.map(|value| {
-                    self.names.enter(&name.text, Symbol::Value(value));
-                })
-            }
-            StatementKind::Const { name, .. }
-            | StatementKind::Param { name, .. }
-            | StatementKind::Input { name, .. }
-            | StatementKind::Coord { name, .. }
-                if !self.loops.is_empty() =>
-            {
-                self.diagnostics.report(
-                    name.span,
-                    format!("`{}` is declared inside a loop", name.text),
-                    "declare an array before the loop: `coord p: [m; 2] = …;`",
-                );
-                self.loops.iter_mut().for_each(|frame| frame.high = 0);
-                Err(Fault)
+                self.local(name, unit.as_ref(), value)
             }
             _ => Ok(()),
         };
     }
 
+    /// A `let` in a loop: it holds to the end of the round.
+    fn local(&mut self, name: &Name, unit: Option<&Unit>, value: &Expression) -> Result<(), Fault> {
+        let free = self.names.is_free(name, self.diagnostics);
+        let value = self.elaborate(false, |work| named(work, unit, value));
+        if free {
+            self.names.enter(&name.text, value.map_or(Symbol::Faulty, Symbol::Value));
+        }
+        Ok(())
+    }
+
     /// Begins a loop; `None` where its body is never executed.
     fn enter(&mut self, head: &Loop, begin: usize) -> Option<usize> {
-        if !usable(&head.variable, self.diagnostics) {
+        self.count_round(head.variable.span);
+        if !self.names.is_free(&head.variable, self.diagnostics) {
             return None;
         }
         let bounds = self.elaborate(false, |work| {
@@ -134,21 +139,31 @@ impl Resolver<'_> {
             Ok::<_, Fault>((work.count(&low)?, work.count(&high)?))
         });
         let (low, high) = bounds.ok().filter(|(low, high)| low < high)?;
-        let variable = head.variable.text.clone();
-        let scope = self.names.enter(&variable, Symbol::Count(low));
+        let variable = head.variable.clone();
+        let scope = self.names.enter(&variable.text, Symbol::Count(low));
         self.loops.push(Frame { begin, variable, count: low, high, scope });
         Some(begin)
+    }
+
+    /// Loops may nest so that their rounds multiply: reported once.
+    fn count_round(&mut self, span: Span) {
+        self.rounds += 1;
+        if self.rounds == MOST_ROUNDS {
+            let message = format!("the loops run through more than {MOST_ROUNDS} rounds");
+            self.diagnostics.report(span, message, "shorten the loops");
+        }
     }
 
     /// At the end of a loop's body: where its next round begins, or `None` behind the last.
     fn repeat(&mut self) -> Option<usize> {
         let mut frame = self.loops.pop()?;
         self.names.leave(frame.scope);
+        self.count_round(frame.variable.span);
         frame.count += 1;
         if frame.count >= frame.high {
             return None;
         }
-        self.names.enter(&frame.variable, Symbol::Count(frame.count));
+        self.names.enter(&frame.variable.text, Symbol::Count(frame.count));
         let begin = frame.begin;
         self.loops.push(frame);
         Some(begin)
@@ -178,13 +193,6 @@ impl Resolver<'_> {
 
     fn constraint(&mut self, name: &Name, items: &[Item]) -> Result<(), Fault> {
         let group = self.group(name, "constraint")?;
-        if items.is_empty() {
-            self.diagnostics.report(
-                name.span,
-                format!("constraint `{}` has no equation", name.text),
-                "write `lhs == rhs;` in the braces",
-            );
-        }
         let outer = self.loops.len();
         let mut next = 0;
         while let Some(item) = items.get(next) {
@@ -235,13 +243,13 @@ impl Resolver<'_> {
         let residuals = self.elaborate(false, |work| {
             work.same_shape(&left, &right, "`==`", right.span)?;
             let pairs = left.items.iter().zip(&right.items);
-            pairs.map(|(a, b)| residual(work, *a, *b, right.span, span)).collect::<Result<Vec<_>, Fault>>()
+            pairs.map(|(a, b)| residual(work, *a, *b, span)).collect::<Result<Vec<_>, Fault>>()
         })?;
         for (residual, dimension) in residuals {
             if let Some(group) = self.groups.get_mut(group) {
                 group.rows.push(self.model.rows.len());
             }
-            self.model.rows.push(Row { name: String::new(), dimension, residual, span });
+            self.model.rows.push(Row { name: String::new(), dimension, residual, driven: false, span });
         }
         Ok(())
     }
@@ -259,7 +267,7 @@ impl Resolver<'_> {
             let (larger, smaller) = (larger?, smaller?);
             let a = work.scalar(&larger, "a branch", larger.span)?;
             let b = work.scalar(&smaller, "a branch", smaller.span)?;
-            residual(work, a, b, smaller.span, name.span)
+            residual(work, a, b, name.span)
         })?;
         if let Some(group) = self.groups.get_mut(group) {
             group.rows.push(self.model.branches.len());
@@ -276,7 +284,7 @@ impl Resolver<'_> {
 
     fn output(&mut self, name: &Name, kind: &Type, value: &Expression) -> Result<(), Fault> {
         let group = self.group(name, "out")?;
-        let dimension = Dimension::of(&kind.unit, self.diagnostics);
+        let dimension = Dimension::of(&kind.unit, self.diagnostics).ok_or(Fault)?;
         let value = self.elaborate(true, |work| {
             let shape = kind.shape.iter().map(|length| {
                 let value = work.value(length)?;
@@ -305,6 +313,7 @@ impl Resolver<'_> {
         for group in self.groups.iter().filter(|group| matches!(group.kind, "constraint" | "drive")) {
             for (number, row) in group.rows.iter().enumerate() {
                 if let Some(row) = self.model.rows.get_mut(*row) {
+                    row.driven = group.kind == "drive";
                     row.name = match group.rows.len() {
                         1 => group.name.text.clone(),
                         _ => format!("{}.{number}", group.name.text),
@@ -340,32 +349,35 @@ impl Resolver<'_> {
             }
         }
         let marked = model.expressions.reachable(model.rows.iter().map(|row| row.residual));
-        for (index, variable) in model.variables.iter().enumerate() {
-            let used = |(id, node): (Id, Node)| {
-                node == Node::Variable(index) && marked.get(id.index()) == Some(&true)
-            };
-            if variable.kind == VariableKind::Input && model.expressions.iter().any(used) {
+        let mut used = vec![false; model.variables.len()];
+        for (id, node) in model.expressions.iter() {
+            if let Node::Variable(index) = node
+                && let Some(used) = used.get_mut(index)
+            {
+                *used |= marked.get(id.index()) == Some(&true);
+            }
+        }
+        for field in model.fields.iter().filter(|field| field.role == Role::Input) {
+            let size = field.shape.iter().product();
+            if used.iter().skip(field.first).take(size).any(|used| *used) {
+                let name = &field.name.text;
+                let lengths = field.shape.iter().map(usize::to_string).collect::<Vec<_>>().join(", ");
+                let kind = match field.shape.as_slice() {
+                    [] => field.unit.clone(),
+                    _ => format!("[{}; {lengths}]", field.unit),
+                };
                 self.diagnostics.report(
-                    variable.span,
-                    format!(
-                        "input `{}` stands in a constraint or drive, but its rates are not known",
-                        variable.name
-                    ),
-                    format!("declare `input {}: {}, rates;`", variable.name, variable.unit),
+                    field.name.span,
+                    format!("input `{name}` stands in a constraint or drive, but its rates are not known"),
+                    format!("declare `input {name}: {kind}, rates;`"),
                 );
             }
         }
     }
 }
 
-fn residual(
-    work: &mut Elaborator<'_>,
-    a: Scalar,
-    b: Scalar,
-    operand: Span,
-    span: Span,
-) -> Result<(Id, Dimension), Fault> {
-    let quantity = work.agree(a, b, operand)?;
+fn residual(work: &mut Elaborator<'_>, a: Scalar, b: Scalar, span: Span) -> Result<(Id, Dimension), Fault> {
+    let quantity = work.agree(a, b)?;
     let id = if work.expressions.node(b.id) == Node::Number(0.0) {
         a.id
     } else {

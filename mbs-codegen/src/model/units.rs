@@ -100,7 +100,8 @@ impl Dimension {
     fn combine(self, other: Self, sign: i16) -> Self {
         let mut sum = self.0;
         for (exponent, more) in sum.iter_mut().zip(other.0) {
-            *exponent = exponent.saturating_add(more.saturating_mul(sign));
+            // The least number has no opposite.
+            *exponent = exponent.saturating_add(more.saturating_mul(sign)).max(-i16::MAX);
         }
         Dimension(sum)
     }
@@ -137,19 +138,19 @@ impl Dimension {
             .map(|(_, exponents)| Dimension(exponents.map(|e| e * WHOLE)))
     }
 
-    /// Before: a unit as written. After: its dimension; unknown symbols are reported and count as numbers.
-    pub fn of(unit: &ast::Unit, diagnostics: &mut Diagnostics) -> Self {
-        let mut dimension = Dimension::NUMBER;
+    /// Before: a unit as written. After: its dimension; symbols that are no coherent unit are reported, and `None`
+    /// stands for what they leave open.
+    pub fn of(unit: &ast::Unit, diagnostics: &mut Diagnostics) -> Option<Self> {
+        let mut dimension = Some(Dimension::NUMBER);
         for (symbol, exponent) in &unit.factors {
-            match Self::of_symbol(&symbol.text) {
-                Some(base) => {
-                    dimension = dimension.times(base.power(f64::from(*exponent)).unwrap_or_default());
-                }
-                None => {
-                    let (message, help) = unknown_unit(&symbol.text);
-                    diagnostics.report(symbol.span, message, help);
-                }
+            let coherent = Self::of_symbol(&symbol.text);
+            if coherent.is_none() {
+                let (message, help) = unknown_unit(&symbol.text);
+                diagnostics.report(symbol.span, message, help);
             }
+            let base = coherent.or_else(|| with_suffix(1.0, &symbol.text).ok().map(|(_, meant)| meant));
+            let power = base.and_then(|base| base.power(f64::from(*exponent)));
+            dimension = dimension.zip(power).map(|(product, power)| product.times(power));
         }
         dimension
     }

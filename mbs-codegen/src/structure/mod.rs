@@ -3,16 +3,22 @@
 mod matching;
 mod triangular;
 
+use std::collections::BTreeSet;
+
 use crate::diagnostics::Diagnostics;
 use crate::equations::Equations;
 use crate::model::Model;
 use crate::symbolic::{Leaf, NodeId, substitute::substitute};
+
+use matching::Matching;
 
 /// The order in which the rows are solved.
 #[derive(Debug)]
 pub struct Structure {
     /// Diagonal blocks; each uses coordinates of earlier blocks and its own alone.
     pub blocks: Vec<Block>,
+    /// The coordinate that each row is matched with.
+    pub matched: Vec<Option<usize>>,
 }
 
 /// A diagonal block.
@@ -54,7 +60,7 @@ pub fn analyse(model: &Model, equations: &mut Equations, diagnostics: &mut Diagn
             Block { rows, coordinates, explicit }
         })
         .collect();
-    Some(Structure { blocks })
+    Some(Structure { blocks, matched: matching.of_row })
 }
 
 /// The coordinate of a one-row block solved for, where its coefficient is a number.
@@ -72,14 +78,17 @@ fn explicit(equations: &mut Equations, rows: &[usize], coordinates: &[usize]) ->
     Some(Explicit { value, coefficient })
 }
 
-fn report(model: &Model, rows: &[Vec<usize>], matching: &matching::Matching, diagnostics: &mut Diagnostics) {
-    let mut used = vec![false; model.coordinates.len()];
-    for column in rows.iter().flatten() {
-        if let Some(mark) = used.get_mut(*column) {
-            *mark = true;
+/// Names what is not square: the rows that fix too few coordinates, the coordinates that too few rows fix.
+fn report(model: &Model, rows: &[Vec<usize>], matching: &Matching, diagnostics: &mut Diagnostics) {
+    let mut columns = vec![Vec::new(); model.coordinates.len()];
+    for (row, used) in rows.iter().enumerate() {
+        for column in used {
+            if let Some(column) = columns.get_mut(*column) {
+                column.push(row);
+            }
         }
     }
-    for (coordinate, _) in model.coordinates.iter().zip(&used).filter(|(_, used)| !**used) {
+    for (coordinate, _) in model.coordinates.iter().zip(&columns).filter(|(_, rows)| rows.is_empty()) {
         diagnostics.report(
             coordinate.span,
             format!("coordinate `{}` stands in no constraint or drive", coordinate.name),
@@ -93,23 +102,81 @@ fn report(model: &Model, rows: &[Vec<usize>], matching: &matching::Matching, dia
             "remove it, or write the coordinates that it ties",
         );
     }
-    if !diagnostics.is_empty() {
-        return;
-    }
-    let (n, m) = (model.coordinates.len(), model.rows.len());
-    let square = if n == m { "part of the rows".into() } else { format!("{m} rows for {n} coordinates") };
-    for coordinate in matching.free_columns().filter_map(|column| model.coordinates.get(column)) {
+    let free = matching.free_columns().filter(|column| columns.get(*column).is_some_and(|c| !c.is_empty()));
+    for part in parts(free, &columns, &matching.of_row) {
+        let names = part.starts.iter().filter_map(|column| model.coordinates.get(*column));
+        let names = list(names.map(|coordinate| coordinate.name.as_str()));
+        let Some(first) = part.starts.first().and_then(|column| model.coordinates.get(*column)) else {
+            continue;
+        };
+        let missing = part.starts.len() - part.ends.len();
         diagnostics.report(
-            coordinate.span,
-            format!("{square}: nothing is left to fix coordinate `{}`", coordinate.name),
+            first.span,
+            format!("{} for {names}: {missing} more needed", count(part.ends.len(), "row")),
             "add a constraint, or drive a coordinate: `drive crank: phi == omega*t;`",
         );
     }
-    for row in matching.free_rows().filter_map(|row| model.rows.get(row)) {
+    let free = matching.free_rows().filter(|row| rows.get(*row).is_some_and(|c| !c.is_empty()));
+    for part in parts(free, rows, &matching.of_column) {
+        let names = list(part.starts.iter().filter_map(|r| model.rows.get(*r)).map(|row| row.name.as_str()));
+        let fixed = part.ends.iter().filter_map(|column| model.coordinates.get(*column));
+        let fixed = list(fixed.map(|coordinate| coordinate.name.as_str()));
+        let Some(last) = part.starts.last().and_then(|row| model.rows.get(*row)) else { continue };
+        let surplus = part.starts.len() - part.ends.len();
         diagnostics.report(
-            row.span,
-            format!("{square}: row `{}` finds no coordinate that other rows do not fix already", row.name),
-            "remove the row if it follows from the others, or declare the coordinate that it is meant for",
+            last.span,
+            format!("{} {names} for {fixed}: {surplus} too many", count(part.starts.len(), "row")),
+            "remove what follows from the other rows, or declare the coordinate that is missing in them",
         );
     }
+}
+
+/// A part that is not square: `starts` outnumber the `ends` that they are tied to.
+struct Part {
+    starts: Vec<usize>,
+    ends: Vec<usize>,
+}
+
+/// Before: unmatched nodes of one side, the edges from that side, and what each node of the other is matched to.
+/// After: all that alternating paths reach from them, ascending, one part a connected piece.
+fn parts(free: impl Iterator<Item = usize>, edges: &[Vec<usize>], matched: &[Option<usize>]) -> Vec<Part> {
+    let mut parts: Vec<Part> = Vec::new();
+    for start in free {
+        let (mut starts, mut ends) = (BTreeSet::from([start]), BTreeSet::new());
+        let mut waiting = vec![start];
+        while let Some(node) = waiting.pop() {
+            for end in edges.get(node).into_iter().flatten() {
+                ends.insert(*end);
+                let next = matched.get(*end).copied().flatten();
+                waiting.extend(next.filter(|next| starts.insert(*next)));
+            }
+        }
+        // Parts that share an end are one.
+        let (joined, apart): (Vec<Part>, Vec<Part>) =
+            parts.into_iter().partition(|part| part.ends.iter().any(|end| ends.contains(end)));
+        for part in joined {
+            starts.extend(part.starts);
+            ends.extend(part.ends);
+        }
+        parts = apart;
+        parts.push(Part { starts: starts.into_iter().collect(), ends: ends.into_iter().collect() });
+    }
+    parts
+}
+
+/// Most names that a message lists.
+const MOST_NAMES: usize = 8;
+
+fn list<'a>(names: impl Iterator<Item = &'a str>) -> String {
+    let names: Vec<String> = names.map(|name| format!("`{name}`")).collect();
+    match names.get(..MOST_NAMES) {
+        Some(first) if names.len() > MOST_NAMES => {
+            format!("{} and {} more", first.join(", "), names.len() - MOST_NAMES)
+        }
+        _ => names.join(", "),
+    }
+}
+
+fn count(number: usize, what: &str) -> String {
+    format!("{number} {what}{}", if number == 1 { "" } else { "s" })
 }

@@ -4,7 +4,7 @@ use super::graph::{Binary, Unary};
 #[cfg(test)]
 use super::graph::{Graph, Leaf, Node, NodeId};
 
-/// A function of one number, as the runtime computes it.
+/// A function of one number, the same on every host; the runtime's sine and cosine may differ in the last place.
 pub fn unary(function: Unary, a: f64) -> f64 {
     match function {
         Unary::Negate => -a,
@@ -27,7 +27,7 @@ pub fn unary(function: Unary, a: f64) -> f64 {
     }
 }
 
-/// A function of two numbers, as the runtime computes it.
+/// A function of two numbers, the same on every host.
 pub fn binary(function: Binary, a: f64, b: f64) -> f64 {
     match function {
         Binary::Add => a + b,

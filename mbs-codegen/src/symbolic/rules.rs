@@ -6,7 +6,7 @@
 //!
 //! | rule | rewrite | loses |
 //! |---|---|---|
-//! | 1 `constants_fold` | a function of numbers → its value, if finite | nothing: the runtime's own functions compute it |
+//! | 1 `constants_fold` | a function of numbers → its value, if finite | a unit in the last place of sin and cos, which the runtime computes by its own kernel |
 //! | 2 `zero_drops_from_sums` | `x + 0 → x`, `x − 0 → x`, `0 − x → −x` | the sign of a zero result |
 //! | 3 `one_drops_from_products` | `1·x → x`, `x/1 → x`, `−1·x → −x`, `x/−1 → −x` | nothing |
 //! | 4 `signs_move_outwards` | `−(−x) → x`, `(−x)·y → −(x·y)`, `(−x)/y → −(x/y)` | nothing |

@@ -117,15 +117,68 @@ pub struct Statement {
 /// The statements of the language, loops flattened to begin and end.
 #[derive(Clone, Debug)]
 pub enum StatementKind {
-    Const { name: Name, unit: Unit, value: Expression },
-    Param { name: Name, kind: Type, value: Option<Expression> },
-    Input { name: Name, kind: Type, rates: bool },
-    Coord { name: Name, kind: Type, guess: Option<Expression> },
-    Let { name: Name, unit: Option<Unit>, value: Expression },
-    Constraint { name: Name, items: Vec<Item> },
-    Drive { name: Name, equation: Equation },
-    Branch { name: Name, at_start: bool, larger: Expression, smaller: Expression },
-    Out { name: Name, kind: Type, value: Expression },
+    Const {
+        name: Name,
+        unit: Unit,
+        value: Expression,
+    },
+    Param {
+        name: Name,
+        kind: Type,
+        value: Option<Expression>,
+    },
+    Input {
+        name: Name,
+        kind: Type,
+        rates: bool,
+    },
+    Coord {
+        name: Name,
+        kind: Type,
+        guess: Option<Expression>,
+    },
+    Let {
+        name: Name,
+        unit: Option<Unit>,
+        value: Expression,
+    },
+    Constraint {
+        name: Name,
+        items: Vec<Item>,
+    },
+    Drive {
+        name: Name,
+        equation: Equation,
+    },
+    Branch {
+        name: Name,
+        at_start: bool,
+        larger: Expression,
+        smaller: Expression,
+    },
+    Out {
+        name: Name,
+        kind: Type,
+        value: Expression,
+    },
     For(Loop),
     EndFor,
+    /// Reported; what it declares is kept, so that its uses are not reported too.
+    Faulty {
+        name: Name,
+        declares: Declares,
+        kind: Option<Type>,
+    },
+}
+
+/// What a statement declares.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Declares {
+    Param,
+    Input {
+        rates: bool,
+    },
+    Coord,
+    /// What is no field: constants, `let`s, declarations of later versions.
+    Value,
 }

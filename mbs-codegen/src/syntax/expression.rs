@@ -105,9 +105,15 @@ impl Reader {
                 Ok(true)
             }
             Kind::Literal(text) => {
-                let Some(number) = number(text) else {
+                let Some(mut number) = number(text) else {
                     return parser.expected("a number", "write numbers as `0.1`, `1e-3`, `100mm` or `30deg`");
                 };
+                if let Operation::Number { value, .. } = &mut number
+                    && let Some(fault) = range_fault(text, *value)
+                {
+                    parser.diagnostics.report(span, format!("`{text}` {fault}"), "choose another unit");
+                    *value = 1.0;
+                }
                 parser.skip(1);
                 self.push(number, span);
                 Ok(false)
@@ -272,6 +278,18 @@ fn number(literal: &str) -> Option<Operation> {
     Some(Operation::Number { value, suffix, integer })
 }
 
+/// What is wrong with a number that no `f64` comes near.
+fn range_fault(literal: &str, value: f64) -> Option<&'static str> {
+    let mut digits = literal.bytes().take_while(|byte| byte.is_ascii_digit() || matches!(byte, b'.' | b'_'));
+    if value.is_infinite() {
+        Some("is too large for a number")
+    } else if value == 0.0 && digits.any(|digit| matches!(digit, b'1'..=b'9')) {
+        Some("is too small for a number")
+    } else {
+        None
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -281,7 +299,7 @@ mod tests {
     /// The expression in postfix notation, or the messages.
     fn postfix(text: &str) -> String {
         let mut diagnostics = Diagnostics::default();
-        let tokens = flatten(text.parse().expect("tokens"), &mut diagnostics).expect("flat");
+        let tokens = flatten(text.parse().expect("tokens"), &mut diagnostics);
         let read = expression(&mut Parser::new(&tokens, &mut diagnostics));
         let Ok(expression) = read else { return diagnostics.to_text() };
         let mut words = Vec::new();

@@ -12,7 +12,6 @@ use proc_macro2::TokenStream;
 
 use crate::diagnostics::Diagnostics;
 pub use header::Header;
-use header::split;
 use statement::parse;
 
 /// A text as written.
@@ -28,19 +27,40 @@ pub struct Text {
 /// Before: any tokens. After: the text as written, every fault of its form reported; `None` where not even the
 /// header could be read.
 pub fn read(input: TokenStream, diagnostics: &mut Diagnostics) -> Option<Text> {
+    let (runtime, first, body) = header::split(input);
     // Measures depth and length before anything that recurses sees the text.
-    let all = tokens::flatten(input.clone(), diagnostics)?;
-    let (header, body) = split(input, diagnostics)?;
-    let body = tokens::flatten(body, diagnostics)?;
-    let statements = parse(&body, diagnostics);
-    Some(Text { header, statements, source: source::layout(without_runtime(&all)) })
+    let mut all = tokens::flatten(first.clone(), diagnostics);
+    if !diagnostics.is_empty() {
+        return None;
+    }
+    let (header, rest) = header::read(first, runtime, diagnostics)?;
+    let body = tokens::flatten(rest.into_iter().chain(body).collect(), diagnostics);
+    let mut statements = parse(&body, diagnostics);
+    if !statements.iter().any(declares_coordinate) {
+        if diagnostics.is_empty() {
+            diagnostics.report(
+                header.name.span(),
+                format!("`{}` has no coordinate", header.name),
+                "declare what is sought: `coord phi: rad = 0.5;`",
+            );
+        }
+        statements.push(stand_in(&header));
+    }
+    all.pop();
+    all.extend(body);
+    Some(Text { header, statements, source: source::layout(&all) })
 }
 
-/// The tokens behind the runtime's path.
-fn without_runtime(all: &[tokens::Token]) -> &[tokens::Token] {
-    if all.first().is_none_or(|token| token.kind != tokens::Kind::Open('(')) {
-        return all;
-    }
-    let end = all.iter().position(|token| token.kind == tokens::Kind::Close(')'));
-    end.and_then(|end| all.get(end + 1..)).unwrap_or(all)
+fn declares_coordinate(statement: &ast::Statement) -> bool {
+    matches!(
+        statement.kind,
+        ast::StatementKind::Coord { .. } | ast::StatementKind::Faulty { declares: ast::Declares::Coord, .. }
+    )
+}
+
+/// A coordinate of a text without any, so that the stub's types have a field.
+fn stand_in(header: &Header) -> ast::Statement {
+    let name = ast::Name { text: "coordinate".into(), span: header.name.span() };
+    let kind = ast::StatementKind::Faulty { name, declares: ast::Declares::Coord, kind: None };
+    ast::Statement { docs: Vec::new(), kind }
 }

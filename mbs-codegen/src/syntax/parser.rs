@@ -2,7 +2,7 @@
 
 use proc_macro2::Span;
 
-use super::ast::Name;
+use super::ast::{Declares, Name, StatementKind, Type};
 use super::tokens::{Kind, Token};
 use crate::diagnostics::Diagnostics;
 
@@ -19,6 +19,8 @@ pub struct Parser<'a> {
     next: usize,
     /// Where faults go.
     pub diagnostics: &'a mut Diagnostics,
+    /// Declarations that were given up behind their name.
+    pub faulty: Vec<StatementKind>,
 }
 
 static BEHIND: Kind = Kind::End;
@@ -26,7 +28,7 @@ static BEHIND: Kind = Kind::End;
 impl<'a> Parser<'a> {
     /// `tokens` end with [`Kind::End`].
     pub fn new(tokens: &'a [Token], diagnostics: &'a mut Diagnostics) -> Self {
-        Parser { tokens, next: 0, diagnostics }
+        Parser { tokens, next: 0, diagnostics, faulty: Vec::new() }
     }
 
     /// The next token's kind.
@@ -106,6 +108,24 @@ impl<'a> Parser<'a> {
                 Ok(name)
             }
             _ => self.expected("a name", help),
+        }
+    }
+
+    /// Keeps what a declaration declares where `read` gives it up behind its name.
+    pub fn declare<T>(
+        &mut self,
+        declares: Declares,
+        help: &str,
+        read: impl FnOnce(&mut Self, &mut Option<Type>) -> Read<T>,
+    ) -> Read<(Name, T)> {
+        let name = self.name(help)?;
+        let mut kind = None;
+        match read(self, &mut kind) {
+            Ok(read) => Ok((name, read)),
+            Err(GivenUp) => {
+                self.faulty.push(StatementKind::Faulty { name, declares, kind });
+                Err(GivenUp)
+            }
         }
     }
 

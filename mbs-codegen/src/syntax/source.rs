@@ -11,16 +11,20 @@ pub fn layout(tokens: &[Token]) -> String {
     let mut line = tokens.first().map_or(1, |token| token.span.start().line);
     let mut previous: Option<&Token> = None;
     let mut rest = tokens;
+    let mut behind_comment = false;
     while let Some((token, behind)) = rest.split_first() {
         let start = token.span.start();
         if start.line > line {
             // Several blank lines become one: they often held comments, which are not tokens.
             text += if start.line > line + 1 { "\n\n" } else { "\n" };
             text.extend(std::iter::repeat_n(' ', start.column.saturating_sub(margin)));
+        } else if behind_comment {
+            text.push('\n');
         } else if previous.is_some_and(|previous| needs_space(previous, token)) {
             text.push(' ');
         }
         let comment = doc_comment(rest);
+        behind_comment = comment.is_some();
         let (written, length) = comment.unwrap_or_else(|| (written(token), 1));
         text += &written;
         line = line.max(token.span.end().line);
@@ -42,6 +46,11 @@ fn first_columns(tokens: &[Token]) -> impl Iterator<Item = usize> + '_ {
 }
 
 fn needs_space(previous: &Token, token: &Token) -> bool {
+    let is_word = |token: &Token| matches!(token.kind, Kind::Identifier(_) | Kind::Literal(_));
+    if is_word(previous) && is_word(token) {
+        // Tokens of different files may seem to touch.
+        return true;
+    }
     let joint = matches!(previous.kind, Kind::Punctuation(_, true));
     let (end, start) = (previous.span.end(), token.span.start());
     !joint && token.kind != Kind::End && (end.line, end.column) != (start.line, start.column)

@@ -1,8 +1,8 @@
 //! Statements: one after the other, going on behind each fault.
 
-use super::ast::{Equation, Expression, Item, Loop, Name, Statement, StatementKind, Type, Unit};
+use super::ast::{Declares, Equation, Expression, Item, Loop, Name, Statement, StatementKind, Type, Unit};
 use super::expression::expression;
-use super::parser::{DOC_ATTRIBUTE, Parser, Read, doc_attribute};
+use super::parser::{DOC_ATTRIBUTE, GivenUp, Parser, Read, doc_attribute};
 use super::tokens::{Kind, Token};
 use crate::diagnostics::{Diagnostics, nearest};
 
@@ -57,6 +57,8 @@ pub fn parse(tokens: &[Token], diagnostics: &mut Diagnostics) -> Vec<Statement> 
             }
             Err(_) => resynchronise(&mut parser, start),
         }
+        let faulty = parser.faulty.drain(..).map(|kind| Statement { docs: Vec::new(), kind });
+        statements.extend(faulty);
     }
     statements
 }
@@ -94,13 +96,7 @@ fn resynchronise(parser: &mut Parser<'_>, start: &[Token]) {
         match parser.peek() {
             Kind::End => return,
             Kind::Punctuation(';', _) => return parser.skip(1),
-            Kind::Close('}') => return,
-            Kind::Identifier(word)
-                if STATEMENTS.contains(&word.as_str()) || LATER.contains(&word.as_str()) =>
-            {
-                return;
-            }
-            Kind::Punctuation('#', _) if doc_attribute(parser.rest()).is_some() => return,
+            _ if at_statement(parser) => return,
             Kind::Open(bracket) => {
                 parser.skip(1);
                 parser.skip_group();
@@ -113,12 +109,78 @@ fn resynchronise(parser: &mut Parser<'_>, start: &[Token]) {
     }
 }
 
+/// Whether the next token begins a statement, or ends them.
+fn at_statement(parser: &Parser<'_>) -> bool {
+    match parser.peek() {
+        Kind::End | Kind::Close('}') => true,
+        Kind::Identifier(word) => STATEMENTS.iter().chain(&LATER).any(|known| known == word),
+        Kind::Punctuation('#', _) => doc_attribute(parser.rest()).is_some(),
+        _ => false,
+    }
+}
+
+/// Takes the `;` of a statement; where the next one begins already it is reported, and not missed.
+fn end(parser: &mut Parser<'_>, help: &str) -> Read<()> {
+    if parser.take(';') {
+        return Ok(());
+    }
+    if at_statement(parser) {
+        let _reported = parser.expected::<()>("`;`", help);
+        return Ok(());
+    }
+    match parser.peek() {
+        Kind::Identifier(_) | Kind::Literal(_) | Kind::Open('(') => parser
+            .expected("an operator or `;`", "two operands need an operator: `2*x`; behind them stands a `;`"),
+        _ => parser.expected("`;`", help),
+    }
+}
+
 fn statement(parser: &mut Parser<'_>) -> Read<StatementKind> {
     let Kind::Identifier(word) = parser.peek() else {
         return parser.expected("a statement", &format!("begin with one of {}", STATEMENTS.join(", ")));
     };
     let span = parser.span();
-    let read: fn(&mut Parser<'_>) -> Read<StatementKind> = match word.as_str() {
+    if let Some(read) = reader(word) {
+        parser.skip(1);
+        return read(parser);
+    }
+    if LATER.contains(&word.as_str()) {
+        parser.diagnostics.report(
+            span,
+            format!("`{word}` is not translated by this version"),
+            "describe the mechanism with const, param, input, coord, let, constraint, drive, branch and out",
+        );
+        parser.skip(1);
+        return parser.declare(Declares::Value, "", |_, _| Err(GivenUp)).map(|(_, never)| never);
+    }
+    if matches!(word.as_str(), "mechanism" | "pub") {
+        parser.diagnostics.report(
+            span,
+            "a second header stands among the statements",
+            "give each mechanism a `mechanism!` of its own",
+        );
+        parser.skip(1);
+        return Err(GivenUp);
+    }
+    let meant = nearest(word, STATEMENTS);
+    let help = match meant {
+        Some(known) => format!("did you mean `{known}`?"),
+        None => format!("begin with one of {}", STATEMENTS.join(", ")),
+    };
+    parser.diagnostics.report(span, format!("`{word}` begins no statement"), help);
+    parser.skip(1);
+    match meant.and_then(reader) {
+        // Read as what was meant, so that what it declares is known.
+        Some(read) if matches!(parser.peek(), Kind::Identifier(_)) => read(parser),
+        _ => Err(GivenUp),
+    }
+}
+
+type Reader = fn(&mut Parser<'_>) -> Read<StatementKind>;
+
+/// What reads the statement that begins with `word`.
+fn reader(word: &str) -> Option<Reader> {
+    Some(match word {
         "const" => read_const,
         "param" => read_param,
         "input" => read_input,
@@ -129,102 +191,89 @@ fn statement(parser: &mut Parser<'_>) -> Read<StatementKind> {
         "branch" => read_branch,
         "out" => read_out,
         "for" => |parser| read_loop(parser).map(StatementKind::For),
-        later if LATER.contains(&later) => {
-            parser.diagnostics.report(
-                span,
-                format!("`{later}` is not translated by this version"),
-                "describe the mechanism with const, param, input, coord, let, constraint, drive, branch and out",
-            );
-            parser.skip(1);
-            return Err(super::parser::GivenUp);
-        }
-        "mechanism" | "pub" => {
-            parser.diagnostics.report(
-                span,
-                "a second header stands among the statements",
-                "give each mechanism a `mechanism!` of its own",
-            );
-            parser.skip(1);
-            return Err(super::parser::GivenUp);
-        }
-        unknown => {
-            let help = match nearest(unknown, STATEMENTS) {
-                Some(known) => format!("did you mean `{known}`?"),
-                None => format!("begin with one of {}", STATEMENTS.join(", ")),
-            };
-            parser.diagnostics.report(span, format!("`{unknown}` begins no statement"), help);
-            parser.skip(1);
-            return Err(super::parser::GivenUp);
-        }
-    };
-    parser.skip(1);
-    read(parser)
+        _ => return None,
+    })
 }
 
 const CONST: &str = "write `const L1: m = 0.1;`";
 fn read_const(parser: &mut Parser<'_>) -> Read<StatementKind> {
-    let name = parser.name(CONST)?;
-    parser.expect(':', CONST)?;
-    let unit = unit(parser)?;
-    parser.expect('=', CONST)?;
-    let value = expression(parser)?;
-    parser.expect(';', CONST)?;
+    let (name, (unit, value)) = parser.declare(Declares::Value, CONST, |parser, _| {
+        parser.expect(':', CONST)?;
+        let unit = unit(parser)?;
+        parser.expect('=', CONST)?;
+        let value = expression(parser)?;
+        end(parser, CONST)?;
+        Ok((unit, value))
+    })?;
     Ok(StatementKind::Const { name, unit, value })
 }
 
 const PARAM: &str = "write `param omega: rad/s = 10;` or `param L: [m; 2] = [0.1, 0.2];`";
 fn read_param(parser: &mut Parser<'_>) -> Read<StatementKind> {
-    let (name, kind, value) = declaration(parser, PARAM)?;
+    let (name, (kind, value)) = declaration(parser, Declares::Param, PARAM)?;
     Ok(StatementKind::Param { name, kind, value })
 }
 
 const COORD: &str = "write `coord phi: rad = 0.5;` or `coord p: [m; 2] = [0.1, 0.2];`";
 fn read_coord(parser: &mut Parser<'_>) -> Read<StatementKind> {
-    let (name, kind, guess) = declaration(parser, COORD)?;
+    let (name, (kind, guess)) = declaration(parser, Declares::Coord, COORD)?;
     Ok(StatementKind::Coord { name, kind, guess })
 }
 
-fn declaration(parser: &mut Parser<'_>, help: &str) -> Read<(Name, Type, Option<Expression>)> {
-    let name = parser.name(help)?;
-    parser.expect(':', help)?;
-    let kind = declared_type(parser, help)?;
-    let value = if parser.take('=') { Some(expression(parser)?) } else { None };
-    parser.expect(';', help)?;
-    Ok((name, kind, value))
+fn declaration(
+    parser: &mut Parser<'_>,
+    declares: Declares,
+    help: &str,
+) -> Read<(Name, (Type, Option<Expression>))> {
+    parser.declare(declares, help, |parser, kind| {
+        parser.expect(':', help)?;
+        let declared = kind.insert(declared_type(parser, help)?).clone();
+        let value = if parser.take('=') { Some(expression(parser)?) } else { None };
+        end(parser, help)?;
+        Ok((declared, value))
+    })
 }
 
 const INPUT: &str = "write `input torque: N*m;` or `input theta: rad, rates;`";
 fn read_input(parser: &mut Parser<'_>) -> Read<StatementKind> {
-    let name = parser.name(INPUT)?;
-    parser.expect(':', INPUT)?;
-    let kind = declared_type(parser, INPUT)?;
-    let rates = parser.take(',');
-    if rates && !parser.take_word("rates") {
-        return parser.expected("`rates`", INPUT);
-    }
-    parser.expect(';', INPUT)?;
+    let (name, (kind, rates)) = parser.declare(Declares::Input { rates: false }, INPUT, |parser, kind| {
+        parser.expect(':', INPUT)?;
+        let declared = kind.insert(declared_type(parser, INPUT)?).clone();
+        let rates = parser.take(',');
+        if rates && !parser.take_word("rates") {
+            return parser.expected("`rates`", INPUT);
+        }
+        end(parser, INPUT)?;
+        Ok((declared, rates))
+    })?;
     Ok(StatementKind::Input { name, kind, rates })
 }
 
 const LET: &str = "write `let a = [L1*cos(phi1), L1*sin(phi1)];`";
 fn read_let(parser: &mut Parser<'_>) -> Read<StatementKind> {
-    let name = parser.name(LET)?;
-    let unit = if parser.take(':') { Some(unit(parser)?) } else { None };
-    parser.expect('=', LET)?;
-    let value = expression(parser)?;
-    parser.expect(';', LET)?;
+    let (name, (unit, value)) = parser.declare(Declares::Value, LET, |parser, _| {
+        let unit = if parser.take(':') { Some(unit(parser)?) } else { None };
+        parser.expect('=', LET)?;
+        let value = expression(parser)?;
+        end(parser, LET)?;
+        Ok((unit, value))
+    })?;
     Ok(StatementKind::Let { name, unit, value })
 }
 
 const OUT: &str = "write `out angle: rad = phi3 - phi2;`";
 fn read_out(parser: &mut Parser<'_>) -> Read<StatementKind> {
-    match declaration(parser, OUT)? {
-        (name, kind, Some(value)) => Ok(StatementKind::Out { name, kind, value }),
-        (name, ..) => {
-            parser.diagnostics.report(name.span, format!("output `{}` has no definition", name.text), OUT);
-            Err(super::parser::GivenUp)
-        }
+    let name = parser.name(OUT)?;
+    parser.expect(':', OUT)?;
+    let kind = declared_type(parser, OUT)?;
+    if !parser.take('=') {
+        let message = format!("output `{}` has no definition", name.text);
+        parser.diagnostics.report(name.span, message, OUT);
+        return Err(GivenUp);
     }
+    let value = expression(parser)?;
+    end(parser, OUT)?;
+    Ok(StatementKind::Out { name, kind, value })
 }
 
 const DRIVE: &str = "write `drive crank: phi == omega*t;`";
@@ -239,11 +288,12 @@ fn equation(parser: &mut Parser<'_>, help: &str) -> Read<Equation> {
     let left = expression(parser)?;
     let span = parser.span();
     if !parser.at_pair('=', '=') {
-        return parser.expected("`==`", help);
+        let single = matches!(parser.peek(), Kind::Punctuation('=', _));
+        return parser.expected("`==`", if single { "the sign of an equation is `==`" } else { help });
     }
     parser.skip(2);
     let right = expression(parser)?;
-    parser.expect(';', help)?;
+    end(parser, help)?;
     Ok(Equation { left, right, span })
 }
 
@@ -256,14 +306,19 @@ fn read_branch(parser: &mut Parser<'_>) -> Read<StatementKind> {
     }
     parser.expect(':', BRANCH)?;
     let left = expression(parser)?;
-    let inclusive = matches!(parser.peek_at(1), Kind::Punctuation('=', _));
     let less = matches!(parser.peek(), Kind::Punctuation('<', _));
-    if inclusive || !less && !matches!(parser.peek(), Kind::Punctuation('>', _)) {
+    if !less && !matches!(parser.peek(), Kind::Punctuation('>', _)) {
         return parser.expected("`<` or `>`", BRANCH);
+    }
+    if matches!(parser.peek_at(1), Kind::Punctuation('=', _)) {
+        let (span, sign) = (parser.span(), if less { '<' } else { '>' });
+        let help = format!("write `{sign}`: at equality two assemblies meet, and none is chosen");
+        parser.diagnostics.report(span, format!("a branch cannot include equality: `{sign}=`"), help);
+        parser.skip(1);
     }
     parser.skip(1);
     let right = expression(parser)?;
-    parser.expect(';', BRANCH)?;
+    end(parser, BRANCH)?;
     let (larger, smaller) = if less { (right, left) } else { (left, right) };
     Ok(StatementKind::Branch { name, at_start, larger, smaller })
 }
@@ -283,23 +338,64 @@ fn read_constraint(parser: &mut Parser<'_>) -> Read<StatementKind> {
     parser.expect('{', CONSTRAINT)?;
     let mut items = Vec::new();
     let mut loops = 0_usize;
+    let mut complete = true;
     loop {
         if parser.take('}') {
-            if loops == 0 {
-                return Ok(StatementKind::Constraint { name, items });
+            if loops > 0 {
+                loops -= 1;
+                items.push(Item::EndFor);
+                continue;
             }
-            loops -= 1;
-            items.push(Item::EndFor);
-        } else if parser.at_word("for") {
-            parser.skip(1);
-            items.push(Item::For(read_loop(parser)?));
-            loops += 1;
-        } else if let Ok(equation) = equation(parser, CONSTRAINT) {
-            items.push(Item::Equation(equation));
-        } else if !behind_equation(parser) {
+            if items.is_empty() && complete {
+                let message = format!("constraint `{}` has no equation", name.text);
+                parser.diagnostics.report(name.span, message, "write `lhs == rhs;` in the braces");
+            }
             return Ok(StatementKind::Constraint { name, items });
         }
+        let read = if parser.at_word("for") {
+            parser.skip(1);
+            read_loop(parser).map(|head| {
+                loops += 1;
+                Item::For(head)
+            })
+        } else if misplaced(parser) {
+            misplaced_statement(parser)
+        } else {
+            equation(parser, CONSTRAINT).map(Item::Equation)
+        };
+        match read {
+            Ok(item) => items.push(item),
+            Err(GivenUp) => {
+                complete = false;
+                if !behind_equation(parser) {
+                    return Ok(StatementKind::Constraint { name, items });
+                }
+            }
+        }
     }
+}
+
+/// Whether a statement stands here: a word and behind it a name, as in no equation.
+fn misplaced(parser: &Parser<'_>) -> bool {
+    at_statement(parser) && matches!(parser.peek_at(1), Kind::Identifier(_))
+}
+
+/// Reports a statement in a constraint; what it declares is known as faulty.
+fn misplaced_statement(parser: &mut Parser<'_>) -> Read<Item> {
+    let span = parser.span();
+    let word = parser.name(CONSTRAINT)?.text;
+    parser.diagnostics.report(
+        span,
+        format!("`{word}` cannot stand in a constraint"),
+        "move the statement before the constraint",
+    );
+    let declares = match word.as_str() {
+        "param" => Declares::Param,
+        "input" => Declares::Input { rates: false },
+        "coord" => Declares::Coord,
+        _ => Declares::Value,
+    };
+    parser.declare(declares, CONSTRAINT, |_, _| Err(GivenUp)).map(|(_, never)| never)
 }
 
 /// Goes behind the `;` of an equation that was given up; false where the constraint ends before one.

@@ -1,6 +1,6 @@
 //! Token trees → one flat list with measured depth.
 
-use proc_macro2::{Delimiter, Spacing, Span, TokenStream, TokenTree};
+use proc_macro2::{Delimiter, Group, Spacing, Span, TokenStream, TokenTree};
 
 use crate::diagnostics::Diagnostics;
 
@@ -8,6 +8,9 @@ use crate::diagnostics::Diagnostics;
 pub const DEEPEST: usize = 256;
 /// Longest text that is read, in tokens.
 pub const LONGEST: usize = 200_000;
+
+/// Most characters of a token that a message quotes.
+const LONGEST_QUOTE: usize = 40;
 
 /// A token of the flat list.
 #[derive(Clone, Debug)]
@@ -33,10 +36,15 @@ pub enum Kind {
 }
 
 impl Token {
-    /// As it would be quoted in a message.
+    /// As it would be quoted in a message, which is one line.
     pub fn describe(&self) -> String {
         match &self.kind {
-            Kind::Identifier(text) | Kind::Literal(text) => format!("`{text}`"),
+            Kind::Identifier(text) | Kind::Literal(text) => {
+                let shown: String =
+                    text.chars().take_while(|c| !c.is_control()).take(LONGEST_QUOTE).collect();
+                let rest = if shown.len() < text.len() { "…" } else { "" };
+                format!("`{shown}{rest}`")
+            }
             Kind::Punctuation(character, _) | Kind::Open(character) | Kind::Close(character) => {
                 format!("`{character}`")
             }
@@ -45,15 +53,21 @@ impl Token {
     }
 }
 
-/// Before: any token stream. After: one list, groups as `Open` and `Close`, groups without delimiters looked
-/// through, `End` last; nothing nests deeper than [`DEEPEST`].
+/// Before: any token stream. After: one list, groups as `Open` and `Close`, `End` last; nothing nests deeper than
+/// [`DEEPEST`] and nothing is longer than [`LONGEST`]: what is, is reported and left out.
 ///
-/// Returns `None`, with the fault reported, where the text is too deep or too long.
-pub fn flatten(stream: TokenStream, diagnostics: &mut Diagnostics) -> Option<Vec<Token>> {
-    let mut tokens = Vec::new();
+/// Groups without delimiters are looked through; where one stands beside an operator it is put in parentheses,
+/// because `2*$e` of a `macro_rules!` means twice the whole of `$e`.
+pub fn flatten(stream: TokenStream, diagnostics: &mut Diagnostics) -> Vec<Token> {
+    let mut tokens: Vec<Token> = Vec::new();
+    // Tokens up to the end of the last whole statement.
+    let mut whole = 0;
     let mut end = Span::call_site();
-    let mut open = vec![(stream.into_iter(), None)];
-    while let Some((rest, close)) = open.last_mut() {
+    let mut too_deep = false;
+    let mut open = vec![(stream.into_iter().peekable(), None)];
+    loop {
+        let depth = open.len();
+        let Some((rest, close)) = open.last_mut() else { break };
         let Some(tree) = rest.next() else {
             if let Some((character, span)) = close.take() {
                 tokens.push(Token { kind: Kind::Close(character), span, raw: false });
@@ -68,29 +82,35 @@ pub fn flatten(stream: TokenStream, diagnostics: &mut Diagnostics) -> Option<Vec
                 format!("the text is longer than {LONGEST} tokens"),
                 "split the mechanism, or write repeated parts with `for`",
             );
-            return None;
+            tokens.truncate(whole);
+            break;
         }
         match tree {
-            TokenTree::Group(group) => {
-                let (from, to) = match group.delimiter() {
-                    Delimiter::Parenthesis => ('(', ')'),
-                    Delimiter::Bracket => ('[', ']'),
-                    Delimiter::Brace => ('{', '}'),
-                    Delimiter::None => {
-                        open.push((group.stream().into_iter(), None));
-                        continue;
-                    }
-                };
-                if open.len() > DEEPEST {
+            TokenTree::Group(group) if depth > DEEPEST => {
+                // A zero fits wherever an expression stands, so that nothing else is wrong with it.
+                tokens.push(Token { kind: Kind::Literal("0".into()), span: group.span_open(), raw: false });
+                if !too_deep {
                     diagnostics.report(
                         group.span_open(),
                         format!("brackets nest deeper than {DEEPEST} levels here"),
                         "name a part of the expression with `let` and use the name",
                     );
-                    return None;
                 }
-                tokens.push(Token { kind: Kind::Open(from), span: group.span_open(), raw: false });
-                open.push((group.stream().into_iter(), Some((to, group.span_close()))));
+                too_deep = true;
+            }
+            TokenTree::Group(group) => {
+                let delimiters = match group.delimiter() {
+                    Delimiter::Parenthesis => Some(('(', ')')),
+                    Delimiter::Bracket => Some(('[', ']')),
+                    Delimiter::Brace => Some(('{', '}')),
+                    Delimiter::None => binds(tokens.last(), &group, rest.peek()).then_some(('(', ')')),
+                };
+                let inner = group.stream().into_iter().peekable();
+                let close = delimiters.map(|(from, to)| {
+                    tokens.push(Token { kind: Kind::Open(from), span: group.span_open(), raw: false });
+                    (to, group.span_close())
+                });
+                open.push((inner, close));
             }
             TokenTree::Ident(identifier) => {
                 let text = identifier.to_string();
@@ -100,11 +120,16 @@ pub fn flatten(stream: TokenStream, diagnostics: &mut Diagnostics) -> Option<Vec
                 };
                 tokens.push(Token { kind: Kind::Identifier(text), span: identifier.span(), raw });
             }
-            TokenTree::Punct(mark) => tokens.push(Token {
-                kind: Kind::Punctuation(mark.as_char(), mark.spacing() == Spacing::Joint),
-                span: mark.span(),
-                raw: false,
-            }),
+            TokenTree::Punct(mark) => {
+                tokens.push(Token {
+                    kind: Kind::Punctuation(mark.as_char(), mark.spacing() == Spacing::Joint),
+                    span: mark.span(),
+                    raw: false,
+                });
+                if mark.as_char() == ';' && depth == 1 {
+                    whole = tokens.len();
+                }
+            }
             TokenTree::Literal(literal) => {
                 let (kind, span) = (Kind::Literal(literal.to_string()), literal.span());
                 tokens.push(Token { kind, span, raw: false });
@@ -112,5 +137,68 @@ pub fn flatten(stream: TokenStream, diagnostics: &mut Diagnostics) -> Option<Vec
         }
     }
     tokens.push(Token { kind: Kind::End, span: end, raw: false });
-    Some(tokens)
+    tokens
+}
+
+/// Whether an operator beside a group without delimiters would take it apart.
+fn binds(previous: Option<&Token>, group: &Group, next: Option<&TokenTree>) -> bool {
+    let mut content = group.stream().into_iter();
+    let is_one_token = !matches!(content.next(), Some(TokenTree::Group(_))) && content.next().is_none();
+    let behind =
+        previous.is_some_and(|token| matches!(token.kind, Kind::Punctuation('+' | '-' | '*' | '/' | '^', _)));
+    let before = match next {
+        Some(TokenTree::Punct(mark)) => match mark.as_char() {
+            '.' => mark.spacing() == Spacing::Alone,
+            character => matches!(character, '+' | '-' | '*' | '/' | '^'),
+        },
+        Some(TokenTree::Group(index)) => index.delimiter() == Delimiter::Bracket,
+        _ => false,
+    };
+    !is_one_token && (behind || before)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn words(stream: TokenStream) -> String {
+        let tokens = flatten(stream, &mut Diagnostics::default());
+        let words = tokens.iter().filter(|token| token.kind != Kind::End).map(Token::describe);
+        words.collect::<String>().replace('`', "")
+    }
+
+    fn undelimited(text: &str) -> TokenTree {
+        Group::new(Delimiter::None, text.parse().expect("tokens")).into()
+    }
+
+    #[test]
+    fn an_expression_of_a_macro_is_one_operand() {
+        let mut text: TokenStream = "2*".parse().expect("tokens");
+        text.extend([undelimited("a + b")]);
+        assert_eq!(words(text.clone()), "2*(a+b)");
+        let nested = TokenTree::from(Group::new(Delimiter::None, text));
+        let power = "^2".parse::<TokenStream>().expect("tokens");
+        assert_eq!(words(std::iter::once(nested).chain(power).collect()), "(2*(a+b))^2");
+    }
+
+    #[test]
+    fn groups_without_delimiters_are_looked_through_elsewhere() {
+        let text = ["x", "=="].map(|word| word.parse::<TokenStream>().expect("tokens"));
+        let mut text: TokenStream = text.into_iter().collect();
+        text.extend([undelimited("a + b")]);
+        text.extend(";".parse::<TokenStream>().expect("tokens"));
+        text.extend([undelimited("const L: m = 1;")]);
+        assert_eq!(words(text), "x==a+b;constL:m=1;");
+    }
+
+    #[test]
+    fn groups_without_delimiters_count_as_nesting() {
+        let mut stream: TokenStream = "x".parse().expect("tokens");
+        for _ in 0..10_000 {
+            stream = TokenTree::from(Group::new(Delimiter::None, stream)).into();
+        }
+        let mut diagnostics = Diagnostics::default();
+        assert!(flatten(stream, &mut diagnostics).len() < DEEPEST);
+        assert!(diagnostics.to_text().contains("nest deeper"));
+    }
 }

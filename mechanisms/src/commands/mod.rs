@@ -1,8 +1,17 @@
 //! The commands of `mbs`, one file each.
 
+pub mod basins;
+mod chosen;
+pub mod compare;
+pub mod dof;
 pub mod expand;
+pub mod latex;
 pub mod list;
+pub mod newton;
+pub mod next;
+pub mod print;
 pub mod run;
+pub mod structure;
 mod table;
 pub mod verify;
 

@@ -13,6 +13,7 @@ use mechanisms::registry::{self, Card, Preset, instants};
 use mechanisms::report::{Report, Run, html};
 use mechanisms::target_directory::target_directory;
 
+use super::chosen::assignment;
 use super::{CommandError, positive, table};
 
 /// Half a degree a step: smooth to look at, small enough for a page.
@@ -198,29 +199,9 @@ fn write_report(directory: &Path, page: &str, values: &str) -> Result<(PathBuf, 
     placed.map(|()| (directory.join(files[0].0), directory.join(files[1].0)))
 }
 
-/// `NAME=VALUE` with a finite number.
-fn assignment(text: &str) -> Result<(String, f64), String> {
-    let (name, value) = text.split_once('=').ok_or("write it as NAME=VALUE, for example omega=20")?;
-    let (name, value) = (name.trim(), value.trim());
-    match value.parse::<f64>() {
-        _ if name.is_empty() => Err("a name is needed before the `=`".to_string()),
-        Ok(number) if number.is_finite() => Ok((name.to_string(), number)),
-        Ok(_) => Err(format!("`{value}` is not a finite number")),
-        Err(_) => Err(format!("`{value}` is not a number")),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn assignments_are_names_with_finite_numbers() {
-        assert_eq!(assignment("omega=2e1"), Ok(("omega".to_string(), 20.0)));
-        for bad in ["omega", "=2", "omega=", "omega=nan", "omega=1e999", "omega=two"] {
-            assert!(assignment(bad).is_err(), "{bad}");
-        }
-    }
 
     #[test]
     fn what_the_command_line_sets_overrules_the_presets() {

@@ -123,14 +123,25 @@ function vector(run, name, key = "value") {
   return x && y && x[key] && y[key] ? [x[key], y[key]] : null;
 }
 
-const pointsOf = item => item.points || [item.at || item.of];
+/** A coordinate or a scalar output over time, or null where the run has none of this name. */
+function scalar(run, name) {
+  const coordinate = (run.coordinates || []).find(coordinate => coordinate.name === name);
+  return coordinate ? coordinate.q : ((run.outputs || []).find(output => output.name === name) || {}).value || null;
+}
+
+const pointsOf = item => [...(item.points || []), ...["at", "of", "rim", "contact", "back", "pin", "wheel"].map(key => item[key]).filter(Boolean)];
+const coloured = ["link", "plate", "slot", "wheel", "gear", "cam", "face"]; // kinds that take the next colour
 
 function createStage() {
   const root = byId("stage");
   const names = [...new Set(drawing.flatMap(pointsOf))];
   const known = new Set(names.filter(name => runs.every(run => vector(run, name))));
   const items = drawing.filter(item => pointsOf(item).every(name => known.has(name)));
-  const bodies = items.filter(item => item.kind === "link" || item.kind === "plate");
+  const bodies = items.filter(item => coloured.includes(item.kind));
+  // A shape without a label is a further part of the body before it.
+  const bodyOf = item => Math.max(0, bodies.slice(0, bodies.indexOf(item) + 1).filter(body => body.label).length - 1);
+  const colourOf = item => `var(--b${bodyOf(item) % 5})`;
+  const onRail = item => items.some(rail => rail.kind === "rail" && rail.at === item.at);
   const missing = names.filter(name => !known.has(name));
   if (missing.length) byId("caption").textContent = `Not drawn, since no output has this name: ${missing.join(", ")}.`;
   root.setAttribute("aria-label", `Animated drawing: ${data.title}`);
@@ -139,11 +150,43 @@ function createStage() {
   for (const key of ["rate", "acceleration"]) {
     speeds[key] = Math.hypot(...[0, 1].map(i => largest(runs.flatMap(run => traces.map(trace => (vector(run, trace.of, key) || [])[i])))));
   }
+  const RING = 3.4; // modules from the pitch circle of a ring gear to its outer edge
   const view = {}; // width, height, scale and the maps X, Y from metres to pixels
   let figures = [];
 
+  /** Distance (m) of two points at the first instant. */
+  function distanceAtStart(run, a, b) {
+    const [p, q] = [vector(run, a), vector(run, b)];
+    return Math.hypot(p[0][0] - q[0][0], p[1][0] - q[1][0]);
+  }
+
+  /** The profile of a cam in its own frame (m): where the contact has been, turned back by the cam's angle. */
+  function profile(run, item) {
+    const [[cx, cy], [px, py]] = [vector(run, item.at), vector(run, item.contact)], turn = scalar(run, item.turn) || [];
+    return [...turn.keys()].filter(k => finite(turn[k]) && finite(px[k])).map(k => {
+      const [c, s, x, y] = [Math.cos(turn[k]), Math.sin(turn[k]), px[k] - cx[k], py[k] - cy[k]];
+      return [c * x + s * y, c * y - s * x];
+    });
+  }
+
+  /** Module of a gear (m): pitch diameter by teeth. */
+  const moduleOf = (run, item) => 2 * distanceAtStart(run, item.at, item.rim) / item.teeth;
+
+  /** Circles that hold what a shape covers beyond its points: pairs of a centre and a radius (m). */
+  function circles(run, item) {
+    switch (item.kind) {
+      case "wheel": return [[item.at, distanceAtStart(run, item.at, item.rim)]];
+      case "gear": return [[item.at, distanceAtStart(run, item.at, item.rim) + moduleOf(run, item) * (item.inside ? RING : 1)]];
+      case "cam": return [[item.at, largest([profile(run, item).map(p => Math.hypot(...p))])]];
+      case "geneva": return [[item.wheel, distanceAtStart(run, item.wheel, item.rim)]];
+      default: return [];
+    }
+  }
+
   function fit() {
-    const reach = [0, 1].map(i => extent(shown().flatMap(run => [...known].map(name => vector(run, name)[i]))));
+    const covered = i => run => items.flatMap(item => circles(run, item)).flatMap(([name, radius]) =>
+      extent([vector(run, name)[i]]).map((x, end) => end ? x + radius : x - radius));
+    const reach = [0, 1].map(i => extent(shown().flatMap(run => [...[...known].map(name => vector(run, name)[i]), covered(i)(run)])));
     const [dx, dy] = reach.map(([low, high]) => high - low);
     const size = Math.max(dx, dy) || 1;
     view.width = Math.max(root.parentNode.clientWidth - 2, 200);
@@ -198,6 +241,15 @@ function createStage() {
   }
 
   const blockSize = () => [view.bar * 2.9, view.bar * 1.8];
+  const slotWidth = () => view.bar * 1.15;
+  const degrees = (a, b) => Math.atan2(b[1] - a[1], b[0] - a[0]) * 180 / Math.PI; // in pixels
+
+  /** A function of the sample that gives the direction of a slide in pixels (degrees). */
+  function directionOf(item, f) {
+    if (typeof item.along !== "string") { const angle = inclination(item); return () => angle; }
+    const pair = vector(f.run, item.along), angle = scalar(f.run, item.along);
+    return k => -(pair ? Math.atan2(pair[1][k], pair[0][k]) : angle ? angle[k] : 0) * 180 / Math.PI;
+  }
 
   // One builder a kind: adds nodes to the layers of a figure and returns what moves them to sample k.
   const builders = {
@@ -218,7 +270,7 @@ function createStage() {
       return k => node.setAttribute("transform", `translate(${f.at(item.at, k)})`);
     },
     rail(item, f) {
-      const angle = inclination(item), [cos, sin] = [Math.cos(angle * Math.PI / 180), Math.sin(angle * Math.PI / 180)];
+      const angle = directionOf(item, f)(0), [cos, sin] = [Math.cos(angle * Math.PI / 180), Math.sin(angle * Math.PI / 180)];
       const [xs, ys] = vector(f.run, item.at);
       const way = xs.map((x, k) => (view.X(x) - view.X(xs[0])) * cos + (view.Y(ys[k]) - view.Y(ys[0])) * sin);
       const [low, high] = extent([way]), [w, h] = blockSize();
@@ -227,13 +279,15 @@ function createStage() {
       return () => {};
     },
     slider(item, f) {
-      const [w, h] = blockSize();
+      // On a rail of its own below everything; on a bar or in a slot where it stands in the list.
+      const rail = onRail(item), slotted = !rail && items.some(other => other.kind === "slot");
+      const [w, h] = slotted ? [view.bar * 2, slotWidth() - 2] : blockSize();
       const node = svg("rect", { class: "block", x: -w / 2, y: -h / 2, width: w, height: h, rx: 2 });
-      f.under.append(node);
-      const pin = builders.joint(item, f), angle = inclination(item);
-      const [cos, sin] = [Math.cos(angle * Math.PI / 180) / 2, Math.sin(angle * Math.PI / 180) / 2];
+      (rail ? f.under : f.bodies).append(node);
+      const pin = builders.joint(item, f), direction = directionOf(item, f);
       return k => {
-        const [x, y] = f.at(item.at, k);
+        const [x, y] = f.at(item.at, k), angle = direction(k);
+        const [cos, sin] = [Math.cos(angle * Math.PI / 180) / 2, Math.sin(angle * Math.PI / 180) / 2];
         node.setAttribute("transform", `translate(${x} ${y}) rotate(${angle})`);
         for (const side of [h, 0, -h]) {
           const [cx, cy] = [x - side * sin, y + side * cos];
@@ -241,6 +295,65 @@ function createStage() {
         }
         pin(k);
       };
+    },
+    wheel(item, f) {
+      const radius = distanceAtStart(f.run, item.at, item.rim) * view.scale;
+      const mark = svg("path", { class: "mark", d: `M${radius * .45} 0H${radius * .85}` });
+      return round(item, f, radius, [svg("circle", { class: "disc", r: radius, style: `fill: ${colourOf(item)}` }), mark]);
+    },
+    gear(item, f) {
+      const radius = distanceAtStart(f.run, item.at, item.rim) * view.scale, m = moduleOf(f.run, item) * view.scale;
+      const outline = teeth(radius, item.teeth, m, item.inside);
+      const rim = item.inside ? circlePath(radius + RING * m) : circlePath(Math.max(radius * .12, 3));
+      const parts = [svg("path", { class: "disc", "fill-rule": "evenodd", d: outline + rim, style: `fill: ${colourOf(item)}` })];
+      if (!item.inside) parts.push(svg("circle", { class: "mark", cx: radius - 2.6 * m, r: Math.max(m * .5, 2) }));
+      return round(item, f, item.inside ? radius + 2.3 * m : radius, parts);
+    },
+    cam(item, f) {
+      const points = profile(f.run, item).map(([x, y]) => [x * view.scale, -y * view.scale]), turn = scalar(f.run, item.turn);
+      const node = svg("polygon", { class: "disc", points: points.map(p => p.map(c => c.toFixed(2))).join(" "), style: `fill: ${colourOf(item)}` });
+      const reach = largest([points.map(p => Math.hypot(...p))]);
+      return round(item, f, reach, [node, svg("path", { class: "mark", d: `M0 ${-reach * .12}V${-reach * .36}` })], k => turn ? -turn[k] * 180 / Math.PI : 0);
+    },
+    face(item, f) {
+      const node = svg("g"), colour = colourOf(item), thick = view.bar;
+      const parts = [["bar-edge", view.bar], ["bar", view.bar - 3]].map(([name, width]) =>
+        svg("line", { class: name, "stroke-width": width, style: name === "bar" ? `stroke: ${colour}` : "" }));
+      const plate = svg("polygon", { class: "disc", style: `fill: ${colour}` });
+      node.append(...parts, plate);
+      f.bodies.append(node);
+      if (item.label && !f.ghost) label(f, item.label, "label", besideBody(f, item));
+      return k => {
+        const [a, b] = item.points.map(name => f.at(name, k)), back = f.at(item.back, k);
+        const length = Math.hypot(b[0] - a[0], b[1] - a[1]) || 1, [ux, uy] = [(b[0] - a[0]) / length, (b[1] - a[1]) / length];
+        const along = (back[0] - a[0]) * ux + (back[1] - a[1]) * uy, foot = [a[0] + along * ux, a[1] + along * uy];
+        const away = Math.hypot(back[0] - foot[0], back[1] - foot[1]) || 1;
+        const [nx, ny] = [(back[0] - foot[0]) / away * thick, (back[1] - foot[1]) / away * thick];
+        plate.setAttribute("points", [a, b, [b[0] + nx, b[1] + ny], [a[0] + nx, a[1] + ny]].join(" "));
+        for (const part of parts) {
+          for (const [key, value] of [["x1", foot[0] + nx / 2], ["y1", foot[1] + ny / 2], ["x2", back[0]], ["y2", back[1]]]) part.setAttribute(key, value);
+        }
+        f.obstacles.push([a, b], [foot, back]);
+      };
+    },
+    geneva(item, f) {
+      const [d, r1, r2] = [[item.at, item.wheel], [item.at, item.pin], [item.wheel, item.rim]].map(pair => distanceAtStart(f.run, ...pair) * view.scale);
+      const step = 180 / item.slots, pin = r1 * .08, lock = r1 * .76;
+      const wheel = svg("g", {}, svg("path", { class: "disc", d: maltese(d, r1, r2, item.slots, pin, lock), style: "fill: var(--b1)" }));
+      const driver = svg("g", {}, svg("path", { class: "disc", d: lockingDisc(d, r2, lock), style: "fill: var(--b0)" }),
+        ...[["bar-edge", 0], ["bar", 3]].map(([name, less]) => svg("path", { class: name, d: `M0 0H${r1}`, "stroke-width": view.bar - less, style: less ? "stroke: var(--b0)" : "" })),
+        svg("circle", { class: "disc", cx: r1, r: pin, style: "fill: var(--b3)" }));
+      f.bodies.append(wheel, driver);
+      return k => {
+        const [o, a, c, r] = [item.at, item.pin, item.wheel, item.rim].map(name => f.at(name, k));
+        wheel.setAttribute("transform", `translate(${c}) rotate(${degrees(c, r) - step})`);
+        driver.setAttribute("transform", `translate(${o}) rotate(${degrees(o, a)})`);
+        f.obstacles.push([o, a]);
+      };
+    },
+    slot(item, f) {
+      const inside = slotWidth();
+      return body(item, f, "polyline", inside + view.bar, [svg("polyline", { class: "bar-edge", "stroke-width": inside }), svg("polyline", { class: "gap", "stroke-width": inside - 2.5 })]);
     },
     link: (item, f) => body(item, f, "polyline"),
     plate: (item, f) => body(item, f, "polygon"),
@@ -265,11 +378,11 @@ function createStage() {
     },
   };
 
-  function body(item, f, tag) {
-    const colour = `var(--b${bodies.indexOf(item) % 5})`, solid = tag === "polygon";
-    const edge = svg(tag, { class: "bar-edge", "stroke-width": view.bar });
-    const bar = svg(tag, { class: "bar", "stroke-width": view.bar - 3, style: `stroke: ${colour}` });
-    const parts = [edge, bar];
+  function body(item, f, tag, width = view.bar, inner = []) {
+    const colour = colourOf(item), solid = tag === "polygon";
+    const edge = svg(tag, { class: "bar-edge", "stroke-width": width });
+    const bar = svg(tag, { class: "bar", "stroke-width": width - 3, style: `stroke: ${colour}` });
+    const parts = [edge, bar, ...inner];
     if (solid) parts.unshift(svg(tag, { style: `fill: ${colour}; fill-opacity: .4; stroke: none` }));
     f.bodies.append(...parts);
     if (item.label && !f.ghost) label(f, item.label, "label", besideBody(f, item));
@@ -278,6 +391,49 @@ function createStage() {
       for (const part of parts) part.setAttribute("points", points.join(" "));
       points.forEach((point, i) => { if (i || solid) f.obstacles.push([points.at(i - 1), point]); });
     };
+  }
+
+  /** A body about `item.at` of a radius in pixels, turned by `angle(k)` in degrees or towards its rim. */
+  function round(item, f, radius, parts, angle = k => degrees(f.at(item.at, k), f.at(item.rim, k))) {
+    const node = svg("g", {}, ...parts);
+    f.bodies.append(node);
+    if (item.label && !f.ghost) label(f, item.label, "label", aroundDisc(f, item, radius));
+    return k => node.setAttribute("transform", `translate(${f.at(item.at, k)}) rotate(${angle(k)})`);
+  }
+
+  const circlePath = r => `M${r} 0A${r} ${r} 0 1 1 ${-r} 0A${r} ${r} 0 1 1 ${r} 0Z`;
+  const polar = (r, a) => `${(r * Math.cos(a)).toFixed(2)} ${(r * Math.sin(a)).toFixed(2)}`;
+
+  /** Outline of a gear in pixels with a tooth (a gap, where the teeth point inwards) at the angle 0: straight flanks. */
+  function teeth(radius, count, m, inside) {
+    const pitch = 2 * Math.PI / count;
+    // At the mark and beside it: how far from the pitch circle, in modules, and half the width there, in pitches.
+    const [mark, beside] = inside ? [[1.25, .18], [-1, .32]] : [[1, .13], [-1.25, .33]];
+    const corners = [[beside, -1], [mark, -1], [mark, 1], [beside, 1]];
+    const points = [...Array(count).keys()].flatMap(i => corners.map(([[away, half], side]) => polar(radius + away * m, (i + side * half) * pitch)));
+    return `M${points.join("L")}Z`;
+  }
+
+  /**
+   * Outline of a Geneva wheel in pixels, the middle of a locking arc at the angle 0. `d`: between the centres, `r1`: of the
+   * pin's circle, `r2`: of the wheel, `w`: half a slot's width, `lock`: radius of the locking disc.
+   */
+  function maltese(d, r1, r2, slots, w, lock) {
+    const step = Math.PI / slots, arc = Math.acos(clamp((d * d + r2 * r2 - lock * lock) / (2 * d * r2), -1, 1)), edge = Math.asin(w / r2);
+    const bottom = d - r1;
+    let path = "";
+    for (let i = 0; i < slots; i++) {
+      const a = 2 * step * i, s = a + step, inner = [Math.hypot(bottom, w), Math.atan2(w, bottom)];
+      path += `${i ? "L" : "M"}${polar(r2, a - arc)}A${lock} ${lock} 0 0 0 ${polar(r2, a + arc)}A${r2} ${r2} 0 0 1 ${polar(r2, s - edge)}`
+        + `L${polar(inner[0], s - inner[1])}A${w} ${w} 0 0 0 ${polar(inner[0], s + inner[1])}L${polar(r2, s + edge)}A${r2} ${r2} 0 0 1 ${polar(r2, s + step - arc)}`;
+    }
+    return `${path}Z`;
+  }
+
+  /** The driver's disc in pixels: cut out towards the pin (angle 0) as the wheel's arms need it. */
+  function lockingDisc(d, r2, lock) {
+    const cut = r2 * 1.04, a = Math.acos(clamp((d * d + lock * lock - cut * cut) / (2 * d * lock), -1, 1));
+    return `M${polar(lock, a)}A${lock} ${lock} 0 1 1 ${polar(lock, -a)}A${cut} ${cut} 0 0 0 ${polar(lock, a)}Z`;
   }
 
   /**
@@ -324,6 +480,13 @@ function createStage() {
       .map(([s, r]) => [x + s * (b[0] - a[0]) + nx * r, y + s * (b[1] - a[1]) + ny * r]);
   };
 
+  /** Inside a disc where it is large, else around it. */
+  const aroundDisc = (f, item, radius) => (k, width) => {
+    const [x, y] = f.at(item.at, k), inside = radius > width / 2 + 14, place = radius * (item.inside ? 1 : .62); // on a ring's rim
+    return [2, 6, 1, 3, 5, 7, 0, 4].map(i => [Math.cos(i * Math.PI / 4), Math.sin(i * Math.PI / 4)])
+      .map(([dx, dy]) => inside ? [x + dx * place, y + dy * place] : [x + dx * (radius + width / 2 + 6), y + dy * (radius + 12)]);
+  };
+
   function arrow(item, f, key) {
     const values = vector(f.run, item.of, key), name = key === "rate" ? "velocity" : key;
     const node = svg("path", { class: "arrow", style: `stroke: var(--${name})` });
@@ -345,7 +508,7 @@ function createStage() {
     const values = new Map([...known].map(name => [name, vector(run, name)]));
     f.at = (name, k) => { const [x, y] = values.get(name); return [+view.X(x[k]).toFixed(2), +view.Y(y[k]).toFixed(2)]; };
     const updates = items.filter(item => builders[item.kind]).map(item => builders[item.kind](item, f));
-    if (!ghost) for (const name of known) label(f, name, "name", aroundPoint(f, name));
+    if (!ghost) for (const name of [...known].filter(name => !name.includes("_"))) label(f, name, "name", aroundPoint(f, name));
     else if (known.size) label(f, run.label, "label", aroundPoint(f, traces.length ? traces[0].of : names[0]));
     f.labels.reverse(); // names of points settle before those of bodies
     f.update = () => {
@@ -705,8 +868,10 @@ if (runs.length) {
   createSolver(byId("solver"));
   layout();
   let width = document.body.clientWidth;
-  new ResizeObserver(() => { // heights change with the content, only the width asks for a new layout
+  const resized = () => { // heights change with the content, only the width asks for a new layout
     if (document.body.clientWidth !== width) { width = document.body.clientWidth; layout(); }
-  }).observe(document.body);
+  };
+  // Not in the observer's own call: a layout there may bring a scroll bar, which is a further change of size.
+  new ResizeObserver(() => requestAnimationFrame(resized)).observe(document.body);
 }
 })();

@@ -63,6 +63,9 @@ impl AnyMechanism for Hand {
     fn coordinate_scales(&self) -> Vec<f64> {
         vec![1.0, 0.3]
     }
+    fn experiment(&self) -> &dyn crate::lecture::experiment::Experiment {
+        unreachable!("the comparison evaluates alone")
+    }
     fn evaluate(&self, state: &State) -> Functions {
         let [l, u, ud, udd] = self.variables;
         let ([theta, x], [w, v]) = ([state.q[0], state.q[1]], [state.qd[0], state.qd[1]]);

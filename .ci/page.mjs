@@ -1,0 +1,65 @@
+// Uses a report as a reader would and checks what moved: node page.mjs CHROMIUM REPORT...
+import assert from 'node:assert/strict';
+import { chromium } from 'playwright-core';
+
+const [executablePath, ...reports] = process.argv.slice(2);
+const flags = ['--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run', '--disable-background-networking',
+    '--disable-component-update', '--disable-sync'];
+const browser = await chromium.launch({ executablePath, args: flags });
+
+for (const report of reports) {
+    const page = await browser.newPage({ viewport: { width: 1280, height: 900 } });
+    const complaints = [];
+    page.on('console', message => complaints.push(message.text()));
+    page.on('pageerror', error => complaints.push(error.message));
+    page.on('request', request => request.url().startsWith('file:') || complaints.push(`asks for ${request.url()}`));
+    await page.goto(`file://${report}`);
+    await use(page);
+    await fitsAPhone(page);
+    assert.deepEqual(complaints, [], report);
+    await page.close();
+    console.log(`${report.split('/').at(-2)}: slides, plays, switches, fits`);
+}
+await browser.close();
+console.log(`${reports.length} passed, 0 failed`);
+
+async function use(page) {
+    const time = () => page.$eval('#time', element => Number(element.dataset.value));
+    const drawing = () => page.$eval('#stage', element => element.innerHTML);
+    const before = { time: await time(), drawing: await drawing() };
+    await page.focus('#scrub');
+    for (let key = 0; key < 20; key++) await page.keyboard.press('ArrowRight');
+    assert.ok(await time() > before.time, 'the slider moves the time');
+    assert.notEqual(await drawing(), before.drawing, 'the slider moves the mechanism');
+
+    const still = await time();
+    await page.click('#play');
+    await page.waitForFunction(from => Number(document.querySelector('#time').dataset.value) !== from, still);
+    assert.equal((await page.textContent('#play')).trim(), 'Pause');
+    await page.keyboard.press('Space');
+    assert.equal((await page.textContent('#play')).trim(), 'Play', 'the space bar pauses');
+
+    const choices = await page.$$eval('#assembly input', inputs => inputs.map(input => input.value));
+    const drawings = new Set();
+    for (const choice of choices) {
+        await page.check(`#assembly input[value="${choice}"]`);
+        drawings.add(await drawing());
+    }
+    assert.equal(drawings.size, choices.length, 'every assembly looks different');
+
+    const plot = await page.$('.plot');
+    await plot.scrollIntoViewIfNeeded();
+    const { x, y, width, height } = await plot.boundingBox();
+    await page.mouse.move(x + 0.4 * width, y + height / 2);
+    await page.mouse.down();
+    const from = await time();
+    await page.mouse.move(x + 0.8 * width, y + height / 2, { steps: 5 });
+    await page.mouse.up();
+    assert.ok(await time() > from, 'dragging in a plot moves the time');
+}
+
+async function fitsAPhone(page) {
+    await page.setViewportSize({ width: 360, height: 740 });
+    const width = await page.evaluate(() => document.documentElement.scrollWidth);
+    assert.ok(width <= 360, `${width} pixels wide on a phone of 360`);
+}

@@ -1,0 +1,132 @@
+//! The structure as data: what a program draws and prints of it.
+
+use crate::equations::Equations;
+use crate::model::Model;
+use crate::program::{Method, Operations, Program, Section};
+use crate::structure::Structure;
+use crate::symbolic::Stage;
+
+/// Sparsity, matching and block-triangular order of a mechanism.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct StructureReport {
+    /// Name of the mechanism.
+    pub name: String,
+    /// Coordinates in the order of q: N.
+    pub coordinates: Vec<CoordinateReport>,
+    /// Rows in the order of Φ: N.
+    pub rows: Vec<RowReport>,
+    /// Diagonal blocks in the order in which they are solved.
+    pub blocks: Vec<BlockReport>,
+    /// Operations of one step of all functions, with one Newton iteration of every block.
+    pub operations: usize,
+}
+
+/// A coordinate.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct CoordinateReport {
+    /// As the text spells it.
+    pub name: String,
+    /// As the text spells it.
+    pub unit: String,
+}
+
+/// A row of Φ.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct RowReport {
+    /// Name of its group, with its number where the group has several.
+    pub name: String,
+    /// Unit of the residual.
+    pub unit: String,
+    /// Whether a `drive` declares it.
+    pub driven: bool,
+    /// Entries of the row of Φ_q that are not structurally zero: index of the coordinate and kind, ascending.
+    pub entries: Vec<(usize, EntryKind)>,
+    /// Index of the coordinate that the matching gives the row.
+    pub matched: Option<usize>,
+}
+
+/// What an entry of Φ_q depends on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum EntryKind {
+    /// Nothing: a number.
+    Number,
+    /// Parameters alone.
+    Parameters,
+    /// Coordinates, time or inputs.
+    Varies,
+}
+
+/// A diagonal block of the block-triangular order.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct BlockReport {
+    /// Indices of its rows, ascending.
+    pub rows: Vec<usize>,
+    /// Indices of its coordinates, ascending, as many as rows.
+    pub coordinates: Vec<usize>,
+    /// Whether the coordinate is assigned, not solved for.
+    pub explicit: bool,
+}
+
+/// Before: a square mechanism without faults. After: its structure, names and indices alone.
+pub fn report(
+    model: &Model,
+    equations: &Equations,
+    structure: &Structure,
+    program: &Program,
+    name: &str,
+) -> StructureReport {
+    let kind = |stage: Stage| match stage {
+        Stage::Constant => EntryKind::Number,
+        Stage::Parameter => EntryKind::Parameters,
+        Stage::Position | Stage::Velocity | Stage::Acceleration => EntryKind::Varies,
+    };
+    let entries = |row: &crate::equations::Row| {
+        row.phi_q.iter().map(|(column, entry)| (*column, kind(equations.graph.stage(*entry)))).collect()
+    };
+    let rows = model.rows.iter().zip(&equations.rows).enumerate().map(|(index, (row, equation))| RowReport {
+        name: row.name.clone(),
+        unit: row.unit(model),
+        driven: row.driven,
+        entries: entries(equation),
+        matched: structure.matched.get(index).copied().flatten(),
+    });
+    let blocks = structure.blocks.iter().map(|block| BlockReport {
+        rows: block.rows.clone(),
+        coordinates: block.coordinates.clone(),
+        explicit: block.explicit.is_some(),
+    });
+    let coordinates = model.coordinates.iter();
+    StructureReport {
+        name: name.into(),
+        coordinates: coordinates
+            .map(|c| CoordinateReport { name: c.name.clone(), unit: c.unit.clone() })
+            .collect(),
+        rows: rows.collect(),
+        blocks: blocks.collect(),
+        operations: operations(program),
+    }
+}
+
+/// What one step computes: each block once, then all functions of the position that it found.
+fn operations(program: &Program) -> usize {
+    let functions = [
+        &program.position.section,
+        &program.phi_q,
+        &program.phi_t,
+        &program.gamma,
+        &program.branches,
+        &program.outputs,
+    ];
+    let iterations = program.blocks.iter().filter_map(|block| match &block.method {
+        Method::Newton { section, .. } => Some(section),
+        Method::Explicit { .. } => None,
+    });
+    let blocks = program.blocks.iter().map(|block| &block.before).chain(iterations);
+    functions.into_iter().chain(blocks).map(count).sum()
+}
+
+fn count(section: &Section) -> usize {
+    let Operations { additions, multiplications, divisions, sine_cosines, functions, selects } =
+        section.operations;
+    [additions, multiplications, divisions, sine_cosines, functions, selects].into_iter().sum()
+}

@@ -1,0 +1,116 @@
+//! A disc cam with an oscillating roller follower.
+//!
+//! ```text
+//!              S
+//!         .──( o )──────── l ────────.
+//!        .·`--P--·.              ψ    `o D
+//!      .'     |     '.
+//!     (       o O     )                θ: cam, ψ: arm D S against the line D O, clockwise (rad)
+//!      `·..........·'
+//!             |←────────── d ─────────→|
+//! ```
+//!
+//! The motion law is `Ψ(c) = psi0 + swing ((1 − cos c)/2)²`: periodic and smooth. The roller's centre draws the pitch
+//! curve on the cam: `D + l unit(π − Ψ(c))` turned back by `c`. The mechanism knows only this curve: its rows say that
+//! the point with the parameter `c` is the end of the arm at `ψ`. The profile is the pitch curve less the roller's
+//! radius `rr` along its normal.
+//!
+//! Angles in rad, lengths in metres, `q = [θ c ψ]`. The determinant with respect to `(c, ψ)` is `l d sin ψ`: never 0
+//! with the arm above the line `D O` (`above`). The pitch curve is convex with radii of at least 39 mm: the profile has
+//! no undercut.
+//!
+//! Numbers: chosen here. Source of the profile: Norton, Cam Design and Manufacturing Handbook, ch. 7 (oscillating
+//! roller follower).
+
+use mbs_runtime::mechanism;
+
+use crate::drawing::Shape;
+use crate::facade;
+use crate::registry::{Card, Preset, Span};
+
+mechanism! {
+    /// Disc cam with an oscillating roller follower.
+    pub mechanism CamOscillating;
+
+    param d: m = 90mm;
+    param l: m = 80mm;
+    param rr: m = 8mm;
+    param psi0: rad = 26deg;
+    param swing: rad = 20deg;
+    param omega: rad/s = TAU;
+
+    coord theta: rad = 0;
+    coord c: rad = 0;
+    coord psi: rad = 26deg;
+
+    let u = (1 - cos(c))/2;
+    let law = psi0 + swing*u^2;
+    let law_d = swing*u*sin(c);
+    let pivot = [d, 0];
+    let pitch = pivot + l*unit(PI - law);
+    let tangent = law_d*l*[sin(law), cos(law)] + [pitch.1, -pitch.0];
+    let normal = rot(theta - c)*[-tangent.1, tangent.0];
+    let centre = pivot + l*unit(PI - psi);
+
+    constraint contact { centre == rot(theta - c)*pitch; }
+    drive turn: theta == omega*t;
+    branch above: sin(psi) > 0;
+    branch same_turn: cos(theta - c) > 0;
+
+    out O: [m; 2] = [0, 0];
+    out D: [m; 2] = pivot;
+    out S: [m; 2] = centre;
+    out P: [m; 2] = centre - rr*normal/norm(normal);
+}
+
+/// How the mechanism is drawn.
+pub const DRAWING: &[Shape] = &[
+    Shape::Ground { at: "O" },
+    Shape::Ground { at: "D" },
+    Shape::Cam { at: "O", contact: "P", turn: "theta", label: "cam" },
+    Shape::Link { points: &["D", "S"], label: "arm" },
+    Shape::Wheel { at: "S", rim: "P", label: "roller" },
+    Shape::Joint { at: "O" },
+    Shape::Joint { at: "D" },
+    Shape::Joint { at: "S" },
+    Shape::Trace { of: "S", label: "roller" },
+];
+
+/// Entry in the list of mechanisms.
+pub const CARD: Card = Card {
+    name: "cam_oscillating",
+    title: "Cam with an oscillating follower",
+    description: "A disc cam swings an arm with a roller at its end.",
+    runs: &[Preset { label: "one turn", description: "the cam at constant speed", set: &[] }],
+    span: Span::Turn { rate: "omega" },
+    drawing: DRAWING,
+    make: facade::boxed::<CamOscillating, 3>,
+};
+
+#[cfg(test)]
+mod tests {
+    use core::f64::consts::TAU;
+
+    use super::*;
+    use crate::closed_form::{Jet, Vector, assert_moves_as};
+    use crate::reference::one_turn;
+
+    /// The motion law as a Fourier sum, `((1 − cos)/2)² = 3/8 − cos/2 + cos 2/8`. The common normal of cam and roller
+    /// passes through the pole on the line `O D` where both move alike: `x/(d − x) = −ψ̇/θ̇` with clockwise `ψ`.
+    fn columns(t: Jet) -> Vec<Jet> {
+        let (angle, d, l, rr, swing) = (t * TAU, 0.09, 0.08, 0.008, 20.0_f64.to_radians());
+        let psi = (angle.cos() * -0.5 + (angle * 2.0).cos() * 0.125 + 0.375) * swing + 26.0_f64.to_radians();
+        let slope = (angle.sin() * 0.5 - (angle * 2.0).sin() * 0.25) * swing;
+        let centre = Vector::fixed(d, 0.0) + Vector(-psi.cos(), psi.sin()) * l;
+        let pole = Vector(slope * d / (slope + 1.0), 0.0.into());
+        let way = centre - pole;
+        let contact = centre - way * (Jet::from(rr) / way.length());
+        vec![angle, angle, psi, contact.0, contact.1]
+    }
+
+    #[test]
+    fn the_arm_obeys_the_motion_law() {
+        let motion = one_turn(&CARD, &CARD.runs[0], 180);
+        assert_moves_as(&motion, &["theta", "c", "psi", "P.0", "P.1"], 1e-12, columns);
+    }
+}

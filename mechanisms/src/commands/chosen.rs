@@ -1,0 +1,113 @@
+//! What the teaching commands share: which mechanism, at which time, and where a file goes.
+
+use std::fs;
+use std::path::Path;
+
+use clap::Args;
+use mechanisms::facade::{AnyMechanism, State};
+use mechanisms::lecture::experiment::state_at;
+use mechanisms::registry::{self, Card, nearest};
+
+use super::{CommandError, table};
+
+#[derive(Args)]
+pub struct Chosen {
+    /// Name of the mechanism, as `mbs list` prints it
+    name: String,
+    /// Set a parameter, in the unit that `mbs list` prints
+    #[arg(long = "param", value_name = "NAME=VALUE", value_parser = assignment)]
+    parameters: Vec<(String, f64)>,
+}
+
+/// A mechanism with the parameters of its first preset and of the command line.
+pub struct Choice {
+    pub card: &'static Card,
+    pub mechanism: Box<dyn AnyMechanism>,
+}
+
+impl Chosen {
+    pub fn choice(&self) -> Result<Choice, CommandError> {
+        let card = registry::find(&self.name)?;
+        let mut mechanism = card.instance(&card.runs[0])?;
+        for (name, value) in &self.parameters {
+            registry::set(mechanism.as_mut(), name, *value)?;
+        }
+        Ok(Choice { card, mechanism })
+    }
+}
+
+impl Choice {
+    /// The position at `t` (s) with its rates, followed there from the assembly at 0.
+    pub fn state(&self, t: f64) -> Result<State, CommandError> {
+        let duration = self.card.duration(self.mechanism.as_ref())?;
+        state_at(self.mechanism.as_ref(), duration, t)
+            .map_err(|failure| CommandError::Failed(format!("{}: {failure}", self.card.name)))
+    }
+
+    /// Index of the coordinate called `name`.
+    pub fn coordinate(&self, name: &str) -> Result<usize, CommandError> {
+        let coordinates = self.mechanism.coordinates();
+        coordinates.iter().position(|entry| entry.name == name).ok_or_else(|| {
+            let known: Vec<&str> = coordinates.iter().map(|entry| entry.name).collect();
+            let near = nearest(name, known.iter().copied());
+            let near = near.map_or_else(String::new, |near| format!("; did you mean `{near}`?"));
+            let list = known.join(", ");
+            CommandError::Usage(format!(
+                "`{}` has no coordinate `{name}`{near}\nknown: {list}",
+                self.card.name
+            ))
+        })
+    }
+
+    /// `phi2 = 2.5 rad, …` for coordinates by their indices.
+    pub fn values(&self, indices: &[usize], q: &[f64]) -> String {
+        let coordinates = self.mechanism.coordinates();
+        let value = |index: &usize| {
+            let entry = coordinates[*index];
+            format!("{} = {}{}", entry.name, table::short(q[*index]), table::unit(entry.unit))
+        };
+        indices.iter().map(value).collect::<Vec<_>>().join(", ")
+    }
+}
+
+/// `NAME=VALUE` with a finite number.
+pub fn assignment(text: &str) -> Result<(String, f64), String> {
+    let (name, value) = text.split_once('=').ok_or("write it as NAME=VALUE, for example omega=20")?;
+    let (name, value) = (name.trim(), value.trim());
+    if name.is_empty() {
+        return Err("a name is needed before the `=`".to_string());
+    }
+    finite(value).map(|value| (name.to_string(), value))
+}
+
+/// A finite number.
+pub fn finite(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(number) if number.is_finite() => Ok(number),
+        Ok(_) => Err(format!("`{text}` is not a finite number")),
+        Err(_) => Err(format!("`{text}` is not a number")),
+    }
+}
+
+/// Writes a file, its directory included.
+pub fn write_file(path: &Path, text: &str) -> Result<(), CommandError> {
+    let fail =
+        |error: std::io::Error| CommandError::Failed(format!("cannot write {}: {error}", path.display()));
+    if let Some(directory) = path.parent().filter(|directory| !directory.as_os_str().is_empty()) {
+        fs::create_dir_all(directory).map_err(fail)?;
+    }
+    fs::write(path, text).map_err(fail)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn assignments_are_names_with_finite_numbers() {
+        assert_eq!(assignment("omega=2e1"), Ok(("omega".to_string(), 20.0)));
+        for bad in ["omega", "=2", "omega=", "omega=nan", "omega=1e999", "omega=two"] {
+            assert!(assignment(bad).is_err(), "{bad}");
+        }
+    }
+}

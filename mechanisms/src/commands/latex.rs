@@ -1,0 +1,35 @@
+//! `mbs latex`.
+
+use std::io::Write;
+use std::path::PathBuf;
+
+use clap::Args;
+use mechanisms::lecture::latex::document;
+
+use super::CommandError;
+use super::chosen::{Chosen, write_file};
+
+#[derive(Args)]
+pub struct Arguments {
+    #[command(flatten)]
+    chosen: Chosen,
+    /// File to write [default: standard output]
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+}
+
+/// Φ, Φ_q, Φ_t and γ as a document for `pdflatex`.
+pub fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<(), CommandError> {
+    let choice = arguments.chosen.choice()?;
+    let mechanism = choice.mechanism.as_ref();
+    let formulas = mbs_codegen::latex_formulas(mechanism.source()).map_err(CommandError::Failed)?;
+    let text = document(mechanism, &formulas, choice.card.title);
+    match &arguments.out {
+        None => out.write_all(text.as_bytes())?,
+        Some(path) => {
+            write_file(path, &text)?;
+            writeln!(out, "document  {}", path.display())?;
+        }
+    }
+    Ok(())
+}

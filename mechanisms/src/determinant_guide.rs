@@ -1,0 +1,139 @@
+//! A prismatic guide written by the lecture's determinant of three points.
+//!
+//! ```text
+//!                            B ·
+//!                    ┌───┐ .'        Ψ = | X_A Y_A 1 |
+//!              C, E  │ S │'              | X_B Y_B 1 | = 0,  and the same with E in place of C
+//!                    └.'─┘               | X_C Y_C 1 |
+//!               A  .'   \
+//!                ·'      \ L
+//!          e  .   θ       \            θ: guide against the ground line O D (rad)
+//!           o──────o───────┘           φ: slider against the ground line (rad)
+//!           O   d  D   ψ               ψ: rocker D S against the ground line (rad)
+//! ```
+//!
+//! A guide turns about `O` at constant `ω`; its line passes beside `O` at the distance `e`. `A` and `B` are points of
+//! the guide, `C` and `E` points of the slider, one `h` behind and one `h` before its middle `S = (x, y)`. Three
+//! points are in line where the determinant vanishes; two such rows leave the slider one freedom along the guide: a
+//! prismatic joint. A rocker of length `L` about `D` carries the slider. Lengths in metres, `q = [θ x y φ ψ]`.
+//!
+//! `O` lies within the rocker's circle with its guide line (`L > d + e`): the guide turns fully. The line meets the
+//! circle twice; the slider is on the forward side (`ahead`) and not turned round (`upright`).
+//!
+//! Numbers: chosen here. Source of the determinant: the lecture's slides on joints, "Coppia prismatica".
+
+use mbs_runtime::mechanism;
+
+use crate::drawing::{Along, Shape};
+use crate::facade;
+use crate::registry::{Card, Preset, Span};
+
+mechanism! {
+    /// Turning guide with a slider on a rocker, the prismatic joint as two determinants.
+    pub mechanism DeterminantGuide;
+
+    param d: m = 50mm;
+    param L: m = 120mm;
+    param e: m = 35mm;
+    param h: m = 15mm;
+    param omega: rad/s = TAU;
+
+    coord theta: rad = 0;
+    coord x: m = 164mm;
+    coord y: m = 35mm;
+    coord phi: rad = 0;
+    coord psi: rad = 0.3;
+
+    let a = rot(theta)*[0, e];
+    let b = rot(theta)*[200mm, e];
+    let c = [x, y] - h*unit(phi);
+    let front = [x, y] + h*unit(phi);
+
+    constraint prismatic {
+        det([[a.0, a.1, 1], [b.0, b.1, 1], [c.0, c.1, 1]]) == 0;
+        det([[a.0, a.1, 1], [b.0, b.1, 1], [front.0, front.1, 1]]) == 0;
+    }
+    constraint rocker { [x, y] == [d, 0] + L*unit(psi); }
+    drive guide: theta == omega*t;
+    branch ahead: dot([x, y], unit(theta)) > 0;
+    branch upright: cos(phi - theta) > 0;
+
+    out O: [m; 2] = [0, 0];
+    out D: [m; 2] = [d, 0];
+    out A: [m; 2] = a;
+    out B: [m; 2] = b;
+    out S: [m; 2] = [x, y];
+}
+
+/// How the mechanism is drawn.
+pub const DRAWING: &[Shape] = &[
+    Shape::Ground { at: "O" },
+    Shape::Ground { at: "D" },
+    Shape::Slider { at: "S", along: Along::Named("phi") },
+    Shape::Link { points: &["A", "B"], label: "guide" },
+    Shape::Link { points: &["O", "A"], label: "" },
+    Shape::Link { points: &["D", "S"], label: "rocker" },
+    Shape::Joint { at: "O" },
+    Shape::Joint { at: "D" },
+    Shape::Joint { at: "S" },
+    Shape::Trace { of: "S", label: "slider" },
+];
+
+/// Entry in the list of mechanisms.
+pub const CARD: Card = Card {
+    name: "determinant_guide",
+    title: "Prismatic guide by a determinant",
+    description: "A slider on a turning guide: the prismatic joint is the lecture's determinant of three points in \
+                  line, once for either end of the slider.",
+    runs: &[Preset {
+        label: "slider ahead",
+        description: "the slider on the forward side of the guide",
+        set: &[],
+    }],
+    span: Span::Turn { rate: "omega" },
+    drawing: DRAWING,
+    make: facade::boxed::<DeterminantGuide, 5>,
+};
+
+#[cfg(test)]
+mod tests {
+    use core::f64::consts::TAU;
+
+    use super::*;
+    use crate::closed_form::{Jet, Vector, assert_moves_as};
+    use crate::reference::one_turn;
+
+    /// The way `s` along the guide from Pythagoras in the rocker's circle.
+    fn coordinates(t: Jet) -> Vec<Jet> {
+        let (d, length, e) = (Vector::fixed(0.05, 0.0), 0.12, 0.035);
+        let u = Vector::unit(t * TAU);
+        let s = u.dot(d) + (-(u.left().dot(d) - e).square() + length * length).sqrt();
+        let slider = u * s + u.left() * e;
+        vec![t * TAU, slider.0, slider.1, t * TAU, (slider - d).angle()]
+    }
+
+    #[test]
+    fn the_motion_equals_the_closed_form() {
+        let motion = one_turn(&CARD, &CARD.runs[0], 180);
+        assert_moves_as(&motion, &["theta", "x", "y", "phi", "psi"], 1e-12, coordinates);
+    }
+
+    /// The rows are twice the area of the triangles, as the slide's determinant expands.
+    #[test]
+    fn the_rows_are_the_slide_s_determinants() {
+        let state = crate::facade::State {
+            q: vec![0.3, 0.16, 0.02, 0.5, 0.2],
+            qd: vec![0.0; 5],
+            qdd: vec![0.0; 5],
+            t: 0.0,
+        };
+        let phi = (CARD.make)().evaluate(&state).phi;
+        let (s, c) = 0.3_f64.sin_cos();
+        let (a, b) = ([-0.035 * s, 0.035 * c], [0.2 * c - 0.035 * s, 0.2 * s + 0.035 * c]);
+        for (row, h) in [(0, -0.015), (1, 0.015)] {
+            let p = [0.16 + h * 0.5_f64.cos(), 0.02 + h * 0.5_f64.sin()];
+            let area = a[0] * (b[1] - p[1]) - a[1] * (b[0] - p[0]) + (b[0] * p[1] - p[0] * b[1]);
+            assert!((phi[row] - area).abs() < 1e-16, "{} {area}", phi[row]);
+        }
+    }
+}

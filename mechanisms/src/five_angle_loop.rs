@@ -1,0 +1,144 @@
+//! The lecture's first closed figure: one loop, five moving angles, three of them driven.
+//!
+//! ```text
+//!               B     θ4     C        θ5
+//!               o────────────o────────────────o E
+//!              /      L4           L5          \
+//!          L3 /                                 \ L6
+//!            / θ3                                \ θ6
+//!      A .──o                                     \
+//!     .─'  L2                                      \
+//!    o──────────────────────────────────────────────o
+//!    O  θ2               L1                         D
+//! ```
+//!
+//! Every angle is absolute (rad, from the ground line `O D`) and points along the way round the loop, from `O` to
+//! `D`; lengths are in metres. `qᵢ = [θ2 θ3 θ4]` are independent, each with its time constraint;
+//! `q_d = [θ5 θ6]` follow from the two rows of the closure. `θ2` turns, `θ3` and `θ4` swing.
+//!
+//! The distance from `C` to `D` stays between 0.197 m and 0.407 m; `L6 − L5 = 0.02 m` and `L5 + L6 = 0.46 m` lie
+//! outside of it, so that links 5 and 6 are never in line: `sin(θ6 − θ5)` keeps its sign, negative with `E` above.
+//!
+//! Numbers: chosen here; the lecture's figure gives none.
+
+use mbs_runtime::mechanism;
+
+use crate::drawing::Shape;
+use crate::facade;
+use crate::registry::{Card, Preset, Span};
+
+mechanism! {
+    /// One loop with five moving angles, three of them driven.
+    pub mechanism FiveAngleLoop;
+
+    param L1: m = 0.40;
+    param L2: m = 0.06;
+    param L3: m = 0.18;
+    param L4: m = 0.12;
+    param L5: m = 0.22;
+    param L6: m = 0.24;
+    param omega: rad/s = TAU;
+    param side: 1 = 1;
+
+    coord theta2: rad = 0;
+    coord theta3: rad = 70deg;
+    coord theta4: rad = 0;
+    coord theta5: rad = 66deg*side - 44deg;
+    coord theta6: rad = -57deg*side - 44deg;
+
+    let a = L2*unit(theta2);
+    let b = a + L3*unit(theta3);
+    let c = b + L4*unit(theta4);
+
+    constraint closure {
+        L2*cos(theta2) + L3*cos(theta3) + L4*cos(theta4) + L5*cos(theta5) + L6*cos(theta6) == L1;
+        L2*sin(theta2) + L3*sin(theta3) + L4*sin(theta4) + L5*sin(theta5) + L6*sin(theta6) == 0;
+    }
+    drive turn: theta2 == omega*t;
+    drive swing: theta3 == 70deg + 0.25rad*sin(omega*t);
+    drive nod: theta4 == 10deg - 0.3rad*cos(2*omega*t);
+    branch assembly: side*sin(theta5 - theta6) > 0;
+
+    out O: [m; 2] = [0, 0];
+    out A: [m; 2] = a;
+    out B: [m; 2] = b;
+    out C: [m; 2] = c;
+    out E: [m; 2] = c + L5*unit(theta5);
+    out D: [m; 2] = [L1, 0];
+}
+
+/// How the mechanism is drawn.
+pub const DRAWING: &[Shape] = &[
+    Shape::Ground { at: "O" },
+    Shape::Ground { at: "D" },
+    Shape::Link { points: &["A", "B"], label: "link 3" },
+    Shape::Link { points: &["O", "A"], label: "link 2" },
+    Shape::Link { points: &["B", "C"], label: "link 4" },
+    Shape::Link { points: &["C", "E"], label: "link 5" },
+    Shape::Link { points: &["E", "D"], label: "link 6" },
+    Shape::Joint { at: "O" },
+    Shape::Joint { at: "A" },
+    Shape::Joint { at: "B" },
+    Shape::Joint { at: "C" },
+    Shape::Joint { at: "E" },
+    Shape::Joint { at: "D" },
+    Shape::Trace { of: "C", label: "end of the driven links" },
+    Shape::Trace { of: "E", label: "dependent joint" },
+];
+
+/// Entry in the list of mechanisms.
+pub const CARD: Card = Card {
+    name: "five_angle_loop",
+    title: "One loop, five moving angles",
+    description: "The lecture's first closed figure: three angles are driven, the two others follow from the \
+                  closure of the loop.",
+    runs: &[
+        Preset { label: "upper assembly", description: "E above the line C D", set: &[("side", 1.0)] },
+        Preset { label: "lower assembly", description: "E below the line C D", set: &[("side", -1.0)] },
+    ],
+    span: Span::Turn { rate: "omega" },
+    drawing: DRAWING,
+    make: facade::boxed::<FiveAngleLoop, 5>,
+};
+
+#[cfg(test)]
+mod tests {
+    use core::f64::consts::TAU;
+
+    use super::*;
+    use crate::closed_form::{Jet, Vector, assert_moves_as, column};
+    use crate::reference::one_turn;
+
+    /// The time laws, then `E` as the intersection of the circles about `C` and `D`.
+    fn angles(t: Jet, side: f64) -> Vec<Jet> {
+        let turn = t * TAU;
+        let swing = turn.sin() * 0.25 + 70.0_f64.to_radians();
+        let nod = (turn * 2.0).cos() * -0.3 + 10.0_f64.to_radians();
+        let c = Vector::unit(turn) * 0.06 + Vector::unit(swing) * 0.18 + Vector::unit(nod) * 0.12;
+        let d = Vector::fixed(0.4, 0.0);
+        let e = c.meet(0.22, d, 0.24, side);
+        vec![turn, swing, nod, (e - c).angle(), (d - e).angle()]
+    }
+
+    #[test]
+    fn the_motion_equals_the_closed_form() {
+        for (run, side) in CARD.runs.iter().zip([1.0, -1.0]) {
+            let motion = one_turn(&CARD, run, 180);
+            let names = ["theta2", "theta3", "theta4", "theta5", "theta6"];
+            assert_moves_as(&motion, &names, 1e-12, |t| angles(t, side));
+        }
+    }
+
+    #[test]
+    fn the_dependent_links_are_never_in_line() {
+        let motion = one_turn(&CARD, &CARD.runs[0], 720);
+        let reach = |k: usize| {
+            let at = |name| column(&motion, name).1[0][k];
+            (at("D.0") - at("C.0")).hypot(at("D.1") - at("C.1"))
+        };
+        let (low, high) = (0..motion.time.len())
+            .map(reach)
+            .fold((f64::INFINITY, 0.0_f64), |(low, high), x| (low.min(x), high.max(x)));
+        assert!((low - 0.197).abs() < 5e-4 && (high - 0.407).abs() < 5e-4, "{low} … {high}");
+    }
+}

@@ -1,0 +1,107 @@
+//! The lecture's four-bar in mixed coordinates: the points of the natural ones and the crank's angle.
+//!
+//! ```text
+//!                    . P = p
+//!               L5 .'  ·
+//!                .' α   ·
+//!             A o─────────o B         q = [φ1 a b p]
+//!              /    L2     \
+//!          L1 /             \ L3      as natural coordinates, and a ∥ unit(φ1)
+//!            / φ1            \
+//!           o─────────────────o
+//!           O       L4        D
+//! ```
+//!
+//! Links, units, branches and motion are those of `four_bar.rs` and `four_bar_natural.rs`. A motor gives an angle:
+//! the angle becomes a coordinate with a row that ties it to the crank's point, so that the drive is the lecture's
+//! `φ1 = ωt`. The row is the cross product, which never degenerates, where `x = L1 cos φ1` would at `φ1 = 0` and `π`.
+//!
+//! Numbers: those of `four_bar.rs`.
+
+use mbs_runtime::mechanism;
+
+use crate::drawing::Shape;
+use crate::facade;
+use crate::four_bar;
+use crate::registry::{Card, Span};
+
+mechanism! {
+    /// Four-bar linkage in natural coordinates with the crank's angle.
+    pub mechanism FourBarMixed;
+
+    param L1: m = 0.20;
+    param L2: m = 0.60;
+    param L3: m = 0.50;
+    param L4: m = 0.55;
+    param L5: m = 0.35;
+    param alpha: rad = 30deg;
+    param omega: rad/s = TAU;
+    param side: 1 = 1;
+
+    coord phi1: rad = 0;
+    coord a: [m; 2] = [L1, 0];
+    coord b: [m; 2] = [L4, L3*side];
+    coord p: [m; 2];
+
+    let d = [L4, 0];
+    let coupler = b - a;
+
+    constraint distances {
+        dot(a, a) == L1^2;
+        dot(coupler, coupler) == L2^2;
+        dot(b - d, b - d) == L3^2;
+    }
+    constraint crank_angle { cross(unit(phi1), a) == 0; }
+    constraint coupler_point {
+        p == a + L5/L2*(cos(alpha)*coupler + sin(alpha)*[-coupler.1, coupler.0]);
+    }
+    drive crank: phi1 == omega*t;
+    branch forward: dot(unit(phi1), a) > 0;
+    branch assembly: side*cross(coupler, b - d) > 0;
+
+    out O: [m; 2] = [0, 0];
+    out A: [m; 2] = a;
+    out B: [m; 2] = b;
+    out D: [m; 2] = d;
+    out P: [m; 2] = p;
+}
+
+/// How the mechanism is drawn.
+pub const DRAWING: &[Shape] = four_bar::DRAWING;
+
+/// Entry in the list of mechanisms.
+pub const CARD: Card = Card {
+    name: "four_bar_mixed",
+    title: "Four-bar in mixed coordinates",
+    description: "The lecture's four-bar in natural coordinates and the angle of the crank, which the motor gives.",
+    runs: four_bar::CARD.runs,
+    span: Span::Turn { rate: "omega" },
+    drawing: DRAWING,
+    make: facade::boxed::<FourBarMixed, 7>,
+};
+
+#[cfg(test)]
+mod tests {
+    use core::f64::consts::TAU;
+
+    use super::*;
+    use crate::closed_form::{assert_moves_as, lecture_four_bar};
+    use crate::reference::{assert_moves_like, one_turn};
+
+    #[test]
+    fn the_motion_equals_the_closed_form() {
+        for (run, side) in CARD.runs.iter().zip([1.0, -1.0]) {
+            let motion = one_turn(&CARD, run, 180);
+            let names = ["phi1", "a.0", "a.1", "b.0", "b.1", "p.0", "p.1"];
+            assert_moves_as(&motion, &names, 1e-12, |t| {
+                let [a, b, _, p] = lecture_four_bar(t, side);
+                vec![t * TAU, a.0, a.1, b.0, b.1, p.0, p.1]
+            });
+        }
+    }
+
+    #[test]
+    fn the_coupler_point_moves_as_in_the_lecture_s_coordinates() {
+        assert_moves_like(&CARD, &four_bar::CARD, &["A.0", "A.1", "B.0", "B.1", "P.0", "P.1"], 1e-12);
+    }
+}

@@ -1,0 +1,104 @@
+//! The lecture's four-bar in natural coordinates: Cartesian points, no angle.
+//!
+//! ```text
+//!                    . P = p
+//!               L5 .'  ·
+//!                .' α   ·
+//!             A o─────────o B         q = [a b p], two components each
+//!              /    L2     \
+//!          L1 /             \ L3      constant distances: |a|² = L1², |b − a|² = L2², |b − d|² = L3²
+//!            /               \
+//!           o─────────────────o       p = a + L5/L2 (cos α (b − a) + sin α (b − a)⊥)
+//!           O       L4        D
+//! ```
+//!
+//! Links, units and motion are those of `four_bar.rs`. Distances are squared: the rows are quadratic and the
+//! Jacobian is linear in the coordinates. The coupler point is a linear combination of the points of its body. The
+//! crank stands along `unit(ωt)`: the cross product says so up to its sign, which the branch `forward` picks; the
+//! branch `assembly` is `sin(φ3 − φ2)` as in `four_bar.rs`, times `L2 L3`.
+//!
+//! Numbers: those of `four_bar.rs`.
+
+use mbs_runtime::mechanism;
+
+use crate::drawing::Shape;
+use crate::facade;
+use crate::four_bar;
+use crate::registry::{Card, Span};
+
+mechanism! {
+    /// Four-bar linkage in natural coordinates.
+    pub mechanism FourBarNatural;
+
+    param L1: m = 0.20;
+    param L2: m = 0.60;
+    param L3: m = 0.50;
+    param L4: m = 0.55;
+    param L5: m = 0.35;
+    param alpha: rad = 30deg;
+    param omega: rad/s = TAU;
+    param side: 1 = 1;
+
+    coord a: [m; 2] = [L1, 0];
+    coord b: [m; 2] = [L4, L3*side];
+    coord p: [m; 2];
+
+    let d = [L4, 0];
+    let coupler = b - a;
+
+    constraint distances {
+        dot(a, a) == L1^2;
+        dot(coupler, coupler) == L2^2;
+        dot(b - d, b - d) == L3^2;
+    }
+    constraint coupler_point {
+        p == a + L5/L2*(cos(alpha)*coupler + sin(alpha)*[-coupler.1, coupler.0]);
+    }
+    drive crank: cross(unit(omega*t), a) == 0;
+    branch forward: dot(unit(omega*t), a) > 0;
+    branch assembly: side*cross(coupler, b - d) > 0;
+
+    out O: [m; 2] = [0, 0];
+    out A: [m; 2] = a;
+    out B: [m; 2] = b;
+    out D: [m; 2] = d;
+    out P: [m; 2] = p;
+}
+
+/// How the mechanism is drawn.
+pub const DRAWING: &[Shape] = four_bar::DRAWING;
+
+/// Entry in the list of mechanisms.
+pub const CARD: Card = Card {
+    name: "four_bar_natural",
+    title: "Four-bar in natural coordinates",
+    description: "The lecture's four-bar with Cartesian points as coordinates: constant distances squared, the \
+                  coupler point by linear combination, no angle at all.",
+    runs: four_bar::CARD.runs,
+    span: Span::Turn { rate: "omega" },
+    drawing: DRAWING,
+    make: facade::boxed::<FourBarNatural, 6>,
+};
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::closed_form::{assert_moves_as, lecture_four_bar};
+    use crate::reference::{assert_moves_like, one_turn};
+
+    #[test]
+    fn the_motion_equals_the_closed_form() {
+        for (run, side) in CARD.runs.iter().zip([1.0, -1.0]) {
+            let motion = one_turn(&CARD, run, 180);
+            assert_moves_as(&motion, &["a.0", "a.1", "b.0", "b.1", "p.0", "p.1"], 1e-12, |t| {
+                let [a, b, _, p] = lecture_four_bar(t, side);
+                vec![a.0, a.1, b.0, b.1, p.0, p.1]
+            });
+        }
+    }
+
+    #[test]
+    fn the_coupler_point_moves_as_in_the_lecture_s_coordinates() {
+        assert_moves_like(&CARD, &four_bar::CARD, &["A.0", "A.1", "B.0", "B.1", "P.0", "P.1"], 1e-12);
+    }
+}

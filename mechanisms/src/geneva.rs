@@ -1,0 +1,114 @@
+//! A Geneva drive with four slots: a quarter turn of the wheel for each turn of the driver.
+//!
+//! ```text
+//!               A (pin)
+//!          r1 .·'╲  s
+//!          .·'    ╲
+//!      O  o · · · · o  D      θ: driver against the line O D (rad)
+//!          θ         φ        φ: slot against the line D O, clockwise (rad)
+//!         |←── d ──→|         s: from D along the slot to the pin (m)
+//! ```
+//!
+//! Lengths in metres, `q = [θ φ s]`. The pin enters and leaves the slot along its direction, without a jump of the
+//! velocity, where the lines `O A` and `D A` are at right angles: at `θ = ∓45°` with `r1 = d sin 45°`. In between the
+//! closure `r1 unit(θ) = [d, 0] − s unit(φ)` holds. Outside, the driver's disc locks the wheel, which dwells at
+//! `φ = ±45°`: the rows hold with `θ` held at that end. One text has both: the closure is written with
+//! `engaged = max(−45°, min(45°, θ))`.
+//!
+//! The motion is one turn of the driver, from `θ = −180°`: dwell, engagement, dwell. At the two ends of the
+//! engagement the acceleration of the wheel jumps, by `ω² r1/s = ω²` there; at those instants it is one of its two
+//! values. The text holds for this turn only: a further one would need the wheel's next slot.
+//!
+//! Numbers: chosen here.
+
+use mbs_runtime::mechanism;
+
+use crate::drawing::Shape;
+use crate::facade;
+use crate::registry::{Card, Preset, Span};
+
+mechanism! {
+    /// Geneva drive with four slots, one turn of its driver.
+    pub mechanism Geneva;
+
+    param d: m = 100mm;
+    param omega: rad/s = TAU;
+
+    coord theta: rad = -PI;
+    coord phi: rad = 45deg;
+    coord s: m = 70mm;
+
+    let r1 = d*sin(45deg);
+    let r2 = d*cos(45deg);
+    let engaged = max(-45deg, min(45deg, theta));
+
+    constraint pin_in_slot { r1*unit(engaged) == [d, 0] - s*unit(phi); }
+    drive turn: theta == omega*t - PI;
+    branch slotted: s > 0;
+
+    out O: [m; 2] = [0, 0];
+    out A: [m; 2] = r1*unit(theta);
+    out D: [m; 2] = [d, 0];
+    out R: [m; 2] = [d, 0] - r2*unit(phi);
+}
+
+/// How the mechanism is drawn.
+pub const DRAWING: &[Shape] = &[
+    Shape::Ground { at: "O" },
+    Shape::Ground { at: "D" },
+    Shape::Geneva { at: "O", pin: "A", wheel: "D", rim: "R", slots: 4 },
+    Shape::Joint { at: "O" },
+    Shape::Joint { at: "A" },
+    Shape::Joint { at: "D" },
+    Shape::Trace { of: "R", label: "end of a slot" },
+];
+
+/// Entry in the list of mechanisms.
+pub const CARD: Card = Card {
+    name: "geneva",
+    title: "Geneva drive",
+    description: "A pin on the driver turns the four-slot wheel by a quarter during a quarter of its turn; during \
+                  the rest the wheel is locked.",
+    runs: &[Preset { label: "one turn", description: "dwell, engagement, dwell", set: &[] }],
+    span: Span::Turn { rate: "omega" },
+    drawing: DRAWING,
+    make: facade::boxed::<Geneva, 3>,
+};
+
+#[cfg(test)]
+mod tests {
+    use core::f64::consts::{FRAC_PI_4, PI, TAU};
+
+    use super::*;
+    use crate::closed_form::{Jet, Vector, assert_moves_as};
+    use crate::reference::one_turn;
+
+    /// The slot points from the wheel's centre to the pin; at rest outside of the engagement.
+    fn coordinates(t: Jet) -> Vec<Jet> {
+        let theta = t * TAU - PI;
+        let engaged =
+            if theta.0[0].abs() < FRAC_PI_4 { theta } else { Jet::from(FRAC_PI_4.copysign(theta.0[0])) };
+        let r1 = 0.1 * FRAC_PI_4.sin();
+        let slot = Vector::fixed(0.1, 0.0) - Vector::unit(engaged) * r1;
+        vec![theta, slot.angle(), slot.length()]
+    }
+
+    #[test]
+    fn the_motion_equals_the_closed_form() {
+        // 180 steps: no instant is an end of the engagement, where the acceleration has two values.
+        let motion = one_turn(&CARD, &CARD.runs[0], 180);
+        assert_moves_as(&motion, &["theta", "phi", "s"], 1e-12, coordinates);
+    }
+
+    /// Published for four slots: the largest ratio of speeds is `sin 45°/(1 − sin 45°) = 2.414`, the wheel's
+    /// acceleration at the ends of the engagement is `ω² tan 45°`.
+    #[test]
+    fn the_known_ratios_are_met() {
+        let motion = one_turn(&CARD, &CARD.runs[0], 7200);
+        let wheel = &motion.coordinates[1];
+        let fastest = wheel.qd.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
+        assert!((fastest / TAU - 2.414_213_562).abs() < 1e-6, "{fastest}");
+        let first = wheel.qdd.iter().position(|a| a.abs() > 1e-6).expect("it engages");
+        assert!((wheel.qdd[first + 1].abs() / (TAU * TAU) - 1.0).abs() < 1e-2, "{}", wheel.qdd[first + 1]);
+    }
+}

@@ -1,0 +1,201 @@
+//! Which assembly is found from which guess: "desired assembly depends on the initial guess".
+
+use core::f64::consts::PI;
+
+use super::experiment::{SAME, difference};
+use crate::facade::AnyMechanism;
+
+/// A coordinate of the guess that varies, and its range.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Axis {
+    /// Index of the coordinate.
+    pub coordinate: usize,
+    /// Lowest value, in the unit of the coordinate.
+    pub low: f64,
+    /// Highest value.
+    pub high: f64,
+}
+
+/// A method that looks for the assembly.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Method {
+    /// The lecture's full Newton–Raphson.
+    Plain,
+    /// The runtime's assembly, as if no branch were declared.
+    Assemble,
+    /// The runtime's assembly with the declared branches.
+    Declared,
+}
+
+/// An assembly, with its turns taken off.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Solution {
+    /// Coordinates: N.
+    pub q: Vec<f64>,
+    /// Values of the branches; each positive where it holds.
+    pub branches: Vec<f64>,
+}
+
+/// Guess → assembly by one method.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Map {
+    /// The method.
+    pub method: Method,
+    /// Index of the solution found, none where the method failed; row by row from the highest of the second axis.
+    pub cells: Vec<Option<usize>>,
+}
+
+/// What every method makes of every guess.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Basins {
+    /// Across and up.
+    pub axes: [Axis; 2],
+    /// Guesses along each axis.
+    pub size: usize,
+    /// Distinct assemblies; declared ones first, then by the share of the first map.
+    pub solutions: Vec<Solution>,
+    /// One a method.
+    pub maps: Vec<Map>,
+}
+
+impl Axis {
+    /// The whole turn of an angle; twice the reference length to either side for lengths.
+    pub fn of(mechanism: &dyn AnyMechanism, coordinate: usize) -> Self {
+        let is_angle = mechanism.coordinates()[coordinate].is_angle();
+        let width = if is_angle { PI } else { 2.0 * mechanism.coordinate_scales()[coordinate] };
+        Axis { coordinate, low: -width, high: width }
+    }
+
+    /// Value at the middle of part `index` of `size`.
+    fn value(&self, index: usize, size: usize) -> f64 {
+        self.low + (self.high - self.low) * (index as f64 + 0.5) / size as f64
+    }
+}
+
+impl Solution {
+    /// Whether every declared branch holds.
+    pub fn is_declared(&self) -> bool {
+        self.branches.iter().all(|value| *value > 0.0)
+    }
+}
+
+impl Map {
+    /// Part of the guesses that led to the solution, or to none.
+    pub fn share(&self, solution: Option<usize>) -> f64 {
+        let count = self.cells.iter().filter(|cell| **cell == solution).count();
+        count as f64 / self.cells.len().max(1) as f64
+    }
+}
+
+/// Tries `size` × `size` guesses at time `t` (s); coordinates off the axes start as the text says.
+///
+/// `progress` hears the number of rows of guesses done, of `size` for each map.
+pub fn basins(
+    mechanism: &dyn AnyMechanism,
+    axes: [Axis; 2],
+    size: usize,
+    t: f64,
+    progress: &mut dyn FnMut(usize),
+) -> Basins {
+    let mut methods = vec![Method::Plain, Method::Assemble];
+    if !mechanism.experiment().branches().is_empty() {
+        methods.push(Method::Declared);
+    }
+    let mut found = Basins { axes, size, solutions: Vec::new(), maps: Vec::new() };
+    let mut done = 0;
+    for method in methods {
+        let mut cells = Vec::with_capacity(size * size);
+        for row in 0..size {
+            for column in 0..size {
+                let mut guess = mechanism.experiment().guess();
+                guess[axes[0].coordinate] = axes[0].value(column, size);
+                guess[axes[1].coordinate] = axes[1].value(size - 1 - row, size);
+                let q = solve(mechanism, method, &guess, t);
+                cells.push(q.map(|q| found.number(mechanism, q, t)));
+            }
+            done += 1;
+            progress(done);
+        }
+        found.maps.push(Map { method, cells });
+    }
+    found.sort();
+    found
+}
+
+fn solve(mechanism: &dyn AnyMechanism, method: Method, guess: &[f64], t: f64) -> Option<Vec<f64>> {
+    match method {
+        Method::Plain => mechanism.experiment().newton_raphson(guess, t).ok().map(|(q, _)| q),
+        Method::Assemble => mechanism.experiment().assembled(guess, t, false).ok(),
+        Method::Declared => mechanism.experiment().assembled(guess, t, true).ok(),
+    }
+}
+
+impl Basins {
+    /// The index of the solution, a new one where it is not known yet.
+    fn number(&mut self, mechanism: &dyn AnyMechanism, mut q: Vec<f64>, t: f64) -> usize {
+        let (coordinates, scales) = (mechanism.coordinates(), mechanism.coordinate_scales());
+        let same = |known: &Solution| difference(&known.q, &q, coordinates, &scales) < SAME;
+        if let Some(index) = self.solutions.iter().position(same) {
+            return index;
+        }
+        for (value, entry) in q.iter_mut().zip(coordinates) {
+            if entry.is_angle() {
+                *value -= (*value / (2.0 * PI)).round() * 2.0 * PI;
+            }
+        }
+        let branches = mechanism.experiment().branch_values(&q, t);
+        self.solutions.push(Solution { q, branches });
+        self.solutions.len() - 1
+    }
+
+    fn sort(&mut self) {
+        let share = |index: usize| self.maps.first().map_or(0.0, |map| map.share(Some(index)));
+        let mut order: Vec<usize> = (0..self.solutions.len()).collect();
+        let declared = |index: usize| !self.solutions[index].is_declared();
+        order.sort_by(|a, b| declared(*a).cmp(&declared(*b)).then(share(*b).total_cmp(&share(*a))));
+        let place = |old: usize| order.iter().position(|index| *index == old);
+        for map in &mut self.maps {
+            map.cells.iter_mut().for_each(|cell| *cell = cell.and_then(place));
+        }
+        self.solutions = order.iter().map(|index| self.solutions[*index].clone()).collect();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::registry::find;
+
+    fn four_bar(size: usize) -> Basins {
+        let mechanism = (find("four_bar").expect("in the list").make)();
+        let axes = [3, 4].map(|coordinate| Axis::of(mechanism.as_ref(), coordinate));
+        let mut heard = 0;
+        let basins = basins(mechanism.as_ref(), axes, size, 0.0, &mut |rows| heard = rows);
+        assert_eq!(heard, 3 * size);
+        basins
+    }
+
+    #[test]
+    fn the_four_bar_has_two_assemblies_and_the_declared_one_wins_everywhere() {
+        let basins = four_bar(16);
+        assert_eq!(basins.solutions.len(), 2, "{:?}", basins.solutions);
+        assert!(basins.solutions[0].is_declared() && !basins.solutions[1].is_declared());
+        let [plain, assemble, declared] = &basins.maps[..] else { panic!("three maps") };
+        assert_eq!(declared.share(Some(0)), 1.0);
+        assert!(plain.share(Some(1)) > 0.1 && assemble.share(Some(1)) > 0.1);
+        assert!(assemble.share(None) <= plain.share(None));
+        let sum: f64 = [None, Some(0), Some(1)].map(|s| plain.share(s)).iter().sum();
+        assert!((sum - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn cells_run_from_the_upper_left() {
+        let basins = four_bar(4);
+        let mechanism = (find("four_bar").expect("in the list").make)();
+        let mut guess = mechanism.experiment().guess();
+        (guess[3], guess[4]) = (-0.75 * PI, 0.75 * PI);
+        let q = mechanism.experiment().assembled(&guess, 0.0, false).expect("an assembly");
+        let side = usize::from(mechanism.experiment().branch_values(&q, 0.0)[0] < 0.0);
+        assert_eq!(basins.maps[1].cells[0], Some(side));
+    }
+}

@@ -1,0 +1,98 @@
+//! A mechanism as if its text declared no branch.
+
+use mbs_runtime::{BlockSolver, Entry, Kinematic, Margin, Mechanism, Outcome};
+
+/// The mechanism `S` without its branch conditions: any assembly is right.
+#[derive(Clone, Copy, Debug)]
+pub struct Branchless<S>(pub S);
+
+impl<S: Kinematic<f64, N>, const N: usize> Mechanism<f64, N, N> for Branchless<S> {
+    type Parameters = S::Parameters;
+    type Position = S::Position;
+    type Branches = [f64; 0];
+    type Outputs = S::Outputs;
+    type Lane = S::Lane;
+
+    const NAME: &'static str = S::NAME;
+    const SOURCE: &'static str = S::SOURCE;
+    const COORDINATES: &'static [Entry] = S::COORDINATES;
+    const ROWS: &'static [Entry] = S::ROWS;
+    const VARIABLES: &'static [Entry] = S::VARIABLES;
+    const BRANCHES: &'static [Entry] = &[];
+    const OUTPUTS: &'static [Entry] = S::OUTPUTS;
+
+    fn get(&self, index: usize) -> Option<f64> {
+        self.0.get(index)
+    }
+    fn set(&mut self, index: usize, value: f64) -> bool {
+        self.0.set(index, value)
+    }
+    fn lane(&self, lane: usize) -> S::Lane {
+        self.0.lane(lane)
+    }
+    fn parameters(&self) -> S::Parameters {
+        self.0.parameters()
+    }
+    fn guess(&self, parameters: &S::Parameters) -> [f64; N] {
+        self.0.guess(parameters)
+    }
+    fn coordinate_scales(&self, parameters: &S::Parameters) -> [f64; N] {
+        self.0.coordinate_scales(parameters)
+    }
+    fn row_scales(&self, parameters: &S::Parameters) -> [f64; N] {
+        self.0.row_scales(parameters)
+    }
+    fn position(&self, parameters: &S::Parameters, q: &[f64; N], t: f64) -> S::Position {
+        self.0.position(parameters, q, t)
+    }
+    fn phi(&self, parameters: &S::Parameters, position: &S::Position) -> [f64; N] {
+        self.0.phi(parameters, position)
+    }
+    fn phi_q(&self, parameters: &S::Parameters, position: &S::Position) -> [[f64; N]; N] {
+        self.0.phi_q(parameters, position)
+    }
+    fn phi_t(&self, parameters: &S::Parameters, position: &S::Position) -> [f64; N] {
+        self.0.phi_t(parameters, position)
+    }
+    fn phi_tt(&self, parameters: &S::Parameters, position: &S::Position) -> [f64; N] {
+        self.0.phi_tt(parameters, position)
+    }
+    fn phi_qt_qd(&self, parameters: &S::Parameters, position: &S::Position, qd: &[f64; N]) -> [f64; N] {
+        self.0.phi_qt_qd(parameters, position, qd)
+    }
+    fn gamma(&self, parameters: &S::Parameters, position: &S::Position, qd: &[f64; N]) -> [f64; N] {
+        self.0.gamma(parameters, position, qd)
+    }
+    fn branches(&self, _: &S::Parameters, _: &S::Position) -> [f64; 0] {
+        []
+    }
+    fn outputs(
+        &self,
+        parameters: &S::Parameters,
+        position: &S::Position,
+        qd: &[f64; N],
+        qdd: &[f64; N],
+    ) -> S::Outputs {
+        self.0.outputs(parameters, position, qd, qdd)
+    }
+}
+
+impl<S: Kinematic<f64, N>, const N: usize> Kinematic<f64, N> for Branchless<S> {
+    type Factors = S::Factors;
+
+    fn solve_blocks<B: BlockSolver<f64>>(
+        &self,
+        parameters: &S::Parameters,
+        q: &mut [f64; N],
+        t: f64,
+        solver: &mut B,
+    ) -> [Outcome; 1] {
+        self.0.solve_blocks(parameters, q, t, solver)
+    }
+    fn factorize(&self, parameters: &S::Parameters, position: &S::Position) -> (S::Factors, Margin<f64>) {
+        self.0.factorize(parameters, position)
+    }
+    fn solve_linear(&self, factors: &S::Factors, b: &[f64; N]) -> [f64; N] {
+        self.0.solve_linear(factors, b)
+    }
+}

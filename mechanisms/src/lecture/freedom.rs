@@ -1,0 +1,136 @@
+//! Degrees of freedom: rows without the drives, their rank, independent and dependent coordinates.
+
+use mbs_codegen::StructureReport;
+
+use super::rank::{independent_columns, rank, transposed};
+use crate::facade::{AnyMechanism, State};
+
+/// The count of a mechanism at one position.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Freedom {
+    /// Coordinates.
+    pub coordinates: usize,
+    /// Rows of constraints.
+    pub constraints: usize,
+    /// Rows of drives.
+    pub drives: usize,
+    /// Largest rank that the constraints' sparsity allows.
+    pub structural_rank: usize,
+    /// Rank of the constraints' Jacobian at the position.
+    pub rank: usize,
+    /// Rank of the whole Jacobian, drives included, at the position.
+    pub whole_rank: usize,
+    /// Indices of the independent coordinates: those that drives prescribe, as far as the rank allows.
+    pub independent: Vec<usize>,
+    /// Indices of the dependent coordinates.
+    pub dependent: Vec<usize>,
+    /// Indices of constraints that follow from the others at the position.
+    pub redundant: Vec<usize>,
+}
+
+/// Counts `mechanism`, of structure `report`, at `q` and `t` (s).
+pub fn freedom(mechanism: &dyn AnyMechanism, report: &StructureReport, q: &[f64], t: f64) -> Freedom {
+    let n = q.len();
+    let rows = scaled_jacobian(mechanism, q, t);
+    let constrained: Vec<usize> =
+        report.rows.iter().enumerate().filter(|(_, row)| !row.driven).map(|(index, _)| index).collect();
+    let constraints: Vec<Vec<f64>> = constrained.iter().map(|index| rows[*index].clone()).collect();
+    let driven_rows = report.rows.iter().filter(|row| row.driven);
+    let mut driven = vec![false; n];
+    driven_rows.flat_map(|row| &row.entries).for_each(|(column, _)| driven[*column] = true);
+    // Without constraints nothing depends on anything.
+    let mut dependent = independent_columns(&constraints, &driven);
+    dependent.sort_unstable();
+    let carried = independent_columns(&transposed(&constraints), &[]);
+    let redundant = (0..constrained.len()).filter(|k| !carried.contains(k)).map(|k| constrained[k]).collect();
+    let sparsity: Vec<Vec<usize>> = constrained
+        .iter()
+        .map(|index| report.rows[*index].entries.iter().map(|(column, _)| *column).collect())
+        .collect();
+    Freedom {
+        coordinates: n,
+        constraints: constrained.len(),
+        drives: report.rows.len() - constrained.len(),
+        structural_rank: structural_rank(&sparsity, n),
+        rank: dependent.len(),
+        whole_rank: rank(&rows),
+        independent: (0..n).filter(|k| !dependent.contains(k)).collect(),
+        dependent,
+        redundant,
+    }
+}
+
+/// Φ_q in the reference metric: rows over their scale, columns times theirs.
+pub fn scaled_jacobian(mechanism: &dyn AnyMechanism, q: &[f64], t: f64) -> Vec<Vec<f64>> {
+    let zero = vec![0.0; q.len()];
+    let functions = mechanism.evaluate(&State { q: q.to_vec(), qd: zero.clone(), qdd: zero, t });
+    let scales = mechanism.coordinate_scales();
+    let rows = functions.phi_q.chunks(q.len().max(1)).zip(mechanism.experiment().row_scales());
+    rows.map(|(row, scale)| row.iter().zip(&scales).map(|(entry, s)| entry * s / scale).collect()).collect()
+}
+
+/// Size of a largest matching of rows and columns, by alternating paths.
+fn structural_rank(rows: &[Vec<usize>], columns: usize) -> usize {
+    fn augment(rows: &[Vec<usize>], row: usize, seen: &mut [bool], owner: &mut [Option<usize>]) -> bool {
+        for column in &rows[row] {
+            if std::mem::replace(&mut seen[*column], true) {
+                continue;
+            }
+            if owner[*column].is_none_or(|other| augment(rows, other, seen, owner)) {
+                owner[*column] = Some(row);
+                return true;
+            }
+        }
+        false
+    }
+    let mut owner = vec![None; columns];
+    (0..rows.len()).filter(|row| augment(rows, *row, &mut vec![false; columns], &mut owner)).count()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::registry::{ALL, find};
+
+    fn of(name: &str) -> Freedom {
+        let mechanism = (find(name).expect("in the list").make)();
+        let report = mbs_codegen::structure_of(mechanism.source()).expect("a good text");
+        let q = mechanism
+            .experiment()
+            .assembled(&mechanism.experiment().guess(), 0.0, true)
+            .expect("it assembles");
+        freedom(mechanism.as_ref(), &report, &q, 0.0)
+    }
+
+    #[test]
+    fn the_four_bar_has_one_degree_of_freedom_and_its_crank_is_independent() {
+        let found = of("four_bar");
+        assert_eq!((found.coordinates, found.constraints, found.drives), (5, 4, 1));
+        assert_eq!((found.structural_rank, found.rank, found.whole_rank), (4, 4, 5));
+        assert_eq!((&found.independent[..], &found.dependent[..]), (&[2][..], &[0, 1, 3, 4][..]));
+        assert!(found.redundant.is_empty());
+    }
+
+    #[test]
+    fn an_open_chain_has_independent_coordinates_alone() {
+        let found = of("open_chain");
+        assert_eq!((found.constraints, found.drives, found.rank), (0, 3, 0));
+        assert_eq!(found.independent, [0, 1, 2]);
+    }
+
+    #[test]
+    fn drives_take_up_every_degree_of_freedom_of_every_mechanism() {
+        for card in ALL {
+            let found = of(card.name);
+            assert_eq!(found.independent.len(), found.drives, "{}: {found:?}", card.name);
+            assert_eq!(found.whole_rank, found.coordinates, "{}", card.name);
+            assert!(found.redundant.is_empty() && found.structural_rank == found.rank, "{}", card.name);
+        }
+    }
+
+    #[test]
+    fn structural_rank_is_the_size_of_a_largest_matching() {
+        assert_eq!(structural_rank(&[vec![0, 1], vec![0]], 2), 2);
+        assert_eq!(structural_rank(&[vec![0], vec![0], vec![1, 2]], 3), 2);
+    }
+}

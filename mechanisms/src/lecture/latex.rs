@@ -1,0 +1,237 @@
+//! Φ and its derivatives as a LaTeX document, ready to compile.
+
+use std::fmt::Write;
+
+use mbs_codegen::Formulas;
+
+use super::matrix::short;
+use crate::facade::AnyMechanism;
+
+/// A matrix that is wider than the line is shrunk to it.
+const PREAMBLE: &str = "\\documentclass[a4paper]{article}
+\\usepackage[utf8]{inputenc}
+\\usepackage{amsmath}
+\\usepackage{graphicx}
+\\usepackage[margin=20mm]{geometry}
+\\setlength{\\parindent}{0pt}
+\\newsavebox{\\wide}
+\\newcommand{\\fitted}[1]{\\sbox{\\wide}{$\\displaystyle #1$}%
+  \\ifdim\\wd\\wide>\\linewidth\\resizebox{\\linewidth}{!}{\\usebox{\\wide}}\\else\\usebox{\\wide}\\fi}
+";
+
+/// The document of `mechanism` from its `formulas` in LaTeX's spelling; `title` is plain text.
+pub fn document(mechanism: &dyn AnyMechanism, formulas: &Formulas, title: &str) -> String {
+    let n = formulas.coordinates.len();
+    let mut text = String::from(PREAMBLE);
+    // amsmath stops at ten columns.
+    let _ = writeln!(text, "\\setcounter{{MaxMatrixCols}}{{{}}}\n\\begin{{document}}", n.max(10));
+    let _ = writeln!(text, "\\section*{{{}}}\n", escaped(title));
+    let transposed = format!("\\begin{{bmatrix}} {} \\end{{bmatrix}}", formulas.coordinates.join(" & "));
+    display(&mut text, "Generalized coordinates", &format!("\\mathbf{{q}}^T = {transposed}"));
+    parameters(&mut text, mechanism, formulas);
+    let rows = formulas.rows.iter().enumerate().map(|(k, row)| format!("{}:~${row}$", k + 1));
+    let _ = writeln!(text, "Rows: {}.\n\n\\bigskip", rows.collect::<Vec<_>>().join(", "));
+    for (name, meaning) in &formulas.definitions {
+        display(&mut text, "Abbreviation", &format!("{name} = {meaning}"));
+    }
+    let sections = [
+        ("Constraints", "\\boldsymbol{\\Phi}(\\mathbf{q}, t) =", column(&formulas.phi), " = \\mathbf{0}"),
+        ("Jacobian", "\\boldsymbol{\\Phi}_{\\mathbf{q}} =", jacobian(formulas), ""),
+        ("Velocities", "\\boldsymbol{\\Phi}_t =", column(&formulas.phi_t), VELOCITY),
+        ("Accelerations", "\\boldsymbol{\\gamma} =", column(&formulas.gamma), ACCELERATION),
+    ];
+    for (heading, left, middle, right) in sections {
+        display(&mut text, heading, &format!("{left} {middle}{right}"));
+    }
+    if is_wide(formulas) {
+        entries(&mut text, formulas);
+    }
+    display(&mut text, "with", GAMMA);
+    text.push_str("\\end{document}\n");
+    text
+}
+
+const VELOCITY: &str =
+    ",\\qquad \\boldsymbol{\\Phi}_{\\mathbf{q}}\\,\\dot{\\mathbf{q}} = -\\boldsymbol{\\Phi}_t";
+const ACCELERATION: &str =
+    ",\\qquad \\boldsymbol{\\Phi}_{\\mathbf{q}}\\,\\ddot{\\mathbf{q}} = \\boldsymbol{\\gamma}";
+const GAMMA: &str = "\\boldsymbol{\\gamma} = -\\left(\\boldsymbol{\\Phi}_{\\mathbf{q}}\\,\\dot{\\mathbf{q}}\\right)_{\\mathbf{q}}\\dot{\\mathbf{q}} \
+     - 2\\,\\boldsymbol{\\Phi}_{\\mathbf{q}t}\\,\\dot{\\mathbf{q}} - \\boldsymbol{\\Phi}_{tt}";
+
+fn display(text: &mut String, heading: &str, formula: &str) {
+    let _ = writeln!(text, "{heading}:\n\n\\smallskip\n\\fitted{{{formula}}}\n\n\\bigskip");
+}
+
+fn column(entries: &[String]) -> String {
+    format!("\\begin{{bmatrix}}\n  {}\n\\end{{bmatrix}}", entries.join(" \\\\\n  "))
+}
+
+fn matrix(rows: &[Vec<String>]) -> String {
+    column(&rows.iter().map(|row| row.join(" & ")).collect::<Vec<_>>())
+}
+
+/// Letters of a line that the Jacobian may fill before it becomes too small to read.
+const WIDEST: usize = 160;
+
+/// Whether the Jacobian written out is too wide for a page.
+fn is_wide(formulas: &Formulas) -> bool {
+    let column =
+        |k: usize| formulas.phi_q.iter().filter_map(|row| row.get(k)).map(|entry| letters(entry)).max();
+    (0..formulas.coordinates.len()).filter_map(column).map(|width| width + 2).sum::<usize>() > WIDEST
+}
+
+/// What is seen of a formula: a command counts as one letter, braces as none.
+fn letters(formula: &str) -> usize {
+    let mut count = 0;
+    let mut command = false;
+    for character in formula.chars() {
+        command = match character {
+            '\\' => true,
+            c => command && c.is_ascii_alphabetic(),
+        };
+        count += usize::from(character == '\\' || (!command && !"{}_^, ".contains(character)));
+    }
+    count
+}
+
+/// Written out, or where that is too wide with a sign for each entry that is not zero.
+fn jacobian(formulas: &Formulas) -> String {
+    if !is_wide(formulas) {
+        return matrix(&formulas.phi_q);
+    }
+    let sign = |row: usize, column: usize, entry: &str| match entry {
+        "0" | "1" | "-1" => entry.to_string(),
+        _ => format!("\\Phi_{{{},{}}}", row + 1, column + 1),
+    };
+    let rows = formulas.phi_q.iter().enumerate();
+    let rows = rows.map(|(row, entries)| {
+        entries.iter().enumerate().map(|(column, entry)| sign(row, column, entry)).collect::<Vec<_>>()
+    });
+    matrix(&rows.collect::<Vec<_>>())
+}
+
+/// The entries that the signs of a wide Jacobian stand for.
+fn entries(text: &mut String, formulas: &Formulas) {
+    let _ = writeln!(text, "Entries of the Jacobian:\n\n\\smallskip");
+    for (row, entries) in formulas.phi_q.iter().enumerate() {
+        for (column, entry) in
+            entries.iter().enumerate().filter(|(_, e)| !matches!(e.as_str(), "0" | "1" | "-1"))
+        {
+            let _ = writeln!(text, "\\fitted{{\\Phi_{{{},{}}} = {entry}}}\n", row + 1, column + 1);
+        }
+    }
+    text.push_str("\\bigskip\n");
+}
+
+fn parameters(text: &mut String, mechanism: &dyn AnyMechanism, formulas: &Formulas) {
+    let entries = mechanism.variables().iter().zip(&formulas.variables).enumerate();
+    let list: Vec<String> = entries
+        .filter_map(|(index, (entry, symbol))| {
+            let value = short(mechanism.get(index)?);
+            let value = match value.split_once('e') {
+                Some((digits, exponent)) => format!("{digits} \\cdot 10^{{{exponent}}}"),
+                None => value,
+            };
+            let unit = if entry.unit == "1" { String::new() } else { format!("\\,{}", unit(entry.unit)) };
+            Some(format!("${symbol} = {value}{unit}$"))
+        })
+        .collect();
+    if !list.is_empty() {
+        let _ = writeln!(text, "Parameters: {}.\n\n\\bigskip", list.join(", "));
+    }
+}
+
+/// `kg*m^2/s` → `\mathrm{kg\,m^{2}/s}`.
+fn unit(unit: &str) -> String {
+    let mut text = String::from("\\mathrm{");
+    let mut characters = unit.chars().peekable();
+    while let Some(character) = characters.next() {
+        match character {
+            '*' => text.push_str("\\,"),
+            '^' => {
+                text.push_str("^{");
+                while let Some(digit) = characters.next_if(|c| c.is_ascii_digit() || *c == '-') {
+                    text.push(digit);
+                }
+                text.push('}');
+            }
+            other => text.push(other),
+        }
+    }
+    text + "}"
+}
+
+/// Plain text in LaTeX.
+fn escaped(text: &str) -> String {
+    text.chars()
+        .map(|character| match character {
+            '\\' => "\\textbackslash{}".to_string(),
+            '&' | '%' | '$' | '#' | '_' | '{' | '}' => format!("\\{character}"),
+            '~' => "\\textasciitilde{}".to_string(),
+            '^' => "\\textasciicircum{}".to_string(),
+            other => other.to_string(),
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::registry::ALL;
+
+    /// Every brace and every environment that is opened is closed in order.
+    #[track_caller]
+    fn assert_well_formed(text: &str) {
+        let mut open: Vec<&str> = Vec::new();
+        let mut rest = text;
+        while let Some(at) = rest.find(['{', '}', '\\']) {
+            let (mark, after) = rest[at..].split_at(1);
+            rest = after;
+            match mark {
+                "{" => open.push("{"),
+                "}" => assert_eq!(open.pop(), Some("{"), "before {}", &rest[..rest.len().min(80)]),
+                _ if rest.starts_with("begin{") => open.push(&rest[6..rest.find('}').expect("a name")]),
+                _ if rest.starts_with("end{") => {
+                    assert_eq!(open.pop(), Some(&rest[4..rest.find('}').expect("a name")]));
+                }
+                _ => rest = &rest[rest.chars().next().map_or(0, char::len_utf8)..],
+            }
+            if mark == "\\" && (rest.starts_with("begin{") || rest.starts_with("end{")) {
+                rest = &rest[rest.find('}').expect("a name") + 1..];
+            }
+        }
+        assert!(open.is_empty(), "{open:?}");
+        assert_eq!(text.matches("\\left").count(), text.matches("\\right").count());
+        assert_eq!(text.matches('$').count() % 2, 0);
+    }
+
+    #[test]
+    fn every_mechanism_is_a_well_formed_document() {
+        for card in ALL {
+            let mechanism = (card.make)();
+            let formulas = mbs_codegen::latex_formulas(mechanism.source()).expect("a good text");
+            let text = document(mechanism.as_ref(), &formulas, card.title);
+            assert_well_formed(&text);
+            assert!(text.starts_with("\\documentclass") && text.ends_with("\\end{document}\n"));
+        }
+    }
+
+    #[test]
+    fn a_wide_jacobian_is_written_with_signs() {
+        let formulas = |width: usize| Formulas {
+            coordinates: vec!["x".into(), "y".into()],
+            phi_q: vec![vec!["a".repeat(width), "0".into()], vec!["1".into(), "\\sin x".into()]],
+            ..Formulas::default()
+        };
+        assert!(!is_wide(&formulas(20)) && jacobian(&formulas(20)).contains("aaa"));
+        let wide = jacobian(&formulas(200));
+        assert!(wide.contains("\\Phi_{1,1} & 0") && wide.contains("1 & \\Phi_{2,2}"), "{wide}");
+        assert_eq!(letters("L_{1}\\,\\sin \\varphi_{1}"), 6);
+    }
+
+    #[test]
+    fn units_and_titles_are_spelled_for_latex() {
+        assert_eq!(unit("kg*m^2/s"), "\\mathrm{kg\\,m^{2}/s}");
+        assert_eq!(escaped("a_b & 5%"), "a\\_b \\& 5\\%");
+    }
+}

@@ -1,0 +1,133 @@
+//! Peaucellier's linkage: a joint that moves on an exact straight line.
+//!
+//! ```text
+//!                   A                    |
+//!              L .·' ╲ c              c  |
+//!            .·'      ╲             .·'  |  S
+//!       O  o──────o────o P · · · · · · · o
+//!            `·.  Q   ╱             `·.  |
+//!              L `·. ╱ c              c  |
+//!                   B                    |
+//! ```
+//!
+//! Links of length `L` from `O` to `A` and `B`, a rhombus of side `c` through `A`, `P`, `B`, `S`, and a crank `Q P` of
+//! the length `k` of the ground link `O Q`. `P` moves on a circle through `O`; since `|OP| |OS| = L² − c²`, the joint
+//! `S` is its inverse in a circle about `O` and moves on the line `x = (L² − c²)/(2 k)`.
+//!
+//! Lengths in metres, `θ` in rad: the crank `Q P` against the x axis, swinging by `swing` to either side.
+//! `q = [θ a b s]` with the points `A`, `B`, `S` as natural coordinates. The rhombus is never flat: `|OP|` stays
+//! between 87 mm and 100 mm, above `L − c = 70 mm` and below `L + c`. The branches: `A` on the left of `O P`, `B` on
+//! its right, `S` beyond the line `A B`.
+//!
+//! Numbers: chosen here. Source: Peaucellier 1864, as in Kempe, How to Draw a Straight Line, 1877.
+
+use mbs_runtime::mechanism;
+
+use crate::drawing::Shape;
+use crate::facade;
+use crate::registry::{Card, Preset, Span};
+
+mechanism! {
+    /// Peaucellier's straight-line linkage.
+    pub mechanism Peaucellier;
+
+    param k: m = 50mm;
+    param L: m = 150mm;
+    param c: m = 80mm;
+    param swing: rad = 60deg;
+    param omega: rad/s = TAU;
+
+    coord theta: rad = 0;
+    coord a: [m; 2] = [130mm, 75mm];
+    coord b: [m; 2] = [130mm, -75mm];
+    coord s: [m; 2] = [160mm, 0];
+
+    let p = [k, 0] + k*unit(theta);
+
+    constraint arms { dot(a, a) == L^2; dot(b, b) == L^2; }
+    constraint inner { dot(a - p, a - p) == c^2; dot(b - p, b - p) == c^2; }
+    constraint outer { dot(s - a, s - a) == c^2; dot(s - b, s - b) == c^2; }
+    drive crank: theta == swing*sin(omega*t);
+    branch left: cross(p, a) > 0;
+    branch right: cross(p, b) < 0;
+    branch beyond: cross(b - a, s - a) > 0;
+
+    out O: [m; 2] = [0, 0];
+    out Q: [m; 2] = [k, 0];
+    out P: [m; 2] = p;
+    out A: [m; 2] = a;
+    out B: [m; 2] = b;
+    out S: [m; 2] = s;
+}
+
+/// How the mechanism is drawn.
+pub const DRAWING: &[Shape] = &[
+    Shape::Ground { at: "O" },
+    Shape::Ground { at: "Q" },
+    Shape::Link { points: &["O", "A"], label: "arm" },
+    Shape::Link { points: &["O", "B"], label: "" },
+    Shape::Link { points: &["A", "P"], label: "rhombus" },
+    Shape::Link { points: &["B", "P"], label: "" },
+    Shape::Link { points: &["A", "S"], label: "" },
+    Shape::Link { points: &["B", "S"], label: "" },
+    Shape::Link { points: &["Q", "P"], label: "crank" },
+    Shape::Joint { at: "O" },
+    Shape::Joint { at: "Q" },
+    Shape::Joint { at: "P" },
+    Shape::Joint { at: "A" },
+    Shape::Joint { at: "B" },
+    Shape::Joint { at: "S" },
+    Shape::Trace { of: "S", label: "straight line" },
+    Shape::Trace { of: "P", label: "circle through O" },
+];
+
+/// Entry in the list of mechanisms.
+pub const CARD: Card = Card {
+    name: "peaucellier",
+    title: "Peaucellier's straight line",
+    description: "A rhombus on two arms inverts a circle through the fixed joint into a line: the first linkage \
+                  that draws an exact straight line.",
+    runs: &[Preset { label: "to and fro", description: "the crank swings by 60° to either side", set: &[] }],
+    span: Span::Turn { rate: "omega" },
+    drawing: DRAWING,
+    make: facade::boxed::<Peaucellier, 7>,
+};
+
+#[cfg(test)]
+mod tests {
+    use core::f64::consts::{FRAC_PI_3, TAU};
+
+    use super::*;
+    use crate::closed_form::{Jet, Vector, assert_moves_as};
+    use crate::reference::one_turn;
+
+    const LINE: f64 = (0.15 * 0.15 - 0.08 * 0.08) / (2.0 * 0.05);
+
+    /// `S` on the line at `y = x tan(θ/2)` by the inversion, `A` and `B` by Pythagoras in the rhombus.
+    fn coordinates(t: Jet) -> Vec<Jet> {
+        let theta = (t * TAU).sin() * FRAC_PI_3;
+        let half = theta * 0.5;
+        let s = Vector(LINE.into(), half.sin() / half.cos() * LINE);
+        let u = Vector::unit(half);
+        let near = half.cos() * 0.1; // |O P|
+        let middle = (near + s.length()) * 0.5;
+        let across = (-middle.square() + 0.15 * 0.15).sqrt();
+        let (a, b) = (u * middle + u.left() * across, u * middle - u.left() * across);
+        vec![theta, a.0, a.1, b.0, b.1, s.0, s.1]
+    }
+
+    #[test]
+    fn the_motion_equals_the_closed_form() {
+        let motion = one_turn(&CARD, &CARD.runs[0], 180);
+        assert_moves_as(&motion, &["theta", "a.0", "a.1", "b.0", "b.1", "s.0", "s.1"], 1e-12, coordinates);
+    }
+
+    #[test]
+    fn the_line_is_straight() {
+        let motion = one_turn(&CARD, &CARD.runs[0], 720);
+        let s = &motion.coordinates[5..7];
+        assert!(s[0].q.iter().all(|x| (x - LINE).abs() < 1e-12));
+        let [low, high] = [f64::min, f64::max].map(|pick| s[1].q.iter().copied().fold(0.0, pick));
+        assert!(high > 0.09 && low < -0.09, "{low} … {high}");
+    }
+}

@@ -1,0 +1,127 @@
+//! A planetary gear: the sun drives, the ring stands still, the carrier follows by Willis's formula.
+//!
+//! ```text
+//!            .─────────────.
+//!         .'    ring, θr     '.        all angles absolute (rad)
+//!        /      .───.          \
+//!       │      │  S  │╲θc       │      θs: sun S, θp: planet P, θc: carrier S P, θr: ring
+//!       │       '───' ╲         │
+//!        \          (  P )     /       radii of the pitch circles: rs, rp, rs + 2 rp (m)
+//!         '.          '──'  .'
+//!            '─────────────'
+//! ```
+//!
+//! Rolling without slip, seen from the carrier: equal arcs on both pitch circles, opposite between sun and planet,
+//! equal between planet and ring. `q = [θs θp θc θr]`. Willis: `(θs − θc)/(θr − θc) = −(rs + 2 rp)/rs`. The rows are
+//! linear: one assembly, no singular position. Three planets at 120° move alike; they are drawn with 30, 15 and 60
+//! teeth: the radii are as the teeth, `(30 + 60)/3` is whole, and with the planet's odd number tooth meets gap at
+//! either end of the line `S P` where all angles are 0. One turn of the sun turns the carrier by 120°.
+//!
+//! Numbers: chosen here, module 4 mm.
+
+use mbs_runtime::mechanism;
+
+use crate::drawing::Shape;
+use crate::facade;
+use crate::registry::{Card, Preset, Span};
+
+mechanism! {
+    /// Planetary gear with a fixed ring.
+    pub mechanism PlanetaryGear;
+
+    param rs: m = 60mm;
+    param rp: m = 30mm;
+    param omega: rad/s = TAU;
+
+    coord theta_s: rad = 0;
+    coord theta_p: rad = 0;
+    coord theta_c: rad = 0;
+    coord theta_r: rad = 0;
+
+    let rr = rs + 2*rp;
+    let p1 = (rs + rp)*unit(theta_c);
+    let p2 = (rs + rp)*unit(theta_c + 120deg);
+    let p3 = (rs + rp)*unit(theta_c - 120deg);
+
+    constraint sun_planet { rs*(theta_s - theta_c) == -rp*(theta_p - theta_c); }
+    constraint planet_ring { rp*(theta_p - theta_c) == rr*(theta_r - theta_c); }
+    constraint fixed_ring { theta_r == 0; }
+    drive sun: theta_s == omega*t;
+
+    out S: [m; 2] = [0, 0];
+    out P1: [m; 2] = p1;
+    out P2: [m; 2] = p2;
+    out P3: [m; 2] = p3;
+    out sun_rim: [m; 2] = rs*unit(theta_s);
+    out ring_rim: [m; 2] = rr*unit(theta_r);
+    out M: [m; 2] = p1 + rp*unit(theta_p);
+    out rim_2: [m; 2] = p2 + rp*unit(theta_p);
+    out rim_3: [m; 2] = p3 + rp*unit(theta_p);
+}
+
+/// How the mechanism is drawn.
+pub const DRAWING: &[Shape] = &[
+    Shape::Gear { at: "S", rim: "ring_rim", teeth: 60, inside: true, label: "ring" },
+    Shape::Gear { at: "S", rim: "sun_rim", teeth: 30, inside: false, label: "sun" },
+    Shape::Gear { at: "P1", rim: "M", teeth: 15, inside: false, label: "planet" },
+    Shape::Gear { at: "P2", rim: "rim_2", teeth: 15, inside: false, label: "" },
+    Shape::Gear { at: "P3", rim: "rim_3", teeth: 15, inside: false, label: "" },
+    Shape::Link { points: &["S", "P1"], label: "carrier" },
+    Shape::Link { points: &["S", "P2"], label: "" },
+    Shape::Link { points: &["S", "P3"], label: "" },
+    Shape::Joint { at: "S" },
+    Shape::Joint { at: "P1" },
+    Shape::Joint { at: "P2" },
+    Shape::Joint { at: "P3" },
+    Shape::Trace { of: "M", label: "point of a planet" },
+];
+
+/// Entry in the list of mechanisms.
+pub const CARD: Card = Card {
+    name: "planetary_gear",
+    title: "Planetary gear",
+    description: "The sun drives three planets that roll in a fixed ring; their carrier turns three times more slowly.",
+    runs: &[Preset { label: "one turn of the sun", description: "the carrier turns by 120°", set: &[] }],
+    span: Span::Turn { rate: "omega" },
+    drawing: DRAWING,
+    make: facade::boxed::<PlanetaryGear, 4>,
+};
+
+#[cfg(test)]
+mod tests {
+    use core::f64::consts::TAU;
+
+    use super::*;
+    use crate::closed_form::{Jet, Vector, assert_moves_as};
+    use crate::reference::one_turn;
+
+    /// Willis's formula with the ring at rest, then the planet's roll in the ring.
+    fn columns(t: Jet) -> Vec<Jet> {
+        let (rs, rp, rr) = (0.06, 0.03, 0.12);
+        let sun = t * TAU;
+        let carrier = sun / (1.0 + rr / rs);
+        let planet = carrier * (1.0 - rr / rp);
+        let rim = Vector::unit(carrier) * (rs + rp) + Vector::unit(planet) * rp;
+        vec![sun, planet, carrier, 0.0.into(), rim.0, rim.1]
+    }
+
+    #[test]
+    fn the_motion_is_that_of_willis_s_formula() {
+        let motion = one_turn(&CARD, &CARD.runs[0], 180);
+        let names = ["theta_s", "theta_p", "theta_c", "theta_r", "M.0", "M.1"];
+        assert_moves_as(&motion, &names, 1e-13, columns);
+    }
+
+    /// Where gears touch, neither slips on the other: velocities of bodies at the point of contact.
+    #[test]
+    fn the_planet_rolls_on_the_ring_and_on_the_sun() {
+        let motion = one_turn(&CARD, &CARD.runs[0], 24);
+        let rate = |k: usize| &motion.coordinates[k].qd;
+        for step in 0..motion.time.len() {
+            let (sun, planet, carrier) = (rate(0)[step], rate(1)[step], rate(2)[step]);
+            let centre = 0.09 * carrier;
+            assert!((centre + 0.03 * planet).abs() < 1e-15, "at the ring");
+            assert!((centre - 0.03 * planet - 0.06 * sun).abs() < 1e-15, "at the sun");
+        }
+    }
+}

@@ -1,0 +1,127 @@
+//! Whitworth's quick-return mechanism: a turning slotted lever drives a ram.
+//!
+//! ```text
+//!                  A [o]                θ: crank against the x axis (rad)
+//!                r / .'  slotted        φ: lever against the x axis (rad)
+//!              O  o .'   lever          s: from D along the slot to the crank pin A (m)
+//!                 │.' s                 β: rod against the x axis (rad)
+//!                D o────────────[C]──   x: ram (m), on the horizontal line through D
+//!                .' ╲       L  .·'
+//!           l  .'     ╲   . ·'
+//!          E  o─·─·─·──·'  β
+//! ```
+//!
+//! Lengths in metres, `q = [θ φ s β x]`. `D` stands `d` below `O`, within the circle of the crank pin (`d < r`), so
+//! that the lever turns fully with the crank: that is Whitworth's mechanism; with `D` outside, the lever swings as in
+//! a shaper. The lever's other end `E` drives the ram by the rod.
+//!
+//! The determinant of the slot's rows with respect to `(φ, s)` is `−s`, never 0 since `s ≥ r − d = 55 mm`; that of the
+//! rod's rows is `L cos β`, never 0 since `L > l`. At a constant `ω` the ram goes one way during `π + 2 asin(d/r)` of
+//! the crank and back during the rest: 1.85 times as fast.
+//!
+//! Numbers: chosen here.
+
+use mbs_runtime::mechanism;
+
+use crate::drawing::{Along, Shape};
+use crate::facade;
+use crate::registry::{Card, Preset, Span};
+
+mechanism! {
+    /// Whitworth's quick-return mechanism.
+    pub mechanism QuickReturn;
+
+    param r: m = 100mm;
+    param d: m = 45mm;
+    param l: m = 70mm;
+    param L: m = 240mm;
+    param omega: rad/s = TAU;
+
+    coord theta: rad = 0;
+    coord phi: rad = 0.4;
+    coord s: m = 110mm;
+    coord beta: rad = 0.1;
+    coord x: m = 170mm;
+
+    let pivot = [0, -d];
+    let lever = unit(phi);
+
+    constraint slot { r*unit(theta) == pivot + s*lever; }
+    constraint rod { pivot - l*lever + L*unit(beta) == [x, -d]; }
+    drive crank: theta == omega*t;
+    branch slotted: s > 0;
+    branch right: cos(beta) > 0;
+
+    out O: [m; 2] = [0, 0];
+    out A: [m; 2] = r*unit(theta);
+    out D: [m; 2] = pivot;
+    out E: [m; 2] = pivot - l*lever;
+    out C: [m; 2] = [x, -d];
+    out slot_start: [m; 2] = pivot + 0.3*(r - d)*lever;
+    out slot_end: [m; 2] = pivot + 1.15*(r + d)*lever;
+}
+
+/// How the mechanism is drawn.
+pub const DRAWING: &[Shape] = &[
+    Shape::Rail { at: "C", along: Along::Fixed([1.0, 0.0]) },
+    Shape::Slider { at: "C", along: Along::Fixed([1.0, 0.0]) },
+    Shape::Ground { at: "O" },
+    Shape::Ground { at: "D" },
+    Shape::Slot { points: &["slot_start", "slot_end"], label: "lever" },
+    Shape::Link { points: &["E", "D", "slot_start"], label: "" },
+    Shape::Link { points: &["E", "C"], label: "rod" },
+    Shape::Slider { at: "A", along: Along::Named("phi") },
+    Shape::Link { points: &["O", "A"], label: "crank" },
+    Shape::Joint { at: "O" },
+    Shape::Joint { at: "A" },
+    Shape::Joint { at: "D" },
+    Shape::Joint { at: "E" },
+    Shape::Joint { at: "C" },
+    Shape::Trace { of: "C", label: "ram" },
+];
+
+/// Entry in the list of mechanisms.
+pub const CARD: Card = Card {
+    name: "quick_return",
+    title: "Whitworth's quick return",
+    description: "The crank pin runs in the slot of a lever that turns about a point beside the crank's centre: the \
+                  ram goes slowly one way and fast the other.",
+    runs: &[Preset { label: "one turn", description: "the ram to the right of the lever", set: &[] }],
+    span: Span::Turn { rate: "omega" },
+    drawing: DRAWING,
+    make: facade::boxed::<QuickReturn, 5>,
+};
+
+#[cfg(test)]
+mod tests {
+    use core::f64::consts::{PI, TAU};
+
+    use super::*;
+    use crate::closed_form::{Jet, Vector, assert_moves_as};
+    use crate::reference::one_turn;
+
+    /// The lever points from `D` to the crank pin; the ram by Pythagoras in the rod's triangle.
+    fn coordinates(t: Jet) -> Vec<Jet> {
+        let (r, d, l, length) = (0.1, 0.045, 0.07, 0.24);
+        let way = Vector::unit(t * TAU) * r + Vector::fixed(0.0, d);
+        let end = way * (Jet::from(-l) / way.length());
+        let run = (-end.1.square() + length * length).sqrt();
+        vec![t * TAU, way.angle(), way.length(), Vector(run, -end.1).angle(), end.0 + run]
+    }
+
+    #[test]
+    fn the_motion_equals_the_closed_form() {
+        let motion = one_turn(&CARD, &CARD.runs[0], 180);
+        assert_moves_as(&motion, &["theta", "phi", "s", "beta", "x"], 1e-12, coordinates);
+    }
+
+    #[test]
+    fn the_return_is_quicker_by_the_known_ratio() {
+        let motion = one_turn(&CARD, &CARD.runs[0], 3600);
+        let forward = motion.coordinates[4].qd.iter().filter(|rate| **rate > 0.0).count() as f64;
+        let ratio = forward / (motion.time.len() as f64 - forward);
+        let lag = 2.0 * (0.045_f64 / 0.1).asin();
+        // The dead centres are seen to one step of 3600.
+        assert!((ratio - (PI + lag) / (PI - lag)).abs() < 5e-3, "{ratio}");
+    }
+}

@@ -1,0 +1,146 @@
+//! A Stephenson six-bar driven off its four-bar loop: four unknowns that no chain of triangles solves.
+//!
+//! ```text
+//!                      A ─────────── B          θ: crank F E        α: O A
+//!      E              ╱ `·.     .·'   ╲         δ: rod E P          β: coupler A B
+//!      o─────────────╱─────`o·'        ╲                            γ: D B
+//!   r ╱       l     ╱        P          ╲
+//!    o          La ╱                     ╲ Ld
+//!    F            ╱                       ╲
+//!                o ────────── d ────────── o
+//!                O                         D
+//! ```
+//!
+//! All angles absolute (rad), lengths in metres, `q = [θ α β γ δ]`. The point `P` stands on the coupler `A B`, `m` along
+//! and `n` across to the right. The crank `F E` is none of the four bars of the loop `O A B D`: neither the loop nor
+//! the chain `F E P` can be closed alone, and the four angles `α β γ δ` make one block. (Driven at `O A` the same
+//! linkage is two triangles, one after the other.)
+//!
+//! For every `θ` there is one assembly with `sin(γ − β) > 0` (drawn) and one with `< 0`, as a scan of `α` over the
+//! circle shows. During a turn `sin(γ − β)` stays above 0.80, and the distance `E P`, as a function of `α` in the
+//! four-bar, keeps a slope between −0.36 m and −0.29 m: no singular position.
+//!
+//! Numbers: chosen here.
+
+use mbs_runtime::mechanism;
+
+use crate::drawing::Shape;
+use crate::facade;
+use crate::registry::{Card, Preset, Span};
+
+mechanism! {
+    /// Stephenson's six-bar linkage driven off its four-bar loop.
+    pub mechanism Stephenson;
+
+    param d: m = 0.30;
+    param La: m = 0.25;
+    param Lb: m = 0.15;
+    param Ld: m = 0.25;
+    param m: m = 0.075;
+    param n: m = 0.08;
+    param fx: m = -0.15;
+    param fy: m = 0.16;
+    param r: m = 0.05;
+    param l: m = 0.30;
+    param omega: rad/s = TAU;
+
+    coord theta: rad = 0;
+    coord alpha: rad = 1.1;
+    coord beta: rad = 0.16;
+    coord gamma: rad = 1.7;
+    coord delta: rad = 0;
+
+    let pivot = [fx, fy];
+    let a = La*unit(alpha);
+    let p = a + rot(beta)*[m, -n];
+
+    constraint four_bar { a + Lb*unit(beta) == [d, 0] + Ld*unit(gamma); }
+    constraint rod { pivot + r*unit(theta) + l*unit(delta) == p; }
+    drive crank: theta == omega*t;
+    branch open: sin(gamma - beta) > 0;
+
+    out O: [m; 2] = [0, 0];
+    out A: [m; 2] = a;
+    out B: [m; 2] = [d, 0] + Ld*unit(gamma);
+    out D: [m; 2] = [d, 0];
+    out E: [m; 2] = pivot + r*unit(theta);
+    out F: [m; 2] = pivot;
+    out P: [m; 2] = p;
+}
+
+/// How the mechanism is drawn.
+pub const DRAWING: &[Shape] = &[
+    Shape::Ground { at: "O" },
+    Shape::Ground { at: "D" },
+    Shape::Ground { at: "F" },
+    Shape::Plate { points: &["A", "B", "P"], label: "coupler" },
+    Shape::Link { points: &["O", "A"], label: "rocker" },
+    Shape::Link { points: &["D", "B"], label: "rocker" },
+    Shape::Link { points: &["E", "P"], label: "rod" },
+    Shape::Link { points: &["F", "E"], label: "crank" },
+    Shape::Joint { at: "O" },
+    Shape::Joint { at: "A" },
+    Shape::Joint { at: "B" },
+    Shape::Joint { at: "D" },
+    Shape::Joint { at: "E" },
+    Shape::Joint { at: "F" },
+    Shape::Joint { at: "P" },
+    Shape::Trace { of: "P", label: "coupler point" },
+    Shape::Trace { of: "B", label: "rocker" },
+];
+
+/// Entry in the list of mechanisms.
+pub const CARD: Card = Card {
+    name: "stephenson",
+    title: "Stephenson's six-bar, driven off its loop",
+    description: "The crank pushes the coupler point of a four-bar: four angles are one block of equations, which no \
+                  construction of triangles solves one after the other.",
+    runs: &[Preset { label: "one turn", description: "the four-bar in its open assembly", set: &[] }],
+    span: Span::Turn { rate: "omega" },
+    drawing: DRAWING,
+    make: facade::boxed::<Stephenson, 5>,
+};
+
+#[cfg(test)]
+mod tests {
+    use core::f64::consts::TAU;
+
+    use super::*;
+    use crate::closed_form::{Jet, Vector, assert_moves_as, root};
+    use crate::reference::one_turn;
+
+    /// `A`, `B`, `P` of the four-bar at the angle of its link `O A`.
+    fn four_bar(alpha: Jet) -> [Vector; 3] {
+        let a = Vector::unit(alpha) * 0.25;
+        let b = a.meet(0.15, Vector::fixed(0.3, 0.0), 0.25, 1.0);
+        let along = (b - a) * (1.0 / 0.15);
+        [a, b, a + along * 0.075 - along.left() * 0.08]
+    }
+
+    /// The four-bar is a triangle once `α` is known; what remains is one equation in `α`, the length of the rod.
+    #[test]
+    fn the_motion_equals_the_closed_form_with_one_root() {
+        let motion = one_turn(&CARD, &CARD.runs[0], 180);
+        let mut start = 1.1;
+        let crank = |t: Jet| Vector::fixed(-0.15, 0.16) + Vector::unit(t * TAU) * 0.05;
+        assert_moves_as(&motion, &["theta", "alpha", "beta", "gamma", "delta", "P.0", "P.1"], 1e-11, |t| {
+            let alpha = root(start, t, |alpha, t| {
+                let rod = four_bar(alpha)[2] - crank(t);
+                rod.dot(rod) - 0.3 * 0.3
+            });
+            start = alpha.0[0];
+            let [a, b, p] = four_bar(alpha);
+            let gamma = (b - Vector::fixed(0.3, 0.0)).angle();
+            vec![t * TAU, alpha, (b - a).angle(), gamma, (p - crank(t)).angle(), p.0, p.1]
+        });
+    }
+
+    #[test]
+    fn it_returns_to_where_it_began() {
+        let motion = one_turn(&CARD, &CARD.runs[0], 180);
+        for coordinate in &motion.coordinates[1..] {
+            let (first, last) = (coordinate.q[0], coordinate.q[180]);
+            assert!((first - last).abs() < 1e-12, "{}", coordinate.name);
+        }
+    }
+}

@@ -1,0 +1,171 @@
+//! A planar 3-RRR platform: three drives move a plate in x, y and its angle.
+//!
+//! ```text
+//!                O0 o
+//!                    ╲ l1              θi: driven link Oi Bi (rad)
+//!                     o B0             ψi: second link Bi Ci (rad)
+//!                 l2 ╱                 (x, y), φ: centre and angle of the platform (m, rad)
+//!                C0 o
+//!              .·  ╲  ·.               Oi on a circle of radius R, at 90° + 120° i
+//!       B1 ──o C1───── C2 o── B2       Ci on a circle of radius rp of the platform, at φ + 90° + 120° i
+//!        ╱                     ╲
+//!    O1 o                       o O2
+//! ```
+//!
+//! Absolute angles, `q = [x y φ θ0 θ1 θ2 ψ0 ψ1 ψ2]`. Each leg closes with two rows; the drives swing by `swing` about
+//! their middle positions, a third of a period apart. The six unknowns other than the driven angles make one block; up
+//! to six assemblies belong to given drives. The branches pick one: the three elbows bent the same way, and the sign of
+//! the determinant of the platform's equations of velocity, whose zero is the singular position of the parallel
+//! kind. During the motion the sines of the elbows stay below −0.8, the determinant between 1.3 and 1.6.
+//!
+//! Numbers: chosen here.
+
+use mbs_runtime::mechanism;
+
+use crate::drawing::Shape;
+use crate::facade;
+use crate::registry::{Card, Preset, Span};
+
+mechanism! {
+    /// Planar parallel platform with three driven legs.
+    pub mechanism ThreeRrr;
+
+    param R: m = 0.30;
+    param rp: m = 0.08;
+    param l1: m = 0.16;
+    param l2: m = 0.18;
+    param home: rad = -126deg;
+    param swing: rad = 20deg;
+    param omega: rad/s = TAU;
+
+    coord x: m = -40mm;
+    coord y: m = 40mm;
+    coord phi: rad = -0.1;
+    coord theta: [rad; 3] = [-0.6, 1.8, -3.0];
+    coord psi: [rad; 3] = [-2.7, 0.0, 2.0];
+
+    let arm0 = rp*unit(phi + 90deg);
+    let arm1 = rp*unit(phi + 210deg);
+    let arm2 = rp*unit(phi + 330deg);
+    let b0 = R*unit(90deg) + l1*unit(theta[0]);
+    let b1 = R*unit(210deg) + l1*unit(theta[1]);
+    let b2 = R*unit(330deg) + l1*unit(theta[2]);
+
+    constraint leg0 { b0 + l2*unit(psi[0]) == [x, y] + arm0; }
+    constraint leg1 { b1 + l2*unit(psi[1]) == [x, y] + arm1; }
+    constraint leg2 { b2 + l2*unit(psi[2]) == [x, y] + arm2; }
+    drive motor0: theta[0] == 90deg + home + swing*sin(omega*t);
+    drive motor1: theta[1] == 210deg + home + swing*sin(omega*t + 120deg);
+    drive motor2: theta[2] == 330deg + home + swing*sin(omega*t + 240deg);
+    branch elbow0: sin(psi[0] - theta[0]) < 0;
+    branch elbow1: sin(psi[1] - theta[1]) < 0;
+    branch elbow2: sin(psi[2] - theta[2]) < 0;
+    branch platform: det([
+        [cos(psi[0]), sin(psi[0]), cross(arm0, unit(psi[0]))/rp],
+        [cos(psi[1]), sin(psi[1]), cross(arm1, unit(psi[1]))/rp],
+        [cos(psi[2]), sin(psi[2]), cross(arm2, unit(psi[2]))/rp]
+    ]) > 0;
+
+    out O0: [m; 2] = R*unit(90deg);
+    out O1: [m; 2] = R*unit(210deg);
+    out O2: [m; 2] = R*unit(330deg);
+    out B0: [m; 2] = b0;
+    out B1: [m; 2] = b1;
+    out B2: [m; 2] = b2;
+    out C0: [m; 2] = [x, y] + arm0;
+    out C1: [m; 2] = [x, y] + arm1;
+    out C2: [m; 2] = [x, y] + arm2;
+    out P: [m; 2] = [x, y];
+}
+
+/// How the mechanism is drawn.
+pub const DRAWING: &[Shape] = &[
+    Shape::Ground { at: "O0" },
+    Shape::Ground { at: "O1" },
+    Shape::Ground { at: "O2" },
+    Shape::Plate { points: &["C0", "C1", "C2"], label: "platform" },
+    Shape::Link { points: &["O0", "B0"], label: "crank" },
+    Shape::Link { points: &["O1", "B1"], label: "" },
+    Shape::Link { points: &["O2", "B2"], label: "" },
+    Shape::Link { points: &["B0", "C0"], label: "rod" },
+    Shape::Link { points: &["B1", "C1"], label: "" },
+    Shape::Link { points: &["B2", "C2"], label: "" },
+    Shape::Joint { at: "O0" },
+    Shape::Joint { at: "O1" },
+    Shape::Joint { at: "O2" },
+    Shape::Joint { at: "B0" },
+    Shape::Joint { at: "B1" },
+    Shape::Joint { at: "B2" },
+    Shape::Joint { at: "C0" },
+    Shape::Joint { at: "C1" },
+    Shape::Joint { at: "C2" },
+    Shape::Trace { of: "P", label: "centre of the platform" },
+];
+
+/// Entry in the list of mechanisms.
+pub const CARD: Card = Card {
+    name: "three_rrr",
+    title: "Planar platform on three driven legs",
+    description: "Three cranks move a plate in x, y and its angle: a parallel robot of the kind 3-RRR.",
+    runs: &[Preset {
+        label: "one cycle",
+        description: "the drives swing a third of a period apart",
+        set: &[],
+    }],
+    span: Span::Turn { rate: "omega" },
+    drawing: DRAWING,
+    make: facade::boxed::<ThreeRrr, 9>,
+};
+
+#[cfg(test)]
+mod tests {
+    use core::f64::consts::{FRAC_PI_2, FRAC_PI_3, PI, TAU};
+
+    use super::*;
+    use crate::closed_form::{Jet, Vector, assert_moves_as, root};
+    use crate::reference::one_turn;
+
+    /// Corners of the platform at the angle of the leg `B0 C0`: `C1` as an intersection of circles about `C0` and `B1`,
+    /// `C2` by the equilateral triangle.
+    fn corners(psi0: Jet, [b0, b1]: [Vector; 2]) -> [Vector; 3] {
+        let c0 = b0 + Vector::unit(psi0) * 0.18;
+        let c1 = c0.meet(0.08 * 3.0_f64.sqrt(), b1, 0.18, 1.0);
+        let side = c1 - c0;
+        [c0, c1, c0 + side * FRAC_PI_3.cos() + side.left() * FRAC_PI_3.sin()]
+    }
+
+    fn angle(leg: usize, t: Jet) -> Jet {
+        let turn = TAU / 3.0 * leg as f64;
+        (t * TAU + turn).sin() * (PI / 9.0) + (FRAC_PI_2 + turn - 0.7 * PI)
+    }
+
+    fn elbows(t: Jet) -> [Vector; 3] {
+        [0, 1, 2].map(|leg| {
+            let base = FRAC_PI_2 + TAU / 3.0 * leg as f64;
+            Vector::unit(base) * 0.3 + Vector::unit(angle(leg, t)) * 0.16
+        })
+    }
+
+    /// What remains is one equation in `ψ0`, the length of the third leg.
+    #[test]
+    fn the_motion_equals_the_closed_form_with_one_root() {
+        let motion = one_turn(&CARD, &CARD.runs[0], 180);
+        let names: Vec<_> = motion.coordinates.iter().map(|coordinate| coordinate.name).collect();
+        let mut start = -2.66;
+        assert_moves_as(&motion, &names, 1e-11, |t| {
+            let b = elbows(t);
+            let psi0 = root(start, t, |psi0, t| {
+                let [b0, b1, b2] = elbows(t);
+                let leg = corners(psi0, [b0, b1])[2] - b2;
+                leg.dot(leg) - 0.18 * 0.18
+            });
+            start = psi0.0[0];
+            let c = corners(psi0, [b[0], b[1]]);
+            let centre = (c[0] + c[1] + c[2]) * (1.0 / 3.0);
+            let phi = (c[0] - centre).angle() - FRAC_PI_2;
+            let driven = [0, 1, 2].map(|leg| angle(leg, t));
+            let legs = [0, 1, 2].map(|leg: usize| (c[leg] - b[leg]).angle());
+            [vec![centre.0, centre.1, phi], driven.to_vec(), legs.to_vec()].concat()
+        });
+    }
+}

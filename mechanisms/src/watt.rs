@@ -1,0 +1,124 @@
+//! Watt's six-bar linkage: two four-bars in series over one ternary rocker.
+//!
+//! ```text
+//!              B                C        E
+//!          .·'o\            .·'o─────────o
+//!      A .'  L3 \ L4    .·' Lc    L5      \
+//!       o        \  .·'  δ                 \ L6
+//!   L2 /          o (ternary rocker)        \
+//!     o           D                          o F
+//!     O
+//!     |←─── d ───→|
+//!     |←─────────────────── f ──────────────→|
+//! ```
+//!
+//! Angles absolute (rad): `θ2` crank, `θ3` coupler, `θ4` rocker's side `D B`, `θ5` second coupler, `θ6` output rocker
+//! `F E`; the side `D C` of the ternary rocker stands at `θ4 − δ`. Lengths in metres, `q = [θ2 θ3 θ4 θ5 θ6]`.
+//!
+//! The first loop is a crank-rocker (`0.06 + 0.20 < 0.18 + 0.12`), the second one is driven by a rocker that swings
+//! by 60°. `sin(θ4 − θ3)` stays above 0.77, `sin(θ6 − θ5)` above 0.79.
+//!
+//! Numbers: chosen here.
+
+use mbs_runtime::mechanism;
+
+use crate::drawing::Shape;
+use crate::facade;
+use crate::registry::{Card, Preset, Span};
+
+mechanism! {
+    /// Watt's six-bar linkage.
+    pub mechanism Watt;
+
+    param L2: m = 0.06;
+    param L3: m = 0.18;
+    param L4: m = 0.12;
+    param Lc: m = 0.12;
+    param L5: m = 0.18;
+    param L6: m = 0.13;
+    param d: m = 0.20;
+    param f: m = 0.40;
+    param delta: rad = 40deg;
+    param omega: rad/s = TAU;
+
+    coord theta2: rad = 0;
+    coord theta3: rad = 0.7;
+    coord theta4: rad = 1.6;
+    coord theta5: rad = 0.1;
+    coord theta6: rad = 1.2;
+
+    let c = [d, 0] + Lc*unit(theta4 - delta);
+
+    constraint first_loop { L2*unit(theta2) + L3*unit(theta3) == [d, 0] + L4*unit(theta4); }
+    constraint second_loop { c + L5*unit(theta5) == [f, 0] + L6*unit(theta6); }
+    drive crank: theta2 == omega*t;
+    branch first: sin(theta4 - theta3) > 0;
+    branch second: sin(theta6 - theta5) > 0;
+
+    out O: [m; 2] = [0, 0];
+    out A: [m; 2] = L2*unit(theta2);
+    out B: [m; 2] = [d, 0] + L4*unit(theta4);
+    out C: [m; 2] = c;
+    out D: [m; 2] = [d, 0];
+    out E: [m; 2] = [f, 0] + L6*unit(theta6);
+    out F: [m; 2] = [f, 0];
+    out M: [m; 2] = c + L5/2*unit(theta5);
+}
+
+/// How the mechanism is drawn.
+pub const DRAWING: &[Shape] = &[
+    Shape::Ground { at: "O" },
+    Shape::Ground { at: "D" },
+    Shape::Ground { at: "F" },
+    Shape::Plate { points: &["D", "B", "C"], label: "ternary" },
+    Shape::Link { points: &["A", "B"], label: "coupler" },
+    Shape::Link { points: &["O", "A"], label: "crank" },
+    Shape::Link { points: &["C", "E"], label: "second coupler" },
+    Shape::Link { points: &["F", "E"], label: "rocker" },
+    Shape::Joint { at: "O" },
+    Shape::Joint { at: "A" },
+    Shape::Joint { at: "B" },
+    Shape::Joint { at: "C" },
+    Shape::Joint { at: "D" },
+    Shape::Joint { at: "E" },
+    Shape::Joint { at: "F" },
+    Shape::Trace { of: "M", label: "middle of the second coupler" },
+    Shape::Trace { of: "E", label: "output rocker" },
+];
+
+/// Entry in the list of mechanisms.
+pub const CARD: Card = Card {
+    name: "watt",
+    title: "Watt's six-bar linkage",
+    description: "Two four-bars in series: the rocker of the first one has three joints and drives the second one.",
+    runs: &[Preset { label: "one turn", description: "both loops in their open assembly", set: &[] }],
+    span: Span::Turn { rate: "omega" },
+    drawing: DRAWING,
+    make: facade::boxed::<Watt, 5>,
+};
+
+#[cfg(test)]
+mod tests {
+    use core::f64::consts::TAU;
+
+    use super::*;
+    use crate::closed_form::{Jet, Vector, assert_moves_as};
+    use crate::reference::one_turn;
+
+    /// Two intersections of circles, one a loop.
+    fn coordinates(t: Jet) -> Vec<Jet> {
+        let (a, d, f) = (Vector::unit(t * TAU) * 0.06, Vector::fixed(0.2, 0.0), Vector::fixed(0.4, 0.0));
+        let b = a.meet(0.18, d, 0.12, 1.0);
+        let theta4 = (b - d).angle();
+        let c = d + Vector::unit(theta4 - 40.0_f64.to_radians()) * 0.12;
+        let e = c.meet(0.18, f, 0.13, 1.0);
+        vec![t * TAU, (b - a).angle(), theta4, (e - c).angle(), (e - f).angle()]
+    }
+
+    #[test]
+    fn the_motion_equals_the_closed_form() {
+        let motion = one_turn(&CARD, &CARD.runs[0], 180);
+        let names = ["theta2", "theta3", "theta4", "theta5", "theta6"];
+        assert_moves_as(&motion, &names, 1e-12, coordinates);
+    }
+}

@@ -1,0 +1,40 @@
+//! What a user sees: the compiler's own messages, one fault a file, and nothing else red beside them.
+//!
+//! Every case uses the mechanism too, so that the stored messages prove that the stub serves. After a change that is
+//! meant, run `TRYBUILD=overwrite cargo test -p mbs-tests --test ui` and read the difference.
+#![forbid(unsafe_code)]
+
+use std::fs;
+use std::path::Path;
+
+#[test]
+fn faults_are_reported_by_the_compiler_and_nothing_else_is() {
+    trybuild::TestCases::new().compile_fail("ui/*.rs");
+}
+
+/// `mbs-codegen` keeps the same texts with what it reports by itself, whatever the compiler's version.
+#[test]
+fn every_case_has_its_twin_without_a_compiler() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let twins = root.join("../mbs-codegen/tests/diagnostics");
+    let mut compared = 0;
+    for twin in fs::read_dir(twins).expect("the twins") {
+        let twin = twin.expect("a twin").path();
+        let name = twin.file_stem().and_then(|name| name.to_str()).expect("a name");
+        let stored = fs::read_to_string(&twin).expect("a readable twin");
+        let (text, report) = stored.split_once("\n-----").expect("a report");
+        let case = fs::read_to_string(root.join("ui").join(name).with_extension("rs")).expect(name);
+        let indented: String = text.lines().map(|line| format!("    {line}\n")).collect();
+        assert!(case.contains(&format!("mechanism! {{\n{indented}}}")), "{name}");
+        // The compiler shows the same messages, in its own layout.
+        let shown = fs::read_to_string(root.join("ui").join(name).with_extension("stderr")).expect(name);
+        let messages: Vec<&str> = report.lines().skip(1).filter(|line| !line.starts_with("  help")).collect();
+        for message in &messages {
+            let message = message.splitn(3, ':').nth(2).expect("line:column: message").trim();
+            assert!(shown.contains(&format!("error: {message}\n")), "{name}: {message}");
+        }
+        assert_eq!(shown.matches("error").count(), messages.len(), "{name}");
+        compared += 1;
+    }
+    assert!(compared > 40);
+}
