@@ -4,14 +4,11 @@ use crate::diagnosis::{Statistics, extent};
 use crate::kinematics::{
     branch_failure, coordinate_failure, non_finite, position_failure, time_failure, variable_failure,
 };
-use crate::{Failure, Kinematic, Real, Safeguarded};
+use crate::{Failure, Kinematic, Real, Safeguarded, starts};
 
-/// Starts beside the guess. One of them falls into each of a dyad's two assemblies for any guess with odds of
-/// about one half, so 32 miss a declared one in 4e9; five dyads at once need about that many.
-const OTHER_STARTS: u32 = 32;
-
-/// Share of the search box in which the first other start lies; the last one uses all of it.
-const FIRST_RADIUS: f64 = 0.25;
+/// Starts beside the guess for the mechanism as a whole. Each block looks for its own declared branches already
+/// (see [`Safeguarded`]); these are for branches that an earlier block without one has spoilt.
+const OTHER_STARTS: u32 = 8;
 
 /// A mechanism at rest in its first position.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,14 +17,15 @@ pub struct Assembled<R, const N: usize> {
     pub q: [R; N],
     /// What the start that succeeded cost.
     pub statistics: Statistics,
-    /// Which start succeeded: 0 for the guess itself, 1 … 32 for the others.
+    /// Which start succeeded: 0 for the guess itself, 1 … 8 for the others.
     pub start: u32,
 }
 
 /// Solves Φ(q, t) = 0 from `guess` (N) at time `t` (s) such that every declared branch holds.
 ///
 /// The guess comes first; where it leads nowhere or to another assembly, a fixed list of starts around it is
-/// tried, up to π away in angles and a reference length in lengths. Angles are as the solver found them: whole
+/// tried, up to π away in angles and two reference lengths in lengths: block by block, each against the branches that
+/// it decides, then for the mechanism as a whole. Angles are as the solver found them: whole
 /// turns of the guess are kept, none is taken off.
 ///
 /// # Errors
@@ -96,37 +94,17 @@ impl Search {
     }
 }
 
-/// Start number `start`: the guess plus a point of Roberts' low-discrepancy sequence in a growing box.
-///
-/// Half widths are π for angles and the coordinate's scale for others. The sequence is additive with
-/// αⱼ = g^−(j+1), g the root of g^(N+1) = g + 1. Source: M. Roberts 2018, "The unreasonable effectiveness of
-/// quasirandom sequences".
+/// Start number `start`: the guess itself, or a point beside it.
 fn displaced<S: Kinematic<R, N>, R: Real, const N: usize>(
     mechanism: &S,
     parameters: &S::Parameters,
     guess: &[R; N],
     start: u32,
 ) -> [R; N] {
-    let mut q = *guess;
     if start == 0 {
-        return q;
+        return *guess;
     }
-    let number = f64::from(start);
-    let radius = FIRST_RADIUS + (1.0 - FIRST_RADIUS) * number / f64::from(OTHER_STARTS);
-    let ratio = generalized_golden_ratio(N as f64);
-    let mut step = 1.0;
-    let scales = mechanism.coordinate_scales(parameters);
-    for ((coordinate, scale), entry) in q.iter_mut().zip(scales).zip(S::COORDINATES) {
-        step /= ratio;
-        let point = 0.5 + number * step;
-        let offset = R::constant(radius * (2.0 * (point - libm::floor(point)) - 1.0));
-        let width = if entry.is_angle() { R::constant(core::f64::consts::PI) } else { scale };
-        *coordinate = *coordinate + offset * width;
-    }
-    q
-}
-
-/// The root above 1 of g^(n+1) = g + 1, by fixed-point iteration, which gains a digit or more in two steps.
-fn generalized_golden_ratio(n: f64) -> f64 {
-    (0..32).fold(1.5, |g, _| libm::pow(1.0 + g, 1.0 / (n + 1.0)))
+    let mut angles = [false; N];
+    angles.iter_mut().zip(S::COORDINATES).for_each(|(angle, entry)| *angle = entry.is_angle());
+    starts::displaced(guess, &angles, &mechanism.coordinate_scales(parameters), start, OTHER_STARTS)
 }

@@ -22,6 +22,7 @@ pub mod newton;
 pub mod newton_raphson;
 pub mod safeguarded;
 pub mod scalar;
+mod starts;
 pub mod stepper;
 pub mod sweep;
 pub mod trace;

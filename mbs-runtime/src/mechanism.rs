@@ -188,6 +188,20 @@ pub trait BlockSolver<T: Scalar> {
         x: [T; K],
         evaluate: impl FnMut(&[T; K]) -> ([T; K], [[T; K]; K]),
     ) -> ([T; K], T::Lanes<Outcome>);
+
+    /// As [`solve`](Self::solve), for a block that decides branches of the text: `holds` says where they hold at `x`.
+    ///
+    /// A solver that starts next to the solution need not look, and this default does not.
+    #[inline(always)]
+    fn solve_branched<const K: usize, F: Factorization<T, K>>(
+        &mut self,
+        block: &Block<T, K>,
+        x: [T; K],
+        evaluate: impl FnMut(&[T; K]) -> ([T; K], [[T; K]; K]),
+        _holds: impl FnMut(&[T; K]) -> T::Mask,
+    ) -> ([T; K], T::Lanes<Outcome>) {
+        self.solve::<K, F>(block, x, evaluate)
+    }
 }
 
 /// A mechanism whose rows fix every coordinate. Emitted only where the structure says square.

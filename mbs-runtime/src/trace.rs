@@ -57,6 +57,25 @@ impl<T: Scalar, S: BlockSolver<T>, L: Trace<T>> BlockSolver<T> for Traced<'_, S,
         self.trace.end(&outcome);
         (x, outcome)
     }
+
+    fn solve_branched<const K: usize, F: Factorization<T, K>>(
+        &mut self,
+        block: &Block<T, K>,
+        x: [T; K],
+        mut evaluate: impl FnMut(&[T; K]) -> ([T; K], [[T; K]; K]),
+        holds: impl FnMut(&[T; K]) -> T::Mask,
+    ) -> ([T; K], T::Lanes<Outcome>) {
+        self.trace.block(block);
+        let trace = &mut *self.trace;
+        let watched = |x: &[T; K]| {
+            let (residuals, jacobian) = evaluate(x);
+            trace.iterate(block, x, &residuals, &jacobian);
+            (residuals, jacobian)
+        };
+        let (x, outcome) = self.solver.solve_branched::<K, F>(block, x, watched, holds);
+        self.trace.end(&outcome);
+        (x, outcome)
+    }
 }
 
 #[cfg(test)]

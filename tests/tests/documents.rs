@@ -61,7 +61,21 @@ fn no_folder_of_the_code_generator_uses_one_to_its_right() {
 #[test]
 fn every_mechanism_and_command_stands_in_the_readme() {
     let text = read("README.md");
-    for command in ["list", "run NAME", "expand NAME", "verify NAME", "verify --all"] {
+    for command in [
+        "list",
+        "run NAME",
+        "expand NAME",
+        "verify NAME",
+        "verify --all",
+        "print NAME",
+        "latex NAME",
+        "structure NAME",
+        "newton NAME",
+        "basins NAME",
+        "next NAME",
+        "dof NAME",
+        "compare NAME",
+    ] {
         assert!(text.contains(&format!("`mbs {command}")), "README.md does not show `mbs {command}`");
     }
     assert!(text.contains("cargo run --release") && text.contains("cargo test --workspace"));

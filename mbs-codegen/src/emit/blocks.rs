@@ -6,7 +6,7 @@ use std::fmt::Write;
 use super::code::lets;
 use super::scope::{Scope, number};
 use crate::equations::Equations;
-use crate::program::{BlockProgram, Method, Program};
+use crate::program::{BlockProgram, Method, Program, System};
 use crate::symbolic::NodeId;
 
 /// Body of `solve_blocks`.
@@ -20,19 +20,27 @@ pub fn solve(equations: &Equations, program: &Program, scope: &Scope<'_>) -> Str
                     let _ = writeln!(text, "__q[{coordinate}] = {};", scope.operand(*value));
                 }
             }
-            Method::Newton { section, phi, phi_q } => {
+            Method::Newton(system) => {
+                let System { section, phi, phi_q, branches, branch_section } = system.as_ref();
                 let inner = Scope { unknowns: &block.coordinates, ..*scope };
                 let starts = list(block.coordinates.iter().map(|c| format!("__q[{c}]")));
                 let (size, kind) = (block.rows.len(), factorization(block.rows.len()));
                 let description = description(equations, block, scope);
-                let _ = writeln!(
-                    text,
-                    "let (__x, __block) = __solver.solve::<{size}, {kind}>(&{description}, {starts}, |__x| {{"
-                );
+                let method = if branches.is_empty() { "solve" } else { "solve_branched" };
+                let call = format!("let (__x, __block) = __solver.{method}::<{size}, {kind}>");
+                let _ = writeln!(text, "{call}(&{description}, {starts}, |__x| {{");
                 lets(section, &inner, &mut text);
                 let residuals = list(phi.iter().map(|id| inner.operand(*id)));
                 let rows = list(phi_q.iter().map(|row| list(row.iter().map(|id| inner.or_zero(*id)))));
-                let _ = writeln!(text, "({residuals}, {rows})\n}});");
+                let _ = writeln!(text, "({residuals}, {rows})\n}}");
+                if !branches.is_empty() {
+                    text += ", |__x| {\n";
+                    lets(branch_section, &inner, &mut text);
+                    let zero = number(0.0);
+                    let holds = branches.iter().map(|id| format!("T::less({zero}, {})", inner.operand(*id)));
+                    let _ = writeln!(text, "{}\n}}", holds.collect::<Vec<_>>().join(" & "));
+                }
+                text += ");\n";
                 for (index, coordinate) in block.coordinates.iter().enumerate() {
                     let _ = writeln!(text, "__q[{coordinate}] = __x[{index}];");
                 }
@@ -87,9 +95,9 @@ pub fn linear(equations: &Equations, program: &Program, scope: &Scope<'_>) -> (S
                     let _ = writeln!(solve, "let __x{coordinate} = {value};");
                 }
             }
-            Method::Newton { phi_q, .. } => {
+            Method::Newton(system) => {
                 let (size, kind) = (block.rows.len(), factorization(block.rows.len()));
-                let rows = list(phi_q.iter().map(|row| list(row.iter().map(|id| scope.or_zero(*id)))));
+                let rows = list(system.phi_q.iter().map(|row| list(row.iter().map(|id| scope.or_zero(*id)))));
                 let scale = |scales: &[NodeId], index: &usize| scope.or_zero(scales.get(*index).copied());
                 let row_scales = list(block.rows.iter().map(|row| scale(&equations.row_scales, row)));
                 let scales = list(block.coordinates.iter().map(|c| scale(&equations.coordinate_scales, c)));

@@ -125,8 +125,8 @@ fn cost(program: &Program, lines: &mut Vec<String>) {
     let mut iteration = Operations::default();
     for block in blocks {
         before += block.before.operations;
-        if let Method::Newton { section, .. } = &block.method {
-            iteration += section.operations;
+        if let Method::Newton(system) = &block.method {
+            iteration += system.section.operations;
         }
     }
     let table = [

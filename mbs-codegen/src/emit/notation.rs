@@ -66,10 +66,13 @@ impl Notation {
         }
     }
 
-    /// A positive number, shortest of those that read back as the same.
+    /// A positive number: as text the shortest that reads back as the same, in LaTeX seven digits.
     pub fn number(self, value: f64) -> String {
         /// Between these a number needs no power of ten.
         const PLAIN: core::ops::Range<f64> = 1e-4..1e7;
+        // A mantissa of seven digits is a number again: its shortest form has no more.
+        let rounded = format!("{value:.6e}").parse().unwrap_or(value);
+        let value = if self == Latex { rounded } else { value };
         if value == 0.0 || !value.is_finite() || PLAIN.contains(&value) {
             return match self {
                 Latex if value.is_infinite() => "\\infty".into(),
@@ -270,6 +273,8 @@ mod tests {
     fn numbers_are_short() {
         assert_eq!([0.5, 2.0, 1e-9, 0.1].map(|x| Text.number(x)), ["0.5", "2", "1e-9", "0.1"]);
         assert_eq!(Latex.number(2.5e-9), "2.5 \\cdot 10^{-9}");
+        assert_eq!([0.8660254037844384, 0.5].map(|x| Latex.number(x)), ["0.8660254", "0.5"]);
+        assert_eq!(Text.number(0.8660254037844384), "0.8660254037844384");
         assert_eq!(Latex.number(f64::INFINITY), "\\infty");
     }
 }

@@ -118,7 +118,7 @@ fn operations(program: &Program) -> usize {
         &program.outputs,
     ];
     let iterations = program.blocks.iter().filter_map(|block| match &block.method {
-        Method::Newton { section, .. } => Some(section),
+        Method::Newton(system) => Some(&system.section),
         Method::Explicit { .. } => None,
     });
     let blocks = program.blocks.iter().map(|block| &block.before).chain(iterations);

@@ -14,11 +14,13 @@ use crate::syntax::ast::{Expression, Instruction, Operation, Operator};
 #[derive(Clone, Copy, Debug)]
 pub struct Fault;
 
-/// Most scalar expressions that a text may unroll to: a debug build of the macro takes about a second over the
-/// derivatives of as many.
-const MOST: usize = 30_000;
+/// Most operations that a text may unroll to: a debug build of the macro takes about a second over the derivatives
+/// of as many.
+const MOST_OPERATIONS: usize = 30_000;
+/// Most expressions, numbers included, which cost less.
+const MOST_EXPRESSIONS: usize = 200_000;
 /// Longest array.
-pub const LONGEST: usize = 2_000;
+pub const LONGEST: usize = 1_000;
 /// Largest count, and most rounds of all loops together.
 pub const MOST_ROUNDS: usize = 100_000;
 
@@ -110,10 +112,10 @@ impl Elaborator<'_> {
         let mut next = 0;
         let result = loop {
             let Some(instruction) = expression.code.get(next) else { break stack.pop().ok_or(Fault) };
-            if self.expressions.len() > MOST {
+            if self.expressions.operations() > MOST_OPERATIONS || self.expressions.len() > MOST_EXPRESSIONS {
                 break Err(self.fault(
                     instruction.span,
-                    format!("the text unrolls to more than {MOST} operations"),
+                    format!("the text unrolls to more than {MOST_OPERATIONS} operations"),
                     "shorten the loops",
                 ));
             }

@@ -59,33 +59,37 @@ pub enum Binary {
 
 /// The arena.
 #[derive(Debug, Default)]
-pub struct Expressions(Vec<Node>);
+pub struct Expressions {
+    nodes: Vec<Node>,
+    operations: usize,
+}
 
 impl Expressions {
     /// Adds an expression.
     pub fn push(&mut self, node: Node) -> Id {
-        self.0.push(node);
-        Id((self.0.len() - 1) as u32)
+        self.operations += usize::from(node.operands().next().is_some());
+        self.nodes.push(node);
+        Id((self.nodes.len() - 1) as u32)
     }
 
     /// The expression.
     pub fn node(&self, id: Id) -> Node {
-        self.0.get(id.0 as usize).copied().unwrap_or(Node::Number(f64::NAN))
+        self.nodes.get(id.0 as usize).copied().unwrap_or(Node::Number(f64::NAN))
     }
 
     /// Number of expressions.
     pub fn len(&self) -> usize {
-        self.0.len()
+        self.nodes.len()
     }
 
     /// All expressions, operands first.
     pub fn iter(&self) -> impl Iterator<Item = (Id, Node)> + '_ {
-        self.0.iter().enumerate().map(|(index, node)| (Id(index as u32), *node))
+        self.nodes.iter().enumerate().map(|(index, node)| (Id(index as u32), *node))
     }
 
     /// Marks what `roots` are made of, themselves included: one flag an expression.
     pub fn reachable(&self, roots: impl IntoIterator<Item = Id>) -> Vec<bool> {
-        let mut marked = vec![false; self.0.len()];
+        let mut marked = vec![false; self.nodes.len()];
         let mut waiting: Vec<Id> = roots.into_iter().collect();
         while let Some(id) = waiting.pop() {
             if let Some(mark) = marked.get_mut(id.index())

@@ -31,14 +31,22 @@ pub enum Method {
         coefficient: f64,
     },
     /// By Newton's method.
-    Newton {
-        /// Executed at each iterate.
-        section: Section,
-        /// Residuals.
-        phi: Vec<NodeId>,
-        /// Jacobian within the block, row by row.
-        phi_q: Vec<Vec<Option<NodeId>>>,
-    },
+    Newton(Box<System>),
+}
+
+/// A nonlinear block.
+#[derive(Debug)]
+pub struct System {
+    /// Executed at each iterate.
+    pub section: Section,
+    /// Residuals.
+    pub phi: Vec<NodeId>,
+    /// Jacobian within the block, row by row.
+    pub phi_q: Vec<Vec<Option<NodeId>>>,
+    /// Branch conditions that this block decides: they use its coordinates and no later ones.
+    pub branches: Vec<NodeId>,
+    /// Executed at a solution to see whether the branches hold.
+    pub branch_section: Section,
 }
 
 /// All roots of all blocks, for the choice of what the parameter stage keeps.
@@ -48,7 +56,7 @@ pub fn roots(equations: &Equations, structure: &Structure) -> Vec<NodeId> {
         match &block.explicit {
             Some(explicit) => roots.push(explicit.value),
             None => {
-                let (phi, phi_q) = system(equations, block);
+                let (phi, phi_q) = residuals_and_jacobian(equations, block);
                 roots.extend(phi);
                 roots.extend(phi_q.into_iter().flatten().flatten());
                 roots.extend(block.rows.iter().filter_map(|row| equations.row_scales.get(*row)));
@@ -70,7 +78,7 @@ pub fn order(equations: &Equations, structure: &Structure, known: &BTreeSet<Node
                 let before = schedule(graph, &[explicit.value], &known);
                 (before, Method::Explicit { value: explicit.value, coefficient: explicit.coefficient })
             }
-            None => newton(equations, block, &known),
+            None => newton(equations, block, &decided(equations, structure, block), &known),
         };
         // Later blocks use what this one computed.
         before.results.extend(before.lines.iter().flat_map(Line::values));
@@ -85,9 +93,30 @@ pub fn order(equations: &Equations, structure: &Structure, known: &BTreeSet<Node
     programs
 }
 
-fn newton(equations: &Equations, block: &Block, known: &BTreeSet<NodeId>) -> (Section, Method) {
+/// Branch conditions of which this block fixes the last coordinate.
+fn decided(equations: &Equations, structure: &Structure, block: &Block) -> Vec<NodeId> {
     let graph = &equations.graph;
-    let (phi, phi_q) = system(equations, block);
+    let solved_in =
+        |coordinate: usize| structure.blocks.iter().position(|b| b.coordinates.contains(&coordinate));
+    let here = block.coordinates.first().and_then(|coordinate| solved_in(*coordinate));
+    let last = |branch: NodeId| {
+        let leaves = graph.reachable([branch]).into_iter().filter_map(|id| match graph.node(id) {
+            Node::Leaf(Leaf::Position(index)) => solved_in(index as usize),
+            _ => None,
+        });
+        leaves.max()
+    };
+    equations.branches.iter().copied().filter(|branch| here.is_some() && last(*branch) == here).collect()
+}
+
+fn newton(
+    equations: &Equations,
+    block: &Block,
+    branches: &[NodeId],
+    known: &BTreeSet<NodeId>,
+) -> (Section, Method) {
+    let graph = &equations.graph;
+    let (phi, phi_q) = residuals_and_jacobian(equations, block);
     let roots: Vec<NodeId> = phi.iter().copied().chain(phi_q.iter().flatten().copied().flatten()).collect();
     let moving = moving(graph, &roots, &block.coordinates);
     // What stands still during the iteration, as far as what moves uses it.
@@ -100,11 +129,13 @@ fn newton(equations: &Equations, block: &Block, known: &BTreeSet<NodeId>) -> (Se
     let mut known = known.clone();
     known.extend(before.computed());
     let section = schedule(graph, &roots, &known);
-    (before, Method::Newton { section, phi, phi_q })
+    let branch_section = schedule(graph, branches, &known);
+    let branches = branches.to_vec();
+    (before, Method::Newton(Box::new(System { section, phi, phi_q, branches, branch_section })))
 }
 
 /// Residuals and Jacobian of a block.
-fn system(equations: &Equations, block: &Block) -> (Vec<NodeId>, Vec<Vec<Option<NodeId>>>) {
+fn residuals_and_jacobian(equations: &Equations, block: &Block) -> (Vec<NodeId>, Vec<Vec<Option<NodeId>>>) {
     let rows = || block.rows.iter().filter_map(|row| equations.rows.get(*row));
     let entry = |row: &crate::equations::Row, coordinate: usize| {
         row.phi_q.iter().find(|(column, _)| *column == coordinate).map(|(_, entry)| *entry)

@@ -10,7 +10,7 @@ use crate::equations::Equations;
 use crate::structure::Structure;
 use crate::symbolic::{Graph, NodeId};
 
-pub use blocks::{BlockProgram, Method};
+pub use blocks::{BlockProgram, Method, System};
 pub use schedule::{Angle, Line, Operations, Section};
 
 /// Everything that is emitted, in the order in which it is computed.

@@ -14,6 +14,9 @@ use crate::diagnostics::Diagnostics;
 pub use header::Header;
 use statement::parse;
 
+/// Name of the emitted code's type parameter.
+const SCALAR: &str = "T";
+
 /// A text as written.
 pub struct Text {
     /// What stands before the statements.
@@ -34,6 +37,14 @@ pub fn read(input: TokenStream, diagnostics: &mut Diagnostics) -> Option<Text> {
         return None;
     }
     let (header, rest) = header::read(first, runtime, diagnostics)?;
+    if header.name == SCALAR {
+        diagnostics.report(
+            header.name.span(),
+            format!("`{SCALAR}` stands for the type of numbers in the emitted code"),
+            "give the mechanism another name",
+        );
+        return None;
+    }
     let body = tokens::flatten(rest.into_iter().chain(body).collect(), diagnostics);
     let mut statements = parse(&body, diagnostics);
     if !statements.iter().any(declares_coordinate) {

@@ -1,6 +1,6 @@
 //! A mechanism as if its text declared no branch.
 
-use mbs_runtime::{BlockSolver, Entry, Kinematic, Margin, Mechanism, Outcome};
+use mbs_runtime::{Block, BlockSolver, Entry, Factorization, Kinematic, Margin, Mechanism, Outcome};
 
 /// The mechanism `S` without its branch conditions: any assembly is right.
 #[derive(Clone, Copy, Debug)]
@@ -87,12 +87,26 @@ impl<S: Kinematic<f64, N>, const N: usize> Kinematic<f64, N> for Branchless<S> {
         t: f64,
         solver: &mut B,
     ) -> [Outcome; 1] {
-        self.0.solve_blocks(parameters, q, t, solver)
+        self.0.solve_blocks(parameters, q, t, &mut Blind(solver))
     }
     fn factorize(&self, parameters: &S::Parameters, position: &S::Position) -> (S::Factors, Margin<f64>) {
         self.0.factorize(parameters, position)
     }
     fn solve_linear(&self, factors: &S::Factors, b: &[f64; N]) -> [f64; N] {
         self.0.solve_linear(factors, b)
+    }
+}
+
+/// A solver that no block tells which branches it decides.
+struct Blind<'a, B>(&'a mut B);
+
+impl<B: BlockSolver<f64>> BlockSolver<f64> for Blind<'_, B> {
+    fn solve<const K: usize, F: Factorization<f64, K>>(
+        &mut self,
+        block: &Block<f64, K>,
+        x: [f64; K],
+        evaluate: impl FnMut(&[f64; K]) -> ([f64; K], [[f64; K]; K]),
+    ) -> ([f64; K], [Outcome; 1]) {
+        self.0.solve::<K, F>(block, x, evaluate)
     }
 }

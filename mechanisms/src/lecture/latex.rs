@@ -59,7 +59,8 @@ const GAMMA: &str = "\\boldsymbol{\\gamma} = -\\left(\\boldsymbol{\\Phi}_{\\math
      - 2\\,\\boldsymbol{\\Phi}_{\\mathbf{q}t}\\,\\dot{\\mathbf{q}} - \\boldsymbol{\\Phi}_{tt}";
 
 fn display(text: &mut String, heading: &str, formula: &str) {
-    let _ = writeln!(text, "{heading}:\n\n\\smallskip\n\\fitted{{{formula}}}\n\n\\bigskip");
+    let _ =
+        writeln!(text, "{heading}:\\par\\nobreak\\smallskip\\nobreak\n\\fitted{{{formula}}}\n\n\\bigskip");
 }
 
 fn column(entries: &[String]) -> String {

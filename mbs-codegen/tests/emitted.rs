@@ -1,0 +1,63 @@
+//! The emitted code of the four-bar, laid out and stored: a change of cost or of code is a difference to read.
+//!
+//! After a change that is meant, run `UPDATE_SNAPSHOTS=1 cargo test -p mbs-codegen --test emitted`.
+#![forbid(unsafe_code)]
+
+use std::fs;
+use std::path::Path;
+
+/// The example of the design (`DESIGN.md`, §1).
+const FOUR_BAR: &str = "/// Four-bar linkage with a coupler point.
+pub mechanism FourBar;
+const L1: m = 0.10;
+const L2: m = 0.25;
+const L3: m = 0.20;
+const L4: m = 0.30;
+const L5: m = 0.15;
+const ALPHA: rad = 0.4;
+param omega: rad/s = TAU;
+coord x2: m;
+coord y2: m;
+coord phi1: rad = 0.0;
+coord phi2: rad = 0.9;
+coord phi3: rad = 1.8;
+constraint coupler_point {
+    x2 == L1*cos(phi1) + L5*cos(ALPHA + phi2);
+    y2 == L1*sin(phi1) + L5*sin(ALPHA + phi2);
+}
+constraint closure {
+    L3*cos(phi3) + L4 == L1*cos(phi1) + L2*cos(phi2);
+    L1*sin(phi1) + L2*sin(phi2) == L3*sin(phi3);
+}
+drive crank: phi1 == omega*t;
+branch open: sin(phi3 - phi2) > 0;
+out transmission_angle: rad = phi3 - phi2;
+";
+
+/// Code laid out as `rustfmt` would.
+fn laid_out(text: &str) -> String {
+    let items = mbs_codegen::expand_source(text).expect("a valid text");
+    prettyplease::unparse(&syn::parse2(items).expect("Rust"))
+}
+
+#[test]
+fn the_four_bar_is_what_is_stored() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/emitted/four_bar.rs");
+    let found = laid_out(FOUR_BAR);
+    if std::env::var_os("UPDATE_SNAPSHOTS").is_some() {
+        fs::write(&path, &found).expect("a writable copy");
+    }
+    let stored = fs::read_to_string(&path).expect("the stored copy");
+    for (number, (found, stored)) in found.lines().zip(stored.lines()).enumerate() {
+        assert_eq!(found, stored, "line {} of {}", number + 1, path.display());
+    }
+    assert_eq!(found, stored);
+}
+
+#[test]
+fn the_stored_code_states_its_cost() {
+    let found = laid_out(FOUR_BAR);
+    for function in ["parameters", "position", "phi", "phi_q", "phi_t", "gamma", "solve_blocks"] {
+        assert!(found.contains(&format!("/// | `{function}`")), "{function}");
+    }
+}
