@@ -93,6 +93,22 @@ pub enum Failure {
         /// Time (s).
         time: f64,
     },
+    /// The position nearest to a saved state is not next to it.
+    TooFar {
+        /// The coordinate that is farthest off.
+        coordinate: Entry,
+        /// By how much, in the reference metric (rad, or reference lengths).
+        distance: f64,
+        /// The distance that is allowed.
+        allowed: f64,
+        /// Time (s).
+        time: f64,
+    },
+    /// The saved state is that of a mechanism with another name or other coordinates.
+    Foreign {
+        /// Name of the mechanism that it was to be the state of.
+        mechanism: &'static str,
+    },
 }
 
 impl fmt::Display for Failure {
@@ -130,6 +146,15 @@ impl fmt::Display for Failure {
                  positive; start from a guess on the other side",
                 branch.name, branch.line
             ),
+            Failure::TooFar { coordinate, distance, allowed, time } => write!(
+                f,
+                "the position at t = {time} s is not next to the saved one: `{}` (line {}) differs by {distance:.3e} in \
+                 the reference metric, allowed {allowed:.3e}; start at the time and with the inputs of the saved state",
+                coordinate.name, coordinate.line
+            ),
+            Failure::Foreign { mechanism } => {
+                write!(f, "the saved state is not one of `{mechanism}`: name or coordinates differ")
+            }
         }
     }
 }
@@ -154,10 +179,13 @@ mod tests {
             Failure::NotAssemblable { row: ROW, residual, time },
             Failure::Singular { row: ROW, coordinate: ROW, margin: 0.0, required, time },
             Failure::WrongBranch { branch: ROW, value: -1.0, time },
+            Failure::TooFar { coordinate: ROW, distance: 1.0, allowed: 0.5, time },
         ];
         for failure in failures {
             assert!(failure.to_string().contains("(line 21)"), "{failure}");
         }
+        let foreign = Failure::Foreign { mechanism: "Crank" }.to_string();
+        assert_eq!(foreign, "the saved state is not one of `Crank`: name or coordinates differ");
         assert_eq!(Failure::NonFinite { name: "t", line: 0 }.to_string(), "`t` is not a finite number");
     }
 

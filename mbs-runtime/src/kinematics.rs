@@ -39,12 +39,22 @@ pub fn solve_position<S: Kinematic<R, N>, R: Real, const N: usize>(
         return Err(failure);
     }
     let mut statistics = Statistics::of(solver.diagnosis());
-    let mut correction = R::constant(0.0);
-    for ((new, old), scale) in q.iter().zip(start).zip(&scales) {
-        correction = correction.max(((*new - *old) / *scale).abs());
-    }
-    statistics.correction = correction.to_f64();
+    statistics.correction = largest_difference(&q, start, &scales).to_f64();
     Ok((q, statistics))
+}
+
+/// Largest difference of two positions in the reference metric (rad, or reference lengths).
+#[inline(always)]
+pub(crate) fn largest_difference<R: Real, const N: usize>(
+    new: &[R; N],
+    old: &[R; N],
+    scales: &[R; N],
+) -> R {
+    let mut largest = R::constant(0.0);
+    for ((new, old), scale) in new.iter().zip(old).zip(scales) {
+        largest = largest.max(((*new - *old) / *scale).abs());
+    }
+    largest
 }
 
 /// Factorises Φ_q at `position`, once for velocity and acceleration.
@@ -98,6 +108,19 @@ pub fn solve_acceleration<S: Kinematic<R, N>, R: Real, const N: usize>(
     factors: &RegularFactors<S::Factors, R>,
 ) -> Result<[R; N], Failure> {
     solve_rates::<S, R, N>(mechanism, factors, &mechanism.gamma(parameters, position, qd))
+}
+
+/// The next step of Newton's method, Φ_q Δ = −Φ: what a position that does not close is off by, to first order.
+///
+/// # Errors
+/// [`Failure::NonFinite`] with the row or coordinate whose step is NaN or infinite.
+pub(crate) fn solve_correction<S: Kinematic<R, N>, R: Real, const N: usize>(
+    mechanism: &S,
+    parameters: &S::Parameters,
+    position: &S::Position,
+    factors: &RegularFactors<S::Factors, R>,
+) -> Result<[R; N], Failure> {
+    solve_rates::<S, R, N>(mechanism, factors, &mechanism.phi(parameters, position).map(|residual| -residual))
 }
 
 #[inline(always)]

@@ -12,6 +12,8 @@
 pub mod assembly;
 #[cfg(feature = "nalgebra")]
 pub mod boundary;
+pub mod budget;
+mod budgeted;
 pub mod diagnosis;
 pub mod failure;
 pub mod kinematics;
@@ -21,6 +23,7 @@ pub mod mechanism;
 pub mod newton;
 pub mod newton_raphson;
 pub mod safeguarded;
+pub mod saved;
 pub mod scalar;
 mod starts;
 pub mod stepper;
@@ -31,6 +34,7 @@ mod trigonometry;
 pub use assembly::{Assembled, assemble};
 #[cfg(feature = "nalgebra")]
 pub use boundary::Matrices;
+pub use budget::{Budget, Step};
 pub use diagnosis::{Diagnosis, Statistics, Worst};
 pub use failure::{Failure, Outcome};
 pub use kinematics::{RegularFactors, factorize, solve_acceleration, solve_position, solve_velocity};
@@ -42,6 +46,7 @@ pub use mechanism::{
 pub use newton::Newton;
 pub use newton_raphson::{Iterate, newton_raphson, newton_raphson_watched};
 pub use safeguarded::Safeguarded;
+pub use saved::Saved;
 pub use scalar::{Real, Scalar};
 pub use stepper::Stepper;
 pub use sweep::{Frame, Sweep};

@@ -2,12 +2,12 @@
 
 use crate::diagnosis::{Diagnosis, Worst, outer_rounding, required};
 use crate::linear::{is_regular, orthogonal::minimum_norm};
-use crate::safeguarded::levenberg_marquardt;
+use crate::safeguarded::{TRIALS, levenberg_marquardt};
 use crate::{Block, BlockSolver, Factorization, Outcome, Real, Scalar};
 
 /// Iterations before the safeguarded method takes over. Quadratic convergence needs 2 to 6; at a change point it
 /// is linear, a quarter of the residual a step, and 17 were measured on a four-bar in line.
-const ITERATIONS: u32 = 30;
+pub(crate) const ITERATIONS: u32 = 30;
 
 /// Iterations that are granted to fall without question; a residual that does not halve after them is rounding.
 const FREE_ITERATIONS: u32 = 3;
@@ -50,7 +50,7 @@ impl<T: Scalar> BlockSolver<T> for Newton<T> {
         x: [T; K],
         mut evaluate: impl FnMut(&[T; K]) -> ([T; K], [[T; K]; K]),
     ) -> ([T; K], T::Lanes<Outcome>) {
-        let attempt = newton::<T, K, F>(block, x, T::mask(true), self.extent, &mut evaluate);
+        let attempt = newton::<T, K, F>(block, x, T::mask(true), self.extent, ITERATIONS, &mut evaluate);
         let plain = T::all(attempt.converged);
         let attempt = if plain { attempt } else { rescued(attempt, block, x, self.extent, &mut evaluate) };
         self.diagnosis.record(attempt.evaluations, !plain, attempt.worst, attempt.converged);
@@ -68,7 +68,7 @@ fn rescued<T: Scalar, const K: usize>(
     extent: T,
     evaluate: &mut impl FnMut(&[T; K]) -> ([T; K], [[T; K]; K]),
 ) -> Attempt<T, K> {
-    let second = levenberg_marquardt(block, start, !attempt.converged, extent, evaluate);
+    let second = levenberg_marquardt(block, start, !attempt.converged, extent, TRIALS, evaluate);
     attempt.continued_by(second)
 }
 
@@ -107,13 +107,15 @@ impl<T: Scalar, const K: usize> Attempt<T, K> {
     }
 }
 
-/// Newton's method from `start` in the lanes of `active`; the others stay.
+/// Newton's method from `start` in the lanes of `active`; the others stay. At most `iterations` steps, with one
+/// evaluation more.
 #[inline]
 pub(crate) fn newton<T: Scalar, const K: usize, F: Factorization<T, K>>(
     block: &Block<T, K>,
     start: [T; K],
     active: T::Mask,
     extent: T,
+    iterations: u32,
     evaluate: &mut impl FnMut(&[T; K]) -> ([T; K], [[T; K]; K]),
 ) -> Attempt<T, K> {
     let one = T::constant(1.0);
@@ -124,7 +126,7 @@ pub(crate) fn newton<T: Scalar, const K: usize, F: Factorization<T, K>>(
     let mut open = active;
     let mut last_ratio = one;
     let mut tolerances = required(&block.row_scales, &x, &jacobian);
-    for iteration in 0..ITERATIONS {
+    for iteration in 0..iterations {
         let finite = all_finite(&residuals, &jacobian);
         let ratio = largest_ratio(&residuals, &tolerances);
         converged = converged | (open & finite & !one.less(ratio));

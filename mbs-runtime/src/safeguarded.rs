@@ -1,12 +1,12 @@
 //! Levenberg–Marquardt, the method for far starts: assembly, and the rescue of the next position.
 
 use crate::diagnosis::{Diagnosis, Worst, outer_rounding, required};
-use crate::newton::{Attempt, all_finite, capped, newton, select, within};
+use crate::newton::{Attempt, ITERATIONS, all_finite, capped, newton, select, within};
 use crate::starts::displaced;
 use crate::{Block, BlockSolver, Factorization, Outcome, Real, Scalar};
 
 /// Trial steps a start; one costs as much as a Newton step. From 1000 rad away 52 were measured on a four-bar.
-const TRIALS: u32 = 120;
+pub(crate) const TRIALS: u32 = 120;
 
 /// Starts of a block beside the given one. Each falls into either assembly of a dyad with odds of about one half, so
 /// that 32 miss the declared one in 4e9.
@@ -98,20 +98,20 @@ impl<T: Scalar> BlockSolver<T> for Safeguarded<T> {
 
 /// One start in the lanes of `active`, and whether Levenberg–Marquardt alone was enough.
 #[inline(never)]
-fn attempt<T: Scalar, const K: usize, F: Factorization<T, K>>(
+pub(crate) fn attempt<T: Scalar, const K: usize, F: Factorization<T, K>>(
     block: &Block<T, K>,
     start: [T; K],
     active: T::Mask,
     extent: T,
     evaluate: &mut impl FnMut(&[T; K]) -> ([T; K], [[T; K]; K]),
 ) -> (Attempt<T, K>, bool) {
-    let attempt = levenberg_marquardt(block, start, active, extent, evaluate);
+    let attempt = levenberg_marquardt(block, start, active, extent, TRIALS, evaluate);
     let left = active & !attempt.converged;
     if T::all(!left) {
         return (attempt, true);
     }
     // Newton's method may close what the damping held back; else the least residual stands.
-    let finish = newton::<T, K, F>(block, attempt.x, left, extent, evaluate);
+    let finish = newton::<T, K, F>(block, attempt.x, left, extent, ITERATIONS, evaluate);
     let closed = finish.converged & left;
     let attempt = Attempt {
         x: select(closed, &finish.x, &attempt.x),
@@ -122,7 +122,7 @@ fn attempt<T: Scalar, const K: usize, F: Factorization<T, K>>(
     (attempt, false)
 }
 
-/// Minimises ‖W r‖² from `start` in the lanes of `active` with steps from (JᵀJ + μ D²) Δ = −Jᵀr.
+/// Minimises ‖W r‖² from `start` in the lanes of `active` with at most `trials` steps from (JᵀJ + μ D²) Δ = −Jᵀr.
 ///
 /// In the metric: W divides rows by their scale, D⁻¹ multiplies columns by theirs. μ = λ · min(1, ‖W r‖) times the
 /// mean of diag JᵀJ vanishes with the residual, so that convergence is quadratic at the end.
@@ -133,6 +133,7 @@ pub(crate) fn levenberg_marquardt<T: Scalar, const K: usize>(
     start: [T; K],
     active: T::Mask,
     extent: T,
+    trials: u32,
     evaluate: &mut impl FnMut(&[T; K]) -> ([T; K], [[T; K]; K]),
 ) -> Attempt<T, K> {
     let none = [T::constant(0.0); K];
@@ -144,7 +145,7 @@ pub(crate) fn levenberg_marquardt<T: Scalar, const K: usize>(
     let usable = open;
     let mut system = NormalEquations::of(block, &residuals, &jacobian);
     let mut damping = T::constant(FIRST_DAMPING);
-    for _ in 0..TRIALS {
+    for _ in 0..trials {
         let tolerances = required(&block.row_scales, &x, &jacobian);
         converged = converged | (open & within(&residuals, &tolerances, &none));
         open = open & !converged & !system.is_stationary() & damping.less(T::constant(LARGEST_DAMPING));

@@ -2,8 +2,8 @@
 
 use crate::diagnosis::Statistics;
 use crate::kinematics::{
-    branch_failure, coordinate_failure, factorize, solve_acceleration, solve_position, solve_velocity,
-    time_failure, variable_failure,
+    branch_failure, coordinate_failure, factorize, largest_difference, solve_acceleration, solve_correction,
+    solve_position, solve_velocity, time_failure, variable_failure,
 };
 use crate::{Failure, Kinematic, Mechanism, Real, Sweep, assemble};
 
@@ -15,34 +15,66 @@ const REGULAR_ZONE: f64 = 1e-2;
 /// is too long for a second-order polynomial, and the first-order one is nearer.
 const LARGEST_SECOND_ORDER_TERM: f64 = 0.5;
 
+/// Largest Newton step from a position that is kept open, in the reference metric, over its margin.
+///
+/// By Kantorovich's theorem a step η converges where β κ η ≤ 1/2, and to a point not farther than 2η. Links turn with
+/// curvature κ ≤ 1 in the metric and the inverse β is about 2/margin, so that a quarter is the limit: the position is
+/// nearer to the solution that it approximates than to where the assemblies meet.
+const LARGEST_OPEN_STEP: f64 = 0.25;
+
 /// A mechanism with its state. It owns everything, allocates nothing, and a failed call leaves it as it was.
 ///
 /// For a control loop: [`change`](Self::change) the inputs, [`advance`](Self::advance), read
-/// [`q`](Self::q), [`qd`](Self::qd), [`outputs`](Self::outputs).
+/// [`q`](Self::q), [`qd`](Self::qd), [`outputs`](Self::outputs). With a deadline, [`step`](Self::step) in its place.
 #[derive(Clone, Copy, Debug)]
 pub struct Stepper<S: Mechanism<R, N, N>, R: Real, const N: usize> {
-    mechanism: S,
-    parameters: S::Parameters,
+    pub(crate) mechanism: S,
+    pub(crate) parameters: S::Parameters,
     /// What is wrong with the parameters or inputs, since they were changed last.
-    fault: Option<Failure>,
-    state: State<R, N>,
+    pub(crate) fault: Option<Failure>,
+    pub(crate) state: State<R, N>,
 }
 
 /// Position, velocity and acceleration at one time.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct State<R, const N: usize> {
-    t: R,
-    q: [R; N],
+pub(crate) struct State<R, const N: usize> {
+    pub(crate) t: R,
+    pub(crate) q: [R; N],
     qd: [R; N],
     qdd: [R; N],
-    margin: R,
+    pub(crate) margin: R,
+    /// What the margin changed by in the last step over the time (s) that it took.
+    pub(crate) margin_rate: R,
     statistics: Statistics,
     tangent: Tangent<R, N>,
+    /// The Newton step that is still to be made, where the position does not close.
+    pub(crate) repair: Option<[R; N]>,
+}
+
+/// A position that a solver came to.
+#[derive(Clone, Copy)]
+pub(crate) struct Found<R, const N: usize> {
+    pub(crate) t: R,
+    pub(crate) q: [R; N],
+    pub(crate) statistics: Statistics,
+    /// Why it does not close, if so.
+    pub(crate) open: Option<Failure>,
+}
+
+/// What a position follows.
+#[derive(Clone, Copy)]
+pub(crate) enum Before<'a, R, const N: usize> {
+    /// A guess: branches that pick the assembly alone count.
+    Guess,
+    /// A position that was one of this assembly.
+    Saved,
+    /// The state before the step.
+    State(&'a State<R, N>),
 }
 
 /// How the mechanism moved with its drivers where it was regular last.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Tangent<R, const N: usize> {
+pub(crate) struct Tangent<R, const N: usize> {
     qd: [R; N],
     /// Φ_t there, over the rows' scales: speed and direction of the drivers.
     drive: [R; N],
@@ -57,7 +89,8 @@ impl<S: Kinematic<R, N>, R: Real, const N: usize> Stepper<S, R, N> {
     pub fn assemble(mechanism: S, guess: impl Into<[R; N]>, t: R) -> Result<Self, Failure> {
         let assembled = assemble(&mechanism, guess, t)?;
         let parameters = mechanism.parameters();
-        let state = State::at(&mechanism, &parameters, t, assembled.q, assembled.statistics, None)?;
+        let found = Found { t, q: assembled.q, statistics: assembled.statistics, open: None };
+        let state = State::at(&mechanism, &parameters, found, Before::Guess)?;
         Ok(Stepper { mechanism, parameters, fault: None, state })
     }
 
@@ -85,8 +118,8 @@ impl<S: Kinematic<R, N>, R: Real, const N: usize> Stepper<S, R, N> {
         }
         let start = self.predicted(t);
         let (q, statistics) = solve_position(&self.mechanism, &self.parameters, &start, t)?;
-        let tangent = Some(self.state.tangent);
-        self.state = State::at(&self.mechanism, &self.parameters, t, q, statistics, tangent)?;
+        let found = Found { t, q, statistics, open: None };
+        self.state = State::at(&self.mechanism, &self.parameters, found, Before::State(&self.state))?;
         Ok(statistics)
     }
 
@@ -171,9 +204,12 @@ impl<S: Kinematic<R, N>, R: Real, const N: usize> Stepper<S, R, N> {
 
     /// The position at `t` as the state foresees it.
     #[inline(always)]
-    fn predicted(&self, t: R) -> [R; N] {
+    pub(crate) fn predicted(&self, t: R) -> [R; N] {
         let state = &self.state;
-        let predicted = if state.is_regular() { self.extrapolated(t - state.t) } else { self.continued(t) };
+        let mut predicted = if state.is_regular() { self.extrapolated(t - state.t) } else { self.continued(t) };
+        if let Some(repair) = &state.repair {
+            predicted.iter_mut().zip(repair).for_each(|(coordinate, step)| *coordinate = *coordinate + *step);
+        }
         // A jump in time that overflows the prediction is left to the solver, from where the mechanism stands.
         if predicted.iter().fold(true, |all, coordinate| all & coordinate.is_finite()) {
             predicted
@@ -228,23 +264,22 @@ impl<S: Kinematic<R, N>, R: Real, const N: usize> Stepper<S, R, N> {
 }
 
 impl<R: Real, const N: usize> State<R, N> {
-    /// The state at a position that closes: not singular, in the declared assembly, with finite rates.
+    /// The state at a position that closes, or nearly so: not singular, in the declared assembly, with finite rates.
     #[inline(always)]
-    fn at<S: Kinematic<R, N>>(
+    pub(crate) fn at<S: Kinematic<R, N>>(
         mechanism: &S,
         parameters: &S::Parameters,
-        t: R,
-        q: [R; N],
-        statistics: Statistics,
-        last_regular: Option<Tangent<R, N>>,
+        found: Found<R, N>,
+        before: Before<'_, R, N>,
     ) -> Result<Self, Failure> {
+        let Found { t, q, statistics, open } = found;
         let scales = mechanism.coordinate_scales(parameters);
         if let Some(failure) = coordinate_failure::<S, R, N>(&q, &scales, t) {
             return Err(failure);
         }
         let position = mechanism.position(parameters, &q, t);
         let factors = factorize(mechanism, parameters, &position, t)?;
-        if let Some(failure) = branch_failure(mechanism, parameters, &position, t, last_regular.is_none()) {
+        if let Some(failure) = branch_failure(mechanism, parameters, &position, t, matches!(before, Before::Guess)) {
             return Err(failure);
         }
         let qd = solve_velocity(mechanism, parameters, &position, &factors)?;
@@ -256,11 +291,25 @@ impl<R: Real, const N: usize> State<R, N> {
             drive
         };
         let margin = factors.margin();
-        let tangent = match last_regular {
-            Some(tangent) if margin < R::constant(REGULAR_ZONE) => tangent,
+        let tangent = match before {
+            Before::State(last) if margin < R::constant(REGULAR_ZONE) => last.tangent,
             _ => Tangent { qd, drive: drive() },
         };
-        Ok(State { t, q, qd, qdd, margin, statistics, tangent })
+        let margin_rate = match before {
+            Before::State(last) if t == last.t => last.margin_rate,
+            Before::State(last) => (margin - last.margin) / (t - last.t),
+            _ => R::constant(0.0),
+        };
+        let repair = match open {
+            None => None,
+            Some(failure) => {
+                let step = solve_correction(mechanism, parameters, &position, &factors)?;
+                let size = largest_difference(&step, &[R::constant(0.0); N], &scales);
+                let near = size <= R::constant(LARGEST_OPEN_STEP) * margin;
+                Some(if near { step } else { return Err(failure) })
+            }
+        };
+        Ok(State { t, q, qd, qdd, margin, margin_rate, statistics, tangent, repair })
     }
 
     fn is_regular(&self) -> bool {

@@ -10,7 +10,7 @@ use crate::diagnostics::Diagnostics;
 use crate::syntax::ast::{Declares, Expression, Name, Operation, Statement, StatementKind, Type, Unit};
 
 /// Most coordinates: Φ_q is a dense array.
-const MOST_COORDINATES: usize = 400;
+const MOST_COORDINATES: usize = 300;
 
 /// Before: statements in any order. After: all declarations outside loops are in `model` and `names`.
 pub fn declare(

@@ -16,7 +16,7 @@ pub struct Fault;
 
 /// Most operations that a text may unroll to: a debug build of the macro takes about a second over the derivatives
 /// of as many.
-const MOST_OPERATIONS: usize = 30_000;
+const MOST_OPERATIONS: usize = 14_000;
 /// Most expressions, numbers included, which cost less.
 const MOST_EXPRESSIONS: usize = 200_000;
 /// Longest array.

@@ -82,6 +82,11 @@ impl Expressions {
         self.nodes.len()
     }
 
+    /// Number of expressions that compute something.
+    pub fn operations(&self) -> usize {
+        self.operations
+    }
+
     /// All expressions, operands first.
     pub fn iter(&self) -> impl Iterator<Item = (Id, Node)> + '_ {
         self.nodes.iter().enumerate().map(|(index, node)| (Id(index as u32), *node))

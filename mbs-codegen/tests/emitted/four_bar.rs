@@ -1,0 +1,559 @@
+/// Four-bar linkage with a coupler point.
+///
+/// # Structure
+/// 5 coordinates: `x2` (m), `y2` (m), `phi1` (rad), `phi2` (rad), `phi3` (rad).
+/// 5 rows: `coupler_point.0` (m), `coupler_point.1` (m), `closure.0` (m), `closure.1` (m), `crank` (rad).
+/// 1 output: `transmission_angle` (rad).
+///
+/// `Φ_q` has 13 of 25 entries (1: a number, p: parameters alone, x: varies):
+/// ```text
+///                  x2 y2 phi1 phi2 phi3
+/// coupler_point.0  1  .   x    x    .
+/// coupler_point.1  .  1   x    x    .
+/// closure.0        .  .   x    x    x
+/// closure.1        .  .   x    x    x
+/// crank            .  .   1    .    .
+/// ```
+///
+/// Solved block after block:
+/// 1. `phi1` from `crank` (explicit)
+/// 2. `phi2`, `phi3` from `closure.0`, `closure.1` (Newton, 2 × 2 in closed form)
+/// 3. `x2` from `coupler_point.0` (explicit)
+/// 4. `y2` from `coupler_point.1` (explicit)
+///
+/// # Cost
+/// Operations of each emitted function, on top of the stages before it:
+///
+/// | function | + − | × | ÷ | sin, cos | other functions | selections |
+/// |---|---|---|---|---|---|---|
+/// | `parameters` (once a design) | 1 | 0 | 0 | 0 | 0 | 0 |
+/// | `position` (once a `(q, t)`) | 2 | 8 | 0 | 4 | 0 | 0 |
+/// | `phi` | 10 | 1 | 0 | 0 | 0 | 0 |
+/// | `phi_q` | 4 | 0 | 0 | 0 | 0 | 0 |
+/// | `phi_t` | 0 | 0 | 0 | 0 | 0 | 0 |
+/// | `phi_tt` | 0 | 0 | 0 | 0 | 0 | 0 |
+/// | `phi_qt_qd` | 0 | 0 | 0 | 0 | 0 | 0 |
+/// | `gamma` | 8 | 11 | 0 | 0 | 0 | 0 |
+/// | `branches` | 0 | 0 | 0 | 1 | 0 | 0 |
+/// | `outputs` | 2 | 0 | 0 | 0 | 0 | 0 |
+/// | `solve_blocks`, once | 3 | 5 | 0 | 3 | 0 | 0 |
+/// | `solve_blocks`, each iteration of every block | 7 | 4 | 0 | 2 | 0 | 0 |
+#[allow(non_snake_case, reason = "the text names the parameters")]
+#[derive(
+    ::core::clone::Clone,
+    ::core::marker::Copy,
+    ::core::fmt::Debug,
+    ::core::cmp::PartialEq
+)]
+pub struct FourBar<T = f64> {
+    /// Parameter (`rad/s`), default 6.283185307179586.
+    pub omega: T,
+}
+#[allow(clippy::approx_constant, reason = "numbers of the text stay as they are")]
+impl<T: ::mbs_runtime::Scalar> ::core::default::Default for FourBar<T> {
+    fn default() -> Self {
+        Self {
+            omega: T::constant(6.283185307179586f64),
+        }
+    }
+}
+/// Coordinates of [`FourBar`] by name, in the order of `q`.
+#[allow(non_snake_case, reason = "the text names the coordinates")]
+#[derive(
+    ::core::clone::Clone,
+    ::core::marker::Copy,
+    ::core::fmt::Debug,
+    ::core::cmp::PartialEq
+)]
+pub struct FourBarCoordinates<T = f64> {
+    /// Coordinate (`m`).
+    pub x2: T,
+    /// Coordinate (`m`).
+    pub y2: T,
+    /// Coordinate (`rad`).
+    pub phi1: T,
+    /// Coordinate (`rad`).
+    pub phi2: T,
+    /// Coordinate (`rad`).
+    pub phi3: T,
+}
+impl<T: ::core::marker::Copy> ::core::convert::From<[T; 5usize]>
+for FourBarCoordinates<T> {
+    fn from(q: [T; 5usize]) -> Self {
+        Self {
+            x2: q[0],
+            y2: q[1],
+            phi1: q[2],
+            phi2: q[3],
+            phi3: q[4],
+        }
+    }
+}
+impl<T: ::core::marker::Copy> ::core::convert::From<FourBarCoordinates<T>>
+for [T; 5usize] {
+    fn from(named: FourBarCoordinates<T>) -> Self {
+        [named.x2, named.y2, named.phi1, named.phi2, named.phi3]
+    }
+}
+#[allow(clippy::approx_constant, reason = "numbers of the text stay as they are")]
+const _: () = {
+    /// Values of parameters alone.
+    #[derive(::core::clone::Clone, ::core::marker::Copy, ::core::fmt::Debug)]
+    pub struct Parameters<T>([T; 1usize]);
+    /// Values of `(q, t)` that functions share.
+    #[derive(::core::clone::Clone, ::core::marker::Copy, ::core::fmt::Debug)]
+    pub struct Position<T>([T; 13usize]);
+    /// Factorised diagonal blocks, and the entries of Φ_q off them.
+    #[derive(::core::clone::Clone, ::core::marker::Copy, ::core::fmt::Debug)]
+    pub struct Factors<T: ::mbs_runtime::Scalar> {
+        /// Entries off the diagonal blocks.
+        entries: [T; 5],
+        /// Diagonal block 1.
+        block1: ::mbs_runtime::Direct2<T>,
+    }
+    impl<T: ::mbs_runtime::Scalar> ::mbs_runtime::Mechanism<T, 5usize, 5usize>
+    for FourBar<T> {
+        type Parameters = Parameters<T>;
+        type Position = Position<T>;
+        type Branches = [T; 1usize];
+        type Outputs = [::mbs_runtime::OutputValue<T>; 1usize];
+        type Lane = FourBar<T::Real>;
+        const NAME: &'static str = "FourBar";
+        const SOURCE: &'static str = "/// Four-bar linkage with a coupler point.\npub mechanism FourBar;\nconst L1: m = 0.10;\nconst L2: m = 0.25;\nconst L3: m = 0.20;\nconst L4: m = 0.30;\nconst L5: m = 0.15;\nconst ALPHA: rad = 0.4;\nparam omega: rad/s = TAU;\ncoord x2: m;\ncoord y2: m;\ncoord phi1: rad = 0.0;\ncoord phi2: rad = 0.9;\ncoord phi3: rad = 1.8;\nconstraint coupler_point {\n    x2 == L1*cos(phi1) + L5*cos(ALPHA + phi2);\n    y2 == L1*sin(phi1) + L5*sin(ALPHA + phi2);\n}\nconstraint closure {\n    L3*cos(phi3) + L4 == L1*cos(phi1) + L2*cos(phi2);\n    L1*sin(phi1) + L2*sin(phi2) == L3*sin(phi3);\n}\ndrive crank: phi1 == omega*t;\nbranch open: sin(phi3 - phi2) > 0;\nout transmission_angle: rad = phi3 - phi2;";
+        const COORDINATES: &'static [::mbs_runtime::Entry] = &[
+            ::mbs_runtime::Entry {
+                name: "x2",
+                unit: "m",
+                line: ::core::line!(),
+            },
+            ::mbs_runtime::Entry {
+                name: "y2",
+                unit: "m",
+                line: ::core::line!(),
+            },
+            ::mbs_runtime::Entry {
+                name: "phi1",
+                unit: "rad",
+                line: ::core::line!(),
+            },
+            ::mbs_runtime::Entry {
+                name: "phi2",
+                unit: "rad",
+                line: ::core::line!(),
+            },
+            ::mbs_runtime::Entry {
+                name: "phi3",
+                unit: "rad",
+                line: ::core::line!(),
+            },
+        ];
+        const ROWS: &'static [::mbs_runtime::Entry] = &[
+            ::mbs_runtime::Entry {
+                name: "coupler_point.0",
+                unit: "m",
+                line: ::core::line!(),
+            },
+            ::mbs_runtime::Entry {
+                name: "coupler_point.1",
+                unit: "m",
+                line: ::core::line!(),
+            },
+            ::mbs_runtime::Entry {
+                name: "closure.0",
+                unit: "m",
+                line: ::core::line!(),
+            },
+            ::mbs_runtime::Entry {
+                name: "closure.1",
+                unit: "m",
+                line: ::core::line!(),
+            },
+            ::mbs_runtime::Entry {
+                name: "crank",
+                unit: "rad",
+                line: ::core::line!(),
+            },
+        ];
+        const VARIABLES: &'static [::mbs_runtime::Entry] = &[
+            ::mbs_runtime::Entry {
+                name: "omega",
+                unit: "rad/s",
+                line: ::core::line!(),
+            },
+        ];
+        const BRANCHES: &'static [::mbs_runtime::Entry] = &[
+            ::mbs_runtime::Entry {
+                name: "open",
+                unit: "1",
+                line: ::core::line!(),
+            },
+        ];
+        const BRANCHES_AT_START: &'static [bool] = &[false];
+        const OUTPUTS: &'static [::mbs_runtime::Entry] = &[
+            ::mbs_runtime::Entry {
+                name: "transmission_angle",
+                unit: "rad",
+                line: ::core::line!(),
+            },
+        ];
+        #[inline]
+        fn get(&self, index: usize) -> ::core::option::Option<T> {
+            match index {
+                0usize => ::core::option::Option::Some(self.omega),
+                _ => ::core::option::Option::None,
+            }
+        }
+        #[inline]
+        fn set(&mut self, index: usize, value: T) -> bool {
+            match (index, value) {
+                (0usize, __value) => {
+                    self.omega = __value;
+                    true
+                }
+                (_, _) => false,
+            }
+        }
+        #[inline]
+        fn lane(&self, __lane: usize) -> Self::Lane {
+            FourBar {
+                omega: T::lane(self.omega, __lane),
+            }
+        }
+        #[inline]
+        fn parameters(&self) -> Parameters<T> {
+            let __n59 = -self.omega;
+            Parameters([__n59])
+        }
+        #[inline]
+        fn guess(&self, __p: &Parameters<T>) -> [T; 5usize] {
+            [
+                T::constant(0.0f64),
+                T::constant(0.0f64),
+                T::constant(0.0f64),
+                T::constant(0.9f64),
+                T::constant(1.8f64),
+            ]
+        }
+        #[inline]
+        fn coordinate_scales(&self, __p: &Parameters<T>) -> [T; 5usize] {
+            [
+                T::constant(0.3f64),
+                T::constant(0.3f64),
+                T::constant(1.0f64),
+                T::constant(1.0f64),
+                T::constant(1.0f64),
+            ]
+        }
+        #[inline]
+        fn row_scales(&self, __p: &Parameters<T>) -> [T; 5usize] {
+            [
+                T::constant(0.3f64),
+                T::constant(0.3f64),
+                T::constant(0.3f64),
+                T::constant(0.3f64),
+                T::constant(1.0f64),
+            ]
+        }
+        #[inline]
+        fn position(
+            &self,
+            __p: &Parameters<T>,
+            __q: &[T; 5usize],
+            __t: T,
+        ) -> Position<T> {
+            let __n18 = T::constant(0.4f64) + __q[3];
+            let __n45 = __q[4] - __q[3];
+            let ([__n23, __n36, __n39, __n25], [__n16, __n32, __n29, __n19]) = T::sin_cos([
+                __q[2],
+                __q[3],
+                __q[4],
+                __n18,
+            ]);
+            let __n17 = T::constant(0.1f64) * __n16;
+            let __n20 = T::constant(0.15f64) * __n19;
+            let __n24 = T::constant(0.1f64) * __n23;
+            let __n26 = T::constant(0.15f64) * __n25;
+            let __n30 = T::constant(0.2f64) * __n29;
+            let __n33 = T::constant(0.25f64) * __n32;
+            let __n37 = T::constant(0.25f64) * __n36;
+            let __n40 = T::constant(0.2f64) * __n39;
+            Position([
+                __q[0],
+                __q[1],
+                __q[2],
+                __n17,
+                __n20,
+                __n24,
+                __n26,
+                __n30,
+                __n33,
+                __n37,
+                __n40,
+                __t,
+                __n45,
+            ])
+        }
+        #[inline]
+        fn phi(&self, __p: &Parameters<T>, __s: &Position<T>) -> [T; 5usize] {
+            let __n21 = __s.0[3] + __s.0[4];
+            let __n22 = __s.0[0] - __n21;
+            let __n27 = __s.0[5] + __s.0[6];
+            let __n28 = __s.0[1] - __n27;
+            let __n31 = T::constant(0.3f64) + __s.0[7];
+            let __n34 = __s.0[3] + __s.0[8];
+            let __n35 = __n31 - __n34;
+            let __n38 = __s.0[5] + __s.0[9];
+            let __n41 = __n38 - __s.0[10];
+            let __n43 = self.omega * __s.0[11];
+            let __n44 = __s.0[2] - __n43;
+            [__n22, __n28, __n35, __n41, __n44]
+        }
+        #[inline]
+        fn phi_q(
+            &self,
+            __p: &Parameters<T>,
+            __s: &Position<T>,
+        ) -> [[T; 5usize]; 5usize] {
+            let __n50 = -__s.0[3];
+            let __n53 = -__s.0[4];
+            let __n57 = -__s.0[10];
+            let __n58 = -__s.0[7];
+            [
+                [
+                    T::constant(1.0f64),
+                    T::constant(0.0f64),
+                    __s.0[5],
+                    __s.0[6],
+                    T::constant(0.0f64),
+                ],
+                [
+                    T::constant(0.0f64),
+                    T::constant(1.0f64),
+                    __n50,
+                    __n53,
+                    T::constant(0.0f64),
+                ],
+                [T::constant(0.0f64), T::constant(0.0f64), __s.0[5], __s.0[9], __n57],
+                [T::constant(0.0f64), T::constant(0.0f64), __s.0[3], __s.0[8], __n58],
+                [
+                    T::constant(0.0f64),
+                    T::constant(0.0f64),
+                    T::constant(1.0f64),
+                    T::constant(0.0f64),
+                    T::constant(0.0f64),
+                ],
+            ]
+        }
+        #[inline]
+        fn phi_t(&self, __p: &Parameters<T>, __s: &Position<T>) -> [T; 5usize] {
+            [
+                T::constant(0.0f64),
+                T::constant(0.0f64),
+                T::constant(0.0f64),
+                T::constant(0.0f64),
+                __p.0[0],
+            ]
+        }
+        #[inline]
+        fn phi_tt(&self, __p: &Parameters<T>, __s: &Position<T>) -> [T; 5usize] {
+            [
+                T::constant(0.0f64),
+                T::constant(0.0f64),
+                T::constant(0.0f64),
+                T::constant(0.0f64),
+                T::constant(0.0f64),
+            ]
+        }
+        #[inline]
+        fn phi_qt_qd(
+            &self,
+            __p: &Parameters<T>,
+            __s: &Position<T>,
+            __qd: &[T; 5usize],
+        ) -> [T; 5usize] {
+            [
+                T::constant(0.0f64),
+                T::constant(0.0f64),
+                T::constant(0.0f64),
+                T::constant(0.0f64),
+                T::constant(0.0f64),
+            ]
+        }
+        #[inline]
+        fn gamma(
+            &self,
+            __p: &Parameters<T>,
+            __s: &Position<T>,
+            __qd: &[T; 5usize],
+        ) -> [T; 5usize] {
+            let __n100 = __qd[2] * __qd[2];
+            let __n101 = __s.0[3] * __n100;
+            let __n102 = __qd[3] * __qd[3];
+            let __n103 = __s.0[4] * __n102;
+            let __n104 = __n101 + __n103;
+            let __n105 = __s.0[5] * __n100;
+            let __n107 = __s.0[6] * __n102;
+            let __n109 = __n105 + __n107;
+            let __n110 = -__n109;
+            let __n111 = __qd[4] * __qd[4];
+            let __n112 = __s.0[7] * __n111;
+            let __n113 = __s.0[8] * __n102;
+            let __n114 = __n101 + __n113;
+            let __n116 = __s.0[9] * __n102;
+            let __n118 = __n105 + __n116;
+            let __n120 = __s.0[10] * __n111;
+            let __n123 = -__n104;
+            let __n124 = __n112 - __n114;
+            let __n125 = __n118 - __n120;
+            [__n123, __n110, __n124, __n125, T::constant(0.0f64)]
+        }
+        #[inline]
+        fn branches(&self, __p: &Parameters<T>, __s: &Position<T>) -> [T; 1usize] {
+            let ([__n46], [_]) = T::sin_cos([__s.0[12]]);
+            [__n46]
+        }
+        #[inline]
+        fn outputs(
+            &self,
+            __p: &Parameters<T>,
+            __s: &Position<T>,
+            __qd: &[T; 5usize],
+            __qdd: &[T; 5usize],
+        ) -> [::mbs_runtime::OutputValue<T>; 1usize] {
+            let __n126 = __qd[4] - __qd[3];
+            let __n129 = __qdd[4] - __qdd[3];
+            [
+                ::mbs_runtime::OutputValue {
+                    value: __s.0[12],
+                    rate: ::core::option::Option::Some(__n126),
+                    acceleration: ::core::option::Option::Some(__n129),
+                },
+            ]
+        }
+    }
+    impl<T: ::mbs_runtime::Scalar> ::mbs_runtime::Kinematic<T, 5usize> for FourBar<T> {
+        type Factors = Factors<T>;
+        #[inline]
+        fn solve_blocks<__S: ::mbs_runtime::BlockSolver<T>>(
+            &self,
+            __p: &Parameters<T>,
+            __q: &mut [T; 5usize],
+            __t: T,
+            __solver: &mut __S,
+        ) -> T::Lanes<::mbs_runtime::Outcome> {
+            let __outcome = T::per_lane(|_| ::mbs_runtime::Outcome::Converged);
+            let __n43 = self.omega * __t;
+            __q[2] = __n43;
+            let ([__n23], [__n16]) = T::sin_cos([__q[2]]);
+            let __n17 = T::constant(0.1f64) * __n16;
+            let __n24 = T::constant(0.1f64) * __n23;
+            let (__x, __block) = __solver
+                .solve_branched::<
+                    2,
+                    ::mbs_runtime::Direct2<T>,
+                >(
+                    &::mbs_runtime::Block {
+                        rows: [2, 3],
+                        coordinates: [3, 4],
+                        angles: [true, true],
+                        row_scales: [T::constant(0.3f64), T::constant(0.3f64)],
+                        coordinate_scales: [T::constant(1.0f64), T::constant(1.0f64)],
+                    },
+                    [__q[3], __q[4]],
+                    |__x| {
+                        let ([__n36, __n39], [__n32, __n29]) = T::sin_cos([
+                            __x[0],
+                            __x[1],
+                        ]);
+                        let __n30 = T::constant(0.2f64) * __n29;
+                        let __n31 = T::constant(0.3f64) + __n30;
+                        let __n33 = T::constant(0.25f64) * __n32;
+                        let __n34 = __n17 + __n33;
+                        let __n35 = __n31 - __n34;
+                        let __n37 = T::constant(0.25f64) * __n36;
+                        let __n38 = __n24 + __n37;
+                        let __n40 = T::constant(0.2f64) * __n39;
+                        let __n41 = __n38 - __n40;
+                        let __n57 = -__n40;
+                        let __n58 = -__n30;
+                        ([__n35, __n41], [[__n37, __n57], [__n33, __n58]])
+                    },
+                    |__x| {
+                        let __n45 = __x[1] - __x[0];
+                        let ([__n46], [_]) = T::sin_cos([__n45]);
+                        T::less(T::constant(0.0f64), __n46)
+                    },
+                );
+            __q[3] = __x[0];
+            __q[4] = __x[1];
+            let __outcome = ::mbs_runtime::failure::first_failure::<
+                T,
+            >(__outcome, __block);
+            let __n18 = T::constant(0.4f64) + __q[3];
+            let ([_], [__n19]) = T::sin_cos([__n18]);
+            let __n20 = T::constant(0.15f64) * __n19;
+            let __n21 = __n17 + __n20;
+            __q[0] = __n21;
+            let ([__n25], [_]) = T::sin_cos([__n18]);
+            let __n26 = T::constant(0.15f64) * __n25;
+            let __n27 = __n24 + __n26;
+            __q[1] = __n27;
+            __outcome
+        }
+        #[inline]
+        fn factorize(
+            &self,
+            __p: &Parameters<T>,
+            __s: &Position<T>,
+        ) -> (Factors<T>, ::mbs_runtime::Margin<T>) {
+            let __n50 = -__s.0[3];
+            let __n53 = -__s.0[4];
+            let __n57 = -__s.0[10];
+            let __n58 = -__s.0[7];
+            let __margin = ::mbs_runtime::Margin::<T>::regular();
+            let (__block1, __value) = <::mbs_runtime::Direct2<
+                T,
+            > as ::mbs_runtime::Factorization<
+                T,
+                2,
+            >>::factorize(
+                &[[__s.0[9], __n57], [__s.0[8], __n58]],
+                &[T::constant(0.3f64), T::constant(0.3f64)],
+                &[T::constant(1.0f64), T::constant(1.0f64)],
+            );
+            let __margin = __margin.with_block(__value, 2, 3);
+            (
+                Factors {
+                    entries: [__s.0[3], __s.0[5], __s.0[6], __n50, __n53],
+                    block1: __block1,
+                },
+                __margin,
+            )
+        }
+        #[inline]
+        fn solve_linear(
+            &self,
+            __factors: &Factors<T>,
+            __b: &[T; 5usize],
+        ) -> [T; 5usize] {
+            let __x2 = __b[4];
+            let [__x3, __x4] = <::mbs_runtime::Direct2<
+                T,
+            > as ::mbs_runtime::Factorization<
+                T,
+                2,
+            >>::solve(
+                &__factors.block1,
+                &[
+                    __b[2] - __factors.entries[1] * __x2,
+                    __b[3] - __factors.entries[0] * __x2,
+                ],
+            );
+            let __x0 = __b[0] - __factors.entries[1] * __x2
+                - __factors.entries[2] * __x3;
+            let __x1 = __b[1] - __factors.entries[3] * __x2
+                - __factors.entries[4] * __x3;
+            [__x0, __x1, __x2, __x3, __x4]
+        }
+    }
+};

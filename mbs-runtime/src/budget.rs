@@ -1,0 +1,142 @@
+//! A step in a fixed amount of work, for a control loop with a deadline.
+
+use crate::budgeted::Budgeted;
+use crate::diagnosis::{Statistics, extent};
+use crate::kinematics::{entry, largest_difference, position_failure, time_failure};
+use crate::stepper::{Before, Found, State};
+use crate::{Entry, Failure, Kinematic, Real, Stepper};
+
+/// The work that a step may cost at most, in each block.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Budget {
+    /// Evaluations of residual and Jacobian by Newton's method; 0 counts as 1, which tells whether the prediction
+    /// closes.
+    pub newton: u32,
+    /// Trial steps of Levenberg–Marquardt where that did not do; 0 for none.
+    pub fallback: u32,
+}
+
+impl Budget {
+    /// Evaluations of residual and Jacobian that a block costs at most: those of Newton's method, the trials of the
+    /// fallback and one where it starts.
+    ///
+    /// Beside them a step costs one factorisation of Φ_q and three linear solutions at most.
+    pub const fn evaluations(self) -> u32 {
+        let newton = if self.newton == 0 { 1 } else { self.newton };
+        match self.fallback {
+            0 => newton,
+            trials => newton.saturating_add(trials).saturating_add(1),
+        }
+    }
+}
+
+/// What [`Stepper::step`] came to.
+#[must_use = "a refused step leaves the stepper at the time before"]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Step {
+    /// The position is within its tolerance.
+    Done(Statistics),
+    /// The budget ran out next to the position. The best one found is the state; the next step repairs it.
+    Degraded {
+        /// The largest residual against its tolerance, in the unit of its row.
+        residual: f64,
+        /// That row.
+        row: Entry,
+        /// What was spent; its `residual`, over the tolerance, is above 1.
+        statistics: Statistics,
+    },
+    /// There is no position that could be kept. The state is bit for bit what it was.
+    Refused(Failure),
+}
+
+impl<S: Kinematic<R, N>, R: Real, const N: usize> Stepper<S, R, N> {
+    /// Moves on by `h` (s) in a fixed amount of work; 0 solves anew, negative goes back.
+    ///
+    /// Predicts as [`advance_to`](Self::advance_to), then spends at most [`Budget::evaluations`] a block. Where they
+    /// do not reach the tolerance, the best position found becomes the state, with rates from it, if Newton's next
+    /// step from there is at most a quarter of the margin to singularity: so near, it converges, and to the same
+    /// assembly. That step is made at the beginning of the next call, whatever its budget. So a loop with one
+    /// evaluation a period still follows the motion.
+    ///
+    /// [`Step::Refused`] with [`Failure::NonFinite`], [`Failure::NotConverged`] (too far from any position for the
+    /// budget, or there is none), [`Failure::Singular`], [`Failure::WrongBranch`].
+    #[inline]
+    pub fn step(&mut self, h: R, budget: Budget) -> Step {
+        self.step_to(self.state.t + h, budget)
+    }
+
+    /// Moves on by `periods` periods of `period` (s) after missed deadlines, in a step a period; 0 counts as 1.
+    ///
+    /// Steps as long as those of the loop keep the assembly where one long step could lose it. The time is what it
+    /// would be without the misses. Costs at most `periods` times what [`step`](Self::step) costs. All or
+    /// nothing: where one step is refused, the state is bit for bit what it was before the call. A degraded step is
+    /// repaired by the next one, so [`Step::Degraded`] speaks of the last one alone; `statistics` are those of the
+    /// last step, but `evaluations` sums all.
+    ///
+    /// Inputs jump to their present value in the first step. Where they have moved far in the time missed, change
+    /// them in parts, with a [`step`](Self::step) after each.
+    pub fn skip(&mut self, period: R, periods: u32, budget: Budget) -> Step {
+        let before = self.state;
+        let periods = periods.max(1);
+        let mut evaluations = 0_u32;
+        let mut step = Step::Refused(Failure::NonFinite { name: "t", line: 0 });
+        for k in 1..=periods {
+            step = self.step_to(before.t + period * R::constant(f64::from(k)), budget);
+            let (Step::Done(statistics) | Step::Degraded { statistics, .. }) = &mut step else {
+                self.state = before;
+                return step;
+            };
+            evaluations = evaluations.saturating_add(statistics.evaluations);
+            statistics.evaluations = evaluations;
+        }
+        step
+    }
+
+    /// Whether the position does not close, because the last step was [`Step::Degraded`].
+    pub fn is_degraded(&self) -> bool {
+        self.state.repair.is_some()
+    }
+
+    /// Time (s) until the margin is zero if it goes on falling as in the last step; `None` if it did not fall.
+    ///
+    /// Linear, from the margins of the last two positions at different times, and in the direction of increasing
+    /// time. Near a position where the mechanism locks up the margin falls with a root, and less time is left.
+    pub fn time_to_singular(&self) -> Option<R> {
+        let rate = self.state.margin_rate;
+        let time = self.state.margin / -rate;
+        (rate < R::constant(0.0) && time.is_finite()).then_some(time)
+    }
+
+    #[inline]
+    fn step_to(&mut self, t: R, budget: Budget) -> Step {
+        self.within(t, budget).unwrap_or_else(Step::Refused)
+    }
+
+    #[inline]
+    fn within(&mut self, t: R, budget: Budget) -> Result<Step, Failure> {
+        if let Some(failure) = self.fault.or(time_failure(t)) {
+            return Err(failure);
+        }
+        let start = self.predicted(t);
+        let scales = self.mechanism.coordinate_scales(&self.parameters);
+        let mut solver = Budgeted::new(extent(&start, &scales), budget);
+        let mut q = start;
+        let outcome = self.mechanism.solve_blocks(&self.parameters, &mut q, t, &mut solver);
+        let open = position_failure::<S, R, N>(outcome, solver.diagnosis(), t);
+        let mut statistics = Statistics::of(solver.diagnosis());
+        statistics.correction = largest_difference(&q, &start, &scales).to_f64();
+        if let Some(failure @ Failure::NonFinite { .. }) = open {
+            return Err(failure);
+        }
+        let found = Found { t, q, statistics, open };
+        self.state = State::at(&self.mechanism, &self.parameters, found, Before::State(&self.state))?;
+        Ok(match open {
+            None => Step::Done(statistics),
+            Some(_) => Step::Degraded {
+                residual: solver.diagnosis().worst.residual.to_f64(),
+                row: entry(S::ROWS, statistics.row),
+                statistics,
+            },
+        })
+    }
+}

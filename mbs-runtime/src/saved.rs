@@ -1,0 +1,242 @@
+//! A state as plain numbers and bytes, and the way back into motion after a reset.
+
+use crate::diagnosis::{Diagnosis, Statistics, extent};
+use crate::kinematics::{
+    coordinate_failure, entry, largest_difference, position_failure, time_failure, variable_failure,
+};
+use crate::safeguarded::attempt;
+use crate::stepper::{Before, Found, State};
+use crate::{Block, BlockSolver, Factorization, Failure, Kinematic, Mechanism, Outcome, Real, Stepper};
+
+/// Version of the layout of [`Saved`], in its first bytes. Neither erased (0xFF) nor zeroed memory has it.
+const VERSION: u32 = 1;
+
+/// Words of [`Saved`] beside the coordinates: version and count, mechanism, time, check value.
+const OTHER_WORDS: usize = 4;
+
+/// Largest distance from a saved position at which [`Stepper::assemble_near`] accepts one, in the reference metric
+/// (rad, or reference lengths).
+///
+/// Newton's method is not trusted with more in one step either: beyond it the assembly next to the saved position may
+/// be another one.
+pub const NEAR: f64 = 0.5;
+
+/// Time and position of a mechanism as plain numbers, `f64` for every number type: what a reset must not lose.
+///
+/// As bytes: [`BYTES`](Self::BYTES) of them, little-endian words of eight, the last one a check value over the
+/// others.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Saved<const N: usize> {
+    mechanism: u64,
+    t: f64,
+    q: [f64; N],
+}
+
+impl<const N: usize> Saved<N> {
+    /// Length in bytes: 32 + 8 N.
+    pub const BYTES: usize = 8 * (N + OTHER_WORDS);
+
+    /// Time (s).
+    pub fn t(&self) -> f64 {
+        self.t
+    }
+
+    /// Coordinates: N.
+    pub fn q(&self) -> &[f64; N] {
+        &self.q
+    }
+
+    /// Writes [`BYTES`](Self::BYTES) bytes to the beginning of `bytes` and returns their number; `None`, and nothing
+    /// written, where there is no room.
+    pub fn to_le_bytes_into(&self, bytes: &mut [u8]) -> Option<usize> {
+        let (chunks, _) = bytes.get_mut(..Self::BYTES)?.as_chunks_mut::<8>();
+        let words = self.words().chain([self.check_value()]);
+        chunks.iter_mut().zip(words).for_each(|(chunk, word)| *chunk = word.to_le_bytes());
+        Some(Self::BYTES)
+    }
+
+    /// Reads a state from the beginning of `bytes`; `None` where they are too few, of another version or number of
+    /// coordinates, or damaged, and where a number is NaN or infinite.
+    pub fn from_le_bytes(bytes: &[u8]) -> Option<Self> {
+        let (chunks, _) = bytes.get(..Self::BYTES)?.as_chunks::<8>();
+        let mut words = chunks.iter().map(|chunk| u64::from_le_bytes(*chunk));
+        let header = words.next()?;
+        let mechanism = words.next()?;
+        let t = f64::from_bits(words.next()?);
+        let mut q = [0.0; N];
+        q.iter_mut().zip(&mut words).for_each(|(coordinate, word)| *coordinate = f64::from_bits(word));
+        let saved = Saved { mechanism, t, q };
+        let whole = header == Self::header() && words.next()? == saved.check_value();
+        let finite = q.iter().fold(t.is_finite(), |all, coordinate| all & coordinate.is_finite());
+        (whole && finite).then_some(saved)
+    }
+
+    /// Version and number of coordinates.
+    fn header() -> u64 {
+        u64::from(VERSION) | ((N as u64) << 32)
+    }
+
+    /// All words but the check value.
+    fn words(&self) -> impl Iterator<Item = u64> {
+        [Self::header(), self.mechanism, self.t.to_bits()].into_iter().chain(self.q.map(f64::to_bits))
+    }
+
+    fn check_value(&self) -> u64 {
+        self.words().fold(OFFSET, |hash, word| hashed(hash, &word.to_le_bytes()))
+    }
+}
+
+/// FNV-1a, 64 bits: any change of one byte changes it, others with a chance of all but 2⁻⁶⁴.
+/// Source: Fowler, Noll, Vo 1991.
+const OFFSET: u64 = 0xCBF2_9CE4_8422_2325;
+const PRIME: u64 = 0x0100_0000_01B3;
+
+fn hashed(hash: u64, bytes: &[u8]) -> u64 {
+    bytes.iter().fold(hash, |hash, byte| (hash ^ u64::from(*byte)).wrapping_mul(PRIME))
+}
+
+/// Name and coordinates of a mechanism as one number; the end of each name counts.
+fn fingerprint<S: Mechanism<R, N, N>, R: Real, const N: usize>() -> u64 {
+    let name = |hash, name: &str| hashed(hashed(hash, name.as_bytes()), &[0xFF]);
+    S::COORDINATES.iter().fold(name(OFFSET, S::NAME), |hash, entry| name(hash, entry.name))
+}
+
+impl<S: Kinematic<R, N>, R: Real, const N: usize> Stepper<S, R, N> {
+    /// Time and position, to survive a reset; see [`assemble_near`](Self::assemble_near).
+    pub fn save(&self) -> Saved<N> {
+        let state = &self.state;
+        Saved { mechanism: fingerprint::<S, R, N>(), t: state.t.to_f64(), q: state.q.map(R::to_f64) }
+    }
+
+    /// Assembles `mechanism` at time `t` (s) next to a saved state; velocity and acceleration follow.
+    ///
+    /// Levenberg–Marquardt from the saved position, and from there alone: the assembly is the one that it leads to, at
+    /// most [`NEAR`] away in any coordinate. Branches that only pick the first assembly are not asked again. With
+    /// the time and the inputs at which the state was saved the position is the same to rounding; a drive that has
+    /// moved on since counts as distance, whole turns included.
+    ///
+    /// # Errors
+    /// [`Failure::Foreign`] for the state of another mechanism, [`Failure::TooFar`], [`Failure::WrongBranch`],
+    /// [`Failure::NotAssemblable`], [`Failure::Singular`], [`Failure::Unresolved`]; [`Failure::NonFinite`] for a
+    /// parameter, input or time that is no number.
+    pub fn assemble_near(mechanism: S, saved: &Saved<N>, t: R) -> Result<Self, Failure> {
+        if saved.mechanism != fingerprint::<S, R, N>() {
+            return Err(Failure::Foreign { mechanism: S::NAME });
+        }
+        let start = saved.q.map(R::constant);
+        let parameters = mechanism.parameters();
+        let scales = mechanism.coordinate_scales(&parameters);
+        let broken = variable_failure(&mechanism)
+            .or(time_failure(t))
+            .or_else(|| coordinate_failure::<S, R, N>(&start, &scales, t));
+        if let Some(failure) = broken {
+            return Err(failure);
+        }
+        let mut solver = Nearest { extent: extent(&start, &scales), diagnosis: Diagnosis::new() };
+        let mut q = start;
+        let outcome = mechanism.solve_blocks(&parameters, &mut q, t, &mut solver);
+        match position_failure::<S, R, N>(outcome, &solver.diagnosis, t) {
+            None => {}
+            Some(Failure::NotConverged { row, residual, time, .. }) => {
+                return Err(Failure::NotAssemblable { row, residual, time });
+            }
+            Some(failure) => return Err(failure),
+        }
+        if let Some(failure) = distant::<S, R, N>(&q, &start, &scales, t) {
+            return Err(failure);
+        }
+        let mut statistics = Statistics::of(&solver.diagnosis);
+        statistics.correction = largest_difference(&q, &start, &scales).to_f64();
+        let found = Found { t, q, statistics, open: None };
+        let state = State::at(&mechanism, &parameters, found, Before::Saved)?;
+        Ok(Stepper { mechanism, parameters, fault: None, state })
+    }
+}
+
+/// The coordinate that is farthest from where it was saved, if that is too far.
+fn distant<S: Kinematic<R, N>, R: Real, const N: usize>(
+    q: &[R; N],
+    saved: &[R; N],
+    scales: &[R; N],
+    t: R,
+) -> Option<Failure> {
+    let (mut farthest, mut distance) = (0_u16, 0.0_f64);
+    for (index, ((new, old), scale)) in (0_u16..).zip(q.iter().zip(saved).zip(scales)) {
+        let off = ((*new - *old) / *scale).abs().to_f64();
+        if distance < off {
+            (farthest, distance) = (index, off);
+        }
+    }
+    let coordinate = entry(S::COORDINATES, farthest);
+    (distance > NEAR).then_some(Failure::TooFar { coordinate, distance, allowed: NEAR, time: t.to_f64() })
+}
+
+/// Levenberg–Marquardt from the start value alone.
+struct Nearest<R: Real> {
+    extent: R,
+    diagnosis: Diagnosis<R>,
+}
+
+impl<R: Real> BlockSolver<R> for Nearest<R> {
+    fn solve<const K: usize, F: Factorization<R, K>>(
+        &mut self,
+        block: &Block<R, K>,
+        x: [R; K],
+        mut evaluate: impl FnMut(&[R; K]) -> ([R; K], [[R; K]; K]),
+    ) -> ([R; K], R::Lanes<Outcome>) {
+        let (attempt, plain) = attempt::<R, K, F>(block, x, true, self.extent, &mut evaluate);
+        self.diagnosis.record(attempt.evaluations, !plain, attempt.worst, attempt.converged);
+        (attempt.x, attempt.outcomes())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SAVED: Saved<2> = Saved { mechanism: 7, t: 1.5, q: [-0.25, 1e300] };
+
+    fn bytes() -> [u8; Saved::<2>::BYTES] {
+        let mut bytes = [0; Saved::<2>::BYTES];
+        assert_eq!(SAVED.to_le_bytes_into(&mut bytes), Some(48));
+        bytes
+    }
+
+    #[test]
+    fn bytes_come_back_as_the_same_numbers() {
+        assert_eq!(Saved::from_le_bytes(&bytes()), Some(SAVED));
+        let mut page = [0xFF; 64];
+        assert_eq!(SAVED.to_le_bytes_into(&mut page), Some(48));
+        assert_eq!((Saved::from_le_bytes(&page), page[48..] == [0xFF; 16]), (Some(SAVED), true));
+        assert_eq!(bytes()[..8], [1, 0, 0, 0, 2, 0, 0, 0]);
+    }
+
+    #[test]
+    fn every_damaged_byte_is_noticed() {
+        for index in 0..48 {
+            for bit in 0..8 {
+                let mut damaged = bytes();
+                damaged[index] ^= 1 << bit;
+                assert_eq!(Saved::<2>::from_le_bytes(&damaged), None, "bit {bit} of byte {index}");
+            }
+        }
+        // The signs of two coordinates at once.
+        let mut damaged = bytes();
+        damaged[31] ^= 0x80;
+        damaged[39] ^= 0x80;
+        assert_eq!(Saved::<2>::from_le_bytes(&damaged), None);
+    }
+
+    #[test]
+    fn what_is_not_a_state_is_none() {
+        let bytes = bytes();
+        assert_eq!(Saved::<2>::from_le_bytes(&bytes[..47]), None);
+        assert_eq!(Saved::<2>::from_le_bytes(&[]), None);
+        assert_eq!((Saved::<3>::from_le_bytes(&bytes), Saved::<1>::from_le_bytes(&bytes)), (None, None));
+        assert_eq!(Saved::<2>::from_le_bytes(&[0; 48]).or(Saved::from_le_bytes(&[0xFF; 48])), None);
+        assert_eq!(SAVED.to_le_bytes_into(&mut [0; 47]), None);
+        let mut bytes = [0; 48];
+        let _ = Saved { q: [f64::NAN, 0.0], ..SAVED }.to_le_bytes_into(&mut bytes);
+        assert_eq!(Saved::<2>::from_le_bytes(&bytes), None);
+    }
+}
