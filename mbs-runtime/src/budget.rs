@@ -100,7 +100,8 @@ impl<S: Kinematic<R, N>, R: Real, const N: usize> Stepper<S, R, N> {
     /// Time (s) until the margin is zero if it goes on falling as in the last step; `None` if it did not fall.
     ///
     /// Linear, from the margins of the last two positions at different times, and in the direction of increasing
-    /// time. Near a position where the mechanism locks up the margin falls with a root, and less time is left.
+    /// time. Next to a position where the mechanism locks up the margin falls with a root, and half
+    /// of that time is left.
     pub fn time_to_singular(&self) -> Option<R> {
         let rate = self.state.margin_rate;
         let time = self.state.margin / -rate;

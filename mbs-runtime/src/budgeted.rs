@@ -130,7 +130,10 @@ mod tests {
                     ([residual], [[slope]])
                 };
                 let (x, outcome) = solver.solve::<1, Direct1<f64>>(&BLOCK, [3.0], evaluate);
-                assert!(count <= budget.evaluations() && count == solver.diagnosis().evaluations, "{budget:?}");
+                assert!(
+                    count <= budget.evaluations() && count == solver.diagnosis().evaluations,
+                    "{budget:?}"
+                );
                 assert!(x[0].is_finite());
                 let residual = function(x[0]).0.abs();
                 match outcome {

@@ -45,11 +45,7 @@ pub fn solve_position<S: Kinematic<R, N>, R: Real, const N: usize>(
 
 /// Largest difference of two positions in the reference metric (rad, or reference lengths).
 #[inline(always)]
-pub(crate) fn largest_difference<R: Real, const N: usize>(
-    new: &[R; N],
-    old: &[R; N],
-    scales: &[R; N],
-) -> R {
+pub(crate) fn largest_difference<R: Real, const N: usize>(new: &[R; N], old: &[R; N], scales: &[R; N]) -> R {
     let mut largest = R::constant(0.0);
     for ((new, old), scale) in new.iter().zip(old).zip(scales) {
         largest = largest.max(((*new - *old) / *scale).abs());

@@ -206,7 +206,8 @@ impl<S: Kinematic<R, N>, R: Real, const N: usize> Stepper<S, R, N> {
     #[inline(always)]
     pub(crate) fn predicted(&self, t: R) -> [R; N] {
         let state = &self.state;
-        let mut predicted = if state.is_regular() { self.extrapolated(t - state.t) } else { self.continued(t) };
+        let mut predicted =
+            if state.is_regular() { self.extrapolated(t - state.t) } else { self.continued(t) };
         if let Some(repair) = &state.repair {
             predicted.iter_mut().zip(repair).for_each(|(coordinate, step)| *coordinate = *coordinate + *step);
         }
@@ -279,7 +280,9 @@ impl<R: Real, const N: usize> State<R, N> {
         }
         let position = mechanism.position(parameters, &q, t);
         let factors = factorize(mechanism, parameters, &position, t)?;
-        if let Some(failure) = branch_failure(mechanism, parameters, &position, t, matches!(before, Before::Guess)) {
+        if let Some(failure) =
+            branch_failure(mechanism, parameters, &position, t, matches!(before, Before::Guess))
+        {
             return Err(failure);
         }
         let qd = solve_velocity(mechanism, parameters, &position, &factors)?;

@@ -1,6 +1,8 @@
 //! Emitted code minds its own names, whatever the caller has declared, and passes the caller's lints.
 #![no_std]
-#![deny(warnings, missing_docs, missing_debug_implementations, unreachable_pub, unused, clippy::all)]
+#![deny(warnings, missing_docs, missing_debug_implementations, unreachable_pub, unused)]
+#![deny(clippy::all, clippy::pedantic)]
+#![allow(clippy::float_cmp, clippy::similar_names, reason = "the tests compare exact numbers")]
 #![forbid(unsafe_code)]
 #![allow(mixed_script_confusables, reason = "angles are written in Greek")]
 
@@ -34,6 +36,7 @@ mod every_name {
         param lambda1: 1 = 1;
         param r#type: 1 = 1;
         param fn: 1 = 1;
+        param gen: 1 = 1;
         param index: [1; 2] = [1, 2];
         param value: 1 = 1;
         param lane: 1 = 1;
@@ -55,7 +58,7 @@ mod every_name {
         let __n1 = q*s;
         drive drive: q == p*t/1s + x;
         constraint constraint { qd == _private - __n1; }
-        constraint self { Self_ == T*Phi*phi_q*lambda1*type*fn; }
+        constraint self { Self_ == T*Phi*phi_q*lambda1*type*fn*gen; }
         constraint q { match == index[0] + value*lane*parameters; Option == [Parameters, default]; }
         constraint rest { named == clone*core*mbs_runtime; φ == f64/1m; }
         branch branch: named > 0;
@@ -79,6 +82,24 @@ mod names_of_mechanisms {
     //! Mechanisms named as types of the emitted code.
 
     mbs_runtime::mechanism! {
+        /// As the stage values.
+        pub(super) mechanism Parameters;
+        coord x: m;
+        drive d: x == 1m;
+    }
+    mbs_runtime::mechanism! {
+        /// As the other stage values.
+        pub(super) mechanism Position;
+        coord x: m;
+        drive d: x == 2m;
+    }
+    mbs_runtime::mechanism! {
+        /// As the factors.
+        pub(super) mechanism Factors;
+        coord x: m;
+        drive d: x == 3m;
+    }
+    mbs_runtime::mechanism! {
         /// As a trait.
         pub(super) mechanism Mechanism;
         param L: m = 5;
@@ -88,18 +109,25 @@ mod names_of_mechanisms {
 
     #[test]
     fn any_name_names_a_mechanism() {
+        assert_eq!(super::runs(Parameters::default()), [1.0]);
+        assert_eq!(super::runs(Position::default()), [2.0]);
+        assert_eq!(super::runs(Factors::default()), [3.0]);
         assert_eq!(super::runs(Mechanism::default()), [5.0]);
     }
 }
 
 mod shadows {
-    //! A caller who has taken the names of the prelude.
+    //! A caller who has taken every name of the prelude.
     #![allow(non_camel_case_types, dead_code, reason = "they shadow")]
 
     mod core {}
     mod std {}
     mod mbs_codegen {}
+    struct f64;
     struct f32;
+    struct bool;
+    struct str;
+    struct usize;
     struct u8;
     struct u16;
     struct u32;
@@ -165,9 +193,13 @@ mod values {
     //! A caller whose constants, statics and functions are named as locals might be.
     #![allow(non_upper_case_globals, dead_code, reason = "they are named as locals")]
 
+    const q: u8 = 1;
     const t: u8 = 1;
     const p: u8 = 1;
     const x: u8 = 1;
+    const index: u8 = 1;
+    const value: u8 = 1;
+    const named: u8 = 1;
     const lane: u8 = 1;
     static qd: u8 = 1;
     static qdd: u8 = 1;

@@ -120,12 +120,12 @@ pub fn linear(equations: &Equations, program: &Program, scope: &Scope<'_>) -> (S
         }
     }
     let kept = list(entries.kept.keys().map(|id| scope.operand(*id)));
-    let _ = write!(factorize, "(Factors {{ entries: {kept}, {names} }}, __margin)");
+    let _ = write!(factorize, "(__Factors {{ entries: {kept}, {names} }}, __margin)");
     solve += &list((0..scope.model.coordinates.len()).map(|c| format!("__x{c}")));
     let declaration = format!(
         "/// Factorised diagonal blocks, and the entries of Φ_q off them.\n\
          #[derive(::core::clone::Clone, ::core::marker::Copy, ::core::fmt::Debug)]\n\
-         pub struct Factors<T: __mbs::Scalar> {{\n{fields}}}"
+         pub struct __Factors<T: __mbs::Scalar> {{\n{fields}}}"
     );
     (declaration, factorize, solve)
 }

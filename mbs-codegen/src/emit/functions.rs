@@ -59,7 +59,11 @@ pub fn bodies(model: &Model, equations: &Equations, program: &Program, runtime: 
     Bodies {
         kept_parameters: program.parameters.fields.len(),
         kept_position: program.position.fields.len(),
-        parameters: body(&program.parameters.section, &bare, kept(&program.parameters, &bare, "Parameters")),
+        parameters: body(
+            &program.parameters.section,
+            &bare,
+            kept(&program.parameters, &bare, "__Parameters"),
+        ),
         guess: body(&program.guesses, &early, some(&equations.guesses, &early)),
         coordinate_scales: body(
             &program.coordinate_scales,
@@ -67,7 +71,7 @@ pub fn bodies(model: &Model, equations: &Equations, program: &Program, runtime: 
             some(&equations.coordinate_scales, &early),
         ),
         row_scales: body(&program.row_scales, &early, some(&equations.row_scales, &early)),
-        position: body(&program.position.section, &early, kept(&program.position, &early, "Position")),
+        position: body(&program.position.section, &early, kept(&program.position, &early, "__Position")),
         phi: body(&program.phi, &scope, rows(|row| Some(row.phi))),
         phi_q: body(&program.phi_q, &scope, matrix(equations, &scope)),
         phi_t: body(&program.phi_t, &scope, rows(|row| row.phi_t)),

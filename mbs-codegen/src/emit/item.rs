@@ -5,7 +5,7 @@ use quote::{format_ident, quote, quote_spanned};
 
 use super::code::tokens;
 use super::functions::Bodies;
-use super::scope::{field_name, number, subscripts, variable};
+use super::scope::{field_name, is_keyword, number, subscripts, variable};
 use crate::model::{Field, Model, Role};
 use crate::syntax::Text;
 use crate::syntax::ast::Name;
@@ -39,7 +39,7 @@ pub fn item(text: &Text, model: &Model, docs: &[String], bodies: &Bodies) -> Tok
         #(#[doc = #docs])*
         #[allow(non_snake_case, reason = "the text names the parameters")]
         #[derive(::core::clone::Clone, ::core::marker::Copy, ::core::fmt::Debug, ::core::cmp::PartialEq)]
-        #visibility struct #name<T = f64> { #(#fields)* #marker }
+        #visibility struct #name<T = ::core::primitive::f64> { #(#fields)* #marker }
 
         #[allow(clippy::approx_constant, reason = "numbers of the text stay as they are")]
         impl<T: #runtime::Scalar> ::core::default::Default for #name<T> {
@@ -86,72 +86,72 @@ fn implementations(text: &Text, model: &Model, bodies: &Bodies) -> TokenStream {
         const _: () = {
             /// Values of parameters alone.
             #[derive(::core::clone::Clone, ::core::marker::Copy, ::core::fmt::Debug)]
-            pub struct Parameters<T>([T; #kept_parameters]);
+            pub struct __Parameters<T>([T; #kept_parameters]);
 
             /// Values of `(q, t)` that functions share.
             #[derive(::core::clone::Clone, ::core::marker::Copy, ::core::fmt::Debug)]
-            pub struct Position<T>([T; #kept_position]);
+            pub struct __Position<T>([T; #kept_position]);
 
             #factors
 
             impl<T: #runtime::Scalar> #runtime::Mechanism<T, #n, #n> for #name<T> {
-                type Parameters = Parameters<T>;
-                type Position = Position<T>;
+                type Parameters = __Parameters<T>;
+                type Position = __Position<T>;
                 type Branches = [T; #branches];
                 type Outputs = [#runtime::OutputValue<T>; #outputs];
                 type Lane = #name<T::Real>;
                 #tables
                 #access
                 #[inline]
-                fn parameters(&self) -> Parameters<T> { #parameters }
+                fn parameters(&self) -> __Parameters<T> { #parameters }
                 #[inline]
-                fn guess(&self, __p: &Parameters<T>) -> [T; #n] { #guess }
+                fn guess(&self, __p: &__Parameters<T>) -> [T; #n] { #guess }
                 #[inline]
-                fn coordinate_scales(&self, __p: &Parameters<T>) -> [T; #n] { #coordinate_scales }
+                fn coordinate_scales(&self, __p: &__Parameters<T>) -> [T; #n] { #coordinate_scales }
                 #[inline]
-                fn row_scales(&self, __p: &Parameters<T>) -> [T; #n] { #row_scales }
+                fn row_scales(&self, __p: &__Parameters<T>) -> [T; #n] { #row_scales }
                 #[inline]
-                fn position(&self, __p: &Parameters<T>, __q: &[T; #n], __t: T) -> Position<T> { #position }
+                fn position(&self, __p: &__Parameters<T>, __q: &[T; #n], __t: T) -> __Position<T> { #position }
                 #[inline]
-                fn phi(&self, __p: &Parameters<T>, __s: &Position<T>) -> [T; #n] { #phi }
+                fn phi(&self, __p: &__Parameters<T>, __s: &__Position<T>) -> [T; #n] { #phi }
                 #[inline]
-                fn phi_q(&self, __p: &Parameters<T>, __s: &Position<T>) -> [[T; #n]; #n] { #phi_q }
+                fn phi_q(&self, __p: &__Parameters<T>, __s: &__Position<T>) -> [[T; #n]; #n] { #phi_q }
                 #[inline]
-                fn phi_t(&self, __p: &Parameters<T>, __s: &Position<T>) -> [T; #n] { #phi_t }
+                fn phi_t(&self, __p: &__Parameters<T>, __s: &__Position<T>) -> [T; #n] { #phi_t }
                 #[inline]
-                fn phi_tt(&self, __p: &Parameters<T>, __s: &Position<T>) -> [T; #n] { #phi_tt }
+                fn phi_tt(&self, __p: &__Parameters<T>, __s: &__Position<T>) -> [T; #n] { #phi_tt }
                 #[inline]
-                fn phi_qt_qd(&self, __p: &Parameters<T>, __s: &Position<T>, __qd: &[T; #n]) -> [T; #n] { #phi_qt_qd }
+                fn phi_qt_qd(&self, __p: &__Parameters<T>, __s: &__Position<T>, __qd: &[T; #n]) -> [T; #n] { #phi_qt_qd }
                 #[inline]
-                fn gamma(&self, __p: &Parameters<T>, __s: &Position<T>, __qd: &[T; #n]) -> [T; #n] { #gamma }
+                fn gamma(&self, __p: &__Parameters<T>, __s: &__Position<T>, __qd: &[T; #n]) -> [T; #n] { #gamma }
                 #[inline]
-                fn branches(&self, __p: &Parameters<T>, __s: &Position<T>) -> [T; #branches] { #branches_body }
+                fn branches(&self, __p: &__Parameters<T>, __s: &__Position<T>) -> [T; #branches] { #branches_body }
                 #[inline]
                 fn outputs(
                     &self,
-                    __p: &Parameters<T>,
-                    __s: &Position<T>,
+                    __p: &__Parameters<T>,
+                    __s: &__Position<T>,
                     __qd: &[T; #n],
                     __qdd: &[T; #n],
                 ) -> [#runtime::OutputValue<T>; #outputs] { #outputs_body }
             }
 
             impl<T: #runtime::Scalar> #runtime::Kinematic<T, #n> for #name<T> {
-                type Factors = Factors<T>;
+                type Factors = __Factors<T>;
                 #[inline]
                 fn solve_blocks<__S: #runtime::BlockSolver<T>>(
                     &self,
-                    __p: &Parameters<T>,
+                    __p: &__Parameters<T>,
                     __q: &mut [T; #n],
                     __t: T,
                     __solver: &mut __S,
                 ) -> T::Lanes<#runtime::Outcome> { #solve_blocks }
                 #[inline]
-                fn factorize(&self, __p: &Parameters<T>, __s: &Position<T>) -> (Factors<T>, #runtime::Margin<T>) {
+                fn factorize(&self, __p: &__Parameters<T>, __s: &__Position<T>) -> (__Factors<T>, #runtime::Margin<T>) {
                     #factorize
                 }
                 #[inline]
-                fn solve_linear(&self, __factors: &Factors<T>, __b: &[T; #n]) -> [T; #n] { #solve_linear }
+                fn solve_linear(&self, __factors: &__Factors<T>, __b: &[T; #n]) -> [T; #n] { #solve_linear }
             }
         };
     }
@@ -172,13 +172,13 @@ fn tables(text: &Text, model: &Model) -> TokenStream {
     let at_start = model.branches.iter().map(|branch| branch.at_start);
     let outputs = model.outputs.iter().map(|output| entry(&output.name, &output.unit, output.span));
     quote! {
-        const NAME: &'static str = #name;
-        const SOURCE: &'static str = #source;
+        const NAME: &'static ::core::primitive::str = #name;
+        const SOURCE: &'static ::core::primitive::str = #source;
         const COORDINATES: &'static [#runtime::Entry] = &[#(#coordinates),*];
         const ROWS: &'static [#runtime::Entry] = &[#(#rows),*];
         const VARIABLES: &'static [#runtime::Entry] = &[#(#variables),*];
         const BRANCHES: &'static [#runtime::Entry] = &[#(#branches),*];
-        const BRANCHES_AT_START: &'static [bool] = &[#(#at_start),*];
+        const BRANCHES_AT_START: &'static [::core::primitive::bool] = &[#(#at_start),*];
         const OUTPUTS: &'static [#runtime::Entry] = &[#(#outputs),*];
     }
 }
@@ -207,18 +207,18 @@ fn access(model: &Model, runtime: &TokenStream, name: &Ident) -> TokenStream {
     };
     quote! {
         #[inline]
-        fn get(&self, index: usize) -> ::core::option::Option<T> {
-            match index {
+        fn get(&self, __index: ::core::primitive::usize) -> ::core::option::Option<T> {
+            match __index {
                 #(#indices => ::core::option::Option::Some(#places),)*
                 _ => ::core::option::Option::None,
             }
         }
         #[inline]
-        fn set(&mut self, index: usize, value: T) -> bool {
-            match (index, value) { #set }
+        fn set(&mut self, __index: ::core::primitive::usize, __value: T) -> ::core::primitive::bool {
+            match (__index, __value) { #set }
         }
         #[inline]
-        fn lane(&self, #lane_name: usize) -> Self::Lane {
+        fn lane(&self, #lane_name: ::core::primitive::usize) -> Self::Lane {
             #name { #(#lanes)* #marker }
         }
     }
@@ -306,7 +306,7 @@ fn coordinates_view(text: &Text, model: &Model) -> TokenStream {
     });
     let from = model.coordinate_fields.iter().map(|field| {
         let ident = ident(&field.name);
-        let value = nested(&field.shape, &|component| format!("q[{}]", field.first + component));
+        let value = nested(&field.shape, &|component| format!("__q[{}]", field.first + component));
         let value = tokens(&value, &TokenStream::new());
         quote! { #ident: #value, }
     });
@@ -314,7 +314,7 @@ fn coordinates_view(text: &Text, model: &Model) -> TokenStream {
         let size: usize = field.shape.iter().product();
         (0..size).map(move |component| {
             let place =
-                format!("named.{}{}", field_name(&field.name.text), subscripts(component, &field.shape));
+                format!("__named.{}{}", field_name(&field.name.text), subscripts(component, &field.shape));
             tokens(&place, &TokenStream::new())
         })
     });
@@ -322,16 +322,16 @@ fn coordinates_view(text: &Text, model: &Model) -> TokenStream {
         #[doc = #title]
         #[allow(non_snake_case, reason = "the text names the coordinates")]
         #[derive(::core::clone::Clone, ::core::marker::Copy, ::core::fmt::Debug, ::core::cmp::PartialEq)]
-        #visibility struct #name<T = f64> { #(#fields)* }
+        #visibility struct #name<T = ::core::primitive::f64> { #(#fields)* }
 
         impl<T: ::core::marker::Copy> ::core::convert::From<[T; #n]> for #name<T> {
-            fn from(q: [T; #n]) -> Self {
+            fn from(__q: [T; #n]) -> Self {
                 Self { #(#from)* }
             }
         }
 
         impl<T: ::core::marker::Copy> ::core::convert::From<#name<T>> for [T; #n] {
-            fn from(named: #name<T>) -> Self {
+            fn from(__named: #name<T>) -> Self {
                 [#(#into),*]
             }
         }
@@ -339,8 +339,9 @@ fn coordinates_view(text: &Text, model: &Model) -> TokenStream {
 }
 
 fn ident(name: &Name) -> Ident {
-    match syn::parse_str::<Ident>(&name.text) {
-        Ok(_) => Ident::new(&name.text, name.span),
-        Err(_) => Ident::new_raw(&name.text, name.span),
+    if is_keyword(&name.text) {
+        Ident::new_raw(&name.text, name.span)
+    } else {
+        Ident::new(&name.text, name.span)
     }
 }

@@ -100,5 +100,10 @@ pub fn subscripts(component: usize, shape: &[usize]) -> String {
 
 /// The name as an identifier of Rust, raw where it is a keyword.
 pub fn field_name(name: &str) -> String {
-    if syn::parse_str::<syn::Ident>(name).is_ok() { name.to_owned() } else { format!("r#{name}") }
+    if is_keyword(name) { format!("r#{name}") } else { name.to_owned() }
+}
+
+/// Whether some edition keeps the word for itself; `syn` does not know those of 2024 yet.
+pub fn is_keyword(name: &str) -> bool {
+    name == "gen" || syn::parse_str::<syn::Ident>(name).is_err()
 }

@@ -29,7 +29,7 @@ pub fn stub(text: &Text, model: &Model) -> TokenStream {
         outputs: body(),
         factors: quote! {
             #[derive(::core::clone::Clone, ::core::marker::Copy, ::core::fmt::Debug)]
-            pub struct Factors<T>([T; 0]);
+            pub struct __Factors<T>([T; 0]);
         },
         solve_blocks: body(),
         factorize: body(),

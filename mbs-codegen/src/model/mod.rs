@@ -6,6 +6,7 @@ mod elaborate;
 mod evaluate;
 pub mod expression;
 mod functions;
+mod initialiser;
 mod names;
 mod order;
 mod resolve;

@@ -2,9 +2,10 @@
 
 use proc_macro2::Span;
 
-use super::declarations::{self, component_names, fits_shape, initialiser, named};
+use super::declarations::{self, component_names};
 use super::elaborate::{Elaborator, Fault, MOST_ROUNDS, Quantity, Scalar, Value};
 use super::expression::{Binary, Id, Node};
+use super::initialiser::{fits_shape, initialiser, named};
 use super::names::{Names, Symbol, report_double};
 use super::units::Dimension;
 use super::{Branch, Model, Output, Role, Row, VariableKind};

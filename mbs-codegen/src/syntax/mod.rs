@@ -1,12 +1,14 @@
 //! Tokens → [`ast`], spans kept, error-tolerant, iterative wherever a text can nest.
 
 pub mod ast;
+mod constraint;
 mod expression;
 mod header;
 mod parser;
 mod source;
 mod statement;
 mod tokens;
+mod unit;
 
 use proc_macro2::TokenStream;
 

@@ -1,9 +1,11 @@
 //! Statements: one after the other, going on behind each fault.
 
-use super::ast::{Declares, Equation, Expression, Item, Loop, Name, Statement, StatementKind, Type, Unit};
+use super::ast::{Declares, Expression, Loop, Name, Statement, StatementKind, Type};
+use super::constraint::{equation, read_constraint};
 use super::expression::expression;
 use super::parser::{DOC_ATTRIBUTE, GivenUp, Parser, Read, doc_attribute};
 use super::tokens::{Kind, Token};
+use super::unit::{declared_type, unit};
 use crate::diagnostics::{Diagnostics, nearest};
 
 /// Words that begin a statement of this version.
@@ -110,7 +112,7 @@ fn resynchronise(parser: &mut Parser<'_>, start: &[Token]) {
 }
 
 /// Whether the next token begins a statement, or ends them.
-fn at_statement(parser: &Parser<'_>) -> bool {
+pub fn at_statement(parser: &Parser<'_>) -> bool {
     match parser.peek() {
         Kind::End | Kind::Close('}') => true,
         Kind::Identifier(word) => STATEMENTS.iter().chain(&LATER).any(|known| known == word),
@@ -120,7 +122,7 @@ fn at_statement(parser: &Parser<'_>) -> bool {
 }
 
 /// Takes the `;` of a statement; where the next one begins already it is reported, and not missed.
-fn end(parser: &mut Parser<'_>, help: &str) -> Read<()> {
+pub fn end(parser: &mut Parser<'_>, help: &str) -> Read<()> {
     if parser.take(';') {
         return Ok(());
     }
@@ -284,19 +286,6 @@ fn read_drive(parser: &mut Parser<'_>) -> Read<StatementKind> {
     Ok(StatementKind::Drive { name, equation })
 }
 
-fn equation(parser: &mut Parser<'_>, help: &str) -> Read<Equation> {
-    let left = expression(parser)?;
-    let span = parser.span();
-    if !parser.at_pair('=', '=') {
-        let single = matches!(parser.peek(), Kind::Punctuation('=', _));
-        return parser.expected("`==`", if single { "the sign of an equation is `==`" } else { help });
-    }
-    parser.skip(2);
-    let right = expression(parser)?;
-    end(parser, help)?;
-    Ok(Equation { left, right, span })
-}
-
 const BRANCH: &str = "write `branch open: sin(phi3 - phi2) > 0;` or `branch open at start: … > 0;`";
 fn read_branch(parser: &mut Parser<'_>) -> Read<StatementKind> {
     let name = parser.name(BRANCH)?;
@@ -323,102 +312,9 @@ fn read_branch(parser: &mut Parser<'_>) -> Read<StatementKind> {
     Ok(StatementKind::Branch { name, at_start, larger, smaller })
 }
 
-const CONSTRAINT: &str = "write `constraint pin { x == L*cos(phi); y == L*sin(phi); }`";
-fn read_constraint(parser: &mut Parser<'_>) -> Read<StatementKind> {
-    let name = parser.name(CONSTRAINT)?;
-    if parser.at_word("redundant") {
-        let span = parser.span();
-        parser.diagnostics.report(
-            span,
-            "`redundant` is not translated by this version",
-            "leave out the rows that follow from the others",
-        );
-        parser.skip(1);
-    }
-    parser.expect('{', CONSTRAINT)?;
-    let mut items = Vec::new();
-    let mut loops = 0_usize;
-    let mut complete = true;
-    loop {
-        if parser.take('}') {
-            if loops > 0 {
-                loops -= 1;
-                items.push(Item::EndFor);
-                continue;
-            }
-            if items.is_empty() && complete {
-                let message = format!("constraint `{}` has no equation", name.text);
-                parser.diagnostics.report(name.span, message, "write `lhs == rhs;` in the braces");
-            }
-            return Ok(StatementKind::Constraint { name, items });
-        }
-        let read = if parser.at_word("for") {
-            parser.skip(1);
-            read_loop(parser).map(|head| {
-                loops += 1;
-                Item::For(head)
-            })
-        } else if misplaced(parser) {
-            misplaced_statement(parser)
-        } else {
-            equation(parser, CONSTRAINT).map(Item::Equation)
-        };
-        match read {
-            Ok(item) => items.push(item),
-            Err(GivenUp) => {
-                complete = false;
-                if !behind_equation(parser) {
-                    return Ok(StatementKind::Constraint { name, items });
-                }
-            }
-        }
-    }
-}
-
-/// Whether a statement stands here: a word and behind it a name, as in no equation.
-fn misplaced(parser: &Parser<'_>) -> bool {
-    at_statement(parser) && matches!(parser.peek_at(1), Kind::Identifier(_))
-}
-
-/// Reports a statement in a constraint; what it declares is known as faulty.
-fn misplaced_statement(parser: &mut Parser<'_>) -> Read<Item> {
-    let span = parser.span();
-    let word = parser.name(CONSTRAINT)?.text;
-    parser.diagnostics.report(
-        span,
-        format!("`{word}` cannot stand in a constraint"),
-        "move the statement before the constraint",
-    );
-    let declares = match word.as_str() {
-        "param" => Declares::Param,
-        "input" => Declares::Input { rates: false },
-        "coord" => Declares::Coord,
-        _ => Declares::Value,
-    };
-    parser.declare(declares, CONSTRAINT, |_, _| Err(GivenUp)).map(|(_, never)| never)
-}
-
-/// Goes behind the `;` of an equation that was given up; false where the constraint ends before one.
-fn behind_equation(parser: &mut Parser<'_>) -> bool {
-    loop {
-        match parser.peek() {
-            Kind::End => return false,
-            Kind::Close('}') => return true,
-            Kind::Punctuation(';', _) => {
-                parser.skip(1);
-                return true;
-            }
-            Kind::Open(_) => {
-                parser.skip(1);
-                parser.skip_group();
-            }
-            _ => parser.skip(1),
-        }
-    }
-}
-
 const FOR: &str = "write `for i in 0..3 { … }`";
-fn read_loop(parser: &mut Parser<'_>) -> Read<Loop> {
+/// What stands behind `for`, the brace that opens its body included.
+pub fn read_loop(parser: &mut Parser<'_>) -> Read<Loop> {
     let variable = parser.name(FOR)?;
     if !parser.take_word("in") {
         return parser.expected("`in`", FOR);
@@ -431,86 +327,4 @@ fn read_loop(parser: &mut Parser<'_>) -> Read<Loop> {
     let high = expression(parser)?;
     parser.expect('{', FOR)?;
     Ok(Loop { variable, low, high })
-}
-
-fn declared_type(parser: &mut Parser<'_>, help: &str) -> Read<Type> {
-    if !parser.take('[') {
-        return Ok(Type { unit: unit(parser)?, shape: Vec::new() });
-    }
-    let unit = unit(parser)?;
-    parser.expect(';', help)?;
-    let mut shape = vec![expression(parser)?];
-    while parser.take(',') {
-        shape.push(expression(parser)?);
-    }
-    parser.expect(']', help)?;
-    Ok(Type { unit, shape })
-}
-
-const UNIT: &str = "write a unit as `m`, `rad/s`, `N*m` or `kg*m^2`; `1` where there is none";
-
-/// A unit with its parentheses multiplied out.
-fn unit(parser: &mut Parser<'_>) -> Read<Unit> {
-    let mut unit = Unit { factors: Vec::new(), text: String::new(), span: parser.span() };
-    // Of each open parenthesis: where its factors begin, and the sign of its exponents.
-    let mut open: Vec<(usize, i32)> = Vec::new();
-    let mut sign = 1;
-    loop {
-        let begin = unit.factors.len();
-        match parser.peek() {
-            Kind::Open('(') => {
-                parser.skip(1);
-                unit.text.push('(');
-                open.push((begin, sign));
-                sign = 1;
-                continue;
-            }
-            Kind::Literal(one) if one == "1" => {
-                parser.skip(1);
-                unit.text.push('1');
-            }
-            Kind::Identifier(_) => {
-                let symbol = parser.name(UNIT)?;
-                unit.text += &symbol.text;
-                unit.factors.push((symbol, 1));
-            }
-            _ => return parser.expected("a unit", UNIT),
-        }
-        finish_factor(parser, &mut unit, begin, sign)?;
-        while !open.is_empty() && parser.take(')') {
-            unit.text.push(')');
-            if let Some((begin, outer)) = open.pop() {
-                finish_factor(parser, &mut unit, begin, outer)?;
-            }
-        }
-        let multiplies = parser.take('*');
-        if !multiplies && !parser.take('/') {
-            return if open.is_empty() { Ok(unit) } else { parser.expected("`)`", UNIT) };
-        }
-        sign = if multiplies { 1 } else { -1 };
-        unit.text.push(if multiplies { '*' } else { '/' });
-    }
-}
-
-/// Reads `^ exponent` and applies it, and the sign of a division, to the factors from `begin` on.
-fn finish_factor(parser: &mut Parser<'_>, unit: &mut Unit, begin: usize, sign: i32) -> Read<()> {
-    let mut exponent = sign;
-    if parser.take('^') {
-        unit.text.push('^');
-        let negative = parser.take('-');
-        if negative {
-            unit.text.push('-');
-        }
-        let Kind::Literal(text) = parser.peek() else { return parser.expected("an integer exponent", UNIT) };
-        let Some(power) = text.parse().ok().filter(|power: &i32| (0..=12).contains(power)) else {
-            return parser.expected("an integer exponent up to 12", UNIT);
-        };
-        parser.skip(1);
-        unit.text += text;
-        exponent *= if negative { -power } else { power };
-    }
-    for (_, factor) in unit.factors.iter_mut().skip(begin) {
-        *factor = factor.saturating_mul(exponent);
-    }
-    Ok(())
 }

@@ -45,7 +45,7 @@
     ::core::fmt::Debug,
     ::core::cmp::PartialEq
 )]
-pub struct FourBar<T = f64> {
+pub struct FourBar<T = ::core::primitive::f64> {
     /// Parameter (`rad/s`), default 6.283185307179586.
     pub omega: T,
 }
@@ -65,7 +65,7 @@ impl<T: ::mbs_runtime::Scalar> ::core::default::Default for FourBar<T> {
     ::core::fmt::Debug,
     ::core::cmp::PartialEq
 )]
-pub struct FourBarCoordinates<T = f64> {
+pub struct FourBarCoordinates<T = ::core::primitive::f64> {
     /// Coordinate (`m`).
     pub x2: T,
     /// Coordinate (`m`).
@@ -79,33 +79,33 @@ pub struct FourBarCoordinates<T = f64> {
 }
 impl<T: ::core::marker::Copy> ::core::convert::From<[T; 5usize]>
 for FourBarCoordinates<T> {
-    fn from(q: [T; 5usize]) -> Self {
+    fn from(__q: [T; 5usize]) -> Self {
         Self {
-            x2: q[0],
-            y2: q[1],
-            phi1: q[2],
-            phi2: q[3],
-            phi3: q[4],
+            x2: __q[0],
+            y2: __q[1],
+            phi1: __q[2],
+            phi2: __q[3],
+            phi3: __q[4],
         }
     }
 }
 impl<T: ::core::marker::Copy> ::core::convert::From<FourBarCoordinates<T>>
 for [T; 5usize] {
-    fn from(named: FourBarCoordinates<T>) -> Self {
-        [named.x2, named.y2, named.phi1, named.phi2, named.phi3]
+    fn from(__named: FourBarCoordinates<T>) -> Self {
+        [__named.x2, __named.y2, __named.phi1, __named.phi2, __named.phi3]
     }
 }
 #[allow(clippy::approx_constant, reason = "numbers of the text stay as they are")]
 const _: () = {
     /// Values of parameters alone.
     #[derive(::core::clone::Clone, ::core::marker::Copy, ::core::fmt::Debug)]
-    pub struct Parameters<T>([T; 1usize]);
+    pub struct __Parameters<T>([T; 1usize]);
     /// Values of `(q, t)` that functions share.
     #[derive(::core::clone::Clone, ::core::marker::Copy, ::core::fmt::Debug)]
-    pub struct Position<T>([T; 13usize]);
+    pub struct __Position<T>([T; 13usize]);
     /// Factorised diagonal blocks, and the entries of Φ_q off them.
     #[derive(::core::clone::Clone, ::core::marker::Copy, ::core::fmt::Debug)]
-    pub struct Factors<T: ::mbs_runtime::Scalar> {
+    pub struct __Factors<T: ::mbs_runtime::Scalar> {
         /// Entries off the diagonal blocks.
         entries: [T; 5],
         /// Diagonal block 1.
@@ -113,13 +113,13 @@ const _: () = {
     }
     impl<T: ::mbs_runtime::Scalar> ::mbs_runtime::Mechanism<T, 5usize, 5usize>
     for FourBar<T> {
-        type Parameters = Parameters<T>;
-        type Position = Position<T>;
+        type Parameters = __Parameters<T>;
+        type Position = __Position<T>;
         type Branches = [T; 1usize];
         type Outputs = [::mbs_runtime::OutputValue<T>; 1usize];
         type Lane = FourBar<T::Real>;
-        const NAME: &'static str = "FourBar";
-        const SOURCE: &'static str = "/// Four-bar linkage with a coupler point.\npub mechanism FourBar;\nconst L1: m = 0.10;\nconst L2: m = 0.25;\nconst L3: m = 0.20;\nconst L4: m = 0.30;\nconst L5: m = 0.15;\nconst ALPHA: rad = 0.4;\nparam omega: rad/s = TAU;\ncoord x2: m;\ncoord y2: m;\ncoord phi1: rad = 0.0;\ncoord phi2: rad = 0.9;\ncoord phi3: rad = 1.8;\nconstraint coupler_point {\n    x2 == L1*cos(phi1) + L5*cos(ALPHA + phi2);\n    y2 == L1*sin(phi1) + L5*sin(ALPHA + phi2);\n}\nconstraint closure {\n    L3*cos(phi3) + L4 == L1*cos(phi1) + L2*cos(phi2);\n    L1*sin(phi1) + L2*sin(phi2) == L3*sin(phi3);\n}\ndrive crank: phi1 == omega*t;\nbranch open: sin(phi3 - phi2) > 0;\nout transmission_angle: rad = phi3 - phi2;";
+        const NAME: &'static ::core::primitive::str = "FourBar";
+        const SOURCE: &'static ::core::primitive::str = "/// Four-bar linkage with a coupler point.\npub mechanism FourBar;\nconst L1: m = 0.10;\nconst L2: m = 0.25;\nconst L3: m = 0.20;\nconst L4: m = 0.30;\nconst L5: m = 0.15;\nconst ALPHA: rad = 0.4;\nparam omega: rad/s = TAU;\ncoord x2: m;\ncoord y2: m;\ncoord phi1: rad = 0.0;\ncoord phi2: rad = 0.9;\ncoord phi3: rad = 1.8;\nconstraint coupler_point {\n    x2 == L1*cos(phi1) + L5*cos(ALPHA + phi2);\n    y2 == L1*sin(phi1) + L5*sin(ALPHA + phi2);\n}\nconstraint closure {\n    L3*cos(phi3) + L4 == L1*cos(phi1) + L2*cos(phi2);\n    L1*sin(phi1) + L2*sin(phi2) == L3*sin(phi3);\n}\ndrive crank: phi1 == omega*t;\nbranch open: sin(phi3 - phi2) > 0;\nout transmission_angle: rad = phi3 - phi2;";
         const COORDINATES: &'static [::mbs_runtime::Entry] = &[
             ::mbs_runtime::Entry {
                 name: "x2",
@@ -188,7 +188,7 @@ const _: () = {
                 line: ::core::line!(),
             },
         ];
-        const BRANCHES_AT_START: &'static [bool] = &[false];
+        const BRANCHES_AT_START: &'static [::core::primitive::bool] = &[false];
         const OUTPUTS: &'static [::mbs_runtime::Entry] = &[
             ::mbs_runtime::Entry {
                 name: "transmission_angle",
@@ -197,15 +197,19 @@ const _: () = {
             },
         ];
         #[inline]
-        fn get(&self, index: usize) -> ::core::option::Option<T> {
-            match index {
+        fn get(&self, __index: ::core::primitive::usize) -> ::core::option::Option<T> {
+            match __index {
                 0usize => ::core::option::Option::Some(self.omega),
                 _ => ::core::option::Option::None,
             }
         }
         #[inline]
-        fn set(&mut self, index: usize, value: T) -> bool {
-            match (index, value) {
+        fn set(
+            &mut self,
+            __index: ::core::primitive::usize,
+            __value: T,
+        ) -> ::core::primitive::bool {
+            match (__index, __value) {
                 (0usize, __value) => {
                     self.omega = __value;
                     true
@@ -214,18 +218,18 @@ const _: () = {
             }
         }
         #[inline]
-        fn lane(&self, __lane: usize) -> Self::Lane {
+        fn lane(&self, __lane: ::core::primitive::usize) -> Self::Lane {
             FourBar {
                 omega: T::lane(self.omega, __lane),
             }
         }
         #[inline]
-        fn parameters(&self) -> Parameters<T> {
+        fn parameters(&self) -> __Parameters<T> {
             let __n59 = -self.omega;
-            Parameters([__n59])
+            __Parameters([__n59])
         }
         #[inline]
-        fn guess(&self, __p: &Parameters<T>) -> [T; 5usize] {
+        fn guess(&self, __p: &__Parameters<T>) -> [T; 5usize] {
             [
                 T::constant(0.0f64),
                 T::constant(0.0f64),
@@ -235,7 +239,7 @@ const _: () = {
             ]
         }
         #[inline]
-        fn coordinate_scales(&self, __p: &Parameters<T>) -> [T; 5usize] {
+        fn coordinate_scales(&self, __p: &__Parameters<T>) -> [T; 5usize] {
             [
                 T::constant(0.3f64),
                 T::constant(0.3f64),
@@ -245,7 +249,7 @@ const _: () = {
             ]
         }
         #[inline]
-        fn row_scales(&self, __p: &Parameters<T>) -> [T; 5usize] {
+        fn row_scales(&self, __p: &__Parameters<T>) -> [T; 5usize] {
             [
                 T::constant(0.3f64),
                 T::constant(0.3f64),
@@ -257,10 +261,10 @@ const _: () = {
         #[inline]
         fn position(
             &self,
-            __p: &Parameters<T>,
+            __p: &__Parameters<T>,
             __q: &[T; 5usize],
             __t: T,
-        ) -> Position<T> {
+        ) -> __Position<T> {
             let __n18 = T::constant(0.4f64) + __q[3];
             let __n45 = __q[4] - __q[3];
             let ([__n23, __n36, __n39, __n25], [__n16, __n32, __n29, __n19]) = T::sin_cos([
@@ -277,7 +281,7 @@ const _: () = {
             let __n33 = T::constant(0.25f64) * __n32;
             let __n37 = T::constant(0.25f64) * __n36;
             let __n40 = T::constant(0.2f64) * __n39;
-            Position([
+            __Position([
                 __q[0],
                 __q[1],
                 __q[2],
@@ -294,7 +298,7 @@ const _: () = {
             ])
         }
         #[inline]
-        fn phi(&self, __p: &Parameters<T>, __s: &Position<T>) -> [T; 5usize] {
+        fn phi(&self, __p: &__Parameters<T>, __s: &__Position<T>) -> [T; 5usize] {
             let __n21 = __s.0[3] + __s.0[4];
             let __n22 = __s.0[0] - __n21;
             let __n27 = __s.0[5] + __s.0[6];
@@ -311,8 +315,8 @@ const _: () = {
         #[inline]
         fn phi_q(
             &self,
-            __p: &Parameters<T>,
-            __s: &Position<T>,
+            __p: &__Parameters<T>,
+            __s: &__Position<T>,
         ) -> [[T; 5usize]; 5usize] {
             let __n50 = -__s.0[3];
             let __n53 = -__s.0[4];
@@ -345,7 +349,7 @@ const _: () = {
             ]
         }
         #[inline]
-        fn phi_t(&self, __p: &Parameters<T>, __s: &Position<T>) -> [T; 5usize] {
+        fn phi_t(&self, __p: &__Parameters<T>, __s: &__Position<T>) -> [T; 5usize] {
             [
                 T::constant(0.0f64),
                 T::constant(0.0f64),
@@ -355,7 +359,7 @@ const _: () = {
             ]
         }
         #[inline]
-        fn phi_tt(&self, __p: &Parameters<T>, __s: &Position<T>) -> [T; 5usize] {
+        fn phi_tt(&self, __p: &__Parameters<T>, __s: &__Position<T>) -> [T; 5usize] {
             [
                 T::constant(0.0f64),
                 T::constant(0.0f64),
@@ -367,8 +371,8 @@ const _: () = {
         #[inline]
         fn phi_qt_qd(
             &self,
-            __p: &Parameters<T>,
-            __s: &Position<T>,
+            __p: &__Parameters<T>,
+            __s: &__Position<T>,
             __qd: &[T; 5usize],
         ) -> [T; 5usize] {
             [
@@ -382,8 +386,8 @@ const _: () = {
         #[inline]
         fn gamma(
             &self,
-            __p: &Parameters<T>,
-            __s: &Position<T>,
+            __p: &__Parameters<T>,
+            __s: &__Position<T>,
             __qd: &[T; 5usize],
         ) -> [T; 5usize] {
             let __n100 = __qd[2] * __qd[2];
@@ -408,15 +412,15 @@ const _: () = {
             [__n123, __n110, __n124, __n125, T::constant(0.0f64)]
         }
         #[inline]
-        fn branches(&self, __p: &Parameters<T>, __s: &Position<T>) -> [T; 1usize] {
+        fn branches(&self, __p: &__Parameters<T>, __s: &__Position<T>) -> [T; 1usize] {
             let ([__n46], [_]) = T::sin_cos([__s.0[12]]);
             [__n46]
         }
         #[inline]
         fn outputs(
             &self,
-            __p: &Parameters<T>,
-            __s: &Position<T>,
+            __p: &__Parameters<T>,
+            __s: &__Position<T>,
             __qd: &[T; 5usize],
             __qdd: &[T; 5usize],
         ) -> [::mbs_runtime::OutputValue<T>; 1usize] {
@@ -432,11 +436,11 @@ const _: () = {
         }
     }
     impl<T: ::mbs_runtime::Scalar> ::mbs_runtime::Kinematic<T, 5usize> for FourBar<T> {
-        type Factors = Factors<T>;
+        type Factors = __Factors<T>;
         #[inline]
         fn solve_blocks<__S: ::mbs_runtime::BlockSolver<T>>(
             &self,
-            __p: &Parameters<T>,
+            __p: &__Parameters<T>,
             __q: &mut [T; 5usize],
             __t: T,
             __solver: &mut __S,
@@ -503,9 +507,9 @@ const _: () = {
         #[inline]
         fn factorize(
             &self,
-            __p: &Parameters<T>,
-            __s: &Position<T>,
-        ) -> (Factors<T>, ::mbs_runtime::Margin<T>) {
+            __p: &__Parameters<T>,
+            __s: &__Position<T>,
+        ) -> (__Factors<T>, ::mbs_runtime::Margin<T>) {
             let __n50 = -__s.0[3];
             let __n53 = -__s.0[4];
             let __n57 = -__s.0[10];
@@ -523,7 +527,7 @@ const _: () = {
             );
             let __margin = __margin.with_block(__value, 2, 3);
             (
-                Factors {
+                __Factors {
                     entries: [__s.0[3], __s.0[5], __s.0[6], __n50, __n53],
                     block1: __block1,
                 },
@@ -533,7 +537,7 @@ const _: () = {
         #[inline]
         fn solve_linear(
             &self,
-            __factors: &Factors<T>,
+            __factors: &__Factors<T>,
             __b: &[T; 5usize],
         ) -> [T; 5usize] {
             let __x2 = __b[4];

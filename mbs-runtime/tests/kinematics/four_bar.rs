@@ -14,6 +14,11 @@ pub struct FourBar<T, const B: usize = 1> {
     pub side: T,
 }
 
+thread_local! {
+    /// Evaluations of the dyad's residual and Jacobian in this thread.
+    pub static EVALUATIONS: std::cell::Cell<u32> = const { std::cell::Cell::new(0) };
+}
+
 pub const GUESS: [f64; 5] = [0.24, 0.36, 0.06, 0.9, 1.6];
 
 impl<T: Scalar, const B: usize> FourBar<T, B> {
@@ -227,6 +232,7 @@ impl<T: Scalar, const B: usize> Kinematic<T, 5> for FourBar<T, B> {
         q[2] = self.omega * t;
         let ([s1], [c1]) = T::sin_cos([q[2]]);
         let (x, outcome) = solver.solve::<2, Direct2<T>>(&self.block(), [q[3], q[4]], |x| {
+            EVALUATIONS.set(EVALUATIONS.get() + 1);
             let ([s2, s3], [c2, c3]) = T::sin_cos(*x);
             (self.closure([c1, c2, c3], [s1, s2, s3]), self.dyad([c1, c2, c3], [s1, s2, s3]))
         });

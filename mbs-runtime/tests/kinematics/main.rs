@@ -1,6 +1,8 @@
 //! The solvers on a mechanism whose answers are known.
 
+mod deadline;
 mod failures;
 mod four_bar;
 mod lanes;
 mod motion;
+mod reset;

@@ -3,8 +3,8 @@
 //! With the feature `no-panic` a function that can panic does not link, and the linker names it.
 
 use mbs_runtime::{
-    Assembled, Evaluation, Failure, Frame, Kinematic, Margin, Mechanism, Newton, Outcome, Real,
-    RegularFactors, Scalar, Statistics, Stepper,
+    Assembled, Budget, Evaluation, Failure, Frame, Kinematic, Margin, Mechanism, Newton, Outcome, Real,
+    RegularFactors, Saved, Scalar, Statistics, Step, Stepper,
 };
 #[cfg(feature = "no-panic")]
 use no_panic::no_panic;
@@ -181,6 +181,34 @@ entry_points! {
         stepper: &mut Stepper<S, R, N>, h: R,
     ) -> Result<Statistics, Failure> {
         stepper.advance(h)
+    }
+    /// A step in a fixed amount of work.
+    fn step[S: Kinematic<R, N>, R: Real, const N: usize](
+        stepper: &mut Stepper<S, R, N>, h: R, budget: Budget,
+    ) -> Step {
+        stepper.step(h, budget)
+    }
+    /// Several periods at once; whether the last is degraded, and the time to singular.
+    fn skip[S: Kinematic<R, N>, R: Real, const N: usize](
+        stepper: &mut Stepper<S, R, N>, period: R, periods: u32, budget: Budget,
+    ) -> (Step, bool, Option<R>) {
+        (stepper.skip(period, periods, budget), stepper.is_degraded(), stepper.time_to_singular())
+    }
+    /// A state as bytes.
+    fn save[S: Kinematic<R, N>, R: Real, const N: usize](
+        stepper: &Stepper<S, R, N>, bytes: &mut [u8],
+    ) -> Option<usize> {
+        stepper.save().to_le_bytes_into(bytes)
+    }
+    /// A state from bytes.
+    fn saved[const N: usize](bytes: &[u8]) -> Option<Saved<N>> {
+        Saved::from_le_bytes(bytes)
+    }
+    /// A stepper after a reset.
+    fn assemble_near[S: Kinematic<R, N>, R: Real, const N: usize](
+        mechanism: S, saved: &Saved<N>, t: R,
+    ) -> Result<Stepper<S, R, N>, Failure> {
+        Stepper::assemble_near(mechanism, saved, t)
     }
     /// A change of a variable by name.
     fn change[S: Kinematic<R, N>, R: Real, const N: usize](

@@ -2,7 +2,7 @@
 
 use core::hint::black_box;
 
-use mbs_runtime::{Failure, Kinematic, Real, Scalar};
+use mbs_runtime::{Budget, Failure, Kinematic, Real, Scalar};
 
 use crate::entry_points as entry;
 
@@ -84,5 +84,16 @@ pub fn exercise_solvers<S: Kinematic<R, N> + Copy, R: Real, const N: usize>(
     black_box(entry::change(&mut stepper, black_box(variable), value));
     black_box(entry::sweep(&mut stepper, black_box(R::constant(0.1)), black_box(10))?);
     black_box(entry::frame(&stepper));
+
+    let budget = black_box(Budget { newton: 4, fallback: 4 });
+    black_box(entry::step(&mut stepper, black_box(R::constant(1e-3)), budget));
+    black_box(entry::skip(&mut stepper, black_box(R::constant(1e-3)), black_box(3), budget));
+    // Room for 60 coordinates.
+    let mut bytes = [0; 512];
+    let written = entry::save(&stepper, black_box(&mut bytes)).unwrap_or(0);
+    if let Some(saved) = entry::saved::<N>(black_box(bytes.get(..written).unwrap_or(&[]))) {
+        let t = stepper.t();
+        black_box(entry::assemble_near(*stepper.mechanism(), &saved, t)?);
+    }
     Ok(())
 }

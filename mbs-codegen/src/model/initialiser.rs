@@ -1,0 +1,76 @@
+//! What stands behind the `=` of a declaration: its unit, its shape, whether it is a number.
+
+use super::elaborate::{Elaborator, Fault, Quantity, Scalar, Value};
+use super::expression::Node;
+use super::names::Symbol;
+use super::units::Dimension;
+use crate::syntax::ast::{Expression, Operation, Unit};
+
+/// The value of a `let`, in its unit where one is declared.
+pub fn named(
+    work: &mut Elaborator<'_>,
+    unit: Option<&Unit>,
+    expression: &Expression,
+) -> Result<Value, Fault> {
+    let value = work.value(expression)?;
+    match unit {
+        None => Ok(value),
+        Some(unit) => {
+            let dimension = Dimension::of(unit, work.diagnostics).ok_or(Fault)?;
+            initialiser(work, value, dimension)
+        }
+    }
+}
+
+/// Before: the value behind a `=`. After: the same in the declared unit: bare numbers take it on, others must
+/// have it.
+pub fn initialiser(work: &mut Elaborator<'_>, value: Value, declared: Dimension) -> Result<Value, Fault> {
+    let mut items = Vec::new();
+    for item in &value.items {
+        if !item.bare && item.quantity != Quantity::Any {
+            let expected = Scalar { quantity: Quantity::Known(declared), ..*item };
+            work.agree(expected, *item)?;
+        }
+        items.push(Scalar { quantity: Quantity::Known(declared), bare: false, ..*item });
+    }
+    Ok(Value { items, ..value })
+}
+
+/// The shape that was declared.
+pub fn fits_shape(work: &mut Elaborator<'_>, value: &Value, shape: &[usize]) -> Result<(), Fault> {
+    if value.shape == shape {
+        return Ok(());
+    }
+    let declared = Value { shape: shape.to_vec(), items: Vec::new(), span: value.span }.describe();
+    let message = format!("{} is declared, {} is given", declared, value.describe());
+    Err(work.fault(value.span, message, "declare the shape as `[m; 2]`, give the components as `[x, y]`"))
+}
+
+/// The components, all numbers; otherwise the first name that is none is reported.
+pub fn numbers(
+    work: &mut Elaborator<'_>,
+    expression: &Expression,
+    value: &Value,
+    what: &str,
+) -> Result<Vec<f64>, Fault> {
+    let number = |item: &Scalar| match work.expressions.node(item.id) {
+        Node::Number(number) => Some(number),
+        _ => None,
+    };
+    if let Some(found) = value.items.iter().map(number).collect() {
+        return Ok(found);
+    }
+    let is_variable = |name: &str| match work.names.get(name) {
+        Some(Symbol::Value(value)) => value.items.iter().any(|item| number(item).is_none()),
+        _ => name == "t",
+    };
+    let variable = expression.code.iter().find_map(|instruction| match &instruction.operation {
+        Operation::Name(name) if is_variable(name) => Some((name, instruction.span)),
+        _ => None,
+    });
+    let help = "use numbers and constants alone; what depends on parameters is a `let`";
+    Err(match variable {
+        Some((name, span)) => work.fault(span, format!("`{name}` cannot stand in {what}"), help),
+        None => work.fault(value.span, format!("{what} must be a number"), help),
+    })
+}

@@ -1,0 +1,115 @@
+//! Equations, and the constraints that group them.
+
+use super::ast::{Declares, Equation, Item, StatementKind};
+use super::expression::expression;
+use super::parser::{GivenUp, Parser, Read};
+use super::statement::{at_statement, end, read_loop};
+use super::tokens::Kind;
+
+const CONSTRAINT: &str = "write `constraint pin { x == L*cos(phi); y == L*sin(phi); }`";
+pub fn read_constraint(parser: &mut Parser<'_>) -> Read<StatementKind> {
+    let name = parser.name(CONSTRAINT)?;
+    if parser.at_word("redundant") {
+        let span = parser.span();
+        parser.diagnostics.report(
+            span,
+            "`redundant` is not translated by this version",
+            "leave out the rows that follow from the others",
+        );
+        parser.skip(1);
+    }
+    parser.expect('{', CONSTRAINT)?;
+    let mut items = Vec::new();
+    let mut loops = 0_usize;
+    let mut complete = true;
+    loop {
+        if parser.take('}') {
+            if loops > 0 {
+                loops -= 1;
+                items.push(Item::EndFor);
+                continue;
+            }
+            if items.is_empty() && complete {
+                let message = format!("constraint `{}` has no equation", name.text);
+                parser.diagnostics.report(name.span, message, "write `lhs == rhs;` in the braces");
+            }
+            return Ok(StatementKind::Constraint { name, items });
+        }
+        let read = if parser.at_word("for") {
+            parser.skip(1);
+            read_loop(parser).map(|head| {
+                loops += 1;
+                Item::For(head)
+            })
+        } else if misplaced(parser) {
+            misplaced_statement(parser)
+        } else {
+            equation(parser, CONSTRAINT).map(Item::Equation)
+        };
+        match read {
+            Ok(item) => items.push(item),
+            Err(GivenUp) => {
+                complete = false;
+                if !behind_equation(parser) {
+                    return Ok(StatementKind::Constraint { name, items });
+                }
+            }
+        }
+    }
+}
+
+/// Whether a statement stands here: a word and behind it a name, as in no equation.
+fn misplaced(parser: &Parser<'_>) -> bool {
+    at_statement(parser) && matches!(parser.peek_at(1), Kind::Identifier(_))
+}
+
+/// Reports a statement in a constraint; what it declares is known as faulty.
+fn misplaced_statement(parser: &mut Parser<'_>) -> Read<Item> {
+    let span = parser.span();
+    let word = parser.name(CONSTRAINT)?.text;
+    parser.diagnostics.report(
+        span,
+        format!("`{word}` cannot stand in a constraint"),
+        "move the statement before the constraint",
+    );
+    let declares = match word.as_str() {
+        "param" => Declares::Param,
+        "input" => Declares::Input { rates: false },
+        "coord" => Declares::Coord,
+        _ => Declares::Value,
+    };
+    parser.declare(declares, CONSTRAINT, |_, _| Err(GivenUp)).map(|(_, never)| never)
+}
+
+/// Goes behind the `;` of an equation that was given up; false where the constraint ends before one.
+fn behind_equation(parser: &mut Parser<'_>) -> bool {
+    loop {
+        match parser.peek() {
+            Kind::End => return false,
+            Kind::Close('}') => return true,
+            Kind::Punctuation(';', _) => {
+                parser.skip(1);
+                return true;
+            }
+            Kind::Open(_) => {
+                parser.skip(1);
+                parser.skip_group();
+            }
+            _ => parser.skip(1),
+        }
+    }
+}
+
+/// `left == right;`
+pub fn equation(parser: &mut Parser<'_>, help: &str) -> Read<Equation> {
+    let left = expression(parser)?;
+    let span = parser.span();
+    if !parser.at_pair('=', '=') {
+        let single = matches!(parser.peek(), Kind::Punctuation('=', _));
+        return parser.expected("`==`", if single { "the sign of an equation is `==`" } else { help });
+    }
+    parser.skip(2);
+    let right = expression(parser)?;
+    end(parser, help)?;
+    Ok(Equation { left, right, span })
+}

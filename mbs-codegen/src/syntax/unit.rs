@@ -1,0 +1,89 @@
+//! Units and shapes of declarations.
+
+use super::ast::{Type, Unit};
+use super::expression::expression;
+use super::parser::{Parser, Read};
+use super::tokens::Kind;
+
+/// A unit, or `[unit; length, …]`; `help` shows the declaration that it belongs to.
+pub fn declared_type(parser: &mut Parser<'_>, help: &str) -> Read<Type> {
+    if !parser.take('[') {
+        return Ok(Type { unit: unit(parser)?, shape: Vec::new() });
+    }
+    let unit = unit(parser)?;
+    parser.expect(';', help)?;
+    let mut shape = vec![expression(parser)?];
+    while parser.take(',') {
+        shape.push(expression(parser)?);
+    }
+    parser.expect(']', help)?;
+    Ok(Type { unit, shape })
+}
+
+const UNIT: &str = "write a unit as `m`, `rad/s`, `N*m` or `kg*m^2`; `1` where there is none";
+
+/// A unit with its parentheses multiplied out.
+pub fn unit(parser: &mut Parser<'_>) -> Read<Unit> {
+    let mut unit = Unit { factors: Vec::new(), text: String::new(), span: parser.span() };
+    // Of each open parenthesis: where its factors begin, and the sign of its exponents.
+    let mut open: Vec<(usize, i32)> = Vec::new();
+    let mut sign = 1;
+    loop {
+        let begin = unit.factors.len();
+        match parser.peek() {
+            Kind::Open('(') => {
+                parser.skip(1);
+                unit.text.push('(');
+                open.push((begin, sign));
+                sign = 1;
+                continue;
+            }
+            Kind::Literal(one) if one == "1" => {
+                parser.skip(1);
+                unit.text.push('1');
+            }
+            Kind::Identifier(_) => {
+                let symbol = parser.name(UNIT)?;
+                unit.text += &symbol.text;
+                unit.factors.push((symbol, 1));
+            }
+            _ => return parser.expected("a unit", UNIT),
+        }
+        finish_factor(parser, &mut unit, begin, sign)?;
+        while !open.is_empty() && parser.take(')') {
+            unit.text.push(')');
+            if let Some((begin, outer)) = open.pop() {
+                finish_factor(parser, &mut unit, begin, outer)?;
+            }
+        }
+        let multiplies = parser.take('*');
+        if !multiplies && !parser.take('/') {
+            return if open.is_empty() { Ok(unit) } else { parser.expected("`)`", UNIT) };
+        }
+        sign = if multiplies { 1 } else { -1 };
+        unit.text.push(if multiplies { '*' } else { '/' });
+    }
+}
+
+/// Reads `^ exponent` and applies it, and the sign of a division, to the factors from `begin` on.
+fn finish_factor(parser: &mut Parser<'_>, unit: &mut Unit, begin: usize, sign: i32) -> Read<()> {
+    let mut exponent = sign;
+    if parser.take('^') {
+        unit.text.push('^');
+        let negative = parser.take('-');
+        if negative {
+            unit.text.push('-');
+        }
+        let Kind::Literal(text) = parser.peek() else { return parser.expected("an integer exponent", UNIT) };
+        let Some(power) = text.parse().ok().filter(|power: &i32| (0..=12).contains(power)) else {
+            return parser.expected("an integer exponent up to 12", UNIT);
+        };
+        parser.skip(1);
+        unit.text += text;
+        exponent *= if negative { -power } else { power };
+    }
+    for (_, factor) in unit.factors.iter_mut().skip(begin) {
+        *factor = factor.saturating_mul(exponent);
+    }
+    Ok(())
+}
