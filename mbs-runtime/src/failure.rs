@@ -118,37 +118,37 @@ impl fmt::Display for Failure {
             Failure::NonFinite { name, line } => write!(f, "`{name}` (line {line}) is not a finite number"),
             Failure::Unresolved { coordinate, value, time } => write!(
                 f,
-                "`{}` (line {}) is {value:.3e} {} at t = {time} s, too large for its number type to tell positions \
+                "`{}` (line {}) is {value:.3e} {} at t = {time:?} s, too large for its number type to tell positions \
                  apart; take off whole turns, or use `f64`",
                 coordinate.name, coordinate.line, coordinate.unit
             ),
             Failure::NotConverged { row, residual, required, iterations, time } => write!(
                 f,
-                "no position at t = {time} s: after {iterations} iterations row `{}` (line {}) is still {residual:.3e} {} \
+                "no position at t = {time:?} s: after {iterations} iterations row `{}` (line {}) is still {residual:.3e} {} \
                  off, required {required:.3e}; take a smaller step, or check that the mechanism can reach this position",
                 row.name, row.line, row.unit
             ),
             Failure::NotAssemblable { row, residual, time } => write!(
                 f,
-                "the mechanism cannot be assembled at t = {time} s: row `{}` (line {}) stays {residual:.3e} {} open at \
+                "the mechanism cannot be assembled at t = {time:?} s: row `{}` (line {}) stays {residual:.3e} {} open at \
                  best; check the dimensions, or start from a better guess",
                 row.name, row.line, row.unit
             ),
             Failure::Singular { row, coordinate, margin, required, time } => write!(
                 f,
-                "the mechanism is singular at t = {time} s: rows around `{}` (line {}) do not determine `{}` (line {}); \
+                "the mechanism is singular at t = {time:?} s: rows around `{}` (line {}) do not determine `{}` (line {}); \
                  margin {margin:.3e}, required {required:.3e}",
                 row.name, row.line, coordinate.name, coordinate.line
             ),
             Failure::WrongBranch { branch, value, time } => write!(
                 f,
-                "the assembly found at t = {time} s is not the declared one: branch `{}` (line {}) is {value:.3e}, not \
+                "the assembly found at t = {time:?} s is not the declared one: branch `{}` (line {}) is {value:.3e}, not \
                  positive; start from a guess on the other side",
                 branch.name, branch.line
             ),
             Failure::TooFar { coordinate, distance, allowed, time } => write!(
                 f,
-                "the position at t = {time} s is not next to the saved one: `{}` (line {}) differs by {distance:.3e} in \
+                "the position at t = {time:?} s is not next to the saved one: `{}` (line {}) differs by {distance:.3e} in \
                  the reference metric, allowed {allowed:.3e}; start at the time and with the inputs of the saved state",
                 coordinate.name, coordinate.line
             ),

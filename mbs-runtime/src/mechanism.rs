@@ -79,7 +79,8 @@ pub trait Mechanism<T: Scalar, const N: usize, const M: usize>: Clone {
     const COORDINATES: &'static [Entry];
     /// Constraint rows in the order of Φ: M.
     const ROWS: &'static [Entry];
-    /// Parameters and inputs, the public fields, component by component: the names that [`set`](Self::set) takes.
+    /// Parameters and inputs, the public fields, component by component: [`variable`](Self::variable) finds the index
+    /// that [`get`](Self::get) and [`set`](Self::set) take.
     const VARIABLES: &'static [Entry];
     /// Branch conditions.
     const BRANCHES: &'static [Entry];

@@ -180,6 +180,9 @@ impl<S: Kinematic<R, N>, R: Real, const N: usize> Stepper<S, R, N> {
     }
 
     /// Outputs with their time derivatives.
+    ///
+    /// Not finite where a definition has no value at this position, the root of a negative number for instance; a
+    /// [`Sweep`] reports that as [`Failure::NonFinite`].
     #[inline]
     pub fn outputs(&self) -> S::Outputs {
         self.mechanism.outputs(&self.parameters, &self.position(), &self.state.qd, &self.state.qdd)

@@ -2,7 +2,7 @@
 
 use core::iter::FusedIterator;
 
-use crate::{Failure, Kinematic, Real, Statistics, Stepper};
+use crate::{Entry, Failure, Kinematic, OutputValue, Real, Statistics, Stepper};
 
 /// One instant of a motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,7 +28,7 @@ pub struct Frame<R, O, const N: usize> {
 /// Frames of a [`Stepper`] at start + (end − start) k/steps for k = 0 … steps; no rounding accumulates.
 ///
 /// The first frame is the state as it stands. After a failure, which is yielded, there is no more; the stepper
-/// then stands at the last good frame.
+/// then stands at the last position found. An output that has no value there is a failure too.
 pub struct Sweep<'a, S: Kinematic<R, N>, R: Real, const N: usize> {
     stepper: &'a mut Stepper<S, R, N>,
     start: R,
@@ -62,9 +62,23 @@ impl<S: Kinematic<R, N>, R: Real, const N: usize> Iterator for Sweep<'_, S, R, N
         {
             return Some(Err(failure));
         }
+        let frame = self.stepper.frame();
+        if let Some(failure) = output_failure(frame.outputs.as_ref(), S::OUTPUTS) {
+            return Some(Err(failure));
+        }
         self.next = k.checked_add(1).filter(|next| *next <= self.steps);
-        Some(Ok(self.stepper.frame()))
+        Some(Ok(frame))
     }
+}
+
+/// The first output that is not finite, or has a rate that is not.
+fn output_failure<R: Real>(outputs: &[OutputValue<R>], entries: &[Entry]) -> Option<Failure> {
+    let finite = |value: &Option<R>| value.is_none_or(|value| value.is_finite());
+    let broken = |output: &OutputValue<R>| {
+        !(output.value.is_finite() && finite(&output.rate) && finite(&output.acceleration))
+    };
+    let index = outputs.iter().position(broken)?;
+    entries.get(index).map(|entry| Failure::NonFinite { name: entry.name, line: entry.line })
 }
 
 impl<S: Kinematic<R, N>, R: Real, const N: usize> FusedIterator for Sweep<'_, S, R, N> {}

@@ -17,11 +17,11 @@ mechanism! {
     input theta: rad, rates;
     input shift: [m; 2], rates;
     input load: N;
-    coord phi: [rad; 3];
-    coord p: [m; 2];
-    coord s: m;
-    coord w: [m; 3];
-    coord z: m;
+    coord phi: [rad; 3] = [0.1, 0.2, 0.3];
+    coord p: [m; 2] = [0.1, 0.2];
+    coord s: m = 0.1;
+    coord w: [m; 3] = [0.1, 0.2, 0.3];
+    coord z: m = 0.1;
 
     let swing = 0.5*sin(omega*t) + 0.1*theta;
     let a = arm[0]*unit(phi[0]);

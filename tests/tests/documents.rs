@@ -49,8 +49,9 @@ fn no_folder_of_the_code_generator_uses_one_to_its_right() {
             let path = file.expect("an entry").path();
             let text = fs::read_to_string(&path).expect("a source file");
             for later in order.iter().skip(index + 1) {
-                let used = format!("crate::{later}");
-                assert!(!text.contains(&used), "{} uses `{used}`", path.display());
+                let used = [format!("crate::{later}"), format!("    {later}::")];
+                let found = used.iter().find(|used| text.contains(used.as_str()));
+                assert!(found.is_none(), "{} uses `{later}`", path.display());
             }
             let used = text.contains("use syn") || text.contains("use quote");
             assert!(*folder != "symbolic" || !used, "{} knows of Rust's syntax", path.display());
@@ -77,6 +78,9 @@ fn every_mechanism_and_command_stands_in_the_readme() {
         "compare NAME",
     ] {
         assert!(text.contains(&format!("`mbs {command}")), "README.md does not show `mbs {command}`");
+    }
+    for card in mechanisms::registry::ALL {
+        assert!(text.contains(&format!("`{}`", card.name)), "README.md does not name `{}`", card.name);
     }
     assert!(text.contains("cargo run --release") && text.contains("cargo test --workspace"));
 }

@@ -4,7 +4,7 @@ use proc_macro2::Span;
 
 use super::evaluate;
 use super::expression::{Binary, Expressions, Id, Node, Unary};
-use super::functions::{self, FUNCTIONS};
+use super::functions::{self, FUNCTIONS, LATER};
 use super::names::{Names, Symbol};
 use super::units::{Dimension, with_suffix};
 use crate::diagnostics::{Diagnostics, nearest};
@@ -291,6 +291,8 @@ impl Elaborator<'_> {
             format!("`{name}` is a function; write `{name}(…)`")
         } else if let Some(known) = nearest(name, self.names.all().chain(CONSTANTS)) {
             format!("did you mean `{known}`?")
+        } else if with_suffix(1.0, name).is_ok() {
+            format!("a unit is one suffix joined to its number, `2{name}`; write `2rad/1s` for a quotient")
         } else {
             "declare it with `const`, `param`, `input`, `coord` or `let`".into()
         };
@@ -299,6 +301,13 @@ impl Elaborator<'_> {
 
     /// A fault at an unknown function.
     pub fn unknown_function(&mut self, name: &str, span: Span) -> Fault {
+        if LATER.contains(&name) {
+            return self.fault(
+                span,
+                format!("`{name}` is not translated by this version"),
+                "outputs may use `der(x)` and `der2(x)`; drives are equations of coordinates and time",
+            );
+        }
         let help = match nearest(name, FUNCTIONS) {
             Some(known) => format!("did you mean `{known}`?"),
             None => format!("known are {}", FUNCTIONS.join(", ")),

@@ -7,11 +7,13 @@ use super::expression::{Binary, Unary};
 use super::units::Dimension;
 
 /// Names of all functions.
-pub const FUNCTIONS: [&str; 28] = [
+pub const FUNCTIONS: [&str; 27] = [
     "sqrt", "exp", "ln", "sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "abs",
     "sign", "min", "max", "hypot", "sum", "dot", "cross", "norm", "det", "rot", "unit", "der", "der2",
-    "rate",
 ];
+
+/// Functions of the language which this version does not translate.
+pub const LATER: [&str; 6] = ["rate", "lambda", "effort", "reaction", "margin", "ratio"];
 
 /// Before: arguments as they stand on the stack. After: the value of `function`, or the fault reported.
 pub fn call(

@@ -59,8 +59,31 @@ pub fn analyse(model: &Model, equations: &mut Equations, diagnostics: &mut Diagn
             let explicit = explicit(equations, &rows, &coordinates);
             Block { rows, coordinates, explicit }
         })
-        .collect();
-    Some(Structure { blocks, matched: matching.of_row })
+        .collect::<Vec<_>>();
+    missing_guesses(model, &blocks, diagnostics);
+    diagnostics.is_empty().then_some(Structure { blocks, matched: matching.of_row })
+}
+
+/// Reports coordinates without a guess that Newton's method has to start from.
+fn missing_guesses(model: &Model, blocks: &[Block], diagnostics: &mut Diagnostics) {
+    let solved = blocks.iter().filter(|block| block.explicit.is_none()).flat_map(|block| &block.coordinates);
+    let coordinates = solved.filter_map(|coordinate| model.coordinates.get(*coordinate));
+    // One message a declaration: the components of an array share their guess.
+    let mut declarations: Vec<&crate::model::Coordinate> =
+        coordinates.filter(|c| c.guess.is_none()).collect();
+    let place = |coordinate: &crate::model::Coordinate| {
+        let start = coordinate.span.start();
+        (start.line, start.column)
+    };
+    declarations.sort_by_key(|coordinate| place(coordinate));
+    declarations.dedup_by_key(|coordinate| place(coordinate));
+    for coordinate in declarations {
+        diagnostics.report(
+            coordinate.span,
+            format!("coordinate `{}` has no guess, and no row gives it explicitly", coordinate.name),
+            format!("write where the assembly starts: `= 0.5` behind `{}`", coordinate.unit),
+        );
+    }
 }
 
 /// The coordinate of a one-row block solved for, where its coefficient is a number.

@@ -30,7 +30,7 @@ pub struct Arguments {
     #[arg(long = "param", value_name = "NAME=VALUE", value_parser = assignment)]
     parameters: Vec<(String, f64)>,
     /// Equal steps that the motion is divided into
-    #[arg(long, default_value_t = STEPS, value_parser = positive)]
+    #[arg(long, default_value_t = STEPS, value_parser = steps)]
     steps: usize,
     /// Directory for the report [default: mbs/NAME in cargo's target directory]
     #[arg(long, value_name = "DIR")]
@@ -199,9 +199,28 @@ fn write_report(directory: &Path, page: &str, values: &str) -> Result<(PathBuf, 
     placed.map(|()| (directory.join(files[0].0), directory.join(files[1].0)))
 }
 
+/// Most steps of a run: its motion is held in memory and written as text.
+const MOST_STEPS: usize = 1_000_000;
+
+/// A number of steps that memory and disk can take.
+fn steps(text: &str) -> Result<usize, String> {
+    match positive(text)? {
+        steps if steps <= MOST_STEPS => Ok(steps),
+        _ => Err(format!("at most {MOST_STEPS} are possible")),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn steps_are_bounded() {
+        assert_eq!(steps("720"), Ok(720));
+        for bad in ["0", "-1", "1.5", "1000001", "99999999999", "two"] {
+            assert!(steps(bad).is_err(), "{bad}");
+        }
+    }
 
     #[test]
     fn what_the_command_line_sets_overrules_the_presets() {
