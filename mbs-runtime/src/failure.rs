@@ -111,44 +111,60 @@ pub enum Failure {
     },
 }
 
+impl Failure {
+    /// Time (s) at which it happened; 0 where no time has a part in it.
+    fn time(&self) -> f64 {
+        match self {
+            Failure::Unresolved { time, .. }
+            | Failure::NotConverged { time, .. }
+            | Failure::NotAssemblable { time, .. }
+            | Failure::Singular { time, .. }
+            | Failure::WrongBranch { time, .. }
+            | Failure::TooFar { time, .. } => *time,
+            Failure::NonFinite { .. } | Failure::Foreign { .. } => 0.0,
+        }
+    }
+}
+
 impl fmt::Display for Failure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let time = Time(self.time());
         match self {
             Failure::NonFinite { name, line: 0 } => write!(f, "`{name}` is not a finite number"),
             Failure::NonFinite { name, line } => write!(f, "`{name}` (line {line}) is not a finite number"),
-            Failure::Unresolved { coordinate, value, time } => write!(
+            Failure::Unresolved { coordinate, value, .. } => write!(
                 f,
-                "`{}` (line {}) is {value:.3e} {} at t = {time:?} s, too large for its number type to tell positions \
+                "`{}` (line {}) is {value:.3e} {} at t = {time} s, too large for its number type to tell positions \
                  apart; take off whole turns, or use `f64`",
                 coordinate.name, coordinate.line, coordinate.unit
             ),
-            Failure::NotConverged { row, residual, required, iterations, time } => write!(
+            Failure::NotConverged { row, residual, required, iterations, .. } => write!(
                 f,
-                "no position at t = {time:?} s: after {iterations} iterations row `{}` (line {}) is still {residual:.3e} {} \
+                "no position at t = {time} s: after {iterations} iterations row `{}` (line {}) is still {residual:.3e} {} \
                  off, required {required:.3e}; take a smaller step, or check that the mechanism can reach this position",
                 row.name, row.line, row.unit
             ),
-            Failure::NotAssemblable { row, residual, time } => write!(
+            Failure::NotAssemblable { row, residual, .. } => write!(
                 f,
-                "the mechanism cannot be assembled at t = {time:?} s: row `{}` (line {}) stays {residual:.3e} {} open at \
+                "the mechanism cannot be assembled at t = {time} s: row `{}` (line {}) stays {residual:.3e} {} open at \
                  best; check the dimensions, or start from a better guess",
                 row.name, row.line, row.unit
             ),
-            Failure::Singular { row, coordinate, margin, required, time } => write!(
+            Failure::Singular { row, coordinate, margin, required, .. } => write!(
                 f,
-                "the mechanism is singular at t = {time:?} s: rows around `{}` (line {}) do not determine `{}` (line {}); \
+                "the mechanism is singular at t = {time} s: rows around `{}` (line {}) do not determine `{}` (line {}); \
                  margin {margin:.3e}, required {required:.3e}",
                 row.name, row.line, coordinate.name, coordinate.line
             ),
-            Failure::WrongBranch { branch, value, time } => write!(
+            Failure::WrongBranch { branch, value, .. } => write!(
                 f,
-                "the assembly found at t = {time:?} s is not the declared one: branch `{}` (line {}) is {value:.3e}, not \
+                "the assembly found at t = {time} s is not the declared one: branch `{}` (line {}) is {value:.3e}, not \
                  positive; start from a guess on the other side",
                 branch.name, branch.line
             ),
-            Failure::TooFar { coordinate, distance, allowed, time } => write!(
+            Failure::TooFar { coordinate, distance, allowed, .. } => write!(
                 f,
-                "the position at t = {time:?} s is not next to the saved one: `{}` (line {}) differs by {distance:.3e} in \
+                "the position at t = {time} s is not next to the saved one: `{}` (line {}) differs by {distance:.3e} in \
                  the reference metric, allowed {allowed:.3e}; start at the time and with the inputs of the saved state",
                 coordinate.name, coordinate.line
             ),
@@ -156,6 +172,17 @@ impl fmt::Display for Failure {
                 write!(f, "the saved state is not one of `{mechanism}`: name or coordinates differ")
             }
         }
+    }
+}
+
+/// A time in plain digits, or with an exponent where those would be many.
+struct Time(f64);
+
+impl fmt::Display for Time {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Time(time) = *self;
+        let plain = time == 0.0 || (1e-5..1e9).contains(&time.max(-time));
+        if plain { write!(f, "{time}") } else { write!(f, "{time:e}") }
     }
 }
 

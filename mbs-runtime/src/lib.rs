@@ -76,7 +76,7 @@ pub use trace::{Trace, Traced};
 ///     branch ahead: cos(phi) > 0;
 /// }
 ///
-/// let machine = SliderCrank { crank: 0.04, ..SliderCrank::default() };
+/// let machine: SliderCrank = SliderCrank { crank: 0.04, ..SliderCrank::default() };
 /// let guess = machine.guess(&machine.parameters());
 /// let mut motion = Stepper::assemble(machine, guess, 0.0)?;
 /// motion.advance(0.001)?;

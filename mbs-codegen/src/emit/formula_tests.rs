@@ -8,7 +8,7 @@ use crate::{Formulas, formulas, latex_formulas};
 const FOUR_BAR: &str = "mechanism FourBar;
     param L1: m = 0.2; param L2: m = 0.6; param L3: m = 0.5; param L4: m = 0.55; param L5: m = 0.35;
     param alpha: rad = 30deg; param omega: rad/s = 1;
-    coord x2: m; coord y2: m; coord phi1: rad; coord phi2: rad; coord phi3: rad;
+    coord x2: m; coord y2: m; coord phi1: rad; coord phi2: rad = 0.9; coord phi3: rad = 1.8;
     constraint coupler_point {
         x2 == L1*cos(phi1) + L5*cos(alpha + phi2);
         y2 == L1*sin(phi1) + L5*sin(alpha + phi2);
@@ -183,7 +183,7 @@ fn texts_cut_off_anywhere_are_faults_and_no_panics() {
 
 /// Declarations of all that the rows below use, velocities as coordinates of their own.
 const NAMES: &str = "param a: 1 = 2; param b: 1 = 3; param w: 1/s = 1;
-    coord x: 1; coord y: 1; coord phi: rad; coord x_d: 1/s; coord y_d: 1/s; coord phi_d: rad/s;";
+    coord x: 1 = 0.1; coord y: 1 = 0.1; coord phi: rad = 0.1; coord x_d: 1/s = 0.1; coord y_d: 1/s = 0.1; coord phi_d: rad/s = 0.1;";
 
 fn equations_of(rows: &str) -> (crate::model::Model, Equations) {
     let mut diagnostics = Diagnostics::default();
