@@ -24,8 +24,8 @@ mechanism! {
     coord x2: m;
     coord y2: m;
     coord phi1: rad;
-    coord phi2: rad;
-    coord phi3: rad;
+    coord phi2: rad = 0.9;
+    coord phi3: rad = 1.8;
 
     constraint coupler_point {
         x2 == L1*cos(phi1) + L5*cos(ALPHA + phi2);
@@ -53,8 +53,8 @@ mechanism! {
     coord x2: m;
     coord y2: m;
     coord phi1: rad;
-    coord phi2: rad;
-    coord phi3: rad;
+    coord phi2: rad = 0.9;
+    coord phi3: rad = 1.8;
 
     constraint coupler_point {
         x2 == L1*cos(phi1) + L5*cos(alpha + phi2);
