@@ -1,0 +1,158 @@
+//! What the macro emits for a text with bodies and forces: M q̈ + Φ_qᵀ λ = Q with Φ = 0.
+
+use crate::{BlockSolver, Entry, Margin, Mechanism, Outcome, Scalar};
+
+/// Kinetic and potential energy of one state (J).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Energy<T> {
+    /// ½ q̇ᵀ M q̇, and what the text adds by `kinetic`.
+    pub kinetic: T,
+    /// Gravity, springs, and what the text adds by `potential`.
+    pub potential: T,
+}
+
+/// What moves and pulls in one state: velocities, accelerations, multipliers, first-order states.
+///
+/// The multipliers have the text's sign: a row's force on the coordinates is −Φ_qᵀ λ.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Motion<'a, T, const N: usize, const M: usize, Z> {
+    /// Velocities q̇: N.
+    pub qd: &'a [T; N],
+    /// Accelerations q̈: N.
+    pub qdd: &'a [T; N],
+    /// Multipliers λ: M.
+    pub lambda: &'a [T; M],
+    /// First-order states of the text.
+    pub states: &'a Z,
+}
+
+/// A mechanism with masses and forces. Matrices are dense here, for methods that factorise them and for tests; the
+/// products that fast methods need are straight-line code without zeros.
+pub trait Dynamic<T: Scalar, const N: usize, const M: usize>: Mechanism<T, N, M> {
+    /// First-order states `z` of the text: an array.
+    type States: Copy + AsRef<[T]> + AsMut<[T]>;
+    /// One value a force of the text.
+    type Powers: Copy + AsRef<[T]>;
+    /// One value a component of an `out` that uses `lambda`, `effort`, `reaction` or a state.
+    type Loads: Copy + AsRef<[T]>;
+
+    /// First-order states.
+    const STATES: &'static [Entry];
+    /// Forces by name, in the order of [`powers`](Self::powers).
+    const FORCES: &'static [Entry];
+    /// Outputs of [`loads`](Self::loads), component by component.
+    const LOADS: &'static [Entry];
+
+    /// Start values of the first-order states.
+    fn start_states(&self, parameters: &Self::Parameters) -> Self::States;
+    /// The rates that the text's `start … rate` declares; 0 elsewhere: N.
+    fn start_rates(&self, parameters: &Self::Parameters) -> [T; N];
+
+    /// Mass matrix M(q), symmetric: N rows of N.
+    fn mass(&self, parameters: &Self::Parameters, position: &Self::Position) -> [[T; N]; N];
+    /// M x: N.
+    fn mass_times(&self, parameters: &Self::Parameters, position: &Self::Position, x: &[T; N]) -> [T; N];
+    /// Q: generalized forces less the velocity-quadratic inertia terms, all that stands on the right of
+    /// M q̈ + Φ_qᵀ λ = Q: N. `lambda` (M) are the multipliers of the last accepted stage, for friction.
+    fn force(
+        &self,
+        parameters: &Self::Parameters,
+        position: &Self::Position,
+        qd: &[T; N],
+        states: &Self::States,
+        lambda: &[T; M],
+    ) -> [T; N];
+    /// ∂Q/∂q: N rows of N.
+    fn force_q(
+        &self,
+        parameters: &Self::Parameters,
+        position: &Self::Position,
+        qd: &[T; N],
+        states: &Self::States,
+        lambda: &[T; M],
+    ) -> [[T; N]; N];
+    /// ∂Q/∂q̇: N rows of N.
+    fn force_qd(
+        &self,
+        parameters: &Self::Parameters,
+        position: &Self::Position,
+        qd: &[T; N],
+        states: &Self::States,
+        lambda: &[T; M],
+    ) -> [[T; N]; N];
+    /// (M x)_q with x held, for linearisation and implicit methods: N rows of N.
+    fn mass_times_q(
+        &self,
+        parameters: &Self::Parameters,
+        position: &Self::Position,
+        x: &[T; N],
+    ) -> [[T; N]; N];
+    /// Φ_qᵀ λ: N.
+    fn reaction(&self, parameters: &Self::Parameters, position: &Self::Position, lambda: &[T; M]) -> [T; N];
+    /// (Φ_qᵀ λ)_q with λ held: N rows of N, symmetric.
+    fn reaction_q(
+        &self,
+        parameters: &Self::Parameters,
+        position: &Self::Position,
+        lambda: &[T; M],
+    ) -> [[T; N]; N];
+    /// Kinetic and potential energy (J).
+    fn energy(&self, parameters: &Self::Parameters, position: &Self::Position, qd: &[T; N]) -> Energy<T>;
+    /// Power of each force (W), positive where it feeds the mechanism.
+    fn powers(
+        &self,
+        parameters: &Self::Parameters,
+        position: &Self::Position,
+        qd: &[T; N],
+        states: &Self::States,
+        lambda: &[T; M],
+    ) -> Self::Powers;
+    /// ż of the first-order states.
+    fn state_rates(
+        &self,
+        parameters: &Self::Parameters,
+        position: &Self::Position,
+        qd: &[T; N],
+        states: &Self::States,
+        lambda: &[T; M],
+    ) -> Self::States;
+    /// Outputs that use multipliers or states.
+    fn loads(
+        &self,
+        parameters: &Self::Parameters,
+        position: &Self::Position,
+        motion: &Motion<'_, T, N, M, Self::States>,
+    ) -> Self::Loads;
+}
+
+/// A mechanism with independent coordinates: the rows fix the others, block after block.
+///
+/// [`Kinematic`](crate::Kinematic) is the case without independent coordinates.
+pub trait Partitioned<T: Scalar, const N: usize, const M: usize>: Mechanism<T, N, M> {
+    /// Factorised diagonal blocks over the dependent coordinates, and the other entries of Φ_q.
+    type Partition: Copy;
+
+    /// The independent coordinates, ascending: N − M.
+    const INDEPENDENT: &'static [u16];
+
+    /// Solves Φ(q, t) = 0 for the dependent coordinates; the independent ones of `q` (N) stay as they are.
+    fn solve_dependent<S: BlockSolver<T>>(
+        &self,
+        parameters: &Self::Parameters,
+        q: &mut [T; N],
+        t: T,
+        solver: &mut S,
+    ) -> T::Lanes<Outcome>;
+    /// Factorises the dependent columns of Φ_q block by block; returns the smallest margin of any block.
+    fn partition(
+        &self,
+        parameters: &Self::Parameters,
+        position: &Self::Position,
+    ) -> (Self::Partition, Margin<T>);
+    /// Completes `x` (N), whose independent entries are given, so that Φ_q x = b (M).
+    fn complete(&self, partition: &Self::Partition, b: &[T; M], x: &mut [T; N]);
+    /// Adds to `y` (N) at the independent coordinates what its dependent entries give there, y_i − Gᵀ y_d with
+    /// G = Φ_qd⁻¹ Φ_qi, so that a force on all coordinates becomes one on the independent ones.
+    /// Returns the multipliers that balance the dependent entries: Φ_qdᵀ λ = y_d: M.
+    fn reduce(&self, partition: &Self::Partition, y: &mut [T; N]) -> [T; M];
+}
