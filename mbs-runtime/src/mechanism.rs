@@ -64,6 +64,8 @@ pub trait Mechanism<T: Scalar, const N: usize, const M: usize>: Clone {
     type Parameters: Copy;
     /// Values of `(q, t)` that more than one function shares.
     type Position: Copy;
+    /// One value an entry of Φ_q that is not zero by structure.
+    type Entries: AsRef<[T]> + Copy;
     /// One value a `branch` of the text.
     type Branches: AsRef<[T]> + Copy;
     /// One value a component of an `out` of the text.
@@ -79,6 +81,8 @@ pub trait Mechanism<T: Scalar, const N: usize, const M: usize>: Clone {
     const COORDINATES: &'static [Entry];
     /// Constraint rows in the order of Φ: M.
     const ROWS: &'static [Entry];
+    /// Row and column of each entry of Φ_q that is not zero by structure, row by row, columns ascending.
+    const SPARSITY: &'static [(u16, u16)];
     /// Parameters and inputs, the public fields, component by component: [`variable`](Self::variable) finds the index
     /// that [`get`](Self::get) and [`set`](Self::set) take.
     const VARIABLES: &'static [Entry];
@@ -111,6 +115,8 @@ pub trait Mechanism<T: Scalar, const N: usize, const M: usize>: Clone {
     fn phi(&self, parameters: &Self::Parameters, position: &Self::Position) -> [T; M];
     /// Jacobian ∂Φ/∂q: M rows of N.
     fn phi_q(&self, parameters: &Self::Parameters, position: &Self::Position) -> [[T; N]; M];
+    /// The entries of Φ_q at the places of [`SPARSITY`](Self::SPARSITY).
+    fn phi_q_entries(&self, parameters: &Self::Parameters, position: &Self::Position) -> Self::Entries;
     /// Partial time derivative ∂Φ/∂t, rates of inputs included: M.
     fn phi_t(&self, parameters: &Self::Parameters, position: &Self::Position) -> [T; M];
     /// Second partial time derivative ∂²Φ/∂t², rates of inputs included: M.

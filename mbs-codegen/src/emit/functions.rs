@@ -23,6 +23,9 @@ pub struct Bodies {
     pub position: TokenStream,
     pub phi: TokenStream,
     pub phi_q: TokenStream,
+    pub phi_q_entries: TokenStream,
+    /// Row and column of each entry of Φ_q.
+    pub sparsity: Vec<(u16, u16)>,
     pub phi_t: TokenStream,
     pub phi_tt: TokenStream,
     pub phi_qt_qd: TokenStream,
@@ -74,6 +77,12 @@ pub fn bodies(model: &Model, equations: &Equations, program: &Program, runtime: 
         position: body(&program.position.section, &early, kept(&program.position, &early, "__Position")),
         phi: body(&program.phi, &scope, rows(|row| Some(row.phi))),
         phi_q: body(&program.phi_q, &scope, matrix(equations, &scope)),
+        sparsity: entries(equations).map(|(row, column, _)| (row as u16, column as u16)).collect(),
+        phi_q_entries: body(
+            &program.phi_q,
+            &scope,
+            array(entries(equations).map(|(.., id)| Some(id)), &scope),
+        ),
         phi_t: body(&program.phi_t, &scope, rows(|row| row.phi_t)),
         phi_tt: body(&program.phi_tt, &scope, rows(|row| row.phi_tt)),
         phi_qt_qd: body(&program.phi_qt_qd, &scope, rows(|row| row.phi_qt_qd)),
@@ -91,18 +100,21 @@ fn array(nodes: impl Iterator<Item = Option<NodeId>>, scope: &Scope<'_>) -> Stri
     format!("[{}]", nodes.map(|id| scope.or_zero(id)).collect::<Vec<_>>().join(", "))
 }
 
+/// Row, column and node of each entry of Φ_q, row by row.
+fn entries(equations: &Equations) -> impl Iterator<Item = (usize, usize, NodeId)> {
+    let rows = equations.rows.iter().enumerate();
+    rows.flat_map(|(row, equation)| equation.phi_q.iter().map(move |(column, entry)| (row, *column, *entry)))
+}
+
+/// Zeros are not written one by one: a chain of 200 loops has 160 000 of them.
 fn matrix(equations: &Equations, scope: &Scope<'_>) -> String {
-    let mut text = String::from("[");
-    for row in &equations.rows {
-        let mut entries = vec![None; scope.model.coordinates.len()];
-        for (column, entry) in &row.phi_q {
-            if let Some(slot) = entries.get_mut(*column) {
-                *slot = Some(*entry);
-            }
-        }
-        let _ = writeln!(text, "{},", array(entries.into_iter(), scope));
+    let (rows, columns) = (equations.rows.len(), scope.model.coordinates.len());
+    let zero = scope.or_zero(None);
+    let mut text = format!("let mut __rows = [[{zero}; {columns}]; {rows}];\n");
+    for (row, column, entry) in entries(equations) {
+        let _ = writeln!(text, "__rows[{row}][{column}] = {};", scope.operand(entry));
     }
-    text + "]"
+    text + "__rows"
 }
 
 fn outputs(equations: &Equations, scope: &Scope<'_>) -> String {

@@ -70,6 +70,8 @@ fn implementations(text: &Text, model: &Model, bodies: &Bodies) -> TokenStream {
         position,
         phi,
         phi_q,
+        phi_q_entries,
+        sparsity,
         phi_t,
         phi_tt,
         phi_qt_qd,
@@ -81,6 +83,8 @@ fn implementations(text: &Text, model: &Model, bodies: &Bodies) -> TokenStream {
         factorize,
         solve_linear,
     } = bodies;
+    let nonzeros = sparsity.len();
+    let places = sparsity.iter().map(|(row, column)| quote! { (#row, #column) });
     quote! {
         #[allow(clippy::approx_constant, reason = "numbers of the text stay as they are")]
         const _: () = {
@@ -97,10 +101,12 @@ fn implementations(text: &Text, model: &Model, bodies: &Bodies) -> TokenStream {
             impl<T: #runtime::Scalar> #runtime::Mechanism<T, #n, #n> for #name<T> {
                 type Parameters = __Parameters<T>;
                 type Position = __Position<T>;
+                type Entries = [T; #nonzeros];
                 type Branches = [T; #branches];
                 type Outputs = [#runtime::OutputValue<T>; #outputs];
                 type Lane = #name<T::Real>;
                 #tables
+                const SPARSITY: &'static [(::core::primitive::u16, ::core::primitive::u16)] = &[#(#places),*];
                 #access
                 #[inline]
                 fn parameters(&self) -> __Parameters<T> { #parameters }
@@ -116,6 +122,8 @@ fn implementations(text: &Text, model: &Model, bodies: &Bodies) -> TokenStream {
                 fn phi(&self, __p: &__Parameters<T>, __s: &__Position<T>) -> [T; #n] { #phi }
                 #[inline]
                 fn phi_q(&self, __p: &__Parameters<T>, __s: &__Position<T>) -> [[T; #n]; #n] { #phi_q }
+                #[inline]
+                fn phi_q_entries(&self, __p: &__Parameters<T>, __s: &__Position<T>) -> [T; #nonzeros] { #phi_q_entries }
                 #[inline]
                 fn phi_t(&self, __p: &__Parameters<T>, __s: &__Position<T>) -> [T; #n] { #phi_t }
                 #[inline]

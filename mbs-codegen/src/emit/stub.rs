@@ -21,6 +21,8 @@ pub fn stub(text: &Text, model: &Model) -> TokenStream {
         position: body(),
         phi: body(),
         phi_q: body(),
+        phi_q_entries: body(),
+        sparsity: Vec::new(),
         phi_t: body(),
         phi_tt: body(),
         phi_qt_qd: body(),

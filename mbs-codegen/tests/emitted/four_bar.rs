@@ -115,6 +115,7 @@ const _: () = {
     for FourBar<T> {
         type Parameters = __Parameters<T>;
         type Position = __Position<T>;
+        type Entries = [T; 13usize];
         type Branches = [T; 1usize];
         type Outputs = [::mbs_runtime::OutputValue<T>; 1usize];
         type Lane = FourBar<T::Real>;
@@ -195,6 +196,21 @@ const _: () = {
                 unit: "rad",
                 line: ::core::line!(),
             },
+        ];
+        const SPARSITY: &'static [(::core::primitive::u16, ::core::primitive::u16)] = &[
+            (0u16, 0u16),
+            (0u16, 2u16),
+            (0u16, 3u16),
+            (1u16, 1u16),
+            (1u16, 2u16),
+            (1u16, 3u16),
+            (2u16, 2u16),
+            (2u16, 3u16),
+            (2u16, 4u16),
+            (3u16, 2u16),
+            (3u16, 3u16),
+            (3u16, 4u16),
+            (4u16, 2u16),
         ];
         #[inline]
         fn get(&self, __index: ::core::primitive::usize) -> ::core::option::Option<T> {
@@ -322,30 +338,46 @@ const _: () = {
             let __n53 = -__s.0[4];
             let __n57 = -__s.0[10];
             let __n58 = -__s.0[7];
+            let mut __rows = [[T::constant(0.0f64); 5]; 5];
+            __rows[0][0] = T::constant(1.0f64);
+            __rows[0][2] = __s.0[5];
+            __rows[0][3] = __s.0[6];
+            __rows[1][1] = T::constant(1.0f64);
+            __rows[1][2] = __n50;
+            __rows[1][3] = __n53;
+            __rows[2][2] = __s.0[5];
+            __rows[2][3] = __s.0[9];
+            __rows[2][4] = __n57;
+            __rows[3][2] = __s.0[3];
+            __rows[3][3] = __s.0[8];
+            __rows[3][4] = __n58;
+            __rows[4][2] = T::constant(1.0f64);
+            __rows
+        }
+        #[inline]
+        fn phi_q_entries(
+            &self,
+            __p: &__Parameters<T>,
+            __s: &__Position<T>,
+        ) -> [T; 13usize] {
+            let __n50 = -__s.0[3];
+            let __n53 = -__s.0[4];
+            let __n57 = -__s.0[10];
+            let __n58 = -__s.0[7];
             [
-                [
-                    T::constant(1.0f64),
-                    T::constant(0.0f64),
-                    __s.0[5],
-                    __s.0[6],
-                    T::constant(0.0f64),
-                ],
-                [
-                    T::constant(0.0f64),
-                    T::constant(1.0f64),
-                    __n50,
-                    __n53,
-                    T::constant(0.0f64),
-                ],
-                [T::constant(0.0f64), T::constant(0.0f64), __s.0[5], __s.0[9], __n57],
-                [T::constant(0.0f64), T::constant(0.0f64), __s.0[3], __s.0[8], __n58],
-                [
-                    T::constant(0.0f64),
-                    T::constant(0.0f64),
-                    T::constant(1.0f64),
-                    T::constant(0.0f64),
-                    T::constant(0.0f64),
-                ],
+                T::constant(1.0f64),
+                __s.0[5],
+                __s.0[6],
+                T::constant(1.0f64),
+                __n50,
+                __n53,
+                __s.0[5],
+                __s.0[9],
+                __n57,
+                __s.0[3],
+                __s.0[8],
+                __n58,
+                T::constant(1.0f64),
             ]
         }
         #[inline]

@@ -79,6 +79,7 @@ pub struct Position<T> {
 impl<T: Scalar, const B: usize> Mechanism<T, 5, 5> for FourBar<T, B> {
     type Parameters = ();
     type Position = Position<T>;
+    type Entries = [T; 13];
     type Branches = [T; B];
     type Outputs = [OutputValue<T>; 1];
     type Lane = FourBar<T::Real, B>;
@@ -98,6 +99,21 @@ impl<T: Scalar, const B: usize> Mechanism<T, 5, 5> for FourBar<T, B> {
         entry("closure.0", "m", 21),
         entry("closure.1", "m", 22),
         entry("crank", "rad", 24),
+    ];
+    const SPARSITY: &'static [(u16, u16)] = &[
+        (0, 0),
+        (0, 2),
+        (0, 3),
+        (1, 1),
+        (1, 2),
+        (1, 3),
+        (2, 2),
+        (2, 3),
+        (2, 4),
+        (3, 2),
+        (3, 3),
+        (3, 4),
+        (4, 2),
     ];
     const VARIABLES: &'static [Entry] = &[
         entry("lengths.0", "m", 1),
@@ -177,6 +193,13 @@ impl<T: Scalar, const B: usize> Mechanism<T, 5, 5> for FourBar<T, B> {
             [o, o, l1 * p.c[0], l2 * p.c[1], -l3 * p.c[2]],
             [o, o, i, o, o],
         ]
+    }
+    fn phi_q_entries(&self, (): &(), p: &Position<T>) -> [T; 13] {
+        let rows = self.phi_q(&(), p);
+        core::array::from_fn(|k| {
+            let (row, column) = Self::SPARSITY[k];
+            rows[usize::from(row)][usize::from(column)]
+        })
     }
     fn phi_t(&self, (): &(), _: &Position<T>) -> [T; 5] {
         let o = T::constant(0.0);

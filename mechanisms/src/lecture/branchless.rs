@@ -9,6 +9,7 @@ pub struct Branchless<S>(pub S);
 impl<S: Kinematic<f64, N>, const N: usize> Mechanism<f64, N, N> for Branchless<S> {
     type Parameters = S::Parameters;
     type Position = S::Position;
+    type Entries = S::Entries;
     type Branches = [f64; 0];
     type Outputs = S::Outputs;
     type Lane = S::Lane;
@@ -17,6 +18,7 @@ impl<S: Kinematic<f64, N>, const N: usize> Mechanism<f64, N, N> for Branchless<S
     const SOURCE: &'static str = S::SOURCE;
     const COORDINATES: &'static [Entry] = S::COORDINATES;
     const ROWS: &'static [Entry] = S::ROWS;
+    const SPARSITY: &'static [(u16, u16)] = S::SPARSITY;
     const VARIABLES: &'static [Entry] = S::VARIABLES;
     const BRANCHES: &'static [Entry] = &[];
     const OUTPUTS: &'static [Entry] = S::OUTPUTS;
@@ -50,6 +52,9 @@ impl<S: Kinematic<f64, N>, const N: usize> Mechanism<f64, N, N> for Branchless<S
     }
     fn phi_q(&self, parameters: &S::Parameters, position: &S::Position) -> [[f64; N]; N] {
         self.0.phi_q(parameters, position)
+    }
+    fn phi_q_entries(&self, parameters: &S::Parameters, position: &S::Position) -> S::Entries {
+        self.0.phi_q_entries(parameters, position)
     }
     fn phi_t(&self, parameters: &S::Parameters, position: &S::Position) -> [f64; N] {
         self.0.phi_t(parameters, position)
