@@ -15,6 +15,7 @@ pub mod boundary;
 pub mod budget;
 mod budgeted;
 pub mod diagnosis;
+pub mod driver;
 pub mod dynamic;
 pub mod failure;
 mod function;

@@ -1,0 +1,116 @@
+//! Motion between two rests with bounded speed and acceleration.
+
+use super::LawError;
+use super::piecewise::{Piece, jet};
+use crate::{Function, Scalar};
+
+/// From 0 to a distance within the least time: constant acceleration, constant speed, constant deceleration.
+///
+/// Rest before t = 0 and after the end. A distance too short for the full speed gives a triangle of velocity.
+/// Source: Biagiotti & Melchiorri 2008, Trajectory Planning for Automatic Machines and Robots, §3.2.
+///
+/// ```
+/// use mbs_runtime::{Function, driver::Trapezoidal};
+///
+/// let slide = Trapezoidal::new(3.0, 1.0, 2.0)?; // 3 m at 1 m/s at most, 2 m/s² at most
+/// assert_eq!(slide.duration(), 3.5);
+/// assert_eq!(slide.jet(0.25), [0.0625, 0.5, 2.0]);
+/// # Ok::<(), mbs_runtime::driver::LawError>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Trapezoidal {
+    distance: f64,
+    /// Time of the acceleration, and of the deceleration (argument's unit).
+    ramp: f64,
+    /// Time at constant speed.
+    cruise: f64,
+    /// Signed as the distance is.
+    acceleration: f64,
+}
+
+impl Trapezoidal {
+    /// `distance` of either sign (function's unit), `speed` and `acceleration` that are not exceeded.
+    ///
+    /// # Errors
+    /// [`LawError::NotFinite`]; [`LawError::NotPositive`] for speed and acceleration.
+    pub fn new(distance: f64, speed: f64, acceleration: f64) -> Result<Self, LawError> {
+        for (name, number) in [("distance", distance), ("speed", speed), ("acceleration", acceleration)] {
+            if !number.is_finite() {
+                return Err(LawError::NotFinite(name));
+            }
+            if name != "distance" && number <= 0.0 {
+                return Err(LawError::NotPositive(name));
+            }
+        }
+        let ramp = (speed / acceleration).min(libm::sqrt(distance.abs() / acceleration));
+        // Nothing is left for the cruise where the triangle suffices.
+        let cruise = ((distance.abs() - acceleration * ramp * ramp) / speed).max(0.0);
+        Self::from_times(distance, ramp, cruise)
+    }
+
+    /// `distance` within `ramp`, `cruise` and `ramp` again (argument's unit): the form for constants.
+    ///
+    /// # Errors
+    /// [`LawError::NotFinite`]; [`LawError::Negative`] for a time; [`LawError::NotPositive`] for a distance without time.
+    pub const fn from_times(distance: f64, ramp: f64, cruise: f64) -> Result<Self, LawError> {
+        if !(distance.is_finite() && ramp.is_finite() && cruise.is_finite()) {
+            return Err(LawError::NotFinite("distance or time"));
+        }
+        if ramp < 0.0 || cruise < 0.0 {
+            return Err(LawError::Negative("time"));
+        }
+        if distance == 0.0 {
+            return Ok(Trapezoidal { distance, ramp, cruise, acceleration: 0.0 });
+        }
+        let acceleration = distance / (ramp * (ramp + cruise));
+        if !acceleration.is_finite() {
+            return Err(LawError::NotPositive("time of the acceleration"));
+        }
+        Ok(Trapezoidal { distance, ramp, cruise, acceleration })
+    }
+
+    /// Time from rest to rest.
+    pub const fn duration(&self) -> f64 {
+        self.ramp + self.cruise + self.ramp
+    }
+
+    /// Largest speed, signed as the distance is.
+    pub const fn speed(&self) -> f64 {
+        self.acceleration * self.ramp
+    }
+
+    fn breakpoints(&self) -> [f64; 4] {
+        [0.0, self.ramp, self.ramp + self.cruise, self.duration()]
+    }
+
+    fn piece(&self, t: f64) -> Piece<3> {
+        let half = 0.5 * self.acceleration;
+        let [start, fast, slowing, end] = self.breakpoints();
+        let (origin, coefficients) = if t < start {
+            (start, [0.0; 3])
+        } else if t < fast {
+            (start, [0.0, 0.0, half])
+        } else if t < slowing {
+            (fast, [half * self.ramp * self.ramp, self.speed(), 0.0])
+        } else if t < end {
+            (end, [self.distance, 0.0, -half])
+        } else {
+            (end, [self.distance, 0.0, 0.0])
+        };
+        Piece { origin, coefficients }
+    }
+}
+
+impl<T: Scalar> Function<T> for Trapezoidal {
+    const ORDER: usize = 1;
+
+    /// Acceleration and beyond are those of the piece that begins at the argument.
+    #[inline]
+    fn jet<const K: usize>(&self, x: T) -> [T; K] {
+        jet(x, |t| self.piece(t))
+    }
+
+    fn breakpoint_after(&self, x: f64) -> Option<f64> {
+        self.breakpoints().into_iter().find(|place| x < *place)
+    }
+}
