@@ -4,20 +4,21 @@ use core::fmt;
 use core::hint::black_box;
 use std::time::{Duration, Instant};
 
-use mbs_runtime::{Entry, Failure, Frame, Kinematic, OutputValue, Stepper};
+use mbs_runtime::{Entry, Failure, Frame, Kinematic, Mechanism, OutputValue, Stepper};
 use serde::Serialize;
 
 use crate::lecture::experiment::Experiment;
 
-/// A mechanism of any size, with its parameters. Vectors are in the order of the text.
-pub trait AnyMechanism {
+/// Names and functions of a mechanism of any size, with its parameters; it need not be square. Vectors are in the
+/// order of the text.
+pub trait AnyEquations {
     /// Name of the emitted type.
     fn type_name(&self) -> &'static str;
     /// The text.
     fn source(&self) -> &'static str;
     /// Coordinates: N.
     fn coordinates(&self) -> &'static [Entry];
-    /// Constraint rows: N.
+    /// Constraint rows: M.
     fn rows(&self) -> &'static [Entry];
     /// Parameters and inputs, component by component.
     fn variables(&self) -> &'static [Entry];
@@ -34,6 +35,10 @@ pub trait AnyMechanism {
     /// # Panics
     /// Where the state's vectors do not have N components.
     fn evaluate(&self, state: &State) -> Functions;
+}
+
+/// A mechanism of any size that can be solved.
+pub trait AnyMechanism: AnyEquations {
     /// Assembles the mechanism at the first instant (s) and follows it through the others.
     ///
     /// `progress` hears the number of instants done. An empty list gives an empty motion.
@@ -72,17 +77,17 @@ pub struct State {
 /// Every emitted function at one state.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Functions {
-    /// Φ: N.
+    /// Φ: M.
     pub phi: Vec<f64>,
-    /// Φ_q, row after row: N·N.
+    /// Φ_q, row after row: M·N.
     pub phi_q: Vec<f64>,
-    /// Φ_t: N.
+    /// Φ_t: M.
     pub phi_t: Vec<f64>,
-    /// Φ_tt: N.
+    /// Φ_tt: M.
     pub phi_tt: Vec<f64>,
-    /// Φ_qt q̇: N.
+    /// Φ_qt q̇: M.
     pub phi_qt_qd: Vec<f64>,
-    /// γ: N.
+    /// γ: M.
     pub gamma: Vec<f64>,
     /// Outputs with their time derivatives.
     pub outputs: Vec<OutputValue<f64>>,
@@ -140,14 +145,14 @@ pub fn boxed<S, const N: usize>() -> Box<dyn AnyMechanism>
 where
     S: Kinematic<f64, N> + Default + 'static,
 {
-    Box::new(Facade::<S, N>(S::default()))
+    Box::new(Facade::<S, N, N>(S::default()))
 }
 
-/// A mechanism of `N` coordinates behind the common face.
+/// A mechanism of `N` coordinates and `M` rows behind the common face.
 #[derive(Clone, Debug)]
-pub struct Facade<S, const N: usize>(pub S);
+pub struct Facade<S, const N: usize, const M: usize = N>(pub S);
 
-impl<S: Kinematic<f64, N>, const N: usize> AnyMechanism for Facade<S, N> {
+impl<S: Mechanism<f64, N, M>, const N: usize, const M: usize> AnyEquations for Facade<S, N, M> {
     fn type_name(&self) -> &'static str {
         S::NAME
     }
@@ -191,7 +196,9 @@ impl<S: Kinematic<f64, N>, const N: usize> AnyMechanism for Facade<S, N> {
             outputs: self.0.outputs(&parameters, &position, &qd, &qdd).as_ref().to_vec(),
         }
     }
+}
 
+impl<S: Kinematic<f64, N>, const N: usize> AnyMechanism for Facade<S, N> {
     fn follow(&self, times: &[f64], progress: &mut dyn FnMut(usize)) -> Result<Motion, Failure> {
         let Some((first, rest)) = times.split_first() else { return Ok(Motion::default()) };
         let mut stepper = self.assembled(*first)?;

@@ -7,3 +7,4 @@ mod readme {}
 
 pub mod proofs;
 pub mod tools;
+pub mod written;

@@ -23,8 +23,8 @@ pub fn definition(model: &Model, name: &str) -> String {
         text,
         "\"\"\"{name}: constraints and outputs, written from the text of the mechanism.\"\"\"\n"
     );
-    let _ =
-        writeln!(text, "NAME = \"{name}\"\nN = {}\nV = {}", model.coordinates.len(), model.variables.len());
+    let (n, m, v) = (model.coordinates.len(), model.rows.len(), model.variables.len());
+    let _ = writeln!(text, "NAME = \"{name}\"\nN = {n}\nM = {m}\nV = {v}");
     let _ = writeln!(text, "RATES = [{}]\n\n", rates.join(", "));
     let _ = writeln!(text, "def define(ca, q, v, t, der):");
     let roots =
@@ -89,7 +89,8 @@ fn derivatives(model: &Model, value: Id) -> u8 {
 fn operation(node: Node) -> String {
     let v = variable;
     match node {
-        Node::Number(value) => format!("{value:?}"),
+        // A number of the back end's own kind: one with more digits than Python's must not round what follows.
+        Node::Number(value) => format!("ca.SX({value:?})"),
         Node::Time => "t".into(),
         Node::Coordinate(index) => format!("q[{index}]"),
         Node::Variable(index) => format!("v[{index}]"),

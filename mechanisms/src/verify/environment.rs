@@ -1,4 +1,4 @@
-//! The Python environment with CasADi, made on first use below cargo's target directory.
+//! The Python environment with CasADi and mpmath, made on first use below cargo's target directory.
 //!
 //! One directory for each content of `requirements.txt` and interpreter: `mbs-oracle/<hash>/`. A lock file lets
 //! one process make it while others wait; a stamp, renamed into place at the very end, tells a whole environment
@@ -18,7 +18,7 @@ const REQUIREMENTS: &str = include_str!("../../oracle/requirements.txt");
 /// Names the Python interpreter to use instead of `python3`.
 pub const INTERPRETER_VARIABLE: &str = "MBS_PYTHON";
 
-/// A Python interpreter that can import CasADi.
+/// A Python interpreter that can import CasADi and mpmath.
 #[derive(Clone, Debug)]
 pub struct Environment {
     directory: PathBuf,
@@ -41,7 +41,7 @@ pub enum EnvironmentError {
         /// What it says.
         reason: String,
     },
-    /// CasADi could not be installed.
+    /// The packages could not be installed.
     NoPackages {
         /// What pip says.
         reason: String,
@@ -133,7 +133,7 @@ impl Environment {
         if !output.status.success() {
             return Err(EnvironmentError::NoVenv { interpreter: name, reason: last_words(&output) });
         }
-        progress("installing CasADi");
+        progress("installing CasADi and mpmath");
         let list = self.directory.join("requirements.txt");
         fs::write(&list, requirements).map_err(|error| cannot_make(&list, &error))?;
         let output = Command::new(self.python())
@@ -193,7 +193,7 @@ impl fmt::Display for EnvironmentError {
                 "pip could not install {}:\n{reason}\n\
                  check the network, or tell pip where packages are (PIP_INDEX_URL, PIP_FIND_LINKS); Python 3.11 or \
                  newer is needed",
-                REQUIREMENTS.split_whitespace().collect::<Vec<_>>().join(" and ")
+                REQUIREMENTS.split_whitespace().collect::<Vec<_>>().join(", ")
             ),
             EnvironmentError::Directory { path, reason } => {
                 write!(

@@ -1,12 +1,17 @@
-//! Cross-check of emitted code against CasADi.
+//! Cross-check of emitted code against CasADi, and against 50-digit arithmetic.
 //!
 //! The text of a mechanism goes two ways: the macro emits Rust, [`mbs_codegen::casadi_definition`] prints the bare
-//! constraints and outputs for CasADi, which differentiates them itself. Both are evaluated at random states and
-//! compared entry by entry. Python 3 is needed; its environment is made by [`environment`] below cargo's target
-//! directory.
+//! constraints and outputs for CasADi, which differentiates them itself, and for mpmath, which follows them along
+//! lines with all digits. Both ways are evaluated at random states and compared entry by entry. Python 3 is needed; its
+//! environment is made by [`environment`] below cargo's target directory.
+//!
+//! [`check`] does all of it for any mechanism, in a test of the crate that declares it.
 
+pub mod agreement;
+pub mod check;
 pub mod compare;
 pub mod environment;
+mod layout;
 pub mod oracle;
 pub mod states;
 
@@ -14,15 +19,19 @@ use core::fmt;
 use std::fs;
 use std::path::Path;
 
-pub use compare::{Agreement, BOUND, LargestError};
+pub use agreement::{Agreement, BOUND, LargestError, Reference, Summary};
+pub use check::{Check, CheckError, check};
 pub use environment::EnvironmentError;
 pub use oracle::{Oracle, OracleError};
 
-use crate::facade::AnyMechanism;
+use crate::facade::AnyEquations;
 use crate::registry::{self, Card, Mismatch};
 
 /// States a mechanism is compared at unless told otherwise.
 pub const STATES: usize = 1000;
+
+/// States a mechanism is compared at in 50 digits unless told otherwise: each takes thousands of times longer.
+pub const DIGITS_STATES: usize = 20;
 
 /// Why no comparison was made. A comparison that shows a difference is an [`Agreement`] that does not hold.
 #[derive(Debug)]
@@ -59,6 +68,16 @@ pub fn verify(card: &Card, oracle: &Oracle, states: usize) -> Result<Agreement, 
     Ok(compare::compare(mechanism.as_mut(), oracle, &definition, states)?)
 }
 
+/// Compares the emitted code of the mechanism with 50-digit arithmetic on the same text at `states` random states.
+///
+/// # Errors
+/// [`VerifyError`] where the comparison could not be made.
+pub fn verify_digits(card: &Card, oracle: &Oracle, states: usize) -> Result<Agreement, VerifyError> {
+    let mut mechanism = (card.make)();
+    let definition = generated_definition(mechanism.as_ref())?;
+    Ok(compare::compare_digits(mechanism.as_mut(), oracle, &definition, states)?)
+}
+
 /// Compares the emitted code of the mechanism called `name` with the definition in a Python file at
 /// [`STATES`] random states.
 ///
@@ -77,7 +96,7 @@ pub fn verify_against(name: &str, definition: &Path, oracle: &Oracle) -> Result<
 ///
 /// # Errors
 /// [`VerifyError::Definition`].
-pub fn generated_definition(mechanism: &dyn AnyMechanism) -> Result<String, VerifyError> {
+pub fn generated_definition(mechanism: &dyn AnyEquations) -> Result<String, VerifyError> {
     mbs_codegen::casadi_definition(mechanism.source())
         .map_err(|reason| VerifyError::Definition { mechanism: mechanism.type_name().to_string(), reason })
 }

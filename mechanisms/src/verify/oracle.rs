@@ -1,26 +1,30 @@
-//! CasADi as a child process: a definition and states in, values of all functions out.
+//! CasADi or mpmath in a child process: a definition and states in, values of all functions out.
 
 use core::fmt;
+use std::collections::BTreeMap;
 use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio, id};
 use std::sync::atomic::{AtomicU32, Ordering};
 
+use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
 use super::environment::{Environment, EnvironmentError};
 use super::states::Sample;
 
 const SCRIPT: &str = include_str!("../../oracle/oracle.py");
+const WITH_CASADI: &str = include_str!("../../oracle/with_casadi.py");
+const WITH_MPMATH: &str = include_str!("../../oracle/with_mpmath.py");
 
-/// CasADi, ready to run.
+/// CasADi and mpmath, ready to run.
 #[derive(Debug)]
 pub struct Oracle {
     environment: Environment,
 }
 
-/// Why CasADi gave no values.
+/// Why there are no values.
 #[derive(Debug)]
 pub enum OracleError {
     /// The child process did not run or did not end well.
@@ -35,21 +39,46 @@ pub enum OracleError {
     },
 }
 
-/// Values of one function: a row a state, an entry a component; `None` where the definition has no such derivative.
-pub type Values = Vec<Vec<Option<f64>>>;
+/// Values of one function: a line a state, an entry a component; `None` where the definition has no such derivative.
+pub type Table<E> = Vec<Vec<Option<E>>>;
+
+/// Values in double precision.
+pub type Values = Table<f64>;
 
 /// Values of all functions at all states.
 #[derive(Debug, Deserialize)]
-pub struct Answer {
+pub struct Answer<E> {
     /// Name in the definition.
     pub name: String,
     /// Number of coordinates.
     pub n: usize,
+    /// Number of rows.
+    pub m: usize,
     /// Number of variables.
     pub v: usize,
     /// Values by function.
-    #[serde(flatten, deserialize_with = "functions")]
-    pub functions: std::collections::BTreeMap<String, Values>,
+    #[serde(flatten)]
+    pub functions: BTreeMap<String, Table<E>>,
+}
+
+/// A number of 50 digits, rounded to 32, with what double precision may lose on the way to it.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
+#[serde(from = "[Option<f64>; 3]")]
+pub struct Precise {
+    /// The nearest double.
+    pub value: f64,
+    /// What is left.
+    pub rest: f64,
+    /// Sum of the absolute values that are rounded, one rounding being 2⁻⁵³ of it; `None` where rounding decides on
+    /// which side of a kink the number is.
+    pub bound: Option<f64>,
+}
+
+impl From<[Option<f64>; 3]> for Precise {
+    fn from([value, rest, bound]: [Option<f64>; 3]) -> Self {
+        let number = |number: Option<f64>| number.unwrap_or(f64::NAN);
+        Precise { value: number(value), rest: number(rest), bound }
+    }
 }
 
 #[derive(Serialize)]
@@ -74,17 +103,13 @@ enum Number {
     Word(String),
 }
 
-fn functions<'de, D>(deserializer: D) -> Result<std::collections::BTreeMap<String, Values>, D::Error>
-where
-    D: serde::Deserializer<'de>,
-{
-    let raw = std::collections::BTreeMap::<String, Vec<Vec<Option<Number>>>>::deserialize(deserializer)?;
-    let number = |number: Number| match number {
-        Number::Finite(value) => value,
-        Number::Word(word) => word.parse().unwrap_or(f64::NAN),
-    };
-    let row = |row: Vec<Option<Number>>| row.into_iter().map(|entry| entry.map(number)).collect();
-    Ok(raw.into_iter().map(|(name, table)| (name, table.into_iter().map(row).collect())).collect())
+impl Number {
+    fn value(self) -> f64 {
+        match self {
+            Number::Finite(value) => value,
+            Number::Word(word) => word.parse().unwrap_or(f64::NAN),
+        }
+    }
 }
 
 impl Oracle {
@@ -100,9 +125,38 @@ impl Oracle {
     ///
     /// # Errors
     /// [`OracleError`] with what Python said.
-    pub fn evaluate(&self, definition: &str, samples: &[Sample]) -> Result<Answer, OracleError> {
-        let script = ScratchFile::new(self.environment.directory(), "oracle", SCRIPT)?;
-        let definition = ScratchFile::new(self.environment.directory(), "definition", definition)?;
+    pub fn evaluate(&self, definition: &str, samples: &[Sample]) -> Result<Answer<f64>, OracleError> {
+        let Answer { name, n, m, v, functions } =
+            self.ask::<Number>(("with_casadi", WITH_CASADI), definition, samples)?;
+        let line =
+            |line: Vec<Option<Number>>| line.into_iter().map(|entry| entry.map(Number::value)).collect();
+        let table = |table: Table<Number>| table.into_iter().map(line).collect();
+        let functions = functions.into_iter().map(|(name, values)| (name, table(values))).collect();
+        Ok(Answer { name, n, m, v, functions })
+    }
+
+    /// Evaluates the definition (Python text) and its derivatives at the samples in 50-digit arithmetic.
+    ///
+    /// # Errors
+    /// [`OracleError`] with what Python said.
+    pub fn evaluate_digits(
+        &self,
+        definition: &str,
+        samples: &[Sample],
+    ) -> Result<Answer<Precise>, OracleError> {
+        self.ask(("with_mpmath", WITH_MPMATH), definition, samples)
+    }
+
+    fn ask<E: DeserializeOwned>(
+        &self,
+        (name, back_end): (&str, &str),
+        definition: &str,
+        samples: &[Sample],
+    ) -> Result<Answer<E>, OracleError> {
+        let directory = self.environment.directory();
+        let script = ScratchFile::new(directory, "oracle", SCRIPT)?;
+        let back_end = ScratchFile::new(directory, name, back_end)?;
+        let definition = ScratchFile::new(directory, "definition", definition)?;
         let states = samples
             .iter()
             .map(|Sample { state, variables }| QuestionState {
@@ -114,15 +168,15 @@ impl Oracle {
             })
             .collect();
         let question = serde_json::to_vec(&Question { states }).map_err(process)?;
-        let text = self.run(&script.0, &definition.0, question)?;
+        let text = self.run([&script.0, &back_end.0, &definition.0], question)?;
         serde_json::from_slice(&text).map_err(|error| OracleError::Answer { reason: error.to_string() })
     }
 
-    fn run(&self, script: &Path, definition: &Path, question: Vec<u8>) -> Result<Vec<u8>, OracleError> {
+    fn run(&self, files: [&PathBuf; 3], question: Vec<u8>) -> Result<Vec<u8>, OracleError> {
         let mut child = Command::new(self.environment.python())
             // Definitions are scratch files; no bytecode of theirs is worth keeping.
             .args(["-I", "-B"])
-            .args([script, definition])
+            .args(files)
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
             .stderr(Stdio::piped())
@@ -170,9 +224,9 @@ impl Drop for ScratchFile {
 impl fmt::Display for OracleError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            OracleError::Process { reason } => write!(f, "the CasADi process failed:\n{reason}"),
+            OracleError::Process { reason } => write!(f, "the Python process failed:\n{reason}"),
             OracleError::Answer { reason } => {
-                write!(f, "CasADi's answer does not fit the mechanism: {reason}")
+                write!(f, "the oracle's answer does not fit the mechanism: {reason}")
             }
         }
     }

@@ -4,7 +4,7 @@ use core::f64::consts::PI;
 
 use mbs_runtime::Entry;
 
-use crate::facade::{AnyMechanism, State};
+use crate::facade::{AnyEquations, State};
 
 /// A state with the parameters and inputs it is taken at.
 #[derive(Clone, Debug, PartialEq)]
@@ -59,7 +59,7 @@ pub const SEED: u64 = 0x6D62_7331;
 /// Angles are uniform in ±π; other coordinates 0.5 to 2 times their reference length, with random sign; other
 /// parameters and inputs 0.5 to 2 times nominal, or in ±1 where nominal is 0; `q̇` within ±10 /s, `q̈` within
 /// ±100 /s² of the coordinate's reference, `t` within ±1 s. The samples need not satisfy the constraints.
-pub fn draw(mechanism: &dyn AnyMechanism, count: usize) -> Vec<Sample> {
+pub fn draw(mechanism: &dyn AnyEquations, count: usize) -> Vec<Sample> {
     let mut generator = Generator::new(SEED);
     let scales = mechanism.coordinate_scales();
     let nominal: Vec<f64> =

@@ -1,11 +1,11 @@
 //! A mechanism whose functions were differentiated by hand, and the same with faults that must be found.
 
-use std::time::Duration;
-
-use mbs_runtime::{Entry, Failure};
+use mbs_runtime::{Entry, OutputValue};
 
 use super::*;
-use crate::facade::{Motion, State};
+use crate::facade::State;
+use crate::verify::BOUND;
+use crate::verify::states::Sample;
 
 /// Independent definition: one input with rates, an output with all and one with fewer derivatives.
 const DEFINITION: &str = "
@@ -17,7 +17,7 @@ RATES = [(1, 2, 3)]
 def define(ca, q, v, t, der):
     theta, x = q[0], q[1]
     length, u = v[0], v[1]
-    phi = [length * ca.cos(theta) * u - x, theta - t**2 * u]
+    phi = [length * ca.cos(theta) * u - x, theta - t * t * u]
     return phi, [(x * theta, 2), (der(x), 1)]
 ";
 
@@ -32,7 +32,7 @@ struct Hand {
     fault: Fault,
 }
 
-impl AnyMechanism for Hand {
+impl AnyEquations for Hand {
     fn type_name(&self) -> &'static str {
         "Hand"
     }
@@ -63,9 +63,6 @@ impl AnyMechanism for Hand {
     fn coordinate_scales(&self) -> Vec<f64> {
         vec![1.0, 0.3]
     }
-    fn experiment(&self) -> &dyn crate::lecture::experiment::Experiment {
-        unreachable!("the comparison evaluates alone")
-    }
     fn evaluate(&self, state: &State) -> Functions {
         let [l, u, ud, udd] = self.variables;
         let ([theta, x], [w, v]) = ([state.q[0], state.q[1]], [state.qd[0], state.qd[1]]);
@@ -90,16 +87,15 @@ impl AnyMechanism for Hand {
         (self.fault)(&mut functions);
         functions
     }
-    fn follow(&self, _: &[f64], _: &mut dyn FnMut(usize)) -> Result<Motion, Failure> {
-        Ok(Motion::default())
-    }
-    fn time_a_step(&self, _: &[f64]) -> Result<Duration, Failure> {
-        Ok(Duration::ZERO)
-    }
 }
 
 fn oracle() -> Oracle {
     Oracle::new(&|_| ()).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn digits(fault: Fault) -> Agreement {
+    let mut hand = Hand { variables: [0.3, 1.5, 0.0, 0.0], fault };
+    compare_digits(&mut hand, &oracle(), DEFINITION, 20).unwrap_or_else(|error| panic!("{error}"))
 }
 
 fn agreement(fault: Fault) -> Agreement {
@@ -136,6 +132,83 @@ fn every_function_is_compared() {
 }
 
 #[test]
+fn fifty_digits_tell_roundings_from_slips() {
+    let good = digits(|_| ());
+    assert!(good.holds() && good.values == 20 * 19, "{good}");
+    let faults: [(&str, Fault); 9] = [
+        ("Φ", |f| f.phi[1] += 1e-12),
+        ("Φ_q", |f| f.phi_q[2] += 1e-13),
+        ("Φ_t", |f| f.phi_t[0] *= 1.0 + 1e-12),
+        ("Φ_tt", |f| f.phi_tt[1] += 1e-11),
+        // Its bound is that of the second derivatives whose difference it is.
+        ("Φ_qt q̇", |f| f.phi_qt_qd[1] += 1e-11),
+        ("γ", |f| f.gamma[0] = -f.gamma[0]),
+        ("output", |f| f.outputs[0].value += 1e-12),
+        ("d output/dt", |f| f.outputs[1].rate = Some(f64::NAN)),
+        ("d² output/dt²", |f| f.outputs[0].acceleration = None),
+    ];
+    for (name, fault) in faults {
+        let agreement = digits(fault);
+        let failing: Vec<_> =
+            agreement.functions.iter().filter(|f| f.error > 1.0).map(|f| f.function).collect();
+        assert_eq!(failing, [name], "{agreement}");
+    }
+}
+
+/// Published expansions of sin 1, cos 1 and e, which a derivative by mpmath must reach too.
+#[test]
+fn fifty_digits_are_the_published_ones() {
+    let definition = "
+NAME = 'Known'
+N = 2
+V = 0
+RATES = []
+
+def define(ca, q, v, t, der):
+    return [ca.sin(q[0]), ca.exp(q[1])], []
+";
+    let state = State { q: vec![1.0; 2], qd: vec![1.0; 2], qdd: vec![0.0; 2], t: 0.0 };
+    let answer = oracle().evaluate_digits(definition, &[Sample { state, variables: vec![] }]);
+    let functions = answer.unwrap_or_else(|error| panic!("{error}")).functions;
+    let (sine, cosine) =
+        ([0.8414709848078965, 1.776845092935536e-18], [0.5403023058681398, -4.760954612604417e-17]);
+    let e = [core::f64::consts::E, 1.4456468917292501e-16];
+    let expected = [
+        ("phi", 0, sine),
+        ("phi", 1, e),
+        ("phi_q", 0, cosine),
+        ("phi_q", 3, e),
+        ("gamma", 0, sine),
+        ("gamma", 1, e.map(|x| -x)),
+    ];
+    for (function, entry, [value, rest]) in expected {
+        let found = functions[function][0][entry].expect("a value");
+        assert_eq!(found.value, value, "{function} {entry}");
+        assert!((found.rest - rest).abs() <= 1e-32, "{function} {entry}: {}", found.rest);
+    }
+}
+
+/// Where rounding decides on which side of a kink a number is, nothing can be compared; elsewhere everything.
+#[test]
+fn only_what_rounding_decides_is_left_out() {
+    let definition = "
+NAME = 'Torn'
+N = 2
+V = 0
+RATES = []
+
+def define(ca, q, v, t, der):
+    return [ca.fabs(q[0] * ca.SX(3.0) - ca.SX(0.3)), ca.fabs(q[1])], []
+";
+    let state = State { q: vec![0.1, 0.1], qd: vec![1.0; 2], qdd: vec![0.0; 2], t: 0.0 };
+    let answer = oracle().evaluate_digits(definition, &[Sample { state, variables: vec![] }]);
+    let functions = answer.unwrap_or_else(|error| panic!("{error}")).functions;
+    let bounds: Vec<bool> =
+        functions["phi"][0].iter().map(|entry| entry.expect("a value").bound.is_some()).collect();
+    assert_eq!(bounds, [false, true]);
+}
+
+#[test]
 fn the_largest_error_names_row_and_coordinate() {
     let agreement = agreement(|f| f.phi_q[1] = 0.5);
     let worst = agreement.worst().expect("functions");
@@ -148,7 +221,7 @@ fn a_definition_of_another_size_is_refused() {
     let mut hand = Hand { variables: [0.3, 1.5, 0.0, 0.0], fault: |_| () };
     let smaller = DEFINITION.replace("V = 4", "V = 5");
     let error = compare(&mut hand, &oracle(), &smaller, 2).expect_err("sizes differ");
-    assert!(error.to_string().contains("`Hand` has 2 coordinates and 5 variables"), "{error}");
+    assert!(error.to_string().contains("has 2 coordinates and 5 variables"), "{error}");
     let other = DEFINITION.replace("'Hand'", "'Foot'");
     let error = compare(&mut hand, &oracle(), &other, 2).expect_err("names differ");
     assert!(matches!(error, OracleError::Answer { .. }), "{error}");
