@@ -3,7 +3,7 @@
 use crate::budgeted::Budgeted;
 use crate::diagnosis::{Statistics, extent};
 use crate::kinematics::{entry, largest_difference, position_failure, time_failure};
-use crate::stepper::{Before, Found, State};
+use crate::stepper::Found;
 use crate::{Entry, Failure, Kinematic, Real, Stepper};
 
 /// The work that a step may cost at most, in each block.
@@ -20,7 +20,7 @@ impl Budget {
     /// Evaluations of residual and Jacobian that a block costs at most: those of Newton's method, the trials of the
     /// fallback and one where it starts.
     ///
-    /// Beside them a step costs one factorisation of Φ_q and three linear solutions at most.
+    /// Beside them a step costs two factorisations of Φ_q and four linear solutions at most.
     pub const fn evaluations(self) -> u32 {
         let newton = if self.newton == 0 { 1 } else { self.newton };
         match self.fallback {
@@ -130,7 +130,8 @@ impl<S: Kinematic<R, N>, R: Real, const N: usize> Stepper<S, R, N> {
             return Err(failure);
         }
         let found = Found { t, q, statistics, open };
-        self.state = State::at(&self.mechanism, &self.parameters, found, Before::State(&self.state))?;
+        self.take(self.next_state(found)?);
+        let statistics = self.statistics();
         Ok(match open {
             None => Step::Done(statistics),
             Some(_) => Step::Degraded {

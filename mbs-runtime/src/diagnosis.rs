@@ -177,6 +177,9 @@ pub struct Statistics {
     /// Largest difference between the position and its prediction, in the reference metric (rad, or reference
     /// lengths). Where it jumps, the step is too long for the motion, or the assembly has changed.
     pub correction: f64,
+    /// Whether a singular position lies between this position and the one before: the sign of a block's determinant
+    /// has changed. With a `correction` as large as the step, the assembly has changed in its place.
+    pub passed: bool,
 }
 
 impl Statistics {
@@ -188,6 +191,7 @@ impl Statistics {
             residual: diagnosis.worst.ratio.to_f64(),
             row: diagnosis.worst.row.as_ref().first().copied().unwrap_or(0),
             correction: 0.0,
+            passed: false,
         }
     }
 }

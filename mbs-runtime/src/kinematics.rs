@@ -9,12 +9,18 @@ use crate::{Entry, Failure, Kinematic, Margin, Mechanism, Newton, Outcome, Real}
 pub struct RegularFactors<F, R> {
     factors: F,
     margin: R,
+    orientation: u64,
 }
 
 impl<F, R: Copy> RegularFactors<F, R> {
     /// Margin to singularity, above [`least_margin`], at most 1.
     pub fn margin(&self) -> R {
         self.margin
+    }
+
+    /// Signs of the blocks' determinants; see [`Margin::orientation`].
+    pub fn orientation(&self) -> u64 {
+        self.orientation
     }
 }
 
@@ -66,7 +72,8 @@ pub fn factorize<S: Kinematic<R, N>, R: Real, const N: usize>(
 ) -> Result<RegularFactors<S::Factors, R>, Failure> {
     let (factors, margin) = mechanism.factorize(parameters, position);
     if determines_rates(margin.value) {
-        return Ok(RegularFactors { factors, margin: margin.value });
+        let orientation = margin.orientation.as_ref().first().copied().unwrap_or(0);
+        return Ok(RegularFactors { factors, margin: margin.value, orientation });
     }
     Err(singular::<S, R, N>(&margin, t))
 }

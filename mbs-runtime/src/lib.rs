@@ -25,6 +25,7 @@ pub mod linear;
 pub mod mechanism;
 pub mod newton;
 pub mod newton_raphson;
+mod path;
 pub mod safeguarded;
 pub mod saved;
 pub mod scalar;

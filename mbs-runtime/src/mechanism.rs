@@ -182,6 +182,8 @@ pub trait Factorization<T: Scalar, const K: usize>: Copy {
     fn factorize(a: &[[T; K]; K], row_scales: &[T; K], coordinate_scales: &[T; K]) -> (Self, T);
     /// Solves `a x = b`.
     fn solve(&self, b: &[T; K]) -> [T; K];
+    /// Whether the determinant of `a` is negative; of no meaning in a singular lane.
+    fn reverses(&self) -> T::Mask;
 }
 
 /// Solves the nonlinear diagonal blocks as emitted code meets them; the strategy of Newton's method.
@@ -250,12 +252,17 @@ pub struct Margin<T: Scalar> {
     pub row: T::Lanes<u16>,
     /// First coordinate of that block, a lane.
     pub coordinate: T::Lanes<u16>,
+    /// Signs of the blocks' determinants, one bit a block, a lane. Where a bit has changed from one position to the
+    /// next, the mechanism passed a singular position in between, or it is in another assembly. Bits of more than 64
+    /// blocks lie on each other.
+    pub orientation: T::Lanes<u64>,
 }
 
 impl<T: Scalar> Margin<T> {
     /// The margin of a mechanism without any block that could become singular.
     pub fn regular() -> Self {
-        Margin { value: T::constant(1.0), row: T::per_lane(|_| 0), coordinate: T::per_lane(|_| 0) }
+        let none = T::per_lane(|_| 0);
+        Margin { value: T::constant(1.0), row: none, coordinate: none, orientation: T::per_lane(|_| 0) }
     }
 
     /// The smaller one of this margin and that of a block with first row `row` and first coordinate `coordinate`.
@@ -269,6 +276,17 @@ impl<T: Scalar> Margin<T> {
             value: T::select(nearer, value, self.value),
             row: T::per_lane(|lane| pick(lane, row, &self.row)),
             coordinate: T::per_lane(|lane| pick(lane, coordinate, &self.coordinate)),
+            orientation: self.orientation,
         }
+    }
+
+    /// This margin with the sign of one more block's determinant: negative where `reverses`.
+    #[inline(always)]
+    pub fn oriented(self, reverses: T::Mask) -> Self {
+        let turned = |lane: usize| {
+            let signs = self.orientation.as_ref().get(lane).copied().unwrap_or(0);
+            signs.rotate_left(1) ^ u64::from(T::test(reverses, lane))
+        };
+        Margin { orientation: T::per_lane(turned), ..self }
     }
 }

@@ -149,7 +149,7 @@ impl<S: Kinematic<R, N>, R: Real, const N: usize> Stepper<S, R, N> {
         statistics.correction = largest_difference(&q, &start, &scales).to_f64();
         let found = Found { t, q, statistics, open: None };
         let state = State::at(&mechanism, &parameters, found, Before::Saved)?;
-        Ok(Stepper { mechanism, parameters, fault: None, state })
+        Ok(Stepper { mechanism, parameters, fault: None, changed: false, state })
     }
 }
 

@@ -5,22 +5,12 @@ use crate::kinematics::{
     branch_failure, coordinate_failure, factorize, largest_difference, solve_acceleration, solve_correction,
     solve_position, solve_velocity, time_failure, variable_failure,
 };
+use crate::path::{Way, displaced, is_near};
 use crate::{Failure, Kinematic, Mechanism, Real, Sweep, assemble};
 
-/// Margin to singularity below which the last regular tangent predicts, not the rates of the state: those are
-/// wrong by the inverse square of the margin, and past a change point pick the assembly by chance.
+/// Margin to singularity below which the path from the last regular position predicts, not the rates of the state: those
+/// are wrong by the inverse square of the margin, and past a change point pick the assembly by chance.
 const REGULAR_ZONE: f64 = 1e-2;
-
-/// Largest part of a prediction (rad, or reference lengths) that may come from accelerations: beyond it the step
-/// is too long for a second-order polynomial, and the first-order one is nearer.
-const LARGEST_SECOND_ORDER_TERM: f64 = 0.5;
-
-/// Largest Newton step from a position that is kept open, in the reference metric, over its margin.
-///
-/// By Kantorovich's theorem a step η converges where β κ η ≤ 1/2, and to a point not farther than 2η. Links turn with
-/// curvature κ ≤ 1 in the metric and the inverse β is about 2/margin, so that a quarter is the limit: the position is
-/// nearer to the solution that it approximates than to where the assemblies meet.
-const LARGEST_OPEN_STEP: f64 = 0.25;
 
 /// A mechanism with its state. It owns everything, allocates nothing, and a failed call leaves it as it was.
 ///
@@ -32,6 +22,9 @@ pub struct Stepper<S: Mechanism<R, N, N>, R: Real, const N: usize> {
     pub(crate) parameters: S::Parameters,
     /// What is wrong with the parameters or inputs, since they were changed last.
     pub(crate) fault: Option<Failure>,
+    /// Whether parameters or inputs were changed since the state was solved: its rates need not be those of the way
+    /// to the new ones.
+    pub(crate) changed: bool,
     pub(crate) state: State<R, N>,
 }
 
@@ -46,7 +39,12 @@ pub(crate) struct State<R, const N: usize> {
     /// What the margin changed by in the last step over the time (s) that it took.
     pub(crate) margin_rate: R,
     statistics: Statistics,
-    tangent: Tangent<R, N>,
+    /// Signs of the blocks' determinants.
+    orientation: u64,
+    /// Singular positions passed since the assembly.
+    passages: u32,
+    /// The last position outside the singular zone.
+    regular: [R; N],
     /// The Newton step that is still to be made, where the position does not close.
     pub(crate) repair: Option<[R; N]>,
 }
@@ -72,14 +70,6 @@ pub(crate) enum Before<'a, R, const N: usize> {
     State(&'a State<R, N>),
 }
 
-/// How the mechanism moved with its drivers where it was regular last.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Tangent<R, const N: usize> {
-    qd: [R; N],
-    /// Φ_t there, over the rows' scales: speed and direction of the drivers.
-    drive: [R; N],
-}
-
 impl<S: Kinematic<R, N>, R: Real, const N: usize> Stepper<S, R, N> {
     /// Assembles `mechanism` from `guess` (N) at time `t` (s); velocity and acceleration follow.
     ///
@@ -91,7 +81,7 @@ impl<S: Kinematic<R, N>, R: Real, const N: usize> Stepper<S, R, N> {
         let parameters = mechanism.parameters();
         let found = Found { t, q: assembled.q, statistics: assembled.statistics, open: None };
         let state = State::at(&mechanism, &parameters, found, Before::Guess)?;
-        Ok(Stepper { mechanism, parameters, fault: None, state })
+        Ok(Stepper { mechanism, parameters, fault: None, changed: false, state })
     }
 
     /// Moves on by `h` (s); 0 solves anew, negative goes back.
@@ -105,8 +95,11 @@ impl<S: Kinematic<R, N>, R: Real, const N: usize> Stepper<S, R, N> {
 
     /// Moves on to time `t` (s).
     ///
-    /// Predicts q + h q̇ + h²/2 q̈ (near a singular position by the last regular tangent), solves the position by [`Newton`](crate::Newton), factorises Φ_q once, and
-    /// solves velocity and acceleration with it.
+    /// Predicts q + h q̇ + h²/2 q̈, or after a change of inputs and near a singular position the path of the drivers
+    /// from the last regular one to second order; solves the position by [`Newton`](crate::Newton), factorises Φ_q
+    /// once, and solves velocity and acceleration with it. A position that is off its prediction by more than a
+    /// quarter of its margin might be in another assembly: it is found again along the way of the drivers, in
+    /// pieces that leave no doubt, if there is such a way.
     ///
     /// # Errors
     /// [`Failure::NonFinite`], [`Failure::NotConverged`], [`Failure::Singular`], [`Failure::WrongBranch`]; the
@@ -119,8 +112,41 @@ impl<S: Kinematic<R, N>, R: Real, const N: usize> Stepper<S, R, N> {
         let start = self.predicted(t);
         let (q, statistics) = solve_position(&self.mechanism, &self.parameters, &start, t)?;
         let found = Found { t, q, statistics, open: None };
-        self.state = State::at(&self.mechanism, &self.parameters, found, Before::State(&self.state))?;
-        Ok(statistics)
+        match self.next_state(found) {
+            Ok(state) if is_near(R::constant(statistics.correction), state.margin) => self.take(state),
+            Err(failure) if !matches!(failure, Failure::WrongBranch { .. }) => return Err(failure),
+            doubtful => {
+                let state = self.along_the_way(found).map_or(doubtful, Ok)?;
+                self.take(state);
+            }
+        }
+        Ok(self.state.statistics)
+    }
+
+    /// The state where the way of the drivers ends, for a position so far from its prediction that it may be in another
+    /// assembly; `None` where no way is found.
+    #[cold]
+    #[inline(never)]
+    fn along_the_way(&self, doubtful: Found<R, N>) -> Option<State<R, N>> {
+        let Found { t, statistics: first, .. } = doubtful;
+        let end = self.way(t).end(&self.state.regular)?;
+        let (q, second) = solve_position(&self.mechanism, &self.parameters, &end, t).ok()?;
+        let evaluations = first.evaluations.saturating_add(second.evaluations);
+        let statistics = Statistics { evaluations, fallback: true, ..second };
+        self.next_state(Found { t, q, statistics, open: None }).ok()
+    }
+
+    /// The state at a position that follows.
+    #[inline(always)]
+    pub(crate) fn next_state(&self, found: Found<R, N>) -> Result<State<R, N>, Failure> {
+        State::at(&self.mechanism, &self.parameters, found, Before::State(&self.state))
+    }
+
+    /// Makes a state that follows the present one.
+    #[inline(always)]
+    pub(crate) fn take(&mut self, state: State<R, N>) {
+        self.state = state;
+        self.changed = false;
     }
 
     /// The frames from now to `until` (s) in `steps` equal steps; see [`Sweep`].
@@ -136,6 +162,7 @@ impl<S: Kinematic<R, N>, R: Real, const N: usize> Stepper<S, R, N> {
         let result = change(&mut self.mechanism);
         self.parameters = self.mechanism.parameters();
         self.fault = variable_failure(&self.mechanism);
+        self.changed = true;
         result
     }
 
@@ -174,6 +201,16 @@ impl<S: Kinematic<R, N>, R: Real, const N: usize> Stepper<S, R, N> {
         self.state.margin
     }
 
+    /// How many singular positions were passed since the assembly: changes of the sign of a block's determinant from
+    /// one position to the next. A crank that goes over a change point and back has passed it twice.
+    ///
+    /// Which of the two assemblies that meet there is followed, the tangent decides (see
+    /// [`advance_to`](Self::advance_to)). A step so long that the solver takes another assembly counts as a passage too:
+    /// what looks like one and is none at that place is a step to halve.
+    pub fn passages(&self) -> u32 {
+        self.state.passages
+    }
+
     /// What the last position cost.
     pub fn statistics(&self) -> Statistics {
         self.state.statistics
@@ -209,11 +246,11 @@ impl<S: Kinematic<R, N>, R: Real, const N: usize> Stepper<S, R, N> {
     #[inline(always)]
     pub(crate) fn predicted(&self, t: R) -> [R; N] {
         let state = &self.state;
-        let mut predicted =
-            if state.is_regular() { self.extrapolated(t - state.t) } else { self.continued(t) };
-        if let Some(repair) = &state.repair {
-            predicted.iter_mut().zip(repair).for_each(|(coordinate, step)| *coordinate = *coordinate + *step);
-        }
+        let predicted = match state.is_regular() && !self.changed {
+            true => self.repaired(self.extrapolated(t - state.t)),
+            // Where two paths cross it is the one that the mechanism came on.
+            false => self.way(t).predicted(&state.regular, &[R::constant(0.0); N]),
+        };
         // A jump in time that overflows the prediction is left to the solver, from where the mechanism stands.
         if predicted.iter().fold(true, |all, coordinate| all & coordinate.is_finite()) {
             predicted
@@ -222,48 +259,27 @@ impl<S: Kinematic<R, N>, R: Real, const N: usize> Stepper<S, R, N> {
         }
     }
 
-    /// q + h q̇ + h²/2 q̈, without the last term where it is too large to be trusted.
+    /// With the step of Newton's method that a degraded position still lacks.
     #[inline(always)]
-    fn extrapolated(&self, h: R) -> [R; N] {
-        let State { q, qd, qdd, .. } = self.state;
-        let half_square = R::constant(0.5) * h * h;
-        let scales = self.mechanism.coordinate_scales(&self.parameters);
-        let limit = R::constant(LARGEST_SECOND_ORDER_TERM);
-        let mut trusted = true;
-        for (acceleration, scale) in qdd.iter().zip(&scales) {
-            trusted &= (half_square * *acceleration).abs() <= limit * *scale;
-        }
-        let curvature = if trusted { half_square } else { R::constant(0.0) };
-        let mut predicted = q;
-        for ((coordinate, rate), acceleration) in predicted.iter_mut().zip(qd).zip(qdd) {
-            *coordinate = *coordinate + h * rate + curvature * acceleration;
+    fn repaired(&self, mut predicted: [R; N]) -> [R; N] {
+        if let Some(repair) = &self.state.repair {
+            predicted.iter_mut().zip(repair).for_each(|(coordinate, step)| *coordinate = *coordinate + *step);
         }
         predicted
     }
 
-    /// Near a singular position: the tangent of the last regular one times what the drivers have moved since.
-    ///
-    /// The drivers' movement is read from the rows that they open: Φ(q, t) with the new time and inputs, along Φ_t
-    /// at the tangent. So a driver that jitters, dwells or turns back is followed in what it does.
-    #[cold]
-    #[inline(never)]
-    fn continued(&self, t: R) -> [R; N] {
-        let State { q, tangent, .. } = &self.state;
-        let position = self.mechanism.position(&self.parameters, q, t);
-        let opened = self.mechanism.phi(&self.parameters, &position);
-        let scales = self.mechanism.row_scales(&self.parameters);
-        let (mut moved, mut square) = (R::constant(0.0), R::constant(0.0));
-        for ((residual, scale), drive) in opened.iter().zip(&scales).zip(&tangent.drive) {
-            moved = moved + *residual / *scale * *drive;
-            square = square + *drive * *drive;
-        }
-        let elapsed = if R::constant(0.0) < square { moved / square } else { R::constant(0.0) };
-        let mut predicted = *q;
-        predicted
-            .iter_mut()
-            .zip(&tangent.qd)
-            .for_each(|(coordinate, rate)| *coordinate = *coordinate + elapsed * *rate);
-        predicted
+    /// q + h q̇ + h²/2 q̈, without the last term where it is too large to be trusted.
+    #[inline(always)]
+    fn extrapolated(&self, h: R) -> [R; N] {
+        let State { q, qd, qdd, .. } = &self.state;
+        let half_square = R::constant(0.5) * h * h;
+        let (first, second) = (qd.map(|rate| h * rate), qdd.map(|acceleration| half_square * acceleration));
+        displaced(q, &first, &second, &self.mechanism.coordinate_scales(&self.parameters))
+    }
+
+    /// What lies ahead with the mechanism's inputs as they are and time `t` (s).
+    fn way(&self, t: R) -> Way<'_, S, R, N> {
+        Way { mechanism: &self.mechanism, parameters: &self.parameters, t }
     }
 }
 
@@ -290,17 +306,16 @@ impl<R: Real, const N: usize> State<R, N> {
         }
         let qd = solve_velocity(mechanism, parameters, &position, &factors)?;
         let qdd = solve_acceleration(mechanism, parameters, &position, &qd, &factors)?;
-        let drive = || {
-            let mut drive = mechanism.phi_t(parameters, &position);
-            let scales = mechanism.row_scales(parameters);
-            drive.iter_mut().zip(scales).for_each(|(rate, scale)| *rate = *rate / scale);
-            drive
+        let (margin, orientation) = (factors.margin(), factors.orientation());
+        let (regular, passed, passages) = match before {
+            Before::State(last) => {
+                let regular = if margin < R::constant(REGULAR_ZONE) { last.regular } else { q };
+                let passed = last.orientation != orientation;
+                (regular, passed, last.passages.saturating_add(u32::from(passed)))
+            }
+            Before::Guess | Before::Saved => (q, false, 0),
         };
-        let margin = factors.margin();
-        let tangent = match before {
-            Before::State(last) if margin < R::constant(REGULAR_ZONE) => last.tangent,
-            _ => Tangent { qd, drive: drive() },
-        };
+        let statistics = Statistics { passed, ..statistics };
         let margin_rate = match before {
             Before::State(last) if t == last.t => last.margin_rate,
             Before::State(last) => (margin - last.margin) / (t - last.t),
@@ -311,11 +326,10 @@ impl<R: Real, const N: usize> State<R, N> {
             Some(failure) => {
                 let step = solve_correction(mechanism, parameters, &position, &factors)?;
                 let size = largest_difference(&step, &[R::constant(0.0); N], &scales);
-                let near = size <= R::constant(LARGEST_OPEN_STEP) * margin;
-                Some(if near { step } else { return Err(failure) })
+                Some(if is_near(size, margin) { step } else { return Err(failure) })
             }
         };
-        Ok(State { t, q, qd, qdd, margin, margin_rate, statistics, tangent, repair })
+        Ok(State { t, q, qd, qdd, margin, margin_rate, statistics, orientation, passages, regular, repair })
     }
 
     fn is_regular(&self) -> bool {

@@ -107,7 +107,8 @@ pub fn linear(equations: &Equations, program: &Program, scope: &Scope<'_>) -> (S
                 let _ = writeln!(
                     factorize,
                     "let (__block{index}, __value) = <{kind} as __mbs::Factorization<T, {size}>>::factorize(&{rows}, &{row_scales}, &{scales});\n\
-                     let __margin = __margin.with_block(__value, {row}, {coordinate});"
+                     let __margin = __margin.with_block(__value, {row}, {coordinate})\
+                     .oriented(<{kind} as __mbs::Factorization<T, {size}>>::reverses(&__block{index}));"
                 );
                 let _ = write!(names, "block{index}: __block{index}, ");
                 let unknowns = list(block.coordinates.iter().map(|c| format!("__x{c}")));

@@ -557,7 +557,13 @@ const _: () = {
                 &[T::constant(0.3f64), T::constant(0.3f64)],
                 &[T::constant(1.0f64), T::constant(1.0f64)],
             );
-            let __margin = __margin.with_block(__value, 2, 3);
+            let __margin = __margin
+                .with_block(__value, 2, 3)
+                .oriented(
+                    <::mbs_runtime::Direct2<
+                        T,
+                    > as ::mbs_runtime::Factorization<T, 2>>::reverses(&__block1),
+                );
             (
                 __Factors {
                     entries: [__s.0[3], __s.0[5], __s.0[6], __n50, __n53],

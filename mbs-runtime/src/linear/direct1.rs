@@ -24,6 +24,11 @@ impl<T: Scalar> Factorization<T, 1> for Direct1<T> {
         let [b] = *b;
         [self.reciprocal * b]
     }
+
+    #[inline(always)]
+    fn reverses(&self) -> T::Mask {
+        self.reciprocal.less(T::constant(0.0))
+    }
 }
 
 #[cfg(test)]

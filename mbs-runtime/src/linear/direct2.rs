@@ -6,6 +6,8 @@ use crate::{Factorization, Scalar};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Direct2<T> {
     inverse: [[T; 2]; 2],
+    /// 1/determinant.
+    reciprocal: T,
 }
 
 impl<T: Scalar> Factorization<T, 2> for Direct2<T> {
@@ -16,13 +18,18 @@ impl<T: Scalar> Factorization<T, 2> for Direct2<T> {
         let scaled @ [[b11, b12], [b21, b22]] = super::in_metric(a, row_scales, coordinate_scales);
         let (determinant, in_metric) = (a11 * a22 - a12 * a21, b11 * b22 - b12 * b21);
         let (r, margin) = super::reciprocal_and_margin(determinant, in_metric, super::mean_square(&scaled));
-        (Direct2 { inverse: [[a22 * r, -a12 * r], [-a21 * r, a11 * r]] }, margin)
+        (Direct2 { inverse: [[a22 * r, -a12 * r], [-a21 * r, a11 * r]], reciprocal: r }, margin)
     }
 
     #[inline(always)]
     fn solve(&self, b: &[T; 2]) -> [T; 2] {
         let [b1, b2] = *b;
         self.inverse.map(|[i1, i2]| i1 * b1 + i2 * b2)
+    }
+
+    #[inline(always)]
+    fn reverses(&self) -> T::Mask {
+        self.reciprocal.less(T::constant(0.0))
     }
 }
 

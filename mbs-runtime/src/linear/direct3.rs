@@ -6,6 +6,8 @@ use crate::{Factorization, Scalar};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Direct3<T> {
     inverse: [[T; 3]; 3],
+    /// 1/determinant.
+    reciprocal: T,
 }
 
 impl<T: Scalar> Factorization<T, 3> for Direct3<T> {
@@ -19,13 +21,18 @@ impl<T: Scalar> Factorization<T, 3> for Direct3<T> {
         let (determinant, in_metric) = (dot(&r1, &c1), dot(&b1, &cross(&b2, &b3)));
         let (r, margin) = super::reciprocal_and_margin(determinant, in_metric, mean * mean.sqrt());
         let row = |k: usize| [c1[k] * r, c2[k] * r, c3[k] * r];
-        (Direct3 { inverse: [row(0), row(1), row(2)] }, margin)
+        (Direct3 { inverse: [row(0), row(1), row(2)], reciprocal: r }, margin)
     }
 
     #[inline(always)]
     fn solve(&self, b: &[T; 3]) -> [T; 3] {
         let [b1, b2, b3] = *b;
         self.inverse.map(|[i1, i2, i3]| i1 * b1 + i2 * b2 + i3 * b3)
+    }
+
+    #[inline(always)]
+    fn reverses(&self) -> T::Mask {
+        self.reciprocal.less(T::constant(0.0))
     }
 }
 

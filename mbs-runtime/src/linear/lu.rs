@@ -89,6 +89,20 @@ impl<T: Scalar, const K: usize> Factorization<T, K> for Lu<T, K> {
         }
         x
     }
+
+    /// From the pivots' signs and the number of swaps.
+    #[inline]
+    fn reverses(&self) -> T::Mask {
+        let mut odd = T::mask(false);
+        let mut turn = |mask: T::Mask| odd = (odd | mask) & !(odd & mask);
+        for k in 0..K {
+            turn(self.pivot_reciprocals[k].less(T::constant(0.0)));
+            for i in k + 1..K {
+                turn(self.swaps[k][i]);
+            }
+        }
+        odd
+    }
 }
 
 #[cfg(test)]

@@ -274,7 +274,7 @@ impl<T: Scalar, const B: usize> Kinematic<T, 5> for FourBar<T, B> {
         let crank = [l1 * p.s[0], -l1 * p.c[0], l1 * p.s[0], l1 * p.c[0]];
         (
             Factors { dyad, crank, coupler: [l5 * p.s[3], -l5 * p.c[3]] },
-            Margin::regular().with_block(margin, 2, 3),
+            Margin::regular().with_block(margin, 2, 3).oriented(dyad.reverses()),
         )
     }
 

@@ -1,0 +1,6 @@
+//! Change points passed with the crank measured: parallelograms in line, in angles and in natural coordinates.
+
+mod landing;
+mod linkage;
+mod plan;
+mod runs;
