@@ -26,7 +26,8 @@ pub struct Assembled<R, const N: usize> {
 /// The guess comes first; where it leads nowhere or to another assembly, a fixed list of starts around it is
 /// tried, up to π away in angles and two reference lengths in lengths: block by block, each against the branches that
 /// it decides, then for the mechanism as a whole. Angles are as the solver found them: whole
-/// turns of the guess are kept, none is taken off.
+/// turns of the guess are kept, none is taken off. A drive that prescribes a rate holds what it drives where the guess
+/// has it.
 ///
 /// # Errors
 /// [`Failure::NonFinite`] for a guess, parameter, input or time that is no number, or a row that is none from
@@ -42,6 +43,9 @@ pub fn assemble<S: Kinematic<R, N>, R: Real, const N: usize>(
     if let Some(failure) = broken {
         return Err(failure);
     }
+    let mut mechanism = mechanism.clone();
+    mechanism.start_phases(&guess, t);
+    let mechanism = &mechanism;
     let parameters = mechanism.parameters();
     let mut search = Search { least: f64::INFINITY, open: None, wrong: None };
     for start in 0..=OTHER_STARTS {

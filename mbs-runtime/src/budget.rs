@@ -59,7 +59,8 @@ impl<S: Kinematic<R, N>, R: Real, const N: usize> Stepper<S, R, N> {
     /// evaluation a period still follows the motion.
     ///
     /// [`Step::Refused`] with [`Failure::NonFinite`], [`Failure::NotConverged`] (too far from any position for the
-    /// budget, or there is none), [`Failure::Singular`], [`Failure::WrongBranch`].
+    /// budget, or there is none), [`Failure::Singular`], [`Failure::WrongBranch`],
+    /// [`Failure::BeyondLimit`].
     #[inline]
     pub fn step(&mut self, h: R, budget: Budget) -> Step {
         self.step_to(self.state.t + h, budget)
@@ -76,14 +77,14 @@ impl<S: Kinematic<R, N>, R: Real, const N: usize> Stepper<S, R, N> {
     /// Inputs jump to their present value in the first step. Where they have moved far in the time missed, change
     /// them in parts, with a [`step`](Self::step) after each.
     pub fn skip(&mut self, period: R, periods: u32, budget: Budget) -> Step {
-        let before = self.state;
+        let before = (self.state, self.changed, self.mechanism.clone());
         let periods = periods.max(1);
         let mut evaluations = 0_u32;
         let mut step = Step::Refused(Failure::NonFinite { name: "t", line: 0 });
         for k in 1..=periods {
-            step = self.step_to(before.t + period * R::constant(f64::from(k)), budget);
+            step = self.step_to(before.0.t + period * R::constant(f64::from(k)), budget);
             let (Step::Done(statistics) | Step::Degraded { statistics, .. }) = &mut step else {
-                self.state = before;
+                (self.state, self.changed, self.mechanism) = before;
                 return step;
             };
             evaluations = evaluations.saturating_add(statistics.evaluations);
@@ -118,6 +119,11 @@ impl<S: Kinematic<R, N>, R: Real, const N: usize> Stepper<S, R, N> {
         if let Some(failure) = self.fault.or(time_failure(t)) {
             return Err(failure);
         }
+        self.with_phases(t, |stepper| stepper.within_budget(t, budget))
+    }
+
+    #[inline]
+    fn within_budget(&mut self, t: R, budget: Budget) -> Result<Step, Failure> {
         let start = self.predicted(t);
         let scales = self.mechanism.coordinate_scales(&self.parameters);
         let mut solver = Budgeted::new(extent(&start, &scales), budget);

@@ -93,6 +93,17 @@ pub enum Failure {
         /// Time (s).
         time: f64,
     },
+    /// A quantity leaves the working range that a `limit` of the text allows it.
+    BeyondLimit {
+        /// The limit.
+        limit: Entry,
+        /// The quantity, in the limit's unit.
+        value: f64,
+        /// The bound that it passes.
+        bound: f64,
+        /// Time (s) of the position that was sought.
+        time: f64,
+    },
     /// The position nearest to a saved state is not next to it.
     TooFar {
         /// The coordinate that is farthest off.
@@ -120,6 +131,7 @@ impl Failure {
             | Failure::NotAssemblable { time, .. }
             | Failure::Singular { time, .. }
             | Failure::WrongBranch { time, .. }
+            | Failure::BeyondLimit { time, .. }
             | Failure::TooFar { time, .. } => *time,
             Failure::NonFinite { .. } | Failure::Foreign { .. } => 0.0,
         }
@@ -161,6 +173,12 @@ impl fmt::Display for Failure {
                 "the assembly found at t = {time} s is not the declared one: branch `{}` (line {}) is {value:.3e}, not \
                  positive; start from a guess on the other side",
                 branch.name, branch.line
+            ),
+            Failure::BeyondLimit { limit, value, bound, .. } => write!(
+                f,
+                "limit `{}` (line {}) is passed at t = {time} s: {value} {} is beyond {bound}; turn back, or widen the \
+                 range",
+                limit.name, limit.line, limit.unit
             ),
             Failure::TooFar { coordinate, distance, allowed, .. } => write!(
                 f,
@@ -206,6 +224,7 @@ mod tests {
             Failure::NotAssemblable { row: ROW, residual, time },
             Failure::Singular { row: ROW, coordinate: ROW, margin: 0.0, required, time },
             Failure::WrongBranch { branch: ROW, value: -1.0, time },
+            Failure::BeyondLimit { limit: ROW, value: 2.0, bound: 1.0, time },
             Failure::TooFar { coordinate: ROW, distance: 1.0, allowed: 0.5, time },
         ];
         for failure in failures {

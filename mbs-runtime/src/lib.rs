@@ -21,11 +21,13 @@ pub mod failure;
 mod function;
 pub mod kinematics;
 pub mod lanes;
+pub mod limit;
 pub mod linear;
 pub mod mechanism;
 pub mod newton;
 pub mod newton_raphson;
 mod path;
+pub mod phase;
 pub mod safeguarded;
 pub mod saved;
 pub mod scalar;
@@ -45,12 +47,14 @@ pub use failure::{Failure, Outcome};
 pub use function::Function;
 pub use kinematics::{RegularFactors, factorize, solve_acceleration, solve_position, solve_velocity};
 pub use lanes::Lanes;
+pub use limit::{Limit, Warning};
 pub use linear::{Direct1, Direct2, Direct3, Lu};
 pub use mechanism::{
     Block, BlockSolver, Entry, Evaluation, Factorization, Kinematic, Margin, Mechanism, OutputValue, Signal,
 };
 pub use newton::Newton;
 pub use newton_raphson::{Iterate, newton_raphson, newton_raphson_watched};
+pub use phase::{Phase, Speed};
 pub use safeguarded::Safeguarded;
 pub use saved::Saved;
 pub use scalar::{Real, Scalar};
@@ -61,7 +65,7 @@ pub use trace::{Trace, Traced};
 /// Declares a mechanism: a struct with its parameters, and implementations of [`Mechanism`] and [`Kinematic`].
 ///
 /// The text is a header and statements: `const`, `param`, `input`, `coord`, `let`, `constraint`, `drive`, `branch`,
-/// `out` and `for`. Units are checked, vectors are arrays, derivatives are exact. The emitted struct has the
+/// `limit`, `out` and `for`. Units are checked, vectors are arrays, derivatives are exact. The emitted struct has the
 /// parameters and inputs as public fields, `Default`, a view of the coordinates by name, and in its documentation
 /// shapes, sparsity, order of solution and operation counts. The README explains every statement.
 ///

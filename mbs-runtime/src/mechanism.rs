@@ -1,6 +1,6 @@
 //! What the macro emits: a mechanism as functions of its coordinates.
 
-use crate::{Outcome, Scalar};
+use crate::{Limit, Outcome, Scalar};
 
 /// A name of the text with its unit and its line in the source file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -29,6 +29,16 @@ pub struct Signal<T> {
     pub rate: T,
     /// Second time derivative, in the declared unit per second squared.
     pub acceleration: T,
+}
+
+impl<T: Scalar> Signal<T> {
+    /// The signal `h` (s) later, if its acceleration lasts.
+    #[inline]
+    pub fn moved(self, h: T) -> Self {
+        let Signal { value, rate, acceleration } = self;
+        let value = value + h * (rate + T::constant(0.5) * h * acceleration);
+        Signal { value, rate: rate + h * acceleration, acceleration }
+    }
 }
 
 /// A named output with as many exact time derivatives as its definition leaves it.
@@ -68,6 +78,8 @@ pub trait Mechanism<T: Scalar, const N: usize, const M: usize>: Clone {
     type Entries: AsRef<[T]> + Copy;
     /// One value a `branch` of the text.
     type Branches: AsRef<[T]> + Copy;
+    /// One range a `limit` of the text.
+    type Limits: AsRef<[Limit<T>]> + Copy;
     /// One value a component of an `out` of the text.
     type Outputs: AsRef<[OutputValue<T>]> + Copy;
     /// The same design in one lane, for fallbacks and diagnosis.
@@ -90,6 +102,10 @@ pub trait Mechanism<T: Scalar, const N: usize, const M: usize>: Clone {
     const BRANCHES: &'static [Entry];
     /// Of each branch, whether it picks the assembly alone and may change its sign afterwards.
     const BRANCHES_AT_START: &'static [bool] = &[];
+    /// Working ranges.
+    const LIMITS: &'static [Entry] = &[];
+    /// Drives that prescribe a rate, in the unit of what they drive; their phases are among the variables.
+    const PHASES: &'static [Entry] = &[];
     /// Outputs, component by component.
     const OUTPUTS: &'static [Entry];
 
@@ -99,6 +115,17 @@ pub trait Mechanism<T: Scalar, const N: usize, const M: usize>: Clone {
     fn set(&mut self, index: usize, value: T) -> bool;
     /// The design in lane `lane`.
     fn lane(&self, lane: usize) -> Self::Lane;
+
+    /// Starts the phases of drives that prescribe a rate such that their rows hold at `q` (N) and `t` (s).
+    #[inline]
+    fn start_phases(&mut self, _q: &[T; N], _t: T) {}
+    /// Moves these phases on from time `from` to time `to` (s).
+    ///
+    /// The increment is the integral of the prescribed rate. Parameters and inputs without rates count as held since
+    /// `from`, inputs with rates as moving to their present value with their present acceleration; a rate that
+    /// varies within the step is integrated with [`integrals`](crate::phase::integrals).
+    #[inline]
+    fn advance_phases(&mut self, _from: T, _to: T) {}
 
     /// Stage 0: what depends on parameters alone.
     fn parameters(&self) -> Self::Parameters;
@@ -127,6 +154,8 @@ pub trait Mechanism<T: Scalar, const N: usize, const M: usize>: Clone {
     fn gamma(&self, parameters: &Self::Parameters, position: &Self::Position, qd: &[T; N]) -> [T; M];
     /// Branch conditions, each positive where it holds.
     fn branches(&self, parameters: &Self::Parameters, position: &Self::Position) -> Self::Branches;
+    /// Working ranges with where `position` stands in them.
+    fn limits(&self, parameters: &Self::Parameters, position: &Self::Position) -> Self::Limits;
     /// Outputs with their time derivatives.
     fn outputs(
         &self,

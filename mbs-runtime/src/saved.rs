@@ -23,6 +23,8 @@ pub const NEAR: f64 = 0.5;
 
 /// Time and position of a mechanism as plain numbers, `f64` for every number type: what a reset must not lose.
 ///
+/// The phases of drives that prescribe a rate are in the position: each is what its drive holds there.
+///
 /// As bytes: [`BYTES`](Self::BYTES) of them, little-endian words of eight, the last one a check value over the
 /// others.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -117,9 +119,9 @@ impl<S: Kinematic<R, N>, R: Real, const N: usize> Stepper<S, R, N> {
     ///
     /// # Errors
     /// [`Failure::Foreign`] for the state of another mechanism, [`Failure::TooFar`], [`Failure::WrongBranch`],
-    /// [`Failure::NotAssemblable`], [`Failure::Singular`], [`Failure::Unresolved`]; [`Failure::NonFinite`] for a
-    /// parameter, input or time that is no number.
-    pub fn assemble_near(mechanism: S, saved: &Saved<N>, t: R) -> Result<Self, Failure> {
+    /// [`Failure::NotAssemblable`], [`Failure::Singular`], [`Failure::Unresolved`], [`Failure::BeyondLimit`];
+    /// [`Failure::NonFinite`] for a parameter, input or time that is no number.
+    pub fn assemble_near(mut mechanism: S, saved: &Saved<N>, t: R) -> Result<Self, Failure> {
         if saved.mechanism != fingerprint::<S, R, N>() {
             return Err(Failure::Foreign { mechanism: S::NAME });
         }
@@ -132,6 +134,8 @@ impl<S: Kinematic<R, N>, R: Real, const N: usize> Stepper<S, R, N> {
         if let Some(failure) = broken {
             return Err(failure);
         }
+        mechanism.start_phases(&start, R::constant(saved.t));
+        mechanism.advance_phases(R::constant(saved.t), t);
         let mut solver = Nearest { extent: extent(&start, &scales), diagnosis: Diagnosis::new() };
         let mut q = start;
         let outcome = mechanism.solve_blocks(&parameters, &mut q, t, &mut solver);

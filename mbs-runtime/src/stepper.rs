@@ -5,6 +5,7 @@ use crate::kinematics::{
     branch_failure, coordinate_failure, factorize, largest_difference, solve_acceleration, solve_correction,
     solve_position, solve_velocity, time_failure, variable_failure,
 };
+use crate::limit::limit_failure;
 use crate::path::{Way, displaced, is_near};
 use crate::{Failure, Kinematic, Mechanism, Real, Sweep, assemble};
 
@@ -74,10 +75,12 @@ impl<S: Kinematic<R, N>, R: Real, const N: usize> Stepper<S, R, N> {
     /// Assembles `mechanism` from `guess` (N) at time `t` (s); velocity and acceleration follow.
     ///
     /// # Errors
-    /// Those of [`assemble`](crate::assemble()), and [`Failure::Singular`] where the first position does not
-    /// determine rates.
-    pub fn assemble(mechanism: S, guess: impl Into<[R; N]>, t: R) -> Result<Self, Failure> {
+    /// Those of [`assemble`](crate::assemble()), [`Failure::Singular`] where the first position does not
+    /// determine rates, and [`Failure::BeyondLimit`].
+    pub fn assemble(mut mechanism: S, guess: impl Into<[R; N]>, t: R) -> Result<Self, Failure> {
+        let guess = guess.into();
         let assembled = assemble(&mechanism, guess, t)?;
+        mechanism.start_phases(&guess, t);
         let parameters = mechanism.parameters();
         let found = Found { t, q: assembled.q, statistics: assembled.statistics, open: None };
         let state = State::at(&mechanism, &parameters, found, Before::Guess)?;
@@ -102,13 +105,33 @@ impl<S: Kinematic<R, N>, R: Real, const N: usize> Stepper<S, R, N> {
     /// pieces that leave no doubt, if there is such a way.
     ///
     /// # Errors
-    /// [`Failure::NonFinite`], [`Failure::NotConverged`], [`Failure::Singular`], [`Failure::WrongBranch`]; the
-    /// state is then bit for bit what it was.
+    /// [`Failure::NonFinite`], [`Failure::NotConverged`], [`Failure::Singular`], [`Failure::WrongBranch`],
+    /// [`Failure::BeyondLimit`]; the state is then bit for bit what it was.
     #[inline]
     pub fn advance_to(&mut self, t: R) -> Result<Statistics, Failure> {
         if let Some(failure) = self.fault.or(time_failure(t)) {
             return Err(failure);
         }
+        self.with_phases(t, |stepper| stepper.advanced(t))
+    }
+
+    /// Moves the phases of drives that prescribe a rate on to `t`, then does `step`; a failure takes them back.
+    #[inline(always)]
+    pub(crate) fn with_phases<X>(
+        &mut self,
+        t: R,
+        step: impl FnOnce(&mut Self) -> Result<X, Failure>,
+    ) -> Result<X, Failure> {
+        if S::PHASES.is_empty() {
+            return step(self);
+        }
+        let before = self.mechanism.clone();
+        self.mechanism.advance_phases(self.state.t, t);
+        step(self).inspect_err(|_| self.mechanism = before)
+    }
+
+    #[inline(always)]
+    fn advanced(&mut self, t: R) -> Result<Statistics, Failure> {
         let start = self.predicted(t);
         let (q, statistics) = solve_position(&self.mechanism, &self.parameters, &start, t)?;
         let found = Found { t, q, statistics, open: None };
@@ -238,7 +261,7 @@ impl<S: Kinematic<R, N>, R: Real, const N: usize> Stepper<S, R, N> {
     }
 
     /// Stage-1 values of the state.
-    fn position(&self) -> S::Position {
+    pub(crate) fn position(&self) -> S::Position {
         self.mechanism.position(&self.parameters, &self.state.q, self.state.t)
     }
 
@@ -302,6 +325,9 @@ impl<R: Real, const N: usize> State<R, N> {
         if let Some(failure) =
             branch_failure(mechanism, parameters, &position, t, matches!(before, Before::Guess))
         {
+            return Err(failure);
+        }
+        if let Some(failure) = limit_failure(mechanism, parameters, &position, t) {
             return Err(failure);
         }
         let qd = solve_velocity(mechanism, parameters, &position, &factors)?;

@@ -1,5 +1,5 @@
 //! CasADi and 50 digits against a text that uses every operator and function of the language, explicit time in every place where
-//! it can stand, and inputs with rates: what no ready mechanism needs all at once.
+//! it can stand, inputs with rates and a drive that prescribes a rate: what no ready mechanism needs all at once.
 
 use mbs_runtime::mechanism;
 use mechanisms::verify::check;
@@ -20,6 +20,7 @@ mechanism! {
     coord s: m = 0.1;
     coord w: [m; 3] = [0.1, 0.2, 0.3];
     coord z: m = 0.1;
+    coord psi: rad = 0.1;
 
     let swing = 0.5*sin(omega*t) + 0.1*theta;
     let a = arm[0]*unit(phi[0]);
@@ -42,6 +43,7 @@ mechanism! {
         det([turned, p]) + det(w, [p[0], p[1], s], [s, arm[0], b])/SPAN == w[2]^2*table[1, 0]*omega*t;
     }
     drive time: sum(i in 0..N: phi[i]*(i + 1)*table[i, 1])*cos(omega*t)^2 == theta*(2 + sin(phi[2]))^-2;
+    drive steady: rate(psi*(1 + 0.1*sin(phi[0])) + 0.1*omega*t) == 0.3*theta/1s;
     for i in 0..1 {
         constraint repeated { for j in 0..1 { w[i + 1] == s*2^(sin(phi[j])) + shift[i]; } }
     }

@@ -8,7 +8,8 @@ mechanism! {
     coord phi: rad = 0.1;
     coord p: [m; 2] = [0.5, 0];
     constraint tip { p == L*unit(phi); }
-    drive crank: rate(phi) == omega;
+    drive crank: phi == omega*t;
+    out push: N = effort(phi);
     out speed: m/s = der(p.0);
 }
 

@@ -139,6 +139,7 @@ fn cost(program: &Program, lines: &mut Vec<String>) {
         ("`phi_qt_qd`", program.phi_qt_qd.operations),
         ("`gamma`", program.gamma.operations),
         ("`branches`", program.branches.operations),
+        ("`limits`", program.limits.operations),
         ("`outputs`", program.outputs.operations),
         ("`solve_blocks`, once", before),
         ("`solve_blocks`, each iteration of every block", iteration),

@@ -6,6 +6,7 @@ use proc_macro2::TokenStream;
 
 use super::blocks;
 use super::code::{lets, tokens};
+use super::phases;
 use super::scope::Scope;
 use crate::equations::Equations;
 use crate::model::Model;
@@ -31,6 +32,11 @@ pub struct Bodies {
     pub phi_qt_qd: TokenStream,
     pub gamma: TokenStream,
     pub branches: TokenStream,
+    pub limits: TokenStream,
+    /// `start_phases` and `advance_phases`, where there are any.
+    pub phases: TokenStream,
+    /// The function of speeds that they share.
+    pub speeds: TokenStream,
     pub outputs: TokenStream,
     /// Declaration of the factors' struct.
     pub factors: TokenStream,
@@ -58,6 +64,7 @@ pub fn bodies(model: &Model, equations: &Equations, program: &Program, runtime: 
     let kept = |stage: &crate::program::Stage, scope: &Scope<'_>, name: &str| {
         format!("{name}({})", array(stage.fields.keys().map(|id| Some(*id)), scope))
     };
+    let (phases, speeds) = phases::functions(equations, program, &bare);
     let (factors, factorize, solve_linear) = blocks::linear(equations, program, &scope);
     Bodies {
         kept_parameters: program.parameters.fields.len(),
@@ -88,6 +95,9 @@ pub fn bodies(model: &Model, equations: &Equations, program: &Program, runtime: 
         phi_qt_qd: body(&program.phi_qt_qd, &scope, rows(|row| row.phi_qt_qd)),
         gamma: body(&program.gamma, &scope, rows(|row| row.gamma)),
         branches: body(&program.branches, &scope, some(&equations.branches, &scope)),
+        limits: body(&program.limits, &scope, limits(equations, &scope)),
+        phases: tokens(&phases, runtime),
+        speeds: tokens(&speeds, runtime),
         outputs: body(&program.outputs, &scope, outputs(equations, &scope)),
         factors: tokens(&factors, runtime),
         solve_blocks: tokens(&blocks::solve(equations, program, &early), runtime),
@@ -115,6 +125,14 @@ fn matrix(equations: &Equations, scope: &Scope<'_>) -> String {
         let _ = writeln!(text, "__rows[{row}][{column}] = {};", scope.operand(entry));
     }
     text + "__rows"
+}
+
+fn limits(equations: &Equations, scope: &Scope<'_>) -> String {
+    let limit = |[low, value, high]: &[NodeId; 3]| {
+        let of = |id: &NodeId| scope.operand(*id);
+        format!("__mbs::Limit {{ low: {}, value: {}, high: {} }}", of(low), of(value), of(high))
+    };
+    format!("[{}]", equations.limits.iter().map(limit).collect::<Vec<_>>().join(", "))
 }
 
 fn outputs(equations: &Equations, scope: &Scope<'_>) -> String {

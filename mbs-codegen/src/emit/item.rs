@@ -58,6 +58,7 @@ fn implementations(text: &Text, model: &Model, bodies: &Bodies) -> TokenStream {
     let header = &text.header;
     let (name, runtime) = (&header.name, &header.runtime);
     let (n, branches, outputs) = (model.coordinates.len(), model.branches.len(), model.outputs.len());
+    let limits = model.limits.len();
     let tables = tables(text, model);
     let access = access(model, runtime, name);
     let Bodies {
@@ -77,6 +78,9 @@ fn implementations(text: &Text, model: &Model, bodies: &Bodies) -> TokenStream {
         phi_qt_qd,
         gamma,
         branches: branches_body,
+        limits: limits_body,
+        phases,
+        speeds,
         outputs: outputs_body,
         factors,
         solve_blocks,
@@ -85,6 +89,10 @@ fn implementations(text: &Text, model: &Model, bodies: &Bodies) -> TokenStream {
     } = bodies;
     let nonzeros = sparsity.len();
     let places = sparsity.iter().map(|(row, column)| quote! { (#row, #column) });
+    let speeds_item = match model.phases.is_empty() {
+        true => TokenStream::new(),
+        false => quote! { impl<T: #runtime::Scalar> #name<T> { #speeds } },
+    };
     quote! {
         #[allow(clippy::approx_constant, reason = "numbers of the text stay as they are")]
         const _: () = {
@@ -98,16 +106,20 @@ fn implementations(text: &Text, model: &Model, bodies: &Bodies) -> TokenStream {
 
             #factors
 
+            #speeds_item
+
             impl<T: #runtime::Scalar> #runtime::Mechanism<T, #n, #n> for #name<T> {
                 type Parameters = __Parameters<T>;
                 type Position = __Position<T>;
                 type Entries = [T; #nonzeros];
                 type Branches = [T; #branches];
+                type Limits = [#runtime::Limit<T>; #limits];
                 type Outputs = [#runtime::OutputValue<T>; #outputs];
                 type Lane = #name<T::Real>;
                 #tables
                 const SPARSITY: &'static [(::core::primitive::u16, ::core::primitive::u16)] = &[#(#places),*];
                 #access
+                #phases
                 #[inline]
                 fn parameters(&self) -> __Parameters<T> { #parameters }
                 #[inline]
@@ -134,6 +146,8 @@ fn implementations(text: &Text, model: &Model, bodies: &Bodies) -> TokenStream {
                 fn gamma(&self, __p: &__Parameters<T>, __s: &__Position<T>, __qd: &[T; #n]) -> [T; #n] { #gamma }
                 #[inline]
                 fn branches(&self, __p: &__Parameters<T>, __s: &__Position<T>) -> [T; #branches] { #branches_body }
+                #[inline]
+                fn limits(&self, __p: &__Parameters<T>, __s: &__Position<T>) -> [#runtime::Limit<T>; #limits] { #limits_body }
                 #[inline]
                 fn outputs(
                     &self,
@@ -178,6 +192,9 @@ fn tables(text: &Text, model: &Model) -> TokenStream {
     let variables = model.variables.iter().map(|v| entry(&v.name, &v.unit, v.span));
     let branches = model.branches.iter().map(|b| entry(&b.name, &b.dimension.to_string(), b.span));
     let at_start = model.branches.iter().map(|branch| branch.at_start);
+    let limits = model.limits.iter().map(|limit| entry(&limit.name, &limit.unit, limit.span));
+    let phases = model.phases.iter().filter_map(|phase| model.variables.get(phase.variable));
+    let phases = phases.map(|variable| entry(&variable.name, &variable.unit, variable.span));
     let outputs = model.outputs.iter().map(|output| entry(&output.name, &output.unit, output.span));
     quote! {
         const NAME: &'static ::core::primitive::str = #name;
@@ -187,6 +204,8 @@ fn tables(text: &Text, model: &Model) -> TokenStream {
         const VARIABLES: &'static [#runtime::Entry] = &[#(#variables),*];
         const BRANCHES: &'static [#runtime::Entry] = &[#(#branches),*];
         const BRANCHES_AT_START: &'static [::core::primitive::bool] = &[#(#at_start),*];
+        const LIMITS: &'static [#runtime::Entry] = &[#(#limits),*];
+        const PHASES: &'static [#runtime::Entry] = &[#(#phases),*];
         const OUTPUTS: &'static [#runtime::Entry] = &[#(#outputs),*];
     }
 }
@@ -240,6 +259,7 @@ fn lane(field: &Field, component: usize) -> String {
             let part = |part: &str| format!("{part}: T::lane({place}.{part}, __lane)");
             format!("__mbs::Signal {{ {}, {}, {} }}", part("value"), part("rate"), part("acceleration"))
         }
+        Role::Phase => format!("__mbs::Phase::lane({place}, __lane)"),
     }
 }
 
@@ -252,6 +272,10 @@ fn default(model: &Model, field: &Field, component: usize) -> String {
         Role::InputWithRates => {
             let zero = number(0.0);
             format!("__mbs::Signal {{ value: {zero}, rate: {zero}, acceleration: {zero} }}")
+        }
+        Role::Phase => {
+            let zero = number(0.0);
+            format!("__mbs::Phase::new({zero}, __mbs::Speed {{ value: {zero}, rate: {zero} }})")
         }
     }
 }
@@ -275,6 +299,7 @@ fn field_type(field: &Field, runtime: &TokenStream) -> TokenStream {
     let scalar = match field.role {
         Role::Parameter | Role::Input => quote! { T },
         Role::InputWithRates => quote! { #runtime::Signal<T> },
+        Role::Phase => quote! { #runtime::Phase<T> },
     };
     array_type(scalar, &field.shape)
 }
@@ -285,6 +310,7 @@ fn field_docs(field: &Field, model: &Model) -> Vec<String> {
         Role::Parameter => "Parameter",
         Role::Input => "Input",
         Role::InputWithRates => "Input with rates",
+        Role::Phase => "Phase",
     };
     let default = match (field.role, field.shape.as_slice()) {
         (Role::Parameter, []) => model

@@ -8,6 +8,7 @@ pub mod formula;
 mod functions;
 mod item;
 pub mod notation;
+mod phases;
 pub mod report;
 mod scope;
 mod stub;

@@ -115,6 +115,7 @@ fn operations(program: &Program) -> usize {
         &program.phi_t,
         &program.gamma,
         &program.branches,
+        &program.limits,
         &program.outputs,
     ];
     let iterations = program.blocks.iter().filter_map(|block| match &block.method {

@@ -72,19 +72,30 @@ pub fn number(value: f64) -> String {
     }
 }
 
-/// The place of a parameter or input in `self`.
+/// A parameter or input in `self`.
 pub fn variable(model: &Model, index: usize) -> String {
-    let Some(field) = model.fields.iter().rev().find(|field| field.first <= index) else {
-        return number(f64::NAN);
-    };
+    match located(model, index) {
+        Some((place, part)) => format!("self.{place}{part}"),
+        None => number(f64::NAN),
+    }
+}
+
+/// The field or component of one that holds a parameter, an input or a phase, with its rates.
+pub fn place(model: &Model, index: usize) -> String {
+    located(model, index).map_or_else(String::new, |(place, _)| place)
+}
+
+/// Field with component, and the part of a signal there.
+fn located(model: &Model, index: usize) -> Option<(String, &'static str)> {
+    let field = model.fields.iter().rev().find(|field| field.first <= index)?;
+    let offset = index - field.first;
     let (component, part) = match field.role {
-        Role::InputWithRates => {
-            let offset = index - field.first;
+        Role::InputWithRates | Role::Phase => {
             (offset / 3, [".value", ".rate", ".acceleration"].get(offset % 3).copied().unwrap_or(""))
         }
-        Role::Parameter | Role::Input => (index - field.first, ""),
+        Role::Parameter | Role::Input => (offset, ""),
     };
-    format!("self.{}{}{part}", field_name(&field.name.text), subscripts(component, &field.shape))
+    Some((format!("{}{}", field_name(&field.name.text), subscripts(component, &field.shape)), part))
 }
 
 /// `[i][j]` of a component of an array.

@@ -28,6 +28,9 @@ pub fn stub(text: &Text, model: &Model) -> TokenStream {
         phi_qt_qd: body(),
         gamma: body(),
         branches: body(),
+        limits: body(),
+        phases: quote! {},
+        speeds: quote! {},
         outputs: body(),
         factors: quote! {
             #[derive(::core::clone::Clone, ::core::marker::Copy, ::core::fmt::Debug)]

@@ -9,6 +9,10 @@ pub struct Lowered {
     pub graph: Graph,
     pub residuals: Vec<NodeId>,
     pub branches: Vec<NodeId>,
+    /// Lower bound, value, upper bound.
+    pub limits: Vec<[NodeId; 3]>,
+    /// What is driven, and its rate.
+    pub phases: Vec<[NodeId; 2]>,
     /// Value, and how many time derivatives its definition leaves it.
     pub outputs: Vec<(NodeId, u8)>,
     pub guesses: Vec<NodeId>,
@@ -89,6 +93,8 @@ pub fn lower(model: &Model) -> Lowered {
     Lowered {
         residuals: model.rows.iter().map(|row| of(row.residual)).collect(),
         branches: model.branches.iter().map(|branch| of(branch.value)).collect(),
+        limits: model.limits.iter().map(|limit| [of(limit.low), of(limit.value), of(limit.high)]).collect(),
+        phases: model.phases.iter().map(|phase| [of(phase.argument), of(phase.speed)]).collect(),
         outputs,
         guesses: model.coordinates.iter().map(|coordinate| coordinate.guess.map_or(zero, of)).collect(),
         coordinate_scales: model.coordinates.iter().map(|coordinate| scale(coordinate.dimension)).collect(),

@@ -1,4 +1,5 @@
-//! Model → roots of one graph: Φ, Φ_q, Φ_t, Φ_tt, Φ_qt q̇, γ, branches, outputs, guesses, metric.
+//! Model → roots of one graph: Φ, Φ_q, Φ_t, Φ_tt, Φ_qt q̇, γ, branches, limits, phases, outputs, guesses,
+//! metric.
 
 mod lower;
 
@@ -16,6 +17,10 @@ pub struct Equations {
     pub rows: Vec<Row>,
     /// One a branch, positive where it holds.
     pub branches: Vec<NodeId>,
+    /// One a limit: lower bound, value, upper bound.
+    pub limits: Vec<[NodeId; 3]>,
+    /// One a drive that prescribes a rate.
+    pub phases: Vec<Phase>,
     /// One an output.
     pub outputs: Vec<Output>,
     /// One a coordinate.
@@ -43,6 +48,17 @@ pub struct Row {
     pub gamma: Option<NodeId>,
 }
 
+/// What a drive that prescribes a rate needs.
+#[derive(Debug)]
+pub struct Phase {
+    /// What is driven.
+    pub argument: NodeId,
+    /// Its rate.
+    pub speed: NodeId,
+    /// The rate's time derivative.
+    pub acceleration: Option<NodeId>,
+}
+
 /// An output with as many derivatives as its definition leaves it; the inner `None` is a zero.
 #[derive(Debug)]
 pub struct Output {
@@ -57,8 +73,18 @@ pub struct Output {
 /// Before: a resolved model. After: every function that is emitted, as roots of one graph.
 pub fn derive(model: &Model) -> Equations {
     let lowered = lower::lower(model);
-    let Lowered { mut graph, residuals, branches, outputs, guesses, coordinate_scales, row_scales, clock } =
-        lowered;
+    let Lowered {
+        mut graph,
+        residuals,
+        branches,
+        limits,
+        phases,
+        outputs,
+        guesses,
+        coordinate_scales,
+        row_scales,
+        clock,
+    } = lowered;
     let g = &mut graph;
     let columns = jacobian(g, &residuals, model.coordinates.len());
     let phi_t = tangent(g, &residuals, |g, leaf| clock.partial(g, leaf));
@@ -75,6 +101,11 @@ pub fn derive(model: &Model) -> Equations {
 
     let outputs =
         outputs.into_iter().map(|(value, derivatives)| output(g, &clock, value, derivatives)).collect();
+    let phases = phases.into_iter().map(|[argument, speed]| {
+        let acceleration = tangent(g, &[speed], |g, leaf| clock.partial(g, leaf)).pop().flatten();
+        Phase { argument, speed, acceleration }
+    });
+    let phases = phases.collect();
     let rows = residuals
         .iter()
         .zip(columns)
@@ -89,7 +120,7 @@ pub fn derive(model: &Model) -> Equations {
             gamma,
         })
         .collect();
-    Equations { graph, rows, branches, outputs, guesses, coordinate_scales, row_scales }
+    Equations { graph, rows, branches, limits, phases, outputs, guesses, coordinate_scales, row_scales }
 }
 
 /// Entries of each row, column by column along the coordinate axes.

@@ -148,7 +148,9 @@ impl Elaborator<'_> {
                         self.unknown_name(name, instruction.span);
                     }
                 }
-                Operation::Call { function, .. } if !FUNCTIONS.contains(&function.as_str()) => {
+                Operation::Call { function, .. }
+                    if function != "rate" && !FUNCTIONS.contains(&function.as_str()) =>
+                {
                     self.unknown_function(function, instruction.span);
                 }
                 _ => {}

@@ -13,7 +13,7 @@ pub const FUNCTIONS: [&str; 27] = [
 ];
 
 /// Functions of the language which this version does not translate.
-pub const LATER: [&str; 6] = ["rate", "lambda", "effort", "reaction", "margin", "ratio"];
+pub const LATER: [&str; 5] = ["lambda", "effort", "reaction", "margin", "ratio"];
 
 /// Before: arguments as they stand on the stack. After: the value of `function`, or the fault reported.
 pub fn call(
@@ -51,6 +51,13 @@ pub fn call(
         "rot" => return rot(work, arguments, span),
         "der" => return work.rate(arguments, 1, span),
         "der2" => return work.rate(arguments, 2, span),
+        "rate" => {
+            return Err(work.fault(
+                span,
+                "`rate` is not all of the left side of a drive",
+                "write `drive crank: rate(phi) == omega;`; outputs take rates as `der(x)`",
+            ));
+        }
         unknown => return Err(work.unknown_function(unknown, span)),
     };
     let [argument] = work.arguments(function, arguments, span)?;

@@ -2,11 +2,13 @@
 
 mod arithmetic;
 mod declarations;
+mod drives;
 mod elaborate;
 mod evaluate;
 pub mod expression;
 mod functions;
 mod initialiser;
+mod limits;
 mod names;
 mod order;
 mod resolve;
@@ -33,8 +35,14 @@ pub struct Model {
     pub variables: Vec<Variable>,
     /// Rows of Φ.
     pub rows: Vec<Row>,
+    /// Phases of drives that prescribe a rate.
+    pub phases: Vec<Phase>,
     /// Branch conditions.
     pub branches: Vec<Branch>,
+    /// Working ranges.
+    pub limits: Vec<Limit>,
+    /// Coordinates that are meant as independent; none where the text does not say.
+    pub independent: Vec<Independent>,
     /// Outputs, component by component.
     pub outputs: Vec<Output>,
     /// Largest length among constants, numbers and guesses (m); 0 where there is none.
@@ -67,6 +75,8 @@ pub enum Role {
     Input,
     /// Set before each step with its rates.
     InputWithRates,
+    /// Phase of a drive that prescribes a rate, kept by the stepper.
+    Phase,
 }
 
 /// A scalar coordinate.
@@ -123,9 +133,9 @@ pub enum VariableKind {
     Parameter,
     /// Set before each step; no rates known.
     Input,
-    /// Value of an input whose rate and acceleration are the next two variables.
+    /// Value of an input or a phase whose rate and acceleration are the next two variables.
     InputWithRates,
-    /// Rate or acceleration of an input.
+    /// Rate or acceleration of one.
     InputRate,
 }
 
@@ -160,6 +170,43 @@ impl Row {
         }
         self.dimension.to_string()
     }
+}
+
+/// What a drive that prescribes a rate holds its argument at.
+#[derive(Debug)]
+pub struct Phase {
+    /// Index of the variable that holds its value.
+    pub variable: usize,
+    /// What is driven.
+    pub argument: Id,
+    /// Its rate, of time, parameters and inputs.
+    pub speed: Id,
+}
+
+/// A working range.
+#[derive(Debug)]
+pub struct Limit {
+    /// Its name.
+    pub name: String,
+    /// Unit of the value.
+    pub unit: String,
+    /// Lower bound, of parameters alone.
+    pub low: Id,
+    /// What is bounded.
+    pub value: Id,
+    /// Upper bound, of parameters alone.
+    pub high: Id,
+    /// The token of the value.
+    pub span: Span,
+}
+
+/// A coordinate that is meant as independent.
+#[derive(Debug)]
+pub struct Independent {
+    /// Its index.
+    pub coordinate: usize,
+    /// Where the text says so.
+    pub span: Span,
 }
 
 /// A branch condition.

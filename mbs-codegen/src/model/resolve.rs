@@ -41,7 +41,7 @@ struct Group {
     rows: Vec<usize>,
 }
 
-struct Frame {
+pub(super) struct Frame {
     begin: usize,
     variable: Name,
     count: usize,
@@ -49,17 +49,17 @@ struct Frame {
     scope: usize,
 }
 
-struct Resolver<'a> {
-    model: &'a mut Model,
-    names: &'a mut Names,
-    diagnostics: &'a mut Diagnostics,
+pub(super) struct Resolver<'a> {
+    pub(super) model: &'a mut Model,
+    pub(super) names: &'a mut Names,
+    pub(super) diagnostics: &'a mut Diagnostics,
     groups: Vec<Group>,
-    loops: Vec<Frame>,
+    pub(super) loops: Vec<Frame>,
     rounds: usize,
 }
 
 impl Resolver<'_> {
-    fn elaborate<T>(&mut self, rates: bool, run: impl FnOnce(&mut Elaborator<'_>) -> T) -> T {
+    pub(super) fn elaborate<T>(&mut self, rates: bool, run: impl FnOnce(&mut Elaborator<'_>) -> T) -> T {
         let mut work = Elaborator {
             expressions: &mut self.model.expressions,
             names: self.names,
@@ -111,6 +111,8 @@ impl Resolver<'_> {
             StatementKind::Branch { name, at_start, larger, smaller } => {
                 self.branch(name, *at_start, larger, smaller)
             }
+            StatementKind::Limit { name, low, value, high } => self.limit(name, low, value, high),
+            StatementKind::Independent { names } => self.independent(names),
             StatementKind::Out { name, kind, value } => self.output(name, kind, value),
             StatementKind::Let { name, unit, value } if !self.loops.is_empty() => {
                 self.local(name, unit.as_ref(), value)
@@ -171,7 +173,7 @@ impl Resolver<'_> {
     }
 
     /// The group of a statement: a new one, or in a loop the one that an earlier round began.
-    fn group(&mut self, name: &Name, kind: &'static str) -> Result<usize, Fault> {
+    pub(super) fn group(&mut self, name: &Name, kind: &'static str) -> Result<usize, Fault> {
         let rows = |kind| matches!(kind, "constraint" | "drive");
         let clash = |group: &Group| {
             group.name.text == name.text
@@ -217,22 +219,41 @@ impl Resolver<'_> {
         Ok(())
     }
 
-    fn drive(&mut self, name: &Name, equation: &Equation) -> Result<(), Fault> {
-        let group = self.group(name, "drive")?;
-        let first = self.model.rows.len();
-        self.equation(equation, group)?;
-        if self.model.rows.len() > first + 1 {
-            self.diagnostics.report(
-                equation.span,
-                format!("drive `{}` has {} components", name.text, self.model.rows.len() - first),
-                "drive one scalar at a time: `drive x: p[0] == …;`",
-            );
+    /// How many rows, branches, limits or rounds of outputs a group has so far.
+    pub(super) fn rows_of(&self, group: usize) -> usize {
+        self.groups.get(group).map_or(0, |group| group.rows.len())
+    }
+
+    /// Adds one to them.
+    pub(super) fn count_row(&mut self, group: usize, row: usize) {
+        if let Some(group) = self.groups.get_mut(group) {
+            group.rows.push(row);
         }
-        Ok(())
+    }
+
+    /// Adds a row to a group.
+    pub(super) fn push_row(&mut self, group: usize, row: Row) {
+        self.count_row(group, self.model.rows.len());
+        self.model.rows.push(row);
+    }
+
+    /// Whether an expression is made of such nodes among others.
+    pub(super) fn contains(&self, root: Id, is: impl Fn(Node) -> bool) -> bool {
+        let marked = self.model.expressions.reachable([root]);
+        self.model.expressions.iter().any(|(id, node)| marked.get(id.index()) == Some(&true) && is(node))
+    }
+
+    /// Unit of an expression: as declared, where it is a coordinate.
+    pub(super) fn unit_of(&self, id: Id, dimension: Dimension) -> String {
+        match self.model.expressions.node(id) {
+            Node::Coordinate(index) => self.model.coordinates.get(index).map(|c| c.unit.clone()),
+            _ => None,
+        }
+        .unwrap_or_else(|| dimension.to_string())
     }
 
     /// Adds one row a component.
-    fn equation(&mut self, equation: &Equation, group: usize) -> Result<(), Fault> {
+    pub(super) fn equation(&mut self, equation: &Equation, group: usize) -> Result<(), Fault> {
         let (left, right) = self.elaborate(false, |work| {
             let (left, right) = (work.value(&equation.left), work.value(&equation.right));
             Ok::<_, Fault>((left?, right?))
@@ -247,10 +268,7 @@ impl Resolver<'_> {
             pairs.map(|(a, b)| residual(work, *a, *b, span)).collect::<Result<Vec<_>, Fault>>()
         })?;
         for (residual, dimension) in residuals {
-            if let Some(group) = self.groups.get_mut(group) {
-                group.rows.push(self.model.rows.len());
-            }
-            self.model.rows.push(Row { name: String::new(), dimension, residual, driven: false, span });
+            self.push_row(group, Row { name: String::new(), dimension, residual, driven: false, span });
         }
         Ok(())
     }
@@ -270,9 +288,7 @@ impl Resolver<'_> {
             let b = work.scalar(&smaller, "a branch", smaller.span)?;
             residual(work, a, b, name.span)
         })?;
-        if let Some(group) = self.groups.get_mut(group) {
-            group.rows.push(self.model.branches.len());
-        }
+        self.count_row(group, self.model.branches.len());
         self.model.branches.push(Branch {
             name: name.text.clone(),
             dimension,
@@ -297,15 +313,13 @@ impl Resolver<'_> {
             fits_shape(work, &value, &shape)?;
             Ok::<Value, Fault>(value)
         })?;
-        let round = self.groups.get(group).map_or(0, |group| group.rows.len());
+        let round = self.rows_of(group);
         let base = if self.loops.is_empty() { name.text.clone() } else { format!("{}.{round}", name.text) };
         for (component, item) in component_names(&base, &value.shape).zip(&value.items) {
             let unit = kind.unit.text.clone();
             self.model.outputs.push(Output { name: component, unit, value: item.id, span: name.span });
         }
-        if let Some(group) = self.groups.get_mut(group) {
-            group.rows.push(round);
-        }
+        self.count_row(group, round);
         Ok(())
     }
 

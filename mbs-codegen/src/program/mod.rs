@@ -34,6 +34,12 @@ pub struct Program {
     pub gamma: Section,
     /// Branch conditions.
     pub branches: Section,
+    /// Working ranges.
+    pub limits: Section,
+    /// Arguments of drives that prescribe a rate, from nothing.
+    pub phase_arguments: Section,
+    /// Their rates, from nothing.
+    pub phase_speeds: Section,
     /// Outputs with their rates.
     pub outputs: Section,
     /// Guesses of the coordinates.
@@ -83,6 +89,9 @@ pub fn order(equations: &Equations, structure: &Structure) -> Program {
         phi_qt_qd: section(&roots.phi_qt_qd),
         gamma: section(&roots.gamma),
         branches: section(&roots.branches),
+        limits: section(&roots.limits),
+        phase_arguments: schedule::schedule(graph, &roots.phase_arguments, &none),
+        phase_speeds: schedule::schedule(graph, &roots.phase_speeds, &none),
         outputs: section(&roots.outputs),
         guesses: early(&roots.guesses),
         coordinate_scales: early(&roots.coordinate_scales),
@@ -111,6 +120,9 @@ struct Roots {
     phi_qt_qd: Vec<NodeId>,
     gamma: Vec<NodeId>,
     branches: Vec<NodeId>,
+    limits: Vec<NodeId>,
+    phase_arguments: Vec<NodeId>,
+    phase_speeds: Vec<NodeId>,
     outputs: Vec<NodeId>,
     guesses: Vec<NodeId>,
     coordinate_scales: Vec<NodeId>,
@@ -129,6 +141,13 @@ impl Roots {
             phi_qt_qd: rows.iter().filter_map(|row| row.phi_qt_qd).collect(),
             gamma: rows.iter().filter_map(|row| row.gamma).collect(),
             branches: equations.branches.clone(),
+            limits: equations.limits.iter().flatten().copied().collect(),
+            phase_arguments: equations.phases.iter().map(|phase| phase.argument).collect(),
+            phase_speeds: equations
+                .phases
+                .iter()
+                .flat_map(|phase| [Some(phase.speed), phase.acceleration].into_iter().flatten())
+                .collect(),
             outputs: outputs
                 .flat_map(|output| {
                     [Some(output.value), output.rate.flatten(), output.acceleration.flatten()]
@@ -143,7 +162,7 @@ impl Roots {
     }
 
     /// The functions of a position.
-    fn functions(&self) -> [&[NodeId]; 8] {
+    fn functions(&self) -> [&[NodeId]; 9] {
         [
             &self.phi,
             &self.phi_q,
@@ -152,6 +171,7 @@ impl Roots {
             &self.phi_qt_qd,
             &self.gamma,
             &self.branches,
+            &self.limits,
             &self.outputs,
         ]
     }

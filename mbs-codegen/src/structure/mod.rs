@@ -1,5 +1,6 @@
 //! Sparsity → matching → block-triangular order; what is not square is reported by name.
 
+mod independent;
 mod matching;
 mod triangular;
 
@@ -47,6 +48,7 @@ pub fn analyse(model: &Model, equations: &mut Equations, diagnostics: &mut Diagn
         equations.rows.iter().map(|row| row.phi_q.iter().map(|(column, _)| *column).collect()).collect();
     let matching = matching::match_rows(&rows, model.coordinates.len());
     report(model, &rows, &matching, diagnostics);
+    independent::check(model, &rows, diagnostics);
     if !diagnostics.is_empty() {
         return None;
     }

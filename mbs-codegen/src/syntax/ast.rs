@@ -156,6 +156,15 @@ pub enum StatementKind {
         larger: Expression,
         smaller: Expression,
     },
+    Limit {
+        name: Name,
+        low: Expression,
+        value: Expression,
+        high: Expression,
+    },
+    Independent {
+        names: Vec<Name>,
+    },
     Out {
         name: Name,
         kind: Type,

@@ -9,14 +9,24 @@ use super::unit::{declared_type, unit};
 use crate::diagnostics::{Diagnostics, nearest};
 
 /// Words that begin a statement of this version.
-const STATEMENTS: [&str; 10] =
-    ["const", "param", "input", "coord", "let", "constraint", "drive", "branch", "out", "for"];
+const STATEMENTS: [&str; 12] = [
+    "const",
+    "param",
+    "input",
+    "coord",
+    "let",
+    "constraint",
+    "drive",
+    "branch",
+    "limit",
+    "independent",
+    "out",
+    "for",
+];
 
 /// Words that begin a statement of the language which this version does not translate.
-const LATER: [&str; 22] = [
+const LATER: [&str; 20] = [
     "start",
-    "independent",
-    "limit",
     "body",
     "pin",
     "tsda",
@@ -150,7 +160,7 @@ fn statement(parser: &mut Parser<'_>) -> Read<StatementKind> {
         parser.diagnostics.report(
             span,
             format!("`{word}` is not translated by this version"),
-            "describe the mechanism with const, param, input, coord, let, constraint, drive, branch and out",
+            "describe the mechanism with const, param, input, coord, let, constraint, drive, branch, limit and out",
         );
         parser.skip(1);
         return parser.declare(Declares::Value, "", |_, _| Err(GivenUp)).map(|(_, never)| never);
@@ -191,6 +201,8 @@ fn reader(word: &str) -> Option<Reader> {
         "constraint" => read_constraint,
         "drive" => read_drive,
         "branch" => read_branch,
+        "limit" => read_limit,
+        "independent" => read_independent,
         "out" => read_out,
         "for" => |parser| read_loop(parser).map(StatementKind::For),
         _ => return None,
@@ -310,6 +322,38 @@ fn read_branch(parser: &mut Parser<'_>) -> Read<StatementKind> {
     end(parser, BRANCH)?;
     let (larger, smaller) = if less { (right, left) } else { (left, right) };
     Ok(StatementKind::Branch { name, at_start, larger, smaller })
+}
+
+const LIMIT: &str = "write `limit stroke: 0.02 <= x <= 0.11;`";
+fn read_limit(parser: &mut Parser<'_>) -> Read<StatementKind> {
+    let name = parser.name(LIMIT)?;
+    parser.expect(':', LIMIT)?;
+    let low = expression(parser)?;
+    at_most(parser)?;
+    let value = expression(parser)?;
+    at_most(parser)?;
+    let high = expression(parser)?;
+    end(parser, LIMIT)?;
+    Ok(StatementKind::Limit { name, low, value, high })
+}
+
+/// `<=`
+fn at_most(parser: &mut Parser<'_>) -> Read<()> {
+    if !parser.at_pair('<', '=') {
+        return parser.expected("`<=`", LIMIT);
+    }
+    parser.skip(2);
+    Ok(())
+}
+
+const INDEPENDENT: &str = "write `independent phi1;` or `independent x, phi;`";
+fn read_independent(parser: &mut Parser<'_>) -> Read<StatementKind> {
+    let mut names = vec![parser.name(INDEPENDENT)?];
+    while parser.take(',') {
+        names.push(parser.name(INDEPENDENT)?);
+    }
+    end(parser, INDEPENDENT)?;
+    Ok(StatementKind::Independent { names })
 }
 
 const FOR: &str = "write `for i in 0..3 { … }`";

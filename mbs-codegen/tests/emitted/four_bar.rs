@@ -35,6 +35,7 @@
 /// | `phi_qt_qd` | 0 | 0 | 0 | 0 | 0 | 0 |
 /// | `gamma` | 8 | 11 | 0 | 0 | 0 | 0 |
 /// | `branches` | 0 | 0 | 0 | 1 | 0 | 0 |
+/// | `limits` | 0 | 0 | 0 | 0 | 0 | 0 |
 /// | `outputs` | 2 | 0 | 0 | 0 | 0 | 0 |
 /// | `solve_blocks`, once | 3 | 5 | 0 | 3 | 0 | 0 |
 /// | `solve_blocks`, each iteration of every block | 7 | 4 | 0 | 2 | 0 | 0 |
@@ -117,6 +118,7 @@ const _: () = {
         type Position = __Position<T>;
         type Entries = [T; 13usize];
         type Branches = [T; 1usize];
+        type Limits = [::mbs_runtime::Limit<T>; 0usize];
         type Outputs = [::mbs_runtime::OutputValue<T>; 1usize];
         type Lane = FourBar<T::Real>;
         const NAME: &'static ::core::primitive::str = "FourBar";
@@ -190,6 +192,8 @@ const _: () = {
             },
         ];
         const BRANCHES_AT_START: &'static [::core::primitive::bool] = &[false];
+        const LIMITS: &'static [::mbs_runtime::Entry] = &[];
+        const PHASES: &'static [::mbs_runtime::Entry] = &[];
         const OUTPUTS: &'static [::mbs_runtime::Entry] = &[
             ::mbs_runtime::Entry {
                 name: "transmission_angle",
@@ -447,6 +451,14 @@ const _: () = {
         fn branches(&self, __p: &__Parameters<T>, __s: &__Position<T>) -> [T; 1usize] {
             let ([__n46], [_]) = T::sin_cos([__s.0[12]]);
             [__n46]
+        }
+        #[inline]
+        fn limits(
+            &self,
+            __p: &__Parameters<T>,
+            __s: &__Position<T>,
+        ) -> [::mbs_runtime::Limit<T>; 0usize] {
+            []
         }
         #[inline]
         fn outputs(

@@ -1,8 +1,8 @@
 //! The lecture's four-bar with coupler point, written by hand as the macro would emit it.
 
 use mbs_runtime::{
-    Block, BlockSolver, Direct2, Entry, Factorization, Kinematic, Margin, Mechanism, Outcome, OutputValue,
-    Scalar, failure::first_failure,
+    Block, BlockSolver, Direct2, Entry, Factorization, Kinematic, Limit, Margin, Mechanism, Outcome,
+    OutputValue, Scalar, failure::first_failure,
 };
 
 /// q = [x2 y2 φ1 φ2 φ3]; `B` is 1 with the declared branch `side · sin(φ3 − φ2) > 0`, 0 without.
@@ -81,6 +81,7 @@ impl<T: Scalar, const B: usize> Mechanism<T, 5, 5> for FourBar<T, B> {
     type Position = Position<T>;
     type Entries = [T; 13];
     type Branches = [T; B];
+    type Limits = [Limit<T>; 0];
     type Outputs = [OutputValue<T>; 1];
     type Lane = FourBar<T::Real, B>;
 
@@ -224,6 +225,9 @@ impl<T: Scalar, const B: usize> Mechanism<T, 5, 5> for FourBar<T, B> {
     }
     fn branches(&self, (): &(), p: &Position<T>) -> [T; B] {
         [self.side * (p.s[2] * p.c[1] - p.c[2] * p.s[1]); B]
+    }
+    fn limits(&self, (): &(), _: &Position<T>) -> [Limit<T>; 0] {
+        []
     }
     fn outputs(&self, (): &(), p: &Position<T>, qd: &[T; 5], qdd: &[T; 5]) -> [OutputValue<T>; 1] {
         [OutputValue {

@@ -1,8 +1,10 @@
 //! The solvers on a mechanism whose answers are known.
 
 mod deadline;
+mod drives;
 mod failures;
 mod four_bar;
 mod lanes;
 mod motion;
+mod ranges;
 mod reset;

@@ -11,6 +11,7 @@ impl<S: Kinematic<f64, N>, const N: usize> Mechanism<f64, N, N> for Branchless<S
     type Position = S::Position;
     type Entries = S::Entries;
     type Branches = [f64; 0];
+    type Limits = S::Limits;
     type Outputs = S::Outputs;
     type Lane = S::Lane;
 
@@ -21,6 +22,8 @@ impl<S: Kinematic<f64, N>, const N: usize> Mechanism<f64, N, N> for Branchless<S
     const SPARSITY: &'static [(u16, u16)] = S::SPARSITY;
     const VARIABLES: &'static [Entry] = S::VARIABLES;
     const BRANCHES: &'static [Entry] = &[];
+    const LIMITS: &'static [Entry] = S::LIMITS;
+    const PHASES: &'static [Entry] = S::PHASES;
     const OUTPUTS: &'static [Entry] = S::OUTPUTS;
 
     fn get(&self, index: usize) -> Option<f64> {
@@ -31,6 +34,12 @@ impl<S: Kinematic<f64, N>, const N: usize> Mechanism<f64, N, N> for Branchless<S
     }
     fn lane(&self, lane: usize) -> S::Lane {
         self.0.lane(lane)
+    }
+    fn start_phases(&mut self, q: &[f64; N], t: f64) {
+        self.0.start_phases(q, t);
+    }
+    fn advance_phases(&mut self, from: f64, to: f64) {
+        self.0.advance_phases(from, to);
     }
     fn parameters(&self) -> S::Parameters {
         self.0.parameters()
@@ -70,6 +79,9 @@ impl<S: Kinematic<f64, N>, const N: usize> Mechanism<f64, N, N> for Branchless<S
     }
     fn branches(&self, _: &S::Parameters, _: &S::Position) -> [f64; 0] {
         []
+    }
+    fn limits(&self, parameters: &S::Parameters, position: &S::Position) -> S::Limits {
+        self.0.limits(parameters, position)
     }
     fn outputs(
         &self,

@@ -1,0 +1,107 @@
+//! Drives that prescribe a rate: where their phases start, and how they move on.
+
+use std::collections::BTreeSet;
+use std::fmt::Write;
+
+use super::code::lets;
+use super::scope::{Scope, place};
+use crate::equations::Equations;
+use crate::model::{Model, Role, VariableKind};
+use crate::program::Program;
+use crate::symbolic::{Leaf, Node, NodeId};
+
+/// `start_phases` and `advance_phases`, and the inherent function of the prescribed rates at a time; all empty
+/// where no drive prescribes a rate.
+pub fn functions(equations: &Equations, program: &Program, scope: &Scope<'_>) -> (String, String) {
+    if equations.phases.is_empty() {
+        return (String::new(), String::new());
+    }
+    (start(equations, program, scope) + &advance(equations, scope), speeds(equations, program, scope))
+}
+
+fn start(equations: &Equations, program: &Program, scope: &Scope<'_>) -> String {
+    let n = scope.model.coordinates.len();
+    let mut text = format!("#[inline]\nfn start_phases(&mut self, __q: &[T; {n}], __t: T) {{\n");
+    lets(&program.phase_arguments, scope, &mut text);
+    let starts: Vec<String> = equations.phases.iter().map(|phase| scope.operand(phase.argument)).collect();
+    let _ = writeln!(text, "let __starts = [{}];\nlet __speeds = self.__speeds(__t);", starts.join(", "));
+    for (index, field) in fields(scope.model).enumerate() {
+        let _ = writeln!(text, "{field} = __mbs::Phase::new(__starts[{index}], __speeds[{index}]);");
+    }
+    text + "}\n"
+}
+
+fn advance(equations: &Equations, scope: &Scope<'_>) -> String {
+    let inputs: BTreeSet<NodeId> = moving_inputs(equations, scope.model);
+    let varies = |speed: NodeId| {
+        let varying = |id: NodeId| inputs.contains(&id) || scope.graph.node(id) == Node::Leaf(Leaf::Time);
+        scope.graph.reachable([speed]).into_iter().any(varying)
+    };
+    let varying: Vec<bool> = equations.phases.iter().map(|phase| varies(phase.speed)).collect();
+    let mut text = String::from(
+        "#[inline]\nfn advance_phases(&mut self, __from: T, __to: T) {\nlet __speeds = self.__speeds(__to);\n",
+    );
+    if varying.contains(&true) {
+        text += "let __integrals = __mbs::phase::integrals(__from, __to, |__t, __ahead| {\n";
+        let places = |id: &NodeId| match scope.graph.node(*id) {
+            Node::Leaf(Leaf::Input(index)) => Some(place(scope.model, index as usize)),
+            _ => None,
+        };
+        let places: BTreeSet<String> = inputs.iter().filter_map(places).collect();
+        if places.is_empty() {
+            // The time alone varies.
+            text += "self.__speeds(__t)\n});\n";
+        } else {
+            text += "let mut __moved = ::core::clone::Clone::clone(self);\n";
+            for place in places {
+                let _ = writeln!(text, "__moved.{place} = __moved.{place}.moved(__ahead);");
+            }
+            text += "__moved.__speeds(__t)\n});\n";
+        }
+    }
+    for (index, (field, varies)) in fields(scope.model).zip(varying).enumerate() {
+        let increment = match varies {
+            true => format!("__integrals[{index}]"),
+            false => format!("__speeds[{index}].value * (__to - __from)"),
+        };
+        let _ = writeln!(text, "{field} = {field}.advanced({increment}, __speeds[{index}]);");
+    }
+    text + "}\n"
+}
+
+fn speeds(equations: &Equations, program: &Program, scope: &Scope<'_>) -> String {
+    let count = equations.phases.len();
+    let mut body = String::new();
+    lets(&program.phase_speeds, scope, &mut body);
+    let speeds: Vec<String> = equations
+        .phases
+        .iter()
+        .map(|phase| {
+            let (value, rate) = (scope.operand(phase.speed), scope.or_zero(phase.acceleration));
+            format!("__mbs::Speed {{ value: {value}, rate: {rate} }}")
+        })
+        .collect();
+    format!(
+        "/// Prescribed rates with their time derivatives.\n#[inline]\n\
+         fn __speeds(&self, __t: T) -> [__mbs::Speed<T>; {count}] {{\n{body}[{}]\n}}\n",
+        speeds.join(", ")
+    )
+}
+
+/// Places of the phases in `self`.
+fn fields(model: &Model) -> impl Iterator<Item = String> + '_ {
+    let phases = model.fields.iter().filter(|field| field.role == Role::Phase);
+    phases.map(|field| format!("self.{}", place(model, field.first)))
+}
+
+/// Values and rates of inputs that move within a step, as far as speeds use them.
+fn moving_inputs(equations: &Equations, model: &Model) -> BTreeSet<NodeId> {
+    let moves = |index: u32| {
+        let kind = model.variables.get(index as usize).map(|variable| variable.kind);
+        matches!(kind, Some(VariableKind::InputWithRates | VariableKind::InputRate))
+    };
+    let graph = &equations.graph;
+    let used = graph.reachable(equations.phases.iter().map(|phase| phase.speed));
+    let is_moving = |id: &NodeId| matches!(graph.node(*id), Node::Leaf(Leaf::Input(index)) if moves(index));
+    used.into_iter().filter(is_moving).collect()
+}
