@@ -1,4 +1,4 @@
-//! Driving functions: harmonics, polynomials, motion laws, trapezoidal velocity.
+//! Driving functions: harmonics, polynomials, motion laws, trapezoidal velocity, splines through tables.
 //!
 //! Each is a [`Function`](crate::Function): value and derivatives at any scalar, lanes and `f32` included. The data are
 //! `f64` numbers that can stand in flash; where an argument lies in a table, `f64` decides, lane by lane, and the distance to
@@ -12,23 +12,39 @@
 //! | … with [`Polynomial4567`] | 35 u⁴ − 84 u⁵ + 70 u⁶ − 20 u⁷ | 3 |
 //! | … with [`Cycloid`] | u − sin(2π u)/2π | 2 |
 //! | [`Trapezoidal`] | speed up, cruise, slow down | 1 |
+//! | [`CubicSpline`] | through points or along them | 2 |
+//! | [`PeriodicQuintic`] | through points or along them | 4 |
 
+mod basis;
+mod cubic_fit;
+mod cubic_spline;
 mod error;
 mod harmonic;
 mod law;
+mod periodic_quintic;
 mod piecewise;
+mod points;
 mod polynomial;
+mod quintic_fit;
 mod rise;
 mod segments;
+mod table;
 mod trapezoidal;
+mod triangle;
 
-pub use error::LawError;
+pub use cubic_fit::{CubicRow, End, fit_cubic};
+pub use cubic_spline::CubicSpline;
+pub use error::{FitError, LawError};
 pub use harmonic::Harmonic;
 pub use law::{Cycloid, Law, Polynomial345, Polynomial4567};
+pub use periodic_quintic::PeriodicQuintic;
 pub use polynomial::{Cubic, Polynomial};
+pub use quintic_fit::{QuinticRow, fit_periodic_quintic};
 pub use rise::Rise;
 pub use segments::{Segment, Segments};
+pub use table::Table;
 pub use trapezoidal::Trapezoidal;
+pub use triangle::Row;
 
 /// Number of continuous derivatives of a function that has them all: more than any text can ask for.
 pub const SMOOTH: usize = u8::MAX as usize;

@@ -10,7 +10,9 @@ mod controls;
 use core::hint::black_box;
 
 use mbs_runtime::Lanes;
-use proof_subjects::{FourBar, Platform, Start, exercise_emitted, exercise_solvers};
+use proof_subjects::{
+    FourBar, Platform, Start, exercise_emitted, exercise_laws, exercise_solvers, exercise_splines,
+};
 
 unsafe extern "C" {
     /// Defined nowhere.
@@ -59,6 +61,12 @@ pub extern "C" fn proof_platform_lanes() {
     exercise_emitted(mechanism, &Start::of(&mechanism));
 }
 
+/// Motion laws and splines, fits included; false where one fails.
+#[unsafe(no_mangle)]
+pub extern "C" fn proof_drivers() -> bool {
+    exercise_laws().is_ok() & exercise_splines().is_ok()
+}
+
 /// Where the linker begins to collect what is needed.
 #[unsafe(no_mangle)]
 pub extern "C" fn proof_entry() -> bool {
@@ -68,5 +76,9 @@ pub extern "C" fn proof_entry() -> bool {
     black_box(controls::indexes(black_box(7)));
     #[cfg(feature = "control-allocates")]
     black_box(controls::allocates(black_box(7)));
-    proof_four_bar_f64() & proof_four_bar_f32() & proof_platform_f64() & proof_platform_f32()
+    proof_four_bar_f64()
+        & proof_four_bar_f32()
+        & proof_platform_f64()
+        & proof_platform_f32()
+        & proof_drivers()
 }

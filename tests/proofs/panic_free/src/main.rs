@@ -1,10 +1,14 @@
-//! Links only if no entry point can panic; run, it takes two mechanisms through all of them.
+//! Links only if no entry point can panic; run, it takes two mechanisms and the drivers through all of them.
 //!
 //! A binary, because in a `cdylib` no-panic's missing symbol is no error.
 #![forbid(unsafe_code)]
 
+use std::error::Error;
+
 use mbs_runtime::{Failure, Kinematic, Lanes, Real, Scalar};
-use proof_subjects::{FourBar, Platform, Start, exercise_emitted, exercise_solvers};
+use proof_subjects::{
+    FourBar, Platform, Start, exercise_emitted, exercise_laws, exercise_solvers, exercise_splines,
+};
 
 fn emitted<S: Kinematic<T, N>, T: Scalar, const N: usize>(mechanism: S) {
     let start = Start::of(&mechanism);
@@ -18,7 +22,9 @@ fn solvers<S: Kinematic<R, N> + Copy, R: Real, const N: usize>(
     exercise_solvers(mechanism, &Start::of(&mechanism), variable)
 }
 
-fn main() -> Result<(), Failure> {
+fn main() -> Result<(), Box<dyn Error>> {
+    exercise_laws()?;
+    exercise_splines()?;
     emitted(FourBar::<f64>::default());
     emitted(FourBar::<f32>::default());
     emitted(FourBar::<Lanes<f64, 4>>::default());
@@ -28,5 +34,6 @@ fn main() -> Result<(), Failure> {
     solvers(FourBar::<f64>::default(), "L5")?;
     solvers(FourBar::<f32>::default(), "L5")?;
     solvers(Platform::<f64>::default(), "rod[1]")?;
-    solvers(Platform::<f32>::default(), "rod[1]")
+    solvers(Platform::<f32>::default(), "rod[1]")?;
+    Ok(())
 }

@@ -1,0 +1,102 @@
+//! Tables of polynomials between knots.
+
+use super::piecewise::{Piece, jet};
+use crate::{Function, Scalar};
+
+/// Polynomials of `C` coefficients between knots, `C` − 2 times continuously differentiable: a spline.
+///
+/// A view of numbers that stand elsewhere: in flash, in a [`CubicSpline`](super::CubicSpline), on a heap. Piece j is
+/// Σ cᵢ (x − knotⱼ)ⁱ from its knot to the next one. Evenly spaced knots are found at once, others by halving.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Table<'a, const C: usize> {
+    pub(super) knots: &'a [f64],
+    pub(super) pieces: &'a [[f64; C]],
+    pub(super) period: Option<f64>,
+    /// 1 over the length of the table, which is that of the period or of all intervals.
+    pub(super) rate: f64,
+}
+
+impl<'a, const C: usize> Table<'a, C> {
+    /// As many pieces as knots; the last one holds beyond the last knot.
+    ///
+    /// Before the first knot the first piece goes on without its highest power: value, slope and curvature of a cubic
+    /// spline are continued, which is a straight line where it ends naturally and a parabola elsewhere.
+    pub const fn open(knots: &'a [f64], pieces: &'a [[f64; C]]) -> Self {
+        Table { knots, pieces, period: None, rate: rate(knots, None) }
+    }
+
+    /// As many pieces as knots; the last one holds until the first knot of the next period.
+    pub const fn periodic(knots: &'a [f64], pieces: &'a [[f64; C]], period: f64) -> Self {
+        Table { knots, pieces, period: Some(period), rate: rate(knots, Some(period)) }
+    }
+
+    /// Value and the first three derivatives at `x`; derivatives beyond `ORDER` are those of the piece that begins at `x`.
+    #[inline]
+    pub fn derivatives<T: Scalar>(&self, x: T) -> [T; 4] {
+        self.jet(x)
+    }
+
+    /// Number of the piece at `x`, which lies within the first period.
+    #[inline]
+    fn index(&self, x: f64) -> usize {
+        let first = self.knots.first().copied().unwrap_or(f64::NAN);
+        let intervals =
+            if self.period.is_some() { self.knots.len() } else { self.knots.len().saturating_sub(1) };
+        let guess = ((x - first) * self.rate * intervals as f64) as usize; // 0 for NaN and what is negative
+        let begins = self.knots.get(guess).is_some_and(|knot| *knot <= x);
+        let holds = begins && self.knots.get(guess.saturating_add(1)).is_none_or(|next| x < *next);
+        if holds { guess } else { self.knots.partition_point(|knot| *knot <= x).saturating_sub(1) }
+    }
+
+    /// Number of whole periods before `x`, as an argument; 0 where there is none.
+    #[inline]
+    fn shift(&self, x: f64) -> f64 {
+        let (Some(period), Some(first)) = (self.period, self.knots.first()) else { return 0.0 };
+        libm::floor((x - first) * self.rate) * period
+    }
+
+    #[inline]
+    fn piece(&self, x: f64) -> Piece<C> {
+        let shift = self.shift(x);
+        let local = x - shift;
+        let index = self.index(local);
+        let (Some(knot), Some(coefficients)) = (self.knots.get(index), self.pieces.get(index)) else {
+            return Piece { origin: f64::NAN, coefficients: [f64::NAN; C] };
+        };
+        let mut coefficients = *coefficients;
+        if self.period.is_none()
+            && local < *knot
+            && let Some(highest) = coefficients.last_mut()
+        {
+            *highest = 0.0;
+        }
+        Piece { origin: shift + knot, coefficients }
+    }
+}
+
+const fn rate(knots: &[f64], period: Option<f64>) -> f64 {
+    match (knots, period) {
+        (_, Some(period)) => 1.0 / period,
+        ([first, .., last], None) => 1.0 / (*last - *first),
+        _ => f64::NAN,
+    }
+}
+
+impl<T: Scalar, const C: usize> Function<T> for Table<'_, C> {
+    const ORDER: usize = C.saturating_sub(2);
+
+    #[inline]
+    fn jet<const K: usize>(&self, x: T) -> [T; K] {
+        jet(x, |x| self.piece(x))
+    }
+
+    fn breakpoint_after(&self, x: f64) -> Option<f64> {
+        let here = self.shift(x);
+        let period = self.period.unwrap_or(0.0);
+        // The turn before too: rounding may have put `x` into the next one.
+        [here - period, here, here + period].into_iter().find_map(|shift| {
+            let passed = self.knots.partition_point(|knot| knot + shift <= x);
+            self.knots.get(passed).map(|knot| knot + shift).filter(|place| x < *place)
+        })
+    }
+}
