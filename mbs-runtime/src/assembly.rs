@@ -4,6 +4,7 @@ use crate::diagnosis::{Statistics, extent};
 use crate::kinematics::{
     branch_failure, coordinate_failure, non_finite, position_failure, time_failure, variable_failure,
 };
+use crate::nearest::not_assemblable;
 use crate::{Failure, Kinematic, Real, Safeguarded, starts};
 
 /// Starts beside the guess for the mechanism as a whole. Each block looks for its own declared branches already
@@ -32,7 +33,7 @@ pub struct Assembled<R, const N: usize> {
 /// # Errors
 /// [`Failure::NonFinite`] for a guess, parameter, input or time that is no number, or a row that is none from
 /// every start; [`Failure::WrongBranch`] where positions were found but none in the declared assembly;
-/// [`Failure::NotAssemblable`] with the least residual found and its row.
+/// [`Failure::NotAssemblable`] with the least residual found and the rows that hold it.
 pub fn assemble<S: Kinematic<R, N>, R: Real, const N: usize>(
     mechanism: &S,
     guess: impl Into<[R; N]>,
@@ -88,9 +89,9 @@ impl Search {
         };
         let ratio = solver.diagnosis().worst.ratio.to_f64();
         match failure {
-            Failure::NotConverged { row, residual, time, .. } if ratio < self.least => {
+            Failure::NotConverged { .. } if ratio < self.least => {
                 self.least = ratio;
-                self.open = Some(Failure::NotAssemblable { row, residual, time });
+                self.open = Some(not_assemblable(mechanism, parameters, &q, t, failure));
             }
             other => self.open = self.open.or(Some(other)),
         }

@@ -64,10 +64,13 @@ pub enum Failure {
     },
     /// No start led to a position: the mechanism cannot be assembled as it is dimensioned, or not from there.
     NotAssemblable {
-        /// The row that holds the least residual found.
+        /// The row with the largest part of the least residual found, in the reference metric.
         row: Entry,
-        /// That residual, in the unit of the row.
+        /// That part, in the unit of the row.
         residual: f64,
+        /// All rows that hold it: they contradict each other there, and nothing can close one of them without opening
+        /// another farther.
+        rows: Holding,
         /// Time (s) at which the position was sought.
         time: f64,
     },
@@ -122,6 +125,66 @@ pub enum Failure {
     },
 }
 
+/// Rows that hold a mechanism open, those with the largest parts of the residual first; at most four of them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Holding {
+    entries: &'static [Entry],
+    indices: [u16; Holding::MOST],
+    count: usize,
+}
+
+impl Holding {
+    /// Rows that are kept.
+    const MOST: usize = 4;
+
+    /// Part of the largest residual from which a row counts. A least residual is stationary to √ε of itself: what
+    /// a row is off beside is a ten-millionth.
+    const SHARE: f64 = 1e-3;
+
+    /// Those of `entries` whose `residuals`, in the reference metric, count.
+    pub(crate) fn of(entries: &'static [Entry], residuals: impl Iterator<Item = f64> + Clone) -> Self {
+        let largest = residuals.clone().fold(0.0, f64::max);
+        let mut holding = Holding { entries, indices: [0; Self::MOST], count: 0 };
+        let mut parts = [0.0; Self::MOST];
+        for (index, residual) in (0_u16..).zip(residuals) {
+            if residual > Self::SHARE * largest {
+                holding.insert(&mut parts, index, residual);
+            }
+        }
+        holding
+    }
+
+    /// Sorts a row in; the smallest falls out where there is no room.
+    fn insert(&mut self, parts: &mut [f64; Self::MOST], index: u16, residual: f64) {
+        let (mut index, mut residual) = (index, residual);
+        for (at, part) in self.indices.iter_mut().zip(parts.iter_mut()) {
+            if *part < residual {
+                core::mem::swap(part, &mut residual);
+                core::mem::swap(at, &mut index);
+            }
+        }
+        self.count = Self::MOST.min(self.count.saturating_add(1));
+    }
+
+    /// The rows, those that hold most first.
+    pub fn rows(&self) -> impl Iterator<Item = Entry> + '_ {
+        self.indices
+            .iter()
+            .take(self.count)
+            .filter_map(|index| self.entries.get(usize::from(*index)).copied())
+    }
+}
+
+impl fmt::Display for Holding {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (number, row) in self.rows().enumerate() {
+            let separator = if number == 0 { "" } else { ", " };
+            write!(f, "{separator}`{}` (line {})", row.name, row.line)?;
+        }
+        Ok(())
+    }
+}
+
 impl Failure {
     /// Time (s) at which it happened; 0 where no time has a part in it.
     fn time(&self) -> f64 {
@@ -156,11 +219,11 @@ impl fmt::Display for Failure {
                  off, required {required:.3e}; take a smaller step, or check that the mechanism can reach this position",
                 row.name, row.line, row.unit
             ),
-            Failure::NotAssemblable { row, residual, .. } => write!(
+            Failure::NotAssemblable { row, residual, rows, .. } => write!(
                 f,
-                "the mechanism cannot be assembled at t = {time} s: row `{}` (line {}) stays {residual:.3e} {} open at \
-                 best; check the dimensions, or start from a better guess",
-                row.name, row.line, row.unit
+                "the mechanism cannot be assembled at t = {time} s: {rows} contradict each other, `{}` stays {residual:.3e} \
+                 {} open at best; check the dimensions, or start from a better guess",
+                row.name, row.unit
             ),
             Failure::Singular { row, coordinate, margin, required, .. } => write!(
                 f,
@@ -221,7 +284,12 @@ mod tests {
             Failure::NonFinite { name: "omega", line: 21 },
             Failure::Unresolved { coordinate: ROW, value: 1e300, time },
             Failure::NotConverged { row: ROW, residual, required, iterations: 9, time },
-            Failure::NotAssemblable { row: ROW, residual, time },
+            Failure::NotAssemblable {
+                row: ROW,
+                residual,
+                rows: Holding::of(&[ROW], [1.0].into_iter()),
+                time,
+            },
             Failure::Singular { row: ROW, coordinate: ROW, margin: 0.0, required, time },
             Failure::WrongBranch { branch: ROW, value: -1.0, time },
             Failure::BeyondLimit { limit: ROW, value: 2.0, bound: 1.0, time },
@@ -233,6 +301,26 @@ mod tests {
         let foreign = Failure::Foreign { mechanism: "Crank" }.to_string();
         assert_eq!(foreign, "the saved state is not one of `Crank`: name or coordinates differ");
         assert_eq!(Failure::NonFinite { name: "t", line: 0 }.to_string(), "`t` is not a finite number");
+    }
+
+    #[test]
+    fn rows_that_hold_are_named_with_the_largest_first() {
+        const ENTRIES: &[Entry] = &[
+            Entry { name: "a", unit: "m", line: 1 },
+            Entry { name: "b", unit: "m", line: 2 },
+            Entry { name: "c", unit: "m", line: 3 },
+            Entry { name: "d", unit: "m", line: 4 },
+            Entry { name: "e", unit: "m", line: 5 },
+            Entry { name: "f", unit: "m", line: 6 },
+        ];
+        let names = |residuals: [f64; 6]| -> std::vec::Vec<&str> {
+            Holding::of(ENTRIES, residuals.into_iter()).rows().map(|row| row.name).collect()
+        };
+        assert_eq!(names([0.0, 0.2, 1e-5, 0.3, 0.0, 0.1]), ["d", "b", "f"]);
+        assert_eq!(names([1.0, 2.0, 3.0, 4.0, 5.0, 6.0]), ["f", "e", "d", "c"]);
+        assert_eq!(names([0.0; 6]), [""; 0]);
+        let two = Holding::of(ENTRIES, [0.0, 0.2, 0.0, 0.3].into_iter()).to_string();
+        assert_eq!(two, "`d` (line 4), `b` (line 2)");
     }
 
     #[test]

@@ -1,12 +1,9 @@
 //! A state as plain numbers and bytes, and the way back into motion after a reset.
 
-use crate::diagnosis::{Diagnosis, Statistics, extent};
-use crate::kinematics::{
-    coordinate_failure, entry, largest_difference, position_failure, time_failure, variable_failure,
-};
-use crate::safeguarded::attempt;
+use crate::kinematics::{coordinate_failure, entry, time_failure, variable_failure};
+use crate::nearest::solve_nearest;
 use crate::stepper::{Before, Found, State};
-use crate::{Block, BlockSolver, Factorization, Failure, Kinematic, Mechanism, Outcome, Real, Stepper};
+use crate::{Failure, Kinematic, Mechanism, Real, Stepper};
 
 /// Version of the layout of [`Saved`], in its first bytes. Neither erased (0xFF) nor zeroed memory has it.
 const VERSION: u32 = 1;
@@ -136,21 +133,10 @@ impl<S: Kinematic<R, N>, R: Real, const N: usize> Stepper<S, R, N> {
         }
         mechanism.start_phases(&start, R::constant(saved.t));
         mechanism.advance_phases(R::constant(saved.t), t);
-        let mut solver = Nearest { extent: extent(&start, &scales), diagnosis: Diagnosis::new() };
-        let mut q = start;
-        let outcome = mechanism.solve_blocks(&parameters, &mut q, t, &mut solver);
-        match position_failure::<S, R, N>(outcome, &solver.diagnosis, t) {
-            None => {}
-            Some(Failure::NotConverged { row, residual, time, .. }) => {
-                return Err(Failure::NotAssemblable { row, residual, time });
-            }
-            Some(failure) => return Err(failure),
-        }
+        let (q, statistics) = solve_nearest(&mechanism, &parameters, &start, t)?;
         if let Some(failure) = distant::<S, R, N>(&q, &start, &scales, t) {
             return Err(failure);
         }
-        let mut statistics = Statistics::of(&solver.diagnosis);
-        statistics.correction = largest_difference(&q, &start, &scales).to_f64();
         let found = Found { t, q, statistics, open: None };
         let state = State::at(&mechanism, &parameters, found, Before::Saved)?;
         Ok(Stepper { mechanism, parameters, fault: None, changed: false, state })
@@ -173,25 +159,6 @@ fn distant<S: Kinematic<R, N>, R: Real, const N: usize>(
     }
     let coordinate = entry(S::COORDINATES, farthest);
     (distance > NEAR).then_some(Failure::TooFar { coordinate, distance, allowed: NEAR, time: t.to_f64() })
-}
-
-/// Levenberg–Marquardt from the start value alone.
-struct Nearest<R: Real> {
-    extent: R,
-    diagnosis: Diagnosis<R>,
-}
-
-impl<R: Real> BlockSolver<R> for Nearest<R> {
-    fn solve<const K: usize, F: Factorization<R, K>>(
-        &mut self,
-        block: &Block<R, K>,
-        x: [R; K],
-        mut evaluate: impl FnMut(&[R; K]) -> ([R; K], [[R; K]; K]),
-    ) -> ([R; K], R::Lanes<Outcome>) {
-        let (attempt, plain) = attempt::<R, K, F>(block, x, true, self.extent, &mut evaluate);
-        self.diagnosis.record(attempt.evaluations, !plain, attempt.worst, attempt.converged);
-        (attempt.x, attempt.outcomes())
-    }
 }
 
 #[cfg(test)]

@@ -2,8 +2,8 @@
 
 use crate::diagnosis::Statistics;
 use crate::kinematics::{
-    branch_failure, coordinate_failure, factorize, largest_difference, solve_acceleration, solve_correction,
-    solve_position, solve_velocity, time_failure, variable_failure,
+    RegularFactors, branch_failure, coordinate_failure, factorize, largest_difference, solve_acceleration,
+    solve_correction, solve_position, solve_velocity, time_failure, variable_failure,
 };
 use crate::limit::limit_failure;
 use crate::path::{Way, displaced, is_near};
@@ -320,8 +320,13 @@ impl<R: Real, const N: usize> State<R, N> {
         if let Some(failure) = coordinate_failure::<S, R, N>(&q, &scales, t) {
             return Err(failure);
         }
-        let position = mechanism.position(parameters, &q, t);
-        let factors = factorize(mechanism, parameters, &position, t)?;
+        let mut solution = Solution { q, position: mechanism.position(parameters, &q, t) };
+        let mut factors = factorize(mechanism, parameters, &solution.position, t)?;
+        if open.is_none() && factors.margin() < R::constant(REGULAR_ZONE) {
+            solution = solution.polished(mechanism, parameters, &factors, t);
+            factors = factorize(mechanism, parameters, &solution.position, t)?;
+        }
+        let Solution { q, position } = solution;
         if let Some(failure) =
             branch_failure(mechanism, parameters, &position, t, matches!(before, Before::Guess))
         {
@@ -358,7 +363,38 @@ impl<R: Real, const N: usize> State<R, N> {
         Ok(State { t, q, qd, qdd, margin, margin_rate, statistics, orientation, passages, regular, repair })
     }
 
+    /// Whether the state is outside the singular zone.
     fn is_regular(&self) -> bool {
         R::constant(REGULAR_ZONE) <= self.margin
+    }
+}
+
+/// A position with its stage-1 values.
+struct Solution<S: Mechanism<R, N, N>, R: Real, const N: usize> {
+    q: [R; N],
+    position: S::Position,
+}
+
+impl<S: Kinematic<R, N>, R: Real, const N: usize> Solution<S, R, N> {
+    /// One Newton step more, if it closes the rows better. In the singular zone what a residual within its tolerance
+    /// leaves of the position is seen in the rates, by the square of the margin.
+    #[cold]
+    #[inline(never)]
+    fn polished(
+        self,
+        mechanism: &S,
+        parameters: &S::Parameters,
+        factors: &RegularFactors<S::Factors, R>,
+        t: R,
+    ) -> Self {
+        let scales = mechanism.row_scales(parameters);
+        let open = |position: &S::Position| {
+            largest_difference(&mechanism.phi(parameters, position), &[R::constant(0.0); N], &scales)
+        };
+        let Ok(step) = solve_correction(mechanism, parameters, &self.position, factors) else { return self };
+        let mut q = self.q;
+        q.iter_mut().zip(step).for_each(|(coordinate, change)| *coordinate = *coordinate + change);
+        let position = mechanism.position(parameters, &q, t);
+        if open(&position) < open(&self.position) { Solution { q, position } } else { self }
     }
 }

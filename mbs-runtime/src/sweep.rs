@@ -28,7 +28,7 @@ pub struct Frame<R, O, const N: usize> {
 /// Frames of a [`Stepper`] at start + (end − start) k/steps for k = 0 … steps; no rounding accumulates.
 ///
 /// The first frame is the state as it stands. After a failure, which is yielded, there is no more; the stepper
-/// then stands at the last position found. An output that has no value there is a failure too.
+/// then stands at the last position found, and [`Stepper::stop_towards`] tells how far it can go. An output that has no value there is a failure too.
 pub struct Sweep<'a, S: Kinematic<R, N>, R: Real, const N: usize> {
     stepper: &'a mut Stepper<S, R, N>,
     start: R,

@@ -4,7 +4,7 @@ use core::fmt;
 use core::hint::black_box;
 use std::time::{Duration, Instant};
 
-use mbs_runtime::{Entry, Failure, Frame, Kinematic, Mechanism, OutputValue, Stepper};
+use mbs_runtime::{Entry, Failure, Frame, Kinematic, Mechanism, OutputValue, Stepper, Stop};
 use serde::Serialize;
 
 use crate::lecture::experiment::Experiment;
@@ -51,6 +51,8 @@ pub trait AnyMechanism: AnyEquations {
     /// # Errors
     /// The solver's [`Failure`].
     fn time_a_step(&self, times: &[f64]) -> Result<Duration, Failure>;
+    /// Where a motion over `times` (s) that fails comes to its limit; `None` where it assembles nowhere or has none.
+    fn stop(&self, times: &[f64]) -> Option<MotionStop>;
     /// Single steps of the solvers, for teaching.
     fn experiment(&self) -> &dyn Experiment;
 }
@@ -59,6 +61,17 @@ impl fmt::Debug for dyn AnyMechanism + '_ {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "AnyMechanism({})", self.type_name())
     }
+}
+
+/// Where a motion ends; see [`mbs_runtime::Stop`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MotionStop {
+    /// The last time (s) with a position.
+    pub reachable: f64,
+    /// The first time (s) that is refused.
+    pub refused: f64,
+    /// Why the end of the step that failed is refused.
+    pub failure: Failure,
 }
 
 /// A state at which functions are evaluated: `q`, `q̇`, `q̈` (N each, coordinate unit per s, s²) and `t` (s).
@@ -222,6 +235,14 @@ impl<S: Kinematic<f64, N>, const N: usize> AnyMechanism for Facade<S, N> {
             black_box(stepper.outputs());
         }
         Ok(start.elapsed() / u32::try_from(rest.len().max(1)).unwrap_or(u32::MAX))
+    }
+
+    fn stop(&self, times: &[f64]) -> Option<MotionStop> {
+        let (first, rest) = times.split_first()?;
+        let mut stepper = self.assembled(*first).ok()?;
+        let beyond = rest.iter().find(|time| stepper.advance_to(**time).is_err())?;
+        let Stop { reachable, refused, failure, .. } = stepper.stop_towards(*beyond)?;
+        Some(MotionStop { reachable, refused, failure })
     }
 
     fn experiment(&self) -> &dyn Experiment {

@@ -138,7 +138,13 @@ fn a_mechanism_that_locks_on_its_way_says_when() {
     // Shortest and longest link, 0.45 m + 0.75 m, exceed the two others, 1.1 m: the crank cannot pass 180°.
     let message =
         failure(run_into(&scratch, &["run", "four_bar", "--param", "L1=0.45", "--param", "L4=0.75"]), 1);
-    assert!(message.contains("t = "), "{message}");
+    // Coupler and rocker in line: (0.6 m + 0.5 m)² = L1² + L4² − 2 L1 L4 cos θ.
+    let turn = ((0.45_f64.powi(2) + 0.75_f64.powi(2) - 1.1_f64.powi(2)) / (2.0 * 0.45 * 0.75)).acos();
+    let limit = turn / core::f64::consts::TAU;
+    let ends = message.split("ends between t = ").nth(1).expect("the bracket");
+    let times: Vec<f64> = ends.split([' ', ';']).filter_map(|word| word.parse().ok()).take(2).collect();
+    assert!(times[0] < limit + 1e-15 && limit - 1e-12 < times[1] && times[1] - times[0] < 1e-11, "{message}");
+    assert!(message.contains("`closure.0` (line") && message.contains("`closure.1` (line"), "{message}");
     assert!(!scratch.0.exists());
 }
 

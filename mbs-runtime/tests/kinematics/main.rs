@@ -8,3 +8,4 @@ mod lanes;
 mod motion;
 mod ranges;
 mod reset;
+mod stops;

@@ -8,7 +8,7 @@ use std::time::Duration;
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use mechanisms::csv;
-use mechanisms::facade::{AnyMechanism, Motion};
+use mechanisms::facade::{AnyMechanism, Motion, MotionStop};
 use mechanisms::registry::{self, Card, Preset, instants};
 use mechanisms::report::{Report, Run, html};
 use mechanisms::target_directory::target_directory;
@@ -125,7 +125,18 @@ fn follow(
             motion,
             step_time,
         })
-        .map_err(|failure| CommandError::Failed(format!("{}, {}: {failure}", card.name, preset.label)))
+        .map_err(|failure| {
+            let stop = mechanism.stop(&times).map_or_else(String::new, |stop| described(&stop));
+            CommandError::Failed(format!("{}, {}: {failure}{stop}", card.name, preset.label))
+        })
+}
+
+/// Where the motion ends, as lines below the failure.
+fn described(stop: &MotionStop) -> String {
+    let MotionStop { reachable, refused, failure } = stop;
+    format!(
+        "\nthe motion ends between t = {reachable} s and t = {refused} s; at the end of that step\n{failure}"
+    )
 }
 
 fn facts(mechanisms: &Instances, done: &[Done]) -> Vec<[String; 2]> {

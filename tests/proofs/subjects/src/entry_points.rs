@@ -219,6 +219,16 @@ entry_points! {
     ) -> bool {
         stepper.change(|mechanism| S::variable(name).is_some_and(|index| mechanism.set(index, value)))
     }
+    /// Where a motion stops: its bracket.
+    fn stop[S: Kinematic<R, N>, R: Real, const N: usize](stepper: &Stepper<S, R, N>, t: R) -> Option<(R, R)> {
+        stepper.stop_towards(t).map(|stop| (stop.reachable, stop.refused))
+    }
+    /// Where a variable stops.
+    fn stop_of[S: Kinematic<R, N>, R: Real, const N: usize](
+        stepper: &Stepper<S, R, N>, index: usize, value: R,
+    ) -> Option<(R, R)> {
+        stepper.stop_of(index, value).map(|stop| (stop.reachable, stop.refused))
+    }
     /// The state with its outputs.
     fn frame[S: Kinematic<R, N>, R: Real, const N: usize](
         stepper: &Stepper<S, R, N>,

@@ -1,0 +1,64 @@
+//! The position nearest to a start, or where the rows are least open.
+
+use crate::diagnosis::{Diagnosis, Statistics, extent};
+use crate::failure::Holding;
+use crate::kinematics::{largest_difference, position_failure};
+use crate::safeguarded::attempt;
+use crate::{Block, BlockSolver, Factorization, Failure, Kinematic, Mechanism, Outcome, Real};
+
+/// Solves Φ(q, t) = 0 by Levenberg–Marquardt from `start` (N) and from there alone.
+///
+/// # Errors
+/// [`Failure::NotAssemblable`] with the least residual that it leads to, [`Failure::NonFinite`].
+pub(crate) fn solve_nearest<S: Kinematic<R, N>, R: Real, const N: usize>(
+    mechanism: &S,
+    parameters: &S::Parameters,
+    start: &[R; N],
+    t: R,
+) -> Result<([R; N], Statistics), Failure> {
+    let scales = mechanism.coordinate_scales(parameters);
+    let mut solver = Nearest { extent: extent(start, &scales), diagnosis: Diagnosis::new() };
+    let mut q = *start;
+    let outcome = mechanism.solve_blocks(parameters, &mut q, t, &mut solver);
+    if let Some(failure) = position_failure::<S, R, N>(outcome, &solver.diagnosis, t) {
+        return Err(not_assemblable(mechanism, parameters, &q, t, failure));
+    }
+    let mut statistics = Statistics::of(&solver.diagnosis);
+    statistics.correction = largest_difference(&q, start, &scales).to_f64();
+    Ok((q, statistics))
+}
+
+/// A solver's `failure` to converge as what it means where it came to the least residual, at `q` (N); others as they are.
+pub(crate) fn not_assemblable<S: Mechanism<R, N, N>, R: Real, const N: usize>(
+    mechanism: &S,
+    parameters: &S::Parameters,
+    q: &[R; N],
+    t: R,
+    failure: Failure,
+) -> Failure {
+    let Failure::NotConverged { row, residual, time, .. } = failure else { return failure };
+    let position = mechanism.position(parameters, q, t);
+    let phi = mechanism.phi(parameters, &position);
+    let scales = mechanism.row_scales(parameters);
+    let parts = phi.iter().zip(&scales).map(|(residual, scale)| (*residual / *scale).abs().to_f64());
+    Failure::NotAssemblable { row, residual, rows: Holding::of(S::ROWS, parts), time }
+}
+
+/// Levenberg–Marquardt from the start value alone.
+struct Nearest<R: Real> {
+    extent: R,
+    diagnosis: Diagnosis<R>,
+}
+
+impl<R: Real> BlockSolver<R> for Nearest<R> {
+    fn solve<const K: usize, F: Factorization<R, K>>(
+        &mut self,
+        block: &Block<R, K>,
+        x: [R; K],
+        mut evaluate: impl FnMut(&[R; K]) -> ([R; K], [[R; K]; K]),
+    ) -> ([R; K], R::Lanes<Outcome>) {
+        let (attempt, plain) = attempt::<R, K, F>(block, x, true, self.extent, &mut evaluate);
+        self.diagnosis.record(attempt.evaluations, !plain, attempt.worst, attempt.converged);
+        (attempt.x, attempt.outcomes())
+    }
+}

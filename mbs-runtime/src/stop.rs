@@ -1,0 +1,142 @@
+//! How far a mechanism can be driven, found between two positions of its drivers.
+
+use crate::nearest::solve_nearest;
+use crate::{Failure, Kinematic, Real, Stepper};
+
+/// Width of the bracket around a limit over the way of the driver.
+const WIDTH: f64 = 1e-9;
+
+/// Halvings that reach [`WIDTH`] from the whole way, each of which may fail once more on a step that was too long.
+const HALVINGS: u32 = 64;
+
+/// Times that a step which was too long, or a singular position, is got over before it counts as the limit.
+const RESUMPTIONS: u32 = 64;
+
+/// Steps over a singular position, each four times as long as the one before: from [`WIDTH`] to 1e-3 of the way, far beyond
+/// the 1e-6 within which rates are refused.
+const STEPS_OVER: u32 = 11;
+
+/// Where a mechanism stops on the way of a driver.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stop<R, const N: usize> {
+    /// The last value of the driver with a position: time (s), or the variable in its unit.
+    pub reachable: R,
+    /// The first one that is refused, at most 1e-9 of the way from there.
+    pub refused: R,
+    /// The position (N) at `reachable`.
+    pub q: [R; N],
+    /// Why the end of the way is refused. A mechanism that cannot be assembled there is [`Failure::NotAssemblable`], with
+    /// the least residual in reach of `q` and the rows that hold it.
+    pub failure: Failure,
+}
+
+impl<S: Kinematic<R, N>, R: Real, const N: usize> Stepper<S, R, N> {
+    /// Where the motion stops between now and time `t` (s); `None` where `t` is reached.
+    ///
+    /// The stepper itself stays where it is. Bisection takes some forty steps; each that fails costs a search.
+    pub fn stop_towards(&self, t: R) -> Option<Stop<R, N>> {
+        self.stop(self.state.t, t, |stepper, t| stepper.advance_to(t).map(|_| ()))
+    }
+
+    /// How far the parameter or input at `index` of [`VARIABLES`](crate::Mechanism::VARIABLES) can go from its value to
+    /// `value` with the time standing still; `None` where `value` is reached, or where there is no such variable.
+    pub fn stop_of(&self, index: usize, value: R) -> Option<Stop<R, N>> {
+        let now = self.mechanism.get(index)?;
+        self.stop(now, value, |stepper, value| {
+            stepper.change(|mechanism| mechanism.set(index, value));
+            stepper.advance(R::constant(0.0)).map(|_| ())
+        })
+    }
+
+    fn stop(
+        &self,
+        from: R,
+        to: R,
+        drive: impl Fn(&mut Self, R) -> Result<(), Failure>,
+    ) -> Option<Stop<R, N>> {
+        // On a copy: a failure leaves the state, not the inputs.
+        let driven = |stepper: &Self, value: R| {
+            let mut stepper = stepper.clone();
+            drive(&mut stepper, value).map(|()| stepper)
+        };
+        let mut search = Search { good: self.clone(), reachable: from, refused: to, failure: None };
+        let width = ((to - from) * R::constant(WIDTH)).abs();
+        for _ in 0..RESUMPTIONS {
+            search.refused = to;
+            search.failure = driven(&search.good, to).err();
+            search.failure?;
+            search.halve(width, &driven);
+            if !search.resume(width, to, &driven) {
+                break;
+            }
+        }
+        let Search { good, reachable, refused, .. } = search;
+        let q = good.state.q;
+        let mut failure = driven(&good, to).err()?;
+        if let Failure::NotConverged { time, .. } = failure {
+            let mut there = good;
+            // It fails again; what it is for is the inputs there.
+            let _ = drive(&mut there, to);
+            let time = R::constant(time);
+            there.mechanism.advance_phases(there.state.t, time);
+            let nearest = solve_nearest(&there.mechanism, &there.parameters, &q, time);
+            failure = nearest.err().unwrap_or(failure);
+        }
+        Some(Stop { reachable, refused, q, failure })
+    }
+}
+
+/// A bracket around a limit.
+struct Search<S: Kinematic<R, N>, R: Real, const N: usize> {
+    /// The mechanism at `reachable`.
+    good: Stepper<S, R, N>,
+    reachable: R,
+    refused: R,
+    /// What happened at `refused`.
+    failure: Option<Failure>,
+}
+
+impl<S: Kinematic<R, N>, R: Real, const N: usize> Search<S, R, N> {
+    /// Bisection to `width`, or to neighbouring numbers.
+    fn halve(
+        &mut self,
+        width: R,
+        driven: &impl Fn(&Stepper<S, R, N>, R) -> Result<Stepper<S, R, N>, Failure>,
+    ) {
+        for _ in 0..HALVINGS {
+            let middle = self.reachable + R::constant(0.5) * (self.refused - self.reachable);
+            let apart = (self.refused - self.reachable).abs() > width;
+            if !apart || middle == self.reachable || middle == self.refused {
+                return;
+            }
+            match driven(&self.good, middle) {
+                Ok(stepper) => (self.good, self.reachable) = (stepper, middle),
+                Err(failure) => (self.refused, self.failure) = (middle, Some(failure)),
+            }
+        }
+    }
+
+    /// Whether the way goes on behind the bracket: what was refused from farther away is not from here, or a singular
+    /// position can be got over.
+    fn resume(
+        &mut self,
+        width: R,
+        to: R,
+        driven: &impl Fn(&Stepper<S, R, N>, R) -> Result<Stepper<S, R, N>, Failure>,
+    ) -> bool {
+        let singular = matches!(self.failure, Some(Failure::Singular { .. }));
+        let steps = if singular { STEPS_OVER } else { 0 };
+        let mut step = width;
+        let mut next = self.refused;
+        for _ in 0..=steps {
+            if let Ok(stepper) = driven(&self.good, next) {
+                (self.good, self.reachable) = (stepper, next);
+                return true;
+            }
+            let ahead = if self.reachable < to { self.reachable + step } else { self.reachable - step };
+            next = if self.reachable < to { ahead.min(to) } else { ahead.max(to) };
+            step = step * R::constant(4.0);
+        }
+        false
+    }
+}
