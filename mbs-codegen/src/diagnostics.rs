@@ -1,6 +1,6 @@
 //! Faults of a text, each on the user's own token and with its cure.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use proc_macro2::{Span, TokenStream};
 use quote::quote_spanned;
@@ -20,7 +20,7 @@ pub struct Diagnostic {
 }
 
 /// All faults found so far; a stage reports as many as it can before it gives up.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct Diagnostics {
     faults: Vec<Diagnostic>,
     /// Line, column and message of each: what a loop runs into in every round is reported once.
@@ -34,6 +34,33 @@ impl Diagnostics {
         if self.faults.len() < MOST && self.known.insert((start.line, start.column, message.clone())) {
             self.faults.push(Diagnostic { message, help: help.into(), span });
         }
+    }
+
+    /// Records what was found in scenes, of which there are `number`: plainly where every one has the fault, else with
+    /// the names of those that have it. A text without scenes is one entry without a name.
+    pub fn gather(&mut self, scenes: &[(Option<&str>, Diagnostics)], number: usize) {
+        let mut found: BTreeMap<(usize, usize, &str), (&Diagnostic, Vec<&str>)> = BTreeMap::new();
+        for (scene, diagnostics) in scenes {
+            for fault in &diagnostics.faults {
+                let start = fault.span.start();
+                let key = (start.line, start.column, fault.message.as_str());
+                found.entry(key).or_insert_with(|| (fault, Vec::new())).1.extend(scene);
+            }
+        }
+        for (fault, names) in found.into_values() {
+            let everywhere = number > 1 && names.len() == number;
+            let message = match (names.as_slice(), everywhere) {
+                ([], _) | (_, true) => fault.message.clone(),
+                ([name], _) => format!("in scene `{name}`: {}", fault.message),
+                (names, _) => format!("in scenes `{}`: {}", names.join("`, `"), fault.message),
+            };
+            self.report(fault.span, message, fault.help.clone());
+        }
+    }
+
+    /// The first fault, if any.
+    pub fn first(&self) -> Option<Diagnostic> {
+        self.sorted().into_iter().next()
     }
 
     /// Whether nothing is wrong so far.

@@ -31,6 +31,7 @@ use diagnostics::Diagnostics;
 pub use emit::formula::Formulas;
 use emit::notation::Notation;
 pub use emit::report::{BlockReport, CoordinateReport, EntryKind, RowReport, StructureReport};
+use model::scenes::{Scene, Scenes};
 use proc_macro2::TokenStream;
 
 /// Expands the text of a mechanism, led by the runtime's path in parentheses (without it `::mbs_runtime`).
@@ -39,112 +40,134 @@ use proc_macro2::TokenStream;
 pub fn expand(input: TokenStream) -> TokenStream {
     let mut diagnostics = Diagnostics::default();
     let Some(text) = syntax::read(input, &mut diagnostics) else { return diagnostics.to_tokens() };
-    let model = model::resolve(&text.statements, &mut diagnostics);
-    match translate(&text, &model, &mut diagnostics) {
+    let scenes = Scenes::resolve(&text, &mut diagnostics);
+    match translate(&text, &scenes, &mut diagnostics) {
         Some(items) => items,
         None => {
             let mut items = diagnostics.to_tokens();
-            items.extend(emit::stub(&text, &model));
+            items.extend(emit::stub(&text, &scenes));
             items
         }
     }
 }
 
 /// The stages behind the front end; `None` where a fault is known.
-fn translate(
-    text: &syntax::Text,
-    model: &model::Model,
-    diagnostics: &mut Diagnostics,
-) -> Option<TokenStream> {
+fn translate(text: &syntax::Text, scenes: &Scenes, diagnostics: &mut Diagnostics) -> Option<TokenStream> {
     if !diagnostics.is_empty() {
         return None;
     }
-    let mut equations = equations::derive(model);
-    let structure = structure::analyse(model, &mut equations, diagnostics)?;
-    let program = program::order(&equations, &structure);
-    Some(emit::rust(text, model, &equations, &structure, &program))
+    let (mut translated, mut faults) = (Vec::new(), Vec::new());
+    for scene in &scenes.scenes {
+        match translate_scene(scene) {
+            Ok(scene) => translated.push(scene),
+            Err(found) => faults.push((scene.label(), found)),
+        }
+    }
+    diagnostics.gather(&faults, scenes.scenes.len());
+    if !diagnostics.is_empty() {
+        return None;
+    }
+    // Effects may exclude each other: then the whole text is no scene.
+    let left_out = match scenes.whole.as_ref().map(translate_scene) {
+        None => None,
+        Some(Ok(whole)) => {
+            translated.push(whole);
+            None
+        }
+        Some(Err(faults)) => Some(faults),
+    };
+    Some(emit::rust(text, scenes, &translated, left_out.as_ref()))
 }
 
-/// Expands a text that is kept as a string, a mechanism's `SOURCE` for instance.
+/// A scene through all stages, or its faults.
+fn translate_scene(scene: &Scene) -> Result<emit::Translated<'_>, Diagnostics> {
+    if !scene.faults.is_empty() {
+        return Err(scene.faults.clone());
+    }
+    let mut diagnostics = Diagnostics::default();
+    let mut equations = equations::derive(&scene.model);
+    let Some(structure) = structure::analyse(&scene.model, &mut equations, &mut diagnostics) else {
+        return Err(diagnostics);
+    };
+    let program = program::order(&equations, &structure);
+    Ok(emit::Translated { scene, equations, structure, program })
+}
+
+/// Expands a text that is kept as a string, a mechanism's `SOURCE` for instance, with all its scenes.
 ///
 /// # Errors
 /// The faults, two lines each: `line:column: message` and `help: cure`.
 pub fn expand_source(source: &str) -> Result<TokenStream, String> {
     let mut diagnostics = Diagnostics::default();
     let items = read_source(source, &mut diagnostics)
-        .and_then(|(text, model)| translate(&text, &model, &mut diagnostics));
+        .and_then(|(text, scenes)| translate(&text, &scenes, &mut diagnostics));
     items.ok_or_else(|| diagnostics.to_text())
 }
 
-/// A text that is kept as a string as a CasADi definition: a Python module with `define(ca, q, v, t, der)`.
+/// A scene of a text that is kept as a string as a CasADi definition: a Python module with `define(ca, q, v, t, der)`.
+///
+/// `scene`: its name; without one the whole text.
 ///
 /// # Errors
-/// The faults, two lines each: `line:column: message` and `help: cure`.
-pub fn casadi_definition(source: &str) -> Result<String, String> {
-    let mut diagnostics = Diagnostics::default();
-    match read_source(source, &mut diagnostics) {
-        Some((text, model)) if diagnostics.is_empty() => {
-            Ok(emit::casadi::definition(&model, &text.header.name.to_string()))
-        }
-        _ => Err(diagnostics.to_text()),
-    }
+/// The faults, two lines each: `line:column: message` and `help: cure`; or which scenes there are.
+pub fn casadi_definition(source: &str, scene: Option<&str>) -> Result<String, String> {
+    in_scene(source, scene, |name, scene| Ok(emit::casadi::definition(&scene.model, name)))
 }
 
-/// Φ and its derivatives as plain text, of a text that is kept as a string; need not be square.
+/// Φ and its derivatives as plain text, of a scene (without a name the whole text) of a text that is kept as a string;
+/// need not be square.
 ///
 /// # Errors
-/// The faults, two lines each: `line:column: message` and `help: cure`.
-pub fn formulas(source: &str) -> Result<Formulas, String> {
-    formulas_in(source, Notation::Text)
+/// As [`casadi_definition`].
+pub fn formulas(source: &str, scene: Option<&str>) -> Result<Formulas, String> {
+    in_scene(source, scene, |name, scene| Ok(formulas_in(name, scene, Notation::Text)))
 }
 
 /// [`formulas`] for LaTeX's mathematical mode; needs the package `amsmath`.
 ///
 /// # Errors
-/// The faults, two lines each: `line:column: message` and `help: cure`.
-pub fn latex_formulas(source: &str) -> Result<Formulas, String> {
-    formulas_in(source, Notation::Latex)
+/// As [`casadi_definition`].
+pub fn latex_formulas(source: &str, scene: Option<&str>) -> Result<Formulas, String> {
+    in_scene(source, scene, |name, scene| Ok(formulas_in(name, scene, Notation::Latex)))
 }
 
-fn formulas_in(source: &str, notation: Notation) -> Result<Formulas, String> {
-    let mut diagnostics = Diagnostics::default();
-    match read_source(source, &mut diagnostics) {
-        Some((text, model)) if diagnostics.is_empty() => {
-            let equations = equations::derive(&model);
-            Ok(emit::formula::formulas(&model, &equations, &text.header.name.to_string(), notation))
-        }
-        _ => Err(diagnostics.to_text()),
-    }
+fn formulas_in(name: &str, scene: &Scene, notation: Notation) -> Formulas {
+    let equations = equations::derive(&scene.model);
+    emit::formula::formulas(&scene.model, &equations, name, notation)
 }
 
-/// Sparsity, matching and block-triangular order of a text that is kept as a string.
+/// Sparsity, matching and block-triangular order of a scene (without a name the whole text) of a text that is kept as
+/// a string.
 ///
 /// # Errors
-/// The faults, two lines each: `line:column: message` and `help: cure`.
-pub fn structure_of(source: &str) -> Result<StructureReport, String> {
+/// As [`casadi_definition`].
+pub fn structure_of(source: &str, scene: Option<&str>) -> Result<StructureReport, String> {
+    in_scene(source, scene, |name, scene| {
+        let emit::Translated { scene, equations, structure, program } = translate_scene(scene)?;
+        Ok(emit::report::report(&scene.model, &equations, &structure, &program, name))
+    })
+}
+
+/// What `view` makes of a scene without faults and of the mechanism's name in it.
+fn in_scene<T>(
+    source: &str,
+    scene: Option<&str>,
+    view: impl FnOnce(&str, &Scene) -> Result<T, Diagnostics>,
+) -> Result<T, String> {
     let mut diagnostics = Diagnostics::default();
-    let report = read_source(source, &mut diagnostics)
-        .and_then(|(text, model)| structured(&text, &model, &mut diagnostics));
-    report.ok_or_else(|| diagnostics.to_text())
-}
-
-/// The stages up to the report; `None` where a fault is known.
-fn structured(
-    text: &syntax::Text,
-    model: &model::Model,
-    diagnostics: &mut Diagnostics,
-) -> Option<StructureReport> {
-    if !diagnostics.is_empty() {
-        return None;
+    let (text, scenes) = match read_source(source, &mut diagnostics) {
+        Some(read) if diagnostics.is_empty() => read,
+        _ => return Err(diagnostics.to_text()),
+    };
+    let found = scenes.find(scene)?;
+    if !found.faults.is_empty() {
+        return Err(found.faults.to_text());
     }
-    let mut equations = equations::derive(model);
-    let structure = structure::analyse(model, &mut equations, diagnostics)?;
-    let program = program::order(&equations, &structure);
-    let name = text.header.name.to_string();
-    Some(emit::report::report(model, &equations, &structure, &program, &name))
+    let name = model::scenes::alias(&text.header, found.label().unwrap_or_default());
+    view(&name, found).map_err(|faults| faults.to_text())
 }
 
-fn read_source(source: &str, diagnostics: &mut Diagnostics) -> Option<(syntax::Text, model::Model)> {
+fn read_source(source: &str, diagnostics: &mut Diagnostics) -> Option<(syntax::Text, Scenes)> {
     let input = match source.parse::<TokenStream>() {
         Ok(input) => input,
         Err(fault) => {
@@ -157,6 +180,6 @@ fn read_source(source: &str, diagnostics: &mut Diagnostics) -> Option<(syntax::T
         }
     };
     let text = syntax::read(input, diagnostics)?;
-    let model = model::resolve(&text.statements, diagnostics);
-    Some((text, model))
+    let scenes = Scenes::resolve(&text, diagnostics);
+    Some((text, scenes))
 }

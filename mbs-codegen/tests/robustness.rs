@@ -74,7 +74,7 @@ fn check(text: &str) -> Option<String> {
         Err(report) => report,
     });
     let source = text.to_owned();
-    let definition = expands(text, move || match mbs_codegen::casadi_definition(&source) {
+    let definition = expands(text, move || match mbs_codegen::casadi_definition(&source, None) {
         Ok(_) => String::new(),
         Err(report) => report,
     });
@@ -471,7 +471,7 @@ fn texts_without_sense() {
     }
     for text in ["(", "\"", "'", "/*", "r#\"", "}"] {
         assert!(mbs_codegen::expand_source(text).is_err());
-        assert!(mbs_codegen::casadi_definition(text).is_err());
+        assert!(mbs_codegen::casadi_definition(text, None).is_err());
     }
 }
 

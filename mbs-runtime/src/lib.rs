@@ -53,6 +53,7 @@ pub use limit::{Limit, Warning};
 pub use linear::{Direct1, Direct2, Direct3, Lu};
 pub use mechanism::{
     Block, BlockSolver, Entry, Evaluation, Factorization, Kinematic, Margin, Mechanism, OutputValue, Signal,
+    Whole,
 };
 pub use newton::Newton;
 pub use newton_raphson::{Iterate, newton_raphson, newton_raphson_watched};
@@ -68,9 +69,11 @@ pub use trace::{Trace, Traced};
 /// Declares a mechanism: a struct with its parameters, and implementations of [`Mechanism`] and [`Kinematic`].
 ///
 /// The text is a header and statements: `const`, `param`, `input`, `coord`, `let`, `constraint`, `drive`, `branch`,
-/// `limit`, `out` and `for`. Units are checked, vectors are arrays, derivatives are exact. The emitted struct has the
+/// `limit`, `out` and `for`, and `effect` and `scene` for several mechanisms in one text. Units are checked, vectors
+/// are arrays, derivatives are exact. The emitted struct has the
 /// parameters and inputs as public fields, `Default`, a view of the coordinates by name, and in its documentation
-/// shapes, sparsity, order of solution and operation counts. The README explains every statement.
+/// shapes, sparsity, order of solution and operation counts. With scenes it has a type parameter behind the scalar's
+/// for the scene, [`Whole`] where nothing else is said, and an alias for each scene. The README explains every statement.
 ///
 /// ```
 /// use mbs_runtime::{Mechanism, Stepper, mechanism};

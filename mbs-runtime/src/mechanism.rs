@@ -2,6 +2,10 @@
 
 use crate::{Limit, Outcome, Scalar};
 
+/// The scene of a text with all its effects, which every mechanism is in unless a type says otherwise.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Whole;
+
 /// A name of the text with its unit and its line in the source file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Entry {
@@ -87,6 +91,8 @@ pub trait Mechanism<T: Scalar, const N: usize, const M: usize>: Clone {
 
     /// Name of the mechanism.
     const NAME: &'static str;
+    /// Name of the scene; `Whole` for all effects at once, and where the text declares no scene.
+    const SCENE: &'static str = "Whole";
     /// The text between the braces of the macro; not linked where unused.
     const SOURCE: &'static str;
     /// Coordinates in the order of `q`: N.
@@ -95,7 +101,8 @@ pub trait Mechanism<T: Scalar, const N: usize, const M: usize>: Clone {
     const ROWS: &'static [Entry];
     /// Row and column of each entry of Φ_q that is not zero by structure, row by row, columns ascending.
     const SPARSITY: &'static [(u16, u16)];
-    /// Parameters and inputs, the public fields, component by component: [`variable`](Self::variable) finds the index
+    /// Parameters and inputs, the public fields, component by component, as far as the scene's own statements declare
+    /// them: [`variable`](Self::variable) finds the index
     /// that [`get`](Self::get) and [`set`](Self::set) take.
     const VARIABLES: &'static [Entry];
     /// Branch conditions.

@@ -14,6 +14,8 @@ use crate::lecture::experiment::Experiment;
 pub trait AnyEquations {
     /// Name of the emitted type.
     fn type_name(&self) -> &'static str;
+    /// Name of the scene; `Whole` where the text declares none.
+    fn scene(&self) -> &'static str;
     /// The text.
     fn source(&self) -> &'static str;
     /// Coordinates: N.
@@ -35,6 +37,12 @@ pub trait AnyEquations {
     /// # Panics
     /// Where the state's vectors do not have N components.
     fn evaluate(&self, state: &State) -> Functions;
+
+    /// Name of the type in its scene, as generated code and definitions for CasADi spell it.
+    fn full_name(&self) -> String {
+        let scene = if self.scene() == "Whole" { "" } else { self.scene() };
+        format!("{}{scene}", self.type_name())
+    }
 }
 
 /// A mechanism of any size that can be solved.
@@ -168,6 +176,9 @@ pub struct Facade<S, const N: usize, const M: usize = N>(pub S);
 impl<S: Mechanism<f64, N, M>, const N: usize, const M: usize> AnyEquations for Facade<S, N, M> {
     fn type_name(&self) -> &'static str {
         S::NAME
+    }
+    fn scene(&self) -> &'static str {
+        S::SCENE
     }
     fn source(&self) -> &'static str {
         S::SOURCE

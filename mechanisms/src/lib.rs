@@ -31,6 +31,7 @@ pub mod planetary_gear;
 pub mod quick_return;
 pub mod scotch_yoke;
 pub mod slider_crank;
+pub mod slider_crank_scenes;
 pub mod stephenson;
 pub mod three_rrr;
 pub mod watt;

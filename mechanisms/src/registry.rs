@@ -31,12 +31,15 @@ pub const ALL: &[&Card] = &[
     &crate::cam_roller::CARD,
     &crate::cam_oscillating::CARD,
     &crate::planetary_gear::CARD,
+    &crate::slider_crank_scenes::DRIVEN_CRANK,
+    &crate::slider_crank_scenes::DRIVEN_SLIDER,
+    &crate::slider_crank_scenes::TELESCOPING_ROD,
 ];
 
 /// What the program knows of a mechanism beside its text.
 #[derive(Clone, Copy, Debug)]
 pub struct Card {
-    /// Name on the command line.
+    /// Name on the command line; that of a scene is `text:Scene`.
     pub name: &'static str,
     /// Heading.
     pub title: &'static str,
@@ -136,6 +139,11 @@ pub fn set(mechanism: &mut dyn AnyMechanism, name: &str, value: f64) -> Result<(
 }
 
 impl Card {
+    /// The name as part of a path: no colon, which some systems refuse.
+    pub fn file_name(&self) -> String {
+        self.name.replace(':', "_")
+    }
+
     /// An instance with the preset's parameters.
     ///
     /// # Errors

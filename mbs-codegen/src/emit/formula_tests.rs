@@ -21,7 +21,7 @@ const FOUR_BAR: &str = "mechanism FourBar;
 
 /// Entries of one row `entry` of one coordinate `x` with a parameter `a`.
 fn row(entry: &str) -> Formulas {
-    formulas(&text(entry)).expect("a good text")
+    formulas(&text(entry), None).expect("a good text")
 }
 
 fn text(entry: &str) -> String {
@@ -30,7 +30,7 @@ fn text(entry: &str) -> String {
 
 #[test]
 fn the_four_bar_reads_as_on_the_slides() {
-    let found = formulas(FOUR_BAR).expect("a good text");
+    let found = formulas(FOUR_BAR, None).expect("a good text");
     assert_eq!(
         found.phi,
         [
@@ -49,7 +49,7 @@ fn the_four_bar_reads_as_on_the_slides() {
 
 #[test]
 fn latex_reads_as_on_the_slides() {
-    let found = latex_formulas(FOUR_BAR).expect("a good text");
+    let found = latex_formulas(FOUR_BAR, None).expect("a good text");
     assert_eq!(found.coordinates[2..], ["\\varphi_{1}", "\\varphi_{2}", "\\varphi_{3}"]);
     assert_eq!(found.phi_q[0][3], "L_{5}\\,\\sin\\left(\\alpha + \\varphi_{2}\\right)");
     assert_eq!(found.rows[0], "\\mathrm{coupler\\_point.0}");
@@ -94,16 +94,16 @@ fn parentheses_stand_only_where_they_are_needed() {
 fn powers_of_powers_stay_unambiguous() {
     assert_eq!(row("x^2").phi_q, [["2*x"]]);
     assert_eq!(row("(x^a)*(x^a)").phi, ["(x^a)^2"]);
-    let latex = latex_formulas(&text("(x^a)*(x^a)")).expect("a good text");
+    let latex = latex_formulas(&text("(x^a)*(x^a)"), None).expect("a good text");
     assert_eq!(latex.phi, ["\\left({x}^{a}\\right)^{2}"]);
 }
 
 #[test]
 fn rates_of_inputs_go_by_the_name_of_the_input() {
     let source = "mechanism M; input theta: rad, rates; coord x: rad; drive d: x == theta;";
-    let found = formulas(source).expect("a good text");
+    let found = formulas(source, None).expect("a good text");
     assert_eq!((found.phi_t, found.phi_tt), (vec!["-theta'".into()], vec!["-theta''".into()]));
-    let latex = latex_formulas(source).expect("a good text");
+    let latex = latex_formulas(source, None).expect("a good text");
     assert_eq!(latex.gamma, ["\\ddot{\\theta}"]);
 }
 
@@ -114,7 +114,7 @@ fn what_unfolds_to_a_huge_tree_gets_names_for_its_parts() {
     for k in 1..=30 {
         source += &format!("let a{k} = a{}*sin(a{}) + cos(a{});", k - 1, k - 1, k - 1);
     }
-    let found = formulas(&(source + "constraint c { a30 == 1; }")).expect("a good text");
+    let found = formulas(&(source + "constraint c { a30 == 1; }"), None).expect("a good text");
     let whole: usize = found.definitions.iter().map(|(_, text)| text.len()).sum();
     assert!(found.definitions.len() > 10 && whole < 100_000, "{whole}");
     assert!(found.definitions.iter().enumerate().all(|(k, (name, _))| *name == format!("e{}", k + 1)));
@@ -123,7 +123,7 @@ fn what_unfolds_to_a_huge_tree_gets_names_for_its_parts() {
 #[test]
 fn a_long_sum_is_cut_into_parts() {
     let source = "mechanism M; coord x: 1; constraint c { sum(i in 0..3000: sin(i*x)) == 0; }";
-    let found = formulas(source).expect("a good text");
+    let found = formulas(source, None).expect("a good text");
     assert!(!found.definitions.is_empty() && found.phi[0].len() < 2000);
 }
 
@@ -132,7 +132,7 @@ fn latex_is_balanced() {
     let entries =
         ["abs(x)", "min(x, a)", "sqrt(x + a)/b", "exp(-x^2.5)", "sign(x)*hypot(x, a)", "asin(x)/1e-9"];
     for entry in entries {
-        let found = latex_formulas(&text(entry)).expect("a good text");
+        let found = latex_formulas(&text(entry), None).expect("a good text");
         for text in found.phi.iter().chain(&found.phi_q[0]).chain(&found.gamma) {
             let count = |part: &str| text.matches(part).count();
             assert_eq!((count("{"), count("\\left")), (count("}"), count("\\right")), "{text}");
@@ -143,14 +143,14 @@ fn latex_is_balanced() {
 
 #[test]
 fn faults_come_back_with_their_places() {
-    let fault = formulas("mechanism M; coord x: rad; drive d: y == 0;").expect_err("y is unknown");
+    let fault = formulas("mechanism M; coord x: rad; drive d: y == 0;", None).expect_err("y is unknown");
     assert!(fault.contains("`y`"), "{fault}");
-    assert!(latex_formulas("(").is_err() && crate::structure_of("").is_err());
+    assert!(latex_formulas("(", None).is_err() && crate::structure_of("", None).is_err());
 }
 
 #[test]
 fn the_structure_of_the_four_bar() {
-    let found = crate::structure_of(FOUR_BAR).expect("a good text");
+    let found = crate::structure_of(FOUR_BAR, None).expect("a good text");
     let blocks: Vec<(&[usize], &[usize], bool)> =
         found.blocks.iter().map(|b| (&b.rows[..], &b.coordinates[..], b.explicit)).collect();
     let expected: [(&[usize], &[usize], bool); 4] =
@@ -167,15 +167,19 @@ fn the_structure_of_the_four_bar() {
 #[test]
 fn what_is_not_square_is_a_fault_of_the_structure_alone() {
     let source = "mechanism M; coord x: rad; coord y: rad; constraint c { x + y == 0; }";
-    assert!(crate::structure_of(source).expect_err("one row short").contains("1 row"));
-    assert_eq!(formulas(source).expect("formulas need no square").phi, ["x + y"]);
+    assert!(crate::structure_of(source, None).expect_err("one row short").contains("1 row"));
+    assert_eq!(formulas(source, None).expect("formulas need no square").phi, ["x + y"]);
 }
 
 #[test]
 fn texts_cut_off_anywhere_are_faults_and_no_panics() {
     for end in 0..FOUR_BAR.len() {
         let cut = &FOUR_BAR[..end];
-        let faults = [formulas(cut).err(), latex_formulas(cut).err(), crate::structure_of(cut).err()];
+        let faults = [
+            formulas(cut, None).err(),
+            latex_formulas(cut, None).err(),
+            crate::structure_of(cut, None).err(),
+        ];
         assert!(faults[2].is_some() || end > FOUR_BAR.len() - 2, "{cut}");
         assert_eq!(faults[0], faults[1]);
     }
@@ -188,7 +192,8 @@ const NAMES: &str = "param a: 1 = 2; param b: 1 = 3; param w: 1/s = 1;
 fn equations_of(rows: &str) -> (crate::model::Model, Equations) {
     let mut diagnostics = Diagnostics::default();
     let source = format!("mechanism M; {NAMES} constraint c {{ {rows}; }}");
-    let (_, model) = crate::read_source(&source, &mut diagnostics).expect("a good text");
+    let (_, mut scenes) = crate::read_source(&source, &mut diagnostics).expect("a good text");
+    let model = scenes.scenes.remove(0).model;
     assert!(diagnostics.is_empty(), "{rows}: {}", diagnostics.to_text());
     let equations = derive(&model);
     (model, equations)

@@ -6,61 +6,98 @@ use quote::{format_ident, quote, quote_spanned};
 use super::code::tokens;
 use super::functions::Bodies;
 use super::scope::{field_name, is_keyword, number, subscripts, variable};
+use super::{Part, scenes};
+use crate::diagnostics::Diagnostics;
+use crate::model::scenes::{Scene, Scenes, alias};
 use crate::model::{Field, Model, Role};
 use crate::syntax::Text;
 use crate::syntax::ast::Name;
 
-/// Before: bodies of all functions. After: everything that the user's module gets.
-pub fn item(text: &Text, model: &Model, docs: &[String], bodies: &Bodies) -> TokenStream {
+/// Before: bodies of all functions of all scenes. After: everything that the user's module gets.
+pub fn item(text: &Text, scenes: &Scenes, parts: &[Part<'_>], left_out: Option<&Diagnostics>) -> TokenStream {
     let header = &text.header;
     let (visibility, name, runtime) = (&header.visibility, &header.name, &header.runtime);
     let attributes = &header.attributes;
-    let fields = model.fields.iter().map(|field| {
-        let (docs, ident, kind) = (field_docs(field, model), ident(&field.name), field_type(field, runtime));
+    let shared = &scenes.shared;
+    let fields = shared.fields.iter().map(|field| {
+        let (docs, ident, kind) = (field_docs(field, shared), ident(&field.name), field_type(field, runtime));
         quote! { #(#[doc = #docs])* pub #ident: #kind, }
     });
-    // The parameter of the scalar type needs a use.
-    let (marker, marker_value) = if model.fields.is_empty() {
-        let marker = quote! { ::core::marker::PhantomData };
-        (quote! { #[doc(hidden)] pub scalar: #marker<T>, }, quote! { scalar: #marker, })
-    } else {
-        (TokenStream::new(), TokenStream::new())
-    };
-    let defaults = model.fields.iter().map(|field| {
+    let Markers { parameter, arguments, declaration, value } = markers(scenes, runtime);
+    let defaults = shared.fields.iter().map(|field| {
         let ident = ident(&field.name);
-        let value = nested(&field.shape, &|component| default(model, field, component));
+        let value = nested(&field.shape, &|component| default(shared, field, component));
         let value = tokens(&value, runtime);
         quote! { #ident: #value, }
     });
-    let view = coordinates_view(text, model);
-    let private = implementations(text, model, bodies);
+    let docs = scenes::docs(text, scenes, parts, left_out);
+    let of_scenes = scenes::items(text, scenes, parts);
+    let views = parts.iter().map(|part| coordinates_view(text, part.scene));
+    let private = parts.iter().map(|part| implementations(text, scenes, part));
     quote! {
         #(#attributes)*
         #(#[doc = #docs])*
         #[allow(non_snake_case, reason = "the text names the parameters")]
         #[derive(::core::clone::Clone, ::core::marker::Copy, ::core::fmt::Debug, ::core::cmp::PartialEq)]
-        #visibility struct #name<T = ::core::primitive::f64> { #(#fields)* #marker }
+        #visibility struct #name<T = ::core::primitive::f64 #parameter> { #(#fields)* #declaration }
 
         #[allow(clippy::approx_constant, reason = "numbers of the text stay as they are")]
-        impl<T: #runtime::Scalar> ::core::default::Default for #name<T> {
+        impl<T: #runtime::Scalar #arguments> ::core::default::Default for #name<T #arguments> {
             fn default() -> Self {
-                Self { #(#defaults)* #marker_value }
+                Self { #(#defaults)* #value }
             }
         }
 
-        #view
-        #private
+        #of_scenes
+        #(#views)*
+        #(#private)*
     }
 }
 
+/// What stands for type parameters without a field.
+pub struct Markers {
+    /// `, S = Whole`
+    parameter: TokenStream,
+    /// `, S`
+    pub arguments: TokenStream,
+    declaration: TokenStream,
+    /// Values of the fields.
+    pub value: TokenStream,
+}
+
+/// The fields that give the type parameters their use: that of the scene, and of the scalar where no other does.
+pub fn markers(scenes: &Scenes, runtime: &TokenStream) -> Markers {
+    let marker = quote! { ::core::marker::PhantomData };
+    let mut markers = Markers {
+        parameter: TokenStream::new(),
+        arguments: TokenStream::new(),
+        declaration: TokenStream::new(),
+        value: TokenStream::new(),
+    };
+    if scenes.shared.fields.is_empty() {
+        markers.declaration.extend(quote! { #[doc(hidden)] pub scalar: #marker<T>, });
+        markers.value.extend(quote! { scalar: #marker, });
+    }
+    if scenes.are_declared() {
+        markers.parameter = quote! { , S = #runtime::Whole };
+        markers.arguments = quote! { , S };
+        markers.declaration.extend(quote! { #[doc(hidden)] pub __scene: #marker<S>, });
+        markers.value.extend(quote! { __scene: #marker, });
+    }
+    markers
+}
+
 /// Trait implementations, with the types that only they name.
-fn implementations(text: &Text, model: &Model, bodies: &Bodies) -> TokenStream {
-    let header = &text.header;
-    let (name, runtime) = (&header.name, &header.runtime);
+fn implementations(text: &Text, scenes: &Scenes, part: &Part<'_>) -> TokenStream {
+    let runtime = &text.header.runtime;
+    let Part { scene, bodies, .. } = part;
+    let model = &scene.model;
+    let name = scenes::type_in(text, scenes, scene, &quote! { T });
+    let lane = scenes::type_in(text, scenes, scene, &quote! { T::Real });
     let (n, branches, outputs) = (model.coordinates.len(), model.branches.len(), model.outputs.len());
     let limits = model.limits.len();
-    let tables = tables(text, model);
-    let access = access(model, runtime, name);
+    let tables = tables(text, scenes, scene);
+    let access = access(text, scenes, model);
     let Bodies {
         kept_parameters,
         kept_position,
@@ -91,7 +128,7 @@ fn implementations(text: &Text, model: &Model, bodies: &Bodies) -> TokenStream {
     let places = sparsity.iter().map(|(row, column)| quote! { (#row, #column) });
     let speeds_item = match model.phases.is_empty() {
         true => TokenStream::new(),
-        false => quote! { impl<T: #runtime::Scalar> #name<T> { #speeds } },
+        false => quote! { impl<T: #runtime::Scalar> #name { #speeds } },
     };
     quote! {
         #[allow(clippy::approx_constant, reason = "numbers of the text stay as they are")]
@@ -108,14 +145,14 @@ fn implementations(text: &Text, model: &Model, bodies: &Bodies) -> TokenStream {
 
             #speeds_item
 
-            impl<T: #runtime::Scalar> #runtime::Mechanism<T, #n, #n> for #name<T> {
+            impl<T: #runtime::Scalar> #runtime::Mechanism<T, #n, #n> for #name {
                 type Parameters = __Parameters<T>;
                 type Position = __Position<T>;
                 type Entries = [T; #nonzeros];
                 type Branches = [T; #branches];
                 type Limits = [#runtime::Limit<T>; #limits];
                 type Outputs = [#runtime::OutputValue<T>; #outputs];
-                type Lane = #name<T::Real>;
+                type Lane = #lane;
                 #tables
                 const SPARSITY: &'static [(::core::primitive::u16, ::core::primitive::u16)] = &[#(#places),*];
                 #access
@@ -158,7 +195,7 @@ fn implementations(text: &Text, model: &Model, bodies: &Bodies) -> TokenStream {
                 ) -> [#runtime::OutputValue<T>; #outputs] { #outputs_body }
             }
 
-            impl<T: #runtime::Scalar> #runtime::Kinematic<T, #n> for #name<T> {
+            impl<T: #runtime::Scalar> #runtime::Kinematic<T, #n> for #name {
                 type Factors = __Factors<T>;
                 #[inline]
                 fn solve_blocks<__S: #runtime::BlockSolver<T>>(
@@ -180,9 +217,11 @@ fn implementations(text: &Text, model: &Model, bodies: &Bodies) -> TokenStream {
 }
 
 /// Names, units and lines as constants.
-fn tables(text: &Text, model: &Model) -> TokenStream {
-    let (runtime, source) = (&text.header.runtime, &text.source);
-    let name = text.header.name.to_string();
+fn tables(text: &Text, scenes: &Scenes, scene: &Scene) -> TokenStream {
+    let runtime = &text.header.runtime;
+    let source = scenes::source(text, scenes);
+    let (name, model) = (text.header.name.to_string(), &scene.model);
+    let scene = scene.label().map(|scene| quote! { const SCENE: &'static ::core::primitive::str = #scene; });
     let entry = |name: &str, unit: &str, span: Span| {
         let line = quote_spanned!(span=> ::core::line!());
         quote! { #runtime::Entry { name: #name, unit: #unit, line: #line } }
@@ -198,6 +237,7 @@ fn tables(text: &Text, model: &Model) -> TokenStream {
     let outputs = model.outputs.iter().map(|output| entry(&output.name, &output.unit, output.span));
     quote! {
         const NAME: &'static ::core::primitive::str = #name;
+        #scene
         const SOURCE: &'static ::core::primitive::str = #source;
         const COORDINATES: &'static [#runtime::Entry] = &[#(#coordinates),*];
         const ROWS: &'static [#runtime::Entry] = &[#(#rows),*];
@@ -210,28 +250,24 @@ fn tables(text: &Text, model: &Model) -> TokenStream {
     }
 }
 
-/// `get`, `set` and `lane`.
-fn access(model: &Model, runtime: &TokenStream, name: &Ident) -> TokenStream {
+/// `get`, `set` and `lane`: a scene sees its own fields, and keeps the others.
+fn access(text: &Text, scenes: &Scenes, model: &Model) -> TokenStream {
+    let (name, runtime) = (&text.header.name, &text.header.runtime);
     let places: Vec<TokenStream> =
         (0..model.variables.len()).map(|index| tokens(&variable(model, index), runtime)).collect();
     let indices: Vec<usize> = (0..places.len()).collect();
-    let lanes = model.fields.iter().map(|field| {
+    let lanes = scenes.shared.fields.iter().map(|field| {
         let ident = ident(&field.name);
         let value = nested(&field.shape, &|component| lane(field, component));
         let value = tokens(&value, runtime);
         quote! { #ident: #value, }
     });
-    let marker = if model.fields.is_empty() {
-        quote! { scalar: ::core::marker::PhantomData }
-    } else {
-        TokenStream::new()
+    let marker = markers(scenes, runtime).value;
+    let set = match places.as_slice() {
+        [] => quote! { (_, _) => false, },
+        _ => quote! { #((#indices, __value) => { #places = __value; true })* (_, _) => false, },
     };
-    let (set, lane_name) = if places.is_empty() {
-        (quote! { (_, _) => false, }, format_ident!("_lane"))
-    } else {
-        let arms = quote! { #((#indices, __value) => { #places = __value; true })* (_, _) => false, };
-        (arms, format_ident!("__lane"))
-    };
+    let lane_name = format_ident!("{}", if scenes.shared.fields.is_empty() { "_lane" } else { "__lane" });
     quote! {
         #[inline]
         fn get(&self, __index: ::core::primitive::usize) -> ::core::option::Option<T> {
@@ -327,11 +363,12 @@ fn field_docs(field: &Field, model: &Model) -> Vec<String> {
 }
 
 /// The coordinates by name.
-fn coordinates_view(text: &Text, model: &Model) -> TokenStream {
+fn coordinates_view(text: &Text, scene: &Scene) -> TokenStream {
     let visibility = &text.header.visibility;
-    let name = format_ident!("{}Coordinates", text.header.name);
+    let (alias, model) = (alias(&text.header, scene.label().unwrap_or_default()), &scene.model);
+    let name = format_ident!("{alias}Coordinates");
     let n = model.coordinates.len();
-    let title = format!(" Coordinates of [`{}`] by name, in the order of `q`.", text.header.name);
+    let title = format!(" Coordinates of [`{alias}`] by name, in the order of `q`.");
     let fields = model.coordinate_fields.iter().map(|field| {
         let mut docs = field.docs.clone();
         docs.push(format!(" Coordinate (`{}`).", field.unit));
@@ -372,7 +409,8 @@ fn coordinates_view(text: &Text, model: &Model) -> TokenStream {
     }
 }
 
-fn ident(name: &Name) -> Ident {
+/// The name as an identifier, raw where it is a keyword.
+pub fn ident(name: &Name) -> Ident {
     if is_keyword(&name.text) {
         Ident::new_raw(&name.text, name.span)
     } else {

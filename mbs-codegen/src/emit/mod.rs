@@ -10,29 +10,57 @@ mod item;
 pub mod notation;
 mod phases;
 pub mod report;
+mod scenes;
 mod scope;
 mod stub;
 mod terms;
 
 use proc_macro2::TokenStream;
 
+use crate::diagnostics::Diagnostics;
 use crate::equations::Equations;
-use crate::model::Model;
+use crate::model::scenes::{Scene, Scenes};
 use crate::program::Program;
 use crate::structure::Structure;
 use crate::syntax::Text;
 
 pub use stub::stub;
 
-/// Before: a model without faults and its program. After: the struct, its views and its trait implementations.
+/// A scene, and what the stages made of it.
+pub struct Translated<'a> {
+    /// The scene.
+    pub scene: &'a Scene,
+    /// Its functions.
+    pub equations: Equations,
+    /// Its block-triangular order.
+    pub structure: Structure,
+    /// Its straight-line code.
+    pub program: Program,
+}
+
+/// A scene with the bodies of its functions.
+pub struct Part<'a> {
+    /// The scene.
+    pub scene: &'a Scene,
+    /// What is generated of its documentation.
+    pub docs: Vec<String>,
+    /// Bodies of all functions.
+    pub bodies: functions::Bodies,
+}
+
+/// Before: scenes without faults and their programs. After: the struct, and of each scene its view and its trait
+/// implementations; `left_out` says why the whole text is no scene.
 pub fn rust(
     text: &Text,
-    model: &Model,
-    equations: &Equations,
-    structure: &Structure,
-    program: &Program,
+    scenes: &Scenes,
+    translated: &[Translated<'_>],
+    left_out: Option<&Diagnostics>,
 ) -> TokenStream {
-    let docs = docs::structure(model, equations, structure, program);
-    let bodies = functions::bodies(model, equations, program, &text.header.runtime);
-    item::item(text, model, &docs, &bodies)
+    let parts = translated.iter().map(|translated| {
+        let Translated { scene, equations, structure, program } = translated;
+        let docs = docs::structure(&scene.model, equations, structure, program);
+        let bodies = functions::bodies(&scene.model, equations, program, &text.header.runtime);
+        Part { scene, docs, bodies }
+    });
+    item::item(text, scenes, &parts.collect::<Vec<_>>(), left_out)
 }

@@ -4,14 +4,20 @@ use proc_macro2::TokenStream;
 use quote::quote;
 
 use super::functions::Bodies;
-use super::item;
-use crate::model::Model;
+use super::{Part, item};
+use crate::model::scenes::Scenes;
 use crate::syntax::Text;
 
-/// Before: a model with faults. After: the same items as without, with bodies that are never compiled to run.
-pub fn stub(text: &Text, model: &Model) -> TokenStream {
+/// Before: scenes with faults. After: the same items as without, with bodies that are never compiled to run.
+pub fn stub(text: &Text, scenes: &Scenes) -> TokenStream {
+    let all = scenes.scenes.iter().chain(&scenes.whole);
+    let parts = all.map(|scene| Part { scene, docs: Vec::new(), bodies: bodies() });
+    item::item(text, scenes, &parts.collect::<Vec<_>>(), None)
+}
+
+fn bodies() -> Bodies {
     let body = || quote! { ::core::unreachable!() };
-    let bodies = Bodies {
+    Bodies {
         kept_parameters: 0,
         kept_position: 0,
         parameters: body(),
@@ -39,6 +45,5 @@ pub fn stub(text: &Text, model: &Model) -> TokenStream {
         solve_blocks: body(),
         factorize: body(),
         solve_linear: body(),
-    };
-    item::item(text, model, &[], &bodies)
+    }
 }

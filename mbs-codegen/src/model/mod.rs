@@ -12,12 +12,14 @@ mod limits;
 mod names;
 mod order;
 mod resolve;
+pub mod scenes;
+mod selection;
+mod shared;
 pub mod units;
 
 use proc_macro2::Span;
 
 use expression::{Binary, Expressions, Id, Node};
-pub use resolve::resolve;
 use units::Dimension;
 
 /// A mechanism with every name resolved.
@@ -50,7 +52,7 @@ pub struct Model {
 }
 
 /// A public field of the emitted struct.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Field {
     /// Name and token.
     pub name: crate::syntax::ast::Name,
@@ -110,7 +112,7 @@ pub struct CoordinateField {
 }
 
 /// A scalar parameter or input.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Variable {
     /// Name, with the component's number for arrays and `rate` or `acceleration` for those of an input.
     pub name: String,

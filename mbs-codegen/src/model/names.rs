@@ -16,7 +16,7 @@ pub const RESERVED: [&str; 13] = [
 ];
 
 /// Words that cannot name a field of a struct, not even as raw identifiers.
-const UNUSABLE: [&str; 5] = ["self", "Self", "super", "crate", "_"];
+pub const UNUSABLE: [&str; 5] = ["self", "Self", "super", "crate", "_"];
 
 /// What a name stands for.
 #[derive(Clone, Debug)]

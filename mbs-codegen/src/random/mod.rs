@@ -10,7 +10,8 @@ mod oracle;
 mod text;
 
 use crate::diagnostics::Diagnostics;
-use crate::{equations, model, program, structure, syntax};
+use crate::model::scenes::Scenes;
+use crate::{equations, program, structure, syntax};
 
 /// Texts and states of each; fixed, so that a failure names its text for good.
 const TEXTS: u64 = 2000;
@@ -43,20 +44,21 @@ fn random_texts_compute_what_second_order_taylor_arithmetic_computes() {
         let text = text::write(&mut Random(seed));
         let mut diagnostics = Diagnostics::default();
         let read = syntax::read(text.parse().expect("tokens"), &mut diagnostics).expect("a header");
-        let model = model::resolve(&read.statements, &mut diagnostics);
+        let Scenes { scenes, .. } = Scenes::resolve(&read, &mut diagnostics);
         assert!(diagnostics.is_empty(), "{text}\n{}", diagnostics.to_text());
-        let mut equations = equations::derive(&model);
+        let model = &scenes[0].model;
+        let mut equations = equations::derive(model);
         // Now and then a row says nothing, `q2 == q2`, and is refused.
-        let Some(structure) = structure::analyse(&model, &mut equations, &mut diagnostics) else {
+        let Some(structure) = structure::analyse(model, &mut equations, &mut diagnostics) else {
             refused += 1;
             continue;
         };
         let program = program::order(&equations, &structure);
         let mut random = Random(seed ^ 0x5eed);
         for _ in 0..STATES {
-            let state = oracle::State::draw(&model, &mut random);
+            let state = oracle::State::draw(model, &mut random);
             let emitted = interpreter::run(&equations, &program, &state);
-            let expected = oracle::run(&model, &state);
+            let expected = oracle::run(model, &state);
             assert_eq!(emitted.len(), expected.len(), "{text}");
             for ((name, value), jet) in emitted.iter().zip(&expected).filter(|(_, jet)| !jet.torn) {
                 let allowed = ROUNDINGS * jet.bound;

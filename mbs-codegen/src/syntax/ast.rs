@@ -114,7 +114,7 @@ pub struct Statement {
     pub kind: StatementKind,
 }
 
-/// The statements of the language, loops flattened to begin and end.
+/// The statements of the language, loops and effects flattened to begin and end.
 #[derive(Clone, Debug)]
 pub enum StatementKind {
     Const {
@@ -172,6 +172,16 @@ pub enum StatementKind {
     },
     For(Loop),
     EndFor,
+    /// Of the top level alone.
+    Effect {
+        name: Name,
+    },
+    EndEffect,
+    /// Of the top level alone.
+    Scene {
+        name: Name,
+        effects: Vec<Name>,
+    },
     /// Reported; what it declares is kept, so that its uses are not reported too.
     Faulty {
         name: Name,

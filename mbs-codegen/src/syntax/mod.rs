@@ -5,15 +5,17 @@ mod constraint;
 mod expression;
 mod header;
 mod parser;
+mod scene;
 mod source;
 mod statement;
 mod tokens;
 mod unit;
 
-use proc_macro2::TokenStream;
+use proc_macro2::{Span, TokenStream};
 
 use crate::diagnostics::Diagnostics;
 pub use header::Header;
+pub use scene::NAMELESS;
 use statement::parse;
 
 /// Name of the emitted code's type parameter.
@@ -57,23 +59,29 @@ pub fn read(input: TokenStream, diagnostics: &mut Diagnostics) -> Option<Text> {
                 "declare what is sought: `coord phi: rad = 0.5;`",
             );
         }
-        statements.push(stand_in(&header));
+        statements.push(stand_in(header.name.span()));
     }
     all.pop();
     all.extend(body);
     Some(Text { header, statements, source: source::layout(&all) })
 }
 
-fn declares_coordinate(statement: &ast::Statement) -> bool {
+/// Whether the statement declares a coordinate, were it faulty.
+pub fn declares_coordinate(statement: &ast::Statement) -> bool {
     matches!(
         statement.kind,
         ast::StatementKind::Coord { .. } | ast::StatementKind::Faulty { declares: ast::Declares::Coord, .. }
     )
 }
 
-/// A coordinate of a text without any, so that the stub's types have a field.
-fn stand_in(header: &Header) -> ast::Statement {
-    let name = ast::Name { text: "coordinate".into(), span: header.name.span() };
+/// Whether the statement declares a scene.
+pub fn declares_scene(statement: &ast::Statement) -> bool {
+    matches!(statement.kind, ast::StatementKind::Scene { .. })
+}
+
+/// A coordinate where there is none, which is reported, so that the stub's types have a field.
+pub fn stand_in(span: Span) -> ast::Statement {
+    let name = ast::Name { text: "coordinate".into(), span };
     let kind = ast::StatementKind::Faulty { name, declares: ast::Declares::Coord, kind: None };
     ast::Statement { docs: Vec::new(), kind }
 }

@@ -19,7 +19,7 @@ pub struct Parser<'a> {
     next: usize,
     /// Where faults go.
     pub diagnostics: &'a mut Diagnostics,
-    /// Declarations that were given up behind their name.
+    /// Declarations and scenes that were given up behind their name.
     pub faulty: Vec<StatementKind>,
 }
 

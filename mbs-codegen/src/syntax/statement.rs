@@ -4,12 +4,13 @@ use super::ast::{Declares, Expression, Loop, Name, Statement, StatementKind, Typ
 use super::constraint::{equation, read_constraint};
 use super::expression::expression;
 use super::parser::{DOC_ATTRIBUTE, GivenUp, Parser, Read, doc_attribute};
+use super::scene::{Open, read_effect, read_scene};
 use super::tokens::{Kind, Token};
 use super::unit::{declared_type, unit};
 use crate::diagnostics::{Diagnostics, nearest};
 
 /// Words that begin a statement of this version.
-const STATEMENTS: [&str; 12] = [
+const STATEMENTS: [&str; 14] = [
     "const",
     "param",
     "input",
@@ -22,10 +23,12 @@ const STATEMENTS: [&str; 12] = [
     "independent",
     "out",
     "for",
+    "effect",
+    "scene",
 ];
 
 /// Words that begin a statement of the language which this version does not translate.
-const LATER: [&str; 20] = [
+const LATER: [&str; 18] = [
     "start",
     "body",
     "pin",
@@ -42,30 +45,27 @@ const LATER: [&str; 20] = [
     "state",
     "function",
     "data",
-    "effect",
-    "scene",
     "redundant",
     "include",
 ];
 
-/// Before: flat tokens behind the header. After: all statements that could be read, loops flattened and
-/// balanced; every other one is reported.
+/// Before: flat tokens behind the header. After: all statements that could be read, loops and effects flattened and
+/// balanced, effects and scenes at the top level alone; every other one is reported.
 pub fn parse(tokens: &[Token], diagnostics: &mut Diagnostics) -> Vec<Statement> {
     let mut parser = Parser::new(tokens, diagnostics);
     let mut statements = Vec::new();
-    let mut loops = 0_usize;
+    let mut open = Open::default();
     while *parser.peek() != Kind::End {
         let docs = docs(&mut parser);
-        if loops > 0 && parser.take('}') {
-            loops -= 1;
-            statements.push(Statement { docs, kind: StatementKind::EndFor });
+        if open.is_any() && parser.take('}') {
+            statements.extend(open.close().map(|kind| Statement { docs, kind }));
             continue;
         }
-        let start = parser.rest();
+        let (start, span) = (parser.rest(), parser.span());
         match statement(&mut parser) {
             Ok(kind) => {
-                loops += usize::from(matches!(kind, StatementKind::For(_)));
-                statements.push(Statement { docs, kind });
+                let kept = open.enter(kind, span, parser.diagnostics);
+                statements.extend(kept.map(|kind| Statement { docs, kind }));
             }
             Err(_) => resynchronise(&mut parser, start),
         }
@@ -205,6 +205,8 @@ fn reader(word: &str) -> Option<Reader> {
         "independent" => read_independent,
         "out" => read_out,
         "for" => |parser| read_loop(parser).map(StatementKind::For),
+        "effect" => read_effect,
+        "scene" => read_scene,
         _ => return None,
     })
 }

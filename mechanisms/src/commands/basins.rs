@@ -55,7 +55,7 @@ pub fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<(), CommandErro
     let found =
         basins(mechanism, axes, arguments.size, arguments.at, &mut |row| bar.set_position(row as u64));
     bar.finish_and_clear();
-    let standard = || target_directory().join("mbs").join(choice.card.name).join("basins.svg");
+    let standard = || target_directory().join("mbs").join(choice.card.file_name()).join("basins.svg");
     let path = arguments.out.clone().unwrap_or_else(standard);
     // Before the table, which may meet a reader that has left.
     let written = write_file(&path, &picture::basins(mechanism, &found));
@@ -74,7 +74,7 @@ pub fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<(), CommandErro
 
 /// Those of the command line; else the first two of the largest block, filled up from the others.
 fn axes(arguments: &Arguments, choice: &Choice) -> Result<[usize; 2], CommandError> {
-    let report = mbs_codegen::structure_of(choice.mechanism.source()).map_err(CommandError::Failed)?;
+    let report = choice.structure()?;
     let largest = report.blocks.iter().filter(|block| !block.explicit).max_by_key(|block| block.rows.len());
     let mut order: Vec<usize> = largest.map(|block| block.coordinates.clone()).unwrap_or_default();
     order.extend((0..report.coordinates.len()).filter(|index| !order.contains(index)).collect::<Vec<_>>());

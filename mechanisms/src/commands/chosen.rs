@@ -4,6 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use clap::Args;
+use mbs_codegen::StructureReport;
 use mechanisms::facade::{AnyMechanism, State};
 use mechanisms::lecture::experiment::state_at;
 use mechanisms::registry::{self, Card, nearest};
@@ -37,6 +38,12 @@ impl Chosen {
 }
 
 impl Choice {
+    /// Sparsity, matching and order of solution.
+    pub fn structure(&self) -> Result<StructureReport, CommandError> {
+        let mechanism = &self.mechanism;
+        mbs_codegen::structure_of(mechanism.source(), Some(mechanism.scene())).map_err(CommandError::Failed)
+    }
+
     /// The position at `t` (s) with its rates, followed there from the assembly at 0.
     pub fn state(&self, t: f64) -> Result<State, CommandError> {
         let duration = self.card.duration(self.mechanism.as_ref())?;

@@ -21,7 +21,8 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<(), CommandError> {
     let choice = arguments.chosen.choice()?;
     let mechanism = choice.mechanism.as_ref();
-    let report = mbs_codegen::structure_of(mechanism.source()).map_err(CommandError::Failed)?;
+    let report = mbs_codegen::structure_of(mechanism.source(), Some(mechanism.scene()))
+        .map_err(CommandError::Failed)?;
     let state = choice.state(arguments.at)?;
     let found = freedom(mechanism, &report, &state.q, arguments.at);
     writeln!(out, "{} at t = {} s\n", choice.card.title, arguments.at)?;

@@ -22,7 +22,8 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<(), CommandError> {
     let choice = arguments.chosen.choice()?;
     let mechanism = choice.mechanism.as_ref();
-    let formulas = mbs_codegen::latex_formulas(mechanism.source()).map_err(CommandError::Failed)?;
+    let formulas = mbs_codegen::latex_formulas(mechanism.source(), Some(mechanism.scene()))
+        .map_err(CommandError::Failed)?;
     let text = document(mechanism, &formulas, choice.card.title);
     match &arguments.out {
         None => out.write_all(text.as_bytes())?,

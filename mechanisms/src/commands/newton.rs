@@ -53,7 +53,7 @@ pub fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<(), CommandErro
 
 /// Blocks in the order of solution; those that are assigned come from no solver.
 fn write_blocks(out: &mut dyn Write, choice: &Choice, protocol: &Protocol) -> Result<(), CommandError> {
-    let report = mbs_codegen::structure_of(choice.mechanism.source()).map_err(CommandError::Failed)?;
+    let report = choice.structure()?;
     let mut solved = protocol.blocks.iter();
     for (number, block) in report.blocks.iter().enumerate() {
         let rows: Vec<&str> = block.rows.iter().map(|row| report.rows[*row].name.as_str()).collect();

@@ -53,7 +53,8 @@ pub fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<(), CommandErro
     let choice = arguments.chosen.choice()?;
     let mechanism = choice.mechanism.as_ref();
     if arguments.symbols {
-        let formulas = mbs_codegen::formulas(mechanism.source()).map_err(CommandError::Failed)?;
+        let formulas = mbs_codegen::formulas(mechanism.source(), Some(mechanism.scene()))
+            .map_err(CommandError::Failed)?;
         writeln!(out, "{}", choice.card.title)?;
         for quantity in &arguments.quantities {
             write(out, &symbolic(&formulas, *quantity))?;

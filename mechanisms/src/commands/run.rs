@@ -69,7 +69,8 @@ pub fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<(), CommandErro
     for (preset, mechanism) in &mechanisms {
         done.push(follow(card, preset, mechanism.as_ref(), arguments.steps)?);
     }
-    let directory = arguments.out.clone().unwrap_or_else(|| target_directory().join("mbs").join(card.name));
+    let directory =
+        arguments.out.clone().unwrap_or_else(|| target_directory().join("mbs").join(card.file_name()));
     let facts = facts(&mechanisms, &done);
     // Before the table, which may meet a reader that has left.
     let written = write_report(&directory, &page(arguments, card, &done, &facts), &values(&done));

@@ -23,7 +23,7 @@ pub struct Arguments {
 /// Sparsity, matching and the order of solution.
 pub fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<(), CommandError> {
     let choice = arguments.chosen.choice()?;
-    let report = mbs_codegen::structure_of(choice.mechanism.source()).map_err(CommandError::Failed)?;
+    let report = choice.structure()?;
     let entries: usize = report.rows.iter().map(|row| row.entries.len()).sum();
     let (m, n) = (report.rows.len(), report.coordinates.len());
     writeln!(out, "{}\n", choice.card.title)?;

@@ -54,7 +54,8 @@ pub fn candidate(card: &Card, steps: usize) -> Result<Candidate, Fault> {
     let times = instants(card.duration(mechanism.as_ref()).map_err(Fault::Mismatch)?, steps);
     let motion = mechanism.follow(&times, &mut |_| ()).map_err(Fault::Failure)?;
     let step_time = mechanism.time_a_step(&times).map_err(Fault::Failure)?;
-    let report = mbs_codegen::structure_of(mechanism.source()).map_err(Fault::Text)?;
+    let report =
+        mbs_codegen::structure_of(mechanism.source(), Some(mechanism.scene())).map_err(Fault::Text)?;
     let condition = times.iter().enumerate().map(|(k, t)| {
         let q: Vec<f64> = motion.coordinates.iter().map(|curve| curve.q[k]).collect();
         let values = singular_values(&scaled_jacobian(mechanism.as_ref(), &q, *t));

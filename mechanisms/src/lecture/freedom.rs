@@ -94,7 +94,8 @@ mod tests {
 
     fn of(name: &str) -> Freedom {
         let mechanism = (find(name).expect("in the list").make)();
-        let report = mbs_codegen::structure_of(mechanism.source()).expect("a good text");
+        let report =
+            mbs_codegen::structure_of(mechanism.source(), Some(mechanism.scene())).expect("a good text");
         let q = mechanism
             .experiment()
             .assembled(&mechanism.experiment().guess(), 0.0, true)

@@ -210,7 +210,8 @@ mod tests {
     fn every_mechanism_is_a_well_formed_document() {
         for card in ALL {
             let mechanism = (card.make)();
-            let formulas = mbs_codegen::latex_formulas(mechanism.source()).expect("a good text");
+            let formulas = mbs_codegen::latex_formulas(mechanism.source(), Some(mechanism.scene()))
+                .expect("a good text");
             let text = document(mechanism.as_ref(), &formulas, card.title);
             assert_well_formed(&text);
             assert!(text.starts_with("\\documentclass") && text.ends_with("\\end{document}\n"));

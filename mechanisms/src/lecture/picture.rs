@@ -252,7 +252,9 @@ mod tests {
     #[test]
     fn every_structure_is_drawn_below_its_blocks() {
         for card in ALL {
-            let report = mbs_codegen::structure_of((card.make)().source()).expect("a good text");
+            let mechanism = (card.make)();
+            let report = mbs_codegen::structure_of(mechanism.source(), Some(mechanism.scene()));
+            let report = report.expect("a good text");
             let svg = structure(&report);
             assert_well_formed(&svg);
             assert_eq!(svg.matches("class=\"block\"").count(), report.blocks.len());

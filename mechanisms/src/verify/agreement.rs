@@ -22,8 +22,8 @@ pub enum Reference {
 /// How well the emitted code of a mechanism agrees with the oracle.
 #[derive(Clone, Debug)]
 pub struct Agreement {
-    /// Name of the mechanism.
-    pub mechanism: &'static str,
+    /// Name of the mechanism, its scene included.
+    pub mechanism: String,
     /// The oracle.
     pub reference: Reference,
     /// Number of states compared.

@@ -88,7 +88,7 @@ pub fn against_digits(
 }
 
 fn nothing(mechanism: &dyn AnyEquations, reference: Reference, states: usize) -> Agreement {
-    Agreement { mechanism: mechanism.type_name(), reference, states, values: 0, functions: Vec::new() }
+    Agreement { mechanism: mechanism.full_name(), reference, states, values: 0, functions: Vec::new() }
 }
 
 /// Largest absolute value of each row over the states.

@@ -124,14 +124,14 @@ pub fn emitted(mechanism: &mut dyn AnyEquations, sample: &Sample) -> Functions {
 /// [`OracleError::Answer`] with both sizes where it is not.
 pub fn check_sizes<E>(mechanism: &dyn AnyEquations, answer: &Answer<E>) -> Result<(), OracleError> {
     let sizes = (mechanism.coordinates().len(), mechanism.rows().len(), mechanism.variables().len());
-    if (answer.n, answer.m, answer.v) == sizes && answer.name == mechanism.type_name() {
+    if (answer.n, answer.m, answer.v) == sizes && answer.name == mechanism.full_name() {
         return Ok(());
     }
     let (n, m, v) = sizes;
     Err(OracleError::Answer {
         reason: format!(
             "`{}` has {n} coordinates, {m} rows and {v} variables, the definition `{}` has {}, {} and {}",
-            mechanism.type_name(),
+            mechanism.full_name(),
             answer.name,
             answer.n,
             answer.m,

@@ -97,8 +97,8 @@ pub fn verify_against(name: &str, definition: &Path, oracle: &Oracle) -> Result<
 /// # Errors
 /// [`VerifyError::Definition`].
 pub fn generated_definition(mechanism: &dyn AnyEquations) -> Result<String, VerifyError> {
-    mbs_codegen::casadi_definition(mechanism.source())
-        .map_err(|reason| VerifyError::Definition { mechanism: mechanism.type_name().to_string(), reason })
+    mbs_codegen::casadi_definition(mechanism.source(), Some(mechanism.scene()))
+        .map_err(|reason| VerifyError::Definition { mechanism: mechanism.full_name(), reason })
 }
 
 impl fmt::Display for VerifyError {

@@ -36,6 +36,9 @@ impl AnyEquations for Hand {
     fn type_name(&self) -> &'static str {
         "Hand"
     }
+    fn scene(&self) -> &'static str {
+        "Whole"
+    }
     fn source(&self) -> &'static str {
         ""
     }

@@ -1,0 +1,200 @@
+//! Which statements belong to which scene.
+
+use std::collections::BTreeMap;
+
+use super::names::{UNUSABLE, report_double};
+use super::scenes::{WHOLE, alias};
+use crate::diagnostics::{Diagnostics, nearest};
+use crate::syntax::ast::{Name, Statement, StatementKind};
+use crate::syntax::{Header, NAMELESS, declares_coordinate, stand_in};
+
+/// Most scenes: each is translated by itself.
+const MOST_SCENES: usize = 64;
+
+/// The statements of a scene in the order of the text, no braces of effects among them.
+pub struct Selection {
+    /// `None` for the whole text.
+    pub name: Option<Name>,
+    /// Doc comment.
+    pub docs: Vec<String>,
+    /// Names of its effects.
+    pub effects: Vec<String>,
+    /// What the selected effects say, and what stands in no effect.
+    pub statements: Vec<Statement>,
+}
+
+/// Before: statements as written. After: one selection a declared scene, and the whole text; faults of effects and
+/// scenes are reported.
+pub fn select(
+    header: &Header,
+    statements: &[Statement],
+    diagnostics: &mut Diagnostics,
+) -> (Vec<Selection>, Selection) {
+    let mut work = Effects { declared: BTreeMap::new(), parts: Vec::new(), selected: Vec::new() };
+    work.divide(statements, diagnostics);
+    let scenes: Vec<_> = statements
+        .iter()
+        .filter_map(|statement| match &statement.kind {
+            StatementKind::Scene { name, effects } => Some((name, &statement.docs, effects.as_slice())),
+            _ => None,
+        })
+        .collect();
+    if let Some((beyond, ..)) = scenes.get(MOST_SCENES) {
+        let message = format!("the text declares more than {MOST_SCENES} scenes");
+        diagnostics.report(beyond.span, message, "split it: each scene is translated by itself");
+    }
+    let mut names: BTreeMap<String, &Name> = BTreeMap::new();
+    let mut selections = Vec::new();
+    for (name, docs, effects) in scenes.iter().take(MOST_SCENES) {
+        let chosen = work.choose(name, effects, diagnostics);
+        if is_free(header, name, &mut names, diagnostics) {
+            let mut selection = work.selection(Some((*name).clone()), &chosen);
+            selection.docs.clone_from(docs);
+            complete(&mut selection, name, diagnostics);
+            selections.push(selection);
+        }
+    }
+    if !scenes.is_empty() {
+        if diagnostics.is_empty() {
+            work.report_unused(diagnostics);
+        }
+        if header.name == SCENE_PARAMETER {
+            diagnostics.report(
+                header.name.span(),
+                format!("`{SCENE_PARAMETER}` stands for the scene in the emitted code"),
+                "give the mechanism another name",
+            );
+        }
+    }
+    let all: Vec<usize> = (0..work.selected.len()).collect();
+    (selections, work.selection(None, &all))
+}
+
+/// Name of the emitted code's type parameter.
+const SCENE_PARAMETER: &str = "S";
+
+/// The text divided into its effects.
+struct Effects<'a> {
+    declared: BTreeMap<&'a str, (usize, &'a Name)>,
+    /// Each statement with the index of its effect.
+    parts: Vec<(Option<usize>, &'a Statement)>,
+    /// Of each effect its name, and whether a scene selects it.
+    selected: Vec<(&'a Name, bool)>,
+}
+
+impl<'a> Effects<'a> {
+    fn divide(&mut self, statements: &'a [Statement], diagnostics: &mut Diagnostics) {
+        let mut inside = None;
+        for statement in statements {
+            match &statement.kind {
+                StatementKind::Effect { name } => {
+                    inside = Some(self.selected.len());
+                    match self.declared.get(name.text.as_str()) {
+                        Some((_, first)) => report_double(name, first.span, diagnostics),
+                        None => drop(self.declared.insert(&name.text, (self.selected.len(), name))),
+                    }
+                    self.selected.push((name, false));
+                }
+                StatementKind::EndEffect => inside = None,
+                StatementKind::Scene { .. } => {}
+                _ => self.parts.push((inside, statement)),
+            }
+        }
+    }
+
+    /// Indices of the effects that a scene names.
+    fn choose(&mut self, scene: &Name, effects: &[Name], diagnostics: &mut Diagnostics) -> Vec<usize> {
+        let mut chosen = Vec::new();
+        for name in effects {
+            let Some((index, _)) = self.declared.get(name.text.as_str()) else {
+                let help = match nearest(&name.text, self.declared.keys().copied()) {
+                    Some(meant) => format!("did you mean `{meant}`?"),
+                    None => format!("declare it: `effect {} {{ … }}`", name.text),
+                };
+                diagnostics.report(name.span, format!("unknown effect `{}`", name.text), help);
+                continue;
+            };
+            if chosen.contains(index) {
+                let message = format!("scene `{}` selects `{}` twice", scene.text, name.text);
+                diagnostics.report(name.span, message, "remove one of them");
+                continue;
+            }
+            chosen.push(*index);
+            if let Some((_, selected)) = self.selected.get_mut(*index) {
+                *selected = true;
+            }
+        }
+        chosen
+    }
+
+    fn selection(&self, name: Option<Name>, chosen: &[usize]) -> Selection {
+        let belongs = |effect: Option<usize>| effect.is_none_or(|effect| chosen.contains(&effect));
+        let statements = self.parts.iter().filter(|(effect, _)| belongs(*effect));
+        let effects = chosen.iter().filter_map(|index| self.selected.get(*index));
+        Selection {
+            name,
+            docs: Vec::new(),
+            effects: effects.map(|(name, _)| name.text.clone()).collect(),
+            statements: statements.map(|(_, statement)| (*statement).clone()).collect(),
+        }
+    }
+
+    /// What no scene selects would be reached by the whole text alone.
+    fn report_unused(&self, diagnostics: &mut Diagnostics) {
+        for (name, _) in self.selected.iter().filter(|(name, used)| !used && name.text != NAMELESS) {
+            diagnostics.report(
+                name.span,
+                format!("no scene selects effect `{}`", name.text),
+                format!("add it to a scene: `scene Other = {};`, or remove it", name.text),
+            );
+        }
+    }
+}
+
+/// Whether the types of the scene can have their names; a clash is reported.
+fn is_free<'a>(
+    header: &Header,
+    name: &'a Name,
+    names: &mut BTreeMap<String, &'a Name>,
+    diagnostics: &mut Diagnostics,
+) -> bool {
+    let text = name.text.as_str();
+    if let Some(first) = names.get(text) {
+        report_double(name, first.span, diagnostics);
+        return false;
+    }
+    let fault = if UNUSABLE.contains(&text) {
+        format!("`{text}` is a word of Rust that cannot be a name")
+    } else if text == WHOLE {
+        format!("`{WHOLE}` is the scene of all effects, without a declaration")
+    } else if header.name == text {
+        format!("`{text}` is the name of the mechanism")
+    } else if let Some(other) =
+        text.strip_suffix(VIEW).filter(|other| other.is_empty() || names.contains_key(*other))
+    {
+        format!("`{}{VIEW}` is the view of the coordinates by name", alias(header, other))
+    } else if let Some(other) = names.get(&format!("{text}{VIEW}")) {
+        format!("`{}` is the view of the coordinates by name", alias(header, &other.text))
+    } else {
+        names.insert(text.to_owned(), name);
+        return true;
+    };
+    diagnostics.report(name.span, fault, "choose another name for the scene");
+    false
+}
+
+/// What the name of the view of the coordinates ends with.
+const VIEW: &str = "Coordinates";
+
+/// A scene needs a coordinate; it gets one where that is reported.
+fn complete(selection: &mut Selection, name: &Name, diagnostics: &mut Diagnostics) {
+    if selection.statements.iter().any(declares_coordinate) {
+        return;
+    }
+    diagnostics.report(
+        name.span,
+        format!("scene `{}` has no coordinate", name.text),
+        "declare what is sought outside the effects, or in one that it selects: `coord phi: rad = 0.5;`",
+    );
+    selection.statements.push(stand_in(name.span));
+}

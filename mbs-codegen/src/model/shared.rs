@@ -1,0 +1,79 @@
+//! The fields that all scenes share.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::scenes::Scene;
+use super::{Field, Model, Role, Variable};
+use crate::diagnostics::Diagnostics;
+use crate::syntax::ast::{Statement, StatementKind};
+
+/// Before: the models of all scenes. After: the fields of all of them, those outside effects first, then effect after
+/// effect, in the order of the text; a name that stands for two different fields is reported.
+pub fn merge(statements: &[Statement], scenes: &[Scene], diagnostics: &mut Diagnostics) -> Model {
+    let known: Vec<BTreeMap<&str, &Field>> = scenes
+        .iter()
+        .map(|scene| scene.model.fields.iter().map(|field| (field.name.text.as_str(), field)).collect())
+        .collect();
+    let mut shared = Model::default();
+    let mut done = BTreeSet::new();
+    // No parameter or input: the phase of a drive that prescribes a rate, or what a faulty statement declares.
+    let others = scenes.iter().flat_map(|scene| &scene.model.fields).map(|field| field.name.text.as_str());
+    for name in declared(statements).chain(others).filter(|name| done.insert(*name)) {
+        let mut found = scenes.iter().zip(&known).filter_map(|(scene, known)| {
+            known.get(name).map(|field| (scene, *field, variables(&scene.model, field)))
+        });
+        let Some((_, field, variables)) = found.next() else { continue };
+        for (scene, other, others) in found {
+            if !is_same(field, variables, other, others) {
+                report(field, other, scene.label().unwrap_or_default(), diagnostics);
+            }
+        }
+        let first = shared.variables.len();
+        shared.fields.push(Field { first, ..field.clone() });
+        shared.variables.extend(variables.iter().cloned());
+    }
+    shared
+}
+
+/// Names of fields: first those outside effects.
+fn declared(statements: &[Statement]) -> impl Iterator<Item = &str> {
+    let mut inside = false;
+    let (mut common, mut special) = (Vec::new(), Vec::new());
+    for statement in statements {
+        match &statement.kind {
+            StatementKind::Effect { .. } => inside = true,
+            StatementKind::EndEffect => inside = false,
+            StatementKind::Param { name, .. } | StatementKind::Input { name, .. } => {
+                (if inside { &mut special } else { &mut common }).push(name.text.as_str());
+            }
+            _ => {}
+        }
+    }
+    common.into_iter().chain(special)
+}
+
+/// The variables of a field.
+fn variables<'a>(model: &'a Model, field: &Field) -> &'a [Variable] {
+    let each = if matches!(field.role, Role::InputWithRates | Role::Phase) { 3 } else { 1 };
+    let size = field.shape.iter().product::<usize>().saturating_mul(each);
+    model.variables.get(field.first..field.first.saturating_add(size)).unwrap_or_default()
+}
+
+fn is_same(a: &Field, of_a: &[Variable], b: &Field, of_b: &[Variable]) -> bool {
+    let pairs = of_a.iter().zip(of_b);
+    let values = pairs.fold(true, |same, (a, b)| {
+        same && a.default.to_bits() == b.default.to_bits() && a.dimension == b.dimension
+    });
+    values && a.role == b.role && a.shape == b.shape
+}
+
+fn report(first: &Field, other: &Field, scene: &str, diagnostics: &mut Diagnostics) {
+    diagnostics.report(
+        other.name.span,
+        format!("`{}` is another field in scene `{scene}` than before", other.name.text),
+        format!(
+            "all scenes share their fields: declare it as in line {}, same unit, shape and default, or rename it",
+            first.name.span.start().line
+        ),
+    );
+}

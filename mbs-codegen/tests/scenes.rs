@@ -1,0 +1,145 @@
+//! A scene without an effect is the text that never mentioned it: the same operations in the same order.
+#![forbid(unsafe_code)]
+
+use std::collections::BTreeMap;
+
+use quote::ToTokens;
+use syn::visit::{Visit, visit_item_impl};
+
+/// Texts in two parts: what is common, and an effect. The effect brings longer lengths, names, rows and branches of
+/// its own, all of which would show in the operations, the metric and the order of solution.
+const TEXTS: [(&str, &str); 3] = [
+    (
+        "param r: m = 0.05; param L: m = 0.18; param omega: rad/s = 10; input shift: m, rates;
+         coord theta: rad = 0.1; coord phi: rad = 0; coord x: m = 0.2;
+         constraint closure { r*unit(theta) + L*unit(phi) == [x + shift, 0]; }
+         drive crank: theta == omega*t; branch ahead: cos(phi) > 0; out tip: [m; 2] = r*unit(theta); out v: m/s = der(x);",
+        "const N: 1 = 2; param arm: [m; N] = [3, 4]; coord psi: rad = 0.3; coord y: [m; 2];
+         constraint follower { y == arm[0]*unit(psi) + [x, 0]; arm.1*sin(psi) == r*sin(theta); }
+         branch low: cos(psi) > 0; let k = x/arm[0]; out height: 1 = k;",
+    ),
+    (
+        "param p: 1 = 2; coord q: 1 = 0.1; coord w: [1; 2] = [0.1, 0.2];
+         for i in 0..2 { drive each: w[i]*(2 + sin(q)) == p*t/1s + i; } drive d: q == exp(sin(t/1s)); out y: 1 = w[0]*w.1;",
+        "input u: 1, rates; coord z: 1 = 0.1; drive e: z^3 + z*p == u + q; out s: 1 = z*sin(q)*exp(sin(t/1s));",
+    ),
+    (
+        "coord a: rad; drive d: a == 2*t/1s;",
+        "param c: m = 1; coord b: m; constraint e { b == c*sin(a); } out o: m = der(b)*1s;",
+    ),
+];
+
+/// Items of the implementations for one type, by trait and name; what may differ left out.
+struct Found<'a> {
+    scene: Option<&'a str>,
+    items: BTreeMap<String, String>,
+}
+
+impl Visit<'_> for Found<'_> {
+    fn visit_item_impl(&mut self, block: &syn::ItemImpl) {
+        let target = block.self_ty.to_token_stream().to_string();
+        let wanted = self.scene.is_none_or(|scene| target.ends_with(&format!(":: {scene} >")));
+        let Some((path, _)) = block.trait_.as_ref().filter(|_| wanted) else {
+            return visit_item_impl(self, block);
+        };
+        let name = path.segments.last().expect("a trait").ident.to_string();
+        if !["Mechanism", "Kinematic"].contains(&name.as_str()) {
+            return;
+        }
+        for item in &block.items {
+            let key = match item {
+                syn::ImplItem::Fn(function) => function.sig.ident.to_string(),
+                syn::ImplItem::Const(constant) => constant.ident.to_string(),
+                syn::ImplItem::Type(kind) => kind.ident.to_string(),
+                other => panic!("{}", other.to_token_stream()),
+            };
+            // The text, the scene's name, and the copy of the whole struct.
+            if !["SOURCE", "SCENE", "Lane", "lane"].contains(&key.as_str()) {
+                self.items.insert(format!("{name}::{key}"), item.to_token_stream().to_string());
+            }
+        }
+    }
+}
+
+fn items(text: &str, scene: Option<&str>) -> BTreeMap<String, String> {
+    let tokens = mbs_codegen::expand_source(text).unwrap_or_else(|faults| panic!("{text}\n{faults}"));
+    let mut found = Found { scene, items: BTreeMap::new() };
+    found.visit_file(&syn::parse2(tokens).expect("Rust"));
+    assert!(found.items.len() > 25, "{:?}", found.items.keys());
+    found.items
+}
+
+#[test]
+fn a_scene_without_an_effect_computes_what_the_text_without_it_computes() {
+    for (common, effect) in TEXTS {
+        let alone = items(&format!("mechanism M; {common}"), None);
+        let texts = [
+            format!(
+                "mechanism M; {common} effect extra {{ {effect} }} effect none {{}} scene With = extra; scene Without = none;"
+            ),
+            format!(
+                "mechanism M; effect extra {{ {effect} }} scene With = extra; effect none {{}} scene Without = none; {common}"
+            ),
+        ];
+        for text in texts {
+            let without = items(&text, Some("Without"));
+            for (key, item) in &alone {
+                assert_eq!(without.get(key), Some(item), "{key}");
+            }
+            assert_eq!(without.len(), alone.len());
+            // The control: with the effect every function of the position has changed.
+            let with = items(&text, Some("With"));
+            for key in
+                ["Mechanism::phi", "Mechanism::phi_q", "Mechanism::COORDINATES", "Kinematic::solve_blocks"]
+            {
+                assert_ne!(with[key], alone[key], "{key}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_scene_computes_what_the_text_of_its_effects_alone_computes() {
+    for (common, effect) in TEXTS {
+        let written_out = items(&format!("mechanism M; {common} {effect}"), None);
+        let text = format!(
+            "mechanism M; {common} effect extra {{ {effect} }} effect none {{}} scene With = extra; scene Without = none;"
+        );
+        assert_eq!(items(&text, Some("With")), written_out);
+        // No other effect brings anything: the whole text is the same.
+        assert_eq!(items(&text, Some("Whole")), written_out);
+        assert_eq!(items(&format!("mechanism M; {common} effect extra {{ {effect} }}"), None), written_out);
+    }
+}
+
+#[test]
+fn a_text_grows_with_its_scenes_and_no_faster() {
+    let (common, effect) = TEXTS[0];
+    let size = |scenes: usize| {
+        let mut text = format!("mechanism M; {common} effect extra {{ {effect} }}");
+        for number in 0..scenes {
+            text += &format!("scene Number{number:02} = extra;");
+        }
+        mbs_codegen::expand_source(&text).expect("a valid text").to_string().len()
+    };
+    let [four, eight, sixteen] = [4, 8, 16].map(size);
+    assert_eq!(sixteen - eight, 2 * (eight - four));
+}
+
+#[test]
+fn views_of_a_scene_are_asked_for_by_its_name() {
+    let text = "mechanism M; param c: 1 = 2; effect slow { coord a: rad; drive d: a == c*t/1s; }
+                effect fast { coord b: rad; drive d: b == t^2/1s^2; } scene Slow = slow; scene Fast = fast;";
+    let slow = mbs_codegen::structure_of(text, Some("Slow")).expect("a scene");
+    assert_eq!((slow.name.as_str(), slow.coordinates[0].name.as_str()), ("MSlow", "a"));
+    let fast = mbs_codegen::formulas(text, Some("Fast")).expect("a scene");
+    assert_eq!((fast.coordinates, fast.phi), (vec!["b".to_owned()], vec!["b - t^2".to_owned()]));
+    let casadi = mbs_codegen::casadi_definition(text, Some("Slow")).expect("a scene");
+    assert!(casadi.contains("NAME = \"MSlow\"") && casadi.contains("v[0]"), "{casadi}");
+    let unknown = mbs_codegen::structure_of(text, Some("Slo")).expect_err("no such scene");
+    assert_eq!(unknown, "there is no scene `Slo`; the text has `Slow`, `Fast`, `Whole`");
+    // The whole text says why it is none: both effects declare `d`.
+    let whole = mbs_codegen::structure_of(text, None).expect_err("both drives are called `d`");
+    assert!(whole.contains("`d` is declared twice"), "{whole}");
+    assert!(mbs_codegen::formulas(text, Some("Whole")).is_err());
+}

@@ -1,0 +1,201 @@
+//! One slider-crank, three machines: the crank driven, the slider driven, or a cylinder in place of the rod.
+//!
+//! ```text
+//!             A
+//!             o·._     rod     θ: crank against the x axis (rad)
+//!         r  /    `·._         φ: rod against the x axis (rad), here negative
+//!           /         `·._
+//!          / θ            [S]────  guide at height `offset`
+//!         o───────────────·······  x axis
+//!         O
+//!         |←────── x ──────→|
+//! ```
+//!
+//! Lengths in metres, angles in rad, `q = [θ φ x]`, with a cylinder `q = [θ φ x rod]`.
+//!
+//! - `DrivenCrank`: the crank turns at constant `ω`, as in a pump.
+//! - `DrivenSlider`: the slider swings about 180 mm between the dead centres, as in an engine; the crank rocks above
+//!   the line from its centre to the slider.
+//! - `TelescopingRod`: the slider is locked at 180 mm, and the rod is a cylinder that swings about its length `L`, as
+//!   in a tipper; the crank rocks.
+//!
+//! The crank pin and the slider are at home in all of them, so is the closure; the rod is a length in two scenes and
+//! a coordinate in the third. Numbers: those of `slider_crank`; strokes that keep 20 mm from the dead centres.
+
+use mbs_runtime::mechanism;
+
+use crate::drawing::{Along, Shape};
+use crate::facade;
+use crate::registry::{Card, Preset, Span};
+
+mechanism! {
+    /// Slider-crank whose drive is chosen by the scene.
+    pub mechanism CrankSlider;
+
+    param r: m = 50mm;
+    param L: m = 180mm;
+    param offset: m = 10mm;
+
+    coord theta: rad = 1.4;
+    coord phi: rad = -0.2;
+    coord x: m = 180mm;
+
+    constraint closure { r*unit(theta) + rod*unit(phi) == [x, offset]; }
+    branch right: cos(phi) > 0;
+
+    out O: [m; 2] = [0, 0];
+    out A: [m; 2] = r*unit(theta);
+    out S: [m; 2] = [x, offset];
+
+    /// A rod of constant length.
+    effect rigid_rod { let rod = L; }
+    effect crank_driven {
+        param omega: rad/s = 30;
+        drive crank: theta == omega*t;
+    }
+    effect slider_driven {
+        param stroke: m = 30mm;
+        param pace: rad/s = TAU;
+        drive ram: x == 180mm + stroke*sin(pace*t);
+        branch above: sin(theta - phi) > 0;
+    }
+    /// A cylinder between crank pin and slider.
+    effect telescoping_rod {
+        param reach: m = 30mm;
+        param pace: rad/s = TAU;
+        coord rod: m = 180mm;
+        drive lock: x == 180mm;
+        drive cylinder: rod == L + reach*sin(pace*t);
+        branch above: sin(theta - phi) > 0;
+        out tube_end: [m; 2] = r*unit(theta) + 0.6*L*unit(phi);
+        out piston: [m; 2] = [x, offset] - 0.6*L*unit(phi);
+    }
+
+    /// The crank turns at constant speed.
+    scene DrivenCrank = rigid_rod + crank_driven;
+    /// The slider swings and rocks the crank.
+    scene DrivenSlider = rigid_rod + slider_driven;
+    /// A cylinder rocks the crank while the slider is locked.
+    scene TelescopingRod = telescoping_rod;
+}
+
+/// How the crank, the rod and the slider are drawn.
+pub const DRAWING: &[Shape] = &[
+    Shape::Ground { at: "O" },
+    Shape::Rail { at: "S", along: Along::Fixed([1.0, 0.0]) },
+    Shape::Slider { at: "S", along: Along::Fixed([1.0, 0.0]) },
+    Shape::Link { points: &["O", "A"], label: "crank" },
+    Shape::Link { points: &["A", "S"], label: "rod" },
+    Shape::Joint { at: "O" },
+    Shape::Joint { at: "A" },
+    Shape::Joint { at: "S" },
+    Shape::Trace { of: "A", label: "crank pin" },
+    Shape::Trace { of: "S", label: "slider" },
+];
+
+/// How the cylinder is drawn in place of the rod.
+pub const DRAWING_WITH_CYLINDER: &[Shape] = &[
+    Shape::Ground { at: "O" },
+    Shape::Rail { at: "S", along: Along::Fixed([1.0, 0.0]) },
+    Shape::Slider { at: "S", along: Along::Fixed([1.0, 0.0]) },
+    Shape::Link { points: &["O", "A"], label: "crank" },
+    Shape::Slot { points: &["A", "tube_end"], label: "cylinder" },
+    Shape::Link { points: &["piston", "S"], label: "piston rod" },
+    Shape::Slider { at: "piston", along: Along::Named("phi") },
+    Shape::Joint { at: "O" },
+    Shape::Joint { at: "A" },
+    Shape::Joint { at: "S" },
+    Shape::Trace { of: "A", label: "crank pin" },
+];
+
+/// Entry in the list of mechanisms: the crank driven.
+pub const DRIVEN_CRANK: Card = Card {
+    name: "slider_crank_scenes:DrivenCrank",
+    title: "Slider-crank in scenes: the crank driven",
+    description: "The crank turns at constant speed; the first of three scenes of one text.",
+    runs: &[Preset { label: "one turn", description: "the slider to the right of the crank", set: &[] }],
+    span: Span::Turn { rate: "omega" },
+    drawing: DRAWING,
+    make: facade::boxed::<CrankSliderDrivenCrank, 3>,
+};
+
+/// Entry in the list of mechanisms: the slider driven.
+pub const DRIVEN_SLIDER: Card = Card {
+    name: "slider_crank_scenes:DrivenSlider",
+    title: "Slider-crank in scenes: the slider driven",
+    description: "The slider swings between the dead centres and rocks the crank; the second of three scenes of one text.",
+    runs: &[Preset { label: "one swing", description: "the crank pin above the guide", set: &[] }],
+    span: Span::Turn { rate: "pace" },
+    drawing: DRAWING,
+    make: facade::boxed::<CrankSliderDrivenSlider, 3>,
+};
+
+/// Entry in the list of mechanisms: a cylinder in place of the rod.
+pub const TELESCOPING_ROD: Card = Card {
+    name: "slider_crank_scenes:TelescopingRod",
+    title: "Slider-crank in scenes: a cylinder as rod",
+    description: "The slider is locked and a cylinder in place of the rod rocks the crank; the last of three scenes of one text.",
+    runs: &[Preset { label: "one swing", description: "the crank pin above the guide", set: &[] }],
+    span: Span::Turn { rate: "pace" },
+    drawing: DRAWING_WITH_CYLINDER,
+    make: facade::boxed::<CrankSliderTelescopingRod, 4>,
+};
+
+#[cfg(test)]
+mod tests {
+    use core::f64::consts::TAU;
+
+    use super::*;
+    use crate::closed_form::{Jet, Vector, assert_moves_as};
+    use crate::reference::{assert_moves_like, one_turn};
+
+    const R: f64 = 0.05;
+    const L: f64 = 0.18;
+    const OFFSET: f64 = 0.01;
+
+    #[test]
+    fn a_driven_crank_moves_as_the_mechanism_without_scenes() {
+        let names = ["theta", "phi", "x", "A.0", "A.1", "S.0", "S.1"];
+        assert_moves_like(&DRIVEN_CRANK, &crate::slider_crank::CARD, &names, 1e-14);
+    }
+
+    #[test]
+    fn a_driven_slider_turns_the_crank_by_the_triangle_of_crank_and_rod() {
+        let motion = one_turn(&DRIVEN_SLIDER, &DRIVEN_SLIDER.runs[0], 180);
+        assert_moves_as(&motion, &["x", "theta", "phi", "A.0", "A.1"], 1e-11, |t| {
+            let s = Vector((t * TAU).sin() * 0.03 + 0.18, OFFSET.into());
+            let a = Vector::fixed(0.0, 0.0).meet(R, s, L, 1.0);
+            vec![s.0, a.angle(), (s - a).angle(), a.0, a.1]
+        });
+    }
+
+    #[test]
+    fn a_telescoping_rod_turns_the_crank_by_the_law_of_cosines() {
+        let motion = one_turn(&TELESCOPING_ROD, &TELESCOPING_ROD.runs[0], 180);
+        let (s, base) = (Vector::fixed(0.18, OFFSET), 0.18_f64.hypot(OFFSET));
+        let names = ["x", "rod", "theta", "phi", "A.0", "A.1", "tube_end.0", "piston.1"];
+        assert_moves_as(&motion, &names, 1e-11, |t| {
+            let rod = (t * TAU).sin() * 0.03 + L;
+            // Foot and height of the crank pin over the line from the crank's centre to the slider.
+            let foot = (Jet::from(R * R + base * base) - rod.square()) / (2.0 * base);
+            let height = (Jet::from(R * R) - foot.square()).sqrt();
+            let way = s * (1.0 / base);
+            let a = way * foot + way.left() * height;
+            let phi = (s - a).angle();
+            let half = Vector::unit(phi) * (0.6 * L);
+            vec![s.0, rod, a.angle(), phi, a.0, a.1, (a + half).0, (s - half).1]
+        });
+    }
+
+    #[test]
+    fn the_scenes_share_their_parameters_and_nothing_else() {
+        let pump = CrankSlider::<f64, DrivenCrank> { r: 0.04, ..Default::default() };
+        let tipper: CrankSliderTelescopingRod = pump.scene();
+        assert_eq!((tipper.r, tipper.pace, tipper.omega), (0.04, TAU, 30.0));
+        let names =
+            |card: &Card| -> Vec<&str> { (card.make)().variables().iter().map(|entry| entry.name).collect() };
+        assert_eq!(names(&DRIVEN_CRANK), ["r", "L", "offset", "omega"]);
+        assert_eq!(names(&DRIVEN_SLIDER), ["r", "L", "offset", "stroke", "pace"]);
+        assert_eq!(names(&TELESCOPING_ROD), ["r", "L", "offset", "reach", "pace"]);
+    }
+}
