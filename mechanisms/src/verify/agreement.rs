@@ -102,8 +102,8 @@ impl Summary {
     }
 
     /// Names of the mechanisms that the oracle does not confirm.
-    pub fn differing(&self) -> Vec<&'static str> {
-        self.agreements.iter().filter(|agreement| !agreement.holds()).map(|a| a.mechanism).collect()
+    pub fn differing(&self) -> Vec<&str> {
+        self.agreements.iter().filter(|agreement| !agreement.holds()).map(|a| a.mechanism.as_str()).collect()
     }
 
     /// Number of values compared.
