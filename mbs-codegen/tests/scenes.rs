@@ -8,7 +8,7 @@ use syn::visit::{Visit, visit_item_impl};
 
 /// Texts in two parts: what is common, and an effect. The effect brings longer lengths, names, rows and branches of
 /// its own, all of which would show in the operations, the metric and the order of solution.
-const TEXTS: [(&str, &str); 3] = [
+const TEXTS: [(&str, &str); 4] = [
     (
         "param r: m = 0.05; param L: m = 0.18; param omega: rad/s = 10; input shift: m, rates;
          coord theta: rad = 0.1; coord phi: rad = 0; coord x: m = 0.2;
@@ -26,6 +26,12 @@ const TEXTS: [(&str, &str); 3] = [
     (
         "coord a: rad; drive d: a == 2*t/1s;",
         "param c: m = 1; coord b: m; constraint e { b == c*sin(a); } out o: m = der(b)*1s;",
+    ),
+    (
+        "param w: rad/s = 2; coord a: rad; coord y: m; drive crank: rate(a) == w*(1 + t/1s);
+         constraint e { y == 2m*sin(a); } limit stroke: -1m <= y <= 1m; out v: m/s = der(y);",
+        "input fast: rad/s, rates; coord b: rad; drive second: rate(b) == fast + w;
+         coord z: m; constraint f { z == y*cos(b); } limit reach: -1m <= z <= 1m;",
     ),
 ];
 
