@@ -231,7 +231,7 @@ mechanism! {
     const N: 1 = 3;
     param L: [m; N] = [0.3, 0.2, 0.1];
     coord phi: [rad; N] = [0.1, 0.2, 0.3];
-    coord p: [m; N, 2] = [[0.1, 0], [0.2, 0], [0.3, 0]];
+    coord p: [m; N, 2] = 0.1;
     constraint first { p[0] == L[0]*unit(phi[0]); }
     for i in 1..N {
         let before = p[i - 1];

@@ -2,7 +2,7 @@
 
 use super::elaborate::{Elaborator, Fault, LONGEST, Quantity, Scalar, Value};
 use super::expression::{Id, Node};
-use super::initialiser::{fits_shape, initialiser, named, numbers};
+use super::initialiser::{filling, initialiser, named, numbers};
 use super::names::Names;
 use super::order::order;
 use super::units::Dimension;
@@ -227,7 +227,7 @@ impl Declarations<'_> {
                 .elaborate(|work| {
                     let value = work.value(expression)?;
                     let value = initialiser(work, value, declared.dimension)?;
-                    fits_shape(work, &value, &declared.shape)?;
+                    let value = filling(work, value, &declared.shape)?;
                     numbers(work, expression, &value, "a default")
                 })
                 .ok(),
@@ -338,8 +338,7 @@ impl Declarations<'_> {
             self.elaborate(|work| {
                 let value = work.value(expression)?;
                 let value = initialiser(work, value, dimension)?;
-                fits_shape(work, &value, &declared.shape)?;
-                Ok::<_, Fault>(value)
+                filling(work, value, &declared.shape)
             })
         });
         let guesses: Vec<Option<Id>> = match guesses {

@@ -36,6 +36,16 @@ pub fn initialiser(work: &mut Elaborator<'_>, value: Value, declared: Dimension)
     Ok(Value { items, ..value })
 }
 
+/// The declared shape; a scalar stands for every component.
+pub fn filling(work: &mut Elaborator<'_>, value: Value, shape: &[usize]) -> Result<Value, Fault> {
+    if let ([item], []) = (value.items.as_slice(), value.shape.as_slice()) {
+        let items = vec![*item; shape.iter().product()];
+        return Ok(Value { shape: shape.to_vec(), items, span: value.span });
+    }
+    fits_shape(work, &value, shape)?;
+    Ok(value)
+}
+
 /// The shape that was declared.
 pub fn fits_shape(work: &mut Elaborator<'_>, value: &Value, shape: &[usize]) -> Result<(), Fault> {
     if value.shape == shape {
