@@ -1,6 +1,7 @@
 //! Builds the crates of `tests/proofs`, a workspace of its own.
 
 use std::env;
+use std::ffi::{OsStr, OsString};
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -16,12 +17,18 @@ pub fn directory() -> PathBuf {
 pub struct Workshop {
     target: PathBuf,
     flags: &'static str,
+    variables: Vec<(&'static str, OsString)>,
 }
 
 impl Workshop {
     /// A workshop below `scratch`, a test's `CARGO_TARGET_TMPDIR`; `flags` go to the Rust compiler.
     pub fn new(scratch: &str, name: &str, flags: &'static str) -> Self {
-        Workshop { target: Path::new(scratch).join(name), flags }
+        Workshop { target: Path::new(scratch).join(name), flags, variables: Vec::new() }
+    }
+
+    /// Sets an environment variable of the build.
+    pub fn set(&mut self, name: &'static str, value: &OsStr) {
+        self.variables.push((name, value.to_owned()));
     }
 
     /// Directory of what is built.
@@ -63,6 +70,7 @@ impl Workshop {
             }
         }
         command.env("CARGO_TARGET_DIR", &self.target).env("RUSTFLAGS", self.flags);
+        command.envs(self.variables.iter().map(|(name, value)| (name, value)));
         command
     }
 }

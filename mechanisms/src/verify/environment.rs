@@ -61,10 +61,18 @@ impl Environment {
     /// # Errors
     /// [`EnvironmentError`] with its cure.
     pub fn ready(progress: &dyn Fn(&str)) -> Result<Self, EnvironmentError> {
+        Self::ready_for(REQUIREMENTS, progress)
+    }
+
+    /// One with other packages: `requirements` as pip reads them.
+    ///
+    /// # Errors
+    /// [`EnvironmentError`] with its cure.
+    pub fn ready_for(requirements: &str, progress: &dyn Fn(&str)) -> Result<Self, EnvironmentError> {
         let interpreter = std::env::var_os(INTERPRETER_VARIABLE)
             .filter(|value| !value.is_empty())
             .unwrap_or_else(|| OsString::from("python3"));
-        Self::ready_in(&target_directory().join("mbs-oracle"), &interpreter, REQUIREMENTS, progress)
+        Self::ready_in(&target_directory().join("mbs-oracle"), &interpreter, requirements, progress)
     }
 
     /// Directory for scratch files of this environment.

@@ -1,0 +1,175 @@
+//! Builds and runs `tests/proofs/peers`.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+use mbs_tests::proofs::{self, Workshop};
+use mbs_tests::tools;
+use mechanisms::verify::environment::Environment;
+
+/// What generates the peers' C code.
+const REQUIREMENTS: &str = include_str!("../../proofs/peers/requirements.txt");
+
+/// Largest error of an exact evaluation, relative to the largest value of its row.
+const LARGEST_EVALUATION_ERROR: f64 = 1e-13;
+
+/// Largest error of a step, relative to the largest position, velocity, acceleration: positions are solved to 1e-12.
+const LARGEST_STEP_ERROR: f64 = 1e-10;
+
+/// What one implementation showed.
+pub struct Implementation {
+    /// Largest difference from the reference.
+    pub error: f64,
+    /// Time (ns) in each round.
+    pub times: Vec<f64>,
+}
+
+/// What a target's code showed: problems, and implementations by name.
+pub struct Measured {
+    /// The compiler's flags in words.
+    pub target: &'static str,
+    /// In the order of measuring.
+    pub problems: Vec<(String, Vec<(String, Implementation)>)>,
+}
+
+/// For this processor, and for the default target.
+pub fn all(rounds: &str) -> Result<[Measured; 2], String> {
+    let sources = sources()?;
+    Ok([
+        measured(
+            rounds,
+            &sources,
+            "target-cpu=native",
+            "peers-native",
+            "-C target-cpu=native",
+            "-march=native",
+        )?,
+        measured(rounds, &sources, "default target", "peers-default", "", "")?,
+    ])
+}
+
+/// The C code of CasADi and SymPy.
+fn sources() -> Result<std::path::PathBuf, String> {
+    let environment = Environment::ready_for(REQUIREMENTS, &|step| eprintln!("{step}"));
+    let environment = environment.map_err(|error| error.to_string())?;
+    let directory = Path::new(env!("CARGO_TARGET_TMPDIR")).join("peers-sources");
+    if let Err(error) = fs::remove_dir_all(&directory)
+        && directory.exists()
+    {
+        return Err(format!("cannot remove {}: {error}", directory.display()));
+    }
+    eprintln!("generating the peers' code");
+    let mut generate = Command::new(environment.python());
+    generate.arg(proofs::directory().join("peers/generate.py")).arg(&directory);
+    tools::output(
+        &mut generate,
+        "the Python environment is broken: delete `mbs-oracle` below the target directory",
+    )?;
+    Ok(directory)
+}
+
+fn measured(
+    rounds: &str,
+    sources: &Path,
+    target: &'static str,
+    name: &str,
+    rust_flags: &'static str,
+    c_flags: &str,
+) -> Result<Measured, String> {
+    let mut workshop = Workshop::new(env!("CARGO_TARGET_TMPDIR"), name, rust_flags);
+    workshop.set("MBS_PEERS", sources.as_os_str());
+    workshop.set("MBS_PEERS_FLAGS", c_flags.as_ref());
+    eprintln!("building for the {target}");
+    let arguments = ["--profile=freestanding", "--package=proof-peers"];
+    let program = workshop.build(&arguments, "freestanding/proof-peers", "peers")?;
+    eprintln!("measuring {rounds} rounds");
+    let lines = tools::output(Command::new(program).arg(rounds), "it was built a moment ago")?;
+    let mut problems: Vec<(String, Vec<(String, Implementation)>)> = Vec::new();
+    for line in lines.lines() {
+        let mut words = line.split(' ');
+        let (Some(problem), Some(name)) = (words.next(), words.next()) else { continue };
+        let numbers: Result<Vec<f64>, _> = words.map(str::parse).collect();
+        let numbers = numbers.map_err(|error| format!("{line}: {error}"))?;
+        let Some((error, times)) = numbers.split_first() else { continue };
+        let found = (name.to_owned(), Implementation { error: *error, times: times.to_vec() });
+        match problems.iter_mut().find(|(known, _)| known == problem) {
+            Some((_, implementations)) => implementations.push(found),
+            None => problems.push((problem.to_owned(), vec![found])),
+        }
+    }
+    Ok(Measured { target, problems })
+}
+
+impl Measured {
+    /// An implementation by problem and name.
+    pub fn of(&self, problem: &str, name: &str) -> Option<&Implementation> {
+        let (_, implementations) = self.problems.iter().find(|(known, _)| known == problem)?;
+        implementations.iter().find(|(known, _)| known == name).map(|(_, implementation)| implementation)
+    }
+
+    /// What is not as exact as it has to be.
+    pub fn faults(&self) -> Vec<String> {
+        let mut faults = Vec::new();
+        for (problem, implementations) in &self.problems {
+            let limit =
+                if problem.ends_with("_step") { LARGEST_STEP_ERROR } else { LARGEST_EVALUATION_ERROR };
+            for (name, Implementation { error, .. }) in implementations {
+                // False for NaN.
+                let exact = *error <= limit;
+                if !exact && name != "differences" {
+                    let target = self.target;
+                    faults
+                        .push(format!("{problem}, {name}, {target}: error {error:e}, allowed are {limit:e}"));
+                }
+            }
+        }
+        faults
+    }
+}
+
+impl Implementation {
+    /// Median time (ns).
+    pub fn time(&self) -> f64 {
+        quantile(self.times.clone(), 0.5)
+    }
+
+    /// The peer's time over this one's, round by round: median, 10 %, 90 %.
+    pub fn faster_than(&self, peer: &Implementation) -> [f64; 3] {
+        let ratios: Vec<f64> = peer.times.iter().zip(&self.times).map(|(peer, own)| peer / own).collect();
+        [0.5, 0.1, 0.9].map(|part| quantile(ratios.clone(), part))
+    }
+}
+
+/// The smaller time of each round.
+pub fn faster(a: &Implementation, b: &Implementation) -> Implementation {
+    let times = a.times.iter().zip(&b.times).map(|(a, b)| a.min(*b)).collect();
+    Implementation { error: a.error.max(b.error), times }
+}
+
+fn quantile(mut values: Vec<f64>, part: f64) -> f64 {
+    values.sort_by(f64::total_cmp);
+    let index = ((values.len().saturating_sub(1)) as f64 * part).round() as usize;
+    values.get(index).copied().unwrap_or(f64::NAN)
+}
+
+/// Names by which implementations are counted, in words.
+pub fn titles() -> BTreeMap<&'static str, &'static str> {
+    BTreeMap::from([
+        ("casadi_plain", "CasADi C"),
+        ("casadi_shared", "CasADi C, `cse`"),
+        ("sympy", "SymPy C, `cse`"),
+        ("by_hand", "by hand in Rust, runtime's sine"),
+        ("by_hand_c_library", "by hand in Rust, C library's sine"),
+        ("dual", "num-dual, forward"),
+        ("differences", "central differences in Rust"),
+        ("emitted", "**emitted**"),
+        ("emitted_adjustable", "**emitted**, numbers as parameters"),
+        ("emitted_lanes", "**emitted**, 8 lanes, a mechanism"),
+        ("emitted_40", "**emitted**, 40 loops"),
+        ("casadi_previous", "CasADi `fast_newton`, from the previous position"),
+        ("casadi_predicted", "CasADi `fast_newton`, from the prediction"),
+        ("nalgebra", "nalgebra dense Newton–Raphson, from the previous position"),
+    ])
+}

@@ -1,0 +1,96 @@
+//! What the macro emits.
+
+use std::hint::black_box;
+
+use mbs_runtime::{Lanes, Mechanism, Scalar};
+
+use super::{Output, Problem, STATES};
+use crate::measure::Case;
+
+/// One mechanism a call; a design's own stage is part of it.
+pub fn scalar<S, const N: usize, const Z: usize>(
+    q: &[f64; N],
+    qd: &[f64; N],
+    t: f64,
+    out: &mut Output<f64, N, Z>,
+) where
+    S: Mechanism<f64, N, N, Entries = [f64; Z]> + Default,
+{
+    evaluate(&S::default(), q, qd, t, out);
+}
+
+#[inline(always)]
+fn evaluate<S, T: Scalar, const N: usize, const Z: usize>(
+    mechanism: &S,
+    q: &[T; N],
+    qd: &[T; N],
+    t: T,
+    out: &mut Output<T, N, Z>,
+) where
+    S: Mechanism<T, N, N, Entries = [T; Z]>,
+{
+    let parameters = mechanism.parameters();
+    let position = mechanism.position(&parameters, q, t);
+    *out = Output {
+        phi: mechanism.phi(&parameters, &position),
+        entries: mechanism.phi_q_entries(&parameters, &position),
+        phi_t: mechanism.phi_t(&parameters, &position),
+        gamma: mechanism.gamma(&parameters, &position, qd),
+    };
+}
+
+/// Mechanisms a call of [`lanes`].
+const LANES: usize = 8;
+
+type Eight = Lanes<f64, LANES>;
+
+#[inline(never)]
+fn eight<S, const N: usize, const Z: usize>(
+    mechanism: &S,
+    state: &([Eight; N], [Eight; N], Eight),
+    out: &mut Output<Eight, N, Z>,
+) where
+    S: Mechanism<Eight, N, N, Entries = [Eight; Z]>,
+{
+    evaluate(mechanism, &state.0, &state.1, state.2, out);
+}
+
+/// Eight mechanisms a call.
+pub fn lanes<S, const N: usize, const Z: usize>(problem: &Problem<N, Z>) -> Case
+where
+    S: Mechanism<Eight, N, N, Entries = [Eight; Z]> + Default + 'static,
+{
+    let states: Vec<([Eight; N], [Eight; N], Eight)> = problem
+        .states
+        .chunks(LANES)
+        .map(|chunk| {
+            let lanes = |value: &dyn Fn(usize) -> f64| Eight::from_lanes(value);
+            (
+                std::array::from_fn(|k| lanes(&|lane| chunk[lane].q[k])),
+                std::array::from_fn(|k| lanes(&|lane| chunk[lane].qd[k])),
+                lanes(&|lane| chunk[lane].t),
+            )
+        })
+        .collect();
+    let zero = Eight::constant(0.0);
+    let mut out = Output { phi: [zero; N], entries: [zero; Z], phi_t: [zero; N], gamma: [zero; N] };
+    let mechanism = S::default();
+    let mut found = Vec::new();
+    for state in &states {
+        eight(&mechanism, state, &mut out);
+        let of = |values: &[Eight], lane: usize| values.iter().map(|v| v.lane(lane)).collect::<Vec<_>>();
+        found.extend((0..LANES).map(|lane| Output {
+            phi: of(&out.phi, lane).try_into().expect("N values"),
+            entries: of(&out.entries, lane).try_into().expect("Z values"),
+            phi_t: of(&out.phi_t, lane).try_into().expect("N values"),
+            gamma: of(&out.gamma, lane).try_into().expect("N values"),
+        }));
+    }
+    let error = problem.error(&found);
+    let run = move || {
+        for state in black_box(&states) {
+            eight(&mechanism, state, black_box(&mut out));
+        }
+    };
+    Case { group: problem.name, name: "emitted_lanes", work: STATES as u32, error, run: Box::new(run) }
+}

@@ -1,0 +1,60 @@
+//! Times in interleaved rounds.
+
+use std::hint::black_box;
+use std::time::Instant;
+
+/// One implementation of a problem.
+pub struct Case {
+    /// The problem.
+    pub group: &'static str,
+    /// The implementation.
+    pub name: &'static str,
+    /// How many evaluations or steps, of one mechanism each, a call of `run` makes.
+    pub work: u32,
+    /// Largest difference from the reference.
+    pub error: f64,
+    /// Does the work.
+    pub run: Box<dyn FnMut()>,
+}
+
+/// What a round of one case is meant to take (s).
+const ROUND: f64 = 1.5e-3;
+
+/// Times the cases against each other. Prints a line for each: group, name, error, and the time (ns) of one
+/// evaluation or step in every round.
+///
+/// Within a round all cases are timed one after the other, so that a ratio of two is free of the machine's moods.
+pub fn compare(cases: &mut [Case], rounds: usize) {
+    let repetitions: Vec<u32> = cases
+        .iter_mut()
+        .map(|case| {
+            time(case, 2);
+            let once = time(case, 4) / 4.0;
+            ((ROUND / once) as u32).clamp(1, 1_000_000)
+        })
+        .collect();
+    let mut times = vec![Vec::with_capacity(rounds); cases.len()];
+    let count = cases.len();
+    for round in 0..rounds {
+        for position in 0..count {
+            // Another order in every round.
+            let index = (position + 3 * round) % count;
+            let (case, repetitions) = (&mut cases[index], repetitions[index]);
+            let calls = f64::from(repetitions) * f64::from(case.work);
+            times[index].push(1e9 * time(case, repetitions) / calls);
+        }
+    }
+    for (case, times) in cases.iter().zip(times) {
+        let times: Vec<String> = times.iter().map(|time| format!("{time:.4}")).collect();
+        println!("{} {} {:e} {}", case.group, case.name, case.error, times.join(" "));
+    }
+}
+
+/// Time (s) of some runs.
+fn time(case: &mut Case, repetitions: u32) -> f64 {
+    let start = Instant::now();
+    for _ in 0..repetitions {
+        black_box(&mut case.run)();
+    }
+    start.elapsed().as_secs_f64()
+}

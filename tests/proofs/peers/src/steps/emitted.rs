@@ -1,0 +1,45 @@
+//! The runtime's stepper on emitted code.
+
+use std::hint::black_box;
+
+use mbs_runtime::{Kinematic, Stepper};
+
+use super::{Motion, STEP, STEPS, Turn};
+use crate::measure::Case;
+
+/// The assembled position at time 0, with its rates.
+pub fn start<S: Kinematic<f64, N>, const N: usize>(mechanism: S, guess: [f64; N]) -> Motion<N> {
+    motion(&assembled(mechanism, guess))
+}
+
+fn assembled<S: Kinematic<f64, N>, const N: usize>(mechanism: S, guess: [f64; N]) -> Stepper<S, f64, N> {
+    Stepper::assemble(mechanism, guess, 0.0).expect("it can be assembled")
+}
+
+fn motion<S: Kinematic<f64, N>, const N: usize>(stepper: &Stepper<S, f64, N>) -> Motion<N> {
+    Motion { q: *stepper.q(), qd: *stepper.qd(), qdd: *stepper.qdd() }
+}
+
+/// Steps of a turn from the same start.
+pub fn turn<S, const N: usize>(turn: &Turn<N>, mechanism: S) -> Case
+where
+    S: Kinematic<f64, N> + Copy + 'static,
+    Stepper<S, f64, N>: Clone,
+{
+    let start = assembled(mechanism, turn.start.q);
+    let step = |stepper: &mut Stepper<S, f64, N>, k: u32| {
+        stepper.advance_to(f64::from(k) * STEP).expect("the mechanism is regular");
+    };
+    let mut stepper = start.clone();
+    let ends = [1..=STEPS / 2, STEPS / 2 + 1..=STEPS].map(|steps| {
+        steps.for_each(|k| step(&mut stepper, k));
+        motion(&stepper)
+    });
+    let error = turn.error(&ends);
+    let run = move || {
+        let mut stepper = black_box(&start).clone();
+        (1..=STEPS).for_each(|k| step(&mut stepper, k));
+        black_box(stepper.q());
+    };
+    Case { group: turn.group, name: "emitted", work: STEPS, error, run: Box::new(run) }
+}
