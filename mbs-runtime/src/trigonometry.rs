@@ -1,10 +1,12 @@
-//! Sine and cosine of many angles at once, inlined, the same bits on every target.
+//! Sine and cosine of many angles at once, inlined.
 //!
 //! `libm::sincos` takes one angle after the other, by branches on its size. Here |x| ≤ 1e5 rad goes without a
 //! branch, so that the angles of a mechanism, or its lanes, share vector registers: with AVX2 eight lanes take a
 //! third of libm's time, the four angles of a four-bar three quarters, whatever the quadrants. (Waiting for a
-//! single angle whose quadrant the processor foresees, libm is as fast or faster.) No multiplication is fused with an
-//! addition, so that targets with and without that instruction agree.
+//! single angle whose quadrant the processor foresees, libm is as fast or faster.)
+//!
+//! No multiplication is fused with an addition, so that all targets give the same bits; the feature `fma` trades that
+//! for a shorter kernel on targets that have the instruction.
 
 use core::f64::consts::FRAC_2_PI;
 
@@ -17,6 +19,58 @@ const ROUNDER: f64 = 6_755_399_441_055_744.0;
 /// π/2 in three parts. The first two have 37 bits, so that their products with n are exact; together they are π/2
 /// to 6e-40.
 const HALF_PI: [f64; 3] = [1.5707963267923333, 2.5633441515839558e-12, 1.0562999066987428e-23];
+
+/// π/2 to 1.5e-33 for the fused kernel: n times the first part, taken off x without rounding in between, is exact.
+const FUSED_HALF_PI: [f64; 2] = [core::f64::consts::FRAC_PI_2, 6.123233995736766e-17];
+
+/// Angles that share a register, the last ones beside zeros; one where the target has no wide registers.
+const PACK: usize = if cfg!(target_feature = "avx512f") {
+    8
+} else if cfg!(target_feature = "avx") {
+    4
+} else if cfg!(any(target_feature = "sse2", target_feature = "neon")) {
+    2
+} else {
+    1
+};
+
+/// How a product and a sum are put together.
+trait Arithmetic {
+    /// Whether the product is not rounded.
+    const FUSED: bool;
+    /// a b + c.
+    fn multiply_add(a: f64, b: f64, c: f64) -> f64;
+}
+
+/// Product and sum, each rounded.
+struct Separate;
+
+impl Arithmetic for Separate {
+    const FUSED: bool = false;
+    #[inline(always)]
+    fn multiply_add(a: f64, b: f64, c: f64) -> f64 {
+        a * b + c
+    }
+}
+
+/// The instruction of the target, which core does not offer; in tests on other targets a slow replacement.
+#[cfg(any(test, all(feature = "fma", any(target_feature = "fma", target_arch = "aarch64"))))]
+struct Fused;
+
+#[cfg(any(test, all(feature = "fma", any(target_feature = "fma", target_arch = "aarch64"))))]
+impl Arithmetic for Fused {
+    const FUSED: bool = true;
+    #[inline(always)]
+    fn multiply_add(a: f64, b: f64, c: f64) -> f64 {
+        extern crate std;
+        f64::mul_add(a, b, c)
+    }
+}
+
+#[cfg(all(feature = "fma", any(target_feature = "fma", target_arch = "aarch64")))]
+type Best = Fused;
+#[cfg(not(all(feature = "fma", any(target_feature = "fma", target_arch = "aarch64"))))]
+type Best = Separate;
 
 /// Minimax polynomials on |r| ≤ π/4: sin r = r + r³ (S₁ + S₂ r² + …), cos r = 1 − r²/2 + r⁴ (C₁ + C₂ r² + …).
 /// Source: FreeBSD, msun, `k_sin.c` and `k_cos.c`, Copyright (C) 1993 by Sun Microsystems, Inc.
@@ -37,16 +91,37 @@ const COSINE: [f64; 6] = [
     -1.1359647557788195e-11,
 ];
 
-/// Sines and cosines of `angles` (rad): K each, within 0.8 units in the last place up to 1e5 rad.
+/// Sines and cosines of `angles` (rad): K each, within 0.8 units in the last place up to 1e5 rad; with fused operations
+/// within 1.6 up to half a turn, and 1.8e-16 up to 1e5 rad.
 ///
 /// Each component depends on its own angle alone. Beyond 1e5 rad, and for NaN and infinity, it is libm's.
 #[inline(always)]
 pub(crate) fn sin_cos<const K: usize>(angles: [f64; K]) -> ([f64; K], [f64; K]) {
+    sin_cos_by::<Best, K>(angles)
+}
+
+#[inline(always)]
+fn sin_cos_by<A: Arithmetic, const K: usize>(angles: [f64; K]) -> ([f64; K], [f64; K]) {
     let (mut sines, mut cosines) = (angles, angles);
     let mut fast = true;
-    for ((sine, cosine), angle) in sines.iter_mut().zip(&mut cosines).zip(angles) {
-        (*sine, *cosine) = reduced(angle);
-        fast &= angle.abs() <= LARGEST_ANGLE;
+    let packs = sines.chunks_mut(PACK).zip(cosines.chunks_mut(PACK)).zip(angles.chunks(PACK));
+    for ((sines, cosines), angles) in packs {
+        if let [_] = angles {
+            // Nothing to go beside it.
+            for ((sine, cosine), angle) in sines.iter_mut().zip(cosines).zip(angles) {
+                (*sine, *cosine) = reduced::<A>(*angle);
+                fast &= angle.abs() <= LARGEST_ANGLE;
+            }
+        } else {
+            let mut pack = [0.0; PACK];
+            pack.iter_mut().zip(angles).for_each(|(place, angle)| *place = *angle);
+            let both = pack.map(reduced::<A>);
+            sines.iter_mut().zip(both).for_each(|(place, (sine, _))| *place = sine);
+            cosines.iter_mut().zip(both).for_each(|(place, (_, cosine))| *place = cosine);
+            for angle in pack {
+                fast &= angle.abs() <= LARGEST_ANGLE;
+            }
+        }
     }
     if fast { (sines, cosines) } else { replaced(angles, sines, cosines) }
 }
@@ -80,39 +155,67 @@ fn replaced<const K: usize>(
 
 /// Sine and cosine for |x| ≤ [`LARGEST_ANGLE`].
 #[inline(always)]
-fn reduced(x: f64) -> (f64, f64) {
-    let shifted = x * FRAC_2_PI + ROUNDER;
+fn reduced<A: Arithmetic>(x: f64) -> (f64, f64) {
+    let shifted = A::multiply_add(x, FRAC_2_PI, ROUNDER);
     let (quadrant, n) = (shifted.to_bits(), shifted - ROUNDER);
-
-    // r − excess = x − n π/2. Source: Cody & Waite 1980, with the rounding of each difference kept in the excess.
-    let [first, second, third] = HALF_PI;
-    let (a, b, c) = (x - n * first, n * second, n * third);
-    let r = a - b;
-    let excess = c + (b - (a - r));
-
-    let (sine, cosine) = polynomials(r, excess);
+    let (sine, cosine) = if A::FUSED {
+        brief::<A>(remainder_fused::<A>(x, n))
+    } else {
+        let (r, excess) = remainder(x, n);
+        polynomials(r, excess)
+    };
     // sin and cos of n π/2 + …: odd quadrants exchange them, the second bit of n and of n + 1 is the sign.
     let odd = quadrant & 1 == 1;
     let (first, second) = if odd { (cosine, sine) } else { (sine, cosine) };
     (signed(first, quadrant), signed(second, quadrant.wrapping_add(1)))
 }
 
+/// r and excess with r − excess = x − n π/2. Source: Cody & Waite 1980, with the rounding of each difference kept in
+/// the excess.
+#[inline(always)]
+fn remainder(x: f64, n: f64) -> (f64, f64) {
+    let [first, second, third] = HALF_PI;
+    let (a, b, c) = (x - n * first, n * second, n * third);
+    let r = a - b;
+    (r, c + (b - (a - r)))
+}
+
+/// x − n π/2, rounded once.
+#[inline(always)]
+fn remainder_fused<A: Arithmetic>(x: f64, n: f64) -> f64 {
+    let [first, second] = FUSED_HALF_PI;
+    A::multiply_add(-n, second, A::multiply_add(-n, first, x))
+}
+
 /// Sine and cosine of r − excess, |r| ≤ π/4, |excess| far below it.
 #[inline(always)]
 fn polynomials(r: f64, excess: f64) -> (f64, f64) {
-    // Pairs of terms are summed side by side: the time is that of the longest chain of operations.
+    let square = r * r;
+    let (cube, fourth, half) = (square * r, square * square, 0.5 * square);
+    let w = 1.0 - half;
+    // The signs are such that −0 stays −0.
+    let sine = r - (excess * w - cube * series::<Separate>(SINE, square, fourth));
+    let rest = fourth * series::<Separate>(COSINE, square, fourth) + r * excess;
+    (sine, w + (((1.0 - w) - half) + rest))
+}
+
+/// Sine and cosine of r, |r| ≤ π/4, without the corrections that the last third of a unit costs.
+#[inline(always)]
+fn brief<A: Arithmetic>(r: f64) -> (f64, f64) {
     let square = r * r;
     let (cube, fourth) = (square * r, square * square);
-    let half = 0.5 * square;
-    let w = 1.0 - half;
-    let [s1, s2, s3, s4, s5, s6] = SINE;
-    let p = (s1 + square * s2) + fourth * ((s3 + square * s4) + fourth * (s5 + square * s6));
-    // The signs are such that −0 stays −0.
-    let sine = r - (excess * w - cube * p);
-    let [c1, c2, c3, c4, c5, c6] = COSINE;
-    let p = (c1 + square * c2) + fourth * ((c3 + square * c4) + fourth * (c5 + square * c6));
-    let cosine = w + (((1.0 - w) - half) + (fourth * p + r * excess));
-    (sine, cosine)
+    let sine = A::multiply_add(cube, series::<A>(SINE, square, fourth), r);
+    let w = A::multiply_add(-0.5, square, 1.0);
+    (sine, A::multiply_add(fourth, series::<A>(COSINE, square, fourth), w))
+}
+
+/// a + b r² + c r⁴ + …; pairs of terms are summed side by side: the time is that of the longest chain of operations.
+#[inline(always)]
+fn series<A: Arithmetic>([a, b, c, d, e, f]: [f64; 6], square: f64, fourth: f64) -> f64 {
+    let low = A::multiply_add(square, b, a);
+    let middle = A::multiply_add(square, d, c);
+    let high = A::multiply_add(square, f, e);
+    A::multiply_add(fourth, A::multiply_add(fourth, high, middle), low)
 }
 
 /// `value` with the sign that bit 1 of `quadrant` stands for.
