@@ -58,11 +58,11 @@ pub struct OutputValue<T> {
 
 /// Φ, Φ_q, Φ_t and γ of one state.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Evaluation<T, const N: usize, const M: usize> {
+pub struct Evaluation<T, E, const M: usize> {
     /// Constraint residuals Φ(q, t): M.
     pub phi: [T; M],
-    /// Jacobian ∂Φ/∂q: M rows of N.
-    pub phi_q: [[T; N]; M],
+    /// Entries of Φ_q at the places of [`Mechanism::SPARSITY`].
+    pub phi_q_entries: E,
     /// Partial time derivative ∂Φ/∂t: M.
     pub phi_t: [T; M],
     /// γ = −(Φ_q q̇)_q q̇ − 2 Φ_qt q̇ − Φ_tt: M.
@@ -172,13 +172,19 @@ pub trait Mechanism<T: Scalar, const N: usize, const M: usize>: Clone {
         qdd: &[T; N],
     ) -> Self::Outputs;
 
-    /// Φ, Φ_q, Φ_t and γ in one call.
+    /// Φ, the entries of Φ_q, Φ_t and γ in one call, nothing kept in between.
     #[inline]
-    fn evaluate(&self, parameters: &Self::Parameters, q: &[T; N], t: T, qd: &[T; N]) -> Evaluation<T, N, M> {
+    fn evaluate(
+        &self,
+        parameters: &Self::Parameters,
+        q: &[T; N],
+        t: T,
+        qd: &[T; N],
+    ) -> Evaluation<T, Self::Entries, M> {
         let position = self.position(parameters, q, t);
         Evaluation {
             phi: self.phi(parameters, &position),
-            phi_q: self.phi_q(parameters, &position),
+            phi_q_entries: self.phi_q_entries(parameters, &position),
             phi_t: self.phi_t(parameters, &position),
             gamma: self.gamma(parameters, &position, qd),
         }

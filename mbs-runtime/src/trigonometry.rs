@@ -23,10 +23,11 @@ const HALF_PI: [f64; 3] = [1.5707963267923333, 2.5633441515839558e-12, 1.0562999
 /// π/2 to 1.5e-33 for the fused kernel: n times the first part, taken off x without rounding in between, is exact.
 const FUSED_HALF_PI: [f64; 2] = [core::f64::consts::FRAC_PI_2, 6.123233995736766e-17];
 
-/// Angles that share a register, the last ones beside zeros; one where the target has no wide registers.
-const PACK: usize = if cfg!(target_feature = "avx512f") {
-    8
-} else if cfg!(target_feature = "avx") {
+/// Angles that go side by side, in one wide register or two narrow ones.
+const WIDE: usize = if cfg!(target_feature = "avx") { 8 } else { NARROW };
+
+/// Angles that share a narrow register; one where the target has none for numbers side by side.
+const NARROW: usize = if cfg!(target_feature = "avx") {
     4
 } else if cfg!(any(target_feature = "sse2", target_feature = "neon")) {
     2
@@ -104,26 +105,60 @@ pub(crate) fn sin_cos<const K: usize>(angles: [f64; K]) -> ([f64; K], [f64; K]) 
 fn sin_cos_by<A: Arithmetic, const K: usize>(angles: [f64; K]) -> ([f64; K], [f64; K]) {
     let (mut sines, mut cosines) = (angles, angles);
     let mut fast = true;
-    let packs = sines.chunks_mut(PACK).zip(cosines.chunks_mut(PACK)).zip(angles.chunks(PACK));
-    for ((sines, cosines), angles) in packs {
-        if let [_] = angles {
-            // Nothing to go beside it.
-            for ((sine, cosine), angle) in sines.iter_mut().zip(cosines).zip(angles) {
-                (*sine, *cosine) = reduced::<A>(*angle);
-                fast &= angle.abs() <= LARGEST_ANGLE;
-            }
-        } else {
-            let mut pack = [0.0; PACK];
-            pack.iter_mut().zip(angles).for_each(|(place, angle)| *place = *angle);
-            let both = pack.map(reduced::<A>);
-            sines.iter_mut().zip(both).for_each(|(place, (sine, _))| *place = sine);
-            cosines.iter_mut().zip(both).for_each(|(place, (_, cosine))| *place = cosine);
-            for angle in pack {
-                fast &= angle.abs() <= LARGEST_ANGLE;
-            }
+    if K == 1 {
+        // It has nothing to go beside it.
+        fast = reduce::<A, K>(&mut sines, &mut cosines, angles);
+    } else if K == WIDE {
+        fast = filled::<A, K>(&mut sines, &mut cosines, angles);
+    } else {
+        let packs = sines.chunks_mut(WIDE).zip(cosines.chunks_mut(WIDE)).zip(angles.chunks(WIDE));
+        for ((sines, cosines), angles) in packs {
+            fast &= if angles.len() <= NARROW {
+                padded::<A, NARROW>(sines, cosines, angles)
+            } else {
+                padded::<A, WIDE>(sines, cosines, angles)
+            };
         }
     }
     if fast { (sines, cosines) } else { replaced(angles, sines, cosines) }
+}
+
+/// Sines and cosines of W angles side by side; whether all are on the fast path.
+#[inline(always)]
+fn reduce<A: Arithmetic, const W: usize>(
+    sines: &mut [f64; W],
+    cosines: &mut [f64; W],
+    angles: [f64; W],
+) -> bool {
+    let mut fast = true;
+    for ((sine, cosine), angle) in sines.iter_mut().zip(cosines).zip(angles) {
+        (*sine, *cosine) = reduced::<A>(angle);
+        fast &= angle.abs() <= LARGEST_ANGLE;
+    }
+    fast
+}
+
+/// As [`reduce`], for the lanes of an angle: in a function of its own, where the compiler sees nothing else to put side
+/// by side.
+#[inline(never)]
+fn filled<A: Arithmetic, const W: usize>(
+    sines: &mut [f64; W],
+    cosines: &mut [f64; W],
+    angles: [f64; W],
+) -> bool {
+    reduce::<A, W>(sines, cosines, angles)
+}
+
+/// As [`reduce`], for at most W angles; zeros take the other places.
+#[inline(always)]
+fn padded<A: Arithmetic, const W: usize>(sines: &mut [f64], cosines: &mut [f64], angles: &[f64]) -> bool {
+    let mut pack = [0.0; W];
+    pack.iter_mut().zip(angles).for_each(|(place, angle)| *place = *angle);
+    let (mut pack_sines, mut pack_cosines) = (pack, pack);
+    let fast = reduce::<A, W>(&mut pack_sines, &mut pack_cosines, pack);
+    sines.iter_mut().zip(pack_sines).for_each(|(place, sine)| *place = sine);
+    cosines.iter_mut().zip(pack_cosines).for_each(|(place, cosine)| *place = cosine);
+    fast
 }
 
 /// Sines and cosines of `angles` (rad) in single precision: libm's, which computes in double precision.

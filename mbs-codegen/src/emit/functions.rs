@@ -31,6 +31,8 @@ pub struct Bodies {
     pub phi_tt: TokenStream,
     pub phi_qt_qd: TokenStream,
     pub gamma: TokenStream,
+    /// Φ, Φ_q, Φ_t and γ in one call.
+    pub evaluate: TokenStream,
     pub branches: TokenStream,
     pub limits: TokenStream,
     /// `start_phases` and `advance_phases`, where there are any.
@@ -94,6 +96,7 @@ pub fn bodies(model: &Model, equations: &Equations, program: &Program, runtime: 
         phi_tt: body(&program.phi_tt, &scope, rows(|row| row.phi_tt)),
         phi_qt_qd: body(&program.phi_qt_qd, &scope, rows(|row| row.phi_qt_qd)),
         gamma: body(&program.gamma, &scope, rows(|row| row.gamma)),
+        evaluate: body(&program.evaluation, &early, evaluation(equations, &early)),
         branches: body(&program.branches, &scope, some(&equations.branches, &scope)),
         limits: body(&program.limits, &scope, limits(equations, &scope)),
         phases: tokens(&phases, runtime),
@@ -104,6 +107,18 @@ pub fn bodies(model: &Model, equations: &Equations, program: &Program, runtime: 
         factorize: tokens(&factorize, runtime),
         solve_linear: tokens(&solve_linear, runtime),
     }
+}
+
+fn evaluation(equations: &Equations, scope: &Scope<'_>) -> String {
+    let rows =
+        |part: fn(&crate::equations::Row) -> Option<NodeId>| array(equations.rows.iter().map(part), scope);
+    format!(
+        "__mbs::Evaluation {{ phi: {}, phi_q_entries: {}, phi_t: {}, gamma: {} }}",
+        rows(|row| Some(row.phi)),
+        array(entries(equations).map(|(.., id)| Some(id)), scope),
+        rows(|row| row.phi_t),
+        rows(|row| row.gamma),
+    )
 }
 
 fn array(nodes: impl Iterator<Item = Option<NodeId>>, scope: &Scope<'_>) -> String {

@@ -114,6 +114,7 @@ fn implementations(text: &Text, scenes: &Scenes, part: &Part<'_>) -> TokenStream
         phi_tt,
         phi_qt_qd,
         gamma,
+        evaluate,
         branches: branches_body,
         limits: limits_body,
         phases,
@@ -181,6 +182,14 @@ fn implementations(text: &Text, scenes: &Scenes, part: &Part<'_>) -> TokenStream
                 fn phi_qt_qd(&self, __p: &__Parameters<T>, __s: &__Position<T>, __qd: &[T; #n]) -> [T; #n] { #phi_qt_qd }
                 #[inline]
                 fn gamma(&self, __p: &__Parameters<T>, __s: &__Position<T>, __qd: &[T; #n]) -> [T; #n] { #gamma }
+                #[inline]
+                fn evaluate(
+                    &self,
+                    __p: &__Parameters<T>,
+                    __q: &[T; #n],
+                    __t: T,
+                    __qd: &[T; #n],
+                ) -> #runtime::Evaluation<T, [T; #nonzeros], #n> { #evaluate }
                 #[inline]
                 fn branches(&self, __p: &__Parameters<T>, __s: &__Position<T>) -> [T; #branches] { #branches_body }
                 #[inline]

@@ -33,6 +33,7 @@ fn bodies() -> Bodies {
         phi_tt: body(),
         phi_qt_qd: body(),
         gamma: body(),
+        evaluate: body(),
         branches: body(),
         limits: body(),
         phases: quote! {},

@@ -32,6 +32,8 @@ pub struct Program {
     pub phi_qt_qd: Section,
     /// γ
     pub gamma: Section,
+    /// Φ, Φ_q, Φ_t and γ together, from coordinates on.
+    pub evaluation: Section,
     /// Branch conditions.
     pub branches: Section,
     /// Working ranges.
@@ -88,6 +90,7 @@ pub fn order(equations: &Equations, structure: &Structure) -> Program {
         phi_tt: section(&roots.phi_tt),
         phi_qt_qd: section(&roots.phi_qt_qd),
         gamma: section(&roots.gamma),
+        evaluation: early(&[&roots.phi[..], &roots.phi_q, &roots.phi_t, &roots.gamma].concat()),
         branches: section(&roots.branches),
         limits: section(&roots.limits),
         phase_arguments: schedule::schedule(graph, &roots.phase_arguments, &none),

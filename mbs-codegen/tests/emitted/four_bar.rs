@@ -448,6 +448,90 @@ const _: () = {
             [__n123, __n110, __n124, __n125, T::constant(0.0f64)]
         }
         #[inline]
+        fn evaluate(
+            &self,
+            __p: &__Parameters<T>,
+            __q: &[T; 5usize],
+            __t: T,
+            __qd: &[T; 5usize],
+        ) -> ::mbs_runtime::Evaluation<T, [T; 13usize], 5usize> {
+            let __n18 = T::constant(0.4f64) + __q[3];
+            let __n43 = self.omega * __t;
+            let __n44 = __q[2] - __n43;
+            let __n100 = __qd[2] * __qd[2];
+            let __n102 = __qd[3] * __qd[3];
+            let __n111 = __qd[4] * __qd[4];
+            let ([__n23, __n36, __n39, __n25], [__n16, __n32, __n29, __n19]) = T::sin_cos([
+                __q[2],
+                __q[3],
+                __q[4],
+                __n18,
+            ]);
+            let __n17 = T::constant(0.1f64) * __n16;
+            let __n20 = T::constant(0.15f64) * __n19;
+            let __n21 = __n17 + __n20;
+            let __n22 = __q[0] - __n21;
+            let __n24 = T::constant(0.1f64) * __n23;
+            let __n26 = T::constant(0.15f64) * __n25;
+            let __n27 = __n24 + __n26;
+            let __n28 = __q[1] - __n27;
+            let __n30 = T::constant(0.2f64) * __n29;
+            let __n31 = T::constant(0.3f64) + __n30;
+            let __n33 = T::constant(0.25f64) * __n32;
+            let __n34 = __n17 + __n33;
+            let __n35 = __n31 - __n34;
+            let __n37 = T::constant(0.25f64) * __n36;
+            let __n38 = __n24 + __n37;
+            let __n40 = T::constant(0.2f64) * __n39;
+            let __n41 = __n38 - __n40;
+            let __n50 = -__n17;
+            let __n53 = -__n20;
+            let __n57 = -__n40;
+            let __n58 = -__n30;
+            let __n101 = __n17 * __n100;
+            let __n103 = __n20 * __n102;
+            let __n104 = __n101 + __n103;
+            let __n105 = __n24 * __n100;
+            let __n107 = __n26 * __n102;
+            let __n109 = __n105 + __n107;
+            let __n110 = -__n109;
+            let __n112 = __n30 * __n111;
+            let __n113 = __n33 * __n102;
+            let __n114 = __n101 + __n113;
+            let __n116 = __n37 * __n102;
+            let __n118 = __n105 + __n116;
+            let __n120 = __n40 * __n111;
+            let __n123 = -__n104;
+            let __n124 = __n112 - __n114;
+            let __n125 = __n118 - __n120;
+            ::mbs_runtime::Evaluation {
+                phi: [__n22, __n28, __n35, __n41, __n44],
+                phi_q_entries: [
+                    T::constant(1.0f64),
+                    __n24,
+                    __n26,
+                    T::constant(1.0f64),
+                    __n50,
+                    __n53,
+                    __n24,
+                    __n37,
+                    __n57,
+                    __n17,
+                    __n33,
+                    __n58,
+                    T::constant(1.0f64),
+                ],
+                phi_t: [
+                    T::constant(0.0f64),
+                    T::constant(0.0f64),
+                    T::constant(0.0f64),
+                    T::constant(0.0f64),
+                    __p.0[0],
+                ],
+                gamma: [__n123, __n110, __n124, __n125, T::constant(0.0f64)],
+            }
+        }
+        #[inline]
         fn branches(&self, __p: &__Parameters<T>, __s: &__Position<T>) -> [T; 1usize] {
             let ([__n46], [_]) = T::sin_cos([__s.0[12]]);
             [__n46]

@@ -207,6 +207,7 @@ pub fn check<S: Kinematic<f64, N>, const N: usize>(
         }
     }
     let evaluation = mechanism.evaluate(&parameters, &q, t, &qd);
-    assert_eq!((evaluation.phi, evaluation.phi_q), (phi, phi_q));
+    let entries = mechanism.phi_q_entries(&parameters, &position);
+    assert_eq!((evaluation.phi, evaluation.phi_q_entries.as_ref()), (phi, entries.as_ref()));
     assert_eq!((evaluation.phi_t, evaluation.gamma), (phi_t, gamma));
 }

@@ -114,7 +114,7 @@ entry_points! {
     /// Φ, Φ_q, Φ_t, γ in one call.
     fn evaluate[S: Mechanism<T, N, N>, T: Scalar, const N: usize](
         mechanism: &S, parameters: &S::Parameters, q: &[T; N], t: T, qd: &[T; N],
-    ) -> Evaluation<T, N, N> {
+    ) -> Evaluation<T, S::Entries, N> {
         mechanism.evaluate(parameters, q, t, qd)
     }
     /// Positions of all lanes at once.

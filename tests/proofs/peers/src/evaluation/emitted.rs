@@ -30,12 +30,12 @@ fn evaluate<S, T: Scalar, const N: usize, const Z: usize>(
     S: Mechanism<T, N, N, Entries = [T; Z]>,
 {
     let parameters = mechanism.parameters();
-    let position = mechanism.position(&parameters, q, t);
+    let evaluation = mechanism.evaluate(&parameters, q, t, qd);
     *out = Output {
-        phi: mechanism.phi(&parameters, &position),
-        entries: mechanism.phi_q_entries(&parameters, &position),
-        phi_t: mechanism.phi_t(&parameters, &position),
-        gamma: mechanism.gamma(&parameters, &position, qd),
+        phi: evaluation.phi,
+        entries: evaluation.phi_q_entries,
+        phi_t: evaluation.phi_t,
+        gamma: evaluation.gamma,
     };
 }
 
