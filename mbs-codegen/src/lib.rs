@@ -136,6 +136,14 @@ fn formulas_in(name: &str, scene: &Scene, notation: Notation) -> Formulas {
     emit::formula::formulas(&scene.model, &equations, name, notation)
 }
 
+/// Value in coherent SI of a unit that may follow a number, and its SI unit: `deg` is (π/180, `rad`).
+///
+/// # Errors
+/// Message and cure.
+pub fn unit_of_suffix(symbol: &str) -> Result<(f64, &'static str), (String, String)> {
+    model::units::coherent(symbol)
+}
+
 /// Sparsity, matching and block-triangular order of a scene (without a name the whole text) of a text that is kept as
 /// a string.
 ///

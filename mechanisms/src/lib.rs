@@ -3,7 +3,7 @@
 //! Every mechanism is one file: its text, how it is drawn, and tests against a closed form or a reference
 //! solution. [`registry::ALL`] lists them; [`facade::AnyMechanism`] runs any of them; [`report`] and [`csv`] write
 //! motions down; [`verify`] compares the emitted code with CasADi; [`lecture`] is what the
-//! teaching commands compute.
+//! teaching commands compute; [`tabulated`] lays splines along tables from files.
 //!
 //! ```
 //! let card = mechanisms::registry::find("four_bar").expect("in the list");
@@ -42,6 +42,7 @@ pub mod facade;
 pub mod lecture;
 pub mod registry;
 pub mod report;
+pub mod tabulated;
 pub mod target_directory;
 pub mod verify;
 

@@ -50,6 +50,8 @@ enum Command {
     Dof(commands::dof::Arguments),
     /// Compare one linkage in several kinds of coordinates
     Compare(commands::compare::Arguments),
+    /// Lay a spline along a table from a file; say how far to trust it, draw it, print it as Rust
+    Table(commands::table_file::Arguments),
 }
 
 fn main() -> ExitCode {
@@ -69,6 +71,7 @@ fn main() -> ExitCode {
         Some(Command::Next(arguments)) => commands::next::run(&arguments, &mut out),
         Some(Command::Dof(arguments)) => commands::dof::run(&arguments, &mut out),
         Some(Command::Compare(arguments)) => commands::compare::run(&arguments, &mut out),
+        Some(Command::Table(arguments)) => commands::table_file::run(&arguments, &mut out),
     };
     match result.and_then(|()| out.flush().map_err(CommandError::Output)) {
         Ok(()) => ExitCode::SUCCESS,

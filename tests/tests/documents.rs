@@ -76,6 +76,7 @@ fn every_mechanism_and_command_stands_in_the_readme() {
         "next NAME",
         "dof NAME",
         "compare NAME",
+        "table FILE.csv",
     ] {
         assert!(text.contains(&format!("`mbs {command}")), "README.md does not show `mbs {command}`");
     }

@@ -156,6 +156,27 @@ impl Dimension {
     }
 }
 
+/// Value in coherent SI of one of a symbol's unit, and that SI unit; `Err` holds message and cure.
+pub fn coherent(symbol: &str) -> Result<(f64, &'static str), (String, String)> {
+    if let Some((known, _)) = SYMBOLS.iter().find(|(known, _)| *known == symbol) {
+        return Ok((1.0, known));
+    }
+    match SUFFIXES.iter().find(|(known, ..)| *known == symbol) {
+        Some((_, factor, divisor, unit)) => Ok((factor / divisor, unit)),
+        None => Err(unknown_suffix(symbol)),
+    }
+}
+
+fn unknown_suffix(symbol: &str) -> (String, String) {
+    let known =
+        || SYMBOLS.iter().map(|(symbol, _)| *symbol).chain(SUFFIXES.iter().map(|(suffix, ..)| *suffix));
+    let help = match nearest(symbol, known()) {
+        Some(known) => format!("did you mean `{known}`?"),
+        None => format!("known are {}", known().collect::<Vec<_>>().join(", ")),
+    };
+    (format!("`{symbol}` is no known unit"), help)
+}
+
 fn unknown_unit(symbol: &str) -> (String, String) {
     if let Some((_, _, _, coherent)) = SUFFIXES.iter().find(|(suffix, ..)| *suffix == symbol) {
         return (

@@ -13,6 +13,7 @@ pub mod print;
 pub mod run;
 pub mod structure;
 mod table;
+pub mod table_file;
 pub mod verify;
 
 use std::fmt;

@@ -8,13 +8,14 @@ use super::basins::{Axis, Basins, Map, Method, Solution};
 use crate::facade::AnyMechanism;
 
 /// Okabe and Ito's colours, which the colour-blind can tell apart; grey is kept for failures.
-const COLOURS: [&str; 7] = ["#0072b2", "#e69f00", "#009e73", "#d55e00", "#56b4e9", "#f0e442", "#cc79a7"];
+pub(crate) const COLOURS: [&str; 7] =
+    ["#0072b2", "#e69f00", "#009e73", "#d55e00", "#56b4e9", "#f0e442", "#cc79a7"];
 const FAILURE: &str = "#999999";
 
 /// Side of an entry of the Jacobian, in pixels.
 const CELL: usize = 24;
 
-fn open(width: usize, height: usize) -> String {
+pub(crate) fn open(width: usize, height: usize) -> String {
     format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" \
          height=\"{height}\" font-family=\"sans-serif\" font-size=\"13\">\n<rect width=\"100%\" height=\"100%\" \
@@ -26,7 +27,7 @@ fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
 
-fn label(svg: &mut String, x: usize, y: usize, attributes: &str, text: &str) {
+pub(crate) fn label(svg: &mut String, x: usize, y: usize, attributes: &str, text: &str) {
     let _ = writeln!(svg, "<text x=\"{x}\" y=\"{y}\" {attributes}>{}</text>", escaped(text));
 }
 
