@@ -78,8 +78,8 @@ impl Search {
         let scales = mechanism.coordinate_scales(parameters);
         let mut solver = Safeguarded::new(extent(&q, &scales));
         let outcome = mechanism.solve_blocks(parameters, &mut q, t, &mut solver);
-        let failure = position_failure::<S, R, N>(outcome, solver.diagnosis(), t);
-        let Some(failure) = failure.or_else(|| coordinate_failure::<S, R, N>(&q, &scales, t)) else {
+        let failure = position_failure::<S, R, N, _>(outcome, solver.diagnosis(), t);
+        let Some(failure) = failure.or_else(|| coordinate_failure::<S, R, N, _>(&q, &scales, t)) else {
             let position = mechanism.position(parameters, &q, t);
             let Some(branch) = branch_failure(mechanism, parameters, &position, t, true) else {
                 return Some((q, Statistics::of(solver.diagnosis())));

@@ -129,7 +129,7 @@ impl<S: Kinematic<R, N>, R: Real, const N: usize> Stepper<S, R, N> {
         let mut solver = Budgeted::new(extent(&start, &scales), budget);
         let mut q = start;
         let outcome = self.mechanism.solve_blocks(&self.parameters, &mut q, t, &mut solver);
-        let open = position_failure::<S, R, N>(outcome, solver.diagnosis(), t);
+        let open = position_failure::<S, R, N, _>(outcome, solver.diagnosis(), t);
         let mut statistics = Statistics::of(solver.diagnosis());
         statistics.correction = largest_difference(&q, &start, &scales).to_f64();
         if let Some(failure @ Failure::NonFinite { .. }) = open {

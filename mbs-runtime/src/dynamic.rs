@@ -36,6 +36,9 @@ pub trait Dynamic<T: Scalar, const N: usize, const M: usize>: Mechanism<T, N, M>
     /// One value a component of an `out` that uses `lambda`, `effort`, `reaction` or a state.
     type Loads: Copy + AsRef<[T]>;
 
+    /// Whether [`force`](Self::force) depends on the multipliers: friction. Where it does not, methods save the
+    /// iteration for it.
+    const FORCE_USES_MULTIPLIERS: bool = true;
     /// First-order states.
     const STATES: &'static [Entry];
     /// Forces by name, in the order of [`powers`](Self::powers).

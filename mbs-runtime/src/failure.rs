@@ -118,6 +118,58 @@ pub enum Failure {
         /// Time (s).
         time: f64,
     },
+    /// A step that is 0, negative, no number, or too small to change the time.
+    InvalidStep {
+        /// The step (s).
+        step: f64,
+        /// Time (s) at which it was to be taken.
+        time: f64,
+    },
+    /// No step that still changes the time is accurate enough.
+    StepTooSmall {
+        /// The last step (s) tried.
+        step: f64,
+        /// Time (s) that was reached.
+        time: f64,
+    },
+    /// The step is too long for the method to be stable.
+    StepTooLong {
+        /// Step times frequency.
+        product: f64,
+        /// The largest that is allowed.
+        allowed: f64,
+        /// Time (s).
+        time: f64,
+    },
+    /// The start, or a state to be put back onto the constraints, violates a row.
+    Inconsistent {
+        /// The row that is violated most, in the reference metric.
+        row: Entry,
+        /// Whether its rate is violated, and not the row itself.
+        rate: bool,
+        /// By how much, in the unit of the row (per second).
+        residual: f64,
+        /// What is allowed.
+        allowed: f64,
+        /// Time (s).
+        time: f64,
+    },
+    /// A motion that the rows leave free moves no mass, so that its acceleration is not determined.
+    Inertialess {
+        /// The coordinate that moves most in it.
+        coordinate: Entry,
+        /// Time (s).
+        time: f64,
+    },
+    /// Forces and inertia did not come into balance within the iterations of an implicit method.
+    Unbalanced {
+        /// The coordinate that is farthest from balance.
+        coordinate: Entry,
+        /// Iterations spent.
+        iterations: u32,
+        /// Time (s).
+        time: f64,
+    },
     /// The saved state is that of a mechanism with another name or other coordinates.
     Foreign {
         /// Name of the mechanism that it was to be the state of.
@@ -195,7 +247,13 @@ impl Failure {
             | Failure::Singular { time, .. }
             | Failure::WrongBranch { time, .. }
             | Failure::BeyondLimit { time, .. }
-            | Failure::TooFar { time, .. } => *time,
+            | Failure::TooFar { time, .. }
+            | Failure::InvalidStep { time, .. }
+            | Failure::StepTooSmall { time, .. }
+            | Failure::StepTooLong { time, .. }
+            | Failure::Inconsistent { time, .. }
+            | Failure::Inertialess { time, .. }
+            | Failure::Unbalanced { time, .. } => *time,
             Failure::NonFinite { .. } | Failure::Foreign { .. } => 0.0,
         }
     }
@@ -249,6 +307,40 @@ impl fmt::Display for Failure {
                  the reference metric, allowed {allowed:.3e}; start at the time and with the inputs of the saved state",
                 coordinate.name, coordinate.line
             ),
+            Failure::InvalidStep { step, .. } => write!(
+                f,
+                "a step of {step:e} s from t = {time} s leads nowhere: it must be positive and change the time"
+            ),
+            Failure::StepTooSmall { step, .. } => write!(
+                f,
+                "stuck at t = {time} s: even a step of {step:.3e} s is not accurate enough; loosen the tolerance, look for \
+                 a jump in the forces, or use an implicit method where the mechanism is stiff"
+            ),
+            Failure::StepTooLong { product, allowed, .. } => write!(
+                f,
+                "the step at t = {time} s is too long: step times frequency is {product:.3}, allowed {allowed:.3}; take a \
+                 smaller step or a lower frequency"
+            ),
+            Failure::Inconsistent { row, rate, residual, allowed, .. } => write!(
+                f,
+                "{} `{}` (line {}) is violated at t = {time} s: {residual:.3e}, allowed {allowed:.3e}; start on the \
+                 constraints, or let the start be projected",
+                if *rate { "the rate of row" } else { "row" },
+                row.name,
+                row.line
+            ),
+            Failure::Inertialess { coordinate, .. } => write!(
+                f,
+                "the acceleration of `{}` (line {}) is not determined at t = {time} s: it can move without any mass \
+                 moving; give it mass, or a row that fixes it",
+                coordinate.name, coordinate.line
+            ),
+            Failure::Unbalanced { coordinate, iterations, .. } => write!(
+                f,
+                "no balance of forces at t = {time} s after {iterations} iterations: `{}` (line {}) is farthest off; take \
+                 a smaller step",
+                coordinate.name, coordinate.line
+            ),
             Failure::Foreign { mechanism } => {
                 write!(f, "the saved state is not one of `{mechanism}`: name or coordinates differ")
             }
@@ -294,6 +386,9 @@ mod tests {
             Failure::WrongBranch { branch: ROW, value: -1.0, time },
             Failure::BeyondLimit { limit: ROW, value: 2.0, bound: 1.0, time },
             Failure::TooFar { coordinate: ROW, distance: 1.0, allowed: 0.5, time },
+            Failure::Inconsistent { row: ROW, rate: false, residual, allowed: required, time },
+            Failure::Inertialess { coordinate: ROW, time },
+            Failure::Unbalanced { coordinate: ROW, iterations: 9, time },
         ];
         for failure in failures {
             assert!(failure.to_string().contains("(line 21)"), "{failure}");

@@ -41,7 +41,7 @@ pub fn solve_position<S: Kinematic<R, N>, R: Real, const N: usize>(
     let mut solver = Newton::new(extent(start, &scales));
     let mut q = *start;
     let outcome = mechanism.solve_blocks(parameters, &mut q, t, &mut solver);
-    if let Some(failure) = position_failure::<S, R, N>(outcome, solver.diagnosis(), t) {
+    if let Some(failure) = position_failure::<S, R, N, _>(outcome, solver.diagnosis(), t) {
         return Err(failure);
     }
     let mut statistics = Statistics::of(solver.diagnosis());
@@ -141,7 +141,7 @@ fn solve_rates<S: Kinematic<R, N>, R: Real, const N: usize>(
 
 /// What an unsuccessful `outcome` means to the caller; `None` for a success.
 #[inline]
-pub(crate) fn position_failure<S: Mechanism<R, N, N>, R: Real, const N: usize>(
+pub(crate) fn position_failure<S: Mechanism<R, N, M>, R: Real, const N: usize, const M: usize>(
     outcome: R::Lanes<Outcome>,
     diagnosis: &Diagnosis<R>,
     t: R,
@@ -177,7 +177,7 @@ fn singular<S: Mechanism<R, N, N>, R: Real, const N: usize>(margin: &Margin<R>, 
 ///
 /// Returns [`Failure::WrongBranch`], or [`Failure::NonFinite`] where the condition is NaN.
 #[inline(always)]
-pub(crate) fn branch_failure<S: Mechanism<R, N, N>, R: Real, const N: usize>(
+pub(crate) fn branch_failure<S: Mechanism<R, N, M>, R: Real, const N: usize, const M: usize>(
     mechanism: &S,
     parameters: &S::Parameters,
     position: &S::Position,
@@ -197,7 +197,7 @@ pub(crate) fn branch_failure<S: Mechanism<R, N, N>, R: Real, const N: usize>(
 }
 
 /// The parameter or input that is not finite, if any.
-pub(crate) fn variable_failure<S: Mechanism<R, N, N>, R: Real, const N: usize>(
+pub(crate) fn variable_failure<S: Mechanism<R, N, M>, R: Real, const N: usize, const M: usize>(
     mechanism: &S,
 ) -> Option<Failure> {
     let broken = |index: &usize| mechanism.get(*index).is_some_and(|value| !value.is_finite());
@@ -214,9 +214,7 @@ pub(crate) fn time_failure<R: Real>(t: R) -> Option<Failure> {
 /// The first value that is not finite, under the name that `entries` gives it.
 #[inline]
 pub(crate) fn non_finite<R: Real, const N: usize>(values: &[R; N], entries: &[Entry]) -> Option<Failure> {
-    let index = values.iter().position(|value| !value.is_finite())?;
-    let named = entries.get(index).map(|entry| Failure::NonFinite { name: entry.name, line: entry.line });
-    Some(named.unwrap_or(UNNAMED))
+    non_finite_among(values, entries)
 }
 
 /// Coarsest resolution of a coordinate, relative to its scale, that still is a position: 1e-3 rad. An `f64` angle
@@ -225,7 +223,7 @@ const COARSEST_RESOLUTION: f64 = 1e-3;
 
 /// The first coordinate that is not finite, or too large to be resolved.
 #[inline(always)]
-pub(crate) fn coordinate_failure<S: Mechanism<R, N, N>, R: Real, const N: usize>(
+pub(crate) fn coordinate_failure<S: Mechanism<R, N, M>, R: Real, const N: usize, const M: usize>(
     q: &[R; N],
     scales: &[R; N],
     t: R,
@@ -240,6 +238,13 @@ pub(crate) fn coordinate_failure<S: Mechanism<R, N, N>, R: Real, const N: usize>
         let coordinate = entry(S::COORDINATES, u16::try_from(index).unwrap_or(u16::MAX));
         Some(Failure::Unresolved { coordinate, value: q.get(index)?.to_f64(), time: t.to_f64() })
     })
+}
+
+/// The first of `values` that is not finite, under the name that `entries` gives it.
+pub(crate) fn non_finite_among<R: Real>(values: &[R], entries: &[Entry]) -> Option<Failure> {
+    let index = values.iter().position(|value| !value.is_finite())?;
+    let named = entries.get(index).map(|entry| Failure::NonFinite { name: entry.name, line: entry.line });
+    Some(named.unwrap_or(UNNAMED))
 }
 
 #[inline(always)]

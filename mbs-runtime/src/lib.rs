@@ -17,6 +17,7 @@ mod budgeted;
 pub mod diagnosis;
 pub mod driver;
 pub mod dynamic;
+pub mod dynamics;
 pub mod failure;
 mod function;
 pub mod kinematics;

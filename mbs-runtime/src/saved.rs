@@ -127,7 +127,7 @@ impl<S: Kinematic<R, N>, R: Real, const N: usize> Stepper<S, R, N> {
         let scales = mechanism.coordinate_scales(&parameters);
         let broken = variable_failure(&mechanism)
             .or(time_failure(t))
-            .or_else(|| coordinate_failure::<S, R, N>(&start, &scales, t));
+            .or_else(|| coordinate_failure::<S, R, N, _>(&start, &scales, t));
         if let Some(failure) = broken {
             return Err(failure);
         }

@@ -317,7 +317,7 @@ impl<R: Real, const N: usize> State<R, N> {
     ) -> Result<Self, Failure> {
         let Found { t, q, statistics, open } = found;
         let scales = mechanism.coordinate_scales(parameters);
-        if let Some(failure) = coordinate_failure::<S, R, N>(&q, &scales, t) {
+        if let Some(failure) = coordinate_failure::<S, R, N, _>(&q, &scales, t) {
             return Err(failure);
         }
         let mut solution = Solution { q, position: mechanism.position(parameters, &q, t) };

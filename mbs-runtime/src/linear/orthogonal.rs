@@ -113,7 +113,7 @@ fn least_norm<R: Real, const M: usize, const K: usize>(
             *entry = if j < i { zero } else { column[i] };
         }
     }
-    let mut reflections = [Reflection { normal: [zero; K], factor: zero }; M];
+    let mut reflections = [Reflection::none(); M];
     let mut z = [zero; K];
     for k in 0..M {
         if k >= rank || k >= K {
@@ -137,15 +137,20 @@ fn least_norm<R: Real, const M: usize, const K: usize>(
 }
 
 /// The Householder reflection 1 − factor·normal·normalᵀ.
-#[derive(Clone, Copy)]
-struct Reflection<R, const L: usize> {
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Reflection<R, const L: usize> {
     normal: [R; L],
     factor: R,
 }
 
 impl<R: Real, const L: usize> Reflection<R, L> {
+    /// The identity.
+    pub(crate) fn none() -> Self {
+        Reflection { normal: [R::constant(0.0); L], factor: R::constant(0.0) }
+    }
+
     /// The one that makes the components of `x` after `k` zero and leaves those before it; none for x = 0.
-    fn of(x: &[R; L], k: usize) -> Self {
+    pub(crate) fn of(x: &[R; L], k: usize) -> Self {
         let zero = R::constant(0.0);
         let mut normal = *x;
         for component in normal.iter_mut().take(k) {
@@ -159,7 +164,7 @@ impl<R: Real, const L: usize> Reflection<R, L> {
         Reflection { normal, factor: if square > zero { R::constant(2.0) / square } else { zero } }
     }
 
-    fn apply(&self, x: &mut [R; L]) {
+    pub(crate) fn apply(&self, x: &mut [R; L]) {
         let product = x.iter().zip(&self.normal).fold(R::constant(0.0), |sum, (a, b)| sum + *a * *b);
         for (component, normal) in x.iter_mut().zip(&self.normal) {
             *component = *component - self.factor * product * *normal;

@@ -1,0 +1,299 @@
+//! The size of the next step, and the way to a given time with it.
+
+use super::embedded::{Embedded, Taken, TrialOf};
+use super::equation::{Equation, Measured};
+use super::vector::Vector;
+use crate::{Failure, Real};
+
+/// Share of the step that the error estimate would allow: the estimate is wrong by a little.
+const SAFETY: f64 = 0.9;
+
+/// Smallest factor from one step to the next, also after a step that failed altogether.
+const LEAST_GROWTH: f64 = 0.2;
+
+/// Least error that the controller remembers: below it the last step says nothing about the next.
+const LEAST_ERROR: f64 = 1e-4;
+
+/// Smallest step in units of the rounding of the time: below it t + c h no longer tells stages apart.
+const LEAST_STEP_ROUNDINGS: f64 = 16.0;
+
+/// First step: it may change the state by this share of it, or of its tolerance's inverse.
+const FIRST_SHARE: f64 = 0.01;
+
+/// A step may be longer than planned by this share where it then reaches its end.
+const STRETCH: f64 = 1.1;
+
+/// Steps a call may take; a run that needs more does not advance.
+const MOST_STEPS: u32 = 10_000_000;
+
+/// An adaptive integration: the step that it will try next, and what it has spent.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Adaptive<R> {
+    /// Step (s) to try next; `None` before the first.
+    pub step: Option<R>,
+    /// Largest step (s) allowed.
+    pub largest: R,
+    /// Steps accepted.
+    pub accepted: u32,
+    /// Steps tried again with a smaller size.
+    pub rejected: u32,
+    last_error: R,
+    growth_barred: bool,
+}
+
+impl<R: Real> Default for Adaptive<R> {
+    fn default() -> Self {
+        Adaptive {
+            step: None,
+            largest: R::constant(f64::MAX),
+            accepted: 0,
+            rejected: 0,
+            last_error: R::constant(LEAST_ERROR),
+            growth_barred: false,
+        }
+    }
+}
+
+/// Time, state and rate: where a step begins or ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Point<R, Y> {
+    /// Time (s).
+    pub t: R,
+    /// State.
+    pub y: Y,
+    /// Its rate.
+    pub rate: Y,
+}
+
+/// One accepted step, and what its polynomial needs.
+#[derive(Clone, Copy, Debug)]
+pub struct Accepted<M: Embedded, R, Y: Copy> {
+    /// Its beginning.
+    pub start: Point<R, Y>,
+    /// Its end, settled.
+    pub end: Point<R, Y>,
+    stages: M::Stages<Y>,
+}
+
+impl<M: Embedded, R: Real, Y: Vector<R>> Accepted<M, R, Y> {
+    /// The polynomial of the step; see [`Polynomial::at`].
+    ///
+    /// # Errors
+    /// Those of the equation, where the polynomial needs stages of its own.
+    pub fn polynomial<E: Equation<R, State = Y>>(
+        &self,
+        equation: &mut E,
+    ) -> Result<Polynomial<M, R, Y>, Failure> {
+        let h = self.end.t - self.start.t;
+        let taken = Taken {
+            t: self.start.t,
+            h,
+            start: (&self.start.y, &self.start.rate),
+            end: (&self.end.y, &self.end.rate),
+            stages: &self.stages,
+        };
+        let dense = M::dense(&mut Clamped { equation, latest: self.end.t }, &taken)?;
+        Ok(Polynomial { t: self.start.t, h, dense })
+    }
+}
+
+/// The solution within one step.
+#[derive(Clone, Copy, Debug)]
+pub struct Polynomial<M: Embedded, R, Y: Copy> {
+    t: R,
+    h: R,
+    dense: M::Dense<Y>,
+}
+
+impl<M: Embedded, R: Real, Y: Vector<R>> Polynomial<M, R, Y> {
+    /// The state at `t` (s), inside the step; not settled.
+    pub fn at(&self, t: R) -> Y {
+        M::interpolate(&self.dense, (t - self.t) / self.h)
+    }
+}
+
+/// The equation without what begins at `latest`: a force that sets in there is not felt by the step that ends there.
+struct Clamped<'a, E, R> {
+    equation: &'a mut E,
+    latest: R,
+}
+
+impl<R: Real, E: Equation<R>> Equation<R> for Clamped<'_, E, R> {
+    type State = E::State;
+
+    fn rate(&mut self, t: R, y: &E::State) -> Result<E::State, Failure> {
+        self.equation.rate(t.min(self.latest), y)
+    }
+}
+
+/// An accepted step with the factor for the next, or the factor for another trial, and why where the equation failed.
+type Judgement<M, R, Y> = Result<(Accepted<M, R, Y>, R), (Option<Failure>, R)>;
+
+/// The largest number below `t`, to two roundings.
+fn just_before<R: Real>(t: R) -> R {
+    t - R::EPSILON * t.abs()
+}
+
+impl<R: Real> Adaptive<R> {
+    /// With steps not longer than `largest` (s).
+    pub fn with_largest(self, largest: R) -> Self {
+        Adaptive { largest, ..self }
+    }
+
+    /// With `step` (s) to try first.
+    pub fn with_first(self, step: R) -> Self {
+        Adaptive { step: Some(step), ..self }
+    }
+
+    /// One accepted step from `from` towards `until` (s), not beyond it. `breaks`: whether something begins at
+    /// `until` that the step must not feel.
+    ///
+    /// # Errors
+    /// [`Failure::StepTooSmall`], or what the equation failed with at the smallest step.
+    pub fn step<M: Embedded, E: Measured<R>>(
+        &mut self,
+        equation: &mut E,
+        from: &Point<R, E::State>,
+        until: R,
+        breaks: bool,
+    ) -> Result<Accepted<M, R, E::State>, Failure> {
+        let mut planned = match self.step {
+            Some(step) => step,
+            None => first_step::<M, R, E>(equation, from, until)?,
+        };
+        planned = planned.min(self.largest);
+        loop {
+            let least = R::constant(LEAST_STEP_ROUNDINGS) * R::EPSILON * from.t.abs().max(until.abs());
+            let (h, ends) = self.clipped(planned, until - from.t);
+            let end = if ends { until } else { from.t + h };
+            let latest = if ends && breaks { just_before(end) } else { end };
+            let trial = {
+                let mut clamped = Clamped { equation: &mut *equation, latest };
+                M::trial(&mut clamped, from.t, end - from.t, &from.y, &from.rate)
+            };
+            match self.judged::<M, E>(equation, from, end, trial) {
+                Ok((accepted, factor)) => {
+                    let next = h * factor;
+                    // A step cut short by the end says nothing against the one that was planned.
+                    self.step = Some(if ends { next.max(planned) } else { next });
+                    self.accepted = self.accepted.saturating_add(1);
+                    self.growth_barred = false;
+                    return Ok(accepted);
+                }
+                Err((failure, factor)) => {
+                    self.rejected = self.rejected.saturating_add(1);
+                    self.growth_barred = true;
+                    planned = h * factor;
+                    if !least.less(planned) {
+                        self.step = None;
+                        let small = Failure::StepTooSmall { step: h.to_f64(), time: from.t.to_f64() };
+                        return Err(failure.unwrap_or(small));
+                    }
+                }
+            }
+        }
+    }
+
+    /// The step as it fits before the end, and whether it ends there.
+    fn clipped(&self, planned: R, left: R) -> (R, bool) {
+        if left <= R::constant(STRETCH) * planned {
+            (left, true)
+        } else {
+            // Two equal steps rather than a long one and a crumb.
+            (planned.min(R::constant(0.5) * left.max(planned)), false)
+        }
+    }
+
+    /// The trial settled and accepted with the factor for the next step, or rejected with the factor for this one.
+    fn judged<M: Embedded, E: Measured<R>>(
+        &mut self,
+        equation: &mut E,
+        from: &Point<R, E::State>,
+        end: R,
+        trial: Result<TrialOf<M, E::State>, Failure>,
+    ) -> Judgement<M, R, E::State> {
+        let least = R::constant(LEAST_GROWTH);
+        let trial = trial.map_err(|failure| (Some(failure), least))?;
+        let error = M::error(equation, end - from.t, &from.y, &from.rate, &trial);
+        let exponent = 1.0 / f64::from(M::ERROR_ORDER) - 0.75 * M::MEMORY;
+        let ideal = R::constant(SAFETY) / error.powf(R::constant(exponent));
+        if !error.is_finite() || error > R::constant(1.0) {
+            let factor = if ideal.is_finite() { least.max(ideal) } else { least };
+            return Err((None, factor));
+        }
+        let mut y = trial.y;
+        equation.settle(end, &mut y).map_err(|failure| (Some(failure), least))?;
+        let rate = equation.rate(end, &y).map_err(|failure| (Some(failure), least))?;
+        let remembered = self.last_error.powf(R::constant(M::MEMORY));
+        let largest = R::constant(if self.growth_barred { 1.0 } else { M::LARGEST_GROWTH });
+        let factor = if R::constant(0.0) < error { ideal * remembered } else { largest };
+        self.last_error = error.max(R::constant(LEAST_ERROR));
+        let accepted = Accepted { start: *from, end: Point { t: end, y, rate }, stages: trial.stages };
+        Ok((accepted, least.max(factor.min(largest))))
+    }
+
+    /// Steps until `until` (s), hitting each of `breakpoints` on the way; `watch` sees every accepted step and may
+    /// end the run there by `false`.
+    ///
+    /// `breakpoints` gives the next time after its argument where the equation is not smooth.
+    ///
+    /// # Errors
+    /// [`Failure::InvalidStep`] for an end that is not after the beginning or no number; those of
+    /// [`step`](Self::step).
+    pub fn run<M: Embedded, E: Measured<R>>(
+        &mut self,
+        equation: &mut E,
+        from: Point<R, E::State>,
+        until: R,
+        mut breakpoints: impl FnMut(R) -> Option<R>,
+        mut watch: impl FnMut(&mut E, &Accepted<M, R, E::State>) -> Result<bool, Failure>,
+    ) -> Result<Point<R, E::State>, Failure> {
+        let invalid = Failure::InvalidStep { step: (until - from.t).to_f64(), time: from.t.to_f64() };
+        if !from.t.less(until) || !until.is_finite() {
+            return Err(invalid);
+        }
+        let mut now = from;
+        for _ in 0..MOST_STEPS {
+            let next_break = breakpoints(now.t).filter(|next| now.t < *next && *next <= until);
+            let accepted =
+                self.step::<M, E>(equation, &now, next_break.unwrap_or(until), next_break.is_some())?;
+            now = accepted.end;
+            if !watch(equation, &accepted)? || until <= now.t {
+                return Ok(now);
+            }
+        }
+        Err(Failure::StepTooSmall { step: self.step.unwrap_or(until).to_f64(), time: now.t.to_f64() })
+    }
+}
+
+/// A first step that changes the state by a small share of its tolerances, judged by rate and curvature.
+///
+/// Source: Hairer, Nørsett & Wanner 1993, §II.4 (starting step size).
+fn first_step<M: Embedded, R: Real, E: Measured<R>>(
+    equation: &mut E,
+    from: &Point<R, E::State>,
+    until: R,
+) -> Result<R, Failure> {
+    let (zero, share) = (R::constant(0.0), R::constant(FIRST_SHARE));
+    let measured = |equation: &E, y: &E::State| equation.measure(&from.y, &from.y, y);
+    let size = measured(equation, &from.y);
+    let speed = measured(equation, &from.rate);
+    let span = until - from.t;
+    let guess = if zero < size && zero < speed { share * size / speed } else { R::constant(1e-6) * span };
+    let guess = guess.min(span);
+    let moved = from.y.plus(guess, &[1.0], [&from.rate]);
+    let change = match equation.rate(from.t + guess, &moved) {
+        Ok(rate) => rate.plus(R::constant(-1.0), &[1.0], [&from.rate]),
+        // A start next to the border of what can be evaluated: the controller finds its way from a smaller step.
+        Err(_) => return Ok(share * guess),
+    };
+    let curvature = measured(equation, &change) / guess;
+    let steepest = speed.max(curvature);
+    let exponent = R::constant(1.0 / f64::from(M::ERROR_ORDER));
+    let second = if zero < steepest { (share / steepest).powf(exponent) } else { guess };
+    let step = (R::constant(100.0) * guess).min(second).min(span);
+    if zero < step && step.is_finite() {
+        return Ok(step);
+    }
+    Ok(guess)
+}

@@ -1,0 +1,81 @@
+//! Embedded pairs: a step, an estimate of its error, and a polynomial through it.
+
+use super::equation::{Equation, Measured};
+use super::explicit::FixedStep;
+use super::vector::Vector;
+use crate::{Failure, Real};
+
+/// An explicit Runge–Kutta method that estimates its own error and gives the solution between its steps.
+pub trait Embedded: FixedStep {
+    /// Exponent of the step size in the error estimate.
+    const ERROR_ORDER: u32;
+    /// Largest factor by which a step may grow.
+    const LARGEST_GROWTH: f64;
+    /// Share of the last step's error in the choice of the next, β of the controller.
+    const MEMORY: f64;
+    /// Rates that later calls use again.
+    type Stages<Y: Copy>: Copy;
+    /// The polynomial of a step.
+    type Dense<Y: Copy>: Copy;
+
+    /// A step of `h` from `y` at `t` (s), whose rate is known.
+    ///
+    /// # Errors
+    /// Those of the equation.
+    fn trial<R: Real, E: Equation<R>>(
+        equation: &mut E,
+        t: R,
+        h: R,
+        y: &E::State,
+        rate: &E::State,
+    ) -> Result<TrialOf<Self, E::State>, Failure>;
+
+    /// The error of a trial over its tolerance.
+    fn error<R: Real, E: Measured<R>>(
+        equation: &E,
+        h: R,
+        y: &E::State,
+        rate: &E::State,
+        trial: &TrialOf<Self, E::State>,
+    ) -> R;
+
+    /// The polynomial of an accepted step. `end` is the settled state and its rate, so that the polynomial meets what
+    /// the next step starts from.
+    ///
+    /// # Errors
+    /// Those of the equation, where the polynomial needs stages of its own.
+    fn dense<R: Real, E: Equation<R>>(
+        equation: &mut E,
+        step: &Taken<'_, R, E::State, Self::Stages<E::State>>,
+    ) -> Result<Self::Dense<E::State>, Failure>;
+
+    /// The polynomial at `theta`, 0 at the beginning of the step, 1 at its end.
+    fn interpolate<R: Real, Y: Vector<R>>(dense: &Self::Dense<Y>, theta: R) -> Y;
+}
+
+/// What a trial of method `X` gives.
+pub type TrialOf<X, Y> = Trial<Y, <X as Embedded>::Stages<Y>>;
+
+/// A step that is still to be judged.
+#[derive(Clone, Copy, Debug)]
+pub struct Trial<Y, K> {
+    /// The state that it leads to, not settled.
+    pub y: Y,
+    /// Its rates.
+    pub stages: K,
+}
+
+/// A step that was accepted and settled.
+#[derive(Clone, Copy, Debug)]
+pub struct Taken<'a, R, Y, K> {
+    /// Time (s) at its beginning.
+    pub t: R,
+    /// Its length (s).
+    pub h: R,
+    /// State and rate at its beginning.
+    pub start: (&'a Y, &'a Y),
+    /// State and rate at its end.
+    pub end: (&'a Y, &'a Y),
+    /// Its rates in between.
+    pub stages: &'a K,
+}

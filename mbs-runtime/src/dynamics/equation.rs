@@ -1,0 +1,30 @@
+//! The ordinary differential equation that an explicit integrator solves.
+
+use super::vector::Vector;
+use crate::{Failure, Scalar};
+
+/// ẏ = f(t, y), with what is done to a state once a step is accepted.
+pub trait Equation<T: Scalar> {
+    /// What is integrated.
+    type State: Vector<T>;
+
+    /// f(t, y).
+    ///
+    /// # Errors
+    /// Whatever leaves the rate undetermined.
+    fn rate(&mut self, t: T, y: &Self::State) -> Result<Self::State, Failure>;
+
+    /// Puts a state that a step ended in back where it belongs: onto the constraints.
+    ///
+    /// # Errors
+    /// Where it cannot be put back.
+    fn settle(&mut self, _t: T, _y: &mut Self::State) -> Result<(), Failure> {
+        Ok(())
+    }
+}
+
+/// An equation with tolerances: what an adaptive integrator needs.
+pub trait Measured<T: Scalar>: Equation<T> {
+    /// The largest component of `error` over its tolerance, for a step from `before` to `after`: accepted up to 1.
+    fn measure(&self, before: &Self::State, after: &Self::State, error: &Self::State) -> T;
+}

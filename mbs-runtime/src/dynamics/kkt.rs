@@ -1,0 +1,168 @@
+//! M x + Φ_qᵀ λ = f with Φ_q x = g: accelerations and multipliers, and every projection.
+
+use super::blocks::Blocks;
+use super::metric::Metric;
+use super::null_space::NullSpace;
+use crate::{Entry, Failure, Real};
+
+/// Smallest over largest pivot below which the LU factors are not used.
+///
+/// In the metric a nearly dependent row of singular value σ leaves a pivot σ²: at 1e-4 the row is dependent to two
+/// digits, and the multipliers have lost four of theirs. Orthogonal factors lose two.
+const LEAST_PIVOT: f64 = 1e-4;
+
+/// Largest growth of an entry in the elimination: beyond it three digits are lost to the order of the pivots.
+const LARGEST_GROWTH: f64 = 1e3;
+
+/// Singular value of Φ_q in the metric, relative to the largest, below which a row counts as dependent.
+pub const TRUNCATION: f64 = 1e-10;
+
+/// M and Φ_q in the reference metric: S M S κ and W Φ_q S, S the coordinates' scales, W the rows' reciprocals, κ such
+/// that the largest entry of the first is 1. So no decision depends on units.
+#[derive(Clone, Copy, Debug)]
+pub struct System<R, const N: usize, const M: usize> {
+    pub(super) mass: [[R; N]; N],
+    pub(super) phi_q: [[R; N]; M],
+    mass_weight: R,
+    metric: Metric<R, N, M>,
+}
+
+impl<R: Real, const N: usize, const M: usize> System<R, N, M> {
+    /// Takes up `mass` (N rows of N) and `phi_q` (M rows of N).
+    pub fn new(mass: &[[R; N]; N], phi_q: &[[R; N]; M], metric: &Metric<R, N, M>) -> Self {
+        let (zero, one) = (R::constant(0.0), R::constant(1.0));
+        let (mut mass, mut phi_q) = (*mass, *phi_q);
+        let mut largest = zero;
+        for (row, scale) in mass.iter_mut().zip(&metric.coordinates) {
+            for (entry, other) in row.iter_mut().zip(&metric.coordinates) {
+                *entry = *entry * *scale * *other;
+                largest = largest.max(entry.abs());
+            }
+        }
+        let weight = one / largest;
+        let mass_weight = if weight.is_finite() { weight } else { one };
+        mass.iter_mut().flatten().for_each(|entry| *entry = *entry * mass_weight);
+        for (row, row_scale) in phi_q.iter_mut().zip(&metric.rows) {
+            let weight = one / *row_scale;
+            row.iter_mut()
+                .zip(&metric.coordinates)
+                .for_each(|(entry, scale)| *entry = *entry * *scale * weight);
+        }
+        System { mass, phi_q, mass_weight, metric: *metric }
+    }
+
+    /// Factorises the system: LU with pivoting, or, where that is near singular, rank-revealing.
+    ///
+    /// # Errors
+    /// [`Failure::Inertialess`] where no mass moves with a motion that the rows leave free: ker M ∩ ker Φ_q ≠ {0}.
+    pub fn factorize(&self, coordinates: &[Entry], t: R) -> Result<Factors<R, N, M>, Failure> {
+        let (blocks, health) = Blocks::factorize(&self.mass, &self.phi_q);
+        let good = R::constant(LEAST_PIVOT) < health.margin && health.growth < R::constant(LARGEST_GROWTH);
+        if good {
+            return Ok(Factors { kind: Kind::Blocks(blocks), ..self.factors(health.margin.sqrt()) });
+        }
+        self.factorize_rank_revealing(R::constant(TRUNCATION), coordinates, t)
+    }
+
+    /// Factorises Φ_q rank-revealing and M on its null space; rows whose part of their own is below `truncation` count
+    /// as dependent.
+    ///
+    /// # Errors
+    /// As [`factorize`](Self::factorize).
+    #[cold]
+    #[inline(never)]
+    pub fn factorize_rank_revealing(
+        &self,
+        truncation: R,
+        coordinates: &[Entry],
+        t: R,
+    ) -> Result<Factors<R, N, M>, Failure> {
+        match NullSpace::factorize(&self.mass, &self.phi_q, truncation) {
+            Ok(null_space) => {
+                let margin = null_space.margin();
+                Ok(Factors { kind: Kind::NullSpace(null_space), ..self.factors(margin) })
+            }
+            Err(index) => {
+                let coordinate =
+                    crate::kinematics::entry(coordinates, u16::try_from(index).unwrap_or(u16::MAX));
+                Err(Failure::Inertialess { coordinate, time: t.to_f64() })
+            }
+        }
+    }
+
+    fn factors(&self, margin: R) -> Factors<R, N, M> {
+        Factors { kind: Kind::None, margin, mass_weight: self.mass_weight, metric: self.metric }
+    }
+}
+
+/// A factorised system.
+#[derive(Clone, Copy, Debug)]
+pub struct Factors<R, const N: usize, const M: usize> {
+    kind: Kind<R, N, M>,
+    margin: R,
+    mass_weight: R,
+    metric: Metric<R, N, M>,
+}
+
+#[derive(Clone, Copy, Debug)]
+#[allow(clippy::large_enum_variant, reason = "both live on the stack: nothing here allocates")]
+enum Kind<R, const N: usize, const M: usize> {
+    None,
+    Blocks(Blocks<R, N, M>),
+    NullSpace(NullSpace<R, N, M>),
+}
+
+impl<R: Real, const N: usize, const M: usize> Factors<R, N, M> {
+    /// Solves M x + Φ_qᵀ λ = f, Φ_q x = g. `f`: N; `g`: M. Returns `x`: N, `λ`: M.
+    ///
+    /// Where rows are dependent, the multipliers are the shortest in the metric, and `x` fulfils the independent rows.
+    #[inline]
+    pub fn solve(&self, f: &[R; N], g: &[R; M]) -> ([R; N], [R; M]) {
+        let (mut upper, mut lower) = (*f, *g);
+        for (component, scale) in upper.iter_mut().zip(&self.metric.coordinates) {
+            *component = *component * *scale * self.mass_weight;
+        }
+        lower
+            .iter_mut()
+            .zip(&self.metric.rows)
+            .for_each(|(component, scale)| *component = *component / *scale);
+        let (mut x, mut lambda) = match &self.kind {
+            Kind::None => (upper, lower),
+            Kind::Blocks(blocks) => blocks.solve(upper, lower),
+            Kind::NullSpace(null_space) => null_space.solve(&upper, &lower),
+        };
+        x.iter_mut()
+            .zip(&self.metric.coordinates)
+            .for_each(|(component, scale)| *component = *component * *scale);
+        for (component, scale) in lambda.iter_mut().zip(&self.metric.rows) {
+            *component = *component / (*scale * self.mass_weight);
+        }
+        (x, lambda)
+    }
+
+    /// How near Φ_q is to losing rank: about its smallest over its largest singular value in the metric; of rows that
+    /// are dependent, that of the others.
+    pub fn margin(&self) -> R {
+        self.margin
+    }
+
+    /// Whether the rank-revealing factorization was needed.
+    pub fn is_rank_revealing(&self) -> bool {
+        matches!(self.kind, Kind::NullSpace(_))
+    }
+
+    /// Number of independent rows.
+    pub fn rank(&self) -> usize {
+        if let Kind::NullSpace(null_space) = &self.kind { null_space.rank() } else { M }
+    }
+
+    /// Which rows depend on the others: M.
+    pub fn dependent_rows(&self) -> [bool; M] {
+        if let Kind::NullSpace(null_space) = &self.kind { null_space.dependent_rows() } else { [false; M] }
+    }
+
+    /// Which multipliers the system determines uniquely: M. The others are the shortest choice.
+    pub fn unique_multipliers(&self) -> [bool; M] {
+        if let Kind::NullSpace(null_space) = &self.kind { null_space.unique_multipliers() } else { [true; M] }
+    }
+}

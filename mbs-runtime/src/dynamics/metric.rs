@@ -1,0 +1,75 @@
+//! The reference metric of a mechanism's coordinates and rows, and which coordinates are of one kind.
+
+use crate::{Entry, Mechanism, Real, Scalar};
+
+/// Scales of coordinates and rows, fixed by units and dimensions alone, and kinds of unit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Metric<T, const N: usize, const M: usize> {
+    /// 1 for angles and pure numbers, the reference length for lengths: N.
+    pub coordinates: [T; N],
+    /// The reference length to the power that the row's unit has of metres: M.
+    pub rows: [T; M],
+    /// Of each coordinate the first one with the same unit: N.
+    kinds: [usize; N],
+}
+
+impl<T: Scalar, const N: usize, const M: usize> Metric<T, N, M> {
+    /// That of a mechanism.
+    pub fn of<S: Mechanism<T, N, M>>(mechanism: &S, parameters: &S::Parameters) -> Self {
+        let mut kinds = [0; N];
+        for (kind, entry) in kinds.iter_mut().zip(S::COORDINATES) {
+            let same = |other: &Entry| other.unit == entry.unit;
+            *kind = S::COORDINATES.iter().position(same).unwrap_or(0);
+        }
+        Metric {
+            coordinates: mechanism.coordinate_scales(parameters),
+            rows: mechanism.row_scales(parameters),
+            kinds,
+        }
+    }
+}
+
+impl<R: Real, const N: usize, const M: usize> Metric<R, N, M> {
+    /// The largest of `error` (N) over its tolerance rtol ‖x‖ + atol scale, ‖x‖ the largest of `before` and `after`
+    /// (N) among the coordinates of the same unit.
+    ///
+    /// A coordinate that passes zero is measured by its neighbours and not by itself; a small group cannot hide in a
+    /// mean over all.
+    pub fn measure(&self, tolerance: &Tolerance<R>, before: &[R; N], after: &[R; N], error: &[R; N]) -> R {
+        let mut sizes = [R::constant(0.0); N];
+        for ((kind, x), y) in self.kinds.iter().zip(before).zip(after) {
+            if let Some(size) = sizes.get_mut(*kind) {
+                *size = size.max(x.abs()).max(y.abs());
+            }
+        }
+        let mut largest = R::constant(0.0);
+        for ((error, scale), kind) in error.iter().zip(&self.coordinates).zip(&self.kinds) {
+            let size = sizes.get(*kind).copied().unwrap_or(*scale);
+            let ratio = error.abs() / (tolerance.relative * size + tolerance.absolute * *scale);
+            largest = worse(largest, ratio);
+        }
+        largest
+    }
+}
+
+/// The larger one; the first that is not finite stays.
+pub(crate) fn worse<R: Real>(largest: R, ratio: R) -> R {
+    let settled = ratio <= largest || !largest.is_finite();
+    if settled { largest } else { ratio }
+}
+
+/// What an adaptive integration may be wrong by in one step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tolerance<R> {
+    /// Of the largest coordinate, velocity or state of the same kind.
+    pub relative: R,
+    /// Of a coordinate's scale (rad, or reference lengths), and of as much per second.
+    pub absolute: R,
+}
+
+impl<R: Real> Tolerance<R> {
+    /// The same number for both.
+    pub fn new(tolerance: f64) -> Self {
+        Tolerance { relative: R::constant(tolerance), absolute: R::constant(tolerance) }
+    }
+}

@@ -1,0 +1,206 @@
+//! A mechanism as the methods see it: with its stage-0 values and its metric.
+
+use super::metric::Metric;
+use super::vector::State;
+use crate::{Dynamic, Failure, Real, kinematics};
+
+/// A mechanism with the values that do not change while it moves.
+pub struct Model<'a, S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> {
+    /// The mechanism.
+    pub mechanism: &'a S,
+    /// Its stage-0 values.
+    pub parameters: &'a S::Parameters,
+    /// Its reference metric.
+    pub metric: &'a Metric<R, N, M>,
+    /// Whether the work of forces and drives is integrated.
+    pub balanced: bool,
+}
+
+/// Rates of one state, with the multipliers that belong to them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Solved<R, const N: usize, const M: usize, Z> {
+    /// q̇, q̈, ż and the power of forces and drives.
+    pub rate: State<R, N, Z>,
+    /// Multipliers λ: M.
+    pub lambda: [R; M],
+    /// How near Φ_q is to losing rank: 0 where it does, at most 1.
+    pub margin: R,
+}
+
+/// What a run has spent.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Right-hand sides evaluated.
+    pub evaluations: u64,
+    /// Of those, with a rank-revealing factorization.
+    pub rank_revealing: u64,
+    /// Of those, handed over by a method that needs independent coordinates where it has none.
+    pub handed_over: u64,
+    /// Stages that were put onto the constraints before they were evaluated.
+    pub projected_stages: u64,
+    /// Of the evaluations, at a singular position, where accelerations were taken from both sides of it.
+    pub singular: u64,
+    /// Corrections of positions and velocities by a projection.
+    pub corrections: u64,
+    /// Steps taken.
+    pub steps: u64,
+    /// Iterations of implicit methods.
+    pub iterations: u64,
+}
+
+/// How the accelerations follow from a state, and how a state stays on the constraints.
+pub trait Formulation<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>: Copy {
+    /// Rates and multipliers at `(t, y)`; `lambda` (M) are those of the last state, where friction starts from.
+    ///
+    /// # Errors
+    /// [`Failure::NonFinite`], [`Failure::Inertialess`], and what the formulation needs beside.
+    fn solve(
+        &self,
+        model: &Model<'_, S, R, N, M>,
+        t: R,
+        y: &State<R, N, S::States>,
+        lambda: &[R; M],
+        counts: &mut Counts,
+    ) -> Result<Solved<R, N, M, S::States>, Failure>;
+
+    /// Puts the state that a step ended in back onto the constraints, as far as the formulation does.
+    ///
+    /// # Errors
+    /// [`Failure::Inconsistent`] where that cannot be done.
+    fn settle(
+        &self,
+        _model: &Model<'_, S, R, N, M>,
+        _t: R,
+        _y: &mut State<R, N, S::States>,
+        _counts: &mut Counts,
+    ) -> Result<(), Failure> {
+        Ok(())
+    }
+
+    /// Whether a step of `h` (s) is one that the formulation is stable with.
+    ///
+    /// # Errors
+    /// [`Failure::StepTooLong`].
+    fn admit(&self, _h: R, _t: R) -> Result<(), Failure> {
+        Ok(())
+    }
+
+    /// What is doubtful about steps of `h` (s) in a run of `span` (s).
+    fn doubt(&self, _h: R, _span: R) -> Option<Doubt> {
+        None
+    }
+}
+
+/// Accelerations (N) and multipliers (M), with the force (N) that belongs to them.
+type Balanced<R, const N: usize, const M: usize> = ([R; N], [R; M], [R; N]);
+
+/// What is allowed and still not advisable.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Doubt {
+    /// Baumgarte's frequency times the step is above 0.3: the stabilisation costs accuracy.
+    StiffStabilization,
+    /// Baumgarte's frequency times the duration is below 5: the stabilisation does nothing.
+    IdleStabilization,
+}
+
+impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, R, N, M> {
+    /// Stage-1 values of a state.
+    #[inline(always)]
+    pub fn position(&self, t: R, y: &State<R, N, S::States>) -> S::Position {
+        self.mechanism.position(self.parameters, &y.q, t)
+    }
+
+    /// Fails where a coordinate, velocity or state is no number, or a coordinate is not resolved.
+    pub(super) fn check(&self, t: R, y: &State<R, N, S::States>) -> Result<(), Failure> {
+        let bad = kinematics::time_failure(t)
+            .or_else(|| kinematics::coordinate_failure::<S, R, N, M>(&y.q, &self.metric.coordinates, t))
+            .or_else(|| kinematics::non_finite(&y.qd, S::COORDINATES))
+            .or_else(|| kinematics::non_finite_among(y.states.as_ref(), S::STATES));
+        bad.map_or(Ok(()), Err)
+    }
+
+    /// Fails with the name of the acceleration, multiplier or force that is no number.
+    #[inline(always)]
+    pub(super) fn check_solved(
+        &self,
+        qdd: &[R; N],
+        lambda: &[R; M],
+        force: &[R; N],
+        gamma: &[R; M],
+    ) -> Result<(), Failure> {
+        let finite = |values: &[R]| values.iter().fold(true, |all, value| all & value.is_finite());
+        if finite(qdd) && finite(lambda) {
+            return Ok(());
+        }
+        let bad = kinematics::non_finite(force, S::COORDINATES)
+            .or_else(|| kinematics::non_finite(gamma, S::ROWS))
+            .or_else(|| kinematics::non_finite(qdd, S::COORDINATES))
+            .or_else(|| kinematics::non_finite(lambda, S::ROWS));
+        bad.map_or(Ok(()), Err)
+    }
+
+    /// Rates of a state whose accelerations and multipliers are known.
+    #[inline(always)]
+    pub(super) fn rates(
+        &self,
+        position: &S::Position,
+        y: &State<R, N, S::States>,
+        qdd: [R; N],
+        lambda: &[R; M],
+    ) -> State<R, N, S::States> {
+        let (mechanism, parameters) = (self.mechanism, self.parameters);
+        let states = mechanism.state_rates(parameters, position, &y.qd, &y.states, lambda);
+        let work = if self.balanced { self.power(position, y, lambda) } else { R::constant(0.0) };
+        State { q: y.qd, qd: qdd, states, work }
+    }
+
+    /// Power (W) of the forces that are not potential, and of the drives: Σ Pᵢ + λᵀ Φ_t.
+    fn power(&self, position: &S::Position, y: &State<R, N, S::States>, lambda: &[R; M]) -> R {
+        let powers = self.mechanism.powers(self.parameters, position, &y.qd, &y.states, lambda);
+        let forces = powers.as_ref().iter().fold(R::constant(0.0), |sum, power| sum + *power);
+        let moving = self.mechanism.phi_t(self.parameters, position);
+        lambda.iter().zip(&moving).fold(forces, |sum, (lambda, rate)| sum + *lambda * *rate)
+    }
+
+    /// Solves with forces that may depend on the multipliers: `solve` gives accelerations and multipliers for a
+    /// force, and is asked again until the multipliers stand.
+    #[inline(always)]
+    pub(super) fn balanced(
+        &self,
+        position: &S::Position,
+        (t, y): (R, &State<R, N, S::States>),
+        lambda: &[R; M],
+        mut solve: impl FnMut(&[R; N]) -> ([R; N], [R; M]),
+    ) -> Result<Balanced<R, N, M>, Failure> {
+        let mut known = *lambda;
+        let mut force;
+        for _ in 0..MOST_ITERATIONS {
+            force = self.mechanism.force(self.parameters, position, &y.qd, &y.states, &known);
+            let (qdd, found) = solve(&force);
+            if !S::FORCE_USES_MULTIPLIERS || self.stands(&known, &found) {
+                return Ok((qdd, found, force));
+            }
+            known = found;
+        }
+        let coordinate = kinematics::entry(S::COORDINATES, 0);
+        Err(Failure::Unbalanced { coordinate, iterations: MOST_ITERATIONS, time: t.to_f64() })
+    }
+
+    /// Whether the multipliers have changed by rounding alone; also where they are no numbers.
+    fn stands(&self, before: &[R; M], after: &[R; M]) -> bool {
+        let zero = R::constant(0.0);
+        let (mut change, mut size) = (zero, zero);
+        for ((before, after), scale) in before.iter().zip(after).zip(&self.metric.rows) {
+            change = change + ((*after - *before) * *scale).abs();
+            size = size + (*after * *scale).abs();
+        }
+        !(R::constant(STANDING) * R::EPSILON * size).less(change)
+    }
+}
+
+/// Iterations for friction, whose force depends on the multipliers that it changes. The change falls by the coefficient
+/// of friction times a ratio of lengths in each.
+const MOST_ITERATIONS: u32 = 200;
+
+/// Change of the multipliers, in ε of their size, that counts as rounding.
+const STANDING: f64 = 16.0;

@@ -1,0 +1,200 @@
+//! A mechanism as an ordinary differential equation, and the explicit methods that integrate it.
+
+use super::equation::{Equation, Measured};
+use super::explicit::FixedStep;
+use super::metric::{Tolerance, worse};
+use super::model::{Counts, Doubt, Formulation, Model, Solved};
+use super::vector::State;
+use crate::{Dynamic, Failure, Real};
+
+/// One instant of a motion: state, accelerations, multipliers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Instant<R, const N: usize, const M: usize, Z> {
+    /// Time (s).
+    pub t: R,
+    /// Coordinates, velocities, first-order states, work.
+    pub y: State<R, N, Z>,
+    /// Their rates and the multipliers.
+    pub solved: Solved<R, N, M, Z>,
+}
+
+/// A way to move on: integrator and formulation in one.
+pub trait Method<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>: Copy {
+    /// Accelerations and multipliers at a state.
+    ///
+    /// # Errors
+    /// Those of [`Formulation::solve`].
+    fn solve(
+        &self,
+        model: &Model<'_, S, R, N, M>,
+        t: R,
+        y: &State<R, N, S::States>,
+        lambda: &[R; M],
+        counts: &mut Counts,
+    ) -> Result<Solved<R, N, M, S::States>, Failure>;
+
+    /// One step of `h` (s), positive.
+    ///
+    /// # Errors
+    /// Those of [`Formulation::solve`] and [`Formulation::settle`]; [`Failure::Unbalanced`] of implicit methods.
+    fn step(
+        &self,
+        model: &Model<'_, S, R, N, M>,
+        from: &Instant<R, N, M, S::States>,
+        h: R,
+        counts: &mut Counts,
+    ) -> Result<Instant<R, N, M, S::States>, Failure>;
+
+    /// See [`Formulation::admit`].
+    ///
+    /// # Errors
+    /// [`Failure::StepTooLong`].
+    fn admit(&self, _h: R, _t: R) -> Result<(), Failure> {
+        Ok(())
+    }
+
+    /// See [`Formulation::doubt`].
+    fn doubt(&self, _h: R, _span: R) -> Option<Doubt> {
+        None
+    }
+}
+
+/// An explicit integrator `I` with a formulation `F`.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Explicit<I, F> {
+    /// The integrator.
+    pub integrator: I,
+    /// How accelerations follow from a state.
+    pub formulation: F,
+}
+
+impl<I, F> Explicit<I, F> {
+    /// Both parts.
+    pub fn new(integrator: I, formulation: F) -> Self {
+        Explicit { integrator, formulation }
+    }
+}
+
+impl<S, R, I, F, const N: usize, const M: usize> Method<S, R, N, M> for Explicit<I, F>
+where
+    S: Dynamic<R, N, M>,
+    R: Real,
+    I: FixedStep,
+    F: Formulation<S, R, N, M>,
+{
+    fn solve(
+        &self,
+        model: &Model<'_, S, R, N, M>,
+        t: R,
+        y: &State<R, N, S::States>,
+        lambda: &[R; M],
+        counts: &mut Counts,
+    ) -> Result<Solved<R, N, M, S::States>, Failure> {
+        self.formulation.solve(model, t, y, lambda, counts)
+    }
+
+    fn step(
+        &self,
+        model: &Model<'_, S, R, N, M>,
+        from: &Instant<R, N, M, S::States>,
+        h: R,
+        counts: &mut Counts,
+    ) -> Result<Instant<R, N, M, S::States>, Failure> {
+        let mut motion = Equations::new(model, &self.formulation, from, *counts);
+        let t = from.t + h;
+        let mut y = I::step(&mut motion, from.t, h, &from.y, &from.solved.rate)?;
+        motion.settle(t, &mut y)?;
+        let solved = motion.solve(t, &y)?;
+        *counts = motion.counts;
+        Ok(Instant { t, y, solved })
+    }
+
+    fn admit(&self, h: R, t: R) -> Result<(), Failure> {
+        self.formulation.admit(h, t)
+    }
+
+    fn doubt(&self, h: R, span: R) -> Option<Doubt> {
+        self.formulation.doubt(h, span)
+    }
+}
+
+/// The equations of motion as an integrator sees them.
+pub struct Equations<'a, S: Dynamic<R, N, M>, F, R: Real, const N: usize, const M: usize> {
+    model: &'a Model<'a, S, R, N, M>,
+    formulation: &'a F,
+    tolerance: Tolerance<R>,
+    /// What was found at the last evaluation.
+    last: Solved<R, N, M, S::States>,
+    pub(super) counts: Counts,
+}
+
+impl<'a, S, F, R, const N: usize, const M: usize> Equations<'a, S, F, R, N, M>
+where
+    S: Dynamic<R, N, M>,
+    F: Formulation<S, R, N, M>,
+    R: Real,
+{
+    /// Those of a motion that continues `from`.
+    pub(super) fn new(
+        model: &'a Model<'a, S, R, N, M>,
+        formulation: &'a F,
+        from: &Instant<R, N, M, S::States>,
+        counts: Counts,
+    ) -> Self {
+        Equations { model, formulation, tolerance: Tolerance::new(0.0), last: from.solved, counts }
+    }
+
+    pub(super) fn with_tolerance(self, tolerance: Tolerance<R>) -> Self {
+        Equations { tolerance, ..self }
+    }
+
+    /// Rates and multipliers of a state.
+    #[inline]
+    pub(super) fn solve(
+        &mut self,
+        t: R,
+        y: &State<R, N, S::States>,
+    ) -> Result<Solved<R, N, M, S::States>, Failure> {
+        self.last = self.formulation.solve(self.model, t, y, &self.last.lambda, &mut self.counts)?;
+        Ok(self.last)
+    }
+}
+
+impl<S, F, R, const N: usize, const M: usize> Equation<R> for Equations<'_, S, F, R, N, M>
+where
+    S: Dynamic<R, N, M>,
+    F: Formulation<S, R, N, M>,
+    R: Real,
+{
+    type State = State<R, N, S::States>;
+
+    #[inline]
+    fn rate(&mut self, t: R, y: &Self::State) -> Result<Self::State, Failure> {
+        Ok(self.solve(t, y)?.rate)
+    }
+
+    #[inline]
+    fn settle(&mut self, t: R, y: &mut Self::State) -> Result<(), Failure> {
+        self.formulation.settle(self.model, t, y, &mut self.counts)
+    }
+}
+
+impl<S, F, R, const N: usize, const M: usize> Measured<R> for Equations<'_, S, F, R, N, M>
+where
+    S: Dynamic<R, N, M>,
+    F: Formulation<S, R, N, M>,
+    R: Real,
+{
+    /// The worst of coordinates, velocities and states. Work is watched, not controlled: that it is watched changes no
+    /// step.
+    fn measure(&self, before: &Self::State, after: &Self::State, error: &Self::State) -> R {
+        let metric = self.model.metric;
+        let q = metric.measure(&self.tolerance, &before.q, &after.q, &error.q);
+        let qd = metric.measure(&self.tolerance, &before.qd, &after.qd, &error.qd);
+        let states = before.states.as_ref().iter().zip(after.states.as_ref()).zip(error.states.as_ref());
+        states.fold(worse(q, qd), |largest, ((before, after), error)| {
+            let size = before.abs().max(after.abs());
+            worse(largest, error.abs() / (self.tolerance.relative * size + self.tolerance.absolute))
+        })
+    }
+}

@@ -1,0 +1,63 @@
+//! Index 1 with multipliers: accelerations from M q̈ + Φ_qᵀ λ = Q with Φ_q q̈ = γ.
+
+use super::kkt::{Factors, System};
+use super::model::{Counts, Formulation, Model, Solved};
+use super::vector::State;
+use crate::{Dynamic, Failure, Real};
+
+/// Accelerations and multipliers from the constraints' second derivative alone, without stabilisation.
+///
+/// Φ = 0 and Φ̇ = 0 drift away: what rounding and the integrator leave in them stays and grows, Φ with the square of the
+/// time at worst. For short runs, and to show what stabilisation is good for.
+/// Source: García de Jalón & Bayo 1994, §5.1.1.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Unstabilized;
+
+impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Formulation<S, R, N, M> for Unstabilized {
+    fn solve(
+        &self,
+        model: &Model<'_, S, R, N, M>,
+        t: R,
+        y: &State<R, N, S::States>,
+        lambda: &[R; M],
+        counts: &mut Counts,
+    ) -> Result<Solved<R, N, M, S::States>, Failure> {
+        let position = model.position(t, y);
+        let factors = factorize(model, t, &position, counts)?;
+        let gamma = model.mechanism.gamma(model.parameters, &position, &y.qd);
+        solve(model, (t, y), &position, lambda, &factors, &gamma)
+    }
+}
+
+/// The factorised system at a position.
+#[inline(always)]
+pub(super) fn factorize<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
+    model: &Model<'_, S, R, N, M>,
+    t: R,
+    position: &S::Position,
+    counts: &mut Counts,
+) -> Result<Factors<R, N, M>, Failure> {
+    counts.evaluations += 1;
+    let mass = model.mechanism.mass(model.parameters, position);
+    let phi_q = model.mechanism.phi_q(model.parameters, position);
+    let factors = System::new(&mass, &phi_q, model.metric).factorize(S::COORDINATES, t)?;
+    counts.rank_revealing += u64::from(factors.is_rank_revealing());
+    Ok(factors)
+}
+
+/// Rates and multipliers at `(t, y)` with the factors of its position, for the right-hand side `gamma` (M) of the rows.
+#[inline(always)]
+pub(super) fn solve<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
+    model: &Model<'_, S, R, N, M>,
+    (t, y): (R, &State<R, N, S::States>),
+    position: &S::Position,
+    lambda: &[R; M],
+    factors: &Factors<R, N, M>,
+    gamma: &[R; M],
+) -> Result<Solved<R, N, M, S::States>, Failure> {
+    let (qdd, lambda, force) =
+        model.balanced(position, (t, y), lambda, |force| factors.solve(force, gamma))?;
+    model.check_solved(&qdd, &lambda, &force, gamma)?;
+    let rate = model.rates(position, y, qdd, &lambda);
+    Ok(Solved { rate, lambda, margin: factors.margin() })
+}

@@ -1,0 +1,502 @@
+//! A mechanism that moves by its forces: state and mechanism in one place, one call a step.
+
+use super::adaptive::{Accepted, Adaptive, Point};
+use super::embedded::Embedded;
+use super::event::{Direction, passage};
+use super::metric::{Metric, Tolerance};
+use super::model::{Counts, Doubt, Formulation, Model};
+use super::motion::{Equations, Explicit, Instant, Method};
+use super::projection::Projection;
+use super::vector::State;
+use crate::{Dynamic, Energy, Failure, Motion, Real, kinematics};
+
+/// Violation of a row that a start may have, in the reference metric (per second for its rate): numbers typed with
+/// nine digits. What it has is projected out.
+const START_ALLOWANCE: f64 = 1e-8;
+
+/// Tolerance of an adaptive integration where none is given.
+const TOLERANCE: f64 = 1e-9;
+
+/// A mechanism in motion with method `X`. It owns everything, allocates nothing, and a failed call leaves it as it was.
+///
+/// For a control loop: [`change`](Self::change) the inputs, [`step`](Self::step), read.
+#[derive(Clone, Copy, Debug)]
+pub struct Simulation<S: Dynamic<R, N, M>, X, R: Real, const N: usize, const M: usize> {
+    mechanism: S,
+    parameters: S::Parameters,
+    metric: Metric<R, N, M>,
+    method: X,
+    fault: Option<Failure>,
+    now: Instant<R, N, M, S::States>,
+    /// Whether parameters or inputs have changed since the instant was solved.
+    stale: bool,
+    start: R,
+    balanced: bool,
+    /// Energy (J) at the start, moved along where parameters change it.
+    reference: R,
+    tolerance: Tolerance<R>,
+    adaptive: Adaptive<R>,
+    counts: Counts,
+}
+
+/// How a run went so far: energy that is not accounted for, rows that are violated, what it cost.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Balance<R> {
+    /// Kinetic and potential energy (J).
+    pub energy: Energy<R>,
+    /// What forces and drives have done since the start (J).
+    pub work: R,
+    /// Energy less work less the energy at the start (J): 0 of an exact integration.
+    pub defect: R,
+    /// Largest |Φᵢ| over its row's scale.
+    pub phi: R,
+    /// Largest |Φ̇ᵢ| over its row's scale (1/s).
+    pub phi_d: R,
+}
+
+impl<S, X, R, const N: usize, const M: usize> Simulation<S, X, R, N, M>
+where
+    S: Dynamic<R, N, M>,
+    X: Method<S, R, N, M>,
+    R: Real,
+{
+    /// Starts from `q` (N) and `qd` (N) at `t` (s), which must be on the constraints to nine digits; the rest is
+    /// projected.
+    ///
+    /// # Errors
+    /// [`Failure::NonFinite`]; [`Failure::Inconsistent`] with the row that is violated most; those of the method.
+    pub fn start(
+        mechanism: S,
+        method: X,
+        t: R,
+        q: impl Into<[R; N]>,
+        qd: impl Into<[R; N]>,
+    ) -> Result<Self, Failure> {
+        Self::starting(mechanism, method, t, (q.into(), qd.into()), true)
+    }
+
+    /// Starts next to `q` (N) and `qd` (N) at `t` (s): from the positions and velocities on the constraints that are
+    /// nearest in the mass's measure.
+    ///
+    /// # Errors
+    /// [`Failure::NonFinite`]; [`Failure::Inconsistent`] where the constraints cannot be met from there; those of the
+    /// method.
+    pub fn start_near(
+        mechanism: S,
+        method: X,
+        t: R,
+        q: impl Into<[R; N]>,
+        qd: impl Into<[R; N]>,
+    ) -> Result<Self, Failure> {
+        Self::starting(mechanism, method, t, (q.into(), qd.into()), false)
+    }
+
+    /// Starts next to the text's guess with the text's start rates at `t` (s).
+    ///
+    /// # Errors
+    /// As [`start_near`](Self::start_near).
+    pub fn start_from_text(mechanism: S, method: X, t: R) -> Result<Self, Failure> {
+        let parameters = mechanism.parameters();
+        let (q, qd) = (mechanism.guess(&parameters), mechanism.start_rates(&parameters));
+        Self::starting(mechanism, method, t, (q, qd), false)
+    }
+
+    fn starting(
+        mechanism: S,
+        method: X,
+        t: R,
+        (q, qd): ([R; N], [R; N]),
+        consistent: bool,
+    ) -> Result<Self, Failure> {
+        if let Some(failure) = kinematics::variable_failure(&mechanism) {
+            return Err(failure);
+        }
+        let parameters = mechanism.parameters();
+        let metric = Metric::of(&mechanism, &parameters);
+        let model = Model { mechanism: &mechanism, parameters: &parameters, metric: &metric, balanced: true };
+        let mut counts = Counts::default();
+        let states = mechanism.start_states(&parameters);
+        let mut y = State { q, qd, states, work: R::constant(0.0) };
+        model.check(t, &y)?;
+        if consistent {
+            model.require_consistent(t, &y)?;
+        }
+        Projection::default().settle(&model, t, &mut y, &mut counts)?;
+        let solved = method.solve(&model, t, &y, &[R::constant(0.0); M], &mut counts)?;
+        let now = Instant { t, y, solved };
+        model.check_branches(t, &y, true)?;
+        let reference = model.total_energy(t, &y);
+        Ok(Simulation {
+            mechanism,
+            parameters,
+            metric,
+            method,
+            fault: None,
+            now,
+            stale: false,
+            start: t,
+            balanced: true,
+            reference,
+            tolerance: Tolerance::new(TOLERANCE),
+            adaptive: Adaptive::default(),
+            counts,
+        })
+    }
+
+    /// Without the integral of the forces' work, which costs an evaluation of every power a stage.
+    pub fn without_work(self) -> Self {
+        Simulation { balanced: false, ..self }
+    }
+
+    /// Moves on by one step of `h` (s): a fixed amount of work.
+    ///
+    /// # Errors
+    /// [`Failure::InvalidStep`], [`Failure::StepTooLong`], those of the method, [`Failure::WrongBranch`]; the state is
+    /// then bit for bit what it was.
+    pub fn step(&mut self, h: R) -> Result<(), Failure> {
+        let t = self.now.t + h;
+        if !R::constant(0.0).less(h) || !t.is_finite() || t == self.now.t {
+            return Err(Failure::InvalidStep { step: h.to_f64(), time: self.now.t.to_f64() });
+        }
+        self.method.admit(h, self.now.t)?;
+        let mut counts = self.counts;
+        let from = self.fresh(&mut counts)?;
+        let model = self.model();
+        let next = self.method.step(&model, &from, h, &mut counts)?;
+        model.check(next.t, &next.y)?;
+        model.check_branches(next.t, &next.y, false)?;
+        counts.steps += 1;
+        self.take(next, counts);
+        Ok(())
+    }
+
+    /// Moves on to `until` (s) in `steps` equal steps.
+    ///
+    /// # Errors
+    /// As [`step`](Self::step); the state is then that before the step that failed.
+    pub fn step_to(&mut self, until: R, steps: u32) -> Result<(), Failure> {
+        let (from, count) = (self.now.t, R::constant(f64::from(steps)));
+        for index in 1..=steps {
+            let share = R::constant(f64::from(index)) / count;
+            let end = if index == steps { until } else { from + (until - from) * share };
+            self.step(end - self.now.t)?;
+        }
+        Ok(())
+    }
+
+    /// The instant, solved anew where parameters or inputs have changed.
+    fn fresh(&self, counts: &mut Counts) -> Result<Instant<R, N, M, S::States>, Failure> {
+        if let Some(failure) = self.fault {
+            return Err(failure);
+        }
+        if !self.stale {
+            return Ok(self.now);
+        }
+        let Instant { t, mut y, solved } = self.now;
+        let model = self.model();
+        Projection::default().settle(&model, t, &mut y, counts)?;
+        let solved = self.method.solve(&model, t, &y, &solved.lambda, counts)?;
+        Ok(Instant { t, y, solved })
+    }
+
+    fn take(&mut self, next: Instant<R, N, M, S::States>, counts: Counts) {
+        self.now = next;
+        self.counts = counts;
+        self.stale = false;
+    }
+
+    fn model(&self) -> Model<'_, S, R, N, M> {
+        Model {
+            mechanism: &self.mechanism,
+            parameters: &self.parameters,
+            metric: &self.metric,
+            balanced: self.balanced,
+        }
+    }
+
+    /// Changes parameters or inputs; the next step solves with the new values. Energy that the change brings in or
+    /// takes out is not counted as a defect.
+    ///
+    /// A value that is NaN or infinite is reported by that step; change it back, and go on.
+    pub fn change<Y>(&mut self, change: impl FnOnce(&mut S) -> Y) -> Y {
+        let before = self.model().total_energy(self.now.t, &self.now.y);
+        let result = change(&mut self.mechanism);
+        self.parameters = self.mechanism.parameters();
+        self.metric = Metric::of(&self.mechanism, &self.parameters);
+        self.fault = kinematics::variable_failure(&self.mechanism);
+        let after = self.model().total_energy(self.now.t, &self.now.y);
+        if (after - before).is_finite() {
+            self.reference = self.reference + after - before;
+        }
+        self.stale = true;
+        self.adaptive.step = None;
+        result
+    }
+
+    /// Time (s).
+    pub fn t(&self) -> R {
+        self.now.t
+    }
+
+    /// Coordinates: N.
+    pub fn q(&self) -> &[R; N] {
+        &self.now.y.q
+    }
+
+    /// Velocities: N, in coordinate unit per second.
+    pub fn qd(&self) -> &[R; N] {
+        &self.now.y.qd
+    }
+
+    /// Accelerations: N, in coordinate unit per second squared.
+    pub fn qdd(&self) -> &[R; N] {
+        &self.now.solved.rate.qd
+    }
+
+    /// Multipliers λ: M; a row's force on the coordinates is −Φ_qᵀ λ.
+    pub fn lambda(&self) -> &[R; M] {
+        &self.now.solved.lambda
+    }
+
+    /// First-order states of the text.
+    pub fn states(&self) -> &S::States {
+        &self.now.y.states
+    }
+
+    /// State, rates and multipliers together.
+    pub fn instant(&self) -> &Instant<R, N, M, S::States> {
+        &self.now
+    }
+
+    /// How near Φ_q is to losing rank: 0 where it does, at most 1.
+    pub fn margin(&self) -> R {
+        self.now.solved.margin
+    }
+
+    /// The mechanism with its parameters and inputs.
+    pub fn mechanism(&self) -> &S {
+        &self.mechanism
+    }
+
+    /// What the run has spent.
+    pub fn counts(&self) -> Counts {
+        self.counts
+    }
+
+    /// What is doubtful about steps of `h` (s) from the start until now.
+    pub fn doubt(&self, h: R) -> Option<Doubt> {
+        self.method.doubt(h, self.now.t - self.start)
+    }
+
+    /// Outputs with their time derivatives.
+    pub fn outputs(&self) -> S::Outputs {
+        let position = self.model().position(self.now.t, &self.now.y);
+        self.mechanism.outputs(&self.parameters, &position, self.qd(), self.qdd())
+    }
+
+    /// Outputs that use multipliers or states: reactions, efforts.
+    pub fn loads(&self) -> S::Loads {
+        let position = self.model().position(self.now.t, &self.now.y);
+        let motion =
+            Motion { qd: self.qd(), qdd: self.qdd(), lambda: self.lambda(), states: &self.now.y.states };
+        self.mechanism.loads(&self.parameters, &position, &motion)
+    }
+
+    /// Energy balance and constraint norms.
+    pub fn balance(&self) -> Balance<R> {
+        let model = self.model();
+        let Instant { t, y, .. } = &self.now;
+        let position = model.position(*t, y);
+        let energy = self.mechanism.energy(&self.parameters, &position, &y.qd);
+        let largest = |values: [R; M]| {
+            let over = values.iter().zip(&self.metric.rows).map(|(value, scale)| (*value / *scale).abs());
+            over.fold(R::constant(0.0), |largest, value| largest.max(value))
+        };
+        Balance {
+            energy,
+            work: y.work,
+            defect: energy.kinetic + energy.potential - y.work - self.reference,
+            phi: largest(self.mechanism.phi(&self.parameters, &position)),
+            phi_d: largest(model.constraint_rates(&position, &y.qd)),
+        }
+    }
+}
+
+impl<S, I, F, R, const N: usize, const M: usize> Simulation<S, Explicit<I, F>, R, N, M>
+where
+    S: Dynamic<R, N, M>,
+    I: Embedded,
+    F: Formulation<S, R, N, M>,
+    R: Real,
+{
+    /// With other tolerances than 1e-9 for adaptive steps.
+    pub fn with_tolerance(self, tolerance: Tolerance<R>) -> Self {
+        Simulation { tolerance, ..self }
+    }
+
+    /// With adaptive steps not longer than `step` (s): for what happens between two steps and is over in a moment.
+    pub fn with_largest_step(self, step: R) -> Self {
+        Simulation { adaptive: self.adaptive.with_largest(step), ..self }
+    }
+
+    /// Steps accepted and rejected by the control of their size, and the size that it will try next.
+    pub fn adaptive(&self) -> &Adaptive<R> {
+        &self.adaptive
+    }
+
+    /// Moves on to `until` (s) with steps as long as the tolerance allows.
+    ///
+    /// # Errors
+    /// [`Failure::InvalidStep`], [`Failure::StepTooSmall`], those of the method; the state is then bit for bit what it
+    /// was.
+    pub fn advance_to(&mut self, until: R) -> Result<(), Failure> {
+        self.advance(until, |_| None, |_, _| Ok(None)).map(|_| ())
+    }
+
+    /// As [`advance_to`](Self::advance_to), hitting the times that `breakpoints` gives: the next one after its
+    /// argument where a force or a drive is not smooth. So the order of the method is kept.
+    ///
+    /// # Errors
+    /// As [`advance_to`](Self::advance_to).
+    pub fn advance_through(
+        &mut self,
+        until: R,
+        breakpoints: impl FnMut(R) -> Option<R>,
+    ) -> Result<(), Failure> {
+        self.advance(until, breakpoints, |_, _| Ok(None)).map(|_| ())
+    }
+
+    /// As [`advance_to`](Self::advance_to), but stops where `event` of time, coordinates and velocities passes zero.
+    /// Returns whether it did.
+    ///
+    /// # Errors
+    /// As [`advance_to`](Self::advance_to).
+    pub fn advance_until_event(
+        &mut self,
+        until: R,
+        direction: Direction,
+        mut event: impl FnMut(R, &[R; N], &[R; N]) -> R,
+    ) -> Result<bool, Failure> {
+        self.advance(
+            until,
+            |_| None,
+            |equations, accepted| {
+                let polynomial = accepted.polynomial(equations)?;
+                let found = passage(accepted, &polynomial, direction, |t, y| event(t, &y.q, &y.qd));
+                Ok(found.map(|t| (t, if t < accepted.end.t { polynomial.at(t) } else { accepted.end.y })))
+            },
+        )
+    }
+
+    /// As [`advance_to`](Self::advance_to), and shows the instants at `samples` equal distances on the way, the end
+    /// included, each on the constraints.
+    ///
+    /// # Errors
+    /// As [`advance_to`](Self::advance_to).
+    pub fn sample(
+        &mut self,
+        until: R,
+        samples: u32,
+        mut see: impl FnMut(&Instant<R, N, M, S::States>),
+    ) -> Result<(), Failure> {
+        let (from, count) = (self.now.t, R::constant(f64::from(samples)));
+        let mut index = 1;
+        self.advance(
+            until,
+            |_| None,
+            |equations, accepted| {
+                let mut polynomial = None;
+                while index <= samples {
+                    let share = R::constant(f64::from(index)) / count;
+                    let t = if index == samples { until } else { from + (until - from) * share };
+                    if accepted.end.t < t {
+                        break;
+                    }
+                    let known = match polynomial {
+                        Some(polynomial) => polynomial,
+                        None => accepted.polynomial(equations)?,
+                    };
+                    polynomial = Some(known);
+                    let mut y = if t < accepted.end.t { known.at(t) } else { accepted.end.y };
+                    super::equation::Equation::settle(equations, t, &mut y)?;
+                    let solved = equations.solve(t, &y)?;
+                    see(&Instant { t, y, solved });
+                    index += 1;
+                }
+                Ok(None)
+            },
+        )
+        .map(|_| ())
+    }
+
+    /// Runs to `until`, or to the instant that `stop` gives for a step; returns whether it was such an instant.
+    fn advance(
+        &mut self,
+        until: R,
+        breakpoints: impl FnMut(R) -> Option<R>,
+        mut stop: impl FnMut(
+            &mut Equations<'_, S, F, R, N, M>,
+            &Accepted<I, R, State<R, N, S::States>>,
+        ) -> Result<Option<(R, State<R, N, S::States>)>, Failure>,
+    ) -> Result<bool, Failure> {
+        let (mut counts, mut adaptive) = (self.counts, self.adaptive);
+        let from = self.fresh(&mut counts)?;
+        let model = self.model();
+        let formulation = self.method.formulation;
+        let mut equations =
+            Equations::new(&model, &formulation, &from, counts).with_tolerance(self.tolerance);
+        let start = Point { t: from.t, y: from.y, rate: from.solved.rate };
+        let mut stopped = None;
+        let taken = adaptive.accepted;
+        let end =
+            adaptive.run::<I, _>(&mut equations, start, until, breakpoints, |equations, accepted| {
+                model.check(accepted.end.t, &accepted.end.y)?;
+                model.check_branches(accepted.end.t, &accepted.end.y, false)?;
+                stopped = stop(equations, accepted)?;
+                Ok(stopped.is_none())
+            })?;
+        let (t, mut y) = stopped.unwrap_or((end.t, end.y));
+        if stopped.is_some() {
+            super::equation::Equation::settle(&mut equations, t, &mut y)?;
+        }
+        let solved = equations.solve(t, &y)?;
+        counts = equations.counts;
+        counts.steps += u64::from(adaptive.accepted.wrapping_sub(taken));
+        self.adaptive = adaptive;
+        self.take(Instant { t, y, solved }, counts);
+        Ok(stopped.is_some())
+    }
+}
+
+impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, R, N, M> {
+    /// Kinetic and potential energy (J).
+    fn total_energy(&self, t: R, y: &State<R, N, S::States>) -> R {
+        let energy = self.mechanism.energy(self.parameters, &self.position(t, y), &y.qd);
+        energy.kinetic + energy.potential
+    }
+
+    /// Fails where a declared branch does not hold; `assembling`: those that pick the assembly alone count too.
+    fn check_branches(&self, t: R, y: &State<R, N, S::States>, assembling: bool) -> Result<(), Failure> {
+        if S::BRANCHES.is_empty() {
+            return Ok(());
+        }
+        let position = self.position(t, y);
+        let failure = kinematics::branch_failure(self.mechanism, self.parameters, &position, t, assembling);
+        failure.map_or(Ok(()), Err)
+    }
+
+    /// Fails with the row that a start violates by more than it may.
+    fn require_consistent(&self, t: R, y: &State<R, N, S::States>) -> Result<(), Failure> {
+        let position = self.position(t, y);
+        let (one, allowance) = (R::constant(1.0), R::constant(START_ALLOWANCE));
+        let phi = self.mechanism.phi(self.parameters, &position);
+        self.require(t, &phi, &self.metric.rows.map(|scale| allowance * scale), one, false)?;
+        let mut allowed = self.mechanism.phi_t(self.parameters, &position);
+        let phi_q = self.mechanism.phi_q(self.parameters, &position);
+        for ((allowed, row), scale) in allowed.iter_mut().zip(&phi_q).zip(&self.metric.rows) {
+            let reach = row.iter().zip(&y.qd).fold(*scale, |sum, (entry, qd)| sum + (*entry * *qd).abs());
+            *allowed = allowance * (reach + allowed.abs());
+        }
+        self.require(t, &self.constraint_rates(&position, &y.qd), &allowed, one, true)
+    }
+}

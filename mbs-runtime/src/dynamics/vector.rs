@@ -1,0 +1,88 @@
+//! What an integrator moves on: points of a vector space, of whatever parts they consist.
+
+use crate::Scalar;
+
+/// A point that integrators add multiples of others to.
+///
+/// Arrays are points; so is the [`State`] of a mechanism, whose `[T; 2 * N]` stable Rust cannot write.
+pub trait Vector<T: Scalar>: Copy {
+    /// The origin, of the same shape.
+    fn zero(&self) -> Self;
+    /// `self` + h Σ weightₖ termₖ. The sum is formed first, so that a small change keeps its digits.
+    fn plus<const K: usize>(&self, h: T, weights: &[f64; K], terms: [&Self; K]) -> Self;
+
+    /// A step of the semi-implicit Euler method: velocities by their rate, then coordinates by the new velocities.
+    /// What has no such parts takes the explicit step.
+    #[inline(always)]
+    fn semi_implicit(&self, h: T, rate: &Self) -> Self {
+        self.plus(h, &[1.0], [rate])
+    }
+}
+
+impl<T: Scalar, const L: usize> Vector<T> for [T; L] {
+    #[inline(always)]
+    fn zero(&self) -> Self {
+        [T::constant(0.0); L]
+    }
+
+    #[inline(always)]
+    fn plus<const K: usize>(&self, h: T, weights: &[f64; K], terms: [&Self; K]) -> Self {
+        let mut sum = *self;
+        sum_into(&mut sum, h, weights, terms.map(|term| term.as_slice()));
+        sum
+    }
+}
+
+/// Adds h Σ weightₖ termₖ to `sum`.
+#[inline(always)]
+fn sum_into<T: Scalar, const K: usize>(sum: &mut [T], h: T, weights: &[f64; K], terms: [&[T]; K]) {
+    for (index, component) in sum.iter_mut().enumerate() {
+        let mut change = T::constant(0.0);
+        for (weight, term) in weights.iter().zip(terms) {
+            if let Some(term) = term.get(index) {
+                change = change + T::constant(*weight) * *term;
+            }
+        }
+        *component = *component + h * change;
+    }
+}
+
+/// Where a mechanism is and how it moves; as a rate, the derivative of each part.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct State<T, const N: usize, Z> {
+    /// Coordinates q: N.
+    pub q: [T; N],
+    /// Velocities q̇: N, in coordinate unit per second.
+    pub qd: [T; N],
+    /// First-order states of the text.
+    pub states: Z,
+    /// What forces and drives have done since the start (J), without gravity and whatever else is potential.
+    pub work: T,
+}
+
+impl<T: Scalar, const N: usize, Z: Copy + AsRef<[T]> + AsMut<[T]>> Vector<T> for State<T, N, Z> {
+    #[inline(always)]
+    fn zero(&self) -> Self {
+        let mut zero = *self;
+        zero.states.as_mut().iter_mut().for_each(|state| *state = T::constant(0.0));
+        State { q: self.q.zero(), qd: self.qd.zero(), states: zero.states, work: T::constant(0.0) }
+    }
+
+    #[inline(always)]
+    fn plus<const K: usize>(&self, h: T, weights: &[f64; K], terms: [&Self; K]) -> Self {
+        let mut sum = *self;
+        sum_into(&mut sum.q, h, weights, terms.map(|term| term.q.as_slice()));
+        sum_into(&mut sum.qd, h, weights, terms.map(|term| term.qd.as_slice()));
+        sum_into(sum.states.as_mut(), h, weights, terms.map(|term| term.states.as_ref()));
+        let work = terms.map(|term| core::slice::from_ref(&term.work));
+        sum_into(core::slice::from_mut(&mut sum.work), h, weights, work);
+        sum
+    }
+
+    #[inline(always)]
+    fn semi_implicit(&self, h: T, rate: &Self) -> Self {
+        let mut next = self.plus(h, &[1.0], [rate]);
+        next.q = self.q.plus(h, &[1.0], [&next.qd]);
+        next
+    }
+}

@@ -1,0 +1,143 @@
+//! What cannot be simulated is refused with its name, and the state stays.
+
+use mbs_runtime::Failure;
+use mbs_runtime::dynamics::{
+    DormandPrince8, Explicit, Projection, RungeKutta4, Simulation, Tolerance, kkt::System, metric::Metric,
+};
+
+use crate::linkage::{End, Linkage, Rod, parallel_loops, pendulum};
+
+type Pendulum = Simulation<Linkage<2, 1>, Explicit<RungeKutta4, Projection>, f64, 2, 1>;
+
+fn start(q: [f64; 2], qd: [f64; 2]) -> Result<Pendulum, Failure> {
+    Simulation::start(pendulum(), Explicit::default(), 0.0, q, qd)
+}
+
+#[test]
+fn a_start_off_the_constraints_names_the_row_and_a_start_near_them_is_projected() {
+    let failure = start([1.001, 0.0], [0.0, 0.0]).unwrap_err();
+    assert!(matches!(failure, Failure::Inconsistent { rate: false, .. }), "{failure}");
+    let failure = start([1.0, 0.0], [0.1, 0.0]).unwrap_err();
+    assert!(matches!(failure, Failure::Inconsistent { rate: true, .. }), "{failure}");
+    let near: Pendulum =
+        Simulation::start_near(pendulum(), Explicit::default(), 0.0, [1.2, 0.0], [0.1, 2.0]).unwrap();
+    assert!((near.q()[0] - 1.0).abs() < 1e-14 && near.qd()[0].abs() < 1e-14 && near.qd()[1] == 2.0);
+}
+
+#[test]
+fn steps_that_lead_nowhere_are_refused_and_the_state_stays() {
+    let mut simulation = start([1.0, 0.0], [0.0, 0.0]).unwrap();
+    let before = *simulation.instant();
+    for h in [0.0, -1e-3, f64::NAN, f64::INFINITY] {
+        let failure = simulation.step(h).unwrap_err();
+        assert!(matches!(failure, Failure::InvalidStep { .. }), "{failure}");
+    }
+    assert!(simulation.step(1e300).is_err());
+    assert_eq!(before, *simulation.instant());
+    let mut late: Pendulum =
+        Simulation::start(pendulum(), Explicit::default(), 1e6, [1.0, 0.0], [0.0, 0.0]).unwrap();
+    assert!(matches!(late.step(1e-12), Err(Failure::InvalidStep { .. })));
+}
+
+#[test]
+fn numbers_that_are_none_are_named() {
+    for (q, qd) in [([f64::NAN, 0.0], [0.0; 2]), ([1.0, 0.0], [0.0, f64::INFINITY]), ([1e308, 0.0], [0.0; 2])]
+    {
+        let failure = start(q, qd).unwrap_err();
+        assert!(
+            matches!(failure, Failure::NonFinite { name: "x", .. } | Failure::Unresolved { .. }),
+            "{failure}"
+        );
+    }
+    let mut simulation = start([1.0, 0.0], [0.0, 0.0]).unwrap();
+    let before = *simulation.instant();
+    simulation.change(|pendulum| pendulum.push = f64::NAN);
+    assert_eq!(simulation.step(1e-3), Err(Failure::NonFinite { name: "push", line: 5 }));
+    assert_eq!(before, *simulation.instant());
+    simulation.change(|pendulum| pendulum.push = 0.0);
+    simulation.step(1e-3).unwrap();
+}
+
+#[test]
+fn a_failed_adaptive_run_leaves_the_state_bit_for_bit() {
+    let mut simulation = Simulation::start(
+        pendulum(),
+        Explicit::new(DormandPrince8, Projection::default()),
+        0.0,
+        [1.0, 0.0],
+        [0.0; 2],
+    )
+    .unwrap()
+    .with_tolerance(Tolerance { relative: 0.0, absolute: 1e-30 });
+    let before = *simulation.instant();
+    let failure = simulation.advance_to(1.0).unwrap_err();
+    assert!(matches!(failure, Failure::StepTooSmall { .. }), "{failure}");
+    assert_eq!(before, *simulation.instant());
+}
+
+/// Two rods in a row from the ground, masses at the joint and at the end.
+fn chain(joint: f64, end: f64) -> Linkage<4, 2> {
+    let rods = [
+        Rod { from: End::Ground([0.0; 2]), to: End::Point(0), length: 1.0, mass: 0.0 },
+        Rod { from: End::Point(0), to: End::Point(1), length: 1.0, mass: 0.0 },
+    ];
+    Linkage::new(rods, [joint, joint, end, end], [0.0, -9.81])
+}
+
+#[test]
+fn a_massless_joint_is_carried_and_a_massless_end_is_named() {
+    let run = |linkage| {
+        let method: Explicit<RungeKutta4, Projection> = Explicit::default();
+        Simulation::start(linkage, method, 0.0, [0.6, -0.8, 1.6, -0.8], [0.0; 4])
+    };
+    // Nothing but the end has mass: the joint goes where the rods' force lets it, and the rods pull in line.
+    let failure = run(chain(1.0, 0.0)).unwrap_err();
+    assert!(matches!(failure, Failure::Inertialess { .. }), "{failure}");
+    assert!(run(chain(1.0, 1.0)).is_ok());
+    let straight: Explicit<RungeKutta4, Projection> = Explicit::default();
+    let light = Simulation::start(chain(0.0, 1.0), straight, 0.0, [0.6, -0.8, 1.2, -1.6], [0.0; 4]);
+    // In line, a massless joint moves sideways without any mass moving.
+    assert!(matches!(light.unwrap_err(), Failure::Inertialess { .. }));
+    let bent = run(chain(0.0, 1.0)).unwrap();
+    assert!(bent.qdd().iter().all(|acceleration| acceleration.is_finite()));
+}
+
+#[test]
+fn a_row_twice_shares_its_multiplier_and_is_named() {
+    let (linkage, q, _) = parallel_loops::<4, 4>(0.3, 1.0);
+    use mbs_runtime::{Dynamic, Mechanism};
+    let metric = Metric::of(&linkage, &());
+    let position = linkage.position(&(), &q, 0.0);
+    let system = System::new(&linkage.mass(&(), &position), &linkage.phi_q(&(), &position), &metric);
+    let factors = system.factorize(Linkage::<4, 4>::COORDINATES, 0.0).unwrap();
+    assert_eq!(factors.rank(), 3);
+    assert_eq!(factors.unique_multipliers(), [false, true, true, false]);
+    let dependent = factors.dependent_rows();
+    assert!(dependent[0] != dependent[3] && !dependent[1] && !dependent[2]);
+    let (_, lambda) = factors.solve(&linkage.force(&(), &position, &[0.0; 4], &[], &[0.0; 4]), &[0.0; 4]);
+    assert!((lambda[0] - lambda[3]).abs() < 1e-12 && lambda[0].abs() > 0.1, "{lambda:?}");
+}
+
+#[test]
+fn the_same_mechanism_in_millimetres_moves_the_same() {
+    let run = |unit: f64| {
+        let mut linkage = parallel_loops::<6, 6>(0.0, 1.0).0;
+        linkage.gravity = linkage.gravity.map(|g| g * unit);
+        for rod in &mut linkage.rods {
+            rod.length *= unit;
+            if let End::Ground(place) = &mut rod.from {
+                *place = place.map(|x| x * unit);
+            }
+        }
+        let (_, q, qd) = parallel_loops::<6, 6>(0.0, 1.0);
+        let method: Explicit<RungeKutta4, Projection> = Explicit::default();
+        let mut simulation =
+            Simulation::start(linkage, method, 0.0, q.map(|q| q * unit), qd.map(|qd| qd * unit)).unwrap();
+        simulation.step_to(2.0, 500).unwrap();
+        simulation.q().map(|q| q / unit)
+    };
+    let (metres, millimetres) = (run(1.0), run(1000.0));
+    for (a, b) in metres.iter().zip(millimetres) {
+        assert!((a - b).abs() < 1e-9, "{a} {b}");
+    }
+}

@@ -1,0 +1,206 @@
+//! Integrators on equations with known solutions: orders, control of the step, events.
+
+use mbs_runtime::Failure;
+use mbs_runtime::dynamics::adaptive::{Adaptive, Point};
+use mbs_runtime::dynamics::event::passage;
+use mbs_runtime::dynamics::{
+    Direction, DormandPrince5, DormandPrince8, Embedded, Equation, FixedStep, Measured, RungeKutta4,
+    SemiImplicitEuler, State,
+};
+
+/// The oscillator q̈ = −q + t from q = 1, q̇ = 0: q = cos t − sin t + t.
+struct Oscillator {
+    tolerance: f64,
+}
+
+impl Equation<f64> for Oscillator {
+    type State = State<f64, 1, [f64; 0]>;
+
+    fn rate(&mut self, t: f64, y: &Self::State) -> Result<Self::State, Failure> {
+        Ok(State { q: y.qd, qd: [t - y.q[0]], states: [], work: 0.0 })
+    }
+}
+
+impl Measured<f64> for Oscillator {
+    fn measure(&self, _: &Self::State, _: &Self::State, error: &Self::State) -> f64 {
+        error.q[0].abs().max(error.qd[0].abs()) / self.tolerance
+    }
+}
+
+fn start() -> State<f64, 1, [f64; 0]> {
+    State { q: [1.0], qd: [0.0], states: [], work: 0.0 }
+}
+
+fn exact(t: f64) -> f64 {
+    t.cos() - t.sin() + t
+}
+
+/// Error at t = 2 after `steps` equal steps.
+fn error<I: FixedStep>(steps: u32) -> f64 {
+    let mut equation = Oscillator { tolerance: 1.0 };
+    let h = 2.0 / f64::from(steps);
+    let mut y = start();
+    for step in 0..steps {
+        let t = f64::from(step) * h;
+        let rate = equation.rate(t, &y).unwrap();
+        y = I::step(&mut equation, t, h, &y, &rate).unwrap();
+    }
+    (y.q[0] - exact(2.0)).abs()
+}
+
+/// log₂ of what halving the step gains.
+fn order<I: FixedStep>(steps: u32) -> f64 {
+    (error::<I>(steps) / error::<I>(2 * steps)).log2()
+}
+
+#[test]
+fn fixed_steps_converge_with_the_order_of_their_method() {
+    for (found, expected) in [
+        (order::<SemiImplicitEuler>(200), 1.0),
+        (order::<RungeKutta4>(40), 4.0),
+        (order::<DormandPrince5>(20), 5.0),
+    ] {
+        assert!((found - expected).abs() < 0.15, "{found} for {expected}");
+    }
+    let eighth = order::<DormandPrince8>(4);
+    assert!(eighth > 7.5, "{eighth}");
+}
+
+/// Largest error of the polynomial of one step of `h` from the start.
+fn dense_error<M: Embedded>(h: f64) -> f64 {
+    let mut equation = Oscillator { tolerance: 1e30 };
+    let mut adaptive = Adaptive::default().with_first(h);
+    let y = start();
+    let from = Point { t: 0.0, y, rate: equation.rate(0.0, &y).unwrap() };
+    let accepted = adaptive.step::<M, _>(&mut equation, &from, h, false).unwrap();
+    let polynomial = accepted.polynomial(&mut equation).unwrap();
+    let parts = (1..20).map(|part| f64::from(part) * h / 20.0);
+    parts.map(|t| (polynomial.at(t).q[0] - exact(t)).abs()).fold(0.0, f64::max)
+}
+
+#[test]
+fn dense_output_of_one_step_has_the_order_of_its_polynomial() {
+    let fourth = (dense_error::<DormandPrince5>(0.1) / dense_error::<DormandPrince5>(0.05)).log2();
+    assert!((fourth - 5.0).abs() < 0.3, "{fourth}");
+    let seventh = (dense_error::<DormandPrince8>(1.6) / dense_error::<DormandPrince8>(0.8)).log2();
+    assert!((seventh - 8.0).abs() < 0.5, "{seventh}");
+}
+
+fn adaptive_error<M: Embedded>(tolerance: f64) -> (f64, u32) {
+    let mut equation = Oscillator { tolerance };
+    let y = start();
+    let from = Point { t: 0.0, y, rate: equation.rate(0.0, &y).unwrap() };
+    let mut adaptive = Adaptive::default();
+    let end = adaptive.run::<M, _>(&mut equation, from, 20.0, |_| None, |_, _| Ok(true)).unwrap();
+    assert_eq!(end.t, 20.0);
+    ((end.y.q[0] - exact(20.0)).abs(), adaptive.accepted)
+}
+
+#[test]
+fn adaptive_steps_follow_the_tolerance() {
+    for tolerance in [1e-4, 1e-7, 1e-10] {
+        for (error, _) in
+            [adaptive_error::<DormandPrince5>(tolerance), adaptive_error::<DormandPrince8>(tolerance)]
+        {
+            assert!(error < 100.0 * tolerance, "{error} at {tolerance}");
+        }
+    }
+    let (few, many) = (adaptive_error::<DormandPrince8>(1e-12).1, adaptive_error::<DormandPrince5>(1e-12).1);
+    assert!(4 * few < many, "{few} {many}");
+}
+
+#[test]
+fn a_passage_through_zero_is_found_in_its_direction() {
+    // q̇ = 1 − sin t − cos t passes zero falling at 0 and rising at π/2.
+    let mut equation = Oscillator { tolerance: 1e-12 };
+    let y = start();
+    let from = Point { t: 0.0, y, rate: equation.rate(0.0, &y).unwrap() };
+    let mut found = Vec::new();
+    let mut adaptive = Adaptive::default();
+    adaptive
+        .run::<DormandPrince8, _>(
+            &mut equation,
+            from,
+            7.0,
+            |_| None,
+            |equation, accepted| {
+                let polynomial = accepted.polynomial(equation)?;
+                found.extend(passage(accepted, &polynomial, Direction::Rising, |_, y| y.qd[0]));
+                Ok(true)
+            },
+        )
+        .unwrap();
+    assert_eq!(found.len(), 1, "{found:?}");
+    assert!((found[0] - core::f64::consts::FRAC_PI_2).abs() < 1e-9, "{found:?}");
+}
+
+/// q̇ = 0 before t = 1/3, 1 after: a jump that no step may straddle.
+struct Jump;
+
+impl Equation<f64> for Jump {
+    type State = [f64; 1];
+
+    fn rate(&mut self, t: f64, _: &[f64; 1]) -> Result<[f64; 1], Failure> {
+        Ok([if t < 1.0 / 3.0 { 0.0 } else { 1.0 }])
+    }
+}
+
+impl Measured<f64> for Jump {
+    fn measure(&self, _: &[f64; 1], _: &[f64; 1], error: &[f64; 1]) -> f64 {
+        error[0].abs() / 1e-6
+    }
+}
+
+#[test]
+fn a_declared_jump_costs_neither_accuracy_nor_rejected_steps() {
+    let run = |declared: bool| {
+        let mut adaptive = Adaptive::default();
+        let from = Point { t: 0.0, y: [0.0], rate: [0.0] };
+        let next = |t: f64| (declared && t < 1.0 / 3.0).then_some(1.0 / 3.0);
+        let end = adaptive.run::<DormandPrince8, _>(&mut Jump, from, 1.0, next, |_, _| Ok(true)).unwrap();
+        ((end.y[0] - 2.0 / 3.0).abs(), adaptive.rejected)
+    };
+    let (error, rejected) = run(true);
+    assert!(error < 1e-14 && rejected == 0, "{error} {rejected}");
+    assert!(run(false).1 > 3);
+}
+
+/// ẏ = y² from 1 has no solution beyond t = 1.
+struct Explosion;
+
+impl Equation<f64> for Explosion {
+    type State = [f64; 1];
+
+    fn rate(&mut self, _: f64, y: &[f64; 1]) -> Result<[f64; 1], Failure> {
+        Ok([y[0] * y[0]])
+    }
+}
+
+impl Measured<f64> for Explosion {
+    fn measure(&self, before: &[f64; 1], _: &[f64; 1], error: &[f64; 1]) -> f64 {
+        error[0].abs() / (1e-8 * before[0].abs())
+    }
+}
+
+#[test]
+fn where_no_step_is_small_enough_the_failure_says_so() {
+    let from = Point { t: 0.0, y: [1.0], rate: [1.0] };
+    for until in [2.0, 1e300] {
+        let failure = Adaptive::default()
+            .run::<DormandPrince5, _>(&mut Explosion, from, until, |_| None, |_, _| Ok(true))
+            .unwrap_err();
+        let Failure::StepTooSmall { time, .. } = failure else { panic!("{failure}") };
+        assert!((time - 1.0).abs() < 1e-6 || until > 1e200, "{failure}");
+    }
+}
+
+#[test]
+fn an_end_that_is_not_ahead_is_refused() {
+    let from = Point { t: 1.0, y: [1.0], rate: [1.0] };
+    for until in [1.0, 0.0, f64::NAN, f64::INFINITY] {
+        let failure = Adaptive::default()
+            .run::<DormandPrince5, _>(&mut Explosion, from, until, |_| None, |_, _| Ok(true))
+            .unwrap_err();
+        assert!(matches!(failure, Failure::InvalidStep { .. }), "{failure}");
+    }
+}
