@@ -59,7 +59,7 @@ impl<R: Real> Limit<R> {
 
 /// The first limit that is passed, if any.
 #[inline(always)]
-pub(crate) fn limit_failure<S: Mechanism<R, N, N>, R: Real, const N: usize>(
+pub(crate) fn limit_failure<S: Mechanism<R, N, M>, R: Real, const N: usize, const M: usize>(
     mechanism: &S,
     parameters: &S::Parameters,
     position: &S::Position,

@@ -8,6 +8,7 @@ use super::model::{Counts, Doubt, Formulation, Model};
 use super::motion::{Equations, Explicit, Instant, Method};
 use super::projection::Projection;
 use super::vector::State;
+use crate::limit::limit_failure;
 use crate::{Dynamic, Energy, Failure, Motion, Real, kinematics};
 
 /// Violation of a row that a start may have, in the reference metric (per second for its rate): numbers typed with
@@ -124,7 +125,7 @@ where
         Projection::default().settle(&model, t, &mut y, &mut counts)?;
         let solved = method.solve(&model, t, &y, &[R::constant(0.0); M], &mut counts)?;
         let now = Instant { t, y, solved };
-        model.check_branches(t, &y, true)?;
+        model.check_assembly(t, &y, true)?;
         let reference = model.total_energy(t, &y);
         Ok(Simulation {
             mechanism,
@@ -164,7 +165,7 @@ where
         let model = self.model();
         let next = self.method.step(&model, &from, h, &mut counts)?;
         model.check(next.t, &next.y)?;
-        model.check_branches(next.t, &next.y, false)?;
+        model.check_assembly(next.t, &next.y, false)?;
         counts.steps += 1;
         self.take(next, counts);
         Ok(())
@@ -451,7 +452,7 @@ where
         let end =
             adaptive.run::<I, _>(&mut equations, start, until, breakpoints, |equations, accepted| {
                 model.check(accepted.end.t, &accepted.end.y)?;
-                model.check_branches(accepted.end.t, &accepted.end.y, false)?;
+                model.check_assembly(accepted.end.t, &accepted.end.y, false)?;
                 stopped = stop(equations, accepted)?;
                 Ok(stopped.is_none())
             })?;
@@ -475,13 +476,14 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         energy.kinetic + energy.potential
     }
 
-    /// Fails where a declared branch does not hold; `assembling`: those that pick the assembly alone count too.
-    fn check_branches(&self, t: R, y: &State<R, N, S::States>, assembling: bool) -> Result<(), Failure> {
-        if S::BRANCHES.is_empty() {
+    /// Fails where a working range is left or a declared branch does not hold; `assembling`: those that pick the assembly alone count too.
+    fn check_assembly(&self, t: R, y: &State<R, N, S::States>, assembling: bool) -> Result<(), Failure> {
+        if S::BRANCHES.is_empty() && S::LIMITS.is_empty() {
             return Ok(());
         }
         let position = self.position(t, y);
-        let failure = kinematics::branch_failure(self.mechanism, self.parameters, &position, t, assembling);
+        let failure = kinematics::branch_failure(self.mechanism, self.parameters, &position, t, assembling)
+            .or_else(|| limit_failure(self.mechanism, self.parameters, &position, t));
         failure.map_or(Ok(()), Err)
     }
 

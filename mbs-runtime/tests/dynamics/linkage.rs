@@ -1,6 +1,6 @@
 //! Rods between points in natural coordinates, written by hand: what the macro would emit, without the macro.
 
-use mbs_runtime::{Dynamic, Energy, Entry, Mechanism, Motion, OutputValue};
+use mbs_runtime::{Dynamic, Energy, Entry, Limit, Mechanism, Motion, OutputValue};
 
 /// One end of a rod.
 #[derive(Clone, Copy, Debug)]
@@ -75,6 +75,28 @@ impl<const N: usize, const M: usize> Linkage<N, M> {
     }
 }
 
+/// A Jacobian without structural zeros, row by row.
+#[derive(Clone, Copy)]
+pub struct Rows<const N: usize, const M: usize>([[f64; N]; M]);
+
+impl<const N: usize, const M: usize> Rows<N, M> {
+    const PLACES: [[(u16, u16); N]; M] = {
+        let mut places = [[(0, 0); N]; M];
+        let mut index = 0;
+        while index < N * M {
+            places[index / N][index % N] = ((index / N) as u16, (index % N) as u16);
+            index += 1;
+        }
+        places
+    };
+}
+
+impl<const N: usize, const M: usize> AsRef<[f64]> for Rows<N, M> {
+    fn as_ref(&self) -> &[f64] {
+        self.0.as_flattened()
+    }
+}
+
 fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
     a[0] * b[0] + a[1] * b[1]
 }
@@ -82,7 +104,9 @@ fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
 impl<const N: usize, const M: usize> Mechanism<f64, N, M> for Linkage<N, M> {
     type Parameters = ();
     type Position = ([f64; N], Shake);
+    type Entries = Rows<N, M>;
     type Branches = [f64; 0];
+    type Limits = [Limit<f64>; 0];
     type Outputs = [OutputValue<f64>; 0];
     type Lane = Self;
 
@@ -90,6 +114,7 @@ impl<const N: usize, const M: usize> Mechanism<f64, N, M> for Linkage<N, M> {
     const SOURCE: &'static str = "";
     const COORDINATES: &'static [Entry] = &[LENGTH; N];
     const ROWS: &'static [Entry] = &[ROW; M];
+    const SPARSITY: &'static [(u16, u16)] = Rows::<N, M>::PLACES.as_flattened();
     const VARIABLES: &'static [Entry] = &[PUSH];
     const BRANCHES: &'static [Entry] = &[];
     const OUTPUTS: &'static [Entry] = &[];
@@ -132,6 +157,9 @@ impl<const N: usize, const M: usize> Mechanism<f64, N, M> for Linkage<N, M> {
             std::array::from_fn(|j| 2.0 * d[j % 2] * (Self::share(rod.to, j) - Self::share(rod.from, j)))
         })
     }
+    fn phi_q_entries(&self, parameters: &(), position: &Self::Position) -> Rows<N, M> {
+        Rows(self.phi_q(parameters, position))
+    }
     fn phi_t(&self, _: &(), (q, [shake, rate, _]): &Self::Position) -> [f64; M] {
         self.rods.map(|rod| 2.0 * dot(Self::difference(&rod, q, *shake), Self::rate(&rod, &[0.0; N], *rate)))
     }
@@ -153,6 +181,9 @@ impl<const N: usize, const M: usize> Mechanism<f64, N, M> for Linkage<N, M> {
         })
     }
     fn branches(&self, _: &(), _: &Self::Position) -> [f64; 0] {
+        []
+    }
+    fn limits(&self, _: &(), _: &Self::Position) -> [Limit<f64>; 0] {
         []
     }
     fn outputs(&self, _: &(), _: &Self::Position, _: &[f64; N], _: &[f64; N]) -> [OutputValue<f64>; 0] {
