@@ -20,7 +20,7 @@ pub(crate) fn solve_nearest<S: Kinematic<R, N>, R: Real, const N: usize>(
     let mut solver = Nearest { extent: extent(start, &scales), diagnosis: Diagnosis::new() };
     let mut q = *start;
     let outcome = mechanism.solve_blocks(parameters, &mut q, t, &mut solver);
-    if let Some(failure) = position_failure::<S, R, N>(outcome, &solver.diagnosis, t) {
+    if let Some(failure) = position_failure::<S, R, N, _>(outcome, &solver.diagnosis, t) {
         return Err(not_assemblable(mechanism, parameters, &q, t, failure));
     }
     let mut statistics = Statistics::of(&solver.diagnosis);
