@@ -41,7 +41,7 @@ pub trait Dynamic<T: Scalar, const N: usize, const M: usize>: Mechanism<T, N, M>
     const FORCE_USES_MULTIPLIERS: bool = true;
     /// First-order states.
     const STATES: &'static [Entry];
-    /// Forces by name, in the order of [`powers`](Self::powers).
+    /// Forces by name, in the order of [`powers`](Self::powers): what is neither gravity nor a potential.
     const FORCES: &'static [Entry];
     /// Outputs of [`loads`](Self::loads), component by component.
     const LOADS: &'static [Entry];
@@ -101,7 +101,8 @@ pub trait Dynamic<T: Scalar, const N: usize, const M: usize>: Mechanism<T, N, M>
     ) -> [[T; N]; N];
     /// Kinetic and potential energy (J).
     fn energy(&self, parameters: &Self::Parameters, position: &Self::Position, qd: &[T; N]) -> Energy<T>;
-    /// Power of each force (W), positive where it feeds the mechanism.
+    /// Power of each force (W), positive where it feeds the mechanism; of springs that store it as potential energy,
+    /// without what they store. Kinetic and potential energy change by the sum of these and by what drives supply.
     fn powers(
         &self,
         parameters: &Self::Parameters,

@@ -67,11 +67,14 @@ pub use stop::Stop;
 pub use sweep::{Frame, Sweep};
 pub use trace::{Trace, Traced};
 
-/// Declares a mechanism: a struct with its parameters, and implementations of [`Mechanism`] and [`Kinematic`].
+/// Declares a mechanism: a struct with its parameters, and implementations of [`Mechanism`], of [`Kinematic`] where the
+/// rows fix every coordinate, and of [`Dynamic`] where the text has masses or forces.
 ///
 /// The text is a header and statements: `const`, `param`, `input`, `coord`, `let`, `constraint`, `drive`, `branch`,
-/// `limit`, `out` and `for`, and `effect` and `scene` for several mechanisms in one text. Units are checked, vectors
-/// are arrays, derivatives are exact. The emitted struct has the
+/// `limit`, `out` and `for`; for dynamics `body`, `gravity`, `force`, `torque`, `tsda`, `rsda`, `potential`, `kinetic`,
+/// `dissipation`, `state` and `start`; `effect` and `scene` for several mechanisms in one text. Units are checked,
+/// vectors are arrays, derivatives are exact.
+/// The emitted struct has the
 /// parameters and inputs as public fields, `Default`, a view of the coordinates by name, and in its documentation
 /// shapes, sparsity, order of solution and operation counts. With scenes it has a type parameter behind the scalar's
 /// for the scene, [`Whole`] where nothing else is said, and an alias for each scene. The README explains every statement.

@@ -15,11 +15,23 @@ where phi is the list of residuals and outs a list of pairs (expression, number 
 definition leaves: 0, 1 or 2). ca holds the functions: the module casadi, or what stands in its place. der(e) is the
 total time derivative: t -> 1, q -> qd, qd -> qdd, and along RATES v[value] -> v[rate], v[rate] -> v[acceleration].
 
+A definition of a mechanism with masses or forces has also
+
+    K       number of first-order states
+    dynamics(ca, q, v, t, der, z, l) -> dictionary of lists
+
+where z are the states and l the multipliers of the rows. `kinetic` and `potential` are terms of the energies, `forces`
+dictionaries: `work`, pairs of a value and the displacement that it acts along (without what is stored as potential
+energy), `rayleigh`, a function R with the generalized forces -dR/dqd, or None. `rates` are those of the states, `loads`
+the outputs that use z or l.
+
 The back end is a Python file with evaluate(definition, states) -> {function: [values a state]}.
 
-In:  {"states": [{"q": [], "qd": [], "qdd": [], "t": 0.0, "v": []}]}
+In:  {"states": [{"q": [], "qd": [], "qdd": [], "t": 0.0, "v": [], "z": [], "l": []}]}
 Out: {"name", "n", "m", "v", "phi": [[..]], "phi_q": [[row after row]], "phi_t", "phi_tt", "phi_qt_qd", "gamma",
-      "out", "out_d", "out_dd"}, one list a state; a derivative that does not exist is null.
+      "out", "out_d", "out_dd"}, one list a state; a derivative that does not exist is null. Of a mechanism with masses
+      CasADi gives "mass", "mass_times", "force", "force_q", "force_qd", "mass_times_q", "reaction", "reaction_q",
+      "energy", "powers", "state_rates" and "loads" too, M x and its derivative with x = qdd.
 """
 
 import importlib.util
@@ -50,6 +62,8 @@ def main():
     back_end, definition = load("back_end", sys.argv[1]), load("definition", sys.argv[2])
     if not hasattr(definition, "M"):
         definition.M = definition.N
+    if not hasattr(definition, "K"):
+        definition.K = 0
     states = json.load(sys.stdin)["states"]
     check_sizes(definition, states)
     sizes = {"name": definition.NAME, "n": definition.N, "m": definition.M, "v": definition.V}

@@ -18,6 +18,8 @@ class Calculus:
         self.qdd = ca.SX.sym("qdd", definition.N)
         self.t = ca.SX.sym("t")
         self.v = ca.SX.sym("v", definition.V)
+        self.z = ca.SX.sym("z", definition.K)
+        self.l = ca.SX.sym("l", definition.M)
         self.rates = definition.RATES
 
     def along(self, e, symbols, direction):
@@ -41,10 +43,15 @@ def column(entries):
     return ca.vertcat(*entries) if entries else ca.SX(0, 1)
 
 
+def rows(matrix):
+    """A matrix row after row: column after column of its transpose."""
+    return ca.vec(matrix.T)
+
+
 def functions(c, definition):
     """All functions as dense columns, by name, and how many derivatives each output has."""
-    rows, outs = definition.define(ca, c.q, c.v, c.t, c.total)
-    phi = column(rows)
+    residuals, outs = definition.define(ca, c.q, c.v, c.t, c.total)
+    phi = column(residuals)
     if phi.shape != (definition.M, 1):
         raise ValueError(f"the definition says {definition.M} rows and gives {phi.shape[0]}")
     phi_t = c.partial(phi)
@@ -57,8 +64,7 @@ def functions(c, definition):
     out_dd = column([c.total(c.total(e)) if order > 1 else ca.SX(0) for e, order in outs])
     return {
         "phi": phi,
-        # Column after column of the transpose is row after row of the matrix.
-        "phi_q": ca.vec(ca.jacobian(phi, c.q).T),
+        "phi_q": rows(ca.jacobian(phi, c.q)),
         "phi_t": phi_t,
         "phi_tt": phi_tt,
         "phi_qt_qd": phi_qt_qd,
@@ -67,6 +73,43 @@ def functions(c, definition):
         "out_d": out_d,
         "out_dd": out_dd,
     }, {"out_d": [order > 0 for order in orders], "out_dd": [order > 1 for order in orders]}
+
+
+def dynamics(c, definition, phi):
+    """Functions of masses and forces, by Lagrange's equations: nothing but energies and works comes from the text."""
+    told = definition.dynamics(ca, c.q, c.v, c.t, c.total, c.z, c.l)
+    kinetic, potential = (sum(told[name], ca.SX(0)) for name in ["kinetic", "potential"])
+    momenta = ca.jacobian(kinetic, c.qd).T
+    mass = ca.jacobian(momenta, c.qd)
+    # d/dt of the momenta without accelerations, less the slope of the energy.
+    inertia = c.partial(momenta) + c.along(momenta, c.q, c.qd) - ca.jacobian(kinetic, c.q).T
+    force = -inertia - ca.jacobian(potential, c.q).T
+    powers = []
+    for part in told["forces"]:
+        power = sum((value * c.total(place) for value, place in part["work"]), ca.SX(0))
+        for value, place in part["work"]:
+            force += ca.jacobian(place, c.q).T * value
+        if part["rayleigh"] is not None:
+            slope = ca.jacobian(part["rayleigh"], c.qd)
+            force -= slope.T
+            power -= ca.mtimes(slope, c.qd)
+        powers.append(power)
+    mass_times = ca.mtimes(mass, c.qdd)
+    reaction = ca.mtimes(ca.jacobian(phi, c.q).T, c.l)
+    return {
+        "mass": rows(mass),
+        "mass_times": mass_times,
+        "force": force,
+        "force_q": rows(ca.jacobian(force, c.q)),
+        "force_qd": rows(ca.jacobian(force, c.qd)),
+        "mass_times_q": rows(ca.jacobian(mass_times, c.q)),
+        "reaction": reaction,
+        "reaction_q": rows(ca.jacobian(reaction, c.q)),
+        "energy": ca.vertcat(kinetic, potential),
+        "powers": column(powers),
+        "state_rates": column(told["rates"]),
+        "loads": column(told["loads"]),
+    }
 
 
 def plain(value):
@@ -81,15 +124,18 @@ def plain(value):
 def evaluate(definition, states):
     c = Calculus(definition)
     expressions, exists = functions(c, definition)
+    if hasattr(definition, "dynamics"):
+        expressions |= dynamics(c, definition, expressions["phi"])
     names = list(expressions)
     outputs = [ca.densify(expressions[name]) for name in names]
-    function = ca.Function("mechanism", [c.q, c.qd, c.qdd, c.t, c.v], outputs)
+    function = ca.Function("mechanism", [c.q, c.qd, c.qdd, c.t, c.v, c.z, c.l], outputs)
 
     def stacked(key, size):
         return np.array([state[key] for state in states], dtype=float).reshape(len(states), size).T
 
     n = definition.N
-    arguments = [stacked("q", n), stacked("qd", n), stacked("qdd", n), stacked("t", 1), stacked("v", definition.V)]
+    sizes = {"q": n, "qd": n, "qdd": n, "t": 1, "v": definition.V, "z": definition.K, "l": definition.M}
+    arguments = [stacked(key, size) for key, size in sizes.items()]
     values = function.map(len(states)).call([ca.DM(a) for a in arguments])
     result = {}
     for name, value in zip(names, values):

@@ -8,6 +8,7 @@ use mbs_runtime::{Entry, Failure, Frame, Kinematic, Mechanism, OutputValue, Step
 use serde::Serialize;
 
 use crate::lecture::experiment::Experiment;
+use crate::masses::{Loads, Masses, Tables};
 
 /// Names and functions of a mechanism of any size, with its parameters; it need not be square. Vectors are in the
 /// order of the text.
@@ -42,6 +43,14 @@ pub trait AnyEquations {
     fn full_name(&self) -> String {
         let scene = if self.scene() == "Whole" { "" } else { self.scene() };
         format!("{}{scene}", self.type_name())
+    }
+    /// What the text has beyond its kinematics; `None` where it has no masses or forces.
+    fn tables(&self) -> Option<Tables> {
+        None
+    }
+    /// Functions of masses and forces of one state; `None` where there are none, or where a vector has another length.
+    fn masses(&self, _state: &State, _loads: &Loads) -> Option<Masses> {
+        None
     }
 }
 

@@ -40,6 +40,7 @@ pub mod csv;
 pub mod drawing;
 pub mod facade;
 pub mod lecture;
+pub mod masses;
 pub mod registry;
 pub mod report;
 pub mod tabulated;

@@ -10,8 +10,8 @@ mechanism! {
     constraint tip { p == L*unit(phi); }
     drive crank: phi == omega*t;
     out speed: m/s = der(p.0);
-    body rod { mass: 1kg, com: p }
-    start phi = 0.3;
+    pin joint_a: rod, ground at p;
+    contact wall { along: p }
 }
 
 fn main() {

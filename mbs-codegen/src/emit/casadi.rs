@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use super::casadi_dynamics;
 use crate::model::expression::{Binary, Id, Node, Unary};
 use crate::model::{Model, VariableKind};
 
@@ -29,12 +30,7 @@ pub fn definition(model: &Model, name: &str) -> String {
     let _ = writeln!(text, "def define(ca, q, v, t, der):");
     let roots =
         model.rows.iter().map(|row| row.residual).chain(model.outputs.iter().map(|output| output.value));
-    let needed = model.expressions.reachable(roots);
-    for (id, node) in model.expressions.iter() {
-        if needed.get(id.index()) == Some(&true) {
-            let _ = writeln!(text, "    {} = {}", variable(id), operation(node));
-        }
-    }
+    assignments(model, roots, &mut text);
     let rows: Vec<String> = model.rows.iter().map(|row| variable(row.residual)).collect();
     let outputs: Vec<String> = model
         .outputs
@@ -42,10 +38,24 @@ pub fn definition(model: &Model, name: &str) -> String {
         .map(|output| format!("({}, {})", variable(output.value), derivatives(model, output.value)))
         .collect();
     let _ = writeln!(text, "    return [{}], [{}]", rows.join(", "), outputs.join(", "));
+    if let Some(dynamics) = &model.dynamics {
+        casadi_dynamics::definition(model, dynamics, &mut text);
+    }
     text
 }
 
-fn variable(id: Id) -> String {
+/// Assigns what the roots are made of, operands first.
+pub fn assignments(model: &Model, roots: impl IntoIterator<Item = Id>, text: &mut String) {
+    let needed = model.expressions.reachable(roots);
+    for (id, node) in model.expressions.iter() {
+        if needed.get(id.index()) == Some(&true) {
+            let _ = writeln!(text, "    {} = {}", variable(id), operation(node));
+        }
+    }
+}
+
+/// The name of an expression.
+pub fn variable(id: Id) -> String {
     format!("e{}", id.index())
 }
 
@@ -94,6 +104,8 @@ fn operation(node: Node) -> String {
         Node::Time => "t".into(),
         Node::Coordinate(index) => format!("q[{index}]"),
         Node::Variable(index) => format!("v[{index}]"),
+        Node::State(index) => format!("z[{index}]"),
+        Node::Multiplier(index) => format!("l[{index}]"),
         Node::Rate(a, 1) => format!("der({})", v(a)),
         Node::Rate(a, _) => format!("der(der({}))", v(a)),
         Node::Unary(function, a) => match function {

@@ -1,10 +1,11 @@
 //! The generated doc comment: shapes, sparsity, block order, cost.
 
 use crate::equations::Equations;
-use crate::model::Model;
+use crate::model::dynamics::State;
+use crate::model::{Model, Output};
 use crate::program::{Method, Operations, Program};
 use crate::structure::Structure;
-use crate::symbolic::Stage;
+use crate::symbolic::{NodeId, Stage};
 
 /// Lines that follow the text's own doc comment.
 pub fn structure(
@@ -16,6 +17,7 @@ pub fn structure(
     let mut lines = vec![String::new()];
     shapes(model, &mut lines);
     sparsity(model, equations, &mut lines);
+    masses(model, equations, &mut lines);
     order(model, structure, &mut lines);
     cost(program, &mut lines);
     lines.into_iter().map(|line| if line.is_empty() { line } else { format!(" {line}") }).collect()
@@ -46,6 +48,30 @@ fn shapes(model: &Model, lines: &mut Vec<String>) {
             names(outputs)
         ));
     }
+    if let Some(dynamics) = &model.dynamics {
+        let list = |word: &str, entries: Vec<String>, lines: &mut Vec<String>| {
+            if !entries.is_empty() {
+                lines.push(format!(
+                    "{} {}: {}.",
+                    entries.len(),
+                    plural(word, entries.len()),
+                    entries.join(", ")
+                ));
+            }
+        };
+        let state = |state: &State| format!("`{}` ({})", state.name, state.unit);
+        let bodies: Vec<String> = dynamics.bodies.iter().map(|body| format!("`{}`", body.name)).collect();
+        if !bodies.is_empty() {
+            let word = if bodies.len() == 1 { "body" } else { "bodies" };
+            lines.push(format!("{} {word}: {}.", bodies.len(), bodies.join(", ")));
+        }
+        list("force", dynamics.forces.iter().map(|force| format!("`{}`", force.name)).collect(), lines);
+        list("state", dynamics.states.iter().map(state).collect(), lines);
+        let load = |load: &Output| format!("`{}` ({})", load.name, load.unit);
+        list("load", dynamics.loads.iter().map(load).collect(), lines);
+        let freedom = model.coordinates.len().saturating_sub(model.rows.len());
+        lines.push(format!("{freedom} {} of freedom.", if freedom == 1 { "degree" } else { "degrees" }));
+    }
     lines.push(String::new());
 }
 
@@ -67,14 +93,40 @@ fn sparsity(model: &Model, equations: &Equations, lines: &mut Vec<String>) {
     if let Some(line) = lines.get_mut(last) {
         line.push_str(" (1: a number, p: parameters alone, x: varies):");
     }
+    let names = model.rows.iter().map(|row| row.name.as_str()).collect();
+    pattern(model, equations, names, equations.rows.iter().map(|row| &row.phi_q), lines);
+}
+
+/// The mass matrix, where the text has one.
+fn masses(model: &Model, equations: &Equations, lines: &mut Vec<String>) {
+    let Some(dynamics) = &equations.dynamics else { return };
+    let n = model.coordinates.len();
+    let entries: usize = dynamics.mass.iter().map(Vec::len).sum();
+    if n > WIDEST {
+        lines.push(format!("`M` has {entries} of {} entries", n * n));
+        return lines.push(String::new());
+    }
+    lines.push(format!("`M` has {entries} of {} entries (marked as above):", n * n));
+    let names = model.coordinates.iter().map(|c| c.name.as_str()).collect();
+    pattern(model, equations, names, dynamics.mass.iter(), lines);
+}
+
+/// Draws a matrix with a column a coordinate.
+fn pattern<'a>(
+    model: &Model,
+    equations: &Equations,
+    names: Vec<&str>,
+    rows: impl Iterator<Item = &'a Vec<(usize, NodeId)>>,
+    lines: &mut Vec<String>,
+) {
     lines.push("```text".into());
-    let width = model.rows.iter().map(|row| row.name.chars().count()).max().unwrap_or(0);
+    let width = names.iter().map(|name| name.chars().count()).max().unwrap_or(0);
     let heads: Vec<&str> = model.coordinates.iter().map(|c| c.name.as_str()).collect();
     lines.push(format!("{:width$}  {}", "", heads.join(" ")).trim_end().to_owned());
-    for (row, equation) in model.rows.iter().zip(&equations.rows) {
-        let mut line = format!("{:width$} ", row.name);
+    for (name, row) in names.iter().zip(rows) {
+        let mut line = format!("{name:width$} ");
         for (column, head) in heads.iter().enumerate() {
-            let mark = equation.phi_q.iter().find(|(c, _)| *c == column).map_or('.', |(_, entry)| {
+            let mark = row.iter().find(|(c, _)| *c == column).map_or('.', |(_, entry)| {
                 match equations.graph.stage(*entry) {
                     Stage::Constant => '1',
                     Stage::Parameter => 'p',
@@ -90,6 +142,9 @@ fn sparsity(model: &Model, equations: &Equations, lines: &mut Vec<String>) {
 }
 
 fn order(model: &Model, structure: &Structure, lines: &mut Vec<String>) {
+    if !structure.square {
+        return;
+    }
     lines.push("Solved block after block:".into());
     for (number, block) in structure.blocks.iter().enumerate() {
         let rows: Vec<_> = block
@@ -141,9 +196,28 @@ fn cost(program: &Program, lines: &mut Vec<String>) {
         ("`branches`", program.branches.operations),
         ("`limits`", program.limits.operations),
         ("`outputs`", program.outputs.operations),
-        ("`solve_blocks`, once", before),
-        ("`solve_blocks`, each iteration of every block", iteration),
     ];
+    let mut table = table.to_vec();
+    if !program.blocks.is_empty() {
+        table.push(("`solve_blocks`, once", before));
+        table.push(("`solve_blocks`, each iteration of every block", iteration));
+    }
+    if let Some(dynamics) = &program.dynamics {
+        table.extend([
+            ("`mass`", dynamics.mass.operations),
+            ("`mass_times`", dynamics.mass_times.operations),
+            ("`force`", dynamics.force.operations),
+            ("`force_q`", dynamics.force_q.operations),
+            ("`force_qd`", dynamics.force_qd.operations),
+            ("`mass_times_q`", dynamics.mass_times_q.operations),
+            ("`reaction`", dynamics.reaction.operations),
+            ("`reaction_q`", dynamics.reaction_q.operations),
+            ("`energy`", dynamics.energy.operations),
+            ("`powers`", dynamics.powers.operations),
+            ("`state_rates`", dynamics.state_rates.operations),
+            ("`loads`", dynamics.loads.operations),
+        ]);
+    }
     for (name, count) in table {
         let Operations { additions, multiplications, divisions, sine_cosines, functions, selects } = count;
         lines.push(format!(

@@ -181,6 +181,13 @@ impl<'a> Printer<'a> {
             Leaf::Position(index) => (coordinate(index, 0), Rank::Variable),
             Leaf::Velocity(index) => (coordinate(index, 1), Rank::Rate),
             Leaf::Acceleration(index) => (coordinate(index, 2), Rank::Rate),
+            Leaf::State(index) => {
+                let state = self.model.dynamics.as_ref().and_then(|d| d.states.get(index as usize));
+                (self.notation.name(state.map_or("?", |state| &state.name), 0), Rank::Variable)
+            }
+            Leaf::Multiplier(index) | Leaf::Direction(index) => {
+                (self.notation.name(&format!("lambda.{index}"), 0), Rank::Rate)
+            }
         };
         Atom { head, tail: String::new(), rank }
     }

@@ -6,6 +6,7 @@ use proc_macro2::TokenStream;
 
 use super::blocks;
 use super::code::{lets, tokens};
+use super::dynamics::{self, DynamicBodies};
 use super::phases;
 use super::scope::Scope;
 use crate::equations::Equations;
@@ -45,6 +46,8 @@ pub struct Bodies {
     pub solve_blocks: TokenStream,
     pub factorize: TokenStream,
     pub solve_linear: TokenStream,
+    /// Masses and forces, where the text has any.
+    pub dynamics: Option<DynamicBodies>,
 }
 
 /// Before: the program of a model. After: one body a function.
@@ -53,12 +56,7 @@ pub fn bodies(model: &Model, equations: &Equations, program: &Program, runtime: 
     let bare = Scope { graph, model, parameters: None, position: None, unknowns: &[] };
     let early = Scope { parameters: Some(&program.parameters.fields), ..bare };
     let scope = Scope { position: Some(&program.position.fields), ..early };
-    let body = |section: &Section, scope: &Scope<'_>, result: String| {
-        let mut text = String::new();
-        lets(section, scope, &mut text);
-        text += &result;
-        tokens(&text, runtime)
-    };
+    let body = |section: &Section, scope: &Scope<'_>, result: String| body(section, scope, &result, runtime);
     let rows =
         |part: fn(&crate::equations::Row) -> Option<NodeId>| array(equations.rows.iter().map(part), &scope);
     let some = |nodes: &[NodeId], scope: &Scope<'_>| array(nodes.iter().map(|id| Some(*id)), scope);
@@ -85,7 +83,7 @@ pub fn bodies(model: &Model, equations: &Equations, program: &Program, runtime: 
         row_scales: body(&program.row_scales, &early, some(&equations.row_scales, &early)),
         position: body(&program.position.section, &early, kept(&program.position, &early, "__Position")),
         phi: body(&program.phi, &scope, rows(|row| Some(row.phi))),
-        phi_q: body(&program.phi_q, &scope, matrix(equations, &scope)),
+        phi_q: body(&program.phi_q, &scope, matrix(equations.rows.iter().map(|row| &row.phi_q), &scope)),
         sparsity: entries(equations).map(|(row, column, _)| (row as u16, column as u16)).collect(),
         phi_q_entries: body(
             &program.phi_q,
@@ -106,6 +104,7 @@ pub fn bodies(model: &Model, equations: &Equations, program: &Program, runtime: 
         solve_blocks: tokens(&blocks::solve(equations, program, &early), runtime),
         factorize: tokens(&factorize, runtime),
         solve_linear: tokens(&solve_linear, runtime),
+        dynamics: dynamics::bodies(equations, program, &early, &scope, runtime),
     }
 }
 
@@ -121,7 +120,8 @@ fn evaluation(equations: &Equations, scope: &Scope<'_>) -> String {
     )
 }
 
-fn array(nodes: impl Iterator<Item = Option<NodeId>>, scope: &Scope<'_>) -> String {
+/// `[a, 0, b, …]`
+pub fn array(nodes: impl Iterator<Item = Option<NodeId>>, scope: &Scope<'_>) -> String {
     format!("[{}]", nodes.map(|id| scope.or_zero(id)).collect::<Vec<_>>().join(", "))
 }
 
@@ -131,15 +131,30 @@ fn entries(equations: &Equations) -> impl Iterator<Item = (usize, usize, NodeId)
     rows.flat_map(|(row, equation)| equation.phi_q.iter().map(move |(column, entry)| (row, *column, *entry)))
 }
 
-/// Zeros are not written one by one: a chain of 200 loops has 160 000 of them.
-fn matrix(equations: &Equations, scope: &Scope<'_>) -> String {
-    let (rows, columns) = (equations.rows.len(), scope.model.coordinates.len());
+/// Straight-line code and the value behind it.
+pub fn body(section: &Section, scope: &Scope<'_>, result: &str, runtime: &TokenStream) -> TokenStream {
+    let mut text = String::new();
+    lets(section, scope, &mut text);
+    text += result;
+    tokens(&text, runtime)
+}
+
+/// Rows of as many entries as there are coordinates. Zeros are not written one by one: a chain of 200 loops has
+/// 160 000 of them.
+pub fn matrix<'a>(
+    rows: impl ExactSizeIterator<Item = &'a Vec<(usize, NodeId)>>,
+    scope: &Scope<'_>,
+) -> String {
+    let (length, columns) = (rows.len(), scope.model.coordinates.len());
     let zero = scope.or_zero(None);
-    let mut text = format!("let mut __rows = [[{zero}; {columns}]; {rows}];\n");
-    for (row, column, entry) in entries(equations) {
-        let _ = writeln!(text, "__rows[{row}][{column}] = {};", scope.operand(entry));
+    let zeros = format!("[[{zero}; {columns}]; {length}]");
+    let mut text = String::new();
+    for (row, entries) in rows.enumerate() {
+        for (column, entry) in entries {
+            let _ = writeln!(text, "__rows[{row}][{column}] = {};", scope.operand(*entry));
+        }
     }
-    text + "__rows"
+    if text.is_empty() { zeros } else { format!("let mut __rows = {zeros};\n{text}__rows") }
 }
 
 fn limits(equations: &Equations, scope: &Scope<'_>) -> String {

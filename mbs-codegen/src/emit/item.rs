@@ -4,6 +4,7 @@ use proc_macro2::{Ident, Span, TokenStream};
 use quote::{format_ident, quote, quote_spanned};
 
 use super::code::tokens;
+use super::dynamics;
 use super::functions::Bodies;
 use super::scope::{field_name, is_keyword, number, subscripts, variable};
 use super::{Part, scenes};
@@ -94,6 +95,11 @@ fn implementations(text: &Text, scenes: &Scenes, part: &Part<'_>) -> TokenStream
     let model = &scene.model;
     let name = scenes::type_in(text, scenes, scene, &quote! { T });
     let lane = scenes::type_in(text, scenes, scene, &quote! { T::Real });
+    // The stub of a square text has as many rows as it was meant to have.
+    let m = if part.square { model.coordinates.len() } else { model.rows.len() };
+    let kinematic = if part.square { kinematic(&name, model, bodies, runtime) } else { TokenStream::new() };
+    let dynamic =
+        bodies.dynamics.as_ref().map(|bodies| dynamics::implementation(&name, model, bodies, runtime));
     let (n, branches, outputs) = (model.coordinates.len(), model.branches.len(), model.outputs.len());
     let limits = model.limits.len();
     let tables = tables(text, scenes, scene);
@@ -120,10 +126,7 @@ fn implementations(text: &Text, scenes: &Scenes, part: &Part<'_>) -> TokenStream
         phases,
         speeds,
         outputs: outputs_body,
-        factors,
-        solve_blocks,
-        factorize,
-        solve_linear,
+        ..
     } = bodies;
     let nonzeros = sparsity.len();
     let places = sparsity.iter().map(|(row, column)| quote! { (#row, #column) });
@@ -142,11 +145,9 @@ fn implementations(text: &Text, scenes: &Scenes, part: &Part<'_>) -> TokenStream
             #[derive(::core::clone::Clone, ::core::marker::Copy, ::core::fmt::Debug)]
             pub struct __Position<T>([T; #kept_position]);
 
-            #factors
-
             #speeds_item
 
-            impl<T: #runtime::Scalar> #runtime::Mechanism<T, #n, #n> for #name {
+            impl<T: #runtime::Scalar> #runtime::Mechanism<T, #n, #m> for #name {
                 type Parameters = __Parameters<T>;
                 type Position = __Position<T>;
                 type Entries = [T; #nonzeros];
@@ -165,23 +166,23 @@ fn implementations(text: &Text, scenes: &Scenes, part: &Part<'_>) -> TokenStream
                 #[inline]
                 fn coordinate_scales(&self, __p: &__Parameters<T>) -> [T; #n] { #coordinate_scales }
                 #[inline]
-                fn row_scales(&self, __p: &__Parameters<T>) -> [T; #n] { #row_scales }
+                fn row_scales(&self, __p: &__Parameters<T>) -> [T; #m] { #row_scales }
                 #[inline]
                 fn position(&self, __p: &__Parameters<T>, __q: &[T; #n], __t: T) -> __Position<T> { #position }
                 #[inline]
-                fn phi(&self, __p: &__Parameters<T>, __s: &__Position<T>) -> [T; #n] { #phi }
+                fn phi(&self, __p: &__Parameters<T>, __s: &__Position<T>) -> [T; #m] { #phi }
                 #[inline]
-                fn phi_q(&self, __p: &__Parameters<T>, __s: &__Position<T>) -> [[T; #n]; #n] { #phi_q }
+                fn phi_q(&self, __p: &__Parameters<T>, __s: &__Position<T>) -> [[T; #n]; #m] { #phi_q }
                 #[inline]
                 fn phi_q_entries(&self, __p: &__Parameters<T>, __s: &__Position<T>) -> [T; #nonzeros] { #phi_q_entries }
                 #[inline]
-                fn phi_t(&self, __p: &__Parameters<T>, __s: &__Position<T>) -> [T; #n] { #phi_t }
+                fn phi_t(&self, __p: &__Parameters<T>, __s: &__Position<T>) -> [T; #m] { #phi_t }
                 #[inline]
-                fn phi_tt(&self, __p: &__Parameters<T>, __s: &__Position<T>) -> [T; #n] { #phi_tt }
+                fn phi_tt(&self, __p: &__Parameters<T>, __s: &__Position<T>) -> [T; #m] { #phi_tt }
                 #[inline]
-                fn phi_qt_qd(&self, __p: &__Parameters<T>, __s: &__Position<T>, __qd: &[T; #n]) -> [T; #n] { #phi_qt_qd }
+                fn phi_qt_qd(&self, __p: &__Parameters<T>, __s: &__Position<T>, __qd: &[T; #n]) -> [T; #m] { #phi_qt_qd }
                 #[inline]
-                fn gamma(&self, __p: &__Parameters<T>, __s: &__Position<T>, __qd: &[T; #n]) -> [T; #n] { #gamma }
+                fn gamma(&self, __p: &__Parameters<T>, __s: &__Position<T>, __qd: &[T; #n]) -> [T; #m] { #gamma }
                 #[inline]
                 fn evaluate(
                     &self,
@@ -204,24 +205,36 @@ fn implementations(text: &Text, scenes: &Scenes, part: &Part<'_>) -> TokenStream
                 ) -> [#runtime::OutputValue<T>; #outputs] { #outputs_body }
             }
 
-            impl<T: #runtime::Scalar> #runtime::Kinematic<T, #n> for #name {
-                type Factors = __Factors<T>;
-                #[inline]
-                fn solve_blocks<__S: #runtime::BlockSolver<T>>(
-                    &self,
-                    __p: &__Parameters<T>,
-                    __q: &mut [T; #n],
-                    __t: T,
-                    __solver: &mut __S,
-                ) -> T::Lanes<#runtime::Outcome> { #solve_blocks }
-                #[inline]
-                fn factorize(&self, __p: &__Parameters<T>, __s: &__Position<T>) -> (__Factors<T>, #runtime::Margin<T>) {
-                    #factorize
-                }
-                #[inline]
-                fn solve_linear(&self, __factors: &__Factors<T>, __b: &[T; #n]) -> [T; #n] { #solve_linear }
-            }
+            #kinematic
+            #dynamic
         };
+    }
+}
+
+/// `impl Kinematic` with the factors that it keeps.
+fn kinematic(name: &TokenStream, model: &Model, bodies: &Bodies, runtime: &TokenStream) -> TokenStream {
+    let n = model.coordinates.len();
+    let Bodies { factors, solve_blocks, factorize, solve_linear, .. } = bodies;
+    quote! {
+        #factors
+
+        impl<T: #runtime::Scalar> #runtime::Kinematic<T, #n> for #name {
+            type Factors = __Factors<T>;
+            #[inline]
+            fn solve_blocks<__S: #runtime::BlockSolver<T>>(
+                &self,
+                __p: &__Parameters<T>,
+                __q: &mut [T; #n],
+                __t: T,
+                __solver: &mut __S,
+            ) -> T::Lanes<#runtime::Outcome> { #solve_blocks }
+            #[inline]
+            fn factorize(&self, __p: &__Parameters<T>, __s: &__Position<T>) -> (__Factors<T>, #runtime::Margin<T>) {
+                #factorize
+            }
+            #[inline]
+            fn solve_linear(&self, __factors: &__Factors<T>, __b: &[T; #n]) -> [T; #n] { #solve_linear }
+        }
     }
 }
 

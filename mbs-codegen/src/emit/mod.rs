@@ -2,8 +2,10 @@
 
 mod blocks;
 pub mod casadi;
+mod casadi_dynamics;
 mod code;
 mod docs;
+mod dynamics;
 pub mod formula;
 mod functions;
 mod item;
@@ -42,6 +44,8 @@ pub struct Translated<'a> {
 pub struct Part<'a> {
     /// The scene.
     pub scene: &'a Scene,
+    /// Whether its rows fix every coordinate.
+    pub square: bool,
     /// What is generated of its documentation.
     pub docs: Vec<String>,
     /// Bodies of all functions.
@@ -60,7 +64,7 @@ pub fn rust(
         let Translated { scene, equations, structure, program } = translated;
         let docs = docs::structure(&scene.model, equations, structure, program);
         let bodies = functions::bodies(&scene.model, equations, program, &text.header.runtime);
-        Part { scene, docs, bodies }
+        Part { scene, square: structure.square, docs, bodies }
     });
     item::item(text, scenes, &parts.collect::<Vec<_>>(), left_out)
 }

@@ -56,6 +56,9 @@ impl Scope<'_> {
             }
             Node::Leaf(Leaf::Velocity(index)) => format!("__qd[{index}]"),
             Node::Leaf(Leaf::Acceleration(index)) => format!("__qdd[{index}]"),
+            Node::Leaf(Leaf::State(index)) => format!("__z[{index}]"),
+            Node::Leaf(Leaf::Multiplier(index)) => format!("__lambda[{index}]"),
+            Node::Leaf(Leaf::Direction(index)) => format!("__x[{index}]"),
             _ => number(f64::NAN),
         }
     }

@@ -3,19 +3,26 @@
 use proc_macro2::TokenStream;
 use quote::quote;
 
+use super::dynamics::DynamicBodies;
 use super::functions::Bodies;
 use super::{Part, item};
+use crate::model::Model;
 use crate::model::scenes::Scenes;
 use crate::syntax::Text;
 
 /// Before: scenes with faults. After: the same items as without, with bodies that are never compiled to run.
 pub fn stub(text: &Text, scenes: &Scenes) -> TokenStream {
     let all = scenes.scenes.iter().chain(&scenes.whole);
-    let parts = all.map(|scene| Part { scene, docs: Vec::new(), bodies: bodies() });
+    let parts = all.map(|scene| {
+        let model = &scene.model;
+        // A text of dynamics may have fewer rows than coordinates; any other is meant to be square.
+        let square = model.dynamics.is_none() || model.rows.len() == model.coordinates.len();
+        Part { scene, square, docs: Vec::new(), bodies: bodies(model) }
+    });
     item::item(text, scenes, &parts.collect::<Vec<_>>(), None)
 }
 
-fn bodies() -> Bodies {
+fn bodies(model: &Model) -> Bodies {
     let body = || quote! { ::core::unreachable!() };
     Bodies {
         kept_parameters: 0,
@@ -46,5 +53,6 @@ fn bodies() -> Bodies {
         solve_blocks: body(),
         factorize: body(),
         solve_linear: body(),
+        dynamics: model.dynamics.as_ref().map(|_| DynamicBodies::all(body)),
     }
 }

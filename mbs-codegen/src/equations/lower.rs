@@ -19,6 +19,8 @@ pub struct Lowered {
     pub coordinate_scales: Vec<NodeId>,
     pub row_scales: Vec<NodeId>,
     pub clock: Clock,
+    /// One an expression of the model.
+    pub nodes: Vec<NodeId>,
 }
 
 /// How leaves move in time.
@@ -66,7 +68,7 @@ impl Clock {
         match leaf {
             Leaf::Parameter(_) | Leaf::Time | Leaf::Position(_) => 0,
             Leaf::Velocity(_) => 1,
-            Leaf::Acceleration(_) => 2,
+            Leaf::Acceleration(_) | Leaf::State(_) | Leaf::Multiplier(_) | Leaf::Direction(_) => 2,
             Leaf::Input(i) => match self.kind(i) {
                 Some(VariableKind::InputWithRates) => 0,
                 Some(VariableKind::InputRate) if self.moves(i) => 1,
@@ -101,6 +103,7 @@ pub fn lower(model: &Model) -> Lowered {
         row_scales: model.rows.iter().map(|row| scale(row.dimension)).collect(),
         graph,
         clock,
+        nodes,
     }
 }
 
@@ -118,6 +121,8 @@ fn expressions(model: &Model, clock: &Clock, g: &mut Graph) -> Vec<NodeId> {
                 Some(VariableKind::Parameter) => Leaf::Parameter(i as u32),
                 _ => Leaf::Input(i as u32),
             }),
+            expression::Node::State(i) => g.leaf(Leaf::State(i as u32)),
+            expression::Node::Multiplier(i) => g.leaf(Leaf::Multiplier(i as u32)),
             expression::Node::Unary(function, a) => g.unary(unary(function), of(a)),
             expression::Node::Binary(function, a, b) => g.binary(binary(function), of(a), of(b)),
             expression::Node::Rate(a, order) => {

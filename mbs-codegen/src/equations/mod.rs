@@ -1,11 +1,16 @@
 //! Model → roots of one graph: Φ, Φ_q, Φ_t, Φ_tt, Φ_qt q̇, γ, branches, limits, phases, outputs, guesses,
-//! metric.
+//! metric; M, Q and their derivatives, energies, powers.
 
+mod dynamics;
+mod forces;
 mod lower;
 
-use crate::model::Model;
-use crate::symbolic::{Graph, Leaf, NodeId, tangent};
+use std::collections::BTreeSet;
 
+use crate::model::Model;
+use crate::symbolic::{Graph, Leaf, Node, NodeId, tangent};
+
+pub use dynamics::{Dynamics, Sparse};
 use lower::Lowered;
 
 /// One graph and its roots. `None` is a structural zero.
@@ -29,6 +34,8 @@ pub struct Equations {
     pub coordinate_scales: Vec<NodeId>,
     /// Reference metric of the rows.
     pub row_scales: Vec<NodeId>,
+    /// Masses and forces, where the text has any.
+    pub dynamics: Option<Dynamics>,
 }
 
 /// A row of Φ with its derivatives.
@@ -84,9 +91,10 @@ pub fn derive(model: &Model) -> Equations {
         coordinate_scales,
         row_scales,
         clock,
+        nodes,
     } = lowered;
     let g = &mut graph;
-    let columns = jacobian(g, &residuals, model.coordinates.len());
+    let columns = jacobian(g, &residuals, model.coordinates.len(), Leaf::Position);
     let phi_t = tangent(g, &residuals, |g, leaf| clock.partial(g, leaf));
     let phi_tt = again(g, &phi_t, |g, leaf| clock.partial(g, leaf));
     let along = tangent(g, &residuals, |g, leaf| match leaf {
@@ -119,16 +127,40 @@ pub fn derive(model: &Model) -> Equations {
             phi_qt_qd,
             gamma,
         })
-        .collect();
-    Equations { graph, rows, branches, limits, phases, outputs, guesses, coordinate_scales, row_scales }
+        .collect::<Vec<Row>>();
+    let dynamics = model
+        .dynamics
+        .as_ref()
+        .map(|dynamics| dynamics::derive(g, dynamics, &nodes, &clock, &rows, &guesses));
+    Equations {
+        graph,
+        rows,
+        branches,
+        limits,
+        phases,
+        outputs,
+        guesses,
+        coordinate_scales,
+        row_scales,
+        dynamics,
+    }
 }
 
-/// Entries of each row, column by column along the coordinate axes.
-fn jacobian(g: &mut Graph, residuals: &[NodeId], coordinates: usize) -> Vec<Vec<(usize, NodeId)>> {
-    let mut rows = vec![Vec::new(); residuals.len()];
-    for column in 0..coordinates {
-        let axis = |g: &mut Graph, leaf| (leaf == Leaf::Position(column as u32)).then(|| g.constant(1.0));
-        for (row, entry) in rows.iter_mut().zip(tangent(g, residuals, axis)) {
+/// Entries of each row, column by column along the axes of a kind of leaves.
+fn jacobian(g: &mut Graph, roots: &[NodeId], columns: usize, axis: impl Fn(u32) -> Leaf) -> Sparse {
+    let mut rows = vec![Vec::new(); roots.len()];
+    let used: BTreeSet<Leaf> = g
+        .reachable(roots.iter().copied())
+        .into_iter()
+        .filter_map(|id| match g.node(id) {
+            Node::Leaf(leaf) => Some(leaf),
+            _ => None,
+        })
+        .collect();
+    for column in (0..columns).filter(|column| used.contains(&axis(*column as u32))) {
+        let along = axis(column as u32);
+        let direction = |g: &mut Graph, leaf| (leaf == along).then(|| g.constant(1.0));
+        for (row, entry) in rows.iter_mut().zip(tangent(g, roots, direction)) {
             row.extend(entry.map(|entry| (column, entry)));
         }
     }

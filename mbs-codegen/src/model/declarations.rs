@@ -1,6 +1,7 @@
 //! Declarations: constants, parameters, inputs, coordinates and `let`s.
 
-use super::elaborate::{Elaborator, Fault, LONGEST, Quantity, Scalar, Value};
+use super::dynamics::State;
+use super::elaborate::{Elaborator, Fault, LONGEST, Quantity, Reach, Scalar, Value};
 use super::expression::{Id, Node};
 use super::initialiser::{filling, initialiser, named, numbers};
 use super::names::Names;
@@ -46,6 +47,12 @@ pub fn declare(
         }
     }
     work.give_up(&top, |kind| matches!(kind, StatementKind::Coord { .. }));
+    for statement in &top {
+        if let StatementKind::State { name, kind, value } = &statement.kind {
+            work.state(name, kind, value.as_ref());
+        }
+    }
+    work.give_up(&top, |kind| matches!(kind, StatementKind::State { .. }));
     if let Some(beyond) = work.model.coordinates.get(MOST_COORDINATES) {
         let message = format!("the mechanism has more than {MOST_COORDINATES} coordinates");
         work.diagnostics.report(
@@ -80,6 +87,7 @@ fn declared_name(statement: &Statement) -> Option<&Name> {
         | StatementKind::Param { name, .. }
         | StatementKind::Input { name, .. }
         | StatementKind::Coord { name, .. }
+        | StatementKind::State { name, .. }
         | StatementKind::Let { name, .. } => Some(name),
         _ => None,
     }
@@ -97,7 +105,7 @@ impl Declarations<'_> {
             expressions: &mut self.model.expressions,
             names: self.names,
             diagnostics: self.diagnostics,
-            rates: false,
+            reach: Reach::Position,
             longest: self.model.longest,
         };
         let result = run(&mut work);
@@ -367,6 +375,36 @@ impl Declarations<'_> {
         self.model.coordinate_fields.push(CoordinateField { name: name.clone(), docs, unit, shape, first });
     }
 
+    fn state(&mut self, name: &Name, kind: &Type, start: Option<&Expression>) {
+        let declared = self.declared(kind);
+        if !self.owns(name) {
+            return;
+        }
+        let (dimension, size) = (declared.dimension, declared.size);
+        let starts = start.filter(|_| !declared.faulty).map(|expression| {
+            self.elaborate(|work| {
+                let value = work.value(expression)?;
+                let value = initialiser(work, value, dimension)?;
+                fits_shape(work, &value, &declared.shape)?;
+                Ok::<_, Fault>(value.items.iter().map(|item| item.id).collect::<Vec<Id>>())
+            })
+        });
+        let starts = starts.and_then(Result::ok).unwrap_or_default();
+        let states = &mut self.model.dynamics.get_or_insert_default().states;
+        let first = states.len();
+        for (index, component) in component_names(&name.text, &declared.shape).enumerate() {
+            states.push(State {
+                name: component,
+                unit: kind.unit.text.clone(),
+                start: starts.get(index).copied(),
+                rate: None,
+                span: name.span,
+            });
+        }
+        let ids = (first..first + size).map(|i| self.model.expressions.push(Node::State(i))).collect();
+        self.define(name, &declared, ids);
+    }
+
     fn lets(&mut self, top: &[&Statement]) {
         let lets: Vec<(&Name, Option<&Unit>, &Expression)> = top
             .iter()
@@ -397,6 +435,7 @@ impl Declarations<'_> {
                 (name, Declares::Input { rates: *rates }, Some(kind))
             }
             StatementKind::Coord { name, kind, .. } => (name, Declares::Coord, Some(kind)),
+            StatementKind::State { name, .. } => (name, Declares::Value, None),
             _ => return,
         };
         if !matches!(statement.kind, StatementKind::Faulty { .. }) {

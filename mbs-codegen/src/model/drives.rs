@@ -1,6 +1,6 @@
 //! Drives: rows that prescribe a motion, or a rate whose integral the stepper keeps as a phase.
 
-use super::elaborate::{Fault, Quantity, Scalar};
+use super::elaborate::{Fault, Quantity, Reach, Scalar};
 use super::expression::{Binary, Id, Node};
 use super::resolve::Resolver;
 use super::units::Dimension;
@@ -34,7 +34,7 @@ impl Resolver<'_> {
         argument: &Expression,
         equation: &Equation,
     ) -> Result<(), Fault> {
-        let (argument, speed) = self.elaborate(false, |work| {
+        let (argument, speed) = self.elaborate(Reach::Position, |work| {
             let (argument, speed) = (work.value(argument), work.value(&equation.right));
             let (argument, speed) = (argument?, speed?);
             let argument = work.scalar(&argument, "`rate`", argument.span)?;
@@ -55,8 +55,9 @@ impl Resolver<'_> {
         let dimension = argument.quantity.dimension();
         let variable = self.phase_variables(name, round, argument.id, dimension)?;
         let value = self.model.expressions.push(Node::Variable(variable));
-        let residual = self
-            .elaborate(false, |work| work.push_binary(Binary::Subtract, argument.id, value, equation.span))?;
+        let residual = self.elaborate(Reach::Position, |work| {
+            work.push_binary(Binary::Subtract, argument.id, value, equation.span)
+        })?;
         self.model.phases.push(Phase { variable, argument: argument.id, speed: speed.id });
         let row = Row { name: String::new(), dimension, residual, driven: true, span: equation.span };
         self.push_row(group, row);

@@ -8,7 +8,7 @@ use super::functions::{self, FUNCTIONS, LATER};
 use super::names::{Names, Symbol};
 use super::units::{Dimension, with_suffix};
 use crate::diagnostics::{Diagnostics, nearest};
-use crate::syntax::ast::{Expression, Instruction, Operation, Operator};
+use crate::syntax::ast::{Expression, Instruction, Operation, Operator, Target};
 
 /// A fault was reported.
 #[derive(Clone, Copy, Debug)]
@@ -84,15 +84,33 @@ impl Value {
     }
 }
 
+/// What an expression may use beside coordinates, parameters, inputs and the time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Reach {
+    /// Nothing more.
+    Position,
+    /// `der(x)`, multipliers and first-order states.
+    Force,
+    /// `der2(x)` too.
+    Output,
+}
+
 /// Executes the postfix code of expressions.
 pub struct Elaborator<'a> {
     pub expressions: &'a mut Expressions,
     pub names: &'a mut Names,
     pub diagnostics: &'a mut Diagnostics,
-    /// Whether `der` may stand here.
-    pub rates: bool,
+    /// What may stand here.
+    pub reach: Reach,
     /// Largest length written as a number with a suffix so far (m).
     pub longest: f64,
+}
+
+fn list(names: &[&str]) -> String {
+    match names {
+        [] => "no constraint yet".into(),
+        _ => names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", "),
+    }
 }
 
 /// A `sum` that is being unrolled.
@@ -191,6 +209,11 @@ impl Elaborator<'_> {
                 let indices = stack.split_off(stack.len().saturating_sub(*indices));
                 let base = stack.pop().ok_or(Fault)?;
                 self.index(&base, &indices, span)?
+            }
+            Operation::Reference { function, targets } => {
+                let indexed = targets.iter().filter(|target| target.indexed).count();
+                let counts = stack.split_off(stack.len().saturating_sub(indexed));
+                self.reference(function, targets, counts, span)?
             }
             Operation::SumBegin { variable, end } => {
                 let (high, low) = (pop()?, pop()?);
@@ -321,11 +344,29 @@ impl Elaborator<'_> {
     pub fn rate(&mut self, arguments: Vec<Value>, order: u8, span: Span) -> Result<Value, Fault> {
         let name = if order == 1 { "der" } else { "der2" };
         let [argument] = self.arguments(name, arguments, span)?;
-        if !self.rates {
+        if self.reach == Reach::Position {
             return Err(self.fault(
                 span,
-                format!("`{name}` stands outside an output"),
-                "write rates in `out` definitions; a drive takes its rates from the time and from inputs with rates",
+                format!("`{name}` stands outside an output or a force"),
+                "write rates in `out` definitions and forces; a drive takes its rates from the time and from inputs with rates",
+            ));
+        }
+        let inner = self.expressions.reachable(argument.items.iter().map(|item| item.id));
+        let inside = |wanted: fn(Node) -> bool| {
+            self.expressions.iter().any(|(id, node)| inner.get(id.index()) == Some(&true) && wanted(node))
+        };
+        if inside(|node| matches!(node, Node::State(_) | Node::Multiplier(_))) {
+            return Err(self.fault(
+                span,
+                format!("`{name}` of a state or of a multiplier is not known"),
+                "take rates of coordinates, inputs with rates and the time; `der(z) == …;` defines that of a state",
+            ));
+        }
+        if self.reach == Reach::Force && (order > 1 || inside(|node| matches!(node, Node::Rate(..)))) {
+            return Err(self.fault(
+                span,
+                "an acceleration stands in a force",
+                "forces use positions and rates; what grows with the acceleration is a mass: `kinetic T = …;`",
             ));
         }
         let seconds = Dimension::SECOND.power(f64::from(order)).unwrap_or_default();
@@ -333,6 +374,76 @@ impl Elaborator<'_> {
             let quantity = Quantity::Known(item.quantity.dimension().over(seconds));
             Ok(Scalar { id: work.expressions.push(Node::Rate(item.id, order)), quantity, bare: false, span })
         })
+    }
+
+    /// `lambda(row)`, `effort(drive)`.
+    fn reference(
+        &mut self,
+        function: &str,
+        targets: &[Target],
+        counts: Vec<Value>,
+        span: Span,
+    ) -> Result<Value, Fault> {
+        if self.reach == Reach::Position {
+            return Err(self.fault(
+                span,
+                format!("`{function}` stands outside an output or a force"),
+                "multipliers are known to forces and outputs alone",
+            ));
+        }
+        if !self.names.dynamic {
+            let help =
+                "declare what moves: `body rod { mass: 2kg, com: P }`; without masses no row has a force";
+            return Err(self.fault(span, format!("`{function}` stands in a text without masses"), help));
+        }
+        let [target] = targets else {
+            let message = format!("`{function}` takes 1 name, not {}", targets.len());
+            return Err(self.fault(span, message, format!("write `{function}(row)`")));
+        };
+        if !matches!(function, "lambda" | "effort") {
+            return Err(self.unknown_function(function, span));
+        }
+        let Some(rows) = self.names.rows(&target.name.text).cloned() else {
+            let known: Vec<&str> = self.names.row_groups().collect();
+            let help = match nearest(&target.name.text, known.iter().copied()) {
+                Some(name) => format!("did you mean `{name}`?"),
+                None => format!("rows are those of {}", list(&known)),
+            };
+            let message = format!("`{}` is no constraint or drive", target.name.text);
+            return Err(self.fault(target.name.span, message, help));
+        };
+        if function == "effort" && !rows.driven {
+            let message = format!("`{}` is no drive", target.name.text);
+            let help = format!("write `lambda({})` for the multiplier of a constraint", target.name.text);
+            return Err(self.fault(target.name.span, message, help));
+        }
+        let chosen = match counts.first() {
+            None => rows.rows.clone(),
+            Some(count) => {
+                let index = self.count(count)?;
+                let Some(row) = rows.rows.get(index) else {
+                    let (name, length) = (&target.name.text, rows.rows.len());
+                    return Err(self.fault(
+                        count.span,
+                        format!("`{name}` has no row {index}"),
+                        format!("its rows are counted from 0; the last is {}", length.saturating_sub(1)),
+                    ));
+                };
+                vec![*row]
+            }
+        };
+        let mut items = Vec::new();
+        for (row, dimension) in &chosen {
+            let quantity = Quantity::Known(Dimension::JOULE.over(*dimension));
+            let id = self.expressions.push(Node::Multiplier(*row));
+            let scalar = Scalar { id, quantity, bare: false, span };
+            items.push(match function {
+                "effort" => self.unary_scalar(Unary::Negate, scalar, quantity, span)?,
+                _ => scalar,
+            });
+        }
+        let shape = if items.len() == 1 { Vec::new() } else { vec![items.len()] };
+        Ok(Value { shape, items, span })
     }
 
     /// A value that counts something: a non-negative integer made of literals, constants and loop names.

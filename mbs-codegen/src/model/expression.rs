@@ -15,6 +15,10 @@ pub enum Node {
     Coordinate(usize),
     /// A parameter or input by its index.
     Variable(usize),
+    /// A first-order state by its index.
+    State(usize),
+    /// The multiplier λ of a row by the row's index.
+    Multiplier(usize),
     /// A function of one argument.
     Unary(Unary, Id),
     /// A function of two arguments.
@@ -119,7 +123,12 @@ impl Node {
     /// The expressions that it is made of.
     pub fn operands(self) -> impl Iterator<Item = Id> {
         let (first, second) = match self {
-            Node::Number(_) | Node::Time | Node::Coordinate(_) | Node::Variable(_) => (None, None),
+            Node::Number(_)
+            | Node::Time
+            | Node::Coordinate(_)
+            | Node::Variable(_)
+            | Node::State(_)
+            | Node::Multiplier(_) => (None, None),
             Node::Unary(_, a) | Node::Rate(a, _) => (Some(a), None),
             Node::Binary(_, a, b) => (Some(a), Some(b)),
         };

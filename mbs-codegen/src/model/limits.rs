@@ -1,6 +1,6 @@
 //! Working ranges, and the coordinates that are meant as independent.
 
-use super::elaborate::Fault;
+use super::elaborate::{Fault, Reach};
 use super::expression::Node;
 use super::resolve::Resolver;
 use super::{Independent, Limit, VariableKind};
@@ -16,7 +16,7 @@ impl Resolver<'_> {
         high: &Expression,
     ) -> Result<(), Fault> {
         let group = self.group(name, "limit")?;
-        let [low, value, high] = self.elaborate(false, |work| {
+        let [low, value, high] = self.elaborate(Reach::Position, |work| {
             let values = [low, value, high].map(|part| work.value(part));
             let [low, value, high] = values;
             let (low, value, high) = (low?, value?, high?);

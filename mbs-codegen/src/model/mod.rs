@@ -3,7 +3,9 @@
 mod arithmetic;
 mod declarations;
 mod drives;
+pub mod dynamics;
 mod elaborate;
+mod elements;
 mod evaluate;
 pub mod expression;
 mod functions;
@@ -19,6 +21,7 @@ pub mod units;
 
 use proc_macro2::Span;
 
+use dynamics::Dynamics;
 use expression::{Binary, Expressions, Id, Node};
 use units::Dimension;
 
@@ -47,8 +50,32 @@ pub struct Model {
     pub independent: Vec<Independent>,
     /// Outputs, component by component.
     pub outputs: Vec<Output>,
+    /// Bodies, forces and first-order states, where the text has any.
+    pub dynamics: Option<Dynamics>,
     /// Largest length among constants, numbers and guesses (m); 0 where there is none.
     pub longest: f64,
+}
+
+impl Model {
+    /// Whether a value is made of numbers and parameters alone.
+    pub fn is_constant(&self, value: Id) -> bool {
+        self.made_of(value, |node| match node {
+            Node::Variable(index) => {
+                self.variables.get(index).is_some_and(|variable| variable.kind == VariableKind::Parameter)
+            }
+            Node::Number(_) => true,
+            _ => false,
+        })
+    }
+
+    /// Whether every leaf and every rate of a value is one of those that `allowed` accepts.
+    fn made_of(&self, value: Id, allowed: impl Fn(Node) -> bool) -> bool {
+        let marked = self.expressions.reachable([value]);
+        let used = self.expressions.iter().filter(|(id, _)| marked.get(id.index()) == Some(&true));
+        used.map(|(_, node)| node)
+            .filter(|node| !matches!(node, Node::Unary(..) | Node::Binary(..)))
+            .all(allowed)
+    }
 }
 
 /// A public field of the emitted struct.

@@ -6,6 +6,7 @@ use proc_macro2::Span;
 
 use super::elaborate::Value;
 use super::functions::FUNCTIONS;
+use super::units::Dimension;
 use crate::diagnostics::Diagnostics;
 use crate::syntax::ast::Name;
 
@@ -31,11 +32,23 @@ pub enum Symbol {
     Faulty,
 }
 
-/// Names of values, with the scopes of loops and sums.
+/// Rows of a constraint or drive.
+#[derive(Clone, Debug)]
+pub struct Rows {
+    /// Indices in Φ, and the dimension of each.
+    pub rows: Vec<(usize, Dimension)>,
+    /// Whether a `drive` declares them.
+    pub driven: bool,
+}
+
+/// Names of values, with the scopes of loops and sums; names of rows apart.
 #[derive(Debug, Default)]
 pub struct Names {
     declared: BTreeMap<String, (Symbol, Span)>,
     scoped: Vec<(String, Symbol)>,
+    rows: BTreeMap<String, Rows>,
+    /// Whether the text has masses or forces, so that its rows have multipliers.
+    pub dynamic: bool,
 }
 
 impl Names {
@@ -94,6 +107,21 @@ impl Names {
     /// All declared names.
     pub fn all(&self) -> impl Iterator<Item = &str> {
         self.declared.keys().map(String::as_str).chain(self.scoped.iter().map(|(name, _)| name.as_str()))
+    }
+
+    /// Gives a constraint or drive its rows.
+    pub fn define_rows(&mut self, name: &str, rows: Rows) {
+        self.rows.insert(name.to_owned(), rows);
+    }
+
+    /// The rows of a constraint or drive.
+    pub fn rows(&self, name: &str) -> Option<&Rows> {
+        self.rows.get(name)
+    }
+
+    /// All constraints and drives.
+    pub fn row_groups(&self) -> impl Iterator<Item = &str> {
+        self.rows.keys().map(String::as_str)
     }
 
     /// Where the name was declared outside any loop.

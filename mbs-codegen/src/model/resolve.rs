@@ -1,12 +1,15 @@
 //! The recipe of the stage: declarations first, then rows, branches and outputs in the order of the text.
 
+use std::collections::BTreeSet;
+
 use proc_macro2::Span;
 
 use super::declarations::{self, component_names};
-use super::elaborate::{Elaborator, Fault, MOST_ROUNDS, Quantity, Scalar, Value};
+use super::elaborate::{Elaborator, Fault, MOST_ROUNDS, Quantity, Reach, Scalar, Value};
+use super::elements::is_dynamic;
 use super::expression::{Binary, Id, Node};
 use super::initialiser::{fits_shape, initialiser, named};
-use super::names::{Names, Symbol, report_double};
+use super::names::{Names, Rows, Symbol, report_double};
 use super::units::Dimension;
 use super::{Branch, Model, Output, Role, Row, VariableKind};
 use crate::diagnostics::Diagnostics;
@@ -21,12 +24,25 @@ pub fn resolve(statements: &[Statement], diagnostics: &mut Diagnostics) -> Model
         model: &mut model,
         names: &mut names,
         diagnostics,
+        starts: BTreeSet::new(),
         groups: Vec::new(),
         loops: Vec::new(),
         rounds: 0,
+        pass: Pass::All,
     };
-    work.run(statements);
-    work.name_rows();
+    if statements.iter().any(is_dynamic) {
+        work.model.dynamics.get_or_insert_default();
+        work.names.dynamic = true;
+        work.pass = Pass::Rows;
+        work.run(statements);
+        work.name_rows();
+        work.pass = Pass::Loads;
+        work.run(statements);
+        work.check_states();
+    } else {
+        work.run(statements);
+        work.name_rows();
+    }
     work.check_guesses_and_inputs();
     model
 }
@@ -49,22 +65,37 @@ pub(super) struct Frame {
     scope: usize,
 }
 
+/// Executes the statements that are no declarations.
 pub(super) struct Resolver<'a> {
     pub(super) model: &'a mut Model,
     pub(super) names: &'a mut Names,
     pub(super) diagnostics: &'a mut Diagnostics,
+    /// Coordinates that a `start` gave its value.
+    pub(super) starts: BTreeSet<usize>,
     groups: Vec<Group>,
     pub(super) loops: Vec<Frame>,
     rounds: usize,
+    pass: Pass,
+}
+
+/// What is resolved: multipliers are known once all rows are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Pass {
+    /// The text has no multipliers: all at once.
+    All,
+    /// Constraints, drives, branches, starts.
+    Rows,
+    /// Bodies, forces, energies, rates of states, outputs.
+    Loads,
 }
 
 impl Resolver<'_> {
-    pub(super) fn elaborate<T>(&mut self, rates: bool, run: impl FnOnce(&mut Elaborator<'_>) -> T) -> T {
+    pub(super) fn elaborate<T>(&mut self, reach: Reach, run: impl FnOnce(&mut Elaborator<'_>) -> T) -> T {
         let mut work = Elaborator {
             expressions: &mut self.model.expressions,
             names: self.names,
             diagnostics: self.diagnostics,
-            rates,
+            reach,
             longest: self.model.longest,
         };
         let result = run(&mut work);
@@ -106,6 +137,17 @@ impl Resolver<'_> {
 
     fn statement(&mut self, kind: &StatementKind) {
         let _reported = match kind {
+            StatementKind::Let { name, unit, value } if !self.loops.is_empty() => {
+                self.local(name, unit.as_ref(), value)
+            }
+            kind if self.pass != Pass::Loads && is_row(kind) => self.row_statement(kind),
+            kind if self.pass != Pass::Rows && !is_row(kind) => self.load_statement(kind),
+            _ => Ok(()),
+        };
+    }
+
+    fn row_statement(&mut self, kind: &StatementKind) -> Result<(), Fault> {
+        match kind {
             StatementKind::Constraint { name, items } => self.constraint(name, items),
             StatementKind::Drive { name, equation } => self.drive(name, equation),
             StatementKind::Branch { name, at_start, larger, smaller } => {
@@ -113,18 +155,28 @@ impl Resolver<'_> {
             }
             StatementKind::Limit { name, low, value, high } => self.limit(name, low, value, high),
             StatementKind::Independent { names } => self.independent(names),
-            StatementKind::Out { name, kind, value } => self.output(name, kind, value),
-            StatementKind::Let { name, unit, value } if !self.loops.is_empty() => {
-                self.local(name, unit.as_ref(), value)
+            StatementKind::Start { coordinate, value, rate, span } => {
+                self.start(coordinate, value, rate.as_ref(), *span)
             }
             _ => Ok(()),
-        };
+        }
+    }
+
+    fn load_statement(&mut self, kind: &StatementKind) -> Result<(), Fault> {
+        match kind {
+            StatementKind::Out { name, kind, value } => self.output(name, kind, value),
+            StatementKind::Element { kind, name, fields } => self.element(*kind, name, fields),
+            StatementKind::Load { kind, name, value, on } => self.load(*kind, name, value, on),
+            StatementKind::Energy { kind, name, value } => self.energy(*kind, name, value),
+            StatementKind::Rate { state, rate, span } => self.rate_of_state(state, rate, *span),
+            _ => Ok(()),
+        }
     }
 
     /// A `let` in a loop: it holds to the end of the round.
     fn local(&mut self, name: &Name, unit: Option<&Unit>, value: &Expression) -> Result<(), Fault> {
         let free = self.names.is_free(name, self.diagnostics);
-        let value = self.elaborate(false, |work| named(work, unit, value));
+        let value = self.elaborate(Reach::Position, |work| named(work, unit, value));
         if free {
             self.names.enter(&name.text, value.map_or(Symbol::Faulty, Symbol::Value));
         }
@@ -137,7 +189,7 @@ impl Resolver<'_> {
         if !self.names.is_free(&head.variable, self.diagnostics) {
             return None;
         }
-        let bounds = self.elaborate(false, |work| {
+        let bounds = self.elaborate(Reach::Position, |work| {
             let (low, high) = (work.value(&head.low)?, work.value(&head.high)?);
             Ok::<_, Fault>((work.count(&low)?, work.count(&high)?))
         });
@@ -254,7 +306,7 @@ impl Resolver<'_> {
 
     /// Adds one row a component.
     pub(super) fn equation(&mut self, equation: &Equation, group: usize) -> Result<(), Fault> {
-        let (left, right) = self.elaborate(false, |work| {
+        let (left, right) = self.elaborate(Reach::Position, |work| {
             let (left, right) = (work.value(&equation.left), work.value(&equation.right));
             Ok::<_, Fault>((left?, right?))
         })?;
@@ -262,7 +314,7 @@ impl Resolver<'_> {
         // `x == 0` holds for every component of a vector x.
         let right = spread_zero(right, &left);
         let left = spread_zero(left, &right);
-        let residuals = self.elaborate(false, |work| {
+        let residuals = self.elaborate(Reach::Position, |work| {
             work.same_shape(&left, &right, "`==`", right.span)?;
             let pairs = left.items.iter().zip(&right.items);
             pairs.map(|(a, b)| residual(work, *a, *b, span)).collect::<Result<Vec<_>, Fault>>()
@@ -281,7 +333,7 @@ impl Resolver<'_> {
         smaller: &Expression,
     ) -> Result<(), Fault> {
         let group = self.group(name, "branch")?;
-        let (value, dimension) = self.elaborate(false, |work| {
+        let (value, dimension) = self.elaborate(Reach::Position, |work| {
             let (larger, smaller) = (work.value(larger), work.value(smaller));
             let (larger, smaller) = (larger?, smaller?);
             let a = work.scalar(&larger, "a branch", larger.span)?;
@@ -302,7 +354,7 @@ impl Resolver<'_> {
     fn output(&mut self, name: &Name, kind: &Type, value: &Expression) -> Result<(), Fault> {
         let group = self.group(name, "out")?;
         let dimension = Dimension::of(&kind.unit, self.diagnostics).ok_or(Fault)?;
-        let value = self.elaborate(true, |work| {
+        let value = self.elaborate(Reach::Output, |work| {
             let shape = kind.shape.iter().map(|length| {
                 let value = work.value(length)?;
                 work.count(&value)
@@ -317,7 +369,13 @@ impl Resolver<'_> {
         let base = if self.loops.is_empty() { name.text.clone() } else { format!("{}.{round}", name.text) };
         for (component, item) in component_names(&base, &value.shape).zip(&value.items) {
             let unit = kind.unit.text.clone();
-            self.model.outputs.push(Output { name: component, unit, value: item.id, span: name.span });
+            let output = Output { name: component, unit, value: item.id, span: name.span };
+            let plain = |node| !matches!(node, Node::State(_) | Node::Multiplier(_));
+            let is_load = self.model.dynamics.is_some() && !self.model.made_of(item.id, plain);
+            match &mut self.model.dynamics {
+                Some(dynamics) if is_load => dynamics.loads.push(output),
+                _ => self.model.outputs.push(output),
+            }
         }
         self.count_row(group, round);
         Ok(())
@@ -326,6 +384,9 @@ impl Resolver<'_> {
     /// A group of one row gives the row its name; rows of larger ones are counted from 0.
     fn name_rows(&mut self) {
         for group in self.groups.iter().filter(|group| matches!(group.kind, "constraint" | "drive")) {
+            let dimension = |row: &usize| self.model.rows.get(*row).map(|found| (*row, found.dimension));
+            let rows = group.rows.iter().filter_map(dimension).collect();
+            self.names.define_rows(&group.name.text, Rows { rows, driven: group.kind == "drive" });
             for (number, row) in group.rows.iter().enumerate() {
                 if let Some(row) = self.model.rows.get_mut(*row) {
                     row.driven = group.kind == "drive";
@@ -409,6 +470,19 @@ fn spread_zero(value: Value, other: &Value) -> Value {
         }
         _ => value,
     }
+}
+
+/// Whether the statement belongs to the rows, which are resolved before what uses their multipliers.
+fn is_row(kind: &StatementKind) -> bool {
+    matches!(
+        kind,
+        StatementKind::Constraint { .. }
+            | StatementKind::Drive { .. }
+            | StatementKind::Branch { .. }
+            | StatementKind::Limit { .. }
+            | StatementKind::Independent { .. }
+            | StatementKind::Start { .. }
+    )
 }
 
 /// Index behind the end that matches a loop whose body begins at `next`.

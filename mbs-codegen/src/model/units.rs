@@ -87,6 +87,15 @@ impl Dimension {
     /// Of times.
     pub const SECOND: Self = Dimension([0, 0, WHOLE, 0, 0, 0, 0, 0]);
 
+    /// Of masses.
+    pub const KILOGRAM: Self = Dimension([0, WHOLE, 0, 0, 0, 0, 0, 0]);
+    /// Of forces.
+    pub const NEWTON: Self = Dimension([WHOLE, WHOLE, -2 * WHOLE, 0, 0, 0, 0, 0]);
+    /// Of energies and torques.
+    pub const JOULE: Self = Dimension([2 * WHOLE, WHOLE, -2 * WHOLE, 0, 0, 0, 0, 0]);
+    /// Of moments of inertia.
+    pub const INERTIA: Self = Dimension([2 * WHOLE, WHOLE, 0, 0, 0, 0, 0, 0]);
+
     /// Dimension of a product.
     pub fn times(self, other: Self) -> Self {
         self.combine(other, 1)

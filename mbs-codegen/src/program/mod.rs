@@ -1,6 +1,7 @@
 //! Graph → ordered, staged straight-line code, with operation counts.
 
 mod blocks;
+mod dynamics;
 mod schedule;
 mod stages;
 
@@ -11,6 +12,7 @@ use crate::structure::Structure;
 use crate::symbolic::{Graph, NodeId};
 
 pub use blocks::{BlockProgram, Method, System};
+pub use dynamics::DynamicsProgram;
 pub use schedule::{Angle, Line, Operations, Section};
 
 /// Everything that is emitted, in the order in which it is computed.
@@ -52,6 +54,8 @@ pub struct Program {
     pub row_scales: Section,
     /// The solution of Φ = 0, block after block.
     pub blocks: Vec<BlockProgram>,
+    /// Masses and forces, where the text has any.
+    pub dynamics: Option<DynamicsProgram>,
 }
 
 /// Straight-line code whose results are kept for later stages.
@@ -68,9 +72,15 @@ pub struct Stage {
 pub fn order(equations: &Equations, structure: &Structure) -> Program {
     let graph = &equations.graph;
     let roots = Roots::of(equations);
-    let position_fields = stages::position_fields(graph, &roots.functions());
+    let dynamics = equations.dynamics.as_ref().map(dynamics::Roots::of);
+    let mut functions = roots.functions().to_vec();
+    functions.extend(dynamics.iter().flat_map(dynamics::Roots::each_step));
+    let rare: Vec<&[NodeId]> = dynamics.iter().flat_map(dynamics::Roots::rare).collect();
+    let position_fields = stages::position_fields(graph, &functions, &rare);
     let blocks = blocks::roots(equations, structure);
-    let mut consumers = roots.functions().to_vec();
+    let mut consumers = functions;
+    consumers.extend(rare);
+    consumers.extend(dynamics.iter().flat_map(dynamics::Roots::start));
     consumers.push(&roots.guesses);
     consumers.push(&roots.coordinate_scales);
     consumers.push(&roots.row_scales);
@@ -100,6 +110,7 @@ pub fn order(equations: &Equations, structure: &Structure) -> Program {
         coordinate_scales: early(&roots.coordinate_scales),
         row_scales: early(&roots.row_scales),
         blocks: blocks::order(equations, structure, &after_parameters),
+        dynamics: dynamics.map(|roots| roots.order(section, early)),
         parameters,
         position,
     }

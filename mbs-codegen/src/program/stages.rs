@@ -21,12 +21,13 @@ pub fn parameter_fields(graph: &Graph, functions: &[&[NodeId]]) -> BTreeSet<Node
 
 /// Values of `(q, t)` that several functions share, as far as something that is not shared uses them.
 ///
-/// Coordinates and time themselves count as shared: functions behind the stage do not get them again.
-pub fn position_fields(graph: &Graph, functions: &[&[NodeId]]) -> BTreeSet<NodeId> {
-    let reached: Vec<Vec<NodeId>> =
-        functions.iter().map(|roots| graph.reachable(roots.iter().copied())).collect();
+/// Coordinates and time themselves count as shared: functions behind the stage do not get them again. What only
+/// `rare` functions share is not kept.
+pub fn position_fields(graph: &Graph, functions: &[&[NodeId]], rare: &[&[NodeId]]) -> BTreeSet<NodeId> {
+    let all: Vec<&[NodeId]> = functions.iter().chain(rare).copied().collect();
+    let reached: Vec<Vec<NodeId>> = all.iter().map(|roots| graph.reachable(roots.iter().copied())).collect();
     let mut users = vec![0_u32; graph.len()];
-    for id in reached.iter().flatten() {
+    for id in reached.iter().take(functions.len()).flatten() {
         if let Some(count) = users.get_mut(id.index()) {
             *count += 1;
         }
@@ -37,7 +38,7 @@ pub fn position_fields(graph: &Graph, functions: &[&[NodeId]]) -> BTreeSet<NodeI
         _ => graph.stage(id) == Stage::Position && users.get(id.index()).is_some_and(|count| *count > 1),
     };
     let mut fields = BTreeSet::new();
-    for (roots, nodes) in functions.iter().zip(&reached) {
+    for (roots, nodes) in all.iter().zip(&reached) {
         fields.extend(roots.iter().copied().filter(|id| shared(*id)));
         for id in nodes.iter().filter(|id| !shared(**id)) {
             fields.extend(graph.node(*id).operands().filter(|operand| shared(*operand)));

@@ -106,7 +106,9 @@ fn evaluate(model: &Model, state: &State, line: Line) -> Vec<Jet> {
             }
             Node::Unary(function, a) => jets[a.index()].unary(function),
             Node::Binary(function, a, b) => jets[a.index()].binary(function, jets[b.index()]),
-            Node::Rate(..) => unreachable!("random texts use no `der`"),
+            Node::Rate(..) | Node::State(_) | Node::Multiplier(_) => {
+                unreachable!("random texts are kinematic and use no `der`")
+            }
         };
         jets.push(jet);
     }

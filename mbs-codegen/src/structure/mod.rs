@@ -1,5 +1,6 @@
 //! Sparsity → matching → block-triangular order; what is not square is reported by name.
 
+mod freedom;
 mod independent;
 mod matching;
 mod triangular;
@@ -16,8 +17,11 @@ use matching::Matching;
 /// The order in which the rows are solved.
 #[derive(Debug)]
 pub struct Structure {
-    /// Diagonal blocks; each uses coordinates of earlier blocks and its own alone.
+    /// Diagonal blocks; each uses coordinates of earlier blocks and its own alone. None where the rows leave
+    /// coordinates free.
     pub blocks: Vec<Block>,
+    /// Whether the rows fix every coordinate.
+    pub square: bool,
     /// The coordinate that each row is matched with.
     pub matched: Vec<Option<usize>>,
 }
@@ -43,14 +47,31 @@ pub struct Explicit {
 }
 
 /// Before: the equations of a model without faults. After: the block-triangular order, or the faults reported.
+///
+/// A text without masses must be square; one with masses may leave coordinates free.
 pub fn analyse(model: &Model, equations: &mut Equations, diagnostics: &mut Diagnostics) -> Option<Structure> {
     let rows: Vec<Vec<usize>> =
         equations.rows.iter().map(|row| row.phi_q.iter().map(|(column, _)| *column).collect()).collect();
     let matching = matching::match_rows(&rows, model.coordinates.len());
-    report(model, &rows, &matching, diagnostics);
+    match &equations.dynamics {
+        Some(dynamics) => freedom::report(model, dynamics, &rows, diagnostics),
+        None => report_missing(model, &rows, &matching, diagnostics),
+    }
+    report_surplus(model, &rows, &matching, diagnostics);
     independent::check(model, &rows, diagnostics);
     if !diagnostics.is_empty() {
         return None;
+    }
+    let square = matching.free_columns().next().is_none();
+    if !square {
+        let all = (0..model.coordinates.len()).map(|coordinate| Block {
+            rows: Vec::new(),
+            coordinates: vec![coordinate],
+            explicit: None,
+        });
+        missing_guesses(model, &all.collect::<Vec<_>>(), diagnostics);
+        let matched = matching.of_row;
+        return diagnostics.is_empty().then_some(Structure { blocks: Vec::new(), square, matched });
     }
     let blocks = triangular::blocks(&rows, &matching)
         .into_iter()
@@ -63,7 +84,7 @@ pub fn analyse(model: &Model, equations: &mut Equations, diagnostics: &mut Diagn
         })
         .collect::<Vec<_>>();
     missing_guesses(model, &blocks, diagnostics);
-    diagnostics.is_empty().then_some(Structure { blocks, matched: matching.of_row })
+    diagnostics.is_empty().then_some(Structure { blocks, square, matched: matching.of_row })
 }
 
 /// Reports coordinates without a guess that Newton's method has to start from.
@@ -103,9 +124,9 @@ fn explicit(equations: &mut Equations, rows: &[usize], coordinates: &[usize]) ->
     Some(Explicit { value, coefficient })
 }
 
-/// Names what is not square: the rows that fix too few coordinates, the coordinates that too few rows fix.
-fn report(model: &Model, rows: &[Vec<usize>], matching: &Matching, diagnostics: &mut Diagnostics) {
-    let mut columns = vec![Vec::new(); model.coordinates.len()];
+/// The rows that each coordinate stands in.
+fn columns_of(rows: &[Vec<usize>], coordinates: usize) -> Vec<Vec<usize>> {
+    let mut columns = vec![Vec::new(); coordinates];
     for (row, used) in rows.iter().enumerate() {
         for column in used {
             if let Some(column) = columns.get_mut(*column) {
@@ -113,18 +134,17 @@ fn report(model: &Model, rows: &[Vec<usize>], matching: &Matching, diagnostics: 
             }
         }
     }
+    columns
+}
+
+/// Names the coordinates that no row or too few rows fix.
+fn report_missing(model: &Model, rows: &[Vec<usize>], matching: &Matching, diagnostics: &mut Diagnostics) {
+    let columns = columns_of(rows, model.coordinates.len());
     for (coordinate, _) in model.coordinates.iter().zip(&columns).filter(|(_, rows)| rows.is_empty()) {
         diagnostics.report(
             coordinate.span,
             format!("coordinate `{}` stands in no constraint or drive", coordinate.name),
             "remove it, or add the row that fixes it; an angle that only outputs need is a `let`",
-        );
-    }
-    for (row, _) in model.rows.iter().zip(rows).filter(|(_, columns)| columns.is_empty()) {
-        diagnostics.report(
-            row.span,
-            format!("row `{}` contains no coordinate", row.name),
-            "remove it, or write the coordinates that it ties",
         );
     }
     let free = matching.free_columns().filter(|column| columns.get(*column).is_some_and(|c| !c.is_empty()));
@@ -139,6 +159,17 @@ fn report(model: &Model, rows: &[Vec<usize>], matching: &Matching, diagnostics: 
             first.span,
             format!("{} for {names}: {missing} more needed", count(part.ends.len(), "row")),
             "add a constraint, or drive a coordinate: `drive crank: phi == omega*t;`",
+        );
+    }
+}
+
+/// Names the rows that fix no coordinate, or too few.
+fn report_surplus(model: &Model, rows: &[Vec<usize>], matching: &Matching, diagnostics: &mut Diagnostics) {
+    for (row, _) in model.rows.iter().zip(rows).filter(|(_, columns)| columns.is_empty()) {
+        diagnostics.report(
+            row.span,
+            format!("row `{}` contains no coordinate", row.name),
+            "remove it, or write the coordinates that it ties",
         );
     }
     let free = matching.free_rows().filter(|row| rows.get(*row).is_some_and(|c| !c.is_empty()));

@@ -28,6 +28,12 @@ pub enum Leaf {
     Velocity(u32),
     /// Rate of its rate.
     Acceleration(u32),
+    /// Varies beside the coordinates, with a rate of its own.
+    State(u32),
+    /// What is given from outside together with velocities: multipliers.
+    Multiplier(u32),
+    /// Component of any vector that a matrix is applied to.
+    Direction(u32),
 }
 
 /// When a value becomes known; a value is computed once, in its stage.
@@ -142,7 +148,9 @@ impl Graph {
             Node::Constant(_) => Stage::Constant,
             Node::Leaf(Leaf::Parameter(_)) => Stage::Parameter,
             Node::Leaf(Leaf::Input(_) | Leaf::Time | Leaf::Position(_)) => Stage::Position,
-            Node::Leaf(Leaf::Velocity(_)) => Stage::Velocity,
+            Node::Leaf(Leaf::Velocity(_) | Leaf::State(_) | Leaf::Multiplier(_) | Leaf::Direction(_)) => {
+                Stage::Velocity
+            }
             Node::Leaf(Leaf::Acceleration(_)) => Stage::Acceleration,
             _ => node.operands().map(|operand| self.stage(operand)).max().unwrap_or(Stage::Constant),
         };

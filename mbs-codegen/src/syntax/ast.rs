@@ -41,6 +41,16 @@ pub enum Operation {
     SumBegin { variable: Name, end: usize },
     /// Adds the body's value to the sum that began at `begin`.
     SumEnd { begin: usize },
+    /// Applies `function` to rows, drives, pins or bodies; pops the counts of those that are indexed.
+    Reference { function: String, targets: Vec<Target> },
+}
+
+/// A row, drive, pin or body that a function refers to.
+#[derive(Clone, Debug)]
+pub struct Target {
+    pub name: Name,
+    /// Whether a count in brackets follows it.
+    pub indexed: bool,
 }
 
 /// Operator between two operands.
@@ -170,6 +180,42 @@ pub enum StatementKind {
         kind: Type,
         value: Expression,
     },
+    /// A body, or what acts between two places, by its fields.
+    Element {
+        kind: Element,
+        name: Name,
+        fields: Vec<Field>,
+    },
+    /// A force on a point, a torque on an angle.
+    Load {
+        kind: Load,
+        name: Name,
+        value: Expression,
+        on: Expression,
+    },
+    /// What adds to the energies or dissipates them.
+    Energy {
+        kind: Energy,
+        name: Name,
+        value: Expression,
+    },
+    State {
+        name: Name,
+        kind: Type,
+        value: Option<Expression>,
+    },
+    /// `der(state) == rate;`
+    Rate {
+        state: Expression,
+        rate: Expression,
+        span: Span,
+    },
+    Start {
+        coordinate: Expression,
+        value: Expression,
+        rate: Option<Expression>,
+        span: Span,
+    },
     For(Loop),
     EndFor,
     /// Of the top level alone.
@@ -188,6 +234,40 @@ pub enum StatementKind {
         declares: Declares,
         kind: Option<Type>,
     },
+}
+
+/// `name: value` in the braces of an element.
+#[derive(Clone, Debug)]
+pub struct Field {
+    pub name: Name,
+    pub value: Expression,
+}
+
+/// What is declared by fields.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Element {
+    Body,
+    Gravity,
+    /// Spring, damper and actuator between two points.
+    Tsda,
+    /// Spring, damper and torque on an angle.
+    Rsda,
+}
+
+/// What acts along a displacement.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Load {
+    Force,
+    Torque,
+}
+
+/// What an energy statement adds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Energy {
+    Potential,
+    Kinetic,
+    /// Rayleigh's function.
+    Dissipation,
 }
 
 /// What a statement declares.

@@ -2,7 +2,7 @@
 
 use proc_macro2::Span;
 
-use super::ast::{Expression, Instruction, Name, Operation, Operator};
+use super::ast::{Expression, Instruction, Name, Operation, Operator, Target};
 use super::parser::{Parser, Read};
 use super::tokens::Kind;
 
@@ -37,7 +37,15 @@ const NEGATE: u8 = 3;
 
 /// Reads the longest expression from here on.
 pub fn expression(parser: &mut Parser<'_>) -> Read<Expression> {
-    let mut reader = Reader { code: Vec::new(), pending: Vec::new() };
+    read(parser, true)
+}
+
+/// Functions of rows, drives, pins and bodies.
+const REFERRING: [&str; 3] = ["lambda", "effort", "reaction"];
+
+/// `references`: whether [`REFERRING`] functions are read as such; not in their own indices, so that nothing nests.
+fn read(parser: &mut Parser<'_>, references: bool) -> Read<Expression> {
+    let mut reader = Reader { code: Vec::new(), pending: Vec::new(), references };
     let mut operand = true;
     loop {
         if operand {
@@ -53,6 +61,7 @@ pub fn expression(parser: &mut Parser<'_>) -> Read<Expression> {
 struct Reader {
     code: Vec<Instruction>,
     pending: Vec<Pending>,
+    references: bool,
 }
 
 impl Reader {
@@ -91,6 +100,15 @@ impl Reader {
                 self.pending.push(Pending::SumLow { variable, span });
                 Ok(true)
             }
+            Kind::Identifier(word)
+                if self.references
+                    && REFERRING.contains(&word.as_str())
+                    && *parser.peek_at(1) == Kind::Open('(') =>
+            {
+                parser.skip(2);
+                self.reference(parser, word, span)?;
+                Ok(false)
+            }
             Kind::Identifier(word) => {
                 parser.skip(1);
                 if !parser.take('(') {
@@ -122,6 +140,41 @@ impl Reader {
                 parser.expected("an expression", "write a number, a name, a function call, `[x, y]` or `(…)`")
             }
         }
+    }
+
+    /// What stands in the parentheses of `lambda(row)` and its like: names, each with at most one count.
+    fn reference(&mut self, parser: &mut Parser<'_>, function: &str, span: Span) -> Read<()> {
+        let help = match function {
+            "lambda" => "write `lambda(closure[0])`, a row of a constraint",
+            "effort" => "write `effort(crank)`, the name of a drive",
+            _ => "write `reaction(B, rod)`, a pin and a body",
+        };
+        let mut targets = Vec::new();
+        loop {
+            let name = parser.name(help)?;
+            let mut indexed = true;
+            if parser.take('[') {
+                self.code.extend(read(parser, false)?.code);
+                parser.expect(']', help)?;
+            } else if parser.take('.') {
+                let count = match parser.peek() {
+                    Kind::Literal(text) => number(text),
+                    _ => None,
+                };
+                let Some(count) = count else { return parser.expected("the number of a row", help) };
+                self.push(count, parser.span());
+                parser.skip(1);
+            } else {
+                indexed = false;
+            }
+            targets.push(Target { name, indexed });
+            if !parser.take(',') {
+                break;
+            }
+        }
+        parser.expect(')', help)?;
+        self.push(Operation::Reference { function: function.into(), targets }, span);
+        Ok(())
     }
 
     /// Reads where an operator or the end may stand; returns whether an operand must stand next, or `None` at
@@ -316,6 +369,10 @@ mod tests {
                 Operation::Index { indices } => format!("index/{indices}"),
                 Operation::SumBegin { variable, end } => format!("sum {}→{end}", variable.text),
                 Operation::SumEnd { begin } => format!("end←{begin}"),
+                Operation::Reference { function, targets } => {
+                    let names: Vec<&str> = targets.iter().map(|target| target.name.text.as_str()).collect();
+                    format!("{function}({})", names.join(","))
+                }
             });
         }
         words.join(" ")
@@ -348,6 +405,10 @@ mod tests {
         assert_eq!(postfix("atan2(y, x)"), "y x atan2/2");
         assert_eq!(postfix("[a, b][1]"), "a b [2] 1 index/1");
         assert_eq!(postfix("p.1 + m[0, 1]"), "p 1 index/1 m 0 1 index/2 add");
+        assert_eq!(
+            postfix("2*lambda(pin[i + 1]) - reaction(B, rod).1"),
+            "2 i 1 add lambda(pin) multiply reaction(B,rod) 1 index/1 subtract"
+        );
         assert_eq!(postfix("sum(i in 0..n: x[i]*2)"), "0 n sum i→8 x i index/1 2 multiply end←2");
     }
 

@@ -2,6 +2,7 @@
 
 pub mod ast;
 mod constraint;
+mod dynamics;
 mod expression;
 mod header;
 mod parser;

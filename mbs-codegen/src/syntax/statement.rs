@@ -2,6 +2,7 @@
 
 use super::ast::{Declares, Expression, Loop, Name, Statement, StatementKind, Type};
 use super::constraint::{equation, read_constraint};
+use super::dynamics;
 use super::expression::expression;
 use super::parser::{DOC_ATTRIBUTE, GivenUp, Parser, Read, doc_attribute};
 use super::scene::{Open, read_effect, read_scene};
@@ -10,7 +11,7 @@ use super::unit::{declared_type, unit};
 use crate::diagnostics::{Diagnostics, nearest};
 
 /// Words that begin a statement of this version.
-const STATEMENTS: [&str; 14] = [
+const STATEMENTS: [&str; 25] = [
     "const",
     "param",
     "input",
@@ -25,29 +26,21 @@ const STATEMENTS: [&str; 14] = [
     "for",
     "effect",
     "scene",
-];
-
-/// Words that begin a statement of the language which this version does not translate.
-const LATER: [&str; 18] = [
     "start",
+    "state",
     "body",
-    "pin",
-    "tsda",
-    "rsda",
-    "friction",
-    "contact",
     "gravity",
     "force",
     "torque",
+    "tsda",
+    "rsda",
     "potential",
     "kinetic",
     "dissipation",
-    "state",
-    "function",
-    "data",
-    "redundant",
-    "include",
 ];
+
+/// Words that begin a statement of the language which this version does not translate.
+const LATER: [&str; 7] = ["pin", "friction", "contact", "function", "data", "redundant", "include"];
 
 /// Before: flat tokens behind the header. After: all statements that could be read, loops and effects flattened and
 /// balanced, effects and scenes at the top level alone; every other one is reported.
@@ -152,6 +145,9 @@ fn statement(parser: &mut Parser<'_>) -> Read<StatementKind> {
         return parser.expected("a statement", &format!("begin with one of {}", STATEMENTS.join(", ")));
     };
     let span = parser.span();
+    if word == "der" && *parser.peek_at(1) == Kind::Open('(') {
+        return dynamics::read_rate(parser);
+    }
     if let Some(read) = reader(word) {
         parser.skip(1);
         return read(parser);
@@ -207,6 +203,17 @@ fn reader(word: &str) -> Option<Reader> {
         "for" => |parser| read_loop(parser).map(StatementKind::For),
         "effect" => read_effect,
         "scene" => read_scene,
+        "start" => dynamics::read_start,
+        "state" => dynamics::read_state,
+        "body" => dynamics::read_body,
+        "gravity" => dynamics::read_gravity,
+        "force" => dynamics::read_force,
+        "torque" => dynamics::read_torque,
+        "tsda" => dynamics::read_tsda,
+        "rsda" => dynamics::read_rsda,
+        "potential" => dynamics::read_potential,
+        "kinetic" => dynamics::read_kinetic,
+        "dissipation" => dynamics::read_dissipation,
         _ => return None,
     })
 }

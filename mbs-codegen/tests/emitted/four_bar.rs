@@ -104,14 +104,6 @@ const _: () = {
     /// Values of `(q, t)` that functions share.
     #[derive(::core::clone::Clone, ::core::marker::Copy, ::core::fmt::Debug)]
     pub struct __Position<T>([T; 13usize]);
-    /// Factorised diagonal blocks, and the entries of Φ_q off them.
-    #[derive(::core::clone::Clone, ::core::marker::Copy, ::core::fmt::Debug)]
-    pub struct __Factors<T: ::mbs_runtime::Scalar> {
-        /// Entries off the diagonal blocks.
-        entries: [T; 5],
-        /// Diagonal block 1.
-        block1: ::mbs_runtime::Direct2<T>,
-    }
     impl<T: ::mbs_runtime::Scalar> ::mbs_runtime::Mechanism<T, 5usize, 5usize>
     for FourBar<T> {
         type Parameters = __Parameters<T>;
@@ -562,6 +554,14 @@ const _: () = {
                 },
             ]
         }
+    }
+    /// Factorised diagonal blocks, and the entries of Φ_q off them.
+    #[derive(::core::clone::Clone, ::core::marker::Copy, ::core::fmt::Debug)]
+    pub struct __Factors<T: ::mbs_runtime::Scalar> {
+        /// Entries off the diagonal blocks.
+        entries: [T; 5],
+        /// Diagonal block 1.
+        block1: ::mbs_runtime::Direct2<T>,
     }
     impl<T: ::mbs_runtime::Scalar> ::mbs_runtime::Kinematic<T, 5usize> for FourBar<T> {
         type Factors = __Factors<T>;

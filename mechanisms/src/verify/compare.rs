@@ -1,10 +1,11 @@
 //! Emitted values against an oracle's, entry by entry.
 
 use super::agreement::{Agreement, ROUNDINGS, Reference};
-use super::layout::{Layout, Measured, check_sizes, emitted, layouts};
+use super::layout::{Layout, Measured, check_sizes, emitted, emitted_masses, layouts, mass_layouts};
 use super::oracle::{Answer, Oracle, OracleError, Precise, Values};
 use super::states::draw;
 use crate::facade::{AnyEquations, Functions};
+use crate::masses::Masses;
 
 /// Compares a mechanism with a definition (Python text) that CasADi differentiates, at `states` random states.
 ///
@@ -22,7 +23,8 @@ pub fn compare(
     let answer = oracle.evaluate(definition, &samples)?;
     check_sizes(mechanism, &answer)?;
     let found: Vec<Functions> = samples.iter().map(|sample| emitted(mechanism, sample)).collect();
-    against_casadi(mechanism, &found, &answer)
+    let masses: Vec<Masses> = samples.iter().filter_map(|sample| emitted_masses(mechanism, sample)).collect();
+    against_casadi(mechanism, &found, &masses, &answer)
 }
 
 /// Compares a mechanism with a definition (Python text) that is evaluated in 50 digits, at `states` random states.
@@ -48,17 +50,19 @@ pub fn compare_digits(
 fn against_casadi(
     mechanism: &dyn AnyEquations,
     found: &[Functions],
+    masses: &[Masses],
     answer: &Answer<f64>,
 ) -> Result<Agreement, OracleError> {
     let mut agreement = nothing(mechanism, Reference::Casadi, found.len());
-    for layout in layouts(mechanism) {
+    let kinematics = layouts(mechanism).into_iter().map(|layout| (layout.select(found), layout));
+    let dynamics = mass_layouts(mechanism).into_iter().map(|layout| (layout.select_mass(masses), layout));
+    for (values, layout) in kinematics.chain(dynamics) {
         let expected = layout.table(answer, found.len())?;
         let scales = scales(&layout, expected);
-        let (largest, compared) =
-            layout.largest_error(&layout.select(found), expected, |entry, emitted, oracle| {
-                let (oracle, scale) = (oracle.copied(), scales[layout.row(entry)]);
-                Some(Measured { error: relative_error(emitted, oracle, scale)?, oracle, scale })
-            });
+        let (largest, compared) = layout.largest_error(&values, expected, |entry, emitted, oracle| {
+            let (oracle, scale) = (oracle.copied(), scales[layout.row(entry)]);
+            Some(Measured { error: relative_error(emitted, oracle, scale)?, oracle, scale })
+        });
         agreement.functions.extend(largest);
         agreement.values += compared;
     }

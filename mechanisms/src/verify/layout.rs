@@ -6,6 +6,7 @@ use super::agreement::LargestError;
 use super::oracle::{Answer, OracleError, Table, Values};
 use super::states::Sample;
 use crate::facade::{AnyEquations, Functions};
+use crate::masses::Masses;
 
 /// A function with its entries grouped in rows.
 pub struct Layout {
@@ -53,6 +54,35 @@ pub fn layouts(mechanism: &dyn AnyEquations) -> Vec<Layout> {
     ]
 }
 
+/// Every function of masses and forces that is compared; none where the text has none.
+pub fn mass_layouts(mechanism: &dyn AnyEquations) -> Vec<Layout> {
+    let Some(tables) = mechanism.tables() else { return Vec::new() };
+    let names = |entries: &[Entry]| entries.iter().map(|e| e.name.to_string()).collect::<Vec<_>>();
+    let columns = names(mechanism.coordinates());
+    let matrix = |function, key| Layout {
+        function,
+        key,
+        entries: columns.iter().flat_map(|i| columns.iter().map(move |j| format!("{i}, {j}"))).collect(),
+        row_length: columns.len().max(1),
+    };
+    let vector = |function, key, entries: Vec<String>| Layout { function, key, entries, row_length: 1 };
+    let energies = ["kinetic", "potential"].map(String::from).to_vec();
+    vec![
+        matrix("M", "mass"),
+        vector("M q̈", "mass_times", columns.clone()),
+        vector("Q", "force", columns.clone()),
+        matrix("∂Q/∂q", "force_q"),
+        matrix("∂Q/∂q̇", "force_qd"),
+        matrix("(M q̈)_q", "mass_times_q"),
+        vector("Φ_qᵀ λ", "reaction", columns.clone()),
+        matrix("(Φ_qᵀ λ)_q", "reaction_q"),
+        vector("energy", "energy", energies),
+        vector("power", "powers", names(tables.forces)),
+        vector("d state/dt", "state_rates", names(tables.states)),
+        vector("load", "loads", names(tables.loads)),
+    ]
+}
+
 impl Layout {
     /// Row of Φ, or output, that an entry belongs to.
     pub fn row(&self, entry: usize) -> usize {
@@ -67,6 +97,12 @@ impl Layout {
     /// The emitted values of this function.
     pub fn select(&self, emitted: &[Functions]) -> Values {
         emitted.iter().map(|functions| select(functions, self.key)).collect()
+    }
+
+    /// The emitted values of this function of masses and forces.
+    pub fn select_mass(&self, emitted: &[Masses]) -> Values {
+        let all = |values: &[f64]| values.iter().copied().map(Some).collect();
+        emitted.iter().map(|masses| all(mass_values(masses, self.key))).collect()
     }
 
     /// The oracle's values of this function.
@@ -116,6 +152,31 @@ pub fn emitted(mechanism: &mut dyn AnyEquations, sample: &Sample) -> Functions {
         mechanism.set(index, *value);
     }
     mechanism.evaluate(&sample.state)
+}
+
+/// The emitted functions of masses and forces at a sample.
+pub fn emitted_masses(mechanism: &mut dyn AnyEquations, sample: &Sample) -> Option<Masses> {
+    for (index, value) in sample.variables.iter().enumerate() {
+        mechanism.set(index, *value);
+    }
+    mechanism.masses(&sample.state, &sample.loads)
+}
+
+fn mass_values<'a>(masses: &'a Masses, key: &str) -> &'a [f64] {
+    match key {
+        "mass" => &masses.mass,
+        "mass_times" => &masses.mass_times,
+        "force" => &masses.force,
+        "force_q" => &masses.force_q,
+        "force_qd" => &masses.force_qd,
+        "mass_times_q" => &masses.mass_times_q,
+        "reaction" => &masses.reaction,
+        "reaction_q" => &masses.reaction_q,
+        "energy" => &masses.energy,
+        "powers" => &masses.powers,
+        "state_rates" => &masses.state_rates,
+        _ => &masses.loads,
+    }
 }
 
 /// Whether the answer is about this mechanism.

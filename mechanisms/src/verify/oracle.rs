@@ -93,6 +93,8 @@ struct QuestionState<'a> {
     qdd: &'a [f64],
     t: f64,
     v: &'a [f64],
+    z: &'a [f64],
+    l: &'a [f64],
 }
 
 /// JSON has no NaN: numbers that are not finite come as words, which Rust parses as it does digits.
@@ -159,12 +161,14 @@ impl Oracle {
         let definition = ScratchFile::new(directory, "definition", definition)?;
         let states = samples
             .iter()
-            .map(|Sample { state, variables }| QuestionState {
+            .map(|Sample { state, variables, loads }| QuestionState {
                 q: &state.q,
                 qd: &state.qd,
                 qdd: &state.qdd,
                 t: state.t,
                 v: variables,
+                z: &loads.states,
+                l: &loads.lambda,
             })
             .collect();
         let question = serde_json::to_vec(&Question { states }).map_err(process)?;

@@ -5,6 +5,7 @@ use core::f64::consts::PI;
 use mbs_runtime::Entry;
 
 use crate::facade::{AnyEquations, State};
+use crate::masses::Loads;
 
 /// A state with the parameters and inputs it is taken at.
 #[derive(Clone, Debug, PartialEq)]
@@ -13,6 +14,8 @@ pub struct Sample {
     pub state: State,
     /// Parameters and inputs in the order of the text.
     pub variables: Vec<f64>,
+    /// First-order states and multipliers, where the text has masses.
+    pub loads: Loads,
 }
 
 /// SplitMix64 (Steele, Lea, Flood 2014): one addition and two multiplications a number, period 2⁶⁴.
@@ -58,7 +61,7 @@ pub const SEED: u64 = 0x6D62_7331;
 ///
 /// Angles are uniform in ±π; other coordinates 0.5 to 2 times their reference length, with random sign; other
 /// parameters and inputs 0.5 to 2 times nominal, or in ±1 where nominal is 0; `q̇` within ±10 /s, `q̈` within
-/// ±100 /s² of the coordinate's reference, `t` within ±1 s. The samples need not satisfy the constraints.
+/// ±100 /s² of the coordinate's reference, `t` within ±1 s, first-order states and multipliers within ±10. The samples need not satisfy the constraints.
 pub fn draw(mechanism: &dyn AnyEquations, count: usize) -> Vec<Sample> {
     let mut generator = Generator::new(SEED);
     let scales = mechanism.coordinate_scales();
@@ -68,8 +71,16 @@ pub fn draw(mechanism: &dyn AnyEquations, count: usize) -> Vec<Sample> {
         .map(|_| Sample {
             state: state(&mut generator, mechanism.coordinates(), &scales),
             variables: variables(&mut generator, mechanism.variables(), &nominal),
+            loads: mechanism.tables().map_or_else(Loads::default, |tables| {
+                loads(&mut generator, tables.states.len(), mechanism.rows().len())
+            }),
         })
         .collect()
+}
+
+fn loads(generator: &mut Generator, states: usize, rows: usize) -> Loads {
+    let mut some = |count: usize| (0..count).map(|_| generator.uniform(-10.0, 10.0)).collect();
+    Loads { states: some(states), lambda: some(rows) }
 }
 
 fn state(generator: &mut Generator, coordinates: &[Entry], scales: &[f64]) -> State {

@@ -4,6 +4,7 @@ use mbs_runtime::{Entry, OutputValue};
 
 use super::*;
 use crate::facade::State;
+use crate::masses::Loads;
 use crate::verify::BOUND;
 use crate::verify::states::Sample;
 
@@ -171,7 +172,8 @@ def define(ca, q, v, t, der):
     return [ca.sin(q[0]), ca.exp(q[1])], []
 ";
     let state = State { q: vec![1.0; 2], qd: vec![1.0; 2], qdd: vec![0.0; 2], t: 0.0 };
-    let answer = oracle().evaluate_digits(definition, &[Sample { state, variables: vec![] }]);
+    let answer =
+        oracle().evaluate_digits(definition, &[Sample { state, variables: vec![], loads: Loads::default() }]);
     let functions = answer.unwrap_or_else(|error| panic!("{error}")).functions;
     let (sine, cosine) =
         ([0.8414709848078965, 1.776845092935536e-18], [0.5403023058681398, -4.760954612604417e-17]);
@@ -204,7 +206,8 @@ def define(ca, q, v, t, der):
     return [ca.fabs(q[0] * ca.SX(3.0) - ca.SX(0.3)), ca.fabs(q[1])], []
 ";
     let state = State { q: vec![0.1, 0.1], qd: vec![1.0; 2], qdd: vec![0.0; 2], t: 0.0 };
-    let answer = oracle().evaluate_digits(definition, &[Sample { state, variables: vec![] }]);
+    let answer =
+        oracle().evaluate_digits(definition, &[Sample { state, variables: vec![], loads: Loads::default() }]);
     let functions = answer.unwrap_or_else(|error| panic!("{error}")).functions;
     let bounds: Vec<bool> =
         functions["phi"][0].iter().map(|entry| entry.expect("a value").bound.is_some()).collect();

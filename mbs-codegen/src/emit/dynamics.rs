@@ -1,0 +1,175 @@
+//! The emitted code of masses and forces: `impl Dynamic`.
+
+use proc_macro2::TokenStream;
+use quote::{quote, quote_spanned};
+
+use super::functions::{array, body, matrix};
+use super::scope::Scope;
+use crate::equations::Equations;
+use crate::model::Model;
+use crate::model::dynamics::Dynamics as Declared;
+use crate::program::Program;
+
+/// Bodies of the functions of `Dynamic`.
+pub struct DynamicBodies {
+    pub start_states: TokenStream,
+    pub start_rates: TokenStream,
+    pub mass: TokenStream,
+    pub mass_times: TokenStream,
+    pub force: TokenStream,
+    pub force_q: TokenStream,
+    pub force_qd: TokenStream,
+    pub mass_times_q: TokenStream,
+    pub reaction: TokenStream,
+    pub reaction_q: TokenStream,
+    pub energy: TokenStream,
+    pub powers: TokenStream,
+    pub state_rates: TokenStream,
+    pub loads: TokenStream,
+}
+
+impl DynamicBodies {
+    /// The same body for every function.
+    pub fn all(body: impl Fn() -> TokenStream) -> Self {
+        DynamicBodies {
+            start_states: body(),
+            start_rates: body(),
+            mass: body(),
+            mass_times: body(),
+            force: body(),
+            force_q: body(),
+            force_qd: body(),
+            mass_times_q: body(),
+            reaction: body(),
+            reaction_q: body(),
+            energy: body(),
+            powers: body(),
+            state_rates: body(),
+            loads: body(),
+        }
+    }
+}
+
+/// Before: the program of a model. After: one body a function, where the text has masses or forces.
+pub fn bodies(
+    equations: &Equations,
+    program: &Program,
+    early: &Scope<'_>,
+    scope: &Scope<'_>,
+    runtime: &TokenStream,
+) -> Option<DynamicBodies> {
+    let (dynamics, program) = (equations.dynamics.as_ref()?, program.dynamics.as_ref()?);
+    let energy = format!(
+        "__mbs::Energy {{ kinetic: {}, potential: {} }}",
+        scope.or_zero(dynamics.kinetic),
+        scope.or_zero(dynamics.potential)
+    );
+    let vector =
+        |nodes: &[Option<crate::symbolic::NodeId>], scope: &Scope<'_>| array(nodes.iter().copied(), scope);
+    let of = |section, result: String| body(section, scope, &result, runtime);
+    Some(DynamicBodies {
+        start_states: body(&program.start_states, early, &vector(&dynamics.start_states, early), runtime),
+        start_rates: body(&program.start_rates, early, &vector(&dynamics.start_rates, early), runtime),
+        mass: of(&program.mass, matrix(dynamics.mass.iter(), scope)),
+        mass_times: of(&program.mass_times, vector(&dynamics.mass_times, scope)),
+        force: of(&program.force, vector(&dynamics.force, scope)),
+        force_q: of(&program.force_q, matrix(dynamics.force_q.iter(), scope)),
+        force_qd: of(&program.force_qd, matrix(dynamics.force_qd.iter(), scope)),
+        mass_times_q: of(&program.mass_times_q, matrix(dynamics.mass_times_q.iter(), scope)),
+        reaction: of(&program.reaction, vector(&dynamics.reaction, scope)),
+        reaction_q: of(&program.reaction_q, matrix(dynamics.reaction_q.iter(), scope)),
+        energy: of(&program.energy, energy),
+        powers: of(&program.powers, vector(&dynamics.powers, scope)),
+        state_rates: of(&program.state_rates, vector(&dynamics.state_rates, scope)),
+        loads: of(&program.loads, array(dynamics.loads.iter().map(|id| Some(*id)), scope)),
+    })
+}
+
+/// `impl Dynamic` of a text with masses or forces.
+pub fn implementation(
+    name: &TokenStream,
+    model: &Model,
+    bodies: &DynamicBodies,
+    runtime: &TokenStream,
+) -> TokenStream {
+    let Some(declared) = &model.dynamics else { return TokenStream::new() };
+    let (n, m) = (model.coordinates.len(), model.rows.len());
+    let (states, forces, loads) = (declared.states.len(), declared.forces.len(), declared.loads.len());
+    let tables = tables(declared, runtime);
+    let DynamicBodies {
+        start_states,
+        start_rates,
+        mass,
+        mass_times,
+        force,
+        force_q,
+        force_qd,
+        mass_times_q,
+        reaction,
+        reaction_q,
+        energy,
+        powers,
+        state_rates,
+        loads: loads_body,
+    } = bodies;
+    let design = quote! { &self, __p: &__Parameters<T>, __s: &__Position<T> };
+    let motion = quote! { __qd: &[T; #n], __z: &[T; #states], __lambda: &[T; #m] };
+    quote! {
+        impl<T: #runtime::Scalar> #runtime::Dynamic<T, #n, #m> for #name {
+            type States = [T; #states];
+            type Powers = [T; #forces];
+            type Loads = [T; #loads];
+            #tables
+            #[inline]
+            fn start_states(&self, __p: &__Parameters<T>) -> [T; #states] { #start_states }
+            #[inline]
+            fn start_rates(&self, __p: &__Parameters<T>) -> [T; #n] { #start_rates }
+            #[inline]
+            fn mass(#design) -> [[T; #n]; #n] { #mass }
+            #[inline]
+            fn mass_times(#design, __x: &[T; #n]) -> [T; #n] { #mass_times }
+            #[inline]
+            fn force(#design, #motion) -> [T; #n] { #force }
+            #[inline]
+            fn force_q(#design, #motion) -> [[T; #n]; #n] { #force_q }
+            #[inline]
+            fn force_qd(#design, #motion) -> [[T; #n]; #n] { #force_qd }
+            #[inline]
+            fn mass_times_q(#design, __x: &[T; #n]) -> [[T; #n]; #n] { #mass_times_q }
+            #[inline]
+            fn reaction(#design, __lambda: &[T; #m]) -> [T; #n] { #reaction }
+            #[inline]
+            fn reaction_q(#design, __lambda: &[T; #m]) -> [[T; #n]; #n] { #reaction_q }
+            #[inline]
+            fn energy(#design, __qd: &[T; #n]) -> #runtime::Energy<T> { #energy }
+            #[inline]
+            fn powers(#design, #motion) -> [T; #forces] { #powers }
+            #[inline]
+            fn state_rates(#design, #motion) -> [T; #states] { #state_rates }
+            #[inline]
+            fn loads(
+                #design,
+                __motion: &#runtime::Motion<'_, T, #n, #m, [T; #states]>,
+            ) -> [T; #loads] {
+                let #runtime::Motion { qd: __qd, qdd: __qdd, lambda: __lambda, states: __z } = *__motion;
+                #loads_body
+            }
+        }
+    }
+}
+
+/// Names, units and lines as constants.
+fn tables(declared: &Declared, runtime: &TokenStream) -> TokenStream {
+    let entry = |name: &str, unit: &str, span: proc_macro2::Span| {
+        let line = quote_spanned!(span=> ::core::line!());
+        quote! { #runtime::Entry { name: #name, unit: #unit, line: #line } }
+    };
+    let states = declared.states.iter().map(|state| entry(&state.name, &state.unit, state.span));
+    let forces = declared.forces.iter().map(|force| entry(&force.name, "W", force.span));
+    let loads = declared.loads.iter().map(|load| entry(&load.name, &load.unit, load.span));
+    quote! {
+        const STATES: &'static [#runtime::Entry] = &[#(#states),*];
+        const FORCES: &'static [#runtime::Entry] = &[#(#forces),*];
+        const LOADS: &'static [#runtime::Entry] = &[#(#loads),*];
+    }
+}

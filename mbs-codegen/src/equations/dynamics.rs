@@ -1,0 +1,270 @@
+//! Masses and forces → M, Q, their derivatives, energies and powers.
+
+use super::forces::{self, Sum};
+use super::lower::Clock;
+use super::{Row, again, jacobian};
+use crate::model::dynamics::{Body, Dynamics as Declared};
+use crate::model::expression::Id;
+use crate::symbolic::{Graph, Leaf, NodeId, Stage, tangent};
+
+/// Rows of a matrix: column and entry, ascending; what is not there is a structural zero.
+pub type Sparse = Vec<Vec<(usize, NodeId)>>;
+
+/// Roots of M q̈ + Φ_qᵀ λ = Q. `None` is a structural zero.
+#[derive(Debug)]
+pub struct Dynamics {
+    /// M, symmetric: an entry and its mirror image are one node.
+    pub mass: Sparse,
+    /// M x
+    pub mass_times: Vec<Option<NodeId>>,
+    /// (M x)_q
+    pub mass_times_q: Sparse,
+    /// Q, velocity-quadratic terms included.
+    pub force: Vec<Option<NodeId>>,
+    /// ∂Q/∂q
+    pub force_q: Sparse,
+    /// ∂Q/∂q̇
+    pub force_qd: Sparse,
+    /// Φ_qᵀ λ
+    pub reaction: Vec<Option<NodeId>>,
+    /// (Φ_qᵀ λ)_q, symmetric.
+    pub reaction_q: Sparse,
+    /// Kinetic energy.
+    pub kinetic: Option<NodeId>,
+    /// Potential energy.
+    pub potential: Option<NodeId>,
+    /// One a named force.
+    pub powers: Vec<Option<NodeId>>,
+    /// One a first-order state.
+    pub state_rates: Vec<Option<NodeId>>,
+    /// One a first-order state.
+    pub start_states: Vec<Option<NodeId>>,
+    /// One a coordinate.
+    pub start_rates: Vec<Option<NodeId>>,
+    /// One an output of multipliers or states.
+    pub loads: Vec<NodeId>,
+    /// Indices of the text's kinetic energies that are not quadratic in the rates.
+    pub not_quadratic: Vec<usize>,
+}
+
+/// Before: everything of the text as nodes. After: every function of dynamics as roots of the same graph.
+pub fn derive(
+    g: &mut Graph,
+    declared: &Declared,
+    nodes: &[NodeId],
+    clock: &Clock,
+    rows: &[Row],
+    guesses: &[NodeId],
+) -> Dynamics {
+    let count = guesses.len();
+    let zero = g.constant(0.0);
+    let of = |id: Id| nodes.get(id.index()).copied().unwrap_or(zero);
+    let mut inertia = Inertia::new(count);
+    for body in &declared.bodies {
+        inertia.body(g, body, &of, clock);
+    }
+    let mut not_quadratic = Vec::new();
+    for (index, kinetic) in declared.kinetics.iter().enumerate() {
+        if !inertia.energy(g, of(kinetic.value), clock) {
+            not_quadratic.push(index);
+        }
+    }
+    let Inertia { mass, bias, kinetic } = inertia;
+    let forces::Forces { force, potential, powers } = forces::derive(g, declared, &of, clock, count);
+    let force: Vec<Option<NodeId>> =
+        force.into_iter().zip(&bias).map(|(force, bias)| force.minus(g, bias.0).0).collect();
+
+    let mass = mirrored(mass);
+    let mass_times = products(g, &mass, Leaf::Direction);
+    let mass_times_q = derivative(g, &mass_times, count, Leaf::Position);
+    let force_q = derivative(g, &force, count, Leaf::Position);
+    let force_qd = derivative(g, &force, count, Leaf::Velocity);
+    let columns = transposed(rows, count);
+    let reaction = products(g, &columns, Leaf::Multiplier);
+    let reaction_q = hessian(g, &reaction);
+    let start = |rates: &[(usize, Id)], index: usize| {
+        rates.iter().find(|(coordinate, _)| *coordinate == index).map(|(_, rate)| of(*rate))
+    };
+    Dynamics {
+        mass,
+        mass_times,
+        mass_times_q,
+        force,
+        force_q,
+        force_qd,
+        reaction,
+        reaction_q,
+        kinetic: kinetic.0,
+        potential: potential.0,
+        powers,
+        state_rates: declared.states.iter().map(|state| state.rate.map(of)).collect(),
+        start_states: declared.states.iter().map(|state| state.start.map(of)).collect(),
+        start_rates: (0..count).map(|index| start(&declared.rates, index)).collect(),
+        loads: declared.loads.iter().map(|load| of(load.value)).collect(),
+        not_quadratic,
+    }
+}
+
+/// Entries of the upper triangle of M, the inertia forces at q̈ = 0, the kinetic energy.
+struct Inertia {
+    mass: Vec<Vec<(usize, Sum)>>,
+    bias: Vec<Sum>,
+    kinetic: Sum,
+}
+
+impl Inertia {
+    fn new(count: usize) -> Self {
+        Inertia { mass: vec![Vec::new(); count], bias: vec![Sum::default(); count], kinetic: Sum::default() }
+    }
+
+    /// M = Σ m J ᵀJ + J_αᵀ I J_α with J = ∂com/∂q: no difference of large numbers.
+    fn body(&mut self, g: &mut Graph, body: &Body, of: &impl Fn(Id) -> NodeId, clock: &Clock) {
+        for component in &body.com {
+            self.point(g, of(*component), of(body.mass), clock);
+        }
+        if let Some((inertia, angle)) = body.rotation {
+            self.point(g, of(angle), of(inertia), clock);
+        }
+    }
+
+    /// A mass that moves along one function of q and t.
+    fn point(&mut self, g: &mut Graph, place: NodeId, mass: NodeId, clock: &Clock) {
+        if g.constant_value(mass) == Some(0.0) {
+            return;
+        }
+        let columns = jacobian(g, &[place], self.bias.len(), Leaf::Position).pop().unwrap_or_default();
+        for (index, (row, left)) in columns.iter().enumerate() {
+            for (column, right) in columns.iter().skip(index) {
+                let product = g.multiply(*left, *right);
+                let entry = g.multiply(mass, product);
+                self.add(g, *row, *column, entry);
+            }
+        }
+        let velocity = tangent(g, &[place], |g, leaf| clock.total(g, leaf, false));
+        let acceleration = again(g, &velocity, |g, leaf| clock.total(g, leaf, false)).pop().flatten();
+        if let Some(acceleration) = acceleration {
+            let inertia = g.multiply(mass, acceleration);
+            for (row, entry) in &columns {
+                let bias = g.multiply(*entry, inertia);
+                self.bias_at(g, *row, bias);
+            }
+        }
+        if let Some(velocity) = velocity.into_iter().next().flatten() {
+            let half = g.constant(0.5);
+            let square = g.multiply(velocity, velocity);
+            let half = g.multiply(half, mass);
+            let energy = g.multiply(half, square);
+            self.kinetic.add(g, energy);
+        }
+    }
+
+    /// d/dt(∂T/∂q̇) − ∂T/∂q of any T at most quadratic in the rates; false where it is of a higher degree.
+    fn energy(&mut self, g: &mut Graph, energy: NodeId, clock: &Clock) -> bool {
+        let count = self.bias.len();
+        self.kinetic.add(g, energy);
+        let momenta = jacobian(g, &[energy], count, Leaf::Velocity).pop().unwrap_or_default();
+        let roots: Vec<NodeId> = momenta.iter().map(|(_, momentum)| *momentum).collect();
+        let entries = jacobian(g, &roots, count, Leaf::Velocity);
+        for ((row, _), entries) in momenta.iter().zip(&entries) {
+            for (column, entry) in entries.iter().filter(|(column, _)| column >= row) {
+                if g.stage(*entry) > Stage::Position {
+                    return false;
+                }
+                self.add(g, *row, *column, *entry);
+            }
+        }
+        let changes = tangent(g, &roots, |g, leaf| clock.total(g, leaf, false));
+        for ((row, _), change) in momenta.iter().zip(changes) {
+            if let Some(change) = change {
+                self.bias_at(g, *row, change);
+            }
+        }
+        for (row, slope) in jacobian(g, &[energy], count, Leaf::Position).into_iter().flatten() {
+            let opposite = g.negate(slope);
+            self.bias_at(g, row, opposite);
+        }
+        true
+    }
+
+    fn add(&mut self, g: &mut Graph, row: usize, column: usize, entry: NodeId) {
+        let Some(entries) = self.mass.get_mut(row) else { return };
+        match entries.iter_mut().find(|(known, _)| *known == column) {
+            Some((_, sum)) => sum.add(g, entry),
+            None => entries.push((column, Sum(Some(entry)))),
+        }
+    }
+
+    fn bias_at(&mut self, g: &mut Graph, row: usize, bias: NodeId) {
+        if let Some(sum) = self.bias.get_mut(row) {
+            sum.add(g, bias);
+        }
+    }
+}
+
+/// Before: the upper triangle in any order. After: all entries, ascending, each with its mirror image.
+fn mirrored(upper: Vec<Vec<(usize, Sum)>>) -> Sparse {
+    let mut rows: Sparse = vec![Vec::new(); upper.len()];
+    for (row, entries) in upper.into_iter().enumerate() {
+        for (column, Sum(entry)) in entries {
+            let Some(entry) = entry else { continue };
+            for (row, column) in
+                [(row, column), (column, row)].into_iter().take(1 + usize::from(row != column))
+            {
+                if let Some(row) = rows.get_mut(row) {
+                    row.push((column, entry));
+                }
+            }
+        }
+    }
+    for row in &mut rows {
+        row.sort_unstable_by_key(|(column, _)| *column);
+    }
+    rows
+}
+
+/// Columns of Φ_q as rows.
+fn transposed(rows: &[Row], count: usize) -> Sparse {
+    let mut columns = vec![Vec::new(); count];
+    for (index, row) in rows.iter().enumerate() {
+        for (column, entry) in &row.phi_q {
+            if let Some(column) = columns.get_mut(*column) {
+                column.push((index, *entry));
+            }
+        }
+    }
+    columns
+}
+
+/// A matrix times a vector of leaves.
+fn products(g: &mut Graph, matrix: &Sparse, vector: impl Fn(u32) -> Leaf) -> Vec<Option<NodeId>> {
+    let row = |row: &Vec<(usize, NodeId)>| {
+        let mut sum = Sum::default();
+        for (column, entry) in row {
+            let component = g.leaf(vector(*column as u32));
+            let product = g.multiply(*entry, component);
+            sum.add(g, product);
+        }
+        sum.0
+    };
+    matrix.iter().map(row).collect()
+}
+
+/// Entries of the derivative of roots that may be zero.
+fn derivative(g: &mut Graph, roots: &[Option<NodeId>], count: usize, axis: fn(u32) -> Leaf) -> Sparse {
+    let zero = g.constant(0.0);
+    let roots: Vec<NodeId> = roots.iter().map(|root| root.unwrap_or(zero)).collect();
+    jacobian(g, &roots, count, axis)
+}
+
+/// Derivative of a gradient along the coordinates: the upper triangle, mirrored.
+fn hessian(g: &mut Graph, gradient: &[Option<NodeId>]) -> Sparse {
+    let mut upper: Vec<Vec<(usize, Sum)>> = vec![Vec::new(); gradient.len()];
+    for column in 0..gradient.len() {
+        let roots: Vec<Option<NodeId>> = gradient.iter().take(column + 1).copied().collect();
+        let axis = |g: &mut Graph, leaf| (leaf == Leaf::Position(column as u32)).then(|| g.constant(1.0));
+        for (row, entry) in upper.iter_mut().zip(again(g, &roots, axis)) {
+            row.extend(entry.map(|entry| (column, Sum(Some(entry)))));
+        }
+    }
+    mirrored(upper)
+}

@@ -1,0 +1,239 @@
+//! Named forces, gravity and potentials → generalized forces by virtual work, and what they do to the energy.
+
+use super::jacobian;
+use super::lower::Clock;
+use crate::model::dynamics::{Action, Dynamics as Declared, Line, Turn};
+use crate::model::expression::Id;
+use crate::symbolic::{Graph, Leaf, NodeId, Unary, tangent};
+
+/// A sum of which no term may be there yet.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Sum(pub Option<NodeId>);
+
+impl Sum {
+    /// Adds a term behind the others.
+    pub fn add(&mut self, g: &mut Graph, term: NodeId) {
+        self.0 = Some(match self.0 {
+            Some(sum) => g.add(sum, term),
+            None => term,
+        });
+    }
+
+    /// Less a term that may be zero.
+    pub fn minus(self, g: &mut Graph, term: Option<NodeId>) -> Self {
+        Sum(match (self.0, term) {
+            (Some(sum), Some(term)) => Some(g.subtract(sum, term)),
+            (sum, None) => sum,
+            (None, Some(term)) => Some(g.negate(term)),
+        })
+    }
+}
+
+/// What all forces add up to.
+pub struct Forces {
+    /// One a coordinate.
+    pub force: Vec<Sum>,
+    /// Potential energy.
+    pub potential: Sum,
+    /// One a named force: its power, without what it stores as potential energy.
+    pub powers: Vec<Option<NodeId>>,
+}
+
+/// Before: the forces of the text. After: their sum on each coordinate, their potential, the powers of the named ones.
+pub fn derive(
+    g: &mut Graph,
+    declared: &Declared,
+    of: &impl Fn(Id) -> NodeId,
+    clock: &Clock,
+    count: usize,
+) -> Forces {
+    let mut work = Work { force: vec![Sum::default(); count], potential: Sum::default(), clock };
+    let powers = declared
+        .forces
+        .iter()
+        .map(|force| match &force.action {
+            Action::Work(pairs) => {
+                let mut power = Sum::default();
+                for (value, on) in pairs {
+                    work.along(g, of(*value), of(*on));
+                    work.power(g, of(*value), of(*on), &mut power);
+                }
+                power.0
+            }
+            Action::Dissipation(value) => work.dissipation(g, of(*value)),
+            Action::Line(line) => work.line(g, line, of),
+            Action::Turn(turn) => work.turn(g, turn, of),
+        })
+        .collect();
+    for field in &declared.gravity {
+        for body in &declared.bodies {
+            for (place, acceleration) in body.com.iter().zip(field) {
+                let weight = g.multiply(of(body.mass), of(*acceleration));
+                if g.constant_value(weight) == Some(0.0) {
+                    continue;
+                }
+                work.along(g, weight, of(*place));
+                let energy = g.multiply(weight, of(*place));
+                let energy = g.negate(energy);
+                work.potential.add(g, energy);
+            }
+        }
+    }
+    for potential in &declared.potentials {
+        work.slope(g, of(*potential), Leaf::Position);
+        work.potential.add(g, of(*potential));
+    }
+    Forces { force: work.force, potential: work.potential, powers }
+}
+
+struct Work<'a> {
+    force: Vec<Sum>,
+    potential: Sum,
+    clock: &'a Clock,
+}
+
+impl Work<'_> {
+    /// Adds (∂place/∂q)ᵀ value.
+    fn along(&mut self, g: &mut Graph, value: NodeId, place: NodeId) {
+        for (coordinate, entry) in
+            jacobian(g, &[place], self.force.len(), Leaf::Position).into_iter().flatten()
+        {
+            let force = g.multiply(entry, value);
+            if let Some(sum) = self.force.get_mut(coordinate) {
+                sum.add(g, force);
+            }
+        }
+    }
+
+    /// Subtracts the slope of `energy` along the axes.
+    fn slope(&mut self, g: &mut Graph, energy: NodeId, axis: fn(u32) -> Leaf) -> Vec<(usize, NodeId)> {
+        let slopes = jacobian(g, &[energy], self.force.len(), axis).pop().unwrap_or_default();
+        for (coordinate, slope) in &slopes {
+            if let Some(sum) = self.force.get_mut(*coordinate) {
+                *sum = sum.minus(g, Some(*slope));
+            }
+        }
+        slopes
+    }
+
+    /// Adds value · d place/dt.
+    fn power(&self, g: &mut Graph, value: NodeId, place: NodeId, power: &mut Sum) {
+        if let Some(velocity) = self.velocity(g, place) {
+            let term = g.multiply(value, velocity);
+            power.add(g, term);
+        }
+    }
+
+    fn velocity(&self, g: &mut Graph, place: NodeId) -> Option<NodeId> {
+        let clock = self.clock;
+        tangent(g, &[place], |g, leaf| clock.total(g, leaf, false)).pop().flatten()
+    }
+
+    /// −∂R/∂q̇; its power is −q̇·∂R/∂q̇.
+    fn dissipation(&mut self, g: &mut Graph, function: NodeId) -> Option<NodeId> {
+        let mut power = Sum::default();
+        for (coordinate, slope) in self.slope(g, function, Leaf::Velocity) {
+            let velocity = g.leaf(Leaf::Velocity(coordinate as u32));
+            let term = g.multiply(slope, velocity);
+            power = power.minus(g, Some(term));
+        }
+        power.0
+    }
+
+    /// A tension between two points: k d + (c l̇ + f − k l₀) d/l pulls the end back, d from begin to end.
+    fn line(&mut self, g: &mut Graph, line: &Line, of: &impl Fn(Id) -> NodeId) -> Option<NodeId> {
+        let zero = g.constant(0.0);
+        let span: Vec<NodeId> =
+            line.from.iter().zip(&line.to).map(|(a, b)| g.subtract(of(*b), of(*a))).collect();
+        let mut square = Sum::default();
+        for d in &span {
+            let term = g.multiply(*d, *d);
+            square.add(g, term);
+        }
+        // √(d·d) needs no hypot: only beyond 1e154 does it overflow, and at 0 the directions are chosen, not divided.
+        let length = g.unary(Unary::Sqrt, square.0.unwrap_or(zero));
+        let directions: Vec<NodeId> = span
+            .iter()
+            .map(|d| {
+                let ratio = g.divide(*d, length);
+                g.select(zero, length, ratio, zero)
+            })
+            .collect();
+        let mut rate = Sum::default();
+        for (direction, d) in directions.iter().zip(&span) {
+            self.power(g, *direction, *d, &mut rate);
+        }
+        let mut active = Sum(line.actuator.map(of));
+        if let (Some(damping), Some(rate)) = (line.damping, rate.0) {
+            let viscous = g.multiply(of(damping), rate);
+            active.add(g, viscous);
+        }
+        let stiffness = line.stiffness.map(of);
+        let slack = stiffness.zip(line.length.map(of)).map(|(k, rest)| g.multiply(k, rest));
+        let tension = active.minus(g, slack);
+        for (d, direction) in span.iter().zip(&directions) {
+            let mut pull = Sum(stiffness.map(|k| g.multiply(k, *d)));
+            if let Some(tension) = tension.0 {
+                let term = g.multiply(tension, *direction);
+                pull.add(g, term);
+            }
+            if let Some(pull) = pull.0 {
+                let force = g.negate(pull);
+                self.along(g, force, *d);
+            }
+        }
+        let spring = stiffness.map(|k| (k, self.stretch(g, length, line.length.map(of))));
+        self.element_power(g, spring, active, rate, line.stores)
+    }
+
+    /// A torque against an angle.
+    fn turn(&mut self, g: &mut Graph, turn: &Turn, of: &impl Fn(Id) -> NodeId) -> Option<NodeId> {
+        let angle = of(turn.angle);
+        let rate = Sum(self.velocity(g, angle));
+        let mut active = Sum(turn.torque.map(of));
+        if let (Some(damping), Some(rate)) = (turn.damping, rate.0) {
+            let viscous = g.multiply(of(damping), rate);
+            active.add(g, viscous);
+        }
+        let spring = turn.stiffness.map(|k| (of(k), self.stretch(g, angle, turn.rest.map(of))));
+        let mut total = Sum(spring.map(|(k, stretch)| g.multiply(k, stretch)));
+        if let Some(active) = active.0 {
+            total.add(g, active);
+        }
+        if let Some(total) = total.0 {
+            let torque = g.negate(total);
+            self.along(g, torque, angle);
+        }
+        self.element_power(g, spring, active, rate, turn.stores)
+    }
+
+    fn stretch(&self, g: &mut Graph, value: NodeId, rest: Option<NodeId>) -> NodeId {
+        rest.map_or(value, |rest| g.subtract(value, rest))
+    }
+
+    /// A spring that stores adds to the potential energy and not to the power.
+    fn element_power(
+        &mut self,
+        g: &mut Graph,
+        spring: Option<(NodeId, NodeId)>,
+        mut active: Sum,
+        rate: Sum,
+        stores: bool,
+    ) -> Option<NodeId> {
+        if let Some((stiffness, stretch)) = spring {
+            if stores {
+                let half = g.constant(0.5);
+                let half = g.multiply(half, stiffness);
+                let square = g.multiply(stretch, stretch);
+                let energy = g.multiply(half, square);
+                self.potential.add(g, energy);
+            } else {
+                let elastic = g.multiply(stiffness, stretch);
+                active.add(g, elastic);
+            }
+        }
+        let (active, rate) = (active.0?, rate.0?);
+        let power = g.multiply(active, rate);
+        Some(g.negate(power))
+    }
+}

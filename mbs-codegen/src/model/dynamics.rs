@@ -1,0 +1,130 @@
+//! What moves and pulls: bodies, forces, energies, first-order states, starts.
+
+use proc_macro2::Span;
+
+use super::Output;
+use super::expression::Id;
+
+/// Everything of a text beyond its kinematics.
+#[derive(Debug, Default)]
+pub struct Dynamics {
+    /// Bodies, in the order of the text.
+    pub bodies: Vec<Body>,
+    /// Accelerations of free fall (m/s²), which add up; of constants, inputs and the time.
+    pub gravity: Vec<Vec<Id>>,
+    /// Forces by name, in the order of the text.
+    pub forces: Vec<Force>,
+    /// Energies that `potential` adds (J).
+    pub potentials: Vec<Id>,
+    /// Energies that `kinetic` adds (J).
+    pub kinetics: Vec<Kinetic>,
+    /// First-order states, component by component.
+    pub states: Vec<State>,
+    /// Rates of the coordinates at the start, by coordinate.
+    pub rates: Vec<(usize, Id)>,
+    /// Coordinates whose start the text declares, ascending.
+    pub started: Vec<usize>,
+    /// Outputs that use multipliers or states, component by component.
+    pub loads: Vec<Output>,
+}
+
+/// A rigid body in a plane, or a point mass.
+#[derive(Debug)]
+pub struct Body {
+    /// Its name.
+    pub name: String,
+    /// Mass (kg), of parameters.
+    pub mass: Id,
+    /// Centre of mass (m), as many components as the space has.
+    pub com: Vec<Id>,
+    /// Moment of inertia about the centre of mass (kg m²), of parameters, and the body's angle.
+    pub rotation: Option<(Id, Id)>,
+}
+
+/// A kinetic energy of the text.
+#[derive(Debug)]
+pub struct Kinetic {
+    /// Its name.
+    pub name: String,
+    /// Energy (J), at most quadratic in the rates.
+    pub value: Id,
+    /// The declaring token.
+    pub span: Span,
+}
+
+/// A force with a name.
+#[derive(Debug)]
+pub struct Force {
+    /// Its name.
+    pub name: String,
+    /// What it does.
+    pub action: Action,
+    /// The declaring token.
+    pub span: Span,
+}
+
+/// What a force does.
+#[derive(Debug)]
+pub enum Action {
+    /// Work on displacements: components of a force or torque, and what each acts along.
+    Work(Vec<(Id, Id)>),
+    /// Rayleigh's function R (W/2): the generalized forces are −∂R/∂q̇.
+    Dissipation(Id),
+    /// A tension between two points.
+    Line(Line),
+    /// A torque against an angle.
+    Turn(Turn),
+}
+
+/// Spring, damper and actuator between two points: tension k (l − l₀) + c l̇ + f.
+///
+/// At zero length there is no direction: k (P − Q) is exact there, what has l₀, c or f vanishes.
+#[derive(Debug)]
+pub struct Line {
+    /// Where it begins (m).
+    pub from: Vec<Id>,
+    /// Where it ends (m).
+    pub to: Vec<Id>,
+    /// k (N/m)
+    pub stiffness: Option<Id>,
+    /// l₀ (m)
+    pub length: Option<Id>,
+    /// c (N s/m)
+    pub damping: Option<Id>,
+    /// f (N), pulls the points together where positive.
+    pub actuator: Option<Id>,
+    /// Whether the spring stores energy: k and l₀ are of parameters alone.
+    pub stores: bool,
+}
+
+/// Spring, damper and actuator on an angle: −(k (α − α₀) + c α̇ + τ).
+#[derive(Debug)]
+pub struct Turn {
+    /// α
+    pub angle: Id,
+    /// k (N m)
+    pub stiffness: Option<Id>,
+    /// α₀
+    pub rest: Option<Id>,
+    /// c (N m s)
+    pub damping: Option<Id>,
+    /// τ (N m), turns back where positive.
+    pub torque: Option<Id>,
+    /// Whether the spring stores energy: k and α₀ are of parameters alone.
+    pub stores: bool,
+}
+
+/// A first-order state.
+#[derive(Debug)]
+pub struct State {
+    /// Name, with the component's number for arrays.
+    pub name: String,
+    /// Unit as written.
+    pub unit: String,
+    /// Value at the start, of parameters; 0 where none is given.
+    pub start: Option<Id>,
+    /// Its rate.
+    pub rate: Option<Id>,
+    /// The declaring token.
+    pub span: Span,
+}

@@ -1,0 +1,491 @@
+//! Statements of dynamics → model: fields, shapes and units checked.
+
+use proc_macro2::Span;
+
+use super::dynamics::{Action, Body, Dynamics, Force, Kinetic, Line, Turn};
+use super::elaborate::{Elaborator, Fault, Quantity, Reach, Value};
+use super::expression::{Id, Node};
+use super::initialiser::{fits_shape, initialiser};
+use super::resolve::Resolver;
+use super::units::Dimension;
+use crate::diagnostics::nearest;
+use crate::syntax::ast::{Element, Energy, Expression, Field, Load, Name, Statement, StatementKind};
+
+/// Whether the statement says something of masses or forces, so that the text is one of dynamics.
+pub fn is_dynamic(statement: &Statement) -> bool {
+    matches!(
+        statement.kind,
+        StatementKind::Element { .. }
+            | StatementKind::Load { .. }
+            | StatementKind::Energy { .. }
+            | StatementKind::State { .. }
+            | StatementKind::Rate { .. }
+    )
+}
+
+/// What a field holds.
+#[derive(Clone, Copy)]
+enum Kind {
+    /// A number of a unit, of parameters alone.
+    Constant(Dimension),
+    /// A number of a unit, at the reach.
+    Scalar(Dimension, Reach),
+    /// A point of two or three components.
+    Point,
+    /// A vector of a unit, of constants, inputs and the time.
+    Vector(Dimension),
+}
+
+/// A field of an element: its name, what it holds, whether it must be given.
+type Known = (&'static str, Kind, bool);
+
+fn known(element: Element) -> Vec<Known> {
+    let per_metre = Dimension::NEWTON.over(Dimension::METRE);
+    let scalar = |dimension| Kind::Scalar(dimension, Reach::Force);
+    match element {
+        Element::Body => vec![
+            ("mass", Kind::Constant(Dimension::KILOGRAM), true),
+            ("com", Kind::Point, true),
+            ("inertia", Kind::Constant(Dimension::INERTIA), false),
+            ("angle", Kind::Scalar(Dimension::NUMBER, Reach::Position), false),
+        ],
+        Element::Gravity => {
+            let acceleration = Dimension::METRE.over(Dimension::SECOND).over(Dimension::SECOND);
+            vec![("acceleration", Kind::Vector(acceleration), true)]
+        }
+        Element::Tsda => vec![
+            ("from", Kind::Point, true),
+            ("to", Kind::Point, true),
+            ("stiffness", scalar(per_metre), false),
+            ("length", scalar(Dimension::METRE), false),
+            ("damping", scalar(per_metre.times(Dimension::SECOND)), false),
+            ("actuator", scalar(Dimension::NEWTON), false),
+        ],
+        Element::Rsda => vec![
+            ("angle", Kind::Scalar(Dimension::NUMBER, Reach::Position), true),
+            ("stiffness", scalar(Dimension::JOULE), false),
+            ("rest", scalar(Dimension::NUMBER), false),
+            ("damping", scalar(Dimension::JOULE.times(Dimension::SECOND)), false),
+            ("torque", scalar(Dimension::JOULE), false),
+        ],
+    }
+}
+
+/// The values of an element's fields.
+struct Given(Vec<(&'static str, Value)>);
+
+impl Given {
+    fn value(&self, name: &str) -> Option<&Value> {
+        self.0.iter().find(|(known, _)| *known == name).map(|(_, value)| value)
+    }
+
+    fn scalar(&self, name: &str) -> Option<Id> {
+        self.value(name).and_then(|value| value.items.first()).map(|item| item.id)
+    }
+
+    fn vector(&self, name: &str) -> Vec<Id> {
+        self.value(name).map(|value| value.items.iter().map(|item| item.id).collect()).unwrap_or_default()
+    }
+}
+
+impl Resolver<'_> {
+    /// Before: a body or an element as written. After: it is in the model, or its faults are reported.
+    pub(super) fn element(&mut self, kind: Element, name: &Name, fields: &[Field]) -> Result<(), Fault> {
+        let group = if kind == Element::Body { "body" } else { "force" };
+        let full = self.numbered(name, group)?;
+        let given = self.fields(kind, name, fields)?;
+        match kind {
+            Element::Body => self.body(name, full, &given),
+            Element::Gravity => {
+                self.dynamics().gravity.push(given.vector("acceleration"));
+                Ok(())
+            }
+            Element::Tsda => self.line(name, full, &given),
+            Element::Rsda => {
+                let constant = ["stiffness", "rest"].iter().filter_map(|field| given.scalar(field));
+                let stores = constant.into_iter().all(|id| self.model.is_constant(id));
+                let Some(angle) = given.scalar("angle") else { return Err(Fault) };
+                let turn = Turn {
+                    angle,
+                    stiffness: given.scalar("stiffness"),
+                    rest: given.scalar("rest"),
+                    damping: given.scalar("damping"),
+                    torque: given.scalar("torque"),
+                    stores,
+                };
+                self.force(name, full, Action::Turn(turn));
+                Ok(())
+            }
+        }
+    }
+
+    fn body(&mut self, name: &Name, full: String, given: &Given) -> Result<(), Fault> {
+        let rotation = match (given.scalar("inertia"), given.scalar("angle")) {
+            (Some(inertia), Some(angle)) => Some((inertia, angle)),
+            (None, None) => None,
+            (Some(_), None) => {
+                let message = format!("body `{}` has an inertia and no angle", name.text);
+                return Err(self.fault(name.span, message, "write what turns: `angle: phi`"));
+            }
+            (None, Some(_)) => {
+                let message = format!("body `{}` has an angle and no inertia", name.text);
+                let help = "write `inertia: …` about the centre of mass, or leave out both for a point mass";
+                return Err(self.fault(name.span, message, help));
+            }
+        };
+        let mass = given.scalar("mass").ok_or(Fault)?;
+        self.dynamics().bodies.push(Body { name: full, mass, com: given.vector("com"), rotation });
+        Ok(())
+    }
+
+    fn line(&mut self, name: &Name, full: String, given: &Given) -> Result<(), Fault> {
+        let (from, to) = (given.vector("from"), given.vector("to"));
+        if from.len() != to.len() {
+            let message =
+                format!("`{}` joins points of {} and of {} components", name.text, from.len(), to.len());
+            return Err(self.fault(name.span, message, "give both points in one plane or space"));
+        }
+        let constant = ["stiffness", "length"].iter().filter_map(|field| given.scalar(field));
+        let stores = constant.into_iter().all(|id| self.model.is_constant(id));
+        let line = Line {
+            from,
+            to,
+            stiffness: given.scalar("stiffness"),
+            length: given.scalar("length"),
+            damping: given.scalar("damping"),
+            actuator: given.scalar("actuator"),
+            stores,
+        };
+        self.force(name, full, Action::Line(line));
+        Ok(())
+    }
+
+    /// Before: fields as written. After: values of all that are known; others, and missing ones, are reported.
+    fn fields(&mut self, kind: Element, name: &Name, fields: &[Field]) -> Result<Given, Fault> {
+        let known = known(kind);
+        let mut given = Given(Vec::new());
+        let mut faulty = false;
+        for field in fields {
+            let found = known.iter().find(|(known, ..)| *known == field.name.text);
+            let Some((known_name, kind, _)) = found else {
+                let names: Vec<&str> = known.iter().map(|(known, ..)| *known).collect();
+                let help = match nearest(&field.name.text, names.iter().copied()) {
+                    Some(meant) => format!("did you mean `{meant}`?"),
+                    None => format!("known are {}", names.join(", ")),
+                };
+                let message = format!("`{}` has no field `{}`", name.text, field.name.text);
+                let _reported = self.fault(field.name.span, message, help);
+                faulty = true;
+                continue;
+            };
+            if given.value(known_name).is_some() {
+                let message = format!("field `{known_name}` is given twice");
+                let _reported = self.fault(field.name.span, message, "remove one of them");
+                faulty = true;
+            }
+            match self.field(field, *kind) {
+                Ok(value) => given.0.push((known_name, value)),
+                Err(Fault) => faulty = true,
+            }
+        }
+        let is_given = |wanted: &str| fields.iter().any(|field| field.name.text == wanted);
+        for (missing, ..) in known.iter().filter(|(known, _, needed)| *needed && !is_given(known)) {
+            let message = format!("`{}` has no field `{missing}`", name.text);
+            let _reported = self.fault(name.span, message, format!("write `{missing}: …` in its braces"));
+            faulty = true;
+        }
+        if faulty { Err(Fault) } else { Ok(given) }
+    }
+
+    fn field(&mut self, field: &Field, kind: Kind) -> Result<Value, Fault> {
+        let (dimension, reach) = match kind {
+            Kind::Constant(dimension) | Kind::Vector(dimension) => (dimension, Reach::Position),
+            Kind::Scalar(dimension, reach) => (dimension, reach),
+            Kind::Point => (Dimension::METRE, Reach::Position),
+        };
+        let user = format!("`{}`", field.name.text);
+        let value = self.elaborate(reach, |work| {
+            let value = work.value(&field.value)?;
+            let value = initialiser(work, value, dimension)?;
+            match kind {
+                Kind::Constant(_) | Kind::Scalar(..) => fits_shape(work, &value, &[])?,
+                Kind::Point | Kind::Vector(_) => point(work, &value, &user)?,
+            }
+            Ok::<_, Fault>(value)
+        })?;
+        if reach == Reach::Position {
+            self.stateless(&value)?;
+        }
+        let varies = |work: &Self, item: Id, allowed: fn(Node) -> bool| !work.model.made_of(item, allowed);
+        for item in &value.items {
+            if matches!(kind, Kind::Constant(_)) && !self.model.is_constant(item.id) {
+                let message = format!("{user} varies");
+                let help = "make it of numbers and parameters; what varies is an energy: `kinetic T = …;`";
+                return Err(self.fault(value.span, message, help));
+            }
+            let free = |node| !matches!(node, Node::Coordinate(_) | Node::State(_) | Node::Multiplier(_));
+            if matches!(kind, Kind::Vector(_)) && varies(self, item.id, free) {
+                let message = format!("{user} depends on where the mechanism is");
+                return Err(self.fault(value.span, message, "write a field of forces as `potential V = …;`"));
+            }
+        }
+        Ok(value)
+    }
+
+    /// `force … on P;` and `torque … on phi;`
+    pub(super) fn load(
+        &mut self,
+        kind: Load,
+        name: &Name,
+        value: &Expression,
+        on: &Expression,
+    ) -> Result<(), Fault> {
+        let full = self.numbered(name, "force")?;
+        let (dimension, along) = match kind {
+            Load::Force => (Dimension::NEWTON, Dimension::METRE),
+            Load::Torque => (Dimension::JOULE, Dimension::NUMBER),
+        };
+        let on = self.elaborate(Reach::Position, |work| {
+            let on = work.value(on)?;
+            if kind == Load::Torque {
+                work.scalar(&on, "a torque", on.span)?;
+            }
+            let fits = |quantity| quantity == Quantity::Any || quantity == Quantity::Known(along);
+            for item in on.items.iter().filter(|item| !fits(item.quantity)) {
+                let message = match kind {
+                    Load::Force => {
+                        format!("a force acts on a point, not on a `{}`", item.quantity.dimension())
+                    }
+                    Load::Torque => {
+                        format!("a torque acts on an angle, not on a `{}`", item.quantity.dimension())
+                    }
+                };
+                let help = "write `force f: [fx, fy] on [x, y];` or `torque m: tau on phi;`";
+                return Err(work.fault(on.span, message, help));
+            }
+            Ok(on)
+        })?;
+        self.stateless(&on)?;
+        let value = self.elaborate(Reach::Force, |work| {
+            let value = work.value(value)?;
+            let value = initialiser(work, value, dimension)?;
+            work.same_shape(&on, &value, "`on`", value.span)?;
+            Ok::<_, Fault>(value)
+        })?;
+        let pairs = value.items.iter().zip(&on.items).map(|(value, on)| (value.id, on.id)).collect();
+        self.force(name, full, Action::Work(pairs));
+        Ok(())
+    }
+
+    /// `potential`, `kinetic` and `dissipation`.
+    pub(super) fn energy(&mut self, kind: Energy, name: &Name, value: &Expression) -> Result<(), Fault> {
+        let full = self.numbered(name, "force")?;
+        let dimension = match kind {
+            Energy::Dissipation => Dimension::JOULE.over(Dimension::SECOND),
+            Energy::Potential | Energy::Kinetic => Dimension::JOULE,
+        };
+        let reach = if kind == Energy::Potential { Reach::Position } else { Reach::Force };
+        let (value, span) = self.elaborate(reach, |work| {
+            let value = work.value(value)?;
+            let value = initialiser(work, value, dimension)?;
+            let scalar = work.scalar(&value, "an energy", value.span)?;
+            Ok::<_, Fault>((scalar.id, value.span))
+        })?;
+        let stateless = |node| !matches!(node, Node::State(_) | Node::Multiplier(_));
+        if kind != Energy::Dissipation && !self.model.made_of(value, stateless) {
+            let message = format!("the energy `{}` uses a state or a multiplier", name.text);
+            let help =
+                "energies are functions of the coordinates; write the force itself: `force f: … on P;`";
+            return Err(self.fault(span, message, help));
+        }
+        match kind {
+            Energy::Potential => self.dynamics().potentials.push(value),
+            Energy::Kinetic => self.kinetic(name, full, value, span)?,
+            Energy::Dissipation => self.force(name, full, Action::Dissipation(value)),
+        }
+        Ok(())
+    }
+
+    fn kinetic(&mut self, name: &Name, full: String, value: Id, span: Span) -> Result<(), Fault> {
+        let model = &*self.model;
+        let without_rates = |node| match node {
+            Node::Variable(index) => {
+                model.variables.get(index).is_none_or(|variable| variable.kind != super::VariableKind::Input)
+            }
+            _ => true,
+        };
+        if !model.made_of(value, without_rates) {
+            let message = format!("the kinetic energy `{}` uses an input without rates", name.text);
+            let help = "its momenta change as the input does: declare the input with `, rates`";
+            return Err(self.fault(span, message, help));
+        }
+        self.dynamics().kinetics.push(Kinetic { name: full, value, span: name.span });
+        Ok(())
+    }
+
+    fn force(&mut self, name: &Name, full: String, action: Action) {
+        self.dynamics().forces.push(Force { name: full, action, span: name.span });
+    }
+
+    /// `der(state) == rate;`
+    pub(super) fn rate_of_state(
+        &mut self,
+        state: &Expression,
+        rate: &Expression,
+        span: Span,
+    ) -> Result<(), Fault> {
+        let state = self.elaborate(Reach::Force, |work| work.value(state))?;
+        let rate = self.elaborate(Reach::Force, |work| {
+            let rate = work.value(rate)?;
+            work.same_shape(&state, &rate, "`==`", rate.span)?;
+            let dimensions = state.items.iter().map(|item| item.quantity.dimension().over(Dimension::SECOND));
+            let pairs: Vec<_> = dimensions.zip(&rate.items).collect();
+            for (dimension, item) in &pairs {
+                let expected = super::elaborate::Scalar { quantity: Quantity::Known(*dimension), ..**item };
+                work.agree(expected, **item)?;
+            }
+            Ok::<_, Fault>(rate)
+        })?;
+        for (state, rate) in state.items.iter().zip(&rate.items) {
+            let Node::State(index) = self.model.expressions.node(state.id) else {
+                let help = "only what `state z: … = 0;` declares has a rate of its own";
+                return Err(self.fault(state.span, "this is no state", help));
+            };
+            let slot = self.dynamics().states.get_mut(index).ok_or(Fault)?;
+            if slot.rate.is_some() {
+                let message = format!("the rate of `{}` is given twice", slot.name);
+                return Err(self.fault(span, message, "remove one of the equations"));
+            }
+            slot.rate = Some(rate.id);
+        }
+        Ok(())
+    }
+
+    /// `start x = value rate value;`
+    pub(super) fn start(
+        &mut self,
+        coordinate: &Expression,
+        value: &Expression,
+        rate: Option<&Expression>,
+        span: Span,
+    ) -> Result<(), Fault> {
+        let coordinate = self.elaborate(Reach::Position, |work| work.value(coordinate))?;
+        let value = self.start_value(value, &coordinate, Dimension::NUMBER)?;
+        let rate = rate.map(|rate| self.start_value(rate, &coordinate, Dimension::SECOND)).transpose()?;
+        if rate.is_some() && self.model.dynamics.is_none() {
+            let help = "leave the rate out: the rows give it; or declare masses: `body rod { … }`";
+            return Err(self.fault(span, "a start rate stands in a text without masses", help));
+        }
+        for (component, item) in coordinate.items.iter().enumerate() {
+            let Node::Coordinate(index) = self.model.expressions.node(item.id) else {
+                return Err(self.fault(
+                    item.span,
+                    "this is no coordinate",
+                    "write `start phi1 = 0.3 rate 2.0;`",
+                ));
+            };
+            if self.starts.contains(&index) {
+                let help = "remove one of the statements";
+                return Err(self.fault(item.span, "this coordinate has a start already", help));
+            }
+            self.starts.insert(index);
+            let at = |value: &Value| value.items.get(component).map(|item| item.id);
+            if let Some(coordinate) = self.model.coordinates.get_mut(index) {
+                coordinate.guess = at(&value);
+            }
+            let rate = rate.as_ref().and_then(at);
+            if let Some(dynamics) = &mut self.model.dynamics {
+                dynamics.started.push(index);
+                dynamics.rates.extend(rate.map(|rate| (index, rate)));
+            }
+        }
+        Ok(())
+    }
+
+    /// A value in the unit of `coordinate` per `per`, of parameters alone.
+    fn start_value(
+        &mut self,
+        value: &Expression,
+        coordinate: &Value,
+        per: Dimension,
+    ) -> Result<Value, Fault> {
+        let value = self.elaborate(Reach::Position, |work| {
+            let value = work.value(value)?;
+            let dimension =
+                coordinate.items.first().map(|item| item.quantity.dimension()).unwrap_or_default();
+            let value = initialiser(work, value, dimension.over(per))?;
+            fits_shape(work, &value, &coordinate.shape)?;
+            Ok::<_, Fault>(value)
+        })?;
+        if value.items.iter().all(|item| self.model.is_constant(item.id)) {
+            return Ok(value);
+        }
+        Err(self.fault(value.span, "a start varies", "make it of numbers, constants and parameters"))
+    }
+
+    /// A place is where the coordinates are; a state has no part in it.
+    fn stateless(&mut self, value: &Value) -> Result<(), Fault> {
+        let plain = |node| !matches!(node, Node::State(_));
+        if value.items.iter().all(|item| self.model.made_of(item.id, plain)) {
+            return Ok(());
+        }
+        Err(self.fault(
+            value.span,
+            "a state stands in a place",
+            "states may stand in forces and outputs alone",
+        ))
+    }
+
+    /// Every state has a rate, and its start is constant; none stands in a row.
+    pub(super) fn check_states(&mut self) {
+        let model = &*self.model;
+        let Some(dynamics) = model.dynamics.as_ref().filter(|dynamics| !dynamics.states.is_empty()) else {
+            return;
+        };
+        let plain = |node| !matches!(node, Node::State(_));
+        let rows = model.rows.iter().map(|row| (row.residual, row.span, &row.name));
+        let branches = model.branches.iter().map(|branch| (branch.value, branch.span, &branch.name));
+        let guesses = model.coordinates.iter().filter_map(|c| Some((c.guess?, c.span, &c.name)));
+        for (value, span, name) in rows.chain(branches).chain(guesses) {
+            if !model.made_of(value, plain) {
+                let help = "states may stand in forces and outputs alone; what a row needs is a `coord`";
+                self.diagnostics.report(span, format!("`{name}` uses a state"), help);
+            }
+        }
+        for state in &dynamics.states {
+            if state.start.is_some_and(|start| !model.is_constant(start)) {
+                let message = format!("the start of `{}` varies", state.name);
+                self.diagnostics.report(state.span, message, "make it of numbers, constants and parameters");
+            }
+            if state.rate.is_none() {
+                let message = format!("state `{}` has no rate", state.name);
+                self.diagnostics.report(state.span, message, format!("write `der({}) == …;`", state.name));
+            }
+        }
+    }
+
+    /// The name of a statement, with its round in a loop.
+    fn numbered(&mut self, name: &Name, kind: &'static str) -> Result<String, Fault> {
+        let group = self.group(name, kind)?;
+        let round = self.rows_of(group);
+        self.count_row(group, round);
+        Ok(if self.loops.is_empty() { name.text.clone() } else { format!("{}.{round}", name.text) })
+    }
+
+    fn fault(&mut self, span: Span, message: impl Into<String>, help: impl Into<String>) -> Fault {
+        self.diagnostics.report(span, message, help);
+        Fault
+    }
+
+    fn dynamics(&mut self) -> &mut Dynamics {
+        self.model.dynamics.get_or_insert_default()
+    }
+}
+
+/// A vector of two or three components.
+fn point(work: &mut Elaborator<'_>, value: &Value, user: &str) -> Result<(), Fault> {
+    match value.shape.as_slice() {
+        [2 | 3] => Ok(()),
+        _ => Err(work.wrong_shape(user, "a vector of 2 or of 3 components", value, value.span)),
+    }
+}

@@ -1,0 +1,126 @@
+//! Functions of masses and forces as code.
+
+use super::schedule::Section;
+use crate::equations::{Dynamics, Sparse};
+use crate::symbolic::NodeId;
+
+/// One section a function.
+#[derive(Debug)]
+pub struct DynamicsProgram {
+    /// M
+    pub mass: Section,
+    /// M x
+    pub mass_times: Section,
+    /// Q
+    pub force: Section,
+    /// Φ_qᵀ λ
+    pub reaction: Section,
+    /// Rates of the first-order states.
+    pub state_rates: Section,
+    /// ∂Q/∂q
+    pub force_q: Section,
+    /// ∂Q/∂q̇
+    pub force_qd: Section,
+    /// (M x)_q
+    pub mass_times_q: Section,
+    /// (Φ_qᵀ λ)_q
+    pub reaction_q: Section,
+    /// Kinetic and potential energy.
+    pub energy: Section,
+    /// Powers of the forces.
+    pub powers: Section,
+    /// Outputs of multipliers and states.
+    pub loads: Section,
+    /// First-order states at the start.
+    pub start_states: Section,
+    /// Rates at the start.
+    pub start_rates: Section,
+}
+
+/// The roots of each function.
+pub struct Roots {
+    mass: Vec<NodeId>,
+    mass_times: Vec<NodeId>,
+    force: Vec<NodeId>,
+    reaction: Vec<NodeId>,
+    state_rates: Vec<NodeId>,
+    force_q: Vec<NodeId>,
+    force_qd: Vec<NodeId>,
+    mass_times_q: Vec<NodeId>,
+    reaction_q: Vec<NodeId>,
+    energy: Vec<NodeId>,
+    powers: Vec<NodeId>,
+    loads: Vec<NodeId>,
+    start_states: Vec<NodeId>,
+    start_rates: Vec<NodeId>,
+}
+
+impl Roots {
+    pub fn of(dynamics: &Dynamics) -> Self {
+        let some = |nodes: &[Option<NodeId>]| nodes.iter().copied().flatten().collect();
+        let entries = |matrix: &Sparse| matrix.iter().flatten().map(|(_, entry)| *entry).collect();
+        Roots {
+            mass: entries(&dynamics.mass),
+            mass_times: some(&dynamics.mass_times),
+            force: some(&dynamics.force),
+            reaction: some(&dynamics.reaction),
+            state_rates: some(&dynamics.state_rates),
+            force_q: entries(&dynamics.force_q),
+            force_qd: entries(&dynamics.force_qd),
+            mass_times_q: entries(&dynamics.mass_times_q),
+            reaction_q: entries(&dynamics.reaction_q),
+            energy: some(&[dynamics.kinetic, dynamics.potential]),
+            powers: some(&dynamics.powers),
+            loads: dynamics.loads.clone(),
+            start_states: some(&dynamics.start_states),
+            start_rates: some(&dynamics.start_rates),
+        }
+    }
+
+    /// Functions that every step of every method calls.
+    pub fn each_step(&self) -> [&[NodeId]; 5] {
+        [&self.mass, &self.mass_times, &self.force, &self.reaction, &self.state_rates]
+    }
+
+    /// Functions that some methods call, or that nobody calls in every step: nothing is kept for them alone.
+    pub fn rare(&self) -> [&[NodeId]; 7] {
+        [
+            &self.force_q,
+            &self.force_qd,
+            &self.mass_times_q,
+            &self.reaction_q,
+            &self.energy,
+            &self.powers,
+            &self.loads,
+        ]
+    }
+
+    /// Functions of the parameters.
+    pub fn start(&self) -> [&[NodeId]; 2] {
+        [&self.start_states, &self.start_rates]
+    }
+
+    /// Before: what orders the code of a function of the state, and of one of parameters alone. After: all in order.
+    pub fn order(
+        &self,
+        section: impl Fn(&[NodeId]) -> Section,
+        early: impl Fn(&[NodeId]) -> Section,
+    ) -> DynamicsProgram {
+        DynamicsProgram {
+            mass: section(&self.mass),
+            mass_times: section(&self.mass_times),
+            force: section(&self.force),
+            reaction: section(&self.reaction),
+            state_rates: section(&self.state_rates),
+            force_q: section(&self.force_q),
+            force_qd: section(&self.force_qd),
+            mass_times_q: section(&self.mass_times_q),
+            reaction_q: section(&self.reaction_q),
+            energy: section(&self.energy),
+            powers: section(&self.powers),
+            loads: section(&self.loads),
+            start_states: early(&self.start_states),
+            start_rates: early(&self.start_rates),
+        }
+    }
+}

@@ -1,0 +1,131 @@
+//! Statements of dynamics: bodies, elements, forces, energies, first-order states, starts.
+
+use super::ast::{Declares, Element, Energy, Expression, Field, Instruction, Load, Operation, StatementKind};
+use super::constraint::equation;
+use super::expression::expression;
+use super::parser::{Parser, Read};
+use super::statement::end;
+use super::unit::declared_type;
+
+const BODY: &str = "write `body rod { mass: 2kg, com: [x, y], inertia: 0.1, angle: phi }`";
+pub fn read_body(parser: &mut Parser<'_>) -> Read<StatementKind> {
+    element(parser, Element::Body, BODY)
+}
+
+const GRAVITY: &str = "write `gravity weight { acceleration: [0, -9.81] }`";
+pub fn read_gravity(parser: &mut Parser<'_>) -> Read<StatementKind> {
+    element(parser, Element::Gravity, GRAVITY)
+}
+
+const TSDA: &str = "write `tsda spring { from: A, to: B, stiffness: 100, length: 0.2, damping: 5 }`";
+pub fn read_tsda(parser: &mut Parser<'_>) -> Read<StatementKind> {
+    element(parser, Element::Tsda, TSDA)
+}
+
+const RSDA: &str = "write `rsda spring { angle: phi2 - phi1, stiffness: 10, rest: 0.2, damping: 1 }`";
+pub fn read_rsda(parser: &mut Parser<'_>) -> Read<StatementKind> {
+    element(parser, Element::Rsda, RSDA)
+}
+
+/// `name { field: value, … }`
+fn element(parser: &mut Parser<'_>, kind: Element, help: &str) -> Read<StatementKind> {
+    let name = parser.name(help)?;
+    parser.expect('{', help)?;
+    let mut fields = Vec::new();
+    while !parser.take('}') {
+        let field = parser.name(help)?;
+        parser.expect(':', help)?;
+        fields.push(Field { name: field, value: expression(parser)? });
+        if !parser.take(',') {
+            parser.expect('}', "fields are separated by commas, and end with `}`")?;
+            break;
+        }
+    }
+    Ok(StatementKind::Element { kind, name, fields })
+}
+
+const FORCE: &str = "write `force push: [0, -5] on P;`, a vector in N on a point";
+pub fn read_force(parser: &mut Parser<'_>) -> Read<StatementKind> {
+    load(parser, Load::Force, FORCE)
+}
+
+const TORQUE: &str = "write `torque motor: 2 on phi1;`, a number in N*m on an angle";
+pub fn read_torque(parser: &mut Parser<'_>) -> Read<StatementKind> {
+    load(parser, Load::Torque, TORQUE)
+}
+
+/// `name: value on displacement;`
+fn load(parser: &mut Parser<'_>, kind: Load, help: &str) -> Read<StatementKind> {
+    let name = parser.name(help)?;
+    parser.expect(':', help)?;
+    let value = expression(parser)?;
+    if !parser.take_word("on") {
+        return parser.expected("`on`", help);
+    }
+    let on = expression(parser)?;
+    end(parser, help)?;
+    Ok(StatementKind::Load { kind, name, value, on })
+}
+
+pub fn read_potential(parser: &mut Parser<'_>) -> Read<StatementKind> {
+    energy(parser, Energy::Potential, "write `potential spring = k*x^2/2;`")
+}
+
+pub fn read_kinetic(parser: &mut Parser<'_>) -> Read<StatementKind> {
+    energy(parser, Energy::Kinetic, "write `kinetic flywheel = J*der(phi)^2/2;`")
+}
+
+pub fn read_dissipation(parser: &mut Parser<'_>) -> Read<StatementKind> {
+    energy(parser, Energy::Dissipation, "write `dissipation bearing = c*der(phi)^2/2;`")
+}
+
+/// `name = value;`
+fn energy(parser: &mut Parser<'_>, kind: Energy, help: &str) -> Read<StatementKind> {
+    let name = parser.name(help)?;
+    parser.expect('=', help)?;
+    let value = expression(parser)?;
+    end(parser, help)?;
+    Ok(StatementKind::Energy { kind, name, value })
+}
+
+const STATE: &str = "write `state z: N = 0;` and its rate `der(z) == …;`";
+pub fn read_state(parser: &mut Parser<'_>) -> Read<StatementKind> {
+    let (name, (kind, value)) = parser.declare(Declares::Value, STATE, |parser, _| {
+        parser.expect(':', STATE)?;
+        let kind = declared_type(parser, STATE)?;
+        let value = if parser.take('=') { Some(expression(parser)?) } else { None };
+        end(parser, STATE)?;
+        Ok((kind, value))
+    })?;
+    Ok(StatementKind::State { name, kind, value })
+}
+
+const RATE: &str = "write the rate of a state as `der(z) == (u - z)/T;`";
+/// The rate of a state, `der` included.
+pub fn read_rate(parser: &mut Parser<'_>) -> Read<StatementKind> {
+    let equation = equation(parser, RATE)?;
+    let mut state = equation.left;
+    match state.code.pop() {
+        Some(Instruction { operation: Operation::Call { function, arguments: 1 }, .. })
+            if function == "der" && !state.code.is_empty() =>
+        {
+            Ok(StatementKind::Rate { state, rate: equation.right, span: equation.span })
+        }
+        last => {
+            let span = last.map_or(equation.span, |instruction| instruction.span);
+            parser.diagnostics.report(span, "the left side is not `der` of one state", RATE);
+            Err(super::parser::GivenUp)
+        }
+    }
+}
+
+const START: &str = "write `start phi1 = 0.3 rate 2.0;`";
+pub fn read_start(parser: &mut Parser<'_>) -> Read<StatementKind> {
+    let span = parser.span();
+    let coordinate = expression(parser)?;
+    parser.expect('=', START)?;
+    let value = expression(parser)?;
+    let rate: Option<Expression> = if parser.take_word("rate") { Some(expression(parser)?) } else { None };
+    end(parser, START)?;
+    Ok(StatementKind::Start { coordinate, value, rate, span })
+}

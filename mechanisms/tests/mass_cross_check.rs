@@ -1,0 +1,106 @@
+//! CasADi against a text that uses every statement of dynamics: energies and works go in, Lagrange's equations come
+//! out, and must be what the macro emits from Jacobians.
+
+use mbs_runtime::mechanism;
+use mechanisms::facade::AnyEquations;
+use mechanisms::masses::{boxed_driven, boxed_masses};
+use mechanisms::verify::compare::compare;
+use mechanisms::verify::{Oracle, STATES, generated_definition};
+
+mechanism! {
+    /// Meaningless as a machine, complete as a text of dynamics.
+    pub mechanism Heap;
+    const C: N*m*s = 0.2;
+    const D: N*s/m = 0.5;
+    param m: [kg; 2] = [1.5, 0.8];
+    param J: [kg*m^2; 2] = [0.02, 0.03];
+    param L: m = 0.6;
+    param k: N/m = 120;
+    param omega: rad/s = 3;
+    input u: N*m;
+    input shift: m, rates;
+    coord psi: [rad; 2] = [0.3, 0.8];
+    coord s: m = 0.2;
+    coord p: [m; 2] = [0.3, 0.4];
+    state z: N = 0.5;
+    state w: [rad; 2] = [0.1, 0.2];
+    let phi2 = psi[0] + psi[1];
+    let base = [0.1*L*sin(omega*t), shift];
+    let elbow = base + L*unit(psi[0]);
+    let hand = elbow + s*unit(phi2);
+    for i in 0..2 {
+        body rods { mass: m[i], inertia: J[i], com: elbow + i*s/2*unit(phi2) + omega*t*[s, i*s], angle: psi[i]*(1 + i*t/10s) }
+    }
+    body bob { mass: 0.4, com: p }
+    gravity g { acceleration: [0.3m/1s^2*sin(omega*t), -9.81] }
+    force push: [2N + z, D*der(s)] on hand;
+    force friction: -tanh(der(s)*10s/1m)*abs(lambda(slot)) on s;
+    torque motor: u - C*der(psi[0])*w[0] on psi[0];
+    tsda strut { from: p, to: hand, stiffness: k, length: 0.35, damping: 4, actuator: 3N*sin(2*t/1s) }
+    tsda stiffening { from: [0, 0], to: p, stiffness: k*(1 + dot(p, p)/L^2), length: s }
+    tsda cable { from: base, to: p, stiffness: 30 }
+    rsda knee { angle: psi[1], stiffness: 5, rest: 0.4, damping: 0.3, torque: 0.1*w[1]*1N*1m }
+    potential well = k*s^2*cos(psi[0])/2;
+    kinetic rotor = J[0]*der(psi[1])*(der(psi[1]) + 3*der(psi[0])) + m[0]*L*der(s)*der(psi[0])*sin(psi[0])/9;
+    kinetic swirl = m[1]*(p[0]*der(p[1]) - p[1]*der(p[0]))*omega;
+    dissipation bearing = C*der(psi[0])^2*exp(sin(psi[1]))/2;
+    der(z) == (4N - z)/0.1s + k*der(s);
+    der(w) == [der(psi[0]) - w[0]/1s, w[0]*w[1]*cos(psi[0])/1s];
+    constraint slot { s == L/2 + 50mm*cos(psi[1]); }
+    constraint rod { dot(p - hand, p - hand) == L^2; }
+    out squeeze: N = lambda(slot) + z;
+    out pull: [N; 2] = 2*lambda(rod)*(p - hand);
+    out mixed: m/s^2 = der2(s) + lambda(slot)/m[0];
+    out speed: m/s = der(s);
+}
+
+mechanism! {
+    /// A driven slider-crank: square, so that its forces are those of inverse dynamics.
+    pub mechanism Driven;
+    param r: m = 0.05;
+    param l: m = 0.18;
+    coord theta: rad = 0.2;
+    coord phi: rad = 0;
+    coord x: m = 0.2;
+    body crank { mass: 0.4, inertia: 1e-4, com: r/2*unit(theta), angle: theta }
+    body rod { mass: 0.6, inertia: 2e-3, com: r*unit(theta) + l/2*unit(phi), angle: phi }
+    body piston { mass: 0.5, com: [x, 0] }
+    gravity g { acceleration: [0, -1g0] }
+    force gas: -80N*cos(theta) on x;
+    constraint closure { r*unit(theta) + l*unit(phi) == [x, 0]; }
+    drive motor: theta == 0.2 + 30rad/1s*t + 2*sin(3*t/1s);
+    out torque_1: N*m = effort(motor);
+}
+
+#[test]
+fn casadi_confirms_every_function_of_masses_and_forces() {
+    let oracle = Oracle::new(&|_| ()).unwrap_or_else(|error| panic!("{error}"));
+    let driven: Box<dyn AnyEquations> = boxed_driven::<Driven, 3>();
+    for mut mechanism in [boxed_masses::<Heap, 5, 2>(), driven] {
+        let definition = generated_definition(mechanism.as_ref()).unwrap_or_else(|error| panic!("{error}"));
+        let agreement = compare(mechanism.as_mut(), &oracle, &definition, STATES);
+        let agreement = agreement.unwrap_or_else(|error| panic!("{error}"));
+        println!("{agreement}");
+        assert!(agreement.holds(), "{agreement}");
+        let functions: Vec<&str> = agreement.functions.iter().map(|function| function.function).collect();
+        for function in ["M", "Q", "∂Q/∂q", "∂Q/∂q̇", "(Φ_qᵀ λ)_q", "energy", "load"] {
+            assert!(functions.contains(&function), "{function}");
+        }
+    }
+}
+
+/// The control of the test above: a sign in the text of a force must show, and where.
+#[test]
+fn a_slip_in_a_force_is_found() {
+    let oracle = Oracle::new(&|_| ()).unwrap_or_else(|error| panic!("{error}"));
+    let mut mechanism = boxed_masses::<Heap, 5, 2>();
+    let definition = generated_definition(mechanism.as_ref()).unwrap_or_else(|error| panic!("{error}"));
+    let right = "elastic * (place -";
+    assert!(definition.contains(right));
+    let slipped = definition.replacen(right, "elastic * (place +", 1);
+    let agreement = compare(mechanism.as_mut(), &oracle, &slipped, 20).unwrap_or_else(|e| panic!("{e}"));
+    assert!(!agreement.holds());
+    let differing = agreement.functions.iter().filter(|function| function.error > 1e-13);
+    let differing: Vec<&str> = differing.map(|function| function.function).collect();
+    assert_eq!(differing, ["Q", "∂Q/∂q", "energy"]);
+}

@@ -1,0 +1,430 @@
+//! Masses and forces end to end: M, Q, energies and loads against d'Alembert's sums in second-order Taylor
+//! arithmetic, their derivatives against differences, accelerations against closed forms.
+#![forbid(unsafe_code)]
+
+#[allow(dead_code, reason = "the comparison of kinematics has a test file of its own")]
+mod jet;
+
+use jet::{Jet, close};
+use mbs_runtime::{Dynamic, Mechanism, Motion, mechanism};
+
+mechanism! {
+    /// A point on a massless rod, in Cartesian coordinates.
+    pub mechanism Pendulum;
+    param m: kg = 2;
+    param L: m = 0.7;
+    coord x: m = 0;
+    coord y: m = 0;
+    body bob { mass: m, com: [x, y] }
+    gravity weight { acceleration: [0, -9.81] }
+    constraint rod { x^2 + y^2 == L^2; }
+    start x = -L;
+    start y = 0 rate 0.5;
+    out tension: N = 2*lambda(rod)*L;
+}
+
+mechanism! {
+    /// Every statement of dynamics at once: a two-link arm on a moving support, in relative angles.
+    pub mechanism Arm;
+    param m1: kg = 1.5;
+    param m2: kg = 0.8;
+    param J1: kg*m^2 = 0.02;
+    param J2: kg*m^2 = 0.03;
+    param L1: m = 0.6;
+    param k: N/m = 120;
+    param c: N*s/m = 4;
+    param omega: rad/s = 3;
+    const CM: N*m*s = 0.2;
+    const CS: N*s/m = 0.5;
+    const V: m/s = 0.01;
+    input u: N*m;
+    coord psi1: rad = 0.3;
+    coord psi2: rad = 0.8;
+    coord s: m = 0.2;
+    state z: N = 0.5;
+    let phi2 = psi1 + psi2;
+    let base = [0.1*1m*sin(omega*t), 0];
+    let elbow = base + L1*unit(psi1);
+    let hand = elbow + s*unit(phi2);
+    body upper { mass: m1, inertia: J1, com: base + 0.3*1m*unit(psi1), angle: psi1 }
+    body lower { mass: m2, inertia: J2, com: elbow + 0.5*s*unit(phi2) + V*t*[1, 1], angle: phi2 }
+    body load { mass: 0.4, com: hand }
+    gravity g { acceleration: [0.3, -9.81] }
+    force push: [2N + z, CS*der(s)] on hand;
+    torque motor: u - CM*der(psi1) on psi1;
+    force slip: -lambda(slot)*0.1 on s;
+    tsda strut {
+        from: [200mm, -400mm], to: hand, stiffness: k, length: 0.35, damping: c, actuator: 3N*sin(2*t/1s)
+    }
+    rsda knee { angle: psi2, stiffness: 5, rest: 0.4, damping: 0.3, torque: 0.1 }
+    potential well = 3N/1m*s^2*cos(psi1);
+    kinetic rotor = 0.01*J1*der(psi2)*(der(psi2) + 3*der(psi1));
+    dissipation bearing = 0.05*CM*der(psi1)^2*exp(psi2);
+    der(z) == (4N - z)/0.1s + 2N/1m*der(s);
+    constraint slot { s == 300mm + 50mm*cos(psi2); }
+    out squeeze: N = lambda(slot) + z;
+    out mixed: m/s^2 = der2(s) + lambda(slot)/1kg;
+    out speed: m/s = der(s);
+}
+
+/// A state of the arm; nothing of it satisfies the constraint.
+struct State {
+    q: [f64; 3],
+    qd: [f64; 3],
+    qdd: [f64; 3],
+    z: [f64; 1],
+    lambda: [f64; 1],
+    t: f64,
+}
+
+const STATES: [State; 2] = [
+    State {
+        q: [0.4, 0.9, 0.25],
+        qd: [1.1, -0.7, 0.6],
+        qdd: [2.0, 3.0, -1.0],
+        z: [0.7],
+        lambda: [5.0],
+        t: 0.3,
+    },
+    State {
+        q: [-2.1, 0.2, 0.5],
+        qd: [-3.0, 2.2, -1.4],
+        qdd: [0.5, -9.0, 4.0],
+        z: [-2.0],
+        lambda: [-1.0],
+        t: 1.7,
+    },
+];
+
+/// A value that does work along a displacement, or a mass that moves along it.
+type Pair = (Jet, Jet);
+
+/// Points and angles of the arm with masses, and with forces, typed from the sketch and not from the text.
+fn arm(arm: &Arm, [psi1, psi2, s]: [Jet; 3], t: Jet, z: f64, lambda: f64) -> (Vec<Pair>, Vec<Pair>) {
+    let n = Jet::number;
+    let phi2 = psi1 + psi2;
+    let base = [0.1 * (arm.omega * t).sin(), n(0.0)];
+    let elbow = [base[0] + arm.L1 * psi1.cos(), base[1] + arm.L1 * psi1.sin()];
+    let hand = [elbow[0] + s * phi2.cos(), elbow[1] + s * phi2.sin()];
+    let middle = [elbow[0] + 0.5 * s * phi2.cos() + 0.01 * t, elbow[1] + 0.5 * s * phi2.sin() + 0.01 * t];
+    let upper = [base[0] + 0.3 * psi1.cos(), base[1] + 0.3 * psi1.sin()];
+    let masses = vec![
+        (n(arm.m1), upper[0]),
+        (n(arm.m1), upper[1]),
+        (n(arm.J1), psi1),
+        (n(arm.m2), middle[0]),
+        (n(arm.m2), middle[1]),
+        (n(arm.J2), phi2),
+        (n(0.4), hand[0]),
+        (n(0.4), hand[1]),
+        // 0.01 J (ψ̇₂² + 3 ψ̇₁ψ̇₂) as squares: ψ̇₁ψ̇₂ = ((ψ₁ + ψ₂)˙² − ψ̇₁² − ψ̇₂²)/2.
+        (n(0.02 * arm.J1), psi2),
+        (n(0.03 * arm.J1), phi2),
+        (n(-0.03 * arm.J1), psi1),
+        (n(-0.03 * arm.J1), psi2),
+    ];
+    let [dx, dy] = [hand[0] - 0.2, hand[1] + 0.4];
+    let length = (dx * dx + dy * dy).sqrt();
+    let tension = arm.k * (length - 0.35) + arm.c * length.rate() + 3.0 * (2.0 * t).sin();
+    let mut forces: Vec<Pair> = [(upper, arm.m1), (middle, arm.m2), (hand, 0.4)]
+        .into_iter()
+        .flat_map(|(place, mass)| [(n(0.3 * mass), place[0]), (n(-9.81 * mass), place[1])])
+        .collect();
+    forces.extend([
+        (n(2.0 + z), hand[0]),
+        (0.5 * s.rate(), hand[1]),
+        (arm.u - 0.2 * psi1.rate(), psi1),
+        (n(-0.1 * lambda), s),
+        (-tension, length),
+        (-(5.0 * (psi2 - 0.4) + 0.3 * psi2.rate() + n(0.1)), psi2),
+        (n(-1.0), 3.0 * s * s * psi1.cos()),
+        (-(0.02 * psi1.rate() * psi2.exp()), psi1),
+    ]);
+    (masses, forces)
+}
+
+/// Σ m ∂p/∂q_i p̈ − Σ F ∂P/∂q_i for each coordinate: what M q̈ − Q must be.
+fn d_alembert(design: &Arm, state: &State) -> [f64; 3] {
+    let State { q, qd, qdd, t, .. } = *state;
+    let at = |qd: [f64; 3], qdd: [f64; 3], pace: f64| {
+        let q = std::array::from_fn(|i| Jet::new(q[i], qd[i], qdd[i]));
+        arm(design, q, Jet::new(t, pace, 0.0), state.z[0], state.lambda[0])
+    };
+    let (masses, forces) = at(qd, qdd, 1.0);
+    std::array::from_fn(|i| {
+        let (mass_axes, force_axes) = at(std::array::from_fn(|j| f64::from(i == j)), [0.0; 3], 0.0);
+        let inertia = masses.iter().zip(&mass_axes).map(|((mass, place), (_, axis))| {
+            mass.value() * place.rate().rate().value() * axis.rate().value()
+        });
+        let work =
+            forces.iter().zip(&force_axes).map(|((value, _), (_, axis))| value.value() * axis.rate().value());
+        inertia.sum::<f64>() - work.sum::<f64>()
+    })
+}
+
+#[test]
+fn inertia_and_forces_are_d_alemberts_sums() {
+    let arm = Arm { u: 1.7, ..Arm::default() };
+    let parameters = arm.parameters();
+    for state in &STATES {
+        let position = arm.position(&parameters, &state.q, state.t);
+        let inertia = arm.mass_times(&parameters, &position, &state.qdd);
+        let force = arm.force(&parameters, &position, &state.qd, &state.z, &state.lambda);
+        let mass = arm.mass(&parameters, &position);
+        for (i, expected) in d_alembert(&arm, state).into_iter().enumerate() {
+            close(inertia[i] - force[i], expected, &format!("row {i} of M q̈ − Q"));
+            let product: f64 = (0..3).map(|j| mass[i][j] * state.qdd[j]).sum();
+            close(product, inertia[i], &format!("row {i} of M q̈"));
+            for j in 0..3 {
+                assert_eq!(mass[i][j], mass[j][i], "M is symmetric");
+            }
+        }
+    }
+}
+
+#[test]
+fn the_kinetic_energy_is_that_of_the_velocities() {
+    let arm_1 = Arm::default();
+    let parameters = arm_1.parameters();
+    for state in &STATES {
+        let position = arm_1.position(&parameters, &state.q, state.t);
+        let energy = arm_1.energy(&parameters, &position, &state.qd);
+        let q = std::array::from_fn(|i| Jet::new(state.q[i], state.qd[i], 0.0));
+        let (masses, _) = arm(&arm_1, q, Jet::new(state.t, 1.0, 0.0), 0.0, 0.0);
+        let square = |place: &Jet| place.rate().value().powi(2);
+        let kinetic: f64 = masses.iter().map(|(mass, place)| 0.5 * mass.value() * square(place)).sum();
+        close(energy.kinetic, kinetic, "kinetic energy");
+    }
+}
+
+/// Step of the differences below: its fourth power is a few hundred roundings.
+const STEP: f64 = 2e-4;
+/// Rounding of a fourth-order difference with that step, a part of the entries' size.
+const DIFFERENCE: f64 = 1e-9;
+
+/// Derivative of a vector function along each axis, of fourth order: row by row.
+fn differences<const N: usize>(q: [f64; N], f: impl Fn([f64; N]) -> [f64; N]) -> [[f64; N]; N] {
+    let mut matrix = [[0.0; N]; N];
+    for j in 0..N {
+        let at = |steps: f64| f(std::array::from_fn(|i| if i == j { q[i] + steps * STEP } else { q[i] }));
+        let ([a, b], [c, d]) = ([at(-2.0), at(-1.0)], [at(1.0), at(2.0)]);
+        for i in 0..N {
+            matrix[i][j] = (a[i] - 8.0 * b[i] + 8.0 * c[i] - d[i]) / (12.0 * STEP);
+        }
+    }
+    matrix
+}
+
+#[track_caller]
+fn near<const N: usize>(found: [[f64; N]; N], expected: [[f64; N]; N], what: &str) {
+    let size = 1.0 + expected.iter().flatten().fold(0.0_f64, |largest, entry| largest.max(entry.abs()));
+    for (i, (found, expected)) in found.iter().zip(&expected).enumerate() {
+        for (j, (found, expected)) in found.iter().zip(expected).enumerate() {
+            assert!((found - expected).abs() < DIFFERENCE * size, "{what} {i}, {j}: {found} for {expected}");
+        }
+    }
+}
+
+#[test]
+fn derivatives_of_forces_inertia_and_reactions_are_those_of_differences() {
+    let arm = Arm { u: 1.7, ..Arm::default() };
+    let p = arm.parameters();
+    for State { q, qd, qdd, z, lambda, t } in &STATES {
+        let at = |q: [f64; 3]| arm.position(&p, &q, *t);
+        let here = at(*q);
+        let force = differences(*q, |q| arm.force(&p, &at(q), qd, z, lambda));
+        near(arm.force_q(&p, &here, qd, z, lambda), force, "∂Q/∂q");
+        let force = differences(*qd, |qd| arm.force(&p, &here, &qd, z, lambda));
+        near(arm.force_qd(&p, &here, qd, z, lambda), force, "∂Q/∂q̇");
+        let inertia = differences(*q, |q| arm.mass_times(&p, &at(q), qdd));
+        near(arm.mass_times_q(&p, &here, qdd), inertia, "(M x)_q");
+        let reaction = differences(*q, |q| arm.reaction(&p, &at(q), lambda));
+        near(arm.reaction_q(&p, &here, lambda), reaction, "(Φ_qᵀ λ)_q");
+        let phi_q = arm.phi_q(&p, &here);
+        for (i, entry) in arm.reaction(&p, &here, lambda).into_iter().enumerate() {
+            close(entry, phi_q[0][i] * lambda[0], "Φ_qᵀ λ");
+        }
+    }
+}
+
+mechanism! {
+    /// A trolley with a pendulum, spring, dampers and a motor; nothing moves it from outside but forces.
+    pub mechanism Trolley;
+    coord x: m = 0.1;
+    coord phi: rad = 0.4;
+    const K: N/m = 40;
+    const C: N*m*s = 0.3;
+    input u: N;
+    let bob = [x, 0] + 0.8*1m*unit(phi);
+    body cart { mass: 2, com: [x, 0] }
+    body rod { mass: 0.5, inertia: 0.03, com: bob, angle: phi }
+    gravity g { acceleration: [0, -9.81] }
+    tsda strut { from: [0, 1m], to: bob, stiffness: 60, length: 0.5, damping: 3, actuator: 2 }
+    tsda stiffening { from: [0, -1m], to: bob, stiffness: K*(1 + x^2/1m^2), length: 0.1 }
+    rsda hinge { angle: phi, stiffness: 2, rest: 0.1, damping: 0.2, torque: 0.3 }
+    potential well = K*x^4/4/1m^2;
+    dissipation bearing = C*der(phi)^2/2;
+    force motor: u on x;
+}
+
+#[test]
+fn energy_changes_by_what_forces_supply_and_nothing_else() {
+    let trolley = Trolley { u: 1.7, ..Trolley::default() };
+    let p = trolley.parameters();
+    assert_eq!(Trolley::<f64>::FORCES.len(), 5);
+    for (q, qd, qdd) in [([0.3, 0.4], [1.0, -2.0], [3.0, 0.5]), ([-0.7, 2.4], [-1.5, 0.8], [-2.0, 4.0])] {
+        let at = |tau: f64| {
+            let q: [f64; 2] = std::array::from_fn(|i| q[i] + qd[i] * tau + 0.5 * qdd[i] * tau * tau);
+            let qd: [f64; 2] = std::array::from_fn(|i| qd[i] + qdd[i] * tau);
+            let energy = trolley.energy(&p, &trolley.position(&p, &q, 0.0), &qd);
+            energy.kinetic + energy.potential
+        };
+        let slope = (at(-2.0 * STEP) - 8.0 * at(-STEP) + 8.0 * at(STEP) - at(2.0 * STEP)) / (12.0 * STEP);
+        let here = trolley.position(&p, &q, 0.0);
+        let inertia = trolley.mass_times(&p, &here, &qdd);
+        let force = trolley.force(&p, &here, &qd, &[], &[]);
+        let unbalanced: f64 = (0..2).map(|i| qd[i] * (inertia[i] - force[i])).sum();
+        let powers: f64 = trolley.powers(&p, &here, &qd, &[], &[]).iter().sum();
+        assert!((slope - unbalanced - powers).abs() < DIFFERENCE * (1.0 + slope.abs()), "{slope}");
+        assert_eq!(trolley.powers(&p, &here, &qd, &[], &[])[4], 1.7 * qd[0]);
+    }
+}
+
+#[test]
+fn a_spring_of_no_length_has_no_direction_and_keeps_its_stiffness() {
+    mechanism! {
+        mechanism Slider;
+        coord x: m = 0;
+        coord y: m = 0;
+        body bob { mass: 1, com: [x, y] }
+        tsda strut { from: [1m, 2m], to: [x, y], stiffness: 50, length: 0.2, damping: 3, actuator: 2 }
+    }
+    let slider: Slider = Slider::default();
+    let position = slider.position(&slider.parameters(), &[1.0, 2.0], 0.0);
+    let (q, none) = (slider.parameters(), []);
+    assert_eq!(slider.force(&q, &position, &[3.0, 4.0], &none, &none), [0.0, 0.0]);
+    let stiffness = slider.force_q(&q, &position, &[3.0, 4.0], &none, &none);
+    assert_eq!(stiffness, [[-50.0, 0.0], [0.0, -50.0]]);
+    assert_eq!(slider.force_qd(&q, &position, &[3.0, 4.0], &none, &none), [[0.0; 2]; 2]);
+    close(slider.energy(&q, &position, &[0.0; 2]).potential, 0.5 * 50.0 * 0.04, "potential");
+}
+
+/// Accelerations and multipliers from M q̈ + Φ_qᵀ λ = Q, Φ_q q̈ = γ by elimination with pivots.
+fn solve<S: Dynamic<f64, N, M, States = [f64; 0]>, const N: usize, const M: usize>(
+    mechanism: &S,
+    q: &[f64; N],
+    qd: &[f64; N],
+    t: f64,
+) -> (Vec<f64>, Vec<f64>) {
+    let p = mechanism.parameters();
+    let position = mechanism.position(&p, q, t);
+    let (mass, phi_q) = (mechanism.mass(&p, &position), mechanism.phi_q(&p, &position));
+    let force = mechanism.force(&p, &position, qd, &[], &[0.0; M]);
+    let gamma = mechanism.gamma(&p, &position, qd);
+    let mut rows: Vec<Vec<f64>> = Vec::new();
+    for i in 0..N {
+        let transposed = phi_q.iter().map(|row| row[i]);
+        rows.push(mass[i].into_iter().chain(transposed).chain([force[i]]).collect());
+    }
+    for (row, right) in phi_q.iter().zip(gamma) {
+        rows.push(row.iter().copied().chain([0.0; M]).chain([right]).collect());
+    }
+    let size = N + M;
+    for k in 0..size {
+        let pivot = (k..size).max_by(|a, b| rows[*a][k].abs().total_cmp(&rows[*b][k].abs())).expect("a row");
+        rows.swap(k, pivot);
+        let upper = rows[k].clone();
+        for (i, row) in rows.iter_mut().enumerate().filter(|(i, _)| *i != k) {
+            let factor = row[k] / upper[k];
+            assert!(factor.is_finite(), "singular at {k}, {i}");
+            row.iter_mut().zip(&upper).for_each(|(entry, above)| *entry -= factor * above);
+        }
+    }
+    let mut solution: Vec<f64> = (0..size).map(|k| rows[k][size] / rows[k][k]).collect();
+    let lambda = solution.split_off(N);
+    (solution, lambda)
+}
+
+#[test]
+fn a_pendulum_falls_as_it_should_and_its_rod_pulls() {
+    let pendulum = Pendulum::default();
+    let p = pendulum.parameters();
+    assert_eq!(pendulum.guess(&p), [-0.7, 0.0]);
+    assert_eq!(pendulum.start_rates(&p), [0.0, 0.5]);
+    let (angle, rate) = (-0.9_f64, 1.3);
+    let (sine, cosine) = angle.sin_cos();
+    let (q, qd) = ([0.7 * cosine, 0.7 * sine], [-0.7 * rate * sine, 0.7 * rate * cosine]);
+    let (qdd, lambda) = solve(&pendulum, &q, &qd, 0.0);
+    let angular = -9.81 / 0.7 * cosine;
+    close(qdd[0], 0.7 * (-angular * sine - rate * rate * cosine), "ẍ");
+    close(qdd[1], 0.7 * (angular * cosine - rate * rate * sine), "ÿ");
+    let position = pendulum.position(&p, &q, 0.0);
+    let motion = Motion { qd: &qd, qdd: &[qdd[0], qdd[1]], lambda: &[lambda[0]], states: &[] };
+    let [tension] = pendulum.loads(&p, &position, &motion);
+    close(tension, 2.0 * (0.7 * rate * rate - 9.81 * sine), "tension");
+    let energy = pendulum.energy(&p, &position, &qd);
+    close(energy.kinetic + energy.potential, 0.49 * rate * rate + 2.0 * 9.81 * q[1], "energy");
+}
+
+#[test]
+fn states_have_starts_and_rates_and_stand_in_outputs() {
+    let arm = Arm::default();
+    let p = arm.parameters();
+    assert_eq!(Arm::<f64>::STATES[0].name, "z");
+    assert_eq!(arm.start_states(&p), [0.5]);
+    let State { q, qd, qdd, z, lambda, t } = &STATES[0];
+    let here = arm.position(&p, q, *t);
+    let [rate] = arm.state_rates(&p, &here, qd, z, lambda);
+    close(rate, (4.0 - z[0]) / 0.1 + 2.0 * qd[2], "ż");
+    let names: Vec<&str> = Arm::<f64>::LOADS.iter().map(|load| load.name).collect();
+    assert_eq!(names, ["squeeze", "mixed"]);
+    let loads = arm.loads(&p, &here, &Motion { qd, qdd, lambda, states: z });
+    assert_eq!(loads, [lambda[0] + z[0], qdd[2] + lambda[0]]);
+    assert_eq!(Arm::<f64>::OUTPUTS[0].name, "speed");
+}
+
+mechanism! {
+    /// A four-bar with uniform rods, its crank driven or free.
+    pub mechanism FourBar;
+    const L1: m = 0.1;
+    const L2: m = 0.25;
+    const L3: m = 0.2;
+    coord phi1: rad = 0.5;
+    coord phi2: rad = 0.9;
+    coord phi3: rad = 1.8;
+    body crank { mass: 1, inertia: L1^2/12*1kg, com: L1/2*unit(phi1), angle: phi1 }
+    body coupler { mass: 2.5, inertia: 2.5kg*L2^2/12, com: L1*unit(phi1) + L2/2*unit(phi2), angle: phi2 }
+    body rocker { mass: 2, inertia: 2kg*L3^2/12, com: [300mm, 0] + L3/2*unit(phi3), angle: phi3 }
+    gravity g { acceleration: [0, -1g0] }
+    constraint closure { L1*unit(phi1) + L2*unit(phi2) == [300mm, 0] + L3*unit(phi3); }
+    drive motor: phi1 == 0.5 + 4rad/1s*t;
+    out torque_1: N*m = effort(motor);
+}
+
+#[test]
+fn the_effort_of_a_drive_is_what_the_energy_takes() {
+    let four_bar: FourBar = FourBar::default();
+    let p = four_bar.parameters();
+    let guess = four_bar.guess(&p);
+    let mut motion = mbs_runtime::Stepper::assemble(four_bar.clone(), guess, 0.0).expect("it closes");
+    let energy = |motion: &mbs_runtime::Stepper<FourBar, f64, 3>| {
+        let energy = four_bar.energy(&p, &four_bar.position(&p, motion.q(), 0.0), motion.qd());
+        energy.kinetic + energy.potential
+    };
+    let mut energies = Vec::new();
+    let mut power = 0.0;
+    for step in 0..5 {
+        motion.advance_to(0.1 + f64::from(step) * 1e-3).expect("it turns");
+        energies.push(energy(&motion));
+        if step == 2 {
+            // Inverse dynamics of a driven mechanism: the rows balance Q − M q̈.
+            let (qdd, lambda) = solve(&four_bar, motion.q(), motion.qd(), 0.102);
+            for (solved, kinematic) in qdd.iter().zip(motion.qdd()) {
+                close(*solved, *kinematic, "acceleration");
+            }
+            power = -lambda[2] * 4.0;
+        }
+    }
+    let slope = (energies[0] - 8.0 * energies[1] + 8.0 * energies[3] - energies[4]) / 12e-3;
+    assert!((slope - power).abs() < 1e-6 * power.abs(), "{slope} {power}");
+}

@@ -1,0 +1,17 @@
+#![deny(warnings)]
+use mbs_runtime::{Mechanism, mechanism};
+
+mechanism! {
+    pub mechanism Rod;
+    param L: m = 0.5;
+    coord phi: rad = 0.1;
+    let tip = L*unit(phi);
+    body bob { mass: 1, com: tip }
+    tsda spring { from: [0, 0], to: tip, stiffness: 3N, damping: 1N }
+    force push: [1m, 0] on tip;
+}
+
+fn main() {
+    let rod: Rod = Rod::default();
+    println!("{:?}", rod.guess(&rod.parameters()));
+}
