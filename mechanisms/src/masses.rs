@@ -4,7 +4,7 @@ use core::time::Duration;
 
 use mbs_runtime::{Dynamic, Entry, Failure, Kinematic, Motion as Moving};
 
-use crate::facade::{AnyEquations, AnyMechanism, Facade, Functions, Motion, State};
+use crate::facade::{AnyEquations, AnyMechanism, Facade, Functions, Motion, MotionStop, State};
 use crate::lecture::experiment::Experiment;
 
 /// What acts in a state beside its coordinates and their rates.
@@ -153,6 +153,9 @@ impl<S: Dynamic<f64, N, M>, const N: usize, const M: usize> AnyEquations for Mas
 impl<S: Dynamic<f64, N, N> + Kinematic<f64, N>, const N: usize> AnyMechanism for MassFacade<S, N, N> {
     fn follow(&self, times: &[f64], progress: &mut dyn FnMut(usize)) -> Result<Motion, Failure> {
         self.0.follow(times, progress)
+    }
+    fn stop(&self, times: &[f64]) -> Option<MotionStop> {
+        self.0.stop(times)
     }
     fn time_a_step(&self, times: &[f64]) -> Result<Duration, Failure> {
         self.0.time_a_step(times)
