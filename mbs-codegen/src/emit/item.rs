@@ -190,7 +190,7 @@ fn implementations(text: &Text, scenes: &Scenes, part: &Part<'_>) -> TokenStream
                     __q: &[T; #n],
                     __t: T,
                     __qd: &[T; #n],
-                ) -> #runtime::Evaluation<T, [T; #nonzeros], #n> { #evaluate }
+                ) -> #runtime::Evaluation<T, [T; #nonzeros], #m> { #evaluate }
                 #[inline]
                 fn branches(&self, __p: &__Parameters<T>, __s: &__Position<T>) -> [T; #branches] { #branches_body }
                 #[inline]

@@ -385,7 +385,7 @@ impl Declarations<'_> {
             self.elaborate(|work| {
                 let value = work.value(expression)?;
                 let value = initialiser(work, value, dimension)?;
-                fits_shape(work, &value, &declared.shape)?;
+                let value = filling(work, value, &declared.shape)?;
                 Ok::<_, Fault>(value.items.iter().map(|item| item.id).collect::<Vec<Id>>())
             })
         });
