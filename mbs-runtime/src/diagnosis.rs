@@ -6,7 +6,7 @@ use crate::{Block, Real, Scalar};
 ///
 /// A closure row sums some ten terms of at most the reference length, each wrong by an ε or two; 64 leaves a
 /// factor of three and is still 1.4e-14 of the length in `f64`.
-const TERM_ROUNDINGS: f64 = 64.0;
+pub(crate) const TERM_ROUNDINGS: f64 = 64.0;
 
 /// Rounding errors of a coordinate that a residual may hold, in ε times the coordinate: half an ε for its own
 /// rounding, the same for each sum that it enters.

@@ -30,6 +30,7 @@ pub mod newton;
 pub mod newton_raphson;
 mod path;
 pub mod phase;
+pub mod resolution;
 pub mod safeguarded;
 pub mod saved;
 pub mod scalar;
@@ -59,6 +60,7 @@ pub use mechanism::{
 pub use newton::Newton;
 pub use newton_raphson::{Iterate, newton_raphson, newton_raphson_watched};
 pub use phase::{Phase, Speed};
+pub use resolution::IllScaled;
 pub use safeguarded::Safeguarded;
 pub use saved::Saved;
 pub use scalar::{Real, Scalar};

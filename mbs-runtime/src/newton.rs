@@ -12,6 +12,14 @@ pub(crate) const ITERATIONS: u32 = 30;
 /// Iterations that are granted to fall without question; a residual that does not halve after them is rounding.
 const FREE_ITERATIONS: u32 = 3;
 
+/// Iterations in a row that may bring the residual no [`FALL`] below where it last fell so far. Capped steps may rise
+/// over a ridge; a cycle of two points, into which they fall from far away, creeps at best.
+const FRUITLESS_ITERATIONS: f64 = 4.0;
+
+/// A residual that counts as a fall, over the one before. At half a radian a step an angle 20 rad away has it
+/// within four.
+const FALL: f64 = 0.9;
+
 /// Largest change of an angle in one step (rad). With it Newton's method adds turns and changes assemblies far
 /// less often than without.
 const LARGEST_ANGLE_STEP: f64 = 0.5;
@@ -125,6 +133,7 @@ pub(crate) fn newton<T: Scalar, const K: usize, F: Factorization<T, K>>(
     let mut converged = T::mask(false);
     let mut open = active;
     let mut last_ratio = one;
+    let (mut least_ratio, mut fruitless) = (T::constant(f64::MAX), T::constant(0.0));
     let mut tolerances = required(&block.row_scales, &x, &jacobian);
     for iteration in 0..iterations {
         let finite = all_finite(&residuals, &jacobian);
@@ -136,7 +145,10 @@ pub(crate) fn newton<T: Scalar, const K: usize, F: Factorization<T, K>>(
             converged = converged | (open & finite & stalled & within(&residuals, &tolerances, &allowance));
         }
         last_ratio = ratio;
-        open = open & finite & !converged;
+        let fell = ratio.less(T::constant(FALL) * least_ratio);
+        least_ratio = T::select(fell, ratio, least_ratio);
+        fruitless = T::select(fell, T::constant(0.0), fruitless + one);
+        open = open & finite & !converged & !T::constant(FRUITLESS_ITERATIONS).less(fruitless);
         if T::all(!open) {
             break;
         }
@@ -238,6 +250,7 @@ pub(crate) fn select<T: Scalar, const K: usize>(mask: T::Mask, yes: &[T; K], no:
 
 #[cfg(test)]
 mod tests {
+    extern crate std;
     use super::*;
     use crate::{Direct1, Direct2, Lu};
 
@@ -264,6 +277,21 @@ mod tests {
         });
         assert_eq!((x, outcome), ([0.0], [Outcome::Converged]));
         assert_eq!((farthest, newton.diagnosis().evaluations), (0.5, 21));
+    }
+
+    #[test]
+    fn a_cycle_of_two_points_is_left_after_a_few_iterations() {
+        // x³ − 2x + 2: Newton's method goes from 0 to 1 and back; the root is −1.769.
+        let cubic = |x: &[f64; 1]| ([x[0].powi(3) - 2.0 * x[0] + 2.0], [[3.0 * x[0] * x[0] - 2.0]]);
+        let mut visited = std::vec::Vec::new();
+        let (_, [outcome]) = Newton::new(2.0).solve::<1, Direct1<f64>>(&block(false), [0.0], |x| {
+            visited.push(x[0]);
+            cubic(x)
+        });
+        let cycle = visited.iter().take_while(|x| x.fract() == 0.0).count();
+        assert!(cycle <= 8, "{visited:?}");
+        // Levenberg–Marquardt goes down from there, to the root or to the least residual at √(2/3).
+        assert!(outcome == Outcome::Converged || visited.len() < 160, "{visited:?}");
     }
 
     #[test]

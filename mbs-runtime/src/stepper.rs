@@ -234,6 +234,15 @@ impl<S: Kinematic<R, N>, R: Real, const N: usize> Stepper<S, R, N> {
         self.state.passages
     }
 
+    /// Signature of the assembly: the signs of the blocks' determinants, one bit a block.
+    ///
+    /// Assemblies that meet in a singular position have different ones there; a passage changes it (see
+    /// [`passages`](Self::passages)). The same mechanism in the same assembly has the same one, whatever the units and
+    /// the guess.
+    pub fn signature(&self) -> u64 {
+        self.state.orientation
+    }
+
     /// What the last position cost.
     pub fn statistics(&self) -> Statistics {
         self.state.statistics

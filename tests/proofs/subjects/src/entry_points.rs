@@ -223,6 +223,10 @@ entry_points! {
     fn stop[S: Kinematic<R, N>, R: Real, const N: usize](stepper: &Stepper<S, R, N>, t: R) -> Option<(R, R)> {
         stepper.stop_towards(t).map(|stop| (stop.reachable, stop.refused))
     }
+    /// A length too small beside the rest.
+    fn ill_scaled[S: Kinematic<R, N>, R: Real, const N: usize](stepper: &Stepper<S, R, N>) -> Option<f64> {
+        stepper.ill_scaled().map(|found| found.resolution)
+    }
     /// Where a variable stops.
     fn stop_of[S: Kinematic<R, N>, R: Real, const N: usize](
         stepper: &Stepper<S, R, N>, index: usize, value: R,

@@ -84,6 +84,7 @@ pub fn exercise_solvers<S: Kinematic<R, N> + Copy, R: Real, const N: usize>(
     black_box(entry::change(&mut stepper, black_box(variable), value));
     black_box(entry::sweep(&mut stepper, black_box(R::constant(0.1)), black_box(10))?);
     black_box(entry::frame(&stepper));
+    black_box(entry::ill_scaled(&stepper));
     black_box(entry::stop(&stepper, black_box(R::constant(1.0))));
     black_box(entry::stop_of(&stepper, black_box(0), black_box(R::constant(1e3))));
 
