@@ -21,8 +21,17 @@ mod emit;
 mod equations;
 mod model;
 mod program;
-#[cfg(test)]
-mod random;
+#[cfg(any(test, feature = "random"))]
+#[cfg_attr(
+    not(test),
+    allow(
+        clippy::expect_used,
+        clippy::indexing_slicing,
+        clippy::unreachable,
+        reason = "texts of tests: what does not fit must stop the test"
+    )
+)]
+pub mod random;
 mod structure;
 mod symbolic;
 mod syntax;

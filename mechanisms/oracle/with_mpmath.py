@@ -78,7 +78,7 @@ class Series:
         x0, x1, x2 = self.v
         f0, f1, f2, f3 = derivatives(key, f, x0)
         v = [f0, f1 * x1, f2 * x1 * x1 + f1 * x2]
-        s0, s1, s2, s3 = size([f0, f1, f2, f3])
+        s0, s1, s2, s3 = TERMS.get(key, size)([f0, f1, f2, f3])
         _, s, a = size(self.v)
         b0, b1, b2 = self.b
         b = [
@@ -107,6 +107,17 @@ class Series:
 
 def size(numbers):
     return [abs(float(x)) for x in numbers]
+
+
+def terms_of_tanh(derivatives):
+    """The slope of tanh is emitted as 1 - tanh²: where tanh saturates, it has the rounding of 1."""
+    t = abs(float(derivatives[0]))
+    slope = 1 + t * t
+    return [t, slope, 2 * t * slope, (2 * slope + 4 * t * t) * slope]
+
+
+# Absolute values that are summed up in a function and its derivatives, where they are more than the results'.
+TERMS = {("tanh",): terms_of_tanh}
 
 
 # Derivatives by function and place: at one state many lines pass through the same values.

@@ -47,9 +47,13 @@ impl Jet {
 
     /// The chain rule from the outer function's value and first three derivatives.
     fn chain(self, f: [f64; 4]) -> Self {
+        self.chain_of_terms(f, f.map(f64::abs))
+    }
+
+    /// The same where a derivative is a sum of larger terms; `abs` sums their absolute values.
+    fn chain_of_terms(self, f: [f64; 4], abs: [f64; 4]) -> Self {
         let [_, x1, x2] = self.v;
         let [b0, b1, b2] = self.b;
-        let abs = f.map(f64::abs);
         Jet {
             v: [f[0], f[1] * x1, f[2] * x1 * x1 + f[1] * x2],
             b: [
@@ -105,8 +109,14 @@ impl Jet {
             Unary::Sinh => self.chain([x.sinh(), x.cosh(), x.sinh(), x.cosh()]),
             Unary::Cosh => self.chain([x.cosh(), x.sinh(), x.cosh(), x.sinh()]),
             Unary::Tanh => {
-                let (t, s) = (x.tanh(), 1.0 - x.tanh() * x.tanh());
-                self.chain([t, s, -2.0 * t * s, -2.0 * s * s + 4.0 * t * t * s])
+                // Where tanh saturates, its slope has the rounding of 1.
+                let (t, square) = (x.tanh(), x.tanh() * x.tanh());
+                let derivatives =
+                    |s: f64, sign: f64| [t, s, 2.0 * sign * t * s, (2.0 * sign * s + 4.0 * square) * s];
+                self.chain_of_terms(
+                    derivatives(1.0 - square, -1.0),
+                    derivatives(1.0 + square, 1.0).map(f64::abs),
+                )
             }
             Unary::Abs if x < 0.0 => self.signed().unary(Unary::Negate),
             Unary::Abs => self.signed(),

@@ -1,21 +1,27 @@
 //! The model's expressions in second-order Taylor arithmetic.
 
-use super::Random;
 use super::jet::Jet;
+use super::{ROUNDINGS, Random};
 use crate::model::expression::Node;
 use crate::model::{Model, VariableKind};
 
 /// Data of one evaluation, exact numbers all.
 pub struct State {
+    /// Coordinates: N.
     pub q: Vec<f64>,
+    /// Velocities: N.
     pub qd: Vec<f64>,
+    /// Accelerations: N.
     pub qdd: Vec<f64>,
+    /// Time (s).
     pub t: f64,
+    /// Parameters and inputs, component by component.
     pub variables: Vec<f64>,
 }
 
 impl State {
-    pub fn draw(model: &Model, random: &mut Random) -> Self {
+    /// Numbers within ±2, whatever the constraints say.
+    pub(super) fn draw(model: &Model, random: &mut Random) -> Self {
         let mut numbers = |count: usize| (0..count).map(|_| random.number()).collect::<Vec<_>>();
         let n = model.coordinates.len();
         State {
@@ -30,10 +36,23 @@ impl State {
 
 /// A number to be reproduced, and the bound on rounding in units of 2⁻⁵³.
 pub struct Expected {
+    /// The number.
     pub value: f64,
+    /// Sum of the absolute values that are rounded on the way.
     pub bound: f64,
     /// Whether rounding decides on which side of a kink it is computed.
     pub torn: bool,
+}
+
+impl Expected {
+    /// Error of `value` as a part of what rounding may do; `None` where rounding decides on the number itself.
+    pub fn error(&self, value: f64) -> Option<f64> {
+        if self.torn {
+            return None;
+        }
+        let error = (value - self.value).abs() / (ROUNDINGS * self.bound).max(f64::MIN_POSITIVE);
+        Some(if error.is_nan() { f64::INFINITY } else { error })
+    }
 }
 
 /// The line along which expressions are followed: how each leaf moves.

@@ -3,7 +3,7 @@
 use super::Random;
 
 /// A random text: scalar and vector coordinates, parameters, inputs with rates, `let`s, loops, drives, outputs.
-pub fn write(random: &mut Random) -> String {
+pub(super) fn write(random: &mut Random) -> String {
     let mut writer = Writer { random, names: Vec::new() };
     let scalars = 1 + writer.random.below(3) as usize;
     let mut text = String::from("pub mechanism Random;\nconst C: 1 = 1.25;\nconst N: 1 = 2;\n");

@@ -89,6 +89,7 @@ fn unary(g: &mut Graph, function: Unary, y: NodeId, a: NodeId, da: NodeId) -> Op
             g.multiply(slope, da)
         }
         Unary::Tanh => {
+            // Near ±1 the slope is small and has the rounding of 1; 1/cosh² has all its digits, and overflows.
             let square = g.multiply(y, y);
             let slope = g.subtract(one, square);
             g.multiply(slope, da)
