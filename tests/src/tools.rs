@@ -1,10 +1,11 @@
 //! The programs that proofs and benches run.
 
+use std::collections::BTreeMap;
 use std::ffi::OsStr;
 use std::path::Path;
 use std::process::{Command, Output};
 
-const BINUTILS: &str = "install a C compiler and binutils (Debian, Ubuntu: package `build-essential`), or name them in CC and NM";
+const BINUTILS: &str = "install a C compiler and binutils (Debian, Ubuntu: package `build-essential`), or name them in CC, NM and OBJDUMP";
 
 /// What `command` says.
 ///
@@ -54,6 +55,50 @@ pub fn symbols(program_file: &Path) -> Vec<(char, String)> {
         Some((words.next()?.chars().next()?, name))
     };
     listed.lines().filter_map(symbol).collect()
+}
+
+/// Functions of an object file or archive that `wanted` picks by name: of each its instructions as bytes, and behind
+/// an instruction what the linker puts into it: offset within the function, kind of reference, and the target where
+/// the compiler's naming does not hide it.
+///
+/// # Panics
+/// Where there is no `objdump`, with the cure, or it does not understand the file.
+pub fn disassembly(file: &Path, wanted: fn(&str) -> bool) -> BTreeMap<String, Vec<String>> {
+    let mut command = program("OBJDUMP", "objdump");
+    let listed = output(command.args(["--disassemble", "--reloc"]).arg(file), BINUTILS);
+    let listed = listed.unwrap_or_else(|complaint| panic!("{complaint}"));
+    let mut functions: BTreeMap<String, Vec<String>> = BTreeMap::new();
+    let mut current = None;
+    for line in listed.lines() {
+        if let Some(head) = line.strip_suffix(">:") {
+            let name = head.split_once('<').map_or("", |(_, name)| name).to_owned();
+            current = wanted(&name).then(|| functions.entry(name).or_default());
+        } else if let Some(function) = &mut current {
+            function.extend(instruction(line));
+        }
+    }
+    functions
+}
+
+/// Bytes of an instruction, or a reference of one; the rest of the listing is for readers.
+fn instruction(line: &str) -> Option<String> {
+    let mut columns = line.split('\t').map(str::trim).filter(|column| !column.is_empty());
+    let (first, second) = (columns.next()?, columns.next());
+    let (offset, rest) = first.split_once(':')?;
+    u64::from_str_radix(offset, 16).ok()?;
+    match rest.trim() {
+        "" => Some(second?.to_owned()),
+        kind => {
+            // Mangled names and the functions' numbers in the names of their constants differ between builds.
+            let target = second.filter(|target| !target.contains("_R") && !target.contains("_ZN"));
+            let target = target.unwrap_or("a function");
+            let constant = target.strip_prefix(".LCPI").and_then(|label| label.split_once('_'));
+            Some(match constant {
+                Some((_, number)) => format!("{offset}: {kind} constant {number}"),
+                None => format!("{offset}: {kind} {target}"),
+            })
+        }
+    }
 }
 
 fn program(variable: &str, usual: &str) -> Command {

@@ -1,0 +1,84 @@
+//! What a scene leaves out leaves no instruction: the machine code of its functions is that of the text that never
+//! mentioned it, byte by byte.
+//!
+//! The library is `tests/proofs/scenes`, built three times. ELF alone.
+#![cfg(target_os = "linux")]
+#![forbid(unsafe_code)]
+
+use std::collections::BTreeMap;
+
+use mbs_tests::{proofs::Workshop, tools};
+
+/// Every function of the library; all emitted ones but the copy of the whole struct.
+const FUNCTIONS: [&str; 19] = [
+    "parameters",
+    "guess",
+    "coordinate_scales",
+    "row_scales",
+    "position",
+    "phi",
+    "phi_q",
+    "phi_t",
+    "phi_tt",
+    "phi_qt_qd",
+    "gamma",
+    "branches",
+    "outputs",
+    "evaluate",
+    "solve_blocks",
+    "factorize",
+    "solve_linear",
+    "get",
+    "set",
+];
+
+/// Machine code: functions by name, and what they call of the machine and of the runtime, which has no name that
+/// three builds agree on.
+#[derive(Debug, PartialEq)]
+struct Code {
+    functions: BTreeMap<String, Vec<String>>,
+    called: Vec<Vec<String>>,
+}
+
+const PREFIX: &str = "scene_";
+
+fn code(feature: &str) -> Code {
+    let workshop = Workshop::new(env!("CARGO_TARGET_TMPDIR"), "proofs", "");
+    let features = format!("--features={feature}");
+    let arguments = ["--profile=freestanding", "--package=proof-scenes", &features];
+    let library = workshop
+        .build(&arguments, "freestanding/libproof_scenes.a", &format!("scenes_{feature}.a"))
+        .unwrap_or_else(|complaint| panic!("the library does not compile:\n{complaint}"));
+    let own = |name: &str| {
+        name.starts_with(PREFIX) || ["proof_scenes", "mbs_runtime"].iter().any(|part| name.contains(part))
+    };
+    let listed = tools::disassembly(&library, own);
+    let (functions, called): (BTreeMap<_, _>, BTreeMap<_, _>) =
+        listed.into_iter().partition(|(name, _)| name.starts_with(PREFIX));
+    let mut called: Vec<_> = called.into_values().collect();
+    called.sort();
+    Code { functions, called }
+}
+
+#[test]
+fn a_scene_without_an_effect_is_the_machine_code_of_the_text_without_it() {
+    let (alone, without, with) = (code("alone"), code("without"), code("with"));
+    let names: Vec<_> = FUNCTIONS.map(|name| format!("{PREFIX}{name}")).into();
+    assert!(names.iter().all(|name| alone.functions.get(name).is_some_and(|code| !code.is_empty())));
+    for (name, expected) in &alone.functions {
+        assert_eq!(&without.functions[name], expected, "`{name}`");
+    }
+    assert!(!alone.called.is_empty());
+    assert_eq!(without, alone);
+    // The control: the effect is in the code where it is in the scene.
+    let same: Vec<_> = names.iter().filter(|name| with.functions[*name] == alone.functions[*name]).collect();
+    assert!(same.is_empty(), "the effect leaves no trace in {same:?}");
+    let lines = |code: &Code| code.functions.values().chain(&code.called).map(Vec::len).sum::<usize>();
+    println!(
+        "{} functions and {} that they call: {} lines of machine code without the effect, {} with it",
+        alone.functions.len(),
+        alone.called.len(),
+        lines(&alone),
+        lines(&with)
+    );
+}
