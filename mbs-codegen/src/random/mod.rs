@@ -13,7 +13,7 @@ mod text;
 use crate::diagnostics::Diagnostics;
 use crate::equations::Equations;
 use crate::model::Model;
-use crate::model::scenes::Scenes;
+use crate::model::scenes::{Scene, Scenes};
 use crate::structure::Structure;
 use crate::{equations, structure, syntax};
 
@@ -56,16 +56,22 @@ struct Understood {
     structure: Structure,
 }
 
-/// Now and then a row says nothing, `q2 == q2`, and is refused.
+/// The first scene; now and then a row says nothing, `q2 == q2`, and is refused.
 fn understand(text: &str) -> Option<Understood> {
+    understand_scenes(text).into_iter().next().flatten()
+}
+
+fn understand_scenes(text: &str) -> Vec<Option<Understood>> {
     let mut diagnostics = Diagnostics::default();
     let read = syntax::read(text.parse().expect("tokens"), &mut diagnostics).expect("a header");
     let Scenes { scenes, .. } = Scenes::resolve(&read, &mut diagnostics);
     assert!(diagnostics.is_empty(), "{text}\n{}", diagnostics.to_text());
-    let model = scenes.into_iter().next().expect("a scene").model;
-    let mut equations = equations::derive(&model);
-    let structure = structure::analyse(&model, &mut equations, &mut diagnostics)?;
-    Some(Understood { model, equations, structure })
+    let up_to_structure = |scene: Scene| {
+        let mut equations = equations::derive(&scene.model);
+        let structure = structure::analyse(&scene.model, &mut equations, &mut Diagnostics::default())?;
+        Some(Understood { model: scene.model, equations, structure })
+    };
+    scenes.into_iter().map(up_to_structure).collect()
 }
 
 fn states(model: &Model, seed: u64) -> Vec<State> {
@@ -92,15 +98,53 @@ impl Random {
 
 #[test]
 fn random_texts_compute_what_second_order_taylor_arithmetic_computes() {
-    let (mut compared, mut refused, mut worst) = (0_usize, 0_u64, 0.0_f64);
+    let mut tally = Tally::default();
     for seed in 0..TEXTS {
         let text = text(seed);
-        let Some(Understood { model, equations, structure }) = understand(&text) else {
-            refused += 1;
-            continue;
+        tally.compare(understand(&text), seed, STATES, &text);
+    }
+    tally.report(TEXTS);
+    assert!(tally.compared > 1000 * TEXTS as usize, "{} values", tally.compared);
+}
+
+/// Texts with scenes, three each.
+#[cfg(test)]
+const TEXTS_WITH_SCENES: u64 = 300;
+
+#[test]
+fn each_scene_of_random_texts_computes_what_second_order_taylor_arithmetic_computes() {
+    let mut tally = Tally::default();
+    for seed in 0..TEXTS_WITH_SCENES {
+        let text = text::write_with_scenes(&mut Random(seed));
+        let scenes = understand_scenes(&text);
+        assert_eq!(scenes.len(), 3, "{text}");
+        for scene in scenes {
+            tally.compare(scene, seed, STATES / 3, &text);
+        }
+    }
+    tally.report(3 * TEXTS_WITH_SCENES);
+    assert!(tally.compared > 300 * TEXTS_WITH_SCENES as usize, "{} values", tally.compared);
+}
+
+/// What was compared so far.
+#[cfg(test)]
+#[derive(Default)]
+struct Tally {
+    compared: usize,
+    refused: u64,
+    /// Largest error as a part of what is allowed.
+    worst: f64,
+}
+
+#[cfg(test)]
+impl Tally {
+    fn compare(&mut self, understood: Option<Understood>, seed: u64, count: usize, text: &str) {
+        let Some(Understood { model, equations, structure }) = understood else {
+            self.refused += 1;
+            return;
         };
         let program = crate::program::order(&equations, &structure);
-        for state in states(&model, seed) {
+        for state in states(&model, seed).into_iter().take(count) {
             let emitted = interpreter::run(&equations, &program, &state);
             let expected = oracle::run(&model, &state);
             assert_eq!(emitted.len(), expected.len(), "{text}");
@@ -111,11 +155,15 @@ fn random_texts_compute_what_second_order_taylor_arithmetic_computes() {
                     error <= 1.0,
                     "seed {seed}: {name}: {value} instead of {instead}, {error} of what is allowed\n{text}"
                 );
-                worst = worst.max(error);
-                compared += 1;
+                self.worst = self.worst.max(error);
+                self.compared += 1;
             }
         }
     }
-    println!("{compared} values of {TEXTS} texts compared, largest error {worst:.2e} of what is allowed");
-    assert!(refused < TEXTS / 50 && compared > 1000 * TEXTS as usize, "{refused} texts refused");
+
+    fn report(&self, texts: u64) {
+        let Tally { compared, refused, worst } = self;
+        println!("{compared} values of {texts} texts compared, largest error {worst:.2e} of what is allowed");
+        assert!(*refused < texts / 50, "{refused} refused");
+    }
 }

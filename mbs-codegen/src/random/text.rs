@@ -4,6 +4,35 @@ use super::Random;
 
 /// A random text: scalar and vector coordinates, parameters, inputs with rates, `let`s, loops, drives, outputs.
 pub(super) fn write(random: &mut Random) -> String {
+    begin(random).0
+}
+
+/// A random text with two effects that give the same names different meanings, before the rest or behind it, and three scenes.
+#[cfg(test)]
+pub(super) fn write_with_scenes(random: &mut Random) -> String {
+    let (text, mut writer) = begin(random);
+    let (header, common) = text.split_once('\n').unwrap_or((&text, ""));
+    writer.names.extend(["r", "own"].map(String::from));
+    let mut effects = String::new();
+    let owns =
+        [format!("param own: 1 = {:?};", writer.random.number()), format!("let own = {};", writer.common(2))];
+    for (effect, own) in ["one", "two"].iter().zip(owns) {
+        effects += &format!(
+            "effect {effect} {{ coord r: 1 = 0.1; {own} drive extra: r*(2.5 + sin(own)) == {}; out e: 1 = {}; }}\n",
+            writer.common(2),
+            writer.scalar(3)
+        );
+    }
+    effects += &format!("effect seen {{ out also: 1 = {}; }}\n", writer.common(3));
+    let scenes = "scene First = one;\nscene Second = two + seen;\nscene Third = seen;\n";
+    match writer.random.below(2) {
+        0 => format!("{header}\n{effects}{common}{scenes}"),
+        _ => format!("{header}\n{scenes}{common}{effects}"),
+    }
+}
+
+/// The text, and the writer that knows its names.
+fn begin(random: &mut Random) -> (String, Writer<'_>) {
     let mut writer = Writer { random, names: Vec::new() };
     let scalars = 1 + writer.random.below(3) as usize;
     let mut text = String::from("pub mechanism Random;\nconst C: 1 = 1.25;\nconst N: 1 = 2;\n");
@@ -46,7 +75,7 @@ pub(super) fn write(random: &mut Random) -> String {
     };
     text += &format!("branch open: {} > {};\n", writer.scalar(3), writer.scalar(2));
     text += &format!("out y: 1 = {};\nout z: [1; 2] = {};\n", writer.scalar(4), writer.vector(3));
-    text
+    (text, writer)
 }
 
 struct Writer<'a> {
@@ -97,6 +126,15 @@ impl Writer<'_> {
             34 => format!("det([[{a}, {b}, 1], [p0, {a}, 2], [C, 3, {b}]])"),
             _ => format!("(rot({a})*[{b}, p2])[{}]", self.random.below(2)),
         }
+    }
+
+    /// A number of the names that every scene has.
+    #[cfg(test)]
+    fn common(&mut self, depth: u32) -> String {
+        let own = self.names.split_off(self.names.len() - 2);
+        let value = self.scalar(depth);
+        self.names.extend(own);
+        value
     }
 
     fn vector(&mut self, depth: u32) -> String {
