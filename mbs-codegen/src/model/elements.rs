@@ -251,7 +251,7 @@ impl Resolver<'_> {
                 work.scalar(&on, "a torque", on.span)?;
             }
             let fits = |quantity| quantity == Quantity::Any || quantity == Quantity::Known(along);
-            for item in on.items.iter().filter(|item| !fits(item.quantity)) {
+            if let Some(item) = on.items.iter().find(|item| !fits(item.quantity)) {
                 let message = match kind {
                     Load::Force => {
                         format!("a force acts on a point, not on a `{}`", item.quantity.dimension())
