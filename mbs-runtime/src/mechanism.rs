@@ -1,6 +1,6 @@
 //! What the macro emits: a mechanism as functions of its coordinates.
 
-use crate::{Limit, Outcome, Scalar};
+use crate::{Limit, Outcome, Roots, Scalar};
 
 /// The scene of a text with all its effects, which every mechanism is in unless a type says otherwise.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -252,6 +252,21 @@ pub trait BlockSolver<T: Scalar> {
         _holds: impl FnMut(&[T; K]) -> T::Mask,
     ) -> ([T; K], T::Lanes<Outcome>) {
         self.solve::<K, F>(block, x, evaluate)
+    }
+
+    /// As [`solve_branched`](Self::solve_branched), for a block of which `roots` computes both positions, near a point.
+    ///
+    /// A solver that starts next to the solution need not ask for them, and this default does not.
+    #[inline(always)]
+    fn solve_closed<const K: usize, F: Factorization<T, K>>(
+        &mut self,
+        block: &Block<T, K>,
+        x: [T; K],
+        evaluate: impl FnMut(&[T; K]) -> ([T; K], [[T; K]; K]),
+        holds: impl FnMut(&[T; K]) -> T::Mask,
+        _roots: impl FnOnce(&[T; K]) -> Roots<T, K>,
+    ) -> ([T; K], T::Lanes<Outcome>) {
+        self.solve_branched::<K, F>(block, x, evaluate, holds)
     }
 }
 

@@ -1,6 +1,7 @@
 //! Levenberg–Marquardt, the method for far starts: assembly, and the rescue of the next position.
 
 use crate::diagnosis::{Diagnosis, Worst, outer_rounding, required};
+use crate::dyad::{Roots, closed, taking};
 use crate::newton::{Attempt, ITERATIONS, all_finite, capped, newton, select, within};
 use crate::starts::displaced;
 use crate::{Block, BlockSolver, Factorization, Outcome, Real, Scalar};
@@ -69,31 +70,66 @@ impl<T: Scalar> BlockSolver<T> for Safeguarded<T> {
         mut evaluate: impl FnMut(&[T; K]) -> ([T; K], [[T; K]; K]),
         mut holds: impl FnMut(&[T; K]) -> T::Mask,
     ) -> ([T; K], T::Lanes<Outcome>) {
-        let (mut found, plain) = attempt::<T, K, F>(block, x, T::mask(true), self.extent, &mut evaluate);
-        let mut done = found.converged & holds(&found.x);
-        let plain = plain && T::all(done);
-        for start in 1..=OTHER_STARTS {
-            if T::all(done) {
-                break;
-            }
-            // A solution of another assembly is a better centre than a poor guess.
-            let centre = select(found.converged, &found.x, &x);
-            let from = displaced(&centre, &block.angles, &block.coordinate_scales, start, OTHER_STARTS);
-            let (next, _) = attempt::<T, K, F>(block, from, !done, self.extent, &mut evaluate);
-            let right = next.converged & holds(&next.x) & !done;
-            let nearer = !next.converged & !found.converged & next.worst.ratio.less(found.worst.ratio);
-            let taken = right | (!done & !found.converged & (next.converged | nearer));
-            found = Attempt {
-                x: select(taken, &next.x, &found.x),
-                converged: found.converged | next.converged,
-                worst: found.worst.replaced(taken, next.worst),
-                evaluations: found.evaluations.saturating_add(next.evaluations),
-            };
-            done = done | right;
-        }
+        let (found, plain) =
+            searched::<T, K, F>(block, x, T::mask(true), self.extent, &mut evaluate, &mut holds);
         self.diagnosis.record(found.evaluations, !plain, found.worst, found.converged);
         (found.x, found.outcomes())
     }
+
+    /// From both positions that the formula gives: the one in which the branches hold, the nearer one where both do.
+    /// Where there is none, the least residual from where it is nearest to closing, at once.
+    fn solve_closed<const K: usize, F: Factorization<T, K>>(
+        &mut self,
+        block: &Block<T, K>,
+        x: [T; K],
+        mut evaluate: impl FnMut(&[T; K]) -> ([T; K], [[T; K]; K]),
+        mut holds: impl FnMut(&[T; K]) -> T::Mask,
+        roots: impl FnOnce(&[T; K]) -> Roots<T, K>,
+    ) -> ([T; K], T::Lanes<Outcome>) {
+        let (extent, roots) = (self.extent, roots(&x));
+        let (mut found, missed) = closed::<T, K, F>(block, &x, extent, &mut evaluate, &mut holds, &roots);
+        let formula = T::all(!missed);
+        if !formula {
+            let (search, _) = searched::<T, K, F>(block, x, missed, extent, &mut evaluate, &mut holds);
+            found = taking(found, missed, &search);
+        }
+        self.diagnosis.record(found.evaluations, !formula, found.worst, found.converged);
+        (found.x, found.outcomes())
+    }
+}
+
+/// The search of [`Safeguarded`] in the lanes of `active`, and whether its first start was enough.
+fn searched<T: Scalar, const K: usize, F: Factorization<T, K>>(
+    block: &Block<T, K>,
+    x: [T; K],
+    active: T::Mask,
+    extent: T,
+    evaluate: &mut impl FnMut(&[T; K]) -> ([T; K], [[T; K]; K]),
+    holds: &mut impl FnMut(&[T; K]) -> T::Mask,
+) -> (Attempt<T, K>, bool) {
+    let (mut found, plain) = attempt::<T, K, F>(block, x, active, extent, evaluate);
+    let mut done = !active | (found.converged & holds(&found.x));
+    let plain = plain && T::all(done);
+    for start in 1..=OTHER_STARTS {
+        if T::all(done) {
+            break;
+        }
+        // A solution of another assembly is a better centre than a poor guess.
+        let centre = select(found.converged, &found.x, &x);
+        let from = displaced(&centre, &block.angles, &block.coordinate_scales, start, OTHER_STARTS);
+        let (next, _) = attempt::<T, K, F>(block, from, !done, extent, evaluate);
+        let right = next.converged & holds(&next.x) & !done;
+        let nearer = !next.converged & !found.converged & next.worst.ratio.less(found.worst.ratio);
+        let taken = right | (!done & !found.converged & (next.converged | nearer));
+        found = Attempt {
+            x: select(taken, &next.x, &found.x),
+            converged: found.converged | next.converged,
+            worst: found.worst.replaced(taken, next.worst),
+            evaluations: found.evaluations.saturating_add(next.evaluations),
+        };
+        done = done | right;
+    }
+    (found, plain)
 }
 
 /// One start in the lanes of `active`, and whether Levenberg–Marquardt alone was enough.

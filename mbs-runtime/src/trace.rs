@@ -1,6 +1,6 @@
 //! Watching a solver at work: each iterate of each block, for teaching and for diagnosis.
 
-use crate::{Block, BlockSolver, Factorization, Outcome, Scalar};
+use crate::{Block, BlockSolver, Factorization, Outcome, Roots, Scalar};
 
 /// Hears what a [`Traced`] solver does.
 pub trait Trace<T: Scalar> {
@@ -73,6 +73,26 @@ impl<T: Scalar, S: BlockSolver<T>, L: Trace<T>> BlockSolver<T> for Traced<'_, S,
             (residuals, jacobian)
         };
         let (x, outcome) = self.solver.solve_branched::<K, F>(block, x, watched, holds);
+        self.trace.end(&outcome);
+        (x, outcome)
+    }
+
+    fn solve_closed<const K: usize, F: Factorization<T, K>>(
+        &mut self,
+        block: &Block<T, K>,
+        x: [T; K],
+        mut evaluate: impl FnMut(&[T; K]) -> ([T; K], [[T; K]; K]),
+        holds: impl FnMut(&[T; K]) -> T::Mask,
+        roots: impl FnOnce(&[T; K]) -> Roots<T, K>,
+    ) -> ([T; K], T::Lanes<Outcome>) {
+        self.trace.block(block);
+        let trace = &mut *self.trace;
+        let watched = |x: &[T; K]| {
+            let (residuals, jacobian) = evaluate(x);
+            trace.iterate(block, x, &residuals, &jacobian);
+            (residuals, jacobian)
+        };
+        let (x, outcome) = self.solver.solve_closed::<K, F>(block, x, watched, holds, roots);
         self.trace.end(&outcome);
         (x, outcome)
     }

@@ -7,6 +7,7 @@ use super::code::lets;
 use super::scope::{Scope, number};
 use crate::equations::Equations;
 use crate::program::{BlockProgram, Method, Program, System};
+use crate::structure::dyad::Dyad;
 use crate::symbolic::NodeId;
 
 /// Body of `solve_blocks`.
@@ -21,13 +22,17 @@ pub fn solve(equations: &Equations, program: &Program, scope: &Scope<'_>) -> Str
                 }
             }
             Method::Newton(system) => {
-                let System { section, phi, phi_q, branches, branch_section } = system.as_ref();
+                let System { section, phi, phi_q, branches, branch_section, dyad } = system.as_ref();
                 let inner = Scope { unknowns: &block.coordinates, ..*scope };
                 let starts = list(block.coordinates.iter().map(|c| format!("__q[{c}]")));
                 let (size, kind) = (block.rows.len(), factorization(block.rows.len()));
                 let description = description(equations, block, scope);
-                let method = if branches.is_empty() { "solve" } else { "solve_branched" };
-                let call = format!("let (__x, __block) = __solver.{method}::<{size}, {kind}>");
+                let method = match (dyad, branches.is_empty()) {
+                    (Some(_), _) => format!("solve_closed::<{size}, {kind}>"),
+                    (None, true) => format!("solve::<{size}, {kind}>"),
+                    (None, false) => format!("solve_branched::<{size}, {kind}>"),
+                };
+                let call = format!("let (__x, __block) = __solver.{method}");
                 let _ = writeln!(text, "{call}(&{description}, {starts}, |__x| {{");
                 lets(section, &inner, &mut text);
                 let residuals = list(phi.iter().map(|id| inner.operand(*id)));
@@ -39,6 +44,13 @@ pub fn solve(equations: &Equations, program: &Program, scope: &Scope<'_>) -> Str
                     let zero = number(0.0);
                     let holds = branches.iter().map(|id| format!("T::less({zero}, {})", inner.operand(*id)));
                     let _ = writeln!(text, "{}\n}}", holds.collect::<Vec<_>>().join(" & "));
+                } else if dyad.is_some() {
+                    text += ", |_| T::mask(true)\n";
+                }
+                if let Some((dyad, section)) = dyad {
+                    text += ", |__near| {\n";
+                    lets(section, scope, &mut text);
+                    let _ = writeln!(text, "{}\n}}", formula(dyad, scope));
                 }
                 text += ");\n";
                 for (index, coordinate) in block.coordinates.iter().enumerate() {
@@ -49,6 +61,39 @@ pub fn solve(equations: &Equations, program: &Program, scope: &Scope<'_>) -> Str
         }
     }
     text + "__outcome"
+}
+
+/// Both positions of `Dyad::… { … }` or `Single::… { … }` with its coefficients.
+fn formula(dyad: &Dyad, scope: &Scope<'_>) -> String {
+    let vector = |c: &[NodeId; 2]| list(c.iter().map(|id| scope.operand(*id)));
+    let matrix = |a: &[[NodeId; 2]; 2]| list(a.iter().map(vector));
+    let formula = match dyad {
+        Dyad::Bars { a, b, c, unknowns } => {
+            let unknowns =
+                list(unknowns.iter().map(|row| list(row.iter().map(|entry| format!("{entry}.0")))));
+            let (a, b, c) = (matrix(a), matrix(b), vector(c));
+            format!("__mbs::Dyad::Bars {{ a: {a}, b: {b}, c: {c}, unknowns: {unknowns} }}")
+        }
+        Dyad::Slide { a, b, c, angle_first } => {
+            let (a, b, c) = (matrix(a), vector(b), vector(c));
+            format!("__mbs::Dyad::Slide {{ a: {a}, b: {b}, c: {c}, angle_first: {angle_first} }}")
+        }
+        Dyad::Telescope { a, b, c, angle_first } => {
+            let (a, b, c) = (matrix(a), matrix(b), vector(c));
+            format!("__mbs::Dyad::Telescope {{ a: {a}, b: {b}, c: {c}, angle_first: {angle_first} }}")
+        }
+        Dyad::Circles { rows } => {
+            let rows = list(rows.iter().map(|row| list(row.iter().map(|id| scope.operand(*id)))));
+            format!("__mbs::Dyad::Circles {{ rows: {rows} }}")
+        }
+        Dyad::Angle { a, c } => {
+            format!("__mbs::Single::Angle {{ a: {}, c: {} }}", vector(a), scope.operand(*c))
+        }
+        Dyad::Length { row } => {
+            format!("__mbs::Single::Length {{ row: {} }}", list(row.iter().map(|id| scope.operand(*id))))
+        }
+    };
+    formula + ".roots(__near)"
 }
 
 /// `Block { … }` with its share of the metric.

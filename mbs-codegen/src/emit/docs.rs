@@ -5,6 +5,7 @@ use crate::model::dynamics::State;
 use crate::model::{Model, Output};
 use crate::program::{Method, Operations, Program};
 use crate::structure::Structure;
+use crate::structure::dyad::Dyad;
 use crate::symbolic::{NodeId, Stage};
 
 /// Lines that follow the text's own doc comment.
@@ -161,6 +162,10 @@ fn order(model: &Model, structure: &Structure, lines: &mut Vec<String>) {
             .collect();
         let how = match (&block.explicit, block.rows.len()) {
             (Some(_), _) => "explicit".into(),
+            (None, size @ 1..=2) if block.dyad.is_some() => {
+                let name = block.dyad.as_ref().map_or("", Dyad::name);
+                format!("{name}: assembled from both its positions; Newton, {size} × {size} in closed form")
+            }
             (None, size @ 1..=3) => format!("Newton, {size} × {size} in closed form"),
             (None, size) => format!("Newton, {size} × {size} by pivoted LU"),
         };

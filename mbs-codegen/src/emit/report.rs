@@ -4,6 +4,7 @@ use crate::equations::Equations;
 use crate::model::Model;
 use crate::program::{Method, Operations, Program, Section};
 use crate::structure::Structure;
+use crate::structure::dyad::Dyad;
 use crate::symbolic::Stage;
 
 /// Sparsity, matching and block-triangular order of a mechanism.
@@ -65,6 +66,8 @@ pub struct BlockReport {
     pub coordinates: Vec<usize>,
     /// Whether the coordinate is assigned, not solved for.
     pub explicit: bool,
+    /// The dyad that it is: both its positions are known as formulas.
+    pub dyad: Option<&'static str>,
 }
 
 /// Before: a square mechanism without faults. After: its structure, names and indices alone.
@@ -94,6 +97,7 @@ pub fn report(
         rows: block.rows.clone(),
         coordinates: block.coordinates.clone(),
         explicit: block.explicit.is_some(),
+        dyad: block.dyad.as_ref().map(Dyad::name),
     });
     let coordinates = model.coordinates.iter();
     StructureReport {

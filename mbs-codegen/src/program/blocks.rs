@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 
 use super::schedule::{Line, Section, schedule};
 use crate::equations::Equations;
+use crate::structure::dyad::Dyad;
 use crate::structure::{Block, Structure};
 use crate::symbolic::{Graph, Leaf, Node, NodeId};
 
@@ -47,6 +48,8 @@ pub struct System {
     pub branches: Vec<NodeId>,
     /// Executed at a solution to see whether the branches hold.
     pub branch_section: Section,
+    /// The formula of both positions, where the block is a dyad, and the section that computes its coefficients.
+    pub dyad: Option<(Dyad, Section)>,
 }
 
 /// All roots of all blocks, for the choice of what the parameter stage keeps.
@@ -131,7 +134,11 @@ fn newton(
     let section = schedule(graph, &roots, &known);
     let branch_section = schedule(graph, branches, &known);
     let branches = branches.to_vec();
-    (before, Method::Newton(Box::new(System { section, phi, phi_q, branches, branch_section })))
+    let dyad = block.dyad.clone().map(|dyad| {
+        let section = schedule(graph, &dyad.nodes(), &known);
+        (dyad, section)
+    });
+    (before, Method::Newton(Box::new(System { section, phi, phi_q, branches, branch_section, dyad })))
 }
 
 /// Residuals and Jacobian of a block.

@@ -1,8 +1,10 @@
 //! Sparsity → matching → block-triangular order; what is not square is reported by name.
 
+pub mod dyad;
 mod freedom;
 mod independent;
 mod matching;
+mod polynomial;
 mod triangular;
 
 use std::collections::BTreeSet;
@@ -12,6 +14,7 @@ use crate::equations::Equations;
 use crate::model::Model;
 use crate::symbolic::{Leaf, NodeId, substitute::substitute};
 
+use dyad::Dyad;
 use matching::Matching;
 
 /// The order in which the rows are solved.
@@ -35,6 +38,8 @@ pub struct Block {
     pub coordinates: Vec<usize>,
     /// The coordinate as a function of earlier ones, where the row gives it explicitly.
     pub explicit: Option<Explicit>,
+    /// The formula of both its positions, where it is a dyad.
+    pub dyad: Option<Dyad>,
 }
 
 /// A coordinate that its row gives explicitly.
@@ -68,6 +73,7 @@ pub fn analyse(model: &Model, equations: &mut Equations, diagnostics: &mut Diagn
             rows: Vec::new(),
             coordinates: vec![coordinate],
             explicit: None,
+            dyad: None,
         });
         missing_guesses(model, &all.collect::<Vec<_>>(), diagnostics);
         let matched = matching.of_row;
@@ -80,7 +86,8 @@ pub fn analyse(model: &Model, equations: &mut Equations, diagnostics: &mut Diagn
                 rows.iter().filter_map(|row| matching.of_row.get(*row).copied().flatten()).collect();
             coordinates.sort_unstable();
             let explicit = explicit(equations, &rows, &coordinates);
-            Block { rows, coordinates, explicit }
+            let dyad = if explicit.is_some() { None } else { dyad(equations, &rows, &coordinates) };
+            Block { rows, coordinates, explicit, dyad }
         })
         .collect::<Vec<_>>();
     missing_guesses(model, &blocks, diagnostics);
@@ -122,6 +129,22 @@ fn explicit(equations: &mut Equations, rows: &[usize], coordinates: &[usize]) ->
     let negative = g.negate(rest);
     let value = g.divide(negative, entry);
     Some(Explicit { value, coefficient })
+}
+
+/// A block of one or two rows as a formula of both its positions.
+fn dyad(equations: &mut Equations, rows: &[usize], coordinates: &[usize]) -> Option<Dyad> {
+    let phi = |row: usize| equations.rows.get(row).map(|row| row.phi);
+    match (rows, coordinates) {
+        (&[row], &[x]) => {
+            let residual = phi(row)?;
+            dyad::recognise_single(&mut equations.graph, residual, x)
+        }
+        (&[first, second], &[x, y]) => {
+            let residuals = [phi(first)?, phi(second)?];
+            dyad::recognise(&mut equations.graph, residuals, [x, y])
+        }
+        _ => None,
+    }
 }
 
 /// The rows that each coordinate stands in.

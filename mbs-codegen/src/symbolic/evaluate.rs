@@ -1,8 +1,6 @@
 //! Values of graphs: the definition of what a node means.
 
-use super::graph::{Binary, Unary};
-#[cfg(test)]
-use super::graph::{Graph, Leaf, Node, NodeId};
+use super::graph::{Binary, Graph, Leaf, Node, NodeId, Unary};
 
 /// A function of one number, the same on every host; the runtime's sine and cosine may differ in the last place.
 pub fn unary(function: Unary, a: f64) -> f64 {
@@ -55,7 +53,6 @@ pub fn binary(function: Binary, a: f64, b: f64) -> f64 {
 }
 
 /// Values of `roots` where the leaves have the values that `leaf` gives.
-#[cfg(test)]
 pub fn evaluate(graph: &Graph, roots: &[NodeId], leaf: impl Fn(Leaf) -> f64) -> Vec<f64> {
     let mut values = vec![f64::NAN; graph.len()];
     for id in graph.reachable(roots.iter().copied()) {

@@ -17,7 +17,7 @@
 ///
 /// Solved block after block:
 /// 1. `phi1` from `crank` (explicit)
-/// 2. `phi2`, `phi3` from `closure.0`, `closure.1` (Newton, 2 × 2 in closed form)
+/// 2. `phi2`, `phi3` from `closure.0`, `closure.1` (dyad of two bars: assembled from both its positions; Newton, 2 × 2 in closed form)
 /// 3. `x2` from `coupler_point.0` (explicit)
 /// 4. `y2` from `coupler_point.1` (explicit)
 ///
@@ -580,7 +580,7 @@ const _: () = {
             let __n17 = T::constant(0.1f64) * __n16;
             let __n24 = T::constant(0.1f64) * __n23;
             let (__x, __block) = __solver
-                .solve_branched::<
+                .solve_closed::<
                     2,
                     ::mbs_runtime::Direct2<T>,
                 >(
@@ -614,6 +614,22 @@ const _: () = {
                         let __n45 = __x[1] - __x[0];
                         let ([__n46], [_]) = T::sin_cos([__n45]);
                         T::less(T::constant(0.0f64), __n46)
+                    },
+                    |__near| {
+                        let __n132 = T::constant(0.3f64) - __n17;
+                        ::mbs_runtime::Dyad::Bars {
+                            a: [
+                                [T::constant(0.2f64), T::constant(0.0f64)],
+                                [T::constant(0.0f64), T::constant(-0.2f64)],
+                            ],
+                            b: [
+                                [T::constant(-0.25f64), T::constant(0.0f64)],
+                                [T::constant(0.0f64), T::constant(0.25f64)],
+                            ],
+                            c: [__n132, __n24],
+                            unknowns: [[0.0, 1.0], [1.0, 0.0]],
+                        }
+                            .roots(__near)
                     },
                 );
             __q[3] = __x[0];

@@ -2,6 +2,7 @@
 
 mod deadline;
 mod drives;
+mod dyads;
 mod failures;
 mod four_bar;
 mod lanes;

@@ -75,6 +75,12 @@ fn describe(report: &StructureReport, block: &BlockReport) -> String {
     let size = block.rows.len();
     let how = match (block.explicit, size) {
         (true, _) => "explicit: assigned".to_string(),
+        (false, 1..=2) if block.dyad.is_some() => {
+            let name = block.dyad.unwrap_or_default();
+            format!(
+                "{size} × {size}: {name}, assembled from both its positions; Newton, linear step in closed form"
+            )
+        }
         (false, 1..=3) => format!("{size} × {size}: Newton, linear step in closed form"),
         (false, _) => format!("{size} × {size}: Newton, linear step by pivoted LU"),
     };
