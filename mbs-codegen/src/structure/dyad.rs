@@ -260,8 +260,11 @@ fn value(leaf: Leaf, sample: u32) -> f64 {
         Leaf::Position(index) => (3, index),
         Leaf::Velocity(index) => (4, index),
         Leaf::Acceleration(index) => (5, index),
+        Leaf::State(index) => (6, index),
+        Leaf::Multiplier(index) => (7, index),
+        Leaf::Direction(index) => (8, index),
     };
-    let number = f64::from(1 + kind + 7 * sample) + 23.0 * f64::from(index);
+    let number = f64::from(1 + kind + 11 * sample) + 23.0 * f64::from(index);
     0.5 + (number * 0.618_033_988_749_895).fract()
 }
 
@@ -269,7 +272,8 @@ fn value(leaf: Leaf, sample: u32) -> f64 {
 mod tests {
     use super::*;
     use crate::diagnostics::Diagnostics;
-    use crate::{equations, model, structure, syntax};
+    use crate::model::scenes::Scenes;
+    use crate::{equations, structure, syntax};
 
     /// Names of the blocks' dyads; `-` for a block of Newton's method that is none.
     fn dyads(statements: &str) -> String {
@@ -277,9 +281,10 @@ mod tests {
             format!("mechanism M; param r: m = 0.1; param l: m = 0.3; param k: rad = 0.4;\n{statements}");
         let mut diagnostics = Diagnostics::default();
         let text = syntax::read(text.parse().expect("tokens"), &mut diagnostics).expect("a header");
-        let model = model::resolve(&text.statements, &mut diagnostics);
-        let mut equations = equations::derive(&model);
-        let structure = structure::analyse(&model, &mut equations, &mut diagnostics);
+        let scenes = Scenes::resolve(&text, &mut diagnostics).scenes;
+        let model = &scenes.first().expect("the whole text").model;
+        let mut equations = equations::derive(model);
+        let structure = structure::analyse(model, &mut equations, &mut diagnostics);
         let structure = structure.unwrap_or_else(|| panic!("{}", diagnostics.to_text()));
         let solved = structure.blocks.iter().filter(|block| block.explicit.is_none());
         solved.map(|block| block.dyad.as_ref().map_or("-", Dyad::name)).collect::<Vec<_>>().join(", ")
