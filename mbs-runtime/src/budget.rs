@@ -20,7 +20,7 @@ impl Budget {
     /// Evaluations of residual and Jacobian that a block costs at most: those of Newton's method, the trials of the
     /// fallback and one where it starts.
     ///
-    /// Beside them a step costs two factorisations of Φ_q and four linear solutions at most.
+    /// Beside them a step costs three factorisations of Φ_q and five linear solutions at most.
     pub const fn evaluations(self) -> u32 {
         let newton = if self.newton == 0 { 1 } else { self.newton };
         match self.fallback {
