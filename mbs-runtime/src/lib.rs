@@ -50,7 +50,7 @@ pub use diagnosis::{Diagnosis, Statistics, Worst};
 pub use dyad::{Dyad, Roots, Single};
 pub use dynamic::{Dynamic, Energy, Motion, Partitioned};
 pub use failure::{Failure, Holding, Outcome};
-pub use function::Function;
+pub use function::{Function, FunctionEntry};
 pub use kinematics::{RegularFactors, factorize, solve_acceleration, solve_position, solve_velocity};
 pub use lanes::Lanes;
 pub use limit::{Limit, Warning};
@@ -75,13 +75,13 @@ pub use trace::{Trace, Traced};
 /// rows fix every coordinate, and of [`Dynamic`] where the text has masses or forces.
 ///
 /// The text is a header and statements: `const`, `param`, `input`, `coord`, `let`, `constraint`, `drive`, `branch`,
-/// `limit`, `out` and `for`; for dynamics `body`, `gravity`, `force`, `torque`, `tsda`, `rsda`, `potential`, `kinetic`,
-/// `dissipation`, `state` and `start`; `effect` and `scene` for several mechanisms in one text. Units are checked,
-/// vectors are arrays, derivatives are exact.
-/// The emitted struct has the
-/// parameters and inputs as public fields, `Default`, a view of the coordinates by name, and in its documentation
-/// shapes, sparsity, order of solution and operation counts. With scenes it has a type parameter behind the scalar's
-/// for the scene, [`Whole`] where nothing else is said, and an alias for each scene. The README explains every statement.
+/// `limit`, `out`, `function` and `for`; for dynamics `body`, `gravity`, `force`, `torque`, `tsda`, `rsda`, `potential`,
+/// `kinetic`, `dissipation`, `state` and `start`; `effect` and `scene` for several mechanisms in one text. Units are
+/// checked, vectors are arrays, derivatives are exact. The emitted struct has the parameters and inputs as public fields,
+/// `Default`, a view of the coordinates by name, and in its documentation shapes, sparsity, order of solution and operation
+/// counts. With functions it has a type parameter and a public field for each, before the scalar, and `new` that takes
+/// them. With scenes it has a type parameter behind the scalar's for the scene, [`Whole`] where nothing else is said, and
+/// an alias for each scene. The README explains every statement.
 ///
 /// ```
 /// use mbs_runtime::{Mechanism, Stepper, mechanism};

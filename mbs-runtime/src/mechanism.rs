@@ -1,6 +1,6 @@
 //! What the macro emits: a mechanism as functions of its coordinates.
 
-use crate::{Limit, Outcome, Roots, Scalar};
+use crate::{FunctionEntry, Limit, Outcome, Roots, Scalar};
 
 /// The scene of a text with all its effects, which every mechanism is in unless a type says otherwise.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -115,6 +115,8 @@ pub trait Mechanism<T: Scalar, const N: usize, const M: usize>: Clone {
     const PHASES: &'static [Entry] = &[];
     /// Outputs, component by component.
     const OUTPUTS: &'static [Entry];
+    /// Functions that the caller supplies, each the public field of its name.
+    const FUNCTIONS: &'static [FunctionEntry] = &[];
 
     /// Value of the parameter or input at `index` of [`VARIABLES`](Self::VARIABLES).
     fn get(&self, index: usize) -> Option<T>;

@@ -10,7 +10,8 @@ use crate::model::{Model, VariableKind};
 /// differentiate.
 ///
 /// `define(ca, q, v, t, der)` returns the rows, and the outputs with the number of their time derivatives;
-/// `v` are the parameters and inputs in the order of `VARIABLES`, `der` is the total time derivative.
+/// `v` are the parameters and inputs in the order of `VARIABLES`, `der` is the total time derivative. A text with
+/// declared functions has `FUNCTIONS` of them; `define` gets them as a last argument, `functions[i](order, x)`.
 pub fn definition(model: &Model, name: &str) -> String {
     let rates: Vec<String> = model
         .variables
@@ -26,8 +27,14 @@ pub fn definition(model: &Model, name: &str) -> String {
     );
     let (n, m, v) = (model.coordinates.len(), model.rows.len(), model.variables.len());
     let _ = writeln!(text, "NAME = \"{name}\"\nN = {n}\nM = {m}\nV = {v}");
-    let _ = writeln!(text, "RATES = [{}]\n\n", rates.join(", "));
-    let _ = writeln!(text, "def define(ca, q, v, t, der):");
+    let _ = writeln!(text, "RATES = [{}]", rates.join(", "));
+    let functions = if model.functions.is_empty() {
+        ""
+    } else {
+        let _ = writeln!(text, "FUNCTIONS = {}", model.functions.len());
+        ", functions"
+    };
+    let _ = writeln!(text, "\n\ndef define(ca, q, v, t, der{functions}):");
     let roots =
         model.rows.iter().map(|row| row.residual).chain(model.outputs.iter().map(|output| output.value));
     assignments(model, roots, &mut text);
@@ -67,6 +74,7 @@ fn derivatives(model: &Model, value: Id) -> u8 {
         *root = Some(0);
     }
     let mut most = 0;
+    let moving = moving(model);
     let nodes: Vec<(Id, Node)> = model.expressions.iter().take(value.index() + 1).collect();
     for (id, node) in nodes.into_iter().rev() {
         let Some(order) = above.get(id.index()).copied().flatten() else { continue };
@@ -87,6 +95,12 @@ fn derivatives(model: &Model, value: Id) -> u8 {
         if varies && node.operands().next().is_none() && node != Node::Time {
             most = most.max(order + own);
         }
+        if let Node::Call { function, order: own, .. } = node
+            && moving.get(id.index()) == Some(&true)
+        {
+            let continuity = model.functions.get(function).map_or(0, |function| function.continuity);
+            most = most.max((order + own + 2).saturating_sub(continuity));
+        }
         for operand in node.operands() {
             if let Some(slot) = above.get_mut(operand.index()) {
                 *slot = Some(slot.unwrap_or(0).max(below));
@@ -94,6 +108,23 @@ fn derivatives(model: &Model, value: Id) -> u8 {
         }
     }
     2_u8.saturating_sub(most)
+}
+
+/// Of each expression, whether it may change in time.
+fn moving(model: &Model) -> Vec<bool> {
+    let mut moving: Vec<bool> = Vec::with_capacity(model.expressions.len());
+    for (_, node) in model.expressions.iter() {
+        let constant = |index: usize| {
+            model.variables.get(index).is_some_and(|variable| variable.kind == VariableKind::Parameter)
+        };
+        moving.push(match node {
+            Node::Number(_) => false,
+            Node::Time | Node::Coordinate(_) => true,
+            Node::Variable(index) => !constant(index),
+            _ => node.operands().any(|operand| moving.get(operand.index()) == Some(&true)),
+        });
+    }
+    moving
 }
 
 fn operation(node: Node) -> String {
@@ -125,6 +156,9 @@ fn operation(node: Node) -> String {
             Unary::Abs => format!("ca.fabs({})", v(a)),
             Unary::Sign => format!("ca.sign({})", v(a)),
         },
+        Node::Call { function, order, argument } => {
+            format!("functions[{function}]({order}, {})", v(argument))
+        }
         Node::Binary(function, a, b) => match function {
             Binary::Add => format!("{} + {}", v(a), v(b)),
             Binary::Subtract => format!("{} - {}", v(a), v(b)),

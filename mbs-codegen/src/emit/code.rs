@@ -6,7 +6,7 @@ use proc_macro2::{Group, TokenStream, TokenTree};
 use quote::quote;
 
 use super::scope::Scope;
-use crate::program::{Angle, Line, Section};
+use crate::program::{Angle, Jet, Line, Section};
 use crate::symbolic::{Binary, Node, NodeId, Unary};
 
 /// Text in which `__mbs` stands for the runtime's path.
@@ -78,6 +78,17 @@ fn print(line: &Line, scope: &Scope<'_>, text: &mut String) {
             );
             let _ = writeln!(text, "let ([{sines}], [{cosines}]) = T::sin_cos([{operands}]);");
         }
+        Line::Jet(Jet { function, argument, orders }) => {
+            let names: Vec<String> =
+                orders.iter().map(|id| id.map_or_else(|| "_".to_owned(), local)).collect();
+            let (names, count) = (names.join(", "), orders.len());
+            let (kind, place) = scope.function(*function as usize);
+            let argument = scope.operand(*argument);
+            let _ = writeln!(
+                text,
+                "let [{names}] = <{kind} as __mbs::Function<T>>::jet::<{count}>(&{place}, {argument});"
+            );
+        }
     }
 }
 
@@ -93,7 +104,8 @@ pub fn local(id: NodeId) -> String {
 fn operation(node: Node, scope: &Scope<'_>) -> String {
     let of = |id: NodeId| scope.operand(id);
     match node {
-        Node::Constant(_) | Node::Leaf(_) => scope.leaf(node),
+        // Calls stand in jets.
+        Node::Constant(_) | Node::Leaf(_) | Node::Call { .. } => scope.leaf(node),
         Node::Unary(Unary::Negate, a) => format!("-{}", of(a)),
         Node::Unary(function, a) => format!("T::{}({})", unary(function), of(a)),
         Node::Binary(Binary::Add, a, b) => format!("{} + {}", of(a), of(b)),

@@ -1,6 +1,7 @@
 //! The generated doc comment: shapes, sparsity, block order, cost.
 
 use crate::equations::Equations;
+use crate::equations::continuity::{self, Demand};
 use crate::model::dynamics::State;
 use crate::model::{Model, Output};
 use crate::program::{Method, Operations, Program};
@@ -17,10 +18,11 @@ pub fn structure(
 ) -> Vec<String> {
     let mut lines = vec![String::new()];
     shapes(model, &mut lines);
+    functions(model, equations, &mut lines);
     sparsity(model, equations, &mut lines);
     masses(model, equations, &mut lines);
     order(model, structure, &mut lines);
-    cost(program, &mut lines);
+    cost(model, program, &mut lines);
     lines.into_iter().map(|line| if line.is_empty() { line } else { format!(" {line}") }).collect()
 }
 
@@ -74,6 +76,22 @@ fn shapes(model: &Model, lines: &mut Vec<String>) {
         lines.push(format!("{freedom} {} of freedom.", if freedom == 1 { "degree" } else { "degrees" }));
     }
     lines.push(String::new());
+}
+
+/// What each declared function must give.
+fn functions(model: &Model, equations: &Equations, lines: &mut Vec<String>) {
+    for demand in continuity::highest(model, equations) {
+        let Some(function) = model.functions.get(demand.function) else { continue };
+        let Demand { order, by, .. } = demand;
+        let (name, unit, argument) = (&function.name.text, &function.unit, &function.argument_unit);
+        let most = if order == 0 {
+            "its value alone is used".into()
+        } else {
+            format!("{order} {} used, by {by} for one", plural("derivative", usize::from(order)))
+        };
+        lines.push(format!("Function `{name}` (`{unit}` of `{argument}`): {most}."));
+        lines.push(String::new());
+    }
 }
 
 fn plural(word: &str, count: usize) -> String {
@@ -174,12 +192,14 @@ fn order(model: &Model, structure: &Structure, lines: &mut Vec<String>) {
     lines.push(String::new());
 }
 
-fn cost(program: &Program, lines: &mut Vec<String>) {
+fn cost(model: &Model, program: &Program, lines: &mut Vec<String>) {
     lines.push("# Cost".into());
     lines.push("Operations of each emitted function, on top of the stages before it:".into());
     lines.push(String::new());
-    lines.push("| function | + − | × | ÷ | sin, cos | other functions | selections |".into());
-    lines.push("|---|---|---|---|---|---|---|".into());
+    // Texts without declared functions need no column for them.
+    let (head, rule) = if model.functions.is_empty() { ("", "") } else { (" declared functions |", "---|") };
+    lines.push(format!("| function | + − | × | ÷ | sin, cos | other functions | selections |{head}"));
+    lines.push(format!("|---|---|---|---|---|---|---|{rule}"));
     let blocks = program.blocks.iter();
     let mut before = Operations::default();
     let mut iteration = Operations::default();
@@ -224,9 +244,11 @@ fn cost(program: &Program, lines: &mut Vec<String>) {
         ]);
     }
     for (name, count) in table {
-        let Operations { additions, multiplications, divisions, sine_cosines, functions, selects } = count;
+        let Operations { additions, multiplications, divisions, sine_cosines, functions, selects, calls } =
+            count;
+        let calls = if model.functions.is_empty() { String::new() } else { format!(" {calls} |") };
         lines.push(format!(
-            "| {name} | {additions} | {multiplications} | {divisions} | {sine_cosines} | {functions} | {selects} |"
+            "| {name} | {additions} | {multiplications} | {divisions} | {sine_cosines} | {functions} | {selects} |{calls}"
         ));
     }
 }

@@ -89,7 +89,7 @@ pub fn bodies(
 pub fn implementation(
     name: &TokenStream,
     model: &Model,
-    bodies: &DynamicBodies,
+    (bodies, generics): (&DynamicBodies, &TokenStream),
     runtime: &TokenStream,
 ) -> TokenStream {
     let Some(declared) = &model.dynamics else { return TokenStream::new() };
@@ -115,7 +115,7 @@ pub fn implementation(
     let design = quote! { &self, __p: &__Parameters<T>, __s: &__Position<T> };
     let motion = quote! { __qd: &[T; #n], __z: &[T; #states], __lambda: &[T; #m] };
     quote! {
-        impl<T: #runtime::Scalar> #runtime::Dynamic<T, #n, #m> for #name {
+        impl<#generics> #runtime::Dynamic<T, #n, #m> for #name {
             type States = [T; #states];
             type Powers = [T; #forces];
             type Loads = [T; #loads];

@@ -162,6 +162,10 @@ impl<'a> Printer<'a> {
                 Sum::atom(notation.general_power((&base, one_base), (&exponent, one_exponent)))
             }
             Node::Binary(function, a, b) => Sum::atom(notation.call_two(function, &text(a), &text(b))),
+            Node::Call { function, order, argument } => {
+                let name = self.model.functions.get(function as usize).map_or("?", |f| &f.name.text);
+                Sum::atom(notation.declared(name, usize::from(order), &text(argument)))
+            }
             Node::Select { less, than, yes, no } => {
                 let [less, than, yes, no] = [less, than, yes, no].map(text);
                 Sum::atom(notation.choice([&less, &than, &yes, &no]))

@@ -10,12 +10,15 @@ use super::dynamics::{self, DynamicBodies};
 use super::phases;
 use super::scope::Scope;
 use crate::equations::Equations;
+use crate::equations::continuity::{self, Demand};
 use crate::model::Model;
 use crate::program::{Program, Section};
 use crate::symbolic::NodeId;
 
 /// The emitted functions, and the lengths of the arrays that stages keep.
 pub struct Bodies {
+    /// Of each declared function, the highest derivative that is asked for.
+    pub orders: Vec<u8>,
     pub kept_parameters: usize,
     pub kept_position: usize,
     pub parameters: TokenStream,
@@ -50,10 +53,17 @@ pub struct Bodies {
     pub dynamics: Option<DynamicBodies>,
 }
 
-/// Before: the program of a model. After: one body a function.
-pub fn bodies(model: &Model, equations: &Equations, program: &Program, runtime: &TokenStream) -> Bodies {
+/// Before: the program of a model, and the types of its declared functions. After: one body a function.
+pub fn bodies(
+    model: &Model,
+    equations: &Equations,
+    program: &Program,
+    runtime: &TokenStream,
+    types: &[String],
+) -> Bodies {
     let graph = &equations.graph;
-    let bare = Scope { graph, model, parameters: None, position: None, unknowns: &[] };
+    let bare = Scope { graph, model, types, parameters: None, position: None, unknowns: &[] };
+    let demands = continuity::highest(model, equations);
     let early = Scope { parameters: Some(&program.parameters.fields), ..bare };
     let scope = Scope { position: Some(&program.position.fields), ..early };
     let body = |section: &Section, scope: &Scope<'_>, result: String| body(section, scope, &result, runtime);
@@ -69,10 +79,11 @@ pub fn bodies(model: &Model, equations: &Equations, program: &Program, runtime: 
     Bodies {
         kept_parameters: program.parameters.fields.len(),
         kept_position: program.position.fields.len(),
+        orders: orders(model, &demands),
         parameters: body(
             &program.parameters.section,
             &bare,
-            kept(&program.parameters, &bare, "__Parameters"),
+            smooth_enough(&demands, &bare) + &kept(&program.parameters, &bare, "__Parameters"),
         ),
         guess: body(&program.guesses, &early, some(&equations.guesses, &early)),
         coordinate_scales: body(
@@ -118,6 +129,34 @@ fn evaluation(equations: &Equations, scope: &Scope<'_>) -> String {
         rows(|row| row.phi_t),
         rows(|row| row.gamma),
     )
+}
+
+/// Of each function the highest derivative that something needs.
+fn orders(model: &Model, demands: &[Demand]) -> Vec<u8> {
+    let mut orders = vec![0; model.functions.len()];
+    for demand in demands {
+        if let Some(order) = orders.get_mut(demand.function) {
+            *order = demand.order;
+        }
+    }
+    orders
+}
+
+/// Assertions at compile time that the types which the caller chose are smooth enough.
+fn smooth_enough(demands: &[Demand], scope: &Scope<'_>) -> String {
+    let mut text = String::new();
+    for Demand { function, order, by, .. } in demands.iter().filter(|demand| demand.order > 0) {
+        let (kind, _) = scope.function(*function);
+        let name = scope.model.functions.get(*function).map_or("", |function| &function.name.text);
+        let plural = if *order == 1 { "" } else { "s" };
+        let message =
+            format!("function `{name}` must have {order} continuous derivative{plural}: {by} needs them");
+        let _ = writeln!(
+            text,
+            "const {{ ::core::assert!(<{kind} as __mbs::Function<T>>::ORDER >= {order}, {message:?}) }};"
+        );
+    }
+    text
 }
 
 /// `[a, 0, b, …]`

@@ -6,11 +6,12 @@ use quote::{format_ident, quote, quote_spanned};
 use super::code::tokens;
 use super::dynamics;
 use super::functions::Bodies;
+use super::generics::Generics;
 use super::scope::{field_name, is_keyword, number, subscripts, variable};
 use super::{Part, scenes};
 use crate::diagnostics::Diagnostics;
 use crate::model::scenes::{Scene, Scenes, alias};
-use crate::model::{Field, Model, Role};
+use crate::model::{Field, Function, Model, Role};
 use crate::syntax::Text;
 use crate::syntax::ast::Name;
 
@@ -24,13 +25,13 @@ pub fn item(text: &Text, scenes: &Scenes, parts: &[Part<'_>], left_out: Option<&
         let (docs, ident, kind) = (field_docs(field, shared), ident(&field.name), field_type(field, runtime));
         quote! { #(#[doc = #docs])* pub #ident: #kind, }
     });
-    let Markers { parameter, arguments, declaration, value } = markers(scenes, runtime);
-    let defaults = shared.fields.iter().map(|field| {
-        let ident = ident(&field.name);
-        let value = nested(&field.shape, &|component| default(shared, field, component));
-        let value = tokens(&value, runtime);
-        quote! { #ident: #value, }
+    let generics = Generics::of(text, scenes);
+    let functions = shared.functions.iter().zip(generics.functions()).map(|(function, kind)| {
+        let (docs, ident) = (function_docs(function), ident(&function.name));
+        quote! { #(#[doc = #docs])* pub #ident: #kind, }
     });
+    let (declared, declaration) = (generics.declared(runtime), markers(scenes).declaration);
+    let constructors = constructors(text, scenes, &generics);
     let docs = scenes::docs(text, scenes, parts, left_out);
     let of_scenes = scenes::items(text, scenes, parts);
     let views = parts.iter().map(|part| coordinates_view(text, part.scene));
@@ -40,14 +41,9 @@ pub fn item(text: &Text, scenes: &Scenes, parts: &[Part<'_>], left_out: Option<&
         #(#[doc = #docs])*
         #[allow(non_snake_case, reason = "the text names the parameters")]
         #[derive(::core::clone::Clone, ::core::marker::Copy, ::core::fmt::Debug, ::core::cmp::PartialEq)]
-        #visibility struct #name<T = ::core::primitive::f64 #parameter> { #(#fields)* #declaration }
+        #visibility struct #name<#declared> { #(#fields)* #(#functions)* #declaration }
 
-        #[allow(clippy::approx_constant, reason = "numbers of the text stay as they are")]
-        impl<T: #runtime::Scalar #arguments> ::core::default::Default for #name<T #arguments> {
-            fn default() -> Self {
-                Self { #(#defaults)* #value }
-            }
-        }
+        #constructors
 
         #of_scenes
         #(#views)*
@@ -55,33 +51,75 @@ pub fn item(text: &Text, scenes: &Scenes, parts: &[Part<'_>], left_out: Option<&
     }
 }
 
+/// `Default`, and with declared functions `new`.
+fn constructors(text: &Text, scenes: &Scenes, generics: &Generics) -> TokenStream {
+    let (name, runtime, shared) = (&text.header.name, &text.header.runtime, &scenes.shared);
+    let defaults = shared.fields.iter().map(|field| {
+        let ident = ident(&field.name);
+        let value = nested(&field.shape, &|component| default(shared, field, component));
+        let value = tokens(&value, runtime);
+        quote! { #ident: #value, }
+    });
+    let marker = markers(scenes).value;
+    let arguments = generics.arguments(&quote! { T }, generics.scene());
+    let allow = quote! {
+        #[allow(clippy::approx_constant, reason = "numbers of the text stay as they are")]
+    };
+    let default = quote! { ::core::default::Default };
+    let defaulted = generics.of_all_scenes(runtime, &quote! { : #default });
+    if shared.functions.is_empty() {
+        return quote! {
+            #allow
+            impl<#defaulted> #default for #name<#arguments> {
+                fn default() -> Self {
+                    Self { #(#defaults)* #marker }
+                }
+            }
+        };
+    }
+    let visibility = &text.header.visibility;
+    let free = generics.of_all_scenes(runtime, &TokenStream::new());
+    let idents: Vec<Ident> = shared.functions.iter().map(|function| ident(&function.name)).collect();
+    let given = idents.iter().zip(generics.functions()).map(|(ident, kind)| quote! { #ident: #kind });
+    let functions = idents.iter().map(|_| quote! { #default::default() });
+    quote! {
+        #allow
+        impl<#free> #name<#arguments> {
+            /// The mechanism with these functions, everything else at its default.
+            #[must_use]
+            #[allow(non_snake_case, clippy::too_many_arguments, reason = "the text names the functions")]
+            #visibility fn new(#(#given),*) -> Self {
+                Self { #(#defaults)* #(#idents,)* #marker }
+            }
+        }
+
+        impl<#defaulted> #default for #name<#arguments> {
+            fn default() -> Self {
+                Self::new(#(#functions),*)
+            }
+        }
+    }
+}
+
 /// What stands for type parameters without a field.
 pub struct Markers {
-    /// `, S = Whole`
-    parameter: TokenStream,
-    /// `, S`
-    pub arguments: TokenStream,
     declaration: TokenStream,
     /// Values of the fields.
     pub value: TokenStream,
 }
 
 /// The fields that give the type parameters their use: that of the scene, and of the scalar where no other does.
-pub fn markers(scenes: &Scenes, runtime: &TokenStream) -> Markers {
+pub fn markers(scenes: &Scenes) -> Markers {
     let marker = quote! { ::core::marker::PhantomData };
-    let mut markers = Markers {
-        parameter: TokenStream::new(),
-        arguments: TokenStream::new(),
-        declaration: TokenStream::new(),
-        value: TokenStream::new(),
-    };
-    if scenes.shared.fields.is_empty() {
-        markers.declaration.extend(quote! { #[doc(hidden)] pub scalar: #marker<T>, });
-        markers.value.extend(quote! { scalar: #marker, });
+    let mut markers = Markers { declaration: TokenStream::new(), value: TokenStream::new() };
+    let Model { fields, functions, .. } = &scenes.shared;
+    if fields.is_empty() {
+        let taken = functions.iter().any(|function| function.name.text == "scalar");
+        let name = format_ident!("{}", if taken { "scalar_type" } else { "scalar" });
+        markers.declaration.extend(quote! { #[doc(hidden)] pub #name: #marker<T>, });
+        markers.value.extend(quote! { #name: #marker, });
     }
     if scenes.are_declared() {
-        markers.parameter = quote! { , S = #runtime::Whole };
-        markers.arguments = quote! { , S };
         markers.declaration.extend(quote! { #[doc(hidden)] pub __scene: #marker<S>, });
         markers.value.extend(quote! { __scene: #marker, });
     }
@@ -95,16 +133,21 @@ fn implementations(text: &Text, scenes: &Scenes, part: &Part<'_>) -> TokenStream
     let model = &scene.model;
     let name = scenes::type_in(text, scenes, scene, &quote! { T });
     let lane = scenes::type_in(text, scenes, scene, &quote! { T::Real });
+    let callable = Generics::of(text, scenes).callable(model, runtime);
     // The stub of a square text has as many rows as it was meant to have.
     let m = if part.square { model.coordinates.len() } else { model.rows.len() };
-    let kinematic = if part.square { kinematic(&name, model, bodies, runtime) } else { TokenStream::new() };
-    let dynamic =
-        bodies.dynamics.as_ref().map(|bodies| dynamics::implementation(&name, model, bodies, runtime));
+    let kinematic =
+        if part.square { kinematic(&name, model, (bodies, &callable), runtime) } else { TokenStream::new() };
+    let dynamic = bodies
+        .dynamics
+        .as_ref()
+        .map(|bodies| dynamics::implementation(&name, model, (bodies, &callable), runtime));
     let (n, branches, outputs) = (model.coordinates.len(), model.branches.len(), model.outputs.len());
     let limits = model.limits.len();
-    let tables = tables(text, scenes, scene);
+    let tables = tables(text, scenes, scene, bodies);
     let access = access(text, scenes, model);
     let Bodies {
+        orders: _,
         kept_parameters,
         kept_position,
         parameters,
@@ -132,7 +175,7 @@ fn implementations(text: &Text, scenes: &Scenes, part: &Part<'_>) -> TokenStream
     let places = sparsity.iter().map(|(row, column)| quote! { (#row, #column) });
     let speeds_item = match model.phases.is_empty() {
         true => TokenStream::new(),
-        false => quote! { impl<T: #runtime::Scalar> #name { #speeds } },
+        false => quote! { impl<#callable> #name { #speeds } },
     };
     quote! {
         #[allow(clippy::approx_constant, reason = "numbers of the text stay as they are")]
@@ -147,7 +190,7 @@ fn implementations(text: &Text, scenes: &Scenes, part: &Part<'_>) -> TokenStream
 
             #speeds_item
 
-            impl<T: #runtime::Scalar> #runtime::Mechanism<T, #n, #m> for #name {
+            impl<#callable> #runtime::Mechanism<T, #n, #m> for #name {
                 type Parameters = __Parameters<T>;
                 type Position = __Position<T>;
                 type Entries = [T; #nonzeros];
@@ -212,13 +255,18 @@ fn implementations(text: &Text, scenes: &Scenes, part: &Part<'_>) -> TokenStream
 }
 
 /// `impl Kinematic` with the factors that it keeps.
-fn kinematic(name: &TokenStream, model: &Model, bodies: &Bodies, runtime: &TokenStream) -> TokenStream {
+fn kinematic(
+    name: &TokenStream,
+    model: &Model,
+    (bodies, generics): (&Bodies, &TokenStream),
+    runtime: &TokenStream,
+) -> TokenStream {
     let n = model.coordinates.len();
     let Bodies { factors, solve_blocks, factorize, solve_linear, .. } = bodies;
     quote! {
         #factors
 
-        impl<T: #runtime::Scalar> #runtime::Kinematic<T, #n> for #name {
+        impl<#generics> #runtime::Kinematic<T, #n> for #name {
             type Factors = __Factors<T>;
             #[inline]
             fn solve_blocks<__S: #runtime::BlockSolver<T>>(
@@ -239,7 +287,7 @@ fn kinematic(name: &TokenStream, model: &Model, bodies: &Bodies, runtime: &Token
 }
 
 /// Names, units and lines as constants.
-fn tables(text: &Text, scenes: &Scenes, scene: &Scene) -> TokenStream {
+fn tables(text: &Text, scenes: &Scenes, scene: &Scene, bodies: &Bodies) -> TokenStream {
     let runtime = &text.header.runtime;
     let source = scenes::source(text, scenes);
     let (name, model) = (text.header.name.to_string(), &scene.model);
@@ -257,6 +305,11 @@ fn tables(text: &Text, scenes: &Scenes, scene: &Scene) -> TokenStream {
     let phases = model.phases.iter().filter_map(|phase| model.variables.get(phase.variable));
     let phases = phases.map(|variable| entry(&variable.name, &variable.unit, variable.span));
     let outputs = model.outputs.iter().map(|output| entry(&output.name, &output.unit, output.span));
+    let functions = model.functions.iter().zip(&bodies.orders);
+    let functions = functions.map(|(function, order)| function_entry(function, *order, runtime));
+    let functions = (!model.functions.is_empty()).then(|| {
+        quote! { const FUNCTIONS: &'static [#runtime::FunctionEntry] = &[#(#functions),*]; }
+    });
     quote! {
         const NAME: &'static ::core::primitive::str = #name;
         #scene
@@ -269,6 +322,29 @@ fn tables(text: &Text, scenes: &Scenes, scene: &Scene) -> TokenStream {
         const LIMITS: &'static [#runtime::Entry] = &[#(#limits),*];
         const PHASES: &'static [#runtime::Entry] = &[#(#phases),*];
         const OUTPUTS: &'static [#runtime::Entry] = &[#(#outputs),*];
+        #functions
+    }
+}
+
+/// A declared function in the table.
+fn function_entry(function: &Function, order: u8, runtime: &TokenStream) -> TokenStream {
+    let Function { name, unit, argument_unit, continuity, period, .. } = function;
+    let line = quote_spanned!(name.span=> ::core::line!());
+    let name = &name.text;
+    let period = match period {
+        Some(period) => quote! { ::core::option::Option::Some(#period) },
+        None => quote! { ::core::option::Option::None },
+    };
+    quote! {
+        #runtime::FunctionEntry {
+            name: #name,
+            unit: #unit,
+            argument_unit: #argument_unit,
+            continuity: #continuity,
+            order: #order,
+            period: #period,
+            line: #line,
+        }
     }
 }
 
@@ -284,7 +360,11 @@ fn access(text: &Text, scenes: &Scenes, model: &Model) -> TokenStream {
         let value = tokens(&value, runtime);
         quote! { #ident: #value, }
     });
-    let marker = markers(scenes, runtime).value;
+    let functions = scenes.shared.functions.iter().map(|function| {
+        let ident = ident(&function.name);
+        quote! { #ident: ::core::clone::Clone::clone(&self.#ident), }
+    });
+    let marker = markers(scenes).value;
     let set = match places.as_slice() {
         [] => quote! { (_, _) => false, },
         _ => quote! { #((#indices, __value) => { #places = __value; true })* (_, _) => false, },
@@ -304,7 +384,7 @@ fn access(text: &Text, scenes: &Scenes, model: &Model) -> TokenStream {
         }
         #[inline]
         fn lane(&self, #lane_name: ::core::primitive::usize) -> Self::Lane {
-            #name { #(#lanes)* #marker }
+            #name { #(#lanes)* #(#functions)* #marker }
         }
     }
 }
@@ -381,6 +461,22 @@ fn field_docs(field: &Field, model: &Model) -> Vec<String> {
         docs.push(String::new());
     }
     docs.push(format!(" {role} (`{}`){default}.", field.unit));
+    docs
+}
+
+fn function_docs(function: &Function) -> Vec<String> {
+    let Function { unit, argument_unit, continuity, period, .. } = function;
+    let mut docs = function.docs.clone();
+    if !docs.is_empty() {
+        docs.push(String::new());
+    }
+    let derivatives = match continuity {
+        0 => "continuous".into(),
+        1 => "1 continuous derivative".into(),
+        count => format!("{count} continuous derivatives"),
+    };
+    let period = period.map_or(String::new(), |period| format!(", period {period}"));
+    docs.push(format!(" Function (`{unit}` of `{argument_unit}`), {derivatives}{period}."));
     docs
 }
 

@@ -8,6 +8,7 @@ mod docs;
 mod dynamics;
 pub mod formula;
 mod functions;
+mod generics;
 mod item;
 pub mod notation;
 mod phases;
@@ -25,6 +26,8 @@ use crate::model::scenes::{Scene, Scenes};
 use crate::program::Program;
 use crate::structure::Structure;
 use crate::syntax::Text;
+
+use generics::Generics;
 
 pub use stub::stub;
 
@@ -60,10 +63,17 @@ pub fn rust(
     translated: &[Translated<'_>],
     left_out: Option<&Diagnostics>,
 ) -> TokenStream {
+    let generics = Generics::of(text, scenes);
     let parts = translated.iter().map(|translated| {
         let Translated { scene, equations, structure, program } = translated;
         let docs = docs::structure(&scene.model, equations, structure, program);
-        let bodies = functions::bodies(&scene.model, equations, program, &text.header.runtime);
+        let bodies = functions::bodies(
+            &scene.model,
+            equations,
+            program,
+            &text.header.runtime,
+            &generics.types_in(&scene.model),
+        );
         Part { scene, square: structure.square, docs, bodies }
     });
     item::item(text, scenes, &parts.collect::<Vec<_>>(), left_out)

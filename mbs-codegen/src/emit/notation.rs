@@ -132,6 +132,15 @@ impl Notation {
         }
     }
 
+    /// A declared function, differentiated `order` times by its argument.
+    pub fn declared(self, name: &str, order: usize, argument: &str) -> Atom {
+        let head = format!("{}{}", self.name(name, 0), "'".repeat(order));
+        match self {
+            Text => whole(format!("{head}({argument})")),
+            Latex => Atom { head, tail: self.parentheses(argument), rank: Rank::Function },
+        }
+    }
+
     /// A function of two arguments that has no sign of its own.
     pub fn call_two(self, function: Binary, a: &str, b: &str) -> Atom {
         let name = match function {

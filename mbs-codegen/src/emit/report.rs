@@ -131,7 +131,7 @@ fn operations(program: &Program) -> usize {
 }
 
 fn count(section: &Section) -> usize {
-    let Operations { additions, multiplications, divisions, sine_cosines, functions, selects } =
+    let Operations { additions, multiplications, divisions, sine_cosines, functions, selects, calls } =
         section.operations;
-    [additions, multiplications, divisions, sine_cosines, functions, selects].into_iter().sum()
+    [additions, multiplications, divisions, sine_cosines, functions, selects, calls].into_iter().sum()
 }

@@ -4,22 +4,24 @@ use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 
 use super::Part;
+use super::generics::Generics;
 use super::item::{ident, markers};
 use crate::diagnostics::Diagnostics;
 use crate::model::scenes::{Scene, Scenes, WHOLE, alias};
 use crate::syntax::Text;
 
-/// The mechanism in a scene: `Name<T>`, and with scenes `Name<T, marker>`.
+/// The mechanism in a scene: `Name<T>`, with functions `Name<Lift, T>`, with scenes `Name<T, marker>`.
 pub fn type_in(text: &Text, scenes: &Scenes, scene: &Scene, scalar: &TokenStream) -> TokenStream {
     let (name, runtime) = (&text.header.name, &text.header.runtime);
-    match &scene.name {
+    let marker = match &scene.name {
         Some(marker) => {
             let (module, marker) = (module(text), ident(marker));
-            quote! { #name<#scalar, #module::#marker> }
+            Some(quote! { #module::#marker })
         }
-        None if scenes.are_declared() => quote! { #name<#scalar, #runtime::Whole> },
-        None => quote! { #name<#scalar> },
-    }
+        None => scenes.are_declared().then(|| quote! { #runtime::Whole }),
+    };
+    let arguments = Generics::of(text, scenes).arguments(scalar, marker);
+    quote! { #name<#arguments> }
 }
 
 /// The text as a constant: written down once, whatever the number of scenes.
@@ -71,14 +73,16 @@ pub fn items(text: &Text, scenes: &Scenes, parts: &[Part<'_>]) -> TokenStream {
             pub struct #name;
         }
     });
+    let generics = Generics::of(text, scenes);
     let aliases = declared().map(|(part, name)| {
+        let functions = generics.functions();
         let title = format!(" [`{}`] in its scene `{}`.", text.header.name, name.text);
         let name = format_ident!("{}", alias(&text.header, &name.text), span = name.span);
         let target = type_in(text, scenes, part.scene, &quote! { T });
         quote! {
             #[doc = #title]
             #[allow(dead_code, non_camel_case_types, reason = "a short name for who wants it")]
-            #visibility type #name<T = ::core::primitive::f64> = #target;
+            #visibility type #name<#(#functions,)* T = ::core::primitive::f64> = #target;
         }
     });
     let (conversion, source) = (conversion(text, scenes), &text.source);
@@ -113,14 +117,19 @@ fn marker_docs(part: &Part<'_>) -> Vec<String> {
 
 /// `scene`, from one scene to another.
 fn conversion(text: &Text, scenes: &Scenes) -> TokenStream {
-    let (name, runtime) = (&text.header.name, &text.header.runtime);
-    let fields: Vec<_> = scenes.shared.fields.iter().map(|field| ident(&field.name)).collect();
-    let value = markers(scenes, runtime).value;
+    let name = &text.header.name;
+    let functions = scenes.shared.functions.iter().map(|function| &function.name);
+    let fields = scenes.shared.fields.iter().map(|field| &field.name).chain(functions);
+    let fields: Vec<_> = fields.map(ident).collect();
+    let value = markers(scenes).value;
+    let generics = Generics::of(text, scenes);
+    let arguments = |scene| generics.arguments(&quote! { T }, Some(scene));
+    let (here, there) = (arguments(quote! { S }), arguments(quote! { __Other }));
     quote! {
-        impl<T, S> #name<T, S> {
+        impl<#here> #name<#here> {
             /// The same parameters and inputs in another scene.
             #[allow(dead_code, reason = "not every caller changes the scene")]
-            pub fn scene<__Other>(self) -> #name<T, __Other> {
+            pub fn scene<__Other>(self) -> #name<#there> {
                 #name { #(#fields: self.#fields,)* #value }
             }
         }

@@ -12,6 +12,8 @@ pub struct Scope<'a> {
     pub graph: &'a Graph,
     /// The model, for the names of fields.
     pub model: &'a Model,
+    /// Type parameters of the declared functions.
+    pub types: &'a [String],
     /// Fields of the parameter stage, `__p`.
     pub parameters: Option<&'a BTreeMap<NodeId, usize>>,
     /// Fields of the position stage, `__s`.
@@ -35,6 +37,12 @@ impl Scope<'_> {
             node @ (Node::Constant(_) | Node::Leaf(_)) => self.leaf(node),
             _ => local(id),
         }
+    }
+
+    /// Type and place of a declared function.
+    pub fn function(&self, index: usize) -> (&str, String) {
+        let name = self.model.functions.get(index).map_or("", |function| &function.name.text);
+        (self.types.get(index).map_or("", String::as_str), format!("self.{}", field_name(name)))
     }
 
     /// The value, or 0 where there is none.

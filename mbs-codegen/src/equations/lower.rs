@@ -2,7 +2,7 @@
 
 use crate::model::expression::{self, Id};
 use crate::model::{Model, VariableKind, units::Dimension};
-use crate::symbolic::{Binary, Graph, Leaf, Node, NodeId, Unary, tangent};
+use crate::symbolic::{Binary, Graph, Leaf, Node, NodeId, Stage, Unary, tangent};
 
 /// The graph with everything that needs no differentiation.
 pub struct Lowered {
@@ -18,6 +18,8 @@ pub struct Lowered {
     pub guesses: Vec<NodeId>,
     pub coordinate_scales: Vec<NodeId>,
     pub row_scales: Vec<NodeId>,
+    /// One a call of a declared function, in the order of the model.
+    pub calls: Vec<NodeId>,
     pub clock: Clock,
     /// One an expression of the model.
     pub nodes: Vec<NodeId>,
@@ -86,7 +88,7 @@ pub fn lower(model: &Model) -> Lowered {
     let zero = graph.constant(0.0);
     let of = |id: Id| nodes.get(id.index()).copied().unwrap_or(zero);
     let outputs = model.outputs.iter().map(|output| of(output.value));
-    let outputs = outputs.map(|value| (value, derivatives(&graph, &clock, value))).collect();
+    let outputs = outputs.map(|value| (value, derivatives(model, &graph, &clock, value))).collect();
     let length = reference_length(model, &mut graph);
     let mut scale = |dimension: Dimension| {
         let exponent = graph.constant(dimension.metres());
@@ -101,6 +103,7 @@ pub fn lower(model: &Model) -> Lowered {
         guesses: model.coordinates.iter().map(|coordinate| coordinate.guess.map_or(zero, of)).collect(),
         coordinate_scales: model.coordinates.iter().map(|coordinate| scale(coordinate.dimension)).collect(),
         row_scales: model.rows.iter().map(|row| scale(row.dimension)).collect(),
+        calls: model.expressions.calls().iter().map(|call| of(call.id)).collect(),
         graph,
         clock,
         nodes,
@@ -133,19 +136,27 @@ fn expressions(model: &Model, clock: &Clock, g: &mut Graph) -> Vec<NodeId> {
                 }
                 value
             }
+            expression::Node::Call { function, order, argument } => {
+                g.call(function as u32, order, of(argument))
+            }
         };
         nodes.push(node);
     }
     nodes
 }
 
-/// How many exact time derivatives a value has, where q̈ and the accelerations of inputs are the last that is known.
-fn derivatives(graph: &Graph, clock: &Clock, value: NodeId) -> u8 {
-    let orders = graph.reachable([value]).into_iter().filter_map(|id| match graph.node(id) {
-        Node::Leaf(leaf) => Some(clock.order(leaf)),
+/// How many exact time derivatives a value has, where q̈ and the accelerations of inputs are the last that is known,
+/// and of a declared function as many derivatives as are continuous.
+fn derivatives(model: &Model, graph: &Graph, clock: &Clock, value: NodeId) -> u8 {
+    let left = graph.reachable([value]).into_iter().filter_map(|id| match graph.node(id) {
+        Node::Leaf(leaf) => Some(2_u8.saturating_sub(clock.order(leaf))),
+        Node::Call { function, order, .. } if graph.stage(id) > Stage::Parameter => {
+            let continuity = model.functions.get(function as usize).map_or(0, |f| f.continuity);
+            Some(continuity.saturating_sub(order))
+        }
         _ => None,
     });
-    2 - orders.max().unwrap_or(0).min(2)
+    left.min().unwrap_or(2).min(2)
 }
 
 /// The largest length among constants, numbers, guesses and parameters; 1 m where there is none.

@@ -1,6 +1,7 @@
 //! Model → roots of one graph: Φ, Φ_q, Φ_t, Φ_tt, Φ_qt q̇, γ, branches, limits, phases, outputs, guesses,
 //! metric; M, Q and their derivatives, energies, powers.
 
+pub mod continuity;
 mod dynamics;
 mod forces;
 mod lower;
@@ -36,6 +37,8 @@ pub struct Equations {
     pub row_scales: Vec<NodeId>,
     /// Masses and forces, where the text has any.
     pub dynamics: Option<Dynamics>,
+    /// One a call of a declared function, in the order of the model.
+    pub calls: Vec<NodeId>,
 }
 
 /// A row of Φ with its derivatives.
@@ -90,6 +93,7 @@ pub fn derive(model: &Model) -> Equations {
         guesses,
         coordinate_scales,
         row_scales,
+        calls,
         clock,
         nodes,
     } = lowered;
@@ -143,6 +147,7 @@ pub fn derive(model: &Model) -> Equations {
         coordinate_scales,
         row_scales,
         dynamics,
+        calls,
     }
 }
 

@@ -37,10 +37,16 @@ pub fn declare(
         match &statement.kind {
             StatementKind::Param { name, kind, value } => work.parameter(name, docs, kind, value.as_ref()),
             StatementKind::Input { name, kind, rates } => work.input(name, docs, kind, *rates),
+            StatementKind::Function { name, signature } => work.function(name, docs, signature),
             _ => {}
         }
     }
-    work.give_up(&top, |kind| matches!(kind, StatementKind::Param { .. } | StatementKind::Input { .. }));
+    work.give_up(&top, |kind| {
+        matches!(
+            kind,
+            StatementKind::Param { .. } | StatementKind::Input { .. } | StatementKind::Function { .. }
+        )
+    });
     for statement in &top {
         if let StatementKind::Coord { name, kind, guess } = &statement.kind {
             work.coordinate(name, statement.docs.clone(), kind, guess.as_ref());
@@ -88,19 +94,20 @@ fn declared_name(statement: &Statement) -> Option<&Name> {
         | StatementKind::Input { name, .. }
         | StatementKind::Coord { name, .. }
         | StatementKind::State { name, .. }
+        | StatementKind::Function { name, .. }
         | StatementKind::Let { name, .. } => Some(name),
         _ => None,
     }
 }
 
-struct Declarations<'a> {
-    model: &'a mut Model,
-    names: &'a mut Names,
-    diagnostics: &'a mut Diagnostics,
+pub(super) struct Declarations<'a> {
+    pub(super) model: &'a mut Model,
+    pub(super) names: &'a mut Names,
+    pub(super) diagnostics: &'a mut Diagnostics,
 }
 
 impl Declarations<'_> {
-    fn elaborate<T>(&mut self, run: impl FnOnce(&mut Elaborator<'_>) -> T) -> T {
+    pub(super) fn elaborate<T>(&mut self, run: impl FnOnce(&mut Elaborator<'_>) -> T) -> T {
         let mut work = Elaborator {
             expressions: &mut self.model.expressions,
             names: self.names,
@@ -165,7 +172,7 @@ impl Declarations<'_> {
     }
 
     /// Whether this declaration, not an earlier one of the same name, stands behind the name.
-    fn owns(&self, name: &Name) -> bool {
+    pub(super) fn owns(&self, name: &Name) -> bool {
         self.names.declared_at(&name.text).is_some_and(|span| same_place(span, name.span))
     }
 
@@ -436,13 +443,17 @@ impl Declarations<'_> {
             }
             StatementKind::Coord { name, kind, .. } => (name, Declares::Coord, Some(kind)),
             StatementKind::State { name, .. } => (name, Declares::Value, None),
+            StatementKind::Function { name, .. } => (name, Declares::Function, None),
             _ => return,
         };
         if !matches!(statement.kind, StatementKind::Faulty { .. }) {
             self.diagnostics.report(
                 name.span,
                 format!("`{}` is declared inside a loop", name.text),
-                "declare an array before the loop: `coord p: [m; 2] = …;`",
+                match declares {
+                    Declares::Function => "declare it before the loop",
+                    _ => "declare an array before the loop: `coord p: [m; 2] = …;`",
+                },
             );
         }
         if self.names.declared_at(&name.text).is_some() {
@@ -465,6 +476,7 @@ impl Declarations<'_> {
             }
             Declares::Input { rates } => self.input(name, docs, kind, rates),
             Declares::Coord => self.coordinate(name, docs, kind, None),
+            Declares::Function => self.unknown_function(name, docs),
             Declares::Value => {}
         }
     }

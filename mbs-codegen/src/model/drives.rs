@@ -112,7 +112,7 @@ impl Resolver<'_> {
 fn rated(expression: &Expression) -> Option<Expression> {
     let (Instruction { operation, .. }, argument) = expression.code.split_last()?;
     match operation {
-        Operation::Call { function, arguments: 1 } if function == "rate" => {
+        Operation::Call { function, order: 0, arguments: 1 } if function == "rate" => {
             Some(Expression { code: argument.to_vec() })
         }
         _ => None,

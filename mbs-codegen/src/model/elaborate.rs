@@ -2,6 +2,7 @@
 
 use proc_macro2::Span;
 
+use super::declared_functions;
 use super::evaluate;
 use super::expression::{Binary, Expressions, Id, Node, Unary};
 use super::functions::{self, FUNCTIONS, LATER};
@@ -166,9 +167,7 @@ impl Elaborator<'_> {
                         self.unknown_name(name, instruction.span);
                     }
                 }
-                Operation::Call { function, .. }
-                    if function != "rate" && !FUNCTIONS.contains(&function.as_str()) =>
-                {
+                Operation::Call { function, .. } if function != "rate" && !self.knows_function(function) => {
                     self.unknown_function(function, instruction.span);
                 }
                 _ => {}
@@ -197,9 +196,19 @@ impl Elaborator<'_> {
                 let (b, a) = (pop()?, pop()?);
                 self.operator(*operator, &a, &b, span)?
             }
-            Operation::Call { function, arguments } => {
+            Operation::Call { function, order, arguments } => {
                 let arguments = stack.split_off(stack.len().saturating_sub(*arguments));
-                functions::call(self, function, arguments, span)?
+                match (self.names.get(function), order) {
+                    (Some(Symbol::Function(callable)), _) => {
+                        declared_functions::call(self, *callable, (function, *order), arguments, span)?
+                    }
+                    (Some(Symbol::Faulty), _) if !FUNCTIONS.contains(&function.as_str()) => {
+                        return Err(Fault);
+                    }
+                    (Some(Symbol::Pending), _) => return Err(self.too_early(function, span)),
+                    (_, 0) => functions::call(self, function, arguments, span)?,
+                    _ => return Err(self.no_derivative(function, span)),
+                }
             }
             Operation::Array { length } => {
                 let items = stack.split_off(stack.len().saturating_sub(*length));
@@ -283,13 +292,11 @@ impl Elaborator<'_> {
                 let count = *count as f64;
                 return Ok(Value::scalar(self.number_literal(count, span), span));
             }
-            Some(Symbol::Pending) => {
-                return Err(self.fault(
-                    span,
-                    format!("`{name}` cannot be used here"),
-                    "constants and defaults use constants alone, guesses use constants and parameters",
-                ));
+            Some(Symbol::Function(_)) => {
+                let message = format!("`{name}` is a function");
+                return Err(self.fault(span, message, format!("write `{name}(…)`")));
             }
+            Some(Symbol::Pending) => return Err(self.too_early(name, span)),
             Some(Symbol::Faulty) => return Err(Fault),
             None => {}
         }
@@ -308,6 +315,31 @@ impl Elaborator<'_> {
             }
             _ => Err(self.unknown_name(name, span)),
         }
+    }
+
+    /// A fault at a name that stands before its declaration can be used.
+    fn too_early(&mut self, name: &str, span: Span) -> Fault {
+        self.fault(
+            span,
+            format!("`{name}` cannot be used here"),
+            "constants and defaults use constants alone, guesses use constants and parameters",
+        )
+    }
+
+    /// Whether the name is that of a function, or stands for something that was reported.
+    fn knows_function(&self, name: &str) -> bool {
+        let declared =
+            matches!(self.names.get(name), Some(Symbol::Function(_) | Symbol::Pending | Symbol::Faulty));
+        declared || FUNCTIONS.contains(&name)
+    }
+
+    /// A fault at the derivative of what is no declared function.
+    fn no_derivative(&mut self, name: &str, span: Span) -> Fault {
+        if !FUNCTIONS.contains(&name) {
+            return self.unknown_function(name, span);
+        }
+        let message = format!("`{name}` is no declared function, and has no `.d1` or `.d2`");
+        self.fault(span, message, "write its derivative as an expression")
     }
 
     /// A fault at an unknown name.
@@ -333,9 +365,10 @@ impl Elaborator<'_> {
                 "outputs may use `der(x)` and `der2(x)`; drives are equations of coordinates and time",
             );
         }
-        let help = match nearest(name, FUNCTIONS) {
+        let known = || self.names.functions().chain(FUNCTIONS);
+        let help = match nearest(name, known()) {
             Some(known) => format!("did you mean `{known}`?"),
-            None => format!("known are {}", FUNCTIONS.join(", ")),
+            None => format!("known are {}", known().collect::<Vec<_>>().join(", ")),
         };
         self.fault(span, format!("unknown function `{name}`"), help)
     }

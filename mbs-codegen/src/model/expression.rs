@@ -1,5 +1,7 @@
 //! Scalar expressions in one arena; operands always stand before what uses them.
 
+use proc_macro2::Span;
+
 /// Index into [`Expressions`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Id(u32);
@@ -25,6 +27,17 @@ pub enum Node {
     Binary(Binary, Id, Id),
     /// Total time derivative of first or second order.
     Rate(Id, u8),
+    /// A declared function by its index, or its derivative of this order, at an argument.
+    Call { function: usize, order: u8, argument: Id },
+}
+
+/// A call of a declared function as the text writes it.
+#[derive(Clone, Copy, Debug)]
+pub struct Call {
+    /// The [`Node::Call`].
+    pub id: Id,
+    /// The function's name there.
+    pub span: Span,
 }
 
 /// Functions of one argument.
@@ -66,6 +79,7 @@ pub enum Binary {
 pub struct Expressions {
     nodes: Vec<Node>,
     operations: usize,
+    calls: Vec<Call>,
 }
 
 impl Expressions {
@@ -74,6 +88,18 @@ impl Expressions {
         self.operations += usize::from(node.operands().next().is_some());
         self.nodes.push(node);
         Id((self.nodes.len() - 1) as u32)
+    }
+
+    /// Adds a call that stands at `span`.
+    pub fn push_call(&mut self, function: usize, order: u8, argument: Id, span: Span) -> Id {
+        let id = self.push(Node::Call { function, order, argument });
+        self.calls.push(Call { id, span });
+        id
+    }
+
+    /// Calls of declared functions, in the order in which they were added.
+    pub fn calls(&self) -> &[Call] {
+        &self.calls
     }
 
     /// The expression.
@@ -129,7 +155,7 @@ impl Node {
             | Node::Variable(_)
             | Node::State(_)
             | Node::Multiplier(_) => (None, None),
-            Node::Unary(_, a) | Node::Rate(a, _) => (Some(a), None),
+            Node::Unary(_, a) | Node::Rate(a, _) | Node::Call { argument: a, .. } => (Some(a), None),
             Node::Binary(_, a, b) => (Some(a), Some(b)),
         };
         first.into_iter().chain(second)

@@ -72,10 +72,13 @@ pub fn numbers(
     }
     let is_variable = |name: &str| match work.names.get(name) {
         Some(Symbol::Value(value)) => value.items.iter().any(|item| number(item).is_none()),
+        Some(Symbol::Function(_)) => true,
         _ => name == "t",
     };
     let variable = expression.code.iter().find_map(|instruction| match &instruction.operation {
-        Operation::Name(name) if is_variable(name) => Some((name, instruction.span)),
+        Operation::Name(name) | Operation::Call { function: name, .. } if is_variable(name) => {
+            Some((name, instruction.span))
+        }
         _ => None,
     });
     let help = "use numbers and constants alone; what depends on parameters is a `let`";

@@ -2,6 +2,7 @@
 
 mod arithmetic;
 mod declarations;
+mod declared_functions;
 mod drives;
 pub mod dynamics;
 mod elaborate;
@@ -32,6 +33,8 @@ pub struct Model {
     pub expressions: Expressions,
     /// Public fields, in the order of the text.
     pub fields: Vec<Field>,
+    /// Functions that the caller supplies, in the order of the text.
+    pub functions: Vec<Function>,
     /// Coordinates, component by component.
     pub coordinates: Vec<Coordinate>,
     /// Declared coordinates, scalar or array, in the order of the text.
@@ -106,6 +109,23 @@ pub enum Role {
     InputWithRates,
     /// Phase of a drive that prescribes a rate, kept by the stepper.
     Phase,
+}
+
+/// A function that the text declares and the caller supplies.
+#[derive(Clone, Debug)]
+pub struct Function {
+    /// Name and token.
+    pub name: crate::syntax::ast::Name,
+    /// Doc comment.
+    pub docs: Vec<String>,
+    /// Unit of the value as written.
+    pub unit: String,
+    /// Unit of the argument as written.
+    pub argument_unit: String,
+    /// Number of continuous derivatives that the text counts on.
+    pub continuity: u8,
+    /// Period, in the unit of the argument.
+    pub period: Option<f64>,
 }
 
 /// A scalar coordinate.

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use proc_macro2::Span;
 
+use super::declared_functions::Callable;
 use super::elaborate::Value;
 use super::functions::FUNCTIONS;
 use super::units::Dimension;
@@ -24,6 +25,8 @@ pub const UNUSABLE: [&str; 5] = ["self", "Self", "super", "crate", "_"];
 pub enum Symbol {
     /// A value: constants, parameters, inputs, coordinates, and `let`s once they are elaborated.
     Value(Value),
+    /// A declared function.
+    Function(Callable),
     /// A count of a loop or a sum.
     Count(usize),
     /// Declared, but not usable here yet.
@@ -91,6 +94,13 @@ impl Names {
         }
     }
 
+    /// Gives a declared name its function.
+    pub fn define_function(&mut self, name: &str, callable: Callable) {
+        if let Some((symbol @ Symbol::Pending, _)) = self.declared.get_mut(name) {
+            *symbol = Symbol::Function(callable);
+        }
+    }
+
     /// Marks a declared name that got no value, so that its uses are not reported too.
     pub fn give_up(&mut self, name: &str) {
         if let Some((symbol @ Symbol::Pending, _)) = self.declared.get_mut(name) {
@@ -102,6 +112,15 @@ impl Names {
     pub fn get(&self, name: &str) -> Option<&Symbol> {
         let scoped = self.scoped.iter().rev().find(|(known, _)| known == name).map(|(_, symbol)| symbol);
         scoped.or_else(|| self.declared.get(name).map(|(symbol, _)| symbol))
+    }
+
+    /// All declared functions.
+    pub fn functions(&self) -> impl Iterator<Item = &str> {
+        let is_function = |symbol: &Symbol| matches!(symbol, Symbol::Function(_));
+        self.declared
+            .iter()
+            .filter(move |(_, (symbol, _))| is_function(symbol))
+            .map(|(name, _)| name.as_str())
     }
 
     /// All declared names.

@@ -1,5 +1,6 @@
 //! The scenes of a text, each a model of its own, over the fields that they share.
 
+use super::declared_functions::check_called;
 use super::resolve::resolve;
 use super::selection::{Selection, select};
 use super::{Model, shared};
@@ -49,6 +50,7 @@ impl Scenes {
         let found: Vec<_> = scenes.iter().map(|scene| (scene.label(), scene.faults.clone())).collect();
         diagnostics.gather(&found, found.len());
         let shared = shared::merge(&text.statements, &scenes, diagnostics);
+        check_called(&text.statements, diagnostics);
         Scenes { scenes, whole, shared }
     }
 

@@ -1,14 +1,14 @@
-//! The fields that all scenes share.
+//! The fields and functions that all scenes share.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::scenes::Scene;
-use super::{Field, Model, Role, Variable};
+use super::{Field, Function, Model, Role, Variable};
 use crate::diagnostics::Diagnostics;
-use crate::syntax::ast::{Statement, StatementKind};
+use crate::syntax::ast::{Name, Statement, StatementKind};
 
-/// Before: the models of all scenes. After: the fields of all of them, those outside effects first, then effect after
-/// effect, in the order of the text; a name that stands for two different fields is reported.
+/// Before: the models of all scenes. After: the fields and functions of all of them, those outside effects first, then
+/// effect after effect, in the order of the text; a name that stands for two different ones is reported.
 pub fn merge(statements: &[Statement], scenes: &[Scene], diagnostics: &mut Diagnostics) -> Model {
     let known: Vec<BTreeMap<&str, &Field>> = scenes
         .iter()
@@ -25,17 +25,51 @@ pub fn merge(statements: &[Statement], scenes: &[Scene], diagnostics: &mut Diagn
         let Some((_, field, variables)) = found.next() else { continue };
         for (scene, other, others) in found {
             if !is_same(field, variables, other, others) {
-                report(field, other, scene.label().unwrap_or_default(), diagnostics);
+                report((&field.name, &other.name, "field"), scene.label().unwrap_or_default(), diagnostics);
             }
         }
         let first = shared.variables.len();
         shared.fields.push(Field { first, ..field.clone() });
         shared.variables.extend(variables.iter().cloned());
     }
+    shared.functions = functions(statements, scenes, &shared.fields, diagnostics);
     shared
 }
 
-/// Names of fields: first those outside effects.
+/// The functions of all scenes; none has the name of a field.
+fn functions(
+    statements: &[Statement],
+    scenes: &[Scene],
+    fields: &[Field],
+    diagnostics: &mut Diagnostics,
+) -> Vec<Function> {
+    let all = || scenes.iter().flat_map(|scene| scene.model.functions.iter().map(move |f| (scene, f)));
+    let mut done = BTreeSet::new();
+    let others = all().map(|(_, function)| function.name.text.as_str());
+    let names = declared(statements).chain(others).filter(|name| done.insert(*name));
+    let mut shared = Vec::new();
+    for name in names {
+        let mut found = all().filter(|(_, function)| function.name.text == name);
+        let Some((scene, first)) = found.next() else { continue };
+        if let Some(field) = fields.iter().find(|field| field.name.text == name) {
+            report((&field.name, &first.name, "field"), scene.label().unwrap_or_default(), diagnostics);
+            continue;
+        }
+        for (scene, other) in found.filter(|(_, other)| !is_same_function(first, other)) {
+            report((&first.name, &other.name, "function"), scene.label().unwrap_or_default(), diagnostics);
+        }
+        shared.push(first.clone());
+    }
+    shared
+}
+
+fn is_same_function(a: &Function, b: &Function) -> bool {
+    let terms =
+        |f: &Function| (f.unit.clone(), f.argument_unit.clone(), f.continuity, f.period.map(f64::to_bits));
+    terms(a) == terms(b)
+}
+
+/// Names of fields and functions: first those outside effects.
 fn declared(statements: &[Statement]) -> impl Iterator<Item = &str> {
     let mut inside = false;
     let (mut common, mut special) = (Vec::new(), Vec::new());
@@ -43,7 +77,9 @@ fn declared(statements: &[Statement]) -> impl Iterator<Item = &str> {
         match &statement.kind {
             StatementKind::Effect { .. } => inside = true,
             StatementKind::EndEffect => inside = false,
-            StatementKind::Param { name, .. } | StatementKind::Input { name, .. } => {
+            StatementKind::Param { name, .. }
+            | StatementKind::Input { name, .. }
+            | StatementKind::Function { name, .. } => {
                 (if inside { &mut special } else { &mut common }).push(name.text.as_str());
             }
             _ => {}
@@ -67,13 +103,14 @@ fn is_same(a: &Field, of_a: &[Variable], b: &Field, of_b: &[Variable]) -> bool {
     values && a.role == b.role && a.shape == b.shape
 }
 
-fn report(first: &Field, other: &Field, scene: &str, diagnostics: &mut Diagnostics) {
+fn report((first, other, what): (&Name, &Name, &str), scene: &str, diagnostics: &mut Diagnostics) {
+    let terms = if what == "field" { "unit, shape and default" } else { "units, continuity and period" };
     diagnostics.report(
-        other.name.span,
-        format!("`{}` is another field in scene `{scene}` than before", other.name.text),
+        other.span,
+        format!("`{}` is another {what} in scene `{scene}` than before", other.text),
         format!(
-            "all scenes share their fields: declare it as in line {}, same unit, shape and default, or rename it",
-            first.name.span.start().line
+            "all scenes share their {what}s: declare it as in line {}, same {terms}, or rename it",
+            first.span.start().line
         ),
     );
 }

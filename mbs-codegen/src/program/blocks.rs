@@ -1,8 +1,8 @@
 //! The diagonal blocks as code: what is known before a block is computed once, outside its iteration.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
-use super::schedule::{Line, Section, schedule};
+use super::schedule::{Line, Section, needed, schedule};
 use crate::equations::Equations;
 use crate::structure::dyad::Dyad;
 use crate::structure::{Block, Structure};
@@ -75,13 +75,14 @@ pub fn order(equations: &Equations, structure: &Structure, known: &BTreeSet<Node
     let graph = &equations.graph;
     let mut known = known.clone();
     let mut programs = Vec::new();
+    let jets = Jets::of(graph, &roots(equations, structure));
     for block in &structure.blocks {
         let (mut before, method) = match &block.explicit {
             Some(explicit) => {
-                let before = schedule(graph, &[explicit.value], &known);
+                let before = schedule(graph, &jets.completed(graph, &known, vec![explicit.value]), &known);
                 (before, Method::Explicit { value: explicit.value, coefficient: explicit.coefficient })
             }
-            None => newton(equations, block, &decided(equations, structure, block), &known),
+            None => newton(equations, block, &decided(equations, structure, block), &known, &jets),
         };
         // Later blocks use what this one computed.
         before.results.extend(before.lines.iter().flat_map(Line::values));
@@ -94,6 +95,35 @@ pub fn order(equations: &Equations, structure: &Structure, known: &BTreeSet<Node
         });
     }
     programs
+}
+
+/// Calls of declared functions in any block, by function and argument.
+struct Jets(BTreeMap<(u32, NodeId), Vec<NodeId>>);
+
+impl Jets {
+    fn of(graph: &Graph, roots: &[NodeId]) -> Self {
+        let mut jets: BTreeMap<(u32, NodeId), Vec<NodeId>> = BTreeMap::new();
+        for id in graph.reachable(roots.iter().copied()) {
+            if let Node::Call { function, argument, .. } = graph.node(id) {
+                jets.entry((function, argument)).or_default().push(id);
+            }
+        }
+        Jets(jets)
+    }
+
+    /// Before: values to be computed. After: these, and the other derivatives of the jets that they use, so that a
+    /// later block finds them and does not ask for the same jet again.
+    fn completed(&self, graph: &Graph, known: &BTreeSet<NodeId>, mut values: Vec<NodeId>) -> Vec<NodeId> {
+        if self.0.is_empty() {
+            return values;
+        }
+        for id in needed(graph, &values, known) {
+            if let Node::Call { function, argument, .. } = graph.node(id) {
+                values.extend(self.0.get(&(function, argument)).into_iter().flatten());
+            }
+        }
+        values
+    }
 }
 
 /// Branch conditions of which this block fixes the last coordinate.
@@ -117,6 +147,7 @@ fn newton(
     block: &Block,
     branches: &[NodeId],
     known: &BTreeSet<NodeId>,
+    jets: &Jets,
 ) -> (Section, Method) {
     let graph = &equations.graph;
     let (phi, phi_q) = residuals_and_jacobian(equations, block);
@@ -127,7 +158,7 @@ fn newton(
     for id in &moving {
         still.extend(graph.node(*id).operands().filter(|operand| !moving.contains(operand)));
     }
-    let still: Vec<NodeId> = still.into_iter().collect();
+    let still = jets.completed(graph, known, still.into_iter().collect());
     let before = schedule(graph, &still, known);
     let mut known = known.clone();
     known.extend(before.computed());

@@ -13,7 +13,7 @@ use crate::symbolic::{Graph, NodeId};
 
 pub use blocks::{BlockProgram, Method, System};
 pub use dynamics::DynamicsProgram;
-pub use schedule::{Angle, Line, Operations, Section};
+pub use schedule::{Angle, Jet, Line, Operations, Section};
 
 /// Everything that is emitted, in the order in which it is computed.
 #[derive(Debug)]

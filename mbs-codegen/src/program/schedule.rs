@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::AddAssign;
 
-use crate::symbolic::{Binary, Graph, Leaf, Node, NodeId, Unary};
+use crate::symbolic::{Binary, Graph, Node, NodeId, Unary};
 
 /// Straight-line code.
 #[derive(Debug, Default)]
@@ -30,6 +30,8 @@ pub enum Line {
     Value(NodeId),
     /// Sines and cosines of angles that are known together.
     SineCosine(Vec<Angle>),
+    /// A declared function and its derivatives at one argument.
+    Jet(Jet),
 }
 
 impl Line {
@@ -40,6 +42,7 @@ impl Line {
             Line::SineCosine(angles) => {
                 angles.iter().flat_map(|known| known.sine.into_iter().chain(known.cosine)).collect()
             }
+            Line::Jet(jet) => jet.orders.iter().copied().flatten().collect(),
         }
     }
 
@@ -48,8 +51,20 @@ impl Line {
         match self {
             Line::Value(id) => graph.node(*id).operands().collect(),
             Line::SineCosine(angles) => angles.iter().map(|known| known.angle).collect(),
+            Line::Jet(jet) => vec![jet.argument],
         }
     }
+}
+
+/// A declared function at one argument, up to the highest derivative that is used.
+#[derive(Clone, Debug)]
+pub struct Jet {
+    /// Index of the function.
+    pub function: u32,
+    /// Its argument.
+    pub argument: NodeId,
+    /// Value and derivatives by their order, where they are used; the last one is.
+    pub orders: Vec<Option<NodeId>>,
 }
 
 /// An angle of which sine, cosine or both are computed.
@@ -66,7 +81,8 @@ pub struct Angle {
 /// What can be computed once the sines and cosines of lower levels are known.
 #[derive(Default)]
 struct Level {
-    values: Vec<NodeId>,
+    /// All but sines and cosines, operands first.
+    lines: Vec<Line>,
     angles: BTreeMap<NodeId, Angle>,
 }
 
@@ -85,6 +101,8 @@ pub struct Operations {
     pub functions: usize,
     /// Selections by a comparison.
     pub selects: usize,
+    /// Calls of declared functions, with as many derivatives as are used.
+    pub calls: usize,
 }
 
 impl AddAssign for Operations {
@@ -95,12 +113,14 @@ impl AddAssign for Operations {
         self.sine_cosines += other.sine_cosines;
         self.functions += other.functions;
         self.selects += other.selects;
+        self.calls += other.calls;
     }
 }
 
 /// Before: roots, and values that are known already. After: the rest in order, all angles of one depth together.
 pub fn schedule(graph: &Graph, roots: &[NodeId], known: &BTreeSet<NodeId>) -> Section {
     let nodes = needed(graph, roots, known);
+    let mut jets = jets(graph, &nodes);
     // How many sines and cosines stand one behind the other up to a node.
     let mut depths: BTreeMap<NodeId, usize> = BTreeMap::new();
     let mut levels: BTreeMap<usize, Level> = BTreeMap::new();
@@ -114,17 +134,26 @@ pub fn schedule(graph: &Graph, roots: &[NodeId], known: &BTreeSet<NodeId>) -> Se
                 *(if function == Unary::Sin { &mut known.sine } else { &mut known.cosine }) = Some(id);
                 depths.insert(id, depth + 1);
             }
+            Node::Call { function, argument, .. } => {
+                // The first order that is met brings all others along.
+                level.lines.extend(jets.remove(&(function, argument)).map(Line::Jet));
+                depths.insert(id, depth);
+            }
             _ => {
-                level.values.push(id);
+                level.lines.push(Line::Value(id));
                 depths.insert(id, depth);
             }
         }
     }
     let mut section = Section { results: roots.iter().copied().collect(), ..Section::default() };
-    for Level { values, angles } in levels.into_values() {
-        for id in values {
-            count(graph.node(id), &mut section.operations);
-            section.lines.push(Line::Value(id));
+    for Level { lines, angles } in levels.into_values() {
+        for line in lines {
+            match &line {
+                Line::Value(id) => count(graph.node(*id), &mut section.operations),
+                Line::Jet(_) => section.operations.calls += 1,
+                Line::SineCosine(_) => {}
+            }
+            section.lines.push(line);
         }
         if !angles.is_empty() {
             section.operations.sine_cosines += angles.len();
@@ -134,8 +163,23 @@ pub fn schedule(graph: &Graph, roots: &[NodeId], known: &BTreeSet<NodeId>) -> Se
     section
 }
 
+/// The calls among `nodes`, gathered by function and argument.
+fn jets(graph: &Graph, nodes: &BTreeSet<NodeId>) -> BTreeMap<(u32, NodeId), Jet> {
+    let mut jets = BTreeMap::new();
+    for id in nodes {
+        let Node::Call { function, order, argument } = graph.node(*id) else { continue };
+        let jet = jets.entry((function, argument)).or_insert(Jet { function, argument, orders: Vec::new() });
+        let order = usize::from(order);
+        jet.orders.resize(jet.orders.len().max(order + 1), None);
+        if let Some(slot) = jet.orders.get_mut(order) {
+            *slot = Some(*id);
+        }
+    }
+    jets
+}
+
 /// Operations below the roots down to known values, operands first.
-fn needed(graph: &Graph, roots: &[NodeId], known: &BTreeSet<NodeId>) -> BTreeSet<NodeId> {
+pub fn needed(graph: &Graph, roots: &[NodeId], known: &BTreeSet<NodeId>) -> BTreeSet<NodeId> {
     let mut found = BTreeSet::new();
     let mut waiting: Vec<NodeId> = roots.to_vec();
     while let Some(id) = waiting.pop() {
@@ -150,9 +194,8 @@ fn needed(graph: &Graph, roots: &[NodeId], known: &BTreeSet<NodeId>) -> BTreeSet
 
 fn count(node: Node, operations: &mut Operations) {
     *(match node {
-        Node::Constant(_) | Node::Leaf(Leaf::Parameter(_) | Leaf::Input(_) | Leaf::Time) | Node::Leaf(_) => {
-            return;
-        }
+        // Jets are counted as such.
+        Node::Constant(_) | Node::Leaf(_) | Node::Call { .. } => return,
         Node::Unary(Unary::Negate, _) | Node::Binary(Binary::Add | Binary::Subtract, ..) => {
             &mut operations.additions
         }

@@ -1,6 +1,6 @@
 //! Which values a stage keeps for the stages behind it.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::symbolic::{Graph, Leaf, Node, NodeId, Stage};
 
@@ -27,15 +27,26 @@ pub fn position_fields(graph: &Graph, functions: &[&[NodeId]], rare: &[&[NodeId]
     let all: Vec<&[NodeId]> = functions.iter().chain(rare).copied().collect();
     let reached: Vec<Vec<NodeId>> = all.iter().map(|roots| graph.reachable(roots.iter().copied())).collect();
     let mut users = vec![0_u32; graph.len()];
-    for id in reached.iter().take(functions.len()).flatten() {
-        if let Some(count) = users.get_mut(id.index()) {
-            *count += 1;
+    // A jet is one operation, whichever of its derivatives a function uses.
+    let mut users_of_jets: BTreeMap<(u32, NodeId), BTreeSet<usize>> = BTreeMap::new();
+    for (user, nodes) in reached.iter().take(functions.len()).enumerate() {
+        for id in nodes {
+            if let Some(count) = users.get_mut(id.index()) {
+                *count += 1;
+            }
+            if let Node::Call { function, argument, .. } = graph.node(*id) {
+                users_of_jets.entry((function, argument)).or_default().insert(user);
+            }
         }
     }
     let shared = |id: NodeId| match graph.node(id) {
         Node::Leaf(Leaf::Position(_) | Leaf::Time) => true,
         Node::Leaf(_) => false,
-        _ => graph.stage(id) == Stage::Position && users.get(id.index()).is_some_and(|count| *count > 1),
+        _ if graph.stage(id) != Stage::Position => false,
+        Node::Call { function, argument, .. } => {
+            users_of_jets.get(&(function, argument)).is_some_and(|users| users.len() > 1)
+        }
+        _ => users.get(id.index()).is_some_and(|count| *count > 1),
     };
     let mut fields = BTreeSet::new();
     for (roots, nodes) in all.iter().zip(&reached) {

@@ -1,5 +1,6 @@
 //! Runs a program as the emitted code runs: stage by stage, line by line, nothing read that was not computed.
 
+use super::law;
 use super::oracle::State;
 use crate::equations::Equations;
 use crate::program::{Line, Program, Section, Stage};
@@ -73,6 +74,15 @@ impl Machine<'_> {
                         }
                     }
                 }
+                Line::Jet(jet) => {
+                    let argument = self.value(jet.argument, &values);
+                    for (order, id) in jet.orders.iter().enumerate() {
+                        if let Some(id) = id {
+                            let value = law::derivative(jet.function, order as u8, argument);
+                            values[id.index()] = Some(value);
+                        }
+                    }
+                }
             }
         }
         values
@@ -90,7 +100,7 @@ impl Machine<'_> {
                     of(no)
                 }
             }
-            Node::Constant(_) | Node::Leaf(_) => of(id),
+            Node::Constant(_) | Node::Leaf(_) | Node::Call { .. } => of(id),
         }
     }
 

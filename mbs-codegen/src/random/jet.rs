@@ -46,7 +46,7 @@ impl Jet {
     }
 
     /// The chain rule from the outer function's value and first three derivatives.
-    fn chain(self, f: [f64; 4]) -> Self {
+    pub fn chain(self, f: [f64; 4]) -> Self {
         self.chain_of_terms(f, f.map(f64::abs))
     }
 

@@ -7,6 +7,7 @@
 #[cfg(test)]
 mod interpreter;
 mod jet;
+mod law;
 mod oracle;
 mod text;
 
@@ -124,6 +125,21 @@ fn each_scene_of_random_texts_computes_what_second_order_taylor_arithmetic_compu
     }
     tally.report(3 * TEXTS_WITH_SCENES);
     assert!(tally.compared > 300 * TEXTS_WITH_SCENES as usize, "{} values", tally.compared);
+}
+
+/// Texts with declared functions.
+#[cfg(test)]
+const TEXTS_WITH_FUNCTIONS: u64 = 600;
+
+#[test]
+fn random_texts_with_functions_compute_what_second_order_taylor_arithmetic_computes() {
+    let mut tally = Tally::default();
+    for seed in 0..TEXTS_WITH_FUNCTIONS {
+        let text = text::write_with_functions(&mut Random(seed));
+        tally.compare(understand(&text), seed, STATES, &text);
+    }
+    tally.report(TEXTS_WITH_FUNCTIONS);
+    assert!(tally.compared > 1000 * TEXTS_WITH_FUNCTIONS as usize, "{} values", tally.compared);
 }
 
 /// What was compared so far.

@@ -1,6 +1,7 @@
 //! The model's expressions in second-order Taylor arithmetic.
 
 use super::jet::Jet;
+use super::law;
 use super::{ROUNDINGS, Random};
 use crate::model::expression::Node;
 use crate::model::{Model, VariableKind};
@@ -125,6 +126,10 @@ fn evaluate(model: &Model, state: &State, line: Line) -> Vec<Jet> {
             }
             Node::Unary(function, a) => jets[a.index()].unary(function),
             Node::Binary(function, a, b) => jets[a.index()].binary(function, jets[b.index()]),
+            Node::Call { function, order, argument } => {
+                let jet = jets[argument.index()];
+                jet.chain([0, 1, 2, 3].map(|more| law::derivative(function as u32, order + more, jet.v[0])))
+            }
             Node::Rate(..) | Node::State(_) | Node::Multiplier(_) => {
                 unreachable!("random texts are kinematic and use no `der`")
             }

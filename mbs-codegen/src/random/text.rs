@@ -4,13 +4,19 @@ use super::Random;
 
 /// A random text: scalar and vector coordinates, parameters, inputs with rates, `let`s, loops, drives, outputs.
 pub(super) fn write(random: &mut Random) -> String {
-    begin(random).0
+    begin(random, false).0
+}
+
+/// A random text that calls declared functions too.
+#[cfg(test)]
+pub(super) fn write_with_functions(random: &mut Random) -> String {
+    begin(random, true).0
 }
 
 /// A random text with two effects that give the same names different meanings, before the rest or behind it, and three scenes.
 #[cfg(test)]
 pub(super) fn write_with_scenes(random: &mut Random) -> String {
-    let (text, mut writer) = begin(random);
+    let (text, mut writer) = begin(random, false);
     let (header, common) = text.split_once('\n').unwrap_or((&text, ""));
     writer.names.extend(["r", "own"].map(String::from));
     let mut effects = String::new();
@@ -32,8 +38,8 @@ pub(super) fn write_with_scenes(random: &mut Random) -> String {
 }
 
 /// The text, and the writer that knows its names.
-fn begin(random: &mut Random) -> (String, Writer<'_>) {
-    let mut writer = Writer { random, names: Vec::new() };
+fn begin(random: &mut Random, functions: bool) -> (String, Writer<'_>) {
+    let mut writer = Writer { random, names: Vec::new(), functions };
     let scalars = 1 + writer.random.below(3) as usize;
     let mut text = String::from("pub mechanism Random;\nconst C: 1 = 1.25;\nconst N: 1 = 2;\n");
     for index in 0..3 {
@@ -42,6 +48,9 @@ fn begin(random: &mut Random) -> (String, Writer<'_>) {
     }
     text += "param L: [1; 3] = [0.5, -1.5, 0.75];\ninput u: 1, rates;\ninput w: [1; 2], rates;\n";
     writer.names.extend(["L[0]", "L.2", "u", "w[1]", "C", "(t/1s)", "v[0]", "v.1"].map(String::from));
+    if functions {
+        text += "function rise: 1(1), C9;\nfunction sag: 1(1), C9;\n";
+    }
     for index in 0..scalars {
         text += &format!("coord q{index}: 1 = 0.1;\n");
         // Coordinates matter most: name them often.
@@ -74,6 +83,10 @@ fn begin(random: &mut Random) -> (String, Writer<'_>) {
         _ => format!("for i in 0..N {{ drive each: v[i] == {} - L[i]*v[1 - i]; }}\n", writer.scalar(3)),
     };
     text += &format!("branch open: {} > {};\n", writer.scalar(3), writer.scalar(2));
+    if functions {
+        // A function that nothing calls is a fault.
+        text += &format!("out x: 1 = rise({}) - sag.d1({});\n", writer.scalar(2), writer.scalar(1));
+    }
     text += &format!("out y: 1 = {};\nout z: [1; 2] = {};\n", writer.scalar(4), writer.vector(3));
     (text, writer)
 }
@@ -81,6 +94,8 @@ fn begin(random: &mut Random) -> (String, Writer<'_>) {
 struct Writer<'a> {
     random: &'a mut Random,
     names: Vec<String>,
+    /// Whether declared functions may be called.
+    functions: bool,
 }
 
 impl Writer<'_> {
@@ -89,9 +104,9 @@ impl Writer<'_> {
         if depth == 0 || self.random.below(8) == 0 {
             return self.leaf();
         }
-        let choice = self.random.below(36);
+        let choice = self.random.below(if self.functions { 44 } else { 36 });
         let a = self.scalar(depth - 1);
-        let b = if choice >= 18 { self.scalar(depth - 1) } else { String::new() };
+        let b = if (18..36).contains(&choice) { self.scalar(depth - 1) } else { String::new() };
         match choice {
             0 => format!("sin({a})"),
             1 => format!("cos({a})"),
@@ -124,7 +139,11 @@ impl Writer<'_> {
             32 => format!("cross([{a}, {b}], [{b}, p1])"),
             33 => format!("norm([1.5 + cos({a}), {b}])"),
             34 => format!("det([[{a}, {b}, 1], [p0, {a}, 2], [C, 3, {b}]])"),
-            _ => format!("(rot({a})*[{b}, p2])[{}]", self.random.below(2)),
+            35 => format!("(rot({a})*[{b}, p2])[{}]", self.random.below(2)),
+            36 | 37 => format!("rise({a})"),
+            38 | 39 => format!("sag({a})"),
+            40 | 41 => format!("rise.d1({a})"),
+            _ => format!("sag.d2({a})"),
         }
     }
 

@@ -23,6 +23,10 @@ pub fn tangent(
                 (None, None) => None,
                 (da, db) => binary(graph, function, id, (a, da), (b, db)),
             },
+            Node::Call { function, order, argument } => of(argument).map(|moved| {
+                let slope = graph.call(function, order.saturating_add(1), argument);
+                graph.multiply(slope, moved)
+            }),
             Node::Select { less, than, yes, no } => match (of(yes), of(no)) {
                 (None, None) => None,
                 (dy, dn) => {

@@ -60,6 +60,14 @@ pub enum Node {
         yes: NodeId,
         no: NodeId,
     },
+    /// A function that is known at run time alone, or its derivative of this order.
+    ///
+    /// All orders at one argument are one operation, a jet; a stage computes it once.
+    Call {
+        function: u32,
+        order: u8,
+        argument: NodeId,
+    },
 }
 
 /// Functions of one argument.
@@ -138,6 +146,11 @@ impl Graph {
         self.intern(Node::Leaf(leaf))
     }
 
+    /// A function by its index, or its derivative of this order.
+    pub fn call(&mut self, function: u32, order: u8, argument: NodeId) -> NodeId {
+        self.intern(Node::Call { function, order, argument })
+    }
+
     /// Before: operands of `node` are in the graph. After: so is `node`, once.
     pub(super) fn intern(&mut self, node: Node) -> NodeId {
         if let Some(id) = self.index.get(&node) {
@@ -152,6 +165,8 @@ impl Graph {
                 Stage::Velocity
             }
             Node::Leaf(Leaf::Acceleration(_)) => Stage::Acceleration,
+            // What a function gives is known with the design, not before, even at a number.
+            Node::Call { argument, .. } => self.stage(argument).max(Stage::Parameter),
             _ => node.operands().map(|operand| self.stage(operand)).max().unwrap_or(Stage::Constant),
         };
         self.nodes.push(node);
@@ -184,7 +199,7 @@ impl Node {
     pub fn operands(self) -> impl Iterator<Item = NodeId> {
         let operands = match self {
             Node::Constant(_) | Node::Leaf(_) => [None; 4],
-            Node::Unary(_, a) => [Some(a), None, None, None],
+            Node::Unary(_, a) | Node::Call { argument: a, .. } => [Some(a), None, None, None],
             Node::Binary(_, a, b) => [Some(a), Some(b), None, None],
             Node::Select { less, than, yes, no } => [Some(less), Some(than), Some(yes), Some(no)],
         };

@@ -20,6 +20,10 @@ pub fn substitute(graph: &mut Graph, root: NodeId, replacement: impl Fn(Leaf) ->
                 let (a, b) = (of(a), of(b));
                 graph.binary(function, a, b)
             }
+            Node::Call { function, order, argument } => {
+                let argument = of(argument);
+                graph.call(function, order, argument)
+            }
             Node::Select { less, than, yes, no } => {
                 let (less, than, yes, no) = (of(less), of(than), of(yes), of(no));
                 graph.select(less, than, yes, no)

@@ -31,8 +31,8 @@ pub enum Operation {
     Negate,
     /// Joins two values.
     Binary(Operator),
-    /// Applies a function to `arguments` values.
-    Call { function: String, arguments: usize },
+    /// Applies a function, or its derivative of this order, to `arguments` values.
+    Call { function: String, order: u8, arguments: usize },
     /// Makes an array of `length` values.
     Array { length: usize },
     /// Pops `indices` counts and indexes the array below them.
@@ -88,6 +88,19 @@ pub struct Type {
     pub unit: Unit,
     /// Lengths of the array; none for a scalar.
     pub shape: Vec<Expression>,
+}
+
+/// What a declared function takes and gives, and how smooth it is.
+#[derive(Clone, Debug)]
+pub struct Signature {
+    /// Unit of the value.
+    pub unit: Unit,
+    /// Unit of the argument.
+    pub argument: Unit,
+    /// Number of continuous derivatives.
+    pub continuity: u8,
+    /// Period, in the unit of the argument.
+    pub period: Option<Expression>,
 }
 
 /// `left == right`.
@@ -151,6 +164,10 @@ pub enum StatementKind {
         name: Name,
         unit: Option<Unit>,
         value: Expression,
+    },
+    Function {
+        name: Name,
+        signature: Signature,
     },
     Constraint {
         name: Name,
@@ -278,6 +295,51 @@ pub enum Declares {
         rates: bool,
     },
     Coord,
+    Function,
     /// What is no field: constants, `let`s, declarations of later versions.
     Value,
+}
+
+impl StatementKind {
+    /// All expressions of the statement, in the order of the text.
+    pub fn expressions(&self) -> Vec<&Expression> {
+        match self {
+            StatementKind::Const { value, .. } | StatementKind::Let { value, .. } => vec![value],
+            StatementKind::Param { kind, value, .. } | StatementKind::Coord { kind, guess: value, .. } => {
+                kind.shape.iter().chain(value).collect()
+            }
+            StatementKind::Input { kind, .. } => kind.shape.iter().collect(),
+            StatementKind::Function { signature, .. } => signature.period.iter().collect(),
+            StatementKind::Constraint { items, .. } => items.iter().flat_map(Item::expressions).collect(),
+            StatementKind::Drive { equation, .. } => vec![&equation.left, &equation.right],
+            StatementKind::Branch { larger, smaller, .. } => vec![larger, smaller],
+            StatementKind::Limit { low, value, high, .. } => vec![low, value, high],
+            StatementKind::Out { kind, value, .. } => kind.shape.iter().chain([value]).collect(),
+            StatementKind::Element { fields, .. } => fields.iter().map(|field| &field.value).collect(),
+            StatementKind::Load { value, on, .. } => vec![value, on],
+            StatementKind::Energy { value, .. } => vec![value],
+            StatementKind::State { kind, value, .. } => kind.shape.iter().chain(value).collect(),
+            StatementKind::Rate { state, rate, .. } => vec![state, rate],
+            StatementKind::Start { coordinate, value, rate, .. } => {
+                [coordinate, value].into_iter().chain(rate).collect()
+            }
+            StatementKind::For(head) => vec![&head.low, &head.high],
+            StatementKind::Independent { .. }
+            | StatementKind::EndFor
+            | StatementKind::Effect { .. }
+            | StatementKind::EndEffect
+            | StatementKind::Scene { .. }
+            | StatementKind::Faulty { .. } => Vec::new(),
+        }
+    }
+}
+
+impl Item {
+    fn expressions(&self) -> Vec<&Expression> {
+        match self {
+            Item::Equation(equation) => vec![&equation.left, &equation.right],
+            Item::For(head) => vec![&head.low, &head.high],
+            Item::EndFor => Vec::new(),
+        }
+    }
 }

@@ -3,7 +3,7 @@
 use proc_macro2::Span;
 
 use super::ast::{Expression, Instruction, Name, Operation, Operator, Target};
-use super::parser::{Parser, Read};
+use super::parser::{GivenUp, Parser, Read};
 use super::tokens::Kind;
 
 /// What waits for its right operand or its closing bracket.
@@ -11,7 +11,7 @@ enum Pending {
     Negate(Span),
     Binary(Operator, Span),
     Parenthesis,
-    Call { function: String, arguments: usize, span: Span },
+    Call { function: String, order: u8, arguments: usize, span: Span },
     Array { length: usize, span: Span },
     Index { indices: usize, span: Span },
     SumLow { variable: Name, span: Span },
@@ -115,12 +115,7 @@ impl Reader {
                     self.push(Operation::Name(word.clone()), span);
                     return Ok(false);
                 }
-                if parser.take(')') {
-                    self.push(Operation::Call { function: word.clone(), arguments: 0 }, span);
-                    return Ok(false);
-                }
-                self.pending.push(Pending::Call { function: word.clone(), arguments: 1, span });
-                Ok(true)
+                Ok(self.call(parser, word.clone(), 0, span))
             }
             Kind::Literal(text) => {
                 let Some(mut number) = number(text) else {
@@ -224,6 +219,11 @@ impl Reader {
     fn component(&mut self, parser: &mut Parser<'_>) -> Read<Option<bool>> {
         let span = parser.span();
         parser.skip(1);
+        if let Kind::Identifier(word) = parser.peek()
+            && *parser.peek_at(1) == Kind::Open('(')
+        {
+            return self.derivative(parser, word);
+        }
         if let Kind::Literal(text) = parser.peek()
             && let Some(index) = number(text)
             && matches!(index, Operation::Number { integer: true, .. })
@@ -234,6 +234,35 @@ impl Reader {
             return Ok(Some(false));
         }
         parser.expected("the number of a component", "write `p.0` or `p[0]`; of a matrix `m[0, 1]`")
+    }
+
+    /// `d1(…)` behind a function's name and its dot.
+    fn derivative(&mut self, parser: &mut Parser<'_>, word: &str) -> Read<Option<bool>> {
+        let order = match word {
+            "d1" => 1,
+            "d2" => 2,
+            _ => {
+                let message = format!("`{word}` is no derivative that a text can use");
+                parser.diagnostics.report(parser.span(), message, DERIVATIVE);
+                return Err(GivenUp);
+            }
+        };
+        let Some(Instruction { operation: Operation::Name(function), span }) = self.code.pop() else {
+            parser.diagnostics.report(parser.span(), "only a function has a derivative", DERIVATIVE);
+            return Err(GivenUp);
+        };
+        parser.skip(2);
+        Ok(Some(self.call(parser, function, order, span)))
+    }
+
+    /// What stands behind the opening parenthesis of a call; returns whether an operand must stand next.
+    fn call(&mut self, parser: &mut Parser<'_>, function: String, order: u8, span: Span) -> bool {
+        if parser.take(')') {
+            self.push(Operation::Call { function, order, arguments: 0 }, span);
+            return false;
+        }
+        self.pending.push(Pending::Call { function, order, arguments: 1, span });
+        true
     }
 
     /// What closes a bracket or separates the parts of a `sum`, or ends the expression.
@@ -270,8 +299,8 @@ impl Reader {
                 }
                 self.push(Operation::SumEnd { begin }, span);
             }
-            Some(Pending::Call { function, arguments, span }) => {
-                self.push(Operation::Call { function, arguments }, span);
+            Some(Pending::Call { function, order, arguments, span }) => {
+                self.push(Operation::Call { function, order, arguments }, span);
             }
             Some(Pending::Array { length, span }) => self.push(Operation::Array { length }, span),
             Some(Pending::Index { indices, span }) => self.push(Operation::Index { indices }, span),
@@ -301,6 +330,7 @@ impl Reader {
     }
 }
 
+const DERIVATIVE: &str = "write `lift.d1(x)` or `lift.d2(x)` of a declared function; what rates need beyond is derived from the text";
 const SUM: &str = "write `sum(i in 0..3: x[i])`";
 
 /// A literal as a number with its unit suffix; `None` where it is no decimal number.
@@ -364,7 +394,8 @@ mod tests {
                 Operation::Name(name) => name.clone(),
                 Operation::Negate => "neg".into(),
                 Operation::Binary(operator) => format!("{operator:?}").to_lowercase(),
-                Operation::Call { function, arguments } => format!("{function}/{arguments}"),
+                Operation::Call { function, order: 0, arguments } => format!("{function}/{arguments}"),
+                Operation::Call { function, order, arguments } => format!("{function}.d{order}/{arguments}"),
                 Operation::Array { length } => format!("[{length}]"),
                 Operation::Index { indices } => format!("index/{indices}"),
                 Operation::SumBegin { variable, end } => format!("sum {}→{end}", variable.text),
@@ -403,6 +434,7 @@ mod tests {
     #[test]
     fn calls_arrays_indices_and_sums_nest() {
         assert_eq!(postfix("atan2(y, x)"), "y x atan2/2");
+        assert_eq!(postfix("a - lift.d1(x + 1)^2"), "a x 1 add lift.d1/1 2 power subtract");
         assert_eq!(postfix("[a, b][1]"), "a b [2] 1 index/1");
         assert_eq!(postfix("p.1 + m[0, 1]"), "p 1 index/1 m 0 1 index/2 add");
         assert_eq!(

@@ -1,6 +1,6 @@
 //! Statements: one after the other, going on behind each fault.
 
-use super::ast::{Declares, Expression, Loop, Name, Statement, StatementKind, Type};
+use super::ast::{Declares, Expression, Loop, Name, Signature, Statement, StatementKind, Type};
 use super::constraint::{equation, read_constraint};
 use super::dynamics;
 use super::expression::expression;
@@ -11,10 +11,11 @@ use super::unit::{declared_type, unit};
 use crate::diagnostics::{Diagnostics, nearest};
 
 /// Words that begin a statement of this version.
-const STATEMENTS: [&str; 25] = [
+const STATEMENTS: [&str; 26] = [
     "const",
     "param",
     "input",
+    "function",
     "coord",
     "let",
     "constraint",
@@ -40,7 +41,7 @@ const STATEMENTS: [&str; 25] = [
 ];
 
 /// Words that begin a statement of the language which this version does not translate.
-const LATER: [&str; 7] = ["pin", "friction", "contact", "function", "data", "redundant", "include"];
+const LATER: [&str; 6] = ["pin", "friction", "contact", "data", "redundant", "include"];
 
 /// Before: flat tokens behind the header. After: all statements that could be read, loops and effects flattened and
 /// balanced, effects and scenes at the top level alone; every other one is reported.
@@ -156,7 +157,8 @@ fn statement(parser: &mut Parser<'_>) -> Read<StatementKind> {
         parser.diagnostics.report(
             span,
             format!("`{word}` is not translated by this version"),
-            "describe the mechanism with const, param, input, coord, let, constraint, drive, branch, limit and out",
+            "describe the mechanism with const, param, input, function, coord, let, constraint, drive, branch, limit and \
+             out",
         );
         parser.skip(1);
         return parser.declare(Declares::Value, "", |_, _| Err(GivenUp)).map(|(_, never)| never);
@@ -192,6 +194,7 @@ fn reader(word: &str) -> Option<Reader> {
         "const" => read_const,
         "param" => read_param,
         "input" => read_input,
+        "function" => read_function,
         "coord" => read_coord,
         "let" => read_let,
         "constraint" => read_constraint,
@@ -270,6 +273,41 @@ fn read_input(parser: &mut Parser<'_>) -> Read<StatementKind> {
         Ok((declared, rates))
     })?;
     Ok(StatementKind::Input { name, kind, rates })
+}
+
+const FUNCTION: &str = "write `function lift: m(rad), C3;` or `function lift: m(rad), C3, periodic TAU;`";
+fn read_function(parser: &mut Parser<'_>) -> Read<StatementKind> {
+    let (name, signature) = parser.declare(Declares::Function, FUNCTION, |parser, _| {
+        parser.expect(':', FUNCTION)?;
+        let value = unit(parser)?;
+        parser.expect('(', FUNCTION)?;
+        let argument = unit(parser)?;
+        parser.expect(')', FUNCTION)?;
+        parser.expect(',', FUNCTION)?;
+        let continuity = continuity(parser)?;
+        let periodic = parser.take(',');
+        if periodic && !parser.take_word("periodic") {
+            return parser.expected("`periodic`", FUNCTION);
+        }
+        let period = if periodic { Some(expression(parser)?) } else { None };
+        end(parser, FUNCTION)?;
+        Ok(Signature { unit: value, argument, continuity, period })
+    })?;
+    Ok(StatementKind::Function { name, signature })
+}
+
+/// `C0` to `C9`: the number of continuous derivatives.
+fn continuity(parser: &mut Parser<'_>) -> Read<u8> {
+    if let Kind::Identifier(word) = parser.peek()
+        && let Some([digit @ b'0'..=b'9']) = word.strip_prefix('C').map(str::as_bytes)
+    {
+        parser.skip(1);
+        return Ok(digit - b'0');
+    }
+    parser.expected(
+        "the number of continuous derivatives, `C0` to `C9`",
+        "write `C2` for a natural cubic spline; constraints need two derivatives, `lift.d1(x)` in one needs three",
+    )
 }
 
 const LET: &str = "write `let a = [L1*cos(phi1), L1*sin(phi1)];`";

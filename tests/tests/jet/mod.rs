@@ -21,13 +21,18 @@ impl Jet {
         self.0[0]
     }
 
+    /// Value, first and second derivative.
+    pub fn parts(self) -> [f64; 3] {
+        self.0
+    }
+
     /// The derivative; what would follow the second is unknown.
     pub fn rate(self) -> Self {
         Jet([self.0[1], self.0[2], f64::NAN])
     }
 
-    /// A function with its derivatives at the value.
-    fn apply(self, [f, df, ddf]: [f64; 3]) -> Self {
+    /// A function with its value and first two derivatives at the value.
+    pub fn apply(self, [f, df, ddf]: [f64; 3]) -> Self {
         let [_, first, second] = self.0;
         Jet([f, df * first, df * second + ddf * first * first])
     }

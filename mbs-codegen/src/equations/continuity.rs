@@ -1,0 +1,178 @@
+//! Which derivatives of declared functions the equations need, and whether the text declares them continuous.
+
+use std::collections::BTreeMap;
+
+use proc_macro2::Span;
+
+use super::{Dynamics, Equations, Row, Sparse};
+use crate::diagnostics::Diagnostics;
+use crate::model::Model;
+use crate::symbolic::{Node, NodeId};
+
+/// The highest derivative of a function that something needs.
+#[derive(Clone, Debug)]
+pub struct Demand {
+    /// Index of the function.
+    pub function: usize,
+    /// Order of the derivative; 0 where the value is enough.
+    pub order: u8,
+    /// What needs it, as a message calls it.
+    pub by: String,
+    /// Where the text calls the function for it.
+    pub span: Span,
+}
+
+/// Before: the equations of a model. After: a demand that goes beyond the declared continuity is reported where the
+/// text calls the function, once a call, with what needs most.
+pub fn check(model: &Model, equations: &Equations, diagnostics: &mut Diagnostics) {
+    let mut worst: BTreeMap<(usize, usize, usize), Demand> = BTreeMap::new();
+    for demand in demands(model, equations) {
+        let start = demand.span.start();
+        let place = (demand.function, start.line, start.column);
+        if worst.get(&place).is_none_or(|known| known.order < demand.order) {
+            worst.insert(place, demand);
+        }
+    }
+    for Demand { function, order, by, span } in worst.into_values() {
+        let Some(function) = model.functions.get(function).filter(|f| f.continuity < order) else { continue };
+        let (name, declared) = (&function.name.text, function.continuity);
+        let (unit, argument) = (&function.unit, &function.argument_unit);
+        diagnostics.report(
+            span,
+            format!("{by} needs {} of `{name}`, which is declared C{declared}", derivative(order)),
+            format!(
+                "supply a smoother function and declare it, `function {name}: {unit}({argument}), C{order};`"
+            ),
+        );
+    }
+}
+
+/// Before: the equations of a model. After: of each function that something calls, what needs its highest
+/// derivative, in the order of the functions.
+pub fn highest(model: &Model, equations: &Equations) -> Vec<Demand> {
+    let mut highest: BTreeMap<usize, Demand> = BTreeMap::new();
+    for demand in demands(model, equations) {
+        if highest.get(&demand.function).is_none_or(|known| known.order < demand.order) {
+            highest.insert(demand.function, demand);
+        }
+    }
+    highest.into_values().collect()
+}
+
+/// "the value", "the second derivative".
+fn derivative(order: u8) -> String {
+    const ORDINALS: [&str; 4] =
+        ["the value", "the first derivative", "the second derivative", "the third derivative"];
+    match ORDINALS.get(usize::from(order)) {
+        Some(words) => (*words).into(),
+        None => format!("the {order}th derivative"),
+    }
+}
+
+/// Demands of all roots, each with the call that it comes from.
+fn demands(model: &Model, equations: &Equations) -> Vec<Demand> {
+    if model.functions.is_empty() {
+        return Vec::new();
+    }
+    let mut demands = Vec::new();
+    let origins = origins(model, equations);
+    let mut of = |by: &str, roots: &[NodeId]| demands.extend(calls(equations, &origins, by, roots));
+    let calls_any = |row: &Row| {
+        let nodes = equations.graph.reachable([row.phi]).into_iter();
+        nodes.map(|id| equations.graph.node(id)).any(|node| matches!(node, Node::Call { .. }))
+    };
+    for (row, derived) in model.rows.iter().zip(&equations.rows).filter(|(_, derived)| calls_any(derived)) {
+        // The later of equals is named: γ says most.
+        for (part, roots) in parts(derived).into_iter().rev() {
+            of(&format!("{part} of row `{}`", row.name), &roots);
+        }
+    }
+    for (branch, root) in model.branches.iter().zip(&equations.branches) {
+        of(&format!("branch `{}`", branch.name), &[*root]);
+    }
+    for (limit, roots) in model.limits.iter().zip(&equations.limits) {
+        of(&format!("limit `{}`", limit.name), roots);
+    }
+    for phase in &equations.phases {
+        let roots: Vec<NodeId> =
+            [Some(phase.argument), Some(phase.speed), phase.acceleration].into_iter().flatten().collect();
+        of("a prescribed rate", &roots);
+    }
+    for (output, derived) in model.outputs.iter().zip(&equations.outputs) {
+        let rates = [derived.rate.flatten(), derived.acceleration.flatten()].into_iter().flatten();
+        let roots: Vec<NodeId> = core::iter::once(derived.value).chain(rates).collect();
+        of(&format!("output `{}`", output.name), &roots);
+    }
+    if let Some(dynamics) = &equations.dynamics {
+        for (by, roots) in of_dynamics(dynamics) {
+            of(by, &roots);
+        }
+    }
+    for (coordinate, root) in model.coordinates.iter().zip(&equations.guesses) {
+        of(&format!("the guess of `{}`", coordinate.name), &[*root]);
+    }
+    demands
+}
+
+/// The functions of masses and forces.
+fn of_dynamics(dynamics: &Dynamics) -> [(&'static str, Vec<NodeId>); 13] {
+    let some = |nodes: &[Option<NodeId>]| nodes.iter().copied().flatten().collect::<Vec<_>>();
+    let entries = |matrix: &Sparse| matrix.iter().flatten().map(|(_, entry)| *entry).collect::<Vec<_>>();
+    [
+        ("M", entries(&dynamics.mass)),
+        ("M x", some(&dynamics.mass_times)),
+        ("Q", some(&dynamics.force)),
+        ("Φ_qᵀ λ", some(&dynamics.reaction)),
+        ("∂Q/∂q", entries(&dynamics.force_q)),
+        ("∂Q/∂q̇", entries(&dynamics.force_qd)),
+        ("(M x)_q", entries(&dynamics.mass_times_q)),
+        ("(Φ_qᵀ λ)_q", entries(&dynamics.reaction_q)),
+        ("the energy", some(&[dynamics.kinetic, dynamics.potential])),
+        ("a power", some(&dynamics.powers)),
+        ("the rate of a state", some(&dynamics.state_rates)),
+        ("an output of multipliers or states", dynamics.loads.clone()),
+        ("the start", [some(&dynamics.start_states), some(&dynamics.start_rates)].concat()),
+    ]
+}
+
+/// The derivatives of a row that are emitted.
+fn parts(row: &Row) -> [(&'static str, Vec<NodeId>); 6] {
+    let some = |root: Option<NodeId>| root.into_iter().collect::<Vec<_>>();
+    [
+        ("Φ", vec![row.phi]),
+        ("Φ_q", row.phi_q.iter().map(|(_, entry)| *entry).collect()),
+        ("Φ_t", some(row.phi_t)),
+        ("Φ_tt", some(row.phi_tt)),
+        ("Φ_qt q̇", some(row.phi_qt_qd)),
+        ("γ", some(row.gamma)),
+    ]
+}
+
+/// Calls that the text makes, by function and argument: order and place of each, ascending.
+type Origins = BTreeMap<(u32, NodeId), Vec<(u8, Span)>>;
+
+fn origins(model: &Model, equations: &Equations) -> Origins {
+    let mut origins = Origins::new();
+    for (call, node) in model.expressions.calls().iter().zip(&equations.calls) {
+        if let Node::Call { function, order, argument } = equations.graph.node(*node) {
+            origins.entry((function, argument)).or_default().push((order, call.span));
+        }
+    }
+    origins.values_mut().for_each(|calls| calls.sort_by_key(|(order, _)| *order));
+    origins
+}
+
+/// The calls below `roots`, each with where the text makes it: a derivative comes from the call of the highest order
+/// below its own at the same argument.
+fn calls(equations: &Equations, origins: &Origins, by: &str, roots: &[NodeId]) -> Vec<Demand> {
+    let reached = equations.graph.reachable(roots.iter().copied()).into_iter();
+    let demands = reached.filter_map(|id| match equations.graph.node(id) {
+        Node::Call { function, order, argument } => {
+            let written = origins.get(&(function, argument))?;
+            let (_, span) = written.iter().take_while(|(below, _)| *below <= order).last()?;
+            Some(Demand { function: function as usize, order, by: by.to_owned(), span: *span })
+        }
+        _ => None,
+    });
+    demands.collect()
+}

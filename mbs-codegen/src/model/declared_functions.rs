@@ -1,0 +1,141 @@
+//! Functions that the text declares and the caller supplies: their declarations and their calls.
+
+use std::collections::BTreeSet;
+
+use proc_macro2::Span;
+
+use super::Function;
+use super::declarations::Declarations;
+use super::elaborate::{Elaborator, Fault, Quantity, Scalar, Value};
+use super::initialiser::{initialiser, numbers};
+use super::units::Dimension;
+use crate::diagnostics::Diagnostics;
+use crate::syntax::ast::{Name, Operation, Signature, Statement, StatementKind};
+
+/// A declared function as expressions see it.
+#[derive(Clone, Copy, Debug)]
+pub struct Callable {
+    /// Index among the functions of the text.
+    index: usize,
+    /// Unit of the value.
+    unit: Dimension,
+    /// Unit of the argument.
+    argument: Dimension,
+}
+
+impl Declarations<'_> {
+    /// Declares a function; its period is a number.
+    pub(super) fn function(&mut self, name: &Name, docs: Vec<String>, signature: &Signature) {
+        let Signature { unit, argument, continuity, period } = signature;
+        let (dimension, taken) =
+            (Dimension::of(unit, self.diagnostics), Dimension::of(argument, self.diagnostics));
+        if !self.owns(name) {
+            return;
+        }
+        let period = period.as_ref().and_then(|expression| {
+            let period = self.elaborate(|work| {
+                let value = work.value(expression)?;
+                let scalar = work.scalar(&value, "a period", value.span)?;
+                let value = initialiser(work, Value::scalar(scalar, value.span), taken.ok_or(Fault)?)?;
+                let period = numbers(work, expression, &value, "a period")?.pop().ok_or(Fault)?;
+                if period > 0.0 {
+                    return Ok(period);
+                }
+                let message = format!("the period of `{}` is not positive", name.text);
+                Err(work.fault(value.span, message, "write a positive period, or none"))
+            });
+            period.ok()
+        });
+        if let (Some(unit), Some(argument)) = (dimension, taken) {
+            let index = self.model.functions.len();
+            self.names.define_function(&name.text, Callable { index, unit, argument });
+        }
+        self.model.functions.push(Function {
+            name: name.clone(),
+            docs,
+            unit: unit.text.clone(),
+            argument_unit: argument.text.clone(),
+            continuity: *continuity,
+            period,
+        });
+    }
+
+    /// Stands for a declaration that could not be read, so that the stub has as many functions.
+    pub(super) fn unknown_function(&mut self, name: &Name, docs: Vec<String>) {
+        self.model.functions.push(Function {
+            name: name.clone(),
+            docs,
+            unit: "1".into(),
+            argument_unit: "1".into(),
+            continuity: 0,
+            period: None,
+        });
+    }
+}
+
+/// Before: arguments as they stand on the stack. After: the value of a declared function, or of its derivative of
+/// this order, or the fault reported.
+pub fn call(
+    work: &mut Elaborator<'_>,
+    function: Callable,
+    (name, order): (&str, u8),
+    arguments: Vec<Value>,
+    span: Span,
+) -> Result<Value, Fault> {
+    let written = if order == 0 { name.to_owned() } else { format!("{name}.d{order}") };
+    let [argument] = work.arguments(&written, arguments, span)?;
+    let scalar = work.scalar(&argument, &format!("`{written}`"), argument.span)?;
+    fits(work, &written, function.argument, scalar)?;
+    let mut unit = function.unit;
+    for _ in 0..order {
+        unit = unit.over(function.argument);
+    }
+    let id = work.expressions.push_call(function.index, order, scalar.id, span);
+    Ok(Value::scalar(Scalar { id, quantity: Quantity::Known(unit), bare: false, span }, span))
+}
+
+/// The argument has the declared unit.
+fn fits(
+    work: &mut Elaborator<'_>,
+    written: &str,
+    declared: Dimension,
+    argument: Scalar,
+) -> Result<(), Fault> {
+    match argument.quantity {
+        Quantity::Known(unit) if unit != declared => {
+            let help = if argument.bare {
+                "a bare number has no unit; write it with one: `100mm`, `30deg`"
+            } else {
+                "bring the argument to the unit that the declaration gives in parentheses"
+            };
+            let message =
+                format!("the argument of `{written}` has the unit `{unit}`; declared is `{declared}`");
+            Err(work.fault(argument.span, message, help))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Reports declared functions that nothing in the text calls: each would ask its caller for a type to no purpose.
+///
+/// In a text with other faults the calls may be what could not be read.
+pub fn check_called(statements: &[Statement], diagnostics: &mut Diagnostics) {
+    if !diagnostics.is_empty() {
+        return;
+    }
+    let instructions = statements.iter().flat_map(|s| s.kind.expressions()).flat_map(|e| &e.code);
+    let called: BTreeSet<&str> = instructions
+        .filter_map(|instruction| match &instruction.operation {
+            Operation::Call { function, .. } => Some(function.as_str()),
+            _ => None,
+        })
+        .collect();
+    for statement in statements {
+        if let StatementKind::Function { name, .. } = &statement.kind
+            && !called.contains(name.text.as_str())
+        {
+            let help = format!("call it, `{}(x)`, or remove the declaration", name.text);
+            diagnostics.report(name.span, format!("function `{}` is never called", name.text), help);
+        }
+    }
+}
