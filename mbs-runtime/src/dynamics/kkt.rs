@@ -64,6 +64,18 @@ impl<R: Real, const N: usize, const M: usize> System<R, N, M> {
         self.factorize_rank_revealing(R::constant(TRUNCATION), coordinates, t)
     }
 
+    /// Factorises by LU whatever the pivots: for matrices that a penalty makes large in some directions.
+    ///
+    /// # Errors
+    /// As [`factorize`](Self::factorize), where a pivot is 0.
+    pub(super) fn factorize_regular(&self, coordinates: &[Entry], t: R) -> Result<Factors<R, N, M>, Failure> {
+        let (blocks, health) = Blocks::factorize(&self.mass, &self.phi_q);
+        if R::constant(0.0) < health.margin {
+            return Ok(Factors { kind: Kind::Blocks(blocks), ..self.factors(health.margin.sqrt()) });
+        }
+        self.factorize_rank_revealing(R::constant(TRUNCATION), coordinates, t)
+    }
+
     /// Factorises Φ_q rank-revealing and M on its null space; rows whose part of their own is below `truncation` count
     /// as dependent.
     ///
@@ -138,6 +150,19 @@ impl<R: Real, const N: usize, const M: usize> Factors<R, N, M> {
             *component = *component / (*scale * self.mass_weight);
         }
         (x, lambda)
+    }
+
+    /// Motions that the rows leave free, orthogonal in the metric, in the units of the coordinates: N less the rank of
+    /// them, then zeros. Of a rank-revealing factorization; of another none.
+    pub fn free_motions(&self) -> [[R; N]; N] {
+        let mut motions = [[R::constant(0.0); N]; N];
+        if let Kind::NullSpace(null_space) = &self.kind {
+            for (motion, index) in motions.iter_mut().zip(null_space.rank()..N) {
+                *motion = null_space.unit(index);
+                motion.iter_mut().zip(&self.metric.coordinates).for_each(|(x, scale)| *x = *x * *scale);
+            }
+        }
+        motions
     }
 
     /// How near Φ_q is to losing rank: about its smallest over its largest singular value in the metric; of rows that

@@ -30,6 +30,23 @@ impl<T: Scalar, const N: usize, const M: usize> Metric<T, N, M> {
 }
 
 impl<R: Real, const N: usize, const M: usize> Metric<R, N, M> {
+    /// The same coordinates without rows.
+    pub(super) fn without_rows(&self) -> Metric<R, N, 0> {
+        Metric { coordinates: self.coordinates, rows: [], kinds: self.kinds }
+    }
+
+    /// Of each row, the largest entry of `mass` (N rows of N) in the metric over its scale squared: what Φ_qᵀ Φ_q is to be
+    /// multiplied by to be as large as the mass: M.
+    pub(super) fn weights(&self, mass: &[[R; N]; N]) -> [R; M] {
+        let mut largest = R::constant(0.0);
+        for (row, scale) in mass.iter().zip(&self.coordinates) {
+            for (entry, other) in row.iter().zip(&self.coordinates) {
+                largest = largest.max((*entry * *scale * *other).abs());
+            }
+        }
+        self.rows.map(|scale| largest / (scale * scale))
+    }
+
     /// The largest of `error` (N) over its tolerance rtol ‖x‖ + atol scale, ‖x‖ the largest of `before` and `after`
     /// (N) among the coordinates of the same unit.
     ///

@@ -46,6 +46,8 @@ pub struct Counts {
     pub steps: u64,
     /// Iterations of implicit methods.
     pub iterations: u64,
+    /// Steps of the augmented Lagrangian that ended with a multiplier still moving, next to a singular position.
+    pub unfinished: u64,
 }
 
 /// How the accelerations follow from a state, and how a state stays on the constraints.

@@ -16,6 +16,8 @@ pub struct Instant<R, const N: usize, const M: usize, Z> {
     pub y: State<R, N, Z>,
     /// Their rates and the multipliers.
     pub solved: Solved<R, N, M, Z>,
+    /// Accelerations that a method carries from step to step beside q̈; q̈ where it carries none: N.
+    pub carried: [R; N],
 }
 
 /// A way to move on: integrator and formulation in one.
@@ -106,7 +108,7 @@ where
         motion.settle(t, &mut y)?;
         let solved = motion.solve(t, &y)?;
         *counts = motion.counts;
-        Ok(Instant { t, y, solved })
+        Ok(Instant { t, y, solved, carried: solved.rate.qd })
     }
 
     fn admit(&self, h: R, t: R) -> Result<(), Failure> {

@@ -9,7 +9,7 @@ const LEAST_SHARE: f64 = 1e-8;
 /// Smallest pivot of the reduced mass over its trace, in ε: below it, nothing but rounding moves.
 const LEAST_INERTIA: f64 = 64.0;
 
-/// A complete orthogonal decomposition of Φ_q, and LDLᵀ of M on its null space, all in the reference metric.
+/// A complete orthogonal decomposition of Φ_q, and LU of M on its null space, all in the reference metric.
 ///
 /// Φ_qᵀ P = Q [L; 0]ᵀ with rows brought up longest first, L = Z T. The columns of Q from the rank on span the free
 /// motions, those of Z the combinations of multipliers without effect.
@@ -27,7 +27,7 @@ pub(super) struct NullSpace<R, const N: usize, const M: usize> {
     /// Columns of T, upper triangular.
     triangle: [[R; M]; M],
     mass: [[R; N]; N],
-    /// LDLᵀ of QᵀMQ from the rank on; the other rows are idle.
+    /// L and U of QᵀMQ from the rank on; the other rows are idle.
     reduced: [[R; N]; N],
 }
 
@@ -109,7 +109,7 @@ impl<R: Real, const N: usize, const M: usize> NullSpace<R, N, M> {
         }
     }
 
-    /// Before: Q. After: LDLᵀ of the mass on the null space.
+    /// Before: Q. After: LU of the mass on the null space.
     fn reduce(&mut self) -> Result<(), usize> {
         let zero = R::constant(0.0);
         for j in self.rank..N {
@@ -124,7 +124,7 @@ impl<R: Real, const N: usize, const M: usize> NullSpace<R, N, M> {
         let trace = (self.rank..N).fold(zero, |sum, j| sum + diagonal(&self.reduced, j).abs());
         for k in self.rank..N {
             let pivot = diagonal(&self.reduced, k);
-            if !(R::constant(LEAST_INERTIA) * R::EPSILON * trace).less(pivot) {
+            if !(R::constant(LEAST_INERTIA) * R::EPSILON * trace).less(pivot.abs()) {
                 return Err(self.idle_coordinate(k));
             }
             let above = self.reduced.get(k).copied().unwrap_or([zero; N]);
@@ -168,7 +168,7 @@ impl<R: Real, const N: usize, const M: usize> NullSpace<R, N, M> {
     }
 
     /// Q e_j.
-    fn unit(&self, j: usize) -> [R; N] {
+    pub(super) fn unit(&self, j: usize) -> [R; N] {
         let mut direction = [R::constant(0.0); N];
         if let Some(place) = direction.get_mut(j) {
             *place = R::constant(1.0);
@@ -220,7 +220,7 @@ impl<R: Real, const N: usize, const M: usize> NullSpace<R, N, M> {
         x
     }
 
-    /// LDLᵀ w = `rest` from the rank on.
+    /// L U w = `rest` from the rank on.
     fn moved(&self, rest: &[R; N]) -> [R; N] {
         let zero = R::constant(0.0);
         let mut w = *rest;
@@ -233,9 +233,9 @@ impl<R: Real, const N: usize, const M: usize> NullSpace<R, N, M> {
         }
         for i in (self.rank..N).rev() {
             let pivot = get(&self.reduced, i, i);
-            let known = (i + 1..N).fold(zero, |sum, j| sum + get(&self.reduced, j, i) * component(&w, j));
+            let known = (i + 1..N).fold(zero, |sum, j| sum + get(&self.reduced, i, j) * component(&w, j));
             if let Some(place) = w.get_mut(i) {
-                *place = *place / pivot - known;
+                *place = (*place - known) / pivot;
             }
         }
         w

@@ -124,7 +124,7 @@ where
         }
         Projection::default().settle(&model, t, &mut y, &mut counts)?;
         let solved = method.solve(&model, t, &y, &[R::constant(0.0); M], &mut counts)?;
-        let now = Instant { t, y, solved };
+        let now = Instant { t, y, solved, carried: solved.rate.qd };
         model.check_assembly(t, &y, true)?;
         let reference = model.total_energy(t, &y);
         Ok(Simulation {
@@ -193,11 +193,11 @@ where
         if !self.stale {
             return Ok(self.now);
         }
-        let Instant { t, mut y, solved } = self.now;
+        let Instant { t, mut y, solved, .. } = self.now;
         let model = self.model();
         Projection::default().settle(&model, t, &mut y, counts)?;
         let solved = self.method.solve(&model, t, &y, &solved.lambda, counts)?;
-        Ok(Instant { t, y, solved })
+        Ok(Instant { t, y, solved, carried: solved.rate.qd })
     }
 
     fn take(&mut self, next: Instant<R, N, M, S::States>, counts: Counts) {
@@ -421,7 +421,7 @@ where
                     let mut y = if t < accepted.end.t { known.at(t) } else { accepted.end.y };
                     super::equation::Equation::settle(equations, t, &mut y)?;
                     let solved = equations.solve(t, &y)?;
-                    see(&Instant { t, y, solved });
+                    see(&Instant { t, y, solved, carried: solved.rate.qd });
                     index += 1;
                 }
                 Ok(None)
@@ -464,7 +464,7 @@ where
         counts = equations.counts;
         counts.steps += u64::from(adaptive.accepted.wrapping_sub(taken));
         self.adaptive = adaptive;
-        self.take(Instant { t, y, solved }, counts);
+        self.take(Instant { t, y, solved, carried: solved.rate.qd }, counts);
         Ok(stopped.is_some())
     }
 }

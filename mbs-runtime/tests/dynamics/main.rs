@@ -1,7 +1,9 @@
 //! Motion from forces, on mechanisms whose answers are known.
 
+mod analyses;
 mod failures;
 mod integrators;
 mod linkage;
+mod methods;
 mod pendulum;
 mod singular;

@@ -1,0 +1,130 @@
+//! Generalised-α on the equations of index 3: accuracy of order 2 with damping of what the step does not resolve.
+
+use super::implicit::{MOST_ITERATIONS, Tangent};
+use super::kkt::System;
+use super::model::{Counts, Formulation, Model, Solved};
+use super::motion::{Instant, Method};
+use super::multipliers::Unstabilized;
+use super::vector::{State, Vector};
+use crate::{Dynamic, Failure, Real};
+
+/// Generalised-α with Φ = 0 at every step's end; Φ̇ = 0 holds to order 2.
+///
+/// q = q₀ + h q̇₀ + h² ((½ − β) a₀ + β a), q̇ = q̇₀ + h ((1 − γ) a₀ + γ a), (1 − α_m) a + α_m a₀ = (1 − α_f) q̈ + α_f q̈₀, with
+/// M q̈ + Φ_qᵀ λ = Q. Newton's matrix is brought to the size of the mass before it is factorised, so that its condition
+/// does not grow with 1/h². First-order states by the trapezoidal rule within the same iteration, which converges where
+/// h is below twice their time constant.
+/// Source: Arnold & Brüls 2007; Chung & Hulbert 1993.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GeneralizedAlpha {
+    /// Spectral radius ρ∞ at infinite frequency, 0 … 1: what is left after a step of a vibration that is too fast for it.
+    pub rho: f64,
+}
+
+impl Default for GeneralizedAlpha {
+    /// ρ∞ = 0.8.
+    fn default() -> Self {
+        GeneralizedAlpha { rho: 0.8 }
+    }
+}
+
+/// α_m, α_f, β, γ.
+struct Coefficients<R> {
+    alpha_m: R,
+    alpha_f: R,
+    beta: R,
+    gamma: R,
+}
+
+impl GeneralizedAlpha {
+    fn coefficients<R: Real>(self) -> Coefficients<R> {
+        let rho = self.rho.clamp(0.0, 1.0);
+        let (alpha_m, alpha_f) = ((2.0 * rho - 1.0) / (rho + 1.0), rho / (rho + 1.0));
+        let gamma = 0.5 + alpha_f - alpha_m;
+        let beta = 0.25 * (gamma + 0.5) * (gamma + 0.5);
+        Coefficients {
+            alpha_m: R::constant(alpha_m),
+            alpha_f: R::constant(alpha_f),
+            beta: R::constant(beta),
+            gamma: R::constant(gamma),
+        }
+    }
+}
+
+impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Method<S, R, N, M> for GeneralizedAlpha {
+    fn solve(
+        &self,
+        model: &Model<'_, S, R, N, M>,
+        t: R,
+        y: &State<R, N, S::States>,
+        lambda: &[R; M],
+        counts: &mut Counts,
+    ) -> Result<Solved<R, N, M, S::States>, Failure> {
+        Unstabilized.solve(model, t, y, lambda, counts)
+    }
+
+    fn step(
+        &self,
+        model: &Model<'_, S, R, N, M>,
+        from: &Instant<R, N, M, S::States>,
+        h: R,
+        counts: &mut Counts,
+    ) -> Result<Instant<R, N, M, S::States>, Failure> {
+        let (one, t) = (R::constant(1.0), from.t + h);
+        let Coefficients { alpha_m, alpha_f, beta, gamma } = self.coefficients::<R>();
+        let (start, before, a0) = (&from.y, &from.solved.rate.qd, &from.carried);
+        let of_q = (one - alpha_m) / (beta * h * h * (one - alpha_f));
+        let mut qdd = *before;
+        let mut lambda = from.solved.lambda;
+        let a = |qdd: &[R; N]| {
+            let weight = one / (one - alpha_m);
+            let sum = a0.zero().plus((one - alpha_f) * weight, &[1.0], [qdd]);
+            sum.plus(alpha_f * weight, &[1.0], [before]).plus(-alpha_m * weight, &[1.0], [a0])
+        };
+        let half = R::constant(0.5);
+        let mut y = *start;
+        let mut rate = from.solved.rate;
+        let (mut step, mut last) = ([R::constant(0.0); N], R::constant(f64::MAX));
+        for _ in 0..MOST_ITERATIONS {
+            let a = a(&qdd);
+            y.q = start.q.plus(h, &[1.0], [&start.qd]).plus(h * h * (half - beta), &[1.0], [a0]);
+            y.q = y.q.plus(h * h * beta, &[1.0], [&a]);
+            y.qd = start.qd.plus(h * (one - gamma), &[1.0], [a0]).plus(h * gamma, &[1.0], [&a]);
+            model.trapezoid(from, h, &mut y, &rate);
+            let position = model.position(t, &y);
+            rate = model.rates(&position, &y, qdd, &lambda);
+            let imbalance = model.imbalance(&position, &y, &qdd, &lambda);
+            let phi = model.mechanism.phi(model.parameters, &position);
+            let tangent = Tangent::of(model, &position, &y, &qdd, &lambda);
+            let matrix = tangent.combined(of_q, gamma / (beta * h), one);
+            let phi_q = model.mechanism.phi_q(model.parameters, &position);
+            let factors = System::new(&matrix, &phi_q, model.metric).factorize(S::COORDINATES, t)?;
+            let (correction, change) = factors.solve(&imbalance, &phi);
+            counts.iterations += 1;
+            counts.evaluations += 1;
+            step = correction;
+            qdd = qdd.plus(-of_q, &[1.0], [&step]);
+            lambda = lambda.plus(-one, &[1.0], [&change]);
+            if model.standing(&step, &y.q, &mut last)? {
+                y.q = y.q.plus(-one, &[1.0], [&step]);
+                y.qd = y.qd.plus(-gamma / (beta * h), &[1.0], [&step]);
+                model.trapezoid(from, h, &mut y, &rate);
+                let rate = model.rates(&model.position(t, &y), &y, qdd, &lambda);
+                let solved = Solved { rate, lambda, margin: factors.margin() };
+                return Ok(Instant { t, y, solved, carried: self.carried(a0, before, &qdd) });
+            }
+        }
+        Err(model.unbalanced(&step, t))
+    }
+}
+
+impl GeneralizedAlpha {
+    /// The accelerations a that the next step starts from.
+    fn carried<R: Real, const N: usize>(self, a0: &[R; N], before: &[R; N], qdd: &[R; N]) -> [R; N] {
+        let Coefficients { alpha_m, alpha_f, .. } = self.coefficients::<R>();
+        let one = R::constant(1.0);
+        let weight = one / (one - alpha_m);
+        let sum = a0.zero().plus((one - alpha_f) * weight, &[1.0], [qdd]);
+        sum.plus(alpha_f * weight, &[1.0], [before]).plus(-alpha_m * weight, &[1.0], [a0])
+    }
+}

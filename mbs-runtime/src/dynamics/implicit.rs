@@ -1,0 +1,123 @@
+//! What implicit methods share: the tangent of the equations of motion, and the end of their iterations.
+
+use super::model::Model;
+use super::motion::Instant;
+use super::vector::{State, Vector};
+use crate::{Dynamic, Failure, Real, kinematics};
+
+/// Iterations of a step: four do where the motion is smooth.
+pub(super) const MOST_ITERATIONS: u32 = 40;
+
+/// A correction that counts as rounding, in ε of the coordinates in the metric.
+const STANDING: f64 = 64.0;
+
+/// A correction that no longer falls counts as converged below this, in the metric: nine digits, beyond what a method of
+/// order 2 has.
+const STUCK: f64 = 1e-9;
+
+/// M x₂ + C x₁ + K x₀ about a state: ∂/∂q̈, ∂/∂q̇ and ∂/∂q of M q̈ + Φ_qᵀ λ − Q, N rows of N each.
+pub(super) struct Tangent<R, const N: usize> {
+    pub mass: [[R; N]; N],
+    pub damping: [[R; N]; N],
+    pub stiffness: [[R; N]; N],
+}
+
+impl<R: Real, const N: usize> Tangent<R, N> {
+    /// C = −∂Q/∂q̇, K = (M q̈)_q + (Φ_qᵀ λ)_q − ∂Q/∂q.
+    pub(super) fn of<S: Dynamic<R, N, M>, const M: usize>(
+        model: &Model<'_, S, R, N, M>,
+        position: &S::Position,
+        y: &State<R, N, S::States>,
+        qdd: &[R; N],
+        lambda: &[R; M],
+    ) -> Self {
+        let (mechanism, parameters) = (model.mechanism, model.parameters);
+        let none = [[R::constant(0.0); N]; N];
+        let mut damping = none;
+        subtract(&mut damping, &mechanism.force_qd(parameters, position, &y.qd, &y.states, lambda));
+        let mut stiffness = mechanism.mass_times_q(parameters, position, qdd);
+        add(&mut stiffness, R::constant(1.0), &mechanism.reaction_q(parameters, position, lambda));
+        subtract(&mut stiffness, &mechanism.force_q(parameters, position, &y.qd, &y.states, lambda));
+        Tangent { mass: mechanism.mass(parameters, position), damping, stiffness }
+    }
+
+    /// `mass` M + `damping` C + `stiffness` K.
+    pub(super) fn combined(&self, mass: R, damping: R, stiffness: R) -> [[R; N]; N] {
+        let mut sum = [[R::constant(0.0); N]; N];
+        add(&mut sum, mass, &self.mass);
+        add(&mut sum, damping, &self.damping);
+        add(&mut sum, stiffness, &self.stiffness);
+        sum
+    }
+}
+
+/// `sum` + `factor` · `matrix`.
+pub(super) fn add<R: Real, const N: usize>(sum: &mut [[R; N]; N], factor: R, matrix: &[[R; N]; N]) {
+    for (row, other) in sum.iter_mut().zip(matrix) {
+        row.iter_mut().zip(other).for_each(|(entry, other)| *entry = *entry + factor * *other);
+    }
+}
+
+fn subtract<R: Real, const N: usize>(sum: &mut [[R; N]; N], matrix: &[[R; N]; N]) {
+    add(sum, R::constant(-1.0), matrix);
+}
+
+impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, R, N, M> {
+    /// M q̈ + Φ_qᵀ λ − Q: N.
+    pub(super) fn imbalance(
+        &self,
+        position: &S::Position,
+        y: &State<R, N, S::States>,
+        qdd: &[R; N],
+        lambda: &[R; M],
+    ) -> [R; N] {
+        let (mechanism, parameters) = (self.mechanism, self.parameters);
+        let inertia = mechanism.mass_times(parameters, position, qdd);
+        let reaction = mechanism.reaction(parameters, position, lambda);
+        let force = mechanism.force(parameters, position, &y.qd, &y.states, lambda);
+        inertia.plus(R::constant(1.0), &[1.0, -1.0], [&reaction, &force])
+    }
+
+    /// First-order states and work at the end of a step, by the trapezoidal rule from the rates at both ends.
+    pub(super) fn trapezoid(
+        &self,
+        from: &Instant<R, N, M, S::States>,
+        h: R,
+        end: &mut State<R, N, S::States>,
+        rate: &State<R, N, S::States>,
+    ) {
+        let moved = from.y.plus(h, &[0.5, 0.5], [&from.solved.rate, rate]);
+        (end.states, end.work) = (moved.states, moved.work);
+    }
+
+    /// The end of an iteration: whether the correction `step` (N) of `q` (N) is rounding, or stands at what may stand.
+    /// `last` is the size of the correction before.
+    ///
+    /// # Errors
+    /// [`Failure::NonFinite`] with the coordinate whose correction is no number.
+    pub(super) fn standing(&self, step: &[R; N], q: &[R; N], last: &mut R) -> Result<bool, Failure> {
+        if let Some(failure) = kinematics::non_finite(step, S::COORDINATES) {
+            return Err(failure);
+        }
+        let (mut size, mut extent) = (R::constant(0.0), R::constant(1.0));
+        for ((step, q), scale) in step.iter().zip(q).zip(&self.metric.coordinates) {
+            size = size.max((*step / *scale).abs());
+            extent = extent.max((*q / *scale).abs());
+        }
+        let stuck = *last <= size && size < R::constant(STUCK);
+        *last = size;
+        Ok(stuck || size <= R::constant(STANDING) * R::EPSILON * extent)
+    }
+
+    /// No balance within [`MOST_ITERATIONS`]: the coordinate with the largest correction `step` (N).
+    pub(super) fn unbalanced(&self, step: &[R; N], t: R) -> Failure {
+        let mut worst = (0_u16, R::constant(-1.0));
+        for ((index, step), scale) in (0..).zip(step).zip(&self.metric.coordinates) {
+            if worst.1 < (*step / *scale).abs() {
+                worst = (index, (*step / *scale).abs());
+            }
+        }
+        let coordinate = kinematics::entry(S::COORDINATES, worst.0);
+        Failure::Unbalanced { coordinate, iterations: MOST_ITERATIONS, time: t.to_f64() }
+    }
+}

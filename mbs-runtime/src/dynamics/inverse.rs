@@ -1,0 +1,59 @@
+//! Inverse dynamics: the forces of a motion that drives prescribe.
+
+use super::metric::Metric;
+use super::model::{Counts, Formulation, Model, Solved};
+use super::multipliers::{Unstabilized, factorize};
+use super::projection::Projection;
+use super::vector::State;
+use crate::{Dynamic, Failure, Motion, Real, kinematics};
+
+/// A driven mechanism at one time, with the forces that its motion needs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Driven<R, const N: usize, const M: usize, L> {
+    /// Coordinates: N.
+    pub q: [R; N],
+    /// Velocities from Φ_q q̇ = −Φ_t: N.
+    pub qd: [R; N],
+    /// Accelerations from Φ_q q̈ = γ: N.
+    pub qdd: [R; N],
+    /// Multipliers from Φ_qᵀ λ = Q − M q̈: M. A drive's effort is −λ; a reaction's force on the coordinates is −Φ_qᵀ λ.
+    pub lambda: [R; M],
+    /// Outputs that use them.
+    pub loads: L,
+}
+
+/// Motion and forces at time `t` (s), from positions next to `q` (N).
+///
+/// Rows may be dependent: the multipliers are then the shortest in the metric. Where the drives leave a coordinate free,
+/// it is taken as at rest in the mass's measure, and its acceleration follows from the forces.
+///
+/// # Errors
+/// [`Failure::NonFinite`], [`Failure::Inconsistent`] where the rows contradict each other at this time,
+/// [`Failure::Inertialess`].
+pub fn inverse<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
+    mechanism: &S,
+    t: R,
+    q: &[R; N],
+) -> Result<Driven<R, N, M, S::Loads>, Failure> {
+    if let Some(failure) = kinematics::variable_failure(mechanism) {
+        return Err(failure);
+    }
+    let parameters = mechanism.parameters();
+    let metric = Metric::of(mechanism, &parameters);
+    let model = Model { mechanism, parameters: &parameters, metric: &metric, balanced: false };
+    let (zero, mut counts) = (R::constant(0.0), Counts::default());
+    let states = mechanism.start_states(&parameters);
+    let mut y = State { q: *q, qd: [zero; N], states, work: zero };
+    model.check(t, &y)?;
+    Projection::default().settle(&model, t, &mut y, &mut counts)?;
+    // All of the velocity at once: the steps of a projection are measured by a velocity that is there already.
+    let position = model.position(t, &y);
+    let factors = factorize(&model, t, &position, &mut counts)?;
+    let moving = mechanism.phi_t(&parameters, &position).map(|rate| -rate);
+    y.qd = factors.solve(&[zero; N], &moving).0;
+    let solved: Solved<R, N, M, S::States> = Unstabilized.solve(&model, t, &y, &[zero; M], &mut counts)?;
+    let (qd, qdd, lambda) = (y.qd, solved.rate.qd, solved.lambda);
+    let motion = Motion { qd: &qd, qdd: &qdd, lambda: &lambda, states: &y.states };
+    let loads = mechanism.loads(&parameters, &position, &motion);
+    Ok(Driven { q: y.q, qd, qdd, lambda, loads })
+}
