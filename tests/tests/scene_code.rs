@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 use mbs_tests::{proofs::Workshop, tools};
 
 /// Every function of the library; all emitted ones but the copy of the whole struct.
-const FUNCTIONS: [&str; 19] = [
+const FUNCTIONS: [&str; 21] = [
     "parameters",
     "guess",
     "coordinate_scales",
@@ -18,11 +18,13 @@ const FUNCTIONS: [&str; 19] = [
     "position",
     "phi",
     "phi_q",
+    "phi_q_entries",
     "phi_t",
     "phi_tt",
     "phi_qt_qd",
     "gamma",
     "branches",
+    "limits",
     "outputs",
     "evaluate",
     "solve_blocks",

@@ -21,6 +21,7 @@ macro_rules! slider_crank {
             constraint closure { r*unit(theta) + L*unit(phi) == [x, shift]; }
             drive crank: theta == omega*t;
             branch ahead: cos(phi) > 0;
+            limit travel: 0.1m <= x <= 0.3m;
             out pin: [m; 2] = r*unit(theta);
             out speed: m/s = der(x);
             $($effects)*
@@ -41,6 +42,7 @@ slider_crank! {
         coord y: [m; 2];
         constraint hung { y == arm*unit(psi) + [x, 0]; arm*sin(psi - tilt) == r*sin(theta) + sway; }
         branch low: cos(psi) > 0;
+        limit swing: -1 <= psi <= 1;
         out height: m = y[1];
     }
     effect nothing {}
@@ -59,6 +61,7 @@ const N: usize = if cfg!(feature = "with") { 6 } else { 3 };
 
 type Parameters = <Chosen as Mechanism<f64, N, N>>::Parameters;
 type Position = <Chosen as Mechanism<f64, N, N>>::Position;
+type Entries = <Chosen as Mechanism<f64, N, N>>::Entries;
 type Factors = <Chosen as Kinematic<f64, N>>::Factors;
 
 #[panic_handler]
@@ -85,6 +88,7 @@ export! {
     fn scene_position(m: &Chosen, p: &Parameters, q: &[f64; N], t: f64) -> Position { m.position(p, q, t) }
     fn scene_phi(m: &Chosen, p: &Parameters, s: &Position) -> [f64; N] { m.phi(p, s) }
     fn scene_phi_q(m: &Chosen, p: &Parameters, s: &Position) -> [[f64; N]; N] { m.phi_q(p, s) }
+    fn scene_phi_q_entries(m: &Chosen, p: &Parameters, s: &Position) -> Entries { m.phi_q_entries(p, s) }
     fn scene_phi_t(m: &Chosen, p: &Parameters, s: &Position) -> [f64; N] { m.phi_t(p, s) }
     fn scene_phi_tt(m: &Chosen, p: &Parameters, s: &Position) -> [f64; N] { m.phi_tt(p, s) }
     fn scene_phi_qt_qd(m: &Chosen, p: &Parameters, s: &Position, qd: &[f64; N]) -> [f64; N] { m.phi_qt_qd(p, s, qd) }
@@ -92,12 +96,15 @@ export! {
     fn scene_branches(m: &Chosen, p: &Parameters, s: &Position) -> <Chosen as Mechanism<f64, N, N>>::Branches {
         m.branches(p, s)
     }
+    fn scene_limits(m: &Chosen, p: &Parameters, s: &Position) -> <Chosen as Mechanism<f64, N, N>>::Limits {
+        m.limits(p, s)
+    }
     fn scene_outputs(
         m: &Chosen, p: &Parameters, s: &Position, qd: &[f64; N], qdd: &[f64; N]
     ) -> <Chosen as Mechanism<f64, N, N>>::Outputs {
         m.outputs(p, s, qd, qdd)
     }
-    fn scene_evaluate(m: &Chosen, p: &Parameters, q: &[f64; N], t: f64, qd: &[f64; N]) -> Evaluation<f64, N, N> {
+    fn scene_evaluate(m: &Chosen, p: &Parameters, q: &[f64; N], t: f64, qd: &[f64; N]) -> Evaluation<f64, Entries, N> {
         m.evaluate(p, q, t, qd)
     }
     fn scene_solve_blocks(m: &Chosen, p: &Parameters, q: &mut [f64; N], t: f64) -> [Outcome; 1] {
