@@ -226,6 +226,8 @@ pub trait Factorization<T: Scalar, const K: usize>: Copy {
     fn factorize(a: &[[T; K]; K], row_scales: &[T; K], coordinate_scales: &[T; K]) -> (Self, T);
     /// Solves `a x = b`.
     fn solve(&self, b: &[T; K]) -> [T; K];
+    /// Solves `aᵀ x = b`.
+    fn solve_transposed(&self, b: &[T; K]) -> [T; K];
     /// Whether the determinant of `a` is negative; of no meaning in a singular lane.
     fn reverses(&self) -> T::Mask;
 }

@@ -12,6 +12,7 @@
 //! assert!(motion.closure.iter().all(|error| *error < 1e-12));
 //! ```
 
+pub mod andrews;
 pub mod cam_flat;
 pub mod cam_oscillating;
 pub mod cam_roller;
@@ -25,8 +26,10 @@ pub mod geneva;
 pub mod jansen;
 pub mod loop_length;
 pub mod loop_relative;
+pub mod n_four_bar;
 pub mod open_chain;
 pub mod peaucellier;
+pub mod pendulum;
 pub mod planetary_gear;
 pub mod quick_return;
 pub mod scotch_yoke;

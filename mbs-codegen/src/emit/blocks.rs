@@ -118,8 +118,20 @@ fn factorization(size: usize) -> String {
     }
 }
 
-/// Declaration of the factors, body of `factorize`, body of `solve_linear`.
-pub fn linear(equations: &Equations, program: &Program, scope: &Scope<'_>) -> (String, String, String) {
+/// What is emitted of the linear systems.
+pub struct Linear {
+    /// Declaration of the factors.
+    pub factors: String,
+    /// Body of `factorize`, or of `partition`.
+    pub factorize: String,
+    /// The unknowns of all blocks from the right-hand sides, one local each.
+    pub solve: String,
+    /// The multipliers from the transposed blocks, one local each, and what they leave at independent coordinates.
+    pub reduce: String,
+}
+
+/// Before: blocks in the order of solution. After: the code of their linear systems.
+pub fn linear(equations: &Equations, program: &Program, scope: &Scope<'_>) -> Linear {
     let entries = Entries::of(equations, program, scope);
     let mut fields = format!("/// Entries off the diagonal blocks.\nentries: [T; {}],\n", entries.kept.len());
     let mut factorize = String::new();
@@ -132,11 +144,7 @@ pub fn linear(equations: &Equations, program: &Program, scope: &Scope<'_>) -> (S
         match &block.method {
             Method::Explicit { coefficient, .. } => {
                 for (coordinate, right_side) in block.coordinates.iter().zip(&right_sides) {
-                    let value = match *coefficient {
-                        1.0 => right_side.clone(),
-                        -1.0 => format!("-({right_side})"),
-                        other => format!("({right_side}) / {}", number(other)),
-                    };
+                    let value = quotient(right_side, *coefficient);
                     let _ = writeln!(solve, "let __x{coordinate} = {value};");
                 }
             }
@@ -167,13 +175,76 @@ pub fn linear(equations: &Equations, program: &Program, scope: &Scope<'_>) -> (S
     }
     let kept = list(entries.kept.keys().map(|id| scope.operand(*id)));
     let _ = write!(factorize, "(__Factors {{ entries: {kept}, {names} }}, __margin)");
-    solve += &list((0..scope.model.coordinates.len()).map(|c| format!("__x{c}")));
-    let declaration = format!(
+    let factors = format!(
         "/// Factorised diagonal blocks, and the entries of Φ_q off them.\n\
          #[derive(::core::clone::Clone, ::core::marker::Copy, ::core::fmt::Debug)]\n\
          pub struct __Factors<T: __mbs::Scalar> {{\n{fields}}}"
     );
-    (declaration, factorize, solve)
+    Linear { factors, factorize, solve, reduce: reduce(program, &entries) }
+}
+
+/// Φ_qdᵀ λ = y_d, the last block first, then y_i − Φ_qiᵀ λ.
+fn reduce(program: &Program, entries: &Entries<'_>) -> String {
+    let mut text = String::new();
+    for (index, block) in program.blocks.iter().enumerate().rev() {
+        let right_sides: Vec<String> =
+            block.coordinates.iter().map(|c| entries.transposed(*c, Some(block))).collect();
+        match &block.method {
+            Method::Explicit { coefficient, .. } => {
+                for (row, right_side) in block.rows.iter().zip(&right_sides) {
+                    let _ = writeln!(text, "let __l{row} = {};", quotient(right_side, *coefficient));
+                }
+            }
+            Method::Newton(_) => {
+                let (size, kind) = (block.rows.len(), factorization(block.rows.len()));
+                let multipliers = list(block.rows.iter().map(|row| format!("__l{row}")));
+                let right_sides = list(right_sides.into_iter());
+                let _ = writeln!(
+                    text,
+                    "let {multipliers} = <{kind} as __mbs::Factorization<T, {size}>>::solve_transposed(&__factors.block{index}, &{right_sides});"
+                );
+            }
+        }
+    }
+    text
+}
+
+/// A value over a number.
+fn quotient(value: &str, divisor: f64) -> String {
+    match divisor {
+        1.0 => value.to_owned(),
+        -1.0 => format!("-({value})"),
+        other => format!("({value}) / {}", number(other)),
+    }
+}
+
+/// Body of `complete`: the dependent entries of `x` from the independent ones.
+pub fn complete(independent: &[usize], solve: &str, coordinates: usize) -> String {
+    let mut text = String::new();
+    for coordinate in independent {
+        let _ = writeln!(text, "let __x{coordinate} = __x[{coordinate}];");
+    }
+    text += solve;
+    for coordinate in (0..coordinates).filter(|coordinate| !independent.contains(coordinate)) {
+        let _ = writeln!(text, "__x[{coordinate}] = __x{coordinate};");
+    }
+    text
+}
+
+/// Body of `reduce`: the multipliers, and what they take from the independent entries of `y`.
+pub fn reduced(
+    equations: &Equations,
+    scope: &Scope<'_>,
+    program: &Program,
+    independent: &[usize],
+    reduce: &str,
+) -> String {
+    let entries = Entries::of(equations, program, scope);
+    let mut text = reduce.to_owned();
+    for coordinate in independent {
+        let _ = writeln!(text, "__y[{coordinate}] = {};", entries.transposed(*coordinate, None));
+    }
+    text + &list((0..equations.rows.len()).map(|row| format!("__l{row}")))
 }
 
 /// Entries of Φ_q off the diagonal blocks that are no numbers.
@@ -205,15 +276,33 @@ impl<'a> Entries<'a> {
         let mut text = format!("__b[{row}]");
         let entries = self.equations.rows.get(row).map(|row| row.phi_q.as_slice()).unwrap_or_default();
         for (column, entry) in entries.iter().filter(|(column, _)| !block.coordinates.contains(column)) {
-            match (self.kept.get(entry), self.equations.graph.constant_value(*entry)) {
-                (_, Some(1.0)) => drop(write!(text, " - __x{column}")),
-                (_, Some(-1.0)) => drop(write!(text, " + __x{column}")),
-                (_, Some(value)) => drop(write!(text, " - {} * __x{column}", number(value))),
-                (Some(index), None) => drop(write!(text, " - __factors.entries[{index}] * __x{column}")),
-                (None, None) => {}
+            self.subtract(*entry, &format!("__x{column}"), &mut text);
+        }
+        text
+    }
+
+    /// `y − Σ Φ_qᵀ λ` over the rows of later blocks; over all rows where the coordinate is independent.
+    fn transposed(&self, coordinate: usize, block: Option<&BlockProgram>) -> String {
+        let mut text = format!("__y[{coordinate}]");
+        for (index, row) in self.equations.rows.iter().enumerate() {
+            let entry = row.phi_q.iter().find(|(column, _)| *column == coordinate);
+            if let Some((_, entry)) = entry.filter(|_| block.is_none_or(|block| !block.rows.contains(&index)))
+            {
+                self.subtract(*entry, &format!("__l{index}"), &mut text);
             }
         }
         text
+    }
+
+    /// ` - entry * factor`
+    fn subtract(&self, entry: NodeId, factor: &str, text: &mut String) {
+        match (self.kept.get(&entry), self.equations.graph.constant_value(entry)) {
+            (_, Some(1.0)) => drop(write!(text, " - {factor}")),
+            (_, Some(-1.0)) => drop(write!(text, " + {factor}")),
+            (_, Some(value)) => drop(write!(text, " - {} * {factor}", number(value))),
+            (Some(index), None) => drop(write!(text, " - __factors.entries[{index}] * {factor}")),
+            (None, None) => {}
+        }
     }
 }
 

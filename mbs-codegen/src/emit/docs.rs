@@ -161,10 +161,15 @@ fn pattern<'a>(
 }
 
 fn order(model: &Model, structure: &Structure, lines: &mut Vec<String>) {
-    if !structure.square {
-        return;
-    }
-    lines.push("Solved block after block:".into());
+    let independent: Vec<String> = structure
+        .independent
+        .iter()
+        .filter_map(|coordinate| model.coordinates.get(*coordinate))
+        .map(|coordinate| format!("`{}`", coordinate.name))
+        .collect();
+    let independent =
+        if independent.is_empty() { String::new() } else { format!(" from {}", independent.join(", ")) };
+    lines.push(format!("Solved block after block{independent}:"));
     for (number, block) in structure.blocks.iter().enumerate() {
         let rows: Vec<_> = block
             .rows

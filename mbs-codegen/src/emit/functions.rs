@@ -13,6 +13,7 @@ use crate::equations::Equations;
 use crate::equations::continuity::{self, Demand};
 use crate::model::Model;
 use crate::program::{Program, Section};
+use crate::structure::Structure;
 use crate::symbolic::NodeId;
 
 /// The emitted functions, and the lengths of the arrays that stages keep.
@@ -49,6 +50,10 @@ pub struct Bodies {
     pub solve_blocks: TokenStream,
     pub factorize: TokenStream,
     pub solve_linear: TokenStream,
+    /// Coordinates that no block solves for.
+    pub independent: Vec<u16>,
+    pub complete: TokenStream,
+    pub reduce: TokenStream,
     /// Masses and forces, where the text has any.
     pub dynamics: Option<DynamicBodies>,
 }
@@ -57,6 +62,7 @@ pub struct Bodies {
 pub fn bodies(
     model: &Model,
     equations: &Equations,
+    structure: &Structure,
     program: &Program,
     runtime: &TokenStream,
     types: &[String],
@@ -75,7 +81,12 @@ pub fn bodies(
         format!("{name}({})", array(stage.fields.keys().map(|id| Some(*id)), scope))
     };
     let (phases, speeds) = phases::functions(equations, program, &bare);
-    let (factors, factorize, solve_linear) = blocks::linear(equations, program, &scope);
+    let linear = blocks::linear(equations, program, &scope);
+    let unknowns = (0..model.coordinates.len()).map(|coordinate| format!("__x{coordinate}"));
+    let solve_linear = format!("{}[{}]", linear.solve, unknowns.collect::<Vec<_>>().join(", "));
+    let independent = &structure.independent;
+    let complete = blocks::complete(independent, &linear.solve, model.coordinates.len());
+    let reduce = blocks::reduced(equations, &scope, program, independent, &linear.reduce);
     Bodies {
         kept_parameters: program.parameters.fields.len(),
         kept_position: program.position.fields.len(),
@@ -111,10 +122,13 @@ pub fn bodies(
         phases: tokens(&phases, runtime),
         speeds: tokens(&speeds, runtime),
         outputs: body(&program.outputs, &scope, outputs(equations, &scope)),
-        factors: tokens(&factors, runtime),
+        factors: tokens(&linear.factors, runtime),
         solve_blocks: tokens(&blocks::solve(equations, program, &early), runtime),
-        factorize: tokens(&factorize, runtime),
+        factorize: tokens(&linear.factorize, runtime),
         solve_linear: tokens(&solve_linear, runtime),
+        independent: independent.iter().map(|coordinate| *coordinate as u16).collect(),
+        complete: tokens(&complete, runtime),
+        reduce: tokens(&reduce, runtime),
         dynamics: dynamics::bodies(equations, program, &early, &scope, runtime),
     }
 }

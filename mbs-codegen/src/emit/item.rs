@@ -136,8 +136,10 @@ fn implementations(text: &Text, scenes: &Scenes, part: &Part<'_>) -> TokenStream
     let callable = Generics::of(text, scenes).callable(model, runtime);
     // The stub of a square text has as many rows as it was meant to have.
     let m = if part.square { model.coordinates.len() } else { model.rows.len() };
-    let kinematic =
-        if part.square { kinematic(&name, model, (bodies, &callable), runtime) } else { TokenStream::new() };
+    let kinematic = part.square.then(|| kinematic(&name, model, (bodies, &callable), runtime));
+    let partitioned =
+        model.dynamics.is_some().then(|| partitioned(&name, (model, m), (part, &callable), runtime));
+    let factors = (part.square || model.dynamics.is_some()).then_some(&bodies.factors);
     let dynamic = bodies
         .dynamics
         .as_ref()
@@ -248,7 +250,10 @@ fn implementations(text: &Text, scenes: &Scenes, part: &Part<'_>) -> TokenStream
                 ) -> [#runtime::OutputValue<T>; #outputs] { #outputs_body }
             }
 
+            #factors
+
             #kinematic
+            #partitioned
             #dynamic
         };
     }
@@ -262,10 +267,8 @@ fn kinematic(
     runtime: &TokenStream,
 ) -> TokenStream {
     let n = model.coordinates.len();
-    let Bodies { factors, solve_blocks, factorize, solve_linear, .. } = bodies;
+    let Bodies { solve_blocks, factorize, solve_linear, .. } = bodies;
     quote! {
-        #factors
-
         impl<#generics> #runtime::Kinematic<T, #n> for #name {
             type Factors = __Factors<T>;
             #[inline]
@@ -282,6 +285,47 @@ fn kinematic(
             }
             #[inline]
             fn solve_linear(&self, __factors: &__Factors<T>, __b: &[T; #n]) -> [T; #n] { #solve_linear }
+        }
+    }
+}
+
+/// `impl Partitioned`: the blocks over the dependent coordinates, and what the rows take of a force.
+fn partitioned(
+    name: &TokenStream,
+    (model, m): (&Model, usize),
+    (part, generics): (&Part<'_>, &TokenStream),
+    runtime: &TokenStream,
+) -> TokenStream {
+    let n = model.coordinates.len();
+    let Bodies { solve_blocks, factorize, independent, complete, reduce, .. } = &part.bodies;
+    // Of a square text these are the functions of `Kinematic`.
+    let (solve_blocks, factorize) = match part.square {
+        true => (
+            quote! { #runtime::Kinematic::solve_blocks(self, __p, __q, __t, __solver) },
+            quote! { #runtime::Kinematic::factorize(self, __p, __s) },
+        ),
+        false => (solve_blocks.clone(), factorize.clone()),
+    };
+    quote! {
+        impl<#generics> #runtime::Partitioned<T, #n, #m> for #name {
+            type Partition = __Factors<T>;
+            const INDEPENDENT: &'static [::core::primitive::u16] = &[#(#independent),*];
+            #[inline]
+            fn solve_dependent<__S: #runtime::BlockSolver<T>>(
+                &self,
+                __p: &__Parameters<T>,
+                __q: &mut [T; #n],
+                __t: T,
+                __solver: &mut __S,
+            ) -> T::Lanes<#runtime::Outcome> { #solve_blocks }
+            #[inline]
+            fn partition(&self, __p: &__Parameters<T>, __s: &__Position<T>) -> (__Factors<T>, #runtime::Margin<T>) {
+                #factorize
+            }
+            #[inline]
+            fn complete(&self, __factors: &__Factors<T>, __b: &[T; #m], __x: &mut [T; #n]) { #complete }
+            #[inline]
+            fn reduce(&self, __factors: &__Factors<T>, __y: &mut [T; #n]) -> [T; #m] { #reduce }
         }
     }
 }

@@ -70,6 +70,7 @@ pub fn rust(
         let bodies = functions::bodies(
             &scene.model,
             equations,
+            structure,
             program,
             &text.header.runtime,
             &generics.types_in(&scene.model),

@@ -54,6 +54,9 @@ fn bodies(model: &Model) -> Bodies {
         solve_blocks: body(),
         factorize: body(),
         solve_linear: body(),
+        independent: Vec::new(),
+        complete: body(),
+        reduce: body(),
         dynamics: model.dynamics.as_ref().map(|_| DynamicBodies::all(body)),
     }
 }

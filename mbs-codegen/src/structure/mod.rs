@@ -4,6 +4,7 @@ pub mod dyad;
 mod freedom;
 mod independent;
 mod matching;
+mod partition;
 mod polynomial;
 mod triangular;
 
@@ -20,11 +21,12 @@ use matching::Matching;
 /// The order in which the rows are solved.
 #[derive(Debug)]
 pub struct Structure {
-    /// Diagonal blocks; each uses coordinates of earlier blocks and its own alone. None where the rows leave
-    /// coordinates free.
+    /// Diagonal blocks; each uses coordinates of earlier blocks, independent ones and its own alone.
     pub blocks: Vec<Block>,
     /// Whether the rows fix every coordinate.
     pub square: bool,
+    /// Coordinates that no block solves for, ascending.
+    pub independent: Vec<usize>,
     /// The coordinate that each row is matched with.
     pub matched: Vec<Option<usize>>,
 }
@@ -68,17 +70,8 @@ pub fn analyse(model: &Model, equations: &mut Equations, diagnostics: &mut Diagn
         return None;
     }
     let square = matching.free_columns().next().is_none();
-    if !square {
-        let all = (0..model.coordinates.len()).map(|coordinate| Block {
-            rows: Vec::new(),
-            coordinates: vec![coordinate],
-            explicit: None,
-            dyad: None,
-        });
-        missing_guesses(model, &all.collect::<Vec<_>>(), diagnostics);
-        let matched = matching.of_row;
-        return diagnostics.is_empty().then_some(Structure { blocks: Vec::new(), square, matched });
-    }
+    let matching = if square { matching } else { partition::choose(model, &rows) };
+    let independent: Vec<usize> = matching.free_columns().collect();
     let blocks = triangular::blocks(&rows, &matching)
         .into_iter()
         .map(|rows| {
@@ -90,13 +83,14 @@ pub fn analyse(model: &Model, equations: &mut Equations, diagnostics: &mut Diagn
             Block { rows, coordinates, explicit, dyad }
         })
         .collect::<Vec<_>>();
-    missing_guesses(model, &blocks, diagnostics);
-    diagnostics.is_empty().then_some(Structure { blocks, square, matched: matching.of_row })
+    missing_guesses(model, &blocks, &independent, diagnostics);
+    diagnostics.is_empty().then_some(Structure { blocks, square, independent, matched: matching.of_row })
 }
 
 /// Reports coordinates without a guess that Newton's method has to start from.
-fn missing_guesses(model: &Model, blocks: &[Block], diagnostics: &mut Diagnostics) {
+fn missing_guesses(model: &Model, blocks: &[Block], independent: &[usize], diagnostics: &mut Diagnostics) {
     let solved = blocks.iter().filter(|block| block.explicit.is_none()).flat_map(|block| &block.coordinates);
+    let solved = solved.chain(independent);
     let coordinates = solved.filter_map(|coordinate| model.coordinates.get(*coordinate));
     // One message a declaration: the components of an array share their guess.
     let mut declarations: Vec<&crate::model::Coordinate> =

@@ -2,7 +2,7 @@
 
 use super::matching::Matching;
 
-/// Before: a perfect matching. After: the rows of each block, ascending; a block uses earlier ones alone.
+/// Before: a matching of all rows. After: the rows of each block, ascending; a block uses earlier ones alone.
 ///
 /// Tarjan's algorithm on an explicit stack; rows are visited in the order of the text, so that equal texts give
 /// equal orders.

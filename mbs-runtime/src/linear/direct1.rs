@@ -26,6 +26,11 @@ impl<T: Scalar> Factorization<T, 1> for Direct1<T> {
     }
 
     #[inline(always)]
+    fn solve_transposed(&self, b: &[T; 1]) -> [T; 1] {
+        self.solve(b)
+    }
+
+    #[inline(always)]
     fn reverses(&self) -> T::Mask {
         self.reciprocal.less(T::constant(0.0))
     }

@@ -28,6 +28,12 @@ impl<T: Scalar> Factorization<T, 2> for Direct2<T> {
     }
 
     #[inline(always)]
+    fn solve_transposed(&self, b: &[T; 2]) -> [T; 2] {
+        let ([b1, b2], [first, second]) = (*b, self.inverse);
+        [first[0] * b1 + second[0] * b2, first[1] * b1 + second[1] * b2]
+    }
+
+    #[inline(always)]
     fn reverses(&self) -> T::Mask {
         self.reciprocal.less(T::constant(0.0))
     }

@@ -31,6 +31,12 @@ impl<T: Scalar> Factorization<T, 3> for Direct3<T> {
     }
 
     #[inline(always)]
+    fn solve_transposed(&self, b: &[T; 3]) -> [T; 3] {
+        let ([b1, b2, b3], [r1, r2, r3]) = (*b, self.inverse);
+        core::array::from_fn(|k| r1[k] * b1 + r2[k] * b2 + r3[k] * b3)
+    }
+
+    #[inline(always)]
     fn reverses(&self) -> T::Mask {
         self.reciprocal.less(T::constant(0.0))
     }

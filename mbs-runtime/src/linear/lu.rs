@@ -90,6 +90,37 @@ impl<T: Scalar, const K: usize> Factorization<T, K> for Lu<T, K> {
         x
     }
 
+    /// The factors backwards: Uᵀ, then Lᵀ, then the swaps undone.
+    #[inline]
+    fn solve_transposed(&self, b: &[T; K]) -> [T; K] {
+        let mut x = *b;
+        for (component, scale) in x.iter_mut().zip(&self.coordinate_scales) {
+            *component = *component * *scale;
+        }
+        for k in 0..K {
+            x[k] = x[k] * self.pivot_reciprocals[k];
+            for j in k + 1..K {
+                x[j] = x[j] - self.factors[k][j] * x[k];
+            }
+        }
+        for k in (0..K).rev() {
+            for i in k + 1..K {
+                x[k] = x[k] - self.factors[i][k] * x[i];
+            }
+        }
+        for k in (0..K).rev() {
+            for i in (k + 1..K).rev() {
+                let (upper, lower) = (x[k], x[i]);
+                x[k] = T::select(self.swaps[k][i], lower, upper);
+                x[i] = T::select(self.swaps[k][i], upper, lower);
+            }
+        }
+        for (component, weight) in x.iter_mut().zip(&self.row_weights) {
+            *component = *component * *weight;
+        }
+        x
+    }
+
     /// From the pivots' signs and the number of swaps.
     #[inline]
     fn reverses(&self) -> T::Mask {

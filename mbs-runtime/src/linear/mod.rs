@@ -79,3 +79,41 @@ fn mean_square<T: Scalar, const K: usize>(scaled: &[[T; K]; K]) -> T {
     let sum = scaled.iter().flatten().fold(T::constant(0.0), |sum, entry| sum + *entry * *entry);
     sum * T::constant(1.0 / K as f64)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::sequence::Sequence;
+    use super::*;
+    use crate::Factorization;
+
+    /// Largest error allowed: some hundred roundings times the condition of random blocks.
+    const ERROR: f64 = 1e-10;
+
+    fn transposed_is_solved<F: Factorization<f64, K>, const K: usize>(sequence: &mut Sequence) {
+        for _ in 0..200 {
+            let a: [[f64; K]; K] = sequence.matrix();
+            let scales: [f64; K] = core::array::from_fn(|i| 0.5 + i as f64);
+            let (factors, margin) =
+                F::factorize(&a, &scales, &core::array::from_fn(|i| 2.0 - 0.1 * i as f64));
+            if margin < 1e-3 {
+                continue;
+            }
+            let [b]: [[f64; K]; 1] = sequence.matrix();
+            let x = factors.solve_transposed(&b);
+            for j in 0..K {
+                let product: f64 = (0..K).map(|i| a[i][j] * x[i]).sum();
+                assert!((product - b[j]).abs() < ERROR, "{K}: {product} for {}", b[j]);
+            }
+        }
+    }
+
+    #[test]
+    fn every_factorization_solves_with_its_transpose() {
+        let mut sequence = Sequence::new(11);
+        transposed_is_solved::<Direct1<f64>, 1>(&mut sequence);
+        transposed_is_solved::<Direct2<f64>, 2>(&mut sequence);
+        transposed_is_solved::<Direct3<f64>, 3>(&mut sequence);
+        transposed_is_solved::<Lu<f64, 4>, 4>(&mut sequence);
+        transposed_is_solved::<Lu<f64, 9>, 9>(&mut sequence);
+    }
+}

@@ -54,11 +54,12 @@ fn against_casadi(
     answer: &Answer<f64>,
 ) -> Result<Agreement, OracleError> {
     let mut agreement = nothing(mechanism, Reference::Casadi, found.len());
-    let kinematics = layouts(mechanism).into_iter().map(|layout| (layout.select(found), layout));
-    let dynamics = mass_layouts(mechanism).into_iter().map(|layout| (layout.select_mass(masses), layout));
-    for (values, layout) in kinematics.chain(dynamics) {
+    let kinematics = layouts(mechanism).into_iter().map(|layout| (layout.select(found), layout, 0.0));
+    let dynamics =
+        mass_layouts(mechanism).into_iter().map(|layout| (layout.select_mass(masses), layout, CANCELLED));
+    for (values, layout, cancelled) in kinematics.chain(dynamics) {
         let expected = layout.table(answer, found.len())?;
-        let scales = scales(&layout, expected);
+        let scales = scales(&layout, expected, cancelled);
         let (largest, compared) = layout.largest_error(&values, expected, |entry, emitted, oracle| {
             let (oracle, scale) = (oracle.copied(), scales[layout.row(entry)]);
             Some(Measured { error: relative_error(emitted, oracle, scale)?, oracle, scale })
@@ -95,14 +96,20 @@ fn nothing(mechanism: &dyn AnyEquations, reference: Reference, states: usize) ->
     Agreement { mechanism: mechanism.full_name(), reference, states, values: 0, functions: Vec::new() }
 }
 
-/// Largest absolute value of each row over the states.
-fn scales(layout: &Layout, expected: &Values) -> Vec<f64> {
+/// Part of a function's largest value below which a whole row is what rounding leaves of terms that cancel: the
+/// inertia forces of a body that turns about a fixed point do none along its angle, and CasADi's row is not 0 either.
+const CANCELLED: f64 = 64.0 * f64::EPSILON;
+
+/// Largest absolute value of each row over the states; of the whole function where all of the row has cancelled.
+fn scales(layout: &Layout, expected: &Values, cancelled: f64) -> Vec<f64> {
     let mut scales = vec![0.0_f64; layout.rows()];
     for (entry, value) in expected.iter().flat_map(|values| values.iter().enumerate()) {
         let scale = &mut scales[layout.row(entry)];
         *scale = scale.max(value.unwrap_or(0.0).abs());
     }
-    scales
+    let largest = scales.iter().copied().fold(0.0, f64::max);
+    let measured = |scale: f64| if scale < cancelled * largest { largest } else { scale };
+    scales.into_iter().map(measured).collect()
 }
 
 /// `|emitted − oracle| / scale`; infinite where it is no number or only one side has the value.
