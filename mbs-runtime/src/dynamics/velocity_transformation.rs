@@ -2,21 +2,24 @@
 
 use super::model::{Counts, Formulation, Model, Solved};
 use super::projection::Projection;
-use super::vector::State;
-use crate::diagnosis::extent;
-use crate::{Dynamic, Failure, Margin, Newton, Outcome, Partitioned, Real, Scalar};
+use super::vector::{State, Vector};
+use crate::{Dynamic, Failure, Partitioned, Real, Scalar};
 
-/// Margin of the dependent columns below which the independent coordinates are not trusted: they stand at a turning
-/// point, or the mechanism is singular. An error of the integrator in an independent coordinate is one over the margin as
-/// large in a dependent one.
-const LEAST_MARGIN: f64 = 0.1;
+/// Margin of the dependent columns below which the independent coordinates are not used: they stand at a turning point,
+/// or the mechanism is singular. Rounding grows by its inverse square: at 1e-2, four digits.
+const LEAST_MARGIN: f64 = 1e-2;
 
-/// Index 1 without multipliers: q̇ = R ż + b with the independent velocities ż, (Rᵀ M R) z̈ = Rᵀ (Q − M q̈₀).
+/// Corrections of positions, and of velocities: one or two do after a step.
+const MOST_CORRECTIONS: u32 = 10;
+
+/// Index 1 without a matrix of multipliers: q̈ = q̈₀ + R z̈ with (Rᵀ M R) z̈ = Rᵀ (Q − M q̈₀), z̈ the independent
+/// accelerations.
 ///
 /// R and q̈₀ come from the factorised diagonal blocks of the dependent columns, so that the work grows with the number of
-/// coordinates and not with its cube; multipliers follow by substitution. Positions and velocities of the dependent
-/// coordinates are solved at every stage. Where the independent coordinates determine the others too weakly, at a
-/// turning point or a singular position, a step goes on with [`Projection`], and is counted.
+/// coordinates and not with its cube; multipliers follow by substitution. The same solves project positions and
+/// velocities by the shortest way in the mass's measure, so that nothing depends on which coordinates are independent.
+/// Where those determine the others too weakly, at a turning point or a singular position, [`Projection`] goes on, and is
+/// counted.
 /// Source: García de Jalón & Bayo 1994, §5.2 and §8.2.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct VelocityTransformation;
@@ -34,29 +37,29 @@ where
         lambda: &[R; M],
         counts: &mut Counts,
     ) -> Result<Solved<R, N, M, S::States>, Failure> {
-        let mut y = *y;
-        let Some((position, partition, margin)) = dependent(model, t, &mut y) else {
-            counts.handed_over += 1;
-            Projection::default().settle(model, t, &mut y, counts)?;
-            return Projection::default().solve(model, t, &y, lambda, counts);
-        };
-        counts.evaluations += 1;
         let (mechanism, parameters) = (model.mechanism, model.parameters);
+        let position = model.position(t, y);
+        let (partition, margin) = mechanism.partition(parameters, &position);
+        if !R::constant(LEAST_MARGIN).less(margin.value) {
+            counts.handed_over += 1;
+            return Projection::default().solve(model, t, y, lambda, counts);
+        }
+        counts.evaluations += 1;
         let gamma = mechanism.gamma(parameters, &position, &y.qd);
-        let mut idle = false;
-        let (qdd, lambda, force) = model.balanced(&position, (t, &y), lambda, |force| {
+        let mut inert = true;
+        let (qdd, lambda, force) = model.balanced(&position, (t, y), lambda, |force| {
             let solved =
                 accelerations::<S, R, N, M>(mechanism, parameters, &position, &partition, force, &gamma);
-            idle = !solved.2;
+            inert = solved.2;
             (solved.0, solved.1)
         })?;
-        if idle {
-            // Without inertia in the independent coordinates the rank-revealing method finds what moves without mass.
+        if !inert {
+            // A motion without mass: the rank-revealing method names its coordinate.
             counts.handed_over += 1;
-            return Projection::default().solve(model, t, &y, &lambda, counts);
+            return Projection::default().solve(model, t, y, &lambda, counts);
         }
         model.check_solved(&qdd, &lambda, &force, &gamma)?;
-        let rate = model.rates(&position, &y, qdd, &lambda);
+        let rate = model.rates(&position, y, qdd, &lambda);
         Ok(Solved { rate, lambda, margin: margin.value })
     }
 
@@ -68,47 +71,80 @@ where
         y: &mut State<R, N, S::States>,
         counts: &mut Counts,
     ) -> Result<(), Failure> {
-        if dependent(model, t, y).is_some() {
+        let before = *y;
+        if settle_position(model, t, y, counts) && settle_velocity(model, t, y, counts) {
             return Ok(());
         }
+        *y = before;
         Projection::default().settle(model, t, y, counts)
     }
 }
 
-/// Solves positions and velocities of the dependent coordinates; `None`, and `y` as it was, where the independent ones
-/// do not determine them well.
-#[inline(always)]
-#[allow(clippy::type_complexity, reason = "three parts of one partition, named where it is taken apart")]
-fn dependent<S, R: Real, const N: usize, const M: usize>(
+/// Puts `y.q` onto Φ(q, t) = 0; whether it is there.
+fn settle_position<S, R: Real, const N: usize, const M: usize>(
     model: &Model<'_, S, R, N, M>,
     t: R,
     y: &mut State<R, N, S::States>,
-) -> Option<(S::Position, S::Partition, Margin<R>)>
+    counts: &mut Counts,
+) -> bool
+where
+    S: Dynamic<R, N, M> + Partitioned<R, N, M>,
+{
+    for _ in 0..MOST_CORRECTIONS {
+        let position = model.position(t, y);
+        let phi = model.mechanism.phi(model.parameters, &position);
+        if model.worst(&phi, &model.position_tolerances(&position, &y.q)).0 <= R::constant(1.0) {
+            return true;
+        }
+        let Some(step) = correction(model, &position, &phi) else { return false };
+        counts.corrections += 1;
+        y.q = y.q.plus(R::constant(-1.0), &[1.0], [&step]);
+    }
+    false
+}
+
+/// Puts `y.qd` onto Φ_q q̇ = −Φ_t; whether it is there.
+fn settle_velocity<S, R: Real, const N: usize, const M: usize>(
+    model: &Model<'_, S, R, N, M>,
+    t: R,
+    y: &mut State<R, N, S::States>,
+    counts: &mut Counts,
+) -> bool
+where
+    S: Dynamic<R, N, M> + Partitioned<R, N, M>,
+{
+    let position = model.position(t, y);
+    for _ in 0..MOST_CORRECTIONS {
+        let phi_d = model.constraint_rates(&position, &y.qd);
+        if model.worst(&phi_d, &model.rate_tolerances(&position, &y.qd)).0 <= R::constant(1.0) {
+            return true;
+        }
+        let Some(step) = correction(model, &position, &phi_d) else { return false };
+        counts.corrections += 1;
+        y.qd = y.qd.plus(R::constant(-1.0), &[1.0], [&step]);
+    }
+    false
+}
+
+/// The shortest x in the mass's measure with Φ_q x = `open` (M): N; `None` where the independent coordinates do not
+/// determine it well, or without inertia.
+fn correction<S, R: Real, const N: usize, const M: usize>(
+    model: &Model<'_, S, R, N, M>,
+    position: &S::Position,
+    open: &[R; M],
+) -> Option<[R; N]>
 where
     S: Dynamic<R, N, M> + Partitioned<R, N, M>,
 {
     let (mechanism, parameters) = (model.mechanism, model.parameters);
-    let trusted = |margin: &Margin<R>| R::constant(LEAST_MARGIN).less(margin.value);
-    // First a look from where the state stands: beyond a turning point a solution may not exist, or be another one.
-    let before = mechanism.position(parameters, &y.q, t);
-    if !trusted(&mechanism.partition(parameters, &before).1) {
+    let (partition, margin) = mechanism.partition(parameters, position);
+    if !R::constant(LEAST_MARGIN).less(margin.value) {
         return None;
     }
-    let mut q = y.q;
-    let mut solver = Newton::new(extent(&q, &model.metric.coordinates));
-    let outcome = mechanism.solve_dependent(parameters, &mut q, t, &mut solver);
-    if outcome.as_ref().first() != Some(&Outcome::Converged) {
-        return None;
-    }
-    let position = mechanism.position(parameters, &q, t);
-    let (partition, margin) = mechanism.partition(parameters, &position);
-    if !trusted(&margin) {
-        return None;
-    }
-    let mut qd = y.qd;
-    mechanism.complete(&partition, &mechanism.phi_t(parameters, &position).map(|rate| -rate), &mut qd);
-    (y.q, y.qd) = (q, qd);
-    Some((position, partition, margin))
+    let none = [R::constant(0.0); N];
+    let (step, _, inert) =
+        accelerations::<S, R, N, M>(mechanism, parameters, position, &partition, &none, open);
+    inert.then_some(step)
 }
 
 /// Accelerations (N) and multipliers (M) of a factorised partition for a force (N) and γ (M), lane by lane; and whether
