@@ -34,7 +34,7 @@ pub struct Assembled<R, const N: usize> {
 /// [`Failure::NonFinite`] for a guess, parameter, input or time that is no number, or a row that is none from
 /// every start; [`Failure::WrongBranch`] where positions were found but none in the declared assembly;
 /// [`Failure::NotAssemblable`] with the least residual found and the rows that hold it.
-pub fn assemble<S: Kinematic<R, N>, R: Real, const N: usize>(
+pub fn assemble<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize>(
     mechanism: &S,
     guess: impl Into<[R; N]>,
     t: R,
@@ -50,7 +50,7 @@ pub fn assemble<S: Kinematic<R, N>, R: Real, const N: usize>(
     let parameters = mechanism.parameters();
     let mut search = Search { least: f64::INFINITY, open: None, wrong: None };
     for start in 0..=OTHER_STARTS {
-        let from = displaced::<S, R, N>(mechanism, &parameters, &guess, start);
+        let from = displaced::<S, R, N, M>(mechanism, &parameters, &guess, start);
         match search.attempt(mechanism, &parameters, from, t) {
             Some((q, statistics)) => return Ok(Assembled { q, statistics, start }),
             None => continue,
@@ -68,7 +68,7 @@ struct Search {
 }
 
 impl Search {
-    fn attempt<S: Kinematic<R, N>, R: Real, const N: usize>(
+    fn attempt<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize>(
         &mut self,
         mechanism: &S,
         parameters: &S::Parameters,
@@ -100,7 +100,7 @@ impl Search {
 }
 
 /// Start number `start`: the guess itself, or a point beside it.
-fn displaced<S: Kinematic<R, N>, R: Real, const N: usize>(
+fn displaced<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize>(
     mechanism: &S,
     parameters: &S::Parameters,
     guess: &[R; N],

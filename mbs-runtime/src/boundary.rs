@@ -64,7 +64,7 @@ pub trait Matrices<T: Scalar + PartialEq, const N: usize, const M: usize>: Mecha
 
 impl<S: Mechanism<T, N, M>, T: Scalar + PartialEq, const N: usize, const M: usize> Matrices<T, N, M> for S {}
 
-impl<S: Kinematic<R, N>, R: Real, const N: usize> Stepper<S, R, N> {
+impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, R, N, M> {
     /// Coordinates as a vector: N.
     pub fn q_vector(&self) -> SVector<R, N> {
         vector(*self.q())

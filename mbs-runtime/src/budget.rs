@@ -49,7 +49,7 @@ pub enum Step {
     Refused(Failure),
 }
 
-impl<S: Kinematic<R, N>, R: Real, const N: usize> Stepper<S, R, N> {
+impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, R, N, M> {
     /// Moves on by `h` (s) in a fixed amount of work; 0 solves anew, negative goes back.
     ///
     /// Predicts as [`advance_to`](Self::advance_to), then spends at most [`Budget::evaluations`] a block. Where they

@@ -31,7 +31,7 @@ impl<F, R: Copy> RegularFactors<F, R> {
 /// # Errors
 /// [`Failure::NotConverged`] with the worst row, [`Failure::NonFinite`] with the row that became NaN.
 #[inline(always)]
-pub fn solve_position<S: Kinematic<R, N>, R: Real, const N: usize>(
+pub fn solve_position<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize>(
     mechanism: &S,
     parameters: &S::Parameters,
     start: &[R; N],
@@ -64,7 +64,7 @@ pub(crate) fn largest_difference<R: Real, const N: usize>(new: &[R; N], old: &[R
 /// # Errors
 /// [`Failure::Singular`] where the margin is below 32 √ε: at a dead centre or a bifurcation.
 #[inline(always)]
-pub fn factorize<S: Kinematic<R, N>, R: Real, const N: usize>(
+pub fn factorize<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize>(
     mechanism: &S,
     parameters: &S::Parameters,
     position: &S::Position,
@@ -75,7 +75,7 @@ pub fn factorize<S: Kinematic<R, N>, R: Real, const N: usize>(
         let orientation = margin.orientation.as_ref().first().copied().unwrap_or(0);
         return Ok(RegularFactors { factors, margin: margin.value, orientation });
     }
-    Err(singular::<S, R, N>(&margin, t))
+    Err(singular::<S, R, N, M>(&margin, t))
 }
 
 /// Velocities from Φ_q q̇ = −Φ_t.
@@ -86,13 +86,13 @@ pub fn factorize<S: Kinematic<R, N>, R: Real, const N: usize>(
 /// # Errors
 /// [`Failure::NonFinite`] with the row or coordinate whose rate is NaN or infinite.
 #[inline(always)]
-pub fn solve_velocity<S: Kinematic<R, N>, R: Real, const N: usize>(
+pub fn solve_velocity<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize>(
     mechanism: &S,
     parameters: &S::Parameters,
     position: &S::Position,
     factors: &RegularFactors<S::Factors, R>,
 ) -> Result<[R; N], Failure> {
-    solve_rates::<S, R, N>(mechanism, factors, &mechanism.phi_t(parameters, position).map(|rate| -rate))
+    solve_rates::<S, R, N, M>(mechanism, factors, &mechanism.phi_t(parameters, position).map(|rate| -rate))
 }
 
 /// Accelerations from Φ_q q̈ = γ.
@@ -103,34 +103,38 @@ pub fn solve_velocity<S: Kinematic<R, N>, R: Real, const N: usize>(
 /// # Errors
 /// [`Failure::NonFinite`] with the row or coordinate whose rate is NaN or infinite.
 #[inline(always)]
-pub fn solve_acceleration<S: Kinematic<R, N>, R: Real, const N: usize>(
+pub fn solve_acceleration<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize>(
     mechanism: &S,
     parameters: &S::Parameters,
     position: &S::Position,
     qd: &[R; N],
     factors: &RegularFactors<S::Factors, R>,
 ) -> Result<[R; N], Failure> {
-    solve_rates::<S, R, N>(mechanism, factors, &mechanism.gamma(parameters, position, qd))
+    solve_rates::<S, R, N, M>(mechanism, factors, &mechanism.gamma(parameters, position, qd))
 }
 
 /// The next step of Newton's method, Φ_q Δ = −Φ: what a position that does not close is off by, to first order.
 ///
 /// # Errors
 /// [`Failure::NonFinite`] with the row or coordinate whose step is NaN or infinite.
-pub(crate) fn solve_correction<S: Kinematic<R, N>, R: Real, const N: usize>(
+pub(crate) fn solve_correction<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize>(
     mechanism: &S,
     parameters: &S::Parameters,
     position: &S::Position,
     factors: &RegularFactors<S::Factors, R>,
 ) -> Result<[R; N], Failure> {
-    solve_rates::<S, R, N>(mechanism, factors, &mechanism.phi(parameters, position).map(|residual| -residual))
+    solve_rates::<S, R, N, M>(
+        mechanism,
+        factors,
+        &mechanism.phi(parameters, position).map(|residual| -residual),
+    )
 }
 
 #[inline(always)]
-fn solve_rates<S: Kinematic<R, N>, R: Real, const N: usize>(
+fn solve_rates<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize>(
     mechanism: &S,
     factors: &RegularFactors<S::Factors, R>,
-    right: &[R; N],
+    right: &[R; M],
 ) -> Result<[R; N], Failure> {
     let rates = mechanism.solve_linear(&factors.factors, right);
     if all_finite(&rates) {
@@ -163,7 +167,10 @@ pub(crate) fn position_failure<S: Mechanism<R, N, M>, R: Real, const N: usize, c
 }
 
 #[cold]
-fn singular<S: Mechanism<R, N, N>, R: Real, const N: usize>(margin: &Margin<R>, t: R) -> Failure {
+fn singular<S: Mechanism<R, N, M>, R: Real, const N: usize, const M: usize>(
+    margin: &Margin<R>,
+    t: R,
+) -> Failure {
     Failure::Singular {
         row: entry(S::ROWS, margin.row.as_ref().first().copied().unwrap_or(0)),
         coordinate: entry(S::COORDINATES, margin.coordinate.as_ref().first().copied().unwrap_or(0)),
@@ -213,7 +220,7 @@ pub(crate) fn time_failure<R: Real>(t: R) -> Option<Failure> {
 
 /// The first value that is not finite, under the name that `entries` gives it.
 #[inline]
-pub(crate) fn non_finite<R: Real, const N: usize>(values: &[R; N], entries: &[Entry]) -> Option<Failure> {
+pub(crate) fn non_finite<R: Real, const K: usize>(values: &[R; K], entries: &[Entry]) -> Option<Failure> {
     non_finite_among(values, entries)
 }
 

@@ -80,7 +80,7 @@ pub(crate) fn limit_failure<S: Mechanism<R, N, M>, R: Real, const N: usize, cons
     })
 }
 
-impl<S: Kinematic<R, N>, R: Real, const N: usize> Stepper<S, R, N> {
+impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, R, N, M> {
     /// The working ranges of the text with where the mechanism stands in them.
     pub fn limits(&self) -> S::Limits {
         self.mechanism.limits(&self.parameters, &self.position())

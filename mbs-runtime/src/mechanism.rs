@@ -275,7 +275,7 @@ pub trait BlockSolver<T: Scalar> {
 }
 
 /// A mechanism whose rows fix every coordinate. Emitted only where the structure says square.
-pub trait Kinematic<T: Scalar, const N: usize>: Mechanism<T, N, N> {
+pub trait Kinematic<T: Scalar, const N: usize, const M: usize = N>: Mechanism<T, N, M> {
     /// Factorised diagonal blocks and the entries of Φ_q off them.
     type Factors: Copy;
 
@@ -301,7 +301,7 @@ pub trait Kinematic<T: Scalar, const N: usize>: Mechanism<T, N, N> {
     ) -> (Self::Factors, Margin<T>);
 
     /// Solves Φ_q x = b with factors from [`factorize`](Self::factorize): `−Φ_t` gives q̇, `γ` gives q̈.
-    fn solve_linear(&self, factors: &Self::Factors, b: &[T; N]) -> [T; N];
+    fn solve_linear(&self, factors: &Self::Factors, b: &[T; M]) -> [T; N];
 }
 
 /// How near a Jacobian is to singular, and where.

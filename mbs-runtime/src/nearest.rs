@@ -10,7 +10,7 @@ use crate::{Block, BlockSolver, Factorization, Failure, Kinematic, Mechanism, Ou
 ///
 /// # Errors
 /// [`Failure::NotAssemblable`] with the least residual that it leads to, [`Failure::NonFinite`].
-pub(crate) fn solve_nearest<S: Kinematic<R, N>, R: Real, const N: usize>(
+pub(crate) fn solve_nearest<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize>(
     mechanism: &S,
     parameters: &S::Parameters,
     start: &[R; N],
@@ -29,7 +29,7 @@ pub(crate) fn solve_nearest<S: Kinematic<R, N>, R: Real, const N: usize>(
 }
 
 /// A solver's `failure` to converge as what it means where it came to the least residual, at `q` (N); others as they are.
-pub(crate) fn not_assemblable<S: Mechanism<R, N, N>, R: Real, const N: usize>(
+pub(crate) fn not_assemblable<S: Mechanism<R, N, M>, R: Real, const N: usize, const M: usize>(
     mechanism: &S,
     parameters: &S::Parameters,
     q: &[R; N],

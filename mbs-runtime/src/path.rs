@@ -51,21 +51,21 @@ pub(crate) fn displaced<R: Real, const N: usize>(
 }
 
 /// A mechanism at the end of a way: time and inputs are those of the position that is sought.
-pub(crate) struct Way<'a, S: Kinematic<R, N>, R: Real, const N: usize> {
+pub(crate) struct Way<'a, S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> {
     pub mechanism: &'a S,
     pub parameters: &'a S::Parameters,
     /// Time (s) at the end.
     pub t: R,
 }
 
-impl<S: Kinematic<R, N>, R: Real, const N: usize> Way<'_, S, R, N> {
-    /// Second-order prediction from `q` of where the rows are open by `left` (N), in the units of the rows.
+impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Way<'_, S, R, N, M> {
+    /// Second-order prediction from `q` of where the rows are open by `left` (M), in the units of the rows.
     ///
     /// Chebyshev's step q + Δ₁ + Δ₂ with Φ_q Δ₁ = `left` − Φ and Φ_q Δ₂ = −½ (Φ_q Δ₁)_q Δ₁, all at `q`. What is open
     /// at a position that the mechanism had is what the drivers have moved since; so however many they are, they are
     /// followed in what they did: an encoder that jitters, dwells, turns back or gives no rates.
     #[inline(never)]
-    pub fn predicted(&self, q: &[R; N], left: &[R; N]) -> [R; N] {
+    pub fn predicted(&self, q: &[R; N], left: &[R; M]) -> [R; N] {
         let Way { mechanism, parameters, t } = *self;
         let position = mechanism.position(parameters, q, t);
         let (factors, _) = mechanism.factorize(parameters, &position);
@@ -112,7 +112,7 @@ impl<S: Kinematic<R, N>, R: Real, const N: usize> Way<'_, S, R, N> {
     }
 
     /// Newton's method on all rows from a `prediction`, if it ends near by.
-    fn corrected(&self, prediction: [R; N], left: &[R; N]) -> Option<[R; N]> {
+    fn corrected(&self, prediction: [R; N], left: &[R; M]) -> Option<[R; N]> {
         let Way { mechanism, parameters, t } = *self;
         let scales = mechanism.coordinate_scales(parameters);
         let mut q = prediction;

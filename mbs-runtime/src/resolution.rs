@@ -18,7 +18,7 @@ pub struct IllScaled {
     pub resolution: f64,
 }
 
-impl<S: Kinematic<R, N>, R: Real, const N: usize> Stepper<S, R, N> {
+impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, R, N, M> {
     /// The shortest length among parameters and inputs, if the present position holds it to less than six digits.
     ///
     /// A link of a millimetre at a place 1000 km away: give its coordinates relative to a point near by, or
@@ -26,7 +26,7 @@ impl<S: Kinematic<R, N>, R: Real, const N: usize> Stepper<S, R, N> {
     pub fn ill_scaled(&self) -> Option<IllScaled> {
         let scales = self.mechanism.coordinate_scales(&self.parameters);
         let rows = self.mechanism.row_scales(&self.parameters);
-        let metres = |entries: &[Entry], scales: &[R; N]| -> R {
+        let metres = |entries: &[Entry], scales: &[R]| -> R {
             let lengths = entries.iter().zip(scales).filter(|(entry, _)| entry.unit == "m");
             lengths.fold(R::constant(0.0), |largest, (_, scale)| largest.max(*scale))
         };

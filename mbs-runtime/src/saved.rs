@@ -95,16 +95,16 @@ fn hashed(hash: u64, bytes: &[u8]) -> u64 {
 }
 
 /// Name and coordinates of a mechanism as one number; the end of each name counts.
-fn fingerprint<S: Mechanism<R, N, N>, R: Real, const N: usize>() -> u64 {
+fn fingerprint<S: Mechanism<R, N, M>, R: Real, const N: usize, const M: usize>() -> u64 {
     let name = |hash, name: &str| hashed(hashed(hash, name.as_bytes()), &[0xFF]);
     S::COORDINATES.iter().fold(name(OFFSET, S::NAME), |hash, entry| name(hash, entry.name))
 }
 
-impl<S: Kinematic<R, N>, R: Real, const N: usize> Stepper<S, R, N> {
+impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, R, N, M> {
     /// Time and position, to survive a reset; see [`assemble_near`](Self::assemble_near).
     pub fn save(&self) -> Saved<N> {
         let state = &self.state;
-        Saved { mechanism: fingerprint::<S, R, N>(), t: state.t.to_f64(), q: state.q.map(R::to_f64) }
+        Saved { mechanism: fingerprint::<S, R, N, M>(), t: state.t.to_f64(), q: state.q.map(R::to_f64) }
     }
 
     /// Assembles `mechanism` at time `t` (s) next to a saved state; velocity and acceleration follow.
@@ -119,7 +119,7 @@ impl<S: Kinematic<R, N>, R: Real, const N: usize> Stepper<S, R, N> {
     /// [`Failure::NotAssemblable`], [`Failure::Singular`], [`Failure::Unresolved`], [`Failure::BeyondLimit`];
     /// [`Failure::NonFinite`] for a parameter, input or time that is no number.
     pub fn assemble_near(mut mechanism: S, saved: &Saved<N>, t: R) -> Result<Self, Failure> {
-        if saved.mechanism != fingerprint::<S, R, N>() {
+        if saved.mechanism != fingerprint::<S, R, N, M>() {
             return Err(Failure::Foreign { mechanism: S::NAME });
         }
         let start = saved.q.map(R::constant);
@@ -134,7 +134,7 @@ impl<S: Kinematic<R, N>, R: Real, const N: usize> Stepper<S, R, N> {
         mechanism.start_phases(&start, R::constant(saved.t));
         mechanism.advance_phases(R::constant(saved.t), t);
         let (q, statistics) = solve_nearest(&mechanism, &parameters, &start, t)?;
-        if let Some(failure) = distant::<S, R, N>(&q, &start, &scales, t) {
+        if let Some(failure) = distant::<S, R, N, M>(&q, &start, &scales, t) {
             return Err(failure);
         }
         let found = Found { t, q, statistics, open: None };
@@ -144,7 +144,7 @@ impl<S: Kinematic<R, N>, R: Real, const N: usize> Stepper<S, R, N> {
 }
 
 /// The coordinate that is farthest from where it was saved, if that is too far.
-fn distant<S: Kinematic<R, N>, R: Real, const N: usize>(
+fn distant<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize>(
     q: &[R; N],
     saved: &[R; N],
     scales: &[R; N],

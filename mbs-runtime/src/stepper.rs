@@ -18,7 +18,7 @@ const REGULAR_ZONE: f64 = 1e-2;
 /// For a control loop: [`change`](Self::change) the inputs, [`advance`](Self::advance), read
 /// [`q`](Self::q), [`qd`](Self::qd), [`outputs`](Self::outputs). With a deadline, [`step`](Self::step) in its place.
 #[derive(Clone, Copy, Debug)]
-pub struct Stepper<S: Mechanism<R, N, N>, R: Real, const N: usize> {
+pub struct Stepper<S: Mechanism<R, N, M>, R: Real, const N: usize, const M: usize = N> {
     pub(crate) mechanism: S,
     pub(crate) parameters: S::Parameters,
     /// What is wrong with the parameters or inputs, since they were changed last.
@@ -71,7 +71,7 @@ pub(crate) enum Before<'a, R, const N: usize> {
     State(&'a State<R, N>),
 }
 
-impl<S: Kinematic<R, N>, R: Real, const N: usize> Stepper<S, R, N> {
+impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, R, N, M> {
     /// Assembles `mechanism` from `guess` (N) at time `t` (s); velocity and acceleration follow.
     ///
     /// # Errors
@@ -173,7 +173,7 @@ impl<S: Kinematic<R, N>, R: Real, const N: usize> Stepper<S, R, N> {
     }
 
     /// The frames from now to `until` (s) in `steps` equal steps; see [`Sweep`].
-    pub fn sweep(&mut self, until: R, steps: u32) -> Sweep<'_, S, R, N> {
+    pub fn sweep(&mut self, until: R, steps: u32) -> Sweep<'_, S, R, N, M> {
         Sweep::new(self, until, steps)
     }
 
@@ -257,8 +257,8 @@ impl<S: Kinematic<R, N>, R: Real, const N: usize> Stepper<S, R, N> {
         self.mechanism.outputs(&self.parameters, &self.position(), &self.state.qd, &self.state.qdd)
     }
 
-    /// Residuals Φ(q, t): N, in the unit of the row.
-    pub fn phi(&self) -> [R; N] {
+    /// Residuals Φ(q, t): M, in the unit of the row.
+    pub fn phi(&self) -> [R; M] {
         self.mechanism.phi(&self.parameters, &self.position())
     }
 
@@ -281,7 +281,7 @@ impl<S: Kinematic<R, N>, R: Real, const N: usize> Stepper<S, R, N> {
         let predicted = match state.is_regular() && !self.changed {
             true => self.repaired(self.extrapolated(t - state.t)),
             // Where two paths cross it is the one that the mechanism came on.
-            false => self.way(t).predicted(&state.regular, &[R::constant(0.0); N]),
+            false => self.way(t).predicted(&state.regular, &[R::constant(0.0); M]),
         };
         // A jump in time that overflows the prediction is left to the solver, from where the mechanism stands.
         if predicted.iter().fold(true, |all, coordinate| all & coordinate.is_finite()) {
@@ -310,7 +310,7 @@ impl<S: Kinematic<R, N>, R: Real, const N: usize> Stepper<S, R, N> {
     }
 
     /// What lies ahead with the mechanism's inputs as they are and time `t` (s).
-    fn way(&self, t: R) -> Way<'_, S, R, N> {
+    fn way(&self, t: R) -> Way<'_, S, R, N, M> {
         Way { mechanism: &self.mechanism, parameters: &self.parameters, t }
     }
 }
@@ -318,7 +318,7 @@ impl<S: Kinematic<R, N>, R: Real, const N: usize> Stepper<S, R, N> {
 impl<R: Real, const N: usize> State<R, N> {
     /// The state at a position that closes, or nearly so: not singular, in the declared assembly, with finite rates.
     #[inline(always)]
-    pub(crate) fn at<S: Kinematic<R, N>>(
+    pub(crate) fn at<S: Kinematic<R, N, M>, const M: usize>(
         mechanism: &S,
         parameters: &S::Parameters,
         found: Found<R, N>,
@@ -379,12 +379,12 @@ impl<R: Real, const N: usize> State<R, N> {
 }
 
 /// A position with its stage-1 values.
-struct Solution<S: Mechanism<R, N, N>, R: Real, const N: usize> {
+struct Solution<S: Mechanism<R, N, M>, R: Real, const N: usize, const M: usize> {
     q: [R; N],
     position: S::Position,
 }
 
-impl<S: Kinematic<R, N>, R: Real, const N: usize> Solution<S, R, N> {
+impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Solution<S, R, N, M> {
     /// One Newton step more, if it closes the rows better. In the singular zone what a residual within its tolerance
     /// leaves of the position is seen in the rates, by the square of the margin.
     #[cold]
@@ -398,7 +398,7 @@ impl<S: Kinematic<R, N>, R: Real, const N: usize> Solution<S, R, N> {
     ) -> Self {
         let scales = mechanism.row_scales(parameters);
         let open = |position: &S::Position| {
-            largest_difference(&mechanism.phi(parameters, position), &[R::constant(0.0); N], &scales)
+            largest_difference(&mechanism.phi(parameters, position), &[R::constant(0.0); M], &scales)
         };
         let Ok(step) = solve_correction(mechanism, parameters, &self.position, factors) else { return self };
         let mut q = self.q;

@@ -30,7 +30,7 @@ pub struct Stop<R, const N: usize> {
     pub failure: Failure,
 }
 
-impl<S: Kinematic<R, N>, R: Real, const N: usize> Stepper<S, R, N> {
+impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, R, N, M> {
     /// Where the motion stops between now and time `t` (s); `None` where `t` is reached.
     ///
     /// The stepper itself stays where it is. Bisection takes some forty steps; each that fails costs a search.
@@ -87,21 +87,21 @@ impl<S: Kinematic<R, N>, R: Real, const N: usize> Stepper<S, R, N> {
 }
 
 /// A bracket around a limit.
-struct Search<S: Kinematic<R, N>, R: Real, const N: usize> {
+struct Search<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> {
     /// The mechanism at `reachable`.
-    good: Stepper<S, R, N>,
+    good: Stepper<S, R, N, M>,
     reachable: R,
     refused: R,
     /// What happened at `refused`.
     failure: Option<Failure>,
 }
 
-impl<S: Kinematic<R, N>, R: Real, const N: usize> Search<S, R, N> {
+impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Search<S, R, N, M> {
     /// Bisection to `width`, or to neighbouring numbers.
     fn halve(
         &mut self,
         width: R,
-        driven: &impl Fn(&Stepper<S, R, N>, R) -> Result<Stepper<S, R, N>, Failure>,
+        driven: &impl Fn(&Stepper<S, R, N, M>, R) -> Result<Stepper<S, R, N, M>, Failure>,
     ) {
         for _ in 0..HALVINGS {
             let middle = self.reachable + R::constant(0.5) * (self.refused - self.reachable);
@@ -122,7 +122,7 @@ impl<S: Kinematic<R, N>, R: Real, const N: usize> Search<S, R, N> {
         &mut self,
         width: R,
         to: R,
-        driven: &impl Fn(&Stepper<S, R, N>, R) -> Result<Stepper<S, R, N>, Failure>,
+        driven: &impl Fn(&Stepper<S, R, N, M>, R) -> Result<Stepper<S, R, N, M>, Failure>,
     ) -> bool {
         let singular = matches!(self.failure, Some(Failure::Singular { .. }));
         let steps = if singular { STEPS_OVER } else { 0 };

@@ -29,16 +29,16 @@ pub struct Frame<R, O, const N: usize> {
 ///
 /// The first frame is the state as it stands. After a failure, which is yielded, there is no more; the stepper
 /// then stands at the last position found, and [`Stepper::stop_towards`] tells how far it can go. An output that has no value there is a failure too.
-pub struct Sweep<'a, S: Kinematic<R, N>, R: Real, const N: usize> {
-    stepper: &'a mut Stepper<S, R, N>,
+pub struct Sweep<'a, S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize = N> {
+    stepper: &'a mut Stepper<S, R, N, M>,
     start: R,
     end: R,
     steps: u32,
     next: Option<u32>,
 }
 
-impl<'a, S: Kinematic<R, N>, R: Real, const N: usize> Sweep<'a, S, R, N> {
-    pub(crate) fn new(stepper: &'a mut Stepper<S, R, N>, end: R, steps: u32) -> Self {
+impl<'a, S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Sweep<'a, S, R, N, M> {
+    pub(crate) fn new(stepper: &'a mut Stepper<S, R, N, M>, end: R, steps: u32) -> Self {
         let start = stepper.t();
         Sweep { stepper, start, end, steps, next: Some(0) }
     }
@@ -52,7 +52,7 @@ impl<'a, S: Kinematic<R, N>, R: Real, const N: usize> Sweep<'a, S, R, N> {
     }
 }
 
-impl<S: Kinematic<R, N>, R: Real, const N: usize> Iterator for Sweep<'_, S, R, N> {
+impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Iterator for Sweep<'_, S, R, N, M> {
     type Item = Result<Frame<R, S::Outputs, N>, Failure>;
 
     fn next(&mut self) -> Option<Self::Item> {
@@ -81,9 +81,9 @@ fn output_failure<R: Real>(outputs: &[OutputValue<R>], entries: &[Entry]) -> Opt
     entries.get(index).map(|entry| Failure::NonFinite { name: entry.name, line: entry.line })
 }
 
-impl<S: Kinematic<R, N>, R: Real, const N: usize> FusedIterator for Sweep<'_, S, R, N> {}
+impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> FusedIterator for Sweep<'_, S, R, N, M> {}
 
-impl<S: Kinematic<R, N>, R: Real, const N: usize> Stepper<S, R, N> {
+impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, R, N, M> {
     /// The state with its outputs, as a [`Sweep`] yields it.
     pub fn frame(&self) -> Frame<R, S::Outputs, N> {
         Frame {
