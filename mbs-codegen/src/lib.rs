@@ -37,6 +37,7 @@ mod symbolic;
 mod syntax;
 
 use diagnostics::Diagnostics;
+pub use emit::casadi::stand_in;
 pub use emit::formula::Formulas;
 use emit::notation::Notation;
 pub use emit::report::{BlockReport, CoordinateReport, EntryKind, RowReport, StructureReport};

@@ -131,7 +131,9 @@ def evaluate(definition, states):
     function = ca.Function("mechanism", [c.q, c.qd, c.qdd, c.t, c.v, c.z, c.l], outputs)
 
     def stacked(key, size):
-        return np.array([state[key] for state in states], dtype=float).reshape(len(states), size).T
+        # Of a mechanism without masses the states have no multipliers, and nothing depends on them.
+        given = [state[key] or [0.0] * size for state in states] if key == "l" else [state[key] for state in states]
+        return np.array(given, dtype=float).reshape(len(states), size).T
 
     n = definition.N
     sizes = {"q": n, "qd": n, "qdd": n, "t": 1, "v": definition.V, "z": definition.K, "l": definition.M}

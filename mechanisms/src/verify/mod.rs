@@ -13,6 +13,7 @@ pub mod compare;
 pub mod environment;
 mod layout;
 pub mod oracle;
+mod stand_in;
 pub mod states;
 
 use core::fmt;
@@ -23,6 +24,7 @@ pub use agreement::{Agreement, BOUND, LargestError, Reference, Summary};
 pub use check::{Check, CheckError, check};
 pub use environment::EnvironmentError;
 pub use oracle::{Oracle, OracleError};
+pub use stand_in::StandIn;
 
 use crate::facade::AnyEquations;
 use crate::registry::{self, Card, Mismatch};
