@@ -49,6 +49,19 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Method<S, R, 
         h: R,
         counts: &mut Counts,
     ) -> Result<Instant<R, N, M, S::States>, Failure> {
+        model.moved(from.t, from.t + h, |model| self.stepped(model, from, h, counts))
+    }
+}
+
+impl AugmentedLagrangian {
+    /// The step, with the mechanism as it is at its end.
+    fn stepped<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
+        self,
+        model: &Model<'_, S, R, N, M>,
+        from: &Instant<R, N, M, S::States>,
+        h: R,
+        counts: &mut Counts,
+    ) -> Result<Instant<R, N, M, S::States>, Failure> {
         let (t, quarter) = (from.t + h, R::constant(0.25) * h * h);
         let (start, before) = (&from.y, &from.solved.rate.qd);
         let mut y = *start;

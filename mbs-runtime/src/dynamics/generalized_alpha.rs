@@ -70,6 +70,19 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Method<S, R, 
         h: R,
         counts: &mut Counts,
     ) -> Result<Instant<R, N, M, S::States>, Failure> {
+        model.moved(from.t, from.t + h, |model| self.stepped(model, from, h, counts))
+    }
+}
+
+impl GeneralizedAlpha {
+    /// The step, with the mechanism as it is at its end.
+    fn stepped<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
+        self,
+        model: &Model<'_, S, R, N, M>,
+        from: &Instant<R, N, M, S::States>,
+        h: R,
+        counts: &mut Counts,
+    ) -> Result<Instant<R, N, M, S::States>, Failure> {
         let (one, t) = (R::constant(1.0), from.t + h);
         let Coefficients { alpha_m, alpha_f, beta, gamma } = self.coefficients::<R>();
         let (start, before, a0) = (&from.y, &from.solved.rate.qd, &from.carried);

@@ -112,6 +112,20 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         self.mechanism.position(self.parameters, &y.q, t)
     }
 
+    /// Calls `solve` with the mechanism as it is at time `to` (s): the phases of drives that prescribe a rate moved on from
+    /// time `from` (s).
+    #[inline(always)]
+    pub(super) fn moved<X>(&self, from: R, to: R, solve: impl FnOnce(&Model<'_, S, R, N, M>) -> X) -> X {
+        if S::PHASES.is_empty() {
+            return solve(self);
+        }
+        let mut mechanism = self.mechanism.clone();
+        mechanism.advance_phases(from, to);
+        let parameters = mechanism.parameters();
+        let (metric, balanced) = (self.metric, self.balanced);
+        solve(&Model { mechanism: &mechanism, parameters: &parameters, metric, balanced })
+    }
+
     /// Fails where a coordinate, velocity or state is no number, or a coordinate is not resolved.
     pub(super) fn check(&self, t: R, y: &State<R, N, S::States>) -> Result<(), Failure> {
         let bad = kinematics::time_failure(t)

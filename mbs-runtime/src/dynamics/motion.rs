@@ -125,6 +125,8 @@ pub struct Equations<'a, S: Dynamic<R, N, M>, F, R: Real, const N: usize, const 
     model: &'a Model<'a, S, R, N, M>,
     formulation: &'a F,
     tolerance: Tolerance<R>,
+    /// Time (s) that the phases of the mechanism belong to.
+    start: R,
     /// What was found at the last evaluation.
     last: Solved<R, N, M, S::States>,
     pub(super) counts: Counts,
@@ -143,7 +145,8 @@ where
         from: &Instant<R, N, M, S::States>,
         counts: Counts,
     ) -> Self {
-        Equations { model, formulation, tolerance: Tolerance::new(0.0), last: from.solved, counts }
+        let (tolerance, start) = (Tolerance::new(0.0), from.t);
+        Equations { model, formulation, tolerance, start, last: from.solved, counts }
     }
 
     pub(super) fn with_tolerance(self, tolerance: Tolerance<R>) -> Self {
@@ -157,7 +160,10 @@ where
         t: R,
         y: &State<R, N, S::States>,
     ) -> Result<Solved<R, N, M, S::States>, Failure> {
-        self.last = self.formulation.solve(self.model, t, y, &self.last.lambda, &mut self.counts)?;
+        let (formulation, lambda) = (self.formulation, self.last.lambda);
+        let counts = &mut self.counts;
+        self.last =
+            self.model.moved(self.start, t, |model| formulation.solve(model, t, y, &lambda, counts))?;
         Ok(self.last)
     }
 }
@@ -177,7 +183,8 @@ where
 
     #[inline]
     fn settle(&mut self, t: R, y: &mut Self::State) -> Result<(), Failure> {
-        self.formulation.settle(self.model, t, y, &mut self.counts)
+        let (formulation, counts) = (self.formulation, &mut self.counts);
+        self.model.moved(self.start, t, |model| formulation.settle(model, t, y, counts))
     }
 }
 

@@ -103,7 +103,7 @@ where
     }
 
     fn starting(
-        mechanism: S,
+        mut mechanism: S,
         method: X,
         t: R,
         (q, qd): ([R; N], [R; N]),
@@ -112,6 +112,7 @@ where
         if let Some(failure) = kinematics::variable_failure(&mechanism) {
             return Err(failure);
         }
+        mechanism.start_phases(&q, t);
         let parameters = mechanism.parameters();
         let metric = Metric::of(&mechanism, &parameters);
         let model = Model { mechanism: &mechanism, parameters: &parameters, metric: &metric, balanced: true };
@@ -201,6 +202,10 @@ where
     }
 
     fn take(&mut self, next: Instant<R, N, M, S::States>, counts: Counts) {
+        if !S::PHASES.is_empty() {
+            self.mechanism.advance_phases(self.now.t, next.t);
+            self.parameters = self.mechanism.parameters();
+        }
         self.now = next;
         self.counts = counts;
         self.stale = false;
