@@ -11,6 +11,13 @@
 
 use mbs_runtime::mechanism;
 
+use crate::masses::boxed_masses;
+use crate::registry::FreeCard;
+
+/// In the list of free mechanisms.
+pub const CARD: FreeCard =
+    FreeCard { name: "andrews", title: "Andrews' squeezer", make: boxed_masses::<Andrews, 7, 6> };
+
 mechanism! {
     /// Andrews' squeezer: one degree of freedom in seven angles.
     pub mechanism Andrews;

@@ -11,6 +11,13 @@
 
 use mbs_runtime::mechanism;
 
+use crate::masses::boxed_masses;
+use crate::registry::FreeCard;
+
+/// In the list of free mechanisms.
+pub const CARD: FreeCard =
+    FreeCard { name: "n_four_bar", title: "Two four-bars in a row", make: boxed_masses::<NFourBar, 6, 5> };
+
 mechanism! {
     /// Two parallelograms: one degree of freedom in six coordinates.
     pub mechanism NFourBar;

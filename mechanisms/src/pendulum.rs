@@ -8,6 +8,16 @@
 
 use mbs_runtime::mechanism;
 
+use crate::masses::boxed_masses;
+use crate::registry::FreeCard;
+
+/// In the list of free mechanisms.
+pub const CARD: FreeCard = FreeCard {
+    name: "pendulum",
+    title: "Pendulum in Cartesian coordinates",
+    make: boxed_masses::<Pendulum, 2, 1>,
+};
+
 mechanism! {
     /// A simple pendulum: one degree of freedom in two coordinates.
     pub mechanism Pendulum;

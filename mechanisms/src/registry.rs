@@ -5,7 +5,7 @@ use core::fmt;
 use mbs_runtime::Failure;
 
 use crate::drawing::Shape;
-use crate::facade::{AnyMechanism, Motion};
+use crate::facade::{AnyEquations, AnyMechanism, Motion};
 
 /// Every mechanism; the first one is what `mbs` shows without arguments.
 pub const ALL: &[&Card] = &[
@@ -35,6 +35,20 @@ pub const ALL: &[&Card] = &[
     &crate::slider_crank_scenes::DRIVEN_SLIDER,
     &crate::slider_crank_scenes::TELESCOPING_ROD,
 ];
+
+/// Mechanisms with masses that their rows leave free to move: listed, expanded and verified, not run.
+pub const FREE: &[&FreeCard] = &[&crate::pendulum::CARD, &crate::n_four_bar::CARD, &crate::andrews::CARD];
+
+/// What the program knows of a mechanism that is free to move.
+#[derive(Clone, Copy, Debug)]
+pub struct FreeCard {
+    /// Name on the command line.
+    pub name: &'static str,
+    /// Heading.
+    pub title: &'static str,
+    /// A new instance with default parameters.
+    pub make: fn() -> Box<dyn AnyEquations>,
+}
 
 /// What the program knows of a mechanism beside its text.
 #[derive(Clone, Copy, Debug)]
@@ -86,6 +100,11 @@ pub enum Mismatch {
         /// The name asked for.
         name: String,
     },
+    /// The mechanism is free to move, and the command needs rows that fix it.
+    Free {
+        /// The name asked for.
+        name: String,
+    },
     /// No parameter of this name.
     Parameter {
         /// The name asked for.
@@ -115,7 +134,22 @@ pub enum Mismatch {
 /// [`Mismatch::Mechanism`] where there is none; its text lists the known names.
 pub fn find(name: &str) -> Result<&'static Card, Mismatch> {
     let found = ALL.iter().copied().find(|card| card.name == name);
-    found.ok_or_else(|| Mismatch::Mechanism { name: name.to_string() })
+    let is_free = FREE.iter().any(|card| card.name == name);
+    let name = || name.to_string();
+    found.ok_or_else(|| {
+        if is_free { Mismatch::Free { name: name() } } else { Mismatch::Mechanism { name: name() } }
+    })
+}
+
+/// The functions of the mechanism called `name`, whether it is free to move or not.
+///
+/// # Errors
+/// [`Mismatch::Mechanism`] where there is none; its text lists the known names.
+pub fn equations(name: &str) -> Result<Box<dyn AnyEquations>, Mismatch> {
+    match FREE.iter().find(|card| card.name == name) {
+        Some(card) => Ok((card.make)()),
+        None => Ok((find(name)?.make)()),
+    }
 }
 
 /// Sets the parameter or input `name` (coherent SI unit of the text).
@@ -209,8 +243,15 @@ impl fmt::Display for Mismatch {
         match self {
             Mismatch::Mechanism { name } => {
                 write!(f, "there is no mechanism `{name}`")?;
-                write_known(f, name, &ALL.iter().map(|card| card.name).collect::<Vec<_>>())
+                {
+                    let free = FREE.iter().map(|card| card.name);
+                    write_known(f, name, &ALL.iter().map(|card| card.name).chain(free).collect::<Vec<_>>())
+                }
             }
+            Mismatch::Free { name } => write!(
+                f,
+                "`{name}` is free to move: its dynamic analysis is not available here yet; `mbs expand {name}` prints its code, `mbs verify {name}` compares it"
+            ),
             Mismatch::Parameter { name, mechanism, known } => {
                 write!(f, "`{mechanism}` has no parameter `{name}`")?;
                 write_known(f, name, known)
@@ -235,6 +276,19 @@ mod tests {
             assert!(ALL[..index].iter().all(|other| other.name != card.name));
             assert_eq!(find(card.name).expect("in the list").title, card.title);
         }
+    }
+
+    #[test]
+    fn a_free_mechanism_has_equations_and_says_that_it_cannot_be_run() {
+        for (index, card) in FREE.iter().enumerate() {
+            let others = FREE[..index].iter().map(|other| other.name);
+            assert!(others.chain(ALL.iter().map(|other| other.name)).all(|other| other != card.name));
+            let equations = equations(card.name).expect("in the list");
+            assert!(equations.rows().len() < equations.coordinates().len() && equations.tables().is_some());
+            let text = find(card.name).expect_err("free").to_string();
+            assert!(text.contains("is free to move"), "{text}");
+        }
+        assert_eq!(equations("four_bar").expect("in the list").type_name(), "FourBar");
     }
 
     #[test]

@@ -15,7 +15,7 @@ pub struct Arguments {
 
 /// The emitted code, laid out as rustfmt would.
 pub fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<(), CommandError> {
-    let source = (registry::find(&arguments.name)?.make)().source();
+    let source = registry::equations(&arguments.name)?.source();
     let tokens = mbs_codegen::expand_source(source).map_err(CommandError::Failed)?;
     let file = syn::parse2(tokens)
         .map_err(|error| CommandError::Failed(format!("the emitted code is no Rust file: {error}")))?;

@@ -5,8 +5,8 @@ use std::time::Duration;
 
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
-use mechanisms::registry::{self, ALL, Card};
-use mechanisms::verify::{DIGITS_STATES, Oracle, STATES, Summary, verify, verify_digits};
+use mechanisms::registry::{self, ALL, FREE};
+use mechanisms::verify::{DIGITS_STATES, Oracle, STATES, Summary, verify_equations, verify_equations_digits};
 
 use super::{CommandError, positive};
 
@@ -31,23 +31,24 @@ pub struct Arguments {
 
 /// The largest error of each function; an error where one is above the bound.
 pub fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<(), CommandError> {
-    let cards: Vec<&Card> = match &arguments.name {
-        Some(name) => vec![registry::find(name)?],
-        None => ALL.to_vec(),
+    let names: Vec<&str> = match &arguments.name {
+        Some(name) => vec![name],
+        None => ALL.iter().map(|card| card.name).chain(FREE.iter().map(|card| card.name)).collect(),
     };
     let style =
         ProgressStyle::with_template("{spinner} {bar:30} {pos}/{len} {msg}").expect("a valid template");
-    let bar = ProgressBar::new(cards.len() as u64).with_style(style);
+    let bar = ProgressBar::new(names.len() as u64).with_style(style);
     bar.enable_steady_tick(TICK);
     let oracle = Oracle::new(&|step| bar.set_message(step.to_string()));
     let oracle = oracle.map_err(|error| failed(&bar, error.to_string()))?;
     let states = arguments.states.unwrap_or(if arguments.digits { DIGITS_STATES } else { STATES });
-    let compare = if arguments.digits { verify_digits } else { verify };
+    let compare = if arguments.digits { verify_equations_digits } else { verify_equations };
     let mut summary = Summary::default();
-    for card in cards {
-        bar.set_message(card.name);
-        let agreement = compare(card, &oracle, states);
-        let agreement = agreement.map_err(|error| failed(&bar, format!("{}: {error}", card.name)))?;
+    for name in names {
+        bar.set_message(name.to_owned());
+        let mut mechanism = registry::equations(name)?;
+        let agreement = compare(mechanism.as_mut(), &oracle, states);
+        let agreement = agreement.map_err(|error| failed(&bar, format!("{name}: {error}")))?;
         bar.suspend(|| writeln!(out, "{agreement}"))?;
         summary.add(agreement);
         bar.inc(1);

@@ -65,9 +65,20 @@ pub enum VerifyError {
 /// # Errors
 /// [`VerifyError`] where the comparison could not be made.
 pub fn verify(card: &Card, oracle: &Oracle, states: usize) -> Result<Agreement, VerifyError> {
-    let mut mechanism = (card.make)();
-    let definition = generated_definition(mechanism.as_ref())?;
-    Ok(compare::compare(mechanism.as_mut(), oracle, &definition, states)?)
+    verify_equations((card.make)().as_mut(), oracle, states)
+}
+
+/// [`verify`] for any mechanism, free to move or not.
+///
+/// # Errors
+/// [`VerifyError`] where the comparison could not be made.
+pub fn verify_equations(
+    mechanism: &mut dyn AnyEquations,
+    oracle: &Oracle,
+    states: usize,
+) -> Result<Agreement, VerifyError> {
+    let definition = generated_definition(mechanism)?;
+    Ok(compare::compare(mechanism, oracle, &definition, states)?)
 }
 
 /// Compares the emitted code of the mechanism with 50-digit arithmetic on the same text at `states` random states.
@@ -75,9 +86,20 @@ pub fn verify(card: &Card, oracle: &Oracle, states: usize) -> Result<Agreement, 
 /// # Errors
 /// [`VerifyError`] where the comparison could not be made.
 pub fn verify_digits(card: &Card, oracle: &Oracle, states: usize) -> Result<Agreement, VerifyError> {
-    let mut mechanism = (card.make)();
-    let definition = generated_definition(mechanism.as_ref())?;
-    Ok(compare::compare_digits(mechanism.as_mut(), oracle, &definition, states)?)
+    verify_equations_digits((card.make)().as_mut(), oracle, states)
+}
+
+/// [`verify_digits`] for any mechanism, free to move or not; masses and forces have no part in it.
+///
+/// # Errors
+/// [`VerifyError`] where the comparison could not be made.
+pub fn verify_equations_digits(
+    mechanism: &mut dyn AnyEquations,
+    oracle: &Oracle,
+    states: usize,
+) -> Result<Agreement, VerifyError> {
+    let definition = generated_definition(mechanism)?;
+    Ok(compare::compare_digits(mechanism, oracle, &definition, states)?)
 }
 
 /// Compares the emitted code of the mechanism called `name` with the definition in a Python file at
