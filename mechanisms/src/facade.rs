@@ -4,7 +4,7 @@ use core::fmt;
 use core::hint::black_box;
 use std::time::{Duration, Instant};
 
-use mbs_runtime::{Entry, Failure, Frame, Kinematic, Mechanism, OutputValue, Stepper, Stop};
+use mbs_runtime::{Entry, Failure, Frame, FunctionEntry, Kinematic, Mechanism, OutputValue, Stepper, Stop};
 use serde::Serialize;
 
 use crate::lecture::experiment::Experiment;
@@ -27,6 +27,8 @@ pub trait AnyEquations {
     fn variables(&self) -> &'static [Entry];
     /// Outputs, component by component.
     fn outputs(&self) -> &'static [Entry];
+    /// Functions that the text declares.
+    fn functions(&self) -> &'static [FunctionEntry];
     /// Value of a parameter or input, in the unit of the text.
     fn get(&self, index: usize) -> Option<f64>;
     /// Sets a parameter or input, in the unit of the text; false where there is none at `index`.
@@ -203,6 +205,9 @@ impl<S: Mechanism<f64, N, M>, const N: usize, const M: usize> AnyEquations for F
     }
     fn outputs(&self) -> &'static [Entry] {
         S::OUTPUTS
+    }
+    fn functions(&self) -> &'static [FunctionEntry] {
+        S::FUNCTIONS
     }
     fn get(&self, index: usize) -> Option<f64> {
         self.0.get(index)

@@ -14,6 +14,7 @@
 
 pub mod andrews;
 pub mod cam_flat;
+pub mod cam_law;
 pub mod cam_oscillating;
 pub mod cam_roller;
 pub mod determinant_guide;

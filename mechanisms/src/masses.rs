@@ -2,7 +2,7 @@
 
 use core::time::Duration;
 
-use mbs_runtime::{Dynamic, Entry, Failure, Kinematic, Motion as Moving};
+use mbs_runtime::{Dynamic, Entry, Failure, FunctionEntry, Kinematic, Motion as Moving};
 
 use crate::facade::{AnyEquations, AnyMechanism, Facade, Functions, Motion, MotionStop, State};
 use crate::lecture::experiment::Experiment;
@@ -129,6 +129,9 @@ impl<S: Dynamic<f64, N, M>, const N: usize, const M: usize> AnyEquations for Mas
     }
     fn outputs(&self) -> &'static [Entry] {
         self.0.outputs()
+    }
+    fn functions(&self) -> &'static [FunctionEntry] {
+        self.0.functions()
     }
     fn get(&self, index: usize) -> Option<f64> {
         self.0.get(index)

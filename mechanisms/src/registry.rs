@@ -30,6 +30,7 @@ pub const ALL: &[&Card] = &[
     &crate::cam_flat::CARD,
     &crate::cam_roller::CARD,
     &crate::cam_oscillating::CARD,
+    &crate::cam_law::CARD,
     &crate::planetary_gear::CARD,
     &crate::slider_crank_scenes::DRIVEN_CRANK,
     &crate::slider_crank_scenes::DRIVEN_SLIDER,

@@ -24,7 +24,7 @@ pub use agreement::{Agreement, BOUND, LargestError, Reference, Summary};
 pub use check::{Check, CheckError, check};
 pub use environment::EnvironmentError;
 pub use oracle::{Oracle, OracleError};
-pub use stand_in::StandIn;
+pub use stand_in::{StandIn, comparable};
 
 use crate::facade::AnyEquations;
 use crate::registry::{self, Card, Mismatch};
@@ -65,7 +65,7 @@ pub enum VerifyError {
 /// # Errors
 /// [`VerifyError`] where the comparison could not be made.
 pub fn verify(card: &Card, oracle: &Oracle, states: usize) -> Result<Agreement, VerifyError> {
-    verify_equations((card.make)().as_mut(), oracle, states)
+    verify_equations(comparable(card).as_mut(), oracle, states)
 }
 
 /// [`verify`] for any mechanism, free to move or not.
@@ -86,7 +86,7 @@ pub fn verify_equations(
 /// # Errors
 /// [`VerifyError`] where the comparison could not be made.
 pub fn verify_digits(card: &Card, oracle: &Oracle, states: usize) -> Result<Agreement, VerifyError> {
-    verify_equations_digits((card.make)().as_mut(), oracle, states)
+    verify_equations_digits(comparable(card).as_mut(), oracle, states)
 }
 
 /// [`verify_digits`] for any mechanism, free to move or not; masses and forces have no part in it.
@@ -113,7 +113,7 @@ pub fn verify_against(name: &str, definition: &Path, oracle: &Oracle) -> Result<
         path: definition.display().to_string(),
         reason: error.to_string(),
     })?;
-    Ok(compare::compare((card.make)().as_mut(), oracle, &text, STATES)?)
+    Ok(compare::compare(comparable(card).as_mut(), oracle, &text, STATES)?)
 }
 
 /// The CasADi definition that the second back end prints from the mechanism's text.

@@ -55,6 +55,9 @@ impl AnyEquations for Hand {
     fn outputs(&self) -> &'static [Entry] {
         const { &[entry("product", "m"), entry("speed", "m/s")] }
     }
+    fn functions(&self) -> &'static [mbs_runtime::FunctionEntry] {
+        &[]
+    }
     fn get(&self, index: usize) -> Option<f64> {
         self.variables.get(index).copied()
     }

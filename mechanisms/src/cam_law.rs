@@ -1,0 +1,148 @@
+//! A disc cam whose motion law is given at run time: the text says what the law must be, a type says what it is.
+//!
+//! ```text
+//!               │
+//!               │ stem
+//!       ────────┴───P────   flat face at the height y
+//!              .··'''··.
+//!            .'    |    '.      P = (x, y): point of contact
+//!           (   O  o      )     θ: cam (rad)
+//!            '.          .'
+//!              `··...··'
+//! ```
+//!
+//! A flat face touches the cam at `P = [lift′(θ), rb + lift(θ)]`, whatever the law. Because the row of `P` uses the
+//! first derivative, its acceleration needs the third: the law is declared `C3`. The radius of curvature
+//! `rb + lift + lift″` keeps one time derivative, for there is no fourth.
+//!
+//! Angles in rad, lengths in metres, `q = [θ x y]`. The law here rises by 8 mm within 2 rad, dwells, and returns, each
+//! motion by the polynomial 4-5-6-7; its acceleration falls to −17.4 mm/rad² at the most, so that the profile stays convex.
+//!
+//! Numbers: chosen here. Source of the contact: Norton, Cam Design and Manufacturing Handbook, ch. 7 (flat-faced
+//! follower); of the law: ch. 3 (4-5-6-7 polynomial).
+
+use core::f64::consts::{PI, TAU};
+
+use mbs_runtime::driver::{Polynomial4567, Segment, Segments};
+use mbs_runtime::mechanism;
+
+use crate::drawing::{Along, Shape};
+use crate::facade::{AnyMechanism, Facade};
+use crate::registry::{Card, Preset, Span};
+use crate::verify::StandIn;
+
+mechanism! {
+    /// Disc cam with a flat-faced follower, the motion law from outside.
+    pub mechanism CamLaw;
+
+    param rb: m = 30mm;
+    param omega: rad/s = TAU;
+    /// Lift of the follower above the base circle.
+    function lift: m(rad), C3, periodic TAU;
+
+    coord theta: rad;
+    coord x: m;
+    coord y: m;
+
+    constraint contact { [x, y] == [lift.d1(theta), rb + lift(theta)]; }
+    drive turn: theta == omega*t;
+
+    out O: [m; 2] = [0, 0];
+    out P: [m; 2] = [x, y];
+    out face_left: [m; 2] = [-0.6*rb, y];
+    out face_right: [m; 2] = [0.6*rb, y];
+    out G: [m; 2] = [0, y + 1.6*rb];
+    out radius_of_curvature: m = rb + lift(theta) + lift.d2(theta);
+}
+
+/// The law of the follower that `mbs` shows.
+pub type Law = Segments<Polynomial4567, 4>;
+
+/// Height (m) and the angles (rad) at which the rise, the dwell and the return end.
+const HEIGHT: f64 = 0.008;
+const RISEN: f64 = 2.0;
+const LEAVES: f64 = PI;
+const BACK: f64 = 5.0;
+
+/// The cam with the law that `mbs` shows.
+pub fn shown() -> CamLaw<Law> {
+    const LAW: Law = {
+        let parts =
+            [Segment::to(HEIGHT, RISEN), Segment::dwell(LEAVES), Segment::to(0.0, BACK), Segment::dwell(TAU)];
+        match Law::new(0.0, parts) {
+            Ok(law) => law,
+            Err(_) => panic!("four segments, one behind the other"),
+        }
+    };
+    CamLaw::new(LAW)
+}
+
+/// The cam with a law that the cross-check knows.
+pub fn compared() -> Box<dyn AnyMechanism> {
+    Box::new(Facade::<_, 3, 3>(CamLaw::new(StandIn::<0>)))
+}
+
+/// How the mechanism is drawn.
+pub const DRAWING: &[Shape] = &[
+    Shape::Rail { at: "G", along: Along::Fixed([0.0, 1.0]) },
+    Shape::Slider { at: "G", along: Along::Fixed([0.0, 1.0]) },
+    Shape::Ground { at: "O" },
+    Shape::Face { points: ["face_left", "face_right"], back: "G", label: "follower" },
+    Shape::Cam { at: "O", contact: "P", turn: "theta", label: "cam" },
+    Shape::Joint { at: "O" },
+    Shape::Trace { of: "P", label: "point of contact" },
+];
+
+/// Entry in the list of mechanisms.
+pub const CARD: Card = Card {
+    name: "cam_law",
+    title: "Cam with a law given at run time",
+    description: "A disc cam lifts a flat-faced follower by 8 mm, lets it dwell and takes it back, by a law that the text \
+                  declares and the caller supplies.",
+    runs: &[Preset { label: "one turn", description: "the cam at constant speed", set: &[] }],
+    span: Span::Turn { rate: "omega" },
+    drawing: DRAWING,
+    make: || Box::new(Facade::<_, 3, 3>(shown())),
+};
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::closed_form::{Jet, assert_moves_as};
+    use crate::reference::one_turn;
+
+    /// Lift and slope of a motion from `from` that begins at `start`: 35 u⁴ − 84 u⁵ + 70 u⁶ − 20 u⁷ and its derivative.
+    fn motion(angle: Jet, [start, end]: [f64; 2], [from, to]: [f64; 2]) -> [Jet; 2] {
+        let u = (angle - start) / (end - start);
+        let power = u * u * u;
+        let share = power * u * (u * u * u * -20.0 + u * u * 70.0 - u * 84.0 + 35.0);
+        let slope = power * (u * u * u * -140.0 + u * u * 420.0 - u * 420.0 + 140.0);
+        [share * (to - from) + from, slope * ((to - from) / (end - start))]
+    }
+
+    fn coordinates(t: Jet) -> Vec<Jet> {
+        let angle = t * TAU;
+        let [lift, slope] = match angle.0[0] {
+            x if x < RISEN => motion(angle, [0.0, RISEN], [0.0, HEIGHT]),
+            x if x < LEAVES => [Jet::from(HEIGHT), Jet::from(0.0)],
+            x if x < BACK => motion(angle, [LEAVES, BACK], [HEIGHT, 0.0]),
+            _ => [Jet::from(0.0); 2],
+        };
+        vec![angle, slope, lift + 0.03]
+    }
+
+    #[test]
+    fn the_follower_obeys_the_law() {
+        // Not a divisor of the turn, so that no instant falls on the end of a segment.
+        let moved = one_turn(&CARD, &CARD.runs[0], 181);
+        assert_moves_as(&moved, &["theta", "x", "y"], 1e-12, coordinates);
+    }
+
+    #[test]
+    fn the_profile_is_convex_and_its_curvature_has_one_rate() {
+        let moved = one_turn(&CARD, &CARD.runs[0], 360);
+        let radius = moved.outputs.last().expect("the radius of curvature");
+        assert!(radius.value.iter().all(|radius| *radius > 0.015));
+        assert!(radius.rate.is_some() && radius.acceleration.is_none());
+    }
+}
