@@ -12,8 +12,10 @@ The definition is a Python file with
     define(ca, q, v, t, der) -> (phi, outs)
 
 where phi is the list of residuals and outs a list of pairs (expression, number of time derivatives that the
-definition leaves: 0, 1 or 2). ca holds the functions: the module casadi, or what stands in its place. der(e) is the
-total time derivative: t -> 1, q -> qd, qd -> qdd, and along RATES v[value] -> v[rate], v[rate] -> v[acceleration].
+definition leaves: 0, 1 or 2; -1 where the definition has no word for the output itself). ca holds the functions of the
+module casadi, and gain(e, rows, row, sign): the derivative of e along the drive whose row, of all the rows, rises by
+sign where the coordinates alone move. der(e) is the total time derivative: t -> 1, q -> qd, qd -> qdd, and along RATES
+v[value] -> v[rate], v[rate] -> v[acceleration].
 
 A definition of a mechanism with masses or forces has also
 

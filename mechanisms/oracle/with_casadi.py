@@ -39,6 +39,23 @@ class Calculus:
         return self.partial(e) + self.along(e, self.q, self.qd) + self.along(e, self.qd, self.qdd)
 
 
+class Words:
+    """The functions of a definition: those of casadi, and what is solved with its Jacobian."""
+
+    def __init__(self, q):
+        self.q = q
+
+    def __getattr__(self, name):
+        return getattr(ca, name)
+
+    def gain(self, e, rows, row, sign):
+        """de/dq dq with the motion dq of a drive: all rows stay, its own rises by sign."""
+        unit = ca.DM.zeros(len(rows), 1)
+        unit[row] = sign
+        motion = ca.solve(ca.jacobian(ca.vertcat(*rows), self.q), ca.SX(unit))
+        return ca.mtimes(ca.jacobian(ca.SX(e), self.q), motion)
+
+
 def column(entries):
     return ca.vertcat(*entries) if entries else ca.SX(0, 1)
 
@@ -50,7 +67,7 @@ def rows(matrix):
 
 def functions(c, definition):
     """All functions as dense columns, by name, and how many derivatives each output has."""
-    residuals, outs = definition.define(ca, c.q, c.v, c.t, c.total)
+    residuals, outs = definition.define(Words(c.q), c.q, c.v, c.t, c.total)
     phi = column(residuals)
     if phi.shape != (definition.M, 1):
         raise ValueError(f"the definition says {definition.M} rows and gives {phi.shape[0]}")
@@ -58,7 +75,7 @@ def functions(c, definition):
     phi_tt = c.partial(phi_t)
     phi_qt_qd = c.along(phi_t, c.q, c.qd)
     gamma = -c.along(c.along(phi, c.q, c.qd), c.q, c.qd) - 2 * phi_qt_qd - phi_tt
-    out = column([e for e, _ in outs])
+    out = column([e if order >= 0 else ca.SX(0) for e, order in outs])
     orders = [order for _, order in outs]
     out_d = column([c.total(e) if order > 0 else ca.SX(0) for e, order in outs])
     out_dd = column([c.total(c.total(e)) if order > 1 else ca.SX(0) for e, order in outs])
@@ -72,12 +89,12 @@ def functions(c, definition):
         "out": out,
         "out_d": out_d,
         "out_dd": out_dd,
-    }, {"out_d": [order > 0 for order in orders], "out_dd": [order > 1 for order in orders]}
+    }, {"out": [order >= 0 for order in orders], "out_d": [order > 0 for order in orders], "out_dd": [order > 1 for order in orders]}
 
 
 def dynamics(c, definition, phi):
     """Functions of masses and forces, by Lagrange's equations: nothing but energies and works comes from the text."""
-    told = definition.dynamics(ca, c.q, c.v, c.t, c.total, c.z, c.l)
+    told = definition.dynamics(Words(c.q), c.q, c.v, c.t, c.total, c.z, c.l)
     kinetic, potential = (sum(told[name], ca.SX(0)) for name in ["kinetic", "potential"])
     momenta = ca.jacobian(kinetic, c.qd).T
     mass = ca.jacobian(momenta, c.qd)

@@ -183,6 +183,48 @@ class Arithmetic:
         return angle
 
 
+class Slopes(Arithmetic):
+    """The functions of a definition along one coordinate: of each gain, how its expression and the rows change."""
+
+    def __init__(self):
+        self.found = []
+
+    def gain(self, e, rows, _row, _sign):
+        self.found.append([(s.v[1], s.b[1]) for s in (e, *rows)])
+        return Series([UNKNOWN] * 3)
+
+
+class Solved(Arithmetic):
+    """The functions of a definition where the slopes along each coordinate are known."""
+
+    def __init__(self, slopes):
+        self.calls = iter(list(zip(*(along.found for along in slopes))))
+
+    def gain(self, _e, _rows, row, sign):
+        value, bound = motion(next(self.calls), row, sign)
+        return Series([value, UNKNOWN, UNKNOWN], [bound, float("nan"), float("nan")])
+
+
+def motion(slopes, row, sign):
+    """g . x with J x = sign e_row and a bound on its rounding; slopes are those of g and of J's rows, by coordinate."""
+    n = len(slopes)
+    along = mp.matrix([slope[0][0] for slope in slopes])
+    jacobian = mp.matrix([[slope[1 + i][0] for slope in slopes] for i in range(n)])
+    unit = mp.matrix(n, 1)
+    unit[row] = sign
+    try:
+        x, y = mp.lu_solve(jacobian, unit), mp.lu_solve(jacobian.T, along)
+    except ZeroDivisionError:
+        return UNKNOWN, float("nan")
+    # A solution by elimination has the rounding of n products with each entry beside that of the entry.
+    entries = [
+        (abs(y[i]), slopes[j][1 + i][1] + n * abs(jacobian[i, j]), abs(x[j])) for i in range(n) for j in range(n)
+    ]
+    terms = [(slope[0][1] + n * abs(slope[0][0])) * abs(x[j]) for j, slope in enumerate(slopes)]
+    bound = sum(terms) + sum(left * entry * right for left, entry, right in entries)
+    return (along.T * x)[0], float(bound)
+
+
 class Line:
     """How the leaves move: time and inputs, coordinates with qd and qdd, or one coordinate alone at rate 1."""
 
@@ -198,9 +240,9 @@ class Line:
             for value, rate, acceleration in definition.RATES:
                 self.v[value] = Series([v[value], v[rate], v[acceleration]])
 
-    def values(self):
+    def values(self, words):
         """Residuals, and outputs with the number of their derivatives."""
-        return self.definition.define(Arithmetic, self.q, self.v, self.t, Series.rate)
+        return self.definition.define(words, self.q, self.v, self.t, Series.rate)
 
 
 def entry(v, b, torn):
@@ -219,15 +261,16 @@ def part(series, k, sign=1):
 def functions(definition, state):
     """All functions at one state."""
     KNOWN.clear()
-    time, _ = Line(definition, state, time=True).values()
-    motion, _ = Line(definition, state, velocity=True).values()
-    both, _ = Line(definition, state, time=True, velocity=True).values()
-    _, outs = Line(definition, state, time=True, velocity=True, acceleration=True).values()
-    columns = [part(Line(definition, state, axis=i).values()[0], 1) for i in range(definition.N)]
+    slopes = [Slopes() for _ in range(definition.N)]
+    columns = [part(Line(definition, state, axis=i).values(along)[0], 1) for i, along in enumerate(slopes)]
+    time, _ = Line(definition, state, time=True).values(Solved(slopes))
+    velocity, _ = Line(definition, state, velocity=True).values(Solved(slopes))
+    both, _ = Line(definition, state, time=True, velocity=True).values(Solved(slopes))
+    _, outs = Line(definition, state, time=True, velocity=True, acceleration=True).values(Solved(slopes))
     # By polarisation: twice the mixed derivative is what the joint motion has beyond its parts.
     mixed = [
         entry((j.v[2] - m.v[2] - s.v[2]) / 2, j.b[2] + m.b[2] + s.b[2], j.torn)
-        for j, m, s in zip(both, motion, time)
+        for j, m, s in zip(both, velocity, time)
     ]
 
     def derivative(k):

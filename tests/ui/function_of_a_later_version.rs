@@ -9,7 +9,7 @@ mechanism! {
     coord p: [m; 2] = [0.5, 0];
     constraint tip { p == L*unit(phi); }
     drive crank: phi == omega*t;
-    out push: N = margin(phi);
+    out push: N = reaction(tip, rod);
     out speed: m/s = der(p.0);
 }
 

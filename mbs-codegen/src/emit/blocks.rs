@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use super::code::lets;
+use super::given;
 use super::scope::{Scope, number};
 use crate::equations::Equations;
 use crate::program::{BlockProgram, Method, Program, System};
@@ -139,6 +140,7 @@ pub fn linear(equations: &Equations, program: &Program, scope: &Scope<'_>) -> Li
     factorize += "let __margin = __mbs::Margin::<T>::regular();\n";
     let mut solve = String::new();
     let mut names = String::new();
+    let asked = given::blocks(equations, program, scope.model);
     for (index, block) in program.blocks.iter().enumerate() {
         let right_sides: Vec<String> = block.rows.iter().map(|row| entries.right_side(*row, block)).collect();
         match &block.method {
@@ -163,6 +165,11 @@ pub fn linear(equations: &Equations, program: &Program, scope: &Scope<'_>) -> Li
                      let __margin = __margin.with_block(__value, {row}, {coordinate})\
                      .oriented(<{kind} as __mbs::Factorization<T, {size}>>::reverses(&__block{index}));"
                 );
+                if asked.contains(&index) {
+                    let _ = writeln!(fields, "/// Its margin.\nmargin{index}: T,");
+                    let _ = writeln!(factorize, "let __margin{index} = __value;");
+                    let _ = write!(names, "margin{index}: __margin{index}, ");
+                }
                 let _ = write!(names, "block{index}: __block{index}, ");
                 let unknowns = list(block.coordinates.iter().map(|c| format!("__x{c}")));
                 let right_sides = list(right_sides.into_iter());

@@ -12,6 +12,9 @@ use crate::model::{Model, VariableKind};
 /// `define(ca, q, v, t, der)` returns the rows, and the outputs with the number of their time derivatives;
 /// `v` are the parameters and inputs in the order of `VARIABLES`, `der` is the total time derivative. For
 /// each declared function stands its [`stand_in`].
+/// A back end adds one word to CasADi's: `ca.gain(e, rows, row, sign)` is ∂e/∂drive, where the drive's row, of all the
+/// rows, rises by `sign` as the coordinates follow it. Margins are of the runtime's own measure: an output with one has
+/// −1 derivatives.
 pub fn definition(model: &Model, name: &str) -> String {
     let rates: Vec<String> = model
         .variables
@@ -37,7 +40,10 @@ pub fn definition(model: &Model, name: &str) -> String {
     let outputs: Vec<String> = model
         .outputs
         .iter()
-        .map(|output| format!("({}, {})", variable(output.value), derivatives(model, output.value)))
+        .map(|output| match has_margin(model, output.value) {
+            true => format!("({}, -1)", variable(output.value)),
+            false => format!("({}, {})", variable(output.value), derivatives(model, output.value)),
+        })
         .collect();
     let _ = writeln!(text, "    return [{}], [{}]", rows.join(", "), outputs.join(", "));
     if let Some(dynamics) = &model.dynamics {
@@ -84,9 +90,14 @@ fn laws(count: usize, text: &mut String) {
 /// Assigns what the roots are made of, operands first.
 pub fn assignments(model: &Model, roots: impl IntoIterator<Item = Id>, text: &mut String) {
     let needed = model.expressions.reachable(roots);
+    let mut solver = false;
     for (id, node) in model.expressions.iter() {
         if needed.get(id.index()) == Some(&true) {
-            let _ = writeln!(text, "    {} = {}", variable(id), operation(node));
+            if matches!(node, Node::Ratio(..)) && !std::mem::replace(&mut solver, true) {
+                let rows: Vec<String> = model.rows.iter().map(|row| variable(row.residual)).collect();
+                let _ = writeln!(text, "    rows = [{}]", rows.join(", "));
+            }
+            let _ = writeln!(text, "    {} = {}", variable(id), operation(model, node));
         }
     }
 }
@@ -94,6 +105,14 @@ pub fn assignments(model: &Model, roots: impl IntoIterator<Item = Id>, text: &mu
 /// The name of an expression.
 pub fn variable(id: Id) -> String {
     format!("e{}", id.index())
+}
+
+/// Whether an output is made of a margin, so that no oracle has its value.
+fn has_margin(model: &Model, value: Id) -> bool {
+    let marked = model.expressions.reachable([value]);
+    let margin =
+        |(id, node): (Id, Node)| matches!(node, Node::Margin(_)) && marked.get(id.index()) == Some(&true);
+    model.expressions.iter().any(margin)
 }
 
 /// How many time derivatives a definition leaves an output.
@@ -110,6 +129,8 @@ fn derivatives(model: &Model, value: Id) -> u8 {
         let Some(order) = above.get(id.index()).copied().flatten() else { continue };
         let (below, own) = match node {
             Node::Rate(_, more) => (order + more, 0),
+            // Known at a position alone.
+            Node::Margin(_) | Node::Ratio(..) => (order + 2, 2),
             Node::Variable(index) => (
                 order,
                 match model.variables.get(index).map(|variable| variable.kind) {
@@ -157,7 +178,12 @@ fn moving(model: &Model) -> Vec<bool> {
     moving
 }
 
-fn operation(node: Node) -> String {
+/// The sign of a drive's row along which the drive rises.
+fn sign(model: &Model, row: usize) -> i8 {
+    if model.rows.get(row).is_some_and(|row| row.reversed) { -1 } else { 1 }
+}
+
+fn operation(model: &Model, node: Node) -> String {
     let v = variable;
     match node {
         // A number of the back end's own kind: one with more digits than Python's must not round what follows.
@@ -169,6 +195,9 @@ fn operation(node: Node) -> String {
         Node::Multiplier(index) => format!("l[{index}]"),
         Node::Rate(a, 1) => format!("der({})", v(a)),
         Node::Rate(a, _) => format!("der(der({}))", v(a)),
+        // No oracle has a word for it; what is made of it is not compared.
+        Node::Margin(_) => "ca.SX(float(\"nan\"))".into(),
+        Node::Ratio(a, row) => format!("ca.gain({}, rows, {row}, {})", v(a), sign(model, row)),
         Node::Unary(function, a) => match function {
             Unary::Negate => format!("-{}", v(a)),
             Unary::Sqrt => format!("ca.sqrt({})", v(a)),

@@ -192,6 +192,8 @@ impl<'a> Printer<'a> {
             Leaf::Multiplier(index) | Leaf::Direction(index) => {
                 (self.notation.name(&format!("lambda.{index}"), 0), Rank::Rate)
             }
+            // Stands in outputs alone, which have no formulas here.
+            Leaf::Given(..) => ("?".into(), Rank::Variable),
         };
         Atom { head, tail: String::new(), rank }
     }

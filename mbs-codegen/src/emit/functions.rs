@@ -7,6 +7,7 @@ use proc_macro2::TokenStream;
 use super::blocks;
 use super::code::{lets, tokens};
 use super::dynamics::{self, DynamicBodies};
+use super::given;
 use super::phases;
 use super::scope::Scope;
 use crate::equations::Equations;
@@ -80,6 +81,10 @@ pub fn bodies(
     let kept = |stage: &crate::program::Stage, scope: &Scope<'_>, name: &str| {
         format!("{name}({})", array(stage.fields.keys().map(|id| Some(*id)), scope))
     };
+    let given = given::lets(equations, program, &scope);
+    let mut outputs_text = String::new();
+    lets(&program.outputs, &scope, &mut outputs_text);
+    outputs_text += &outputs(equations, &scope);
     let (phases, speeds) = phases::functions(equations, program, &bare);
     let linear = blocks::linear(equations, program, &scope);
     let unknowns = (0..model.coordinates.len()).map(|coordinate| format!("__x{coordinate}"));
@@ -121,7 +126,7 @@ pub fn bodies(
         limits: body(&program.limits, &scope, limits(equations, &scope)),
         phases: tokens(&phases, runtime),
         speeds: tokens(&speeds, runtime),
-        outputs: body(&program.outputs, &scope, outputs(equations, &scope)),
+        outputs: tokens(&(given + &outputs_text), runtime),
         factors: tokens(&linear.factors, runtime),
         solve_blocks: tokens(&blocks::solve(equations, program, &early), runtime),
         factorize: tokens(&linear.factorize, runtime),

@@ -9,6 +9,7 @@ mod dynamics;
 pub mod formula;
 mod functions;
 mod generics;
+mod given;
 mod item;
 pub mod notation;
 mod phases;

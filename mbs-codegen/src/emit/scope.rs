@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::code::local;
+use crate::equations::MARGIN;
 use crate::model::{Model, Role};
 use crate::symbolic::{Graph, Leaf, Node, NodeId};
 
@@ -67,6 +68,8 @@ impl Scope<'_> {
             Node::Leaf(Leaf::State(index)) => format!("__z[{index}]"),
             Node::Leaf(Leaf::Multiplier(index)) => format!("__lambda[{index}]"),
             Node::Leaf(Leaf::Direction(index)) => format!("__x[{index}]"),
+            Node::Leaf(Leaf::Given(MARGIN, group)) => format!("__margin{group}"),
+            Node::Leaf(Leaf::Given(row, index)) => format!("__gain{row}[{index}]"),
             _ => number(f64::NAN),
         }
     }

@@ -25,6 +25,9 @@ pub struct Lowered {
     pub nodes: Vec<NodeId>,
 }
 
+/// First index of a given leaf that is a margin, by its group; others are ∂q/∂drive, by the drive's row.
+pub const MARGIN: u32 = u32::MAX;
+
 /// How leaves move in time.
 pub struct Clock {
     kinds: Vec<VariableKind>,
@@ -70,7 +73,11 @@ impl Clock {
         match leaf {
             Leaf::Parameter(_) | Leaf::Time | Leaf::Position(_) => 0,
             Leaf::Velocity(_) => 1,
-            Leaf::Acceleration(_) | Leaf::State(_) | Leaf::Multiplier(_) | Leaf::Direction(_) => 2,
+            Leaf::Acceleration(_)
+            | Leaf::State(_)
+            | Leaf::Multiplier(_)
+            | Leaf::Direction(_)
+            | Leaf::Given(..) => 2,
             Leaf::Input(i) => match self.kind(i) {
                 Some(VariableKind::InputWithRates) => 0,
                 Some(VariableKind::InputRate) if self.moves(i) => 1,
@@ -128,6 +135,14 @@ fn expressions(model: &Model, clock: &Clock, g: &mut Graph) -> Vec<NodeId> {
             expression::Node::Multiplier(i) => g.leaf(Leaf::Multiplier(i as u32)),
             expression::Node::Unary(function, a) => g.unary(unary(function), of(a)),
             expression::Node::Binary(function, a, b) => g.binary(binary(function), of(a), of(b)),
+            expression::Node::Margin(group) => g.leaf(Leaf::Given(MARGIN, group as u32)),
+            expression::Node::Ratio(a, row) => {
+                let gain = |g: &mut Graph, leaf| match leaf {
+                    Leaf::Position(i) => Some(g.leaf(Leaf::Given(row as u32, i))),
+                    _ => None,
+                };
+                tangent(g, &[of(a)], gain).into_iter().flatten().next().unwrap_or(zero)
+            }
             expression::Node::Rate(a, order) => {
                 let mut value = of(a);
                 for _ in 0..order {

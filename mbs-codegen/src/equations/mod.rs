@@ -13,6 +13,7 @@ use crate::symbolic::{Graph, Leaf, Node, NodeId, tangent};
 
 pub use dynamics::{Dynamics, Sparse};
 use lower::Lowered;
+pub use lower::MARGIN;
 
 /// One graph and its roots. `None` is a structural zero.
 #[derive(Debug)]

@@ -113,6 +113,7 @@ impl Declarations<'_> {
             names: self.names,
             diagnostics: self.diagnostics,
             reach: Reach::Position,
+            groups: &[],
             longest: self.model.longest,
         };
         let result = run(&mut work);

@@ -59,7 +59,14 @@ impl Resolver<'_> {
             work.push_binary(Binary::Subtract, argument.id, value, equation.span)
         })?;
         self.model.phases.push(Phase { variable, argument: argument.id, speed: speed.id });
-        let row = Row { name: String::new(), dimension, residual, driven: true, span: equation.span };
+        let row = Row {
+            name: String::new(),
+            dimension,
+            residual,
+            driven: true,
+            reversed: false,
+            span: equation.span,
+        };
         self.push_row(group, row);
         Ok(())
     }

@@ -2,14 +2,16 @@
 
 use proc_macro2::Span;
 
+use super::Reference;
 use super::declared_functions;
 use super::evaluate;
 use super::expression::{Binary, Expressions, Id, Node, Unary};
 use super::functions::{self, FUNCTIONS, LATER};
 use super::names::{Names, Symbol};
+use super::references::{REFERRING, is_reference};
 use super::units::{Dimension, with_suffix};
 use crate::diagnostics::{Diagnostics, nearest};
-use crate::syntax::ast::{Expression, Instruction, Operation, Operator, Target};
+use crate::syntax::ast::{Expression, Operation, Operator, Target};
 
 /// A fault was reported.
 #[derive(Clone, Copy, Debug)]
@@ -103,6 +105,8 @@ pub struct Elaborator<'a> {
     pub diagnostics: &'a mut Diagnostics,
     /// What may stand here.
     pub reach: Reach,
+    /// What `margin` and `ratio` can refer to.
+    pub groups: &'a [Reference],
     /// Largest length written as a number with a suffix so far (m).
     pub longest: f64,
 }
@@ -138,7 +142,7 @@ impl Elaborator<'_> {
                     "shorten the loops",
                 ));
             }
-            match self.step(instruction, next, &mut stack, &mut sums) {
+            match self.step(expression, next, &mut stack, &mut sums) {
                 Ok(following) => next = following,
                 Err(fault) => {
                     self.unknown_names(expression, next + 1);
@@ -159,15 +163,20 @@ impl Elaborator<'_> {
                 matches!(&instruction.operation, Operation::SumBegin { variable, .. } if variable.text == name)
             })
         };
-        for instruction in expression.code.iter().skip(from) {
+        for (index, instruction) in expression.code.iter().enumerate().skip(from) {
             match &instruction.operation {
+                Operation::Name(_) if is_reference(&expression.code, index) => {}
                 Operation::Name(name) if !is_variable(name) => {
                     let known = self.names.get(name).is_some() || CONSTANTS.contains(&name.as_str());
                     if !known {
                         self.unknown_name(name, instruction.span);
                     }
                 }
-                Operation::Call { function, .. } if function != "rate" && !self.knows_function(function) => {
+                Operation::Call { function, .. }
+                    if function != "rate"
+                        && !REFERRING.contains(&function.as_str())
+                        && !self.knows_function(function) =>
+                {
                     self.unknown_function(function, instruction.span);
                 }
                 _ => {}
@@ -178,15 +187,17 @@ impl Elaborator<'_> {
     /// Executes one instruction; returns the index of the next.
     fn step(
         &mut self,
-        instruction: &Instruction,
+        expression: &Expression,
         index: usize,
         stack: &mut Vec<Value>,
         sums: &mut Vec<Sum>,
     ) -> Result<usize, Fault> {
+        let instruction = expression.code.get(index).ok_or(Fault)?;
         let span = instruction.span;
         let mut pop = || stack.pop().ok_or(Fault);
         let value = match &instruction.operation {
             Operation::Number { value, suffix, .. } => self.literal(*value, suffix.as_deref(), span)?,
+            Operation::Name(_) if is_reference(&expression.code, index) => return Ok(index + 1),
             Operation::Name(name) => self.name(name, span)?,
             Operation::Negate => {
                 let a = pop()?;
@@ -195,6 +206,12 @@ impl Elaborator<'_> {
             Operation::Binary(operator) => {
                 let (b, a) = (pop()?, pop()?);
                 self.operator(*operator, &a, &b, span)?
+            }
+            Operation::Call { function, order: 0, arguments } if REFERRING.contains(&function.as_str()) => {
+                let group = index.checked_sub(1).and_then(|before| expression.code.get(before));
+                let values = arguments.saturating_sub(1);
+                let arguments = stack.split_off(stack.len().saturating_sub(values));
+                self.referring(function, group, arguments, span)?
             }
             Operation::Call { function, order, arguments } => {
                 let arguments = stack.split_off(stack.len().saturating_sub(*arguments));
@@ -403,6 +420,9 @@ impl Elaborator<'_> {
             ));
         }
         let seconds = Dimension::SECOND.power(f64::from(order)).unwrap_or_default();
+        for item in &argument.items {
+            self.of_position(*item, name)?;
+        }
         self.each(&argument, span, |work, item| {
             let quantity = Quantity::Known(item.quantity.dimension().over(seconds));
             Ok(Scalar { id: work.expressions.push(Node::Rate(item.id, order)), quantity, bare: false, span })
@@ -424,6 +444,9 @@ impl Elaborator<'_> {
                 "multipliers are known to forces and outputs alone",
             ));
         }
+        if !matches!(function, "lambda" | "effort") {
+            return Err(self.unknown_function(function, span));
+        }
         if !self.names.dynamic {
             let help =
                 "declare what moves: `body rod { mass: 2kg, com: P }`; without masses no row has a force";
@@ -433,9 +456,6 @@ impl Elaborator<'_> {
             let message = format!("`{function}` takes 1 name, not {}", targets.len());
             return Err(self.fault(span, message, format!("write `{function}(row)`")));
         };
-        if !matches!(function, "lambda" | "effort") {
-            return Err(self.unknown_function(function, span));
-        }
         let Some(rows) = self.names.rows(&target.name.text).cloned() else {
             let known: Vec<&str> = self.names.row_groups().collect();
             let help = match nearest(&target.name.text, known.iter().copied()) {

@@ -29,6 +29,10 @@ pub enum Node {
     Rate(Id, u8),
     /// A declared function by its index, or its derivative of this order, at an argument.
     Call { function: usize, order: u8, argument: Id },
+    /// Margin to singularity of the blocks that hold the rows of a constraint or drive, by its index.
+    Margin(usize),
+    /// ∂/∂drive of an expression, by the drive's row.
+    Ratio(Id, usize),
 }
 
 /// A call of a declared function as the text writes it.
@@ -154,8 +158,11 @@ impl Node {
             | Node::Coordinate(_)
             | Node::Variable(_)
             | Node::State(_)
-            | Node::Multiplier(_) => (None, None),
-            Node::Unary(_, a) | Node::Rate(a, _) | Node::Call { argument: a, .. } => (Some(a), None),
+            | Node::Multiplier(_)
+            | Node::Margin(_) => (None, None),
+            Node::Unary(_, a) | Node::Rate(a, _) | Node::Call { argument: a, .. } | Node::Ratio(a, _) => {
+                (Some(a), None)
+            }
             Node::Binary(_, a, b) => (Some(a), Some(b)),
         };
         first.into_iter().chain(second)

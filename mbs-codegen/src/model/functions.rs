@@ -13,7 +13,7 @@ pub const FUNCTIONS: [&str; 27] = [
 ];
 
 /// Functions of the language which this version does not translate.
-pub const LATER: [&str; 3] = ["reaction", "margin", "ratio"];
+pub const LATER: [&str; 1] = ["reaction"];
 
 /// Before: arguments as they stand on the stack. After: the value of `function`, or the fault reported.
 pub fn call(

@@ -14,6 +14,7 @@ mod initialiser;
 mod limits;
 mod names;
 mod order;
+mod references;
 mod resolve;
 pub mod scenes;
 mod selection;
@@ -49,6 +50,8 @@ pub struct Model {
     pub branches: Vec<Branch>,
     /// Working ranges.
     pub limits: Vec<Limit>,
+    /// Constraints and drives that outputs can refer to.
+    pub references: Vec<Reference>,
     /// Coordinates that are meant as independent; none where the text does not say.
     pub independent: Vec<Independent>,
     /// Outputs, component by component.
@@ -199,6 +202,8 @@ pub struct Row {
     pub residual: Id,
     /// Whether a `drive` declares it.
     pub driven: bool,
+    /// Whether the prescribed side stands on the left.
+    pub reversed: bool,
     /// The `==`.
     pub span: Span,
 }
@@ -219,6 +224,19 @@ impl Row {
         }
         self.dimension.to_string()
     }
+}
+
+/// A constraint or a drive.
+#[derive(Clone, Debug)]
+pub struct Reference {
+    /// Its name.
+    pub name: String,
+    /// Its index among the references.
+    pub index: usize,
+    /// Indices of its rows.
+    pub rows: Vec<usize>,
+    /// Row and dimension, where it is a drive of one row.
+    pub drive: Option<(usize, units::Dimension)>,
 }
 
 /// What a drive that prescribes a rate holds its argument at.

@@ -28,20 +28,19 @@ pub fn resolve(statements: &[Statement], diagnostics: &mut Diagnostics) -> Model
         groups: Vec::new(),
         loops: Vec::new(),
         rounds: 0,
-        pass: Pass::All,
+        pass: Pass::Rows,
     };
     if statements.iter().any(is_dynamic) {
         work.model.dynamics.get_or_insert_default();
         work.names.dynamic = true;
-        work.pass = Pass::Rows;
-        work.run(statements);
-        work.name_rows();
-        work.pass = Pass::Loads;
+    }
+    work.run(statements);
+    work.name_rows();
+    work.model.references = work.references();
+    if !work.too_large() {
+        (work.pass, work.rounds) = (Pass::Loads, 0);
         work.run(statements);
         work.check_states();
-    } else {
-        work.run(statements);
-        work.name_rows();
     }
     work.check_guesses_and_inputs();
     model
@@ -78,11 +77,9 @@ pub(super) struct Resolver<'a> {
     pass: Pass,
 }
 
-/// What is resolved: multipliers are known once all rows are.
+/// What is resolved: multipliers, margins and ratios are known once all rows are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Pass {
-    /// The text has no multipliers: all at once.
-    All,
     /// Constraints, drives, branches, starts.
     Rows,
     /// Bodies, forces, energies, rates of states, outputs.
@@ -96,6 +93,7 @@ impl Resolver<'_> {
             names: self.names,
             diagnostics: self.diagnostics,
             reach,
+            groups: &self.model.references,
             longest: self.model.longest,
         };
         let result = run(&mut work);
@@ -111,9 +109,9 @@ impl Resolver<'_> {
                 StatementKind::For(head) => {
                     let is_end = |s: &Statement| matches!(s.kind, StatementKind::EndFor);
                     let is_for = |s: &Statement| matches!(s.kind, StatementKind::For(_));
-                    next = self
-                        .enter(head, next)
-                        .unwrap_or_else(|| behind_loop(statements, next, is_for, is_end));
+                    let idle = self.pass == Pass::Loads && !holds_load(statements, next, is_for, is_end);
+                    let begin = if idle { None } else { self.enter(head, next) };
+                    next = begin.unwrap_or_else(|| behind_loop(statements, next, is_for, is_end));
                 }
                 StatementKind::EndFor => next = self.repeat().unwrap_or(next),
                 kind => self.statement(kind),
@@ -140,9 +138,10 @@ impl Resolver<'_> {
             StatementKind::Let { name, unit, value } if !self.loops.is_empty() => {
                 self.local(name, unit.as_ref(), value)
             }
-            kind if self.pass != Pass::Loads && is_row(kind) => self.row_statement(kind),
-            kind if self.pass != Pass::Rows && !is_row(kind) => self.load_statement(kind),
-            _ => Ok(()),
+            kind => match self.pass {
+                Pass::Rows => self.row_statement(kind),
+                Pass::Loads => self.load_statement(kind),
+            },
         };
     }
 
@@ -320,7 +319,9 @@ impl Resolver<'_> {
             pairs.map(|(a, b)| residual(work, *a, *b, span)).collect::<Result<Vec<_>, Fault>>()
         })?;
         for (residual, dimension) in residuals {
-            self.push_row(group, Row { name: String::new(), dimension, residual, driven: false, span });
+            let reversed = self.is_reversed(residual);
+            let row = Row { name: String::new(), dimension, residual, driven: false, reversed, span };
+            self.push_row(group, row);
         }
         Ok(())
     }
@@ -365,6 +366,7 @@ impl Resolver<'_> {
             fits_shape(work, &value, &shape)?;
             Ok::<Value, Fault>(value)
         })?;
+        self.check_reference(&value)?;
         let round = self.rows_of(group);
         let base = if self.loops.is_empty() { name.text.clone() } else { format!("{}.{round}", name.text) };
         for (component, item) in component_names(&base, &value.shape).zip(&value.items) {
@@ -379,6 +381,12 @@ impl Resolver<'_> {
         }
         self.count_row(group, round);
         Ok(())
+    }
+
+    /// Names, kinds and rows of constraints and drives.
+    pub(super) fn row_groups(&self) -> impl Iterator<Item = (&str, &'static str, &[usize])> {
+        let groups = self.groups.iter().filter(|group| matches!(group.kind, "constraint" | "drive"));
+        groups.map(|group| (group.name.text.as_str(), group.kind, group.rows.as_slice()))
     }
 
     /// A group of one row gives the row its name; rows of larger ones are counted from 0.
@@ -472,16 +480,27 @@ fn spread_zero(value: Value, other: &Value) -> Value {
     }
 }
 
-/// Whether the statement belongs to the rows, which are resolved before what uses their multipliers.
-fn is_row(kind: &StatementKind) -> bool {
+/// Whether something for the second pass stands in the loop whose body begins at `next`.
+fn holds_load(
+    statements: &[Statement],
+    next: usize,
+    begins: impl Fn(&Statement) -> bool,
+    ends: impl Fn(&Statement) -> bool,
+) -> bool {
+    let end = behind_loop(statements, next, begins, ends);
+    let body = statements.get(next..end).unwrap_or_default();
+    body.iter().any(|statement| is_load(&statement.kind))
+}
+
+/// Whether the statement may use what is known once all rows are.
+fn is_load(kind: &StatementKind) -> bool {
     matches!(
         kind,
-        StatementKind::Constraint { .. }
-            | StatementKind::Drive { .. }
-            | StatementKind::Branch { .. }
-            | StatementKind::Limit { .. }
-            | StatementKind::Independent { .. }
-            | StatementKind::Start { .. }
+        StatementKind::Out { .. }
+            | StatementKind::Element { .. }
+            | StatementKind::Load { .. }
+            | StatementKind::Energy { .. }
+            | StatementKind::Rate { .. }
     )
 }
 

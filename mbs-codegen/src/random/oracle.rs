@@ -130,8 +130,8 @@ fn evaluate(model: &Model, state: &State, line: Line) -> Vec<Jet> {
                 let jet = jets[argument.index()];
                 jet.chain([0, 1, 2, 3].map(|more| law::derivative(function as u32, order + more, jet.v[0])))
             }
-            Node::Rate(..) | Node::State(_) | Node::Multiplier(_) => {
-                unreachable!("random texts are kinematic and use no `der`")
+            Node::Rate(..) | Node::State(_) | Node::Multiplier(_) | Node::Margin(_) | Node::Ratio(..) => {
+                unreachable!("random texts are kinematic and use no `der`, no margin and no ratio")
             }
         };
         jets.push(jet);

@@ -263,6 +263,7 @@ fn value(leaf: Leaf, sample: u32) -> f64 {
         Leaf::State(index) => (6, index),
         Leaf::Multiplier(index) => (7, index),
         Leaf::Direction(index) => (8, index),
+        Leaf::Given(_, index) => (9, index),
     };
     let number = f64::from(1 + kind + 11 * sample) + 23.0 * f64::from(index);
     0.5 + (number * 0.618_033_988_749_895).fract()

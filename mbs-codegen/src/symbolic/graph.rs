@@ -34,6 +34,8 @@ pub enum Leaf {
     Multiplier(u32),
     /// Component of any vector that a matrix is applied to.
     Direction(u32),
+    /// Computed outside, from the position: known with the accelerations.
+    Given(u32, u32),
 }
 
 /// When a value becomes known; a value is computed once, in its stage.
@@ -164,7 +166,7 @@ impl Graph {
             Node::Leaf(Leaf::Velocity(_) | Leaf::State(_) | Leaf::Multiplier(_) | Leaf::Direction(_)) => {
                 Stage::Velocity
             }
-            Node::Leaf(Leaf::Acceleration(_)) => Stage::Acceleration,
+            Node::Leaf(Leaf::Acceleration(_) | Leaf::Given(..)) => Stage::Acceleration,
             // What a function gives is known with the design, not before, even at a number.
             Node::Call { argument, .. } => self.stage(argument).max(Stage::Parameter),
             _ => node.operands().map(|operand| self.stage(operand)).max().unwrap_or(Stage::Constant),

@@ -10,3 +10,4 @@ mod motion;
 mod ranges;
 mod reset;
 mod stops;
+mod transmission;

@@ -1,0 +1,37 @@
+//! CasADi's solution of its own Jacobian against ratios of transmission.
+
+use mbs_runtime::mechanism;
+use mechanisms::facade::boxed;
+use mechanisms::verify::compare::compare;
+use mechanisms::verify::{Oracle, STATES};
+
+mechanism! {
+    /// A four-bar on a crank that is measured, with its prescribed side on the left, and a slide on it.
+    pub mechanism Transmission;
+    param coupler: m = 0.25;
+    input theta: rad, rates;
+    coord phi: [rad; 3] = [0.3, 0.9, 1.8];
+    coord x: m = 0.1;
+    coord s: m = 0;
+    constraint closure { 0.1m*unit(phi[0]) + coupler*unit(phi[1]) == [0.3m, 0] + 0.2m*unit(phi[2]); }
+    constraint slide { x*cos(phi[1]) == 0.1m*cos(phi[0]) + s; }
+    drive crank: 2*theta == phi[0];
+    drive push: s == coupler*sin(3*t/1s);
+    out rocker: 1 = ratio(phi[2], crank);
+    out point: [m; 2] = ratio(0.1m*unit(phi[0]) + coupler*unit(phi[1]), crank);
+    out stroke: m = 2*ratio(x, crank)*cos(phi[2]) + 0.1m*ratio(x^2, push)/x;
+}
+
+#[test]
+fn casadi_confirms_ratios() {
+    let mut transmission = boxed::<Transmission, 5>();
+    let definition =
+        mbs_codegen::casadi_definition(transmission.source()).unwrap_or_else(|faults| panic!("{faults}"));
+    let oracle = Oracle::new(&|_| ()).unwrap_or_else(|error| panic!("{error}"));
+    let agreement = compare(transmission.as_mut(), &oracle, &definition, STATES)
+        .unwrap_or_else(|error| panic!("{error}"));
+    println!("{agreement}");
+    assert!(agreement.holds(), "{agreement}");
+    let out = agreement.functions.iter().find(|function| function.scale > 0.0);
+    assert!(out.is_some(), "{agreement}");
+}
