@@ -31,7 +31,8 @@ The back end is a Python file with evaluate(definition, states) -> {function: [v
 
 In:  {"states": [{"q": [], "qd": [], "qdd": [], "t": 0.0, "v": [], "z": [], "l": []}]}
 Out: {"name", "n", "m", "v", "phi": [[..]], "phi_q": [[row after row]], "phi_t", "phi_tt", "phi_qt_qd", "gamma",
-      "out", "out_d", "out_dd"}, one list a state; a derivative that does not exist is null. Of a mechanism with masses
+      "out", "out_d", "out_dd"}, one list a state; a derivative that does not exist is null, and so is an output that
+      the definition has no word for, or that CasADi's solution of its own Jacobian leaves too few digits. Of a mechanism with masses
       CasADi gives "mass", "mass_times", "force", "force_q", "force_qd", "mass_times_q", "reaction", "reaction_q",
       "energy", "powers", "state_rates" and "loads" too, M x and its derivative with x = qdd.
 """

@@ -39,21 +39,43 @@ class Calculus:
         return self.partial(e) + self.along(e, self.q, self.qd) + self.along(e, self.qd, self.qdd)
 
 
+# How many times larger than a gain the terms of its solution may be: the bound of the comparison grants a few hundred
+# roundings, and a solution takes a few of each term. Beyond, 50 digits judge.
+LARGEST_TERMS = 32.0
+
+
 class Words:
     """The functions of a definition: those of casadi, and what is solved with its Jacobian."""
 
     def __init__(self, q):
         self.q = q
+        self.gains, self.values, self.resolved = [], [], []
 
     def __getattr__(self, name):
         return getattr(ca, name)
 
     def gain(self, e, rows, row, sign):
-        """de/dq dq with the motion dq of a drive: all rows stay, its own rises by sign."""
-        unit = ca.DM.zeros(len(rows), 1)
+        """de/dq x where J x = sign e_row: a symbol, until `replaced` puts the value there."""
+        unit = ca.SX.zeros(len(rows), 1)
         unit[row] = sign
-        motion = ca.solve(ca.jacobian(ca.vertcat(*rows), self.q), ca.SX(unit))
-        return ca.mtimes(ca.jacobian(ca.SX(e), self.q), motion)
+        jacobian, slope = ca.jacobian(ca.vertcat(*rows), self.q), ca.jacobian(ca.SX(e), self.q)
+        x, y = ca.solve(jacobian, unit), ca.solve(jacobian.T, slope.T)
+        value = ca.mtimes(slope, x)
+        terms = ca.mtimes(ca.fabs(y).T, ca.mtimes(ca.fabs(jacobian), ca.fabs(x)))
+        self.gains.append(ca.SX.sym(f"gain{len(self.gains)}"))
+        self.values.append(value)
+        self.resolved.append(terms <= LARGEST_TERMS * ca.fabs(value))
+        return self.gains[-1]
+
+    def replaced(self, e):
+        """e with the gains' values, and whether rounding leaves it as many digits as the comparison asks for."""
+        used = [i for i, gain in enumerate(self.gains) if ca.depends_on(e, gain)]
+        resolved = ca.SX(1)
+        for i in used:
+            resolved = ca.logic_and(resolved, self.resolved[i])
+        if not used:
+            return e, resolved
+        return ca.substitute(e, column(self.gains), column(self.values)), resolved
 
 
 def column(entries):
@@ -67,7 +89,8 @@ def rows(matrix):
 
 def functions(c, definition):
     """All functions as dense columns, by name, and how many derivatives each output has."""
-    residuals, outs = definition.define(Words(c.q), c.q, c.v, c.t, c.total)
+    words = Words(c.q)
+    residuals, outs = definition.define(words, c.q, c.v, c.t, c.total)
     phi = column(residuals)
     if phi.shape != (definition.M, 1):
         raise ValueError(f"the definition says {definition.M} rows and gives {phi.shape[0]}")
@@ -75,7 +98,11 @@ def functions(c, definition):
     phi_tt = c.partial(phi_t)
     phi_qt_qd = c.along(phi_t, c.q, c.qd)
     gamma = -c.along(c.along(phi, c.q, c.qd), c.q, c.qd) - 2 * phi_qt_qd - phi_tt
-    out = column([e if order >= 0 else ca.SX(0) for e, order in outs])
+    out, resolved = [], []
+    for e, order in outs:
+        value, digits = words.replaced(ca.SX(e))
+        out.append(value if order >= 0 else ca.SX(0))
+        resolved.append(digits if order >= 0 else ca.SX(0))
     orders = [order for _, order in outs]
     out_d = column([c.total(e) if order > 0 else ca.SX(0) for e, order in outs])
     out_dd = column([c.total(c.total(e)) if order > 1 else ca.SX(0) for e, order in outs])
@@ -86,10 +113,11 @@ def functions(c, definition):
         "phi_tt": phi_tt,
         "phi_qt_qd": phi_qt_qd,
         "gamma": gamma,
-        "out": out,
+        "out": column(out),
+        "resolved": column(resolved),
         "out_d": out_d,
         "out_dd": out_dd,
-    }, {"out": [order >= 0 for order in orders], "out_d": [order > 0 for order in orders], "out_dd": [order > 1 for order in orders]}
+    }, {"out_d": [order > 0 for order in orders], "out_dd": [order > 1 for order in orders]}
 
 
 def dynamics(c, definition, phi):
@@ -156,11 +184,12 @@ def evaluate(definition, states):
     sizes = {"q": n, "qd": n, "qdd": n, "t": 1, "v": definition.V, "z": definition.K, "l": definition.M}
     arguments = [stacked(key, size) for key, size in sizes.items()]
     values = function.map(len(states)).call([ca.DM(a) for a in arguments])
+    tables = {name: np.array(value).reshape(-1, len(states)).T for name, value in zip(names, values)}
+    resolved = tables.pop("resolved")
     result = {}
-    for name, value in zip(names, values):
-        there = exists.get(name)
-        table = np.array(value).reshape(-1, len(states)).T
+    for name, table in tables.items():
+        there = resolved if name == "out" else np.broadcast_to(exists.get(name, True), table.shape)
         result[name] = [
-            [plain(x) if there is None or there[i] else None for i, x in enumerate(row)] for row in table
+            [plain(x) if known else None for x, known in zip(row, mask)] for row, mask in zip(table, there)
         ]
     return result

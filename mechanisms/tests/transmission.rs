@@ -1,9 +1,9 @@
-//! CasADi's solution of its own Jacobian against ratios of transmission.
+//! CasADi's and 50 digits' solutions of their own Jacobians against ratios of transmission.
 
 use mbs_runtime::mechanism;
 use mechanisms::facade::boxed;
 use mechanisms::verify::compare::compare;
-use mechanisms::verify::{Oracle, STATES};
+use mechanisms::verify::{Oracle, STATES, check};
 
 mechanism! {
     /// A four-bar on a crank that is measured, with its prescribed side on the left, and a slide on it.
@@ -18,20 +18,32 @@ mechanism! {
     drive crank: 2*theta == phi[0];
     drive push: s == coupler*sin(3*t/1s);
     out rocker: 1 = ratio(phi[2], crank);
+    out closeness: 1 = margin(closure);
     out point: [m; 2] = ratio(0.1m*unit(phi[0]) + coupler*unit(phi[1]), crank);
     out stroke: m = 2*ratio(x, crank)*cos(phi[2]) + 0.1m*ratio(x^2, push)/x;
 }
 
 #[test]
-fn casadi_confirms_ratios() {
+fn casadi_and_50_digits_confirm_ratios() {
+    let check = check(Transmission::default()).unwrap();
+    println!("{check}");
+    for agreement in [&check.casadi, &check.digits] {
+        let out = agreement.functions.iter().find(|largest| largest.function == "output");
+        assert!(out.is_some_and(|out| out.emitted.is_some() && out.oracle.is_some()), "{agreement}");
+    }
+}
+
+#[test]
+fn a_ratio_of_the_wrong_sign_is_found() {
     let mut transmission = boxed::<Transmission, 5>();
-    let definition =
-        mbs_codegen::casadi_definition(transmission.source()).unwrap_or_else(|faults| panic!("{faults}"));
+    let definition = mbs_codegen::casadi_definition(transmission.source(), None)
+        .unwrap_or_else(|faults| panic!("{faults}"));
     let oracle = Oracle::new(&|_| ()).unwrap_or_else(|error| panic!("{error}"));
-    let agreement = compare(transmission.as_mut(), &oracle, &definition, STATES)
-        .unwrap_or_else(|error| panic!("{error}"));
-    println!("{agreement}");
-    assert!(agreement.holds(), "{agreement}");
-    let out = agreement.functions.iter().find(|function| function.scale > 0.0);
-    assert!(out.is_some(), "{agreement}");
+    let wrong = definition.replacen("rows, 3, -1)", "rows, 3, 1)", 1);
+    assert_ne!(definition, wrong);
+    for (definition, holds) in [(definition, true), (wrong, false)] {
+        let agreement = compare(transmission.as_mut(), &oracle, &definition, STATES)
+            .unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!(agreement.holds(), holds, "{agreement}");
+    }
 }

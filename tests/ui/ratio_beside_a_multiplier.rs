@@ -10,7 +10,7 @@ mechanism! {
 }
 
 fn main() {
-    let arm = Arm::default();
+    let arm: Arm = Arm::default();
     let named = ArmCoordinates { phi: 0.1 };
     println!("{} {}", arm.guess(&arm.parameters()).len(), named.phi);
 }

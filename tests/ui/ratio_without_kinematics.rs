@@ -11,7 +11,7 @@ mechanism! {
 }
 
 fn main() {
-    let swing = Swing::default();
+    let swing: Swing = Swing::default();
     let named = SwingCoordinates { phi: [0.1, 0.2] };
     println!("{} {}", swing.guess(&swing.parameters()).len(), named.phi[0]);
 }

@@ -132,7 +132,7 @@ impl Layout {
         let (mut largest, mut compared): (Option<LargestError>, usize) = (None, 0);
         for (state, (found, expected)) in found.iter().zip(expected).enumerate() {
             for (entry, (emitted, expected)) in found.iter().zip(expected).enumerate() {
-                // An output of a margin, which definitions have no word for.
+                // An output of a margin, which definitions have no word for; a ratio next to a singular state.
                 if self.key == "out" && expected.is_none() {
                     continue;
                 }
