@@ -1,5 +1,6 @@
 //! Dyads and single unknowns: blocks of one or two rows that close in two positions at most, both by formula.
 
+use crate::linear::is_regular;
 use crate::newton::{Attempt, ITERATIONS, newton, select};
 use crate::safeguarded::{TRIALS, levenberg_marquardt};
 use crate::{Block, Factorization, Real, Scalar};
@@ -255,10 +256,14 @@ pub(crate) fn closed<T: Scalar, const K: usize, F: Factorization<T, K>>(
     let (nearer, other) = (select(swapped, second, first), select(swapped, first, second));
     let (nearer, other) = (select(known, &nearer, x), select(known, &other, x));
     let closing = known & *real;
+    let nearer = polished::<T, K, F>(block, &nearer, evaluate);
     let mut found = newton::<T, K, F>(block, nearer, closing, extent, ITERATIONS, evaluate);
+    found.evaluations += 1;
     let right = found.converged & closing & holds(&found.x);
     if !T::all(right | !closing) {
-        let next = newton::<T, K, F>(block, other, closing & !right, extent, ITERATIONS, evaluate);
+        let other = polished::<T, K, F>(block, &other, evaluate);
+        let mut next = newton::<T, K, F>(block, other, closing & !right, extent, ITERATIONS, evaluate);
+        next.evaluations += 1;
         let closes = next.converged & closing & !right;
         // A root of another assembly is kept for the caller to judge, the first one found.
         let taken = closes & (holds(&next.x) | !found.converged);
@@ -270,6 +275,22 @@ pub(crate) fn closed<T: Scalar, const K: usize, F: Factorization<T, K>>(
         found = taking(found, apart, &least);
     }
     (found, !known | (closing & !found.converged))
+}
+
+/// One step of Newton's method from a root, where it is regular: the formula's own rounding is that of its largest term,
+/// which a short link far away does not bear, and the residual alone would let it pass.
+fn polished<T: Scalar, const K: usize, F: Factorization<T, K>>(
+    block: &Block<T, K>,
+    x: &[T; K],
+    evaluate: &mut impl FnMut(&[T; K]) -> ([T; K], [[T; K]; K]),
+) -> [T; K] {
+    let (residuals, jacobian) = evaluate(x);
+    let (factors, margin) = F::factorize(&jacobian, &block.row_scales, &block.coordinate_scales);
+    let step = factors.solve(&residuals.map(|residual| -residual));
+    let finite = step.iter().fold(is_regular(margin), |all, change| all & change.is_finite());
+    let mut next = *x;
+    next.iter_mut().zip(step).for_each(|(place, change)| *place = *place + change);
+    select(finite, &next, x)
 }
 
 /// `other` in the lanes of `taken`.
