@@ -57,7 +57,7 @@ fn the_four_bar_is_what_is_stored() {
 #[test]
 fn the_stored_code_states_its_cost() {
     let found = laid_out(FOUR_BAR);
-    for function in ["parameters", "position", "phi", "phi_q", "phi_t", "gamma", "solve_blocks"] {
+    for function in ["parameters", "position", "phi", "phi_q", "phi_t", "gamma", "solve_with_position"] {
         assert!(found.contains(&format!("/// | `{function}`")), "{function}");
     }
 }

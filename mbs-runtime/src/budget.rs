@@ -2,8 +2,8 @@
 
 use crate::budgeted::Budgeted;
 use crate::diagnosis::{Statistics, extent};
+use crate::instant::Found;
 use crate::kinematics::{entry, largest_difference, position_failure, time_failure};
-use crate::stepper::Found;
 use crate::{Entry, Failure, Kinematic, Real, Stepper};
 
 /// The work that a step may cost at most, in each block.
@@ -128,15 +128,15 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
         let scales = self.mechanism.coordinate_scales(&self.parameters);
         let mut solver = Budgeted::new(extent(&start, &scales), budget);
         let mut q = start;
-        let outcome = self.mechanism.solve_blocks(&self.parameters, &mut q, t, &mut solver);
+        let (outcome, position) =
+            self.mechanism.solve_with_position(&self.parameters, &mut q, t, &mut solver);
         let open = position_failure::<S, R, N, _>(outcome, solver.diagnosis(), t);
         let mut statistics = Statistics::of(solver.diagnosis());
         statistics.correction = largest_difference(&q, &start, &scales).to_f64();
         if let Some(failure @ Failure::NonFinite { .. }) = open {
             return Err(failure);
         }
-        let found = Found { t, q, statistics, open };
-        self.take(self.next_state(found)?);
+        self.accept(Found { t, q, position, statistics, open })?;
         let statistics = self.statistics();
         Ok(match open {
             None => Step::Done(statistics),

@@ -59,7 +59,8 @@ pub(crate) fn outer_rounding<T: Scalar, const K: usize>(
 pub fn extent<T: Scalar, const N: usize>(q: &[T; N], coordinate_scales: &[T; N]) -> T {
     let mut largest = T::constant(0.0);
     for (coordinate, scale) in q.iter().zip(coordinate_scales) {
-        largest = largest.max((*coordinate / *scale).abs());
+        // The reciprocal of a constant is one.
+        largest = largest.max((*coordinate * (T::constant(1.0) / *scale)).abs());
     }
     largest
 }
@@ -144,6 +145,14 @@ impl<T: Scalar> Diagnosis<T> {
     #[inline(always)]
     pub fn new() -> Self {
         Diagnosis { evaluations: 0, fallback: false, worst: Worst::none(), failed: T::mask(false) }
+    }
+
+    /// Takes up one more block that its first method closed in every lane.
+    #[inline(always)]
+    pub(crate) fn record_plain(&mut self, evaluations: u32, worst: Worst<T>) {
+        self.evaluations = self.evaluations.max(evaluations);
+        let worse = self.worst.ratio.less(worst.ratio) & !self.failed;
+        self.worst = self.worst.replaced(worse, worst);
     }
 
     /// Takes up one more block.

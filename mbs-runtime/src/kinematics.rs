@@ -37,16 +37,38 @@ pub fn solve_position<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: u
     start: &[R; N],
     t: R,
 ) -> Result<([R; N], Statistics), Failure> {
-    let scales = mechanism.coordinate_scales(parameters);
-    let mut solver = Newton::new(extent(start, &scales));
+    solve_with_position(mechanism, parameters, start, t).map(|(q, _, statistics)| (q, statistics))
+}
+
+/// As [`solve_position`], with the stage-1 values of the solution.
+#[inline(always)]
+pub(crate) fn solve_with_position<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize>(
+    mechanism: &S,
+    parameters: &S::Parameters,
+    start: &[R; N],
+    t: R,
+) -> Result<([R; N], S::Position, Statistics), Failure> {
     let mut q = *start;
-    let outcome = mechanism.solve_blocks(parameters, &mut q, t, &mut solver);
-    if let Some(failure) = position_failure::<S, R, N, _>(outcome, solver.diagnosis(), t) {
-        return Err(failure);
-    }
+    let (position, statistics, failure) = next_position(mechanism, parameters, &mut q, t);
+    failure.map_or(Ok((q, position, statistics)), Err)
+}
+
+/// As [`solve_with_position`], from `q` (N) itself; what is wrong with it, if so.
+#[inline(always)]
+pub(crate) fn next_position<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize>(
+    mechanism: &S,
+    parameters: &S::Parameters,
+    q: &mut [R; N],
+    t: R,
+) -> (S::Position, Statistics, Option<Failure>) {
+    let scales = mechanism.coordinate_scales(parameters);
+    let start = *q;
+    let mut solver = Newton::new(extent(&start, &scales));
+    let (outcome, position) = mechanism.solve_with_position(parameters, q, t, &mut solver);
+    let failure = position_failure::<S, R, N, M>(outcome, solver.diagnosis(), t);
     let mut statistics = Statistics::of(solver.diagnosis());
-    statistics.correction = largest_difference(&q, start, &scales).to_f64();
-    Ok((q, statistics))
+    statistics.correction = largest_difference(q, &start, &scales).to_f64();
+    (position, statistics, failure)
 }
 
 /// Largest difference of two positions in the reference metric (rad, or reference lengths).
@@ -54,7 +76,8 @@ pub fn solve_position<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: u
 pub(crate) fn largest_difference<R: Real, const N: usize>(new: &[R; N], old: &[R; N], scales: &[R; N]) -> R {
     let mut largest = R::constant(0.0);
     for ((new, old), scale) in new.iter().zip(old).zip(scales) {
-        largest = largest.max(((*new - *old) / *scale).abs());
+        // The reciprocal of a constant is one.
+        largest = largest.max(((*new - *old) * (R::constant(1.0) / *scale)).abs());
     }
     largest
 }
@@ -113,38 +136,42 @@ pub fn solve_acceleration<S: Kinematic<R, N, M>, R: Real, const N: usize, const 
     solve_rates::<S, R, N, M>(mechanism, factors, &mechanism.gamma(parameters, position, qd))
 }
 
-/// The next step of Newton's method, Φ_q Δ = −Φ: what a position that does not close is off by, to first order.
-///
-/// # Errors
-/// [`Failure::NonFinite`] with the row or coordinate whose step is NaN or infinite.
-pub(crate) fn solve_correction<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize>(
-    mechanism: &S,
-    parameters: &S::Parameters,
-    position: &S::Position,
-    factors: &RegularFactors<S::Factors, R>,
-) -> Result<[R; N], Failure> {
-    solve_rates::<S, R, N, M>(
-        mechanism,
-        factors,
-        &mechanism.phi(parameters, position).map(|residual| -residual),
-    )
-}
-
 #[inline(always)]
 fn solve_rates<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize>(
     mechanism: &S,
     factors: &RegularFactors<S::Factors, R>,
     right: &[R; M],
 ) -> Result<[R; N], Failure> {
-    let rates = mechanism.solve_linear(&factors.factors, right);
-    if all_finite(&rates) {
-        return Ok(rates);
-    }
-    Err(non_finite(right, S::ROWS).or(non_finite(&rates, S::COORDINATES)).unwrap_or(UNNAMED))
+    let mut solved = [R::constant(0.0); N];
+    rates(mechanism, &factors.factors, right, &mut solved).map_or(Ok(solved), Err)
+}
+
+/// Solves Φ_q x = `right` (M) for `solved` (N); what is wrong with it, if so.
+///
+/// An array beside a failure in one [`Result`] would be moved about in memory: here stands what a step waits for.
+#[inline(always)]
+pub(crate) fn rates<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize>(
+    mechanism: &S,
+    factors: &S::Factors,
+    right: &[R; M],
+    solved: &mut [R; N],
+) -> Option<Failure> {
+    *solved = mechanism.solve_linear(factors, right);
+    if all_finite(solved) { None } else { Some(rate_failure::<S, R, N, M>(right, solved)) }
+}
+
+/// The row or coordinate whose rate is not finite.
+#[cold]
+#[inline(never)]
+fn rate_failure<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize>(
+    right: &[R; M],
+    rates: &[R; N],
+) -> Failure {
+    non_finite(right, S::ROWS).or(non_finite(rates, S::COORDINATES)).unwrap_or(UNNAMED)
 }
 
 /// What an unsuccessful `outcome` means to the caller; `None` for a success.
-#[inline]
+#[inline(always)]
 pub(crate) fn position_failure<S: Mechanism<R, N, M>, R: Real, const N: usize, const M: usize>(
     outcome: R::Lanes<Outcome>,
     diagnosis: &Diagnosis<R>,
@@ -152,13 +179,7 @@ pub(crate) fn position_failure<S: Mechanism<R, N, M>, R: Real, const N: usize, c
 ) -> Option<Failure> {
     match outcome.as_ref().first().copied().unwrap_or(Outcome::Converged) {
         Outcome::Converged => None,
-        Outcome::NotConverged { row } => Some(Failure::NotConverged {
-            row: entry(S::ROWS, row),
-            residual: diagnosis.worst.residual.to_f64(),
-            required: diagnosis.worst.required.to_f64(),
-            iterations: diagnosis.evaluations,
-            time: t.to_f64(),
-        }),
+        Outcome::NotConverged { row } => Some(not_converged::<S, R, N, M>(row, diagnosis, t)),
         Outcome::NonFinite { row } => {
             let row = entry(S::ROWS, row);
             Some(Failure::NonFinite { name: row.name, line: row.line })
@@ -167,7 +188,24 @@ pub(crate) fn position_failure<S: Mechanism<R, N, M>, R: Real, const N: usize, c
 }
 
 #[cold]
-fn singular<S: Mechanism<R, N, M>, R: Real, const N: usize, const M: usize>(
+#[inline(never)]
+fn not_converged<S: Mechanism<R, N, M>, R: Real, const N: usize, const M: usize>(
+    row: u16,
+    diagnosis: &Diagnosis<R>,
+    t: R,
+) -> Failure {
+    Failure::NotConverged {
+        row: entry(S::ROWS, row),
+        residual: diagnosis.worst.residual.to_f64(),
+        required: diagnosis.worst.required.to_f64(),
+        iterations: diagnosis.evaluations,
+        time: t.to_f64(),
+    }
+}
+
+#[cold]
+#[inline(never)]
+pub(crate) fn singular<S: Mechanism<R, N, M>, R: Real, const N: usize, const M: usize>(
     margin: &Margin<R>,
     t: R,
 ) -> Failure {
@@ -240,10 +278,20 @@ pub(crate) fn coordinate_failure<S: Mechanism<R, N, M>, R: Real, const N: usize,
     if q.iter().zip(scales).fold(true, |all, pair| all & resolved(pair)) {
         return None;
     }
+    unresolved::<S, R, N, M>(q, q.iter().zip(scales).position(|pair| !resolved(pair)), t)
+}
+
+/// The first coordinate that is not finite, or the one at `index`, which is too large.
+#[cold]
+#[inline(never)]
+fn unresolved<S: Mechanism<R, N, M>, R: Real, const N: usize, const M: usize>(
+    q: &[R; N],
+    index: Option<usize>,
+    t: R,
+) -> Option<Failure> {
     non_finite(q, S::COORDINATES).or_else(|| {
-        let index = q.iter().zip(scales).position(|pair| !resolved(pair))?;
-        let coordinate = entry(S::COORDINATES, u16::try_from(index).unwrap_or(u16::MAX));
-        Some(Failure::Unresolved { coordinate, value: q.get(index)?.to_f64(), time: t.to_f64() })
+        let coordinate = entry(S::COORDINATES, u16::try_from(index?).unwrap_or(u16::MAX));
+        Some(Failure::Unresolved { coordinate, value: q.get(index?)?.to_f64(), time: t.to_f64() })
     })
 }
 

@@ -21,6 +21,7 @@ pub mod dynamic;
 pub mod dynamics;
 pub mod failure;
 mod function;
+mod instant;
 pub mod kinematics;
 pub mod lanes;
 pub mod limit;

@@ -224,6 +224,17 @@ pub trait Factorization<T: Scalar, const K: usize>: Copy {
     /// Returns the factors and the margin to singularity: 0 where singular, at most 1, independent of units.
     /// A singular lane still gets finite factors wherever `a` is finite.
     fn factorize(a: &[[T; K]; K], row_scales: &[T; K], coordinate_scales: &[T; K]) -> (Self, T);
+    /// As [`factorize`](Self::factorize), for a step of Newton's method alone: whether the margin is above √ε, which
+    /// keeps half the step's digits, in place of the margin.
+    #[inline(always)]
+    fn factorize_for_step(
+        a: &[[T; K]; K],
+        row_scales: &[T; K],
+        coordinate_scales: &[T; K],
+    ) -> (Self, T::Mask) {
+        let (factors, margin) = Self::factorize(a, row_scales, coordinate_scales);
+        (factors, crate::linear::is_regular(margin))
+    }
     /// Solves `a x = b`.
     fn solve(&self, b: &[T; K]) -> [T; K];
     /// Solves `aᵀ x = b`.
@@ -291,6 +302,20 @@ pub trait Kinematic<T: Scalar, const N: usize, const M: usize = N>: Mechanism<T,
         solver: &mut S,
     ) -> T::Lanes<Outcome>;
 
+    /// As [`solve_blocks`](Self::solve_blocks), with the stage-1 values of the solution: emitted code keeps them as it
+    /// solves, so that no sine is computed again.
+    #[inline(always)]
+    fn solve_with_position<S: BlockSolver<T>>(
+        &self,
+        parameters: &Self::Parameters,
+        q: &mut [T; N],
+        t: T,
+        solver: &mut S,
+    ) -> (T::Lanes<Outcome>, Self::Position) {
+        let outcome = self.solve_blocks(parameters, q, t, solver);
+        (outcome, self.position(parameters, q, t))
+    }
+
     /// Factorises Φ_q block by block, once for velocity and acceleration.
     ///
     /// Returns the factors and the smallest margin of any block (see [`Factorization::factorize`]).
@@ -350,4 +375,14 @@ impl<T: Scalar> Margin<T> {
         };
         Margin { orientation: T::per_lane(turned), ..self }
     }
+}
+
+/// Whether two points of a block are the same one in every lane.
+#[inline(always)]
+pub fn is_same<T: Scalar, const K: usize>(a: &[T; K], b: &[T; K]) -> bool {
+    let mut different = T::mask(false);
+    for (a, b) in a.iter().zip(b) {
+        different = different | a.less(*b) | b.less(*a);
+    }
+    T::all(!different)
 }

@@ -51,33 +51,104 @@ impl<T: Scalar> Newton<T> {
 }
 
 impl<T: Scalar> BlockSolver<T> for Newton<T> {
-    #[inline]
+    #[inline(always)]
     fn solve<const K: usize, F: Factorization<T, K>>(
         &mut self,
         block: &Block<T, K>,
         x: [T; K],
         mut evaluate: impl FnMut(&[T; K]) -> ([T; K], [[T; K]; K]),
     ) -> ([T; K], T::Lanes<Outcome>) {
-        let attempt = newton::<T, K, F>(block, x, T::mask(true), self.extent, ITERATIONS, &mut evaluate);
-        let plain = T::all(attempt.converged);
-        let attempt = if plain { attempt } else { rescued(attempt, block, x, self.extent, &mut evaluate) };
-        self.diagnosis.record(attempt.evaluations, !plain, attempt.worst, attempt.converged);
-        (attempt.x, attempt.outcomes())
+        match plainly::<T, K, F>(block, x, &mut evaluate) {
+            Ok(closed) => {
+                let worst = Worst::of_block(block, &closed.residuals, &closed.tolerances);
+                self.diagnosis.record_plain(closed.evaluations, worst);
+                (closed.x, T::per_lane(|_| Outcome::Converged))
+            }
+            Err(descent) => {
+                let (attempt, plain) = carefully::<T, K, F>(descent, block, x, self.extent, &mut evaluate);
+                self.diagnosis.record(attempt.evaluations, !plain, attempt.worst, attempt.converged);
+                (attempt.x, attempt.outcomes())
+            }
+        }
     }
 }
 
-/// The lanes that did not converge, once more from their start by Levenberg–Marquardt.
+/// A block that every lane has closed.
+struct Closed<T: Scalar, const K: usize> {
+    x: [T; K],
+    residuals: [T; K],
+    tolerances: [T; K],
+    evaluations: u32,
+}
+
+/// Newton's method as long as it goes as it should next to the solution: the residual falls, the Jacobian is regular, no
+/// step is long. What [`Descent::carried_on`] would do, without what it keeps in readiness; where something else happens,
+/// that goes on from here.
+#[inline(always)]
+fn plainly<T: Scalar, const K: usize, F: Factorization<T, K>>(
+    block: &Block<T, K>,
+    start: [T; K],
+    evaluate: &mut impl FnMut(&[T; K]) -> ([T; K], [[T; K]; K]),
+) -> Result<Closed<T, K>, Descent<T, K>> {
+    let one = T::constant(1.0);
+    let mut x = start;
+    let mut converged = T::mask(false);
+    let (mut last_ratio, mut least_ratio) = (one, T::constant(f64::MAX));
+    let mut evaluations = 0;
+    loop {
+        let (residuals, jacobian) = evaluate(&x);
+        evaluations += 1;
+        let tolerances = required(&block.row_scales, &x, &jacobian);
+        let ratio = largest_ratio(&residuals, &tolerances);
+        let finite = all_finite(&residuals, &jacobian);
+        let closes = converged | (finite & !one.less(ratio));
+        if T::all(closes) {
+            return Ok(Closed { x, residuals, tolerances, evaluations });
+        }
+        let (factors, regular) =
+            F::factorize_for_step(&jacobian, &block.row_scales, &block.coordinate_scales);
+        let step = factors.solve(&residuals.map(|r| -r));
+        let falls = ratio.less(T::constant(FALL) * least_ratio);
+        let plain = finite & falls & regular & !beyond(block, &step);
+        if !T::all(closes | plain) || evaluations > FREE_ITERATIONS {
+            let open = !converged;
+            let fruitless = T::constant(0.0);
+            return Err(Descent {
+                x,
+                residuals,
+                jacobian,
+                evaluations,
+                converged,
+                open,
+                last_ratio,
+                least_ratio,
+                fruitless,
+            });
+        }
+        let mut next = x;
+        next.iter_mut().zip(step).for_each(|(component, change)| *component = *component + change);
+        x = select(closes, &x, &next);
+        (converged, last_ratio, least_ratio) = (closes, ratio, ratio);
+    }
+}
+
+/// Newton's method from where it stands; the lanes that do not converge once more from their `start` by
+/// Levenberg–Marquardt. Whether Newton's method did.
 #[cold]
 #[inline(never)]
-fn rescued<T: Scalar, const K: usize>(
-    attempt: Attempt<T, K>,
+fn carefully<T: Scalar, const K: usize, F: Factorization<T, K>>(
+    descent: Descent<T, K>,
     block: &Block<T, K>,
     start: [T; K],
     extent: T,
     evaluate: &mut impl FnMut(&[T; K]) -> ([T; K], [[T; K]; K]),
-) -> Attempt<T, K> {
+) -> (Attempt<T, K>, bool) {
+    let attempt = descent.carried_on::<F>(block, extent, ITERATIONS, evaluate);
+    if T::all(attempt.converged) {
+        return (attempt, true);
+    }
     let second = levenberg_marquardt(block, start, !attempt.converged, extent, TRIALS, evaluate);
-    attempt.continued_by(second)
+    (attempt.continued_by(second), false)
 }
 
 /// What one method reached in the lanes that it was given.
@@ -126,48 +197,98 @@ pub(crate) fn newton<T: Scalar, const K: usize, F: Factorization<T, K>>(
     iterations: u32,
     evaluate: &mut impl FnMut(&[T; K]) -> ([T; K], [[T; K]; K]),
 ) -> Attempt<T, K> {
-    let one = T::constant(1.0);
-    let mut x = start;
-    let (mut residuals, mut jacobian) = evaluate(&x);
-    let mut evaluations = 1;
-    let mut converged = T::mask(false);
-    let mut open = active;
-    let mut last_ratio = one;
-    let (mut least_ratio, mut fruitless) = (T::constant(f64::MAX), T::constant(0.0));
-    let mut tolerances = required(&block.row_scales, &x, &jacobian);
-    for iteration in 0..iterations {
-        let finite = all_finite(&residuals, &jacobian);
-        let ratio = largest_ratio(&residuals, &tolerances);
-        converged = converged | (open & finite & !one.less(ratio));
-        if iteration > FREE_ITERATIONS {
-            let allowance = outer_rounding(extent, &block.coordinate_scales, &jacobian);
-            let stalled = !(ratio + ratio).less(last_ratio);
-            converged = converged | (open & finite & stalled & within(&residuals, &tolerances, &allowance));
+    let (residuals, jacobian) = evaluate(&start);
+    let descent = Descent {
+        x: start,
+        residuals,
+        jacobian,
+        evaluations: 1,
+        converged: T::mask(false),
+        open: active,
+        last_ratio: T::constant(1.0),
+        least_ratio: T::constant(f64::MAX),
+        fruitless: T::constant(0.0),
+    };
+    descent.carried_on::<F>(block, extent, iterations, evaluate)
+}
+
+/// Newton's method at an iterate that was evaluated, not judged.
+struct Descent<T: Scalar, const K: usize> {
+    x: [T; K],
+    residuals: [T; K],
+    jacobian: [[T; K]; K],
+    evaluations: u32,
+    converged: T::Mask,
+    /// Lanes that are still moving.
+    open: T::Mask,
+    /// Largest |residual| over its tolerance at the iterate before.
+    last_ratio: T,
+    /// The same where it last fell.
+    least_ratio: T,
+    /// Iterations since.
+    fruitless: T,
+}
+
+impl<T: Scalar, const K: usize> Descent<T, K> {
+    /// Until every lane has converged or failed, and to `iterations` steps since the first iterate.
+    #[inline]
+    fn carried_on<F: Factorization<T, K>>(
+        mut self,
+        block: &Block<T, K>,
+        extent: T,
+        iterations: u32,
+        evaluate: &mut impl FnMut(&[T; K]) -> ([T; K], [[T; K]; K]),
+    ) -> Attempt<T, K> {
+        let mut tolerances = required(&block.row_scales, &self.x, &self.jacobian);
+        while self.evaluations <= iterations {
+            self.judge(block, extent, &tolerances);
+            if T::all(!self.open) {
+                break;
+            }
+            let step = self.step::<F>(block);
+            let mut next = self.x;
+            next.iter_mut().zip(step).for_each(|(component, change)| *component = *component + change);
+            self.x = select(self.open, &next, &self.x);
+            (self.residuals, self.jacobian) = evaluate(&self.x);
+            tolerances = required(&block.row_scales, &self.x, &self.jacobian);
+            self.evaluations += 1;
         }
-        last_ratio = ratio;
-        let fell = ratio.less(T::constant(FALL) * least_ratio);
-        least_ratio = T::select(fell, ratio, least_ratio);
-        fruitless = T::select(fell, T::constant(0.0), fruitless + one);
-        open = open & finite & !converged & !T::constant(FRUITLESS_ITERATIONS).less(fruitless);
-        if T::all(!open) {
-            break;
-        }
-        let (factors, margin) = F::factorize(&jacobian, &block.row_scales, &block.coordinate_scales);
-        let mut step = factors.solve(&residuals.map(|r| -r));
-        let singular = open & !is_regular(margin);
-        if !T::all(!singular) {
-            step = shortest_steps(singular, step, &residuals, &jacobian, block);
-        }
-        let step = capped(block, step);
-        let mut next = x;
-        next.iter_mut().zip(step).for_each(|(component, change)| *component = *component + change);
-        x = select(open, &next, &x);
-        (residuals, jacobian) = evaluate(&x);
-        tolerances = required(&block.row_scales, &x, &jacobian);
-        evaluations += 1;
+        let worst = Worst::of_block(block, &self.residuals, &tolerances);
+        Attempt { x: self.x, converged: self.converged, worst, evaluations: self.evaluations }
     }
-    let worst = Worst::of_block(block, &residuals, &tolerances);
-    Attempt { x, converged, worst, evaluations }
+
+    /// Which lanes have converged, and which of the others are worth another step.
+    #[inline(always)]
+    fn judge(&mut self, block: &Block<T, K>, extent: T, tolerances: &[T; K]) {
+        let one = T::constant(1.0);
+        let finite = all_finite(&self.residuals, &self.jacobian);
+        let ratio = largest_ratio(&self.residuals, tolerances);
+        self.converged = self.converged | (self.open & finite & !one.less(ratio));
+        if self.evaluations > FREE_ITERATIONS + 1 {
+            let allowance = outer_rounding(extent, &block.coordinate_scales, &self.jacobian);
+            let stalled = !(ratio + ratio).less(self.last_ratio);
+            let rounding = within(&self.residuals, tolerances, &allowance);
+            self.converged = self.converged | (self.open & finite & stalled & rounding);
+        }
+        self.last_ratio = ratio;
+        let fell = ratio.less(T::constant(FALL) * self.least_ratio);
+        self.least_ratio = T::select(fell, ratio, self.least_ratio);
+        self.fruitless = T::select(fell, T::constant(0.0), self.fruitless + one);
+        let fruitless = T::constant(FRUITLESS_ITERATIONS).less(self.fruitless);
+        self.open = self.open & finite & !self.converged & !fruitless;
+    }
+
+    /// The next step: Newton's, capped, or the shortest where the Jacobian is singular.
+    #[inline(always)]
+    fn step<F: Factorization<T, K>>(&self, block: &Block<T, K>) -> [T; K] {
+        let (factors, margin) = F::factorize(&self.jacobian, &block.row_scales, &block.coordinate_scales);
+        let mut step = factors.solve(&self.residuals.map(|r| -r));
+        let singular = self.open & !is_regular(margin);
+        if !T::all(!singular) {
+            step = shortest_steps(singular, step, &self.residuals, &self.jacobian, block);
+        }
+        capped(block, step)
+    }
 }
 
 /// Minimum-norm steps in the lanes of `singular`, the given steps elsewhere.
@@ -197,13 +318,7 @@ fn shortest_steps<T: Scalar, const K: usize>(
 /// The step shortened as a whole so that no angle changes by more than [`LARGEST_ANGLE_STEP`].
 #[inline(always)]
 pub(crate) fn capped<T: Scalar, const K: usize>(block: &Block<T, K>, step: [T; K]) -> [T; K] {
-    let limit = T::constant(LARGEST_ANGLE_STEP);
-    let mut largest = T::constant(0.0);
-    for (change, is_angle) in step.iter().zip(block.angles) {
-        if is_angle {
-            largest = largest.max(change.abs());
-        }
-    }
+    let (limit, largest) = (T::constant(LARGEST_ANGLE_STEP), largest_turn(block, &step));
     let beyond = limit.less(largest);
     if T::all(!beyond) {
         return step;
@@ -212,11 +327,35 @@ pub(crate) fn capped<T: Scalar, const K: usize>(block: &Block<T, K>, step: [T; K
     step.map(|change| change * factor)
 }
 
+/// Whether an angle changes by more than [`LARGEST_ANGLE_STEP`].
+#[inline(always)]
+fn beyond<T: Scalar, const K: usize>(block: &Block<T, K>, step: &[T; K]) -> T::Mask {
+    T::constant(LARGEST_ANGLE_STEP).less(largest_turn(block, step))
+}
+
+/// Largest change of an angle.
+#[inline(always)]
+fn largest_turn<T: Scalar, const K: usize>(block: &Block<T, K>, step: &[T; K]) -> T {
+    let mut largest = T::constant(0.0);
+    for (change, is_angle) in step.iter().zip(block.angles) {
+        if is_angle {
+            largest = largest.max(change.abs());
+        }
+    }
+    largest
+}
+
 /// Whether residuals and Jacobian are finite.
 #[inline(always)]
 pub(crate) fn all_finite<T: Scalar, const K: usize>(residuals: &[T; K], jacobian: &[[T; K]; K]) -> T::Mask {
-    let entries = residuals.iter().chain(jacobian.iter().flatten());
-    entries.fold(T::mask(true), |finite, entry| finite & entry.is_finite())
+    let mut finite = T::mask(true);
+    for (residual, row) in residuals.iter().zip(jacobian) {
+        finite = finite & residual.is_finite();
+        for entry in row {
+            finite = finite & entry.is_finite();
+        }
+    }
+    finite
 }
 
 /// Largest |residual| over its tolerance.

@@ -1,8 +1,9 @@
 //! A state as plain numbers and bytes, and the way back into motion after a reset.
 
+use crate::instant::{Before, Found};
 use crate::kinematics::{coordinate_failure, entry, time_failure, variable_failure};
 use crate::nearest::solve_nearest;
-use crate::stepper::{Before, Found, State};
+use crate::stepper::State;
 use crate::{Failure, Kinematic, Mechanism, Real, Stepper};
 
 /// Version of the layout of [`Saved`], in its first bytes. Neither erased (0xFF) nor zeroed memory has it.
@@ -137,7 +138,8 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
         if let Some(failure) = distant::<S, R, N, M>(&q, &start, &scales, t) {
             return Err(failure);
         }
-        let found = Found { t, q, statistics, open: None };
+        let position = mechanism.position(&parameters, &q, t);
+        let found = Found { t, q, position, statistics, open: None };
         let state = State::at(&mechanism, &parameters, found, Before::Saved)?;
         Ok(Stepper { mechanism, parameters, fault: None, changed: false, state })
     }

@@ -1,17 +1,10 @@
 //! A mechanism in motion: state and mechanism in one place, one call a step.
 
 use crate::diagnosis::Statistics;
-use crate::kinematics::{
-    RegularFactors, branch_failure, coordinate_failure, factorize, largest_difference, solve_acceleration,
-    solve_correction, solve_position, solve_velocity, time_failure, variable_failure,
-};
-use crate::limit::limit_failure;
+use crate::instant::{Before, Found, REGULAR_ZONE, Rates};
+use crate::kinematics::{next_position, solve_with_position, time_failure, variable_failure};
 use crate::path::{Way, displaced, is_near};
-use crate::{Failure, Kinematic, Mechanism, Real, Sweep, assemble};
-
-/// Margin to singularity below which the path from the last regular position predicts, not the rates of the state: those
-/// are wrong by the inverse square of the margin, and past a change point pick the assembly by chance.
-const REGULAR_ZONE: f64 = 1e-2;
+use crate::{Assembled, Failure, Kinematic, Mechanism, Real, Sweep, assemble};
 
 /// A mechanism with its state. It owns everything, allocates nothing, and a failed call leaves it as it was.
 ///
@@ -50,27 +43,6 @@ pub(crate) struct State<R, const N: usize> {
     pub(crate) repair: Option<[R; N]>,
 }
 
-/// A position that a solver came to.
-#[derive(Clone, Copy)]
-pub(crate) struct Found<R, const N: usize> {
-    pub(crate) t: R,
-    pub(crate) q: [R; N],
-    pub(crate) statistics: Statistics,
-    /// Why it does not close, if so.
-    pub(crate) open: Option<Failure>,
-}
-
-/// What a position follows.
-#[derive(Clone, Copy)]
-pub(crate) enum Before<'a, R, const N: usize> {
-    /// A guess: branches that pick the assembly alone count.
-    Guess,
-    /// A position that was one of this assembly.
-    Saved,
-    /// The state before the step.
-    State(&'a State<R, N>),
-}
-
 impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, R, N, M> {
     /// Assembles `mechanism` from `guess` (N) at time `t` (s); velocity and acceleration follow.
     ///
@@ -82,7 +54,9 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
         let assembled = assemble(&mechanism, guess, t)?;
         mechanism.start_phases(&guess, t);
         let parameters = mechanism.parameters();
-        let found = Found { t, q: assembled.q, statistics: assembled.statistics, open: None };
+        let Assembled { q, statistics, .. } = assembled;
+        let position = mechanism.position(&parameters, &q, t);
+        let found = Found { t, q, position, statistics, open: None };
         let state = State::at(&mechanism, &parameters, found, Before::Guess)?;
         Ok(Stepper { mechanism, parameters, fault: None, changed: false, state })
     }
@@ -132,44 +106,66 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
 
     #[inline(always)]
     fn advanced(&mut self, t: R) -> Result<Statistics, Failure> {
-        let start = self.predicted(t);
-        let (q, statistics) = solve_position(&self.mechanism, &self.parameters, &start, t)?;
-        let found = Found { t, q, statistics, open: None };
-        match self.next_state(found) {
-            Ok(state) if is_near(R::constant(statistics.correction), state.margin) => self.take(state),
-            Err(failure) if !matches!(failure, Failure::WrongBranch { .. }) => return Err(failure),
-            doubtful => {
-                let state = self.along_the_way(found).map_or(doubtful, Ok)?;
-                self.take(state);
+        let mut q = self.predicted(t);
+        let (position, statistics, failure) = next_position(&self.mechanism, &self.parameters, &mut q, t);
+        if let Some(failure) = failure {
+            return Err(failure);
+        }
+        let mut found = Found { t, q, position, statistics, open: None };
+        let mut rates = Rates::none();
+        let before = Before::State(&self.state);
+        let failure = rates.solve(&self.mechanism, &self.parameters, &mut found, before);
+        let near = is_near(R::constant(statistics.correction), rates.margin);
+        match failure {
+            None if near => {
+                self.state.move_on(found, rates);
+                self.changed = false;
             }
+            Some(failure) if !matches!(failure, Failure::WrongBranch { .. }) => return Err(failure),
+            failure => self.doubted(failure.map_or(Ok((found, rates)), Err), statistics, t)?,
         }
         Ok(self.state.statistics)
     }
 
-    /// The state where the way of the drivers ends, for a position so far from its prediction that it may be in another
-    /// assembly; `None` where no way is found.
+    /// Takes the state where the way of the drivers ends, or the doubtful one where there is no way.
     #[cold]
     #[inline(never)]
-    fn along_the_way(&self, doubtful: Found<R, N>) -> Option<State<R, N>> {
-        let Found { t, statistics: first, .. } = doubtful;
+    fn doubted(
+        &mut self,
+        doubtful: Result<(Found<S, R, N, M>, Rates<R, N>), Failure>,
+        statistics: Statistics,
+        t: R,
+    ) -> Result<(), Failure> {
+        match self.along_the_way(statistics, t) {
+            Some(state) => self.state = state,
+            None => doubtful.map(|(found, rates)| self.state.move_on(found, rates))?,
+        }
+        self.changed = false;
+        Ok(())
+    }
+
+    /// The state where the way of the drivers ends, for a position so far from its prediction that it may be in another
+    /// assembly; `None` where no way is found.
+    fn along_the_way(&self, first: Statistics, t: R) -> Option<State<R, N>> {
         let end = self.way(t).end(&self.state.regular)?;
-        let (q, second) = solve_position(&self.mechanism, &self.parameters, &end, t).ok()?;
+        let (q, position, second) = solve_with_position(&self.mechanism, &self.parameters, &end, t).ok()?;
         let evaluations = first.evaluations.saturating_add(second.evaluations);
         let statistics = Statistics { evaluations, fallback: true, ..second };
-        self.next_state(Found { t, q, statistics, open: None }).ok()
+        let found = Found { t, q, position, statistics, open: None };
+        State::at(&self.mechanism, &self.parameters, found, Before::State(&self.state)).ok()
     }
 
-    /// The state at a position that follows.
+    /// Makes the state at a position that follows the present one.
     #[inline(always)]
-    pub(crate) fn next_state(&self, found: Found<R, N>) -> Result<State<R, N>, Failure> {
-        State::at(&self.mechanism, &self.parameters, found, Before::State(&self.state))
-    }
-
-    /// Makes a state that follows the present one.
-    #[inline(always)]
-    pub(crate) fn take(&mut self, state: State<R, N>) {
-        self.state = state;
+    pub(crate) fn accept(&mut self, mut found: Found<S, R, N, M>) -> Result<(), Failure> {
+        let mut rates = Rates::none();
+        let before = Before::State(&self.state);
+        if let Some(failure) = rates.solve(&self.mechanism, &self.parameters, &mut found, before) {
+            return Err(failure);
+        }
+        self.state.move_on(found, rates);
         self.changed = false;
+        Ok(())
     }
 
     /// The frames from now to `until` (s) in `steps` equal steps; see [`Sweep`].
@@ -317,93 +313,61 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
 
 impl<R: Real, const N: usize> State<R, N> {
     /// The state at a position that closes, or nearly so: not singular, in the declared assembly, with finite rates.
-    #[inline(always)]
+    #[inline(never)]
     pub(crate) fn at<S: Kinematic<R, N, M>, const M: usize>(
         mechanism: &S,
         parameters: &S::Parameters,
-        found: Found<R, N>,
+        mut found: Found<S, R, N, M>,
         before: Before<'_, R, N>,
     ) -> Result<Self, Failure> {
-        let Found { t, q, statistics, open } = found;
-        let scales = mechanism.coordinate_scales(parameters);
-        if let Some(failure) = coordinate_failure::<S, R, N, _>(&q, &scales, t) {
+        let mut rates = Rates::none();
+        if let Some(failure) = rates.solve(mechanism, parameters, &mut found, before) {
             return Err(failure);
         }
-        let mut solution = Solution { q, position: mechanism.position(parameters, &q, t) };
-        let mut factors = factorize(mechanism, parameters, &solution.position, t)?;
-        if open.is_none() && factors.margin() < R::constant(REGULAR_ZONE) {
-            solution = solution.polished(mechanism, parameters, &factors, t);
-            factors = factorize(mechanism, parameters, &solution.position, t)?;
-        }
-        let Solution { q, position } = solution;
-        if let Some(failure) =
-            branch_failure(mechanism, parameters, &position, t, matches!(before, Before::Guess))
-        {
-            return Err(failure);
-        }
-        if let Some(failure) = limit_failure(mechanism, parameters, &position, t) {
-            return Err(failure);
-        }
-        let qd = solve_velocity(mechanism, parameters, &position, &factors)?;
-        let qdd = solve_acceleration(mechanism, parameters, &position, &qd, &factors)?;
-        let (margin, orientation) = (factors.margin(), factors.orientation());
-        let (regular, passed, passages) = match before {
-            Before::State(last) => {
-                let regular = if margin < R::constant(REGULAR_ZONE) { last.regular } else { q };
-                let passed = last.orientation != orientation;
-                (regular, passed, last.passages.saturating_add(u32::from(passed)))
-            }
-            Before::Guess | Before::Saved => (q, false, 0),
+        let mut state = match before {
+            Before::State(last) => *last,
+            Before::Guess | Before::Saved => State {
+                t: found.t,
+                q: found.q,
+                qd: rates.qd,
+                qdd: rates.qdd,
+                margin: rates.margin,
+                margin_rate: R::constant(0.0),
+                statistics: found.statistics,
+                orientation: rates.orientation,
+                passages: 0,
+                regular: found.q,
+                repair: None,
+            },
         };
-        let statistics = Statistics { passed, ..statistics };
-        let margin_rate = match before {
-            Before::State(last) if t == last.t => last.margin_rate,
-            Before::State(last) => (margin - last.margin) / (t - last.t),
-            _ => R::constant(0.0),
-        };
-        let repair = match open {
-            None => None,
-            Some(failure) => {
-                let step = solve_correction(mechanism, parameters, &position, &factors)?;
-                let size = largest_difference(&step, &[R::constant(0.0); N], &scales);
-                Some(if is_near(size, margin) { step } else { return Err(failure) })
-            }
-        };
-        Ok(State { t, q, qd, qdd, margin, margin_rate, statistics, orientation, passages, regular, repair })
+        state.move_on(found, rates);
+        Ok(state)
+    }
+
+    /// Becomes the state at the position that follows.
+    #[inline(always)]
+    fn move_on<S: Mechanism<R, N, M>, const M: usize>(
+        &mut self,
+        found: Found<S, R, N, M>,
+        rates: Rates<R, N>,
+    ) {
+        let Found { t, q, statistics, .. } = found;
+        let Rates { qd, qdd, margin, orientation, repair } = rates;
+        let passed = self.orientation != orientation;
+        if t != self.t {
+            self.margin_rate = (margin - self.margin) / (t - self.t);
+        }
+        (self.t, self.q, self.qd, self.qdd) = (t, q, qd, qdd);
+        (self.margin, self.orientation, self.repair) = (margin, orientation, repair);
+        self.statistics = Statistics { passed, ..statistics };
+        self.passages = self.passages.saturating_add(u32::from(passed));
+        if self.is_regular() {
+            self.regular = q;
+        }
     }
 
     /// Whether the state is outside the singular zone.
     fn is_regular(&self) -> bool {
         R::constant(REGULAR_ZONE) <= self.margin
-    }
-}
-
-/// A position with its stage-1 values.
-struct Solution<S: Mechanism<R, N, M>, R: Real, const N: usize, const M: usize> {
-    q: [R; N],
-    position: S::Position,
-}
-
-impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Solution<S, R, N, M> {
-    /// One Newton step more, if it closes the rows better. In the singular zone what a residual within its tolerance
-    /// leaves of the position is seen in the rates, by the square of the margin.
-    #[cold]
-    #[inline(never)]
-    fn polished(
-        self,
-        mechanism: &S,
-        parameters: &S::Parameters,
-        factors: &RegularFactors<S::Factors, R>,
-        t: R,
-    ) -> Self {
-        let scales = mechanism.row_scales(parameters);
-        let open = |position: &S::Position| {
-            largest_difference(&mechanism.phi(parameters, position), &[R::constant(0.0); M], &scales)
-        };
-        let Ok(step) = solve_correction(mechanism, parameters, &self.position, factors) else { return self };
-        let mut q = self.q;
-        q.iter_mut().zip(step).for_each(|(coordinate, change)| *coordinate = *coordinate + change);
-        let position = mechanism.position(parameters, &q, t);
-        if open(&position) < open(&self.position) { Solution { q, position } } else { self }
     }
 }

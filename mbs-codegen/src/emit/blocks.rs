@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-use super::code::lets;
+use super::code::{lets, local};
 use super::given;
 use super::scope::{Scope, number};
 use crate::equations::Equations;
@@ -11,8 +11,8 @@ use crate::program::{BlockProgram, Method, Program, System};
 use crate::structure::dyad::Dyad;
 use crate::symbolic::NodeId;
 
-/// Body of `solve_blocks`.
-pub fn solve(equations: &Equations, program: &Program, scope: &Scope<'_>) -> String {
+/// Body of `solve_with_position`; `position` makes the position stage of its values.
+pub fn solve(equations: &Equations, program: &Program, scope: &Scope<'_>, position: &str) -> String {
     let mut text = String::from("let __outcome = T::per_lane(|_| __mbs::Outcome::Converged);\n");
     for block in &program.blocks {
         lets(&block.before, scope, &mut text);
@@ -22,46 +22,70 @@ pub fn solve(equations: &Equations, program: &Program, scope: &Scope<'_>) -> Str
                     let _ = writeln!(text, "__q[{coordinate}] = {};", scope.operand(*value));
                 }
             }
-            Method::Newton(system) => {
-                let System { section, phi, phi_q, branches, branch_section, dyad } = system.as_ref();
-                let inner = Scope { unknowns: &block.coordinates, ..*scope };
-                let starts = list(block.coordinates.iter().map(|c| format!("__q[{c}]")));
-                let (size, kind) = (block.rows.len(), factorization(block.rows.len()));
-                let description = description(equations, block, scope);
-                let method = match (dyad, branches.is_empty()) {
-                    (Some(_), _) => format!("solve_closed::<{size}, {kind}>"),
-                    (None, true) => format!("solve::<{size}, {kind}>"),
-                    (None, false) => format!("solve_branched::<{size}, {kind}>"),
-                };
-                let call = format!("let (__x, __block) = __solver.{method}");
-                let _ = writeln!(text, "{call}(&{description}, {starts}, |__x| {{");
-                lets(section, &inner, &mut text);
-                let residuals = list(phi.iter().map(|id| inner.operand(*id)));
-                let rows = list(phi_q.iter().map(|row| list(row.iter().map(|id| inner.or_zero(*id)))));
-                let _ = writeln!(text, "({residuals}, {rows})\n}}");
-                if !branches.is_empty() {
-                    text += ", |__x| {\n";
-                    lets(branch_section, &inner, &mut text);
-                    let zero = number(0.0);
-                    let holds = branches.iter().map(|id| format!("T::less({zero}, {})", inner.operand(*id)));
-                    let _ = writeln!(text, "{}\n}}", holds.collect::<Vec<_>>().join(" & "));
-                } else if dyad.is_some() {
-                    text += ", |_| T::mask(true)\n";
-                }
-                if let Some((dyad, section)) = dyad {
-                    text += ", |__near| {\n";
-                    lets(section, scope, &mut text);
-                    let _ = writeln!(text, "{}\n}}", formula(dyad, scope));
-                }
-                text += ");\n";
-                for (index, coordinate) in block.coordinates.iter().enumerate() {
-                    let _ = writeln!(text, "__q[{coordinate}] = __x[{index}];");
-                }
-                text += "let __outcome = __mbs::failure::first_failure::<T>(__outcome, __block);\n";
-            }
+            Method::Newton(system) => newton(equations, block, system, scope, &mut text),
         }
     }
-    text + "__outcome"
+    lets(&program.rest, scope, &mut text);
+    text + "(__outcome, " + position + ")"
+}
+
+/// A nonlinear block; what is kept of an iterate stands beside where that was, for a solver that ends elsewhere.
+fn newton(
+    equations: &Equations,
+    block: &BlockProgram,
+    system: &System,
+    scope: &Scope<'_>,
+    text: &mut String,
+) {
+    let System { section, kept, phi, phi_q, branches, branch_section, dyad } = system;
+    let inner = Scope { unknowns: &block.coordinates, ..*scope };
+    let starts = list(block.coordinates.iter().map(|c| format!("__q[{c}]")));
+    let (size, kind) = (block.rows.len(), factorization(block.rows.len()));
+    let description = description(equations, block, scope);
+    if !kept.is_empty() {
+        let (nowhere, zero, count) = (number(f64::INFINITY), number(0.0), kept.len());
+        let _ =
+            writeln!(text, "let __kept = ::core::cell::Cell::new(([{nowhere}; {size}], [{zero}; {count}]));");
+    }
+    let _ = writeln!(text, "let mut __evaluate = |__x: &[T; {size}]| {{");
+    lets(section, &inner, text);
+    if !kept.is_empty() {
+        let values = list(kept.iter().map(|id| inner.operand(*id)));
+        let _ = writeln!(text, "__kept.set((*__x, {values}));");
+    }
+    let residuals = list(phi.iter().map(|id| inner.operand(*id)));
+    let rows = list(phi_q.iter().map(|row| list(row.iter().map(|id| inner.or_zero(*id)))));
+    let _ = writeln!(text, "({residuals}, {rows})\n}};");
+    let method = match (dyad, branches.is_empty()) {
+        (Some(_), _) => "solve_closed",
+        (None, true) => "solve",
+        (None, false) => "solve_branched",
+    };
+    let call = format!("let (__x, __block) = __solver.{method}::<{size}, {kind}>");
+    let _ = write!(text, "{call}(&{description}, {starts}, &mut __evaluate");
+    if !branches.is_empty() {
+        *text += ", |__x| {\n";
+        lets(branch_section, &inner, text);
+        let zero = number(0.0);
+        let holds = branches.iter().map(|id| format!("T::less({zero}, {})", inner.operand(*id)));
+        let _ = writeln!(text, "{}\n}}", holds.collect::<Vec<_>>().join(" & "));
+    } else if dyad.is_some() {
+        *text += ", |_| T::mask(true)\n";
+    }
+    if let Some((dyad, section)) = dyad {
+        *text += ", |__near| {\n";
+        lets(section, scope, text);
+        let _ = writeln!(text, "{}\n}}", formula(dyad, scope));
+    }
+    *text += ");\n";
+    if !kept.is_empty() {
+        *text += "if !__mbs::mechanism::is_same(&__kept.get().0, &__x) { __evaluate(&__x); }\n";
+        let _ = writeln!(text, "let {} = __kept.get().1;", list(kept.iter().map(|id| local(*id))));
+    }
+    for (index, coordinate) in block.coordinates.iter().enumerate() {
+        let _ = writeln!(text, "__q[{coordinate}] = __x[{index}];");
+    }
+    *text += "let __outcome = __mbs::failure::first_failure::<T>(__outcome, __block);\n";
 }
 
 /// Both positions of `Dyad::… { … }` or `Single::… { … }` with its coefficients.

@@ -206,7 +206,7 @@ fn cost(model: &Model, program: &Program, lines: &mut Vec<String>) {
     lines.push(format!("| function | + − | × | ÷ | sin, cos | other functions | selections |{head}"));
     lines.push(format!("|---|---|---|---|---|---|---|{rule}"));
     let blocks = program.blocks.iter();
-    let mut before = Operations::default();
+    let mut before = program.rest.operations;
     let mut iteration = Operations::default();
     for block in blocks {
         before += block.before.operations;
@@ -229,8 +229,8 @@ fn cost(model: &Model, program: &Program, lines: &mut Vec<String>) {
     ];
     let mut table = table.to_vec();
     if !program.blocks.is_empty() {
-        table.push(("`solve_blocks`, once", before));
-        table.push(("`solve_blocks`, each iteration of every block", iteration));
+        table.push(("`solve_with_position`, once", before));
+        table.push(("`solve_with_position`, each iteration of every block", iteration));
     }
     if let Some(dynamics) = &program.dynamics {
         table.extend([

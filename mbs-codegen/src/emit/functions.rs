@@ -48,7 +48,9 @@ pub struct Bodies {
     pub outputs: TokenStream,
     /// Declaration of the factors' struct.
     pub factors: TokenStream,
-    pub solve_blocks: TokenStream,
+    /// Whether they are short enough to stand inside what calls them.
+    pub short: bool,
+    pub solve_with_position: TokenStream,
     pub factorize: TokenStream,
     pub solve_linear: TokenStream,
     /// Coordinates that no block solves for.
@@ -58,6 +60,10 @@ pub struct Bodies {
     /// Masses and forces, where the text has any.
     pub dynamics: Option<DynamicBodies>,
 }
+
+/// Most operations of a solution with its factorization that always stand inside a step. There the numbers of one loop
+/// or two stay in registers; of more they do not, and code in several places would be long for nothing.
+const LONGEST_INLINED: usize = 150;
 
 /// Before: the program of a model, and the types of its declared functions. After: one body a function.
 pub fn bodies(
@@ -128,7 +134,11 @@ pub fn bodies(
         speeds: tokens(&speeds, runtime),
         outputs: tokens(&(given + &outputs_text), runtime),
         factors: tokens(&linear.factors, runtime),
-        solve_blocks: tokens(&blocks::solve(equations, program, &early), runtime),
+        short: program.length() <= LONGEST_INLINED,
+        solve_with_position: tokens(
+            &blocks::solve(equations, program, &early, &kept(&program.position, &early, "__Position")),
+            runtime,
+        ),
         factorize: tokens(&linear.factorize, runtime),
         solve_linear: tokens(&solve_linear, runtime),
         independent: independent.iter().map(|coordinate| *coordinate as u16).collect(),

@@ -267,7 +267,12 @@ fn kinematic(
     runtime: &TokenStream,
 ) -> TokenStream {
     let n = model.coordinates.len();
-    let Bodies { solve_blocks, factorize, solve_linear, .. } = bodies;
+    let Bodies { solve_with_position, factorize, solve_linear, .. } = bodies;
+    let inline = if bodies.short {
+        quote! { #[inline(always)] }
+    } else {
+        quote! { #[inline] }
+    };
     quote! {
         impl<#generics> #runtime::Kinematic<T, #n> for #name {
             type Factors = __Factors<T>;
@@ -278,12 +283,22 @@ fn kinematic(
                 __q: &mut [T; #n],
                 __t: T,
                 __solver: &mut __S,
-            ) -> T::Lanes<#runtime::Outcome> { #solve_blocks }
-            #[inline]
+            ) -> T::Lanes<#runtime::Outcome> {
+                #runtime::Kinematic::solve_with_position(self, __p, __q, __t, __solver).0
+            }
+            #inline
+            fn solve_with_position<__S: #runtime::BlockSolver<T>>(
+                &self,
+                __p: &__Parameters<T>,
+                __q: &mut [T; #n],
+                __t: T,
+                __solver: &mut __S,
+            ) -> (T::Lanes<#runtime::Outcome>, __Position<T>) { #solve_with_position }
+            #inline
             fn factorize(&self, __p: &__Parameters<T>, __s: &__Position<T>) -> (__Factors<T>, #runtime::Margin<T>) {
                 #factorize
             }
-            #[inline]
+            #inline
             fn solve_linear(&self, __factors: &__Factors<T>, __b: &[T; #n]) -> [T; #n] { #solve_linear }
         }
     }
@@ -297,14 +312,14 @@ fn partitioned(
     runtime: &TokenStream,
 ) -> TokenStream {
     let n = model.coordinates.len();
-    let Bodies { solve_blocks, factorize, independent, complete, reduce, .. } = &part.bodies;
+    let Bodies { solve_with_position, factorize, independent, complete, reduce, .. } = &part.bodies;
     // Of a square text these are the functions of `Kinematic`.
     let (solve_blocks, factorize) = match part.square {
         true => (
             quote! { #runtime::Kinematic::solve_blocks(self, __p, __q, __t, __solver) },
             quote! { #runtime::Kinematic::factorize(self, __p, __s) },
         ),
-        false => (solve_blocks.clone(), factorize.clone()),
+        false => (quote! { let (__outcome, _) = { #solve_with_position }; __outcome }, factorize.clone()),
     };
     quote! {
         impl<#generics> #runtime::Partitioned<T, #n, #m> for #name {

@@ -51,7 +51,8 @@ fn bodies(model: &Model) -> Bodies {
             #[derive(::core::clone::Clone, ::core::marker::Copy, ::core::fmt::Debug)]
             pub struct __Factors<T>([T; 0]);
         },
-        solve_blocks: body(),
+        short: false,
+        solve_with_position: body(),
         factorize: body(),
         solve_linear: body(),
         independent: Vec::new(),

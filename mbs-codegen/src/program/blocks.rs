@@ -6,7 +6,7 @@ use super::schedule::{Line, Section, needed, schedule};
 use crate::equations::Equations;
 use crate::structure::dyad::Dyad;
 use crate::structure::{Block, Structure};
-use crate::symbolic::{Graph, Leaf, Node, NodeId};
+use crate::symbolic::{Graph, Leaf, Node, NodeId, Unary};
 
 /// A diagonal block.
 #[derive(Debug)]
@@ -40,6 +40,8 @@ pub enum Method {
 pub struct System {
     /// Executed at each iterate.
     pub section: Section,
+    /// Values of the last iterate that later blocks, or the position stage, use.
+    pub kept: Vec<NodeId>,
     /// Residuals.
     pub phi: Vec<NodeId>,
     /// Jacobian within the block, row by row.
@@ -70,23 +72,44 @@ pub fn roots(equations: &Equations, structure: &Structure) -> Vec<NodeId> {
     roots
 }
 
-/// Before: blocks in the order of solution. After: code for each; values of finished coordinates are computed once.
-pub fn order(equations: &Equations, structure: &Structure, known: &BTreeSet<NodeId>) -> Vec<BlockProgram> {
+/// The blocks, and what the position stage lacks behind them.
+#[derive(Debug)]
+pub struct Solution {
+    /// The solution of Φ = 0, block after block.
+    pub blocks: Vec<BlockProgram>,
+    /// Values of the position stage that no block has computed.
+    pub rest: Section,
+}
+
+/// Before: blocks in the order of solution, and the values that the position stage keeps. After: code for each; values
+/// of finished coordinates are computed once, those of the position stage included.
+pub fn order(
+    equations: &Equations,
+    structure: &Structure,
+    known: &BTreeSet<NodeId>,
+    position: &[NodeId],
+) -> Solution {
     let graph = &equations.graph;
     let mut known = known.clone();
     let mut programs = Vec::new();
-    let jets = Jets::of(graph, &roots(equations, structure));
+    let mut all = roots(equations, structure);
+    all.extend(position);
+    let uses = Uses { companions: Companions::of(graph, &all), users: users(graph, &all), position };
     for block in &structure.blocks {
         let (mut before, method) = match &block.explicit {
             Some(explicit) => {
-                let before = schedule(graph, &jets.completed(graph, &known, vec![explicit.value]), &known);
+                let values = uses.companions.completed(graph, &known, vec![explicit.value]);
+                let before = schedule(graph, &values, &known);
                 (before, Method::Explicit { value: explicit.value, coefficient: explicit.coefficient })
             }
-            None => newton(equations, block, &decided(equations, structure, block), &known, &jets),
+            None => newton(equations, block, &decided(equations, structure, block), &known, &uses),
         };
         // Later blocks use what this one computed.
         before.results.extend(before.lines.iter().flat_map(Line::values));
         known.extend(before.computed());
+        if let Method::Newton(system) = &method {
+            known.extend(&system.kept);
+        }
         programs.push(BlockProgram {
             rows: block.rows.clone(),
             coordinates: block.coordinates.clone(),
@@ -94,35 +117,73 @@ pub fn order(equations: &Equations, structure: &Structure, known: &BTreeSet<Node
             method,
         });
     }
-    programs
+    Solution { blocks: programs, rest: schedule(graph, position, &known) }
 }
 
-/// Calls of declared functions in any block, by function and argument.
-struct Jets(BTreeMap<(u32, NodeId), Vec<NodeId>>);
+/// Who uses what in blocks and position stage.
+struct Uses<'a> {
+    companions: Companions,
+    /// Of each node those that have it as an operand.
+    users: BTreeMap<NodeId, Vec<NodeId>>,
+    /// Values that the position stage keeps.
+    position: &'a [NodeId],
+}
 
-impl Jets {
+impl Uses<'_> {
+    /// Before: values that a block computes at each iterate. After: those that something outside uses.
+    fn outside(&self, computed: &BTreeSet<NodeId>) -> Vec<NodeId> {
+        let leaves = |id: &NodeId| {
+            let mut users = self.users.get(id).into_iter().flatten();
+            self.position.binary_search(id).is_ok() || users.any(|user| !computed.contains(user))
+        };
+        computed.iter().copied().filter(leaves).collect()
+    }
+}
+
+/// Of each node below the roots those that have it as an operand.
+fn users(graph: &Graph, roots: &[NodeId]) -> BTreeMap<NodeId, Vec<NodeId>> {
+    let mut users: BTreeMap<NodeId, Vec<NodeId>> = BTreeMap::new();
+    for id in graph.reachable(roots.iter().copied()) {
+        graph.node(id).operands().for_each(|operand| users.entry(operand).or_default().push(id));
+    }
+    users
+}
+
+/// What one operation brings about: calls of declared functions by function and argument, sine and cosine by their angle.
+struct Companions(BTreeMap<(Option<u32>, NodeId), Vec<NodeId>>);
+
+impl Companions {
     fn of(graph: &Graph, roots: &[NodeId]) -> Self {
-        let mut jets: BTreeMap<(u32, NodeId), Vec<NodeId>> = BTreeMap::new();
+        let mut companions: BTreeMap<(Option<u32>, NodeId), Vec<NodeId>> = BTreeMap::new();
         for id in graph.reachable(roots.iter().copied()) {
-            if let Node::Call { function, argument, .. } = graph.node(id) {
-                jets.entry((function, argument)).or_default().push(id);
+            if let Some(operation) = operation(graph.node(id)) {
+                companions.entry(operation).or_default().push(id);
             }
         }
-        Jets(jets)
+        Companions(companions)
     }
 
-    /// Before: values to be computed. After: these, and the other derivatives of the jets that they use, so that a
-    /// later block finds them and does not ask for the same jet again.
+    /// Before: values to be computed. After: these, and what the operations that they use bring about besides, so that
+    /// what comes later finds it and does not ask for the same jet or angle again.
     fn completed(&self, graph: &Graph, known: &BTreeSet<NodeId>, mut values: Vec<NodeId>) -> Vec<NodeId> {
         if self.0.is_empty() {
             return values;
         }
         for id in needed(graph, &values, known) {
-            if let Node::Call { function, argument, .. } = graph.node(id) {
-                values.extend(self.0.get(&(function, argument)).into_iter().flatten());
+            if let Some(operation) = operation(graph.node(id)) {
+                values.extend(self.0.get(&operation).into_iter().flatten());
             }
         }
         values
+    }
+}
+
+/// The operation that the value shares with others.
+fn operation(node: Node) -> Option<(Option<u32>, NodeId)> {
+    match node {
+        Node::Call { function, argument, .. } => Some((Some(function), argument)),
+        Node::Unary(Unary::Sin | Unary::Cos, angle) => Some((None, angle)),
+        _ => None,
     }
 }
 
@@ -147,7 +208,7 @@ fn newton(
     block: &Block,
     branches: &[NodeId],
     known: &BTreeSet<NodeId>,
-    jets: &Jets,
+    uses: &Uses<'_>,
 ) -> (Section, Method) {
     let graph = &equations.graph;
     let (phi, phi_q) = residuals_and_jacobian(equations, block);
@@ -158,18 +219,20 @@ fn newton(
     for id in &moving {
         still.extend(graph.node(*id).operands().filter(|operand| !moving.contains(operand)));
     }
-    let still = jets.completed(graph, known, still.into_iter().collect());
+    let still = uses.companions.completed(graph, known, still.into_iter().collect());
     let before = schedule(graph, &still, known);
     let mut known = known.clone();
     known.extend(before.computed());
-    let section = schedule(graph, &roots, &known);
+    let mut section = schedule(graph, &uses.companions.completed(graph, &known, roots), &known);
+    let kept = uses.outside(&section.computed().collect());
+    section.results.extend(&kept);
     let branch_section = schedule(graph, branches, &known);
     let branches = branches.to_vec();
     let dyad = block.dyad.clone().map(|dyad| {
         let section = schedule(graph, &dyad.nodes(), &known);
         (dyad, section)
     });
-    (before, Method::Newton(Box::new(System { section, phi, phi_q, branches, branch_section, dyad })))
+    (before, Method::Newton(Box::new(System { section, kept, phi, phi_q, branches, branch_section, dyad })))
 }
 
 /// Residuals and Jacobian of a block.

@@ -54,6 +54,8 @@ pub struct Program {
     pub row_scales: Section,
     /// The solution of Φ = 0, block after block.
     pub blocks: Vec<BlockProgram>,
+    /// Values of the position stage that no block has computed.
+    pub rest: Section,
     /// Masses and forces, where the text has any.
     pub dynamics: Option<DynamicsProgram>,
 }
@@ -93,6 +95,8 @@ pub fn order(equations: &Equations, structure: &Structure) -> Program {
     let known: BTreeSet<NodeId> = after_parameters.iter().chain(position.fields.keys()).copied().collect();
     let section = |roots: &[NodeId]| schedule::schedule(graph, roots, &known);
     let early = |roots: &[NodeId]| schedule::schedule(graph, roots, &after_parameters);
+    let kept: Vec<NodeId> = position.fields.keys().copied().collect();
+    let solution = blocks::order(equations, structure, &after_parameters, &kept);
     Program {
         phi: section(&roots.phi),
         phi_q: section(&roots.phi_q),
@@ -109,10 +113,25 @@ pub fn order(equations: &Equations, structure: &Structure) -> Program {
         guesses: early(&roots.guesses),
         coordinate_scales: early(&roots.coordinate_scales),
         row_scales: early(&roots.row_scales),
-        blocks: blocks::order(equations, structure, &after_parameters),
+        blocks: solution.blocks,
+        rest: solution.rest,
         dynamics: dynamics.map(|roots| roots.order(section, early)),
         parameters,
         position,
+    }
+}
+
+impl Program {
+    /// Operations of the solution of Φ = 0 and of Φ_q, an iteration of each block counted once.
+    pub fn length(&self) -> usize {
+        let block = |block: &BlockProgram| {
+            let iteration = match &block.method {
+                Method::Newton(system) => system.section.lines.len(),
+                Method::Explicit { .. } => 0,
+            };
+            block.before.lines.len() + iteration
+        };
+        self.blocks.iter().map(block).sum::<usize>() + self.rest.lines.len() + self.phi_q.lines.len()
     }
 }
 

@@ -37,8 +37,8 @@
 /// | `branches` | 0 | 0 | 0 | 1 | 0 | 0 |
 /// | `limits` | 0 | 0 | 0 | 0 | 0 | 0 |
 /// | `outputs` | 2 | 0 | 0 | 0 | 0 | 0 |
-/// | `solve_blocks`, once | 3 | 5 | 0 | 3 | 0 | 0 |
-/// | `solve_blocks`, each iteration of every block | 7 | 4 | 0 | 2 | 0 | 0 |
+/// | `solve_with_position`, once | 4 | 5 | 0 | 2 | 0 | 0 |
+/// | `solve_with_position`, each iteration of every block | 7 | 4 | 0 | 2 | 0 | 0 |
 #[allow(non_snake_case, reason = "the text names the parameters")]
 #[derive(
     ::core::clone::Clone,
@@ -573,12 +573,43 @@ const _: () = {
             __t: T,
             __solver: &mut __S,
         ) -> T::Lanes<::mbs_runtime::Outcome> {
+            ::mbs_runtime::Kinematic::solve_with_position(self, __p, __q, __t, __solver)
+                .0
+        }
+        #[inline(always)]
+        fn solve_with_position<__S: ::mbs_runtime::BlockSolver<T>>(
+            &self,
+            __p: &__Parameters<T>,
+            __q: &mut [T; 5usize],
+            __t: T,
+            __solver: &mut __S,
+        ) -> (T::Lanes<::mbs_runtime::Outcome>, __Position<T>) {
             let __outcome = T::per_lane(|_| ::mbs_runtime::Outcome::Converged);
             let __n43 = self.omega * __t;
             __q[2] = __n43;
             let ([__n23], [__n16]) = T::sin_cos([__q[2]]);
             let __n17 = T::constant(0.1f64) * __n16;
             let __n24 = T::constant(0.1f64) * __n23;
+            let __kept = ::core::cell::Cell::new((
+                [T::constant(f64::INFINITY); 2],
+                [T::constant(0.0f64); 4],
+            ));
+            let mut __evaluate = |__x: &[T; 2]| {
+                let ([__n36, __n39], [__n32, __n29]) = T::sin_cos([__x[0], __x[1]]);
+                let __n30 = T::constant(0.2f64) * __n29;
+                let __n31 = T::constant(0.3f64) + __n30;
+                let __n33 = T::constant(0.25f64) * __n32;
+                let __n34 = __n17 + __n33;
+                let __n35 = __n31 - __n34;
+                let __n37 = T::constant(0.25f64) * __n36;
+                let __n38 = __n24 + __n37;
+                let __n40 = T::constant(0.2f64) * __n39;
+                let __n41 = __n38 - __n40;
+                let __n57 = -__n40;
+                let __n58 = -__n30;
+                __kept.set((*__x, [__n30, __n33, __n37, __n40]));
+                ([__n35, __n41], [[__n37, __n57], [__n33, __n58]])
+            };
             let (__x, __block) = __solver
                 .solve_closed::<
                     2,
@@ -592,24 +623,7 @@ const _: () = {
                         coordinate_scales: [T::constant(1.0f64), T::constant(1.0f64)],
                     },
                     [__q[3], __q[4]],
-                    |__x| {
-                        let ([__n36, __n39], [__n32, __n29]) = T::sin_cos([
-                            __x[0],
-                            __x[1],
-                        ]);
-                        let __n30 = T::constant(0.2f64) * __n29;
-                        let __n31 = T::constant(0.3f64) + __n30;
-                        let __n33 = T::constant(0.25f64) * __n32;
-                        let __n34 = __n17 + __n33;
-                        let __n35 = __n31 - __n34;
-                        let __n37 = T::constant(0.25f64) * __n36;
-                        let __n38 = __n24 + __n37;
-                        let __n40 = T::constant(0.2f64) * __n39;
-                        let __n41 = __n38 - __n40;
-                        let __n57 = -__n40;
-                        let __n58 = -__n30;
-                        ([__n35, __n41], [[__n37, __n57], [__n33, __n58]])
-                    },
+                    &mut __evaluate,
                     |__x| {
                         let __n45 = __x[1] - __x[0];
                         let ([__n46], [_]) = T::sin_cos([__n45]);
@@ -632,23 +646,44 @@ const _: () = {
                             .roots(__near)
                     },
                 );
+            if !::mbs_runtime::mechanism::is_same(&__kept.get().0, &__x) {
+                __evaluate(&__x);
+            }
+            let [__n30, __n33, __n37, __n40] = __kept.get().1;
             __q[3] = __x[0];
             __q[4] = __x[1];
             let __outcome = ::mbs_runtime::failure::first_failure::<
                 T,
             >(__outcome, __block);
             let __n18 = T::constant(0.4f64) + __q[3];
-            let ([_], [__n19]) = T::sin_cos([__n18]);
+            let ([__n25], [__n19]) = T::sin_cos([__n18]);
             let __n20 = T::constant(0.15f64) * __n19;
             let __n21 = __n17 + __n20;
             __q[0] = __n21;
-            let ([__n25], [_]) = T::sin_cos([__n18]);
             let __n26 = T::constant(0.15f64) * __n25;
             let __n27 = __n24 + __n26;
             __q[1] = __n27;
-            __outcome
+            let __n45 = __q[4] - __q[3];
+            (
+                __outcome,
+                __Position([
+                    __q[0],
+                    __q[1],
+                    __q[2],
+                    __n17,
+                    __n20,
+                    __n24,
+                    __n26,
+                    __n30,
+                    __n33,
+                    __n37,
+                    __n40,
+                    __t,
+                    __n45,
+                ]),
+            )
         }
-        #[inline]
+        #[inline(always)]
         fn factorize(
             &self,
             __p: &__Parameters<T>,
@@ -684,7 +719,7 @@ const _: () = {
                 __margin,
             )
         }
-        #[inline]
+        #[inline(always)]
         fn solve_linear(
             &self,
             __factors: &__Factors<T>,

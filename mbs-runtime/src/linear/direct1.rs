@@ -20,6 +20,18 @@ impl<T: Scalar> Factorization<T, 1> for Direct1<T> {
     }
 
     #[inline(always)]
+    fn factorize_for_step(
+        a: &[[T; 1]; 1],
+        row_scales: &[T; 1],
+        coordinate_scales: &[T; 1],
+    ) -> (Self, T::Mask) {
+        let [[scaled]] = super::in_metric(a, row_scales, coordinate_scales);
+        let [[a]] = *a;
+        let (reciprocal, regular) = super::reciprocal_if_regular(a, scaled, T::constant(1.0));
+        (Direct1 { reciprocal }, regular)
+    }
+
+    #[inline(always)]
     fn solve(&self, b: &[T; 1]) -> [T; 1] {
         let [b] = *b;
         [self.reciprocal * b]

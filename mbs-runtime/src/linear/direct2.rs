@@ -22,6 +22,20 @@ impl<T: Scalar> Factorization<T, 2> for Direct2<T> {
     }
 
     #[inline(always)]
+    fn factorize_for_step(
+        a: &[[T; 2]; 2],
+        row_scales: &[T; 2],
+        coordinate_scales: &[T; 2],
+    ) -> (Self, T::Mask) {
+        let [[a11, a12], [a21, a22]] = *a;
+        let scaled @ [[b11, b12], [b21, b22]] = super::in_metric(a, row_scales, coordinate_scales);
+        let mean = super::mean_square(&scaled);
+        let (determinant, in_metric) = (a11 * a22 - a12 * a21, b11 * b22 - b12 * b21);
+        let (r, regular) = super::reciprocal_if_regular(determinant, in_metric, mean * mean);
+        (Direct2 { inverse: [[a22 * r, -a12 * r], [-a21 * r, a11 * r]], reciprocal: r }, regular)
+    }
+
+    #[inline(always)]
     fn solve(&self, b: &[T; 2]) -> [T; 2] {
         let [b1, b2] = *b;
         self.inverse.map(|[i1, i2]| i1 * b1 + i2 * b2)

@@ -14,14 +14,26 @@ impl<T: Scalar> Factorization<T, 3> for Direct3<T> {
     /// The margin is |det S|/(‖S‖²/3)^(3/2), S the block in the reference metric.
     #[inline(always)]
     fn factorize(a: &[[T; 3]; 3], row_scales: &[T; 3], coordinate_scales: &[T; 3]) -> (Self, T) {
-        let [r1, r2, r3] = *a;
-        let (c1, c2, c3) = (cross(&r2, &r3), cross(&r3, &r1), cross(&r1, &r2));
+        let (inverse, determinant) = cofactors(a);
         let scaled @ [b1, b2, b3] = super::in_metric(a, row_scales, coordinate_scales);
         let mean = super::mean_square(&scaled);
-        let (determinant, in_metric) = (dot(&r1, &c1), dot(&b1, &cross(&b2, &b3)));
+        let in_metric = dot(&b1, &cross(&b2, &b3));
         let (r, margin) = super::reciprocal_and_margin(determinant, in_metric, mean * mean.sqrt());
-        let row = |k: usize| [c1[k] * r, c2[k] * r, c3[k] * r];
-        (Direct3 { inverse: [row(0), row(1), row(2)], reciprocal: r }, margin)
+        (Direct3 { inverse: inverse.map(|row| row.map(|c| c * r)), reciprocal: r }, margin)
+    }
+
+    #[inline(always)]
+    fn factorize_for_step(
+        a: &[[T; 3]; 3],
+        row_scales: &[T; 3],
+        coordinate_scales: &[T; 3],
+    ) -> (Self, T::Mask) {
+        let (inverse, determinant) = cofactors(a);
+        let scaled @ [b1, b2, b3] = super::in_metric(a, row_scales, coordinate_scales);
+        let mean = super::mean_square(&scaled);
+        let in_metric = dot(&b1, &cross(&b2, &b3));
+        let (r, regular) = super::reciprocal_if_regular(determinant, in_metric, mean * mean * mean);
+        (Direct3 { inverse: inverse.map(|row| row.map(|c| c * r)), reciprocal: r }, regular)
     }
 
     #[inline(always)]
@@ -40,6 +52,13 @@ impl<T: Scalar> Factorization<T, 3> for Direct3<T> {
     fn reverses(&self) -> T::Mask {
         self.reciprocal.less(T::constant(0.0))
     }
+}
+
+/// The determinant's multiple of the inverse, and the determinant.
+#[inline(always)]
+fn cofactors<T: Scalar>([r1, r2, r3]: &[[T; 3]; 3]) -> ([[T; 3]; 3], T) {
+    let [[a1, a2, a3], [b1, b2, b3], [c1, c2, c3]] = [cross(r2, r3), cross(r3, r1), cross(r1, r2)];
+    ([[a1, b1, c1], [a2, b2, c2], [a3, b3, c3]], dot(r1, &[a1, a2, a3]))
 }
 
 #[inline(always)]

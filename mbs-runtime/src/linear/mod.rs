@@ -48,12 +48,24 @@ pub(crate) fn is_regular<T: Scalar>(margin: T) -> T::Mask {
 /// (1, 0), so that no factor is NaN.
 #[inline(always)]
 fn reciprocal_and_margin<T: Scalar>(determinant: T, scaled: T, bound: T) -> (T, T) {
-    let (zero, one) = (T::constant(0.0), T::constant(1.0));
-    let nonzero = zero.less(determinant.abs()) & zero.less(bound);
-    let reciprocal = one / T::select(nonzero, determinant, one);
-    let ratio = scaled.abs() / T::select(nonzero, bound, one);
-    let regular = nonzero & determinant.is_finite() & reciprocal.is_finite() & ratio.is_finite();
-    (T::select(regular, reciprocal, one), T::select(regular, ratio.min(one), zero))
+    let one = T::constant(1.0);
+    let (reciprocal, ratio) = (one / determinant, scaled.abs() / bound);
+    // A determinant of 0 has an infinite reciprocal, a bound of 0 no finite ratio.
+    let regular = determinant.is_finite() & reciprocal.is_finite() & ratio.is_finite();
+    if T::all(regular) {
+        return (reciprocal, ratio.min(one));
+    }
+    (T::select(regular, reciprocal, one), T::select(regular, ratio.min(one), T::constant(0.0)))
+}
+
+/// 1/determinant of a block, and whether its margin (see [`reciprocal_and_margin`]) is above √ε, from det S = `scaled`
+/// and the square of its bound, without the division.
+#[inline(always)]
+fn reciprocal_if_regular<T: Scalar>(determinant: T, scaled: T, bound_square: T) -> (T, T::Mask) {
+    let reciprocal = T::constant(1.0) / determinant;
+    // Written so that NaN, and a bound of 0, are not regular.
+    let above = (T::splat(T::Real::EPSILON) * bound_square).less(scaled * scaled);
+    (reciprocal, above & bound_square.is_finite() & reciprocal.is_finite())
 }
 
 /// The block in the reference metric: rows over `row_scales`, columns times `coordinate_scales`.
