@@ -254,6 +254,9 @@ pub(crate) fn closed<T: Scalar, const K: usize, F: Factorization<T, K>>(
     let known = first.iter().chain(second).fold(T::mask(true), |all, x| all & x.is_finite());
     let swapped = distance(block, second, x).less(distance(block, first, x));
     let (nearer, other) = (select(swapped, second, first), select(swapped, first, second));
+    // The branches tell the roots apart before any work is done on one.
+    let exchanged = known & !holds(&nearer) & holds(&other);
+    let (nearer, other) = (select(exchanged, &other, &nearer), select(exchanged, &nearer, &other));
     let (nearer, other) = (select(known, &nearer, x), select(known, &other, x));
     let closing = known & *real;
     let nearer = polished::<T, K, F>(block, &nearer, evaluate);
