@@ -28,7 +28,7 @@ pub struct Assembled<R, const N: usize> {
 /// tried, up to π away in angles and two reference lengths in lengths: block by block, each against the branches that
 /// it decides, then for the mechanism as a whole. Angles are as the solver found them: whole
 /// turns of the guess are kept, none is taken off. A drive that prescribes a rate holds what it drives where the guess
-/// has it.
+/// has it. Where drives alone hold the pivots of a dyad too far apart, that is known at once, and no other start is tried.
 ///
 /// # Errors
 /// [`Failure::NonFinite`] for a guess, parameter, input or time that is no number, or a row that is none from
@@ -48,11 +48,12 @@ pub fn assemble<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize>(
     mechanism.start_phases(&guess, t);
     let mechanism = &mechanism;
     let parameters = mechanism.parameters();
-    let mut search = Search { least: f64::INFINITY, open: None, wrong: None };
+    let mut search = Search { least: f64::INFINITY, open: None, wrong: None, hopeless: false };
     for start in 0..=OTHER_STARTS {
         let from = displaced::<S, R, N, M>(mechanism, &parameters, &guess, start);
         match search.attempt(mechanism, &parameters, from, t) {
             Some((q, statistics)) => return Ok(Assembled { q, statistics, start }),
+            None if search.hopeless => break,
             None => continue,
         }
     }
@@ -65,6 +66,8 @@ struct Search {
     least: f64,
     open: Option<Failure>,
     wrong: Option<Failure>,
+    /// Whether no other start can do better.
+    hopeless: bool,
 }
 
 impl Search {
@@ -78,6 +81,7 @@ impl Search {
         let scales = mechanism.coordinate_scales(parameters);
         let mut solver = Safeguarded::new(extent(&q, &scales));
         let outcome = mechanism.solve_blocks(parameters, &mut q, t, &mut solver);
+        self.hopeless = solver.is_apart();
         let failure = position_failure::<S, R, N, _>(outcome, solver.diagnosis(), t);
         let Some(failure) = failure.or_else(|| coordinate_failure::<S, R, N, _>(&q, &scales, t)) else {
             let position = mechanism.position(parameters, &q, t);

@@ -30,6 +30,7 @@ pub mod mechanism;
 mod nearest;
 pub mod newton;
 pub mod newton_raphson;
+pub mod operations;
 mod path;
 pub mod phase;
 pub mod resolution;
@@ -42,6 +43,7 @@ pub mod stop;
 pub mod sweep;
 pub mod trace;
 mod trigonometry;
+pub mod worst_case;
 
 pub use assembly::{Assembled, assemble};
 #[cfg(feature = "nalgebra")]
@@ -62,6 +64,7 @@ pub use mechanism::{
 };
 pub use newton::Newton;
 pub use newton_raphson::{Iterate, newton_raphson, newton_raphson_watched};
+pub use operations::Operations;
 pub use phase::{Phase, Speed};
 pub use resolution::IllScaled;
 pub use safeguarded::Safeguarded;
@@ -71,6 +74,7 @@ pub use stepper::Stepper;
 pub use stop::Stop;
 pub use sweep::{Frame, Sweep};
 pub use trace::{Trace, Traced};
+pub use worst_case::{BlockWork, Work, WorstCase};
 
 /// Declares a mechanism: a struct with its parameters, and implementations of [`Mechanism`], of [`Kinematic`] where the
 /// rows fix every coordinate, and of [`Dynamic`] where the text has masses or forces.

@@ -37,17 +37,26 @@ const STATIONARY: f64 = 1e-4;
 pub struct Safeguarded<T: Scalar> {
     extent: T,
     diagnosis: Diagnosis<T>,
+    /// Whether a block was solved already.
+    begun: bool,
+    apart: bool,
 }
 
 impl<T: Scalar> Safeguarded<T> {
     /// A solver for coordinates of which the largest is `extent` in the reference metric.
     pub fn new(extent: T) -> Self {
-        Safeguarded { extent, diagnosis: Diagnosis::new() }
+        Safeguarded { extent, diagnosis: Diagnosis::new(), begun: false, apart: false }
     }
 
     /// What it met so far.
     pub fn diagnosis(&self) -> &Diagnosis<T> {
         &self.diagnosis
+    }
+
+    /// Whether no start can lead anywhere: the first block that is solved for has no position by its formula. What it
+    /// is made of, drives and coordinates that rows give explicitly, is the same from every start.
+    pub(crate) fn is_apart(&self) -> bool {
+        self.apart
     }
 }
 
@@ -70,6 +79,7 @@ impl<T: Scalar> BlockSolver<T> for Safeguarded<T> {
         mut evaluate: impl FnMut(&[T; K]) -> ([T; K], [[T; K]; K]),
         mut holds: impl FnMut(&[T; K]) -> T::Mask,
     ) -> ([T; K], T::Lanes<Outcome>) {
+        self.begun = true;
         let (found, plain) =
             searched::<T, K, F>(block, x, T::mask(true), self.extent, &mut evaluate, &mut holds);
         self.diagnosis.record(found.evaluations, !plain, found.worst, found.converged);
@@ -88,6 +98,9 @@ impl<T: Scalar> BlockSolver<T> for Safeguarded<T> {
     ) -> ([T; K], T::Lanes<Outcome>) {
         let (extent, roots) = (self.extent, roots(&x));
         let (mut found, missed) = closed::<T, K, F>(block, &x, extent, &mut evaluate, &mut holds, &roots);
+        // What did not close and was not missed has no position.
+        self.apart |= !self.begun && T::all(!missed & !found.converged);
+        self.begun = true;
         let formula = T::all(!missed);
         if !formula {
             let (search, _) = searched::<T, K, F>(block, x, missed, extent, &mut evaluate, &mut holds);

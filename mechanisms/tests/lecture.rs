@@ -191,6 +191,7 @@ fn dof_names_independent_and_dependent_coordinates() {
     assert!(line(&text, "rows m").contains("5 (4 of constraints, 1 of drives)"), "{text}");
     assert!(line(&text, "degrees of freedom").ends_with("5 − 4 = 1"), "{text}");
     assert!(line(&text, "independent").ends_with(" phi1"), "{text}");
+    assert!(text.contains("Chosen, for the text names none"), "{text}");
     assert!(line(&text, "dependent").ends_with(" x2, y2, phi2, phi3"), "{text}");
     assert!(text.contains("Grübler's count needs bodies and joints, which the text does not name"), "{text}");
 }

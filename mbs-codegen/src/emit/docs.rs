@@ -23,6 +23,10 @@ pub fn structure(
     masses(model, equations, &mut lines);
     order(model, structure, &mut lines);
     cost(model, program, &mut lines);
+    if structure.square {
+        lines.push(String::new());
+        lines.push("`WorstCase::WORST_CASE_OPERATIONS` is what a step of bounded work costs at most.".into());
+    }
     lines.into_iter().map(|line| if line.is_empty() { line } else { format!(" {line}") }).collect()
 }
 

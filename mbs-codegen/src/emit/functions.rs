@@ -10,6 +10,7 @@ use super::dynamics::{self, DynamicBodies};
 use super::given;
 use super::phases;
 use super::scope::Scope;
+use super::work;
 use crate::equations::Equations;
 use crate::equations::continuity::{self, Demand};
 use crate::model::Model;
@@ -53,6 +54,8 @@ pub struct Bodies {
     pub solve_with_position: TokenStream,
     pub factorize: TokenStream,
     pub solve_linear: TokenStream,
+    /// What these functions cost.
+    pub work: TokenStream,
     /// Coordinates that no block solves for.
     pub independent: Vec<u16>,
     pub complete: TokenStream,
@@ -141,6 +144,7 @@ pub fn bodies(
         ),
         factorize: tokens(&linear.factorize, runtime),
         solve_linear: tokens(&solve_linear, runtime),
+        work: work::work(model, program, entries(equations).count(), runtime),
         independent: independent.iter().map(|coordinate| *coordinate as u16).collect(),
         complete: tokens(&complete, runtime),
         reduce: tokens(&reduce, runtime),

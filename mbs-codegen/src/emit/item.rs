@@ -267,13 +267,16 @@ fn kinematic(
     runtime: &TokenStream,
 ) -> TokenStream {
     let n = model.coordinates.len();
-    let Bodies { solve_with_position, factorize, solve_linear, .. } = bodies;
+    let Bodies { solve_with_position, factorize, solve_linear, work, .. } = bodies;
     let inline = if bodies.short {
         quote! { #[inline(always)] }
     } else {
         quote! { #[inline] }
     };
     quote! {
+        impl<#generics> #runtime::WorstCase for #name {
+            const WORK: #runtime::Work = #work;
+        }
         impl<#generics> #runtime::Kinematic<T, #n> for #name {
             type Factors = __Factors<T>;
             #[inline]

@@ -18,6 +18,7 @@ mod scenes;
 mod scope;
 mod stub;
 mod terms;
+mod work;
 
 use proc_macro2::TokenStream;
 

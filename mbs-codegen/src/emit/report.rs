@@ -16,6 +16,8 @@ pub struct StructureReport {
     pub coordinates: Vec<CoordinateReport>,
     /// Rows in the order of Φ: N.
     pub rows: Vec<RowReport>,
+    /// Indices of the coordinates that the text names as independent; none where it does not say.
+    pub independent: Vec<usize>,
     /// Diagonal blocks in the order in which they are solved.
     pub blocks: Vec<BlockReport>,
     /// Operations of one step of all functions, with one Newton iteration of every block.
@@ -106,6 +108,7 @@ pub fn report(
             .map(|c| CoordinateReport { name: c.name.clone(), unit: c.unit.clone() })
             .collect(),
         rows: rows.collect(),
+        independent: model.independent.iter().map(|chosen| chosen.coordinate).collect(),
         blocks: blocks.collect(),
         operations: operations(program),
     }

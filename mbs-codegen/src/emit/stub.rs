@@ -55,6 +55,7 @@ fn bodies(model: &Model) -> Bodies {
         solve_with_position: body(),
         factorize: body(),
         solve_linear: body(),
+        work: body(),
         independent: Vec::new(),
         complete: body(),
         reduce: body(),

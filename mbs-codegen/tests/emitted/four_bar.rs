@@ -39,6 +39,8 @@
 /// | `outputs` | 2 | 0 | 0 | 0 | 0 | 0 |
 /// | `solve_with_position`, once | 4 | 5 | 0 | 2 | 0 | 0 |
 /// | `solve_with_position`, each iteration of every block | 7 | 4 | 0 | 2 | 0 | 0 |
+///
+/// `WorstCase::WORST_CASE_OPERATIONS` is what a step of bounded work costs at most.
 #[allow(non_snake_case, reason = "the text names the parameters")]
 #[derive(
     ::core::clone::Clone,
@@ -562,6 +564,97 @@ const _: () = {
         entries: [T; 5],
         /// Diagonal block 1.
         block1: ::mbs_runtime::Direct2<T>,
+    }
+    impl<T: ::mbs_runtime::Scalar> ::mbs_runtime::WorstCase for FourBar<T> {
+        const WORK: ::mbs_runtime::Work = ::mbs_runtime::Work {
+            coordinates: 5usize,
+            rows: 5usize,
+            entries: 13usize,
+            branches: 1usize,
+            limits: 0usize,
+            phases: 0usize,
+            inputs: 0usize,
+            position: ::mbs_runtime::Operations {
+                additions: 2,
+                multiplications: 8,
+                sine_cosines: 4,
+                ..::mbs_runtime::Operations::NONE
+            },
+            phi: ::mbs_runtime::Operations {
+                additions: 10,
+                multiplications: 1,
+                ..::mbs_runtime::Operations::NONE
+            },
+            phi_q: ::mbs_runtime::Operations {
+                additions: 4,
+                ..::mbs_runtime::Operations::NONE
+            },
+            phi_t: ::mbs_runtime::Operations::NONE,
+            gamma: ::mbs_runtime::Operations {
+                additions: 8,
+                multiplications: 11,
+                ..::mbs_runtime::Operations::NONE
+            },
+            branch_values: ::mbs_runtime::Operations {
+                sine_cosines: 1,
+                ..::mbs_runtime::Operations::NONE
+            },
+            limit_values: ::mbs_runtime::Operations::NONE,
+            phase_speeds: ::mbs_runtime::Operations::NONE,
+            coordinate_scales: ::mbs_runtime::Operations::NONE,
+            row_scales: ::mbs_runtime::Operations::NONE,
+            blocks: &[
+                ::mbs_runtime::BlockWork {
+                    unknowns: 0usize,
+                    before: ::mbs_runtime::Operations {
+                        multiplications: 1,
+                        ..::mbs_runtime::Operations::NONE
+                    },
+                    evaluation: ::mbs_runtime::Operations::NONE,
+                },
+                ::mbs_runtime::BlockWork {
+                    unknowns: 2usize,
+                    before: ::mbs_runtime::Operations {
+                        multiplications: 2,
+                        sine_cosines: 1,
+                        ..::mbs_runtime::Operations::NONE
+                    },
+                    evaluation: ::mbs_runtime::Operations {
+                        additions: 7,
+                        multiplications: 4,
+                        sine_cosines: 2,
+                        ..::mbs_runtime::Operations::NONE
+                    },
+                },
+                ::mbs_runtime::BlockWork {
+                    unknowns: 0usize,
+                    before: ::mbs_runtime::Operations {
+                        additions: 2,
+                        multiplications: 1,
+                        sine_cosines: 1,
+                        ..::mbs_runtime::Operations::NONE
+                    },
+                    evaluation: ::mbs_runtime::Operations::NONE,
+                },
+                ::mbs_runtime::BlockWork {
+                    unknowns: 0usize,
+                    before: ::mbs_runtime::Operations {
+                        additions: 1,
+                        multiplications: 1,
+                        ..::mbs_runtime::Operations::NONE
+                    },
+                    evaluation: ::mbs_runtime::Operations::NONE,
+                },
+                ::mbs_runtime::BlockWork {
+                    unknowns: 0,
+                    before: ::mbs_runtime::Operations {
+                        additions: 1,
+                        ..::mbs_runtime::Operations::NONE
+                    },
+                    evaluation: ::mbs_runtime::Operations::NONE,
+                },
+            ],
+        };
     }
     impl<T: ::mbs_runtime::Scalar> ::mbs_runtime::Kinematic<T, 5usize> for FourBar<T> {
         type Factors = __Factors<T>;

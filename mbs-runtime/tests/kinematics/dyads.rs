@@ -1,8 +1,11 @@
 //! Assembly of dyads from their formulas: right from any guess, refused at once where they do not close.
 
+use core::cell::Cell;
 use core::f64::consts::TAU;
 
-use mbs_runtime::{Failure, Kinematic, Lanes, Mechanism, Outcome, Safeguarded, Scalar, assemble, mechanism};
+use mbs_runtime::{
+    Failure, Function, Kinematic, Lanes, Mechanism, Outcome, Safeguarded, Scalar, assemble, mechanism,
+};
 
 mechanism! {
     /// Two bars on a crank.
@@ -148,6 +151,50 @@ fn bars_that_do_not_reach_are_refused_without_a_search() {
         assert!((open[0].hypot(open[1]) - 0.25).abs() < 1e-9, "{open:?}");
         assert!(matches!(assemble(&apart, guess, 0.0), Err(Failure::NotAssemblable { .. })));
     }
+}
+
+mechanism! {
+    /// Two bars on a crank, and two more on what they carry.
+    pub mechanism Chained;
+    param crank: m = 0.1;
+    param last: m = 0.25;
+    function law: rad(s), C2;
+    coord phi: [rad; 3] = [0, 0, 0];
+    coord psi: [rad; 2] = [0, 0];
+    constraint first { crank*unit(phi[0]) + 0.25m*unit(phi[1]) == [0.3m, 0] + 0.2m*unit(phi[2]); }
+    constraint second { 0.2m*unit(phi[2]) + last*unit(psi[0]) == [0.2m, 0] + 0.25m*unit(psi[1]); }
+    drive motor: phi[0] == law(t);
+}
+
+thread_local! {
+    static ASKED: Cell<u32> = const { Cell::new(0) };
+}
+
+/// Counts how often a motion is asked for: once a start, and in reports.
+#[derive(Clone, Copy, Debug)]
+struct Asked;
+
+impl Function<f64> for Asked {
+    const ORDER: usize = 2;
+
+    fn jet<const K: usize>(&self, x: f64) -> [f64; K] {
+        ASKED.set(ASKED.get() + 1);
+        core::array::from_fn(|order| if order == 0 { x } else { 0.0 })
+    }
+}
+
+#[test]
+fn pivots_that_drives_hold_apart_are_refused_from_the_first_start_and_others_are_not() {
+    let asked = |chained: Chained<Asked>| {
+        ASKED.set(0);
+        let failure = assemble(&chained, [0.0; 5], 1.0);
+        assert!(matches!(failure, Err(Failure::NotAssemblable { .. })), "{failure:?}");
+        ASKED.get()
+    };
+    let first = asked(Chained { crank: 1.0, ..Chained::new(Asked) });
+    // Where the pivots stand depends on a position that another start might find in its other assembly.
+    let second = asked(Chained { last: 2.0, ..Chained::new(Asked) });
+    assert!(first <= 3 && second >= 9, "{first} {second}");
 }
 
 #[test]

@@ -3,6 +3,7 @@
 use std::io::Write;
 
 use clap::Args;
+use mbs_codegen::StructureReport;
 use mechanisms::lecture::freedom::{Freedom, freedom};
 
 use super::CommandError;
@@ -47,10 +48,7 @@ pub fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<(), CommandErro
     for row in &found.redundant {
         writeln!(out, "row {} (line {}) follows from the others here", rows[*row].name, rows[*row].line)?;
     }
-    writeln!(
-        out,
-        "\nIndependent are the coordinates that drives prescribe, as far as the others then follow."
-    )?;
+    writeln!(out, "\n{}", reason(found.declared, &report, &names(&report.independent)))?;
     let count = i64::try_from(n).unwrap_or(i64::MAX) - i64::try_from(constraints).unwrap_or(i64::MAX);
     writeln!(
         out,
@@ -58,6 +56,22 @@ pub fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<(), CommandErro
          n − constraints = {n} − {constraints} = {count}, the degrees of freedom where no row follows from the others."
     )?;
     Ok(())
+}
+
+/// Where the choice of the independent coordinates comes from.
+fn reason(declared: bool, report: &StructureReport, named: &str) -> String {
+    match (declared, report.independent.is_empty()) {
+        (true, _) => "Independent as the text declares them.".into(),
+        (false, true) => {
+            "Chosen, for the text names none: the coordinates that drives prescribe, as far as the others \
+                          then follow."
+                .into()
+        }
+        (false, false) => format!(
+            "Chosen, for those that the text names ({named}) do not determine the others at this position: as many of \
+             them as do."
+        ),
+    }
 }
 
 fn whole(rank: usize, n: usize) -> &'static str {

@@ -20,8 +20,11 @@ pub struct Freedom {
     pub rank: usize,
     /// Rank of the whole Jacobian, drives included, at the position.
     pub whole_rank: usize,
-    /// Indices of the independent coordinates: those that drives prescribe, as far as the rank allows.
+    /// Indices of the independent coordinates: those that the text names, else those that drives prescribe, as far as the
+    /// rank allows.
     pub independent: Vec<usize>,
+    /// Whether the text names them, and they determine the others at the position.
+    pub declared: bool,
     /// Indices of the dependent coordinates.
     pub dependent: Vec<usize>,
     /// Indices of constraints that follow from the others at the position.
@@ -35,12 +38,17 @@ pub fn freedom(mechanism: &dyn AnyMechanism, report: &StructureReport, q: &[f64]
     let constrained: Vec<usize> =
         report.rows.iter().enumerate().filter(|(_, row)| !row.driven).map(|(index, _)| index).collect();
     let constraints: Vec<Vec<f64>> = constrained.iter().map(|index| rows[*index].clone()).collect();
-    let driven_rows = report.rows.iter().filter(|row| row.driven);
-    let mut driven = vec![false; n];
-    driven_rows.flat_map(|row| &row.entries).for_each(|(column, _)| driven[*column] = true);
+    let mut preferred = vec![false; n];
+    report.independent.iter().for_each(|column| preferred[*column] = true);
+    if report.independent.is_empty() {
+        let driven_rows = report.rows.iter().filter(|row| row.driven);
+        driven_rows.flat_map(|row| &row.entries).for_each(|(column, _)| preferred[*column] = true);
+    }
     // Without constraints nothing depends on anything.
-    let mut dependent = independent_columns(&constraints, &driven);
+    let mut dependent = independent_columns(&constraints, &preferred);
     dependent.sort_unstable();
+    let independent: Vec<usize> = (0..n).filter(|k| !dependent.contains(k)).collect();
+    let named = !report.independent.is_empty();
     let carried = independent_columns(&transposed(&constraints), &[]);
     let redundant = (0..constrained.len()).filter(|k| !carried.contains(k)).map(|k| constrained[k]).collect();
     let sparsity: Vec<Vec<usize>> = constrained
@@ -54,7 +62,8 @@ pub fn freedom(mechanism: &dyn AnyMechanism, report: &StructureReport, q: &[f64]
         structural_rank: structural_rank(&sparsity, n),
         rank: dependent.len(),
         whole_rank: rank(&rows),
-        independent: (0..n).filter(|k| !dependent.contains(k)).collect(),
+        declared: named && independent.iter().all(|column| report.independent.contains(column)),
+        independent,
         dependent,
         redundant,
     }
@@ -110,6 +119,34 @@ mod tests {
         assert_eq!((found.structural_rank, found.rank, found.whole_rank), (4, 4, 5));
         assert_eq!((&found.independent[..], &found.dependent[..]), (&[2][..], &[0, 1, 3, 4][..]));
         assert!(found.redundant.is_empty());
+    }
+
+    #[test]
+    fn what_the_text_names_is_independent_unless_it_leaves_others_open_at_the_position() {
+        use mbs_runtime::mechanism;
+        mechanism! {
+            pub mechanism Named;
+            coord phi: [rad; 3] = [0.3, 0.9, 1.8];
+            coord x: m = 0.1;
+            constraint closure { 0.1m*unit(phi[0]) + 0.25m*unit(phi[1]) == [0.3m, 0] + 0.2m*unit(phi[2]); }
+            constraint slide { x == 0.2m*cos(phi[2]); }
+            drive crank: phi[0] == 0.3 + 2*t/1s;
+            independent x;
+        }
+        let mechanism = crate::facade::boxed::<Named, 4>();
+        let report = mbs_codegen::structure_of(mechanism.source(), None).expect("a good text");
+        assert_eq!(report.independent, [3]);
+        let q = mechanism
+            .experiment()
+            .assembled(&mechanism.experiment().guess(), 0.0, true)
+            .expect("it assembles");
+        let found = freedom(mechanism.as_ref(), &report, &q, 0.0);
+        assert_eq!((&found.independent[..], found.declared), (&[3][..], true));
+        // With the last link along x its angle does not follow from x.
+        let dead = [q[0], q[1], 0.0, 0.2];
+        let found = freedom(mechanism.as_ref(), &report, &dead, 0.0);
+        assert!(found.independent != [3] && !found.declared, "{found:?}");
+        assert!(!of("four_bar").declared);
     }
 
     #[test]

@@ -1,0 +1,80 @@
+//! What the emitted functions of the kinematics cost, for the worst case of a step.
+
+use proc_macro2::{Literal, TokenStream};
+use quote::quote;
+
+use crate::model::{Model, Role};
+use crate::program::{Method, Operations, Program};
+
+/// `Work { … }`: the counts that the documentation's table shows, as a constant.
+pub fn work(model: &Model, program: &Program, entries: usize, runtime: &TokenStream) -> TokenStream {
+    let (n, m) = (model.coordinates.len(), model.rows.len());
+    let (branches, limits, phases) = (model.branches.len(), model.limits.len(), model.phases.len());
+    let inputs = model.fields.iter().filter(|field| field.role == Role::InputWithRates);
+    let inputs: usize = inputs.map(|field| field.shape.iter().product::<usize>()).sum();
+    let of = |count: Operations| operations(count, runtime);
+    let position = of(program.position.section.operations);
+    let (phi, phi_q) = (of(program.phi.operations), of(program.phi_q.operations));
+    let (phi_t, gamma) = (of(program.phi_t.operations), of(program.gamma.operations));
+    let (branch_values, limit_values) = (of(program.branches.operations), of(program.limits.operations));
+    let phase_speeds = of(program.phase_speeds.operations);
+    let coordinate_scales = of(program.coordinate_scales.operations);
+    let row_scales = of(program.row_scales.operations);
+    let blocks = program.blocks.iter().map(|block| {
+        let (unknowns, evaluation) = match &block.method {
+            Method::Explicit { .. } => (0, Operations::default()),
+            Method::Newton(system) => (block.coordinates.len(), system.section.operations),
+        };
+        let (before, evaluation) = (of(block.before.operations), of(evaluation));
+        quote! { #runtime::BlockWork { unknowns: #unknowns, before: #before, evaluation: #evaluation } }
+    });
+    // What the position stage lacks behind the blocks.
+    let rest = of(program.rest.operations);
+    let rest = quote! {
+        #runtime::BlockWork { unknowns: 0, before: #rest, evaluation: #runtime::Operations::NONE }
+    };
+    quote! {
+        #runtime::Work {
+            coordinates: #n,
+            rows: #m,
+            entries: #entries,
+            branches: #branches,
+            limits: #limits,
+            phases: #phases,
+            inputs: #inputs,
+            position: #position,
+            phi: #phi,
+            phi_q: #phi_q,
+            phi_t: #phi_t,
+            gamma: #gamma,
+            branch_values: #branch_values,
+            limit_values: #limit_values,
+            phase_speeds: #phase_speeds,
+            coordinate_scales: #coordinate_scales,
+            row_scales: #row_scales,
+            blocks: &[#(#blocks,)* #rest],
+        }
+    }
+}
+
+/// Counts that are not zero, on top of none.
+fn operations(count: Operations, runtime: &TokenStream) -> TokenStream {
+    let Operations { additions, multiplications, divisions, sine_cosines, functions, selects, calls } = count;
+    let kinds = [
+        (quote! { additions }, additions),
+        (quote! { multiplications }, multiplications),
+        (quote! { divisions }, divisions),
+        (quote! { sine_cosines }, sine_cosines),
+        (quote! { functions }, functions),
+        (quote! { selections }, selects),
+        (quote! { calls }, calls),
+    ];
+    let counted = kinds.into_iter().filter(|(_, count)| *count > 0).map(|(kind, count)| {
+        let count = Literal::usize_unsuffixed(count);
+        quote! { #kind: #count, }
+    });
+    if count == Operations::default() {
+        return quote! { #runtime::Operations::NONE };
+    }
+    quote! { #runtime::Operations { #(#counted)* ..#runtime::Operations::NONE } }
+}
