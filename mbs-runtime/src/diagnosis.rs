@@ -57,12 +57,23 @@ pub(crate) fn outer_rounding<T: Scalar, const K: usize>(
 /// Largest coordinate in the reference metric: maxⱼ |qⱼ|/sⱼ.
 #[inline]
 pub fn extent<T: Scalar, const N: usize>(q: &[T; N], coordinate_scales: &[T; N]) -> T {
-    let mut largest = T::constant(0.0);
-    for (coordinate, scale) in q.iter().zip(coordinate_scales) {
+    let mut parts = *q;
+    for (part, scale) in parts.iter_mut().zip(coordinate_scales) {
         // The reciprocal of a constant is one.
-        largest = largest.max((*coordinate * (T::constant(1.0) / *scale)).abs());
+        *part = *part * (T::constant(1.0) / *scale);
     }
-    largest
+    largest(&parts)
+}
+
+/// Largest absolute value, in four parts that need not wait for each other.
+#[inline(always)]
+pub(crate) fn largest<T: Scalar, const N: usize>(values: &[T; N]) -> T {
+    let mut parts = [T::constant(0.0); 4];
+    for values in values.chunks(4) {
+        parts.iter_mut().zip(values).for_each(|(part, value)| *part = part.max(value.abs()));
+    }
+    let [a, b, c, d] = parts;
+    a.max(b).max(c.max(d))
 }
 
 /// The row whose residual is largest against its tolerance, a lane.

@@ -1,6 +1,6 @@
 //! Position, velocity and acceleration of one instant, as functions of mechanism and stage values.
 
-use crate::diagnosis::{Diagnosis, Statistics, extent};
+use crate::diagnosis::{Diagnosis, Statistics, extent, largest};
 use crate::linear::{determines_rates, least_margin};
 use crate::{Entry, Failure, Kinematic, Margin, Mechanism, Newton, Outcome, Real};
 
@@ -74,12 +74,12 @@ pub(crate) fn next_position<S: Kinematic<R, N, M>, R: Real, const N: usize, cons
 /// Largest difference of two positions in the reference metric (rad, or reference lengths).
 #[inline(always)]
 pub(crate) fn largest_difference<R: Real, const N: usize>(new: &[R; N], old: &[R; N], scales: &[R; N]) -> R {
-    let mut largest = R::constant(0.0);
-    for ((new, old), scale) in new.iter().zip(old).zip(scales) {
+    let mut parts = *new;
+    for ((part, old), scale) in parts.iter_mut().zip(old).zip(scales) {
         // The reciprocal of a constant is one.
-        largest = largest.max(((*new - *old) * (R::constant(1.0) / *scale)).abs());
+        *part = (*part - *old) * (R::constant(1.0) / *scale);
     }
-    largest
+    largest(&parts)
 }
 
 /// Factorises Φ_q at `position`, once for velocity and acceleration.
@@ -264,7 +264,7 @@ pub(crate) fn non_finite<R: Real, const K: usize>(values: &[R; K], entries: &[En
 
 /// Coarsest resolution of a coordinate, relative to its scale, that still is a position: 1e-3 rad. An `f64` angle
 /// has it for 7e11 turns, an `f32` angle for 1300: an `f32` angle at 3000 rpm is worthless after minutes.
-const COARSEST_RESOLUTION: f64 = 1e-3;
+pub(crate) const COARSEST_RESOLUTION: f64 = 1e-3;
 
 /// The first coordinate that is not finite, or too large to be resolved.
 #[inline(always)]

@@ -10,6 +10,7 @@
 #![cfg_attr(not(test), deny(clippy::expect_used, clippy::panic, clippy::unreachable, clippy::unwrap_used))]
 
 pub mod assembly;
+mod batch;
 #[cfg(feature = "nalgebra")]
 pub mod boundary;
 pub mod budget;
@@ -46,6 +47,7 @@ mod trigonometry;
 pub mod worst_case;
 
 pub use assembly::{Assembled, assemble};
+pub use batch::Batch;
 #[cfg(feature = "nalgebra")]
 pub use boundary::Matrices;
 pub use budget::{Budget, Step};

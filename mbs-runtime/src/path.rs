@@ -5,14 +5,14 @@ use crate::{Kinematic, Real};
 
 /// Largest part of a prediction (rad, or reference lengths) that may come from its second-order term: beyond it the
 /// step is too long for a second-order polynomial, and the first-order one is nearer.
-const LARGEST_SECOND_ORDER_TERM: f64 = 0.5;
+pub(crate) const LARGEST_SECOND_ORDER_TERM: f64 = 0.5;
 
 /// Largest way from a point to the solution that it leads to, in the reference metric, over the margin there.
 ///
 /// By Kantorovich's theorem a Newton step η converges where β κ η ≤ 1/2, and to a point not farther than 2η. Links turn
 /// with curvature κ ≤ 1 in the metric and the inverse β is about 2/margin, so that a quarter is the limit: the point is
 /// nearer to the solution that it leads to than to where the assemblies meet.
-const LARGEST_APPROACH: f64 = 0.25;
+pub(crate) const LARGEST_APPROACH: f64 = 0.25;
 
 /// Pieces tried before the way is given up: each halving of a piece takes one, and so does each piece.
 const PIECES: u32 = 48;

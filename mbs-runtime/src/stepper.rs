@@ -185,6 +185,11 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
         result
     }
 
+    /// Whether the next step has more to do than follow the rates: inputs have changed, or a position is to be repaired.
+    pub(crate) fn waits(&self) -> bool {
+        self.changed || self.fault.is_some() || self.state.repair.is_some()
+    }
+
     /// Time (s).
     pub fn t(&self) -> R {
         self.state.t
@@ -364,6 +369,26 @@ impl<R: Real, const N: usize> State<R, N> {
         if self.is_regular() {
             self.regular = q;
         }
+    }
+
+    /// Puts time, position, velocity and acceleration with their margin in place, as another keeper of the state has them.
+    pub(crate) fn set(&mut self, (t, q, qd, qdd): (R, [R; N], [R; N], [R; N]), margin: R) {
+        (self.t, self.q, self.qd, self.qdd, self.margin) = (t, q, qd, qdd, margin);
+        if self.is_regular() {
+            self.regular = q;
+        }
+    }
+
+    /// Takes down what that keeper does not have; the margin has changed by `change` in `time` (s).
+    #[inline(always)]
+    pub(crate) fn note(&mut self, orientation: u64, statistics: Statistics, change: R, time: R) {
+        let passed = self.orientation != orientation;
+        if time != R::constant(0.0) {
+            self.margin_rate = change / time;
+        }
+        self.orientation = orientation;
+        self.statistics = Statistics { passed, ..statistics };
+        self.passages = self.passages.saturating_add(u32::from(passed));
     }
 
     /// Whether the state is outside the singular zone.

@@ -1,5 +1,6 @@
 //! The solvers on a mechanism whose answers are known.
 
+mod batch;
 mod deadline;
 mod drives;
 mod dyads;

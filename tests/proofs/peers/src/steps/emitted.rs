@@ -2,7 +2,7 @@
 
 use std::hint::black_box;
 
-use mbs_runtime::{Kinematic, Stepper};
+use mbs_runtime::{Batch, Kinematic, Lanes, Mechanism, Stepper};
 
 use super::{Motion, STEP, STEPS, Turn};
 use crate::measure::Case;
@@ -42,4 +42,35 @@ where
         black_box(stepper.q());
     };
     Case { group: turn.group, name: "emitted", work: STEPS, error, run: Box::new(run) }
+}
+
+/// Mechanisms a step of [`lanes`].
+const LANES: usize = 8;
+
+/// Steps of a turn of several mechanisms at once.
+pub fn lanes<S, const N: usize>(turn: &Turn<N>, mechanism: S) -> Case
+where
+    S: Kinematic<Lanes<f64, LANES>, N> + Clone + 'static,
+    S::Lane: Kinematic<f64, N> + 'static,
+    <S as Mechanism<Lanes<f64, LANES>, N, N>>::Parameters: 'static,
+{
+    let assembled = Batch::assemble(mechanism, &[turn.start.q; LANES], [0.0; LANES]);
+    let start = assembled.map_err(|(_, failure)| failure).expect("it can be assembled");
+    let step = |batch: &mut Batch<S, f64, LANES, N>, k: u32| {
+        let steps = batch.advance_to([f64::from(k) * STEP; LANES]);
+        assert!(steps.iter().all(Result::is_ok), "the mechanism is regular");
+    };
+    let mut batch = start.clone();
+    let ends = [1..=STEPS / 2, STEPS / 2 + 1..=STEPS].map(|steps| {
+        steps.for_each(|k| step(&mut batch, k));
+        motion(&batch.stepper(LANES - 1).expect("a lane"))
+    });
+    let error = turn.error(&ends);
+    let run = move || {
+        let mut batch = black_box(&start).clone();
+        (1..=STEPS).for_each(|k| step(&mut batch, k));
+        black_box(batch.q());
+    };
+    let work = STEPS * LANES as u32;
+    Case { group: turn.group, name: "emitted_lanes", work, error, run: Box::new(run) }
 }

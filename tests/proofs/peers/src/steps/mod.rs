@@ -40,6 +40,7 @@ pub fn four_bar() -> Vec<Case> {
         turn.case("nalgebra", dense::four_bar),
         turn.case("by_hand", block_triangular::four_bar),
         emitted::turn(&turn, FourBar::default()),
+        emitted::lanes(&turn, FourBar::default()),
     ]
 }
 
