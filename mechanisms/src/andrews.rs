@@ -11,12 +11,21 @@
 
 use mbs_runtime::mechanism;
 
+use crate::drawing::Shape;
 use crate::masses::boxed_masses;
-use crate::registry::FreeCard;
+use crate::registry::{FreeCard, Preset};
 
 /// In the list of free mechanisms.
-pub const CARD: FreeCard =
-    FreeCard { name: "andrews", title: "Andrews' squeezer", make: boxed_masses::<Andrews, 7, 6> };
+pub const CARD: FreeCard = FreeCard {
+    name: "andrews",
+    title: "Andrews' squeezer",
+    description: "A constant torque drives a crank with seven bodies against a spring: three loops, a time scale of \
+                  milliseconds, accelerations up to 5e5 rad/s².",
+    runs: &[Preset { label: "0.03 s", description: "from rest, under a constant torque", set: &[] }],
+    duration: 0.03,
+    drawing: DRAWING,
+    make: boxed_masses::<Andrews, 7, 6>,
+};
 
 mechanism! {
     /// Andrews' squeezer: one degree of freedom in seven angles.
@@ -82,4 +91,36 @@ mechanism! {
     constraint at_upper { E == G + e*across_rod; }
     constraint at_lower { E == H + zf*unit(Omega + epsilon); }
     start beta = -0.06171389001427645 rate 0;
+    out crank_centre: [m; 2] = [0, 0];
+    out crank_pin: [m; 2] = rr*unit(beta);
+    out upper_bearing: [m; 2] = A;
+    out lower_bearing: [m; 2] = B;
+    out spring_bearing: [m; 2] = C;
+    out hub: [m; 2] = E;
+    out spring_end: [m; 2] = D;
+    out upper_end: [m; 2] = G;
+    out lower_end: [m; 2] = H;
 }
+
+/// How the mechanism is drawn.
+pub const DRAWING: &[Shape] = &[
+    Shape::Ground { at: "crank_centre" },
+    Shape::Ground { at: "upper_bearing" },
+    Shape::Ground { at: "lower_bearing" },
+    Shape::Ground { at: "spring_bearing" },
+    Shape::Spring { points: ["spring_bearing", "spring_end"], label: "spring" },
+    Shape::Plate { points: &["lower_bearing", "hub", "spring_end"], label: "triangle" },
+    Shape::Link { points: &["upper_bearing", "upper_end"], label: "upper guide" },
+    Shape::Link { points: &["upper_end", "hub"], label: "upper rod" },
+    Shape::Link { points: &["upper_bearing", "lower_end"], label: "lower guide" },
+    Shape::Link { points: &["lower_end", "hub"], label: "lower rod" },
+    Shape::Link { points: &["crank_pin", "hub"], label: "rod" },
+    Shape::Link { points: &["crank_centre", "crank_pin"], label: "crank" },
+    Shape::Joint { at: "crank_centre" },
+    Shape::Joint { at: "crank_pin" },
+    Shape::Joint { at: "hub" },
+    Shape::Joint { at: "spring_end" },
+    Shape::Joint { at: "upper_end" },
+    Shape::Joint { at: "lower_end" },
+    Shape::Trace { of: "hub", label: "hub" },
+];

@@ -3,11 +3,12 @@
 use core::fmt::Write;
 
 use crate::facade::Motion;
+use crate::motion::{Forces, LoadCurve};
 
 /// The motions of several runs below one header with names and units.
 ///
-/// Columns: `run`, `t`, `q`, `q̇`, `q̈` of each coordinate, value and derivatives of each output, and the solver's
-/// figures. Numbers are the shortest that read back as the same bits. All motions are of one mechanism.
+/// Columns: `run`, `t`, `q`, `q̇`, `q̈` of each coordinate, value and derivatives of each output, energies, loads and
+/// multipliers where there are masses, and the solver's figures. Numbers are the shortest that read back as the same bits. All motions are of one mechanism.
 pub fn write(runs: &[(&str, &Motion)]) -> String {
     let mut text = String::new();
     if let Some((_, motion)) = runs.first() {
@@ -58,6 +59,24 @@ fn columns(motion: &Motion) -> Vec<(String, &[f64])> {
             columns.extend(values.map(|values| (head(o.name, o.unit, order), values.as_slice())));
         }
     }
+    columns.extend(motion.dynamics.iter().flat_map(force_columns));
+    columns
+}
+
+fn force_columns(forces: &Forces) -> Vec<(String, &[f64])> {
+    let named = [
+        ("kinetic energy (J)", &forces.kinetic),
+        ("potential energy (J)", &forces.potential),
+        ("work (J)", &forces.work),
+        ("energy defect (J)", &forces.defect),
+        ("closure rate (1/s)", &forces.closure_rate),
+    ];
+    let kept = named.into_iter().filter(|(_, values)| !values.is_empty());
+    let mut columns: Vec<(String, &[f64])> =
+        kept.map(|(name, values)| (name.to_string(), values.as_slice())).collect();
+    let curve = |kind: &str, curve: &'_ LoadCurve| format!("{kind}{} ({})", curve.name, curve.unit);
+    columns.extend(forces.loads.iter().map(|load| (curve("", load), load.value.as_slice())));
+    columns.extend(forces.multipliers.iter().map(|row| (curve("lambda ", row), row.value.as_slice())));
     columns
 }
 
@@ -96,7 +115,25 @@ mod tests {
             closure: vec![0.0, 1e-17],
             iterations: vec![3, 2],
             margin: vec![1.0, 0.5],
+            dynamics: None,
         }
+    }
+
+    #[test]
+    fn energies_loads_and_multipliers_stand_between_outputs_and_figures() {
+        let curve = |name, unit: &str| LoadCurve { name, unit: unit.to_string(), value: vec![5.0, 6.0] };
+        let forces = Forces {
+            kinetic: vec![1.0, 2.0],
+            potential: vec![3.0, 4.0],
+            loads: vec![curve("tension", "N")],
+            multipliers: vec![curve("rod", "N/m")],
+            ..Forces::default()
+        };
+        let text = write(&[("run", &Motion { dynamics: Some(forces), ..motion() })]);
+        let header = text.lines().next().unwrap_or("");
+        let end = "kinetic energy (J),potential energy (J),tension (N),lambda rod (N/m),closure (1),iterations (1),margin (1)";
+        assert!(header.ends_with(end), "{header}");
+        assert!(text.ends_with(",2.0,4.0,6.0,6.0,1e-17,2.0,0.5\n"), "{text}");
     }
 
     #[test]

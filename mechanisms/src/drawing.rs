@@ -38,6 +38,13 @@ pub enum Shape {
         /// Name beside the bar.
         label: &'static str,
     },
+    /// A spring between two points.
+    Spring {
+        /// Its ends.
+        points: [&'static str; 2],
+        /// Name beside the spring.
+        label: &'static str,
+    },
     /// A revolute joint.
     Joint {
         /// Centre of the joint.
@@ -145,6 +152,7 @@ impl Shape {
             | Shape::Rail { at, .. } => {
                 vec![at]
             }
+            Shape::Spring { points, .. } => points.to_vec(),
             Shape::Wheel { at, rim, .. } | Shape::Gear { at, rim, .. } => vec![at, rim],
             Shape::Cam { at, contact, .. } => vec![at, contact],
             Shape::Face { points: [left, right], back, .. } => vec![left, right, back],

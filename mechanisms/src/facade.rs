@@ -5,10 +5,12 @@ use core::hint::black_box;
 use std::time::{Duration, Instant};
 
 use mbs_runtime::{Entry, Failure, Frame, FunctionEntry, Kinematic, Mechanism, OutputValue, Stepper, Stop};
-use serde::Serialize;
 
+use crate::analyses::AnyDynamics;
 use crate::lecture::experiment::Experiment;
 use crate::masses::{Loads, Masses, Tables};
+use crate::motion;
+pub use crate::motion::{CoordinateCurve, Motion, OutputCurve, spread};
 
 /// Names and functions of a mechanism of any size, with its parameters; it need not be square. Vectors are in the
 /// order of the text.
@@ -52,6 +54,10 @@ pub trait AnyEquations {
     }
     /// Functions of masses and forces of one state; `None` where there are none, or where a vector has another length.
     fn masses(&self, _state: &State, _loads: &Loads) -> Option<Masses> {
+        None
+    }
+    /// Motion from forces and forces from motion; `None` where the text has no masses or forces.
+    fn dynamics(&self) -> Option<&dyn AnyDynamics> {
         None
     }
 }
@@ -125,53 +131,6 @@ pub struct Functions {
     pub outputs: Vec<OutputValue<f64>>,
 }
 
-/// A motion as plain columns, one value an instant.
-#[derive(Clone, Debug, Default, Serialize)]
-pub struct Motion {
-    /// Instants (s).
-    pub time: Vec<f64>,
-    /// Coordinates.
-    pub coordinates: Vec<CoordinateCurve>,
-    /// Outputs, component by component.
-    pub outputs: Vec<OutputCurve>,
-    /// Largest residual, each row measured in the reference metric (dimensionless).
-    pub closure: Vec<f64>,
-    /// Evaluations of the constraints that the position took.
-    pub iterations: Vec<u32>,
-    /// Margin to singularity: 0 where singular, at most 1.
-    pub margin: Vec<f64>,
-}
-
-/// A coordinate over the time.
-#[derive(Clone, Debug, Serialize)]
-pub struct CoordinateCurve {
-    /// As the text spells it.
-    pub name: &'static str,
-    /// Unit of `q`; those of `qd` and `qdd` are this per s and per s².
-    pub unit: &'static str,
-    /// Position.
-    pub q: Vec<f64>,
-    /// Velocity.
-    pub qd: Vec<f64>,
-    /// Acceleration.
-    pub qdd: Vec<f64>,
-}
-
-/// A component of an output over the time.
-#[derive(Clone, Debug, Serialize)]
-pub struct OutputCurve {
-    /// As the text spells it, components counted from 0: `P.0`.
-    pub name: &'static str,
-    /// Unit of `value`; those of the derivatives are this per s and per s².
-    pub unit: &'static str,
-    /// Value.
-    pub value: Vec<f64>,
-    /// First derivative, where the definition leaves one.
-    pub rate: Option<Vec<f64>>,
-    /// Second derivative, where the definition leaves one.
-    pub acceleration: Option<Vec<f64>>,
-}
-
 /// A new mechanism of type `S` behind the common face.
 pub fn boxed<S, const N: usize>() -> Box<dyn AnyMechanism>
 where
@@ -240,12 +199,12 @@ impl<S: Kinematic<f64, N>, const N: usize> AnyMechanism for Facade<S, N> {
     fn follow(&self, times: &[f64], progress: &mut dyn FnMut(usize)) -> Result<Motion, Failure> {
         let Some((first, rest)) = times.split_first() else { return Ok(Motion::default()) };
         let mut stepper = self.assembled(*first)?;
-        let mut motion = Motion::of::<S, N>(times.len(), &stepper);
-        motion.push(&stepper.frame());
+        let mut motion = Motion::of(S::COORDINATES, S::OUTPUTS, stepper.outputs().as_ref());
+        push(&mut motion, &stepper.frame());
         for (done, time) in rest.iter().enumerate() {
             progress(done + 1);
             stepper.advance_to(*time)?;
-            motion.push(&stepper.frame());
+            push(&mut motion, &stepper.frame());
         }
         progress(times.len());
         Ok(motion)
@@ -281,114 +240,20 @@ impl<S: Kinematic<f64, N>, const N: usize> Facade<S, N> {
     }
 }
 
-impl Motion {
-    /// At most `count` instants spread evenly over the motion, first and last included.
-    pub fn thinned(&self, count: usize) -> Motion {
-        let kept = spread(self.time.len(), count);
-        let pick = |values: &Vec<f64>| kept.iter().map(|index| values[*index]).collect::<Vec<_>>();
-        let coordinate = |curve: &CoordinateCurve| CoordinateCurve {
-            q: pick(&curve.q),
-            qd: pick(&curve.qd),
-            qdd: pick(&curve.qdd),
-            ..*curve
-        };
-        let output = |curve: &OutputCurve| OutputCurve {
-            value: pick(&curve.value),
-            rate: curve.rate.as_ref().map(pick),
-            acceleration: curve.acceleration.as_ref().map(pick),
-            ..*curve
-        };
-        Motion {
-            time: pick(&self.time),
-            coordinates: self.coordinates.iter().map(coordinate).collect(),
-            outputs: self.outputs.iter().map(output).collect(),
-            closure: pick(&self.closure),
-            iterations: kept.iter().map(|index| self.iterations[*index]).collect(),
-            margin: pick(&self.margin),
-        }
-    }
-
-    /// No instant yet; outputs have the derivatives that those of `stepper` have.
-    fn of<S: Kinematic<f64, N>, const N: usize>(capacity: usize, stepper: &Stepper<S, f64, N>) -> Self {
-        let column = || Vec::with_capacity(capacity);
-        let coordinate = |e: &Entry| CoordinateCurve {
-            name: e.name,
-            unit: e.unit,
-            q: column(),
-            qd: column(),
-            qdd: column(),
-        };
-        let output = |(e, value): (&Entry, &OutputValue<f64>)| OutputCurve {
-            name: e.name,
-            unit: e.unit,
-            value: column(),
-            rate: value.rate.map(|_| column()),
-            acceleration: value.acceleration.map(|_| column()),
-        };
-        Motion {
-            time: column(),
-            coordinates: S::COORDINATES.iter().map(coordinate).collect(),
-            outputs: S::OUTPUTS.iter().zip(stepper.outputs().as_ref()).map(output).collect(),
-            closure: column(),
-            iterations: Vec::with_capacity(capacity),
-            margin: column(),
-        }
-    }
-
-    fn push<O: AsRef<[OutputValue<f64>]>, const N: usize>(&mut self, frame: &Frame<f64, O, N>) {
-        self.time.push(frame.t);
-        for (index, curve) in self.coordinates.iter_mut().enumerate() {
-            curve.q.push(frame.q[index]);
-            curve.qd.push(frame.qd[index]);
-            curve.qdd.push(frame.qdd[index]);
-        }
-        for (curve, output) in self.outputs.iter_mut().zip(frame.outputs.as_ref()) {
-            curve.value.push(output.value);
-            let derivatives =
-                [(&mut curve.rate, output.rate), (&mut curve.acceleration, output.acceleration)];
-            for (column, value) in derivatives {
-                column.iter_mut().zip(value).for_each(|(column, value)| column.push(value));
-            }
-        }
-        self.closure.push(frame.closure_error);
-        self.iterations.push(frame.statistics.evaluations);
-        self.margin.push(frame.margin);
-    }
-}
-
-/// At most `count` indices below `length`, evenly spread, first and last included.
-pub fn spread(length: usize, count: usize) -> Vec<usize> {
-    let last = length.saturating_sub(1);
-    if length <= count || count < 2 {
-        return (0..length.min(count)).collect();
-    }
-    (0..count).map(|index| index * last / (count - 1)).collect()
+fn push<O: AsRef<[OutputValue<f64>]>, const N: usize>(motion: &mut Motion, frame: &Frame<f64, O, N>) {
+    motion.push(&motion::Instant {
+        t: frame.t,
+        q: [&frame.q, &frame.qd, &frame.qdd],
+        outputs: frame.outputs.as_ref(),
+        closure: frame.closure_error,
+        iterations: frame.statistics.evaluations,
+        margin: frame.margin,
+    });
 }
 
 #[cfg(test)]
 mod tests {
-    use super::*;
-    use crate::registry::{ALL, sweep};
-
-    #[test]
-    fn spread_indices_reach_from_the_first_to_the_last() {
-        assert_eq!(spread(721, 9), [0, 90, 180, 270, 360, 450, 540, 630, 720]);
-        assert_eq!(spread(3, 9), [0, 1, 2]);
-        assert_eq!(spread(1, 9), [0]);
-        assert!(spread(0, 9).is_empty() && spread(9, 0).is_empty());
-    }
-
-    #[test]
-    fn a_thinned_motion_keeps_its_ends_and_every_column() {
-        let mechanism = (ALL[0].make)();
-        let motion = sweep(mechanism.as_ref(), 1.0, 100).expect("it turns");
-        let thinned = motion.thinned(11);
-        assert_eq!(thinned.time, motion.time.iter().copied().step_by(10).collect::<Vec<_>>());
-        let (last, before) = (&thinned.outputs[8], &motion.outputs[8]);
-        assert_eq!(last.value.last(), before.value.last());
-        assert_eq!(last.acceleration.as_ref().map(Vec::len), Some(11));
-        assert_eq!((thinned.iterations.len(), thinned.coordinates[0].qdd.len()), (11, 11));
-    }
+    use crate::registry::ALL;
 
     #[test]
     fn no_instants_are_an_empty_motion() {

@@ -20,6 +20,7 @@ pub mod cam_roller;
 pub mod determinant_guide;
 pub mod five_angle_loop;
 pub mod four_bar;
+pub mod four_bar_mass;
 pub mod four_bar_mixed;
 pub mod four_bar_natural;
 pub mod four_bar_reference_point;
@@ -35,16 +36,19 @@ pub mod planetary_gear;
 pub mod quick_return;
 pub mod scotch_yoke;
 pub mod slider_crank;
+pub mod slider_crank_mass;
 pub mod slider_crank_scenes;
 pub mod stephenson;
 pub mod three_rrr;
 pub mod watt;
 
+pub mod analyses;
 pub mod csv;
 pub mod drawing;
 pub mod facade;
 pub mod lecture;
 pub mod masses;
+pub mod motion;
 pub mod registry;
 pub mod report;
 pub mod tabulated;
@@ -53,5 +57,7 @@ pub mod verify;
 
 #[cfg(test)]
 mod closed_form;
+#[cfg(test)]
+mod newton_euler;
 #[cfg(test)]
 mod reference;

@@ -2,8 +2,10 @@
 
 use core::time::Duration;
 
-use mbs_runtime::{Dynamic, Entry, Failure, FunctionEntry, Kinematic, Motion as Moving};
+use mbs_runtime::{Dynamic, Entry, Failure, FunctionEntry, Kinematic, Motion as Moving, Partitioned};
 
+use crate::analyses::AnyDynamics;
+use crate::analyses::direct::PartitionedFunctions;
 use crate::facade::{AnyEquations, AnyMechanism, Facade, Functions, Motion, MotionStop, State};
 use crate::lecture::experiment::Experiment;
 
@@ -58,27 +60,41 @@ pub struct Masses {
 
 /// A mechanism with masses, `N` coordinates and `M` rows behind the common face.
 #[derive(Clone, Debug)]
-pub struct MassFacade<S, const N: usize, const M: usize>(pub Facade<S, N, M>);
+pub struct MassFacade<S, const N: usize, const M: usize> {
+    /// Its kinematics.
+    pub kinematics: Facade<S, N, M>,
+    /// What takes independent coordinates.
+    pub partitioned: PartitionedFunctions<S, N>,
+}
 
 /// A new mechanism of type `S` with masses, which its rows may leave free.
 pub fn boxed_masses<S, const N: usize, const M: usize>() -> Box<dyn AnyEquations>
 where
-    S: Dynamic<f64, N, M> + Default + 'static,
+    S: Dynamic<f64, N, M> + Partitioned<f64, N, M> + Default + 'static,
 {
-    Box::new(MassFacade::<S, N, M>(Facade(S::default())))
+    Box::new(MassFacade::<S, N, M>::new(S::default()))
 }
 
 /// A new mechanism of type `S` with masses, whose rows fix every coordinate.
 pub fn boxed_driven<S, const N: usize>() -> Box<dyn AnyMechanism>
 where
-    S: Dynamic<f64, N, N> + Kinematic<f64, N> + Default + 'static,
+    S: Dynamic<f64, N, N> + Partitioned<f64, N, N> + Kinematic<f64, N> + Default + 'static,
 {
-    Box::new(MassFacade::<S, N, N>(Facade(S::default())))
+    Box::new(MassFacade::<S, N, N>::new(S::default()))
+}
+
+impl<S, const N: usize, const M: usize> MassFacade<S, N, M>
+where
+    S: Dynamic<f64, N, M> + Partitioned<f64, N, M>,
+{
+    fn new(mechanism: S) -> Self {
+        MassFacade { kinematics: Facade(mechanism), partitioned: PartitionedFunctions::of() }
+    }
 }
 
 impl<S: Dynamic<f64, N, M>, const N: usize, const M: usize> MassFacade<S, N, M> {
     fn functions(&self, state: &State, loads: &Loads) -> Option<Masses> {
-        let mechanism = &self.0.0;
+        let mechanism = &self.kinematics.0;
         let array = |values: &[f64]| <[f64; N]>::try_from(values).ok();
         let (q, qd, qdd) = (array(&state.q)?, array(&state.qd)?, array(&state.qdd)?);
         let lambda = <[f64; M]>::try_from(loads.lambda.as_slice()).ok()?;
@@ -110,40 +126,40 @@ impl<S: Dynamic<f64, N, M>, const N: usize, const M: usize> MassFacade<S, N, M> 
 
 impl<S: Dynamic<f64, N, M>, const N: usize, const M: usize> AnyEquations for MassFacade<S, N, M> {
     fn type_name(&self) -> &'static str {
-        self.0.type_name()
+        self.kinematics.type_name()
     }
     fn scene(&self) -> &'static str {
-        self.0.scene()
+        self.kinematics.scene()
     }
     fn source(&self) -> &'static str {
-        self.0.source()
+        self.kinematics.source()
     }
     fn coordinates(&self) -> &'static [Entry] {
-        self.0.coordinates()
+        self.kinematics.coordinates()
     }
     fn rows(&self) -> &'static [Entry] {
-        self.0.rows()
+        self.kinematics.rows()
     }
     fn variables(&self) -> &'static [Entry] {
-        self.0.variables()
+        self.kinematics.variables()
     }
     fn outputs(&self) -> &'static [Entry] {
-        self.0.outputs()
+        self.kinematics.outputs()
     }
     fn functions(&self) -> &'static [FunctionEntry] {
-        self.0.functions()
+        self.kinematics.functions()
     }
     fn get(&self, index: usize) -> Option<f64> {
-        self.0.get(index)
+        self.kinematics.get(index)
     }
     fn set(&mut self, index: usize, value: f64) -> bool {
-        self.0.set(index, value)
+        self.kinematics.set(index, value)
     }
     fn coordinate_scales(&self) -> Vec<f64> {
-        self.0.coordinate_scales()
+        self.kinematics.coordinate_scales()
     }
     fn evaluate(&self, state: &State) -> Functions {
-        self.0.evaluate(state)
+        self.kinematics.evaluate(state)
     }
     fn tables(&self) -> Option<Tables> {
         Some(Tables { states: S::STATES, forces: S::FORCES, loads: S::LOADS })
@@ -151,19 +167,22 @@ impl<S: Dynamic<f64, N, M>, const N: usize, const M: usize> AnyEquations for Mas
     fn masses(&self, state: &State, loads: &Loads) -> Option<Masses> {
         self.functions(state, loads)
     }
+    fn dynamics(&self) -> Option<&dyn AnyDynamics> {
+        Some(self)
+    }
 }
 
 impl<S: Dynamic<f64, N, N> + Kinematic<f64, N>, const N: usize> AnyMechanism for MassFacade<S, N, N> {
     fn follow(&self, times: &[f64], progress: &mut dyn FnMut(usize)) -> Result<Motion, Failure> {
-        self.0.follow(times, progress)
+        self.kinematics.follow(times, progress)
     }
     fn stop(&self, times: &[f64]) -> Option<MotionStop> {
-        self.0.stop(times)
+        self.kinematics.stop(times)
     }
     fn time_a_step(&self, times: &[f64]) -> Result<Duration, Failure> {
-        self.0.time_a_step(times)
+        self.kinematics.time_a_step(times)
     }
     fn experiment(&self) -> &dyn Experiment {
-        self.0.experiment()
+        self.kinematics.experiment()
     }
 }

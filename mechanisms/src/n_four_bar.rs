@@ -11,12 +11,21 @@
 
 use mbs_runtime::mechanism;
 
+use crate::drawing::Shape;
 use crate::masses::boxed_masses;
-use crate::registry::FreeCard;
+use crate::registry::{FreeCard, Preset};
 
 /// In the list of free mechanisms.
-pub const CARD: FreeCard =
-    FreeCard { name: "n_four_bar", title: "Two four-bars in a row", make: boxed_masses::<NFourBar, 6, 5> };
+pub const CARD: FreeCard = FreeCard {
+    name: "n_four_bar",
+    title: "Two four-bars in a row",
+    description: "Two parallelograms that share their uprights fall over and come up again, through positions with all \
+                  rods in line, where the rows lose rank.",
+    runs: &[Preset { label: "10 s", description: "upright at the start, pushed to the right", set: &[] }],
+    duration: 10.0,
+    drawing: DRAWING,
+    make: boxed_masses::<NFourBar, 6, 5>,
+};
 
 mechanism! {
     /// Two parallelograms: one degree of freedom in six coordinates.
@@ -46,4 +55,29 @@ mechanism! {
         constraint couplers { dot(B[i + 1] - B[i], B[i + 1] - B[i]) == L^2; }
     }
     start B = [[0, L], [L, L], [2*L, L]] rate [[v, 0], [v, 0], [v, 0]];
+    out A0: [m; 2] = [0, 0];
+    out A1: [m; 2] = [L, 0];
+    out A2: [m; 2] = [2*L, 0];
+    out B0: [m; 2] = B[0];
+    out B1: [m; 2] = B[1];
+    out B2: [m; 2] = B[2];
 }
+
+/// How the mechanism is drawn.
+pub const DRAWING: &[Shape] = &[
+    Shape::Ground { at: "A0" },
+    Shape::Ground { at: "A1" },
+    Shape::Ground { at: "A2" },
+    Shape::Link { points: &["A0", "B0"], label: "left upright" },
+    Shape::Link { points: &["A1", "B1"], label: "middle upright" },
+    Shape::Link { points: &["A2", "B2"], label: "right upright" },
+    Shape::Link { points: &["B0", "B1"], label: "left coupler" },
+    Shape::Link { points: &["B1", "B2"], label: "right coupler" },
+    Shape::Joint { at: "A0" },
+    Shape::Joint { at: "A1" },
+    Shape::Joint { at: "A2" },
+    Shape::Joint { at: "B0" },
+    Shape::Joint { at: "B1" },
+    Shape::Joint { at: "B2" },
+    Shape::Trace { of: "B1", label: "middle joint" },
+];

@@ -8,13 +8,18 @@
 
 use mbs_runtime::mechanism;
 
+use crate::drawing::Shape;
 use crate::masses::boxed_masses;
-use crate::registry::FreeCard;
+use crate::registry::{FreeCard, Preset};
 
 /// In the list of free mechanisms.
 pub const CARD: FreeCard = FreeCard {
     name: "pendulum",
     title: "Pendulum in Cartesian coordinates",
+    description: "A bob on a massless rod, released level: one degree of freedom in two coordinates.",
+    runs: &[Preset { label: "10 s", description: "released level, at rest", set: &[] }],
+    duration: 10.0,
+    drawing: DRAWING,
     make: boxed_masses::<Pendulum, 2, 1>,
 };
 
@@ -34,4 +39,14 @@ mechanism! {
     constraint rod { dot(P, P) == L^2; }
     start P = [-L, 0] rate [0, 0];
     out tension: N = 2*L*lambda(rod);
+    out A: [m; 2] = [0, 0];
+    out bob: [m; 2] = P;
 }
+
+/// How the mechanism is drawn.
+pub const DRAWING: &[Shape] = &[
+    Shape::Ground { at: "A" },
+    Shape::Link { points: &["A", "bob"], label: "rod" },
+    Shape::Joint { at: "A" },
+    Shape::Trace { of: "bob", label: "bob" },
+];

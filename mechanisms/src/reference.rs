@@ -2,9 +2,10 @@
 
 use core::f64::consts::{PI, TAU};
 
+use crate::analyses::direct::{Approach, Simulated, Stabilization, Steps};
 use crate::closed_form::{Jet, assert_moves_as, column};
 use crate::facade::Motion;
-use crate::registry::{Card, Preset, sweep};
+use crate::registry::{Card, FreeCard, Preset, instants, sweep};
 
 /// Rows of numbers of a table with `#` comments and one line of column names.
 pub fn table(text: &str) -> Vec<Vec<f64>> {
@@ -74,4 +75,24 @@ pub fn assert_moves_like(card: &Card, other: &Card, names: &[&str], bound: f64) 
             columns.iter().map(|[q, qd, qdd]| Jet([q[step], qd[step], qdd[step]])).collect()
         });
     }
+}
+
+/// The motion from forces of `run` over the card's duration in `steps` instants, with projection at tolerance 1e-12.
+#[track_caller]
+pub fn dynamics_of(card: &FreeCard, run: &Preset, steps: usize) -> Simulated {
+    let mechanism = card.instance(run).expect("parameters of the preset");
+    let dynamics = mechanism.dynamics().expect("it has masses");
+    let approach =
+        Approach { stabilization: Stabilization::Projection, steps: Steps::Adaptive { tolerance: 1e-12 } };
+    let found = dynamics.simulate(&approach, &instants(card.duration, steps), &mut |_| ());
+    let found = found.unwrap_or_else(|failure| panic!("{}, {}: {failure}", card.name, run.label));
+    assert_eq!(found.failure, None, "{}, {}", card.name, run.label);
+    found
+}
+
+/// The values of a load.
+#[track_caller]
+pub fn load<'a>(motion: &'a Motion, name: &str) -> &'a [f64] {
+    let forces = motion.dynamics.as_ref().expect("it has masses");
+    &forces.loads.iter().find(|load| load.name == name).unwrap_or_else(|| panic!("no load {name}")).value
 }

@@ -35,10 +35,18 @@ pub const ALL: &[&Card] = &[
     &crate::slider_crank_scenes::DRIVEN_CRANK,
     &crate::slider_crank_scenes::DRIVEN_SLIDER,
     &crate::slider_crank_scenes::TELESCOPING_ROD,
+    &crate::slider_crank_mass::DRIVEN,
+    &crate::four_bar_mass::DRIVEN,
 ];
 
-/// Mechanisms with masses that their rows leave free to move: listed, expanded and verified, not run.
-pub const FREE: &[&FreeCard] = &[&crate::pendulum::CARD, &crate::n_four_bar::CARD, &crate::andrews::CARD];
+/// Mechanisms with masses that their rows leave free to move; forces move them.
+pub const FREE: &[&FreeCard] = &[
+    &crate::pendulum::CARD,
+    &crate::n_four_bar::CARD,
+    &crate::andrews::CARD,
+    &crate::slider_crank_mass::RELEASED,
+    &crate::four_bar_mass::RELEASED,
+];
 
 /// What the program knows of a mechanism that is free to move.
 #[derive(Clone, Copy, Debug)]
@@ -47,6 +55,14 @@ pub struct FreeCard {
     pub name: &'static str,
     /// Heading.
     pub title: &'static str,
+    /// One or two sentences.
+    pub description: &'static str,
+    /// What is run: one preset a motion in the report.
+    pub runs: &'static [Preset],
+    /// How long a motion lasts (s).
+    pub duration: f64,
+    /// How it is drawn.
+    pub drawing: &'static [Shape],
     /// A new instance with default parameters.
     pub make: fn() -> Box<dyn AnyEquations>,
 }
@@ -157,7 +173,7 @@ pub fn equations(name: &str) -> Result<Box<dyn AnyEquations>, Mismatch> {
 ///
 /// # Errors
 /// [`Mismatch::Parameter`] and [`Mismatch::NotFinite`]; the mechanism is then as it was.
-pub fn set(mechanism: &mut dyn AnyMechanism, name: &str, value: f64) -> Result<(), Mismatch> {
+pub fn set(mechanism: &mut dyn AnyEquations, name: &str, value: f64) -> Result<(), Mismatch> {
     let variables = mechanism.variables();
     let index = variables.iter().position(|entry| entry.name == name);
     if !value.is_finite() {
@@ -173,10 +189,29 @@ pub fn set(mechanism: &mut dyn AnyMechanism, name: &str, value: f64) -> Result<(
     }
 }
 
+impl FreeCard {
+    /// An instance with the preset's parameters.
+    ///
+    /// # Errors
+    /// [`Mismatch`] where the preset names a parameter that the text does not have.
+    pub fn instance(&self, run: &Preset) -> Result<Box<dyn AnyEquations>, Mismatch> {
+        let mut mechanism = (self.make)();
+        for (name, value) in run.set {
+            set(mechanism.as_mut(), name, *value)?;
+        }
+        Ok(mechanism)
+    }
+}
+
+/// A name as part of a path: no colon, which some systems refuse.
+pub fn file_name(name: &str) -> String {
+    name.replace(':', "_")
+}
+
 impl Card {
     /// The name as part of a path: no colon, which some systems refuse.
     pub fn file_name(&self) -> String {
-        self.name.replace(':', "_")
+        file_name(self.name)
     }
 
     /// An instance with the preset's parameters.
@@ -251,7 +286,7 @@ impl fmt::Display for Mismatch {
             }
             Mismatch::Free { name } => write!(
                 f,
-                "`{name}` is free to move: its dynamic analysis is not available here yet; `mbs expand {name}` prints its code, `mbs verify {name}` compares it"
+                "`{name}` is free to move: its rows do not fix it; `mbs run {name}` moves it by its forces, `mbs expand {name}` prints its code, `mbs verify {name}` compares it"
             ),
             Mismatch::Parameter { name, mechanism, known } => {
                 write!(f, "`{mechanism}` has no parameter `{name}`")?;
@@ -326,13 +361,14 @@ mod tests {
 
     #[test]
     fn every_point_of_a_drawing_is_an_output() {
-        for card in ALL {
-            let mechanism = (card.make)();
-            for point in card.drawing.iter().flat_map(Shape::points) {
+        let fixed = ALL.iter().map(|card| (card.name, card.drawing));
+        for (card, drawing) in fixed.chain(FREE.iter().map(|card| (card.name, card.drawing))) {
+            let mechanism = equations(card).expect("in the list");
+            for point in drawing.iter().flat_map(Shape::points) {
                 for component in [".0", ".1"] {
                     let name = format!("{point}{component}");
                     let output = mechanism.outputs().iter().find(|output| output.name == name);
-                    assert_eq!(output.map(|output| output.unit), Some("m"), "{}: {name}", card.name);
+                    assert_eq!(output.map(|output| output.unit), Some("m"), "{card}: {name}");
                 }
             }
         }
@@ -340,13 +376,14 @@ mod tests {
 
     #[test]
     fn every_direction_of_a_drawing_is_an_angle_or_a_vector() {
-        for card in ALL {
-            let mechanism = (card.make)();
-            for name in card.drawing.iter().filter_map(Shape::direction) {
+        let fixed = ALL.iter().map(|card| (card.name, card.drawing));
+        for (card, drawing) in fixed.chain(FREE.iter().map(|card| (card.name, card.drawing))) {
+            let mechanism = equations(card).expect("in the list");
+            for name in drawing.iter().filter_map(Shape::direction) {
                 let mut entries = mechanism.coordinates().iter().chain(mechanism.outputs());
                 let component = format!("{name}.1");
                 let found = entries.any(|e| (e.name == name && e.is_angle()) || e.name == component);
-                assert!(found, "{}: {name}", card.name);
+                assert!(found, "{card}: {name}");
             }
         }
     }

@@ -79,17 +79,79 @@ fn the_list_names_every_mechanism_with_its_parameters() {
 
 #[test]
 fn every_mechanism_runs_and_writes_its_report() {
-    for card in mechanisms::registry::ALL {
-        let scratch = Scratch::new(card.name);
-        standard_output(run_into(&scratch, &["run", card.name, "--steps", "24"]));
+    let fixed = mechanisms::registry::ALL.iter().map(|card| (card.name, card.runs.len()));
+    let free = mechanisms::registry::FREE.iter().map(|card| (card.name, card.runs.len()));
+    for (name, runs) in fixed.chain(free) {
+        let scratch = Scratch::new(name);
+        standard_output(run_into(&scratch, &["run", name, "--steps", "24"]));
         let values = scratch.text("motion.csv");
-        assert_eq!(values.lines().count(), 1 + 25 * card.runs.len(), "{}", card.name);
+        assert_eq!(values.lines().count(), 1 + 25 * runs, "{name}");
         let columns = values.lines().next().map(|line| line.split(',').count());
         assert!(values.lines().all(|line| Some(line.split(',').count()) == columns));
-        assert!(scratch.text("report.html").contains(&format!("\"name\":\"{}\"", card.name)));
+        assert!(scratch.text("report.html").contains(&format!("\"name\":\"{name}\"")));
         let files = fs::read_dir(&scratch.0).expect("the directory").count();
         assert_eq!(files, 2, "only the report and its values");
     }
+}
+
+/// The number before ` J` or the unit in the line that begins with `name`.
+#[track_caller]
+fn figure(text: &str, name: &str) -> f64 {
+    let line = text.lines().find_map(|line| line.trim().strip_prefix(name)?.strip_prefix(": "));
+    let line = line.unwrap_or_else(|| panic!("no `{name}` in\n{text}"));
+    line.split(' ').next().and_then(|number| number.parse().ok()).unwrap_or_else(|| panic!("{line}"))
+}
+
+#[test]
+fn a_free_mechanism_moves_by_its_forces_and_the_constraints_tell_the_methods_apart() {
+    let run = |method: &str| {
+        let scratch = Scratch::new(&format!("method-{method}"));
+        let arguments = ["run", "pendulum", "--steps", "40", "--until", "5", "--method", method];
+        let text = standard_output(run_into(&scratch, &arguments));
+        assert_eq!(scratch.text("motion.csv").lines().count(), 42);
+        assert!(
+            figure(&text, "largest energy defect") < 1e-6 && figure(&text, "evaluations") > 100.0,
+            "{text}"
+        );
+        figure(&text, "largest |Φ|")
+    };
+    let [none, baumgarte, projection, velocity] = ["none", "baumgarte", "projection", "velocity"].map(run);
+    // Rounding, what damping leaves, what nothing takes away.
+    assert!(
+        projection.max(velocity) < 1e-13 && 1e-13 < baumgarte && 10.0 * baumgarte < none,
+        "{none} {baumgarte}"
+    );
+}
+
+#[test]
+fn rest_and_the_loads_of_a_driven_motion_are_analyses_too() {
+    let scratch = Scratch::new("analyses");
+    let held =
+        standard_output(run_into(&scratch, &["run", "slider_crank_mass:Driven", "--analysis", "static"]));
+    // At 60° the piston's pin carries half the rod, the motor that at the crank's end and the crank's own weight.
+    assert!((figure(&held, "piston_pin.1") - 0.5 * 0.6 * 9.81).abs() < 1e-6, "{held}");
+    let torque = 0.5 * 9.81 * (0.4 * 0.025 + 0.5 * 0.6 * 0.05);
+    assert!((figure(&held, "motor_torque") - torque).abs() < 1e-6, "{held}");
+    let text = standard_output(run_into(
+        &scratch,
+        &["run", "slider_crank_mass:Driven", "--analysis", "inverse", "--steps", "36"],
+    ));
+    assert!(text.contains("motor_torque: -") && text.contains("N*m"), "{text}");
+    let header = scratch.text("motion.csv").lines().next().map(str::to_string).expect("a header");
+    assert!(header.contains(",motor_torque (N*m),") && header.contains(",lambda closure.0 (N),"), "{header}");
+}
+
+#[test]
+fn an_analysis_that_cannot_be_says_which_can() {
+    let refused = |arguments: &[&str]| failure(mbs(arguments), 2);
+    let message = refused(&["run", "four_bar", "--analysis", "dynamic"]);
+    assert!(message.contains("neither masses nor forces"), "{message}");
+    for analysis in ["kinematic", "inverse"] {
+        let message = refused(&["run", "pendulum", "--analysis", analysis]);
+        assert!(message.contains("free to move") && message.contains("--analysis dynamic"), "{message}");
+    }
+    refused(&["run", "pendulum", "--until", "0"]);
+    refused(&["run", "pendulum", "--method", "hope"]);
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! The commands of `mbs`, one file each.
 
+mod analysis;
 pub mod basins;
 mod chosen;
 pub mod compare;
@@ -12,6 +13,7 @@ pub mod next;
 pub mod print;
 pub mod run;
 pub mod structure;
+mod subject;
 mod table;
 pub mod table_file;
 pub mod verify;

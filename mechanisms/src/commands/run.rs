@@ -3,21 +3,24 @@
 use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
-use std::time::Duration;
 
-use clap::Args;
-use indicatif::{ProgressBar, ProgressStyle};
+use clap::{Args, ValueEnum};
 use mechanisms::csv;
-use mechanisms::facade::{AnyMechanism, Motion, MotionStop};
-use mechanisms::registry::{self, Card, Preset, instants};
+use mechanisms::facade::{AnyEquations, Motion};
+use mechanisms::registry::{Preset, file_name};
 use mechanisms::report::{Report, Run, html};
 use mechanisms::target_directory::target_directory;
 
+use super::analysis::{Analysis, Damping, Done, MethodName, Wish, above_zero};
 use super::chosen::assignment;
+use super::subject::{Instance, Subject};
 use super::{CommandError, positive, table};
 
 /// Half a degree a step: smooth to look at, small enough for a page.
 const STEPS: usize = 720;
+
+/// Two digits more than a picture or a comparison needs; the integrator of order 8 hardly notices.
+const TOLERANCE: f64 = 1e-10;
 
 /// Instants of a run on the page, at most; beyond them a browser slows down and an eye sees no more.
 const SHOWN: usize = 2000;
@@ -29,31 +32,75 @@ pub struct Arguments {
     /// Set a parameter, in the unit that `mbs list` prints
     #[arg(long = "param", value_name = "NAME=VALUE", value_parser = assignment)]
     parameters: Vec<(String, f64)>,
-    /// Equal steps that the motion is divided into
+    /// What is computed [default: kinematic, of a mechanism that is free to move dynamic]
+    #[arg(long, value_enum)]
+    analysis: Option<Analysis>,
+    /// End of the motion (s) [default: one turn, or as long as is worth seeing]
+    #[arg(long, value_name = "T", value_parser = above_zero)]
+    until: Option<f64>,
+    /// Equal steps that the motion is divided into; those of the integrator end there too
     #[arg(long, default_value_t = STEPS, value_parser = steps)]
     steps: usize,
+    /// How a motion from forces stays on its constraints
+    #[arg(long, value_enum, default_value_t = MethodName::Projection)]
+    method: MethodName,
+    /// Tolerance of the integrator, of order 8 with adaptive steps
+    #[arg(long, default_value_t = TOLERANCE, value_parser = above_zero)]
+    tolerance: f64,
+    #[command(flatten)]
+    damping: Damping,
     /// Directory for the report [default: mbs/NAME in cargo's target directory]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
 }
 
-/// A preset with the motion found.
-struct Done {
-    label: &'static str,
-    description: &'static str,
-    motion: Motion,
-    step_time: Duration,
-}
-
 impl Arguments {
     /// What runs where the command line says nothing.
     pub fn defaults(name: &str) -> Self {
-        Arguments { name: name.to_string(), parameters: Vec::new(), steps: STEPS, out: None }
+        Arguments {
+            name: name.to_string(),
+            parameters: Vec::new(),
+            analysis: None,
+            until: None,
+            steps: STEPS,
+            method: MethodName::Projection,
+            tolerance: TOLERANCE,
+            damping: Damping::standard(),
+            out: None,
+        }
+    }
+
+    fn wish(&self) -> Wish {
+        Wish {
+            analysis: self.analysis,
+            stabilization: self.damping.stabilization(self.method),
+            tolerance: self.tolerance,
+            until: self.until,
+            steps: self.steps,
+        }
     }
 
     /// The command line again.
     fn command(&self) -> String {
         let mut command = format!("mbs run {} --steps {}", self.name, self.steps);
+        let named = |value: &dyn Fn() -> Option<clap::builder::PossibleValue>| {
+            value().map_or_else(String::new, |value| value.get_name().to_string())
+        };
+        if let Some(analysis) = self.analysis {
+            command.push_str(&format!(" --analysis {}", named(&|| analysis.to_possible_value())));
+        }
+        if let Some(until) = self.until {
+            command.push_str(&format!(" --until {until}"));
+        }
+        if self.method != MethodName::Projection {
+            command.push_str(&format!(" --method {}", named(&|| self.method.to_possible_value())));
+        }
+        if self.method == MethodName::Baumgarte {
+            command.push_str(&self.damping.command());
+        }
+        if self.tolerance != TOLERANCE {
+            command.push_str(&format!(" --tolerance {:e}", self.tolerance));
+        }
         for (name, value) in &self.parameters {
             command.push_str(&format!(" --param {name}={value}"));
         }
@@ -63,123 +110,74 @@ impl Arguments {
 
 /// Runs the presets, prints a table and writes the report. Nothing is written where a run fails.
 pub fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<(), CommandError> {
-    let card = registry::find(&arguments.name)?;
-    let mechanisms = instances(card, &arguments.parameters)?;
+    let subject = Subject::find(&arguments.name)?;
+    let instances = subject.instances(&arguments.parameters)?;
+    let wish = arguments.wish();
     let mut done = Vec::new();
-    for (preset, mechanism) in &mechanisms {
-        done.push(follow(card, preset, mechanism.as_ref(), arguments.steps)?);
+    for instance in &instances {
+        done.push(wish.done(subject, instance)?);
     }
-    let directory =
-        arguments.out.clone().unwrap_or_else(|| target_directory().join("mbs").join(card.file_name()));
-    let facts = facts(&mechanisms, &done);
+    let standard = || target_directory().join("mbs").join(file_name(subject.name()));
+    let directory = arguments.out.clone().unwrap_or_else(standard);
+    let facts = facts(&instances, &done);
     // Before the table, which may meet a reader that has left.
-    let written = write_report(&directory, &page(arguments, card, &done, &facts), &values(&done));
-    writeln!(out, "{}", card.title)?;
+    let written =
+        write_report(&directory, &page(arguments, subject, &instances, &done, &facts), &values(&done));
+    writeln!(out, "{}", subject.title())?;
     for done in &done {
-        table::write(out, card, done.label, &done.motion, done.step_time)?;
+        table::write(out, subject.drawing(), done.label, &done.motion, &done.figures)?;
     }
     let (page, values) = written?;
     writeln!(out, "\nreport  {}\nvalues  {}", page.display(), values.display())?;
     Ok(())
 }
 
-type Instances = Vec<(Preset, Box<dyn AnyMechanism>)>;
-
-/// One instance a preset; where the command line sets what presets differ in, one as it says.
-fn instances(card: &Card, parameters: &[(String, f64)]) -> Result<Instances, CommandError> {
-    const AS_GIVEN: Preset =
-        Preset { label: "as given", description: "parameters of the command line", set: &[] };
-    let given = |name: &str| parameters.iter().any(|(given, _)| given == name);
-    let own = [AS_GIVEN];
-    let overridden = card.runs.iter().flat_map(|run| run.set).any(|(name, _)| given(name));
-    let presets = if overridden { &own[..] } else { card.runs };
-    let mut instances = Vec::new();
-    for preset in presets {
-        let mut mechanism = card.instance(preset)?;
-        for (name, value) in parameters {
-            registry::set(mechanism.as_mut(), name, *value)?;
-        }
-        instances.push((*preset, mechanism));
-    }
-    Ok(instances)
-}
-
-fn follow(
-    card: &Card,
-    preset: &Preset,
-    mechanism: &dyn AnyMechanism,
-    steps: usize,
-) -> Result<Done, CommandError> {
-    /// Instants timed: enough for a mean, short for any number of steps.
-    const TIMED: usize = 10_000;
-    let times = instants(card.duration(mechanism)?, steps);
-    let style = ProgressStyle::with_template("{bar:30} {pos}/{len} steps, {msg}").expect("a valid template");
-    let bar = ProgressBar::new(times.len() as u64).with_style(style).with_message(preset.label);
-    let motion = mechanism.follow(&times, &mut |count| bar.set_position(count as u64));
-    bar.finish_and_clear();
-    let timed = &times[..times.len().min(TIMED)];
-    motion
-        .and_then(|motion| Ok((motion, mechanism.time_a_step(timed)?)))
-        .map(|(motion, step_time)| Done {
-            label: preset.label,
-            description: preset.description,
-            motion,
-            step_time,
-        })
-        .map_err(|failure| {
-            let stop = mechanism.stop(&times).map_or_else(String::new, |stop| described(&stop));
-            CommandError::Failed(format!("{}, {}: {failure}{stop}", card.name, preset.label))
-        })
-}
-
-/// Where the motion ends, as lines below the failure.
-fn described(stop: &MotionStop) -> String {
-    let MotionStop { reachable, refused, failure } = stop;
-    format!(
-        "\nthe motion ends between t = {reachable} s and t = {refused} s; at the end of that step\n{failure}"
-    )
-}
-
-fn facts(mechanisms: &Instances, done: &[Done]) -> Vec<[String; 2]> {
-    let first = mechanisms[0].1.as_ref();
+fn facts(instances: &[(Preset, Instance)], done: &[Done]) -> Vec<[String; 2]> {
+    let first = instances[0].1.equations();
     let mut facts = vec![["coordinates".to_string(), first.coordinates().len().to_string()]];
     for (index, entry) in first.variables().iter().enumerate() {
-        let written = |mechanism: &dyn AnyMechanism| {
+        let written = |mechanism: &dyn AnyEquations| {
             let value = mechanism.get(index).unwrap_or(f64::NAN);
             format!("{}{}", table::short(value), table::unit(entry.unit))
         };
-        if mechanisms.iter().all(|(_, other)| other.get(index) == first.get(index)) {
+        if instances.iter().all(|(_, other)| other.equations().get(index) == first.get(index)) {
             facts.push([entry.name.to_string(), written(first)]);
             continue;
         }
-        for (preset, mechanism) in mechanisms {
-            facts.push([format!("{}, {}", entry.name, preset.label), written(mechanism.as_ref())]);
+        for (preset, instance) in instances {
+            facts.push([format!("{}, {}", entry.name, preset.label), written(instance.equations())]);
         }
     }
     for done in done {
-        facts.push([format!("steps, {}", done.label), (done.motion.time.len() - 1).to_string()]);
-        for [name, value] in table::figures(&done.motion, done.step_time) {
-            facts.push([format!("{name}, {}", done.label), value]);
+        facts.push([format!("instants, {}", done.label), done.motion.time.len().to_string()]);
+        for [name, value] in &done.figures {
+            facts.push([format!("{name}, {}", done.label), value.clone()]);
         }
     }
     facts
 }
 
-fn page(arguments: &Arguments, card: &Card, done: &[Done], facts: &[[String; 2]]) -> String {
+fn page(
+    arguments: &Arguments,
+    subject: Subject,
+    instances: &[(Preset, Instance)],
+    done: &[Done],
+    facts: &[[String; 2]],
+) -> String {
     let shown: Vec<Motion> = done.iter().map(|done| done.motion.thinned(SHOWN)).collect();
     let mut runs = Vec::new();
     for (done, motion) in done.iter().zip(&shown) {
         runs.push(Run { label: done.label, description: done.description, motion });
     }
     html(&Report {
-        name: card.name,
-        title: card.title,
-        description: card.description,
-        source: (card.make)().source(),
+        name: subject.name(),
+        title: subject.title(),
+        description: subject.description(),
+        source: instances[0].1.equations().source(),
         command: &arguments.command(),
         facts,
         runs: &runs,
-        drawing: card.drawing,
+        drawing: subject.drawing(),
     })
 }
 
@@ -232,16 +230,6 @@ mod tests {
         for bad in ["0", "-1", "1.5", "1000001", "99999999999", "two"] {
             assert!(steps(bad).is_err(), "{bad}");
         }
-    }
-
-    #[test]
-    fn what_the_command_line_sets_overrules_the_presets() {
-        let card = registry::ALL[0];
-        let labels = |parameters: &[(String, f64)]| -> Vec<&str> {
-            instances(card, parameters).expect("parameters").iter().map(|(preset, _)| preset.label).collect()
-        };
-        assert_eq!(labels(&[("omega".to_string(), 1.0)]).len(), card.runs.len());
-        assert_eq!(labels(&[("side".to_string(), -1.0)]), ["as given"]);
     }
 
     #[test]

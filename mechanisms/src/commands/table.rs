@@ -5,28 +5,27 @@ use std::time::Duration;
 
 use mechanisms::drawing::Shape;
 use mechanisms::facade::{Motion, OutputCurve, spread};
-use mechanisms::registry::Card;
 
 /// Rows of the table, first and last instant included.
 const ROWS: usize = 9;
 
-/// Motion of the first traced point at a few instants, and what the solver spent.
+/// Motion of the first traced point at a few instants, and figures.
 pub fn write(
     out: &mut dyn Write,
-    card: &Card,
+    drawing: &[Shape],
     label: &str,
     motion: &Motion,
-    step_time: Duration,
+    figures: &[[String; 2]],
 ) -> io::Result<()> {
     writeln!(out, "\n{label}")?;
-    let traced = card.drawing.iter().find_map(|shape| match shape {
+    let traced = drawing.iter().find_map(|shape| match shape {
         Shape::Trace { of, label } => Some((*of, *label)),
         _ => None,
     });
     if let Some((point, name)) = traced {
         write_point(out, point, name, motion)?;
     }
-    for [name, value] in figures(motion, step_time) {
+    for [name, value] in figures {
         writeln!(out, "  {name}: {value}")?;
     }
     Ok(())

@@ -355,6 +355,20 @@ function createStage() {
       const inside = slotWidth();
       return body(item, f, "polyline", inside + view.bar, [svg("polyline", { class: "bar-edge", "stroke-width": inside }), svg("polyline", { class: "gap", "stroke-width": inside - 2.5 })]);
     },
+    spring(item, f) {
+      const node = svg("polyline", { class: "coil" });
+      f.bodies.append(node);
+      if (item.label && !f.ghost) label(f, item.label, "label", besideBody(f, item));
+      return k => {
+        const [a, b] = item.points.map(name => f.at(name, k)), [dx, dy] = [b[0] - a[0], b[1] - a[1]];
+        const length = Math.hypot(dx, dy) || 1, [nx, ny] = [-dy / length * view.bar * .6, dx / length * view.bar * .6];
+        // A straight end, eight half coils, a straight end.
+        const coils = [...Array(9).keys()].map(i => [.15 + .7 * i / 8, i % 8 ? (i % 2 ? 1 : -1) : 0]);
+        const points = [[0, 0], ...coils, [1, 0]].map(([s, side]) => [a[0] + s * dx + side * nx, a[1] + s * dy + side * ny]);
+        node.setAttribute("points", points.map(p => p.map(c => c.toFixed(2))).join(" "));
+        f.obstacles.push([a, b]);
+      };
+    },
     link: (item, f) => body(item, f, "polyline"),
     plate: (item, f) => body(item, f, "polygon"),
     trace(item, f) {
@@ -676,11 +690,14 @@ function createGroup(host, title, names, panels) {
   }, ...plots);
 }
 
+const forcesOf = run => run.dynamics || {};
+const entriesOf = (run, kind) => run[kind] || forcesOf(run)[kind] || [];
+
 /** A group of plots a unit: values with rates and accelerations where the data have them. */
 function createSeries(host, kind, symbols, keys) {
   const units = new Map();
-  for (const { name, unit } of runs[0][kind] || []) units.set(unit, [...(units.get(unit) || []), name]);
-  const find = (run, name) => (run[kind] || []).find(entry => entry.name === name);
+  for (const { name, unit } of entriesOf(runs[0], kind)) units.set(unit, [...(units.get(unit) || []), name]);
+  const find = (run, name) => entriesOf(run, kind).find(entry => entry.name === name);
   for (const [unit, all] of units) {
     const names = kind === "outputs" ? all.filter(plotted) : all;
     if (!names.length) continue;
@@ -699,13 +716,44 @@ function plotted(name) {
 }
 
 function createSolver(host) {
+  const integrated = runs.some(run => (forcesOf(run).closure_rate || []).length);
   const quantities = [
-    { key: "closure", title: "closure error", unit: "1", log: true },
-    { key: "iterations", title: "iterations a step", unit: "1", zero: true, whole: true },
-    { key: "margin", title: "margin to singularity", unit: "1", zero: true },
-  ].filter(({ key }) => runs.some(run => run[key] && run[key].length));
-  if (quantities.length) createGroup(host, "", [""], quantities.map(quantity => ({ ...quantity, get: run => run[quantity.key] })));
+    { title: integrated ? "|Φ|" : "closure error", unit: "1", log: true, get: run => run.closure },
+    { title: "|Φ̇|", unit: "1/s", log: true, get: run => forcesOf(run).closure_rate },
+    { title: integrated ? "evaluations an instant" : "iterations a step", unit: "1", zero: true, whole: true, get: run => run.iterations },
+    { title: "margin to singularity", unit: "1", zero: true, get: run => run.margin },
+  ].filter(({ get }) => runs.some(run => (get(run) || []).length));
+  if (quantities.length) createGroup(host, "", [""], quantities);
   host.parentNode.hidden = !quantities.length;
+}
+
+/** Energies with what forces and drives have supplied, and what of their balance is not accounted for. */
+function createEnergy(host) {
+  const names = ["kinetic", "potential", "work", "defect"].filter(name => runs.some(run => (forcesOf(run)[name] || []).length));
+  const panels = [["energy", name => name !== "defect"], ["balance defect", name => name === "defect"]]
+    .filter(([, shows]) => names.some(shows))
+    .map(([title, shows]) => ({ title, unit: "J", get: (run, series) => shows(series.name) ? forcesOf(run)[series.name] : null }));
+  if (panels.length) createGroup(host, "", names, panels);
+  host.parentNode.hidden = !host.childElementCount;
+}
+
+/** A table of forces over the run on show: now, least and largest. */
+function createForces(host, kind) {
+  const entries = entriesOf(runs[0], kind);
+  if (!entries.length) return;
+  const body = el("tbody"), updates = [];
+  const head = el("tr", {}, ...["", "now", "least", "largest"].map(text => el("th", { scope: "col", textContent: text })));
+  host.append(el("table", { className: "forces" }, el("thead", {}, head), body));
+  for (const { name, unit } of entries) {
+    const get = run => (entriesOf(run, kind).find(entry => entry.name === name) || {}).value || [];
+    const format = formatter(largest(runs.map(get)), 6), cells = [0, 1, 2].map(() => el("td"));
+    body.append(el("tr", {}, el("th", { scope: "row" }, name, el("small", { textContent: ` ${unit}` })), ...cells));
+    updates.push(k => {
+      const values = get(runs[state.primary]), texts = [values[k], ...extent([values])].map(format);
+      cells.forEach((cell, i) => { cell.textContent = texts[i]; });
+    });
+  }
+  views.push({ layout() {}, frame() { const k = sample(runs[state.primary]); for (const update of updates) update(k); } });
 }
 
 // ---------------------------------------------------------------- values at the current time
@@ -863,9 +911,17 @@ if (runs.length) {
   state.t = start;
   createAssembly();
   views.push(createStage(), createTransport(), createShow(), createValues());
-  createSeries(byId("coordinates"), "coordinates", ["q", "q̇", "q̈"], ["q", "qd", "qdd"]);
-  createSeries(byId("outputs"), "outputs", ["value", "rate", "acceleration"], ["value", "rate", "acceleration"]);
-  createSolver(byId("solver"));
+  for (const kind of ["loads", "multipliers"]) createForces(byId(kind), kind);
+  if (end > start) {
+    createSeries(byId("coordinates"), "coordinates", ["q", "q̇", "q̈"], ["q", "qd", "qdd"]);
+    createSeries(byId("outputs"), "outputs", ["value", "rate", "acceleration"], ["value", "rate", "acceleration"]);
+    createEnergy(byId("energy"));
+    for (const kind of ["loads", "multipliers"]) createSeries(byId(kind), kind, ["value"], ["value"]);
+    createSolver(byId("solver"));
+  }
+  // Of a position at rest there is nothing to plot.
+  for (const id of ["coordinates", "outputs", "energy", "loads", "multipliers", "solver"]) byId(id).parentNode.hidden = !byId(id).childElementCount;
+  document.querySelector("main > .hint").hidden = !(end > start);
   layout();
   let width = document.body.clientWidth;
   const resized = () => { // heights change with the content, only the width asks for a new layout

@@ -1,0 +1,211 @@
+//! Direct dynamics: the motion that forces cause, by a chosen formulation.
+
+use std::time::{Duration, Instant};
+
+use mbs_runtime::dynamics::{
+    Baumgarte, Counts, DormandPrince8, Doubt, Explicit, Formulation, Method, Projection, RungeKutta4,
+    Simulation, Stages, Tolerance, Unstabilized, VelocityTransformation,
+};
+use mbs_runtime::{Dynamic, Failure, Partitioned};
+
+use super::start::{Start, start};
+use crate::facade::Motion;
+use crate::motion::{self, Forces};
+
+/// How the motion stays on the constraints.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Stabilization {
+    /// Not at all: Φ̈ = 0 alone.
+    None,
+    /// Baumgarte's oscillators.
+    Baumgarte(Baumgarte),
+    /// Positions and velocities of every stage are projected.
+    Projection,
+    /// Independent coordinates through the blocks of the rows, projected after each step.
+    Velocity,
+}
+
+/// How the steps are chosen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Steps {
+    /// The pair of order 8, as long as this tolerance allows and not beyond the next instant.
+    Adaptive {
+        /// Relative and absolute, in the reference metric.
+        tolerance: f64,
+    },
+    /// RK4, one step from instant to instant.
+    Fixed,
+}
+
+/// Formulation and steps.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Approach {
+    /// How the motion stays on the constraints.
+    pub stabilization: Stabilization,
+    /// How the steps are chosen.
+    pub steps: Steps,
+}
+
+/// A motion from forces, and what it cost.
+#[derive(Clone, Debug)]
+pub struct Simulated {
+    /// Up to the instant before the failure, if there is one.
+    pub motion: Motion,
+    /// Steps and evaluations.
+    pub counts: Counts,
+    /// Steps tried again with a smaller size.
+    pub rejected: u32,
+    /// What is doubtful about the stabilisation.
+    pub doubt: Option<Doubt>,
+    /// Why the motion ends early.
+    pub failure: Option<Failure>,
+    /// Time of computation, outputs included.
+    pub elapsed: Duration,
+}
+
+/// A simulation of a mechanism of type `S` from a start through times (s), by one formulation.
+pub type Simulate<S, const N: usize> =
+    fn(&S, &Start<N>, Steps, &[f64], &mut dyn FnMut(usize)) -> Result<Simulated, Failure>;
+
+/// What takes the partition into dependent and independent coordinates, of a mechanism of type `S`.
+#[derive(Clone, Copy, Debug)]
+pub struct PartitionedFunctions<S, const N: usize> {
+    /// The start at a time (s).
+    pub start: fn(&S, f64) -> Start<N>,
+    /// A motion from a start through times (s).
+    pub by_velocity: Simulate<S, N>,
+}
+
+impl<S, const N: usize> PartitionedFunctions<S, N> {
+    /// Those of `S`.
+    pub fn of<const M: usize>() -> Self
+    where
+        S: Dynamic<f64, N, M> + Partitioned<f64, N, M>,
+    {
+        PartitionedFunctions { start: start::<S, N, M>, by_velocity: by_velocity::<S, N, M> }
+    }
+}
+
+/// Follows `mechanism` from the text's start through `times` (s).
+pub(crate) fn simulate<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
+    mechanism: &S,
+    partitioned: &PartitionedFunctions<S, N>,
+    approach: &Approach,
+    times: &[f64],
+    progress: &mut dyn FnMut(usize),
+) -> Result<Simulated, Failure> {
+    let steps = approach.steps;
+    let start = (partitioned.start)(mechanism, times.first().copied().unwrap_or(0.0));
+    match approach.stabilization {
+        Stabilization::None => integrate(mechanism, Unstabilized, &start, steps, times, progress),
+        Stabilization::Baumgarte(baumgarte) => {
+            integrate(mechanism, baumgarte, &start, steps, times, progress)
+        }
+        Stabilization::Projection => {
+            let projection = Projection { stages: Stages::All };
+            integrate(mechanism, projection, &start, steps, times, progress)
+        }
+        Stabilization::Velocity => (partitioned.by_velocity)(mechanism, &start, steps, times, progress),
+    }
+}
+
+/// By independent coordinates, for mechanisms that have them.
+fn by_velocity<S, const N: usize, const M: usize>(
+    mechanism: &S,
+    start: &Start<N>,
+    steps: Steps,
+    times: &[f64],
+    progress: &mut dyn FnMut(usize),
+) -> Result<Simulated, Failure>
+where
+    S: Dynamic<f64, N, M> + Partitioned<f64, N, M>,
+{
+    integrate(mechanism, VelocityTransformation, start, steps, times, progress)
+}
+
+fn integrate<S, F, const N: usize, const M: usize>(
+    mechanism: &S,
+    formulation: F,
+    (q, qd): &Start<N>,
+    steps: Steps,
+    times: &[f64],
+    progress: &mut dyn FnMut(usize),
+) -> Result<Simulated, Failure>
+where
+    S: Dynamic<f64, N, M>,
+    F: Formulation<S, f64, N, M>,
+{
+    let first = times.first().copied().unwrap_or(0.0);
+    match steps {
+        Steps::Adaptive { tolerance } => {
+            let method = Explicit::new(DormandPrince8, formulation);
+            let start = Simulation::start_near(mechanism.clone(), method, first, *q, *qd)?;
+            let start = start.with_tolerance(Tolerance::new(tolerance));
+            let (simulated, end) = follow(start, times, progress, |run, t| run.advance_to(t));
+            Ok(Simulated { rejected: end.adaptive().rejected, ..simulated })
+        }
+        Steps::Fixed => {
+            let method = Explicit::new(RungeKutta4, formulation);
+            let start = Simulation::start_near(mechanism.clone(), method, first, *q, *qd)?;
+            Ok(follow(start, times, progress, |run, t| run.step_to(t, 1)).0)
+        }
+    }
+}
+
+/// Calls `advance` from instant to instant and writes down what it finds there.
+fn follow<S, X, const N: usize, const M: usize>(
+    mut run: Simulation<S, X, f64, N, M>,
+    times: &[f64],
+    progress: &mut dyn FnMut(usize),
+    mut advance: impl FnMut(&mut Simulation<S, X, f64, N, M>, f64) -> Result<(), Failure>,
+) -> (Simulated, Simulation<S, X, f64, N, M>)
+where
+    S: Dynamic<f64, N, M>,
+    X: Method<S, f64, N, M>,
+{
+    let started = Instant::now();
+    let mut motion = Motion::of(S::COORDINATES, S::OUTPUTS, run.outputs().as_ref());
+    let mut forces = Forces::of(S::LOADS, S::ROWS);
+    let mut failure = None;
+    let mut before = run.counts();
+    push(&mut motion, &mut forces, &run, before);
+    for (done, time) in times.iter().enumerate().skip(1) {
+        progress(done);
+        if let Err(found) = advance(&mut run, *time) {
+            failure = Some(found);
+            break;
+        }
+        push(&mut motion, &mut forces, &run, before);
+        before = run.counts();
+    }
+    progress(times.len());
+    let spans = times.len().saturating_sub(1).max(1);
+    let doubt = run.doubt((run.t() - times.first().copied().unwrap_or(0.0)) / spans as f64);
+    motion.dynamics = Some(forces);
+    let counts = run.counts();
+    (Simulated { motion, counts, rejected: 0, doubt, failure, elapsed: started.elapsed() }, run)
+}
+
+fn push<S, X, const N: usize, const M: usize>(
+    motion: &mut Motion,
+    forces: &mut Forces,
+    run: &Simulation<S, X, f64, N, M>,
+    before: Counts,
+) where
+    S: Dynamic<f64, N, M>,
+    X: Method<S, f64, N, M>,
+{
+    let balance = run.balance();
+    motion.push(&motion::Instant {
+        t: run.t(),
+        q: [run.q(), run.qd(), run.qdd()],
+        outputs: run.outputs().as_ref(),
+        closure: balance.phi,
+        iterations: u32::try_from(run.counts().evaluations - before.evaluations).unwrap_or(u32::MAX),
+        margin: run.margin(),
+    });
+    forces.push(balance.energy, run.loads().as_ref(), run.lambda());
+    forces.work.push(balance.work);
+    forces.defect.push(balance.defect);
+    forces.closure_rate.push(balance.phi_d);
+}

@@ -1,0 +1,47 @@
+//! Where a motion from forces starts.
+
+use mbs_runtime::{Dynamic, Newton, Outcome, Partitioned};
+
+/// Residual of a row in the reference metric, or of its rate (1/s), that counts as met: numbers typed with nine digits.
+const MET: f64 = 1e-8;
+
+/// Margin of the dependent columns below which rates are not completed through them: half their digits would be gone.
+const LEAST_MARGIN: f64 = 1e-6;
+
+/// Coordinates and velocities (N each) of a start.
+pub type Start<const N: usize> = ([f64; N], [f64; N]);
+
+/// The text's start at `t` (s), the dependent coordinates and velocities found from the independent ones where the rows
+/// ask for it; where that fails the text's numbers, for a projection to begin with.
+pub(crate) fn start<S, const N: usize, const M: usize>(mechanism: &S, t: f64) -> Start<N>
+where
+    S: Dynamic<f64, N, M> + Partitioned<f64, N, M>,
+{
+    let parameters = mechanism.parameters();
+    let scales = mechanism.row_scales(&parameters);
+    let met = |residuals: &[f64; M]| residuals.iter().zip(&scales).all(|(r, scale)| (r / scale).abs() <= MET);
+    let guess = mechanism.guess(&parameters);
+    let mut q = guess;
+    if !met(&mechanism.phi(&parameters, &mechanism.position(&parameters, &q, t))) {
+        let lengths = mechanism.coordinate_scales(&parameters);
+        let extent = guess.iter().zip(lengths).map(|(q, scale)| (q / scale).abs()).fold(1.0, f64::max);
+        let outcome = mechanism.solve_dependent(&parameters, &mut q, t, &mut Newton::new(extent));
+        if outcome.iter().any(|outcome| *outcome != Outcome::Converged) {
+            q = guess;
+        }
+    }
+    let position = mechanism.position(&parameters, &q, t);
+    let (moving, phi_q) = (mechanism.phi_t(&parameters, &position), mechanism.phi_q(&parameters, &position));
+    let mut qd = mechanism.start_rates(&parameters);
+    let mut rates = moving;
+    for (rate, row) in rates.iter_mut().zip(&phi_q) {
+        *rate += row.iter().zip(&qd).map(|(entry, qd)| entry * qd).sum::<f64>();
+    }
+    if !met(&rates) {
+        let (partition, margin) = mechanism.partition(&parameters, &position);
+        if LEAST_MARGIN < margin.value {
+            mechanism.complete(&partition, &moving.map(|rate| -rate), &mut qd);
+        }
+    }
+    (q, qd)
+}

@@ -1,0 +1,302 @@
+//! The analyses of `mbs run`: each turns a mechanism into a motion with figures.
+
+use std::time::Duration;
+
+use clap::{Args, ValueEnum};
+use indicatif::{ProgressBar, ProgressStyle};
+use mbs_runtime::dynamics::{Baumgarte, Doubt};
+use mechanisms::analyses::AnyDynamics;
+use mechanisms::analyses::direct::{Approach, Simulated, Stabilization, Steps};
+use mechanisms::facade::{AnyMechanism, Motion, MotionStop};
+use mechanisms::registry::{Preset, instants};
+
+use super::chosen::finite;
+use super::subject::{Instance, Subject};
+use super::{CommandError, table};
+
+/// What is computed of a mechanism.
+#[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
+pub enum Analysis {
+    /// Positions, velocities and accelerations that drives prescribe
+    Kinematic,
+    /// The motion that forces cause
+    Dynamic,
+    /// The position of rest
+    Static,
+    /// Efforts and loads of the motion that drives prescribe
+    Inverse,
+}
+
+/// How a motion from forces stays on its constraints.
+#[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
+pub enum MethodName {
+    /// Positions and velocities of every stage are put back onto the constraints
+    Projection,
+    /// Violations are damped as oscillators of frequency `--frequency`
+    Baumgarte,
+    /// Nothing: the constraints drift
+    None,
+    /// Independent coordinates through the blocks of the constraints
+    Velocity,
+}
+
+/// Baumgarte's constants.
+#[derive(Args, Clone, Copy)]
+pub struct Damping {
+    /// Baumgarte's frequency omega (rad/s)
+    #[arg(long, value_name = "OMEGA", default_value_t = Baumgarte::default().omega, value_parser = at_least_zero)]
+    frequency: f64,
+    /// Baumgarte's damping xi: 1 is critical
+    #[arg(long, value_name = "XI", default_value_t = Baumgarte::default().xi, value_parser = at_least_zero)]
+    damping: f64,
+}
+
+impl Damping {
+    /// The lecture's.
+    pub fn standard() -> Self {
+        let Baumgarte { xi, omega } = Baumgarte::default();
+        Damping { frequency: omega, damping: xi }
+    }
+
+    /// As the command line spells them.
+    pub fn command(self) -> String {
+        format!(" --frequency {} --damping {}", self.frequency, self.damping)
+    }
+
+    pub fn stabilization(self, method: MethodName) -> Stabilization {
+        match method {
+            MethodName::Projection => Stabilization::Projection,
+            MethodName::None => Stabilization::None,
+            MethodName::Velocity => Stabilization::Velocity,
+            MethodName::Baumgarte => {
+                Stabilization::Baumgarte(Baumgarte { xi: self.damping, omega: self.frequency })
+            }
+        }
+    }
+}
+
+/// A motion with what is worth saying about it.
+pub struct Done {
+    pub label: &'static str,
+    pub description: &'static str,
+    pub motion: Motion,
+    pub figures: Vec<[String; 2]>,
+}
+
+/// What the command line says about an analysis.
+pub struct Wish {
+    pub analysis: Option<Analysis>,
+    pub stabilization: Stabilization,
+    pub tolerance: f64,
+    pub until: Option<f64>,
+    pub steps: usize,
+}
+
+impl Wish {
+    /// The analysis asked for, or the one that moves the mechanism.
+    pub fn analysis_of(&self, subject: Subject) -> Analysis {
+        let standard = match subject {
+            Subject::Fixed(_) => Analysis::Kinematic,
+            Subject::Free(_) => Analysis::Dynamic,
+        };
+        self.analysis.unwrap_or(standard)
+    }
+
+    /// The motion of `instance`, or of its rest.
+    pub fn done(
+        &self,
+        subject: Subject,
+        (preset, instance): &(Preset, Instance),
+    ) -> Result<Done, CommandError> {
+        let done =
+            |motion, figures| Done { label: preset.label, description: preset.description, motion, figures };
+        let fail =
+            |reason: String| CommandError::Failed(format!("{}, {}: {reason}", subject.name(), preset.label));
+        let (times, bar) = (self.times(subject, instance)?, progress(preset.label));
+        bar.set_length(times.len() as u64);
+        let mut heard = |count: usize| bar.set_position(count as u64);
+        let found = match self.analysis_of(subject) {
+            Analysis::Kinematic => kinematic(fixed(subject, instance)?, &times, &mut heard),
+            Analysis::Inverse => {
+                let dynamics = dynamics(subject, instance)?;
+                inverse(fixed(subject, instance)?, dynamics, &times, &mut heard)
+            }
+            Analysis::Static => rest(dynamics(subject, instance)?),
+            Analysis::Dynamic => {
+                let steps = Steps::Adaptive { tolerance: self.tolerance };
+                let approach = Approach { stabilization: self.stabilization, steps };
+                direct(dynamics(subject, instance)?, &approach, &times, &mut heard)
+            }
+        };
+        bar.finish_and_clear();
+        found.map(|(motion, figures)| done(motion, figures)).map_err(fail)
+    }
+
+    fn times(&self, subject: Subject, instance: &Instance) -> Result<Vec<f64>, CommandError> {
+        let duration = match self.until {
+            Some(until) => until,
+            None => subject.duration(instance)?,
+        };
+        Ok(instants(duration, self.steps))
+    }
+}
+
+fn progress(label: &'static str) -> ProgressBar {
+    let style = ProgressStyle::with_template("{bar:30} {pos}/{len} steps, {msg}").expect("a valid template");
+    ProgressBar::new(0).with_style(style).with_message(label)
+}
+
+fn fixed(subject: Subject, instance: &Instance) -> Result<&dyn AnyMechanism, CommandError> {
+    let name = subject.name();
+    match instance {
+        Instance::Fixed(mechanism) => Ok(mechanism.as_ref()),
+        Instance::Free(_) => Err(CommandError::Usage(format!(
+            "`{name}` is free to move: no drive prescribes its motion; use `--analysis dynamic` or `static`"
+        ))),
+    }
+}
+
+fn dynamics(subject: Subject, instance: &Instance) -> Result<&dyn AnyDynamics, CommandError> {
+    instance.equations().dynamics().ok_or_else(|| {
+        let name = subject.name();
+        CommandError::Usage(format!("`{name}` has neither masses nor forces; use `--analysis kinematic`"))
+    })
+}
+
+type Found = Result<(Motion, Vec<[String; 2]>), String>;
+
+fn kinematic(mechanism: &dyn AnyMechanism, times: &[f64], heard: &mut dyn FnMut(usize)) -> Found {
+    /// Instants timed: enough for a mean, short for any number of steps.
+    const TIMED: usize = 10_000;
+    let timed = &times[..times.len().min(TIMED)];
+    let found = mechanism.follow(times, heard).and_then(|motion| {
+        let step_time = mechanism.time_a_step(timed)?;
+        let figures = table::figures(&motion, step_time).to_vec();
+        Ok((motion, figures))
+    });
+    found.map_err(|failure| {
+        let stop = mechanism.stop(times).map_or_else(String::new, |stop| described(&stop));
+        format!("{failure}{stop}")
+    })
+}
+
+/// Where the motion ends, as lines below the failure.
+fn described(stop: &MotionStop) -> String {
+    let MotionStop { reachable, refused, failure } = stop;
+    format!(
+        "\nthe motion ends between t = {reachable} s and t = {refused} s; at the end of that step\n{failure}"
+    )
+}
+
+fn inverse(
+    mechanism: &dyn AnyMechanism,
+    dynamics: &dyn AnyDynamics,
+    times: &[f64],
+    heard: &mut dyn FnMut(usize),
+) -> Found {
+    let (mut motion, mut figures) = kinematic(mechanism, times, heard)?;
+    dynamics.add_forces(&mut motion).map_err(|failure| failure.to_string())?;
+    figures.extend(loads(&motion));
+    Ok((motion, figures))
+}
+
+fn rest(dynamics: &dyn AnyDynamics) -> Found {
+    let motion = dynamics.rest().map_err(|failure| failure.to_string())?;
+    let mut figures = vec![["iterations".to_string(), motion.iterations[0].to_string()]];
+    for coordinate in &motion.coordinates {
+        let value = format!("{}{}", table::short(coordinate.q[0]), table::unit(coordinate.unit));
+        figures.push([format!("{} at rest", coordinate.name), value]);
+    }
+    figures.extend(loads(&motion));
+    Ok((motion, figures))
+}
+
+fn direct(
+    dynamics: &dyn AnyDynamics,
+    approach: &Approach,
+    times: &[f64],
+    heard: &mut dyn FnMut(usize),
+) -> Found {
+    let found = dynamics.simulate(approach, times, heard).map_err(|failure| failure.to_string())?;
+    if let Some(failure) = found.failure {
+        return Err(failure.to_string());
+    }
+    let mut figures = balance(&found);
+    figures.extend(loads(&found.motion));
+    Ok((found.motion, figures))
+}
+
+/// Energy, constraints and cost of a motion from forces.
+pub fn balance(found: &Simulated) -> Vec<[String; 2]> {
+    let Some(forces) = &found.motion.dynamics else { return Vec::new() };
+    let pair = |name: &str, value: String| [name.to_string(), value];
+    let kinetic = largest(&forces.kinetic);
+    let margin = found.motion.margin.iter().copied().fold(f64::INFINITY, f64::min);
+    let mut figures = vec![
+        pair(
+            "largest energy defect",
+            format!("{:.1e} J, largest kinetic energy {kinetic:.4} J", largest(&forces.defect)),
+        ),
+        pair("largest |Φ|", format!("{:.1e} of the reference length", largest(&found.motion.closure))),
+        pair("largest |Φ̇|", format!("{:.1e} 1/s of the reference length", largest(&forces.closure_rate))),
+        pair("steps", format!("{}, {} rejected", found.counts.steps, found.rejected)),
+        pair("evaluations", found.counts.evaluations.to_string()),
+        pair("smallest margin to singularity", format!("{margin:.3}")),
+        pair("time of computation", milliseconds(found.elapsed)),
+    ];
+    if found.counts.rank_revealing > 0 {
+        figures.push(pair("rank-revealing factorizations", found.counts.rank_revealing.to_string()));
+    }
+    if let Some(doubt) = found.doubt {
+        figures.push(pair("doubtful", doubtful(doubt).to_string()));
+    }
+    figures
+}
+
+/// Largest magnitude.
+pub fn largest(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()))
+}
+
+/// What is doubtful about a stabilisation, in one phrase.
+pub fn doubtful(doubt: Doubt) -> &'static str {
+    match doubt {
+        Doubt::StiffStabilization => "frequency times step above 0.3: the stabilisation costs accuracy",
+        Doubt::IdleStabilization => "frequency times duration below 5: violations have no time to decay",
+    }
+}
+
+fn milliseconds(elapsed: Duration) -> String {
+    format!("{:.1} ms", elapsed.as_secs_f64() * 1e3)
+}
+
+/// Ranges of the text's loads, or of the multipliers where it has none.
+fn loads(motion: &Motion) -> Vec<[String; 2]> {
+    let Some(forces) = &motion.dynamics else { return Vec::new() };
+    let (prefix, curves) =
+        if forces.loads.is_empty() { ("lambda ", &forces.multipliers) } else { ("", &forces.loads) };
+    let range = |values: &[f64]| {
+        let least = values.iter().copied().fold(f64::INFINITY, f64::min);
+        let most = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        if values.len() == 1 { format!("{least:.6}") } else { format!("{least:.4} to {most:.4}") }
+    };
+    let line = |curve: &mechanisms::motion::LoadCurve| {
+        [format!("{prefix}{}", curve.name), format!("{} {}", range(&curve.value), curve.unit)]
+    };
+    curves.iter().map(line).collect()
+}
+
+fn at_least_zero(text: &str) -> Result<f64, String> {
+    match finite(text)? {
+        number if number >= 0.0 => Ok(number),
+        _ => Err("a number of at least 0 is needed".to_string()),
+    }
+}
+
+/// A number above zero.
+pub fn above_zero(text: &str) -> Result<f64, String> {
+    match finite(text)? {
+        number if number > 0.0 => Ok(number),
+        _ => Err("a number above 0 is needed".to_string()),
+    }
+}

@@ -1,0 +1,199 @@
+//! The lecture's four-bar with masses, in the lecture's coordinates.
+//!
+//! ```text
+//!                      P = (x2, y2)
+//!                    .·' ·
+//!              L5 .·'     ·
+//!              .·' α       B
+//!            A ────────────o
+//!            o      L2      \
+//!        L1 /  φ2            \ L3
+//!          / φ1            φ3 \
+//!         o────────────────────o       free fall downwards
+//!         O         L4         D
+//! ```
+//!
+//! Lengths in metres, masses in kg, angles from the ground line `O D` (rad), `q = [x2 y2 φ1 φ2 φ3]`. Links are uniform
+//! rods of 2 kg/m; the coupler point has no mass, so M has two columns of zeros: x2 and y2 are fixed by their rows alone.
+//!
+//! - `Released`: a constant torque, which may be zero, moves the crank from 60°.
+//! - `Driven`: the crank turns at constant `ω`; the effort of its drive is the torque that the motor gives.
+//!
+//! Numbers: links of `four_bar`.
+
+use mbs_runtime::mechanism;
+
+use crate::four_bar;
+use crate::masses::{boxed_driven, boxed_masses};
+use crate::registry::{Card, FreeCard, Preset, Span};
+
+mechanism! {
+    /// Four-bar linkage with masses and a massless coupler point.
+    pub mechanism FourBarMass;
+
+    param L1: m = 0.20;
+    param L2: m = 0.60;
+    param L3: m = 0.50;
+    param L4: m = 0.55;
+    param L5: m = 0.35;
+    param alpha: rad = 30deg;
+    /// Masses of crank, coupler and rocker.
+    param mass: [kg; 3] = [0.4, 1.2, 1.0];
+    /// Free fall.
+    param g: m/s^2 = 9.81;
+
+    coord x2: m;
+    coord y2: m;
+    coord phi1: rad = 60deg;
+    coord phi2: rad = 0.7;
+    coord phi3: rad = 1.6;
+
+    let crank_end = L1*unit(phi1);
+    body crank { mass: mass[0], inertia: mass[0]*L1^2/12, com: crank_end/2, angle: phi1 }
+    body coupler { mass: mass[1], inertia: mass[1]*L2^2/12, com: crank_end + L2/2*unit(phi2), angle: phi2 }
+    body rocker { mass: mass[2], inertia: mass[2]*L3^2/12, com: [L4, 0] + L3/2*unit(phi3), angle: phi3 }
+    gravity weight { acceleration: [0, -g] }
+
+    constraint coupler_point {
+        x2 == L1*cos(phi1) + L5*cos(alpha + phi2);
+        y2 == L1*sin(phi1) + L5*sin(alpha + phi2);
+    }
+    constraint closure {
+        L3*cos(phi3) + L4 == L1*cos(phi1) + L2*cos(phi2);
+        L1*sin(phi1) + L2*sin(phi2) == L3*sin(phi3);
+    }
+    branch assembly: sin(phi3 - phi2) > 0;
+
+    out O: [m; 2] = [0, 0];
+    out A: [m; 2] = crank_end;
+    out B: [m; 2] = crank_end + L2*unit(phi2);
+    out D: [m; 2] = [L4, 0];
+    out P: [m; 2] = [x2, y2];
+    /// Force of the coupler on the rocker.
+    out rocker_pin: [N; 2] = [-lambda(closure[0]), lambda(closure[1])];
+
+    effect released {
+        param tau: N*m = 0;
+        torque motor: tau on phi1;
+        start phi1 = 60deg rate 0;
+    }
+    effect driven {
+        param omega: rad/s = TAU;
+        drive crank_drive: phi1 == 60deg + omega*t;
+        /// Torque of the motor on the crank.
+        out motor_torque: N*m = effort(crank_drive);
+    }
+    /// Forces move it.
+    scene Released = released;
+    /// A motor moves it.
+    scene Driven = driven;
+}
+
+/// Entry in the list of mechanisms: moved by forces.
+pub const RELEASED: FreeCard = FreeCard {
+    name: "four_bar_mass:Released",
+    title: "Four-bar with masses, moved by forces",
+    description: "The lecture's four-bar with masses on its links in the lecture's coordinates, of which the coupler \
+                  point has no mass; a constant torque on the crank, or weight alone, moves it.",
+    runs: &[
+        Preset {
+            label: "released",
+            description: "from rest at 60°, by its weight alone",
+            set: &[("tau", 0.0)],
+        },
+        Preset {
+            label: "torque",
+            description: "from rest at 60°, 2.5 N m on the crank",
+            set: &[("tau", 2.5)],
+        },
+    ],
+    duration: 2.0,
+    drawing: four_bar::DRAWING,
+    make: boxed_masses::<FourBarMassReleased, 5, 4>,
+};
+
+/// Entry in the list of mechanisms: the crank driven.
+pub const DRIVEN: Card = Card {
+    name: "four_bar_mass:Driven",
+    title: "Four-bar with masses, the crank driven",
+    description: "The lecture's four-bar with masses on its links, the crank at constant speed; inverse dynamics gives \
+                  the motor's torque and the force in the rocker's pin.",
+    runs: &[Preset { label: "open assembly", description: "coupler and rocker on the upper side", set: &[] }],
+    span: Span::Turn { rate: "omega" },
+    drawing: four_bar::DRAWING,
+    make: boxed_driven::<FourBarMassDriven, 5>,
+};
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::facade::Motion;
+    use crate::newton_euler::{Body, Unknown, forces, pin, plus, turning};
+    use crate::reference::{dynamics_of, load, one_turn};
+
+    /// Bound of the differences of forces, relative to the largest of the motion.
+    const BOUND: f64 = 1e-10;
+
+    /// Force of the coupler on the rocker, and the torque on the crank, at instant `k`.
+    fn sums(motion: &Motion, k: usize) -> [f64; 3] {
+        let half = |i: usize, length: f64| {
+            let curve = &motion.coordinates[i];
+            turning(length / 2.0, curve.q[k], curve.qd[k], curve.qdd[k])
+        };
+        let (crank, coupler, rocker) = (half(2, 0.2), half(3, 0.6), half(4, 0.5));
+        let [a, a_dd] = [0, 1].map(|i| plus(crank[i], crank[i]));
+        let coupler = [plus(a, coupler[0]), plus(a_dd, coupler[1])];
+        let (d, rocker_arm) = ([0.55, 0.0], rocker[0]);
+        let rocker = [plus(d, rocker_arm), rocker[1]];
+        let b = plus(rocker[0], rocker_arm);
+        let body = |mass: f64, length: f64, [centre, acceleration]: [[f64; 2]; 2], i: usize| Body {
+            mass,
+            inertia: mass * length * length / 12.0,
+            centre,
+            acceleration,
+            angular_acceleration: motion.coordinates[i].qdd[k],
+        };
+        let bodies = [body(0.4, 0.2, crank, 2), body(1.2, 0.6, coupler, 3), body(1.0, 0.5, rocker, 4)];
+        let joints = [pin([0.0; 2], 0, None), pin(a, 1, Some(0)), pin(b, 2, Some(1)), pin(d, 2, None)];
+        let unknowns = joints.into_iter().flatten().chain([Unknown::Torque { on: 0 }]);
+        let found = forces(&bodies, [0.0, -9.81], &unknowns.collect::<Vec<_>>());
+        [found[4], found[5], found[8]]
+    }
+
+    #[track_caller]
+    fn assert_agree(motion: &Motion, torque: impl Fn(usize) -> f64) {
+        let pins = [load(motion, "rocker_pin.0"), load(motion, "rocker_pin.1")];
+        let expected: Vec<[f64; 3]> = (0..motion.time.len()).map(|k| sums(motion, k)).collect();
+        let size = expected.iter().flatten().fold(0.0, |size: f64, force| size.max(force.abs()));
+        for (k, [x, y, sum]) in expected.into_iter().enumerate() {
+            for (found, expected) in [(pins[0][k], x), (pins[1][k], y), (torque(k), sum)] {
+                assert!(
+                    (found - expected).abs() < BOUND * size,
+                    "instant {k}: {found} instead of {expected}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn effort_and_pin_force_of_the_driven_crank_are_newtons_and_eulers() {
+        let mut motion = one_turn(&DRIVEN, &DRIVEN.runs[0], 180);
+        let mechanism = (DRIVEN.make)();
+        let forces = mechanism.dynamics().expect("it has masses").add_forces(&mut motion);
+        forces.expect("it moves");
+        let torque = load(&motion, "motor_torque").to_vec();
+        assert_agree(&motion, |k| torque[k]);
+    }
+
+    #[test]
+    fn the_motion_from_forces_needs_the_torque_that_causes_it_and_keeps_its_energy() {
+        for (run, tau) in RELEASED.runs.iter().zip([0.0, 2.5]) {
+            let found = dynamics_of(&RELEASED, run, 60);
+            assert_agree(&found.motion, |_| tau);
+            let forces = found.motion.dynamics.as_ref().expect("it has masses");
+            let most = |values: &[f64]| values.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
+            assert!(most(&forces.defect) < 1e-9 * most(&forces.kinetic), "{:e}", most(&forces.defect));
+            assert!(most(&found.motion.closure) < 1e-13 && most(&forces.multipliers[0].value) < 1e-9);
+        }
+    }
+}

@@ -1,0 +1,268 @@
+//! Motions as plain columns.
+
+use mbs_runtime::{Energy, Entry, OutputValue};
+use serde::Serialize;
+
+/// A motion as plain columns, one value an instant.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Motion {
+    /// Instants (s).
+    pub time: Vec<f64>,
+    /// Coordinates.
+    pub coordinates: Vec<CoordinateCurve>,
+    /// Outputs, component by component.
+    pub outputs: Vec<OutputCurve>,
+    /// Largest residual, each row measured in the reference metric (dimensionless).
+    pub closure: Vec<f64>,
+    /// Evaluations that the instant took: of the constraints for a position, of the equations of motion since the
+    /// instant before.
+    pub iterations: Vec<u32>,
+    /// Margin to singularity: 0 where singular, at most 1.
+    pub margin: Vec<f64>,
+    /// Energies and forces, where there are masses.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub dynamics: Option<Forces>,
+}
+
+/// Energies and forces of a motion, one value an instant.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Forces {
+    /// Kinetic energy (J).
+    pub kinetic: Vec<f64>,
+    /// Potential energy (J).
+    pub potential: Vec<f64>,
+    /// What forces and drives have done since the start (J); empty where nothing is integrated.
+    pub work: Vec<f64>,
+    /// Energy less work less the energy at the start (J); empty where nothing is integrated.
+    pub defect: Vec<f64>,
+    /// Largest |Φ̇ᵢ|, each row measured in the reference metric (1/s); empty where nothing is integrated.
+    pub closure_rate: Vec<f64>,
+    /// Outputs that use multipliers or states, component by component.
+    pub loads: Vec<LoadCurve>,
+    /// Multipliers, one a row.
+    pub multipliers: Vec<LoadCurve>,
+}
+
+/// A load or a multiplier over the time.
+#[derive(Clone, Debug, Serialize)]
+pub struct LoadCurve {
+    /// Name of the output or of the row.
+    pub name: &'static str,
+    /// Unit of the values.
+    pub unit: String,
+    /// Values.
+    pub value: Vec<f64>,
+}
+
+/// One instant of a motion.
+#[derive(Clone, Copy, Debug)]
+pub struct Instant<'a> {
+    /// Time (s).
+    pub t: f64,
+    /// Coordinates, velocities and accelerations: N each.
+    pub q: [&'a [f64]; 3],
+    /// Outputs with their derivatives.
+    pub outputs: &'a [OutputValue<f64>],
+    /// Largest residual in the reference metric.
+    pub closure: f64,
+    /// Evaluations since the instant before.
+    pub iterations: u32,
+    /// Margin to singularity.
+    pub margin: f64,
+}
+
+/// A coordinate over the time.
+#[derive(Clone, Debug, Serialize)]
+pub struct CoordinateCurve {
+    /// As the text spells it.
+    pub name: &'static str,
+    /// Unit of `q`; those of `qd` and `qdd` are this per s and per s².
+    pub unit: &'static str,
+    /// Position.
+    pub q: Vec<f64>,
+    /// Velocity.
+    pub qd: Vec<f64>,
+    /// Acceleration.
+    pub qdd: Vec<f64>,
+}
+
+/// A component of an output over the time.
+#[derive(Clone, Debug, Serialize)]
+pub struct OutputCurve {
+    /// As the text spells it, components counted from 0: `P.0`.
+    pub name: &'static str,
+    /// Unit of `value`; those of the derivatives are this per s and per s².
+    pub unit: &'static str,
+    /// Value.
+    pub value: Vec<f64>,
+    /// First derivative, where the definition leaves one.
+    pub rate: Option<Vec<f64>>,
+    /// Second derivative, where the definition leaves one.
+    pub acceleration: Option<Vec<f64>>,
+}
+
+impl Motion {
+    /// At most `count` instants spread evenly over the motion, first and last included.
+    pub fn thinned(&self, count: usize) -> Motion {
+        let kept = spread(self.time.len(), count);
+        let pick = |values: &Vec<f64>| kept.iter().map(|index| values[*index]).collect::<Vec<_>>();
+        let coordinate = |curve: &CoordinateCurve| CoordinateCurve {
+            q: pick(&curve.q),
+            qd: pick(&curve.qd),
+            qdd: pick(&curve.qdd),
+            ..*curve
+        };
+        let output = |curve: &OutputCurve| OutputCurve {
+            value: pick(&curve.value),
+            rate: curve.rate.as_ref().map(pick),
+            acceleration: curve.acceleration.as_ref().map(pick),
+            ..*curve
+        };
+        Motion {
+            time: pick(&self.time),
+            coordinates: self.coordinates.iter().map(coordinate).collect(),
+            outputs: self.outputs.iter().map(output).collect(),
+            closure: pick(&self.closure),
+            iterations: kept.iter().map(|index| self.iterations[*index]).collect(),
+            margin: pick(&self.margin),
+            dynamics: self.dynamics.as_ref().map(|forces| forces.picked(pick)),
+        }
+    }
+
+    /// No instant yet; outputs have the derivatives that `values` have.
+    pub fn of(coordinates: &'static [Entry], outputs: &'static [Entry], values: &[OutputValue<f64>]) -> Self {
+        let coordinate = |e: &Entry| CoordinateCurve {
+            name: e.name,
+            unit: e.unit,
+            q: Vec::new(),
+            qd: Vec::new(),
+            qdd: Vec::new(),
+        };
+        let output = |(e, value): (&Entry, &OutputValue<f64>)| OutputCurve {
+            name: e.name,
+            unit: e.unit,
+            value: Vec::new(),
+            rate: value.rate.map(|_| Vec::new()),
+            acceleration: value.acceleration.map(|_| Vec::new()),
+        };
+        Motion {
+            coordinates: coordinates.iter().map(coordinate).collect(),
+            outputs: outputs.iter().zip(values).map(output).collect(),
+            ..Motion::default()
+        }
+    }
+
+    /// One instant more.
+    pub fn push(&mut self, instant: &Instant) {
+        let [q, qd, qdd] = instant.q;
+        self.time.push(instant.t);
+        for (curve, ((q, qd), qdd)) in self.coordinates.iter_mut().zip(q.iter().zip(qd).zip(qdd)) {
+            curve.q.push(*q);
+            curve.qd.push(*qd);
+            curve.qdd.push(*qdd);
+        }
+        for (curve, output) in self.outputs.iter_mut().zip(instant.outputs) {
+            curve.value.push(output.value);
+            let derivatives =
+                [(&mut curve.rate, output.rate), (&mut curve.acceleration, output.acceleration)];
+            for (column, value) in derivatives {
+                column.iter_mut().zip(value).for_each(|(column, value)| column.push(value));
+            }
+        }
+        self.closure.push(instant.closure);
+        self.iterations.push(instant.iterations);
+        self.margin.push(instant.margin);
+    }
+}
+
+impl Forces {
+    /// No instant yet, for outputs `loads` and the multipliers of `rows`.
+    pub fn of(loads: &[Entry], rows: &[Entry]) -> Self {
+        let curve = |name, unit| LoadCurve { name, unit, value: Vec::new() };
+        Forces {
+            loads: loads.iter().map(|entry| curve(entry.name, entry.unit.to_string())).collect(),
+            multipliers: rows.iter().map(|row| curve(row.name, multiplier_unit(row.unit))).collect(),
+            ..Forces::default()
+        }
+    }
+
+    /// Energies, loads and multipliers of one instant more.
+    pub fn push(&mut self, energy: Energy<f64>, loads: &[f64], lambda: &[f64]) {
+        self.kinetic.push(energy.kinetic);
+        self.potential.push(energy.potential);
+        let curves = self.loads.iter_mut().zip(loads).chain(self.multipliers.iter_mut().zip(lambda));
+        curves.for_each(|(curve, value)| curve.value.push(*value));
+    }
+
+    fn picked(&self, pick: impl Fn(&Vec<f64>) -> Vec<f64>) -> Forces {
+        let curves = |curves: &[LoadCurve]| {
+            let curve = |curve: &LoadCurve| LoadCurve {
+                name: curve.name,
+                unit: curve.unit.clone(),
+                value: pick(&curve.value),
+            };
+            curves.iter().map(curve).collect()
+        };
+        let optional = |values: &Vec<f64>| if values.is_empty() { Vec::new() } else { pick(values) };
+        Forces {
+            kinetic: pick(&self.kinetic),
+            potential: pick(&self.potential),
+            work: optional(&self.work),
+            defect: optional(&self.defect),
+            closure_rate: optional(&self.closure_rate),
+            loads: curves(&self.loads),
+            multipliers: curves(&self.multipliers),
+        }
+    }
+}
+
+/// Unit of the multiplier of a row in `unit`: λ times the row is an energy.
+fn multiplier_unit(unit: &str) -> String {
+    match unit {
+        "1" | "rad" => "N*m".to_string(),
+        "m" => "N".to_string(),
+        "m^2" => "N/m".to_string(),
+        other => format!("N*m/({other})"),
+    }
+}
+
+/// At most `count` indices below `length`, evenly spread, first and last included.
+pub fn spread(length: usize, count: usize) -> Vec<usize> {
+    let last = length.saturating_sub(1);
+    if length <= count || count < 2 {
+        return (0..length.min(count)).collect();
+    }
+    (0..count).map(|index| index * last / (count - 1)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::registry::{ALL, sweep};
+
+    #[test]
+    fn spread_indices_reach_from_the_first_to_the_last() {
+        assert_eq!(spread(721, 9), [0, 90, 180, 270, 360, 450, 540, 630, 720]);
+        assert_eq!(spread(3, 9), [0, 1, 2]);
+        assert_eq!(spread(1, 9), [0]);
+        assert!(spread(0, 9).is_empty() && spread(9, 0).is_empty());
+    }
+
+    #[test]
+    fn a_thinned_motion_keeps_its_ends_and_every_column() {
+        let mechanism = (ALL[0].make)();
+        let motion = sweep(mechanism.as_ref(), 1.0, 100).expect("it turns");
+        let thinned = motion.thinned(11);
+        assert_eq!(thinned.time, motion.time.iter().copied().step_by(10).collect::<Vec<_>>());
+        let (last, before) = (&thinned.outputs[8], &motion.outputs[8]);
+        assert_eq!(last.value.last(), before.value.last());
+        assert_eq!(last.acceleration.as_ref().map(Vec::len), Some(11));
+        assert_eq!((thinned.iterations.len(), thinned.coordinates[0].qdd.len()), (11, 11));
+    }
+
+    #[test]
+    fn multipliers_times_rows_are_energies() {
+        let units = ["rad", "m", "m^2", "m^3"].map(multiplier_unit);
+        assert_eq!(units, ["N*m", "N", "N/m", "N*m/(m^3)"]);
+    }
+}
