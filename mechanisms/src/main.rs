@@ -48,6 +48,8 @@ enum Command {
     Next(commands::next::Arguments),
     /// Print degrees of freedom, ranks, independent and dependent coordinates
     Dof(commands::dof::Arguments),
+    /// Draw how far the constraints drift by several stabilisations
+    Drift(commands::drift::Arguments),
     /// Compare one linkage in several kinds of coordinates
     Compare(commands::compare::Arguments),
     /// Lay a spline along a table from a file; say how far to trust it, draw it, print it as Rust
@@ -70,6 +72,7 @@ fn main() -> ExitCode {
         Some(Command::Basins(arguments)) => commands::basins::run(&arguments, &mut out),
         Some(Command::Next(arguments)) => commands::next::run(&arguments, &mut out),
         Some(Command::Dof(arguments)) => commands::dof::run(&arguments, &mut out),
+        Some(Command::Drift(arguments)) => commands::drift::run(&arguments, &mut out),
         Some(Command::Compare(arguments)) => commands::compare::run(&arguments, &mut out),
         Some(Command::Table(arguments)) => commands::table_file::run(&arguments, &mut out),
     };

@@ -42,6 +42,8 @@ pub const ALL: &[&Card] = &[
 /// Mechanisms with masses that their rows leave free to move; forces move them.
 pub const FREE: &[&FreeCard] = &[
     &crate::pendulum::CARD,
+    &crate::double_pendulum::CARD,
+    &crate::cart_pole::CARD,
     &crate::n_four_bar::CARD,
     &crate::andrews::CARD,
     &crate::slider_crank_mass::RELEASED,

@@ -25,7 +25,7 @@ fn casadi_confirms_every_function_of_every_mechanism() {
     for card in ALL {
         let agreement = verify(card, &oracle, STATES).unwrap_or_else(|error| panic!("{error}"));
         assert!(agreement.holds(), "{agreement}");
-        assert!(agreement.states >= 1000 && agreement.functions.len() == 9);
+        assert!(agreement.states >= 1000 && agreement.functions.len() >= 9);
         summary.add(agreement);
     }
     println!("{summary}");

@@ -208,6 +208,18 @@ fn compare_shows_the_same_motion_in_four_kinds_of_coordinates() {
 }
 
 #[test]
+fn drift_draws_a_curve_a_method_and_prints_how_far_each_went() {
+    let file = Scratch::new("drift.svg");
+    let text = text_of(&["drift", "pendulum", "--steps", "500", "--out", file.path()]);
+    let largest = |method: &str| numbers(line(&text, method))[0];
+    let [none, baumgarte, projection] = ["none", "baumgarte", "projection"].map(largest);
+    assert!(none > 10.0 * baumgarte && baumgarte > 1e3 * projection && projection < 1e-13, "{text}");
+    assert_eq!(file.text().matches("<polyline").count(), 6);
+    let message = failure(&["drift", "four_bar"], 2);
+    assert!(message.contains("neither masses nor forces"), "{message}");
+}
+
+#[test]
 fn senseless_arguments_are_refused_in_plain_words() {
     let cases: [(&[&str], &str); 14] = [
         (&["print", "fourbar"], "did you mean `four_bar`?"),

@@ -2,11 +2,9 @@
 //! out, and must be what the macro emits from Jacobians.
 
 use mbs_runtime::mechanism;
-use mechanisms::andrews::Andrews;
 use mechanisms::facade::AnyEquations;
 use mechanisms::masses::{boxed_driven, boxed_masses};
-use mechanisms::n_four_bar::NFourBar;
-use mechanisms::pendulum::Pendulum;
+use mechanisms::registry::FREE;
 use mechanisms::verify::compare::compare;
 use mechanisms::verify::{Oracle, STATES, generated_definition};
 
@@ -79,8 +77,7 @@ mechanism! {
 fn casadi_confirms_every_function_of_masses_and_forces() {
     let oracle = Oracle::new(&|_| ()).unwrap_or_else(|error| panic!("{error}"));
     let driven: Box<dyn AnyEquations> = boxed_driven::<Driven, 3>();
-    let ready =
-        [boxed_masses::<Andrews, 7, 6>(), boxed_masses::<NFourBar, 6, 5>(), boxed_masses::<Pendulum, 2, 1>()];
+    let ready = FREE.iter().map(|card| (card.make)());
     for mut mechanism in [boxed_masses::<Heap, 5, 2>(), driven].into_iter().chain(ready) {
         let definition = generated_definition(mechanism.as_ref()).unwrap_or_else(|error| panic!("{error}"));
         let agreement = compare(mechanism.as_mut(), &oracle, &definition, STATES);

@@ -75,6 +75,7 @@ fn every_mechanism_and_command_stands_in_the_readme() {
         "basins NAME",
         "next NAME",
         "dof NAME",
+        "drift NAME",
         "compare NAME",
         "table FILE.csv",
     ] {

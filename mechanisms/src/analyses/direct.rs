@@ -19,7 +19,8 @@ pub enum Stabilization {
     None,
     /// Baumgarte's oscillators.
     Baumgarte(Baumgarte),
-    /// Positions and velocities of every stage are projected.
+    /// Positions and velocities are projected: with adaptive steps those of every stage, with fixed ones, which cannot
+    /// be made smaller where a stage goes too far, those of a step's end.
     Projection,
     /// Independent coordinates through the blocks of the rows, projected after each step.
     Velocity,
@@ -102,8 +103,11 @@ pub(crate) fn simulate<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
             integrate(mechanism, baumgarte, &start, steps, times, progress)
         }
         Stabilization::Projection => {
-            let projection = Projection { stages: Stages::All };
-            integrate(mechanism, projection, &start, steps, times, progress)
+            let stages = match steps {
+                Steps::Adaptive { .. } => Stages::All,
+                Steps::Fixed => Stages::None,
+            };
+            integrate(mechanism, Projection { stages }, &start, steps, times, progress)
         }
         Stabilization::Velocity => (partitioned.by_velocity)(mechanism, &start, steps, times, progress),
     }

@@ -30,7 +30,7 @@ pub enum Analysis {
 /// How a motion from forces stays on its constraints.
 #[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
 pub enum MethodName {
-    /// Positions and velocities of every stage are put back onto the constraints
+    /// Positions and velocities are put back onto the constraints
     Projection,
     /// Violations are damped as oscillators of frequency `--frequency`
     Baumgarte,
@@ -156,7 +156,7 @@ fn fixed(subject: Subject, instance: &Instance) -> Result<&dyn AnyMechanism, Com
     }
 }
 
-fn dynamics(subject: Subject, instance: &Instance) -> Result<&dyn AnyDynamics, CommandError> {
+pub fn dynamics(subject: Subject, instance: &Instance) -> Result<&dyn AnyDynamics, CommandError> {
     instance.equations().dynamics().ok_or_else(|| {
         let name = subject.name();
         CommandError::Usage(format!("`{name}` has neither masses nor forces; use `--analysis kinematic`"))

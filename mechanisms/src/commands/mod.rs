@@ -5,6 +5,7 @@ pub mod basins;
 mod chosen;
 pub mod compare;
 pub mod dof;
+pub mod drift;
 pub mod expand;
 pub mod latex;
 pub mod list;

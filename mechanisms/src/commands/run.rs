@@ -213,7 +213,7 @@ fn write_report(directory: &Path, page: &str, values: &str) -> Result<(PathBuf, 
 const MOST_STEPS: usize = 1_000_000;
 
 /// A number of steps that memory and disk can take.
-fn steps(text: &str) -> Result<usize, String> {
+pub fn steps(text: &str) -> Result<usize, String> {
     match positive(text)? {
         steps if steps <= MOST_STEPS => Ok(steps),
         _ => Err(format!("at most {MOST_STEPS} are possible")),

@@ -5,6 +5,7 @@
 pub mod basins;
 mod branchless;
 pub mod comparison;
+pub mod drift;
 pub mod experiment;
 pub mod freedom;
 pub mod latex;

@@ -1,0 +1,95 @@
+//! `mbs drift`.
+
+use std::io::Write;
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+use mechanisms::analyses::direct::{Approach, Simulated, Steps};
+use mechanisms::lecture::drift::{Curve, picture};
+use mechanisms::registry::{file_name, instants};
+use mechanisms::target_directory::target_directory;
+
+use super::CommandError;
+use super::analysis::{Damping, MethodName, above_zero, doubtful, dynamics, largest};
+use super::chosen::{assignment, write_file};
+use super::run::steps;
+use super::subject::Subject;
+
+#[derive(Args)]
+pub struct Arguments {
+    /// Name of a mechanism with masses, as `mbs list` prints it
+    name: String,
+    /// Set a parameter, in the unit that `mbs list` prints
+    #[arg(long = "param", value_name = "NAME=VALUE", value_parser = assignment)]
+    parameters: Vec<(String, f64)>,
+    /// How the motion stays on its constraints, one curve each
+    #[arg(long, value_enum, value_delimiter = ',', default_value = "none,baumgarte,projection")]
+    methods: Vec<MethodName>,
+    /// End of the motion (s) [default: that of `mbs run`]
+    #[arg(long, value_name = "T", value_parser = above_zero)]
+    until: Option<f64>,
+    /// Equal steps of RK4
+    #[arg(long, default_value_t = 1000, value_parser = steps)]
+    steps: usize,
+    #[command(flatten)]
+    damping: Damping,
+    /// File of the picture [default: mbs/NAME/drift.svg in cargo's target directory]
+    #[arg(long, value_name = "FILE.svg")]
+    out: Option<PathBuf>,
+}
+
+/// What is left of the constraints and of the energy by each method, and the picture.
+pub fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<(), CommandError> {
+    let subject = Subject::find(&arguments.name)?;
+    let instance = subject.instance(&subject.runs()[0], &arguments.parameters)?;
+    let until = arguments.until.map_or_else(|| subject.duration(&instance), Ok)?;
+    let times = instants(until, arguments.steps);
+    let dynamics = dynamics(subject, &instance)?;
+    let mut found = Vec::new();
+    for method in &arguments.methods {
+        let stabilization = arguments.damping.stabilization(*method);
+        let approach = Approach { stabilization, steps: Steps::Fixed };
+        let name = method.to_possible_value().map_or_else(String::new, |value| value.get_name().to_string());
+        let simulated = dynamics
+            .simulate(&approach, &times, &mut |_| ())
+            .map_err(|failure| CommandError::Failed(format!("{}, {name}: {failure}", subject.name())))?;
+        found.push((name, simulated));
+    }
+    let title = format!("{}: RK4 in {} steps", subject.title(), arguments.steps);
+    let curves: Vec<Curve> =
+        found.iter().map(|(name, simulated)| Curve::of(name.clone(), &simulated.motion)).collect();
+    let standard = || target_directory().join("mbs").join(file_name(subject.name())).join("drift.svg");
+    let path = arguments.out.clone().unwrap_or_else(standard);
+    // Before the table, which may meet a reader that has left.
+    let written = write_file(&path, &picture(&title, until, &curves));
+    writeln!(out, "{title}, to t = {until} s\n")?;
+    writeln!(
+        out,
+        "{:<10}  {:>11}  {:>11}  {:>17}  {:>11}",
+        "method", "largest |Φ|", "|Φ̇| (1/s)", "energy defect (J)", "evaluations"
+    )?;
+    for (name, simulated) in &found {
+        write_line(out, name, simulated)?;
+    }
+    writeln!(out, "\n|Φ| and |Φ̇|: each row measured in the reference metric")?;
+    written?;
+    writeln!(out, "\npicture  {}", path.display())?;
+    Ok(())
+}
+
+fn write_line(out: &mut dyn Write, name: &str, simulated: &Simulated) -> std::io::Result<()> {
+    let Simulated { motion, counts, doubt, failure, .. } = simulated;
+    let forces = motion.dynamics.clone().unwrap_or_default();
+    writeln!(
+        out,
+        "{name:<10}  {:>11.1e}  {:>10.1e}  {:>17.1e}  {:>11}",
+        largest(&motion.closure),
+        largest(&forces.closure_rate),
+        largest(&forces.defect),
+        counts.evaluations
+    )?;
+    if let Some(failure) = failure {
+        writeln!(out, "{:12}ends early: {failure}", "")?;
+    }
+    doubt.map_or(Ok(()), |doubt| writeln!(out, "{:12}{}", "", doubtful(doubt)))
+}
