@@ -279,9 +279,11 @@ impl fmt::Display for Failure {
             ),
             Failure::NotAssemblable { row, residual, rows, .. } => write!(
                 f,
-                "the mechanism cannot be assembled at t = {time} s: {rows} contradict each other, `{}` stays {residual:.3e} \
+                "the mechanism cannot be assembled at t = {time} s: {rows} cannot hold {}, `{}` stays {residual:.3e} \
                  {} open at best; check the dimensions, or start from a better guess",
-                row.name, row.unit
+                if rows.rows().nth(1).is_some() { "together" } else { "with what is driven" },
+                row.name,
+                row.unit
             ),
             Failure::Singular { row, coordinate, margin, required, .. } => write!(
                 f,
@@ -292,7 +294,7 @@ impl fmt::Display for Failure {
             Failure::WrongBranch { branch, value, .. } => write!(
                 f,
                 "the assembly found at t = {time} s is not the declared one: branch `{}` (line {}) is {value:.3e}, not \
-                 positive; start from a guess on the other side",
+                 positive; take a smaller step, or assemble from a guess on the other side",
                 branch.name, branch.line
             ),
             Failure::BeyondLimit { limit, value, bound, .. } => write!(

@@ -7,7 +7,7 @@ use crate::stepper::State;
 use crate::{Failure, Kinematic, Mechanism, Real, Stepper};
 
 /// Version of the layout of [`Saved`], in its first bytes. Neither erased (0xFF) nor zeroed memory has it.
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 
 /// Words of [`Saved`] beside the coordinates: version and count, mechanism, time, check value.
 const OTHER_WORDS: usize = 4;
@@ -95,10 +95,11 @@ fn hashed(hash: u64, bytes: &[u8]) -> u64 {
     bytes.iter().fold(hash, |hash, byte| (hash ^ u64::from(*byte)).wrapping_mul(PRIME))
 }
 
-/// Name and coordinates of a mechanism as one number; the end of each name counts.
+/// Name, scene, coordinates and rows of a mechanism as one number; the end of each name counts.
 fn fingerprint<S: Mechanism<R, N, M>, R: Real, const N: usize, const M: usize>() -> u64 {
     let name = |hash, name: &str| hashed(hashed(hash, name.as_bytes()), &[0xFF]);
-    S::COORDINATES.iter().fold(name(OFFSET, S::NAME), |hash, entry| name(hash, entry.name))
+    let entries = S::COORDINATES.iter().chain(S::ROWS);
+    entries.fold(name(name(OFFSET, S::NAME), S::SCENE), |hash, entry| name(hash, entry.name))
 }
 
 impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, R, N, M> {

@@ -16,6 +16,15 @@ const RESUMPTIONS: u32 = 64;
 /// the 1e-6 within which rates are refused.
 const STEPS_OVER: u32 = 11;
 
+/// Movement of a coordinate in one piece of the way (rad, or reference lengths): no assembly lies between its ends.
+const PIECE: f64 = 0.25;
+
+/// Largest piece over the way: a mechanism at rest foresees no movement.
+const LARGEST_PART: f64 = 1.0 / 64.0;
+
+/// Pieces after which the rest of the way is one.
+const MOST_PIECES: u32 = 100_000;
+
 /// Where a mechanism stops on the way of a driver.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stop<R, const N: usize> {
@@ -33,27 +42,68 @@ pub struct Stop<R, const N: usize> {
 impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, R, N, M> {
     /// Where the motion stops between now and time `t` (s); `None` where `t` is reached.
     ///
-    /// The stepper itself stays where it is. Bisection takes some forty steps; each that fails costs a search.
+    /// The stepper itself stays where it is; a copy goes the way in pieces of a quarter of a radian or reference length.
+    /// In the piece that fails, bisection takes some forty steps; each that fails costs a search.
     pub fn stop_towards(&self, t: R) -> Option<Stop<R, N>> {
-        self.stop(self.state.t, t, |stepper, t| stepper.advance_to(t).map(|_| ()))
+        let mut there = self.clone();
+        for _ in 0..MOST_PIECES {
+            let piece = there.piece_towards(t);
+            match there.moved_to(piece) {
+                Ok(_) if piece == t => return None,
+                Ok(stepper) => there = stepper,
+                Err(stop) => {
+                    // Why `t` itself is refused, unless a jump would get there.
+                    let moved = there.advance_to(stop.reachable);
+                    let end = moved.ok().and_then(|_| there.moved_to(t).err());
+                    return Some(Stop { failure: end.map_or(stop.failure, |end| end.failure), ..stop });
+                }
+            }
+        }
+        there.moved_to(t).err()
+    }
+
+    fn moved_to(&self, t: R) -> Result<Self, Stop<R, N>> {
+        self.driven_to(self.state.t, t, |stepper, t| stepper.advance_to(t).map(|_| ()))
+    }
+
+    /// The time on the way to `t` at which the rates foresee a movement of [`PIECE`].
+    fn piece_towards(&self, t: R) -> R {
+        let scales = self.mechanism.coordinate_scales(&self.parameters);
+        let way = t - self.state.t;
+        let mut h = (way * R::constant(LARGEST_PART)).abs();
+        for ((rate, acceleration), scale) in self.qd().iter().zip(self.qdd()).zip(scales) {
+            let piece = R::constant(PIECE) * scale;
+            let (rate, acceleration) = (rate.abs(), acceleration.abs());
+            if piece < rate * h {
+                h = piece / rate;
+            }
+            if piece < acceleration * h * h {
+                h = (piece / acceleration).sqrt();
+            }
+        }
+        let next = if R::constant(0.0) < way { self.state.t + h } else { self.state.t - h };
+        let beyond = (t - self.state.t).abs() <= h || next == self.state.t;
+        if beyond { t } else { next }
     }
 
     /// How far the parameter or input at `index` of [`VARIABLES`](crate::Mechanism::VARIABLES) can go from its value to
     /// `value` with the time standing still; `None` where `value` is reached, or where there is no such variable.
     pub fn stop_of(&self, index: usize, value: R) -> Option<Stop<R, N>> {
         let now = self.mechanism.get(index)?;
-        self.stop(now, value, |stepper, value| {
+        let stopped = self.driven_to(now, value, |stepper, value| {
             stepper.change(|mechanism| mechanism.set(index, value));
             stepper.advance(R::constant(0.0)).map(|_| ())
-        })
+        });
+        stopped.err()
     }
 
-    fn stop(
+    /// The stepper at the end of the way, or where it stops on it.
+    fn driven_to(
         &self,
         from: R,
         to: R,
         drive: impl Fn(&mut Self, R) -> Result<(), Failure>,
-    ) -> Option<Stop<R, N>> {
+    ) -> Result<Self, Stop<R, N>> {
         // On a copy: a failure leaves the state, not the inputs.
         let driven = |stepper: &Self, value: R| {
             let mut stepper = stepper.clone();
@@ -63,8 +113,10 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
         let width = ((to - from) * R::constant(WIDTH)).abs();
         for _ in 0..RESUMPTIONS {
             search.refused = to;
-            search.failure = driven(&search.good, to).err();
-            search.failure?;
+            search.failure = match driven(&search.good, to) {
+                Ok(stepper) => return Ok(stepper),
+                Err(failure) => Some(failure),
+            };
             search.halve(width, &driven);
             if !search.resume(width, to, &driven) {
                 break;
@@ -72,7 +124,10 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
         }
         let Search { good, reachable, refused, .. } = search;
         let q = good.state.q;
-        let mut failure = driven(&good, to).err()?;
+        let mut failure = match driven(&good, to) {
+            Ok(stepper) => return Ok(stepper),
+            Err(failure) => failure,
+        };
         if let Failure::NotConverged { time, .. } = failure {
             let mut there = good;
             // It fails again; what it is for is the inputs there.
@@ -82,7 +137,7 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
             let nearest = solve_nearest(&there.mechanism, &there.parameters, &q, time);
             failure = nearest.err().unwrap_or(failure);
         }
-        Some(Stop { reachable, refused, q, failure })
+        Err(Stop { reachable, refused, q, failure })
     }
 }
 

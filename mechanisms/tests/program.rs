@@ -309,6 +309,15 @@ fn the_emitted_code_is_printed() {
 }
 
 #[test]
+fn verify_confirms_every_mechanism_by_its_name() {
+    let text = standard_output(mbs(&["verify", "--all", "--states", "2"]));
+    assert!(!text.contains("DIFFERS"), "{text}");
+    for name in ["CamLaw", "FourBar", "Andrews"] {
+        assert!(text.contains(name), "{name}: {text}");
+    }
+}
+
+#[test]
 fn verify_prints_the_largest_error_of_each_function() {
     let text = standard_output(mbs(&["verify", "slider_crank"]));
     for part in ["SliderCrank at 1000 states", "Φ_q", "Φ_tt", "γ", "d² output/dt²", "agrees (bound 1e-13)"]

@@ -59,6 +59,14 @@ impl<'a, const C: usize> Table<'a, C> {
     fn piece(&self, x: f64) -> Piece<C> {
         let shift = self.shift(x);
         let local = x - shift;
+        // So many periods away that the rest after them has no digit left.
+        let lost = self.period.is_some_and(|period| {
+            let first = self.knots.first().copied().unwrap_or(f64::NAN);
+            !((local - first).abs() <= 2.0 * period)
+        });
+        if lost {
+            return Piece { origin: f64::NAN, coefficients: [f64::NAN; C] };
+        }
         let index = self.index(local);
         let (Some(knot), Some(coefficients)) = (self.knots.get(index), self.pieces.get(index)) else {
             return Piece { origin: f64::NAN, coefficients: [f64::NAN; C] };

@@ -43,6 +43,13 @@ fn a_way_that_is_free_has_no_limit() {
 }
 
 #[test]
+fn a_stop_between_two_positions_that_can_both_be_reached_is_found() {
+    // The crank would have to turn on through angles where it locks up, to where the loop closes again.
+    let Stop { reachable, refused, .. } = stepper().stop_towards(6.0).expect("it locks up on the way");
+    assert!(reachable < lock_angle() + 1e-15 && lock_angle() - 1e-12 < refused && refused - reachable < 5e-9);
+}
+
+#[test]
 fn a_change_point_on_the_way_is_no_limit() {
     let mechanism = FourBar::<f64, 0>::dimensioned(1.0, 2.0, 1.0, 2.0);
     let stepper = Stepper::assemble(mechanism, [0.0, 0.0, 0.25, 0.0, 0.25], 0.25).unwrap();

@@ -5,8 +5,10 @@ use std::time::Duration;
 
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
-use mechanisms::registry::{self, ALL, FREE};
-use mechanisms::verify::{DIGITS_STATES, Oracle, STATES, Summary, verify_equations, verify_equations_digits};
+use mechanisms::registry::{ALL, FREE};
+use mechanisms::verify::{
+    DIGITS_STATES, Oracle, STATES, Summary, comparable_by_name, verify_equations, verify_equations_digits,
+};
 
 use super::{CommandError, positive};
 
@@ -46,7 +48,7 @@ pub fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<(), CommandErro
     let mut summary = Summary::default();
     for name in names {
         bar.set_message(name.to_owned());
-        let mut mechanism = registry::equations(name)?;
+        let mut mechanism = comparable_by_name(name)?;
         let agreement = compare(mechanism.as_mut(), &oracle, states);
         let agreement = agreement.map_err(|error| failed(&bar, format!("{name}: {error}")))?;
         bar.suspend(|| writeln!(out, "{agreement}"))?;

@@ -24,7 +24,7 @@ pub use agreement::{Agreement, BOUND, LargestError, Reference, Summary};
 pub use check::{Check, CheckError, check};
 pub use environment::EnvironmentError;
 pub use oracle::{Oracle, OracleError};
-pub use stand_in::{StandIn, comparable};
+pub use stand_in::{StandIn, comparable, comparable_by_name};
 
 use crate::facade::AnyEquations;
 use crate::registry::{self, Card, Mismatch};

@@ -2,8 +2,8 @@
 
 use mbs_runtime::{Function, Scalar};
 
-use crate::facade::AnyMechanism;
-use crate::registry::Card;
+use crate::facade::{AnyEquations, AnyMechanism};
+use crate::registry::{self, Card, Mismatch};
 
 /// Ready mechanisms with functions, each with stand-ins for them.
 const WITH_FUNCTIONS: [(&str, fn() -> Box<dyn AnyMechanism>); 1] = [("cam_law", crate::cam_law::compared)];
@@ -12,6 +12,17 @@ const WITH_FUNCTIONS: [(&str, fn() -> Box<dyn AnyMechanism>); 1] = [("cam_law", 
 pub fn comparable(card: &Card) -> Box<dyn AnyMechanism> {
     let found = WITH_FUNCTIONS.iter().find(|(name, _)| *name == card.name);
     found.map_or_else(card.make, |(_, make)| make())
+}
+
+/// The mechanism called `name`, free to move or not, so that both sides of a cross-check know everything.
+///
+/// # Errors
+/// [`Mismatch::Mechanism`] where there is none; its text lists the known names.
+pub fn comparable_by_name(name: &str) -> Result<Box<dyn AnyEquations>, Mismatch> {
+    match registry::FREE.iter().find(|card| card.name == name) {
+        Some(card) => Ok((card.make)()),
+        None => Ok(comparable(registry::find(name)?)),
+    }
 }
 
 /// What CasADi takes for the declared function of index `I`: `Σ a sin(w x + p)`, its derivatives by formula.
