@@ -231,6 +231,9 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
     /// Which of the two assemblies that meet there is followed, the tangent decides (see
     /// [`advance_to`](Self::advance_to)). A step so long that the solver takes another assembly counts as a passage too:
     /// what looks like one and is none at that place is a step to halve.
+    ///
+    /// Where a driver turns back at the limit of what the mechanism can reach, an assembly turns back with it: no
+    /// determinant changes its sign, no passage is counted, and the rates change theirs from one step to the next.
     pub fn passages(&self) -> u32 {
         self.state.passages
     }

@@ -55,6 +55,7 @@ impl Declarations<'_> {
             docs,
             unit: unit.text.clone(),
             argument_unit: argument.text.clone(),
+            dimensions: [dimension, taken],
             continuity: *continuity,
             period,
         });
@@ -67,6 +68,7 @@ impl Declarations<'_> {
             docs,
             unit: "1".into(),
             argument_unit: "1".into(),
+            dimensions: [None; 2],
             continuity: 0,
             period: None,
         });

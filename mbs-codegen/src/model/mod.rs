@@ -125,6 +125,8 @@ pub struct Function {
     pub unit: String,
     /// Unit of the argument as written.
     pub argument_unit: String,
+    /// Their dimensions; none where a unit is at fault.
+    pub dimensions: [Option<Dimension>; 2],
     /// Number of continuous derivatives that the text counts on.
     pub continuity: u8,
     /// Period, in the unit of the argument.

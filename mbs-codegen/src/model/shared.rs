@@ -64,8 +64,7 @@ fn functions(
 }
 
 fn is_same_function(a: &Function, b: &Function) -> bool {
-    let terms =
-        |f: &Function| (f.unit.clone(), f.argument_unit.clone(), f.continuity, f.period.map(f64::to_bits));
+    let terms = |f: &Function| (f.dimensions, f.continuity, f.period.map(f64::to_bits));
     terms(a) == terms(b)
 }
 

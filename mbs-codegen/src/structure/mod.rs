@@ -13,7 +13,7 @@ use std::collections::BTreeSet;
 use crate::diagnostics::Diagnostics;
 use crate::equations::Equations;
 use crate::model::Model;
-use crate::symbolic::{Leaf, NodeId, substitute::substitute};
+use crate::symbolic::{Leaf, Node, NodeId, substitute::substitute};
 
 use dyad::Dyad;
 use matching::Matching;
@@ -65,6 +65,7 @@ pub fn analyse(model: &Model, equations: &mut Equations, diagnostics: &mut Diagn
         None => report_missing(model, &rows, &matching, diagnostics),
     }
     report_surplus(model, &rows, &matching, diagnostics);
+    report_branches(model, equations, diagnostics);
     independent::check(model, &rows, diagnostics);
     if !diagnostics.is_empty() {
         return None;
@@ -201,6 +202,21 @@ fn report_surplus(model: &Model, rows: &[Vec<usize>], matching: &Matching, diagn
             format!("{} {names} for {fixed}: {surplus} too many", count(part.starts.len(), "row")),
             "remove what follows from the other rows, or declare the coordinate that is missing in them",
         );
+    }
+}
+
+/// Names branches that no position decides.
+fn report_branches(model: &Model, equations: &Equations, diagnostics: &mut Diagnostics) {
+    let graph = &equations.graph;
+    let is_coordinate = |id: &NodeId| matches!(graph.node(*id), Node::Leaf(Leaf::Position(_)));
+    for (branch, value) in model.branches.iter().zip(&equations.branches) {
+        if !graph.reachable([*value]).iter().any(is_coordinate) {
+            diagnostics.report(
+                branch.span,
+                format!("branch `{}` contains no coordinate", branch.name),
+                "write a condition on the coordinates that tells the assemblies apart",
+            );
+        }
     }
 }
 

@@ -14,6 +14,9 @@
 //! | [`Trapezoidal`] | speed up, cruise, slow down | 1 |
 //! | [`CubicSpline`] | through points or along them | 2 |
 //! | [`PeriodicQuintic`] | through points or along them | 4 |
+//!
+//! Rows need two derivatives of a `function` (γ has the second). [`Trapezoidal`], whose acceleration jumps, drives a row as an
+//! `input …, rates` that is set before each step from its [`jet`](crate::Function::jet), or stands in outputs.
 
 mod basis;
 mod cubic_fit;
