@@ -33,7 +33,8 @@ pub struct Assembled<R, const N: usize> {
 /// # Errors
 /// [`Failure::NonFinite`] for a guess, parameter, input or time that is no number, or a row that is none from
 /// every start; [`Failure::WrongBranch`] where positions were found but none in the declared assembly;
-/// [`Failure::NotAssemblable`] with the least residual found and the rows that hold it.
+/// [`Failure::NotAssemblable`] with the least residual found and the rows that hold it, or [`Failure::Inconsistent`]
+/// where these are rows of a block that has more of them than coordinates.
 pub fn assemble<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize>(
     mechanism: &S,
     guess: impl Into<[R; N]>,
@@ -93,7 +94,7 @@ impl Search {
         };
         let ratio = solver.diagnosis().worst.ratio.to_f64();
         match failure {
-            Failure::NotConverged { .. } if ratio < self.least => {
+            Failure::NotConverged { .. } | Failure::Inconsistent { .. } if ratio < self.least => {
                 self.least = ratio;
                 self.open = Some(not_assemblable(mechanism, parameters, &q, t, failure));
             }

@@ -4,6 +4,7 @@ use crate::budgeted::Budgeted;
 use crate::diagnosis::{Statistics, extent};
 use crate::instant::Found;
 use crate::kinematics::{entry, largest_difference, position_failure, time_failure};
+use crate::nearest::contradiction;
 use crate::{Entry, Failure, Kinematic, Real, Stepper};
 
 /// The work that a step may cost at most, in each block.
@@ -133,8 +134,8 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
         let open = position_failure::<S, R, N, _>(outcome, solver.diagnosis(), t);
         let mut statistics = Statistics::of(solver.diagnosis());
         statistics.correction = largest_difference(&q, &start, &scales).to_f64();
-        if let Some(failure @ Failure::NonFinite { .. }) = open {
-            return Err(failure);
+        if let Some(failure @ (Failure::NonFinite { .. } | Failure::Inconsistent { .. })) = open {
+            return Err(contradiction(&self.mechanism, &self.parameters, &q, t, failure));
         }
         self.accept(Found { t, q, position, statistics, open })?;
         let statistics = self.statistics();

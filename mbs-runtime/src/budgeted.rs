@@ -2,6 +2,7 @@
 
 use crate::diagnosis::{Diagnosis, Worst, outer_rounding, required};
 use crate::newton::{all_finite, newton, within};
+use crate::redundant::gauss_newton;
 use crate::safeguarded::levenberg_marquardt;
 use crate::{Block, BlockSolver, Budget, Factorization, Outcome, Real};
 
@@ -58,15 +59,41 @@ impl<R: Real> BlockSolver<R> for Budgeted<R> {
             let second = levenberg_marquardt(block, x, true, extent, self.budget.fallback, &mut watched);
             evaluations = evaluations.saturating_add(second.evaluations);
         }
-        let worst = if best.any { best.worst } else { first.worst };
-        let row = worst.row.as_ref().first().copied().unwrap_or(0);
-        let outcome = match (best.any, best.closes) {
-            (true, true) => Outcome::Converged,
-            (true, false) => Outcome::NotConverged { row },
-            (false, _) => Outcome::NonFinite { row },
+        best.ended(&mut self.diagnosis, evaluations, fallback, first.worst)
+    }
+
+    fn solve_redundant<const K: usize, const M: usize>(
+        &mut self,
+        block: &Block<R, K, M>,
+        x: [R; K],
+        mut evaluate: impl FnMut(&[R; K]) -> ([R; M], [[R; K]; M]),
+        _holds: impl FnMut(&[R; K]) -> bool,
+    ) -> ([R; K], R::Lanes<Outcome>) {
+        let extent = self.extent;
+        let mut best = Best { x, worst: Worst::none(), closes: false, any: false };
+        let mut watched = |x: &[R; K]| {
+            let (residuals, jacobian) = evaluate(x);
+            best.meets(block, extent, x, &residuals, &jacobian);
+            (residuals, jacobian)
         };
-        self.diagnosis.record(evaluations, fallback, worst, best.closes);
-        (best.x, R::per_lane(|_| outcome))
+        let steps = self.budget.newton.saturating_sub(1);
+        let first = gauss_newton(block, x, true, extent, steps, &mut watched);
+        if first.attempt.converged || first.contradicts {
+            first.record(&mut self.diagnosis, true);
+            return (first.attempt.x, first.outcomes());
+        }
+        let mut evaluations = first.attempt.evaluations;
+        let fallback = !best.closes && self.budget.fallback > 0;
+        if fallback {
+            let mut watched = |x: &[R; K]| {
+                let (residuals, jacobian) = evaluate(x);
+                best.meets(block, extent, x, &residuals, &jacobian);
+                (residuals, jacobian)
+            };
+            let second = levenberg_marquardt(block, x, true, extent, self.budget.fallback, &mut watched);
+            evaluations = evaluations.saturating_add(second.evaluations);
+        }
+        best.ended(&mut self.diagnosis, evaluations, fallback, first.attempt.worst)
     }
 }
 
@@ -81,13 +108,32 @@ struct Best<R: Real, const K: usize> {
 }
 
 impl<R: Real, const K: usize> Best<R, K> {
-    fn meets(
+    /// The end of a block that cost `evaluations`; `last` is the worst row where no point was finite.
+    fn ended(
+        self,
+        diagnosis: &mut Diagnosis<R>,
+        evaluations: u32,
+        fallback: bool,
+        last: Worst<R>,
+    ) -> ([R; K], R::Lanes<Outcome>) {
+        let worst = if self.any { self.worst } else { last };
+        let row = worst.row.as_ref().first().copied().unwrap_or(0);
+        let outcome = match (self.any, self.closes) {
+            (true, true) => Outcome::Converged,
+            (true, false) => Outcome::NotConverged { row },
+            (false, _) => Outcome::NonFinite { row },
+        };
+        diagnosis.record(evaluations, fallback, worst, self.closes);
+        (self.x, R::per_lane(|_| outcome))
+    }
+
+    fn meets<const M: usize>(
         &mut self,
-        block: &Block<R, K>,
+        block: &Block<R, K, M>,
         extent: R,
         x: &[R; K],
-        residuals: &[R; K],
-        jacobian: &[[R; K]; K],
+        residuals: &[R; M],
+        jacobian: &[[R; K]; M],
     ) {
         if !all_finite(residuals, jacobian) {
             return;

@@ -12,16 +12,16 @@ pub(crate) const TERM_ROUNDINGS: f64 = 64.0;
 /// rounding, the same for each sum that it enters.
 const COORDINATE_ROUNDINGS: f64 = 4.0;
 
-/// The residual that counts as zero: ε (64 ρᵢ + 4 Σⱼ |Jᵢⱼ| |xⱼ|), K, in the unit of the row.
+/// The residual that counts as zero: ε (64 ρᵢ + 4 Σⱼ |Jᵢⱼ| |xⱼ|), M, in the unit of the row.
 ///
 /// ρ is the row's scale in the reference metric, so the tolerance is the same mechanism's in every unit; the
 /// sum is what the rounding of large coordinates (an angle after many turns) makes of the row.
 #[inline(always)]
-pub(crate) fn required<T: Scalar, const K: usize>(
-    row_scales: &[T; K],
+pub(crate) fn required<T: Scalar, const K: usize, const M: usize>(
+    row_scales: &[T; M],
     x: &[T; K],
-    jacobian: &[[T; K]; K],
-) -> [T; K] {
+    jacobian: &[[T; K]; M],
+) -> [T; M] {
     let epsilon = T::splat(T::Real::EPSILON);
     let mut required = *row_scales;
     for (tolerance, row) in required.iter_mut().zip(jacobian) {
@@ -40,11 +40,11 @@ pub(crate) fn required<T: Scalar, const K: usize>(
 /// In relative coordinates a row of the block sees ψ1 + ψ2: its rounding is that of ψ1, which may be turns away
 /// though the block knows ψ2 alone. Granted only to a residual that no longer falls.
 #[inline(always)]
-pub(crate) fn outer_rounding<T: Scalar, const K: usize>(
+pub(crate) fn outer_rounding<T: Scalar, const K: usize, const M: usize>(
     extent: T,
     coordinate_scales: &[T; K],
-    jacobian: &[[T; K]; K],
-) -> [T; K] {
+    jacobian: &[[T; K]; M],
+) -> [T; M] {
     jacobian.map(|row| {
         let mut reach = T::constant(0.0);
         for (entry, scale) in row.into_iter().zip(coordinate_scales) {
@@ -98,10 +98,10 @@ impl<T: Scalar> Worst<T> {
 
     /// The worst row of a block. A NaN is worse than any number, and the first one is kept.
     #[inline(always)]
-    pub(crate) fn of_block<const K: usize>(
-        block: &Block<T, K>,
-        residuals: &[T; K],
-        required: &[T; K],
+    pub(crate) fn of_block<const K: usize, const M: usize>(
+        block: &Block<T, K, M>,
+        residuals: &[T; M],
+        required: &[T; M],
     ) -> Self {
         let zero = T::constant(0.0);
         let (mut ratio, mut residual, mut tolerance, mut index) = (zero, zero, zero, zero);

@@ -14,11 +14,27 @@ pub enum Outcome {
         /// Index of the row in Φ.
         row: u16,
     },
+    /// Rows more than coordinates contradict each other: their least residual is above its tolerance.
+    Inconsistent {
+        /// Index in Φ of the row that is farthest above it.
+        row: u16,
+    },
     /// The residual or the Jacobian became NaN or infinite.
     NonFinite {
         /// Index of the row in Φ.
         row: u16,
     },
+}
+
+/// Position, or which of its time derivatives.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Level {
+    /// The rows themselves.
+    Position,
+    /// Their first time derivatives.
+    Velocity,
+    /// Their second time derivatives.
+    Acceleration,
 }
 
 /// Lane by lane the first of two outcomes that is no success.
@@ -141,8 +157,21 @@ pub enum Failure {
         /// Time (s).
         time: f64,
     },
-    /// The start, or a state to be put back onto the constraints, violates a row.
+    /// Rows of which some should follow from others contradict each other: nothing satisfies all of them.
     Inconsistent {
+        /// The rows that stay open, those farthest off first.
+        rows: Holding,
+        /// Whether they, or their time derivatives.
+        level: Level,
+        /// What the worst of them is off by where all together are least so, in its unit (per s, per s²).
+        residual: f64,
+        /// What is allowed.
+        required: f64,
+        /// Time (s).
+        time: f64,
+    },
+    /// The start, or a state to be put back onto the constraints, violates a row.
+    OffConstraints {
         /// The row that is violated most, in the reference metric.
         row: Entry,
         /// Whether its rate is violated, and not the row itself.
@@ -252,6 +281,7 @@ impl Failure {
             | Failure::StepTooSmall { time, .. }
             | Failure::StepTooLong { time, .. }
             | Failure::Inconsistent { time, .. }
+            | Failure::OffConstraints { time, .. }
             | Failure::Inertialess { time, .. }
             | Failure::Unbalanced { time, .. } => *time,
             Failure::NonFinite { .. } | Failure::Foreign { .. } => 0.0,
@@ -323,7 +353,18 @@ impl fmt::Display for Failure {
                 "the step at t = {time} s is too long: step times frequency is {product:.3}, allowed {allowed:.3}; take a \
                  smaller step or a lower frequency"
             ),
-            Failure::Inconsistent { row, rate, residual, allowed, .. } => write!(
+            Failure::Inconsistent { rows, level, residual, required, .. } => write!(
+                f,
+                "{}{rows} contradict each other at t = {time} s: {residual:.3e} stays open at best, required \
+                 {required:.3e}; give the dimensions that let these rows follow from one another all their digits, or \
+                 leave the surplus rows out",
+                match level {
+                    Level::Position => "",
+                    Level::Velocity => "the rates of ",
+                    Level::Acceleration => "the accelerations of ",
+                }
+            ),
+            Failure::OffConstraints { row, rate, residual, allowed, .. } => write!(
                 f,
                 "{} `{}` (line {}) is violated at t = {time} s: {residual:.3e}, allowed {allowed:.3e}; start on the \
                  constraints, or let the start be projected",
@@ -388,7 +429,14 @@ mod tests {
             Failure::WrongBranch { branch: ROW, value: -1.0, time },
             Failure::BeyondLimit { limit: ROW, value: 2.0, bound: 1.0, time },
             Failure::TooFar { coordinate: ROW, distance: 1.0, allowed: 0.5, time },
-            Failure::Inconsistent { row: ROW, rate: false, residual, allowed: required, time },
+            Failure::Inconsistent {
+                rows: Holding::of(&[ROW], [1.0].into_iter()),
+                level: Level::Velocity,
+                residual,
+                required,
+                time,
+            },
+            Failure::OffConstraints { row: ROW, rate: false, residual, allowed: required, time },
             Failure::Inertialess { coordinate: ROW, time },
             Failure::Unbalanced { coordinate: ROW, iterations: 9, time },
         ];

@@ -5,6 +5,7 @@ use crate::kinematics::{branch_failure, coordinate_failure, largest_difference, 
 use crate::limit::limit_failure;
 use crate::linear::determines_rates;
 use crate::path::is_near;
+use crate::redundancy::disagreement;
 use crate::stepper::State;
 use crate::{Failure, Kinematic, Margin, Mechanism, Real};
 
@@ -92,6 +93,10 @@ impl<R: Real, const N: usize> Rates<R, N> {
         let right = mechanism.gamma(parameters, position, &self.qd);
         if let Some(failure) = rates(mechanism, &factors, &right, &mut self.qdd) {
             return Some(failure);
+        }
+        // The rates of a position that does not close contradict each other by what it is open.
+        if M > N && found.open.is_none() {
+            return disagreement(mechanism, parameters, position, (&self.qd, &self.qdd), self.margin, t);
         }
         found.open.and_then(|open| self.repaired(mechanism, parameters, found, &factors, open))
     }

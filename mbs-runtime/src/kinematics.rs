@@ -1,7 +1,9 @@
 //! Position, velocity and acceleration of one instant, as functions of mechanism and stage values.
 
 use crate::diagnosis::{Diagnosis, Statistics, extent, largest};
+use crate::failure::{Holding, Level};
 use crate::linear::{determines_rates, least_margin};
+use crate::nearest::contradiction;
 use crate::{Entry, Failure, Kinematic, Margin, Mechanism, Newton, Outcome, Real};
 
 /// Factors of a Jacobian that is regular: the only ones that rates are solved with.
@@ -29,7 +31,8 @@ impl<F, R: Copy> RegularFactors<F, R> {
 /// `start`: N, near the solution; `t` (s). Returns `q`: N, and what it cost.
 ///
 /// # Errors
-/// [`Failure::NotConverged`] with the worst row, [`Failure::NonFinite`] with the row that became NaN.
+/// [`Failure::NotConverged`] with the worst row, [`Failure::Inconsistent`] with the rows that contradict each other,
+/// [`Failure::NonFinite`] with the row that became NaN.
 #[inline(always)]
 pub fn solve_position<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize>(
     mechanism: &S,
@@ -66,6 +69,11 @@ pub(crate) fn next_position<S: Kinematic<R, N, M>, R: Real, const N: usize, cons
     let mut solver = Newton::new(extent(&start, &scales));
     let (outcome, position) = mechanism.solve_with_position(parameters, q, t, &mut solver);
     let failure = position_failure::<S, R, N, M>(outcome, solver.diagnosis(), t);
+    let failure = match failure {
+        // Only a block with surplus rows can be inconsistent.
+        Some(failure) if M > N => Some(contradiction(mechanism, parameters, q, t, failure)),
+        failure => failure,
+    };
     let mut statistics = Statistics::of(solver.diagnosis());
     statistics.correction = largest_difference(q, &start, &scales).to_f64();
     (position, statistics, failure)
@@ -180,6 +188,13 @@ pub(crate) fn position_failure<S: Mechanism<R, N, M>, R: Real, const N: usize, c
     match outcome.as_ref().first().copied().unwrap_or(Outcome::Converged) {
         Outcome::Converged => None,
         Outcome::NotConverged { row } => Some(not_converged::<S, R, N, M>(row, diagnosis, t)),
+        Outcome::Inconsistent { row } => Some(Failure::Inconsistent {
+            rows: Holding::of(S::ROWS, (0..S::ROWS.len()).map(|index| f64::from(index == usize::from(row)))),
+            level: Level::Position,
+            residual: diagnosis.worst.residual.to_f64(),
+            required: diagnosis.worst.required.to_f64(),
+            time: t.to_f64(),
+        }),
         Outcome::NonFinite { row } => {
             let row = entry(S::ROWS, row);
             Some(Failure::NonFinite { name: row.name, line: row.line })

@@ -34,6 +34,8 @@ pub mod newton_raphson;
 pub mod operations;
 mod path;
 pub mod phase;
+pub mod redundancy;
+mod redundant;
 pub mod resolution;
 pub mod safeguarded;
 pub mod saved;
@@ -54,12 +56,12 @@ pub use budget::{Budget, Step};
 pub use diagnosis::{Diagnosis, Statistics, Worst};
 pub use dyad::{Dyad, Roots, Single};
 pub use dynamic::{Dynamic, Energy, Motion, Partitioned};
-pub use failure::{Failure, Holding, Outcome};
+pub use failure::{Failure, Holding, Level, Outcome};
 pub use function::{Function, FunctionEntry};
 pub use kinematics::{RegularFactors, factorize, solve_acceleration, solve_position, solve_velocity};
 pub use lanes::Lanes;
 pub use limit::{Limit, Warning};
-pub use linear::{Direct1, Direct2, Direct3, Lu};
+pub use linear::{Direct1, Direct2, Direct3, Lu, Orthogonal};
 pub use mechanism::{
     Block, BlockSolver, Entry, Evaluation, Factorization, Kinematic, Margin, Mechanism, OutputValue, Signal,
     Whole,
@@ -68,6 +70,7 @@ pub use newton::Newton;
 pub use newton_raphson::{Iterate, newton_raphson, newton_raphson_watched};
 pub use operations::Operations;
 pub use phase::{Phase, Speed};
+pub use redundancy::Redundancy;
 pub use resolution::IllScaled;
 pub use safeguarded::Safeguarded;
 pub use saved::Saved;

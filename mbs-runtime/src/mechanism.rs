@@ -99,6 +99,8 @@ pub trait Mechanism<T: Scalar, const N: usize, const M: usize>: Clone {
     const COORDINATES: &'static [Entry];
     /// Constraint rows in the order of Φ: M.
     const ROWS: &'static [Entry];
+    /// Of each row, whether it may follow from others: a constraint marked `redundant`. Empty where none may.
+    const REDUNDANT: &'static [bool] = &[];
     /// Row and column of each entry of Φ_q that is not zero by structure, row by row, columns ascending.
     const SPARSITY: &'static [(u16, u16)];
     /// Parameters and inputs, the public fields, component by component, as far as the scene's own statements declare
@@ -198,17 +200,18 @@ pub trait Mechanism<T: Scalar, const N: usize, const M: usize>: Clone {
     }
 }
 
-/// Where a diagonal block of the block-triangular order stands in Φ and q, and its share of the metric.
+/// Where a diagonal block of the block-triangular order stands in Φ and q, and its share of the metric; of more rows than
+/// coordinates, M > K, where some of them may follow from others.
 #[derive(Clone, Copy, Debug)]
-pub struct Block<T, const K: usize> {
-    /// Rows of Φ: K.
-    pub rows: [u16; K],
+pub struct Block<T, const K: usize, const M: usize = K> {
+    /// Rows of Φ: M.
+    pub rows: [u16; M],
     /// Coordinates solved for: K.
     pub coordinates: [u16; K],
     /// Whether a coordinate is an angle, whose steps are capped: K.
     pub angles: [bool; K],
-    /// Reference metric of the rows: K.
-    pub row_scales: [T; K],
+    /// Reference metric of the rows: M.
+    pub row_scales: [T; M],
     /// Reference metric of the coordinates: K.
     pub coordinate_scales: [T; K],
 }
@@ -283,9 +286,23 @@ pub trait BlockSolver<T: Scalar> {
     ) -> ([T; K], T::Lanes<Outcome>) {
         self.solve_branched::<K, F>(block, x, evaluate, holds)
     }
+
+    /// As [`solve_branched`](Self::solve_branched), for a block of M rows for K coordinates, M > K, of which some may
+    /// follow from others.
+    ///
+    /// The least residual counts as a solution where it is within every row's tolerance; where it is not, the rows
+    /// contradict each other: [`Outcome::Inconsistent`].
+    fn solve_redundant<const K: usize, const M: usize>(
+        &mut self,
+        block: &Block<T, K, M>,
+        x: [T; K],
+        evaluate: impl FnMut(&[T; K]) -> ([T; M], [[T; K]; M]),
+        holds: impl FnMut(&[T; K]) -> T::Mask,
+    ) -> ([T; K], T::Lanes<Outcome>);
 }
 
-/// A mechanism whose rows fix every coordinate. Emitted only where the structure says square.
+/// A mechanism whose rows fix every coordinate: as many rows as coordinates, or more where constraints are marked
+/// `redundant`. Emitted only where the structure says so.
 pub trait Kinematic<T: Scalar, const N: usize, const M: usize = N>: Mechanism<T, N, M> {
     /// Factorised diagonal blocks and the entries of Φ_q off them.
     type Factors: Copy;
@@ -325,7 +342,8 @@ pub trait Kinematic<T: Scalar, const N: usize, const M: usize = N>: Mechanism<T,
         position: &Self::Position,
     ) -> (Self::Factors, Margin<T>);
 
-    /// Solves Φ_q x = b with factors from [`factorize`](Self::factorize): `−Φ_t` gives q̇, `γ` gives q̈.
+    /// Solves Φ_q x = b (M) with factors from [`factorize`](Self::factorize): `−Φ_t` gives q̇, `γ` gives q̈; by least
+    /// squares in the reference metric where a block has more rows than coordinates.
     fn solve_linear(&self, factors: &Self::Factors, b: &[T; M]) -> [T; N];
 }
 
@@ -340,7 +358,7 @@ pub struct Margin<T: Scalar> {
     pub coordinate: T::Lanes<u16>,
     /// Signs of the blocks' determinants, one bit a block, a lane. Where a bit has changed from one position to the
     /// next, the mechanism passed a singular position in between, or it is in another assembly. Bits of more than 64
-    /// blocks lie on each other.
+    /// blocks lie on each other; blocks of more rows than coordinates have no determinant and no bit.
     pub orientation: T::Lanes<u64>,
 }
 

@@ -4,7 +4,7 @@ use crate::diagnosis::{Diagnosis, Statistics, extent};
 use crate::failure::Holding;
 use crate::kinematics::{largest_difference, position_failure};
 use crate::safeguarded::attempt;
-use crate::{Block, BlockSolver, Factorization, Failure, Kinematic, Mechanism, Outcome, Real};
+use crate::{Block, BlockSolver, Factorization, Failure, Kinematic, Mechanism, Outcome, Real, redundant};
 
 /// Solves Φ(q, t) = 0 by Levenberg–Marquardt from `start` (N) and from there alone.
 ///
@@ -28,6 +28,19 @@ pub(crate) fn solve_nearest<S: Kinematic<R, N, M>, R: Real, const N: usize, cons
     Ok((q, statistics))
 }
 
+/// A contradiction of rows with all rows that take part in it at `q` (N); other failures as they are.
+pub(crate) fn contradiction<S: Mechanism<R, N, M>, R: Real, const N: usize, const M: usize>(
+    mechanism: &S,
+    parameters: &S::Parameters,
+    q: &[R; N],
+    t: R,
+    failure: Failure,
+) -> Failure {
+    let Failure::Inconsistent { level, residual, required, time, .. } = failure else { return failure };
+    let rows = holding(mechanism, parameters, q, t);
+    Failure::Inconsistent { rows, level, residual, required, time }
+}
+
 /// A solver's `failure` to converge as what it means where it came to the least residual, at `q` (N); others as they are.
 pub(crate) fn not_assemblable<S: Mechanism<R, N, M>, R: Real, const N: usize, const M: usize>(
     mechanism: &S,
@@ -36,12 +49,24 @@ pub(crate) fn not_assemblable<S: Mechanism<R, N, M>, R: Real, const N: usize, co
     t: R,
     failure: Failure,
 ) -> Failure {
-    let Failure::NotConverged { row, residual, time, .. } = failure else { return failure };
+    let Failure::NotConverged { row, residual, time, .. } = failure else {
+        return contradiction(mechanism, parameters, q, t, failure);
+    };
+    Failure::NotAssemblable { row, residual, rows: holding(mechanism, parameters, q, t), time }
+}
+
+/// The rows with the largest parts of the residual at `q`, in the reference metric.
+fn holding<S: Mechanism<R, N, M>, R: Real, const N: usize, const M: usize>(
+    mechanism: &S,
+    parameters: &S::Parameters,
+    q: &[R; N],
+    t: R,
+) -> Holding {
     let position = mechanism.position(parameters, q, t);
     let phi = mechanism.phi(parameters, &position);
     let scales = mechanism.row_scales(parameters);
     let parts = phi.iter().zip(&scales).map(|(residual, scale)| (*residual / *scale).abs().to_f64());
-    Failure::NotAssemblable { row, residual, rows: Holding::of(S::ROWS, parts), time }
+    Holding::of(S::ROWS, parts)
 }
 
 /// Levenberg–Marquardt from the start value alone.
@@ -60,5 +85,17 @@ impl<R: Real> BlockSolver<R> for Nearest<R> {
         let (attempt, plain) = attempt::<R, K, F>(block, x, true, self.extent, &mut evaluate);
         self.diagnosis.record(attempt.evaluations, !plain, attempt.worst, attempt.converged);
         (attempt.x, attempt.outcomes())
+    }
+
+    fn solve_redundant<const K: usize, const M: usize>(
+        &mut self,
+        block: &Block<R, K, M>,
+        x: [R; K],
+        mut evaluate: impl FnMut(&[R; K]) -> ([R; M], [[R; K]; M]),
+        _holds: impl FnMut(&[R; K]) -> bool,
+    ) -> ([R; K], R::Lanes<Outcome>) {
+        let settled = redundant::from_far(block, x, true, self.extent, &mut evaluate);
+        settled.record(&mut self.diagnosis, true);
+        (settled.attempt.x, settled.outcomes())
     }
 }

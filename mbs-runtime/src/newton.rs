@@ -3,7 +3,7 @@
 use crate::diagnosis::{Diagnosis, Worst, outer_rounding, required};
 use crate::linear::{is_regular, orthogonal::minimum_norm};
 use crate::safeguarded::{TRIALS, levenberg_marquardt};
-use crate::{Block, BlockSolver, Factorization, Outcome, Real, Scalar};
+use crate::{Block, BlockSolver, Factorization, Outcome, Real, Scalar, redundant};
 
 /// Iterations before the safeguarded method takes over. Quadratic convergence needs 2 to 6; at a change point it
 /// is linear, a quarter of the residual a step, and 17 were measured on a four-bar in line.
@@ -70,6 +70,18 @@ impl<T: Scalar> BlockSolver<T> for Newton<T> {
                 (attempt.x, attempt.outcomes())
             }
         }
+    }
+
+    fn solve_redundant<const K: usize, const M: usize>(
+        &mut self,
+        block: &Block<T, K, M>,
+        x: [T; K],
+        mut evaluate: impl FnMut(&[T; K]) -> ([T; M], [[T; K]; M]),
+        _holds: impl FnMut(&[T; K]) -> T::Mask,
+    ) -> ([T; K], T::Lanes<Outcome>) {
+        let (settled, plain) = redundant::next(block, x, self.extent, &mut evaluate);
+        settled.record(&mut self.diagnosis, plain);
+        (settled.attempt.x, settled.outcomes())
     }
 }
 
@@ -317,7 +329,10 @@ fn shortest_steps<T: Scalar, const K: usize>(
 
 /// The step shortened as a whole so that no angle changes by more than [`LARGEST_ANGLE_STEP`].
 #[inline(always)]
-pub(crate) fn capped<T: Scalar, const K: usize>(block: &Block<T, K>, step: [T; K]) -> [T; K] {
+pub(crate) fn capped<T: Scalar, const K: usize, const M: usize>(
+    block: &Block<T, K, M>,
+    step: [T; K],
+) -> [T; K] {
     let (limit, largest) = (T::constant(LARGEST_ANGLE_STEP), largest_turn(block, &step));
     let beyond = limit.less(largest);
     if T::all(!beyond) {
@@ -335,7 +350,7 @@ fn beyond<T: Scalar, const K: usize>(block: &Block<T, K>, step: &[T; K]) -> T::M
 
 /// Largest change of an angle.
 #[inline(always)]
-fn largest_turn<T: Scalar, const K: usize>(block: &Block<T, K>, step: &[T; K]) -> T {
+fn largest_turn<T: Scalar, const K: usize, const M: usize>(block: &Block<T, K, M>, step: &[T; K]) -> T {
     let mut largest = T::constant(0.0);
     for (change, is_angle) in step.iter().zip(block.angles) {
         if is_angle {
@@ -347,7 +362,10 @@ fn largest_turn<T: Scalar, const K: usize>(block: &Block<T, K>, step: &[T; K]) -
 
 /// Whether residuals and Jacobian are finite.
 #[inline(always)]
-pub(crate) fn all_finite<T: Scalar, const K: usize>(residuals: &[T; K], jacobian: &[[T; K]; K]) -> T::Mask {
+pub(crate) fn all_finite<T: Scalar, const K: usize, const M: usize>(
+    residuals: &[T; M],
+    jacobian: &[[T; K]; M],
+) -> T::Mask {
     let mut finite = T::mask(true);
     for (residual, row) in residuals.iter().zip(jacobian) {
         finite = finite & residual.is_finite();

@@ -2,14 +2,15 @@
 
 use crate::diagnosis::required;
 use crate::kinematics::{entry, non_finite, time_failure, variable_failure};
-use crate::linear::{Lu, orthogonal::least_independent_column};
+use crate::linear::{Lu, Orthogonal, orthogonal::least_independent_column};
 use crate::newton::{all_finite, largest_ratio};
 use crate::{Factorization, Failure, Mechanism, Real};
 
 /// Iterations before giving up; from 0.1 rad away five are enough.
 const ITERATIONS: u32 = 50;
 
-/// Positions from Φ_q Δq = −Φ, q ← q + Δq, on the dense N × N system.
+/// Positions from Φ_q Δq = −Φ, q ← q + Δq, on the dense M × N system; by least squares where M > N, which is then
+/// Gauss–Newton.
 ///
 /// The method of the textbook, for teaching and as a reference: no predictor, no blocks, no safeguard, so a far
 /// start may diverge or end in another assembly. `q`: start, N; `t` (s). Returns the position and the number of
@@ -17,7 +18,7 @@ const ITERATIONS: u32 = 50;
 ///
 /// # Errors
 /// [`Failure::NonFinite`], [`Failure::Singular`], [`Failure::NotConverged`] with the worst row.
-pub fn newton_raphson<S: Mechanism<R, N, N>, R: Real, const N: usize>(
+pub fn newton_raphson<S: Mechanism<R, N, M>, R: Real, const N: usize, const M: usize>(
     mechanism: &S,
     q: impl Into<[R; N]>,
     t: R,
@@ -27,22 +28,22 @@ pub fn newton_raphson<S: Mechanism<R, N, N>, R: Real, const N: usize>(
 
 /// A position on the way of [`newton_raphson`], before it is judged.
 #[derive(Clone, Copy, Debug)]
-pub struct Iterate<'a, R, const N: usize> {
+pub struct Iterate<'a, R, const N: usize, const M: usize = N> {
     /// Coordinates: N.
     pub q: &'a [R; N],
-    /// Residuals Φ there: N, in the unit of the row.
-    pub phi: &'a [R; N],
+    /// Residuals Φ there: M, in the unit of the row.
+    pub phi: &'a [R; M],
 }
 
 /// [`newton_raphson`], each iterate told to `watch`.
 ///
 /// # Errors
 /// Those of [`newton_raphson`].
-pub fn newton_raphson_watched<S: Mechanism<R, N, N>, R: Real, const N: usize>(
+pub fn newton_raphson_watched<S: Mechanism<R, N, M>, R: Real, const N: usize, const M: usize>(
     mechanism: &S,
     q: impl Into<[R; N]>,
     t: R,
-    mut watch: impl FnMut(Iterate<'_, R, N>),
+    mut watch: impl FnMut(Iterate<'_, R, N, M>),
 ) -> Result<([R; N], u32), Failure> {
     let mut q = q.into();
     let broken = time_failure(t).or(variable_failure(mechanism)).or(non_finite(&q, S::COORDINATES));
@@ -67,20 +68,40 @@ pub fn newton_raphson_watched<S: Mechanism<R, N, N>, R: Real, const N: usize>(
             return Ok((q, iteration));
         }
         missed = Some((phi, tolerances));
-        let (factors, margin) = Lu::<R, N>::factorize(&phi_q, &row_scales, &scales);
+        let (step, margin) = newton_step(&phi_q, &phi, &row_scales, &scales);
         if !crate::linear::is_regular(margin) {
-            return Err(singular::<S, R, N>(&phi_q, &scales, &row_scales, margin, t));
+            return Err(singular::<S, R, N, M>(&phi_q, &scales, &row_scales, margin, t));
         }
-        let step = factors.solve(&phi.map(|r| -r));
         q.iter_mut().zip(step).for_each(|(coordinate, change)| *coordinate = *coordinate + change);
     }
-    Err(not_converged::<S, R, N>(missed, t))
+    Err(not_converged::<S, R, N, M>(missed, t))
+}
+
+/// The step from `phi` (M) and `phi_q` (M rows of N), and the margin to singularity.
+fn newton_step<R: Real, const N: usize, const M: usize>(
+    phi_q: &[[R; N]; M],
+    phi: &[R; M],
+    row_scales: &[R; M],
+    coordinate_scales: &[R; N],
+) -> ([R; N], R) {
+    let right = phi.map(|r| -r);
+    if M > N {
+        let (factors, margin) = Orthogonal::factorize(phi_q, row_scales, coordinate_scales);
+        return (factors.solve(&right), margin);
+    }
+    let (mut square, mut b, mut scales) =
+        ([[R::constant(0.0); N]; N], [R::constant(0.0); N], [R::constant(1.0); N]);
+    square.iter_mut().zip(phi_q).for_each(|(row, source)| *row = *source);
+    b.iter_mut().zip(right).for_each(|(component, source)| *component = source);
+    scales.iter_mut().zip(row_scales).for_each(|(scale, source)| *scale = *source);
+    let (factors, margin) = Lu::<R, N>::factorize(&square, &scales, coordinate_scales);
+    (factors.solve(&b), margin)
 }
 
 /// The failure of a start that leads nowhere, with the row that is farthest above its tolerance.
 #[cold]
-fn not_converged<S: Mechanism<R, N, N>, R: Real, const N: usize>(
-    missed: Option<([R; N], [R; N])>,
+fn not_converged<S: Mechanism<R, N, M>, R: Real, const N: usize, const M: usize>(
+    missed: Option<([R; M], [R; M])>,
     t: R,
 ) -> Failure {
     let (mut worst, mut ratio) = ((0, 0.0, 0.0), R::constant(0.0));
@@ -99,19 +120,20 @@ fn not_converged<S: Mechanism<R, N, N>, R: Real, const N: usize>(
 
 /// The failure of a dense Jacobian, with the row and the coordinate that the others explain best.
 #[cold]
-fn singular<S: Mechanism<R, N, N>, R: Real, const N: usize>(
-    phi_q: &[[R; N]; N],
+fn singular<S: Mechanism<R, N, M>, R: Real, const N: usize, const M: usize>(
+    phi_q: &[[R; N]; M],
     coordinate_scales: &[R; N],
-    row_scales: &[R; N],
+    row_scales: &[R; M],
     margin: R,
     t: R,
 ) -> Failure {
-    let mut transposed = [[R::constant(0.0); N]; N];
+    let mut transposed = [[R::constant(0.0); M]; N];
     for (j, row) in transposed.iter_mut().enumerate() {
         row.iter_mut().zip(phi_q).for_each(|(entry, source)| *entry = source[j]);
     }
-    let inverse = |scales: &[R; N]| scales.map(|scale| R::constant(1.0) / scale);
-    let row = least_independent_column(&transposed, &inverse(coordinate_scales), &inverse(row_scales));
+    let one = R::constant(1.0);
+    let (columns, rows) = (coordinate_scales.map(|scale| one / scale), row_scales.map(|scale| one / scale));
+    let row = least_independent_column(&transposed, &columns, &rows);
     let coordinate = least_independent_column(phi_q, row_scales, coordinate_scales);
     let index = |column: usize| u16::try_from(column).unwrap_or(u16::MAX);
     Failure::Singular {

@@ -4,14 +4,14 @@ use crate::diagnosis::{Diagnosis, Worst, outer_rounding, required};
 use crate::dyad::{Roots, closed, taking};
 use crate::newton::{Attempt, ITERATIONS, all_finite, capped, newton, select, within};
 use crate::starts::displaced;
-use crate::{Block, BlockSolver, Factorization, Outcome, Real, Scalar};
+use crate::{Block, BlockSolver, Factorization, Outcome, Real, Scalar, redundant};
 
 /// Trial steps a start; one costs as much as a Newton step. From 1000 rad away 52 were measured on a four-bar.
 pub(crate) const TRIALS: u32 = 120;
 
 /// Starts of a block beside the given one. Each falls into either assembly of a dyad with odds of about one half, so
 /// that 32 miss the declared one in 4e9.
-const OTHER_STARTS: u32 = 32;
+pub(crate) const OTHER_STARTS: u32 = 32;
 
 /// Damping at the start, relative to the mean of diag JᵀJ: close to Gauss–Newton, so that a good guess is not
 /// led to another assembly.
@@ -109,6 +109,19 @@ impl<T: Scalar> BlockSolver<T> for Safeguarded<T> {
         self.diagnosis.record(found.evaluations, !formula, found.worst, found.converged);
         (found.x, found.outcomes())
     }
+
+    /// As [`solve_branched`](BlockSolver::solve_branched), each start finished and judged by Gauss–Newton.
+    fn solve_redundant<const K: usize, const M: usize>(
+        &mut self,
+        block: &Block<T, K, M>,
+        x: [T; K],
+        mut evaluate: impl FnMut(&[T; K]) -> ([T; M], [[T; K]; M]),
+        mut holds: impl FnMut(&[T; K]) -> T::Mask,
+    ) -> ([T; K], T::Lanes<Outcome>) {
+        let (found, plain) = redundant::search(block, x, self.extent, &mut evaluate, &mut holds);
+        found.record(&mut self.diagnosis, plain);
+        (found.attempt.x, found.outcomes())
+    }
 }
 
 /// The search of [`Safeguarded`] in the lanes of `active`, and whether its first start was enough.
@@ -177,15 +190,15 @@ pub(crate) fn attempt<T: Scalar, const K: usize, F: Factorization<T, K>>(
 /// mean of diag JᵀJ vanishes with the residual, so that convergence is quadratic at the end.
 /// Source: Levenberg 1944, Marquardt 1963; Yamashita & Fukushima 2001 for μ.
 #[inline(never)]
-pub(crate) fn levenberg_marquardt<T: Scalar, const K: usize>(
-    block: &Block<T, K>,
+pub(crate) fn levenberg_marquardt<T: Scalar, const K: usize, const M: usize>(
+    block: &Block<T, K, M>,
     start: [T; K],
     active: T::Mask,
     extent: T,
     trials: u32,
-    evaluate: &mut impl FnMut(&[T; K]) -> ([T; K], [[T; K]; K]),
+    evaluate: &mut impl FnMut(&[T; K]) -> ([T; M], [[T; K]; M]),
 ) -> Attempt<T, K> {
-    let none = [T::constant(0.0); K];
+    let none = [T::constant(0.0); M];
     let mut x = start;
     let (mut residuals, mut jacobian) = evaluate(&x);
     let mut evaluations = 1;
@@ -234,7 +247,7 @@ struct NormalEquations<T, const K: usize> {
 }
 
 impl<T: Scalar, const K: usize> NormalEquations<T, K> {
-    fn of(block: &Block<T, K>, residuals: &[T; K], jacobian: &[[T; K]; K]) -> Self {
+    fn of<const M: usize>(block: &Block<T, K, M>, residuals: &[T; M], jacobian: &[[T; K]; M]) -> Self {
         let zero = T::constant(0.0);
         let mut system = NormalEquations { matrix: [[zero; K]; K], gradient: [zero; K], cost: zero };
         for ((row, residual), row_scale) in jacobian.iter().zip(residuals).zip(block.row_scales) {
@@ -266,7 +279,7 @@ impl<T: Scalar, const K: usize> NormalEquations<T, K> {
     }
 
     /// The damped step, in the units of the coordinates.
-    fn step(&self, block: &Block<T, K>, damping: T) -> [T; K] {
+    fn step<const M: usize>(&self, block: &Block<T, K, M>, damping: T) -> [T; K] {
         let (zero, one) = (T::constant(0.0), T::constant(1.0));
         let mean = self.trace() / T::constant(K as f64);
         let added = damping * self.cost.sqrt().min(one) * mean;

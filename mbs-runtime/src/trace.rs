@@ -5,14 +5,14 @@ use crate::{Block, BlockSolver, Factorization, Outcome, Roots, Scalar};
 /// Hears what a [`Traced`] solver does.
 pub trait Trace<T: Scalar> {
     /// A nonlinear block begins; blocks that are assigned are not solved and not heard.
-    fn block<const K: usize>(&mut self, block: &Block<T, K>);
-    /// Residuals and Jacobian of that block were evaluated at `x`: K each, Jacobian by rows.
-    fn iterate<const K: usize>(
+    fn block<const K: usize, const M: usize>(&mut self, block: &Block<T, K, M>);
+    /// Residuals (M) and Jacobian (M rows of K) of that block were evaluated at `x` (K).
+    fn iterate<const K: usize, const M: usize>(
         &mut self,
-        block: &Block<T, K>,
+        block: &Block<T, K, M>,
         x: &[T; K],
-        residuals: &[T; K],
-        jacobian: &[[T; K]; K],
+        residuals: &[T; M],
+        jacobian: &[[T; K]; M],
     );
     /// The block ended, lane by lane.
     fn end(&mut self, outcome: &T::Lanes<Outcome>);
@@ -96,6 +96,25 @@ impl<T: Scalar, S: BlockSolver<T>, L: Trace<T>> BlockSolver<T> for Traced<'_, S,
         self.trace.end(&outcome);
         (x, outcome)
     }
+
+    fn solve_redundant<const K: usize, const M: usize>(
+        &mut self,
+        block: &Block<T, K, M>,
+        x: [T; K],
+        mut evaluate: impl FnMut(&[T; K]) -> ([T; M], [[T; K]; M]),
+        holds: impl FnMut(&[T; K]) -> T::Mask,
+    ) -> ([T; K], T::Lanes<Outcome>) {
+        self.trace.block(block);
+        let trace = &mut *self.trace;
+        let watched = |x: &[T; K]| {
+            let (residuals, jacobian) = evaluate(x);
+            trace.iterate(block, x, &residuals, &jacobian);
+            (residuals, jacobian)
+        };
+        let (x, outcome) = self.solver.solve_redundant::<K, M>(block, x, watched, holds);
+        self.trace.end(&outcome);
+        (x, outcome)
+    }
 }
 
 #[cfg(test)]
@@ -112,15 +131,15 @@ mod tests {
     }
 
     impl Trace<f64> for Heard {
-        fn block<const K: usize>(&mut self, _: &Block<f64, K>) {
+        fn block<const K: usize, const M: usize>(&mut self, _: &Block<f64, K, M>) {
             self.blocks += 1;
         }
-        fn iterate<const K: usize>(
+        fn iterate<const K: usize, const M: usize>(
             &mut self,
-            _: &Block<f64, K>,
+            _: &Block<f64, K, M>,
             _: &[f64; K],
-            r: &[f64; K],
-            _: &[[f64; K]; K],
+            r: &[f64; M],
+            _: &[[f64; K]; M],
         ) {
             self.residuals[self.count] = r[0];
             self.count += 1;

@@ -136,7 +136,15 @@ pub fn boxed<S, const N: usize>() -> Box<dyn AnyMechanism>
 where
     S: Kinematic<f64, N> + Default + 'static,
 {
-    Box::new(Facade::<S, N, N>(S::default()))
+    boxed_redundant::<S, N, N>()
+}
+
+/// A new mechanism of type `S` behind the common face, of more rows than coordinates.
+pub fn boxed_redundant<S, const N: usize, const M: usize>() -> Box<dyn AnyMechanism>
+where
+    S: Kinematic<f64, N, M> + Default + 'static,
+{
+    Box::new(Facade::<S, N, M>(S::default()))
 }
 
 /// A mechanism of `N` coordinates and `M` rows behind the common face.
@@ -195,7 +203,7 @@ impl<S: Mechanism<f64, N, M>, const N: usize, const M: usize> AnyEquations for F
     }
 }
 
-impl<S: Kinematic<f64, N>, const N: usize> AnyMechanism for Facade<S, N> {
+impl<S: Kinematic<f64, N, M>, const N: usize, const M: usize> AnyMechanism for Facade<S, N, M> {
     fn follow(&self, times: &[f64], progress: &mut dyn FnMut(usize)) -> Result<Motion, Failure> {
         let Some((first, rest)) = times.split_first() else { return Ok(Motion::default()) };
         let mut stepper = self.assembled(*first)?;
@@ -234,8 +242,8 @@ impl<S: Kinematic<f64, N>, const N: usize> AnyMechanism for Facade<S, N> {
     }
 }
 
-impl<S: Kinematic<f64, N>, const N: usize> Facade<S, N> {
-    fn assembled(&self, t: f64) -> Result<Stepper<S, f64, N>, Failure> {
+impl<S: Kinematic<f64, N, M>, const N: usize, const M: usize> Facade<S, N, M> {
+    fn assembled(&self, t: f64) -> Result<Stepper<S, f64, N, M>, Failure> {
         Stepper::assemble(self.0.clone(), self.0.guess(&self.0.parameters()), t)
     }
 }

@@ -19,6 +19,7 @@ pub mod cam_oscillating;
 pub mod cam_roller;
 pub mod cart_pole;
 pub mod determinant_guide;
+pub mod double_parallelogram;
 pub mod double_pendulum;
 pub mod five_angle_loop;
 pub mod four_bar;

@@ -32,6 +32,7 @@ pub const ALL: &[&Card] = &[
     &crate::cam_oscillating::CARD,
     &crate::cam_law::CARD,
     &crate::planetary_gear::CARD,
+    &crate::double_parallelogram::CARD,
     &crate::slider_crank_scenes::DRIVEN_CRANK,
     &crate::slider_crank_scenes::DRIVEN_SLIDER,
     &crate::slider_crank_scenes::TELESCOPING_ROD,

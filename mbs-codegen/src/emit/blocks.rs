@@ -40,7 +40,7 @@ fn newton(
     let System { section, kept, phi, phi_q, branches, branch_section, dyad } = system;
     let inner = Scope { unknowns: &block.coordinates, ..*scope };
     let starts = list(block.coordinates.iter().map(|c| format!("__q[{c}]")));
-    let (size, kind) = (block.rows.len(), factorization(block.rows.len()));
+    let (size, kind) = (block.coordinates.len(), factorization(block.rows.len()));
     let description = description(equations, block, scope);
     if !kept.is_empty() {
         let (nowhere, zero, count) = (number(f64::INFINITY), number(0.0), kept.len());
@@ -56,12 +56,14 @@ fn newton(
     let residuals = list(phi.iter().map(|id| inner.operand(*id)));
     let rows = list(phi_q.iter().map(|row| list(row.iter().map(|id| inner.or_zero(*id)))));
     let _ = writeln!(text, "({residuals}, {rows})\n}};");
+    let surplus = block.has_surplus();
     let method = match (dyad, branches.is_empty()) {
-        (Some(_), _) => "solve_closed",
-        (None, true) => "solve",
-        (None, false) => "solve_branched",
+        _ if surplus => format!("solve_redundant::<{size}, {}>", block.rows.len()),
+        (Some(_), _) => format!("solve_closed::<{size}, {kind}>"),
+        (None, true) => format!("solve::<{size}, {kind}>"),
+        (None, false) => format!("solve_branched::<{size}, {kind}>"),
     };
-    let call = format!("let (__x, __block) = __solver.{method}::<{size}, {kind}>");
+    let call = format!("let (__x, __block) = __solver.{method}");
     let _ = write!(text, "{call}(&{description}, {starts}, &mut __evaluate");
     if !branches.is_empty() {
         *text += ", |__x| {\n";
@@ -69,7 +71,7 @@ fn newton(
         let zero = number(0.0);
         let holds = branches.iter().map(|id| format!("T::less({zero}, {})", inner.operand(*id)));
         let _ = writeln!(text, "{}\n}}", holds.collect::<Vec<_>>().join(" & "));
-    } else if dyad.is_some() {
+    } else if dyad.is_some() || surplus {
         *text += ", |_| T::mask(true)\n";
     }
     if let Some((dyad, section)) = dyad {
@@ -182,6 +184,29 @@ pub fn linear(equations: &Equations, program: &Program, scope: &Scope<'_>) -> Li
                 let scales = list(block.coordinates.iter().map(|c| scale(&equations.coordinate_scales, c)));
                 let (row, coordinate) =
                     (block.rows.first().unwrap_or(&0), block.coordinates.first().unwrap_or(&0));
+                let _ = write!(names, "block{index}: __block{index}, ");
+                let unknowns = list(block.coordinates.iter().map(|c| format!("__x{c}")));
+                let right_sides = list(right_sides.into_iter());
+                if block.has_surplus() {
+                    let kind = format!("__mbs::Orthogonal<T, {}, {size}>", block.coordinates.len());
+                    let _ = writeln!(fields, "/// Diagonal block {index}.\nblock{index}: {kind},");
+                    // No determinant, no orientation.
+                    let _ = writeln!(
+                        factorize,
+                        "let (__block{index}, __value) = <{kind}>::factorize(&{rows}, &{row_scales}, &{scales});\n\
+                         let __margin = __margin.with_block(__value, {row}, {coordinate});"
+                    );
+                    let _ = writeln!(
+                        solve,
+                        "let {unknowns} = <{kind}>::solve(&__factors.block{index}, &{right_sides});"
+                    );
+                    if asked.contains(&index) {
+                        let _ = writeln!(fields, "/// Its margin.\nmargin{index}: T,");
+                        let _ = writeln!(factorize, "let __margin{index} = __value;");
+                        let _ = write!(names, "margin{index}: __margin{index}, ");
+                    }
+                    continue;
+                }
                 let _ = writeln!(fields, "/// Diagonal block {index}.\nblock{index}: {kind},");
                 let _ = writeln!(
                     factorize,
@@ -194,9 +219,6 @@ pub fn linear(equations: &Equations, program: &Program, scope: &Scope<'_>) -> Li
                     let _ = writeln!(factorize, "let __margin{index} = __value;");
                     let _ = write!(names, "margin{index}: __margin{index}, ");
                 }
-                let _ = write!(names, "block{index}: __block{index}, ");
-                let unknowns = list(block.coordinates.iter().map(|c| format!("__x{c}")));
-                let right_sides = list(right_sides.into_iter());
                 let _ = writeln!(
                     solve,
                     "let {unknowns} = <{kind} as __mbs::Factorization<T, {size}>>::solve(&__factors.block{index}, &{right_sides});"
@@ -214,9 +236,12 @@ pub fn linear(equations: &Equations, program: &Program, scope: &Scope<'_>) -> Li
     Linear { factors, factorize, solve, reduce: reduce(program, &entries) }
 }
 
-/// Φ_qdᵀ λ = y_d, the last block first, then y_i − Φ_qiᵀ λ.
+/// Φ_qdᵀ λ = y_d, the last block first, then y_i − Φ_qiᵀ λ; nothing where surplus rows leave λ open.
 fn reduce(program: &Program, entries: &Entries<'_>) -> String {
     let mut text = String::new();
+    if program.blocks.iter().any(BlockProgram::has_surplus) {
+        return text;
+    }
     for (index, block) in program.blocks.iter().enumerate().rev() {
         let right_sides: Vec<String> =
             block.coordinates.iter().map(|c| entries.transposed(*c, Some(block))).collect();

@@ -187,8 +187,14 @@ fn order(model: &Model, structure: &Structure, lines: &mut Vec<String>) {
             .filter_map(|c| model.coordinates.get(*c))
             .map(|c| format!("`{}`", c.name))
             .collect();
+        let unknowns = block.coordinates.len();
         let how = match (&block.explicit, block.rows.len()) {
             (Some(_), _) => "explicit".into(),
+            (None, size) if size > unknowns => {
+                format!(
+                    "Gauss–Newton, {size} × {unknowns} by orthogonal factors; rows may follow from others"
+                )
+            }
             (None, size @ 1..=2) if block.dyad.is_some() => {
                 let name = block.dyad.as_ref().map_or("", Dyad::name);
                 format!("{name}: assembled from both its positions; Newton, {size} × {size} in closed form")

@@ -135,11 +135,13 @@ fn implementations(text: &Text, scenes: &Scenes, part: &Part<'_>) -> TokenStream
     let lane = scenes::type_in(text, scenes, scene, &quote! { T::Real });
     let callable = Generics::of(text, scenes).callable(model, runtime);
     // The stub of a square text has as many rows as it was meant to have.
-    let m = if part.square { model.coordinates.len() } else { model.rows.len() };
-    let kinematic = part.square.then(|| kinematic(&name, model, (bodies, &callable), runtime));
-    let partitioned =
-        model.dynamics.is_some().then(|| partitioned(&name, (model, m), (part, &callable), runtime));
-    let factors = (part.square || model.dynamics.is_some()).then_some(&bodies.factors);
+    let more = model.rows.len() > model.coordinates.len() && model.rows.iter().any(|row| row.redundant);
+    let m = if part.square && !more { model.coordinates.len() } else { model.rows.len() };
+    let kinematic = part.square.then(|| kinematic(&name, (model, m), (bodies, &callable), runtime));
+    // Surplus rows leave multipliers open that only all rows together determine.
+    let is_partitioned = model.dynamics.is_some() && !part.surplus;
+    let partitioned = is_partitioned.then(|| partitioned(&name, (model, m), (part, &callable), runtime));
+    let factors = (part.square || is_partitioned).then_some(&bodies.factors);
     let dynamic = bodies
         .dynamics
         .as_ref()
@@ -262,7 +264,7 @@ fn implementations(text: &Text, scenes: &Scenes, part: &Part<'_>) -> TokenStream
 /// `impl Kinematic` with the factors that it keeps.
 fn kinematic(
     name: &TokenStream,
-    model: &Model,
+    (model, m): (&Model, usize),
     (bodies, generics): (&Bodies, &TokenStream),
     runtime: &TokenStream,
 ) -> TokenStream {
@@ -273,11 +275,16 @@ fn kinematic(
     } else {
         quote! { #[inline] }
     };
+    let sizes = if m == n {
+        quote! { #n }
+    } else {
+        quote! { #n, #m }
+    };
     quote! {
         impl<#generics> #runtime::WorstCase for #name {
             const WORK: #runtime::Work = #work;
         }
-        impl<#generics> #runtime::Kinematic<T, #n> for #name {
+        impl<#generics> #runtime::Kinematic<T, #sizes> for #name {
             type Factors = __Factors<T>;
             #[inline]
             fn solve_blocks<__S: #runtime::BlockSolver<T>>(
@@ -302,7 +309,7 @@ fn kinematic(
                 #factorize
             }
             #inline
-            fn solve_linear(&self, __factors: &__Factors<T>, __b: &[T; #n]) -> [T; #n] { #solve_linear }
+            fn solve_linear(&self, __factors: &__Factors<T>, __b: &[T; #m]) -> [T; #n] { #solve_linear }
         }
     }
 }
@@ -360,6 +367,10 @@ fn tables(text: &Text, scenes: &Scenes, scene: &Scene, bodies: &Bodies) -> Token
     };
     let coordinates = model.coordinates.iter().map(|c| entry(&c.name, &c.unit, c.span));
     let rows = model.rows.iter().map(|row| entry(&row.name, &row.unit(model), row.span));
+    let marked = model.rows.iter().map(|row| row.redundant);
+    let marked = model.rows.iter().any(|row| row.redundant).then(|| {
+        quote! { const REDUNDANT: &'static [::core::primitive::bool] = &[#(#marked),*]; }
+    });
     let variables = model.variables.iter().map(|v| entry(&v.name, &v.unit, v.span));
     let branches = model.branches.iter().map(|b| entry(&b.name, &b.dimension.to_string(), b.span));
     let at_start = model.branches.iter().map(|branch| branch.at_start);
@@ -378,6 +389,7 @@ fn tables(text: &Text, scenes: &Scenes, scene: &Scene, bodies: &Bodies) -> Token
         const SOURCE: &'static ::core::primitive::str = #source;
         const COORDINATES: &'static [#runtime::Entry] = &[#(#coordinates),*];
         const ROWS: &'static [#runtime::Entry] = &[#(#rows),*];
+        #marked
         const VARIABLES: &'static [#runtime::Entry] = &[#(#variables),*];
         const BRANCHES: &'static [#runtime::Entry] = &[#(#branches),*];
         const BRANCHES_AT_START: &'static [::core::primitive::bool] = &[#(#at_start),*];

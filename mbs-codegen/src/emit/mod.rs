@@ -51,6 +51,8 @@ pub struct Part<'a> {
     pub scene: &'a Scene,
     /// Whether its rows fix every coordinate.
     pub square: bool,
+    /// Whether it has more rows than can be matched.
+    pub surplus: bool,
     /// What is generated of its documentation.
     pub docs: Vec<String>,
     /// Bodies of all functions.
@@ -77,7 +79,7 @@ pub fn rust(
             &text.header.runtime,
             &generics.types_in(&scene.model),
         );
-        Part { scene, square: structure.square, docs, bodies }
+        Part { scene, square: structure.square, surplus: structure.has_surplus(), docs, bodies }
     });
     item::item(text, scenes, &parts.collect::<Vec<_>>(), left_out)
 }

@@ -14,7 +14,7 @@ pub struct StructureReport {
     pub name: String,
     /// Coordinates in the order of q: N.
     pub coordinates: Vec<CoordinateReport>,
-    /// Rows in the order of Φ: N.
+    /// Rows in the order of Φ: M.
     pub rows: Vec<RowReport>,
     /// Indices of the coordinates that the text names as independent; none where it does not say.
     pub independent: Vec<usize>,
@@ -42,6 +42,8 @@ pub struct RowReport {
     pub unit: String,
     /// Whether a `drive` declares it.
     pub driven: bool,
+    /// Whether it may follow from others: its constraint is marked `redundant`.
+    pub redundant: bool,
     /// Entries of the row of Φ_q that are not structurally zero: index of the coordinate and kind, ascending.
     pub entries: Vec<(usize, EntryKind)>,
     /// Index of the coordinate that the matching gives the row.
@@ -64,7 +66,7 @@ pub enum EntryKind {
 pub struct BlockReport {
     /// Indices of its rows, ascending.
     pub rows: Vec<usize>,
-    /// Indices of its coordinates, ascending, as many as rows.
+    /// Indices of its coordinates, ascending, as many as rows; fewer where rows may follow from others.
     pub coordinates: Vec<usize>,
     /// Whether the coordinate is assigned, not solved for.
     pub explicit: bool,
@@ -72,7 +74,7 @@ pub struct BlockReport {
     pub dyad: Option<&'static str>,
 }
 
-/// Before: a square mechanism without faults. After: its structure, names and indices alone.
+/// Before: a mechanism without faults. After: its structure, names and indices alone.
 pub fn report(
     model: &Model,
     equations: &Equations,
@@ -92,6 +94,7 @@ pub fn report(
         name: row.name.clone(),
         unit: row.unit(model),
         driven: row.driven,
+        redundant: row.redundant,
         entries: entries(equation),
         matched: structure.matched.get(index).copied().flatten(),
     });

@@ -17,7 +17,7 @@ pub fn stub(text: &Text, scenes: &Scenes) -> TokenStream {
         let model = &scene.model;
         // A text of dynamics may have fewer rows than coordinates; any other is meant to be square.
         let square = model.dynamics.is_none() || model.rows.len() == model.coordinates.len();
-        Part { scene, square, docs: Vec::new(), bodies: bodies(model) }
+        Part { scene, square, surplus: false, docs: Vec::new(), bodies: bodies(model) }
     });
     item::item(text, scenes, &parts.collect::<Vec<_>>(), None)
 }

@@ -65,6 +65,7 @@ impl Resolver<'_> {
             residual,
             driven: true,
             reversed: false,
+            redundant: false,
             span: equation.span,
         };
         self.push_row(group, row);

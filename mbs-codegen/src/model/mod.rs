@@ -206,6 +206,8 @@ pub struct Row {
     pub driven: bool,
     /// Whether the prescribed side stands on the left.
     pub reversed: bool,
+    /// Whether it may follow from others: its constraint is marked `redundant`.
+    pub redundant: bool,
     /// The `==`.
     pub span: Span,
 }

@@ -147,7 +147,12 @@ impl Resolver<'_> {
 
     fn row_statement(&mut self, kind: &StatementKind) -> Result<(), Fault> {
         match kind {
-            StatementKind::Constraint { name, items } => self.constraint(name, items),
+            StatementKind::Constraint { name, redundant, items } => {
+                let first = self.model.rows.len();
+                self.constraint(name, items)?;
+                self.model.rows.iter_mut().skip(first).for_each(|row| row.redundant = *redundant);
+                Ok(())
+            }
             StatementKind::Drive { name, equation } => self.drive(name, equation),
             StatementKind::Branch { name, at_start, larger, smaller } => {
                 self.branch(name, *at_start, larger, smaller)
@@ -320,7 +325,8 @@ impl Resolver<'_> {
         })?;
         for (residual, dimension) in residuals {
             let reversed = self.is_reversed(residual);
-            let row = Row { name: String::new(), dimension, residual, driven: false, reversed, span };
+            let (name, driven, redundant) = (String::new(), false, false);
+            let row = Row { name, dimension, residual, driven, reversed, redundant, span };
             self.push_row(group, row);
         }
         Ok(())

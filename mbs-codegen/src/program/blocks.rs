@@ -21,6 +21,13 @@ pub struct BlockProgram {
     pub method: Method,
 }
 
+impl BlockProgram {
+    /// Whether it has more rows than coordinates.
+    pub fn has_surplus(&self) -> bool {
+        self.rows.len() > self.coordinates.len()
+    }
+}
+
 /// How a block's coordinates are found.
 #[derive(Debug)]
 pub enum Method {

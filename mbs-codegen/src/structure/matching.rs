@@ -23,8 +23,18 @@ impl Matching {
 
 /// Before: the columns of each row. After: a matching of most rows; earlier rows are served first.
 pub fn match_rows(rows: &[Vec<usize>], columns: usize) -> Matching {
+    match_in_order(rows, columns, 0..rows.len())
+}
+
+/// Before: the columns of each row. After: a matching of most rows; those that `order` names first are served first,
+/// so that what stays free is as late in it as can be.
+pub fn match_in_order(
+    rows: &[Vec<usize>],
+    columns: usize,
+    order: impl IntoIterator<Item = usize>,
+) -> Matching {
     let mut matching = Matching { of_row: vec![None; rows.len()], of_column: vec![None; columns] };
-    for row in 0..rows.len() {
+    for row in order {
         augment(rows, row, &mut matching);
     }
     matching

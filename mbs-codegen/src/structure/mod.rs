@@ -6,6 +6,7 @@ mod independent;
 mod matching;
 mod partition;
 mod polynomial;
+mod surplus;
 mod triangular;
 
 use std::collections::BTreeSet;
@@ -27,8 +28,15 @@ pub struct Structure {
     pub square: bool,
     /// Coordinates that no block solves for, ascending.
     pub independent: Vec<usize>,
-    /// The coordinate that each row is matched with.
+    /// The coordinate that each row is matched with; none for surplus rows of constraints marked `redundant`.
     pub matched: Vec<Option<usize>>,
+}
+
+impl Structure {
+    /// Whether there are more rows than can be matched.
+    pub fn has_surplus(&self) -> bool {
+        self.matched.iter().any(Option::is_none)
+    }
 }
 
 /// A diagonal block.
@@ -36,7 +44,7 @@ pub struct Structure {
 pub struct Block {
     /// Rows, ascending.
     pub rows: Vec<usize>,
-    /// Coordinates, ascending, as many as rows.
+    /// Coordinates, ascending, as many as rows; fewer where some of the rows may follow from others.
     pub coordinates: Vec<usize>,
     /// The coordinate as a function of earlier ones, where the row gives it explicitly.
     pub explicit: Option<Explicit>,
@@ -55,11 +63,12 @@ pub struct Explicit {
 
 /// Before: the equations of a model without faults. After: the block-triangular order, or the faults reported.
 ///
-/// A text without masses must be square; one with masses may leave coordinates free.
+/// A text without masses must be square; one with masses may leave coordinates free. Rows of constraints marked
+/// `redundant` may be too many.
 pub fn analyse(model: &Model, equations: &mut Equations, diagnostics: &mut Diagnostics) -> Option<Structure> {
     let rows: Vec<Vec<usize>> =
         equations.rows.iter().map(|row| row.phi_q.iter().map(|(column, _)| *column).collect()).collect();
-    let matching = matching::match_rows(&rows, model.coordinates.len());
+    let matching = matching::match_in_order(&rows, model.coordinates.len(), surplus::order(model));
     match &equations.dynamics {
         Some(dynamics) => freedom::report(model, dynamics, &rows, diagnostics),
         None => report_missing(model, &rows, &matching, diagnostics),
@@ -71,19 +80,34 @@ pub fn analyse(model: &Model, equations: &mut Equations, diagnostics: &mut Diagn
         return None;
     }
     let square = matching.free_columns().next().is_none();
+    let surplus: Vec<usize> = matching.free_rows().collect();
+    if !square && !surplus.is_empty() {
+        // Nothing is solved for in blocks: the equations of motion take all rows together.
+        let independent: Vec<usize> = (0..model.coordinates.len()).collect();
+        missing_guesses(model, &[], &independent, diagnostics);
+        let matched = matching.of_row;
+        return diagnostics.is_empty().then_some(Structure {
+            blocks: Vec::new(),
+            square,
+            independent,
+            matched,
+        });
+    }
     let matching = if square { matching } else { partition::choose(model, &rows) };
     let independent: Vec<usize> = matching.free_columns().collect();
     let blocks = triangular::blocks(&rows, &matching)
         .into_iter()
-        .map(|rows| {
+        .filter_map(|rows| {
             let mut coordinates: Vec<usize> =
                 rows.iter().filter_map(|row| matching.of_row.get(*row).copied().flatten()).collect();
             coordinates.sort_unstable();
             let explicit = explicit(equations, &rows, &coordinates);
             let dyad = if explicit.is_some() { None } else { dyad(equations, &rows, &coordinates) };
-            Block { rows, coordinates, explicit, dyad }
+            // A surplus row is a part of its own that determines nothing.
+            (!coordinates.is_empty()).then_some(Block { rows, coordinates, explicit, dyad })
         })
         .collect::<Vec<_>>();
+    let blocks = surplus::merged(blocks, &surplus, &rows, &matching, model.coordinates.len());
     missing_guesses(model, &blocks, &independent, diagnostics);
     diagnostics.is_empty().then_some(Structure { blocks, square, independent, matched: matching.of_row })
 }
@@ -190,7 +214,9 @@ fn report_surplus(model: &Model, rows: &[Vec<usize>], matching: &Matching, diagn
             "remove it, or write the coordinates that it ties",
         );
     }
+    let marked = |row: usize| model.rows.get(row).is_some_and(|row| row.redundant);
     let free = matching.free_rows().filter(|row| rows.get(*row).is_some_and(|c| !c.is_empty()));
+    let free = free.filter(|row| !marked(*row));
     for part in parts(free, rows, &matching.of_column) {
         let names = list(part.starts.iter().filter_map(|r| model.rows.get(*r)).map(|row| row.name.as_str()));
         let fixed = part.ends.iter().filter_map(|column| model.coordinates.get(*column));
@@ -200,7 +226,7 @@ fn report_surplus(model: &Model, rows: &[Vec<usize>], matching: &Matching, diagn
         diagnostics.report(
             last.span,
             format!("{} {names} for {fixed}: {surplus} too many", count(part.starts.len(), "row")),
-            "remove what follows from the other rows, or declare the coordinate that is missing in them",
+            surplus::cure(model, rows, &part.starts, surplus),
         );
     }
 }

@@ -171,6 +171,8 @@ pub enum StatementKind {
     },
     Constraint {
         name: Name,
+        /// Whether rows may follow from others.
+        redundant: bool,
         items: Vec<Item>,
     },
     Drive {

@@ -9,13 +9,8 @@ use super::tokens::Kind;
 const CONSTRAINT: &str = "write `constraint pin { x == L*cos(phi); y == L*sin(phi); }`";
 pub fn read_constraint(parser: &mut Parser<'_>) -> Read<StatementKind> {
     let name = parser.name(CONSTRAINT)?;
-    if parser.at_word("redundant") {
-        let span = parser.span();
-        parser.diagnostics.report(
-            span,
-            "`redundant` is not translated by this version",
-            "leave out the rows that follow from the others",
-        );
+    let redundant = parser.at_word("redundant");
+    if redundant {
         parser.skip(1);
     }
     parser.expect('{', CONSTRAINT)?;
@@ -33,7 +28,7 @@ pub fn read_constraint(parser: &mut Parser<'_>) -> Read<StatementKind> {
                 let message = format!("constraint `{}` has no equation", name.text);
                 parser.diagnostics.report(name.span, message, "write `lhs == rhs;` in the braces");
             }
-            return Ok(StatementKind::Constraint { name, items });
+            return Ok(StatementKind::Constraint { name, redundant, items });
         }
         let read = if parser.at_word("for") {
             parser.skip(1);
@@ -51,7 +46,7 @@ pub fn read_constraint(parser: &mut Parser<'_>) -> Read<StatementKind> {
             Err(GivenUp) => {
                 complete = false;
                 if !behind_equation(parser) {
-                    return Ok(StatementKind::Constraint { name, items });
+                    return Ok(StatementKind::Constraint { name, redundant, items });
                 }
             }
         }

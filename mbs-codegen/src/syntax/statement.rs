@@ -41,7 +41,7 @@ const STATEMENTS: [&str; 26] = [
 ];
 
 /// Words that begin a statement of the language which this version does not translate.
-const LATER: [&str; 6] = ["pin", "friction", "contact", "data", "redundant", "include"];
+const LATER: [&str; 5] = ["pin", "friction", "contact", "data", "include"];
 
 /// Before: flat tokens behind the header. After: all statements that could be read, loops and effects flattened and
 /// balanced, effects and scenes at the top level alone; every other one is reported.

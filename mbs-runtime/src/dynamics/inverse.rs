@@ -28,7 +28,7 @@ pub struct Driven<R, const N: usize, const M: usize, L> {
 /// it is taken as at rest in the mass's measure, and its acceleration follows from the forces.
 ///
 /// # Errors
-/// [`Failure::NonFinite`], [`Failure::Inconsistent`] where the rows contradict each other at this time,
+/// [`Failure::NonFinite`], [`Failure::OffConstraints`] where the rows contradict each other at this time,
 /// [`Failure::Inertialess`].
 pub fn inverse<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     mechanism: &S,

@@ -68,7 +68,7 @@ pub trait Formulation<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usi
     /// Puts the state that a step ended in back onto the constraints, as far as the formulation does.
     ///
     /// # Errors
-    /// [`Failure::Inconsistent`] where that cannot be done.
+    /// [`Failure::OffConstraints`] where that cannot be done.
     fn settle(
         &self,
         _model: &Model<'_, S, R, N, M>,

@@ -291,6 +291,6 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         if !at(residuals).is_finite() {
             return Err(Failure::NonFinite { name: row.name, line: row.line });
         }
-        Err(Failure::Inconsistent { row, rate, residual, allowed, time: t.to_f64() })
+        Err(Failure::OffConstraints { row, rate, residual, allowed, time: t.to_f64() })
     }
 }

@@ -65,7 +65,7 @@ where
     /// projected.
     ///
     /// # Errors
-    /// [`Failure::NonFinite`]; [`Failure::Inconsistent`] with the row that is violated most; those of the method.
+    /// [`Failure::NonFinite`]; [`Failure::OffConstraints`] with the row that is violated most; those of the method.
     pub fn start(
         mechanism: S,
         method: X,
@@ -80,7 +80,7 @@ where
     /// nearest in the mass's measure.
     ///
     /// # Errors
-    /// [`Failure::NonFinite`]; [`Failure::Inconsistent`] where the constraints cannot be met from there; those of the
+    /// [`Failure::NonFinite`]; [`Failure::OffConstraints`] where the constraints cannot be met from there; those of the
     /// method.
     pub fn start_near(
         mechanism: S,

@@ -6,6 +6,7 @@ mod direct2;
 mod direct3;
 mod lu;
 pub mod orthogonal;
+mod rectangular;
 #[cfg(test)]
 pub(crate) mod sequence;
 
@@ -13,6 +14,7 @@ pub use direct1::Direct1;
 pub use direct2::Direct2;
 pub use direct3::Direct3;
 pub use lu::Lu;
+pub use rectangular::Orthogonal;
 
 use crate::{Real, Scalar};
 

@@ -17,16 +17,8 @@ pub fn minimum_norm<R: Real, const M: usize, const K: usize>(
     coordinate_scales: &[R; K],
     tolerance: R,
 ) -> ([R; K], usize) {
-    let (columns, right) = scaled_columns(a, b, row_scales, coordinate_scales);
-    let Pivoted { columns, order, right, rank } = pivoted(columns, right, tolerance);
-    let z = least_norm(&columns, &right, rank);
-    let mut x = [R::constant(0.0); K];
-    for (component, index) in z.into_iter().zip(order) {
-        if let (Some(unknown), Some(scale)) = (x.get_mut(index), coordinate_scales.get(index)) {
-            *unknown = component * *scale;
-        }
-    }
-    (x, rank)
+    let factors = pivoted(scaled_columns(a, row_scales, coordinate_scales), tolerance);
+    (factors.solve(b, row_scales, coordinate_scales), factors.rank)
 }
 
 /// The column of `a` that the others explain best, in the reference metric: the last pivot.
@@ -35,44 +27,83 @@ pub fn least_independent_column<R: Real, const M: usize, const K: usize>(
     row_scales: &[R; M],
     coordinate_scales: &[R; K],
 ) -> usize {
-    let zero = R::constant(0.0);
-    let (columns, right) = scaled_columns(a, &[zero; M], row_scales, coordinate_scales);
-    pivoted(columns, right, zero).order.last().copied().unwrap_or(0)
+    let columns = scaled_columns(a, row_scales, coordinate_scales);
+    pivoted(columns, R::constant(0.0)).order.last().copied().unwrap_or(0)
 }
 
-/// Columns of W a D, and W b.
-fn scaled_columns<R: Real, const M: usize, const K: usize>(
+/// Columns of W a D.
+pub(super) fn scaled_columns<R: Real, const M: usize, const K: usize>(
     a: &[[R; K]; M],
-    b: &[R; M],
     row_scales: &[R; M],
     coordinate_scales: &[R; K],
-) -> ([[R; M]; K], [R; M]) {
+) -> [[R; M]; K] {
     let rows = super::in_metric(a, row_scales, coordinate_scales);
-    let (mut columns, mut right) = ([[R::constant(0.0); M]; K], *b);
+    let mut columns = [[R::constant(0.0); M]; K];
     for (j, column) in columns.iter_mut().enumerate() {
         column.iter_mut().zip(&rows).for_each(|(entry, row)| *entry = row[j]);
     }
-    right.iter_mut().zip(row_scales).for_each(|(component, scale)| *component = *component / *scale);
-    (columns, right)
+    columns
 }
 
-struct Pivoted<R, const M: usize, const K: usize> {
+/// A column-pivoted QR factorization.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Pivoted<R, const M: usize, const K: usize> {
     /// Columns of the upper trapezoidal factor, largest pivots first.
     columns: [[R; M]; K],
     /// Where each column stood in `a`.
     order: [usize; K],
-    /// Qᵀ times the right-hand side.
-    right: [R; M],
-    rank: usize,
+    /// Qᵀ, the first reflection first.
+    reflections: [Reflection<R, M>; K],
+    pub(super) rank: usize,
+}
+
+impl<R: Real, const M: usize, const K: usize> Pivoted<R, M, K> {
+    /// The pivots, largest first; those beyond the rank are what is left of the columns.
+    pub(super) fn pivots(&self) -> [R; K] {
+        let mut pivots = [R::constant(0.0); K];
+        for (k, (pivot, column)) in pivots.iter_mut().zip(&self.columns).enumerate() {
+            *pivot = square_from(column, k.min(self.rank)).sqrt();
+            if k < self.rank {
+                *pivot = column.get(k).map_or(R::constant(0.0), |entry| entry.abs());
+            }
+        }
+        pivots
+    }
+
+    /// Mean square of the lengths of W a D along K directions, ‖W a D‖²/K.
+    pub(super) fn mean_square(&self) -> R {
+        let sum = self.columns.iter().fold(R::constant(0.0), |sum, column| sum + square_from(column, 0));
+        sum / R::constant(K as f64)
+    }
+
+    /// The minimum-norm least-squares solution for the right-hand side `b`.
+    pub(super) fn solve(&self, b: &[R; M], row_scales: &[R; M], coordinate_scales: &[R; K]) -> [R; K] {
+        let mut right = *b;
+        right.iter_mut().zip(row_scales).for_each(|(component, scale)| *component = *component / *scale);
+        for reflection in self.reflections.iter().take(self.rank) {
+            reflection.apply(&mut right);
+        }
+        let z = match self.rank == K {
+            true => back_substituted(&self.columns, &right),
+            false => least_norm(&self.columns, &right, self.rank),
+        };
+        let mut x = [R::constant(0.0); K];
+        for (component, index) in z.into_iter().zip(self.order) {
+            if let (Some(unknown), Some(scale)) = (x.get_mut(index), coordinate_scales.get(index)) {
+                *unknown = component * *scale;
+            }
+        }
+        x
+    }
 }
 
 /// QR factorization with the longest remaining column brought up before each reflection.
-fn pivoted<R: Real, const M: usize, const K: usize>(
+pub(super) fn pivoted<R: Real, const M: usize, const K: usize>(
     mut columns: [[R; M]; K],
-    mut right: [R; M],
     tolerance: R,
 ) -> Pivoted<R, M, K> {
     let mut order = core::array::from_fn(|j| j);
+    let mut reflections = [Reflection::none(); K];
     let (mut rank, mut largest) = (0, R::constant(0.0));
     for k in 0..K {
         for j in k + 1..K {
@@ -94,9 +125,27 @@ fn pivoted<R: Real, const M: usize, const K: usize>(
         for column in columns.iter_mut().skip(k) {
             reflection.apply(column);
         }
-        reflection.apply(&mut right);
+        reflections[k] = reflection;
     }
-    Pivoted { columns, order, right, rank }
+    Pivoted { columns, order, reflections, rank }
+}
+
+/// The solution of a triangular factor of full rank.
+fn back_substituted<R: Real, const M: usize, const K: usize>(
+    columns: &[[R; M]; K],
+    right: &[R; M],
+) -> [R; K] {
+    let mut z = [R::constant(0.0); K];
+    let mut rest = *right;
+    for ((k, component), column) in z.iter_mut().enumerate().zip(columns).rev() {
+        let (Some(pivot), Some(value)) = (column.get(k), rest.get(k)) else { continue };
+        *component = *value / *pivot;
+        let solved = *component;
+        for (rest, entry) in rest.iter_mut().zip(column).take(k) {
+            *rest = *rest - *entry * solved;
+        }
+    }
+    z
 }
 
 /// The shortest `z` with `C z = y`, C the first `rank` rows of the trapezoidal factor, from Cᵀ = Q L ᵀ.

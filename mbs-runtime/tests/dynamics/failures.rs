@@ -16,9 +16,9 @@ fn start(q: [f64; 2], qd: [f64; 2]) -> Result<Pendulum, Failure> {
 #[test]
 fn a_start_off_the_constraints_names_the_row_and_a_start_near_them_is_projected() {
     let failure = start([1.001, 0.0], [0.0, 0.0]).unwrap_err();
-    assert!(matches!(failure, Failure::Inconsistent { rate: false, .. }), "{failure}");
+    assert!(matches!(failure, Failure::OffConstraints { rate: false, .. }), "{failure}");
     let failure = start([1.0, 0.0], [0.1, 0.0]).unwrap_err();
-    assert!(matches!(failure, Failure::Inconsistent { rate: true, .. }), "{failure}");
+    assert!(matches!(failure, Failure::OffConstraints { rate: true, .. }), "{failure}");
     let near: Pendulum =
         Simulation::start_near(pendulum(), Explicit::default(), 0.0, [1.2, 0.0], [0.1, 2.0]).unwrap();
     assert!((near.q()[0] - 1.0).abs() < 1e-14 && near.qd()[0].abs() < 1e-14 && near.qd()[1] == 2.0);

@@ -72,9 +72,12 @@ fn describe(report: &StructureReport, block: &BlockReport) -> String {
     let coordinates: Vec<&str> =
         block.coordinates.iter().map(|index| report.coordinates[*index].name.as_str()).collect();
     let rows: Vec<&str> = block.rows.iter().map(|index| report.rows[*index].name.as_str()).collect();
-    let size = block.rows.len();
+    let (size, unknowns) = (block.rows.len(), block.coordinates.len());
     let how = match (block.explicit, size) {
         (true, _) => "explicit: assigned".to_string(),
+        (false, _) if size > unknowns => {
+            format!("{size} × {unknowns}: rows may follow from others; Gauss–Newton, by orthogonal factors")
+        }
         (false, 1..=2) if block.dyad.is_some() => {
             let name = block.dyad.unwrap_or_default();
             format!(

@@ -6,7 +6,7 @@ use mbs_runtime::{Block, BlockSolver, Entry, Factorization, Kinematic, Margin, M
 #[derive(Clone, Copy, Debug)]
 pub struct Branchless<S>(pub S);
 
-impl<S: Kinematic<f64, N>, const N: usize> Mechanism<f64, N, N> for Branchless<S> {
+impl<S: Kinematic<f64, N, M>, const N: usize, const M: usize> Mechanism<f64, N, M> for Branchless<S> {
     type Parameters = S::Parameters;
     type Position = S::Position;
     type Entries = S::Entries;
@@ -19,6 +19,7 @@ impl<S: Kinematic<f64, N>, const N: usize> Mechanism<f64, N, N> for Branchless<S
     const SOURCE: &'static str = S::SOURCE;
     const COORDINATES: &'static [Entry] = S::COORDINATES;
     const ROWS: &'static [Entry] = S::ROWS;
+    const REDUNDANT: &'static [bool] = S::REDUNDANT;
     const SPARSITY: &'static [(u16, u16)] = S::SPARSITY;
     const VARIABLES: &'static [Entry] = S::VARIABLES;
     const BRANCHES: &'static [Entry] = &[];
@@ -50,31 +51,31 @@ impl<S: Kinematic<f64, N>, const N: usize> Mechanism<f64, N, N> for Branchless<S
     fn coordinate_scales(&self, parameters: &S::Parameters) -> [f64; N] {
         self.0.coordinate_scales(parameters)
     }
-    fn row_scales(&self, parameters: &S::Parameters) -> [f64; N] {
+    fn row_scales(&self, parameters: &S::Parameters) -> [f64; M] {
         self.0.row_scales(parameters)
     }
     fn position(&self, parameters: &S::Parameters, q: &[f64; N], t: f64) -> S::Position {
         self.0.position(parameters, q, t)
     }
-    fn phi(&self, parameters: &S::Parameters, position: &S::Position) -> [f64; N] {
+    fn phi(&self, parameters: &S::Parameters, position: &S::Position) -> [f64; M] {
         self.0.phi(parameters, position)
     }
-    fn phi_q(&self, parameters: &S::Parameters, position: &S::Position) -> [[f64; N]; N] {
+    fn phi_q(&self, parameters: &S::Parameters, position: &S::Position) -> [[f64; N]; M] {
         self.0.phi_q(parameters, position)
     }
     fn phi_q_entries(&self, parameters: &S::Parameters, position: &S::Position) -> S::Entries {
         self.0.phi_q_entries(parameters, position)
     }
-    fn phi_t(&self, parameters: &S::Parameters, position: &S::Position) -> [f64; N] {
+    fn phi_t(&self, parameters: &S::Parameters, position: &S::Position) -> [f64; M] {
         self.0.phi_t(parameters, position)
     }
-    fn phi_tt(&self, parameters: &S::Parameters, position: &S::Position) -> [f64; N] {
+    fn phi_tt(&self, parameters: &S::Parameters, position: &S::Position) -> [f64; M] {
         self.0.phi_tt(parameters, position)
     }
-    fn phi_qt_qd(&self, parameters: &S::Parameters, position: &S::Position, qd: &[f64; N]) -> [f64; N] {
+    fn phi_qt_qd(&self, parameters: &S::Parameters, position: &S::Position, qd: &[f64; N]) -> [f64; M] {
         self.0.phi_qt_qd(parameters, position, qd)
     }
-    fn gamma(&self, parameters: &S::Parameters, position: &S::Position, qd: &[f64; N]) -> [f64; N] {
+    fn gamma(&self, parameters: &S::Parameters, position: &S::Position, qd: &[f64; N]) -> [f64; M] {
         self.0.gamma(parameters, position, qd)
     }
     fn branches(&self, _: &S::Parameters, _: &S::Position) -> [f64; 0] {
@@ -94,7 +95,7 @@ impl<S: Kinematic<f64, N>, const N: usize> Mechanism<f64, N, N> for Branchless<S
     }
 }
 
-impl<S: Kinematic<f64, N>, const N: usize> Kinematic<f64, N> for Branchless<S> {
+impl<S: Kinematic<f64, N, M>, const N: usize, const M: usize> Kinematic<f64, N, M> for Branchless<S> {
     type Factors = S::Factors;
 
     fn solve_blocks<B: BlockSolver<f64>>(
@@ -109,7 +110,7 @@ impl<S: Kinematic<f64, N>, const N: usize> Kinematic<f64, N> for Branchless<S> {
     fn factorize(&self, parameters: &S::Parameters, position: &S::Position) -> (S::Factors, Margin<f64>) {
         self.0.factorize(parameters, position)
     }
-    fn solve_linear(&self, factors: &S::Factors, b: &[f64; N]) -> [f64; N] {
+    fn solve_linear(&self, factors: &S::Factors, b: &[f64; M]) -> [f64; N] {
         self.0.solve_linear(factors, b)
     }
 }
@@ -125,5 +126,15 @@ impl<B: BlockSolver<f64>> BlockSolver<f64> for Blind<'_, B> {
         evaluate: impl FnMut(&[f64; K]) -> ([f64; K], [[f64; K]; K]),
     ) -> ([f64; K], [Outcome; 1]) {
         self.0.solve::<K, F>(block, x, evaluate)
+    }
+
+    fn solve_redundant<const K: usize, const M: usize>(
+        &mut self,
+        block: &Block<f64, K, M>,
+        x: [f64; K],
+        evaluate: impl FnMut(&[f64; K]) -> ([f64; M], [[f64; K]; M]),
+        _holds: impl FnMut(&[f64; K]) -> bool,
+    ) -> ([f64; K], [Outcome; 1]) {
+        self.0.solve_redundant::<K, M>(block, x, evaluate, |_| true)
     }
 }

@@ -149,18 +149,18 @@ struct Recorder {
 }
 
 impl Trace<f64> for Recorder {
-    fn block<const K: usize>(&mut self, block: &Block<f64, K>) {
-        let indices = |indices: &[u16; K]| indices.iter().map(|index| usize::from(*index)).collect();
+    fn block<const K: usize, const M: usize>(&mut self, block: &Block<f64, K, M>) {
+        let indices = |indices: &[u16]| indices.iter().map(|index| usize::from(*index)).collect();
         let (rows, coordinates) = (indices(&block.rows), indices(&block.coordinates));
         self.blocks.push(BlockProtocol { rows, coordinates, iterates: Vec::new() });
     }
 
-    fn iterate<const K: usize>(
+    fn iterate<const K: usize, const M: usize>(
         &mut self,
-        block: &Block<f64, K>,
+        block: &Block<f64, K, M>,
         x: &[f64; K],
-        r: &[f64; K],
-        _: &[[f64; K]; K],
+        r: &[f64; M],
+        _: &[[f64; K]; M],
     ) {
         if let Some(last) = self.blocks.last_mut() {
             last.push(x, r, &block.row_scales, &block.coordinate_scales);
@@ -170,7 +170,7 @@ impl Trace<f64> for Recorder {
     fn end(&mut self, _: &[Outcome; 1]) {}
 }
 
-impl<S: Kinematic<f64, N>, const N: usize> Facade<S, N> {
+impl<S: Kinematic<f64, N, M>, const N: usize, const M: usize> Facade<S, N, M> {
     fn block_by_block(&self, guess: &[f64; N], t: f64) -> Protocol {
         let parameters = self.0.parameters();
         let mut recorder = Recorder::default();
@@ -186,8 +186,9 @@ impl<S: Kinematic<f64, N>, const N: usize> Facade<S, N> {
         let parameters = self.0.parameters();
         let (row_scales, scales) = (self.0.row_scales(&parameters), self.0.coordinate_scales(&parameters));
         let all: Vec<usize> = (0..N).collect();
-        let mut block = BlockProtocol { rows: all.clone(), coordinates: all, iterates: Vec::new() };
-        let watch = |iterate: mbs_runtime::Iterate<'_, f64, N>| {
+        let rows = (0..M).collect();
+        let mut block = BlockProtocol { rows, coordinates: all, iterates: Vec::new() };
+        let watch = |iterate: mbs_runtime::Iterate<'_, f64, N, M>| {
             block.push(iterate.q, iterate.phi, &row_scales, &scales);
         };
         let found = newton_raphson_watched(&self.0, *guess, t, watch).map(|(q, _)| q.to_vec());
@@ -199,7 +200,7 @@ fn array<const N: usize>(values: &[f64]) -> [f64; N] {
     <[f64; N]>::try_from(values).expect("a vector of N components")
 }
 
-impl<S: Kinematic<f64, N>, const N: usize> Experiment for Facade<S, N> {
+impl<S: Kinematic<f64, N, M>, const N: usize, const M: usize> Experiment for Facade<S, N, M> {
     fn row_scales(&self) -> Vec<f64> {
         self.0.row_scales(&self.0.parameters()).to_vec()
     }

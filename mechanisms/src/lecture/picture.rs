@@ -41,8 +41,8 @@ pub fn structure(report: &StructureReport) -> String {
     // Eight pixels a letter at 13 pixels' height.
     let left = 20 + 8 * longest(&mut report.rows.iter().map(|row| &row.name));
     let top = 20 + 8 * longest(&mut report.coordinates.iter().map(|coordinate| &coordinate.name));
-    let side = CELL * rows.len();
-    let mut svg = open((left + side + 20).max(300), top + side + 60);
+    let (width, side) = (CELL * columns.len(), CELL * rows.len());
+    let mut svg = open((left + width + 20).max(300), top + side + 60);
     for (place, column) in columns.iter().enumerate() {
         let (x, y) = (left + CELL * place + CELL / 2 + 4, top - 8);
         let turned = format!("transform=\"rotate(-90 {x} {y})\"");
@@ -84,22 +84,20 @@ fn entry(svg: &mut String, x: usize, y: usize, kind: EntryKind) {
 }
 
 fn blocks(svg: &mut String, report: &StructureReport, left: usize, top: usize) {
-    let side = CELL * report.rows.len();
+    let (width, height) = (CELL * report.coordinates.len(), CELL * report.rows.len());
     let _ = writeln!(
         svg,
-        "<rect x=\"{left}\" y=\"{top}\" width=\"{side}\" height=\"{side}\" fill=\"none\" stroke=\"#888888\"/>"
+        "<rect x=\"{left}\" y=\"{top}\" width=\"{width}\" height=\"{height}\" fill=\"none\" stroke=\"#888888\"/>"
     );
-    let mut place = 0;
+    let (mut x, mut y) = (left, top);
     for block in &report.blocks {
-        let (at, size) = (CELL * place, CELL * block.rows.len());
+        let (width, height) = (CELL * block.coordinates.len(), CELL * block.rows.len());
         let _ = writeln!(
             svg,
-            "<rect class=\"block\" x=\"{}\" y=\"{}\" width=\"{size}\" height=\"{size}\" fill=\"none\" stroke=\"#d55e00\" \
-             stroke-width=\"2\"/>",
-            left + at,
-            top + at
+            "<rect class=\"block\" x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" fill=\"none\" \
+             stroke=\"#d55e00\" stroke-width=\"2\"/>"
         );
-        place += block.rows.len();
+        (x, y) = (x + width, y + height);
     }
 }
 

@@ -1,0 +1,142 @@
+//! The double parallelogram: a plate on three parallel cranks, one more than it needs.
+//!
+//! ```text
+//!              C
+//!             ╱╲           o
+//!            ╱  `·.       ╱   L
+//!           ╱      `·.   ╱
+//!        A o───────── o B          plate A B C
+//!         ╱          ╱    F
+//!      L ╱        L ╱     o
+//!       o ─ ─ ─ ─ ─o              ground D E F, the same triangle
+//!       D          E
+//! ```
+//!
+//! Cranks `D A`, `E B`, `F C` of one length `L`, a plate and a ground of one triangle: `B` and `E` at `d` along x, `C` and
+//! `F` at `[e, h]`. Two loops, `D A B E` and `D A C F`, give four rows for the three angles that the drive leaves; they
+//! agree because the triangles are equal. The plate does not turn, and every point of it moves on a circle. Since the
+//! joints are not in line, one loop carries the other over its change point: a plate on two cranks would be free to
+//! turn where they are in line with it.
+//!
+//! Lengths in metres, angles in rad, counter-clockwise: `α`, `β`, `γ` of the cranks and `ψ` of the plate, all but the
+//! driven `α` dependent. `error` is what crank `E B` is longer than the others; the loops then contradict each other.
+//!
+//! Numbers: chosen here.
+
+use mbs_runtime::mechanism;
+
+use crate::drawing::Shape;
+use crate::facade;
+use crate::registry::{Card, Preset, Span};
+
+mechanism! {
+    /// Plate on three parallel cranks: four rows for three angles, one of them redundant.
+    pub mechanism DoubleParallelogram;
+
+    param L: m = 60mm;
+    param d: m = 160mm;
+    param e: m = 80mm;
+    param h: m = 70mm;
+    param error: m = 0;
+    param omega: rad/s = TAU;
+
+    coord alpha: rad = 0.5;
+    coord beta: rad = 0.5;
+    coord gamma: rad = 0.5;
+    coord psi: rad = 0;
+
+    let across = [d*cos(psi), d*sin(psi)];
+    let up = [e*cos(psi) - h*sin(psi), e*sin(psi) + h*cos(psi)];
+
+    constraint first redundant { L*unit(alpha) + across == [d, 0] + (L + error)*unit(beta); }
+    constraint second redundant { L*unit(alpha) + up == [e, h] + L*unit(gamma); }
+    drive crank: alpha == omega*t + 0.5;
+    branch level: cos(psi) > 0;
+
+    out D: [m; 2] = [0, 0];
+    out E: [m; 2] = [d, 0];
+    out F: [m; 2] = [e, h];
+    out A: [m; 2] = L*unit(alpha);
+    out B: [m; 2] = [d, 0] + (L + error)*unit(beta);
+    out C: [m; 2] = [e, h] + L*unit(gamma);
+}
+
+/// How the mechanism is drawn.
+pub const DRAWING: &[Shape] = &[
+    Shape::Ground { at: "D" },
+    Shape::Ground { at: "E" },
+    Shape::Ground { at: "F" },
+    Shape::Link { points: &["A", "B", "C"], label: "plate" },
+    Shape::Link { points: &["D", "A"], label: "crank" },
+    Shape::Link { points: &["E", "B"], label: "" },
+    Shape::Link { points: &["F", "C"], label: "" },
+    Shape::Joint { at: "A" },
+    Shape::Joint { at: "B" },
+    Shape::Joint { at: "C" },
+    Shape::Joint { at: "D" },
+    Shape::Joint { at: "E" },
+    Shape::Joint { at: "F" },
+    Shape::Trace { of: "C", label: "plate corner" },
+];
+
+/// Entry in the list of mechanisms.
+pub const CARD: Card = Card {
+    name: "double_parallelogram",
+    title: "Double parallelogram",
+    description: "A plate on three equal parallel cranks: one loop more than it needs, which takes it over the change \
+                  points of the other. Its rows are marked `redundant`.",
+    runs: &[Preset { label: "a turn", description: "the cranks turn at constant speed", set: &[] }],
+    span: Span::Turn { rate: "omega" },
+    drawing: DRAWING,
+    make: facade::boxed_redundant::<DoubleParallelogram, 4, 5>,
+};
+
+#[cfg(test)]
+mod tests {
+    use core::f64::consts::TAU;
+
+    use mbs_runtime::{Entry, Failure, Level, Mechanism, Stepper};
+
+    use super::*;
+    use crate::closed_form::{Jet, assert_moves_as};
+    use crate::reference::one_turn;
+
+    fn assembled(plate: DoubleParallelogram) -> Result<Stepper<DoubleParallelogram, f64, 4, 5>, Failure> {
+        let guess = plate.guess(&plate.parameters());
+        Stepper::assemble(plate, guess, 0.0)
+    }
+
+    #[test]
+    fn all_cranks_turn_alike_and_the_plate_does_not_turn() {
+        let coordinates = |t: Jet| {
+            let angle = t * TAU + 0.5;
+            vec![angle, angle, angle, Jet::from(0.0)]
+        };
+        let names = ["alpha", "beta", "gamma", "psi"];
+        assert_moves_as(&one_turn(&CARD, &CARD.runs[0], 90), &names, 1e-12, coordinates);
+    }
+
+    #[test]
+    fn the_last_row_is_named_as_the_one_that_follows() {
+        let stepper = assembled(DoubleParallelogram::default()).expect("it assembles");
+        let redundancy = stepper.redundancy();
+        let names: Vec<&str> = redundancy.rows().map(|Entry { name, .. }| name).collect();
+        assert_eq!((redundancy.rank, &names[..]), (4, &["second.1"][..]));
+    }
+
+    #[test]
+    fn a_crank_that_is_longer_contradicts_the_others() {
+        let with = |error: f64| assembled(DoubleParallelogram { error, ..DoubleParallelogram::default() });
+        assert!(with(1e-17).is_ok());
+        for error in [1e-13, 1e-10, 1e-6, 1e-4] {
+            let Err(Failure::Inconsistent { rows, level, residual, required, .. }) = with(error) else {
+                panic!("{error}: {:?}", with(error).map(|stepper| *stepper.q()));
+            };
+            assert!(
+                level == Level::Position && residual > required && residual < error,
+                "{error}: {residual}"
+            );
+            assert!(rows.rows().count() >= 2);
+        }
+    }
+}
