@@ -90,7 +90,7 @@ pub use worst_case::{BlockWork, Work, WorstCase};
 /// checked, vectors are arrays, derivatives are exact. The emitted struct has the parameters and inputs as public fields,
 /// `Default`, a view of the coordinates by name, and in its documentation shapes, sparsity, order of solution and operation
 /// counts. With functions it has a type parameter and a public field for each, before the scalar, and `new` that takes
-/// them. With scenes it has a type parameter behind the scalar's for the scene, [`Whole`] where nothing else is said, and
+/// them. A constraint marked `redundant` may have rows that follow from others. With scenes it has a type parameter behind the scalar's for the scene, [`Whole`] where nothing else is said, and
 /// an alias for each scene. The README explains every statement.
 ///
 /// ```

@@ -30,7 +30,7 @@ mechanism! {
     coord phi1: rad = 0.0;
     coord phi2: rad = 0.9;
     coord phi3: rad = 1.8;
-    coord rocker: [m; 2];
+    coord rocker: [m; 2] = [0.2, 0.2];
     constraint closure { L1*unit(phi1) + L2*unit(phi2) == [L4, 0] + L3*unit(phi3); }
     constraint joint { rocker == [L4, 0] + L3*unit(phi3); }
     drive crank: phi1 == TAU*t/1s;
@@ -81,21 +81,25 @@ mechanism! {
 mechanism! {
     /// Two drives of one slide by way of its rod that agree at one instant alone.
     pub mechanism Once;
+    param start: m = 0.2;
+    param slow: m/s = 0.1;
+    param fast: m/s = 0.3;
     coord x: m = 0.1;
     coord y: m = 0.1;
-    constraint slide redundant { x^2 == y^2; x == y + (0.3*m/s)*t; }
-    drive motor: y == 0.2 + (0.1*m/s)*t;
+    constraint slide redundant { x^2 == y^2; x == y + fast*t; }
+    drive motor: y == start + slow*t;
 }
 
 mechanism! {
     /// A drive with a mass whose only row stands twice.
     pub mechanism Hanging;
     param L: m = 0.5;
+    param g: m/s^2 = 9.81;
     coord p: [m; 2] = [0.5, 0];
     constraint rod { dot(p, p) == L^2; }
     constraint again redundant { 2*dot(p, p) == 2*L^2; }
     body bob { mass: 2, com: p }
-    gravity weight { g: [0, -9.81] }
+    gravity weight { acceleration: [0, -g] }
 }
 
 fn assembled<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize>(
