@@ -2,7 +2,7 @@
 
 use mbs_codegen::StructureReport;
 
-use super::rank::{independent_columns, rank, transposed};
+use super::rank::{independent_columns, rank};
 use crate::facade::{AnyMechanism, State};
 
 /// The count of a mechanism at one position.
@@ -49,8 +49,10 @@ pub fn freedom(mechanism: &dyn AnyMechanism, report: &StructureReport, q: &[f64]
     dependent.sort_unstable();
     let independent: Vec<usize> = (0..n).filter(|k| !dependent.contains(k)).collect();
     let named = !report.independent.is_empty();
-    let carried = independent_columns(&transposed(&constraints), &[]);
-    let redundant = (0..constrained.len()).filter(|k| !carried.contains(k)).map(|k| constrained[k]).collect();
+    let marked = |k: &usize| report.rows[constrained[*k]].redundant;
+    let mut redundant: Vec<usize> =
+        following(&constraints, marked).into_iter().map(|k| constrained[k]).collect();
+    redundant.sort_unstable();
     let sparsity: Vec<Vec<usize>> = constrained
         .iter()
         .map(|index| report.rows[*index].entries.iter().map(|(column, _)| *column).collect())
@@ -67,6 +69,22 @@ pub fn freedom(mechanism: &dyn AnyMechanism, report: &StructureReport, q: &[f64]
         dependent,
         redundant,
     }
+}
+
+/// Indices of the rows that follow from those before them, where `late` ones stand behind all others.
+fn following(rows: &[Vec<f64>], late: impl Fn(&usize) -> bool) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..rows.len()).collect();
+    order.sort_by_key(|k| late(k));
+    let mut carried: Vec<Vec<f64>> = Vec::new();
+    order.retain(|k| {
+        carried.push(rows[*k].clone());
+        let follows = rank(&carried) < carried.len();
+        if follows {
+            carried.pop();
+        }
+        follows
+    });
+    order
 }
 
 /// Φ_q in the reference metric: rows over their scale, columns times theirs.
@@ -147,6 +165,13 @@ mod tests {
         let found = freedom(mechanism.as_ref(), &report, &dead, 0.0);
         assert!(found.independent != [3] && !found.declared, "{found:?}");
         assert!(!of("four_bar").declared);
+    }
+
+    #[test]
+    fn of_rows_that_follow_from_one_another_the_last_one_is_named() {
+        let found = of("double_parallelogram");
+        assert_eq!((found.constraints, found.drives, found.rank, found.whole_rank), (4, 1, 3, 4));
+        assert_eq!((found.structural_rank, &found.redundant[..]), (4, &[3][..]));
     }
 
     #[test]
