@@ -24,18 +24,18 @@ pub fn tokens(text: &str, runtime: &TokenStream) -> TokenStream {
 
 /// The depth of emitted code is that of its own brackets, a handful.
 fn with_runtime(stream: TokenStream, runtime: &TokenStream) -> TokenStream {
-    let mut replaced = TokenStream::new();
+    let mut replaced: Vec<TokenTree> = Vec::new();
     for tree in stream {
         match tree {
             TokenTree::Ident(name) if name == RUNTIME => replaced.extend(runtime.clone()),
             TokenTree::Group(group) => {
                 let inner = with_runtime(group.stream(), runtime);
-                replaced.extend([TokenTree::Group(Group::new(group.delimiter(), inner))]);
+                replaced.push(TokenTree::Group(Group::new(group.delimiter(), inner)));
             }
-            other => replaced.extend([other]),
+            other => replaced.push(other),
         }
     }
-    replaced
+    replaced.into_iter().collect()
 }
 
 /// Most `let`s of one function body. One long chain overflows rustc's stack in debug builds near 2 900 and takes its

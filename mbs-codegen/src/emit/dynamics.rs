@@ -12,6 +12,8 @@ use crate::program::Program;
 
 /// Bodies of the functions of `Dynamic`.
 pub struct DynamicBodies {
+    /// Not a body: whether `force` reads the multipliers.
+    pub force_uses_multipliers: bool,
     pub start_states: TokenStream,
     pub start_rates: TokenStream,
     pub mass: TokenStream,
@@ -32,6 +34,7 @@ impl DynamicBodies {
     /// The same body for every function.
     pub fn all(body: impl Fn() -> TokenStream) -> Self {
         DynamicBodies {
+            force_uses_multipliers: true,
             start_states: body(),
             start_rates: body(),
             mass: body(),
@@ -68,6 +71,7 @@ pub fn bodies(
         |nodes: &[Option<crate::symbolic::NodeId>], scope: &Scope<'_>| array(nodes.iter().copied(), scope);
     let of = |section, result: String| body(section, scope, &result, runtime);
     Some(DynamicBodies {
+        force_uses_multipliers: dynamics.force_uses_multipliers,
         start_states: body(&program.start_states, early, &vector(&dynamics.start_states, early), runtime),
         start_rates: body(&program.start_rates, early, &vector(&dynamics.start_rates, early), runtime),
         mass: of(&program.mass, matrix(dynamics.mass.iter(), scope)),
@@ -97,6 +101,7 @@ pub fn implementation(
     let (states, forces, loads) = (declared.states.len(), declared.forces.len(), declared.loads.len());
     let tables = tables(declared, runtime);
     let DynamicBodies {
+        force_uses_multipliers,
         start_states,
         start_rates,
         mass,
@@ -119,6 +124,7 @@ pub fn implementation(
             type States = [T; #states];
             type Powers = [T; #forces];
             type Loads = [T; #loads];
+            const FORCE_USES_MULTIPLIERS: bool = #force_uses_multipliers;
             #tables
             #[inline]
             fn start_states(&self, __p: &__Parameters<T>) -> [T; #states] { #start_states }

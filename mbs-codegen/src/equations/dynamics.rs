@@ -5,7 +5,7 @@ use super::lower::Clock;
 use super::{Row, again, jacobian};
 use crate::model::dynamics::{Body, Dynamics as Declared};
 use crate::model::expression::Id;
-use crate::symbolic::{Graph, Leaf, NodeId, Stage, tangent};
+use crate::symbolic::{Graph, Leaf, Node, NodeId, Stage, tangent};
 
 /// Rows of a matrix: column and entry, ascending; what is not there is a structural zero.
 pub type Sparse = Vec<Vec<(usize, NodeId)>>;
@@ -21,6 +21,8 @@ pub struct Dynamics {
     pub mass_times_q: Sparse,
     /// Q, velocity-quadratic terms included.
     pub force: Vec<Option<NodeId>>,
+    /// Whether a multiplier stands in Q: friction.
+    pub force_uses_multipliers: bool,
     /// ∂Q/∂q
     pub force_q: Sparse,
     /// ∂Q/∂q̇
@@ -74,6 +76,10 @@ pub fn derive(
     let force: Vec<Option<NodeId>> =
         force.into_iter().zip(&bias).map(|(force, bias)| force.minus(g, bias.0).0).collect();
 
+    let used = g.reachable(force.iter().copied().flatten());
+    let force_uses_multipliers =
+        used.into_iter().any(|id| matches!(g.node(id), Node::Leaf(Leaf::Multiplier(_))));
+
     let mass = mirrored(mass);
     let mass_times = products(g, &mass, Leaf::Direction);
     let mass_times_q = derivative(g, &mass_times, count, Leaf::Position);
@@ -90,6 +96,7 @@ pub fn derive(
         mass_times,
         mass_times_q,
         force,
+        force_uses_multipliers,
         force_q,
         force_qd,
         reaction,

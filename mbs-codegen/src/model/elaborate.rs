@@ -8,6 +8,7 @@ use super::evaluate;
 use super::expression::{Binary, Expressions, Id, Node, Unary};
 use super::functions::{self, FUNCTIONS, LATER};
 use super::names::{Names, Symbol};
+use super::operands::Operands;
 use super::references::{REFERRING, is_reference};
 use super::units::{Dimension, with_suffix};
 use crate::diagnostics::{Diagnostics, nearest};
@@ -130,11 +131,11 @@ struct Sum {
 impl Elaborator<'_> {
     /// Before: an expression as written. After: its value, or the fault reported.
     pub fn value(&mut self, expression: &Expression) -> Result<Value, Fault> {
-        let mut stack: Vec<Value> = Vec::new();
+        let mut stack = Operands::default();
         let mut sums: Vec<Sum> = Vec::new();
         let mut next = 0;
         let result = loop {
-            let Some(instruction) = expression.code.get(next) else { break stack.pop().ok_or(Fault) };
+            let Some(instruction) = expression.code.get(next) else { break stack.pop(self.names) };
             if self.expressions.operations() > MOST_OPERATIONS || self.expressions.len() > MOST_EXPRESSIONS {
                 break Err(self.fault(
                     instruction.span,
@@ -185,36 +186,39 @@ impl Elaborator<'_> {
     }
 
     /// Executes one instruction; returns the index of the next.
-    fn step(
+    fn step<'e>(
         &mut self,
-        expression: &Expression,
+        expression: &'e Expression,
         index: usize,
-        stack: &mut Vec<Value>,
+        stack: &mut Operands<'e>,
         sums: &mut Vec<Sum>,
     ) -> Result<usize, Fault> {
         let instruction = expression.code.get(index).ok_or(Fault)?;
         let span = instruction.span;
-        let mut pop = || stack.pop().ok_or(Fault);
         let value = match &instruction.operation {
             Operation::Number { value, suffix, .. } => self.literal(*value, suffix.as_deref(), span)?,
             Operation::Name(_) if is_reference(&expression.code, index) => return Ok(index + 1),
+            Operation::Name(name) if matches!(self.names.get(name), Some(Symbol::Value(_))) => {
+                stack.push_named(name, span);
+                return Ok(index + 1);
+            }
             Operation::Name(name) => self.name(name, span)?,
             Operation::Negate => {
-                let a = pop()?;
+                let a = stack.pop(self.names)?;
                 self.each(&a, span, |work, item| work.unary_scalar(Unary::Negate, item, item.quantity, span))?
             }
             Operation::Binary(operator) => {
-                let (b, a) = (pop()?, pop()?);
+                let (b, a) = (stack.pop(self.names)?, stack.pop(self.names)?);
                 self.operator(*operator, &a, &b, span)?
             }
             Operation::Call { function, order: 0, arguments } if REFERRING.contains(&function.as_str()) => {
                 let group = index.checked_sub(1).and_then(|before| expression.code.get(before));
                 let values = arguments.saturating_sub(1);
-                let arguments = stack.split_off(stack.len().saturating_sub(values));
+                let arguments = stack.pop_many(values, self.names)?;
                 self.referring(function, group, arguments, span)?
             }
             Operation::Call { function, order, arguments } => {
-                let arguments = stack.split_off(stack.len().saturating_sub(*arguments));
+                let arguments = stack.pop_many(*arguments, self.names)?;
                 match (self.names.get(function), order) {
                     (Some(Symbol::Function(callable)), _) => {
                         declared_functions::call(self, *callable, (function, *order), arguments, span)?
@@ -228,21 +232,20 @@ impl Elaborator<'_> {
                 }
             }
             Operation::Array { length } => {
-                let items = stack.split_off(stack.len().saturating_sub(*length));
+                let items = stack.pop_many(*length, self.names)?;
                 self.array(items, span)?
             }
             Operation::Index { indices } => {
-                let indices = stack.split_off(stack.len().saturating_sub(*indices));
-                let base = stack.pop().ok_or(Fault)?;
-                self.index(&base, &indices, span)?
+                let indices = stack.pop_many(*indices, self.names)?;
+                self.index(stack, &indices, span)?
             }
             Operation::Reference { function, targets } => {
                 let indexed = targets.iter().filter(|target| target.indexed).count();
-                let counts = stack.split_off(stack.len().saturating_sub(indexed));
+                let counts = stack.pop_many(indexed, self.names)?;
                 self.reference(function, targets, counts, span)?
             }
             Operation::SumBegin { variable, end } => {
-                let (high, low) = (pop()?, pop()?);
+                let (high, low) = (stack.pop(self.names)?, stack.pop(self.names)?);
                 let (low, high) = (self.count(&low)?, self.count(&high)?);
                 if !self.names.is_free(variable, self.diagnostics) {
                     return Err(Fault);
@@ -256,7 +259,7 @@ impl Elaborator<'_> {
                 return Ok(index + 1);
             }
             Operation::SumEnd { begin } => {
-                let term = pop()?;
+                let term = stack.pop(self.names)?;
                 let sum = sums.last_mut().ok_or(Fault)?;
                 let total = match sum.total.take() {
                     None => term,
@@ -299,12 +302,9 @@ impl Elaborator<'_> {
         Scalar { id: self.expressions.push(Node::Number(value)), quantity, bare: true, span }
     }
 
+    /// What a name stands for that is no declared value.
     fn name(&mut self, name: &str, span: Span) -> Result<Value, Fault> {
         match self.names.get(name) {
-            Some(Symbol::Value(value)) => {
-                let items = value.items.iter().map(|item| Scalar { span, ..*item }).collect();
-                return Ok(Value { shape: value.shape.clone(), items, span });
-            }
             Some(Symbol::Count(count)) => {
                 let count = *count as f64;
                 return Ok(Value::scalar(self.number_literal(count, span), span));
@@ -315,7 +315,7 @@ impl Elaborator<'_> {
             }
             Some(Symbol::Pending) => return Err(self.too_early(name, span)),
             Some(Symbol::Faulty) => return Err(Fault),
-            None => {}
+            Some(Symbol::Value(_)) | None => {}
         }
         let number = |work: &mut Self, value| {
             let id = work.expressions.push(Node::Number(value));
@@ -543,9 +543,10 @@ impl Elaborator<'_> {
         Ok(Value { shape, items, span })
     }
 
-    fn index(&mut self, base: &Value, indices: &[Value], span: Span) -> Result<Value, Fault> {
-        if indices.len() > base.shape.len() {
-            let what = base.describe();
+    fn index(&mut self, stack: &mut Operands<'_>, indices: &[Value], span: Span) -> Result<Value, Fault> {
+        let base = stack.top_shape(self.names)?;
+        if indices.len() > base.len() {
+            let what = Value { shape: base, items: Vec::new(), span }.describe();
             return Err(self.fault(
                 span,
                 format!("{what} cannot take {} indices", indices.len()),
@@ -553,7 +554,7 @@ impl Elaborator<'_> {
             ));
         }
         let mut offset = 0;
-        for (value, length) in indices.iter().zip(&base.shape) {
+        for (value, length) in indices.iter().zip(&base) {
             let index = self.count(value)?;
             if index >= *length {
                 return Err(self.fault(
@@ -564,9 +565,9 @@ impl Elaborator<'_> {
             }
             offset = offset * length + index;
         }
-        let shape: Vec<usize> = base.shape.iter().skip(indices.len()).copied().collect();
+        let shape: Vec<usize> = base.into_iter().skip(indices.len()).collect();
         let length = shape.iter().product::<usize>();
-        let items = base.items.iter().skip(offset * length).take(length).copied().collect();
+        let items = stack.pop_components(offset * length, length, self.names)?;
         Ok(Value { shape, items, span })
     }
 

@@ -13,6 +13,7 @@ mod functions;
 mod initialiser;
 mod limits;
 mod names;
+mod operands;
 mod order;
 mod references;
 mod resolve;

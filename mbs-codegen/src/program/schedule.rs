@@ -122,27 +122,27 @@ pub fn schedule(graph: &Graph, roots: &[NodeId], known: &BTreeSet<NodeId>) -> Se
     let nodes = needed(graph, roots, known);
     let mut jets = jets(graph, &nodes);
     // How many sines and cosines stand one behind the other up to a node.
-    let mut depths: BTreeMap<NodeId, usize> = BTreeMap::new();
+    let mut depths = vec![0_usize; graph.len()];
     let mut levels: BTreeMap<usize, Level> = BTreeMap::new();
     for id in nodes {
         let node = graph.node(id);
-        let depth = node.operands().filter_map(|operand| depths.get(&operand)).max().copied().unwrap_or(0);
+        let below = node.operands().filter_map(|operand| depths.get(operand.index()));
+        let mut depth = below.max().copied().unwrap_or(0);
         let level = levels.entry(depth).or_default();
         match node {
             Node::Unary(function @ (Unary::Sin | Unary::Cos), angle) => {
                 let known = level.angles.entry(angle).or_insert(Angle { angle, sine: None, cosine: None });
                 *(if function == Unary::Sin { &mut known.sine } else { &mut known.cosine }) = Some(id);
-                depths.insert(id, depth + 1);
+                depth += 1;
             }
             Node::Call { function, argument, .. } => {
                 // The first order that is met brings all others along.
                 level.lines.extend(jets.remove(&(function, argument)).map(Line::Jet));
-                depths.insert(id, depth);
             }
-            _ => {
-                level.lines.push(Line::Value(id));
-                depths.insert(id, depth);
-            }
+            _ => level.lines.push(Line::Value(id)),
+        }
+        if let Some(known) = depths.get_mut(id.index()) {
+            *known = depth;
         }
     }
     let mut section = Section { results: roots.iter().copied().collect(), ..Section::default() };
@@ -164,7 +164,7 @@ pub fn schedule(graph: &Graph, roots: &[NodeId], known: &BTreeSet<NodeId>) -> Se
 }
 
 /// The calls among `nodes`, gathered by function and argument.
-fn jets(graph: &Graph, nodes: &BTreeSet<NodeId>) -> BTreeMap<(u32, NodeId), Jet> {
+fn jets(graph: &Graph, nodes: &[NodeId]) -> BTreeMap<(u32, NodeId), Jet> {
     let mut jets = BTreeMap::new();
     for id in nodes {
         let Node::Call { function, order, argument } = graph.node(*id) else { continue };
@@ -179,16 +179,21 @@ fn jets(graph: &Graph, nodes: &BTreeSet<NodeId>) -> BTreeMap<(u32, NodeId), Jet>
 }
 
 /// Operations below the roots down to known values, operands first.
-pub fn needed(graph: &Graph, roots: &[NodeId], known: &BTreeSet<NodeId>) -> BTreeSet<NodeId> {
-    let mut found = BTreeSet::new();
+pub fn needed(graph: &Graph, roots: &[NodeId], known: &BTreeSet<NodeId>) -> Vec<NodeId> {
+    let mut marked = vec![false; graph.len()];
     let mut waiting: Vec<NodeId> = roots.to_vec();
+    let mut found = Vec::new();
     while let Some(id) = waiting.pop() {
         let node = graph.node(id);
-        if known.contains(&id) || matches!(node, Node::Constant(_) | Node::Leaf(_)) || !found.insert(id) {
+        let Some(mark) = marked.get_mut(id.index()) else { continue };
+        if *mark || known.contains(&id) || matches!(node, Node::Constant(_) | Node::Leaf(_)) {
             continue;
         }
+        *mark = true;
+        found.push(id);
         waiting.extend(node.operands());
     }
+    found.sort_unstable();
     found
 }
 
