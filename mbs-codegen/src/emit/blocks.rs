@@ -298,7 +298,11 @@ pub fn reduced(
     let entries = Entries::of(equations, program, scope);
     let mut text = reduce.to_owned();
     for coordinate in independent {
-        let _ = writeln!(text, "__y[{coordinate}] = {};", entries.transposed(*coordinate, None));
+        let (place, value) = (format!("__y[{coordinate}]"), entries.transposed(*coordinate, None));
+        // A coordinate in no row keeps what it has.
+        if value != place {
+            let _ = writeln!(text, "{place} = {value};");
+        }
     }
     text + &list((0..equations.rows.len()).map(|row| format!("__l{row}")))
 }

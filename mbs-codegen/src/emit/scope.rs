@@ -78,9 +78,9 @@ impl Scope<'_> {
 /// A number of the scalar type.
 pub fn number(value: f64) -> String {
     if value.is_nan() {
-        "T::constant(f64::NAN)".into()
+        "T::constant(::core::primitive::f64::NAN)".into()
     } else if value.is_infinite() {
-        format!("T::constant(f64::{}INFINITY)", if value < 0.0 { "NEG_" } else { "" })
+        format!("T::constant(::core::primitive::f64::{}INFINITY)", if value < 0.0 { "NEG_" } else { "" })
     } else {
         format!("T::constant({value:?}f64)")
     }

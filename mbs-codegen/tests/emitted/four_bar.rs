@@ -684,7 +684,7 @@ const _: () = {
             let __n17 = T::constant(0.1f64) * __n16;
             let __n24 = T::constant(0.1f64) * __n23;
             let __kept = ::core::cell::Cell::new((
-                [T::constant(f64::INFINITY); 2],
+                [T::constant(::core::primitive::f64::INFINITY); 2],
                 [T::constant(0.0f64); 4],
             ));
             let mut __evaluate = |__x: &[T; 2]| {

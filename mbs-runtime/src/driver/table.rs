@@ -60,11 +60,11 @@ impl<'a, const C: usize> Table<'a, C> {
         let shift = self.shift(x);
         let local = x - shift;
         // So many periods away that the rest after them has no digit left.
-        let lost = self.period.is_some_and(|period| {
+        let kept = self.period.is_none_or(|period| {
             let first = self.knots.first().copied().unwrap_or(f64::NAN);
-            !((local - first).abs() <= 2.0 * period)
+            (local - first).abs() <= 2.0 * period
         });
-        if lost {
+        if !kept {
             return Piece { origin: f64::NAN, coefficients: [f64::NAN; C] };
         }
         let index = self.index(local);

@@ -42,11 +42,14 @@ impl Curve {
     }
 }
 
+/// What a panel shows of a curve.
+type Part = fn(&Curve) -> &Vec<f64>;
+
 /// Violations above, energy below, one colour a method.
 pub fn picture(title: &str, until: f64, curves: &[Curve]) -> String {
     let mut svg = open(LEFT + WIDTH + 30, TOP + 2 * HEIGHT + GAP + 70);
     label(&mut svg, 12, 20, "font-weight=\"bold\"", title);
-    let panels: [(&str, fn(&Curve) -> &Vec<f64>); 2] = [
+    let panels: [(&str, Part); 2] = [
         ("largest |Φ|, of the reference length", |curve| &curve.closure),
         ("|energy balance defect| (J)", |curve| &curve.defect),
     ];

@@ -5,8 +5,11 @@ use mbs_runtime::{Function, Scalar};
 use crate::facade::{AnyEquations, AnyMechanism};
 use crate::registry::{self, Card, Mismatch};
 
+/// Makes a mechanism.
+type Make = fn() -> Box<dyn AnyMechanism>;
+
 /// Ready mechanisms with functions, each with stand-ins for them.
-const WITH_FUNCTIONS: [(&str, fn() -> Box<dyn AnyMechanism>); 1] = [("cam_law", crate::cam_law::compared)];
+const WITH_FUNCTIONS: [(&str, Make); 1] = [("cam_law", crate::cam_law::compared)];
 
 /// A new instance of which both sides of a cross-check know everything.
 pub fn comparable(card: &Card) -> Box<dyn AnyMechanism> {
