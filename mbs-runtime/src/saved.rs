@@ -182,7 +182,7 @@ mod tests {
         let mut page = [0xFF; 64];
         assert_eq!(SAVED.to_le_bytes_into(&mut page), Some(48));
         assert_eq!((Saved::from_le_bytes(&page), page[48..] == [0xFF; 16]), (Some(SAVED), true));
-        assert_eq!(bytes()[..8], [1, 0, 0, 0, 2, 0, 0, 0]);
+        assert_eq!(bytes()[..8], [2, 0, 0, 0, 2, 0, 0, 0]);
     }
 
     #[test]

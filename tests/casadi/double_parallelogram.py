@@ -2,6 +2,7 @@
 
 NAME = "DoubleParallelogram"
 N = 4
+M = 5
 V = 6
 RATES = []
 

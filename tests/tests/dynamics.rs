@@ -177,9 +177,8 @@ fn inertia_and_forces_are_d_alemberts_sums() {
             close(inertia[i] - force[i], expected, &format!("row {i} of M q̈ − Q"));
             let product: f64 = (0..3).map(|j| mass[i][j] * state.qdd[j]).sum();
             close(product, inertia[i], &format!("row {i} of M q̈"));
-            for j in 0..3 {
-                assert_eq!(mass[i][j], mass[j][i], "M is symmetric");
-            }
+            let column = mass.map(|row| row[i]);
+            assert_eq!(mass[i], column, "M is symmetric");
         }
     }
 }
@@ -207,11 +206,11 @@ const DIFFERENCE: f64 = 1e-9;
 /// Derivative of a vector function along each axis, of fourth order: row by row.
 fn differences<const N: usize>(q: [f64; N], f: impl Fn([f64; N]) -> [f64; N]) -> [[f64; N]; N] {
     let mut matrix = [[0.0; N]; N];
-    for j in 0..N {
+    for j in 0..q.len() {
         let at = |steps: f64| f(std::array::from_fn(|i| if i == j { q[i] + steps * STEP } else { q[i] }));
         let ([a, b], [c, d]) = ([at(-2.0), at(-1.0)], [at(1.0), at(2.0)]);
-        for i in 0..N {
-            matrix[i][j] = (a[i] - 8.0 * b[i] + 8.0 * c[i] - d[i]) / (12.0 * STEP);
+        for (i, row) in matrix.iter_mut().enumerate() {
+            row[j] = (a[i] - 8.0 * b[i] + 8.0 * c[i] - d[i]) / (12.0 * STEP);
         }
     }
     matrix
@@ -271,7 +270,7 @@ mechanism! {
 
 #[test]
 fn energy_changes_by_what_forces_supply_and_nothing_else() {
-    let trolley = Trolley { u: 1.7, ..Trolley::default() };
+    let trolley = Trolley { u: 1.7 };
     let p = trolley.parameters();
     assert_eq!(Trolley::<f64>::FORCES.len(), 5);
     for (q, qd, qdd) in [([0.3, 0.4], [1.0, -2.0], [3.0, 0.5]), ([-0.7, 2.4], [-1.5, 0.8], [-2.0, 4.0])] {
@@ -408,7 +407,7 @@ fn the_effort_of_a_drive_is_what_the_energy_takes() {
     let four_bar: FourBar = FourBar::default();
     let p = four_bar.parameters();
     let guess = four_bar.guess(&p);
-    let mut motion = mbs_runtime::Stepper::assemble(four_bar.clone(), guess, 0.0).expect("it closes");
+    let mut motion = mbs_runtime::Stepper::assemble(four_bar, guess, 0.0).expect("it closes");
     let energy = |motion: &mbs_runtime::Stepper<FourBar, f64, 3>| {
         let energy = four_bar.energy(&p, &four_bar.position(&p, motion.q(), 0.0), motion.qd());
         energy.kinetic + energy.potential

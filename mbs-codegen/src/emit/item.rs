@@ -329,7 +329,12 @@ fn partitioned(
             quote! { #runtime::Kinematic::solve_blocks(self, __p, __q, __t, __solver) },
             quote! { #runtime::Kinematic::factorize(self, __p, __s) },
         ),
-        false => (quote! { let (__outcome, _) = { #solve_with_position }; __outcome }, factorize.clone()),
+        false => (
+            quote! {
+                (|| -> (T::Lanes<#runtime::Outcome>, __Position<T>) { #solve_with_position })().0
+            },
+            factorize.clone(),
+        ),
     };
     quote! {
         impl<#generics> #runtime::Partitioned<T, #n, #m> for #name {
