@@ -82,7 +82,7 @@ fn begin(random: &mut Random, functions: bool) -> (String, Writer<'_>) {
         ),
         _ => format!("for i in 0..N {{ drive each: v[i] == {} - L[i]*v[1 - i]; }}\n", writer.scalar(3)),
     };
-    text += &format!("branch open: {} > {};\n", writer.scalar(3), writer.scalar(2));
+    text += &format!("branch open: {} > q0 + {};\n", writer.scalar(3), writer.scalar(2));
     if functions {
         // A function that nothing calls is a fault.
         text += &format!("out x: 1 = rise({}) - sag.d1({});\n", writer.scalar(2), writer.scalar(1));
