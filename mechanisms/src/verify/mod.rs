@@ -5,7 +5,7 @@
 //! lines with all digits. Both ways are evaluated at random states and compared entry by entry. Python 3 is needed; its
 //! environment is made by [`environment`] below cargo's target directory.
 //!
-//! [`check`] does all of it for any mechanism, in a test of the crate that declares it.
+//! [`check()`] does all of it for any mechanism, in a test of the crate that declares it.
 
 pub mod agreement;
 pub mod check;
