@@ -1,6 +1,6 @@
 //! The control of `derivatives.rs`: a slip in the emitted code must show.
 
-use mbs_runtime::Entry;
+use mbs_runtime::{Entry, FunctionEntry};
 use mechanisms::facade::{AnyEquations, Facade, Functions, State};
 use mechanisms::verify::{CheckError, check::check_equations};
 use my_crate::Mine;
@@ -11,6 +11,9 @@ struct Slipped(Facade<Mine, 2, 2>);
 impl AnyEquations for Slipped {
     fn type_name(&self) -> &'static str {
         self.0.type_name()
+    }
+    fn scene(&self) -> &'static str {
+        self.0.scene()
     }
     fn source(&self) -> &'static str {
         self.0.source()
@@ -26,6 +29,9 @@ impl AnyEquations for Slipped {
     }
     fn outputs(&self) -> &'static [Entry] {
         self.0.outputs()
+    }
+    fn functions(&self) -> &'static [FunctionEntry] {
+        self.0.functions()
     }
     fn get(&self, index: usize) -> Option<f64> {
         self.0.get(index)
