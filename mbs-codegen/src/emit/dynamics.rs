@@ -127,31 +127,31 @@ pub fn implementation(
             const FORCE_USES_MULTIPLIERS: bool = #force_uses_multipliers;
             #tables
             #[inline]
-            fn start_states(&self, __p: &__Parameters<T>) -> [T; #states] { #start_states }
+            fn start_states(&self, __p: &__Parameters<T>) -> [T; #states] #start_states
             #[inline]
-            fn start_rates(&self, __p: &__Parameters<T>) -> [T; #n] { #start_rates }
+            fn start_rates(&self, __p: &__Parameters<T>) -> [T; #n] #start_rates
             #[inline]
-            fn mass(#design) -> [[T; #n]; #n] { #mass }
+            fn mass(#design) -> [[T; #n]; #n] #mass
             #[inline]
-            fn mass_times(#design, __x: &[T; #n]) -> [T; #n] { #mass_times }
+            fn mass_times(#design, __x: &[T; #n]) -> [T; #n] #mass_times
             #[inline]
-            fn force(#design, #motion) -> [T; #n] { #force }
+            fn force(#design, #motion) -> [T; #n] #force
             #[inline]
-            fn force_q(#design, #motion) -> [[T; #n]; #n] { #force_q }
+            fn force_q(#design, #motion) -> [[T; #n]; #n] #force_q
             #[inline]
-            fn force_qd(#design, #motion) -> [[T; #n]; #n] { #force_qd }
+            fn force_qd(#design, #motion) -> [[T; #n]; #n] #force_qd
             #[inline]
-            fn mass_times_q(#design, __x: &[T; #n]) -> [[T; #n]; #n] { #mass_times_q }
+            fn mass_times_q(#design, __x: &[T; #n]) -> [[T; #n]; #n] #mass_times_q
             #[inline]
-            fn reaction(#design, __lambda: &[T; #m]) -> [T; #n] { #reaction }
+            fn reaction(#design, __lambda: &[T; #m]) -> [T; #n] #reaction
             #[inline]
-            fn reaction_q(#design, __lambda: &[T; #m]) -> [[T; #n]; #n] { #reaction_q }
+            fn reaction_q(#design, __lambda: &[T; #m]) -> [[T; #n]; #n] #reaction_q
             #[inline]
-            fn energy(#design, __qd: &[T; #n]) -> #runtime::Energy<T> { #energy }
+            fn energy(#design, __qd: &[T; #n]) -> #runtime::Energy<T> #energy
             #[inline]
-            fn powers(#design, #motion) -> [T; #forces] { #powers }
+            fn powers(#design, #motion) -> [T; #forces] #powers
             #[inline]
-            fn state_rates(#design, #motion) -> [T; #states] { #state_rates }
+            fn state_rates(#design, #motion) -> [T; #states] #state_rates
             #[inline]
             fn loads(
                 #design,

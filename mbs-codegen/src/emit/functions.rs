@@ -5,7 +5,7 @@ use std::fmt::Write;
 use proc_macro2::TokenStream;
 
 use super::blocks;
-use super::code::{lets, tokens};
+use super::code::{block, lets, tokens};
 use super::dynamics::{self, DynamicBodies};
 use super::given;
 use super::phases;
@@ -135,19 +135,19 @@ pub fn bodies(
         limits: body(&program.limits, &scope, limits(equations, &scope)),
         phases: tokens(&phases, runtime),
         speeds: tokens(&speeds, runtime),
-        outputs: tokens(&(given + &outputs_text), runtime),
+        outputs: block(&(given + &outputs_text), runtime),
         factors: tokens(&linear.factors, runtime),
         short: program.length() <= LONGEST_INLINED,
-        solve_with_position: tokens(
+        solve_with_position: block(
             &blocks::solve(equations, program, &early, &kept(&program.position, &early, "__Position")),
             runtime,
         ),
-        factorize: tokens(&linear.factorize, runtime),
-        solve_linear: tokens(&solve_linear, runtime),
+        factorize: block(&linear.factorize, runtime),
+        solve_linear: block(&solve_linear, runtime),
         work: work::work(model, program, entries(equations).count(), runtime),
         independent: independent.iter().map(|coordinate| *coordinate as u16).collect(),
-        complete: tokens(&complete, runtime),
-        reduce: tokens(&reduce, runtime),
+        complete: block(&complete, runtime),
+        reduce: block(&reduce, runtime),
         dynamics: dynamics::bodies(equations, program, &early, &scope, runtime),
     }
 }
@@ -203,12 +203,12 @@ fn entries(equations: &Equations) -> impl Iterator<Item = (usize, usize, NodeId)
     rows.flat_map(|(row, equation)| equation.phi_q.iter().map(move |(column, entry)| (row, *column, *entry)))
 }
 
-/// Straight-line code and the value behind it.
+/// Straight-line code and the value behind it, in braces.
 pub fn body(section: &Section, scope: &Scope<'_>, result: &str, runtime: &TokenStream) -> TokenStream {
     let mut text = String::new();
     lets(section, scope, &mut text);
     text += result;
-    tokens(&text, runtime)
+    block(&text, runtime)
 }
 
 /// Rows of as many entries as there are coordinates. Zeros are not written one by one: a chain of 200 loops has

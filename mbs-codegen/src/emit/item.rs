@@ -207,29 +207,29 @@ fn implementations(text: &Text, scenes: &Scenes, part: &Part<'_>) -> TokenStream
                 #access
                 #phases
                 #[inline]
-                fn parameters(&self) -> __Parameters<T> { #parameters }
+                fn parameters(&self) -> __Parameters<T> #parameters
                 #[inline]
-                fn guess(&self, __p: &__Parameters<T>) -> [T; #n] { #guess }
+                fn guess(&self, __p: &__Parameters<T>) -> [T; #n] #guess
                 #[inline]
-                fn coordinate_scales(&self, __p: &__Parameters<T>) -> [T; #n] { #coordinate_scales }
+                fn coordinate_scales(&self, __p: &__Parameters<T>) -> [T; #n] #coordinate_scales
                 #[inline]
-                fn row_scales(&self, __p: &__Parameters<T>) -> [T; #m] { #row_scales }
+                fn row_scales(&self, __p: &__Parameters<T>) -> [T; #m] #row_scales
                 #[inline]
-                fn position(&self, __p: &__Parameters<T>, __q: &[T; #n], __t: T) -> __Position<T> { #position }
+                fn position(&self, __p: &__Parameters<T>, __q: &[T; #n], __t: T) -> __Position<T> #position
                 #[inline]
-                fn phi(&self, __p: &__Parameters<T>, __s: &__Position<T>) -> [T; #m] { #phi }
+                fn phi(&self, __p: &__Parameters<T>, __s: &__Position<T>) -> [T; #m] #phi
                 #[inline]
-                fn phi_q(&self, __p: &__Parameters<T>, __s: &__Position<T>) -> [[T; #n]; #m] { #phi_q }
+                fn phi_q(&self, __p: &__Parameters<T>, __s: &__Position<T>) -> [[T; #n]; #m] #phi_q
                 #[inline]
-                fn phi_q_entries(&self, __p: &__Parameters<T>, __s: &__Position<T>) -> [T; #nonzeros] { #phi_q_entries }
+                fn phi_q_entries(&self, __p: &__Parameters<T>, __s: &__Position<T>) -> [T; #nonzeros] #phi_q_entries
                 #[inline]
-                fn phi_t(&self, __p: &__Parameters<T>, __s: &__Position<T>) -> [T; #m] { #phi_t }
+                fn phi_t(&self, __p: &__Parameters<T>, __s: &__Position<T>) -> [T; #m] #phi_t
                 #[inline]
-                fn phi_tt(&self, __p: &__Parameters<T>, __s: &__Position<T>) -> [T; #m] { #phi_tt }
+                fn phi_tt(&self, __p: &__Parameters<T>, __s: &__Position<T>) -> [T; #m] #phi_tt
                 #[inline]
-                fn phi_qt_qd(&self, __p: &__Parameters<T>, __s: &__Position<T>, __qd: &[T; #n]) -> [T; #m] { #phi_qt_qd }
+                fn phi_qt_qd(&self, __p: &__Parameters<T>, __s: &__Position<T>, __qd: &[T; #n]) -> [T; #m] #phi_qt_qd
                 #[inline]
-                fn gamma(&self, __p: &__Parameters<T>, __s: &__Position<T>, __qd: &[T; #n]) -> [T; #m] { #gamma }
+                fn gamma(&self, __p: &__Parameters<T>, __s: &__Position<T>, __qd: &[T; #n]) -> [T; #m] #gamma
                 #[inline]
                 fn evaluate(
                     &self,
@@ -237,11 +237,11 @@ fn implementations(text: &Text, scenes: &Scenes, part: &Part<'_>) -> TokenStream
                     __q: &[T; #n],
                     __t: T,
                     __qd: &[T; #n],
-                ) -> #runtime::Evaluation<T, [T; #nonzeros], #m> { #evaluate }
+                ) -> #runtime::Evaluation<T, [T; #nonzeros], #m> #evaluate
                 #[inline]
-                fn branches(&self, __p: &__Parameters<T>, __s: &__Position<T>) -> [T; #branches] { #branches_body }
+                fn branches(&self, __p: &__Parameters<T>, __s: &__Position<T>) -> [T; #branches] #branches_body
                 #[inline]
-                fn limits(&self, __p: &__Parameters<T>, __s: &__Position<T>) -> [#runtime::Limit<T>; #limits] { #limits_body }
+                fn limits(&self, __p: &__Parameters<T>, __s: &__Position<T>) -> [#runtime::Limit<T>; #limits] #limits_body
                 #[inline]
                 fn outputs(
                     &self,
@@ -249,7 +249,7 @@ fn implementations(text: &Text, scenes: &Scenes, part: &Part<'_>) -> TokenStream
                     __s: &__Position<T>,
                     __qd: &[T; #n],
                     __qdd: &[T; #n],
-                ) -> [#runtime::OutputValue<T>; #outputs] { #outputs_body }
+                ) -> [#runtime::OutputValue<T>; #outputs] #outputs_body
             }
 
             #factors
@@ -303,13 +303,11 @@ fn kinematic(
                 __q: &mut [T; #n],
                 __t: T,
                 __solver: &mut __S,
-            ) -> (T::Lanes<#runtime::Outcome>, __Position<T>) { #solve_with_position }
+            ) -> (T::Lanes<#runtime::Outcome>, __Position<T>) #solve_with_position
             #inline
-            fn factorize(&self, __p: &__Parameters<T>, __s: &__Position<T>) -> (__Factors<T>, #runtime::Margin<T>) {
-                #factorize
-            }
+            fn factorize(&self, __p: &__Parameters<T>, __s: &__Position<T>) -> (__Factors<T>, #runtime::Margin<T>) #factorize
             #inline
-            fn solve_linear(&self, __factors: &__Factors<T>, __b: &[T; #m]) -> [T; #n] { #solve_linear }
+            fn solve_linear(&self, __factors: &__Factors<T>, __b: &[T; #m]) -> [T; #n] #solve_linear
         }
     }
 }
@@ -327,11 +325,11 @@ fn partitioned(
     let (solve_blocks, factorize) = match part.square {
         true => (
             quote! { #runtime::Kinematic::solve_blocks(self, __p, __q, __t, __solver) },
-            quote! { #runtime::Kinematic::factorize(self, __p, __s) },
+            quote! { { #runtime::Kinematic::factorize(self, __p, __s) } },
         ),
         false => (
             quote! {
-                (|| -> (T::Lanes<#runtime::Outcome>, __Position<T>) { #solve_with_position })().0
+                (|| -> (T::Lanes<#runtime::Outcome>, __Position<T>) #solve_with_position)().0
             },
             factorize.clone(),
         ),
@@ -349,13 +347,11 @@ fn partitioned(
                 __solver: &mut __S,
             ) -> T::Lanes<#runtime::Outcome> { #solve_blocks }
             #[inline]
-            fn partition(&self, __p: &__Parameters<T>, __s: &__Position<T>) -> (__Factors<T>, #runtime::Margin<T>) {
-                #factorize
-            }
+            fn partition(&self, __p: &__Parameters<T>, __s: &__Position<T>) -> (__Factors<T>, #runtime::Margin<T>) #factorize
             #[inline]
-            fn complete(&self, __factors: &__Factors<T>, __b: &[T; #m], __x: &mut [T; #n]) { #complete }
+            fn complete(&self, __factors: &__Factors<T>, __b: &[T; #m], __x: &mut [T; #n]) #complete
             #[inline]
-            fn reduce(&self, __factors: &__Factors<T>, __y: &mut [T; #n]) -> [T; #m] { #reduce }
+            fn reduce(&self, __factors: &__Factors<T>, __y: &mut [T; #n]) -> [T; #m] #reduce
         }
     }
 }

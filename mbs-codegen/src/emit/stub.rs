@@ -23,7 +23,7 @@ pub fn stub(text: &Text, scenes: &Scenes) -> TokenStream {
 }
 
 fn bodies(model: &Model) -> Bodies {
-    let body = || quote! { ::core::unreachable!() };
+    let body = || quote! { { ::core::unreachable!() } };
     Bodies {
         orders: vec![0; model.functions.len()],
         kept_parameters: 0,

@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::AddAssign;
 
+use crate::symbolic::graph::in_order;
 use crate::symbolic::{Binary, Graph, Node, NodeId, Unary};
 
 /// Straight-line code.
@@ -191,10 +192,9 @@ pub fn needed(graph: &Graph, roots: &[NodeId], known: &BTreeSet<NodeId>) -> Vec<
         }
         *mark = true;
         found.push(id);
-        waiting.extend(node.operands());
+        node.operands_onto(&mut waiting);
     }
-    found.sort_unstable();
-    found
+    in_order(found, &marked)
 }
 
 fn count(node: Node, operations: &mut Operations) {

@@ -8,14 +8,15 @@ use crate::symbolic::{Graph, Leaf, Node, NodeId, Stage};
 pub fn parameter_fields(graph: &Graph, functions: &[&[NodeId]]) -> BTreeSet<NodeId> {
     let mut fields = BTreeSet::new();
     let early = |id: NodeId| graph.stage(id) == Stage::Parameter && !matches!(graph.node(id), Node::Leaf(_));
-    for roots in functions {
-        fields.extend(roots.iter().copied().filter(|id| early(*id)));
-        for id in graph.reachable(roots.iter().copied()) {
-            if graph.stage(id) > Stage::Parameter {
-                fields.extend(graph.node(id).operands().filter(|operand| early(*operand)));
-            }
+    let roots = || functions.iter().flat_map(|roots| roots.iter().copied());
+    fields.extend(roots().filter(|id| early(*id)));
+    let mut operands = Vec::new();
+    for id in graph.reachable(roots()) {
+        if graph.stage(id) > Stage::Parameter {
+            graph.node(id).operands_onto(&mut operands);
         }
     }
+    fields.extend(operands.into_iter().filter(|operand| early(*operand)));
     fields
 }
 

@@ -169,7 +169,11 @@ impl Graph {
             Node::Leaf(Leaf::Acceleration(_) | Leaf::Given(..)) => Stage::Acceleration,
             // What a function gives is known with the design, not before, even at a number.
             Node::Call { argument, .. } => self.stage(argument).max(Stage::Parameter),
-            _ => node.operands().map(|operand| self.stage(operand)).max().unwrap_or(Stage::Constant),
+            Node::Unary(_, a) => self.stage(a),
+            Node::Binary(_, a, b) => self.stage(a).max(self.stage(b)),
+            Node::Select { less, than, yes, no } => {
+                self.stage(less).max(self.stage(than)).max(self.stage(yes)).max(self.stage(no))
+            }
         };
         self.nodes.push(node);
         self.stages.push(stage);
@@ -188,12 +192,31 @@ impl Graph {
             {
                 *mark = true;
                 found.push(id);
-                waiting.extend(self.node(id).operands());
+                self.node(id).operands_onto(&mut waiting);
             }
         }
-        found.sort_unstable();
-        found
+        in_order(found, &marked)
     }
+}
+
+/// Before: the nodes that are `marked`, in any order. After: operands first.
+///
+/// Many are read off the marks, few are sorted: this runs for every function, and in users' debug builds.
+pub fn in_order(mut found: Vec<NodeId>, marked: &[bool]) -> Vec<NodeId> {
+    const MARKS_READ_WHILE_ONE_IS_SORTED: usize = 32;
+    if found.len() * MARKS_READ_WHILE_ONE_IS_SORTED < marked.len() {
+        found.sort_unstable();
+        return found;
+    }
+    found.clear();
+    let mut index = 0;
+    for mark in marked {
+        if *mark {
+            found.push(NodeId(index));
+        }
+        index += 1;
+    }
+    found
 }
 
 impl Node {
@@ -206,5 +229,18 @@ impl Node {
             Node::Select { less, than, yes, no } => [Some(less), Some(than), Some(yes), Some(no)],
         };
         operands.into_iter().flatten()
+    }
+
+    /// [`Self::operands`] without an iterator, for walks over the whole graph: debug builds expand texts too.
+    pub fn operands_onto(self, waiting: &mut Vec<NodeId>) {
+        match self {
+            Node::Constant(_) | Node::Leaf(_) => {}
+            Node::Unary(_, a) | Node::Call { argument: a, .. } => waiting.push(a),
+            Node::Binary(_, a, b) => {
+                waiting.push(a);
+                waiting.push(b);
+            }
+            Node::Select { less, than, yes, no } => waiting.extend([less, than, yes, no]),
+        }
     }
 }

@@ -1,0 +1,37 @@
+//! Expansion of every text of the workspace: soon. Alone in its program, so that no other test shares the caches.
+#![forbid(unsafe_code)]
+
+#[path = "texts/mod.rs"]
+mod texts;
+
+use std::fs;
+use std::time::{Duration, Instant};
+use texts::workspace;
+
+/// Longest expansion in a debug build, at the best of several runs.
+const LONGEST: Duration = Duration::from_millis(50);
+const RUNS: usize = 12;
+
+/// What this thread has spent on a processor, where the system tells: other work on the machine does not count.
+fn processor_time() -> Option<Duration> {
+    let told = fs::read_to_string("/proc/thread-self/schedstat").ok()?;
+    told.split(' ').next()?.parse().ok().map(Duration::from_nanos)
+}
+
+#[test]
+fn every_text_expands_within_50_ms() {
+    // One text is large on purpose: the others are as users write them.
+    for text in workspace().into_iter().filter(|(path, _)| !path.ends_with("size.rs")) {
+        let time = || {
+            let started = (processor_time(), Instant::now());
+            let items = mbs_codegen::expand_source(&text.1);
+            assert!(items.is_ok(), "{}", text.0);
+            match started.0.zip(processor_time()) {
+                Some((before, after)) => after - before,
+                None => started.1.elapsed(),
+            }
+        };
+        let best = (0..RUNS).map(|_| time()).min().expect("several runs");
+        assert!(best <= LONGEST, "{best:?} for {}\n{}", text.0, text.1);
+    }
+}
