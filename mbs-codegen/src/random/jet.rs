@@ -51,7 +51,7 @@ impl Jet {
     }
 
     /// The same where a derivative is a sum of larger terms; `abs` sums their absolute values.
-    fn chain_of_terms(self, f: [f64; 4], abs: [f64; 4]) -> Self {
+    pub fn chain_of_terms(self, f: [f64; 4], abs: [f64; 4]) -> Self {
         let [_, x1, x2] = self.v;
         let [b0, b1, b2] = self.b;
         Jet {

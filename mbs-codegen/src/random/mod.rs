@@ -28,28 +28,59 @@ pub const STATES: usize = 100;
 /// Roundings granted for each operation that the oracle's bound counts.
 const ROUNDINGS: f64 = 64.0 * f64::EPSILON / 2.0;
 
-/// A seed's text.
-pub fn text(seed: u64) -> String {
-    text::write(&mut Random(seed))
+/// What a random text may have beside the rest of the language.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// Nothing.
+    Plain,
+    /// Two declared functions.
+    Functions,
+    /// Three scenes.
+    Scenes,
+    /// Both.
+    ScenesWithFunctions,
 }
 
-/// What a seed's text computes at each of its states: Φ, Φ_q row by row, Φ_t, Φ_tt, Φ_qt q̇, γ, branches, outputs with
-/// rate and acceleration. `None` where the text is refused.
+impl Kind {
+    /// Whether the text declares functions: two, of which [`crate::stand_in`] gives the values.
+    pub fn has_functions(self) -> bool {
+        matches!(self, Kind::Functions | Kind::ScenesWithFunctions)
+    }
+}
+
+/// A seed's text.
+pub fn text(kind: Kind, seed: u64) -> String {
+    text::write(kind, &mut Random(seed))
+}
+
+/// What a scene computes.
+pub struct ExpectedScene {
+    /// Its name; empty where the text has no scenes.
+    pub name: String,
+    /// At each state: Φ, Φ_q row by row, Φ_t, Φ_tt, Φ_qt q̇, γ, branches, outputs with rate and acceleration.
+    pub states: Vec<(State, Vec<Expected>)>,
+}
+
+/// What a seed's text computes, scene by scene. `None` where the text is refused.
 ///
 /// # Panics
 /// Where the front end finds a fault in it.
-pub fn expected(seed: u64) -> Option<Vec<(State, Vec<Expected>)>> {
-    let understood = understand(&text(seed))?;
-    let states = states(&understood.model, seed).into_iter();
-    let beside = |state: State| {
-        let expected = oracle::run(&understood.model, &state);
-        (state, expected)
+pub fn expected(kind: Kind, seed: u64) -> Option<Vec<ExpectedScene>> {
+    let scene = |understood: Option<Understood>| {
+        let Understood { name, model, .. } = understood?;
+        let states = states(&model, seed).into_iter();
+        let beside = |state: State| {
+            let expected = oracle::run(&model, &state);
+            (state, expected)
+        };
+        Some(ExpectedScene { name, states: states.map(beside).collect() })
     };
-    Some(states.map(beside).collect())
+    understand_scenes(&text(kind, seed)).into_iter().map(scene).collect()
 }
 
-/// A text up to its structure.
+/// A scene up to its structure.
 struct Understood {
+    name: String,
     model: Model,
     #[cfg_attr(not(test), expect(dead_code, reason = "the interpreter's"))]
     equations: Equations,
@@ -57,20 +88,23 @@ struct Understood {
     structure: Structure,
 }
 
-/// The first scene; now and then a row says nothing, `q2 == q2`, and is refused.
+/// The first scene.
+#[cfg(test)]
 fn understand(text: &str) -> Option<Understood> {
     understand_scenes(text).into_iter().next().flatten()
 }
 
+/// All scenes; now and then a row says nothing, `q2 == q2`, and is refused.
 fn understand_scenes(text: &str) -> Vec<Option<Understood>> {
     let mut diagnostics = Diagnostics::default();
     let read = syntax::read(text.parse().expect("tokens"), &mut diagnostics).expect("a header");
     let Scenes { scenes, .. } = Scenes::resolve(&read, &mut diagnostics);
     assert!(diagnostics.is_empty(), "{text}\n{}", diagnostics.to_text());
     let up_to_structure = |scene: Scene| {
+        let name = scene.label().unwrap_or_default().to_owned();
         let mut equations = equations::derive(&scene.model);
         let structure = structure::analyse(&scene.model, &mut equations, &mut Diagnostics::default())?;
-        Some(Understood { model: scene.model, equations, structure })
+        Some(Understood { name, model: scene.model, equations, structure })
     };
     scenes.into_iter().map(up_to_structure).collect()
 }
@@ -101,7 +135,7 @@ impl Random {
 fn random_texts_compute_what_second_order_taylor_arithmetic_computes() {
     let mut tally = Tally::default();
     for seed in 0..TEXTS {
-        let text = text(seed);
+        let text = text(Kind::Plain, seed);
         tally.compare(understand(&text), seed, STATES, &text);
     }
     tally.report(TEXTS);
@@ -116,7 +150,8 @@ const TEXTS_WITH_SCENES: u64 = 300;
 fn each_scene_of_random_texts_computes_what_second_order_taylor_arithmetic_computes() {
     let mut tally = Tally::default();
     for seed in 0..TEXTS_WITH_SCENES {
-        let text = text::write_with_scenes(&mut Random(seed));
+        let kind = if seed % 2 == 0 { Kind::Scenes } else { Kind::ScenesWithFunctions };
+        let text = text(kind, seed);
         let scenes = understand_scenes(&text);
         assert_eq!(scenes.len(), 3, "{text}");
         for scene in scenes {
@@ -135,7 +170,7 @@ const TEXTS_WITH_FUNCTIONS: u64 = 600;
 fn random_texts_with_functions_compute_what_second_order_taylor_arithmetic_computes() {
     let mut tally = Tally::default();
     for seed in 0..TEXTS_WITH_FUNCTIONS {
-        let text = text::write_with_functions(&mut Random(seed));
+        let text = text(Kind::Functions, seed);
         tally.compare(understand(&text), seed, STATES, &text);
     }
     tally.report(TEXTS_WITH_FUNCTIONS);
@@ -155,7 +190,7 @@ struct Tally {
 #[cfg(test)]
 impl Tally {
     fn compare(&mut self, understood: Option<Understood>, seed: u64, count: usize, text: &str) {
-        let Some(Understood { model, equations, structure }) = understood else {
+        let Some(Understood { model, equations, structure, .. }) = understood else {
             self.refused += 1;
             return;
         };

@@ -127,8 +127,12 @@ fn evaluate(model: &Model, state: &State, line: Line) -> Vec<Jet> {
             Node::Unary(function, a) => jets[a.index()].unary(function),
             Node::Binary(function, a, b) => jets[a.index()].binary(function, jets[b.index()]),
             Node::Call { function, order, argument } => {
-                let jet = jets[argument.index()];
-                jet.chain([0, 1, 2, 3].map(|more| law::derivative(function as u32, order + more, jet.v[0])))
+                let (function, jet) = (function as u32, jets[argument.index()]);
+                let orders = [0, 1, 2, 3].map(|more| order + more);
+                jet.chain_of_terms(
+                    orders.map(|order| law::derivative(function, order, jet.v[0])),
+                    orders.map(|order| law::magnitude(function, order)),
+                )
             }
             Node::Rate(..) | Node::State(_) | Node::Multiplier(_) | Node::Margin(_) | Node::Ratio(..) => {
                 unreachable!("random texts are kinematic and use no `der`, no margin and no ratio")

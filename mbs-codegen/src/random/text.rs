@@ -1,22 +1,18 @@
 //! Texts that use the whole language, each well defined at every state.
 
-use super::Random;
+use super::{Kind, Random};
 
 /// A random text: scalar and vector coordinates, parameters, inputs with rates, `let`s, loops, drives, outputs.
-pub(super) fn write(random: &mut Random) -> String {
-    begin(random, false).0
+pub(super) fn write(kind: Kind, random: &mut Random) -> String {
+    match kind {
+        Kind::Plain | Kind::Functions => begin(random, kind.has_functions()).0,
+        Kind::Scenes | Kind::ScenesWithFunctions => with_scenes(random, kind.has_functions()),
+    }
 }
 
-/// A random text that calls declared functions too.
-#[cfg(test)]
-pub(super) fn write_with_functions(random: &mut Random) -> String {
-    begin(random, true).0
-}
-
-/// A random text with two effects that give the same names different meanings, before the rest or behind it, and three scenes.
-#[cfg(test)]
-pub(super) fn write_with_scenes(random: &mut Random) -> String {
-    let (text, mut writer) = begin(random, false);
+/// A text with two effects that give the same names different meanings, before the rest or behind it, and three scenes.
+fn with_scenes(random: &mut Random, functions: bool) -> String {
+    let (text, mut writer) = begin(random, functions);
     let (header, common) = text.split_once('\n').unwrap_or((&text, ""));
     writer.names.extend(["r", "own"].map(String::from));
     let mut effects = String::new();
@@ -65,9 +61,10 @@ fn begin(random: &mut Random, functions: bool) -> (String, Writer<'_>) {
     writer.names.extend(["b[0]", "b.1"].map(String::from));
     for index in 0..scalars {
         let (left, right) = (writer.scalar(3), writer.scalar(4));
-        text += &match writer.random.below(3) {
+        text += &match writer.random.below(4) {
             0 => format!("drive d{index}: q{index} == {};\n", writer.scalar(4)),
-            1 => format!("drive d{index}: q{index}*(2.5 + sin({left})) == {right};\n"),
+            1 => format!("drive d{index}: rate(q{index}*(2.5 + sin({left}))) == ({})/1s;\n", writer.speed(3)),
+            2 => format!("drive d{index}: q{index}*(2.5 + sin({left})) == {right};\n"),
             _ => format!("constraint c{index} {{ {right} == q{index}*(1.1 + ({left})^2); }}\n"),
         };
     }
@@ -148,11 +145,19 @@ impl Writer<'_> {
     }
 
     /// A number of the names that every scene has.
-    #[cfg(test)]
     fn common(&mut self, depth: u32) -> String {
         let own = self.names.split_off(self.names.len() - 2);
         let value = self.scalar(depth);
         self.names.extend(own);
+        value
+    }
+
+    /// A number that depends on no coordinate.
+    fn speed(&mut self, depth: u32) -> String {
+        let all = self.names.clone();
+        self.names.retain(|name| !name.starts_with(['q', 'v', 'a', 'b']));
+        let value = self.scalar(depth);
+        self.names = all;
         value
     }
 
