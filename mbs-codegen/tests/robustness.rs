@@ -58,8 +58,63 @@ out speed: m/s = der(x);
 out pull: m/s^2 = der2(x);
 ";
 
+/// Functions and scenes.
+const MACHINE: &str = "
+/// A cam or a crank lifts a table.
+pub mechanism Machine;
+param r: m = 50mm;
+function lift: m(rad), C4, periodic TAU;
+coord theta: rad = 0.8;
+coord y: m = 0.2;
+drive motor: theta == 3*t/1s;
+effect cam { constraint face { y == r + lift(theta) + 0.1*lift(r/1m); } out slope: m = lift.d1(2*theta); }
+effect crank {
+    param L: m = 180mm;
+    coord rod: rad = -0.2;
+    constraint closure { r*unit(theta) + L*unit(rod) == [y, 0]; }
+    branch ahead: cos(rod) > 0;
+}
+effect seen { out bend: m = lift.d2(theta); }
+/// Follows the law.
+scene Cam = cam + seen;
+scene Crank = crank;
+";
+
+/// Masses and forces.
+const ARM: &str = "
+/// A two-link arm whose hand slides.
+pub mechanism Arm;
+param m1: kg = 1.5;
+param k: N/m = 120;
+const C: N*m*s = 0.2;
+input u: N*m;
+function load: N(m), C3;
+coord psi1: rad = 0.3;
+coord psi2: rad = 0.8;
+coord s: m = 0.2;
+state z: N = 0.5;
+let hand = 0.6*1m*unit(psi1) + s*unit(psi1 + psi2);
+body upper { mass: m1, inertia: 0.02, com: 0.3*1m*unit(psi1), angle: psi1 }
+body hold { mass: 0.4, com: hand }
+gravity g { acceleration: [0.3, -9.81] }
+force push: [2N + z, load(s)] on hand;
+torque motor: u - C*der(psi1) on psi1;
+force slip: -lambda(slot)*0.1 on s;
+tsda strut { from: [200mm, -400mm], to: hand, stiffness: k, length: 0.35, damping: 4, actuator: 3N*sin(2*t/1s) }
+rsda knee { angle: psi2, stiffness: 5, rest: 0.4, damping: 0.3, torque: 0.1 }
+potential well = 3N/1m*s^2*cos(psi1);
+kinetic rotor = 0.01*1kg*1m^2*der(psi2)*(der(psi2) + 3*der(psi1));
+dissipation bearing = 0.05*C*der(psi1)^2*exp(psi2);
+der(z) == (4N - z)/0.1s + 2N/1m*der(s);
+constraint slot { s == 300mm + 50mm*cos(psi2); }
+drive lead: psi1 == 0.3 + t/1s;
+start psi2 = 0.7 rate 2;
+out squeeze: N = lambda(slot) + z;
+out torque_1: N*m = effort(lead);
+";
+
 /// Every statement of the language stands in one of them.
-const TEXTS: [&str; 2] = [FOUR_BAR, PRESS];
+const TEXTS: [&str; 4] = [FOUR_BAR, PRESS, MACHINE, ARM];
 
 /// Runs `work` as the compiler runs a macro; `what` names it where it fails.
 fn expands(what: &str, work: impl Fn() -> String + Send + UnwindSafe + Clone + 'static) -> String {
@@ -169,7 +224,7 @@ fn words(text: &str) -> Vec<&str> {
     words
 }
 
-const SOUP: [&str; 90] = [
+const SOUP: [&str; 106] = [
     "const",
     "param",
     "input",
@@ -195,6 +250,22 @@ const SOUP: [&str; 90] = [
     "C2",
     "state",
     "body",
+    "gravity",
+    "force",
+    "torque",
+    "on",
+    "tsda",
+    "rsda",
+    "potential",
+    "kinetic",
+    "dissipation",
+    "mass",
+    "com",
+    "angle",
+    "lambda",
+    "effort",
+    "lift",
+    "d1",
     "mechanism",
     "pub",
     "t",

@@ -227,6 +227,14 @@ fn near<const N: usize>(found: [[f64; N]; N], expected: [[f64; N]; N], what: &st
 }
 
 #[test]
+fn only_forces_with_multipliers_are_asked_for_again() {
+    const { assert!(Arm::<f64>::FORCE_USES_MULTIPLIERS, "its slot rubs") };
+    // Its tension is of the multiplier, its forces are not.
+    const { assert!(!Pendulum::<f64>::FORCE_USES_MULTIPLIERS) };
+    const { assert!(!Trolley::<f64>::FORCE_USES_MULTIPLIERS) };
+}
+
+#[test]
 fn derivatives_of_forces_inertia_and_reactions_are_those_of_differences() {
     let arm = Arm { u: 1.7, ..Arm::default() };
     let p = arm.parameters();

@@ -11,7 +11,10 @@ use std::path::PathBuf;
 use mbs_tests::{proofs::Workshop, tools};
 
 /// One a mechanism and scalar type: all emitted functions and, but for lanes, all solvers.
-const EXPORTS: [&str; 7] = [
+const EXPORTS: [&str; 10] = [
+    "proof_cam_f32",
+    "proof_cam_f64",
+    "proof_cam_lanes",
     "proof_entry",
     "proof_four_bar_f32",
     "proof_four_bar_f64",

@@ -7,7 +7,7 @@ use std::process::{Command, Stdio};
 use std::sync::LazyLock;
 use std::thread;
 
-use mbs_codegen::random::{Expected, STATES, State, TEXTS, expected, text};
+use mbs_codegen::random::{ExpectedScene, Kind, STATES, State, TEXTS, expected, text};
 use mbs_tests::tools;
 use mbs_tests::written::WrittenCrate;
 
@@ -32,34 +32,64 @@ mechanisms = { path = "../../mechanisms", default-features = false }
 /// The crate's program without its texts.
 const PROGRAM: &str = include_str!("random_texts/program.rs");
 
+/// Kinds of the texts in turn.
+const KINDS: [Kind; 10] = [
+    Kind::Plain,
+    Kind::Functions,
+    Kind::Plain,
+    Kind::Scenes,
+    Kind::Plain,
+    Kind::Plain,
+    Kind::Functions,
+    Kind::Plain,
+    Kind::ScenesWithFunctions,
+    Kind::Plain,
+];
+
 /// A text of the sample.
 struct Sampled {
+    kind: Kind,
     seed: u64,
-    states: Vec<(State, Vec<Expected>)>,
+    scenes: Vec<ExpectedScene>,
+}
+
+impl Sampled {
+    fn text(&self) -> String {
+        text(self.kind, self.seed)
+    }
 }
 
 /// Spread over all seeds, refused texts left out.
 static TEXTS_OF_THE_SAMPLE: LazyLock<Vec<Sampled>> = LazyLock::new(|| {
     let step = TEXTS as usize / SAMPLE;
-    let sampled = |first: u64| {
+    let sampled = |(first, kind): (u64, Kind)| {
         let mut seeds = first..first + step as u64;
         seeds
-            .find_map(|seed| Some(Sampled { seed, states: expected(seed)? }))
+            .find_map(|seed| Some(Sampled { kind, seed, scenes: expected(kind, seed)? }))
             .expect("a text that is not refused")
     };
-    (0..TEXTS).step_by(step).map(sampled).collect()
+    (0..TEXTS).step_by(step).zip(KINDS.into_iter().cycle()).map(sampled).collect()
 });
+
+/// Scenes of the sample with their texts; a text without scenes is one.
+fn scenes() -> impl Iterator<Item = (&'static Sampled, &'static ExpectedScene)> {
+    TEXTS_OF_THE_SAMPLE.iter().flat_map(|sampled| sampled.scenes.iter().map(move |scene| (sampled, scene)))
+}
 
 static CRATE: LazyLock<WrittenCrate> = LazyLock::new(|| {
     let written = WrittenCrate::new(env!("CARGO_TARGET_TMPDIR"), "random_texts", MANIFEST);
     let mut modules = String::new();
     let (mut values, mut digits) = (String::new(), String::new());
-    for Sampled { seed, states } in TEXTS_OF_THE_SAMPLE.iter() {
-        let text = text(*seed).replace("mechanism Random;", &format!("mechanism Random{seed};"));
+    for sampled in TEXTS_OF_THE_SAMPLE.iter() {
+        let seed = sampled.seed;
+        let text = sampled.text().replace("mechanism Random;", &format!("mechanism Random{seed};"));
         modules += &format!("mod text_{seed} {{\nmbs_runtime::mechanism! {{\n{text}}}\n}}\n");
+    }
+    for (index, (Sampled { kind, seed, .. }, ExpectedScene { name, states })) in scenes().enumerate() {
         let n = states[0].0.q.len();
-        let of = format!("::<text_{seed}::Random{seed}, {n}, {n}>");
-        values += &format!("        {seed} => values{of}(numbers),\n");
+        let functions = if kind.has_functions() { "<StandIn<0>, StandIn<1>>" } else { "" };
+        let of = format!("::<text_{seed}::Random{seed}{name}{functions}, {n}, {n}>");
+        values += &format!("        {index} => values{of}(numbers),\n");
         digits += &format!("    digits{of}(&oracle, &mut summary);\n");
     }
     let program = PROGRAM.replace("// VALUES\n", &values).replace("// DIGITS\n", &digits);
@@ -78,13 +108,12 @@ fn line(numbers: impl Iterator<Item = f64>) -> String {
 
 #[test]
 fn compiled_texts_compute_what_second_order_taylor_arithmetic_computes() {
-    let sample = &*TEXTS_OF_THE_SAMPLE;
     let mut questions = String::new();
-    for Sampled { seed, states } in sample {
-        for (state, _) in states {
+    for (index, (_, scene)) in scenes().enumerate() {
+        for (state, _) in &scene.states {
             let State { q, qd, qdd, t, variables } = state;
             let numbers = [q.as_slice(), qd, qdd, &[*t], variables].concat();
-            questions += &format!("{seed}{}\n", line(numbers.into_iter()));
+            questions += &format!("{index}{}\n", line(numbers.into_iter()));
         }
     }
     let mut child = run("values").stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().expect("cargo");
@@ -97,15 +126,21 @@ fn compiled_texts_compute_what_second_order_taylor_arithmetic_computes() {
 
     let (mut answers, mut compared, mut worst) = (answers.lines(), 0_usize, 0.0_f64);
     let (mut slips, mut found) = (0_usize, 0_usize);
-    for (seed, (_, expected)) in sample.iter().flat_map(|s| s.states.iter().map(|state| (s.seed, state))) {
+    let all = scenes().flat_map(|(text, scene)| scene.states.iter().map(move |state| (text, scene, state)));
+    for (sampled, ExpectedScene { name, .. }, (_, expected)) in all {
+        let seed = sampled.seed;
         let words = answers.next().expect("an answer a state").split_whitespace();
         let values: Vec<u64> = words.map(|word| u64::from_str_radix(word, 16).expect("bits")).collect();
-        assert_eq!(values.len(), expected.len(), "seed {seed}");
+        assert_eq!(values.len(), expected.len(), "seed {seed}, scene `{name}`");
         for (index, (bits, expected)) in values.into_iter().zip(expected).enumerate() {
             let value = f64::from_bits(bits);
             let Some(error) = expected.error(value) else { continue };
             let instead = expected.value;
-            assert!(error <= 1.0, "seed {seed}, value {index}: {value} instead of {instead}\n{}", text(seed));
+            assert!(
+                error <= 1.0,
+                "seed {seed}, scene `{name}`, value {index}: {value} instead of {instead}\n{}",
+                sampled.text()
+            );
             worst = worst.max(error);
             compared += 1;
             // The control: slips are outside the bound, but where terms cancel by five digits.
@@ -124,6 +159,65 @@ fn compiled_texts_compute_what_second_order_taylor_arithmetic_computes() {
 fn fifty_digits_confirm_compiled_texts() {
     let said = tools::output(&mut run("digits"), "the tests need cargo, which runs them");
     let said = said.unwrap_or_else(|said| panic!("{said}"));
-    assert!(said.starts_with(&format!("{SAMPLE} mechanisms × ")), "{said}");
+    assert!(said.starts_with(&format!("{} mechanisms × ", scenes().count())), "{said}");
     println!("{said}");
+}
+
+/// What each stands for can be written in no other way.
+const LANGUAGE: [&str; 46] = [
+    "sin(",
+    "cos(",
+    "exp(",
+    "ln(",
+    "sqrt(",
+    "tan(",
+    "asin(",
+    "acos(",
+    "atan(",
+    "sinh(",
+    "cosh(",
+    "tanh(",
+    "abs(",
+    "sign(",
+    "-(",
+    ")^",
+    " + ",
+    " - ",
+    "*(",
+    ")/(",
+    "min(",
+    "max(",
+    "hypot(",
+    "atan2(",
+    "dot(",
+    "cross(",
+    "norm(",
+    "det(",
+    "rot(",
+    "unit(",
+    "sum(",
+    "for i in",
+    "let ",
+    "rate(",
+    "drive ",
+    "constraint ",
+    "rise(",
+    "sag(",
+    "rise.d1(",
+    "sag.d1(",
+    "sag.d2(",
+    "v.1",
+    "L[i",
+    "u",
+    "(t/1s)",
+    "scene Third",
+];
+
+#[test]
+fn the_sample_shows_the_whole_language() {
+    let texts: String = TEXTS_OF_THE_SAMPLE.iter().map(Sampled::text).collect();
+    let missing: Vec<_> = LANGUAGE.into_iter().filter(|word| !texts.contains(word)).collect();
+    assert!(missing.is_empty(), "{missing:?}");
+    assert_eq!(TEXTS_OF_THE_SAMPLE.len(), SAMPLE);
+    assert!(scenes().count() > SAMPLE + SAMPLE / 5, "{}", scenes().count());
 }

@@ -5,7 +5,7 @@ use std::io::{self, BufRead, Write};
 use mbs_runtime::{Mechanism, OutputValue};
 use mechanisms::facade::Facade;
 use mechanisms::verify::compare::compare_digits;
-use mechanisms::verify::{Oracle, Summary, generated_definition};
+use mechanisms::verify::{Oracle, StandIn, Summary, generated_definition};
 
 /// States compared in 50 digits.
 const DIGITS_STATES: usize = 5;
@@ -17,26 +17,26 @@ fn main() {
     }
 }
 
-/// A line a state: the text's seed and the bits of q, q̇, q̈, t, variables; a line of bits comes back.
+/// A line a state: the number of the text or scene, and the bits of q, q̇, q̈, t, variables; a line of bits comes back.
 fn answer() {
     let mut out = io::BufWriter::new(io::stdout().lock());
     for line in io::stdin().lock().lines() {
         let line = line.expect("text");
         let mut words = line.split(' ');
-        let seed: u64 = words.next().and_then(|word| word.parse().ok()).expect("a seed");
+        let scene: usize = words.next().and_then(|word| word.parse().ok()).expect("a scene");
         let bits = words.map(|word| u64::from_str_radix(word, 16).expect("bits"));
         let numbers: Vec<f64> = bits.map(f64::from_bits).collect();
-        for value in of_text(seed, &numbers) {
+        for value in of_scene(scene, &numbers) {
             write!(out, " {:x}", value.to_bits()).expect("a reader");
         }
         writeln!(out).expect("a reader");
     }
 }
 
-fn of_text(seed: u64, numbers: &[f64]) -> Vec<f64> {
-    match seed {
+fn of_scene(scene: usize, numbers: &[f64]) -> Vec<f64> {
+    match scene {
 // VALUES
-        _ => panic!("no text of seed {seed}"),
+        _ => panic!("no scene {scene}"),
     }
 }
 

@@ -11,7 +11,7 @@ use core::hint::black_box;
 
 use mbs_runtime::Lanes;
 use proof_subjects::{
-    FourBar, Platform, Start, exercise_emitted, exercise_laws, exercise_solvers, exercise_splines,
+    FourBar, Platform, Start, cam, exercise_emitted, exercise_laws, exercise_solvers, exercise_splines,
 };
 
 unsafe extern "C" {
@@ -26,12 +26,12 @@ fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
 }
 
 macro_rules! export {
-    ($($name:ident: $mechanism:ident<$real:ty>, $variable:literal;)*) => {
+    ($($name:ident: $mechanism:expr, $variable:literal;)*) => {
         $(
             /// All entry points; false where a solver fails.
             #[unsafe(no_mangle)]
             pub extern "C" fn $name() -> bool {
-                let mechanism = black_box($mechanism::<$real>::default());
+                let mechanism = black_box($mechanism);
                 let start = Start::of(&mechanism);
                 exercise_emitted(mechanism, &start);
                 exercise_solvers(mechanism, &start, $variable).is_ok()
@@ -41,10 +41,12 @@ macro_rules! export {
 }
 
 export! {
-    proof_four_bar_f64: FourBar<f64>, "L5";
-    proof_four_bar_f32: FourBar<f32>, "L5";
-    proof_platform_f64: Platform<f64>, "rod[1]";
-    proof_platform_f32: Platform<f32>, "rod[1]";
+    proof_four_bar_f64: FourBar::<f64>::default(), "L5";
+    proof_four_bar_f32: FourBar::<f32>::default(), "L5";
+    proof_platform_f64: Platform::<f64>::default(), "rod[1]";
+    proof_platform_f32: Platform::<f32>::default(), "rod[1]";
+    proof_cam_f64: cam::<f64>(), "base";
+    proof_cam_f32: cam::<f32>(), "base";
 }
 
 /// The emitted functions and the position solver on four lanes.
@@ -61,6 +63,13 @@ pub extern "C" fn proof_platform_lanes() {
     exercise_emitted(mechanism, &Start::of(&mechanism));
 }
 
+/// The emitted functions and the position solver on four lanes.
+#[unsafe(no_mangle)]
+pub extern "C" fn proof_cam_lanes() {
+    let mechanism = black_box(cam::<Lanes<f64, 4>>());
+    exercise_emitted(mechanism, &Start::of(&mechanism));
+}
+
 /// Motion laws and splines, fits included; false where one fails.
 #[unsafe(no_mangle)]
 pub extern "C" fn proof_drivers() -> bool {
@@ -72,6 +81,7 @@ pub extern "C" fn proof_drivers() -> bool {
 pub extern "C" fn proof_entry() -> bool {
     proof_four_bar_lanes();
     proof_platform_lanes();
+    proof_cam_lanes();
     #[cfg(feature = "control-panics")]
     black_box(controls::indexes(black_box(7)));
     #[cfg(feature = "control-allocates")]
@@ -80,5 +90,7 @@ pub extern "C" fn proof_entry() -> bool {
         & proof_four_bar_f32()
         & proof_platform_f64()
         & proof_platform_f32()
+        & proof_cam_f64()
+        & proof_cam_f32()
         & proof_drivers()
 }
