@@ -12,7 +12,7 @@ use super::operands::Operands;
 use super::references::{REFERRING, is_reference};
 use super::units::{Dimension, with_suffix};
 use crate::diagnostics::{Diagnostics, nearest};
-use crate::syntax::ast::{Expression, Operation, Operator, Target};
+use crate::syntax::ast::{Expression, Name, Operation, Operator, Target};
 
 /// A fault was reported.
 #[derive(Clone, Copy, Debug)]
@@ -470,6 +470,9 @@ impl Elaborator<'_> {
             let help = format!("write `lambda({})` for the multiplier of a constraint", target.name.text);
             return Err(self.fault(target.name.span, message, help));
         }
+        if rows.rows.is_empty() {
+            return Err(self.without_rows(&target.name));
+        }
         let chosen = match counts.first() {
             None => rows.rows.clone(),
             Some(count) => {
@@ -497,6 +500,15 @@ impl Elaborator<'_> {
         }
         let shape = if items.len() == 1 { Vec::new() } else { vec![items.len()] };
         Ok(Value { shape, items, span })
+    }
+
+    /// Reports that a group has no row, unless that follows from a fault in one.
+    fn without_rows(&mut self, group: &Name) -> Fault {
+        if !self.diagnostics.is_empty() {
+            return Fault;
+        }
+        let message = format!("`{}` has no row and so no multiplier", group.text);
+        self.fault(group.span, message, "write the equation whose force is meant")
     }
 
     /// A value that counts something: a non-negative integer made of literals, constants and loop names.
@@ -560,7 +572,7 @@ impl Elaborator<'_> {
                 return Err(self.fault(
                     value.span,
                     format!("index {index} is beyond the last of {length} components"),
-                    format!("components are counted from 0; the last is {}", length - 1),
+                    format!("components are counted from 0; the last is {}", length.saturating_sub(1)),
                 ));
             }
             offset = offset * length + index;
