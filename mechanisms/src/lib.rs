@@ -28,6 +28,7 @@ pub mod four_bar_mixed;
 pub mod four_bar_natural;
 pub mod four_bar_reference_point;
 pub mod geneva;
+pub mod heavy_top;
 pub mod jansen;
 pub mod loop_length;
 pub mod loop_relative;

@@ -47,6 +47,7 @@ pub const FREE: &[&FreeCard] = &[
     &crate::cart_pole::CARD,
     &crate::n_four_bar::CARD,
     &crate::andrews::CARD,
+    &crate::heavy_top::CARD,
     &crate::slider_crank_mass::RELEASED,
     &crate::four_bar_mass::RELEASED,
 ];

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use super::casadi::{assignments, variable};
 use crate::model::Model;
-use crate::model::dynamics::{Action, Dynamics, Line, Turn};
+use crate::model::dynamics::{Action, Dynamics, Line, Rotation, Turn};
 use crate::model::expression::Id;
 
 /// Before: a text with masses or forces. After: `K`, the number of first-order states, and
@@ -22,9 +22,13 @@ pub fn definition(model: &Model, dynamics: &Dynamics, text: &mut String) {
         for place in &body.com {
             let _ = writeln!(text, "    kinetic.append({mass} * der({0}) * der({0}) / 2)", variable(*place));
         }
-        if let Some((inertia, angle)) = body.rotation {
-            let (inertia, angle) = (variable(inertia), variable(angle));
-            let _ = writeln!(text, "    kinetic.append({inertia} * der({angle}) * der({angle}) / 2)");
+        match &body.rotation {
+            None => {}
+            Some(Rotation::Plane { inertia, angle }) => {
+                let (inertia, angle) = (variable(*inertia), variable(*angle));
+                let _ = writeln!(text, "    kinetic.append({inertia} * der({angle}) * der({angle}) / 2)");
+            }
+            Some(Rotation::Space { inertia, orientation }) => turning(inertia, *orientation, text),
         }
         for field in &dynamics.gravity {
             for (place, acceleration) in body.com.iter().zip(field) {
@@ -63,13 +67,33 @@ pub fn definition(model: &Model, dynamics: &Dynamics, text: &mut String) {
     let _ = writeln!(text, "    return dict({names})");
 }
 
+/// ½ ω'ᵀ J ω' with ω' = 2 (e₀ ε̇ − ė₀ ε − ε × ε̇).
+fn turning(inertia: &[(usize, usize, Id)], orientation: [Id; 4], text: &mut String) {
+    let [e0, x, y, z] = orientation.map(variable);
+    let axes = [(&x, &y, &z), (&y, &z, &x), (&z, &x, &y)].map(|(i, j, k)| {
+        format!("2 * ({e0} * der({i}) - der({e0}) * {i} - {j} * der({k}) + {k} * der({j}))")
+    });
+    let _ = writeln!(text, "    spin = [{}]", axes.join(", "));
+    for (row, column, entry) in inertia {
+        let half = if row == column { " / 2" } else { "" };
+        let _ =
+            writeln!(text, "    kinetic.append({} * spin[{row}] * spin[{column}]{half})", variable(*entry));
+    }
+}
+
 /// Everything that the function uses.
 fn roots(dynamics: &Dynamics) -> Vec<Id> {
     let mut roots = Vec::new();
     for body in &dynamics.bodies {
         roots.push(body.mass);
         roots.extend(&body.com);
-        roots.extend(body.rotation.iter().flat_map(|(inertia, angle)| [*inertia, *angle]));
+        match &body.rotation {
+            None => {}
+            Some(Rotation::Plane { inertia, angle }) => roots.extend([*inertia, *angle]),
+            Some(Rotation::Space { inertia, orientation }) => {
+                roots.extend(inertia.iter().map(|(.., entry)| *entry).chain(*orientation));
+            }
+        }
     }
     roots.extend(dynamics.gravity.iter().flatten());
     roots.extend(dynamics.kinetics.iter().map(|kinetic| kinetic.value));

@@ -3,7 +3,7 @@
 use super::forces::{self, Sum};
 use super::lower::Clock;
 use super::{Row, again, jacobian};
-use crate::model::dynamics::{Body, Dynamics as Declared};
+use crate::model::dynamics::{Body, Dynamics as Declared, Rotation};
 use crate::model::expression::Id;
 use crate::symbolic::{Graph, Leaf, Node, NodeId, Stage, tangent};
 
@@ -113,7 +113,7 @@ pub fn derive(
 }
 
 /// Entries of the upper triangle of M, the inertia forces at q̈ = 0, the kinetic energy.
-struct Inertia {
+pub struct Inertia {
     mass: Vec<Vec<(usize, Sum)>>,
     bias: Vec<Sum>,
     kinetic: Sum,
@@ -124,13 +124,29 @@ impl Inertia {
         Inertia { mass: vec![Vec::new(); count], bias: vec![Sum::default(); count], kinetic: Sum::default() }
     }
 
+    /// Number of coordinates.
+    pub fn coordinates(&self) -> usize {
+        self.bias.len()
+    }
+
+    /// Adds to the kinetic energy.
+    pub fn add_kinetic(&mut self, g: &mut Graph, energy: NodeId) {
+        self.kinetic.add(g, energy);
+    }
+
     /// M = Σ m J ᵀJ + J_αᵀ I J_α with J = ∂com/∂q: no difference of large numbers.
     fn body(&mut self, g: &mut Graph, body: &Body, of: &impl Fn(Id) -> NodeId, clock: &Clock) {
         for component in &body.com {
             self.point(g, of(*component), of(body.mass), clock);
         }
-        if let Some((inertia, angle)) = body.rotation {
-            self.point(g, of(angle), of(inertia), clock);
+        match &body.rotation {
+            None => {}
+            Some(Rotation::Plane { inertia, angle }) => self.point(g, of(*angle), of(*inertia), clock),
+            Some(Rotation::Space { inertia, orientation }) => {
+                let inertia = inertia.iter().map(|(row, column, entry)| (*row, *column, of(*entry)));
+                let inertia: Vec<_> = inertia.collect();
+                self.turning(g, &inertia, orientation.map(of), clock);
+            }
         }
     }
 
@@ -193,7 +209,7 @@ impl Inertia {
         true
     }
 
-    fn add(&mut self, g: &mut Graph, row: usize, column: usize, entry: NodeId) {
+    pub fn add(&mut self, g: &mut Graph, row: usize, column: usize, entry: NodeId) {
         let Some(entries) = self.mass.get_mut(row) else { return };
         match entries.iter_mut().find(|(known, _)| *known == column) {
             Some((_, sum)) => sum.add(g, entry),
@@ -201,7 +217,7 @@ impl Inertia {
         }
     }
 
-    fn bias_at(&mut self, g: &mut Graph, row: usize, bias: NodeId) {
+    pub fn bias_at(&mut self, g: &mut Graph, row: usize, bias: NodeId) {
         if let Some(sum) = self.bias.get_mut(row) {
             sum.add(g, bias);
         }

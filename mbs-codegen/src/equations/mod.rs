@@ -5,6 +5,7 @@ pub mod continuity;
 mod dynamics;
 mod forces;
 mod lower;
+mod turning;
 
 use std::collections::BTreeSet;
 

@@ -57,12 +57,13 @@ impl Elaborator<'_> {
             _ => Err(self.fault(
                 b.span,
                 format!("{} times {} has no meaning", a.describe(), b.describe()),
-                "multiply by a scalar, write `dot(a, b)` or `cross(a, b)`, or `rot(phi)*v`",
+                "multiply by a scalar, write `dot(a, b)` or `cross(a, b)`, or `rot(phi)*v`, `rotate(e, v)`",
             )),
         }
     }
 
-    fn multiply(&mut self, a: Scalar, b: Scalar, span: Span) -> Result<Scalar, Fault> {
+    /// The product of two scalars.
+    pub fn multiply(&mut self, a: Scalar, b: Scalar, span: Span) -> Result<Scalar, Fault> {
         let quantity = match (a.quantity, b.quantity) {
             (Quantity::Any, _) | (_, Quantity::Any) => Quantity::Any,
             (Quantity::Known(x), Quantity::Known(y)) => {
@@ -262,6 +263,8 @@ impl Elaborator<'_> {
             "unit" | "rot" => "phi",
             "det" => "m",
             "norm" => "v",
+            "rotate" => "e, v",
+            "angular_velocity" => "e",
             "dot" | "cross" | "min" | "max" | "hypot" => "a, b",
             _ => "x",
         };

@@ -28,7 +28,7 @@ pub struct Dynamics {
     pub loads: Vec<Output>,
 }
 
-/// A rigid body in a plane, or a point mass.
+/// A rigid body in a plane or in space, or a point mass.
 #[derive(Debug)]
 pub struct Body {
     /// Its name.
@@ -37,8 +37,27 @@ pub struct Body {
     pub mass: Id,
     /// Centre of mass (m), as many components as the space has.
     pub com: Vec<Id>,
-    /// Moment of inertia about the centre of mass (kg m²), of parameters, and the body's angle.
-    pub rotation: Option<(Id, Id)>,
+    /// What turns, if anything does.
+    pub rotation: Option<Rotation>,
+}
+
+/// Inertia about the centre of mass, and what it turns with.
+#[derive(Debug)]
+pub enum Rotation {
+    /// About the normal of a plane.
+    Plane {
+        /// Moment of inertia (kg m²), of parameters.
+        inertia: Id,
+        /// Angle of the body.
+        angle: Id,
+    },
+    /// About any axis.
+    Space {
+        /// Upper triangle of J in the axes of the body (kg m²), of parameters: row, column, entry.
+        inertia: Vec<(usize, usize, Id)>,
+        /// Euler parameters of the body's axes, e·e = 1.
+        orientation: [Id; 4],
+    },
 }
 
 /// A kinetic energy of the text.

@@ -391,8 +391,7 @@ impl Elaborator<'_> {
     }
 
     /// Total time derivative of one scalar or vector.
-    pub fn rate(&mut self, arguments: Vec<Value>, order: u8, span: Span) -> Result<Value, Fault> {
-        let name = if order == 1 { "der" } else { "der2" };
+    pub fn rate(&mut self, arguments: Vec<Value>, name: &str, order: u8, span: Span) -> Result<Value, Fault> {
         let [argument] = self.arguments(name, arguments, span)?;
         if self.reach == Reach::Position {
             return Err(self.fault(

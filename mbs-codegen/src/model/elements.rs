@@ -2,10 +2,12 @@
 
 use proc_macro2::Span;
 
-use super::dynamics::{Action, Body, Dynamics, Force, Kinetic, Line, Turn};
+use super::bodies::inertia;
+use super::dynamics::{Action, Dynamics, Force, Kinetic, Line, Turn};
 use super::elaborate::{Elaborator, Fault, Quantity, Reach, Value};
 use super::expression::{Id, Node};
 use super::initialiser::{fits_shape, initialiser};
+use super::orientation::{moments, parameters};
 use super::resolve::Resolver;
 use super::units::Dimension;
 use crate::diagnostics::nearest;
@@ -23,6 +25,9 @@ pub fn is_dynamic(statement: &Statement) -> bool {
     )
 }
 
+/// The field that makes a body one in space.
+pub const ORIENTATION: &str = "orientation";
+
 /// What a field holds.
 #[derive(Clone, Copy)]
 enum Kind {
@@ -34,6 +39,10 @@ enum Kind {
     Point,
     /// A vector of a unit, of constants, inputs and the time.
     Vector(Dimension),
+    /// One moment of inertia, three principal ones or all six entries, of parameters alone.
+    Inertia,
+    /// Four Euler parameters.
+    Orientation,
 }
 
 /// A field of an element: its name, what it holds, whether it must be given.
@@ -46,8 +55,9 @@ fn known(element: Element) -> Vec<Known> {
         Element::Body => vec![
             ("mass", Kind::Constant(Dimension::KILOGRAM), true),
             ("com", Kind::Point, true),
-            ("inertia", Kind::Constant(Dimension::INERTIA), false),
+            ("inertia", Kind::Inertia, false),
             ("angle", Kind::Scalar(Dimension::NUMBER, Reach::Position), false),
+            (ORIENTATION, Kind::Orientation, false),
         ],
         Element::Gravity => {
             let acceleration = Dimension::METRE.over(Dimension::SECOND).over(Dimension::SECOND);
@@ -72,18 +82,18 @@ fn known(element: Element) -> Vec<Known> {
 }
 
 /// The values of an element's fields.
-struct Given(Vec<(&'static str, Value)>);
+pub(super) struct Given(Vec<(&'static str, Value)>);
 
 impl Given {
-    fn value(&self, name: &str) -> Option<&Value> {
+    pub(super) fn value(&self, name: &str) -> Option<&Value> {
         self.0.iter().find(|(known, _)| *known == name).map(|(_, value)| value)
     }
 
-    fn scalar(&self, name: &str) -> Option<Id> {
+    pub(super) fn scalar(&self, name: &str) -> Option<Id> {
         self.value(name).and_then(|value| value.items.first()).map(|item| item.id)
     }
 
-    fn vector(&self, name: &str) -> Vec<Id> {
+    pub(super) fn vector(&self, name: &str) -> Vec<Id> {
         self.value(name).map(|value| value.items.iter().map(|item| item.id).collect()).unwrap_or_default()
     }
 }
@@ -96,10 +106,7 @@ impl Resolver<'_> {
         let given = self.fields(kind, name, fields)?;
         match kind {
             Element::Body => self.body(name, full, &given),
-            Element::Gravity => {
-                self.dynamics().gravity.push(given.vector("acceleration"));
-                Ok(())
-            }
+            Element::Gravity => self.gravity(name, &given),
             Element::Tsda => self.line(name, full, &given),
             Element::Rsda => {
                 let constant = ["stiffness", "rest"].iter().filter_map(|field| given.scalar(field));
@@ -117,25 +124,6 @@ impl Resolver<'_> {
                 Ok(())
             }
         }
-    }
-
-    fn body(&mut self, name: &Name, full: String, given: &Given) -> Result<(), Fault> {
-        let rotation = match (given.scalar("inertia"), given.scalar("angle")) {
-            (Some(inertia), Some(angle)) => Some((inertia, angle)),
-            (None, None) => None,
-            (Some(_), None) => {
-                let message = format!("body `{}` has an inertia and no angle", name.text);
-                return Err(self.fault(name.span, message, "write what turns: `angle: phi`"));
-            }
-            (None, Some(_)) => {
-                let message = format!("body `{}` has an angle and no inertia", name.text);
-                let help = "write `inertia: …` about the centre of mass, or leave out both for a point mass";
-                return Err(self.fault(name.span, message, help));
-            }
-        };
-        let mass = given.scalar("mass").ok_or(Fault)?;
-        self.dynamics().bodies.push(Body { name: full, mass, com: given.vector("com"), rotation });
-        Ok(())
     }
 
     fn line(&mut self, name: &Name, full: String, given: &Given) -> Result<(), Fault> {
@@ -202,6 +190,8 @@ impl Resolver<'_> {
             Kind::Constant(dimension) | Kind::Vector(dimension) => (dimension, Reach::Position),
             Kind::Scalar(dimension, reach) => (dimension, reach),
             Kind::Point => (Dimension::METRE, Reach::Position),
+            Kind::Inertia => (Dimension::INERTIA, Reach::Position),
+            Kind::Orientation => (Dimension::NUMBER, Reach::Position),
         };
         let user = format!("`{}`", field.name.text);
         let value = self.elaborate(reach, |work| {
@@ -210,6 +200,8 @@ impl Resolver<'_> {
             match kind {
                 Kind::Constant(_) | Kind::Scalar(..) => fits_shape(work, &value, &[])?,
                 Kind::Point | Kind::Vector(_) => point(work, &value, &user)?,
+                Kind::Inertia => inertia(work, &value)?,
+                Kind::Orientation => parameters(work, &value, &user).map(|_| ())?,
             }
             Ok::<_, Fault>(value)
         })?;
@@ -218,7 +210,7 @@ impl Resolver<'_> {
         }
         let varies = |work: &Self, item: Id, allowed: fn(Node) -> bool| !work.model.made_of(item, allowed);
         for item in &value.items {
-            if matches!(kind, Kind::Constant(_)) && !self.model.is_constant(item.id) {
+            if matches!(kind, Kind::Constant(_) | Kind::Inertia) && !self.model.is_constant(item.id) {
                 let message = format!("{user} varies");
                 let help = "make it of numbers and parameters; what varies is an energy: `kinetic T = …;`";
                 return Err(self.fault(value.span, message, help));
@@ -247,7 +239,7 @@ impl Resolver<'_> {
         };
         let on = self.elaborate(Reach::Position, |work| {
             let on = work.value(on)?;
-            if kind == Load::Torque {
+            if kind == Load::Torque && on.shape != [4] {
                 work.scalar(&on, "a torque", on.span)?;
             }
             let fits = |quantity| quantity == Quantity::Any || quantity == Quantity::Known(along);
@@ -260,7 +252,7 @@ impl Resolver<'_> {
                         format!("a torque acts on an angle, not on a `{}`", item.quantity.dimension())
                     }
                 };
-                let help = "write `force f: [fx, fy] on [x, y];` or `torque m: tau on phi;`";
+                let help = "write `force f: [fx, fy] on [x, y];` or `torque m: tau on phi;`, in space `torque m: [mx, my, mz] on e;`";
                 return Err(work.fault(on.span, message, help));
             }
             Ok(on)
@@ -268,8 +260,14 @@ impl Resolver<'_> {
         self.stateless(&on)?;
         let value = self.elaborate(Reach::Force, |work| {
             let value = work.value(value)?;
-            let value = initialiser(work, value, dimension)?;
-            work.same_shape(&on, &value, "`on`", value.span)?;
+            let mut value = initialiser(work, value, dimension)?;
+            if kind == Load::Torque && on.shape == [4] {
+                vector_of_three(work, &value)?;
+                let parameters = parameters(work, &on, "a torque")?;
+                value.items = moments(work, &value, parameters, value.span)?.to_vec();
+            } else {
+                work.same_shape(&on, &value, "`on`", value.span)?;
+            }
             Ok::<_, Fault>(value)
         })?;
         let pairs = value.items.iter().zip(&on.items).map(|(value, on)| (value.id, on.id)).collect();
@@ -472,12 +470,12 @@ impl Resolver<'_> {
         Ok(if self.loops.is_empty() { name.text.clone() } else { format!("{}.{round}", name.text) })
     }
 
-    fn fault(&mut self, span: Span, message: impl Into<String>, help: impl Into<String>) -> Fault {
+    pub(super) fn fault(&mut self, span: Span, message: impl Into<String>, help: impl Into<String>) -> Fault {
         self.diagnostics.report(span, message, help);
         Fault
     }
 
-    fn dynamics(&mut self) -> &mut Dynamics {
+    pub(super) fn dynamics(&mut self) -> &mut Dynamics {
         self.model.dynamics.get_or_insert_default()
     }
 }
@@ -487,5 +485,15 @@ fn point(work: &mut Elaborator<'_>, value: &Value, user: &str) -> Result<(), Fau
     match value.shape.as_slice() {
         [2 | 3] => Ok(()),
         _ => Err(work.wrong_shape(user, "a vector of 2 or of 3 components", value, value.span)),
+    }
+}
+
+/// A torque in space.
+fn vector_of_three(work: &mut Elaborator<'_>, value: &Value) -> Result<(), Fault> {
+    match value.shape.as_slice() {
+        [3] => Ok(()),
+        _ => {
+            Err(work.wrong_shape("a torque on an orientation", "a vector of 3 components", value, value.span))
+        }
     }
 }

@@ -4,12 +4,40 @@ use proc_macro2::Span;
 
 use super::elaborate::{Elaborator, Fault, Quantity, Scalar, Value};
 use super::expression::{Binary, Unary};
+use super::orientation;
 use super::units::Dimension;
 
 /// Names of all functions.
-pub const FUNCTIONS: [&str; 27] = [
-    "sqrt", "exp", "ln", "sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "abs",
-    "sign", "min", "max", "hypot", "sum", "dot", "cross", "norm", "det", "rot", "unit", "der", "der2",
+pub const FUNCTIONS: [&str; 29] = [
+    "sqrt",
+    "exp",
+    "ln",
+    "sin",
+    "cos",
+    "tan",
+    "asin",
+    "acos",
+    "atan",
+    "atan2",
+    "sinh",
+    "cosh",
+    "tanh",
+    "abs",
+    "sign",
+    "min",
+    "max",
+    "hypot",
+    "sum",
+    "dot",
+    "cross",
+    "norm",
+    "det",
+    "rot",
+    "unit",
+    "rotate",
+    "angular_velocity",
+    "der",
+    "der2",
 ];
 
 /// Functions of the language which this version does not translate.
@@ -49,8 +77,10 @@ pub fn call(
         "det" => return det(work, arguments, span),
         "unit" => return unit(work, arguments, span),
         "rot" => return rot(work, arguments, span),
-        "der" => return work.rate(arguments, 1, span),
-        "der2" => return work.rate(arguments, 2, span),
+        "rotate" => return orientation::rotate(work, arguments, span),
+        "angular_velocity" => return orientation::angular_velocity(work, arguments, span),
+        "der" => return work.rate(arguments, "der", 1, span),
+        "der2" => return work.rate(arguments, "der2", 2, span),
         "rate" => {
             return Err(work.fault(
                 span,

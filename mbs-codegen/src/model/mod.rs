@@ -1,6 +1,7 @@
 //! ast → resolved model: every name, shape, unit and loop resolved; after it nothing is mutable.
 
 mod arithmetic;
+mod bodies;
 mod declarations;
 mod declared_functions;
 mod drives;
@@ -15,6 +16,7 @@ mod limits;
 mod names;
 mod operands;
 mod order;
+mod orientation;
 mod references;
 mod resolve;
 pub mod scenes;

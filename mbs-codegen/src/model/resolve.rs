@@ -13,7 +13,9 @@ use super::names::{Names, Rows, Symbol, report_double};
 use super::units::Dimension;
 use super::{Branch, Model, Output, Role, Row, VariableKind};
 use crate::diagnostics::Diagnostics;
-use crate::syntax::ast::{Equation, Expression, Item, Loop, Name, Statement, StatementKind, Type, Unit};
+use crate::syntax::ast::{
+    Element, Equation, Expression, Item, Loop, Name, Statement, StatementKind, Type, Unit,
+};
 
 /// Before: statements as written. After: the resolved model; every fault of meaning is reported.
 pub fn resolve(statements: &[Statement], diagnostics: &mut Diagnostics) -> Model {
@@ -25,6 +27,7 @@ pub fn resolve(statements: &[Statement], diagnostics: &mut Diagnostics) -> Model
         names: &mut names,
         diagnostics,
         starts: BTreeSet::new(),
+        oriented: BTreeSet::new(),
         groups: Vec::new(),
         loops: Vec::new(),
         rounds: 0,
@@ -71,6 +74,8 @@ pub(super) struct Resolver<'a> {
     pub(super) diagnostics: &'a mut Diagnostics,
     /// Coordinates that a `start` gave its value.
     pub(super) starts: BTreeSet<usize>,
+    /// Euler parameters whose length a row fixes already.
+    pub(super) oriented: BTreeSet<Vec<Option<usize>>>,
     groups: Vec<Group>,
     pub(super) loops: Vec<Frame>,
     rounds: usize,
@@ -159,6 +164,7 @@ impl Resolver<'_> {
             }
             StatementKind::Limit { name, low, value, high } => self.limit(name, low, value, high),
             StatementKind::Independent { names } => self.independent(names),
+            StatementKind::Element { kind: Element::Body, name, fields } => self.normalisation(name, fields),
             StatementKind::Start { coordinate, value, rate, span } => {
                 self.start(coordinate, value, rate.as_ref(), *span)
             }

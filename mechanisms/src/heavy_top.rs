@@ -1,0 +1,124 @@
+//! A heavy top on a fixed point, in reference-point coordinates with Euler parameters.
+//!
+//! ```text
+//!          z
+//!          │   axis of the top: y of the body, level at the start
+//!          │  ╱
+//!          O━━━━━━━● C    C at l from O
+//!         pivot
+//! ```
+//!
+//! Numbers of a benchmark of integrators on Lie groups (Brüls & Cardona 2010, "On the use of Lie group time integrators in
+//! multibody dynamics"): 15 kg at 1 m, 150 rad/s about its axis.
+
+use mbs_runtime::mechanism;
+
+use crate::drawing::Shape;
+use crate::masses::boxed_masses;
+use crate::registry::{FreeCard, Preset};
+
+/// In the list of free mechanisms.
+pub const CARD: FreeCard = FreeCard {
+    name: "heavy_top",
+    title: "Heavy top",
+    description: "A fast top on a fixed point: a body in space by its position and Euler parameters, whose length a row keeps \
+                  at 1, and three rows for the pivot.",
+    runs: &[Preset { label: "2 s", description: "150 rad/s about its level axis", set: &[] }],
+    duration: 2.0,
+    drawing: DRAWING,
+    make: boxed_masses::<HeavyTop, 7, 4>,
+};
+
+mechanism! {
+    /// A heavy top: three degrees of freedom in seven coordinates.
+    pub mechanism HeavyTop;
+    /// Mass.
+    param m: kg = 15;
+    /// Moments of inertia about the centre of mass, in the axes of the body.
+    param J: [kg*m^2; 3] = [0.234375, 0.46875, 0.234375];
+    /// From the pivot to the centre of mass.
+    param l: m = 1;
+    /// Free fall.
+    param g: m/s^2 = 9.81;
+    /// Angular velocity at the start, in the axes of the body.
+    param w: [rad/s; 3] = [0, 150, -4.61538];
+    /// Centre of mass.
+    coord r: [m; 3] = [0, 1, 0];
+    /// Euler parameters.
+    coord e: [1; 4] = [1, 0, 0, 0];
+    body top { mass: m, inertia: J, com: r, orientation: e }
+    gravity weight { acceleration: [0, 0, -g] }
+    constraint pivot { r == rotate(e, [0, l, 0]); }
+    start r = [0, l, 0] rate [-l*w[2], 0, l*w[0]];
+    start e = [1, 0, 0, 0] rate [0, w[0]/2, w[1]/2, w[2]/2];
+    /// Angular velocity in the axes of the body.
+    out spin: [rad/s; 3] = rotate([e[0], -e[1], -e[2], -e[3]], angular_velocity(e));
+    /// Force of the pivot on the top.
+    out support: [N; 3] = [-lambda(pivot[0]), -lambda(pivot[1]), -lambda(pivot[2])];
+    // Seen from x = y = z.
+    let view = [[-cos(30deg), cos(30deg), 0], [-1/2, -1/2, 1]];
+    out O: [m; 2] = [0, 0];
+    out C: [m; 2] = view*r;
+    out rim: [m; 2] = view*(r + rotate(e, [0.2*l, 0, 0]));
+    out x_end: [m; 2] = view*[0.5*l, 0, 0];
+    out y_end: [m; 2] = view*[0, 0.5*l, 0];
+    out z_end: [m; 2] = view*[0, 0, 0.5*l];
+}
+
+/// How the mechanism is drawn: seen from above, along the diagonal of the axes.
+pub const DRAWING: &[Shape] = &[
+    Shape::Ground { at: "O" },
+    Shape::Link { points: &["O", "C"], label: "top" },
+    Shape::Link { points: &["C", "rim"], label: "" },
+    Shape::Joint { at: "O" },
+    Shape::Trace { of: "C", label: "centre of mass" },
+];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::facade::Motion;
+    use crate::reference::{dynamics_of, load, table};
+
+    /// Bound of the errors, relative to a column's largest value of the run.
+    const BOUND: f64 = 1e-8;
+
+    #[track_caller]
+    fn assert_column(found: &[f64], rows: &[Vec<f64>], column: usize) {
+        let largest = rows.iter().fold(0.0, |largest: f64, row| largest.max(row[column].abs()));
+        for (found, row) in found.iter().zip(rows) {
+            let error = (found - row[column]).abs() / largest;
+            assert!(error < BOUND, "column {column} at {} s: {found} instead of {}", row[0], row[column]);
+        }
+    }
+
+    fn output<'a>(motion: &'a Motion, name: &str) -> &'a [f64] {
+        &motion.outputs.iter().find(|output| output.name == name).expect("an output").value
+    }
+
+    #[test]
+    fn position_velocity_spin_and_support_are_those_of_the_reference() {
+        let rows = table(include_str!("../tests/data/heavy_top.csv"));
+        let motion = dynamics_of(&CARD, &CARD.runs[0], rows.len() - 1).motion;
+        for axis in 0..3 {
+            assert_column(&motion.coordinates[axis].q, &rows, 1 + axis);
+            assert_column(&motion.coordinates[axis].qd, &rows, 4 + axis);
+            assert_column(output(&motion, &format!("spin.{axis}")), &rows, 7 + axis);
+            assert_column(load(&motion, &format!("support.{axis}")), &rows, 14 + axis);
+        }
+    }
+
+    #[test]
+    fn the_axes_are_those_of_the_reference_and_the_parameters_keep_their_length() {
+        let rows = table(include_str!("../tests/data/heavy_top.csv"));
+        let motion = dynamics_of(&CARD, &CARD.runs[0], rows.len() - 1).motion;
+        for (k, row) in rows.iter().enumerate() {
+            let e: Vec<f64> = motion.coordinates[3..].iter().map(|curve| curve.q[k]).collect();
+            // e and −e are one orientation.
+            let cosine: f64 = e.iter().zip(&row[10..14]).map(|(a, b)| a * b).sum();
+            let error = e.iter().zip(&row[10..14]).map(|(a, b)| (a - cosine.signum() * b).abs());
+            assert!(error.fold(0.0, f64::max) < BOUND, "at {} s: {e:?}", row[0]);
+            assert!((e.iter().map(|e| e * e).sum::<f64>() - 1.0).abs() < 1e-14, "at {} s", row[0]);
+        }
+    }
+}
