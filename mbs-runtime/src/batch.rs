@@ -5,8 +5,9 @@ use core::array::from_fn;
 use crate::diagnosis::{Statistics, extent, largest};
 use crate::instant::REGULAR_ZONE;
 use crate::kinematics::COARSEST_RESOLUTION;
+use crate::lanes::LaneMask;
 use crate::path::{LARGEST_APPROACH, LARGEST_SECOND_ORDER_TERM};
-use crate::{Failure, Kinematic, Lanes, Mechanism, Newton, Outcome, Real, Scalar, Stepper};
+use crate::{Failure, Kinematic, Lanes, Mechanism, Newton, Real, Scalar, Stepper};
 
 /// `L` mechanisms of one text, a lane each, each with its own design, time, state and failures.
 ///
@@ -27,8 +28,26 @@ where
     qd: [Lanes<R, L>; N],
     qdd: [Lanes<R, L>; N],
     margin: Lanes<R, L>,
-    /// What a lane has besides; time, position, rates and margin stand above.
+    notes: Notes<R, L>,
+    /// Lanes whose next step has more to do than follow the rates.
+    waits: LaneMask<R, L>,
+    /// What a lane has besides; what stands above is not up to date here.
     steppers: [Stepper<S::Lane, R, N, M>; L],
+}
+
+/// What the last step of each lane left behind, beside its position and rates.
+#[derive(Clone, Copy)]
+struct Notes<R, const L: usize> {
+    /// What the margin changed by over the time (s) that it took.
+    margin_rate: Lanes<R, L>,
+    residual: Lanes<R, L>,
+    correction: Lanes<R, L>,
+    row: [u16; L],
+    evaluations: [u32; L],
+    fallback: [bool; L],
+    passed: [bool; L],
+    passages: [u32; L],
+    orientation: [u64; L],
 }
 
 /// What a step in all lanes came to.
@@ -37,10 +56,9 @@ struct Trial<R: Real, const L: usize, const N: usize> {
     qd: [Lanes<R, L>; N],
     qdd: [Lanes<R, L>; N],
     margin: Lanes<R, L>,
-    orientation: [u64; L],
-    statistics: [Statistics; L],
+    notes: Notes<R, L>,
     /// Lanes in which nothing else happened than next to a regular position.
-    plain: [bool; L],
+    plain: LaneMask<R, L>,
 }
 
 impl<S, R, const L: usize, const N: usize, const M: usize> Batch<S, R, L, N, M>
@@ -72,7 +90,8 @@ where
         let parameters = mechanism.parameters();
         let steppers = assembled.map(|result| result.unwrap_or_else(|_| first.clone()));
         let (q, qd, qdd) = ([zero; N], [zero; N], [zero; N]);
-        let mut batch = Batch { mechanism, parameters, t: zero, q, qd, qdd, margin: zero, steppers };
+        let (margin, notes, waits) = (zero, Notes::none(), LaneMask::new([false; L]));
+        let mut batch = Batch { mechanism, parameters, t: zero, q, qd, qdd, margin, notes, waits, steppers };
         (0..L).for_each(|lane| batch.gather(lane));
         Ok(batch)
     }
@@ -86,10 +105,32 @@ where
             return from_fn(|lane| self.alone(lane, Lanes(t).lane(lane)));
         }
         let trial = self.tried(Lanes(t));
-        self.take(&trial, Lanes(t));
-        from_fn(|lane| match (trial.plain.get(lane), trial.statistics.get(lane)) {
-            (Some(true), Some(statistics)) => Ok(*statistics),
-            _ => self.alone(lane, Lanes(t).lane(lane)),
+        if !Lanes::<R, L>::all(trial.plain) {
+            return self.apart(&trial, t);
+        }
+        (self.t, self.q, self.qd, self.qdd) = (Lanes(t), trial.q, trial.qd, trial.qdd);
+        (self.margin, self.notes) = (trial.margin, trial.notes);
+        from_fn(|lane| Ok(self.notes.statistics(lane)))
+    }
+
+    /// Takes the step over in the lanes where it is plain; the others are stepped alone.
+    #[cold]
+    #[inline(never)]
+    fn apart(&mut self, trial: &Trial<R, L, N>, t: [R; L]) -> [Result<Statistics, Failure>; L] {
+        let plain = trial.plain;
+        let merge = |old: &mut Lanes<R, L>, new: &Lanes<R, L>| *old = Lanes::select(plain, *new, *old);
+        for (old, new) in [(&mut self.q, &trial.q), (&mut self.qd, &trial.qd), (&mut self.qdd, &trial.qdd)] {
+            old.iter_mut().zip(new).for_each(|(old, new)| merge(old, new));
+        }
+        merge(&mut self.t, &Lanes(t));
+        merge(&mut self.margin, &trial.margin);
+        from_fn(|lane| {
+            if !Lanes::<R, L>::test(plain, lane) {
+                return self.alone(lane, Lanes(t).lane(lane));
+            }
+            self.notes.put(lane, trial.notes.margin_rate.lane(lane), trial.notes.statistics(lane));
+            self.notes.count(lane, trial.notes.passages(lane), trial.notes.orientation(lane));
+            Ok(trial.notes.statistics(lane))
         })
     }
 
@@ -100,6 +141,7 @@ where
         for (lane, stepper) in self.steppers.iter_mut().enumerate() {
             stepper.change(|mechanism| *mechanism = self.mechanism.lane(lane));
         }
+        self.waits = LaneMask::new([true; L]);
         result
     }
 
@@ -110,6 +152,8 @@ where
         let q = of(&self.q);
         let margin = self.margin.lane(lane);
         stepper.state.set((self.t.lane(lane), q, of(&self.qd), of(&self.qdd)), margin);
+        let (margin_rate, statistics) = (self.notes.margin_rate.lane(lane), self.notes.statistics(lane));
+        stepper.state.note(margin_rate, statistics, self.notes.passages(lane), self.notes.orientation(lane));
         Some(stepper)
     }
 
@@ -141,7 +185,7 @@ where
         let start = self.predicted(t, &scales);
         let mut solver = Newton::new(extent(&start, &scales));
         let mut q = start;
-        let (outcomes, position) = mechanism.solve_with_position(parameters, &mut q, t, &mut solver);
+        let (_, position) = mechanism.solve_with_position(parameters, &mut q, t, &mut solver);
         let (factors, margin) = mechanism.factorize(parameters, &position);
         let qd = mechanism.solve_linear(&factors, &mechanism.phi_t(parameters, &position).map(|rate| -rate));
         let qdd = mechanism.solve_linear(&factors, &mechanism.gamma(parameters, &position, &qd));
@@ -168,24 +212,22 @@ where
             plain = plain & limit.low.less(limit.value) & limit.value.less(limit.high);
         }
         let diagnosis = solver.diagnosis();
-        let converged = |lane: usize| outcomes.get(lane) == Some(&Outcome::Converged);
-        let waits = |lane: usize| self.steppers.get(lane).is_none_or(Stepper::waits);
-        Trial {
-            q,
-            qd,
-            qdd,
-            margin: margin.value,
+        plain = plain & !diagnosis.failed & !self.waits;
+        let (rate, past) = ((margin.value - self.margin) / (t - self.t), self.notes);
+        let moves = self.t.less(t) | t.less(self.t);
+        let passed = from_fn(|lane| past.orientation(lane) != at(&margin.orientation, lane, 0));
+        let notes = Notes {
+            margin_rate: Lanes::select(moves, rate, past.margin_rate),
+            residual: diagnosis.worst.ratio,
+            correction,
+            row: from_fn(|lane| diagnosis.worst.row(lane)),
+            evaluations: [diagnosis.evaluations; L],
+            fallback: [diagnosis.fallback; L],
+            passed,
+            passages: from_fn(|lane| past.passages(lane).saturating_add(u32::from(at(&passed, lane, false)))),
             orientation: margin.orientation,
-            statistics: from_fn(|lane| Statistics {
-                evaluations: diagnosis.evaluations,
-                fallback: diagnosis.fallback,
-                residual: diagnosis.worst.ratio.lane(lane).to_f64(),
-                row: diagnosis.worst.row.get(lane).copied().unwrap_or(0),
-                correction: correction.lane(lane).to_f64(),
-                passed: false,
-            }),
-            plain: from_fn(|lane| Lanes::<R, L>::test(plain, lane) && converged(lane) && !waits(lane)),
-        }
+        };
+        Trial { q, qd, qdd, margin: margin.value, notes, plain }
     }
 
     /// q + h q̇ + h²/2 q̈, without the last term where it is too large to be trusted.
@@ -206,33 +248,6 @@ where
         predicted
     }
 
-    /// Takes the step over in the lanes where it is plain.
-    #[inline(always)]
-    fn take(&mut self, trial: &Trial<R, L, N>, t: Lanes<R, L>) {
-        let before = (self.t, self.margin);
-        let mask = crate::lanes::LaneMask(trial.plain);
-        let merge = |old: &mut [Lanes<R, L>; N], new: &[Lanes<R, L>; N]| {
-            old.iter_mut().zip(new).for_each(|(old, new)| *old = Lanes::select(mask, *new, *old));
-        };
-        merge(&mut self.q, &trial.q);
-        merge(&mut self.qd, &trial.qd);
-        merge(&mut self.qdd, &trial.qdd);
-        self.t = Lanes::select(mask, t, self.t);
-        self.margin = Lanes::select(mask, trial.margin, self.margin);
-        let changes = (self.margin - before.1, self.t - before.0);
-        for (lane, stepper) in self.steppers.iter_mut().enumerate() {
-            if Lanes::<R, L>::test(mask, lane) {
-                let (Some(orientation), Some(statistics)) =
-                    (trial.orientation.get(lane), trial.statistics.get(lane))
-                else {
-                    continue;
-                };
-                let (change, time) = (changes.0.lane(lane), changes.1.lane(lane));
-                stepper.state.note(*orientation, *statistics, change, time);
-            }
-        }
-    }
-
     /// The step of one lane as if it were alone.
     #[cold]
     #[inline(never)]
@@ -251,11 +266,7 @@ where
     /// Puts the state of a lane's stepper beside the others'.
     fn gather(&mut self, lane: usize) {
         let Some(stepper) = self.steppers.get(lane) else { return };
-        let put = |lanes: &mut Lanes<R, L>, value: R| {
-            if let Some(slot) = lanes.0.get_mut(lane) {
-                *slot = value;
-            }
-        };
+        let put = |lanes: &mut Lanes<R, L>, value: R| set(&mut lanes.0, lane, value);
         for (vector, values) in
             [(&mut self.q, stepper.q()), (&mut self.qd, stepper.qd()), (&mut self.qdd, stepper.qdd())]
         {
@@ -263,5 +274,76 @@ where
         }
         put(&mut self.t, stepper.t());
         put(&mut self.margin, stepper.margin());
+        self.notes.put(lane, stepper.state.margin_rate, stepper.statistics());
+        self.notes.count(lane, stepper.passages(), stepper.signature());
+        let waits = self.waits;
+        let waiting = |other: usize| match other == lane {
+            true => stepper.waits(),
+            false => Lanes::<R, L>::test(waits, other),
+        };
+        self.waits = LaneMask::new(from_fn(waiting));
+    }
+}
+
+impl<R: Real, const L: usize> Notes<R, L> {
+    /// Before the first step.
+    fn none() -> Self {
+        let zero = Lanes([R::constant(0.0); L]);
+        let (row, evaluations, passages, orientation) = ([0; L], [0; L], [0; L], [0; L]);
+        let (fallback, passed) = ([false; L], [false; L]);
+        let (margin_rate, residual, correction) = (zero, zero, zero);
+        Notes { margin_rate, residual, correction, row, evaluations, fallback, passed, passages, orientation }
+    }
+
+    #[inline(always)]
+    fn statistics(&self, lane: usize) -> Statistics {
+        Statistics {
+            evaluations: at(&self.evaluations, lane, 0),
+            fallback: at(&self.fallback, lane, false),
+            residual: self.residual.lane(lane).to_f64(),
+            row: at(&self.row, lane, 0),
+            correction: self.correction.lane(lane).to_f64(),
+            passed: at(&self.passed, lane, false),
+        }
+    }
+
+    /// How many singular positions the lane has passed.
+    #[inline(always)]
+    fn passages(&self, lane: usize) -> u32 {
+        at(&self.passages, lane, 0)
+    }
+
+    /// Signs of the blocks' determinants in the lane.
+    #[inline(always)]
+    fn orientation(&self, lane: usize) -> u64 {
+        at(&self.orientation, lane, 0)
+    }
+
+    fn put(&mut self, lane: usize, margin_rate: R, statistics: Statistics) {
+        let Statistics { evaluations, fallback, residual, row, correction, passed } = statistics;
+        set(&mut self.margin_rate.0, lane, margin_rate);
+        set(&mut self.residual.0, lane, R::constant(residual));
+        set(&mut self.correction.0, lane, R::constant(correction));
+        set(&mut self.row, lane, row);
+        set(&mut self.evaluations, lane, evaluations);
+        set(&mut self.fallback, lane, fallback);
+        set(&mut self.passed, lane, passed);
+    }
+
+    fn count(&mut self, lane: usize, passages: u32, orientation: u64) {
+        set(&mut self.passages, lane, passages);
+        set(&mut self.orientation, lane, orientation);
+    }
+}
+
+/// The value of lane `lane`, of which there is one; `none` could not be.
+#[inline(always)]
+fn at<X: Copy, const L: usize>(values: &[X; L], lane: usize, none: X) -> X {
+    values.get(lane).copied().unwrap_or(none)
+}
+
+fn set<X, const L: usize>(values: &mut [X; L], lane: usize, value: X) {
+    if let Some(slot) = values.get_mut(lane) {
+        *slot = value;
     }
 }

@@ -117,7 +117,7 @@ impl<R: Real, const K: usize> Best<R, K> {
         last: Worst<R>,
     ) -> ([R; K], R::Lanes<Outcome>) {
         let worst = if self.any { self.worst } else { last };
-        let row = worst.row.as_ref().first().copied().unwrap_or(0);
+        let row = worst.row(0);
         let outcome = match (self.any, self.closes) {
             (true, true) => Outcome::Converged,
             (true, false) => Outcome::NotConverged { row },

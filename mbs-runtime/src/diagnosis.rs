@@ -70,7 +70,9 @@ pub fn extent<T: Scalar, const N: usize>(q: &[T; N], coordinate_scales: &[T; N])
 pub(crate) fn largest<T: Scalar, const N: usize>(values: &[T; N]) -> T {
     let mut parts = [T::constant(0.0); 4];
     for values in values.chunks(4) {
-        parts.iter_mut().zip(values).for_each(|(part, value)| *part = part.max(value.abs()));
+        for (part, value) in parts.iter_mut().zip(values) {
+            *part = part.max(value.abs());
+        }
     }
     let [a, b, c, d] = parts;
     a.max(b).max(c.max(d))
@@ -85,15 +87,15 @@ pub struct Worst<T: Scalar> {
     pub residual: T,
     /// Tolerance, in the unit of the row.
     pub required: T,
-    /// Index of the row in Φ.
-    pub row: T::Lanes<u16>,
+    /// Index of the row in Φ: a number, so that it is selected like everything else.
+    row: T,
 }
 
 impl<T: Scalar> Worst<T> {
     /// No row yet.
     pub fn none() -> Self {
         let zero = T::constant(0.0);
-        Worst { ratio: zero, residual: zero, required: zero, row: T::per_lane(|_| 0) }
+        Worst { ratio: zero, residual: zero, required: zero, row: zero }
     }
 
     /// The worst row of a block. A NaN is worse than any number, and the first one is kept.
@@ -104,39 +106,41 @@ impl<T: Scalar> Worst<T> {
         required: &[T; M],
     ) -> Self {
         let zero = T::constant(0.0);
-        let (mut ratio, mut residual, mut tolerance, mut index) = (zero, zero, zero, zero);
-        let mut position = 0.0;
-        for (r, r_tolerance) in residuals.iter().zip(required) {
+        let (mut ratio, mut residual, mut tolerance) = (zero, zero, zero);
+        let mut index = T::constant(f64::from(block.rows.first().copied().unwrap_or(0)));
+        for ((r, r_tolerance), row) in residuals.iter().zip(required).zip(block.rows) {
             let r_ratio = r.abs() / *r_tolerance;
             let worse = ratio.less(r_ratio) | (!r_ratio.is_finite() & ratio.is_finite());
             ratio = T::select(worse, r_ratio, ratio);
             residual = T::select(worse, r.abs(), residual);
             tolerance = T::select(worse, *r_tolerance, tolerance);
-            index = T::select(worse, T::constant(position), index);
-            position += 1.0;
+            index = T::select(worse, T::constant(f64::from(row)), index);
         }
-        // A float carries the index so that it is selected like everything else; the cast saturates.
-        let row = T::per_lane(|lane| {
-            let at = index.lane(lane).to_f64() as usize;
-            block.rows.get(at).or(block.rows.first()).copied().unwrap_or(0)
-        });
-        Worst { ratio, residual, required: tolerance, row }
+        Worst { ratio, residual, required: tolerance, row: index }
+    }
+
+    /// Index of the row in Φ, of lane `lane`.
+    #[inline(always)]
+    pub fn row(&self, lane: usize) -> u16 {
+        index(self.row, lane)
     }
 
     /// `other` where the mask is true, `self` elsewhere.
     #[inline(always)]
     pub(crate) fn replaced(self, mask: T::Mask, other: Self) -> Self {
-        let row = |lane: usize| {
-            let from = if T::test(mask, lane) { &other.row } else { &self.row };
-            from.as_ref().get(lane).copied().unwrap_or(0)
-        };
         Worst {
             ratio: T::select(mask, other.ratio, self.ratio),
             residual: T::select(mask, other.residual, self.residual),
             required: T::select(mask, other.required, self.required),
-            row: T::per_lane(row),
+            row: T::select(mask, other.row, self.row),
         }
     }
+}
+
+/// An index that a number carries, of lane `lane`; the cast saturates.
+#[inline(always)]
+pub(crate) fn index<T: Scalar>(number: T, lane: usize) -> u16 {
+    number.lane(lane).to_f64() as u16
 }
 
 /// What a [`BlockSolver`](crate::BlockSolver) met over all blocks of one position.
@@ -148,7 +152,8 @@ pub struct Diagnosis<T: Scalar> {
     pub fallback: bool,
     /// The worst row; in a lane that failed, of the first block that did.
     pub worst: Worst<T>,
-    failed: T::Mask,
+    /// Lanes in which a block did not converge.
+    pub(crate) failed: T::Mask,
 }
 
 impl<T: Scalar> Diagnosis<T> {
@@ -209,7 +214,7 @@ impl Statistics {
             evaluations: diagnosis.evaluations,
             fallback: diagnosis.fallback,
             residual: diagnosis.worst.ratio.to_f64(),
-            row: diagnosis.worst.row.as_ref().first().copied().unwrap_or(0),
+            row: diagnosis.worst.row(0),
             correction: 0.0,
             passed: false,
         }

@@ -225,8 +225,8 @@ pub(crate) fn singular<S: Mechanism<R, N, M>, R: Real, const N: usize, const M: 
     t: R,
 ) -> Failure {
     Failure::Singular {
-        row: entry(S::ROWS, margin.row.as_ref().first().copied().unwrap_or(0)),
-        coordinate: entry(S::COORDINATES, margin.coordinate.as_ref().first().copied().unwrap_or(0)),
+        row: entry(S::ROWS, margin.row(0)),
+        coordinate: entry(S::COORDINATES, margin.coordinate(0)),
         margin: margin.value.to_f64(),
         required: least_margin::<R>().to_f64(),
         time: t.to_f64(),

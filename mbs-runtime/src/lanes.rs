@@ -6,13 +6,15 @@ use core::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 use crate::{Real, Scalar};
 
 /// `L` numbers that take part in the same operations; the compiler turns them into vector registers.
+///
+/// They begin at the beginning of a cache line, so that no register's worth of them lies in two.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[repr(transparent)]
+#[repr(C, align(64))]
 pub struct Lanes<R, const L: usize>(pub [R; L]);
 
-/// One truth value a lane.
+/// One truth value a lane, in words as wide as the numbers: what is compared stays in vector registers until it is decided.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct LaneMask<const L: usize>(pub [bool; L]);
+pub struct LaneMask<R: Real, const L: usize>([R::Word; L]);
 
 macro_rules! operation {
     ($operation:ident, $method:ident) => {
@@ -35,56 +37,85 @@ impl<R: Real, const L: usize> Neg for Lanes<R, L> {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
-        Lanes(self.0.map(|a| -a))
+        self.each(|a| -a)
     }
 }
 
-impl<const L: usize> BitAnd for LaneMask<L> {
-    type Output = Self;
-    #[inline(always)]
-    fn bitand(self, other: Self) -> Self {
-        let mut both = self.0;
-        both.iter_mut().zip(other.0).for_each(|(a, b)| *a &= b);
-        LaneMask(both)
-    }
+macro_rules! connective {
+    ($connective:ident, $method:ident) => {
+        impl<R: Real, const L: usize> $connective for LaneMask<R, L> {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                let mut result = self;
+                for (a, b) in result.0.iter_mut().zip(&other.0) {
+                    *a = $connective::$method(*a, *b);
+                }
+                result
+            }
+        }
+    };
 }
 
-impl<const L: usize> BitOr for LaneMask<L> {
-    type Output = Self;
-    #[inline(always)]
-    fn bitor(self, other: Self) -> Self {
-        let mut either = self.0;
-        either.iter_mut().zip(other.0).for_each(|(a, b)| *a |= b);
-        LaneMask(either)
-    }
-}
+connective!(BitAnd, bitand);
+connective!(BitOr, bitor);
 
-impl<const L: usize> Not for LaneMask<L> {
+impl<R: Real, const L: usize> Not for LaneMask<R, L> {
     type Output = Self;
     #[inline(always)]
     fn not(self) -> Self {
-        LaneMask(self.0.map(|a| !a))
+        let mut result = self;
+        for word in &mut result.0 {
+            *word = !*word;
+        }
+        result
     }
+}
+
+impl<R: Real, const L: usize> LaneMask<R, L> {
+    /// One truth value a lane.
+    #[inline(always)]
+    pub fn new(truths: [bool; L]) -> Self {
+        LaneMask(truths.map(word::<R>))
+    }
+}
+
+/// A truth value as a word.
+#[inline(always)]
+fn word<R: Real>(truth: bool) -> R::Word {
+    if truth { !R::FALSE } else { R::FALSE }
 }
 
 impl<R: Real, const L: usize> Lanes<R, L> {
     #[inline(always)]
-    fn zip(self, other: Self, operation: impl Fn(R, R) -> R) -> Self {
-        let mut result = self.0;
-        result.iter_mut().zip(other.0).for_each(|(a, b)| *a = operation(*a, b));
-        Lanes(result)
+    fn each(self, operation: impl Fn(R) -> R) -> Self {
+        let mut result = self;
+        for number in &mut result.0 {
+            *number = operation(*number);
+        }
+        result
     }
     #[inline(always)]
-    fn test2(self, other: Self, predicate: impl Fn(R, R) -> bool) -> LaneMask<L> {
-        let mut result = [false; L];
-        result.iter_mut().zip(self.0.into_iter().zip(other.0)).for_each(|(m, (a, b))| *m = predicate(a, b));
+    fn zip(self, other: Self, operation: impl Fn(R, R) -> R) -> Self {
+        let mut result = self;
+        for (a, b) in result.0.iter_mut().zip(&other.0) {
+            *a = operation(*a, *b);
+        }
+        result
+    }
+    #[inline(always)]
+    fn test2(self, other: Self, predicate: impl Fn(R, R) -> bool) -> LaneMask<R, L> {
+        let mut result = [R::FALSE; L];
+        for ((truth, a), b) in result.iter_mut().zip(&self.0).zip(&other.0) {
+            *truth = word::<R>(predicate(*a, *b));
+        }
         LaneMask(result)
     }
 }
 
 impl<R: Real, const L: usize> Scalar for Lanes<R, L> {
     type Real = R;
-    type Mask = LaneMask<L>;
+    type Mask = LaneMask<R, L>;
     type Lanes<X: Copy> = [X; L];
 
     #[inline(always)]
@@ -108,66 +139,81 @@ impl<R: Real, const L: usize> Scalar for Lanes<R, L> {
         from_fn(value)
     }
     #[inline(always)]
-    fn mask(value: bool) -> LaneMask<L> {
-        LaneMask([value; L])
+    fn mask(value: bool) -> LaneMask<R, L> {
+        LaneMask([word::<R>(value); L])
     }
     #[inline(always)]
-    fn less(self, than: Self) -> LaneMask<L> {
+    fn less(self, than: Self) -> LaneMask<R, L> {
         self.test2(than, |a, b| a < b)
     }
     #[inline(always)]
-    fn is_finite(self) -> LaneMask<L> {
-        LaneMask(self.0.map(Scalar::is_finite))
+    fn is_finite(self) -> LaneMask<R, L> {
+        self.test2(self, |number, _| number.is_finite())
     }
     #[inline(always)]
-    fn all(mask: LaneMask<L>) -> bool {
-        mask.0.into_iter().fold(true, |all, lane| all & lane)
+    fn all(mask: LaneMask<R, L>) -> bool {
+        mask.0.iter().fold(!R::FALSE, |all, word| all & *word) != R::FALSE
     }
     #[inline(always)]
-    fn test(mask: LaneMask<L>, lane: usize) -> bool {
-        mask.0.get(lane).or(mask.0.last()).copied().unwrap_or(false)
+    fn test(mask: LaneMask<R, L>, lane: usize) -> bool {
+        mask.0.get(lane).or(mask.0.last()).copied().unwrap_or(R::FALSE) != R::FALSE
     }
     #[inline(always)]
-    fn select(mask: LaneMask<L>, yes: Self, no: Self) -> Self {
-        let mut result = no.0;
-        result.iter_mut().zip(yes.0).zip(mask.0).for_each(|((r, y), m)| *r = if m { y } else { *r });
-        Lanes(result)
+    fn select(mask: LaneMask<R, L>, yes: Self, no: Self) -> Self {
+        let mut result = no;
+        for ((place, yes), word) in result.0.iter_mut().zip(&yes.0).zip(&mask.0) {
+            // Both are read, so that the choice is between numbers and not between addresses.
+            let (yes, no) = (*yes, *place);
+            *place = if *word != R::FALSE { yes } else { no };
+        }
+        result
     }
     #[inline(always)]
     fn sin_cos<const K: usize>(angles: [Self; K]) -> ([Self; K], [Self; K]) {
-        let (mut sines, mut cosines) = (angles, angles);
-        for ((sine, cosine), angle) in sines.iter_mut().zip(&mut cosines).zip(angles) {
-            (sine.0, cosine.0) = R::sin_cos(angle.0);
+        let zero = Lanes([R::constant(0.0); L]);
+        let (mut sines, mut cosines, mut numbers) = ([zero; K], [zero; K], [zero.0; K]);
+        for (numbers, angle) in numbers.iter_mut().zip(&angles) {
+            *numbers = angle.0;
+        }
+        let (found_sines, found_cosines) = R::sin_cos_of_lanes(numbers);
+        for ((sine, cosine), found) in
+            sines.iter_mut().zip(&mut cosines).zip(found_sines.iter().zip(&found_cosines))
+        {
+            (sine.0, cosine.0) = (*found.0, *found.1);
         }
         (sines, cosines)
     }
     #[inline(always)]
+    fn abs(self) -> Self {
+        self.each(R::abs)
+    }
+    #[inline(always)]
     fn sqrt(self) -> Self {
-        Lanes(self.0.map(R::sqrt))
+        self.each(R::sqrt)
     }
     #[inline(always)]
     fn exp(self) -> Self {
-        Lanes(self.0.map(R::exp))
+        self.each(R::exp)
     }
     #[inline(always)]
     fn ln(self) -> Self {
-        Lanes(self.0.map(R::ln))
+        self.each(R::ln)
     }
     #[inline(always)]
     fn tan(self) -> Self {
-        Lanes(self.0.map(R::tan))
+        self.each(R::tan)
     }
     #[inline(always)]
     fn asin(self) -> Self {
-        Lanes(self.0.map(R::asin))
+        self.each(R::asin)
     }
     #[inline(always)]
     fn acos(self) -> Self {
-        Lanes(self.0.map(R::acos))
+        self.each(R::acos)
     }
     #[inline(always)]
     fn atan(self) -> Self {
-        Lanes(self.0.map(R::atan))
+        self.each(R::atan)
     }
     #[inline(always)]
     fn atan2(self, x: Self) -> Self {
@@ -175,15 +221,15 @@ impl<R: Real, const L: usize> Scalar for Lanes<R, L> {
     }
     #[inline(always)]
     fn sinh(self) -> Self {
-        Lanes(self.0.map(R::sinh))
+        self.each(R::sinh)
     }
     #[inline(always)]
     fn cosh(self) -> Self {
-        Lanes(self.0.map(R::cosh))
+        self.each(R::cosh)
     }
     #[inline(always)]
     fn tanh(self) -> Self {
-        Lanes(self.0.map(R::tanh))
+        self.each(R::tanh)
     }
     #[inline(always)]
     fn powf(self, exponent: Self) -> Self {

@@ -1,5 +1,6 @@
 //! What the macro emits: a mechanism as functions of its coordinates.
 
+use crate::diagnosis::index;
 use crate::{FunctionEntry, Limit, Outcome, Roots, Scalar};
 
 /// The scene of a text with all its effects, which every mechanism is in unless a type says otherwise.
@@ -352,10 +353,10 @@ pub trait Kinematic<T: Scalar, const N: usize, const M: usize = N>: Mechanism<T,
 pub struct Margin<T: Scalar> {
     /// 0 where singular, at most 1, independent of units: the smallest of any diagonal block.
     pub value: T,
-    /// First row of that block, a lane.
-    pub row: T::Lanes<u16>,
-    /// First coordinate of that block, a lane.
-    pub coordinate: T::Lanes<u16>,
+    /// Index of the first row of that block: a number, so that it is selected like everything else.
+    row: T,
+    /// Index of its first coordinate.
+    coordinate: T,
     /// Signs of the blocks' determinants, one bit a block, a lane. Where a bit has changed from one position to the
     /// next, the mechanism passed a singular position in between, or it is in another assembly. Bits of more than 64
     /// blocks lie on each other; blocks of more rows than coordinates have no determinant and no bit.
@@ -365,7 +366,7 @@ pub struct Margin<T: Scalar> {
 impl<T: Scalar> Margin<T> {
     /// The margin of a mechanism without any block that could become singular.
     pub fn regular() -> Self {
-        let none = T::per_lane(|_| 0);
+        let none = T::constant(0.0);
         Margin { value: T::constant(1.0), row: none, coordinate: none, orientation: T::per_lane(|_| 0) }
     }
 
@@ -373,15 +374,22 @@ impl<T: Scalar> Margin<T> {
     #[inline(always)]
     pub fn with_block(self, value: T, row: u16, coordinate: u16) -> Self {
         let nearer = value.less(self.value);
-        let pick = |lane: usize, new: u16, old: &T::Lanes<u16>| {
-            if T::test(nearer, lane) { new } else { old.as_ref().get(lane).copied().unwrap_or(new) }
-        };
         Margin {
             value: T::select(nearer, value, self.value),
-            row: T::per_lane(|lane| pick(lane, row, &self.row)),
-            coordinate: T::per_lane(|lane| pick(lane, coordinate, &self.coordinate)),
+            row: T::select(nearer, T::constant(f64::from(row)), self.row),
+            coordinate: T::select(nearer, T::constant(f64::from(coordinate)), self.coordinate),
             orientation: self.orientation,
         }
+    }
+
+    /// Index of the first row of the block, of lane `lane`.
+    pub fn row(&self, lane: usize) -> u16 {
+        index(self.row, lane)
+    }
+
+    /// Index of its first coordinate, of lane `lane`.
+    pub fn coordinate(&self, lane: usize) -> u16 {
+        index(self.coordinate, lane)
     }
 
     /// This margin with the sign of one more block's determinant: negative where `reverses`.

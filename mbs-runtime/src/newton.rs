@@ -138,7 +138,9 @@ fn plainly<T: Scalar, const K: usize, F: Factorization<T, K>>(
             });
         }
         let mut next = x;
-        next.iter_mut().zip(step).for_each(|(component, change)| *component = *component + change);
+        for (component, change) in next.iter_mut().zip(&step) {
+            *component = *component + *change;
+        }
         x = select(closes, &x, &next);
         (converged, last_ratio, least_ratio) = (closes, ratio, ratio);
     }
@@ -188,7 +190,7 @@ impl<T: Scalar, const K: usize> Attempt<T, K> {
     pub(crate) fn outcomes(&self) -> T::Lanes<Outcome> {
         let finite = self.worst.ratio.is_finite();
         T::per_lane(|lane| {
-            let row = self.worst.row.as_ref().get(lane).copied().unwrap_or(0);
+            let row = self.worst.row(lane);
             match (T::test(self.converged, lane), T::test(finite, lane)) {
                 (true, _) => Outcome::Converged,
                 (false, true) => Outcome::NotConverged { row },
@@ -379,8 +381,11 @@ pub(crate) fn all_finite<T: Scalar, const K: usize, const M: usize>(
 /// Largest |residual| over its tolerance.
 #[inline(always)]
 pub(crate) fn largest_ratio<T: Scalar, const K: usize>(residuals: &[T; K], tolerances: &[T; K]) -> T {
-    let ratios = residuals.iter().zip(tolerances).map(|(r, tolerance)| r.abs() / *tolerance);
-    ratios.fold(T::constant(0.0), |largest, ratio| largest.max(ratio))
+    let mut largest = T::constant(0.0);
+    for (r, tolerance) in residuals.iter().zip(tolerances) {
+        largest = largest.max(r.abs() / *tolerance);
+    }
+    largest
 }
 
 /// Whether every residual is within its tolerance plus its allowance.
@@ -401,7 +406,9 @@ pub(crate) fn within<T: Scalar, const K: usize>(
 #[inline(always)]
 pub(crate) fn select<T: Scalar, const K: usize>(mask: T::Mask, yes: &[T; K], no: &[T; K]) -> [T; K] {
     let mut chosen = *no;
-    chosen.iter_mut().zip(yes).for_each(|(component, y)| *component = T::select(mask, *y, *component));
+    for (component, yes) in chosen.iter_mut().zip(yes) {
+        *component = T::select(mask, *yes, *component);
+    }
     chosen
 }
 

@@ -85,10 +85,12 @@ pub trait Scalar:
     fn hypot(self, other: Self) -> Self;
 
     /// Absolute value.
+    #[inline(always)]
     fn abs(self) -> Self {
         Self::select(self.less(Self::constant(0.0)), -self, self)
     }
     /// −1, 0 or 1; NaN stays.
+    #[inline(always)]
     fn sign(self) -> Self {
         let zero = Self::constant(0.0);
         Self::select(
@@ -98,10 +100,12 @@ pub trait Scalar:
         )
     }
     /// The smaller one; `other` at a tie.
+    #[inline(always)]
     fn min(self, other: Self) -> Self {
         Self::select(self.less(other), self, other)
     }
     /// The larger one; `self` at a tie.
+    #[inline(always)]
     fn max(self, other: Self) -> Self {
         Self::select(self.less(other), other, self)
     }
@@ -109,14 +113,35 @@ pub trait Scalar:
 
 /// A single number, on which decisions are taken: `f32` or `f64`.
 pub trait Real: Scalar<Real = Self, Mask = bool> + PartialOrd {
+    /// A truth value as wide as the number, so that those of several lanes share a vector register: no bit set, or all.
+    type Word: Copy
+        + Debug
+        + Eq
+        + BitAnd<Output = Self::Word>
+        + BitOr<Output = Self::Word>
+        + Not<Output = Self::Word>;
+
     /// Distance from 1 to the next number.
     const EPSILON: Self;
+    /// No bit set.
+    const FALSE: Self::Word;
     /// The same value, for reports.
     fn to_f64(self) -> f64;
+    /// As [`sin_cos`](Scalar::sin_cos), of K angles in L lanes each.
+    #[inline(always)]
+    fn sin_cos_of_lanes<const L: usize, const K: usize>(
+        angles: [[Self; L]; K],
+    ) -> ([[Self; L]; K], [[Self; L]; K]) {
+        let (mut sines, mut cosines) = (angles, angles);
+        for ((sines, cosines), angles) in sines.iter_mut().zip(&mut cosines).zip(angles) {
+            (*sines, *cosines) = Self::sin_cos(angles);
+        }
+        (sines, cosines)
+    }
 }
 
 macro_rules! real {
-    ($real:ident, $sincos:path, $sqrt:ident, $exp:ident, $ln:ident, $tan:ident, $asin:ident, $acos:ident, $atan:ident,
+    ($real:ident, $word:ident, $sincos:path, $lanes:path, $sqrt:ident, $exp:ident, $ln:ident, $tan:ident, $asin:ident, $acos:ident, $atan:ident,
      $atan2:ident, $sinh:ident, $cosh:ident, $tanh:ident, $pow:ident, $hypot:ident) => {
         impl Scalar for $real {
             type Real = $real;
@@ -170,6 +195,10 @@ macro_rules! real {
             #[inline(always)]
             fn sin_cos<const K: usize>(angles: [Self; K]) -> ([Self; K], [Self; K]) {
                 $sincos(angles)
+            }
+            #[inline(always)]
+            fn abs(self) -> Self {
+                <$real>::abs(self)
             }
             #[inline(always)]
             fn sqrt(self) -> Self {
@@ -226,19 +255,48 @@ macro_rules! real {
         }
 
         impl Real for $real {
+            type Word = $word;
+
             const EPSILON: Self = $real::EPSILON;
+            const FALSE: $word = 0;
             #[inline(always)]
             fn to_f64(self) -> f64 {
                 self as f64
+            }
+            #[inline(always)]
+            fn sin_cos_of_lanes<const L: usize, const K: usize>(
+                angles: [[Self; L]; K],
+            ) -> ([[Self; L]; K], [[Self; L]; K]) {
+                $lanes(angles)
             }
         }
     };
 }
 
-real!(f64, trigonometry::sin_cos, sqrt, exp, log, tan, asin, acos, atan, atan2, sinh, cosh, tanh, pow, hypot);
+real!(
+    f64,
+    u64,
+    trigonometry::sin_cos,
+    trigonometry::sin_cos_of_lanes,
+    sqrt,
+    exp,
+    log,
+    tan,
+    asin,
+    acos,
+    atan,
+    atan2,
+    sinh,
+    cosh,
+    tanh,
+    pow,
+    hypot
+);
 real!(
     f32,
+    u32,
     trigonometry::sin_cos_single,
+    trigonometry::sin_cos_of_lanes_single,
     sqrtf,
     expf,
     logf,

@@ -382,16 +382,10 @@ impl<R: Real, const N: usize> State<R, N> {
         }
     }
 
-    /// Takes down what that keeper does not have; the margin has changed by `change` in `time` (s).
-    #[inline(always)]
-    pub(crate) fn note(&mut self, orientation: u64, statistics: Statistics, change: R, time: R) {
-        let passed = self.orientation != orientation;
-        if time != R::constant(0.0) {
-            self.margin_rate = change / time;
-        }
-        self.orientation = orientation;
-        self.statistics = Statistics { passed, ..statistics };
-        self.passages = self.passages.saturating_add(u32::from(passed));
+    /// Puts in place what that keeper has noted of the last step, and of all.
+    pub(crate) fn note(&mut self, margin_rate: R, statistics: Statistics, passages: u32, orientation: u64) {
+        (self.margin_rate, self.statistics) = (margin_rate, statistics);
+        (self.passages, self.orientation) = (passages, orientation);
     }
 
     /// Whether the state is outside the singular zone.

@@ -108,8 +108,6 @@ fn sin_cos_by<A: Arithmetic, const K: usize>(angles: [f64; K]) -> ([f64; K], [f6
     if K == 1 {
         // It has nothing to go beside it.
         fast = reduce::<A, K>(&mut sines, &mut cosines, angles);
-    } else if K == WIDE {
-        fast = filled::<A, K>(&mut sines, &mut cosines, angles);
     } else {
         let packs = sines.chunks_mut(WIDE).zip(cosines.chunks_mut(WIDE)).zip(angles.chunks(WIDE));
         for ((sines, cosines), angles) in packs {
@@ -138,15 +136,33 @@ fn reduce<A: Arithmetic, const W: usize>(
     fast
 }
 
-/// As [`reduce`], for the lanes of an angle: in a function of its own, where the compiler sees nothing else to put side
-/// by side.
+/// As [`sin_cos`], of K angles in L lanes each: one loop over all of them, which the compiler makes one of registers.
+#[inline(always)]
+pub(crate) fn sin_cos_of_lanes<const L: usize, const K: usize>(
+    angles: [[f64; L]; K],
+) -> ([[f64; L]; K], [[f64; L]; K]) {
+    let (mut sines, mut cosines) = ([[0.0; L]; K], [[0.0; L]; K]);
+    let mut fast = true;
+    let places = sines.as_flattened_mut().iter_mut().zip(cosines.as_flattened_mut());
+    for ((sine, cosine), angle) in places.zip(angles.as_flattened()) {
+        (*sine, *cosine) = reduced::<Best>(*angle);
+        fast &= angle.abs() <= LARGEST_ANGLE;
+    }
+    if fast { (sines, cosines) } else { replaced_lanes(angles, sines, cosines) }
+}
+
+/// As [`replaced`], of K angles in L lanes each.
+#[cold]
 #[inline(never)]
-fn filled<A: Arithmetic, const W: usize>(
-    sines: &mut [f64; W],
-    cosines: &mut [f64; W],
-    angles: [f64; W],
-) -> bool {
-    reduce::<A, W>(sines, cosines, angles)
+fn replaced_lanes<const L: usize, const K: usize>(
+    angles: [[f64; L]; K],
+    mut sines: [[f64; L]; K],
+    mut cosines: [[f64; L]; K],
+) -> ([[f64; L]; K], [[f64; L]; K]) {
+    for ((sines, cosines), angles) in sines.iter_mut().zip(&mut cosines).zip(angles) {
+        (*sines, *cosines) = replaced(angles, *sines, *cosines);
+    }
+    (sines, cosines)
 }
 
 /// As [`reduce`], for at most W angles; zeros take the other places.
@@ -169,6 +185,16 @@ pub(crate) fn sin_cos_single<const K: usize>(angles: [f32; K]) -> ([f32; K], [f3
         (*sine, *cosine) = libm::sincosf(angle);
     }
     (sines, cosines)
+}
+
+/// Sines and cosines of the lanes of `angles` (rad) in single precision: those of double precision, rounded.
+#[inline(always)]
+pub(crate) fn sin_cos_of_lanes_single<const L: usize, const K: usize>(
+    angles: [[f32; L]; K],
+) -> ([[f32; L]; K], [[f32; L]; K]) {
+    let (sines, cosines) = sin_cos_of_lanes(angles.map(|lanes| lanes.map(f64::from)));
+    let rounded = |values: [[f64; L]; K]| values.map(|lanes| lanes.map(|value| value as f32));
+    (rounded(sines), rounded(cosines))
 }
 
 /// libm's values in place of those beyond the fast path.

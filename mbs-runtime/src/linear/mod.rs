@@ -90,7 +90,12 @@ fn in_metric<T: Scalar, const M: usize, const K: usize>(
 /// Mean square of the rows' lengths, ‖S‖²/K.
 #[inline(always)]
 fn mean_square<T: Scalar, const K: usize>(scaled: &[[T; K]; K]) -> T {
-    let sum = scaled.iter().flatten().fold(T::constant(0.0), |sum, entry| sum + *entry * *entry);
+    let mut sum = T::constant(0.0);
+    for row in scaled {
+        for entry in row {
+            sum = sum + *entry * *entry;
+        }
+    }
     sum * T::constant(1.0 / K as f64)
 }
 

@@ -198,7 +198,10 @@ impl Scalar for Counted {
 }
 
 impl Real for Counted {
+    type Word = u64;
+
     const EPSILON: Self = Counted(f64::EPSILON);
+    const FALSE: u64 = 0;
     fn to_f64(self) -> f64 {
         self.0
     }
