@@ -97,6 +97,7 @@ fn translate_scene(scene: &Scene) -> Result<emit::Translated<'_>, Diagnostics> {
     let mut diagnostics = Diagnostics::default();
     let mut equations = equations::derive(&scene.model);
     equations::continuity::check(&scene.model, &equations, &mut diagnostics);
+    equations::pins::check(&scene.model, &equations, &mut diagnostics);
     let Some(structure) = structure::analyse(&scene.model, &mut equations, &mut diagnostics) else {
         return Err(diagnostics);
     };
@@ -122,7 +123,10 @@ pub fn expand_source(source: &str) -> Result<TokenStream, String> {
 /// # Errors
 /// The faults, two lines each: `line:column: message` and `help: cure`; or which scenes there are.
 pub fn casadi_definition(source: &str, scene: Option<&str>) -> Result<String, String> {
-    in_scene(source, scene, |name, scene| Ok(emit::casadi::definition(&scene.model, name)))
+    in_scene(source, scene, |name, scene| {
+        let attribution = equations::pins::attribution(&scene.model);
+        Ok(emit::casadi::definition(&scene.model, attribution.as_ref(), name))
+    })
 }
 
 /// Φ and its derivatives as plain text, of a scene (without a name the whole text) of a text that is kept as a string;

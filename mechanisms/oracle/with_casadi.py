@@ -39,6 +39,9 @@ class Calculus:
         return self.partial(e) + self.along(e, self.q, self.qd) + self.along(e, self.qd, self.qdd)
 
 
+# How much shorter a column may become by what it has in common with earlier ones, for the same reason.
+SHORTEST_COLUMN = 1 / 32.0
+
 # How many times larger than a gain the terms of its solution may be: the bound of the comparison grants a few hundred
 # roundings, and a solution takes a few of each term. Beyond, 50 digits judge.
 LARGEST_TERMS = 32.0
@@ -50,6 +53,7 @@ class Words:
     def __init__(self, q):
         self.q = q
         self.gains, self.values, self.resolved = [], [], []
+        self.joints_resolved = ca.SX(1)
 
     def __getattr__(self, name):
         return getattr(ca, name)
@@ -66,6 +70,48 @@ class Words:
         self.values.append(value)
         self.resolved.append(terms <= LARGEST_TERMS * ca.fabs(value))
         return self.gains[-1]
+
+    def pins(self, bodies, gravity, joints, acting, held, length, der):
+        """Forces of joints on their first bodies: least squares of Newton's and Euler's sums by orthogonal factors,
+        moments over the reference length."""
+        known = ca.SX.zeros(3 * len(bodies), 1)
+        for i, (mass, centre, inertia, angle) in enumerate(bodies):
+            for k in range(2):
+                known[3 * i + k] = mass * (der(der(centre[k])) - sum((field[k] for field in gravity), ca.SX(0)))
+            if angle is not None:
+                known[3 * i + 2] = inertia * der(der(angle))
+
+        def wrench(body, force, place):
+            _, centre, _, angle = bodies[body]
+            arm = [place[k] - centre[k] for k in range(2)]
+            moment = 0 if angle is None else arm[0] * force[1] - arm[1] * force[0]
+            return ca.vertcat(force[0], force[1], moment)
+
+        for body, value, place in acting:
+            if place is None:
+                known[3 * body + 2] -= value
+            else:
+                known[3 * body : 3 * body + 3] -= wrench(body, value, place)
+        columns = []
+        for place, first, second in joints:
+            for force in ([1, 0], [0, 1]):
+                column = ca.SX.zeros(3 * len(bodies), 1)
+                for body, sign in ((first, 1), (second, -1)):
+                    if body is not None:
+                        column[3 * body : 3 * body + 3] += sign * wrench(body, force, place)
+                columns.append(column)
+        for body, component in held:
+            column = ca.SX.zeros(3 * len(bodies), 1)
+            column[3 * body + component] = 1
+            columns.append(column)
+        scale = ca.diag(ca.vertcat(*([1, 1, 1 / length] * len(bodies))))
+        scaled = ca.mtimes(scale, ca.horzcat(*columns))
+        orthogonal, upper = ca.qr(scaled)
+        for k in range(len(columns)):
+            own = ca.fabs(upper[k, k]) >= SHORTEST_COLUMN * ca.norm_2(scaled[:, k])
+            self.joints_resolved = ca.logic_and(self.joints_resolved, own)
+        forces = ca.solve(upper, ca.mtimes(orthogonal.T, ca.mtimes(scale, known)))
+        return [forces[i] for i in range(2 * len(joints))]
 
     def replaced(self, e):
         """e with the gains' values, and whether rounding leaves it as many digits as the comparison asks for."""
@@ -122,7 +168,8 @@ def functions(c, definition):
 
 def dynamics(c, definition, phi):
     """Functions of masses and forces, by Lagrange's equations: nothing but energies and works comes from the text."""
-    told = definition.dynamics(Words(c.q), c.q, c.v, c.t, c.total, c.z, c.l)
+    words = Words(c.q)
+    told = definition.dynamics(words, c.q, c.v, c.t, c.total, c.z, c.l)
     kinetic, potential = (sum(told[name], ca.SX(0)) for name in ["kinetic", "potential"])
     momenta = ca.jacobian(kinetic, c.qd).T
     mass = ca.jacobian(momenta, c.qd)
@@ -154,6 +201,7 @@ def dynamics(c, definition, phi):
         "powers": column(powers),
         "state_rates": column(told["rates"]),
         "loads": column(told["loads"]),
+        "loads_resolved": column([words.joints_resolved] * len(told["loads"])),
     }
 
 
@@ -185,10 +233,10 @@ def evaluate(definition, states):
     arguments = [stacked(key, size) for key, size in sizes.items()]
     values = function.map(len(states)).call([ca.DM(a) for a in arguments])
     tables = {name: np.array(value).reshape(-1, len(states)).T for name, value in zip(names, values)}
-    resolved = tables.pop("resolved")
+    resolved = {"out": tables.pop("resolved"), "loads": tables.pop("loads_resolved", True)}
     result = {}
     for name, table in tables.items():
-        there = resolved if name == "out" else np.broadcast_to(exists.get(name, True), table.shape)
+        there = np.broadcast_to(resolved.get(name, exists.get(name, True)), table.shape)
         result[name] = [
             [plain(x) if known else None for x, known in zip(row, mask)] for row, mask in zip(table, there)
         ]

@@ -63,14 +63,24 @@ mechanism! {
         L1*sin(phi1) + L2*sin(phi2) == L3*sin(phi3);
     }
     branch assembly: sin(phi3 - phi2) > 0;
+    pin bearing: ground, crank at [0, 0];
+    pin knee: crank, coupler at crank_end;
+    pin elbow: coupler, rocker at crank_end + L2*unit(phi2);
+    pin pivot: ground, rocker at [L4, 0];
 
     out O: [m; 2] = [0, 0];
     out A: [m; 2] = crank_end;
     out B: [m; 2] = crank_end + L2*unit(phi2);
     out D: [m; 2] = [L4, 0];
     out P: [m; 2] = [x2, y2];
+    /// Force of the frame on the crank.
+    out bearing_force: [N; 2] = reaction(bearing, crank);
+    /// Force of the crank on the coupler.
+    out crank_pin: [N; 2] = reaction(knee, coupler);
     /// Force of the coupler on the rocker.
-    out rocker_pin: [N; 2] = [-lambda(closure[0]), lambda(closure[1])];
+    out rocker_pin: [N; 2] = reaction(elbow, rocker);
+    /// Force of the frame on the rocker.
+    out pivot_force: [N; 2] = reaction(pivot, rocker);
 
     effect released {
         param tau: N*m = 0;
@@ -128,14 +138,15 @@ pub const DRIVEN: Card = Card {
 mod tests {
     use super::*;
     use crate::facade::Motion;
-    use crate::newton_euler::{Body, Unknown, forces, pin, plus, turning};
+    use crate::newton_euler::{Body, Unknown, forces, periodic_slope, pin, plus, turning};
     use crate::reference::{dynamics_of, load, one_turn};
 
     /// Bound of the differences of forces, relative to the largest of the motion.
     const BOUND: f64 = 1e-10;
 
-    /// Force of the coupler on the rocker, and the torque on the crank, at instant `k`.
-    fn sums(motion: &Motion, k: usize) -> [f64; 3] {
+    /// Forces in the four pins, of the frame or of the link before on the link behind, and the torque on the crank, at
+    /// instant `k`.
+    fn sums(motion: &Motion, k: usize) -> Vec<f64> {
         let half = |i: usize, length: f64| {
             let curve = &motion.coordinates[i];
             turning(length / 2.0, curve.q[k], curve.qd[k], curve.qdd[k])
@@ -156,17 +167,18 @@ mod tests {
         let bodies = [body(0.4, 0.2, crank, 2), body(1.2, 0.6, coupler, 3), body(1.0, 0.5, rocker, 4)];
         let joints = [pin([0.0; 2], 0, None), pin(a, 1, Some(0)), pin(b, 2, Some(1)), pin(d, 2, None)];
         let unknowns = joints.into_iter().flatten().chain([Unknown::Torque { on: 0 }]);
-        let found = forces(&bodies, [0.0, -9.81], &unknowns.collect::<Vec<_>>());
-        [found[4], found[5], found[8]]
+        forces(&bodies, [0.0, -9.81], &unknowns.collect::<Vec<_>>())
     }
 
     #[track_caller]
     fn assert_agree(motion: &Motion, torque: impl Fn(usize) -> f64) {
-        let pins = [load(motion, "rocker_pin.0"), load(motion, "rocker_pin.1")];
-        let expected: Vec<[f64; 3]> = (0..motion.time.len()).map(|k| sums(motion, k)).collect();
+        let pins = ["bearing_force", "crank_pin", "rocker_pin", "pivot_force"]
+            .map(|pin| [0, 1].map(|i| load(motion, &format!("{pin}.{i}"))));
+        let expected: Vec<Vec<f64>> = (0..motion.time.len()).map(|k| sums(motion, k)).collect();
         let size = expected.iter().flatten().fold(0.0, |size: f64, force| size.max(force.abs()));
-        for (k, [x, y, sum]) in expected.into_iter().enumerate() {
-            for (found, expected) in [(pins[0][k], x), (pins[1][k], y), (torque(k), sum)] {
+        for (k, expected) in expected.into_iter().enumerate() {
+            let found = pins.iter().flatten().map(|pin| pin[k]).chain([torque(k)]);
+            for (found, expected) in found.zip(expected) {
                 assert!(
                     (found - expected).abs() < BOUND * size,
                     "instant {k}: {found} instead of {expected}"
@@ -183,6 +195,13 @@ mod tests {
         forces.expect("it moves");
         let torque = load(&motion, "motor_torque").to_vec();
         assert_agree(&motion, |k| torque[k]);
+        // The motor's power is the change of energy; per radian, its torque.
+        let moved = motion.dynamics.as_ref().expect("it has masses");
+        let energy: Vec<f64> = moved.kinetic.iter().zip(&moved.potential).map(|(t, v)| t + v).collect();
+        let size = torque.iter().fold(0.0, |size: f64, torque| size.max(torque.abs()));
+        for (slope, torque) in periodic_slope(&energy).iter().zip(&torque) {
+            assert!((slope - torque).abs() < BOUND * size, "{slope} instead of {torque}");
+        }
     }
 
     #[test]

@@ -39,6 +39,19 @@ pub fn cross(a: [f64; 2], b: [f64; 2]) -> f64 {
     a[0] * b[1] - a[1] * b[0]
 }
 
+/// Slope of a periodic function of which one turn is sampled, its end included, by its trigonometric polynomial: exact
+/// where the function has no harmonics beyond half the samples. Per turn, times 2π.
+pub fn periodic_slope(samples: &[f64]) -> Vec<f64> {
+    let count = samples.len() - 1;
+    assert!(count.is_multiple_of(2), "an even number of intervals");
+    let weight = |distance: usize| {
+        let half = std::f64::consts::PI * distance as f64 / count as f64;
+        (if distance.is_multiple_of(2) { 0.5 } else { -0.5 }) / half.tan()
+    };
+    let slope = |k: usize| (1..count).map(|d| weight(d) * samples[(k + count - d) % count]).sum::<f64>();
+    (0..=count).map(slope).collect()
+}
+
 /// The unknowns, as many as three a body, that move the bodies as they move in free fall `gravity`.
 pub fn forces(bodies: &[Body], gravity: [f64; 2], unknowns: &[Unknown]) -> Vec<f64> {
     let size = 3 * bodies.len();

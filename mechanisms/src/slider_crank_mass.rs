@@ -50,13 +50,20 @@ mechanism! {
         r*sin(theta) + L*sin(phi) == offset;
     }
     branch right: cos(phi) > 0;
+    pin bearing: ground, crank at [0, 0];
+    pin knee: crank, rod at r*unit(theta);
+    pin wrist: rod, piston at [x, offset];
 
     out O: [m; 2] = [0, 0];
     out A: [m; 2] = r*unit(theta);
     out S: [m; 2] = [x, offset];
     out M: [m; 2] = r*unit(theta) + L/2*unit(phi);
+    /// Force of the frame on the crank.
+    out bearing_force: [N; 2] = reaction(bearing, crank);
+    /// Force of the crank on the rod.
+    out crank_pin: [N; 2] = reaction(knee, rod);
     /// Force of the piston on the rod.
-    out piston_pin: [N; 2] = [-lambda(closure[0]), -lambda(closure[1])];
+    out piston_pin: [N; 2] = reaction(wrist, rod);
 
     effect released {
         param tau: N*m = 0;
@@ -113,14 +120,15 @@ pub const DRIVEN: Card = Card {
 mod tests {
     use super::*;
     use crate::facade::Motion;
-    use crate::newton_euler::{Body, Unknown, forces, pin, plus, turning};
+    use crate::newton_euler::{Body, Unknown, forces, periodic_slope, pin, plus, turning};
     use crate::reference::{dynamics_of, load, one_turn};
 
     /// Bound of the differences of forces, relative to the largest of the motion.
     const BOUND: f64 = 1e-10;
 
-    /// Force of the piston on the rod, and the torque on the crank, at instant `k`.
-    fn sums(motion: &Motion, k: usize) -> [f64; 3] {
+    /// Forces of the frame on the crank, of the crank and of the piston on the rod, and the torque on the crank, at
+    /// instant `k`.
+    fn sums(motion: &Motion, k: usize) -> [f64; 7] {
         let at = |i: usize| {
             let curve = &motion.coordinates[i];
             [curve.q[k], curve.qd[k], curve.qdd[k]]
@@ -144,16 +152,18 @@ mod tests {
         let ground = [guide, Unknown::Torque { on: 2 }, Unknown::Torque { on: 0 }];
         let found =
             forces(&bodies, [0.0, -9.81], &joints.into_iter().flatten().chain(ground).collect::<Vec<_>>());
-        [found[4], found[5], found[8]]
+        [found[0], found[1], found[2], found[3], found[4], found[5], found[8]]
     }
 
     #[track_caller]
     fn assert_agree(motion: &Motion, torque: impl Fn(usize) -> f64) {
-        let pins = [load(motion, "piston_pin.0"), load(motion, "piston_pin.1")];
-        let expected: Vec<[f64; 3]> = (0..motion.time.len()).map(|k| sums(motion, k)).collect();
+        let pins = ["bearing_force", "crank_pin", "piston_pin"]
+            .map(|pin| [0, 1].map(|i| load(motion, &format!("{pin}.{i}"))));
+        let expected: Vec<[f64; 7]> = (0..motion.time.len()).map(|k| sums(motion, k)).collect();
         let size = expected.iter().flatten().fold(0.0, |size: f64, force| size.max(force.abs()));
-        for (k, [x, y, sum]) in expected.into_iter().enumerate() {
-            for (found, expected) in [(pins[0][k], x), (pins[1][k], y), (torque(k), sum)] {
+        for (k, expected) in expected.into_iter().enumerate() {
+            let found = pins.iter().flatten().map(|pin| pin[k]).chain([torque(k)]);
+            for (found, expected) in found.zip(expected) {
                 assert!(
                     (found - expected).abs() < BOUND * size,
                     "instant {k}: {found} instead of {expected}"
@@ -170,9 +180,15 @@ mod tests {
         forces.expect("it moves");
         let torque = load(&motion, "motor_torque").to_vec();
         assert_agree(&motion, |k| torque[k]);
+        // The motor's power is the change of energy; per radian, its torque.
+        let moved = motion.dynamics.as_ref().expect("it has masses");
+        let energy: Vec<f64> = moved.kinetic.iter().zip(&moved.potential).map(|(t, v)| t + v).collect();
+        let size = torque.iter().fold(0.0, |size: f64, torque| size.max(torque.abs()));
+        for (slope, torque) in periodic_slope(&energy).iter().zip(&torque) {
+            assert!((slope - torque).abs() < BOUND * size, "{slope} instead of {torque}");
+        }
         // Over a turn at constant speed the motor does no work.
         let mean = torque[1..].iter().sum::<f64>() / 180.0;
-        let size = torque.iter().fold(0.0, |size: f64, torque| size.max(torque.abs()));
         assert!(mean.abs() < 1e-9 * size, "{mean}");
     }
 

@@ -73,12 +73,71 @@ mechanism! {
     out torque_1: N*m = effort(motor);
 }
 
+mechanism! {
+    /// A crank, a rod in relative coordinates and a block in a guide, with everything that may act on bodies.
+    pub mechanism Jointed;
+    param a: m = 0.3;
+    param b: m = 0.5;
+    param force: N = 7;
+    param tau: N*m = 3;
+    param damping: N*m*s = 0.1;
+    coord theta: rad = 0.5;
+    coord psi: rad = -0.9;
+    coord c: [m; 2] = [0.7, 0.02];
+    coord beta: rad = 0;
+    let elbow = a*unit(theta);
+    let phi = theta + psi;
+    body crank { mass: 0.4, inertia: 3e-3, com: elbow/3, angle: theta }
+    body rod { mass: 0.6, inertia: 0.6kg*b^2/12, com: elbow + b/2*unit(phi), angle: phi }
+    body block { mass: 0.8, inertia: 2e-3, com: c, angle: beta }
+    gravity g { acceleration: [0.2m/1s^2, -1g0] }
+    pin O: ground, crank at [0, 0];
+    pin A: rod, crank at elbow;
+    pin B: rod, block at c;
+    tsda spring { from: [0.1, 0.4], to: 0.8*elbow, stiffness: 40, length: 0.2, damping: 3 }
+    tsda across { from: elbow + b/4*unit(phi + 0.3), to: c + 0.05m*unit(beta), damping: 2, actuator: 5N*sin(t/1s) }
+    rsda knee { angle: psi, stiffness: 4, rest: -1, damping: 0.2, torque: 0.3 }
+    torque motor: tau - damping*der(theta) on theta;
+    torque inner: tau/6 on -psi;
+    force push: [force, -2N] on c + 0.03m*unit(beta);
+    force slide: -force*tanh(der(c[0])*10s/1m) on c[0];
+    constraint joint { elbow + b*unit(phi) == c; }
+    constraint guide { 20mm == c[1]; beta == 0; }
+    out frame: [N; 2] = reaction(O, crank);
+    out inside: [N; 2] = 2*reaction(A, crank) + lambda(guide[0])*[1, 0];
+    out end: N = norm(reaction(B, block));
+}
+
+mechanism! {
+    /// A loop in natural coordinates: every joint is written into the coordinates, none into a row.
+    pub mechanism Natural;
+    param d: m = 0.55;
+    coord a: [m; 2] = [0.1, 0.17];
+    coord b: [m; 2] = [0.5, 0.5];
+    body crank { mass: 0.4, inertia: 2e-3, com: a/2, angle: atan2(a[1], a[0]) }
+    body coupler { mass: 1.2, inertia: 0.04, com: (a + b)/2, angle: atan2(b[1] - a[1], b[0] - a[0]) }
+    body rocker { mass: 1, inertia: 0.02, com: (b + [d, 0])/2, angle: atan2(b[1], b[0] - d) }
+    gravity g { acceleration: [0, -1g0] }
+    constraint rigid {
+        dot(a, a) == (0.2m)^2;
+        dot(b - a, b - a) == (0.6m)^2;
+        dot(b - [d, 0], b - [d, 0]) == (0.5m)^2;
+    }
+    drive motor: atan2(a[1], a[0]) == 60deg + 2rad/1s*t;
+    pin O: ground, crank at [0, 0];
+    pin A: crank, coupler at a;
+    pin B: coupler, rocker at b;
+    pin D: rocker, ground at [d, 0];
+    out forces: [N; 4] = [reaction(O, crank).0, reaction(A, coupler).1, reaction(B, rocker).0, reaction(D, rocker).1];
+}
+
 #[test]
 fn casadi_confirms_every_function_of_masses_and_forces() {
     let oracle = Oracle::new(&|_| ()).unwrap_or_else(|error| panic!("{error}"));
     let driven: Box<dyn AnyEquations> = boxed_driven::<Driven, 3>();
     let ready = FREE.iter().map(|card| (card.make)());
-    for mut mechanism in [boxed_masses::<Heap, 5, 2>(), driven].into_iter().chain(ready) {
+    let joints: [Box<dyn AnyEquations>; 2] = [boxed_masses::<Jointed, 5, 4>(), boxed_driven::<Natural, 4>()];
+    for mut mechanism in [boxed_masses::<Heap, 5, 2>(), driven].into_iter().chain(joints).chain(ready) {
         let definition = generated_definition(mechanism.as_ref()).unwrap_or_else(|error| panic!("{error}"));
         let agreement = compare(mechanism.as_mut(), &oracle, &definition, STATES);
         let agreement = agreement.unwrap_or_else(|error| panic!("{error}"));

@@ -10,7 +10,7 @@ mechanism! {
     constraint tip { p == L*unit(phi); }
     drive crank: phi == omega*t;
     out speed: m/s = der(p.0);
-    pin joint_a: rod, ground at p;
+    friction slide { on: p }
     contact wall { along: p }
 }
 

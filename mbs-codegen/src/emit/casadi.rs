@@ -3,6 +3,7 @@
 use std::fmt::Write;
 
 use super::casadi_dynamics;
+use crate::equations::Attribution;
 use crate::model::expression::{Binary, Id, Node, Unary};
 use crate::model::{Model, VariableKind};
 
@@ -14,8 +15,9 @@ use crate::model::{Model, VariableKind};
 /// each declared function stands its [`stand_in`].
 /// A back end adds one word to CasADi's: `ca.gain(e, rows, row, sign)` is ∂e/∂drive, where the drive's row, of all the
 /// rows, rises by `sign` as the coordinates follow it. Margins are of the runtime's own measure: an output with one has
-/// −1 derivatives.
-pub fn definition(model: &Model, name: &str) -> String {
+/// −1 derivatives. Another is `ca.pins(bodies, gravity, joints, acting, held, length, der)`, the forces of joints by
+/// least squares of Newton's and Euler's sums.
+pub fn definition(model: &Model, attribution: Option<&Attribution>, name: &str) -> String {
     let rates: Vec<String> = model
         .variables
         .iter()
@@ -47,7 +49,7 @@ pub fn definition(model: &Model, name: &str) -> String {
         .collect();
     let _ = writeln!(text, "    return [{}], [{}]", rows.join(", "), outputs.join(", "));
     if let Some(dynamics) = &model.dynamics {
-        casadi_dynamics::definition(model, dynamics, &mut text);
+        casadi_dynamics::definition(model, dynamics, attribution, &mut text);
     }
     text
 }
@@ -193,6 +195,7 @@ fn operation(model: &Model, node: Node) -> String {
         Node::Variable(index) => format!("v[{index}]"),
         Node::State(index) => format!("z[{index}]"),
         Node::Multiplier(index) => format!("l[{index}]"),
+        Node::Pin(pin, component) => format!("pins[{}]", 2 * pin + component),
         Node::Rate(a, 1) => format!("der({})", v(a)),
         Node::Rate(a, _) => format!("der(der({}))", v(a)),
         // No oracle has a word for it; what is made of it is not compared.

@@ -3,6 +3,8 @@
 use std::fmt::Write;
 
 use super::casadi::{assignments, variable};
+use super::casadi_pins;
+use crate::equations::Attribution;
 use crate::model::Model;
 use crate::model::dynamics::{Action, Dynamics, Line, Rotation, Turn};
 use crate::model::expression::Id;
@@ -13,7 +15,7 @@ use crate::model::expression::Id;
 /// The function returns terms of the kinetic and of the potential energy, the forces, the rates of the states, and the
 /// outputs of multipliers and states. A force is a dictionary: `work`, pairs of a value and the displacement that it
 /// acts along, without what is stored as potential energy; `rayleigh`, a function R or None.
-pub fn definition(model: &Model, dynamics: &Dynamics, text: &mut String) {
+pub fn definition(model: &Model, dynamics: &Dynamics, attribution: Option<&Attribution>, text: &mut String) {
     let _ = writeln!(text, "\n\nK = {}\n\n\ndef dynamics(ca, q, v, t, der, z, l):", dynamics.states.len());
     assignments(model, roots(dynamics), text);
     let _ = writeln!(text, "    kinetic, potential, forces = [], [], []");
@@ -61,6 +63,10 @@ pub fn definition(model: &Model, dynamics: &Dynamics, text: &mut String) {
     }
     let rates = dynamics.states.iter().filter_map(|state| state.rate).map(variable);
     let _ = writeln!(text, "    rates = [{}]", rates.collect::<Vec<_>>().join(", "));
+    if let Some(attribution) = attribution {
+        casadi_pins::sums(model, dynamics, attribution, text);
+    }
+    assignments(model, dynamics.loads.iter().map(|load| load.value), text);
     let loads = dynamics.loads.iter().map(|load| variable(load.value));
     let _ = writeln!(text, "    loads = [{}]", loads.collect::<Vec<_>>().join(", "));
     let names = "kinetic=kinetic, potential=potential, forces=forces, rates=rates, loads=loads";
@@ -113,12 +119,12 @@ fn roots(dynamics: &Dynamics) -> Vec<Id> {
         }
     }
     roots.extend(dynamics.states.iter().filter_map(|state| state.rate));
-    roots.extend(dynamics.loads.iter().map(|load| load.value));
+    roots.extend(dynamics.pins.iter().flat_map(|pin| &pin.at));
     roots
 }
 
 /// A value, or 0 where none is given.
-fn or_zero(value: Option<Id>) -> String {
+pub fn or_zero(value: Option<Id>) -> String {
     value.map_or_else(|| "ca.SX(0)".into(), variable)
 }
 

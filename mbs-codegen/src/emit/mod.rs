@@ -3,6 +3,7 @@
 mod blocks;
 pub mod casadi;
 mod casadi_dynamics;
+mod casadi_pins;
 mod code;
 mod docs;
 mod dynamics;

@@ -1,7 +1,8 @@
 //! Masses and forces → M, Q, their derivatives, energies and powers.
 
-use super::forces::{self, Sum};
+use super::forces::{self, Acting, Sum};
 use super::lower::Clock;
+use super::pins::{Attribution, Undetermined};
 use super::{Row, again, jacobian};
 use crate::model::dynamics::{Body, Dynamics as Declared, Rotation};
 use crate::model::expression::Id;
@@ -47,6 +48,12 @@ pub struct Dynamics {
     pub loads: Vec<NodeId>,
     /// Indices of the text's kinetic energies that are not quadratic in the rates.
     pub not_quadratic: Vec<usize>,
+    /// Where the named forces act.
+    pub acting: Vec<Acting>,
+    /// Why the forces of pins are not known, though an output asks for them.
+    pub undetermined: Option<Undetermined>,
+    /// What acts on which body, where an output asks for the force of a pin and it is known.
+    pub attribution: Option<Attribution>,
 }
 
 /// Before: everything of the text as nodes. After: every function of dynamics as roots of the same graph.
@@ -72,7 +79,7 @@ pub fn derive(
         }
     }
     let Inertia { mass, bias, kinetic } = inertia;
-    let forces::Forces { force, potential, powers } = forces::derive(g, declared, &of, clock, count);
+    let forces::Forces { force, potential, powers, acting } = forces::derive(g, declared, &of, clock, count);
     let force: Vec<Option<NodeId>> =
         force.into_iter().zip(&bias).map(|(force, bias)| force.minus(g, bias.0).0).collect();
 
@@ -109,6 +116,9 @@ pub fn derive(
         start_rates: (0..count).map(|index| start(&declared.rates, index)).collect(),
         loads: declared.loads.iter().map(|load| of(load.value)).collect(),
         not_quadratic,
+        acting,
+        undetermined: None,
+        attribution: None,
     }
 }
 

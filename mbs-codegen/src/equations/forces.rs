@@ -29,6 +29,24 @@ impl Sum {
     }
 }
 
+/// What a force acts on: a point of the plane, or an angle or a length.
+#[derive(Clone, Copy, Debug)]
+pub enum Place {
+    Point([NodeId; 2]),
+    Scalar(NodeId),
+    /// A point of space.
+    Elsewhere,
+}
+
+/// Part of a force: its value, of two components on a point, of the first alone elsewhere.
+#[derive(Clone, Copy, Debug)]
+pub struct Acting {
+    /// Index among the named forces.
+    pub force: usize,
+    pub place: Place,
+    pub value: [NodeId; 2],
+}
+
 /// What all forces add up to.
 pub struct Forces {
     /// One a coordinate.
@@ -37,6 +55,8 @@ pub struct Forces {
     pub potential: Sum,
     /// One a named force: its power, without what it stores as potential energy.
     pub powers: Vec<Option<NodeId>>,
+    /// Where the named forces act, without those that come from a function of dissipation.
+    pub acting: Vec<Acting>,
 }
 
 /// Before: the forces of the text. After: their sum on each coordinate, their potential, the powers of the named ones.
@@ -47,24 +67,33 @@ pub fn derive(
     clock: &Clock,
     count: usize,
 ) -> Forces {
-    let mut work = Work { force: vec![Sum::default(); count], potential: Sum::default(), clock };
-    let powers = declared
-        .forces
-        .iter()
-        .map(|force| match &force.action {
+    let mut work = Work {
+        force: vec![Sum::default(); count],
+        potential: Sum::default(),
+        clock,
+        acting: Vec::new(),
+        current: 0,
+    };
+    let mut powers = Vec::new();
+    for (index, force) in declared.forces.iter().enumerate() {
+        work.current = index;
+        powers.push(match &force.action {
             Action::Work(pairs) => {
                 let mut power = Sum::default();
                 for (value, on) in pairs {
                     work.along(g, of(*value), of(*on));
                     work.power(g, of(*value), of(*on), &mut power);
                 }
+                let (values, places): (Vec<_>, Vec<_>) =
+                    pairs.iter().map(|(value, on)| (of(*value), of(*on))).unzip();
+                work.acts(&places, &values);
                 power.0
             }
             Action::Dissipation(value) => work.dissipation(g, of(*value)),
             Action::Line(line) => work.line(g, line, of),
             Action::Turn(turn) => work.turn(g, turn, of),
-        })
-        .collect();
+        });
+    }
     for field in &declared.gravity {
         for body in &declared.bodies {
             for (place, acceleration) in body.com.iter().zip(field) {
@@ -83,16 +112,30 @@ pub fn derive(
         work.slope(g, of(*potential), Leaf::Position);
         work.potential.add(g, of(*potential));
     }
-    Forces { force: work.force, potential: work.potential, powers }
+    Forces { force: work.force, potential: work.potential, powers, acting: work.acting }
 }
 
 struct Work<'a> {
     force: Vec<Sum>,
     potential: Sum,
     clock: &'a Clock,
+    acting: Vec<Acting>,
+    /// Index of the force.
+    current: usize,
 }
 
 impl Work<'_> {
+    /// Keeps where the current force acts.
+    fn acts(&mut self, places: &[NodeId], values: &[NodeId]) {
+        let (place, value) = match (places, values) {
+            ([place], [value]) => (Place::Scalar(*place), [*value; 2]),
+            ([px, py], [x, y]) => (Place::Point([*px, *py]), [*x, *y]),
+            (_, [value, ..]) => (Place::Elsewhere, [*value; 2]),
+            (_, []) => return,
+        };
+        self.acting.push(Acting { force: self.current, place, value });
+    }
+
     /// Adds (∂place/∂q)ᵀ value.
     fn along(&mut self, g: &mut Graph, value: NodeId, place: NodeId) {
         for (coordinate, entry) in
@@ -171,6 +214,7 @@ impl Work<'_> {
         let stiffness = line.stiffness.map(of);
         let slack = stiffness.zip(line.length.map(of)).map(|(k, rest)| g.multiply(k, rest));
         let tension = active.minus(g, slack);
+        let (mut pulls, mut forces) = (Vec::new(), Vec::new());
         for (d, direction) in span.iter().zip(&directions) {
             let mut pull = Sum(stiffness.map(|k| g.multiply(k, *d)));
             if let Some(tension) = tension.0 {
@@ -180,8 +224,13 @@ impl Work<'_> {
             if let Some(pull) = pull.0 {
                 let force = g.negate(pull);
                 self.along(g, force, *d);
+                pulls.push(pull);
+                forces.push(force);
             }
         }
+        let ends = |points: &[Id]| points.iter().map(|point| of(*point)).collect::<Vec<_>>();
+        self.acts(&ends(&line.from), &pulls);
+        self.acts(&ends(&line.to), &forces);
         let spring = stiffness.map(|k| (k, self.stretch(g, length, line.length.map(of))));
         self.element_power(g, spring, active, rate, line.stores)
     }
@@ -203,6 +252,7 @@ impl Work<'_> {
         if let Some(total) = total.0 {
             let torque = g.negate(total);
             self.along(g, torque, angle);
+            self.acts(&[angle], &[torque]);
         }
         self.element_power(g, spring, active, rate, turn.stores)
     }

@@ -18,6 +18,8 @@ pub struct Lowered {
     pub guesses: Vec<NodeId>,
     pub coordinate_scales: Vec<NodeId>,
     pub row_scales: Vec<NodeId>,
+    /// The reference length.
+    pub length: NodeId,
     /// One a call of a declared function, in the order of the model.
     pub calls: Vec<NodeId>,
     pub clock: Clock,
@@ -27,6 +29,8 @@ pub struct Lowered {
 
 /// First index of a given leaf that is a margin, by its group; others are ∂q/∂drive, by the drive's row.
 pub const MARGIN: u32 = u32::MAX;
+/// First index of a given leaf that stands for the force of a pin until its sums are known, by pin and component.
+pub const PIN: u32 = u32::MAX - 1;
 
 /// How leaves move in time.
 pub struct Clock {
@@ -110,6 +114,7 @@ pub fn lower(model: &Model) -> Lowered {
         guesses: model.coordinates.iter().map(|coordinate| coordinate.guess.map_or(zero, of)).collect(),
         coordinate_scales: model.coordinates.iter().map(|coordinate| scale(coordinate.dimension)).collect(),
         row_scales: model.rows.iter().map(|row| scale(row.dimension)).collect(),
+        length,
         calls: model.expressions.calls().iter().map(|call| of(call.id)).collect(),
         graph,
         clock,
@@ -133,6 +138,7 @@ fn expressions(model: &Model, clock: &Clock, g: &mut Graph) -> Vec<NodeId> {
             }),
             expression::Node::State(i) => g.leaf(Leaf::State(i as u32)),
             expression::Node::Multiplier(i) => g.leaf(Leaf::Multiplier(i as u32)),
+            expression::Node::Pin(pin, component) => g.leaf(Leaf::Given(PIN, (2 * pin + component) as u32)),
             expression::Node::Unary(function, a) => g.unary(unary(function), of(a)),
             expression::Node::Binary(function, a, b) => g.binary(binary(function), of(a), of(b)),
             expression::Node::Margin(group) => g.leaf(Leaf::Given(MARGIN, group as u32)),

@@ -1,10 +1,13 @@
 //! Model → roots of one graph: Φ, Φ_q, Φ_t, Φ_tt, Φ_qt q̇, γ, branches, limits, phases, outputs, guesses,
 //! metric; M, Q and their derivatives, energies, powers.
 
+mod attribution;
 pub mod continuity;
 mod dynamics;
+mod elimination;
 mod forces;
 mod lower;
+pub mod pins;
 mod turning;
 
 use std::collections::BTreeSet;
@@ -12,9 +15,11 @@ use std::collections::BTreeSet;
 use crate::model::Model;
 use crate::symbolic::{Graph, Leaf, Node, NodeId, tangent};
 
+pub use attribution::Motion;
 pub use dynamics::{Dynamics, Sparse};
 use lower::Lowered;
 pub use lower::MARGIN;
+pub use pins::{Attribution, On};
 
 /// One graph and its roots. `None` is a structural zero.
 #[derive(Debug)]
@@ -95,6 +100,7 @@ pub fn derive(model: &Model) -> Equations {
         guesses,
         coordinate_scales,
         row_scales,
+        length,
         calls,
         clock,
         nodes,
@@ -138,6 +144,14 @@ pub fn derive(model: &Model) -> Equations {
         .dynamics
         .as_ref()
         .map(|dynamics| dynamics::derive(g, dynamics, &nodes, &clock, &rows, &guesses));
+    let dynamics = match (dynamics, &model.dynamics) {
+        (Some(mut derived), Some(declared)) => {
+            let given = pins::Given { nodes: &nodes, clock: &clock, length, rows: &rows };
+            pins::complete(g, model, declared, &mut derived, given);
+            Some(derived)
+        }
+        _ => None,
+    };
     Equations {
         graph,
         rows,

@@ -12,6 +12,8 @@ pub struct Dynamics {
     pub bodies: Vec<Body>,
     /// Accelerations of free fall (m/s²), which add up; of constants, inputs and the time.
     pub gravity: Vec<Vec<Id>>,
+    /// Joints whose forces the text may ask for, in the order of the text.
+    pub pins: Vec<Pin>,
     /// Forces by name, in the order of the text.
     pub forces: Vec<Force>,
     /// Energies that `potential` adds (J).
@@ -41,6 +43,16 @@ pub struct Body {
     pub rotation: Option<Rotation>,
 }
 
+impl Body {
+    /// Inertia and angle of a body of the plane that turns.
+    pub fn in_plane(&self) -> Option<(Id, Id)> {
+        match self.rotation {
+            Some(Rotation::Plane { inertia, angle }) => Some((inertia, angle)),
+            _ => None,
+        }
+    }
+}
+
 /// Inertia about the centre of mass, and what it turns with.
 #[derive(Debug)]
 pub enum Rotation {
@@ -58,6 +70,19 @@ pub enum Rotation {
         /// Euler parameters of the body's axes, e·e = 1.
         orientation: [Id; 4],
     },
+}
+
+/// A joint of two bodies: its force acts on one, and back on the other.
+#[derive(Debug)]
+pub struct Pin {
+    /// Its name.
+    pub name: String,
+    /// The joined bodies by their index; `None` is the ground.
+    pub bodies: [Option<usize>; 2],
+    /// As the text names them, with the token.
+    pub joined: [(String, Span); 2],
+    /// Where it is (m).
+    pub at: Vec<Id>,
 }
 
 /// A kinetic energy of the text.

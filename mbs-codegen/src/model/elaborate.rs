@@ -6,7 +6,7 @@ use super::Reference;
 use super::declared_functions;
 use super::evaluate;
 use super::expression::{Binary, Expressions, Id, Node, Unary};
-use super::functions::{self, FUNCTIONS, LATER};
+use super::functions::{self, FUNCTIONS};
 use super::names::{Names, Symbol};
 use super::operands::Operands;
 use super::references::{REFERRING, is_reference};
@@ -375,13 +375,6 @@ impl Elaborator<'_> {
 
     /// A fault at an unknown function.
     pub fn unknown_function(&mut self, name: &str, span: Span) -> Fault {
-        if LATER.contains(&name) {
-            return self.fault(
-                span,
-                format!("`{name}` is not translated by this version"),
-                "outputs may use `der(x)` and `der2(x)`; drives are equations of coordinates and time",
-            );
-        }
         let known = || self.names.functions().chain(FUNCTIONS);
         let help = match nearest(name, known()) {
             Some(known) => format!("did you mean `{known}`?"),
@@ -404,7 +397,7 @@ impl Elaborator<'_> {
         let inside = |wanted: fn(Node) -> bool| {
             self.expressions.iter().any(|(id, node)| inner.get(id.index()) == Some(&true) && wanted(node))
         };
-        if inside(|node| matches!(node, Node::State(_) | Node::Multiplier(_))) {
+        if inside(|node| matches!(node, Node::State(_) | Node::Multiplier(_) | Node::Pin(..))) {
             return Err(self.fault(
                 span,
                 format!("`{name}` of a state or of a multiplier is not known"),
@@ -428,7 +421,7 @@ impl Elaborator<'_> {
         })
     }
 
-    /// `lambda(row)`, `effort(drive)`.
+    /// `lambda(row)`, `effort(drive)`, `reaction(pin, body)`.
     fn reference(
         &mut self,
         function: &str,
@@ -436,6 +429,9 @@ impl Elaborator<'_> {
         counts: Vec<Value>,
         span: Span,
     ) -> Result<Value, Fault> {
+        if function == "reaction" {
+            return self.reaction(targets, counts, span);
+        }
         if self.reach == Reach::Position {
             return Err(self.fault(
                 span,

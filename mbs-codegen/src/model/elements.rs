@@ -422,7 +422,7 @@ impl Resolver<'_> {
     }
 
     /// A place is where the coordinates are; a state has no part in it.
-    fn stateless(&mut self, value: &Value) -> Result<(), Fault> {
+    pub(super) fn stateless(&mut self, value: &Value) -> Result<(), Fault> {
         let plain = |node| !matches!(node, Node::State(_));
         if value.items.iter().all(|item| self.model.made_of(item.id, plain)) {
             return Ok(());
@@ -463,7 +463,7 @@ impl Resolver<'_> {
     }
 
     /// The name of a statement, with its round in a loop.
-    fn numbered(&mut self, name: &Name, kind: &'static str) -> Result<String, Fault> {
+    pub(super) fn numbered(&mut self, name: &Name, kind: &'static str) -> Result<String, Fault> {
         let group = self.group(name, kind)?;
         let round = self.rows_of(group);
         self.count_row(group, round);

@@ -21,6 +21,8 @@ pub enum Node {
     State(usize),
     /// The multiplier λ of a row by the row's index.
     Multiplier(usize),
+    /// A component of the force of a pin on the first of its bodies, by the pin's index.
+    Pin(usize, usize),
     /// A function of one argument.
     Unary(Unary, Id),
     /// A function of two arguments.
@@ -159,6 +161,7 @@ impl Node {
             | Node::Variable(_)
             | Node::State(_)
             | Node::Multiplier(_)
+            | Node::Pin(..)
             | Node::Margin(_) => (None, None),
             Node::Unary(_, a) | Node::Rate(a, _) | Node::Call { argument: a, .. } | Node::Ratio(a, _) => {
                 (Some(a), None)

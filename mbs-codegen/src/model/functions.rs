@@ -40,9 +40,6 @@ pub const FUNCTIONS: [&str; 29] = [
     "der2",
 ];
 
-/// Functions of the language which this version does not translate.
-pub const LATER: [&str; 1] = ["reaction"];
-
 /// Before: arguments as they stand on the stack. After: the value of `function`, or the fault reported.
 pub fn call(
     work: &mut Elaborator<'_>,

@@ -17,6 +17,7 @@ mod names;
 mod operands;
 mod order;
 mod orientation;
+mod pins;
 mod references;
 mod resolve;
 pub mod scenes;

@@ -44,12 +44,20 @@ pub struct Rows {
     pub driven: bool,
 }
 
-/// Names of values, with the scopes of loops and sums; names of rows apart.
+/// A pin by its index, and the names of its bodies.
+#[derive(Clone, Debug)]
+pub struct Joint {
+    pub pin: usize,
+    pub bodies: [String; 2],
+}
+
+/// Names of values, with the scopes of loops and sums; names of rows and pins apart.
 #[derive(Debug, Default)]
 pub struct Names {
     declared: BTreeMap<String, (Symbol, Span)>,
     scoped: Vec<(String, Symbol)>,
     rows: BTreeMap<String, Rows>,
+    pins: BTreeMap<String, Vec<Joint>>,
     /// Whether the text has masses or forces, so that its rows have multipliers.
     pub dynamic: bool,
 }
@@ -141,6 +149,21 @@ impl Names {
     /// All constraints and drives.
     pub fn row_groups(&self) -> impl Iterator<Item = &str> {
         self.rows.keys().map(String::as_str)
+    }
+
+    /// Adds a pin to those of its name; a loop declares several.
+    pub fn define_pin(&mut self, name: &str, joint: Joint) {
+        self.pins.entry(name.to_owned()).or_default().push(joint);
+    }
+
+    /// The pins of a name.
+    pub fn pin(&self, name: &str) -> Option<&[Joint]> {
+        self.pins.get(name).map(Vec::as_slice)
+    }
+
+    /// All names of pins.
+    pub fn pin_names(&self) -> impl Iterator<Item = &str> {
+        self.pins.keys().map(String::as_str)
     }
 
     /// Where the name was declared outside any loop.

@@ -44,6 +44,7 @@ pub fn resolve(statements: &[Statement], diagnostics: &mut Diagnostics) -> Model
         (work.pass, work.rounds) = (Pass::Loads, 0);
         work.run(statements);
         work.check_states();
+        work.check_pins();
     }
     work.check_guesses_and_inputs();
     model
@@ -165,6 +166,7 @@ impl Resolver<'_> {
             StatementKind::Limit { name, low, value, high } => self.limit(name, low, value, high),
             StatementKind::Independent { names } => self.independent(names),
             StatementKind::Element { kind: Element::Body, name, fields } => self.normalisation(name, fields),
+            StatementKind::Pin { name, bodies, at } => self.pin(name, bodies, at),
             StatementKind::Start { coordinate, value, rate, span } => {
                 self.start(coordinate, value, rate.as_ref(), *span)
             }
@@ -384,7 +386,7 @@ impl Resolver<'_> {
         for (component, item) in component_names(&base, &value.shape).zip(&value.items) {
             let unit = kind.unit.text.clone();
             let output = Output { name: component, unit, value: item.id, span: name.span };
-            let plain = |node| !matches!(node, Node::State(_) | Node::Multiplier(_));
+            let plain = |node| !matches!(node, Node::State(_) | Node::Multiplier(_) | Node::Pin(..));
             let is_load = self.model.dynamics.is_some() && !self.model.made_of(item.id, plain);
             match &mut self.model.dynamics {
                 Some(dynamics) if is_load => dynamics.loads.push(output),

@@ -134,7 +134,12 @@ fn evaluate(model: &Model, state: &State, line: Line) -> Vec<Jet> {
                     orders.map(|order| law::magnitude(function, order)),
                 )
             }
-            Node::Rate(..) | Node::State(_) | Node::Multiplier(_) | Node::Margin(_) | Node::Ratio(..) => {
+            Node::Rate(..)
+            | Node::State(_)
+            | Node::Multiplier(_)
+            | Node::Pin(..)
+            | Node::Margin(_)
+            | Node::Ratio(..) => {
                 unreachable!("random texts are kinematic and use no `der`, no margin and no ratio")
             }
         };

@@ -205,6 +205,12 @@ pub enum StatementKind {
         name: Name,
         fields: Vec<Field>,
     },
+    /// A joint of two bodies, for the force in it.
+    Pin {
+        name: Name,
+        bodies: [Joined; 2],
+        at: Expression,
+    },
     /// A force on a point, a torque on an angle.
     Load {
         kind: Load,
@@ -260,6 +266,14 @@ pub enum StatementKind {
 pub struct Field {
     pub name: Name,
     pub value: Expression,
+}
+
+/// A body that a pin joins.
+#[derive(Clone, Debug)]
+pub struct Joined {
+    pub name: Name,
+    /// Which one of those that a loop declares.
+    pub index: Option<Expression>,
 }
 
 /// What is declared by fields.
@@ -318,6 +332,9 @@ impl StatementKind {
             StatementKind::Limit { low, value, high, .. } => vec![low, value, high],
             StatementKind::Out { kind, value, .. } => kind.shape.iter().chain([value]).collect(),
             StatementKind::Element { fields, .. } => fields.iter().map(|field| &field.value).collect(),
+            StatementKind::Pin { bodies, at, .. } => {
+                bodies.iter().filter_map(|body| body.index.as_ref()).chain([at]).collect()
+            }
             StatementKind::Load { value, on, .. } => vec![value, on],
             StatementKind::Energy { value, .. } => vec![value],
             StatementKind::State { kind, value, .. } => kind.shape.iter().chain(value).collect(),

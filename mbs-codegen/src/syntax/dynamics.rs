@@ -1,6 +1,8 @@
 //! Statements of dynamics: bodies, elements, forces, energies, first-order states, starts.
 
-use super::ast::{Declares, Element, Energy, Expression, Field, Instruction, Load, Operation, StatementKind};
+use super::ast::{
+    Declares, Element, Energy, Expression, Field, Instruction, Joined, Load, Operation, StatementKind,
+};
 use super::constraint::equation;
 use super::expression::expression;
 use super::parser::{Parser, Read};
@@ -42,6 +44,34 @@ fn element(parser: &mut Parser<'_>, kind: Element, help: &str) -> Read<Statement
         }
     }
     Ok(StatementKind::Element { kind, name, fields })
+}
+
+const PIN: &str = "write `pin B: crank, rod at [x, y];`, two bodies, or one and `ground`, and a point";
+pub fn read_pin(parser: &mut Parser<'_>) -> Read<StatementKind> {
+    let name = parser.name(PIN)?;
+    parser.expect(':', PIN)?;
+    let first = joined(parser)?;
+    parser.expect(',', PIN)?;
+    let second = joined(parser)?;
+    if !parser.take_word("at") {
+        return parser.expected("`at`", PIN);
+    }
+    let at = expression(parser)?;
+    end(parser, PIN)?;
+    Ok(StatementKind::Pin { name, bodies: [first, second], at })
+}
+
+/// `rod` or `rods[i]`
+fn joined(parser: &mut Parser<'_>) -> Read<Joined> {
+    let name = parser.name(PIN)?;
+    let index = if parser.take('[') {
+        let index = expression(parser)?;
+        parser.expect(']', PIN)?;
+        Some(index)
+    } else {
+        None
+    };
+    Ok(Joined { name, index })
 }
 
 const FORCE: &str = "write `force push: [0, -5] on P;`, a vector in N on a point";

@@ -11,7 +11,7 @@ use super::unit::{declared_type, unit};
 use crate::diagnostics::{Diagnostics, nearest};
 
 /// Words that begin a statement of this version.
-const STATEMENTS: [&str; 26] = [
+const STATEMENTS: [&str; 27] = [
     "const",
     "param",
     "input",
@@ -30,6 +30,7 @@ const STATEMENTS: [&str; 26] = [
     "start",
     "state",
     "body",
+    "pin",
     "gravity",
     "force",
     "torque",
@@ -41,7 +42,7 @@ const STATEMENTS: [&str; 26] = [
 ];
 
 /// Words that begin a statement of the language which this version does not translate.
-const LATER: [&str; 5] = ["pin", "friction", "contact", "data", "include"];
+const LATER: [&str; 4] = ["friction", "contact", "data", "include"];
 
 /// Before: flat tokens behind the header. After: all statements that could be read, loops and effects flattened and
 /// balanced, effects and scenes at the top level alone; every other one is reported.
@@ -209,6 +210,7 @@ fn reader(word: &str) -> Option<Reader> {
         "start" => dynamics::read_start,
         "state" => dynamics::read_state,
         "body" => dynamics::read_body,
+        "pin" => dynamics::read_pin,
         "gravity" => dynamics::read_gravity,
         "force" => dynamics::read_force,
         "torque" => dynamics::read_torque,

@@ -1,0 +1,180 @@
+//! On which body something acts: a point that moves with it, an angle that turns with it.
+//!
+//! Found by what moves alike at a few positions, not by how it is written: virtual displacements alone count.
+
+use super::jacobian;
+use crate::symbolic::evaluate::evaluate;
+use crate::symbolic::{Graph, Leaf, NodeId};
+
+/// Positions that are tried; what is no number at one of them says nothing there.
+const TRIED: usize = 12;
+/// How many of them must agree.
+const AGREEING: usize = 3;
+/// Largest difference of what is the same, relative to its size: rounding of a few hundred operations.
+const SAME: f64 = 1e-9;
+
+/// Scalar functions of the position with their slopes, at a few positions.
+pub struct Slopes {
+    /// Value of each function and its slopes along the coordinates, position by position.
+    samples: Vec<Vec<(f64, Vec<f64>)>>,
+}
+
+/// A plane body by the indices of its functions.
+#[derive(Clone, Copy, Debug)]
+pub struct Frame {
+    /// Both components of its centre of mass.
+    pub centre: [usize; 2],
+    /// Its angle; a point mass has none.
+    pub angle: Option<usize>,
+}
+
+/// What a scalar function of the position is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Motion {
+    /// The angle of a body against another or the ground, times `sign`.
+    Angle { body: usize, against: Option<usize>, sign: f64 },
+    /// A component of the place of a body's centre of mass, times `sign`.
+    Component { body: usize, component: usize, sign: f64 },
+}
+
+impl Slopes {
+    /// Before: functions of the position. After: their slopes along `count` coordinates at positions that are the same in
+    /// every build.
+    pub fn of(g: &mut Graph, functions: &[NodeId], count: usize) -> Self {
+        let rows = jacobian(g, functions, count, Leaf::Position);
+        let entries = rows.iter().flatten().map(|(_, entry)| *entry);
+        let roots: Vec<NodeId> = functions.iter().copied().chain(entries).collect();
+        let sample = |trial: usize| {
+            let values = evaluate(g, &roots, |leaf| scattered(leaf, trial));
+            let mut slopes = values.iter().skip(functions.len());
+            let mut sample = Vec::new();
+            for (value, row) in values.iter().zip(&rows) {
+                let mut dense = vec![0.0; count];
+                for (column, _) in row {
+                    if let (Some(slot), Some(slope)) = (dense.get_mut(*column), slopes.next()) {
+                        *slot = *slope;
+                    }
+                }
+                sample.push((*value, dense));
+            }
+            sample
+        };
+        Slopes { samples: (0..TRIED).map(sample).collect() }
+    }
+
+    /// Whether a function depends on no coordinate.
+    pub fn is_fixed(&self, function: usize) -> bool {
+        self.hold(|sample, column| Some((slope(sample, function, column)?, 0.0)))
+    }
+
+    /// The body that a point moves with; `Some(None)` is the ground.
+    pub fn body_of(&self, point: [usize; 2], bodies: &[Frame]) -> Option<Option<usize>> {
+        if point.iter().all(|component| self.is_fixed(*component)) {
+            return Some(None);
+        }
+        let carries = |body: &Frame| {
+            [0, 1].into_iter().all(|component| {
+                self.hold(|sample, column| Some(carried(sample, column, point, body, component)?))
+            })
+        };
+        bodies.iter().position(carries).map(Some)
+    }
+
+    /// What a scalar function is, of bodies that are joined in pairs.
+    pub fn motion_of(
+        &self,
+        function: usize,
+        bodies: &[Frame],
+        joined: &[[Option<usize>; 2]],
+    ) -> Option<Motion> {
+        let alone = (0..bodies.len()).map(|body| (body, None));
+        let pairs = joined.iter().filter_map(|[a, b]| Some(((*a)?, Some((*b)?))));
+        let angle = alone.chain(pairs).flat_map(|pair| [(pair, 1.0), (pair, -1.0)]).find(|(pair, sign)| {
+            let turn = |sample: &Sample, body: usize, column| slope(sample, bodies.get(body)?.angle?, column);
+            self.hold(|sample, column| {
+                let back = pair.1.map_or(Some(0.0), |against| turn(sample, against, column))?;
+                Some((slope(sample, function, column)?, sign * (turn(sample, pair.0, column)? - back)))
+            })
+        });
+        if let Some(((body, against), sign)) = angle {
+            return Some(Motion::Angle { body, against, sign });
+        }
+        let components = (0..bodies.len()).flat_map(|body| [(body, 0), (body, 1)]);
+        let found = components.flat_map(|place| [(place, 1.0), (place, -1.0)]).find(|(place, sign)| {
+            self.hold(|sample, column| {
+                let centre = *bodies.get(place.0)?.centre.get(place.1)?;
+                Some((slope(sample, function, column)?, sign * slope(sample, centre, column)?))
+            })
+        });
+        found.map(|((body, component), sign)| Motion::Component { body, component, sign })
+    }
+
+    /// Whether two slopes are the same wherever both are numbers, and are numbers often enough.
+    fn hold(&self, slopes: impl Fn(&Sample, usize) -> Option<(f64, f64)>) -> bool {
+        let mut agreeing = 0;
+        for sample in &self.samples {
+            let columns = sample.first().map_or(0, |(_, slopes)| slopes.len());
+            let mut known = true;
+            for column in 0..columns {
+                let Some((a, b)) = slopes(sample, column) else { return false };
+                let difference = (a - b).abs();
+                if difference > SAME * (1.0 + a.abs() + b.abs()) {
+                    return false;
+                }
+                known &= difference.is_finite();
+            }
+            agreeing += usize::from(known);
+        }
+        agreeing >= AGREEING
+    }
+}
+
+/// Value and slopes of each function.
+type Sample = Vec<(f64, Vec<f64>)>;
+
+fn slope(sample: &Sample, function: usize, column: usize) -> Option<f64> {
+    sample.get(function)?.1.get(column).copied()
+}
+
+/// Slope of a point's component, and that of the body's point there: that of its centre, and the arm turned.
+fn carried(
+    sample: &Sample,
+    column: usize,
+    point: [usize; 2],
+    body: &Frame,
+    component: usize,
+) -> Option<(f64, f64)> {
+    let value = |function: usize| sample.get(function).map(|(value, _)| *value);
+    let (own, centre) = (*point.get(component)?, *body.centre.get(component)?);
+    let (other, other_centre) = (*point.get(1 - component)?, *body.centre.get(1 - component)?);
+    let turn = match body.angle {
+        Some(angle) => slope(sample, angle, column)?,
+        None => 0.0,
+    };
+    let arm = value(other)? - value(other_centre)?;
+    let turned = if component == 0 { -arm } else { arm };
+    Some((slope(sample, own, column)?, slope(sample, centre, column)? + turn * turned))
+}
+
+/// A value of a leaf, scattered but the same in every build; lengths and masses are positive.
+fn scattered(leaf: Leaf, trial: usize) -> f64 {
+    let (kind, index) = match leaf {
+        Leaf::Parameter(index) => (1, index),
+        Leaf::Input(index) => (2, index),
+        Leaf::Time => (3, 0),
+        Leaf::Position(index) => (4, index),
+        Leaf::Velocity(index) => (5, index),
+        Leaf::Acceleration(index) => (6, index),
+        Leaf::State(index) => (7, index),
+        Leaf::Multiplier(index) => (8, index),
+        Leaf::Direction(index) => (9, index),
+        Leaf::Given(group, index) => (10 + u64::from(group), index),
+    };
+    // The finalizer of SplitMix64: neighbouring leaves have unrelated values.
+    let mut bits = (kind << 40) ^ (u64::from(index) << 8) ^ trial as u64;
+    bits = bits.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    bits = (bits ^ (bits >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    bits = (bits ^ (bits >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    bits ^= bits >> 31;
+    0.2 + (bits >> 11) as f64 / (1_u64 << 53) as f64
+}
