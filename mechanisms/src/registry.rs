@@ -48,6 +48,8 @@ pub const FREE: &[&FreeCard] = &[
     &crate::n_four_bar::CARD,
     &crate::andrews::CARD,
     &crate::heavy_top::CARD,
+    &crate::car_axis::CARD,
+    &crate::quarter_car::CARD,
     &crate::slider_crank_mass::RELEASED,
     &crate::four_bar_mass::RELEASED,
 ];

@@ -73,9 +73,9 @@ impl Slopes {
             return Some(None);
         }
         let carries = |body: &Frame| {
-            [0, 1].into_iter().all(|component| {
-                self.hold(|sample, column| Some(carried(sample, column, point, body, component)?))
-            })
+            [0, 1]
+                .into_iter()
+                .all(|component| self.hold(|sample, column| carried(sample, column, point, body, component)))
         };
         bodies.iter().position(carries).map(Some)
     }

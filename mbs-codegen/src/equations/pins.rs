@@ -37,6 +37,9 @@ pub struct Attribution {
     pub held: Vec<(usize, usize)>,
 }
 
+/// What the coordinates hold, and what rows hold.
+type Guides = (Vec<(usize, usize)>, Vec<(usize, Motion)>);
+
 /// What a part of a force acts on.
 #[derive(Clone, Copy, Debug)]
 pub enum On {
@@ -246,7 +249,7 @@ impl<'a> Sums<'a> {
     }
 
     /// Components and angles that no coordinate moves, or that a row holds, of bodies that no pin holds there.
-    fn guides(&self, model: &Model, declared: &Declared) -> (Vec<(usize, usize)>, Vec<(usize, Motion)>) {
+    fn guides(&self, model: &Model, declared: &Declared) -> Guides {
         let on_ground = |body: usize| {
             declared.pins.iter().any(|pin| pin.bodies.contains(&Some(body)) && pin.bodies.contains(&None))
         };

@@ -1,0 +1,119 @@
+//! The axle of a car on a bumpy road: two wheels on springs, the left one on flat ground, the right one on a road that
+//! rises and falls.
+//!
+//! ```text
+//!     L ●━━━━━━━━━━━━━━━━● R        rod of length `L` between the points L and R
+//!       ≀                ≀          springs without damping to the ground and to the road
+//!     A o────────────────o B        B rises as r sin(ω t); A B keeps the length `L`, and A L stands across it
+//! ```
+//!
+//! Lengths in metres. The masses are ε² M/2: with ε = 0.01 the springs are stiff beside the bumps.
+//!
+//! Source: Test Set for IVP Solvers, problem "Car axis" (Mazzia & Magherini 2008; Schneider 1990), whose letters the
+//! parameters keep.
+
+use mbs_runtime::mechanism;
+
+use crate::drawing::Shape;
+use crate::masses::boxed_masses;
+use crate::registry::{FreeCard, Preset};
+
+/// In the list of free mechanisms.
+pub const CARD: FreeCard = FreeCard {
+    name: "car_axis",
+    title: "Car axle on a bumpy road",
+    description: "An axle between two springs, one on flat ground and one on a road that rises and falls: rows that \
+                  depend on time, and do work.",
+    runs: &[Preset { label: "3 s", description: "moving to the left at the start", set: &[] }],
+    duration: 3.0,
+    drawing: DRAWING,
+    make: boxed_masses::<CarAxis, 4, 2>,
+};
+
+mechanism! {
+    /// Car axle: two degrees of freedom in four coordinates, with rows that depend on time.
+    pub mechanism CarAxis;
+    /// Mass of the car.
+    param M: kg = 10;
+    /// Ratio of the time scales.
+    param eps: 1 = 0.01;
+    /// Length of the axle, and distance of the lower ends of the springs.
+    param L: m = 1;
+    /// Length of the springs at rest.
+    param L0: m = 0.5;
+    /// Stiffness of the springs.
+    param k: N/m = 1;
+    /// Height of the bumps.
+    param r: m = 0.1;
+    /// Their angular frequency.
+    param omega: rad/s = 10;
+    /// Free fall.
+    param g: m/s^2 = 1;
+    coord left: [m; 2] = [0, 0.5];
+    coord right: [m; 2] = [1, 0.5];
+    let rise = r*sin(omega*t);
+    let road = [sqrt(L^2 - rise^2), rise];
+    body left_wheel { mass: M*eps^2/2, com: left }
+    body right_wheel { mass: M*eps^2/2, com: right }
+    gravity weight { acceleration: [0, -g] }
+    tsda left_spring { from: [0, 0], to: left, stiffness: k, length: L0 }
+    tsda right_spring { from: road, to: right, stiffness: k, length: L0 }
+    constraint across { dot(left, road) == 0; }
+    constraint axle { dot(left - right, left - right) == L^2; }
+    start left = [0, 0.5] rate [-0.5, 0];
+    start right = [1, 0.5] rate [-0.5, 0];
+    out A: [m; 2] = [0, 0];
+    out B: [m; 2] = road;
+    out left_end: [m; 2] = left;
+    out right_end: [m; 2] = right;
+    /// Force in the axle, positive where it pulls.
+    out tension: N = 2*L*lambda(axle);
+}
+
+/// How the mechanism is drawn.
+pub const DRAWING: &[Shape] = &[
+    Shape::Ground { at: "A" },
+    Shape::Spring { points: ["A", "left_end"], label: "left spring" },
+    Shape::Spring { points: ["B", "right_end"], label: "right spring" },
+    Shape::Link { points: &["left_end", "right_end"], label: "axle" },
+    Shape::Joint { at: "left_end" },
+    Shape::Joint { at: "right_end" },
+    Shape::Trace { of: "B", label: "road" },
+    Shape::Trace { of: "right_end", label: "right end" },
+];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::reference::{dynamics_of, table};
+
+    /// Bounds of the differences, relative to the run's largest position, velocity and multiplier.
+    const BOUNDS: [f64; 3] = [1e-9, 1e-8, 1e-7];
+
+    #[test]
+    fn positions_velocities_and_multipliers_are_the_published_ones() {
+        let reference = table(include_str!("../tests/data/car_axis.csv"));
+        let found = dynamics_of(&CARD, &CARD.runs[0], 12);
+        let forces = found.motion.dynamics.as_ref().expect("it has masses");
+        let positions = found.motion.coordinates.iter().map(|coordinate| &coordinate.q);
+        let velocities = found.motion.coordinates.iter().map(|coordinate| &coordinate.qd);
+        let multipliers = forces.multipliers.iter().map(|multiplier| &multiplier.value);
+        let groups: [Vec<&Vec<f64>>; 3] = [positions.collect(), velocities.collect(), multipliers.collect()];
+        let mut first = 1;
+        for (columns, bound) in groups.iter().zip(BOUNDS) {
+            // The multipliers of the start are not in the table.
+            let rows = reference.iter().enumerate().skip(usize::from(columns.len() == 2));
+            let entries = rows.flat_map(|(row, values)| {
+                columns.iter().enumerate().map(move |(i, column)| (column[row], values[first + i]))
+            });
+            let entries: Vec<(f64, f64)> = entries.collect();
+            let largest = entries.iter().fold(0.0, |largest: f64, (_, value)| largest.max(value.abs()));
+            let error = entries.iter().fold(0.0, |error: f64, (a, b)| error.max((a - b).abs()));
+            println!("largest error {:.1e} of {largest}", error / largest);
+            assert!(error < bound * largest, "{error:e} of {largest}");
+            first += columns.len();
+        }
+        let most = |values: &[f64]| values.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
+        assert!(most(&forces.defect) < 1e-9 * most(&forces.work), "{:e}", most(&forces.defect));
+    }
+}
