@@ -103,6 +103,9 @@ pub trait Dynamic<T: Scalar, const N: usize, const M: usize>: Mechanism<T, N, M>
     fn energy(&self, parameters: &Self::Parameters, position: &Self::Position, qd: &[T; N]) -> Energy<T>;
     /// Power of each force (W), positive where it feeds the mechanism; of springs that store it as potential energy,
     /// without what they store. Kinetic and potential energy change by the sum of these and by what drives supply.
+    ///
+    /// Where the time moves the place of a force, that motion counts only as it loads a spring; bodies with masses that
+    /// the time carries along by themselves take energy that is not among these.
     fn powers(
         &self,
         parameters: &Self::Parameters,

@@ -24,8 +24,8 @@ A definition of a mechanism with masses or forces has also
 
 where z are the states and l the multipliers of the rows. `kinetic` and `potential` are terms of the energies, `forces`
 dictionaries: `work`, pairs of a value and the displacement that it acts along (without what is stored as potential
-energy), `rayleigh`, a function R with the generalized forces -dR/dqd, or None. `rates` are those of the states, `loads`
-the outputs that use z or l.
+energy), `rayleigh`, a function R with the generalized forces -dR/dqd, or None, `stored`, what a spring keeps, where one
+does. `rates` are those of the states, `loads` the outputs that use z or l.
 
 The back end is a Python file with evaluate(definition, states) -> {function: [values a state]}.
 

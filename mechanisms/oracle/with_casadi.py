@@ -178,7 +178,9 @@ def dynamics(c, definition, phi):
     force = -inertia - ca.jacobian(potential, c.q).T
     powers = []
     for part in told["forces"]:
-        power = sum((value * c.total(place) for value, place in part["work"]), ca.SX(0))
+        # What the time moves of a place gives nothing to the mechanism; of a spring's end it changes what is stored.
+        power = sum((value * c.along(place, c.q, c.qd) for value, place in part["work"]), ca.SX(0))
+        power += c.partial(part.get("stored", ca.SX(0)))
         for value, place in part["work"]:
             force += ca.jacobian(place, c.q).T * value
         if part["rayleigh"] is not None:

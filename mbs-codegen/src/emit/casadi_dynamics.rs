@@ -155,7 +155,8 @@ fn spring(
     // What a spring stores pulls by the slope of its energy.
     let value = if stores { "-active" } else { "-active - elastic" };
     let _ = writeln!(text, "    work = [({value}, place)]");
-    let _ = writeln!(text, "    forces.append(dict(work=work, rayleigh=None))");
+    let stored = if stores { format!(", stored=elastic * (place - {rest}) / 2") } else { String::new() };
+    let _ = writeln!(text, "    forces.append(dict(work=work, rayleigh=None{stored}))");
     if stores {
         let _ = writeln!(text, "    potential.append(elastic * (place - {rest}) / 2)");
     }

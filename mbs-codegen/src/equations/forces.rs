@@ -115,6 +115,16 @@ pub fn derive(
     Forces { force: work.force, potential: work.potential, powers, acting: work.acting }
 }
 
+/// What moves.
+#[derive(Clone, Copy)]
+enum Motion {
+    All,
+    /// The coordinates alone.
+    Coordinates,
+    /// The time and inputs alone.
+    Time,
+}
+
 struct Work<'a> {
     force: Vec<Sum>,
     potential: Sum,
@@ -159,17 +169,35 @@ impl Work<'_> {
         slopes
     }
 
-    /// Adds value · d place/dt.
+    /// Adds value · ∂place/∂q q̇: what the time moves of the place by itself gives nothing to the mechanism.
     fn power(&self, g: &mut Graph, value: NodeId, place: NodeId, power: &mut Sum) {
-        if let Some(velocity) = self.velocity(g, place) {
+        if let Some(velocity) = self.velocity(g, place, Motion::Coordinates) {
             let term = g.multiply(value, velocity);
             power.add(g, term);
         }
     }
 
-    fn velocity(&self, g: &mut Graph, place: NodeId) -> Option<NodeId> {
+    fn velocity(&self, g: &mut Graph, place: NodeId, motion: Motion) -> Option<NodeId> {
         let clock = self.clock;
-        tangent(g, &[place], |g, leaf| clock.total(g, leaf, false)).pop().flatten()
+        let direction = |g: &mut Graph, leaf| match (motion, leaf) {
+            (Motion::All, _) => clock.total(g, leaf, false),
+            (Motion::Coordinates, Leaf::Position(i)) => Some(g.leaf(Leaf::Velocity(i))),
+            (Motion::Coordinates, _) => None,
+            (Motion::Time, _) => clock.partial(g, leaf),
+        };
+        tangent(g, &[place], direction).pop().flatten()
+    }
+
+    /// Σ direction · velocity.
+    fn rate(&self, g: &mut Graph, directions: &[NodeId], places: &[NodeId], motion: Motion) -> Sum {
+        let mut rate = Sum::default();
+        for (direction, place) in directions.iter().zip(places) {
+            if let Some(velocity) = self.velocity(g, *place, motion) {
+                let term = g.multiply(*direction, velocity);
+                rate.add(g, term);
+            }
+        }
+        rate
     }
 
     /// −∂R/∂q̇; its power is −q̇·∂R/∂q̇.
@@ -202,10 +230,8 @@ impl Work<'_> {
                 g.select(zero, length, ratio, zero)
             })
             .collect();
-        let mut rate = Sum::default();
-        for (direction, d) in directions.iter().zip(&span) {
-            self.power(g, *direction, *d, &mut rate);
-        }
+        let [rate, own, moved] = [Motion::All, Motion::Coordinates, Motion::Time]
+            .map(|motion| self.rate(g, &directions, &span, motion));
         let mut active = Sum(line.actuator.map(of));
         if let (Some(damping), Some(rate)) = (line.damping, rate.0) {
             let viscous = g.multiply(of(damping), rate);
@@ -232,13 +258,14 @@ impl Work<'_> {
         self.acts(&ends(&line.from), &pulls);
         self.acts(&ends(&line.to), &forces);
         let spring = stiffness.map(|k| (k, self.stretch(g, length, line.length.map(of))));
-        self.element_power(g, spring, active, rate, line.stores)
+        self.element_power(g, spring, active, [own, moved], line.stores)
     }
 
     /// A torque against an angle.
     fn turn(&mut self, g: &mut Graph, turn: &Turn, of: &impl Fn(Id) -> NodeId) -> Option<NodeId> {
         let angle = of(turn.angle);
-        let rate = Sum(self.velocity(g, angle));
+        let [rate, own, moved] = [Motion::All, Motion::Coordinates, Motion::Time]
+            .map(|motion| Sum(self.velocity(g, angle, motion)));
         let mut active = Sum(turn.torque.map(of));
         if let (Some(damping), Some(rate)) = (turn.damping, rate.0) {
             let viscous = g.multiply(of(damping), rate);
@@ -254,22 +281,23 @@ impl Work<'_> {
             self.along(g, torque, angle);
             self.acts(&[angle], &[torque]);
         }
-        self.element_power(g, spring, active, rate, turn.stores)
+        self.element_power(g, spring, active, [own, moved], turn.stores)
     }
 
     fn stretch(&self, g: &mut Graph, value: NodeId, rest: Option<NodeId>) -> NodeId {
         rest.map_or(value, |rest| g.subtract(value, rest))
     }
 
-    /// A spring that stores adds to the potential energy and not to the power.
+    /// A spring that stores adds to the potential energy, and to the power only where the time moves its ends.
     fn element_power(
         &mut self,
         g: &mut Graph,
         spring: Option<(NodeId, NodeId)>,
         mut active: Sum,
-        rate: Sum,
+        [own, moved]: [Sum; 2],
         stores: bool,
     ) -> Option<NodeId> {
+        let mut supplied = None;
         if let Some((stiffness, stretch)) = spring {
             if stores {
                 let half = g.constant(0.5);
@@ -277,13 +305,16 @@ impl Work<'_> {
                 let square = g.multiply(stretch, stretch);
                 let energy = g.multiply(half, square);
                 self.potential.add(g, energy);
+                if let Some(moved) = moved.0 {
+                    let elastic = g.multiply(stiffness, stretch);
+                    supplied = Some(g.multiply(elastic, moved));
+                }
             } else {
                 let elastic = g.multiply(stiffness, stretch);
                 active.add(g, elastic);
             }
         }
-        let (active, rate) = (active.0?, rate.0?);
-        let power = g.multiply(active, rate);
-        Some(g.negate(power))
+        let spent = active.0.zip(own.0).map(|(active, own)| g.multiply(active, own));
+        Sum(supplied).minus(g, spent).0
     }
 }

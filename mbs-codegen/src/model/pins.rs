@@ -46,9 +46,11 @@ impl Elaborator<'_> {
             let message = format!("`{}` is no pin", pin.name.text);
             return Err(self.fault(pin.name.span, message, help));
         };
-        let Some(joint) = joints.get(round.unwrap_or(0)).cloned() else {
-            let message = format!("there are {} pins `{}`", joints.len(), pin.name.text);
-            return Err(self.fault(pin.name.span, message, "they are counted from 0"));
+        let round = round.unwrap_or(0);
+        let Some(joint) = joints.get(round).cloned() else {
+            let message = format!("there is no pin {round} of the name `{}`", pin.name.text);
+            let help = format!("they are counted from 0; the last is {}", joints.len().saturating_sub(1));
+            return Err(self.fault(pin.name.span, message, help));
         };
         let [first, second] = &joint.bodies;
         if wanted != *first && wanted != *second {
