@@ -148,10 +148,8 @@ where
     /// The mechanism in lane `lane` alone; of the last lane where there are fewer.
     pub fn stepper(&self, lane: usize) -> Option<Stepper<S::Lane, R, N, M>> {
         let mut stepper = self.steppers.get(lane).or(self.steppers.last()).cloned()?;
-        let of = |values: &[Lanes<R, L>; N]| values.map(|value| value.lane(lane));
-        let q = of(&self.q);
-        let margin = self.margin.lane(lane);
-        stepper.state.set((self.t.lane(lane), q, of(&self.qd), of(&self.qdd)), margin);
+        let (state, margin) = self.state(lane);
+        stepper.state.set(state, margin);
         let (margin_rate, statistics) = (self.notes.margin_rate.lane(lane), self.notes.statistics(lane));
         stepper.state.note(margin_rate, statistics, self.notes.passages(lane), self.notes.orientation(lane));
         Some(stepper)
@@ -252,15 +250,22 @@ where
     #[cold]
     #[inline(never)]
     fn alone(&mut self, lane: usize, t: R) -> Result<Statistics, Failure> {
-        let Some(mut stepper) = self.stepper(lane) else {
+        let (state, margin) = self.state(lane);
+        let Some(stepper) = self.steppers.get_mut(lane) else {
             return Err(Failure::NonFinite { name: "t", line: 0 });
         };
+        stepper.state.set(state, margin);
+        let (margin_rate, statistics) = (self.notes.margin_rate.lane(lane), self.notes.statistics(lane));
+        stepper.state.note(margin_rate, statistics, self.notes.passages(lane), self.notes.orientation(lane));
         let statistics = stepper.advance_to(t)?;
-        if let Some(slot) = self.steppers.get_mut(lane) {
-            *slot = stepper;
-        }
         self.gather(lane);
         Ok(statistics)
+    }
+
+    /// Time, position, velocity and acceleration of a lane, and its margin.
+    fn state(&self, lane: usize) -> ((R, [R; N], [R; N], [R; N]), R) {
+        let of = |values: &[Lanes<R, L>; N]| values.map(|value| value.lane(lane));
+        ((self.t.lane(lane), of(&self.q), of(&self.qd), of(&self.qdd)), self.margin.lane(lane))
     }
 
     /// Puts the state of a lane's stepper beside the others'.

@@ -100,6 +100,9 @@ pub enum Failure {
         margin: f64,
         /// The margin below which rates are refused.
         required: f64,
+        /// What sets the reference length, in parts of which the margin counts lengths. Where it is far longer than the
+        /// links, everything looks singular.
+        reference: Option<&'static Entry>,
         /// Time (s).
         time: f64,
     },
@@ -315,12 +318,20 @@ impl fmt::Display for Failure {
                 row.name,
                 row.unit
             ),
-            Failure::Singular { row, coordinate, margin, required, .. } => write!(
-                f,
-                "the mechanism is singular at t = {time} s: rows around `{}` (line {}) do not determine `{}` (line {}); \
-                 margin {margin:.3e}, required {required:.3e}",
-                row.name, row.line, coordinate.name, coordinate.line
-            ),
+            Failure::Singular { row, coordinate, margin, required, reference, .. } => {
+                write!(
+                    f,
+                    "the mechanism is singular at t = {time} s: rows around `{}` (line {}) do not determine `{}` (line \
+                     {}); margin {margin:.3e}, required {required:.3e}",
+                    row.name, row.line, coordinate.name, coordinate.line
+                )?;
+                match reference {
+                    Some(Entry { name, line, .. }) => {
+                        write!(f, ", lengths in parts of `{name}` (line {line})")
+                    }
+                    None => Ok(()),
+                }
+            }
             Failure::WrongBranch { branch, value, .. } => write!(
                 f,
                 "the assembly found at t = {time} s is not the declared one: branch `{}` (line {}) is {value:.3e}, not \
@@ -425,7 +436,7 @@ mod tests {
                 rows: Holding::of(&[ROW], [1.0].into_iter()),
                 time,
             },
-            Failure::Singular { row: ROW, coordinate: ROW, margin: 0.0, required, time },
+            Failure::Singular { row: ROW, coordinate: ROW, margin: 0.0, required, reference: None, time },
             Failure::WrongBranch { branch: ROW, value: -1.0, time },
             Failure::BeyondLimit { limit: ROW, value: 2.0, bound: 1.0, time },
             Failure::TooFar { coordinate: ROW, distance: 1.0, allowed: 0.5, time },

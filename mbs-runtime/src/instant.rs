@@ -69,13 +69,13 @@ impl<R: Real, const N: usize> Rates<R, N> {
         }
         let (mut factors, mut margin) = mechanism.factorize(parameters, &found.position);
         if !determines_rates(margin.value) {
-            return Some(singular::<S, R, N, M>(&margin, t));
+            return Some(singular(mechanism, &margin, t));
         }
         if margin.value < R::constant(REGULAR_ZONE) && found.open.is_none() {
             found.polish(mechanism, parameters, &factors);
             (factors, margin) = factorized(mechanism, parameters, &found.position);
             if !determines_rates(margin.value) {
-                return Some(singular::<S, R, N, M>(&margin, t));
+                return Some(singular(mechanism, &margin, t));
             }
         }
         self.margin = margin.value;

@@ -106,7 +106,7 @@ pub fn factorize<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize>
         let orientation = margin.orientation.as_ref().first().copied().unwrap_or(0);
         return Ok(RegularFactors { factors, margin: margin.value, orientation });
     }
-    Err(singular::<S, R, N, M>(&margin, t))
+    Err(singular(mechanism, &margin, t))
 }
 
 /// Velocities from Φ_q q̇ = −Φ_t.
@@ -221,6 +221,7 @@ fn not_converged<S: Mechanism<R, N, M>, R: Real, const N: usize, const M: usize>
 #[cold]
 #[inline(never)]
 pub(crate) fn singular<S: Mechanism<R, N, M>, R: Real, const N: usize, const M: usize>(
+    mechanism: &S,
     margin: &Margin<R>,
     t: R,
 ) -> Failure {
@@ -229,6 +230,7 @@ pub(crate) fn singular<S: Mechanism<R, N, M>, R: Real, const N: usize, const M: 
         coordinate: entry(S::COORDINATES, margin.coordinate(0)),
         margin: margin.value.to_f64(),
         required: least_margin::<R>().to_f64(),
+        reference: mechanism.reference(),
         time: t.to_f64(),
     }
 }

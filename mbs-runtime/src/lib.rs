@@ -63,8 +63,8 @@ pub use lanes::Lanes;
 pub use limit::{Limit, Warning};
 pub use linear::{Direct1, Direct2, Direct3, Lu, Orthogonal};
 pub use mechanism::{
-    Block, BlockSolver, Entry, Evaluation, Factorization, Kinematic, Margin, Mechanism, OutputValue, Signal,
-    Whole,
+    Block, BlockSolver, Entry, Evaluation, Factorization, Kinematic, Margin, Mechanism, OutputValue,
+    Reference, Signal, Whole,
 };
 pub use newton::Newton;
 pub use newton_raphson::{Iterate, newton_raphson, newton_raphson_watched};

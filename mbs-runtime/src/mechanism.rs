@@ -1,7 +1,7 @@
 //! What the macro emits: a mechanism as functions of its coordinates.
 
 use crate::diagnosis::index;
-use crate::{FunctionEntry, Limit, Outcome, Roots, Scalar};
+use crate::{FunctionEntry, Limit, Outcome, Real, Roots, Scalar};
 
 /// The scene of a text with all its effects, which every mechanism is in unless a type says otherwise.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -23,6 +23,20 @@ impl Entry {
     pub fn is_angle(&self) -> bool {
         self.unit == "rad"
     }
+}
+
+/// What sets the reference length, in parts of which lengths count: the largest of these, 1 m where there is none.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reference {
+    /// The largest length (m) among constants, numbers and guesses.
+    pub longest: Option<(&'static Entry, f64)>,
+    /// Indices of parameters that are lengths.
+    pub parameters: &'static [u16],
+}
+
+impl Reference {
+    /// That of a text in which nothing is measured by a length.
+    pub const NONE: Self = Reference { longest: None, parameters: &[] };
 }
 
 /// A measured or commanded quantity with its time derivatives: an `input … , rates`.
@@ -85,6 +99,8 @@ pub trait Mechanism<T: Scalar, const N: usize, const M: usize>: Clone {
     type Branches: AsRef<[T]> + Copy;
     /// One range a `limit` of the text.
     type Limits: AsRef<[Limit<T>]> + Copy;
+    /// The phase of each drive that prescribes a rate.
+    type Phases: Copy;
     /// One value a component of an `out` of the text.
     type Outputs: AsRef<[OutputValue<T>]> + Copy;
     /// The same design in one lane, for fallbacks and diagnosis.
@@ -108,6 +124,8 @@ pub trait Mechanism<T: Scalar, const N: usize, const M: usize>: Clone {
     /// them: [`variable`](Self::variable) finds the index
     /// that [`get`](Self::get) and [`set`](Self::set) take.
     const VARIABLES: &'static [Entry];
+    /// What sets the reference length; see [`reference`](Self::reference).
+    const REFERENCE: Reference = Reference::NONE;
     /// Branch conditions.
     const BRANCHES: &'static [Entry];
     /// Of each branch, whether it picks the assembly alone and may change its sign afterwards.
@@ -128,6 +146,10 @@ pub trait Mechanism<T: Scalar, const N: usize, const M: usize>: Clone {
     /// The design in lane `lane`.
     fn lane(&self, lane: usize) -> Self::Lane;
 
+    /// The phases of drives that prescribe a rate, in the order of [`PHASES`](Self::PHASES).
+    fn phases(&self) -> Self::Phases;
+    /// Puts them back to what they were.
+    fn set_phases(&mut self, phases: Self::Phases);
     /// Starts the phases of drives that prescribe a rate such that their rows hold at `q` (N) and `t` (s).
     #[inline]
     fn start_phases(&mut self, _q: &[T; N], _t: T) {}
@@ -193,6 +215,20 @@ pub trait Mechanism<T: Scalar, const N: usize, const M: usize>: Clone {
             phi_t: self.phi_t(parameters, &position),
             gamma: self.gamma(parameters, &position, qd),
         }
+    }
+
+    /// The constant, number, guess or parameter that sets the reference length at present, in the first lane.
+    fn reference(&self) -> Option<&'static Entry> {
+        let Reference { longest, parameters } = Self::REFERENCE;
+        let mut set = longest;
+        for index in parameters.iter().map(|index| usize::from(*index)) {
+            let Some((entry, value)) = Self::VARIABLES.get(index).zip(self.get(index)) else { continue };
+            let length = value.lane(0).to_f64().abs();
+            if set.is_none_or(|(_, longest)| longest < length) && length > 0.0 {
+                set = Some((entry, length));
+            }
+        }
+        set.map(|(entry, _)| entry)
     }
 
     /// Index of a parameter or input in [`VARIABLES`](Self::VARIABLES).

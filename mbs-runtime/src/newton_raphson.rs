@@ -70,7 +70,7 @@ pub fn newton_raphson_watched<S: Mechanism<R, N, M>, R: Real, const N: usize, co
         missed = Some((phi, tolerances));
         let (step, margin) = newton_step(&phi_q, &phi, &row_scales, &scales);
         if !crate::linear::is_regular(margin) {
-            return Err(singular::<S, R, N, M>(&phi_q, &scales, &row_scales, margin, t));
+            return Err(singular(mechanism, &phi_q, &scales, &row_scales, margin, t));
         }
         q.iter_mut().zip(step).for_each(|(coordinate, change)| *coordinate = *coordinate + change);
     }
@@ -121,6 +121,7 @@ fn not_converged<S: Mechanism<R, N, M>, R: Real, const N: usize, const M: usize>
 /// The failure of a dense Jacobian, with the row and the coordinate that the others explain best.
 #[cold]
 fn singular<S: Mechanism<R, N, M>, R: Real, const N: usize, const M: usize>(
+    mechanism: &S,
     phi_q: &[[R; N]; M],
     coordinate_scales: &[R; N],
     row_scales: &[R; M],
@@ -141,6 +142,7 @@ fn singular<S: Mechanism<R, N, M>, R: Real, const N: usize, const M: usize>(
         coordinate: entry(S::COORDINATES, index(coordinate)),
         margin: margin.to_f64(),
         required: R::EPSILON.sqrt().to_f64(),
+        reference: mechanism.reference(),
         time: t.to_f64(),
     }
 }

@@ -71,9 +71,13 @@ const MIDDLE_WEIGHT: f64 = 8.0 / 18.0;
 /// by h⁷/2016000 times the sixth derivative.
 /// Source: Abramowitz & Stegun 1964, 25.4.29.
 #[inline]
-pub fn integrals<T: Scalar, const K: usize>(from: T, to: T, rates: impl Fn(T, T) -> [Speed<T>; K]) -> [T; K] {
+pub fn integrals<T: Scalar, const K: usize>(
+    from: T,
+    to: T,
+    mut rates: impl FnMut(T, T) -> [Speed<T>; K],
+) -> [T; K] {
     let h = to - from;
-    let at = |place: f64| rates(from + T::constant(place) * h, T::constant(place - 1.0) * h);
+    let mut at = |place: f64| rates(from + T::constant(place) * h, T::constant(place - 1.0) * h);
     let (first, middle, last) = (at(OUTER_PLACE), at(0.5), at(1.0 - OUTER_PLACE));
     let mut sums = [T::constant(0.0); K];
     for (((sum, a), b), c) in sums.iter_mut().zip(first).zip(middle).zip(last) {

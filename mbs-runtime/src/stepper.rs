@@ -99,9 +99,9 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
         if S::PHASES.is_empty() {
             return step(self);
         }
-        let before = self.mechanism.clone();
+        let before = self.mechanism.phases();
         self.mechanism.advance_phases(self.state.t, t);
-        step(self).inspect_err(|_| self.mechanism = before)
+        step(self).inspect_err(|_| self.mechanism.set_phases(before))
     }
 
     #[inline(always)]

@@ -3,7 +3,14 @@
 //! The counts of the kernels follow their sources line by line, each from the code that it names. Where a count
 //! depends on the numbers, the longer way is taken. A test counts what steps really do.
 
+mod kernels;
+
 use crate::{Budget, Operations};
+use kernels::{
+    add, compare, difference, divide, factorize_block, finite, gauss_newton_step, largest, meets, multiply,
+    newton_step, normal_equations, outer_rounding, products, required, root, select, solve_block, trial,
+    within, worst,
+};
 
 /// What the emitted functions of a mechanism cost, one call each on top of the stages before it.
 #[derive(Clone, Copy, Debug)]
@@ -51,6 +58,8 @@ pub struct Work {
 pub struct BlockWork {
     /// Unknowns of Newton's method; 0 where the row gives its coordinate explicitly.
     pub unknowns: usize,
+    /// Rows; more than unknowns where some may follow from others.
+    pub rows: usize,
     /// Once, before its coordinates are known.
     pub before: Operations,
     /// Residual and Jacobian.
@@ -108,239 +117,51 @@ impl Budget {
 
     /// One block by the solver of `step`.
     const fn block(self, block: &BlockWork) -> Operations {
-        let k = block.unknowns as u64;
+        let (m, k) = (block.rows as u64, block.unknowns as u64);
         if k == 0 {
             return block.before;
         }
         let newton = if self.newton == 0 { 1 } else { self.newton as u64 };
-        let evaluation = block.evaluation.and(meets(k));
+        let evaluation = block.evaluation.and(meets(m, k));
         let recorded = select(3).and(compare(2));
+        let steps = if m > k { gauss_newton_step(m, k) } else { newton_step(k) };
         let first = block
             .before
             .and(recorded)
-            .and(evaluation.and(required(k)).times(newton))
+            .and(evaluation.and(required(m, k)).times(newton))
             // Once more where the solution, for what the position stage keeps of it, was not the last point.
             .and(block.evaluation.and(compare(2 * k)))
-            .and(newton_step(k).times(newton - 1))
+            .and(steps.times(newton - 1))
             // Iterations that ask whether the residual has stalled.
             .and(
-                outer_rounding(k)
-                    .and(within(k))
+                outer_rounding(m, k)
+                    .and(within(m))
                     .and(add(1))
                     .and(compare(1))
                     .times((newton - 1).saturating_sub(4)),
             )
-            .and(worst(k));
+            .and(worst(m));
         if self.fallback == 0 {
             return first;
         }
         let trials = self.fallback as u64;
         first
-            .and(evaluation.and(normal_equations(k)).times(trials.saturating_add(1)))
-            .and(trial(k).times(trials))
-            .and(finite(k))
-            .and(required(k))
-            .and(outer_rounding(k))
-            .and(within(k))
-            .and(worst(k))
+            .and(evaluation.and(normal_equations(m, k)).times(trials.saturating_add(1)))
+            .and(trial(m, k).times(trials))
+            .and(finite(m, k))
+            .and(required(m, k))
+            .and(outer_rounding(m, k))
+            .and(within(m))
+            .and(worst(m))
     }
 }
 
-const fn add(count: u64) -> Operations {
-    Operations { additions: count, ..Operations::NONE }
+// The instant: `kinematics`, `stepper`, `path`, `limit`, `phase`, `redundancy`.
+
+/// Whether some rows may follow from others.
+const fn has_surplus(work: &Work) -> bool {
+    work.rows > work.coordinates
 }
-
-const fn multiply(count: u64) -> Operations {
-    Operations { multiplications: count, ..Operations::NONE }
-}
-
-const fn divide(count: u64) -> Operations {
-    Operations { divisions: count, ..Operations::NONE }
-}
-
-const fn root(count: u64) -> Operations {
-    Operations { functions: count, ..Operations::NONE }
-}
-
-const fn select(count: u64) -> Operations {
-    Operations { selections: count, ..Operations::NONE }
-}
-
-const fn compare(count: u64) -> Operations {
-    Operations { comparisons: count, ..Operations::NONE }
-}
-
-/// `count` products and sums.
-const fn products(count: u64) -> Operations {
-    multiply(count).and(add(count))
-}
-
-/// Pairs i < j of k.
-const fn pairs(k: u64) -> u64 {
-    k * k.saturating_sub(1) / 2
-}
-
-/// Σ_{i<k} (k − 1 − i)², the updates of an elimination.
-const fn updates(k: u64) -> u64 {
-    k.saturating_sub(1) * k * (2 * k).saturating_sub(1) / 6
-}
-
-// Judging a point: `diagnosis`, `newton`, `budgeted`.
-
-/// `extent` of n coordinates.
-const fn largest(n: u64) -> Operations {
-    divide(n).and(multiply(n)).and(select(2 * n))
-}
-
-/// `largest_difference` of n components.
-const fn difference(n: u64) -> Operations {
-    largest(n).and(add(n))
-}
-
-const fn finite(k: u64) -> Operations {
-    compare(k + k * k)
-}
-
-const fn required(k: u64) -> Operations {
-    products(k * k).and(select(k * k)).and(multiply(3 * k)).and(add(k))
-}
-
-const fn outer_rounding(k: u64) -> Operations {
-    products(k * k).and(select(k * k)).and(multiply(3 * k))
-}
-
-const fn within(k: u64) -> Operations {
-    add(k).and(select(k)).and(compare(k))
-}
-
-/// `Worst::of_block`.
-const fn worst(k: u64) -> Operations {
-    divide(k).and(select(6 * k)).and(compare(3 * k))
-}
-
-/// `Best::meets`.
-const fn meets(k: u64) -> Operations {
-    finite(k).and(required(k)).and(worst(k)).and(compare(1)).and(outer_rounding(k)).and(within(k))
-}
-
-/// `capped`, where the step is too long.
-const fn capped(k: u64) -> Operations {
-    select(2 * k + 1).and(compare(1)).and(divide(1)).and(multiply(k))
-}
-
-/// An iteration of `newton` without its evaluation, where the Jacobian is singular.
-const fn newton_step(k: u64) -> Operations {
-    let ratio = divide(k).and(select(2 * k)).and(compare(1));
-    let fall = multiply(1).and(compare(2)).and(select(2)).and(add(1));
-    let singular = multiply(1).and(compare(1)).and(add(k)).and(minimum_norm(k));
-    finite(k)
-        .and(ratio)
-        .and(fall)
-        .and(factorize(k))
-        .and(solve(k))
-        .and(add(k))
-        .and(singular)
-        .and(capped(k))
-        .and(add(k))
-        .and(select(k))
-}
-
-// Levenberg–Marquardt: `safeguarded`.
-
-/// `NormalEquations::of`.
-const fn normal_equations(k: u64) -> Operations {
-    let row = divide(1).and(multiply(1)).and(multiply(2 * k)).and(products(1 + k + k * k));
-    row.times(k)
-}
-
-/// A trial without its evaluation and its normal equations.
-const fn trial(k: u64) -> Operations {
-    let stationary = products(k).and(add(k)).and(multiply(3)).and(compare(2));
-    let replaced = select(2 * (k + k * k) + k + 1);
-    let damping = multiply(2).and(select(2));
-    required(k)
-        .and(within(k))
-        .and(stationary)
-        .and(damped_step(k))
-        .and(capped(k))
-        .and(add(k))
-        .and(select(k))
-        .and(compare(1))
-        .and(finite(k))
-        .and(replaced)
-        .and(damping)
-}
-
-/// `NormalEquations::step`.
-const fn damped_step(k: u64) -> Operations {
-    let damping = add(k).and(divide(1)).and(root(1)).and(select(1)).and(multiply(2)).and(add(k));
-    let pivots = compare(2 * k).and(select(2 * k));
-    let elimination = divide(pairs(k)).and(products(updates(k) + pairs(k)));
-    let back = products(pairs(k)).and(divide(k)).and(multiply(k));
-    damping.and(add(k)).and(pivots).and(elimination).and(back)
-}
-
-// Linear systems: `linear`.
-
-const fn in_metric(k: u64) -> Operations {
-    divide(k).and(multiply(2 * k * k))
-}
-
-/// `mean_square` and `reciprocal_and_margin`.
-const fn margin(k: u64) -> Operations {
-    let square = if k > 1 { products(k * k).and(multiply(1)) } else { Operations::NONE };
-    square.and(divide(2)).and(select(7)).and(compare(5))
-}
-
-/// `Direct1`, `Direct2`, `Direct3`, `Lu`: the factors with their margin.
-const fn factorize(k: u64) -> Operations {
-    match k {
-        1 => in_metric(1).and(margin(1)),
-        2 => in_metric(2).and(margin(2)).and(multiply(8)).and(add(4)),
-        3 => in_metric(3)
-            .and(margin(3))
-            .and(multiply(4 * 6 + 2 * 3 + 1 + 9))
-            .and(add(4 * 3 + 2 * 2))
-            .and(root(1)),
-        _ => {
-            let swaps = select(2 * pairs(k)).and(compare(pairs(k))).and(select(pairs(k) * 2 * k));
-            let pivot = select(6).and(compare(3)).and(divide(2)).times(k);
-            let elimination = multiply(pairs(k)).and(products(updates(k)));
-            in_metric(k).and(swaps).and(pivot).and(elimination).and(divide(1 + k)).and(select(3))
-        }
-    }
-}
-
-/// `Factorization::solve`.
-const fn solve(k: u64) -> Operations {
-    match k {
-        1 => multiply(1),
-        2 | 3 => multiply(k * k).and(add(k * (k - 1))),
-        _ => multiply(3 * k).and(select(2 * pairs(k))).and(products(2 * pairs(k))),
-    }
-}
-
-/// `orthogonal::minimum_norm` of full rank, which is the longest.
-const fn minimum_norm(k: u64) -> Operations {
-    let mut total =
-        in_metric(k).and(divide(k)).and(multiply(k)).and(products(3 * k * k)).and(multiply(k * k));
-    let mut column = 0;
-    while column < k {
-        let rest = k - column;
-        let reflection = products(2 * rest).and(root(1)).and(compare(2)).and(add(1)).and(divide(1));
-        let applied = products(2 * k).and(multiply(k)).times(rest);
-        let pivot = products(2 * rest).and(compare(1)).times(rest - 1);
-        let length = products(rest).and(root(1)).and(multiply(1)).and(compare(2));
-        // Columns and the right-hand side, then the rows.
-        let right = products(2 * k).and(multiply(k));
-        let rows = reflection.and(applied).and(products(column)).and(divide(1));
-        total = total.and(pivot).and(length).and(reflection).and(applied).and(right).and(rows);
-        column += 1;
-    }
-    total
-}
-
-// The instant: `kinematics`, `stepper`, `path`, `limit`, `phase`.
 
 /// `Kinematic::factorize`: Φ_q, each block with its margin and the sign of its determinant.
 const fn factors(work: &Work) -> Operations {
@@ -350,7 +171,8 @@ const fn factors(work: &Work) -> Operations {
         let k = work.blocks[index].unknowns as u64;
         if k > 0 {
             let signs = if k > 3 { k } else { 1 };
-            total = total.and(factorize(k)).and(compare(1 + signs)).and(select(1));
+            let factors = factorize_block(work.blocks[index].rows as u64, k);
+            total = total.and(factors).and(compare(1 + signs)).and(select(1));
         }
         index += 1;
     }
@@ -364,7 +186,7 @@ const fn linear(work: &Work) -> Operations {
     while index < work.blocks.len() {
         let k = work.blocks[index].unknowns as u64;
         if k > 0 {
-            total = total.and(solve(k));
+            total = total.and(solve_block(work.blocks[index].rows as u64, k));
         }
         index += 1;
     }
@@ -425,7 +247,9 @@ const fn state(work: &Work) -> Operations {
     let margins = add(2).and(divide(1)).and(compare(2));
     // What a report of a failure looks up.
     let reported = multiply(1).and(root(1)).and(compare(n + m));
+    let surplus = if has_surplus(work) { contradicted(work) } else { Operations::NONE };
     placed
+        .and(surplus)
         .and(resolved)
         .and(polished.or(repaired))
         .and(branched)
@@ -433,6 +257,19 @@ const fn state(work: &Work) -> Operations {
         .and(moved)
         .and(margins)
         .and(reported)
+}
+
+/// `disagreement` of velocities and accelerations, and `holding` where the position is at fault.
+const fn contradicted(work: &Work) -> Operations {
+    let (n, m) = (work.coordinates as u64, work.rows as u64);
+    let scales = work.row_scales.and(work.coordinate_scales);
+    let open = work.phi_q.and(products(n * m)).and(add(m)).and(divide(m)).and(select(m));
+    let size = divide(n + m).and(select(2 * (n + m)));
+    let allowed = divide(1).and(multiply(3)).and(root(1)).and(compare(1 + m));
+    let rates = scales.and(open).and(size).and(allowed).times(2);
+    let right = work.phi_t.and(work.gamma).and(add(m)).and(multiply(1));
+    let held = work.position.and(work.phi).and(work.row_scales).and(divide(m)).and(select(m));
+    work.coordinate_scales.and(difference(n)).and(right).and(rates).and(held)
 }
 
 /// `Mechanism::advance_phases`: rates at four times, inputs moved to three of them, sums compensated.

@@ -7,6 +7,7 @@ use crate::model::{Model, Output};
 use crate::program::{Method, Operations, Program};
 use crate::structure::Structure;
 use crate::structure::dyad::Dyad;
+use crate::structure::mobility::{Mobility, mobility};
 use crate::symbolic::{NodeId, Stage};
 
 /// Lines that follow the text's own doc comment.
@@ -18,6 +19,9 @@ pub fn structure(
 ) -> Vec<String> {
     let mut lines = vec![String::new()];
     shapes(model, &mut lines);
+    freedom(model, equations, &mut lines);
+    reference(model, &mut lines);
+    lines.push(String::new());
     functions(model, equations, &mut lines);
     sparsity(model, equations, &mut lines);
     masses(model, equations, &mut lines);
@@ -76,10 +80,56 @@ fn shapes(model: &Model, lines: &mut Vec<String>) {
         list("state", dynamics.states.iter().map(state).collect(), lines);
         let load = |load: &Output| format!("`{}` ({})", load.name, load.unit);
         list("load", dynamics.loads.iter().map(load).collect(), lines);
-        let freedom = model.coordinates.len().saturating_sub(model.rows.len());
-        lines.push(format!("{freedom} {} of freedom.", if freedom == 1 { "degree" } else { "degrees" }));
     }
-    lines.push(String::new());
+}
+
+/// Degrees of freedom, where a text need not be square.
+fn freedom(model: &Model, equations: &Equations, lines: &mut Vec<String>) {
+    if model.dynamics.is_none() {
+        return;
+    }
+    let mobility = mobility(model, equations);
+    let Mobility { coordinates, constraints, drives, rank, bodies, points, apart, .. } = mobility;
+    let freedom = mobility.freedom();
+    let of_rows = match model.rows.len() {
+        0 => "no row takes any".into(),
+        rows => format!("the structural rank of {rows} {} is {rank}", plural("row", rows)),
+    };
+    let degrees = if freedom == 1 { "degree" } else { "degrees" };
+    lines.push(format!("{freedom} {degrees} of freedom: {of_rows}."));
+    let driven = match drives {
+        0 => String::new(),
+        _ => format!(", the {drives} {} of drives left out", plural("row", drives)),
+    };
+    let mut count =
+        format!("Grübler's count: {coordinates} − {constraints} = {}{driven}", mobility.grubler());
+    if let Some(taken) = mobility.taken() {
+        let of_bodies =
+            (bodies > 0).then(|| format!("{bodies} {}", if bodies == 1 { "body" } else { "bodies" }));
+        let of_points = (points > 0).then(|| format!("{points} {}", plural("point mass", points)));
+        let apart_from_joints: Vec<String> = [of_bodies, of_points].into_iter().flatten().collect();
+        count += &format!(
+            "; {} would have {apart} freedoms apart, joints and guides take {taken}",
+            apart_from_joints.join(" and ")
+        );
+    }
+    lines.push(count + ".");
+}
+
+/// What lengths are measured by.
+fn reference(model: &Model, lines: &mut Vec<String>) {
+    if !model.is_measured_by_length() {
+        return;
+    }
+    let longest = model.longest.iter().map(|longest| format!("`{}` ({} m)", longest.name, longest.length));
+    let parameters = model.lengths().filter_map(|index| model.variables.get(index));
+    let parameters = parameters.map(|parameter| format!("`{}`", parameter.name));
+    let candidates: Vec<String> = longest.chain(parameters).collect();
+    lines.push(match candidates.as_slice() {
+        [] => "Reference length: 1 m, for the text has no length.".into(),
+        [one] => format!("Reference length: {one}."),
+        _ => format!("Reference length: the largest of {}.", candidates.join(", ")),
+    });
 }
 
 /// What each declared function must give.
@@ -99,7 +149,11 @@ fn functions(model: &Model, equations: &Equations, lines: &mut Vec<String>) {
 }
 
 fn plural(word: &str, count: usize) -> String {
-    if count == 1 { word.into() } else { format!("{word}s") }
+    match word {
+        _ if count == 1 => word.into(),
+        _ if word.ends_with('s') => format!("{word}es"),
+        _ => format!("{word}s"),
+    }
 }
 
 /// Widest matrix that is drawn.

@@ -11,7 +11,7 @@ use super::scope::{field_name, is_keyword, number, subscripts, variable};
 use super::{Part, scenes};
 use crate::diagnostics::Diagnostics;
 use crate::model::scenes::{Scene, Scenes, alias};
-use crate::model::{Field, Function, Model, Role};
+use crate::model::{Field, Function, Longest, Model, Role};
 use crate::syntax::Text;
 use crate::syntax::ast::Name;
 
@@ -82,10 +82,11 @@ fn constructors(text: &Text, scenes: &Scenes, generics: &Generics) -> TokenStrea
     let idents: Vec<Ident> = shared.functions.iter().map(|function| ident(&function.name)).collect();
     let given = idents.iter().zip(generics.functions()).map(|(ident, kind)| quote! { #ident: #kind });
     let functions = idents.iter().map(|_| quote! { #default::default() });
+    let docs = new_docs(text, scenes);
     quote! {
         #allow
         impl<#free> #name<#arguments> {
-            /// The mechanism with these functions, everything else at its default.
+            #(#[doc = #docs])*
             #[must_use]
             #[allow(non_snake_case, clippy::too_many_arguments, reason = "the text names the functions")]
             #visibility fn new(#(#given),*) -> Self {
@@ -99,6 +100,27 @@ fn constructors(text: &Text, scenes: &Scenes, generics: &Generics) -> TokenStrea
             }
         }
     }
+}
+
+/// What `new` says: with scenes, which of them it makes.
+fn new_docs(text: &Text, scenes: &Scenes) -> Vec<String> {
+    let mut docs = vec![" The mechanism with these functions, everything else at its default.".to_owned()];
+    let first = scenes.scenes.iter().find_map(Scene::label).filter(|_| scenes.are_declared());
+    let functions = &scenes.shared.functions;
+    if let Some(first) = first {
+        let given =
+            functions.iter().map(|function| function.name.text.as_str()).collect::<Vec<_>>().join(", ");
+        let (name, alias) = (&text.header.name, alias(&text.header, first));
+        let placeholders = vec!["_"; functions.len()].join(", ");
+        docs.push(String::new());
+        docs.push(format!(
+            " No argument tells the scene: write `{alias}::new({given})`, or where the scene is a type"
+        ));
+        docs.push(format!(
+            " parameter `{name}::<{placeholders}, f64, S>::new({given})`, not `{name}::new({given})`."
+        ));
+    }
+    docs
 }
 
 /// What stands for type parameters without a field.
@@ -147,7 +169,7 @@ fn implementations(text: &Text, scenes: &Scenes, part: &Part<'_>) -> TokenStream
         .as_ref()
         .map(|bodies| dynamics::implementation(&name, model, (bodies, &callable), runtime));
     let (n, branches, outputs) = (model.coordinates.len(), model.branches.len(), model.outputs.len());
-    let limits = model.limits.len();
+    let (limits, phase_count) = (model.limits.len(), model.phases.len());
     let tables = tables(text, scenes, scene, bodies);
     let access = access(text, scenes, model);
     let Bodies {
@@ -200,6 +222,7 @@ fn implementations(text: &Text, scenes: &Scenes, part: &Part<'_>) -> TokenStream
                 type Entries = [T; #nonzeros];
                 type Branches = [T; #branches];
                 type Limits = [#runtime::Limit<T>; #limits];
+                type Phases = [#runtime::Phase<T>; #phase_count];
                 type Outputs = [#runtime::OutputValue<T>; #outputs];
                 type Lane = #lane;
                 #tables
@@ -372,6 +395,7 @@ fn tables(text: &Text, scenes: &Scenes, scene: &Scene, bodies: &Bodies) -> Token
     let marked = model.rows.iter().any(|row| row.redundant).then(|| {
         quote! { const REDUNDANT: &'static [::core::primitive::bool] = &[#(#marked),*]; }
     });
+    let reference = reference(model, runtime);
     let variables = model.variables.iter().map(|v| entry(&v.name, &v.unit, v.span));
     let branches = model.branches.iter().map(|b| entry(&b.name, &b.dimension.to_string(), b.span));
     let at_start = model.branches.iter().map(|branch| branch.at_start);
@@ -391,6 +415,7 @@ fn tables(text: &Text, scenes: &Scenes, scene: &Scene, bodies: &Bodies) -> Token
         const COORDINATES: &'static [#runtime::Entry] = &[#(#coordinates),*];
         const ROWS: &'static [#runtime::Entry] = &[#(#rows),*];
         #marked
+        #reference
         const VARIABLES: &'static [#runtime::Entry] = &[#(#variables),*];
         const BRANCHES: &'static [#runtime::Entry] = &[#(#branches),*];
         const BRANCHES_AT_START: &'static [::core::primitive::bool] = &[#(#at_start),*];
@@ -399,6 +424,29 @@ fn tables(text: &Text, scenes: &Scenes, scene: &Scene, bodies: &Bodies) -> Token
         const OUTPUTS: &'static [#runtime::Entry] = &[#(#outputs),*];
         #functions
     }
+}
+
+/// What sets the reference length, where something is measured by it.
+fn reference(model: &Model, runtime: &TokenStream) -> Option<TokenStream> {
+    let parameters: Vec<u16> = model.lengths().filter_map(|index| u16::try_from(index).ok()).collect();
+    if !model.is_measured_by_length() || (model.longest.is_none() && parameters.is_empty()) {
+        return None;
+    }
+    let longest = match &model.longest {
+        None => quote! { ::core::option::Option::None },
+        Some(Longest { length, name, span }) => {
+            let line = quote_spanned!(*span=> ::core::line!());
+            quote! {
+                ::core::option::Option::Some((
+                    &#runtime::Entry { name: #name, unit: "m", line: #line }, #length
+                ))
+            }
+        }
+    };
+    Some(quote! {
+        const REFERENCE: #runtime::Reference =
+            #runtime::Reference { longest: #longest, parameters: &[#(#parameters),*] };
+    })
 }
 
 /// A declared function in the table.
@@ -423,7 +471,7 @@ fn function_entry(function: &Function, order: u8, runtime: &TokenStream) -> Toke
     }
 }
 
-/// `get`, `set` and `lane`: a scene sees its own fields, and keeps the others.
+/// `get`, `set`, `phases` and `lane`: a scene sees its own fields, and keeps the others.
 fn access(text: &Text, scenes: &Scenes, model: &Model) -> TokenStream {
     let (name, runtime) = (&text.header.name, &text.header.runtime);
     let places: Vec<TokenStream> =
@@ -440,6 +488,12 @@ fn access(text: &Text, scenes: &Scenes, model: &Model) -> TokenStream {
         quote! { #ident: ::core::clone::Clone::clone(&self.#ident), }
     });
     let marker = markers(scenes).value;
+    let phases: Vec<Ident> = model.phase_fields().map(|field| ident(&field.name)).collect();
+    let set_phases = match phases.as_slice() {
+        [] => quote! { _: [#runtime::Phase<T>; 0] },
+        _ => quote! { __phases: Self::Phases },
+    };
+    let put = (!phases.is_empty()).then(|| quote! { [#(self.#phases),*] = __phases; });
     let set = match places.as_slice() {
         [] => quote! { (_, _) => false, },
         _ => quote! { #((#indices, __value) => { #places = __value; true })* (_, _) => false, },
@@ -457,6 +511,12 @@ fn access(text: &Text, scenes: &Scenes, model: &Model) -> TokenStream {
         fn set(&mut self, __index: ::core::primitive::usize, __value: T) -> ::core::primitive::bool {
             match (__index, __value) { #set }
         }
+        #[inline]
+        fn phases(&self) -> Self::Phases {
+            [#(self.#phases),*]
+        }
+        #[inline]
+        fn set_phases(&mut self, #set_phases) { #put }
         #[inline]
         fn lane(&self, #lane_name: ::core::primitive::usize) -> Self::Lane {
             #name { #(#lanes)* #(#functions)* #marker }

@@ -6,7 +6,7 @@ use std::fmt::Write;
 use super::code::lets;
 use super::scope::{Scope, place};
 use crate::equations::Equations;
-use crate::model::{Model, Role, VariableKind};
+use crate::model::{Model, VariableKind};
 use crate::program::Program;
 use crate::symbolic::{Leaf, Node, NodeId};
 
@@ -38,9 +38,8 @@ fn advance(equations: &Equations, scope: &Scope<'_>) -> String {
         scope.graph.reachable([speed]).into_iter().any(varying)
     };
     let varying: Vec<bool> = equations.phases.iter().map(|phase| varies(phase.speed)).collect();
-    let mut text = String::from(
-        "#[inline]\nfn advance_phases(&mut self, __from: T, __to: T) {\nlet __speeds = self.__speeds(__to);\n",
-    );
+    let mut text = String::new();
+    let mut given = String::new();
     if varying.contains(&true) {
         text += "let __integrals = __mbs::phase::integrals(__from, __to, |__t, __ahead| {\n";
         let places = |id: &NodeId| match scope.graph.node(*id) {
@@ -52,11 +51,15 @@ fn advance(equations: &Equations, scope: &Scope<'_>) -> String {
             // The time alone varies.
             text += "self.__speeds(__t)\n});\n";
         } else {
-            text += "let mut __moved = ::core::clone::Clone::clone(self);\n";
-            for place in places {
-                let _ = writeln!(text, "__moved.{place} = __moved.{place}.moved(__ahead);");
+            let places: Vec<String> = places.into_iter().map(|place| format!("self.{place}")).collect();
+            for (index, place) in places.iter().enumerate() {
+                let _ = writeln!(text, "{place} = __given[{index}].moved(__ahead);");
             }
-            text += "__moved.__speeds(__t)\n});\n";
+            let fields = places.join(", ");
+            text += "self.__speeds(__t)\n});\n";
+            let _ = writeln!(text, "[{fields}] = __given;");
+            // Moved in place and put back: a copy of the mechanism would carry its tables along.
+            given = format!("let __given = [{fields}];\n");
         }
     }
     for (index, (field, varies)) in fields(scope.model).zip(varying).enumerate() {
@@ -66,7 +69,10 @@ fn advance(equations: &Equations, scope: &Scope<'_>) -> String {
         };
         let _ = writeln!(text, "{field} = {field}.advanced({increment}, __speeds[{index}]);");
     }
-    text + "}\n"
+    format!(
+        "#[inline]\nfn advance_phases(&mut self, __from: T, __to: T) {{\n\
+         let __speeds = self.__speeds(__to);\n{given}{text}}}\n"
+    )
 }
 
 fn speeds(equations: &Equations, program: &Program, scope: &Scope<'_>) -> String {
@@ -90,8 +96,7 @@ fn speeds(equations: &Equations, program: &Program, scope: &Scope<'_>) -> String
 
 /// Places of the phases in `self`.
 fn fields(model: &Model) -> impl Iterator<Item = String> + '_ {
-    let phases = model.fields.iter().filter(|field| field.role == Role::Phase);
-    phases.map(|field| format!("self.{}", place(model, field.first)))
+    model.phase_fields().map(|field| format!("self.{}", place(model, field.first)))
 }
 
 /// Values and rates of inputs that move within a step, as far as speeds use them.

@@ -5,6 +5,7 @@ use crate::model::Model;
 use crate::program::{Method, Operations, Program, Section};
 use crate::structure::Structure;
 use crate::structure::dyad::Dyad;
+use crate::structure::mobility::{Mobility, mobility};
 use crate::symbolic::Stage;
 
 /// Sparsity, matching and block-triangular order of a mechanism.
@@ -16,6 +17,8 @@ pub struct StructureReport {
     pub coordinates: Vec<CoordinateReport>,
     /// Rows in the order of Φ: M.
     pub rows: Vec<RowReport>,
+    /// Degrees of freedom as they are counted.
+    pub mobility: Mobility,
     /// Indices of the coordinates that the text names as independent; none where it does not say.
     pub independent: Vec<usize>,
     /// Diagonal blocks in the order in which they are solved.
@@ -111,6 +114,7 @@ pub fn report(
             .map(|c| CoordinateReport { name: c.name.clone(), unit: c.unit.clone() })
             .collect(),
         rows: rows.collect(),
+        mobility: mobility(model, equations),
         independent: model.independent.iter().map(|chosen| chosen.coordinate).collect(),
         blocks: blocks.collect(),
         operations: operations(program),

@@ -26,12 +26,13 @@ pub fn work(model: &Model, program: &Program, entries: usize, runtime: &TokenStr
             Method::Newton(system) => (block.coordinates.len(), system.section.operations),
         };
         let (before, evaluation) = (of(block.before.operations), of(evaluation));
-        quote! { #runtime::BlockWork { unknowns: #unknowns, before: #before, evaluation: #evaluation } }
+        let rows = block.rows.len();
+        quote! { #runtime::BlockWork { unknowns: #unknowns, rows: #rows, before: #before, evaluation: #evaluation } }
     });
     // What the position stage lacks behind the blocks.
     let rest = of(program.rest.operations);
     let rest = quote! {
-        #runtime::BlockWork { unknowns: 0, before: #rest, evaluation: #runtime::Operations::NONE }
+        #runtime::BlockWork { unknowns: 0, rows: 0, before: #rest, evaluation: #runtime::Operations::NONE }
     };
     quote! {
         #runtime::Work {

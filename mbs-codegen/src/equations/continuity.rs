@@ -7,7 +7,7 @@ use proc_macro2::Span;
 use super::{Dynamics, Equations, Row, Sparse};
 use crate::diagnostics::Diagnostics;
 use crate::model::Model;
-use crate::symbolic::{Node, NodeId};
+use crate::symbolic::{Leaf, Node, NodeId};
 
 /// The highest derivative of a function that something needs.
 #[derive(Clone, Debug)]
@@ -20,6 +20,8 @@ pub struct Demand {
     pub by: String,
     /// Where the text calls the function for it.
     pub span: Span,
+    /// What the function is called with.
+    argument: NodeId,
 }
 
 /// Before: the equations of a model. After: a demand that goes beyond the declared continuity is reported where the
@@ -33,16 +35,23 @@ pub fn check(model: &Model, equations: &Equations, diagnostics: &mut Diagnostics
             worst.insert(place, demand);
         }
     }
-    for Demand { function, order, by, span } in worst.into_values() {
+    for Demand { function, order, by, span, argument: place } in worst.into_values() {
         let Some(function) = model.functions.get(function).filter(|f| f.continuity < order) else { continue };
         let (name, declared) = (&function.name.text, function.continuity);
         let (unit, argument) = (&function.unit, &function.argument_unit);
+        let mut help = format!(
+            "supply a smoother function and declare it, `function {name}: {unit}({argument}), C{order};`"
+        );
+        // Before a coordinate is known a caller can compute it, and knows which side of a jump holds.
+        if !contains_coordinate(equations, place) {
+            help += &format!(
+                "; or take its values and rates from outside, where they may jump: `input {name}: {unit}, rates;`"
+            );
+        }
         diagnostics.report(
             span,
             format!("{by} needs {} of `{name}`, which is declared C{declared}", derivative(order)),
-            format!(
-                "supply a smoother function and declare it, `function {name}: {unit}({argument}), C{order};`"
-            ),
+            help,
         );
     }
 }
@@ -57,6 +66,12 @@ pub fn highest(model: &Model, equations: &Equations) -> Vec<Demand> {
         }
     }
     highest.into_values().collect()
+}
+
+fn contains_coordinate(equations: &Equations, value: NodeId) -> bool {
+    let graph = &equations.graph;
+    let mut reached = graph.reachable([value]).into_iter();
+    reached.any(|id| matches!(graph.node(id), Node::Leaf(Leaf::Position(_) | Leaf::Velocity(_))))
 }
 
 /// "the value", "the second derivative".
@@ -170,7 +185,7 @@ fn calls(equations: &Equations, origins: &Origins, by: &str, roots: &[NodeId]) -
         Node::Call { function, order, argument } => {
             let written = origins.get(&(function, argument))?;
             let (_, span) = written.iter().take_while(|(below, _)| *below <= order).last()?;
-            Some(Demand { function: function as usize, order, by: by.to_owned(), span: *span })
+            Some(Demand { function: function as usize, order, by: by.to_owned(), span: *span, argument })
         }
         _ => None,
     });

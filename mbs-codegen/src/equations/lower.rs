@@ -182,13 +182,11 @@ fn derivatives(model: &Model, graph: &Graph, clock: &Clock, value: NodeId) -> u8
 
 /// The largest length among constants, numbers, guesses and parameters; 1 m where there is none.
 fn reference_length(model: &Model, g: &mut Graph) -> NodeId {
-    let mut longest = g.constant(model.longest);
-    for (index, variable) in model.variables.iter().enumerate() {
-        if variable.kind == VariableKind::Parameter && variable.dimension == Dimension::METRE {
-            let parameter = g.leaf(Leaf::Parameter(index as u32));
-            let length = g.unary(Unary::Abs, parameter);
-            longest = g.binary(Binary::Max, longest, length);
-        }
+    let mut longest = g.constant(model.longest.as_ref().map_or(0.0, |longest| longest.length));
+    for index in model.lengths() {
+        let parameter = g.leaf(Leaf::Parameter(index as u32));
+        let length = g.unary(Unary::Abs, parameter);
+        longest = g.binary(Binary::Max, longest, length);
     }
     let (zero, one) = (g.constant(0.0), g.constant(1.0));
     g.select(zero, longest, longest, one)

@@ -1,5 +1,7 @@
 //! Declarations: constants, parameters, inputs, coordinates and `let`s.
 
+use proc_macro2::Span;
+
 use super::dynamics::State;
 use super::elaborate::{Elaborator, Fault, LONGEST, Quantity, Reach, Scalar, Value};
 use super::expression::{Id, Node};
@@ -7,7 +9,7 @@ use super::initialiser::{filling, initialiser, named, numbers};
 use super::names::Names;
 use super::order::order;
 use super::units::Dimension;
-use super::{Coordinate, CoordinateField, Field, Model, Role, Variable, VariableKind};
+use super::{Coordinate, CoordinateField, Field, Longest, Model, Role, Variable, VariableKind};
 use crate::diagnostics::Diagnostics;
 use crate::syntax::ast::{Declares, Expression, Name, Statement, StatementKind, Type, Unit};
 
@@ -114,7 +116,7 @@ impl Declarations<'_> {
             diagnostics: self.diagnostics,
             reach: Reach::Position,
             groups: &[],
-            longest: self.model.longest,
+            longest: self.model.longest.take(),
         };
         let result = run(&mut work);
         self.model.longest = work.longest;
@@ -149,7 +151,7 @@ impl Declarations<'_> {
             });
             match value {
                 Ok(value) => {
-                    self.note_lengths(&value);
+                    self.note_lengths(&value, &name.text, name.span);
                     self.names.define(&name.text, value);
                 }
                 Err(Fault) => self.names.give_up(&name.text),
@@ -177,12 +179,12 @@ impl Declarations<'_> {
         self.names.declared_at(&name.text).is_some_and(|span| same_place(span, name.span))
     }
 
-    fn note_lengths(&mut self, value: &Value) {
+    fn note_lengths(&mut self, value: &Value, name: &str, span: Span) {
         for item in &value.items {
             if item.quantity == Quantity::Known(Dimension::METRE)
                 && let Node::Number(length) = self.model.expressions.node(item.id)
             {
-                self.model.longest = self.model.longest.max(length.abs());
+                Longest::note(&mut self.model.longest, length, || name.to_owned(), span);
             }
         }
     }
@@ -359,7 +361,7 @@ impl Declarations<'_> {
         });
         let guesses: Vec<Option<Id>> = match guesses {
             Some(Ok(value)) => {
-                self.note_lengths(&value);
+                self.note_lengths(&value, &format!("guess of {}", name.text), name.span);
                 value.items.iter().map(|item| Some(item.id)).collect()
             }
             Some(Err(Fault)) => vec![Some(self.model.expressions.push(Node::Number(0.0))); size],

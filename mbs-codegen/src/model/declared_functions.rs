@@ -36,6 +36,14 @@ impl Declarations<'_> {
             let period = self.elaborate(|work| {
                 let value = work.value(expression)?;
                 let scalar = work.scalar(&value, "a period", value.span)?;
+                if let (Quantity::Known(found), false, Some(taken)) = (scalar.quantity, scalar.bare, taken)
+                    && found != taken
+                {
+                    let (function, unit) = (&name.text, &argument.text);
+                    let message =
+                        format!("the period of `{function}` has the unit `{found}`, its argument `{unit}`");
+                    return Err(work.fault(value.span, message, "write the period in the argument's unit"));
+                }
                 let value = initialiser(work, Value::scalar(scalar, value.span), taken.ok_or(Fault)?)?;
                 let period = numbers(work, expression, &value, "a period")?.pop().ok_or(Fault)?;
                 if period > 0.0 {

@@ -2,7 +2,6 @@
 
 use proc_macro2::Span;
 
-use super::Reference;
 use super::declared_functions;
 use super::evaluate;
 use super::expression::{Binary, Expressions, Id, Node, Unary};
@@ -11,6 +10,7 @@ use super::names::{Names, Symbol};
 use super::operands::Operands;
 use super::references::{REFERRING, is_reference};
 use super::units::{Dimension, with_suffix};
+use super::{Longest, Reference};
 use crate::diagnostics::{Diagnostics, nearest};
 use crate::syntax::ast::{Expression, Name, Operation, Operator, Target};
 
@@ -108,8 +108,8 @@ pub struct Elaborator<'a> {
     pub reach: Reach,
     /// What `margin` and `ratio` can refer to.
     pub groups: &'a [Reference],
-    /// Largest length written as a number with a suffix so far (m).
-    pub longest: f64,
+    /// Largest length of the text so far.
+    pub longest: Option<Longest>,
 }
 
 fn list(names: &[&str]) -> String {
@@ -289,7 +289,7 @@ impl Elaborator<'_> {
             return Err(self.fault(span, "this number is too large in SI units", "choose another unit"));
         }
         if dimension == Dimension::METRE {
-            self.longest = self.longest.max(value.abs());
+            Longest::note(&mut self.longest, value, || format!("{} m", value.abs()), span);
         }
         let id = self.expressions.push(Node::Number(value));
         let scalar = Scalar { id, quantity: Quantity::Known(dimension), bare: false, span };

@@ -79,6 +79,7 @@ pub fn call(
         "der" => return work.rate(arguments, "der", 1, span),
         "der2" => return work.rate(arguments, "der2", 2, span),
         "rate" => {
+            let [_] = work.arguments("rate", arguments, span)?;
             return Err(work.fault(
                 span,
                 "`rate` is not all of the left side of a drive",

@@ -62,11 +62,52 @@ pub struct Model {
     pub outputs: Vec<Output>,
     /// Bodies, forces and first-order states, where the text has any.
     pub dynamics: Option<Dynamics>,
-    /// Largest length among constants, numbers and guesses (m); 0 where there is none.
-    pub longest: f64,
+    /// Largest length among constants, numbers and guesses.
+    pub longest: Option<Longest>,
+}
+
+/// A length of the text, and where it stands.
+#[derive(Clone, Debug)]
+pub struct Longest {
+    /// Its magnitude (m).
+    pub length: f64,
+    /// The constant, `guess of x`, or the number itself.
+    pub name: String,
+    /// Where it is written.
+    pub span: Span,
+}
+
+impl Longest {
+    /// The larger of `known` and a length; of equal ones the later, which names what an earlier number is for.
+    fn note(known: &mut Option<Self>, length: f64, name: impl FnOnce() -> String, span: Span) {
+        let length = length.abs();
+        if known.as_ref().is_none_or(|known| known.length <= length) && length > 0.0 {
+            *known = Some(Longest { length, name: name(), span });
+        }
+    }
 }
 
 impl Model {
+    /// Fields that keep the phases, in the order of these.
+    pub fn phase_fields(&self) -> impl Iterator<Item = &Field> {
+        self.fields.iter().filter(|field| field.role == Role::Phase)
+    }
+
+    /// Indices of the parameters that are lengths.
+    pub fn lengths(&self) -> impl Iterator<Item = usize> {
+        let is_length = |variable: &Variable| {
+            variable.kind == VariableKind::Parameter && variable.dimension == Dimension::METRE
+        };
+        let variables = self.variables.iter().enumerate();
+        variables.filter(move |(_, variable)| is_length(variable)).map(|(index, _)| index)
+    }
+
+    /// Whether some coordinate or row is measured by the reference length.
+    pub fn is_measured_by_length(&self) -> bool {
+        let rows = self.rows.iter().map(|row| row.dimension);
+        self.coordinates.iter().map(|c| c.dimension).chain(rows).any(|dimension| dimension.metres() != 0.0)
+    }
+
     /// Whether a value is made of numbers and parameters alone.
     pub fn is_constant(&self, value: Id) -> bool {
         self.made_of(value, |node| match node {

@@ -100,7 +100,7 @@ impl Resolver<'_> {
             diagnostics: self.diagnostics,
             reach,
             groups: &self.model.references,
-            longest: self.model.longest,
+            longest: self.model.longest.take(),
         };
         let result = run(&mut work);
         self.model.longest = work.longest;

@@ -1,6 +1,6 @@
 //! Which statements belong to which scene.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::names::{UNUSABLE, report_double};
 use super::scenes::{WHOLE, alias};
@@ -75,7 +75,8 @@ const SCENE_PARAMETER: &str = "S";
 
 /// The text divided into its effects.
 struct Effects<'a> {
-    declared: BTreeMap<&'a str, (usize, &'a Name)>,
+    /// Of each name the effects that have it, a second one only where that is reported.
+    declared: BTreeMap<&'a str, Vec<usize>>,
     /// Each statement with the index of its effect.
     parts: Vec<(Option<usize>, &'a Statement)>,
     /// Of each effect its name, and whether a scene selects it.
@@ -88,11 +89,13 @@ impl<'a> Effects<'a> {
         for statement in statements {
             match &statement.kind {
                 StatementKind::Effect { name } => {
-                    inside = Some(self.selected.len());
-                    match self.declared.get(name.text.as_str()) {
-                        Some((_, first)) => report_double(name, first.span, diagnostics),
-                        None => drop(self.declared.insert(&name.text, (self.selected.len(), name))),
+                    let index = self.selected.len();
+                    inside = Some(index);
+                    let known = self.declared.entry(&name.text).or_default();
+                    if let Some((first, _)) = known.first().and_then(|first| self.selected.get(*first)) {
+                        report_double(name, first.span, diagnostics);
                     }
+                    known.push(index);
                     self.selected.push((name, false));
                 }
                 StatementKind::EndEffect => inside = None,
@@ -102,11 +105,11 @@ impl<'a> Effects<'a> {
         }
     }
 
-    /// Indices of the effects that a scene names.
+    /// Indices of the effects that a scene names; of equal names all, so that nothing that they declare is missing.
     fn choose(&mut self, scene: &Name, effects: &[Name], diagnostics: &mut Diagnostics) -> Vec<usize> {
         let mut chosen = Vec::new();
         for name in effects {
-            let Some((index, _)) = self.declared.get(name.text.as_str()) else {
+            let Some(indices) = self.declared.get(name.text.as_str()) else {
                 let help = match nearest(&name.text, self.declared.keys().copied()) {
                     Some(meant) => format!("did you mean `{meant}`?"),
                     None => format!("declare it: `effect {} {{ … }}`", name.text),
@@ -114,14 +117,16 @@ impl<'a> Effects<'a> {
                 diagnostics.report(name.span, format!("unknown effect `{}`", name.text), help);
                 continue;
             };
-            if chosen.contains(index) {
+            if indices.iter().any(|index| chosen.contains(index)) {
                 let message = format!("scene `{}` selects `{}` twice", scene.text, name.text);
                 diagnostics.report(name.span, message, "remove one of them");
                 continue;
             }
-            chosen.push(*index);
-            if let Some((_, selected)) = self.selected.get_mut(*index) {
-                *selected = true;
+            for index in indices {
+                chosen.push(*index);
+                if let Some((_, selected)) = self.selected.get_mut(*index) {
+                    *selected = true;
+                }
             }
         }
         chosen
@@ -129,14 +134,27 @@ impl<'a> Effects<'a> {
 
     fn selection(&self, name: Option<Name>, chosen: &[usize]) -> Selection {
         let belongs = |effect: Option<usize>| effect.is_none_or(|effect| chosen.contains(&effect));
-        let statements = self.parts.iter().filter(|(effect, _)| belongs(*effect));
-        let effects = chosen.iter().filter_map(|index| self.selected.get(*index));
+        let mut declared = BTreeSet::new();
+        let statements =
+            self.parts.iter().filter(|(effect, _)| belongs(*effect)).filter(|(effect, statement)| {
+                let is_new = declares(&statement.kind).is_none_or(|name| declared.insert(name));
+                is_new || !effect.is_some_and(|effect| self.is_repeated(effect))
+            });
+        let effects = chosen.iter().filter(|index| !self.is_repeated(**index));
+        let effects = effects.filter_map(|index| self.selected.get(*index));
         Selection {
             name,
             docs: Vec::new(),
             effects: effects.map(|(name, _)| name.text.clone()).collect(),
             statements: statements.map(|(_, statement)| (*statement).clone()).collect(),
         }
+    }
+
+    /// Whether an earlier effect has the same name, which is reported.
+    fn is_repeated(&self, effect: usize) -> bool {
+        let name = self.selected.get(effect).map(|(name, _)| name.text.as_str());
+        let first = name.and_then(|name| self.declared.get(name)).and_then(|indices| indices.first());
+        first.is_some_and(|first| *first != effect)
     }
 
     /// What no scene selects would be reached by the whole text alone.
@@ -149,6 +167,36 @@ impl<'a> Effects<'a> {
             );
         }
     }
+}
+
+/// The name that a statement declares, beside what kind of names it must differ from.
+fn declares(kind: &StatementKind) -> Option<(&'static str, &str)> {
+    let (kind, name) = match kind {
+        StatementKind::Const { name, .. }
+        | StatementKind::Param { name, .. }
+        | StatementKind::Input { name, .. }
+        | StatementKind::Coord { name, .. }
+        | StatementKind::Let { name, .. }
+        | StatementKind::Function { name, .. }
+        | StatementKind::State { name, .. }
+        | StatementKind::Faulty { name, .. } => ("value", name),
+        StatementKind::Constraint { name, .. } | StatementKind::Drive { name, .. } => ("rows", name),
+        StatementKind::Branch { name, .. } => ("branch", name),
+        StatementKind::Limit { name, .. } => ("limit", name),
+        StatementKind::Out { name, .. } => ("output", name),
+        StatementKind::Element { name, .. }
+        | StatementKind::Load { name, .. }
+        | StatementKind::Energy { name, .. } => ("load", name),
+        StatementKind::Independent { .. }
+        | StatementKind::Rate { .. }
+        | StatementKind::Start { .. }
+        | StatementKind::For(_)
+        | StatementKind::EndFor
+        | StatementKind::Effect { .. }
+        | StatementKind::EndEffect
+        | StatementKind::Scene { .. } => return None,
+    };
+    Some((kind, &name.text))
 }
 
 /// Whether the types of the scene can have their names; a clash is reported.

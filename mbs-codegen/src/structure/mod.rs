@@ -4,6 +4,7 @@ pub mod dyad;
 mod freedom;
 mod independent;
 mod matching;
+pub mod mobility;
 mod partition;
 mod polynomial;
 mod surplus;

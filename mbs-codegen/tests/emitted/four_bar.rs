@@ -4,6 +4,7 @@
 /// 5 coordinates: `x2` (m), `y2` (m), `phi1` (rad), `phi2` (rad), `phi3` (rad).
 /// 5 rows: `coupler_point.0` (m), `coupler_point.1` (m), `closure.0` (m), `closure.1` (m), `crank` (rad).
 /// 1 output: `transmission_angle` (rad).
+/// Reference length: `L4` (0.3 m).
 ///
 /// `Φ_q` has 13 of 25 entries (1: a number, p: parameters alone, x: varies):
 /// ```text
@@ -113,6 +114,7 @@ const _: () = {
         type Entries = [T; 13usize];
         type Branches = [T; 1usize];
         type Limits = [::mbs_runtime::Limit<T>; 0usize];
+        type Phases = [::mbs_runtime::Phase<T>; 0usize];
         type Outputs = [::mbs_runtime::OutputValue<T>; 1usize];
         type Lane = FourBar<T::Real>;
         const NAME: &'static ::core::primitive::str = "FourBar";
@@ -171,6 +173,17 @@ const _: () = {
                 line: ::core::line!(),
             },
         ];
+        const REFERENCE: ::mbs_runtime::Reference = ::mbs_runtime::Reference {
+            longest: ::core::option::Option::Some((
+                &::mbs_runtime::Entry {
+                    name: "L4",
+                    unit: "m",
+                    line: ::core::line!(),
+                },
+                0.3f64,
+            )),
+            parameters: &[],
+        };
         const VARIABLES: &'static [::mbs_runtime::Entry] = &[
             ::mbs_runtime::Entry {
                 name: "omega",
@@ -231,6 +244,12 @@ const _: () = {
                 (_, _) => false,
             }
         }
+        #[inline]
+        fn phases(&self) -> Self::Phases {
+            []
+        }
+        #[inline]
+        fn set_phases(&mut self, _: [::mbs_runtime::Phase<T>; 0]) {}
         #[inline]
         fn lane(&self, __lane: ::core::primitive::usize) -> Self::Lane {
             FourBar {
@@ -606,6 +625,7 @@ const _: () = {
             blocks: &[
                 ::mbs_runtime::BlockWork {
                     unknowns: 0usize,
+                    rows: 1usize,
                     before: ::mbs_runtime::Operations {
                         multiplications: 1,
                         ..::mbs_runtime::Operations::NONE
@@ -614,6 +634,7 @@ const _: () = {
                 },
                 ::mbs_runtime::BlockWork {
                     unknowns: 2usize,
+                    rows: 2usize,
                     before: ::mbs_runtime::Operations {
                         multiplications: 2,
                         sine_cosines: 1,
@@ -628,6 +649,7 @@ const _: () = {
                 },
                 ::mbs_runtime::BlockWork {
                     unknowns: 0usize,
+                    rows: 1usize,
                     before: ::mbs_runtime::Operations {
                         additions: 2,
                         multiplications: 1,
@@ -638,6 +660,7 @@ const _: () = {
                 },
                 ::mbs_runtime::BlockWork {
                     unknowns: 0usize,
+                    rows: 1usize,
                     before: ::mbs_runtime::Operations {
                         additions: 1,
                         multiplications: 1,
@@ -647,6 +670,7 @@ const _: () = {
                 },
                 ::mbs_runtime::BlockWork {
                     unknowns: 0,
+                    rows: 0,
                     before: ::mbs_runtime::Operations {
                         additions: 1,
                         ..::mbs_runtime::Operations::NONE

@@ -1,6 +1,6 @@
 //! Rods between points in natural coordinates, written by hand: what the macro would emit, without the macro.
 
-use mbs_runtime::{Dynamic, Energy, Entry, Limit, Mechanism, Motion, OutputValue};
+use mbs_runtime::{Dynamic, Energy, Entry, Limit, Mechanism, Motion, OutputValue, Phase};
 
 /// One end of a rod.
 #[derive(Clone, Copy, Debug)]
@@ -107,6 +107,7 @@ impl<const N: usize, const M: usize> Mechanism<f64, N, M> for Linkage<N, M> {
     type Entries = Rows<N, M>;
     type Branches = [f64; 0];
     type Limits = [Limit<f64>; 0];
+    type Phases = [Phase<f64>; 0];
     type Outputs = [OutputValue<f64>; 0];
     type Lane = Self;
 
@@ -126,6 +127,10 @@ impl<const N: usize, const M: usize> Mechanism<f64, N, M> for Linkage<N, M> {
         self.push = if index == 0 { value } else { self.push };
         index == 0
     }
+    fn phases(&self) -> [Phase<f64>; 0] {
+        []
+    }
+    fn set_phases(&mut self, _: [Phase<f64>; 0]) {}
     fn lane(&self, _: usize) -> Self {
         *self
     }

@@ -2,7 +2,7 @@
 
 use mbs_runtime::{
     Block, BlockSolver, Direct2, Entry, Factorization, Kinematic, Limit, Margin, Mechanism, Outcome,
-    OutputValue, Scalar, failure::first_failure,
+    OutputValue, Phase, Scalar, failure::first_failure,
 };
 
 /// q = [x2 y2 φ1 φ2 φ3]; `B` is 1 with the declared branch `side · sin(φ3 − φ2) > 0`, 0 without.
@@ -82,6 +82,7 @@ impl<T: Scalar, const B: usize> Mechanism<T, 5, 5> for FourBar<T, B> {
     type Entries = [T; 13];
     type Branches = [T; B];
     type Limits = [Limit<T>; 0];
+    type Phases = [Phase<T>; 0];
     type Outputs = [OutputValue<T>; 1];
     type Lane = FourBar<T::Real, B>;
 
@@ -149,6 +150,10 @@ impl<T: Scalar, const B: usize> Mechanism<T, 5, 5> for FourBar<T, B> {
         *place = value;
         true
     }
+    fn phases(&self) -> [Phase<T>; 0] {
+        []
+    }
+    fn set_phases(&mut self, _: [Phase<T>; 0]) {}
     fn lane(&self, lane: usize) -> Self::Lane {
         FourBar {
             lengths: self.lengths.map(|length| length.lane(lane)),

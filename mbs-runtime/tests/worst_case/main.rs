@@ -61,6 +61,39 @@ mechanism! {
     }
 }
 
+mechanism! {
+    /// A plate on three cranks, one more than it needs, which may be too long; a slide doubled, and one on its own.
+    pub mechanism Plate;
+    param longer: m = 0;
+    param far: rad = 0.1;
+    coord a: rad = 0.5;
+    coord b: rad = 0.5;
+    coord c: rad = 0.5;
+    coord psi: rad = 0;
+    coord x: m = 0.1;
+    constraint first redundant { 0.06m*unit(a) + 0.16m*unit(psi) == [0.16m, 0] + (0.06m + longer)*unit(b); }
+    constraint second redundant {
+        0.06m*unit(a) + 0.08m*unit(psi) + 0.07m*unit(psi + TAU/4) == [0.08m, 0.07m] + 0.06m*unit(c);
+    }
+    constraint slide redundant { x^2 + 0.1m*x == 0.02m^2*(2 + cos(c)); 2*x^2 + 0.2m*x == 2*0.02m^2*(2 + cos(c)); }
+    drive motor: a == far + 0.4 + sin(3*t/1s);
+    branch level: cos(psi) > 0;
+}
+
+mechanism! {
+    /// Three rows for two angles that agree about nothing where `k` is not 1.
+    pub mechanism Torn;
+    param k: 1 = 1;
+    param far: rad = 0.1;
+    coord x: rad = 0;
+    coord y: rad = 0;
+    constraint all redundant {
+        x + y + 0.2*sin(x + y) == far + 0.1*sin(t/1s);
+        x - y + 0.2*sin(x - y) == 0.2;
+        k*(x + y + 0.2*sin(x + y)) + (k - 1)*sin(40*x) == k*far + k*0.1*sin(t/1s);
+    }
+}
+
 /// Budgets from the least to more than any block needs.
 const BUDGETS: [Budget; 7] = [
     Budget { newton: 0, fallback: 0 },
@@ -84,9 +117,9 @@ struct Ends {
 }
 
 /// Counts `steps` steps of each budget; `disturb` changes the mechanism before a step.
-fn run<S, const N: usize>(mechanism: S, steps: u32, disturb: impl Fn(u32, &mut S)) -> Ends
+fn run<S, const N: usize, const M: usize>(mechanism: S, steps: u32, disturb: impl Fn(u32, &mut S)) -> Ends
 where
-    S: Kinematic<Counted, N> + WorstCase + Copy,
+    S: Kinematic<Counted, N, M> + WorstCase + Copy,
 {
     let mut ends = Ends::default();
     for budget in BUDGETS {
@@ -149,6 +182,23 @@ fn no_step_costs_more_than_its_worst_case() {
     assert!(stuck.done > 100 && stuck.refused > 100 && stuck.singular > 0, "{stuck:?}");
 }
 
+#[test]
+fn no_step_of_blocks_with_surplus_rows_costs_more_than_its_worst_case() {
+    let plate = run(Plate::<Counted>::default(), 300, |k, plate| {
+        // Fits, all but fits, does not fit; then a crank that jumps.
+        plate.longer = Counted([0.0, 0.0, 1e-9, 0.02][(k / 75) as usize % 4]);
+        plate.far = Counted(if k % 20 == 0 { 40.0 } else { 0.1 });
+    });
+    println!("{plate:?}");
+    assert!(plate.done > 200 && plate.fallbacks > 0 && plate.refused > 50, "{plate:?}");
+    let torn = run(Torn::<Counted>::default(), 300, |k, torn| {
+        torn.k = Counted([1.0, 2.0, 1.0, 0.0][(k / 75) as usize % 4]);
+        torn.far = Counted(if k % 30 == 0 { 1e3 } else { 0.1 });
+    });
+    println!("{torn:?}");
+    assert!(torn.done > 200 && torn.fallbacks > 0 && torn.refused > 50, "{torn:?}");
+}
+
 /// What a step costs from a regular state where the rows agree about nothing and lie far away.
 fn hopeless(budget: Budget) -> Operations {
     let stuck = Stuck::<Counted>::default();
@@ -176,6 +226,22 @@ fn the_worst_case_is_no_more_than_twice_what_a_step_can_cost() {
         );
     }
     assert!(without.within(with) && without != with);
+}
+
+#[test]
+fn the_worst_case_of_surplus_rows_is_no_more_than_three_times_what_a_step_can_cost() {
+    for budget in [Budget::DEFAULT, Budget { fallback: 0, ..Budget::DEFAULT }] {
+        let most = budget.worst_case::<Torn<Counted>>();
+        let torn = Torn::<Counted>::default();
+        let guess = torn.guess(&torn.parameters());
+        let mut stepper = Stepper::assemble(torn, guess, Counted(0.0)).unwrap();
+        stepper.change(|torn| (torn.k, torn.far) = (Counted(2.0), Counted(1e3)));
+        let (step, cost) = counted(|| stepper.step(Counted(0.1), budget));
+        println!("{budget:?}\n  cost {cost}\n  most {most}");
+        assert!(matches!(step, Step::Refused(_)), "{step:?}");
+        // A lost column makes a solution longer, which this one does not lose.
+        assert!(cost.within(most) && 3 * cost.total() >= most.total(), "{} of {}", cost.total(), most.total());
+    }
 }
 
 #[test]

@@ -1,6 +1,8 @@
 //! A mechanism as if its text declared no branch.
 
-use mbs_runtime::{Block, BlockSolver, Entry, Factorization, Kinematic, Margin, Mechanism, Outcome};
+use mbs_runtime::{
+    Block, BlockSolver, Entry, Factorization, FunctionEntry, Kinematic, Margin, Mechanism, Outcome, Roots,
+};
 
 /// The mechanism `S` without its branch conditions: any assembly is right.
 #[derive(Clone, Copy, Debug)]
@@ -12,12 +14,14 @@ impl<S: Kinematic<f64, N, M>, const N: usize, const M: usize> Mechanism<f64, N, 
     type Entries = S::Entries;
     type Branches = [f64; 0];
     type Limits = S::Limits;
+    type Phases = S::Phases;
     type Outputs = S::Outputs;
     type Lane = S::Lane;
 
     const NAME: &'static str = S::NAME;
     const SOURCE: &'static str = S::SOURCE;
     const COORDINATES: &'static [Entry] = S::COORDINATES;
+    const SCENE: &'static str = S::SCENE;
     const ROWS: &'static [Entry] = S::ROWS;
     const REDUNDANT: &'static [bool] = S::REDUNDANT;
     const SPARSITY: &'static [(u16, u16)] = S::SPARSITY;
@@ -26,6 +30,7 @@ impl<S: Kinematic<f64, N, M>, const N: usize, const M: usize> Mechanism<f64, N, 
     const LIMITS: &'static [Entry] = S::LIMITS;
     const PHASES: &'static [Entry] = S::PHASES;
     const OUTPUTS: &'static [Entry] = S::OUTPUTS;
+    const FUNCTIONS: &'static [FunctionEntry] = S::FUNCTIONS;
 
     fn get(&self, index: usize) -> Option<f64> {
         self.0.get(index)
@@ -35,6 +40,12 @@ impl<S: Kinematic<f64, N, M>, const N: usize, const M: usize> Mechanism<f64, N, 
     }
     fn lane(&self, lane: usize) -> S::Lane {
         self.0.lane(lane)
+    }
+    fn phases(&self) -> S::Phases {
+        self.0.phases()
+    }
+    fn set_phases(&mut self, phases: S::Phases) {
+        self.0.set_phases(phases);
     }
     fn start_phases(&mut self, q: &[f64; N], t: f64) {
         self.0.start_phases(q, t);
@@ -126,6 +137,17 @@ impl<B: BlockSolver<f64>> BlockSolver<f64> for Blind<'_, B> {
         evaluate: impl FnMut(&[f64; K]) -> ([f64; K], [[f64; K]; K]),
     ) -> ([f64; K], [Outcome; 1]) {
         self.0.solve::<K, F>(block, x, evaluate)
+    }
+
+    fn solve_closed<const K: usize, F: Factorization<f64, K>>(
+        &mut self,
+        block: &Block<f64, K>,
+        x: [f64; K],
+        evaluate: impl FnMut(&[f64; K]) -> ([f64; K], [[f64; K]; K]),
+        _holds: impl FnMut(&[f64; K]) -> bool,
+        roots: impl FnOnce(&[f64; K]) -> Roots<f64, K>,
+    ) -> ([f64; K], [Outcome; 1]) {
+        self.0.solve_closed::<K, F>(block, x, evaluate, |_| true, roots)
     }
 
     fn solve_redundant<const K: usize, const M: usize>(
