@@ -32,7 +32,7 @@ pub struct Assembled<R, const N: usize> {
 ///
 /// # Errors
 /// [`Failure::NonFinite`] for a guess, parameter, input or time that is no number, or a row that is none from
-/// every start; [`Failure::WrongBranch`] where positions were found but none in the declared assembly;
+/// every start; [`Failure::Unresolved`] for a guess too large to tell positions apart by; [`Failure::WrongBranch`] where positions were found but none in the declared assembly;
 /// [`Failure::NotAssemblable`] with the least residual found and the rows that hold it, or [`Failure::Inconsistent`]
 /// where these are rows of a block that has more of them than coordinates.
 pub fn assemble<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize>(
@@ -49,6 +49,10 @@ pub fn assemble<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize>(
     mechanism.start_phases(&guess, t);
     let mechanism = &mechanism;
     let parameters = mechanism.parameters();
+    let scales = mechanism.coordinate_scales(&parameters);
+    if let Some(failure) = coordinate_failure::<S, R, N, M>(&guess, &scales, t) {
+        return Err(failure);
+    }
     let mut search = Search { least: f64::INFINITY, open: None, wrong: None, hopeless: false };
     for start in 0..=OTHER_STARTS {
         let from = displaced::<S, R, N, M>(mechanism, &parameters, &guess, start);

@@ -50,6 +50,9 @@ struct Notes<R, const L: usize> {
     orientation: [u64; L],
 }
 
+/// Time, position, velocity and acceleration of a lane.
+type LaneState<R, const N: usize> = (R, [R; N], [R; N], [R; N]);
+
 /// What a step in all lanes came to.
 struct Trial<R: Real, const L: usize, const N: usize> {
     q: [Lanes<R, L>; N],
@@ -71,6 +74,10 @@ where
     ///
     /// # Errors
     /// The first lane that cannot be assembled, with its failure; see [`Stepper::assemble`].
+    #[allow(
+        clippy::result_large_err,
+        reason = "once, before the motion, and there is no heap to keep a failure on"
+    )]
     pub fn assemble(mechanism: S, guess: &[[R; N]; L], t: [R; L]) -> Result<Self, (usize, Failure)> {
         let assembled: [Result<_, Failure>; L] = from_fn(|lane| {
             let start = guess.get(lane).copied().unwrap_or([R::constant(0.0); N]);
@@ -263,7 +270,7 @@ where
     }
 
     /// Time, position, velocity and acceleration of a lane, and its margin.
-    fn state(&self, lane: usize) -> ((R, [R; N], [R; N], [R; N]), R) {
+    fn state(&self, lane: usize) -> (LaneState<R, N>, R) {
         let of = |values: &[Lanes<R, L>; N]| values.map(|value| value.lane(lane));
         ((self.t.lane(lane), of(&self.q), of(&self.qd), of(&self.qdd)), self.margin.lane(lane))
     }

@@ -32,7 +32,8 @@ impl<F, R: Copy> RegularFactors<F, R> {
 ///
 /// # Errors
 /// [`Failure::NotConverged`] with the worst row, [`Failure::Inconsistent`] with the rows that contradict each other,
-/// [`Failure::NonFinite`] with the row that became NaN.
+/// [`Failure::NonFinite`] with the row that became NaN, or a start that is none; [`Failure::Unresolved`] for a start too
+/// large to tell positions apart by.
 #[inline(always)]
 pub fn solve_position<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize>(
     mechanism: &S,
@@ -40,7 +41,13 @@ pub fn solve_position<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: u
     start: &[R; N],
     t: R,
 ) -> Result<([R; N], Statistics), Failure> {
-    solve_with_position(mechanism, parameters, start, t).map(|(q, _, statistics)| (q, statistics))
+    let scales = mechanism.coordinate_scales(parameters);
+    match coordinate_failure::<S, R, N, M>(start, &scales, t) {
+        Some(failure) => Err(failure),
+        None => {
+            solve_with_position(mechanism, parameters, start, t).map(|(q, _, statistics)| (q, statistics))
+        }
+    }
 }
 
 /// As [`solve_position`], with the stage-1 values of the solution.

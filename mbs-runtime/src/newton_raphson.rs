@@ -1,7 +1,7 @@
 //! The lecture's method: full Newton–Raphson on all of Φ from the previous position.
 
 use crate::diagnosis::required;
-use crate::kinematics::{entry, non_finite, time_failure, variable_failure};
+use crate::kinematics::{coordinate_failure, entry, non_finite, time_failure, variable_failure};
 use crate::linear::{Lu, Orthogonal, orthogonal::least_independent_column};
 use crate::newton::{all_finite, largest_ratio};
 use crate::{Factorization, Failure, Mechanism, Real};
@@ -53,6 +53,9 @@ pub fn newton_raphson_watched<S: Mechanism<R, N, M>, R: Real, const N: usize, co
     let parameters = mechanism.parameters();
     let scales = mechanism.coordinate_scales(&parameters);
     let row_scales = mechanism.row_scales(&parameters);
+    if let Some(failure) = coordinate_failure::<S, R, N, M>(&q, &scales, t) {
+        return Err(failure);
+    }
     let mut missed = None;
     for iteration in 0..=ITERATIONS {
         let position = mechanism.position(&parameters, &q, t);

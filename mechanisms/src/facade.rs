@@ -37,6 +37,8 @@ pub trait AnyEquations {
     fn set(&mut self, index: usize, value: f64) -> bool;
     /// Reference metric of the coordinates: 1 for angles, the reference length for lengths: N.
     fn coordinate_scales(&self) -> Vec<f64>;
+    /// Reference metric of the rows: the reference length to the power that the row has of metres: M.
+    fn row_scales(&self) -> Vec<f64>;
     /// All functions of one state, which need not satisfy the constraints.
     ///
     /// # Panics
@@ -184,6 +186,9 @@ impl<S: Mechanism<f64, N, M>, const N: usize, const M: usize> AnyEquations for F
     }
     fn coordinate_scales(&self) -> Vec<f64> {
         self.0.coordinate_scales(&self.0.parameters()).to_vec()
+    }
+    fn row_scales(&self) -> Vec<f64> {
+        self.0.row_scales(&self.0.parameters()).to_vec()
     }
 
     fn evaluate(&self, state: &State) -> Functions {

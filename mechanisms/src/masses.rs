@@ -158,6 +158,9 @@ impl<S: Dynamic<f64, N, M>, const N: usize, const M: usize> AnyEquations for Mas
     fn coordinate_scales(&self) -> Vec<f64> {
         self.kinematics.coordinate_scales()
     }
+    fn row_scales(&self) -> Vec<f64> {
+        self.kinematics.row_scales()
+    }
     fn evaluate(&self, state: &State) -> Functions {
         self.kinematics.evaluate(state)
     }

@@ -3,6 +3,8 @@
 use mbs_runtime::{Energy, Entry, OutputValue};
 use serde::Serialize;
 
+use crate::facade::State;
+
 /// A motion as plain columns, one value an instant.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Motion {
@@ -102,6 +104,14 @@ pub struct OutputCurve {
 }
 
 impl Motion {
+    /// The last instant's state, which is at `t` (s).
+    pub fn last(&self, t: f64) -> State {
+        let last = |pick: fn(&CoordinateCurve) -> &Vec<f64>| {
+            self.coordinates.iter().filter_map(|curve| pick(curve).last().copied()).collect()
+        };
+        State { q: last(|curve| &curve.q), qd: last(|curve| &curve.qd), qdd: last(|curve| &curve.qdd), t }
+    }
+
     /// At most `count` instants spread evenly over the motion, first and last included.
     pub fn thinned(&self, count: usize) -> Motion {
         let kept = spread(self.time.len(), count);

@@ -123,6 +123,27 @@ pub enum Mismatch {
         /// The name asked for.
         name: String,
     },
+    /// The text has several scenes, each a mechanism of its own.
+    Scenes {
+        /// The name asked for.
+        name: String,
+        /// Their names.
+        scenes: Vec<&'static str>,
+    },
+    /// The mechanism is written in one set of coordinates.
+    Alone {
+        /// The mechanism.
+        name: &'static str,
+    },
+    /// No variant of the mechanism in these coordinates.
+    Coordinates {
+        /// The mechanism.
+        name: &'static str,
+        /// The kind asked for.
+        kind: String,
+        /// Those that there are.
+        known: Vec<&'static str>,
+    },
     /// The mechanism is free to move, and the command needs rows that fix it.
     Free {
         /// The name asked for.
@@ -159,8 +180,37 @@ pub fn find(name: &str) -> Result<&'static Card, Mismatch> {
     let found = ALL.iter().copied().find(|card| card.name == name);
     let is_free = FREE.iter().any(|card| card.name == name);
     let name = || name.to_string();
-    found.ok_or_else(|| {
-        if is_free { Mismatch::Free { name: name() } } else { Mismatch::Mechanism { name: name() } }
+    found.ok_or_else(|| if is_free { Mismatch::Free { name: name() } } else { unknown(&name()) })
+}
+
+/// Why there is no mechanism of this name: it is a text of several scenes, or nothing.
+fn unknown(name: &str) -> Mismatch {
+    let all = ALL.iter().map(|card| card.name).chain(FREE.iter().map(|card| card.name));
+    let scenes: Vec<&str> =
+        all.filter(|known| known.split_once(':').is_some_and(|(text, _)| text == name)).collect();
+    let name = name.to_string();
+    if scenes.is_empty() { Mismatch::Mechanism { name } } else { Mismatch::Scenes { name, scenes } }
+}
+
+/// Kinds of coordinates that a linkage may be written in; the name of such a mechanism ends with the kind.
+pub const KINDS: [&str; 4] = ["relative", "reference_point", "natural", "mixed"];
+
+/// The mechanism called `name` in coordinates of this kind; `relative` is `name` itself where it has variants of other
+/// kinds.
+///
+/// # Errors
+/// [`Mismatch::Alone`] where there are no variants, [`Mismatch::Coordinates`] where there is none of this kind.
+pub fn variant(name: &str, kind: &str) -> Result<&'static Card, Mismatch> {
+    let card = find(name)?;
+    let of = |kind: &str| find(&format!("{}_{kind}", card.name)).ok();
+    let others: Vec<&'static str> = KINDS.into_iter().filter(|kind| of(kind).is_some()).collect();
+    if others.is_empty() {
+        return Err(Mismatch::Alone { name: card.name });
+    }
+    let own = (kind == KINDS[0]).then_some(card);
+    of(kind).or(own).ok_or_else(|| {
+        let known = KINDS.into_iter().filter(|kind| *kind == KINDS[0] || others.contains(kind)).collect();
+        Mismatch::Coordinates { name: card.name, kind: kind.to_string(), known }
     })
 }
 
@@ -290,9 +340,31 @@ impl fmt::Display for Mismatch {
                     write_known(f, name, &ALL.iter().map(|card| card.name).chain(free).collect::<Vec<_>>())
                 }
             }
+            Mismatch::Scenes { name, scenes } => write!(
+                f,
+                "`{name}` has several scenes, each a mechanism of its own; name one: {}",
+                scenes.iter().map(|scene| format!("`{scene}`")).collect::<Vec<_>>().join(", ")
+            ),
+            Mismatch::Alone { name } => {
+                write!(f, "`{name}` is written in one set of coordinates")?;
+                let parts =
+                    KINDS.iter().find_map(|kind| Some((name.strip_suffix(kind)?.strip_suffix('_')?, kind)));
+                if let Some((linkage, kind)) = parts.filter(|(linkage, _)| find(linkage).is_ok()) {
+                    write!(f, ": it is `{linkage}` in coordinates of the kind `{kind}`")?;
+                }
+                let several = ALL.iter().filter(|card| variant(card.name, KINDS[0]).is_ok());
+                let several: Vec<String> =
+                    several.map(|card| format!("`mbs compare {}`", card.name)).collect();
+                write!(f, "; several have: {}", several.join(", "))
+            }
+            Mismatch::Coordinates { name, kind, known } => {
+                write!(f, "`{name}` is not written in coordinates of the kind `{kind}`")?;
+                write_known(f, kind, known)
+            }
             Mismatch::Free { name } => write!(
                 f,
-                "`{name}` is free to move: its rows do not fix it; `mbs run {name}` moves it by its forces, `mbs expand {name}` prints its code, `mbs verify {name}` compares it"
+                "`{name}` is free to move: its rows do not fix it; `mbs run {name}` moves it by its forces, and \
+                 `print`, `latex`, `structure`, `dof`, `expand` and `verify` know it too"
             ),
             Mismatch::Parameter { name, mechanism, known } => {
                 write!(f, "`{mechanism}` has no parameter `{name}`")?;

@@ -88,6 +88,28 @@ fn print_shows_formulas_with_the_names_of_the_text() {
 }
 
 #[test]
+fn free_mechanisms_have_formulas_structure_matrices_and_degrees_of_freedom() {
+    for card in mechanisms::registry::FREE {
+        assert!(text_of(&["print", card.name, "--symbols"]).contains(card.title));
+        let text = text_of(&["print", card.name, "q", "qd", "qdd", "Phi"]);
+        assert!(text.contains("qdd") && !text.contains("NaN"), "{text}");
+        assert!(text_of(&["structure", card.name]).contains("Phi_q"), "{}", card.name);
+        let text = text_of(&["dof", card.name]);
+        assert!(text.contains("forces move the others") && text.contains("joints and guides take"), "{text}");
+        assert!(text_of(&["latex", card.name]).ends_with("\\end{document}\n"));
+    }
+    // Two points of two coordinates each, two rods.
+    let text = text_of(&["dof", "double_pendulum"]);
+    assert!(line(&text, "degrees of freedom").ends_with("= 2"), "{text}");
+    assert!(line(&text, "Grübler's count").ends_with("= 2"), "{text}");
+    // A quarter of a second on, forces have moved it.
+    let [start, later] = ["0", "0.25"].map(|t| text_of(&["print", "double_pendulum", "q", "--at", t]));
+    assert!(start.lines().skip(1).ne(later.lines().skip(1)), "{later}");
+    let message = failure(&["print", "double_pendulum", "--at", "-1"], 2);
+    assert!(message.contains("from 0 s"), "{message}");
+}
+
+#[test]
 fn every_mechanism_has_formulas_structure_and_degrees_of_freedom() {
     for card in mechanisms::registry::ALL {
         assert!(text_of(&["print", card.name, "--symbols"]).contains(card.title));
@@ -137,11 +159,32 @@ fn newton_prints_quadratic_convergence_and_the_assembly() {
 }
 
 #[test]
+fn newton_says_what_assemble_does_by_formulas() {
+    let text = text_of(&["newton", "four_bar", "--guess", "phi2=-0.9", "--guess", "phi3=-1.6"]);
+    let taken = line(&text, "dyad of two bars: phi2 = 0.98415");
+    assert!(
+        taken.ends_with("(taken)") && text.contains("phi2 = -0.98415 rad, phi3 = -1.606518 rad (the other)"),
+        "{text}"
+    );
+    let text = text_of(&["newton", "three_rrr"]);
+    assert!(!text.contains("`assemble`"), "no block of it is a dyad: {text}");
+    for guess in ["phi2=1e300", "phi2=-1e17", "x2=1e300"] {
+        for more in [&[][..], &["--plain"]] {
+            let message = failure(&[&["newton", "four_bar", "--guess", guess], more].concat(), 1);
+            assert!(message.contains("too large for its number type"), "{guess}: {message}");
+        }
+    }
+    failure(&["newton", "four_bar", "--guess", "phi2=nan"], 2);
+    failure(&["newton", "four_bar", "--guess", "phi2=inf"], 2);
+}
+
+#[test]
 fn newton_that_finds_nothing_shows_its_way_and_fails() {
     let output = mbs(&["newton", "four_bar", "--param", "L2=0.05"]);
     assert_eq!(output.status.code(), Some(1));
     let (text, errors) = (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
     assert!(text.contains("iteration") && text.contains("Levenberg"), "{text}");
+    assert!(text.contains("dyad of two bars: phi2, phi3 have no position"), "{text}");
     assert!(errors.contains("no position at t = 0 s") && errors.contains("closure"), "{errors}");
 }
 
@@ -193,7 +236,10 @@ fn dof_names_independent_and_dependent_coordinates() {
     assert!(line(&text, "independent").ends_with(" phi1"), "{text}");
     assert!(text.contains("Chosen, for the text names none"), "{text}");
     assert!(line(&text, "dependent").ends_with(" x2, y2, phi2, phi3"), "{text}");
-    assert!(text.contains("Grübler's count needs bodies and joints, which the text does not name"), "{text}");
+    assert!(line(&text, "Grübler's count").ends_with("5 − 4 = 1"), "{text}");
+    // Of what the rows leave, joints of the declared bodies take the rest: four pins.
+    let text = text_of(&["dof", "four_bar_mass:Driven"]);
+    assert!(text.contains("9 freedoms apart; joints and guides take 8"), "{text}");
 }
 
 #[test]
@@ -221,7 +267,7 @@ fn drift_draws_a_curve_a_method_and_prints_how_far_each_went() {
 
 #[test]
 fn senseless_arguments_are_refused_in_plain_words() {
-    let cases: [(&[&str], &str); 14] = [
+    let cases: [(&[&str], &str); 19] = [
         (&["print", "fourbar"], "did you mean `four_bar`?"),
         (&["print", "four_bar", "Phi_x"], "possible values"),
         (&["print", "four_bar", "--at", "nan"], "not a finite number"),
@@ -234,7 +280,12 @@ fn senseless_arguments_are_refused_in_plain_words() {
         (&["basins", "four_bar", "--size", "4000"], "at most 400"),
         (&["next", "four_bar", "--starts", "0"], "at least 1"),
         (&["next", "four_bar", "--param", "omega=0"], "never ends"),
-        (&["compare", "four_bar", "--coordinates", "polar"], "no mechanism `four_bar_polar`"),
+        (&["compare", "four_bar", "--coordinates", "polar"], "coordinates of the kind `polar`"),
+        (&["compare", "four_bar", "--coordinates", "natral"], "did you mean `natural`?"),
+        (&["compare", "jansen"], "one set of coordinates; several have: `mbs compare four_bar`"),
+        (&["compare", "four_bar_natural"], "`four_bar` in coordinates of the kind `natural`"),
+        (&["compare", "natral"], "no mechanism `natral`"),
+        (&["print", "slider_crank_scenes"], "name one: `slider_crank_scenes:DrivenCrank`"),
         (&["dof"], "required"),
     ];
     for (arguments, words) in cases {

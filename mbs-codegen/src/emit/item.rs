@@ -444,6 +444,7 @@ fn reference(model: &Model, runtime: &TokenStream) -> Option<TokenStream> {
         }
     };
     Some(quote! {
+        #[allow(clippy::zero_prefixed_literal, reason = "the place of a number of the text, which may begin with 0")]
         const REFERENCE: #runtime::Reference =
             #runtime::Reference { longest: #longest, parameters: &[#(#parameters),*] };
     })

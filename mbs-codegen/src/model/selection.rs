@@ -186,7 +186,8 @@ fn declares(kind: &StatementKind) -> Option<(&'static str, &str)> {
         StatementKind::Out { name, .. } => ("output", name),
         StatementKind::Element { name, .. }
         | StatementKind::Load { name, .. }
-        | StatementKind::Energy { name, .. } => ("load", name),
+        | StatementKind::Energy { name, .. }
+        | StatementKind::Pin { name, .. } => ("load", name),
         StatementKind::Independent { .. }
         | StatementKind::Rate { .. }
         | StatementKind::Start { .. }

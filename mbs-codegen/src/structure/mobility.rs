@@ -3,6 +3,7 @@
 use super::matching;
 use crate::equations::Equations;
 use crate::model::Model;
+use crate::model::dynamics::Rotation;
 
 /// Coordinates, rows and bodies of a mechanism.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -21,7 +22,8 @@ pub struct Mobility {
     pub bodies: usize,
     /// Point masses.
     pub points: usize,
-    /// Freedoms that all of these would have without joints: three of a body in the plane, two of a point.
+    /// Freedoms that all of these would have without joints: three of a body in the plane, six of one in space, one a
+    /// dimension of a point.
     pub apart: usize,
 }
 
@@ -33,7 +35,7 @@ impl Mobility {
 
     /// Grübler's count: coordinates less rows of constraints, those that follow from others among them.
     ///
-    /// Grübler counts 3 a body less 2 a joint. Each set of coordinates leaves out as many freedoms of bodies as
+    /// Grübler counts 3 a body less 2 a joint, in space 6 less 5. Each set of coordinates leaves out as many freedoms of bodies as
     /// equations of joints, so that the difference is the same in relative, reference-point or natural ones.
     /// Source: García de Jalón & Bayo 1994, §2.1.
     pub fn grubler(&self) -> isize {
@@ -66,7 +68,8 @@ pub fn mobility(model: &Model, equations: &Equations) -> Mobility {
     let (mut bodies, mut points, mut apart) = (0, 0, 0);
     for body in declared {
         match body.rotation {
-            Some(_) => (bodies, apart) = (bodies + 1, apart + 3),
+            Some(Rotation::Plane { .. }) => (bodies, apart) = (bodies + 1, apart + 3),
+            Some(Rotation::Space { .. }) => (bodies, apart) = (bodies + 1, apart + 6),
             None => (points, apart) = (points + 1, apart + body.com.len()),
         }
     }

@@ -173,6 +173,10 @@ const _: () = {
                 line: ::core::line!(),
             },
         ];
+        #[allow(
+            clippy::zero_prefixed_literal,
+            reason = "the place of a number of the text, which may begin with 0"
+        )]
         const REFERENCE: ::mbs_runtime::Reference = ::mbs_runtime::Reference {
             longest: ::core::option::Option::Some((
                 &::mbs_runtime::Entry {

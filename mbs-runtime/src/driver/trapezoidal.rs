@@ -17,6 +17,31 @@ use crate::{Function, Scalar};
 /// assert_eq!(slide.jet(0.25), [0.0625, 0.5, 2.0]);
 /// # Ok::<(), mbs_runtime::driver::LawError>(())
 /// ```
+///
+/// One continuous derivative: its acceleration jumps, and a row needs two (γ). So it moves a mechanism as an input with
+/// rates, each step with the acceleration that holds up to its end.
+///
+/// ```
+/// # use mbs_runtime::{Function, Mechanism, Signal, Stepper, driver::Trapezoidal, mechanism};
+/// mechanism! {
+///     mechanism Lift;
+///     input height: m, rates;
+///     coord phi: rad = 0.1;
+///     drive screw: 0.01m*phi == height;
+/// }
+///
+/// let law = Trapezoidal::new(3.0, 1.0, 2.0).expect("a law");
+/// let lift = Lift::<f64>::default();
+/// let guess = lift.guess(&lift.parameters());
+/// let mut motion = Stepper::assemble(lift, guess, 0.0)?;
+/// for t in [0.25, 0.5, 2.0] {
+///     let [value, rate, acceleration] = law.jet(t);
+///     motion.change(|lift| lift.height = Signal { value, rate, acceleration });
+///     motion.advance_to(t)?;
+/// }
+/// assert!((motion.q()[0] - 175.0).abs() < 1e-9 && (motion.qd()[0] - 100.0).abs() < 1e-9);
+/// # Ok::<(), mbs_runtime::Failure>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Trapezoidal {
     distance: f64,

@@ -2,8 +2,11 @@
 
 use core::f64::consts::TAU;
 
+use std::cell::Cell;
+
 use mbs_runtime::{
-    Budget, Failure, Kinematic, Lanes, Mechanism, Saved, Scalar, Step, Stepper, mechanism, newton_raphson,
+    Batch, Budget, Failure, Function, Kinematic, Lanes, Mechanism, Saved, Scalar, Signal, Step, Stepper,
+    mechanism, newton_raphson,
 };
 
 mechanism! {
@@ -34,6 +37,41 @@ mechanism! {
     drive followed: rate(b) == 2*u;
     drive held: rate(c) == v;
     for i in 0..2 { drive relative: rate(d[i] - a) == omega*(i + 1); }
+}
+
+mechanism! {
+    /// A cam on a motor of changing speed, its law a table that would be dear to copy.
+    pub mechanism Cam;
+    input u: rad/s, rates;
+    function lift: m(rad), C2;
+    coord theta: rad = 1;
+    coord y: m = 0.2;
+    drive motor: rate(theta) == 2*u;
+    constraint face { y == 0.2m + lift(theta); }
+    limit reach: 0 <= theta <= 2;
+}
+
+/// x² that counts its copies.
+struct Table;
+
+thread_local! {
+    static COPIES: Cell<u32> = const { Cell::new(0) };
+}
+
+impl Clone for Table {
+    fn clone(&self) -> Self {
+        COPIES.set(COPIES.get() + 1);
+        Table
+    }
+}
+
+impl<T: Scalar> Function<T> for Table {
+    const ORDER: usize = 2;
+
+    fn jet<const K: usize>(&self, x: T) -> [T; K] {
+        let all = [x * x, T::constant(2.0) * x, T::constant(2.0)];
+        core::array::from_fn(|order| all.get(order).copied().unwrap_or(T::constant(0.0)))
+    }
 }
 
 type Slider = Stepper<Motor, f64, 3>;
@@ -174,6 +212,46 @@ fn a_reset_keeps_the_phase() {
     assert!((back.q()[1] - stepper.q()[1]).abs() < 1e-14);
     let late: Slider = Stepper::assemble_near(fresh, &saved, saved.t() + 0.01).unwrap();
     assert!((late.q()[0] - (stepper.q()[0] + 0.07)).abs() < 1e-14);
+}
+
+#[test]
+fn no_step_copies_a_function() {
+    let signal = |rate: f64| Signal { value: 0.1, rate, acceleration: 0.0 };
+    let cam = Cam { u: signal(0.1), ..Cam::new(Table) };
+    let mut stepper = Stepper::<_, f64, 2>::assemble(cam, [1.0, 1.2], 0.0).unwrap();
+    COPIES.set(0);
+    for k in 1..=20 {
+        stepper.change(|cam| cam.u.value = 0.1 + 0.001 * f64::from(k));
+        stepper.advance(0.01).unwrap();
+        assert!(matches!(stepper.step(0.01, Budget::DEFAULT), Step::Done(_)));
+        // What the inputs are moved to within a step is not left behind.
+        assert_eq!(stepper.mechanism().u, Signal { value: 0.1 + 0.001 * f64::from(k), ..signal(0.1) });
+    }
+    let before = (stepper.q()[0], stepper.mechanism().motor_phase);
+    assert!(matches!(stepper.advance(1e3), Err(Failure::BeyondLimit { .. })));
+    assert!(matches!(stepper.step(1e3, Budget::DEFAULT), Step::Refused(_)));
+    assert_eq!((stepper.q()[0], stepper.mechanism().motor_phase), before);
+    assert_eq!(COPIES.get(), 0);
+}
+
+#[test]
+fn no_step_of_a_batch_copies_a_function() {
+    type Two = Lanes<f64, 2>;
+    let still =
+        Signal { value: Two::constant(0.1), rate: Two::constant(0.0), acceleration: Two::constant(0.0) };
+    let cam = Cam::<Table, Two> { u: still, ..Cam::new(Table) };
+    let mut batch = Batch::<_, f64, 2, 2>::assemble(cam, &[[1.0, 1.2], [0.5, 0.45]], [0.0; 2])
+        .map_err(|(lane, failure)| panic!("{lane}: {failure}"))
+        .unwrap();
+    COPIES.set(0);
+    for k in 1..=20 {
+        assert!(batch.advance_to([0.01 * f64::from(k); 2]).iter().all(Result::is_ok));
+    }
+    // A lane that fails stays where it was.
+    let before = *batch.q();
+    assert!(batch.advance_to([1e3, 0.3])[0].is_err());
+    assert!(batch.q()[0].0[0] == before[0].0[0] && batch.q()[0].0[1] > before[0].0[1]);
+    assert_eq!(COPIES.get(), 0);
 }
 
 #[test]

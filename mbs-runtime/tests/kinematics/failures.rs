@@ -1,6 +1,6 @@
 //! What cannot be solved is told, and the state stays.
 
-use mbs_runtime::{Failure, Mechanism, Stepper, assemble};
+use mbs_runtime::{Entry, Failure, Mechanism, Stepper, assemble, mechanism};
 
 use crate::four_bar::{FourBar, GUESS};
 
@@ -231,4 +231,66 @@ fn an_angle_beyond_the_resolution_of_its_type_is_refused() {
         matches!(failure, Failure::Unresolved { coordinate, .. } if coordinate.name == "phi1"),
         "{failure}"
     );
+}
+
+mechanism! {
+    /// A double rocker in line at once; far from it something long.
+    pub mechanism InLine;
+    const L4: m = 4;
+    param rod: m = 2;
+    param far: m = 1;
+    coord a: rad = 0.3;
+    coord b: rad = 0;
+    coord c: rad = 0;
+    constraint closure { rod*unit(b) + 2m*unit(c) == [L4, 0] + a*1m*unit(0); }
+    drive crank: a == 0.0*t/1s;
+}
+
+mechanism! {
+    /// Angles alone: no length has a part in anything.
+    pub mechanism Angles;
+    coord a: rad = 0;
+    coord b: rad = 0;
+    constraint tied { sin(a) + b == 0; a + sin(b) == 0.1*t/1s; }
+}
+
+/// What the failure at the start says of lengths.
+fn reference<S: mbs_runtime::Kinematic<f64, N>, const N: usize>(mechanism: S) -> Option<&'static Entry> {
+    let guess = mechanism.guess(&mechanism.parameters());
+    match Stepper::assemble(mechanism, guess, 0.0).map(|stepper| *stepper.q()) {
+        Err(failure @ Failure::Singular { reference, .. }) => {
+            let text = failure.to_string();
+            assert_eq!(text.contains("lengths in parts of"), reference.is_some(), "{text}");
+            reference
+        }
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn a_singular_position_names_what_lengths_are_measured_by() {
+    let name = |in_line: InLine| reference(in_line).map(|entry| (entry.name, entry.unit));
+    assert_eq!(name(InLine::default()), Some(("L4", "m")));
+    assert_eq!(name(InLine { far: -40.0, ..InLine::default() }), Some(("far", "m")));
+    assert!(reference(Angles::<f64>::default()).is_none());
+    let entry = InLine::<f64>::default().reference().expect("a constant");
+    assert_eq!((entry.name, <InLine as Mechanism<f64, 3, 3>>::COORDINATES[0].line - entry.line), ("L4", 3));
+}
+
+#[test]
+fn a_guess_that_cannot_be_resolved_is_refused_by_every_way_to_a_position() {
+    let four_bar = FourBar::<f64>::dimensioned(1.0, 3.0, 2.5, 3.0);
+    for (index, huge) in [(3, 1e300), (3, -1e17), (0, 1e300), (4, 1e13)] {
+        let mut guess = GUESS;
+        guess[index] = huge;
+        let found = [
+            assemble(&four_bar, guess, 0.0).map(|_| ()),
+            Stepper::assemble(four_bar, guess, 0.0).map(|_| ()),
+            mbs_runtime::newton_raphson(&four_bar, guess, 0.0).map(|_| ()),
+            mbs_runtime::solve_position(&four_bar, &(), &guess, 0.0).map(|_| ()),
+        ];
+        for found in found {
+            assert!(matches!(found, Err(Failure::Unresolved { .. })), "{index} {huge}: {found:?}");
+        }
+    }
 }

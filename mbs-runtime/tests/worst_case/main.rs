@@ -240,7 +240,12 @@ fn the_worst_case_of_surplus_rows_is_no_more_than_three_times_what_a_step_can_co
         println!("{budget:?}\n  cost {cost}\n  most {most}");
         assert!(matches!(step, Step::Refused(_)), "{step:?}");
         // A lost column makes a solution longer, which this one does not lose.
-        assert!(cost.within(most) && 3 * cost.total() >= most.total(), "{} of {}", cost.total(), most.total());
+        assert!(
+            cost.within(most) && 3 * cost.total() >= most.total(),
+            "{} of {}",
+            cost.total(),
+            most.total()
+        );
     }
 }
 

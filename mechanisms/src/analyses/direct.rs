@@ -8,8 +8,9 @@ use mbs_runtime::dynamics::{
 };
 use mbs_runtime::{Dynamic, Failure, Partitioned};
 
+use super::AnyDynamics;
 use super::start::{Start, start};
-use crate::facade::Motion;
+use crate::facade::{Motion, State};
 use crate::motion::{self, Forces};
 
 /// How the motion stays on the constraints.
@@ -45,6 +46,23 @@ pub struct Approach {
     pub stabilization: Stabilization,
     /// How the steps are chosen.
     pub steps: Steps,
+}
+
+/// The state at `t` (s, not negative) to which forces move a mechanism from the text's start.
+///
+/// # Errors
+/// Where it cannot start, or stops on the way.
+pub fn moved_to(dynamics: &dyn AnyDynamics, t: f64) -> Result<State, Failure> {
+    /// Far below what a printed number shows.
+    const TOLERANCE: f64 = 1e-10;
+    let steps = Steps::Adaptive { tolerance: TOLERANCE };
+    let approach = Approach { stabilization: Stabilization::Projection, steps };
+    let times = if t > 0.0 { vec![0.0, t] } else { vec![0.0] };
+    let Simulated { motion, failure, .. } = dynamics.simulate(&approach, &times, &mut |_| ())?;
+    match failure {
+        Some(failure) => Err(failure),
+        None => Ok(motion.last(t)),
+    }
 }
 
 /// A motion from forces, and what it cost.

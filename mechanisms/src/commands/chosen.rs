@@ -5,10 +5,12 @@ use std::path::Path;
 
 use clap::Args;
 use mbs_codegen::StructureReport;
-use mechanisms::facade::{AnyMechanism, State};
+use mechanisms::analyses::direct::moved_to;
+use mechanisms::facade::{AnyEquations, AnyMechanism, State};
 use mechanisms::lecture::experiment::state_at;
 use mechanisms::registry::{self, Card, nearest};
 
+use super::subject::{Instance, Subject};
 use super::{CommandError, table};
 
 #[derive(Args)]
@@ -26,7 +28,19 @@ pub struct Choice {
     pub mechanism: Box<dyn AnyMechanism>,
 }
 
+/// A mechanism whether its rows fix it or forces move it, with the same parameters.
+pub struct Described {
+    pub subject: Subject,
+    instance: Instance,
+}
+
 impl Chosen {
+    pub fn described(&self) -> Result<Described, CommandError> {
+        let subject = Subject::find(&self.name)?;
+        let instance = subject.instance(&subject.runs()[0], &self.parameters)?;
+        Ok(Described { subject, instance })
+    }
+
     pub fn choice(&self) -> Result<Choice, CommandError> {
         let card = registry::find(&self.name)?;
         let mut mechanism = card.instance(&card.runs[0])?;
@@ -37,18 +51,46 @@ impl Chosen {
     }
 }
 
+/// Sparsity, matching and order of solution.
+fn structure(mechanism: &dyn AnyEquations) -> Result<StructureReport, CommandError> {
+    mbs_codegen::structure_of(mechanism.source(), Some(mechanism.scene())).map_err(CommandError::Failed)
+}
+
+impl Described {
+    /// Names and functions.
+    pub fn equations(&self) -> &dyn AnyEquations {
+        self.instance.equations()
+    }
+
+    /// Sparsity, matching and order of solution.
+    pub fn structure(&self) -> Result<StructureReport, CommandError> {
+        structure(self.equations())
+    }
+
+    /// The state at `t` (s): followed there from the assembly at 0, or moved there by forces from the text's start.
+    pub fn state(&self, t: f64) -> Result<State, CommandError> {
+        let state = match (&self.instance, self.subject) {
+            (Instance::Fixed(mechanism), subject) => {
+                state_at(mechanism.as_ref(), subject.duration(&self.instance)?, t)
+            }
+            (Instance::Free(mechanism), _) if t >= 0.0 => match mechanism.dynamics() {
+                Some(dynamics) => moved_to(dynamics, t),
+                None => Ok(State::default()),
+            },
+            (Instance::Free(_), _) => {
+                return Err(CommandError::Usage(
+                    "forces move a mechanism on from 0 s; `--at` is before".into(),
+                ));
+            }
+        };
+        state.map_err(|failure| CommandError::Failed(format!("{}: {failure}", self.subject.name())))
+    }
+}
+
 impl Choice {
     /// Sparsity, matching and order of solution.
     pub fn structure(&self) -> Result<StructureReport, CommandError> {
-        let mechanism = &self.mechanism;
-        mbs_codegen::structure_of(mechanism.source(), Some(mechanism.scene())).map_err(CommandError::Failed)
-    }
-
-    /// The position at `t` (s) with its rates, followed there from the assembly at 0.
-    pub fn state(&self, t: f64) -> Result<State, CommandError> {
-        let duration = self.card.duration(self.mechanism.as_ref())?;
-        state_at(self.mechanism.as_ref(), duration, t)
-            .map_err(|failure| CommandError::Failed(format!("{}: {failure}", self.card.name)))
+        structure(self.mechanism.as_ref())
     }
 
     /// Index of the coordinate called `name`.
@@ -68,12 +110,18 @@ impl Choice {
 
     /// `phi2 = 2.5 rad, …` for coordinates by their indices.
     pub fn values(&self, indices: &[usize], q: &[f64]) -> String {
+        let of_block: Vec<f64> = indices.iter().map(|index| q[*index]).collect();
+        self.block_values(indices, &of_block)
+    }
+
+    /// The same where `x` holds the values of these coordinates alone.
+    pub fn block_values(&self, indices: &[usize], x: &[f64]) -> String {
         let coordinates = self.mechanism.coordinates();
-        let value = |index: &usize| {
+        let value = |(index, value): (&usize, &f64)| {
             let entry = coordinates[*index];
-            format!("{} = {}{}", entry.name, table::short(q[*index]), table::unit(entry.unit))
+            format!("{} = {}{}", entry.name, table::short(*value), table::unit(entry.unit))
         };
-        indices.iter().map(value).collect::<Vec<_>>().join(", ")
+        indices.iter().zip(x).map(value).collect::<Vec<_>>().join(", ")
     }
 }
 

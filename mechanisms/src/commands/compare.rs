@@ -17,7 +17,7 @@ pub struct Arguments {
     name: String,
     /// Kinds of coordinates: `natural` stands for the mechanism NAME_natural, `relative` for NAME itself where there
     /// is no NAME_relative
-    #[arg(long, value_delimiter = ',', default_value = "relative,reference_point,natural,mixed")]
+    #[arg(long, value_delimiter = ',', default_values = registry::KINDS)]
     coordinates: Vec<String>,
     /// Equal steps that the motion is divided into
     #[arg(long, default_value_t = 720, value_parser = positive)]
@@ -26,8 +26,7 @@ pub struct Arguments {
 
 /// What each set of coordinates costs, and that the motion is the same.
 pub fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<(), CommandError> {
-    registry::find(&arguments.name)?;
-    let cards = arguments.coordinates.iter().map(|kind| card(&arguments.name, kind));
+    let cards = arguments.coordinates.iter().map(|kind| registry::variant(&arguments.name, kind));
     let cards = cards.collect::<Result<Vec<&Card>, Mismatch>>()?;
     let mut candidates = Vec::new();
     for card in cards {
@@ -60,13 +59,6 @@ pub fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<(), CommandErro
         }
     }
     Ok(())
-}
-
-fn card(name: &str, kind: &str) -> Result<&'static Card, Mismatch> {
-    match registry::find(&format!("{name}_{kind}")) {
-        Err(_) if kind == "relative" => registry::find(name),
-        found => found,
-    }
 }
 
 fn explain(card: &Card, fault: Fault) -> CommandError {

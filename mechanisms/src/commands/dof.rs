@@ -18,15 +18,18 @@ pub struct Arguments {
     at: f64,
 }
 
+/// Why rows can stand for joints.
+const GRUBLER: &str = "Grübler counts 3 a body less 2 a joint; each set of coordinates leaves out as many freedoms of bodies as \
+                       equations\nof joints, so that n − constraints is that count. Rows that follow from others count too.";
+
 /// Counts, ranks, independent and dependent coordinates.
 pub fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<(), CommandError> {
-    let choice = arguments.chosen.choice()?;
-    let mechanism = choice.mechanism.as_ref();
-    let report = mbs_codegen::structure_of(mechanism.source(), Some(mechanism.scene()))
-        .map_err(CommandError::Failed)?;
+    let choice = arguments.chosen.described()?;
+    let mechanism = choice.equations();
+    let report = choice.structure()?;
     let state = choice.state(arguments.at)?;
     let found = freedom(mechanism, &report, &state.q, arguments.at);
-    writeln!(out, "{} at t = {} s\n", choice.card.title, arguments.at)?;
+    writeln!(out, "{} at t = {} s\n", choice.subject.title(), arguments.at)?;
     let Freedom { coordinates: n, constraints, drives, structural_rank, rank, whole_rank, .. } = found;
     writeln!(out, "coordinates n                {n}")?;
     writeln!(
@@ -35,8 +38,9 @@ pub fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<(), CommandErro
         constraints + drives
     )?;
     writeln!(out, "rank of the constraints      {rank} here; their sparsity allows {structural_rank}")?;
-    writeln!(out, "rank with the drives         {whole_rank}{}", whole(whole_rank, n))?;
+    writeln!(out, "rank with the drives         {whole_rank}{}", whole(whole_rank, n, report.mobility.rank))?;
     writeln!(out, "degrees of freedom           {n} − {rank} = {}", n - rank)?;
+    writeln!(out, "Grübler's count              {n} − {constraints} = {}", report.mobility.grubler())?;
     let entries = mechanism.coordinates();
     let names = |indices: &[usize]| match indices {
         [] => "none".to_string(),
@@ -49,12 +53,14 @@ pub fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<(), CommandErro
         writeln!(out, "row {} (line {}) follows from the others here", rows[*row].name, rows[*row].line)?;
     }
     writeln!(out, "\n{}", reason(found.declared, &report, &names(&report.independent)))?;
-    let count = i64::try_from(n).unwrap_or(i64::MAX) - i64::try_from(constraints).unwrap_or(i64::MAX);
-    writeln!(
-        out,
-        "Grübler's count needs bodies and joints, which the text does not name; its rows count in their place:\n\
-         n − constraints = {n} − {constraints} = {count}, the degrees of freedom where no row follows from the others."
-    )?;
+    writeln!(out, "{GRUBLER}")?;
+    if let Some(taken) = report.mobility.taken() {
+        let apart = report.mobility.apart;
+        writeln!(
+            out,
+            "The bodies that the text declares have {apart} freedoms apart; joints and guides take {taken}."
+        )?;
+    }
     Ok(())
 }
 
@@ -62,6 +68,9 @@ pub fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<(), CommandErro
 fn reason(declared: bool, report: &StructureReport, named: &str) -> String {
     match (declared, report.independent.is_empty()) {
         (true, _) => "Independent as the text declares them.".into(),
+        (false, true) if report.mobility.drives == 0 => {
+            "Chosen, for the text names none and no drive prescribes one.".into()
+        }
         (false, true) => {
             "Chosen, for the text names none: the coordinates that drives prescribe, as far as the others \
                           then follow."
@@ -74,6 +83,12 @@ fn reason(declared: bool, report: &StructureReport, named: &str) -> String {
     }
 }
 
-fn whole(rank: usize, n: usize) -> &'static str {
-    if rank == n { ": every coordinate is determined" } else { ": the position is singular" }
+fn whole(rank: usize, n: usize, allowed: usize) -> &'static str {
+    if rank == n {
+        ": every coordinate is determined"
+    } else if rank == allowed {
+        ": forces move the others"
+    } else {
+        ": the position is singular"
+    }
 }

@@ -20,11 +20,11 @@ pub struct Arguments {
 
 /// Φ, Φ_q, Φ_t and γ as a document for `pdflatex`.
 pub fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<(), CommandError> {
-    let choice = arguments.chosen.choice()?;
-    let mechanism = choice.mechanism.as_ref();
+    let choice = arguments.chosen.described()?;
+    let mechanism = choice.equations();
     let formulas = mbs_codegen::latex_formulas(mechanism.source(), Some(mechanism.scene()))
         .map_err(CommandError::Failed)?;
-    let text = document(mechanism, &formulas, choice.card.title);
+    let text = document(mechanism, &formulas, choice.subject.title());
     match &arguments.out {
         None => out.write_all(text.as_bytes())?,
         Some(path) => {

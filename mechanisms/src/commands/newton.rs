@@ -3,7 +3,9 @@
 use std::io::Write;
 
 use clap::Args;
+use mbs_runtime::Failure;
 use mechanisms::lecture::experiment::{BlockProtocol, Protocol};
+use mechanisms::lecture::formulas::Formula;
 
 use super::chosen::{Choice, Chosen, assignment, finite};
 use super::{CommandError, table};
@@ -34,17 +36,22 @@ pub fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<(), CommandErro
     for (name, value) in &arguments.guesses {
         guess[choice.coordinate(name)?] = *value;
     }
+    let protocol = mechanism.experiment().iterations(&guess, arguments.at, arguments.plain);
+    if let Err(failure @ (Failure::Unresolved { .. } | Failure::NonFinite { line: 0, .. })) = &protocol.found
+    {
+        return Err(CommandError::Failed(format!("{}: {failure}", choice.card.name)));
+    }
     let all: Vec<usize> = (0..guess.len()).collect();
     writeln!(out, "{} at t = {} s", choice.card.title, arguments.at)?;
     writeln!(out, "guess: {}", choice.values(&all, &guess))?;
     writeln!(out, "residual and step: lengths in the reference metric (rad, or reference lengths)\n")?;
-    let protocol = mechanism.experiment().iterations(&guess, arguments.at, arguments.plain);
     if arguments.plain {
         writeln!(out, "full Newton–Raphson on all {} rows", guess.len())?;
         protocol.blocks.iter().try_for_each(|block| write_block(out, &choice, block))?;
     } else {
         write_blocks(out, &choice, &protocol)?;
     }
+    write_formulas(out, &choice, &mechanism.experiment().formulas(&guess, arguments.at))?;
     match &protocol.found {
         Ok(q) => write_found(out, &choice, &all, q, arguments.at),
         Err(failure) => Err(CommandError::Failed(format!("{}: {failure}", choice.card.name))),
@@ -94,6 +101,35 @@ fn write_block(out: &mut dyn Write, choice: &Choice, block: &BlockProtocol) -> R
         )?;
     }
     Ok(())
+}
+
+/// What `assemble` does in place of iterations, from the same guess.
+fn write_formulas(out: &mut dyn Write, choice: &Choice, formulas: &[Formula]) -> Result<(), CommandError> {
+    if formulas.is_empty() {
+        return Ok(());
+    }
+    let report = choice.structure()?;
+    writeln!(out, "\n`assemble` needs no start value where formulas give both positions of a block")?;
+    for Formula { coordinates, positions, taken } in formulas {
+        let block = report.blocks.iter().find(|block| block.coordinates == *coordinates);
+        let kind = block.and_then(|block| block.dyad).unwrap_or("dyad");
+        let Some(positions) = positions else {
+            let names: Vec<&str> =
+                coordinates.iter().map(|index| report.coordinates[*index].name.as_str()).collect();
+            writeln!(out, "   {kind}: {} have no position, its ends do not meet", names.join(", "))?;
+            continue;
+        };
+        let distances = positions.each_ref().map(|position| distance(position, taken));
+        for (index, position) in positions.iter().enumerate() {
+            let word = if distances[index] <= distances[1 - index] { "taken" } else { "the other" };
+            writeln!(out, "   {kind}: {} ({word})", choice.block_values(coordinates, position))?;
+        }
+    }
+    Ok(())
+}
+
+fn distance(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
 }
 
 fn write_found(

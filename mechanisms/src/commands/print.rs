@@ -3,7 +3,7 @@
 use std::io::Write;
 
 use clap::{Args, ValueEnum};
-use mechanisms::facade::{AnyMechanism, State};
+use mechanisms::facade::{AnyEquations, State};
 use mechanisms::lecture::matrix::{Named, number};
 
 use super::CommandError;
@@ -50,12 +50,12 @@ pub enum Quantity {
 
 /// The matrices, names on rows and columns.
 pub fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<(), CommandError> {
-    let choice = arguments.chosen.choice()?;
-    let mechanism = choice.mechanism.as_ref();
+    let choice = arguments.chosen.described()?;
+    let mechanism = choice.equations();
     if arguments.symbols {
         let formulas = mbs_codegen::formulas(mechanism.source(), Some(mechanism.scene()))
             .map_err(CommandError::Failed)?;
-        writeln!(out, "{}", choice.card.title)?;
+        writeln!(out, "{}", choice.subject.title())?;
         for quantity in &arguments.quantities {
             write(out, &symbolic(&formulas, *quantity))?;
         }
@@ -65,7 +65,7 @@ pub fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<(), CommandErro
         return Ok(());
     }
     let state = choice.state(arguments.at)?;
-    writeln!(out, "{} at t = {} s", choice.card.title, arguments.at)?;
+    writeln!(out, "{} at t = {} s", choice.subject.title(), arguments.at)?;
     for quantity in &arguments.quantities {
         write(out, &numeric(mechanism, &state, *quantity))?;
     }
@@ -101,7 +101,7 @@ fn symbolic(formulas: &mbs_codegen::Formulas, quantity: Quantity) -> Named {
     .aligned_left()
 }
 
-fn numeric(mechanism: &dyn AnyMechanism, state: &State, quantity: Quantity) -> Named {
+fn numeric(mechanism: &dyn AnyEquations, state: &State, quantity: Quantity) -> Named {
     let functions = mechanism.evaluate(state);
     let names = |entries: &[mbs_runtime::Entry], per: &str| {
         let with_unit = |entry: &mbs_runtime::Entry| match (entry.unit, per) {

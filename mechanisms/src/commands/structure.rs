@@ -22,11 +22,11 @@ pub struct Arguments {
 
 /// Sparsity, matching and the order of solution.
 pub fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<(), CommandError> {
-    let choice = arguments.chosen.choice()?;
+    let choice = arguments.chosen.described()?;
     let report = choice.structure()?;
     let entries: usize = report.rows.iter().map(|row| row.entries.len()).sum();
     let (m, n) = (report.rows.len(), report.coordinates.len());
-    writeln!(out, "{}\n", choice.card.title)?;
+    writeln!(out, "{}\n", choice.subject.title())?;
     let title = format!(
         "Phi_q: {m} × {n}, {entries} of {} entries (1: a number, p: parameters alone, x: varies; in brackets: \
          the coordinate that a row is matched with)",

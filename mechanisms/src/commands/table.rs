@@ -49,7 +49,8 @@ pub fn figures(motion: &Motion, step_time: Duration) -> [[String; 2]; 4] {
 
 /// A number with six digits and no needless zeros.
 pub fn short(value: f64) -> String {
-    let text = format!("{value:.6}");
+    // No minus in front of a rounded zero.
+    let text = format!("{:.6}", if value.abs() < 5e-7 { 0.0 } else { value });
     let trimmed = text.trim_end_matches('0').trim_end_matches('.');
     if value != 0.0 && !(1e-4..1e7).contains(&value.abs()) {
         format!("{value:e}")

@@ -160,3 +160,34 @@ impl<B: BlockSolver<f64>> BlockSolver<f64> for Blind<'_, B> {
         self.0.solve_redundant::<K, M>(block, x, evaluate, |_| true)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use mbs_runtime::{Mechanism, assemble, mechanism};
+
+    use super::Branchless;
+
+    mechanism! {
+        pub mechanism Bars;
+        coord crank: rad = 0.3;
+        coord coupler: rad = 0.9;
+        coord rocker: rad = 1.8;
+        constraint closure { 0.1m*unit(crank) + 0.25m*unit(coupler) == [0.3m, 0] + 0.2m*unit(rocker); }
+        drive motor: crank == 0.3 + 2*t/1s;
+        branch open: sin(rocker - coupler) > 0;
+    }
+
+    #[test]
+    fn formulas_are_used_without_branches_too() {
+        let bars = Bars::<f64>::default();
+        let guess = bars.guess(&bars.parameters());
+        for (coupler, rocker) in [(0.9, 1.8), (-0.9, -1.8), (3.0, 0.1), (-2.0, 2.0)] {
+            let from = [guess[0], coupler, rocker];
+            let found = assemble(&Branchless(bars), from, 0.0).expect("it assembles");
+            // A search from so far away takes more than what polishes a formula.
+            assert!(!found.statistics.fallback && found.statistics.evaluations <= 3, "{found:?}");
+            let declared = assemble(&bars, from, 0.0).expect("it assembles");
+            assert!((declared.q[2] - declared.q[1]).sin() > 0.0);
+        }
+    }
+}

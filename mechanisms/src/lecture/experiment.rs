@@ -8,7 +8,8 @@ use mbs_runtime::{
 };
 
 use super::branchless::Branchless;
-use crate::facade::{AnyMechanism, CoordinateCurve, Facade, State};
+use super::formulas::{Formula, formulas};
+use crate::facade::{AnyMechanism, Facade, State};
 use crate::registry::instants;
 
 /// What the emitted types lend to experiments. Vectors are in the order of the text, with N components each.
@@ -16,8 +17,6 @@ use crate::registry::instants;
 /// # Panics
 /// Every method, where a vector does not have N components.
 pub trait Experiment {
-    /// Reference metric of the rows: the reference length to the power that the row has of metres: N.
-    fn row_scales(&self) -> Vec<f64>;
     /// The text's guess: N.
     fn guess(&self) -> Vec<f64>;
     /// Branch conditions.
@@ -47,6 +46,8 @@ pub trait Experiment {
     fn advance(&self, q: &[f64], t: f64, until: f64) -> Result<(Vec<f64>, u32), Failure>;
     /// Newton's iterations from `guess` at `t` (s): the runtime's, block by block, or the lecture's on all of Φ.
     fn iterations(&self, guess: &[f64], t: f64, plain: bool) -> Protocol;
+    /// Blocks that the assembly from `guess` at `t` (s) takes from formulas.
+    fn formulas(&self, guess: &[f64], t: f64) -> Vec<Formula>;
 }
 
 /// The iterations of a solution.
@@ -132,10 +133,7 @@ pub fn state_at(mechanism: &dyn AnyMechanism, duration: f64, t: f64) -> Result<S
     let steps = (FINE * (t / duration).abs()).ceil().clamp(1.0, MOST) as usize;
     let times = if t == 0.0 { vec![0.0] } else { instants(t, steps) };
     let motion = mechanism.follow(&times, &mut |_| ())?;
-    let last = |pick: fn(&CoordinateCurve) -> &Vec<f64>| {
-        motion.coordinates.iter().filter_map(|curve| pick(curve).last().copied()).collect()
-    };
-    Ok(State { q: last(|c| &c.q), qd: last(|c| &c.qd), qdd: last(|c| &c.qdd), t })
+    Ok(motion.last(t))
 }
 
 /// Positions nearer than this, in the reference metric, are the same assembly: far above what solvers leave,
@@ -201,9 +199,6 @@ fn array<const N: usize>(values: &[f64]) -> [f64; N] {
 }
 
 impl<S: Kinematic<f64, N, M>, const N: usize, const M: usize> Experiment for Facade<S, N, M> {
-    fn row_scales(&self) -> Vec<f64> {
-        self.0.row_scales(&self.0.parameters()).to_vec()
-    }
     fn guess(&self) -> Vec<f64> {
         self.0.guess(&self.0.parameters()).to_vec()
     }
@@ -239,6 +234,9 @@ impl<S: Kinematic<f64, N, M>, const N: usize, const M: usize> Experiment for Fac
     fn iterations(&self, guess: &[f64], t: f64, plain: bool) -> Protocol {
         let guess = array(guess);
         if plain { self.all_at_once(&guess, t) } else { self.block_by_block(&guess, t) }
+    }
+    fn formulas(&self, guess: &[f64], t: f64) -> Vec<Formula> {
+        formulas(&self.0, &array(guess), t)
     }
 }
 

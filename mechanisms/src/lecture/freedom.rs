@@ -3,7 +3,7 @@
 use mbs_codegen::StructureReport;
 
 use super::rank::{independent_columns, rank};
-use crate::facade::{AnyMechanism, State};
+use crate::facade::{AnyEquations, State};
 
 /// The count of a mechanism at one position.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -32,7 +32,7 @@ pub struct Freedom {
 }
 
 /// Counts `mechanism`, of structure `report`, at `q` and `t` (s).
-pub fn freedom(mechanism: &dyn AnyMechanism, report: &StructureReport, q: &[f64], t: f64) -> Freedom {
+pub fn freedom(mechanism: &dyn AnyEquations, report: &StructureReport, q: &[f64], t: f64) -> Freedom {
     let n = q.len();
     let rows = scaled_jacobian(mechanism, q, t);
     let constrained: Vec<usize> =
@@ -53,15 +53,11 @@ pub fn freedom(mechanism: &dyn AnyMechanism, report: &StructureReport, q: &[f64]
     let mut redundant: Vec<usize> =
         following(&constraints, marked).into_iter().map(|k| constrained[k]).collect();
     redundant.sort_unstable();
-    let sparsity: Vec<Vec<usize>> = constrained
-        .iter()
-        .map(|index| report.rows[*index].entries.iter().map(|(column, _)| *column).collect())
-        .collect();
     Freedom {
         coordinates: n,
         constraints: constrained.len(),
         drives: report.rows.len() - constrained.len(),
-        structural_rank: structural_rank(&sparsity, n),
+        structural_rank: report.mobility.constraint_rank,
         rank: dependent.len(),
         whole_rank: rank(&rows),
         declared: named && independent.iter().all(|column| report.independent.contains(column)),
@@ -88,30 +84,12 @@ fn following(rows: &[Vec<f64>], late: impl Fn(&usize) -> bool) -> Vec<usize> {
 }
 
 /// Φ_q in the reference metric: rows over their scale, columns times theirs.
-pub fn scaled_jacobian(mechanism: &dyn AnyMechanism, q: &[f64], t: f64) -> Vec<Vec<f64>> {
+pub fn scaled_jacobian(mechanism: &dyn AnyEquations, q: &[f64], t: f64) -> Vec<Vec<f64>> {
     let zero = vec![0.0; q.len()];
     let functions = mechanism.evaluate(&State { q: q.to_vec(), qd: zero.clone(), qdd: zero, t });
     let scales = mechanism.coordinate_scales();
-    let rows = functions.phi_q.chunks(q.len().max(1)).zip(mechanism.experiment().row_scales());
+    let rows = functions.phi_q.chunks(q.len().max(1)).zip(mechanism.row_scales());
     rows.map(|(row, scale)| row.iter().zip(&scales).map(|(entry, s)| entry * s / scale).collect()).collect()
-}
-
-/// Size of a largest matching of rows and columns, by alternating paths.
-fn structural_rank(rows: &[Vec<usize>], columns: usize) -> usize {
-    fn augment(rows: &[Vec<usize>], row: usize, seen: &mut [bool], owner: &mut [Option<usize>]) -> bool {
-        for column in &rows[row] {
-            if std::mem::replace(&mut seen[*column], true) {
-                continue;
-            }
-            if owner[*column].is_none_or(|other| augment(rows, other, seen, owner)) {
-                owner[*column] = Some(row);
-                return true;
-            }
-        }
-        false
-    }
-    let mut owner = vec![None; columns];
-    (0..rows.len()).filter(|row| augment(rows, *row, &mut vec![false; columns], &mut owner)).count()
 }
 
 #[cfg(test)]
@@ -192,11 +170,5 @@ mod tests {
             assert_eq!(found.redundant.len(), surplus, "{}", card.name);
             assert_eq!(found.structural_rank, found.rank + surplus, "{}", card.name);
         }
-    }
-
-    #[test]
-    fn structural_rank_is_the_size_of_a_largest_matching() {
-        assert_eq!(structural_rank(&[vec![0, 1], vec![0]], 2), 2);
-        assert_eq!(structural_rank(&[vec![0], vec![0], vec![1, 2]], 3), 2);
     }
 }

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use mbs_codegen::Formulas;
 
 use super::matrix::short;
-use crate::facade::AnyMechanism;
+use crate::facade::AnyEquations;
 
 /// A matrix that is wider than the line is shrunk to it.
 const PREAMBLE: &str = "\\documentclass[a4paper]{article}
@@ -20,7 +20,7 @@ const PREAMBLE: &str = "\\documentclass[a4paper]{article}
 ";
 
 /// The document of `mechanism` from its `formulas` in LaTeX's spelling; `title` is plain text.
-pub fn document(mechanism: &dyn AnyMechanism, formulas: &Formulas, title: &str) -> String {
+pub fn document(mechanism: &dyn AnyEquations, formulas: &Formulas, title: &str) -> String {
     let n = formulas.coordinates.len();
     let mut text = String::from(PREAMBLE);
     // amsmath stops at ten columns.
@@ -124,7 +124,7 @@ fn entries(text: &mut String, formulas: &Formulas) {
     text.push_str("\\bigskip\n");
 }
 
-fn parameters(text: &mut String, mechanism: &dyn AnyMechanism, formulas: &Formulas) {
+fn parameters(text: &mut String, mechanism: &dyn AnyEquations, formulas: &Formulas) {
     let entries = mechanism.variables().iter().zip(&formulas.variables).enumerate();
     let list: Vec<String> = entries
         .filter_map(|(index, (entry, symbol))| {

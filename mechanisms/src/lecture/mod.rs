@@ -7,6 +7,7 @@ mod branchless;
 pub mod comparison;
 pub mod drift;
 pub mod experiment;
+pub mod formulas;
 pub mod freedom;
 pub mod latex;
 pub mod matrix;

@@ -67,6 +67,9 @@ impl AnyEquations for Hand {
             true
         })
     }
+    fn row_scales(&self) -> Vec<f64> {
+        vec![1.0; self.rows().len()]
+    }
     fn coordinate_scales(&self) -> Vec<f64> {
         vec![1.0, 0.3]
     }
