@@ -209,13 +209,7 @@ pub fn in_order(mut found: Vec<NodeId>, marked: &[bool]) -> Vec<NodeId> {
         return found;
     }
     found.clear();
-    let mut index = 0;
-    for mark in marked {
-        if *mark {
-            found.push(NodeId(index));
-        }
-        index += 1;
-    }
+    found.extend((0..).zip(marked).filter(|(_, mark)| **mark).map(|(index, _)| NodeId(index)));
     found
 }
 
