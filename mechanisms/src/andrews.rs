@@ -23,6 +23,7 @@ pub const CARD: FreeCard = FreeCard {
                   milliseconds, accelerations up to 5e5 rad/s².",
     runs: &[Preset { label: "0.03 s", description: "from rest, under a constant torque", set: &[] }],
     duration: 0.03,
+    is_stiff: false,
     drawing: DRAWING,
     make: boxed_masses::<Andrews, 7, 6>,
 };

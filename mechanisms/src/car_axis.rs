@@ -26,6 +26,7 @@ pub const CARD: FreeCard = FreeCard {
                   depend on time, and do work.",
     runs: &[Preset { label: "3 s", description: "moving to the left at the start", set: &[] }],
     duration: 3.0,
+    is_stiff: false,
     drawing: DRAWING,
     make: boxed_masses::<CarAxis, 4, 2>,
 };

@@ -25,6 +25,7 @@ pub const CARD: FreeCard = FreeCard {
                   below it.",
     runs: &[Preset { label: "4 s", description: "released level, at rest", set: &[] }],
     duration: 4.0,
+    is_stiff: false,
     drawing: DRAWING,
     make: boxed_masses::<CartPole, 4, 2>,
 };

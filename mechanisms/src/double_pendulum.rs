@@ -26,6 +26,7 @@ pub const CARD: FreeCard = FreeCard {
         Preset { label: "small", description: "the slow mode, at rest", set: &[("amplitude", 0.1)] },
     ],
     duration: 6.0,
+    is_stiff: false,
     drawing: DRAWING,
     make: boxed_masses::<DoublePendulum, 4, 2>,
 };

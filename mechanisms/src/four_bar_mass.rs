@@ -118,6 +118,7 @@ pub const RELEASED: FreeCard = FreeCard {
         },
     ],
     duration: 2.0,
+    is_stiff: false,
     drawing: four_bar::DRAWING,
     make: boxed_masses::<FourBarMassReleased, 5, 4>,
 };

@@ -25,6 +25,7 @@ pub const CARD: FreeCard = FreeCard {
                   at 1, and three rows for the pivot.",
     runs: &[Preset { label: "2 s", description: "150 rad/s about its level axis", set: &[] }],
     duration: 2.0,
+    is_stiff: false,
     drawing: DRAWING,
     make: boxed_masses::<HeavyTop, 7, 4>,
 };

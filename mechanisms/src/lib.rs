@@ -13,6 +13,7 @@
 //! ```
 
 pub mod andrews;
+pub mod bricard;
 pub mod cam_flat;
 pub mod cam_law;
 pub mod cam_oscillating;
@@ -29,6 +30,7 @@ pub mod four_bar_mixed;
 pub mod four_bar_natural;
 pub mod four_bar_reference_point;
 pub mod geneva;
+pub mod governor;
 pub mod heavy_top;
 pub mod jansen;
 pub mod loop_length;

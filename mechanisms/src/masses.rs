@@ -75,6 +75,17 @@ where
     Box::new(MassFacade::<S, N, M>::new(S::default()))
 }
 
+/// A new mechanism of type `S` with masses, of whose rows some follow from others, and which they leave free.
+pub fn boxed_redundant_masses<S, const N: usize, const M: usize>() -> Box<dyn AnyEquations>
+where
+    S: Dynamic<f64, N, M> + Default + 'static,
+{
+    Box::new(MassFacade::<S, N, M> {
+        kinematics: Facade(S::default()),
+        partitioned: PartitionedFunctions::of_redundant::<M>(),
+    })
+}
+
 /// A new mechanism of type `S` with masses, whose rows fix every coordinate.
 pub fn boxed_driven<S, const N: usize>() -> Box<dyn AnyMechanism>
 where

@@ -23,6 +23,7 @@ pub const CARD: FreeCard = FreeCard {
                   rods in line, where the rows lose rank.",
     runs: &[Preset { label: "10 s", description: "upright at the start, pushed to the right", set: &[] }],
     duration: 10.0,
+    is_stiff: false,
     drawing: DRAWING,
     make: boxed_masses::<NFourBar, 6, 5>,
 };

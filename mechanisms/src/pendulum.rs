@@ -19,6 +19,7 @@ pub const CARD: FreeCard = FreeCard {
     description: "A bob on a massless rod, released level: one degree of freedom in two coordinates.",
     runs: &[Preset { label: "10 s", description: "released level, at rest", set: &[] }],
     duration: 10.0,
+    is_stiff: false,
     drawing: DRAWING,
     make: boxed_masses::<Pendulum, 2, 1>,
 };

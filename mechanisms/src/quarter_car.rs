@@ -30,6 +30,7 @@ pub const CARD: FreeCard = FreeCard {
         Preset { label: "wheel", description: "waves at 10 Hz: the wheel hops", set: &[("omega", 63.0)] },
     ],
     duration: 3.0,
+    is_stiff: false,
     drawing: DRAWING,
     make: boxed_masses::<QuarterCar, 2, 0>,
 };

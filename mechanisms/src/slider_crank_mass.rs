@@ -100,6 +100,7 @@ pub const RELEASED: FreeCard = FreeCard {
         },
     ],
     duration: 0.6,
+    is_stiff: false,
     drawing: slider_crank::DRAWING,
     make: boxed_masses::<CrankPistonReleased, 3, 2>,
 };

@@ -82,14 +82,17 @@ pub fn analyse(model: &Model, equations: &mut Equations, diagnostics: &mut Diagn
     }
     let square = matching.free_columns().next().is_none();
     let surplus: Vec<usize> = matching.free_rows().collect();
-    if !square && !surplus.is_empty() {
+    let uncounted = square && surplus.is_empty() && is_uncounted(model);
+    if !square && !surplus.is_empty() || uncounted {
         // Nothing is solved for in blocks: the equations of motion take all rows together.
         let independent: Vec<usize> = (0..model.coordinates.len()).collect();
         missing_guesses(model, &[], &independent, diagnostics);
-        let matched = matching.of_row;
+        let open = |row: usize| uncounted && model.rows.get(row).is_some_and(|row| row.redundant);
+        let matched = matching.of_row.into_iter().enumerate();
+        let matched = matched.map(|(row, column)| if open(row) { None } else { column }).collect();
         return diagnostics.is_empty().then_some(Structure {
             blocks: Vec::new(),
-            square,
+            square: false,
             independent,
             matched,
         });
@@ -111,6 +114,13 @@ pub fn analyse(model: &Model, equations: &mut Equations, diagnostics: &mut Diagn
     let blocks = surplus::merged(blocks, &surplus, &rows, &matching, model.coordinates.len());
     missing_guesses(model, &blocks, &independent, diagnostics);
     diagnostics.is_empty().then_some(Structure { blocks, square, independent, matched: matching.of_row })
+}
+
+/// Whether masses move freely although there are as many rows as coordinates: some follow from others, as the text says, and
+/// nothing is driven. By count such a loop is rigid: Bricard's mechanism.
+fn is_uncounted(model: &Model) -> bool {
+    let rows = &model.rows;
+    model.dynamics.is_some() && rows.iter().any(|row| row.redundant) && !rows.iter().any(|row| row.driven)
 }
 
 /// Reports coordinates without a guess that Newton's method has to start from.

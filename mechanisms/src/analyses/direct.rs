@@ -3,13 +3,13 @@
 use std::time::{Duration, Instant};
 
 use mbs_runtime::dynamics::{
-    Baumgarte, Counts, DormandPrince8, Doubt, Explicit, Formulation, Method, Projection, RungeKutta4,
-    Simulation, Stages, Tolerance, Unstabilized, VelocityTransformation,
+    AugmentedLagrangian, Baumgarte, Counts, DormandPrince8, Doubt, Explicit, Formulation, GeneralizedAlpha,
+    Method, Projection, RungeKutta4, Simulation, Stages, Tolerance, Unstabilized, VelocityTransformation,
 };
 use mbs_runtime::{Dynamic, Failure, Partitioned};
 
 use super::AnyDynamics;
-use super::start::{Start, start};
+use super::start::{Start, start, text_start};
 use crate::facade::{Motion, State};
 use crate::motion::{self, Forces};
 
@@ -25,6 +25,26 @@ pub enum Stabilization {
     Projection,
     /// Independent coordinates through the blocks of the rows, projected after each step.
     Velocity,
+    /// By an implicit method, which is on them at each step's end; it has steps of its own.
+    Implicit(Implicit),
+}
+
+/// Implicit steps, equal ones from instant to instant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Implicit {
+    /// Which method.
+    pub method: ImplicitMethod,
+    /// Longest step (s).
+    pub longest: f64,
+}
+
+/// Methods for what is stiff.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ImplicitMethod {
+    /// Trapezoidal rule with penalties, multipliers and projections; redundant rows need no care.
+    AugmentedLagrangian,
+    /// Generalised-α on the equations of index 3, ρ∞ = 0.8.
+    GeneralizedAlpha,
 }
 
 /// How the steps are chosen.
@@ -103,6 +123,15 @@ impl<S, const N: usize> PartitionedFunctions<S, N> {
     {
         PartitionedFunctions { start: start::<S, N, M>, by_velocity: by_velocity::<S, N, M> }
     }
+
+    /// Of `S` whose rows follow from one another, so that no blocks lead through them: the text's start, and projection onto all
+    /// rows together.
+    pub fn of_redundant<const M: usize>() -> Self
+    where
+        S: Dynamic<f64, N, M>,
+    {
+        PartitionedFunctions { start: text_start::<S, N, M>, by_velocity: by_projection::<S, N, M> }
+    }
 }
 
 /// Follows `mechanism` from the text's start through `times` (s).
@@ -128,7 +157,35 @@ pub(crate) fn simulate<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
             integrate(mechanism, Projection { stages }, &start, steps, times, progress)
         }
         Stabilization::Velocity => (partitioned.by_velocity)(mechanism, &start, steps, times, progress),
+        Stabilization::Implicit(Implicit { method, longest }) => match method {
+            ImplicitMethod::AugmentedLagrangian => {
+                implicit(mechanism, AugmentedLagrangian, &start, longest, times, progress)
+            }
+            ImplicitMethod::GeneralizedAlpha => {
+                implicit(mechanism, GeneralizedAlpha::default(), &start, longest, times, progress)
+            }
+        },
     }
+}
+
+fn implicit<S, X, const N: usize, const M: usize>(
+    mechanism: &S,
+    method: X,
+    (q, qd): &Start<N>,
+    longest: f64,
+    times: &[f64],
+    progress: &mut dyn FnMut(usize),
+) -> Result<Simulated, Failure>
+where
+    S: Dynamic<f64, N, M>,
+    X: Method<S, f64, N, M>,
+{
+    /// Part of a step that rounding may put on top of a whole number of them.
+    const ROUNDING: f64 = 1e-9;
+    let first = times.first().copied().unwrap_or(0.0);
+    let start = Simulation::start_near(mechanism.clone(), method, first, *q, *qd)?;
+    let steps = |span: f64| ((span / longest - ROUNDING).ceil().max(1.0)) as u32;
+    Ok(follow(start, times, progress, |run, t| run.step_to(t, steps(t - run.t()))).0)
 }
 
 /// By independent coordinates, for mechanisms that have them.
@@ -143,6 +200,17 @@ where
     S: Dynamic<f64, N, M> + Partitioned<f64, N, M>,
 {
     integrate(mechanism, VelocityTransformation, start, steps, times, progress)
+}
+
+/// By all rows together, for mechanisms without independent coordinates.
+fn by_projection<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
+    mechanism: &S,
+    start: &Start<N>,
+    steps: Steps,
+    times: &[f64],
+    progress: &mut dyn FnMut(usize),
+) -> Result<Simulated, Failure> {
+    integrate(mechanism, Projection { stages: Stages::All }, start, steps, times, progress)
 }
 
 fn integrate<S, F, const N: usize, const M: usize>(

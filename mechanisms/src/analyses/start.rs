@@ -45,3 +45,12 @@ where
     }
     (q, qd)
 }
+
+/// The text's numbers.
+pub(crate) fn text_start<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
+    mechanism: &S,
+    _t: f64,
+) -> Start<N> {
+    let parameters = mechanism.parameters();
+    (mechanism.guess(&parameters), mechanism.start_rates(&parameters))
+}

@@ -6,7 +6,7 @@ use clap::{Args, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
 use mbs_runtime::dynamics::{Baumgarte, Doubt};
 use mechanisms::analyses::AnyDynamics;
-use mechanisms::analyses::direct::{Approach, Simulated, Stabilization, Steps};
+use mechanisms::analyses::direct::{Approach, Implicit, ImplicitMethod, Simulated, Stabilization, Steps};
 use mechanisms::facade::{AnyMechanism, Motion, MotionStop};
 use mechanisms::registry::{Preset, instants};
 
@@ -38,6 +38,17 @@ pub enum MethodName {
     None,
     /// Independent coordinates through the blocks of the constraints
     Velocity,
+    /// Implicit trapezoidal steps of `--step` with penalties and multipliers, for stiff forces
+    AugmentedLagrangian,
+    /// Implicit steps of `--step` by generalised-alpha, for stiff forces
+    GeneralizedAlpha,
+}
+
+impl MethodName {
+    /// Whether it has steps of its own.
+    pub fn is_implicit(self) -> bool {
+        matches!(self, MethodName::AugmentedLagrangian | MethodName::GeneralizedAlpha)
+    }
 }
 
 /// Baumgarte's constants.
@@ -63,8 +74,12 @@ impl Damping {
         format!(" --frequency {} --damping {}", self.frequency, self.damping)
     }
 
-    pub fn stabilization(self, method: MethodName) -> Stabilization {
+    /// `longest`: of an implicit method's steps (s).
+    pub fn stabilization(self, method: MethodName, longest: f64) -> Stabilization {
+        let implicit = |method| Stabilization::Implicit(Implicit { method, longest });
         match method {
+            MethodName::AugmentedLagrangian => implicit(ImplicitMethod::AugmentedLagrangian),
+            MethodName::GeneralizedAlpha => implicit(ImplicitMethod::GeneralizedAlpha),
             MethodName::Projection => Stabilization::Projection,
             MethodName::None => Stabilization::None,
             MethodName::Velocity => Stabilization::Velocity,

@@ -47,7 +47,7 @@ pub fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<(), CommandErro
     let dynamics = dynamics(subject, &instance)?;
     let mut found = Vec::new();
     for method in &arguments.methods {
-        let stabilization = arguments.damping.stabilization(*method);
+        let stabilization = arguments.damping.stabilization(*method, f64::INFINITY);
         let approach = Approach { stabilization, steps: Steps::Fixed };
         let name = method.to_possible_value().map_or_else(String::new, |value| value.get_name().to_string());
         let simulated = dynamics
@@ -55,7 +55,11 @@ pub fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<(), CommandErro
             .map_err(|failure| CommandError::Failed(format!("{}, {name}: {failure}", subject.name())))?;
         found.push((name, simulated));
     }
-    let title = format!("{}: RK4 in {} steps", subject.title(), arguments.steps);
+    let implicit = match arguments.methods.iter().any(|method| method.is_implicit()) {
+        true => ", implicit methods as well,",
+        false => "",
+    };
+    let title = format!("{}: RK4{implicit} in {} steps", subject.title(), arguments.steps);
     let curves: Vec<Curve> =
         found.iter().map(|(name, simulated)| Curve::of(name.clone(), &simulated.motion)).collect();
     let standard = || target_directory().join("mbs").join(file_name(subject.name())).join("drift.svg");

@@ -60,6 +60,11 @@ impl Subject {
         }
     }
 
+    /// Whether its forces are too stiff for explicit steps.
+    pub fn is_stiff(self) -> bool {
+        matches!(self, Subject::Free(card) if card.is_stiff)
+    }
+
     pub fn drawing(self) -> &'static [Shape] {
         match self {
             Subject::Fixed(card) => card.drawing,

@@ -1,0 +1,151 @@
+//! Mechanisms of bodies in space, as long as their benchmarks ask for.
+#![forbid(unsafe_code)]
+
+use mbs_runtime::Dynamic;
+use mbs_runtime::Mechanism;
+use mbs_runtime::dynamics::kkt::System;
+use mbs_runtime::dynamics::{
+    AugmentedLagrangian, DormandPrince8, Explicit, GeneralizedAlpha, Method, Metric, Projection, Simulation,
+    Stages, Tolerance,
+};
+use mechanisms::bricard::Bricard;
+use mechanisms::governor::Governor;
+
+#[test]
+fn bricards_loop_keeps_its_energy_with_its_redundant_row() {
+    /// Energy, of the largest kinetic one.
+    const ENERGY: f64 = 1e-9;
+    const INSTANTS: u32 = 100;
+    let method = Explicit::new(DormandPrince8, Projection { stages: Stages::All });
+    let run = Simulation::start_from_text(Bricard::default(), method, 0.0).expect("it starts");
+    let mut run = run.with_tolerance(Tolerance::new(1e-11));
+    let (mut kinetic, mut defect, mut violation) = (0.0_f64, 0.0_f64, 0.0_f64);
+    for instant in 1..=INSTANTS {
+        run.advance_to(10.0 * f64::from(instant) / f64::from(INSTANTS)).expect("it moves");
+        let balance = run.balance();
+        kinetic = kinetic.max(balance.energy.kinetic);
+        defect = defect.max(balance.defect.abs());
+        violation = violation.max(balance.phi).max(balance.phi_d);
+        let mechanism = run.mechanism();
+        let parameters = mechanism.parameters();
+        let position = mechanism.position(&parameters, run.q(), run.t());
+        let (mass, phi_q) = (mechanism.mass(&parameters, &position), mechanism.phi_q(&parameters, &position));
+        let metric = Metric::of(mechanism, &parameters);
+        let factors = System::new(&mass, &phi_q, &metric)
+            .factorize(<Bricard as Mechanism<f64, 23, 23>>::COORDINATES, run.t())
+            .expect("every motion has inertia");
+        assert_eq!(factors.rank(), 22, "at {} s", run.t());
+        assert_eq!(factors.dependent_rows().iter().filter(|dependent| **dependent).count(), 1);
+    }
+    println!("energy {defect:.1e} J of {kinetic:.4} J, rows {violation:.1e}, {:?}", run.counts());
+    assert!(kinetic > 4.0 && defect < ENERGY * kinetic, "{defect:e} J of {kinetic} J");
+    assert!(violation < 1e-12, "{violation:e}");
+}
+
+/// The governor by the angles φ of the shaft, β of both rods below the level, and the height s of the slider, the angular momentum
+/// about the shaft given: β, s, their rates, φ.
+struct Reduced {
+    rod: f64,
+    ball: f64,
+    slider: f64,
+    thin: f64,
+    long: f64,
+    shaft: f64,
+    momentum: f64,
+}
+
+impl Reduced {
+    fn new() -> Self {
+        let (rod, slider) = (3000.0 * 1e-4, 3000.0 * 1e-3);
+        let (thin, long) = (rod * 1e-4 / 6.0, rod * (1.0 + 1e-4) / 12.0);
+        let shaft = thin + slider * 1e-2 / 6.0;
+        let plain = Reduced { rod, ball: 5.0, slider, thin, long, shaft, momentum: 0.0 };
+        let momentum = plain.inertia(START[0]).0 * core::f64::consts::TAU;
+        Reduced { momentum, ..plain }
+    }
+
+    /// Moment of inertia about the shaft, and its slope along β.
+    fn inertia(&self, beta: f64) -> (f64, f64) {
+        let (sine, cosine) = beta.sin_cos();
+        let (middle, end) = (0.05 + 0.5 * cosine, 0.05 + cosine);
+        let about = self.thin * sine * sine + self.long * cosine * cosine;
+        let sum = self.shaft + 2.0 * (self.rod * middle * middle + about + self.ball * end * end);
+        let turning = (self.thin - self.long) * sine * cosine;
+        (sum, -2.0 * sine * (self.rod * middle + 2.0 * self.ball * end) + 4.0 * turning)
+    }
+
+    fn rates(&self, [beta, s, beta_d, s_d, _]: [f64; 5]) -> [f64; 5] {
+        let (sine, cosine) = beta.sin_cos();
+        let (inertia, slope) = self.inertia(beta);
+        let speed = self.momentum / inertia;
+        let (out, down) = (0.5 * cosine, 1.0 - 0.5 * sine - s);
+        let length = out.hypot(down);
+        let (along_beta, along_s) = ((-0.5 * sine * out - 0.5 * cosine * down) / length, -down / length);
+        let tension = 8e5 * (length - 0.5) + 4e4 * (along_beta * beta_d + along_s * s_d);
+        let weight = 2.0 * 9.81 * cosine * (0.5 * self.rod + self.ball);
+        let beta_inertia = 2.0 * (0.25 * self.rod + self.long + self.ball);
+        let beta_dd = (0.5 * slope * speed * speed + weight - 2.0 * tension * along_beta) / beta_inertia;
+        [beta_d, s_d, beta_dd, -9.81 - 2.0 * tension * along_s / self.slider, speed]
+    }
+
+    /// One step of RK4 (s).
+    fn step(&self, y: [f64; 5], h: f64) -> [f64; 5] {
+        let moved = |k: [f64; 5], part: f64| core::array::from_fn(|i| y[i] + part * h * k[i]);
+        let first = self.rates(y);
+        let second = self.rates(moved(first, 0.5));
+        let third = self.rates(moved(second, 0.5));
+        let fourth = self.rates(moved(third, 1.0));
+        core::array::from_fn(|i| y[i] + h / 6.0 * (first[i] + 2.0 * (second[i] + third[i]) + fourth[i]))
+    }
+}
+
+/// β, s, their rates, φ.
+const START: [f64; 5] = [core::f64::consts::FRAC_PI_6, 0.5, 0.0, 0.0, 0.0];
+
+const SECONDS: u32 = 10;
+
+/// s and φ at every tenth of a second, by steps at a third of the limit of stability: halving them moves no digit of twelve.
+fn reference() -> Vec<[f64; 2]> {
+    const STEPS: u32 = 4000;
+    let (reduced, mut y) = (Reduced::new(), START);
+    let mut found = Vec::new();
+    for _ in 0..10 * SECONDS {
+        for _ in 0..STEPS {
+            y = reduced.step(y, 0.1 / f64::from(STEPS));
+        }
+        found.push([y[1], y[4]]);
+    }
+    found
+}
+
+/// Largest errors of s (m) and φ (rad) at every tenth of a second, in `steps` each; energy not accounted for (J), of the largest kinetic
+/// one.
+fn errors<X: Method<Governor, f64, 16, 12>>(method: X, steps: u32, exact: &[[f64; 2]]) -> [f64; 3] {
+    let mut run = Simulation::start_from_text(Governor::default(), method, 0.0).expect("it starts");
+    let (mut s, mut phi, mut defect, mut kinetic) = (0.0_f64, 0.0_f64, 0.0_f64, 0.0_f64);
+    for (tenth, exact) in (1_u32..).zip(exact) {
+        run.step_to(f64::from(tenth) / 10.0, steps).expect("it moves");
+        s = s.max((run.q()[1] - exact[0]).abs());
+        phi = phi.max((run.q()[0] - exact[1]).abs());
+        let balance = run.balance();
+        defect = defect.max(balance.defect.abs());
+        kinetic = kinetic.max(balance.energy.kinetic);
+    }
+    [s, phi, defect / kinetic]
+}
+
+#[test]
+fn the_stiff_governor_is_right_at_steps_a_hundred_times_its_fastest_time() {
+    let exact = reference();
+    let coarse = errors(AugmentedLagrangian, 100, &exact);
+    let fine = errors(AugmentedLagrangian, 500, &exact);
+    println!(
+        "augmented Lagrangian, errors of s (m), phi (rad), energy: {coarse:?} at 1e-3 s, {fine:?} at 2e-4 s"
+    );
+    let alpha = errors(GeneralizedAlpha::default(), 100, &exact);
+    println!("generalised-alpha: {alpha:?} at 1e-3 s");
+    assert!(coarse[0] < 1e-4 && fine[0] < 1e-6 && alpha[0] < 1e-4, "{coarse:?} {fine:?} {alpha:?}");
+    // Order 2: a fifth of the step leaves a twenty-fifth of the error.
+    assert!(coarse[0] / fine[0] > 20.0 && coarse[0] / fine[0] < 30.0, "{coarse:?} {fine:?}");
+    assert!(coarse[1] < 1e-2 && fine[1] < 1e-4, "{coarse:?} {fine:?}");
+}
