@@ -60,17 +60,14 @@ mechanism! {
     let view = [[-cos(30deg), cos(30deg), 0], [-1/2, -1/2, 1]];
     out O: [m; 2] = [0, 0];
     out C: [m; 2] = view*r;
-    out rim: [m; 2] = view*(r + rotate(e, [0.2*l, 0, 0]));
-    out x_end: [m; 2] = view*[0.5*l, 0, 0];
-    out y_end: [m; 2] = view*[0, 0.5*l, 0];
-    out z_end: [m; 2] = view*[0, 0, 0.5*l];
+    out rim_point: [m; 2] = view*(r + rotate(e, [0.2*l, 0, 0]));
 }
 
 /// How the mechanism is drawn: seen from above, along the diagonal of the axes.
 pub const DRAWING: &[Shape] = &[
     Shape::Ground { at: "O" },
     Shape::Link { points: &["O", "C"], label: "top" },
-    Shape::Link { points: &["C", "rim"], label: "" },
+    Shape::Link { points: &["C", "rim_point"], label: "" },
     Shape::Joint { at: "O" },
     Shape::Trace { of: "C", label: "centre of mass" },
 ];

@@ -54,6 +54,8 @@ fn free_spin([j1, j2, j3]: [f64; 3], [w1, w3]: [f64; 2], t: f64) -> [f64; 3] {
 #[test]
 fn a_free_body_spins_as_elliptic_functions_say_and_keeps_momentum_and_energy() {
     const BOUND: f64 = 1e-10;
+    /// A projection stops at some ten roundings.
+    const ROUNDING: f64 = 100.0 * f64::EPSILON;
     let method = Explicit::new(DormandPrince8, Projection::default());
     let mut run = Simulation::start_from_text(Spinning::default(), method, 0.0)
         .unwrap()
@@ -79,7 +81,10 @@ fn a_free_body_spins_as_elliptic_functions_say_and_keeps_momentum_and_energy() {
             );
         }
         let balance = run.balance();
-        assert!(balance.defect.abs() < BOUND && balance.phi < 1e-14 && balance.phi_d < 1e-14, "{balance:?}");
+        assert!(
+            balance.defect.abs() < BOUND && balance.phi < ROUNDING && balance.phi_d < ROUNDING,
+            "{balance:?}"
+        );
     }
 }
 

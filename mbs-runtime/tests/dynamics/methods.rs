@@ -1,8 +1,8 @@
 //! Independent coordinates, implicit methods, penalty: each against the same exact motions.
 
 use mbs_runtime::dynamics::{
-    AugmentedLagrangian, DormandPrince8, Explicit, GeneralizedAlpha, Method, Penalty, Projection,
-    RungeKutta4, Simulation, Tolerance, VelocityTransformation,
+    AugmentedLagrangian, DormandPrince8, Explicit, Extrapolated, GeneralizedAlpha, Method, Penalty,
+    Projection, RungeKutta4, Simulation, Tolerance, VelocityTransformation,
 };
 use mbs_runtime::{Block, BlockSolver, Direct1, Factorization, Margin, Outcome, Partitioned};
 
@@ -94,6 +94,15 @@ fn implicit_methods_are_of_order_two() {
         let order = (coarse / fine).log2();
         assert!((order - 2.0).abs() < 0.1, "{order}: {coarse:e} {fine:e}");
     }
+}
+
+#[test]
+fn two_half_steps_against_a_whole_one_are_of_order_three() {
+    let [coarse, fine] = [500, 1000].map(|steps| error(&stepped(Extrapolated, steps)));
+    let order = (coarse / fine).log2();
+    assert!((order - 3.0).abs() < 0.1, "{order}: {coarse:e} {fine:e}");
+    let simulation = stepped(Extrapolated, 1000);
+    assert!(simulation.balance().phi < 1e-13 && simulation.balance().phi_d < 1e-12);
 }
 
 #[test]

@@ -3,8 +3,9 @@
 use std::time::{Duration, Instant};
 
 use mbs_runtime::dynamics::{
-    AugmentedLagrangian, Baumgarte, Counts, DormandPrince8, Doubt, Explicit, Formulation, GeneralizedAlpha,
-    Method, Projection, RungeKutta4, Simulation, Stages, Tolerance, Unstabilized, VelocityTransformation,
+    AugmentedLagrangian, Baumgarte, Counts, DormandPrince8, Doubt, Explicit, Extrapolated, Formulation,
+    GeneralizedAlpha, Method, Projection, RungeKutta4, Simulation, Stages, Tolerance, Unstabilized,
+    VelocityTransformation,
 };
 use mbs_runtime::{Dynamic, Failure, Partitioned};
 
@@ -43,6 +44,8 @@ pub struct Implicit {
 pub enum ImplicitMethod {
     /// Trapezoidal rule with penalties, multipliers and projections; redundant rows need no care.
     AugmentedLagrangian,
+    /// Two half steps of it against a whole one, extrapolated.
+    Extrapolated,
     /// Generalised-α on the equations of index 3, ρ∞ = 0.8.
     GeneralizedAlpha,
 }
@@ -160,6 +163,9 @@ pub(crate) fn simulate<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
         Stabilization::Implicit(Implicit { method, longest }) => match method {
             ImplicitMethod::AugmentedLagrangian => {
                 implicit(mechanism, AugmentedLagrangian, &start, longest, times, progress)
+            }
+            ImplicitMethod::Extrapolated => {
+                implicit(mechanism, Extrapolated, &start, longest, times, progress)
             }
             ImplicitMethod::GeneralizedAlpha => {
                 implicit(mechanism, GeneralizedAlpha::default(), &start, longest, times, progress)

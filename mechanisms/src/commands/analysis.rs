@@ -40,6 +40,8 @@ pub enum MethodName {
     Velocity,
     /// Implicit trapezoidal steps of `--step` with penalties and multipliers, for stiff forces
     AugmentedLagrangian,
+    /// The same, two half steps extrapolated against a whole one: order 3
+    Extrapolated,
     /// Implicit steps of `--step` by generalised-alpha, for stiff forces
     GeneralizedAlpha,
 }
@@ -47,7 +49,10 @@ pub enum MethodName {
 impl MethodName {
     /// Whether it has steps of its own.
     pub fn is_implicit(self) -> bool {
-        matches!(self, MethodName::AugmentedLagrangian | MethodName::GeneralizedAlpha)
+        matches!(
+            self,
+            MethodName::AugmentedLagrangian | MethodName::Extrapolated | MethodName::GeneralizedAlpha
+        )
     }
 }
 
@@ -79,6 +84,7 @@ impl Damping {
         let implicit = |method| Stabilization::Implicit(Implicit { method, longest });
         match method {
             MethodName::AugmentedLagrangian => implicit(ImplicitMethod::AugmentedLagrangian),
+            MethodName::Extrapolated => implicit(ImplicitMethod::Extrapolated),
             MethodName::GeneralizedAlpha => implicit(ImplicitMethod::GeneralizedAlpha),
             MethodName::Projection => Stabilization::Projection,
             MethodName::None => Stabilization::None,
