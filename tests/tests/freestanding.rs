@@ -11,14 +11,21 @@ use std::path::PathBuf;
 use mbs_tests::{proofs::Workshop, tools};
 
 /// One a mechanism and scalar type: all emitted functions and, but for lanes, all solvers.
-const EXPORTS: [&str; 10] = [
+const EXPORTS: [&str; 17] = [
+    "proof_batch",
     "proof_cam_f32",
     "proof_cam_f64",
     "proof_cam_lanes",
+    "proof_engine_f32",
+    "proof_engine_f64",
+    "proof_engine_lanes",
     "proof_entry",
     "proof_four_bar_f32",
     "proof_four_bar_f64",
     "proof_four_bar_lanes",
+    "proof_parallelogram_f32",
+    "proof_parallelogram_f64",
+    "proof_parallelogram_lanes",
     "proof_platform_f32",
     "proof_platform_f64",
     "proof_platform_lanes",

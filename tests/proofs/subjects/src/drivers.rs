@@ -8,7 +8,7 @@ use mbs_runtime::driver::{
 };
 use mbs_runtime::{Function, Lanes};
 
-use crate::entry_points as entry;
+use crate::entry_points::drivers as entry;
 
 const HARMONIC: Harmonic = Harmonic { offset: 1.0, amplitude: 2.0, frequency: 3.0, phase: 4.0 };
 const POLYNOMIAL: Polynomial<4> = Polynomial { coefficients: [20.0, 2.0, 4.0, 2.0] };

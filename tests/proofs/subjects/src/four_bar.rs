@@ -33,4 +33,6 @@ mechanism! {
 
     out B: [m; 2] = L1*unit(phi1) + L2*unit(phi2);
     out transmission_angle: rad = phi3 - phi2;
+    out regular: 1 = margin(closure);
+    out lever: 1 = ratio(phi3, crank);
 }

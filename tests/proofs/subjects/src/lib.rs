@@ -6,13 +6,19 @@
 
 pub mod cam;
 pub mod drivers;
+pub mod dynamics;
+pub mod engine;
 pub mod entry_points;
 pub mod exercise;
 pub mod four_bar;
+pub mod parallelogram;
 pub mod platform;
 
 pub use cam::{Cam, cam};
 pub use drivers::{exercise_laws, exercise_splines};
-pub use exercise::{Start, exercise_emitted, exercise_solvers};
+pub use dynamics::{exercise_dynamics, exercise_masses};
+pub use engine::{Engine, engine};
+pub use exercise::{Start, exercise_batch, exercise_emitted, exercise_functions, exercise_solvers};
 pub use four_bar::FourBar;
+pub use parallelogram::Parallelogram;
 pub use platform::Platform;

@@ -1,0 +1,34 @@
+//! Mechanisms side by side.
+
+use mbs_runtime::{Batch, Failure, Kinematic, Lanes, Real, Statistics, Stepper};
+
+entry_points! {
+    /// The first positions.
+    fn assemble[
+        S: Kinematic<Lanes<R, L>, N, M>, R: Real, const L: usize, const N: usize, const M: usize
+    ](mechanism: S, guess: &[[R; N]; L], t: [R; L]) -> Result<Batch<S, R, L, N, M>, (usize, Failure)>
+    where [S::Lane: Kinematic<R, N, M>] {
+        Batch::assemble(mechanism, guess, t)
+    }
+    /// A step in all lanes.
+    fn advance_to[
+        S: Kinematic<Lanes<R, L>, N, M>, R: Real, const L: usize, const N: usize, const M: usize
+    ](batch: &mut Batch<S, R, L, N, M>, t: [R; L]) -> [Result<Statistics, Failure>; L]
+    where [S::Lane: Kinematic<R, N, M>] {
+        batch.advance_to(t)
+    }
+    /// A change of a variable in all lanes.
+    fn change[
+        S: Kinematic<Lanes<R, L>, N, M>, R: Real, const L: usize, const N: usize, const M: usize
+    ](batch: &mut Batch<S, R, L, N, M>, index: usize, value: Lanes<R, L>) -> bool
+    where [S::Lane: Kinematic<R, N, M>] {
+        batch.change(|mechanism| mechanism.set(index, value))
+    }
+    /// One lane alone.
+    fn stepper[
+        S: Kinematic<Lanes<R, L>, N, M>, R: Real, const L: usize, const N: usize, const M: usize
+    ](batch: &Batch<S, R, L, N, M>, lane: usize) -> Option<Stepper<S::Lane, R, N, M>>
+    where [S::Lane: Kinematic<R, N, M>] {
+        batch.stepper(lane)
+    }
+}
