@@ -52,10 +52,10 @@ const FORBIDDEN: [&str; 10] = [
 fn linked(feature: Option<&str>) -> Result<PathBuf, String> {
     let workshop = Workshop::new(env!("CARGO_TARGET_TMPDIR"), "proofs", "");
     let name = feature.unwrap_or("proof");
-    let mut arguments = vec!["--profile=freestanding", "--package=proof-freestanding"];
+    let mut arguments = vec!["--profile=linked", "--package=proof-freestanding"];
     let feature = feature.map(|feature| format!("--features={feature}"));
     arguments.extend(feature.as_deref());
-    let product = "freestanding/libproof_freestanding.a";
+    let product = "linked/libproof_freestanding.a";
     let library = workshop
         .build(&arguments, product, &format!("{name}.a"))
         .unwrap_or_else(|complaint| panic!("the library does not compile:\n{complaint}"));
