@@ -88,7 +88,7 @@ static CRATE: LazyLock<WrittenCrate> = LazyLock::new(|| {
     for (index, (Sampled { kind, seed, .. }, ExpectedScene { name, states })) in scenes().enumerate() {
         let n = states[0].0.q.len();
         let functions = if kind.has_functions() { "<StandIn<0>, StandIn<1>>" } else { "" };
-        let of = format!("::<text_{seed}::Random{seed}{name}{functions}, {n}, {n}>");
+        let of = format!("::<text_{seed}::Random{seed}{name}{functions}, {n}, {rows}>");
         values += &format!("        {index} => values{of}(numbers),\n");
         digits += &format!("    digits{of}(&oracle, &mut summary);\n");
     }
@@ -111,7 +111,7 @@ fn compiled_texts_compute_what_second_order_taylor_arithmetic_computes() {
     let mut questions = String::new();
     for (index, (_, scene)) in scenes().enumerate() {
         for (state, _) in &scene.states {
-            let State { q, qd, qdd, t, variables } = state;
+            let State { q, qd, qdd, t, variables, .. } = state;
             let numbers = [q.as_slice(), qd, qdd, &[*t], variables].concat();
             questions += &format!("{index}{}\n", line(numbers.into_iter()));
         }
@@ -164,7 +164,7 @@ fn fifty_digits_confirm_compiled_texts() {
 }
 
 /// What each stands for can be written in no other way.
-const LANGUAGE: [&str; 46] = [
+const LANGUAGE: [&str; 47] = [
     "sin(",
     "cos(",
     "exp(",
@@ -201,6 +201,7 @@ const LANGUAGE: [&str; 46] = [
     "rate(",
     "drive ",
     "constraint ",
+    "again redundant {",
     "rise(",
     "sag(",
     "rise.d1(",

@@ -2,7 +2,7 @@
 
 use super::law;
 use super::oracle::State;
-use crate::equations::Equations;
+use crate::equations::{Equations, Sparse};
 use crate::program::{Line, Program, Section, Stage};
 use crate::symbolic::{Graph, Leaf, Node, NodeId, Unary, evaluate};
 
@@ -21,7 +21,7 @@ pub fn run(equations: &Equations, program: &Program, state: &State) -> Vec<(Stri
     };
     let rows = &equations.rows;
     let entries = rows.iter().flat_map(|row| {
-        (0..rows.len()).map(|column| row.phi_q.iter().find(|(c, _)| *c == column).map(|(_, entry)| *entry))
+        (0..state.q.len()).map(|column| row.phi_q.iter().find(|(c, _)| *c == column).map(|(_, entry)| *entry))
     });
     read("phi", &program.phi, rows.iter().map(|row| Some(row.phi)).collect());
     read("phi_q", &program.phi_q, entries.collect());
@@ -33,6 +33,25 @@ pub fn run(equations: &Equations, program: &Program, state: &State) -> Vec<(Stri
     let outputs = equations.outputs.iter();
     let outputs = outputs.flat_map(|y| [Some(y.value), y.rate.flatten(), y.acceleration.flatten()]);
     read("output", &program.outputs, outputs.collect());
+    if let (Some(dynamics), Some(program)) = (&equations.dynamics, &program.dynamics) {
+        let dense = |matrix: &Sparse| -> Vec<Option<NodeId>> {
+            let entry =
+                |row: &[(usize, NodeId)], column| row.iter().find(|(c, _)| *c == column).map(|(_, e)| *e);
+            matrix.iter().flat_map(|row| (0..state.q.len()).map(|column| entry(row, column))).collect()
+        };
+        read("mass", &program.mass, dense(&dynamics.mass));
+        read("mass_times", &program.mass_times, dynamics.mass_times.clone());
+        read("force", &program.force, dynamics.force.clone());
+        read("reaction", &program.reaction, dynamics.reaction.clone());
+        read("force_q", &program.force_q, dense(&dynamics.force_q));
+        read("force_qd", &program.force_qd, dense(&dynamics.force_qd));
+        read("mass_times_q", &program.mass_times_q, dense(&dynamics.mass_times_q));
+        read("reaction_q", &program.reaction_q, dense(&dynamics.reaction_q));
+        read("energy", &program.energy, vec![dynamics.kinetic, dynamics.potential]);
+        read("power", &program.powers, dynamics.powers.clone());
+        read("state_rate", &program.state_rates, dynamics.state_rates.clone());
+        read("load", &program.loads, dynamics.loads.iter().map(|load| Some(*load)).collect());
+    }
     results
 }
 
@@ -115,7 +134,9 @@ impl Machine<'_> {
             Node::Leaf(Leaf::Time) => self.state.t,
             Node::Leaf(Leaf::Position(i)) => self.state.q[i as usize],
             Node::Leaf(Leaf::Velocity(i)) => self.state.qd[i as usize],
-            Node::Leaf(Leaf::Acceleration(i)) => self.state.qdd[i as usize],
+            Node::Leaf(Leaf::Acceleration(i) | Leaf::Direction(i)) => self.state.qdd[i as usize],
+            Node::Leaf(Leaf::State(i)) => self.state.states[i as usize],
+            Node::Leaf(Leaf::Multiplier(i)) => self.state.lambda[i as usize],
             node => panic!("{node:?} is used before it is computed"),
         }
     }

@@ -2,12 +2,14 @@
 //!
 //! A text goes through the whole front end. On one side its program is interpreted line by line, stage by stage, as
 //! the emitted code would run; on the other the model's expressions are evaluated with jets, second-order Taylor
-//! arithmetic that carries its own bound on rounding. `tests/tests/random_texts.rs` compiles a sample.
+//! arithmetic that carries its own bound on rounding, and masses and forces by virtual work in mixed derivatives. `tests/tests/random_texts.rs` compiles a sample.
 
 #[cfg(test)]
 mod interpreter;
 mod jet;
 mod law;
+mod masses;
+mod nilpotent;
 mod oracle;
 mod text;
 
@@ -39,6 +41,8 @@ pub enum Kind {
     Scenes,
     /// Both.
     ScenesWithFunctions,
+    /// Masses and forces.
+    Masses,
 }
 
 impl Kind {
@@ -57,7 +61,10 @@ pub fn text(kind: Kind, seed: u64) -> String {
 pub struct ExpectedScene {
     /// Its name; empty where the text has no scenes.
     pub name: String,
-    /// At each state: Φ, Φ_q row by row, Φ_t, Φ_tt, Φ_qt q̇, γ, branches, outputs with rate and acceleration.
+    /// Number of rows.
+    pub rows: usize,
+    /// At each state: Φ, Φ_q row by row, Φ_t, Φ_tt, Φ_qt q̇, γ, branches, outputs with rate and acceleration; then what
+    /// belongs to masses.
     pub states: Vec<(State, Vec<Expected>)>,
 }
 
@@ -73,7 +80,7 @@ pub fn expected(kind: Kind, seed: u64) -> Option<Vec<ExpectedScene>> {
             let expected = oracle::run(&model, &state);
             (state, expected)
         };
-        Some(ExpectedScene { name, states: states.map(beside).collect() })
+        Some(ExpectedScene { name, rows: model.rows.len(), states: states.map(beside).collect() })
     };
     understand_scenes(&text(kind, seed)).into_iter().map(scene).collect()
 }
@@ -175,6 +182,23 @@ fn random_texts_with_functions_compute_what_second_order_taylor_arithmetic_compu
     }
     tally.report(TEXTS_WITH_FUNCTIONS);
     assert!(tally.compared > 1000 * TEXTS_WITH_FUNCTIONS as usize, "{} values", tally.compared);
+}
+
+/// Texts with masses, and states of each: every entry of a matrix is an evaluation of its own there.
+#[cfg(test)]
+const TEXTS_WITH_MASSES: u64 = 100;
+#[cfg(test)]
+const STATES_WITH_MASSES: usize = 3;
+
+#[test]
+fn random_texts_with_masses_compute_what_virtual_work_in_mixed_derivatives_computes() {
+    let mut tally = Tally::default();
+    for seed in 0..TEXTS_WITH_MASSES {
+        let text = text(Kind::Masses, seed);
+        tally.compare(understand(&text), seed, STATES_WITH_MASSES, &text);
+    }
+    tally.report(TEXTS_WITH_MASSES);
+    assert!(tally.compared > 400 * TEXTS_WITH_MASSES as usize, "{} values", tally.compared);
 }
 
 /// What was compared so far.

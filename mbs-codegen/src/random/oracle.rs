@@ -2,6 +2,7 @@
 
 use super::jet::Jet;
 use super::law;
+use super::masses;
 use super::{ROUNDINGS, Random};
 use crate::model::expression::Node;
 use crate::model::{Model, VariableKind};
@@ -18,6 +19,10 @@ pub struct State {
     pub t: f64,
     /// Parameters and inputs, component by component.
     pub variables: Vec<f64>,
+    /// First-order states; none without masses.
+    pub states: Vec<f64>,
+    /// Multipliers: M; none without masses.
+    pub lambda: Vec<f64>,
 }
 
 impl State {
@@ -31,6 +36,8 @@ impl State {
             qdd: numbers(n),
             t: numbers(1)[0],
             variables: numbers(model.variables.len()),
+            states: numbers(model.dynamics.as_ref().map_or(0, |dynamics| dynamics.states.len())),
+            lambda: numbers(model.dynamics.as_ref().map_or(0, |_| model.rows.len())),
         }
     }
 }
@@ -70,7 +77,7 @@ struct Line {
 }
 
 /// All functions in the order in which the interpreter gives them: Φ, Φ_q row by row, Φ_t, Φ_tt, Φ_qt q̇, γ,
-/// branches, outputs with rate and acceleration.
+/// branches, outputs with rate and acceleration; then those of masses.
 pub fn run(model: &Model, state: &State) -> Vec<Expected> {
     let still = Line { time: false, velocity: false, acceleration: false, axis: None };
     let rows: Vec<usize> = model.rows.iter().map(|row| row.residual.index()).collect();
@@ -104,6 +111,7 @@ pub fn run(model: &Model, state: &State) -> Vec<Expected> {
     for output in &model.outputs {
         expected.extend((0..3).flat_map(|k| part(&jets[output.value.index()..][..1], k, 1.0)));
     }
+    expected.extend(model.dynamics.iter().flat_map(|dynamics| masses::run(model, dynamics, state)));
     expected
 }
 
@@ -134,13 +142,10 @@ fn evaluate(model: &Model, state: &State, line: Line) -> Vec<Jet> {
                     orders.map(|order| law::magnitude(function, order)),
                 )
             }
-            Node::Rate(..)
-            | Node::State(_)
-            | Node::Multiplier(_)
-            | Node::Pin(..)
-            | Node::Margin(_)
-            | Node::Ratio(..) => {
-                unreachable!("random texts are kinematic and use no `der`, no margin and no ratio")
+            // Of forces alone: where it stood in anything else, nothing would agree.
+            Node::Rate(..) | Node::State(_) | Node::Multiplier(_) => Jet::constant(f64::NAN),
+            Node::Pin(..) | Node::Margin(_) | Node::Ratio(..) => {
+                unreachable!("random texts use no pin, no margin and no ratio")
             }
         };
         jets.push(jet);

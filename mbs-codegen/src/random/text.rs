@@ -7,7 +7,48 @@ pub(super) fn write(kind: Kind, random: &mut Random) -> String {
     match kind {
         Kind::Plain | Kind::Functions => begin(random, kind.has_functions()).0,
         Kind::Scenes | Kind::ScenesWithFunctions => with_scenes(random, kind.has_functions()),
+        Kind::Masses => with_masses(random),
     }
+}
+
+/// A text with every kind of body, force and energy.
+fn with_masses(random: &mut Random) -> String {
+    let (mut text, mut writer) = begin(random, false);
+    let row = if text.contains("drive d0") { "d0" } else { "c0" };
+    text += "state z: 1 = 0.1;\n";
+    let acting = [format!("(lambda({row})/1N/1m)"), String::from("z")];
+    let (heavy, turning) = (writer.design(2), writer.design(2));
+    text += &format!(
+        "body plate {{ mass: 1kg*(1.5 + sin({heavy})), inertia: 1kg*1m^2*(1.5 + cos({turning})), com: 1m*({}), angle: {} }}\n",
+        writer.vector(2),
+        writer.scalar(2)
+    );
+    text += &format!("body bob {{ mass: 1kg*(2 + cos({heavy})), com: 1m*({}) }}\n", writer.vector(1));
+    text += &format!("gravity g {{ acceleration: 1m/1s^2*[{}, -9.81] }}\n", writer.speed(1));
+    text += &format!("potential well = 1N*1m*({});\n", writer.scalar(2));
+    let (a, b, c) = (writer.rate(), writer.rate(), writer.scalar(1));
+    text += &format!("kinetic rotor = 1kg*1m^2*(1.5 + sin({c}))*{a}*{b}/1s^2;\n");
+    text += &format!("dissipation bearing = 1N*1m/1s*(1 + {a}^2)^1.5*exp(sin({c}));\n");
+    let [push, twist, actuator, torque] = [0; 4].map(|_| writer.acting(&acting));
+    text += &format!("force push: 1N*[{push}, {}] on 1m*({});\n", writer.acting(&acting), writer.vector(2));
+    text += &format!("torque twist: 1N*1m*({twist}) on {};\n", writer.scalar(2));
+    let stiffness = if writer.random.below(2) == 0 { writer.design(1) } else { writer.scalar(1) };
+    text += &format!(
+        "tsda strut {{ from: 1m*[p0, 3], to: 1m*({}), stiffness: 1N/1m*({stiffness}), length: 1m*({}), damping: 1N*1s/1m*({}), actuator: 1N*({actuator}) }}\n",
+        writer.vector(1),
+        writer.design(1),
+        writer.design(1)
+    );
+    text += &format!(
+        "rsda knee {{ angle: {}, stiffness: 1N*1m*({}), rest: {}, damping: 1N*1m*1s*({}), torque: 1N*1m*({torque}) }}\n",
+        writer.scalar(2),
+        writer.design(1),
+        writer.design(1),
+        writer.design(1)
+    );
+    text += &format!("der(z) == ({})/1s;\n", writer.acting(&acting));
+    text += &format!("out load: 1 = z*lambda({row})/1N/1m + {};\n", writer.acting(&acting));
+    text
 }
 
 /// A text with two effects that give the same names different meanings, before the rest or behind it, and three scenes.
@@ -59,18 +100,31 @@ fn begin(random: &mut Random, functions: bool) -> (String, Writer<'_>) {
     }
     text += &format!("let b = {};\n", writer.vector(2));
     writer.names.extend(["b[0]", "b.1"].map(String::from));
+    let surplus = writer.random.below(4) == 0;
+    let marked = if surplus && writer.random.below(2) == 0 { "redundant " } else { "" };
+    // Both sides of rows that surplus ones can follow from; a phase stands in no text.
+    let mut sides = Vec::new();
     for index in 0..scalars {
         let (left, right) = (writer.scalar(3), writer.scalar(4));
-        text += &match writer.random.below(4) {
-            0 => format!("drive d{index}: q{index} == {};\n", writer.scalar(4)),
-            1 => format!("drive d{index}: rate(q{index}*(2.5 + sin({left}))) == ({})/1s;\n", writer.speed(3)),
-            2 => format!("drive d{index}: q{index}*(2.5 + sin({left})) == {right};\n"),
-            _ => format!("constraint c{index} {{ {right} == q{index}*(1.1 + ({left})^2); }}\n"),
+        let (before, [left, right]) = match writer.random.below(4) {
+            0 => (format!("drive d{index}:"), [format!("q{index}"), writer.scalar(4)]),
+            1 => {
+                let driven = format!("rate(q{index}*(2.5 + sin({left})))");
+                text += &format!("drive d{index}: {driven} == ({})/1s;\n", writer.speed(3));
+                continue;
+            }
+            2 => (format!("drive d{index}:"), [format!("q{index}*(2.5 + sin({left}))"), right]),
+            _ => (format!("constraint c{index} {marked}{{"), [right, format!("q{index}*(1.1 + ({left})^2)")]),
         };
+        let after = if before.ends_with('{') { " }" } else { "" };
+        text += &format!("{before} {left} == {right};{after}\n");
+        sides.push([left, right]);
     }
     text += &match writer.random.below(3) {
         0 => {
-            format!("constraint pair {{ v*({}) + {} == [v[0], q0]; }}\n", writer.scalar(2), writer.vector(3))
+            let (left, right) = (writer.scalar(2), writer.vector(3));
+            sides.push([format!("(v*({left}) + {right})[1]"), String::from("q0")]);
+            format!("constraint pair {marked}{{ v*({left}) + {right} == [v[0], q0]; }}\n")
         }
         1 => format!(
             "constraint pair {{ for i in 0..N {{ v[i]*(i + {}) == {}*L[i + 1]; }} }}\n",
@@ -79,6 +133,9 @@ fn begin(random: &mut Random, functions: bool) -> (String, Writer<'_>) {
         ),
         _ => format!("for i in 0..N {{ drive each: v[i] == {} - L[i]*v[1 - i]; }}\n", writer.scalar(3)),
     };
+    if surplus && !sides.is_empty() {
+        text += &writer.surplus(&sides);
+    }
     text += &format!("branch open: {} > q0 + {};\n", writer.scalar(3), writer.scalar(2));
     if functions {
         // A function that nothing calls is a fault.
@@ -144,6 +201,22 @@ impl Writer<'_> {
         }
     }
 
+    /// A constraint of rows that hold wherever those of `sides` do: multiples, sums, differences of squares.
+    fn surplus(&mut self, sides: &[[String; 2]]) -> String {
+        let mut rows = String::new();
+        for _ in 0..=self.random.below(2) {
+            let pick = |random: &mut Random| &sides[random.below(sides.len() as u64) as usize];
+            let ([a, b], [c, d]) = (pick(self.random), pick(self.random));
+            rows += &match self.random.below(4) {
+                0 => format!(" (1.5 + sin({}))*(({a}) - ({b})) == 0;", self.scalar(1)),
+                1 => format!(" ({a})^2 == ({b})^2;"),
+                2 => format!(" 2*({a}) + p1*({c}) == 2*({b}) + p1*({d});"),
+                _ => format!(" {b} == {a};"),
+            };
+        }
+        format!("constraint again redundant {{{rows} }}\n")
+    }
+
     /// A number of the names that every scene has.
     fn common(&mut self, depth: u32) -> String {
         let own = self.names.split_off(self.names.len() - 2);
@@ -158,6 +231,31 @@ impl Writer<'_> {
         self.names.retain(|name| !name.starts_with(['q', 'v', 'a', 'b']));
         let value = self.scalar(depth);
         self.names = all;
+        value
+    }
+
+    /// A number of the parameters alone.
+    fn design(&mut self, depth: u32) -> String {
+        let all = self.names.clone();
+        self.names.retain(|name| name.starts_with(['p', 'L', 'C']));
+        let value = self.scalar(depth);
+        self.names = all;
+        value
+    }
+
+    /// A rate without unit.
+    fn rate(&mut self) -> String {
+        format!("(der(q0*cos({}))*1s)", self.scalar(1))
+    }
+
+    /// A number that rates and the names of `acting` stand in too.
+    fn acting(&mut self, acting: &[String]) -> String {
+        let known = self.names.len();
+        let rates = [self.rate(), self.rate()];
+        self.names.extend(rates);
+        self.names.extend_from_slice(acting);
+        let value = self.scalar(3);
+        self.names.truncate(known);
         value
     }
 
