@@ -85,7 +85,7 @@ static CRATE: LazyLock<WrittenCrate> = LazyLock::new(|| {
         let text = sampled.text().replace("mechanism Random;", &format!("mechanism Random{seed};"));
         modules += &format!("mod text_{seed} {{\nmbs_runtime::mechanism! {{\n{text}}}\n}}\n");
     }
-    for (index, (Sampled { kind, seed, .. }, ExpectedScene { name, states })) in scenes().enumerate() {
+    for (index, (Sampled { kind, seed, .. }, ExpectedScene { name, rows, states })) in scenes().enumerate() {
         let n = states[0].0.q.len();
         let functions = if kind.has_functions() { "<StandIn<0>, StandIn<1>>" } else { "" };
         let of = format!("::<text_{seed}::Random{seed}{name}{functions}, {n}, {rows}>");
