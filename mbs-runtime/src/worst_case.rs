@@ -53,6 +53,30 @@ pub struct Work {
     pub blocks: &'static [BlockWork],
 }
 
+impl Work {
+    /// That of a mechanism without rows.
+    pub const NONE: Self = Work {
+        coordinates: 0,
+        rows: 0,
+        entries: 0,
+        branches: 0,
+        limits: 0,
+        phases: 0,
+        inputs: 0,
+        position: Operations::NONE,
+        phi: Operations::NONE,
+        phi_q: Operations::NONE,
+        phi_t: Operations::NONE,
+        gamma: Operations::NONE,
+        branch_values: Operations::NONE,
+        limit_values: Operations::NONE,
+        phase_speeds: Operations::NONE,
+        coordinate_scales: Operations::NONE,
+        row_scales: Operations::NONE,
+        blocks: &[],
+    };
+}
+
 /// What a diagonal block costs.
 #[derive(Clone, Copy, Debug)]
 pub struct BlockWork {

@@ -61,6 +61,28 @@ mechanism! {
 }
 
 mechanism! {
+    /// Three cranks on one plate, what its middle one does told by margins and ratios; by a clock or by a speed.
+    pub mechanism Told;
+    param u: m = 1;
+    param omega: rad/s = 0.7;
+    coord alpha: rad = 0.5;
+    coord beta: rad = 0.5;
+    coord gamma: rad = 0.5;
+    coord psi: rad = 0;
+    coord y: m = 0.5;
+    constraint first redundant { u*(unit(alpha) + 2*unit(psi)) == u*([2, 0] + unit(beta)); }
+    constraint second redundant { u*(unit(alpha) + unit(psi)) == u*([1, 0] + unit(gamma)); }
+    constraint height { y == u*sin(gamma); }
+    effect timed { drive crank: alpha == 0.5 + omega*t; }
+    effect rated { drive crank: rate(alpha) == omega; }
+    out margins: [1; 2] = [margin(first), margin(height)];
+    out turn: 1 = ratio(gamma, crank);
+    out rise: m = ratio(y, crank);
+    scene Timed = timed;
+    scene Rated = rated;
+}
+
+mechanism! {
     /// A third crank on the coupler of two; `error` is what it is longer.
     pub mechanism Cranks;
     param unit_length: m = 1;
@@ -276,4 +298,32 @@ fn a_mass_on_a_doubled_row_has_functions_of_two_rows() {
     let position = hanging.position(&parameters, &[0.3, -0.4], 0.0);
     assert_eq!(hanging.phi(&parameters, &position), [0.0, 0.0]);
     assert_eq!(<Hanging as Mechanism<f64, 2, 2>>::REDUNDANT, [false, true]);
+}
+
+#[test]
+fn margins_and_ratios_are_those_of_the_rows_that_agree_in_any_unit() {
+    fn check<S: Kinematic<f64, 5, 6>>(mechanism: S, unit: f64) {
+        let parameters = mechanism.parameters();
+        let mut guess = mechanism.guess(&parameters);
+        guess[4] *= unit;
+        let mut stepper = Stepper::assemble(mechanism, guess, 0.0).expect("it assembles");
+        for k in 1..=30 {
+            stepper.advance_to(0.1 * f64::from(k)).expect("it moves");
+            let values: Vec<f64> = stepper.outputs().as_ref().iter().map(|output| output.value).collect();
+            let [first, height, turn, rise] = values[..] else { panic!("four outputs") };
+            assert!((first - stepper.margin()).abs() < 1e-15 && height == 1.0, "{values:?}");
+            // What rounding leaves of the position, a few ε, over the margin.
+            let bound = 1e-14 / stepper.margin();
+            // Crank and plate: ∂γ/∂α = 1, ∂y/∂α = cos α, and rates over the crank's.
+            assert!((turn - 1.0).abs() < bound, "{turn}");
+            assert!((rise / unit - stepper.q()[0].cos()).abs() < bound, "{rise}");
+            assert!((rise - stepper.qd()[4] / stepper.qd()[0]).abs() < bound * unit, "{rise}");
+        }
+    }
+    for unit in [1e-9, 1e-3, 1.0, 1e3] {
+        let told = ToldTimed { u: unit, ..Default::default() };
+        check(told, unit);
+        let rated: ToldRated = told.scene();
+        check(rated, unit);
+    }
 }

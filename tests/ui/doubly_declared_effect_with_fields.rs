@@ -1,5 +1,5 @@
 #![deny(warnings)]
-use mbs_runtime::{Stepper, mechanism};
+use mbs_runtime::{Stepper, WorstCase, mechanism};
 
 mechanism! {
     pub mechanism Rod;
@@ -17,6 +17,7 @@ fn main() {
     rod.L = 0.25;
     rod.omega = -rod.omega;
     rod.swing = 0.1;
+    println!("{}", RodFree::<f64>::WORST_CASE_OPERATIONS);
     let guess = RodFreeCoordinates { phi: 0.1, p: [0.25, 0.0], s: 0.25 };
     if let Ok(stepper) = Stepper::assemble(rod, guess, 0.0) {
         let named = RodFreeCoordinates::from(*stepper.q());

@@ -17,12 +17,13 @@ pub fn stub(text: &Text, scenes: &Scenes) -> TokenStream {
         let model = &scene.model;
         // A text of dynamics may have fewer rows than coordinates; any other is meant to be square.
         let square = model.dynamics.is_none() || model.rows.len() == model.coordinates.len();
-        Part { scene, square, surplus: false, docs: Vec::new(), bodies: bodies(model) }
+        let bodies = bodies(model, &text.header.runtime);
+        Part { scene, square, surplus: false, docs: Vec::new(), bodies }
     });
     item::item(text, scenes, &parts.collect::<Vec<_>>(), None)
 }
 
-fn bodies(model: &Model) -> Bodies {
+fn bodies(model: &Model, runtime: &TokenStream) -> Bodies {
     let body = || quote! { { ::core::unreachable!() } };
     Bodies {
         orders: vec![0; model.functions.len()],
@@ -55,7 +56,8 @@ fn bodies(model: &Model) -> Bodies {
         solve_with_position: body(),
         factorize: body(),
         solve_linear: body(),
-        work: body(),
+        // A constant: the compiler computes it.
+        work: quote! { #runtime::Work::NONE },
         independent: Vec::new(),
         complete: body(),
         reduce: body(),

@@ -118,7 +118,7 @@ impl Resolver<'_> {
                     "an output has a margin or ratio and a multiplier or state",
                     "write two outputs: multipliers and states are known to the equations of motion alone",
                 )
-            } else if self.model.rows.len() != self.model.coordinates.len() {
+            } else if self.model.rows.len() < self.model.coordinates.len() {
                 (
                     "margins and ratios need as many rows as coordinates",
                     "drive what moves freely, or leave the output to a scene that does",

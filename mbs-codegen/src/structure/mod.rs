@@ -81,6 +81,9 @@ pub fn analyse(model: &Model, equations: &mut Equations, diagnostics: &mut Diagn
         return None;
     }
     let square = matching.free_columns().next().is_none();
+    if !square {
+        report_references(model, equations, diagnostics);
+    }
     let surplus: Vec<usize> = matching.free_rows().collect();
     let uncounted = square && surplus.is_empty() && is_uncounted(model);
     if !square && !surplus.is_empty() || uncounted {
@@ -252,6 +255,24 @@ fn report_branches(model: &Model, equations: &Equations, diagnostics: &mut Diagn
                 branch.span,
                 format!("branch `{}` contains no coordinate", branch.name),
                 "write a condition on the coordinates that tells the assemblies apart",
+            );
+        }
+    }
+}
+
+/// Names outputs of margins and ratios where the rows leave a coordinate free, though they are as many.
+fn report_references(model: &Model, equations: &Equations, diagnostics: &mut Diagnostics) {
+    let graph = &equations.graph;
+    let is_given = |id: &NodeId| matches!(graph.node(*id), Node::Leaf(Leaf::Given(..)));
+    for (output, derived) in model.outputs.iter().zip(&equations.outputs) {
+        if graph.reachable([derived.value]).iter().any(is_given) {
+            diagnostics.report(
+                output.span,
+                format!(
+                    "output `{}` has a margin or ratio, and the rows leave a coordinate free",
+                    output.name
+                ),
+                "drive what moves freely, or leave the output to a scene that does",
             );
         }
     }
