@@ -39,6 +39,10 @@ pub trait Dynamic<T: Scalar, const N: usize, const M: usize>: Mechanism<T, N, M>
     /// Whether [`force`](Self::force) depends on the multipliers: friction. Where it does not, methods save the
     /// iteration for it.
     const FORCE_USES_MULTIPLIERS: bool = true;
+    /// Coordinates whose start the text declares, ascending.
+    const STARTED: &'static [u16] = &[];
+    /// Coordinates of which it declares the rate at the start, ascending.
+    const STARTED_RATES: &'static [u16] = &[];
     /// First-order states.
     const STATES: &'static [Entry];
     /// Forces by name, in the order of [`powers`](Self::powers): what is neither gravity nor a potential.

@@ -119,6 +119,8 @@ pub const DRIVEN: Card = Card {
 
 #[cfg(test)]
 mod tests {
+    use mbs_runtime::dynamics::{DormandPrince8, Explicit, Projection, Simulation};
+
     use super::*;
     use crate::facade::Motion;
     use crate::newton_euler::{Body, Unknown, forces, periodic_slope, pin, plus, turning};
@@ -191,6 +193,15 @@ mod tests {
         // Over a turn at constant speed the motor does no work.
         let mean = torque[1..].iter().sum::<f64>() / 180.0;
         assert!(mean.abs() < 1e-9 * size, "{mean}");
+    }
+
+    #[test]
+    fn what_the_text_starts_stays_and_the_rows_give_the_rest() {
+        let method = Explicit::new(DormandPrince8, Projection::default());
+        let run = Simulation::start_from_text(CrankPistonReleased::<f64>::default(), method, 0.0);
+        let run = run.expect("it starts");
+        assert_eq!(run.q()[0], 60_f64.to_radians());
+        assert!(run.balance().phi < 1e-14 && run.qd().iter().all(|rate| *rate == 0.0));
     }
 
     #[test]

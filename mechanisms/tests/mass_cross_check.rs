@@ -45,6 +45,9 @@ mechanism! {
     kinetic rotor = J[0]*der(psi[1])*(der(psi[1]) + 3*der(psi[0])) + m[0]*L*der(s)*der(psi[0])*sin(psi[0])/9;
     kinetic swirl = m[1]*(p[0]*der(p[1]) - p[1]*der(p[0]))*omega;
     dissipation bearing = C*der(psi[0])^2*exp(sin(psi[1]))/2;
+    friction shoe { along: s + 0.1*L*sin(psi[0]), normal: lambda(slot) + z, coefficient: 0.3, speed: 0.2, viscous: 2 }
+    contact stop { gap: p[0] - 0.2m*sin(psi[1]), stiffness: 900*(1 + w[0]^2), damping: 0.4 }
+    contact ball { gap: s - 0.1m, stiffness: 2000, exponent: 1.5, depth: 1mm, damping: 0.2 }
     der(z) == (4N - z)/0.1s + k*der(s);
     der(w) == [der(psi[0]) - w[0]/1s, w[0]*w[1]*cos(psi[0])/1s];
     constraint slot { s == L/2 + 50mm*cos(psi[1]); }

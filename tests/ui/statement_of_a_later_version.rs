@@ -10,8 +10,8 @@ mechanism! {
     constraint tip { p == L*unit(phi); }
     drive crank: phi == omega*t;
     out speed: m/s = der(p.0);
-    friction slide { on: p }
-    contact wall { along: p }
+    data road: [m; 100];
+    include tyre;
 }
 
 fn main() {

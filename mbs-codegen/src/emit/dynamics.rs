@@ -1,5 +1,7 @@
 //! The emitted code of masses and forces: `impl Dynamic`.
 
+use std::collections::BTreeSet;
+
 use proc_macro2::TokenStream;
 use quote::{quote, quote_spanned};
 
@@ -100,6 +102,7 @@ pub fn implementation(
     let (n, m) = (model.coordinates.len(), model.rows.len());
     let (states, forces, loads) = (declared.states.len(), declared.forces.len(), declared.loads.len());
     let tables = tables(declared, runtime);
+    let starts = starts(declared);
     let DynamicBodies {
         force_uses_multipliers,
         start_states,
@@ -125,6 +128,7 @@ pub fn implementation(
             type Powers = [T; #forces];
             type Loads = [T; #loads];
             const FORCE_USES_MULTIPLIERS: bool = #force_uses_multipliers;
+            #starts
             #tables
             #[inline]
             fn start_states(&self, __p: &__Parameters<T>) -> [T; #states] #start_states
@@ -161,6 +165,23 @@ pub fn implementation(
                 #loads_body
             }
         }
+    }
+}
+
+/// Which coordinates the text starts; nothing where it starts none.
+fn starts(declared: &Declared) -> TokenStream {
+    let sorted = |indices: &mut dyn Iterator<Item = usize>| {
+        let indices: BTreeSet<u16> = indices.filter_map(|index| u16::try_from(index).ok()).collect();
+        indices.into_iter().collect::<Vec<u16>>()
+    };
+    let positions = sorted(&mut declared.started.iter().copied());
+    let rates = sorted(&mut declared.rates.iter().map(|(index, _)| *index));
+    if positions.is_empty() {
+        return TokenStream::new();
+    }
+    quote! {
+        const STARTED: &'static [u16] = &[#(#positions),*];
+        const STARTED_RATES: &'static [u16] = &[#(#rates),*];
     }
 }
 

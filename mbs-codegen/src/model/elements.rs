@@ -78,6 +78,20 @@ fn known(element: Element) -> Vec<Known> {
             ("damping", scalar(Dimension::JOULE.times(Dimension::SECOND)), false),
             ("torque", scalar(Dimension::JOULE), false),
         ],
+        Element::Friction => vec![
+            ("along", Kind::Scalar(Dimension::METRE, Reach::Position), true),
+            ("normal", scalar(Dimension::NEWTON), true),
+            ("coefficient", scalar(Dimension::NUMBER), true),
+            ("speed", Kind::Constant(Dimension::METRE.over(Dimension::SECOND)), true),
+            ("viscous", scalar(per_metre.times(Dimension::SECOND)), false),
+        ],
+        Element::Contact => vec![
+            ("gap", Kind::Scalar(Dimension::METRE, Reach::Position), true),
+            ("stiffness", scalar(per_metre), true),
+            ("exponent", Kind::Constant(Dimension::NUMBER), false),
+            ("depth", Kind::Constant(Dimension::METRE), false),
+            ("damping", scalar(Dimension::SECOND.over(Dimension::METRE)), false),
+        ],
     }
 }
 
@@ -108,6 +122,8 @@ impl Resolver<'_> {
             Element::Body => self.body(name, full, &given),
             Element::Gravity => self.gravity(name, &given),
             Element::Tsda => self.line(name, full, &given),
+            Element::Friction => self.friction(name, full, &given),
+            Element::Contact => self.contact(name, full, &given),
             Element::Rsda => {
                 let constant = ["stiffness", "rest"].iter().filter_map(|field| given.scalar(field));
                 let stores = constant.into_iter().all(|id| self.model.is_constant(id));
@@ -321,7 +337,7 @@ impl Resolver<'_> {
         Ok(())
     }
 
-    fn force(&mut self, name: &Name, full: String, action: Action) {
+    pub(super) fn force(&mut self, name: &Name, full: String, action: Action) {
         self.dynamics().forces.push(Force { name: full, action, span: name.span });
     }
 

@@ -5,6 +5,7 @@ mod bodies;
 mod declarations;
 mod declared_functions;
 mod drives;
+mod dry;
 pub mod dynamics;
 mod elaborate;
 mod elements;

@@ -285,6 +285,10 @@ pub enum Element {
     Tsda,
     /// Spring, damper and torque on an angle.
     Rsda,
+    /// Dry friction along a length.
+    Friction,
+    /// A force that opens a gap which has closed.
+    Contact,
 }
 
 /// What acts along a displacement.

@@ -29,6 +29,17 @@ pub fn read_rsda(parser: &mut Parser<'_>) -> Read<StatementKind> {
     element(parser, Element::Rsda, RSDA)
 }
 
+const FRICTION: &str =
+    "write `friction slide { along: s, normal: lambda(guide), coefficient: 0.1, speed: 1mm/1s }`";
+pub fn read_friction(parser: &mut Parser<'_>) -> Read<StatementKind> {
+    element(parser, Element::Friction, FRICTION)
+}
+
+const CONTACT: &str = "write `contact stop { gap: 0.1 - x, stiffness: 1e6, damping: 0.5 }`";
+pub fn read_contact(parser: &mut Parser<'_>) -> Read<StatementKind> {
+    element(parser, Element::Contact, CONTACT)
+}
+
 /// `name { field: value, … }`
 fn element(parser: &mut Parser<'_>, kind: Element, help: &str) -> Read<StatementKind> {
     let name = parser.name(help)?;

@@ -11,7 +11,7 @@ use super::unit::{declared_type, unit};
 use crate::diagnostics::{Diagnostics, nearest};
 
 /// Words that begin a statement of this version.
-const STATEMENTS: [&str; 27] = [
+const STATEMENTS: [&str; 29] = [
     "const",
     "param",
     "input",
@@ -36,13 +36,15 @@ const STATEMENTS: [&str; 27] = [
     "torque",
     "tsda",
     "rsda",
+    "friction",
+    "contact",
     "potential",
     "kinetic",
     "dissipation",
 ];
 
 /// Words that begin a statement of the language which this version does not translate.
-const LATER: [&str; 4] = ["friction", "contact", "data", "include"];
+const LATER: [&str; 2] = ["data", "include"];
 
 /// Before: flat tokens behind the header. After: all statements that could be read, loops and effects flattened and
 /// balanced, effects and scenes at the top level alone; every other one is reported.
@@ -216,6 +218,8 @@ fn reader(word: &str) -> Option<Reader> {
         "torque" => dynamics::read_torque,
         "tsda" => dynamics::read_tsda,
         "rsda" => dynamics::read_rsda,
+        "friction" => dynamics::read_friction,
+        "contact" => dynamics::read_contact,
         "potential" => dynamics::read_potential,
         "kinetic" => dynamics::read_kinetic,
         "dissipation" => dynamics::read_dissipation,

@@ -7,6 +7,9 @@ use super::model::Model;
 use super::vector::State;
 use crate::{Dynamic, Failure, Real};
 
+/// Rates in the metric (1/s, 1/s²) that a state at rest may have: a position of rest typed with nine digits.
+const AT_REST: f64 = 1e-9;
+
 /// Matrices of small motions q + R s on the constraints.
 ///
 /// The eigenvalues of s̈ = −M̄⁻¹ (C̄ ṡ + K̄ s) are 2·`freedom` and finite: no multiplier and no stabilisation adds any.
@@ -53,7 +56,11 @@ pub fn linearize<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     let freedom = N.saturating_sub(factors.rank());
     let basis = factors.free_motions();
     let reduced = |matrix: &[[R; N]; N]| reduced(matrix, &basis, freedom);
-    let moving = qd.iter().chain(qdd).any(|rate| *rate != zero);
+    let scaled = |rates: &[R; N]| {
+        let rates = rates.iter().zip(&metric.coordinates);
+        rates.fold(zero, |largest, (rate, scale)| largest.max((*rate / *scale).abs()))
+    };
+    let moving = R::constant(AT_REST) < scaled(qd).max(scaled(qdd));
     Ok(Linearization {
         freedom,
         basis,

@@ -28,6 +28,7 @@ mod null_space;
 pub mod penalty;
 pub mod projection;
 pub mod simulation;
+mod text_start;
 pub mod vector;
 pub mod velocity_transformation;
 

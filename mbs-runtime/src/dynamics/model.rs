@@ -65,6 +65,22 @@ pub trait Formulation<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usi
         counts: &mut Counts,
     ) -> Result<Solved<R, N, M, S::States>, Failure>;
 
+    /// Accelerations of a stage that cannot be put onto the constraints, in a step that cannot be made smaller: of the
+    /// state as it is.
+    ///
+    /// # Errors
+    /// Those of [`solve`](Self::solve).
+    fn solve_as_it_is(
+        &self,
+        model: &Model<'_, S, R, N, M>,
+        t: R,
+        y: &State<R, N, S::States>,
+        lambda: &[R; M],
+        counts: &mut Counts,
+    ) -> Result<Solved<R, N, M, S::States>, Failure> {
+        self.solve(model, t, y, lambda, counts)
+    }
+
     /// Puts the state that a step ended in back onto the constraints, as far as the formulation does.
     ///
     /// # Errors

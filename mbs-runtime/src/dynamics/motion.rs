@@ -102,7 +102,7 @@ where
         h: R,
         counts: &mut Counts,
     ) -> Result<Instant<R, N, M, S::States>, Failure> {
-        let mut motion = Equations::new(model, &self.formulation, from, *counts);
+        let mut motion = Equations::new(model, &self.formulation, from, *counts).of_fixed_steps();
         let t = from.t + h;
         let mut y = I::step(&mut motion, from.t, h, &from.y, &from.solved.rate)?;
         motion.settle(t, &mut y)?;
@@ -127,6 +127,8 @@ pub struct Equations<'a, S: Dynamic<R, N, M>, F, R: Real, const N: usize, const 
     tolerance: Tolerance<R>,
     /// Time (s) that the phases of the mechanism belong to.
     start: R,
+    /// Whether no step can be made smaller.
+    fixed: bool,
     /// What was found at the last evaluation.
     last: Solved<R, N, M, S::States>,
     pub(super) counts: Counts,
@@ -146,11 +148,16 @@ where
         counts: Counts,
     ) -> Self {
         let (tolerance, start) = (Tolerance::new(0.0), from.t);
-        Equations { model, formulation, tolerance, start, last: from.solved, counts }
+        Equations { model, formulation, tolerance, start, fixed: false, last: from.solved, counts }
     }
 
     pub(super) fn with_tolerance(self, tolerance: Tolerance<R>) -> Self {
         Equations { tolerance, ..self }
+    }
+
+    /// Of steps that cannot be made smaller.
+    pub(super) fn of_fixed_steps(self) -> Self {
+        Equations { fixed: true, ..self }
     }
 
     /// Rates and multipliers of a state.
@@ -178,7 +185,15 @@ where
 
     #[inline]
     fn rate(&mut self, t: R, y: &Self::State) -> Result<Self::State, Failure> {
-        Ok(self.solve(t, y)?.rate)
+        match self.solve(t, y) {
+            Err(Failure::OffConstraints { .. }) if self.fixed => {}
+            solved => return Ok(solved?.rate),
+        }
+        let (formulation, lambda, counts) = (self.formulation, self.last.lambda, &mut self.counts);
+        self.last = self
+            .model
+            .moved(self.start, t, |model| formulation.solve_as_it_is(model, t, y, &lambda, counts))?;
+        Ok(self.last.rate)
     }
 
     #[inline]

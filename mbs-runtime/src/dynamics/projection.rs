@@ -39,7 +39,8 @@ pub enum Stages {
     /// None: a step's end alone is.
     #[default]
     None,
-    /// All, at twice the cost and a fifth of the error.
+    /// All, at twice the cost and a fifth of the error. Next to a singular position a stage may be too far off; an adaptive
+    /// step is then tried again smaller, in one of fixed size the stage is taken as it is.
     All,
 }
 
@@ -76,6 +77,17 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Formulation<S
             return from_both_sides(model, (t, &y), solved, counts);
         }
         Ok(solved)
+    }
+
+    fn solve_as_it_is(
+        &self,
+        model: &Model<'_, S, R, N, M>,
+        t: R,
+        y: &State<R, N, S::States>,
+        lambda: &[R; M],
+        counts: &mut Counts,
+    ) -> Result<Solved<R, N, M, S::States>, Failure> {
+        Projection { stages: Stages::None }.solve(model, t, y, lambda, counts)
     }
 
     #[inline]

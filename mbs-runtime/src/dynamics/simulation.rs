@@ -7,6 +7,7 @@ use super::metric::{Metric, Tolerance};
 use super::model::{Counts, Doubt, Formulation, Model};
 use super::motion::{Equations, Explicit, Instant, Method};
 use super::projection::Projection;
+use super::text_start;
 use super::vector::State;
 use crate::limit::limit_failure;
 use crate::{Dynamic, Energy, Failure, Motion, Real, kinematics};
@@ -38,6 +39,17 @@ pub struct Simulation<S: Dynamic<R, N, M>, X, R: Real, const N: usize, const M: 
     tolerance: Tolerance<R>,
     adaptive: Adaptive<R>,
     counts: Counts,
+}
+
+/// Where a start comes from.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Origin {
+    /// On the constraints.
+    Consistent,
+    /// Next to them.
+    Near,
+    /// Of the text.
+    Text,
 }
 
 /// How a run went so far: energy that is not accounted for, rows that are violated, what it cost.
@@ -73,7 +85,7 @@ where
         q: impl Into<[R; N]>,
         qd: impl Into<[R; N]>,
     ) -> Result<Self, Failure> {
-        Self::starting(mechanism, method, t, (q.into(), qd.into()), true)
+        Self::starting(mechanism, method, t, (q.into(), qd.into()), Origin::Consistent)
     }
 
     /// Starts next to `q` (N) and `qd` (N) at `t` (s): from the positions and velocities on the constraints that are
@@ -89,17 +101,19 @@ where
         q: impl Into<[R; N]>,
         qd: impl Into<[R; N]>,
     ) -> Result<Self, Failure> {
-        Self::starting(mechanism, method, t, (q.into(), qd.into()), false)
+        Self::starting(mechanism, method, t, (q.into(), qd.into()), Origin::Near)
     }
 
-    /// Starts next to the text's guess with the text's start rates at `t` (s).
+    /// Starts next to the text's guess with the text's start rates at `t` (s). What the text declares by `start` stays as
+    /// declared where the rows can be met by the other coordinates; otherwise the nearest positions and velocities are
+    /// taken as in [`start_near`](Self::start_near).
     ///
     /// # Errors
     /// As [`start_near`](Self::start_near).
     pub fn start_from_text(mechanism: S, method: X, t: R) -> Result<Self, Failure> {
         let parameters = mechanism.parameters();
         let (q, qd) = (mechanism.guess(&parameters), mechanism.start_rates(&parameters));
-        Self::starting(mechanism, method, t, (q, qd), false)
+        Self::starting(mechanism, method, t, (q, qd), Origin::Text)
     }
 
     fn starting(
@@ -107,7 +121,7 @@ where
         method: X,
         t: R,
         (q, qd): ([R; N], [R; N]),
-        consistent: bool,
+        origin: Origin,
     ) -> Result<Self, Failure> {
         if let Some(failure) = kinematics::variable_failure(&mechanism) {
             return Err(failure);
@@ -120,8 +134,10 @@ where
         let states = mechanism.start_states(&parameters);
         let mut y = State { q, qd, states, work: R::constant(0.0) };
         model.check(t, &y)?;
-        if consistent {
-            model.require_consistent(t, &y)?;
+        match origin {
+            Origin::Consistent => model.require_consistent(t, &y)?,
+            Origin::Near => {}
+            Origin::Text => text_start::complete(&model, t, &mut y, &mut counts)?,
         }
         Projection::default().settle(&model, t, &mut y, &mut counts)?;
         let solved = method.solve(&model, t, &y, &[R::constant(0.0); M], &mut counts)?;

@@ -121,15 +121,8 @@ fn a_row_twice_shares_its_multiplier_and_is_named() {
 #[test]
 fn the_same_mechanism_in_millimetres_moves_the_same() {
     let run = |unit: f64| {
-        let mut linkage = parallel_loops::<6, 6>(0.0, 1.0).0;
-        linkage.gravity = linkage.gravity.map(|g| g * unit);
-        for rod in &mut linkage.rods {
-            rod.length *= unit;
-            if let End::Ground(place) = &mut rod.from {
-                *place = place.map(|x| x * unit);
-            }
-        }
-        let (_, q, qd) = parallel_loops::<6, 6>(0.0, 1.0);
+        let (linkage, q, qd) = parallel_loops::<6, 6>(0.0, 1.0);
+        let linkage = linkage.in_unit(unit);
         let method: Explicit<RungeKutta4, Projection> = Explicit::default();
         let mut simulation =
             Simulation::start(linkage, method, 0.0, q.map(|q| q * unit), qd.map(|qd| qd * unit)).unwrap();

@@ -47,6 +47,20 @@ impl<const N: usize, const M: usize> Linkage<N, M> {
         Linkage { rods, masses, gravity, damping: 0.0, shake: [0.0; 2], push: 0.0 }
     }
 
+    /// The same with lengths in a unit that a metre has `unit` of.
+    pub fn in_unit(mut self, unit: f64) -> Self {
+        self.gravity = self.gravity.map(|g| g * unit);
+        for rod in &mut self.rods {
+            rod.length *= unit;
+            for end in [&mut rod.from, &mut rod.to] {
+                if let End::Ground(place) = end {
+                    *place = place.map(|x| x * unit);
+                }
+            }
+        }
+        self
+    }
+
     fn end(end: End, q: &[f64; N], shake: f64) -> [f64; 2] {
         match end {
             End::Ground([x, y]) => [x + shake, y],

@@ -2,6 +2,7 @@
 
 pub mod direct;
 pub mod driven;
+pub mod linear;
 pub mod rest;
 pub mod start;
 
@@ -10,6 +11,7 @@ use mbs_runtime::{Dynamic, Failure};
 use crate::facade::Motion;
 use crate::masses::MassFacade;
 use direct::{Approach, Simulated};
+use linear::SmallMotions;
 
 /// A mechanism with masses of any size, whose motion follows from forces.
 pub trait AnyDynamics {
@@ -30,11 +32,17 @@ pub trait AnyDynamics {
     /// # Errors
     /// Those of inverse dynamics.
     fn add_forces(&self, motion: &mut Motion) -> Result<(), Failure>;
-    /// The position of rest next to the text's start, at time 0, as a motion of one instant.
+    /// The position of rest next to the text's start, at time 0, as a motion of one instant. `guesses` are coordinates by
+    /// their indices that the search starts from in place of the text's.
     ///
     /// # Errors
     /// Those of the search for an equilibrium.
-    fn rest(&self) -> Result<Motion, Failure>;
+    fn rest(&self, guesses: &[(usize, f64)]) -> Result<Motion, Failure>;
+    /// Small motions about the last instant of a motion from forces, or about a position of rest.
+    ///
+    /// # Errors
+    /// Why there are none, in words.
+    fn small_motions(&self, motion: &Motion) -> Result<SmallMotions, String>;
 }
 
 impl<S: Dynamic<f64, N, M>, const N: usize, const M: usize> AnyDynamics for MassFacade<S, N, M> {
@@ -51,8 +59,18 @@ impl<S: Dynamic<f64, N, M>, const N: usize, const M: usize> AnyDynamics for Mass
         driven::add_forces(&self.kinematics.0, motion)
     }
 
-    fn rest(&self) -> Result<Motion, Failure> {
+    fn rest(&self, guesses: &[(usize, f64)]) -> Result<Motion, Failure> {
         let mechanism = &self.kinematics.0;
-        rest::rest(mechanism, &(self.partitioned.start)(mechanism, 0.0).0)
+        let mut q = (self.partitioned.start)(mechanism, 0.0).0;
+        for (index, value) in guesses {
+            if let Some(slot) = q.get_mut(*index) {
+                *slot = *value;
+            }
+        }
+        rest::rest(mechanism, &q)
+    }
+
+    fn small_motions(&self, motion: &Motion) -> Result<SmallMotions, String> {
+        linear::small_motions(&self.kinematics.0, motion)
     }
 }

@@ -7,10 +7,11 @@ use indicatif::{ProgressBar, ProgressStyle};
 use mbs_runtime::dynamics::{Baumgarte, Doubt};
 use mechanisms::analyses::AnyDynamics;
 use mechanisms::analyses::direct::{Approach, Implicit, ImplicitMethod, Simulated, Stabilization, Steps};
+use mechanisms::analyses::linear::ZERO;
 use mechanisms::facade::{AnyMechanism, Motion, MotionStop};
 use mechanisms::registry::{Preset, instants};
 
-use super::chosen::finite;
+use super::chosen::{coordinate, finite};
 use super::subject::{Instance, Subject};
 use super::{CommandError, table};
 
@@ -25,6 +26,8 @@ pub enum Analysis {
     Static,
     /// Efforts and loads of the motion that drives prescribe
     Inverse,
+    /// Small motions about the position of rest, or about a state: their eigenvalues
+    Linear,
 }
 
 /// How a motion from forces stays on its constraints.
@@ -109,6 +112,10 @@ pub struct Wish {
     pub analysis: Option<Analysis>,
     pub stabilization: Stabilization,
     pub tolerance: f64,
+    /// Coordinates by name that the search for a position of rest starts from.
+    pub guesses: Vec<(String, f64)>,
+    /// Time (s) of the state that small motions are about.
+    pub at: Option<f64>,
     pub until: Option<f64>,
     pub steps: usize,
 }
@@ -142,21 +149,37 @@ impl Wish {
                 let dynamics = dynamics(subject, instance)?;
                 inverse(fixed(subject, instance)?, dynamics, &times, &mut heard)
             }
-            Analysis::Static => rest(dynamics(subject, instance)?),
-            Analysis::Dynamic => {
-                let steps = Steps::Adaptive { tolerance: self.tolerance };
-                let approach = Approach { stabilization: self.stabilization, steps };
-                direct(dynamics(subject, instance)?, &approach, &times, &mut heard)
+            Analysis::Static => rest(dynamics(subject, instance)?, &self.guesses(instance)?),
+            Analysis::Linear => {
+                let dynamics = dynamics(subject, instance)?;
+                match self.at {
+                    None => linear(dynamics, rest(dynamics, &self.guesses(instance)?)),
+                    Some(_) => linear(dynamics, direct(dynamics, &self.approach(), &times, &mut heard)),
+                }
             }
+            Analysis::Dynamic => direct(dynamics(subject, instance)?, &self.approach(), &times, &mut heard),
         };
         bar.finish_and_clear();
         found.map(|(motion, figures)| done(motion, figures)).map_err(fail)
     }
 
+    fn approach(&self) -> Approach {
+        let steps = Steps::Adaptive { tolerance: self.tolerance };
+        Approach { stabilization: self.stabilization, steps }
+    }
+
+    /// The guesses by index.
+    fn guesses(&self, instance: &Instance) -> Result<Vec<(usize, f64)>, CommandError> {
+        let index = |(name, value): &(String, f64)| Ok((coordinate(instance.equations(), name)?, *value));
+        self.guesses.iter().map(index).collect()
+    }
+
     fn times(&self, subject: Subject, instance: &Instance) -> Result<Vec<f64>, CommandError> {
-        let duration = match self.until {
-            Some(until) => until,
-            None => subject.duration(instance)?,
+        let duration = match (self.at, self.until) {
+            (Some(0.0), _) => return Ok(vec![0.0]),
+            (Some(at), _) => at,
+            (None, Some(until)) => until,
+            (None, None) => subject.duration(instance)?,
         };
         Ok(instants(duration, self.steps))
     }
@@ -221,8 +244,8 @@ fn inverse(
     Ok((motion, figures))
 }
 
-fn rest(dynamics: &dyn AnyDynamics) -> Found {
-    let motion = dynamics.rest().map_err(|failure| failure.to_string())?;
+fn rest(dynamics: &dyn AnyDynamics, guesses: &[(usize, f64)]) -> Found {
+    let motion = dynamics.rest(guesses).map_err(|failure| failure.to_string())?;
     let mut figures = vec![["iterations".to_string(), motion.iterations[0].to_string()]];
     for coordinate in &motion.coordinates {
         let value = format!("{}{}", table::short(coordinate.q[0]), table::unit(coordinate.unit));
@@ -230,6 +253,40 @@ fn rest(dynamics: &dyn AnyDynamics) -> Found {
     }
     figures.extend(loads(&motion));
     Ok((motion, figures))
+}
+
+/// Eigenvalues of small motions about the last instant of what was found.
+fn linear(dynamics: &dyn AnyDynamics, found: Found) -> Found {
+    let (motion, mut figures) = found?;
+    let small = dynamics.small_motions(&motion)?;
+    let about = match (small.frozen, motion.time.last()) {
+        (true, Some(t)) => {
+            format!("the state at t = {t} s, which moves: eigenvalues of one moment (frozen-time)")
+        }
+        _ => "a position of rest".to_string(),
+    };
+    figures.push(["small motions about".to_string(), about]);
+    figures.push(["degrees of freedom".to_string(), small.freedom.to_string()]);
+    // Of a pair the one with the positive imaginary part speaks for both.
+    let spoken = small.eigenvalues.iter().filter(|[_, imaginary]| *imaginary >= 0.0);
+    for (number, value) in spoken.enumerate() {
+        figures.push([format!("eigenvalue {}", number + 1), spelt(*value, small.norm)]);
+    }
+    Ok((motion, figures))
+}
+
+/// An eigenvalue (1/s) of a system of this norm, with what it means.
+fn spelt([real, imaginary]: [f64; 2], norm: f64) -> String {
+    let size = real.hypot(imaginary);
+    if size <= ZERO * norm {
+        return format!("0 ({size:.1e} 1/s): no force answers");
+    }
+    if imaginary == 0.0 {
+        let fate = if real < 0.0 { "decays in" } else { "grows in" };
+        return format!("{real:.6} 1/s: {fate} {:.4} s", 1.0 / real.abs());
+    }
+    let (hertz, damping) = (imaginary / std::f64::consts::TAU, -real / size);
+    format!("{real:.6} ± {imaginary:.6}i 1/s: {hertz:.6} Hz, damping ratio {damping:.4}")
 }
 
 fn direct(
@@ -307,7 +364,8 @@ fn loads(motion: &Motion) -> Vec<[String; 2]> {
     curves.iter().map(line).collect()
 }
 
-fn at_least_zero(text: &str) -> Result<f64, String> {
+/// A number of at least zero.
+pub fn at_least_zero(text: &str) -> Result<f64, String> {
     match finite(text)? {
         number if number >= 0.0 => Ok(number),
         _ => Err("a number of at least 0 is needed".to_string()),

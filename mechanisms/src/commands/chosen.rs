@@ -95,17 +95,7 @@ impl Choice {
 
     /// Index of the coordinate called `name`.
     pub fn coordinate(&self, name: &str) -> Result<usize, CommandError> {
-        let coordinates = self.mechanism.coordinates();
-        coordinates.iter().position(|entry| entry.name == name).ok_or_else(|| {
-            let known: Vec<&str> = coordinates.iter().map(|entry| entry.name).collect();
-            let near = nearest(name, known.iter().copied());
-            let near = near.map_or_else(String::new, |near| format!("; did you mean `{near}`?"));
-            let list = known.join(", ");
-            CommandError::Usage(format!(
-                "`{}` has no coordinate `{name}`{near}\nknown: {list}",
-                self.card.name
-            ))
-        })
+        coordinate(self.mechanism.as_ref(), name)
     }
 
     /// `phi2 = 2.5 rad, …` for coordinates by their indices.
@@ -123,6 +113,21 @@ impl Choice {
         };
         indices.iter().zip(x).map(value).collect::<Vec<_>>().join(", ")
     }
+}
+
+/// Index of the coordinate called `name` of a mechanism.
+pub fn coordinate(mechanism: &dyn AnyEquations, name: &str) -> Result<usize, CommandError> {
+    let coordinates = mechanism.coordinates();
+    coordinates.iter().position(|entry| entry.name == name).ok_or_else(|| {
+        let known: Vec<&str> = coordinates.iter().map(|entry| entry.name).collect();
+        let near = nearest(name, known.iter().copied());
+        let near = near.map_or_else(String::new, |near| format!("; did you mean `{near}`?"));
+        let list = known.join(", ");
+        CommandError::Usage(format!(
+            "`{}` has no coordinate `{name}`{near}\nknown: {list}",
+            mechanism.full_name()
+        ))
+    })
 }
 
 /// `NAME=VALUE` with a finite number.

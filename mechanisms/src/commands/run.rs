@@ -11,7 +11,7 @@ use mechanisms::registry::{Preset, file_name};
 use mechanisms::report::{Report, Run, html};
 use mechanisms::target_directory::target_directory;
 
-use super::analysis::{Analysis, Damping, Done, MethodName, Wish, above_zero};
+use super::analysis::{Analysis, Damping, Done, MethodName, Wish, above_zero, at_least_zero};
 use super::chosen::assignment;
 use super::subject::{Instance, Subject};
 use super::{CommandError, positive, table};
@@ -38,6 +38,12 @@ pub struct Arguments {
     /// What is computed [default: kinematic, of a mechanism that is free to move dynamic]
     #[arg(long, value_enum)]
     analysis: Option<Analysis>,
+    /// Start the search for the position of rest from another value of a coordinate, in the unit of the text
+    #[arg(long = "guess", value_name = "NAME=VALUE", value_parser = assignment)]
+    guesses: Vec<(String, f64)>,
+    /// Time (s) of the state that small motions are about, followed there from the start [default: the position of rest]
+    #[arg(long, value_name = "T", value_parser = at_least_zero)]
+    at: Option<f64>,
     /// End of the motion (s) [default: one turn, or as long as is worth seeing]
     #[arg(long, value_name = "T", value_parser = above_zero)]
     until: Option<f64>,
@@ -67,6 +73,8 @@ impl Arguments {
             name: name.to_string(),
             parameters: Vec::new(),
             analysis: None,
+            guesses: Vec::new(),
+            at: None,
             until: None,
             steps: STEPS,
             method: None,
@@ -86,6 +94,8 @@ impl Arguments {
             analysis: self.analysis,
             stabilization: self.damping.stabilization(method, self.step),
             tolerance: self.tolerance,
+            guesses: self.guesses.clone(),
+            at: self.at,
             until: self.until,
             steps: self.steps,
         }
@@ -114,6 +124,12 @@ impl Arguments {
         }
         if self.tolerance != TOLERANCE {
             command.push_str(&format!(" --tolerance {:e}", self.tolerance));
+        }
+        if let Some(at) = self.at {
+            command.push_str(&format!(" --at {at}"));
+        }
+        for (name, value) in &self.guesses {
+            command.push_str(&format!(" --guess {name}={value}"));
         }
         for (name, value) in &self.parameters {
             command.push_str(&format!(" --param {name}={value}"));

@@ -42,6 +42,9 @@ impl AnyEquations for Slipped {
     fn coordinate_scales(&self) -> Vec<f64> {
         self.0.coordinate_scales()
     }
+    fn row_scales(&self) -> Vec<f64> {
+        self.0.row_scales()
+    }
     fn evaluate(&self, state: &State) -> Functions {
         let mut functions = self.0.evaluate(state);
         functions.phi_q[3] = -functions.phi_q[3];

@@ -1,0 +1,220 @@
+//! Small motions about a position of rest or a moving state, and their eigenvalues.
+
+use mbs_runtime::Dynamic;
+use mbs_runtime::dynamics::{Linearization, linearize};
+use nalgebra::{DMatrix, Schur};
+
+use crate::facade::Motion;
+
+/// Sweeps of the QR iteration an eigenvalue before it counts as not converging; two or three are usual.
+const SWEEPS: usize = 100;
+
+/// Part of the matrix's norm below which an eigenvalue is what rounding leaves of 0: a double one, of a motion that no
+/// force answers, moves by the root of ε.
+pub const ZERO: f64 = 1e-6;
+
+/// Eigenvalues of small motions q + R s on the constraints.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SmallMotions {
+    /// Degrees of freedom.
+    pub freedom: usize,
+    /// Real and imaginary part (1/s) of the 2·`freedom` eigenvalues of s̈ = −M̄⁻¹ (C̄ ṡ + K̄ s), by frequency, then by
+    /// decay; none of them is of multipliers or stabilisation.
+    pub eigenvalues: Vec<[f64; 2]>,
+    /// Norm of the first-order system (1/s): below [`ZERO`] of it an eigenvalue is 0.
+    pub norm: f64,
+    /// Whether the state moves: the eigenvalues are those of one moment (frozen-time).
+    pub frozen: bool,
+}
+
+/// Small motions about the last instant of `motion`, which has multipliers.
+///
+/// # Errors
+/// Why not, in words: those of [`linearize`](fn@linearize), or that no eigenvalues come out.
+pub(crate) fn small_motions<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
+    mechanism: &S,
+    motion: &Motion,
+) -> Result<SmallMotions, String> {
+    let last = |values: &[f64]| values.last().copied().unwrap_or(f64::NAN);
+    let t = last(&motion.time);
+    let column = |order: fn(&crate::facade::CoordinateCurve) -> &Vec<f64>| -> [f64; N] {
+        core::array::from_fn(|i| motion.coordinates.get(i).map_or(f64::NAN, |curve| last(order(curve))))
+    };
+    let (q, qd, qdd) = (column(|c| &c.q), column(|c| &c.qd), column(|c| &c.qdd));
+    let multipliers = motion.dynamics.iter().flat_map(|forces| &forces.multipliers);
+    let mut lambda = [0.0; M];
+    lambda.iter_mut().zip(multipliers).for_each(|(slot, curve)| *slot = last(&curve.value));
+    let mut mechanism = mechanism.clone();
+    mechanism.start_phases(&q, t);
+    let linear = linearize(&mechanism, t, (&q, &qd, &qdd), &lambda).map_err(|failure| failure.to_string())?;
+    eigenvalues(&linear).ok_or_else(|| "the masses of the free motions are not positive definite".to_string())
+}
+
+/// Eigenvalues of reduced matrices; none where the mass matrix is not positive definite.
+fn eigenvalues<const N: usize>(linear: &Linearization<f64, N>) -> Option<SmallMotions> {
+    let size = linear.freedom;
+    let of = |matrix: &[[f64; N]; N]| DMatrix::from_fn(size, size, |i, j| matrix[i][j]);
+    let nothing = SmallMotions { freedom: 0, eigenvalues: Vec::new(), norm: 0.0, frozen: linear.frozen };
+    if size == 0 {
+        return Some(nothing);
+    }
+    // M̄ = L Lᵀ and s = L⁻ᵀ y: symmetric matrices stay symmetric.
+    let lower = of(&linear.mass).cholesky()?.l();
+    let reduced = |matrix: DMatrix<f64>| {
+        let left = lower.solve_lower_triangular(&matrix)?;
+        Some(lower.solve_lower_triangular(&left.transpose())?.transpose())
+    };
+    let (stiffness, damping) = (reduced(of(&linear.stiffness)), reduced(of(&linear.damping)));
+    let (stiffness, damping) = (stiffness?, damping?);
+    // Velocities over a typical frequency, so that both halves of the system are of one size.
+    let frequency = stiffness.norm().sqrt().max(damping.norm());
+    let frequency = if frequency > 0.0 { frequency } else { 1.0 };
+    let system = DMatrix::from_fn(2 * size, 2 * size, |i, j| match (i < size, j < size) {
+        (true, true) => 0.0,
+        (true, false) => f64::from(u8::from(j - size == i)) * frequency,
+        (false, true) => -stiffness[(i - size, j)] / frequency,
+        (false, false) => -damping[(i - size, j - size)],
+    });
+    let norm = system.norm();
+    let schur = Schur::try_new(system, f64::EPSILON, SWEEPS * 2 * size)?;
+    let mut found: Vec<[f64; 2]> = schur.complex_eigenvalues().iter().map(|z| [z.re, z.im]).collect();
+    found.sort_by(|a, b| {
+        a[1].abs().total_cmp(&b[1].abs()).then(a[0].total_cmp(&b[0])).then(a[1].total_cmp(&b[1]))
+    });
+    Some(SmallMotions { freedom: size, eigenvalues: found, norm, frozen: linear.frozen })
+}
+
+#[cfg(test)]
+mod tests {
+    use mbs_runtime::mechanism;
+
+    use super::*;
+    use crate::analyses::direct::{Approach, Stabilization, Steps};
+    use crate::facade::AnyEquations;
+    use crate::masses::boxed_masses;
+
+    /// Deviation from a closed form, relative to the norm.
+    const BOUND: f64 = 1e-9;
+
+    mechanism! {
+        /// A point on a rod, damped, near the bottom.
+        pub mechanism Hanging;
+        param L: m = 0.7;
+        coord P: [m; 2] = [0.05, -0.69];
+        coord phi: rad = 0;
+        body bob { mass: 2, com: P }
+        gravity weight { acceleration: [0, -9.81] }
+        rsda bearing { angle: phi, damping: 0.3 }
+        constraint rod { P == L*[sin(phi), -cos(phi)]; }
+        start phi = 0.1 rate 0;
+    }
+
+    mechanism! {
+        /// Two equal points on two equal rods, near the bottom.
+        pub mechanism Double;
+        param L: m = 1;
+        coord P1: [m; 2] = [0.05, -1];
+        coord P2: [m; 2] = [0.1, -2];
+        body first { mass: 1, com: P1 }
+        body second { mass: 1, com: P2 }
+        gravity weight { acceleration: [0, -9.81] }
+        constraint rods { dot(P1, P1) == L^2; dot(P2 - P1, P2 - P1) == L^2; }
+        start P1 = [0.05, -0.99874921777190895] rate [0, 0];
+    }
+
+    mechanism! {
+        /// A pole that stands on a cart.
+        pub mechanism Standing;
+        param M: kg = 3;
+        param m: kg = 0.5;
+        param L: m = 0.8;
+        coord x: m = 0;
+        coord phi: rad = 90deg;
+        coord P: [m; 2] = [0, 0.8];
+        body cart { mass: M, com: [x, 0] }
+        body bob { mass: m, com: P }
+        gravity weight { acceleration: [0, -9.81] }
+        constraint pole { P == [x, 0] + L*unit(phi); }
+        start x = 0 rate 0;
+        start phi = 90deg rate 0;
+    }
+
+    mechanism! {
+        /// A point on springs on a turntable: the table carries it by the time, so that rest on it is rest.
+        pub mechanism Turntable;
+        param k: N/m = 50;
+        param omega: rad/s = 3;
+        coord p: [m; 2] = [0, 0];
+        body point { mass: 2, com: rot(omega*t)*p }
+        potential springs = k*dot(p, p)/2;
+        start p = [0, 0] rate [0, 0];
+    }
+
+    fn about_start(mechanism: &dyn AnyEquations, t: f64) -> SmallMotions {
+        let steps = Steps::Adaptive { tolerance: 1e-11 };
+        let approach = Approach { stabilization: Stabilization::Projection, steps };
+        let dynamics = mechanism.dynamics().expect("it has masses");
+        let times = if t > 0.0 { vec![0.0, t] } else { vec![0.0] };
+        let found = dynamics.simulate(&approach, &times, &mut |_| ()).expect("it starts");
+        dynamics.small_motions(&found.motion).expect("it moves")
+    }
+
+    #[track_caller]
+    fn assert_eigenvalues(found: &SmallMotions, expected: &[[f64; 2]]) {
+        assert_eq!(found.eigenvalues.len(), expected.len(), "{found:?}");
+        assert_eq!(found.eigenvalues.len(), 2 * found.freedom);
+        for ([re, im], [real, imaginary]) in found.eigenvalues.iter().zip(expected) {
+            let error = (re - real).hypot(im - imaginary);
+            assert!(error < BOUND * found.norm, "{found:?} instead of {expected:?}");
+        }
+    }
+
+    #[test]
+    fn a_damped_pendulum_swings_about_its_rest_as_known() {
+        let hanging = boxed_masses::<Hanging, 3, 2>();
+        let dynamics = hanging.dynamics().expect("it has masses");
+        let rest = dynamics.rest(&[]).expect("it rests");
+        let (stiffness, decay) = (9.81 / 0.7, 0.3 / (2.0 * 0.49) / 2.0);
+        let frequency = (stiffness - decay * decay as f64).sqrt();
+        let found = dynamics.small_motions(&rest).expect("it moves");
+        assert!(!found.frozen);
+        assert_eigenvalues(&found, &[[-decay, -frequency], [-decay, frequency]]);
+    }
+
+    #[test]
+    fn a_double_pendulum_has_its_two_modes() {
+        let double = boxed_masses::<Double, 4, 2>();
+        let dynamics = double.dynamics().expect("it has masses");
+        let rest = dynamics.rest(&[]).expect("it rests");
+        let [slow, fast] = [-1.0, 1.0].map(|sign| ((2.0 + sign * 2.0_f64.sqrt()) * 9.81).sqrt());
+        let found = dynamics.small_motions(&rest).expect("it moves");
+        assert_eigenvalues(&found, &[[0.0, -slow], [0.0, slow], [0.0, -fast], [0.0, fast]]);
+    }
+
+    #[test]
+    fn a_standing_pole_falls_and_its_cart_goes_where_it_likes() {
+        let found = about_start(boxed_masses::<Standing, 4, 2>().as_ref(), 0.0);
+        let growth = (3.5 / 3.0 * 9.81 / 0.8_f64).sqrt();
+        let mut values = found.eigenvalues.clone();
+        values.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        for ([re, im], expected) in values.iter().zip([-growth, 0.0, 0.0, growth]) {
+            let bound = if expected == 0.0 { ZERO } else { BOUND };
+            assert!((re - expected).hypot(*im) < bound * found.norm, "{found:?}");
+        }
+        assert_eq!(found.freedom, 2);
+        assert!(!found.frozen);
+    }
+
+    #[test]
+    fn a_turning_table_splits_the_modes_by_its_speed() {
+        let found = about_start(boxed_masses::<Turntable, 2, 0>().as_ref(), 0.0);
+        let [slow, fast] = [5.0 - 3.0, 5.0 + 3.0];
+        assert_eigenvalues(&found, &[[0.0, -slow], [0.0, slow], [0.0, -fast], [0.0, fast]]);
+    }
+
+    #[test]
+    fn a_state_that_moves_says_that_its_eigenvalues_are_of_one_moment() {
+        let found = about_start(boxed_masses::<Hanging, 3, 2>().as_ref(), 0.2);
+        assert!(found.frozen && found.freedom == 1 && found.eigenvalues.len() == 2);
+    }
+}
