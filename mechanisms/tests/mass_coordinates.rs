@@ -17,7 +17,7 @@ mechanism! {
     let b = a + 0.6m*unit(phi2);
     body crank { mass: 0.4, inertia: 4e-3/3, com: a/2, angle: phi1 }
     body coupler { mass: 1.2, inertia: 0.036, com: (a + b)/2, angle: phi2 }
-    body rocker { mass: 1, inertia: 0.25/12, com: [0.55, 0] + 0.25m*unit(phi3), angle: phi3 }
+    body rocker { mass: 1, inertia: 0.25/12, com: [0.55m, 0] + 0.25m*unit(phi3), angle: phi3 }
     body dummy { mass: 0, inertia: 0, com: [x2, y2], angle: phi2 }
     gravity weight { acceleration: [0, -9.81] }
     constraint coupler_point { [x2, y2] == a + 0.35m*unit(30deg + phi2); }
