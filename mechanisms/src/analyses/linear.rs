@@ -174,8 +174,8 @@ mod tests {
         let hanging = boxed_masses::<Hanging, 3, 2>();
         let dynamics = hanging.dynamics().expect("it has masses");
         let rest = dynamics.rest(&[]).expect("it rests");
-        let (stiffness, decay) = (9.81 / 0.7, 0.3 / (2.0 * 0.49) / 2.0);
-        let frequency = (stiffness - decay * decay as f64).sqrt();
+        let (stiffness, decay) = (9.81_f64 / 0.7, 0.3_f64 / (2.0 * 0.49) / 2.0);
+        let frequency = (stiffness - decay * decay).sqrt();
         let found = dynamics.small_motions(&rest).expect("it moves");
         assert!(!found.frozen);
         assert_eigenvalues(&found, &[[-decay, -frequency], [-decay, frequency]]);
