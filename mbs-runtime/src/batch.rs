@@ -2,12 +2,10 @@
 
 use core::array::from_fn;
 
-use crate::diagnosis::{Statistics, extent, largest};
-use crate::instant::REGULAR_ZONE;
-use crate::kinematics::COARSEST_RESOLUTION;
+use crate::diagnosis::Statistics;
 use crate::lanes::LaneMask;
-use crate::path::{LARGEST_APPROACH, LARGEST_SECOND_ORDER_TERM};
-use crate::{Failure, Kinematic, Lanes, Mechanism, Newton, Real, Scalar, Stepper};
+use crate::trial::{Start, Trial};
+use crate::{Failure, Kinematic, Lanes, Mechanism, Real, Scalar, Stepper};
 
 /// `L` mechanisms of one text, a lane each, each with its own design, time, state and failures.
 ///
@@ -52,17 +50,6 @@ struct Notes<R, const L: usize> {
 
 /// Time, position, velocity and acceleration of a lane.
 type LaneState<R, const N: usize> = (R, [R; N], [R; N], [R; N]);
-
-/// What a step in all lanes came to.
-struct Trial<R: Real, const L: usize, const N: usize> {
-    q: [Lanes<R, L>; N],
-    qd: [Lanes<R, L>; N],
-    qdd: [Lanes<R, L>; N],
-    margin: Lanes<R, L>,
-    notes: Notes<R, L>,
-    /// Lanes in which nothing else happened than next to a regular position.
-    plain: LaneMask<R, L>,
-}
 
 impl<S, R, const L: usize, const N: usize, const M: usize> Batch<S, R, L, N, M>
 where
@@ -111,20 +98,29 @@ where
         if !S::PHASES.is_empty() {
             return from_fn(|lane| self.alone(lane, Lanes(t).lane(lane)));
         }
-        let trial = self.tried(Lanes(t));
-        if !Lanes::<R, L>::all(trial.plain) {
-            return self.apart(&trial, t);
+        let Batch { mechanism, parameters, q, qd, qdd, margin, .. } = &*self;
+        let start = Start { t: self.t, q, qd, qdd, margin: *margin };
+        let trial = Trial::of(mechanism, parameters, &start, Lanes(t));
+        let plain = trial.plain & !self.waits;
+        if !Lanes::<R, L>::all(plain) {
+            return self.apart(&trial, plain, t);
         }
+        self.notes = self.notes.after(&trial, self.margin, Lanes(t) - self.t);
         (self.t, self.q, self.qd, self.qdd) = (Lanes(t), trial.q, trial.qd, trial.qdd);
-        (self.margin, self.notes) = (trial.margin, trial.notes);
+        self.margin = trial.margin;
         from_fn(|lane| Ok(self.notes.statistics(lane)))
     }
 
-    /// Takes the step over in the lanes where it is plain; the others are stepped alone.
+    /// Takes the step over in the lanes of `plain`; the others are stepped alone.
     #[cold]
     #[inline(never)]
-    fn apart(&mut self, trial: &Trial<R, L, N>, t: [R; L]) -> [Result<Statistics, Failure>; L] {
-        let plain = trial.plain;
+    fn apart(
+        &mut self,
+        trial: &Trial<Lanes<R, L>, N>,
+        plain: LaneMask<R, L>,
+        t: [R; L],
+    ) -> [Result<Statistics, Failure>; L] {
+        let notes = self.notes.after(trial, self.margin, Lanes(t) - self.t);
         let merge = |old: &mut Lanes<R, L>, new: &Lanes<R, L>| *old = Lanes::select(plain, *new, *old);
         for (old, new) in [(&mut self.q, &trial.q), (&mut self.qd, &trial.qd), (&mut self.qdd, &trial.qdd)] {
             old.iter_mut().zip(new).for_each(|(old, new)| merge(old, new));
@@ -135,9 +131,9 @@ where
             if !Lanes::<R, L>::test(plain, lane) {
                 return self.alone(lane, Lanes(t).lane(lane));
             }
-            self.notes.put(lane, trial.notes.margin_rate.lane(lane), trial.notes.statistics(lane));
-            self.notes.count(lane, trial.notes.passages(lane), trial.notes.orientation(lane));
-            Ok(trial.notes.statistics(lane))
+            self.notes.put(lane, notes.margin_rate.lane(lane), notes.statistics(lane));
+            self.notes.count(lane, notes.passages(lane), notes.orientation(lane));
+            Ok(notes.statistics(lane))
         })
     }
 
@@ -180,77 +176,6 @@ where
     /// Accelerations: N, in coordinate unit per second squared.
     pub fn qdd(&self) -> &[Lanes<R, L>; N] {
         &self.qdd
-    }
-
-    /// A step in all lanes, without a look at what is special in one.
-    #[inline(always)]
-    fn tried(&self, t: Lanes<R, L>) -> Trial<R, L, N> {
-        let Batch { mechanism, parameters, .. } = self;
-        let scales = mechanism.coordinate_scales(parameters);
-        let start = self.predicted(t, &scales);
-        let mut solver = Newton::new(extent(&start, &scales));
-        let mut q = start;
-        let (_, position) = mechanism.solve_with_position(parameters, &mut q, t, &mut solver);
-        let (factors, margin) = mechanism.factorize(parameters, &position);
-        let qd = mechanism.solve_linear(&factors, &mechanism.phi_t(parameters, &position).map(|rate| -rate));
-        let qdd = mechanism.solve_linear(&factors, &mechanism.gamma(parameters, &position, &qd));
-        let mut way = q;
-        for ((way, start), scale) in way.iter_mut().zip(&start).zip(&scales) {
-            *way = (*way - *start) * (Lanes::constant(1.0) / *scale);
-        }
-        let correction = largest(&way);
-        let zone = Lanes::constant(REGULAR_ZONE);
-        // Written so that NaN is not plain.
-        let mut plain = zone.less(margin.value) & zone.less(self.margin);
-        plain = plain & correction.less(Lanes::constant(LARGEST_APPROACH) * margin.value);
-        for (coordinate, scale) in q.iter().zip(&scales) {
-            let resolution = Lanes::splat(R::EPSILON) * coordinate.abs();
-            plain = plain & resolution.less(Lanes::constant(COARSEST_RESOLUTION) * *scale);
-        }
-        for (rate, acceleration) in qd.iter().zip(&qdd) {
-            plain = plain & rate.is_finite() & acceleration.is_finite();
-        }
-        for branch in mechanism.branches(parameters, &position).as_ref() {
-            plain = plain & Lanes::constant(0.0).less(*branch);
-        }
-        for limit in mechanism.limits(parameters, &position).as_ref() {
-            plain = plain & limit.low.less(limit.value) & limit.value.less(limit.high);
-        }
-        let diagnosis = solver.diagnosis();
-        plain = plain & !diagnosis.failed & !self.waits;
-        let (rate, past) = ((margin.value - self.margin) / (t - self.t), self.notes);
-        let moves = self.t.less(t) | t.less(self.t);
-        let passed = from_fn(|lane| past.orientation(lane) != at(&margin.orientation, lane, 0));
-        let notes = Notes {
-            margin_rate: Lanes::select(moves, rate, past.margin_rate),
-            residual: diagnosis.worst.ratio,
-            correction,
-            row: from_fn(|lane| diagnosis.worst.row(lane)),
-            evaluations: [diagnosis.evaluations; L],
-            fallback: [diagnosis.fallback; L],
-            passed,
-            passages: from_fn(|lane| past.passages(lane).saturating_add(u32::from(at(&passed, lane, false)))),
-            orientation: margin.orientation,
-        };
-        Trial { q, qd, qdd, margin: margin.value, notes, plain }
-    }
-
-    /// q + h q̇ + h²/2 q̈, without the last term where it is too large to be trusted.
-    #[inline(always)]
-    fn predicted(&self, t: Lanes<R, L>, scales: &[Lanes<R, L>; N]) -> [Lanes<R, L>; N] {
-        let h = t - self.t;
-        let half_square = Lanes::constant(0.5) * h * h;
-        let second = self.qdd.map(|acceleration| half_square * acceleration);
-        let mut trusted = Lanes::<R, L>::mask(true);
-        for (term, scale) in second.iter().zip(scales) {
-            trusted = trusted & !(Lanes::constant(LARGEST_SECOND_ORDER_TERM) * *scale).less(term.abs());
-        }
-        let mut predicted = self.q;
-        for ((coordinate, rate), second) in predicted.iter_mut().zip(&self.qd).zip(second) {
-            let second = Lanes::select(trusted, second, Lanes::constant(0.0));
-            *coordinate = *coordinate + h * *rate + second;
-        }
-        predicted
     }
 
     /// The step of one lane as if it were alone.
@@ -305,6 +230,30 @@ impl<R: Real, const L: usize> Notes<R, L> {
         let (fallback, passed) = ([false; L], [false; L]);
         let (margin_rate, residual, correction) = (zero, zero, zero);
         Notes { margin_rate, residual, correction, row, evaluations, fallback, passed, passages, orientation }
+    }
+
+    /// Those after the step that `trial` made in `time` (s) from where the margin was `margin`.
+    #[inline(always)]
+    fn after<const N: usize>(
+        &self,
+        trial: &Trial<Lanes<R, L>, N>,
+        margin: Lanes<R, L>,
+        time: Lanes<R, L>,
+    ) -> Self {
+        let zero = Lanes::constant(0.0);
+        let moves = time.less(zero) | zero.less(time);
+        let passed = from_fn(|lane| self.orientation(lane) != trial.orientation(lane));
+        Notes {
+            margin_rate: Lanes::select(moves, (trial.margin - margin) / time, self.margin_rate),
+            residual: trial.worst.ratio,
+            correction: trial.correction,
+            row: from_fn(|lane| trial.worst.row(lane)),
+            evaluations: [trial.evaluations; L],
+            fallback: [trial.fallback; L],
+            passed,
+            passages: from_fn(|lane| self.passages(lane).saturating_add(u32::from(at(&passed, lane, false)))),
+            orientation: trial.orientation,
+        }
     }
 
     #[inline(always)]

@@ -1,6 +1,7 @@
 //! The solver of a step with a fixed amount of work: Newton's method, then Levenberg–Marquardt, both cut off.
 
 use crate::diagnosis::{Diagnosis, Worst, outer_rounding, required};
+use crate::mechanism::called;
 use crate::newton::{all_finite, newton, within};
 use crate::redundant::gauss_newton;
 use crate::safeguarded::levenberg_marquardt;
@@ -37,7 +38,7 @@ impl<R: Real> BlockSolver<R> for Budgeted<R> {
         let extent = self.extent;
         let mut best = Best { x, worst: Worst::none(), closes: false, any: false };
         let mut watched = |x: &[R; K]| {
-            let (residuals, jacobian) = evaluate(x);
+            let (residuals, jacobian) = called(&mut evaluate, x);
             best.meets(block, extent, x, &residuals, &jacobian);
             (residuals, jacobian)
         };
@@ -52,7 +53,7 @@ impl<R: Real> BlockSolver<R> for Budgeted<R> {
         let fallback = !best.closes && self.budget.fallback > 0;
         if fallback {
             let mut watched = |x: &[R; K]| {
-                let (residuals, jacobian) = evaluate(x);
+                let (residuals, jacobian) = called(&mut evaluate, x);
                 best.meets(block, extent, x, &residuals, &jacobian);
                 (residuals, jacobian)
             };
@@ -72,7 +73,7 @@ impl<R: Real> BlockSolver<R> for Budgeted<R> {
         let extent = self.extent;
         let mut best = Best { x, worst: Worst::none(), closes: false, any: false };
         let mut watched = |x: &[R; K]| {
-            let (residuals, jacobian) = evaluate(x);
+            let (residuals, jacobian) = called(&mut evaluate, x);
             best.meets(block, extent, x, &residuals, &jacobian);
             (residuals, jacobian)
         };
@@ -86,7 +87,7 @@ impl<R: Real> BlockSolver<R> for Budgeted<R> {
         let fallback = !best.closes && self.budget.fallback > 0;
         if fallback {
             let mut watched = |x: &[R; K]| {
-                let (residuals, jacobian) = evaluate(x);
+                let (residuals, jacobian) = called(&mut evaluate, x);
                 best.meets(block, extent, x, &residuals, &jacobian);
                 (residuals, jacobian)
             };

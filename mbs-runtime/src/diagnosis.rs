@@ -150,8 +150,10 @@ pub struct Diagnosis<T: Scalar> {
     pub evaluations: u32,
     /// Whether any block needed more than its first method.
     pub fallback: bool,
-    /// The worst row; in a lane that failed, of the first block that did.
+    /// The worst row of the blocks that needed more than plain steps; in a lane that failed, of the first that did.
     pub worst: Worst<T>,
+    /// The worst row of the others, its ratio not yet divided out.
+    close: Worst<T>,
     /// Lanes in which a block did not converge.
     pub(crate) failed: T::Mask,
 }
@@ -160,15 +162,34 @@ impl<T: Scalar> Diagnosis<T> {
     /// Before the first block.
     #[inline(always)]
     pub fn new() -> Self {
-        Diagnosis { evaluations: 0, fallback: false, worst: Worst::none(), failed: T::mask(false) }
+        let close = Worst { required: T::constant(1.0), ..Worst::none() };
+        Diagnosis { evaluations: 0, fallback: false, worst: Worst::none(), close, failed: T::mask(false) }
     }
 
     /// Takes up one more block that its first method closed in every lane.
     #[inline(always)]
-    pub(crate) fn record_plain(&mut self, evaluations: u32, worst: Worst<T>) {
+    pub(crate) fn record_plain<const K: usize>(
+        &mut self,
+        evaluations: u32,
+        block: &Block<T, K>,
+        residuals: &[T; K],
+        required: &[T; K],
+    ) {
         self.evaluations = self.evaluations.max(evaluations);
-        let worse = self.worst.ratio.less(worst.ratio) & !self.failed;
-        self.worst = self.worst.replaced(worse, worst);
+        for ((residual, required), row) in residuals.iter().zip(required).zip(block.rows) {
+            let (residual, required, row) = (residual.abs(), *required, T::constant(f64::from(row)));
+            // Products for quotients, of which only the last one counts.
+            let worse = (self.close.residual * required).less(residual * self.close.required);
+            let ratio = self.close.ratio;
+            self.close = self.close.replaced(worse, Worst { ratio, residual, required, row });
+        }
+    }
+
+    /// The worst row of all blocks; in a lane that failed, of the first that did.
+    #[inline(always)]
+    pub(crate) fn worst(&self) -> Worst<T> {
+        let close = Worst { ratio: self.close.residual / self.close.required, ..self.close };
+        self.worst.replaced(self.worst.ratio.less(close.ratio) & !self.failed, close)
     }
 
     /// Takes up one more block.
@@ -210,11 +231,12 @@ pub struct Statistics {
 impl Statistics {
     /// Those of a single number.
     pub fn of<R: Real>(diagnosis: &Diagnosis<R>) -> Self {
+        let worst = diagnosis.worst();
         Statistics {
             evaluations: diagnosis.evaluations,
             fallback: diagnosis.fallback,
-            residual: diagnosis.worst.ratio.to_f64(),
-            row: diagnosis.worst.row(0),
+            residual: worst.ratio.to_f64(),
+            row: worst.row(0),
             correction: 0.0,
             passed: false,
         }

@@ -152,7 +152,7 @@ impl<R: Real, const L: usize> Scalar for Lanes<R, L> {
     }
     #[inline(always)]
     fn all(mask: LaneMask<R, L>) -> bool {
-        mask.0.iter().fold(!R::FALSE, |all, word| all & *word) != R::FALSE
+        mask.0.iter().fold(true, |all, word| all & (*word != R::FALSE))
     }
     #[inline(always)]
     fn test(mask: LaneMask<R, L>, lane: usize) -> bool {

@@ -45,6 +45,7 @@ pub mod stepper;
 pub mod stop;
 pub mod sweep;
 pub mod trace;
+mod trial;
 mod trigonometry;
 pub mod worst_case;
 

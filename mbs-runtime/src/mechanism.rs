@@ -439,6 +439,12 @@ impl<T: Scalar> Margin<T> {
     }
 }
 
+/// `evaluate` at `x`, called: emitted code has it in line wherever it is named, which only the next position is worth.
+#[inline(never)]
+pub fn called<X, Y>(evaluate: &mut impl FnMut(&X) -> Y, x: &X) -> Y {
+    evaluate(x)
+}
+
 /// Whether two points of a block are the same one in every lane.
 #[inline(always)]
 pub fn is_same<T: Scalar, const K: usize>(a: &[T; K], b: &[T; K]) -> bool {

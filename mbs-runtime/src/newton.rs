@@ -2,6 +2,7 @@
 
 use crate::diagnosis::{Diagnosis, Worst, outer_rounding, required};
 use crate::linear::{is_regular, orthogonal::minimum_norm};
+use crate::mechanism::called;
 use crate::safeguarded::{TRIALS, levenberg_marquardt};
 use crate::{Block, BlockSolver, Factorization, Outcome, Real, Scalar, redundant};
 
@@ -60,11 +61,12 @@ impl<T: Scalar> BlockSolver<T> for Newton<T> {
     ) -> ([T; K], T::Lanes<Outcome>) {
         match plainly::<T, K, F>(block, x, &mut evaluate) {
             Ok(closed) => {
-                let worst = Worst::of_block(block, &closed.residuals, &closed.tolerances);
-                self.diagnosis.record_plain(closed.evaluations, worst);
+                let Closed { evaluations, residuals, tolerances, .. } = &closed;
+                self.diagnosis.record_plain(*evaluations, block, residuals, tolerances);
                 (closed.x, T::per_lane(|_| Outcome::Converged))
             }
             Err(descent) => {
+                let mut evaluate = |x: &[T; K]| called(&mut evaluate, x);
                 let (attempt, plain) = carefully::<T, K, F>(descent, block, x, self.extent, &mut evaluate);
                 self.diagnosis.record(attempt.evaluations, !plain, attempt.worst, attempt.converged);
                 (attempt.x, attempt.outcomes())
@@ -79,6 +81,7 @@ impl<T: Scalar> BlockSolver<T> for Newton<T> {
         mut evaluate: impl FnMut(&[T; K]) -> ([T; M], [[T; K]; M]),
         _holds: impl FnMut(&[T; K]) -> T::Mask,
     ) -> ([T; K], T::Lanes<Outcome>) {
+        let mut evaluate = |x: &[T; K]| called(&mut evaluate, x);
         let (settled, plain) = redundant::next(block, x, self.extent, &mut evaluate);
         settled.record(&mut self.diagnosis, plain);
         (settled.attempt.x, settled.outcomes())
@@ -102,39 +105,39 @@ fn plainly<T: Scalar, const K: usize, F: Factorization<T, K>>(
     start: [T; K],
     evaluate: &mut impl FnMut(&[T; K]) -> ([T; K], [[T; K]; K]),
 ) -> Result<Closed<T, K>, Descent<T, K>> {
-    let one = T::constant(1.0);
-    let mut x = start;
-    let mut converged = T::mask(false);
-    let (mut last_ratio, mut least_ratio) = (one, T::constant(f64::MAX));
+    let (mut x, mut converged) = (start, T::mask(false));
+    // Residuals and tolerances of the iterate before.
+    let mut last = ([T::constant(1.0); K], [T::constant(1.0); K]);
     let mut evaluations = 0;
     loop {
         let (residuals, jacobian) = evaluate(&x);
         evaluations += 1;
         let tolerances = required(&block.row_scales, &x, &jacobian);
-        let ratio = largest_ratio(&residuals, &tolerances);
-        let finite = all_finite(&residuals, &jacobian);
-        let closes = converged | (finite & !one.less(ratio));
+        let closes = converged | closed(&residuals, &tolerances);
         if T::all(closes) {
             return Ok(Closed { x, residuals, tolerances, evaluations });
         }
         let (factors, regular) =
             F::factorize_for_step(&jacobian, &block.row_scales, &block.coordinate_scales);
         let step = factors.solve(&residuals.map(|r| -r));
-        let falls = ratio.less(T::constant(FALL) * least_ratio);
-        let plain = finite & falls & regular & !beyond(block, &step);
+        let mut plain = regular & !beyond(block, &step);
+        if evaluations > 1 {
+            let limit = T::constant(FALL) * largest_ratio(&last.0, &last.1);
+            plain = plain & largest_ratio(&residuals, &tolerances).less(limit);
+        }
         if !T::all(closes | plain) || evaluations > FREE_ITERATIONS {
-            let open = !converged;
-            let fruitless = T::constant(0.0);
+            let first = evaluations == 1;
+            let last = largest_ratio(&last.0, &last.1);
             return Err(Descent {
                 x,
                 residuals,
                 jacobian,
                 evaluations,
                 converged,
-                open,
-                last_ratio,
-                least_ratio,
-                fruitless,
+                open: !converged,
+                last_ratio: last,
+                least_ratio: if first { T::constant(f64::MAX) } else { last },
+                fruitless: T::constant(0.0),
             });
         }
         let mut next = x;
@@ -142,8 +145,18 @@ fn plainly<T: Scalar, const K: usize, F: Factorization<T, K>>(
             *component = *component + *change;
         }
         x = select(closes, &x, &next);
-        (converged, last_ratio, least_ratio) = (closes, ratio, ratio);
+        (converged, last) = (closes, (residuals, tolerances));
     }
+}
+
+/// Whether every residual is within its tolerance, and neither it nor the Jacobian behind that is NaN or infinite.
+#[inline(always)]
+fn closed<T: Scalar, const K: usize>(residuals: &[T; K], tolerances: &[T; K]) -> T::Mask {
+    let mut closed = T::mask(true);
+    for (r, tolerance) in residuals.iter().zip(tolerances) {
+        closed = closed & r.abs().less(*tolerance) & tolerance.is_finite();
+    }
+    closed
 }
 
 /// Newton's method from where it stands; the lanes that do not converge once more from their `start` by

@@ -2,6 +2,7 @@
 
 use crate::diagnosis::{Diagnosis, Worst, outer_rounding, required};
 use crate::dyad::{Roots, closed, taking};
+use crate::mechanism::called;
 use crate::newton::{Attempt, ITERATIONS, all_finite, capped, newton, select, within};
 use crate::starts::displaced;
 use crate::{Block, BlockSolver, Factorization, Outcome, Real, Scalar, redundant};
@@ -80,6 +81,7 @@ impl<T: Scalar> BlockSolver<T> for Safeguarded<T> {
         mut holds: impl FnMut(&[T; K]) -> T::Mask,
     ) -> ([T; K], T::Lanes<Outcome>) {
         self.begun = true;
+        let mut evaluate = |x: &[T; K]| called(&mut evaluate, x);
         let (found, plain) =
             searched::<T, K, F>(block, x, T::mask(true), self.extent, &mut evaluate, &mut holds);
         self.diagnosis.record(found.evaluations, !plain, found.worst, found.converged);
@@ -97,6 +99,7 @@ impl<T: Scalar> BlockSolver<T> for Safeguarded<T> {
         roots: impl FnOnce(&[T; K]) -> Roots<T, K>,
     ) -> ([T; K], T::Lanes<Outcome>) {
         let (extent, roots) = (self.extent, roots(&x));
+        let mut evaluate = |x: &[T; K]| called(&mut evaluate, x);
         let (mut found, missed) = closed::<T, K, F>(block, &x, extent, &mut evaluate, &mut holds, &roots);
         // What did not close and was not missed has no position.
         self.apart |= !self.begun && T::all(!missed & !found.converged);
@@ -118,6 +121,7 @@ impl<T: Scalar> BlockSolver<T> for Safeguarded<T> {
         mut evaluate: impl FnMut(&[T; K]) -> ([T; M], [[T; K]; M]),
         mut holds: impl FnMut(&[T; K]) -> T::Mask,
     ) -> ([T; K], T::Lanes<Outcome>) {
+        let mut evaluate = |x: &[T; K]| called(&mut evaluate, x);
         let (found, plain) = redundant::search(block, x, self.extent, &mut evaluate, &mut holds);
         found.record(&mut self.diagnosis, plain);
         (found.attempt.x, found.outcomes())

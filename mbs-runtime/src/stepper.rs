@@ -4,6 +4,7 @@ use crate::diagnosis::Statistics;
 use crate::instant::{Before, Found, REGULAR_ZONE, Rates};
 use crate::kinematics::{next_position, solve_with_position, time_failure, variable_failure};
 use crate::path::{Way, displaced, is_near};
+use crate::trial::{Start, Trial};
 use crate::{Assembled, Failure, Kinematic, Mechanism, Real, Sweep, assemble};
 
 /// A mechanism with its state. It owns everything, allocates nothing, and a failed call leaves it as it was.
@@ -106,6 +107,23 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
 
     #[inline(always)]
     fn advanced(&mut self, t: R) -> Result<Statistics, Failure> {
+        // Rows that may contradict each other are always looked at.
+        if M == N && self.state.is_regular() && !self.waits() {
+            let State { q, qd, qdd, margin, .. } = &self.state;
+            let start = Start { t: self.state.t, q, qd, qdd, margin: *margin };
+            let trial = Trial::of(&self.mechanism, &self.parameters, &start, t);
+            if trial.plain {
+                self.state.follow(&trial, t);
+                return Ok(self.state.statistics);
+            }
+        }
+        self.advanced_with_care(t)
+    }
+
+    /// A step with all that can happen in it.
+    #[cold]
+    #[inline(never)]
+    fn advanced_with_care(&mut self, t: R) -> Result<Statistics, Failure> {
         let mut q = self.predicted(t);
         let (position, statistics, failure) = next_position(&self.mechanism, &self.parameters, &mut q, t);
         if let Some(failure) = failure {
@@ -372,6 +390,19 @@ impl<R: Real, const N: usize> State<R, N> {
         if self.is_regular() {
             self.regular = q;
         }
+    }
+
+    /// Becomes the state that a plain step came to.
+    #[inline(always)]
+    fn follow(&mut self, trial: &Trial<R, N>, t: R) {
+        let passed = self.orientation != trial.orientation(0);
+        if t != self.t {
+            self.margin_rate = (trial.margin - self.margin) / (t - self.t);
+        }
+        (self.t, self.q, self.qd, self.qdd) = (t, trial.q, trial.qd, trial.qdd);
+        (self.margin, self.orientation, self.regular) = (trial.margin, trial.orientation(0), trial.q);
+        self.statistics = trial.statistics(0, passed);
+        self.passages = self.passages.saturating_add(u32::from(passed));
     }
 
     /// Puts time, position, velocity and acceleration with their margin in place, as another keeper of the state has them.

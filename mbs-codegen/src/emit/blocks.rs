@@ -47,7 +47,7 @@ fn newton(
         let _ =
             writeln!(text, "let __kept = ::core::cell::Cell::new(([{nowhere}; {size}], [{zero}; {count}]));");
     }
-    let _ = writeln!(text, "let mut __evaluate = |__x: &[T; {size}]| {{");
+    let _ = writeln!(text, "let mut __evaluate = {{ #[inline(always)] |__x: &[T; {size}]| {{");
     lets(section, &inner, text);
     if !kept.is_empty() {
         let values = list(kept.iter().map(|id| inner.operand(*id)));
@@ -55,7 +55,7 @@ fn newton(
     }
     let residuals = list(phi.iter().map(|id| inner.operand(*id)));
     let rows = list(phi_q.iter().map(|row| list(row.iter().map(|id| inner.or_zero(*id)))));
-    let _ = writeln!(text, "({residuals}, {rows})\n}};");
+    let _ = writeln!(text, "({residuals}, {rows})\n}} }};");
     let surplus = block.has_surplus();
     let method = match (dyad, branches.is_empty()) {
         _ if surplus => format!("solve_redundant::<{size}, {}>", block.rows.len()),
@@ -64,7 +64,7 @@ fn newton(
         (None, false) => format!("solve_branched::<{size}, {kind}>"),
     };
     let call = format!("let (__x, __block) = __solver.{method}");
-    let _ = write!(text, "{call}(&{description}, {starts}, &mut __evaluate");
+    let _ = write!(text, "{call}(&{description}, {starts}, #[inline(always)] |__x| __evaluate(__x)");
     if !branches.is_empty() {
         *text += ", |__x| {\n";
         lets(branch_section, &inner, text);
@@ -81,8 +81,10 @@ fn newton(
     }
     *text += ");\n";
     if !kept.is_empty() {
-        *text += "if !__mbs::mechanism::is_same(&__kept.get().0, &__x) { __evaluate(&__x); }\n";
-        let _ = writeln!(text, "let {} = __kept.get().1;", list(kept.iter().map(|id| local(*id))));
+        *text += "let mut __values = __kept.get();\n\
+                  if !__mbs::mechanism::is_same(&__values.0, &__x) {\n\
+                  __mbs::mechanism::called(&mut __evaluate, &__x);\n__values = __kept.get();\n}\n";
+        let _ = writeln!(text, "let {} = __values.1;", list(kept.iter().map(|id| local(*id))));
     }
     for (index, coordinate) in block.coordinates.iter().enumerate() {
         let _ = writeln!(text, "__q[{coordinate}] = __x[{index}];");

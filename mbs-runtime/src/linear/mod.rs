@@ -54,9 +54,15 @@ fn reciprocal_and_margin<T: Scalar>(determinant: T, scaled: T, bound: T) -> (T, 
     let (reciprocal, ratio) = (one / determinant, scaled.abs() / bound);
     // A determinant of 0 has an infinite reciprocal, a bound of 0 no finite ratio.
     let regular = determinant.is_finite() & reciprocal.is_finite() & ratio.is_finite();
-    if T::all(regular) {
-        return (reciprocal, ratio.min(one));
-    }
+    if T::all(regular) { (reciprocal, ratio.min(one)) } else { regular_alone(regular, reciprocal, ratio) }
+}
+
+/// Reciprocal and margin in the lanes of `regular`, (1, 0) elsewhere: out of the way, so that what is solved does not wait for
+/// what nearly always holds.
+#[cold]
+#[inline(never)]
+fn regular_alone<T: Scalar>(regular: T::Mask, reciprocal: T, ratio: T) -> (T, T) {
+    let one = T::constant(1.0);
     (T::select(regular, reciprocal, one), T::select(regular, ratio.min(one), T::constant(0.0)))
 }
 

@@ -1,0 +1,161 @@
+//! A step as it goes next to a regular position: straight on, with one decision at the end.
+
+use crate::diagnosis::{Worst, extent, largest};
+use crate::instant::REGULAR_ZONE;
+use crate::kinematics::COARSEST_RESOLUTION;
+use crate::path::{LARGEST_APPROACH, LARGEST_SECOND_ORDER_TERM};
+use crate::{Kinematic, Newton, Real, Scalar, Statistics};
+
+/// Where a step begins, solved in every lane.
+pub(crate) struct Start<'a, T, const N: usize> {
+    pub t: T,
+    pub q: &'a [T; N],
+    pub qd: &'a [T; N],
+    pub qdd: &'a [T; N],
+    pub margin: T,
+}
+
+/// What a step came to.
+///
+/// No address of what stands here is given away on the way: so it stays in registers, and in the state that it becomes every
+/// number is written once.
+pub(crate) struct Trial<T: Scalar, const N: usize> {
+    pub q: [T; N],
+    pub qd: [T; N],
+    pub qdd: [T; N],
+    pub margin: T,
+    pub orientation: T::Lanes<u64>,
+    /// The way from the prediction, in the reference metric.
+    pub correction: T,
+    pub worst: Worst<T>,
+    pub evaluations: u32,
+    pub fallback: bool,
+    /// Lanes in which nothing happened but what does next to a regular position. The others are stepped with care.
+    pub plain: T::Mask,
+}
+
+impl<T: Scalar, const N: usize> Trial<T, N> {
+    /// Solves position, velocity and acceleration at `t` from the prediction q + h q̇ + h²/2 q̈.
+    ///
+    /// Not plain is a step from or into the singular zone, one that does not converge, ends so far from the prediction that it
+    /// may be in another assembly, violates a branch or leaves a limit, and one that is not finite.
+    #[inline(always)]
+    pub(crate) fn of<S: Kinematic<T, N, M>, const M: usize>(
+        mechanism: &S,
+        parameters: &S::Parameters,
+        start: &Start<'_, T, N>,
+        t: T,
+    ) -> Self {
+        let scales = mechanism.coordinate_scales(parameters);
+        let prediction = start.predicted(t, &scales);
+        let mut solver = Newton::new(extent(&prediction, &scales));
+        let mut q = prediction;
+        let (_, position) = mechanism.solve_with_position(parameters, &mut q, t, &mut solver);
+        let (factors, margin) = mechanism.factorize(parameters, &position);
+        let qd = mechanism.solve_linear(&factors, &mechanism.phi_t(parameters, &position).map(|rate| -rate));
+        let qdd = mechanism.solve_linear(&factors, &mechanism.gamma(parameters, &position, &qd));
+        let mut way = q;
+        for ((way, start), scale) in way.iter_mut().zip(&prediction).zip(&scales) {
+            *way = (*way - *start) * (T::constant(1.0) / *scale);
+        }
+        let correction = largest(&way);
+        let zone = T::constant(REGULAR_ZONE);
+        // Written so that NaN is not plain.
+        let mut plain = zone.less(margin.value) & zone.less(start.margin);
+        plain = plain & correction.less(T::constant(LARGEST_APPROACH) * margin.value);
+        for (coordinate, scale) in q.iter().zip(&scales) {
+            let largest = T::constant(COARSEST_RESOLUTION / T::Real::EPSILON.to_f64()) * *scale;
+            plain = plain & coordinate.abs().less(largest);
+        }
+        // A sum is finite where its terms are; where it overflows, a careful step looks at them one by one.
+        let mut sum = T::constant(0.0);
+        for (rate, acceleration) in qd.iter().zip(&qdd) {
+            sum = sum + (*rate + *acceleration);
+        }
+        plain = plain & sum.is_finite();
+        for (index, branch) in mechanism.branches(parameters, &position).as_ref().iter().enumerate() {
+            if !S::BRANCHES_AT_START.get(index).copied().unwrap_or(false) {
+                plain = plain & T::constant(0.0).less(*branch);
+            }
+        }
+        for limit in mechanism.limits(parameters, &position).as_ref() {
+            plain = plain & limit.low.less(limit.value) & limit.value.less(limit.high);
+        }
+        let diagnosis = solver.diagnosis();
+        Trial {
+            q,
+            qd,
+            qdd,
+            margin: margin.value,
+            orientation: margin.orientation,
+            correction,
+            worst: diagnosis.worst(),
+            evaluations: diagnosis.evaluations,
+            fallback: diagnosis.fallback,
+            plain: plain & !diagnosis.failed,
+        }
+    }
+
+    /// What the step of lane `lane` cost; `passed`: whether a singular position lies before it.
+    #[inline(always)]
+    pub(crate) fn statistics(&self, lane: usize, passed: bool) -> Statistics {
+        Statistics {
+            evaluations: self.evaluations,
+            fallback: self.fallback,
+            residual: self.worst.ratio.lane(lane).to_f64(),
+            row: self.worst.row(lane),
+            correction: self.correction.lane(lane).to_f64(),
+            passed,
+        }
+    }
+
+    /// Signs of the blocks' determinants of lane `lane`.
+    #[inline(always)]
+    pub(crate) fn orientation(&self, lane: usize) -> u64 {
+        self.orientation.as_ref().get(lane).copied().unwrap_or(0)
+    }
+}
+
+impl<T: Scalar, const N: usize> Start<'_, T, N> {
+    /// q + h q̇ + h²/2 q̈, without the last term where it is too large to be trusted.
+    #[inline(always)]
+    fn predicted(&self, t: T, scales: &[T; N]) -> [T; N] {
+        let h = t - self.t;
+        let half_square = T::constant(0.5) * h * h;
+        let mut predicted = *self.q;
+        let rates = self.qd.iter().zip(self.qdd);
+        for ((coordinate, (rate, acceleration)), scale) in predicted.iter_mut().zip(rates).zip(scales) {
+            let second = half_square * *acceleration;
+            // A branch a coordinate: without them the compiler would load two at once, which were written one by one a
+            // moment ago, and the processor would have to wait until they have reached the memory.
+            if !T::all(trusted(second, *scale)) {
+                return self.carefully_predicted(h, scales);
+            }
+            *coordinate = *coordinate + h * *rate + second;
+        }
+        predicted
+    }
+
+    /// The same where the last term is too large for a lane.
+    #[cold]
+    #[inline(never)]
+    fn carefully_predicted(&self, h: T, scales: &[T; N]) -> [T; N] {
+        let half_square = T::constant(0.5) * h * h;
+        let mut all = T::mask(true);
+        for (acceleration, scale) in self.qdd.iter().zip(scales) {
+            all = all & trusted(half_square * *acceleration, *scale);
+        }
+        let mut predicted = *self.q;
+        for ((coordinate, rate), acceleration) in predicted.iter_mut().zip(self.qd).zip(self.qdd) {
+            let second = T::select(all, half_square * *acceleration, T::constant(0.0));
+            *coordinate = *coordinate + h * *rate + second;
+        }
+        predicted
+    }
+}
+
+/// Whether the second-order term of a coordinate of this scale is small enough.
+#[inline(always)]
+fn trusted<T: Scalar>(term: T, scale: T) -> T::Mask {
+    !(T::constant(LARGEST_SECOND_ORDER_TERM) * scale).less(term.abs())
+}
