@@ -107,30 +107,39 @@ fn sin_cos_by<A: Arithmetic, const K: usize>(angles: [f64; K]) -> ([f64; K], [f6
     let mut fast = true;
     if K == 1 {
         // It has nothing to go beside it.
-        fast = reduce::<A, K>(&mut sines, &mut cosines, angles);
+        fast = reduce::<A, K, true>(&mut sines, &mut cosines, angles);
     } else {
         let packs = sines.chunks_mut(WIDE).zip(cosines.chunks_mut(WIDE)).zip(angles.chunks(WIDE));
         for ((sines, cosines), angles) in packs {
             fast &= if angles.len() <= NARROW {
-                padded::<A, NARROW>(sines, cosines, angles)
+                if K <= 2 {
+                    padded::<A, NARROW, true>(sines, cosines, angles)
+                } else {
+                    padded::<A, NARROW, false>(sines, cosines, angles)
+                }
             } else {
-                padded::<A, WIDE>(sines, cosines, angles)
+                padded::<A, WIDE, false>(sines, cosines, angles)
             };
         }
     }
-    if fast { (sines, cosines) } else { replaced(angles, sines, cosines) }
+    if !fast {
+        // Assigned, not returned: what a function returns is in memory, and the fast path would go through there too.
+        let (replaced_sines, replaced_cosines) = replaced(angles, sines, cosines);
+        (sines, cosines) = (replaced_sines, replaced_cosines);
+    }
+    (sines, cosines)
 }
 
 /// Sines and cosines of W angles side by side; whether all are on the fast path.
 #[inline(always)]
-fn reduce<A: Arithmetic, const W: usize>(
+fn reduce<A: Arithmetic, const W: usize, const FEW: bool>(
     sines: &mut [f64; W],
     cosines: &mut [f64; W],
     angles: [f64; W],
 ) -> bool {
     let mut fast = true;
     for ((sine, cosine), angle) in sines.iter_mut().zip(cosines).zip(angles) {
-        (*sine, *cosine) = reduced::<A>(angle);
+        (*sine, *cosine) = reduced::<A, FEW>(angle);
         fast &= angle.abs() <= LARGEST_ANGLE;
     }
     fast
@@ -145,10 +154,15 @@ pub(crate) fn sin_cos_of_lanes<const L: usize, const K: usize>(
     let mut fast = true;
     let places = sines.as_flattened_mut().iter_mut().zip(cosines.as_flattened_mut());
     for ((sine, cosine), angle) in places.zip(angles.as_flattened()) {
-        (*sine, *cosine) = reduced::<Best>(*angle);
+        (*sine, *cosine) = reduced::<Best, false>(*angle);
         fast &= angle.abs() <= LARGEST_ANGLE;
     }
-    if fast { (sines, cosines) } else { replaced_lanes(angles, sines, cosines) }
+    if !fast {
+        // As in `sin_cos_by`.
+        let (replaced_sines, replaced_cosines) = replaced_lanes(angles, sines, cosines);
+        (sines, cosines) = (replaced_sines, replaced_cosines);
+    }
+    (sines, cosines)
 }
 
 /// As [`replaced`], of K angles in L lanes each.
@@ -167,11 +181,15 @@ fn replaced_lanes<const L: usize, const K: usize>(
 
 /// As [`reduce`], for at most W angles; zeros take the other places.
 #[inline(always)]
-fn padded<A: Arithmetic, const W: usize>(sines: &mut [f64], cosines: &mut [f64], angles: &[f64]) -> bool {
+fn padded<A: Arithmetic, const W: usize, const FEW: bool>(
+    sines: &mut [f64],
+    cosines: &mut [f64],
+    angles: &[f64],
+) -> bool {
     let mut pack = [0.0; W];
     pack.iter_mut().zip(angles).for_each(|(place, angle)| *place = *angle);
     let (mut pack_sines, mut pack_cosines) = (pack, pack);
-    let fast = reduce::<A, W>(&mut pack_sines, &mut pack_cosines, pack);
+    let fast = reduce::<A, W, FEW>(&mut pack_sines, &mut pack_cosines, pack);
     sines.iter_mut().zip(pack_sines).for_each(|(place, sine)| *place = sine);
     cosines.iter_mut().zip(pack_cosines).for_each(|(place, cosine)| *place = cosine);
     fast
@@ -215,8 +233,11 @@ fn replaced<const K: usize>(
 }
 
 /// Sine and cosine for |x| ≤ [`LARGEST_ANGLE`].
+///
+/// `FEW`: one angle or two, which are waited for. They are exchanged by bits, for a choice would go through the registers of
+/// masks, which takes longer; in a full register it is the choice that takes fewer operations.
 #[inline(always)]
-fn reduced<A: Arithmetic>(x: f64) -> (f64, f64) {
+fn reduced<A: Arithmetic, const FEW: bool>(x: f64) -> (f64, f64) {
     let shifted = A::multiply_add(x, FRAC_2_PI, ROUNDER);
     let (quadrant, n) = (shifted.to_bits(), shifted - ROUNDER);
     let (sine, cosine) = if A::FUSED {
@@ -225,12 +246,17 @@ fn reduced<A: Arithmetic>(x: f64) -> (f64, f64) {
         let (r, excess) = remainder(x, n);
         polynomials(r, excess)
     };
-    // sin and cos of n π/2 + …: odd quadrants exchange them, the second bit of n and of n + 1 is the sign. By bits, for a
-    // choice would be made in registers of their own, which takes longer.
+    // sin and cos of n π/2 + …: odd quadrants exchange them, the second bit of n and of n + 1 is the sign.
     let (sine, cosine) = (sine.to_bits(), cosine.to_bits());
-    let odd = (((quadrant << 63) as i64) >> 63) as u64;
-    let exchanged = (sine ^ cosine) & odd;
-    (signed(sine ^ exchanged, quadrant), signed(cosine ^ exchanged, quadrant.wrapping_add(1)))
+    let (first, second) = if FEW {
+        let odd = (((quadrant << 63) as i64) >> 63) as u64;
+        let exchanged = (sine ^ cosine) & odd;
+        (sine ^ exchanged, cosine ^ exchanged)
+    } else {
+        let odd = quadrant & 1 == 1;
+        if odd { (cosine, sine) } else { (sine, cosine) }
+    };
+    (signed(first, quadrant), signed(second, quadrant.wrapping_add(1)))
 }
 
 /// r and excess with r − excess = x − n π/2. Source: Cody & Waite 1980, with the rounding of each difference kept in

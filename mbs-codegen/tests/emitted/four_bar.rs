@@ -715,21 +715,24 @@ const _: () = {
                 [T::constant(::core::primitive::f64::INFINITY); 2],
                 [T::constant(0.0f64); 4],
             ));
-            let mut __evaluate = |__x: &[T; 2]| {
-                let ([__n36, __n39], [__n32, __n29]) = T::sin_cos([__x[0], __x[1]]);
-                let __n30 = T::constant(0.2f64) * __n29;
-                let __n31 = T::constant(0.3f64) + __n30;
-                let __n33 = T::constant(0.25f64) * __n32;
-                let __n34 = __n17 + __n33;
-                let __n35 = __n31 - __n34;
-                let __n37 = T::constant(0.25f64) * __n36;
-                let __n38 = __n24 + __n37;
-                let __n40 = T::constant(0.2f64) * __n39;
-                let __n41 = __n38 - __n40;
-                let __n57 = -__n40;
-                let __n58 = -__n30;
-                __kept.set((*__x, [__n30, __n33, __n37, __n40]));
-                ([__n35, __n41], [[__n37, __n57], [__n33, __n58]])
+            let mut __evaluate = {
+                #[inline(always)]
+                |__x: &[T; 2]| {
+                    let ([__n36, __n39], [__n32, __n29]) = T::sin_cos([__x[0], __x[1]]);
+                    let __n30 = T::constant(0.2f64) * __n29;
+                    let __n31 = T::constant(0.3f64) + __n30;
+                    let __n33 = T::constant(0.25f64) * __n32;
+                    let __n34 = __n17 + __n33;
+                    let __n35 = __n31 - __n34;
+                    let __n37 = T::constant(0.25f64) * __n36;
+                    let __n38 = __n24 + __n37;
+                    let __n40 = T::constant(0.2f64) * __n39;
+                    let __n41 = __n38 - __n40;
+                    let __n57 = -__n40;
+                    let __n58 = -__n30;
+                    __kept.set((*__x, [__n30, __n33, __n37, __n40]));
+                    ([__n35, __n41], [[__n37, __n57], [__n33, __n58]])
+                }
             };
             let (__x, __block) = __solver
                 .solve_closed::<
@@ -744,7 +747,8 @@ const _: () = {
                         coordinate_scales: [T::constant(1.0f64), T::constant(1.0f64)],
                     },
                     [__q[3], __q[4]],
-                    &mut __evaluate,
+                    #[inline(always)]
+                    |__x| __evaluate(__x),
                     |__x| {
                         let __n45 = __x[1] - __x[0];
                         let ([__n46], [_]) = T::sin_cos([__n45]);
@@ -767,10 +771,12 @@ const _: () = {
                             .roots(__near)
                     },
                 );
-            if !::mbs_runtime::mechanism::is_same(&__kept.get().0, &__x) {
-                __evaluate(&__x);
+            let mut __values = __kept.get();
+            if !::mbs_runtime::mechanism::is_same(&__values.0, &__x) {
+                ::mbs_runtime::mechanism::called(&mut __evaluate, &__x);
+                __values = __kept.get();
             }
-            let [__n30, __n33, __n37, __n40] = __kept.get().1;
+            let [__n30, __n33, __n37, __n40] = __values.1;
             __q[3] = __x[0];
             __q[4] = __x[1];
             let __outcome = ::mbs_runtime::failure::first_failure::<
