@@ -43,6 +43,7 @@ use emit::notation::Notation;
 pub use emit::report::{BlockReport, CoordinateReport, EntryKind, RowReport, StructureReport};
 use model::scenes::{Scene, Scenes};
 use proc_macro2::TokenStream;
+pub use program::Operations;
 pub use structure::mobility::Mobility;
 
 /// Expands the text of a mechanism, led by the runtime's path in parentheses (without it `::mbs_runtime`).

@@ -269,6 +269,18 @@ fn cost(model: &Model, program: &Program, lines: &mut Vec<String>) {
     let (head, rule) = if model.functions.is_empty() { ("", "") } else { (" declared functions |", "---|") };
     lines.push(format!("| function | + − | × | ÷ | sin, cos | other functions | selections |{head}"));
     lines.push(format!("|---|---|---|---|---|---|---|{rule}"));
+    for (name, count) in costs(program) {
+        let Operations { additions, multiplications, divisions, sine_cosines, functions, selects, calls } =
+            count;
+        let calls = if model.functions.is_empty() { String::new() } else { format!(" {calls} |") };
+        lines.push(format!(
+            "| {name} | {additions} | {multiplications} | {divisions} | {sine_cosines} | {functions} | {selects} |{calls}"
+        ));
+    }
+}
+
+/// Operations of each emitted function, on top of the stages before it, under the name that the documentation gives it.
+pub fn costs(program: &Program) -> Vec<(&'static str, Operations)> {
     let blocks = program.blocks.iter();
     let mut before = program.rest.operations;
     let mut iteration = Operations::default();
@@ -312,12 +324,5 @@ fn cost(model: &Model, program: &Program, lines: &mut Vec<String>) {
             ("`loads`", dynamics.loads.operations),
         ]);
     }
-    for (name, count) in table {
-        let Operations { additions, multiplications, divisions, sine_cosines, functions, selects, calls } =
-            count;
-        let calls = if model.functions.is_empty() { String::new() } else { format!(" {calls} |") };
-        lines.push(format!(
-            "| {name} | {additions} | {multiplications} | {divisions} | {sine_cosines} | {functions} | {selects} |{calls}"
-        ));
-    }
+    table
 }

@@ -1,5 +1,6 @@
 //! The structure as data: what a program draws and prints of it.
 
+use super::docs;
 use crate::equations::Equations;
 use crate::model::Model;
 use crate::program::{Method, Operations, Program, Section};
@@ -25,6 +26,8 @@ pub struct StructureReport {
     pub blocks: Vec<BlockReport>,
     /// Operations of one step of all functions, with one Newton iteration of every block.
     pub operations: usize,
+    /// Operations of each emitted function, on top of the stages before it, as the generated documentation has them.
+    pub costs: Vec<(&'static str, Operations)>,
 }
 
 /// A coordinate.
@@ -118,6 +121,7 @@ pub fn report(
         independent: model.independent.iter().map(|chosen| chosen.coordinate).collect(),
         blocks: blocks.collect(),
         operations: operations(program),
+        costs: docs::costs(program),
     }
 }
 
