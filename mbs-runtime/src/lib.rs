@@ -27,6 +27,8 @@ pub mod kinematics;
 pub mod lanes;
 pub mod limit;
 pub mod linear;
+#[doc(hidden)] // emitted code calls it
+pub mod long;
 pub mod mechanism;
 mod nearest;
 pub mod newton;

@@ -1,5 +1,6 @@
 //! Function bodies: printed as text, parsed into tokens once.
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 
 use proc_macro2::{Delimiter, Group, TokenStream, TokenTree};
@@ -45,22 +46,34 @@ fn with_runtime(stream: TokenStream, runtime: &TokenStream) -> TokenStream {
 
 /// Most `let`s of one function body. One long chain overflows rustc's stack in debug builds near 2 900 and takes its
 /// memory past 30 000; bodies of a few hundred keep both linear.
-const LONGEST_BODY: usize = 200;
+pub const LONGEST_BODY: usize = 200;
+
+/// Longest section that stays one function behind the compiler's optimisation, which takes more than linear time.
+const LONGEST_FUNCTION: usize = 2_000;
 
 /// Prints one `let` a line of the section; a long section is cut into closures that pass on what is used behind them.
 pub fn lets(section: &Section, scope: &Scope<'_>, text: &mut String) {
+    lets_for(section, &section.results, scope, text);
+}
+
+/// [`lets`], where other values than the section's results are used behind it.
+pub fn lets_for(section: &Section, results: &BTreeSet<NodeId>, scope: &Scope<'_>, text: &mut String) {
     if section.lines.len() <= LONGEST_BODY {
         return section.lines.iter().for_each(|line| print(line, scope, text));
     }
     let chunks: Vec<&[Line]> = section.lines.chunks(LONGEST_BODY).collect();
     // Values that chunks from here on, or the results, use; collected from the back.
-    let mut used = section.results.clone();
+    let mut used = results.clone();
     let mut exports: Vec<Vec<NodeId>> = Vec::new();
     for chunk in chunks.iter().rev() {
         exports.push(chunk.iter().flat_map(Line::values).filter(|id| used.contains(id)).collect());
         used.extend(chunk.iter().flat_map(|line| line.operands(scope.graph)));
     }
-    for (chunk, exports) in chunks.into_iter().zip(exports.into_iter().rev()) {
+    exports.reverse();
+    if section.lines.len() > LONGEST_FUNCTION {
+        return apart(&chunks, &exports, results, scope, text);
+    }
+    for (chunk, exports) in chunks.into_iter().zip(exports) {
         let names = exports.iter().map(|id| local(*id)).collect::<Vec<_>>().join(", ");
         let _ = writeln!(text, "let [{names}] = (|| -> [T; {}] {{", exports.len());
         chunk.iter().for_each(|line| print(line, scope, text));
@@ -68,7 +81,37 @@ pub fn lets(section: &Section, scope: &Scope<'_>, text: &mut String) {
     }
 }
 
-fn print(line: &Line, scope: &Scope<'_>, text: &mut String) {
+/// Prints chunks that stay functions of their own; what they pass on is taken from arrays where it is used.
+fn apart(
+    chunks: &[&[Line]],
+    exports: &[Vec<NodeId>],
+    results: &BTreeSet<NodeId>,
+    scope: &Scope<'_>,
+    text: &mut String,
+) {
+    let mut places: BTreeMap<NodeId, (usize, usize)> = BTreeMap::new();
+    for (number, (chunk, exports)) in chunks.iter().zip(exports).enumerate() {
+        let _ = writeln!(text, "let __part{number} = __mbs::long::apart(|| -> [T; {}] {{", exports.len());
+        let used: BTreeSet<NodeId> = chunk.iter().flat_map(|line| line.operands(scope.graph)).collect();
+        for (id, place) in used.iter().filter_map(|id| Some((id, places.get(id)?))) {
+            taken(*id, *place, text);
+        }
+        chunk.iter().for_each(|line| print(line, scope, text));
+        let names = exports.iter().map(|id| local(*id)).collect::<Vec<_>>().join(", ");
+        let _ = writeln!(text, "[{names}]\n}});");
+        places.extend(exports.iter().enumerate().map(|(index, id)| (*id, (number, index))));
+    }
+    for (id, place) in results.iter().filter_map(|id| Some((id, places.get(id)?))) {
+        taken(*id, *place, text);
+    }
+}
+
+fn taken(id: NodeId, (part, index): (usize, usize), text: &mut String) {
+    let _ = writeln!(text, "let {} = __part{part}[{index}];", local(id));
+}
+
+/// Prints a line.
+pub fn print(line: &Line, scope: &Scope<'_>, text: &mut String) {
     match line {
         Line::Value(id) => {
             let value = operation(scope.graph.node(*id), scope);

@@ -8,6 +8,8 @@ use super::blocks;
 use super::code::{block, lets, tokens};
 use super::dynamics::{self, DynamicBodies};
 use super::given;
+use super::linear;
+use super::long;
 use super::phases;
 use super::scope::Scope;
 use super::work;
@@ -38,8 +40,8 @@ pub struct Bodies {
     pub phi_tt: TokenStream,
     pub phi_qt_qd: TokenStream,
     pub gamma: TokenStream,
-    /// Φ, Φ_q, Φ_t and γ in one call.
-    pub evaluate: TokenStream,
+    /// Φ, Φ_q, Φ_t and γ in one call; long ones are computed function by function.
+    pub evaluate: Option<TokenStream>,
     pub branches: TokenStream,
     pub limits: TokenStream,
     /// `start_phases` and `advance_phases`, where there are any.
@@ -52,6 +54,10 @@ pub struct Bodies {
     /// Whether they are short enough to stand inside what calls them.
     pub short: bool,
     pub solve_with_position: TokenStream,
+    /// Body of `solve_blocks`, where it is not that of `solve_with_position`.
+    pub solve_blocks: Option<TokenStream>,
+    /// Functions of bounded length that a long solution calls.
+    pub methods: TokenStream,
     pub factorize: TokenStream,
     pub solve_linear: TokenStream,
     /// What these functions cost.
@@ -95,12 +101,27 @@ pub fn bodies(
     lets(&program.outputs, &scope, &mut outputs_text);
     outputs_text += &outputs(equations, &scope);
     let (phases, speeds) = phases::functions(equations, program, &bare);
-    let linear = blocks::linear(equations, program, &scope);
-    let unknowns = (0..model.coordinates.len()).map(|coordinate| format!("__x{coordinate}"));
-    let solve_linear = format!("{}[{}]", linear.solve, unknowns.collect::<Vec<_>>().join(", "));
     let independent = &structure.independent;
-    let complete = blocks::complete(independent, &linear.solve, model.coordinates.len());
-    let reduce = blocks::reduced(equations, &scope, program, independent, &linear.reduce);
+    let is_long = long::is_long(program);
+    let linear = linear::linear(equations, program, &scope, independent, is_long);
+    let position = kept(&program.position, &early, "__Position");
+    let parts = (is_long || long::has_many_blocks(program)).then(|| long::solve(program, &early));
+    let (solve_with_position, solve_blocks) = match &parts {
+        Some(parts) if is_long => (parts.body.clone(), None),
+        parts => (
+            blocks::solve(equations, program, &early, &position),
+            parts.as_ref().map(|parts| format!("let (__outcome, _) = {{\n{}\n}};\n__outcome", parts.body)),
+        ),
+    };
+    let methods = parts.map_or(String::new(), |parts| parts.methods);
+    let phi_q = match is_long {
+        true => long::phi_q(model),
+        false => {
+            let mut text = String::new();
+            lets(&program.phi_q, &scope, &mut text);
+            text + &matrix(equations.rows.iter().map(|row| &row.phi_q), &scope)
+        }
+    };
     Bodies {
         kept_parameters: program.parameters.fields.len(),
         kept_position: program.position.fields.len(),
@@ -119,7 +140,7 @@ pub fn bodies(
         row_scales: body(&program.row_scales, &early, some(&equations.row_scales, &early)),
         position: body(&program.position.section, &early, kept(&program.position, &early, "__Position")),
         phi: body(&program.phi, &scope, rows(|row| Some(row.phi))),
-        phi_q: body(&program.phi_q, &scope, matrix(equations.rows.iter().map(|row| &row.phi_q), &scope)),
+        phi_q: block(&phi_q, runtime),
         sparsity: entries(equations).map(|(row, column, _)| (row as u16, column as u16)).collect(),
         phi_q_entries: body(
             &program.phi_q,
@@ -130,7 +151,7 @@ pub fn bodies(
         phi_tt: body(&program.phi_tt, &scope, rows(|row| row.phi_tt)),
         phi_qt_qd: body(&program.phi_qt_qd, &scope, rows(|row| row.phi_qt_qd)),
         gamma: body(&program.gamma, &scope, rows(|row| row.gamma)),
-        evaluate: body(&program.evaluation, &early, evaluation(equations, &early)),
+        evaluate: (!is_long).then(|| body(&program.evaluation, &early, evaluation(equations, &early))),
         branches: body(&program.branches, &scope, some(&equations.branches, &scope)),
         limits: body(&program.limits, &scope, limits(equations, &scope)),
         phases: tokens(&phases, runtime),
@@ -138,16 +159,15 @@ pub fn bodies(
         outputs: block(&(given + &outputs_text), runtime),
         factors: tokens(&linear.factors, runtime),
         short: program.length() <= LONGEST_INLINED,
-        solve_with_position: block(
-            &blocks::solve(equations, program, &early, &kept(&program.position, &early, "__Position")),
-            runtime,
-        ),
+        solve_with_position: block(&solve_with_position, runtime),
+        solve_blocks: solve_blocks.map(|text| block(&text, runtime)),
+        methods: tokens(&methods, runtime),
         factorize: block(&linear.factorize, runtime),
-        solve_linear: block(&solve_linear, runtime),
+        solve_linear: block(&linear.solve, runtime),
         work: work::work(model, program, entries(equations).count(), runtime),
         independent: independent.iter().map(|coordinate| *coordinate as u16).collect(),
-        complete: block(&complete, runtime),
-        reduce: block(&reduce, runtime),
+        complete: block(&linear.complete, runtime),
+        reduce: block(&linear.reduce, runtime),
         dynamics: dynamics::bodies(equations, program, &early, &scope, runtime),
     }
 }

@@ -199,9 +199,23 @@ fn implementations(text: &Text, scenes: &Scenes, part: &Part<'_>) -> TokenStream
     } = bodies;
     let nonzeros = sparsity.len();
     let places = sparsity.iter().map(|(row, column)| quote! { (#row, #column) });
-    let speeds_item = match model.phases.is_empty() {
+    let evaluate = evaluate.as_ref().map(|evaluate| {
+        quote! {
+            #[inline]
+            fn evaluate(
+                &self,
+                __p: &__Parameters<T>,
+                __q: &[T; #n],
+                __t: T,
+                __qd: &[T; #n],
+            ) -> #runtime::Evaluation<T, [T; #nonzeros], #m> #evaluate
+        }
+    });
+    // Of a text whose rows fix nothing, nobody calls them.
+    let methods = (part.square || is_partitioned).then_some(&bodies.methods).filter(|text| !text.is_empty());
+    let own_item = match methods.is_none() && model.phases.is_empty() {
         true => TokenStream::new(),
-        false => quote! { impl<#callable> #name { #speeds } },
+        false => quote! { impl<#callable> #name { #speeds #methods } },
     };
     quote! {
         #[allow(clippy::approx_constant, reason = "numbers of the text stay as they are")]
@@ -214,7 +228,7 @@ fn implementations(text: &Text, scenes: &Scenes, part: &Part<'_>) -> TokenStream
             #[derive(::core::clone::Clone, ::core::marker::Copy, ::core::fmt::Debug)]
             pub struct __Position<T>([T; #kept_position]);
 
-            #speeds_item
+            #own_item
 
             impl<#callable> #runtime::Mechanism<T, #n, #m> for #name {
                 type Parameters = __Parameters<T>;
@@ -253,14 +267,7 @@ fn implementations(text: &Text, scenes: &Scenes, part: &Part<'_>) -> TokenStream
                 fn phi_qt_qd(&self, __p: &__Parameters<T>, __s: &__Position<T>, __qd: &[T; #n]) -> [T; #m] #phi_qt_qd
                 #[inline]
                 fn gamma(&self, __p: &__Parameters<T>, __s: &__Position<T>, __qd: &[T; #n]) -> [T; #m] #gamma
-                #[inline]
-                fn evaluate(
-                    &self,
-                    __p: &__Parameters<T>,
-                    __q: &[T; #n],
-                    __t: T,
-                    __qd: &[T; #n],
-                ) -> #runtime::Evaluation<T, [T; #nonzeros], #m> #evaluate
+                #evaluate
                 #[inline]
                 fn branches(&self, __p: &__Parameters<T>, __s: &__Position<T>) -> [T; #branches] #branches_body
                 #[inline]
@@ -298,6 +305,10 @@ fn kinematic(
     } else {
         quote! { #[inline] }
     };
+    let solve_blocks = match &bodies.solve_blocks {
+        Some(body) => body.clone(),
+        None => quote! { { #runtime::Kinematic::solve_with_position(self, __p, __q, __t, __solver).0 } },
+    };
     let sizes = if m == n {
         quote! { #n }
     } else {
@@ -316,9 +327,7 @@ fn kinematic(
                 __q: &mut [T; #n],
                 __t: T,
                 __solver: &mut __S,
-            ) -> T::Lanes<#runtime::Outcome> {
-                #runtime::Kinematic::solve_with_position(self, __p, __q, __t, __solver).0
-            }
+            ) -> T::Lanes<#runtime::Outcome> #solve_blocks
             #inline
             fn solve_with_position<__S: #runtime::BlockSolver<T>>(
                 &self,

@@ -42,7 +42,7 @@ fn bodies(model: &Model, runtime: &TokenStream) -> Bodies {
         phi_tt: body(),
         phi_qt_qd: body(),
         gamma: body(),
-        evaluate: body(),
+        evaluate: Some(body()),
         branches: body(),
         limits: body(),
         phases: quote! {},
@@ -54,6 +54,8 @@ fn bodies(model: &Model, runtime: &TokenStream) -> Bodies {
         },
         short: false,
         solve_with_position: body(),
+        solve_blocks: None,
+        methods: TokenStream::new(),
         factorize: body(),
         solve_linear: body(),
         // A constant: the compiler computes it.

@@ -10,10 +10,8 @@ mod lower;
 pub mod pins;
 mod turning;
 
-use std::collections::BTreeSet;
-
 use crate::model::Model;
-use crate::symbolic::{Graph, Leaf, Node, NodeId, tangent};
+use crate::symbolic::{Graph, Leaf, NodeId, tangent, tangents};
 
 pub use attribution::Motion;
 pub use dynamics::{Dynamics, Sparse};
@@ -169,23 +167,7 @@ pub fn derive(model: &Model) -> Equations {
 
 /// Entries of each row, column by column along the axes of a kind of leaves.
 fn jacobian(g: &mut Graph, roots: &[NodeId], columns: usize, axis: impl Fn(u32) -> Leaf) -> Sparse {
-    let mut rows = vec![Vec::new(); roots.len()];
-    let used: BTreeSet<Leaf> = g
-        .reachable(roots.iter().copied())
-        .into_iter()
-        .filter_map(|id| match g.node(id) {
-            Node::Leaf(leaf) => Some(leaf),
-            _ => None,
-        })
-        .collect();
-    for column in (0..columns).filter(|column| used.contains(&axis(*column as u32))) {
-        let along = axis(column as u32);
-        let direction = |g: &mut Graph, leaf| (leaf == along).then(|| g.constant(1.0));
-        for (row, entry) in rows.iter_mut().zip(tangent(g, roots, direction)) {
-            row.extend(entry.map(|entry| (column, entry)));
-        }
-    }
-    rows
+    tangents(g, roots, &(0..columns).map(|column| axis(column as u32)).collect::<Vec<Leaf>>())
 }
 
 /// Derivative of what may be zero already.

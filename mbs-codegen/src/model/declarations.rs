@@ -13,8 +13,9 @@ use super::{Coordinate, CoordinateField, Field, Longest, Model, Role, Variable, 
 use crate::diagnostics::Diagnostics;
 use crate::syntax::ast::{Declares, Expression, Name, Statement, StatementKind, Type, Unit};
 
-/// Most coordinates: Φ_q is a dense array.
-const MOST_COORDINATES: usize = 300;
+/// Most coordinates. A step is linear in them and has arrays of as many on its stack; Φ_q as a whole, which no step asks
+/// for, is a dense array of 32 MB then.
+const MOST_COORDINATES: usize = 2_000;
 
 /// Before: statements in any order. After: all declarations outside loops are in `model` and `names`.
 pub fn declare(
@@ -66,7 +67,7 @@ pub fn declare(
         work.diagnostics.report(
             beyond.span,
             message,
-            "split it: Φ_q is an array of all coordinates by all rows",
+            "split it: a step keeps a dozen arrays of all coordinates on its stack",
         );
     }
     for statement in faulty.into_iter().chain(in_loops) {

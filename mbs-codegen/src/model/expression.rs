@@ -128,6 +128,22 @@ impl Expressions {
         self.nodes.iter().enumerate().map(|(index, node)| (Id(index as u32), *node))
     }
 
+    /// Whether something that `root` is made of, itself included, is of this kind.
+    pub fn contain(&self, root: Id, is: impl Fn(Node) -> bool) -> bool {
+        let mut marked = vec![false; self.nodes.len()];
+        let mut waiting = vec![root];
+        while let Some(id) = waiting.pop() {
+            let Some(mark) = marked.get_mut(id.index()).filter(|mark| !**mark) else { continue };
+            *mark = true;
+            let node = self.node(id);
+            if is(node) {
+                return true;
+            }
+            waiting.extend(node.operands());
+        }
+        false
+    }
+
     /// Marks what `roots` are made of, themselves included: one flag an expression.
     pub fn reachable(&self, roots: impl IntoIterator<Item = Id>) -> Vec<bool> {
         let mut marked = vec![false; self.nodes.len()];

@@ -122,11 +122,8 @@ impl Model {
 
     /// Whether every leaf and every rate of a value is one of those that `allowed` accepts.
     fn made_of(&self, value: Id, allowed: impl Fn(Node) -> bool) -> bool {
-        let marked = self.expressions.reachable([value]);
-        let used = self.expressions.iter().filter(|(id, _)| marked.get(id.index()) == Some(&true));
-        used.map(|(_, node)| node)
-            .filter(|node| !matches!(node, Node::Unary(..) | Node::Binary(..)))
-            .all(allowed)
+        let refused = |node| !matches!(node, Node::Unary(..) | Node::Binary(..)) && !allowed(node);
+        !self.expressions.contain(value, refused)
     }
 }
 

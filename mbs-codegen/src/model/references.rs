@@ -75,14 +75,11 @@ impl Elaborator<'_> {
 
     /// Reports what is known with the factors or the rates alone, where its derivative is asked for.
     pub fn of_position(&mut self, x: Scalar, function: &str) -> Result<(), Fault> {
-        let marked = self.expressions.reachable([x.id]);
         let needs = |node: Node| match function {
             "ratio" => matches!(node, Node::Margin(_) | Node::Ratio(..) | Node::Rate(..)),
             _ => matches!(node, Node::Margin(_) | Node::Ratio(..)),
         };
-        let found =
-            self.expressions.iter().any(|(id, node)| marked.get(id.index()) == Some(&true) && needs(node));
-        match found {
+        match self.expressions.contain(x.id, needs) {
             false => Ok(()),
             true => Err(self.fault(
                 x.span,

@@ -51,7 +51,7 @@ pub fn resolve(statements: &[Statement], diagnostics: &mut Diagnostics) -> Model
 }
 
 /// Most rows, and most outputs.
-const MOST_ROWS: usize = 1_000;
+const MOST_ROWS: usize = 2_000;
 
 /// A group of rows, branches or outputs under one name.
 struct Group {
@@ -303,8 +303,7 @@ impl Resolver<'_> {
 
     /// Whether an expression is made of such nodes among others.
     pub(super) fn contains(&self, root: Id, is: impl Fn(Node) -> bool) -> bool {
-        let marked = self.model.expressions.reachable([root]);
-        self.model.expressions.iter().any(|(id, node)| marked.get(id.index()) == Some(&true) && is(node))
+        self.model.expressions.contain(root, is)
     }
 
     /// Unit of an expression: as declared, where it is a coordinate.

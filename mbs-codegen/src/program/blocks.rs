@@ -102,14 +102,15 @@ pub fn order(
     let mut all = roots(equations, structure);
     all.extend(position);
     let uses = Uses { companions: Companions::of(graph, &all), users: users(graph, &all), position };
-    for block in &structure.blocks {
+    let mut decided = decided(equations, structure);
+    for (index, block) in structure.blocks.iter().enumerate() {
         let (mut before, method) = match &block.explicit {
             Some(explicit) => {
                 let values = uses.companions.completed(graph, &known, vec![explicit.value]);
                 let before = schedule(graph, &values, &known);
                 (before, Method::Explicit { value: explicit.value, coefficient: explicit.coefficient })
             }
-            None => newton(equations, block, &decided(equations, structure, block), &known, &uses),
+            None => newton(equations, block, decided.remove(&index).unwrap_or_default(), &mut known, &uses),
         };
         // Later blocks use what this one computed.
         before.results.extend(before.lines.iter().flat_map(Line::values));
@@ -194,27 +195,32 @@ fn operation(node: Node) -> Option<(Option<u32>, NodeId)> {
     }
 }
 
-/// Branch conditions of which this block fixes the last coordinate.
-fn decided(equations: &Equations, structure: &Structure, block: &Block) -> Vec<NodeId> {
+/// Of each block the branch conditions of which it fixes the last coordinate.
+fn decided(equations: &Equations, structure: &Structure) -> BTreeMap<usize, Vec<NodeId>> {
     let graph = &equations.graph;
-    let solved_in =
-        |coordinate: usize| structure.blocks.iter().position(|b| b.coordinates.contains(&coordinate));
-    let here = block.coordinates.first().and_then(|coordinate| solved_in(*coordinate));
-    let last = |branch: NodeId| {
-        let leaves = graph.reachable([branch]).into_iter().filter_map(|id| match graph.node(id) {
-            Node::Leaf(Leaf::Position(index)) => solved_in(index as usize),
+    let mut solved_in = BTreeMap::new();
+    for (index, block) in structure.blocks.iter().enumerate() {
+        solved_in.extend(block.coordinates.iter().map(|coordinate| (*coordinate, index)));
+    }
+    let mut decided: BTreeMap<usize, Vec<NodeId>> = BTreeMap::new();
+    for branch in &equations.branches {
+        let leaves = graph.reachable([*branch]).into_iter().filter_map(|id| match graph.node(id) {
+            Node::Leaf(Leaf::Position(index)) => solved_in.get(&(index as usize)),
             _ => None,
         });
-        leaves.max()
-    };
-    equations.branches.iter().copied().filter(|branch| here.is_some() && last(*branch) == here).collect()
+        if let Some(last) = leaves.max() {
+            decided.entry(*last).or_default().push(*branch);
+        }
+    }
+    decided
 }
 
+/// Before: what is `known` when the block begins. After: its code; known is what is computed before its iteration, too.
 fn newton(
     equations: &Equations,
     block: &Block,
-    branches: &[NodeId],
-    known: &BTreeSet<NodeId>,
+    branches: Vec<NodeId>,
+    known: &mut BTreeSet<NodeId>,
     uses: &Uses<'_>,
 ) -> (Section, Method) {
     let graph = &equations.graph;
@@ -228,15 +234,13 @@ fn newton(
     }
     let still = uses.companions.completed(graph, known, still.into_iter().collect());
     let before = schedule(graph, &still, known);
-    let mut known = known.clone();
     known.extend(before.computed());
-    let mut section = schedule(graph, &uses.companions.completed(graph, &known, roots), &known);
+    let mut section = schedule(graph, &uses.companions.completed(graph, known, roots), known);
     let kept = uses.outside(&section.computed().collect());
     section.results.extend(&kept);
-    let branch_section = schedule(graph, branches, &known);
-    let branches = branches.to_vec();
+    let branch_section = schedule(graph, &branches, known);
     let dyad = block.dyad.clone().map(|dyad| {
-        let section = schedule(graph, &dyad.nodes(), &known);
+        let section = schedule(graph, &dyad.nodes(), known);
         (dyad, section)
     });
     (before, Method::Newton(Box::new(System { section, kept, phi, phi_q, branches, branch_section, dyad })))

@@ -66,10 +66,15 @@ fn called(function: u32, order: u8, a: f64) -> f64 {
 
 /// Values of `roots` where the leaves have the values that `leaf` gives.
 pub fn evaluate(graph: &Graph, roots: &[NodeId], leaf: impl Fn(Leaf) -> f64) -> Vec<f64> {
-    let mut values = vec![f64::NAN; graph.len()];
-    for id in graph.reachable(roots.iter().copied()) {
-        let of = |id: NodeId| values.get(id.index()).copied().unwrap_or(f64::NAN);
-        let value = match graph.node(id) {
+    let nodes = graph.reachable(roots.iter().copied());
+    // One a node, in their order: a few nodes of a large graph are a few numbers.
+    let mut values: Vec<f64> = Vec::with_capacity(nodes.len());
+    let of = |values: &[f64], id: NodeId| {
+        nodes.binary_search(&id).ok().and_then(|place| values.get(place)).copied().unwrap_or(f64::NAN)
+    };
+    for id in &nodes {
+        let of = |id: NodeId| of(&values, id);
+        let value = match graph.node(*id) {
             Node::Constant(bits) => f64::from_bits(bits),
             Node::Leaf(variable) => leaf(variable),
             Node::Unary(function, a) => unary(function, of(a)),
@@ -83,9 +88,7 @@ pub fn evaluate(graph: &Graph, roots: &[NodeId], leaf: impl Fn(Leaf) -> f64) -> 
                 }
             }
         };
-        if let Some(slot) = values.get_mut(id.index()) {
-            *slot = value;
-        }
+        values.push(value);
     }
-    roots.iter().map(|root| values.get(root.index()).copied().unwrap_or(f64::NAN)).collect()
+    roots.iter().map(|root| of(&values, *root)).collect()
 }

@@ -138,6 +138,11 @@ impl Graph {
         }
     }
 
+    /// The node, where the graph has it already.
+    pub fn find(&self, node: Node) -> Option<NodeId> {
+        self.index.get(&node).copied()
+    }
+
     /// A number.
     pub fn constant(&mut self, value: f64) -> NodeId {
         self.intern(Node::Constant(value.to_bits()))

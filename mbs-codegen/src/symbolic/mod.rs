@@ -8,5 +8,5 @@ pub mod graph;
 mod rules;
 pub mod substitute;
 
-pub use differentiate::tangent;
+pub use differentiate::{tangent, tangents};
 pub use graph::{Binary, Graph, Leaf, Node, NodeId, Stage, Unary};

@@ -1,0 +1,402 @@
+//! The linear systems of the diagonal blocks: factors, rates, multipliers.
+
+use std::collections::BTreeMap;
+use std::fmt::Write;
+
+use super::blocks::{factorization, list};
+use super::code::lets;
+use super::given;
+use super::long::{self, Kind};
+use super::pieces::{Code, Piece, apart, in_line};
+use super::scope::{Scope, number};
+use crate::equations::Equations;
+use crate::program::{BlockProgram, Method, Program, System};
+use crate::symbolic::NodeId;
+
+/// What is emitted of the linear systems.
+pub struct Linear {
+    /// Declaration of the factors.
+    pub factors: String,
+    /// Body of `factorize`, or of `partition`.
+    pub factorize: String,
+    /// Body of `solve_linear`: the unknowns of all blocks from the right-hand sides.
+    pub solve: String,
+    /// Body of `complete`: the dependent entries of `x` from the independent ones.
+    pub complete: String,
+    /// Body of `reduce`: the multipliers, and what they take from the independent entries of `y`.
+    pub reduce: String,
+}
+
+/// Most blocks of a part of a long solution.
+const LARGEST_GROUP: usize = 24;
+
+/// Before: blocks in the order of solution, and the coordinates that none solves for. After: the code of their linear
+/// systems, a `long` one in parts.
+pub fn linear(
+    equations: &Equations,
+    program: &Program,
+    scope: &Scope<'_>,
+    independent: &[usize],
+    long: bool,
+) -> Linear {
+    let entries = Entries::of(equations, program, scope, long);
+    let asked = given::blocks(equations, program, scope.model);
+    let kinds = if long { long::kinds(program) } else { BTreeMap::new() };
+    let mut tables = Tables::default();
+    let (mut diagonals, mut pieces, mut places) = (Vec::new(), Vec::new(), Vec::new());
+    for (index, block) in program.blocks.iter().enumerate() {
+        let mut place = format!("block{index}");
+        if let Method::Newton(system) = &block.method {
+            let asked = asked.contains(&index);
+            match kinds.get(&Kind::of(block, system)).filter(|_| !asked && !block.has_surplus()) {
+                Some(kind) => place = tables.add(*kind, block, &entries),
+                None => diagonals.push(diagonal(equations, block, system, &entries, (index, asked))),
+            }
+        }
+        pieces.push(solution(block, &place, &entries));
+        places.push(place);
+    }
+    let n = scope.model.coordinates.len();
+    let code = |pieces: &[Piece], given| match long {
+        true => apart(pieces, given, LARGEST_GROUP),
+        false => in_line(pieces, given),
+    };
+    let solved = code(&pieces, Vec::new());
+    let unknowns = list((0..n).map(|coordinate| solved.of(unknown(coordinate))));
+    let given = independent.iter().map(|coordinate| (unknown(*coordinate), format!("__x[{coordinate}]")));
+    let completed = code(&pieces, given.collect());
+    let reduced = code(&transposed(program, &places, &entries), Vec::new());
+    let (factors, factorize) = in_one(&diagonals, &tables, program, &entries);
+    Linear {
+        factors,
+        factorize,
+        solve: solved.text + &unknowns,
+        complete: complete(completed, independent, n),
+        reduce: reduce(reduced, independent, &entries),
+    }
+}
+
+fn unknown(coordinate: usize) -> String {
+    format!("__x{coordinate}")
+}
+
+fn multiplier(row: usize) -> String {
+    format!("__l{row}")
+}
+
+/// A diagonal block that is factorised.
+struct Diagonal {
+    index: usize,
+    /// Type of its factors.
+    kind: String,
+    /// `let`s of its factors and of the margin of all blocks so far.
+    text: String,
+    /// Whether its own margin is kept, too.
+    asked: bool,
+}
+
+fn diagonal(
+    equations: &Equations,
+    block: &BlockProgram,
+    system: &System,
+    entries: &Entries<'_>,
+    (index, asked): (usize, bool),
+) -> Diagonal {
+    let scope = entries.scope;
+    let size = block.rows.len();
+    let rows = list(system.phi_q.iter().map(|row| list(row.iter().map(|id| entries.of_block(*id)))));
+    let scale = |scales: &[NodeId], index: &usize| scope.or_zero(scales.get(*index).copied());
+    let row_scales = list(block.rows.iter().map(|row| scale(&equations.row_scales, row)));
+    let scales = list(block.coordinates.iter().map(|c| scale(&equations.coordinate_scales, c)));
+    let (row, coordinate) = (block.rows.first().unwrap_or(&0), block.coordinates.first().unwrap_or(&0));
+    let (kind, mut text);
+    if block.has_surplus() {
+        kind = format!("__mbs::Orthogonal<T, {}, {size}>", block.coordinates.len());
+        // No determinant, no orientation.
+        text = format!(
+            "let (__block{index}, __value) = <{kind}>::factorize(&{rows}, &{row_scales}, &{scales});\n\
+             let __margin = __margin.with_block(__value, {row}, {coordinate});\n"
+        );
+    } else {
+        kind = factorization(size);
+        text = format!(
+            "let (__block{index}, __value) = <{kind} as __mbs::Factorization<T, {size}>>::factorize(&{rows}, &{row_scales}, &{scales});\n\
+             let __margin = __margin.with_block(__value, {row}, {coordinate})\
+             .oriented(<{kind} as __mbs::Factorization<T, {size}>>::reverses(&__block{index}));\n"
+        );
+    }
+    if asked {
+        let _ = writeln!(text, "let __margin{index} = __value;");
+    }
+    Diagonal { index, kind, text, asked }
+}
+
+/// Blocks of a kind that are factorised in one loop.
+#[derive(Default)]
+struct Tables(BTreeMap<usize, Table>);
+
+#[derive(Default)]
+struct Table {
+    size: usize,
+    /// Where each entry of each block stands among the entries of Φ_q.
+    indices: Vec<String>,
+    /// Where each block stands.
+    places: Vec<String>,
+}
+
+impl Tables {
+    /// Adds a block of this kind; its place among the factors.
+    fn add(&mut self, kind: usize, block: &BlockProgram, entries: &Entries<'_>) -> String {
+        let table = self.0.entry(kind).or_default();
+        table.size = block.rows.len();
+        let index = |(row, column): (usize, usize)| match entries.places.get(&(row, column)) {
+            Some(index) => index.to_string(),
+            None => "__mbs::long::NONE".into(),
+        };
+        let columns = |row: usize| list(block.coordinates.iter().map(|column| index((row, *column))));
+        table.indices.push(list(block.rows.iter().map(|row| columns(*row))));
+        table.places.push(long::place(block, entries.scope));
+        format!("kind{kind}[{}]", table.places.len() - 1)
+    }
+}
+
+/// Declaration and body: blocks of one kind in a loop, others a field each.
+fn in_one(
+    diagonals: &[Diagonal],
+    tables: &Tables,
+    program: &Program,
+    entries: &Entries<'_>,
+) -> (String, String) {
+    let (mut fields, mut names) = (String::new(), String::new());
+    let mut text = String::new();
+    if entries.long {
+        text += "let __entries = __mbs::Mechanism::phi_q_entries(self, __p, __s);\n";
+    } else {
+        lets(&program.phi_q, entries.scope, &mut text);
+    }
+    text += "let __margin = __mbs::Margin::<T>::regular();\n";
+    if !tables.0.is_empty() {
+        text += &long::scales(entries.scope.model);
+    }
+    for (kind, Table { size, indices, places }) in &tables.0 {
+        let (count, factors) = (places.len(), factorization(*size));
+        let _ = writeln!(fields, "/// Diagonal blocks.\nkind{kind}: [{factors}; {count}],");
+        let _ = write!(names, "kind{kind}: __kind{kind}, ");
+        let (places, indices) = (list(places.iter().cloned()), list(indices.iter().cloned()));
+        let _ = writeln!(
+            text,
+            "const __PLACES{kind}: &[__mbs::long::Place<{size}, {size}>] = &{places};\n\
+             const __INDICES{kind}: &[[[::core::primitive::u32; {size}]; {size}]] = &{indices};\n\
+             let (__kind{kind}, __margin) = __mbs::long::factorized::<T, {factors}, {size}, {count}>(\
+             __PLACES{kind}, __INDICES{kind}, &__entries, (&__row_scales, &__coordinate_scales), __margin);"
+        );
+    }
+    for Diagonal { index, kind, text: factorize, asked } in diagonals {
+        let _ = writeln!(fields, "/// Diagonal block {index}.\nblock{index}: {kind},");
+        let _ = write!(names, "block{index}: __block{index}, ");
+        text += factorize;
+        if *asked {
+            let _ = writeln!(fields, "/// Its margin.\nmargin{index}: T,");
+            let _ = write!(names, "margin{index}: __margin{index}, ");
+        }
+    }
+    let (count, kept) = match entries.long {
+        true => (entries.places.len(), "__entries".to_owned()),
+        false => (entries.kept.len(), list(entries.kept.keys().map(|id| entries.scope.operand(*id)))),
+    };
+    let _ = write!(text, "(__Factors {{ entries: {kept}, {names} }}, __margin)");
+    let declaration = format!(
+        "/// Factorised diagonal blocks, and the entries of Φ_q off them.\n\
+         #[derive(::core::clone::Clone, ::core::marker::Copy, ::core::fmt::Debug)]\n\
+         pub struct __Factors<T: __mbs::Scalar> {{\n\
+         /// Entries off the diagonal blocks.\nentries: [T; {count}],\n{fields}}}"
+    );
+    (declaration, text)
+}
+
+/// The unknowns of a block from the right-hand sides and earlier unknowns.
+fn solution(block: &BlockProgram, place: &str, entries: &Entries<'_>) -> Piece {
+    let right_sides = block.rows.iter().map(|row| entries.right_side(*row, block));
+    let defines: Vec<String> = block.coordinates.iter().map(|coordinate| unknown(*coordinate)).collect();
+    let text = match &block.method {
+        Method::Explicit { coefficient, .. } => assigned(&defines, right_sides, *coefficient),
+        Method::Newton(_) => {
+            let (size, unknowns) = (block.rows.len(), defines.join(", "));
+            let right_sides = list(right_sides);
+            if block.has_surplus() {
+                let kind = format!("__mbs::Orthogonal<T, {}, {size}>", block.coordinates.len());
+                format!("let [{unknowns}] = <{kind}>::solve(&__factors.{place}, &{right_sides});\n")
+            } else {
+                let kind = factorization(size);
+                format!(
+                    "let [{unknowns}] = <{kind} as __mbs::Factorization<T, {size}>>::solve(&__factors.{place}, &{right_sides});\n"
+                )
+            }
+        }
+    };
+    let columns = block.rows.iter().flat_map(|row| entries.columns_beside(*row, block));
+    Piece { text, uses: columns.map(|(column, _)| unknown(*column)).collect(), defines }
+}
+
+/// Φ_qdᵀ λ = y_d, the last block first; nothing where surplus rows leave λ open.
+fn transposed(program: &Program, places: &[String], entries: &Entries<'_>) -> Vec<Piece> {
+    if program.blocks.iter().any(BlockProgram::has_surplus) {
+        return Vec::new();
+    }
+    let pieces = program.blocks.iter().zip(places).rev().map(|(block, place)| {
+        let name = |row: usize| multiplier(row);
+        let right_sides = block.coordinates.iter().map(|c| entries.transposed(*c, Some(block), name));
+        let defines: Vec<String> = block.rows.iter().map(|row| multiplier(*row)).collect();
+        let text = match &block.method {
+            Method::Explicit { coefficient, .. } => assigned(&defines, right_sides, *coefficient),
+            Method::Newton(_) => {
+                let (size, kind) = (block.rows.len(), factorization(block.rows.len()));
+                let (multipliers, right_sides) = (defines.join(", "), list(right_sides));
+                format!(
+                    "let [{multipliers}] = <{kind} as __mbs::Factorization<T, {size}>>::solve_transposed(&__factors.{place}, &{right_sides});\n"
+                )
+            }
+        };
+        let rows = block.coordinates.iter().flat_map(|coordinate| entries.rows_beside(*coordinate, Some(block)));
+        Piece { text, uses: rows.map(|(row, _)| multiplier(*row)).collect(), defines }
+    });
+    pieces.collect()
+}
+
+fn assigned(locals: &[String], right_sides: impl Iterator<Item = String>, coefficient: f64) -> String {
+    let assign =
+        |(local, value): (&String, String)| format!("let {local} = {};\n", quotient(&value, coefficient));
+    locals.iter().zip(right_sides).map(assign).collect()
+}
+
+/// A value over a number.
+fn quotient(value: &str, divisor: f64) -> String {
+    match divisor {
+        1.0 => value.to_owned(),
+        -1.0 => format!("-({value})"),
+        other => format!("({value}) / {}", number(other)),
+    }
+}
+
+fn complete(solved: Code, independent: &[usize], coordinates: usize) -> String {
+    let mut text = solved.text.clone();
+    for coordinate in (0..coordinates).filter(|coordinate| independent.binary_search(coordinate).is_err()) {
+        let _ = writeln!(text, "__x[{coordinate}] = {};", solved.of(unknown(coordinate)));
+    }
+    text
+}
+
+fn reduce(solved: Code, independent: &[usize], entries: &Entries<'_>) -> String {
+    let mut text = solved.text.clone();
+    for coordinate in independent {
+        let place = format!("__y[{coordinate}]");
+        let value = entries.transposed(*coordinate, None, |row| solved.of(multiplier(row)));
+        // A coordinate in no row keeps what it has.
+        if value != place {
+            let _ = writeln!(text, "{place} = {value};");
+        }
+    }
+    text + &list((0..entries.equations.rows.len()).map(|row| solved.of(multiplier(row))))
+}
+
+/// Entries of Φ_q that are no numbers: those off the diagonal blocks, or all where the code is long.
+struct Entries<'a> {
+    equations: &'a Equations,
+    scope: &'a Scope<'a>,
+    long: bool,
+    /// Index of each entry, by row and column.
+    places: BTreeMap<(usize, usize), usize>,
+    /// Rows and entries of each column.
+    columns: BTreeMap<usize, Vec<(usize, NodeId)>>,
+    kept: BTreeMap<NodeId, usize>,
+}
+
+impl<'a> Entries<'a> {
+    fn of(equations: &'a Equations, program: &Program, scope: &'a Scope<'a>, long: bool) -> Self {
+        let varies = |entry: &NodeId| scope.graph.constant_value(*entry).is_none();
+        let mut kept = BTreeMap::new();
+        if long {
+            let all = equations.rows.iter().flat_map(|row| &row.phi_q).enumerate();
+            kept.extend(all.map(|(index, (_, entry))| (*entry, index)).filter(|(entry, _)| varies(entry)));
+        } else {
+            for block in &program.blocks {
+                for row in block.rows.iter().filter_map(|row| equations.rows.get(*row)) {
+                    let beside = row.phi_q.iter().filter(|(column, _)| !block.coordinates.contains(column));
+                    kept.extend(beside.map(|(_, entry)| (*entry, 0)).filter(|(entry, _)| varies(entry)));
+                }
+            }
+            for (index, slot) in kept.values_mut().enumerate() {
+                *slot = index;
+            }
+        }
+        let mut columns: BTreeMap<usize, Vec<(usize, NodeId)>> = BTreeMap::new();
+        for (index, row) in equations.rows.iter().enumerate() {
+            for (column, entry) in &row.phi_q {
+                columns.entry(*column).or_default().push((index, *entry));
+            }
+        }
+        let all = equations.rows.iter().enumerate();
+        let all =
+            all.flat_map(|(row, equation)| equation.phi_q.iter().map(move |(column, _)| (row, *column)));
+        let places = all.enumerate().map(|(index, place)| (place, index)).collect();
+        Entries { equations, scope, long, places, columns, kept }
+    }
+
+    /// An entry of a diagonal block.
+    fn of_block(&self, entry: Option<NodeId>) -> String {
+        match entry.and_then(|entry| self.kept.get(&entry)).filter(|_| self.long) {
+            Some(index) => format!("__entries[{index}]"),
+            None => self.scope.or_zero(entry),
+        }
+    }
+
+    /// Columns and entries of a row beside its block.
+    fn columns_beside(&self, row: usize, block: &BlockProgram) -> impl Iterator<Item = &(usize, NodeId)> {
+        let entries = self.equations.rows.get(row).map(|row| row.phi_q.as_slice()).unwrap_or_default();
+        entries.iter().filter(|(column, _)| !block.coordinates.contains(column))
+    }
+
+    /// Rows and entries of a column beside its block; all rows where the coordinate is independent.
+    fn rows_beside(
+        &self,
+        coordinate: usize,
+        block: Option<&BlockProgram>,
+    ) -> impl Iterator<Item = &(usize, NodeId)> {
+        let entries = self.columns.get(&coordinate).map(Vec::as_slice).unwrap_or_default();
+        entries.iter().filter(move |(row, _)| block.is_none_or(|block| !block.rows.contains(row)))
+    }
+
+    /// `b − Σ Φ_q x` over coordinates of earlier blocks.
+    fn right_side(&self, row: usize, block: &BlockProgram) -> String {
+        let mut text = format!("__b[{row}]");
+        for (column, entry) in self.columns_beside(row, block) {
+            self.subtract(*entry, &unknown(*column), &mut text);
+        }
+        text
+    }
+
+    /// `y − Σ Φ_qᵀ λ` over the rows of later blocks; over all rows where the coordinate is independent.
+    fn transposed(
+        &self,
+        coordinate: usize,
+        block: Option<&BlockProgram>,
+        name: impl Fn(usize) -> String,
+    ) -> String {
+        let mut text = format!("__y[{coordinate}]");
+        for (row, entry) in self.rows_beside(coordinate, block) {
+            self.subtract(*entry, &name(*row), &mut text);
+        }
+        text
+    }
+
+    /// ` - entry * factor`
+    fn subtract(&self, entry: NodeId, factor: &str, text: &mut String) {
+        match (self.kept.get(&entry), self.equations.graph.constant_value(entry)) {
+            (_, Some(1.0)) => drop(write!(text, " - {factor}")),
+            (_, Some(-1.0)) => drop(write!(text, " + {factor}")),
+            (_, Some(value)) => drop(write!(text, " - {} * {factor}", number(value))),
+            (Some(index), None) => drop(write!(text, " - __factors.entries[{index}] * {factor}")),
+            (None, None) => {}
+        }
+    }
+}

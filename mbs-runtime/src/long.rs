@@ -1,0 +1,129 @@
+//! What emitted code of long mechanisms is made of: parts that are compiled by themselves, and what they pass on.
+//!
+//! One function of ten thousand operations takes a compiler longer than a hundred of a hundred, and one copy of a solver
+//! a block as long as the block's share of a small mechanism. So a long mechanism has parts of bounded length, and one
+//! loop over all blocks of a kind.
+
+use core::cell::Cell;
+
+use crate::{Block, Factorization, Margin, Scalar};
+
+/// A part of a long function. It never becomes one with what calls it, whose length would be that of all parts.
+#[inline(never)]
+pub fn apart<R>(part: impl FnOnce() -> R) -> R {
+    part()
+}
+
+/// Values that the parts of a solution pass on: V, those of the position stage first.
+#[derive(Debug)]
+pub struct Passed<T: Copy, const V: usize>(pub [Cell<T>; V]);
+
+impl<T: Scalar, const V: usize> Passed<T, V> {
+    /// Before any part.
+    #[inline]
+    #[must_use]
+    pub fn none() -> Self {
+        Passed(core::array::from_fn(|_| Cell::new(T::constant(0.0))))
+    }
+
+    /// The first P of them.
+    #[inline]
+    pub fn kept<const P: usize>(&self) -> [T; P] {
+        let mut kept = [T::constant(0.0); P];
+        kept.iter_mut().zip(&self.0).for_each(|(kept, passed)| *kept = passed.get());
+        kept
+    }
+}
+
+/// Where a diagonal block stands: a [`Block`] without its share of the metric.
+#[derive(Clone, Copy, Debug)]
+pub struct Place<const K: usize, const M: usize = K> {
+    /// Rows of Φ: M.
+    pub rows: [u16; M],
+    /// Coordinates solved for: K.
+    pub coordinates: [u16; K],
+    /// Whether a coordinate is an angle: K.
+    pub angles: [bool; K],
+}
+
+impl<const K: usize, const M: usize> Place<K, M> {
+    /// The block with its share of the metric of all `rows` and all `coordinates`.
+    #[inline(always)]
+    pub fn block<T: Scalar>(&self, rows: &[T], coordinates: &[T]) -> Block<T, K, M> {
+        let one = T::constant(1.0);
+        let scale = |scales: &[T], index: u16| scales.get(usize::from(index)).map_or(one, |scale| *scale);
+        Block {
+            rows: self.rows,
+            coordinates: self.coordinates,
+            angles: self.angles,
+            row_scales: self.rows.map(|row| scale(rows, row)),
+            coordinate_scales: self.coordinates.map(|coordinate| scale(coordinates, coordinate)),
+        }
+    }
+
+    /// Its coordinates among all of `q`.
+    #[inline(always)]
+    pub fn of<T: Scalar>(&self, q: &[T]) -> [T; K] {
+        self.coordinates.map(|index| q.get(usize::from(index)).map_or(T::constant(0.0), |value| *value))
+    }
+
+    /// Puts its coordinates `x` among all of `q`.
+    #[inline(always)]
+    pub fn put<T: Scalar>(&self, x: &[T; K], q: &mut [T]) {
+        for (index, x) in self.coordinates.iter().zip(x) {
+            if let Some(coordinate) = q.get_mut(usize::from(*index)) {
+                *coordinate = *x;
+            }
+        }
+    }
+}
+
+/// Factors of all diagonal blocks of a kind, with what they make of the `margin` of the blocks before.
+///
+/// `places` and `tables` (index of each entry of a block among `entries`; [`NONE`] where it is zero): one a block.
+/// `rows` and `coordinates`: the metric of all rows and all coordinates.
+#[inline(never)]
+pub fn factorized<T: Scalar, F: Factorization<T, K>, const K: usize, const B: usize>(
+    places: &[Place<K, K>],
+    tables: &[[[u32; K]; K]],
+    entries: &[T],
+    (rows, coordinates): (&[T], &[T]),
+    mut margin: Margin<T>,
+) -> ([F; B], Margin<T>) {
+    let zero = T::constant(0.0);
+    let mut blocks = places.iter().zip(tables);
+    let factors = core::array::from_fn(|_| {
+        let Some((place, table)) = blocks.next() else {
+            // Both tables have B places.
+            return F::factorize(&[[zero; K]; K], &[zero; K], &[zero; K]).0;
+        };
+        let entry = |index: u32| entries.get(index as usize).map_or(zero, |entry| *entry);
+        let Block { row_scales, coordinate_scales, .. } = place.block(rows, coordinates);
+        let (factors, value) =
+            F::factorize(&table.map(|row| row.map(entry)), &row_scales, &coordinate_scales);
+        let [row, coordinate] =
+            [place.rows, place.coordinates].map(|all| all.first().map_or(0, |first| *first));
+        margin = margin.with_block(value, row, coordinate).oriented(factors.reverses());
+        factors
+    });
+    (factors, margin)
+}
+
+/// The index of no entry.
+pub const NONE: u32 = u32::MAX;
+
+/// Entries at their places, row and column, among zeros.
+#[inline]
+pub fn scattered<T: Scalar, const N: usize, const M: usize>(
+    places: &[(u16, u16)],
+    entries: &[T],
+) -> [[T; N]; M] {
+    let mut rows = [[T::constant(0.0); N]; M];
+    for ((row, column), entry) in places.iter().zip(entries) {
+        let row = rows.get_mut(usize::from(*row));
+        if let Some(place) = row.and_then(|row| row.get_mut(usize::from(*column))) {
+            *place = *entry;
+        }
+    }
+    rows
+}

@@ -1,0 +1,168 @@
+//! Chains of four-bar loops: right at any length, at a cost that grows with it, and no faster.
+#![forbid(unsafe_code)]
+
+use mbs_runtime::{BlockWork, Kinematic, Operations, Stepper, WorstCase, mechanism};
+
+/// Drag links that turn each other: link i of `mean ± difference` drives link i + 1 of `mean ∓ difference` over a coupler. In
+/// every second loop the ground points the other way, so that it is the loop before seen from its other side: links of
+/// even number turn as the motor does, those of odd number as the rocker of one four-bar, however long the chain is.
+macro_rules! chain {
+    ($name:ident, $loops:literal) => {
+        mechanism! {
+            pub mechanism $name;
+            const LOOPS: 1 = $loops;
+            param mean: m = 0.275;
+            param difference: m = -0.025;
+            param coupler: m = 0.28;
+            param ground: m = 0.1;
+            param omega: rad/s = 2;
+            coord link: [rad; LOOPS + 1] = 0.4;
+            coord rod: [rad; LOOPS] = 0.6;
+            drive motor: link[0] == 0.5 + omega*t;
+            for i in 0..LOOPS {
+                let side = (-1)^i;
+                constraint loops {
+                    (mean + side*difference)*unit(link[i]) + coupler*unit(rod[i])
+                        == [side*ground, 0] + (mean - side*difference)*unit(link[i + 1]);
+                }
+                branch open: side*sin(link[i + 1] - rod[i]) > 0;
+            }
+            out last: rad = link[LOOPS];
+        }
+    };
+}
+
+chain!(One, 1);
+chain!(Ten, 10);
+chain!(Forty, 40);
+chain!(TwoHundred, 200);
+
+/// Rounding of a position: Newton's method stops within 64 roundings of a row, and each loop adds what the ones before
+/// left, at a quotient of rates of at most 2 up and as much down again.
+const PER_LOOP: f64 = 2e-13;
+
+/// Angle, rate and acceleration.
+type Motion = [f64; 3];
+
+/// The driven link and the coupler of one four-bar, by the law of cosines and by the projections of its loop.
+fn four_bar(motor: Motion) -> (Motion, Motion) {
+    let (a, b, c, d) = (0.25, 0.3, 0.28, 0.1);
+    let [psi, omega, alpha] = motor;
+    // From the end of the crank to the pivot of the driven link.
+    let (x, y) = (d - a * psi.cos(), -a * psi.sin());
+    let square = x * x + y * y;
+    // c u(φ) = (x, y) + b u(χ): the angle between the diagonal and the driven link.
+    let along = (c * c - b * b - square) / (2.0 * b * square.sqrt());
+    let chi = y.atan2(x) + along.acos();
+    let phi = (y + b * chi.sin()).atan2(x + b * chi.cos());
+    // a ψ̇ u⊥(ψ) + c φ̇ u⊥(φ) = b χ̇ u⊥(χ), along and across the coupler.
+    let chi_rate = a * omega * (psi - phi).sin() / (b * (chi - phi).sin());
+    let phi_rate = a * omega * (chi - psi).sin() / (c * (phi - chi).sin());
+    let chi_acceleration =
+        (a * alpha * (psi - phi).sin() + a * omega * omega * (psi - phi).cos() + c * phi_rate * phi_rate
+            - b * chi_rate * chi_rate * (chi - phi).cos())
+            / (b * (chi - phi).sin());
+    let phi_acceleration = (a * alpha * (psi - chi).sin()
+        + a * omega * omega * (psi - chi).cos()
+        + c * phi_rate * phi_rate * (phi - chi).cos()
+        - b * chi_rate * chi_rate)
+        / (c * (chi - phi).sin());
+    ([chi, chi_rate, chi_acceleration], [phi, phi_rate, phi_acceleration])
+}
+
+fn same_direction(found: f64, expected: f64) -> f64 {
+    (found - expected).sin().abs() + (1.0 - (found - expected).cos())
+}
+
+/// Every link and every coupler at some times of two turns.
+fn every_loop_is_one_four_bar<S: Kinematic<f64, N> + Default, const N: usize>() {
+    let loops = (N - 1) / 2;
+    let chain = S::default();
+    let guess = chain.guess(&chain.parameters());
+    let mut stepper = Stepper::assemble(chain, guess, 0.0).expect("an assembly");
+    let bound = PER_LOOP * (loops as f64 + 1.0);
+    for _ in 0..16 {
+        for _ in 0..25 {
+            stepper.advance(TURN / 200.0).expect("a step");
+        }
+        let motor = [0.5 + 2.0 * stepper.t(), 2.0, 0.0];
+        let (driven, coupler) = four_bar(motor);
+        for index in 0..=loops {
+            let expected = if index % 2 == 0 { motor } else { driven };
+            agree(&stepper, index, expected, bound);
+        }
+        for index in 0..loops {
+            // Seen from the other side the coupler points the other way.
+            let turned = coupler[0] + if index % 2 == 0 { 0.0 } else { core::f64::consts::PI };
+            agree(&stepper, loops + 1 + index, [turned, coupler[1], coupler[2]], bound);
+        }
+    }
+}
+
+/// Time of a turn of the motor (s).
+const TURN: f64 = core::f64::consts::PI;
+
+fn agree<S: Kinematic<f64, N>, const N: usize>(
+    stepper: &Stepper<S, f64, N, N>,
+    index: usize,
+    [angle, rate, acceleration]: Motion,
+    bound: f64,
+) {
+    let name = S::COORDINATES[index].name;
+    let error = same_direction(stepper.q()[index], angle);
+    assert!(error <= bound, "{name}: {error} for {bound}");
+    let error = (stepper.qd()[index] - rate).abs();
+    assert!(error <= 10.0 * bound, "rate of {name}: {error}");
+    let error = (stepper.qdd()[index] - acceleration).abs();
+    assert!(error <= 100.0 * bound, "acceleration of {name}: {error}");
+}
+
+#[test]
+fn one_loop_is_a_four_bar() {
+    every_loop_is_one_four_bar::<One, _>();
+}
+
+#[test]
+fn ten_loops_are_four_bars() {
+    every_loop_is_one_four_bar::<Ten, _>();
+}
+
+#[test]
+fn forty_loops_are_four_bars() {
+    every_loop_is_one_four_bar::<Forty, _>();
+}
+
+#[test]
+fn two_hundred_loops_are_four_bars() {
+    every_loop_is_one_four_bar::<TwoHundred, _>();
+}
+
+fn total(count: Operations) -> usize {
+    let Operations {
+        additions, multiplications, divisions, sine_cosines, functions, selections, calls, ..
+    } = count;
+    (additions + multiplications + divisions + sine_cosines + functions + selections + calls) as usize
+}
+
+/// Operations of each emitted function.
+fn work<S: WorstCase>() -> [usize; 8] {
+    let work = S::WORK;
+    let before = work.blocks.iter().map(|BlockWork { before, .. }| total(*before)).sum();
+    let evaluation = work.blocks.iter().map(|BlockWork { evaluation, .. }| total(*evaluation)).sum();
+    let of = [work.position, work.phi, work.phi_q, work.phi_t, work.gamma, work.branch_values].map(total);
+    let [position, phi, phi_q, phi_t, gamma, branches] = of;
+    [position, phi, phi_q, phi_t, gamma, branches, before, evaluation]
+}
+
+#[test]
+fn each_loop_costs_as_many_operations_as_any_other() {
+    let (ten, forty, many) = (work::<Ten>(), work::<Forty>(), work::<TwoHundred>());
+    for ((ten, forty), many) in ten.into_iter().zip(forty).zip(many) {
+        assert_eq!((forty - ten) * 160, (many - forty) * 30, "{ten} {forty} {many}");
+    }
+    assert!(total(<Ten as WorstCase>::WORK.gamma) > 100);
+    assert_eq!(
+        (<TwoHundred as WorstCase>::WORK.entries, <TwoHundred as WorstCase>::WORK.coordinates),
+        (1201, 401)
+    );
+}
