@@ -93,21 +93,27 @@ fn apart(
     for (number, (chunk, exports)) in chunks.iter().zip(exports).enumerate() {
         let _ = writeln!(text, "let __part{number} = __mbs::long::apart(|| -> [T; {}] {{", exports.len());
         let used: BTreeSet<NodeId> = chunk.iter().flat_map(|line| line.operands(scope.graph)).collect();
-        for (id, place) in used.iter().filter_map(|id| Some((id, places.get(id)?))) {
-            taken(*id, *place, text);
-        }
+        taken(&used, &places, text);
         chunk.iter().for_each(|line| print(line, scope, text));
         let names = exports.iter().map(|id| local(*id)).collect::<Vec<_>>().join(", ");
         let _ = writeln!(text, "[{names}]\n}});");
         places.extend(exports.iter().enumerate().map(|(index, id)| (*id, (number, index))));
     }
-    for (id, place) in results.iter().filter_map(|id| Some((id, places.get(id)?))) {
-        taken(*id, *place, text);
-    }
+    taken(results, &places, text);
 }
 
-fn taken(id: NodeId, (part, index): (usize, usize), text: &mut String) {
-    let _ = writeln!(text, "let {} = __part{part}[{index}];", local(id));
+/// Values out of the arrays of parts, as far as they stand there.
+fn taken(ids: &BTreeSet<NodeId>, places: &BTreeMap<NodeId, (usize, usize)>, text: &mut String) {
+    let found = ids.iter().filter_map(|id| Some((local(*id), places.get(id)?)));
+    bind(found.map(|(name, (part, index))| (name, format!("__part{part}[{index}]"))), text);
+}
+
+/// Locals of the scalar type, all in one `let`: each further one nests what debug information says of the others.
+pub fn bind(locals: impl Iterator<Item = (String, String)>, text: &mut String) {
+    let (names, values): (Vec<String>, Vec<String>) = locals.unzip();
+    if !names.is_empty() {
+        let _ = writeln!(text, "let [{}] = [{}];", names.join(", "), values.join(", "));
+    }
 }
 
 /// Prints a line.

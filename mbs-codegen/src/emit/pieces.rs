@@ -3,6 +3,8 @@
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
+use super::code::bind;
+
 /// Some lines.
 pub struct Piece {
     /// The lines.
@@ -30,9 +32,7 @@ impl Code {
 /// One piece behind the other, behind locals that are `given` as something else.
 pub fn in_line(pieces: &[Piece], given: Vec<(String, String)>) -> Code {
     let mut text = String::new();
-    for (local, place) in given {
-        let _ = writeln!(text, "let {local} = {place};");
-    }
+    bind(given.into_iter(), &mut text);
     pieces.iter().for_each(|piece| text += &piece.text);
     Code { text, places: BTreeMap::new() }
 }
@@ -49,9 +49,7 @@ pub fn apart(pieces: &[Piece], given: Vec<(String, String)>, length: usize) -> C
             .flat_map(|piece| &piece.uses)
             .filter_map(|local| places.get_key_value(local))
             .collect();
-        for (local, place) in used {
-            let _ = writeln!(text, "let {local} = {place};");
-        }
+        bind(used.into_iter().map(|(local, place)| (local.clone(), place.clone())), &mut text);
         part.iter().for_each(|piece| text += &piece.text);
         let _ = writeln!(text, "[{}]\n}});", defined.join(", "));
         for (index, local) in defined.into_iter().enumerate() {
