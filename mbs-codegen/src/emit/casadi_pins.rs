@@ -19,7 +19,7 @@ pub fn sums(model: &Model, dynamics: &Dynamics, attribution: &Attribution, text:
     let _ = writeln!(
         text,
         "    bodies, gravity, joints, acting, length = [], [], [], [], ca.SX({:?})",
-        model.longest
+        model.longest.as_ref().map_or(0.0, |longest| longest.length)
     );
     for (index, variable) in model.variables.iter().enumerate() {
         if variable.kind == VariableKind::Parameter && variable.dimension == Dimension::METRE {

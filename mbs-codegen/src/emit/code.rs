@@ -16,7 +16,8 @@ pub const RUNTIME: &str = "__mbs";
 /// Before: printed code. After: its tokens, [`RUNTIME`] replaced by the path that the wrapper macro passed on.
 pub fn tokens(text: &str, runtime: &TokenStream) -> TokenStream {
     match text.parse() {
-        Ok(parsed) => with_runtime(parsed, runtime),
+        Ok(parsed) if text.contains(RUNTIME) => with_runtime(parsed, runtime),
+        Ok(parsed) => parsed,
         Err(_) => {
             quote! { ::core::compile_error! { "the emitted code does not lex; please report the mechanism" } }
         }
@@ -63,11 +64,18 @@ pub fn lets_for(section: &Section, results: &BTreeSet<NodeId>, scope: &Scope<'_>
     }
     let chunks: Vec<&[Line]> = section.lines.chunks(LONGEST_BODY).collect();
     // Values that chunks from here on, or the results, use; collected from the back.
-    let mut used = results.clone();
+    let mut used = vec![false; scope.graph.len()];
+    let mark = |ids: &[NodeId], used: &mut [bool]| {
+        for id in ids {
+            used.get_mut(id.index()).into_iter().for_each(|mark| *mark = true);
+        }
+    };
+    results.iter().for_each(|id| mark(&[*id], &mut used));
     let mut exports: Vec<Vec<NodeId>> = Vec::new();
     for chunk in chunks.iter().rev() {
-        exports.push(chunk.iter().flat_map(Line::values).filter(|id| used.contains(id)).collect());
-        used.extend(chunk.iter().flat_map(|line| line.operands(scope.graph)));
+        let is_used = |id: &NodeId| used.get(id.index()).copied().unwrap_or(false);
+        exports.push(chunk.iter().flat_map(Line::values).filter(is_used).collect());
+        chunk.iter().for_each(|line| mark(&line.operands(scope.graph), &mut used));
     }
     exports.reverse();
     if section.lines.len() > LONGEST_FUNCTION {

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::code::local;
 use crate::equations::MARGIN;
 use crate::model::{Model, Role};
-use crate::symbolic::{Graph, Leaf, Node, NodeId};
+use crate::symbolic::{Graph, Leaf, Node, NodeId, Stage};
 
 /// What is at hand within a function.
 pub struct Scope<'a> {
@@ -28,11 +28,19 @@ impl Scope<'_> {
     pub fn operand(&self, id: NodeId) -> String {
         let field =
             |fields: Option<&BTreeMap<NodeId, usize>>| fields.and_then(|fields| fields.get(&id)).copied();
-        if let Some(index) = field(self.position) {
-            return format!("__s.0[{index}]");
-        }
-        if let Some(index) = field(self.parameters) {
-            return format!("__p.0[{index}]");
+        // A stage keeps values of its own stage alone.
+        match self.graph.stage(id) {
+            Stage::Position => {
+                if let Some(index) = field(self.position) {
+                    return format!("__s.0[{index}]");
+                }
+            }
+            Stage::Parameter => {
+                if let Some(index) = field(self.parameters) {
+                    return format!("__p.0[{index}]");
+                }
+            }
+            _ => {}
         }
         match self.graph.node(id) {
             node @ (Node::Constant(_) | Node::Leaf(_)) => self.leaf(node),

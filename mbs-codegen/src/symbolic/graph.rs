@@ -214,7 +214,13 @@ pub fn in_order(mut found: Vec<NodeId>, marked: &[bool]) -> Vec<NodeId> {
         return found;
     }
     found.clear();
-    found.extend((0..).zip(marked).filter(|(_, mark)| **mark).map(|(index, _)| NodeId(index)));
+    let mut index = 0;
+    while let Some(mark) = marked.get(index) {
+        if *mark {
+            found.push(NodeId(index as u32));
+        }
+        index += 1;
+    }
     found
 }
 

@@ -38,7 +38,11 @@ pub fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<(), CommandErro
         constraints + drives
     )?;
     writeln!(out, "rank of the constraints      {rank} here; their sparsity allows {structural_rank}")?;
-    writeln!(out, "rank with the drives         {whole_rank}{}", whole(whole_rank, n, report.mobility.rank))?;
+    writeln!(
+        out,
+        "rank with the drives         {whole_rank}{}",
+        whole(whole_rank, n, report.mobility.rank, drives)
+    )?;
     writeln!(out, "degrees of freedom           {n} − {rank} = {}", n - rank)?;
     writeln!(out, "Grübler's count              {n} − {constraints} = {}", report.mobility.grubler())?;
     let entries = mechanism.coordinates();
@@ -83,10 +87,11 @@ fn reason(declared: bool, report: &StructureReport, named: &str) -> String {
     }
 }
 
-fn whole(rank: usize, n: usize, allowed: usize) -> &'static str {
+/// Rows without drives that have less than their sparsity's rank and are as many as coordinates leave the rest to forces.
+fn whole(rank: usize, n: usize, allowed: usize, drives: usize) -> &'static str {
     if rank == n {
         ": every coordinate is determined"
-    } else if rank == allowed {
+    } else if rank == allowed || (drives == 0 && allowed == n) {
         ": forces move the others"
     } else {
         ": the position is singular"
