@@ -25,6 +25,16 @@ def define(ca, q, v, t, der):
     return phi, [(e, 2) for e in [zero, zero, *a, *b, L4, zero, x2, y2]]
 
 
+def least_squares(ca, columns, known):
+    """Unknowns by orthogonal factors, and whether no column is nearly a sum of earlier ones."""
+    matrix = ca.horzcat(*[ca.vertcat(*c) for c in columns])
+    orthogonal, upper = ca.qr(matrix)
+    resolved = ca.SX(1)
+    for k in range(len(columns)):
+        resolved = ca.logic_and(resolved, ca.fabs(upper[k, k]) >= ca.norm_2(matrix[:, k]) / 32)
+    return ca.solve(upper, ca.mtimes(orthogonal.T, ca.vertcat(*known))), resolved
+
+
 def dynamics(ca, q, v, t, der, z, l):
     phi1, phi2, phi3 = q[2], q[3], q[4]
     L1, L2, L3, crank, coupler, rocker, g = v[0], v[1], v[2], v[6], v[7], v[8], v[9]
@@ -36,9 +46,41 @@ def dynamics(ca, q, v, t, der, z, l):
         rocker * L3**2 / 6 * der(phi3) ** 2,
     ]
     heights = [crank * L1 / 2 * ca.sin(phi1), coupler * middle[1], rocker * L3 / 2 * ca.sin(phi3)]
-    zero = ca.SX(0)
-    # Forces of pins at states that no motion has are a matter of least squares: `mbs verify` and the tests of the mechanism
-    # compare them.
-    ca.joints_resolved = zero
-    loads = [*[zero] * 8, -l[4]]
+
+    # Newton's and Euler's sums of crank, coupler and rocker, moments over the longest length. At states that no motion has
+    # they contradict each other: then their least squares count.
+    def weighed(mass, point):
+        return [mass * der(der(point[0])), mass * (der(der(point[1])) + g)]
+
+    def half(length, angle):
+        return [length / 2 * ca.cos(angle), length / 2 * ca.sin(angle)]
+
+    length = ca.SX(0)
+    for known in [v[k] for k in range(5)]:
+        length = ca.fmax(length, ca.fabs(known))
+    a, b, c = half(L1, phi1), half(L2, phi2), half(L3, phi3)
+    centre = [v[3] + c[0], c[1]]
+    known = [*weighed(crank, a), (crank * L1**2 / 12 * der(der(phi1)) + l[4]) / length]
+    known += [*weighed(coupler, middle), coupler * L2**2 / 12 * der(der(phi2)) / length]
+    known += [*weighed(rocker, centre), rocker * L3**2 / 12 * der(der(phi3)) / length]
+    # The elbow is the coupler's end; away from an assembly it is not the rocker's.
+    elbow = [middle[k] + b[k] - centre[k] for k in range(2)]
+    # On which body a pin's force acts and with which arm, and on which it acts back.
+    pins = [
+        (0, [-a[0], -a[1]], None, None),
+        (1, [-b[0], -b[1]], 0, a),
+        (2, elbow, 1, b),
+        (2, [-c[0], -c[1]], None, None),
+    ]
+    columns = []
+    for on, at, back, there in pins:
+        for force in ([1, 0], [0, 1]):
+            column = [ca.SX(0)] * 9
+            for body, arm, sign in ((on, at, 1), (back, there, -1)):
+                if body is not None:
+                    moment = arm[0] * force[1] - arm[1] * force[0]
+                    column[3 * body : 3 * body + 3] = [sign * force[0], sign * force[1], sign * moment / length]
+            columns.append(column)
+    found, ca.joints_resolved = least_squares(ca, columns, known)
+    loads = [*[found[k] for k in range(8)], -l[4]]
     return dict(kinetic=kinetic, potential=[g * sum(heights)], forces=[], rates=[], loads=loads)
