@@ -38,11 +38,10 @@ pub fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<(), CommandErro
         constraints + drives
     )?;
     writeln!(out, "rank of the constraints      {rank} here; their sparsity allows {structural_rank}")?;
-    writeln!(
-        out,
-        "rank with the drives         {whole_rank}{}",
-        whole(whole_rank, n, report.mobility.rank, drives)
-    )?;
+    // Rows that may follow from others leave less rank than their sparsity allows, and what they leave is free.
+    let redundant = drives == 0 && report.rows.iter().any(|row| row.redundant);
+    let free = whole_rank == report.mobility.rank || redundant;
+    writeln!(out, "rank with the drives         {whole_rank}{}", whole(whole_rank == n, free))?;
     writeln!(out, "degrees of freedom           {n} − {rank} = {}", n - rank)?;
     writeln!(out, "Grübler's count              {n} − {constraints} = {}", report.mobility.grubler())?;
     let entries = mechanism.coordinates();
@@ -87,13 +86,10 @@ fn reason(declared: bool, report: &StructureReport, named: &str) -> String {
     }
 }
 
-/// Rows without drives that have less than their sparsity's rank and are as many as coordinates leave the rest to forces.
-fn whole(rank: usize, n: usize, allowed: usize, drives: usize) -> &'static str {
-    if rank == n {
-        ": every coordinate is determined"
-    } else if rank == allowed || (drives == 0 && allowed == n) {
-        ": forces move the others"
-    } else {
-        ": the position is singular"
+fn whole(determined: bool, free: bool) -> &'static str {
+    match (determined, free) {
+        (true, _) => ": every coordinate is determined",
+        (false, true) => ": forces move the others",
+        (false, false) => ": the position is singular",
     }
 }
