@@ -49,8 +49,9 @@ fn with_runtime(stream: TokenStream, runtime: &TokenStream) -> TokenStream {
 /// memory past 30 000; bodies of a few hundred keep both linear.
 pub const LONGEST_BODY: usize = 200;
 
-/// Longest section that stays one function behind the compiler's optimisation, which takes more than linear time.
-const LONGEST_FUNCTION: usize = 2_000;
+/// Longest section, solution or evaluation that stays one function behind the compiler's optimisation, which takes more than
+/// linear time.
+pub const LONGEST_FUNCTION: usize = 2_000;
 
 /// Prints one `let` a line of the section; a long section is cut into closures that pass on what is used behind them.
 pub fn lets(section: &Section, scope: &Scope<'_>, text: &mut String) {

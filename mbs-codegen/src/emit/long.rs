@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 
 use super::blocks::{factorization, formula, list};
-use super::code::{LONGEST_BODY, lets, lets_for, local, print};
+use super::code::{LONGEST_BODY, LONGEST_FUNCTION, lets, lets_for, local, print};
 use super::scope::{Scope, number as number_of};
 use crate::model::Model;
 use crate::program::{BlockProgram, Line, Method, Program, Section, System};
@@ -17,9 +17,6 @@ const MOST_COPIES: usize = 16;
 
 /// Most blocks of which the next position, which each step waits for, is straight-line code; of more it is a loop too.
 const MOST_IN_LINE: usize = 48;
-
-/// Longest solution and longest evaluation in one function; the compiler's time grows faster than they beyond.
-const LONGEST_FUNCTION: usize = 2_000;
 
 /// Whether all functions of a mechanism are emitted in parts.
 pub fn is_long(program: &Program) -> bool {
