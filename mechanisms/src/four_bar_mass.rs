@@ -139,11 +139,10 @@ pub const DRIVEN: Card = Card {
 mod tests {
     use super::*;
     use crate::facade::Motion;
-    use crate::newton_euler::{Body, Unknown, forces, periodic_slope, pin, plus, turning};
+    use crate::newton_euler::{
+        self, Body, Unknown, assert_torque_is_the_slope_of_the_energy, forces, pin, plus, turning,
+    };
     use crate::reference::{dynamics_of, load, one_turn};
-
-    /// Bound of the differences of forces, relative to the largest of the motion.
-    const BOUND: f64 = 1e-10;
 
     /// Forces in the four pins, of the frame or of the link before on the link behind, and the torque on the crank, at
     /// instant `k`.
@@ -173,19 +172,13 @@ mod tests {
 
     #[track_caller]
     fn assert_agree(motion: &Motion, torque: impl Fn(usize) -> f64) {
-        let pins = ["bearing_force", "crank_pin", "rocker_pin", "pivot_force"]
-            .map(|pin| [0, 1].map(|i| load(motion, &format!("{pin}.{i}"))));
         let expected: Vec<Vec<f64>> = (0..motion.time.len()).map(|k| sums(motion, k)).collect();
-        let size = expected.iter().flatten().fold(0.0, |size: f64, force| size.max(force.abs()));
-        for (k, expected) in expected.into_iter().enumerate() {
-            let found = pins.iter().flatten().map(|pin| pin[k]).chain([torque(k)]);
-            for (found, expected) in found.zip(expected) {
-                assert!(
-                    (found - expected).abs() < BOUND * size,
-                    "instant {k}: {found} instead of {expected}"
-                );
-            }
-        }
+        newton_euler::assert_agree(
+            motion,
+            &["bearing_force", "crank_pin", "rocker_pin", "pivot_force"],
+            torque,
+            &expected,
+        );
     }
 
     #[test]
@@ -197,12 +190,7 @@ mod tests {
         let torque = load(&motion, "motor_torque").to_vec();
         assert_agree(&motion, |k| torque[k]);
         // The motor's power is the change of energy; per radian, its torque.
-        let moved = motion.dynamics.as_ref().expect("it has masses");
-        let energy: Vec<f64> = moved.kinetic.iter().zip(&moved.potential).map(|(t, v)| t + v).collect();
-        let size = torque.iter().fold(0.0, |size: f64, torque| size.max(torque.abs()));
-        for (slope, torque) in periodic_slope(&energy).iter().zip(&torque) {
-            assert!((slope - torque).abs() < BOUND * size, "{slope} instead of {torque}");
-        }
+        assert_torque_is_the_slope_of_the_energy(&motion, &torque);
     }
 
     #[test]

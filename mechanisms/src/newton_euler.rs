@@ -1,6 +1,12 @@
 //! Newton's and Euler's sums of plane bodies as one linear system, for tests: it knows masses, places and accelerations,
 //! and nothing of constraints, multipliers or virtual work.
 
+use crate::facade::Motion;
+use crate::reference::load;
+
+/// Bound of the differences of forces, relative to the largest of the motion.
+const BOUND: f64 = 1e-10;
+
 /// A rigid body with its motion.
 pub struct Body {
     pub mass: f64,
@@ -41,7 +47,7 @@ pub fn cross(a: [f64; 2], b: [f64; 2]) -> f64 {
 
 /// Slope of a periodic function of which one turn is sampled, its end included, by its trigonometric polynomial: exact
 /// where the function has no harmonics beyond half the samples. Per turn, times 2π.
-pub fn periodic_slope(samples: &[f64]) -> Vec<f64> {
+fn periodic_slope(samples: &[f64]) -> Vec<f64> {
     let count = samples.len() - 1;
     assert!(count.is_multiple_of(2), "an even number of intervals");
     let weight = |distance: usize| {
@@ -94,4 +100,31 @@ fn eliminated(mut rows: Vec<Vec<f64>>) -> Vec<f64> {
         }
     }
     (0..size).map(|k| rows[k][size] / rows[k][k]).collect()
+}
+
+/// Forces in pins and a torque at every instant of a motion are `expected`: two components a pin in the order of `pins`, then
+/// the torque; relative to the largest.
+#[track_caller]
+pub fn assert_agree(motion: &Motion, pins: &[&str], torque: impl Fn(usize) -> f64, expected: &[Vec<f64>]) {
+    let pins: Vec<&[f64]> =
+        pins.iter().flat_map(|pin| [0, 1].map(|i| load(motion, &format!("{pin}.{i}")))).collect();
+    let size = expected.iter().flatten().fold(0.0, |size: f64, force| size.max(force.abs()));
+    for (k, expected) in expected.iter().enumerate() {
+        let found = pins.iter().map(|pin| pin[k]).chain([torque(k)]);
+        assert_eq!(expected.len(), pins.len() + 1);
+        for (found, expected) in found.zip(expected) {
+            assert!((found - expected).abs() < BOUND * size, "instant {k}: {found} instead of {expected}");
+        }
+    }
+}
+
+/// The torque of a motor that drives a motion of one turn, periodic, is the slope of the energy over its angle.
+#[track_caller]
+pub fn assert_torque_is_the_slope_of_the_energy(motion: &Motion, torque: &[f64]) {
+    let moved = motion.dynamics.as_ref().expect("it has masses");
+    let energy: Vec<f64> = moved.kinetic.iter().zip(&moved.potential).map(|(t, v)| t + v).collect();
+    let size = torque.iter().fold(0.0, |size: f64, torque| size.max(torque.abs()));
+    for (slope, torque) in periodic_slope(&energy).iter().zip(torque) {
+        assert!((slope - torque).abs() < BOUND * size, "{slope} instead of {torque}");
+    }
 }

@@ -123,15 +123,14 @@ mod tests {
 
     use super::*;
     use crate::facade::Motion;
-    use crate::newton_euler::{Body, Unknown, forces, periodic_slope, pin, plus, turning};
+    use crate::newton_euler::{
+        self, Body, Unknown, assert_torque_is_the_slope_of_the_energy, forces, pin, plus, turning,
+    };
     use crate::reference::{dynamics_of, load, one_turn};
-
-    /// Bound of the differences of forces, relative to the largest of the motion.
-    const BOUND: f64 = 1e-10;
 
     /// Forces of the frame on the crank, of the crank and of the piston on the rod, and the torque on the crank, at
     /// instant `k`.
-    fn sums(motion: &Motion, k: usize) -> [f64; 7] {
+    fn sums(motion: &Motion, k: usize) -> Vec<f64> {
         let at = |i: usize| {
             let curve = &motion.coordinates[i];
             [curve.q[k], curve.qd[k], curve.qdd[k]]
@@ -155,24 +154,13 @@ mod tests {
         let ground = [guide, Unknown::Torque { on: 2 }, Unknown::Torque { on: 0 }];
         let found =
             forces(&bodies, [0.0, -9.81], &joints.into_iter().flatten().chain(ground).collect::<Vec<_>>());
-        [found[0], found[1], found[2], found[3], found[4], found[5], found[8]]
+        vec![found[0], found[1], found[2], found[3], found[4], found[5], found[8]]
     }
 
     #[track_caller]
     fn assert_agree(motion: &Motion, torque: impl Fn(usize) -> f64) {
-        let pins = ["bearing_force", "crank_pin", "piston_pin"]
-            .map(|pin| [0, 1].map(|i| load(motion, &format!("{pin}.{i}"))));
-        let expected: Vec<[f64; 7]> = (0..motion.time.len()).map(|k| sums(motion, k)).collect();
-        let size = expected.iter().flatten().fold(0.0, |size: f64, force| size.max(force.abs()));
-        for (k, expected) in expected.into_iter().enumerate() {
-            let found = pins.iter().flatten().map(|pin| pin[k]).chain([torque(k)]);
-            for (found, expected) in found.zip(expected) {
-                assert!(
-                    (found - expected).abs() < BOUND * size,
-                    "instant {k}: {found} instead of {expected}"
-                );
-            }
-        }
+        let expected: Vec<Vec<f64>> = (0..motion.time.len()).map(|k| sums(motion, k)).collect();
+        newton_euler::assert_agree(motion, &["bearing_force", "crank_pin", "piston_pin"], torque, &expected);
     }
 
     #[test]
@@ -184,13 +172,9 @@ mod tests {
         let torque = load(&motion, "motor_torque").to_vec();
         assert_agree(&motion, |k| torque[k]);
         // The motor's power is the change of energy; per radian, its torque.
-        let moved = motion.dynamics.as_ref().expect("it has masses");
-        let energy: Vec<f64> = moved.kinetic.iter().zip(&moved.potential).map(|(t, v)| t + v).collect();
-        let size = torque.iter().fold(0.0, |size: f64, torque| size.max(torque.abs()));
-        for (slope, torque) in periodic_slope(&energy).iter().zip(&torque) {
-            assert!((slope - torque).abs() < BOUND * size, "{slope} instead of {torque}");
-        }
+        assert_torque_is_the_slope_of_the_energy(&motion, &torque);
         // Over a turn at constant speed the motor does no work.
+        let size = torque.iter().fold(0.0, |size: f64, torque| size.max(torque.abs()));
         let mean = torque[1..].iter().sum::<f64>() / 180.0;
         assert!(mean.abs() < 1e-9 * size, "{mean}");
     }
