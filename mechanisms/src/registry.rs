@@ -8,7 +8,8 @@ use crate::drawing::Shape;
 use crate::facade::{AnyEquations, AnyMechanism, Motion};
 
 /// Every mechanism; the first one is what `mbs` shows without arguments.
-pub const ALL: &[&Card] = &[
+// A static, for what a constant leads to is compiled once more in every program that names it.
+pub static ALL: &[&Card] = &[
     &crate::four_bar::CARD,
     &crate::loop_relative::CARD,
     &crate::loop_length::CARD,
@@ -41,7 +42,7 @@ pub const ALL: &[&Card] = &[
 ];
 
 /// Mechanisms with masses that their rows leave free to move; forces move them.
-pub const FREE: &[&FreeCard] = &[
+pub static FREE: &[&FreeCard] = &[
     &crate::pendulum::CARD,
     &crate::double_pendulum::CARD,
     &crate::cart_pole::CARD,
