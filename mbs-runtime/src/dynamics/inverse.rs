@@ -1,4 +1,46 @@
 //! Inverse dynamics: the forces of a motion that drives prescribe.
+//!
+//! Where drives and rows fix every coordinate, positions, velocities and accelerations follow from them, and
+//! M q̈ + Φ_qᵀ λ = Q is left with the multipliers as its unknowns: what each drive exerts and each joint bears.
+//!
+//! ```
+//! use mbs_runtime::dynamics::inverse;
+//! use mbs_runtime::{Mechanism, mechanism};
+//!
+//! mechanism! {
+//!     /// An arm that a motor swings up and down.
+//!     pub mechanism Hoist;
+//!     param m: kg = 2;
+//!     param L: m = 0.5;
+//!     coord phi: rad = 0;
+//!     body arm { mass: m, inertia: m*L^2/12, com: L/2*unit(phi), angle: phi }
+//!     pin bearing: arm, ground at [0, 0];
+//!     gravity weight { acceleration: [0, -9.81] }
+//!     drive motor: phi == 0.3*sin(4*t/1s);
+//!     out torque: N*m = effort(motor);
+//!     out bearing_force: [N; 2] = reaction(bearing, arm);
+//! }
+//!
+//! # fn main() -> Result<(), mbs_runtime::Failure> {
+//! let hoist: Hoist = Hoist::default();
+//! let guess = hoist.guess(&hoist.parameters());
+//! let driven = inverse(&hoist, 0.25_f64, &guess)?;
+//! let [torque, side, lift] = driven.loads;
+//! let ([phi], [rate], [acceleration]) = (driven.q, driven.qd, driven.qdd);
+//! let (sine, cosine) = phi.sin_cos();
+//! assert!((torque - (2.0 / 12.0 * acceleration + 4.905 * cosine)).abs() < 1e-12); // m L²/3 φ̈ + m g L/2 cos φ
+//! assert!((side + 0.5 * (acceleration * sine + rate * rate * cosine)).abs() < 1e-12);
+//! assert!((lift - 0.5 * (acceleration * cosine - rate * rate * sine) - 19.62).abs() < 1e-12);
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! - The sign is the text's: a row's force on the coordinates is −Φ_qᵀ λ. A drive's `effort` is −λ, so that effort times
+//!   speed is the power it gives.
+//! - `lambda(row)` is the multiplier of that row alone; `reaction(pin, body)` the whole force in a joint, whatever the
+//!   coordinates.
+//! - With [`Stepper`](crate::Stepper) the positions of a whole motion come one after the other, each the guess of the next.
+//! - With dependent rows the multipliers are the shortest; where the drives leave a coordinate free it follows from the forces.
 
 use super::metric::Metric;
 use super::model::{Counts, Formulation, Model, Solved};

@@ -1,6 +1,71 @@
-//! Motion from forces: M q̈ + Φ_qᵀ λ = Q with Φ = 0.
+//! Motion from forces: M q̈ + Φ_qᵀ λ = Q with Φ = 0. Forces from motion are in [`mod@inverse`].
 //!
-//! A method is chosen by type: an integrator with a formulation, or an implicit method that is both.
+//! # Direct dynamics
+//!
+//! A text says what has mass, what pulls and what holds; which coordinates move follows from that.
+//!
+//! ```
+//! use mbs_runtime::dynamics::{DormandPrince8, Explicit, Simulation, VelocityTransformation};
+//! use mbs_runtime::mechanism;
+//!
+//! mechanism! {
+//!     /// A pendulum that a motor holds up against its weight.
+//!     pub mechanism Arm;
+//!     param m: kg = 2;
+//!     param L: m = 0.5;
+//!     input motor: N*m;
+//!     coord phi: rad = 0;
+//!     coord p: [m; 2] = [0.5, 0];
+//!     body load { mass: m, com: p }
+//!     gravity weight { acceleration: [0, -9.81] }
+//!     torque drive_side: motor on phi;
+//!     constraint arm { p == L*unit(phi); }
+//!     start phi = 0 rate 0;
+//!     out rod: [N; 2] = [-lambda(arm[0]), -lambda(arm[1])];
+//! }
+//!
+//! # fn main() -> Result<(), mbs_runtime::Failure> {
+//! let mut arm: Arm = Arm::default();
+//! arm.motor = 2.0 * 0.5 * 9.81; // what the weight needs: nothing moves
+//! let method = Explicit::new(DormandPrince8, VelocityTransformation);
+//! let mut run = Simulation::start_from_text(arm, method, 0.0)?;
+//! run.advance_to(1.0)?;
+//! assert!(run.q()[0].abs() < 1e-9);
+//! run.change(|arm| arm.motor = 0.0); // let go
+//! run.advance_to(2.0)?;
+//! let (q, balance) = (ArmCoordinates::from(*run.q()), run.balance());
+//! assert!(q.phi < -1.0 && balance.defect.abs() < 1e-7 && balance.phi < 1e-12);
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! [`Simulation`] owns the state: [`step`](Simulation::step) for control loops, [`advance_to`](Simulation::advance_to)
+//! with the steps that a tolerance asks for, [`balance`](Simulation::balance) for what went into the energy and how
+//! far the rows are violated, [`counts`](Simulation::counts) for what it cost. [`equilibrium()`] finds a position of
+//! rest, [`linearize()`] the small motions about a state.
+//!
+//! # Which method
+//!
+//! A method is a type: an integrator with a formulation, `Explicit::new(RungeKutta4, Baumgarte::default())`, or an implicit
+//! method that is both.
+//!
+//! | formulation | for | not for |
+//! |---|---|---|
+//! | [`Projection`] | the default: any rows, redundant ones and singular positions included; positions and velocities on the constraints to rounding | the last microsecond |
+//! | [`VelocityTransformation`] | the fast one: no matrix of multipliers, work in proportion to the coordinates; goes over to `Projection` where its coordinates turn back, and counts that | redundant rows, where it always goes over |
+//! | [`Baumgarte`] | steps of the least fixed cost in a control loop | ω h > 1 (refused), singular positions |
+//! | [`Unstabilized`] | short runs, and to see the drift | long ones |
+//! | [`Penalty`] | to see what a penalty is | results |
+//!
+//! | integrator | order | for |
+//! |---|---|---|
+//! | [`DormandPrince8`] | 8(5,3), adaptive | errors of 1e-7 and less |
+//! | [`DormandPrince5`] | 5(4), adaptive | errors of 1e-3 to 1e-7 |
+//! | [`RungeKutta4`] | 4, fixed steps | control loops, comparison |
+//! | [`SemiImplicitEuler`] | 1, fixed steps | the cheapest step |
+//! | [`AugmentedLagrangian`] | 2, implicit, fixed steps | stiff forces, redundant rows |
+//! | [`Extrapolated`] | 3, implicit, fixed steps | the same, where forces damp what the step does not show |
+//! | [`GeneralizedAlpha`] | 2, implicit, fixed steps | stiff vibrations that shall die out |
 
 pub mod adaptive;
 pub mod augmented_lagrangian;
