@@ -4,6 +4,7 @@ extern crate std;
 
 use core::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
+use super::double::LARGEST_ANGLE;
 use super::*;
 use crate::linear::sequence::Sequence;
 use crate::{Lanes, Scalar};
@@ -126,9 +127,9 @@ struct Both {
 impl Both {
     fn take(&mut self, x: f64) {
         let expected = reference(x);
-        let ([sine], [cosine]) = sin_cos_by::<Separate, 1>([x]);
+        let ([sine], [cosine]) = packed::<f64, Separate, 1, WIDE, NARROW>([x]);
         self.separate.take(x, [sine, cosine], expected);
-        let ([sine], [cosine]) = sin_cos_by::<Fused, 1>([x]);
+        let ([sine], [cosine]) = packed::<f64, Fused, 1, WIDE, NARROW>([x]);
         self.fused.take(x, [sine, cosine], expected);
     }
 
@@ -250,13 +251,43 @@ fn an_angle_does_not_depend_on_its_neighbours() {
 }
 
 #[test]
+fn the_library_keeps_its_digits_too() {
+    let mut sequence = Sequence::new(12);
+    let mut errors = Errors::default();
+    for size in [0.8, 7.0, 1e3, 1e5] {
+        for _ in 0..2_000 {
+            let x = size * sequence.number();
+            let ([sine], [cosine]) = of_library([x]);
+            errors.take(x, [sine, cosine], reference(x));
+        }
+    }
+    assert!(errors.units <= 0.8 && errors.absolute <= 1e-16, "{errors:?}");
+}
+
+/// What is in use is the library's bit for bit with the feature `libm`, and only then.
+#[test]
+fn the_feature_chooses_the_library() {
+    let mut sequence = Sequence::new(13);
+    let doubles: [f64; 1_000] = core::array::from_fn(|_| 100.0 * sequence.number());
+    let singles = doubles.map(|x| x as f32);
+    let (in_use, library) = (sin_cos(doubles), of_library(doubles));
+    let (in_use_single, library_single) = (sin_cos_single(singles), of_library(singles));
+    let ([lanes], _) = Lanes::sin_cos([Lanes(doubles)]);
+    assert_eq!(lanes.0, in_use.0);
+    assert_eq!(in_use == library, cfg!(feature = "libm"));
+    assert_eq!(in_use_single == library_single, cfg!(feature = "libm"));
+}
+
+#[test]
 fn the_bits_are_the_same_on_every_run_target_and_optimization() {
     // FNV-1a over the results; the number is that of the first run.
     let mut sequence = Sequence::new(9);
     let mut hash: u64 = 0xcbf2_9ce4_8422_2325;
     for _ in 0..10_000 {
-        let (sines, cosines) =
-            sin_cos_by::<Separate, 2>([LARGEST_ANGLE * sequence.number(), 4.0 * sequence.number()]);
+        let (sines, cosines) = packed::<f64, Separate, 2, WIDE, NARROW>([
+            LARGEST_ANGLE * sequence.number(),
+            4.0 * sequence.number(),
+        ]);
         for value in sines.into_iter().chain(cosines) {
             hash = (hash ^ value.to_bits()).wrapping_mul(0x0000_0100_0000_01b3);
         }
