@@ -245,11 +245,11 @@ impl<R: Real, const L: usize> Notes<R, L> {
         let passed = from_fn(|lane| self.orientation(lane) != trial.orientation(lane));
         Notes {
             margin_rate: Lanes::select(moves, (trial.margin - margin) / time, self.margin_rate),
-            residual: trial.worst.ratio,
+            residual: trial.residual,
             correction: trial.correction,
-            row: from_fn(|lane| trial.worst.row(lane)),
+            row: from_fn(|lane| trial.row(lane)),
             evaluations: [trial.evaluations; L],
-            fallback: [trial.fallback; L],
+            fallback: [false; L],
             passed,
             passages: from_fn(|lane| self.passages(lane).saturating_add(u32::from(at(&passed, lane, false)))),
             orientation: trial.orientation,

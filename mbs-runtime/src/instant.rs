@@ -67,7 +67,7 @@ impl<R: Real, const N: usize> Rates<R, N> {
         if let Some(failure) = coordinate_failure::<S, R, N, M>(&found.q, &scales, t) {
             return Some(failure);
         }
-        let (mut factors, mut margin) = mechanism.factorize(parameters, &found.position);
+        let (mut factors, mut margin) = factorized(mechanism, parameters, &found.position);
         if !determines_rates(margin.value) {
             return Some(singular(mechanism, &margin, t));
         }
@@ -124,8 +124,7 @@ impl<R: Real, const N: usize> Rates<R, N> {
     }
 }
 
-/// Factors and margin in the singular zone, where the regular path need not have them at hand.
-#[cold]
+/// Factors and margin, called: steps next to a regular position have them at hand without.
 #[inline(never)]
 fn factorized<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize>(
     mechanism: &S,

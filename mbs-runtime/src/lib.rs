@@ -36,6 +36,7 @@ pub mod newton_raphson;
 pub mod operations;
 mod path;
 pub mod phase;
+mod plain;
 pub mod redundancy;
 mod redundant;
 pub mod resolution;

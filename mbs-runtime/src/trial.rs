@@ -1,10 +1,11 @@
 //! A step as it goes next to a regular position: straight on, with one decision at the end.
 
-use crate::diagnosis::{Worst, extent, largest};
+use crate::diagnosis::{index, largest};
 use crate::instant::REGULAR_ZONE;
 use crate::kinematics::COARSEST_RESOLUTION;
 use crate::path::{LARGEST_APPROACH, LARGEST_SECOND_ORDER_TERM};
-use crate::{Kinematic, Newton, Real, Scalar, Statistics};
+use crate::plain::Plain;
+use crate::{Kinematic, Real, Scalar, Statistics};
 
 /// Where a step begins, solved in every lane.
 pub(crate) struct Start<'a, T, const N: usize> {
@@ -27,9 +28,11 @@ pub(crate) struct Trial<T: Scalar, const N: usize> {
     pub orientation: T::Lanes<u64>,
     /// The way from the prediction, in the reference metric.
     pub correction: T,
-    pub worst: Worst<T>,
+    /// Largest |residual| over its tolerance.
+    pub residual: T,
+    /// Index in Φ of its row.
+    row: T,
     pub evaluations: u32,
-    pub fallback: bool,
     /// Lanes in which nothing happened but what does next to a regular position. The others are stepped with care.
     pub plain: T::Mask,
 }
@@ -48,7 +51,7 @@ impl<T: Scalar, const N: usize> Trial<T, N> {
     ) -> Self {
         let scales = mechanism.coordinate_scales(parameters);
         let prediction = start.predicted(t, &scales);
-        let mut solver = Newton::new(extent(&prediction, &scales));
+        let mut solver = Plain::new();
         let mut q = prediction;
         let (_, position) = mechanism.solve_with_position(parameters, &mut q, t, &mut solver);
         let (factors, margin) = mechanism.factorize(parameters, &position);
@@ -63,15 +66,15 @@ impl<T: Scalar, const N: usize> Trial<T, N> {
         // Written so that NaN is not plain.
         let mut plain = zone.less(margin.value) & zone.less(start.margin);
         plain = plain & correction.less(T::constant(LARGEST_APPROACH) * margin.value);
+        // A sum is finite and small where its terms are; where it is not, a careful step looks at them one by one.
+        let (mut size, mut sum) = (T::constant(0.0), T::constant(0.0));
         for (coordinate, scale) in q.iter().zip(&scales) {
-            let largest = T::constant(COARSEST_RESOLUTION / T::Real::EPSILON.to_f64()) * *scale;
-            plain = plain & coordinate.abs().less(largest);
+            size = size + coordinate.abs() * (T::constant(1.0) / *scale);
         }
-        // A sum is finite where its terms are; where it overflows, a careful step looks at them one by one.
-        let mut sum = T::constant(0.0);
         for (rate, acceleration) in qd.iter().zip(&qdd) {
             sum = sum + (*rate + *acceleration);
         }
+        plain = plain & size.less(T::constant(COARSEST_RESOLUTION / T::Real::EPSILON.to_f64()));
         plain = plain & sum.is_finite();
         for (index, branch) in mechanism.branches(parameters, &position).as_ref().iter().enumerate() {
             if !S::BRANCHES_AT_START.get(index).copied().unwrap_or(false) {
@@ -81,7 +84,6 @@ impl<T: Scalar, const N: usize> Trial<T, N> {
         for limit in mechanism.limits(parameters, &position).as_ref() {
             plain = plain & limit.low.less(limit.value) & limit.value.less(limit.high);
         }
-        let diagnosis = solver.diagnosis();
         Trial {
             q,
             qd,
@@ -89,10 +91,10 @@ impl<T: Scalar, const N: usize> Trial<T, N> {
             margin: margin.value,
             orientation: margin.orientation,
             correction,
-            worst: diagnosis.worst(),
-            evaluations: diagnosis.evaluations,
-            fallback: diagnosis.fallback,
-            plain: plain & !diagnosis.failed,
+            residual: solver.ratio,
+            row: solver.row,
+            evaluations: solver.evaluations,
+            plain: plain & solver.closed,
         }
     }
 
@@ -101,12 +103,18 @@ impl<T: Scalar, const N: usize> Trial<T, N> {
     pub(crate) fn statistics(&self, lane: usize, passed: bool) -> Statistics {
         Statistics {
             evaluations: self.evaluations,
-            fallback: self.fallback,
-            residual: self.worst.ratio.lane(lane).to_f64(),
-            row: self.worst.row(lane),
+            fallback: false,
+            residual: self.residual.lane(lane).to_f64(),
+            row: self.row(lane),
             correction: self.correction.lane(lane).to_f64(),
             passed,
         }
+    }
+
+    /// Index in Φ of the row whose residual is largest over its tolerance, of lane `lane`.
+    #[inline(always)]
+    pub(crate) fn row(&self, lane: usize) -> u16 {
+        index(self.row, lane)
     }
 
     /// Signs of the blocks' determinants of lane `lane`.

@@ -53,6 +53,8 @@ pub struct Bodies {
     pub factors: TokenStream,
     /// Whether they are short enough to stand inside what calls them.
     pub short: bool,
+    /// Whether the factorization is, which stands in a step once and in what careful steps share.
+    pub factorizes_in_line: bool,
     pub solve_with_position: TokenStream,
     /// Body of `solve_blocks`, where it is not that of `solve_with_position`.
     pub solve_blocks: Option<TokenStream>,
@@ -159,6 +161,7 @@ pub fn bodies(
         outputs: block(&(given + &outputs_text), runtime),
         factors: tokens(&linear.factors, runtime),
         short: program.length() <= LONGEST_INLINED,
+        factorizes_in_line: !long::has_many_blocks(program),
         solve_with_position: block(&solve_with_position, runtime),
         solve_blocks: solve_blocks.map(|text| block(&text, runtime)),
         methods: tokens(&methods, runtime),

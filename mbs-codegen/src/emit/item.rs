@@ -300,11 +300,11 @@ fn kinematic(
 ) -> TokenStream {
     let n = model.coordinates.len();
     let Bodies { solve_with_position, factorize, solve_linear, work, .. } = bodies;
-    let inline = if bodies.short {
-        quote! { #[inline(always)] }
-    } else {
-        quote! { #[inline] }
+    let inlined = |always| match always {
+        true => quote! { #[inline(always)] },
+        false => quote! { #[inline] },
     };
+    let (inline, factorize_inline) = (inlined(bodies.short), inlined(bodies.factorizes_in_line));
     let solve_blocks = match &bodies.solve_blocks {
         Some(body) => body.clone(),
         None => quote! { { #runtime::Kinematic::solve_with_position(self, __p, __q, __t, __solver).0 } },
@@ -336,7 +336,7 @@ fn kinematic(
                 __t: T,
                 __solver: &mut __S,
             ) -> (T::Lanes<#runtime::Outcome>, __Position<T>) #solve_with_position
-            #inline
+            #factorize_inline
             fn factorize(&self, __p: &__Parameters<T>, __s: &__Position<T>) -> (__Factors<T>, #runtime::Margin<T>) #factorize
             #inline
             fn solve_linear(&self, __factors: &__Factors<T>, __b: &[T; #m]) -> [T; #n] #solve_linear

@@ -53,6 +53,7 @@ fn bodies(model: &Model, runtime: &TokenStream) -> Bodies {
             pub struct __Factors<T>([T; 0]);
         },
         short: false,
+        factorizes_in_line: false,
         solve_with_position: body(),
         solve_blocks: None,
         methods: TokenStream::new(),

@@ -52,8 +52,8 @@ pub(crate) fn is_regular<T: Scalar>(margin: T) -> T::Mask {
 fn reciprocal_and_margin<T: Scalar>(determinant: T, scaled: T, bound: T) -> (T, T) {
     let one = T::constant(1.0);
     let (reciprocal, ratio) = (one / determinant, scaled.abs() / bound);
-    // A determinant of 0 has an infinite reciprocal, a bound of 0 no finite ratio.
-    let regular = determinant.is_finite() & reciprocal.is_finite() & ratio.is_finite();
+    // A determinant of 0 has an infinite reciprocal, a bound of 0 no finite ratio; a sum is finite where its terms are.
+    let regular = (determinant + reciprocal + ratio).is_finite();
     if T::all(regular) { (reciprocal, ratio.min(one)) } else { regular_alone(regular, reciprocal, ratio) }
 }
 
@@ -73,7 +73,7 @@ fn reciprocal_if_regular<T: Scalar>(determinant: T, scaled: T, bound_square: T) 
     let reciprocal = T::constant(1.0) / determinant;
     // Written so that NaN, and a bound of 0, are not regular.
     let above = (T::splat(T::Real::EPSILON) * bound_square).less(scaled * scaled);
-    (reciprocal, above & bound_square.is_finite() & reciprocal.is_finite())
+    (reciprocal, above & (bound_square + reciprocal).is_finite())
 }
 
 /// The block in the reference metric: rows over `row_scales`, columns times `coordinate_scales`.

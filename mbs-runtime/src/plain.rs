@@ -1,0 +1,110 @@
+//! Newton's method as it goes next to a regular position: nothing is asked on the way, everything at its end.
+
+use crate::diagnosis::{TERM_ROUNDINGS, required};
+use crate::newton::select;
+use crate::{Block, BlockSolver, Factorization, Outcome, Real, Scalar};
+
+/// Evaluations of a block at most. From a good prediction it takes two; a step so long that four do not do is worth
+/// being looked at.
+const EVALUATIONS: u32 = 5;
+
+/// Newton's method without what it keeps in readiness: no cap, no guard, no other method.
+///
+/// For one who judges the result: it is a solution in the lanes of [`closed`](Self::closed), but which one, and whether it is
+/// regular, has not been looked at on the way. A lane that does not close stands still and holds up no other one.
+pub(crate) struct Plain<T: Scalar> {
+    /// Lanes in which every block has closed so far.
+    pub closed: T::Mask,
+    /// Evaluations of residual and Jacobian, the most of any block.
+    pub evaluations: u32,
+    /// Largest |residual| over its tolerance.
+    pub ratio: T,
+    /// Index in Φ of its row.
+    pub row: T,
+}
+
+impl<T: Scalar> Plain<T> {
+    /// Before the first block.
+    #[inline(always)]
+    pub fn new() -> Self {
+        let zero = T::constant(0.0);
+        Plain { closed: T::mask(true), evaluations: 0, ratio: zero, row: zero }
+    }
+
+    /// Takes up one more block.
+    #[inline(always)]
+    fn record<const K: usize>(&mut self, rows: &[u16; K], residuals: &[T; K], tolerances: &[T; K]) {
+        for ((residual, tolerance), row) in residuals.iter().zip(tolerances).zip(rows) {
+            let ratio = residual.abs() / *tolerance;
+            self.row = T::select(self.ratio.less(ratio), T::constant(f64::from(*row)), self.row);
+            self.ratio = self.ratio.max(ratio);
+        }
+    }
+}
+
+impl<T: Scalar> BlockSolver<T> for Plain<T> {
+    #[inline(always)]
+    fn solve<const K: usize, F: Factorization<T, K>>(
+        &mut self,
+        block: &Block<T, K>,
+        mut x: [T; K],
+        mut evaluate: impl FnMut(&[T; K]) -> ([T; K], [[T; K]; K]),
+    ) -> ([T; K], T::Lanes<Outcome>) {
+        let strict =
+            block.row_scales.map(|scale| T::splat(T::Real::EPSILON) * T::constant(TERM_ROUNDINGS) * scale);
+        let (mut done, mut evaluations) = (!self.closed, 0);
+        let (residuals, jacobian) = loop {
+            let (residuals, jacobian) = evaluate(&x);
+            evaluations += 1;
+            done = done | within(&residuals, &strict);
+            if evaluations > 1 && !T::all(done) {
+                done = done | within(&residuals, &granted(block.row_scales, x, jacobian));
+            }
+            if T::all(done) || evaluations == EVALUATIONS {
+                break (residuals, jacobian);
+            }
+            let (factors, _) = F::factorize_for_step(&jacobian, &block.row_scales, &block.coordinate_scales);
+            let step = factors.solve(&residuals);
+            let mut next = x;
+            for (component, change) in next.iter_mut().zip(&step) {
+                *component = *component - *change;
+            }
+            x = select(done, &x, &next);
+        };
+        self.closed = self.closed & done;
+        self.evaluations = self.evaluations.max(evaluations);
+        self.record(&block.rows, &residuals, &required(&block.row_scales, &x, &jacobian));
+        (x, T::per_lane(|_| Outcome::Converged))
+    }
+
+    /// Rows that may contradict each other are always looked at.
+    #[inline(always)]
+    fn solve_redundant<const K: usize, const M: usize>(
+        &mut self,
+        _block: &Block<T, K, M>,
+        x: [T; K],
+        _evaluate: impl FnMut(&[T; K]) -> ([T; M], [[T; K]; M]),
+        _holds: impl FnMut(&[T; K]) -> T::Mask,
+    ) -> ([T; K], T::Lanes<Outcome>) {
+        self.closed = T::mask(false);
+        (x, T::per_lane(|_| Outcome::Converged))
+    }
+}
+
+/// Whether every residual is within its tolerance; false for NaN.
+#[inline(always)]
+fn within<T: Scalar, const K: usize>(residuals: &[T; K], tolerances: &[T; K]) -> T::Mask {
+    let mut within = T::mask(true);
+    for (residual, tolerance) in residuals.iter().zip(tolerances) {
+        within = within & residual.abs().less(*tolerance);
+    }
+    within
+}
+
+/// The whole tolerances (see [`required`]), with what large coordinates add, which many turns away only is needed.
+///
+/// By value, so that what the solver computes with stays in registers.
+#[inline(never)]
+fn granted<T: Scalar, const K: usize>(row_scales: [T; K], x: [T; K], jacobian: [[T; K]; K]) -> [T; K] {
+    required(&row_scales, &x, &jacobian)
+}
