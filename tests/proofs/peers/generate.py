@@ -5,7 +5,7 @@
 makes, for each problem below, CasADi's function of (q, qd, t) that gives phi, the nonzeros of phi_q, phi_t and gamma
 (`casadi_NAME_plain`, and `casadi_NAME_shared` with common subexpressions eliminated), SymPy's with common subexpressions
 eliminated (`sympy_NAME`, nonzeros row by row), and CasADi's kinematic step from (start value, t): Newton's method to
-1e-12, velocity, acceleration (`casadi_step_NAME`).
+1e-12, velocity, acceleration (`casadi_step_NAME`). What integrates motions is written by `dynamics.py`. `casadi` is a link to CasADi's own libraries.
 """
 
 import math
@@ -14,6 +14,10 @@ import sys
 
 import casadi as ca
 import sympy as sp
+
+# The sources' directory stays as it is.
+sys.dont_write_bytecode = True
+import dynamics  # noqa: E402
 
 TURN = 2 * math.pi
 
@@ -111,6 +115,8 @@ def sympy_peer(name, define, n):
 def main():
     os.makedirs(sys.argv[1], exist_ok=True)
     os.chdir(sys.argv[1])
+    os.symlink(os.path.dirname(ca.__file__), "casadi")
+    dynamics.write()
     for name, (define, n) in PROBLEMS.items():
         casadi_peer(name, define, n)
         sympy_peer(name, define, n)

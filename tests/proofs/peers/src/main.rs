@@ -1,30 +1,46 @@
 //! Emitted code against its peers, timed in one process.
 //!
 //! ```text
-//! proof-peers [ROUNDS]
+//! proof-peers ROUNDS kinematics|dynamics
 //! ```
 //!
 //! Prints one line for each implementation of each problem: problem, name, largest difference from the reference, and
 //! the time (ns) of an evaluation or a step in every round.
 
+mod dynamics;
 mod evaluation;
 mod measure;
+mod released;
 mod steps;
 mod texts;
 
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    let rounds = std::env::args().nth(1).map_or(Ok(101), |rounds| rounds.parse());
-    let Ok(rounds) = rounds else {
-        eprintln!("usage: proof-peers [ROUNDS]");
-        return ExitCode::FAILURE;
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let rounds = arguments.first().and_then(|rounds| rounds.parse().ok());
+    let (Some(rounds), Some(subject)) = (rounds, arguments.get(1)) else { return usage() };
+    let problems = match subject.as_str() {
+        "kinematics" => {
+            [evaluation::four_bar, evaluation::andrews, evaluation::chain, steps::four_bar, steps::chain]
+                .to_vec()
+        }
+        "dynamics" => [
+            dynamics::squeezer_rates,
+            dynamics::n_four_bar_rates,
+            dynamics::squeezer_motions,
+            dynamics::n_four_bar_motions,
+        ]
+        .to_vec(),
+        _ => return usage(),
     };
-    for mut cases in [evaluation::four_bar(), evaluation::andrews(), evaluation::chain()] {
-        measure::compare(&mut cases, rounds);
-    }
-    for mut cases in [steps::four_bar(), steps::chain()] {
-        measure::compare(&mut cases, rounds);
+    for problem in problems {
+        measure::compare(&mut problem(), rounds);
     }
     ExitCode::SUCCESS
+}
+
+fn usage() -> ExitCode {
+    eprintln!("usage: proof-peers ROUNDS kinematics|dynamics");
+    ExitCode::FAILURE
 }

@@ -1,16 +1,4 @@
-//! Emitted code against its peers in one run.
-//!
-//! ```text
-//! cargo bench -p mbs-tests --bench kinematics
-//! ```
-//!
-//! Builds the emitted code and its peers (`tests/proofs/peers`) for this processor and for the default target, runs
-//! both, and writes a table and a plot to `bench/kinematics.md` and `bench/kinematics.svg` below the target directory;
-//! with `-- --docs` also beside this file; `-- --rounds 5` is enough to see that everything works. Every ratio is the median over rounds in which all implementations took
-//! turns; accuracy is checked before anything is timed. Needs Python 3 (for CasADi and SymPy) and a C compiler.
-//!
-//! Fails where a result is wrong, not where it is slow: how far a ratio is from its goal stands in the table.
-#![forbid(unsafe_code)]
+//! Builds the peers, measures, writes table and plot: what the benches share.
 
 mod goals;
 mod plot;
@@ -21,7 +9,24 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-fn main() -> ExitCode {
+pub use goals::{Line, Peer};
+
+/// What a bench compares.
+pub struct Subject {
+    /// Its name, as `proof-peers` knows it; files have it too.
+    pub name: &'static str,
+    /// Title of the table.
+    pub title: &'static str,
+    /// What is to be known about it.
+    pub notes: &'static str,
+    /// The ratios that the project wants to reach.
+    pub lines: &'static [Line],
+    /// Largest error by problem.
+    pub limit: fn(&str) -> f64,
+}
+
+/// Measures the subject where `cargo bench` asks for it.
+pub fn run(subject: &Subject) -> ExitCode {
     let arguments: Vec<String> = std::env::args().collect();
     let given = |name: &str| arguments.iter().any(|argument| argument == name);
     // `cargo test --benches` runs this program too, without the argument.
@@ -31,7 +36,7 @@ fn main() -> ExitCode {
     }
     let position = arguments.iter().position(|argument| argument == "--rounds");
     let rounds = position.and_then(|index| arguments.get(index + 1)).map_or("101", String::as_str);
-    match measure(rounds, given("--docs")) {
+    match measure(subject, rounds, given("--docs")) {
         Ok(()) => ExitCode::SUCCESS,
         Err(reason) => {
             eprintln!("{reason}");
@@ -40,21 +45,21 @@ fn main() -> ExitCode {
     }
 }
 
-fn measure(rounds: &str, docs: bool) -> Result<(), String> {
-    let targets = run::all(rounds)?;
+fn measure(subject: &Subject, rounds: &str, docs: bool) -> Result<(), String> {
+    let targets = run::all(subject.name, rounds)?;
     let [native, default] = &targets;
-    let faults: Vec<String> = targets.iter().flat_map(run::Measured::faults).collect();
-    let goals = goals::reached(native);
-    let text = table::markdown(native, default, &goals);
+    let faults: Vec<String> = targets.iter().flat_map(|target| target.faults(subject.limit)).collect();
+    let goals = goals::reached(subject.lines, native);
+    let text = table::markdown(subject, native, default, &goals);
     let picture = plot::svg(&goals);
     println!("{text}");
     let mut directories = vec![Path::new(env!("CARGO_TARGET_TMPDIR")).with_file_name("bench")];
     if docs {
-        directories.push(PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/benches/kinematics")));
+        directories.push(PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/benches")));
     }
     for directory in directories {
-        save(&directory, "kinematics.md", &text)?;
-        save(&directory, "kinematics.svg", &picture)?;
+        save(&directory, &format!("{}.md", subject.name), &text)?;
+        save(&directory, &format!("{}.svg", subject.name), &picture)?;
     }
     if faults.is_empty() { Ok(()) } else { Err(faults.join("\n")) }
 }

@@ -2,15 +2,17 @@
 
 use std::fmt::Write;
 
+use super::Subject;
 use super::goals::Goal;
 use super::run::{Measured, titles};
 
 /// Goals first, then every implementation with its time and error.
-pub fn markdown(native: &Measured, default: &Measured, goals: &[Goal]) -> String {
-    let mut text = String::from(
-        "# Kinematics against its peers\n\n\
-         `cargo bench -p mbs-tests --bench kinematics -- --docs` writes this file. Ratios are the peer's time over ours, \
-         medians over rounds of one run; times are of this one machine.\n\n\
+pub fn markdown(subject: &Subject, native: &Measured, default: &Measured, goals: &[Goal]) -> String {
+    let Subject { name, title, notes, .. } = subject;
+    let mut text = format!(
+        "# {title}\n\n\
+         `cargo bench -p mbs-tests --bench {name} -- --docs` writes this file. Ratios are the peer's time over ours, \
+         medians over rounds of one run; times are of this one machine. {notes}\n\n\
          | work | ratio | 10 … 90 % | must | aim | |\n|---|---|---|---|---|---|\n",
     );
     for goal in goals {

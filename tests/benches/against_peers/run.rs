@@ -12,12 +12,6 @@ use mechanisms::verify::environment::Environment;
 /// What generates the peers' C code.
 const REQUIREMENTS: &str = include_str!("../../proofs/peers/requirements.txt");
 
-/// Largest error of an exact evaluation, relative to the largest value of its row.
-const LARGEST_EVALUATION_ERROR: f64 = 1e-13;
-
-/// Largest error of a step, relative to the largest position, velocity, acceleration: positions are solved to 1e-12.
-const LARGEST_STEP_ERROR: f64 = 1e-10;
-
 /// What one implementation showed.
 pub struct Implementation {
     /// Largest difference from the reference.
@@ -35,18 +29,18 @@ pub struct Measured {
 }
 
 /// For this processor, and for the default target.
-pub fn all(rounds: &str) -> Result<[Measured; 2], String> {
+pub fn all(subject: &str, rounds: &str) -> Result<[Measured; 2], String> {
     let sources = sources()?;
     Ok([
         measured(
-            rounds,
+            [rounds, subject],
             &sources,
             "target-cpu=native",
             "peers-native",
             "-C target-cpu=native",
             "-march=native",
         )?,
-        measured(rounds, &sources, "default target", "peers-default", "", "")?,
+        measured([rounds, subject], &sources, "default target", "peers-default", "", "")?,
     ])
 }
 
@@ -71,7 +65,7 @@ fn sources() -> Result<std::path::PathBuf, String> {
 }
 
 fn measured(
-    rounds: &str,
+    arguments: [&str; 2],
     sources: &Path,
     target: &'static str,
     name: &str,
@@ -82,10 +76,10 @@ fn measured(
     workshop.set("MBS_PEERS", sources.as_os_str());
     workshop.set("MBS_PEERS_FLAGS", c_flags.as_ref());
     eprintln!("building for the {target}");
-    let arguments = ["--profile=freestanding", "--package=proof-peers"];
-    let program = workshop.build(&arguments, "freestanding/proof-peers", "peers")?;
-    eprintln!("measuring {rounds} rounds");
-    let lines = tools::output(Command::new(program).arg(rounds), "it was built a moment ago")?;
+    let package = ["--profile=freestanding", "--package=proof-peers"];
+    let program = workshop.build(&package, "freestanding/proof-peers", "peers")?;
+    eprintln!("measuring {} rounds", arguments[0]);
+    let lines = tools::output(Command::new(program).args(arguments), "it was built a moment ago")?;
     let mut problems: Vec<(String, Vec<(String, Implementation)>)> = Vec::new();
     for line in lines.lines() {
         let mut words = line.split(' ');
@@ -110,11 +104,10 @@ impl Measured {
     }
 
     /// What is not as exact as it has to be.
-    pub fn faults(&self) -> Vec<String> {
+    pub fn faults(&self, limit: fn(&str) -> f64) -> Vec<String> {
         let mut faults = Vec::new();
         for (problem, implementations) in &self.problems {
-            let limit =
-                if problem.ends_with("_step") { LARGEST_STEP_ERROR } else { LARGEST_EVALUATION_ERROR };
+            let limit = limit(problem);
             for (name, Implementation { error, .. }) in implementations {
                 // False for NaN.
                 let exact = *error <= limit;
@@ -142,10 +135,17 @@ impl Implementation {
     }
 }
 
-/// The smaller time of each round.
-pub fn faster(a: &Implementation, b: &Implementation) -> Implementation {
-    let times = a.times.iter().zip(&b.times).map(|(a, b)| a.min(*b)).collect();
-    Implementation { error: a.error.max(b.error), times }
+/// The smallest time of each round.
+pub fn fastest(peers: &[&Implementation]) -> Implementation {
+    let rounds = peers.iter().map(|peer| peer.times.len()).min().unwrap_or(0);
+    let least = |round: usize| {
+        peers
+            .iter()
+            .filter_map(|peer| peer.times.get(round))
+            .fold(f64::INFINITY, |least, time| least.min(*time))
+    };
+    let error = peers.iter().fold(0.0, |error: f64, peer| error.max(peer.error));
+    Implementation { error, times: (0..rounds).map(least).collect() }
 }
 
 fn quantile(mut values: Vec<f64>, part: f64) -> f64 {
@@ -168,6 +168,11 @@ pub fn titles() -> BTreeMap<&'static str, &'static str> {
         ("emitted_adjustable", "**emitted**, numbers as parameters"),
         ("emitted_lanes", "**emitted**, 8 lanes, a mechanism"),
         ("emitted_40", "**emitted**, 40 loops"),
+        ("emitted_order_5", "**emitted**, order 5(4)"),
+        ("emitted_order_8", "**emitted**, order 8(5,3)"),
+        ("dense", "dense LU with multipliers, C by hand"),
+        ("casadi_rates", "CasADi C, sparse QR with multipliers"),
+        ("cvodes", "CVODES (Adams) on CasADi C"),
         ("casadi_previous", "CasADi `fast_newton`, from the previous position"),
         ("casadi_predicted", "CasADi `fast_newton`, from the prediction"),
         ("nalgebra", "nalgebra dense Newton–Raphson, from the previous position"),

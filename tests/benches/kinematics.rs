@@ -1,0 +1,146 @@
+//! Emitted evaluations and kinematic steps against their peers in one run.
+//!
+//! ```text
+//! cargo bench -p mbs-tests --bench kinematics
+//! ```
+//!
+//! Builds the emitted code and its peers (`tests/proofs/peers`) for this processor and for the default target, runs
+//! both, and writes a table and a plot to `bench/kinematics.md` and `bench/kinematics.svg` below the target directory;
+//! with `-- --docs` also beside this file; `-- --rounds 5` is enough to see that everything works. Every ratio is the median over rounds in which all implementations took
+//! turns; accuracy is checked before anything is timed. Needs Python 3 (for CasADi and SymPy) and a C compiler.
+//!
+//! Fails where a result is wrong, not where it is slow: how far a ratio is from its goal stands in the table.
+#![forbid(unsafe_code)]
+
+mod against_peers;
+
+use std::process::ExitCode;
+
+use against_peers::{Line, Peer, Subject};
+
+/// Largest error of an exact evaluation, relative to the largest value of its row.
+const LARGEST_EVALUATION_ERROR: f64 = 1e-13;
+
+/// Largest error of a step, relative to the largest position, velocity, acceleration: positions are solved to 1e-12.
+const LARGEST_STEP_ERROR: f64 = 1e-10;
+
+/// Plain, and with common subexpressions eliminated.
+const CASADI: &[&str] = &["casadi_plain", "casadi_shared"];
+
+const LINES: &[Line] = &[
+    Line(
+        "{Φ, Φ_q, Φ_t, γ}, four-bar, against CasADi's C",
+        "four_bar",
+        "emitted",
+        Peer::Fastest(CASADI),
+        3.5,
+        5.0,
+    ),
+    Line("…, Andrews", "andrews", "emitted", Peer::Fastest(CASADI), 3.5, 5.0),
+    Line("…, ten loops in natural coordinates", "chain", "emitted", Peer::Fastest(CASADI), 1.1, 1.4),
+    Line("four-bar, against SymPy's C", "four_bar", "emitted", Peer::Fastest(&["sympy"]), 2.3, 3.0),
+    Line("Andrews, against SymPy's C", "andrews", "emitted", Peer::Fastest(&["sympy"]), 2.3, 3.0),
+    Line("four-bar, against forward dual numbers", "four_bar", "emitted", Peer::Fastest(&["dual"]), 3.0, 4.0),
+    Line("Andrews, against forward dual numbers", "andrews", "emitted", Peer::Fastest(&["dual"]), 3.0, 4.0),
+    Line(
+        "four-bar, against central differences",
+        "four_bar",
+        "emitted",
+        Peer::Fastest(&["differences"]),
+        30.0,
+        40.0,
+    ),
+    Line(
+        "Andrews, against central differences",
+        "andrews",
+        "emitted",
+        Peer::Fastest(&["differences"]),
+        30.0,
+        40.0,
+    ),
+    Line(
+        "four-bar, against Rust by hand",
+        "four_bar",
+        "emitted",
+        Peer::Fastest(&["by_hand"]),
+        1.0 / 1.1,
+        1.0,
+    ),
+    Line("Andrews, against Rust by hand", "andrews", "emitted", Peer::Fastest(&["by_hand"]), 1.0 / 1.1, 1.0),
+    Line(
+        "four-bar, 8 lanes, a mechanism, against CasADi's C",
+        "four_bar",
+        "emitted_lanes",
+        Peer::Fastest(CASADI),
+        12.0,
+        18.0,
+    ),
+    Line(
+        "Andrews, 8 lanes, a mechanism, against CasADi's C",
+        "andrews",
+        "emitted_lanes",
+        Peer::Fastest(CASADI),
+        12.0,
+        18.0,
+    ),
+    Line(
+        "kinematic step, four-bar, against CasADi's Newton from the same prediction",
+        "four_bar_step",
+        "emitted",
+        Peer::Fastest(&["casadi_predicted"]),
+        8.0,
+        12.0,
+    ),
+    Line(
+        "kinematic step, four-bar, against nalgebra's dense Newton–Raphson",
+        "four_bar_step",
+        "emitted",
+        Peer::Fastest(&["nalgebra"]),
+        8.0,
+        15.0,
+    ),
+    Line(
+        "kinematic step, four-bar, against Rust by hand",
+        "four_bar_step",
+        "emitted",
+        Peer::Fastest(&["by_hand"]),
+        1.0 / 1.1,
+        1.0,
+    ),
+    Line(
+        "kinematic step, ten loops, against CasADi's Newton from the same prediction",
+        "chain_step",
+        "emitted",
+        Peer::Fastest(&["casadi_predicted"]),
+        8.0,
+        13.0,
+    ),
+    Line(
+        "8-lane batch step, four-bar, a mechanism, against the single step",
+        "four_bar_step",
+        "emitted_lanes",
+        Peer::Fastest(&["emitted"]),
+        4.0,
+        7.0,
+    ),
+    Line(
+        "time a step, forty loops over ten (at most)",
+        "chain_step",
+        "emitted_40",
+        Peer::Growth("emitted"),
+        4.5,
+        4.0,
+    ),
+];
+
+fn main() -> ExitCode {
+    against_peers::run(&Subject {
+        name: "kinematics",
+        title: "Kinematics against its peers",
+        notes: "",
+        lines: LINES,
+        limit: |problem| {
+            if problem.ends_with("_step") { LARGEST_STEP_ERROR } else { LARGEST_EVALUATION_ERROR }
+        },
+    })
+}
