@@ -1,5 +1,6 @@
 //! What the macro emits for a text with bodies and forces: M q̈ + Φ_qᵀ λ = Q with Φ = 0.
 
+use crate::dynamics::velocity_transformation::Transformed;
 use crate::{BlockSolver, Entry, Margin, Mechanism, Outcome, Scalar};
 
 /// Kinetic and potential energy of one state (J).
@@ -166,4 +167,17 @@ pub trait Partitioned<T: Scalar, const N: usize, const M: usize>: Mechanism<T, N
     /// G = Φ_qd⁻¹ Φ_qi, so that a force on all coordinates becomes one on the independent ones.
     /// Returns the multipliers that balance the dependent entries: Φ_qdᵀ λ = y_d: M.
     fn reduce(&self, partition: &Self::Partition, y: &mut [T; N]) -> [T; M];
+    /// q̈ (N) and λ (M) of a factorised partition for a force (N) and γ (M): the function
+    /// [`accelerations`](crate::dynamics::velocity_transformation::accelerations) with the number of independent
+    /// coordinates, which stable Rust cannot compute from N and M.
+    fn accelerations(
+        &self,
+        parameters: &Self::Parameters,
+        position: &Self::Position,
+        partition: &Self::Partition,
+        force: &[T; N],
+        gamma: &[T; M],
+    ) -> Transformed<T, N, M>
+    where
+        Self: Dynamic<T, N, M>;
 }

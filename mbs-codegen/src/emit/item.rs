@@ -353,6 +353,7 @@ fn partitioned(
 ) -> TokenStream {
     let n = model.coordinates.len();
     let Bodies { solve_with_position, factorize, independent, complete, reduce, .. } = &part.bodies;
+    let freedom = independent.len();
     // Of a square text these are the functions of `Kinematic`.
     let (solve_blocks, factorize) = match part.square {
         true => (
@@ -384,6 +385,22 @@ fn partitioned(
             fn complete(&self, __factors: &__Factors<T>, __b: &[T; #m], __x: &mut [T; #n]) #complete
             #[inline]
             fn reduce(&self, __factors: &__Factors<T>, __y: &mut [T; #n]) -> [T; #m] #reduce
+            #[inline(always)]
+            fn accelerations(
+                &self,
+                __p: &<Self as #runtime::Mechanism<T, #n, #m>>::Parameters,
+                __s: &<Self as #runtime::Mechanism<T, #n, #m>>::Position,
+                __factors: &__Factors<T>,
+                __force: &[T; #n],
+                __gamma: &[T; #m],
+            ) -> #runtime::dynamics::velocity_transformation::Transformed<T, #n, #m>
+            where
+                Self: #runtime::Dynamic<T, #n, #m>,
+            {
+                #runtime::dynamics::velocity_transformation::accelerations::<Self, T, #n, #m, #freedom>(
+                    self, __p, __s, __factors, __force, __gamma,
+                )
+            }
         }
     }
 }

@@ -48,10 +48,9 @@ where
         let gamma = mechanism.gamma(parameters, &position, &y.qd);
         let mut inert = true;
         let (qdd, lambda, force) = model.balanced(&position, (t, y), lambda, |force| {
-            let solved =
-                accelerations::<S, R, N, M>(mechanism, parameters, &position, &partition, force, &gamma);
-            inert = solved.2;
-            (solved.0, solved.1)
+            let solved = mechanism.accelerations(parameters, &position, &partition, force, &gamma);
+            inert = solved.inert;
+            (solved.qdd, solved.lambda)
         })?;
         if !inert {
             // A motion without mass: the rank-revealing method names its coordinate.
@@ -142,65 +141,59 @@ where
         return None;
     }
     let none = [R::constant(0.0); N];
-    let (step, _, inert) =
-        accelerations::<S, R, N, M>(mechanism, parameters, position, &partition, &none, open);
-    inert.then_some(step)
+    let solved = mechanism.accelerations(parameters, position, &partition, &none, open);
+    solved.inert.then_some(solved.qdd)
 }
 
 /// Accelerations (N) and multipliers (M) of a factorised partition for a force (N) and γ (M), lane by lane; and whether
-/// every independent motion has inertia in every lane.
+/// every independent motion has inertia in every lane. F is N − M, as many as there are independent coordinates:
+/// [`Partitioned::accelerations`] calls this with it.
 ///
-/// Straight through the blocks: as many completions and reductions as there are independent coordinates, and LDLᵀ of
-/// their reduced mass.
+/// Straight through the blocks: one completion for q̈₀ and one for each motion R of an independent coordinate, products of
+/// those with M, LDLᵀ of RᵀMR, and one substitution for the multipliers.
 #[inline(always)]
-pub fn accelerations<S, T: Scalar, const N: usize, const M: usize>(
+pub fn accelerations<S, T: Scalar, const N: usize, const M: usize, const F: usize>(
     mechanism: &S,
     parameters: &S::Parameters,
     position: &S::Position,
     partition: &S::Partition,
     force: &[T; N],
     gamma: &[T; M],
-) -> ([T; N], [T; M], bool)
+) -> Transformed<T, N, M>
 where
     S: Dynamic<T, N, M> + Partitioned<T, N, M>,
 {
-    let zero = T::constant(0.0);
+    let (zero, one) = (T::constant(0.0), T::constant(1.0));
     let mut qdd = [zero; N];
-    mechanism.complete(partition, gamma, &mut qdd);
-    let mut rest = less(force, &mechanism.mass_times(parameters, position, &qdd));
-    mechanism.reduce(partition, &mut rest);
-    let mut reduced = [[zero; N]; N];
-    for (row, independent) in reduced.iter_mut().zip(S::INDEPENDENT) {
-        let mut motion = [zero; N];
-        if let Some(unit) = motion.get_mut(usize::from(*independent)) {
-            *unit = T::constant(1.0);
-        }
-        mechanism.complete(partition, &[zero; M], &mut motion);
-        let mut inertia = mechanism.mass_times(parameters, position, &motion);
-        mechanism.reduce(partition, &mut inertia);
-        *row = gathered(&inertia, S::INDEPENDENT);
-    }
-    let (solution, inert) = solve_symmetric(reduced, gathered(&rest, S::INDEPENDENT), S::INDEPENDENT.len());
-    let mut qdd = [zero; N];
-    for (value, independent) in solution.iter().zip(S::INDEPENDENT) {
-        if let Some(place) = qdd.get_mut(usize::from(*independent)) {
-            *place = *value;
-        }
-    }
     mechanism.complete(partition, gamma, &mut qdd);
     let mut open = less(force, &mechanism.mass_times(parameters, position, &qdd));
+    let (mut motions, mut momenta) = ([[zero; N]; F], [[zero; N]; F]);
+    for ((motion, momentum), independent) in motions.iter_mut().zip(&mut momenta).zip(S::INDEPENDENT) {
+        if let Some(unit) = motion.get_mut(usize::from(*independent)) {
+            *unit = one;
+        }
+        mechanism.complete(partition, &[zero; M], motion);
+        *momentum = mechanism.mass_times(parameters, position, motion);
+    }
+    let reduced = motions.map(|motion| momenta.map(|momentum| dot(&motion, &momentum)));
+    let (solution, inert) = solve_symmetric(reduced, motions.map(|motion| dot(&motion, &open)));
+    for ((motion, momentum), share) in motions.iter().zip(&momenta).zip(&solution) {
+        add(&mut qdd, *share, motion);
+        add(&mut open, -*share, momentum);
+    }
     let lambda = mechanism.reduce(partition, &mut open);
-    (qdd, lambda, inert)
+    Transformed { qdd, lambda, inert }
 }
 
-/// The components at `places`, first come.
-#[inline(always)]
-fn gathered<T: Scalar, const N: usize>(x: &[T; N], places: &[u16]) -> [T; N] {
-    let mut gathered = [T::constant(0.0); N];
-    for (component, place) in gathered.iter_mut().zip(places) {
-        *component = x.get(usize::from(*place)).copied().unwrap_or(T::constant(0.0));
-    }
-    gathered
+/// What follows from a force without a matrix of multipliers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Transformed<T, const N: usize, const M: usize> {
+    /// Accelerations: N.
+    pub qdd: [T; N],
+    /// Multipliers λ: M.
+    pub lambda: [T; M],
+    /// Whether every independent motion has inertia in every lane.
+    pub inert: bool,
 }
 
 #[inline(always)]
@@ -210,22 +203,38 @@ fn less<T: Scalar, const N: usize>(a: &[T; N], b: &[T; N]) -> [T; N] {
     difference
 }
 
-/// Solves the leading `count` equations of a symmetric system by elimination without pivoting; whether every pivot is
-/// positive in every lane.
+/// Adds `share` times `b` to `sum`.
 #[inline(always)]
-fn solve_symmetric<T: Scalar, const N: usize>(
-    mut a: [[T; N]; N],
-    mut b: [T; N],
-    count: usize,
-) -> ([T; N], bool) {
+fn add<T: Scalar, const N: usize>(sum: &mut [T; N], share: T, b: &[T; N]) {
+    sum.iter_mut().zip(b).for_each(|(component, b)| *component = *component + share * *b);
+}
+
+/// Partial sums of a scalar product, so that no addition waits for all before it.
+const PARTS: usize = 4;
+
+#[inline(always)]
+fn dot<T: Scalar, const N: usize>(a: &[T; N], b: &[T; N]) -> T {
+    let mut parts = [T::constant(0.0); PARTS];
+    for (a, b) in a.chunks(PARTS).zip(b.chunks(PARTS)) {
+        for (part, (a, b)) in parts.iter_mut().zip(a.iter().zip(b)) {
+            *part = *part + *a * *b;
+        }
+    }
+    let [first, second, third, fourth] = parts;
+    (first + second) + (third + fourth)
+}
+
+/// Solves a symmetric system by elimination without pivoting; whether every pivot is positive in every lane.
+#[inline(always)]
+fn solve_symmetric<T: Scalar, const F: usize>(mut a: [[T; F]; F], mut b: [T; F]) -> ([T; F], bool) {
     let (zero, one) = (T::constant(0.0), T::constant(1.0));
     let mut inert = true;
-    for k in 0..N.min(count) {
+    for k in 0..F {
         let (pivot_row, pivot_right) = (a[k], b[k]);
         let positive = zero.less(pivot_row[k]);
         inert &= T::all(positive);
         let reciprocal = one / T::select(positive, pivot_row[k], one);
-        for (i, (row, right)) in a.iter_mut().zip(&mut b).enumerate().take(count) {
+        for (i, (row, right)) in a.iter_mut().zip(&mut b).enumerate() {
             if i == k {
                 continue;
             }

@@ -10,10 +10,15 @@
 #[path = "../../peers/src/texts.rs"]
 mod texts;
 
+#[path = "../../peers/src/released.rs"]
+mod released;
+
 use std::hint::black_box;
 use std::process::ExitCode;
 
-use mbs_runtime::{Batch, Kinematic, Lanes, Mechanism, Stepper};
+use mbs_runtime::dynamics::{Counts, Formulation, Metric, Model, State, VelocityTransformation};
+use mbs_runtime::{Batch, Dynamic, Kinematic, Lanes, Mechanism, Partitioned, Stepper};
+use released::{NFourBar10, NFourBar40, Squeezer};
 use texts::{Andrews, Chain10, Chain40, FourBar};
 
 /// Time of a step (s).
@@ -24,7 +29,7 @@ const LANES: usize = 8;
 /// A work by name, done so many times.
 type Work = (&'static str, fn(u32));
 
-const WORKS: [Work; 8] = [
+const WORKS: [Work; 11] = [
     ("evaluate_four_bar", evaluate::<FourBar, 5>),
     ("evaluate_andrews", evaluate::<Andrews, 7>),
     ("evaluate_chain", evaluate::<Chain10, 22>),
@@ -33,6 +38,9 @@ const WORKS: [Work; 8] = [
     ("step_four_bar_in_8_lanes", batch),
     ("step_chain_of_10", |count| steps(Chain10::default(), upright(), count)),
     ("step_chain_of_40", |count| steps(Chain40::default(), upright(), count)),
+    ("rates_andrews", |count| rates::<Squeezer, 7, 6>(SQUEEZER, count)),
+    ("rates_10_hanging_loops", |count| rates::<NFourBar10, 22, 21>(hanging(), count)),
+    ("rates_40_hanging_loops", |count| rates::<NFourBar40, 82, 81>(hanging(), count)),
 ];
 
 fn main() -> ExitCode {
@@ -78,6 +86,40 @@ fn steps<S: Kinematic<f64, N>, const N: usize>(mechanism: S, guess: [f64; N], co
         stepper.advance_to(f64::from(k) * STEP).expect("the mechanism is regular");
     }
     black_box(stepper.q());
+}
+
+/// Where Andrews' mechanism starts.
+const SQUEEZER: [f64; 7] = [
+    -0.061_713_890_014_276_45,
+    0.0,
+    0.455_279_819_163_070_37,
+    0.222_668_390_165_885_88,
+    0.487_364_979_543_842_56,
+    -0.222_668_390_165_885_88,
+    1.230_547_444_549_821_2,
+];
+
+/// Uprights that hang, 30° off the vertical.
+fn hanging<const N: usize>() -> [f64; N] {
+    let (sine, cosine) = std::f64::consts::FRAC_PI_6.sin_cos();
+    std::array::from_fn(|k| if k % 2 == 0 { (k / 2) as f64 + sine } else { -cosine })
+}
+
+/// Accelerations and multipliers of a mechanism that moves by its forces.
+fn rates<S, const N: usize, const M: usize>(q: [f64; N], count: u32)
+where
+    S: Dynamic<f64, N, M> + Partitioned<f64, N, M> + Default,
+{
+    let mechanism = S::default();
+    let parameters = mechanism.parameters();
+    let metric = Metric::of(&mechanism, &parameters);
+    let model = Model { mechanism: &mechanism, parameters: &parameters, metric: &metric, balanced: false };
+    let mut counts = Counts::default();
+    let y = State { q, qd: [0.7; N], states: mechanism.start_states(&parameters), work: 0.0 };
+    for _ in 0..count {
+        let solved = VelocityTransformation.solve(&model, 0.0, black_box(&y), &[0.0; M], &mut counts);
+        black_box(solved.expect("the mechanism is regular"));
+    }
 }
 
 fn batch(count: u32) {

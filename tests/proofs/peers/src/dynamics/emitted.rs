@@ -2,7 +2,6 @@
 
 use std::hint::black_box;
 
-use mbs_runtime::dynamics::velocity_transformation::accelerations;
 use mbs_runtime::dynamics::{
     Counts, DormandPrince5, DormandPrince8, Embedded, Explicit, Formulation, Metric, Model, Simulation,
     State as Moving, Tolerance, VelocityTransformation,
@@ -83,7 +82,7 @@ where
     let gamma = mechanism.gamma(parameters, &position, qd);
     let states = mechanism.start_states(parameters);
     let force = mechanism.force(parameters, &position, qd, &states, &[Lanes([0.0; LANES]); M]);
-    accelerations::<S, _, N, M>(mechanism, parameters, &position, &partition, &force, &gamma).0
+    mechanism.accelerations(parameters, &position, &partition, &force, &gamma).qdd
 }
 
 /// A motion that is integrated to `end` (s).

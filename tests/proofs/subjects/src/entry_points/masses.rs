@@ -1,6 +1,6 @@
 //! Emitted functions of masses and forces, of any scalar type.
 
-use mbs_runtime::dynamics::velocity_transformation::accelerations;
+use mbs_runtime::dynamics::velocity_transformation::Transformed;
 use mbs_runtime::{Dynamic, Energy, Margin, Motion, Newton, Outcome, Partitioned, Scalar};
 
 /// N rows of N.
@@ -100,7 +100,7 @@ entry_points! {
     ](
         mechanism: &S, parameters: &S::Parameters, position: &S::Position, partition: &S::Partition,
         force: &[T; N], gamma: &[T; M],
-    ) -> ([T; N], [T; M], bool) {
-        accelerations(mechanism, parameters, position, partition, force, gamma)
+    ) -> Transformed<T, N, M> {
+        mechanism.accelerations(parameters, position, partition, force, gamma)
     }
 }
