@@ -1,5 +1,6 @@
 //! Independent coordinates, implicit methods, penalty: each against the same exact motions.
 
+use mbs_runtime::dynamics::velocity_transformation::{Transformed, accelerations};
 use mbs_runtime::dynamics::{
     AugmentedLagrangian, DormandPrince8, Explicit, Extrapolated, GeneralizedAlpha, Method, Penalty,
     Projection, RungeKutta4, Simulation, Tolerance, VelocityTransformation,
@@ -48,6 +49,17 @@ impl Partitioned<f64, 2, 1> for Linkage<2, 1> {
         let [lambda] = factors.solve(&[y[1]]);
         y[0] -= independent * lambda;
         [lambda]
+    }
+
+    fn accelerations(
+        &self,
+        (): &(),
+        position: &Self::Position,
+        partition: &Self::Partition,
+        force: &[f64; 2],
+        gamma: &[f64; 1],
+    ) -> Transformed<f64, 2, 1> {
+        accelerations::<Self, f64, 2, 1, 1>(self, &(), position, partition, force, gamma)
     }
 }
 
