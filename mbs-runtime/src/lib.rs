@@ -65,7 +65,7 @@ pub use function::{Function, FunctionEntry};
 pub use kinematics::{RegularFactors, factorize, solve_acceleration, solve_position, solve_velocity};
 pub use lanes::Lanes;
 pub use limit::{Limit, Warning};
-pub use linear::{Direct1, Direct2, Direct3, Lu, Orthogonal};
+pub use linear::{Direct1, Direct2, Direct3, Elimination, Guarded, Lu, Orthogonal};
 pub use mechanism::{
     Block, BlockSolver, Entry, Evaluation, Factorization, Kinematic, Margin, Mechanism, OutputValue,
     Reference, Signal, Whole,

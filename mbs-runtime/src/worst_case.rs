@@ -88,6 +88,49 @@ pub struct BlockWork {
     pub before: Operations,
     /// Residual and Jacobian.
     pub evaluation: Operations,
+    /// Elimination in its order without the closed form at its end, where it has an order.
+    pub elimination: Operations,
+    /// A solution with those factors without the closed form.
+    pub substitution: Operations,
+    /// Unknowns of the closed form; 0 where there is no order.
+    pub last: usize,
+}
+
+impl BlockWork {
+    /// That of a block that costs nothing.
+    pub const NONE: Self = BlockWork {
+        unknowns: 0,
+        rows: 0,
+        before: Operations::NONE,
+        evaluation: Operations::NONE,
+        elimination: Operations::NONE,
+        substitution: Operations::NONE,
+        last: 0,
+    };
+
+    /// Factors: by the order, and with pivoting where that is no use.
+    const fn factorize(&self) -> Operations {
+        let pivoted = factorize_block(self.rows as u64, self.unknowns as u64);
+        pivoted.and(self.order())
+    }
+
+    /// The order's part of it.
+    const fn order(&self) -> Operations {
+        match self.last as u64 {
+            0 => Operations::NONE,
+            // With the sign of its determinant.
+            last => self.elimination.and(factorize_block(last, last)).and(compare(1)),
+        }
+    }
+
+    /// A solution with one or the other.
+    const fn solve(&self) -> Operations {
+        let pivoted = solve_block(self.rows as u64, self.unknowns as u64);
+        match self.last as u64 {
+            0 => pivoted,
+            last => pivoted.or(self.substitution.and(solve_block(last, last))),
+        }
+    }
 }
 
 /// A mechanism of which a step of bounded work has a known cost at most; emitted with [`Kinematic`](crate::Kinematic).
@@ -148,7 +191,11 @@ impl Budget {
         let newton = if self.newton == 0 { 1 } else { self.newton as u64 };
         let evaluation = block.evaluation.and(meets(m, k));
         let recorded = select(3).and(compare(2));
-        let steps = if m > k { gauss_newton_step(m, k) } else { newton_step(k) };
+        let steps = if m > k {
+            gauss_newton_step(m, k)
+        } else {
+            newton_step(k).and(block.order()).and(block.solve())
+        };
         let first = block
             .before
             .and(recorded)
@@ -195,7 +242,7 @@ const fn factors(work: &Work) -> Operations {
         let k = work.blocks[index].unknowns as u64;
         if k > 0 {
             let signs = if k > 3 { k } else { 1 };
-            let factors = factorize_block(work.blocks[index].rows as u64, k);
+            let factors = work.blocks[index].factorize();
             total = total.and(factors).and(compare(1 + signs)).and(select(1));
         }
         index += 1;
@@ -208,9 +255,8 @@ const fn linear(work: &Work) -> Operations {
     let mut total = products(work.entries as u64).and(add(work.rows as u64)).and(divide(work.rows as u64));
     let mut index = 0;
     while index < work.blocks.len() {
-        let k = work.blocks[index].unknowns as u64;
-        if k > 0 {
-            total = total.and(solve_block(work.blocks[index].rows as u64, k));
+        if work.blocks[index].unknowns > 0 {
+            total = total.and(work.blocks[index].solve());
         }
         index += 1;
     }

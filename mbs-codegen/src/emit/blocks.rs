@@ -3,6 +3,7 @@
 use std::fmt::Write;
 
 use super::code::{lets, local};
+use super::elimination::Eliminations;
 use super::scope::{Scope, number};
 use crate::equations::Equations;
 use crate::program::{BlockProgram, Method, Program, System};
@@ -10,9 +11,15 @@ use crate::structure::dyad::Dyad;
 use crate::symbolic::NodeId;
 
 /// Body of `solve_with_position`; `position` makes the position stage of its values.
-pub fn solve(equations: &Equations, program: &Program, scope: &Scope<'_>, position: &str) -> String {
+pub fn solve(
+    equations: &Equations,
+    program: &Program,
+    eliminations: &Eliminations,
+    scope: &Scope<'_>,
+    position: &str,
+) -> String {
     let mut text = String::from("let __outcome = T::per_lane(|_| __mbs::Outcome::Converged);\n");
-    for block in &program.blocks {
+    for (index, block) in program.blocks.iter().enumerate() {
         lets(&block.before, scope, &mut text);
         match &block.method {
             Method::Explicit { value, .. } => {
@@ -20,7 +27,10 @@ pub fn solve(equations: &Equations, program: &Program, scope: &Scope<'_>, positi
                     let _ = writeln!(text, "__q[{coordinate}] = {};", scope.operand(*value));
                 }
             }
-            Method::Newton(system) => newton(equations, block, system, scope, &mut text),
+            Method::Newton(system) => {
+                let factors = eliminations.factorization(index, block.rows.len());
+                newton(equations, block, (system, &factors), scope, &mut text);
+            }
         }
     }
     lets(&program.rest, scope, &mut text);
@@ -31,14 +41,14 @@ pub fn solve(equations: &Equations, program: &Program, scope: &Scope<'_>, positi
 fn newton(
     equations: &Equations,
     block: &BlockProgram,
-    system: &System,
+    (system, factors): (&System, &str),
     scope: &Scope<'_>,
     text: &mut String,
 ) {
-    let System { section, kept, phi, phi_q, branches, branch_section, dyad } = system;
+    let System { section, kept, phi, phi_q, branches, branch_section, dyad, .. } = system;
     let inner = Scope { unknowns: &block.coordinates, ..*scope };
     let starts = list(block.coordinates.iter().map(|c| format!("__q[{c}]")));
-    let (size, kind) = (block.coordinates.len(), factorization(block.rows.len()));
+    let size = block.coordinates.len();
     let description = description(equations, block, scope);
     if !kept.is_empty() {
         let (nowhere, zero, count) = (number(f64::INFINITY), number(0.0), kept.len());
@@ -57,9 +67,9 @@ fn newton(
     let surplus = block.has_surplus();
     let method = match (dyad, branches.is_empty()) {
         _ if surplus => format!("solve_redundant::<{size}, {}>", block.rows.len()),
-        (Some(_), _) => format!("solve_closed::<{size}, {kind}>"),
-        (None, true) => format!("solve::<{size}, {kind}>"),
-        (None, false) => format!("solve_branched::<{size}, {kind}>"),
+        (Some(_), _) => format!("solve_closed::<{size}, {factors}>"),
+        (None, true) => format!("solve::<{size}, {factors}>"),
+        (None, false) => format!("solve_branched::<{size}, {factors}>"),
     };
     let call = format!("let (__x, __block) = __solver.{method}");
     let _ = write!(text, "{call}(&{description}, {starts}, #[inline(always)] |__x| __evaluate(__x)");
@@ -136,14 +146,6 @@ fn description(equations: &Equations, block: &BlockProgram, scope: &Scope<'_>) -
         list(block.rows.iter().map(|row| scale(&equations.row_scales, row))),
         list(block.coordinates.iter().map(|c| scale(&equations.coordinate_scales, c))),
     )
-}
-
-/// Type of the factors of a diagonal block.
-pub fn factorization(size: usize) -> String {
-    match size {
-        1..=3 => format!("__mbs::Direct{size}<T>"),
-        _ => format!("__mbs::Lu<T, {size}>"),
-    }
 }
 
 /// `[a, b, …]`

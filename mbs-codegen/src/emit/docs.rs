@@ -5,9 +5,10 @@ use crate::equations::continuity::{self, Demand};
 use crate::model::dynamics::State;
 use crate::model::{Model, Output};
 use crate::program::{Method, Operations, Program};
-use crate::structure::Structure;
 use crate::structure::dyad::Dyad;
 use crate::structure::mobility::{Mobility, mobility};
+use crate::structure::pivots::Pivot;
+use crate::structure::{Block, Structure};
 use crate::symbolic::{NodeId, Stage};
 
 /// Lines that follow the text's own doc comment.
@@ -254,11 +255,23 @@ fn order(model: &Model, structure: &Structure, lines: &mut Vec<String>) {
                 format!("{name}: assembled from both its positions; Newton, {size} × {size} in closed form")
             }
             (None, size @ 1..=3) => format!("Newton, {size} × {size} in closed form"),
-            (None, size) => format!("Newton, {size} × {size} by pivoted LU"),
+            (None, size) => format!("Newton, {size} × {size} by {}", elimination(model, block)),
         };
         lines.push(format!("{}. {} from {} ({how})", number + 1, coordinates.join(", "), rows.join(", ")));
     }
     lines.push(String::new());
+}
+
+/// How the linear steps of four and more unknowns are taken.
+pub fn elimination(model: &Model, block: &Block) -> String {
+    let Some(order) = &block.order else { return "LU with pivoting".into() };
+    let name = |column: &usize| {
+        let coordinate = block.coordinates.get(*column).and_then(|index| model.coordinates.get(*index));
+        coordinate.map_or("", |coordinate| coordinate.name.as_str())
+    };
+    let together = |pivot: &Pivot| pivot.columns.iter().map(name).collect::<Vec<_>>().join(" with ");
+    let pivots: Vec<String> = order.pivots.iter().map(together).collect();
+    format!("elimination of {}; LU with pivoting where that loses digits", pivots.join(", then "))
 }
 
 fn cost(model: &Model, program: &Program, lines: &mut Vec<String>) {

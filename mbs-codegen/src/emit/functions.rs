@@ -7,6 +7,7 @@ use proc_macro2::TokenStream;
 use super::blocks;
 use super::code::{block, lets, tokens};
 use super::dynamics::{self, DynamicBodies};
+use super::elimination::Eliminations;
 use super::given;
 use super::linear;
 use super::long;
@@ -105,13 +106,15 @@ pub fn bodies(
     let (phases, speeds) = phases::functions(equations, program, &bare);
     let independent = &structure.independent;
     let is_long = long::is_long(program);
-    let linear = linear::linear(equations, program, &scope, independent, is_long);
+    let eliminations = Eliminations::of(equations, program);
+    let linear = linear::linear(equations, program, (&scope, &eliminations), independent, is_long);
     let position = kept(&program.position, &early, "__Position");
-    let parts = (is_long || long::has_many_blocks(program)).then(|| long::solve(program, &early));
+    let parts =
+        (is_long || long::has_many_blocks(program)).then(|| long::solve(program, &eliminations, &early));
     let (solve_with_position, solve_blocks) = match &parts {
         Some(parts) if is_long => (parts.body.clone(), None),
         parts => (
-            blocks::solve(equations, program, &early, &position),
+            blocks::solve(equations, program, &eliminations, &early, &position),
             parts.as_ref().map(|parts| format!("let (__outcome, _) = {{\n{}\n}};\n__outcome", parts.body)),
         ),
     };
@@ -159,7 +162,7 @@ pub fn bodies(
         phases: tokens(&phases, runtime),
         speeds: tokens(&speeds, runtime),
         outputs: block(&(given + &outputs_text), runtime),
-        factors: tokens(&linear.factors, runtime),
+        factors: tokens(&(eliminations.types + &linear.factors), runtime),
         short: program.length() <= LONGEST_INLINED,
         factorizes_in_line: !long::has_many_blocks(program),
         solve_with_position: block(&solve_with_position, runtime),
@@ -167,7 +170,7 @@ pub fn bodies(
         methods: tokens(&methods, runtime),
         factorize: block(&linear.factorize, runtime),
         solve_linear: block(&linear.solve, runtime),
-        work: work::work(model, program, entries(equations).count(), runtime),
+        work: work::work(model, equations, program, entries(equations).count(), runtime),
         independent: independent.iter().map(|coordinate| *coordinate as u16).collect(),
         complete: block(&linear.complete, runtime),
         reduce: block(&linear.reduce, runtime),

@@ -3,8 +3,9 @@
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-use super::blocks::{factorization, list};
+use super::blocks::list;
 use super::code::lets;
+use super::elimination::Eliminations;
 use super::given;
 use super::long::{self, Kind};
 use super::pieces::{Code, Piece, apart, in_line};
@@ -35,26 +36,34 @@ const LARGEST_GROUP: usize = 24;
 pub fn linear(
     equations: &Equations,
     program: &Program,
-    scope: &Scope<'_>,
+    (scope, eliminations): (&Scope<'_>, &Eliminations),
     independent: &[usize],
     long: bool,
 ) -> Linear {
     let entries = Entries::of(equations, program, scope, long);
     let asked = given::blocks(equations, program, scope.model);
     let kinds = if long { long::kinds(program) } else { BTreeMap::new() };
+    let of_kinds = if long { long::factors(program, eliminations) } else { BTreeMap::new() };
     let mut tables = Tables::default();
     let (mut diagonals, mut pieces, mut places) = (Vec::new(), Vec::new(), Vec::new());
     for (index, block) in program.blocks.iter().enumerate() {
-        let mut place = format!("block{index}");
+        let (mut place, size) = (format!("block{index}"), block.rows.len());
+        let mut factors = eliminations.factorization(index, size);
         if let Method::Newton(system) = &block.method {
             let asked = asked.contains(&index);
-            match kinds.get(&Kind::of(block, system)).filter(|_| !asked && !block.has_surplus()) {
-                Some(kind) => place = tables.add(*kind, block, &entries),
-                None => diagonals.push(diagonal(equations, block, system, &entries, (index, asked))),
+            let kind = Kind::of(block, system);
+            match kinds.get(&kind).filter(|_| !asked && !block.has_surplus()) {
+                Some(number) => {
+                    factors = of_kinds.get(&kind).cloned().unwrap_or(factors);
+                    place = tables.add(*number, block, (&factors, &entries));
+                }
+                None => {
+                    diagonals.push(diagonal(equations, block, system, &entries, (index, asked, &factors)))
+                }
             }
         }
-        pieces.push(solution(block, &place, &entries));
-        places.push(place);
+        pieces.push(solution(block, (&place, &factors), &entries));
+        places.push((place, factors));
     }
     let n = scope.model.coordinates.len();
     let code = |pieces: &[Piece], given| match long {
@@ -100,7 +109,7 @@ fn diagonal(
     block: &BlockProgram,
     system: &System,
     entries: &Entries<'_>,
-    (index, asked): (usize, bool),
+    (index, asked, factors): (usize, bool, &str),
 ) -> Diagonal {
     let scope = entries.scope;
     let size = block.rows.len();
@@ -118,7 +127,7 @@ fn diagonal(
              let __margin = __margin.with_block(__value, {row}, {coordinate});\n"
         );
     } else {
-        kind = factorization(size);
+        kind = factors.to_owned();
         text = format!(
             "let (__block{index}, __value) = <{kind} as __mbs::Factorization<T, {size}>>::factorize(&{rows}, &{row_scales}, &{scales});\n\
              let __margin = __margin.with_block(__value, {row}, {coordinate})\
@@ -138,6 +147,8 @@ struct Tables(BTreeMap<usize, Table>);
 #[derive(Default)]
 struct Table {
     size: usize,
+    /// Type of the factors.
+    factors: String,
     /// Where each entry of each block stands among the entries of Φ_q.
     indices: Vec<String>,
     /// Where each block stands.
@@ -146,9 +157,10 @@ struct Table {
 
 impl Tables {
     /// Adds a block of this kind; its place among the factors.
-    fn add(&mut self, kind: usize, block: &BlockProgram, entries: &Entries<'_>) -> String {
+    fn add(&mut self, kind: usize, block: &BlockProgram, (factors, entries): (&str, &Entries<'_>)) -> String {
         let table = self.0.entry(kind).or_default();
         table.size = block.rows.len();
+        table.factors = factors.to_owned();
         let index = |(row, column): (usize, usize)| match entries.places.get(&(row, column)) {
             Some(index) => index.to_string(),
             None => "__mbs::long::NONE".into(),
@@ -178,8 +190,8 @@ fn in_one(
     if !tables.0.is_empty() {
         text += &long::scales(entries.scope.model);
     }
-    for (kind, Table { size, indices, places }) in &tables.0 {
-        let (count, factors) = (places.len(), factorization(*size));
+    for (kind, Table { size, factors, indices, places }) in &tables.0 {
+        let count = places.len();
         let _ = writeln!(fields, "/// Diagonal blocks.\nkind{kind}: [{factors}; {count}],");
         let _ = write!(names, "kind{kind}: __kind{kind}, ");
         let (places, indices) = (list(places.iter().cloned()), list(indices.iter().cloned()));
@@ -215,7 +227,7 @@ fn in_one(
 }
 
 /// The unknowns of a block from the right-hand sides and earlier unknowns.
-fn solution(block: &BlockProgram, place: &str, entries: &Entries<'_>) -> Piece {
+fn solution(block: &BlockProgram, (place, kind): (&str, &str), entries: &Entries<'_>) -> Piece {
     let right_sides = block.rows.iter().map(|row| entries.right_side(*row, block));
     let defines: Vec<String> = block.coordinates.iter().map(|coordinate| unknown(*coordinate)).collect();
     let text = match &block.method {
@@ -227,7 +239,6 @@ fn solution(block: &BlockProgram, place: &str, entries: &Entries<'_>) -> Piece {
                 let kind = format!("__mbs::Orthogonal<T, {}, {size}>", block.coordinates.len());
                 format!("let [{unknowns}] = <{kind}>::solve(&__factors.{place}, &{right_sides});\n")
             } else {
-                let kind = factorization(size);
                 format!(
                     "let [{unknowns}] = <{kind} as __mbs::Factorization<T, {size}>>::solve(&__factors.{place}, &{right_sides});\n"
                 )
@@ -239,18 +250,18 @@ fn solution(block: &BlockProgram, place: &str, entries: &Entries<'_>) -> Piece {
 }
 
 /// Φ_qdᵀ λ = y_d, the last block first; nothing where surplus rows leave λ open.
-fn transposed(program: &Program, places: &[String], entries: &Entries<'_>) -> Vec<Piece> {
+fn transposed(program: &Program, places: &[(String, String)], entries: &Entries<'_>) -> Vec<Piece> {
     if program.blocks.iter().any(BlockProgram::has_surplus) {
         return Vec::new();
     }
-    let pieces = program.blocks.iter().zip(places).rev().map(|(block, place)| {
+    let pieces = program.blocks.iter().zip(places).rev().map(|(block, (place, kind))| {
         let name = |row: usize| multiplier(row);
         let right_sides = block.coordinates.iter().map(|c| entries.transposed(*c, Some(block), name));
         let defines: Vec<String> = block.rows.iter().map(|row| multiplier(*row)).collect();
         let text = match &block.method {
             Method::Explicit { coefficient, .. } => assigned(&defines, right_sides, *coefficient),
             Method::Newton(_) => {
-                let (size, kind) = (block.rows.len(), factorization(block.rows.len()));
+                let size = block.rows.len();
                 let (multipliers, right_sides) = (defines.join(", "), list(right_sides));
                 format!(
                     "let [{multipliers}] = <{kind} as __mbs::Factorization<T, {size}>>::solve_transposed(&__factors.{place}, &{right_sides});\n"

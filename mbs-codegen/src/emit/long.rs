@@ -4,8 +4,9 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 
-use super::blocks::{factorization, formula, list};
+use super::blocks::{formula, list};
 use super::code::{LONGEST_BODY, LONGEST_FUNCTION, lets, lets_for, local, print};
+use super::elimination::{Eliminations, factorization};
 use super::scope::{Scope, number as number_of};
 use crate::model::Model;
 use crate::program::{BlockProgram, Line, Method, Program, Section, System};
@@ -77,10 +78,11 @@ impl Kind {
 }
 
 /// Before: a long program. After: the solution of Φ = 0 with the position stage of its values.
-pub fn solve(program: &Program, scope: &Scope<'_>) -> Solution {
+pub fn solve(program: &Program, eliminations: &Eliminations, scope: &Scope<'_>) -> Solution {
     let segments = segments(program);
     let kinds = kinds(program);
-    let emission = Emission { scope, program, slots: slots(program, &segments, scope), segments, kinds };
+    let (slots, factors) = (slots(program, &segments, scope), factors(program, eliminations));
+    let emission = Emission { scope, program, slots, segments, kinds, factors };
     let mut methods = emission.before();
     for (kind, number) in &emission.kinds {
         methods += &emission.evaluate(*kind, *number);
@@ -100,6 +102,22 @@ pub fn kinds(program: &Program) -> BTreeMap<Kind, usize> {
     }
     kinds.values_mut().enumerate().for_each(|(index, number)| *number = index);
     kinds
+}
+
+/// Types of the factors of each kind: those of its blocks where all have one pattern, else those of any.
+pub fn factors(program: &Program, eliminations: &Eliminations) -> BTreeMap<Kind, String> {
+    let mut factors: BTreeMap<Kind, String> = BTreeMap::new();
+    for (index, block) in program.blocks.iter().enumerate() {
+        if let Method::Newton(system) = &block.method {
+            let (kind, size) = (Kind::of(block, system), block.rows.len());
+            let own = eliminations.factorization(index, size);
+            let of_kind = factors.entry(kind).or_insert_with(|| own.clone());
+            if *of_kind != own {
+                *of_kind = factorization(size);
+            }
+        }
+    }
+    factors
 }
 
 /// `Place { … }` of a block.
@@ -237,6 +255,7 @@ struct Emission<'a> {
     segments: Vec<Segment<'a>>,
     kinds: BTreeMap<Kind, usize>,
     slots: BTreeMap<NodeId, usize>,
+    factors: BTreeMap<Kind, String>,
 }
 
 /// A segment's share of a function: its number, its code and how many lines that is.
@@ -464,7 +483,7 @@ impl Emission<'_> {
     /// The next block of a kind, solved.
     fn solved(&self, kind: Kind, number: usize) -> String {
         let Kind { unknowns, rows, dyad, branched } = kind;
-        let factors = factorization(rows);
+        let factors = self.factors.get(&kind).map_or("", String::as_str);
         let method = if rows > unknowns {
             format!("solve_redundant::<{unknowns}, {rows}>")
         } else if dyad {

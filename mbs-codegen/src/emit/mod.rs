@@ -7,6 +7,7 @@ mod casadi_pins;
 mod code;
 mod docs;
 mod dynamics;
+mod elimination;
 pub mod formula;
 mod functions;
 mod generics;

@@ -78,6 +78,8 @@ pub struct BlockReport {
     pub explicit: bool,
     /// The dyad that it is: both its positions are known as formulas.
     pub dyad: Option<&'static str>,
+    /// How the linear steps of four and more unknowns are taken.
+    pub elimination: String,
 }
 
 /// Before: a mechanism without faults. After: its structure, names and indices alone.
@@ -109,6 +111,7 @@ pub fn report(
         coordinates: block.coordinates.clone(),
         explicit: block.explicit.is_some(),
         dyad: block.dyad.as_ref().map(Dyad::name),
+        elimination: docs::elimination(model, block),
     });
     let coordinates = model.coordinates.iter();
     StructureReport {

@@ -3,11 +3,19 @@
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
+use super::elimination::{self, Cost};
+use crate::equations::Equations;
 use crate::model::{Model, Role};
 use crate::program::{Method, Operations, Program};
 
 /// `Work { … }`: the counts that the documentation's table shows, as a constant.
-pub fn work(model: &Model, program: &Program, entries: usize, runtime: &TokenStream) -> TokenStream {
+pub fn work(
+    model: &Model,
+    equations: &Equations,
+    program: &Program,
+    entries: usize,
+    runtime: &TokenStream,
+) -> TokenStream {
     let (n, m) = (model.coordinates.len(), model.rows.len());
     let (branches, limits, phases) = (model.branches.len(), model.limits.len(), model.phases.len());
     let inputs = model.fields.iter().filter(|field| field.role == Role::InputWithRates);
@@ -27,12 +35,27 @@ pub fn work(model: &Model, program: &Program, entries: usize, runtime: &TokenStr
         };
         let (before, evaluation) = (of(block.before.operations), of(evaluation));
         let rows = block.rows.len();
-        quote! { #runtime::BlockWork { unknowns: #unknowns, rows: #rows, before: #before, evaluation: #evaluation } }
+        let Cost { elimination, comparisons, substitution, last } = elimination::cost(equations, block);
+        let (mut order, comparisons) = (quote! {}, Literal::usize_unsuffixed(comparisons));
+        if last > 0 {
+            let (elimination, substitution) = (of(elimination), of(substitution));
+            order = quote! {
+                elimination: #runtime::Operations { comparisons: #comparisons, ..#elimination },
+                substitution: #substitution,
+                last: #last,
+            };
+        }
+        quote! {
+            #runtime::BlockWork {
+                unknowns: #unknowns, rows: #rows, before: #before, evaluation: #evaluation, #order
+                ..#runtime::BlockWork::NONE
+            }
+        }
     });
     // What the position stage lacks behind the blocks.
     let rest = of(program.rest.operations);
     let rest = quote! {
-        #runtime::BlockWork { unknowns: 0, rows: 0, before: #rest, evaluation: #runtime::Operations::NONE }
+        #runtime::BlockWork { before: #rest, ..#runtime::BlockWork::NONE }
     };
     quote! {
         #runtime::Work {

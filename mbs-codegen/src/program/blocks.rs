@@ -5,6 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::schedule::{Line, Section, needed, schedule};
 use crate::equations::Equations;
 use crate::structure::dyad::Dyad;
+use crate::structure::pivots::Order;
 use crate::structure::{Block, Structure};
 use crate::symbolic::{Graph, Leaf, Node, NodeId, Unary};
 
@@ -59,6 +60,8 @@ pub struct System {
     pub branch_section: Section,
     /// The formula of both positions, where the block is a dyad, and the section that computes its coefficients.
     pub dyad: Option<(Dyad, Section)>,
+    /// The order in which its unknowns are eliminated; none for closed forms and for pivots sought at run time.
+    pub order: Option<Order>,
 }
 
 /// All roots of all blocks, for the choice of what the parameter stage keeps.
@@ -243,7 +246,9 @@ fn newton(
         let section = schedule(graph, &dyad.nodes(), known);
         (dyad, section)
     });
-    (before, Method::Newton(Box::new(System { section, kept, phi, phi_q, branches, branch_section, dyad })))
+    let order = block.order.clone();
+    let system = System { section, kept, phi, phi_q, branches, branch_section, dyad, order };
+    (before, Method::Newton(Box::new(system)))
 }
 
 /// Residuals and Jacobian of a block.

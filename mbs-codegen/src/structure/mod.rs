@@ -6,6 +6,7 @@ mod independent;
 mod matching;
 pub mod mobility;
 mod partition;
+pub mod pivots;
 mod polynomial;
 mod surplus;
 mod triangular;
@@ -19,6 +20,7 @@ use crate::symbolic::{Leaf, Node, NodeId, substitute::substitute};
 
 use dyad::Dyad;
 use matching::Matching;
+use pivots::Order;
 
 /// The order in which the rows are solved.
 #[derive(Debug)]
@@ -51,6 +53,8 @@ pub struct Block {
     pub explicit: Option<Explicit>,
     /// The formula of both its positions, where it is a dyad.
     pub dyad: Option<Dyad>,
+    /// The order in which four and more unknowns are eliminated.
+    pub order: Option<Order>,
 }
 
 /// A coordinate that its row gives explicitly.
@@ -110,8 +114,9 @@ pub fn analyse(model: &Model, equations: &mut Equations, diagnostics: &mut Diagn
             coordinates.sort_unstable();
             let explicit = explicit(equations, &rows, &coordinates);
             let dyad = if explicit.is_some() { None } else { dyad(equations, &rows, &coordinates) };
+            let order = order(equations, &rows, &coordinates);
             // A surplus row is a part of its own that determines nothing.
-            (!coordinates.is_empty()).then_some(Block { rows, coordinates, explicit, dyad })
+            (!coordinates.is_empty()).then_some(Block { rows, coordinates, explicit, dyad, order })
         })
         .collect::<Vec<_>>();
     let blocks = surplus::merged(blocks, &surplus, &rows, &matching, model.coordinates.len());
@@ -178,6 +183,17 @@ fn dyad(equations: &mut Equations, rows: &[usize], coordinates: &[usize]) -> Opt
         }
         _ => None,
     }
+}
+
+/// The order of elimination within a block.
+fn order(equations: &Equations, rows: &[usize], coordinates: &[usize]) -> Option<Order> {
+    let entry = |row: &crate::equations::Row, coordinate: usize| {
+        row.phi_q.iter().find(|(column, _)| *column == coordinate).map(|(_, entry)| *entry)
+    };
+    let rows = rows.iter().filter_map(|row| equations.rows.get(*row));
+    let phi_q: Vec<Vec<Option<NodeId>>> =
+        rows.map(|row| coordinates.iter().map(|coordinate| entry(row, *coordinate)).collect()).collect();
+    pivots::order(&equations.graph, &phi_q)
 }
 
 /// The rows that each coordinate stands in.

@@ -635,6 +635,7 @@ const _: () = {
                         ..::mbs_runtime::Operations::NONE
                     },
                     evaluation: ::mbs_runtime::Operations::NONE,
+                    ..::mbs_runtime::BlockWork::NONE
                 },
                 ::mbs_runtime::BlockWork {
                     unknowns: 2usize,
@@ -650,6 +651,7 @@ const _: () = {
                         sine_cosines: 2,
                         ..::mbs_runtime::Operations::NONE
                     },
+                    ..::mbs_runtime::BlockWork::NONE
                 },
                 ::mbs_runtime::BlockWork {
                     unknowns: 0usize,
@@ -661,6 +663,7 @@ const _: () = {
                         ..::mbs_runtime::Operations::NONE
                     },
                     evaluation: ::mbs_runtime::Operations::NONE,
+                    ..::mbs_runtime::BlockWork::NONE
                 },
                 ::mbs_runtime::BlockWork {
                     unknowns: 0usize,
@@ -671,15 +674,14 @@ const _: () = {
                         ..::mbs_runtime::Operations::NONE
                     },
                     evaluation: ::mbs_runtime::Operations::NONE,
+                    ..::mbs_runtime::BlockWork::NONE
                 },
                 ::mbs_runtime::BlockWork {
-                    unknowns: 0,
-                    rows: 0,
                     before: ::mbs_runtime::Operations {
                         additions: 1,
                         ..::mbs_runtime::Operations::NONE
                     },
-                    evaluation: ::mbs_runtime::Operations::NONE,
+                    ..::mbs_runtime::BlockWork::NONE
                 },
             ],
         };

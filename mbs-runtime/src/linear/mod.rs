@@ -1,9 +1,10 @@
-//! Linear systems of the diagonal blocks: closed forms up to three unknowns, LU beyond, and the
-//! rank-revealing fallback for singular positions.
+//! Linear systems of the diagonal blocks: closed forms up to three unknowns, elimination in an order known to the
+//! compiler or LU with pivoting beyond, and the rank-revealing fallback for singular positions.
 
 mod direct1;
 mod direct2;
 mod direct3;
+mod guarded;
 mod lu;
 pub mod orthogonal;
 mod rectangular;
@@ -13,6 +14,7 @@ pub(crate) mod sequence;
 pub use direct1::Direct1;
 pub use direct2::Direct2;
 pub use direct3::Direct3;
+pub use guarded::{Elimination, Guarded, LARGEST_MULTIPLIER};
 pub use lu::Lu;
 pub use rectangular::Orthogonal;
 

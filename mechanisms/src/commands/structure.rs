@@ -85,7 +85,7 @@ fn describe(report: &StructureReport, block: &BlockReport) -> String {
             )
         }
         (false, 1..=3) => format!("{size} × {size}: Newton, linear step in closed form"),
-        (false, _) => format!("{size} × {size}: Newton, linear step by pivoted LU"),
+        (false, _) => format!("{size} × {size}: Newton, linear step by {}", block.elimination),
     };
     format!("{} from {} ({how})", coordinates.join(", "), rows.join(", "))
 }

@@ -1,0 +1,85 @@
+//! Four and more unknowns in an order that emitted code knows, with pivoting where that order would lose digits.
+
+use super::Lu;
+use crate::{Factorization, Scalar};
+
+/// Largest multiplier (in the reference metric) of an elimination in a fixed order. Two digits at most are lost to each
+/// pivot then; partial pivoting holds them below 1.
+pub const LARGEST_MULTIPLIER: f64 = 16.0;
+
+/// The factors of a block by straight-line code: what is zero or a number there is neither stored nor computed.
+///
+/// Emitted for blocks of four and more unknowns. Pivots are single entries or 2 × 2, the last one up to 3 × 3; which ones
+/// is decided when the mechanism is compiled.
+pub trait Elimination<T: Scalar, const K: usize>: Copy {
+    /// Eliminates `a` (K rows of K) and measures it in the reference metric, as [`Factorization::factorize`] does.
+    ///
+    /// Returns the factors, the margin, and in which lanes every multiplier is below [`LARGEST_MULTIPLIER`]: elsewhere the
+    /// factors, which may not be finite, are of no use.
+    fn eliminate(a: &[[T; K]; K], row_scales: &[T; K], coordinate_scales: &[T; K]) -> (Self, T, T::Mask);
+    /// Solves `a x = b`.
+    fn solve(&self, b: &[T; K]) -> [T; K];
+    /// Solves `aᵀ x = b`.
+    fn solve_transposed(&self, b: &[T; K]) -> [T; K];
+    /// Whether the determinant of `a` is negative.
+    fn reverses(&self) -> T::Mask;
+}
+
+/// Factors by the order `E`, or with pivoting in all lanes where a lane asks for it.
+#[derive(Clone, Copy, Debug)]
+#[allow(clippy::large_enum_variant, reason = "both live on the stack: nothing here allocates")]
+pub enum Guarded<E, T: Scalar, const K: usize> {
+    /// In the order of the emitted code.
+    Ordered(E),
+    /// With pivoting.
+    Pivoted(Lu<T, K>),
+}
+
+/// The way that is rarely taken, out of the way of the other.
+#[cold]
+#[inline(never)]
+fn pivoted<T: Scalar, const K: usize>(
+    a: &[[T; K]; K],
+    row_scales: &[T; K],
+    coordinate_scales: &[T; K],
+) -> (Lu<T, K>, T) {
+    Lu::factorize(a, row_scales, coordinate_scales)
+}
+
+impl<E: Elimination<T, K>, T: Scalar, const K: usize> Factorization<T, K> for Guarded<E, T, K> {
+    /// The margin is the smallest over the largest size of a pivot in the reference metric: the size of an entry, or of
+    /// a 2 × 2 or 3 × 3 pivot its largest entry, and that times its own margin.
+    #[inline(always)]
+    fn factorize(a: &[[T; K]; K], row_scales: &[T; K], coordinate_scales: &[T; K]) -> (Self, T) {
+        let (factors, margin, bounded) = E::eliminate(a, row_scales, coordinate_scales);
+        if T::all(bounded) {
+            return (Guarded::Ordered(factors), margin);
+        }
+        let (factors, margin) = pivoted(a, row_scales, coordinate_scales);
+        (Guarded::Pivoted(factors), margin)
+    }
+
+    #[inline(always)]
+    fn solve(&self, b: &[T; K]) -> [T; K] {
+        match self {
+            Guarded::Ordered(factors) => factors.solve(b),
+            Guarded::Pivoted(factors) => factors.solve(b),
+        }
+    }
+
+    #[inline(always)]
+    fn solve_transposed(&self, b: &[T; K]) -> [T; K] {
+        match self {
+            Guarded::Ordered(factors) => factors.solve_transposed(b),
+            Guarded::Pivoted(factors) => factors.solve_transposed(b),
+        }
+    }
+
+    #[inline(always)]
+    fn reverses(&self) -> T::Mask {
+        match self {
+            Guarded::Ordered(factors) => factors.reverses(),
+            Guarded::Pivoted(factors) => factors.reverses(),
+        }
+    }
+}

@@ -1,0 +1,229 @@
+//! Blocks of four and more unknowns, eliminated in an order that the compiler chose: against dense elimination, where that order is
+//! good, where it fails, and in lanes of which one fails.
+
+use mbs_runtime::{Kinematic, Lanes, Mechanism, Partitioned, mechanism};
+use mechanisms::stephenson::Stephenson;
+use mechanisms::three_rrr::ThreeRrr;
+
+/// Error of a solution times the margin, relative: both sides lose digits as the margin says.
+const ERROR: f64 = 1e-12;
+
+/// Margin below which digits are too few to compare.
+const LEAST_MARGIN: f64 = 1e-4;
+
+mechanism! {
+    /// Five bars in a ring of two loops without a drive: alpha is free, the other four depend on each other.
+    mechanism Ring;
+    param m: kg = 1;
+    coord theta: rad = 0.3;
+    coord alpha: rad = 1.1;
+    coord beta: rad = 0.16;
+    coord gamma: rad = 1.7;
+    coord delta: rad = 0;
+    let p = 0.25m*unit(alpha) + rot(beta)*[75mm, -80mm];
+    body plate { mass: m, inertia: 0.01kg*1m^2, com: p, angle: beta }
+    constraint four_bar { 0.25m*unit(alpha) + 0.15m*unit(beta) == [300mm, 0] + 0.25m*unit(gamma); }
+    constraint rod { [-150mm, 160mm] + 50mm*unit(theta) + 0.3m*unit(delta) == p; }
+    independent theta;
+}
+
+mechanism! {
+    /// A ring of eight bars: each loop shares a bar with the next, the last with the first.
+    mechanism Wreath;
+    param omega: rad/s = 1;
+    coord theta: rad = 0;
+    coord a: [rad; 8] = [0.4, 1.3, 2.1, -0.6, 0.9, -1.2, 2.6, 0.2];
+    drive crank: theta == omega*t;
+    constraint loops {
+        2m*unit(a[0]) + 3m*unit(a[1]) == [1m, 2m] + unit(theta)*1m + 1m*unit(a[7]);
+        3m*unit(a[1]) + 2m*unit(a[2]) + 1m*unit(a[3]) == [2m, 1m];
+        2m*unit(a[3]) + 3m*unit(a[4]) + 1m*unit(a[5]) == [2m, -1m];
+        2m*unit(a[5]) + 3m*unit(a[6]) + 1m*unit(a[7]) == [1m, 1m];
+    }
+}
+
+/// SplitMix64. Source: Steele, Lea & Flood 2014.
+struct Sequence(u64);
+
+impl Sequence {
+    /// The next number in [−3, 3).
+    fn number(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        6.0 * ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64 - 3.0
+    }
+}
+
+/// Solution and determinant of a dense system, by elimination with complete pivoting.
+fn dense<const N: usize>(mut a: [[f64; N]; N], mut b: [f64; N]) -> ([f64; N], f64) {
+    let mut columns: [usize; N] = core::array::from_fn(|column| column);
+    let mut determinant = 1.0;
+    for k in 0..N {
+        let places = (k..N).flat_map(|row| (k..N).map(move |column| (row, column)));
+        let largest = places.max_by(|p, q| a[p.0][p.1].abs().total_cmp(&a[q.0][q.1].abs()));
+        let (row, column) = largest.expect("a place");
+        a.swap(k, row);
+        b.swap(k, row);
+        a.iter_mut().for_each(|row| row.swap(k, column));
+        columns.swap(k, column);
+        determinant *= if (row == k) == (column == k) { a[k][k] } else { -a[k][k] };
+        for below in k + 1..N {
+            let factor = a[below][k] / a[k][k];
+            for j in k..N {
+                a[below][j] -= factor * a[k][j];
+            }
+            b[below] -= factor * b[k];
+        }
+    }
+    let mut x = [0.0; N];
+    for k in (0..N).rev() {
+        let known: f64 = (k + 1..N).map(|j| a[k][j] * x[columns[j]]).sum();
+        x[columns[k]] = (b[k] - known) / a[k][k];
+    }
+    (x, determinant)
+}
+
+fn norm(x: impl IntoIterator<Item = f64>) -> f64 {
+    x.into_iter().map(|component| component * component).sum::<f64>().sqrt()
+}
+
+/// Solves Φ_q x = b with the emitted factors at `q`, and with dense ones; the margin.
+fn compare<S: Kinematic<f64, N>, const N: usize>(mechanism: &S, q: &[f64; N], b: &[f64; N]) -> f64 {
+    let parameters = mechanism.parameters();
+    let position = mechanism.position(&parameters, q, 0.2);
+    let (factors, margin) = mechanism.factorize(&parameters, &position);
+    if margin.value < LEAST_MARGIN {
+        return margin.value;
+    }
+    let x = mechanism.solve_linear(&factors, b);
+    let (expected, _) = dense(mechanism.phi_q(&parameters, &position), *b);
+    let error = norm(x.iter().zip(expected).map(|(x, expected)| x - expected)) / norm(expected);
+    assert!(error * margin.value < ERROR, "{error} at margin {} and {q:?}", margin.value);
+    margin.value
+}
+
+/// Compares at `count` random positions; how many were regular enough.
+fn at_random<S: Kinematic<f64, N>, const N: usize>(mechanism: &S, count: u32) -> u32 {
+    let mut sequence = Sequence(5);
+    let mut regular = 0;
+    for _ in 0..count {
+        let q: [f64; N] = core::array::from_fn(|_| sequence.number());
+        let b: [f64; N] = core::array::from_fn(|_| sequence.number());
+        regular += u32::from(compare(mechanism, &q, &b) >= LEAST_MARGIN);
+    }
+    regular
+}
+
+#[test]
+fn solutions_are_those_of_dense_factors_wherever_the_mechanism_is_regular() {
+    assert!(at_random(&Stephenson::default(), 4000) > 3800);
+    assert!(at_random(&ThreeRrr::default(), 4000) > 3800);
+    assert!(at_random(&Wreath::default(), 4000) > 3500);
+}
+
+#[test]
+fn a_pivot_that_vanishes_costs_no_digit() {
+    // The first pivot of Stephenson's linkage is sin(beta − alpha) times two lengths.
+    let text = include_str!("../../mechanisms/src/stephenson.rs");
+    let start = text.find("mechanism! {").expect("a text") + "mechanism! {".len();
+    let source = &text[start..text[start..].find("\n}\n").expect("an end") + start];
+    let report = mbs_codegen::structure_of(source, None).expect("a structure");
+    assert!(
+        report.blocks.iter().any(|block| block.elimination.starts_with("elimination of alpha with beta"))
+    );
+    let mut sequence = Sequence(7);
+    let mut regular = 0;
+    for run in 0..600 {
+        let mut q: [f64; 5] = core::array::from_fn(|_| sequence.number());
+        q[2] = q[1] + [0.0, 1e-15, 1e-9, 1e-6, 1e-3, core::f64::consts::PI][run % 6];
+        regular +=
+            u32::from(compare(&Stephenson::default(), &q, &[0.3, -0.2, 0.7, 0.1, 0.4]) >= LEAST_MARGIN);
+    }
+    assert!(regular > 500, "{regular}");
+}
+
+#[test]
+fn the_sign_of_the_determinant_is_that_of_the_dense_one() {
+    // One block with unknowns, and explicit ones: its sign changes with that of the whole matrix, and only with it.
+    fn of<S: Kinematic<f64, N>, const N: usize>(mechanism: &S) {
+        let mut sequence = Sequence(11);
+        let parameters = mechanism.parameters();
+        let mut signs = std::collections::BTreeSet::new();
+        for _ in 0..400 {
+            let q: [f64; N] = core::array::from_fn(|_| sequence.number());
+            let position = mechanism.position(&parameters, &q, 0.2);
+            let (_, margin) = mechanism.factorize(&parameters, &position);
+            let (_, determinant) = dense(mechanism.phi_q(&parameters, &position), [1.0; N]);
+            if margin.value > 1e-9 {
+                signs.insert((margin.orientation[0] & 1 == 1, determinant < 0.0));
+            }
+        }
+        assert_eq!(signs.len(), 2, "{signs:?}");
+    }
+    of(&Stephenson::<f64>::default());
+    of(&ThreeRrr::<f64>::default());
+    of(&Wreath::<f64>::default());
+}
+
+#[test]
+fn a_lane_whose_pivot_vanishes_takes_the_others_along_and_all_are_right() {
+    let lanes: Stephenson<Lanes<f64, 4>> = Stephenson::default();
+    let alone: Stephenson = Stephenson::default();
+    let mut sequence = Sequence(13);
+    for vanishing in 0..5 {
+        let q: [[f64; 4]; 5] = core::array::from_fn(|_| core::array::from_fn(|_| sequence.number()));
+        let mut q = q;
+        if vanishing < 4 {
+            q[2][vanishing] = q[1][vanishing];
+        }
+        let parameters = lanes.parameters();
+        let position = lanes.position(&parameters, &q.map(Lanes), Lanes([0.2; 4]));
+        let (factors, margin) = lanes.factorize(&parameters, &position);
+        let x = lanes.solve_linear(&factors, &[Lanes([0.5, -0.3, 0.2, 0.9]); 5]);
+        for (lane, b) in [0.5, -0.3, 0.2, 0.9].into_iter().enumerate() {
+            let parameters = alone.parameters();
+            let position = alone.position(&parameters, &q.map(|values| values[lane]), 0.2);
+            let (factors, own) = alone.factorize(&parameters, &position);
+            let expected = alone.solve_linear(&factors, &[b; 5]);
+            for (x, expected) in x.iter().zip(expected) {
+                let difference = (x.0[lane] - expected).abs() * own.value;
+                assert!(difference <= ERROR * (1.0 + expected.abs()), "lane {lane}: {difference}");
+            }
+            assert!((margin.value.0[lane] - own.value).abs() < 0.9);
+        }
+    }
+}
+
+#[test]
+fn transposed_systems_balance_forces() {
+    let ring: Ring = Ring::default();
+    let parameters = ring.parameters();
+    let mut sequence = Sequence(17);
+    let mut regular = 0;
+    for run in 0..400 {
+        let mut q: [f64; 5] = core::array::from_fn(|_| sequence.number());
+        if run % 4 == 0 {
+            q[2] = q[1]; // the pivot vanishes
+        }
+        let y: [f64; 5] = core::array::from_fn(|_| sequence.number());
+        let position = ring.position(&parameters, &q, 0.0);
+        let (partition, margin) = ring.partition(&parameters, &position);
+        if margin.value < LEAST_MARGIN {
+            continue;
+        }
+        regular += 1;
+        let mut reduced = y;
+        let lambda = ring.reduce(&partition, &mut reduced);
+        let phi_q = ring.phi_q(&parameters, &position);
+        let size = lambda.iter().fold(1.0_f64, |size, value| size.max(value.abs()));
+        for column in 1..5 {
+            let balance: f64 = (0..4).map(|row| phi_q[row][column] * lambda[row]).sum();
+            assert!((balance - y[column]).abs() < ERROR * size, "{balance} for {}", y[column]);
+        }
+        let rest: f64 = (0..4).map(|row| phi_q[row][0] * lambda[row]).sum();
+        assert!((reduced[0] - (y[0] - rest)).abs() < ERROR * size);
+    }
+    assert!(regular > 350, "{regular}");
+}
