@@ -69,12 +69,11 @@ fn dense<const N: usize>(mut a: [[f64; N]; N], mut b: [f64; N]) -> ([f64; N], f6
         a.iter_mut().for_each(|row| row.swap(k, column));
         columns.swap(k, column);
         determinant *= if (row == k) == (column == k) { a[k][k] } else { -a[k][k] };
-        for below in k + 1..N {
-            let factor = a[below][k] / a[k][k];
-            for j in k..N {
-                a[below][j] -= factor * a[k][j];
-            }
-            b[below] -= factor * b[k];
+        let (pivot, right) = (a[k], b[k]);
+        for (row, b) in a.iter_mut().zip(&mut b).skip(k + 1) {
+            let factor = row[k] / pivot[k];
+            row.iter_mut().zip(pivot).for_each(|(entry, above)| *entry -= factor * above);
+            *b -= factor * right;
         }
     }
     let mut x = [0.0; N];

@@ -36,19 +36,20 @@ pub fn work(
         let (before, evaluation) = (of(block.before.operations), of(evaluation));
         let rows = block.rows.len();
         let Cost { elimination, comparisons, substitution, last } = elimination::cost(equations, block);
-        let (mut order, comparisons) = (quote! {}, Literal::usize_unsuffixed(comparisons));
-        if last > 0 {
+        let comparisons = Literal::usize_unsuffixed(comparisons);
+        let order = if last > 0 {
             let (elimination, substitution) = (of(elimination), of(substitution));
-            order = quote! {
+            quote! {
                 elimination: #runtime::Operations { comparisons: #comparisons, ..#elimination },
                 substitution: #substitution,
                 last: #last,
-            };
-        }
+            }
+        } else {
+            quote! { ..#runtime::BlockWork::NONE }
+        };
         quote! {
             #runtime::BlockWork {
                 unknowns: #unknowns, rows: #rows, before: #before, evaluation: #evaluation, #order
-                ..#runtime::BlockWork::NONE
             }
         }
     });
