@@ -13,7 +13,7 @@ use mbs_runtime::mechanism;
 
 use crate::drawing::Shape;
 use crate::masses::boxed_masses;
-use crate::registry::{FreeCard, Preset};
+use crate::registry::{FreeCard, Preset, Usual};
 
 /// In the list of free mechanisms.
 pub const CARD: FreeCard = FreeCard {
@@ -23,7 +23,7 @@ pub const CARD: FreeCard = FreeCard {
                   milliseconds, accelerations up to 5e5 rad/s².",
     runs: &[Preset { label: "0.03 s", description: "from rest, under a constant torque", set: &[] }],
     duration: 0.03,
-    is_stiff: false,
+    usual: Usual::Projection,
     drawing: DRAWING,
     make: boxed_masses::<Andrews, 7, 6>,
 };

@@ -16,7 +16,7 @@ use mbs_runtime::mechanism;
 
 use crate::drawing::Shape;
 use crate::masses::boxed_redundant_masses;
-use crate::registry::{FreeCard, Preset};
+use crate::registry::{FreeCard, Preset, Usual};
 
 /// In the list of free mechanisms.
 pub const CARD: FreeCard = FreeCard {
@@ -26,7 +26,7 @@ pub const CARD: FreeCard = FreeCard {
                   of its joints follows from the others wherever it is.",
     runs: &[Preset { label: "10 s", description: "from rest, by its weight", set: &[] }],
     duration: 10.0,
-    is_stiff: false,
+    usual: Usual::Projection,
     drawing: DRAWING,
     make: boxed_redundant_masses::<Bricard, 23, 23>,
 };

@@ -16,7 +16,7 @@ use mbs_runtime::mechanism;
 
 use crate::drawing::Shape;
 use crate::masses::boxed_masses;
-use crate::registry::{FreeCard, Preset};
+use crate::registry::{FreeCard, Preset, Usual};
 
 /// In the list of free mechanisms.
 pub const CARD: FreeCard = FreeCard {
@@ -26,7 +26,7 @@ pub const CARD: FreeCard = FreeCard {
                   depend on time, and do work.",
     runs: &[Preset { label: "3 s", description: "moving to the left at the start", set: &[] }],
     duration: 3.0,
-    is_stiff: false,
+    usual: Usual::Projection,
     drawing: DRAWING,
     make: boxed_masses::<CarAxis, 4, 2>,
 };

@@ -15,7 +15,7 @@ use mbs_runtime::mechanism;
 
 use crate::drawing::{Along, Shape};
 use crate::masses::boxed_masses;
-use crate::registry::{FreeCard, Preset};
+use crate::registry::{FreeCard, Preset, Usual};
 
 /// In the list of free mechanisms.
 pub const CARD: FreeCard = FreeCard {
@@ -25,7 +25,7 @@ pub const CARD: FreeCard = FreeCard {
                   below it.",
     runs: &[Preset { label: "4 s", description: "released level, at rest", set: &[] }],
     duration: 4.0,
-    is_stiff: false,
+    usual: Usual::Projection,
     drawing: DRAWING,
     make: boxed_masses::<CartPole, 4, 2>,
 };

@@ -14,7 +14,7 @@ use mbs_runtime::mechanism;
 
 use crate::drawing::Shape;
 use crate::masses::boxed_masses;
-use crate::registry::{FreeCard, Preset};
+use crate::registry::{FreeCard, Preset, Usual};
 
 /// In the list of free mechanisms.
 pub const CARD: FreeCard = FreeCard {
@@ -26,7 +26,7 @@ pub const CARD: FreeCard = FreeCard {
         Preset { label: "small", description: "the slow mode, at rest", set: &[("amplitude", 0.1)] },
     ],
     duration: 6.0,
-    is_stiff: false,
+    usual: Usual::Projection,
     drawing: DRAWING,
     make: boxed_masses::<DoublePendulum, 4, 2>,
 };

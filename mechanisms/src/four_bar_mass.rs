@@ -25,7 +25,7 @@ use mbs_runtime::mechanism;
 
 use crate::four_bar;
 use crate::masses::{boxed_driven, boxed_masses};
-use crate::registry::{Card, FreeCard, Preset, Span};
+use crate::registry::{Card, FreeCard, Preset, Span, Usual};
 
 mechanism! {
     /// Four-bar linkage with masses and a massless coupler point.
@@ -118,7 +118,7 @@ pub const RELEASED: FreeCard = FreeCard {
         },
     ],
     duration: 2.0,
-    is_stiff: false,
+    usual: Usual::Projection,
     drawing: four_bar::DRAWING,
     make: boxed_masses::<FourBarMassReleased, 5, 4>,
 };

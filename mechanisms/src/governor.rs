@@ -20,7 +20,7 @@ use mbs_runtime::mechanism;
 
 use crate::drawing::Shape;
 use crate::masses::boxed_masses;
-use crate::registry::{FreeCard, Preset};
+use crate::registry::{FreeCard, Preset, Usual};
 
 /// In the list of free mechanisms.
 pub const CARD: FreeCard = FreeCard {
@@ -30,7 +30,7 @@ pub const CARD: FreeCard = FreeCard {
                   steps of a millisecond would blow up.",
     runs: &[Preset { label: "10 s", description: "free, one turn a second at the start", set: &[] }],
     duration: 10.0,
-    is_stiff: true,
+    usual: Usual::AugmentedLagrangian,
     drawing: DRAWING,
     make: boxed_masses::<Governor, 16, 12>,
 };

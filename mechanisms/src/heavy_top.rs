@@ -15,7 +15,7 @@ use mbs_runtime::mechanism;
 
 use crate::drawing::Shape;
 use crate::masses::boxed_masses;
-use crate::registry::{FreeCard, Preset};
+use crate::registry::{FreeCard, Preset, Usual};
 
 /// In the list of free mechanisms.
 pub const CARD: FreeCard = FreeCard {
@@ -25,7 +25,7 @@ pub const CARD: FreeCard = FreeCard {
                   at 1, and three rows for the pivot.",
     runs: &[Preset { label: "2 s", description: "150 rad/s about its level axis", set: &[] }],
     duration: 2.0,
-    is_stiff: false,
+    usual: Usual::Projection,
     drawing: DRAWING,
     make: boxed_masses::<HeavyTop, 7, 4>,
 };

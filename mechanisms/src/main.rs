@@ -56,10 +56,27 @@ enum Command {
     Table(commands::table_file::Arguments),
 }
 
+/// Dense matrices stand on the stack, of 82 coordinates with their multipliers half a megabyte each, and a build without
+/// optimisation keeps every copy (bytes).
+const STACK: usize = 64 << 20;
+
 fn main() -> ExitCode {
     let command = Arguments::parse().command;
+    let run = || match execute(command) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => report(&error),
+    };
+    match std::thread::Builder::new().stack_size(STACK).spawn(run).map(std::thread::JoinHandle::join) {
+        Ok(Ok(code)) => code,
+        // It panicked, and has said so.
+        Ok(Err(_)) => ExitCode::from(101),
+        Err(error) => report(&CommandError::Failed(format!("cannot start a thread: {error}"))),
+    }
+}
+
+fn execute(command: Option<Command>) -> Result<(), CommandError> {
     let mut out = io::stdout().lock();
-    let result = match command {
+    match command {
         None => commands::run::run(&commands::run::Arguments::defaults(registry::ALL[0].name), &mut out),
         Some(Command::List) => commands::list::run(&mut out),
         Some(Command::Run(arguments)) => commands::run::run(&arguments, &mut out),
@@ -75,11 +92,8 @@ fn main() -> ExitCode {
         Some(Command::Drift(arguments)) => commands::drift::run(&arguments, &mut out),
         Some(Command::Compare(arguments)) => commands::compare::run(&arguments, &mut out),
         Some(Command::Table(arguments)) => commands::table_file::run(&arguments, &mut out),
-    };
-    match result.and_then(|()| out.flush().map_err(CommandError::Output)) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => report(&error),
-    }
+    }?;
+    out.flush().map_err(CommandError::Output)
 }
 
 fn report(error: &CommandError) -> ExitCode {

@@ -13,7 +13,7 @@ use mbs_runtime::mechanism;
 
 use crate::drawing::Shape;
 use crate::masses::boxed_masses;
-use crate::registry::{FreeCard, Preset};
+use crate::registry::{FreeCard, Preset, Usual};
 
 /// In the list of free mechanisms.
 pub const CARD: FreeCard = FreeCard {
@@ -23,7 +23,7 @@ pub const CARD: FreeCard = FreeCard {
                   rods in line, where the rows lose rank.",
     runs: &[Preset { label: "10 s", description: "upright at the start, pushed to the right", set: &[] }],
     duration: 10.0,
-    is_stiff: false,
+    usual: Usual::Projection,
     drawing: DRAWING,
     make: boxed_masses::<NFourBar, 6, 5>,
 };
@@ -82,3 +82,36 @@ pub const DRAWING: &[Shape] = &[
     Shape::Joint { at: "B2" },
     Shape::Trace { of: "B1", label: "middle joint" },
 ];
+
+/// How a row of uprights is drawn, for the numbers of `lower_end` and `upper_end`: `uprights!(0 1 2)`.
+macro_rules! uprights {
+    (@pairs [$($shapes:tt)*] $last:literal) => {
+        &[
+            $($shapes)*
+            Shape::Trace { of: concat!("upper_end.", $last), label: "last joint" },
+        ]
+    };
+    (@pairs [$($shapes:tt)*] $one:literal $next:literal $($more:literal)*) => {
+        uprights!(@pairs [
+            $($shapes)*
+            Shape::Link {
+                points: &[concat!("upper_end.", $one), concat!("upper_end.", $next)],
+                label: if $one == 0 { "couplers" } else { "" },
+            },
+        ] $next $($more)*)
+    };
+    ($($index:literal)*) => {
+        uprights!(@pairs [
+            $(
+                Shape::Ground { at: concat!("lower_end.", $index) },
+                Shape::Joint { at: concat!("lower_end.", $index) },
+                Shape::Joint { at: concat!("upper_end.", $index) },
+                Shape::Link {
+                    points: &[concat!("lower_end.", $index), concat!("upper_end.", $index)],
+                    label: if $index == 0 { "uprights" } else { "" },
+                },
+            )*
+        ] $($index)*)
+    };
+}
+pub(crate) use uprights;

@@ -10,7 +10,7 @@ use mbs_runtime::mechanism;
 
 use crate::drawing::Shape;
 use crate::masses::boxed_masses;
-use crate::registry::{FreeCard, Preset};
+use crate::registry::{FreeCard, Preset, Usual};
 
 /// In the list of free mechanisms.
 pub const CARD: FreeCard = FreeCard {
@@ -19,7 +19,7 @@ pub const CARD: FreeCard = FreeCard {
     description: "A bob on a massless rod, released level: one degree of freedom in two coordinates.",
     runs: &[Preset { label: "10 s", description: "released level, at rest", set: &[] }],
     duration: 10.0,
-    is_stiff: false,
+    usual: Usual::Projection,
     drawing: DRAWING,
     make: boxed_masses::<Pendulum, 2, 1>,
 };

@@ -17,7 +17,7 @@ use mbs_runtime::mechanism;
 
 use crate::drawing::{Along, Shape};
 use crate::masses::boxed_masses;
-use crate::registry::{FreeCard, Preset};
+use crate::registry::{FreeCard, Preset, Usual};
 
 /// In the list of free mechanisms.
 pub const CARD: FreeCard = FreeCard {
@@ -30,7 +30,7 @@ pub const CARD: FreeCard = FreeCard {
         Preset { label: "wheel", description: "waves at 10 Hz: the wheel hops", set: &[("omega", 63.0)] },
     ],
     duration: 3.0,
-    is_stiff: false,
+    usual: Usual::Projection,
     drawing: DRAWING,
     make: boxed_masses::<QuarterCar, 2, 0>,
 };

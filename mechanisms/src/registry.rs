@@ -46,7 +46,10 @@ pub static FREE: &[&FreeCard] = &[
     &crate::pendulum::CARD,
     &crate::double_pendulum::CARD,
     &crate::cart_pole::CARD,
+    &crate::n_four_bar_1::CARD,
     &crate::n_four_bar::CARD,
+    &crate::n_four_bar_10::CARD,
+    &crate::n_four_bar_40::CARD,
     &crate::andrews::CARD,
     &crate::heavy_top::CARD,
     &crate::car_axis::CARD,
@@ -70,12 +73,23 @@ pub struct FreeCard {
     pub runs: &'static [Preset],
     /// How long a motion lasts (s).
     pub duration: f64,
-    /// Whether its forces are too stiff for explicit steps.
-    pub is_stiff: bool,
+    /// What moves it where nothing is said.
+    pub usual: Usual,
     /// How it is drawn.
     pub drawing: &'static [Shape],
     /// A new instance with default parameters.
     pub make: fn() -> Box<dyn AnyEquations>,
+}
+
+/// The method that is right for a mechanism; see [`mbs_runtime::dynamics`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Usual {
+    /// Explicit steps, all rows together.
+    Projection,
+    /// Explicit steps through the blocks of the rows: of many rows the others take too long.
+    Velocity,
+    /// Implicit steps: the forces are too stiff for explicit ones.
+    AugmentedLagrangian,
 }
 
 /// What the program knows of a mechanism beside its text.

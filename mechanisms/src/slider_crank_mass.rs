@@ -21,7 +21,7 @@
 use mbs_runtime::mechanism;
 
 use crate::masses::{boxed_driven, boxed_masses};
-use crate::registry::{Card, FreeCard, Preset, Span};
+use crate::registry::{Card, FreeCard, Preset, Span, Usual};
 use crate::slider_crank;
 
 mechanism! {
@@ -100,7 +100,7 @@ pub const RELEASED: FreeCard = FreeCard {
         },
     ],
     duration: 0.6,
-    is_stiff: false,
+    usual: Usual::Projection,
     drawing: slider_crank::DRAWING,
     make: boxed_masses::<CrankPistonReleased, 3, 2>,
 };

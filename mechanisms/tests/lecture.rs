@@ -98,6 +98,12 @@ fn free_mechanisms_have_formulas_structure_matrices_and_degrees_of_freedom() {
         assert!(text.contains("forces move the others") && text.contains("joints and guides take"), "{text}");
         assert!(text_of(&["latex", card.name]).ends_with("\\end{document}\n"));
     }
+    // Rows that may follow from others have no blocks; of the others one coordinate is left.
+    let drawn = Scratch::new("bricard.svg");
+    let text = text_of(&["structure", "bricard", "--out", drawn.path()]);
+    assert!(text.contains("solved together: all 23 rows") && !text.contains("block after block"), "{text}");
+    assert!(drawn.text().contains("all are solved together") && drawn.text().contains(">last<"));
+    assert!(text_of(&["structure", "andrews"]).contains("independent: beta, which forces move"));
     // Two points of two coordinates each, two rods.
     let text = text_of(&["dof", "double_pendulum"]);
     assert!(line(&text, "degrees of freedom").ends_with("= 2"), "{text}");

@@ -6,7 +6,7 @@ use mechanisms::facade::AnyEquations;
 use mechanisms::masses::{boxed_driven, boxed_masses};
 use mechanisms::registry::FREE;
 use mechanisms::verify::compare::compare;
-use mechanisms::verify::{Oracle, STATES, generated_definition};
+use mechanisms::verify::{Oracle, generated_definition, states_of};
 
 mechanism! {
     /// Meaningless as a machine, complete as a text of dynamics.
@@ -142,7 +142,8 @@ fn casadi_confirms_every_function_of_masses_and_forces() {
     let joints: [Box<dyn AnyEquations>; 2] = [boxed_masses::<Jointed, 5, 4>(), boxed_driven::<Natural, 4>()];
     for mut mechanism in [boxed_masses::<Heap, 5, 2>(), driven].into_iter().chain(joints).chain(ready) {
         let definition = generated_definition(mechanism.as_ref()).unwrap_or_else(|error| panic!("{error}"));
-        let agreement = compare(mechanism.as_mut(), &oracle, &definition, STATES);
+        let states = states_of(mechanism.coordinates().len());
+        let agreement = compare(mechanism.as_mut(), &oracle, &definition, states);
         let agreement = agreement.unwrap_or_else(|error| panic!("{error}"));
         println!("{agreement}");
         assert!(agreement.holds(), "{agreement}");

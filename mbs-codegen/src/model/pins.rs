@@ -78,23 +78,32 @@ impl Resolver<'_> {
         let full = self.numbered(name, "pin")?;
         let [first, second] = bodies;
         let joined = [self.joined(first)?, self.joined(second)?];
+        let [(first, _), (second, _)] = &joined;
+        // Known even where its point is none, so that what asks for its force is not reported too.
+        let joint = Joint { pin: self.dynamics().pins.len(), bodies: [first.clone(), second.clone()] };
+        self.names.define_pin(&name.text, joint);
         let at = self.elaborate(Reach::Position, |work| {
             let at = work.value(at)?;
             let at = initialiser(work, at, Dimension::METRE)?;
             match at.shape.as_slice() {
                 [2] => Ok(at),
+                [3] => {
+                    let help = "in space a row has the force: `out force: N = lambda(support[0])`";
+                    Err(work.fault(
+                        at.span,
+                        "a pin joins bodies of the plane, at a point of 2 components",
+                        help,
+                    ))
+                }
                 _ => Err(work.wrong_shape("a pin", "a point of 2 components", &at, at.span)),
             }
         })?;
         self.stateless(&at)?;
-        let [(first, _), (second, _)] = &joined;
         if first == second {
             let message = format!("the pin `{}` joins `{first}` to itself", name.text);
             let help = "name two bodies, or a body and `ground`";
             return Err(self.fault(name.span, message, help));
         }
-        let joint = Joint { pin: self.dynamics().pins.len(), bodies: [first.clone(), second.clone()] };
-        self.names.define_pin(&name.text, joint);
         let at = at.items.iter().map(|item| item.id).collect();
         self.dynamics().pins.push(Pin { name: full, bodies: [None; 2], joined, at });
         Ok(())

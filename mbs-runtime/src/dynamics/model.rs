@@ -200,6 +200,19 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
     pub(super) fn balanced(
         &self,
         position: &S::Position,
+        at: (R, &State<R, N, S::States>),
+        lambda: &[R; M],
+        solve: impl FnMut(&[R; N]) -> ([R; N], [R; M]),
+    ) -> Result<Balanced<R, N, M>, Failure> {
+        self.balanced_to(STANDING, position, at, lambda, solve)
+    }
+
+    /// The same where `solve` leaves changes of `standing` ε in the multipliers.
+    #[inline(always)]
+    pub(super) fn balanced_to(
+        &self,
+        standing: f64,
+        position: &S::Position,
         (t, y): (R, &State<R, N, S::States>),
         lambda: &[R; M],
         mut solve: impl FnMut(&[R; N]) -> ([R; N], [R; M]),
@@ -209,7 +222,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         for _ in 0..MOST_ITERATIONS {
             force = self.mechanism.force(self.parameters, position, &y.qd, &y.states, &known);
             let (qdd, found) = solve(&force);
-            if !S::FORCE_USES_MULTIPLIERS || self.stands(&known, &found) {
+            if !S::FORCE_USES_MULTIPLIERS || self.stands(&known, &found, standing) {
                 return Ok((qdd, found, force));
             }
             known = found;
@@ -218,15 +231,15 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         Err(Failure::Unbalanced { coordinate, iterations: MOST_ITERATIONS, time: t.to_f64() })
     }
 
-    /// Whether the multipliers have changed by rounding alone; also where they are no numbers.
-    fn stands(&self, before: &[R; M], after: &[R; M]) -> bool {
+    /// Whether the multipliers have changed by rounding alone, `standing` ε of their size; also where they are no numbers.
+    fn stands(&self, before: &[R; M], after: &[R; M], standing: f64) -> bool {
         let zero = R::constant(0.0);
         let (mut change, mut size) = (zero, zero);
         for ((before, after), scale) in before.iter().zip(after).zip(&self.metric.rows) {
             change = change + ((*after - *before) * *scale).abs();
             size = size + (*after * *scale).abs();
         }
-        !(R::constant(STANDING) * R::EPSILON * size).less(change)
+        !(R::constant(standing) * R::EPSILON * size).less(change)
     }
 }
 
@@ -235,4 +248,4 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
 const MOST_ITERATIONS: u32 = 200;
 
 /// Change of the multipliers, in ε of their size, that counts as rounding.
-const STANDING: f64 = 16.0;
+pub(super) const STANDING: f64 = 16.0;

@@ -1,7 +1,7 @@
 //! Penalty at acceleration level: the lecture's method without multipliers.
 
 use super::kkt::System;
-use super::model::{Counts, Formulation, Model, Solved};
+use super::model::{Counts, Formulation, Model, STANDING, Solved};
 use super::vector::State;
 use crate::{Dynamic, Failure, Real};
 
@@ -68,7 +68,9 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Formulation<S
             }
             (qdd, lambda)
         };
-        let (qdd, lambda, force) = model.balanced(&position, (t, y), lambda, solve)?;
+        // λ = α (Φ_q q̈ − …) has the rounding of its terms α times over: friction cannot stand better.
+        let standing = STANDING * self.alpha.max(1.0);
+        let (qdd, lambda, force) = model.balanced_to(standing, &position, (t, y), lambda, solve)?;
         model.check_solved(&qdd, &lambda, &force, &target)?;
         let rate = model.rates(&position, y, qdd, &lambda);
         Ok(Solved { rate, lambda, margin: R::constant(1.0) })

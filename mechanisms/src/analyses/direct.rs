@@ -97,6 +97,8 @@ pub struct Simulated {
     pub counts: Counts,
     /// Steps tried again with a smaller size.
     pub rejected: u32,
+    /// Whether all rows together took the place of independent coordinates, which the mechanism does not have.
+    pub replaced: bool,
     /// What is doubtful about the stabilisation.
     pub doubt: Option<Doubt>,
     /// Why the motion ends early.
@@ -216,7 +218,8 @@ fn by_projection<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
     times: &[f64],
     progress: &mut dyn FnMut(usize),
 ) -> Result<Simulated, Failure> {
-    integrate(mechanism, Projection { stages: Stages::All }, start, steps, times, progress)
+    let found = integrate(mechanism, Projection { stages: Stages::All }, start, steps, times, progress)?;
+    Ok(Simulated { replaced: true, ..found })
 }
 
 fn integrate<S, F, const N: usize, const M: usize>(
@@ -279,7 +282,8 @@ where
     let doubt = run.doubt((run.t() - times.first().copied().unwrap_or(0.0)) / spans as f64);
     motion.dynamics = Some(forces);
     let counts = run.counts();
-    (Simulated { motion, counts, rejected: 0, doubt, failure, elapsed: started.elapsed() }, run)
+    let elapsed = started.elapsed();
+    (Simulated { motion, counts, rejected: 0, replaced: false, doubt, failure, elapsed }, run)
 }
 
 fn push<S, X, const N: usize, const M: usize>(

@@ -4,6 +4,7 @@ use std::time::Duration;
 
 use clap::{Args, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
+use mbs_runtime::Failure;
 use mbs_runtime::dynamics::{Baumgarte, Doubt};
 use mechanisms::analyses::AnyDynamics;
 use mechanisms::analyses::direct::{Approach, Implicit, ImplicitMethod, Simulated, Stabilization, Steps};
@@ -140,6 +141,7 @@ impl Wish {
             |motion, figures| Done { label: preset.label, description: preset.description, motion, figures };
         let fail =
             |reason: String| CommandError::Failed(format!("{}, {}: {reason}", subject.name(), preset.label));
+        self.require_use(subject)?;
         let (times, bar) = (self.times(subject, instance)?, progress(preset.label));
         bar.set_length(times.len() as u64);
         let mut heard = |count: usize| bar.set_position(count as u64);
@@ -161,6 +163,26 @@ impl Wish {
         };
         bar.finish_and_clear();
         found.map(|(motion, figures)| done(motion, figures)).map_err(fail)
+    }
+
+    /// Fails where the command line says what the analysis has no use for.
+    fn require_use(&self, subject: Subject) -> Result<(), CommandError> {
+        let analysis = self.analysis_of(subject);
+        let refuse = |reason: &str| Err(CommandError::Usage(reason.to_string()));
+        match (analysis, self.at, self.guesses.is_empty()) {
+            (Analysis::Linear, Some(_), false) => refuse(
+                "`--at` follows the motion from the text's start; a position of rest alone takes `--guess`",
+            ),
+            (Analysis::Static | Analysis::Linear, _, false)
+            | (Analysis::Linear, _, true)
+            | (_, None, true) => Ok(()),
+            (_, _, false) => {
+                refuse("`--guess` is where the search for rest starts: use `--analysis static` or `linear`")
+            }
+            (_, Some(_), true) => refuse(
+                "`--at` is when small motions are looked at: use `--analysis linear`; a motion ends at `--until`",
+            ),
+        }
     }
 
     fn approach(&self) -> Approach {
@@ -245,7 +267,7 @@ fn inverse(
 }
 
 fn rest(dynamics: &dyn AnyDynamics, guesses: &[(usize, f64)]) -> Found {
-    let motion = dynamics.rest(guesses).map_err(|failure| failure.to_string())?;
+    let motion = dynamics.rest(guesses).map_err(restless)?;
     let mut figures = vec![["iterations".to_string(), motion.iterations[0].to_string()]];
     for coordinate in &motion.coordinates {
         let value = format!("{}{}", table::short(coordinate.q[0]), table::unit(coordinate.unit));
@@ -253,6 +275,18 @@ fn rest(dynamics: &dyn AnyDynamics, guesses: &[(usize, f64)]) -> Found {
     }
     figures.extend(loads(&motion));
     Ok((motion, figures))
+}
+
+/// Why the search for a position of rest failed. To it, stiffness is what mass is to a motion.
+fn restless(failure: Failure) -> String {
+    match failure {
+        Failure::Inertialess { coordinate, .. } => format!(
+            "the search for rest does not know where to go: no force changes as `{0}` (line {1}) moves; start it elsewhere: \
+             `--guess {0}=…`",
+            coordinate.name, coordinate.line
+        ),
+        other => other.to_string(),
+    }
 }
 
 /// Eigenvalues of small motions about the last instant of what was found.
@@ -322,6 +356,16 @@ pub fn balance(found: &Simulated) -> Vec<[String; 2]> {
         pair("smallest margin to singularity", format!("{margin:.3}")),
         pair("time of computation", milliseconds(found.elapsed)),
     ];
+    if found.replaced {
+        let reason =
+            "projection onto all rows together: of rows that may follow from others no blocks are made";
+        figures.push(pair("method", reason.to_string()));
+    }
+    if found.counts.handed_over > 0 {
+        let (handed, all) = (found.counts.handed_over, found.counts.evaluations);
+        let reason = "the independent coordinates hardly determine the others there";
+        figures.push(pair("handed over to projection", format!("{handed} of {all} evaluations: {reason}")));
+    }
     if found.counts.rank_revealing > 0 {
         figures.push(pair("rank-revealing factorizations", found.counts.rank_revealing.to_string()));
     }

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 use mechanisms::csv;
 use mechanisms::facade::{AnyEquations, Motion};
-use mechanisms::registry::{Preset, file_name};
+use mechanisms::registry::{Preset, Usual, file_name};
 use mechanisms::report::{Report, Run, html};
 use mechanisms::target_directory::target_directory;
 
@@ -42,7 +42,7 @@ pub struct Arguments {
     #[arg(long = "guess", value_name = "NAME=VALUE", value_parser = assignment)]
     guesses: Vec<(String, f64)>,
     /// Time (s) of the state that small motions are about, followed there from the start [default: the position of rest]
-    #[arg(long, value_name = "T", value_parser = at_least_zero)]
+    #[arg(long, value_name = "T", value_parser = at_least_zero, allow_negative_numbers = true)]
     at: Option<f64>,
     /// End of the motion (s) [default: one turn, or as long as is worth seeing]
     #[arg(long, value_name = "T", value_parser = above_zero)]
@@ -50,7 +50,7 @@ pub struct Arguments {
     /// Equal steps that the motion is divided into; those of the integrator end there too
     #[arg(long, default_value_t = STEPS, value_parser = steps)]
     steps: usize,
-    /// How a motion from forces stays on its constraints [default: projection, of stiff mechanisms augmented-lagrangian]
+    /// How a motion from forces stays on its constraints [default: projection, of many rows velocity, of stiff mechanisms augmented-lagrangian]
     #[arg(long, value_enum)]
     method: Option<MethodName>,
     /// Longest step of an implicit method (s)
@@ -86,9 +86,10 @@ impl Arguments {
     }
 
     fn wish(&self, subject: Subject) -> Wish {
-        let method = self.method.unwrap_or(match subject.is_stiff() {
-            true => MethodName::AugmentedLagrangian,
-            false => MethodName::Projection,
+        let method = self.method.unwrap_or(match subject.usual() {
+            Usual::Projection => MethodName::Projection,
+            Usual::Velocity => MethodName::Velocity,
+            Usual::AugmentedLagrangian => MethodName::AugmentedLagrangian,
         });
         Wish {
             analysis: self.analysis,

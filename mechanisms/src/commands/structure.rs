@@ -35,9 +35,26 @@ pub fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<(), CommandErro
     for line in sparsity(&report, title).lines() {
         writeln!(out, "{line}")?;
     }
-    writeln!(out, "\nsolved block after block")?;
+    if report.blocks.is_empty() && m > 0 {
+        writeln!(
+            out,
+            "\nsolved together: all {m} rows for what moves on {n} coordinates, by orthogonal factors of any rank; of rows that may \
+             follow from others no square blocks are made"
+        )?;
+    } else {
+        writeln!(out, "\nsolved block after block")?;
+    }
     for (number, block) in report.blocks.iter().enumerate() {
         writeln!(out, "  {}. {}", number + 1, describe(&report, block))?;
+    }
+    let solved: Vec<usize> =
+        report.blocks.iter().flat_map(|block| block.coordinates.iter().copied()).collect();
+    let given: Vec<&str> = (0..n)
+        .filter(|index| !solved.contains(index))
+        .map(|index| report.coordinates[index].name.as_str())
+        .collect();
+    if !given.is_empty() && !report.blocks.is_empty() {
+        writeln!(out, "independent: {}, which forces move", given.join(", "))?;
     }
     if let Some(path) = &arguments.out {
         write_file(path, &picture::structure(&report))?;

@@ -2,7 +2,7 @@
 
 use mechanisms::drawing::Shape;
 use mechanisms::facade::{AnyEquations, AnyMechanism};
-use mechanisms::registry::{self, Card, FREE, FreeCard, Mismatch, Preset};
+use mechanisms::registry::{self, Card, FREE, FreeCard, Mismatch, Preset, Usual};
 
 use super::CommandError;
 
@@ -60,9 +60,12 @@ impl Subject {
         }
     }
 
-    /// Whether its forces are too stiff for explicit steps.
-    pub fn is_stiff(self) -> bool {
-        matches!(self, Subject::Free(card) if card.is_stiff)
+    /// What moves it where the command line says nothing.
+    pub fn usual(self) -> Usual {
+        match self {
+            Subject::Fixed(_) => Usual::Projection,
+            Subject::Free(card) => card.usual,
+        }
     }
 
     pub fn drawing(self) -> &'static [Shape] {

@@ -7,7 +7,7 @@ use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use mechanisms::registry::{ALL, FREE};
 use mechanisms::verify::{
-    DIGITS_STATES, Oracle, STATES, Summary, comparable_by_name, verify_equations, verify_equations_digits,
+    DIGITS_STATES, Oracle, Summary, comparable_by_name, states_of, verify_equations, verify_equations_digits,
 };
 
 use super::{CommandError, positive};
@@ -26,7 +26,7 @@ pub struct Arguments {
     /// Compare with 50-digit arithmetic instead of CasADi
     #[arg(long)]
     digits: bool,
-    /// Random states a mechanism [default: 1000, with --digits 20]
+    /// Random states a mechanism [default: 1000, of more than 24 coordinates fewer, with --digits 20]
     #[arg(long, value_parser = positive)]
     states: Option<usize>,
 }
@@ -43,12 +43,13 @@ pub fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<(), CommandErro
     bar.enable_steady_tick(TICK);
     let oracle = Oracle::new(&|step| bar.set_message(step.to_string()));
     let oracle = oracle.map_err(|error| failed(&bar, error.to_string()))?;
-    let states = arguments.states.unwrap_or(if arguments.digits { DIGITS_STATES } else { STATES });
     let compare = if arguments.digits { verify_equations_digits } else { verify_equations };
     let mut summary = Summary::default();
     for name in names {
         bar.set_message(name.to_owned());
         let mut mechanism = comparable_by_name(name)?;
+        let usual = if arguments.digits { DIGITS_STATES } else { states_of(mechanism.coordinates().len()) };
+        let states = arguments.states.unwrap_or(usual);
         let agreement = compare(mechanism.as_mut(), &oracle, states);
         let agreement = agreement.map_err(|error| failed(&bar, format!("{name}: {error}")))?;
         bar.suspend(|| writeln!(out, "{agreement}"))?;

@@ -33,9 +33,14 @@ pub(crate) fn label(svg: &mut String, x: usize, y: usize, attributes: &str, text
 
 /// Φ_q with rows and columns in the order of solution, each diagonal block in a frame.
 pub fn structure(report: &StructureReport) -> String {
-    let rows: Vec<usize> = report.blocks.iter().flat_map(|block| block.rows.iter().copied()).collect();
-    let columns: Vec<usize> =
+    let mut rows: Vec<usize> = report.blocks.iter().flat_map(|block| block.rows.iter().copied()).collect();
+    let mut columns: Vec<usize> =
         report.blocks.iter().flat_map(|block| block.coordinates.iter().copied()).collect();
+    let solved = columns.len();
+    // Independent coordinates, and rows that no block has.
+    columns
+        .extend((0..report.coordinates.len()).filter(|index| !columns.contains(index)).collect::<Vec<_>>());
+    rows.extend((0..report.rows.len()).filter(|index| !rows.contains(index)).collect::<Vec<_>>());
     let longest =
         |names: &mut dyn Iterator<Item = &String>| names.map(|n| n.chars().count()).max().unwrap_or(0);
     // Eight pixels a letter at 13 pixels' height.
@@ -64,7 +69,14 @@ pub fn structure(report: &StructureReport) -> String {
         "font-size=\"11\"",
         "light: a number; medium: parameters; dark: varies",
     );
-    label(&mut svg, 10, top + side + 42, "font-size=\"11\"", "framed: diagonal blocks, solved downwards");
+    let order = match (report.blocks.is_empty(), solved < columns.len()) {
+        (true, _) => {
+            "rows that may follow from others: all are solved together, by orthogonal factors of any rank"
+        }
+        (false, true) => "framed: diagonal blocks, solved downwards; to the right of them what forces move",
+        (false, false) => "framed: diagonal blocks, solved downwards",
+    };
+    label(&mut svg, 10, top + side + 42, "font-size=\"11\"", order);
     svg + "</svg>\n"
 }
 

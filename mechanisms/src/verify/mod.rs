@@ -32,6 +32,13 @@ use crate::registry::{self, Card, Mismatch};
 /// States a mechanism is compared at unless told otherwise.
 pub const STATES: usize = 1000;
 
+/// Random states beside CasADi for a mechanism of so many coordinates: [`STATES`], and of more than two dozen coordinates fewer, so
+/// that as many entries of matrices are compared and both sides can hold them.
+pub fn states_of(coordinates: usize) -> usize {
+    const ENTRIES: usize = STATES * 24 * 24;
+    (ENTRIES / coordinates.pow(2).max(1)).clamp(1, STATES)
+}
+
 /// States a mechanism is compared at in 50 digits unless told otherwise: each takes thousands of times longer.
 pub const DIGITS_STATES: usize = 20;
 

@@ -1,0 +1,106 @@
+//! Bricard's mechanism as what it is: a threefold-symmetric loop of one degree of freedom, with two angles for six joints.
+#![forbid(unsafe_code)]
+
+use mbs_runtime::dynamics::{DormandPrince8, Explicit, Projection, Simulation, Stages, Tolerance};
+use mechanisms::bricard::Bricard;
+
+type Vector = [f64; 3];
+
+fn cross([a, b, c]: Vector, [x, y, z]: Vector) -> Vector {
+    [b * z - c * y, c * x - a * z, a * y - b * x]
+}
+
+fn dot(a: Vector, b: Vector) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+/// a + k b.
+fn plus(a: Vector, k: f64, b: Vector) -> Vector {
+    core::array::from_fn(|i| a[i] + k * b[i])
+}
+
+/// Axes of a body: the images of x, y and z.
+type Axes = [Vector; 3];
+
+/// The body's own vector in the ground.
+fn seen(axes: Axes, [x, y, z]: Vector) -> Vector {
+    plus(plus(plus([0.0; 3], x, axes[0]), y, axes[1]), z, axes[2])
+}
+
+/// Axes turned by `angle` about their own axis `about`.
+fn turned(axes: Axes, about: usize, angle: f64) -> Axes {
+    let (sine, cosine) = angle.sin_cos();
+    let (next, last) = ((about + 1) % 3, (about + 2) % 3);
+    let mut found = axes;
+    found[next] = plus(plus([0.0; 3], cosine, axes[next]), sine, axes[last]);
+    found[last] = plus(plus([0.0; 3], cosine, axes[last]), -sine, axes[next]);
+    found
+}
+
+/// The last point of the open chain of five rods from P1, with the energy (J), for joints that turn by a and b in turn, at their rates.
+fn chain([a, b]: [f64; 2], [a_d, b_d]: [f64; 2]) -> (Vector, f64) {
+    /// Axis of the joint before each rod, and the rod at the start.
+    const RODS: [(usize, Vector); 5] = [
+        (1, [1.0, 0.0, 0.0]),
+        (2, [0.0, -1.0, 0.0]),
+        (0, [0.0, 0.0, 1.0]),
+        (1, [-1.0, 0.0, 0.0]),
+        (2, [0.0, 1.0, 0.0]),
+    ];
+    let (thin, long) = (0.01 / 6.0, 1.01 / 12.0);
+    let mut axes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    let (mut point, mut velocity, mut spin, mut energy) = ([0.0; 3], [0.0; 3], [0.0; 3], 0.0);
+    for (index, (about, rod)) in RODS.into_iter().enumerate() {
+        let (angle, rate) = if index % 2 == 0 { (a, a_d) } else { (b, b_d) };
+        spin = plus(spin, rate, axes[about]);
+        axes = turned(axes, about, angle);
+        let rod = seen(axes, rod);
+        let along = cross(spin, rod);
+        let middle = plus(velocity, 0.5, along);
+        let turning = long * dot(spin, spin) + (thin - long) * dot(spin, rod).powi(2);
+        energy += 0.5 * dot(middle, middle) + 0.5 * turning + 9.81 * plus(point, 0.5, rod)[1];
+        point = plus(point, 1.0, rod);
+        velocity = plus(velocity, 1.0, along);
+    }
+    (point, energy)
+}
+
+#[test]
+fn bricards_loop_moves_as_one_degree_of_freedom_with_two_angles() {
+    /// Distance of the loop's ends (m), of the angles from their relation; energy, of the largest weight's; angle a step (rad).
+    const EXACT: f64 = 1e-9;
+    const STEP: f64 = 0.01;
+    let method = Explicit::new(DormandPrince8, Projection { stages: Stages::All });
+    let run = Simulation::start_from_text(Bricard::default(), method, 0.0).expect("it starts");
+    let mut run = run.with_tolerance(Tolerance::new(1e-11));
+    let mut worst = [0.0_f64; 4];
+    let mut before = (0.0, 0.0, run.qdd()[0]);
+    let (start, mut swing) = (chain([0.0; 2], [0.0; 2]).1, 0.0_f64);
+    for step in 1..=1000_u32 {
+        run.advance_to(STEP * f64::from(step)).expect("it moves");
+        // The last rod turns against the last joint of the chain.
+        let ([a, b], [a_d, b_d]) = ([run.q()[0], -run.q()[1]], [run.qd()[0], -run.qd()[1]]);
+        let (end, energy) = chain([a, b], [a_d, b_d]);
+        // Chen, You & Tarnai 2005: of right angles between the axes this is left of the closure.
+        let relation = a.sin() + b.sin() + a.sin() * b.sin();
+        let slope = a_d * a.cos() * (1.0 + b.sin()) + b_d * b.cos() * (1.0 + a.sin());
+        // Rates are those of the angle: Hermite's rule.
+        let now = (a, a_d, run.qdd()[0]);
+        let passed = STEP / 2.0 * (before.1 + now.1) + STEP * STEP / 12.0 * (before.2 - now.2);
+        let found = [
+            plus(end, -1.0, [0.0, 0.0, 1.0]).into_iter().fold(0.0, |most: f64, x| most.max(x.abs())),
+            relation.abs().max(slope.abs()),
+            (energy - start).abs() / 9.81,
+            (now.0 - before.0 - passed).abs(),
+        ];
+        worst.iter_mut().zip(found).for_each(|(worst, found)| *worst = worst.max(found));
+        swing = swing.max(a.abs());
+        before = now;
+    }
+    let [ends, relation, energy, rate] = worst;
+    println!(
+        "bricard, by two angles: ends {ends:.1e}, relation {relation:.1e}, energy {energy:.1e}, rate {rate:.1e} of {EXACT:e}; swings to \
+         {swing:.3} rad"
+    );
+    assert!(worst.iter().all(|worst| *worst < EXACT) && swing > 0.5, "{worst:?}, {swing}");
+}
