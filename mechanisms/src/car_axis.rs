@@ -101,7 +101,7 @@ mod tests {
         let multipliers = forces.multipliers.iter().map(|multiplier| &multiplier.value);
         let groups: [Vec<&Vec<f64>>; 3] = [positions.collect(), velocities.collect(), multipliers.collect()];
         let (mut first, mut sign) = (1, 1.0);
-        for (columns, bound) in groups.iter().zip(BOUNDS) {
+        for ((columns, bound), name) in groups.iter().zip(BOUNDS).zip(["q", "q̇", "λ"]) {
             // The multipliers of the start are not in the table, the others stand on the other side of the equation.
             let rows = reference.iter().enumerate().skip(usize::from(columns.len() == 2));
             let entries = rows.flat_map(|(row, values)| {
@@ -110,7 +110,7 @@ mod tests {
             let entries: Vec<(f64, f64)> = entries.collect();
             let largest = entries.iter().fold(0.0, |largest: f64, (_, value)| largest.max(value.abs()));
             let error = entries.iter().fold(0.0, |error: f64, (a, b)| error.max((a - b).abs()));
-            println!("largest error {:.1e} of {largest}", error / largest);
+            println!("car axis: {name} {:.1e} of {bound:e}", error / largest);
             assert!(error < bound * largest, "{error:e} of {largest}");
             first += columns.len();
             sign = if first == 9 { -1.0 } else { 1.0 };

@@ -174,6 +174,7 @@ mod tests {
     fn assert_agree(motion: &Motion, torque: impl Fn(usize) -> f64) {
         let expected: Vec<Vec<f64>> = (0..motion.time.len()).map(|k| sums(motion, k)).collect();
         newton_euler::assert_agree(
+            "four-bar with mass",
             motion,
             &["bearing_force", "crank_pin", "rocker_pin", "pivot_force"],
             torque,
@@ -190,7 +191,7 @@ mod tests {
         let torque = load(&motion, "motor_torque").to_vec();
         assert_agree(&motion, |k| torque[k]);
         // The motor's power is the change of energy; per radian, its torque.
-        assert_torque_is_the_slope_of_the_energy(&motion, &torque);
+        assert_torque_is_the_slope_of_the_energy("four-bar with mass", &motion, &torque);
     }
 
     #[test]
@@ -200,6 +201,10 @@ mod tests {
             assert_agree(&found.motion, |_| tau);
             let forces = found.motion.dynamics.as_ref().expect("it has masses");
             let most = |values: &[f64]| values.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
+            println!(
+                "four-bar with mass: energy, of the largest kinetic {:.1e} of 1e-9",
+                most(&forces.defect) / most(&forces.kinetic)
+            );
             assert!(most(&forces.defect) < 1e-9 * most(&forces.kinetic), "{:e}", most(&forces.defect));
             assert!(most(&found.motion.closure) < 1e-13 && most(&forces.multipliers[0].value) < 1e-9);
         }

@@ -103,28 +103,40 @@ fn eliminated(mut rows: Vec<Vec<f64>>) -> Vec<f64> {
 }
 
 /// Forces in pins and a torque at every instant of a motion are `expected`: two components a pin in the order of `pins`, then
-/// the torque; relative to the largest.
+/// the torque; relative to the largest. Prints the largest difference behind `name`.
 #[track_caller]
-pub fn assert_agree(motion: &Motion, pins: &[&str], torque: impl Fn(usize) -> f64, expected: &[Vec<f64>]) {
+pub fn assert_agree(
+    name: &str,
+    motion: &Motion,
+    pins: &[&str],
+    torque: impl Fn(usize) -> f64,
+    expected: &[Vec<f64>],
+) {
     let pins: Vec<&[f64]> =
         pins.iter().flat_map(|pin| [0, 1].map(|i| load(motion, &format!("{pin}.{i}")))).collect();
     let size = expected.iter().flatten().fold(0.0, |size: f64, force| size.max(force.abs()));
+    let mut worst = 0.0_f64;
     for (k, expected) in expected.iter().enumerate() {
         let found = pins.iter().map(|pin| pin[k]).chain([torque(k)]);
         assert_eq!(expected.len(), pins.len() + 1);
         for (found, expected) in found.zip(expected) {
+            worst = worst.max((found - expected).abs() / size);
             assert!((found - expected).abs() < BOUND * size, "instant {k}: {found} instead of {expected}");
         }
     }
+    println!("{name}: forces of pins and torque beside Newton's and Euler's sums {worst:.1e} of {BOUND:e}");
 }
 
 /// The torque of a motor that drives a motion of one turn, periodic, is the slope of the energy over its angle.
 #[track_caller]
-pub fn assert_torque_is_the_slope_of_the_energy(motion: &Motion, torque: &[f64]) {
+pub fn assert_torque_is_the_slope_of_the_energy(name: &str, motion: &Motion, torque: &[f64]) {
     let moved = motion.dynamics.as_ref().expect("it has masses");
     let energy: Vec<f64> = moved.kinetic.iter().zip(&moved.potential).map(|(t, v)| t + v).collect();
     let size = torque.iter().fold(0.0, |size: f64, torque| size.max(torque.abs()));
+    let mut worst = 0.0_f64;
     for (slope, torque) in periodic_slope(&energy).iter().zip(torque) {
+        worst = worst.max((slope - torque).abs() / size);
         assert!((slope - torque).abs() < BOUND * size, "{slope} instead of {torque}");
     }
+    println!("{name}: effort beside the slope of the energy {worst:.1e} of {BOUND:e}");
 }

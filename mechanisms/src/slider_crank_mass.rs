@@ -160,7 +160,13 @@ mod tests {
     #[track_caller]
     fn assert_agree(motion: &Motion, torque: impl Fn(usize) -> f64) {
         let expected: Vec<Vec<f64>> = (0..motion.time.len()).map(|k| sums(motion, k)).collect();
-        newton_euler::assert_agree(motion, &["bearing_force", "crank_pin", "piston_pin"], torque, &expected);
+        newton_euler::assert_agree(
+            "slider-crank with mass",
+            motion,
+            &["bearing_force", "crank_pin", "piston_pin"],
+            torque,
+            &expected,
+        );
     }
 
     #[test]
@@ -172,7 +178,7 @@ mod tests {
         let torque = load(&motion, "motor_torque").to_vec();
         assert_agree(&motion, |k| torque[k]);
         // The motor's power is the change of energy; per radian, its torque.
-        assert_torque_is_the_slope_of_the_energy(&motion, &torque);
+        assert_torque_is_the_slope_of_the_energy("slider-crank with mass", &motion, &torque);
         // Over a turn at constant speed the motor does no work.
         let size = torque.iter().fold(0.0, |size: f64, torque| size.max(torque.abs()));
         let mean = torque[1..].iter().sum::<f64>() / 180.0;
@@ -196,6 +202,10 @@ mod tests {
             assert_agree(&found.motion, |_| tau);
             let forces = found.motion.dynamics.as_ref().expect("it has masses");
             let most = |values: &[f64]| values.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
+            println!(
+                "slider-crank with mass: energy, of the largest kinetic {:.1e} of 1e-9",
+                most(&forces.defect) / most(&forces.kinetic)
+            );
             assert!(most(&forces.defect) < 1e-9 * most(&forces.kinetic), "{:e}", most(&forces.defect));
             // The work is the torque times the angle.
             let theta = &found.motion.coordinates[0].q;

@@ -124,7 +124,10 @@ fn fall<S: Dynamic<f64, N, M> + Default, const N: usize, const M: usize>() -> Ve
         most = most.max(run.balance().energy.kinetic);
         defect = defect.max(run.balance().defect.abs());
     }
-    println!("energy not accounted for: {:.1e} of {most:.3} J", defect / most);
+    println!(
+        "four-bar with mass, {N} coordinates: energy, of the largest kinetic {:.1e} of {BOUND:e}",
+        defect / most
+    );
     assert!(defect < BOUND * most, "{defect:e} of {most}");
     samples
 }
@@ -142,7 +145,9 @@ fn the_fall_and_its_forces_are_the_same_in_all_coordinates() {
             place = a.iter().zip(b).fold(place, |most, (a, b)| most.max((a - b).abs()));
             force = left.iter().zip(right).fold(force, |most, (a, b)| most.max((a - b).abs()));
         }
-        println!("{name}: places differ by {place:.1e} m, forces by {force:.1e} N");
+        println!(
+            "four-bar with mass, {name}: places {place:.1e} m of {BOUND:e}, forces {force:.1e} N of {FORCE_BOUND:e}"
+        );
         assert!(place < BOUND && force < FORCE_BOUND, "{name}: {place:e}, {force:e}");
     }
 }

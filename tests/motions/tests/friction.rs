@@ -68,7 +68,7 @@ fn a_block_on_a_belt_sticks_then_slides_as_the_law_says() {
     }
     let defect = run.balance().defect;
     println!(
-        "belt: {error:.1e} m, m/s of {EXACT:e} beside the same law, {apart:.1e} m from Coulomb's, energy {defect:.1e} J"
+        "friction, belt: {error:.1e} m, m/s of {EXACT:e} beside the same law, {apart:.1e} m from Coulomb's, energy {defect:.1e} J"
     );
     assert!(error < EXACT && defect.abs() < EXACT, "{error:e} {defect:e}");
     // Smoothing lets the block creep: a thousandth of a metre a second for as long as it sticks.
@@ -190,15 +190,15 @@ fn friction_with_a_multiplier_is_friction_with_the_force_it_stands_for() {
         };
         let projected = Explicit::new(RungeKutta4, Projection::default());
         let projected = errors(grounded(block, projected, 1000).expect("it slides"));
-        let lagrangian = errors(grounded(block, AugmentedLagrangian, 1000).expect("it slides"));
+        // Of order 2, for coarse steps: at small ones its penalty, 4e4 m/h², times the rounding of the row moves the normal force.
+        let lagrangian = errors(grounded(block, AugmentedLagrangian, 100).expect("it slides"));
         let penalty = Explicit::new(RungeKutta4, Penalty::default());
         let penalty = errors(grounded(block, penalty, 1000).expect("it slides"));
         println!(
             "friction, multiplier as N: {projected:?} of {EXACT:e}, implicit {lagrangian:?}, penalty {penalty:?}"
         );
         assert!(projected.iter().all(|error| *error < EXACT), "{projected:?}");
-        // 4 m/h² times what rounding leaves of a place.
-        assert!(lagrangian[0] < 1e-6 && lagrangian[1] < 1e-3, "{lagrangian:?}");
+        assert!(lagrangian.iter().all(|error| *error < 1e-4), "{lagrangian:?}");
         // A penalty of 1e7 is a ground that gives way by as much.
         assert!(penalty.iter().all(|error| *error < 1e-6), "{penalty:?}");
     }

@@ -2,7 +2,7 @@
 
 use std::io::{self, BufRead, Write};
 
-use mbs_runtime::{Mechanism, OutputValue};
+use mbs_runtime::{Dynamic, Mechanism, Motion, OutputValue};
 use mechanisms::facade::Facade;
 use mechanisms::verify::compare::compare_digits;
 use mechanisms::verify::{Oracle, StandIn, Summary, generated_definition};
@@ -17,7 +17,8 @@ fn main() {
     }
 }
 
-/// A line a state: the number of the text or scene, and the bits of q, q̇, q̈, t, variables; a line of bits comes back.
+/// A line a state: the number of the text or scene, and the bits of q, q̇, q̈, t, λ and states of a text with masses, variables; a
+/// line of bits comes back.
 fn answer() {
     let mut out = io::BufWriter::new(io::stdout().lock());
     for line in io::stdin().lock().lines() {
@@ -40,18 +41,78 @@ fn of_scene(scene: usize, numbers: &[f64]) -> Vec<f64> {
     }
 }
 
-/// Every function in the order of the oracle.
-fn values<S: Mechanism<f64, N, M> + Default, const N: usize, const M: usize>(numbers: &[f64]) -> Vec<f64> {
-    let array = |index: usize| <[f64; N]>::try_from(&numbers[index * N..][..N]).expect("N numbers");
-    let (q, qd, qdd, t) = (array(0), array(1), array(2), numbers[3 * N]);
+/// The numbers of a state.
+struct Numbers<'a, const N: usize> {
+    q: [f64; N],
+    qd: [f64; N],
+    qdd: [f64; N],
+    t: f64,
+    rest: &'a [f64],
+}
+
+impl<'a, const N: usize> Numbers<'a, N> {
+    fn of(numbers: &'a [f64]) -> Self {
+        let array = |index: usize| <[f64; N]>::try_from(&numbers[index * N..][..N]).expect("N numbers");
+        Numbers { q: array(0), qd: array(1), qdd: array(2), t: numbers[3 * N], rest: &numbers[3 * N + 1..] }
+    }
+}
+
+fn set<S: Mechanism<f64, N, M> + Default, const N: usize, const M: usize>(variables: &[f64]) -> S {
     let mut mechanism = S::default();
-    for (index, value) in numbers[3 * N + 1..].iter().enumerate() {
+    for (index, value) in variables.iter().enumerate() {
         assert!(mechanism.set(index, *value), "variable {index}");
     }
+    mechanism
+}
+
+fn values<S: Mechanism<f64, N, M> + Default, const N: usize, const M: usize>(numbers: &[f64]) -> Vec<f64> {
+    let numbers = Numbers::of(numbers);
+    kinematics::<S, N, M>(&set(numbers.rest), &numbers)
+}
+
+/// Those of a text with masses.
+fn with_masses<S, const N: usize, const M: usize>(numbers: &[f64]) -> Vec<f64>
+where
+    S: Dynamic<f64, N, M> + Default,
+{
+    let numbers = Numbers::<N>::of(numbers);
+    let (lambda, rest) = numbers.rest.split_first_chunk::<M>().expect("M multipliers");
+    let (states, variables) = rest.split_at(S::STATES.len());
+    let mechanism: S = set(variables);
+    let p = mechanism.parameters();
+    let mut z = mechanism.start_states(&p);
+    z.as_mut().copy_from_slice(states);
+    let Numbers { q, qd, qdd, t, .. } = &numbers;
+    let here = mechanism.position(&p, q, *t);
+    let energy = mechanism.energy(&p, &here, qd);
+    let motion = Motion { qd, qdd, lambda, states: &z };
+    [
+        &kinematics::<S, N, M>(&mechanism, &numbers)[..],
+        mechanism.mass(&p, &here).as_flattened(),
+        &mechanism.mass_times(&p, &here, qdd),
+        &mechanism.force(&p, &here, qd, &z, lambda),
+        &mechanism.reaction(&p, &here, lambda),
+        mechanism.force_q(&p, &here, qd, &z, lambda).as_flattened(),
+        mechanism.force_qd(&p, &here, qd, &z, lambda).as_flattened(),
+        mechanism.mass_times_q(&p, &here, qdd).as_flattened(),
+        mechanism.reaction_q(&p, &here, lambda).as_flattened(),
+        &[energy.kinetic, energy.potential],
+        mechanism.powers(&p, &here, qd, &z, lambda).as_ref(),
+        mechanism.state_rates(&p, &here, qd, &z, lambda).as_ref(),
+        mechanism.loads(&p, &here, &motion).as_ref(),
+    ]
+    .concat()
+}
+
+/// Every function of the kinematics in the order of the oracle.
+fn kinematics<S: Mechanism<f64, N, M>, const N: usize, const M: usize>(
+    mechanism: &S,
+    Numbers { q, qd, qdd, t, .. }: &Numbers<'_, N>,
+) -> Vec<f64> {
     let parameters = mechanism.parameters();
-    let position = mechanism.position(&parameters, &q, t);
+    let position = mechanism.position(&parameters, q, *t);
     let branches = mechanism.branches(&parameters, &position);
-    let outputs = mechanism.outputs(&parameters, &position, &qd, &qdd);
+    let outputs = mechanism.outputs(&parameters, &position, qd, qdd);
     let three = |y: &OutputValue<f64>| [Some(y.value), y.rate, y.acceleration].map(|x| x.unwrap_or(f64::NAN));
     let outputs: Vec<[f64; 3]> = outputs.as_ref().iter().map(three).collect();
     [
@@ -59,8 +120,8 @@ fn values<S: Mechanism<f64, N, M> + Default, const N: usize, const M: usize>(num
         mechanism.phi_q(&parameters, &position).as_flattened(),
         &mechanism.phi_t(&parameters, &position),
         &mechanism.phi_tt(&parameters, &position),
-        &mechanism.phi_qt_qd(&parameters, &position, &qd),
-        &mechanism.gamma(&parameters, &position, &qd),
+        &mechanism.phi_qt_qd(&parameters, &position, qd),
+        &mechanism.gamma(&parameters, &position, qd),
         branches.as_ref(),
         outputs.as_flattened(),
     ]
