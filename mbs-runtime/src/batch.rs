@@ -4,7 +4,7 @@ use core::array::from_fn;
 
 use crate::diagnosis::Statistics;
 use crate::lanes::LaneMask;
-use crate::trial::{Start, Trial};
+use crate::trial::{Start, Trial, weights};
 use crate::{Failure, Kinematic, Lanes, Mechanism, Real, Scalar, Stepper};
 
 /// `L` mechanisms of one text, a lane each, each with its own design, time, state and failures.
@@ -21,6 +21,8 @@ where
 {
     mechanism: S,
     parameters: S::Parameters,
+    /// Reciprocals of the coordinates' scales.
+    weights: [Lanes<R, L>; N],
     t: Lanes<R, L>,
     q: [Lanes<R, L>; N],
     qd: [Lanes<R, L>; N],
@@ -85,7 +87,9 @@ where
         let steppers = assembled.map(|result| result.unwrap_or_else(|_| first.clone()));
         let (q, qd, qdd) = ([zero; N], [zero; N], [zero; N]);
         let (margin, notes, waits) = (zero, Notes::none(), LaneMask::new([false; L]));
-        let mut batch = Batch { mechanism, parameters, t: zero, q, qd, qdd, margin, notes, waits, steppers };
+        let weights = weights(&mechanism.coordinate_scales(&parameters));
+        let mut batch =
+            Batch { mechanism, parameters, weights, t: zero, q, qd, qdd, margin, notes, waits, steppers };
         (0..L).for_each(|lane| batch.gather(lane));
         Ok(batch)
     }
@@ -98,12 +102,14 @@ where
         if !S::PHASES.is_empty() {
             return from_fn(|lane| self.alone(lane, Lanes(t).lane(lane)));
         }
-        let Batch { mechanism, parameters, q, qd, qdd, margin, .. } = &*self;
-        let start = Start { t: self.t, q, qd, qdd, margin: *margin };
+        let Batch { mechanism, parameters, weights, q, qd, qdd, margin, .. } = &*self;
+        let start = Start { t: self.t, q, qd, qdd, margin: *margin, weights };
         let trial = Trial::of(mechanism, parameters, &start, Lanes(t));
         let plain = trial.plain & !self.waits;
         if !Lanes::<R, L>::all(plain) {
-            return self.apart(&trial, plain, t);
+            // The address of a copy, so that the trial itself stays in registers.
+            let doubtful = trial;
+            return self.apart(&doubtful, plain, t);
         }
         self.notes = self.notes.after(&trial, self.margin, Lanes(t) - self.t);
         (self.t, self.q, self.qd, self.qdd) = (Lanes(t), trial.q, trial.qd, trial.qdd);
@@ -141,6 +147,7 @@ where
     pub fn change<X>(&mut self, change: impl FnOnce(&mut S) -> X) -> X {
         let result = change(&mut self.mechanism);
         self.parameters = self.mechanism.parameters();
+        self.weights = weights(&self.mechanism.coordinate_scales(&self.parameters));
         for (lane, stepper) in self.steppers.iter_mut().enumerate() {
             stepper.change(|mechanism| *mechanism = self.mechanism.lane(lane));
         }

@@ -4,7 +4,7 @@ use crate::diagnosis::Statistics;
 use crate::instant::{Before, Found, REGULAR_ZONE, Rates};
 use crate::kinematics::{next_position, solve_with_position, time_failure, variable_failure};
 use crate::path::{Way, displaced, is_near};
-use crate::trial::{Start, Trial};
+use crate::trial::{Start, Trial, weights};
 use crate::{Assembled, Failure, Kinematic, Mechanism, Real, Sweep, assemble};
 
 /// A mechanism with its state. It owns everything, allocates nothing, and a failed call leaves it as it was.
@@ -110,7 +110,8 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
         // Rows that may contradict each other are always looked at.
         if M == N && self.state.is_regular() && !self.waits() {
             let State { q, qd, qdd, margin, .. } = &self.state;
-            let start = Start { t: self.state.t, q, qd, qdd, margin: *margin };
+            let weights = &weights(&self.mechanism.coordinate_scales(&self.parameters));
+            let start = Start { t: self.state.t, q, qd, qdd, margin: *margin, weights };
             let trial = Trial::of(&self.mechanism, &self.parameters, &start, t);
             if trial.plain {
                 self.state.follow(&trial, t);

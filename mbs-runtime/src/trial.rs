@@ -1,6 +1,6 @@
 //! A step as it goes next to a regular position: straight on, with one decision at the end.
 
-use crate::diagnosis::{index, largest};
+use crate::diagnosis::index;
 use crate::instant::REGULAR_ZONE;
 use crate::kinematics::COARSEST_RESOLUTION;
 use crate::path::{LARGEST_APPROACH, LARGEST_SECOND_ORDER_TERM};
@@ -14,12 +14,15 @@ pub(crate) struct Start<'a, T, const N: usize> {
     pub qd: &'a [T; N],
     pub qdd: &'a [T; N],
     pub margin: T,
+    /// Reciprocals of the coordinates' scales in the reference metric.
+    pub weights: &'a [T; N],
 }
 
 /// What a step came to.
 ///
 /// No address of what stands here is given away on the way: so it stays in registers, and in the state that it becomes every
 /// number is written once.
+#[derive(Clone, Copy)]
 pub(crate) struct Trial<T: Scalar, const N: usize> {
     pub q: [T; N],
     pub qd: [T; N],
@@ -57,23 +60,24 @@ impl<T: Scalar, const N: usize> Trial<T, N> {
         let (factors, margin) = mechanism.factorize(parameters, &position);
         let qd = mechanism.solve_linear(&factors, &mechanism.phi_t(parameters, &position).map(|rate| -rate));
         let qdd = mechanism.solve_linear(&factors, &mechanism.gamma(parameters, &position, &qd));
-        let mut way = q;
-        for ((way, start), scale) in way.iter_mut().zip(&prediction).zip(&scales) {
-            *way = (*way - *start) * (T::constant(1.0) / *scale);
+        let (mut way, mut extent) = (q, q);
+        for (((way, extent), predicted), weight) in
+            way.iter_mut().zip(&mut extent).zip(&prediction).zip(start.weights)
+        {
+            *way = ((*way - *predicted) * *weight).abs();
+            *extent = extent.abs() * *weight;
         }
-        let correction = largest(&way);
+        let mut changes = qd;
+        for (change, acceleration) in changes.iter_mut().zip(&qdd) {
+            *change = *change + *acceleration;
+        }
+        let correction = in_four_parts(&way, T::max);
+        let (size, sum) = (in_four_parts(&extent, T::add), in_four_parts(&changes, T::add));
         let zone = T::constant(REGULAR_ZONE);
-        // Written so that NaN is not plain.
-        let mut plain = zone.less(margin.value) & zone.less(start.margin);
+        // Written so that NaN is not plain. A sum is finite and small where its terms are; where it is not, a careful step
+        // looks at them one by one.
+        let mut plain = zone.less(margin.value) & zone.less(start.margin) & solver.closed;
         plain = plain & correction.less(T::constant(LARGEST_APPROACH) * margin.value);
-        // A sum is finite and small where its terms are; where it is not, a careful step looks at them one by one.
-        let (mut size, mut sum) = (T::constant(0.0), T::constant(0.0));
-        for (coordinate, scale) in q.iter().zip(&scales) {
-            size = size + coordinate.abs() * (T::constant(1.0) / *scale);
-        }
-        for (rate, acceleration) in qd.iter().zip(&qdd) {
-            sum = sum + (*rate + *acceleration);
-        }
         plain = plain & size.less(T::constant(COARSEST_RESOLUTION / T::Real::EPSILON.to_f64()));
         plain = plain & sum.is_finite();
         for (index, branch) in mechanism.branches(parameters, &position).as_ref().iter().enumerate() {
@@ -94,7 +98,7 @@ impl<T: Scalar, const N: usize> Trial<T, N> {
             residual: solver.ratio,
             row: solver.row,
             evaluations: solver.evaluations,
-            plain: plain & solver.closed,
+            plain,
         }
     }
 
@@ -160,6 +164,27 @@ impl<T: Scalar, const N: usize> Start<'_, T, N> {
         }
         predicted
     }
+}
+
+/// All `values` put together by `operation`, in four parts that need not wait for each other; from 0 on.
+#[inline(always)]
+fn in_four_parts<T: Scalar, const N: usize>(values: &[T; N], operation: impl Fn(T, T) -> T) -> T {
+    let mut parts = [T::constant(0.0); 4];
+    for (index, value) in values.iter().enumerate() {
+        parts[index % 4] = operation(parts[index % 4], *value);
+    }
+    let [a, b, c, d] = parts;
+    operation(operation(a, b), operation(c, d))
+}
+
+/// Reciprocals of scales.
+#[inline(always)]
+pub(crate) fn weights<T: Scalar, const N: usize>(scales: &[T; N]) -> [T; N] {
+    let mut weights = *scales;
+    for weight in &mut weights {
+        *weight = T::constant(1.0) / *weight;
+    }
+    weights
 }
 
 /// Whether the second-order term of a coordinate of this scale is small enough.
