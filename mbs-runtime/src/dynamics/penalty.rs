@@ -9,7 +9,8 @@ use crate::{Dynamic, Failure, Real};
 ///
 /// To show what a penalty is, not to compute with: the constraints are springs of finite stiffness, so the motion is that
 /// of another mechanism, wrong by about 1/α; a large α costs the digits that it gains, and at singular positions an
-/// explicit integrator with it is wrong at nearly every step size. Redundant rows need no care.
+/// explicit integrator with it is wrong at nearly every step size. Redundant rows need no care. Forces that depend on the multipliers
+/// stand to the digits that α leaves of these.
 /// Source: Bayo, García de Jalón & Serna 1988; García de Jalón & Bayo 1994, §5.1.4.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Penalty {
