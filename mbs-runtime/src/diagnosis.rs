@@ -35,6 +35,12 @@ pub(crate) fn required<T: Scalar, const K: usize, const M: usize>(
     required
 }
 
+/// The part of [`required`] that no position changes: ε 64 ρ, what rounding leaves of the row's own terms.
+#[inline(always)]
+pub(crate) fn own_rounding<T: Scalar>(row_scale: T) -> T {
+    T::splat(T::Real::EPSILON) * (T::constant(TERM_ROUNDINGS) * row_scale)
+}
+
 /// What coordinates outside the block may add to [`required`]: 4 ε e Σⱼ |Jᵢⱼ| sⱼ with the extent e of all of q.
 ///
 /// In relative coordinates a row of the block sees ψ1 + ψ2: its rounding is that of ψ1, which may be turns away
@@ -99,6 +105,8 @@ impl<T: Scalar> Worst<T> {
     }
 
     /// The worst row of a block. A NaN is worse than any number, and the first one is kept.
+    ///
+    /// A residual within its row's [`own_rounding`] is measured by that: whether it is asks for no Jacobian.
     #[inline(always)]
     pub(crate) fn of_block<const K: usize, const M: usize>(
         block: &Block<T, K, M>,
@@ -108,13 +116,16 @@ impl<T: Scalar> Worst<T> {
         let zero = T::constant(0.0);
         let (mut ratio, mut residual, mut tolerance) = (zero, zero, zero);
         let mut index = T::constant(f64::from(block.rows.first().copied().unwrap_or(0)));
-        for ((r, r_tolerance), row) in residuals.iter().zip(required).zip(block.rows) {
-            let r_ratio = r.abs() / *r_tolerance;
+        let rows = block.rows.iter().zip(&block.row_scales);
+        for ((r, r_required), (row, scale)) in residuals.iter().zip(required).zip(rows) {
+            let own = own_rounding(*scale);
+            let r_tolerance = T::select(r.abs().less(own), own, *r_required);
+            let r_ratio = r.abs() / r_tolerance;
             let worse = ratio.less(r_ratio) | (!r_ratio.is_finite() & ratio.is_finite());
             ratio = T::select(worse, r_ratio, ratio);
             residual = T::select(worse, r.abs(), residual);
-            tolerance = T::select(worse, *r_tolerance, tolerance);
-            index = T::select(worse, T::constant(f64::from(row)), index);
+            tolerance = T::select(worse, r_tolerance, tolerance);
+            index = T::select(worse, T::constant(f64::from(*row)), index);
         }
         Worst { ratio, residual, required: tolerance, row: index }
     }
@@ -176,8 +187,10 @@ impl<T: Scalar> Diagnosis<T> {
         required: &[T; K],
     ) {
         self.evaluations = self.evaluations.max(evaluations);
-        for ((residual, required), row) in residuals.iter().zip(required).zip(block.rows) {
-            let (residual, required, row) = (residual.abs(), *required, T::constant(f64::from(row)));
+        let rows = block.rows.iter().zip(&block.row_scales);
+        for ((residual, required), (row, scale)) in residuals.iter().zip(required).zip(rows) {
+            let (residual, own, row) = (residual.abs(), own_rounding(*scale), T::constant(f64::from(*row)));
+            let required = T::select(residual.less(own), own, *required);
             // Products for quotients, of which only the last one counts.
             let worse = (self.close.residual * required).less(residual * self.close.required);
             let ratio = self.close.ratio;
@@ -216,7 +229,8 @@ pub struct Statistics {
     pub evaluations: u32,
     /// Whether Newton's method alone did not do.
     pub fallback: bool,
-    /// Largest |residual| over its tolerance, at most 1; of the rows that are solved for, not assigned.
+    /// Largest |residual| over its tolerance, at most 1; of the rows that are solved for, not assigned. Where it is within
+    /// ε 64 ρ, what rounding leaves of the row's own terms, that is the tolerance.
     pub residual: f64,
     /// Index in Φ of the row that holds it.
     pub row: u16,

@@ -1,8 +1,8 @@
 //! Newton's method as it goes next to a regular position: nothing is asked on the way, everything at its end.
 
-use crate::diagnosis::{TERM_ROUNDINGS, required};
+use crate::diagnosis::{own_rounding, required};
 use crate::newton::select;
-use crate::{Block, BlockSolver, Factorization, Outcome, Real, Scalar};
+use crate::{Block, BlockSolver, Factorization, Outcome, Scalar};
 
 /// Evaluations of a block at most. From a good prediction it takes two; a step so long that four do not do is worth
 /// being looked at.
@@ -50,18 +50,20 @@ impl<T: Scalar> BlockSolver<T> for Plain<T> {
         mut x: [T; K],
         mut evaluate: impl FnMut(&[T; K]) -> ([T; K], [[T; K]; K]),
     ) -> ([T; K], T::Lanes<Outcome>) {
-        let strict =
-            block.row_scales.map(|scale| T::splat(T::Real::EPSILON) * T::constant(TERM_ROUNDINGS) * scale);
-        let (mut done, mut evaluations) = (!self.closed, 0);
-        let (residuals, jacobian) = loop {
+        let own = block.row_scales.map(own_rounding);
+        let (mut tolerances, mut done, mut evaluations) = (own, !self.closed, 0);
+        let residuals = loop {
             let (residuals, jacobian) = evaluate(&x);
             evaluations += 1;
-            done = done | within(&residuals, &strict);
+            done = done | within(&residuals, &own);
             if evaluations > 1 && !T::all(done) {
-                done = done | within(&residuals, &granted(block.row_scales, x, jacobian));
+                let whole = granted(residuals, block.row_scales, x, jacobian);
+                let closes = !done & within(&residuals, &whole);
+                tolerances = select(closes, &whole, &tolerances);
+                done = done | closes;
             }
             if T::all(done) || evaluations == EVALUATIONS {
-                break (residuals, jacobian);
+                break residuals;
             }
             let (factors, _) = F::factorize_for_step(&jacobian, &block.row_scales, &block.coordinate_scales);
             let step = factors.solve(&residuals);
@@ -73,7 +75,7 @@ impl<T: Scalar> BlockSolver<T> for Plain<T> {
         };
         self.closed = self.closed & done;
         self.evaluations = self.evaluations.max(evaluations);
-        self.record(&block.rows, &residuals, &required(&block.row_scales, &x, &jacobian));
+        self.record(&block.rows, &residuals, &tolerances);
         (x, T::per_lane(|_| Outcome::Converged))
     }
 
@@ -101,10 +103,21 @@ fn within<T: Scalar, const K: usize>(residuals: &[T; K], tolerances: &[T; K]) ->
     within
 }
 
-/// The whole tolerances (see [`required`]), with what large coordinates add, which many turns away only is needed.
+/// The whole tolerances (see [`required`]) where the residual is not within its row's own rounding: with what large
+/// coordinates add, which many turns away only is needed.
 ///
 /// By value, so that what the solver computes with stays in registers.
 #[inline(never)]
-fn granted<T: Scalar, const K: usize>(row_scales: [T; K], x: [T; K], jacobian: [[T; K]; K]) -> [T; K] {
-    required(&row_scales, &x, &jacobian)
+fn granted<T: Scalar, const K: usize>(
+    residuals: [T; K],
+    row_scales: [T; K],
+    x: [T; K],
+    jacobian: [[T; K]; K],
+) -> [T; K] {
+    let mut granted = required(&row_scales, &x, &jacobian);
+    for ((tolerance, residual), scale) in granted.iter_mut().zip(residuals).zip(row_scales) {
+        let own = own_rounding(scale);
+        *tolerance = T::select(residual.abs().less(own), own, *tolerance);
+    }
+    granted
 }

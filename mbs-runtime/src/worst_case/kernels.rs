@@ -72,7 +72,7 @@ pub const fn within(m: u64) -> Operations {
 
 /// `Worst::of_block`.
 pub const fn worst(m: u64) -> Operations {
-    divide(m).and(select(6 * m)).and(compare(3 * m))
+    divide(m).and(multiply(2 * m)).and(select(8 * m)).and(compare(4 * m))
 }
 
 /// `Best::meets`.
