@@ -63,8 +63,36 @@ pub fn lets_for(section: &Section, results: &BTreeSet<NodeId>, scope: &Scope<'_>
     if section.lines.len() <= LONGEST_BODY {
         return section.lines.iter().for_each(|line| print(line, scope, text));
     }
+    let (chunks, exports) = chunks(section, results, scope);
+    if section.lines.len() > LONGEST_FUNCTION {
+        return apart(&chunks, &exports, results, &BTreeMap::new(), scope, text);
+    }
+    for (chunk, exports) in chunks.into_iter().zip(exports) {
+        let names = exports.iter().map(|id| local(*id)).collect::<Vec<_>>().join(", ");
+        let _ = writeln!(text, "let [{names}] = (|| -> [T; {}] {{", exports.len());
+        chunk.iter().for_each(|line| print(line, scope, text));
+        let _ = writeln!(text, "[{names}]\n}})();");
+    }
+}
+
+/// Before: a section longer than [`LONGEST_FUNCTION`]. After: its code, which leaves the `kept` values at their places in the
+/// array `__kept`. Each part puts there what it computes: one place that takes values out of all arrays of the parts would be
+/// as long as they are together, and that is what takes a compiler longest.
+pub fn lets_kept(section: &Section, kept: &BTreeMap<NodeId, usize>, scope: &Scope<'_>, text: &mut String) {
+    let (chunks, exports) = chunks(section, &kept.keys().copied().collect(), scope);
+    let zero = scope.or_zero(None);
+    let _ = writeln!(text, "let mut __kept = [{zero}; {}];", kept.len());
+    apart(&chunks, &exports, &BTreeSet::new(), kept, scope, text);
+}
+
+/// Lines in chunks of bounded length, and of each the values that chunks behind it, or the results, use.
+fn chunks<'a>(
+    section: &'a Section,
+    results: &BTreeSet<NodeId>,
+    scope: &Scope<'_>,
+) -> (Vec<&'a [Line]>, Vec<Vec<NodeId>>) {
     let chunks: Vec<&[Line]> = section.lines.chunks(LONGEST_BODY).collect();
-    // Values that chunks from here on, or the results, use; collected from the back.
+    // Values that chunks from here on use; collected from the back.
     let mut used = vec![false; scope.graph.len()];
     let mark = |ids: &[NodeId], used: &mut [bool]| {
         for id in ids {
@@ -79,42 +107,41 @@ pub fn lets_for(section: &Section, results: &BTreeSet<NodeId>, scope: &Scope<'_>
         chunk.iter().for_each(|line| mark(&line.operands(scope.graph), &mut used));
     }
     exports.reverse();
-    if section.lines.len() > LONGEST_FUNCTION {
-        return apart(&chunks, &exports, results, scope, text);
-    }
-    for (chunk, exports) in chunks.into_iter().zip(exports) {
-        let names = exports.iter().map(|id| local(*id)).collect::<Vec<_>>().join(", ");
-        let _ = writeln!(text, "let [{names}] = (|| -> [T; {}] {{", exports.len());
-        chunk.iter().for_each(|line| print(line, scope, text));
-        let _ = writeln!(text, "[{names}]\n}})();");
-    }
+    (chunks, exports)
 }
 
-/// Prints chunks that stay functions of their own; what they pass on is taken from arrays where it is used.
+/// Prints chunks that stay functions of their own; what they pass on is taken from arrays where it is used, `kept` values from
+/// `__kept`.
 fn apart(
     chunks: &[&[Line]],
     exports: &[Vec<NodeId>],
     results: &BTreeSet<NodeId>,
+    kept: &BTreeMap<NodeId, usize>,
     scope: &Scope<'_>,
     text: &mut String,
 ) {
-    let mut places: BTreeMap<NodeId, (usize, usize)> = BTreeMap::new();
+    let mut places: BTreeMap<NodeId, String> = BTreeMap::new();
     for (number, (chunk, exports)) in chunks.iter().zip(exports).enumerate() {
-        let _ = writeln!(text, "let __part{number} = __mbs::long::apart(|| -> [T; {}] {{", exports.len());
+        let (stay, passed): (Vec<NodeId>, Vec<NodeId>) =
+            exports.iter().copied().partition(|id| kept.contains_key(id));
+        let _ = writeln!(text, "let __part{number} = __mbs::long::apart(|| -> [T; {}] {{", passed.len());
         let used: BTreeSet<NodeId> = chunk.iter().flat_map(|line| line.operands(scope.graph)).collect();
         taken(&used, &places, text);
         chunk.iter().for_each(|line| print(line, scope, text));
-        let names = exports.iter().map(|id| local(*id)).collect::<Vec<_>>().join(", ");
+        for (id, place) in stay.iter().filter_map(|id| Some((*id, kept.get(id)?))) {
+            let _ = writeln!(text, "__kept[{place}] = {};", local(id));
+            places.insert(id, format!("__kept[{place}]"));
+        }
+        let names = passed.iter().map(|id| local(*id)).collect::<Vec<_>>().join(", ");
         let _ = writeln!(text, "[{names}]\n}});");
-        places.extend(exports.iter().enumerate().map(|(index, id)| (*id, (number, index))));
+        places.extend(passed.iter().enumerate().map(|(index, id)| (*id, format!("__part{number}[{index}]"))));
     }
     taken(results, &places, text);
 }
 
 /// Values out of the arrays of parts, as far as they stand there.
-fn taken(ids: &BTreeSet<NodeId>, places: &BTreeMap<NodeId, (usize, usize)>, text: &mut String) {
-    let found = ids.iter().filter_map(|id| Some((local(*id), places.get(id)?)));
-    bind(found.map(|(name, (part, index))| (name, format!("__part{part}[{index}]"))), text);
+fn taken(ids: &BTreeSet<NodeId>, places: &BTreeMap<NodeId, String>, text: &mut String) {
+    bind(ids.iter().filter_map(|id| Some((local(*id), places.get(id)?.clone()))), text);
 }
 
 /// Locals of the scalar type, all in one `let`: each further one nests what debug information says of the others.

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use proc_macro2::TokenStream;
 
 use super::blocks;
-use super::code::{block, lets, tokens};
+use super::code::{LONGEST_FUNCTION, block, lets, lets_kept, tokens};
 use super::dynamics::{self, DynamicBodies};
 use super::elimination::Eliminations;
 use super::given;
@@ -143,7 +143,14 @@ pub fn bodies(
             some(&equations.coordinate_scales, &early),
         ),
         row_scales: body(&program.row_scales, &early, some(&equations.row_scales, &early)),
-        position: body(&program.position.section, &early, kept(&program.position, &early, "__Position")),
+        position: match program.position.section.lines.len() > LONGEST_FUNCTION {
+            true => {
+                let mut text = String::new();
+                lets_kept(&program.position.section, &program.position.fields, &early, &mut text);
+                block(&(text + "__Position(__kept)"), runtime)
+            }
+            false => body(&program.position.section, &early, position),
+        },
         phi: body(&program.phi, &scope, rows(|row| Some(row.phi))),
         phi_q: block(&phi_q, runtime),
         sparsity: entries(equations).map(|(row, column, _)| (row as u16, column as u16)).collect(),
