@@ -99,6 +99,7 @@ fn translate_scene(scene: &Scene) -> Result<emit::Translated<'_>, Diagnostics> {
     let mut diagnostics = Diagnostics::default();
     let mut equations = equations::derive(&scene.model);
     equations::continuity::check(&scene.model, &equations, &mut diagnostics);
+    equations::turns::check(&scene.model, &equations, &mut diagnostics);
     equations::pins::check(&scene.model, &equations, &mut diagnostics);
     let Some(structure) = structure::analyse(&scene.model, &mut equations, &mut diagnostics) else {
         return Err(diagnostics);

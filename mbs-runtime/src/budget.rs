@@ -64,7 +64,7 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
     /// [`Failure::BeyondLimit`].
     #[inline]
     pub fn step(&mut self, h: R, budget: Budget) -> Step {
-        self.step_to(self.state.t + h, budget)
+        self.turning(h, |stepper, t| stepper.within(t, budget)).unwrap_or_else(Step::Refused)
     }
 
     /// Moves on by `periods` periods of `period` (s) after missed deadlines, in a step a period; 0 counts as 1.
@@ -78,14 +78,17 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
     /// Inputs jump to their present value in the first step. Where they have moved far in the time missed, change
     /// them in parts, with a [`step`](Self::step) after each.
     pub fn skip(&mut self, period: R, periods: u32, budget: Budget) -> Step {
-        let before = (self.state, self.changed, self.mechanism.clone());
+        let before = (self.state, self.changed, self.turns, self.mechanism.clone());
         let periods = periods.max(1);
         let mut evaluations = 0_u32;
         let mut step = Step::Refused(Failure::NonFinite { name: "t", line: 0 });
         for k in 1..=periods {
-            step = self.step_to(before.0.t + period * R::constant(f64::from(k)), budget);
+            step = match S::TURNS {
+                [] => self.step_to(before.0.t + period * R::constant(f64::from(k)), budget),
+                _ => self.step(period, budget),
+            };
             let (Step::Done(statistics) | Step::Degraded { statistics, .. }) = &mut step else {
-                (self.state, self.changed, self.mechanism) = before;
+                (self.state, self.changed, self.turns, self.mechanism) = before;
                 return step;
             };
             evaluations = evaluations.saturating_add(statistics.evaluations);

@@ -270,6 +270,28 @@ impl fmt::Display for Holding {
 }
 
 impl Failure {
+    /// The same at `now` (s).
+    pub(crate) fn at(mut self, now: f64) -> Self {
+        match &mut self {
+            Failure::Unresolved { time, .. }
+            | Failure::NotConverged { time, .. }
+            | Failure::NotAssemblable { time, .. }
+            | Failure::Singular { time, .. }
+            | Failure::WrongBranch { time, .. }
+            | Failure::BeyondLimit { time, .. }
+            | Failure::TooFar { time, .. }
+            | Failure::InvalidStep { time, .. }
+            | Failure::StepTooSmall { time, .. }
+            | Failure::StepTooLong { time, .. }
+            | Failure::Inconsistent { time, .. }
+            | Failure::OffConstraints { time, .. }
+            | Failure::Inertialess { time, .. }
+            | Failure::Unbalanced { time, .. } => *time = now,
+            Failure::NonFinite { .. } | Failure::Foreign { .. } => {}
+        }
+        self
+    }
+
     /// Time (s) at which it happened; 0 where no time has a part in it.
     fn time(&self) -> f64 {
         match self {

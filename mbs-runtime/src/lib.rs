@@ -50,6 +50,7 @@ pub mod sweep;
 pub mod trace;
 mod trial;
 mod trigonometry;
+mod turns;
 pub mod worst_case;
 
 pub use assembly::{Assembled, assemble};

@@ -134,6 +134,9 @@ pub trait Mechanism<T: Scalar, const N: usize, const M: usize>: Clone {
     const LIMITS: &'static [Entry] = &[];
     /// Drives that prescribe a rate, in the unit of what they drive; their phases are among the variables.
     const PHASES: &'static [Entry] = &[];
+    /// Indices of coordinates that the text declares as `turn`: no row changes with a whole turn of theirs, but for the phase that a
+    /// drive holds them at.
+    const TURNS: &'static [u16] = &[];
     /// Outputs, component by component.
     const OUTPUTS: &'static [Entry];
     /// Functions that the caller supplies, each the public field of its name.
@@ -160,6 +163,10 @@ pub trait Mechanism<T: Scalar, const N: usize, const M: usize>: Clone {
     /// varies within the step is integrated with [`integrals`](crate::phase::integrals).
     #[inline]
     fn advance_phases(&mut self, _from: T, _to: T) {}
+
+    /// Takes `turns` whole turns of a coordinate of [`TURNS`](Self::TURNS) off the phases that hold it.
+    #[inline]
+    fn turn_back(&mut self, _coordinate: u16, _turns: i64) {}
 
     /// Stage 0: what depends on parameters alone.
     fn parameters(&self) -> Self::Parameters;

@@ -4,10 +4,11 @@ use crate::instant::{Before, Found};
 use crate::kinematics::{coordinate_failure, entry, time_failure, variable_failure};
 use crate::nearest::solve_nearest;
 use crate::stepper::State;
+use crate::turns::Turns;
 use crate::{Failure, Kinematic, Mechanism, Real, Stepper};
 
 /// Version of the layout of [`Saved`], in its first bytes. Neither erased (0xFF) nor zeroed memory has it.
-const VERSION: u32 = 2;
+const VERSION: u32 = 3;
 
 /// Words of [`Saved`] beside the coordinates: version and count, mechanism, time, check value.
 const OTHER_WORDS: usize = 4;
@@ -21,7 +22,8 @@ pub const NEAR: f64 = 0.5;
 
 /// Time and position of a mechanism as plain numbers, `f64` for every number type: what a reset must not lose.
 ///
-/// The phases of drives that prescribe a rate are in the position: each is what its drive holds there.
+/// The phases of drives that prescribe a rate are in the position: each is what its drive holds there. Whole turns are beside
+/// it.
 ///
 /// As bytes: [`BYTES`](Self::BYTES) of them, little-endian words of eight, the last one a check value over the
 /// others.
@@ -30,11 +32,12 @@ pub struct Saved<const N: usize> {
     mechanism: u64,
     t: f64,
     q: [f64; N],
+    turns: [i64; N],
 }
 
 impl<const N: usize> Saved<N> {
-    /// Length in bytes: 32 + 8 N.
-    pub const BYTES: usize = 8 * (N + OTHER_WORDS);
+    /// Length in bytes: 32 + 16 N.
+    pub const BYTES: usize = 8 * (2 * N + OTHER_WORDS);
 
     /// Time (s).
     pub fn t(&self) -> f64 {
@@ -44,6 +47,11 @@ impl<const N: usize> Saved<N> {
     /// Coordinates: N.
     pub fn q(&self) -> &[f64; N] {
         &self.q
+    }
+
+    /// Whole turns of the coordinates that the text declares as `turn`, beside what [`q`](Self::q) has; 0 of all others: N.
+    pub fn turns(&self) -> &[i64; N] {
+        &self.turns
     }
 
     /// Writes [`BYTES`](Self::BYTES) bytes to the beginning of `bytes` and returns their number; `None`, and nothing
@@ -65,7 +73,9 @@ impl<const N: usize> Saved<N> {
         let t = f64::from_bits(words.next()?);
         let mut q = [0.0; N];
         q.iter_mut().zip(&mut words).for_each(|(coordinate, word)| *coordinate = f64::from_bits(word));
-        let saved = Saved { mechanism, t, q };
+        let mut turns = [0; N];
+        turns.iter_mut().zip(&mut words).for_each(|(turns, word)| *turns = word.cast_signed());
+        let saved = Saved { mechanism, t, q, turns };
         let whole = header == Self::header() && words.next()? == saved.check_value();
         let finite = q.iter().fold(t.is_finite(), |all, coordinate| all & coordinate.is_finite());
         (whole && finite).then_some(saved)
@@ -78,7 +88,8 @@ impl<const N: usize> Saved<N> {
 
     /// All words but the check value.
     fn words(&self) -> impl Iterator<Item = u64> {
-        [Self::header(), self.mechanism, self.t.to_bits()].into_iter().chain(self.q.map(f64::to_bits))
+        let header = [Self::header(), self.mechanism, self.t.to_bits()].into_iter();
+        header.chain(self.q.map(f64::to_bits)).chain(self.turns.map(i64::cast_unsigned))
     }
 
     fn check_value(&self) -> u64 {
@@ -106,7 +117,8 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
     /// Time and position, to survive a reset; see [`assemble_near`](Self::assemble_near).
     pub fn save(&self) -> Saved<N> {
         let state = &self.state;
-        Saved { mechanism: fingerprint::<S, R, N, M>(), t: state.t.to_f64(), q: state.q.map(R::to_f64) }
+        let (t, q) = (state.t.to_f64(), state.q.map(R::to_f64));
+        Saved { mechanism: fingerprint::<S, R, N, M>(), t, q, turns: *self.turns() }
     }
 
     /// Assembles `mechanism` at time `t` (s) next to a saved state; velocity and acceleration follow.
@@ -142,7 +154,10 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
         let position = mechanism.position(&parameters, &q, t);
         let found = Found { t, q, position, statistics, open: None };
         let state = State::at(&mechanism, &parameters, found, Before::Saved)?;
-        Ok(Stepper { mechanism, parameters, fault: None, changed: false, state })
+        let turns = Turns::new(saved.turns, t);
+        let mut stepper = Stepper { mechanism, parameters, fault: None, changed: false, state, turns };
+        stepper.take_turns_off();
+        Ok(stepper)
     }
 }
 
@@ -168,26 +183,26 @@ fn distant<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize>(
 mod tests {
     use super::*;
 
-    const SAVED: Saved<2> = Saved { mechanism: 7, t: 1.5, q: [-0.25, 1e300] };
+    const SAVED: Saved<2> = Saved { mechanism: 7, t: 1.5, q: [-0.25, 1e300], turns: [-3, 0] };
 
     fn bytes() -> [u8; Saved::<2>::BYTES] {
         let mut bytes = [0; Saved::<2>::BYTES];
-        assert_eq!(SAVED.to_le_bytes_into(&mut bytes), Some(48));
+        assert_eq!(SAVED.to_le_bytes_into(&mut bytes), Some(64));
         bytes
     }
 
     #[test]
     fn bytes_come_back_as_the_same_numbers() {
         assert_eq!(Saved::from_le_bytes(&bytes()), Some(SAVED));
-        let mut page = [0xFF; 64];
-        assert_eq!(SAVED.to_le_bytes_into(&mut page), Some(48));
-        assert_eq!((Saved::from_le_bytes(&page), page[48..] == [0xFF; 16]), (Some(SAVED), true));
-        assert_eq!(bytes()[..8], [2, 0, 0, 0, 2, 0, 0, 0]);
+        let mut page = [0xFF; 80];
+        assert_eq!(SAVED.to_le_bytes_into(&mut page), Some(64));
+        assert_eq!((Saved::from_le_bytes(&page), page[64..] == [0xFF; 16]), (Some(SAVED), true));
+        assert_eq!(bytes()[..8], [3, 0, 0, 0, 2, 0, 0, 0]);
     }
 
     #[test]
     fn every_damaged_byte_is_noticed() {
-        for index in 0..48 {
+        for index in 0..64 {
             for bit in 0..8 {
                 let mut damaged = bytes();
                 damaged[index] ^= 1 << bit;
@@ -204,11 +219,11 @@ mod tests {
     #[test]
     fn what_is_not_a_state_is_none() {
         let bytes = bytes();
-        assert_eq!(Saved::<2>::from_le_bytes(&bytes[..47]), None);
+        assert_eq!(Saved::<2>::from_le_bytes(&bytes[..63]), None);
         assert_eq!(Saved::<2>::from_le_bytes(&[]), None);
         assert_eq!((Saved::<3>::from_le_bytes(&bytes), Saved::<1>::from_le_bytes(&bytes)), (None, None));
-        assert_eq!(Saved::<2>::from_le_bytes(&[0; 48]).or(Saved::from_le_bytes(&[0xFF; 48])), None);
-        assert_eq!(SAVED.to_le_bytes_into(&mut [0; 47]), None);
+        assert_eq!(Saved::<2>::from_le_bytes(&[0; 64]).or(Saved::from_le_bytes(&[0xFF; 64])), None);
+        assert_eq!(SAVED.to_le_bytes_into(&mut [0; 63]), None);
         let mut bytes = [0; 48];
         let _ = Saved { q: [f64::NAN, 0.0], ..SAVED }.to_le_bytes_into(&mut bytes);
         assert_eq!(Saved::<2>::from_le_bytes(&bytes), None);

@@ -5,6 +5,7 @@ use crate::instant::{Before, Found, REGULAR_ZONE, Rates};
 use crate::kinematics::{next_position, solve_with_position, time_failure, variable_failure};
 use crate::path::{Way, displaced, is_near};
 use crate::trial::{Start, Trial, weights};
+use crate::turns::{Turns, within_a_turn};
 use crate::{Assembled, Failure, Kinematic, Mechanism, Real, Sweep, assemble};
 
 /// A mechanism with its state. It owns everything, allocates nothing, and a failed call leaves it as it was.
@@ -21,6 +22,7 @@ pub struct Stepper<S: Mechanism<R, N, M>, R: Real, const N: usize, const M: usiz
     /// to the new ones.
     pub(crate) changed: bool,
     pub(crate) state: State<R, N>,
+    pub(crate) turns: Turns<R, N>,
 }
 
 /// Position, velocity and acceleration at one time.
@@ -39,7 +41,7 @@ pub(crate) struct State<R, const N: usize> {
     /// Singular positions passed since the assembly.
     passages: u32,
     /// The last position outside the singular zone.
-    regular: [R; N],
+    pub(crate) regular: [R; N],
     /// The Newton step that is still to be made, where the position does not close.
     pub(crate) repair: Option<[R; N]>,
 }
@@ -51,7 +53,7 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
     /// Those of [`assemble`](crate::assemble()), [`Failure::Singular`] where the first position does not
     /// determine rates, and [`Failure::BeyondLimit`].
     pub fn assemble(mut mechanism: S, guess: impl Into<[R; N]>, t: R) -> Result<Self, Failure> {
-        let guess = guess.into();
+        let (guess, counts) = within_a_turn::<S, R, N, M>(guess.into());
         let assembled = assemble(&mechanism, guess, t)?;
         mechanism.start_phases(&guess, t);
         let parameters = mechanism.parameters();
@@ -59,7 +61,10 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
         let position = mechanism.position(&parameters, &q, t);
         let found = Found { t, q, position, statistics, open: None };
         let state = State::at(&mechanism, &parameters, found, Before::Guess)?;
-        Ok(Stepper { mechanism, parameters, fault: None, changed: false, state })
+        let turns = Turns::new(counts, t);
+        let mut stepper = Stepper { mechanism, parameters, fault: None, changed: false, state, turns };
+        stepper.take_turns_off();
+        Ok(stepper)
     }
 
     /// Moves on by `h` (s); 0 solves anew, negative goes back.
@@ -68,7 +73,7 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
     /// As [`advance_to`](Self::advance_to).
     #[inline]
     pub fn advance(&mut self, h: R) -> Result<Statistics, Failure> {
-        self.advance_to(self.state.t + h)
+        self.turning(h, Self::arrive)
     }
 
     /// Moves on to time `t` (s).
@@ -84,6 +89,14 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
     /// [`Failure::BeyondLimit`]; the state is then bit for bit what it was.
     #[inline]
     pub fn advance_to(&mut self, t: R) -> Result<Statistics, Failure> {
+        match S::TURNS {
+            [] => self.arrive(t),
+            _ => self.advance(t - self.state.t),
+        }
+    }
+
+    #[inline(always)]
+    fn arrive(&mut self, t: R) -> Result<Statistics, Failure> {
         if let Some(failure) = self.fault.or(time_failure(t)) {
             return Err(failure);
         }

@@ -104,6 +104,7 @@ pub fn bodies(
     lets(&program.outputs, &scope, &mut outputs_text);
     outputs_text += &outputs(equations, &scope);
     let (phases, speeds) = phases::functions(equations, program, &bare);
+    let phases = phases::turns(equations, model) + &phases;
     let independent = &structure.independent;
     let is_long = long::is_long(program);
     let eliminations = Eliminations::of(equations, program);

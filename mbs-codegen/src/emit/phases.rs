@@ -6,6 +6,7 @@ use std::fmt::Write;
 use super::code::lets;
 use super::scope::{Scope, place};
 use crate::equations::Equations;
+use crate::equations::turns::{Turning, turning};
 use crate::model::{Model, VariableKind};
 use crate::program::Program;
 use crate::symbolic::{Leaf, Node, NodeId};
@@ -17,6 +18,39 @@ pub fn functions(equations: &Equations, program: &Program, scope: &Scope<'_>) ->
         return (String::new(), String::new());
     }
     (start(equations, program, scope) + &advance(equations, scope), speeds(equations, program, scope))
+}
+
+/// `TURNS` and `turn_back`, where coordinates turn.
+pub fn turns(equations: &Equations, model: &Model) -> String {
+    let turning = turning(model, equations);
+    if turning.is_empty() {
+        return String::new();
+    }
+    let indices: Vec<String> = turning.iter().map(|turning| turning.coordinate.to_string()).collect();
+    let mut text = format!("const TURNS: &'static [::core::primitive::u16] = &[{}];\n", indices.join(", "));
+    let fields: Vec<String> = fields(model).collect();
+    let mut arms = String::new();
+    for Turning { coordinate, phases } in &turning {
+        let mut arm = String::new();
+        for (field, count) in phases.iter().filter_map(|(phase, count)| Some((fields.get(*phase)?, count))) {
+            let turns = match count {
+                1 => "__turns".to_owned(),
+                _ => format!("::core::primitive::i64::saturating_mul(__turns, {count})"),
+            };
+            let _ = writeln!(arm, "{field} = {field}.turned_back({turns});");
+        }
+        if !arm.is_empty() {
+            let _ = writeln!(arms, "{coordinate} => {{\n{arm}}}");
+        }
+    }
+    if !arms.is_empty() {
+        let _ = writeln!(
+            text,
+            "#[inline]\nfn turn_back(&mut self, __coordinate: ::core::primitive::u16, __turns: ::core::primitive::i64) \
+             {{\nmatch __coordinate {{\n{arms}_ => {{}}\n}}\n}}"
+        );
+    }
+    text
 }
 
 fn start(equations: &Equations, program: &Program, scope: &Scope<'_>) -> String {

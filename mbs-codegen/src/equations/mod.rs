@@ -9,6 +9,7 @@ mod forces;
 mod lower;
 pub mod pins;
 mod turning;
+pub mod turns;
 
 use crate::model::Model;
 use crate::symbolic::{Graph, Leaf, NodeId, tangent, tangents};

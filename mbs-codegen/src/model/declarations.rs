@@ -8,6 +8,7 @@ use super::expression::{Id, Node};
 use super::initialiser::{filling, initialiser, named, numbers};
 use super::names::Names;
 use super::order::order;
+use super::turns::turning;
 use super::units::Dimension;
 use super::{Coordinate, CoordinateField, Field, Longest, Model, Role, Variable, VariableKind};
 use crate::diagnostics::Diagnostics;
@@ -348,6 +349,8 @@ impl Declarations<'_> {
     }
 
     fn coordinate(&mut self, name: &Name, docs: Vec<String>, kind: &Type, guess: Option<&Expression>) {
+        let (kind, turns) = turning(kind);
+        let kind = kind.as_ref();
         let declared = self.declared(kind);
         if !self.owns(name) {
             return;
@@ -376,6 +379,7 @@ impl Declarations<'_> {
                 name: component,
                 unit,
                 dimension,
+                turns,
                 guess,
                 span: name.span,
             });

@@ -24,6 +24,7 @@ mod resolve;
 pub mod scenes;
 mod selection;
 mod shared;
+mod turns;
 pub mod units;
 
 use proc_macro2::Span;
@@ -185,6 +186,8 @@ pub struct Coordinate {
     pub unit: String,
     /// Its dimension.
     pub dimension: Dimension,
+    /// Whether the text declares it as `turn`: an angle that is kept within a turn, whole turns apart.
+    pub turns: bool,
     /// Start value of the assembly, of parameters alone.
     pub guess: Option<Id>,
     /// The declaring token.

@@ -1,0 +1,16 @@
+//! Coordinates that turn for days, `coord phi: turn;`: angles whose whole turns are kept apart.
+
+use std::borrow::Cow;
+
+use crate::syntax::ast::{Name, Type, Unit};
+
+/// Before: the type of a coordinate as written. After: its type, an angle where it is declared as `turn`, and whether it is.
+pub(super) fn turning(kind: &Type) -> (Cow<'_, Type>, bool) {
+    if kind.unit.text != "turn" {
+        return (Cow::Borrowed(kind), false);
+    }
+    let span = kind.unit.span;
+    let radian = Name { text: "rad".into(), span };
+    let unit = Unit { factors: vec![(radian, 1)], text: "rad".into(), span };
+    (Cow::Owned(Type { unit, shape: kind.shape.clone() }), true)
+}

@@ -1,0 +1,114 @@
+//! Coordinates that turn for days: whole turns are counted, and the angle stays within one.
+
+use core::f64::consts::{PI, TAU};
+
+use crate::{Failure, Kinematic, Phase, Real, Speed, Stepper};
+
+/// Whole turns of the coordinates of a [`Stepper`], and the time that its steps have taken.
+///
+/// Where coordinates turn, no function knows the time, so a step is one from 0 to h: h is exact, however late it is.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Turns<R, const N: usize> {
+    /// Whole turns of each coordinate: N.
+    pub(crate) counts: [i64; N],
+    /// The time (s), with what its rounding has left out.
+    clock: Phase<R>,
+}
+
+/// Time passes at this rate.
+fn second<R: Real>() -> Speed<R> {
+    Speed { value: R::constant(1.0), rate: R::constant(0.0) }
+}
+
+impl<R: Real, const N: usize> Turns<R, N> {
+    /// Such counts at time `t` (s).
+    pub(crate) fn new(counts: [i64; N], t: R) -> Self {
+        Turns { counts, clock: Phase::new(t, second()) }
+    }
+}
+
+/// A guess with the whole turns of coordinates that turn taken off, and their counts.
+pub(crate) fn within_a_turn<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize>(
+    mut guess: [R; N],
+) -> ([R; N], [i64; N]) {
+    let mut counts = [0; N];
+    for coordinate in S::TURNS {
+        let index = usize::from(*coordinate);
+        if let (Some(angle), Some(count)) = (guess.get_mut(index), counts.get_mut(index)) {
+            *count = whole_turns(*angle);
+            *angle = less(*angle, *count);
+        }
+    }
+    (guess, counts)
+}
+
+/// How many whole turns an angle (rad) is beside what is nearest to 0.
+fn whole_turns<R: Real>(angle: R) -> i64 {
+    libm::rint(angle.to_f64() / TAU) as i64
+}
+
+/// An angle (rad) without so many turns.
+fn less<R: Real>(angle: R, turns: i64) -> R {
+    Phase::new(angle, second()).turned_back(turns).value
+}
+
+impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, R, N, M> {
+    /// Whole turns of each coordinate, N: that of a `turn` in [`q`](Self::q) is within half a turn of 0, and this is how many turns
+    /// it has made beside. 0 for all others.
+    pub fn turns(&self) -> &[i64; N] {
+        &self.turns.counts
+    }
+
+    /// Makes `step` to the time that it is given, `h` (s) from now.
+    #[inline(always)]
+    pub(crate) fn turning<X>(
+        &mut self,
+        h: R,
+        step: impl FnOnce(&mut Self, R) -> Result<X, Failure>,
+    ) -> Result<X, Failure> {
+        if S::TURNS.is_empty() {
+            return step(self, self.state.t + h);
+        }
+        let now = self.state.t;
+        let mut clock = self.turns.clock;
+        clock.value = now;
+        let clock = clock.advanced(h, second());
+        self.state.t = R::constant(0.0);
+        match step(self, h) {
+            Ok(done) => {
+                (self.state.t, self.turns.clock) = (clock.value, clock);
+                self.take_turns_off();
+                Ok(done)
+            }
+            Err(failure) => {
+                self.state.t = now;
+                Err(failure.at(clock.value.to_f64()))
+            }
+        }
+    }
+
+    /// Moves whole turns of the coordinates that turn, and of the phases that hold them, into the counts.
+    #[inline(always)]
+    pub(crate) fn take_turns_off(&mut self) {
+        for coordinate in S::TURNS {
+            let angle = self.state.q.get(usize::from(*coordinate));
+            if angle.is_some_and(|angle| R::constant(PI) < angle.abs()) {
+                self.take_off(*coordinate);
+            }
+        }
+    }
+
+    #[cold]
+    fn take_off(&mut self, coordinate: u16) {
+        let index = usize::from(coordinate);
+        let place = (self.state.q.get_mut(index), self.state.regular.get_mut(index));
+        if let (Some(angle), Some(regular), Some(count)) =
+            (place.0, place.1, self.turns.counts.get_mut(index))
+        {
+            let turns = whole_turns(*angle);
+            (*angle, *regular) = (less(*angle, turns), less(*regular, turns));
+            *count = count.saturating_add(turns);
+            self.mechanism.turn_back(coordinate, turns);
+        }
+    }
+}

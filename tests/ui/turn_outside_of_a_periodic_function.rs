@@ -1,0 +1,23 @@
+#![deny(warnings)]
+use mbs_runtime::{Stepper, mechanism};
+
+mechanism! {
+    pub mechanism Rod;
+    param L: m = 0.5;
+    param omega: rad/s = 10;
+    coord phi: turn = 0.1;
+    coord p: [m; 2] = [0.5, 0];
+    constraint tip { p == [L*phi, L*sin(phi/2)]; }
+    drive crank: rate(phi) == omega;
+    branch ahead: 3*phi > 0;
+}
+
+fn main() {
+    let mut rod = Rod::default();
+    rod.L = 0.25;
+    rod.omega = -rod.omega;
+    let guess = RodCoordinates { phi: 0.1, p: [0.25, 0.0] };
+    if let Ok(stepper) = Stepper::assemble(rod, guess, 0.0) {
+        println!("{:?} {:?}", stepper.q(), stepper.outputs());
+    }
+}
