@@ -300,10 +300,6 @@ fn kinematic(
 ) -> TokenStream {
     let n = model.coordinates.len();
     let Bodies { solve_with_position, factorize, solve_linear, work, .. } = bodies;
-    let inlined = |always| match always {
-        true => quote! { #[inline(always)] },
-        false => quote! { #[inline] },
-    };
     let (inline, factorize_inline) = (inlined(bodies.short), inlined(bodies.factorizes_in_line));
     let solve_blocks = match &bodies.solve_blocks {
         Some(body) => body.clone(),
@@ -344,6 +340,14 @@ fn kinematic(
     }
 }
 
+/// The attribute of a function that always, or perhaps, stands inside what calls it.
+fn inlined(always: bool) -> TokenStream {
+    match always {
+        true => quote! { #[inline(always)] },
+        false => quote! { #[inline] },
+    }
+}
+
 /// `impl Partitioned`: the blocks over the dependent coordinates, and what the rows take of a force.
 fn partitioned(
     name: &TokenStream,
@@ -353,7 +357,7 @@ fn partitioned(
 ) -> TokenStream {
     let n = model.coordinates.len();
     let Bodies { solve_with_position, factorize, independent, complete, reduce, .. } = &part.bodies;
-    let freedom = independent.len();
+    let (freedom, inline) = (independent.len(), inlined(part.bodies.factorizes_in_line));
     // Of a square text these are the functions of `Kinematic`.
     let (solve_blocks, factorize) = match part.square {
         true => (
@@ -379,11 +383,11 @@ fn partitioned(
                 __t: T,
                 __solver: &mut __S,
             ) -> T::Lanes<#runtime::Outcome> { #solve_blocks }
-            #[inline]
+            #inline
             fn partition(&self, __p: &__Parameters<T>, __s: &__Position<T>) -> (__Factors<T>, #runtime::Margin<T>) #factorize
-            #[inline]
+            #inline
             fn complete(&self, __factors: &__Factors<T>, __b: &[T; #m], __x: &mut [T; #n]) #complete
-            #[inline]
+            #inline
             fn reduce(&self, __factors: &__Factors<T>, __y: &mut [T; #n]) -> [T; #m] #reduce
             #[inline(always)]
             fn accelerations(

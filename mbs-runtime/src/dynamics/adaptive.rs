@@ -222,8 +222,7 @@ impl<R: Real> Adaptive<R> {
             return Err((None, factor));
         }
         let mut y = trial.y;
-        equation.settle(end, &mut y).map_err(|failure| (Some(failure), least))?;
-        let rate = equation.rate(end, &y).map_err(|failure| (Some(failure), least))?;
+        let rate = equation.settled_rate(end, &mut y).map_err(|failure| (Some(failure), least))?;
         let remembered = self.last_error.powf(R::constant(M::MEMORY));
         let largest = R::constant(if self.growth_barred { 1.0 } else { M::LARGEST_GROWTH });
         let factor = if R::constant(0.0) < error { ideal * remembered } else { largest };
@@ -275,9 +274,7 @@ fn first_step<M: Embedded, R: Real, E: Measured<R>>(
     until: R,
 ) -> Result<R, Failure> {
     let (zero, share) = (R::constant(0.0), R::constant(FIRST_SHARE));
-    let measured = |equation: &E, y: &E::State| equation.measure(&from.y, &from.y, y);
-    let size = measured(equation, &from.y);
-    let speed = measured(equation, &from.rate);
+    let [size, speed] = equation.measure(&from.y, &from.y, [&from.y, &from.rate]);
     let span = until - from.t;
     let guess = if zero < size && zero < speed { share * size / speed } else { R::constant(1e-6) * span };
     let guess = guess.min(span);
@@ -287,7 +284,8 @@ fn first_step<M: Embedded, R: Real, E: Measured<R>>(
         // A start next to the border of what can be evaluated: the controller finds its way from a smaller step.
         Err(_) => return Ok(share * guess),
     };
-    let curvature = measured(equation, &change) / guess;
+    let [change] = equation.measure(&from.y, &from.y, [&change]);
+    let curvature = change / guess;
     let steepest = speed.max(curvature);
     let exponent = R::constant(1.0 / f64::from(M::ERROR_ORDER));
     let second = if zero < steepest { (share / steepest).powf(exponent) } else { guess };

@@ -75,7 +75,9 @@ impl Embedded for DormandPrince5 {
         trial: &Trial<S::State, [S::State; 5]>,
     ) -> R {
         let [k3, k4, k5, k6, k7] = &trial.stages;
-        equation.measure(y, &trial.y, &y.zero().plus(h, &E, [k1, k3, k4, k5, k6, k7]))
+        let error = y.zero().plus(h, &E, [k1, k3, k4, k5, k6, k7]);
+        let [error] = equation.measure(y, &trial.y, [&error]);
+        error
     }
 
     #[inline]

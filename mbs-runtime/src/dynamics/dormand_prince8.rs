@@ -269,8 +269,8 @@ impl Embedded for DormandPrince8 {
     ) -> R {
         let [k6, k7, k8, k9, k10, k11, k12] = &trial.stages;
         let stages = [k1, k6, k7, k8, k9, k10, k11, k12];
-        let fifth = equation.measure(y, &trial.y, &y.zero().plus(h, &E5, stages));
-        let third = equation.measure(y, &trial.y, &y.zero().plus(h, &E3, stages));
+        let (fifth, third) = (y.zero().plus(h, &E5, stages), y.zero().plus(h, &E3, stages));
+        let [fifth, third] = equation.measure(y, &trial.y, [&fifth, &third]);
         let bound = (fifth * fifth + R::constant(THIRD_ORDER_SHARE) * third * third).sqrt();
         if R::constant(0.0) < bound { fifth * fifth / bound } else { bound }
     }

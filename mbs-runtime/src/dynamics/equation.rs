@@ -21,10 +21,24 @@ pub trait Equation<T: Scalar> {
     fn settle(&mut self, _t: T, _y: &mut Self::State) -> Result<(), Failure> {
         Ok(())
     }
+
+    /// [`settle`](Self::settle), then the rate of what came of it.
+    ///
+    /// # Errors
+    /// Those of both.
+    fn settled_rate(&mut self, t: T, y: &mut Self::State) -> Result<Self::State, Failure> {
+        self.settle(t, y)?;
+        self.rate(t, y)
+    }
 }
 
 /// An equation with tolerances: what an adaptive integrator needs.
 pub trait Measured<T: Scalar>: Equation<T> {
-    /// The largest component of `error` over its tolerance, for a step from `before` to `after`: accepted up to 1.
-    fn measure(&self, before: &Self::State, after: &Self::State, error: &Self::State) -> T;
+    /// Of each of `errors` the largest component over its tolerance, for a step from `before` to `after`: accepted up to 1.
+    fn measure<const K: usize>(
+        &self,
+        before: &Self::State,
+        after: &Self::State,
+        errors: [&Self::State; K],
+    ) -> [T; K];
 }

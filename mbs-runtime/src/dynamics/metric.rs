@@ -47,25 +47,35 @@ impl<R: Real, const N: usize, const M: usize> Metric<R, N, M> {
         self.rows.map(|scale| largest / (scale * scale))
     }
 
-    /// The largest of `error` (N) over its tolerance rtol ‖x‖ + atol scale, ‖x‖ the largest of `before` and `after`
-    /// (N) among the coordinates of the same unit.
+    /// Of each of `errors` (N) the largest component over its tolerance rtol ‖x‖ + atol scale, ‖x‖ the largest of `before`
+    /// and `after` (N) among the coordinates of the same unit.
     ///
     /// A coordinate that passes zero is measured by its neighbours and not by itself; a small group cannot hide in a
     /// mean over all.
-    pub fn measure(&self, tolerance: &Tolerance<R>, before: &[R; N], after: &[R; N], error: &[R; N]) -> R {
+    #[inline]
+    pub fn measure<const K: usize>(
+        &self,
+        tolerance: &Tolerance<R>,
+        before: &[R; N],
+        after: &[R; N],
+        errors: [&[R; N]; K],
+    ) -> [R; K] {
         let mut sizes = [R::constant(0.0); N];
         for ((kind, x), y) in self.kinds.iter().zip(before).zip(after) {
             if let Some(size) = sizes.get_mut(*kind) {
                 *size = size.max(x.abs()).max(y.abs());
             }
         }
-        let mut largest = R::constant(0.0);
-        for ((error, scale), kind) in error.iter().zip(&self.coordinates).zip(&self.kinds) {
-            let size = sizes.get(*kind).copied().unwrap_or(*scale);
-            let ratio = error.abs() / (tolerance.relative * size + tolerance.absolute * *scale);
-            largest = worse(largest, ratio);
+        let mut allowed = self.coordinates;
+        for (allowed, kind) in allowed.iter_mut().zip(&self.kinds) {
+            let size = sizes.get(*kind).copied().unwrap_or(*allowed);
+            *allowed = tolerance.relative * size + tolerance.absolute * *allowed;
         }
-        largest
+        errors.map(|error| {
+            let mut ratios = *error;
+            ratios.iter_mut().zip(&allowed).for_each(|(error, allowed)| *error = error.abs() / *allowed);
+            ratios.iter().fold(R::constant(0.0), |largest, ratio| worse(largest, *ratio))
+        })
     }
 }
 

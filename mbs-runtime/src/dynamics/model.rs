@@ -95,6 +95,24 @@ pub trait Formulation<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usi
         Ok(())
     }
 
+    /// [`settle`](Self::settle), then [`solve`](Self::solve): a formulation that has factors of the settled position from
+    /// the one may use them in the other.
+    ///
+    /// # Errors
+    /// Those of both.
+    #[inline]
+    fn settle_and_solve(
+        &self,
+        model: &Model<'_, S, R, N, M>,
+        t: R,
+        y: &mut State<R, N, S::States>,
+        lambda: &[R; M],
+        counts: &mut Counts,
+    ) -> Result<Solved<R, N, M, S::States>, Failure> {
+        self.settle(model, t, y, counts)?;
+        self.solve(model, t, y, lambda, counts)
+    }
+
     /// Whether a step of `h` (s) is one that the formulation is stable with.
     ///
     /// # Errors

@@ -105,8 +105,7 @@ where
         let mut motion = Equations::new(model, &self.formulation, from, *counts).of_fixed_steps();
         let t = from.t + h;
         let mut y = I::step(&mut motion, from.t, h, &from.y, &from.solved.rate)?;
-        motion.settle(t, &mut y)?;
-        let solved = motion.solve(t, &y)?;
+        let solved = motion.settle_and_solve(t, &mut y)?;
         *counts = motion.counts;
         Ok(Instant { t, y, solved, carried: solved.rate.qd })
     }
@@ -129,8 +128,8 @@ pub struct Equations<'a, S: Dynamic<R, N, M>, F, R: Real, const N: usize, const 
     start: R,
     /// Whether no step can be made smaller.
     fixed: bool,
-    /// What was found at the last evaluation.
-    last: Solved<R, N, M, S::States>,
+    /// Multipliers (M) of the last evaluation.
+    lambda: [R; M],
     pub(super) counts: Counts,
 }
 
@@ -148,7 +147,7 @@ where
         counts: Counts,
     ) -> Self {
         let (tolerance, start) = (Tolerance::new(0.0), from.t);
-        Equations { model, formulation, tolerance, start, fixed: false, last: from.solved, counts }
+        Equations { model, formulation, tolerance, start, fixed: false, lambda: from.solved.lambda, counts }
     }
 
     pub(super) fn with_tolerance(self, tolerance: Tolerance<R>) -> Self {
@@ -167,11 +166,27 @@ where
         t: R,
         y: &State<R, N, S::States>,
     ) -> Result<Solved<R, N, M, S::States>, Failure> {
-        let (formulation, lambda) = (self.formulation, self.last.lambda);
-        let counts = &mut self.counts;
-        self.last =
-            self.model.moved(self.start, t, |model| formulation.solve(model, t, y, &lambda, counts))?;
-        Ok(self.last)
+        let (formulation, lambda, counts) = (self.formulation, &mut self.lambda, &mut self.counts);
+        self.model.moved(self.start, t, |model| {
+            let solved = formulation.solve(model, t, y, lambda, counts)?;
+            *lambda = solved.lambda;
+            Ok(solved)
+        })
+    }
+
+    /// Rates and multipliers of a state that a step ended in, which is put back onto the constraints.
+    #[inline]
+    pub(super) fn settle_and_solve(
+        &mut self,
+        t: R,
+        y: &mut State<R, N, S::States>,
+    ) -> Result<Solved<R, N, M, S::States>, Failure> {
+        let (formulation, lambda, counts) = (self.formulation, &mut self.lambda, &mut self.counts);
+        self.model.moved(self.start, t, |model| {
+            let solved = formulation.settle_and_solve(model, t, y, lambda, counts)?;
+            *lambda = solved.lambda;
+            Ok(solved)
+        })
     }
 }
 
@@ -189,17 +204,23 @@ where
             Err(Failure::OffConstraints { .. }) if self.fixed => {}
             solved => return Ok(solved?.rate),
         }
-        let (formulation, lambda, counts) = (self.formulation, self.last.lambda, &mut self.counts);
-        self.last = self
-            .model
-            .moved(self.start, t, |model| formulation.solve_as_it_is(model, t, y, &lambda, counts))?;
-        Ok(self.last.rate)
+        let (formulation, lambda, counts) = (self.formulation, &mut self.lambda, &mut self.counts);
+        self.model.moved(self.start, t, |model| {
+            let solved = formulation.solve_as_it_is(model, t, y, lambda, counts)?;
+            *lambda = solved.lambda;
+            Ok(solved.rate)
+        })
     }
 
     #[inline]
     fn settle(&mut self, t: R, y: &mut Self::State) -> Result<(), Failure> {
         let (formulation, counts) = (self.formulation, &mut self.counts);
         self.model.moved(self.start, t, |model| formulation.settle(model, t, y, counts))
+    }
+
+    #[inline]
+    fn settled_rate(&mut self, t: R, y: &mut Self::State) -> Result<Self::State, Failure> {
+        Ok(self.settle_and_solve(t, y)?.rate)
     }
 }
 
@@ -211,14 +232,23 @@ where
 {
     /// The worst of coordinates, velocities and states. Work is watched, not controlled: that it is watched changes no
     /// step.
-    fn measure(&self, before: &Self::State, after: &Self::State, error: &Self::State) -> R {
-        let metric = self.model.metric;
-        let q = metric.measure(&self.tolerance, &before.q, &after.q, &error.q);
-        let qd = metric.measure(&self.tolerance, &before.qd, &after.qd, &error.qd);
-        let states = before.states.as_ref().iter().zip(after.states.as_ref()).zip(error.states.as_ref());
-        states.fold(worse(q, qd), |largest, ((before, after), error)| {
-            let size = before.abs().max(after.abs());
-            worse(largest, error.abs() / (self.tolerance.relative * size + self.tolerance.absolute))
-        })
+    #[inline]
+    fn measure<const K: usize>(
+        &self,
+        before: &Self::State,
+        after: &Self::State,
+        errors: [&Self::State; K],
+    ) -> [R; K] {
+        let (metric, tolerance) = (self.model.metric, &self.tolerance);
+        let q = metric.measure(tolerance, &before.q, &after.q, errors.map(|error| &error.q));
+        let mut largest = metric.measure(tolerance, &before.qd, &after.qd, errors.map(|error| &error.qd));
+        for ((largest, q), error) in largest.iter_mut().zip(q).zip(errors) {
+            let states = before.states.as_ref().iter().zip(after.states.as_ref()).zip(error.states.as_ref());
+            *largest = states.fold(worse(q, *largest), |largest, ((before, after), error)| {
+                let size = before.abs().max(after.abs());
+                worse(largest, error.abs() / (tolerance.relative * size + tolerance.absolute))
+            });
+        }
+        largest
     }
 }

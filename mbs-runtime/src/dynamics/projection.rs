@@ -238,11 +238,19 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
     #[inline(always)]
     pub(super) fn constraint_rates(&self, position: &S::Position, qd: &[R; N]) -> [R; M] {
         let mut rates = self.mechanism.phi_t(self.parameters, position);
-        let phi_q = self.mechanism.phi_q(self.parameters, position);
-        for (rate, row) in rates.iter_mut().zip(&phi_q) {
-            *rate = row.iter().zip(qd).fold(*rate, |sum, (entry, qd)| sum + *entry * *qd);
-        }
+        self.add_products(position, qd, |product| product, &mut rates);
         rates
+    }
+
+    /// Adds to each of `sums` (M) what `part` takes of Φ_qᵢⱼ xⱼ, for all entries that are not zero by structure.
+    #[inline(always)]
+    fn add_products(&self, position: &S::Position, x: &[R; N], part: impl Fn(R) -> R, sums: &mut [R; M]) {
+        let entries = self.mechanism.phi_q_entries(self.parameters, position);
+        for ((row, column), entry) in S::SPARSITY.iter().zip(entries.as_ref()) {
+            if let (Some(sum), Some(x)) = (sums.get_mut(usize::from(*row)), x.get(usize::from(*column))) {
+                *sum = *sum + part(*entry * *x);
+            }
+        }
     }
 
     /// What rounding can leave in each row: ε (64 ρᵢ + 4 Σⱼ |Φ_qᵢⱼ| |qⱼ|).
@@ -262,12 +270,12 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
     }
 
     fn tolerances(&self, position: &S::Position, x: &[R; N], floor: [R; M]) -> [R; M] {
-        let phi_q = self.mechanism.phi_q(self.parameters, position);
+        let mut reach = [R::constant(0.0); M];
+        self.add_products(position, x, R::abs, &mut reach);
         let mut tolerances = floor;
-        for (tolerance, row) in tolerances.iter_mut().zip(&phi_q) {
-            let reach = row.iter().zip(x).fold(R::constant(0.0), |sum, (entry, x)| sum + (*entry * *x).abs());
+        for (tolerance, reach) in tolerances.iter_mut().zip(&reach) {
             *tolerance = R::EPSILON
-                * (R::constant(TERM_ROUNDINGS) * *tolerance + R::constant(COORDINATE_ROUNDINGS) * reach);
+                * (R::constant(TERM_ROUNDINGS) * *tolerance + R::constant(COORDINATE_ROUNDINGS) * *reach);
         }
         tolerances
     }

@@ -28,14 +28,30 @@ impl<T: Scalar, const L: usize> Vector<T> for [T; L] {
     #[inline(always)]
     fn plus<const K: usize>(&self, h: T, weights: &[f64; K], terms: [&Self; K]) -> Self {
         let mut sum = *self;
-        sum_into(&mut sum, h, weights, terms.map(|term| term.as_slice()));
+        add(&mut sum, h, weights, terms);
         sum
     }
 }
 
 /// Adds h Σ weightₖ termₖ to `sum`.
 #[inline(always)]
-fn sum_into<T: Scalar, const K: usize>(sum: &mut [T], h: T, weights: &[f64; K], terms: [&[T]; K]) {
+fn add<T: Scalar, const L: usize, const K: usize>(
+    sum: &mut [T; L],
+    h: T,
+    weights: &[f64; K],
+    terms: [&[T; L]; K],
+) {
+    let mut change = [T::constant(0.0); L];
+    for (weight, term) in weights.iter().zip(terms) {
+        let weight = T::constant(*weight);
+        change.iter_mut().zip(term).for_each(|(change, term)| *change = *change + weight * *term);
+    }
+    sum.iter_mut().zip(&change).for_each(|(component, change)| *component = *component + h * *change);
+}
+
+/// [`add`] where the type does not tell the length.
+#[inline(always)]
+fn add_slices<T: Scalar, const K: usize>(sum: &mut [T], h: T, weights: &[f64; K], terms: [&[T]; K]) {
     for (index, component) in sum.iter_mut().enumerate() {
         let mut change = T::constant(0.0);
         for (weight, term) in weights.iter().zip(terms) {
@@ -71,11 +87,11 @@ impl<T: Scalar, const N: usize, Z: Copy + AsRef<[T]> + AsMut<[T]>> Vector<T> for
     #[inline(always)]
     fn plus<const K: usize>(&self, h: T, weights: &[f64; K], terms: [&Self; K]) -> Self {
         let mut sum = *self;
-        sum_into(&mut sum.q, h, weights, terms.map(|term| term.q.as_slice()));
-        sum_into(&mut sum.qd, h, weights, terms.map(|term| term.qd.as_slice()));
-        sum_into(sum.states.as_mut(), h, weights, terms.map(|term| term.states.as_ref()));
-        let work = terms.map(|term| core::slice::from_ref(&term.work));
-        sum_into(core::slice::from_mut(&mut sum.work), h, weights, work);
+        add(&mut sum.q, h, weights, terms.map(|term| &term.q));
+        add(&mut sum.qd, h, weights, terms.map(|term| &term.qd));
+        add_slices(sum.states.as_mut(), h, weights, terms.map(|term| term.states.as_ref()));
+        let work = terms.map(|term| core::array::from_ref(&term.work));
+        add(core::array::from_mut(&mut sum.work), h, weights, work);
         sum
     }
 

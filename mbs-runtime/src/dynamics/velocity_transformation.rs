@@ -3,7 +3,7 @@
 use super::model::{Counts, Formulation, Model, Solved};
 use super::projection::Projection;
 use super::vector::{State, Vector};
-use crate::{Dynamic, Failure, Partitioned, Real, Scalar};
+use crate::{Dynamic, Failure, Mechanism, Partitioned, Real, Scalar};
 
 /// Margin of the dependent columns below which the independent coordinates are not used: they stand at a turning point,
 /// or the mechanism is singular. Rounding grows by its inverse square: at 1e-2, four digits.
@@ -37,29 +37,9 @@ where
         lambda: &[R; M],
         counts: &mut Counts,
     ) -> Result<Solved<R, N, M, S::States>, Failure> {
-        let (mechanism, parameters) = (model.mechanism, model.parameters);
         let position = model.position(t, y);
-        let (partition, margin) = mechanism.partition(parameters, &position);
-        if !R::constant(LEAST_MARGIN).less(margin.value) {
-            counts.handed_over += 1;
-            return Projection::default().solve(model, t, y, lambda, counts);
-        }
-        counts.evaluations += 1;
-        let gamma = mechanism.gamma(parameters, &position, &y.qd);
-        let mut inert = true;
-        let (qdd, lambda, force) = model.balanced(&position, (t, y), lambda, |force| {
-            let solved = mechanism.accelerations(parameters, &position, &partition, force, &gamma);
-            inert = solved.inert;
-            (solved.qdd, solved.lambda)
-        })?;
-        if !inert {
-            // A motion without mass: the rank-revealing method names its coordinate.
-            counts.handed_over += 1;
-            return Projection::default().solve(model, t, y, &lambda, counts);
-        }
-        model.check_solved(&qdd, &lambda, &force, &gamma)?;
-        let rate = model.rates(&position, y, qdd, &lambda);
-        Ok(Solved { rate, lambda, margin: margin.value })
+        let (partition, margin) = model.mechanism.partition(model.parameters, &position);
+        solve_at(model, (t, y), (&position, &partition, margin.value), lambda, counts)
     }
 
     #[inline]
@@ -71,78 +51,165 @@ where
         counts: &mut Counts,
     ) -> Result<(), Failure> {
         let before = *y;
-        if settle_position(model, t, y, counts) && settle_velocity(model, t, y, counts) {
+        if settled(model, t, y, counts).is_some() {
             return Ok(());
         }
         *y = before;
         Projection::default().settle(model, t, y, counts)
     }
+
+    #[inline]
+    fn settle_and_solve(
+        &self,
+        model: &Model<'_, S, R, N, M>,
+        t: R,
+        y: &mut State<R, N, S::States>,
+        lambda: &[R; M],
+        counts: &mut Counts,
+    ) -> Result<Solved<R, N, M, S::States>, Failure> {
+        let before = *y;
+        if let Some(place) = settled(model, t, y, counts) {
+            return solve_apart(model, (t, y), &place, lambda, counts);
+        }
+        *y = before;
+        Projection::default().settle(model, t, y, counts)?;
+        self.solve(model, t, y, lambda, counts)
+    }
 }
 
-/// Puts `y.q` onto Φ(q, t) = 0; whether it is there.
-fn settle_position<S, R: Real, const N: usize, const M: usize>(
+/// A position with the factors of its dependent columns, and their margin.
+struct Place<P, F, R> {
+    position: P,
+    partition: F,
+    margin: R,
+}
+
+/// That of a mechanism.
+type PlaceOf<S, R, const N: usize, const M: usize> =
+    Place<<S as Mechanism<R, N, M>>::Position, <S as Partitioned<R, N, M>>::Partition, R>;
+
+/// Whether the independent coordinates determine the others well.
+#[inline(always)]
+fn is_regular<R: Real>(margin: R) -> bool {
+    R::constant(LEAST_MARGIN).less(margin)
+}
+
+/// Rates and multipliers of a state whose position is factorised.
+#[inline(always)]
+fn solve_at<S, R: Real, const N: usize, const M: usize>(
+    model: &Model<'_, S, R, N, M>,
+    (t, y): (R, &State<R, N, S::States>),
+    (position, partition, margin): (&S::Position, &S::Partition, R),
+    lambda: &[R; M],
+    counts: &mut Counts,
+) -> Result<Solved<R, N, M, S::States>, Failure>
+where
+    S: Dynamic<R, N, M> + Partitioned<R, N, M>,
+{
+    let (mechanism, parameters) = (model.mechanism, model.parameters);
+    if !is_regular(margin) {
+        counts.handed_over += 1;
+        return Projection::default().solve(model, t, y, lambda, counts);
+    }
+    counts.evaluations += 1;
+    let gamma = mechanism.gamma(parameters, position, &y.qd);
+    let mut inert = true;
+    let (qdd, lambda, force) = model.balanced(position, (t, y), lambda, |force| {
+        let solved = mechanism.accelerations(parameters, position, partition, force, &gamma);
+        inert = solved.inert;
+        (solved.qdd, solved.lambda)
+    })?;
+    if !inert {
+        // A motion without mass: the rank-revealing method names its coordinate.
+        counts.handed_over += 1;
+        return Projection::default().solve(model, t, y, &lambda, counts);
+    }
+    model.check_solved(&qdd, &lambda, &force, &gamma)?;
+    let rate = model.rates(position, y, qdd, &lambda);
+    Ok(Solved { rate, lambda, margin })
+}
+
+/// [`solve_at`], once a step: the code of the stages stands alone.
+#[inline(never)]
+fn solve_apart<S, R: Real, const N: usize, const M: usize>(
+    model: &Model<'_, S, R, N, M>,
+    (t, y): (R, &State<R, N, S::States>),
+    place: &PlaceOf<S, R, N, M>,
+    lambda: &[R; M],
+    counts: &mut Counts,
+) -> Result<Solved<R, N, M, S::States>, Failure>
+where
+    S: Dynamic<R, N, M> + Partitioned<R, N, M>,
+{
+    let Place { position, partition, margin } = place;
+    solve_at(model, (t, y), (position, partition, *margin), lambda, counts)
+}
+
+/// Puts `y.q` onto Φ(q, t) = 0 and `y.qd` onto Φ_q q̇ = −Φ_t; the position that they are at, `None` where they are not.
+#[inline]
+fn settled<S, R: Real, const N: usize, const M: usize>(
     model: &Model<'_, S, R, N, M>,
     t: R,
     y: &mut State<R, N, S::States>,
     counts: &mut Counts,
-) -> bool
+) -> Option<PlaceOf<S, R, N, M>>
+where
+    S: Dynamic<R, N, M> + Partitioned<R, N, M>,
+{
+    let place = settled_position(model, t, y, counts)?;
+    for _ in 0..MOST_CORRECTIONS {
+        let phi_d = model.constraint_rates(&place.position, &y.qd);
+        if model.worst(&phi_d, &model.rate_tolerances(&place.position, &y.qd)).0 <= R::constant(1.0) {
+            return Some(place);
+        }
+        let step = correction(model, &place, &phi_d)?;
+        counts.corrections += 1;
+        y.qd = y.qd.plus(R::constant(-1.0), &[1.0], [&step]);
+    }
+    None
+}
+
+/// Puts `y.q` onto Φ(q, t) = 0; the position there, `None` where it is not.
+#[inline]
+fn settled_position<S, R: Real, const N: usize, const M: usize>(
+    model: &Model<'_, S, R, N, M>,
+    t: R,
+    y: &mut State<R, N, S::States>,
+    counts: &mut Counts,
+) -> Option<PlaceOf<S, R, N, M>>
 where
     S: Dynamic<R, N, M> + Partitioned<R, N, M>,
 {
     for _ in 0..MOST_CORRECTIONS {
         let position = model.position(t, y);
-        let phi = model.mechanism.phi(model.parameters, &position);
-        if model.worst(&phi, &model.position_tolerances(&position, &y.q)).0 <= R::constant(1.0) {
-            return true;
+        let (partition, margin) = model.mechanism.partition(model.parameters, &position);
+        let place = Place { position, partition, margin: margin.value };
+        let phi = model.mechanism.phi(model.parameters, &place.position);
+        if model.worst(&phi, &model.position_tolerances(&place.position, &y.q)).0 <= R::constant(1.0) {
+            return Some(place);
         }
-        let Some(step) = correction(model, &position, &phi) else { return false };
+        let step = correction(model, &place, &phi)?;
         counts.corrections += 1;
         y.q = y.q.plus(R::constant(-1.0), &[1.0], [&step]);
     }
-    false
-}
-
-/// Puts `y.qd` onto Φ_q q̇ = −Φ_t; whether it is there.
-fn settle_velocity<S, R: Real, const N: usize, const M: usize>(
-    model: &Model<'_, S, R, N, M>,
-    t: R,
-    y: &mut State<R, N, S::States>,
-    counts: &mut Counts,
-) -> bool
-where
-    S: Dynamic<R, N, M> + Partitioned<R, N, M>,
-{
-    let position = model.position(t, y);
-    for _ in 0..MOST_CORRECTIONS {
-        let phi_d = model.constraint_rates(&position, &y.qd);
-        if model.worst(&phi_d, &model.rate_tolerances(&position, &y.qd)).0 <= R::constant(1.0) {
-            return true;
-        }
-        let Some(step) = correction(model, &position, &phi_d) else { return false };
-        counts.corrections += 1;
-        y.qd = y.qd.plus(R::constant(-1.0), &[1.0], [&step]);
-    }
-    false
+    None
 }
 
 /// The shortest x in the mass's measure with Φ_q x = `open` (M): N; `None` where the independent coordinates do not
 /// determine it well, or without inertia.
+#[inline(never)]
 fn correction<S, R: Real, const N: usize, const M: usize>(
     model: &Model<'_, S, R, N, M>,
-    position: &S::Position,
+    place: &PlaceOf<S, R, N, M>,
     open: &[R; M],
 ) -> Option<[R; N]>
 where
     S: Dynamic<R, N, M> + Partitioned<R, N, M>,
 {
-    let (mechanism, parameters) = (model.mechanism, model.parameters);
-    let (partition, margin) = mechanism.partition(parameters, position);
-    if !R::constant(LEAST_MARGIN).less(margin.value) {
-        return None;
-    }
     let none = [R::constant(0.0); N];
-    let solved = mechanism.accelerations(parameters, position, &partition, &none, open);
-    solved.inert.then_some(solved.qdd)
+    let Place { position, partition, margin } = place;
+    let solved = model.mechanism.accelerations(model.parameters, position, partition, &none, open);
+    (is_regular(*margin) && solved.inert).then_some(solved.qdd)
 }
 
 /// Accelerations (N) and multipliers (M) of a factorised partition for a force (N) and γ (M), lane by lane; and whether
@@ -175,8 +242,8 @@ where
         mechanism.complete(partition, &[zero; M], motion);
         *momentum = mechanism.mass_times(parameters, position, motion);
     }
-    let reduced = motions.map(|motion| momenta.map(|momentum| dot(&motion, &momentum)));
-    let (solution, inert) = solve_symmetric(reduced, motions.map(|motion| dot(&motion, &open)));
+    let reduced = motions.each_ref().map(|motion| momenta.each_ref().map(|momentum| dot(motion, momentum)));
+    let (solution, inert) = solve_symmetric(reduced, motions.each_ref().map(|motion| dot(motion, &open)));
     for ((motion, momentum), share) in motions.iter().zip(&momenta).zip(&solution) {
         add(&mut qdd, *share, motion);
         add(&mut open, -*share, momentum);
@@ -214,14 +281,17 @@ const PARTS: usize = 4;
 
 #[inline(always)]
 fn dot<T: Scalar, const N: usize>(a: &[T; N], b: &[T; N]) -> T {
-    let mut parts = [T::constant(0.0); PARTS];
-    for (a, b) in a.chunks(PARTS).zip(b.chunks(PARTS)) {
+    let ((a, a_rest), (b, b_rest)) = (a.as_chunks::<PARTS>(), b.as_chunks::<PARTS>());
+    let zero = T::constant(0.0);
+    let mut parts = [zero; PARTS];
+    for (a, b) in a.iter().zip(b) {
         for (part, (a, b)) in parts.iter_mut().zip(a.iter().zip(b)) {
             *part = *part + *a * *b;
         }
     }
+    let rest = a_rest.iter().zip(b_rest).fold(zero, |sum, (a, b)| sum + *a * *b);
     let [first, second, third, fourth] = parts;
-    (first + second) + (third + fourth)
+    (first + second) + (third + fourth) + rest
 }
 
 /// Solves a symmetric system by elimination without pivoting; whether every pivot is positive in every lane.

@@ -22,8 +22,13 @@ impl Equation<f64> for Oscillator {
 }
 
 impl Measured<f64> for Oscillator {
-    fn measure(&self, _: &Self::State, _: &Self::State, error: &Self::State) -> f64 {
-        error.q[0].abs().max(error.qd[0].abs()) / self.tolerance
+    fn measure<const K: usize>(
+        &self,
+        _: &Self::State,
+        _: &Self::State,
+        errors: [&Self::State; K],
+    ) -> [f64; K] {
+        errors.map(|error| error.q[0].abs().max(error.qd[0].abs()) / self.tolerance)
     }
 }
 
@@ -146,8 +151,8 @@ impl Equation<f64> for Jump {
 }
 
 impl Measured<f64> for Jump {
-    fn measure(&self, _: &[f64; 1], _: &[f64; 1], error: &[f64; 1]) -> f64 {
-        error[0].abs() / 1e-6
+    fn measure<const K: usize>(&self, _: &[f64; 1], _: &[f64; 1], errors: [&[f64; 1]; K]) -> [f64; K] {
+        errors.map(|error| error[0].abs() / 1e-6)
     }
 }
 
@@ -177,8 +182,8 @@ impl Equation<f64> for Explosion {
 }
 
 impl Measured<f64> for Explosion {
-    fn measure(&self, before: &[f64; 1], _: &[f64; 1], error: &[f64; 1]) -> f64 {
-        error[0].abs() / (1e-8 * before[0].abs())
+    fn measure<const K: usize>(&self, before: &[f64; 1], _: &[f64; 1], errors: [&[f64; 1]; K]) -> [f64; K] {
+        errors.map(|error| error[0].abs() / (1e-8 * before[0].abs()))
     }
 }
 
