@@ -60,6 +60,11 @@ pub enum Steps {
     },
     /// RK4, one step from instant to instant.
     Fixed,
+    /// RK4, equal steps from instant to instant.
+    Equal {
+        /// The longest (s).
+        longest: f64,
+    },
 }
 
 /// Formulation and steps.
@@ -157,7 +162,7 @@ pub(crate) fn simulate<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
         Stabilization::Projection => {
             let stages = match steps {
                 Steps::Adaptive { .. } => Stages::All,
-                Steps::Fixed => Stages::None,
+                Steps::Fixed | Steps::Equal { .. } => Stages::None,
             };
             integrate(mechanism, Projection { stages }, &start, steps, times, progress)
         }
@@ -188,12 +193,16 @@ where
     S: Dynamic<f64, N, M>,
     X: Method<S, f64, N, M>,
 {
-    /// Part of a step that rounding may put on top of a whole number of them.
-    const ROUNDING: f64 = 1e-9;
     let first = times.first().copied().unwrap_or(0.0);
     let start = Simulation::start_near(mechanism.clone(), method, first, *q, *qd)?;
-    let steps = |span: f64| ((span / longest - ROUNDING).ceil().max(1.0)) as u32;
-    Ok(follow(start, times, progress, |run, t| run.step_to(t, steps(t - run.t()))).0)
+    Ok(follow(start, times, progress, |run, t| run.step_to(t, equal(t - run.t(), longest))).0)
+}
+
+/// How many equal steps not longer than `longest` lead through `span` (s).
+fn equal(span: f64, longest: f64) -> u32 {
+    /// Part of a step that rounding may put on top of a whole number of them.
+    const ROUNDING: f64 = 1e-9;
+    ((span / longest - ROUNDING).ceil().max(1.0)) as u32
 }
 
 /// By independent coordinates, for mechanisms that have them.
@@ -243,10 +252,14 @@ where
             let (simulated, end) = follow(start, times, progress, |run, t| run.advance_to(t));
             Ok(Simulated { rejected: end.adaptive().rejected, ..simulated })
         }
-        Steps::Fixed => {
+        Steps::Fixed | Steps::Equal { .. } => {
+            let count = |span: f64| match steps {
+                Steps::Equal { longest } => equal(span, longest),
+                _ => 1,
+            };
             let method = Explicit::new(RungeKutta4, formulation);
             let start = Simulation::start_near(mechanism.clone(), method, first, *q, *qd)?;
-            Ok(follow(start, times, progress, |run, t| run.step_to(t, 1)).0)
+            Ok(follow(start, times, progress, |run, t| run.step_to(t, count(t - run.t()))).0)
         }
     }
 }

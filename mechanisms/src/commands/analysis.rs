@@ -112,7 +112,8 @@ pub struct Done {
 pub struct Wish {
     pub analysis: Option<Analysis>,
     pub stabilization: Stabilization,
-    pub tolerance: f64,
+    /// Of an explicit method.
+    pub steps_of_method: Steps,
     /// Coordinates by name that the search for a position of rest starts from.
     pub guesses: Vec<(String, f64)>,
     /// Time (s) of the state that small motions are about.
@@ -186,8 +187,7 @@ impl Wish {
     }
 
     fn approach(&self) -> Approach {
-        let steps = Steps::Adaptive { tolerance: self.tolerance };
-        Approach { stabilization: self.stabilization, steps }
+        Approach { stabilization: self.stabilization, steps: self.steps_of_method }
     }
 
     /// The guesses by index.

@@ -5,6 +5,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
+use mechanisms::analyses::direct::Steps;
 use mechanisms::csv;
 use mechanisms::facade::{AnyEquations, Motion};
 use mechanisms::registry::{Preset, Usual, file_name};
@@ -24,6 +25,9 @@ const TOLERANCE: f64 = 1e-10;
 
 /// A step that the stiff mechanisms of the list are right to four digits with (s).
 const STEP: f64 = 1e-3;
+
+/// A step of RK4 that a swing of a second is right to six digits with (s).
+const EQUAL_STEP: f64 = 2.5e-3;
 
 /// Instants of a run on the page, at most; beyond them a browser slows down and an eye sees no more.
 const SHOWN: usize = 2000;
@@ -88,13 +92,18 @@ impl Arguments {
     fn wish(&self, subject: Subject) -> Wish {
         let method = self.method.unwrap_or(match subject.usual() {
             Usual::Projection => MethodName::Projection,
-            Usual::Velocity => MethodName::Velocity,
+            Usual::Velocity | Usual::VelocityInEqualSteps => MethodName::Velocity,
             Usual::AugmentedLagrangian => MethodName::AugmentedLagrangian,
         });
         Wish {
             analysis: self.analysis,
             stabilization: self.damping.stabilization(method, self.step),
-            tolerance: self.tolerance,
+            steps_of_method: match subject.usual() {
+                Usual::VelocityInEqualSteps if self.method.is_none() && self.tolerance == TOLERANCE => {
+                    Steps::Equal { longest: EQUAL_STEP }
+                }
+                _ => Steps::Adaptive { tolerance: self.tolerance },
+            },
             guesses: self.guesses.clone(),
             at: self.at,
             until: self.until,
