@@ -53,9 +53,6 @@ pub fn factorization(size: usize) -> String {
     }
 }
 
-/// A multiplier that is a number and smaller needs no bound at run time: half of what that is there.
-const LARGEST_NUMBER: f64 = 8.0;
-
 /// Exclusive or of the sign so far and that of another pivot.
 const TURN: &str = "__reverses = (__reverses | __turn) & !(__reverses & __turn);";
 
@@ -189,7 +186,7 @@ struct Printer {
     locals: usize,
     operations: Operations,
     comparisons: usize,
-    /// Sizes of pivots that are taken up already.
+    /// Sizes that are taken up already.
     sizes: BTreeSet<String>,
     /// Whether the pivots that are numbers turn the determinant's sign.
     odd: bool,
@@ -205,9 +202,12 @@ impl Printer {
                      let __limit = T::constant(__mbs::linear::LARGEST_MULTIPLIER);\n\
                      let mut __bounded = T::mask(true);\n\
                      let mut __reverses = T::mask(false);\n\
-                     let (mut __least, mut __largest) = (T::constant(f64::MAX), T::constant(0.0));\n"
-            .replace("f64::MAX", "::core::primitive::f64::MAX");
+                     let mut __least = T::constant(::core::primitive::f64::MAX);\n"
+            .into();
         self.scales_of_rows();
+        let places = (0..size).flat_map(|row| (0..size).map(move |column| (row, column)));
+        let largest = self.largest(places);
+        let _ = writeln!(self.text, "let __largest = {largest};");
         for (index, pivot) in order.pivots.iter().enumerate() {
             if index + 1 == order.pivots.len() {
                 last = Some(pivot.clone());
@@ -335,12 +335,13 @@ impl Printer {
     }
 
     fn eliminate(&mut self, pivot: &Pivot) -> Eliminated {
-        let inverse = match (pivot.rows.as_slice(), pivot.columns.as_slice()) {
+        let (inverse, determinant) = match (pivot.rows.as_slice(), pivot.columns.as_slice()) {
             (&[first, second], &[left, right]) => self.inverse([first, second], [left, right]),
-            (&[row], &[column]) => vec![vec![self.reciprocal(row, column)]],
-            _ => Vec::new(),
+            (&[row], &[column]) => (vec![vec![self.reciprocal(row, column)]], self.entry(row, column)),
+            _ => (Vec::new(), None),
         };
         let size = self.entries.len();
+        let (mut growth, block) = (String::new(), self.block(pivot));
         let rows: Vec<usize> = (0..size).filter(|row| !pivot.rows.contains(row)).collect();
         let columns: Vec<usize> = (0..size).filter(|column| !pivot.columns.contains(column)).collect();
         let above = |printer: &Self, column: usize| -> Vec<Entry> {
@@ -359,7 +360,7 @@ impl Printer {
             let factors: Vec<Entry> =
                 (0..pivot.rows.len()).map(|k| self.multiplier(&below, &inverse, k)).collect();
             for (factor, of) in factors.iter().zip(&pivot.rows) {
-                self.bound(factor, row, *of);
+                self.bound(factor, row, *of, &mut growth);
             }
             for (column, entries) in &upper {
                 let start = self.entry(row, *column);
@@ -369,6 +370,7 @@ impl Printer {
             }
             multipliers.push((row, factors));
         }
+        self.measure(pivot, determinant, &block, &growth);
         for row in &pivot.rows {
             (0..size).for_each(|column| self.set(*row, column, None));
         }
@@ -394,11 +396,9 @@ impl Printer {
         self.less(None, products)
     }
 
-    /// One over a pivot, with its size.
+    /// One over a pivot.
     fn reciprocal(&mut self, row: usize, column: usize) -> Entry {
         let pivot = self.entry(row, column)?;
-        let size = self.in_metric(&pivot, row, column);
-        self.size(&size, &size);
         self.turn(&pivot);
         match pivot {
             Value::Number(value) => Some(Value::Number(1.0 / value)),
@@ -411,30 +411,18 @@ impl Printer {
         }
     }
 
-    /// The inverse of two rows, with the pivot's largest entry and its determinant over that as sizes.
-    fn inverse(&mut self, [first, second]: [usize; 2], [left, right]: [usize; 2]) -> Vec<Vec<Entry>> {
+    /// The inverse of two rows, and their determinant.
+    fn inverse(
+        &mut self,
+        [first, second]: [usize; 2],
+        [left, right]: [usize; 2],
+    ) -> (Vec<Vec<Entry>>, Entry) {
         let places = [(first, left), (first, right), (second, left), (second, right)];
         let [p, q, r, s] = places.map(|(row, column)| self.entry(row, column));
         let cross = self.less(None, vec![(q.clone(), r.clone())]);
         let determinant = self.less(cross, vec![(negated(&p), s.clone())]).unwrap_or(Value::Number(0.0));
         self.turn(&determinant);
-        let mut largest = String::new();
-        for ((row, column), entry) in places.into_iter().zip([&p, &q, &r, &s]) {
-            let Some(entry) = entry else { continue };
-            let size = self.in_metric(entry, row, column);
-            if largest.is_empty() {
-                largest = size;
-            } else {
-                largest = format!("T::max({largest}, {size})");
-                self.operations.selects += 1;
-            }
-        }
-        let largest = self.name(&largest).text();
-        let both = self.in_metric(&determinant, first, left);
-        let both = self.weighted(both, second, right);
-        self.operations.divisions += 2;
-        let smallest = self.name(&format!("{both} / {largest}")).text();
-        self.size(&smallest, &largest);
+        self.operations.divisions += 1;
         let reciprocal = self.name(&format!("__one / {}", determinant.text()));
         self.finite(&reciprocal);
         let reciprocal = Some(reciprocal);
@@ -442,7 +430,8 @@ impl Printer {
             let value = if negative { value } else { negated(&value) };
             self.less(None, vec![(value, reciprocal.clone())])
         };
-        vec![vec![entry(s, false), entry(q, true)], vec![entry(r, true), entry(p, false)]]
+        let inverse = vec![vec![entry(s, false), entry(q, true)], vec![entry(r, true), entry(p, false)]];
+        (inverse, Some(determinant))
     }
 
     /// Takes up whether a reciprocal is one: a pivot that nothing stands below has no multiplier that would say so.
@@ -451,18 +440,17 @@ impl Printer {
         self.comparisons += 1;
     }
 
-    /// |entry| in the reference metric.
-    fn in_metric(&mut self, entry: &Value, row: usize, column: usize) -> String {
-        let size = match entry {
+    fn absolute(&mut self, entry: &Value) -> String {
+        match entry {
             Value::Number(value) => number(value.abs()),
             Value::Local(name) => {
                 self.operations.selects += 1;
                 format!("T::abs({name})")
             }
-        };
-        self.weighted(size, row, column)
+        }
     }
 
+    /// A size in the reference metric.
     fn weighted(&mut self, size: String, row: usize, column: usize) -> String {
         self.operations.multiplications += 1;
         let mut text = format!("{size} * __weight{}", self.scales.row(row));
@@ -473,13 +461,65 @@ impl Printer {
         text
     }
 
-    /// Takes up sizes of a pivot.
-    fn size(&mut self, smallest: &str, largest: &str) {
-        for (extreme, choice, size) in [("__least", "min", smallest), ("__largest", "max", largest)] {
-            if self.sizes.insert(format!("{choice} {size}")) {
-                let _ = writeln!(self.text, "{extreme} = T::{choice}({extreme}, {size});");
-                self.operations.selects += 1;
+    /// The largest of the entries in the reference metric, as text: those of one scale are compared before they are weighted.
+    fn largest(&mut self, places: impl Iterator<Item = (usize, usize)>) -> String {
+        let mut groups: BTreeMap<(usize, Option<usize>), (usize, usize, String)> = BTreeMap::new();
+        for (row, column) in places {
+            let Some(entry) = self.entry(row, column) else { continue };
+            let scale = (self.scales.row(row), self.scales.columns.get(column).copied().flatten());
+            let size = self.absolute(&entry);
+            match groups.get_mut(&scale) {
+                None => drop(groups.insert(scale, (row, column, size))),
+                Some((.., largest)) if *largest == size => {}
+                Some((.., largest)) => {
+                    *largest = format!("T::max({largest}, {size})");
+                    self.operations.selects += 1;
+                }
             }
+        }
+        let mut all = String::new();
+        for (row, column, size) in groups.into_values() {
+            let size = self.weighted(size, row, column);
+            all = match all.is_empty() {
+                true => size,
+                false => format!("T::max({all}, {size})"),
+            };
+            self.operations.selects += 1;
+        }
+        if all.is_empty() { number(0.0) } else { all }
+    }
+
+    /// The largest entry of a pivot's columns; of a single entry nothing.
+    fn block(&mut self, pivot: &Pivot) -> String {
+        if pivot.rows.len() < 2 {
+            return String::new();
+        }
+        let size = self.entries.len();
+        let places = (0..size).flat_map(|row| pivot.columns.iter().map(move |column| (row, *column)));
+        let text = self.largest(places);
+        self.name(&text).text()
+    }
+
+    /// Takes up the size of a pivot: what the best choice of rows for its columns would leave of it, of two the determinant over
+    /// their largest entry.
+    fn measure(&mut self, pivot: &Pivot, determinant: Entry, block: &str, growth: &str) {
+        let Some(determinant) = determinant else { return };
+        let mut size = self.absolute(&determinant);
+        for (row, column) in pivot.rows.iter().zip(&pivot.columns) {
+            size = self.weighted(size, *row, *column);
+        }
+        if !block.is_empty() {
+            size = format!("{size} / {block}");
+            self.operations.divisions += 1;
+        }
+        if !growth.is_empty() {
+            size = format!("{size} * T::max(__one, {growth})");
+            self.operations.multiplications += 1;
+            self.operations.selects += 1;
+        }
+        if self.sizes.insert(size.clone()) {
+            let _ = writeln!(self.text, "__least = T::min(__least, {size});");
+            self.operations.selects += 1;
         }
     }
 
@@ -494,21 +534,28 @@ impl Printer {
         }
     }
 
-    /// Takes up the bound of what row `of` gives to `row`.
-    fn bound(&mut self, multiplier: &Entry, row: usize, of: usize) {
+    /// Takes up the bound of what row `of` gives to `row`, and the largest of them, `growth`.
+    fn bound(&mut self, multiplier: &Entry, row: usize, of: usize, growth: &mut String) {
         let (from, to) = (self.scales.row(of), self.scales.row(row));
         let mut size = match multiplier {
             None => return,
-            Some(Value::Number(value)) if from == to && value.abs() < LARGEST_NUMBER => return,
+            Some(Value::Number(value)) if from == to && value.abs() <= 1.0 => return,
             Some(multiplier) => format!("T::abs({})", multiplier.text()),
         };
         if from != to {
             let _ = write!(size, " * __row_scales[{from}] * __weight{to}");
             self.operations.multiplications += 2;
         }
+        let size = self.name(&size).text();
         let _ = writeln!(self.text, "__bounded = __bounded & T::less({size}, __limit);");
         self.operations.selects += 1;
         self.comparisons += 1;
+        if !growth.is_empty() {
+            *growth = format!("T::max({growth}, {size})");
+            self.operations.selects += 1;
+        } else {
+            *growth = size;
+        }
     }
 
     /// What is left, in closed form, and the margin of all.
@@ -521,16 +568,8 @@ impl Printer {
         let scales = |name: &str, indices: &[usize]| list(indices.iter().map(|i| format!("{name}[{i}]")));
         let (row_scales, coordinate_scales) =
             (scales("__row_scales", &last.rows), scales("__coordinate_scales", &last.columns));
-        let _ = writeln!(self.text, "let mut __left = {};", zero());
-        for row in &last.rows {
-            for column in &last.columns {
-                if let Some(entry) = self.entry(*row, *column) {
-                    let size = self.in_metric(&entry, *row, *column);
-                    let _ = writeln!(self.text, "__left = T::max(__left, {size});");
-                    self.operations.selects += 1;
-                }
-            }
-        }
+        let places = last.rows.iter().flat_map(|row| last.columns.iter().map(|column| (*row, *column)));
+        let left = self.largest(places);
         let odd = if odd != self.odd { "__reverses = !__reverses;\n" } else { "" };
         let _ = write!(
             self.text,
@@ -538,12 +577,11 @@ impl Printer {
              &{rows}, &{row_scales}, &{coordinate_scales});\n\
              let __turn = <__mbs::Direct{rank}<T> as __mbs::Factorization<T, {rank}>>::reverses(&__last);\n\
              {TURN}\n{odd}\
-             __largest = T::max(__largest, __left);\n\
-             let __ratio = T::min(__least, __left * __own) / __largest;\n\
+             let __ratio = T::min(__least, {left} * __own) / __largest;\n\
              let __margin = T::select(T::is_finite(__ratio), T::min(__ratio, __one), {});\n",
             zero()
         );
-        self.operations += Operations { divisions: 1, multiplications: 1, selects: 4, ..Default::default() };
+        self.operations += Operations { divisions: 1, multiplications: 1, selects: 3, ..Default::default() };
         self.comparisons += 2;
     }
 

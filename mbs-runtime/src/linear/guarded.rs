@@ -47,8 +47,10 @@ fn pivoted<T: Scalar, const K: usize>(
 }
 
 impl<E: Elimination<T, K>, T: Scalar, const K: usize> Factorization<T, K> for Guarded<E, T, K> {
-    /// The margin is the smallest over the largest size of a pivot in the reference metric: the size of an entry, or of
-    /// a 2 × 2 or 3 × 3 pivot its largest entry, and that times its own margin.
+    /// The margin is the smallest size of a pivot over the largest entry, in the reference metric. Sizes are those of what the
+    /// best rows would leave, so that the margin does not depend on the order by more than a small factor: of two rows their
+    /// determinant over the largest entry of its columns, times the largest multiplier; of what is left at the end its largest
+    /// entry times its own margin.
     #[inline(always)]
     fn factorize(a: &[[T; K]; K], row_scales: &[T; K], coordinate_scales: &[T; K]) -> (Self, T) {
         let (factors, margin, bounded) = E::eliminate(a, row_scales, coordinate_scales);
