@@ -199,8 +199,11 @@ fn what_really_ran_in_place_of_independent_coordinates_is_said() {
     assert!(scratch.text("report.html").contains("projection onto all rows together"));
     // Level, x does not determine y.
     let text = run(&["pendulum", "--method", "velocity", "--steps", "4", "--until", "2"]);
-    assert!(figure(&text, "handed over to projection") > 0.0 && !text.contains("method: "), "{text}");
-    assert!(!run(&["pendulum", "--steps", "4", "--until", "2"]).contains("handed over"));
+    assert!(figure(&text, "independent motions chosen anew") > 0.0 && !text.contains("method: "), "{text}");
+    assert!(!run(&["pendulum", "--steps", "4", "--until", "2"]).contains("chosen anew"));
+    // All rods in line, the rows lose rank.
+    let text = run(&["n_four_bar", "--method", "velocity", "--steps", "4", "--until", "1"]);
+    assert!(figure(&text, "handed over to projection") > 0.0, "{text}");
 }
 
 #[test]

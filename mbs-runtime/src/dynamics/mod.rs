@@ -52,7 +52,7 @@
 //! | formulation | for | not for |
 //! |---|---|---|
 //! | [`Projection`] | the default: any rows, redundant ones and singular positions included; positions and velocities on the constraints to rounding | the last microsecond |
-//! | [`VelocityTransformation`] | the fast one: no matrix of multipliers, work in proportion to the coordinates; goes over to `Projection` where its coordinates turn back, and counts that | redundant rows, where it always goes over |
+//! | [`VelocityTransformation`] | the fast one: no matrix of multipliers, work in proportion to the coordinates; chooses other motions where its coordinates turn back, goes over to `Projection` where the rows lose rank, and counts both | redundant rows, where it always goes over |
 //! | [`Baumgarte`] | steps of the least fixed cost in a control loop | ω h > 1 (refused), singular positions |
 //! | [`Unstabilized`] | short runs, and to see the drift | long ones |
 //! | [`Penalty`] | to see what a penalty is | results |

@@ -34,7 +34,9 @@ pub struct Counts {
     pub evaluations: u64,
     /// Of those, with a rank-revealing factorization.
     pub rank_revealing: u64,
-    /// Of those, handed over by a method that needs independent coordinates where it has none.
+    /// Of those, with independent motions chosen anew, where the independent coordinates turn back.
+    pub rechosen: u64,
+    /// Of those, handed over by a method that needs independent motions where the rows lose rank.
     pub handed_over: u64,
     /// Stages that were put onto the constraints before they were evaluated.
     pub projected_stages: u64,

@@ -1,6 +1,8 @@
 //! Velocity transformation: accelerations of independent coordinates alone, through the blocks of the constraints.
 
+use super::kkt::{System, TRUNCATION};
 use super::model::{Counts, Formulation, Model, Solved};
+use super::multipliers;
 use super::projection::Projection;
 use super::vector::{State, Vector};
 use crate::{Dynamic, Failure, Mechanism, Partitioned, Real, Scalar};
@@ -18,8 +20,8 @@ const MOST_CORRECTIONS: u32 = 10;
 /// R and q̈₀ come from the factorised diagonal blocks of the dependent columns, so that the work grows with the number of
 /// coordinates and not with its cube; multipliers follow by substitution. The same solves project positions and
 /// velocities by the shortest way in the mass's measure, so that nothing depends on which coordinates are independent.
-/// Where those determine the others too weakly, at a turning point or a singular position, [`Projection`] goes on, and is
-/// counted.
+/// Where those determine the others too weakly, at a turning point, independent motions are chosen anew from the orthogonal
+/// factors of all rows, with R their null space; where the rows themselves lose rank, [`Projection`] goes on. Both are counted.
 /// Source: García de Jalón & Bayo 1994, §5.2 and §8.2.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct VelocityTransformation;
@@ -108,8 +110,7 @@ where
 {
     let (mechanism, parameters) = (model.mechanism, model.parameters);
     if !is_regular(margin) {
-        counts.handed_over += 1;
-        return Projection::default().solve(model, t, y, lambda, counts);
+        return rechosen(model, (t, y), position, lambda, counts);
     }
     counts.evaluations += 1;
     let gamma = mechanism.gamma(parameters, position, &y.qd);
@@ -127,6 +128,33 @@ where
     model.check_solved(&qdd, &lambda, &force, &gamma)?;
     let rate = model.rates(position, y, qdd, &lambda);
     Ok(Solved { rate, lambda, margin })
+}
+
+/// Rates and multipliers with other independent motions than the independent coordinates: those that the rows leave free.
+#[cold]
+#[inline(never)]
+fn rechosen<S, R: Real, const N: usize, const M: usize>(
+    model: &Model<'_, S, R, N, M>,
+    (t, y): (R, &State<R, N, S::States>),
+    position: &S::Position,
+    lambda: &[R; M],
+    counts: &mut Counts,
+) -> Result<Solved<R, N, M, S::States>, Failure>
+where
+    S: Dynamic<R, N, M> + Partitioned<R, N, M>,
+{
+    let (mechanism, parameters) = (model.mechanism, model.parameters);
+    let (mass, phi_q) = (mechanism.mass(parameters, position), mechanism.phi_q(parameters, position));
+    let system = System::new(&mass, &phi_q, model.metric);
+    let factors = system.factorize_rank_revealing(R::constant(TRUNCATION), S::COORDINATES, t)?;
+    if factors.rank() < M || !is_regular(factors.margin()) {
+        counts.handed_over += 1;
+        return Projection::default().solve(model, t, y, lambda, counts);
+    }
+    counts.evaluations += 1;
+    counts.rechosen += 1;
+    let gamma = mechanism.gamma(parameters, position, &y.qd);
+    multipliers::solve(model, (t, y), position, lambda, &factors, &gamma)
 }
 
 /// [`solve_at`], once a step: the code of the stages stands alone.

@@ -361,9 +361,17 @@ pub fn balance(found: &Simulated) -> Vec<[String; 2]> {
             "projection onto all rows together: of rows that may follow from others no blocks are made";
         figures.push(pair("method", reason.to_string()));
     }
+    if found.counts.rechosen > 0 {
+        let (rechosen, all) = (found.counts.rechosen, found.counts.evaluations);
+        let reason = "the independent coordinates hardly determine the others there";
+        figures.push(pair(
+            "independent motions chosen anew",
+            format!("{rechosen} of {all} evaluations: {reason}"),
+        ));
+    }
     if found.counts.handed_over > 0 {
         let (handed, all) = (found.counts.handed_over, found.counts.evaluations);
-        let reason = "the independent coordinates hardly determine the others there";
+        let reason = "the rows lose rank there";
         figures.push(pair("handed over to projection", format!("{handed} of {all} evaluations: {reason}")));
     }
     if found.counts.rank_revealing > 0 {

@@ -61,10 +61,11 @@ where
         kinetic = kinetic.max(balance.energy.kinetic);
         violation = violation.max(balance.phi).max(balance.phi_d);
     }
-    let [steps, handed] = [run.counts().steps, run.counts().handed_over];
+    let counts = run.counts();
+    let [steps, handed, rechosen] = [counts.steps, counts.handed_over, counts.rechosen];
     println!(
         "four-bars N = {loops}: ends {distance:.1e} m, energy {:.1e} of the kinetic, rows {violation:.1e}; {steps} steps, {handed} \
-         evaluations handed over",
+         evaluations handed over, {rechosen} with other motions",
         defect / kinetic
     );
     [distance, defect / kinetic, violation]
