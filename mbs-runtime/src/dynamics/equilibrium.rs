@@ -1,7 +1,7 @@
 //! Static equilibrium: where a mechanism rests.
 
 use super::implicit::{MOST_ITERATIONS, Tangent};
-use super::kkt::System;
+use super::kkt::{System, TRUNCATION};
 use super::metric::Metric;
 use super::model::Model;
 use super::vector::{State, Vector};
@@ -45,7 +45,7 @@ pub fn equilibrium<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>
     let states = mechanism.start_states(&parameters);
     let mut y = State { q: *q, qd: none, states, work: R::constant(0.0) };
     model.check(t, &y)?;
-    let mut lambda = balancing(&model, t, &y)?;
+    let (mut lambda, _) = balancing(&model, t, &y)?;
     let (mut step, mut last) = (none, R::constant(f64::MAX));
     for iterations in 1..=MOST_ITERATIONS {
         let position = model.position(t, &y);
@@ -60,18 +60,22 @@ pub fn equilibrium<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>
         y.q = y.q.plus(-share, &[1.0], [&step]);
         lambda = lambda.plus(-share, &[1.0], [&change]);
         if model.standing(&step, &y.q, &mut last)? {
+            // Rows that follow from others do so at the end alone: on the way their multipliers may have grown against each other.
+            let (shortest, dependent) = balancing(&model, t, &y)?;
+            lambda = if dependent { shortest } else { lambda };
             return Ok(Equilibrium { q: y.q, lambda, iterations });
         }
     }
     Err(model.unbalanced(&step, t))
 }
 
-/// The multipliers (M) that come nearest to balancing the forces: without them the rows give no stiffness.
+/// The shortest multipliers (M) that come nearest to balancing the forces, and whether rows depend on each other. Without
+/// multipliers the rows give no stiffness.
 fn balancing<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     model: &Model<'_, S, R, N, M>,
     t: R,
     y: &State<R, N, S::States>,
-) -> Result<[R; M], Failure> {
+) -> Result<([R; M], bool), Failure> {
     let (zero, one) = (R::constant(0.0), R::constant(1.0));
     let mut metric = [[zero; N]; N];
     for (index, (row, scale)) in metric.iter_mut().zip(&model.metric.coordinates).enumerate() {
@@ -82,8 +86,9 @@ fn balancing<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     let position = model.position(t, y);
     let force = model.mechanism.force(model.parameters, &position, &y.qd, &y.states, &[zero; M]);
     let phi_q = model.mechanism.phi_q(model.parameters, &position);
-    let factors = System::new(&metric, &phi_q, model.metric).factorize(S::COORDINATES, t)?;
-    Ok(factors.solve(&force, &[zero; M]).1)
+    let system = System::new(&metric, &phi_q, model.metric);
+    let factors = system.factorize_rank_revealing(R::constant(TRUNCATION), S::COORDINATES, t)?;
+    Ok((factors.solve(&force, &[zero; M]).1, factors.rank() < M))
 }
 
 /// The share of `step` that moves no coordinate by more than [`LARGEST_STEP`].

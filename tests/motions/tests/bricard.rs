@@ -1,7 +1,10 @@
 //! Bricard's mechanism as what it is: a threefold-symmetric loop of one degree of freedom, with two angles for six joints.
 #![forbid(unsafe_code)]
 
-use mbs_runtime::dynamics::{DormandPrince8, Explicit, Projection, Simulation, Stages, Tolerance};
+use mbs_runtime::dynamics::{
+    DormandPrince8, Explicit, Projection, Simulation, Stages, Tolerance, equilibrium,
+};
+use mbs_runtime::{Dynamic, Mechanism};
 use mechanisms::bricard::Bricard;
 
 type Vector = [f64; 3];
@@ -103,4 +106,22 @@ fn bricards_loop_moves_as_one_degree_of_freedom_with_two_angles() {
          {swing:.3} rad"
     );
     assert!(worst.iter().all(|worst| *worst < EXACT) && swing > 0.5, "{worst:?}, {swing}");
+}
+
+#[test]
+fn at_rest_the_joints_share_the_weight_by_the_shortest_multipliers() {
+    let bricard: Bricard = Bricard::default();
+    let guess = bricard.guess(&bricard.parameters());
+    let rest = equilibrium(&bricard, 0.0, &guess).expect("it rests");
+    // Five rods of 1 kg: no joint bears more than a few times their weight.
+    let largest = rest.lambda.iter().fold(0.0_f64, |largest, lambda| largest.max(lambda.abs()));
+    println!("bricard at rest: largest multiplier {largest:.3}");
+    assert!(largest > 1.0 && largest < 200.0, "{:?}", rest.lambda);
+    let parameters = bricard.parameters();
+    let position = bricard.position(&parameters, &rest.q, 0.0);
+    let force = bricard.force(&parameters, &position, &[0.0; 23], &[], &rest.lambda);
+    let reaction = bricard.reaction(&parameters, &position, &rest.lambda);
+    for (force, reaction) in force.iter().zip(reaction) {
+        assert!((force - reaction).abs() < 1e-8, "{force} {reaction}");
+    }
 }
