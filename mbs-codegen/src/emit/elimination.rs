@@ -14,7 +14,7 @@ use crate::symbolic::NodeId;
 pub struct Eliminations {
     /// Declarations, one a pattern.
     pub types: String,
-    /// Type and size of each block that has one, by its index in the program.
+    /// Number of the type of each block that has one, by the index of the block in the program.
     of_block: BTreeMap<usize, usize>,
 }
 
