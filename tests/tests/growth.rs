@@ -1,7 +1,7 @@
 //! Chains of four-bar loops: right at any length, at a cost that grows with it, and no faster.
 #![forbid(unsafe_code)]
 
-use mbs_runtime::{BlockWork, Kinematic, Operations, Stepper, WorstCase, mechanism};
+use mbs_runtime::{BlockWork, Kinematic, Mechanism, Operations, Stepper, WorstCase, mechanism};
 
 /// Drag links that turn each other: link i of `mean ± difference` drives link i + 1 of `mean ∓ difference` over a coupler. In
 /// every second loop the ground points the other way, so that it is the loop before seen from its other side: links of
@@ -135,6 +135,56 @@ fn forty_loops_are_four_bars() {
 #[test]
 fn two_hundred_loops_are_four_bars() {
     every_loop_is_one_four_bar::<TwoHundred, _>();
+}
+
+mechanism! {
+    /// A harmonic series, long enough to be evaluated in parts that are compiled by themselves.
+    pub mechanism Series;
+    const TERMS: 1 = 360;
+    param amplitude: m = 0.5;
+    coord phi: rad;
+    coord x: m;
+    drive crank: phi == 2*t/1s;
+    constraint series { x == sum(k in 0..TERMS: amplitude/(k + 1)^3*sin((k + 1)*phi)*exp(-k*phi/1000)); }
+}
+
+/// The sum and its first and second derivative by φ.
+fn series(phi: f64) -> Motion {
+    let mut motion = [0.0; 3];
+    for index in 0..360 {
+        let k = f64::from(index);
+        let (size, rate, decay) = (0.5 / (k + 1.0).powi(3), k + 1.0, k / 1000.0);
+        let (sine, cosine) = (rate * phi).sin_cos();
+        let scale = size * (-decay * phi).exp();
+        motion[0] += scale * sine;
+        motion[1] += scale * (rate * cosine - decay * sine);
+        motion[2] += scale * ((decay * decay - rate * rate) * sine - 2.0 * decay * rate * cosine);
+    }
+    motion
+}
+
+#[test]
+fn a_long_row_has_the_values_of_its_formula() {
+    // Rounding of 360 terms, the angle of the last of which is 200 rad; a derivative multiplies it by up to 360.
+    let rounding = 1e-13;
+    let long = Series::default();
+    let parameters = long.parameters();
+    let position = long.position(&parameters, &[0.3, 0.7], 0.2);
+    let [crank, row]: [f64; 2] = long.phi(&parameters, &position);
+    assert!((crank + 0.1).abs() < rounding, "{crank}");
+    assert!((row - (0.7 - series(0.3)[0])).abs() < rounding, "{row}");
+    let mut stepper = Stepper::assemble(long, [0.0, 0.0], 0.0).expect("an assembly");
+    for _ in 0..10 {
+        stepper.advance(0.03).expect("a step");
+        let [value, slope, curvature] = series(2.0 * stepper.t());
+        let expected = [value, 2.0 * slope, 4.0 * curvature];
+        let found = [stepper.q()[1], stepper.qd()[1], stepper.qdd()[1]];
+        for (order, (found, expected)) in found.into_iter().zip(expected).enumerate() {
+            let bound = rounding * 360.0_f64.powi(order as i32);
+            assert!((found - expected).abs() < bound, "derivative {order}: {found} {expected}");
+        }
+        assert!(stepper.closure_error() < rounding);
+    }
 }
 
 fn total(count: Operations) -> usize {

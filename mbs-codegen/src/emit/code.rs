@@ -82,6 +82,11 @@ pub fn lets_kept(section: &Section, kept: &BTreeMap<NodeId, usize>, scope: &Scop
     let (chunks, exports) = chunks(section, &kept.keys().copied().collect(), scope);
     let zero = scope.or_zero(None);
     let _ = writeln!(text, "let mut __kept = [{zero}; {}];", kept.len());
+    // Coordinates and the time stand in no line.
+    let computed: BTreeSet<NodeId> = exports.iter().flatten().copied().collect();
+    for (id, place) in kept.iter().filter(|(id, _)| !computed.contains(id)) {
+        let _ = writeln!(text, "__kept[{place}] = {};", scope.operand(*id));
+    }
     apart(&chunks, &exports, &BTreeSet::new(), kept, scope, text);
 }
 
