@@ -8,14 +8,25 @@ use crate::motion::{Forces, LoadCurve};
 /// The motions of several runs below one header with names and units.
 ///
 /// Columns: `run`, `t`, `q`, `q̇`, `q̈` of each coordinate, value and derivatives of each output, energies, loads and
-/// multipliers where there are masses, and the solver's figures. Numbers are the shortest that read back as the same bits. All motions are of one mechanism.
+/// multipliers where there are masses, and the solver's figures. A load or multiplier that is one choice of many at some
+/// instant of some run says so beside its unit, and the last column has the number of rows that follow from others. Numbers
+/// are the shortest that read back as the same bits. All motions are of one mechanism.
 pub fn write(runs: &[(&str, &Motion)]) -> String {
     let mut text = String::new();
     if let Some((_, motion)) = runs.first() {
-        let names: Vec<String> = columns(motion).into_iter().map(|(name, _)| quoted(&name)).collect();
+        let mut names: Vec<String> = columns(motion).into_iter().map(|(name, _)| name).collect();
+        for (_, other) in &runs[1..] {
+            // The mark of any run is the longer name.
+            let others = names.iter_mut().zip(columns(other));
+            others
+                .filter(|(name, (other, _))| name.len() < other.len())
+                .for_each(|(name, (other, _))| *name = other);
+        }
+        let names: Vec<String> = names.iter().map(|name| quoted(name)).collect();
         text.push_str("run,t (s),");
         text.push_str(&names.join(","));
-        text.push_str(",closure (1),iterations (1),margin (1)\n");
+        text.push_str(",closure (1),iterations (1),margin (1)");
+        text.push_str(if motion.dynamics.is_some() { ",dependent rows (1)\n" } else { "\n" });
     }
     for (label, motion) in runs {
         let columns = columns(motion);
@@ -23,6 +34,8 @@ pub fn write(runs: &[(&str, &Motion)]) -> String {
             text.push_str(&quoted(label));
             let numbers = columns.iter().map(|(_, values)| values[row]);
             let figures = [motion.closure[row], f64::from(motion.iterations[row]), motion.margin[row]];
+            let dependent = motion.dynamics.iter().filter_map(|forces| forces.dependent.get(row));
+            let figures = figures.into_iter().chain(dependent.map(|count| f64::from(*count)));
             for number in core::iter::once(*time).chain(numbers).chain(figures) {
                 write!(text, ",{number:?}").expect("a string takes all");
             }
@@ -74,7 +87,10 @@ fn force_columns(forces: &Forces) -> Vec<(String, &[f64])> {
     let kept = named.into_iter().filter(|(_, values)| !values.is_empty());
     let mut columns: Vec<(String, &[f64])> =
         kept.map(|(name, values)| (name.to_string(), values.as_slice())).collect();
-    let curve = |kind: &str, curve: &'_ LoadCurve| format!("{kind}{} ({})", curve.name, curve.unit);
+    let curve = |kind: &str, curve: &'_ LoadCurve| {
+        let mark = if curve.shared > 0 { "; not unique" } else { "" };
+        format!("{kind}{} ({}{mark})", curve.name, curve.unit)
+    };
     columns.extend(forces.loads.iter().map(|load| (curve("", load), load.value.as_slice())));
     columns.extend(forces.multipliers.iter().map(|row| (curve("lambda ", row), row.value.as_slice())));
     columns
@@ -121,19 +137,28 @@ mod tests {
 
     #[test]
     fn energies_loads_and_multipliers_stand_between_outputs_and_figures() {
-        let curve = |name, unit: &str| LoadCurve { name, unit: unit.to_string(), value: vec![5.0, 6.0] };
+        let curve =
+            |name, unit: &str| LoadCurve { name, unit: unit.to_string(), value: vec![5.0, 6.0], shared: 0 };
         let forces = Forces {
             kinetic: vec![1.0, 2.0],
             potential: vec![3.0, 4.0],
             loads: vec![curve("tension", "N")],
             multipliers: vec![curve("rod", "N/m")],
+            dependent: vec![0, 2],
             ..Forces::default()
         };
-        let text = write(&[("run", &Motion { dynamics: Some(forces), ..motion() })]);
+        let whole = Motion { dynamics: Some(forces.clone()), ..motion() };
+        let text = write(&[("run", &whole)]);
         let header = text.lines().next().unwrap_or("");
-        let end = "kinetic energy (J),potential energy (J),tension (N),lambda rod (N/m),closure (1),iterations (1),margin (1)";
+        let end = "kinetic energy (J),potential energy (J),tension (N),lambda rod (N/m),closure (1),iterations (1),margin (1),dependent rows (1)";
         assert!(header.ends_with(end), "{header}");
-        assert!(text.ends_with(",2.0,4.0,6.0,6.0,1e-17,2.0,0.5\n"), "{text}");
+        assert!(text.ends_with(",2.0,4.0,6.0,6.0,1e-17,2.0,0.5,2.0\n"), "{text}");
+        // What is one choice of many in any of the runs is marked in the header of all.
+        let mut shared = forces;
+        shared.multipliers[0].shared = 1;
+        let text = write(&[("run", &whole), ("other", &Motion { dynamics: Some(shared), ..motion() })]);
+        let header = text.lines().next().unwrap_or("");
+        assert!(header.contains(",tension (N),lambda rod (N/m; not unique),closure"), "{header}");
     }
 
     #[test]

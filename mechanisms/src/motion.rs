@@ -43,6 +43,22 @@ pub struct Forces {
     pub loads: Vec<LoadCurve>,
     /// Multipliers, one a row.
     pub multipliers: Vec<LoadCurve>,
+    /// Number of rows that follow from others, one value an instant.
+    pub dependent: Vec<u32>,
+    /// Which rows those are, each once.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub dependent_rows: Vec<DependentRow>,
+}
+
+/// A row that follows from others at some instants.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct DependentRow {
+    /// Name, as the text labels it.
+    pub name: &'static str,
+    /// Its line in the text.
+    pub line: u32,
+    /// Number of those instants.
+    pub instants: usize,
 }
 
 /// A load or a multiplier over the time.
@@ -54,6 +70,8 @@ pub struct LoadCurve {
     pub unit: String,
     /// Values.
     pub value: Vec<f64>,
+    /// Number of instants at which the value is one choice of many, the shortest: rows follow from others there.
+    pub shared: usize,
 }
 
 /// One instant of a motion.
@@ -135,7 +153,7 @@ impl Motion {
             closure: pick(&self.closure),
             iterations: kept.iter().map(|index| self.iterations[*index]).collect(),
             margin: pick(&self.margin),
-            dynamics: self.dynamics.as_ref().map(|forces| forces.picked(pick)),
+            dynamics: self.dynamics.as_ref().map(|forces| forces.picked(&kept, pick)),
         }
     }
 
@@ -188,7 +206,7 @@ impl Motion {
 impl Forces {
     /// No instant yet, for outputs `loads` and the multipliers of `rows`.
     pub fn of(loads: &[Entry], rows: &[Entry]) -> Self {
-        let curve = |name, unit| LoadCurve { name, unit, value: Vec::new() };
+        let curve = |name, unit| LoadCurve { name, unit, value: Vec::new(), shared: 0 };
         Forces {
             loads: loads.iter().map(|entry| curve(entry.name, entry.unit.to_string())).collect(),
             multipliers: rows.iter().map(|row| curve(row.name, multiplier_unit(row.unit))).collect(),
@@ -204,12 +222,29 @@ impl Forces {
         curves.for_each(|(curve, value)| curve.value.push(*value));
     }
 
-    fn picked(&self, pick: impl Fn(&Vec<f64>) -> Vec<f64>) -> Forces {
+    /// What is one choice of many at the instant that was pushed last: of `loads` and multipliers those that are not marked
+    /// `unique`, and the `dependent` rows.
+    pub fn push_determinacy(&mut self, loads: &[bool], unique: &[bool], dependent: &[Entry]) {
+        let curves = self.loads.iter_mut().zip(loads).chain(self.multipliers.iter_mut().zip(unique));
+        curves.for_each(|(curve, unique)| curve.shared += usize::from(!unique));
+        self.dependent.push(u32::try_from(dependent.len()).unwrap_or(u32::MAX));
+        for row in dependent {
+            match self.dependent_rows.iter_mut().find(|known| known.name == row.name) {
+                Some(known) => known.instants += 1,
+                None => {
+                    self.dependent_rows.push(DependentRow { name: row.name, line: row.line, instants: 1 });
+                }
+            }
+        }
+    }
+
+    fn picked(&self, kept: &[usize], pick: impl Fn(&Vec<f64>) -> Vec<f64>) -> Forces {
         let curves = |curves: &[LoadCurve]| {
             let curve = |curve: &LoadCurve| LoadCurve {
                 name: curve.name,
                 unit: curve.unit.clone(),
                 value: pick(&curve.value),
+                shared: curve.shared,
             };
             curves.iter().map(curve).collect()
         };
@@ -222,6 +257,8 @@ impl Forces {
             closure_rate: optional(&self.closure_rate),
             loads: curves(&self.loads),
             multipliers: curves(&self.multipliers),
+            dependent: kept.iter().filter_map(|index| self.dependent.get(*index).copied()).collect(),
+            dependent_rows: self.dependent_rows.clone(),
         }
     }
 }

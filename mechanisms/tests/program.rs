@@ -207,6 +207,33 @@ fn what_really_ran_in_place_of_independent_coordinates_is_said() {
 }
 
 #[test]
+fn a_multiplier_that_is_one_choice_of_many_is_never_shown_without_a_word() {
+    let scratch = Scratch::new("unique");
+    let run = |arguments: &[&str]| {
+        let text = standard_output(run_into(&scratch, &[&["run"], arguments].concat()));
+        let values = scratch.text("motion.csv");
+        let header = values.lines().next().expect("a header").to_string();
+        (text, header, cells(values.lines().last().expect("a row")).pop(), scratch.text("report.html"))
+    };
+    let (text, header, dependent, page) = run(&["bricard", "--steps", "2", "--until", "0.02"]);
+    assert!(text.contains("rows that follow from others: `joint.19` (line "), "{text}");
+    assert!(
+        text.lines()
+            .any(|line| line.contains("lambda joint.0: ")
+                && line.ends_with("not unique: the shortest of many"))
+    );
+    assert!(
+        header.contains(",lambda joint.0 (N; not unique),") && header.ends_with(",dependent rows (1)"),
+        "{header}"
+    );
+    assert_eq!(dependent, Some(1.0));
+    assert!(page.contains("\"shared\":3") && page.contains("\"dependent_rows\":[{\"name\":\"joint.19\""));
+    let (text, header, dependent, page) = run(&["pendulum", "--steps", "2", "--until", "0.02"]);
+    assert!(!text.contains("not unique") && !header.contains("not unique"), "{text}{header}");
+    assert!(dependent == Some(0.0) && page.contains("\"shared\":0") && !page.contains("\"dependent_rows\":"));
+}
+
+#[test]
 fn what_an_analysis_has_no_use_for_is_refused() {
     let cases: [(&[&str], &str); 8] = [
         (&["pendulum", "--guess", "P.0=1"], "use `--analysis static` or `linear`"),

@@ -18,6 +18,8 @@ pub struct Equilibrium<R, const N: usize, const M: usize> {
     pub q: [R; N],
     /// Multipliers λ: M.
     pub lambda: [R; M],
+    /// Which multipliers are the only ones that hold it so; the others are the shortest of many: M.
+    pub unique: [bool; M],
     /// Iterations spent.
     pub iterations: u32,
 }
@@ -61,34 +63,28 @@ pub fn equilibrium<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>
         lambda = lambda.plus(-share, &[1.0], [&change]);
         if model.standing(&step, &y.q, &mut last)? {
             // Rows that follow from others do so at the end alone: on the way their multipliers may have grown against each other.
-            let (shortest, dependent) = balancing(&model, t, &y)?;
-            lambda = if dependent { shortest } else { lambda };
-            return Ok(Equilibrium { q: y.q, lambda, iterations });
+            let (shortest, unique) = balancing(&model, t, &y)?;
+            lambda = if unique.contains(&false) { shortest } else { lambda };
+            return Ok(Equilibrium { q: y.q, lambda, unique, iterations });
         }
     }
     Err(model.unbalanced(&step, t))
 }
 
-/// The shortest multipliers (M) that come nearest to balancing the forces, and whether rows depend on each other. Without
-/// multipliers the rows give no stiffness.
+/// The shortest multipliers (M) that come nearest to balancing the forces, and which of them are the only ones (M).
+/// Without multipliers the rows give no stiffness.
 fn balancing<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     model: &Model<'_, S, R, N, M>,
     t: R,
     y: &State<R, N, S::States>,
-) -> Result<([R; M], bool), Failure> {
-    let (zero, one) = (R::constant(0.0), R::constant(1.0));
-    let mut metric = [[zero; N]; N];
-    for (index, (row, scale)) in metric.iter_mut().zip(&model.metric.coordinates).enumerate() {
-        if let Some(entry) = row.get_mut(index) {
-            *entry = one / (*scale * *scale);
-        }
-    }
+) -> Result<([R; M], [bool; M]), Failure> {
+    let zero = R::constant(0.0);
     let position = model.position(t, y);
     let force = model.mechanism.force(model.parameters, &position, &y.qd, &y.states, &[zero; M]);
     let phi_q = model.mechanism.phi_q(model.parameters, &position);
-    let system = System::new(&metric, &phi_q, model.metric);
+    let system = System::new(&model.metric.mass(), &phi_q, model.metric);
     let factors = system.factorize_rank_revealing(R::constant(TRUNCATION), S::COORDINATES, t)?;
-    Ok((factors.solve(&force, &[zero; M]).1, factors.rank() < M))
+    Ok((factors.solve(&force, &[zero; M]).1, factors.unique_multipliers()))
 }
 
 /// The share of `step` that moves no coordinate by more than [`LARGEST_STEP`].

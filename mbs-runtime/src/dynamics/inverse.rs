@@ -40,7 +40,7 @@
 //! - `lambda(row)` is the multiplier of that row alone; `reaction(pin, body)` the whole force in a joint, whatever the
 //!   coordinates.
 //! - With [`Stepper`](crate::Stepper) the positions of a whole motion come one after the other, each the guess of the next.
-//! - With dependent rows the multipliers are the shortest; where the drives leave a coordinate free it follows from the forces.
+//! - With dependent rows the multipliers are the shortest, and [`Driven::unique`] says which are not the only ones; where the drives leave a coordinate free it follows from the forces.
 
 use super::metric::Metric;
 use super::model::{Counts, Formulation, Model, Solved};
@@ -60,6 +60,8 @@ pub struct Driven<R, const N: usize, const M: usize, L> {
     pub qdd: [R; N],
     /// Multipliers from Φ_qᵀ λ = Q − M q̈: M. A drive's effort is −λ; a reaction's force on the coordinates is −Φ_qᵀ λ.
     pub lambda: [R; M],
+    /// Which multipliers are the only ones that the motion may have; the others are the shortest of many: M.
+    pub unique: [bool; M],
     /// Outputs that use them.
     pub loads: L,
 }
@@ -97,5 +99,5 @@ pub fn inverse<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     let (qd, qdd, lambda) = (y.qd, solved.rate.qd, solved.lambda);
     let motion = Motion { qd: &qd, qdd: &qdd, lambda: &lambda, states: &y.states };
     let loads = mechanism.loads(&parameters, &position, &motion);
-    Ok(Driven { q: y.q, qd, qdd, lambda, loads })
+    Ok(Driven { q: y.q, qd, qdd, lambda, unique: factors.unique_multipliers(), loads })
 }

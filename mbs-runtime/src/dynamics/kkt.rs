@@ -181,6 +181,25 @@ impl<R: Real, const N: usize, const M: usize> Factors<R, N, M> {
         if let Kind::NullSpace(null_space) = &self.kind { null_space.rank() } else { M }
     }
 
+    /// Combinations of multipliers without effect, in the metric, M less the rank of them, then zeros.
+    pub(super) fn idle_shares(&self) -> [[R; M]; M] {
+        let none = [[R::constant(0.0); M]; M];
+        if let Kind::NullSpace(null_space) = &self.kind { null_space.idle() } else { none }
+    }
+
+    /// The same in the units of the multipliers, each as long as the largest of them.
+    pub(super) fn idle_multipliers(&self) -> [[R; M]; M] {
+        self.idle_shares().map(|mut shares| {
+            let mut largest = R::constant(0.0);
+            for (share, scale) in shares.iter_mut().zip(&self.metric.rows) {
+                *share = *share / *scale;
+                largest = largest.max(share.abs());
+            }
+            let any = R::constant(0.0).less(largest);
+            shares.map(|share| if any { share / largest } else { share })
+        })
+    }
+
     /// Which rows depend on the others: M.
     pub fn dependent_rows(&self) -> [bool; M] {
         if let Kind::NullSpace(null_space) = &self.kind { null_space.dependent_rows() } else { [false; M] }

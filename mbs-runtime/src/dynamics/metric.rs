@@ -35,6 +35,18 @@ impl<R: Real, const N: usize, const M: usize> Metric<R, N, M> {
         Metric { coordinates: self.coordinates, rows: [], kinds: self.kinds }
     }
 
+    /// The metric as a mass, one in every direction: N rows of N.
+    pub(super) fn mass(&self) -> [[R; N]; N] {
+        let (zero, one) = (R::constant(0.0), R::constant(1.0));
+        let mut mass = [[zero; N]; N];
+        for (index, (row, scale)) in mass.iter_mut().zip(&self.coordinates).enumerate() {
+            if let Some(entry) = row.get_mut(index) {
+                *entry = one / (*scale * *scale);
+            }
+        }
+        mass
+    }
+
     /// Of each row, the largest entry of `mass` (N rows of N) in the metric over its scale squared: what Φ_qᵀ Φ_q is to be
     /// multiplied by to be as large as the mass: M.
     pub(super) fn weights(&self, mass: &[[R; N]; N]) -> [R; M] {

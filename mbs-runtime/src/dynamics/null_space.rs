@@ -279,18 +279,29 @@ impl<R: Real, const N: usize, const M: usize> NullSpace<R, N, M> {
         dependent
     }
 
-    pub(super) fn unique_multipliers(&self) -> [bool; M] {
-        let mut unique = [true; M];
-        for k in self.rank..M {
+    /// Combinations of multipliers without effect, orthonormal: M less the rank of them, then zeros.
+    pub(super) fn idle(&self) -> [[R; M]; M] {
+        let mut combinations = [[R::constant(0.0); M]; M];
+        for (combination, k) in combinations.iter_mut().zip(self.rank..M) {
             let mut idle = [R::constant(0.0); M];
             if let Some(place) = idle.get_mut(k) {
                 *place = R::constant(1.0);
             }
             self.right.iter().take(self.rank).rev().for_each(|reflection| reflection.apply(&mut idle));
             for (share, row) in idle.iter().zip(self.order) {
-                if let Some(place) = unique.get_mut(row) {
-                    *place &= share.abs() < R::constant(LEAST_SHARE);
+                if let Some(place) = combination.get_mut(row) {
+                    *place = *share;
                 }
+            }
+        }
+        combinations
+    }
+
+    pub(super) fn unique_multipliers(&self) -> [bool; M] {
+        let mut unique = [true; M];
+        for combination in self.idle() {
+            for (unique, share) in unique.iter_mut().zip(&combination) {
+                *unique &= share.abs() < R::constant(LEAST_SHARE);
             }
         }
         unique

@@ -1,6 +1,7 @@
 //! A mechanism that moves by its forces: state and mechanism in one place, one call a step.
 
 use super::adaptive::{Accepted, Adaptive, Point};
+use super::determinacy::Determinacy;
 use super::embedded::Embedded;
 use super::event::{Direction, passage};
 use super::metric::{Metric, Tolerance};
@@ -275,7 +276,8 @@ where
         &self.now.solved.rate.qd
     }
 
-    /// Multipliers λ: M; a row's force on the coordinates is −Φ_qᵀ λ.
+    /// Multipliers λ: M; a row's force on the coordinates is −Φ_qᵀ λ. Where rows follow from others they are one choice of
+    /// many, see [`determinacy`](Self::determinacy).
     pub fn lambda(&self) -> &[R; M] {
         &self.now.solved.lambda
     }
@@ -322,6 +324,29 @@ where
         let motion =
             Motion { qd: self.qd(), qdd: self.qdd(), lambda: self.lambda(), states: &self.now.y.states };
         self.mechanism.loads(&self.parameters, &position, &motion)
+    }
+
+    /// Which multipliers are the only ones that move the mechanism so, and which rows follow from others here.
+    ///
+    /// # Errors
+    /// Those of [`Determinacy::of`].
+    pub fn determinacy(&self) -> Result<Determinacy<R, M>, Failure> {
+        let position = self.model().position(self.now.t, &self.now.y);
+        Determinacy::of(&self.mechanism, &self.parameters, &position, self.now.t)
+    }
+
+    /// Marks in `unique`, one of each of [`loads`](Self::loads), those that are the same whichever multipliers bear the
+    /// forces.
+    ///
+    /// # Errors
+    /// Those of [`Determinacy::of`].
+    pub fn mark_unique_loads(&self, unique: &mut [bool]) -> Result<(), Failure> {
+        let position = self.model().position(self.now.t, &self.now.y);
+        let found = Determinacy::of(&self.mechanism, &self.parameters, &position, self.now.t)?;
+        let motion =
+            Motion { qd: self.qd(), qdd: self.qdd(), lambda: self.lambda(), states: &self.now.y.states };
+        found.mark_loads(&self.mechanism, &self.parameters, &position, &motion, unique);
+        Ok(())
     }
 
     /// Energy balance and constraint norms.

@@ -65,13 +65,7 @@ fn correction<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     held: &[u16],
     residuals: &[R; M],
 ) -> Result<[R; N], Failure> {
-    let (zero, one) = (R::constant(0.0), R::constant(1.0));
-    let mut metric = [[zero; N]; N];
-    for (index, (row, scale)) in metric.iter_mut().zip(&model.metric.coordinates).enumerate() {
-        if let Some(entry) = row.get_mut(index) {
-            *entry = one / (*scale * *scale);
-        }
-    }
+    let zero = R::constant(0.0);
     let mut phi_q = model.mechanism.phi_q(model.parameters, position);
     for row in &mut phi_q {
         for column in held {
@@ -80,7 +74,7 @@ fn correction<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
             }
         }
     }
-    let system = System::new(&metric, &phi_q, model.metric);
+    let system = System::new(&model.metric.mass(), &phi_q, model.metric);
     let factors = system.factorize_rank_revealing(R::constant(WEAKEST), S::COORDINATES, t)?;
     Ok(factors.solve(&[zero; N], residuals).0)
 }

@@ -1,6 +1,7 @@
 //! Motion from forces, on mechanisms whose answers are known.
 
 mod analyses;
+mod determinacy;
 mod failures;
 mod integrators;
 mod linkage;

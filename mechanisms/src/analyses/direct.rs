@@ -7,10 +7,10 @@ use mbs_runtime::dynamics::{
     GeneralizedAlpha, Method, Projection, RungeKutta4, Simulation, Stages, Tolerance, Unstabilized,
     VelocityTransformation,
 };
-use mbs_runtime::{Dynamic, Failure, Partitioned};
+use mbs_runtime::{Dynamic, Failure, Motion as Moving, Partitioned};
 
-use super::AnyDynamics;
 use super::start::{Start, start, text_start};
+use super::{AnyDynamics, determined};
 use crate::facade::{Motion, State};
 use crate::motion::{self, Forces};
 
@@ -278,17 +278,15 @@ where
     let started = Instant::now();
     let mut motion = Motion::of(S::COORDINATES, S::OUTPUTS, run.outputs().as_ref());
     let mut forces = Forces::of(S::LOADS, S::ROWS);
-    let mut failure = None;
     let mut before = run.counts();
-    push(&mut motion, &mut forces, &run, before);
+    let mut failure = push(&mut motion, &mut forces, &run, before).err();
     for (done, time) in times.iter().enumerate().skip(1) {
         progress(done);
-        if let Err(found) = advance(&mut run, *time) {
-            failure = Some(found);
-            break;
+        if failure.is_none() {
+            let moved = advance(&mut run, *time);
+            failure = moved.and_then(|()| push(&mut motion, &mut forces, &run, before)).err();
+            before = run.counts();
         }
-        push(&mut motion, &mut forces, &run, before);
-        before = run.counts();
     }
     progress(times.len());
     let spans = times.len().saturating_sub(1).max(1);
@@ -304,7 +302,8 @@ fn push<S, X, const N: usize, const M: usize>(
     forces: &mut Forces,
     run: &Simulation<S, X, f64, N, M>,
     before: Counts,
-) where
+) -> Result<(), Failure>
+where
     S: Dynamic<f64, N, M>,
     X: Method<S, f64, N, M>,
 {
@@ -321,4 +320,8 @@ fn push<S, X, const N: usize, const M: usize>(
     forces.work.push(balance.work);
     forces.defect.push(balance.defect);
     forces.closure_rate.push(balance.phi_d);
+    let (mechanism, parameters) = (run.mechanism(), run.mechanism().parameters());
+    let position = mechanism.position(&parameters, run.q(), run.t());
+    let moving = Moving { qd: run.qd(), qdd: run.qdd(), lambda: run.lambda(), states: run.states() };
+    determined::push(forces, mechanism, (&parameters, &position), run.t(), &moving)
 }

@@ -1,8 +1,9 @@
 //! Inverse dynamics: the forces of a motion that drives prescribe.
 
 use mbs_runtime::dynamics::inverse;
-use mbs_runtime::{Dynamic, Failure};
+use mbs_runtime::{Dynamic, Failure, Motion as Moving};
 
+use super::determined;
 use crate::facade::Motion;
 use crate::motion::Forces;
 
@@ -26,6 +27,9 @@ pub(crate) fn add_forces<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
         let position = mechanism.position(&parameters, &driven.q, *t);
         let energy = mechanism.energy(&parameters, &position, &driven.qd);
         forces.push(energy, driven.loads.as_ref(), &driven.lambda);
+        let states = mechanism.start_states(&parameters);
+        let moving = Moving { qd: &driven.qd, qdd: &driven.qdd, lambda: &driven.lambda, states: &states };
+        determined::push(&mut forces, &mechanism, (&parameters, &position), *t, &moving)?;
     }
     motion.dynamics = Some(forces);
     Ok(())

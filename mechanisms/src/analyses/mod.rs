@@ -1,5 +1,6 @@
 //! What masses add to the analyses of a mechanism: motion from forces, forces from motion, rest.
 
+mod determined;
 pub mod direct;
 pub mod driven;
 pub mod linear;

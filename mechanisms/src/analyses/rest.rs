@@ -5,6 +5,7 @@ use mbs_runtime::dynamics::{
 };
 use mbs_runtime::{Dynamic, Failure, Motion as Moving};
 
+use super::determined;
 use crate::facade::Motion;
 use crate::motion::{Forces, Instant};
 
@@ -37,6 +38,7 @@ pub(crate) fn rest<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
     let mut forces = Forces::of(S::LOADS, S::ROWS);
     let energy = mechanism.energy(&parameters, &position, &none);
     forces.push(energy, loads.as_ref(), &found.lambda);
+    determined::push(&mut forces, &mechanism, (&parameters, &position), 0.0, &moving)?;
     motion.dynamics = Some(forces);
     Ok(motion)
 }

@@ -10,6 +10,7 @@ use mechanisms::analyses::AnyDynamics;
 use mechanisms::analyses::direct::{Approach, Implicit, ImplicitMethod, Simulated, Stabilization, Steps};
 use mechanisms::analyses::linear::ZERO;
 use mechanisms::facade::{AnyMechanism, Motion, MotionStop};
+use mechanisms::motion::{DependentRow, Forces, LoadCurve};
 use mechanisms::registry::{Preset, instants};
 
 use super::chosen::{coordinate, finite};
@@ -410,10 +411,36 @@ fn loads(motion: &Motion) -> Vec<[String; 2]> {
         let most = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         if values.len() == 1 { format!("{least:.6}") } else { format!("{least:.4} to {most:.4}") }
     };
-    let line = |curve: &mechanisms::motion::LoadCurve| {
-        [format!("{prefix}{}", curve.name), format!("{} {}", range(&curve.value), curve.unit)]
+    let line = |curve: &LoadCurve| {
+        let shared = match curve.shared {
+            0 => String::new(),
+            all if all == curve.value.len() => ", not unique: the shortest of many".to_string(),
+            some => format!(", not unique at {some} of {} instants", curve.value.len()),
+        };
+        [format!("{prefix}{}", curve.name), format!("{} {}{shared}", range(&curve.value), curve.unit)]
     };
-    curves.iter().map(line).collect()
+    let mut lines: Vec<[String; 2]> = curves.iter().map(line).collect();
+    lines.extend(surplus(forces));
+    lines
+}
+
+/// The rows that follow from others, each once, and how many multipliers share the forces for that.
+fn surplus(forces: &Forces) -> Option<[String; 2]> {
+    let instants = forces.dependent.len();
+    let row = |row: &DependentRow| {
+        let when = if row.instants == instants {
+            String::new()
+        } else {
+            format!(" at {} of {instants} instants", row.instants)
+        };
+        format!("`{}` (line {}){when}", row.name, row.line)
+    };
+    let rows: Vec<String> = forces.dependent_rows.iter().map(row).collect();
+    let shared = forces.multipliers.iter().filter(|curve| curve.shared > 0).count();
+    let all = forces.multipliers.len();
+    let rest = format!("the multipliers of {shared} of {all} rows are not unique, but the shortest of many");
+    (!rows.is_empty())
+        .then(|| ["rows that follow from others".to_string(), format!("{}; {rest}", rows.join(", "))])
 }
 
 /// A number of at least zero.

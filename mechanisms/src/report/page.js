@@ -667,14 +667,14 @@ function createPlot(host, panel, group) {
 }
 
 /** Panels side by side with one legend; `list` names the series. */
-function createGroup(host, title, names, panels) {
+function createGroup(host, title, names, panels, mark = () => "") {
   const group = { series: names.map((name, i) => ({ name, index: i, colour: `var(--s${i % 7})`, hidden: false })) };
   const legend = el("div", { className: "legend" }, ...(title ? [el("h3", { textContent: title })] : []));
   const row = el("div", { className: "panels" }), dashes = el("span", { className: "dashes" });
   host.append(el("div", { className: "group" }, legend, row));
   const plots = panels.map(panel => createPlot(row, panel, group));
   for (const series of group.series.filter(series => series.name)) {
-    const button = el("button", { type: "button", title: "Show or hide" }, swatch(series.colour), series.name);
+    const button = el("button", { type: "button", title: "Show or hide" }, swatch(series.colour), series.name + mark(series.name));
     button.setAttribute("aria-pressed", "true");
     button.addEventListener("click", () => {
       series.hidden = !series.hidden;
@@ -691,6 +691,8 @@ function createGroup(host, title, names, panels) {
 }
 
 const forcesOf = run => run.dynamics || {};
+/** What a name needs beside it: a value that is one choice of many is no fact. */
+const markOf = (kind, name) => runs.some(run => entriesOf(run, kind).some(entry => entry.name === name && entry.shared)) ? " (not unique)" : "";
 const entriesOf = (run, kind) => run[kind] || forcesOf(run)[kind] || [];
 
 /** A group of plots a unit: values with rates and accelerations where the data have them. */
@@ -704,7 +706,7 @@ function createSeries(host, kind, symbols, keys) {
     const panels = keys.map((key, order) => ({ title: symbols[order], unit: derived(unit, order), get: (run, series) => (find(run, series.name) || {})[key] }))
       .filter(panel => runs.some(run => names.some(name => panel.get(run, { name }))));
     const title = { rad: "Angles", m: "Lengths" }[unit] || (unit && unit !== "1" ? `In ${unit}` : "Without unit");
-    createGroup(host, title, names, panels);
+    createGroup(host, title, names, panels, name => markOf(kind, name));
   }
   host.parentNode.hidden = !host.childElementCount;
 }
@@ -722,6 +724,7 @@ function createSolver(host) {
     { title: "|Φ̇|", unit: "1/s", log: true, get: run => forcesOf(run).closure_rate },
     { title: integrated ? "evaluations an instant" : "iterations a step", unit: "1", zero: true, whole: true, get: run => run.iterations },
     { title: "margin to singularity", unit: "1", zero: true, get: run => run.margin },
+    { title: "rows that follow from others", unit: "1", zero: true, whole: true, get: run => (forcesOf(run).dependent_rows || []).length ? forcesOf(run).dependent : null },
   ].filter(({ get }) => runs.some(run => (get(run) || []).length));
   if (quantities.length) createGroup(host, "", [""], quantities);
   host.parentNode.hidden = !quantities.length;
@@ -747,7 +750,7 @@ function createForces(host, kind) {
   for (const { name, unit } of entries) {
     const get = run => (entriesOf(run, kind).find(entry => entry.name === name) || {}).value || [];
     const format = formatter(largest(runs.map(get)), 6), cells = [0, 1, 2].map(() => el("td"));
-    body.append(el("tr", {}, el("th", { scope: "row" }, name, el("small", { textContent: ` ${unit}` })), ...cells));
+    body.append(el("tr", {}, el("th", { scope: "row" }, name, el("small", { textContent: ` ${unit}${markOf(kind, name)}` })), ...cells));
     updates.push(k => {
       const values = get(runs[state.primary]), texts = [values[k], ...extent([values])].map(format);
       cells.forEach((cell, i) => { cell.textContent = texts[i]; });

@@ -52,6 +52,7 @@ where
     let motion = fixed(mechanism, step)?;
     let (q, qd) = (*motion.q(), *motion.qd());
     black_box(entry::start_near(mechanism, step, motion.t(), q, qd)?);
+    black_box(entry::determinacy(&motion, black_box(&mut [true; 4]))?);
     black_box(entry::linearize(motion.mechanism(), motion.instant())?);
     black_box(entry::inverse(motion.mechanism(), motion.t(), &q)?);
     black_box(entry::equilibrium(motion.mechanism(), motion.t(), &q)?);

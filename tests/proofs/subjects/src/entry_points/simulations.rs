@@ -1,8 +1,8 @@
 //! Motion from forces, forces from motion, rest.
 
 use mbs_runtime::dynamics::{
-    Balance, Direction, Doubt, Driven, Embedded, Equilibrium, Explicit, Formulation, Instant, Linearization,
-    Method, Simulation, Tolerance,
+    Balance, Determinacy, Direction, Doubt, Driven, Embedded, Equilibrium, Explicit, Formulation, Instant,
+    Linearization, Method, Simulation, Tolerance,
 };
 use mbs_runtime::{Dynamic, Failure, Real};
 
@@ -54,6 +54,13 @@ entry_points! {
         simulation: &Simulation<S, X, R, N, M>,
     ) -> (S::Outputs, S::Loads) {
         (simulation.outputs(), simulation.loads())
+    }
+    /// What of the multipliers and loads is determined.
+    fn determinacy[S: Dynamic<R, N, M>, X: Method<S, R, N, M>, R: Real, const N: usize, const M: usize](
+        simulation: &Simulation<S, X, R, N, M>, unique: &mut [bool],
+    ) -> Result<Determinacy<R, M>, Failure> {
+        simulation.mark_unique_loads(unique)?;
+        simulation.determinacy()
     }
     /// Other limits of the adaptive steps.
     fn limited[
