@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::ops::AddAssign;
 
 use crate::symbolic::graph::in_order;
-use crate::symbolic::{Binary, Graph, Node, NodeId, Unary};
+use crate::symbolic::{Binary, Graph, Leaf, Node, NodeId, Unary};
 
 /// Straight-line code.
 #[derive(Debug, Default)]
@@ -118,12 +118,15 @@ impl AddAssign for Operations {
     }
 }
 
-/// Before: roots, and values that are known already. After: the rest in order, all angles of one depth together.
+/// Before: roots, and values that are known already. After: the rest in order, all angles of one depth together, in the
+/// order of the coordinates that they begin with: so neighbours among them are neighbours in what they are read from, and in
+/// what uses them, and a compiler needs fewer operations to put them into registers and to take them out.
 pub fn schedule(graph: &Graph, roots: &[NodeId], known: &BTreeSet<NodeId>) -> Section {
     let nodes = needed(graph, roots, known);
     let mut jets = jets(graph, &nodes);
     // How many sines and cosines stand one behind the other up to a node.
     let mut depths = vec![0_usize; graph.len()];
+    let mut first = vec![NO_COORDINATE; graph.len()];
     let mut levels: BTreeMap<usize, Level> = BTreeMap::new();
     for id in nodes {
         let node = graph.node(id);
@@ -145,6 +148,10 @@ pub fn schedule(graph: &Graph, roots: &[NodeId], known: &BTreeSet<NodeId>) -> Se
         if let Some(known) = depths.get_mut(id.index()) {
             *known = depth;
         }
+        let least = node.operands().map(|operand| first_coordinate(graph, operand, &first)).min();
+        if let (Some(known), Some(least)) = (first.get_mut(id.index()), least) {
+            *known = least;
+        }
     }
     let mut section = Section { results: roots.iter().copied().collect(), ..Section::default() };
     for Level { lines, angles } in levels.into_values() {
@@ -158,10 +165,23 @@ pub fn schedule(graph: &Graph, roots: &[NodeId], known: &BTreeSet<NodeId>) -> Se
         }
         if !angles.is_empty() {
             section.operations.sine_cosines += angles.len();
-            section.lines.push(Line::SineCosine(angles.into_values().collect()));
+            let mut angles: Vec<Angle> = angles.into_values().collect();
+            angles.sort_by_key(|known| first_coordinate(graph, known.angle, &first));
+            section.lines.push(Line::SineCosine(angles));
         }
     }
     section
+}
+
+/// Index above that of any coordinate.
+const NO_COORDINATE: u32 = u32::MAX;
+
+/// The lowest of the coordinates that a value is made of, where that is found below the values that are known already.
+fn first_coordinate(graph: &Graph, id: NodeId, first: &[u32]) -> u32 {
+    match graph.node(id) {
+        Node::Leaf(Leaf::Position(index)) => index,
+        _ => first.get(id.index()).copied().unwrap_or(NO_COORDINATE),
+    }
 }
 
 /// The calls among `nodes`, gathered by function and argument.
