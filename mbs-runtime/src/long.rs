@@ -26,6 +26,21 @@ impl<T: Scalar, const V: usize> Passed<T, V> {
         Passed(core::array::from_fn(|_| Cell::new(T::constant(0.0))))
     }
 
+    /// The value in a place, 0 where there is no such place.
+    #[inline(always)]
+    #[must_use]
+    pub fn get(&self, place: usize) -> T {
+        self.0.get(place).map_or(T::constant(0.0), Cell::get)
+    }
+
+    /// Puts a value in a place, if there is one.
+    #[inline(always)]
+    pub fn put(&self, place: usize, value: T) {
+        if let Some(passed) = self.0.get(place) {
+            passed.set(value);
+        }
+    }
+
     /// The first P of them.
     #[inline]
     pub fn kept<const P: usize>(&self) -> [T; P] {
@@ -33,6 +48,42 @@ impl<T: Scalar, const V: usize> Passed<T, V> {
         kept.iter_mut().zip(&self.0).for_each(|(kept, passed)| *kept = passed.get());
         kept
     }
+}
+
+/// An element of an array, 0 where there is none.
+#[inline(always)]
+#[must_use]
+pub fn at<T: Scalar>(values: &[T], place: usize) -> T {
+    values.get(place).map_or(T::constant(0.0), |value| *value)
+}
+
+/// Puts a value among others, if it has a place there.
+#[inline(always)]
+pub fn put<T>(values: &mut [T], place: usize, value: T) {
+    if let Some(place) = values.get_mut(place) {
+        *place = value;
+    }
+}
+
+/// The places that a round of a loop uses.
+#[inline(always)]
+#[must_use]
+pub fn places<const W: usize>(rounds: &[[u32; W]], round: usize) -> [usize; W] {
+    rounds.get(round).map_or([usize::MAX; W], |places| places.map(|place| place as usize))
+}
+
+/// The numbers that a round of a loop uses.
+#[inline(always)]
+#[must_use]
+pub fn numbers<const W: usize>(rounds: &[[f64; W]], round: usize) -> [f64; W] {
+    rounds.get(round).map_or([0.0; W], |numbers| *numbers)
+}
+
+/// The place `first + step·round`.
+#[inline(always)]
+#[must_use]
+pub const fn along(first: usize, step: usize, round: usize) -> usize {
+    first.wrapping_add(step.wrapping_mul(round))
 }
 
 /// Where a diagonal block stands: a [`Block`] without its share of the metric.

@@ -85,7 +85,7 @@ fn newton(
     if let Some((dyad, section)) = dyad {
         *text += ", |__near| {\n";
         lets(section, scope, text);
-        let _ = writeln!(text, "{}\n}}", formula(dyad, scope));
+        let _ = writeln!(text, "{}\n}}", formula(dyad, &mut |id| scope.operand(id)));
     }
     *text += ");\n";
     if !kept.is_empty() {
@@ -100,10 +100,10 @@ fn newton(
     *text += "let __outcome = __mbs::failure::first_failure::<T>(__outcome, __block);\n";
 }
 
-/// Both positions of `Dyad::… { … }` or `Single::… { … }` with its coefficients.
-pub fn formula(dyad: &Dyad, scope: &Scope<'_>) -> String {
-    let vector = |c: &[NodeId; 2]| list(c.iter().map(|id| scope.operand(*id)));
-    let matrix = |a: &[[NodeId; 2]; 2]| list(a.iter().map(vector));
+/// Both positions of `Dyad::… { … }` or `Single::… { … }` with its coefficients, which are written in the order of the text.
+pub fn formula(dyad: &Dyad, operand: &mut dyn FnMut(NodeId) -> String) -> String {
+    let mut vector = |c: &[NodeId]| list(c.iter().map(|id| operand(*id)));
+    let mut matrix = |a: &[[NodeId; 2]; 2]| list(a.iter().map(|row| vector(row)));
     let formula = match dyad {
         Dyad::Bars { a, b, c, unknowns } => {
             let unknowns =
@@ -120,15 +120,11 @@ pub fn formula(dyad: &Dyad, scope: &Scope<'_>) -> String {
             format!("__mbs::Dyad::Telescope {{ a: {a}, b: {b}, c: {c}, angle_first: {angle_first} }}")
         }
         Dyad::Circles { rows } => {
-            let rows = list(rows.iter().map(|row| list(row.iter().map(|id| scope.operand(*id)))));
+            let rows = list(rows.iter().map(|row| vector(row)));
             format!("__mbs::Dyad::Circles {{ rows: {rows} }}")
         }
-        Dyad::Angle { a, c } => {
-            format!("__mbs::Single::Angle {{ a: {}, c: {} }}", vector(a), scope.operand(*c))
-        }
-        Dyad::Length { row } => {
-            format!("__mbs::Single::Length {{ row: {} }}", list(row.iter().map(|id| scope.operand(*id))))
-        }
+        Dyad::Angle { a, c } => format!("__mbs::Single::Angle {{ a: {}, c: {} }}", vector(a), operand(*c)),
+        Dyad::Length { row } => format!("__mbs::Single::Length {{ row: {} }}", vector(row)),
     };
     formula + ".roots(__near)"
 }

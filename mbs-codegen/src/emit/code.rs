@@ -75,21 +75,6 @@ pub fn lets_for(section: &Section, results: &BTreeSet<NodeId>, scope: &Scope<'_>
     }
 }
 
-/// Before: a section longer than [`LONGEST_FUNCTION`]. After: its code, which leaves the `kept` values at their places in the
-/// array `__kept`. Each part puts there what it computes: one place that takes values out of all arrays of the parts would be
-/// as long as they are together, and that is what takes a compiler longest.
-pub fn lets_kept(section: &Section, kept: &BTreeMap<NodeId, usize>, scope: &Scope<'_>, text: &mut String) {
-    let (chunks, exports) = chunks(section, &kept.keys().copied().collect(), scope);
-    let zero = scope.or_zero(None);
-    let _ = writeln!(text, "let mut __kept = [{zero}; {}];", kept.len());
-    // Coordinates and the time stand in no line.
-    let computed: BTreeSet<NodeId> = exports.iter().flatten().copied().collect();
-    for (id, place) in kept.iter().filter(|(id, _)| !computed.contains(id)) {
-        let _ = writeln!(text, "__kept[{place}] = {};", scope.operand(*id));
-    }
-    apart(&chunks, &exports, &BTreeSet::new(), kept, scope, text);
-}
-
 /// Lines in chunks of bounded length, and of each the values that chunks behind it, or the results, use.
 fn chunks<'a>(
     section: &'a Section,
@@ -157,34 +142,64 @@ pub fn bind(locals: impl Iterator<Item = (String, String)>, text: &mut String) {
     }
 }
 
+/// How a line writes what it uses and what it computes, in the order of its text.
+pub trait Naming {
+    /// A value that it uses.
+    fn operand(&mut self, id: NodeId) -> String;
+    /// A value that it computes.
+    fn defined(&mut self, id: NodeId) -> String;
+}
+
+/// Every value by its own name.
+struct Named<'a>(&'a Scope<'a>);
+
+impl Naming for Named<'_> {
+    fn operand(&mut self, id: NodeId) -> String {
+        self.0.operand(id)
+    }
+
+    fn defined(&mut self, id: NodeId) -> String {
+        local(id)
+    }
+}
+
 /// Prints a line.
 pub fn print(line: &Line, scope: &Scope<'_>, text: &mut String) {
+    let mut names = Named(scope);
     match line {
-        Line::Value(id) => {
-            let value = operation(scope.graph.node(*id), scope);
-            let _ = writeln!(text, "let {} = {value};", local(*id));
-        }
-        Line::SineCosine(angles) => {
-            let name = |id: Option<NodeId>| id.map_or_else(|| "_".to_owned(), local);
-            let (sines, cosines, operands) = (
-                list(angles, |known| name(known.sine)),
-                list(angles, |known| name(known.cosine)),
-                list(angles, |known| scope.operand(known.angle)),
-            );
-            let _ = writeln!(text, "let ([{sines}], [{cosines}]) = T::sin_cos([{operands}]);");
-        }
-        Line::Jet(Jet { function, argument, orders }) => {
-            let names: Vec<String> =
-                orders.iter().map(|id| id.map_or_else(|| "_".to_owned(), local)).collect();
-            let (names, count) = (names.join(", "), orders.len());
-            let (kind, place) = scope.function(*function as usize);
-            let argument = scope.operand(*argument);
-            let _ = writeln!(
-                text,
-                "let [{names}] = <{kind} as __mbs::Function<T>>::jet::<{count}>(&{place}, {argument});"
-            );
-        }
+        Line::Value(id) => value(*id, scope, &mut names, text),
+        Line::SineCosine(angles) => sine_cosine(angles, &mut names, text),
+        Line::Jet(called) => jet(called, scope, &mut names, text),
     }
+}
+
+/// Prints one operation.
+pub fn value(id: NodeId, scope: &Scope<'_>, names: &mut impl Naming, text: &mut String) {
+    let name = names.defined(id);
+    let value = operation(scope.graph.node(id), scope, names);
+    let _ = writeln!(text, "let {name} = {value};");
+}
+
+/// Prints sines and cosines of several angles.
+pub fn sine_cosine(angles: &[Angle], names: &mut impl Naming, text: &mut String) {
+    let mut defined = |id: Option<NodeId>| id.map_or_else(|| "_".to_owned(), |id| names.defined(id));
+    let sines = list(angles, |angle| defined(angle.sine));
+    let cosines = list(angles, |angle| defined(angle.cosine));
+    let operands = list(angles, |known| names.operand(known.angle));
+    let _ = writeln!(text, "let ([{sines}], [{cosines}]) = T::sin_cos([{operands}]);");
+}
+
+/// Prints a call of a declared function.
+pub fn jet(jet: &Jet, scope: &Scope<'_>, names: &mut impl Naming, text: &mut String) {
+    let Jet { function, argument, orders } = jet;
+    let defined = orders.iter().map(|id| id.map_or_else(|| "_".to_owned(), |id| names.defined(id)));
+    let (defined, count) = (defined.collect::<Vec<_>>().join(", "), orders.len());
+    let (kind, place) = scope.function(*function as usize);
+    let argument = names.operand(*argument);
+    let _ = writeln!(
+        text,
+        "let [{defined}] = <{kind} as __mbs::Function<T>>::jet::<{count}>(&{place}, {argument});"
+    );
 }
 
 fn list(angles: &[Angle], part: impl FnMut(&Angle) -> String) -> String {
@@ -196,8 +211,8 @@ pub fn local(id: NodeId) -> String {
     format!("__n{}", id.index())
 }
 
-fn operation(node: Node, scope: &Scope<'_>) -> String {
-    let of = |id: NodeId| scope.operand(id);
+fn operation(node: Node, scope: &Scope<'_>, names: &mut impl Naming) -> String {
+    let mut of = |id: NodeId| names.operand(id);
     match node {
         // Calls stand in jets.
         Node::Constant(_) | Node::Leaf(_) | Node::Call { .. } => scope.leaf(node),

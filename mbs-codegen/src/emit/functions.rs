@@ -5,19 +5,20 @@ use std::fmt::Write;
 use proc_macro2::TokenStream;
 
 use super::blocks;
-use super::code::{LONGEST_FUNCTION, block, lets, lets_kept, tokens};
+use super::code::{block, lets, tokens};
 use super::dynamics::{self, DynamicBodies};
 use super::elimination::Eliminations;
 use super::given;
 use super::linear;
 use super::long;
+use super::parts::{self, Frame};
 use super::phases;
 use super::scope::Scope;
 use super::work;
 use crate::equations::Equations;
 use crate::equations::continuity::{self, Demand};
 use crate::model::Model;
-use crate::program::{Program, Section};
+use crate::program::{Program, Section, Stage};
 use crate::structure::Structure;
 use crate::symbolic::NodeId;
 
@@ -61,6 +62,8 @@ pub struct Bodies {
     pub solve_blocks: Option<TokenStream>,
     /// Functions of bounded length that a long solution calls.
     pub methods: TokenStream,
+    /// Those that other long functions call.
+    pub parts: TokenStream,
     pub factorize: TokenStream,
     pub solve_linear: TokenStream,
     /// What these functions cost.
@@ -91,14 +94,12 @@ pub fn bodies(
     let demands = continuity::highest(model, equations);
     let early = Scope { parameters: Some(&program.parameters.fields), ..bare };
     let scope = Scope { position: Some(&program.position.fields), ..early };
-    let body = |section: &Section, scope: &Scope<'_>, result: String| body(section, scope, &result, runtime);
-    let rows =
-        |part: fn(&crate::equations::Row) -> Option<NodeId>| array(equations.rows.iter().map(part), &scope);
-    let some = |nodes: &[NodeId], scope: &Scope<'_>| array(nodes.iter().map(|id| Some(*id)), scope);
-    // Within the stage itself its values are locals.
-    let kept = |stage: &crate::program::Stage, scope: &Scope<'_>, name: &str| {
-        format!("{name}({})", array(stage.fields.keys().map(|id| Some(*id)), scope))
+    let is_long = long::is_long(program);
+    let mut emitter = Emitter { scope: &scope, early: &early, is_long, parts: String::new(), runtime };
+    let rows = |part: fn(&crate::equations::Row) -> Option<NodeId>| -> Vec<Option<NodeId>> {
+        equations.rows.iter().map(part).collect()
     };
+    let some = |nodes: &[NodeId]| -> Vec<Option<NodeId>> { nodes.iter().copied().map(Some).collect() };
     let given = given::lets(equations, program, &scope);
     let mut outputs_text = String::new();
     lets(&program.outputs, &scope, &mut outputs_text);
@@ -106,7 +107,6 @@ pub fn bodies(
     let (phases, speeds) = phases::functions(equations, program, &bare);
     let phases = phases::turns(equations, model) + &phases;
     let independent = &structure.independent;
-    let is_long = long::is_long(program);
     let eliminations = Eliminations::of(equations, program);
     let linear = linear::linear(equations, program, (&scope, &eliminations), independent, is_long);
     let position = kept(&program.position, &early, "__Position");
@@ -119,7 +119,7 @@ pub fn bodies(
             parts.as_ref().map(|parts| format!("let (__outcome, _) = {{\n{}\n}};\n__outcome", parts.body)),
         ),
     };
-    let methods = parts.map_or(String::new(), |parts| parts.methods);
+    let methods = parts.map_or(String::new(), |parts| parts.methods) + &linear.methods;
     let phi_q = match is_long {
         true => long::phi_q(model),
         false => {
@@ -128,45 +128,36 @@ pub fn bodies(
             text + &matrix(equations.rows.iter().map(|row| &row.phi_q), &scope)
         }
     };
+    let entries: Vec<(usize, usize, NodeId)> = entries(equations).collect();
     Bodies {
         kept_parameters: program.parameters.fields.len(),
         kept_position: program.position.fields.len(),
         orders: orders(model, &demands),
-        parameters: body(
-            &program.parameters.section,
-            &bare,
-            smooth_enough(&demands, &bare) + &kept(&program.parameters, &bare, "__Parameters"),
-        ),
-        guess: body(&program.guesses, &early, some(&equations.guesses, &early)),
-        coordinate_scales: body(
+        parameters: emitter.parameters(&program.parameters, smooth_enough(&demands, &bare), &bare),
+        guess: emitter.of_parameters("guess", &program.guesses, &some(&equations.guesses)),
+        coordinate_scales: emitter.of_parameters(
+            "coordinate_scales",
             &program.coordinate_scales,
-            &early,
-            some(&equations.coordinate_scales, &early),
+            &some(&equations.coordinate_scales),
         ),
-        row_scales: body(&program.row_scales, &early, some(&equations.row_scales, &early)),
-        position: match program.position.section.lines.len() > LONGEST_FUNCTION {
-            true => {
-                let mut text = String::new();
-                lets_kept(&program.position.section, &program.position.fields, &early, &mut text);
-                block(&(text + "__Position(__kept)"), runtime)
-            }
-            false => body(&program.position.section, &early, position),
-        },
-        phi: body(&program.phi, &scope, rows(|row| Some(row.phi))),
+        row_scales: emitter.of_parameters("row_scales", &program.row_scales, &some(&equations.row_scales)),
+        position: emitter.position(&program.position),
+        phi: emitter.of_position("phi", &program.phi, &rows(|row| Some(row.phi))),
         phi_q: block(&phi_q, runtime),
-        sparsity: entries(equations).map(|(row, column, _)| (row as u16, column as u16)).collect(),
-        phi_q_entries: body(
+        sparsity: entries.iter().map(|(row, column, _)| (*row as u16, *column as u16)).collect(),
+        phi_q_entries: emitter.of_position(
+            "phi_q_entries",
             &program.phi_q,
-            &scope,
-            array(entries(equations).map(|(.., id)| Some(id)), &scope),
+            &entries.iter().map(|(.., id)| Some(*id)).collect::<Vec<_>>(),
         ),
-        phi_t: body(&program.phi_t, &scope, rows(|row| row.phi_t)),
-        phi_tt: body(&program.phi_tt, &scope, rows(|row| row.phi_tt)),
-        phi_qt_qd: body(&program.phi_qt_qd, &scope, rows(|row| row.phi_qt_qd)),
-        gamma: body(&program.gamma, &scope, rows(|row| row.gamma)),
-        evaluate: (!is_long).then(|| body(&program.evaluation, &early, evaluation(equations, &early))),
-        branches: body(&program.branches, &scope, some(&equations.branches, &scope)),
-        limits: body(&program.limits, &scope, limits(equations, &scope)),
+        phi_t: emitter.of_position("phi_t", &program.phi_t, &rows(|row| row.phi_t)),
+        phi_tt: emitter.of_position("phi_tt", &program.phi_tt, &rows(|row| row.phi_tt)),
+        phi_qt_qd: emitter.of_velocity("phi_qt_qd", &program.phi_qt_qd, &rows(|row| row.phi_qt_qd)),
+        gamma: emitter.of_velocity("gamma", &program.gamma, &rows(|row| row.gamma)),
+        evaluate: (!is_long)
+            .then(|| body(&program.evaluation, &early, &evaluation(equations, &early), runtime)),
+        branches: emitter.of_position("branches", &program.branches, &some(&equations.branches)),
+        limits: body(&program.limits, &scope, &limits(equations, &scope), runtime),
         phases: tokens(&phases, runtime),
         speeds: tokens(&speeds, runtime),
         outputs: block(&(given + &outputs_text), runtime),
@@ -176,14 +167,107 @@ pub fn bodies(
         solve_with_position: block(&solve_with_position, runtime),
         solve_blocks: solve_blocks.map(|text| block(&text, runtime)),
         methods: tokens(&methods, runtime),
+        parts: tokens(&emitter.parts, runtime),
         factorize: block(&linear.factorize, runtime),
         solve_linear: block(&linear.solve, runtime),
-        work: work::work(model, equations, program, entries(equations).count(), runtime),
+        work: work::work(model, equations, program, entries.len(), runtime),
         independent: independent.iter().map(|coordinate| *coordinate as u16).collect(),
         complete: block(&linear.complete, runtime),
         reduce: block(&linear.reduce, runtime),
         dynamics: dynamics::bodies(equations, program, &early, &scope, runtime),
     }
+}
+
+/// Emits functions of the stages: in one body, or long ones in parts.
+struct Emitter<'a> {
+    scope: &'a Scope<'a>,
+    early: &'a Scope<'a>,
+    is_long: bool,
+    /// The parts, all together.
+    parts: String,
+    runtime: &'a TokenStream,
+}
+
+impl Emitter<'_> {
+    /// A function of the parameter stage.
+    fn of_parameters(&mut self, name: &str, section: &Section, results: &[Option<NodeId>]) -> TokenStream {
+        let frame = frame("__p: &__Parameters<T>, ", "__p, ");
+        self.emitted((name, &frame), section, results, self.early)
+    }
+
+    /// A function of the position stage.
+    fn of_position(&mut self, name: &str, section: &Section, results: &[Option<NodeId>]) -> TokenStream {
+        let frame = frame("__p: &__Parameters<T>, __s: &__Position<T>, ", "__p, __s, ");
+        self.emitted((name, &frame), section, results, self.scope)
+    }
+
+    /// A function of the position stage and q̇.
+    fn of_velocity(&mut self, name: &str, section: &Section, results: &[Option<NodeId>]) -> TokenStream {
+        let n = self.scope.model.coordinates.len();
+        let declared = format!("__p: &__Parameters<T>, __s: &__Position<T>, __qd: &[T; {n}], ");
+        self.emitted((name, &frame(&declared, "__p, __s, __qd, ")), section, results, self.scope)
+    }
+
+    /// The parameter stage, behind `assertions`.
+    fn parameters(&mut self, stage: &Stage, assertions: String, bare: &Scope<'_>) -> TokenStream {
+        self.stage(("parameters", "__Parameters"), &frame("", ""), stage, (bare, assertions))
+    }
+
+    /// The position stage.
+    fn position(&mut self, stage: &Stage) -> TokenStream {
+        let n = self.scope.model.coordinates.len();
+        let frame = frame(&format!("__p: &__Parameters<T>, __q: &[T; {n}], __t: T, "), "__p, __q, __t, ");
+        self.stage(("position", "__Position"), &frame, stage, (self.early, String::new()))
+    }
+
+    fn stage(
+        &mut self,
+        (name, kind): (&str, &str),
+        frame: &Frame,
+        stage: &Stage,
+        (scope, first): (&Scope<'_>, String),
+    ) -> TokenStream {
+        if !self.is_long {
+            return body(&stage.section, scope, &(first + &kept(stage, scope, kind)), self.runtime);
+        }
+        let results: Vec<Option<NodeId>> = stage.fields.keys().copied().map(Some).collect();
+        let body = self.in_parts((name, frame), &stage.section, &results, scope);
+        block(&format!("{first}{body}{kind}(__v.kept())"), self.runtime)
+    }
+
+    fn emitted(
+        &mut self,
+        named: (&str, &Frame),
+        section: &Section,
+        results: &[Option<NodeId>],
+        scope: &Scope<'_>,
+    ) -> TokenStream {
+        match self.is_long {
+            true => block(&(self.in_parts(named, section, results, scope) + "__v.kept()"), self.runtime),
+            false => body(section, scope, &array(results.iter().copied(), scope), self.runtime),
+        }
+    }
+
+    fn in_parts(
+        &mut self,
+        (name, frame): (&str, &Frame),
+        section: &Section,
+        results: &[Option<NodeId>],
+        scope: &Scope<'_>,
+    ) -> String {
+        let function = parts::function(&format!("__{name}"), frame, (section, results), scope);
+        self.parts += &function.methods;
+        function.body
+    }
+}
+
+/// Within a stage itself its values are locals.
+fn kept(stage: &Stage, scope: &Scope<'_>, name: &str) -> String {
+    format!("{name}({})", array(stage.fields.keys().map(|id| Some(*id)), scope))
+}
+
+fn frame(declared: &str, given: &str) -> Frame {
+    Frame { declared: declared.into(), given: given.into(), result: None }
 }
 
 fn evaluation(equations: &Equations, scope: &Scope<'_>) -> String {

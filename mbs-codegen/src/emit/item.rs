@@ -213,9 +213,10 @@ fn implementations(text: &Text, scenes: &Scenes, part: &Part<'_>) -> TokenStream
     });
     // Of a text whose rows fix nothing, nobody calls them.
     let methods = (part.square || is_partitioned).then_some(&bodies.methods).filter(|text| !text.is_empty());
-    let own_item = match methods.is_none() && model.phases.is_empty() {
+    let parts = &bodies.parts;
+    let own_item = match methods.is_none() && model.phases.is_empty() && parts.is_empty() {
         true => TokenStream::new(),
-        false => quote! { impl<#callable> #name { #speeds #methods } },
+        false => quote! { impl<#callable> #name { #speeds #methods #parts } },
     };
     quote! {
         #[allow(clippy::approx_constant, reason = "numbers of the text stay as they are")]

@@ -4,12 +4,12 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use super::blocks::list;
-use super::code::lets;
+use super::code::{bind, lets};
 use super::elimination::Eliminations;
 use super::given;
 use super::long::{self, Kind};
-use super::pieces::{Code, Piece, apart, in_line};
 use super::scope::{Scope, number};
+use super::substitution::{Substitution, substitution};
 use crate::equations::Equations;
 use crate::program::{BlockProgram, Method, Program, System};
 use crate::symbolic::NodeId;
@@ -26,10 +26,9 @@ pub struct Linear {
     pub complete: String,
     /// Body of `reduce`: the multipliers, and what they take from the independent entries of `y`.
     pub reduce: String,
+    /// Methods that long ones call.
+    pub methods: String,
 }
-
-/// Most blocks of a part of a long solution.
-const LARGEST_GROUP: usize = 24;
 
 /// Before: blocks in the order of solution, and the coordinates that none solves for. After: the code of their linear
 /// systems, a `long` one in parts.
@@ -45,7 +44,7 @@ pub fn linear(
     let kinds = if long { long::kinds(program) } else { BTreeMap::new() };
     let of_kinds = if long { long::factors(program, eliminations) } else { BTreeMap::new() };
     let mut tables = Tables::default();
-    let (mut diagonals, mut pieces, mut places) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut diagonals, mut places) = (Vec::new(), Vec::new());
     for (index, block) in program.blocks.iter().enumerate() {
         let (mut place, size) = (format!("block{index}"), block.rows.len());
         let mut factors = eliminations.factorization(index, size);
@@ -62,26 +61,29 @@ pub fn linear(
                 }
             }
         }
-        pieces.push(solution(block, (&place, &factors), &entries));
         places.push((place, factors));
     }
-    let n = scope.model.coordinates.len();
-    let code = |pieces: &[Piece], given| match long {
-        true => apart(pieces, given, LARGEST_GROUP),
-        false => in_line(pieces, given),
-    };
-    let solved = code(&pieces, Vec::new());
-    let unknowns = list((0..n).map(|coordinate| solved.of(unknown(coordinate))));
-    let given = independent.iter().map(|coordinate| (unknown(*coordinate), format!("__x[{coordinate}]")));
-    let completed = code(&pieces, given.collect());
-    let reduced = code(&transposed(program, &places, &entries), Vec::new());
     let (factors, factorize) = in_one(&diagonals, &tables, program, &entries);
+    if long {
+        let Substitution { solve, complete, reduce, methods } =
+            substitution(program, &places, independent, &entries);
+        return Linear { factors, factorize, solve, complete, reduce, methods };
+    }
+    let n = scope.model.coordinates.len();
+    let pieces = program.blocks.iter().zip(&places);
+    let solved: String =
+        pieces.map(|(block, (place, kind))| solution(block, (place, kind), &entries)).collect();
+    let unknowns = list((0..n).map(unknown));
+    let mut given = String::new();
+    let known = independent.iter().map(|coordinate| (unknown(*coordinate), format!("__x[{coordinate}]")));
+    bind(known, &mut given);
     Linear {
         factors,
         factorize,
-        solve: solved.text + &unknowns,
-        complete: complete(completed, independent, n),
-        reduce: reduce(reduced, independent, &entries),
+        complete: complete(given + &solved, independent, n),
+        solve: solved + &unknowns,
+        reduce: reduce(transposed(program, &places, &entries), independent, &entries),
+        methods: String::new(),
     }
 }
 
@@ -227,10 +229,10 @@ fn in_one(
 }
 
 /// The unknowns of a block from the right-hand sides and earlier unknowns.
-fn solution(block: &BlockProgram, (place, kind): (&str, &str), entries: &Entries<'_>) -> Piece {
+fn solution(block: &BlockProgram, (place, kind): (&str, &str), entries: &Entries<'_>) -> String {
     let right_sides = block.rows.iter().map(|row| entries.right_side(*row, block));
     let defines: Vec<String> = block.coordinates.iter().map(|coordinate| unknown(*coordinate)).collect();
-    let text = match &block.method {
+    match &block.method {
         Method::Explicit { coefficient, .. } => assigned(&defines, right_sides, *coefficient),
         Method::Newton(_) => {
             let (size, unknowns) = (block.rows.len(), defines.join(", "));
@@ -244,21 +246,19 @@ fn solution(block: &BlockProgram, (place, kind): (&str, &str), entries: &Entries
                 )
             }
         }
-    };
-    let columns = block.rows.iter().flat_map(|row| entries.columns_beside(*row, block));
-    Piece { text, uses: columns.map(|(column, _)| unknown(*column)).collect(), defines }
+    }
 }
 
 /// Φ_qdᵀ λ = y_d, the last block first; nothing where surplus rows leave λ open.
-fn transposed(program: &Program, places: &[(String, String)], entries: &Entries<'_>) -> Vec<Piece> {
+fn transposed(program: &Program, places: &[(String, String)], entries: &Entries<'_>) -> String {
     if program.blocks.iter().any(BlockProgram::has_surplus) {
-        return Vec::new();
+        return String::new();
     }
     let pieces = program.blocks.iter().zip(places).rev().map(|(block, (place, kind))| {
         let name = |row: usize| multiplier(row);
         let right_sides = block.coordinates.iter().map(|c| entries.transposed(*c, Some(block), name));
         let defines: Vec<String> = block.rows.iter().map(|row| multiplier(*row)).collect();
-        let text = match &block.method {
+        match &block.method {
             Method::Explicit { coefficient, .. } => assigned(&defines, right_sides, *coefficient),
             Method::Newton(_) => {
                 let size = block.rows.len();
@@ -267,9 +267,7 @@ fn transposed(program: &Program, places: &[(String, String)], entries: &Entries<
                     "let [{multipliers}] = <{kind} as __mbs::Factorization<T, {size}>>::solve_transposed(&__factors.{place}, &{right_sides});\n"
                 )
             }
-        };
-        let rows = block.coordinates.iter().flat_map(|coordinate| entries.rows_beside(*coordinate, Some(block)));
-        Piece { text, uses: rows.map(|(row, _)| multiplier(*row)).collect(), defines }
+        }
     });
     pieces.collect()
 }
@@ -281,7 +279,7 @@ fn assigned(locals: &[String], right_sides: impl Iterator<Item = String>, coeffi
 }
 
 /// A value over a number.
-fn quotient(value: &str, divisor: f64) -> String {
+pub fn quotient(value: &str, divisor: f64) -> String {
     match divisor {
         1.0 => value.to_owned(),
         -1.0 => format!("-({value})"),
@@ -289,37 +287,40 @@ fn quotient(value: &str, divisor: f64) -> String {
     }
 }
 
-fn complete(solved: Code, independent: &[usize], coordinates: usize) -> String {
-    let mut text = solved.text.clone();
+fn complete(solved: String, independent: &[usize], coordinates: usize) -> String {
+    let mut text = solved;
     for coordinate in (0..coordinates).filter(|coordinate| independent.binary_search(coordinate).is_err()) {
-        let _ = writeln!(text, "__x[{coordinate}] = {};", solved.of(unknown(coordinate)));
+        let _ = writeln!(text, "__x[{coordinate}] = {};", unknown(coordinate));
     }
     text
 }
 
-fn reduce(solved: Code, independent: &[usize], entries: &Entries<'_>) -> String {
-    let mut text = solved.text.clone();
+fn reduce(solved: String, independent: &[usize], entries: &Entries<'_>) -> String {
+    let mut text = solved;
     for coordinate in independent {
         let place = format!("__y[{coordinate}]");
-        let value = entries.transposed(*coordinate, None, |row| solved.of(multiplier(row)));
+        let value = entries.transposed(*coordinate, None, multiplier);
         // A coordinate in no row keeps what it has.
         if value != place {
             let _ = writeln!(text, "{place} = {value};");
         }
     }
-    text + &list((0..entries.equations.rows.len()).map(|row| solved.of(multiplier(row))))
+    text + &list((0..entries.equations.rows.len()).map(multiplier))
 }
 
 /// Entries of Φ_q that are no numbers: those off the diagonal blocks, or all where the code is long.
-struct Entries<'a> {
-    equations: &'a Equations,
-    scope: &'a Scope<'a>,
+pub struct Entries<'a> {
+    /// The equations.
+    pub equations: &'a Equations,
+    /// What is at hand.
+    pub scope: &'a Scope<'a>,
     long: bool,
     /// Index of each entry, by row and column.
     places: BTreeMap<(usize, usize), usize>,
     /// Rows and entries of each column.
     columns: BTreeMap<usize, Vec<(usize, NodeId)>>,
-    kept: BTreeMap<NodeId, usize>,
+    /// Where those that factors keep stand among them.
+    pub kept: BTreeMap<NodeId, usize>,
 }
 
 impl<'a> Entries<'a> {
@@ -362,13 +363,13 @@ impl<'a> Entries<'a> {
     }
 
     /// Columns and entries of a row beside its block.
-    fn columns_beside(&self, row: usize, block: &BlockProgram) -> impl Iterator<Item = &(usize, NodeId)> {
+    pub fn columns_beside(&self, row: usize, block: &BlockProgram) -> impl Iterator<Item = &(usize, NodeId)> {
         let entries = self.equations.rows.get(row).map(|row| row.phi_q.as_slice()).unwrap_or_default();
         entries.iter().filter(|(column, _)| !block.coordinates.contains(column))
     }
 
     /// Rows and entries of a column beside its block; all rows where the coordinate is independent.
-    fn rows_beside(
+    pub fn rows_beside(
         &self,
         coordinate: usize,
         block: Option<&BlockProgram>,

@@ -5,11 +5,13 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 
 use super::blocks::{formula, list};
-use super::code::{LONGEST_BODY, LONGEST_FUNCTION, lets, lets_for, local, print};
+use super::code::LONGEST_FUNCTION;
 use super::elimination::{Eliminations, factorization};
+use super::parts::{Frame, Parts};
 use super::scope::{Scope, number as number_of};
+use super::statement::Statement;
 use crate::model::Model;
-use crate::program::{BlockProgram, Line, Method, Program, Section, System};
+use crate::program::{BlockProgram, Line, Method, Program, System};
 use crate::symbolic::NodeId;
 
 /// Most blocks that are solved by Newton's method one behind the other in one function, each with its own copy of every
@@ -80,16 +82,18 @@ impl Kind {
 /// Before: a long program. After: the solution of Φ = 0 with the position stage of its values.
 pub fn solve(program: &Program, eliminations: &Eliminations, scope: &Scope<'_>) -> Solution {
     let segments = segments(program);
-    let kinds = kinds(program);
-    let (slots, factors) = (slots(program, &segments, scope), factors(program, eliminations));
-    let emission = Emission { scope, program, slots, segments, kinds, factors };
-    let mut methods = emission.before();
+    let emission =
+        Emission { scope, program, segments, kinds: kinds(program), factors: factors(program, eliminations) };
+    let fields = &program.position.fields;
+    let mut parts = Parts::new(fields.clone(), fields.len());
+    emission.before(&mut parts);
     for (kind, number) in &emission.kinds {
-        methods += &emission.evaluate(*kind, *number);
-        methods += &emission.holds(*kind, *number);
-        methods += &emission.roots(*kind, *number);
+        emission.evaluate(*kind, *number, &mut parts);
+        emission.holds(*kind, *number, &mut parts);
+        emission.roots(*kind, *number, &mut parts);
     }
-    Solution { body: emission.body(), methods }
+    let (methods, passed) = parts.print();
+    Solution { body: emission.body(passed), methods }
 }
 
 /// The kinds of a program's blocks, numbered.
@@ -150,7 +154,7 @@ pub fn phi_q(model: &Model) -> String {
     )
 }
 
-/// Lines and assignments cut to bounded length, a nonlinear block behind a segment; the position stage's rest at the end.
+/// Lines and assignments, a nonlinear block behind a segment; the position stage's rest at the end.
 fn segments(program: &Program) -> Vec<Segment<'_>> {
     let mut segments = vec![Segment::default()];
     for block in &program.blocks {
@@ -177,141 +181,21 @@ fn segments(program: &Program) -> Vec<Segment<'_>> {
 
 fn push<'a>(step: Step<'a>, segments: &mut Vec<Segment<'a>>) {
     match segments.last_mut() {
-        Some(last) if last.newton.is_none() && last.steps.len() < LONGEST_BODY => last.steps.push(step),
+        Some(last) if last.newton.is_none() => last.steps.push(step),
         _ => segments.push(Segment { steps: vec![step], newton: None }),
     }
 }
 
-/// Values of a part: what it computes, and what it uses.
-#[derive(Default)]
-struct Values {
-    computed: BTreeSet<NodeId>,
-    used: BTreeSet<NodeId>,
-}
-
-impl Values {
-    fn of_steps(steps: &[Step<'_>], scope: &Scope<'_>) -> Self {
-        let mut values = Values::default();
-        for step in steps {
-            match step {
-                Step::Line(line) => values.add(line, scope),
-                Step::Assign(_, value) => drop(values.used.insert(*value)),
-            }
-        }
-        values
-    }
-
-    fn of_section(section: &Section, results: impl IntoIterator<Item = NodeId>, scope: &Scope<'_>) -> Self {
-        let mut values = Values::default();
-        section.lines.iter().for_each(|line| values.add(line, scope));
-        values.used.extend(results);
-        values
-    }
-
-    fn add(&mut self, line: &Line, scope: &Scope<'_>) {
-        self.computed.extend(line.values());
-        self.used.extend(line.operands(scope.graph));
-    }
-
-    /// What it takes from other parts, among other things leaves.
-    fn taken(&self) -> impl Iterator<Item = &NodeId> {
-        self.used.difference(&self.computed)
-    }
-}
-
-/// What an iterate's residuals and Jacobian are.
-fn results(system: &System) -> impl Iterator<Item = NodeId> + '_ {
-    system.phi.iter().copied().chain(system.phi_q.iter().flatten().copied().flatten())
-}
-
-/// Places of the values that parts pass on: those that the position stage keeps first, in its order.
-fn slots(program: &Program, segments: &[Segment<'_>], scope: &Scope<'_>) -> BTreeMap<NodeId, usize> {
-    let (mut parts, mut known) = (Vec::new(), BTreeSet::new());
-    for Segment { steps, newton } in segments {
-        let before = Values::of_steps(steps, scope);
-        known.extend(before.computed.iter().copied());
-        parts.push(before);
-        let Some((_, system)) = newton else { continue };
-        let iterate = Values::of_section(&system.section, results(system), scope);
-        known.extend(iterate.computed.iter().copied());
-        parts.push(iterate);
-        parts.push(Values::of_section(&system.branch_section, system.branches.iter().copied(), scope));
-        if let Some((dyad, section)) = &system.dyad {
-            parts.push(Values::of_section(section, dyad.nodes(), scope));
-        }
-    }
-    let mut slots = program.position.fields.clone();
-    for value in parts.iter().flat_map(Values::taken).filter(|value| known.contains(value)) {
-        let next = slots.len();
-        slots.entry(*value).or_insert(next);
-    }
-    slots
-}
-
-/// What all functions of a solution are printed from.
+/// What the methods of a solution are made of.
 struct Emission<'a> {
     scope: &'a Scope<'a>,
     program: &'a Program,
     segments: Vec<Segment<'a>>,
     kinds: BTreeMap<Kind, usize>,
-    slots: BTreeMap<NodeId, usize>,
     factors: BTreeMap<Kind, String>,
 }
 
-/// A segment's share of a function: its number, its code and how many lines that is.
-struct Arm {
-    segment: usize,
-    text: String,
-    lines: usize,
-}
-
 impl Emission<'_> {
-    /// Takes over what other parts have computed.
-    fn imports(&self, values: &Values, text: &mut String) {
-        for value in values.taken() {
-            if let Some(slot) = self.slots.get(value).filter(|_| self.is_local(*value)) {
-                let _ = writeln!(text, "let {} = __v.0[{slot}].get();", local(*value));
-            }
-        }
-    }
-
-    /// Passes on what other parts use.
-    fn exports(&self, values: &Values, text: &mut String) {
-        for value in &values.computed {
-            if let Some(slot) = self.slots.get(value) {
-                let _ = writeln!(text, "__v.0[{slot}].set({});", local(*value));
-            }
-        }
-    }
-
-    /// Whether it is computed by some part, and no leaf.
-    fn is_local(&self, value: NodeId) -> bool {
-        self.scope.operand(value) == local(value)
-    }
-
-    /// `__before`: what stands before each block.
-    fn before(&self) -> String {
-        let arms = self.segments.iter().enumerate().map(|(segment, Segment { steps, .. })| {
-            let values = Values::of_steps(steps, self.scope);
-            let mut text = String::new();
-            self.imports(&values, &mut text);
-            for step in steps {
-                match step {
-                    Step::Line(line) => print(line, self.scope, &mut text),
-                    Step::Assign(coordinate, value) => {
-                        let _ = writeln!(text, "__q[{coordinate}] = {};", self.scope.operand(*value));
-                    }
-                }
-            }
-            self.exports(&values, &mut text);
-            Arm { segment, text, lines: steps.len() }
-        });
-        let n = self.scope.model.coordinates.len();
-        let signature =
-            Signature { name: "__before".into(), q: format!("&mut [T; {n}]"), more: None, result: None };
-        self.function(&signature, arms.collect())
-    }
-
     /// Segments with a block of this kind.
     fn of_kind(&self, kind: Kind) -> impl Iterator<Item = (usize, &BlockProgram, &System)> {
         let blocks = self.segments.iter().enumerate();
@@ -320,109 +204,99 @@ impl Emission<'_> {
             .filter(move |(_, block, system)| Kind::of(block, system) == kind)
     }
 
-    /// `__evaluate…`: residuals and Jacobian of an iterate.
-    fn evaluate(&self, kind: Kind, number: usize) -> String {
-        let arms = self.of_kind(kind).map(|(segment, block, system)| {
-            let inner = Scope { unknowns: &block.coordinates, ..*self.scope };
-            let values = Values::of_section(&system.section, results(system), self.scope);
-            let mut text = String::new();
-            self.imports(&values, &mut text);
-            let shared = values.computed.iter().filter(|value| self.slots.contains_key(value)).copied();
-            lets_for(&system.section, &results(system).chain(shared).collect(), &inner, &mut text);
-            self.exports(&values, &mut text);
-            let residuals = list(system.phi.iter().map(|id| inner.operand(*id)));
-            let rows = list(system.phi_q.iter().map(|row| list(row.iter().map(|id| inner.or_zero(*id)))));
-            let _ = writeln!(text, "({residuals}, {rows})");
-            Arm { segment, text, lines: system.section.lines.len() }
-        });
-        let Kind { unknowns, rows, .. } = kind;
-        let result = format!("([T; {rows}], [[T; {unknowns}]; {rows}])");
-        self.function(&self.signature("evaluate", number, unknowns, "__x", result), arms.collect())
+    /// `__before`: what stands before each block.
+    fn before(&self, parts: &mut Parts) {
+        let n = self.scope.model.coordinates.len();
+        let frame = frame(format!("&mut [T; {n}]"), None, None);
+        let mut arms = Vec::new();
+        for (segment, Segment { steps, .. }) in self.segments.iter().enumerate() {
+            let mut arm = Vec::new();
+            for step in steps {
+                match step {
+                    Step::Line(line) => parts.wordings.of_line(line, self.scope, &mut arm),
+                    Step::Assign(coordinate, value) => arm.push(parts.wordings.put(
+                        "__mbs::long::put(__q, ",
+                        *coordinate,
+                        Some(*value),
+                        self.scope,
+                    )),
+                }
+            }
+            arms.push((segment, arm));
+        }
+        parts.choice("__before", &frame, arms, (self.segments.len(), true));
     }
 
-    /// `__holds…`: whether the branches hold that a block decides.
-    fn holds(&self, kind: Kind, number: usize) -> String {
-        if !kind.branched {
-            return String::new();
-        }
-        let arms = self.of_kind(kind).map(|(segment, block, system)| {
+    /// `__evaluate…`: residuals and Jacobian of an iterate.
+    fn evaluate(&self, kind: Kind, number: usize, parts: &mut Parts) {
+        let Kind { unknowns, rows, .. } = kind;
+        let result = format!("([T; {rows}], [[T; {unknowns}]; {rows}])");
+        let mut arms = Vec::new();
+        for (segment, block, system) in self.of_kind(kind) {
             let inner = Scope { unknowns: &block.coordinates, ..*self.scope };
-            let (section, branches) = (&system.branch_section, &system.branches);
-            let values = Values::of_section(section, branches.iter().copied(), self.scope);
-            let mut text = String::new();
-            self.imports(&values, &mut text);
-            lets(section, &inner, &mut text);
-            let zero = number_of(0.0);
-            let holds = branches.iter().map(|id| format!("T::less({zero}, {})", inner.operand(*id)));
-            let _ = writeln!(text, "{}", holds.collect::<Vec<_>>().join(" & "));
-            Arm { segment, text, lines: section.lines.len() }
-        });
-        let signature = self.signature("holds", number, kind.unknowns, "__x", "T::Mask".into());
-        self.function(&signature, arms.collect())
+            let mut arm = parts.lines(&system.section, &inner);
+            arm.push(parts.wordings.statement(|open, text| {
+                let residuals = list(system.phi.iter().map(|id| open.operand(Some(*id), &inner)));
+                let mut row =
+                    |row: &Vec<Option<NodeId>>| list(row.iter().map(|id| open.operand(*id, &inner)));
+                let rows = list(system.phi_q.iter().map(&mut row));
+                let _ = writeln!(text, "({residuals}, {rows})");
+            }));
+            arms.push((segment, arm));
+        }
+        let frame = self.frame_of_block("__x", unknowns, result);
+        parts.choice(&format!("__evaluate{number}"), &frame, arms, (self.segments.len(), true));
+    }
+
+    /// `__holds…`: whether the branches hold that a block decides. What it computes is that of a trial and passed to nobody.
+    fn holds(&self, kind: Kind, number: usize, parts: &mut Parts) {
+        if !kind.branched {
+            return;
+        }
+        let mut arms = Vec::new();
+        for (segment, block, system) in self.of_kind(kind) {
+            let inner = Scope { unknowns: &block.coordinates, ..*self.scope };
+            let mut arm = parts.lines(&system.branch_section, &inner);
+            arm.push(parts.wordings.statement(|open, text| {
+                let zero = number_of(0.0);
+                let mut holds = |id: &NodeId| format!("T::less({zero}, {})", open.operand(Some(*id), &inner));
+                let holds = system.branches.iter().map(&mut holds).collect::<Vec<_>>();
+                let _ = writeln!(text, "{}", holds.join(" & "));
+            }));
+            arms.push((segment, arm));
+        }
+        let frame = self.frame_of_block("__x", kind.unknowns, "T::Mask".into());
+        parts.choice(&format!("__holds{number}"), &frame, arms, (self.segments.len(), false));
     }
 
     /// `__roots…`: both positions of a dyad.
-    fn roots(&self, kind: Kind, number: usize) -> String {
-        let arms: Vec<Arm> = (self.of_kind(kind))
-            .filter_map(|(segment, _, system)| {
-                let (dyad, section) = system.dyad.as_ref()?;
-                let values = Values::of_section(section, dyad.nodes(), self.scope);
-                let mut text = String::new();
-                self.imports(&values, &mut text);
-                lets(section, self.scope, &mut text);
-                let _ = writeln!(text, "{}", formula(dyad, self.scope));
-                Some(Arm { segment, text, lines: section.lines.len() })
-            })
-            .collect();
-        if arms.is_empty() {
-            return String::new();
+    fn roots(&self, kind: Kind, number: usize, parts: &mut Parts) {
+        let mut arms = Vec::new();
+        for (segment, _, system) in self.of_kind(kind) {
+            let Some((dyad, section)) = &system.dyad else { continue };
+            let mut arm: Vec<Statement> = parts.lines(section, self.scope);
+            arm.push(parts.wordings.statement(|open, text| {
+                *text = formula(dyad, &mut |id| open.operand(Some(id), self.scope)) + "\n";
+            }));
+            arms.push((segment, arm));
         }
-        let result = format!("__mbs::Roots<T, {}>", kind.unknowns);
-        self.function(&self.signature("roots", number, kind.unknowns, "__near", result), arms)
+        if !arms.is_empty() {
+            let result = format!("__mbs::Roots<T, {}>", kind.unknowns);
+            let frame = self.frame_of_block("__near", kind.unknowns, result);
+            parts.choice(&format!("__roots{number}"), &frame, arms, (self.segments.len(), false));
+        }
     }
 
-    fn signature(&self, role: &str, number: usize, unknowns: usize, x: &str, result: String) -> Signature {
+    fn frame_of_block(&self, x: &str, unknowns: usize, result: String) -> Frame {
         let n = self.scope.model.coordinates.len();
-        Signature {
-            name: format!("__{role}{number}"),
-            q: format!("&[T; {n}]"),
-            more: Some((x.into(), format!("&[T; {unknowns}]"))),
-            result: Some(result),
-        }
+        frame(format!("&[T; {n}]"), Some((x, format!("&[T; {unknowns}]"))), Some(result))
     }
 
-    /// A function that does a segment's share, by way of functions of bounded length.
-    fn function(&self, signature: &Signature, arms: Vec<Arm>) -> String {
-        let values = format!("&__mbs::long::Passed<T, {}>", self.slots.len());
-        let mut groups: Vec<(usize, Vec<Arm>)> = Vec::new();
-        for arm in arms {
-            match groups.last_mut() {
-                Some((lines, group)) if *lines + arm.lines <= LONGEST_BODY => {
-                    *lines += arm.lines;
-                    group.push(arm);
-                }
-                _ => groups.push((arm.lines, vec![arm])),
-            }
-        }
-        let (mut text, mut choice) = (String::new(), Vec::new());
-        for (number, (_, group)) in groups.into_iter().enumerate() {
-            let last = group.last().map_or(0, |arm| arm.segment);
-            let name = format!("{}_{number}", signature.name);
-            text += &signature.declared(&name, &values, "#[inline(never)]");
-            choice.push((format!("..={last}"), format!("self.{}", signature.called(&name))));
-            let arms = group.into_iter().map(|arm| (arm.segment.to_string(), arm.text));
-            let _ = writeln!(text, "{{\n{}}}", selected("__s", arms.collect()));
-        }
-        text += &signature.declared(&signature.name, &values, "#[inline]");
-        text + "{\n" + &selected("__s", choice) + "}\n"
-    }
-
-    /// The loop over all segments.
-    fn body(&self) -> String {
+    /// The loop over all segments, `passed` values passed on.
+    fn body(&self, passed: usize) -> String {
         let mut text = format!(
-            "let __v = __mbs::long::Passed::<T, {}>::none();\n\
-             let mut __outcome = T::per_lane(|_| __mbs::Outcome::Converged);\n",
-            self.slots.len()
+            "let __v = &__mbs::long::Passed::<T, {passed}>::none();\n\
+             let mut __outcome = T::per_lane(|_| __mbs::Outcome::Converged);\n"
         );
         text += &scales(self.scope.model);
         for (kind, number) in &self.kinds {
@@ -437,7 +311,7 @@ impl Emission<'_> {
             kind.copied().unwrap_or(self.kinds.len()).to_string()
         };
         let kinds = list(self.segments.iter().map(kind_of));
-        let call = "self.__before(__s, __p, __q, __t, &__v);";
+        let call = "self.__before(__s, __p, __q, __t, __v);";
         if self.kinds.is_empty() {
             let _ = writeln!(text, "for __s in 0..{} {{ {call} }}", self.segments.len());
         } else {
@@ -463,7 +337,9 @@ impl Emission<'_> {
     fn computed(&self) -> BTreeSet<NodeId> {
         let mut computed = BTreeSet::new();
         for Segment { steps, newton } in &self.segments {
-            computed.extend(Values::of_steps(steps, self.scope).computed);
+            let lines =
+                steps.iter().filter_map(|step| if let Step::Line(line) = step { Some(line) } else { None });
+            computed.extend(lines.flat_map(|line| line.values()));
             computed.extend(newton.iter().flat_map(|(_, system)| system.section.computed()));
         }
         computed
@@ -493,7 +369,7 @@ impl Emission<'_> {
         } else {
             format!("solve::<{unknowns}, {factors}>")
         };
-        let call = |role: &str, x: &str| format!("self.__{role}{number}(__s, __p, &*__q, __t, &__v, {x})");
+        let call = |role: &str, x: &str| format!("self.__{role}{number}(__s, __p, &*__q, __t, {x}, __v)");
         let mut more = String::new();
         if branched {
             let _ = write!(more, ", |__x| {}", call("holds", "__x"));
@@ -516,30 +392,16 @@ impl Emission<'_> {
     }
 }
 
-/// How a function of all segments is declared and called.
-struct Signature {
-    name: String,
-    /// Type of the coordinates.
-    q: String,
-    /// The last argument, where there is one more.
-    more: Option<(String, String)>,
-    result: Option<String>,
-}
-
-impl Signature {
-    fn declared(&self, name: &str, values: &str, inline: &str) -> String {
-        let more = self.more.as_ref().map_or(String::new(), |(name, kind)| format!(", {name}: {kind}"));
-        let result = self.result.as_ref().map_or(String::new(), |result| format!(" -> {result}"));
-        let q = &self.q;
-        format!(
-            "{inline}\nfn {name}(&self, __s: ::core::primitive::usize, __p: &__Parameters<T>, __q: {q}, __t: T, \
-             __v: {values}{more}){result} "
-        )
-    }
-
-    fn called(&self, name: &str) -> String {
-        let more = self.more.as_ref().map_or(String::new(), |(name, _)| format!(", {name}"));
-        format!("{name}(__s, __p, __q, __t, __v{more})")
+/// Arguments of the functions of all segments.
+fn frame(q: String, more: Option<(&str, String)>, result: Option<String>) -> Frame {
+    let (declared, given) = match more {
+        Some((name, kind)) => (format!("{name}: {kind}, "), format!("{name}, ")),
+        None => (String::new(), String::new()),
+    };
+    Frame {
+        declared: format!("__p: &__Parameters<T>, __q: {q}, __t: T, {declared}"),
+        given: format!("__p, __q, __t, {given}"),
+        result,
     }
 }
 

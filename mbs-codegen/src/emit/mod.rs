@@ -16,12 +16,16 @@ mod item;
 mod linear;
 mod long;
 pub mod notation;
+mod parts;
 mod phases;
-mod pieces;
+mod repetition;
 pub mod report;
+mod rolled;
 mod scenes;
 mod scope;
+mod statement;
 mod stub;
+mod substitution;
 mod terms;
 mod work;
 

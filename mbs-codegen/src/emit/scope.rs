@@ -23,7 +23,43 @@ pub struct Scope<'a> {
     pub unknowns: &'a [usize],
 }
 
+/// What an operand is written as.
+pub enum Written {
+    /// The local of a value.
+    Local(NodeId),
+    /// A number that is finite.
+    Number(f64),
+    /// An element of an array.
+    Element {
+        /// The array.
+        array: String,
+        /// Its place there.
+        index: usize,
+    },
+    /// Something else.
+    Otherwise(String),
+}
+
 impl Scope<'_> {
+    /// What [`Scope::operand`] writes.
+    pub fn written(&self, id: NodeId) -> Written {
+        let node = self.graph.node(id);
+        if let Node::Constant(bits) = node
+            && f64::from_bits(bits).is_finite()
+        {
+            return Written::Number(f64::from_bits(bits));
+        }
+        let text = self.operand(id);
+        if text == local(id) {
+            return Written::Local(id);
+        }
+        let element = text.strip_suffix(']').and_then(|text| text.rsplit_once('['));
+        match element.and_then(|(array, index)| Some((array.to_owned(), index.parse().ok()?))) {
+            Some((array, index)) => Written::Element { array, index },
+            None => Written::Otherwise(text),
+        }
+    }
+
     /// The value as an operand.
     pub fn operand(&self, id: NodeId) -> String {
         let field =

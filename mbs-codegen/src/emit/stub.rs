@@ -57,6 +57,7 @@ fn bodies(model: &Model, runtime: &TokenStream) -> Bodies {
         solve_with_position: body(),
         solve_blocks: None,
         methods: TokenStream::new(),
+        parts: TokenStream::new(),
         factorize: body(),
         solve_linear: body(),
         // A constant: the compiler computes it.

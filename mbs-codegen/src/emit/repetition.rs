@@ -1,0 +1,137 @@
+//! Where a sequence repeats itself.
+
+use std::ops::Range;
+
+/// Fewest rounds that make a loop.
+const FEWEST_ROUNDS: usize = 4;
+
+/// Fewest elements that make one.
+const FEWEST: usize = 32;
+
+/// A stretch of a sequence.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Stretch {
+    /// Elements in their order.
+    Once(Range<usize>),
+    /// Several rounds of elements, each like the first one.
+    Rounds {
+        /// Where the first round begins.
+        first: usize,
+        /// Length of a round.
+        length: usize,
+        /// How many there are.
+        rounds: usize,
+    },
+}
+
+/// Before: a sequence. After: its stretches, one behind the other: rounds of at most `longest` elements, as many as possible at
+/// each place, and between them at most `longest` elements at once.
+///
+/// Linear in the sequence where it repeats itself, `longest` times that where it does not.
+pub fn stretches(sequence: &[usize], longest: usize) -> Vec<Stretch> {
+    let mut stretches = Vec::new();
+    let (mut open, mut here) = (0, 0);
+    while here < sequence.len() {
+        match rounds(sequence, here, longest) {
+            Some((length, rounds)) => {
+                once(open..here, longest, &mut stretches);
+                stretches.push(Stretch::Rounds { first: here, length, rounds });
+                here += length * rounds;
+                open = here;
+            }
+            None => here += 1,
+        }
+    }
+    once(open..here, longest, &mut stretches);
+    stretches
+}
+
+fn once(range: Range<usize>, longest: usize, stretches: &mut Vec<Stretch>) {
+    let mut start = range.start;
+    while start < range.end {
+        let end = range.end.min(start + longest.max(1));
+        stretches.push(Stretch::Once(start..end));
+        start = end;
+    }
+}
+
+/// Length and number of the rounds from `here` on that take most of the sequence together; the shortest of several.
+fn rounds(sequence: &[usize], here: usize, longest: usize) -> Option<(usize, usize)> {
+    let rest = sequence.get(here..)?;
+    let mut best: Option<(usize, usize)> = None;
+    for length in 1..=longest.min(rest.len() / FEWEST_ROUNDS) {
+        let behind = rest.get(length..).unwrap_or_default();
+        // Most lengths end here.
+        if behind.first() != rest.first() {
+            continue;
+        }
+        let same = behind.iter().zip(rest).take_while(|(behind, before)| behind == before).count();
+        let rounds = same / length + 1;
+        let covered = |(length, rounds): (usize, usize)| length * rounds;
+        let is_loop = rounds >= FEWEST_ROUNDS && length * rounds >= FEWEST;
+        if is_loop && best.is_none_or(|best| covered(best) < length * rounds) {
+            best = Some((length, rounds));
+        }
+    }
+    best
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The sequence that stretches stand for.
+    fn unrolled(stretches: &[Stretch], sequence: &[usize]) -> Vec<usize> {
+        let mut all = Vec::new();
+        for stretch in stretches {
+            match stretch {
+                Stretch::Once(range) => all.extend_from_slice(sequence.get(range.clone()).expect("a range")),
+                Stretch::Rounds { first, length, rounds } => {
+                    let round = sequence.get(*first..first + length).expect("a round");
+                    (0..*rounds).for_each(|_| all.extend_from_slice(round));
+                }
+            }
+        }
+        all
+    }
+
+    #[test]
+    fn rounds_are_found_behind_something_else() {
+        let sequence: Vec<usize> =
+            [7, 8].into_iter().chain((0..30).map(|index| index % 3)).chain([9]).collect();
+        let found = stretches(&sequence, 10);
+        let rounds = Stretch::Rounds { first: 2, length: 3, rounds: 10 };
+        assert_eq!(found, [Stretch::Once(0..2), rounds, Stretch::Once(32..33)]);
+    }
+
+    #[test]
+    fn what_does_not_repeat_itself_is_cut_to_length() {
+        let sequence: Vec<usize> = (0..25).collect();
+        assert_eq!(
+            stretches(&sequence, 10),
+            [Stretch::Once(0..10), Stretch::Once(10..20), Stretch::Once(20..25)]
+        );
+    }
+
+    #[test]
+    fn a_few_equal_elements_within_a_round_make_no_loop_of_their_own() {
+        let round = [1, 1, 1, 2, 1, 1, 1, 3];
+        let sequence: Vec<usize> = (0..80).filter_map(|index| round.get(index % 8)).copied().collect();
+        assert_eq!(stretches(&sequence, 10), [Stretch::Rounds { first: 0, length: 8, rounds: 10 }]);
+    }
+
+    #[test]
+    fn stretches_are_the_sequence() {
+        // Digits of a small generator: some repetition, some not.
+        let mut state = 1_usize;
+        let mut sequence = Vec::new();
+        for _ in 0..300 {
+            state = (state * 75 + 74) % 65_537;
+            let length = state % 5 + 1;
+            (0..state % 40).for_each(|index| sequence.push(index % length));
+        }
+        let found = stretches(&sequence, 50);
+        assert_eq!(unrolled(&found, &sequence), sequence);
+        assert!(found.iter().any(|stretch| matches!(stretch, Stretch::Rounds { .. })));
+    }
+}
