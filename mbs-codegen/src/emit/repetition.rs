@@ -98,10 +98,10 @@ mod tests {
     #[test]
     fn rounds_are_found_behind_something_else() {
         let sequence: Vec<usize> =
-            [7, 8].into_iter().chain((0..30).map(|index| index % 3)).chain([9]).collect();
+            [7, 8].into_iter().chain((0..36).map(|index| index % 3)).chain([9]).collect();
         let found = stretches(&sequence, 10);
-        let rounds = Stretch::Rounds { first: 2, length: 3, rounds: 10 };
-        assert_eq!(found, [Stretch::Once(0..2), rounds, Stretch::Once(32..33)]);
+        let rounds = Stretch::Rounds { first: 2, length: 3, rounds: 12 };
+        assert_eq!(found, [Stretch::Once(0..2), rounds, Stretch::Once(38..39)]);
     }
 
     #[test]
