@@ -1,80 +1,201 @@
 //! Accelerations where a motion passes a singular position: what they tend to from either side.
 
+use super::kkt::{Factors, System, TRUNCATION};
 use super::model::{Counts, Formulation, Model, Solved};
 use super::multipliers::{factorize, solve};
-use super::projection::Projection;
+use super::projection::{Projection, Stages, correction_factors};
 use super::vector::{State, Vector};
 use crate::{Dynamic, Failure, Real};
 
-/// Margin below which a state counts as singular: accelerations there are wrong by what rounding and integration leave
-/// in the velocities, 1e-11, over the margin.
-pub(super) const HIT: f64 = 3e-5;
-
-/// How far to either side the motion is looked at, in the reference metric (rad, or reference lengths): where the margin
-/// is some hundredths, velocities are determined to 1e-12.
-const DISTANCE: f64 = 3e-2;
-
-/// The motion passes the singular position where the margin beside it is larger by this factor; else the mechanism is
-/// singular all along, and what was solved stands.
-const PASSES: f64 = 10.0;
-
-/// Weights of the values at ±1, ±2, ±3 distances: the even polynomial of degree 4 through them at 0, error δ⁶/20 of the
-/// sixth derivative.
-const WEIGHTS: [f64; 3] = [0.75, -0.3, 0.05];
-
-/// Rates and multipliers at the singular state `(t, y)`, interpolated between states on the constraints before and
-/// behind it. The accelerations of a motion that goes on smoothly have no jump there, only the equations have.
+/// Margin below which a state is in the zone of a singular position: directions that the rows determine more weakly are
+/// not corrected, and accelerations in them do not follow from the state.
 ///
-/// `here` is what the equations gave; it stands where the mechanism rests, or is singular on both sides too.
+/// Rounding ε in the rows makes ε/σ of a position and ε v/σ² of a velocity that is projected: at 1e-2 that is 1e-12, what
+/// the integration of a step leaves there by itself. What is left grows as 1/σ² on the way to the singular position and
+/// makes v/σ times itself of an acceleration: not bounded, so that small steps through the zone are worse than long
+/// ones. From both sides accelerations are as good as at its border.
+pub(super) const ZONE: f64 = 1e-2;
+
+/// How much farther than the zone reaches the motion is looked at on either side: the nearest states of a state at its
+/// border are then 1.5 times as far from the singular position as the border is.
+const BEYOND: f64 = 2.5;
+
+/// Farthest distance, in the reference metric (rad, or reference lengths): where the margin grows so slowly that the
+/// zone reaches farther, accelerations do not follow a polynomial through it.
+const FARTHEST: f64 = 0.06;
+
+/// How far the mechanism is moved to see how fast the margin changes, in the reference metric.
+const PROBE: f64 = 1e-3;
+
+/// Weights of the values at ±1, ±2, ±3, ±4 distances: the even polynomial of degree 6 through them at 0, error δ⁸/70 of
+/// the eighth derivative.
+const WEIGHTS: [f64; 4] = [4.0 / 5.0, -2.0 / 5.0, 4.0 / 35.0, -1.0 / 70.0];
+
+/// Weights of the coordinates at 1, 2, 3, 4 distances less those at −1, −2, −3, −4: the seventh difference. It leaves nothing
+/// of a polynomial of degree 6, 144 δ⁷ of the seventh term of a series, and e/4δ of the hyperbola e/s.
+const DIFFERENCES: [f64; 4] = [-7.0 / 35.0, 7.0 / 35.0, -3.0 / 35.0, 0.5 / 35.0];
+
+/// Largest seventh difference, in the reference metric, of a way that passes; a smooth one leaves 1e-10. A parallelogram whose
+/// rods differ by 1e-9 of their length leaves 1e-8: it does not pass but turns aside within √1e-9, and the equations say
+/// how.
+const LARGEST_DIFFERENCE: f64 = 1e-9;
+
+/// The states beside are on a parabola in time as long as velocities change by less than this share of themselves over
+/// it; a slower motion is followed along its direction alone, at rest in time.
+const LARGEST_CHANGE: f64 = 0.5;
+
+/// Rates and multipliers at the state `(t, y)` in the zone of a singular position, interpolated between states on the
+/// constraints before and behind it. The accelerations of a motion that goes on smoothly have no jump there, only the
+/// equations have.
+///
+/// `here` is what the equations gave with `factors`; it stands where the mechanism rests, or is singular on both sides too.
+/// With all `stages` on the constraints the accelerations are those of the nearest state there. With none, a stage of a step
+/// is off them by what a step of lower order leaves; only what the equations do not give is then taken from both sides.
 #[cold]
 #[inline(never)]
 pub(super) fn from_both_sides<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     model: &Model<'_, S, R, N, M>,
     (t, y): (R, &State<R, N, S::States>),
     here: Solved<R, N, M, S::States>,
+    (factors, stages): (&Factors<R, N, M>, Stages),
     counts: &mut Counts,
 ) -> Result<Solved<R, N, M, S::States>, Failure> {
-    let zero = R::constant(0.0);
-    let mut speed = zero;
-    for (rate, scale) in y.qd.iter().zip(&model.metric.coordinates) {
-        speed = speed.max((*rate / *scale).abs());
-    }
-    let delta = R::constant(DISTANCE) / speed;
-    if !delta.is_finite() {
-        return Ok(here);
-    }
     counts.singular += 1;
-    let (mut qdd, mut lambda) = ([zero; N], [zero; M]);
-    for (index, weight) in (1_u8..).zip(WEIGHTS) {
-        for side in [-1.0, 1.0] {
-            let shift = R::constant(side * f64::from(index)) * delta;
-            let beside = match beside(model, (t, y), &here, shift, counts) {
-                Ok(beside) if R::constant(PASSES) * here.margin < beside.margin => beside,
-                _ => return Ok(here),
-            };
-            let one = R::constant(1.0);
-            qdd = qdd.plus(one, &[weight], [&beside.rate.qd]);
-            lambda = lambda.plus(one, &[weight], [&beside.lambda]);
-        }
-    }
-    let rate = model.rates(&model.position(t, y), y, qdd, &lambda);
+    let found = Way::through(model, (t, y), &here)
+        .and_then(|way| way.interpolated(model, (t, y), &here.lambda, counts));
+    let Some((qdd, lambda)) = found else { return Ok(here) };
+    let position = model.position(t, y);
+    let qdd = if stages == Stages::All || S::FORCE_USES_MULTIPLIERS {
+        qdd
+    } else {
+        let change = qdd.plus(R::constant(-1.0), &[1.0], [&here.rate.qd]);
+        let weak = weak_part(model, t, &position, &change, factors)?;
+        here.rate.qd.plus(R::constant(1.0), &[1.0], [&weak])
+    };
+    let rate = model.rates(&position, y, qdd, &lambda);
     Ok(Solved { rate, lambda, margin: here.margin })
 }
 
-/// Rates and multipliers a `shift` (s) before or behind, on the constraints.
+/// The part of `x` (N) in the directions that the rows determine too weakly: what is orthogonal in the mass's measure to
+/// motions that all rows leave free, among those that the other rows leave free.
+///
+/// In all other directions the equations hold at the state itself, which a stage need not have on the constraints.
+fn weak_part<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
+    model: &Model<'_, S, R, N, M>,
+    t: R,
+    position: &S::Position,
+    x: &[R; N],
+    factors: &Factors<R, N, M>,
+) -> Result<[R; N], Failure> {
+    let none = [R::constant(0.0); M];
+    let momentum = model.mechanism.mass_times(model.parameters, position, x);
+    let strong = correction_factors(model, t, position)?;
+    let (loose, _) = strong.solve(&momentum, &none);
+    let (free, _) = factors.solve(&momentum, &none);
+    Ok(loose.plus(R::constant(-1.0), &[1.0], [&free]))
+}
+
+/// A smooth way through a state, in steps of one distance.
+struct Way<R, const N: usize> {
+    /// Time (s) that the motion needs for a distance.
+    duration: R,
+    /// Time (s) that passes over it: none where the motion is slow.
+    passing: R,
+    /// Accelerations along the way: N.
+    qdd: [R; N],
+}
+
+impl<R: Real, const N: usize> Way<R, N> {
+    /// That of a motion with the rates `here`, with distances that lead out of the zone; none where there are no such.
+    fn through<S: Dynamic<R, N, M>, const M: usize>(
+        model: &Model<'_, S, R, N, M>,
+        (t, y): (R, &State<R, N, S::States>),
+        here: &Solved<R, N, M, S::States>,
+    ) -> Option<Self> {
+        let zero = R::constant(0.0);
+        let (speed, change) = (largest(&y.qd, model), largest(&here.rate.qd, model));
+        let mut margin = zero;
+        for side in [-1.0, 1.0] {
+            let aside = State { q: y.q.plus(R::constant(side * PROBE) / speed, &[1.0], [&y.qd]), ..*y };
+            margin = margin.max(model.margin(t, &aside).ok()?);
+        }
+        let distance = R::constant(BEYOND * ZONE * PROBE) / (margin - here.margin);
+        // Written so that NaN, of a mechanism at rest, ends it.
+        if !(zero < distance && distance < R::constant(FARTHEST)) {
+            return None;
+        }
+        let duration = distance / speed;
+        let far = R::constant(WEIGHTS.len() as f64) * duration;
+        if far * change < R::constant(LARGEST_CHANGE) * speed {
+            return Some(Way { duration, passing: duration, qdd: here.rate.qd });
+        }
+        Some(Way { duration, passing: zero, qdd: [zero; N] })
+    }
+
+    /// Accelerations and multipliers at the middle of the way from those beside it; none where a state is in the zone or
+    /// cannot be put onto the constraints, or where both sides are not of one piece.
+    fn interpolated<S: Dynamic<R, N, M>, const M: usize>(
+        &self,
+        model: &Model<'_, S, R, N, M>,
+        at: (R, &State<R, N, S::States>),
+        lambda: &[R; M],
+        counts: &mut Counts,
+    ) -> Option<([R; N], [R; M])> {
+        let (zero, one) = (R::constant(0.0), R::constant(1.0));
+        let (mut qdd, mut found, mut difference) = ([zero; N], [zero; M], [zero; N]);
+        for (index, (weight, share)) in (1_u8..).zip(WEIGHTS.into_iter().zip(DIFFERENCES)) {
+            for side in [-1.0, 1.0] {
+                let count = R::constant(side * f64::from(index));
+                let (q, beside) = beside(model, at, self, count, lambda, counts).ok()?;
+                if beside.margin < R::constant(ZONE) {
+                    return None;
+                }
+                qdd = qdd.plus(one, &[weight], [&beside.rate.qd]);
+                found = found.plus(one, &[weight], [&beside.lambda]);
+                difference = difference.plus(one, &[side * share], [&q]);
+            }
+        }
+        let whole = largest(&difference, model) <= R::constant(LARGEST_DIFFERENCE);
+        whole.then_some((qdd, found))
+    }
+}
+
+/// The largest of `values` (N) over its coordinate's scale.
+fn largest<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
+    values: &[R; N],
+    model: &Model<'_, S, R, N, M>,
+) -> R {
+    let scaled = values.iter().zip(&model.metric.coordinates).map(|(value, scale)| (*value / *scale).abs());
+    scaled.fold(R::constant(0.0), |largest, value| largest.max(value))
+}
+
+/// Coordinates, rates and multipliers `count` distances along the way, on the constraints.
 fn beside<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     model: &Model<'_, S, R, N, M>,
     (t, y): (R, &State<R, N, S::States>),
-    here: &Solved<R, N, M, S::States>,
-    shift: R,
+    way: &Way<R, N>,
+    count: R,
+    lambda: &[R; M],
     counts: &mut Counts,
-) -> Result<Solved<R, N, M, S::States>, Failure> {
-    let mut y = y.plus(shift, &[1.0], [&here.rate]);
-    // Second order in the coordinates: half of what the velocities changed by.
-    y.q = y.q.plus(R::constant(0.5) * shift * shift, &[1.0], [&here.rate.qd]);
-    Projection::default().settle(model, t + shift, &mut y, counts)?;
-    let position = model.position(t + shift, &y);
-    let factors = factorize(model, t + shift, &position, counts)?;
+) -> Result<([R; N], Solved<R, N, M, S::States>), Failure> {
+    let (t, shift) = (t + count * way.passing, count * way.duration);
+    let half = R::constant(0.5) * shift * shift;
+    let q = y.q.plus(shift, &[1.0], [&y.qd]).plus(half, &[1.0], [&way.qdd]);
+    let mut y = State { q, qd: y.qd.plus(shift, &[1.0], [&way.qdd]), ..*y };
+    Projection::default().settle(model, t, &mut y, counts)?;
+    let position = model.position(t, &y);
+    let factors = factorize(model, t, &position, counts)?;
     let gamma = model.mechanism.gamma(model.parameters, &position, &y.qd);
-    solve(model, (t + shift, &y), &position, &here.lambda, &factors, &gamma)
+    Ok((y.q, solve(model, (t, &y), &position, lambda, &factors, &gamma)?))
+}
+
+impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, R, N, M> {
+    /// How near Φ_q is to losing rank at a state, by orthogonal factors.
+    fn margin(&self, t: R, y: &State<R, N, S::States>) -> Result<R, Failure> {
+        let position = self.position(t, y);
+        let mass = self.mechanism.mass(self.parameters, &position);
+        let phi_q = self.mechanism.phi_q(self.parameters, &position);
+        let system = System::new(&mass, &phi_q, self.metric);
+        Ok(system.factorize_rank_revealing(R::constant(TRUNCATION), S::COORDINATES, t)?.margin())
+    }
 }

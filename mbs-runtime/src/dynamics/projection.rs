@@ -1,6 +1,6 @@
 //! Projection: positions and velocities put back onto the constraints by the shortest way in the mass's measure.
 
-use super::both_sides::{HIT, from_both_sides};
+use super::both_sides::{ZONE, from_both_sides};
 use super::kkt::{Factors, System};
 use super::metric::worse;
 use super::model::{Counts, Formulation, Model, Solved};
@@ -25,13 +25,6 @@ const STALE: f64 = 0.1;
 /// to be corrected, 1e-2 of what a step leaves in it. Beyond it (1e-6 of a reference length) the constraints cannot be
 /// met.
 const LARGEST_REST: f64 = 1e8;
-
-/// Singular value of Φ_q in the metric, relative to the largest, below which a direction is not corrected.
-///
-/// Rounding ε in the rows makes ε/σ of a position, ε v/σ² of a velocity that is projected: at 1e-2 that is 1e-12, what
-/// the integration of a step leaves there by itself. Where a mechanism passes a singular position it is in that zone
-/// for a few steps, and corrected behind it.
-const WEAKEST_CORRECTION: f64 = 1e-2;
 
 /// Which stages of a step are put onto the constraints before they are evaluated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -73,8 +66,8 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Formulation<S
         let factors = factorize(model, t, &position, counts)?;
         let gamma = model.mechanism.gamma(model.parameters, &position, &y.qd);
         let solved = solve(model, (t, &y), &position, lambda, &factors, &gamma)?;
-        if solved.margin < R::constant(HIT) {
-            return from_both_sides(model, (t, &y), solved, counts);
+        if solved.margin < R::constant(ZONE) {
+            return from_both_sides(model, (t, &y), solved, (&factors, self.stages), counts);
         }
         Ok(solved)
     }
@@ -157,11 +150,15 @@ fn project_velocity<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize
         y.qd = y.qd.plus(R::constant(-1.0), &[1.0], [&step]);
     }
     y.qd = progress.best.unwrap_or(y.qd);
-    model.require(t, &model.constraint_rates(&position, &y.qd), &tolerances, R::constant(LARGEST_REST), true)
+    let (phi_d, rest) = (model.constraint_rates(&position, &y.qd), R::constant(LARGEST_REST));
+    if model.worst(&phi_d, &tolerances).0 <= rest {
+        return Ok(());
+    }
+    model.require(t, &phi_d, &model.frame_free_rate_tolerances(&position, &y.qd), rest, true)
 }
 
 /// The factors that corrections are solved with: without what the rows determine too weakly.
-fn correction_factors<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
+pub(super) fn correction_factors<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     model: &Model<'_, S, R, N, M>,
     t: R,
     position: &S::Position,
@@ -170,7 +167,7 @@ fn correction_factors<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usi
     let phi_q = model.mechanism.phi_q(model.parameters, position);
     let system = System::new(&mass, &phi_q, model.metric);
     let factors = system.factorize(S::COORDINATES, t)?;
-    let weakest = R::constant(WEAKEST_CORRECTION);
+    let weakest = R::constant(ZONE);
     if weakest < factors.margin() {
         return Ok(factors);
     }
@@ -290,6 +287,17 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
             }
         }
         worst
+    }
+
+    /// The same as if all coordinates moved as fast as the fastest one in the metric, so that it does not fall to nothing
+    /// where a rod lies along one axis of the frame and moves along the other.
+    #[cold]
+    #[inline(never)]
+    fn frame_free_rate_tolerances(&self, position: &S::Position, qd: &[R; N]) -> [R; M] {
+        let scales = &self.metric.coordinates;
+        let rates = qd.iter().zip(scales).map(|(qd, scale)| (*qd / *scale).abs());
+        let speed = rates.fold(R::constant(0.0), |largest, rate| largest.max(rate));
+        self.rate_tolerances(position, &scales.map(|scale| scale * speed))
     }
 
     /// Fails with the worst row where a residual exceeds `factor` times its tolerance, or is no number.
