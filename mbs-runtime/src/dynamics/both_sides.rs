@@ -2,7 +2,7 @@
 
 use super::kkt::{Factors, System, TRUNCATION};
 use super::model::{Counts, Formulation, Model, Solved};
-use super::multipliers::{factorize, solve};
+use super::multipliers::Unstabilized;
 use super::projection::{Projection, Stages, correction_factors};
 use super::vector::{State, Vector};
 use crate::{Dynamic, Failure, Real};
@@ -22,23 +22,26 @@ const BEYOND: f64 = 2.5;
 
 /// Farthest distance, in the reference metric (rad, or reference lengths): where the margin grows so slowly that the
 /// zone reaches farther, accelerations do not follow a polynomial through it.
-const FARTHEST: f64 = 0.06;
+const FARTHEST: f64 = 0.05;
 
 /// How far the mechanism is moved to see how fast the margin changes, in the reference metric.
 const PROBE: f64 = 1e-3;
 
-/// Weights of the values at ±1, ±2, ±3, ±4 distances: the even polynomial of degree 6 through them at 0, error δ⁸/70 of
-/// the eighth derivative.
-const WEIGHTS: [f64; 4] = [4.0 / 5.0, -2.0 / 5.0, 4.0 / 35.0, -1.0 / 70.0];
+/// Weights of the values at ±1 … ±5 distances: the even polynomial of degree 8 through them at 0, error δ¹⁰/252 of the tenth
+/// derivative.
+const WEIGHTS: [f64; 5] = [5.0 / 6.0, -10.0 / 21.0, 5.0 / 28.0, -5.0 / 126.0, 1.0 / 252.0];
 
-/// Weights of the coordinates at 1, 2, 3, 4 distances less those at −1, −2, −3, −4: the seventh difference. It leaves nothing
-/// of a polynomial of degree 6, 144 δ⁷ of the seventh term of a series, and e/4δ of the hyperbola e/s.
-const DIFFERENCES: [f64; 4] = [-7.0 / 35.0, 7.0 / 35.0, -3.0 / 35.0, 0.5 / 35.0];
+/// Weights of the coordinates at 1 … 5 distances less those at −1 … −5: the ninth difference. It leaves nothing of a
+/// polynomial of degree 8, 576 δ⁹ of the ninth term of a series, and e/5δ of the hyperbola e/s.
+const DIFFERENCES: [f64; 5] = [-1.0 / 6.0, 4.0 / 21.0, -3.0 / 28.0, 2.0 / 63.0, -1.0 / 252.0];
 
-/// Largest seventh difference, in the reference metric, of a way that passes; a smooth one leaves 1e-10. A parallelogram whose
+/// Largest ninth difference, in the reference metric, of a way that passes; a smooth one leaves 1e-10. A parallelogram whose
 /// rods differ by 1e-9 of their length leaves 1e-8: it does not pass but turns aside within √1e-9, and the equations say
 /// how.
 const LARGEST_DIFFERENCE: f64 = 1e-9;
+
+/// Rounding errors of a coordinate that the difference may hold, in ε times the coordinate: what counts in single precision.
+const ROUNDINGS: f64 = 64.0;
 
 /// The states beside are on a parabola in time as long as velocities change by less than this share of themselves over
 /// it; a slower motion is followed along its direction alone, at rest in time.
@@ -132,6 +135,22 @@ impl<R: Real, const N: usize> Way<R, N> {
         Some(Way { duration, passing: zero, qdd: [zero; N] })
     }
 
+    /// Time (s) and state `count` distances along the way, on the constraints.
+    fn state<S: Dynamic<R, N, M>, const M: usize>(
+        &self,
+        model: &Model<'_, S, R, N, M>,
+        (t, y): (R, &State<R, N, S::States>),
+        count: R,
+        counts: &mut Counts,
+    ) -> Result<(R, State<R, N, S::States>), Failure> {
+        let (t, shift) = (t + count * self.passing, count * self.duration);
+        let half = R::constant(0.5) * shift * shift;
+        let q = y.q.plus(shift, &[1.0], [&y.qd]).plus(half, &[1.0], [&self.qdd]);
+        let mut y = State { q, qd: y.qd.plus(shift, &[1.0], [&self.qdd]), ..*y };
+        Projection::default().settle(model, t, &mut y, counts)?;
+        Ok((t, y))
+    }
+
     /// Accelerations and multipliers at the middle of the way from those beside it; none where a state is in the zone or
     /// cannot be put onto the constraints, or where both sides are not of one piece.
     fn interpolated<S: Dynamic<R, N, M>, const M: usize>(
@@ -146,16 +165,18 @@ impl<R: Real, const N: usize> Way<R, N> {
         for (index, (weight, share)) in (1_u8..).zip(WEIGHTS.into_iter().zip(DIFFERENCES)) {
             for side in [-1.0, 1.0] {
                 let count = R::constant(side * f64::from(index));
-                let (q, beside) = beside(model, at, self, count, lambda, counts).ok()?;
+                let (t, y) = self.state(model, at, count, counts).ok()?;
+                let beside = Unstabilized.solve(model, t, &y, lambda, counts).ok()?;
                 if beside.margin < R::constant(ZONE) {
                     return None;
                 }
                 qdd = qdd.plus(one, &[weight], [&beside.rate.qd]);
                 found = found.plus(one, &[weight], [&beside.lambda]);
-                difference = difference.plus(one, &[side * share], [&q]);
+                difference = difference.plus(one, &[side * share], [&y.q]);
             }
         }
-        let whole = largest(&difference, model) <= R::constant(LARGEST_DIFFERENCE);
+        let rounding = R::constant(ROUNDINGS) * R::EPSILON * largest(&at.1.q, model);
+        let whole = largest(&difference, model) <= R::constant(LARGEST_DIFFERENCE).max(rounding);
         whole.then_some((qdd, found))
     }
 }
@@ -167,26 +188,6 @@ fn largest<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
 ) -> R {
     let scaled = values.iter().zip(&model.metric.coordinates).map(|(value, scale)| (*value / *scale).abs());
     scaled.fold(R::constant(0.0), |largest, value| largest.max(value))
-}
-
-/// Coordinates, rates and multipliers `count` distances along the way, on the constraints.
-fn beside<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
-    model: &Model<'_, S, R, N, M>,
-    (t, y): (R, &State<R, N, S::States>),
-    way: &Way<R, N>,
-    count: R,
-    lambda: &[R; M],
-    counts: &mut Counts,
-) -> Result<([R; N], Solved<R, N, M, S::States>), Failure> {
-    let (t, shift) = (t + count * way.passing, count * way.duration);
-    let half = R::constant(0.5) * shift * shift;
-    let q = y.q.plus(shift, &[1.0], [&y.qd]).plus(half, &[1.0], [&way.qdd]);
-    let mut y = State { q, qd: y.qd.plus(shift, &[1.0], [&way.qdd]), ..*y };
-    Projection::default().settle(model, t, &mut y, counts)?;
-    let position = model.position(t, &y);
-    let factors = factorize(model, t, &position, counts)?;
-    let gamma = model.mechanism.gamma(model.parameters, &position, &y.qd);
-    Ok((y.q, solve(model, (t, &y), &position, lambda, &factors, &gamma)?))
 }
 
 impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, R, N, M> {

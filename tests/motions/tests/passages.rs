@@ -89,7 +89,11 @@ fn exact(loops: f64, speed: f64) -> f64 {
 /// frame turned by `frame` (rad).
 fn state<const N: usize>(angle: f64, rate: f64, frame: f64) -> [[f64; N]; 2] {
     let turned = |x: f64, y: f64, j: usize| {
-        if j % 2 == 0 { frame.cos() * x - frame.sin() * y } else { frame.sin() * x + frame.cos() * y }
+        if j.is_multiple_of(2) {
+            frame.cos() * x - frame.sin() * y
+        } else {
+            frame.sin() * x + frame.cos() * y
+        }
     };
     let place = |j: usize| turned((j / 2) as f64 + angle.sin(), angle.cos(), j);
     let velocity = |j: usize| turned(rate * angle.cos(), -rate * angle.sin(), j);
@@ -99,7 +103,7 @@ fn state<const N: usize>(angle: f64, rate: f64, frame: f64) -> [[f64; N]; 2] {
 /// How the `k`th run starts: its speed (rad/s) is 1 ± 2 %, two of three frames are turned.
 fn start(k: u32) -> (f64, f64, f64, u32) {
     let speed = 1.0 + 0.02 * (2.0 * f64::from(k) / f64::from(STARTS - 1) - 1.0);
-    let frame = if k % 3 == 0 { 0.0 } else { PI * f64::from(k * 17 % STARTS) / f64::from(STARTS) };
+    let frame = if k.is_multiple_of(3) { 0.0 } else { PI * f64::from(k * 17 % STARTS) / f64::from(STARTS) };
     (speed, frame, TOLERANCES[k as usize % TOLERANCES.len()], GRIDS[k as usize / 3 % GRIDS.len()])
 }
 
