@@ -5,7 +5,7 @@ use std::fmt::Write;
 
 use super::code::LONGEST_BODY;
 use super::repetition::{Stretch, stretches};
-use super::rolled::{Rolled, Text, slots};
+use super::rolled::{Rolled, Text, earlier, slots};
 use super::scope::{Scope, Written};
 use super::statement::{Statement, Wordings};
 use crate::program::Section;
@@ -96,16 +96,17 @@ impl Parts {
         arms: Vec<(usize, Vec<Statement>)>,
         (count, exports): (usize, bool),
     ) {
-        let mut groups: BTreeMap<Vec<usize>, usize> = BTreeMap::new();
+        // Equal wordings that take their values from equal places among those of the arm.
+        let mut groups: BTreeMap<(Vec<usize>, Vec<Option<usize>>), usize> = BTreeMap::new();
         let mut grouped: Vec<Vec<Vec<Statement>>> = Vec::new();
         let mut table = vec![(0, 0); count];
         for (number, arm) in arms.into_iter().filter(|(_, arm)| !arm.is_empty()) {
-            let mut wordings: Vec<usize> = arm.iter().map(|statement| statement.wording).collect();
-            if arm.len() > LONGEST_BODY {
+            let key = match arm.len() > LONGEST_BODY {
                 // Alone in its group.
-                wordings = vec![usize::MAX, number];
-            }
-            let group = *groups.entry(wordings).or_insert(grouped.len());
+                true => (vec![usize::MAX, number], Vec::new()),
+                false => (arm.iter().map(|statement| statement.wording).collect(), earlier(&arm)),
+            };
+            let group = *groups.entry(key).or_insert(grouped.len());
             if group == grouped.len() {
                 grouped.push(Vec::new());
             }

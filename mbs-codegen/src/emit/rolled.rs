@@ -43,21 +43,11 @@ impl Rolled {
     pub fn of(rounds: Vec<Vec<Statement>>) -> Self {
         let mut columns: Vec<Vec<(&Operand, Option<usize>)>> = Vec::new();
         for round in &rounds {
-            let (mut known, mut column) = (BTreeMap::new(), 0);
-            for Statement { operands, defines, .. } in round {
-                for operand in operands {
-                    let earlier = match operand {
-                        Operand::Local(id) => known.get(id).copied(),
-                        _ => None,
-                    };
-                    if columns.len() == column {
-                        columns.push(Vec::new());
-                    }
-                    columns.get_mut(column).into_iter().for_each(|column| column.push((operand, earlier)));
-                    column += 1;
-                }
-                for id in defines {
-                    known.insert(*id, known.len());
+            let operands = round.iter().flat_map(|statement| &statement.operands);
+            for (column, (operand, earlier)) in operands.zip(earlier(round)).enumerate() {
+                match columns.get_mut(column) {
+                    Some(column) => column.push((operand, earlier)),
+                    None => columns.push(vec![(operand, earlier)]),
                 }
             }
         }
@@ -125,6 +115,21 @@ impl Rolled {
     }
 }
 
+/// Of each operand of a round the number of the value of the same round that it is, counted as they are computed.
+pub fn earlier(round: &[Statement]) -> Vec<Option<usize>> {
+    let (mut known, mut earlier) = (BTreeMap::new(), Vec::new());
+    for Statement { operands, defines, .. } in round {
+        earlier.extend(operands.iter().map(|operand| match operand {
+            Operand::Local(id) => known.get(id).copied(),
+            _ => None,
+        }));
+        for id in defines {
+            known.insert(*id, known.len());
+        }
+    }
+    earlier
+}
+
 /// Before: one operand in all rounds. After: where it comes from.
 fn source(column: &[(&Operand, Option<usize>)]) -> Option<Source> {
     let (first, earlier) = column.first()?;
@@ -173,8 +178,8 @@ impl Tables {
                 let places: Option<Vec<usize>> = ids.iter().map(|id| slots.get(id).copied()).collect();
                 match (places, ids.first()) {
                     (Some(places), _) => format!("__v.get({})", self.place(&places)),
-                    // Nothing computes it: an error of the compiler's, not a wrong number.
-                    (None, id) => id.map_or(String::new(), |id| local(*id)),
+                    // Nothing passes it on: an error of the compiler's, not a wrong number.
+                    (None, id) => id.map_or(String::new(), |id| format!("__not_passed_{}", id.index())),
                 }
             }
             Source::Element(array, indices) => match self.place(indices) {

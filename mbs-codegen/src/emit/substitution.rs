@@ -108,10 +108,10 @@ fn backward(
         // A coordinate in no row keeps what it has.
         if !rows.is_empty() {
             statements.push(parts.wordings.statement(|open, text| {
-                let place = open.push(Operand::Place(*coordinate));
                 let known = element("__y", *coordinate, open);
                 let value = subtracted(known, rows.into_iter(), entries, open);
-                *text = format!("__mbs::long::put(__y, {place}, {value});\n");
+                let place = open.push(Operand::Place(*coordinate));
+                *text = format!("let __value = {value};\n__mbs::long::put(__y, {place}, __value);\n");
             }));
         }
     }
