@@ -37,6 +37,7 @@ mod symbolic;
 mod syntax;
 
 use diagnostics::Diagnostics;
+use emit::Lengths;
 pub use emit::casadi::stand_in;
 pub use emit::formula::Formulas;
 use emit::notation::Notation;
@@ -53,7 +54,7 @@ pub fn expand(input: TokenStream) -> TokenStream {
     let mut diagnostics = Diagnostics::default();
     let Some(text) = syntax::read(input, &mut diagnostics) else { return diagnostics.to_tokens() };
     let scenes = Scenes::resolve(&text, &mut diagnostics);
-    match translate(&text, &scenes, &mut diagnostics) {
+    match translate(&text, &scenes, &mut diagnostics, Lengths::USUAL) {
         Some(items) => items,
         None => {
             let mut items = diagnostics.to_tokens();
@@ -64,7 +65,12 @@ pub fn expand(input: TokenStream) -> TokenStream {
 }
 
 /// The stages behind the front end; `None` where a fault is known.
-fn translate(text: &syntax::Text, scenes: &Scenes, diagnostics: &mut Diagnostics) -> Option<TokenStream> {
+fn translate(
+    text: &syntax::Text,
+    scenes: &Scenes,
+    diagnostics: &mut Diagnostics,
+    lengths: Lengths,
+) -> Option<TokenStream> {
     if !diagnostics.is_empty() {
         return None;
     }
@@ -88,7 +94,7 @@ fn translate(text: &syntax::Text, scenes: &Scenes, diagnostics: &mut Diagnostics
         }
         Some(Err(faults)) => Some(faults),
     };
-    Some(emit::rust(text, scenes, &translated, left_out.as_ref()))
+    Some(emit::rust(text, scenes, &translated, left_out.as_ref(), lengths))
 }
 
 /// A scene through all stages, or its faults.
@@ -113,9 +119,22 @@ fn translate_scene(scene: &Scene) -> Result<emit::Translated<'_>, Diagnostics> {
 /// # Errors
 /// The faults, two lines each: `line:column: message` and `help: cure`.
 pub fn expand_source(source: &str) -> Result<TokenStream, String> {
+    expand_cut(source, Lengths::USUAL)
+}
+
+/// [`expand_source`], functions cut and repetitions rolled into loops as those of long texts are, however short the text.
+///
+/// # Errors
+/// Those of [`expand_source`].
+#[cfg(any(test, feature = "random"))]
+pub fn expand_source_as_long(source: &str) -> Result<TokenStream, String> {
+    expand_cut(source, Lengths::SHORT)
+}
+
+fn expand_cut(source: &str, lengths: Lengths) -> Result<TokenStream, String> {
     let mut diagnostics = Diagnostics::default();
     let items = read_source(source, &mut diagnostics)
-        .and_then(|(text, scenes)| translate(&text, &scenes, &mut diagnostics));
+        .and_then(|(text, scenes)| translate(&text, &scenes, &mut diagnostics, lengths));
     items.ok_or_else(|| diagnostics.to_text())
 }
 

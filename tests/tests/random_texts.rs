@@ -17,6 +17,9 @@ const SLIP: f64 = 1e-9;
 /// Texts that are compiled.
 const SAMPLE: usize = 50;
 
+/// Every third of them is cut: the kinds, of which there are ten, come all.
+const EVERY_CUT: usize = 3;
+
 const MANIFEST: &str = r#"
 [package]
 name = "random-texts"
@@ -51,6 +54,8 @@ struct Sampled {
     kind: Kind,
     seed: u64,
     scenes: Vec<ExpectedScene>,
+    /// Whether it is compiled in parts and loops, as long texts are.
+    is_cut: bool,
 }
 
 impl Sampled {
@@ -62,13 +67,14 @@ impl Sampled {
 /// Spread over all seeds, refused texts left out.
 static TEXTS_OF_THE_SAMPLE: LazyLock<Vec<Sampled>> = LazyLock::new(|| {
     let step = TEXTS as usize / SAMPLE;
-    let sampled = |(first, kind): (u64, Kind)| {
+    let sampled = |(index, (first, kind)): (usize, (u64, Kind))| {
+        let is_cut = index % EVERY_CUT == 0;
         let mut seeds = first..first + step as u64;
         seeds
-            .find_map(|seed| Some(Sampled { kind, seed, scenes: expected(kind, seed)? }))
+            .find_map(|seed| Some(Sampled { kind, seed, scenes: expected(kind, seed)?, is_cut }))
             .expect("a text that is not refused")
     };
-    (0..TEXTS).step_by(step).zip(KINDS.into_iter().cycle()).map(sampled).collect()
+    (0..TEXTS).step_by(step).zip(KINDS.into_iter().cycle()).enumerate().map(sampled).collect()
 });
 
 /// Scenes of the sample with their texts; a text without scenes is one.
@@ -83,7 +89,13 @@ static CRATE: LazyLock<WrittenCrate> = LazyLock::new(|| {
     for sampled in TEXTS_OF_THE_SAMPLE.iter() {
         let seed = sampled.seed;
         let text = sampled.text().replace("mechanism Random;", &format!("mechanism Random{seed};"));
-        modules += &format!("mod text_{seed} {{\nmbs_runtime::mechanism! {{\n{text}}}\n}}\n");
+        let code = match sampled.is_cut {
+            true => {
+                mbs_codegen::expand_source_as_long(&text).expect("a text that is not refused").to_string()
+            }
+            false => format!("mbs_runtime::mechanism! {{\n{text}}}"),
+        };
+        modules += &format!("mod text_{seed} {{\n{code}\n}}\n");
     }
     for (index, (Sampled { kind, seed, .. }, ExpectedScene { name, rows, states })) in scenes().enumerate() {
         let n = states[0].0.q.len();

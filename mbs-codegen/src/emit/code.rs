@@ -45,14 +45,6 @@ fn with_runtime(stream: TokenStream, runtime: &TokenStream) -> TokenStream {
     replaced.into_iter().collect()
 }
 
-/// Most `let`s of one function body. One long chain overflows rustc's stack in debug builds near 2 900 and takes its
-/// memory past 30 000; bodies of a few hundred keep both linear.
-pub const LONGEST_BODY: usize = 200;
-
-/// Longest section, solution or evaluation that stays one function behind the compiler's optimisation, which takes more than
-/// linear time.
-pub const LONGEST_FUNCTION: usize = 2_000;
-
 /// Prints one `let` a line of the section; a long section is cut into closures that pass on what is used behind them.
 pub fn lets(section: &Section, scope: &Scope<'_>, text: &mut String) {
     lets_for(section, &section.results, scope, text);
@@ -60,11 +52,11 @@ pub fn lets(section: &Section, scope: &Scope<'_>, text: &mut String) {
 
 /// [`lets`], where other values than the section's results are used behind it.
 pub fn lets_for(section: &Section, results: &BTreeSet<NodeId>, scope: &Scope<'_>, text: &mut String) {
-    if section.lines.len() <= LONGEST_BODY {
+    if section.lines.len() <= scope.lengths.body {
         return section.lines.iter().for_each(|line| print(line, scope, text));
     }
     let (chunks, exports) = chunks(section, results, scope);
-    if section.lines.len() > LONGEST_FUNCTION {
+    if section.lines.len() > scope.lengths.function {
         return apart(&chunks, &exports, results, &BTreeMap::new(), scope, text);
     }
     for (chunk, exports) in chunks.into_iter().zip(exports) {
@@ -81,7 +73,7 @@ fn chunks<'a>(
     results: &BTreeSet<NodeId>,
     scope: &Scope<'_>,
 ) -> (Vec<&'a [Line]>, Vec<Vec<NodeId>>) {
-    let chunks: Vec<&[Line]> = section.lines.chunks(LONGEST_BODY).collect();
+    let chunks: Vec<&[Line]> = section.lines.chunks(scope.lengths.body).collect();
     // Values that chunks from here on use; collected from the back.
     let mut used = vec![false; scope.graph.len()];
     let mark = |ids: &[NodeId], used: &mut [bool]| {

@@ -9,6 +9,7 @@ use super::code::{block, lets, tokens};
 use super::dynamics::{self, DynamicBodies};
 use super::elimination::Eliminations;
 use super::given;
+use super::lengths::Lengths;
 use super::linear;
 use super::long;
 use super::parts::{self, Frame};
@@ -88,13 +89,14 @@ pub fn bodies(
     program: &Program,
     runtime: &TokenStream,
     types: &[String],
+    lengths: Lengths,
 ) -> Bodies {
     let graph = &equations.graph;
-    let bare = Scope { graph, model, types, parameters: None, position: None, unknowns: &[] };
+    let bare = Scope { graph, model, types, parameters: None, position: None, unknowns: &[], lengths };
     let demands = continuity::highest(model, equations);
     let early = Scope { parameters: Some(&program.parameters.fields), ..bare };
     let scope = Scope { position: Some(&program.position.fields), ..early };
-    let is_long = long::is_long(program);
+    let is_long = long::is_long(program, lengths);
     let mut emitter = Emitter { scope: &scope, early: &early, is_long, parts: String::new(), runtime };
     let rows = |part: fn(&crate::equations::Row) -> Option<NodeId>| -> Vec<Option<NodeId>> {
         equations.rows.iter().map(part).collect()
@@ -110,8 +112,8 @@ pub fn bodies(
     let eliminations = Eliminations::of(equations, program);
     let linear = linear::linear(equations, program, (&scope, &eliminations), independent, is_long);
     let position = kept(&program.position, &early, "__Position");
-    let parts =
-        (is_long || long::has_many_blocks(program)).then(|| long::solve(program, &eliminations, &early));
+    let parts = (is_long || long::has_many_blocks(program, lengths))
+        .then(|| long::solve(program, &eliminations, &early));
     let (solve_with_position, solve_blocks) = match &parts {
         Some(parts) if is_long => (parts.body.clone(), None),
         parts => (
@@ -163,7 +165,7 @@ pub fn bodies(
         outputs: block(&(given + &outputs_text), runtime),
         factors: tokens(&(eliminations.types + &linear.factors), runtime),
         short: program.length() <= LONGEST_INLINED,
-        factorizes_in_line: !long::has_many_blocks(program),
+        factorizes_in_line: !long::has_many_blocks(program, lengths),
         solve_with_position: block(&solve_with_position, runtime),
         solve_blocks: solve_blocks.map(|text| block(&text, runtime)),
         methods: tokens(&methods, runtime),

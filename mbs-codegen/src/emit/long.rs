@@ -5,8 +5,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 
 use super::blocks::{formula, list};
-use super::code::LONGEST_FUNCTION;
 use super::elimination::{Eliminations, factorization};
+use super::lengths::Lengths;
 use super::parts::{Frame, Parts};
 use super::scope::{Scope, number as number_of};
 use super::statement::Statement;
@@ -14,22 +14,15 @@ use crate::model::Model;
 use crate::program::{BlockProgram, Line, Method, Program, System};
 use crate::symbolic::NodeId;
 
-/// Most blocks that are solved by Newton's method one behind the other in one function, each with its own copy of every
-/// solver; of more, the assembly is one loop.
-const MOST_COPIES: usize = 16;
-
-/// Most blocks of which the next position, which each step waits for, is straight-line code; of more it is a loop too.
-const MOST_IN_LINE: usize = 48;
-
 /// Whether all functions of a mechanism are emitted in parts.
-pub fn is_long(program: &Program) -> bool {
-    newton_blocks(program) > MOST_IN_LINE
-        || program.length().max(program.evaluation.lines.len()) > LONGEST_FUNCTION
+pub fn is_long(program: &Program, lengths: Lengths) -> bool {
+    newton_blocks(program) > lengths.in_line
+        || program.length().max(program.evaluation.lines.len()) > lengths.function
 }
 
 /// Whether its assembly is.
-pub fn has_many_blocks(program: &Program) -> bool {
-    newton_blocks(program) > MOST_COPIES
+pub fn has_many_blocks(program: &Program, lengths: Lengths) -> bool {
+    newton_blocks(program) > lengths.copies
 }
 
 fn newton_blocks(program: &Program) -> usize {
@@ -85,7 +78,7 @@ pub fn solve(program: &Program, eliminations: &Eliminations, scope: &Scope<'_>) 
     let emission =
         Emission { scope, program, segments, kinds: kinds(program), factors: factors(program, eliminations) };
     let fields = &program.position.fields;
-    let mut parts = Parts::new(fields.clone(), fields.len());
+    let mut parts = Parts::new(fields.clone(), fields.len(), scope.lengths);
     emission.before(&mut parts);
     for (kind, number) in &emission.kinds {
         emission.evaluate(*kind, *number, &mut parts);

@@ -13,6 +13,7 @@ mod functions;
 mod generics;
 mod given;
 mod item;
+mod lengths;
 mod linear;
 mod long;
 pub mod notation;
@@ -39,6 +40,8 @@ use crate::structure::Structure;
 use crate::syntax::Text;
 
 use generics::Generics;
+
+pub use lengths::Lengths;
 
 pub use stub::stub;
 
@@ -69,12 +72,14 @@ pub struct Part<'a> {
 }
 
 /// Before: scenes without faults and their programs. After: the struct, and of each scene its view and its trait
-/// implementations; `left_out` says why the whole text is no scene.
+/// implementations; `left_out` says why the whole text is no scene, `lengths` where functions
+/// are cut.
 pub fn rust(
     text: &Text,
     scenes: &Scenes,
     translated: &[Translated<'_>],
     left_out: Option<&Diagnostics>,
+    lengths: Lengths,
 ) -> TokenStream {
     let generics = Generics::of(text, scenes);
     let parts = translated.iter().map(|translated| {
@@ -87,6 +92,7 @@ pub fn rust(
             program,
             &text.header.runtime,
             &generics.types_in(&scene.model),
+            lengths,
         );
         Part { scene, square: structure.square, surplus: structure.has_surplus(), docs, bodies }
     });

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-use super::code::LONGEST_BODY;
+use super::lengths::Lengths;
 use super::repetition::{Stretch, stretches};
 use super::rolled::{Rolled, Text, earlier, slots};
 use super::scope::{Scope, Written};
@@ -39,8 +39,9 @@ struct Method {
 }
 
 /// Methods that share passed values.
-#[derive(Default)]
 pub struct Parts {
+    /// Where they are cut.
+    pub lengths: Lengths,
     /// Wordings of all statements.
     pub wordings: Wordings,
     methods: Vec<Method>,
@@ -52,8 +53,15 @@ pub struct Parts {
 
 impl Parts {
     /// Before: places of values that the caller asks for, all below `next`.
-    pub fn new(slots: BTreeMap<NodeId, usize>, next: usize) -> Self {
-        Parts { slots, next, ..Parts::default() }
+    pub fn new(slots: BTreeMap<NodeId, usize>, next: usize, lengths: Lengths) -> Self {
+        Parts {
+            lengths,
+            wordings: Wordings::default(),
+            methods: Vec::new(),
+            choices: String::new(),
+            slots,
+            next,
+        }
     }
 
     /// With as many passed values at the front, at least.
@@ -72,7 +80,7 @@ impl Parts {
     ) -> String {
         let wordings: Vec<usize> = statements.iter().map(|statement| statement.wording).collect();
         let mut calls = String::new();
-        for (number, stretch) in stretches(&wordings, longest).into_iter().enumerate() {
+        for (number, stretch) in stretches(&wordings, longest, self.lengths).into_iter().enumerate() {
             let (range, length) = match stretch {
                 Stretch::Once(range) => (range.clone(), range.len()),
                 Stretch::Rounds { first, length, rounds } => (first..first + length * rounds, length),
@@ -96,12 +104,13 @@ impl Parts {
         arms: Vec<(usize, Vec<Statement>)>,
         (count, exports): (usize, bool),
     ) {
+        let longest = self.lengths.body;
         // Equal wordings that take their values from equal places among those of the arm.
         let mut groups: BTreeMap<(Vec<usize>, Vec<Option<usize>>), usize> = BTreeMap::new();
         let mut grouped: Vec<Vec<Vec<Statement>>> = Vec::new();
         let mut table = vec![(0, 0); count];
         for (number, arm) in arms.into_iter().filter(|(_, arm)| !arm.is_empty()) {
-            let key = match arm.len() > LONGEST_BODY {
+            let key = match arm.len() > longest {
                 // Alone in its group.
                 true => (vec![usize::MAX, number], Vec::new()),
                 false => (arm.iter().map(|statement| statement.wording).collect(), earlier(&arm)),
@@ -119,9 +128,9 @@ impl Parts {
         let (last, result) = (grouped.len(), frame.result.is_some());
         for (number, mut rounds) in grouped.into_iter().enumerate() {
             let (name, mut calls) = (format!("{name}_{number}"), String::new());
-            if let Some(arm) = rounds.first_mut().filter(|arm| arm.len() > LONGEST_BODY) {
+            if let Some(arm) = rounds.first_mut().filter(|arm| arm.len() > longest) {
                 let behind = arm.split_off(arm.len() - usize::from(result));
-                calls = self.sequence(&name, frame, arm, LONGEST_BODY);
+                calls = self.sequence(&name, frame, arm, longest);
                 *arm = behind;
             }
             let pattern = if result && number + 1 == last { "_".into() } else { (number + 1).to_string() };
@@ -202,12 +211,12 @@ pub fn function(
             None => {}
         }
     }
-    let mut parts = Parts::new(slots, results.len());
+    let mut parts = Parts::new(slots, results.len(), scope.lengths);
     let mut statements = parts.lines(section, scope);
     for (place, result) in others {
         statements.push(parts.wordings.put("__v.put(", place, result, scope));
     }
-    let calls = parts.sequence(name, frame, &statements, LONGEST_BODY);
+    let calls = parts.sequence(name, frame, &statements, scope.lengths.body);
     let (methods, count) = parts.print();
     Function { body: format!("let __v = &__mbs::long::Passed::<T, {count}>::none();\n{calls}"), methods }
 }

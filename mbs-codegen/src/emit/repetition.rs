@@ -2,11 +2,7 @@
 
 use std::ops::Range;
 
-/// Fewest rounds that make a loop.
-const FEWEST_ROUNDS: usize = 4;
-
-/// Fewest elements that make one.
-const FEWEST: usize = 32;
+use super::lengths::Lengths;
 
 /// A stretch of a sequence.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -28,11 +24,11 @@ pub enum Stretch {
 /// each place, and between them at most `longest` elements at once.
 ///
 /// Linear in the sequence where it repeats itself, `longest` times that where it does not.
-pub fn stretches(sequence: &[usize], longest: usize) -> Vec<Stretch> {
+pub fn stretches(sequence: &[usize], longest: usize, lengths: Lengths) -> Vec<Stretch> {
     let mut stretches = Vec::new();
     let (mut open, mut here) = (0, 0);
     while here < sequence.len() {
-        match rounds(sequence, here, longest) {
+        match rounds(sequence, here, longest, lengths) {
             Some((length, rounds)) => {
                 once(open..here, longest, &mut stretches);
                 stretches.push(Stretch::Rounds { first: here, length, rounds });
@@ -56,10 +52,10 @@ fn once(range: Range<usize>, longest: usize, stretches: &mut Vec<Stretch>) {
 }
 
 /// Length and number of the rounds from `here` on that take most of the sequence together; the shortest of several.
-fn rounds(sequence: &[usize], here: usize, longest: usize) -> Option<(usize, usize)> {
+fn rounds(sequence: &[usize], here: usize, longest: usize, lengths: Lengths) -> Option<(usize, usize)> {
     let rest = sequence.get(here..)?;
     let mut best: Option<(usize, usize)> = None;
-    for length in 1..=longest.min(rest.len() / FEWEST_ROUNDS) {
+    for length in 1..=longest.min(rest.len() / lengths.rounds) {
         let behind = rest.get(length..).unwrap_or_default();
         // Most lengths end here.
         if behind.first() != rest.first() {
@@ -68,7 +64,7 @@ fn rounds(sequence: &[usize], here: usize, longest: usize) -> Option<(usize, usi
         let same = behind.iter().zip(rest).take_while(|(behind, before)| behind == before).count();
         let rounds = same / length + 1;
         let covered = |(length, rounds): (usize, usize)| length * rounds;
-        let is_loop = rounds >= FEWEST_ROUNDS && length * rounds >= FEWEST;
+        let is_loop = rounds >= lengths.rounds && length * rounds >= lengths.rolled;
         if is_loop && best.is_none_or(|best| covered(best) < length * rounds) {
             best = Some((length, rounds));
         }
@@ -99,7 +95,7 @@ mod tests {
     fn rounds_are_found_behind_something_else() {
         let sequence: Vec<usize> =
             [7, 8].into_iter().chain((0..36).map(|index| index % 3)).chain([9]).collect();
-        let found = stretches(&sequence, 10);
+        let found = stretches(&sequence, 10, Lengths::USUAL);
         let rounds = Stretch::Rounds { first: 2, length: 3, rounds: 12 };
         assert_eq!(found, [Stretch::Once(0..2), rounds, Stretch::Once(38..39)]);
     }
@@ -108,7 +104,7 @@ mod tests {
     fn what_does_not_repeat_itself_is_cut_to_length() {
         let sequence: Vec<usize> = (0..25).collect();
         assert_eq!(
-            stretches(&sequence, 10),
+            stretches(&sequence, 10, Lengths::USUAL),
             [Stretch::Once(0..10), Stretch::Once(10..20), Stretch::Once(20..25)]
         );
     }
@@ -117,7 +113,10 @@ mod tests {
     fn a_few_equal_elements_within_a_round_make_no_loop_of_their_own() {
         let round = [1, 1, 1, 2, 1, 1, 1, 3];
         let sequence: Vec<usize> = (0..80).filter_map(|index| round.get(index % 8)).copied().collect();
-        assert_eq!(stretches(&sequence, 10), [Stretch::Rounds { first: 0, length: 8, rounds: 10 }]);
+        assert_eq!(
+            stretches(&sequence, 10, Lengths::USUAL),
+            [Stretch::Rounds { first: 0, length: 8, rounds: 10 }]
+        );
     }
 
     #[test]
@@ -130,7 +129,7 @@ mod tests {
             let length = state % 5 + 1;
             (0..state % 40).for_each(|index| sequence.push(index % length));
         }
-        let found = stretches(&sequence, 50);
+        let found = stretches(&sequence, 50, Lengths::USUAL);
         assert_eq!(unrolled(&found, &sequence), sequence);
         assert!(found.iter().any(|stretch| matches!(stretch, Stretch::Rounds { .. })));
     }

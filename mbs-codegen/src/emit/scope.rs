@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::code::local;
+use super::lengths::Lengths;
 use crate::equations::MARGIN;
 use crate::model::{Model, Role};
 use crate::symbolic::{Graph, Leaf, Node, NodeId, Stage};
@@ -21,6 +22,8 @@ pub struct Scope<'a> {
     pub position: Option<&'a BTreeMap<NodeId, usize>>,
     /// Coordinates of the block that is being solved, `__x`.
     pub unknowns: &'a [usize],
+    /// Where code is cut.
+    pub lengths: Lengths,
 }
 
 /// What an operand is written as.

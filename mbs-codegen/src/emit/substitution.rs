@@ -1,14 +1,13 @@
 //! The linear systems of a long mechanism: block after block as rounds of loops.
 
+use std::collections::BTreeMap;
+
 use super::blocks::list;
 use super::linear::{Entries, quotient};
 use super::parts::{Frame, Parts};
 use super::statement::{Open, Operand, Statement};
 use crate::program::{BlockProgram, Method, Program};
 use crate::symbolic::NodeId;
-
-/// Most blocks of a part.
-const LARGEST_GROUP: usize = 24;
 
 /// Bodies of the functions, and the methods that they call.
 pub struct Substitution {
@@ -51,7 +50,7 @@ fn forward(
     (declared, handed): (&str, &str),
     entries: &Entries<'_>,
 ) -> (String, String) {
-    let mut parts = Parts::default();
+    let mut parts = Parts::new(BTreeMap::new(), 0, entries.scope.lengths);
     let mut statements = Vec::new();
     for coordinate in given {
         statements.push(parts.wordings.statement(|open, text| {
@@ -87,7 +86,7 @@ fn backward(
     entries: &Entries<'_>,
 ) -> (String, String) {
     let (n, m) = (entries.scope.model.coordinates.len(), entries.equations.rows.len());
-    let mut parts = Parts::default();
+    let mut parts = Parts::new(BTreeMap::new(), 0, entries.scope.lengths);
     let mut statements = Vec::new();
     let is_open = program.blocks.iter().any(BlockProgram::has_surplus);
     for (block, (place, kind)) in program.blocks.iter().zip(places).rev().filter(|_| !is_open) {
@@ -128,7 +127,8 @@ fn finished(
 ) -> (String, String) {
     let declared = format!("__factors: &__Factors<T>, {declared}");
     let frame = Frame { declared, given: format!("__factors, {given}"), result: None };
-    let calls = parts.sequence(name, &frame, &statements, LARGEST_GROUP);
+    let group = parts.lengths.group;
+    let calls = parts.sequence(name, &frame, &statements, group);
     let (methods, passed) = parts.reserved(unknowns).print();
     (format!("let __v = &__mbs::long::Passed::<T, {passed}>::none();\n{calls}"), methods)
 }

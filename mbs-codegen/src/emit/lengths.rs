@@ -1,0 +1,34 @@
+//! Where code is cut into parts, and what is a loop.
+
+/// Bounds on the length of emitted functions.
+#[derive(Clone, Copy, Debug)]
+pub struct Lengths {
+    /// Most `let`s of one function body. One long chain overflows rustc's stack in debug builds near 2 900 and takes its
+    /// memory past 30 000; bodies of a few hundred keep both linear.
+    pub body: usize,
+    /// Longest section, solution or evaluation that stays one function behind the compiler's optimisation, which takes more than
+    /// linear time.
+    pub function: usize,
+    /// Most blocks that are solved by Newton's method one behind the other in one function, each with its own copy of every
+    /// solver; of more, the assembly is one loop.
+    pub copies: usize,
+    /// Most blocks of which the next position, which each step waits for, is straight-line code; of more it is a loop too.
+    pub in_line: usize,
+    /// Most blocks of a part of a substitution.
+    pub group: usize,
+    /// Fewest rounds that make a loop.
+    pub rounds: usize,
+    /// Fewest lines that make one.
+    pub rolled: usize,
+}
+
+impl Lengths {
+    /// As compilers take them.
+    pub const USUAL: Self =
+        Lengths { body: 200, function: 2_000, copies: 16, in_line: 48, group: 24, rounds: 4, rolled: 32 };
+
+    /// Short texts are cut as long ones: tests of these need no long texts.
+    #[cfg(any(test, feature = "random"))]
+    pub const SHORT: Self =
+        Lengths { body: 7, function: 12, copies: 0, in_line: 0, group: 2, rounds: 2, rolled: 3 };
+}
