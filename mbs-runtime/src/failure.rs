@@ -202,6 +202,15 @@ pub enum Failure {
         /// Time (s).
         time: f64,
     },
+    /// There is no position of rest near: where the forces come nearest to balance they still push.
+    Restless {
+        /// A coordinate that moves as they push.
+        coordinate: Entry,
+        /// Work (J) that they would do along a unit of it, the others following.
+        force: f64,
+        /// Time (s).
+        time: f64,
+    },
     /// The saved state is that of a mechanism with another name or other coordinates.
     Foreign {
         /// Name of the mechanism that it was to be the state of.
@@ -286,6 +295,7 @@ impl Failure {
             | Failure::Inconsistent { time, .. }
             | Failure::OffConstraints { time, .. }
             | Failure::Inertialess { time, .. }
+            | Failure::Restless { time, .. }
             | Failure::Unbalanced { time, .. } => *time = now,
             Failure::NonFinite { .. } | Failure::Foreign { .. } => {}
         }
@@ -308,6 +318,7 @@ impl Failure {
             | Failure::Inconsistent { time, .. }
             | Failure::OffConstraints { time, .. }
             | Failure::Inertialess { time, .. }
+            | Failure::Restless { time, .. }
             | Failure::Unbalanced { time, .. } => *time,
             Failure::NonFinite { .. } | Failure::Foreign { .. } => 0.0,
         }
@@ -411,6 +422,12 @@ impl fmt::Display for Failure {
                  moving; give it mass, or a row that fixes it",
                 coordinate.name, coordinate.line
             ),
+            Failure::Restless { coordinate, force, .. } => write!(
+                f,
+                "no position of rest at t = {time} s: where the forces come nearest to balance they still push `{}` (line \
+                 {}) with {force:.3e} J/{}; let a force answer it, hold it by a drive, or start elsewhere",
+                coordinate.name, coordinate.line, coordinate.unit
+            ),
             Failure::Unbalanced { coordinate, iterations, .. } => write!(
                 f,
                 "no balance of forces at t = {time} s after {iterations} iterations: `{}` (line {}) is farthest off; take \
@@ -471,6 +488,7 @@ mod tests {
             },
             Failure::OffConstraints { row: ROW, rate: false, residual, allowed: required, time },
             Failure::Inertialess { coordinate: ROW, time },
+            Failure::Restless { coordinate: ROW, force: 0.5, time },
             Failure::Unbalanced { coordinate: ROW, iterations: 9, time },
         ];
         for failure in failures {

@@ -252,9 +252,48 @@ fn what_an_analysis_has_no_use_for_is_refused() {
         let message = failure(mbs(&[&["run"], arguments].concat()), 2);
         assert!(message.contains(words), "{arguments:?}: {message}");
     }
-    // Level, the weight has no part along the way down that would change with the angle.
-    let message = failure(mbs(&["run", "pendulum", "--analysis", "static"]), 1);
-    assert!(message.contains("`--guess P.1=…`") && !message.contains("mass moving"), "{message}");
+}
+
+#[test]
+fn rest_is_found_beside_what_no_force_answers_and_is_called_by_its_name() {
+    let scratch = Scratch::new("stability");
+    let run = |arguments: &[&str]| {
+        standard_output(run_into(&scratch, &[&["run"], arguments, &["--analysis", "static"]].concat()))
+    };
+    // Level, the rod gives no stiffness: the weight shows the way.
+    let text = run(&["pendulum"]);
+    assert!(
+        text.contains("this rest is: stable: small motions go on") && figure(&text, "P.1 at rest") == -1.0,
+        "{text}"
+    );
+    let text = run(&["pendulum", "--guess", "P.0=0.1", "--guess", "P.1=0.9"]);
+    assert!(
+        text.contains("this rest is: unstable: small motions grow, the fastest by e in 0.3193 s"),
+        "{text}"
+    );
+    for (name, coordinates) in
+        [("cart_pole", "x, P.0:"), ("governor", "phi, r.0.1, r.1.1, e.0.1"), ("heavy_top", "e.2, e.3:")]
+    {
+        let text = run(&[name]);
+        assert!(
+            text.contains("this rest is: indifferent: one motion meets no force, no other grows"),
+            "{text}"
+        );
+        assert!(text.contains(&format!("indifferent coordinates: {coordinates}")), "{text}");
+    }
+    // Of two loads one is too large for the weights to hold.
+    let text = run(&["slider_crank_mass:Released"]);
+    let reason = "left out: slider_crank_mass:Released, torque: no position of rest at t = 0 s";
+    assert!(text.contains("theta at rest: 1.570796 rad") && text.contains(reason), "{text}");
+    assert!(scratch.text("report.html").contains("torque: no position of rest at t = 0 s"));
+    let message =
+        failure(mbs(&["run", "slider_crank_mass:Released", "--param", "tau=1", "--analysis", "static"]), 1);
+    assert!(message.contains("still push `theta`") && message.contains("`--guess theta=…`"), "{message}");
+    // One coordinate as the guess says, the others where the rows want them.
+    let text = run(&["bricard", "--guess", "first=0.3"]);
+    assert!((figure(&text, "first at rest") - 0.823575).abs() < 1e-6, "{text}");
+    let text = standard_output(run_into(&scratch, &["run", "car_axis", "--analysis", "linear"]));
+    assert!(text.contains("small motions about: a position of rest, the time held at 0 s"), "{text}");
 }
 
 #[test]

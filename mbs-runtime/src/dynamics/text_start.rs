@@ -1,6 +1,7 @@
 //! The start of a text: what it declares stays as declared, the rows give the rest.
 
 use super::kkt::System;
+use super::metric::Metric;
 use super::model::{Counts, Model};
 use super::vector::{State, Vector};
 use crate::{Dynamic, Failure, Real};
@@ -28,20 +29,8 @@ pub(super) fn complete<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: us
         return Ok(());
     }
     let mut found = *y;
-    for _ in 0..MOST_CORRECTIONS {
-        let position = model.position(t, &found);
-        let phi = model.mechanism.phi(model.parameters, &position);
-        if model.worst(&phi, &model.position_tolerances(&position, &found.q)).0 <= R::constant(1.0) {
-            y.q = found.q;
-            break;
-        }
-        let step = correction(model, t, &position, S::STARTED, &phi)?;
-        let mut largest = R::constant(LARGEST_STEP);
-        for (step, scale) in step.iter().zip(&model.metric.coordinates) {
-            largest = largest.max((*step / *scale).abs());
-        }
-        counts.corrections += 1;
-        found.q = found.q.plus(-R::constant(LARGEST_STEP) / largest, &[1.0], [&step]);
+    if close(model, t, &mut found, S::STARTED, counts).is_ok() {
+        y.q = found.q;
     }
     if !S::STARTED_RATES.is_empty() {
         let position = model.position(t, y);
@@ -55,6 +44,58 @@ pub(super) fn complete<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: us
         }
     }
     Ok(())
+}
+
+/// The position next to `q` (N) at `t` (s) in which the rows hold, the coordinates `held` as they are and the others moved
+/// the shortest way in the reference metric.
+///
+/// # Errors
+/// [`Failure::NonFinite`]; [`Failure::OffConstraints`] where the others cannot meet the rows.
+pub fn closed<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
+    mechanism: &S,
+    t: R,
+    q: &[R; N],
+    held: &[u16],
+) -> Result<[R; N], Failure> {
+    let parameters = mechanism.parameters();
+    let metric = Metric::of(mechanism, &parameters);
+    let model = Model { mechanism, parameters: &parameters, metric: &metric, balanced: false };
+    let (zero, states) = (R::constant(0.0), mechanism.start_states(&parameters));
+    let mut y = State { q: *q, qd: [zero; N], states, work: zero };
+    model.check(t, &y)?;
+    close(&model, t, &mut y, held, &mut Counts::default())?;
+    Ok(y.q)
+}
+
+/// Before: coordinates next to the rows. After: the rows hold as far as rounding lets them, the coordinates `held` are as they
+/// were and the others moved the shortest way in the reference metric.
+///
+/// # Errors
+/// [`Failure::OffConstraints`] where the others cannot meet the rows; the coordinates are then of no use.
+pub(super) fn close<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
+    model: &Model<'_, S, R, N, M>,
+    t: R,
+    y: &mut State<R, N, S::States>,
+    held: &[u16],
+    counts: &mut Counts,
+) -> Result<(), Failure> {
+    for _ in 0..MOST_CORRECTIONS {
+        let position = model.position(t, y);
+        let phi = model.mechanism.phi(model.parameters, &position);
+        if model.worst(&phi, &model.position_tolerances(&position, &y.q)).0 <= R::constant(1.0) {
+            break;
+        }
+        let step = correction(model, t, &position, held, &phi)?;
+        let mut largest = R::constant(LARGEST_STEP);
+        for (step, scale) in step.iter().zip(&model.metric.coordinates) {
+            largest = largest.max((*step / *scale).abs());
+        }
+        counts.corrections += 1;
+        y.q = y.q.plus(-R::constant(LARGEST_STEP) / largest, &[1.0], [&step]);
+    }
+    let position = model.position(t, y);
+    let phi = model.mechanism.phi(model.parameters, &position);
+    model.require(t, &phi, &model.position_tolerances(&position, &y.q), R::constant(1.0), false)
 }
 
 /// The shortest step (N) in the metric that takes `residuals` (M) away and leaves the coordinates `held`.

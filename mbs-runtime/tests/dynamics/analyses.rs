@@ -1,6 +1,7 @@
 //! Inverse dynamics, equilibrium, small motions.
 
 use mbs_runtime::dynamics::{equilibrium, inverse, linearize};
+use mbs_runtime::{Failure, Mechanism, mechanism};
 
 use crate::linkage::{End, Linkage, Rod};
 use crate::methods::hanging;
@@ -60,4 +61,72 @@ fn an_upright_pendulum_is_an_equilibrium_that_small_motions_leave() {
     let none = [0.0; 2];
     let small = linearize(&hanging(), 0.0, (&rest.q, &none, &none), &rest.lambda).unwrap();
     assert!((small.stiffness[0][0] / small.mass[0][0] + 9.81 / 2.0).abs() < 1e-12);
+}
+
+#[test]
+fn a_level_pendulum_falls_to_its_rest() {
+    // Level, the rod gives no stiffness against the weight.
+    for side in [-2.0, 2.0] {
+        let rest = equilibrium(&hanging(), 0.0, &[side, 0.0]).unwrap();
+        assert!(rest.q[0].abs() < 1e-9 && (rest.q[1] + 2.0).abs() < 1e-12, "{rest:?}");
+        assert_eq!(rest.indifferent, [false; 2]);
+    }
+}
+
+mechanism! {
+    /// A pole on a cart that a torque holds up.
+    pub mechanism Held;
+    param tau: N*m = 0;
+    param k: N/m = 0;
+    coord x: m = 0.3;
+    coord phi: rad = 0;
+    coord P: [m; 2] = [1.3, 0];
+    body cart { mass: 1, com: [x, 0] }
+    body bob { mass: 1, com: P }
+    gravity weight { acceleration: [0, -9.81] }
+    torque motor: tau on phi;
+    potential spring = k*x^2/2;
+    constraint pole { P == [x, 0] + 1m*unit(phi); }
+}
+
+#[test]
+fn what_nothing_answers_stays_where_it_is_and_is_named() {
+    let free: Held = Held::default();
+    let rest = equilibrium(&free, 0.0, &free.guess(&free.parameters())).unwrap();
+    assert_eq!(rest.indifferent, [true, false, true, false], "the cart with its bob, sideways");
+    // The shortest way: cart and bob meet in the middle.
+    assert!((rest.q[0] - 0.8).abs() < 1e-9 && (rest.q[1].sin() + 1.0).abs() < 1e-12, "{rest:?}");
+    assert!((rest.q[2] - rest.q[0]).abs() < 1e-9 && (rest.q[3] + 1.0).abs() < 1e-12, "{rest:?}");
+    let sprung = Held { k: 50.0, ..free };
+    let rest = equilibrium(&sprung, 0.0, &sprung.guess(&sprung.parameters())).unwrap();
+    assert!(rest.indifferent == [false; 4] && rest.q[0].abs() < 1e-12, "{rest:?}");
+    // Forces that hold at an angle: sin of it by the torque.
+    let turned = Held { tau: 4.905, ..free };
+    let rest = equilibrium(&turned, 0.0, &turned.guess(&turned.parameters())).unwrap();
+    assert!((rest.q[1].cos() - 0.5).abs() < 1e-12, "{rest:?}");
+}
+
+mechanism! {
+    /// An arm that a torque turns against its weight.
+    pub mechanism Arm;
+    param tau: N*m = 12;
+    coord phi: rad = 1;
+    body bob { mass: 1, com: 1m*unit(phi) }
+    gravity weight { acceleration: [0, -9.81] }
+    torque motor: tau on phi;
+}
+
+#[test]
+fn where_nothing_rests_the_least_push_is_named() {
+    // The weight holds 9.81 N m at most; of 12 N m the rest pushes on.
+    for start in [1.0, -2.0, 0.01] {
+        let failure = equilibrium(&Arm::default(), 0.0, &[start]).unwrap_err();
+        let Failure::Restless { coordinate, force, .. } = failure else { panic!("{failure}") };
+        assert!(coordinate.name == "phi" && (force - 2.19).abs() < 1e-3, "{start}: {failure}");
+        assert!(failure.to_string().contains("no position of rest") && failure.to_string().contains("J/rad"));
+    }
+    let held = Arm { tau: 9.0, ..Arm::default() };
+    assert!(
+        (equilibrium(&held, 0.0_f64, &[1.0]).unwrap().q[0].abs() - (9.0_f64 / 9.81).acos()).abs() < 1e-12
+    );
 }

@@ -27,6 +27,38 @@ pub struct SmallMotions {
     pub frozen: bool,
 }
 
+/// What becomes of small motions.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Fate {
+    /// Nothing can move.
+    Fixed,
+    /// Some grow, the fastest by e in this time (s).
+    Grow(f64),
+    /// So many motions meet no force; none of the others grows.
+    Indifferent(usize),
+    /// They go on, neither growing nor dying out.
+    GoOn,
+    /// All die out.
+    Decay,
+}
+
+impl SmallMotions {
+    /// What becomes of them, by the real parts of the eigenvalues.
+    pub fn fate(&self) -> Fate {
+        let zero = ZERO * self.norm;
+        let fastest = self.eigenvalues.iter().map(|[real, _]| *real).fold(f64::NEG_INFINITY, f64::max);
+        let idle = self.eigenvalues.iter().filter(|[real, imaginary]| real.hypot(*imaginary) <= zero).count();
+        match () {
+            () if self.freedom == 0 => Fate::Fixed,
+            () if fastest > zero => Fate::Grow(1.0 / fastest),
+            // Place and speed of a motion that nothing answers; with damping its speed decays.
+            () if idle > 0 => Fate::Indifferent(idle.div_ceil(2)),
+            () if fastest >= -zero => Fate::GoOn,
+            () => Fate::Decay,
+        }
+    }
+}
+
 /// Small motions about the last instant of `motion`, which has multipliers.
 ///
 /// # Errors
@@ -176,7 +208,7 @@ mod tests {
         let rest = dynamics.rest(&[]).expect("it rests");
         let (stiffness, decay) = (9.81_f64 / 0.7, 0.3_f64 / (2.0 * 0.49) / 2.0);
         let frequency = (stiffness - decay * decay).sqrt();
-        let found = dynamics.small_motions(&rest).expect("it moves");
+        let found = dynamics.small_motions(&rest.motion).expect("it moves");
         assert!(!found.frozen);
         assert_eigenvalues(&found, &[[-decay, -frequency], [-decay, frequency]]);
     }
@@ -187,7 +219,7 @@ mod tests {
         let dynamics = double.dynamics().expect("it has masses");
         let rest = dynamics.rest(&[]).expect("it rests");
         let [slow, fast] = [-1.0, 1.0].map(|sign| ((2.0 + sign * 2.0_f64.sqrt()) * 9.81).sqrt());
-        let found = dynamics.small_motions(&rest).expect("it moves");
+        let found = dynamics.small_motions(&rest.motion).expect("it moves");
         assert_eigenvalues(&found, &[[0.0, -slow], [0.0, slow], [0.0, -fast], [0.0, fast]]);
     }
 

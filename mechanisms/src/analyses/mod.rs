@@ -13,6 +13,7 @@ use crate::facade::Motion;
 use crate::masses::MassFacade;
 use direct::{Approach, Simulated};
 use linear::SmallMotions;
+use rest::Rest;
 
 /// A mechanism with masses of any size, whose motion follows from forces.
 pub trait AnyDynamics {
@@ -33,12 +34,12 @@ pub trait AnyDynamics {
     /// # Errors
     /// Those of inverse dynamics.
     fn add_forces(&self, motion: &mut Motion) -> Result<(), Failure>;
-    /// The position of rest next to the text's start, at time 0, as a motion of one instant. `guesses` are coordinates by
-    /// their indices that the search starts from in place of the text's.
+    /// The position of rest next to the text's start, at time 0. `guesses` are coordinates by their indices that the search
+    /// starts from in place of the text's; the others follow them as the rows ask.
     ///
     /// # Errors
     /// Those of the search for an equilibrium.
-    fn rest(&self, guesses: &[(usize, f64)]) -> Result<Motion, Failure>;
+    fn rest(&self, guesses: &[(usize, f64)]) -> Result<Rest, Failure>;
     /// Small motions about the last instant of a motion from forces, or about a position of rest.
     ///
     /// # Errors
@@ -60,15 +61,10 @@ impl<S: Dynamic<f64, N, M>, const N: usize, const M: usize> AnyDynamics for Mass
         driven::add_forces(&self.kinematics.0, motion)
     }
 
-    fn rest(&self, guesses: &[(usize, f64)]) -> Result<Motion, Failure> {
+    fn rest(&self, guesses: &[(usize, f64)]) -> Result<Rest, Failure> {
         let mechanism = &self.kinematics.0;
-        let mut q = (self.partitioned.start)(mechanism, 0.0).0;
-        for (index, value) in guesses {
-            if let Some(slot) = q.get_mut(*index) {
-                *slot = *value;
-            }
-        }
-        rest::rest(mechanism, &q)
+        let start = (self.partitioned.start)(mechanism, 0.0).0;
+        rest::rest(mechanism, &rest::begin(mechanism, start, guesses))
     }
 
     fn small_motions(&self, motion: &Motion) -> Result<SmallMotions, String> {

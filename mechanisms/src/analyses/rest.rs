@@ -1,7 +1,7 @@
 //! Static equilibrium: where a mechanism rests under its forces.
 
 use mbs_runtime::dynamics::{
-    Counts, Equilibrium, Formulation, Metric, Model, State, Unstabilized, equilibrium,
+    Counts, Equilibrium, Formulation, Metric, Model, State, Unstabilized, closed, equilibrium,
 };
 use mbs_runtime::{Dynamic, Failure, Motion as Moving};
 
@@ -9,11 +9,55 @@ use super::determined;
 use crate::facade::Motion;
 use crate::motion::{Forces, Instant};
 
-/// The equilibrium next to `q` (N) at time 0, with its loads and multipliers, as a motion of one instant.
+/// Part of a coordinate's scale that a guess may be off before the others have followed it.
+const PIECE: f64 = 0.1;
+
+/// Times (s) at which forces and rows are compared with those of the rest: whether anything depends on the time.
+const OTHER_TIMES: [f64; 3] = [0.1, 0.37, 1.3];
+
+/// A position of rest.
+#[derive(Clone, Debug)]
+pub struct Rest {
+    /// As a motion of one instant.
+    pub motion: Motion,
+    /// Coordinates that may move without any force answering.
+    pub indifferent: Vec<&'static str>,
+    /// Whether forces or rows depend on the time, which stands still.
+    pub held: bool,
+}
+
+/// Before: the text's start and coordinates by their indices that the search shall begin from. After: where it begins, with
+/// the others moved along so that the rows hold; where they cannot follow, the guesses beside the start.
+pub(crate) fn begin<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
+    mechanism: &S,
+    start: [f64; N],
+    guesses: &[(usize, f64)],
+) -> [f64; N] {
+    let scales = mechanism.coordinate_scales(&mechanism.parameters());
+    let held: Vec<u16> = guesses.iter().filter_map(|(index, _)| u16::try_from(*index).ok()).collect();
+    let far = guesses.iter().map(|(index, value)| ((value - start[*index]) / scales[*index]).abs());
+    let pieces = (far.fold(0.0, f64::max) / PIECE).ceil().clamp(1.0, 1e3) as u32;
+    let moved = |mut q: [f64; N], share: f64| {
+        for (index, value) in guesses {
+            q[*index] = start[*index] + share * (value - start[*index]);
+        }
+        q
+    };
+    let mut q = start;
+    for piece in 1..=pieces {
+        match closed(mechanism, 0.0, &moved(q, f64::from(piece) / f64::from(pieces)), &held) {
+            Ok(found) => q = found,
+            Err(_) => return moved(start, 1.0),
+        }
+    }
+    if guesses.is_empty() { start } else { q }
+}
+
+/// The equilibrium next to `q` (N) at time 0, with its loads and multipliers.
 pub(crate) fn rest<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
     mechanism: &S,
     q: &[f64; N],
-) -> Result<Motion, Failure> {
+) -> Result<Rest, Failure> {
     let mut mechanism = mechanism.clone();
     mechanism.start_phases(q, 0.0);
     let found = equilibrium(&mechanism, 0.0, q)?;
@@ -40,7 +84,24 @@ pub(crate) fn rest<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
     forces.push(energy, loads.as_ref(), &found.lambda);
     determined::push(&mut forces, &mechanism, (&parameters, &position), 0.0, &moving)?;
     motion.dynamics = Some(forces);
-    Ok(motion)
+    let indifferent = S::COORDINATES.iter().zip(&found.indifferent).filter(|(_, indifferent)| **indifferent);
+    let indifferent = indifferent.map(|(entry, _)| entry.name).collect();
+    Ok(Rest { motion, indifferent, held: depends_on_time(&mechanism, &found) })
+}
+
+/// Whether forces or rows at the rest would be others at another time.
+fn depends_on_time<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
+    mechanism: &S,
+    found: &Equilibrium<f64, N, M>,
+) -> bool {
+    let (parameters, none) = (mechanism.parameters(), [0.0; N]);
+    let states = mechanism.start_states(&parameters);
+    let at = |t: f64| {
+        let position = mechanism.position(&parameters, &found.q, t);
+        let force = mechanism.force(&parameters, &position, &none, &states, &found.lambda);
+        (force, mechanism.phi(&parameters, &position), mechanism.phi_t(&parameters, &position))
+    };
+    OTHER_TIMES.iter().any(|t| at(*t) != at(0.0)) || at(0.0).2.iter().any(|rate| *rate != 0.0)
 }
 
 /// How near Φ_q is to losing rank; not a number where the masses leave the accelerations open.

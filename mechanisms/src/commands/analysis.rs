@@ -8,7 +8,8 @@ use mbs_runtime::Failure;
 use mbs_runtime::dynamics::{Baumgarte, Doubt};
 use mechanisms::analyses::AnyDynamics;
 use mechanisms::analyses::direct::{Approach, Implicit, ImplicitMethod, Simulated, Stabilization, Steps};
-use mechanisms::analyses::linear::ZERO;
+use mechanisms::analyses::linear::{Fate, ZERO};
+use mechanisms::analyses::rest::Rest;
 use mechanisms::facade::{AnyMechanism, Motion, MotionStop};
 use mechanisms::motion::{DependentRow, Forces, LoadCurve};
 use mechanisms::registry::{Preset, instants};
@@ -167,6 +168,15 @@ impl Wish {
         found.map(|(motion, figures)| done(motion, figures)).map_err(fail)
     }
 
+    /// Whether it looks for a position of rest.
+    pub fn is_of_rest(&self, subject: Subject) -> bool {
+        match self.analysis_of(subject) {
+            Analysis::Static => true,
+            Analysis::Linear => self.at.is_none(),
+            Analysis::Kinematic | Analysis::Dynamic | Analysis::Inverse => false,
+        }
+    }
+
     /// Fails where the command line says what the analysis has no use for.
     fn require_use(&self, subject: Subject) -> Result<(), CommandError> {
         let analysis = self.analysis_of(subject);
@@ -267,25 +277,53 @@ fn inverse(
     Ok((motion, figures))
 }
 
+/// Part of the largest coordinate of a unit that rounding leaves of another that is 0.
+const ROUNDING: f64 = 1e-12;
+
 fn rest(dynamics: &dyn AnyDynamics, guesses: &[(usize, f64)]) -> Found {
-    let motion = dynamics.rest(guesses).map_err(restless)?;
+    let Rest { motion, indifferent, held } = dynamics.rest(guesses).map_err(restless)?;
     let mut figures = vec![["iterations".to_string(), motion.iterations[0].to_string()]];
+    let small = dynamics.small_motions(&motion).map(|small| stability(small.fate()));
+    figures
+        .push(["this rest is".to_string(), small.unwrap_or_else(|reason| format!("not judged: {reason}"))]);
+    if !indifferent.is_empty() {
+        let names = indifferent.join(", ");
+        figures.push([
+            "indifferent coordinates".to_string(),
+            format!("{names}: no force answers where they move"),
+        ]);
+    }
+    if held {
+        let what = "the time, at 0 s: what depends on it stands still as it is then";
+        figures.push(["held".to_string(), what.to_string()]);
+    }
     for coordinate in &motion.coordinates {
-        let value = format!("{}{}", table::short(coordinate.q[0]), table::unit(coordinate.unit));
+        let alike = motion.coordinates.iter().filter(|other| other.unit == coordinate.unit);
+        let size = alike.map(|other| other.q[0].abs()).fold(0.0, f64::max);
+        let settled = if coordinate.q[0].abs() <= ROUNDING * size { 0.0 } else { coordinate.q[0] };
+        let value = format!("{}{}", table::short(settled), table::unit(coordinate.unit));
         figures.push([format!("{} at rest", coordinate.name), value]);
     }
     figures.extend(loads(&motion));
     Ok((motion, figures))
 }
 
-/// Why the search for a position of rest failed. To it, stiffness is what mass is to a motion.
+/// What becomes of small motions about a rest, in a phrase.
+fn stability(fate: Fate) -> String {
+    match fate {
+        Fate::Fixed => "fixed: nothing can move".to_string(),
+        Fate::Grow(time) => format!("unstable: small motions grow, the fastest by e in {time:.4} s"),
+        Fate::Indifferent(1) => "indifferent: one motion meets no force, no other grows".to_string(),
+        Fate::Indifferent(count) => format!("indifferent: {count} motions meet no force, no other grows"),
+        Fate::GoOn => "stable: small motions go on and do not grow".to_string(),
+        Fate::Decay => "stable: small motions die out".to_string(),
+    }
+}
+
+/// Why the search for a position of rest failed, and what helps.
 fn restless(failure: Failure) -> String {
     match failure {
-        Failure::Inertialess { coordinate, .. } => format!(
-            "the search for rest does not know where to go: no force changes as `{0}` (line {1}) moves; start it elsewhere: \
-             `--guess {0}=…`",
-            coordinate.name, coordinate.line
-        ),
+        Failure::Restless { coordinate, .. } => format!("{failure}: `--guess {}=…`", coordinate.name),
         other => other.to_string(),
     }
 }
@@ -297,6 +335,9 @@ fn linear(dynamics: &dyn AnyDynamics, found: Found) -> Found {
     let about = match (small.frozen, motion.time.last()) {
         (true, Some(t)) => {
             format!("the state at t = {t} s, which moves: eigenvalues of one moment (frozen-time)")
+        }
+        _ if figures.iter().any(|[name, _]| name == "held") => {
+            "a position of rest, the time held at 0 s".to_string()
         }
         _ => "a position of rest".to_string(),
     };

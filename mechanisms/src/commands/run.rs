@@ -153,19 +153,31 @@ pub fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<(), CommandErro
     let subject = Subject::find(&arguments.name)?;
     let instances = subject.instances(&arguments.parameters)?;
     let wish = arguments.wish(subject);
-    let mut done = Vec::new();
+    let (mut done, mut left_out) = (Vec::new(), Vec::new());
     for instance in &instances {
-        done.push(wish.done(subject, instance)?);
+        match wish.done(subject, instance) {
+            Ok(found) => done.push(found),
+            // Of several loads some may have no position of rest.
+            Err(CommandError::Failed(reason)) if wish.is_of_rest(subject) => left_out.push(reason),
+            Err(error) => return Err(error),
+        }
+    }
+    if done.is_empty() {
+        return Err(CommandError::Failed(left_out.join("\n")));
     }
     let standard = || target_directory().join("mbs").join(file_name(subject.name()));
     let directory = arguments.out.clone().unwrap_or_else(standard);
-    let facts = facts(&instances, &done);
+    let mut facts = facts(&instances, &done);
+    facts.extend(left_out.iter().map(|reason| ["left out".to_string(), reason.clone()]));
     // Before the table, which may meet a reader that has left.
     let written =
         write_report(&directory, &page(arguments, subject, &instances, &done, &facts), &values(&done));
     writeln!(out, "{}", subject.title())?;
     for done in &done {
         table::write(out, subject.drawing(), done.label, &done.motion, &done.figures)?;
+    }
+    for reason in &left_out {
+        writeln!(out, "\nleft out: {reason}")?;
     }
     let (page, values) = written?;
     writeln!(out, "\nreport  {}\nvalues  {}", page.display(), values.display())?;

@@ -1,0 +1,139 @@
+//! The stiffness of the motions that the rows leave free, of any rank: what pushes back, what nothing answers.
+
+use super::implicit::Tangent;
+use super::kkt::{Factors, System, TRUNCATION};
+use super::model::Model;
+use super::vector::{State, Vector};
+use crate::linear::orthogonal::minimum_norm;
+use crate::{Dynamic, Failure, Real};
+
+/// Part of the largest stiffness or force in the metric below which a motion meets no stiffness: beside what rounding of
+/// stiff springs leaves of a soft direction, nine digits.
+const UNANSWERED: f64 = 1e-9;
+
+/// Part of a coordinate in an indifferent motion, in the metric, from which it counts as indifferent.
+const SHARE: f64 = 1e-6;
+
+/// K on the null space of Φ_q at one position, in the reference metric.
+pub(super) struct FreeStiffness<R, const N: usize, const M: usize> {
+    /// Φ_q with the metric in place of a mass.
+    factors: Factors<R, N, M>,
+    freedom: usize,
+    /// The free motions Z, orthonormal in the metric, in the units of the coordinates; then zeros.
+    motions: [[R; N]; N],
+    /// K: N rows of N.
+    stiffness: [[R; N]; N],
+    /// Zᵀ K Z.
+    reduced: [[R; N]; N],
+    /// Energy (J) an angle of 1 below which nothing answers.
+    nothing: R,
+}
+
+/// What a free stiffness makes of forces.
+pub(super) struct Answer<R, const N: usize, const M: usize> {
+    /// The shortest step (N) that takes the imbalance away as far as stiffness answers it, and closes the rows.
+    pub step: [R; N],
+    /// The change of the multipliers (M) that goes with it.
+    pub change: [R; M],
+    /// What is left of the imbalance, as a motion (N) against which no stiffness stands.
+    pub unanswered: [R; N],
+    /// Its length (J), 0 where rounding may be all of it.
+    pub push: R,
+    /// The whole imbalance as a motion (N).
+    pub pull: [R; N],
+    /// Its length (J), 0 where rounding may be all of it.
+    pub imbalance: R,
+}
+
+impl<R: Real, const N: usize, const M: usize> FreeStiffness<R, N, M> {
+    /// That of a state at rest with multipliers `lambda` (M).
+    pub(super) fn of<S: Dynamic<R, N, M>>(
+        model: &Model<'_, S, R, N, M>,
+        t: R,
+        y: &State<R, N, S::States>,
+        lambda: &[R; M],
+    ) -> Result<Self, Failure> {
+        let (zero, position) = (R::constant(0.0), model.position(t, y));
+        let stiffness = Tangent::of(model, &position, y, &[zero; N], lambda).stiffness;
+        let phi_q = model.mechanism.phi_q(model.parameters, &position);
+        let system = System::new(&model.metric.mass(), &phi_q, model.metric);
+        let factors = system.factorize_rank_revealing(R::constant(TRUNCATION), S::COORDINATES, t)?;
+        let force = model.mechanism.force(model.parameters, &position, &y.qd, &y.states, lambda);
+        let scales = &model.metric.coordinates;
+        let mut size = zero;
+        for ((row, force), scale) in stiffness.iter().zip(&force).zip(scales) {
+            size = size.max((*force * *scale).abs());
+            for (entry, other) in row.iter().zip(scales) {
+                size = size.max((*entry * *scale * *other).abs());
+            }
+        }
+        let motions = factors.free_motions();
+        let reduced = motions.map(|left| motions.map(|right| dot(&left, &times(&stiffness, &right))));
+        let (freedom, nothing) = (N.saturating_sub(factors.rank()), R::constant(UNANSWERED) * size);
+        Ok(FreeStiffness { factors, freedom, motions, stiffness, reduced, nothing })
+    }
+
+    /// What answers `imbalance` (N) where the rows are open by `phi` (M).
+    pub(super) fn answer(&self, imbalance: &[R; N], phi: &[R; M]) -> Answer<R, N, M> {
+        let (zero, one) = (R::constant(0.0), R::constant(1.0));
+        let closing = self.factors.solve(&[zero; N], phi).0;
+        let open = imbalance.plus(-one, &[1.0], [&times(&self.stiffness, &closing)]);
+        let wanted = self.motions.map(|motion| dot(&motion, &open));
+        let found = self.shortest(&wanted);
+        let left = wanted.plus(-one, &[1.0], [&times(&self.reduced, &found)]);
+        let step = closing.plus(one, &[1.0], [&self.moved(&found)]);
+        let rest = imbalance.plus(-one, &[1.0], [&times(&self.stiffness, &step)]);
+        let (push, whole) = (dot(&left, &left).sqrt(), dot(&wanted, &wanted).sqrt());
+        Answer {
+            step,
+            change: self.factors.solve(&rest, &[zero; M]).1,
+            unanswered: self.moved(&left),
+            push: if self.nothing.less(push) { push } else { zero },
+            pull: self.moved(&wanted),
+            imbalance: if self.nothing.less(whole) { whole } else { zero },
+        }
+    }
+
+    /// Which coordinates move without any force changing: N.
+    pub(super) fn indifferent(&self, scales: &[R; N]) -> [bool; N] {
+        let (zero, one) = (R::constant(0.0), R::constant(1.0));
+        let mut indifferent = [false; N];
+        for index in 0..self.freedom {
+            let mut unit = [zero; N];
+            unit.iter_mut().skip(index).take(1).for_each(|component| *component = one);
+            let answered = self.shortest(&times(&self.reduced, &unit));
+            let motion = self.moved(&unit.plus(-one, &[1.0], [&answered]));
+            for ((mark, part), scale) in indifferent.iter_mut().zip(&motion).zip(scales) {
+                *mark |= R::constant(SHARE).less((*part / *scale).abs());
+            }
+        }
+        indifferent
+    }
+
+    /// The shortest w with Zᵀ K Z w = `wanted` in the least-squares sense, motions that nothing answers left out: N, zeros
+    /// from the freedom on.
+    fn shortest(&self, wanted: &[R; N]) -> [R; N] {
+        let one = R::constant(1.0);
+        let mut largest = R::constant(0.0);
+        self.reduced.iter().flatten().for_each(|entry| largest = largest.max(entry.abs()));
+        let tolerance = R::constant(UNANSWERED).max(self.nothing / largest);
+        minimum_norm(&self.reduced, wanted, &[one; N], &[one; N], tolerance).0
+    }
+
+    /// Z w: N.
+    fn moved(&self, w: &[R; N]) -> [R; N] {
+        let mut moved = [R::constant(0.0); N];
+        for (motion, share) in self.motions.iter().zip(w) {
+            moved.iter_mut().zip(motion).for_each(|(sum, part)| *sum = *sum + *share * *part);
+        }
+        moved
+    }
+}
+
+fn dot<R: Real, const N: usize>(a: &[R; N], b: &[R; N]) -> R {
+    a.iter().zip(b).fold(R::constant(0.0), |sum, (a, b)| sum + *a * *b)
+}
+
+fn times<R: Real, const N: usize>(matrix: &[[R; N]; N], x: &[R; N]) -> [R; N] {
+    matrix.map(|row| dot(&row, x))
+}
