@@ -39,7 +39,7 @@ mod syntax;
 use diagnostics::Diagnostics;
 use emit::Lengths;
 pub use emit::casadi::stand_in;
-pub use emit::formula::Formulas;
+pub use emit::formula::{DynamicFormulas, Formulas};
 use emit::notation::Notation;
 pub use emit::report::{BlockReport, CoordinateReport, EntryKind, RowReport, StructureReport};
 use model::scenes::{Scene, Scenes};
@@ -103,6 +103,7 @@ fn translate_scene(scene: &Scene) -> Result<emit::Translated<'_>, Diagnostics> {
         return Err(scene.faults.clone());
     }
     let mut diagnostics = Diagnostics::default();
+    model::signs::check(&scene.model, &mut diagnostics);
     let mut equations = equations::derive(&scene.model);
     equations::continuity::check(&scene.model, &equations, &mut diagnostics);
     equations::turns::check(&scene.model, &equations, &mut diagnostics);
@@ -168,6 +169,18 @@ pub fn latex_formulas(source: &str, scene: Option<&str>) -> Result<Formulas, Str
     in_scene(source, scene, |name, scene| Ok(formulas_in(name, scene, Notation::Latex)))
 }
 
+/// M, Q and the energies as plain text, of a scene (without a name the whole text) of a text that is kept as a string; `None`
+/// where it has no masses.
+///
+/// # Errors
+/// As [`casadi_definition`].
+pub fn dynamic_formulas(source: &str, scene: Option<&str>) -> Result<Option<DynamicFormulas>, String> {
+    in_scene(source, scene, |_, scene| {
+        let equations = equations::derive(&scene.model);
+        Ok(emit::formula::dynamic_formulas(&scene.model, &equations, Notation::Text))
+    })
+}
+
 fn formulas_in(name: &str, scene: &Scene, notation: Notation) -> Formulas {
     let equations = equations::derive(&scene.model);
     emit::formula::formulas(&scene.model, &equations, name, notation)
@@ -190,6 +203,25 @@ pub fn structure_of(source: &str, scene: Option<&str>) -> Result<StructureReport
     in_scene(source, scene, |name, scene| {
         let emit::Translated { scene, equations, structure, program } = translate_scene(scene)?;
         Ok(emit::report::report(&scene.model, &equations, &structure, &program, name))
+    })
+}
+
+/// Masses, moments of inertia and stiffnesses of a scene (without a name the whole text) that are negative with parameters
+/// and inputs as `given` has them by name, each in a phrase.
+///
+/// # Errors
+/// As [`casadi_definition`].
+pub fn negative_values(
+    source: &str,
+    scene: Option<&str>,
+    given: impl Fn(&str) -> Option<f64>,
+) -> Result<Vec<String>, String> {
+    in_scene(source, scene, |_, scene| {
+        let found = model::signs::negative(&scene.model, given);
+        Ok(found
+            .iter()
+            .map(|(signed, value)| format!("`{}` of `{}` is {value}", signed.field, signed.of))
+            .collect())
     })
 }
 

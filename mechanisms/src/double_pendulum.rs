@@ -76,7 +76,7 @@ mod tests {
     use core::f64::consts::TAU;
 
     use super::*;
-    use crate::analyses::direct::{Approach, Stabilization, Steps};
+    use crate::analyses::direct::{Approach, Pair, Stabilization, Steps};
     use crate::reference::dynamics_of;
     use crate::registry::instants;
 
@@ -94,7 +94,7 @@ mod tests {
         let small = Preset { label: "", description: "", set: &[("amplitude", SMALL)] };
         let mechanism = CARD.instance(&small).expect("a parameter");
         let period = TAU / ((2.0 - 2.0_f64.sqrt()) * 9.81).sqrt();
-        let steps = Steps::Adaptive { tolerance: 1e-12 };
+        let steps = Steps::Adaptive { pair: Pair::Order8, tolerance: 1e-12 };
         let approach = Approach { stabilization: Stabilization::Velocity, steps };
         let dynamics = mechanism.dynamics().expect("it has masses");
         let found = dynamics.simulate(&approach, &instants(period, 4), &mut |_| ()).expect("it starts");

@@ -130,10 +130,22 @@ impl Motion {
         State { q: last(|curve| &curve.q), qd: last(|curve| &curve.qd), qdd: last(|curve| &curve.qdd), t }
     }
 
-    /// At most `count` instants spread evenly over the motion, first and last included.
+    /// Numbers an instant, the time included.
+    pub fn columns(&self) -> usize {
+        let given = |column: &Option<Vec<f64>>| usize::from(column.is_some());
+        let outputs = self.outputs.iter().map(|curve| 1 + given(&curve.rate) + given(&curve.acceleration));
+        let forces = self.dynamics.iter().map(|forces| {
+            let optional = [&forces.work, &forces.defect, &forces.closure_rate];
+            let optional = optional.iter().filter(|values| !values.is_empty()).count();
+            3 + optional + forces.loads.len() + forces.multipliers.len()
+        });
+        4 + 3 * self.coordinates.len() + outputs.sum::<usize>() + forces.sum::<usize>()
+    }
+
+    /// At most `count` instants spread evenly over the motion, first and last included, with the digits that a page shows.
     pub fn thinned(&self, count: usize) -> Motion {
         let kept = spread(self.time.len(), count);
-        let pick = |values: &Vec<f64>| kept.iter().map(|index| values[*index]).collect::<Vec<_>>();
+        let pick = |values: &Vec<f64>| kept.iter().map(|index| rounded(values[*index])).collect::<Vec<_>>();
         let coordinate = |curve: &CoordinateCurve| CoordinateCurve {
             q: pick(&curve.q),
             qd: pick(&curve.qd),
@@ -263,8 +275,13 @@ impl Forces {
     }
 }
 
+/// `value` to seven digits, one more than a page shows.
+fn rounded(value: f64) -> f64 {
+    format!("{value:.6e}").parse().unwrap_or(value)
+}
+
 /// Unit of the multiplier of a row in `unit`: λ times the row is an energy.
-fn multiplier_unit(unit: &str) -> String {
+pub fn multiplier_unit(unit: &str) -> String {
     match unit {
         "1" | "rad" => "N*m".to_string(),
         "m" => "N".to_string(),
@@ -300,11 +317,30 @@ mod tests {
         let mechanism = (ALL[0].make)();
         let motion = sweep(mechanism.as_ref(), 1.0, 100).expect("it turns");
         let thinned = motion.thinned(11);
-        assert_eq!(thinned.time, motion.time.iter().copied().step_by(10).collect::<Vec<_>>());
+        assert_eq!(thinned.time, motion.time.iter().copied().step_by(10).map(rounded).collect::<Vec<_>>());
         let (last, before) = (&thinned.outputs[8], &motion.outputs[8]);
-        assert_eq!(last.value.last(), before.value.last());
+        assert_eq!(last.value.last(), before.value.last().copied().map(rounded).as_ref());
         assert_eq!(last.acceleration.as_ref().map(Vec::len), Some(11));
         assert_eq!((thinned.iterations.len(), thinned.coordinates[0].qdd.len()), (11, 11));
+    }
+
+    #[test]
+    fn columns_are_those_of_the_values() {
+        let mechanism = (ALL[0].make)();
+        let motion = sweep(mechanism.as_ref(), 1.0, 2).expect("it turns");
+        let text = crate::csv::write(&[("run", &motion)]);
+        let header = text.lines().next().expect("a header");
+        assert_eq!(motion.columns() + 1, header.split(',').count(), "{header}");
+    }
+
+    #[test]
+    fn seven_digits_are_kept_of_every_size() {
+        assert_eq!(
+            [0.1 + 0.2, -123_456_789.0, 1.0 / 3.0, 0.0].map(rounded),
+            [0.3, -123_456_800.0, 0.3333333, 0.0]
+        );
+        assert_eq!((rounded(1.234_567_89e-17), rounded(f64::INFINITY)), (1.234_568e-17, f64::INFINITY));
+        assert!(rounded(f64::NAN).is_nan());
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use core::f64::consts::{PI, TAU};
 
-use crate::analyses::direct::{Approach, Simulated, Stabilization, Steps};
+use crate::analyses::direct::{Approach, Pair, Simulated, Stabilization, Steps};
 use crate::closed_form::{Jet, assert_moves_as, column};
 use crate::facade::Motion;
 use crate::registry::{Card, FreeCard, Preset, instants, sweep};
@@ -82,8 +82,10 @@ pub fn assert_moves_like(card: &Card, other: &Card, names: &[&str], bound: f64) 
 pub fn dynamics_of(card: &FreeCard, run: &Preset, steps: usize) -> Simulated {
     let mechanism = card.instance(run).expect("parameters of the preset");
     let dynamics = mechanism.dynamics().expect("it has masses");
-    let approach =
-        Approach { stabilization: Stabilization::Projection, steps: Steps::Adaptive { tolerance: 1e-12 } };
+    let approach = Approach {
+        stabilization: Stabilization::Projection,
+        steps: Steps::Adaptive { pair: Pair::Order8, tolerance: 1e-12 },
+    };
     let found = dynamics.simulate(&approach, &instants(card.duration, steps), &mut |_| ());
     let found = found.unwrap_or_else(|failure| panic!("{}, {}: {failure}", card.name, run.label));
     assert_eq!(found.failure, None, "{}, {}", card.name, run.label);

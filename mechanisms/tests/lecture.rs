@@ -315,3 +315,25 @@ fn a_position_beyond_a_limit_says_when_the_mechanism_locks() {
         failure(&["print", "four_bar", "--at", "0.5", "--param", "L1=0.45", "--param", "L4=0.75"], 1);
     assert!(message.contains("four_bar: ") && message.contains("t = "), "{message}");
 }
+
+#[test]
+fn masses_forces_multipliers_and_energies_are_printed_too() {
+    let text = text_of(&["print", "pendulum", "M", "Q", "lambda", "energy"]);
+    // Level and at rest: the rod bears nothing.
+    for line in
+        ["P.0  1.000000         0", "P.1  -9.810000", "rod (N/m)  0", "kinetic (J)    0", "potential (J)  0"]
+    {
+        assert!(text.contains(line), "{line} is missing in\n{text}");
+    }
+    let text = text_of(&["print", "pendulum", "M", "Q", "energy", "--symbols"]);
+    for line in ["P.1  0    m", "P.1  -g*m", "potential  g*m*P.1"] {
+        assert!(text.contains(line), "{line} is missing in\n{text}");
+    }
+}
+
+#[test]
+fn what_no_body_counts_is_said() {
+    let text = text_of(&["dof", "n_four_bar"]);
+    assert!(text.contains("5 point masses have 10 freedoms apart; joints and guides take 9"), "{text}");
+    assert!(text.contains("energy of its own (`kinetic`)"), "{text}");
+}

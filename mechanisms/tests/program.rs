@@ -126,6 +126,30 @@ fn a_free_mechanism_moves_by_its_forces_and_the_constraints_tell_the_methods_apa
 }
 
 #[test]
+fn every_integrator_and_the_penalty_can_be_chosen() {
+    let run = |arguments: &[&str]| {
+        let scratch = Scratch::new(&format!("chosen{}", arguments.concat()));
+        let text = standard_output(run_into(
+            &scratch,
+            &[&["run", "pendulum", "--steps", "20", "--until", "1"], arguments].concat(),
+        ));
+        assert!(scratch.text("report.html").contains(&arguments.join(" ")), "the page repeats the command");
+        (figure(&text, "largest energy defect"), figure(&text, "evaluations"), figure(&text, "largest |Φ|"))
+    };
+    let order5 = run(&["--integrator", "order5", "--tolerance", "1e-8"]);
+    assert!(order5.0 < 1e-6 && order5.2 < 1e-13, "{order5:?}");
+    // Four evaluations a step of Runge and Kutta's method, one of Euler's, and one to start with.
+    let (rk4, euler) = (
+        run(&["--integrator", "rk4", "--step", "2.5e-2"]),
+        run(&["--integrator", "euler", "--step", "2.5e-2"]),
+    );
+    assert_eq!((rk4.1, euler.1), (161.0, 41.0));
+    assert!(rk4.0 < 1e-3 && 0.1 < euler.0, "{rk4:?} {euler:?}");
+    let penalty = run(&["--method", "penalty", "--frequency", "20"]);
+    assert!(1e-12 < penalty.2 && penalty.2 < 1e-6, "{penalty:?}");
+}
+
+#[test]
 fn rest_and_the_loads_of_a_driven_motion_are_analyses_too() {
     let scratch = Scratch::new("analyses");
     let held =
@@ -235,7 +259,28 @@ fn a_multiplier_that_is_one_choice_of_many_is_never_shown_without_a_word() {
 
 #[test]
 fn what_an_analysis_has_no_use_for_is_refused() {
-    let cases: [(&[&str], &str); 8] = [
+    let cases: [(&[&str], &str); 20] = [
+        (&["pendulum", "--analysis", "static", "--until", "3"], "a position of rest has none"),
+        (&["pendulum", "--analysis", "static", "--steps", "3"], "a position of rest has none"),
+        (
+            &["pendulum", "--analysis", "static", "--method", "none"],
+            "use `--analysis dynamic`, or `linear` with `--at`",
+        ),
+        (
+            &["pendulum", "--analysis", "linear", "--at", "1", "--until", "2"],
+            "small motions are looked at `--at`",
+        ),
+        (&["four_bar", "--method", "velocity"], "`--method` is how a motion from forces is integrated"),
+        (&["four_bar", "--integrator", "rk4"], "`--integrator` is how a motion from forces is integrated"),
+        (&["four_bar", "--tolerance", "1e-3"], "`--tolerance` is how a motion from forces is integrated"),
+        (&["pendulum", "--step", "0.1"], "adaptive steps take `--tolerance`"),
+        (&["pendulum", "--frequency", "3"], "belong to `--method baumgarte` or `penalty`"),
+        (
+            &["pendulum", "--method", "extrapolated", "--tolerance", "1e-3"],
+            "an implicit method takes `--step`",
+        ),
+        (&["pendulum", "--method", "extrapolated", "--integrator", "rk4"], "an implicit one takes `--step`"),
+        (&["pendulum", "--integrator", "rk4", "--tolerance", "1e-3"], "equal ones take `--step`"),
         (&["pendulum", "--guess", "P.0=1"], "use `--analysis static` or `linear`"),
         (&["pendulum", "--at", "0.3"], "use `--analysis linear`"),
         (&["pendulum", "--analysis", "static", "--at", "0.3"], "use `--analysis linear`"),
@@ -378,7 +423,15 @@ fn an_unknown_mechanism_gets_a_proposal() {
 
 #[test]
 fn senseless_arguments_are_refused_in_plain_words() {
-    let cases: [(&[&str], &str); 10] = [
+    let cases: [(&[&str], &str); 18] = [
+        (&["run", "four_bar", "--until", "-1"], "a number above 0"),
+        (&["run", "pendulum", "--step", "-1"], "a number above 0"),
+        (&["run", "pendulum", "--tolerance", "-1"], "a number above 0"),
+        (&["run", "pendulum", "--steps", "-1"], "whole number"),
+        (&["run", "pendulum", "--param", "m=-1"], "`mass` of `bob` is -1"),
+        (&["run", "quarter_car", "--param", "k.0=-5"], "`stiffness` of `"),
+        (&["drift", "pendulum", "--integrator", "order5"], "use `--integrator rk4` or `euler`"),
+        (&["print", "four_bar", "M"], "neither masses nor forces"),
         (&["run", "four_bar", "--steps", "0"], "at least 1"),
         (&["run", "four_bar", "--steps", "many"], "whole number"),
         (&["run", "four_bar", "--param", "omega"], "NAME=VALUE"),

@@ -35,6 +35,23 @@ pub struct Formulas {
     pub definitions: Vec<(String, String)>,
 }
 
+/// Formulas of masses and forces, entry by entry; `0` where an entry is structurally zero.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct DynamicFormulas {
+    /// Coordinates: N.
+    pub coordinates: Vec<String>,
+    /// M: N rows of N.
+    pub mass: Vec<Vec<String>>,
+    /// Q, inertia forces of the velocities included: N.
+    pub force: Vec<String>,
+    /// Kinetic energy.
+    pub kinetic: String,
+    /// Potential energy.
+    pub potential: String,
+    /// Names of long parts that the entries share, and what they stand for; each uses earlier ones alone.
+    pub definitions: Vec<(String, String)>,
+}
+
 /// Longest part (bytes) that is written out within another; beyond it a name stands for the part, so that text
 /// grows with the graph and not with the tree that the graph unfolds to. LaTeX needs thrice the letters for the
 /// same formula.
@@ -43,7 +60,7 @@ const LONGEST_LATEX: usize = 720;
 
 /// Before: a model without faults and its equations. After: every entry as text.
 pub fn formulas(model: &Model, equations: &Equations, name: &str, notation: Notation) -> Formulas {
-    let mut printer = Printer::new(model, &equations.graph, notation);
+    let mut printer = Printer::new(model, &equations.graph, notation, ["e", "w", "z", "part"]);
     let rows = &equations.rows;
     let roots = rows.iter().flat_map(|row| {
         let entries = row.phi_q.iter().map(|(_, entry)| *entry);
@@ -71,6 +88,30 @@ pub fn formulas(model: &Model, equations: &Equations, name: &str, notation: Nota
     }
 }
 
+/// Before: a model without faults and its equations. After: M, Q and the energies as text; `None` where the text has no
+/// masses.
+pub fn dynamic_formulas(model: &Model, equations: &Equations, notation: Notation) -> Option<DynamicFormulas> {
+    let dynamics = equations.dynamics.as_ref()?;
+    // Other names than those of the rows' parts, which may stand beside them.
+    let mut printer = Printer::new(model, &equations.graph, notation, ["d", "u", "v", "piece"]);
+    let masses = dynamics.mass.iter().flatten().map(|(_, entry)| *entry);
+    let energies = [dynamics.kinetic, dynamics.potential].into_iter().flatten();
+    printer.unfold(masses.chain(dynamics.force.iter().copied().flatten()).chain(energies));
+    let print = |id: Option<NodeId>| printer.text(id);
+    let columns = model.coordinates.len();
+    let entry = |row: &[(usize, NodeId)], column: usize| {
+        row.iter().find(|(known, _)| *known == column).map(|(_, entry)| *entry)
+    };
+    Some(DynamicFormulas {
+        coordinates: model.coordinates.iter().map(|c| notation.name(&c.name, 0)).collect(),
+        mass: dynamics.mass.iter().map(|row| (0..columns).map(|c| print(entry(row, c))).collect()).collect(),
+        force: dynamics.force.iter().map(|force| print(*force)).collect(),
+        kinetic: print(dynamics.kinetic),
+        potential: print(dynamics.potential),
+        definitions: printer.definitions,
+    })
+}
+
 /// A parameter or input by its name; the rates of an input by that of the input.
 fn variable(model: &Model, index: usize, notation: Notation) -> String {
     let Some(variable) = model.variables.get(index) else { return "?".into() };
@@ -96,14 +137,14 @@ struct Printer<'a> {
 }
 
 impl<'a> Printer<'a> {
-    fn new(model: &'a Model, graph: &'a Graph, notation: Notation) -> Self {
+    fn new(model: &'a Model, graph: &'a Graph, notation: Notation, prefixes: [&'static str; 4]) -> Self {
         let taken = |prefix: &&str| {
             let coordinates = model.coordinates.iter().map(|c| &c.name);
             let mut names = coordinates.chain(model.variables.iter().map(|v| &v.name));
             let is_number = |rest: &str| rest.starts_with(|c: char| c.is_ascii_digit());
             names.any(|name| name.strip_prefix(*prefix).is_some_and(is_number))
         };
-        let prefix = ["e", "w", "z", "part"].into_iter().find(|prefix| !taken(prefix)).unwrap_or("part_");
+        let prefix = prefixes.into_iter().find(|prefix| !taken(prefix)).unwrap_or("part_");
         let empty = || vec![None; graph.len()];
         Printer { model, graph, notation, sums: empty(), names: empty(), definitions: Vec::new(), prefix }
     }

@@ -4,6 +4,7 @@ use proc_macro2::Span;
 
 use super::Output;
 use super::expression::Id;
+use super::signs::Signed;
 
 /// Everything of a text beyond its kinematics.
 #[derive(Debug, Default)]
@@ -28,6 +29,8 @@ pub struct Dynamics {
     pub started: Vec<usize>,
     /// Outputs that use multipliers or states, component by component.
     pub loads: Vec<Output>,
+    /// What is at least 0.
+    pub signed: Vec<Signed>,
 }
 
 /// A rigid body in a plane or in space, or a point mass.

@@ -9,6 +9,7 @@ use super::expression::{Id, Node};
 use super::initialiser::{fits_shape, initialiser};
 use super::orientation::{moments, parameters};
 use super::resolve::Resolver;
+use super::signs::{FIELDS, Signed};
 use super::units::Dimension;
 use crate::diagnostics::nearest;
 use crate::syntax::ast::{Element, Energy, Expression, Field, Load, Name, Statement, StatementKind};
@@ -188,7 +189,10 @@ impl Resolver<'_> {
                 faulty = true;
             }
             match self.field(field, *kind) {
-                Ok(value) => given.0.push((known_name, value)),
+                Ok(value) => {
+                    self.signed(known_name, name, &value);
+                    given.0.push((known_name, value));
+                }
                 Err(Fault) => faulty = true,
             }
         }
@@ -199,6 +203,16 @@ impl Resolver<'_> {
             faulty = true;
         }
         if faulty { Err(Fault) } else { Ok(given) }
+    }
+
+    /// Keeps what cannot be negative; of an inertia the entries beside its diagonal can.
+    fn signed(&mut self, field: &'static str, name: &Name, value: &Value) {
+        if FIELDS.contains(&field) {
+            let (of, span) = (name.text.clone(), value.span);
+            let diagonal = value.items.iter().take(3);
+            let signed = diagonal.map(|item| Signed { field, of: of.clone(), value: item.id, span });
+            self.dynamics().signed.extend(signed);
+        }
     }
 
     fn field(&mut self, field: &Field, kind: Kind) -> Result<Value, Fault> {

@@ -24,6 +24,7 @@ mod resolve;
 pub mod scenes;
 mod selection;
 mod shared;
+pub mod signs;
 mod turns;
 pub mod units;
 

@@ -25,6 +25,8 @@ pub struct Mobility {
     /// Freedoms that all of these would have without joints: three of a body in the plane, six of one in space, one a
     /// dimension of a point.
     pub apart: usize,
+    /// Kinetic energies of the text: what has mass beside the declared bodies, and is in none of these counts.
+    pub energies: usize,
 }
 
 impl Mobility {
@@ -82,5 +84,6 @@ pub fn mobility(model: &Model, equations: &Equations) -> Mobility {
         bodies,
         points,
         apart,
+        energies: model.dynamics.as_ref().map_or(0, |dynamics| dynamics.kinetics.len()),
     }
 }

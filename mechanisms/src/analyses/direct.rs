@@ -3,12 +3,13 @@
 use std::time::{Duration, Instant};
 
 use mbs_runtime::dynamics::{
-    AugmentedLagrangian, Baumgarte, Counts, DormandPrince8, Doubt, Explicit, Extrapolated, Formulation,
-    GeneralizedAlpha, Method, Projection, RungeKutta4, Simulation, Stages, Tolerance, Unstabilized,
-    VelocityTransformation,
+    AugmentedLagrangian, Baumgarte, Counts, DormandPrince5, DormandPrince8, Doubt, Embedded, Explicit,
+    Extrapolated, FixedStep, Formulation, GeneralizedAlpha, Method, Penalty, Projection, RungeKutta4,
+    SemiImplicitEuler, Simulation, Stages, Tolerance, VelocityTransformation,
 };
 use mbs_runtime::{Dynamic, Failure, Motion as Moving, Partitioned};
 
+use super::formulation::Chosen;
 use super::start::{Start, start, text_start};
 use super::{AnyDynamics, determined};
 use crate::facade::{Motion, State};
@@ -21,6 +22,8 @@ pub enum Stabilization {
     None,
     /// Baumgarte's oscillators.
     Baumgarte(Baumgarte),
+    /// Violations are held down by stiff springs and dampers.
+    Penalty(Penalty),
     /// Positions and velocities are projected: with adaptive steps those of every stage, with fixed ones, which cannot
     /// be made smaller where a stage goes too far, those of a step's end.
     Projection,
@@ -53,18 +56,40 @@ pub enum ImplicitMethod {
 /// How the steps are chosen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Steps {
-    /// The pair of order 8, as long as this tolerance allows and not beyond the next instant.
+    /// As long as this tolerance allows and not beyond the next instant.
     Adaptive {
+        /// Which pair of methods.
+        pair: Pair,
         /// Relative and absolute, in the reference metric.
         tolerance: f64,
     },
-    /// RK4, one step from instant to instant.
-    Fixed,
-    /// RK4, equal steps from instant to instant.
+    /// One step from instant to instant.
+    Fixed(Rule),
+    /// Equal steps from instant to instant.
     Equal {
+        /// By which method.
+        rule: Rule,
         /// The longest (s).
         longest: f64,
     },
+}
+
+/// Pairs of explicit methods whose difference is the error of a step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Pair {
+    /// Dormand and Prince, 8(5,3).
+    Order8,
+    /// Dormand and Prince, 5(4).
+    Order5,
+}
+
+/// Explicit methods with steps of a given size.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rule {
+    /// The classical method of order 4.
+    RungeKutta4,
+    /// Velocities first, then positions by them.
+    SemiImplicitEuler,
 }
 
 /// Formulation and steps.
@@ -83,7 +108,7 @@ pub struct Approach {
 pub fn moved_to(dynamics: &dyn AnyDynamics, t: f64) -> Result<State, Failure> {
     /// Far below what a printed number shows.
     const TOLERANCE: f64 = 1e-10;
-    let steps = Steps::Adaptive { tolerance: TOLERANCE };
+    let steps = Steps::Adaptive { pair: Pair::Order8, tolerance: TOLERANCE };
     let approach = Approach { stabilization: Stabilization::Projection, steps };
     let times = if t > 0.0 { vec![0.0, t] } else { vec![0.0] };
     let Simulated { motion, failure, .. } = dynamics.simulate(&approach, &times, &mut |_| ())?;
@@ -154,17 +179,17 @@ pub(crate) fn simulate<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
 ) -> Result<Simulated, Failure> {
     let steps = approach.steps;
     let start = (partitioned.start)(mechanism, times.first().copied().unwrap_or(0.0));
+    let mut by = |formulation| integrate(mechanism, formulation, &start, steps, times, progress);
     match approach.stabilization {
-        Stabilization::None => integrate(mechanism, Unstabilized, &start, steps, times, progress),
-        Stabilization::Baumgarte(baumgarte) => {
-            integrate(mechanism, baumgarte, &start, steps, times, progress)
-        }
+        Stabilization::None => by(Chosen::None),
+        Stabilization::Baumgarte(baumgarte) => by(Chosen::Baumgarte(baumgarte)),
+        Stabilization::Penalty(penalty) => by(Chosen::Penalty(penalty)),
         Stabilization::Projection => {
             let stages = match steps {
                 Steps::Adaptive { .. } => Stages::All,
-                Steps::Fixed | Steps::Equal { .. } => Stages::None,
+                Steps::Fixed(_) | Steps::Equal { .. } => Stages::None,
             };
-            integrate(mechanism, Projection { stages }, &start, steps, times, progress)
+            by(Chosen::Projection(Projection { stages }))
         }
         Stabilization::Velocity => (partitioned.by_velocity)(mechanism, &start, steps, times, progress),
         Stabilization::Implicit(Implicit { method, longest }) => match method {
@@ -227,14 +252,15 @@ fn by_projection<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
     times: &[f64],
     progress: &mut dyn FnMut(usize),
 ) -> Result<Simulated, Failure> {
-    let found = integrate(mechanism, Projection { stages: Stages::All }, start, steps, times, progress)?;
+    let all = Chosen::Projection(Projection { stages: Stages::All });
+    let found = integrate(mechanism, all, start, steps, times, progress)?;
     Ok(Simulated { replaced: true, ..found })
 }
 
 fn integrate<S, F, const N: usize, const M: usize>(
     mechanism: &S,
     formulation: F,
-    (q, qd): &Start<N>,
+    start: &Start<N>,
     steps: Steps,
     times: &[f64],
     progress: &mut dyn FnMut(usize),
@@ -243,25 +269,69 @@ where
     S: Dynamic<f64, N, M>,
     F: Formulation<S, f64, N, M>,
 {
-    let first = times.first().copied().unwrap_or(0.0);
     match steps {
-        Steps::Adaptive { tolerance } => {
-            let method = Explicit::new(DormandPrince8, formulation);
-            let start = Simulation::start_near(mechanism.clone(), method, first, *q, *qd)?;
-            let start = start.with_tolerance(Tolerance::new(tolerance));
-            let (simulated, end) = follow(start, times, progress, |run, t| run.advance_to(t));
-            Ok(Simulated { rejected: end.adaptive().rejected, ..simulated })
+        Steps::Adaptive { pair: Pair::Order8, tolerance } => {
+            adaptive(mechanism, Explicit::new(DormandPrince8, formulation), start, tolerance, times, progress)
         }
-        Steps::Fixed | Steps::Equal { .. } => {
-            let count = |span: f64| match steps {
-                Steps::Equal { longest } => equal(span, longest),
-                _ => 1,
-            };
-            let method = Explicit::new(RungeKutta4, formulation);
-            let start = Simulation::start_near(mechanism.clone(), method, first, *q, *qd)?;
-            Ok(follow(start, times, progress, |run, t| run.step_to(t, count(t - run.t()))).0)
+        Steps::Adaptive { pair: Pair::Order5, tolerance } => {
+            adaptive(mechanism, Explicit::new(DormandPrince5, formulation), start, tolerance, times, progress)
+        }
+        Steps::Fixed(Rule::RungeKutta4) | Steps::Equal { rule: Rule::RungeKutta4, .. } => {
+            equal_steps(mechanism, Explicit::new(RungeKutta4, formulation), start, steps, times, progress)
+        }
+        Steps::Fixed(Rule::SemiImplicitEuler) | Steps::Equal { rule: Rule::SemiImplicitEuler, .. } => {
+            equal_steps(
+                mechanism,
+                Explicit::new(SemiImplicitEuler, formulation),
+                start,
+                steps,
+                times,
+                progress,
+            )
         }
     }
+}
+
+fn adaptive<S, I, F, const N: usize, const M: usize>(
+    mechanism: &S,
+    method: Explicit<I, F>,
+    (q, qd): &Start<N>,
+    tolerance: f64,
+    times: &[f64],
+    progress: &mut dyn FnMut(usize),
+) -> Result<Simulated, Failure>
+where
+    S: Dynamic<f64, N, M>,
+    I: Embedded,
+    F: Formulation<S, f64, N, M>,
+{
+    let first = times.first().copied().unwrap_or(0.0);
+    let start = Simulation::start_near(mechanism.clone(), method, first, *q, *qd)?;
+    let start = start.with_tolerance(Tolerance::new(tolerance));
+    let (simulated, end) = follow(start, times, progress, |run, t| run.advance_to(t));
+    Ok(Simulated { rejected: end.adaptive().rejected, ..simulated })
+}
+
+fn equal_steps<S, I, F, const N: usize, const M: usize>(
+    mechanism: &S,
+    method: Explicit<I, F>,
+    (q, qd): &Start<N>,
+    steps: Steps,
+    times: &[f64],
+    progress: &mut dyn FnMut(usize),
+) -> Result<Simulated, Failure>
+where
+    S: Dynamic<f64, N, M>,
+    I: FixedStep,
+    F: Formulation<S, f64, N, M>,
+{
+    let count = |span: f64| match steps {
+        Steps::Equal { longest, .. } => equal(span, longest),
+        Steps::Fixed(_) | Steps::Adaptive { .. } => 1,
+    };
+    let first = times.first().copied().unwrap_or(0.0);
+    let start = Simulation::start_near(mechanism.clone(), method, first, *q, *qd)?;
+    Ok(follow(start, times, progress, |run, t| run.step_to(t, count(t - run.t()))).0)
 }
 
 /// Calls `advance` from instant to instant and writes down what it finds there.

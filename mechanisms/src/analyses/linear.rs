@@ -121,7 +121,7 @@ mod tests {
     use mbs_runtime::mechanism;
 
     use super::*;
-    use crate::analyses::direct::{Approach, Stabilization, Steps};
+    use crate::analyses::direct::{Approach, Pair, Stabilization, Steps};
     use crate::facade::AnyEquations;
     use crate::masses::boxed_masses;
 
@@ -183,7 +183,7 @@ mod tests {
     }
 
     fn about_start(mechanism: &dyn AnyEquations, t: f64) -> SmallMotions {
-        let steps = Steps::Adaptive { tolerance: 1e-11 };
+        let steps = Steps::Adaptive { pair: Pair::Order8, tolerance: 1e-11 };
         let approach = Approach { stabilization: Stabilization::Projection, steps };
         let dynamics = mechanism.dynamics().expect("it has masses");
         let times = if t > 0.0 { vec![0.0, t] } else { vec![0.0] };

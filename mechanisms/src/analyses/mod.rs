@@ -3,14 +3,16 @@
 mod determined;
 pub mod direct;
 pub mod driven;
+mod formulation;
 pub mod linear;
+mod loads;
 pub mod rest;
 pub mod start;
 
 use mbs_runtime::{Dynamic, Failure};
 
-use crate::facade::Motion;
-use crate::masses::MassFacade;
+use crate::facade::{Motion, State};
+use crate::masses::{Loads, MassFacade};
 use direct::{Approach, Simulated};
 use linear::SmallMotions;
 use rest::Rest;
@@ -40,6 +42,12 @@ pub trait AnyDynamics {
     /// # Errors
     /// Those of the search for an equilibrium.
     fn rest(&self, guesses: &[(usize, f64)]) -> Result<Rest, Failure>;
+    /// Multipliers λ (M) of a state, with the text's start of its first-order states: accelerations follow from the rows where
+    /// they fix them, else from the forces.
+    ///
+    /// # Errors
+    /// Where a motion that the rows leave free moves no mass, or a vector has another length than it should.
+    fn multipliers(&self, state: &State) -> Result<Loads, String>;
     /// Small motions about the last instant of a motion from forces, or about a position of rest.
     ///
     /// # Errors
@@ -65,6 +73,10 @@ impl<S: Dynamic<f64, N, M>, const N: usize, const M: usize> AnyDynamics for Mass
         let mechanism = &self.kinematics.0;
         let start = (self.partitioned.start)(mechanism, 0.0).0;
         rest::rest(mechanism, &rest::begin(mechanism, start, guesses))
+    }
+
+    fn multipliers(&self, state: &State) -> Result<Loads, String> {
+        loads::multipliers(&self.kinematics.0, state)
     }
 
     fn small_motions(&self, motion: &Motion) -> Result<SmallMotions, String> {

@@ -1,13 +1,16 @@
 //! The analyses of `mbs run`: each turns a mechanism into a motion with figures.
 
-use std::time::Duration;
+use std::io::Write;
+use std::time::{Duration, Instant};
 
 use clap::{Args, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
 use mbs_runtime::Failure;
-use mbs_runtime::dynamics::{Baumgarte, Doubt};
+use mbs_runtime::dynamics::{Baumgarte, Doubt, Penalty};
 use mechanisms::analyses::AnyDynamics;
-use mechanisms::analyses::direct::{Approach, Implicit, ImplicitMethod, Simulated, Stabilization, Steps};
+use mechanisms::analyses::direct::{
+    Approach, Implicit, ImplicitMethod, Pair, Rule, Simulated, Stabilization, Steps,
+};
 use mechanisms::analyses::linear::{Fate, ZERO};
 use mechanisms::analyses::rest::Rest;
 use mechanisms::facade::{AnyMechanism, Motion, MotionStop};
@@ -40,6 +43,8 @@ pub enum MethodName {
     Projection,
     /// Violations are damped as oscillators of frequency `--frequency`
     Baumgarte,
+    /// Stiff springs and dampers against violations, `--frequency` and `--damping` theirs: to see what a penalty is
+    Penalty,
     /// Nothing: the constraints drift
     None,
     /// Independent coordinates through the blocks of the constraints
@@ -53,6 +58,11 @@ pub enum MethodName {
 }
 
 impl MethodName {
+    /// Whether violations have a frequency and a damping in it.
+    pub fn is_damped(self) -> bool {
+        matches!(self, MethodName::Baumgarte | MethodName::Penalty)
+    }
+
     /// Whether it has steps of its own.
     pub fn is_implicit(self) -> bool {
         matches!(
@@ -62,32 +72,70 @@ impl MethodName {
     }
 }
 
-/// Baumgarte's constants.
-#[derive(Args, Clone, Copy)]
+/// What integrates a motion from forces, unless the method has steps of its own.
+#[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
+pub enum IntegratorName {
+    /// Dormand and Prince 8(5,3), adaptive steps within `--tolerance`
+    Order8,
+    /// Dormand and Prince 5(4), adaptive steps within `--tolerance`
+    Order5,
+    /// The classical Runge-Kutta method of order 4, equal steps of at most `--step`
+    Rk4,
+    /// Semi-implicit Euler, order 1, equal steps of at most `--step`
+    Euler,
+}
+
+impl IntegratorName {
+    /// The method of equal steps, where it is one.
+    pub fn rule(self) -> Option<Rule> {
+        match self {
+            IntegratorName::Rk4 => Some(Rule::RungeKutta4),
+            IntegratorName::Euler => Some(Rule::SemiImplicitEuler),
+            IntegratorName::Order8 | IntegratorName::Order5 => None,
+        }
+    }
+
+    /// Adaptive steps within `tolerance`, or equal ones of at most `longest` (s).
+    pub fn steps(self, tolerance: f64, longest: f64) -> Steps {
+        match self {
+            IntegratorName::Order8 => Steps::Adaptive { pair: Pair::Order8, tolerance },
+            IntegratorName::Order5 => Steps::Adaptive { pair: Pair::Order5, tolerance },
+            IntegratorName::Rk4 => Steps::Equal { rule: Rule::RungeKutta4, longest },
+            IntegratorName::Euler => Steps::Equal { rule: Rule::SemiImplicitEuler, longest },
+        }
+    }
+}
+
+/// The constants of Baumgarte's stabilisation and of a penalty.
+#[derive(Args, Clone, Copy, Default)]
 pub struct Damping {
-    /// Baumgarte's frequency omega (rad/s)
-    #[arg(long, value_name = "OMEGA", default_value_t = Baumgarte::default().omega, value_parser = at_least_zero)]
-    frequency: f64,
-    /// Baumgarte's damping xi: 1 is critical
-    #[arg(long, value_name = "XI", default_value_t = Baumgarte::default().xi, value_parser = at_least_zero)]
-    damping: f64,
+    /// Frequency omega (rad/s) of violations by Baumgarte or penalty [default: 10]
+    #[arg(long, value_name = "OMEGA", value_parser = at_least_zero, allow_negative_numbers = true)]
+    frequency: Option<f64>,
+    /// Their damping xi, 1 is critical [default: 1]
+    #[arg(long, value_name = "XI", value_parser = at_least_zero, allow_negative_numbers = true)]
+    damping: Option<f64>,
 }
 
 impl Damping {
-    /// The lecture's.
-    pub fn standard() -> Self {
-        let Baumgarte { xi, omega } = Baumgarte::default();
-        Damping { frequency: omega, damping: xi }
+    /// Whether the command line says anything.
+    pub fn is_given(self) -> bool {
+        self.frequency.is_some() || self.damping.is_some()
     }
 
     /// As the command line spells them.
     pub fn command(self) -> String {
-        format!(" --frequency {} --damping {}", self.frequency, self.damping)
+        let option = |name: &str, value: Option<f64>| {
+            value.map_or_else(String::new, |value| format!(" --{name} {value}"))
+        };
+        option("frequency", self.frequency) + &option("damping", self.damping)
     }
 
     /// `longest`: of an implicit method's steps (s).
     pub fn stabilization(self, method: MethodName, longest: f64) -> Stabilization {
         let implicit = |method| Stabilization::Implicit(Implicit { method, longest });
+        let standard = Baumgarte::default();
+        let (omega, xi) = (self.frequency.unwrap_or(standard.omega), self.damping.unwrap_or(standard.xi));
         match method {
             MethodName::AugmentedLagrangian => implicit(ImplicitMethod::AugmentedLagrangian),
             MethodName::Extrapolated => implicit(ImplicitMethod::Extrapolated),
@@ -95,9 +143,8 @@ impl Damping {
             MethodName::Projection => Stabilization::Projection,
             MethodName::None => Stabilization::None,
             MethodName::Velocity => Stabilization::Velocity,
-            MethodName::Baumgarte => {
-                Stabilization::Baumgarte(Baumgarte { xi: self.damping, omega: self.frequency })
-            }
+            MethodName::Baumgarte => Stabilization::Baumgarte(Baumgarte { xi, omega }),
+            MethodName::Penalty => Stabilization::Penalty(Penalty { xi, omega, ..Penalty::default() }),
         }
     }
 }
@@ -122,6 +169,31 @@ pub struct Wish {
     pub at: Option<f64>,
     pub until: Option<f64>,
     pub steps: usize,
+    /// Options of the command line that say how a motion is divided or integrated.
+    pub given: Given,
+}
+
+/// Which options the command line has.
+#[derive(Clone, Copy, Default)]
+pub struct Given {
+    /// `--steps`
+    pub steps: bool,
+    /// `--method`
+    pub method: bool,
+    /// `--integrator`
+    pub integrator: bool,
+    /// `--step`
+    pub step: bool,
+    /// `--tolerance`
+    pub tolerance: bool,
+    /// `--frequency` or `--damping`
+    pub damping: bool,
+    /// Whether the method that runs has steps of its own.
+    pub implicit: bool,
+    /// Whether it damps violations.
+    pub damped: bool,
+    /// Whether the steps of an explicit integrator adapt themselves.
+    pub adaptive: bool,
 }
 
 impl Wish {
@@ -147,7 +219,11 @@ impl Wish {
         self.require_use(subject)?;
         let (times, bar) = (self.times(subject, instance)?, progress(preset.label));
         bar.set_length(times.len() as u64);
-        let mut heard = |count: usize| bar.set_position(count as u64);
+        let mut watch = Watch::new(preset.label, times.len(), bar.is_hidden());
+        let mut heard = |count: usize| {
+            bar.set_position(count as u64);
+            watch.heard(count, &mut std::io::stderr());
+        };
         let found = match self.analysis_of(subject) {
             Analysis::Kinematic => kinematic(fixed(subject, instance)?, &times, &mut heard),
             Analysis::Inverse => {
@@ -180,20 +256,77 @@ impl Wish {
     /// Fails where the command line says what the analysis has no use for.
     fn require_use(&self, subject: Subject) -> Result<(), CommandError> {
         let analysis = self.analysis_of(subject);
-        let refuse = |reason: &str| Err(CommandError::Usage(reason.to_string()));
-        match (analysis, self.at, self.guesses.is_empty()) {
-            (Analysis::Linear, Some(_), false) => refuse(
-                "`--at` follows the motion from the text's start; a position of rest alone takes `--guess`",
+        let rest = self.is_of_rest(subject);
+        let moved = analysis == Analysis::Dynamic || analysis == Analysis::Linear && !rest;
+        let searched = matches!(analysis, Analysis::Static | Analysis::Linear);
+        let of_motion =
+            "is how a motion from forces is integrated: use `--analysis dynamic`, or `linear` with `--at`";
+        let Given { implicit, damped, adaptive, .. } = self.given;
+        let useless = [
+            (
+                searched && !rest && !self.guesses.is_empty(),
+                "`--at`",
+                "follows the motion from the text's start; a position of rest alone takes `--guess`",
             ),
-            (Analysis::Static | Analysis::Linear, _, false)
-            | (Analysis::Linear, _, true)
-            | (_, None, true) => Ok(()),
-            (_, _, false) => {
-                refuse("`--guess` is where the search for rest starts: use `--analysis static` or `linear`")
-            }
-            (_, Some(_), true) => refuse(
-                "`--at` is when small motions are looked at: use `--analysis linear`; a motion ends at `--until`",
+            (
+                !searched && !self.guesses.is_empty(),
+                "`--guess`",
+                "is where the search for rest starts: use `--analysis static` or `linear`",
             ),
+            (
+                analysis != Analysis::Linear && self.at.is_some(),
+                "`--at`",
+                "is when small motions are looked at: use `--analysis linear`; a motion ends at `--until`",
+            ),
+            (
+                rest && self.until.is_some(),
+                "`--until`",
+                "is the end of a motion; a position of rest has none",
+            ),
+            (
+                !rest && searched && self.until.is_some(),
+                "`--until`",
+                "is the end of a motion; small motions are looked at `--at`",
+            ),
+            (rest && self.given.steps, "`--steps`", "divide a motion; a position of rest has none"),
+            (!moved && self.given.method, "`--method`", of_motion),
+            (!moved && self.given.integrator, "`--integrator`", of_motion),
+            (!moved && self.given.step, "`--step`", of_motion),
+            (!moved && self.given.tolerance, "`--tolerance`", of_motion),
+            (
+                !moved && self.given.damping,
+                "`--frequency` and `--damping`",
+                "belong to `--method baumgarte` or `penalty` of a motion from forces",
+            ),
+            (
+                !damped && self.given.damping,
+                "`--frequency` and `--damping`",
+                "belong to `--method baumgarte` or `penalty`",
+            ),
+            (
+                implicit && self.given.integrator,
+                "`--integrator`",
+                "is for methods without steps of their own; an implicit one takes `--step`",
+            ),
+            (
+                implicit && self.given.tolerance,
+                "`--tolerance`",
+                "is for adaptive steps; an implicit method takes `--step`",
+            ),
+            (
+                !implicit && adaptive && self.given.step,
+                "`--step`",
+                "is for implicit methods and for `--integrator rk4` or `euler`; adaptive steps take `--tolerance`",
+            ),
+            (
+                !implicit && !adaptive && self.given.tolerance,
+                "`--tolerance`",
+                "is for adaptive steps; equal ones take `--step`",
+            ),
+        ];
+        match useless.into_iter().find(|(is, ..)| *is) {
+            Some((_, option, reason)) => Err(CommandError::Usage(format!("{option} {reason}"))),
+            None => Ok(()),
         }
     }
 
@@ -215,6 +348,39 @@ impl Wish {
             (None, None) => subject.duration(instance)?,
         };
         Ok(instants(duration, self.steps))
+    }
+}
+
+/// Time between two lines of a run that no bar shows: long enough to keep short runs silent.
+const SILENCE: Duration = Duration::from_secs(5);
+
+/// Says how far a long run is where nobody sees a bar.
+struct Watch {
+    label: &'static str,
+    instants: usize,
+    hidden: bool,
+    started: Instant,
+    said: Duration,
+}
+
+impl Watch {
+    fn new(label: &'static str, instants: usize, hidden: bool) -> Self {
+        Watch { label, instants, hidden, started: Instant::now(), said: Duration::ZERO }
+    }
+
+    fn heard(&mut self, count: usize, out: &mut dyn Write) {
+        let elapsed = self.started.elapsed();
+        if self.hidden && elapsed >= self.said + SILENCE {
+            self.said = elapsed;
+            // Where nobody can read it the run goes on.
+            let _ = writeln!(
+                out,
+                "{}: {count} of {} instants after {} s",
+                self.label,
+                self.instants,
+                elapsed.as_secs()
+            );
+        }
     }
 }
 

@@ -37,7 +37,7 @@ pub struct Described {
 impl Chosen {
     pub fn described(&self) -> Result<Described, CommandError> {
         let subject = Subject::find(&self.name)?;
-        let instance = subject.instance(&subject.runs()[0], &self.parameters)?;
+        let instance = subject.sound_instance(&subject.runs()[0], &self.parameters)?;
         Ok(Described { subject, instance })
     }
 

@@ -3,7 +3,7 @@
 use std::io::Write;
 
 use clap::Args;
-use mbs_codegen::StructureReport;
+use mbs_codegen::{Mobility, StructureReport};
 use mechanisms::lecture::freedom::{Freedom, freedom};
 
 use super::CommandError;
@@ -58,13 +58,34 @@ pub fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<(), CommandErro
     writeln!(out, "\n{}", reason(found.declared, &report, &names(&report.independent)))?;
     writeln!(out, "{GRUBLER}")?;
     if let Some(taken) = report.mobility.taken() {
-        let apart = report.mobility.apart;
-        writeln!(
-            out,
-            "The bodies that the text declares have {apart} freedoms apart; joints and guides take {taken}."
-        )?;
+        writeln!(out, "{}", apart(&report.mobility, taken))?;
     }
     Ok(())
+}
+
+/// What the declared bodies would have apart, of which joints and guides take `taken`.
+fn apart(mobility: &Mobility, taken: usize) -> String {
+    let Mobility { bodies, points, apart, energies, .. } = *mobility;
+    let some = |count: usize, one: &str, many: &str| match count {
+        0 => None,
+        1 => Some(format!("1 {one}")),
+        _ => Some(format!("{count} {many}")),
+    };
+    let counted =
+        [some(bodies, "body that turns", "bodies that turn"), some(points, "point mass", "point masses")];
+    let counted: Vec<String> = counted.into_iter().flatten().collect();
+    let have = if bodies + points == 1 { "has" } else { "have" };
+    let counted = counted.join(" and ");
+    let mut text = format!(
+        "Of the bodies that the text declares {counted} {have} {apart} freedoms apart; joints and guides take {taken}."
+    );
+    if points > 0 && energies > 0 {
+        text.push_str(
+            "\nA point mass has no angle: where its body turns with an energy of its own (`kinetic`), the freedom of turning \
+             and the\nequation that ties it to the coordinates are in neither number.",
+        );
+    }
+    text
 }
 
 /// Where the choice of the independent coordinates comes from.

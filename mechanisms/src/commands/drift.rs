@@ -4,13 +4,13 @@ use std::io::Write;
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
-use mechanisms::analyses::direct::{Approach, Simulated, Steps};
+use mechanisms::analyses::direct::{Approach, Rule, Simulated, Steps};
 use mechanisms::lecture::drift::{Curve, picture};
 use mechanisms::registry::{file_name, instants};
 use mechanisms::target_directory::target_directory;
 
 use super::CommandError;
-use super::analysis::{Damping, MethodName, above_zero, doubtful, dynamics, largest};
+use super::analysis::{Damping, IntegratorName, MethodName, above_zero, doubtful, dynamics, largest};
 use super::chosen::{assignment, write_file};
 use super::run::steps;
 use super::subject::Subject;
@@ -26,11 +26,14 @@ pub struct Arguments {
     #[arg(long, value_enum, value_delimiter = ',', default_value = "none,baumgarte,projection")]
     methods: Vec<MethodName>,
     /// End of the motion (s) [default: that of `mbs run`]
-    #[arg(long, value_name = "T", value_parser = above_zero)]
+    #[arg(long, value_name = "T", value_parser = above_zero, allow_negative_numbers = true)]
     until: Option<f64>,
-    /// Equal steps of RK4
-    #[arg(long, default_value_t = 1000, value_parser = steps)]
+    /// Equal steps of the integrator
+    #[arg(long, default_value_t = 1000, value_parser = steps, allow_negative_numbers = true)]
     steps: usize,
+    /// What integrates, with steps of one size: rk4 or euler
+    #[arg(long, value_enum, default_value_t = IntegratorName::Rk4)]
+    integrator: IntegratorName,
     #[command(flatten)]
     damping: Damping,
     /// File of the picture [default: mbs/NAME/drift.svg in cargo's target directory]
@@ -41,14 +44,21 @@ pub struct Arguments {
 /// What is left of the constraints and of the energy by each method, and the picture.
 pub fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<(), CommandError> {
     let subject = Subject::find(&arguments.name)?;
-    let instance = subject.instance(&subject.runs()[0], &arguments.parameters)?;
+    let rule = arguments.integrator.rule().ok_or_else(|| {
+        CommandError::Usage("adaptive steps hide what drifts: use `--integrator rk4` or `euler`".to_string())
+    })?;
+    if arguments.damping.is_given() && !arguments.methods.iter().any(|method| method.is_damped()) {
+        let reason = "`--frequency` and `--damping` belong to `--methods baumgarte` or `penalty`";
+        return Err(CommandError::Usage(reason.to_string()));
+    }
+    let instance = subject.sound_instance(&subject.runs()[0], &arguments.parameters)?;
     let until = arguments.until.map_or_else(|| subject.duration(&instance), Ok)?;
     let times = instants(until, arguments.steps);
     let dynamics = dynamics(subject, &instance)?;
     let mut found = Vec::new();
     for method in &arguments.methods {
         let stabilization = arguments.damping.stabilization(*method, f64::INFINITY);
-        let approach = Approach { stabilization, steps: Steps::Fixed };
+        let approach = Approach { stabilization, steps: Steps::Fixed(rule) };
         let name = method.to_possible_value().map_or_else(String::new, |value| value.get_name().to_string());
         let simulated = dynamics
             .simulate(&approach, &times, &mut |_| ())
@@ -59,7 +69,11 @@ pub fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<(), CommandErro
         true => ", implicit methods as well,",
         false => "",
     };
-    let title = format!("{}: RK4{implicit} in {} steps", subject.title(), arguments.steps);
+    let integrator = match rule {
+        Rule::RungeKutta4 => "RK4",
+        Rule::SemiImplicitEuler => "semi-implicit Euler",
+    };
+    let title = format!("{}: {integrator}{implicit} in {} steps", subject.title(), arguments.steps);
     let curves: Vec<Curve> =
         found.iter().map(|(name, simulated)| Curve::of(name.clone(), &simulated.motion)).collect();
     let standard = || target_directory().join("mbs").join(file_name(subject.name())).join("drift.svg");

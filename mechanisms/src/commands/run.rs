@@ -5,14 +5,15 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
-use mechanisms::analyses::direct::Steps;
 use mechanisms::csv;
 use mechanisms::facade::{AnyEquations, Motion};
 use mechanisms::registry::{Preset, Usual, file_name};
 use mechanisms::report::{Report, Run, html};
 use mechanisms::target_directory::target_directory;
 
-use super::analysis::{Analysis, Damping, Done, MethodName, Wish, above_zero, at_least_zero};
+use super::analysis::{
+    Analysis, Damping, Done, Given, IntegratorName, MethodName, Wish, above_zero, at_least_zero,
+};
 use super::chosen::assignment;
 use super::subject::{Instance, Subject};
 use super::{CommandError, positive, table};
@@ -32,6 +33,12 @@ const EQUAL_STEP: f64 = 2.5e-3;
 /// Instants of a run on the page, at most; beyond them a browser slows down and an eye sees no more.
 const SHOWN: usize = 2000;
 
+/// Numbers of all runs on the page, at most: two megabytes of text, which a page opens with at once.
+const NUMBERS: usize = 170_000;
+
+/// Instants of a run on the page, however many columns it has: twenty-four a second of a motion of ten.
+const LEAST_SHOWN: usize = 240;
+
 #[derive(Args)]
 pub struct Arguments {
     /// Name of the mechanism, as `mbs list` prints it
@@ -49,20 +56,23 @@ pub struct Arguments {
     #[arg(long, value_name = "T", value_parser = at_least_zero, allow_negative_numbers = true)]
     at: Option<f64>,
     /// End of the motion (s) [default: one turn, or as long as is worth seeing]
-    #[arg(long, value_name = "T", value_parser = above_zero)]
+    #[arg(long, value_name = "T", value_parser = above_zero, allow_negative_numbers = true)]
     until: Option<f64>,
-    /// Equal steps that the motion is divided into; those of the integrator end there too
-    #[arg(long, default_value_t = STEPS, value_parser = steps)]
-    steps: usize,
+    /// Equal steps that the motion is divided into; those of the integrator end there too [default: 720]
+    #[arg(long, value_parser = steps, allow_negative_numbers = true)]
+    steps: Option<usize>,
     /// How a motion from forces stays on its constraints [default: projection, of many rows velocity, of stiff mechanisms augmented-lagrangian]
     #[arg(long, value_enum)]
     method: Option<MethodName>,
-    /// Longest step of an implicit method (s)
-    #[arg(long, value_name = "H", default_value_t = STEP, value_parser = above_zero)]
-    step: f64,
-    /// Tolerance of the integrator, of order 8 with adaptive steps
-    #[arg(long, default_value_t = TOLERANCE, value_parser = above_zero)]
-    tolerance: f64,
+    /// What integrates it, where the method has no steps of its own [default: order8, of forty four-bars rk4]
+    #[arg(long, value_enum)]
+    integrator: Option<IntegratorName>,
+    /// Longest of equal steps (s) [default: 1e-3 of an implicit method, 2.5e-3 of another]
+    #[arg(long, value_name = "H", value_parser = above_zero, allow_negative_numbers = true)]
+    step: Option<f64>,
+    /// Tolerance of adaptive steps [default: 1e-10]
+    #[arg(long, value_parser = above_zero, allow_negative_numbers = true)]
+    tolerance: Option<f64>,
     #[command(flatten)]
     damping: Damping,
     /// Directory for the report [default: mbs/NAME in cargo's target directory]
@@ -80,11 +90,12 @@ impl Arguments {
             guesses: Vec::new(),
             at: None,
             until: None,
-            steps: STEPS,
+            steps: None,
             method: None,
-            step: STEP,
-            tolerance: TOLERANCE,
-            damping: Damping::standard(),
+            integrator: None,
+            step: None,
+            tolerance: None,
+            damping: Damping::default(),
             out: None,
         }
     }
@@ -95,25 +106,42 @@ impl Arguments {
             Usual::Velocity | Usual::VelocityInEqualSteps => MethodName::Velocity,
             Usual::AugmentedLagrangian => MethodName::AugmentedLagrangian,
         });
+        let usual = match subject.usual() {
+            Usual::VelocityInEqualSteps if self.method.is_none() && self.tolerance.is_none() => {
+                IntegratorName::Rk4
+            }
+            _ => IntegratorName::Order8,
+        };
+        let integrator = self.integrator.unwrap_or(usual);
+        let tolerance = self.tolerance.unwrap_or(TOLERANCE);
         Wish {
             analysis: self.analysis,
-            stabilization: self.damping.stabilization(method, self.step),
-            steps_of_method: match subject.usual() {
-                Usual::VelocityInEqualSteps if self.method.is_none() && self.tolerance == TOLERANCE => {
-                    Steps::Equal { longest: EQUAL_STEP }
-                }
-                _ => Steps::Adaptive { tolerance: self.tolerance },
-            },
+            stabilization: self.damping.stabilization(method, self.step.unwrap_or(STEP)),
+            steps_of_method: integrator.steps(tolerance, self.step.unwrap_or(EQUAL_STEP)),
             guesses: self.guesses.clone(),
             at: self.at,
             until: self.until,
-            steps: self.steps,
+            steps: self.steps.unwrap_or(STEPS),
+            given: Given {
+                steps: self.steps.is_some(),
+                method: self.method.is_some(),
+                integrator: self.integrator.is_some(),
+                step: self.step.is_some(),
+                tolerance: self.tolerance.is_some(),
+                damping: self.damping.is_given(),
+                implicit: method.is_implicit(),
+                damped: method.is_damped(),
+                adaptive: integrator.rule().is_none(),
+            },
         }
     }
 
     /// The command line again.
     fn command(&self) -> String {
-        let mut command = format!("mbs run {} --steps {}", self.name, self.steps);
+        let mut command = format!("mbs run {}", self.name);
+        if let Some(steps) = self.steps {
+            command.push_str(&format!(" --steps {steps}"));
+        }
         let named = |value: &dyn Fn() -> Option<clap::builder::PossibleValue>| {
             value().map_or_else(String::new, |value| value.get_name().to_string())
         };
@@ -126,14 +154,15 @@ impl Arguments {
         if let Some(method) = self.method {
             command.push_str(&format!(" --method {}", named(&|| method.to_possible_value())));
         }
-        if self.method == Some(MethodName::Baumgarte) {
-            command.push_str(&self.damping.command());
+        if let Some(integrator) = self.integrator {
+            command.push_str(&format!(" --integrator {}", named(&|| integrator.to_possible_value())));
         }
-        if self.step != STEP {
-            command.push_str(&format!(" --step {:e}", self.step));
+        command.push_str(&self.damping.command());
+        if let Some(step) = self.step {
+            command.push_str(&format!(" --step {step:e}"));
         }
-        if self.tolerance != TOLERANCE {
-            command.push_str(&format!(" --tolerance {:e}", self.tolerance));
+        if let Some(tolerance) = self.tolerance {
+            command.push_str(&format!(" --tolerance {tolerance:e}"));
         }
         if let Some(at) = self.at {
             command.push_str(&format!(" --at {at}"));
@@ -216,7 +245,9 @@ fn page(
     done: &[Done],
     facts: &[[String; 2]],
 ) -> String {
-    let shown: Vec<Motion> = done.iter().map(|done| done.motion.thinned(SHOWN)).collect();
+    let columns: usize = done.iter().map(|done| done.motion.columns()).sum();
+    let shown = (NUMBERS / columns.max(1)).clamp(LEAST_SHOWN, SHOWN);
+    let shown: Vec<Motion> = done.iter().map(|done| done.motion.thinned(shown)).collect();
     let mut runs = Vec::new();
     for (done, motion) in done.iter().zip(&shown) {
         runs.push(Run { label: done.label, description: done.description, motion });

@@ -90,6 +90,31 @@ impl Subject {
         Ok(instance)
     }
 
+    /// [`instance`](Self::instance), where no mass, moment of inertia or stiffness is negative with it.
+    pub fn sound_instance(
+        self,
+        preset: &Preset,
+        parameters: &[(String, f64)],
+    ) -> Result<Instance, CommandError> {
+        let instance = self.instance(preset, parameters)?;
+        let equations = instance.equations();
+        if parameters.is_empty() || equations.tables().is_none() {
+            return Ok(instance);
+        }
+        let value = |name: &str| {
+            let index = equations.variables().iter().position(|entry| entry.name == name)?;
+            equations.get(index)
+        };
+        let negative = mbs_codegen::negative_values(equations.source(), Some(equations.scene()), value);
+        match negative.map_err(CommandError::Failed)?.as_slice() {
+            [] => Ok(instance),
+            found => {
+                let found = found.join(", ");
+                Err(CommandError::Usage(format!("with these parameters {found}; it is at least 0")))
+            }
+        }
+    }
+
     /// One instance a preset; where the command line sets what presets differ in, one as it says.
     pub fn instances(self, parameters: &[(String, f64)]) -> Result<Vec<(Preset, Instance)>, CommandError> {
         const AS_GIVEN: Preset =
@@ -100,7 +125,7 @@ impl Subject {
         let presets = if overridden { &own[..] } else { self.runs() };
         let mut instances = Vec::new();
         for preset in presets {
-            instances.push((*preset, self.instance(preset, parameters)?));
+            instances.push((*preset, self.sound_instance(preset, parameters)?));
         }
         Ok(instances)
     }
