@@ -125,8 +125,8 @@ fn where_nothing_rests_the_least_push_is_named() {
         assert!(coordinate.name == "phi" && (force - 2.19).abs() < 1e-3, "{start}: {failure}");
         assert!(failure.to_string().contains("no position of rest") && failure.to_string().contains("J/rad"));
     }
-    let held = Arm { tau: 9.0, ..Arm::default() };
+    let held: Arm = Arm { tau: 9.0 };
     assert!(
-        (equilibrium(&held, 0.0_f64, &[1.0]).unwrap().q[0].abs() - (9.0_f64 / 9.81).acos()).abs() < 1e-12
+        (equilibrium(&held, 0.0, &[1.0]).unwrap().q[0].abs() - (9.0_f64 / 9.81).acos()).abs() < 1e-12
     );
 }
