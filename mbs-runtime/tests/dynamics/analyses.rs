@@ -127,6 +127,6 @@ fn where_nothing_rests_the_least_push_is_named() {
     }
     let held: Arm = Arm { tau: 9.0 };
     assert!(
-        (equilibrium(&held, 0.0, &[1.0]).unwrap().q[0].abs() - (9.0_f64 / 9.81).acos()).abs() < 1e-12
+        (equilibrium(&held, 0.0_f64, &[1.0]).unwrap().q[0].abs() - (9.0_f64 / 9.81).acos()).abs() < 1e-12
     );
 }
