@@ -129,35 +129,43 @@ impl<const K: usize, const M: usize> Place<K, M> {
     }
 }
 
-/// Factors of all diagonal blocks of a kind, with what they make of the `margin` of the blocks before.
+/// Places of the factors of B blocks.
+#[inline(always)]
+#[must_use]
+pub fn unfactorized<T: Scalar, F: Factorization<T, K>, const K: usize, const B: usize>() -> [F; B] {
+    let zero = T::constant(0.0);
+    [F::factorize(&[[zero; K]; K], &[zero; K], &[zero; K]).0; B]
+}
+
+/// `factors` of all diagonal blocks of a kind, and what they make of the `margin` of the blocks before.
 ///
 /// `places` and `tables` (index of each entry of a block among `entries`; [`NONE`] where it is zero): one a block.
 /// `rows` and `coordinates`: the metric of all rows and all coordinates.
 #[inline(never)]
-pub fn factorized<T: Scalar, F: Factorization<T, K>, const K: usize, const B: usize>(
+pub fn factorized<T: Scalar, F: Factorization<T, K>, const K: usize>(
     places: &[Place<K, K>],
     tables: &[[[u32; K]; K]],
     entries: &[T],
     (rows, coordinates): (&[T], &[T]),
     mut margin: Margin<T>,
-) -> ([F; B], Margin<T>) {
+    factors: &mut [F],
+) -> Margin<T> {
     let zero = T::constant(0.0);
-    let mut blocks = places.iter().zip(tables);
-    let factors = core::array::from_fn(|_| {
-        let Some((place, table)) = blocks.next() else {
-            // Both tables have B places.
-            return F::factorize(&[[zero; K]; K], &[zero; K], &[zero; K]).0;
-        };
-        let entry = |index: u32| entries.get(index as usize).map_or(zero, |entry| *entry);
+    for ((factors, place), table) in factors.iter_mut().zip(places).zip(tables) {
+        let mut matrix = [[zero; K]; K];
+        for (row, indices) in matrix.iter_mut().zip(table) {
+            for (entry, index) in row.iter_mut().zip(indices) {
+                *entry = entries.get(*index as usize).map_or(zero, |entry| *entry);
+            }
+        }
         let Block { row_scales, coordinate_scales, .. } = place.block(rows, coordinates);
-        let (factors, value) =
-            F::factorize(&table.map(|row| row.map(entry)), &row_scales, &coordinate_scales);
+        let (found, value) = F::factorize(&matrix, &row_scales, &coordinate_scales);
         let [row, coordinate] =
             [place.rows, place.coordinates].map(|all| all.first().map_or(0, |first| *first));
-        margin = margin.with_block(value, row, coordinate).oriented(factors.reverses());
-        factors
-    });
-    (factors, margin)
+        margin = margin.with_block(value, row, coordinate).oriented(found.reverses());
+        *factors = found;
+    }
+    margin
 }
 
 /// The index of no entry.

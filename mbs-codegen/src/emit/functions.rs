@@ -244,7 +244,8 @@ impl Emitter<'_> {
         results: &[Option<NodeId>],
         scope: &Scope<'_>,
     ) -> TokenStream {
-        match self.is_long {
+        // What is not computed, as most metrics, needs no place to be passed on at.
+        match self.is_long && !section.lines.is_empty() {
             true => block(&(self.in_parts(named, section, results, scope) + "__v.kept()"), self.runtime),
             false => body(section, scope, &array(results.iter().copied(), scope), self.runtime),
         }

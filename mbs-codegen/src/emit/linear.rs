@@ -201,8 +201,9 @@ fn in_one(
             text,
             "const __PLACES{kind}: &[__mbs::long::Place<{size}, {size}>] = &{places};\n\
              const __INDICES{kind}: &[[[::core::primitive::u32; {size}]; {size}]] = &{indices};\n\
-             let (__kind{kind}, __margin) = __mbs::long::factorized::<T, {factors}, {size}, {count}>(\
-             __PLACES{kind}, __INDICES{kind}, &__entries, (&__row_scales, &__coordinate_scales), __margin);"
+             let mut __kind{kind} = __mbs::long::unfactorized::<T, {factors}, {size}, {count}>();\n\
+             let __margin = __mbs::long::factorized::<T, {factors}, {size}>(__PLACES{kind}, __INDICES{kind}, \
+             &__entries, (&__row_scales, &__coordinate_scales), __margin, &mut __kind{kind});"
         );
     }
     for Diagonal { index, kind, text: factorize, asked } in diagonals {

@@ -14,6 +14,10 @@ use crate::symbolic::NodeId;
 /// Stands for the number of passed values until it is known.
 const PASSED: &str = "\u{3}";
 
+/// Most statements of all arms together that stand wherever a solver asks for its block: behind a call the next block would have
+/// to wait for what goes through memory.
+const LONGEST_INLINED: usize = 120;
+
 /// Arguments of a family of methods, beside `self` and the passed values; a comma behind each.
 #[derive(Clone, Default)]
 pub struct Frame {
@@ -36,6 +40,7 @@ struct Method {
     all: bool,
     /// Whether it passes on what it computes.
     exports: bool,
+    inline: &'static str,
 }
 
 /// Methods that share passed values.
@@ -90,7 +95,8 @@ impl Parts {
             let _ = writeln!(calls, "self.{name}({}__v);", frame.given);
             let code = Rolled::of(rounds.map(<[Statement]>::to_vec).collect());
             let frame = Frame { result: None, ..frame.clone() };
-            self.methods.push(Method { name, frame, calls: String::new(), code, all: true, exports: true });
+            let (calls, inline) = (String::new(), "#[inline(never)]");
+            self.methods.push(Method { name, frame, calls, code, all: true, exports: true, inline });
         }
         calls
     }
@@ -124,6 +130,11 @@ impl Parts {
                 rounds.push(arm);
             }
         }
+        let length: usize = grouped.iter().filter_map(|rounds| rounds.first()).map(Vec::len).sum();
+        let (inline, choice_inline) = match length <= LONGEST_INLINED {
+            true => ("#[inline(always)]", "#[inline(always)]"),
+            false => ("#[inline(never)]", "#[inline]"),
+        };
         let mut choice = String::new();
         let (last, result) = (grouped.len(), frame.result.is_some());
         for (number, mut rounds) in grouped.into_iter().enumerate() {
@@ -136,14 +147,15 @@ impl Parts {
             let pattern = if result && number + 1 == last { "_".into() } else { (number + 1).to_string() };
             let _ = writeln!(choice, "{pattern} => self.{name}(__k, {}__v),", frame.given);
             let code = Rolled::of(rounds);
-            self.methods.push(Method { name, frame: frame.clone(), calls, code, all: false, exports });
+            let frame = frame.clone();
+            self.methods.push(Method { name, frame, calls, code, all: false, exports, inline });
         }
         if !result {
             choice += "_ => {}\n";
         }
         let rows: Vec<String> =
             table.into_iter().map(|(group, round)| format!("[{group}, {round}]")).collect();
-        self.choices += &declared("#[inline]", name, "__s: ::core::primitive::usize, ", frame);
+        self.choices += &declared(choice_inline, name, "__s: ::core::primitive::usize, ", frame);
         let _ = writeln!(
             self.choices,
             "{{\nconst __ARMS: &[[::core::primitive::u32; 2]; {count}] = &[{}];\n\
@@ -158,10 +170,10 @@ impl Parts {
         let all = methods.iter().map(|method| (&method.code, method.exports));
         let (slots, count) = slots(all, taken, next);
         let mut text = String::new();
-        for Method { name, frame, calls, code, all, exports } in &methods {
+        for Method { name, frame, calls, code, all, exports, inline } in &methods {
             let Text { tables, round } = code.print(&slots, *exports, &wordings);
             let asked = if *all { "" } else { "__k: ::core::primitive::usize, " };
-            text += &declared("#[inline(never)]", name, asked, frame);
+            text += &declared(inline, name, asked, frame);
             let _ = match *all && code.len() > 1 {
                 true => writeln!(text, "{{\n{tables}for __k in 0..{}_usize {{\n{round}}}\n}}", code.len()),
                 false => writeln!(text, "{{\n{tables}{calls}{round}}}"),

@@ -7,6 +7,7 @@
 //! `.ci/instructions` runs each work twice and takes the difference, so that what comes before and after does not count.
 //! Without arguments the names of the works are printed.
 
+#[macro_use]
 #[path = "../../peers/src/texts.rs"]
 mod texts;
 
@@ -17,9 +18,14 @@ use std::hint::black_box;
 use std::process::ExitCode;
 
 use mbs_runtime::dynamics::{Counts, Formulation, Metric, Model, State, VelocityTransformation};
-use mbs_runtime::{Batch, Dynamic, Kinematic, Lanes, Mechanism, Partitioned, Stepper};
+use mbs_runtime::{Batch, Dynamic, Kinematic, Lanes, Mechanism, Partitioned, Stepper, mechanism};
 use released::{NFourBar10, NFourBar40, Squeezer};
 use texts::{Andrews, Chain10, Chain40, FourBar};
+
+chain! {
+    /// A hundred loops: each step goes through their blocks in a loop.
+    Chain100, 100
+}
 
 /// Time of a step (s).
 const STEP: f64 = 1e-3;
@@ -29,7 +35,7 @@ const LANES: usize = 8;
 /// A work by name, done so many times.
 type Work = (&'static str, fn(u32));
 
-const WORKS: [Work; 11] = [
+const WORKS: [Work; 12] = [
     ("evaluate_four_bar", evaluate::<FourBar, 5>),
     ("evaluate_andrews", evaluate::<Andrews, 7>),
     ("evaluate_chain", evaluate::<Chain10, 22>),
@@ -38,6 +44,7 @@ const WORKS: [Work; 11] = [
     ("step_four_bar_in_8_lanes", batch),
     ("step_chain_of_10", |count| steps(Chain10::default(), upright(), count)),
     ("step_chain_of_40", |count| steps(Chain40::default(), upright(), count)),
+    ("step_chain_of_100", |count| steps(Chain100::default(), upright(), count)),
     ("rates_andrews", |count| rates::<Squeezer, 7, 6>(SQUEEZER, count)),
     ("rates_10_hanging_loops", |count| rates::<NFourBar10, 22, 21>(hanging(), count)),
     ("rates_40_hanging_loops", |count| rates::<NFourBar40, 82, 81>(hanging(), count)),
