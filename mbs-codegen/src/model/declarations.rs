@@ -16,7 +16,7 @@ use crate::syntax::ast::{Declares, Expression, Name, Statement, StatementKind, T
 
 /// Most coordinates. A step is linear in them and has arrays of as many on its stack; Φ_q as a whole, which no step asks
 /// for, is a dense array of 32 MB then.
-const MOST_COORDINATES: usize = 2_000;
+const MOST_COORDINATES: usize = 6_000;
 
 /// Before: statements in any order. After: all declarations outside loops are in `model` and `names`.
 pub fn declare(

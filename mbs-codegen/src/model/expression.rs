@@ -144,6 +144,16 @@ impl Expressions {
         false
     }
 
+    /// Marks all that something of a kind is in: one flag an expression.
+    pub fn made_of(&self, is: impl Fn(Node) -> bool) -> Vec<bool> {
+        let mut marked = Vec::with_capacity(self.nodes.len());
+        for node in &self.nodes {
+            let below = |operand: Id| marked.get(operand.index()) == Some(&true);
+            marked.push(is(*node) || node.operands().any(below));
+        }
+        marked
+    }
+
     /// Marks what `roots` are made of, themselves included: one flag an expression.
     pub fn reachable(&self, roots: impl IntoIterator<Item = Id>) -> Vec<bool> {
         let mut marked = vec![false; self.nodes.len()];

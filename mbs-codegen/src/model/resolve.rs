@@ -51,7 +51,7 @@ pub fn resolve(statements: &[Statement], diagnostics: &mut Diagnostics) -> Model
 }
 
 /// Most rows, and most outputs.
-const MOST_ROWS: usize = 2_000;
+const MOST_ROWS: usize = 6_000;
 
 /// A group of rows, branches or outputs under one name.
 struct Group {
@@ -423,21 +423,14 @@ impl Resolver<'_> {
     /// Guesses use parameters alone; rows use no input whose rates are unknown.
     fn check_guesses_and_inputs(&mut self) {
         let model = &*self.model;
+        let varies = model.expressions.made_of(|node| match node {
+            Node::Time | Node::Coordinate(_) | Node::Rate(..) => true,
+            Node::Variable(i) => model.variables.get(i).is_some_and(|v| v.kind != VariableKind::Parameter),
+            _ => false,
+        });
         for coordinate in &model.coordinates {
             let Some(guess) = coordinate.guess else { continue };
-            let marked = model.expressions.reachable([guess]);
-            let varies = |node: Node| match node {
-                Node::Time | Node::Coordinate(_) | Node::Rate(..) => true,
-                Node::Variable(i) => {
-                    model.variables.get(i).is_some_and(|v| v.kind != VariableKind::Parameter)
-                }
-                _ => false,
-            };
-            if model
-                .expressions
-                .iter()
-                .any(|(id, node)| marked.get(id.index()) == Some(&true) && varies(node))
-            {
+            if varies.get(guess.index()) == Some(&true) {
                 self.diagnostics.report(
                     coordinate.span,
                     format!("the guess of `{}` varies in time", coordinate.name),

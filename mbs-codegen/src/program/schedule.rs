@@ -126,7 +126,7 @@ pub fn schedule(graph: &Graph, roots: &[NodeId], known: &BTreeSet<NodeId>) -> Se
     let mut jets = jets(graph, &nodes);
     // How many sines and cosines stand one behind the other up to a node.
     let mut depths = vec![0_usize; graph.len()];
-    let mut first = vec![NO_COORDINATE; graph.len()];
+    let mut first = FirstCoordinates(vec![0; graph.len()]);
     let mut levels: BTreeMap<usize, Level> = BTreeMap::new();
     for id in nodes {
         let node = graph.node(id);
@@ -148,10 +148,7 @@ pub fn schedule(graph: &Graph, roots: &[NodeId], known: &BTreeSet<NodeId>) -> Se
         if let Some(known) = depths.get_mut(id.index()) {
             *known = depth;
         }
-        let least = node.operands().map(|operand| first_coordinate(graph, operand, &first)).min();
-        if let (Some(known), Some(least)) = (first.get_mut(id.index()), least) {
-            *known = least;
-        }
+        first.find(graph, id);
     }
     let mut section = Section { results: roots.iter().copied().collect(), ..Section::default() };
     for Level { lines, angles } in levels.into_values() {
@@ -166,21 +163,32 @@ pub fn schedule(graph: &Graph, roots: &[NodeId], known: &BTreeSet<NodeId>) -> Se
         if !angles.is_empty() {
             section.operations.sine_cosines += angles.len();
             let mut angles: Vec<Angle> = angles.into_values().collect();
-            angles.sort_by_key(|known| first_coordinate(graph, known.angle, &first));
+            angles.sort_by_key(|known| first.of(graph, known.angle));
             section.lines.push(Line::SineCosine(angles));
         }
     }
     section
 }
 
-/// Index above that of any coordinate.
-const NO_COORDINATE: u32 = u32::MAX;
+/// Of each node the lowest of the coordinates that it is made of, where that is found below the values that are known already;
+/// one more than its index, and 0 for none, which costs nothing to set up: a section is scheduled for every block.
+struct FirstCoordinates(Vec<u32>);
 
-/// The lowest of the coordinates that a value is made of, where that is found below the values that are known already.
-fn first_coordinate(graph: &Graph, id: NodeId, first: &[u32]) -> u32 {
-    match graph.node(id) {
-        Node::Leaf(Leaf::Position(index)) => index,
-        _ => first.get(id.index()).copied().unwrap_or(NO_COORDINATE),
+impl FirstCoordinates {
+    /// The lowest coordinate of a value; above that of any where there is none.
+    fn of(&self, graph: &Graph, id: NodeId) -> u32 {
+        match graph.node(id) {
+            Node::Leaf(Leaf::Position(index)) => index,
+            _ => self.0.get(id.index()).copied().unwrap_or(0).wrapping_sub(1),
+        }
+    }
+
+    /// Before: it is found of the operands. After: of the value, too.
+    fn find(&mut self, graph: &Graph, id: NodeId) {
+        let least = graph.node(id).operands().map(|operand| self.of(graph, operand)).min();
+        if let (Some(known), Some(least)) = (self.0.get_mut(id.index()), least) {
+            *known = least.wrapping_add(1);
+        }
     }
 }
 
