@@ -65,6 +65,21 @@ pub fn put<T>(values: &mut [T], place: usize, value: T) {
     }
 }
 
+/// K of N values, those from `first` on. N is not 0.
+#[inline]
+#[must_use]
+pub fn part<T: Copy, const N: usize, const K: usize>(values: &[T; N], first: usize) -> [T; K] {
+    let mut part = [values[0]; K];
+    part.iter_mut().zip(values.iter().skip(first)).for_each(|(part, value)| *part = *value);
+    part
+}
+
+/// Puts `part` among other values, from `first` on.
+#[inline]
+pub fn put_part<T: Copy, const N: usize, const K: usize>(values: &mut [T; N], first: usize, part: &[T; K]) {
+    values.iter_mut().skip(first).zip(part).for_each(|(value, part)| *value = *part);
+}
+
 /// The places that a round of a loop uses.
 #[inline(always)]
 #[must_use]

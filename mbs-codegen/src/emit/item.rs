@@ -11,7 +11,7 @@ use super::scope::{field_name, is_keyword, number, subscripts, variable};
 use super::{Part, scenes};
 use crate::diagnostics::Diagnostics;
 use crate::model::scenes::{Scene, Scenes, alias};
-use crate::model::{Field, Function, Longest, Model, Role};
+use crate::model::{CoordinateField, Field, Function, Longest, Model, Role};
 use crate::syntax::Text;
 use crate::syntax::ast::Name;
 
@@ -660,20 +660,17 @@ fn coordinates_view(text: &Text, scene: &Scene) -> TokenStream {
         let (ident, kind) = (ident(&field.name), array_type(quote! { T }, &field.shape));
         quote! { #(#[doc = #docs])* pub #ident: #kind, }
     });
+    let runtime = &text.header.runtime;
     let from = model.coordinate_fields.iter().map(|field| {
         let ident = ident(&field.name);
-        let value = nested(&field.shape, &|component| format!("__q[{}]", field.first + component));
-        let value = tokens(&value, &TokenStream::new());
+        let value = match is_long(field) {
+            true => format!("__mbs::long::part(&__q, {})", field.first),
+            false => nested(&field.shape, &|component| format!("__q[{}]", field.first + component)),
+        };
+        let value = tokens(&value, runtime);
         quote! { #ident: #value, }
     });
-    let into = model.coordinate_fields.iter().flat_map(|field| {
-        let size: usize = field.shape.iter().product();
-        (0..size).map(move |component| {
-            let place =
-                format!("__named.{}{}", field_name(&field.name.text), subscripts(component, &field.shape));
-            tokens(&place, &TokenStream::new())
-        })
-    });
+    let into = tokens(&listed(model), runtime);
     // A text whose coordinates are all at fault still has a view, so that nothing but the fault turns red.
     let (marker, marker_value) = if model.coordinate_fields.is_empty() {
         let marker = quote! { ::core::marker::PhantomData };
@@ -694,11 +691,45 @@ fn coordinates_view(text: &Text, scene: &Scene) -> TokenStream {
         }
 
         impl<T: ::core::marker::Copy> ::core::convert::From<#name<T>> for [T; #n] {
-            fn from(__named: #name<T>) -> Self {
-                [#(#into),*]
+            fn from(__named: #name<T>) -> Self { #into }
+        }
+    }
+}
+
+/// Most components of a field that are written one by one.
+const LONGEST_FIELD: usize = 64;
+
+/// Whether a field is a long list.
+fn is_long(field: &CoordinateField) -> bool {
+    matches!(field.shape.as_slice(), [length] if *length > LONGEST_FIELD)
+}
+
+/// All coordinates out of their fields.
+fn listed(model: &Model) -> String {
+    let component = |field: &CoordinateField, component: usize| {
+        format!("__named.{}{}", field_name(&field.name.text), subscripts(component, &field.shape))
+    };
+    let Some(first) = model.coordinate_fields.first().filter(|_| model.coordinate_fields.iter().any(is_long))
+    else {
+        let places = model.coordinate_fields.iter().flat_map(|field| {
+            let size: usize = field.shape.iter().product();
+            (0..size).map(move |index| component(field, index))
+        });
+        return format!("[{}]", places.collect::<Vec<_>>().join(", "));
+    };
+    let mut text = format!("let mut __q = [{}; {}];\n", component(first, 0), model.coordinates.len());
+    for field in &model.coordinate_fields {
+        if is_long(field) {
+            let name = field_name(&field.name.text);
+            text += &format!("__mbs::long::put_part(&mut __q, {}, &__named.{name});\n", field.first);
+        } else {
+            let size: usize = field.shape.iter().product();
+            for index in 0..size {
+                text += &format!("__q[{}] = {};\n", field.first + index, component(field, index));
             }
         }
     }
+    text + "__q"
 }
 
 /// The name as an identifier, raw where it is a keyword.

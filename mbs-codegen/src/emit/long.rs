@@ -85,8 +85,9 @@ pub fn solve(program: &Program, eliminations: &Eliminations, scope: &Scope<'_>) 
         emission.holds(*kind, *number, &mut parts);
         emission.roots(*kind, *number, &mut parts);
     }
+    let rest = emission.rest(&mut parts);
     let (methods, passed) = parts.print();
-    Solution { body: emission.body(passed), methods }
+    Solution { body: emission.body(passed, &rest), methods }
 }
 
 /// The kinds of a program's blocks, numbered.
@@ -285,8 +286,25 @@ impl Emission<'_> {
         frame(format!("&[T; {n}]"), Some((x, format!("&[T; {unknowns}]"))), Some(result))
     }
 
-    /// The loop over all segments, `passed` values passed on.
-    fn body(&self, passed: usize) -> String {
+    /// Calls that keep what no part computes: coordinates and the time that stand in a row by themselves.
+    fn rest(&self, parts: &mut Parts) -> String {
+        let computed = self.computed();
+        let fields = self.program.position.fields.iter().filter(|(value, _)| !computed.contains(value));
+        let put = |(value, slot): (&NodeId, &usize)| {
+            parts.wordings.put("__v.put(", *slot, Some(*value), self.scope)
+        };
+        let statements: Vec<Statement> = fields.map(put).collect();
+        let n = self.scope.model.coordinates.len();
+        parts.sequence(
+            "__rest",
+            &frame(format!("&[T; {n}]"), None, None),
+            &statements,
+            self.scope.lengths.body,
+        )
+    }
+
+    /// The loop over all segments, `passed` values passed on, and the `rest`.
+    fn body(&self, passed: usize, rest: &str) -> String {
         let mut text = format!(
             "let __v = &__mbs::long::Passed::<T, {passed}>::none();\n\
              let mut __outcome = T::per_lane(|_| __mbs::Outcome::Converged);\n"
@@ -317,12 +335,7 @@ impl Emission<'_> {
                 selected("__kind", choice)
             );
         }
-        let computed: BTreeSet<NodeId> = self.computed();
-        for (value, slot) in
-            self.program.position.fields.iter().filter(|(value, _)| !computed.contains(value))
-        {
-            let _ = writeln!(text, "__v.0[{slot}].set({});", self.scope.operand(*value));
-        }
+        text += rest;
         text + "(__outcome, __Position(__v.kept()))"
     }
 

@@ -84,8 +84,11 @@ impl Parts {
         longest: usize,
     ) -> String {
         let wordings: Vec<usize> = statements.iter().map(|statement| statement.wording).collect();
+        // A line of several angles is as long as several lines.
+        let weigh =
+            |index: usize| statements.get(index).map_or(0, |statement| statement.defines.len().max(1));
         let mut calls = String::new();
-        for (number, stretch) in stretches(&wordings, longest, self.lengths).into_iter().enumerate() {
+        for (number, stretch) in stretches(&wordings, weigh, longest, self.lengths).into_iter().enumerate() {
             let (range, length) = match stretch {
                 Stretch::Once(range) => (range.clone(), range.len()),
                 Stretch::Rounds { first, length, rounds } => (first..first + length * rounds, length),

@@ -21,16 +21,21 @@ pub enum Stretch {
 }
 
 /// Before: a sequence. After: its stretches, one behind the other: rounds of at most `longest` elements, as many as possible at
-/// each place, and between them at most `longest` elements at once.
+/// each place, and between them elements that `weigh` at most `longest` at once.
 ///
 /// Linear in the sequence where it repeats itself, `longest` times that where it does not.
-pub fn stretches(sequence: &[usize], longest: usize, lengths: Lengths) -> Vec<Stretch> {
+pub fn stretches(
+    sequence: &[usize],
+    weigh: impl Fn(usize) -> usize,
+    longest: usize,
+    lengths: Lengths,
+) -> Vec<Stretch> {
     let mut stretches = Vec::new();
     let (mut open, mut here) = (0, 0);
     while here < sequence.len() {
         match rounds(sequence, here, longest, lengths) {
             Some((length, rounds)) => {
-                once(open..here, longest, &mut stretches);
+                once(open..here, (&weigh, longest), &mut stretches);
                 stretches.push(Stretch::Rounds { first: here, length, rounds });
                 here += length * rounds;
                 open = here;
@@ -38,16 +43,25 @@ pub fn stretches(sequence: &[usize], longest: usize, lengths: Lengths) -> Vec<St
             None => here += 1,
         }
     }
-    once(open..here, longest, &mut stretches);
+    once(open..here, (&weigh, longest), &mut stretches);
     stretches
 }
 
-fn once(range: Range<usize>, longest: usize, stretches: &mut Vec<Stretch>) {
-    let mut start = range.start;
-    while start < range.end {
-        let end = range.end.min(start + longest.max(1));
-        stretches.push(Stretch::Once(start..end));
-        start = end;
+fn once(
+    range: Range<usize>,
+    (weigh, longest): (&impl Fn(usize) -> usize, usize),
+    stretches: &mut Vec<Stretch>,
+) {
+    let (mut start, mut weight) = (range.start, 0);
+    for index in range.clone() {
+        weight += weigh(index);
+        if weight > longest && index > start {
+            stretches.push(Stretch::Once(start..index));
+            (start, weight) = (index, weigh(index));
+        }
+    }
+    if start < range.end {
+        stretches.push(Stretch::Once(start..range.end));
     }
 }
 
@@ -95,7 +109,7 @@ mod tests {
     fn rounds_are_found_behind_something_else() {
         let sequence: Vec<usize> =
             [7, 8].into_iter().chain((0..36).map(|index| index % 3)).chain([9]).collect();
-        let found = stretches(&sequence, 10, Lengths::USUAL);
+        let found = stretches(&sequence, |_| 1, 10, Lengths::USUAL);
         let rounds = Stretch::Rounds { first: 2, length: 3, rounds: 12 };
         assert_eq!(found, [Stretch::Once(0..2), rounds, Stretch::Once(38..39)]);
     }
@@ -104,7 +118,7 @@ mod tests {
     fn what_does_not_repeat_itself_is_cut_to_length() {
         let sequence: Vec<usize> = (0..25).collect();
         assert_eq!(
-            stretches(&sequence, 10, Lengths::USUAL),
+            stretches(&sequence, |_| 1, 10, Lengths::USUAL),
             [Stretch::Once(0..10), Stretch::Once(10..20), Stretch::Once(20..25)]
         );
     }
@@ -114,7 +128,7 @@ mod tests {
         let round = [1, 1, 1, 2, 1, 1, 1, 3];
         let sequence: Vec<usize> = (0..80).filter_map(|index| round.get(index % 8)).copied().collect();
         assert_eq!(
-            stretches(&sequence, 10, Lengths::USUAL),
+            stretches(&sequence, |_| 1, 10, Lengths::USUAL),
             [Stretch::Rounds { first: 0, length: 8, rounds: 10 }]
         );
     }
@@ -129,7 +143,7 @@ mod tests {
             let length = state % 5 + 1;
             (0..state % 40).for_each(|index| sequence.push(index % length));
         }
-        let found = stretches(&sequence, 50, Lengths::USUAL);
+        let found = stretches(&sequence, |_| 1, 50, Lengths::USUAL);
         assert_eq!(unrolled(&found, &sequence), sequence);
         assert!(found.iter().any(|stretch| matches!(stretch, Stretch::Rounds { .. })));
     }

@@ -50,8 +50,10 @@ pub fn resolve(statements: &[Statement], diagnostics: &mut Diagnostics) -> Model
     model
 }
 
-/// Most rows, and most outputs.
+/// Most rows.
 const MOST_ROWS: usize = 6_000;
+/// Most outputs, each with two derivatives.
+const MOST_OUTPUTS: usize = 2_000;
 
 /// A group of rows, branches or outputs under one name.
 struct Group {
@@ -130,10 +132,10 @@ impl Resolver<'_> {
 
     /// Whether loops unroll to more than anyone wants; reported once.
     fn too_large(&mut self) -> bool {
-        let large = self.model.rows.len().max(self.model.outputs.len()) > MOST_ROWS;
+        let large = self.model.rows.len() > MOST_ROWS || self.model.outputs.len() > MOST_OUTPUTS;
         if large {
             let span = self.groups.last().map_or_else(Span::call_site, |group| group.name.span);
-            let message = format!("the text unrolls to more than {MOST_ROWS} rows or outputs");
+            let message = format!("the text unrolls to more than {MOST_ROWS} rows or {MOST_OUTPUTS} outputs");
             self.diagnostics.report(span, message, "shorten the loops");
         }
         large || self.rounds >= MOST_ROUNDS

@@ -11,7 +11,7 @@ mod polynomial;
 mod surplus;
 mod triangular;
 
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
 
 use crate::diagnostics::Diagnostics;
 use crate::equations::Equations;
@@ -303,28 +303,55 @@ struct Part {
 /// Before: unmatched nodes of one side, the edges from that side, and what each node of the other is matched to.
 /// After: all that alternating paths reach from them, ascending, one part a connected piece.
 fn parts(free: impl Iterator<Item = usize>, edges: &[Vec<usize>], matched: &[Option<usize>]) -> Vec<Part> {
-    let mut parts: Vec<Part> = Vec::new();
+    let mut pieces: Vec<Part> = Vec::new();
+    // Of each piece the one that it is part of; itself, if it is not.
+    let mut whole: Vec<usize> = Vec::new();
+    let mut owners: BTreeMap<usize, usize> = BTreeMap::new();
     for start in free {
-        let (mut starts, mut ends) = (BTreeSet::from([start]), BTreeSet::new());
-        let mut waiting = vec![start];
+        let piece = pieces.len();
+        let (mut starts, mut ends, mut waiting) = (vec![start], Vec::new(), vec![start]);
+        whole.push(piece);
         while let Some(node) = waiting.pop() {
             for end in edges.get(node).into_iter().flatten() {
-                ends.insert(*end);
+                // Parts that share an end are one, and what lies behind it is known.
+                if let Some(owner) = owners.get(end) {
+                    let root = root(*owner, &mut whole);
+                    whole.get_mut(root).into_iter().for_each(|whole| *whole = piece);
+                    continue;
+                }
+                owners.insert(*end, piece);
+                ends.push(*end);
                 let next = matched.get(*end).copied().flatten();
-                waiting.extend(next.filter(|next| starts.insert(*next)));
+                starts.extend(next);
+                waiting.extend(next);
             }
         }
-        // Parts that share an end are one.
-        let (joined, apart): (Vec<Part>, Vec<Part>) =
-            parts.into_iter().partition(|part| part.ends.iter().any(|end| ends.contains(end)));
-        for part in joined {
-            starts.extend(part.starts);
-            ends.extend(part.ends);
-        }
-        parts = apart;
-        parts.push(Part { starts: starts.into_iter().collect(), ends: ends.into_iter().collect() });
+        pieces.push(Part { starts, ends });
+    }
+    let mut parts: BTreeMap<usize, Part> = BTreeMap::new();
+    for (piece, Part { starts, ends }) in pieces.into_iter().enumerate() {
+        let part =
+            parts.entry(root(piece, &mut whole)).or_insert(Part { starts: Vec::new(), ends: Vec::new() });
+        part.starts.extend(starts);
+        part.ends.extend(ends);
+    }
+    let mut parts: Vec<Part> = parts.into_values().collect();
+    for Part { starts, ends } in &mut parts {
+        starts.sort_unstable();
+        ends.sort_unstable();
     }
     parts
+}
+
+/// The piece that a piece is part of, all in all; what is found on the way is kept.
+fn root(piece: usize, whole: &mut [usize]) -> usize {
+    let mut piece = piece;
+    while let Some(above) = whole.get(piece).copied().filter(|above| *above != piece) {
+        let next = whole.get(above).copied().unwrap_or(above);
+        whole.get_mut(piece).into_iter().for_each(|above| *above = next);
+        piece = next;
+    }
+    piece
 }
 
 /// Most names that a message lists.
