@@ -96,6 +96,7 @@ pub mod penalty;
 pub mod projection;
 pub mod simulation;
 mod text_start;
+mod variation;
 pub mod vector;
 pub mod velocity_transformation;
 
@@ -113,7 +114,7 @@ pub use explicit::{FixedStep, RungeKutta4, SemiImplicitEuler};
 pub use extrapolated::Extrapolated;
 pub use generalized_alpha::GeneralizedAlpha;
 pub use inverse::{Driven, inverse};
-pub use linearization::{Linearization, linearize};
+pub use linearization::{Linearization, linearize, linearize_in};
 pub use metric::{Metric, Tolerance};
 pub use model::{Counts, Doubt, Formulation, Model, Solved};
 pub use motion::{Equations, Explicit, Instant, Method};

@@ -31,6 +31,18 @@ pub fn least_independent_column<R: Real, const M: usize, const K: usize>(
     pivoted(columns, R::constant(0.0)).order.last().copied().unwrap_or(0)
 }
 
+/// The columns of `a` in the order of their pivots in the reference metric, and the rank: so many of them, the first, determine
+/// the others.
+pub fn pivot_order<R: Real, const M: usize, const K: usize>(
+    a: &[[R; K]; M],
+    row_scales: &[R; M],
+    coordinate_scales: &[R; K],
+    tolerance: R,
+) -> ([usize; K], usize) {
+    let factors = pivoted(scaled_columns(a, row_scales, coordinate_scales), tolerance);
+    (factors.order, factors.rank)
+}
+
 /// Columns of W a D.
 pub(super) fn scaled_columns<R: Real, const M: usize, const K: usize>(
     a: &[[R; K]; M],

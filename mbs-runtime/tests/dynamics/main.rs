@@ -8,3 +8,4 @@ mod linkage;
 mod methods;
 mod pendulum;
 mod singular;
+mod variations;
