@@ -144,6 +144,31 @@ pub enum Failure {
         /// Time (s) at which it was to be taken.
         time: f64,
     },
+    /// A step takes a coordinate farther than a mechanism moves: the integration has lost the motion.
+    Unbounded {
+        /// The coordinate that it takes farthest, in the reference metric.
+        coordinate: Entry,
+        /// Its value there.
+        value: f64,
+        /// Time (s) of the step's end, or of a stage of it.
+        time: f64,
+    },
+    /// The end of an adaptive run takes more steps than one call may.
+    OutOfReach {
+        /// The end (s).
+        until: f64,
+        /// The step (s) that the tolerance allows.
+        step: f64,
+        /// Time (s) that was reached.
+        time: f64,
+    },
+    /// Next to a singular position no step is accurate enough: rounding decides where the motion goes.
+    Undecided {
+        /// How near Φ_q is to losing rank.
+        margin: f64,
+        /// Time (s) that was reached.
+        time: f64,
+    },
     /// No step that still changes the time is accurate enough.
     StepTooSmall {
         /// The last step (s) tried.
@@ -290,6 +315,9 @@ impl Failure {
             | Failure::BeyondLimit { time, .. }
             | Failure::TooFar { time, .. }
             | Failure::InvalidStep { time, .. }
+            | Failure::Unbounded { time, .. }
+            | Failure::OutOfReach { time, .. }
+            | Failure::Undecided { time, .. }
             | Failure::StepTooSmall { time, .. }
             | Failure::StepTooLong { time, .. }
             | Failure::Inconsistent { time, .. }
@@ -313,6 +341,9 @@ impl Failure {
             | Failure::BeyondLimit { time, .. }
             | Failure::TooFar { time, .. }
             | Failure::InvalidStep { time, .. }
+            | Failure::Unbounded { time, .. }
+            | Failure::OutOfReach { time, .. }
+            | Failure::Undecided { time, .. }
             | Failure::StepTooSmall { time, .. }
             | Failure::StepTooLong { time, .. }
             | Failure::Inconsistent { time, .. }
@@ -387,10 +418,27 @@ impl fmt::Display for Failure {
                 f,
                 "a step of {step:e} s from t = {time} s leads nowhere: it must be positive and change the time"
             ),
+            Failure::Unbounded { coordinate, value, .. } => write!(
+                f,
+                "the motion grows without bound: a step takes `{}` (line {}) to {value:.3e} {} at t = {time} s; take smaller \
+                 steps, project onto the constraints where they drift, or use an implicit method where the mechanism is stiff",
+                coordinate.name, coordinate.line, coordinate.unit
+            ),
+            Failure::OutOfReach { until, step, .. } => write!(
+                f,
+                "t = {} s is out of reach from t = {time} s: steps of {step:.3e} s, as the tolerance asks for, are too many; \
+                 end earlier, or advance in several calls",
+                Time(*until)
+            ),
+            Failure::Undecided { margin, .. } => write!(
+                f,
+                "rounding decides where the motion goes at t = {time} s, next to a singular position (margin {margin:.1e}): give \
+                 the dimensions all their digits, or loosen the tolerance"
+            ),
             Failure::StepTooSmall { step, .. } => write!(
                 f,
                 "stuck at t = {time} s: even a step of {step:.3e} s is not accurate enough; loosen the tolerance, look for \
-                 a jump in the forces, or use an implicit method where the mechanism is stiff"
+                 a jump in the forces or for a mass or length of 0, or use an implicit method where the mechanism is stiff"
             ),
             Failure::StepTooLong { product, allowed, .. } => write!(
                 f,
@@ -411,7 +459,7 @@ impl fmt::Display for Failure {
             Failure::OffConstraints { row, rate, residual, allowed, .. } => write!(
                 f,
                 "{} `{}` (line {}) is violated at t = {time} s: {residual:.3e}, allowed {allowed:.3e}; start on the \
-                 constraints, or let the start be projected",
+                 constraints or let the start be projected; on the way, take smaller steps",
                 if *rate { "the rate of row" } else { "row" },
                 row.name,
                 row.line
@@ -487,6 +535,7 @@ mod tests {
                 time,
             },
             Failure::OffConstraints { row: ROW, rate: false, residual, allowed: required, time },
+            Failure::Unbounded { coordinate: ROW, value: 1e12, time },
             Failure::Inertialess { coordinate: ROW, time },
             Failure::Restless { coordinate: ROW, force: 0.5, time },
             Failure::Unbalanced { coordinate: ROW, iterations: 9, time },

@@ -17,7 +17,7 @@ pub const CARD: FreeCard = FreeCard {
                   eleven degrees of freedom.",
     runs: &[Preset { label: "10 s", description: "upright at the start, pushed to the right", set: &[] }],
     duration: 10.0,
-    usual: Usual::VelocityInEqualSteps,
+    usual: Usual::Velocity,
     drawing: DRAWING,
     make: boxed_masses::<NFourBar10, 22, 21>,
 };

@@ -149,7 +149,8 @@ impl<R: Real> Adaptive<R> {
     /// `until` that the step must not feel.
     ///
     /// # Errors
-    /// [`Failure::StepTooSmall`], or what the equation failed with at the smallest step.
+    /// [`Failure::StepTooSmall`], [`Failure::Undecided`], or what the equation failed with at the smallest step;
+    /// [`Failure::OutOfReach`].
     pub fn step<M: Embedded, E: Measured<R>>(
         &mut self,
         equation: &mut E,
@@ -159,11 +160,19 @@ impl<R: Real> Adaptive<R> {
     ) -> Result<Accepted<M, R, E::State>, Failure> {
         let mut planned = match self.step {
             Some(step) => step,
-            None => first_step::<M, R, E>(equation, from, until)?,
+            None => {
+                let first = first_step::<M, R, E>(equation, from, until)?;
+                // A step that the end does not resolve would be taken more often than anyone waits for.
+                if first < R::EPSILON * until.abs() {
+                    return Err(out_of_reach(first, from.t, until));
+                }
+                first
+            }
         };
         planned = planned.min(self.largest);
         loop {
-            let least = R::constant(LEAST_STEP_ROUNDINGS) * R::EPSILON * from.t.abs().max(until.abs());
+            let resolved = R::constant(LEAST_STEP_ROUNDINGS) * R::EPSILON * from.t.abs().max(until.abs());
+            let least = resolved.max(equation.least_step());
             let (h, ends) = self.clipped(planned, until - from.t);
             let end = if ends { until } else { from.t + h };
             let latest = if ends && breaks { just_before(end) } else { end };
@@ -187,7 +196,7 @@ impl<R: Real> Adaptive<R> {
                     if !least.less(planned) {
                         self.step = None;
                         let small = Failure::StepTooSmall { step: h.to_f64(), time: from.t.to_f64() };
-                        return Err(failure.unwrap_or(small));
+                        return Err(equation.undecided(from.t).or(failure).unwrap_or(small));
                     }
                 }
             }
@@ -261,8 +270,13 @@ impl<R: Real> Adaptive<R> {
                 return Ok(now);
             }
         }
-        Err(Failure::StepTooSmall { step: self.step.unwrap_or(until).to_f64(), time: now.t.to_f64() })
+        Err(out_of_reach(self.step.unwrap_or(until), now.t, until))
     }
+}
+
+/// The end `until` (s) is too many of the steps (s) that `t` (s) asks for away.
+fn out_of_reach<R: Real>(step: R, t: R, until: R) -> Failure {
+    Failure::OutOfReach { until: until.to_f64(), step: step.to_f64(), time: t.to_f64() }
 }
 
 /// A first step that changes the state by a small share of its tolerances, judged by rate and curvature.

@@ -116,7 +116,7 @@ impl<R: Real, const N: usize> Way<R, N> {
         here: &Solved<R, N, M, S::States>,
     ) -> Option<Self> {
         let zero = R::constant(0.0);
-        let (speed, change) = (largest(&y.qd, model), largest(&here.rate.qd, model));
+        let (speed, change) = (model.largest(&y.qd), model.largest(&here.rate.qd));
         let mut margin = zero;
         for side in [-1.0, 1.0] {
             let aside = State { q: y.q.plus(R::constant(side * PROBE) / speed, &[1.0], [&y.qd]), ..*y };
@@ -175,19 +175,10 @@ impl<R: Real, const N: usize> Way<R, N> {
                 difference = difference.plus(one, &[side * share], [&y.q]);
             }
         }
-        let rounding = R::constant(ROUNDINGS) * R::EPSILON * largest(&at.1.q, model);
-        let whole = largest(&difference, model) <= R::constant(LARGEST_DIFFERENCE).max(rounding);
+        let rounding = R::constant(ROUNDINGS) * R::EPSILON * model.largest(&at.1.q);
+        let whole = model.largest(&difference) <= R::constant(LARGEST_DIFFERENCE).max(rounding);
         whole.then_some((qdd, found))
     }
-}
-
-/// The largest of `values` (N) over its coordinate's scale.
-fn largest<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
-    values: &[R; N],
-    model: &Model<'_, S, R, N, M>,
-) -> R {
-    let scaled = values.iter().zip(&model.metric.coordinates).map(|(value, scale)| (*value / *scale).abs());
-    scaled.fold(R::constant(0.0), |largest, value| largest.max(value))
 }
 
 impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, R, N, M> {

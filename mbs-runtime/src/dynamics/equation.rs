@@ -41,4 +41,14 @@ pub trait Measured<T: Scalar>: Equation<T> {
         after: &Self::State,
         errors: [&Self::State; K],
     ) -> [T; K];
+
+    /// The least step (s) worth trying from the end of the last one; 0 where the time alone limits it.
+    fn least_step(&self) -> T {
+        T::constant(0.0)
+    }
+
+    /// Why no step from `t` (s) is accurate enough, where the equation knows.
+    fn undecided(&self, _t: T) -> Option<Failure> {
+        None
+    }
 }

@@ -171,6 +171,33 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         bad.map_or(Ok(()), Err)
     }
 
+    /// The largest of `values` (N) over its coordinate's scale.
+    pub(super) fn largest(&self, values: &[R; N]) -> R {
+        let scaled =
+            values.iter().zip(&self.metric.coordinates).map(|(value, scale)| (*value / *scale).abs());
+        scaled.fold(R::constant(0.0), |largest, value| largest.max(value))
+    }
+
+    /// Fails with the coordinate that a step from `before` takes too far for a motion.
+    pub(super) fn require_bounded(
+        &self,
+        t: R,
+        before: &State<R, N, S::States>,
+        after: &State<R, N, S::States>,
+    ) -> Result<(), Failure> {
+        let mut worst = (R::constant(LARGEST_MOTION), None);
+        let moved = before.q.iter().zip(&after.q).zip(&self.metric.coordinates);
+        for (index, ((before, after), scale)) in (0_u16..).zip(moved) {
+            let distance = ((*after - *before) / *scale).abs();
+            if worst.0 < distance || !distance.is_finite() {
+                worst = (distance, Some((index, *after)));
+            }
+        }
+        let Some((index, value)) = worst.1 else { return Ok(()) };
+        let coordinate = kinematics::entry(S::COORDINATES, index);
+        Err(Failure::Unbounded { coordinate, value: value.to_f64(), time: t.to_f64() })
+    }
+
     /// Fails with the name of the acceleration, multiplier or force that is no number.
     #[inline(always)]
     pub(super) fn check_solved(
@@ -262,6 +289,10 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         !(R::constant(standing) * R::EPSILON * size).less(change)
     }
 }
+
+/// Motion in one step of fixed size, in the reference metric (rad, or reference lengths), that no mechanism makes: the
+/// integration has lost it.
+const LARGEST_MOTION: f64 = 1e6;
 
 /// Iterations for friction, whose force depends on the multipliers that it changes. The change falls by the coefficient
 /// of friction times a ratio of lengths in each.

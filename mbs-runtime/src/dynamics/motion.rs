@@ -1,11 +1,17 @@
 //! A mechanism as an ordinary differential equation, and the explicit methods that integrate it.
 
+use super::both_sides::ZONE;
 use super::equation::{Equation, Measured};
 use super::explicit::FixedStep;
 use super::metric::{Tolerance, worse};
 use super::model::{Counts, Doubt, Formulation, Model, Solved};
+use super::passage::Passage;
 use super::vector::State;
 use crate::{Dynamic, Failure, Real};
+
+/// Least motion of a step in the zone of a singular position, in the reference metric: smaller ones resolve how rods that
+/// differ by 1e-14 turn aside there, which rounding decides.
+const LEAST_MOTION: f64 = 1e-7;
 
 /// One instant of a motion: state, accelerations, multipliers.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -105,7 +111,10 @@ where
         let mut motion = Equations::new(model, &self.formulation, from, *counts).of_fixed_steps();
         let t = from.t + h;
         let mut y = I::step(&mut motion, from.t, h, &from.y, &from.solved.rate)?;
-        let solved = motion.settle_and_solve(t, &mut y)?;
+        let solved = match motion.settle_and_solve(t, &mut y) {
+            Ok(solved) => solved,
+            Err(failure) => return model.require_bounded(t, &from.y, &y).and(Err(failure)),
+        };
         *counts = motion.counts;
         Ok(Instant { t, y, solved, carried: solved.rate.qd })
     }
@@ -130,6 +139,10 @@ pub struct Equations<'a, S: Dynamic<R, N, M>, F, R: Real, const N: usize, const 
     fixed: bool,
     /// Multipliers (M) of the last evaluation.
     lambda: [R; M],
+    /// Time (s), margin and state of the last step's end.
+    end: (R, R, State<R, N, S::States>),
+    /// The first passage since `start`.
+    pub(super) passage: Option<Passage<R>>,
     pub(super) counts: Counts,
 }
 
@@ -147,7 +160,8 @@ where
         counts: Counts,
     ) -> Self {
         let (tolerance, start) = (Tolerance::new(0.0), from.t);
-        Equations { model, formulation, tolerance, start, fixed: false, lambda: from.solved.lambda, counts }
+        let (lambda, end) = (from.solved.lambda, (from.t, from.solved.margin, from.y));
+        Equations { model, formulation, tolerance, start, fixed: false, lambda, end, passage: None, counts }
     }
 
     pub(super) fn with_tolerance(self, tolerance: Tolerance<R>) -> Self {
@@ -201,7 +215,12 @@ where
     #[inline]
     fn rate(&mut self, t: R, y: &Self::State) -> Result<Self::State, Failure> {
         match self.solve(t, y) {
-            Err(Failure::OffConstraints { .. }) if self.fixed => {}
+            Err(failure) if self.fixed => {
+                self.model.require_bounded(t, &self.end.2, y)?;
+                if !matches!(failure, Failure::OffConstraints { .. }) {
+                    return Err(failure);
+                }
+            }
             solved => return Ok(solved?.rate),
         }
         let (formulation, lambda, counts) = (self.formulation, &mut self.lambda, &mut self.counts);
@@ -220,7 +239,11 @@ where
 
     #[inline]
     fn settled_rate(&mut self, t: R, y: &mut Self::State) -> Result<Self::State, Failure> {
-        Ok(self.settle_and_solve(t, y)?.rate)
+        let solved = self.settle_and_solve(t, y)?;
+        let (before, margin, _) = self.end;
+        self.passage = self.passage.or(Passage::between((before, margin), (t, solved.margin)));
+        self.end = (t, solved.margin, *y);
+        Ok(solved.rate)
     }
 }
 
@@ -230,6 +253,20 @@ where
     F: Formulation<S, R, N, M>,
     R: Real,
 {
+    /// In the zone of a singular position a ten-millionth of a radian, or of a reference length.
+    fn least_step(&self) -> R {
+        let (_, margin, y) = &self.end;
+        let speed = self.model.largest(&y.qd);
+        let step = R::constant(LEAST_MOTION) / speed;
+        if *margin < R::constant(ZONE) && step.is_finite() { step } else { R::constant(0.0) }
+    }
+
+    fn undecided(&self, t: R) -> Option<Failure> {
+        let (_, margin, _) = &self.end;
+        let undecided = Failure::Undecided { margin: margin.to_f64(), time: t.to_f64() };
+        (*margin < R::constant(ZONE)).then_some(undecided)
+    }
+
     /// The worst of coordinates, velocities and states. Work is watched, not controlled: that it is watched changes no
     /// step.
     #[inline]

@@ -294,10 +294,8 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
     #[cold]
     #[inline(never)]
     fn frame_free_rate_tolerances(&self, position: &S::Position, qd: &[R; N]) -> [R; M] {
-        let scales = &self.metric.coordinates;
-        let rates = qd.iter().zip(scales).map(|(qd, scale)| (*qd / *scale).abs());
-        let speed = rates.fold(R::constant(0.0), |largest, rate| largest.max(rate));
-        self.rate_tolerances(position, &scales.map(|scale| scale * speed))
+        let speed = self.largest(qd);
+        self.rate_tolerances(position, &self.metric.coordinates.map(|scale| scale * speed))
     }
 
     /// Fails with the worst row where a residual exceeds `factor` times its tolerance, or is no number.

@@ -7,6 +7,7 @@ use super::event::{Direction, passage};
 use super::metric::{Metric, Tolerance};
 use super::model::{Counts, Doubt, Formulation, Model};
 use super::motion::{Equations, Explicit, Instant, Method};
+use super::passage::Passage;
 use super::projection::Projection;
 use super::text_start;
 use super::vector::State;
@@ -39,6 +40,7 @@ pub struct Simulation<S: Dynamic<R, N, M>, X, R: Real, const N: usize, const M: 
     reference: R,
     tolerance: Tolerance<R>,
     adaptive: Adaptive<R>,
+    passage: Option<Passage<R>>,
     counts: Counts,
 }
 
@@ -158,6 +160,7 @@ where
             reference,
             tolerance: Tolerance::new(TOLERANCE),
             adaptive: Adaptive::default(),
+            passage: None,
             counts,
         })
     }
@@ -170,7 +173,8 @@ where
     /// Moves on by one step of `h` (s): a fixed amount of work.
     ///
     /// # Errors
-    /// [`Failure::InvalidStep`], [`Failure::StepTooLong`], those of the method, [`Failure::WrongBranch`]; the state is
+    /// [`Failure::InvalidStep`], [`Failure::StepTooLong`], [`Failure::Unbounded`], those of the method,
+    /// [`Failure::WrongBranch`]; the state is
     /// then bit for bit what it was.
     pub fn step(&mut self, h: R) -> Result<(), Failure> {
         let t = self.now.t + h;
@@ -182,9 +186,12 @@ where
         let from = self.fresh(&mut counts)?;
         let model = self.model();
         let next = self.method.step(&model, &from, h, &mut counts)?;
+        model.require_bounded(next.t, &from.y, &next.y)?;
         model.check(next.t, &next.y)?;
         model.check_assembly(next.t, &next.y, false)?;
         counts.steps += 1;
+        let ends = ((from.t, from.solved.margin), (next.t, next.solved.margin));
+        self.passage = self.passage.or(Passage::between(ends.0, ends.1));
         self.take(next, counts);
         Ok(())
     }
@@ -295,6 +302,11 @@ where
     /// How near Φ_q is to losing rank: 0 where it does, at most 1.
     pub fn margin(&self) -> R {
         self.now.solved.margin
+    }
+
+    /// Where the run came so near to a singular position for the first time that it may have passed it.
+    pub fn passage(&self) -> Option<&Passage<R>> {
+        self.passage.as_ref()
     }
 
     /// The mechanism with its parameters and inputs.
@@ -508,8 +520,10 @@ where
         }
         let solved = equations.solve(t, &y)?;
         counts = equations.counts;
+        let passage = equations.passage;
         counts.steps += u64::from(adaptive.accepted.wrapping_sub(taken));
         self.adaptive = adaptive;
+        self.passage = self.passage.or(passage);
         self.take(Instant { t, y, solved, carried: solved.rate.qd }, counts);
         Ok(stopped.is_some())
     }

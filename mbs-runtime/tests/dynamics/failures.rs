@@ -2,7 +2,8 @@
 
 use mbs_runtime::Failure;
 use mbs_runtime::dynamics::{
-    DormandPrince8, Explicit, Projection, RungeKutta4, Simulation, Tolerance, kkt::System, metric::Metric,
+    Baumgarte, DormandPrince8, Explicit, Projection, RungeKutta4, Simulation, Tolerance, kkt::System,
+    metric::Metric,
 };
 
 use crate::linkage::{End, Linkage, Rod, parallel_loops, pendulum};
@@ -133,4 +134,33 @@ fn the_same_mechanism_in_millimetres_moves_the_same() {
     for (a, b) in metres.iter().zip(millimetres) {
         assert!((a - b).abs() < 1e-9, "{a} {b}");
     }
+}
+
+#[test]
+fn a_motion_that_is_lost_within_a_step_is_called_so_and_an_end_that_no_step_resolves_too() {
+    let mut simulation = start([1.0, 0.0], [0.0, 1e5]).unwrap();
+    let failure = simulation.step(100.0).unwrap_err();
+    assert!(matches!(failure, Failure::Unbounded { .. }), "{failure}");
+    let method = Explicit::new(DormandPrince8, Projection::default());
+    let mut adaptive = Simulation::start(pendulum(), method, 0.0, [1.0, 0.0], [0.0; 2]).unwrap();
+    let failure = adaptive.advance_to(1e300).unwrap_err();
+    assert!(matches!(failure, Failure::OutOfReach { until: 1e300, .. }), "{failure}");
+}
+
+#[test]
+fn a_run_by_any_method_notices_the_first_singular_position_that_it_passes() {
+    let (loops, q, qd) = parallel_loops::<6, 5>(0.0, 1.0);
+    let method = Explicit::new(RungeKutta4, Baumgarte::default());
+    let mut simulation = Simulation::start(loops, method, 0.0, q, qd).unwrap();
+    simulation.step_to(0.5, 100).unwrap();
+    assert_eq!(simulation.passage(), None);
+    simulation.step_to(0.8, 60).unwrap();
+    let fixed = simulation.passage().unwrap().t;
+    let mut adaptive =
+        Simulation::start(loops, Explicit::new(DormandPrince8, Projection::default()), 0.0, q, qd).unwrap();
+    for instant in 1..=80 {
+        adaptive.advance_to(f64::from(instant) / 100.0).unwrap();
+    }
+    let found = adaptive.passage().unwrap().t;
+    assert!((fixed - 0.72).abs() < 0.02 && (found - 0.72).abs() < 0.02, "{fixed} {found}");
 }

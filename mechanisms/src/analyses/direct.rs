@@ -131,6 +131,8 @@ pub struct Simulated {
     pub replaced: bool,
     /// What is doubtful about the stabilisation.
     pub doubt: Option<Doubt>,
+    /// Time (s) from which on the motion is not determined, where the method does not lead through a singular position.
+    pub undetermined: Option<f64>,
     /// Why the motion ends early.
     pub failure: Option<Failure>,
     /// Time of computation, outputs included.
@@ -180,7 +182,7 @@ pub(crate) fn simulate<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
     let steps = approach.steps;
     let start = (partitioned.start)(mechanism, times.first().copied().unwrap_or(0.0));
     let mut by = |formulation| integrate(mechanism, formulation, &start, steps, times, progress);
-    match approach.stabilization {
+    let found = match approach.stabilization {
         Stabilization::None => by(Chosen::None),
         Stabilization::Baumgarte(baumgarte) => by(Chosen::Baumgarte(baumgarte)),
         Stabilization::Penalty(penalty) => by(Chosen::Penalty(penalty)),
@@ -203,6 +205,10 @@ pub(crate) fn simulate<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
                 implicit(mechanism, GeneralizedAlpha::default(), &start, longest, times, progress)
             }
         },
+    };
+    match approach.stabilization {
+        Stabilization::None | Stabilization::Baumgarte(_) => found,
+        _ => found.map(|found| Simulated { undetermined: None, ..found }),
     }
 }
 
@@ -364,7 +370,8 @@ where
     motion.dynamics = Some(forces);
     let counts = run.counts();
     let elapsed = started.elapsed();
-    (Simulated { motion, counts, rejected: 0, replaced: false, doubt, failure, elapsed }, run)
+    let undetermined = run.passage().map(|passage| passage.t);
+    (Simulated { motion, counts, rejected: 0, replaced: false, doubt, undetermined, failure, elapsed }, run)
 }
 
 fn push<S, X, const N: usize, const M: usize>(

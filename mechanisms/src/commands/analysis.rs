@@ -585,6 +585,9 @@ pub fn balance(found: &Simulated) -> Vec<[String; 2]> {
     if found.counts.rank_revealing > 0 {
         figures.push(pair("rank-revealing factorizations", found.counts.rank_revealing.to_string()));
     }
+    if let Some(t) = found.undetermined {
+        figures.push(pair("not determined", undetermined(t)));
+    }
     if let Some(doubt) = found.doubt {
         figures.push(pair("doubtful", doubtful(doubt).to_string()));
     }
@@ -594,6 +597,14 @@ pub fn balance(found: &Simulated) -> Vec<[String; 2]> {
 /// Largest magnitude.
 pub fn largest(values: &[f64]) -> f64 {
     values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()))
+}
+
+/// What a method that does not lead through singular positions leaves open from `t` (s) on.
+pub fn undetermined(t: f64) -> String {
+    format!(
+        "the motion behind t = {t} s: it passes a singular position there, where this method may leave on another branch; use \
+         `--method projection`"
+    )
 }
 
 /// What is doubtful about a stabilisation, in one phrase.

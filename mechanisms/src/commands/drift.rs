@@ -10,7 +10,9 @@ use mechanisms::registry::{file_name, instants};
 use mechanisms::target_directory::target_directory;
 
 use super::CommandError;
-use super::analysis::{Damping, IntegratorName, MethodName, above_zero, doubtful, dynamics, largest};
+use super::analysis::{
+    Damping, IntegratorName, MethodName, above_zero, doubtful, dynamics, largest, undetermined,
+};
 use super::chosen::{assignment, write_file};
 use super::run::steps;
 use super::subject::Subject;
@@ -96,7 +98,7 @@ pub fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<(), CommandErro
 }
 
 fn write_line(out: &mut dyn Write, name: &str, simulated: &Simulated) -> std::io::Result<()> {
-    let Simulated { motion, counts, doubt, failure, .. } = simulated;
+    let Simulated { motion, counts, doubt, undetermined: open, failure, .. } = simulated;
     let forces = motion.dynamics.clone().unwrap_or_default();
     writeln!(
         out,
@@ -108,6 +110,9 @@ fn write_line(out: &mut dyn Write, name: &str, simulated: &Simulated) -> std::io
     )?;
     if let Some(failure) = failure {
         writeln!(out, "{:12}ends early: {failure}", "")?;
+    }
+    if let Some(t) = open {
+        writeln!(out, "{:12}not determined: {}", "", undetermined(*t))?;
     }
     doubt.map_or(Ok(()), |doubt| writeln!(out, "{:12}{}", "", doubtful(doubt)))
 }
