@@ -432,8 +432,8 @@ impl fmt::Display for Failure {
             ),
             Failure::Undecided { margin, .. } => write!(
                 f,
-                "rounding decides where the motion goes at t = {time} s, next to a singular position (margin {margin:.1e}): give \
-                 the dimensions all their digits, or loosen the tolerance"
+                "rounding decides where the motion goes at t = {time} s, next to a singular position (margin {margin:.1e}): \
+                 project onto the constraints, give the dimensions all their digits, or loosen the tolerance"
             ),
             Failure::StepTooSmall { step, .. } => write!(
                 f,

@@ -88,7 +88,7 @@ pub enum Usual {
     Projection,
     /// Explicit steps through the blocks of the rows: of many rows the others take too long.
     Velocity,
-    /// The same in equal steps: where many rows lose rank together, adaptive ones do not come through.
+    /// The same in equal steps of a known cost: where many rows lose rank together, matrices are dense.
     VelocityInEqualSteps,
     /// Implicit steps: the forces are too stiff for explicit ones.
     AugmentedLagrangian,

@@ -292,7 +292,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
 
 /// Motion in one step of fixed size, in the reference metric (rad, or reference lengths), that no mechanism makes: the
 /// integration has lost it.
-const LARGEST_MOTION: f64 = 1e6;
+const LARGEST_MOTION: f64 = 1e4;
 
 /// Iterations for friction, whose force depends on the multipliers that it changes. The change falls by the coefficient
 /// of friction times a ratio of lengths in each.
