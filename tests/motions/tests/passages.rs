@@ -5,8 +5,8 @@
 use std::f64::consts::PI;
 
 use mbs_runtime::dynamics::{
-    DormandPrince5, DormandPrince8, Embedded, Explicit, Extrapolated, Formulation, Projection, Simulation,
-    Stages, Tolerance, VelocityTransformation,
+    DormandPrince5, DormandPrince8, Embedded, Explicit, Formulation, Projection, Simulation, Stages,
+    Tolerance, VelocityTransformation,
 };
 use mbs_runtime::{Dynamic, mechanism};
 
@@ -201,27 +201,6 @@ fn ten_loops_are_never_stuck() {
         VelocityTransformation,
         STARTS,
     );
-}
-
-#[test]
-fn extrapolated_implicit_steps_pass_too() {
-    /// Step (s), and what order 3 leaves at it (m).
-    const STEP: f64 = 2e-3;
-    const DISTANCE: f64 = 1e-3;
-    let mut largest = 0.0_f64;
-    for k in (0..STARTS).step_by(5) {
-        let (speed, frame, ..) = start(k);
-        let [q, qd] = state::<6>(0.0, speed, frame);
-        let mut run =
-            Simulation::start(Two::<f64>::turned(frame), Extrapolated, 0.0, q, qd).expect("it starts");
-        let steps = (SECONDS / STEP) as u32 + k;
-        run.step_to(SECONDS, steps).unwrap_or_else(|failure| panic!("start {k}: {failure}"));
-        let [end, _] = state::<6>(exact(2.0, speed), 0.0, frame);
-        let distances = run.q().iter().zip(&end).map(|(q, end)| (q - end).abs());
-        largest = largest.max(distances.fold(0.0, f64::max));
-    }
-    println!("passages of N = 2 four-bars, extrapolated: ends {largest:.1e} m of {DISTANCE:e}");
-    assert!(largest < DISTANCE);
 }
 
 #[test]
