@@ -94,6 +94,17 @@ pub fn numbers<const W: usize>(rounds: &[[f64; W]], round: usize) -> [f64; W] {
     rounds.get(round).map_or([0.0; W], |numbers| *numbers)
 }
 
+/// Numbers of a table as values.
+#[inline(never)]
+#[must_use]
+pub fn constants<T: Scalar, const W: usize>(numbers: &[f64; W]) -> [T; W] {
+    let mut values = [T::constant(0.0); W];
+    for (value, number) in values.iter_mut().zip(numbers) {
+        *value = T::constant(*number);
+    }
+    values
+}
+
 /// The place `first + step·round`.
 #[inline(always)]
 #[must_use]

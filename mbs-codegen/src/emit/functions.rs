@@ -14,7 +14,7 @@ use super::linear;
 use super::long;
 use super::parts::{self, Frame};
 use super::phases;
-use super::scope::Scope;
+use super::scope::{Scope, Written, number};
 use super::work;
 use crate::equations::Equations;
 use crate::equations::continuity::{self, Demand};
@@ -244,11 +244,12 @@ impl Emitter<'_> {
         results: &[Option<NodeId>],
         scope: &Scope<'_>,
     ) -> TokenStream {
-        // What is not computed, as most metrics, needs no place to be passed on at.
-        match self.is_long && !section.lines.is_empty() {
-            true => block(&(self.in_parts(named, section, results, scope) + "__v.kept()"), self.runtime),
-            false => body(section, scope, &array(results.iter().copied(), scope), self.runtime),
+        if !self.is_long {
+            return body(section, scope, &array(results.iter().copied(), scope), self.runtime);
         }
+        let in_numbers = numbers(results, scope);
+        let text = in_numbers.unwrap_or_else(|| self.in_parts(named, section, results, scope) + "__v.kept()");
+        block(&text, self.runtime)
     }
 
     fn in_parts(
@@ -374,4 +375,22 @@ fn outputs(equations: &Equations, scope: &Scope<'_>) -> String {
         );
     }
     text + "]"
+}
+
+/// Before: results of a long function. After: their array out of a table, where all are numbers, as those of most metrics are;
+/// an expression for each would keep a compiler busy for long.
+fn numbers(results: &[Option<NodeId>], scope: &Scope<'_>) -> Option<String> {
+    let number_of = |id: &Option<NodeId>| match id.map(|id| scope.written(id)) {
+        None => Some(0.0),
+        Some(Written::Number(value)) => Some(value),
+        Some(_) => None,
+    };
+    let numbers: Vec<f64> = results.iter().map(number_of).collect::<Option<_>>()?;
+    let (first, count) = (numbers.first().copied().unwrap_or(0.0), numbers.len());
+    if numbers.iter().all(|number| number.to_bits() == first.to_bits()) {
+        return Some(format!("[{}; {count}]", number(first)));
+    }
+    Some(format!(
+        "const __NUMBERS: &[::core::primitive::f64; {count}] = &{numbers:?};\n__mbs::long::constants(__NUMBERS)"
+    ))
 }
