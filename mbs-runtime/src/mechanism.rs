@@ -292,6 +292,10 @@ pub trait Factorization<T: Scalar, const K: usize>: Copy {
 
 /// Solves the nonlinear diagonal blocks as emitted code meets them; the strategy of Newton's method.
 pub trait BlockSolver<T: Scalar> {
+    /// Whether each of many blocks may have a copy of the solver to itself: a short one, for which every step waits. Others
+    /// go round a loop, which computes the same.
+    const COPIED: bool = false;
+
     /// Finds `x` with residual 0 from the start value `x`; `evaluate` gives residual and Jacobian (rows).
     ///
     /// A lane that does not converge comes back with any finite `x`; the caller discards it.

@@ -43,6 +43,8 @@ impl<T: Scalar> Plain<T> {
 }
 
 impl<T: Scalar> BlockSolver<T> for Plain<T> {
+    const COPIED: bool = true;
+
     #[inline(always)]
     fn solve<const K: usize, F: Factorization<T, K>>(
         &mut self,

@@ -116,10 +116,12 @@ pub fn bodies(
         .then(|| long::solve(program, &eliminations, &early));
     let (solve_with_position, solve_blocks) = match &parts {
         Some(parts) if is_long => (parts.body.clone(), None),
-        parts => (
-            blocks::solve(equations, program, &eliminations, &early, &position),
-            parts.as_ref().map(|parts| format!("let (__outcome, _) = {{\n{}\n}};\n__outcome", parts.body)),
+        Some(parts) => (
+            format!("if !__S::COPIED {{\nreturn {{\n{}\n}};\n}}\n", parts.body)
+                + &blocks::solve(equations, program, &eliminations, &early, &position),
+            Some(format!("let (__outcome, _) = {{\n{}\n}};\n__outcome", parts.body)),
         ),
+        None => (blocks::solve(equations, program, &eliminations, &early, &position), None),
     };
     let methods = parts.map_or(String::new(), |parts| parts.methods) + &linear.methods;
     let phi_q = match is_long {
@@ -165,7 +167,7 @@ pub fn bodies(
         outputs: block(&(given + &outputs_text), runtime),
         factors: tokens(&(eliminations.types + &linear.factors), runtime),
         short: program.length() <= LONGEST_INLINED,
-        factorizes_in_line: !long::has_many_blocks(program, lengths),
+        factorizes_in_line: long::newton_blocks(program) <= lengths.factors,
         solve_with_position: block(&solve_with_position, runtime),
         solve_blocks: solve_blocks.map(|text| block(&text, runtime)),
         methods: tokens(&methods, runtime),

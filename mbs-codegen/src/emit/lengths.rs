@@ -10,8 +10,10 @@ pub struct Lengths {
     /// linear time.
     pub function: usize,
     /// Most blocks that are solved by Newton's method one behind the other in one function, each with its own copy of every
-    /// solver; of more, the assembly is one loop.
+    /// solver; of more, all but the next position is one loop.
     pub copies: usize,
+    /// Most blocks of which the factorization stands inside what calls it.
+    pub factors: usize,
     /// Most blocks of which the next position, which each step waits for, is straight-line code; of more it is a loop too.
     pub in_line: usize,
     /// Most blocks of a part of a substitution.
@@ -24,11 +26,19 @@ pub struct Lengths {
 
 impl Lengths {
     /// As compilers take them.
-    pub const USUAL: Self =
-        Lengths { body: 200, function: 2_000, copies: 16, in_line: 48, group: 24, rounds: 4, rolled: 32 };
+    pub const USUAL: Self = Lengths {
+        body: 200,
+        function: 2_000,
+        copies: 4,
+        factors: 16,
+        in_line: 48,
+        group: 24,
+        rounds: 4,
+        rolled: 32,
+    };
 
     /// Short texts are cut as long ones: tests of these need no long texts.
     #[cfg(any(test, feature = "random"))]
     pub const SHORT: Self =
-        Lengths { body: 7, function: 12, copies: 0, in_line: 0, group: 2, rounds: 2, rolled: 3 };
+        Lengths { body: 7, function: 12, copies: 0, factors: 0, in_line: 0, group: 2, rounds: 2, rolled: 3 };
 }

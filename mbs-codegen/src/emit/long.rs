@@ -25,7 +25,8 @@ pub fn has_many_blocks(program: &Program, lengths: Lengths) -> bool {
     newton_blocks(program) > lengths.copies
 }
 
-fn newton_blocks(program: &Program) -> usize {
+/// Blocks that Newton's method solves.
+pub fn newton_blocks(program: &Program) -> usize {
     program.blocks.iter().filter(|block| matches!(block.method, Method::Newton(_))).count()
 }
 
