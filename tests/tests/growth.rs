@@ -137,6 +137,34 @@ fn two_hundred_loops_are_four_bars() {
     every_loop_is_one_four_bar::<TwoHundred, _>();
 }
 
+/// Stack of a debug build for an assembly and steps: what any mechanism takes, and what each loop adds (bytes). Forty loops, which
+/// stand in one function, need up to 0.7 of it, the others less than half. An overflow ends the program.
+const STACK: usize = 256 << 10;
+const STACK_A_LOOP: usize = 8 << 10;
+
+fn steps_within<S: Kinematic<f64, N> + Default, const N: usize>(stack: usize) {
+    let steps = || {
+        let chain = S::default();
+        let guess = chain.guess(&chain.parameters());
+        let mut stepper = Stepper::assemble(chain, guess, 0.0).expect("an assembly");
+        for _ in 0..10 {
+            stepper.advance(TURN / 200.0).expect("a step");
+        }
+        assert!(stepper.closure_error() < 1e-12);
+    };
+    let thread = std::thread::Builder::new().stack_size(stack).spawn(steps).expect("a thread");
+    thread.join().expect("the steps are done");
+}
+
+#[test]
+fn the_stack_of_a_step_grows_with_the_loops_and_no_faster() {
+    let of = |loops: usize| STACK + STACK_A_LOOP * loops;
+    steps_within::<One, _>(of(1));
+    steps_within::<Ten, _>(of(10));
+    steps_within::<Forty, _>(of(40));
+    steps_within::<TwoHundred, _>(of(200));
+}
+
 mechanism! {
     /// A harmonic series, long enough to be evaluated in parts that are compiled by themselves.
     pub mechanism Series;
