@@ -205,7 +205,7 @@ fn small_motions_about_a_moment_say_that_it_moves() {
     let text = standard_output(run_into(&scratch, &arguments));
     assert!(
         text.contains("small motions about: the state at t = 0.3 s, which moves")
-            && text.contains("frozen-time")
+            && text.contains("(frozen-time), which depend on the coordinates")
     );
     assert_eq!(figure(&text, "degrees of freedom"), 1.0);
     assert_eq!(scratch.text("motion.csv").lines().count(), 5);

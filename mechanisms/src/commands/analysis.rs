@@ -500,7 +500,10 @@ fn linear(dynamics: &dyn AnyDynamics, found: Found) -> Found {
     let small = dynamics.small_motions(&motion)?;
     let about = match (small.frozen, motion.time.last()) {
         (true, Some(t)) => {
-            format!("the state at t = {t} s, which moves: eigenvalues of one moment (frozen-time)")
+            format!(
+                "the state at t = {t} s, which moves: eigenvalues of one moment (frozen-time), which depend on the \
+                 coordinates and do not decide about stability"
+            )
         }
         _ if figures.iter().any(|[name, _]| name == "held") => {
             "a position of rest, the time held at 0 s".to_string()
