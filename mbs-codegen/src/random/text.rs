@@ -34,13 +34,13 @@ fn with_masses(random: &mut Random) -> String {
     text += &format!("torque twist: 1N*1m*({twist}) on {};\n", writer.scalar(2));
     let stiffness = if writer.random.below(2) == 0 { writer.design(1) } else { writer.scalar(1) };
     text += &format!(
-        "tsda strut {{ from: 1m*[p0, 3], to: 1m*({}), stiffness: 1N/1m*({stiffness}), length: 1m*({}), damping: 1N*1s/1m*({}), actuator: 1N*({actuator}) }}\n",
+        "tsda strut {{ from: 1m*[p0, 3], to: 1m*({}), stiffness: 1N/1m*(1.5 + sin({stiffness})), length: 1m*({}), damping: 1N*1s/1m*({}), actuator: 1N*({actuator}) }}\n",
         writer.vector(1),
         writer.design(1),
         writer.design(1)
     );
     text += &format!(
-        "rsda knee {{ angle: {}, stiffness: 1N*1m*({}), rest: {}, damping: 1N*1m*1s*({}), torque: 1N*1m*({torque}) }}\n",
+        "rsda knee {{ angle: {}, stiffness: 1N*1m*(1.5 + cos({})), rest: {}, damping: 1N*1m*1s*({}), torque: 1N*1m*({torque}) }}\n",
         writer.scalar(2),
         writer.design(1),
         writer.design(1),
