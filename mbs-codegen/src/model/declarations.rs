@@ -15,7 +15,7 @@ use crate::diagnostics::Diagnostics;
 use crate::syntax::ast::{Declares, Expression, Name, Statement, StatementKind, Type, Unit};
 
 /// Most coordinates. A step is linear in them and has arrays of as many on its stack; Φ_q as a whole, which no step asks
-/// for, is a dense array of 32 MB then.
+/// for, is a dense array of 288 MB then.
 const MOST_COORDINATES: usize = 6_000;
 
 /// Before: statements in any order. After: all declarations outside loops are in `model` and `names`.
