@@ -8,14 +8,19 @@ pub struct Goal {
     pub work: &'static str,
     /// The peer's time over ours: median, 10 %, 90 % of the rounds; `None` where one was not measured.
     pub ratio: Option<[f64; 3]>,
+    /// The median for the default target.
+    pub default: Option<f64>,
     /// Least ratio that is good enough.
     pub must: f64,
     /// Ratio that is wanted.
     pub aim: f64,
 }
 
-/// A line of the table: work in words, problem, ours, against whom, least ratio, wanted ratio.
+/// A line of the table: work in words, problem, ours, against whom, least ratio, wanted ratio; NaN where none is asked.
 pub struct Line(pub &'static str, pub &'static str, pub &'static str, pub Peer, pub f64, pub f64);
+
+/// Of a ratio that is shown, not asked for.
+pub const SHOWN: f64 = f64::NAN;
 
 /// Who it is compared with.
 pub enum Peer {
@@ -25,25 +30,34 @@ pub enum Peer {
     Growth(&'static str),
 }
 
-/// All goals with what was reached.
-pub fn reached(lines: &[Line], measured: &Measured) -> Vec<Goal> {
+/// All goals with what was reached for this processor and for the default target.
+pub fn reached(lines: &[Line], native: &Measured, default: &Measured) -> Vec<Goal> {
     lines
         .iter()
-        .map(|Line(work, problem, own, peer, must, aim)| {
-            let ratio = || -> Option<[f64; 3]> {
-                let own: &Implementation = measured.of(problem, own)?;
-                Some(match peer {
-                    Peer::Fastest(names) => {
-                        let peers: Option<Vec<&Implementation>> =
-                            names.iter().map(|name| measured.of(problem, name)).collect();
-                        own.faster_than(&fastest(&peers?))
-                    }
-                    Peer::Growth(name) => measured.of(problem, name)?.faster_than(own),
-                })
-            };
-            Goal { work, ratio: ratio(), must: *must, aim: *aim }
+        .map(|line| Goal {
+            work: line.0,
+            ratio: line.ratio(native),
+            default: line.ratio(default).map(|[median, ..]| median),
+            must: line.4,
+            aim: line.5,
         })
         .collect()
+}
+
+impl Line {
+    /// The peer's time over ours: median, 10 %, 90 % of the rounds.
+    fn ratio(&self, measured: &Measured) -> Option<[f64; 3]> {
+        let Line(_, problem, own, peer, ..) = self;
+        let own: &Implementation = measured.of(problem, own)?;
+        Some(match peer {
+            Peer::Fastest(names) => {
+                let peers: Option<Vec<&Implementation>> =
+                    names.iter().map(|name| measured.of(problem, name)).collect();
+                own.faster_than(&fastest(&peers?))
+            }
+            Peer::Growth(name) => measured.of(problem, name)?.faster_than(own),
+        })
+    }
 }
 
 impl Goal {
@@ -52,20 +66,27 @@ impl Goal {
         self.aim < self.must
     }
 
-    /// What was reached over what must be, above 1 where it is.
+    /// What was reached over what must be, above 1 where it is; `None` where nothing is asked.
     pub fn part(&self) -> Option<f64> {
         let [median, ..] = self.ratio?;
-        Some(if self.is_limit() { self.must / median } else { median / self.must })
+        let part = if self.is_limit() { self.must / median } else { median / self.must };
+        (!part.is_nan()).then_some(part)
+    }
+
+    /// What is wanted over what must be.
+    pub fn wanted_part(&self) -> f64 {
+        if self.is_limit() { self.must / self.aim } else { self.aim / self.must }
     }
 
     /// In words.
     pub fn verdict(&self) -> &'static str {
-        let (Some(part), Some([median, ..])) = (self.part(), self.ratio) else { return "not measured" };
+        let Some([median, ..]) = self.ratio else { return "not measured" };
+        let Some(part) = self.part() else { return "" };
         let wanted = if self.is_limit() { median <= self.aim } else { median >= self.aim };
         match (part >= 1.0, wanted) {
             (_, true) => "aim reached",
             (true, false) => "reached",
-            (false, false) => "missed",
+            (false, false) => "**missed**",
         }
     }
 }

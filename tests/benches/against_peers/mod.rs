@@ -1,7 +1,9 @@
 //! Builds the peers, measures, writes table and plot: what the benches share.
 
 mod goals;
+mod machine;
 mod plot;
+mod readme;
 mod run;
 mod table;
 
@@ -9,7 +11,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-pub use goals::{Line, Peer};
+pub use goals::{Line, Peer, SHOWN};
 
 /// What a bench compares.
 pub struct Subject {
@@ -21,8 +23,10 @@ pub struct Subject {
     pub notes: &'static str,
     /// The ratios that the project wants to reach.
     pub lines: &'static [Line],
-    /// Largest error by problem.
-    pub limit: fn(&str) -> f64,
+    /// Largest error by problem and implementation.
+    pub limit: run::Limit,
+    /// What bounds a goal that is missed, and what was tried: by its work.
+    pub bounds: &'static [(&'static str, &'static str)],
 }
 
 /// Measures the subject where `cargo bench` asks for it.
@@ -46,22 +50,21 @@ pub fn run(subject: &Subject) -> ExitCode {
 }
 
 fn measure(subject: &Subject, rounds: &str, docs: bool) -> Result<(), String> {
-    let targets = run::all(subject.name, rounds)?;
-    let [native, default] = &targets;
-    let faults: Vec<String> = targets.iter().flat_map(|target| target.faults(subject.limit)).collect();
-    let goals = goals::reached(subject.lines, native);
-    let text = table::markdown(subject, native, default, &goals);
+    let [native, default] = &run::all(subject.name, rounds, subject.limit)?;
+    let goals = goals::reached(subject.lines, native, default);
+    let text = table::markdown(subject, rounds, native, default, &goals);
     let picture = plot::svg(&goals);
     println!("{text}");
     let mut directories = vec![Path::new(env!("CARGO_TARGET_TMPDIR")).with_file_name("bench")];
     if docs {
         directories.push(PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/benches")));
+        readme::replace(subject.name, &table::summary(&goals))?;
     }
     for directory in directories {
         save(&directory, &format!("{}.md", subject.name), &text)?;
         save(&directory, &format!("{}.svg", subject.name), &picture)?;
     }
-    if faults.is_empty() { Ok(()) } else { Err(faults.join("\n")) }
+    Ok(())
 }
 
 fn save(directory: &Path, name: &str, text: &str) -> Result<(), String> {

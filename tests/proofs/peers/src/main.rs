@@ -5,7 +5,7 @@
 //! ```
 //!
 //! Prints one line for each implementation of each problem: problem, name, largest difference from the reference, and
-//! the time (ns) of an evaluation or a step in every round.
+//! the time (ns) of an evaluation or a step in every round. Without rounds (0) nothing is timed.
 
 mod dynamics;
 mod evaluation;

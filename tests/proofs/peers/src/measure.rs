@@ -24,14 +24,8 @@ const ROUND: f64 = 1.5e-3;
 ///
 /// Within a round all cases are timed one after the other, so that a ratio of two is free of the machine's moods.
 pub fn compare(cases: &mut [Case], rounds: usize) {
-    let repetitions: Vec<u32> = cases
-        .iter_mut()
-        .map(|case| {
-            time(case, 2);
-            let once = time(case, 4) / 4.0;
-            ((ROUND / once) as u32).clamp(1, 1_000_000)
-        })
-        .collect();
+    let repetitions: Vec<u32> =
+        cases.iter_mut().map(|case| if rounds == 0 { 0 } else { repetitions(case) }).collect();
     let mut times = vec![Vec::with_capacity(rounds); cases.len()];
     let count = cases.len();
     for round in 0..rounds {
@@ -47,6 +41,13 @@ pub fn compare(cases: &mut [Case], rounds: usize) {
         let times: Vec<String> = times.iter().map(|time| format!("{time:.4}")).collect();
         println!("{} {} {:e} {}", case.group, case.name, case.error, times.join(" "));
     }
+}
+
+/// How often a case is run in a round.
+fn repetitions(case: &mut Case) -> u32 {
+    time(case, 2);
+    let once = time(case, 4) / 4.0;
+    ((ROUND / once) as u32).clamp(1, 1_000_000)
 }
 
 /// Processor time (s) of some runs.

@@ -47,7 +47,10 @@ where
 /// Mechanisms a step of [`lanes`].
 const LANES: usize = 8;
 
-/// Steps of a turn of several mechanisms at once.
+/// By how much of a turn (s) each lane is ahead of the one before.
+const AHEAD: f64 = 1.0 / LANES as f64;
+
+/// Steps of a turn of several mechanisms at once, each at its own phase of the turn.
 pub fn lanes<S, const N: usize>(turn: &Turn<N>, mechanism: S) -> Case
 where
     S: Kinematic<Lanes<f64, LANES>, N> + Clone + 'static,
@@ -55,17 +58,25 @@ where
     <S as Mechanism<Lanes<f64, LANES>, N, N>>::Parameters: 'static,
 {
     let assembled = Batch::assemble(mechanism, &[turn.start.q; LANES], [0.0; LANES]);
-    let start = assembled.map_err(|(_, failure)| failure).expect("it can be assembled");
-    let step = |batch: &mut Batch<S, f64, LANES, N>, k: u32| {
-        let steps = batch.advance_to([f64::from(k) * STEP; LANES]);
+    let mut start = assembled.map_err(|(_, failure)| failure).expect("it can be assembled");
+    let advance = |batch: &mut Batch<S, f64, LANES, N>, times: [f64; LANES]| {
+        let steps = batch.advance_to(times);
         assert!(steps.iter().all(Result::is_ok), "the mechanism is regular");
     };
+    let phases: [f64; LANES] = std::array::from_fn(|lane| lane as f64 * AHEAD);
+    for k in 1..=STEPS {
+        advance(&mut start, phases.map(|phase| f64::from(k) * STEP * phase));
+    }
+    let step = move |batch: &mut Batch<S, f64, LANES, N>, k: u32| {
+        advance(batch, phases.map(|phase| phase + f64::from(k) * STEP));
+    };
     let mut batch = start.clone();
-    let ends = [1..=STEPS / 2, STEPS / 2 + 1..=STEPS].map(|steps| {
+    let [half, whole] = [1..=STEPS / 2, STEPS / 2 + 1..=STEPS].map(|steps| {
         steps.for_each(|k| step(&mut batch, k));
-        motion(&batch.stepper(LANES - 1).expect("a lane"))
+        [0, LANES / 2].map(|lane| motion(&batch.stepper(lane).expect("a lane")))
     });
-    let error = turn.error(&ends);
+    // The lane in the middle is half a turn ahead.
+    let error = turn.error(&[half[0], whole[0]]).max(turn.error(&[whole[1], half[1]]));
     let run = move || {
         let mut batch = black_box(&start).clone();
         (1..=STEPS).for_each(|k| step(&mut batch, k));

@@ -56,6 +56,7 @@ pub fn chain() -> Vec<Case> {
         }),
         turn.case("nalgebra", dense::chain),
         emitted::turn(&turn, Chain10::default()),
+        emitted::lanes(&turn, Chain10::default()),
     ];
     cases.push(Case { name: "emitted_40", ..emitted::turn(&turn.longer(), Chain40::default()) });
     cases
