@@ -299,6 +299,11 @@ pub fn spread(length: usize, count: usize) -> Vec<usize> {
     (0..count).map(|index| index * last / (count - 1)).collect()
 }
 
+/// `steps` equal steps from 0 to `duration` (s): `steps + 1` instants.
+pub fn instants(duration: f64, steps: usize) -> Vec<f64> {
+    (0..=steps).map(|step| duration * step as f64 / steps.max(1) as f64).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -6,6 +6,7 @@ use mbs_runtime::Failure;
 
 use crate::drawing::Shape;
 use crate::facade::{AnyEquations, AnyMechanism, Motion};
+pub use crate::motion::instants;
 
 /// Every mechanism; the first one is what `mbs` shows without arguments.
 // A static, for what a constant leads to is compiled once more in every program that names it.
@@ -321,11 +322,6 @@ impl Card {
         let turn = core::f64::consts::TAU / value.abs();
         if turn.is_finite() { Ok(turn) } else { Err(Mismatch::NoTurn { rate, value }) }
     }
-}
-
-/// `steps` equal steps from 0 to `duration` (s): `steps + 1` instants.
-pub fn instants(duration: f64, steps: usize) -> Vec<f64> {
-    (0..=steps).map(|step| duration * step as f64 / steps.max(1) as f64).collect()
 }
 
 /// Follows `mechanism` through `steps` equal steps over `duration` (s).

@@ -18,7 +18,6 @@ edition = "2024"
 
 [dependencies]
 mbs-runtime = { path = "../../mbs-runtime", default-features = false }
-mechanisms = { path = "../../mechanisms", default-features = false }
 
 [workspace]
 "#;
@@ -46,10 +45,10 @@ fn mechanisms_cut_as_long_ones_move_as_in_one_piece() {
         let cut = mbs_codegen::expand_source_as_long(source).expect("a text without faults").to_string();
         // The control: the code is another one, in loops and parts.
         assert!(cut.contains("Passed") && !whole.contains("Passed"), "{name}");
-        modules += &format!("mod {module} {{\n{cut}\n}}\n");
-        calls += &format!(
-            "    compared(\"{name}\", {motion}::<{module}::{name}, _, _>(), {motion}::<mechanisms::{module}::{name}, _, _>());\n"
-        );
+        modules += &format!("mod {module}_cut {{\n{cut}\n}}\nmod {module}_whole {{\n{whole}\n}}\n");
+        let [cut, whole] =
+            ["cut", "whole"].map(|code| format!("{motion}::<{module}_{code}::{name}, _, _>()"));
+        calls += &format!("    compared(\"{name}\", {cut}, {whole});\n");
     }
     written.write("src/main.rs", &(PROGRAM.replace("// COMPARISONS\n", &calls) + &modules));
     let mut run = written.cargo(&["run", "--quiet"]);

@@ -47,9 +47,9 @@ const PREFIX: &str = "scene_";
 fn code(feature: &str) -> Code {
     let workshop = Workshop::new(env!("CARGO_TARGET_TMPDIR"), "proofs", "");
     let features = format!("--features={feature}");
-    let arguments = ["--profile=freestanding", "--package=proof-scenes", &features];
+    let arguments = ["--profile=linked", "--package=proof-scenes", &features];
     let library = workshop
-        .build(&arguments, "freestanding/libproof_scenes.a", &format!("scenes_{feature}.a"))
+        .build(&arguments, "linked/libproof_scenes.a", &format!("scenes_{feature}.a"))
         .unwrap_or_else(|complaint| panic!("the library does not compile:\n{complaint}"));
     let own = |name: &str| {
         name.starts_with(PREFIX) || ["proof_scenes", "mbs_runtime"].iter().any(|part| name.contains(part))

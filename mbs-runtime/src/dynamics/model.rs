@@ -53,7 +53,7 @@ pub struct Counts {
 }
 
 /// How the accelerations follow from a state, and how a state stays on the constraints.
-pub trait Formulation<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>: Copy {
+pub trait Formulation<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> {
     /// Rates and multipliers at `(t, y)`; `lambda` (M) are those of the last state, where friction starts from.
     ///
     /// # Errors
@@ -126,6 +126,65 @@ pub trait Formulation<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usi
     /// What is doubtful about steps of `h` (s) in a run of `span` (s).
     fn doubt(&self, _h: R, _span: R) -> Option<Doubt> {
         None
+    }
+}
+
+/// A reference does what it refers to does, which may be known at run time only.
+impl<S, R, F, const N: usize, const M: usize> Formulation<S, R, N, M> for &F
+where
+    S: Dynamic<R, N, M>,
+    R: Real,
+    F: Formulation<S, R, N, M> + ?Sized,
+{
+    fn solve(
+        &self,
+        model: &Model<'_, S, R, N, M>,
+        t: R,
+        y: &State<R, N, S::States>,
+        lambda: &[R; M],
+        counts: &mut Counts,
+    ) -> Result<Solved<R, N, M, S::States>, Failure> {
+        (**self).solve(model, t, y, lambda, counts)
+    }
+
+    fn solve_as_it_is(
+        &self,
+        model: &Model<'_, S, R, N, M>,
+        t: R,
+        y: &State<R, N, S::States>,
+        lambda: &[R; M],
+        counts: &mut Counts,
+    ) -> Result<Solved<R, N, M, S::States>, Failure> {
+        (**self).solve_as_it_is(model, t, y, lambda, counts)
+    }
+
+    fn settle(
+        &self,
+        model: &Model<'_, S, R, N, M>,
+        t: R,
+        y: &mut State<R, N, S::States>,
+        counts: &mut Counts,
+    ) -> Result<(), Failure> {
+        (**self).settle(model, t, y, counts)
+    }
+
+    fn settle_and_solve(
+        &self,
+        model: &Model<'_, S, R, N, M>,
+        t: R,
+        y: &mut State<R, N, S::States>,
+        lambda: &[R; M],
+        counts: &mut Counts,
+    ) -> Result<Solved<R, N, M, S::States>, Failure> {
+        (**self).settle_and_solve(model, t, y, lambda, counts)
+    }
+
+    fn admit(&self, h: R, t: R) -> Result<(), Failure> {
+        (**self).admit(h, t)
+    }
+
+    fn doubt(&self, h: R, span: R) -> Option<Doubt> {
+        (**self).doubt(h, span)
     }
 }
 

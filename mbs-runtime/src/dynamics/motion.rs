@@ -27,7 +27,7 @@ pub struct Instant<R, const N: usize, const M: usize, Z> {
 }
 
 /// A way to move on: integrator and formulation in one.
-pub trait Method<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>: Copy {
+pub trait Method<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> {
     /// Accelerations and multipliers at a state.
     ///
     /// # Errors
@@ -64,6 +64,43 @@ pub trait Method<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>: 
     /// See [`Formulation::doubt`].
     fn doubt(&self, _h: R, _span: R) -> Option<Doubt> {
         None
+    }
+}
+
+/// A reference does what it refers to does, which may be known at run time only.
+impl<S, R, X, const N: usize, const M: usize> Method<S, R, N, M> for &X
+where
+    S: Dynamic<R, N, M>,
+    R: Real,
+    X: Method<S, R, N, M> + ?Sized,
+{
+    fn solve(
+        &self,
+        model: &Model<'_, S, R, N, M>,
+        t: R,
+        y: &State<R, N, S::States>,
+        lambda: &[R; M],
+        counts: &mut Counts,
+    ) -> Result<Solved<R, N, M, S::States>, Failure> {
+        (**self).solve(model, t, y, lambda, counts)
+    }
+
+    fn step(
+        &self,
+        model: &Model<'_, S, R, N, M>,
+        from: &Instant<R, N, M, S::States>,
+        h: R,
+        counts: &mut Counts,
+    ) -> Result<Instant<R, N, M, S::States>, Failure> {
+        (**self).step(model, from, h, counts)
+    }
+
+    fn admit(&self, h: R, t: R) -> Result<(), Failure> {
+        (**self).admit(h, t)
+    }
+
+    fn doubt(&self, h: R, span: R) -> Option<Doubt> {
+        (**self).doubt(h, span)
     }
 }
 

@@ -501,9 +501,8 @@ where
         let (mut counts, mut adaptive) = (self.counts, self.adaptive);
         let from = self.fresh(&mut counts)?;
         let model = self.model();
-        let formulation = self.method.formulation;
-        let mut equations =
-            Equations::new(&model, &formulation, &from, counts).with_tolerance(self.tolerance);
+        let formulation = &self.method.formulation;
+        let mut equations = Equations::new(&model, formulation, &from, counts).with_tolerance(self.tolerance);
         let start = Point { t: from.t, y: from.y, rate: from.solved.rate };
         let mut stopped = None;
         let taken = adaptive.accepted;

@@ -4,12 +4,11 @@ use std::time::{Duration, Instant};
 
 use mbs_runtime::dynamics::{
     AugmentedLagrangian, Baumgarte, Counts, DormandPrince5, DormandPrince8, Doubt, Embedded, Explicit,
-    Extrapolated, FixedStep, Formulation, GeneralizedAlpha, Method, Penalty, Projection, RungeKutta4,
-    SemiImplicitEuler, Simulation, Stages, Tolerance, VelocityTransformation,
+    Extrapolated, Formulation, GeneralizedAlpha, Method, Penalty, Projection, RungeKutta4, SemiImplicitEuler,
+    Simulation, Stages, Tolerance, Unstabilized, VelocityTransformation,
 };
 use mbs_runtime::{Dynamic, Failure, Motion as Moving, Partitioned};
 
-use super::formulation::Chosen;
 use super::start::{Start, start, text_start};
 use super::{AnyDynamics, determined};
 use crate::facade::{Motion, State};
@@ -171,6 +170,12 @@ impl<S, const N: usize> PartitionedFunctions<S, N> {
     }
 }
 
+/// Any formulation: what integrates a mechanism is compiled once for all of them.
+type AnyFormulation<'a, S, const N: usize, const M: usize> = &'a dyn Formulation<S, f64, N, M>;
+
+/// Any method with steps of a given size, as [`AnyFormulation`].
+type AnyMethod<'a, S, const N: usize, const M: usize> = &'a dyn Method<S, f64, N, M>;
+
 /// Follows `mechanism` from the text's start through `times` (s).
 pub(crate) fn simulate<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
     mechanism: &S,
@@ -181,28 +186,30 @@ pub(crate) fn simulate<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
 ) -> Result<Simulated, Failure> {
     let steps = approach.steps;
     let start = (partitioned.start)(mechanism, times.first().copied().unwrap_or(0.0));
-    let mut by = |formulation| integrate(mechanism, formulation, &start, steps, times, progress);
+    let mut by = |formulation: AnyFormulation<'_, S, N, M>| {
+        integrate(mechanism, formulation, &start, steps, times, progress)
+    };
     let found = match approach.stabilization {
-        Stabilization::None => by(Chosen::None),
-        Stabilization::Baumgarte(baumgarte) => by(Chosen::Baumgarte(baumgarte)),
-        Stabilization::Penalty(penalty) => by(Chosen::Penalty(penalty)),
+        Stabilization::None => by(&Unstabilized),
+        Stabilization::Baumgarte(baumgarte) => by(&baumgarte),
+        Stabilization::Penalty(penalty) => by(&penalty),
         Stabilization::Projection => {
             let stages = match steps {
                 Steps::Adaptive { .. } => Stages::All,
                 Steps::Fixed(_) | Steps::Equal { .. } => Stages::None,
             };
-            by(Chosen::Projection(Projection { stages }))
+            by(&Projection { stages })
         }
         Stabilization::Velocity => (partitioned.by_velocity)(mechanism, &start, steps, times, progress),
         Stabilization::Implicit(Implicit { method, longest }) => match method {
             ImplicitMethod::AugmentedLagrangian => {
-                implicit(mechanism, AugmentedLagrangian, &start, longest, times, progress)
+                implicit(mechanism, &AugmentedLagrangian, &start, longest, times, progress)
             }
             ImplicitMethod::Extrapolated => {
-                implicit(mechanism, Extrapolated, &start, longest, times, progress)
+                implicit(mechanism, &Extrapolated, &start, longest, times, progress)
             }
             ImplicitMethod::GeneralizedAlpha => {
-                implicit(mechanism, GeneralizedAlpha::default(), &start, longest, times, progress)
+                implicit(mechanism, &GeneralizedAlpha::default(), &start, longest, times, progress)
             }
         },
     };
@@ -212,21 +219,15 @@ pub(crate) fn simulate<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
     }
 }
 
-fn implicit<S, X, const N: usize, const M: usize>(
+fn implicit<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
     mechanism: &S,
-    method: X,
-    (q, qd): &Start<N>,
+    method: AnyMethod<'_, S, N, M>,
+    start: &Start<N>,
     longest: f64,
     times: &[f64],
     progress: &mut dyn FnMut(usize),
-) -> Result<Simulated, Failure>
-where
-    S: Dynamic<f64, N, M>,
-    X: Method<S, f64, N, M>,
-{
-    let first = times.first().copied().unwrap_or(0.0);
-    let start = Simulation::start_near(mechanism.clone(), method, first, *q, *qd)?;
-    Ok(follow(start, times, progress, |run, t| run.step_to(t, equal(t - run.t(), longest))).0)
+) -> Result<Simulated, Failure> {
+    stepped(mechanism, method, start, times, progress, &|span| equal(span, longest))
 }
 
 /// How many equal steps not longer than `longest` lead through `span` (s).
@@ -247,7 +248,7 @@ fn by_velocity<S, const N: usize, const M: usize>(
 where
     S: Dynamic<f64, N, M> + Partitioned<f64, N, M>,
 {
-    integrate(mechanism, VelocityTransformation, start, steps, times, progress)
+    integrate(mechanism, &VelocityTransformation, start, steps, times, progress)
 }
 
 /// By all rows together, for mechanisms without independent coordinates.
@@ -258,23 +259,23 @@ fn by_projection<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
     times: &[f64],
     progress: &mut dyn FnMut(usize),
 ) -> Result<Simulated, Failure> {
-    let all = Chosen::Projection(Projection { stages: Stages::All });
-    let found = integrate(mechanism, all, start, steps, times, progress)?;
+    let all = Projection { stages: Stages::All };
+    let found = integrate(mechanism, &all, start, steps, times, progress)?;
     Ok(Simulated { replaced: true, ..found })
 }
 
-fn integrate<S, F, const N: usize, const M: usize>(
+fn integrate<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
     mechanism: &S,
-    formulation: F,
+    formulation: AnyFormulation<'_, S, N, M>,
     start: &Start<N>,
     steps: Steps,
     times: &[f64],
     progress: &mut dyn FnMut(usize),
-) -> Result<Simulated, Failure>
-where
-    S: Dynamic<f64, N, M>,
-    F: Formulation<S, f64, N, M>,
-{
+) -> Result<Simulated, Failure> {
+    let count = |span: f64| match steps {
+        Steps::Equal { longest, .. } => equal(span, longest),
+        Steps::Fixed(_) | Steps::Adaptive { .. } => 1,
+    };
     match steps {
         Steps::Adaptive { pair: Pair::Order8, tolerance } => {
             adaptive(mechanism, Explicit::new(DormandPrince8, formulation), start, tolerance, times, progress)
@@ -283,24 +284,19 @@ where
             adaptive(mechanism, Explicit::new(DormandPrince5, formulation), start, tolerance, times, progress)
         }
         Steps::Fixed(Rule::RungeKutta4) | Steps::Equal { rule: Rule::RungeKutta4, .. } => {
-            equal_steps(mechanism, Explicit::new(RungeKutta4, formulation), start, steps, times, progress)
+            let method = Explicit::new(RungeKutta4, formulation);
+            stepped(mechanism, &method, start, times, progress, &count)
         }
         Steps::Fixed(Rule::SemiImplicitEuler) | Steps::Equal { rule: Rule::SemiImplicitEuler, .. } => {
-            equal_steps(
-                mechanism,
-                Explicit::new(SemiImplicitEuler, formulation),
-                start,
-                steps,
-                times,
-                progress,
-            )
+            let method = Explicit::new(SemiImplicitEuler, formulation);
+            stepped(mechanism, &method, start, times, progress, &count)
         }
     }
 }
 
-fn adaptive<S, I, F, const N: usize, const M: usize>(
+fn adaptive<S, I, const N: usize, const M: usize>(
     mechanism: &S,
-    method: Explicit<I, F>,
+    method: Explicit<I, AnyFormulation<'_, S, N, M>>,
     (q, qd): &Start<N>,
     tolerance: f64,
     times: &[f64],
@@ -309,7 +305,6 @@ fn adaptive<S, I, F, const N: usize, const M: usize>(
 where
     S: Dynamic<f64, N, M>,
     I: Embedded,
-    F: Formulation<S, f64, N, M>,
 {
     let first = times.first().copied().unwrap_or(0.0);
     let start = Simulation::start_near(mechanism.clone(), method, first, *q, *qd)?;
@@ -318,23 +313,15 @@ where
     Ok(Simulated { rejected: end.adaptive().rejected, ..simulated })
 }
 
-fn equal_steps<S, I, F, const N: usize, const M: usize>(
+/// By steps of which `count` lead through a span (s).
+fn stepped<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
     mechanism: &S,
-    method: Explicit<I, F>,
+    method: AnyMethod<'_, S, N, M>,
     (q, qd): &Start<N>,
-    steps: Steps,
     times: &[f64],
     progress: &mut dyn FnMut(usize),
-) -> Result<Simulated, Failure>
-where
-    S: Dynamic<f64, N, M>,
-    I: FixedStep,
-    F: Formulation<S, f64, N, M>,
-{
-    let count = |span: f64| match steps {
-        Steps::Equal { longest, .. } => equal(span, longest),
-        Steps::Fixed(_) | Steps::Adaptive { .. } => 1,
-    };
+    count: &dyn Fn(f64) -> u32,
+) -> Result<Simulated, Failure> {
     let first = times.first().copied().unwrap_or(0.0);
     let start = Simulation::start_near(mechanism.clone(), method, first, *q, *qd)?;
     Ok(follow(start, times, progress, |run, t| run.step_to(t, count(t - run.t()))).0)

@@ -3,7 +3,6 @@
 mod determined;
 pub mod direct;
 pub mod driven;
-mod formulation;
 pub mod linear;
 mod loads;
 pub mod rest;

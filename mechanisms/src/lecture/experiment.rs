@@ -10,7 +10,7 @@ use mbs_runtime::{
 use super::branchless::Branchless;
 use super::formulas::{Formula, formulas};
 use crate::facade::{AnyMechanism, Facade, State};
-use crate::registry::instants;
+use crate::motion::instants;
 
 /// What the emitted types lend to experiments. Vectors are in the order of the text, with N components each.
 ///

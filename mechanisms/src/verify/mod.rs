@@ -8,6 +8,8 @@
 //! [`check()`] does all of it for any mechanism, in a test of the crate that declares it.
 
 pub mod agreement;
+#[cfg(feature = "ready")]
+mod cards;
 pub mod check;
 pub mod compare;
 pub mod environment;
@@ -17,17 +19,18 @@ mod stand_in;
 pub mod states;
 
 use core::fmt;
-use std::fs;
-use std::path::Path;
 
 pub use agreement::{Agreement, BOUND, LargestError, Reference, Summary};
+#[cfg(feature = "ready")]
+pub use cards::{comparable, comparable_by_name, verify, verify_against, verify_digits};
 pub use check::{Check, CheckError, check};
 pub use environment::EnvironmentError;
 pub use oracle::{Oracle, OracleError};
-pub use stand_in::{StandIn, comparable, comparable_by_name};
+pub use stand_in::StandIn;
 
 use crate::facade::AnyEquations;
-use crate::registry::{self, Card, Mismatch};
+#[cfg(feature = "ready")]
+use crate::registry::Mismatch;
 
 /// States a mechanism is compared at unless told otherwise.
 pub const STATES: usize = 1000;
@@ -45,7 +48,8 @@ pub const DIGITS_STATES: usize = 20;
 /// Why no comparison was made. A comparison that shows a difference is an [`Agreement`] that does not hold.
 #[derive(Debug)]
 pub enum VerifyError {
-    /// No mechanism of this name.
+    /// No ready mechanism of this name.
+    #[cfg(feature = "ready")]
     Mechanism(Mismatch),
     /// The Python environment could not be made.
     Environment(EnvironmentError),
@@ -67,15 +71,8 @@ pub enum VerifyError {
     },
 }
 
-/// Compares the emitted code of the mechanism with CasADi's derivatives of the same text at `states` random states.
-///
-/// # Errors
-/// [`VerifyError`] where the comparison could not be made.
-pub fn verify(card: &Card, oracle: &Oracle, states: usize) -> Result<Agreement, VerifyError> {
-    verify_equations(comparable(card).as_mut(), oracle, states)
-}
-
-/// [`verify`] for any mechanism, free to move or not.
+/// Compares the emitted code of a mechanism, free to move or not, with CasADi's derivatives of the same text at `states` random
+/// states.
 ///
 /// # Errors
 /// [`VerifyError`] where the comparison could not be made.
@@ -88,15 +85,8 @@ pub fn verify_equations(
     Ok(compare::compare(mechanism, oracle, &definition, states)?)
 }
 
-/// Compares the emitted code of the mechanism with 50-digit arithmetic on the same text at `states` random states.
-///
-/// # Errors
-/// [`VerifyError`] where the comparison could not be made.
-pub fn verify_digits(card: &Card, oracle: &Oracle, states: usize) -> Result<Agreement, VerifyError> {
-    verify_equations_digits(comparable(card).as_mut(), oracle, states)
-}
-
-/// [`verify_digits`] for any mechanism, free to move or not; masses and forces have no part in it.
+/// Compares the emitted code of a mechanism, free to move or not, with 50-digit arithmetic on the same text at `states` random
+/// states; masses and forces have no part in it.
 ///
 /// # Errors
 /// [`VerifyError`] where the comparison could not be made.
@@ -107,20 +97,6 @@ pub fn verify_equations_digits(
 ) -> Result<Agreement, VerifyError> {
     let definition = generated_definition(mechanism)?;
     Ok(compare::compare_digits(mechanism, oracle, &definition, states)?)
-}
-
-/// Compares the emitted code of the mechanism called `name` with the definition in a Python file at
-/// [`STATES`] random states.
-///
-/// # Errors
-/// [`VerifyError`] where the comparison could not be made.
-pub fn verify_against(name: &str, definition: &Path, oracle: &Oracle) -> Result<Agreement, VerifyError> {
-    let card = registry::find(name).map_err(VerifyError::Mechanism)?;
-    let text = fs::read_to_string(definition).map_err(|error| VerifyError::File {
-        path: definition.display().to_string(),
-        reason: error.to_string(),
-    })?;
-    Ok(compare::compare(comparable(card).as_mut(), oracle, &text, STATES)?)
 }
 
 /// The CasADi definition that the second back end prints from the mechanism's text.
@@ -135,6 +111,7 @@ pub fn generated_definition(mechanism: &dyn AnyEquations) -> Result<String, Veri
 impl fmt::Display for VerifyError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
+            #[cfg(feature = "ready")]
             VerifyError::Mechanism(mismatch) => mismatch.fmt(f),
             VerifyError::Environment(error) => error.fmt(f),
             VerifyError::Definition { mechanism, reason } => {

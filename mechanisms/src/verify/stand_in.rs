@@ -2,32 +2,6 @@
 
 use mbs_runtime::{Function, Scalar};
 
-use crate::facade::{AnyEquations, AnyMechanism};
-use crate::registry::{self, Card, Mismatch};
-
-/// Makes a mechanism.
-type Make = fn() -> Box<dyn AnyMechanism>;
-
-/// Ready mechanisms with functions, each with stand-ins for them.
-const WITH_FUNCTIONS: [(&str, Make); 1] = [("cam_law", crate::cam_law::compared)];
-
-/// A new instance of which both sides of a cross-check know everything.
-pub fn comparable(card: &Card) -> Box<dyn AnyMechanism> {
-    let found = WITH_FUNCTIONS.iter().find(|(name, _)| *name == card.name);
-    found.map_or_else(card.make, |(_, make)| make())
-}
-
-/// The mechanism called `name`, free to move or not, so that both sides of a cross-check know everything.
-///
-/// # Errors
-/// [`Mismatch::Mechanism`] where there is none; its text lists the known names.
-pub fn comparable_by_name(name: &str) -> Result<Box<dyn AnyEquations>, Mismatch> {
-    match registry::FREE.iter().find(|card| card.name == name) {
-        Some(card) => Ok((card.make)()),
-        None => Ok(comparable(registry::find(name)?)),
-    }
-}
-
 /// What CasADi takes for the declared function of index `I`: `Σ a sin(w x + p)`, its derivatives by formula.
 ///
 /// A mechanism with functions is confirmed with these in their places, in the order of the text:
@@ -50,19 +24,5 @@ impl<T: Scalar, const I: usize> Function<T> for StandIn<I> {
             }
             sum
         })
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::registry::ALL;
-
-    #[test]
-    fn every_mechanism_with_functions_has_stand_ins() {
-        for card in ALL {
-            let listed = WITH_FUNCTIONS.iter().any(|(name, _)| *name == card.name);
-            assert_eq!((card.make)().functions().is_empty(), !listed, "{}", card.name);
-        }
     }
 }

@@ -1,7 +1,7 @@
 //! What a user sees: the compiler's own messages, one fault a file, and nothing else red beside them.
 //!
 //! Every case uses the mechanism too, so that the stored messages prove that the stub serves. After a change that is
-//! meant, run `TRYBUILD=overwrite cargo test -p mbs-tests --test ui` and read the difference.
+//! meant, run `TRYBUILD=overwrite cargo test -p mbs-faults` and read the difference.
 #![forbid(unsafe_code)]
 
 use std::fs;
@@ -16,7 +16,7 @@ fn faults_are_reported_by_the_compiler_and_nothing_else_is() {
 #[test]
 fn every_case_has_its_twin_without_a_compiler() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let twins = root.join("../mbs-codegen/tests/diagnostics");
+    let twins = root.join("../../mbs-codegen/tests/diagnostics");
     let mut compared = 0;
     for twin in fs::read_dir(twins).expect("the twins") {
         let twin = twin.expect("a twin").path();
