@@ -5,6 +5,16 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+/// How they are built, those of `tests/editions` too. Without notes for a debugger the macro's library is built as it is for
+/// programs: once.
+const PROFILE: &str = r#"
+[profile.dev]
+debug = false
+
+[profile.dev.package.mbs-runtime]
+opt-level = 2
+"#;
+
 /// A crate of a test.
 pub struct WrittenCrate {
     directory: PathBuf,
@@ -15,7 +25,7 @@ impl WrittenCrate {
     /// A crate below `scratch`, a test's `CARGO_TARGET_TMPDIR`, with this `Cargo.toml`; in it `../../` is this
     /// workspace.
     ///
-    /// It has the workspace's versions and profiles of everything, and what both need is built once.
+    /// It has the workspace's versions of everything, and what such crates need is built once for all of them.
     ///
     /// # Panics
     /// Where a file cannot be written.
@@ -25,11 +35,7 @@ impl WrittenCrate {
         let made = WrittenCrate { directory: scratch.join(name), target };
         let workspace = Path::new(env!("CARGO_MANIFEST_DIR")).join("..").canonicalize();
         let workspace = workspace.expect("the workspace").display().to_string().replace('\\', "/");
-        let root = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../Cargo.toml"));
-        let root = root.expect("the workspace's Cargo.toml");
-        let (_, profiles) = root.split_once("[profile.dev]").expect("its profiles");
-        let manifest = manifest.replace("../../", &format!("{workspace}/"));
-        made.write("Cargo.toml", &format!("{manifest}\n[profile.dev]{profiles}"));
+        made.write("Cargo.toml", &(manifest.replace("../../", &format!("{workspace}/")) + PROFILE));
         let lock_file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../Cargo.lock");
         made.write("Cargo.lock", &fs::read_to_string(lock_file).expect("the workspace's Cargo.lock"));
         made

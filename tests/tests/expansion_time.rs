@@ -35,10 +35,15 @@ fn every_text_expands_within_50_ms_a_thousand_values() {
                 None => started.1.elapsed(),
             }
         };
-        let best = (0..RUNS).map(|_| time()).min().expect("several runs");
         let code = mbs_codegen::expand_source(&text.1).expect("a text without faults").to_string();
         let values = u32::try_from(code.matches("let ").count()).expect("a number of `let`s");
         let longest = LONGEST * values.div_ceil(VALUES).max(1);
-        assert!(best <= longest, "{best:?} for {}\n{}", text.0, text.1);
+        // What the best does, the first that is soon enough does too.
+        let mut best = Duration::MAX;
+        let is_soon = (0..RUNS).any(|_| {
+            best = best.min(time());
+            best <= longest
+        });
+        assert!(is_soon, "{best:?} for {}\n{}", text.0, text.1);
     }
 }

@@ -6,17 +6,25 @@ use crate::equations::{Equations, Sparse};
 use crate::program::{Line, Program, Section, Stage};
 use crate::symbolic::{Graph, Leaf, Node, NodeId, Unary, evaluate};
 
-/// Values by name, in the order of the oracle.
-pub fn run(equations: &Equations, program: &Program, state: &State) -> Vec<(String, f64)> {
+/// A value of a function and its index there.
+pub struct Found {
+    pub function: &'static str,
+    pub index: usize,
+    pub value: f64,
+}
+
+/// Values in the order of the oracle.
+pub fn run(equations: &Equations, program: &Program, state: &State) -> Vec<Found> {
     let machine = Machine { graph: &equations.graph, state };
     let nothing = vec![None; equations.graph.len()];
     let parameters = machine.stage(&program.parameters, &nothing);
     let known = machine.stage(&program.position, &parameters);
     let mut results = Vec::new();
-    let mut read = |name: &str, section: &Section, roots: Vec<Option<NodeId>>| {
+    let mut read = |function: &'static str, section: &Section, roots: Vec<Option<NodeId>>| {
         let values = machine.section(section, &known);
         for (index, root) in roots.into_iter().enumerate() {
-            results.push((format!("{name} {index}"), root.map_or(0.0, |root| machine.value(root, &values))));
+            let value = root.map_or(0.0, |root| machine.value(root, &values));
+            results.push(Found { function, index, value });
         }
     };
     let rows = &equations.rows;

@@ -228,12 +228,12 @@ impl Tally {
             let emitted = interpreter::run(&equations, &program, &state);
             let expected = oracle::run(&model, &state);
             assert_eq!(emitted.len(), expected.len(), "{text}");
-            for ((name, value), expected) in emitted.iter().zip(&expected) {
+            for (interpreter::Found { function, index, value }, expected) in emitted.iter().zip(&expected) {
                 let Some(error) = expected.error(*value) else { continue };
                 let instead = expected.value;
                 assert!(
                     error <= 1.0,
-                    "seed {seed}: {name}: {value} instead of {instead}, {error} of what is allowed\n{text}"
+                    "seed {seed}: {function} {index}: {value} instead of {instead}, {error} of what is allowed\n{text}"
                 );
                 self.worst = self.worst.max(error);
                 self.compared += 1;

@@ -3,6 +3,7 @@
 mod determined;
 pub mod direct;
 pub mod driven;
+#[cfg(feature = "ready")]
 pub mod linear;
 mod loads;
 pub mod rest;
@@ -13,6 +14,7 @@ use mbs_runtime::{Dynamic, Failure};
 use crate::facade::{Motion, State};
 use crate::masses::{Loads, MassFacade};
 use direct::{Approach, Simulated};
+#[cfg(feature = "ready")]
 use linear::SmallMotions;
 use rest::Rest;
 
@@ -51,6 +53,7 @@ pub trait AnyDynamics {
     ///
     /// # Errors
     /// Why there are none, in words.
+    #[cfg(feature = "ready")]
     fn small_motions(&self, motion: &Motion) -> Result<SmallMotions, String>;
 }
 
@@ -78,6 +81,7 @@ impl<S: Dynamic<f64, N, M>, const N: usize, const M: usize> AnyDynamics for Mass
         loads::multipliers(&self.kinematics.0, state)
     }
 
+    #[cfg(feature = "ready")]
     fn small_motions(&self, motion: &Motion) -> Result<SmallMotions, String> {
         linear::small_motions(&self.kinematics.0, motion)
     }
