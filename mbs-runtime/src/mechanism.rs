@@ -1,7 +1,7 @@
 //! What the macro emits: a mechanism as functions of its coordinates.
 
 use crate::diagnosis::index;
-use crate::{FunctionEntry, Limit, Outcome, Real, Roots, Scalar};
+use crate::{FunctionEntry, Limit, Outcome, Phase, Real, Roots, Scalar};
 
 /// The scene of a text with all its effects, which every mechanism is in unless a type says otherwise.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -100,7 +100,7 @@ pub trait Mechanism<T: Scalar, const N: usize, const M: usize>: Clone {
     /// One range a `limit` of the text.
     type Limits: AsRef<[Limit<T>]> + Copy;
     /// The phase of each drive that prescribes a rate.
-    type Phases: Copy;
+    type Phases: Copy + AsRef<[Phase<T>]> + AsMut<[Phase<T>]>;
     /// One value a component of an `out` of the text.
     type Outputs: AsRef<[OutputValue<T>]> + Copy;
     /// The same design in one lane, for fallbacks and diagnosis.
@@ -163,6 +163,12 @@ pub trait Mechanism<T: Scalar, const N: usize, const M: usize>: Clone {
     /// varies within the step is integrated with [`integrals`](crate::phase::integrals).
     #[inline]
     fn advance_phases(&mut self, _from: T, _to: T) {}
+    /// Time derivatives of the phases at time `t` (s): each value is the prescribed rate, with parameters and inputs as they
+    /// are, and its rate the derivative of that.
+    #[inline]
+    fn phase_rates(&self, _t: T) -> Self::Phases {
+        self.phases()
+    }
 
     /// Takes `turns` whole turns of a coordinate of [`TURNS`](Self::TURNS) off the phases that hold it.
     #[inline]

@@ -36,6 +36,13 @@ impl<T: Scalar> Phase<T> {
         Phase { value, rate: speed.value, acceleration: speed.rate, remainder: T::constant(0.0) }
     }
 
+    /// The time derivative of a phase that moves with `speed`.
+    #[inline]
+    pub fn derivative(speed: Speed<T>) -> Self {
+        let none = T::constant(0.0);
+        Phase { value: speed.value, rate: speed.rate, acceleration: none, remainder: none }
+    }
+
     /// The phase `increment` further on, where the prescribed rate is `speed`.
     #[inline]
     pub fn advanced(self, increment: T, speed: Speed<T>) -> Self {

@@ -47,7 +47,7 @@ pub struct Bodies {
     pub evaluate: Option<TokenStream>,
     pub branches: TokenStream,
     pub limits: TokenStream,
-    /// `start_phases` and `advance_phases`, where there are any.
+    /// `start_phases`, `advance_phases` and `phase_rates`, where there are any.
     pub phases: TokenStream,
     /// The function of speeds that they share.
     pub speeds: TokenStream,

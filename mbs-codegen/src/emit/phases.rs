@@ -11,14 +11,19 @@ use crate::model::{Model, VariableKind};
 use crate::program::Program;
 use crate::symbolic::{Leaf, Node, NodeId};
 
-/// `start_phases` and `advance_phases`, and the inherent function of the prescribed rates at a time; all empty
+/// `start_phases`, `advance_phases` and `phase_rates`, and the inherent function of the prescribed rates at a time; all empty
 /// where no drive prescribes a rate.
 pub fn functions(equations: &Equations, program: &Program, scope: &Scope<'_>) -> (String, String) {
     if equations.phases.is_empty() {
         return (String::new(), String::new());
     }
-    (start(equations, program, scope) + &advance(equations, scope), speeds(equations, program, scope))
+    let functions = start(equations, program, scope) + &advance(equations, scope) + RATES;
+    (functions, speeds(equations, program, scope))
 }
+
+/// `phase_rates`, from the inherent function.
+const RATES: &str = "#[inline]\nfn phase_rates(&self, __t: T) -> Self::Phases {\n\
+                     self.__speeds(__t).map(__mbs::Phase::derivative)\n}\n";
 
 /// `TURNS` and `turn_back`, where coordinates turn.
 pub fn turns(equations: &Equations, model: &Model) -> String {

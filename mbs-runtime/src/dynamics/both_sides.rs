@@ -165,8 +165,12 @@ impl<R: Real, const N: usize> Way<R, N> {
         for (index, (weight, share)) in (1_u8..).zip(WEIGHTS.into_iter().zip(DIFFERENCES)) {
             for side in [-1.0, 1.0] {
                 let count = R::constant(side * f64::from(index));
-                let (t, y) = self.state(model, at, count, counts).ok()?;
-                let beside = Unstabilized.solve(model, t, &y, lambda, counts).ok()?;
+                let (y, beside) = model
+                    .moved(at.0, at.0 + count * self.passing, |model| {
+                        let (t, y) = self.state(model, at, count, counts)?;
+                        Ok::<_, Failure>((y, Unstabilized.solve(model, t, &y, lambda, counts)?))
+                    })
+                    .ok()?;
                 if beside.margin < R::constant(ZONE) {
                     return None;
                 }

@@ -1,13 +1,15 @@
 //! A mechanism as an ordinary differential equation, and the explicit methods that integrate it.
 
+use super::adaptive::Point;
 use super::both_sides::ZONE;
 use super::equation::{Equation, Measured};
 use super::explicit::FixedStep;
 use super::metric::{Tolerance, worse};
 use super::model::{Counts, Doubt, Formulation, Model, Solved};
 use super::passage::Passage;
+use super::phases::{ORDER_OF_INTEGRALS, Phased, advanced, stepped, unmoved};
 use super::vector::State;
-use crate::{Dynamic, Failure, Real};
+use crate::{Dynamic, Entry, Failure, Mechanism, Real};
 
 /// Least motion of a step in the zone of a singular position, in the reference metric: smaller ones resolve how rods that
 /// differ by 1e-14 turn aside there, which rounding decides.
@@ -52,6 +54,20 @@ pub trait Method<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> {
         h: R,
         counts: &mut Counts,
     ) -> Result<Instant<R, N, M, S::States>, Failure>;
+
+    /// The phases of drives that prescribe a rate after a step of `h` from `t` (s); none where they are those of
+    /// [`Mechanism::advance_phases`](crate::Mechanism::advance_phases).
+    ///
+    /// # Errors
+    /// None but of what it calls.
+    fn phases_after(
+        &self,
+        _model: &Model<'_, S, R, N, M>,
+        _t: R,
+        _h: R,
+    ) -> Result<Option<S::Phases>, Failure> {
+        Ok(None)
+    }
 
     /// See [`Formulation::admit`].
     ///
@@ -145,15 +161,23 @@ where
         h: R,
         counts: &mut Counts,
     ) -> Result<Instant<R, N, M, S::States>, Failure> {
-        let mut motion = Equations::new(model, &self.formulation, from, *counts).of_fixed_steps();
+        let mut motion = Equations::new(model, &self.formulation, from, *counts).of_fixed_steps(I::ORDER);
         let t = from.t + h;
-        let mut y = I::step(&mut motion, from.t, h, &from.y, &from.solved.rate)?;
-        let solved = match motion.settle_and_solve(t, &mut y) {
+        let start = beginning(model.mechanism, from);
+        let mut end = I::step(&mut motion, from.t, h, &start.y, &start.rate)?;
+        let solved = match motion.settle_and_solve(t, &mut end) {
             Ok(solved) => solved,
-            Err(failure) => return model.require_bounded(t, &from.y, &y).and(Err(failure)),
+            Err(failure) => return model.require_bounded(t, &from.y, &end.y).and(Err(failure)),
         };
         *counts = motion.counts;
-        Ok(Instant { t, y, solved, carried: solved.rate.qd })
+        Ok(Instant { t, y: end.y, solved, carried: solved.rate.qd })
+    }
+
+    fn phases_after(&self, model: &Model<'_, S, R, N, M>, t: R, h: R) -> Result<Option<S::Phases>, Failure> {
+        if S::PHASES.is_empty() || I::ORDER <= ORDER_OF_INTEGRALS {
+            return Ok(None);
+        }
+        stepped::<I, S, R, N, M>(model.mechanism, t, h).map(Some)
     }
 
     fn admit(&self, h: R, t: R) -> Result<(), Failure> {
@@ -165,6 +189,20 @@ where
     }
 }
 
+/// What is integrated of a mechanism.
+pub type Moving<S, R, const N: usize, const M: usize> =
+    Phased<State<R, N, <S as Dynamic<R, N, M>>::States>, <S as Mechanism<R, N, M>>::Phases>;
+
+/// Where a run of `mechanism` begins that continues `from`.
+pub(super) fn beginning<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
+    mechanism: &S,
+    from: &Instant<R, N, M, S::States>,
+) -> Point<R, Moving<S, R, N, M>> {
+    let y = Phased { y: from.y, phases: unmoved(mechanism.phases()) };
+    let rate = Phased { y: from.solved.rate, phases: mechanism.phase_rates(from.t) };
+    Point { t: from.t, y, rate }
+}
+
 /// The equations of motion as an integrator sees them.
 pub struct Equations<'a, S: Dynamic<R, N, M>, F, R: Real, const N: usize, const M: usize> {
     model: &'a Model<'a, S, R, N, M>,
@@ -172,6 +210,10 @@ pub struct Equations<'a, S: Dynamic<R, N, M>, F, R: Real, const N: usize, const 
     tolerance: Tolerance<R>,
     /// Time (s) that the phases of the mechanism belong to.
     start: R,
+    /// The mechanism with its phases moved on to a state; none where no drive prescribes a rate.
+    moving: Option<S>,
+    /// Whether phases are integrated with the state, and not from `start` to each stage.
+    integrating: bool,
     /// Whether no step can be made smaller.
     fixed: bool,
     /// Multipliers (M) of the last evaluation.
@@ -198,16 +240,57 @@ where
     ) -> Self {
         let (tolerance, start) = (Tolerance::new(0.0), from.t);
         let (lambda, end) = (from.solved.lambda, (from.t, from.solved.margin, from.y));
-        Equations { model, formulation, tolerance, start, fixed: false, lambda, end, passage: None, counts }
+        let moving = (!S::PHASES.is_empty()).then(|| model.mechanism.clone());
+        Equations {
+            model,
+            formulation,
+            tolerance,
+            start,
+            moving,
+            integrating: true,
+            fixed: false,
+            lambda,
+            end,
+            passage: None,
+            counts,
+        }
     }
 
     pub(super) fn with_tolerance(self, tolerance: Tolerance<R>) -> Self {
         Equations { tolerance, ..self }
     }
 
-    /// Of steps that cannot be made smaller.
-    pub(super) fn of_fixed_steps(self) -> Self {
-        Equations { fixed: true, ..self }
+    /// Of steps of a method of `order` that cannot be made smaller.
+    pub(super) fn of_fixed_steps(self, order: u32) -> Self {
+        Equations { fixed: true, integrating: order > ORDER_OF_INTEGRALS, ..self }
+    }
+
+    /// The phases at time `t` (s) that have moved on by `increments`.
+    pub(super) fn phases(&self, t: R, increments: &S::Phases) -> S::Phases {
+        let mechanism = self.model.mechanism;
+        advanced(mechanism.phases(), increments, &mechanism.phase_rates(t))
+    }
+
+    /// Calls `solve` with the mechanism as it is at time `t` (s), its phases moved on by `increments`.
+    #[inline(always)]
+    fn at<X>(
+        &mut self,
+        t: R,
+        increments: &S::Phases,
+        solve: impl FnOnce(&Model<'_, S, R, N, M>, &F, &mut [R; M], &mut Counts) -> X,
+    ) -> X {
+        let phases = if S::PHASES.is_empty() { *increments } else { self.phases(t, increments) };
+        let Equations { model, formulation, start, moving, integrating, lambda, counts, .. } = self;
+        let Some(mechanism) = moving else { return solve(model, formulation, lambda, counts) };
+        if *integrating {
+            mechanism.set_phases(phases);
+        } else {
+            mechanism.set_phases(model.mechanism.phases());
+            mechanism.advance_phases(*start, t);
+        }
+        let parameters = mechanism.parameters();
+        let (metric, balanced) = (model.metric, model.balanced);
+        solve(&Model { mechanism, parameters: &parameters, metric, balanced }, formulation, lambda, counts)
     }
 
     /// Rates and multipliers of a state.
@@ -215,14 +298,19 @@ where
     pub(super) fn solve(
         &mut self,
         t: R,
-        y: &State<R, N, S::States>,
+        y: &Moving<S, R, N, M>,
     ) -> Result<Solved<R, N, M, S::States>, Failure> {
-        let (formulation, lambda, counts) = (self.formulation, &mut self.lambda, &mut self.counts);
-        self.model.moved(self.start, t, |model| {
-            let solved = formulation.solve(model, t, y, lambda, counts)?;
+        self.at(t, &y.phases, |model, formulation, lambda, counts| {
+            let solved = formulation.solve(model, t, &y.y, lambda, counts)?;
             *lambda = solved.lambda;
             Ok(solved)
         })
+    }
+
+    /// The rate of a state whose coordinates, velocities and first-order states have the rate `y`.
+    #[inline(always)]
+    fn phased(&self, t: R, y: State<R, N, S::States>) -> Moving<S, R, N, M> {
+        Phased { y, phases: self.model.mechanism.phase_rates(t) }
     }
 
     /// Rates and multipliers of a state that a step ended in, which is put back onto the constraints.
@@ -230,10 +318,10 @@ where
     pub(super) fn settle_and_solve(
         &mut self,
         t: R,
-        y: &mut State<R, N, S::States>,
+        y: &mut Moving<S, R, N, M>,
     ) -> Result<Solved<R, N, M, S::States>, Failure> {
-        let (formulation, lambda, counts) = (self.formulation, &mut self.lambda, &mut self.counts);
-        self.model.moved(self.start, t, |model| {
+        let Phased { y, phases } = y;
+        self.at(t, phases, |model, formulation, lambda, counts| {
             let solved = formulation.settle_and_solve(model, t, y, lambda, counts)?;
             *lambda = solved.lambda;
             Ok(solved)
@@ -247,31 +335,31 @@ where
     F: Formulation<S, R, N, M>,
     R: Real,
 {
-    type State = State<R, N, S::States>;
+    type State = Moving<S, R, N, M>;
 
     #[inline]
     fn rate(&mut self, t: R, y: &Self::State) -> Result<Self::State, Failure> {
         match self.solve(t, y) {
             Err(failure) if self.fixed => {
-                self.model.require_bounded(t, &self.end.2, y)?;
+                self.model.require_bounded(t, &self.end.2, &y.y)?;
                 if !matches!(failure, Failure::OffConstraints { .. }) {
                     return Err(failure);
                 }
             }
-            solved => return Ok(solved?.rate),
+            solved => return Ok(self.phased(t, solved?.rate)),
         }
-        let (formulation, lambda, counts) = (self.formulation, &mut self.lambda, &mut self.counts);
-        self.model.moved(self.start, t, |model| {
-            let solved = formulation.solve_as_it_is(model, t, y, lambda, counts)?;
+        let solved = self.at(t, &y.phases, |model, formulation, lambda, counts| {
+            let solved = formulation.solve_as_it_is(model, t, &y.y, lambda, counts)?;
             *lambda = solved.lambda;
-            Ok(solved.rate)
-        })
+            Ok(solved)
+        })?;
+        Ok(self.phased(t, solved.rate))
     }
 
     #[inline]
     fn settle(&mut self, t: R, y: &mut Self::State) -> Result<(), Failure> {
-        let (formulation, counts) = (self.formulation, &mut self.counts);
-        self.model.moved(self.start, t, |model| formulation.settle(model, t, y, counts))
+        let Phased { y, phases } = y;
+        self.at(t, phases, |model, formulation, _, counts| formulation.settle(model, t, y, counts))
     }
 
     #[inline]
@@ -279,8 +367,8 @@ where
         let solved = self.settle_and_solve(t, y)?;
         let (before, margin, _) = self.end;
         self.passage = self.passage.or(Passage::between((before, margin), (t, solved.margin)));
-        self.end = (t, solved.margin, *y);
-        Ok(solved.rate)
+        self.end = (t, solved.margin, y.y);
+        Ok(self.phased(t, solved.rate))
     }
 }
 
@@ -304,7 +392,7 @@ where
         (*margin < R::constant(ZONE)).then_some(undecided)
     }
 
-    /// The worst of coordinates, velocities and states. Work is watched, not controlled: that it is watched changes no
+    /// The worst of coordinates, velocities, states and phases. Work is watched, not controlled: that it is watched changes no
     /// step.
     #[inline]
     fn measure<const K: usize>(
@@ -314,15 +402,40 @@ where
         errors: [&Self::State; K],
     ) -> [R; K] {
         let (metric, tolerance) = (self.model.metric, &self.tolerance);
-        let q = metric.measure(tolerance, &before.q, &after.q, errors.map(|error| &error.q));
-        let mut largest = metric.measure(tolerance, &before.qd, &after.qd, errors.map(|error| &error.qd));
+        let (old, new) = (&before.y, &after.y);
+        let q = metric.measure(tolerance, &old.q, &new.q, errors.map(|error| &error.y.q));
+        let mut largest = metric.measure(tolerance, &old.qd, &new.qd, errors.map(|error| &error.y.qd));
         for ((largest, q), error) in largest.iter_mut().zip(q).zip(errors) {
-            let states = before.states.as_ref().iter().zip(after.states.as_ref()).zip(error.states.as_ref());
+            let states = old.states.as_ref().iter().zip(new.states.as_ref()).zip(error.y.states.as_ref());
             *largest = states.fold(worse(q, *largest), |largest, ((before, after), error)| {
                 let size = before.abs().max(after.abs());
                 worse(largest, error.abs() / (tolerance.relative * size + tolerance.absolute))
             });
+            let phases = before
+                .phases
+                .as_ref()
+                .iter()
+                .zip(after.phases.as_ref())
+                .zip(error.phases.as_ref())
+                .zip(S::PHASES);
+            *largest = phases.fold(*largest, |largest, (((before, after), error), entry)| {
+                let size = before.value.abs().max(after.value.abs());
+                let allowed = tolerance.relative * size + tolerance.absolute * self.scale(entry);
+                worse(largest, error.value.abs() / allowed)
+            });
         }
         largest
+    }
+}
+
+impl<S, F, R, const N: usize, const M: usize> Equations<'_, S, F, R, N, M>
+where
+    S: Dynamic<R, N, M>,
+    R: Real,
+{
+    /// Reference metric of a phase: that of rows of its unit, of which its drive is one.
+    fn scale(&self, phase: &Entry) -> R {
+        let mut rows = S::ROWS.iter().zip(&self.model.metric.rows);
+        rows.find(|(row, _)| row.unit == phase.unit).map_or(R::constant(1.0), |(_, scale)| *scale)
     }
 }

@@ -1,12 +1,12 @@
 //! A mechanism that moves by its forces: state and mechanism in one place, one call a step.
 
-use super::adaptive::{Accepted, Adaptive, Point};
+use super::adaptive::{Accepted, Adaptive};
 use super::determinacy::Determinacy;
 use super::embedded::Embedded;
 use super::event::{Direction, passage};
 use super::metric::{Metric, Tolerance};
 use super::model::{Counts, Doubt, Formulation, Model};
-use super::motion::{Equations, Explicit, Instant, Method};
+use super::motion::{Equations, Explicit, Instant, Method, Moving, beginning};
 use super::passage::Passage;
 use super::projection::Projection;
 use super::text_start;
@@ -189,10 +189,11 @@ where
         model.require_bounded(next.t, &from.y, &next.y)?;
         model.check(next.t, &next.y)?;
         model.check_assembly(next.t, &next.y, false)?;
+        let phases = self.method.phases_after(&model, from.t, h)?;
         counts.steps += 1;
         let ends = ((from.t, from.solved.margin), (next.t, next.solved.margin));
         self.passage = self.passage.or(Passage::between(ends.0, ends.1));
-        self.take(next, counts);
+        self.take(next, phases, counts);
         Ok(())
     }
 
@@ -225,9 +226,13 @@ where
         Ok(Instant { t, y, solved, carried: solved.rate.qd })
     }
 
-    fn take(&mut self, next: Instant<R, N, M, S::States>, counts: Counts) {
+    /// Goes on from `next`, with `phases` or with those that kinematics moves on.
+    fn take(&mut self, next: Instant<R, N, M, S::States>, phases: Option<S::Phases>, counts: Counts) {
         if !S::PHASES.is_empty() {
-            self.mechanism.advance_phases(self.now.t, next.t);
+            match phases {
+                Some(phases) => self.mechanism.set_phases(phases),
+                None => self.mechanism.advance_phases(self.now.t, next.t),
+            }
             self.parameters = self.mechanism.parameters();
         }
         self.now = next;
@@ -441,7 +446,7 @@ where
             |_| None,
             |equations, accepted| {
                 let polynomial = accepted.polynomial(equations)?;
-                let found = passage(accepted, &polynomial, direction, |t, y| event(t, &y.q, &y.qd));
+                let found = passage(accepted, &polynomial, direction, |t, y| event(t, &y.y.q, &y.y.qd));
                 Ok(found.map(|t| (t, if t < accepted.end.t { polynomial.at(t) } else { accepted.end.y })))
             },
         )
@@ -479,7 +484,7 @@ where
                     let mut y = if t < accepted.end.t { known.at(t) } else { accepted.end.y };
                     super::equation::Equation::settle(equations, t, &mut y)?;
                     let solved = equations.solve(t, &y)?;
-                    see(&Instant { t, y, solved, carried: solved.rate.qd });
+                    see(&Instant { t, y: y.y, solved, carried: solved.rate.qd });
                     index += 1;
                 }
                 Ok(None)
@@ -495,21 +500,21 @@ where
         breakpoints: impl FnMut(R) -> Option<R>,
         mut stop: impl FnMut(
             &mut Equations<'_, S, F, R, N, M>,
-            &Accepted<I, R, State<R, N, S::States>>,
-        ) -> Result<Option<(R, State<R, N, S::States>)>, Failure>,
+            &Accepted<I, R, Moving<S, R, N, M>>,
+        ) -> Result<Option<(R, Moving<S, R, N, M>)>, Failure>,
     ) -> Result<bool, Failure> {
         let (mut counts, mut adaptive) = (self.counts, self.adaptive);
         let from = self.fresh(&mut counts)?;
         let model = self.model();
         let formulation = &self.method.formulation;
         let mut equations = Equations::new(&model, formulation, &from, counts).with_tolerance(self.tolerance);
-        let start = Point { t: from.t, y: from.y, rate: from.solved.rate };
+        let start = beginning(model.mechanism, &from);
         let mut stopped = None;
         let taken = adaptive.accepted;
         let end =
             adaptive.run::<I, _>(&mut equations, start, until, breakpoints, |equations, accepted| {
-                model.check(accepted.end.t, &accepted.end.y)?;
-                model.check_assembly(accepted.end.t, &accepted.end.y, false)?;
+                model.check(accepted.end.t, &accepted.end.y.y)?;
+                model.check_assembly(accepted.end.t, &accepted.end.y.y, false)?;
                 stopped = stop(equations, accepted)?;
                 Ok(stopped.is_none())
             })?;
@@ -518,12 +523,13 @@ where
             super::equation::Equation::settle(&mut equations, t, &mut y)?;
         }
         let solved = equations.solve(t, &y)?;
+        let phases = equations.phases(t, &y.phases);
         counts = equations.counts;
         let passage = equations.passage;
         counts.steps += u64::from(adaptive.accepted.wrapping_sub(taken));
         self.adaptive = adaptive;
         self.passage = self.passage.or(passage);
-        self.take(Instant { t, y, solved, carried: solved.rate.qd }, counts);
+        self.take(Instant { t, y: y.y, solved, carried: solved.rate.qd }, Some(phases), counts);
         Ok(stopped.is_some())
     }
 }

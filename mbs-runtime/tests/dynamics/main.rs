@@ -7,5 +7,6 @@ mod integrators;
 mod linkage;
 mod methods;
 mod pendulum;
+mod prescribed;
 mod singular;
 mod variations;

@@ -53,6 +53,9 @@ impl<S: Kinematic<f64, N, M>, const N: usize, const M: usize> Mechanism<f64, N, 
     fn advance_phases(&mut self, from: f64, to: f64) {
         self.0.advance_phases(from, to);
     }
+    fn phase_rates(&self, t: f64) -> S::Phases {
+        self.0.phase_rates(t)
+    }
     fn parameters(&self) -> S::Parameters {
         self.0.parameters()
     }

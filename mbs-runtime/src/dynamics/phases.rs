@@ -1,0 +1,115 @@
+//! Phases of drives that prescribe a rate, integrated with the motion.
+
+use super::equation::Equation;
+use super::explicit::FixedStep;
+use super::vector::Vector;
+use crate::phase::Speed;
+use crate::{Failure, Mechanism, Phase, Real, Scalar};
+
+/// Order of the integrals that [`Mechanism::advance_phases`] takes over a step: methods of a higher order integrate the
+/// prescribed rates themselves.
+pub(super) const ORDER_OF_INTEGRALS: u32 = 6;
+
+/// A state with what the phases of drives that prescribe a rate have moved on by since a run began; as a rate, with the
+/// prescribed rates. So the control of the step sees what a rate that varies leaves of them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Phased<Y, P> {
+    /// Coordinates, velocities, first-order states, work.
+    pub y: Y,
+    /// One phase a drive that prescribes a rate, of which the values count alone.
+    pub phases: P,
+}
+
+impl<T: Scalar, Y: Vector<T>, P: Copy + AsRef<[Phase<T>]> + AsMut<[Phase<T>]>> Vector<T> for Phased<Y, P> {
+    #[inline(always)]
+    fn zero(&self) -> Self {
+        Phased { y: self.y.zero(), phases: unmoved(self.phases) }
+    }
+
+    #[inline(always)]
+    fn plus<const K: usize>(&self, h: T, weights: &[f64; K], terms: [&Self; K]) -> Self {
+        let y = self.y.plus(h, weights, terms.map(|term| &term.y));
+        Phased { y, phases: moved(self.phases, h, weights, terms.map(|term| term.phases.as_ref())) }
+    }
+
+    #[inline(always)]
+    fn semi_implicit(&self, h: T, rate: &Self) -> Self {
+        let y = self.y.semi_implicit(h, &rate.y);
+        Phased { y, phases: moved(self.phases, h, &[1.0], [rate.phases.as_ref()]) }
+    }
+}
+
+/// `phases` plus h Σ weightₖ termₖ.
+#[inline(always)]
+fn moved<T: Scalar, P: AsMut<[Phase<T>]>, const K: usize>(
+    mut phases: P,
+    h: T,
+    weights: &[f64; K],
+    terms: [&[Phase<T>]; K],
+) -> P {
+    for (index, phase) in phases.as_mut().iter_mut().enumerate() {
+        let mut change = T::constant(0.0);
+        for (weight, term) in weights.iter().zip(terms) {
+            if let Some(term) = term.get(index) {
+                change = change + T::constant(*weight) * term.value;
+            }
+        }
+        phase.value = phase.value + h * change;
+    }
+    phases
+}
+
+/// As many phases, none moved on.
+#[inline(always)]
+pub(super) fn unmoved<T: Scalar, P: AsMut<[Phase<T>]>>(mut phases: P) -> P {
+    phases.as_mut().iter_mut().for_each(|phase| phase.value = T::constant(0.0));
+    phases
+}
+
+/// Phases at the beginning of a run, `increments` further on, where the prescribed rates are `rates`.
+#[inline]
+pub(super) fn advanced<T: Scalar, P: Copy + AsRef<[Phase<T>]> + AsMut<[Phase<T>]>>(
+    mut start: P,
+    increments: &P,
+    rates: &P,
+) -> P {
+    let moves = increments.as_ref().iter().zip(rates.as_ref());
+    for (phase, (increment, rate)) in start.as_mut().iter_mut().zip(moves) {
+        *phase = phase.advanced(increment.value, Speed { value: rate.value, rate: rate.rate });
+    }
+    start
+}
+
+/// Phases without a state beside them.
+type Bare<R, P> = Phased<[R; 0], P>;
+
+/// The prescribed rates of a mechanism: phases move whatever else does.
+struct Rates<'a, S, const N: usize, const M: usize>(&'a S);
+
+impl<S: Mechanism<T, N, M>, T: Scalar, const N: usize, const M: usize> Equation<T> for Rates<'_, S, N, M> {
+    type State = Bare<T, S::Phases>;
+
+    fn rate(&mut self, t: T, _: &Self::State) -> Result<Self::State, Failure> {
+        Ok(Phased { y: [], phases: self.0.phase_rates(t) })
+    }
+}
+
+/// The phases after a step of `h` from `t` (s) by method `I`: those that the stages of its own steps come to.
+///
+/// # Errors
+/// None of its own.
+pub(super) fn stepped<I: FixedStep, S, R: Real, const N: usize, const M: usize>(
+    mechanism: &S,
+    t: R,
+    h: R,
+) -> Result<S::Phases, Failure>
+where
+    S: Mechanism<R, N, M>,
+{
+    let start = mechanism.phases();
+    let mut equation = Rates::<S, N, M>(mechanism);
+    let y: Bare<R, S::Phases> = Phased { y: [], phases: unmoved(start) };
+    let rate = equation.rate(t, &y)?;
+    let end = I::step(&mut equation, t, h, &y, &rate)?;
+    Ok(advanced(start, &end.phases, &mechanism.phase_rates(t + h)))
+}

@@ -1,0 +1,124 @@
+//! Drives that prescribe a rate, under forces: the phase is as exact as the motion is asked to be.
+
+use mbs_runtime::dynamics::{
+    Direction, DormandPrince5, DormandPrince8, Explicit, FixedStep, Formulation, Projection, RungeKutta4,
+    Simulation, Tolerance, VelocityTransformation,
+};
+use mbs_runtime::mechanism;
+
+mechanism! {
+    /// A cart at a speed that oscillates, with a pendulum on it.
+    pub mechanism Shaken;
+    param w: rad/s = 4;
+    coord x: m = 0;
+    coord phi: rad = 0.1;
+    body cart { mass: 2, com: [x, 0] }
+    body bob { mass: 1, com: [x, 0] + 1m*unit(phi) }
+    gravity weight { acceleration: [0, -9.81] }
+    drive speed: rate(x) == 0.3m/1s*cos(w*t);
+    start phi = 0.1 rate 1;
+}
+
+mechanism! {
+    /// The same cart, its place prescribed.
+    pub mechanism Moved;
+    param w: rad/s = 4;
+    coord x: m = 0;
+    coord phi: rad = 0.1;
+    body cart { mass: 2, com: [x, 0] }
+    body bob { mass: 1, com: [x, 0] + 1m*unit(phi) }
+    gravity weight { acceleration: [0, -9.81] }
+    drive speed: x == 0.3m/1s/w*sin(w*t);
+    start phi = 0.1 rate 1;
+}
+
+const END: f64 = 2.0;
+
+type Run<I, F> = Simulation<Shaken, Explicit<I, F>, f64, 2, 1>;
+
+fn shaken<I: FixedStep, F: Formulation<Shaken, f64, 2, 1>>(
+    w: f64,
+    integrator: I,
+    formulation: F,
+) -> Run<I, F> {
+    let shaken = Shaken { w, ..Shaken::default() };
+    Simulation::start_from_text(shaken, Explicit::new(integrator, formulation), 0.0).unwrap()
+}
+
+fn place(w: f64, t: f64) -> f64 {
+    0.3 / w * (w * t).sin()
+}
+
+/// The pendulum's angle at the end.
+fn angle(w: f64) -> f64 {
+    let moved = Moved { w };
+    let method = Explicit::new(DormandPrince8, Projection::default());
+    let run = Simulation::start_from_text(moved, method, 0.0).unwrap();
+    let mut run = run.with_tolerance(Tolerance::new(1e-13));
+    run.advance_to(END).unwrap();
+    run.q()[1]
+}
+
+/// Largest error of place, angle and balance against the tolerance.
+#[track_caller]
+fn assert_follows<I: FixedStep, F: Formulation<Shaken, f64, 2, 1>>(
+    run: Run<I, F>,
+    w: f64,
+    advance: impl Fn(&mut Run<I, F>, f64),
+) {
+    let exact = angle(w);
+    for tolerance in [1e-6, 1e-9, 1e-12] {
+        let mut run = run;
+        advance(&mut run, tolerance);
+        let [x, phi] = *run.q();
+        let error = (x - place(w, END)).abs().max((phi - exact).abs()).max(run.balance().defect.abs());
+        // An accepted step leaves its tolerance, a hundred steps a hundred times that; the forces are some ten newtons.
+        assert!(error < 1e3 * tolerance, "{error:e} at {tolerance:e}");
+        assert!(run.balance().phi < 1e-13, "{:?}", run.balance());
+    }
+}
+
+#[test]
+fn a_prescribed_rate_is_integrated_to_the_tolerance() {
+    for w in [4.0, 40.0] {
+        assert_follows(shaken(w, DormandPrince8, Projection::default()), w, |run, tolerance| {
+            *run = run.with_tolerance(Tolerance::new(tolerance));
+            run.advance_to(END).unwrap();
+        });
+        assert_follows(shaken(w, DormandPrince5, VelocityTransformation), w, |run, tolerance| {
+            *run = run.with_tolerance(Tolerance::new(tolerance));
+            run.advance_to(END).unwrap();
+        });
+    }
+}
+
+#[test]
+fn what_is_seen_on_the_way_is_as_exact() {
+    let run = shaken(40.0, DormandPrince8, VelocityTransformation).with_tolerance(Tolerance::new(1e-10));
+    let mut sampled = run;
+    let mut worst = 0.0_f64;
+    sampled
+        .sample(END, 57, |instant| worst = worst.max((instant.y.q[0] - place(40.0, instant.t)).abs()))
+        .unwrap();
+    assert!(worst < 1e-8, "{worst:e}");
+    let mut stopped = run;
+    assert!(stopped.advance_until_event(END, Direction::Falling, |_, q, _| q[0]).unwrap());
+    assert!((stopped.t() - core::f64::consts::PI / 40.0).abs() < 1e-7, "{}", stopped.t());
+    // It goes on from there as if nothing had been.
+    stopped.advance_to(END).unwrap();
+    assert!((stopped.q()[0] - place(40.0, END)).abs() < 1e-7, "{}", stopped.q()[0]);
+}
+
+#[test]
+fn fixed_steps_have_the_order_of_their_method_with_a_prescribed_rate() {
+    fn error<I: FixedStep>(integrator: I, steps: u32) -> f64 {
+        let mut run = shaken(4.0, integrator, Projection::default());
+        run.step_to(END, steps).unwrap();
+        (run.q()[0] - place(4.0, END)).abs()
+    }
+    let eighth = (error(DormandPrince8, 6) / error(DormandPrince8, 12)).log2();
+    assert!(eighth > 7.5, "{eighth}");
+    let integrals = (error(RungeKutta4, 6) / error(RungeKutta4, 12)).log2();
+    assert!(integrals > 5.5, "{integrals}");
+    assert!(error(RungeKutta4, 20) < 1e-9);
+}
