@@ -50,7 +50,9 @@ impl Workshop {
             result.unwrap_or_else(|error| panic!("{}: {error}", path.display()));
         };
         made(&self.target, fs::create_dir_all(&self.target));
-        let lock_file = self.target.join("lock");
+        // Profiles have directories of their own.
+        let profile = product.split('/').next().unwrap_or_default();
+        let lock_file = self.target.join(format!("lock-{profile}"));
         let lock = File::create(&lock_file);
         made(&lock_file, lock.as_ref().map_or_else(|_| Ok(()), File::lock));
         tools::output(self.cargo().args(arguments), "the tests need cargo, which runs them")?;
