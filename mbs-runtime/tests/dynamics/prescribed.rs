@@ -61,7 +61,7 @@ fn angle(w: f64) -> f64 {
 
 /// Largest error of place, angle and balance against the tolerance.
 #[track_caller]
-fn assert_follows<I: FixedStep, F: Formulation<Shaken, f64, 2, 1>>(
+fn assert_follows<I: FixedStep, F: Formulation<Shaken, f64, 2, 1> + Copy>(
     run: Run<I, F>,
     w: f64,
     advance: impl Fn(&mut Run<I, F>, f64),
