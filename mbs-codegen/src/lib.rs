@@ -175,10 +175,20 @@ pub fn latex_formulas(source: &str, scene: Option<&str>) -> Result<Formulas, Str
 /// # Errors
 /// As [`casadi_definition`].
 pub fn dynamic_formulas(source: &str, scene: Option<&str>) -> Result<Option<DynamicFormulas>, String> {
-    in_scene(source, scene, |_, scene| {
-        let equations = equations::derive(&scene.model);
-        Ok(emit::formula::dynamic_formulas(&scene.model, &equations, Notation::Text))
-    })
+    in_scene(source, scene, |_, scene| Ok(dynamic_formulas_in(scene, Notation::Text)))
+}
+
+/// [`dynamic_formulas`] for LaTeX's mathematical mode; needs the package `amsmath`.
+///
+/// # Errors
+/// As [`casadi_definition`].
+pub fn latex_dynamic_formulas(source: &str, scene: Option<&str>) -> Result<Option<DynamicFormulas>, String> {
+    in_scene(source, scene, |_, scene| Ok(dynamic_formulas_in(scene, Notation::Latex)))
+}
+
+fn dynamic_formulas_in(scene: &Scene, notation: Notation) -> Option<DynamicFormulas> {
+    let equations = equations::derive(&scene.model);
+    emit::formula::dynamic_formulas(&scene.model, &equations, notation)
 }
 
 fn formulas_in(name: &str, scene: &Scene, notation: Notation) -> Formulas {

@@ -27,6 +27,17 @@ pub struct Motion<'a, T, const N: usize, const M: usize, Z> {
     pub states: &'a Z,
 }
 
+/// A mass, moment of inertia or stiffness that parameters alone make: at least 0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Signed {
+    /// Body or force, and field: `rod.mass`.
+    pub name: &'static str,
+    /// Its line in the text.
+    pub line: u32,
+    /// The first parameter that it is made of.
+    pub parameter: &'static str,
+}
+
 /// A mechanism with masses and forces. Matrices are dense here, for methods that factorise them and for tests; the
 /// products that fast methods need are straight-line code without zeros.
 pub trait Dynamic<T: Scalar, const N: usize, const M: usize>: Mechanism<T, N, M> {
@@ -51,6 +62,11 @@ pub trait Dynamic<T: Scalar, const N: usize, const M: usize>: Mechanism<T, N, M>
     /// Outputs of [`loads`](Self::loads), component by component.
     const LOADS: &'static [Entry];
 
+    /// What must not be negative, in the order of [`signed`](Self::signed).
+    const SIGNED: &'static [Signed] = &[];
+
+    /// Shows `see` the values of what must not be negative, one after the other.
+    fn signed(&self, _parameters: &Self::Parameters, _see: impl FnMut(T)) {}
     /// Start values of the first-order states.
     fn start_states(&self, parameters: &Self::Parameters) -> Self::States;
     /// The rates that the text's `start … rate` declares; 0 elsewhere: N.

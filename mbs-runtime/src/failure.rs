@@ -56,6 +56,17 @@ pub enum Failure {
         /// Its line in the text; 0 for the time.
         line: u32,
     },
+    /// A mass, moment of inertia or stiffness is negative with the parameters as they are.
+    Negative {
+        /// Body or force, and field.
+        name: &'static str,
+        /// Its line in the text.
+        line: u32,
+        /// The first parameter that it is made of.
+        parameter: &'static str,
+        /// Its value.
+        value: f64,
+    },
     /// A coordinate is so large that its number type no longer resolves a thousandth of its scale.
     Unresolved {
         /// The coordinate.
@@ -218,6 +229,14 @@ pub enum Failure {
         /// Time (s).
         time: f64,
     },
+    /// No coordinate changes a row, so that it holds nothing where it should: the length between two points is 0, or bars at rest are
+    /// in line.
+    Flat {
+        /// The row.
+        row: Entry,
+        /// Time (s).
+        time: f64,
+    },
     /// Forces and inertia did not come into balance within the iterations of an implicit method.
     Unbalanced {
         /// The coordinate that is farthest from balance.
@@ -323,9 +342,10 @@ impl Failure {
             | Failure::Inconsistent { time, .. }
             | Failure::OffConstraints { time, .. }
             | Failure::Inertialess { time, .. }
+            | Failure::Flat { time, .. }
             | Failure::Restless { time, .. }
             | Failure::Unbalanced { time, .. } => *time = now,
-            Failure::NonFinite { .. } | Failure::Foreign { .. } => {}
+            Failure::NonFinite { .. } | Failure::Negative { .. } | Failure::Foreign { .. } => {}
         }
         self
     }
@@ -349,9 +369,10 @@ impl Failure {
             | Failure::Inconsistent { time, .. }
             | Failure::OffConstraints { time, .. }
             | Failure::Inertialess { time, .. }
+            | Failure::Flat { time, .. }
             | Failure::Restless { time, .. }
             | Failure::Unbalanced { time, .. } => *time,
-            Failure::NonFinite { .. } | Failure::Foreign { .. } => 0.0,
+            Failure::NonFinite { .. } | Failure::Negative { .. } | Failure::Foreign { .. } => 0.0,
         }
     }
 }
@@ -362,6 +383,11 @@ impl fmt::Display for Failure {
         match self {
             Failure::NonFinite { name, line: 0 } => write!(f, "`{name}` is not a finite number"),
             Failure::NonFinite { name, line } => write!(f, "`{name}` (line {line}) is not a finite number"),
+            Failure::Negative { name, line, parameter, value } => write!(
+                f,
+                "`{name}` (line {line}) is {value:e}, with `{parameter}` as it is: masses, moments of inertia and stiffnesses are \
+                 at least 0"
+            ),
             Failure::Unresolved { coordinate, value, .. } => write!(
                 f,
                 "`{}` (line {}) is {value:.3e} {} at t = {time} s, too large for its number type to tell positions \
@@ -470,6 +496,12 @@ impl fmt::Display for Failure {
                  moving; give it mass, or a row that fixes it",
                 coordinate.name, coordinate.line
             ),
+            Failure::Flat { row, .. } => write!(
+                f,
+                "row `{}` (line {}) holds nothing at t = {time} s: no coordinate changes it there, as where a length is 0 or bars at \
+                 rest are in line; give the length a value, or start beside that position",
+                row.name, row.line
+            ),
             Failure::Restless { coordinate, force, .. } => write!(
                 f,
                 "no position of rest at t = {time} s: where the forces come nearest to balance they still push `{}` (line \
@@ -515,6 +547,7 @@ mod tests {
         let (time, residual, required) = (0.5, 1e-3, 1e-14);
         let failures = [
             Failure::NonFinite { name: "omega", line: 21 },
+            Failure::Negative { name: "rod.mass", line: 21, parameter: "rho", value: -1.0 },
             Failure::Unresolved { coordinate: ROW, value: 1e300, time },
             Failure::NotConverged { row: ROW, residual, required, iterations: 9, time },
             Failure::NotAssemblable {
@@ -537,6 +570,7 @@ mod tests {
             Failure::OffConstraints { row: ROW, rate: false, residual, allowed: required, time },
             Failure::Unbounded { coordinate: ROW, value: 1e12, time },
             Failure::Inertialess { coordinate: ROW, time },
+            Failure::Flat { row: ROW, time },
             Failure::Restless { coordinate: ROW, force: 0.5, time },
             Failure::Unbalanced { coordinate: ROW, iterations: 9, time },
         ];

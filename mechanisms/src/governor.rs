@@ -30,7 +30,7 @@ pub const CARD: FreeCard = FreeCard {
                   steps of a millisecond would blow up.",
     runs: &[Preset { label: "10 s", description: "free, one turn a second at the start", set: &[] }],
     duration: 10.0,
-    usual: Usual::AugmentedLagrangian,
+    usual: Usual::Extrapolated,
     drawing: DRAWING,
     make: boxed_masses::<Governor, 16, 12>,
 };

@@ -91,8 +91,9 @@ pub enum Usual {
     Velocity,
     /// The same in equal steps of a known cost: where many rows lose rank together, matrices are dense.
     VelocityInEqualSteps,
-    /// Implicit steps: the forces are too stiff for explicit ones.
-    AugmentedLagrangian,
+    /// Implicit steps, extrapolated: the forces are too stiff for explicit ones, and steps of order 2 leave what no other method of
+    /// that order leaves less of.
+    Extrapolated,
 }
 
 /// What the program knows of a mechanism beside its text.

@@ -83,8 +83,12 @@ fn every_mechanism_runs_and_writes_its_report() {
     let free = mechanisms::registry::FREE.iter().map(|card| (card.name, card.runs.len()));
     for (name, runs) in fixed.chain(free) {
         let scratch = Scratch::new(name);
-        // Matrices of 163 rows take a moment each where nothing is optimised.
-        let until = if name == "n_four_bar_40" { &["--until", "0.1"][..] } else { &[] };
+        // Matrices of 163 rows, and implicit steps of a millisecond, take a moment each where nothing is optimised.
+        let until = match name {
+            "n_four_bar_40" => &["--until", "0.1"][..],
+            "governor" => &["--until", "0.5"],
+            _ => &[],
+        };
         standard_output(run_into(&scratch, &[&["run", name, "--steps", "24"], until].concat()));
         let values = scratch.text("motion.csv");
         assert_eq!(values.lines().count(), 1 + 25 * runs, "{name}");

@@ -7,10 +7,10 @@ use quote::{quote, quote_spanned};
 
 use super::functions::{array, body, matrix};
 use super::scope::Scope;
-use crate::equations::Equations;
+use crate::equations::{Dynamics, Equations};
 use crate::model::Model;
 use crate::model::dynamics::Dynamics as Declared;
-use crate::program::Program;
+use crate::program::{DynamicsProgram, Program};
 
 /// Bodies of the functions of `Dynamic`.
 pub struct DynamicBodies {
@@ -18,6 +18,8 @@ pub struct DynamicBodies {
     pub force_uses_multipliers: bool,
     pub start_states: TokenStream,
     pub start_rates: TokenStream,
+    /// Not a body: the table of what must not be negative and its function, where there is such.
+    pub signed: TokenStream,
     pub mass: TokenStream,
     pub mass_times: TokenStream,
     pub force: TokenStream,
@@ -39,6 +41,7 @@ impl DynamicBodies {
             force_uses_multipliers: true,
             start_states: body(),
             start_rates: body(),
+            signed: TokenStream::new(),
             mass: body(),
             mass_times: body(),
             force: body(),
@@ -76,6 +79,7 @@ pub fn bodies(
         force_uses_multipliers: dynamics.force_uses_multipliers,
         start_states: body(&program.start_states, early, &vector(&dynamics.start_states, early), runtime),
         start_rates: body(&program.start_rates, early, &vector(&dynamics.start_rates, early), runtime),
+        signed: signed(dynamics, program, early, runtime),
         mass: of(&program.mass, matrix(dynamics.mass.iter(), scope)),
         mass_times: of(&program.mass_times, vector(&dynamics.mass_times, scope)),
         force: of(&program.force, vector(&dynamics.force, scope)),
@@ -89,6 +93,32 @@ pub fn bodies(
         state_rates: of(&program.state_rates, vector(&dynamics.state_rates, scope)),
         loads: of(&program.loads, array(dynamics.loads.iter().map(|id| Some(*id)), scope)),
     })
+}
+
+/// What must not be negative: its table, and the function that shows its values.
+fn signed(
+    dynamics: &Dynamics,
+    program: &DynamicsProgram,
+    early: &Scope<'_>,
+    runtime: &TokenStream,
+) -> TokenStream {
+    let model = early.model;
+    let Some(declared) = model.dynamics.as_ref().filter(|_| !dynamics.signed.is_empty()) else {
+        return TokenStream::new();
+    };
+    let entries = dynamics.signed.iter().filter_map(|signed| {
+        let value = declared.signed.get(signed.index)?;
+        let name = format!("{}.{}", value.of, value.field);
+        let parameter = model.variables.get(usize::try_from(signed.parameter).ok()?)?.name.as_str();
+        let line = quote_spanned!(value.span=> ::core::line!());
+        Some(quote! { #runtime::Signed { name: #name, line: #line, parameter: #parameter } })
+    });
+    let values = array(dynamics.signed.iter().map(|signed| Some(signed.node)), early);
+    let show = body(&program.signed, early, &format!("{values}.into_iter().for_each(__see)"), runtime);
+    quote! {
+        const SIGNED: &'static [#runtime::Signed] = &[#(#entries),*];
+        fn signed(&self, __p: &__Parameters<T>, __see: impl FnMut(T)) #show
+    }
 }
 
 /// `impl Dynamic` of a text with masses or forces.
@@ -107,6 +137,7 @@ pub fn implementation(
         force_uses_multipliers,
         start_states,
         start_rates,
+        signed,
         mass,
         mass_times,
         force,
@@ -134,6 +165,7 @@ pub fn implementation(
             fn start_states(&self, __p: &__Parameters<T>) -> [T; #states] #start_states
             #[inline]
             fn start_rates(&self, __p: &__Parameters<T>) -> [T; #n] #start_rates
+            #signed
             #[inline]
             fn mass(#design) -> [[T; #n]; #n] #mass
             #[inline]

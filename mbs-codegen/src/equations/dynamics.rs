@@ -3,6 +3,7 @@
 use super::forces::{self, Acting, Sum};
 use super::lower::Clock;
 use super::pins::{Attribution, Undetermined};
+use super::signed::{Signed, signed};
 use super::{Row, again, jacobian};
 use crate::model::dynamics::{Body, Dynamics as Declared, Rotation};
 use crate::model::expression::Id;
@@ -44,6 +45,8 @@ pub struct Dynamics {
     pub start_states: Vec<Option<NodeId>>,
     /// One a coordinate.
     pub start_rates: Vec<Option<NodeId>>,
+    /// Masses, moments of inertia and stiffnesses that parameters alone make, each value once.
+    pub signed: Vec<Signed>,
     /// One an output of multipliers or states.
     pub loads: Vec<NodeId>,
     /// Indices of the text's kinetic energies that are not quadratic in the rates.
@@ -114,6 +117,7 @@ pub fn derive(
         state_rates: declared.states.iter().map(|state| state.rate.map(of)).collect(),
         start_states: declared.states.iter().map(|state| state.start.map(of)).collect(),
         start_rates: (0..count).map(|index| start(&declared.rates, index)).collect(),
+        signed: signed(g, declared.signed.iter().map(|signed| of(signed.value))),
         loads: declared.loads.iter().map(|load| of(load.value)).collect(),
         not_quadratic,
         acting,

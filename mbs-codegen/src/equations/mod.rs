@@ -8,6 +8,7 @@ mod elimination;
 mod forces;
 mod lower;
 pub mod pins;
+mod signed;
 mod turning;
 pub mod turns;
 

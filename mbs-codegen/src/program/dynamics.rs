@@ -35,6 +35,8 @@ pub struct DynamicsProgram {
     pub start_states: Section,
     /// Rates at the start.
     pub start_rates: Section,
+    /// What must not be negative.
+    pub signed: Section,
 }
 
 /// The roots of each function.
@@ -53,6 +55,7 @@ pub struct Roots {
     loads: Vec<NodeId>,
     start_states: Vec<NodeId>,
     start_rates: Vec<NodeId>,
+    signed: Vec<NodeId>,
 }
 
 impl Roots {
@@ -74,6 +77,7 @@ impl Roots {
             loads: dynamics.loads.clone(),
             start_states: some(&dynamics.start_states),
             start_rates: some(&dynamics.start_rates),
+            signed: dynamics.signed.iter().map(|signed| signed.node).collect(),
         }
     }
 
@@ -121,6 +125,8 @@ impl Roots {
             loads: section(&self.loads),
             start_states: early(&self.start_states),
             start_rates: early(&self.start_rates),
+            // Asked once a run: nothing is kept for it.
+            signed: early(&self.signed),
         }
     }
 }

@@ -149,8 +149,8 @@ impl<R: Real> Adaptive<R> {
     /// `until` that the step must not feel.
     ///
     /// # Errors
-    /// [`Failure::StepTooSmall`], [`Failure::Undecided`], or what the equation failed with at the smallest step;
-    /// [`Failure::OutOfReach`].
+    /// [`Failure::StepTooSmall`]; [`Failure::Flat`], [`Failure::Undecided`] and [`Failure::Inertialess`] where the state shows
+    /// why, or what the equation failed with at the smallest step; [`Failure::OutOfReach`].
     pub fn step<M: Embedded, E: Measured<R>>(
         &mut self,
         equation: &mut E,
@@ -196,7 +196,7 @@ impl<R: Real> Adaptive<R> {
                     if !least.less(planned) {
                         self.step = None;
                         let small = Failure::StepTooSmall { step: h.to_f64(), time: from.t.to_f64() };
-                        return Err(equation.undecided(from.t).or(failure).unwrap_or(small));
+                        return Err(equation.obstacle().or(failure).unwrap_or(small));
                     }
                 }
             }

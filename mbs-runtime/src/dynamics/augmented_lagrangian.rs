@@ -1,12 +1,13 @@
 //! Augmented Lagrangian of index 3 with projections: stiff and redundant mechanisms at coarse steps.
 
 use super::implicit::{MOST_ITERATIONS, Tangent, add};
-use super::kkt::System;
+use super::kkt::{System, TRUNCATION};
 use super::metric::Metric;
 use super::model::{Counts, Formulation, Model, Solved};
 use super::motion::{Instant, Method};
 use super::multipliers::Unstabilized;
 use super::vector::{State, Vector};
+use crate::linear::orthogonal::margin_of_rows;
 use crate::{Dynamic, Failure, Real};
 
 /// α h²/4 over the largest entry of the mass, in the metric: each iteration of the multipliers gains four digits where the
@@ -175,6 +176,8 @@ fn projected<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     let qdd = put(&qdd, &mechanism.gamma(parameters, &position, &y.qd));
     let rate = model.rates(&position, &y, qdd, &lambda);
     model.trapezoid(from, h, &mut y, &rate);
-    let solved = Solved { rate, lambda, margin: R::constant(1.0) };
+    let Metric { rows, coordinates, .. } = model.metric;
+    let solved =
+        Solved { rate, lambda, margin: margin_of_rows(&phi_q, rows, coordinates, R::constant(TRUNCATION)) };
     Ok(Instant { t, y, solved, carried: qdd })
 }

@@ -47,8 +47,8 @@ pub trait Measured<T: Scalar>: Equation<T> {
         T::constant(0.0)
     }
 
-    /// Why no step from `t` (s) is accurate enough, where the equation knows.
-    fn undecided(&self, _t: T) -> Option<Failure> {
+    /// Why no step from the end of the last one is accurate enough, where the equation knows.
+    fn obstacle(&self) -> Option<Failure> {
         None
     }
 }

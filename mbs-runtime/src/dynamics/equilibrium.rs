@@ -5,6 +5,7 @@ use super::implicit::{MOST_ITERATIONS, Tangent};
 use super::kkt::{System, TRUNCATION};
 use super::metric::Metric;
 use super::model::{Counts, Model};
+use super::signed::parameter_failure;
 use super::text_start::close;
 use super::vector::{State, Vector};
 use crate::{Dynamic, Failure, Real, kinematics};
@@ -53,7 +54,7 @@ pub fn equilibrium<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>
     t: R,
     q: &[R; N],
 ) -> Result<Equilibrium<R, N, M>, Failure> {
-    if let Some(failure) = kinematics::variable_failure(mechanism) {
+    if let Some(failure) = parameter_failure(mechanism) {
         return Err(failure);
     }
     let parameters = mechanism.parameters();

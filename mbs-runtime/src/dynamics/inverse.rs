@@ -46,8 +46,9 @@ use super::metric::Metric;
 use super::model::{Counts, Formulation, Model, Solved};
 use super::multipliers::{Unstabilized, factorize};
 use super::projection::Projection;
+use super::signed::parameter_failure;
 use super::vector::State;
-use crate::{Dynamic, Failure, Motion, Real, kinematics};
+use crate::{Dynamic, Failure, Motion, Real};
 
 /// A driven mechanism at one time, with the forces that its motion needs.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -72,14 +73,14 @@ pub struct Driven<R, const N: usize, const M: usize, L> {
 /// it is taken as at rest in the mass's measure, and its acceleration follows from the forces.
 ///
 /// # Errors
-/// [`Failure::NonFinite`], [`Failure::OffConstraints`] where the rows contradict each other at this time,
+/// [`Failure::NonFinite`], [`Failure::Negative`], [`Failure::OffConstraints`] where the rows contradict each other at this time,
 /// [`Failure::Inertialess`].
 pub fn inverse<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     mechanism: &S,
     t: R,
     q: &[R; N],
 ) -> Result<Driven<R, N, M, S::Loads>, Failure> {
-    if let Some(failure) = kinematics::variable_failure(mechanism) {
+    if let Some(failure) = parameter_failure(mechanism) {
         return Err(failure);
     }
     let parameters = mechanism.parameters();

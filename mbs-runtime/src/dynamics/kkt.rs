@@ -2,7 +2,7 @@
 
 use super::blocks::Blocks;
 use super::metric::Metric;
-use super::null_space::NullSpace;
+use super::null_space::{LEAST_INERTIA, NullSpace};
 use crate::{Entry, Failure, Real};
 
 /// Smallest over largest pivot below which the LU factors are not used.
@@ -89,17 +89,36 @@ impl<R: Real, const N: usize, const M: usize> System<R, N, M> {
         coordinates: &[Entry],
         t: R,
     ) -> Result<Factors<R, N, M>, Failure> {
-        match NullSpace::factorize(&self.mass, &self.phi_q, truncation) {
-            Ok(null_space) => {
-                let margin = null_space.margin();
-                Ok(Factors { kind: Kind::NullSpace(null_space), ..self.factors(margin) })
-            }
-            Err(index) => {
-                let coordinate =
-                    crate::kinematics::entry(coordinates, u16::try_from(index).unwrap_or(u16::MAX));
-                Err(Failure::Inertialess { coordinate, time: t.to_f64() })
-            }
-        }
+        let null_space =
+            self.null_space(truncation, R::constant(LEAST_INERTIA) * R::EPSILON, coordinates, t)?;
+        let margin = null_space.margin();
+        Ok(Factors { kind: Kind::NullSpace(null_space), ..self.factors(margin) })
+    }
+
+    /// Fails where a motion that the rows leave free moves less than `share` of the mass that all of them move.
+    ///
+    /// # Errors
+    /// As [`factorize`](Self::factorize).
+    pub(super) fn require_inertia(&self, share: R, coordinates: &[Entry], t: R) -> Result<(), Failure> {
+        self.null_space(R::constant(TRUNCATION), share, coordinates, t).map(|_| ())
+    }
+
+    /// The first row of Φ_q without an entry above `least` in the metric.
+    pub(super) fn flat_row(&self, least: R) -> Option<usize> {
+        self.phi_q.iter().position(|row| row.iter().all(|entry| entry.abs() < least))
+    }
+
+    fn null_space(
+        &self,
+        truncation: R,
+        inertia: R,
+        coordinates: &[Entry],
+        t: R,
+    ) -> Result<NullSpace<R, N, M>, Failure> {
+        NullSpace::factorize(&self.mass, &self.phi_q, truncation, inertia).map_err(|index| {
+            let coordinate = crate::kinematics::entry(coordinates, u16::try_from(index).unwrap_or(u16::MAX));
+            Failure::Inertialess { coordinate, time: t.to_f64() }
+        })
     }
 
     fn factors(&self, margin: R) -> Factors<R, N, M> {

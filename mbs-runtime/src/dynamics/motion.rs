@@ -386,10 +386,9 @@ where
         if *margin < R::constant(ZONE) && step.is_finite() { step } else { R::constant(0.0) }
     }
 
-    fn undecided(&self, t: R) -> Option<Failure> {
-        let (_, margin, _) = &self.end;
-        let undecided = Failure::Undecided { margin: margin.to_f64(), time: t.to_f64() };
-        (*margin < R::constant(ZONE)).then_some(undecided)
+    fn obstacle(&self) -> Option<Failure> {
+        let (t, _, y) = &self.end;
+        self.model.moved(self.start, *t, |model| model.obstacle(*t, y))
     }
 
     /// The worst of coordinates, velocities, states and phases. Work is watched, not controlled: that it is watched changes no

@@ -7,7 +7,7 @@ use crate::linear::orthogonal::Reflection;
 const LEAST_SHARE: f64 = 1e-8;
 
 /// Smallest pivot of the reduced mass over its trace, in ε: below it, nothing but rounding moves.
-const LEAST_INERTIA: f64 = 64.0;
+pub(super) const LEAST_INERTIA: f64 = 64.0;
 
 /// A complete orthogonal decomposition of Φ_q, and LU of M on its null space, all in the reference metric.
 ///
@@ -35,8 +35,13 @@ impl<R: Real, const N: usize, const M: usize> NullSpace<R, N, M> {
     /// Factorises `mass` and `phi_q`; a row whose part of its own is below `truncation` times the longest row is
     /// dependent.
     ///
-    /// Fails with the coordinate that moves most in a free motion without inertia.
-    pub(super) fn factorize(mass: &[[R; N]; N], phi_q: &[[R; N]; M], truncation: R) -> Result<Self, usize> {
+    /// Fails with the coordinate that moves most in a free motion whose inertia is below `inertia` of that of all of them.
+    pub(super) fn factorize(
+        mass: &[[R; N]; N],
+        phi_q: &[[R; N]; M],
+        truncation: R,
+        inertia: R,
+    ) -> Result<Self, usize> {
         let zero = R::constant(0.0);
         let mut factors = NullSpace {
             rank: 0,
@@ -50,7 +55,7 @@ impl<R: Real, const N: usize, const M: usize> NullSpace<R, N, M> {
         };
         let rows = factors.reveal(*phi_q, truncation);
         factors.complete(&rows);
-        factors.reduce()?;
+        factors.reduce(inertia)?;
         Ok(factors)
     }
 
@@ -110,7 +115,7 @@ impl<R: Real, const N: usize, const M: usize> NullSpace<R, N, M> {
     }
 
     /// Before: Q. After: LU of the mass on the null space.
-    fn reduce(&mut self) -> Result<(), usize> {
+    fn reduce(&mut self, inertia: R) -> Result<(), usize> {
         let zero = R::constant(0.0);
         for j in self.rank..N {
             let direction = self.unit(j);
@@ -124,7 +129,7 @@ impl<R: Real, const N: usize, const M: usize> NullSpace<R, N, M> {
         let trace = (self.rank..N).fold(zero, |sum, j| sum + diagonal(&self.reduced, j).abs());
         for k in self.rank..N {
             let pivot = diagonal(&self.reduced, k);
-            if !(R::constant(LEAST_INERTIA) * R::EPSILON * trace).less(pivot.abs()) {
+            if !(inertia * trace).less(pivot.abs()) {
                 return Err(self.idle_coordinate(k));
             }
             let above = self.reduced.get(k).copied().unwrap_or([zero; N]);

@@ -9,6 +9,7 @@ use super::model::{Counts, Doubt, Formulation, Model};
 use super::motion::{Equations, Explicit, Instant, Method, Moving, beginning};
 use super::passage::Passage;
 use super::projection::Projection;
+use super::signed::parameter_failure;
 use super::text_start;
 use super::vector::State;
 use crate::limit::limit_failure;
@@ -80,7 +81,7 @@ where
     /// projected.
     ///
     /// # Errors
-    /// [`Failure::NonFinite`]; [`Failure::OffConstraints`] with the row that is violated most; those of the method.
+    /// [`Failure::NonFinite`]; [`Failure::Negative`]; [`Failure::OffConstraints`] with the row that is violated most; those of the method.
     pub fn start(
         mechanism: S,
         method: X,
@@ -95,7 +96,7 @@ where
     /// nearest in the mass's measure.
     ///
     /// # Errors
-    /// [`Failure::NonFinite`]; [`Failure::OffConstraints`] where the constraints cannot be met from there; those of the
+    /// [`Failure::NonFinite`]; [`Failure::Negative`]; [`Failure::OffConstraints`] where the constraints cannot be met from there; those of the
     /// method.
     pub fn start_near(
         mechanism: S,
@@ -126,7 +127,7 @@ where
         (q, qd): ([R; N], [R; N]),
         origin: Origin,
     ) -> Result<Self, Failure> {
-        if let Some(failure) = kinematics::variable_failure(&mechanism) {
+        if let Some(failure) = parameter_failure(&mechanism) {
             return Err(failure);
         }
         mechanism.start_phases(&q, t);
@@ -174,7 +175,7 @@ where
     ///
     /// # Errors
     /// [`Failure::InvalidStep`], [`Failure::StepTooLong`], [`Failure::Unbounded`], those of the method,
-    /// [`Failure::WrongBranch`]; the state is
+    /// [`Failure::WrongBranch`]; [`Failure::Flat`] and [`Failure::Inertialess`] where the state itself shows why. It is
     /// then bit for bit what it was.
     pub fn step(&mut self, h: R) -> Result<(), Failure> {
         let t = self.now.t + h;
@@ -185,9 +186,12 @@ where
         let mut counts = self.counts;
         let from = self.fresh(&mut counts)?;
         let model = self.model();
-        let next = self.method.step(&model, &from, h, &mut counts)?;
-        model.require_bounded(next.t, &from.y, &next.y)?;
-        model.check(next.t, &next.y)?;
+        let stepped = self.method.step(&model, &from, h, &mut counts);
+        let stepped = stepped.and_then(|next| {
+            model.require_bounded(next.t, &from.y, &next.y)?;
+            model.check(next.t, &next.y).map(|()| next)
+        });
+        let next = stepped.map_err(|failure| model.traced(failure, from.t, &from.y))?;
         model.check_assembly(next.t, &next.y, false)?;
         let phases = self.method.phases_after(&model, from.t, h)?;
         counts.steps += 1;
@@ -252,13 +256,13 @@ where
     /// Changes parameters or inputs; the next step solves with the new values. Energy that the change brings in or
     /// takes out is not counted as a defect.
     ///
-    /// A value that is NaN or infinite is reported by that step; change it back, and go on.
+    /// A value that is NaN or infinite, or a mass that is negative, is reported by that step; change it back, and go on.
     pub fn change<Y>(&mut self, change: impl FnOnce(&mut S) -> Y) -> Y {
         let before = self.model().total_energy(self.now.t, &self.now.y);
         let result = change(&mut self.mechanism);
         self.parameters = self.mechanism.parameters();
         self.metric = Metric::of(&self.mechanism, &self.parameters);
-        self.fault = kinematics::variable_failure(&self.mechanism);
+        self.fault = parameter_failure(&self.mechanism);
         let after = self.model().total_energy(self.now.t, &self.now.y);
         if (after - before).is_finite() {
             self.reference = self.reference + after - before;

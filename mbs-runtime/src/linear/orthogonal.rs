@@ -43,6 +43,23 @@ pub fn pivot_order<R: Real, const M: usize, const K: usize>(
     (factors.order, factors.rank)
 }
 
+/// How near `a` is to losing rank: its last pivot row by row over the first, in the reference metric; 1 without rows. Rows whose part
+/// of their own is below `tolerance` of the longest depend on the others and do not count.
+pub fn margin_of_rows<R: Real, const M: usize, const K: usize>(
+    a: &[[R; K]; M],
+    row_scales: &[R; M],
+    coordinate_scales: &[R; K],
+    tolerance: R,
+) -> R {
+    let factors = pivoted(super::in_metric(a, row_scales, coordinate_scales), tolerance);
+    let pivots = factors.pivots();
+    match (pivots.first(), pivots.iter().take(factors.rank).last()) {
+        (Some(first), Some(last)) => *last / *first,
+        _ if M == 0 => R::constant(1.0),
+        _ => R::constant(0.0),
+    }
+}
+
 /// Columns of W a D.
 pub(super) fn scaled_columns<R: Real, const M: usize, const K: usize>(
     a: &[[R; K]; M],

@@ -104,6 +104,36 @@ fn a_massless_joint_is_carried_and_a_massless_end_is_named() {
 }
 
 #[test]
+fn a_rod_without_length_is_named_whatever_integrates() {
+    let rods = [
+        Rod { from: End::Ground([0.0; 2]), to: End::Point(0), length: 1.0, mass: 0.0 },
+        Rod { from: End::Point(0), to: End::Point(1), length: 0.0, mass: 0.0 },
+    ];
+    let chain = Linkage::new(rods, [1.0; 4], [0.0, -9.81]);
+    let start = [0.6, -0.8, 0.6, -0.8];
+    let method = Explicit::new(DormandPrince8, Projection::default());
+    let mut adaptive = Simulation::start(chain, method, 0.0, start, [0.0; 4]).unwrap();
+    let failure = adaptive.advance_to(1.0).unwrap_err();
+    assert!(matches!(failure, Failure::Flat { .. }), "{failure}");
+    let method = Explicit::new(RungeKutta4, Projection::default());
+    let mut equal = Simulation::start(chain, method, 0.0, start, [0.0; 4]).unwrap();
+    let failure = equal.step_to(1.0, 100).unwrap_err();
+    assert!(matches!(failure, Failure::Flat { .. }), "{failure}");
+}
+
+#[test]
+fn a_massless_joint_that_falls_into_line_is_named_where_the_run_ends() {
+    let method = Explicit::new(DormandPrince8, Projection::default());
+    // The end falls freely until both rods are in line.
+    let start = [0.6, -0.8, 1.2, 0.0];
+    let mut light = Simulation::start(chain(0.0, 1.0), method, 0.0, start, [0.0; 4]).unwrap();
+    let failure = light.advance_to(2.0).unwrap_err();
+    let Failure::Inertialess { time, .. } = failure else { panic!("{failure}") };
+    let fallen = (2.0 * (4.0_f64 - 1.44).sqrt() / 9.81).sqrt();
+    assert!((time - fallen).abs() < 1e-6, "{time} {fallen}");
+}
+
+#[test]
 fn a_row_twice_shares_its_multiplier_and_is_named() {
     let (linkage, q, _) = parallel_loops::<4, 4>(0.3, 1.0);
     use mbs_runtime::{Dynamic, Mechanism};

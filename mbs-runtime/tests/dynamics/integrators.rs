@@ -205,6 +205,51 @@ fn where_no_step_is_small_enough_the_failure_says_so() {
     assert!(matches!(run(1e300), Failure::OutOfReach { time: 0.0, .. }), "{}", run(1e300));
 }
 
+/// A rate that is another one each time it is asked for, with a least step worth trying; counts how often it is asked.
+struct Noise {
+    least: f64,
+    asked: u32,
+}
+
+impl Equation<f64> for Noise {
+    type State = [f64; 1];
+
+    fn rate(&mut self, _: f64, _: &[f64; 1]) -> Result<[f64; 1], Failure> {
+        self.asked += 1;
+        Ok([if self.asked.is_multiple_of(2) { 1.0 } else { -1.0 }])
+    }
+}
+
+impl Measured<f64> for Noise {
+    /// Of an error in the rate, which no step makes smaller.
+    fn measure<const K: usize>(&self, _: &[f64; 1], _: &[f64; 1], errors: [&[f64; 1]; K]) -> [f64; K] {
+        errors.map(|error| if error[0] == 0.0 { 0.0 } else { 2.0 })
+    }
+
+    fn least_step(&self) -> f64 {
+        self.least
+    }
+
+    fn obstacle(&self) -> Option<Failure> {
+        Some(Failure::Undecided { margin: self.least, time: 0.0 })
+    }
+}
+
+#[test]
+fn a_step_is_not_made_smaller_than_the_equation_says_is_worth_trying() {
+    let from = Point { t: 0.0, y: [0.0], rate: [1.0] };
+    let asked = |least: f64| {
+        let (mut noise, mut adaptive) = (Noise { least, asked: 0 }, Adaptive::default().with_first(0.1));
+        let failure = adaptive.step::<DormandPrince5, _>(&mut noise, &from, 1.0, false).unwrap_err();
+        assert!(matches!(failure, Failure::Undecided { .. }), "{failure}");
+        (noise.asked, adaptive.step)
+    };
+    let ((few, step), (many, _)) = (asked(1e-3), asked(0.0));
+    // A tenth to a thousandth at a fifth to nine tenths a trial; down to what the time resolves it takes five times as many decades.
+    assert!(0 < few && 5 * few < many, "{few} {many}");
+    assert_eq!(step, None);
+}
+
 #[test]
 fn an_end_that_is_not_ahead_is_refused() {
     let from = Point { t: 1.0, y: [1.0], rate: [1.0] };

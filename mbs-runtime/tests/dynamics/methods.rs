@@ -110,7 +110,7 @@ fn implicit_methods_are_of_order_two() {
 }
 
 #[test]
-fn two_half_steps_against_a_whole_one_are_of_order_three() {
+fn three_thirds_of_a_step_against_a_whole_one_are_of_order_three() {
     let [coarse, fine] = [500, 1000].map(|steps| error(&stepped(Extrapolated, steps)));
     let order = (coarse / fine).log2();
     assert!((order - 3.0).abs() < 0.1, "{order}: {coarse:e} {fine:e}");
@@ -143,6 +143,10 @@ fn a_stiff_damper_is_no_matter_for_implicit_methods() {
     let mut alpha = Simulation::start(stiff, GeneralizedAlpha::default(), 0.0, [1.0, 0.0], [0.0; 2]).unwrap();
     alpha.step_to(1.0, 100).unwrap();
     assert!((alpha.q()[1] + 9.81e-5).abs() < 1e-5, "{:e}", alpha.q()[1]);
+    // Damped a thousand times faster than a step shows; of what the start leaves a step takes off a thirtieth.
+    let mut extrapolated = Simulation::start(stiff, Extrapolated, 0.0, [1.0, 0.0], [0.0; 2]).unwrap();
+    extrapolated.step_to(1.0, 100).unwrap();
+    assert!((extrapolated.q()[1] + 9.81e-5).abs() < 1e-5, "{:e}", extrapolated.q()[1]);
     let mut explicit = Simulation::start(
         stiff,
         Explicit::new(RungeKutta4, Projection::default()),
@@ -164,6 +168,27 @@ fn redundant_rows_and_singular_positions_are_no_matter_for_the_augmented_lagrang
     let counts = simulation.counts();
     assert!(100 * counts.unfinished < counts.steps, "{counts:?}");
     assert!(balance.phi < 1e-12 && balance.defect.abs() < 1e-3, "{balance:?}");
+}
+
+#[test]
+fn the_augmented_lagrangian_knows_how_near_it_is_to_a_singular_position_and_that_it_passed_one() {
+    let (linkage, q, qd) = parallel_loops::<6, 5>(0.0, 1.0);
+    let mut simulation = Simulation::start(linkage, AugmentedLagrangian, 0.0, q, qd).unwrap();
+    let method = Explicit::new(DormandPrince8, Projection::default());
+    let mut projected =
+        Simulation::start(linkage, method, 0.0, q, qd).unwrap().with_tolerance(Tolerance::new(1e-9));
+    for instant in 1..=10 {
+        let t = 0.05 * f64::from(instant);
+        simulation.step_to(t, 50).unwrap();
+        projected.advance_to(t).unwrap();
+        let ratio = simulation.margin() / projected.margin();
+        // One by orthogonal pivots, the other by those of the whole system.
+        assert!((0.3..3.0).contains(&ratio), "{} {} at {t} s", simulation.margin(), projected.margin());
+    }
+    assert_eq!(simulation.passage(), None);
+    simulation.step_to(0.8, 300).unwrap();
+    let passage = simulation.passage().unwrap();
+    assert!((passage.t - 0.72).abs() < 0.02 && passage.margin < 0.01, "{passage:?}");
 }
 
 #[test]

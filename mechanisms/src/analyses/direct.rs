@@ -46,7 +46,7 @@ pub struct Implicit {
 pub enum ImplicitMethod {
     /// Trapezoidal rule with penalties, multipliers and projections; redundant rows need no care.
     AugmentedLagrangian,
-    /// Two half steps of it against a whole one, extrapolated.
+    /// Three thirds of a step by it against a whole one, extrapolated.
     Extrapolated,
     /// Generalised-α on the equations of index 3, ρ∞ = 0.8.
     GeneralizedAlpha,
@@ -130,7 +130,8 @@ pub struct Simulated {
     pub replaced: bool,
     /// What is doubtful about the stabilisation.
     pub doubt: Option<Doubt>,
-    /// Time (s) from which on the motion is not determined, where the method does not lead through a singular position.
+    /// Time (s) from which on the motion is not determined, where the method does not lead through a singular position; none of a run
+    /// that is lost.
     pub undetermined: Option<f64>,
     /// Why the motion ends early.
     pub failure: Option<Failure>,
@@ -149,6 +150,8 @@ pub struct PartitionedFunctions<S, const N: usize> {
     pub start: fn(&S, f64) -> Start<N>,
     /// A motion from a start through times (s).
     pub by_velocity: Simulate<S, N>,
+    /// The independent coordinates: as the text names them, or chosen.
+    pub independent: &'static [u16],
 }
 
 impl<S, const N: usize> PartitionedFunctions<S, N> {
@@ -157,7 +160,11 @@ impl<S, const N: usize> PartitionedFunctions<S, N> {
     where
         S: Dynamic<f64, N, M> + Partitioned<f64, N, M>,
     {
-        PartitionedFunctions { start: start::<S, N, M>, by_velocity: by_velocity::<S, N, M> }
+        PartitionedFunctions {
+            start: start::<S, N, M>,
+            by_velocity: by_velocity::<S, N, M>,
+            independent: <S as Partitioned<f64, N, M>>::INDEPENDENT,
+        }
     }
 
     /// Of `S` whose rows follow from one another, so that no blocks lead through them: the text's start, and projection onto all
@@ -166,7 +173,11 @@ impl<S, const N: usize> PartitionedFunctions<S, N> {
     where
         S: Dynamic<f64, N, M>,
     {
-        PartitionedFunctions { start: text_start::<S, N, M>, by_velocity: by_projection::<S, N, M> }
+        PartitionedFunctions {
+            start: text_start::<S, N, M>,
+            by_velocity: by_projection::<S, N, M>,
+            independent: &[],
+        }
     }
 }
 
@@ -357,7 +368,9 @@ where
     motion.dynamics = Some(forces);
     let counts = run.counts();
     let elapsed = started.elapsed();
-    let undetermined = run.passage().map(|passage| passage.t);
+    // A run that is lost moves its margin as it likes: what ends it is all there is to say.
+    let lost = matches!(failure, Some(Failure::Unbounded { .. } | Failure::NonFinite { .. }));
+    let undetermined = run.passage().filter(|_| !lost).map(|passage| passage.t);
     (Simulated { motion, counts, rejected: 0, replaced: false, doubt, undetermined, failure, elapsed }, run)
 }
 

@@ -1,7 +1,7 @@
 //! Small motions about a position of rest or a moving state, and their eigenvalues.
 
-use mbs_runtime::Dynamic;
-use mbs_runtime::dynamics::{Linearization, linearize};
+use mbs_runtime::dynamics::{Linearization, linearize_in};
+use mbs_runtime::{Dynamic, Entry};
 use nalgebra::{DMatrix, Schur};
 
 use crate::facade::Motion;
@@ -25,6 +25,10 @@ pub struct SmallMotions {
     pub norm: f64,
     /// Whether the state moves: the eigenvalues are those of one moment (frozen-time).
     pub frozen: bool,
+    /// The coordinates that s are the variations of about a state that moves; none about a rest.
+    pub coordinates: Vec<&'static str>,
+    /// Independent coordinates of the text that are not among them, because there they do not determine the others.
+    pub passed_over: Vec<&'static str>,
 }
 
 /// What becomes of small motions.
@@ -59,12 +63,14 @@ impl SmallMotions {
     }
 }
 
-/// Small motions about the last instant of `motion`, which has multipliers.
+/// Small motions about the last instant of `motion`, which has multipliers; where it moves in the coordinates `independent`, as far as
+/// they determine the others.
 ///
 /// # Errors
 /// Why not, in words: those of [`linearize`](fn@linearize), or that no eigenvalues come out.
 pub(crate) fn small_motions<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
     mechanism: &S,
+    independent: &[u16],
     motion: &Motion,
 ) -> Result<SmallMotions, String> {
     let last = |values: &[f64]| values.last().copied().unwrap_or(f64::NAN);
@@ -78,15 +84,34 @@ pub(crate) fn small_motions<S: Dynamic<f64, N, M>, const N: usize, const M: usiz
     lambda.iter_mut().zip(multipliers).for_each(|(slot, curve)| *slot = last(&curve.value));
     let mut mechanism = mechanism.clone();
     mechanism.start_phases(&q, t);
-    let linear = linearize(&mechanism, t, (&q, &qd, &qdd), &lambda).map_err(|failure| failure.to_string())?;
-    eigenvalues(&linear).ok_or_else(|| "the masses of the free motions are not positive definite".to_string())
+    let linear = linearize_in(&mechanism, t, (&q, &qd, &qdd), &lambda, independent)
+        .map_err(|failure| failure.to_string())?;
+    let mut small = eigenvalues(&linear)
+        .ok_or_else(|| "the masses of the free motions are not positive definite".to_string())?;
+    if linear.frozen {
+        let marked = |index: usize| linear.independent.get(index).copied().unwrap_or(false);
+        let named = |(_, entry): (usize, &Entry)| entry.name;
+        let entries = || S::COORDINATES.iter().enumerate();
+        let wanted = |index: usize| independent.iter().any(|known| usize::from(*known) == index);
+        small.coordinates = entries().filter(|(index, _)| marked(*index)).map(named).collect();
+        small.passed_over =
+            entries().filter(|(index, _)| wanted(*index) && !marked(*index)).map(named).collect();
+    }
+    Ok(small)
 }
 
 /// Eigenvalues of reduced matrices; none where the mass matrix is not positive definite.
 fn eigenvalues<const N: usize>(linear: &Linearization<f64, N>) -> Option<SmallMotions> {
     let size = linear.freedom;
     let of = |matrix: &[[f64; N]; N]| DMatrix::from_fn(size, size, |i, j| matrix[i][j]);
-    let nothing = SmallMotions { freedom: 0, eigenvalues: Vec::new(), norm: 0.0, frozen: linear.frozen };
+    let nothing = SmallMotions {
+        freedom: size,
+        eigenvalues: Vec::new(),
+        norm: 0.0,
+        frozen: linear.frozen,
+        coordinates: Vec::new(),
+        passed_over: Vec::new(),
+    };
     if size == 0 {
         return Some(nothing);
     }
@@ -113,7 +138,7 @@ fn eigenvalues<const N: usize>(linear: &Linearization<f64, N>) -> Option<SmallMo
     found.sort_by(|a, b| {
         a[1].abs().total_cmp(&b[1].abs()).then(a[0].total_cmp(&b[0])).then(a[1].total_cmp(&b[1]))
     });
-    Some(SmallMotions { freedom: size, eigenvalues: found, norm, frozen: linear.frozen })
+    Some(SmallMotions { eigenvalues: found, norm, ..nothing })
 }
 
 #[cfg(test)]

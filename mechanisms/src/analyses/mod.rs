@@ -83,6 +83,6 @@ impl<S: Dynamic<f64, N, M>, const N: usize, const M: usize> AnyDynamics for Mass
 
     #[cfg(feature = "ready")]
     fn small_motions(&self, motion: &Motion) -> Result<SmallMotions, String> {
-        linear::small_motions(&self.kinematics.0, motion)
+        linear::small_motions(&self.kinematics.0, self.partitioned.independent, motion)
     }
 }

@@ -11,7 +11,7 @@ use mechanisms::analyses::AnyDynamics;
 use mechanisms::analyses::direct::{
     Approach, Implicit, ImplicitMethod, Pair, Rule, Simulated, Stabilization, Steps,
 };
-use mechanisms::analyses::linear::{Fate, ZERO};
+use mechanisms::analyses::linear::{Fate, SmallMotions, ZERO};
 use mechanisms::analyses::rest::Rest;
 use mechanisms::facade::{AnyMechanism, Motion, MotionStop};
 use mechanisms::motion::{DependentRow, Forces, LoadCurve};
@@ -51,7 +51,7 @@ pub enum MethodName {
     Velocity,
     /// Implicit trapezoidal steps of `--step` with penalties and multipliers, for stiff forces
     AugmentedLagrangian,
-    /// The same, two half steps extrapolated against a whole one: order 3
+    /// The same, three thirds of a step extrapolated against a whole one: order 3
     Extrapolated,
     /// Implicit steps of `--step` by generalised-alpha, for stiff forces
     GeneralizedAlpha,
@@ -512,12 +512,24 @@ fn linear(dynamics: &dyn AnyDynamics, found: Found) -> Found {
     };
     figures.push(["small motions about".to_string(), about]);
     figures.push(["degrees of freedom".to_string(), small.freedom.to_string()]);
+    if small.frozen {
+        figures.push(["in the coordinates".to_string(), variations(&small)]);
+    }
     // Of a pair the one with the positive imaginary part speaks for both.
     let spoken = small.eigenvalues.iter().filter(|[_, imaginary]| *imaginary >= 0.0);
     for (number, value) in spoken.enumerate() {
         figures.push([format!("eigenvalue {}", number + 1), spelt(*value, small.norm)]);
     }
     Ok((motion, figures))
+}
+
+/// The coordinates that small motions about a moving state are the variations of, and which of the text's are not among them.
+fn variations(small: &SmallMotions) -> String {
+    let names = small.coordinates.join(", ");
+    match small.passed_over.as_slice() {
+        [] => names,
+        others => format!("{names}; {} would not determine the others there", others.join(", ")),
+    }
 }
 
 /// An eigenvalue (1/s) of a system of this norm, with what it means.

@@ -18,13 +18,15 @@ pub struct Arguments {
     out: Option<PathBuf>,
 }
 
-/// Φ, Φ_q, Φ_t and γ as a document for `pdflatex`.
+/// Φ, Φ_q, Φ_t and γ, of a mechanism with masses M, Q and the energies too, as a document for `pdflatex`.
 pub fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<(), CommandError> {
     let choice = arguments.chosen.described()?;
     let mechanism = choice.equations();
     let formulas = mbs_codegen::latex_formulas(mechanism.source(), Some(mechanism.scene()))
         .map_err(CommandError::Failed)?;
-    let text = document(mechanism, &formulas, choice.subject.title());
+    let dynamic = mbs_codegen::latex_dynamic_formulas(mechanism.source(), Some(mechanism.scene()))
+        .map_err(CommandError::Failed)?;
+    let text = document(mechanism, &formulas, dynamic.as_ref(), choice.subject.title());
     match &arguments.out {
         None => out.write_all(text.as_bytes())?,
         Some(path) => {

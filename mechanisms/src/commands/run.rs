@@ -61,7 +61,7 @@ pub struct Arguments {
     /// Equal steps that the motion is divided into; those of the integrator end there too [default: 720]
     #[arg(long, value_parser = steps, allow_negative_numbers = true)]
     steps: Option<usize>,
-    /// How a motion from forces stays on its constraints [default: projection, of many rows velocity, of stiff mechanisms augmented-lagrangian]
+    /// How a motion from forces stays on its constraints [default: projection, of many rows velocity, of stiff mechanisms extrapolated]
     #[arg(long, value_enum)]
     method: Option<MethodName>,
     /// What integrates it, where the method has no steps of its own [default: order8, of forty four-bars rk4]
@@ -104,7 +104,7 @@ impl Arguments {
         let method = self.method.unwrap_or(match subject.usual() {
             Usual::Projection => MethodName::Projection,
             Usual::Velocity | Usual::VelocityInEqualSteps => MethodName::Velocity,
-            Usual::AugmentedLagrangian => MethodName::AugmentedLagrangian,
+            Usual::Extrapolated => MethodName::Extrapolated,
         });
         let usual = match subject.usual() {
             Usual::VelocityInEqualSteps if self.method.is_none() && self.tolerance.is_none() => {

@@ -1,8 +1,8 @@
-//! Φ and its derivatives as a LaTeX document, ready to compile.
+//! Φ and its derivatives, masses and forces as a LaTeX document, ready to compile.
 
 use std::fmt::Write;
 
-use mbs_codegen::Formulas;
+use mbs_codegen::{DynamicFormulas, Formulas};
 
 use super::matrix::short;
 use crate::facade::AnyEquations;
@@ -19,8 +19,14 @@ const PREAMBLE: &str = "\\documentclass[a4paper]{article}
   \\ifdim\\wd\\wide>\\linewidth\\resizebox{\\linewidth}{!}{\\usebox{\\wide}}\\else\\usebox{\\wide}\\fi}
 ";
 
-/// The document of `mechanism` from its `formulas` in LaTeX's spelling; `title` is plain text.
-pub fn document(mechanism: &dyn AnyEquations, formulas: &Formulas, title: &str) -> String {
+/// The document of `mechanism` from its formulas in LaTeX's spelling, with `dynamic` ones where it has masses; `title` is plain
+/// text.
+pub fn document(
+    mechanism: &dyn AnyEquations,
+    formulas: &Formulas,
+    dynamic: Option<&DynamicFormulas>,
+    title: &str,
+) -> String {
     let n = formulas.coordinates.len();
     let mut text = String::from(PREAMBLE);
     // amsmath stops at ten columns.
@@ -31,22 +37,21 @@ pub fn document(mechanism: &dyn AnyEquations, formulas: &Formulas, title: &str) 
     parameters(&mut text, mechanism, formulas);
     let rows = formulas.rows.iter().enumerate().map(|(k, row)| format!("{}:~${row}$", k + 1));
     let _ = writeln!(text, "Rows: {}.\n\n\\bigskip", rows.collect::<Vec<_>>().join(", "));
-    for (name, meaning) in &formulas.definitions {
-        display(&mut text, "Abbreviation", &format!("{name} = {meaning}"));
-    }
+    abbreviations(&mut text, &formulas.definitions);
     let sections = [
         ("Constraints", "\\boldsymbol{\\Phi}(\\mathbf{q}, t) =", column(&formulas.phi), " = \\mathbf{0}"),
-        ("Jacobian", "\\boldsymbol{\\Phi}_{\\mathbf{q}} =", jacobian(formulas), ""),
+        ("Jacobian", "\\boldsymbol{\\Phi}_{\\mathbf{q}} =", shortened("\\Phi", &formulas.phi_q), ""),
         ("Velocities", "\\boldsymbol{\\Phi}_t =", column(&formulas.phi_t), VELOCITY),
         ("Accelerations", "\\boldsymbol{\\gamma} =", column(&formulas.gamma), ACCELERATION),
     ];
     for (heading, left, middle, right) in sections {
         display(&mut text, heading, &format!("{left} {middle}{right}"));
     }
-    if is_wide(formulas) {
-        entries(&mut text, formulas);
-    }
+    entries(&mut text, "Jacobian", "\\Phi", &formulas.phi_q);
     display(&mut text, "with", GAMMA);
+    if let Some(dynamic) = dynamic {
+        masses(&mut text, dynamic);
+    }
     text.push_str("\\end{document}\n");
     text
 }
@@ -57,6 +62,29 @@ const ACCELERATION: &str =
     ",\\qquad \\boldsymbol{\\Phi}_{\\mathbf{q}}\\,\\ddot{\\mathbf{q}} = \\boldsymbol{\\gamma}";
 const GAMMA: &str = "\\boldsymbol{\\gamma} = -\\left(\\boldsymbol{\\Phi}_{\\mathbf{q}}\\,\\dot{\\mathbf{q}}\\right)_{\\mathbf{q}}\\dot{\\mathbf{q}} \
      - 2\\,\\boldsymbol{\\Phi}_{\\mathbf{q}t}\\,\\dot{\\mathbf{q}} - \\boldsymbol{\\Phi}_{tt}";
+
+const MOTION: &str = "\\mathbf{M}\\,\\ddot{\\mathbf{q}} + \\boldsymbol{\\Phi}_{\\mathbf{q}}^T\\,\\boldsymbol{\\lambda} = \\mathbf{Q}";
+
+/// M, Q and the energies, with what holds between them.
+fn masses(text: &mut String, formulas: &DynamicFormulas) {
+    display(text, "Motion", MOTION);
+    abbreviations(text, &formulas.definitions);
+    display(text, "Mass matrix", &format!("\\mathbf{{M}} = {}", shortened("M", &formulas.mass)));
+    entries(text, "mass matrix", "M", &formulas.mass);
+    display(
+        text,
+        "Forces, those of inertia from velocities included",
+        &format!("\\mathbf{{Q}} = {}", column(&formulas.force)),
+    );
+    display(text, "Kinetic energy", &format!("T = {}", formulas.kinetic));
+    display(text, "Potential energy", &format!("V = {}", formulas.potential));
+}
+
+fn abbreviations(text: &mut String, definitions: &[(String, String)]) {
+    for (name, meaning) in definitions {
+        display(text, "Abbreviation", &format!("{name} = {meaning}"));
+    }
+}
 
 fn display(text: &mut String, heading: &str, formula: &str) {
     let _ =
@@ -71,14 +99,14 @@ fn matrix(rows: &[Vec<String>]) -> String {
     column(&rows.iter().map(|row| row.join(" & ")).collect::<Vec<_>>())
 }
 
-/// Letters of a line that the Jacobian may fill before it becomes too small to read.
+/// Letters of a line that a matrix may fill before it becomes too small to read.
 const WIDEST: usize = 160;
 
-/// Whether the Jacobian written out is too wide for a page.
-fn is_wide(formulas: &Formulas) -> bool {
-    let column =
-        |k: usize| formulas.phi_q.iter().filter_map(|row| row.get(k)).map(|entry| letters(entry)).max();
-    (0..formulas.coordinates.len()).filter_map(column).map(|width| width + 2).sum::<usize>() > WIDEST
+/// Whether a matrix written out is too wide for a page.
+fn is_wide(rows: &[Vec<String>]) -> bool {
+    let column = |k: usize| rows.iter().filter_map(|row| row.get(k)).map(|entry| letters(entry)).max();
+    let columns = rows.first().map_or(0, Vec::len);
+    (0..columns).filter_map(column).map(|width| width + 2).sum::<usize>() > WIDEST
 }
 
 /// What is seen of a formula: a command counts as one letter, braces as none.
@@ -95,30 +123,32 @@ fn letters(formula: &str) -> usize {
     count
 }
 
-/// Written out, or where that is too wide with a sign for each entry that is not zero.
-fn jacobian(formulas: &Formulas) -> String {
-    if !is_wide(formulas) {
-        return matrix(&formulas.phi_q);
+/// Written out, or where that is too wide with `symbol` for each entry that is not zero.
+fn shortened(symbol: &str, rows: &[Vec<String>]) -> String {
+    if !is_wide(rows) {
+        return matrix(rows);
     }
     let sign = |row: usize, column: usize, entry: &str| match entry {
         "0" | "1" | "-1" => entry.to_string(),
-        _ => format!("\\Phi_{{{},{}}}", row + 1, column + 1),
+        _ => format!("{symbol}_{{{},{}}}", row + 1, column + 1),
     };
-    let rows = formulas.phi_q.iter().enumerate();
-    let rows = rows.map(|(row, entries)| {
+    let rows = rows.iter().enumerate().map(|(row, entries)| {
         entries.iter().enumerate().map(|(column, entry)| sign(row, column, entry)).collect::<Vec<_>>()
     });
     matrix(&rows.collect::<Vec<_>>())
 }
 
-/// The entries that the signs of a wide Jacobian stand for.
-fn entries(text: &mut String, formulas: &Formulas) {
-    let _ = writeln!(text, "Entries of the Jacobian:\n\n\\smallskip");
-    for (row, entries) in formulas.phi_q.iter().enumerate() {
+/// The entries that the symbols of a wide matrix stand for.
+fn entries(text: &mut String, name: &str, symbol: &str, rows: &[Vec<String>]) {
+    if !is_wide(rows) {
+        return;
+    }
+    let _ = writeln!(text, "Entries of the {name}:\n\n\\smallskip");
+    for (row, entries) in rows.iter().enumerate() {
         for (column, entry) in
             entries.iter().enumerate().filter(|(_, e)| !matches!(e.as_str(), "0" | "1" | "-1"))
         {
-            let _ = writeln!(text, "\\fitted{{\\Phi_{{{},{}}} = {entry}}}\n", row + 1, column + 1);
+            let _ = writeln!(text, "\\fitted{{{symbol}_{{{},{}}} = {entry}}}\n", row + 1, column + 1);
         }
     }
     text.push_str("\\bigskip\n");
@@ -212,7 +242,7 @@ mod tests {
             let mechanism = (card.make)();
             let formulas = mbs_codegen::latex_formulas(mechanism.source(), Some(mechanism.scene()))
                 .expect("a good text");
-            let text = document(mechanism.as_ref(), &formulas, card.title);
+            let text = document(mechanism.as_ref(), &formulas, None, card.title);
             assert_well_formed(&text);
             assert!(text.starts_with("\\documentclass") && text.ends_with("\\end{document}\n"));
         }
@@ -220,13 +250,9 @@ mod tests {
 
     #[test]
     fn a_wide_jacobian_is_written_with_signs() {
-        let formulas = |width: usize| Formulas {
-            coordinates: vec!["x".into(), "y".into()],
-            phi_q: vec![vec!["a".repeat(width), "0".into()], vec!["1".into(), "\\sin x".into()]],
-            ..Formulas::default()
-        };
-        assert!(!is_wide(&formulas(20)) && jacobian(&formulas(20)).contains("aaa"));
-        let wide = jacobian(&formulas(200));
+        let rows = |width: usize| [vec!["a".repeat(width), "0".into()], vec!["1".into(), "\\sin x".into()]];
+        assert!(!is_wide(&rows(20)) && shortened("\\Phi", &rows(20)).contains("aaa"));
+        let wide = shortened("\\Phi", &rows(200));
         assert!(wide.contains("\\Phi_{1,1} & 0") && wide.contains("1 & \\Phi_{2,2}"), "{wide}");
         assert_eq!(letters("L_{1}\\,\\sin \\varphi_{1}"), 6);
     }

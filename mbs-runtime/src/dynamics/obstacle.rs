@@ -1,0 +1,58 @@
+//! What stands in the way of a motion that no step leads on, as far as its state shows it.
+
+use super::both_sides::ZONE;
+use super::kkt::{System, TRUNCATION};
+use super::model::Model;
+use super::vector::State;
+use crate::{Dynamic, Failure, Real, kinematics};
+
+/// Largest entry of a row of Φ_q, in √ε in the metric, that is none: a row that is flat at a place holds it to the root of the 64 ε
+/// that its residual may have, 8 √ε, where its entries are twice that.
+const FLAT: f64 = 64.0;
+
+/// Residual of a row in the metric from which on a state has left the constraints and shows nothing about the mechanism.
+const LEFT: f64 = 1e-3;
+
+/// Inertia of a free motion over that of all of them which counts as none where no step is accurate enough: a bob of 1 kg on a cart
+/// of 1e-6 kg, the lightest of the ready mechanisms, has that much and moves.
+const LEAST_INERTIA: f64 = 1e-7;
+
+impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, R, N, M> {
+    /// Why no step leads on from a state: a row that no coordinate changes, a singular position, a motion without mass. None
+    /// where the state is as good as any.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn obstacle(&self, t: R, y: &State<R, N, S::States>) -> Option<Failure> {
+        let position = self.position(t, y);
+        let mass = self.mechanism.mass(self.parameters, &position);
+        let phi_q = self.mechanism.phi_q(self.parameters, &position);
+        let residuals = self.mechanism.phi(self.parameters, &position);
+        if !(self.worst(&residuals, &self.metric.rows).0 < R::constant(LEFT)) {
+            return None;
+        }
+        let system = System::new(&mass, &phi_q, self.metric);
+        if let Some(index) = system.flat_row(R::constant(FLAT) * R::EPSILON.sqrt()) {
+            let row = kinematics::entry(S::ROWS, u16::try_from(index).unwrap_or(u16::MAX));
+            return Some(Failure::Flat { row, time: t.to_f64() });
+        }
+        let margin = match system.factorize_rank_revealing(R::constant(TRUNCATION), S::COORDINATES, t) {
+            Ok(factors) => factors.margin(),
+            Err(failure) => return Some(failure),
+        };
+        if margin < R::constant(ZONE) {
+            return Some(Failure::Undecided { margin: margin.to_f64(), time: t.to_f64() });
+        }
+        system.require_inertia(R::constant(LEAST_INERTIA), S::COORDINATES, t).err()
+    }
+
+    /// What a step from a state failed with, or what stands in its way there.
+    pub(super) fn traced(&self, failure: Failure, t: R, y: &State<R, N, S::States>) -> Failure {
+        let lost = matches!(
+            failure,
+            Failure::Unbounded { .. } | Failure::OffConstraints { .. } | Failure::Unbalanced { .. }
+        );
+        // Next to a singular position a shorter step may do, and the failure says so.
+        let found = lost.then(|| self.obstacle(t, y)).flatten();
+        found.filter(|found| !matches!(found, Failure::Undecided { .. })).unwrap_or(failure)
+    }
+}
