@@ -4,6 +4,7 @@ use core::array::from_fn;
 
 use crate::diagnosis::Statistics;
 use crate::lanes::LaneMask;
+use crate::stepper::Drift;
 use crate::trial::{Start, Trial, weights};
 use crate::{Failure, Kinematic, Lanes, Mechanism, Real, Scalar, Stepper};
 
@@ -38,8 +39,7 @@ where
 /// What the last step of each lane left behind, beside its position and rates.
 #[derive(Clone, Copy)]
 struct Notes<R, const L: usize> {
-    /// What the margin changed by over the time (s) that it took.
-    margin_rate: Lanes<R, L>,
+    drift: Drift<Lanes<R, L>>,
     residual: Lanes<R, L>,
     correction: Lanes<R, L>,
     row: [u16; L],
@@ -111,10 +111,11 @@ where
             let doubtful = trial;
             return self.apart(&doubtful, plain, t);
         }
-        self.notes = self.notes.after(&trial, self.margin, Lanes(t) - self.t);
+        let notes = self.notes.after(&trial, self.margin, Lanes(t) - self.t);
+        self.notes = notes;
         (self.t, self.q, self.qd, self.qdd) = (Lanes(t), trial.q, trial.qd, trial.qdd);
         self.margin = trial.margin;
-        from_fn(|lane| Ok(self.notes.statistics(lane)))
+        from_fn(|lane| Ok(notes.statistics(lane)))
     }
 
     /// Takes the step over in the lanes of `plain`; the others are stepped alone.
@@ -137,7 +138,7 @@ where
             if !Lanes::<R, L>::test(plain, lane) {
                 return self.alone(lane, Lanes(t).lane(lane));
             }
-            self.notes.put(lane, notes.margin_rate.lane(lane), notes.statistics(lane));
+            self.notes.put(lane, notes.drift(lane), notes.statistics(lane));
             self.notes.count(lane, notes.passages(lane), notes.orientation(lane));
             Ok(notes.statistics(lane))
         })
@@ -160,8 +161,8 @@ where
         let mut stepper = self.steppers.get(lane).or(self.steppers.last()).cloned()?;
         let (state, margin) = self.state(lane);
         stepper.state.set(state, margin);
-        let (margin_rate, statistics) = (self.notes.margin_rate.lane(lane), self.notes.statistics(lane));
-        stepper.state.note(margin_rate, statistics, self.notes.passages(lane), self.notes.orientation(lane));
+        let (drift, statistics) = (self.notes.drift(lane), self.notes.statistics(lane));
+        stepper.state.note(drift, statistics, self.notes.passages(lane), self.notes.orientation(lane));
         Some(stepper)
     }
 
@@ -194,8 +195,8 @@ where
             return Err(Failure::NonFinite { name: "t", line: 0 });
         };
         stepper.state.set(state, margin);
-        let (margin_rate, statistics) = (self.notes.margin_rate.lane(lane), self.notes.statistics(lane));
-        stepper.state.note(margin_rate, statistics, self.notes.passages(lane), self.notes.orientation(lane));
+        let (drift, statistics) = (self.notes.drift(lane), self.notes.statistics(lane));
+        stepper.state.note(drift, statistics, self.notes.passages(lane), self.notes.orientation(lane));
         let statistics = stepper.advance_to(t)?;
         self.gather(lane);
         Ok(statistics)
@@ -218,7 +219,7 @@ where
         }
         put(&mut self.t, stepper.t());
         put(&mut self.margin, stepper.margin());
-        self.notes.put(lane, stepper.state.margin_rate, stepper.statistics());
+        self.notes.put(lane, stepper.state.drift, stepper.statistics());
         self.notes.count(lane, stepper.passages(), stepper.signature());
         let waits = self.waits;
         let waiting = |other: usize| match other == lane {
@@ -235,8 +236,9 @@ impl<R: Real, const L: usize> Notes<R, L> {
         let zero = Lanes([R::constant(0.0); L]);
         let (row, evaluations, passages, orientation) = ([0; L], [0; L], [0; L], [0; L]);
         let (fallback, passed) = ([false; L], [false; L]);
-        let (margin_rate, residual, correction) = (zero, zero, zero);
-        Notes { margin_rate, residual, correction, row, evaluations, fallback, passed, passages, orientation }
+        let (residual, correction) = (zero, zero);
+        let drift = Drift { change: zero, time: Lanes([R::constant(1.0); L]) };
+        Notes { drift, residual, correction, row, evaluations, fallback, passed, passages, orientation }
     }
 
     /// Those after the step that `trial` made in `time` (s) from where the margin was `margin`.
@@ -251,7 +253,10 @@ impl<R: Real, const L: usize> Notes<R, L> {
         let moves = time.less(zero) | zero.less(time);
         let passed = from_fn(|lane| self.orientation(lane) != trial.orientation(lane));
         Notes {
-            margin_rate: Lanes::select(moves, (trial.margin - margin) / time, self.margin_rate),
+            drift: Drift {
+                change: Lanes::select(moves, trial.margin - margin, self.drift.change),
+                time: Lanes::select(moves, time, self.drift.time),
+            },
             residual: trial.residual,
             correction: trial.correction,
             row: from_fn(|lane| trial.row(lane)),
@@ -275,6 +280,11 @@ impl<R: Real, const L: usize> Notes<R, L> {
         }
     }
 
+    #[inline(always)]
+    fn drift(&self, lane: usize) -> Drift<R> {
+        Drift { change: self.drift.change.lane(lane), time: self.drift.time.lane(lane) }
+    }
+
     /// How many singular positions the lane has passed.
     #[inline(always)]
     fn passages(&self, lane: usize) -> u32 {
@@ -287,9 +297,10 @@ impl<R: Real, const L: usize> Notes<R, L> {
         at(&self.orientation, lane, 0)
     }
 
-    fn put(&mut self, lane: usize, margin_rate: R, statistics: Statistics) {
+    fn put(&mut self, lane: usize, drift: Drift<R>, statistics: Statistics) {
         let Statistics { evaluations, fallback, residual, row, correction, passed } = statistics;
-        set(&mut self.margin_rate.0, lane, margin_rate);
+        set(&mut self.drift.change.0, lane, drift.change);
+        set(&mut self.drift.time.0, lane, drift.time);
         set(&mut self.residual.0, lane, R::constant(residual));
         set(&mut self.correction.0, lane, R::constant(correction));
         set(&mut self.row, lane, row);

@@ -108,7 +108,7 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
     /// time. Next to a position where the mechanism locks up the margin falls with a root, and half
     /// of that time is left.
     pub fn time_to_singular(&self) -> Option<R> {
-        let rate = self.state.margin_rate;
+        let rate = self.state.drift.rate();
         let time = self.state.margin / -rate;
         (rate < R::constant(0.0) && time.is_finite()).then_some(time)
     }

@@ -277,16 +277,17 @@ pub trait Factorization<T: Scalar, const K: usize>: Copy {
     /// Returns the factors and the margin to singularity: 0 where singular, at most 1, independent of units.
     /// A singular lane still gets finite factors wherever `a` is finite.
     fn factorize(a: &[[T; K]; K], row_scales: &[T; K], coordinate_scales: &[T; K]) -> (Self, T);
-    /// As [`factorize`](Self::factorize), for a step of Newton's method alone: whether the margin is above √ε, which
-    /// keeps half the step's digits, in place of the margin.
+    /// Solves `a x = b` (K) for a step of Newton's method, which solves no second time: what the right side is multiplied by
+    /// need not be the factors. And whether the margin is above √ε, which keeps half the step's digits.
     #[inline(always)]
-    fn factorize_for_step(
+    fn solve_once(
         a: &[[T; K]; K],
+        b: &[T; K],
         row_scales: &[T; K],
         coordinate_scales: &[T; K],
-    ) -> (Self, T::Mask) {
+    ) -> ([T; K], T::Mask) {
         let (factors, margin) = Self::factorize(a, row_scales, coordinate_scales);
-        (factors, crate::linear::is_regular(margin))
+        (factors.solve(b), crate::linear::is_regular(margin))
     }
     /// Solves `a x = b`.
     fn solve(&self, b: &[T; K]) -> [T; K];

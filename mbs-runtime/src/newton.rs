@@ -117,9 +117,8 @@ fn plainly<T: Scalar, const K: usize, F: Factorization<T, K>>(
         if T::all(closes) {
             return Ok(Closed { x, residuals, tolerances, evaluations });
         }
-        let (factors, regular) =
-            F::factorize_for_step(&jacobian, &block.row_scales, &block.coordinate_scales);
-        let step = factors.solve(&residuals.map(|r| -r));
+        let toward = residuals.map(|r| -r);
+        let (step, regular) = F::solve_once(&jacobian, &toward, &block.row_scales, &block.coordinate_scales);
         let mut plain = regular & !beyond(block, &step);
         if evaluations > 1 {
             let limit = T::constant(FALL) * largest_ratio(&last.0, &last.1);

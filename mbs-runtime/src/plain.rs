@@ -2,6 +2,7 @@
 
 use crate::diagnosis::{own_rounding, required};
 use crate::newton::select;
+use crate::trial::weights as reciprocals;
 use crate::{Block, BlockSolver, Factorization, Outcome, Scalar};
 
 /// Evaluations of a block at most. From a good prediction it takes two; a step so long that four do not do is worth
@@ -31,11 +32,11 @@ impl<T: Scalar> Plain<T> {
         Plain { closed: T::mask(true), evaluations: 0, ratio: zero, row: zero }
     }
 
-    /// Takes up one more block.
+    /// Takes up one more block; `weights`: reciprocals of the tolerances.
     #[inline(always)]
-    fn record<const K: usize>(&mut self, rows: &[u16; K], residuals: &[T; K], tolerances: &[T; K]) {
-        for ((residual, tolerance), row) in residuals.iter().zip(tolerances).zip(rows) {
-            let ratio = residual.abs() / *tolerance;
+    fn record<const K: usize>(&mut self, rows: &[u16; K], residuals: &[T; K], weights: &[T; K]) {
+        for ((residual, weight), row) in residuals.iter().zip(weights).zip(rows) {
+            let ratio = residual.abs() * *weight;
             self.row = T::select(self.ratio.less(ratio), T::constant(f64::from(*row)), self.row);
             self.ratio = self.ratio.max(ratio);
         }
@@ -53,7 +54,8 @@ impl<T: Scalar> BlockSolver<T> for Plain<T> {
         mut evaluate: impl FnMut(&[T; K]) -> ([T; K], [[T; K]; K]),
     ) -> ([T; K], T::Lanes<Outcome>) {
         let own = block.row_scales.map(own_rounding);
-        let (mut tolerances, mut done, mut evaluations) = (own, !self.closed, 0);
+        // A division is paid for in every step, a reciprocal of a number of the text is one.
+        let (mut weights, mut done, mut evaluations) = (reciprocals(&own), !self.closed, 0);
         let residuals = loop {
             let (residuals, jacobian) = evaluate(&x);
             evaluations += 1;
@@ -61,14 +63,13 @@ impl<T: Scalar> BlockSolver<T> for Plain<T> {
             if evaluations > 1 && !T::all(done) {
                 let whole = granted(residuals, block.row_scales, x, jacobian);
                 let closes = !done & within(&residuals, &whole);
-                tolerances = select(closes, &whole, &tolerances);
+                weights = select(closes, &reciprocals(&whole), &weights);
                 done = done | closes;
             }
             if T::all(done) || evaluations == EVALUATIONS {
                 break residuals;
             }
-            let (factors, _) = F::factorize_for_step(&jacobian, &block.row_scales, &block.coordinate_scales);
-            let step = factors.solve(&residuals);
+            let (step, _) = F::solve_once(&jacobian, &residuals, &block.row_scales, &block.coordinate_scales);
             let mut next = x;
             for (component, change) in next.iter_mut().zip(&step) {
                 *component = *component - *change;
@@ -77,7 +78,7 @@ impl<T: Scalar> BlockSolver<T> for Plain<T> {
         };
         self.closed = self.closed & done;
         self.evaluations = self.evaluations.max(evaluations);
-        self.record(&block.rows, &residuals, &tolerances);
+        self.record(&block.rows, &residuals, &weights);
         (x, T::per_lane(|_| Outcome::Converged))
     }
 

@@ -26,15 +26,18 @@ pub struct Stepper<S: Mechanism<R, N, M>, R: Real, const N: usize, const M: usiz
 }
 
 /// Position, velocity and acceleration at one time.
+///
+/// It begins with a cache line: what a step writes the next one reads at once, and a number that was written together with one
+/// in the next line would have to reach the memory first, wherever the stack happens to begin.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(align(64))]
 pub(crate) struct State<R, const N: usize> {
     pub(crate) t: R,
     pub(crate) q: [R; N],
     qd: [R; N],
     qdd: [R; N],
     pub(crate) margin: R,
-    /// What the margin changed by in the last step over the time (s) that it took.
-    pub(crate) margin_rate: R,
+    pub(crate) drift: Drift<R>,
     statistics: Statistics,
     /// Signs of the blocks' determinants.
     orientation: u64,
@@ -44,6 +47,25 @@ pub(crate) struct State<R, const N: usize> {
     pub(crate) regular: [R; N],
     /// The Newton step that is still to be made, where the position does not close.
     pub(crate) repair: Option<[R; N]>,
+}
+
+/// What the margin changed by in the last step, and the time (s) that it took; not divided, which few ask for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Drift<T> {
+    pub change: T,
+    pub time: T,
+}
+
+impl<R: Real> Drift<R> {
+    /// Before the first step.
+    pub fn none() -> Self {
+        Drift { change: R::constant(0.0), time: R::constant(1.0) }
+    }
+
+    /// The change a second.
+    pub fn rate(&self) -> R {
+        self.change / self.time
+    }
 }
 
 impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, R, N, M> {
@@ -127,8 +149,7 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
             let start = Start { t: self.state.t, q, qd, qdd, margin: *margin, weights };
             let trial = Trial::of(&self.mechanism, &self.parameters, &start, t);
             if trial.plain {
-                self.state.follow(&trial, t);
-                return Ok(self.state.statistics);
+                return Ok(self.state.follow(&trial, t));
             }
         }
         self.advanced_with_care(t)
@@ -372,7 +393,7 @@ impl<R: Real, const N: usize> State<R, N> {
                 qd: rates.qd,
                 qdd: rates.qdd,
                 margin: rates.margin,
-                margin_rate: R::constant(0.0),
+                drift: Drift::none(),
                 statistics: found.statistics,
                 orientation: rates.orientation,
                 passages: 0,
@@ -395,7 +416,7 @@ impl<R: Real, const N: usize> State<R, N> {
         let Rates { qd, qdd, margin, orientation, repair } = rates;
         let passed = self.orientation != orientation;
         if t != self.t {
-            self.margin_rate = (margin - self.margin) / (t - self.t);
+            self.drift = Drift { change: margin - self.margin, time: t - self.t };
         }
         (self.t, self.q, self.qd, self.qdd) = (t, q, qd, qdd);
         (self.margin, self.orientation, self.repair) = (margin, orientation, repair);
@@ -406,17 +427,19 @@ impl<R: Real, const N: usize> State<R, N> {
         }
     }
 
-    /// Becomes the state that a plain step came to.
+    /// Becomes the state that a plain step came to. What it cost: read out of the state it would have to wait for the memory.
     #[inline(always)]
-    fn follow(&mut self, trial: &Trial<R, N>, t: R) {
+    fn follow(&mut self, trial: &Trial<R, N>, t: R) -> Statistics {
         let passed = self.orientation != trial.orientation(0);
         if t != self.t {
-            self.margin_rate = (trial.margin - self.margin) / (t - self.t);
+            self.drift = Drift { change: trial.margin - self.margin, time: t - self.t };
         }
         (self.t, self.q, self.qd, self.qdd) = (t, trial.q, trial.qd, trial.qdd);
         (self.margin, self.orientation, self.regular) = (trial.margin, trial.orientation(0), trial.q);
-        self.statistics = trial.statistics(0, passed);
+        let statistics = trial.statistics(0, passed);
+        self.statistics = statistics;
         self.passages = self.passages.saturating_add(u32::from(passed));
+        statistics
     }
 
     /// Puts time, position, velocity and acceleration with their margin in place, as another keeper of the state has them.
@@ -428,8 +451,8 @@ impl<R: Real, const N: usize> State<R, N> {
     }
 
     /// Puts in place what that keeper has noted of the last step, and of all.
-    pub(crate) fn note(&mut self, margin_rate: R, statistics: Statistics, passages: u32, orientation: u64) {
-        (self.margin_rate, self.statistics) = (margin_rate, statistics);
+    pub(crate) fn note(&mut self, drift: Drift<R>, statistics: Statistics, passages: u32, orientation: u64) {
+        (self.drift, self.statistics) = (drift, statistics);
         (self.passages, self.orientation) = (passages, orientation);
     }
 

@@ -137,33 +137,41 @@ impl<T: Scalar, const N: usize> Start<'_, T, N> {
         let mut predicted = *self.q;
         let rates = self.qd.iter().zip(self.qdd);
         for ((coordinate, (rate, acceleration)), scale) in predicted.iter_mut().zip(rates).zip(scales) {
+            let first = *coordinate + h * *rate;
             let second = half_square * *acceleration;
-            // A branch a coordinate: without them the compiler would load two at once, which were written one by one a
-            // moment ago, and the processor would have to wait until they have reached the memory.
-            if !T::all(trusted(second, *scale)) {
-                return self.carefully_predicted(h, scales);
+            // A branch a coordinate, which looks at all that it is made of (the difference is 0, or NaN): without them the
+            // compiler would load two at once, which were written one by one a moment ago, and the processor would have to
+            // wait until they have reached the memory. Lanes are loaded as they were written.
+            let alone = size_of::<T>() == size_of::<T::Real>();
+            let looked_at = if alone { second + (first - first) } else { second };
+            if !T::all(trusted(looked_at, *scale)) {
+                return carefully_predicted((self.q, self.qd, self.qdd), h, scales);
             }
-            *coordinate = *coordinate + h * *rate + second;
+            *coordinate = first + second;
         }
         predicted
     }
+}
 
-    /// The same where the last term is too large for a lane.
-    #[cold]
-    #[inline(never)]
-    fn carefully_predicted(&self, h: T, scales: &[T; N]) -> [T; N] {
-        let half_square = T::constant(0.5) * h * h;
-        let mut all = T::mask(true);
-        for (acceleration, scale) in self.qdd.iter().zip(scales) {
-            all = all & trusted(half_square * *acceleration, *scale);
-        }
-        let mut predicted = *self.q;
-        for ((coordinate, rate), acceleration) in predicted.iter_mut().zip(self.qd).zip(self.qdd) {
-            let second = T::select(all, half_square * *acceleration, T::constant(0.0));
-            *coordinate = *coordinate + h * *rate + second;
-        }
-        predicted
+/// The prediction from position, velocity and acceleration where the last term is too large for a lane.
+#[cold]
+#[inline(never)]
+fn carefully_predicted<T: Scalar, const N: usize>(
+    (q, qd, qdd): (&[T; N], &[T; N], &[T; N]),
+    h: T,
+    scales: &[T; N],
+) -> [T; N] {
+    let half_square = T::constant(0.5) * h * h;
+    let mut all = T::mask(true);
+    for (acceleration, scale) in qdd.iter().zip(scales) {
+        all = all & trusted(half_square * *acceleration, *scale);
     }
+    let mut predicted = *q;
+    for ((coordinate, rate), acceleration) in predicted.iter_mut().zip(qd).zip(qdd) {
+        let second = T::select(all, half_square * *acceleration, T::constant(0.0));
+        *coordinate = *coordinate + h * *rate + second;
+    }
+    predicted
 }
 
 /// All `values` put together by `operation`, in four parts that need not wait for each other; from 0 on.
@@ -187,8 +195,8 @@ pub(crate) fn weights<T: Scalar, const N: usize>(scales: &[T; N]) -> [T; N] {
     weights
 }
 
-/// Whether the second-order term of a coordinate of this scale is small enough.
+/// Whether the second-order term of a coordinate of this scale is small enough; false for NaN.
 #[inline(always)]
 fn trusted<T: Scalar>(term: T, scale: T) -> T::Mask {
-    !(T::constant(LARGEST_SECOND_ORDER_TERM) * scale).less(term.abs())
+    term.abs().less(T::constant(LARGEST_SECOND_ORDER_TERM) * scale)
 }

@@ -18,6 +18,8 @@
 //! | 10 `odd_and_even_functions_take_signs_out` | `sin(−x) → −sin x`, `cos(−x) → cos x`, likewise tan, asin, atan, sinh, tanh, cosh, abs | nothing |
 //! | 11 `selects_of_equals_vanish` | `select(a < b, x, x) → x` | nothing |
 //! | 12 `division_by_two_powers_multiplies` | `x/c → x·(1/c)` where c is a power of two | nothing |
+//! | 13 `reversed_differences_are_negations` | `y − x → −(x − y)` in products, sums and rule 10, where `x − y` is the older one | the sign of a zero result |
+//! | 14 `doubled_terms_add_first` | `(x + x) ± (y + y) → (x ± y) + (x ± y)` | nothing but an overflow on the way |
 
 use super::evaluate;
 use super::graph::{Binary, Graph, Node, NodeId, Stage, Unary};
@@ -49,14 +51,20 @@ impl Graph {
         if self.is(b, 0.0) {
             return a;
         }
-        match (self.negated(a), self.negated(b)) {
+        match (self.opposite(a), self.opposite(b)) {
             (None, Some(b)) => self.subtract(a, b),
             (Some(a), None) => self.subtract(b, a),
             (Some(a), Some(b)) => {
                 let sum = self.add(a, b);
                 self.negate(sum)
             }
-            (None, None) => self.intern(Node::Binary(Binary::Add, a.min(b), a.max(b))),
+            (None, None) => match self.halves(a, b) {
+                Some((x, y)) => {
+                    let half = self.add(x, y);
+                    self.add(half, half)
+                }
+                None => self.intern(Node::Binary(Binary::Add, a.min(b), a.max(b))),
+            },
         }
     }
 
@@ -71,20 +79,27 @@ impl Graph {
         if self.is(a, 0.0) {
             return self.negate(b);
         }
-        match (self.negated(a), self.negated(b)) {
-            (None, Some(b)) => self.add(a, b),
-            (Some(a), None) => {
+        // The sign of a reversed difference is taken out where it vanishes.
+        match (self.negated(a), self.opposite(a), self.opposite(b)) {
+            (Some(a), _, None) => {
                 let sum = self.add(a, b);
                 self.negate(sum)
             }
-            (Some(a), Some(b)) => self.subtract(b, a),
-            (None, None) => self.intern(Node::Binary(Binary::Subtract, a, b)),
+            (_, Some(a), Some(b)) => self.subtract(b, a),
+            (_, _, Some(b)) => self.add(a, b),
+            (None, _, None) => match self.halves(a, b) {
+                Some((x, y)) => {
+                    let half = self.subtract(x, y);
+                    self.add(half, half)
+                }
+                None => self.intern(Node::Binary(Binary::Subtract, a, b)),
+            },
         }
     }
 
     /// `a · b`
     pub fn multiply(&mut self, a: NodeId, b: NodeId) -> NodeId {
-        let (a, b, negative) = self.take_signs(a, b);
+        let (a, b, negative) = self.take_signs(a, b, Self::opposite);
         let product = self.multiply_positive(a, b);
         if negative { self.negate(product) } else { product }
     }
@@ -132,7 +147,8 @@ impl Graph {
 
     /// `a / b`
     pub fn divide(&mut self, a: NodeId, b: NodeId) -> NodeId {
-        let (a, b, negative) = self.take_signs(a, b);
+        // Of differences it saves nothing here, and might turn an infinite quotient.
+        let (a, b, negative) = self.take_signs(a, b, Self::negated);
         let quotient = self.divide_positive(a, b);
         if negative { self.negate(quotient) } else { quotient }
     }
@@ -162,7 +178,7 @@ impl Graph {
                 return self.constant(folded);
             }
         }
-        match (function, self.negated(x)) {
+        match (function, self.opposite(x)) {
             (Unary::Cos | Unary::Cosh | Unary::Abs, Some(inner)) => self.intern(Node::Unary(function, inner)),
             (
                 Unary::Sin | Unary::Tan | Unary::Asin | Unary::Atan | Unary::Sinh | Unary::Tanh,
@@ -262,9 +278,35 @@ impl Graph {
         }
     }
 
-    /// Both factors without their signs, and whether the product is negative.
-    fn take_signs(&mut self, a: NodeId, b: NodeId) -> (NodeId, NodeId, bool) {
-        let (plain_a, plain_b) = (self.negated(a), self.negated(b));
+    /// `x` of `−x`, and `x − y` of `y − x` where `x − y` is the older one.
+    fn opposite(&mut self, x: NodeId) -> Option<NodeId> {
+        match self.node(x) {
+            Node::Binary(Binary::Subtract, a, b) => {
+                self.find(Node::Binary(Binary::Subtract, b, a)).filter(|older| *older < x)
+            }
+            _ => self.negated(x),
+        }
+    }
+
+    /// x and y, which differ, of `a = x + x` and `b = y + y`; not both of them doubled again, so that a sum of deeply nested
+    /// ones is not taken apart to the bottom.
+    fn halves(&self, a: NodeId, b: NodeId) -> Option<(NodeId, NodeId)> {
+        let halved = |x: NodeId| match self.node(x) {
+            Node::Binary(Binary::Add, a, b) if a == b => Some(a),
+            _ => None,
+        };
+        let (x, y) = (halved(a)?, halved(b)?);
+        (x != y && (halved(x).is_none() || halved(y).is_none())).then_some((x, y))
+    }
+
+    /// Both operands without their signs, and whether what is made of them is negative.
+    fn take_signs(
+        &mut self,
+        a: NodeId,
+        b: NodeId,
+        sign: fn(&mut Self, NodeId) -> Option<NodeId>,
+    ) -> (NodeId, NodeId, bool) {
+        let (plain_a, plain_b) = (sign(self, a), sign(self, b));
         (plain_a.unwrap_or(a), plain_b.unwrap_or(b), plain_a.is_some() != plain_b.is_some())
     }
 }

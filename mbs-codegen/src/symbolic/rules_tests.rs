@@ -363,6 +363,79 @@ fn division_by_two_powers_multiplies() {
 }
 
 #[test]
+fn reversed_differences_are_negations() {
+    type Build = fn(&mut Graph, NodeId, NodeId) -> NodeId;
+    // What is made of a difference, then of the reversed one: one value up to sign, and no operation more than that.
+    let made: [(Build, fn(f64, f64) -> f64); 5] = [
+        (|g, d, _| g.add(d, d), |d, _| d + d),
+        (|g, d, y| g.multiply(d, y), |d, b| d * b),
+        (|g, d, _| g.multiply(d, d), |d, _| d * d),
+        (|g, d, _| g.unary(Unary::Sin, d), |d, _| libm::sin(d)),
+        (|g, d, _| g.unary(Unary::Cos, d), |d, _| libm::cos(d)),
+    ];
+    for (build, meaning) in made {
+        let (g, root, [x, y, _]) = check(
+            |g, x, y| {
+                let older = g.subtract(x, y);
+                build(g, older, y);
+                let reversed = g.subtract(y, x);
+                build(g, reversed, y)
+            },
+            |a, b| meaning(b - a, b),
+            equal,
+        );
+        let reversed = g.find(Node::Binary(Binary::Subtract, y, x)).expect("it was built");
+        assert!(!g.reachable([root]).contains(&reversed), "the older one has all that is needed");
+    }
+    for sum in [|g: &mut Graph, d, y| g.add(y, d), |g: &mut Graph, d, y| g.subtract(y, d)] {
+        let mut g = Graph::default();
+        let [x, y, z] = leaves(&mut g);
+        let (older, reversed) = (g.subtract(x, y), g.subtract(y, x));
+        let minus = g.negate(older);
+        assert_eq!(minus, reversed, "rule 6");
+        let root = sum(&mut g, reversed, z);
+        assert!(!g.reachable([root]).contains(&reversed), "a sum takes the sign in");
+    }
+    // Its sign would be left over here.
+    let mut g = Graph::default();
+    let [x, y, z] = leaves(&mut g);
+    g.subtract(x, y);
+    let reversed = g.subtract(y, x);
+    let root = g.subtract(reversed, z);
+    assert_eq!(g.node(root), Node::Binary(Binary::Subtract, reversed, z));
+    // An infinite quotient keeps its sign.
+    let quotient = g.divide(z, reversed);
+    assert_eq!(g.node(quotient), Node::Binary(Binary::Divide, z, reversed));
+}
+
+#[test]
+fn doubled_terms_add_first() {
+    // Twice as large still is a number: there the rule loses nothing.
+    let finite = |a: f64, b: f64| (a + a).is_finite() && (b + b).is_finite();
+    let mut g = Graph::default();
+    let [x, y, _] = leaves(&mut g);
+    let (twice_x, twice_y) = (g.add(x, x), g.add(y, y));
+    let (sum, difference) = (g.add(twice_x, twice_y), g.subtract(twice_x, twice_y));
+    for (root, sign) in [(sum, 1.0), (difference, -1.0)] {
+        assert_eq!(g.reachable([root]).len(), 4, "two sums for three");
+        for a in samples() {
+            for b in samples().into_iter().filter(|b| finite(a, *b)) {
+                let value = evaluate(&g, &[root], |leaf| if leaf == Leaf::Position(0) { a } else { b });
+                let expected = (a + a) + sign * (b + b);
+                assert!(value.iter().all(|value| equal(*value, expected)), "{a} {b}: {value:?}");
+            }
+        }
+    }
+    // Many doublings, one in the other, are no way down.
+    let (mut a, mut b) = (x, y);
+    for _ in 0..100_000 {
+        (a, b) = (g.add(a, a), g.add(b, b));
+    }
+    let root = g.add(a, b);
+    assert_eq!(g.node(root), Node::Binary(Binary::Add, a.min(b), a.max(b)));
+}
+
+#[test]
 fn nothing_cancels_that_may_be_undefined() {
     check(|g, x, _| g.divide(x, x), |a, _| a / a, identical);
     check(|g, x, _| g.subtract(x, x), |a, _| a - a, identical);

@@ -20,15 +20,16 @@ impl<T: Scalar> Factorization<T, 1> for Direct1<T> {
     }
 
     #[inline(always)]
-    fn factorize_for_step(
+    fn solve_once(
         a: &[[T; 1]; 1],
+        b: &[T; 1],
         row_scales: &[T; 1],
         coordinate_scales: &[T; 1],
-    ) -> (Self, T::Mask) {
+    ) -> ([T; 1], T::Mask) {
         let [[scaled]] = super::in_metric(a, row_scales, coordinate_scales);
-        let [[a]] = *a;
-        let (reciprocal, regular) = super::reciprocal_if_regular(a, scaled, T::constant(1.0));
-        (Direct1 { reciprocal }, regular)
+        let ([[a]], [b]) = (*a, *b);
+        let (r, regular) = super::reciprocal_if_regular(a, scaled, T::constant(1.0));
+        ([r * b], regular)
     }
 
     #[inline(always)]

@@ -21,18 +21,20 @@ impl<T: Scalar> Factorization<T, 2> for Direct2<T> {
         (Direct2 { inverse: [[a22 * r, -a12 * r], [-a21 * r, a11 * r]], reciprocal: r }, margin)
     }
 
+    /// By Cramer's rule: only the last product waits for the division.
     #[inline(always)]
-    fn factorize_for_step(
+    fn solve_once(
         a: &[[T; 2]; 2],
+        b: &[T; 2],
         row_scales: &[T; 2],
         coordinate_scales: &[T; 2],
-    ) -> (Self, T::Mask) {
-        let [[a11, a12], [a21, a22]] = *a;
-        let scaled @ [[b11, b12], [b21, b22]] = super::in_metric(a, row_scales, coordinate_scales);
+    ) -> ([T; 2], T::Mask) {
+        let ([[a11, a12], [a21, a22]], [b1, b2]) = (*a, *b);
+        let scaled @ [[s11, s12], [s21, s22]] = super::in_metric(a, row_scales, coordinate_scales);
         let mean = super::mean_square(&scaled);
-        let (determinant, in_metric) = (a11 * a22 - a12 * a21, b11 * b22 - b12 * b21);
+        let (determinant, in_metric) = (a11 * a22 - a12 * a21, s11 * s22 - s12 * s21);
         let (r, regular) = super::reciprocal_if_regular(determinant, in_metric, mean * mean);
-        (Direct2 { inverse: [[a22 * r, -a12 * r], [-a21 * r, a11 * r]], reciprocal: r }, regular)
+        ([(a22 * b1 - a12 * b2) * r, (a11 * b2 - a21 * b1) * r], regular)
     }
 
     #[inline(always)]
@@ -64,6 +66,17 @@ mod tests {
         let [x, y] = factors.solve(&[5.0, 10.0]);
         assert_relative_eq!(x, 1.0, max_relative = 1e-15);
         assert_relative_eq!(y, 3.0, max_relative = 1e-15);
+    }
+
+    #[test]
+    fn solved_once_it_is_what_the_factors_solve() {
+        let (a, b, ones) = ([[2.0, 1.0], [1.0, 3.0]], [5.0, 10.0], [1.0; 2]);
+        let ([x, y], regular) = Direct2::<f64>::solve_once(&a, &b, &ones, &ones);
+        assert!(regular);
+        assert_relative_eq!(x, 1.0, max_relative = 1e-15);
+        assert_relative_eq!(y, 3.0, max_relative = 1e-15);
+        let (_, regular) = Direct2::<f64>::solve_once(&[[1.0, 2.0], [2.0, 4.0]], &b, &ones, &ones);
+        assert!(!regular);
     }
 
     #[test]

@@ -22,18 +22,20 @@ impl<T: Scalar> Factorization<T, 3> for Direct3<T> {
         (Direct3 { inverse: inverse.map(|row| row.map(|c| c * r)), reciprocal: r }, margin)
     }
 
+    /// Only the last product waits for the division.
     #[inline(always)]
-    fn factorize_for_step(
+    fn solve_once(
         a: &[[T; 3]; 3],
+        b: &[T; 3],
         row_scales: &[T; 3],
         coordinate_scales: &[T; 3],
-    ) -> (Self, T::Mask) {
-        let (inverse, determinant) = cofactors(a);
-        let scaled @ [b1, b2, b3] = super::in_metric(a, row_scales, coordinate_scales);
+    ) -> ([T; 3], T::Mask) {
+        let (cofactors, determinant) = cofactors(a);
+        let scaled @ [s1, s2, s3] = super::in_metric(a, row_scales, coordinate_scales);
         let mean = super::mean_square(&scaled);
-        let in_metric = dot(&b1, &cross(&b2, &b3));
+        let in_metric = dot(&s1, &cross(&s2, &s3));
         let (r, regular) = super::reciprocal_if_regular(determinant, in_metric, mean * mean * mean);
-        (Direct3 { inverse: inverse.map(|row| row.map(|c| c * r)), reciprocal: r }, regular)
+        (cofactors.map(|row| dot(&row, b) * r), regular)
     }
 
     #[inline(always)]
