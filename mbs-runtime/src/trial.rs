@@ -139,11 +139,11 @@ impl<T: Scalar, const N: usize> Start<'_, T, N> {
         for ((coordinate, (rate, acceleration)), scale) in predicted.iter_mut().zip(rates).zip(scales) {
             let first = *coordinate + h * *rate;
             let second = half_square * *acceleration;
-            // A branch a coordinate, which looks at all that it is made of (the difference is 0, or NaN): without them the
+            // A branch a coordinate, which looks at all that it is made of (nothing is added but 0, or NaN): without them the
             // compiler would load two at once, which were written one by one a moment ago, and the processor would have to
             // wait until they have reached the memory. Lanes are loaded as they were written.
             let alone = size_of::<T>() == size_of::<T::Real>();
-            let looked_at = if alone { second + (first - first) } else { second };
+            let looked_at = if alone { second + T::constant(0.0) * first } else { second };
             if !T::all(trusted(looked_at, *scale)) {
                 return carefully_predicted((self.q, self.qd, self.qdd), h, scales);
             }
