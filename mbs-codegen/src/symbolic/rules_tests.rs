@@ -365,8 +365,9 @@ fn division_by_two_powers_multiplies() {
 #[test]
 fn reversed_differences_are_negations() {
     type Build = fn(&mut Graph, NodeId, NodeId) -> NodeId;
+    type Meaning = fn(f64, f64) -> f64;
     // What is made of a difference, then of the reversed one: one value up to sign, and no operation more than that.
-    let made: [(Build, fn(f64, f64) -> f64); 5] = [
+    let made: [(Build, Meaning); 5] = [
         (|g, d, _| g.add(d, d), |d, _| d + d),
         (|g, d, y| g.multiply(d, y), |d, b| d * b),
         (|g, d, _| g.multiply(d, d), |d, _| d * d),
