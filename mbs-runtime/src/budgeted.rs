@@ -1,7 +1,6 @@
 //! The solver of a step with a fixed amount of work: Newton's method, then Levenberg–Marquardt, both cut off.
 
 use crate::diagnosis::{Diagnosis, Worst, outer_rounding, required};
-use crate::mechanism::called;
 use crate::newton::{all_finite, newton, within};
 use crate::redundant::gauss_newton;
 use crate::safeguarded::levenberg_marquardt;
@@ -38,7 +37,7 @@ impl<R: Real> BlockSolver<R> for Budgeted<R> {
         let extent = self.extent;
         let mut best = Best { x, worst: Worst::none(), closes: false, any: false };
         let mut watched = |x: &[R; K]| {
-            let (residuals, jacobian) = called(&mut evaluate, x);
+            let (residuals, jacobian) = evaluate(x);
             best.meets(block, extent, x, &residuals, &jacobian);
             (residuals, jacobian)
         };
@@ -53,7 +52,7 @@ impl<R: Real> BlockSolver<R> for Budgeted<R> {
         let fallback = !best.closes && self.budget.fallback > 0;
         if fallback {
             let mut watched = |x: &[R; K]| {
-                let (residuals, jacobian) = called(&mut evaluate, x);
+                let (residuals, jacobian) = evaluate(x);
                 best.meets(block, extent, x, &residuals, &jacobian);
                 (residuals, jacobian)
             };
@@ -73,7 +72,7 @@ impl<R: Real> BlockSolver<R> for Budgeted<R> {
         let extent = self.extent;
         let mut best = Best { x, worst: Worst::none(), closes: false, any: false };
         let mut watched = |x: &[R; K]| {
-            let (residuals, jacobian) = called(&mut evaluate, x);
+            let (residuals, jacobian) = evaluate(x);
             best.meets(block, extent, x, &residuals, &jacobian);
             (residuals, jacobian)
         };
@@ -87,7 +86,7 @@ impl<R: Real> BlockSolver<R> for Budgeted<R> {
         let fallback = !best.closes && self.budget.fallback > 0;
         if fallback {
             let mut watched = |x: &[R; K]| {
-                let (residuals, jacobian) = called(&mut evaluate, x);
+                let (residuals, jacobian) = evaluate(x);
                 best.meets(block, extent, x, &residuals, &jacobian);
                 (residuals, jacobian)
             };

@@ -299,8 +299,9 @@ pub trait Factorization<T: Scalar, const K: usize>: Copy {
 
 /// Solves the nonlinear diagonal blocks as emitted code meets them; the strategy of Newton's method.
 pub trait BlockSolver<T: Scalar> {
-    /// Whether each of many blocks may have a copy of the solver to itself: a short one, for which every step waits. Others
-    /// go round a loop, which computes the same.
+    /// Whether each of many blocks may have a copy of the solver to itself, with what it evaluates: a short one, for which every
+    /// step waits, and which comes back with the point that it evaluated last. Others go round a loop, which computes the
+    /// same, and call what they evaluate.
     const COPIED: bool = false;
 
     /// Finds `x` with residual 0 from the start value `x`; `evaluate` gives residual and Jacobian (rows).
@@ -457,7 +458,7 @@ impl<T: Scalar> Margin<T> {
     }
 }
 
-/// `evaluate` at `x`, called: emitted code has it in line wherever it is named, which only the next position is worth.
+/// `evaluate` at `x`, called: emitted code has it in line for solvers of which each block has a copy.
 #[inline(never)]
 pub fn called<X, Y>(evaluate: &mut impl FnMut(&X) -> Y, x: &X) -> Y {
     evaluate(x)

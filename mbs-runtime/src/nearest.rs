@@ -3,7 +3,6 @@
 use crate::diagnosis::{Diagnosis, Statistics, extent};
 use crate::failure::Holding;
 use crate::kinematics::{largest_difference, position_failure};
-use crate::mechanism::called;
 use crate::safeguarded::attempt;
 use crate::{Block, BlockSolver, Factorization, Failure, Kinematic, Mechanism, Outcome, Real, redundant};
 
@@ -83,7 +82,6 @@ impl<R: Real> BlockSolver<R> for Nearest<R> {
         x: [R; K],
         mut evaluate: impl FnMut(&[R; K]) -> ([R; K], [[R; K]; K]),
     ) -> ([R; K], R::Lanes<Outcome>) {
-        let mut evaluate = |x: &[R; K]| called(&mut evaluate, x);
         let (attempt, plain) = attempt::<R, K, F>(block, x, true, self.extent, &mut evaluate);
         self.diagnosis.record(attempt.evaluations, !plain, attempt.worst, attempt.converged);
         (attempt.x, attempt.outcomes())
@@ -96,7 +94,6 @@ impl<R: Real> BlockSolver<R> for Nearest<R> {
         mut evaluate: impl FnMut(&[R; K]) -> ([R; M], [[R; K]; M]),
         _holds: impl FnMut(&[R; K]) -> bool,
     ) -> ([R; K], R::Lanes<Outcome>) {
-        let mut evaluate = |x: &[R; K]| called(&mut evaluate, x);
         let settled = redundant::from_far(block, x, true, self.extent, &mut evaluate);
         settled.record(&mut self.diagnosis, true);
         (settled.attempt.x, settled.outcomes())

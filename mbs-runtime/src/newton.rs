@@ -2,7 +2,6 @@
 
 use crate::diagnosis::{Diagnosis, Worst, outer_rounding, required};
 use crate::linear::{is_regular, orthogonal::minimum_norm};
-use crate::mechanism::called;
 use crate::safeguarded::{TRIALS, levenberg_marquardt};
 use crate::{Block, BlockSolver, Factorization, Outcome, Real, Scalar, redundant};
 
@@ -66,7 +65,6 @@ impl<T: Scalar> BlockSolver<T> for Newton<T> {
                 (closed.x, T::per_lane(|_| Outcome::Converged))
             }
             Err(descent) => {
-                let mut evaluate = |x: &[T; K]| called(&mut evaluate, x);
                 let (attempt, plain) = carefully::<T, K, F>(descent, block, x, self.extent, &mut evaluate);
                 self.diagnosis.record(attempt.evaluations, !plain, attempt.worst, attempt.converged);
                 (attempt.x, attempt.outcomes())
@@ -81,7 +79,6 @@ impl<T: Scalar> BlockSolver<T> for Newton<T> {
         mut evaluate: impl FnMut(&[T; K]) -> ([T; M], [[T; K]; M]),
         _holds: impl FnMut(&[T; K]) -> T::Mask,
     ) -> ([T; K], T::Lanes<Outcome>) {
-        let mut evaluate = |x: &[T; K]| called(&mut evaluate, x);
         let (settled, plain) = redundant::next(block, x, self.extent, &mut evaluate);
         settled.record(&mut self.diagnosis, plain);
         (settled.attempt.x, settled.outcomes())
@@ -97,7 +94,7 @@ struct Closed<T: Scalar, const K: usize> {
 }
 
 /// Newton's method as long as it goes as it should next to the solution: the residual falls, the Jacobian is regular, no
-/// step is long. What [`Descent::carried_on`] would do, without what it keeps in readiness; where something else happens,
+/// step is long. What [`Descent`] would do, without what it keeps in readiness; where something else happens,
 /// that goes on from here.
 #[inline(always)]
 fn plainly<T: Scalar, const K: usize, F: Factorization<T, K>>(
@@ -163,13 +160,16 @@ fn closed<T: Scalar, const K: usize>(residuals: &[T; K], tolerances: &[T; K]) ->
 #[cold]
 #[inline(never)]
 fn carefully<T: Scalar, const K: usize, F: Factorization<T, K>>(
-    descent: Descent<T, K>,
+    mut descent: Descent<T, K>,
     block: &Block<T, K>,
     start: [T; K],
     extent: T,
     evaluate: &mut impl FnMut(&[T; K]) -> ([T; K], [[T; K]; K]),
 ) -> (Attempt<T, K>, bool) {
-    let attempt = descent.carried_on::<F>(block, extent, ITERATIONS, evaluate);
+    while descent.goes_on::<F>(block, extent, ITERATIONS) {
+        descent.met(evaluate(&descent.x));
+    }
+    let attempt = descent.ended(block);
     if T::all(attempt.converged) {
         return (attempt, true);
     }
@@ -214,7 +214,7 @@ impl<T: Scalar, const K: usize> Attempt<T, K> {
 
 /// Newton's method from `start` in the lanes of `active`; the others stay. At most `iterations` steps, with one
 /// evaluation more.
-#[inline]
+#[inline(never)]
 pub(crate) fn newton<T: Scalar, const K: usize, F: Factorization<T, K>>(
     block: &Block<T, K>,
     start: [T; K],
@@ -224,7 +224,7 @@ pub(crate) fn newton<T: Scalar, const K: usize, F: Factorization<T, K>>(
     evaluate: &mut impl FnMut(&[T; K]) -> ([T; K], [[T; K]; K]),
 ) -> Attempt<T, K> {
     let (residuals, jacobian) = evaluate(&start);
-    let descent = Descent {
+    let mut descent = Descent {
         x: start,
         residuals,
         jacobian,
@@ -235,10 +235,15 @@ pub(crate) fn newton<T: Scalar, const K: usize, F: Factorization<T, K>>(
         least_ratio: T::constant(f64::MAX),
         fruitless: T::constant(0.0),
     };
-    descent.carried_on::<F>(block, extent, iterations, evaluate)
+    while descent.goes_on::<F>(block, extent, iterations) {
+        descent.met(evaluate(&descent.x));
+    }
+    descent.ended(block)
 }
 
 /// Newton's method at an iterate that was evaluated, not judged.
+///
+/// What evaluates is not part of it: so all blocks of a size share the code.
 struct Descent<T: Scalar, const K: usize> {
     x: [T; K],
     residuals: [T; K],
@@ -256,29 +261,36 @@ struct Descent<T: Scalar, const K: usize> {
 }
 
 impl<T: Scalar, const K: usize> Descent<T, K> {
-    /// Until every lane has converged or failed, and to `iterations` steps since the first iterate.
-    #[inline]
-    fn carried_on<F: Factorization<T, K>>(
-        mut self,
-        block: &Block<T, K>,
-        extent: T,
-        iterations: u32,
-        evaluate: &mut impl FnMut(&[T; K]) -> ([T; K], [[T; K]; K]),
-    ) -> Attempt<T, K> {
-        let mut tolerances = required(&block.row_scales, &self.x, &self.jacobian);
-        while self.evaluations <= iterations {
-            self.judge(block, extent, &tolerances);
-            if T::all(!self.open) {
-                break;
-            }
-            let step = self.step::<F>(block);
-            let mut next = self.x;
-            next.iter_mut().zip(step).for_each(|(component, change)| *component = *component + change);
-            self.x = select(self.open, &next, &self.x);
-            (self.residuals, self.jacobian) = evaluate(&self.x);
-            tolerances = required(&block.row_scales, &self.x, &self.jacobian);
-            self.evaluations += 1;
+    /// Judges the iterate; whether `x` is another one, to be evaluated. Not when every lane has converged or failed, or
+    /// `iterations` steps are done since the first iterate.
+    #[inline(never)]
+    fn goes_on<F: Factorization<T, K>>(&mut self, block: &Block<T, K>, extent: T, iterations: u32) -> bool {
+        if self.evaluations > iterations {
+            return false;
         }
+        let tolerances = required(&block.row_scales, &self.x, &self.jacobian);
+        self.judge(block, extent, &tolerances);
+        if T::all(!self.open) {
+            return false;
+        }
+        let step = self.step::<F>(block);
+        let mut next = self.x;
+        next.iter_mut().zip(step).for_each(|(component, change)| *component = *component + change);
+        self.x = select(self.open, &next, &self.x);
+        true
+    }
+
+    /// Takes up residuals and Jacobian of the iterate.
+    #[inline(always)]
+    fn met(&mut self, evaluated: ([T; K], [[T; K]; K])) {
+        (self.residuals, self.jacobian) = evaluated;
+        self.evaluations += 1;
+    }
+
+    /// What it came to.
+    #[inline(never)]
+    fn ended(&self, block: &Block<T, K>) -> Attempt<T, K> {
+        let tolerances = required(&block.row_scales, &self.x, &self.jacobian);
         let worst = Worst::of_block(block, &self.residuals, &tolerances);
         Attempt { x: self.x, converged: self.converged, worst, evaluations: self.evaluations }
     }

@@ -2,7 +2,6 @@
 
 use crate::diagnosis::{Diagnosis, Worst, outer_rounding, required};
 use crate::dyad::{Roots, closed, taking};
-use crate::mechanism::called;
 use crate::newton::{Attempt, ITERATIONS, all_finite, capped, newton, select, within};
 use crate::starts::displaced;
 use crate::{Block, BlockSolver, Factorization, Outcome, Real, Scalar, redundant};
@@ -81,7 +80,6 @@ impl<T: Scalar> BlockSolver<T> for Safeguarded<T> {
         mut holds: impl FnMut(&[T; K]) -> T::Mask,
     ) -> ([T; K], T::Lanes<Outcome>) {
         self.begun = true;
-        let mut evaluate = |x: &[T; K]| called(&mut evaluate, x);
         let (found, plain) =
             searched::<T, K, F>(block, x, T::mask(true), self.extent, &mut evaluate, &mut holds);
         self.diagnosis.record(found.evaluations, !plain, found.worst, found.converged);
@@ -99,7 +97,6 @@ impl<T: Scalar> BlockSolver<T> for Safeguarded<T> {
         roots: impl FnOnce(&[T; K]) -> Roots<T, K>,
     ) -> ([T; K], T::Lanes<Outcome>) {
         let (extent, roots) = (self.extent, roots(&x));
-        let mut evaluate = |x: &[T; K]| called(&mut evaluate, x);
         let (mut found, missed) = closed::<T, K, F>(block, &x, extent, &mut evaluate, &mut holds, &roots);
         // What did not close and was not missed has no position.
         self.apart |= !self.begun && T::all(!missed & !found.converged);
@@ -121,7 +118,6 @@ impl<T: Scalar> BlockSolver<T> for Safeguarded<T> {
         mut evaluate: impl FnMut(&[T; K]) -> ([T; M], [[T; K]; M]),
         mut holds: impl FnMut(&[T; K]) -> T::Mask,
     ) -> ([T; K], T::Lanes<Outcome>) {
-        let mut evaluate = |x: &[T; K]| called(&mut evaluate, x);
         let (found, plain) = redundant::search(block, x, self.extent, &mut evaluate, &mut holds);
         found.record(&mut self.diagnosis, plain);
         (found.attempt.x, found.outcomes())
@@ -202,43 +198,92 @@ pub(crate) fn levenberg_marquardt<T: Scalar, const K: usize, const M: usize>(
     trials: u32,
     evaluate: &mut impl FnMut(&[T; K]) -> ([T; M], [[T; K]; M]),
 ) -> Attempt<T, K> {
-    let none = [T::constant(0.0); M];
-    let mut x = start;
-    let (mut residuals, mut jacobian) = evaluate(&x);
-    let mut evaluations = 1;
-    let mut converged = T::mask(false);
-    let mut open = active & all_finite(&residuals, &jacobian);
-    let usable = open;
-    let mut system = NormalEquations::of(block, &residuals, &jacobian);
-    let mut damping = T::constant(FIRST_DAMPING);
-    for _ in 0..trials {
-        let tolerances = required(&block.row_scales, &x, &jacobian);
-        converged = converged | (open & within(&residuals, &tolerances, &none));
-        open = open & !converged & !system.is_stationary() & damping.less(T::constant(LARGEST_DAMPING));
-        if T::all(!open) {
-            break;
-        }
-        let mut trial = x;
-        let step = capped(block, system.step(block, damping));
-        trial.iter_mut().zip(step).for_each(|(component, change)| *component = *component + change);
-        trial = select(open, &trial, &x);
-        let (trial_residuals, trial_jacobian) = evaluate(&trial);
-        evaluations += 1;
-        let trial_system = NormalEquations::of(block, &trial_residuals, &trial_jacobian);
-        let better =
-            open & trial_system.cost.less(system.cost) & all_finite(&trial_residuals, &trial_jacobian);
-        x = select(better, &trial, &x);
-        residuals = select(better, &trial_residuals, &residuals);
-        jacobian.iter_mut().zip(&trial_jacobian).for_each(|(row, trial)| *row = select(better, trial, row));
-        system = system.replaced(better, &trial_system);
-        let eased = (damping * T::constant(DAMPING_FALL)).max(T::constant(LEAST_DAMPING));
-        damping = T::select(better, eased, damping * T::constant(DAMPING_RISE));
+    let mut descent = Damped::of(block, start, active, evaluate(&start));
+    while let Some(trial) = descent.trial(block, trials) {
+        let (residuals, jacobian) = evaluate(&trial);
+        descent.judge(block, &trial, &residuals, &jacobian);
     }
-    // Nothing lowers these residuals any more: those that the rounding of q explains are as good as zero.
-    let tolerances = required(&block.row_scales, &x, &jacobian);
-    let allowances = outer_rounding(extent, &block.coordinate_scales, &jacobian);
-    converged = converged | (usable & within(&residuals, &tolerances, &allowances));
-    Attempt { x, converged, worst: Worst::of_block(block, &residuals, &tolerances), evaluations }
+    descent.ended(block, extent)
+}
+
+/// Levenberg–Marquardt between two evaluations.
+///
+/// What evaluates is not part of it: so all blocks of a size share the code.
+struct Damped<T: Scalar, const K: usize, const M: usize> {
+    x: [T; K],
+    residuals: [T; M],
+    jacobian: [[T; K]; M],
+    evaluations: u32,
+    converged: T::Mask,
+    /// Lanes that are still moving.
+    open: T::Mask,
+    /// Lanes in which the start is finite.
+    usable: T::Mask,
+    system: NormalEquations<T, K>,
+    damping: T,
+}
+
+impl<T: Scalar, const K: usize, const M: usize> Damped<T, K, M> {
+    /// At the start, in the lanes of `active`.
+    #[inline(never)]
+    fn of(
+        block: &Block<T, K, M>,
+        x: [T; K],
+        active: T::Mask,
+        (residuals, jacobian): ([T; M], [[T; K]; M]),
+    ) -> Self {
+        let open = active & all_finite(&residuals, &jacobian);
+        let system = NormalEquations::of(block, &residuals, &jacobian);
+        let damping = T::constant(FIRST_DAMPING);
+        let (evaluations, converged) = (1, T::mask(false));
+        Damped { x, residuals, jacobian, evaluations, converged, open, usable: open, system, damping }
+    }
+
+    /// The next point to be looked at; none where every lane has ended, or `trials` have been.
+    #[inline(never)]
+    fn trial(&mut self, block: &Block<T, K, M>, trials: u32) -> Option<[T; K]> {
+        if self.evaluations > trials {
+            return None;
+        }
+        let tolerances = required(&block.row_scales, &self.x, &self.jacobian);
+        let none = [T::constant(0.0); M];
+        self.converged = self.converged | (self.open & within(&self.residuals, &tolerances, &none));
+        let damped = self.damping.less(T::constant(LARGEST_DAMPING));
+        self.open = self.open & !self.converged & !self.system.is_stationary() & damped;
+        if T::all(!self.open) {
+            return None;
+        }
+        let mut trial = self.x;
+        let step = capped(block, self.system.step(block, self.damping));
+        trial.iter_mut().zip(step).for_each(|(component, change)| *component = *component + change);
+        Some(select(self.open, &trial, &self.x))
+    }
+
+    /// Goes to the point in the lanes in which it is better.
+    #[inline(never)]
+    fn judge(&mut self, block: &Block<T, K, M>, trial: &[T; K], residuals: &[T; M], jacobian: &[[T; K]; M]) {
+        self.evaluations += 1;
+        let system = NormalEquations::of(block, residuals, jacobian);
+        let better = self.open & system.cost.less(self.system.cost) & all_finite(residuals, jacobian);
+        self.x = select(better, trial, &self.x);
+        self.residuals = select(better, residuals, &self.residuals);
+        self.jacobian.iter_mut().zip(jacobian).for_each(|(row, trial)| *row = select(better, trial, row));
+        self.system = self.system.replaced(better, &system);
+        let eased = (self.damping * T::constant(DAMPING_FALL)).max(T::constant(LEAST_DAMPING));
+        self.damping = T::select(better, eased, self.damping * T::constant(DAMPING_RISE));
+    }
+
+    /// What it came to.
+    #[inline(never)]
+    fn ended(&self, block: &Block<T, K, M>, extent: T) -> Attempt<T, K> {
+        let Damped { x, residuals, jacobian, evaluations, converged, usable, .. } = self;
+        // Nothing lowers these residuals any more: those that the rounding of q explains are as good as zero.
+        let tolerances = required(&block.row_scales, x, jacobian);
+        let allowances = outer_rounding(extent, &block.coordinate_scales, jacobian);
+        let converged = *converged | (*usable & within(residuals, &tolerances, &allowances));
+        let worst = Worst::of_block(block, residuals, &tolerances);
+        Attempt { x: *x, converged, worst, evaluations: *evaluations }
+    }
 }
 
 /// JᵀJ and Jᵀr in the reference metric.

@@ -37,6 +37,10 @@ pub fn solve(
     text + "(__outcome, " + position + ")"
 }
 
+/// Solvers without a copy for each block share what they evaluate.
+const EVALUATED: &str =
+    "if __S::COPIED { __evaluate(__x) } else { __mbs::mechanism::called(&mut __evaluate, __x) }";
+
 /// A nonlinear block; what is kept of an iterate stands beside where that was, for a solver that ends elsewhere.
 fn newton(
     equations: &Equations,
@@ -72,7 +76,7 @@ fn newton(
         (None, false) => format!("solve_branched::<{size}, {factors}>"),
     };
     let call = format!("let (__x, __block) = __solver.{method}");
-    let _ = write!(text, "{call}(&{description}, {starts}, #[inline(always)] |__x| __evaluate(__x)");
+    let _ = write!(text, "{call}(&{description}, {starts}, #[inline(always)] |__x| {EVALUATED}");
     if !branches.is_empty() {
         *text += ", |__x| {\n";
         lets(branch_section, &inner, text);
@@ -90,7 +94,7 @@ fn newton(
     *text += ");\n";
     if !kept.is_empty() {
         *text += "let mut __values = __kept.get();\n\
-                  if !__mbs::mechanism::is_same(&__values.0, &__x) {\n\
+                  if !__S::COPIED && !__mbs::mechanism::is_same(&__values.0, &__x) {\n\
                   __mbs::mechanism::called(&mut __evaluate, &__x);\n__values = __kept.get();\n}\n";
         let _ = writeln!(text, "let {} = __values.1;", list(kept.iter().map(|id| local(*id))));
     }

@@ -20,7 +20,7 @@ pub struct Lengths {
     pub group: usize,
     /// Fewest rounds that make a loop.
     pub rounds: usize,
-    /// Fewest lines that make one.
+    /// Fewest lines that make one; those of several angles count as several.
     pub rolled: usize,
 }
 

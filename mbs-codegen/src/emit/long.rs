@@ -240,7 +240,9 @@ impl Emission<'_> {
             arms.push((segment, arm));
         }
         let frame = self.frame_of_block("__x", unknowns, result);
-        parts.choice(&format!("__evaluate{number}"), &frame, arms, (self.segments.len(), true));
+        let name = format!("__evaluate{number}");
+        parts.choice(&name, &frame, arms, (self.segments.len(), true));
+        parts.called(&name, &frame);
     }
 
     /// `__holds…`: whether the branches hold that a block decides. What it computes is that of a trial and passed to nobody.
@@ -386,14 +388,16 @@ impl Emission<'_> {
         if dyad {
             let _ = write!(more, ", |__near| {}", call("roots", "__near"));
         }
-        let (nowhere, evaluate) = (number_of(f64::INFINITY), call("evaluate", "__x"));
+        let nowhere = number_of(f64::INFINITY);
+        let (evaluate, called) = (call("evaluate", "__x"), call("called_evaluate", "__x"));
         format!(
             "let ::core::option::Option::Some(__place) = __places{number}.next() else {{ break }};\n\
              let __last = ::core::cell::Cell::new([{nowhere}; {unknowns}]);\n\
-             let mut __evaluate = |__x: &[T; {unknowns}]| {{ __last.set(*__x); {evaluate} }};\n\
+             let mut __evaluate = |__x: &[T; {unknowns}]| {{\n\
+             __last.set(*__x);\nif __S::COPIED {{ {evaluate} }} else {{ {called} }}\n}};\n\
              let (__x, __block) = __solver.{method}(\
              &__place.block(&__row_scales, &__coordinate_scales), __place.of(&*__q), &mut __evaluate{more});\n\
-             if !__mbs::mechanism::is_same(&__last.get(), &__x) {{ __evaluate(&__x); }}\n\
+             if !__S::COPIED && !__mbs::mechanism::is_same(&__last.get(), &__x) {{ __evaluate(&__x); }}\n\
              __place.put(&__x, __q);\n__block\n"
         )
     }

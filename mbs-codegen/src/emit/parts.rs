@@ -167,6 +167,14 @@ impl Parts {
         );
     }
 
+    /// Adds `__called…`, which is a choice behind a call.
+    pub fn called(&mut self, name: &str, frame: &Frame) {
+        let of = name.trim_start_matches('_');
+        let asked = "__s: ::core::primitive::usize, ";
+        self.choices += &declared("#[inline(never)]", &format!("__called_{of}"), asked, frame);
+        let _ = writeln!(self.choices, "{{ self.{name}(__s, {}__v) }}", frame.given);
+    }
+
     /// Before: all is added. After: the text of all methods, and how many values they pass on.
     pub fn print(self) -> (String, usize) {
         let Parts { wordings, methods, choices, slots: taken, next, .. } = self;

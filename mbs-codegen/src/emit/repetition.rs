@@ -32,8 +32,16 @@ pub fn stretches(
 ) -> Vec<Stretch> {
     let mut stretches = Vec::new();
     let (mut open, mut here) = (0, 0);
+    // What all elements before one weigh.
+    let before: Vec<usize> = (0..=sequence.len())
+        .scan(0, |sum, index| {
+            let before = *sum;
+            *sum += weigh(index);
+            Some(before)
+        })
+        .collect();
     while here < sequence.len() {
-        match rounds(sequence, here, longest, lengths) {
+        match rounds(sequence, &before, here, longest, lengths) {
             Some((length, rounds)) => {
                 once(open..here, (&weigh, longest), &mut stretches);
                 stretches.push(Stretch::Rounds { first: here, length, rounds });
@@ -65,9 +73,17 @@ fn once(
     }
 }
 
-/// Length and number of the rounds from `here` on that take most of the sequence together; the shortest of several.
-fn rounds(sequence: &[usize], here: usize, longest: usize, lengths: Lengths) -> Option<(usize, usize)> {
+/// Length and number of the rounds from `here` on that take most of the sequence together; the shortest of several. All elements
+/// `before` one weigh as much as stands there.
+fn rounds(
+    sequence: &[usize],
+    before: &[usize],
+    here: usize,
+    longest: usize,
+    lengths: Lengths,
+) -> Option<(usize, usize)> {
     let rest = sequence.get(here..)?;
+    let weight = |count: usize| Some(before.get(here + count)?.saturating_sub(*before.get(here)?));
     let mut best: Option<(usize, usize)> = None;
     for length in 1..=longest.min(rest.len() / lengths.rounds) {
         let behind = rest.get(length..).unwrap_or_default();
@@ -78,7 +94,7 @@ fn rounds(sequence: &[usize], here: usize, longest: usize, lengths: Lengths) -> 
         let same = behind.iter().zip(rest).take_while(|(behind, before)| behind == before).count();
         let rounds = same / length + 1;
         let covered = |(length, rounds): (usize, usize)| length * rounds;
-        let is_loop = rounds >= lengths.rounds && length * rounds >= lengths.rolled;
+        let is_loop = rounds >= lengths.rounds && weight(length * rounds) >= Some(lengths.rolled);
         if is_loop && best.is_none_or(|best| covered(best) < length * rounds) {
             best = Some((length, rounds));
         }
@@ -131,6 +147,14 @@ mod tests {
             stretches(&sequence, |_| 1, 10, Lengths::USUAL),
             [Stretch::Rounds { first: 0, length: 8, rounds: 10 }]
         );
+    }
+
+    #[test]
+    fn a_few_heavy_elements_make_a_loop_where_as_many_light_ones_do_not() {
+        let sequence = [3; 8];
+        let found = |weight: usize| stretches(&sequence, |_| weight, 10, Lengths::USUAL);
+        assert_eq!(found(1), [Stretch::Once(0..8)]);
+        assert_eq!(found(4), [Stretch::Rounds { first: 0, length: 1, rounds: 8 }]);
     }
 
     #[test]

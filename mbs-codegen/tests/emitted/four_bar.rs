@@ -750,7 +750,13 @@ const _: () = {
                     },
                     [__q[3], __q[4]],
                     #[inline(always)]
-                    |__x| __evaluate(__x),
+                    |__x| {
+                        if __S::COPIED {
+                            __evaluate(__x)
+                        } else {
+                            ::mbs_runtime::mechanism::called(&mut __evaluate, __x)
+                        }
+                    },
                     |__x| {
                         let __n45 = __x[1] - __x[0];
                         let ([__n46], [_]) = T::sin_cos([__n45]);
@@ -774,7 +780,7 @@ const _: () = {
                     },
                 );
             let mut __values = __kept.get();
-            if !::mbs_runtime::mechanism::is_same(&__values.0, &__x) {
+            if !__S::COPIED && !::mbs_runtime::mechanism::is_same(&__values.0, &__x) {
                 ::mbs_runtime::mechanism::called(&mut __evaluate, &__x);
                 __values = __kept.get();
             }
