@@ -72,6 +72,8 @@ mod tests {
 
     use mbs_runtime::dynamics::{Direction, DormandPrince8, Explicit, Projection, Simulation, Tolerance};
 
+    use mbs_runtime::Failure;
+
     use super::*;
 
     #[test]
@@ -90,5 +92,23 @@ mod tests {
         assert!((run.t() - 1.8061).abs() < 1e-4, "{}", run.t());
         let balance = run.balance();
         assert!(balance.defect.abs() < 1e-8 * 9.81, "{balance:?}");
+    }
+
+    #[test]
+    fn a_negative_mass_is_named_with_the_parameter_that_makes_it() {
+        let method = Explicit::new(DormandPrince8, Projection::default());
+        let start = |cart_pole| Simulation::start_from_text(cart_pole, method, 0.0);
+        let failure = start(CartPole { m: -1.0, ..CartPole::default() }).expect_err("no mass");
+        let Failure::Negative { name, parameter, value, line } = failure else { panic!("{failure}") };
+        assert_eq!((name, parameter, value), ("bob.mass", "m", -1.0));
+        assert!(line > 0 && failure.to_string().contains("`bob.mass` (line "), "{failure}");
+        let mut run = start(CartPole::default()).expect("it starts");
+        run.change(|cart_pole| cart_pole.cart_mass = -1e-6);
+        let before = *run.instant();
+        let failure = run.advance_to(0.01).expect_err("no mass");
+        assert!(matches!(failure, Failure::Negative { name: "cart.mass", .. }), "{failure}");
+        assert_eq!(before, *run.instant());
+        run.change(|cart_pole| cart_pole.cart_mass = 0.0);
+        run.advance_to(0.01).expect("nothing is a mass too");
     }
 }

@@ -145,3 +145,28 @@ pub const DRAWING: &[Shape] = &[
     Shape::Joint { at: "B2" },
     Shape::Trace { of: "B1", label: "first ball" },
 ];
+
+#[cfg(test)]
+mod tests {
+    use mbs_runtime::{Dynamic, Mechanism};
+
+    use super::*;
+
+    #[test]
+    fn what_must_not_be_negative_is_known_with_its_parameter_each_value_once() {
+        let signed = <Governor as Dynamic<f64, 16, 12>>::SIGNED;
+        let parameter = |name: &str| signed.iter().find(|signed| signed.name == name).map(|s| s.parameter);
+        assert_eq!(parameter("shaft.mass"), Some("rho"));
+        assert_eq!(parameter("ball.mass"), Some("ball_mass"));
+        assert_eq!(parameter("spring.stiffness"), Some("k"));
+        // Both rods have the mass of the shaft.
+        assert_eq!(parameter("rod.mass"), None);
+        let governor: Governor = Governor { rho: -1.0, ..Governor::default() };
+        let mut values = Vec::new();
+        governor.signed(&governor.parameters(), |value: f64| values.push(value));
+        assert_eq!(values.len(), signed.len());
+        let negative =
+            |name: &str| signed.iter().position(|signed| signed.name == name).map(|i| values[i] < 0.0);
+        assert_eq!((negative("shaft.mass"), negative("ball.mass")), (Some(true), Some(false)));
+    }
+}

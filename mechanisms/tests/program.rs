@@ -219,6 +219,50 @@ fn small_motions_about_a_moment_say_that_it_moves() {
 }
 
 #[test]
+fn small_motions_are_those_of_the_text_s_independent_coordinates_where_they_determine_the_others() {
+    let scratch = Scratch::new("independent");
+    let about = |t: &str| {
+        let arguments = ["run", "pendulum", "--analysis", "linear", "--at", t, "--steps", "3"];
+        standard_output(run_into(&scratch, &arguments))
+    };
+    let fallen = about("0.3");
+    assert!(fallen.lines().any(|line| line.trim() == "in the coordinates: P.0"), "{fallen}");
+    // Level, x does not determine y.
+    let level = about("0");
+    assert!(level.contains("in the coordinates: P.1; P.0 would not determine the others there"), "{level}");
+}
+
+#[test]
+fn a_lost_run_is_lost_and_not_one_that_passed_a_singular_position() {
+    let scratch = Scratch::new("lost");
+    let picture = scratch.0.join("drift.svg");
+    let drift = |arguments: &[&str]| {
+        let out = ["--out", picture.to_str().expect("a path of the build")];
+        standard_output(mbs(&[&["drift"], arguments, &out].concat()))
+    };
+    let lost = drift(&["bricard", "--methods", "none,baumgarte"]);
+    assert_eq!(lost.matches("ends early: the motion grows without bound").count(), 2, "{lost}");
+    assert!(!lost.contains("not determined: "), "{lost}");
+    let passed = drift(&["n_four_bar", "--methods", "baumgarte", "--until", "1"]);
+    assert!(!passed.contains("ends early") && passed.contains("it passes a singular position"), "{passed}");
+}
+
+#[test]
+fn what_stands_in_the_way_of_a_motion_is_named() {
+    let scratch = Scratch::new("obstacle");
+    let fails = |arguments: &[&str]| failure(run_into(&scratch, &[&["run"], arguments].concat()), 1);
+    for method in [&["--method", "projection"][..], &["--method", "velocity"], &["--integrator", "rk4"]] {
+        let message = fails(&[&["pendulum", "--param", "L=0"], method].concat());
+        assert!(message.contains("row `rod` (line ") && message.contains("a length is 0"), "{message}");
+    }
+    // A bob on a massless cart falls straight down until the pole stands upright.
+    let light = ["cart_pole", "--param", "cart_mass=0", "--steps", "4", "--tolerance", "1e-6"];
+    let message = fails(&light);
+    assert!(message.contains("can move without any mass moving; give it mass"), "{message}");
+    assert!(message.contains("t = 0.4515"), "{message}");
+}
+
+#[test]
 fn what_really_ran_in_place_of_independent_coordinates_is_said() {
     let scratch = Scratch::new("replaced");
     let run = |arguments: &[&str]| standard_output(run_into(&scratch, &[&["run"], arguments].concat()));

@@ -273,5 +273,29 @@ mod tests {
     fn a_state_that_moves_says_that_its_eigenvalues_are_of_one_moment() {
         let found = about_start(boxed_masses::<Hanging, 3, 2>().as_ref(), 0.2);
         assert!(found.frozen && found.freedom == 1 && found.eigenvalues.len() == 2);
+        assert_eq!(found.coordinates, ["phi"]);
+        assert!(found.passed_over.is_empty());
+    }
+
+    mechanism! {
+        /// A point on a rod that passes the height of its pin, where its x does not say where it goes.
+        pub mechanism Rising;
+        coord x: m = 1;
+        coord y: m = 0;
+        independent x;
+        body bob { mass: 2, com: [x, y] }
+        gravity weight { acceleration: [0, -9.81] }
+        constraint rod { x^2 + y^2 == 1m^2; }
+        start x = 1 rate 0;
+        start y = 0 rate 3;
+    }
+
+    #[test]
+    fn independent_coordinates_of_the_text_are_kept_where_they_determine_the_others() {
+        let found = |t: f64| about_start(boxed_masses::<Rising, 2, 1>().as_ref(), t);
+        let (level, above) = (found(0.0), found(0.1));
+        assert_eq!((level.coordinates, level.passed_over), (vec!["y"], vec!["x"]));
+        assert_eq!(above.coordinates, ["x"]);
+        assert!(above.passed_over.is_empty());
     }
 }

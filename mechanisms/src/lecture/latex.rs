@@ -208,7 +208,7 @@ fn escaped(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::registry::ALL;
+    use crate::registry::{ALL, FREE};
 
     /// Every brace and every environment that is opened is closed in order.
     #[track_caller]
@@ -246,6 +246,34 @@ mod tests {
             assert_well_formed(&text);
             assert!(text.starts_with("\\documentclass") && text.ends_with("\\end{document}\n"));
         }
+    }
+
+    #[test]
+    fn masses_and_forces_stand_behind_the_constraints() {
+        for card in FREE.iter().filter(|card| card.name != "n_four_bar_40") {
+            let mechanism = (card.make)();
+            let (source, scene) = (mechanism.source(), Some(mechanism.scene()));
+            let formulas = mbs_codegen::latex_formulas(source, scene).expect("a good text");
+            let dynamic = mbs_codegen::latex_dynamic_formulas(source, scene).expect("a good text");
+            let dynamic = dynamic.expect("it has masses");
+            let text = document(mechanism.as_ref(), &formulas, Some(&dynamic), card.title);
+            assert_well_formed(&text);
+            let [motion, mass, force] =
+                [MOTION, "\\mathbf{M} = ", "\\mathbf{Q} = "].map(|part| text.find(part));
+            assert!(motion.is_some() && motion < mass && mass < force, "{}", card.name);
+        }
+    }
+
+    #[test]
+    fn the_pendulum_has_the_mass_and_the_weight_of_its_bob() {
+        let mechanism = (crate::pendulum::CARD.make)();
+        let dynamic = mbs_codegen::latex_dynamic_formulas(mechanism.source(), None).expect("a good text");
+        let dynamic = dynamic.expect("it has masses");
+        assert_eq!(matrix(&dynamic.mass), "\\begin{bmatrix}\n  m & 0 \\\\\n  0 & m\n\\end{bmatrix}");
+        assert!(
+            dynamic.force[1].starts_with('-')
+                && ["g", "m"].iter().all(|part| dynamic.force[1].contains(part))
+        );
     }
 
     #[test]

@@ -9,7 +9,8 @@ use mbs_runtime::dynamics::{
     Stages, Tolerance,
 };
 use mechanisms::bricard::Bricard;
-use mechanisms::governor::Governor;
+use mechanisms::governor::{self, Governor};
+use mechanisms::registry::Usual;
 
 #[test]
 fn bricards_loop_keeps_its_energy_with_its_redundant_row() {
@@ -190,7 +191,7 @@ fn error_of_the_rule(steps: u32, exact: &[[f64; 2]]) -> f64 {
 }
 
 #[test]
-fn the_stiff_governor_is_right_at_steps_a_hundred_times_its_fastest_time() {
+fn the_stiff_governor_is_right_at_steps_many_times_its_fastest_time_by_the_method_of_its_file() {
     let exact = reference();
     let lagrangian = [100, 500].map(|steps| errors(AugmentedLagrangian, steps, &exact));
     println!(
@@ -217,4 +218,19 @@ fn the_stiff_governor_is_right_at_steps_a_hundred_times_its_fastest_time() {
     assert!(coarse < 1e-4 && (20.0..30.0).contains(&(coarse / fine)), "{lagrangian:?}");
     let [coarse, fine] = extrapolated;
     assert!(coarse[0] < 1e-4 && fine[0] < 1e-6, "{extrapolated:?}");
+    assert_eq!(governor::CARD.usual, Usual::Extrapolated, "what `mbs run governor` does");
+    // Dampers ten and a hundred times as strong, which decay within a hundredth of a step and less.
+    for factor in [10.0, 100.0] {
+        let [rough, exact] = [100, 1000].map(|steps| {
+            let strong = Governor { c: 4e4 * factor, ..Governor::default() };
+            let mut run = Simulation::start_from_text(strong, Extrapolated, 0.0).expect("it starts");
+            run.step_to(0.1, steps).expect("it moves");
+            *run.q()
+        });
+        let distance = rough.iter().zip(exact).fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()));
+        println!(
+            "governor, dampers {factor} times as strong: {distance:.1e} between steps of 1e-3 and 1e-4 s"
+        );
+        assert!(distance < 1e-4, "{distance:e}");
+    }
 }
