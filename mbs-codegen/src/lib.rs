@@ -108,9 +108,10 @@ fn translate_scene(scene: &Scene) -> Result<emit::Translated<'_>, Diagnostics> {
     equations::continuity::check(&scene.model, &equations, &mut diagnostics);
     equations::turns::check(&scene.model, &equations, &mut diagnostics);
     equations::pins::check(&scene.model, &equations, &mut diagnostics);
-    let Some(structure) = structure::analyse(&scene.model, &mut equations, &mut diagnostics) else {
+    let Some(mut structure) = structure::analyse(&scene.model, &mut equations, &mut diagnostics) else {
         return Err(diagnostics);
     };
+    program::share_angles(&mut equations, &mut structure);
     let program = program::order(&equations, &structure);
     Ok(emit::Translated { scene, equations, structure, program })
 }

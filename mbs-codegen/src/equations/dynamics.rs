@@ -59,6 +59,34 @@ pub struct Dynamics {
     pub attribution: Option<Attribution>,
 }
 
+impl Dynamics {
+    /// The roots of every function that is emitted, to be replaced.
+    pub fn roots_mut(&mut self) -> Vec<&mut NodeId> {
+        let matrices = [
+            &mut self.mass,
+            &mut self.mass_times_q,
+            &mut self.force_q,
+            &mut self.force_qd,
+            &mut self.reaction_q,
+        ];
+        let vectors = [
+            &mut self.mass_times,
+            &mut self.force,
+            &mut self.reaction,
+            &mut self.powers,
+            &mut self.state_rates,
+            &mut self.start_states,
+            &mut self.start_rates,
+        ];
+        let mut roots: Vec<&mut NodeId> =
+            matrices.into_iter().flatten().flatten().map(|(_, entry)| entry).collect();
+        roots.extend(vectors.into_iter().flatten().flatten());
+        roots.extend([&mut self.kinetic, &mut self.potential].into_iter().flatten());
+        roots.extend(&mut self.loads);
+        roots
+    }
+}
+
 /// Before: everything of the text as nodes. After: every function of dynamics as roots of the same graph.
 pub fn derive(
     g: &mut Graph,

@@ -87,6 +87,33 @@ pub struct Output {
     pub acceleration: Option<Option<NodeId>>,
 }
 
+impl Equations {
+    /// The roots of every function that is emitted, to be replaced.
+    pub fn roots_mut(&mut self) -> Vec<&mut NodeId> {
+        let mut roots = Vec::new();
+        for row in &mut self.rows {
+            let Row { phi, phi_q, phi_t, phi_tt, phi_qt_qd, gamma } = row;
+            roots.push(phi);
+            roots.extend(phi_q.iter_mut().map(|(_, entry)| entry));
+            roots.extend([phi_t, phi_tt, phi_qt_qd, gamma].into_iter().flatten());
+        }
+        for output in &mut self.outputs {
+            roots.push(&mut output.value);
+            roots.extend([&mut output.rate, &mut output.acceleration].into_iter().flatten().flatten());
+        }
+        for phase in &mut self.phases {
+            roots.extend([&mut phase.argument, &mut phase.speed]);
+            roots.extend(&mut phase.acceleration);
+        }
+        roots.extend(self.limits.iter_mut().flatten());
+        let lists =
+            [&mut self.branches, &mut self.guesses, &mut self.coordinate_scales, &mut self.row_scales];
+        roots.extend(lists.into_iter().flatten());
+        roots.extend(self.dynamics.iter_mut().flat_map(Dynamics::roots_mut));
+        roots
+    }
+}
+
 /// Before: a resolved model. After: every function that is emitted, as roots of one graph.
 pub fn derive(model: &Model) -> Equations {
     let lowered = lower::lower(model);

@@ -1,5 +1,6 @@
 //! Graph → ordered, staged straight-line code, with operation counts.
 
+mod angles;
 mod blocks;
 mod dynamics;
 mod schedule;
@@ -11,6 +12,7 @@ use crate::equations::Equations;
 use crate::structure::Structure;
 use crate::symbolic::{Graph, NodeId};
 
+pub use angles::share_angles;
 pub use blocks::{BlockProgram, Method, System};
 pub use dynamics::DynamicsProgram;
 pub use schedule::{Angle, Jet, Line, Operations, Section};

@@ -219,10 +219,11 @@ struct Tally {
 #[cfg(test)]
 impl Tally {
     fn compare(&mut self, understood: Option<Understood>, seed: u64, count: usize, text: &str) {
-        let Some(Understood { model, equations, structure, .. }) = understood else {
+        let Some(Understood { model, mut equations, mut structure, .. }) = understood else {
             self.refused += 1;
             return;
         };
+        crate::program::share_angles(&mut equations, &mut structure);
         let program = crate::program::order(&equations, &structure);
         for state in states(&model, seed).into_iter().take(count) {
             let emitted = interpreter::run(&equations, &program, &state);

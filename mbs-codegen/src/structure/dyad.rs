@@ -36,14 +36,19 @@ impl Dyad {
 
     /// All its coefficients.
     pub fn nodes(&self) -> Vec<NodeId> {
+        self.clone().nodes_mut().into_iter().map(|node| *node).collect()
+    }
+
+    /// All its coefficients, to be replaced.
+    pub fn nodes_mut(&mut self) -> Vec<&mut NodeId> {
         match self {
             Dyad::Bars { a, b, c, .. } | Dyad::Telescope { a, b, c, .. } => {
-                a.iter().chain(b).chain([c]).flatten().copied().collect()
+                a.iter_mut().chain(b).chain([c]).flatten().collect()
             }
-            Dyad::Slide { a, b, c, .. } => a.iter().chain([b, c]).flatten().copied().collect(),
-            Dyad::Circles { rows } => rows.iter().flatten().copied().collect(),
-            Dyad::Angle { a: [p, q], c } => vec![*p, *q, *c],
-            Dyad::Length { row } => row.to_vec(),
+            Dyad::Slide { a, b, c, .. } => a.iter_mut().chain([b, c]).flatten().collect(),
+            Dyad::Circles { rows } => rows.iter_mut().flatten().collect(),
+            Dyad::Angle { a: [p, q], c } => vec![p, q, c],
+            Dyad::Length { row } => row.iter_mut().collect(),
         }
     }
 }

@@ -40,6 +40,16 @@ impl Structure {
     pub fn has_surplus(&self) -> bool {
         self.matched.iter().any(Option::is_none)
     }
+
+    /// The roots that the equations do not have already, to be replaced.
+    pub fn roots_mut(&mut self) -> Vec<&mut NodeId> {
+        let mut roots = Vec::new();
+        for block in &mut self.blocks {
+            roots.extend(block.explicit.as_mut().map(|explicit| &mut explicit.value));
+            roots.extend(block.dyad.iter_mut().flat_map(Dyad::nodes_mut));
+        }
+        roots
+    }
 }
 
 /// A diagonal block.

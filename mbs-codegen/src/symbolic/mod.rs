@@ -2,11 +2,13 @@
 //!
 //! Knows nothing of mechanisms, of syntax or of Rust: leaves are `(kind, index)`.
 
+mod angles;
 pub mod differentiate;
 pub mod evaluate;
 pub mod graph;
 mod rules;
 pub mod substitute;
 
+pub use angles::{AngleSum, add_angles};
 pub use differentiate::{tangent, tangents};
 pub use graph::{Binary, Graph, Leaf, Node, NodeId, Stage, Unary};

@@ -1,37 +1,53 @@
-//! Replacement of leaves.
+//! Replacement of nodes.
 
 use super::graph::{Graph, Leaf, Node, NodeId};
 
+/// What became of the nodes below the roots of a replacement.
+pub struct Images(Vec<Option<NodeId>>);
+
+impl Images {
+    /// What stands for the node now: itself, where nothing below it was replaced.
+    pub fn of(&self, id: NodeId) -> NodeId {
+        self.0.get(id.index()).copied().flatten().unwrap_or(id)
+    }
+}
+
 /// `root` with every leaf for which `replacement` gives a node replaced by it.
 pub fn substitute(graph: &mut Graph, root: NodeId, replacement: impl Fn(Leaf) -> Option<NodeId>) -> NodeId {
-    let nodes = graph.reachable([root]);
-    let mut images: Vec<Option<NodeId>> = vec![None; graph.len()];
+    let images = replace(graph, &[root], |graph, id| match graph.node(id) {
+        Node::Leaf(leaf) => replacement(leaf),
+        _ => None,
+    });
+    images.of(root)
+}
+
+/// Before: roots of a graph. After: below them every node for which `replacement` gives another is replaced by it, and what
+/// uses it is built anew.
+pub fn replace(
+    graph: &mut Graph,
+    roots: &[NodeId],
+    replacement: impl Fn(&Graph, NodeId) -> Option<NodeId>,
+) -> Images {
+    let nodes = graph.reachable(roots.iter().copied());
+    let mut images = Images(vec![None; graph.len()]);
     for id in nodes {
-        let of = |id: NodeId| images.get(id.index()).copied().flatten().unwrap_or(id);
-        let image = match graph.node(id) {
-            Node::Constant(_) => id,
-            Node::Leaf(leaf) => replacement(leaf).unwrap_or(id),
-            node if node.operands().all(|operand| of(operand) == operand) => id,
-            Node::Unary(function, a) => {
-                let a = of(a);
-                graph.unary(function, a)
-            }
-            Node::Binary(function, a, b) => {
-                let (a, b) = (of(a), of(b));
-                graph.binary(function, a, b)
-            }
-            Node::Call { function, order, argument } => {
-                let argument = of(argument);
-                graph.call(function, order, argument)
-            }
-            Node::Select { less, than, yes, no } => {
-                let (less, than, yes, no) = (of(less), of(than), of(yes), of(no));
-                graph.select(less, than, yes, no)
-            }
-        };
-        if let Some(slot) = images.get_mut(id.index()) {
+        let image = replacement(graph, id).unwrap_or_else(|| rebuilt(graph, id, &images));
+        if let Some(slot) = images.0.get_mut(id.index()) {
             *slot = Some(image);
         }
     }
-    images.get(root.index()).copied().flatten().unwrap_or(root)
+    images
+}
+
+/// The node with the images of its operands.
+fn rebuilt(graph: &mut Graph, id: NodeId, images: &Images) -> NodeId {
+    let of = |id: NodeId| images.of(id);
+    match graph.node(id) {
+        node if node.operands().all(|operand| of(operand) == operand) => id,
+        Node::Constant(_) | Node::Leaf(_) => id,
+        Node::Unary(function, a) => graph.unary(function, of(a)),
+        Node::Binary(function, a, b) => graph.binary(function, of(a), of(b)),
+        Node::Call { function, order, argument } => graph.call(function, order, of(argument)),
+        Node::Select { less, than, yes, no } => graph.select(of(less), of(than), of(yes), of(no)),
+    }
 }

@@ -28,17 +28,17 @@
 /// | function | + − | × | ÷ | sin, cos | other functions | selections |
 /// |---|---|---|---|---|---|---|
 /// | `parameters` (once a design) | 1 | 0 | 0 | 0 | 0 | 0 |
-/// | `position` (once a `(q, t)`) | 2 | 8 | 0 | 4 | 0 | 0 |
+/// | `position` (once a `(q, t)`) | 2 | 12 | 0 | 3 | 0 | 0 |
 /// | `phi` | 10 | 1 | 0 | 0 | 0 | 0 |
 /// | `phi_q` | 4 | 0 | 0 | 0 | 0 | 0 |
 /// | `phi_t` | 0 | 0 | 0 | 0 | 0 | 0 |
 /// | `phi_tt` | 0 | 0 | 0 | 0 | 0 | 0 |
 /// | `phi_qt_qd` | 0 | 0 | 0 | 0 | 0 | 0 |
 /// | `gamma` | 8 | 11 | 0 | 0 | 0 | 0 |
-/// | `branches` | 0 | 0 | 0 | 1 | 0 | 0 |
+/// | `branches` | 1 | 2 | 0 | 0 | 0 | 0 |
 /// | `limits` | 0 | 0 | 0 | 0 | 0 | 0 |
-/// | `outputs` | 2 | 0 | 0 | 0 | 0 | 0 |
-/// | `solve_with_position`, once | 4 | 5 | 0 | 2 | 0 | 0 |
+/// | `outputs` | 3 | 0 | 0 | 0 | 0 | 0 |
+/// | `solve_with_position`, once | 4 | 9 | 0 | 1 | 0 | 0 |
 /// | `solve_with_position`, each iteration of every block | 7 | 4 | 0 | 2 | 0 | 0 |
 ///
 /// `WorstCase::WORST_CASE_OPERATIONS` is what a step of bounded work costs at most.
@@ -106,7 +106,7 @@ const _: () = {
     pub struct __Parameters<T>([T; 1usize]);
     /// Values of `(q, t)` that functions share.
     #[derive(::core::clone::Clone, ::core::marker::Copy, ::core::fmt::Debug)]
-    pub struct __Position<T>([T; 13usize]);
+    pub struct __Position<T>([T; 18usize]);
     impl<T: ::mbs_runtime::Scalar> ::mbs_runtime::Mechanism<T, 5usize, 5usize>
     for FourBar<T> {
         type Parameters = __Parameters<T>;
@@ -302,52 +302,60 @@ const _: () = {
             __q: &[T; 5usize],
             __t: T,
         ) -> __Position<T> {
-            let __n18 = T::constant(0.4f64) + __q[3];
-            let __n45 = __q[4] - __q[3];
-            let ([__n23, __n36, __n25, __n39], [__n16, __n32, __n19, __n29]) = T::sin_cos([
+            let ([__n23, __n36, __n39], [__n16, __n32, __n29]) = T::sin_cos([
                 __q[2],
                 __q[3],
-                __n18,
                 __q[4],
             ]);
             let __n17 = T::constant(0.1f64) * __n16;
-            let __n20 = T::constant(0.15f64) * __n19;
             let __n24 = T::constant(0.1f64) * __n23;
-            let __n26 = T::constant(0.15f64) * __n25;
             let __n30 = T::constant(0.2f64) * __n29;
             let __n33 = T::constant(0.25f64) * __n32;
             let __n37 = T::constant(0.25f64) * __n36;
             let __n40 = T::constant(0.2f64) * __n39;
+            let __n138 = __n36 * T::constant(0.9210609940028851f64);
+            let __n139 = __n32 * T::constant(0.3894183423086505f64);
+            let __n140 = __n138 + __n139;
+            let __n141 = __n32 * T::constant(0.9210609940028851f64);
+            let __n142 = __n36 * T::constant(0.3894183423086505f64);
+            let __n143 = __n141 - __n142;
+            let __n150 = T::constant(0.15f64) * __n143;
+            let __n153 = T::constant(0.15f64) * __n140;
             __Position([
                 __q[0],
                 __q[1],
                 __q[2],
+                __q[3],
+                __q[4],
                 __n17,
-                __n20,
                 __n24,
-                __n26,
+                __n29,
                 __n30,
+                __n32,
                 __n33,
+                __n36,
                 __n37,
+                __n39,
                 __n40,
                 __t,
-                __n45,
+                __n150,
+                __n153,
             ])
         }
         #[inline]
         fn phi(&self, __p: &__Parameters<T>, __s: &__Position<T>) -> [T; 5usize] {
-            let __n21 = __s.0[3] + __s.0[4];
-            let __n22 = __s.0[0] - __n21;
-            let __n27 = __s.0[5] + __s.0[6];
-            let __n28 = __s.0[1] - __n27;
-            let __n31 = T::constant(0.3f64) + __s.0[7];
-            let __n34 = __s.0[3] + __s.0[8];
+            let __n31 = T::constant(0.3f64) + __s.0[8];
+            let __n34 = __s.0[5] + __s.0[10];
             let __n35 = __n31 - __n34;
-            let __n38 = __s.0[5] + __s.0[9];
-            let __n41 = __n38 - __s.0[10];
-            let __n43 = self.omega * __s.0[11];
+            let __n38 = __s.0[6] + __s.0[12];
+            let __n41 = __n38 - __s.0[14];
+            let __n43 = self.omega * __s.0[15];
             let __n44 = __s.0[2] - __n43;
-            [__n22, __n28, __n35, __n41, __n44]
+            let __n151 = __s.0[5] + __s.0[16];
+            let __n152 = __s.0[0] - __n151;
+            let __n154 = __s.0[6] + __s.0[17];
+            let __n155 = __s.0[1] - __n154;
+            [__n152, __n155, __n35, __n41, __n44]
         }
         #[inline]
         fn phi_q(
@@ -355,22 +363,22 @@ const _: () = {
             __p: &__Parameters<T>,
             __s: &__Position<T>,
         ) -> [[T; 5usize]; 5usize] {
-            let __n50 = -__s.0[3];
-            let __n53 = -__s.0[4];
-            let __n57 = -__s.0[10];
-            let __n58 = -__s.0[7];
+            let __n50 = -__s.0[5];
+            let __n57 = -__s.0[14];
+            let __n58 = -__s.0[8];
+            let __n156 = -__s.0[16];
             let mut __rows = [[T::constant(0.0f64); 5]; 5];
             __rows[0][0] = T::constant(1.0f64);
-            __rows[0][2] = __s.0[5];
-            __rows[0][3] = __s.0[6];
+            __rows[0][2] = __s.0[6];
+            __rows[0][3] = __s.0[17];
             __rows[1][1] = T::constant(1.0f64);
             __rows[1][2] = __n50;
-            __rows[1][3] = __n53;
-            __rows[2][2] = __s.0[5];
-            __rows[2][3] = __s.0[9];
+            __rows[1][3] = __n156;
+            __rows[2][2] = __s.0[6];
+            __rows[2][3] = __s.0[12];
             __rows[2][4] = __n57;
-            __rows[3][2] = __s.0[3];
-            __rows[3][3] = __s.0[8];
+            __rows[3][2] = __s.0[5];
+            __rows[3][3] = __s.0[10];
             __rows[3][4] = __n58;
             __rows[4][2] = T::constant(1.0f64);
             __rows
@@ -381,22 +389,22 @@ const _: () = {
             __p: &__Parameters<T>,
             __s: &__Position<T>,
         ) -> [T; 13usize] {
-            let __n50 = -__s.0[3];
-            let __n53 = -__s.0[4];
-            let __n57 = -__s.0[10];
-            let __n58 = -__s.0[7];
+            let __n50 = -__s.0[5];
+            let __n57 = -__s.0[14];
+            let __n58 = -__s.0[8];
+            let __n156 = -__s.0[16];
             [
                 T::constant(1.0f64),
-                __s.0[5],
                 __s.0[6],
+                __s.0[17],
                 T::constant(1.0f64),
                 __n50,
-                __n53,
-                __s.0[5],
-                __s.0[9],
+                __n156,
+                __s.0[6],
+                __s.0[12],
                 __n57,
-                __s.0[3],
-                __s.0[8],
+                __s.0[5],
+                __s.0[10],
                 __n58,
                 T::constant(1.0f64),
             ]
@@ -444,25 +452,25 @@ const _: () = {
             __qd: &[T; 5usize],
         ) -> [T; 5usize] {
             let __n100 = __qd[2] * __qd[2];
-            let __n101 = __s.0[3] * __n100;
+            let __n101 = __s.0[5] * __n100;
             let __n102 = __qd[3] * __qd[3];
-            let __n103 = __s.0[4] * __n102;
-            let __n104 = __n101 + __n103;
-            let __n105 = __s.0[5] * __n100;
-            let __n107 = __s.0[6] * __n102;
-            let __n109 = __n105 + __n107;
-            let __n110 = -__n109;
+            let __n105 = __s.0[6] * __n100;
             let __n111 = __qd[4] * __qd[4];
-            let __n112 = __s.0[7] * __n111;
-            let __n113 = __s.0[8] * __n102;
+            let __n112 = __s.0[8] * __n111;
+            let __n113 = __s.0[10] * __n102;
             let __n114 = __n101 + __n113;
-            let __n116 = __s.0[9] * __n102;
+            let __n116 = __s.0[12] * __n102;
             let __n118 = __n105 + __n116;
-            let __n120 = __s.0[10] * __n111;
-            let __n123 = -__n104;
+            let __n120 = __s.0[14] * __n111;
             let __n124 = __n112 - __n114;
             let __n125 = __n118 - __n120;
-            [__n123, __n110, __n124, __n125, T::constant(0.0f64)]
+            let __n157 = __n102 * __s.0[16];
+            let __n158 = __n101 + __n157;
+            let __n159 = __n102 * __s.0[17];
+            let __n160 = __n105 + __n159;
+            let __n161 = -__n160;
+            let __n162 = -__n158;
+            [__n162, __n161, __n124, __n125, T::constant(0.0f64)]
         }
         #[inline]
         fn evaluate(
@@ -472,26 +480,18 @@ const _: () = {
             __t: T,
             __qd: &[T; 5usize],
         ) -> ::mbs_runtime::Evaluation<T, [T; 13usize], 5usize> {
-            let __n18 = T::constant(0.4f64) + __q[3];
             let __n43 = self.omega * __t;
             let __n44 = __q[2] - __n43;
             let __n100 = __qd[2] * __qd[2];
             let __n102 = __qd[3] * __qd[3];
             let __n111 = __qd[4] * __qd[4];
-            let ([__n23, __n36, __n25, __n39], [__n16, __n32, __n19, __n29]) = T::sin_cos([
+            let ([__n23, __n36, __n39], [__n16, __n32, __n29]) = T::sin_cos([
                 __q[2],
                 __q[3],
-                __n18,
                 __q[4],
             ]);
             let __n17 = T::constant(0.1f64) * __n16;
-            let __n20 = T::constant(0.15f64) * __n19;
-            let __n21 = __n17 + __n20;
-            let __n22 = __q[0] - __n21;
             let __n24 = T::constant(0.1f64) * __n23;
-            let __n26 = T::constant(0.15f64) * __n25;
-            let __n27 = __n24 + __n26;
-            let __n28 = __q[1] - __n27;
             let __n30 = T::constant(0.2f64) * __n29;
             let __n31 = T::constant(0.3f64) + __n30;
             let __n33 = T::constant(0.25f64) * __n32;
@@ -502,34 +502,46 @@ const _: () = {
             let __n40 = T::constant(0.2f64) * __n39;
             let __n41 = __n38 - __n40;
             let __n50 = -__n17;
-            let __n53 = -__n20;
             let __n57 = -__n40;
             let __n58 = -__n30;
             let __n101 = __n17 * __n100;
-            let __n103 = __n20 * __n102;
-            let __n104 = __n101 + __n103;
             let __n105 = __n24 * __n100;
-            let __n107 = __n26 * __n102;
-            let __n109 = __n105 + __n107;
-            let __n110 = -__n109;
             let __n112 = __n30 * __n111;
             let __n113 = __n33 * __n102;
             let __n114 = __n101 + __n113;
             let __n116 = __n37 * __n102;
             let __n118 = __n105 + __n116;
             let __n120 = __n40 * __n111;
-            let __n123 = -__n104;
             let __n124 = __n112 - __n114;
             let __n125 = __n118 - __n120;
+            let __n138 = __n36 * T::constant(0.9210609940028851f64);
+            let __n139 = __n32 * T::constant(0.3894183423086505f64);
+            let __n140 = __n138 + __n139;
+            let __n141 = __n32 * T::constant(0.9210609940028851f64);
+            let __n142 = __n36 * T::constant(0.3894183423086505f64);
+            let __n143 = __n141 - __n142;
+            let __n150 = T::constant(0.15f64) * __n143;
+            let __n151 = __n17 + __n150;
+            let __n152 = __q[0] - __n151;
+            let __n153 = T::constant(0.15f64) * __n140;
+            let __n154 = __n24 + __n153;
+            let __n155 = __q[1] - __n154;
+            let __n156 = -__n150;
+            let __n157 = __n102 * __n150;
+            let __n158 = __n101 + __n157;
+            let __n159 = __n102 * __n153;
+            let __n160 = __n105 + __n159;
+            let __n161 = -__n160;
+            let __n162 = -__n158;
             ::mbs_runtime::Evaluation {
-                phi: [__n22, __n28, __n35, __n41, __n44],
+                phi: [__n152, __n155, __n35, __n41, __n44],
                 phi_q_entries: [
                     T::constant(1.0f64),
                     __n24,
-                    __n26,
+                    __n153,
                     T::constant(1.0f64),
                     __n50,
-                    __n53,
+                    __n156,
                     __n24,
                     __n37,
                     __n57,
@@ -545,13 +557,15 @@ const _: () = {
                     T::constant(0.0f64),
                     __p.0[0],
                 ],
-                gamma: [__n123, __n110, __n124, __n125, T::constant(0.0f64)],
+                gamma: [__n162, __n161, __n124, __n125, T::constant(0.0f64)],
             }
         }
         #[inline]
         fn branches(&self, __p: &__Parameters<T>, __s: &__Position<T>) -> [T; 1usize] {
-            let ([__n46], [_]) = T::sin_cos([__s.0[12]]);
-            [__n46]
+            let __n144 = __s.0[9] * __s.0[13];
+            let __n145 = __s.0[7] * __s.0[11];
+            let __n146 = __n144 - __n145;
+            [__n146]
         }
         #[inline]
         fn limits(
@@ -569,11 +583,12 @@ const _: () = {
             __qd: &[T; 5usize],
             __qdd: &[T; 5usize],
         ) -> [::mbs_runtime::OutputValue<T>; 1usize] {
+            let __n45 = __s.0[4] - __s.0[3];
             let __n126 = __qd[4] - __qd[3];
             let __n129 = __qdd[4] - __qdd[3];
             [
                 ::mbs_runtime::OutputValue {
-                    value: __s.0[12],
+                    value: __n45,
                     rate: ::core::option::Option::Some(__n126),
                     acceleration: ::core::option::Option::Some(__n129),
                 },
@@ -599,8 +614,8 @@ const _: () = {
             inputs: 0usize,
             position: ::mbs_runtime::Operations {
                 additions: 2,
-                multiplications: 8,
-                sine_cosines: 4,
+                multiplications: 12,
+                sine_cosines: 3,
                 ..::mbs_runtime::Operations::NONE
             },
             phi: ::mbs_runtime::Operations {
@@ -619,7 +634,8 @@ const _: () = {
                 ..::mbs_runtime::Operations::NONE
             },
             branch_values: ::mbs_runtime::Operations {
-                sine_cosines: 1,
+                additions: 1,
+                multiplications: 2,
                 ..::mbs_runtime::Operations::NONE
             },
             limit_values: ::mbs_runtime::Operations::NONE,
@@ -658,8 +674,7 @@ const _: () = {
                     rows: 1usize,
                     before: ::mbs_runtime::Operations {
                         additions: 2,
-                        multiplications: 1,
-                        sine_cosines: 1,
+                        multiplications: 3,
                         ..::mbs_runtime::Operations::NONE
                     },
                     evaluation: ::mbs_runtime::Operations::NONE,
@@ -669,18 +684,15 @@ const _: () = {
                     unknowns: 0usize,
                     rows: 1usize,
                     before: ::mbs_runtime::Operations {
-                        additions: 1,
-                        multiplications: 1,
+                        additions: 2,
+                        multiplications: 3,
                         ..::mbs_runtime::Operations::NONE
                     },
                     evaluation: ::mbs_runtime::Operations::NONE,
                     ..::mbs_runtime::BlockWork::NONE
                 },
                 ::mbs_runtime::BlockWork {
-                    before: ::mbs_runtime::Operations {
-                        additions: 1,
-                        ..::mbs_runtime::Operations::NONE
-                    },
+                    before: ::mbs_runtime::Operations::NONE,
                     ..::mbs_runtime::BlockWork::NONE
                 },
             ],
@@ -715,7 +727,7 @@ const _: () = {
             let __n24 = T::constant(0.1f64) * __n23;
             let __kept = ::core::cell::Cell::new((
                 [T::constant(::core::primitive::f64::INFINITY); 2],
-                [T::constant(0.0f64); 4],
+                [T::constant(0.0f64); 8],
             ));
             let mut __evaluate = {
                 #[inline(always)]
@@ -732,7 +744,11 @@ const _: () = {
                     let __n41 = __n38 - __n40;
                     let __n57 = -__n40;
                     let __n58 = -__n30;
-                    __kept.set((*__x, [__n30, __n33, __n37, __n40]));
+                    __kept
+                        .set((
+                            *__x,
+                            [__n29, __n30, __n32, __n33, __n36, __n37, __n39, __n40],
+                        ));
                     ([__n35, __n41], [[__n37, __n57], [__n33, __n58]])
                 }
             };
@@ -758,9 +774,14 @@ const _: () = {
                         }
                     },
                     |__x| {
-                        let __n45 = __x[1] - __x[0];
-                        let ([__n46], [_]) = T::sin_cos([__n45]);
-                        T::less(T::constant(0.0f64), __n46)
+                        let ([__n36, __n39], [__n32, __n29]) = T::sin_cos([
+                            __x[0],
+                            __x[1],
+                        ]);
+                        let __n144 = __n32 * __n39;
+                        let __n145 = __n29 * __n36;
+                        let __n146 = __n144 - __n145;
+                        T::less(T::constant(0.0f64), __n146)
                     },
                     |__near| {
                         let __n132 = T::constant(0.3f64) - __n17;
@@ -784,37 +805,45 @@ const _: () = {
                 ::mbs_runtime::mechanism::called(&mut __evaluate, &__x);
                 __values = __kept.get();
             }
-            let [__n30, __n33, __n37, __n40] = __values.1;
+            let [__n29, __n30, __n32, __n33, __n36, __n37, __n39, __n40] = __values.1;
             __q[3] = __x[0];
             __q[4] = __x[1];
             let __outcome = ::mbs_runtime::failure::first_failure::<
                 T,
             >(__outcome, __block);
-            let __n18 = T::constant(0.4f64) + __q[3];
-            let ([__n25], [__n19]) = T::sin_cos([__n18]);
-            let __n20 = T::constant(0.15f64) * __n19;
-            let __n21 = __n17 + __n20;
-            __q[0] = __n21;
-            let __n26 = T::constant(0.15f64) * __n25;
-            let __n27 = __n24 + __n26;
-            __q[1] = __n27;
-            let __n45 = __q[4] - __q[3];
+            let __n141 = __n32 * T::constant(0.9210609940028851f64);
+            let __n142 = __n36 * T::constant(0.3894183423086505f64);
+            let __n143 = __n141 - __n142;
+            let __n150 = T::constant(0.15f64) * __n143;
+            let __n151 = __n17 + __n150;
+            __q[0] = __n151;
+            let __n138 = __n36 * T::constant(0.9210609940028851f64);
+            let __n139 = __n32 * T::constant(0.3894183423086505f64);
+            let __n140 = __n138 + __n139;
+            let __n153 = T::constant(0.15f64) * __n140;
+            let __n154 = __n24 + __n153;
+            __q[1] = __n154;
             (
                 __outcome,
                 __Position([
                     __q[0],
                     __q[1],
                     __q[2],
+                    __q[3],
+                    __q[4],
                     __n17,
-                    __n20,
                     __n24,
-                    __n26,
+                    __n29,
                     __n30,
+                    __n32,
                     __n33,
+                    __n36,
                     __n37,
+                    __n39,
                     __n40,
                     __t,
-                    __n45,
+                    __n150,
+                    __n153,
                 ]),
             )
         }
@@ -824,10 +853,10 @@ const _: () = {
             __p: &__Parameters<T>,
             __s: &__Position<T>,
         ) -> (__Factors<T>, ::mbs_runtime::Margin<T>) {
-            let __n50 = -__s.0[3];
-            let __n53 = -__s.0[4];
-            let __n57 = -__s.0[10];
-            let __n58 = -__s.0[7];
+            let __n50 = -__s.0[5];
+            let __n57 = -__s.0[14];
+            let __n58 = -__s.0[8];
+            let __n156 = -__s.0[16];
             let __margin = ::mbs_runtime::Margin::<T>::regular();
             let (__block1, __value) = <::mbs_runtime::Direct2<
                 T,
@@ -835,7 +864,7 @@ const _: () = {
                 T,
                 2,
             >>::factorize(
-                &[[__s.0[9], __n57], [__s.0[8], __n58]],
+                &[[__s.0[12], __n57], [__s.0[10], __n58]],
                 &[T::constant(0.3f64), T::constant(0.3f64)],
                 &[T::constant(1.0f64), T::constant(1.0f64)],
             );
@@ -848,7 +877,7 @@ const _: () = {
                 );
             (
                 __Factors {
-                    entries: [__s.0[3], __s.0[5], __s.0[6], __n50, __n53],
+                    entries: [__s.0[5], __s.0[6], __n50, __s.0[17], __n156],
                     block1: __block1,
                 },
                 __margin,
@@ -874,8 +903,8 @@ const _: () = {
                 ],
             );
             let __x0 = __b[0] - __factors.entries[1] * __x2
-                - __factors.entries[2] * __x3;
-            let __x1 = __b[1] - __factors.entries[3] * __x2
+                - __factors.entries[3] * __x3;
+            let __x1 = __b[1] - __factors.entries[2] * __x2
                 - __factors.entries[4] * __x3;
             [__x0, __x1, __x2, __x3, __x4]
         }
