@@ -12,7 +12,7 @@ use super::turns::turning;
 use super::units::Dimension;
 use super::{Coordinate, CoordinateField, Field, Longest, Model, Role, Variable, VariableKind};
 use crate::diagnostics::Diagnostics;
-use crate::syntax::ast::{Declares, Expression, Name, Statement, StatementKind, Type, Unit};
+use crate::syntax::ast::{Declares, Expression, Loop, Name, Statement, StatementKind, Type, Unit};
 
 /// Most coordinates. A step is linear in them and has arrays of as many on its stack; Φ_q as a whole, which no step asks
 /// for, is a dense array of 288 MB then.
@@ -32,6 +32,13 @@ pub fn declare(
     for statement in &top {
         if let Some(name) = declared_name(statement) {
             work.names.declare(name, work.diagnostics);
+        }
+    }
+    for statement in &in_loops {
+        if let StatementKind::Let { name, .. } | StatementKind::For(Loop { variable: name, .. }) =
+            &statement.kind
+        {
+            work.names.declare_in_loop(name);
         }
     }
     work.constants(&top);

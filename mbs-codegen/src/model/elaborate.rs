@@ -12,7 +12,7 @@ use super::references::{REFERRING, is_reference};
 use super::units::{Dimension, with_suffix};
 use super::{Longest, Reference};
 use crate::diagnostics::{Diagnostics, nearest};
-use crate::syntax::ast::{Expression, Name, Operation, Operator, Target};
+use crate::syntax::ast::{Expression, Instruction, Name, Operation, Operator, Target};
 
 /// A fault was reported.
 #[derive(Clone, Copy, Debug)]
@@ -246,7 +246,7 @@ impl Elaborator<'_> {
             }
             Operation::SumBegin { variable, end } => {
                 let (high, low) = (stack.pop(self.names)?, stack.pop(self.names)?);
-                let (low, high) = (self.count(&low)?, self.count(&high)?);
+                let (low, high) = self.range(&low, &high, follows_literals(&expression.code, index))?;
                 if !self.names.is_free(variable, self.diagnostics) {
                     return Err(Fault);
                 }
@@ -361,6 +361,10 @@ impl Elaborator<'_> {
 
     /// A fault at an unknown name.
     fn unknown_name(&mut self, name: &str, span: Span) -> Fault {
+        if self.names.is_local(name) {
+            let message = format!("`{name}` is known inside its `for` alone, behind its declaration");
+            return self.fault(span, message, "move this into the loop, or declare a `let` outside of it");
+        }
         let help = if FUNCTIONS.contains(&name) {
             format!("`{name}` is a function; write `{name}(…)`")
         } else if let Some(known) = nearest(name, self.names.all().chain(CONSTANTS)) {
@@ -530,6 +534,19 @@ impl Elaborator<'_> {
         }
     }
 
+    /// The counts of a range from `low` up to the one before `high`; `written`: both are numbers as written. Constants and
+    /// outer loops may leave nothing between them, numbers are then none that anyone means.
+    pub fn range(&mut self, low: &Value, high: &Value, written: bool) -> Result<(usize, usize), Fault> {
+        let (first, end) = (self.count(low)?, self.count(high)?);
+        if written && first >= end {
+            let message = format!("the range `{first}..{end}` is empty");
+            let help =
+                "write the first count, and behind the dots one more than the last: `0..3` counts 0, 1, 2";
+            return Err(self.fault(low.span, message, help));
+        }
+        Ok((first, end))
+    }
+
     /// Stacks values of one shape.
     pub fn array(&mut self, values: Vec<Value>, span: Span) -> Result<Value, Fault> {
         let first = values.first().ok_or(Fault)?.clone();
@@ -610,4 +627,13 @@ impl Elaborator<'_> {
             "check for a division by zero, or a root or logarithm of a negative number",
         ))
     }
+}
+
+/// Whether the two values before `index` are numbers as written.
+fn follows_literals(code: &[Instruction], index: usize) -> bool {
+    let is_literal = |back: usize| {
+        let before = index.checked_sub(back).and_then(|index| code.get(index));
+        matches!(before.map(|instruction| &instruction.operation), Some(Operation::Number { .. }))
+    };
+    is_literal(1) && is_literal(2)
 }

@@ -53,7 +53,22 @@ pub fn fits_shape(work: &mut Elaborator<'_>, value: &Value, shape: &[usize]) -> 
     }
     let declared = Value { shape: shape.to_vec(), items: Vec::new(), span: value.span }.describe();
     let message = format!("{} is declared, {} is given", declared, value.describe());
-    Err(work.fault(value.span, message, "declare the shape as `[m; 2]`, give the components as `[x, y]`"))
+    let help = match shape {
+        [_, _] => format!("give the components row by row: `{}`", zeros(shape)),
+        [_, _, _, ..] => "give the components nested as the lengths are, the outermost first".into(),
+        _ => "declare the shape as `[m; 2]`, give the components as `[x, y]`".into(),
+    };
+    Err(work.fault(value.span, message, help))
+}
+
+/// An array of this shape as one writes it, the first rows of each dimension.
+fn zeros(shape: &[usize]) -> String {
+    const SHOWN: usize = 3;
+    shape.iter().rev().fold("0".into(), |inner, length| {
+        let shown = vec![inner.as_str(); (*length).min(SHOWN)].join(", ");
+        let more = if *length > SHOWN { ", …" } else { "" };
+        format!("[{shown}{more}]")
+    })
 }
 
 /// The components, all numbers; otherwise the first name that is none is reported.

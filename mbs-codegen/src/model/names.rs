@@ -1,6 +1,6 @@
 //! What a name of the text stands for.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use proc_macro2::Span;
 
@@ -56,6 +56,8 @@ pub struct Joint {
 pub struct Names {
     declared: BTreeMap<String, (Symbol, Span)>,
     scoped: Vec<(String, Symbol)>,
+    /// Names that a loop somewhere in the text declares for itself.
+    local: BTreeSet<String>,
     rows: BTreeMap<String, Rows>,
     pins: BTreeMap<String, Vec<Joint>>,
     /// Whether the text has masses or forces, so that its rows have multipliers.
@@ -93,6 +95,16 @@ impl Names {
             );
         }
         free
+    }
+
+    /// Notes that a loop declares the name for itself.
+    pub fn declare_in_loop(&mut self, name: &Name) {
+        self.local.insert(name.text.clone());
+    }
+
+    /// Whether some loop declares the name for itself.
+    pub fn is_local(&self, name: &str) -> bool {
+        self.local.contains(name)
     }
 
     /// Gives a declared name its value.

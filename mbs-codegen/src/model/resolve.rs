@@ -205,7 +205,7 @@ impl Resolver<'_> {
         }
         let bounds = self.elaborate(Reach::Position, |work| {
             let (low, high) = (work.value(&head.low)?, work.value(&head.high)?);
-            Ok::<_, Fault>((work.count(&low)?, work.count(&high)?))
+            work.range(&low, &high, head.low.is_literal() && head.high.is_literal())
         });
         let (low, high) = bounds.ok().filter(|(low, high)| low < high)?;
         let variable = head.variable.clone();

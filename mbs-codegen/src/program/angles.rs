@@ -251,3 +251,7 @@ impl Choice<'_> {
         self.bounds.get(&part).copied().unwrap_or(DIRECT)
     }
 }
+
+#[cfg(test)]
+#[path = "angles_tests.rs"]
+mod tests;

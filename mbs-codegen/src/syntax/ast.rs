@@ -70,6 +70,13 @@ pub struct Expression {
     pub code: Vec<Instruction>,
 }
 
+impl Expression {
+    /// Whether it is a number as written.
+    pub fn is_literal(&self) -> bool {
+        matches!(self.code.as_slice(), [Instruction { operation: Operation::Number { .. }, .. }])
+    }
+}
+
 /// A unit as written, parentheses resolved: a product of symbols with exponents.
 #[derive(Clone, Debug)]
 pub struct Unit {

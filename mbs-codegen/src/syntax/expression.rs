@@ -273,6 +273,7 @@ impl Reader {
             None => return Ok(None),
             Some(Pending::SumLow { variable, span }) if parser.at_pair('.', '.') => {
                 parser.skip(2);
+                closed_range(parser);
                 self.pending.push(Pending::SumHigh { variable, span });
                 return Ok(Some(true));
             }
@@ -332,6 +333,17 @@ impl Reader {
 
 const DERIVATIVE: &str = "write `lift.d1(x)` or `lift.d2(x)` of a declared function; what rates need beyond is derived from the text";
 const SUM: &str = "write `sum(i in 0..3: x[i])`";
+
+/// Takes the `=` of a `..=`, which is reported.
+pub fn closed_range(parser: &mut Parser<'_>) -> bool {
+    let span = parser.span();
+    let closed = parser.take('=');
+    if closed {
+        let help = "leave out the `=` and write one more behind the dots: `0..2` counts 0 and 1";
+        parser.diagnostics.report(span, "a range leaves out its upper bound, `..=` does not exist", help);
+    }
+    closed
+}
 
 /// A literal as a number with its unit suffix; `None` where it is no decimal number.
 fn number(literal: &str) -> Option<Operation> {

@@ -1,9 +1,12 @@
 //! Statements: one after the other, going on behind each fault.
 
-use super::ast::{Declares, Expression, Loop, Name, Signature, Statement, StatementKind, Type};
+use super::ast::{
+    Declares, Expression, Instruction, Loop, Name, Operation, Operator, Signature, Statement, StatementKind,
+    Type,
+};
 use super::constraint::{equation, read_constraint};
 use super::dynamics;
-use super::expression::expression;
+use super::expression::{closed_range, expression};
 use super::parser::{DOC_ATTRIBUTE, GivenUp, Parser, Read, doc_attribute};
 use super::scene::{Open, read_effect, read_scene};
 use super::tokens::{Kind, Token};
@@ -421,7 +424,14 @@ pub fn read_loop(parser: &mut Parser<'_>) -> Read<Loop> {
         return parser.expected("`..`", FOR);
     }
     parser.skip(2);
-    let high = expression(parser)?;
+    let (closed, span) = (closed_range(parser), parser.span());
+    let mut high = expression(parser)?;
+    if closed {
+        // Read as what was meant, so that the body's rows are those.
+        let one = Operation::Number { value: 1.0, suffix: None, integer: true };
+        high.code
+            .extend([one, Operation::Binary(Operator::Add)].map(|operation| Instruction { operation, span }));
+    }
     parser.expect('{', FOR)?;
     Ok(Loop { variable, low, high })
 }

@@ -10,11 +10,24 @@ pub fn declared_type(parser: &mut Parser<'_>, help: &str) -> Read<Type> {
     if !parser.take('[') {
         return Ok(Type { unit: unit(parser)?, shape: Vec::new() });
     }
+    array_type(parser, help).inspect_err(|_| parser.skip_group())
+}
+
+const LENGTHS: &str = "write all lengths behind one `;`, the outermost first: `[m; 3, 2]` is three points, `p[i, 0]` a component";
+
+/// What stands behind the `[`, the `]` included.
+fn array_type(parser: &mut Parser<'_>, help: &str) -> Read<Type> {
+    if matches!(parser.peek(), Kind::Open('[')) {
+        return parser.expected("a unit", LENGTHS);
+    }
     let unit = unit(parser)?;
     parser.expect(';', help)?;
     let mut shape = vec![expression(parser)?];
     while parser.take(',') {
         shape.push(expression(parser)?);
+    }
+    if matches!(parser.peek(), Kind::Punctuation(';', _)) {
+        return parser.expected("`,` or `]`", LENGTHS);
     }
     parser.expect(']', help)?;
     Ok(Type { unit, shape })

@@ -1,0 +1,24 @@
+#![deny(warnings)]
+use mbs_runtime::{Stepper, mechanism};
+
+mechanism! {
+    pub mechanism Rod;
+    param L: m = 0.5;
+    param omega: rad/s = 10;
+    coord phi: rad = 0.1;
+    coord a: [m; 2] = [0.5, 0];
+    drive crank: phi == omega*t;
+    constraint tip { for i in 0..=1 { a[i] == L*cos(phi - i); } }
+    out total: m = sum(i in 0..=1: a[i]);
+}
+
+fn main() {
+    let mut rod = Rod::default();
+    rod.L = 0.25;
+    rod.omega = -rod.omega;
+    let guess = RodCoordinates { phi: 0.1, a: [0.25, 0.0] };
+    if let Ok(stepper) = Stepper::assemble(rod, guess, 0.0) {
+        let named = RodCoordinates::from(*stepper.q());
+        println!("{} {:?} {:?}", named.phi, named.a, stepper.outputs());
+    }
+}
