@@ -28,7 +28,7 @@ fn sine_cosines(program: &Program) -> [usize; 3] {
 fn a_difference_and_an_offset_come_from_the_angles_of_the_rows() {
     let text = "pub mechanism FourBar; param alpha: rad = 0.4; coord x: m; coord phi1: rad; coord phi2: rad = 0.9;
         coord phi3: rad = 1.8; drive crank: phi1 == 10*t/1s; constraint point { x == 0.15m*cos(alpha + phi2); }
-        constraint closure { 0.1m*unit(phi1) + 0.25m*unit(phi2) == [0.3, 0] + 0.2m*unit(phi3); }
+        constraint closure { 0.1m*unit(phi1) + 0.25m*unit(phi2) == [0.3m, 0] + 0.2m*unit(phi3); }
         branch open: sin(phi3 - phi2) > 0;";
     let (_, _, program) = shared(text);
     assert_eq!(sine_cosines(&program), [3, 0, 0]);
@@ -39,7 +39,7 @@ fn a_difference_and_an_offset_come_from_the_angles_of_the_rows() {
 fn a_part_that_only_a_branch_needs_comes_from_the_sum() {
     let text = "pub mechanism Loop; coord psi1: rad; coord psi2: rad = 0.9; coord psi3: rad = -2;
         drive crank: psi1 == 10*t/1s; branch open: sin(psi2) > 0;
-        constraint closure { 0.1m*unit(psi1) + 0.3m*unit(psi1 + psi2) == [0.2, 0] + 0.2m*unit(psi3); }";
+        constraint closure { 0.1m*unit(psi1) + 0.3m*unit(psi1 + psi2) == [0.2m, 0] + 0.2m*unit(psi3); }";
     let (_, _, program) = shared(text);
     assert_eq!(sine_cosines(&program), [3, 0, 0]);
 }
