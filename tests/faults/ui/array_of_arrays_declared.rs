@@ -14,7 +14,7 @@ mechanism! {
 }
 
 fn main() {
-    let mut rod = Rod::default();
+    let mut rod: Rod = Rod::default();
     rod.L = 0.25;
     rod.omega = -rod.omega;
     println!("{} {}", rod.L, rod.omega);
