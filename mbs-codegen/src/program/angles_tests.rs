@@ -46,7 +46,8 @@ fn a_part_that_only_a_branch_needs_comes_from_the_sum() {
 
 #[test]
 fn offsets_of_one_angle_share_its_sine() {
-    let text = "pub mechanism Plate; coord phi: rad; coord p: [m; 2]; coord q: [m; 2]; drive turn: phi == 10*t/1s;
+    let text =
+        "pub mechanism Plate; coord phi: rad; coord p: [m; 2]; coord q: [m; 2]; drive turn: phi == 10*t/1s;
         constraint points { p == 0.1m*unit(phi + 90deg); q == 0.1m*unit(210deg - phi); }";
     let (_, _, program) = shared(text);
     assert_eq!(sine_cosines(&program), [1, 0, 0]);
@@ -68,7 +69,8 @@ const BOUND: f64 = (ACCEPTED as f64 + 1.0) * f64::EPSILON / 2.0;
 
 #[test]
 fn errors_of_a_chain_of_sums_stay_within_their_bound() {
-    let text = "pub mechanism Chain; const N: 1 = 12; coord theta: [rad; N]; coord p: [1; N]; coord s: [1; N];
+    let text =
+        "pub mechanism Chain; const N: 1 = 12; coord theta: [rad; N]; coord p: [1; N]; coord s: [1; N];
         for i in 0..N {
             drive motor: theta[i] == (i + 1)*t/1s;
             constraint single { p[i] == sin(theta[i]); }
@@ -80,7 +82,9 @@ fn errors_of_a_chain_of_sums_stay_within_their_bound() {
     for sample in 0..200_u32 {
         // Numbers of few digits, so that their sums are exact and only sines, cosines and theorems err.
         let leaf = |leaf| match leaf {
-            Leaf::Position(index) => f64::from((index + 1).wrapping_mul(0x9E37 + 77 * sample) % 0x4000) / 4096.0,
+            Leaf::Position(index) => {
+                f64::from((index + 1).wrapping_mul(0x9E37 + 77 * sample) % 0x4000) / 4096.0
+            }
             _ => 0.0,
         };
         let phi = |equations: &Equations| {
