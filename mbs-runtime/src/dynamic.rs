@@ -123,10 +123,10 @@ pub trait Dynamic<T: Scalar, const N: usize, const M: usize>: Mechanism<T, N, M>
     /// Kinetic and potential energy (J).
     fn energy(&self, parameters: &Self::Parameters, position: &Self::Position, qd: &[T; N]) -> Energy<T>;
     /// Power of each force (W), positive where it feeds the mechanism; of springs that store it as potential energy,
-    /// without what they store. Kinetic and potential energy change by the sum of these and by what drives supply.
+    /// without what they store. Kinetic and potential energy change by the sum of these, by what drives supply and by
+    /// [`carried`](Self::carried).
     ///
-    /// Where the time moves the place of a force, that motion counts only as it loads a spring; bodies with masses that
-    /// the time carries along by themselves take energy that is not among these.
+    /// Where the time moves the place of a force, that motion counts only as it loads a spring.
     fn powers(
         &self,
         parameters: &Self::Parameters,
@@ -135,6 +135,18 @@ pub trait Dynamic<T: Scalar, const N: usize, const M: usize>: Mechanism<T, N, M>
         states: &Self::States,
         lambda: &[T; M],
     ) -> Self::Powers;
+    /// Power (W) that the time gives to kinetic and potential energy by itself, inputs held: where it carries masses along
+    /// or changes a potential. None where it does nothing of that.
+    #[inline]
+    fn carried(
+        &self,
+        _parameters: &Self::Parameters,
+        _position: &Self::Position,
+        _qd: &[T; N],
+        _qdd: &[T; N],
+    ) -> Option<T> {
+        None
+    }
     /// ż of the first-order states.
     fn state_rates(
         &self,

@@ -336,6 +336,9 @@ pub fn costs(program: &Program) -> Vec<(&'static str, Operations)> {
             ("`state_rates`", dynamics.state_rates.operations),
             ("`loads`", dynamics.loads.operations),
         ]);
+        if !dynamics.carried.lines.is_empty() {
+            table.push(("`carried`", dynamics.carried.operations));
+        }
     }
     table
 }

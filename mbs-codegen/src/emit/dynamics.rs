@@ -30,6 +30,8 @@ pub struct DynamicBodies {
     pub reaction_q: TokenStream,
     pub energy: TokenStream,
     pub powers: TokenStream,
+    /// Where the time gives anything to the energies.
+    pub carried: Option<TokenStream>,
     pub state_rates: TokenStream,
     pub loads: TokenStream,
 }
@@ -52,6 +54,7 @@ impl DynamicBodies {
             reaction_q: body(),
             energy: body(),
             powers: body(),
+            carried: None,
             state_rates: body(),
             loads: body(),
         }
@@ -90,6 +93,10 @@ pub fn bodies(
         reaction_q: of(&program.reaction_q, matrix(dynamics.reaction_q.iter(), scope)),
         energy: of(&program.energy, energy),
         powers: of(&program.powers, vector(&dynamics.powers, scope)),
+        carried: dynamics.carried.map(|power| {
+            let result = format!("::core::option::Option::Some({})", scope.operand(power));
+            of(&program.carried, result)
+        }),
         state_rates: of(&program.state_rates, vector(&dynamics.state_rates, scope)),
         loads: of(&program.loads, array(dynamics.loads.iter().map(|id| Some(*id)), scope)),
     })
@@ -148,9 +155,22 @@ pub fn implementation(
         reaction_q,
         energy,
         powers,
+        carried,
         state_rates,
         loads: loads_body,
     } = bodies;
+    let carried = carried.as_ref().map(|body| {
+        quote! {
+            #[inline]
+            fn carried(
+                &self,
+                __p: &__Parameters<T>,
+                __s: &__Position<T>,
+                __qd: &[T; #n],
+                __qdd: &[T; #n],
+            ) -> ::core::option::Option<T> #body
+        }
+    });
     let design = quote! { &self, __p: &__Parameters<T>, __s: &__Position<T> };
     let motion = quote! { __qd: &[T; #n], __z: &[T; #states], __lambda: &[T; #m] };
     quote! {
@@ -186,6 +206,7 @@ pub fn implementation(
             fn energy(#design, __qd: &[T; #n]) -> #runtime::Energy<T> #energy
             #[inline]
             fn powers(#design, #motion) -> [T; #forces] #powers
+            #carried
             #[inline]
             fn state_rates(#design, #motion) -> [T; #states] #state_rates
             #[inline]

@@ -1,5 +1,6 @@
 //! Masses and forces → M, Q, their derivatives, energies and powers.
 
+use super::carried;
 use super::forces::{self, Acting, Sum};
 use super::lower::Clock;
 use super::pins::{Attribution, Undetermined};
@@ -39,6 +40,8 @@ pub struct Dynamics {
     pub potential: Option<NodeId>,
     /// One a named force.
     pub powers: Vec<Option<NodeId>>,
+    /// What the time alone gives to kinetic and potential energy.
+    pub carried: Option<NodeId>,
     /// One a first-order state.
     pub state_rates: Vec<Option<NodeId>>,
     /// One a first-order state.
@@ -109,8 +112,9 @@ pub fn derive(
             not_quadratic.push(index);
         }
     }
-    let Inertia { mass, bias, kinetic } = inertia;
-    let forces::Forces { force, potential, powers, acting } = forces::derive(g, declared, &of, clock, count);
+    let Inertia { mass, bias, kinetic, carried } = inertia;
+    let forces::Forces { force, potential, powers, acting, carried } =
+        forces::derive(g, declared, &of, clock, (count, carried));
     let force: Vec<Option<NodeId>> =
         force.into_iter().zip(&bias).map(|(force, bias)| force.minus(g, bias.0).0).collect();
 
@@ -142,6 +146,7 @@ pub fn derive(
         kinetic: kinetic.0,
         potential: potential.0,
         powers,
+        carried: carried.0,
         state_rates: declared.states.iter().map(|state| state.rate.map(of)).collect(),
         start_states: declared.states.iter().map(|state| state.start.map(of)).collect(),
         start_rates: (0..count).map(|index| start(&declared.rates, index)).collect(),
@@ -154,16 +159,18 @@ pub fn derive(
     }
 }
 
-/// Entries of the upper triangle of M, the inertia forces at q̈ = 0, the kinetic energy.
+/// Entries of the upper triangle of M, the inertia forces at q̈ = 0, the kinetic energy and what the time gives to it.
 pub struct Inertia {
     mass: Vec<Vec<(usize, Sum)>>,
     bias: Vec<Sum>,
     kinetic: Sum,
+    carried: Sum,
 }
 
 impl Inertia {
     fn new(count: usize) -> Self {
-        Inertia { mass: vec![Vec::new(); count], bias: vec![Sum::default(); count], kinetic: Sum::default() }
+        let (mass, bias) = (vec![Vec::new(); count], vec![Sum::default(); count]);
+        Inertia { mass, bias, kinetic: Sum::default(), carried: Sum::default() }
     }
 
     /// Number of coordinates.
@@ -174,6 +181,11 @@ impl Inertia {
     /// Adds to the kinetic energy.
     pub fn add_kinetic(&mut self, g: &mut Graph, energy: NodeId) {
         self.kinetic.add(g, energy);
+    }
+
+    /// Adds to what the time gives to it.
+    pub fn add_carried(&mut self, g: &mut Graph, power: NodeId) {
+        self.carried.add(g, power);
     }
 
     /// M = Σ m J ᵀJ + J_αᵀ I J_α with J = ∂com/∂q: no difference of large numbers.
@@ -214,7 +226,9 @@ impl Inertia {
                 self.bias_at(g, *row, bias);
             }
         }
-        if let Some(velocity) = velocity.into_iter().next().flatten() {
+        let velocity = velocity.into_iter().next().flatten();
+        carried::point(g, place, velocity, mass, clock, &mut self.carried);
+        if let Some(velocity) = velocity {
             let half = g.constant(0.5);
             let square = g.multiply(velocity, velocity);
             let half = g.multiply(half, mass);
@@ -244,6 +258,7 @@ impl Inertia {
                 self.bias_at(g, *row, change);
             }
         }
+        carried::energy(g, energy, &momenta, clock, &mut self.carried);
         for (row, slope) in jacobian(g, &[energy], count, Leaf::Position).into_iter().flatten() {
             let opposite = g.negate(slope);
             self.bias_at(g, row, opposite);

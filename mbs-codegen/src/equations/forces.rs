@@ -1,5 +1,6 @@
 //! Named forces, gravity and potentials → generalized forces by virtual work, and what they do to the energy.
 
+use super::carried;
 use super::jacobian;
 use super::lower::Clock;
 use crate::model::dynamics::{Action, Dynamics as Declared, Line, Turn};
@@ -57,19 +58,23 @@ pub struct Forces {
     pub powers: Vec<Option<NodeId>>,
     /// Where the named forces act, without those that come from a function of dissipation.
     pub acting: Vec<Acting>,
+    /// What the time alone gives to the energies.
+    pub carried: Sum,
 }
 
-/// Before: the forces of the text. After: their sum on each coordinate, their potential, the powers of the named ones.
+/// Before: the forces of the text; the number of coordinates, and what the time gives to the kinetic energy. After: their sum on
+/// each coordinate, their potential, the powers of the named ones, what the time gives.
 pub fn derive(
     g: &mut Graph,
     declared: &Declared,
     of: &impl Fn(Id) -> NodeId,
     clock: &Clock,
-    count: usize,
+    (count, carried): (usize, Sum),
 ) -> Forces {
     let mut work = Work {
         force: vec![Sum::default(); count],
         potential: Sum::default(),
+        carried,
         clock,
         acting: Vec::new(),
         current: 0,
@@ -105,14 +110,22 @@ pub fn derive(
                 let energy = g.multiply(weight, of(*place));
                 let energy = g.negate(energy);
                 work.potential.add(g, energy);
+                carried::weight(g, weight, of(*place), clock, &mut work.carried);
             }
         }
     }
     for potential in &declared.potentials {
         work.slope(g, of(*potential), Leaf::Position);
         work.potential.add(g, of(*potential));
+        carried::potential(g, of(*potential), clock, &mut work.carried);
     }
-    Forces { force: work.force, potential: work.potential, powers, acting: work.acting }
+    Forces {
+        force: work.force,
+        potential: work.potential,
+        powers,
+        acting: work.acting,
+        carried: work.carried,
+    }
 }
 
 /// What moves.
@@ -123,11 +136,14 @@ enum Motion {
     Coordinates,
     /// The time and inputs alone.
     Time,
+    /// Inputs alone.
+    Inputs,
 }
 
 struct Work<'a> {
     force: Vec<Sum>,
     potential: Sum,
+    carried: Sum,
     clock: &'a Clock,
     acting: Vec<Acting>,
     /// Index of the force.
@@ -183,7 +199,8 @@ impl Work<'_> {
             (Motion::All, _) => clock.total(g, leaf, false),
             (Motion::Coordinates, Leaf::Position(i)) => Some(g.leaf(Leaf::Velocity(i))),
             (Motion::Coordinates, _) => None,
-            (Motion::Time, _) => clock.partial(g, leaf),
+            (Motion::Inputs, Leaf::Time) => None,
+            (Motion::Time | Motion::Inputs, _) => clock.partial(g, leaf),
         };
         tangent(g, &[place], direction).pop().flatten()
     }
@@ -230,7 +247,7 @@ impl Work<'_> {
                 g.select(zero, length, ratio, zero)
             })
             .collect();
-        let [rate, own, moved] = [Motion::All, Motion::Coordinates, Motion::Time]
+        let [rate, own, moved, driven] = [Motion::All, Motion::Coordinates, Motion::Time, Motion::Inputs]
             .map(|motion| self.rate(g, &directions, &span, motion));
         let mut active = Sum(line.actuator.map(of));
         if let (Some(damping), Some(rate)) = (line.damping, rate.0) {
@@ -258,13 +275,13 @@ impl Work<'_> {
         self.acts(&ends(&line.from), &pulls);
         self.acts(&ends(&line.to), &forces);
         let spring = stiffness.map(|k| (k, self.stretch(g, length, line.length.map(of))));
-        self.element_power(g, spring, active, [own, moved], line.stores)
+        self.element_power(g, spring, active, [own, moved, driven], line.stores)
     }
 
     /// A torque against an angle.
     fn turn(&mut self, g: &mut Graph, turn: &Turn, of: &impl Fn(Id) -> NodeId) -> Option<NodeId> {
         let angle = of(turn.angle);
-        let [rate, own, moved] = [Motion::All, Motion::Coordinates, Motion::Time]
+        let [rate, own, moved, driven] = [Motion::All, Motion::Coordinates, Motion::Time, Motion::Inputs]
             .map(|motion| Sum(self.velocity(g, angle, motion)));
         let mut active = Sum(turn.torque.map(of));
         if let (Some(damping), Some(rate)) = (turn.damping, rate.0) {
@@ -281,7 +298,7 @@ impl Work<'_> {
             self.along(g, torque, angle);
             self.acts(&[angle], &[torque]);
         }
-        self.element_power(g, spring, active, [own, moved], turn.stores)
+        self.element_power(g, spring, active, [own, moved, driven], turn.stores)
     }
 
     fn stretch(&self, g: &mut Graph, value: NodeId, rest: Option<NodeId>) -> NodeId {
@@ -294,7 +311,7 @@ impl Work<'_> {
         g: &mut Graph,
         spring: Option<(NodeId, NodeId)>,
         mut active: Sum,
-        [own, moved]: [Sum; 2],
+        [own, moved, driven]: [Sum; 3],
         stores: bool,
     ) -> Option<NodeId> {
         let mut supplied = None;
@@ -308,6 +325,7 @@ impl Work<'_> {
                 if let Some(moved) = moved.0 {
                     let elastic = g.multiply(stiffness, stretch);
                     supplied = Some(g.multiply(elastic, moved));
+                    carried::spring(g, elastic, driven.0, &mut self.carried);
                 }
             } else {
                 let elastic = g.multiply(stiffness, stretch);

@@ -2,7 +2,9 @@
 //! metric; M, Q and their derivatives, energies, powers.
 
 mod attribution;
+mod carried;
 pub mod continuity;
+mod degree;
 mod dynamics;
 mod elimination;
 mod forces;

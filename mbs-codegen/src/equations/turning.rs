@@ -3,6 +3,7 @@
 //! In the axes of the body ω' = 2 L(e) ė, L(e) = [−ε, e₀ 1 − ε̃], so that T = ½ ω'ᵀ J ω' = ½ (L ė)ᵀ 4J (L ė). L(a) b = −L(b) a
 //! turns ∂ω'/∂e into L(ė) and leaves nothing to differentiate but e. Source: Nikravesh 1988, §§6.5, 8.4.
 
+use super::carried::Rates;
 use super::dynamics::Inertia;
 use super::forces::Sum;
 use super::lower::Clock;
@@ -54,6 +55,7 @@ impl Inertia {
             let energy = g.multiply(half, square);
             self.add_kinetic(g, energy);
         }
+        self.carry(g, &inertia, orientation, velocity, clock);
         let changing = turn(g, e, acceleration);
         let changing = times(g, &inertia, changing);
         let two = g.constant(2.0);
@@ -63,6 +65,43 @@ impl Inertia {
             let terms = [dot(g, *column, changing), dot(g, convected, twice)];
             for bias in terms.into_iter().flatten() {
                 self.bias_at(g, *row, bias);
+            }
+        }
+    }
+}
+
+impl Inertia {
+    /// Adds what a body is given that the time turns along: (L e_t)ᵀ 4J L ë + 2 (L(ė) e_t)ᵀ 4J L ė, e_t the change of e with the
+    /// coordinates held, less (L ė)ᵀ 4J (L(e_u) ė + L ė_u), the parts of e and ė that come from moving inputs.
+    fn carry(
+        &mut self,
+        g: &mut Graph,
+        inertia: &[(usize, usize, NodeId)],
+        orientation: [NodeId; 4],
+        velocity: Change,
+        clock: &Clock,
+    ) {
+        let rates = Rates { clock };
+        let (e, carried) = (orientation.map(Some), orientation.map(|part| rates.partial(g, part)));
+        if carried.iter().all(Option::is_none) {
+            return;
+        }
+        let acceleration = velocity.map(|part| part.and_then(|part| rates.total(g, part)));
+        let (spin, changing) = (turn(g, e, velocity), turn(g, e, acceleration));
+        let (momentum, changing) = (times(g, inertia, spin), times(g, inertia, changing));
+        let (turned, convected) = (turn(g, e, carried), turn(g, velocity, carried));
+        for term in [dot(g, turned, changing), dot(g, convected, momentum), dot(g, convected, momentum)] {
+            if let Some(term) = term {
+                self.add_carried(g, term);
+            }
+        }
+        let moved = orientation.map(|part| rates.inputs(g, Some(part)));
+        let turned = velocity.map(|part| rates.inputs(g, part));
+        let parts = [turn(g, moved, velocity), turn(g, e, turned)];
+        for part in parts {
+            if let Some(term) = dot(g, part, momentum) {
+                let opposite = g.negate(term);
+                self.add_carried(g, opposite);
             }
         }
     }

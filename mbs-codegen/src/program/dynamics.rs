@@ -29,6 +29,8 @@ pub struct DynamicsProgram {
     pub energy: Section,
     /// Powers of the forces.
     pub powers: Section,
+    /// What the time alone gives to the energies.
+    pub carried: Section,
     /// Outputs of multipliers and states.
     pub loads: Section,
     /// First-order states at the start.
@@ -52,6 +54,7 @@ pub struct Roots {
     reaction_q: Vec<NodeId>,
     energy: Vec<NodeId>,
     powers: Vec<NodeId>,
+    carried: Vec<NodeId>,
     loads: Vec<NodeId>,
     start_states: Vec<NodeId>,
     start_rates: Vec<NodeId>,
@@ -74,6 +77,7 @@ impl Roots {
             reaction_q: entries(&dynamics.reaction_q),
             energy: some(&[dynamics.kinetic, dynamics.potential]),
             powers: some(&dynamics.powers),
+            carried: some(&[dynamics.carried]),
             loads: dynamics.loads.clone(),
             start_states: some(&dynamics.start_states),
             start_rates: some(&dynamics.start_rates),
@@ -87,7 +91,7 @@ impl Roots {
     }
 
     /// Functions that some methods call, or that nobody calls in every step: nothing is kept for them alone.
-    pub fn rare(&self) -> [&[NodeId]; 7] {
+    pub fn rare(&self) -> [&[NodeId]; 8] {
         [
             &self.force_q,
             &self.force_qd,
@@ -95,6 +99,7 @@ impl Roots {
             &self.reaction_q,
             &self.energy,
             &self.powers,
+            &self.carried,
             &self.loads,
         ]
     }
@@ -122,6 +127,7 @@ impl Roots {
             reaction_q: section(&self.reaction_q),
             energy: section(&self.energy),
             powers: section(&self.powers),
+            carried: section(&self.carried),
             loads: section(&self.loads),
             start_states: early(&self.start_states),
             start_rates: early(&self.start_rates),

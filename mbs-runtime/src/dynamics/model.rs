@@ -288,16 +288,19 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
     ) -> State<R, N, S::States> {
         let (mechanism, parameters) = (self.mechanism, self.parameters);
         let states = mechanism.state_rates(parameters, position, &y.qd, &y.states, lambda);
-        let work = if self.balanced { self.power(position, y, lambda) } else { R::constant(0.0) };
+        let work = if self.balanced { self.power(position, y, &qdd, lambda) } else { R::constant(0.0) };
         State { q: y.qd, qd: qdd, states, work }
     }
 
-    /// Power (W) of the forces that are not potential, and of the drives: Σ Pᵢ + λᵀ Φ_t.
-    fn power(&self, position: &S::Position, y: &State<R, N, S::States>, lambda: &[R; M]) -> R {
+    /// Power (W) of the forces that are not potential, of the drives, and of the time where it carries masses along or
+    /// changes a potential: Σ Pᵢ + λᵀ Φ_t + P_t.
+    fn power(&self, position: &S::Position, y: &State<R, N, S::States>, qdd: &[R; N], lambda: &[R; M]) -> R {
         let powers = self.mechanism.powers(self.parameters, position, &y.qd, &y.states, lambda);
         let forces = powers.as_ref().iter().fold(R::constant(0.0), |sum, power| sum + *power);
         let moving = self.mechanism.phi_t(self.parameters, position);
-        lambda.iter().zip(&moving).fold(forces, |sum, (lambda, rate)| sum + *lambda * *rate)
+        let sum = lambda.iter().zip(&moving).fold(forces, |sum, (lambda, rate)| sum + *lambda * *rate);
+        let carried = self.mechanism.carried(self.parameters, position, &y.qd, qdd);
+        carried.map_or(sum, |carried| sum + carried)
     }
 
     /// Solves with forces that may depend on the multipliers: `solve` gives accelerations and multipliers for a

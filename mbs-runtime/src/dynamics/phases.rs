@@ -83,6 +83,15 @@ pub(super) fn advanced<T: Scalar, P: Copy + AsRef<[Phase<T>]> + AsMut<[Phase<T>]
 /// Phases without a state beside them.
 type Bare<R, P> = Phased<[R; 0], P>;
 
+/// The phases of `mechanism` where they are, with the rates that its drives prescribe at time `t` (s).
+pub(super) fn at_present<S: Mechanism<T, N, M>, T: Scalar, const N: usize, const M: usize>(
+    mechanism: &S,
+    t: T,
+) -> S::Phases {
+    let phases = mechanism.phases();
+    advanced(phases, &unmoved(phases), &mechanism.phase_rates(t))
+}
+
 /// The prescribed rates of a mechanism: phases move whatever else does.
 struct Rates<'a, S, const N: usize, const M: usize>(&'a S);
 

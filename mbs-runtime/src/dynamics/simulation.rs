@@ -8,6 +8,7 @@ use super::metric::{Metric, Tolerance};
 use super::model::{Counts, Doubt, Formulation, Model};
 use super::motion::{Equations, Explicit, Instant, Method, Moving, beginning};
 use super::passage::Passage;
+use super::phases::at_present;
 use super::projection::Projection;
 use super::signed::parameter_failure;
 use super::text_start;
@@ -39,6 +40,8 @@ pub struct Simulation<S: Dynamic<R, N, M>, X, R: Real, const N: usize, const M: 
     balanced: bool,
     /// Energy (J) at the start, moved along where parameters change it.
     reference: R,
+    /// Energy (J) before a change that made it no number.
+    known: Option<R>,
     tolerance: Tolerance<R>,
     adaptive: Adaptive<R>,
     passage: Option<Passage<R>>,
@@ -159,6 +162,7 @@ where
             start: t,
             balanced: true,
             reference,
+            known: None,
             tolerance: Tolerance::new(TOLERANCE),
             adaptive: Adaptive::default(),
             passage: None,
@@ -184,7 +188,7 @@ where
         }
         self.method.admit(h, self.now.t)?;
         let mut counts = self.counts;
-        let from = self.fresh(&mut counts)?;
+        let (from, gained) = self.fresh(&mut counts)?;
         let model = self.model();
         let stepped = self.method.step(&model, &from, h, &mut counts);
         let stepped = stepped.and_then(|next| {
@@ -198,6 +202,7 @@ where
         let ends = ((from.t, from.solved.margin), (next.t, next.solved.margin));
         self.passage = self.passage.or(Passage::between(ends.0, ends.1));
         self.take(next, phases, counts);
+        self.reference = self.reference + gained;
         Ok(())
     }
 
@@ -215,19 +220,21 @@ where
         Ok(())
     }
 
-    /// The instant, solved anew where parameters or inputs have changed.
-    fn fresh(&self, counts: &mut Counts) -> Result<Instant<R, N, M, S::States>, Failure> {
+    /// The instant, solved anew where parameters or inputs have changed, and the energy (J) that came in as it was put onto
+    /// changed rows.
+    fn fresh(&self, counts: &mut Counts) -> Result<(Instant<R, N, M, S::States>, R), Failure> {
         if let Some(failure) = self.fault {
             return Err(failure);
         }
         if !self.stale {
-            return Ok(self.now);
+            return Ok((self.now, R::constant(0.0)));
         }
         let Instant { t, mut y, solved, .. } = self.now;
         let model = self.model();
         Projection::default().settle(&model, t, &mut y, counts)?;
         let solved = self.method.solve(&model, t, &y, &solved.lambda, counts)?;
-        Ok(Instant { t, y, solved, carried: solved.rate.qd })
+        let gained = model.total_energy(t, &y) - model.total_energy(t, &self.now.y);
+        Ok((Instant { t, y, solved, carried: solved.rate.qd }, gained))
     }
 
     /// Goes on from `next`, with `phases` or with those that kinematics moves on.
@@ -259,13 +266,20 @@ where
     /// A value that is NaN or infinite, or a mass that is negative, is reported by that step; change it back, and go on.
     pub fn change<Y>(&mut self, change: impl FnOnce(&mut S) -> Y) -> Y {
         let before = self.model().total_energy(self.now.t, &self.now.y);
+        let before = self.known.unwrap_or(before);
         let result = change(&mut self.mechanism);
+        if !S::PHASES.is_empty() {
+            self.mechanism.set_phases(at_present(&self.mechanism, self.now.t));
+        }
         self.parameters = self.mechanism.parameters();
         self.metric = Metric::of(&self.mechanism, &self.parameters);
         self.fault = parameter_failure(&self.mechanism);
         let after = self.model().total_energy(self.now.t, &self.now.y);
         if (after - before).is_finite() {
             self.reference = self.reference + after - before;
+            self.known = None;
+        } else {
+            self.known = Some(before);
         }
         self.stale = true;
         self.adaptive.step = None;
@@ -508,7 +522,7 @@ where
         ) -> Result<Option<(R, Moving<S, R, N, M>)>, Failure>,
     ) -> Result<bool, Failure> {
         let (mut counts, mut adaptive) = (self.counts, self.adaptive);
-        let from = self.fresh(&mut counts)?;
+        let (from, gained) = self.fresh(&mut counts)?;
         let model = self.model();
         let formulation = &self.method.formulation;
         let mut equations = Equations::new(&model, formulation, &from, counts).with_tolerance(self.tolerance);
@@ -534,6 +548,7 @@ where
         self.adaptive = adaptive;
         self.passage = self.passage.or(passage);
         self.take(Instant { t, y: y.y, solved, carried: solved.rate.qd }, Some(phases), counts);
+        self.reference = self.reference + gained;
         Ok(stopped.is_some())
     }
 }

@@ -1,6 +1,7 @@
 //! Motion from forces, on mechanisms whose answers are known.
 
 mod analyses;
+mod balance;
 mod determinacy;
 mod failures;
 mod integrators;

@@ -109,6 +109,36 @@ fn what_is_seen_on_the_way_is_as_exact() {
     assert!((stopped.q()[0] - place(40.0, END)).abs() < 1e-7, "{}", stopped.q()[0]);
 }
 
+mechanism! {
+    /// The cart at a speed from outside.
+    pub mechanism Pushed;
+    input speed: m/s;
+    coord x: m = 0;
+    coord phi: rad = 0.1;
+    body cart { mass: 2, com: [x, 0] }
+    body bob { mass: 1, com: [x, 0] + 1m*unit(phi) }
+    gravity weight { acceleration: [0, -9.81] }
+    drive motor: rate(x) == speed;
+    start phi = 0.1 rate 1;
+}
+
+#[test]
+fn a_speed_that_jumps_acts_from_the_first_step_on() {
+    let pushed: Pushed = Pushed { speed: 0.5, ..Pushed::default() };
+    let method = Explicit::new(DormandPrince8, VelocityTransformation);
+    let run = Simulation::start_from_text(pushed, method, 0.0).unwrap();
+    let mut run = run.with_tolerance(Tolerance::new(1e-12));
+    run.change(|pushed| pushed.speed = -1.0);
+    run.advance_to(0.5).unwrap();
+    assert!((run.q()[0] + 0.5).abs() < 1e-12, "{:?}", run.q());
+    // The jump keeps the momentum of the free coordinate; from then on the cart is an inertial frame.
+    let rate = 1.0 - 1.5 * 0.1_f64.sin();
+    let still = Simulation::start(Pushed::<f64>::default(), method, 0.0, [0.0, 0.1], [0.0, rate]).unwrap();
+    let mut still = still.with_tolerance(Tolerance::new(1e-12));
+    still.advance_to(0.5).unwrap();
+    assert!((run.q()[1] - still.q()[1]).abs() < 1e-9, "{:?} {:?}", run.q(), still.q());
+}
+
 #[test]
 fn fixed_steps_have_the_order_of_their_method_with_a_prescribed_rate() {
     fn error<I: FixedStep>(integrator: I, steps: u32) -> f64 {
