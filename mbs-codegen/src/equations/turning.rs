@@ -90,10 +90,9 @@ impl Inertia {
         let (spin, changing) = (turn(g, e, velocity), turn(g, e, acceleration));
         let (momentum, changing) = (times(g, inertia, spin), times(g, inertia, changing));
         let (turned, convected) = (turn(g, e, carried), turn(g, velocity, carried));
-        for term in [dot(g, turned, changing), dot(g, convected, momentum), dot(g, convected, momentum)] {
-            if let Some(term) = term {
-                self.add_carried(g, term);
-            }
+        let twice = dot(g, convected, momentum);
+        for term in [dot(g, turned, changing), twice, twice].into_iter().flatten() {
+            self.add_carried(g, term);
         }
         let moved = orientation.map(|part| rates.inputs(g, Some(part)));
         let turned = velocity.map(|part| rates.inputs(g, part));
