@@ -164,13 +164,22 @@ pub enum Failure {
         /// Time (s) of the step's end, or of a stage of it.
         time: f64,
     },
-    /// The end of an adaptive run takes more steps than one call may.
+    /// The end of an adaptive run takes more steps than one call may, as far as its first thousand tell.
     OutOfReach {
         /// The end (s).
         until: f64,
         /// The step (s) that the tolerance allows.
         step: f64,
         /// Time (s) that was reached.
+        time: f64,
+    },
+    /// The tolerance of adaptive steps is below what the number type can keep to.
+    UnresolvedTolerance {
+        /// Relative and absolute tolerance together.
+        tolerance: f64,
+        /// The smallest that is possible.
+        least: f64,
+        /// Time (s) at which it was to be kept to.
         time: f64,
     },
     /// Next to a singular position no step is accurate enough: rounding decides where the motion goes.
@@ -336,6 +345,7 @@ impl Failure {
             | Failure::InvalidStep { time, .. }
             | Failure::Unbounded { time, .. }
             | Failure::OutOfReach { time, .. }
+            | Failure::UnresolvedTolerance { time, .. }
             | Failure::Undecided { time, .. }
             | Failure::StepTooSmall { time, .. }
             | Failure::StepTooLong { time, .. }
@@ -363,6 +373,7 @@ impl Failure {
             | Failure::InvalidStep { time, .. }
             | Failure::Unbounded { time, .. }
             | Failure::OutOfReach { time, .. }
+            | Failure::UnresolvedTolerance { time, .. }
             | Failure::Undecided { time, .. }
             | Failure::StepTooSmall { time, .. }
             | Failure::StepTooLong { time, .. }
@@ -453,8 +464,13 @@ impl fmt::Display for Failure {
             Failure::OutOfReach { until, step, .. } => write!(
                 f,
                 "t = {} s is out of reach from t = {time} s: steps of {step:.3e} s, as the tolerance asks for, are too many; \
-                 end earlier, or advance in several calls",
+                 end earlier, loosen the tolerance, or advance in several calls",
                 Time(*until)
+            ),
+            Failure::UnresolvedTolerance { tolerance, least, .. } => write!(
+                f,
+                "rounding alone is more than a tolerance of {tolerance:e} allows: at least {least:.1e} is needed in numbers of \
+                 this type"
             ),
             Failure::Undecided { margin, .. } => write!(
                 f,

@@ -272,6 +272,20 @@ fn drift_draws_a_curve_a_method_and_prints_how_far_each_went() {
 }
 
 #[test]
+fn drift_of_a_loop_against_the_count_shows_what_lasts_and_where_the_others_are_lost() {
+    let file = Scratch::new("drift-bricard.svg");
+    let text = text_of(&["drift", "bricard", "--until", "0.5", "--steps", "50", "--out", file.path()]);
+    let [phi, _, defect, evaluations] = numbers(line(&text, "projection"))[..] else { panic!("{text}") };
+    assert!(phi < 1e-13 && defect < 1e-6 && evaluations == 201.0, "{text}");
+    // Neither of the others can hold rows together that follow from each other on the constraints alone.
+    assert_eq!(text.matches("ends early").count(), 2, "{text}");
+    assert_eq!(text.matches("do not beside them").count(), 2, "{text}");
+    let picture = file.text();
+    assert!(picture.contains(">none, lost at") && picture.contains(">baumgarte, lost at"), "{picture}");
+    assert!(picture.contains(">projection</text>") && !picture.contains(">1e0</text>"), "{picture}");
+}
+
+#[test]
 fn senseless_arguments_are_refused_in_plain_words() {
     let cases: [(&[&str], &str); 19] = [
         (&["print", "fourbar"], "did you mean `four_bar`?"),

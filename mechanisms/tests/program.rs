@@ -142,6 +142,9 @@ fn every_integrator_and_the_penalty_can_be_chosen() {
     };
     let order5 = run(&["--integrator", "order5", "--tolerance", "1e-8"]);
     assert!(order5.0 < 1e-6 && order5.2 < 1e-13, "{order5:?}");
+    // What a tolerance costs is seen whatever the instants are.
+    let [exact, coarse] = ["1e-12", "1e-3"].map(|tolerance| run(&["--tolerance", tolerance]));
+    assert!(exact.0 < 1e-10 && 1e-10 < coarse.0 && coarse.1 < 0.3 * exact.1, "{exact:?} {coarse:?}");
     // Four evaluations a step of Runge and Kutta's method, one of Euler's, and one to start with.
     let (rk4, euler) = (
         run(&["--integrator", "rk4", "--step", "2.5e-2"]),
@@ -274,7 +277,8 @@ fn what_really_ran_in_place_of_independent_coordinates_is_said() {
     assert!(figure(&text, "independent motions chosen anew") > 0.0 && !text.contains("method: "), "{text}");
     assert!(!run(&["pendulum", "--steps", "4", "--until", "2"]).contains("chosen anew"));
     // All rods in line, the rows lose rank.
-    let text = run(&["n_four_bar", "--method", "velocity", "--steps", "4", "--until", "1"]);
+    let text =
+        run(&["n_four_bar", "--method", "velocity", "--integrator", "rk4", "--step", "1e-3", "--until", "1"]);
     assert!(figure(&text, "handed over to projection") > 0.0, "{text}");
 }
 
@@ -470,11 +474,24 @@ fn an_unknown_mechanism_gets_a_proposal() {
 }
 
 #[test]
+fn an_end_that_no_one_waits_for_is_refused_after_a_thousand_steps() {
+    let message = failure(mbs(&["run", "pendulum", "--until", "1e9"]), 1);
+    assert!(message.contains("t = 1e9 s is out of reach"), "{message}");
+}
+
+#[test]
 fn senseless_arguments_are_refused_in_plain_words() {
-    let cases: [(&[&str], &str); 18] = [
+    let cases: [(&[&str], &str); 22] = [
         (&["run", "four_bar", "--until", "-1"], "a number above 0"),
         (&["run", "pendulum", "--step", "-1"], "a number above 0"),
         (&["run", "pendulum", "--tolerance", "-1"], "a number above 0"),
+        (&["run", "pendulum", "--tolerance", "1e-30"], "at least 3.6e-15 is possible"),
+        (
+            &["run", "pendulum", "--until", "0.01", "--integrator", "rk4", "--step", "1e-14"],
+            "t = 0.01 s are 1.0e12, more than the 1e8 of a run",
+        ),
+        (&["run", "pendulum", "--until", "1e9", "--integrator", "rk4"], "let them adapt"),
+        (&["run", "governor", "--until", "1e9"], "take longer ones by `--step`"),
         (&["run", "pendulum", "--steps", "-1"], "whole number"),
         (&["run", "pendulum", "--param", "m=-1"], "`mass` of `bob` is -1"),
         (&["run", "quarter_car", "--param", "k.0=-5"], "`stiffness` of `"),

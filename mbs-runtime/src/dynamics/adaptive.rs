@@ -26,6 +26,12 @@ const STRETCH: f64 = 1.1;
 /// Steps a call may take; a run that needs more does not advance.
 const MOST_STEPS: u32 = 10_000_000;
 
+/// Steps after which a run knows how long its steps are.
+const KNOWN_STEPS: u32 = 1_000;
+
+/// Steps that a run may seem to need after [`KNOWN_STEPS`], ten times [`MOST_STEPS`]: steps may still become longer.
+const MOST_STEPS_AHEAD: f64 = 1e8;
+
 /// An adaptive integration: the step that it will try next, and what it has spent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Adaptive<R> {
@@ -94,6 +100,19 @@ impl<M: Embedded, R: Real, Y: Vector<R>> Accepted<M, R, Y> {
         };
         let dense = M::dense(&mut Clamped { equation, latest: self.end.t }, &taken)?;
         Ok(Polynomial { t: self.start.t, h, dense })
+    }
+
+    /// The state at `t` (s), inside the step, by the states and rates at its ends alone: for coarse steps of which the
+    /// polynomial cannot be made. Order 3; not settled.
+    pub(super) fn cubic(&self, t: R) -> Y {
+        let (one, h) = (R::constant(1.0), self.end.t - self.start.t);
+        let theta = (t - self.start.t) / h;
+        let left = one - theta;
+        let change = self.end.y.plus(-one, &[1.0], [&self.start.y]);
+        let along = change.zero().plus(h, &[1.0], [&self.start.rate]).plus(-one, &[1.0], [&change]);
+        let against = change.plus(-h, &[1.0], [&self.end.rate]);
+        let bent = along.zero().plus(left, &[1.0], [&along]).plus(theta, &[1.0], [&against]);
+        self.start.y.plus(theta, &[1.0], [&change]).plus(theta * left, &[1.0], [&bent])
     }
 }
 
@@ -261,7 +280,13 @@ impl<R: Real> Adaptive<R> {
             return Err(invalid);
         }
         let mut now = from;
-        for _ in 0..MOST_STEPS {
+        for taken in 0..MOST_STEPS {
+            if taken == KNOWN_STEPS {
+                let step = (now.t - from.t) / R::constant(f64::from(KNOWN_STEPS));
+                if R::constant(MOST_STEPS_AHEAD) * step < until - now.t {
+                    return Err(out_of_reach(step, now.t, until));
+                }
+            }
             let next_break = breakpoints(now.t).filter(|next| now.t < *next && *next <= until);
             let accepted =
                 self.step::<M, E>(equation, &now, next_break.unwrap_or(until), next_break.is_some())?;

@@ -67,6 +67,10 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Formulation<S
         Err(Failure::StepTooLong { product, allowed: LARGEST_PRODUCT, time: t.to_f64() })
     }
 
+    fn leaves_constraints(&self) -> bool {
+        true
+    }
+
     fn doubt(&self, h: R, span: R) -> Option<Doubt> {
         if self.omega * h.to_f64() > DOUBTFUL_PRODUCT {
             return Some(Doubt::StiffStabilization);

@@ -59,7 +59,8 @@ pub fn equilibrium<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>
     }
     let parameters = mechanism.parameters();
     let metric = Metric::of(mechanism, &parameters);
-    let model = Model { mechanism, parameters: &parameters, metric: &metric, balanced: false };
+    let model =
+        Model { mechanism, parameters: &parameters, metric: &metric, balanced: false, rank_rises: false };
     let states = mechanism.start_states(&parameters);
     let mut y = State { q: *q, qd: [R::constant(0.0); N], states, work: R::constant(0.0) };
     model.check(t, &y)?;

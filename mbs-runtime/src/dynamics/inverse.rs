@@ -85,7 +85,8 @@ pub fn inverse<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     }
     let parameters = mechanism.parameters();
     let metric = Metric::of(mechanism, &parameters);
-    let model = Model { mechanism, parameters: &parameters, metric: &metric, balanced: false };
+    let model =
+        Model { mechanism, parameters: &parameters, metric: &metric, balanced: false, rank_rises: false };
     let (zero, mut counts) = (R::constant(0.0), Counts::default());
     let states = mechanism.start_states(&parameters);
     let mut y = State { q: *q, qd: [zero; N], states, work: zero };

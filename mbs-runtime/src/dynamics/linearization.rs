@@ -68,7 +68,8 @@ pub fn linearize_in<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize
 ) -> Result<Linearization<R, N>, Failure> {
     let (zero, parameters) = (R::constant(0.0), mechanism.parameters());
     let metric = Metric::of(mechanism, &parameters);
-    let model = Model { mechanism, parameters: &parameters, metric: &metric, balanced: false };
+    let model =
+        Model { mechanism, parameters: &parameters, metric: &metric, balanced: false, rank_rises: false };
     let y = State { q: *q, qd: *qd, states: mechanism.start_states(&parameters), work: zero };
     model.check(t, &y)?;
     let position = model.position(t, &y);

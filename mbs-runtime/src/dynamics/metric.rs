@@ -1,6 +1,6 @@
 //! The reference metric of a mechanism's coordinates and rows, and which coordinates are of one kind.
 
-use crate::{Entry, Mechanism, Real, Scalar};
+use crate::{Entry, Failure, Mechanism, Real, Scalar};
 
 /// Scales of coordinates and rows, fixed by units and dimensions alone, and kinds of unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -106,7 +106,25 @@ pub struct Tolerance<R> {
     pub absolute: R,
 }
 
+/// Smallest sum of both tolerances, in ε: the twelve stages that a step and its error are summed of leave as many roundings.
+const LEAST_TOLERANCE: f64 = 32.0;
+
 impl<R: Real> Tolerance<R> {
+    /// The smallest sum of both that numbers of this type can keep to: 32 ε.
+    pub fn least() -> R {
+        R::constant(LEAST_TOLERANCE) * R::EPSILON
+    }
+
+    /// Fails where rounding alone is more than it allows, or where it is no number.
+    pub(super) fn require_resolved(&self, t: R) -> Result<(), Failure> {
+        let sum = self.relative + self.absolute;
+        let (zero, least) = (R::constant(0.0), Self::least());
+        if zero <= self.relative && zero <= self.absolute && least <= sum {
+            return Ok(());
+        }
+        Err(Failure::UnresolvedTolerance { tolerance: sum.to_f64(), least: least.to_f64(), time: t.to_f64() })
+    }
+
     /// The same number for both.
     pub fn new(tolerance: f64) -> Self {
         Tolerance { relative: R::constant(tolerance), absolute: R::constant(tolerance) }

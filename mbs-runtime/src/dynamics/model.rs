@@ -14,6 +14,8 @@ pub struct Model<'a, S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usiz
     pub metric: &'a Metric<R, N, M>,
     /// Whether the work of forces and drives is integrated.
     pub balanced: bool,
+    /// Whether rows follow from others on the constraints alone, so that beside them the rank of Φ_q rises.
+    pub rank_rises: bool,
 }
 
 /// Rates of one state, with the multipliers that belong to them.
@@ -32,7 +34,9 @@ pub struct Solved<R, const N: usize, const M: usize, Z> {
 pub struct Counts {
     /// Right-hand sides evaluated.
     pub evaluations: u64,
-    /// Of those, with a rank-revealing factorization.
+    /// Right-hand sides evaluated beside them, for instants between the steps that someone wants to see.
+    pub shown: u64,
+    /// Of the evaluations, those with a rank-revealing factorization.
     pub rank_revealing: u64,
     /// Of those, with independent motions chosen anew, where the independent coordinates turn back.
     pub rechosen: u64,
@@ -123,6 +127,11 @@ pub trait Formulation<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usi
         Ok(())
     }
 
+    /// Whether accelerations of states beside the constraints are taken from all rows as they are there.
+    fn leaves_constraints(&self) -> bool {
+        false
+    }
+
     /// What is doubtful about steps of `h` (s) in a run of `span` (s).
     fn doubt(&self, _h: R, _span: R) -> Option<Doubt> {
         None
@@ -183,6 +192,10 @@ where
         (**self).admit(h, t)
     }
 
+    fn leaves_constraints(&self) -> bool {
+        (**self).leaves_constraints()
+    }
+
     fn doubt(&self, h: R, span: R) -> Option<Doubt> {
         (**self).doubt(h, span)
     }
@@ -198,6 +211,9 @@ pub enum Doubt {
     StiffStabilization,
     /// Baumgarte's frequency times the duration is below 5: the stabilisation does nothing.
     IdleStabilization,
+    /// Rows that follow from others on the constraints do not beside them, where the method takes accelerations: those grow
+    /// with the inverse of the distance.
+    RisingRank,
 }
 
 impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, R, N, M> {
@@ -217,8 +233,8 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         let mut mechanism = self.mechanism.clone();
         mechanism.advance_phases(from, to);
         let parameters = mechanism.parameters();
-        let (metric, balanced) = (self.metric, self.balanced);
-        solve(&Model { mechanism: &mechanism, parameters: &parameters, metric, balanced })
+        let Model { metric, balanced, rank_rises, .. } = *self;
+        solve(&Model { mechanism: &mechanism, parameters: &parameters, metric, balanced, rank_rises })
     }
 
     /// Fails where a coordinate, velocity or state is no number, or a coordinate is not resolved.

@@ -77,6 +77,11 @@ pub trait Method<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> {
         Ok(())
     }
 
+    /// See [`Formulation::leaves_constraints`].
+    fn leaves_constraints(&self) -> bool {
+        false
+    }
+
     /// See [`Formulation::doubt`].
     fn doubt(&self, _h: R, _span: R) -> Option<Doubt> {
         None
@@ -111,8 +116,16 @@ where
         (**self).step(model, from, h, counts)
     }
 
+    fn phases_after(&self, model: &Model<'_, S, R, N, M>, t: R, h: R) -> Result<Option<S::Phases>, Failure> {
+        (**self).phases_after(model, t, h)
+    }
+
     fn admit(&self, h: R, t: R) -> Result<(), Failure> {
         (**self).admit(h, t)
+    }
+
+    fn leaves_constraints(&self) -> bool {
+        (**self).leaves_constraints()
     }
 
     fn doubt(&self, h: R, span: R) -> Option<Doubt> {
@@ -184,6 +197,10 @@ where
         self.formulation.admit(h, t)
     }
 
+    fn leaves_constraints(&self) -> bool {
+        self.formulation.leaves_constraints()
+    }
+
     fn doubt(&self, h: R, span: R) -> Option<Doubt> {
         self.formulation.doubt(h, span)
     }
@@ -220,6 +237,8 @@ pub struct Equations<'a, S: Dynamic<R, N, M>, F, R: Real, const N: usize, const 
     lambda: [R; M],
     /// Time (s), margin and state of the last step's end.
     end: (R, R, State<R, N, S::States>),
+    /// Time (s) and margin of the last instant that was shown.
+    seen: (R, R),
     /// The first passage since `start`.
     pub(super) passage: Option<Passage<R>>,
     pub(super) counts: Counts,
@@ -239,7 +258,8 @@ where
         counts: Counts,
     ) -> Self {
         let (tolerance, start) = (Tolerance::new(0.0), from.t);
-        let (lambda, end) = (from.solved.lambda, (from.t, from.solved.margin, from.y));
+        let seen = (from.t, from.solved.margin);
+        let (lambda, end) = (from.solved.lambda, (seen.0, seen.1, from.y));
         let moving = (!S::PHASES.is_empty()).then(|| model.mechanism.clone());
         Equations {
             model,
@@ -251,6 +271,7 @@ where
             fixed: false,
             lambda,
             end,
+            seen,
             passage: None,
             counts,
         }
@@ -258,6 +279,24 @@ where
 
     pub(super) fn with_tolerance(self, tolerance: Tolerance<R>) -> Self {
         Equations { tolerance, ..self }
+    }
+
+    /// What `look` finds without a trace in the run but that its evaluations are counted by themselves. No step can be made
+    /// smaller for it.
+    pub(super) fn apart<X>(&mut self, look: impl FnOnce(&mut Self) -> X) -> X {
+        let (counts, lambda, fixed) = (self.counts, self.lambda, self.fixed);
+        self.fixed = true;
+        let found = look(self);
+        self.fixed = fixed;
+        let shown = counts.shown + self.counts.evaluations.wrapping_sub(counts.evaluations);
+        (self.counts, self.lambda) = (Counts { shown, ..counts }, lambda);
+        found
+    }
+
+    /// Takes an instant between the ends of steps for where a singular position may be passed.
+    pub(super) fn pass(&mut self, instant: &Instant<R, N, M, S::States>) {
+        self.passage = self.passage.or(Passage::between(self.seen, (instant.t, instant.solved.margin)));
+        self.seen = (instant.t, instant.solved.margin);
     }
 
     /// Of steps of a method of `order` that cannot be made smaller.
@@ -289,8 +328,9 @@ where
             mechanism.advance_phases(*start, t);
         }
         let parameters = mechanism.parameters();
-        let (metric, balanced) = (model.metric, model.balanced);
-        solve(&Model { mechanism, parameters: &parameters, metric, balanced }, formulation, lambda, counts)
+        let Model { metric, balanced, rank_rises, .. } = **model;
+        let moved = Model { mechanism, parameters: &parameters, metric, balanced, rank_rises };
+        solve(&moved, formulation, lambda, counts)
     }
 
     /// Rates and multipliers of a state.

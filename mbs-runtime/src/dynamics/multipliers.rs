@@ -27,6 +27,10 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Formulation<S
         let gamma = model.mechanism.gamma(model.parameters, &position, &y.qd);
         solve(model, (t, y), &position, lambda, &factors, &gamma)
     }
+
+    fn leaves_constraints(&self) -> bool {
+        true
+    }
 }
 
 /// The factorised system at a position.

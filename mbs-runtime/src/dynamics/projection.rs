@@ -29,11 +29,14 @@ const LARGEST_REST: f64 = 1e8;
 /// Which stages of a step are put onto the constraints before they are evaluated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Stages {
-    /// None: a step's end alone is.
+    /// All where rows follow from others on the constraints alone, none elsewhere: beside the constraints the rank of Φ_q
+    /// rises there, and accelerations grow with the inverse of the distance. The start decides.
     #[default]
+    WhereNeeded,
+    /// None: a step's end alone is.
     None,
     /// All, at twice the cost and a fifth of the error. Next to a singular position a stage may be too far off; an adaptive
-    /// step is then tried again smaller, in one of fixed size the stage is taken as it is.
+    /// step is then tried again smaller, in one of fixed size the stage is taken as it is, unless the rank rises there.
     All,
 }
 
@@ -48,6 +51,20 @@ pub struct Projection {
     pub stages: Stages,
 }
 
+impl Projection {
+    /// Whether the stages of `model` are projected, as far as the start decides it.
+    fn stages_of<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
+        &self,
+        model: &Model<'_, S, R, N, M>,
+    ) -> Stages {
+        match self.stages {
+            Stages::WhereNeeded if model.rank_rises => Stages::All,
+            Stages::WhereNeeded => Stages::None,
+            chosen => chosen,
+        }
+    }
+}
+
 impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Formulation<S, R, N, M> for Projection {
     fn solve(
         &self,
@@ -57,8 +74,8 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Formulation<S
         lambda: &[R; M],
         counts: &mut Counts,
     ) -> Result<Solved<R, N, M, S::States>, Failure> {
-        let mut y = *y;
-        if self.stages == Stages::All {
+        let (mut y, stages) = (*y, self.stages_of(model));
+        if stages == Stages::All {
             counts.projected_stages += 1;
             self.settle(model, t, &mut y, counts)?;
         }
@@ -67,7 +84,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Formulation<S
         let gamma = model.mechanism.gamma(model.parameters, &position, &y.qd);
         let solved = solve(model, (t, &y), &position, lambda, &factors, &gamma)?;
         if solved.margin < R::constant(ZONE) {
-            return from_both_sides(model, (t, &y), solved, (&factors, self.stages), counts);
+            return from_both_sides(model, (t, &y), solved, (&factors, stages), counts);
         }
         Ok(solved)
     }
@@ -80,7 +97,13 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Formulation<S
         lambda: &[R; M],
         counts: &mut Counts,
     ) -> Result<Solved<R, N, M, S::States>, Failure> {
-        Projection { stages: Stages::None }.solve(model, t, y, lambda, counts)
+        let rises = model.rank_rises && self.stages != Stages::None;
+        let stages = if rises { Stages::All } else { Stages::None };
+        Projection { stages }.solve(model, t, y, lambda, counts)
+    }
+
+    fn leaves_constraints(&self) -> bool {
+        self.stages == Stages::None
     }
 
     #[inline]
@@ -97,7 +120,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Formulation<S
 }
 
 /// Puts `y.q` onto Φ(q, t) = 0; returns the last factors, which are those of a position next to it.
-fn project_position<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
+pub(super) fn project_position<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     model: &Model<'_, S, R, N, M>,
     t: R,
     y: &mut State<R, N, S::States>,

@@ -10,6 +10,7 @@ use super::motion::{Equations, Explicit, Instant, Method, Moving, beginning};
 use super::passage::Passage;
 use super::phases::at_present;
 use super::projection::Projection;
+use super::rank::rank_rises;
 use super::signed::parameter_failure;
 use super::text_start;
 use super::vector::State;
@@ -20,8 +21,14 @@ use crate::{Dynamic, Energy, Failure, Motion, Real, kinematics};
 /// nine digits. What it has is projected out.
 const START_ALLOWANCE: f64 = 1e-8;
 
-/// Tolerance of an adaptive integration where none is given.
+/// Tolerance of an adaptive integration where none is given, unless the number type has fewer digits.
 const TOLERANCE: f64 = 1e-9;
+
+/// Parts of an adaptive step at whose ends working ranges are looked at.
+const PARTS: u32 = 8;
+
+/// Halvings of such a part: as many digits as an `f64` has.
+const MOST_HALVINGS: u32 = 53;
 
 /// A mechanism in motion with method `X`. It owns everything, allocates nothing, and a failed call leaves it as it was.
 ///
@@ -38,6 +45,8 @@ pub struct Simulation<S: Dynamic<R, N, M>, X, R: Real, const N: usize, const M: 
     stale: bool,
     start: R,
     balanced: bool,
+    /// Whether rows follow from others on the constraints alone, as found at the start.
+    rank_rises: bool,
     /// Energy (J) at the start, moved along where parameters change it.
     reference: R,
     /// Energy (J) before a change that made it no number.
@@ -57,6 +66,16 @@ enum Origin {
     Near,
     /// Of the text.
     Text,
+}
+
+/// What a run has come to at the end of a step.
+struct Progress<R, P> {
+    /// Phases of drives that prescribe a rate.
+    phases: P,
+    counts: Counts,
+    passage: Option<Passage<R>>,
+    /// Steps accepted by the control of their size.
+    accepted: u32,
 }
 
 /// How a run went so far: energy that is not accounted for, rows that are violated, what it cost.
@@ -136,7 +155,13 @@ where
         mechanism.start_phases(&q, t);
         let parameters = mechanism.parameters();
         let metric = Metric::of(&mechanism, &parameters);
-        let model = Model { mechanism: &mechanism, parameters: &parameters, metric: &metric, balanced: true };
+        let mut model = Model {
+            mechanism: &mechanism,
+            parameters: &parameters,
+            metric: &metric,
+            balanced: true,
+            rank_rises: false,
+        };
         let mut counts = Counts::default();
         let states = mechanism.start_states(&parameters);
         let mut y = State { q, qd, states, work: R::constant(0.0) };
@@ -147,9 +172,12 @@ where
             Origin::Text => text_start::complete(&model, t, &mut y, &mut counts)?,
         }
         Projection::default().settle(&model, t, &mut y, &mut counts)?;
+        model.rank_rises = rank_rises(&model, t, &y);
         let solved = method.solve(&model, t, &y, &[R::constant(0.0); M], &mut counts)?;
         let now = Instant { t, y, solved, carried: solved.rate.qd };
         model.check_assembly(t, &y, true)?;
+        let rank_rises = model.rank_rises;
+        let tolerance = R::constant(TOLERANCE).max(Tolerance::least());
         let reference = model.total_energy(t, &y);
         Ok(Simulation {
             mechanism,
@@ -161,9 +189,10 @@ where
             stale: false,
             start: t,
             balanced: true,
+            rank_rises,
             reference,
             known: None,
-            tolerance: Tolerance::new(TOLERANCE),
+            tolerance: Tolerance { relative: tolerance, absolute: tolerance },
             adaptive: Adaptive::default(),
             passage: None,
             counts,
@@ -257,6 +286,7 @@ where
             parameters: &self.parameters,
             metric: &self.metric,
             balanced: self.balanced,
+            rank_rises: self.rank_rises,
         }
     }
 
@@ -344,6 +374,9 @@ where
 
     /// What is doubtful about steps of `h` (s) from the start until now.
     pub fn doubt(&self, h: R) -> Option<Doubt> {
+        if self.rank_rises && self.method.leaves_constraints() {
+            return Some(Doubt::RisingRank);
+        }
         self.method.doubt(h, self.now.t - self.start)
     }
 
@@ -429,8 +462,9 @@ where
     /// Moves on to `until` (s) with steps as long as the tolerance allows.
     ///
     /// # Errors
-    /// [`Failure::InvalidStep`], [`Failure::StepTooSmall`], those of the method; the state is then bit for bit what it
-    /// was.
+    /// [`Failure::InvalidStep`], [`Failure::UnresolvedTolerance`], [`Failure::StepTooSmall`], [`Failure::OutOfReach`], those of
+    /// the method; [`Failure::BeyondLimit`] and [`Failure::WrongBranch`] with the time at which the limit is passed within a
+    /// step. The state is then that at the end of the last step that was accepted.
     pub fn advance_to(&mut self, until: R) -> Result<(), Failure> {
         self.advance(until, |_| None, |_, _| Ok(None)).map(|_| ())
     }
@@ -481,28 +515,68 @@ where
         samples: u32,
         mut see: impl FnMut(&Instant<R, N, M, S::States>),
     ) -> Result<(), Failure> {
+        self.sampled(until, samples, |instant, _| see(instant))
+    }
+
+    /// As [`sample`](Self::sample), and shows the whole simulation as it is at each of these instants: its outputs, loads and
+    /// balance. What the steps have spent is in its [`counts`](Self::counts) without what the instants between them cost.
+    ///
+    /// # Errors
+    /// As [`advance_to`](Self::advance_to).
+    pub fn watch(&mut self, until: R, samples: u32, mut see: impl FnMut(&Self)) -> Result<(), Failure>
+    where
+        F: Clone,
+    {
+        let mut shown = self.clone();
+        if self.stale {
+            let (_, gained) = self.fresh(&mut Counts::default())?;
+            shown.reference = shown.reference + gained;
+        }
+        let steps = self.adaptive.accepted;
+        self.sampled(until, samples, |instant, run| {
+            let mut counts = run.counts;
+            counts.steps += u64::from(run.accepted.wrapping_sub(steps));
+            shown.take(*instant, Some(run.phases), counts);
+            shown.passage = shown.passage.or(run.passage);
+            see(&shown);
+        })
+    }
+
+    /// Shows the instants at `samples` equal distances to `until` (s), with what the run has come to.
+    ///
+    /// The run goes on as if nobody had looked: rates between its steps are apart from it.
+    fn sampled(
+        &mut self,
+        until: R,
+        samples: u32,
+        mut see: impl FnMut(&Instant<R, N, M, S::States>, &Progress<R, S::Phases>),
+    ) -> Result<(), Failure> {
         let (from, count) = (self.now.t, R::constant(f64::from(samples)));
-        let mut index = 1;
+        let (mut index, mut accepted_steps) = (1, self.adaptive.accepted);
         self.advance(
             until,
             |_| None,
             |equations, accepted| {
                 let mut polynomial = None;
+                accepted_steps = accepted_steps.wrapping_add(1);
                 while index <= samples {
                     let share = R::constant(f64::from(index)) / count;
                     let t = if index == samples { until } else { from + (until - from) * share };
                     if accepted.end.t < t {
                         break;
                     }
-                    let known = match polynomial {
-                        Some(polynomial) => polynomial,
-                        None => accepted.polynomial(equations)?,
-                    };
-                    polynomial = Some(known);
-                    let mut y = if t < accepted.end.t { known.at(t) } else { accepted.end.y };
-                    super::equation::Equation::settle(equations, t, &mut y)?;
-                    let solved = equations.solve(t, &y)?;
-                    see(&Instant { t, y: y.y, solved, carried: solved.rate.qd });
+                    let (instant, phases) = equations.apart(|equations| {
+                        let known = *polynomial.get_or_insert_with(|| accepted.polynomial(equations).ok());
+                        let between = || known.map_or_else(|| accepted.cubic(t), |known| known.at(t));
+                        let mut y = if t < accepted.end.t { between() } else { accepted.end.y };
+                        super::equation::Equation::settle(equations, t, &mut y)?;
+                        let solved = equations.solve(t, &y)?;
+                        let phases = equations.phases(t, &y.phases);
+                        Ok((Instant { t, y: y.y, solved, carried: solved.rate.qd }, phases))
+                    })?;
+                    equations.pass(&instant);
+                    let (counts, passage) = (equations.counts, equations.passage);
+                    see(&instant, &Progress { phases, counts, passage, accepted: accepted_steps });
                     index += 1;
                 }
                 Ok(None)
@@ -522,21 +596,26 @@ where
         ) -> Result<Option<(R, Moving<S, R, N, M>)>, Failure>,
     ) -> Result<bool, Failure> {
         let (mut counts, mut adaptive) = (self.counts, self.adaptive);
+        self.tolerance.require_resolved(self.now.t)?;
         let (from, gained) = self.fresh(&mut counts)?;
         let model = self.model();
         let formulation = &self.method.formulation;
         let mut equations = Equations::new(&model, formulation, &from, counts).with_tolerance(self.tolerance);
         let start = beginning(model.mechanism, &from);
-        let mut stopped = None;
+        let (mut stopped, mut last) = (None, start);
         let taken = adaptive.accepted;
-        let end =
-            adaptive.run::<I, _>(&mut equations, start, until, breakpoints, |equations, accepted| {
-                model.check(accepted.end.t, &accepted.end.y.y)?;
-                model.check_assembly(accepted.end.t, &accepted.end.y.y, false)?;
-                stopped = stop(equations, accepted)?;
-                Ok(stopped.is_none())
-            })?;
-        let (t, mut y) = stopped.unwrap_or((end.t, end.y));
+        let run = adaptive.run::<I, _>(&mut equations, start, until, breakpoints, |equations, accepted| {
+            model.check(accepted.end.t, &accepted.end.y.y)?;
+            model.check_step(equations, accepted)?;
+            stopped = stop(equations, accepted)?;
+            last = accepted.end;
+            Ok(stopped.is_none())
+        });
+        let failure = run.err();
+        if let (Some(failure), true) = (failure, last.t == from.t) {
+            return Err(failure);
+        }
+        let (t, mut y) = stopped.unwrap_or((last.t, last.y));
         if stopped.is_some() {
             super::equation::Equation::settle(&mut equations, t, &mut y)?;
         }
@@ -549,7 +628,7 @@ where
         self.passage = self.passage.or(passage);
         self.take(Instant { t, y: y.y, solved, carried: solved.rate.qd }, Some(phases), counts);
         self.reference = self.reference + gained;
-        Ok(stopped.is_some())
+        failure.map_or(Ok(stopped.is_some()), Err)
     }
 }
 
@@ -571,6 +650,35 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         failure.map_or(Ok(()), Err)
     }
 
+    /// [`check_assembly`](Self::check_assembly) along an accepted step, with the time at which the state passes what it may not
+    /// pass. A range may be left and entered again within a step, a branch is looked at where the step ends.
+    fn check_step<F, I>(
+        &self,
+        equations: &mut Equations<'_, S, F, R, N, M>,
+        accepted: &Accepted<I, R, Moving<S, R, N, M>>,
+    ) -> Result<(), Failure>
+    where
+        F: Formulation<S, R, N, M>,
+        I: Embedded,
+    {
+        let (start, end) = (accepted.start.t, &accepted.end);
+        let ends = self.check_assembly(end.t, &end.y.y, false);
+        if S::LIMITS.is_empty() && ends.is_ok() {
+            return Ok(());
+        }
+        let Ok(polynomial) = accepted.polynomial(equations) else { return ends };
+        let at = |t: R| self.check_assembly(t, &polynomial.at(t).y, false);
+        let mut inside = start;
+        for part in 1..PARTS {
+            let t = start + (end.t - start) * R::constant(f64::from(part) / f64::from(PARTS));
+            match at(t) {
+                Ok(()) => inside = t,
+                Err(failure) => return Err(first_failure(inside, (t, failure), at)),
+            }
+        }
+        ends.map_err(|failure| first_failure(inside, (end.t, failure), at))
+    }
+
     /// Fails with the row that a start violates by more than it may.
     fn require_consistent(&self, t: R, y: &State<R, N, S::States>) -> Result<(), Failure> {
         let position = self.position(t, y);
@@ -585,4 +693,23 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         }
         self.require(t, &self.constraint_rates(&position, &y.qd), &allowed, one, true)
     }
+}
+
+/// The failure of `at` at the earliest time after `inside` (s), where it has none, up to `beyond`, a time (s) with a failure.
+fn first_failure<R: Real>(
+    mut inside: R,
+    mut beyond: (R, Failure),
+    at: impl Fn(R) -> Result<(), Failure>,
+) -> Failure {
+    for _ in 0..MOST_HALVINGS {
+        let t = inside + R::constant(0.5) * (beyond.0 - inside);
+        if !inside.less(t) || !t.less(beyond.0) {
+            break;
+        }
+        match at(t) {
+            Ok(()) => inside = t,
+            Err(failure) => beyond = (t, failure),
+        }
+    }
+    beyond.1
 }

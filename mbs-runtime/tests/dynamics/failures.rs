@@ -1,10 +1,10 @@
 //! What cannot be simulated is refused with its name, and the state stays.
 
-use mbs_runtime::Failure;
 use mbs_runtime::dynamics::{
-    Baumgarte, DormandPrince8, Explicit, Projection, RungeKutta4, Simulation, Tolerance, kkt::System,
-    metric::Metric,
+    Baumgarte, DormandPrince5, DormandPrince8, Explicit, Projection, RungeKutta4, Simulation, Tolerance,
+    kkt::System, metric::Metric,
 };
+use mbs_runtime::{Failure, mechanism};
 
 use crate::linkage::{End, Linkage, Rod, parallel_loops, pendulum};
 
@@ -72,7 +72,7 @@ fn a_failed_adaptive_run_leaves_the_state_bit_for_bit() {
     .with_tolerance(Tolerance { relative: 0.0, absolute: 1e-30 });
     let before = *simulation.instant();
     let failure = simulation.advance_to(1.0).unwrap_err();
-    assert!(matches!(failure, Failure::StepTooSmall { .. }), "{failure}");
+    assert!(matches!(failure, Failure::UnresolvedTolerance { .. }), "{failure}");
     assert_eq!(before, *simulation.instant());
 }
 
@@ -193,4 +193,66 @@ fn a_run_by_any_method_notices_the_first_singular_position_that_it_passes() {
     }
     let found = adaptive.passage().unwrap().t;
     assert!((fixed - 0.72).abs() < 0.02 && (found - 0.72).abs() < 0.02, "{fixed} {found}");
+}
+
+#[test]
+fn a_tolerance_below_rounding_and_an_end_of_too_many_steps_are_refused_at_once() {
+    let method = Explicit::new(DormandPrince8, Projection::default());
+    let start = Simulation::start(pendulum(), method, 0.0, [1.0, 0.0], [0.0; 2]).unwrap();
+    let least: f64 = Tolerance::least();
+    for tolerance in [1e-30, 0.4 * least, -1e-9, f64::NAN] {
+        let mut run = start.with_tolerance(Tolerance::new(tolerance));
+        let failure = run.advance_to(1.0).unwrap_err();
+        assert!(matches!(failure, Failure::UnresolvedTolerance { .. }), "{failure}");
+        assert_eq!((run.counts(), run.t()), (start.counts(), 0.0));
+    }
+    start.with_tolerance(Tolerance::new(0.5 * least)).advance_to(0.1).unwrap();
+    let mut run = start;
+    let failure = run.advance_to(1e9).unwrap_err();
+    assert!(matches!(failure, Failure::OutOfReach { until: 1e9, .. }), "{failure}");
+    // What was reached is kept.
+    assert!(run.counts().steps == 1000 && run.t() > 10.0, "{} {}", run.counts().steps, run.t());
+}
+
+mechanism! {
+    /// A stone that is thrown up between two stops.
+    pub mechanism Stone;
+    const G: m/s^2 = 9.81;
+    param ceiling: m = 1;
+    param speed: m/s = 3;
+    coord x: m = 0;
+    coord y: m = 0;
+    body stone { mass: 1, com: [x, y] }
+    gravity weight { acceleration: [0, -G] }
+    constraint plumb { x == 0; }
+    start y = 0 rate speed;
+    limit height: -2m <= y <= ceiling;
+}
+
+/// Fails where the stone passes a stop; how far it had come.
+fn thrown<I: mbs_runtime::dynamics::Embedded>(integrator: I, stone: Stone) -> (Failure, f64) {
+    let method = Explicit::new(integrator, Projection::default());
+    let mut run = Simulation::start_from_text(stone, method, 0.0).unwrap();
+    let failure = run.advance_to(2.0).unwrap_err();
+    assert!(run.balance().defect.abs() < 1e-8);
+    (failure, run.t())
+}
+
+#[test]
+fn a_limit_is_passed_where_it_is_and_not_at_the_end_of_a_step() {
+    // 3 t − g t²/2 = −2.
+    let below = (3.0 + (9.0_f64 + 4.0 * 9.81).sqrt()) / 9.81;
+    for (failure, reached) in
+        [thrown(DormandPrince8, Stone::default()), thrown(DormandPrince5, Stone::default())]
+    {
+        let Failure::BeyondLimit { time, value, .. } = failure else { panic!("{failure}") };
+        assert!((time - below).abs() < 1e-9 && (value + 2.0).abs() < 1e-8, "{time} {value}");
+        assert!(0.0 < reached && reached <= time, "{reached}");
+    }
+    // Up to 0.4587 m: a ceiling below that is passed and left again within a step.
+    let low = Stone { ceiling: 0.4, ..Stone::default() };
+    let above = (3.0 - (9.0_f64 - 2.0 * 9.81 * 0.4).sqrt()) / 9.81;
+    let (failure, _) = thrown(DormandPrince8, low);
+    let Failure::BeyondLimit { time, .. } = failure else { panic!("{failure}") };
+    assert!((time - above).abs() < 1e-9, "{time} {above}");
 }

@@ -2,8 +2,8 @@
 
 use mbs_runtime::Failure;
 use mbs_runtime::dynamics::{
-    Baumgarte, Direction, DormandPrince5, DormandPrince8, Doubt, Explicit, FixedStep, Formulation, Method,
-    Projection, RungeKutta4, SemiImplicitEuler, Simulation, Stages, Tolerance, Unstabilized,
+    Baumgarte, Direction, DormandPrince5, DormandPrince8, Doubt, Embedded, Explicit, FixedStep, Formulation,
+    Method, Projection, RungeKutta4, SemiImplicitEuler, Simulation, Stages, Tolerance, Unstabilized,
 };
 
 use crate::linkage::{Linkage, pendulum};
@@ -135,6 +135,63 @@ fn samples_between_steps_are_as_good_as_steps() {
         energies.iter().copied().fold(0.0, f64::max)
     );
     assert!(simulation.counts().steps < 300 && simulation.t() == 10.0);
+}
+
+/// Largest error of positions and velocities, and of multipliers, at `instants` equal distances of ten seconds: those between the
+/// steps of one run, and the ends of as many runs; with the one run.
+fn shown<I: Embedded>(
+    integrator: I,
+    tolerance: f64,
+    instants: u32,
+) -> ([[f64; 2]; 2], Pendulum<Explicit<I, Projection>>) {
+    let method = Explicit::new(integrator, Projection::default());
+    let start = released(method).with_tolerance(Tolerance::new(tolerance));
+    let mut exact = released(Explicit::new(DormandPrince8, Projection::default()));
+    exact = exact.with_tolerance(Tolerance::new(1e-13));
+    let (mut run, mut errors) = (start, [[0.0_f64; 2]; 2]);
+    run.watch(10.0, instants, |run| {
+        exact.advance_to(run.t()).unwrap();
+        let mut ending = start;
+        ending.advance_to(run.t()).unwrap();
+        // The last instant is no other than the last step's end.
+        let ends = usize::from(run.t() == 10.0);
+        for (errors, found) in errors.iter_mut().zip([run, &ending]).skip(ends) {
+            let state = found.q().iter().chain(found.qd()).zip(exact.q().iter().chain(exact.qd()));
+            errors[0] = state.fold(errors[0], |largest, (found, exact)| largest.max((found - exact).abs()));
+            errors[1] = errors[1].max((found.lambda()[0] - exact.lambda()[0]).abs());
+            assert!(found.balance().phi < 1e-13 && found.balance().phi_d < 1e-12);
+        }
+    })
+    .unwrap();
+    (errors, run)
+}
+
+#[test]
+fn instants_between_steps_are_as_right_as_the_run() {
+    /// Of the largest error of the run: what the instants looked at miss of it.
+    const SHARE: f64 = 1.1;
+    for tolerance in [1e-5, 1e-8, 1e-11] {
+        let runs = [shown(DormandPrince8, tolerance, 41).0, shown(DormandPrince5, tolerance, 41).0];
+        println!("tolerance {tolerance:e}, orders 8 and 5, between steps and at their ends: {runs:?}");
+        for [between, ends] in runs {
+            assert!(between.iter().zip(ends).all(|(between, end)| *between < SHARE * end));
+        }
+    }
+}
+
+#[test]
+fn a_run_that_is_watched_takes_the_steps_of_one_that_is_not() {
+    let (_, watched) = shown(DormandPrince8, 1e-9, 41);
+    let mut alone = released(Explicit::new(DormandPrince8, Projection::default()));
+    alone = alone.with_tolerance(Tolerance::new(1e-9));
+    alone.advance_to(10.0).unwrap();
+    assert_eq!(alone.instant(), watched.instant());
+    let (counts, watched) = (alone.counts(), watched.counts());
+    assert_eq!((counts.evaluations, counts.steps, counts.shown), (watched.evaluations, watched.steps, 0));
+    assert!(watched.shown > 41);
+    // A tolerance that is coarser costs less, however many instants are shown.
+    let (_, coarse) = shown(DormandPrince8, 1e-4, 41);
+    assert!(2 * coarse.counts().evaluations < counts.evaluations);
 }
 
 #[test]

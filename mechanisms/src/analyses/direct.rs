@@ -23,8 +23,8 @@ pub enum Stabilization {
     Baumgarte(Baumgarte),
     /// Violations are held down by stiff springs and dampers.
     Penalty(Penalty),
-    /// Positions and velocities are projected: with adaptive steps those of every stage, with fixed ones, which cannot
-    /// be made smaller where a stage goes too far, those of a step's end.
+    /// Positions and velocities are projected: with adaptive steps those of every stage; with fixed ones, which cannot
+    /// be made smaller where a stage goes too far, those of a step's end, and of stages where the rows need it.
     Projection,
     /// Independent coordinates through the blocks of the rows, projected after each step.
     Velocity,
@@ -207,7 +207,7 @@ pub(crate) fn simulate<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
         Stabilization::Projection => {
             let stages = match steps {
                 Steps::Adaptive { .. } => Stages::All,
-                Steps::Fixed(_) | Steps::Equal { .. } => Stages::None,
+                Steps::Fixed(_) | Steps::Equal { .. } => Stages::WhereNeeded,
             };
             by(&Projection { stages })
         }
@@ -239,6 +239,18 @@ fn implicit<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
     progress: &mut dyn FnMut(usize),
 ) -> Result<Simulated, Failure> {
     stepped(mechanism, method, start, times, progress, &|span| equal(span, longest))
+}
+
+impl Approach {
+    /// The longest of its equal steps (s), where it has such.
+    pub fn longest(&self) -> Option<f64> {
+        match (self.stabilization, self.steps) {
+            (Stabilization::Implicit(Implicit { longest, .. }), _) | (_, Steps::Equal { longest, .. }) => {
+                Some(longest)
+            }
+            (_, Steps::Adaptive { .. } | Steps::Fixed(_)) => None,
+        }
+    }
 }
 
 /// How many equal steps not longer than `longest` lead through `span` (s).
@@ -319,9 +331,15 @@ where
 {
     let first = times.first().copied().unwrap_or(0.0);
     let start = Simulation::start_near(mechanism.clone(), method, first, *q, *qd)?;
-    let start = start.with_tolerance(Tolerance::new(tolerance));
-    let (simulated, end) = follow(start, times, progress, |run, t| run.advance_to(t));
-    Ok(Simulated { rejected: end.adaptive().rejected, ..simulated })
+    let mut run = start.with_tolerance(Tolerance::new(tolerance));
+    let mut record = Record::new(&run, progress);
+    if let [_, .., end] = times {
+        // Steps are as long as the tolerance allows; what lies between them is interpolated.
+        let count = u32::try_from(times.len() - 1).unwrap_or(u32::MAX);
+        let moved = run.watch(*end, count, |run| record.see(run));
+        record.failure = record.failure.or(moved.err());
+    }
+    Ok(Simulated { rejected: run.adaptive().rejected, ..record.end(&run, times) })
 }
 
 /// By steps of which `count` lead through a span (s).
@@ -335,7 +353,7 @@ fn stepped<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
 ) -> Result<Simulated, Failure> {
     let first = times.first().copied().unwrap_or(0.0);
     let start = Simulation::start_near(mechanism.clone(), method, first, *q, *qd)?;
-    Ok(follow(start, times, progress, |run, t| run.step_to(t, count(t - run.t()))).0)
+    Ok(follow(start, times, progress, |run, t| run.step_to(t, count(t - run.t()))))
 }
 
 /// Calls `advance` from instant to instant and writes down what it finds there.
@@ -344,34 +362,109 @@ fn follow<S, X, const N: usize, const M: usize>(
     times: &[f64],
     progress: &mut dyn FnMut(usize),
     mut advance: impl FnMut(&mut Simulation<S, X, f64, N, M>, f64) -> Result<(), Failure>,
-) -> (Simulated, Simulation<S, X, f64, N, M>)
+) -> Simulated
 where
     S: Dynamic<f64, N, M>,
     X: Method<S, f64, N, M>,
 {
-    let started = Instant::now();
-    let mut motion = Motion::of(S::COORDINATES, S::OUTPUTS, run.outputs().as_ref());
-    let mut forces = Forces::of(S::LOADS, S::ROWS);
-    let mut before = run.counts();
-    let mut failure = push(&mut motion, &mut forces, &run, before).err();
-    for (done, time) in times.iter().enumerate().skip(1) {
-        progress(done);
-        if failure.is_none() {
-            let moved = advance(&mut run, *time);
-            failure = moved.and_then(|()| push(&mut motion, &mut forces, &run, before)).err();
-            before = run.counts();
+    let mut record = Record::new(&run, progress);
+    for time in times.iter().skip(1) {
+        if record.failure.is_some() {
+            break;
+        }
+        match advance(&mut run, *time) {
+            Ok(()) => record.see(&run),
+            Err(failure) => record.failure = Some(failure),
         }
     }
-    progress(times.len());
-    let spans = times.len().saturating_sub(1).max(1);
-    let doubt = run.doubt((run.t() - times.first().copied().unwrap_or(0.0)) / spans as f64);
-    motion.dynamics = Some(forces);
-    let counts = run.counts();
-    let elapsed = started.elapsed();
-    // A run that is lost moves its margin as it likes: what ends it is all there is to say.
-    let lost = matches!(failure, Some(Failure::Unbounded { .. } | Failure::NonFinite { .. }));
-    let undetermined = run.passage().filter(|_| !lost).map(|passage| passage.t);
-    (Simulated { motion, counts, rejected: 0, replaced: false, doubt, undetermined, failure, elapsed }, run)
+    record.end(&run, times)
+}
+
+/// What is written down of a run, instant by instant.
+struct Record<'a> {
+    motion: Motion,
+    forces: Forces,
+    /// What had been spent at the last instant.
+    before: Counts,
+    failure: Option<Failure>,
+    started: Instant,
+    /// Instants after the start.
+    done: usize,
+    progress: &'a mut dyn FnMut(usize),
+}
+
+impl<'a> Record<'a> {
+    /// With the start of `run`.
+    fn new<S, X, const N: usize, const M: usize>(
+        run: &Simulation<S, X, f64, N, M>,
+        progress: &'a mut dyn FnMut(usize),
+    ) -> Self
+    where
+        S: Dynamic<f64, N, M>,
+        X: Method<S, f64, N, M>,
+    {
+        let mut record = Record {
+            motion: Motion::of(S::COORDINATES, S::OUTPUTS, run.outputs().as_ref()),
+            forces: Forces::of(S::LOADS, S::ROWS),
+            before: run.counts(),
+            failure: None,
+            started: Instant::now(),
+            done: 0,
+            progress,
+        };
+        record.push(run);
+        record
+    }
+
+    /// The next instant; nothing more behind a failure.
+    fn see<S, X, const N: usize, const M: usize>(&mut self, run: &Simulation<S, X, f64, N, M>)
+    where
+        S: Dynamic<f64, N, M>,
+        X: Method<S, f64, N, M>,
+    {
+        self.done += 1;
+        (self.progress)(self.done);
+        if self.failure.is_none() {
+            self.push(run);
+        }
+    }
+
+    fn push<S, X, const N: usize, const M: usize>(&mut self, run: &Simulation<S, X, f64, N, M>)
+    where
+        S: Dynamic<f64, N, M>,
+        X: Method<S, f64, N, M>,
+    {
+        self.failure = push(&mut self.motion, &mut self.forces, run, self.before).err();
+        self.before = run.counts();
+    }
+
+    /// All of it; `run` is where it ended.
+    fn end<S, X, const N: usize, const M: usize>(
+        mut self,
+        run: &Simulation<S, X, f64, N, M>,
+        times: &[f64],
+    ) -> Simulated
+    where
+        S: Dynamic<f64, N, M>,
+        X: Method<S, f64, N, M>,
+    {
+        (self.progress)(times.len());
+        let counts = run.counts();
+        let span = run.t() - times.first().copied().unwrap_or(0.0);
+        // A run that is lost moves its margin as it likes: what ends it is all there is to say.
+        let lost = matches!(self.failure, Some(Failure::Unbounded { .. } | Failure::NonFinite { .. }));
+        self.motion.dynamics = Some(self.forces);
+        Simulated {
+            motion: self.motion,
+            counts,
+            rejected: 0,
+            replaced: false,
+            doubt: run.doubt(span / counts.steps.max(1) as f64),
+            undetermined: run.passage().filter(|_| !lost).map(|passage| passage.t),
+            failure: self.failure,
+            elapsed: self.started.elapsed(),
+        }
+    }
 }
 
 fn push<S, X, const N: usize, const M: usize>(

@@ -111,7 +111,8 @@ fn margin<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
 ) -> f64 {
     let parameters = mechanism.parameters();
     let metric = Metric::of(mechanism, &parameters);
-    let model = Model { mechanism, parameters: &parameters, metric: &metric, balanced: false };
+    let model =
+        Model { mechanism, parameters: &parameters, metric: &metric, balanced: false, rank_rises: false };
     let states = mechanism.start_states(&parameters);
     let y = State { q: found.q, qd: [0.0; N], states, work: 0.0 };
     let solved = Unstabilized.solve(&model, 0.0, &y, &found.lambda, &mut Counts::default());

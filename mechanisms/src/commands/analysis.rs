@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use clap::{Args, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
 use mbs_runtime::Failure;
-use mbs_runtime::dynamics::{Baumgarte, Doubt, Penalty};
+use mbs_runtime::dynamics::{Baumgarte, Counts, Doubt, Penalty, Tolerance};
 use mechanisms::analyses::AnyDynamics;
 use mechanisms::analyses::direct::{
     Approach, Implicit, ImplicitMethod, Pair, Rule, Simulated, Stabilization, Steps,
@@ -218,6 +218,7 @@ impl Wish {
             |reason: String| CommandError::Failed(format!("{}, {}: {reason}", subject.name(), preset.label));
         self.require_use(subject)?;
         let (times, bar) = (self.times(subject, instance)?, progress(preset.label));
+        self.require_end(subject, &times)?;
         bar.set_length(times.len() as u64);
         let mut watch = Watch::new(preset.label, times.len(), bar.is_hidden());
         let mut heard = |count: usize| {
@@ -257,7 +258,7 @@ impl Wish {
     fn require_use(&self, subject: Subject) -> Result<(), CommandError> {
         let analysis = self.analysis_of(subject);
         let rest = self.is_of_rest(subject);
-        let moved = analysis == Analysis::Dynamic || analysis == Analysis::Linear && !rest;
+        let moved = self.is_moved(subject);
         let searched = matches!(analysis, Analysis::Static | Analysis::Linear);
         let of_motion =
             "is how a motion from forces is integrated: use `--analysis dynamic`, or `linear` with `--at`";
@@ -327,6 +328,33 @@ impl Wish {
         match useless.into_iter().find(|(is, ..)| *is) {
             Some((_, option, reason)) => Err(CommandError::Usage(format!("{option} {reason}"))),
             None => Ok(()),
+        }
+    }
+
+    /// Fails where the equal steps of a motion from forces are more than anyone waits for.
+    fn require_end(&self, subject: Subject, times: &[f64]) -> Result<(), CommandError> {
+        /// A minute or two of the smallest mechanisms.
+        const MOST_STEPS: f64 = 1e8;
+        let (Some(longest), Some(duration)) = (self.approach().longest(), times.last()) else {
+            return Ok(());
+        };
+        let steps = duration / longest;
+        if steps <= MOST_STEPS || !self.is_moved(subject) {
+            return Ok(());
+        }
+        let adapt = if self.given.implicit { "" } else { ", or let them adapt: `--integrator order8`" };
+        Err(CommandError::Usage(format!(
+            "steps of {longest:e} s to t = {duration} s are {steps:.1e}, more than the {MOST_STEPS:.0e} of a run: end earlier, take \
+             longer ones by `--step`{adapt}"
+        )))
+    }
+
+    /// Whether a motion from forces is followed.
+    fn is_moved(&self, subject: Subject) -> bool {
+        match self.analysis_of(subject) {
+            Analysis::Dynamic => true,
+            Analysis::Linear => self.at.is_some(),
+            Analysis::Kinematic | Analysis::Static | Analysis::Inverse => false,
         }
     }
 
@@ -575,7 +603,7 @@ pub fn balance(found: &Simulated) -> Vec<[String; 2]> {
         pair("largest |Φ|", format!("{:.1e} of the reference length", largest(&found.motion.closure))),
         pair("largest |Φ̇|", format!("{:.1e} 1/s of the reference length", largest(&forces.closure_rate))),
         pair("steps", format!("{}, {} rejected", found.counts.steps, found.rejected)),
-        pair("evaluations", found.counts.evaluations.to_string()),
+        pair("evaluations", evaluations(&found.counts)),
         pair("smallest margin to singularity", format!("{margin:.3}")),
         pair("time of computation", milliseconds(found.elapsed)),
     ];
@@ -609,6 +637,14 @@ pub fn balance(found: &Simulated) -> Vec<[String; 2]> {
     figures
 }
 
+/// What the steps cost, and what the instants between them.
+fn evaluations(counts: &Counts) -> String {
+    match counts.shown {
+        0 => counts.evaluations.to_string(),
+        shown => format!("{} of the steps, {shown} of the instants between them", counts.evaluations),
+    }
+}
+
 /// Largest magnitude.
 pub fn largest(values: &[f64]) -> f64 {
     values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()))
@@ -627,6 +663,10 @@ pub fn doubtful(doubt: Doubt) -> &'static str {
     match doubt {
         Doubt::StiffStabilization => "frequency times step above 0.3: the stabilisation costs accuracy",
         Doubt::IdleStabilization => "frequency times duration below 5: violations have no time to decay",
+        Doubt::RisingRank => {
+            "rows that follow from others on the constraints do not beside them, where stages are: accelerations there are wrong \
+             by their own size; use `--method projection`"
+        }
     }
 }
 
@@ -689,5 +729,16 @@ pub fn above_zero(text: &str) -> Result<f64, String> {
     match finite(text)? {
         number if number > 0.0 => Ok(number),
         _ => Err("a number above 0 is needed".to_string()),
+    }
+}
+
+/// A tolerance that numbers can keep to.
+pub fn tolerance(text: &str) -> Result<f64, String> {
+    let least = Tolerance::<f64>::least() / 2.0;
+    match above_zero(text)? {
+        number if number >= least => Ok(number),
+        _ => {
+            Err(format!("at least {least:.1e} is possible: rounding alone is more than a smaller one allows"))
+        }
     }
 }

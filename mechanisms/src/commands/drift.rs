@@ -76,8 +76,10 @@ pub fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<(), CommandErro
         Rule::SemiImplicitEuler => "semi-implicit Euler",
     };
     let title = format!("{}: {integrator}{implicit} in {} steps", subject.title(), arguments.steps);
-    let curves: Vec<Curve> =
-        found.iter().map(|(name, simulated)| Curve::of(name.clone(), &simulated.motion)).collect();
+    let curves: Vec<Curve> = found
+        .iter()
+        .map(|(name, simulated)| Curve::of(name.clone(), &simulated.motion, simulated.failure.is_some()))
+        .collect();
     let standard = || target_directory().join("mbs").join(file_name(subject.name())).join("drift.svg");
     let path = arguments.out.clone().unwrap_or_else(standard);
     // Before the table, which may meet a reader that has left.

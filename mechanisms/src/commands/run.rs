@@ -12,7 +12,7 @@ use mechanisms::report::{Report, Run, html};
 use mechanisms::target_directory::target_directory;
 
 use super::analysis::{
-    Analysis, Damping, Done, Given, IntegratorName, MethodName, Wish, above_zero, at_least_zero,
+    Analysis, Damping, Done, Given, IntegratorName, MethodName, Wish, above_zero, at_least_zero, tolerance,
 };
 use super::chosen::assignment;
 use super::subject::{Instance, Subject};
@@ -58,7 +58,7 @@ pub struct Arguments {
     /// End of the motion (s) [default: one turn, or as long as is worth seeing]
     #[arg(long, value_name = "T", value_parser = above_zero, allow_negative_numbers = true)]
     until: Option<f64>,
-    /// Equal steps that the motion is divided into; those of the integrator end there too [default: 720]
+    /// Equal steps that the motion is divided into; equal ones of the integrator end there too, adaptive ones are interpolated [default: 720]
     #[arg(long, value_parser = steps, allow_negative_numbers = true)]
     steps: Option<usize>,
     /// How a motion from forces stays on its constraints [default: projection, of many rows velocity, of stiff mechanisms extrapolated]
@@ -71,7 +71,7 @@ pub struct Arguments {
     #[arg(long, value_name = "H", value_parser = above_zero, allow_negative_numbers = true)]
     step: Option<f64>,
     /// Tolerance of adaptive steps [default: 1e-10]
-    #[arg(long, value_parser = above_zero, allow_negative_numbers = true)]
+    #[arg(long, value_parser = tolerance, allow_negative_numbers = true)]
     tolerance: Option<f64>,
     #[command(flatten)]
     damping: Damping,

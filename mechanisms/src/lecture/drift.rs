@@ -16,6 +16,8 @@ pub struct Curve {
     pub closure: Vec<f64>,
     /// |Energy balance defect| (J).
     pub defect: Vec<f64>,
+    /// Time (s) at which the motion was lost, where it was.
+    pub lost: Option<f64>,
 }
 
 /// Size of a panel and the room around it, in pixels.
@@ -32,20 +34,22 @@ const POINTS: usize = 800;
 const LEAST: i32 = -18;
 
 impl Curve {
-    /// That of a motion from forces.
-    pub fn of(method: String, motion: &Motion) -> Self {
+    /// That of a motion from forces, which ended early where it is `lost`.
+    pub fn of(method: String, motion: &Motion, lost: bool) -> Self {
         let defect = motion
             .dynamics
             .as_ref()
             .map_or_else(Vec::new, |forces| forces.defect.iter().map(|defect| defect.abs()).collect());
-        Curve { method, time: motion.time.clone(), closure: motion.closure.clone(), defect }
+        let lost = motion.time.last().copied().filter(|_| lost);
+        Curve { method, time: motion.time.clone(), closure: motion.closure.clone(), defect, lost }
     }
 }
 
 /// What a panel shows of a curve.
 type Part = fn(&Curve) -> &Vec<f64>;
 
-/// Violations above, energy below, one colour a method.
+/// Violations above, energy below, one colour a method. The axes are those of the methods that last; a motion that is lost
+/// leaves the panel at the top, and a cross stands where it ends.
 pub fn picture(title: &str, until: f64, curves: &[Curve]) -> String {
     let mut svg = open(LEFT + WIDTH + 30, TOP + 2 * HEIGHT + GAP + 70);
     label(&mut svg, 12, 20, "font-weight=\"bold\"", title);
@@ -56,10 +60,16 @@ pub fn picture(title: &str, until: f64, curves: &[Curve]) -> String {
     for (place, (heading, values)) in panels.into_iter().enumerate() {
         let top = TOP + place * (HEIGHT + GAP);
         label(&mut svg, LEFT, top - 8, "", heading);
-        let range = powers(curves.iter().flat_map(values));
+        let all_lost = curves.iter().all(|curve| curve.lost.is_some());
+        let shown = curves.iter().filter(|curve| all_lost || curve.lost.is_none());
+        let range = powers(shown.flat_map(values));
         axes(&mut svg, top, range, until);
         for (curve, colour) in curves.iter().zip(COLOURS) {
             path(&mut svg, (top, range, until), (&curve.time, values(curve)), colour);
+            if let (Some(t), Some(value)) = (curve.lost, values(curve).last()) {
+                let x = LEFT as f64 + WIDTH as f64 * t / until;
+                cross(&mut svg, x, height(top, range, *value), colour);
+            }
         }
     }
     legend(&mut svg, curves);
@@ -80,7 +90,8 @@ fn powers<'a>(values: impl Iterator<Item = &'a f64>) -> [i32; 2] {
 
 /// Height (pixels) of a value in a panel.
 fn height(top: usize, [low, high]: [i32; 2], value: f64) -> f64 {
-    let power = if value > 0.0 { value.log10().max(f64::from(low)) } else { f64::from(low) };
+    let power = if value > 0.0 { value.log10() } else { f64::from(low) };
+    let power = power.clamp(f64::from(low), f64::from(high));
     top as f64 + HEIGHT as f64 * (f64::from(high) - power) / f64::from(high - low)
 }
 
@@ -123,14 +134,26 @@ fn path(
     );
 }
 
+/// Where a motion is lost.
+fn cross(svg: &mut String, x: f64, y: f64, colour: &str) {
+    let _ = writeln!(
+        svg,
+        "<path d=\"M{:.1} {:.1}l12 12m0 -12l-12 12\" stroke=\"{colour}\" stroke-width=\"2.5\"/>",
+        x - 6.0,
+        y - 6.0
+    );
+}
+
 fn legend(svg: &mut String, curves: &[Curve]) {
     let y = TOP + 2 * HEIGHT + GAP + 54;
     let mut x = LEFT;
     for (curve, colour) in curves.iter().zip(COLOURS) {
         let _ = writeln!(svg, "<path d=\"M{x} {}h26\" stroke=\"{colour}\" stroke-width=\"3\"/>", y - 4);
-        label(svg, x + 34, y, "", &curve.method);
+        let lost = curve.lost.map_or_else(String::new, |t| format!(", lost at {t} s"));
+        let text = format!("{}{lost}", curve.method);
+        label(svg, x + 34, y, "", &text);
         // Eight pixels a letter at 13 pixels' height.
-        x += 60 + 8 * curve.method.chars().count();
+        x += 60 + 8 * text.chars().count();
     }
 }
 
@@ -153,6 +176,7 @@ mod tests {
             time: vec![0.0, 1.0, 2.0],
             closure: vec![0.0, closure, 10.0 * closure],
             defect: vec![0.0, 1e-12, 1e-11],
+            lost: None,
         };
         let svg = picture("A & B", 2.0, &[curve("none", 1e-6), curve("projection", 1e-16)]);
         assert_eq!(svg.matches("<polyline").count(), 4);
@@ -160,5 +184,23 @@ mod tests {
             svg.contains(">none</text>") && svg.contains(">projection</text>") && svg.contains("A &amp; B")
         );
         assert!(svg.contains("1e-16") && svg.ends_with("</svg>\n"));
+    }
+
+    #[test]
+    fn a_lost_motion_leaves_the_panel_and_does_not_flatten_the_others() {
+        let curve = |method: &str, closure: f64, lost: Option<f64>| Curve {
+            method: method.to_string(),
+            time: vec![0.0, 0.01],
+            closure: vec![0.0, closure],
+            defect: vec![0.0, closure],
+            lost,
+        };
+        let svg = picture("A", 2.0, &[curve("none", 1e6, Some(0.01)), curve("projection", 1e-13, None)]);
+        assert!(
+            svg.contains(">none, lost at 0.01 s</text>") && svg.contains("1e-13") && !svg.contains("1e6")
+        );
+        // At the top of the panel.
+        assert_eq!(svg.matches("l12 12m0 -12l-12 12").count(), 2);
+        assert_eq!(height(10, [-14, -12], 1e6), 10.0);
     }
 }

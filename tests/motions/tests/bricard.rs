@@ -2,7 +2,7 @@
 #![forbid(unsafe_code)]
 
 use mbs_runtime::dynamics::{
-    DormandPrince8, Explicit, Projection, Simulation, Stages, Tolerance, equilibrium,
+    DormandPrince8, Doubt, Explicit, Projection, RungeKutta4, Simulation, Stages, Tolerance, equilibrium,
 };
 use mbs_runtime::{Dynamic, Mechanism};
 use mechanisms::bricard::Bricard;
@@ -74,7 +74,7 @@ fn bricards_loop_moves_as_one_degree_of_freedom_with_two_angles() {
     const EXACT: f64 = 1e-9;
     const STEP: f64 = 0.01;
     let method = Explicit::new(DormandPrince8, Projection { stages: Stages::All });
-    let run = Simulation::start_from_text(Bricard::default(), method, 0.0).expect("it starts");
+    let run = Simulation::start_from_text(Bricard::<f64>::default(), method, 0.0).expect("it starts");
     let mut run = run.with_tolerance(Tolerance::new(1e-11));
     let mut worst = [0.0_f64; 4];
     let mut before = (0.0, 0.0, run.qdd()[0]);
@@ -106,6 +106,52 @@ fn bricards_loop_moves_as_one_degree_of_freedom_with_two_angles() {
          {swing:.3} rad"
     );
     assert!(worst.iter().all(|worst| *worst < EXACT) && swing > 0.5, "{worst:?}, {swing}");
+}
+
+/// Bricard's mechanism from rest, by RK4 in steps of `h` (s), its stages as `projection` has them.
+fn in_equal_steps(
+    projection: Projection,
+    h: f64,
+) -> Simulation<Bricard, Explicit<RungeKutta4, Projection>, f64, 23, 23> {
+    let method = Explicit::new(RungeKutta4, projection);
+    let mut run = Simulation::start_from_text(Bricard::<f64>::default(), method, 0.0).expect("it starts");
+    run.step_to(2.0, (2.0 / h).round() as u32).expect("it moves");
+    run
+}
+
+#[test]
+fn by_default_rk4_keeps_its_order_where_rows_follow_from_others_on_the_constraints_alone() {
+    /// Ratio of the energy that is not accounted for at twice the step: 2⁴ and what the terms of order 5 and 6 put to it.
+    const RATIOS: std::ops::Range<f64> = 12.0..50.0;
+    let runs = [0.04, 0.02, 0.01].map(|h| in_equal_steps(Projection::default(), h));
+    let defects = runs.map(|run| run.balance().defect.abs());
+    println!("bricard, RK4 by default in 50, 100, 200 steps: energy {defects:?} J");
+    assert!(defects.windows(2).all(|pair| RATIOS.contains(&(pair[0] / pair[1]))), "{defects:?}");
+    let [.., fine] = runs;
+    assert_eq!((fine.doubt(0.01), fine.passage()), (None, None));
+    assert_eq!(fine.counts().projected_stages, fine.counts().evaluations);
+}
+
+#[test]
+fn stages_left_beside_the_constraints_are_doubtful_where_the_rank_rises_there() {
+    let run = in_equal_steps(Projection { stages: Stages::None }, 1e-3);
+    assert_eq!(run.doubt(1e-3), Some(Doubt::RisingRank));
+    println!("bricard, RK4 with stages beside the constraints: energy {:.2} J", run.balance().defect);
+    assert!(run.balance().defect.abs() > 0.1);
+}
+
+#[test]
+fn by_default_order_eight_takes_steps_as_long_as_with_all_stages_projected() {
+    let counts = [Projection::default(), Projection { stages: Stages::All }].map(|projection| {
+        let method = Explicit::new(DormandPrince8, projection);
+        let mut run = Simulation::start_from_text(Bricard::<f64>::default(), method, 0.0).expect("it starts");
+        run.advance_to(2.0).expect("it moves");
+        assert!(run.balance().defect.abs() < 1e-8, "{:?}", run.balance());
+        run.counts()
+    });
+    println!("bricard, 2 s by order 8: {} evaluations", counts[0].evaluations);
+    assert_eq!(counts[0], counts[1]);
+    assert!(counts[0].evaluations < 1000);
 }
 
 #[test]

@@ -97,14 +97,15 @@ fn adaptive<S, I, F, R: Real, const N: usize, const M: usize>(
 where
     S: Dynamic<R, N, M> + Copy,
     I: Embedded,
-    F: Formulation<S, R, N, M>,
+    F: Formulation<S, R, N, M> + Clone,
 {
     // Within reach of single precision.
     let (tolerance, longest) = (black_box(1e-4), black_box(R::constant(0.05)));
     let motion = entry::start_from_text(black_box(mechanism), method, black_box(R::constant(0.0)))?;
     let mut motion = entry::limited(motion, tolerance, longest);
     entry::advance_to(&mut motion, black_box(R::constant(0.1)))?;
-    black_box(entry::sample(&mut motion, black_box(R::constant(0.2)), black_box(5))?);
+    black_box(entry::sample(&mut motion, black_box(R::constant(0.15)), black_box(3))?);
+    black_box(entry::watch(&mut motion, black_box(R::constant(0.2)), black_box(2))?);
     entry::advance_through(&mut motion, black_box(R::constant(0.3)), black_box(R::constant(0.25)))?;
     let passed = black_box(R::constant(0.0));
     black_box(entry::advance_until_event(

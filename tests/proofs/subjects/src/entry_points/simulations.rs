@@ -108,6 +108,16 @@ entry_points! {
         })?;
         Ok(seen)
     }
+    /// Adaptive steps with the whole simulation shown at instants: the sum of what is missing in their energy.
+    fn watch[
+        S: Dynamic<R, N, M>, I: Embedded, F: Formulation<S, R, N, M> + Clone, R: Real, const N: usize, const M: usize
+    ](
+        simulation: &mut Simulation<S, Explicit<I, F>, R, N, M>, until: R, samples: u32,
+    ) -> Result<R, Failure> {
+        let mut missing = R::constant(0.0);
+        simulation.watch(until, samples, |shown| missing = missing + shown.balance().defect)?;
+        Ok(missing)
+    }
     /// Forces from motion.
     fn inverse[S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize](
         mechanism: &S, t: R, q: &[R; N],

@@ -1,0 +1,53 @@
+//! Rows that follow from others on the constraints alone.
+//!
+//! A row typed twice follows from its twin wherever the mechanism is. A row of a loop that closes against Grübler's count
+//! follows from the others only where the loop is closed: at a distance δ beside the constraints it has a part of order δ of
+//! its own. Its γ there differs by order δ from what the others ask for in that direction, so that accelerations are wrong
+//! by their own size however small δ is, with every residual at rounding.
+
+use super::kkt::System;
+use super::model::{Counts, Model};
+use super::projection::project_position;
+use super::vector::State;
+use crate::{Dynamic, Real};
+
+/// How far the start is moved off the constraints to see whether the rank rises, in the reference metric: far above what a
+/// projection leaves, 1e-14, and far above the part below which a row counts as dependent, 1e-10.
+const PROBE: f64 = 1e-4;
+
+/// Whether the rank of Φ_q is less on the constraints next to `y` than beside them.
+///
+/// A start in a singular position tells nothing, nor does a row typed twice: the rank rises on the constraints too, or
+/// nowhere. Where the states beside cannot be evaluated, the rank counts as rising.
+pub(super) fn rank_rises<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
+    model: &Model<'_, S, R, N, M>,
+    t: R,
+    y: &State<R, N, S::States>,
+) -> bool {
+    if rank(model, t, y).is_none_or(|here| here >= M) {
+        return false;
+    }
+    let mut beside = *y;
+    let (mut sign, scales) = (R::constant(1.0), &model.metric.coordinates);
+    for (index, (q, scale)) in (0_u16..).zip(beside.q.iter_mut().zip(scales)) {
+        // No two alike, so that no symmetry of the mechanism is kept.
+        let share = sign * R::constant(0.5 + 0.5 * f64::from(index + 1) / N as f64);
+        *q = *q + R::constant(PROBE) * share * *scale;
+        sign = -sign;
+    }
+    let off = rank(model, t, &beside);
+    let settled = project_position(model, t, &mut beside, &mut Counts::default());
+    let on = settled.ok().and_then(|_| rank(model, t, &beside));
+    on.zip(off).is_none_or(|(on, off)| on < off)
+}
+
+/// The rank of Φ_q, by the decision that accelerations are solved by; `None` where it is no number.
+fn rank<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
+    model: &Model<'_, S, R, N, M>,
+    t: R,
+    y: &State<R, N, S::States>,
+) -> Option<usize> {
+    let phi_q = model.mechanism.phi_q(model.parameters, &model.position(t, y));
+    let system = System::new(&model.metric.mass(), &phi_q, model.metric);
+    system.factorize(S::COORDINATES, t).ok().map(|factors| factors.rank())
+}
