@@ -107,7 +107,7 @@ fn translate_scene(scene: &Scene) -> Result<emit::Translated<'_>, Diagnostics> {
     let mut equations = equations::derive(&scene.model);
     equations::continuity::check(&scene.model, &equations, &mut diagnostics);
     equations::turns::check(&scene.model, &equations, &mut diagnostics);
-    equations::pins::check(&scene.model, &equations, &mut diagnostics);
+    equations::pins::check(&equations, &mut diagnostics);
     let Some(mut structure) = structure::analyse(&scene.model, &mut equations, &mut diagnostics) else {
         return Err(diagnostics);
     };
@@ -217,22 +217,18 @@ pub fn structure_of(source: &str, scene: Option<&str>) -> Result<StructureReport
     })
 }
 
-/// Masses, moments of inertia and stiffnesses of a scene (without a name the whole text) that are negative with parameters
-/// and inputs as `given` has them by name, each in a phrase.
+/// Masses, moments of inertia, stiffnesses and the like of a scene (without a name the whole text) that nothing can have, with
+/// parameters and inputs as `given` has them by name, each in a phrase.
 ///
 /// # Errors
 /// As [`casadi_definition`].
-pub fn negative_values(
+pub fn impossible_values(
     source: &str,
     scene: Option<&str>,
     given: impl Fn(&str) -> Option<f64>,
 ) -> Result<Vec<String>, String> {
     in_scene(source, scene, |_, scene| {
-        let found = model::signs::negative(&scene.model, given);
-        Ok(found
-            .iter()
-            .map(|(signed, value)| format!("`{}` of `{}` is {value}", signed.field, signed.of))
-            .collect())
+        Ok(model::signs::impossible(&scene.model, given).into_iter().map(|found| found.message).collect())
     })
 }
 

@@ -348,6 +348,16 @@ fn write_known(f: &mut fmt::Formatter<'_>, name: &str, known: &[&str]) -> fmt::R
     write!(f, "\nknown: {}", known.join(", "))
 }
 
+impl Mismatch {
+    /// The same of the mechanism as it was asked for: types of one text share a part of their names.
+    pub fn of(self, card: &'static str) -> Self {
+        match self {
+            Mismatch::Parameter { name, known, .. } => Mismatch::Parameter { name, mechanism: card, known },
+            other => other,
+        }
+    }
+}
+
 impl fmt::Display for Mismatch {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {

@@ -157,7 +157,7 @@ fn carried(
 }
 
 /// A value of a leaf, scattered but the same in every build; lengths and masses are positive.
-fn scattered(leaf: Leaf, trial: usize) -> f64 {
+pub fn scattered(leaf: Leaf, trial: usize) -> f64 {
     let (kind, index) = match leaf {
         Leaf::Parameter(index) => (1, index),
         Leaf::Input(index) => (2, index),

@@ -102,10 +102,11 @@ pub fn derive(
     for field in &declared.gravity {
         for body in &declared.bodies {
             for (place, acceleration) in body.com.iter().zip(field) {
-                let weight = g.multiply(of(body.mass), of(*acceleration));
-                if g.constant_value(weight) == Some(0.0) {
+                let vanishes = |g: &Graph, id: Id| g.constant_value(of(id)) == Some(0.0);
+                if vanishes(g, *acceleration) || vanishes(g, body.mass) {
                     continue;
                 }
+                let weight = g.multiply(of(body.mass), of(*acceleration));
                 work.along(g, weight, of(*place));
                 let energy = g.multiply(weight, of(*place));
                 let energy = g.negate(energy);

@@ -8,7 +8,9 @@ mod degree;
 mod dynamics;
 mod elimination;
 mod forces;
+mod joints;
 mod lower;
+mod manifold;
 pub mod pins;
 mod signed;
 mod turning;
@@ -175,7 +177,7 @@ pub fn derive(model: &Model) -> Equations {
         .map(|dynamics| dynamics::derive(g, dynamics, &nodes, &clock, &rows, &guesses));
     let dynamics = match (dynamics, &model.dynamics) {
         (Some(mut derived), Some(declared)) => {
-            let given = pins::Given { nodes: &nodes, clock: &clock, length, rows: &rows };
+            let given = pins::Given { nodes: &nodes, clock: &clock, length, rows: &rows, guesses: &guesses };
             pins::complete(g, model, declared, &mut derived, given);
             Some(derived)
         }

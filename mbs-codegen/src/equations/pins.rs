@@ -4,10 +4,13 @@
 //! the unknowns, as the least squares of all sums: these have a solution wherever the rows are regular, whichever of the
 //! sums are redundant there.
 
+use proc_macro2::Span;
+
 use super::attribution::{Frame, Motion, Slopes};
 use super::dynamics::Dynamics;
 use super::elimination::{Column, solve};
 use super::forces::{Place, Sum};
+use super::joints::{Misplaced, misplaced};
 use super::lower::{Clock, PIN};
 use super::{Equations, Row, again};
 use crate::diagnostics::Diagnostics;
@@ -20,8 +23,8 @@ use crate::symbolic::{Graph, Leaf, Node, NodeId, tangent};
 /// Why the forces of pins are not known.
 #[derive(Clone, Debug)]
 pub struct Undetermined {
-    /// Index of the output that asks for one.
-    pub load: usize,
+    /// Where the text asks for one, or has a pin at another place than its joint.
+    pub span: Span,
     pub message: String,
     pub help: String,
 }
@@ -57,6 +60,8 @@ pub struct Given<'a> {
     /// The reference length.
     pub length: NodeId,
     pub rows: &'a [Row],
+    /// Start values of the coordinates.
+    pub guesses: &'a [NodeId],
 }
 
 /// Before: outputs in which leaves stand for forces of pins. After: their sums stand there, or why there are none.
@@ -68,6 +73,10 @@ pub fn complete(g: &mut Graph, model: &Model, declared: &Declared, derived: &mut
     let Some(load) = derived.loads.iter().position(|load| asks(g, *load)) else { return };
     match forces(g, model, declared, derived, given) {
         Ok((forces, attribution)) => {
+            if let Some(found) = misplaced(g, declared, given, &attribution) {
+                derived.undetermined = said(declared, &found);
+                return;
+            }
             derived.attribution = Some(attribution);
             for load in &mut derived.loads {
                 *load = substitute(g, *load, |leaf| match leaf {
@@ -76,16 +85,37 @@ pub fn complete(g: &mut Graph, model: &Model, declared: &Declared, derived: &mut
                 });
             }
         }
-        Err((message, help)) => derived.undetermined = Some(Undetermined { load, message, help }),
+        Err((message, help)) => {
+            let span = declared.loads.get(load).map(|load| load.span);
+            derived.undetermined = span.map(|span| Undetermined { span, message, help });
+        }
     }
 }
 
+/// What is wrong with the place of a pin.
+fn said(declared: &Declared, found: &Misplaced) -> Option<Undetermined> {
+    let pin = declared.pins.get(found.pin)?;
+    let ((body, span), (other, _)) = match (&pin.joined, found.body) {
+        ([first, second], 0) => (first, second),
+        ([first, second], _) => (second, first),
+    };
+    let name = &pin.name;
+    let message = match found.on_other {
+        true => {
+            format!("the pin `{name}` is not on `{body}`: its point moves with `{other}`, not with `{body}`")
+        }
+        false => format!("the pin `{name}` joins `{body}` and `{other}` where they move apart"),
+    };
+    let help =
+        "write the point of the joint, where both bodies keep together in every motion that the rows allow";
+    Some(Undetermined { span: *span, message, help: help.into() })
+}
+
 /// Before: the equations of a model. After: forces of pins that are asked for and not known are reported.
-pub fn check(model: &Model, equations: &Equations, diagnostics: &mut Diagnostics) {
-    let (Some(declared), Some(derived)) = (&model.dynamics, &equations.dynamics) else { return };
-    let Some(Undetermined { load, message, help }) = &derived.undetermined else { return };
-    if let Some(load) = declared.loads.get(*load) {
-        diagnostics.report(load.span, message.clone(), help.clone());
+pub fn check(equations: &Equations, diagnostics: &mut Diagnostics) {
+    let undetermined = equations.dynamics.as_ref().and_then(|derived| derived.undetermined.as_ref());
+    if let Some(Undetermined { span, message, help }) = undetermined {
+        diagnostics.report(*span, message.clone(), help.clone());
     }
 }
 
@@ -395,7 +425,7 @@ impl<'a> Sums<'a> {
 }
 
 /// Centre and angle of a plane body.
-fn frame(body: &Body, of: impl Fn(Id) -> NodeId, zero: NodeId) -> ([NodeId; 2], Option<NodeId>) {
+pub fn frame(body: &Body, of: impl Fn(Id) -> NodeId, zero: NodeId) -> ([NodeId; 2], Option<NodeId>) {
     let component = |index: usize| body.com.get(index).map_or(zero, |id| of(*id));
     ([component(0), component(1)], body.in_plane().map(|(_, angle)| of(angle)))
 }

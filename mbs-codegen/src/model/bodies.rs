@@ -3,6 +3,7 @@
 use super::dynamics::{Body, Rotation};
 use super::elaborate::{Elaborator, Fault, Value};
 use super::elements::{Given, ORIENTATION};
+use super::inertia::Inertia;
 use super::resolve::Resolver;
 use crate::syntax::ast::Name;
 
@@ -14,6 +15,10 @@ impl Resolver<'_> {
         let space = given.vector("com").len();
         if let Some(field) = self.dynamics().gravity.iter().map(Vec::len).find(|field| *field != space) {
             return Err(self.other_space(name, space, field));
+        }
+        if let (Some(Rotation::Space { inertia, .. }), Some(value)) = (&rotation, given.value("inertia")) {
+            let (of, entries) = (name.text.clone(), inertia.clone());
+            self.dynamics().inertias.push(Inertia { of, entries, span: value.span });
         }
         self.dynamics().bodies.push(Body { name: full, mass, com: given.vector("com"), rotation });
         Ok(())
@@ -27,6 +32,7 @@ impl Resolver<'_> {
             return Err(self.other_space(name, space, field.len()));
         }
         self.dynamics().gravity.push(field);
+        self.dynamics().gravity_names.push((name.text.clone(), name.span));
         Ok(())
     }
 

@@ -4,6 +4,7 @@ use proc_macro2::Span;
 
 use super::Output;
 use super::expression::Id;
+use super::inertia::Inertia;
 use super::signs::Signed;
 
 /// Everything of a text beyond its kinematics.
@@ -13,6 +14,8 @@ pub struct Dynamics {
     pub bodies: Vec<Body>,
     /// Accelerations of free fall (m/s²), which add up; of constants, inputs and the time.
     pub gravity: Vec<Vec<Id>>,
+    /// Their names, with the declaring tokens.
+    pub gravity_names: Vec<(String, Span)>,
     /// Joints whose forces the text may ask for, in the order of the text.
     pub pins: Vec<Pin>,
     /// Forces by name, in the order of the text.
@@ -29,8 +32,10 @@ pub struct Dynamics {
     pub started: Vec<usize>,
     /// Outputs that use multipliers or states, component by component.
     pub loads: Vec<Output>,
-    /// What is at least 0.
+    /// What is at least 0, or above.
     pub signed: Vec<Signed>,
+    /// Inertia of bodies in space.
+    pub inertias: Vec<Inertia>,
 }
 
 /// A rigid body in a plane or in space, or a point mass.

@@ -9,7 +9,7 @@ use super::expression::{Id, Node};
 use super::initialiser::{fits_shape, initialiser};
 use super::orientation::{moments, parameters};
 use super::resolve::Resolver;
-use super::signs::{FIELDS, Signed};
+use super::signs::{Least, Signed};
 use super::units::Dimension;
 use crate::diagnostics::nearest;
 use crate::syntax::ast::{Element, Energy, Expression, Field, Load, Name, Statement, StatementKind};
@@ -205,12 +205,12 @@ impl Resolver<'_> {
         if faulty { Err(Fault) } else { Ok(given) }
     }
 
-    /// Keeps what cannot be negative; of an inertia the entries beside its diagonal can.
+    /// Keeps what has a least value; of an inertia the entries beside its diagonal can.
     fn signed(&mut self, field: &'static str, name: &Name, value: &Value) {
-        if FIELDS.contains(&field) {
+        if let Some(least) = Least::of(field) {
             let (of, span) = (name.text.clone(), value.span);
             let diagonal = value.items.iter().take(3);
-            let signed = diagonal.map(|item| Signed { field, of: of.clone(), value: item.id, span });
+            let signed = diagonal.map(|item| Signed { field, least, of: of.clone(), value: item.id, span });
             self.dynamics().signed.extend(signed);
         }
     }

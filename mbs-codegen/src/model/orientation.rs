@@ -2,12 +2,15 @@
 //!
 //! Source: Nikravesh 1988, ch. 6; Shabana 2013, §2.6.
 
+use std::collections::BTreeMap;
+
 use proc_macro2::Span;
 
 use super::elaborate::{Elaborator, Fault, Reach, Scalar, Value};
-use super::expression::{Binary, Id, Node, Unary};
+use super::expression::{Binary, Expressions, Id, Node, Unary};
 use super::initialiser::initialiser;
 use super::resolve::Resolver;
+use super::signs::values;
 use super::units::Dimension;
 use super::{Row, elements::ORIENTATION};
 use crate::syntax::ast::{Field, Name};
@@ -159,7 +162,7 @@ impl Resolver<'_> {
             _ => None,
         };
         let coordinates: Vec<Option<usize>> = value.items.iter().map(coordinate).collect();
-        let shared = coordinates.iter().all(Option::is_some) && !self.oriented.insert(coordinates.clone());
+        let shared = self.oriented.contains_key(&coordinates);
         if shared || coordinates.iter().all(Option::is_none) {
             return Ok(());
         }
@@ -170,9 +173,92 @@ impl Resolver<'_> {
             let one = work.number_literal(1.0, value.span);
             join(work, Binary::Subtract, square, one, value.span)
         })?;
+        if coordinates.iter().all(Option::is_some) {
+            self.oriented.insert(coordinates, (name.text.clone(), self.model.rows.len()));
+        }
         self.push_row(group, normalised(residual.id, name.span));
         Ok(())
     }
+
+    /// Before: all rows. After: rows of the text that hold where e·e = 1 does, and say nothing else, are reported.
+    ///
+    /// Which they are is seen by what they are made of, the parameters of one body alone, and by their values at unit
+    /// vectors: it matters not how they are written.
+    pub(super) fn check_normalisations(&mut self) {
+        if self.oriented.is_empty() {
+            return;
+        }
+        let model = &*self.model;
+        let bodies: Vec<(&String, usize)> = self.oriented.values().map(|(body, row)| (body, *row)).collect();
+        let mut places = BTreeMap::new();
+        for (body, coordinates) in self.oriented.keys().enumerate() {
+            let coordinates = coordinates.iter().flatten().enumerate();
+            places.extend(coordinates.map(|(place, coordinate)| (*coordinate, (body, place))));
+        }
+        let parts = parts(&model.expressions, &places);
+        let trials = UNIT_VECTORS.map(|unit| {
+            values(&model.expressions, |leaf| match leaf {
+                Node::Coordinate(index) => {
+                    places.get(&index).and_then(|(_, place)| unit.get(*place)).copied()
+                }
+                _ => None,
+            })
+        });
+        let vanishes = |residual: Id| {
+            let values = trials.iter().map(|trial| trial.get(residual.index()).copied().flatten());
+            values.into_iter().all(|value| value.is_some_and(|value| value.abs() < VANISHING))
+        };
+        for (index, row) in model.rows.iter().enumerate() {
+            let Some(Part::Of(body)) = parts.get(row.residual.index()) else { continue };
+            let Some((body, own)) = bodies.get(*body).filter(|(_, own)| *own != index) else { continue };
+            if vanishes(row.residual) {
+                let message = format!("the row `{}` repeats that of `{body}`", row.name);
+                let own = model.rows.get(*own).map_or(body.as_str(), |row| row.name.as_str());
+                let help = format!(
+                    "remove it: Euler parameters of a body bring their row e·e = 1, its multiplier is `lambda({own})`"
+                );
+                self.diagnostics.report(row.span, message, help);
+            }
+        }
+    }
+}
+
+/// Unit vectors of four components, and what a residual of a few operations may be off by there.
+const UNIT_VECTORS: [[f64; 4]; 4] =
+    [[0.5, 0.5, -0.5, 0.5], [0.1, -0.7, 0.1, 0.7], [0.8, 0.0, 0.6, 0.0], [-0.2, 0.4, 0.4, 0.8]];
+const VANISHING: f64 = 1e-12;
+
+/// Whose parameters an expression is made of.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Part {
+    /// Numbers alone.
+    Number,
+    /// Those of one body, by its index.
+    Of(usize),
+    /// Anything else.
+    Other,
+}
+
+/// Before: the body and the place in its parameters of each coordinate that is one. After: whose parameters each expression
+/// is made of.
+fn parts(expressions: &Expressions, places: &BTreeMap<usize, (usize, usize)>) -> Vec<Part> {
+    let mut parts: Vec<Part> = Vec::with_capacity(expressions.len());
+    for (_, node) in expressions.iter() {
+        let below = |id: Id| parts.get(id.index()).copied().unwrap_or(Part::Other);
+        let part = match node {
+            Node::Number(_) => Part::Number,
+            Node::Coordinate(index) => places.get(&index).map_or(Part::Other, |(body, _)| Part::Of(*body)),
+            Node::Unary(_, a) => below(a),
+            Node::Binary(_, a, b) => match (below(a), below(b)) {
+                (Part::Number, part) | (part, Part::Number) => part,
+                (a, b) if a == b => a,
+                _ => Part::Other,
+            },
+            _ => Part::Other,
+        };
+        parts.push(part);
+    }
+    parts
 }
 
 fn normalised(residual: Id, span: Span) -> Row {

@@ -1,6 +1,6 @@
 //! The recipe of the stage: declarations first, then rows, branches and outputs in the order of the text.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use proc_macro2::Span;
 
@@ -11,7 +11,7 @@ use super::expression::{Binary, Id, Node};
 use super::initialiser::{fits_shape, initialiser, named};
 use super::names::{Names, Rows, Symbol, report_double};
 use super::units::Dimension;
-use super::{Branch, Model, Output, Role, Row, VariableKind};
+use super::{Branch, Model, Output, Row, VariableKind, idle, inputs};
 use crate::diagnostics::Diagnostics;
 use crate::syntax::ast::{
     Element, Equation, Expression, Item, Loop, Name, Statement, StatementKind, Type, Unit,
@@ -27,7 +27,7 @@ pub fn resolve(statements: &[Statement], diagnostics: &mut Diagnostics) -> Model
         names: &mut names,
         diagnostics,
         starts: BTreeSet::new(),
-        oriented: BTreeSet::new(),
+        oriented: BTreeMap::new(),
         groups: Vec::new(),
         loops: Vec::new(),
         rounds: 0,
@@ -46,7 +46,10 @@ pub fn resolve(statements: &[Statement], diagnostics: &mut Diagnostics) -> Model
         work.check_states();
         work.check_pins();
     }
-    work.check_guesses_and_inputs();
+    work.check_normalisations();
+    work.check_guesses();
+    inputs::check(work.model, work.diagnostics);
+    idle::check(work.model, work.diagnostics);
     model
 }
 
@@ -77,8 +80,8 @@ pub(super) struct Resolver<'a> {
     pub(super) diagnostics: &'a mut Diagnostics,
     /// Coordinates that a `start` gave its value.
     pub(super) starts: BTreeSet<usize>,
-    /// Euler parameters whose length a row fixes already.
-    pub(super) oriented: BTreeSet<Vec<Option<usize>>>,
+    /// Euler parameters whose length a row fixes already: the body that brought it, and the row.
+    pub(super) oriented: BTreeMap<Vec<Option<usize>>, (String, usize)>,
     groups: Vec<Group>,
     pub(super) loops: Vec<Frame>,
     rounds: usize,
@@ -422,8 +425,8 @@ impl Resolver<'_> {
         }
     }
 
-    /// Guesses use parameters alone; rows use no input whose rates are unknown.
-    fn check_guesses_and_inputs(&mut self) {
+    /// Guesses use parameters alone.
+    fn check_guesses(&mut self) {
         let model = &*self.model;
         let varies = model.expressions.made_of(|node| match node {
             Node::Time | Node::Coordinate(_) | Node::Rate(..) => true,
@@ -437,31 +440,6 @@ impl Resolver<'_> {
                     coordinate.span,
                     format!("the guess of `{}` varies in time", coordinate.name),
                     "make guesses of numbers, constants and parameters",
-                );
-            }
-        }
-        let marked = model.expressions.reachable(model.rows.iter().map(|row| row.residual));
-        let mut used = vec![false; model.variables.len()];
-        for (id, node) in model.expressions.iter() {
-            if let Node::Variable(index) = node
-                && let Some(used) = used.get_mut(index)
-            {
-                *used |= marked.get(id.index()) == Some(&true);
-            }
-        }
-        for field in model.fields.iter().filter(|field| field.role == Role::Input) {
-            let size = field.shape.iter().product();
-            if used.iter().skip(field.first).take(size).any(|used| *used) {
-                let name = &field.name.text;
-                let lengths = field.shape.iter().map(usize::to_string).collect::<Vec<_>>().join(", ");
-                let kind = match field.shape.as_slice() {
-                    [] => field.unit.clone(),
-                    _ => format!("[{}; {lengths}]", field.unit),
-                };
-                self.diagnostics.report(
-                    field.name.span,
-                    format!("input `{name}` stands in a constraint or drive, but its rates are not known"),
-                    format!("declare `input {name}: {kind}, rates;`"),
                 );
             }
         }

@@ -1,19 +1,45 @@
-//! What cannot be negative: masses, moments of inertia, stiffness.
+//! What cannot be negative: masses, moments of inertia, stiffness, damping, friction; what must be above 0.
 
 use proc_macro2::Span;
 
 use super::expression::{Expressions, Id, Node};
-use super::{Model, VariableKind, evaluate};
+use super::{Model, VariableKind, evaluate, inertia};
 use crate::diagnostics::Diagnostics;
 
-/// Fields whose values are at least 0.
-pub const FIELDS: [&str; 3] = ["mass", "inertia", "stiffness"];
+/// The least value of a field.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Least {
+    /// It is at least 0.
+    Zero,
+    /// It is divided by: above 0.
+    AboveZero,
+}
 
-/// A value that is at least 0.
+impl Least {
+    /// That of a field, if it has one.
+    pub fn of(field: &str) -> Option<Self> {
+        match field {
+            "mass" | "inertia" | "stiffness" | "damping" | "coefficient" | "viscous" => Some(Least::Zero),
+            "speed" | "depth" | "exponent" => Some(Least::AboveZero),
+            _ => None,
+        }
+    }
+
+    fn admits(self, value: f64) -> bool {
+        match self {
+            Least::Zero => value >= 0.0,
+            Least::AboveZero => value > 0.0,
+        }
+    }
+}
+
+/// A value that has a least one.
 #[derive(Clone, Debug)]
 pub struct Signed {
     /// The field.
     pub field: &'static str,
+    /// Its least value.
+    pub least: Least,
     /// The body or force.
     pub of: String,
     /// Its value.
@@ -22,48 +48,78 @@ pub struct Signed {
     pub span: Span,
 }
 
-/// Before: a model. After: values that are negative with the parameters' defaults are reported.
+/// A value that nothing can have.
+pub struct Impossible {
+    /// What is wrong, of whom, by how much.
+    pub message: String,
+    /// The cure.
+    pub help: &'static str,
+    /// Where the text says so.
+    pub span: Span,
+}
+
+/// Before: a model. After: values that nothing can have, with the parameters' defaults, are reported.
 pub fn check(model: &Model, diagnostics: &mut Diagnostics) {
-    for (signed, value) in negative(model, |_| None) {
-        let message = format!("`{}` of `{}` is negative: {value}", signed.field, signed.of);
-        let help = match signed.field {
-            "stiffness" => {
-                "a force that pushes away from its rest is an energy of its own: `potential V = …;`"
-            }
-            _ => "masses and moments of inertia are at least 0",
-        };
-        diagnostics.report(signed.span, message, help);
+    for Impossible { message, help, span } in impossible(model, |_| None) {
+        diagnostics.report(span, message, help);
     }
 }
 
-/// The values that are negative with the variables that `given` knows by name, the other parameters at their defaults.
+/// The values that nothing can have, with the variables that `given` knows by name, the other parameters at their defaults.
 /// What depends on inputs, states or the place of the mechanism is left to its caller.
-pub fn negative(model: &Model, given: impl Fn(&str) -> Option<f64>) -> Vec<(&Signed, f64)> {
-    let Some(dynamics) = model.dynamics.as_ref().filter(|dynamics| !dynamics.signed.is_empty()) else {
+pub fn impossible(model: &Model, given: impl Fn(&str) -> Option<f64>) -> Vec<Impossible> {
+    let Some(dynamics) = &model.dynamics else { return Vec::new() };
+    if dynamics.signed.is_empty() && dynamics.inertias.is_empty() {
         return Vec::new();
-    };
+    }
     let variable = |index: usize| {
         let variable = model.variables.get(index)?;
         let standard = (variable.kind == VariableKind::Parameter).then_some(variable.default);
         given(&variable.name).or(standard)
     };
-    let values = values(&model.expressions, variable);
+    let values = values(&model.expressions, |leaf| match leaf {
+        Node::Variable(index) => variable(index),
+        _ => None,
+    });
     let value = |id: Id| values.get(id.index()).copied().flatten();
-    let found = dynamics.signed.iter().filter_map(|signed| Some((signed, value(signed.value)?)));
-    found.filter(|(_, value)| *value < 0.0).collect()
+    let signed = dynamics.signed.iter().filter_map(|signed| wrong(signed, value(signed.value)?));
+    let inertias = dynamics.inertias.iter().filter_map(|inertia| inertia::wrong(inertia, value));
+    signed.chain(inertias).collect()
 }
 
-/// The value of each expression that is made of numbers and known variables alone.
-fn values(expressions: &Expressions, variable: impl Fn(usize) -> Option<f64>) -> Vec<Option<f64>> {
+/// Why a value is below its least one; `None` where it is not, or is no number.
+fn wrong(signed: &Signed, value: f64) -> Option<Impossible> {
+    let Signed { field, least, of, span, .. } = signed;
+    if value.is_nan() || least.admits(value) {
+        return None;
+    }
+    let message = match least {
+        Least::Zero => format!("`{field}` of `{of}` is negative: {value}"),
+        Least::AboveZero => format!("`{field}` of `{of}` is not above 0: {value}"),
+    };
+    let help = match *field {
+        "stiffness" => "a force that pushes away from its rest is an energy of its own: `potential V = …;`",
+        "damping" | "coefficient" | "viscous" => {
+            "it would feed energy in; what drives is a force of its own: `force f: … on P;`"
+        }
+        "speed" => "friction is smooth below this speed: write a small one, `speed: 1mm/1s`",
+        "depth" => "the stiffness is force over depth there: write a depth that is reached, `depth: 1mm`",
+        "exponent" => "the force rises with the depth to this power: `exponent: 1.5` for spheres",
+        _ => "masses and moments of inertia are at least 0",
+    };
+    Some(Impossible { message, help, span: *span })
+}
+
+/// The value of each expression that is made of numbers and of what `leaf` knows alone.
+pub fn values(expressions: &Expressions, leaf: impl Fn(Node) -> Option<f64>) -> Vec<Option<f64>> {
     let mut values: Vec<Option<f64>> = Vec::with_capacity(expressions.len());
     for (_, node) in expressions.iter() {
         let of = |id: Id| values.get(id.index()).copied().flatten();
         let value = match node {
             Node::Number(number) => Some(number),
-            Node::Variable(index) => variable(index),
             Node::Unary(function, a) => of(a).map(|a| evaluate::unary(function, a)),
             Node::Binary(function, a, b) => of(a).zip(of(b)).map(|(a, b)| evaluate::binary(function, a, b)),
-            _ => None,
+            other => leaf(other),
         };
         values.push(value);
     }

@@ -231,11 +231,11 @@ impl Wish {
                 let dynamics = dynamics(subject, instance)?;
                 inverse(fixed(subject, instance)?, dynamics, &times, &mut heard)
             }
-            Analysis::Static => rest(dynamics(subject, instance)?, &self.guesses(instance)?),
+            Analysis::Static => rest(dynamics(subject, instance)?, &self.guesses(subject, instance)?),
             Analysis::Linear => {
                 let dynamics = dynamics(subject, instance)?;
                 match self.at {
-                    None => linear(dynamics, rest(dynamics, &self.guesses(instance)?)),
+                    None => linear(dynamics, rest(dynamics, &self.guesses(subject, instance)?)),
                     Some(_) => linear(dynamics, direct(dynamics, &self.approach(), &times, &mut heard)),
                 }
             }
@@ -363,8 +363,10 @@ impl Wish {
     }
 
     /// The guesses by index.
-    fn guesses(&self, instance: &Instance) -> Result<Vec<(usize, f64)>, CommandError> {
-        let index = |(name, value): &(String, f64)| Ok((coordinate(instance.equations(), name)?, *value));
+    fn guesses(&self, subject: Subject, instance: &Instance) -> Result<Vec<(usize, f64)>, CommandError> {
+        let index = |(name, value): &(String, f64)| {
+            Ok((coordinate(instance.equations(), subject.name(), name)?, *value))
+        };
         self.guesses.iter().map(index).collect()
     }
 

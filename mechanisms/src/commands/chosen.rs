@@ -45,7 +45,7 @@ impl Chosen {
         let card = registry::find(&self.name)?;
         let mut mechanism = card.instance(&card.runs[0])?;
         for (name, value) in &self.parameters {
-            registry::set(mechanism.as_mut(), name, *value)?;
+            registry::set(mechanism.as_mut(), name, *value).map_err(|mismatch| mismatch.of(card.name))?;
         }
         Ok(Choice { card, mechanism })
     }
@@ -95,7 +95,7 @@ impl Choice {
 
     /// Index of the coordinate called `name`.
     pub fn coordinate(&self, name: &str) -> Result<usize, CommandError> {
-        coordinate(self.mechanism.as_ref(), name)
+        coordinate(self.mechanism.as_ref(), self.card.name, name)
     }
 
     /// `phi2 = 2.5 rad, …` for coordinates by their indices.
@@ -115,18 +115,15 @@ impl Choice {
     }
 }
 
-/// Index of the coordinate called `name` of a mechanism.
-pub fn coordinate(mechanism: &dyn AnyEquations, name: &str) -> Result<usize, CommandError> {
+/// Index of the coordinate called `name` of the mechanism that was asked for as `card`.
+pub fn coordinate(mechanism: &dyn AnyEquations, card: &str, name: &str) -> Result<usize, CommandError> {
     let coordinates = mechanism.coordinates();
     coordinates.iter().position(|entry| entry.name == name).ok_or_else(|| {
         let known: Vec<&str> = coordinates.iter().map(|entry| entry.name).collect();
         let near = nearest(name, known.iter().copied());
         let near = near.map_or_else(String::new, |near| format!("; did you mean `{near}`?"));
         let list = known.join(", ");
-        CommandError::Usage(format!(
-            "`{}` has no coordinate `{name}`{near}\nknown: {list}",
-            mechanism.full_name()
-        ))
+        CommandError::Usage(format!("`{card}` has no coordinate `{name}`{near}\nknown: {list}"))
     })
 }
 

@@ -82,15 +82,16 @@ impl Subject {
             Subject::Free(card) => Instance::Free(card.instance(preset)?),
         };
         for (name, value) in parameters {
-            match &mut instance {
-                Instance::Fixed(mechanism) => registry::set(mechanism.as_mut(), name, *value)?,
-                Instance::Free(mechanism) => registry::set(mechanism.as_mut(), name, *value)?,
-            }
+            let set = match &mut instance {
+                Instance::Fixed(mechanism) => registry::set(mechanism.as_mut(), name, *value),
+                Instance::Free(mechanism) => registry::set(mechanism.as_mut(), name, *value),
+            };
+            set.map_err(|mismatch| mismatch.of(self.name()))?;
         }
         Ok(instance)
     }
 
-    /// [`instance`](Self::instance), where no mass, moment of inertia or stiffness is negative with it.
+    /// [`instance`](Self::instance), where every mass, moment of inertia or stiffness is one that something can have.
     pub fn sound_instance(
         self,
         preset: &Preset,
@@ -105,13 +106,10 @@ impl Subject {
             let index = equations.variables().iter().position(|entry| entry.name == name)?;
             equations.get(index)
         };
-        let negative = mbs_codegen::negative_values(equations.source(), Some(equations.scene()), value);
-        match negative.map_err(CommandError::Failed)?.as_slice() {
+        let found = mbs_codegen::impossible_values(equations.source(), Some(equations.scene()), value);
+        match found.map_err(CommandError::Failed)?.as_slice() {
             [] => Ok(instance),
-            found => {
-                let found = found.join(", ");
-                Err(CommandError::Usage(format!("with these parameters {found}; it is at least 0")))
-            }
+            found => Err(CommandError::Usage(format!("with these parameters {}", found.join(", ")))),
         }
     }
 

@@ -1,0 +1,146 @@
+//! Positions at which all rows hold, found by numbers while a text is compiled.
+//!
+//! Parameters, time and inputs give way as coordinates do, so that what is seen there holds for every design, and
+//! redundant rows agree.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::symbolic::evaluate::evaluate;
+use crate::symbolic::{Graph, Leaf, Node, NodeId, tangents};
+
+/// Most iterations of Newton's method, which doubles the digits in each once it is near.
+const ITERATIONS: usize = 30;
+/// Largest step of one, in the units of the text: angles beyond a radian are another place.
+const LARGEST_STEP: f64 = 1.0;
+/// A step so small ends the search: what the next would change is rounding.
+const SMALLEST_STEP: f64 = 1e-9;
+/// What may be left of a row, in its unit, where lengths and angles are near 1.
+const CLOSED: f64 = 1e-11;
+/// A row of which less than this share is its own follows from earlier ones.
+const DEPENDENT: f64 = 1e-8;
+
+/// A value a leaf.
+pub type Point = BTreeMap<Leaf, f64>;
+
+/// The rows of a text with their slopes along all that they depend on.
+pub struct Manifold {
+    leaves: Vec<Leaf>,
+    /// Residuals, then the slopes that are no structural zeros.
+    roots: Vec<NodeId>,
+    /// Row and leaf of each slope.
+    places: Vec<(usize, usize)>,
+    rows: usize,
+}
+
+impl Manifold {
+    /// Before: residuals of rows. After: what Newton's method needs of them.
+    pub fn of(g: &mut Graph, residuals: &[NodeId]) -> Self {
+        let moves = |id: &NodeId| match g.node(*id) {
+            Node::Leaf(leaf @ (Leaf::Position(_) | Leaf::Parameter(_) | Leaf::Input(_) | Leaf::Time)) => {
+                Some(leaf)
+            }
+            _ => None,
+        };
+        let leaves: BTreeSet<Leaf> =
+            g.reachable(residuals.iter().copied()).iter().filter_map(moves).collect();
+        let leaves: Vec<Leaf> = leaves.into_iter().collect();
+        let slopes = tangents(g, residuals, &leaves);
+        let mut roots = residuals.to_vec();
+        let mut places = Vec::new();
+        for (row, slopes) in slopes.into_iter().enumerate() {
+            for (leaf, slope) in slopes {
+                roots.push(slope);
+                places.push((row, leaf));
+            }
+        }
+        Manifold { leaves, roots, places, rows: residuals.len() }
+    }
+
+    /// Multiplications of one search at most.
+    pub fn work(&self) -> usize {
+        (self.rows * self.rows * self.leaves.len()).saturating_mul(ITERATIONS)
+    }
+
+    /// The position that Newton's method finds from `start`, by shortest steps; `None` where it finds none.
+    pub fn point(&self, g: &Graph, start: impl Fn(Leaf) -> f64) -> Option<Point> {
+        let mut point: Point = self.leaves.iter().map(|leaf| (*leaf, start(*leaf))).collect();
+        for _ in 0..ITERATIONS {
+            let values =
+                evaluate(g, &self.roots, |leaf| point.get(&leaf).copied().unwrap_or_else(|| start(leaf)));
+            let residuals = values.get(..self.rows)?;
+            if !values.iter().all(|value| value.is_finite()) {
+                return None;
+            }
+            let mut rows = vec![vec![0.0; self.leaves.len()]; self.rows];
+            for ((row, leaf), slope) in self.places.iter().zip(values.iter().skip(self.rows)) {
+                *rows.get_mut(*row)?.get_mut(*leaf)? = *slope;
+            }
+            let step = shortest(rows, residuals);
+            let length = libm::sqrt(dot(&step, &step));
+            let share = if length > LARGEST_STEP { LARGEST_STEP / length } else { 1.0 };
+            for (leaf, step) in self.leaves.iter().zip(&step) {
+                *point.entry(*leaf).or_default() -= share * step;
+            }
+            if length < SMALLEST_STEP {
+                let closed = residuals.iter().all(|residual| residual.abs() < CLOSED.max(length));
+                return closed.then_some(point);
+            }
+        }
+        None
+    }
+}
+
+/// Rows made orthogonal and of length 1; those that follow from earlier ones are left out.
+#[derive(Default)]
+pub struct Orthogonal(Vec<Vec<f64>>);
+
+impl Orthogonal {
+    /// Before: a row. After: it is among them, unless it follows; what it has of the earlier ones, and the length of the
+    /// rest, 0 where it follows.
+    pub fn add(&mut self, mut row: Vec<f64>) -> (Vec<f64>, f64) {
+        let before = libm::sqrt(dot(&row, &row));
+        let shares = self.take_from(&mut row);
+        let rest = libm::sqrt(dot(&row, &row));
+        if rest <= DEPENDENT * before {
+            return (shares, 0.0);
+        }
+        row.iter_mut().for_each(|entry| *entry /= rest);
+        self.0.push(row);
+        (shares, rest)
+    }
+
+    /// Takes what a row has along these from it, twice for its last digits; returns how much of each.
+    pub fn take_from(&self, row: &mut [f64]) -> Vec<f64> {
+        let mut shares = vec![0.0; self.0.len()];
+        for _ in 0..2 {
+            for (known, total) in self.0.iter().zip(&mut shares) {
+                let share = dot(known, row);
+                *total += share;
+                row.iter_mut().zip(known).for_each(|(entry, known)| *entry -= share * known);
+            }
+        }
+        shares
+    }
+}
+
+/// The shortest x with A x = b, of the rows of A that do not follow from earlier ones.
+fn shortest(rows: Vec<Vec<f64>>, b: &[f64]) -> Vec<f64> {
+    let mut x = vec![0.0; rows.first().map_or(0, Vec::len)];
+    let mut orthogonal = Orthogonal::default();
+    // What x has along each, by forward substitution.
+    let mut along: Vec<f64> = Vec::new();
+    for (row, b) in rows.into_iter().zip(b) {
+        let (shares, rest) = orthogonal.add(row);
+        if rest > 0.0 {
+            along.push((b - dot(&shares, &along)) / rest);
+        }
+    }
+    for (row, along) in orthogonal.0.iter().zip(&along) {
+        x.iter_mut().zip(row).for_each(|(x, entry)| *x += along * entry);
+    }
+    x
+}
+
+pub fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
