@@ -8,6 +8,7 @@ use super::attribution::scattered;
 use super::jacobian;
 use super::manifold::{Manifold, Orthogonal, Point, dot};
 use super::pins::{Attribution, Given, frame};
+use crate::model::Model;
 use crate::model::dynamics::{Dynamics as Declared, Pin};
 use crate::model::expression::Id;
 use crate::symbolic::evaluate::evaluate;
@@ -17,56 +18,67 @@ use crate::symbolic::{Graph, Leaf, NodeId};
 const POINTS: usize = 3;
 /// Starts of the search for them.
 const TRIED: usize = 12;
-/// Multiplications that the search may take: hundreds of milliseconds of a debug build.
+/// Multiplications that all searches may take, tenths of a second of a debug build, and that a single one may.
 const WORK: usize = 10_000_000;
+const MOST_WORK: usize = 1_000_000_000;
 /// Largest part of a velocity, relative to what it is the difference of, that is rounding.
 const SAME: f64 = 1e-6;
 
-/// A pin that does not stand on one of its bodies.
-pub struct Misplaced {
-    /// Its index.
-    pub pin: usize,
-    /// The body of the two that passes its point: 0 or 1.
-    pub body: usize,
-    /// Whether the point moves with the other.
-    pub on_other: bool,
+/// What is wrong with the place of a pin.
+pub enum Misplaced {
+    /// It does not stand on one of its bodies.
+    Off {
+        /// Its index.
+        pin: usize,
+        /// The body of the two that passes its point: 0 or 1.
+        body: usize,
+        /// Whether the point moves with the other.
+        on_other: bool,
+    },
+    /// No position is found at which all rows hold, to look at it.
+    Unseen,
 }
 
 /// Before: what acts on which body. After: the first pin at whose point its bodies move apart, seen at positions that fulfil
-/// all rows; none where no such position is found.
+/// all rows.
 ///
 /// What holds at a few scattered positions of a design without special numbers holds at all around.
 pub fn misplaced(
     g: &mut Graph,
-    declared: &Declared,
+    (model, declared): (&Model, &Declared),
     given: Given<'_>,
     found: &Attribution,
 ) -> Option<Misplaced> {
     let residuals: Vec<NodeId> = given.rows.iter().map(|row| row.phi).collect();
     let manifold = Manifold::of(g, &residuals);
-    let work = Work::new(g, declared, given, found);
-    let mut searches = (WORK / manifold.work().max(1)).min(TRIED);
+    let work = Work::new(g, (model, declared), given, found);
+    let one = manifold.work().max(1);
+    if one > MOST_WORK {
+        return None;
+    }
     let mut faults: Option<Vec<Option<Misplaced>>> = None;
     let mut points = 0;
-    let mut trial = 0;
-    while points < POINTS && searches > 0 {
-        searches -= 1;
-        if let Some(point) = manifold.point(g, |leaf| work.start(g, leaf, trial))
-            && let Some(seen) = work.seen(g, &point, trial)
-        {
-            points += 1;
-            faults = Some(match faults {
-                None => seen,
-                Some(known) => known.into_iter().zip(seen).map(|(known, seen)| known.and(seen)).collect(),
-            });
+    for trial in 0..(WORK / one).clamp(POINTS, TRIED) {
+        let Some(point) = manifold.point(g, |leaf| work.start(g, leaf, trial)) else { continue };
+        let Some(seen) = work.seen(g, &point, trial) else { continue };
+        faults = Some(match faults {
+            None => seen,
+            Some(known) => known.into_iter().zip(seen).map(|(known, seen)| known.and(seen)).collect(),
+        });
+        points += 1;
+        if points == POINTS {
+            break;
         }
-        trial += 1;
     }
-    faults?.into_iter().flatten().next()
+    match faults {
+        Some(faults) => faults.into_iter().flatten().next(),
+        None => Some(Misplaced::Unseen),
+    }
 }
 
 /// Functions of the position whose slopes say how points move.
 struct Work<'a> {
+    model: &'a Model,
     pins: &'a [Pin],
     guesses: &'a [NodeId],
     /// Values, then slopes along the coordinates: of the places of pins, of centres and angles, of rows.
@@ -82,7 +94,12 @@ struct Work<'a> {
 }
 
 impl<'a> Work<'a> {
-    fn new(g: &mut Graph, declared: &'a Declared, given: Given<'a>, found: &Attribution) -> Self {
+    fn new(
+        g: &mut Graph,
+        (model, declared): (&'a Model, &'a Declared),
+        given: Given<'a>,
+        found: &Attribution,
+    ) -> Self {
         let zero = g.constant(0.0);
         let of = |id: Id| given.nodes.get(id.index()).copied().unwrap_or(zero);
         let mut functions: Vec<NodeId> = Vec::new();
@@ -111,19 +128,29 @@ impl<'a> Work<'a> {
             }
         }
         let (pins, guesses) = (declared.pins.as_slice(), given.guesses);
-        Work { pins, guesses, roots, places, coordinates, bodies, rows, functions: count }
+        Work { model, pins, guesses, roots, places, coordinates, bodies, rows, functions: count }
     }
 
-    /// Where a search starts: anywhere, every other time near the guess, where lengths are numbers of the text.
+    /// Where a search starts: near the guess and the parameters' defaults, every other time anywhere.
     fn start(&self, g: &Graph, leaf: Leaf, trial: usize) -> f64 {
         let anywhere = scattered(leaf, trial);
-        let guess = match leaf {
-            Leaf::Position(index) if trial % 2 == 1 => self.guesses.get(index as usize),
-            _ => None,
-        };
-        let Some(guess) = guess else { return anywhere };
-        let guess = evaluate(g, &[*guess], |leaf| scattered(leaf, trial));
-        guess.first().map_or(anywhere, |guess| guess + NEAR * (anywhere - MIDDLE))
+        let off = NEAR * (anywhere - MIDDLE);
+        match leaf {
+            _ if trial % 2 == 1 => anywhere,
+            Leaf::Parameter(index) => {
+                let default = self.model.variables.get(index as usize).map_or(1.0, |known| known.default);
+                if default == 0.0 { off } else { default * (1.0 + off) }
+            }
+            Leaf::Position(index) => {
+                let Some(guess) = self.guesses.get(index as usize) else { return anywhere };
+                let guess = evaluate(g, &[*guess], |leaf| match leaf {
+                    Leaf::Position(_) => f64::NAN,
+                    other => self.start(g, other, trial),
+                });
+                guess.first().map_or(anywhere, |guess| guess + off)
+            }
+            _ => anywhere,
+        }
     }
 
     /// Of each pin whether it is misplaced at a position; `None` where something there is no number.
@@ -148,7 +175,8 @@ impl<'a> Work<'a> {
     }
 }
 
-/// How far from the guess a start near it lies (rad, m), and the middle of scattered values.
+/// How far a start lies from the guess (rad, m) and, in parts of themselves, from the parameters' defaults at most twice; the
+/// middle of scattered values.
 const NEAR: f64 = 0.2;
 const MIDDLE: f64 = 0.7;
 
@@ -160,31 +188,36 @@ struct Here<'a> {
     rows: &'a Orthogonal,
 }
 
-/// Slopes of both components of a point.
-type Velocity = [Vec<f64>; 2];
+/// How a point moves.
+struct Velocity {
+    /// Slopes of both components.
+    slopes: [Vec<f64>; 2],
+    /// Squares of what they are the sum of: sums that vanish have the rounding of their terms.
+    squares: f64,
+}
 
 impl Here<'_> {
     fn pin(&self, index: usize) -> Option<Option<Misplaced>> {
         let pin = self.work.pins.get(index)?;
         let place = [2 * index, 2 * index + 1];
         let [first, second] = pin.bodies;
-        let carried = [self.carried(first, place)?, self.carried(second, place)?];
-        let [with_first, with_second] = &carried;
-        if self.same(with_first, with_second) {
+        let (with_first, with_second) = (self.carried(first, place)?, self.carried(second, place)?);
+        if self.same(&with_first, &with_second) {
             return Some(None);
         }
-        let own = [self.slopes.get(place[0])?.clone(), self.slopes.get(place[1])?.clone()];
-        let on_first = self.same(&own, with_first);
+        let slopes = [self.slopes.get(place[0])?.clone(), self.slopes.get(place[1])?.clone()];
+        let own = Velocity { squares: squares(&slopes), slopes };
+        let on_first = self.same(&own, &with_first);
         // The ground carries nothing: where the point stands on neither, the body is off.
         let body = usize::from(on_first || first.is_none());
-        let on_other = on_first || self.same(&own, with_second);
-        Some(Some(Misplaced { pin: index, body, on_other }))
+        let on_other = on_first || self.same(&own, &with_second);
+        Some(Some(Misplaced::Off { pin: index, body, on_other }))
     }
 
     /// Velocity of the body's point that is at `place`: that of its centre, and the arm turned.
     fn carried(&self, body: Option<usize>, place: [usize; 2]) -> Option<Velocity> {
         let still = || vec![0.0; self.work.coordinates];
-        let Some(body) = body else { return Some([still(), still()]) };
+        let Some(body) = body else { return Some(Velocity { slopes: [still(), still()], squares: 0.0 }) };
         let (centre, angle) = self.work.bodies.get(body)?;
         let turn = match angle {
             Some(angle) => self.slopes.get(*angle)?.clone(),
@@ -193,23 +226,33 @@ impl Here<'_> {
         let arm = |component: usize| {
             Some(self.values.get(*place.get(component)?)? - self.values.get(*centre.get(component)?)?)
         };
-        let moved = |component: usize, arm: f64| -> Option<Vec<f64>> {
-            let centre = self.slopes.get(*centre.get(component)?)?;
-            Some(centre.iter().zip(&turn).map(|(slope, turn)| slope + arm * turn).collect())
+        let (x, y) = (arm(0)?, arm(1)?);
+        let centre = [self.slopes.get(centre[0])?, self.slopes.get(centre[1])?];
+        let turned = |arm: f64| turn.iter().map(|turn| arm * turn).collect::<Vec<f64>>();
+        let turned = [turned(-y), turned(x)];
+        let squares = squares(&turned) + centre.iter().map(|slopes| dot(slopes, slopes)).sum::<f64>();
+        let both = |(centre, turned): (&Vec<f64>, &Vec<f64>)| {
+            centre.iter().zip(turned).map(|(centre, turned)| centre + turned).collect()
         };
-        Some([moved(0, -arm(1)?)?, moved(1, arm(0)?)?])
+        let [turned_x, turned_y] = &turned;
+        let [centre_x, centre_y] = centre;
+        let slopes = [both((centre_x, turned_x)), both((centre_y, turned_y))];
+        Some(Velocity { slopes, squares })
     }
 
     /// Whether two velocities are the same in every motion that the rows allow.
     fn same(&self, a: &Velocity, b: &Velocity) -> bool {
-        let squares = |velocity: &Velocity| velocity.iter().map(|slopes| dot(slopes, slopes)).sum::<f64>();
-        let size = libm::sqrt(squares(a) + squares(b));
-        a.iter().zip(b).all(|(a, b)| {
+        let size = libm::sqrt(a.squares + b.squares);
+        a.slopes.iter().zip(&b.slopes).all(|(a, b)| {
             let mut difference: Vec<f64> = a.iter().zip(b).map(|(a, b)| a - b).collect();
             self.rows.take_from(&mut difference);
             libm::sqrt(dot(&difference, &difference)) <= SAME * size
         })
     }
+}
+
+fn squares(slopes: &[Vec<f64>; 2]) -> f64 {
+    slopes.iter().map(|slopes| dot(slopes, slopes)).sum()
 }
 
 #[cfg(test)]
@@ -261,6 +304,22 @@ mod tests {
         pin bearing: ground, c at [0, 0];
         pin knee: c, d at KNEE;
         out force: [N; 2] = reaction(knee, d);";
+
+    /// A bar on a pivot of the ground whose velocity is a difference that rounds.
+    const PIVOT: &str = "pub mechanism Pivot;
+        param L: m = 0.5;
+        param D: m = 0.3;
+        coord phi: rad = 0.1;
+        body bar { mass: 1, com: [D, 0] + L/3*unit(phi), inertia: 0.1, angle: phi }
+        pin knee: bar, ground at KNEE;
+        out force: [N; 2] = reaction(knee, bar);";
+
+    #[test]
+    fn a_pivot_on_the_ground_stands_still() {
+        accepts(PIVOT, "[D, 0]");
+        refuses(PIVOT, "[0, 0]");
+        refuses(PIVOT, "[D, 0] + L*unit(phi)");
+    }
 
     #[test]
     fn a_pin_of_reference_points_may_be_written_from_either_body() {

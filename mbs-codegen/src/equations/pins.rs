@@ -73,7 +73,7 @@ pub fn complete(g: &mut Graph, model: &Model, declared: &Declared, derived: &mut
     let Some(load) = derived.loads.iter().position(|load| asks(g, *load)) else { return };
     match forces(g, model, declared, derived, given) {
         Ok((forces, attribution)) => {
-            if let Some(found) = misplaced(g, declared, given, &attribution) {
+            if let Some(found) = misplaced(g, (model, declared), given, &attribution) {
                 derived.undetermined = said(declared, &found);
                 return;
             }
@@ -92,15 +92,21 @@ pub fn complete(g: &mut Graph, model: &Model, declared: &Declared, derived: &mut
     }
 }
 
-/// What is wrong with the place of a pin.
+/// What is wrong with the place of a pin, in words.
 fn said(declared: &Declared, found: &Misplaced) -> Option<Undetermined> {
-    let pin = declared.pins.get(found.pin)?;
-    let ((body, span), (other, _)) = match (&pin.joined, found.body) {
+    let Misplaced::Off { pin, body, on_other } = *found else {
+        let ([(_, span), _], name) = declared.pins.first().map(|pin| (&pin.joined, &pin.name))?;
+        let message = format!("where the pin `{name}` stands cannot be judged: no position fulfils all rows");
+        let help = "give the coordinates guesses near a position of the mechanism";
+        return Some(Undetermined { span: *span, message, help: help.into() });
+    };
+    let pin = declared.pins.get(pin)?;
+    let ((body, span), (other, _)) = match (&pin.joined, body) {
         ([first, second], 0) => (first, second),
         ([first, second], _) => (second, first),
     };
     let name = &pin.name;
-    let message = match found.on_other {
+    let message = match on_other {
         true => {
             format!("the pin `{name}` is not on `{body}`: its point moves with `{other}`, not with `{body}`")
         }

@@ -11,7 +11,7 @@ pub(super) fn write(kind: Kind, random: &mut Random) -> String {
     }
 }
 
-/// A text with every kind of body, force and energy.
+/// A text with every kind of body, force and energy; forces act where coordinates move, damping is positive.
 fn with_masses(random: &mut Random) -> String {
     let (mut text, mut writer) = begin(random, false);
     let row = if text.contains("drive d0") { "d0" } else { "c0" };
@@ -30,17 +30,18 @@ fn with_masses(random: &mut Random) -> String {
     text += &format!("kinetic rotor = 1kg*1m^2*(1.5 + sin({c}))*{a}*{b}/1s^2;\n");
     text += &format!("dissipation bearing = 1N*1m/1s*(1 + {a}^2)^1.5*exp(sin({c}));\n");
     let [push, twist, actuator, torque] = [0; 4].map(|_| writer.acting(&acting));
-    text += &format!("force push: 1N*[{push}, {}] on 1m*({});\n", writer.acting(&acting), writer.vector(2));
-    text += &format!("torque twist: 1N*1m*({twist}) on {};\n", writer.scalar(2));
+    text +=
+        &format!("force push: 1N*[{push}, {}] on 1m*({} + v/3);\n", writer.acting(&acting), writer.vector(2));
+    text += &format!("torque twist: 1N*1m*({twist}) on {} + 0.3*q0;\n", writer.scalar(2));
     let stiffness = if writer.random.below(2) == 0 { writer.design(1) } else { writer.scalar(1) };
     text += &format!(
-        "tsda strut {{ from: 1m*[p0, 3], to: 1m*({}), stiffness: 1N/1m*(1.5 + sin({stiffness})), length: 1m*({}), damping: 1N*1s/1m*({}), actuator: 1N*({actuator}) }}\n",
+        "tsda strut {{ from: 1m*[p0, 3], to: 1m*({} + v/3), stiffness: 1N/1m*(1.5 + sin({stiffness})), length: 1m*({}), damping: 1N*1s/1m*(1.5 + sin({})), actuator: 1N*({actuator}) }}\n",
         writer.vector(1),
         writer.design(1),
         writer.design(1)
     );
     text += &format!(
-        "rsda knee {{ angle: {}, stiffness: 1N*1m*(1.5 + cos({})), rest: {}, damping: 1N*1m*1s*({}), torque: 1N*1m*({torque}) }}\n",
+        "rsda knee {{ angle: {} + 0.3*q0, stiffness: 1N*1m*(1.5 + cos({})), rest: {}, damping: 1N*1m*1s*(1.5 + cos({})), torque: 1N*1m*({torque}) }}\n",
         writer.scalar(2),
         writer.design(1),
         writer.design(1),
