@@ -493,7 +493,7 @@ fn senseless_arguments_are_refused_in_plain_words() {
         (&["run", "pendulum", "--until", "1e9", "--integrator", "rk4"], "let them adapt"),
         (&["run", "governor", "--until", "1e9"], "take longer ones by `--step`"),
         (&["run", "pendulum", "--steps", "-1"], "whole number"),
-        (&["run", "pendulum", "--param", "m=-1"], "`mass` of `bob` is -1"),
+        (&["run", "pendulum", "--param", "m=-1"], "`mass` of `bob` is negative: -1"),
         (&["run", "quarter_car", "--param", "k.0=-5"], "`stiffness` of `"),
         (&["drift", "pendulum", "--integrator", "order5"], "use `--integrator rk4` or `euler`"),
         (&["print", "four_bar", "M"], "neither masses nor forces"),
