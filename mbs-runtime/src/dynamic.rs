@@ -38,11 +38,46 @@ pub struct Signed {
     pub parameter: &'static str,
 }
 
+/// How one first-order state z acts, and what its rate ż depends on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StateSlope<T, const N: usize, Z> {
+    /// ∂Q/∂z: N.
+    pub force: [T; N],
+    /// ∂ż/∂q: N.
+    pub q: [T; N],
+    /// ∂ż/∂q̇: N.
+    pub qd: [T; N],
+    /// ∂ż by all states of the text.
+    pub states: Z,
+}
+
+impl<T: Scalar, const N: usize, Z: AsRef<[T]> + AsMut<[T]>> StateSlope<T, N, Z> {
+    /// ∂ż by the state at `index`; 0 where there is none.
+    pub(crate) fn entry(&self, index: usize) -> T {
+        self.states.as_ref().get(index).copied().unwrap_or(T::constant(0.0))
+    }
+
+    /// `factor` times the rate.
+    pub(crate) fn scale(&mut self, factor: T) {
+        let rates = self.q.iter_mut().chain(&mut self.qd).chain(self.states.as_mut());
+        rates.for_each(|entry| *entry = *entry * factor);
+    }
+
+    /// The rate less `factor` times another.
+    pub(crate) fn subtract(&mut self, factor: T, other: &Self) {
+        let rates = self.q.iter_mut().chain(&mut self.qd).chain(self.states.as_mut());
+        let others = other.q.iter().chain(&other.qd).chain(other.states.as_ref());
+        rates.zip(others).for_each(|(entry, other)| *entry = *entry - factor * *other);
+    }
+}
+
 /// A mechanism with masses and forces. Matrices are dense here, for methods that factorise them and for tests; the
 /// products that fast methods need are straight-line code without zeros.
 pub trait Dynamic<T: Scalar, const N: usize, const M: usize>: Mechanism<T, N, M> {
     /// First-order states `z` of the text: an array.
     type States: Copy + AsRef<[T]> + AsMut<[T]>;
+    /// One a first-order state, in the order of [`STATES`](Self::STATES).
+    type StateSlopes: Copy + AsRef<[StateSlope<T, N, Self::States>]> + AsMut<[StateSlope<T, N, Self::States>]>;
     /// One value a force of the text.
     type Powers: Copy + AsRef<[T]>;
     /// One value a component of an `out` that uses `lambda`, `effort`, `reaction` or a state.
@@ -156,6 +191,18 @@ pub trait Dynamic<T: Scalar, const N: usize, const M: usize>: Mechanism<T, N, M>
         states: &Self::States,
         lambda: &[T; M],
     ) -> Self::States;
+    /// ∂Q/∂z and the derivatives of ż, multipliers held; none where the text has no first-order states.
+    #[inline]
+    fn state_slopes(
+        &self,
+        _parameters: &Self::Parameters,
+        _position: &Self::Position,
+        _qd: &[T; N],
+        _states: &Self::States,
+        _lambda: &[T; M],
+    ) -> Option<Self::StateSlopes> {
+        None
+    }
     /// Outputs that use multipliers or states.
     fn loads(
         &self,

@@ -264,6 +264,20 @@ pub enum Failure {
         /// Time (s).
         time: f64,
     },
+    /// A first-order state has no value at which it rests: its rate does not vanish, or does not depend on it.
+    Unsettled {
+        /// The state.
+        state: Entry,
+        /// Time (s).
+        time: f64,
+    },
+    /// The text has first-order states, and what is asked for depends on their values at that time.
+    StatesUnknown {
+        /// The first of them.
+        state: Entry,
+        /// Time (s).
+        time: f64,
+    },
     /// The saved state is that of a mechanism with another name or other coordinates.
     Foreign {
         /// Name of the mechanism that it was to be the state of.
@@ -354,6 +368,8 @@ impl Failure {
             | Failure::Inertialess { time, .. }
             | Failure::Flat { time, .. }
             | Failure::Restless { time, .. }
+            | Failure::Unsettled { time, .. }
+            | Failure::StatesUnknown { time, .. }
             | Failure::Unbalanced { time, .. } => *time = now,
             Failure::NonFinite { .. } | Failure::Negative { .. } | Failure::Foreign { .. } => {}
         }
@@ -382,6 +398,8 @@ impl Failure {
             | Failure::Inertialess { time, .. }
             | Failure::Flat { time, .. }
             | Failure::Restless { time, .. }
+            | Failure::Unsettled { time, .. }
+            | Failure::StatesUnknown { time, .. }
             | Failure::Unbalanced { time, .. } => *time,
             Failure::NonFinite { .. } | Failure::Negative { .. } | Failure::Foreign { .. } => 0.0,
         }
@@ -530,6 +548,16 @@ impl fmt::Display for Failure {
                  a smaller step",
                 coordinate.name, coordinate.line
             ),
+            Failure::Unsettled { state, .. } => write!(
+                f,
+                "no position of rest at t = {time} s: the rate of the state `{}` (line {}) does not vanish for any value of it",
+                state.name, state.line
+            ),
+            Failure::StatesUnknown { state, .. } => write!(
+                f,
+                "the forces at t = {time} s depend on the state `{}` (line {}), whose value is not known; give the states too",
+                state.name, state.line
+            ),
             Failure::Foreign { mechanism } => {
                 write!(f, "the saved state is not one of `{mechanism}`: name or coordinates differ")
             }
@@ -589,6 +617,8 @@ mod tests {
             Failure::Flat { row: ROW, time },
             Failure::Restless { coordinate: ROW, force: 0.5, time },
             Failure::Unbalanced { coordinate: ROW, iterations: 9, time },
+            Failure::Unsettled { state: ROW, time },
+            Failure::StatesUnknown { state: ROW, time },
         ];
         for failure in failures {
             assert!(failure.to_string().contains("(line 21)"), "{failure}");

@@ -43,6 +43,9 @@ pub struct Forces {
     pub loads: Vec<LoadCurve>,
     /// Multipliers, one a row.
     pub multipliers: Vec<LoadCurve>,
+    /// First-order states of the text at the last instant.
+    #[serde(skip)]
+    pub states: Vec<f64>,
     /// Number of rows that follow from others, one value an instant.
     pub dependent: Vec<u32>,
     /// Which rows those are, each once.
@@ -269,6 +272,7 @@ impl Forces {
             closure_rate: optional(&self.closure_rate),
             loads: curves(&self.loads),
             multipliers: curves(&self.multipliers),
+            states: self.states.clone(),
             dependent: kept.iter().filter_map(|index| self.dependent.get(*index).copied()).collect(),
             dependent_rows: self.dependent_rows.clone(),
         }

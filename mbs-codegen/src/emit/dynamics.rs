@@ -7,7 +7,7 @@ use quote::{quote, quote_spanned};
 
 use super::functions::{array, body, matrix};
 use super::scope::Scope;
-use crate::equations::{Dynamics, Equations};
+use crate::equations::{Dynamics, Equations, Slope};
 use crate::model::Model;
 use crate::model::dynamics::Dynamics as Declared;
 use crate::program::{DynamicsProgram, Program};
@@ -33,6 +33,8 @@ pub struct DynamicBodies {
     /// Where the time gives anything to the energies.
     pub carried: Option<TokenStream>,
     pub state_rates: TokenStream,
+    /// Where the text has first-order states.
+    pub state_slopes: Option<TokenStream>,
     pub loads: TokenStream,
 }
 
@@ -56,6 +58,7 @@ impl DynamicBodies {
             powers: body(),
             carried: None,
             state_rates: body(),
+            state_slopes: None,
             loads: body(),
         }
     }
@@ -97,6 +100,8 @@ pub fn bodies(
             let result = format!("::core::option::Option::Some({})", scope.operand(power));
             of(&program.carried, result)
         }),
+        state_slopes: (!dynamics.slopes.is_empty())
+            .then(|| of(&program.slopes, slopes(&dynamics.slopes, scope))),
         state_rates: of(&program.state_rates, vector(&dynamics.state_rates, scope)),
         loads: of(&program.loads, array(dynamics.loads.iter().map(|id| Some(*id)), scope)),
     })
@@ -128,6 +133,17 @@ fn signed(
     }
 }
 
+/// One struct a first-order state, in `Some`.
+fn slopes(slopes: &[Slope], scope: &Scope<'_>) -> String {
+    let slope = |slope: &Slope| {
+        let [force, q, qd, states] = [&slope.force, &slope.q, &slope.qd, &slope.states]
+            .map(|nodes| array(nodes.iter().copied(), scope));
+        format!("__mbs::StateSlope {{ force: {force}, q: {q}, qd: {qd}, states: {states} }}")
+    };
+    let slopes: Vec<String> = slopes.iter().map(slope).collect();
+    format!("::core::option::Option::Some([{}])", slopes.join(", "))
+}
+
 /// `impl Dynamic` of a text with masses or forces.
 pub fn implementation(
     name: &TokenStream,
@@ -157,6 +173,7 @@ pub fn implementation(
         powers,
         carried,
         state_rates,
+        state_slopes,
         loads: loads_body,
     } = bodies;
     let carried = carried.as_ref().map(|body| {
@@ -173,9 +190,16 @@ pub fn implementation(
     });
     let design = quote! { &self, __p: &__Parameters<T>, __s: &__Position<T> };
     let motion = quote! { __qd: &[T; #n], __z: &[T; #states], __lambda: &[T; #m] };
+    let state_slopes = state_slopes.as_ref().map(|body| {
+        quote! {
+            #[inline]
+            fn state_slopes(#design, #motion) -> ::core::option::Option<Self::StateSlopes> #body
+        }
+    });
     quote! {
         impl<#generics> #runtime::Dynamic<T, #n, #m> for #name {
             type States = [T; #states];
+            type StateSlopes = [#runtime::StateSlope<T, #n, [T; #states]>; #states];
             type Powers = [T; #forces];
             type Loads = [T; #loads];
             const FORCE_USES_MULTIPLIERS: bool = #force_uses_multipliers;
@@ -209,6 +233,7 @@ pub fn implementation(
             #carried
             #[inline]
             fn state_rates(#design, #motion) -> [T; #states] #state_rates
+            #state_slopes
             #[inline]
             fn loads(
                 #design,

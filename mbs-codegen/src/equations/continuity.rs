@@ -130,7 +130,7 @@ fn demands(model: &Model, equations: &Equations) -> Vec<Demand> {
 }
 
 /// The functions of masses and forces.
-fn of_dynamics(dynamics: &Dynamics) -> [(&'static str, Vec<NodeId>); 14] {
+fn of_dynamics(dynamics: &Dynamics) -> [(&'static str, Vec<NodeId>); 15] {
     let some = |nodes: &[Option<NodeId>]| nodes.iter().copied().flatten().collect::<Vec<_>>();
     let entries = |matrix: &Sparse| matrix.iter().flatten().map(|(_, entry)| *entry).collect::<Vec<_>>();
     [
@@ -146,6 +146,7 @@ fn of_dynamics(dynamics: &Dynamics) -> [(&'static str, Vec<NodeId>); 14] {
         ("a power", some(&dynamics.powers)),
         ("the power of the time", some(&[dynamics.carried])),
         ("the rate of a state", some(&dynamics.state_rates)),
+        ("a derivative by a state", dynamics.slopes.iter().flat_map(|slope| slope.roots()).collect()),
         ("an output of multipliers or states", dynamics.loads.clone()),
         ("the start", [some(&dynamics.start_states), some(&dynamics.start_rates)].concat()),
     ]

@@ -13,6 +13,26 @@ use crate::symbolic::{Graph, Leaf, Node, NodeId, Stage, tangent};
 /// Rows of a matrix: column and entry, ascending; what is not there is a structural zero.
 pub type Sparse = Vec<Vec<(usize, NodeId)>>;
 
+/// How a first-order state acts, and what its rate depends on.
+#[derive(Debug)]
+pub struct Slope {
+    /// ∂Q/∂z, one a coordinate.
+    pub force: Vec<Option<NodeId>>,
+    /// ∂ż/∂q, one a coordinate.
+    pub q: Vec<Option<NodeId>>,
+    /// ∂ż/∂q̇, one a coordinate.
+    pub qd: Vec<Option<NodeId>>,
+    /// ∂ż/∂z, one a state.
+    pub states: Vec<Option<NodeId>>,
+}
+
+impl Slope {
+    /// All of its roots.
+    pub fn roots(&self) -> impl Iterator<Item = NodeId> + '_ {
+        [&self.force, &self.q, &self.qd, &self.states].into_iter().flatten().copied().flatten()
+    }
+}
+
 /// Roots of M q̈ + Φ_qᵀ λ = Q. `None` is a structural zero.
 #[derive(Debug)]
 pub struct Dynamics {
@@ -44,6 +64,8 @@ pub struct Dynamics {
     pub carried: Option<NodeId>,
     /// One a first-order state.
     pub state_rates: Vec<Option<NodeId>>,
+    /// One a first-order state: ∂Q/∂z and the derivatives of its rate.
+    pub slopes: Vec<Slope>,
     /// One a first-order state.
     pub start_states: Vec<Option<NodeId>>,
     /// One a coordinate.
@@ -127,6 +149,8 @@ pub fn derive(
     let mass_times_q = derivative(g, &mass_times, count, Leaf::Position);
     let force_q = derivative(g, &force, count, Leaf::Position);
     let force_qd = derivative(g, &force, count, Leaf::Velocity);
+    let state_rates: Vec<Option<NodeId>> = declared.states.iter().map(|state| state.rate.map(of)).collect();
+    let slopes = slopes(g, &force, &state_rates);
     let columns = transposed(rows, count);
     let reaction = products(g, &columns, Leaf::Multiplier);
     let reaction_q = hessian(g, &reaction);
@@ -147,7 +171,8 @@ pub fn derive(
         potential: potential.0,
         powers,
         carried: carried.0,
-        state_rates: declared.states.iter().map(|state| state.rate.map(of)).collect(),
+        state_rates,
+        slopes,
         start_states: declared.states.iter().map(|state| state.start.map(of)).collect(),
         start_rates: (0..count).map(|index| start(&declared.rates, index)).collect(),
         signed: signed(g, declared.signed.iter().map(|signed| of(signed.value))),
@@ -334,6 +359,30 @@ fn derivative(g: &mut Graph, roots: &[Option<NodeId>], count: usize, axis: fn(u3
     let zero = g.constant(0.0);
     let roots: Vec<NodeId> = roots.iter().map(|root| root.unwrap_or(zero)).collect();
     jacobian(g, &roots, count, axis)
+}
+
+/// Derivatives of the forces by each state, and of each state's rate.
+fn slopes(g: &mut Graph, force: &[Option<NodeId>], rates: &[Option<NodeId>]) -> Vec<Slope> {
+    let (count, states) = (force.len(), rates.len());
+    if states == 0 {
+        return Vec::new();
+    }
+    let forces = derivative(g, force, states, Leaf::State);
+    let by = [(count, Leaf::Position as fn(u32) -> Leaf), (count, Leaf::Velocity), (states, Leaf::State)];
+    let by = by.map(|(columns, axis)| (columns, derivative(g, rates, columns, axis)));
+    let row = |(columns, rows): &(usize, Sparse), state: usize| {
+        let entries: &[(usize, NodeId)] = rows.get(state).map_or(&[], Vec::as_slice);
+        let entry = |column: usize| entries.iter().find(|(at, _)| *at == column).map(|(_, entry)| *entry);
+        (0..*columns).map(entry).collect::<Vec<_>>()
+    };
+    let [q, qd, own] = &by;
+    let slope = |state: usize| {
+        let acts =
+            |row: &Vec<(usize, NodeId)>| row.iter().find(|(at, _)| *at == state).map(|(_, entry)| *entry);
+        let force = forces.iter().map(acts).collect();
+        Slope { force, q: row(q, state), qd: row(qd, state), states: row(own, state) }
+    };
+    (0..states).map(slope).collect()
 }
 
 /// Derivative of a gradient along the coordinates: the upper triangle, mirrored.

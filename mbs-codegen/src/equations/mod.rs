@@ -20,7 +20,7 @@ use crate::model::Model;
 use crate::symbolic::{Graph, Leaf, NodeId, tangent, tangents};
 
 pub use attribution::Motion;
-pub use dynamics::{Dynamics, Sparse};
+pub use dynamics::{Dynamics, Slope, Sparse};
 use lower::Lowered;
 pub use lower::MARGIN;
 pub use pins::{Attribution, On};

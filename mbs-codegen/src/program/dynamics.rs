@@ -31,6 +31,8 @@ pub struct DynamicsProgram {
     pub powers: Section,
     /// What the time alone gives to the energies.
     pub carried: Section,
+    /// Derivatives by first-order states, and of their rates.
+    pub slopes: Section,
     /// Outputs of multipliers and states.
     pub loads: Section,
     /// First-order states at the start.
@@ -55,6 +57,7 @@ pub struct Roots {
     energy: Vec<NodeId>,
     powers: Vec<NodeId>,
     carried: Vec<NodeId>,
+    slopes: Vec<NodeId>,
     loads: Vec<NodeId>,
     start_states: Vec<NodeId>,
     start_rates: Vec<NodeId>,
@@ -78,6 +81,7 @@ impl Roots {
             energy: some(&[dynamics.kinetic, dynamics.potential]),
             powers: some(&dynamics.powers),
             carried: some(&[dynamics.carried]),
+            slopes: dynamics.slopes.iter().flat_map(|slope| slope.roots()).collect(),
             loads: dynamics.loads.clone(),
             start_states: some(&dynamics.start_states),
             start_rates: some(&dynamics.start_rates),
@@ -91,7 +95,7 @@ impl Roots {
     }
 
     /// Functions that some methods call, or that nobody calls in every step: nothing is kept for them alone.
-    pub fn rare(&self) -> [&[NodeId]; 8] {
+    pub fn rare(&self) -> [&[NodeId]; 9] {
         [
             &self.force_q,
             &self.force_qd,
@@ -100,6 +104,7 @@ impl Roots {
             &self.energy,
             &self.powers,
             &self.carried,
+            &self.slopes,
             &self.loads,
         ]
     }
@@ -128,6 +133,7 @@ impl Roots {
             energy: section(&self.energy),
             powers: section(&self.powers),
             carried: section(&self.carried),
+            slopes: section(&self.slopes),
             loads: section(&self.loads),
             start_states: early(&self.start_states),
             start_rates: early(&self.start_rates),

@@ -41,6 +41,8 @@ pub struct Equilibrium<R, const N: usize, const M: usize> {
 
 /// Solves Φ_qᵀ λ = Q(q) with Φ(q, t) = 0 at q̇ = 0, from `q` (N) at time `t` (s), which stands still.
 ///
+/// First-order states rest too: ż = 0, see [`states_at_rest`](super::states::states_at_rest).
+///
 /// No mass has a part in it, beyond what gravity makes of it. The nearest equilibrium is found, stable or not: see
 /// [`linearize`](super::linearization::linearize()). Newton's method takes capped steps, the shortest where a motion meets no
 /// stiffness, and goes with the force where that pushes along such a motion. Where it does not come to an end, the
@@ -48,7 +50,8 @@ pub struct Equilibrium<R, const N: usize, const M: usize> {
 ///
 /// # Errors
 /// [`Failure::NonFinite`]; [`Failure::Restless`] with the coordinate that is still pushed where the forces are nearest to
-/// balance; [`Failure::Unbalanced`] with the coordinate that moved most in the last iteration.
+/// balance; [`Failure::Unbalanced`] with the coordinate that moved most in the last iteration; [`Failure::Unsettled`] with a state
+/// that has no rest.
 pub fn equilibrium<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     mechanism: &S,
     t: R,
@@ -81,14 +84,17 @@ fn balanced<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     t: R,
     y: &mut State<R, N, S::States>,
 ) -> Result<Option<Equilibrium<R, N, M>>, Failure> {
+    model.settle_states(t, y, &[R::constant(0.0); M])?;
     let (mut lambda, _) = balancing(model, t, y)?;
     let mut last = R::constant(f64::MAX);
     for iterations in 1..=MOST_ITERATIONS {
+        model.settle_states(t, y, &lambda)?;
         let (step, change) = correction(model, t, y, &lambda)?;
         let share = capped(&step, &model.metric.coordinates);
         y.q = y.q.plus(-share, &[1.0], [&step]);
         lambda = lambda.plus(-share, &[1.0], [&change]);
         if model.standing(&step, &y.q, &mut last)? {
+            model.settle_states(t, y, &lambda)?;
             // Rows that follow from others do so at the end alone: on the way their multipliers may have grown against each other.
             let (shortest, unique) = balancing(model, t, y)?;
             lambda = if unique.contains(&false) { shortest } else { lambda };
@@ -109,7 +115,7 @@ fn correction<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
 ) -> Result<([R; N], [R; M]), Failure> {
     let (mechanism, parameters, none) = (model.mechanism, model.parameters, [R::constant(0.0); N]);
     let position = model.position(t, y);
-    let tangent = Tangent::of(model, &position, y, &none, lambda);
+    let tangent = Tangent::at_rest(model, &position, y, lambda);
     let phi_q = mechanism.phi_q(parameters, &position);
     let imbalance = model.imbalance(&position, y, &none, lambda);
     let phi = mechanism.phi(parameters, &position);
@@ -140,6 +146,7 @@ fn approach<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
 ) -> Result<(), Failure> {
     let mut counts = Counts::default();
     close(model, t, y, &[], &mut counts)?;
+    model.settle_states(t, y, &[R::constant(0.0); M])?;
     for _ in 0..MOST_MOVES {
         let answer = answer(model, t, y)?;
         if !R::constant(0.0).less(answer.imbalance) {
@@ -150,16 +157,18 @@ fn approach<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
         for _ in 0..HALVINGS {
             let mut trial = *y;
             trial.q = y.q.plus(-share, &[1.0], [&answer.step]);
-            let closed = close(model, t, &mut trial, &[], &mut counts).is_ok();
+            let closed = close(model, t, &mut trial, &[], &mut counts)
+                .and_then(|()| model.settle_states(t, &mut trial, &[R::constant(0.0); M]))
+                .is_ok();
             let promised = answer.imbalance * (R::constant(1.0) - R::constant(PROMISED) * share);
             if closed && self::answer(model, t, &trial)?.imbalance.less(promised) {
-                nearer = Some(trial.q);
+                nearer = Some(trial);
                 break;
             }
             share = share * R::constant(0.5);
         }
         match nearer {
-            Some(q) => y.q = q,
+            Some(trial) => *y = trial,
             None => return Err(restless(model, t, &answer)),
         }
     }

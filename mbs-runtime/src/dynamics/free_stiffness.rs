@@ -54,7 +54,7 @@ impl<R: Real, const N: usize, const M: usize> FreeStiffness<R, N, M> {
         lambda: &[R; M],
     ) -> Result<Self, Failure> {
         let (zero, position) = (R::constant(0.0), model.position(t, y));
-        let stiffness = Tangent::of(model, &position, y, &[zero; N], lambda).stiffness;
+        let stiffness = Tangent::at_rest(model, &position, y, lambda).stiffness;
         let phi_q = model.mechanism.phi_q(model.parameters, &position);
         let system = System::new(&model.metric.mass(), &phi_q, model.metric);
         let factors = system.factorize_rank_revealing(R::constant(TRUNCATION), S::COORDINATES, t)?;

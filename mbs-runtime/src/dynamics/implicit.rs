@@ -41,6 +41,18 @@ impl<R: Real, const N: usize> Tangent<R, N> {
         Tangent { mass: mechanism.mass(parameters, position), damping, stiffness }
     }
 
+    /// That of a state at rest whose first-order states rest too and follow the coordinates.
+    pub(super) fn at_rest<S: Dynamic<R, N, M>, const M: usize>(
+        model: &Model<'_, S, R, N, M>,
+        position: &S::Position,
+        y: &State<R, N, S::States>,
+        lambda: &[R; M],
+    ) -> Self {
+        let mut tangent = Tangent::of(model, position, y, &[R::constant(0.0); N], lambda);
+        model.add_following_states(position, y, lambda, &mut tangent.stiffness);
+        tangent
+    }
+
     /// `mass` M + `damping` C + `stiffness` K.
     pub(super) fn combined(&self, mass: R, damping: R, stiffness: R) -> [[R; N]; N] {
         let mut sum = [[R::constant(0.0); N]; N];

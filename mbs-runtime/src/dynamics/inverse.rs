@@ -47,6 +47,7 @@ use super::model::{Counts, Formulation, Model, Solved};
 use super::multipliers::{Unstabilized, factorize};
 use super::projection::Projection;
 use super::signed::parameter_failure;
+use super::states::require_no_states;
 use super::vector::State;
 use crate::{Dynamic, Failure, Motion, Real};
 
@@ -74,11 +75,26 @@ pub struct Driven<R, const N: usize, const M: usize, L> {
 ///
 /// # Errors
 /// [`Failure::NonFinite`], [`Failure::Negative`], [`Failure::OffConstraints`] where the rows contradict each other at this time,
-/// [`Failure::Inertialess`].
+/// [`Failure::Inertialess`]; [`Failure::StatesUnknown`] for a text with first-order states, see [`inverse_with_states`].
 pub fn inverse<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     mechanism: &S,
     t: R,
     q: &[R; N],
+) -> Result<Driven<R, N, M, S::Loads>, Failure> {
+    require_no_states::<S, R, N, M>(t)?;
+    inverse_with_states(mechanism, t, q, &mechanism.start_states(&mechanism.parameters()))
+}
+
+/// [`inverse`] with the first-order `states` of the text as they are at that time: those of a [`Simulation`](super::Simulation)
+/// that came there.
+///
+/// # Errors
+/// As [`inverse`].
+pub fn inverse_with_states<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
+    mechanism: &S,
+    t: R,
+    q: &[R; N],
+    states: &S::States,
 ) -> Result<Driven<R, N, M, S::Loads>, Failure> {
     if let Some(failure) = parameter_failure(mechanism) {
         return Err(failure);
@@ -88,8 +104,7 @@ pub fn inverse<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     let model =
         Model { mechanism, parameters: &parameters, metric: &metric, balanced: false, rank_rises: false };
     let (zero, mut counts) = (R::constant(0.0), Counts::default());
-    let states = mechanism.start_states(&parameters);
-    let mut y = State { q: *q, qd: [zero; N], states, work: zero };
+    let mut y = State { q: *q, qd: [zero; N], states: *states, work: zero };
     model.check(t, &y)?;
     Projection::default().settle(&model, t, &mut y, &mut counts)?;
     // All of the velocity at once: the steps of a projection are measured by a velocity that is there already.

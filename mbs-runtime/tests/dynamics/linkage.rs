@@ -1,6 +1,6 @@
 //! Rods between points in natural coordinates, written by hand: what the macro would emit, without the macro.
 
-use mbs_runtime::{Dynamic, Energy, Entry, Limit, Mechanism, Motion, OutputValue, Phase};
+use mbs_runtime::{Dynamic, Energy, Entry, Limit, Mechanism, Motion, OutputValue, Phase, StateSlope};
 
 /// One end of a rod.
 #[derive(Clone, Copy, Debug)]
@@ -212,6 +212,7 @@ impl<const N: usize, const M: usize> Mechanism<f64, N, M> for Linkage<N, M> {
 
 impl<const N: usize, const M: usize> Dynamic<f64, N, M> for Linkage<N, M> {
     type States = [f64; 0];
+    type StateSlopes = [StateSlope<f64, N, [f64; 0]>; 0];
     type Powers = [f64; 2];
     type Loads = [f64; 0];
 

@@ -4,6 +4,7 @@ mod analyses;
 mod balance;
 mod determinacy;
 mod failures;
+mod first_order;
 mod integrators;
 mod linkage;
 mod methods;

@@ -487,6 +487,7 @@ where
         margin: run.margin(),
     });
     forces.push(balance.energy, run.loads().as_ref(), run.lambda());
+    forces.states = run.states().as_ref().to_vec();
     forces.work.push(balance.work);
     forces.defect.push(balance.defect);
     forces.closure_rate.push(balance.phi_d);

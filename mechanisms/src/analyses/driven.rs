@@ -1,6 +1,6 @@
 //! Inverse dynamics: the forces of a motion that drives prescribe.
 
-use mbs_runtime::dynamics::inverse;
+use mbs_runtime::dynamics::{DormandPrince8, Explicit, Projection, Simulation, inverse_with_states};
 use mbs_runtime::{Dynamic, Failure, Motion as Moving};
 
 use super::determined;
@@ -14,7 +14,7 @@ pub(crate) fn add_forces<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
 ) -> Result<(), Failure> {
     let mut mechanism = mechanism.clone();
     let mut forces = Forces::of(S::LOADS, S::ROWS);
-    let mut before = None;
+    let (mut before, mut run) = (None, None);
     for (index, t) in motion.time.iter().enumerate() {
         let q: [f64; N] = core::array::from_fn(|coordinate| motion.coordinates[coordinate].q[index]);
         // Drives that prescribe a rate: their phases take the steps that the motion took.
@@ -22,15 +22,44 @@ pub(crate) fn add_forces<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
             None => mechanism.start_phases(&q, *t),
             Some(from) => mechanism.advance_phases(from, *t),
         }
-        let driven = inverse(&mechanism, *t, &q)?;
         let parameters = mechanism.parameters();
+        let states = states_at(&mut run, &mechanism, *t, &q)?;
+        let driven = inverse_with_states(&mechanism, *t, &q, &states)?;
         let position = mechanism.position(&parameters, &driven.q, *t);
         let energy = mechanism.energy(&parameters, &position, &driven.qd);
         forces.push(energy, driven.loads.as_ref(), &driven.lambda);
-        let states = mechanism.start_states(&parameters);
+        forces.states = states.as_ref().to_vec();
         let moving = Moving { qd: &driven.qd, qdd: &driven.qdd, lambda: &driven.lambda, states: &states };
         determined::push(&mut forces, &mechanism, (&parameters, &position), *t, &moving)?;
     }
     motion.dynamics = Some(forces);
     Ok(())
+}
+
+/// A motion with masses that is integrated for its first-order states.
+type Run<S, const N: usize, const M: usize> = Simulation<S, Explicit<DormandPrince8, Projection>, f64, N, M>;
+
+/// The first-order states at `t` (s), integrated along the motion: `run` goes on from call to call, and starts at the first.
+fn states_at<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
+    run: &mut Option<Run<S, N, M>>,
+    mechanism: &S,
+    t: f64,
+    q: &[f64; N],
+) -> Result<S::States, Failure> {
+    if S::STATES.is_empty() {
+        return Ok(mechanism.start_states(&mechanism.parameters()));
+    }
+    let mut moved = match run.take() {
+        Some(run) => run,
+        None => {
+            let method = Explicit::new(DormandPrince8, Projection::default());
+            Simulation::start_near(mechanism.clone(), method, t, *q, [0.0; N])?
+        }
+    };
+    if moved.t() < t {
+        moved.advance_to(t)?;
+    }
+    let states = *moved.states();
+    *run = Some(moved);
+    Ok(states)
 }

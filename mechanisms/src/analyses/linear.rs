@@ -1,13 +1,16 @@
 //! Small motions about a position of rest or a moving state, and their eigenvalues.
 
-use mbs_runtime::dynamics::{Linearization, linearize_in};
-use mbs_runtime::{Dynamic, Entry};
+use mbs_runtime::dynamics::{Instant, Linearization, Solved, State, linearize_with_states};
+use mbs_runtime::{Dynamic, Entry, StateSlope};
 use nalgebra::{DMatrix, Schur};
 
 use crate::facade::Motion;
 
 /// Sweeps of the QR iteration an eigenvalue before it counts as not converging; two or three are usual.
 const SWEEPS: usize = 100;
+
+/// Rounds of balancing: each state's follows those of its neighbours.
+const BALANCINGS: u32 = 10;
 
 /// Part of the matrix's norm below which an eigenvalue is what rounding leaves of 0: a double one, of a motion that no
 /// force answers, moves by the root of ε.
@@ -18,8 +21,8 @@ pub const ZERO: f64 = 1e-6;
 pub struct SmallMotions {
     /// Degrees of freedom.
     pub freedom: usize,
-    /// Real and imaginary part (1/s) of the 2·`freedom` eigenvalues of s̈ = −M̄⁻¹ (C̄ ṡ + K̄ s), by frequency, then by
-    /// decay; none of them is of multipliers or stabilisation.
+    /// Real and imaginary part (1/s) of the 2·`freedom` eigenvalues of s̈ = −M̄⁻¹ (C̄ ṡ + K̄ s), with as many more as there are
+    /// first-order states, by frequency, then by decay; none of them is of multipliers or stabilisation.
     pub eigenvalues: Vec<[f64; 2]>,
     /// Norm of the first-order system (1/s): below [`ZERO`] of it an eigenvalue is 0.
     pub norm: f64,
@@ -67,7 +70,7 @@ impl SmallMotions {
 /// they determine the others.
 ///
 /// # Errors
-/// Why not, in words: those of [`linearize`](fn@linearize), or that no eigenvalues come out.
+/// Why not, in words: those of [`linearize`](fn@mbs_runtime::dynamics::linearize), or that no eigenvalues come out.
 pub(crate) fn small_motions<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
     mechanism: &S,
     independent: &[u16],
@@ -84,9 +87,15 @@ pub(crate) fn small_motions<S: Dynamic<f64, N, M>, const N: usize, const M: usiz
     lambda.iter_mut().zip(multipliers).for_each(|(slot, curve)| *slot = last(&curve.value));
     let mut mechanism = mechanism.clone();
     mechanism.start_phases(&q, t);
-    let linear = linearize_in(&mechanism, t, (&q, &qd, &qdd), &lambda, independent)
-        .map_err(|failure| failure.to_string())?;
-    let mut small = eigenvalues(&linear)
+    let mut states = mechanism.start_states(&mechanism.parameters());
+    let known = motion.dynamics.iter().flat_map(|forces| &forces.states);
+    states.as_mut().iter_mut().zip(known).for_each(|(state, known)| *state = *known);
+    let y = State { q, qd, states, work: 0.0 };
+    let rate = State { q: qd, qd: qdd, states, work: 0.0 };
+    let instant = Instant { t, y, solved: Solved { rate, lambda, margin: 1.0 }, carried: qdd };
+    let found = linearize_with_states(&mechanism, &instant, independent);
+    let (linear, slopes) = found.map_err(|failure| failure.to_string())?;
+    let mut small = eigenvalues(&linear, slopes.as_ref().map_or(&[], AsRef::as_ref))
         .ok_or_else(|| "the masses of the free motions are not positive definite".to_string())?;
     if linear.frozen {
         let marked = |index: usize| linear.independent.get(index).copied().unwrap_or(false);
@@ -101,8 +110,13 @@ pub(crate) fn small_motions<S: Dynamic<f64, N, M>, const N: usize, const M: usiz
 }
 
 /// Eigenvalues of reduced matrices; none where the mass matrix is not positive definite.
-fn eigenvalues<const N: usize>(linear: &Linearization<f64, N>) -> Option<SmallMotions> {
-    let size = linear.freedom;
+///
+/// With states the equations are those of (s, ṡ over a typical frequency, ζ).
+fn eigenvalues<Z: AsRef<[f64]>, const N: usize>(
+    linear: &Linearization<f64, N>,
+    slopes: &[StateSlope<f64, N, Z>],
+) -> Option<SmallMotions> {
+    let (size, states) = (linear.freedom, slopes.len());
     let of = |matrix: &[[f64; N]; N]| DMatrix::from_fn(size, size, |i, j| matrix[i][j]);
     let nothing = SmallMotions {
         freedom: size,
@@ -112,7 +126,7 @@ fn eigenvalues<const N: usize>(linear: &Linearization<f64, N>) -> Option<SmallMo
         coordinates: Vec::new(),
         passed_over: Vec::new(),
     };
-    if size == 0 {
+    if size + states == 0 {
         return Some(nothing);
     }
     // M̄ = L Lᵀ and s = L⁻ᵀ y: symmetric matrices stay symmetric.
@@ -126,19 +140,57 @@ fn eigenvalues<const N: usize>(linear: &Linearization<f64, N>) -> Option<SmallMo
     // Velocities over a typical frequency, so that both halves of the system are of one size.
     let frequency = stiffness.norm().sqrt().max(damping.norm());
     let frequency = if frequency > 0.0 { frequency } else { 1.0 };
-    let system = DMatrix::from_fn(2 * size, 2 * size, |i, j| match (i < size, j < size) {
+    let order = 2 * size + states;
+    let mut system = DMatrix::from_fn(order, order, |i, j| match (i < size, j < size) {
+        _ if i.max(j) >= 2 * size => 0.0,
         (true, true) => 0.0,
         (true, false) => f64::from(u8::from(j - size == i)) * frequency,
         (false, true) => -stiffness[(i - size, j)] / frequency,
         (false, false) => -damping[(i - size, j - size)],
     });
+    // s = L⁻ᵀ y: forces of states act as L⁻¹ Rᵀ Q_z, and what their rates have of s is applied to L⁻ᵀ.
+    let along = |pick: fn(&StateSlope<f64, N, Z>) -> &[f64; N]| {
+        lower.solve_lower_triangular(&DMatrix::from_fn(size, states, |i, k| pick(&slopes[k])[i]))
+    };
+    let (force, place, speed) = (along(|s| &s.force)?, along(|s| &s.q)?, along(|s| &s.qd)?);
+    for (k, slope) in slopes.iter().enumerate() {
+        for i in 0..size {
+            system[(size + i, 2 * size + k)] = force[(i, k)] / frequency;
+            system[(2 * size + k, i)] = place[(i, k)];
+            system[(2 * size + k, size + i)] = speed[(i, k)] * frequency;
+        }
+        slope
+            .states
+            .as_ref()
+            .iter()
+            .enumerate()
+            .for_each(|(l, entry)| system[(2 * size + k, 2 * size + l)] = *entry);
+    }
+    balance_states(&mut system, 2 * size);
     let norm = system.norm();
-    let schur = Schur::try_new(system, f64::EPSILON, SWEEPS * 2 * size)?;
+    let schur = Schur::try_new(system, f64::EPSILON, SWEEPS * order)?;
     let mut found: Vec<[f64; 2]> = schur.complex_eigenvalues().iter().map(|z| [z.re, z.im]).collect();
     found.sort_by(|a, b| {
         a[1].abs().total_cmp(&b[1].abs()).then(a[0].total_cmp(&b[0])).then(a[1].total_cmp(&b[1]))
     });
     Some(SmallMotions { eigenvalues: found, norm, ..nothing })
+}
+
+/// Measures each state beyond `first` so that what acts on it is as large as what it acts on, by powers of two: units of states
+/// are any, and beside newtons or pascals the norm would say nothing of the others.
+fn balance_states(system: &mut DMatrix<f64>, first: usize) {
+    for _ in 0..BALANCINGS {
+        for state in first..system.nrows() {
+            let others = |value: f64, index: usize| if index == state { 0.0 } else { value.abs() };
+            let row: f64 = (0..system.nrows()).map(|j| others(system[(state, j)], j)).sum();
+            let column: f64 = (0..system.nrows()).map(|i| others(system[(i, state)], i)).sum();
+            if row > 0.0 && column > 0.0 {
+                let factor = (0.5 * (column / row).log2()).round().exp2();
+                (0..system.nrows()).for_each(|j| system[(state, j)] *= factor);
+                (0..system.nrows()).for_each(|i| system[(i, state)] /= factor);
+            }
+        }
+    }
 }
 
 #[cfg(test)]
@@ -205,6 +257,36 @@ mod tests {
         body point { mass: 2, com: rot(omega*t)*p }
         potential springs = k*dot(p, p)/2;
         start p = [0, 0] rate [0, 0];
+    }
+
+    mechanism! {
+        /// A point on a spring with an actuator that lags behind its command and feels the point.
+        pub mechanism Lagging;
+        coord x: m = 0.1;
+        state z: N = 1;
+        body point { mass: 2, com: [x, 0] }
+        potential spring = 0.5*100N/1m*x^2;
+        force actuator: z on x;
+        der(z) == (2N - 300N/1m*x - 10N*s/1m*der(x) - z)/0.3s;
+        start x = 0.1 rate 0;
+    }
+
+    #[test]
+    fn first_order_states_add_an_eigenvalue_each() {
+        let lagging = boxed_masses::<Lagging, 1, 0>();
+        let dynamics = lagging.dynamics().expect("it has masses");
+        let rest = dynamics.rest(&[]).expect("it rests");
+        assert!((rest.motion.coordinates[0].q[0] - 0.005).abs() < 1e-12);
+        let found = dynamics.small_motions(&rest.motion).expect("it moves");
+        assert_eq!((found.eigenvalues.len(), found.freedom, found.frozen), (3, 1, false));
+        // 2 s³ + 2/0.3 s² + (100 + 10/0.3) s + (100 + 300)/0.3 = 0.
+        for [re, im] in &found.eigenvalues {
+            let z = nalgebra::Complex::new(*re, *im);
+            let value = z * z * z * 2.0 + z * z * (2.0 / 0.3) + z * (100.0 + 10.0 / 0.3) + 400.0 / 0.3;
+            assert!(value.norm() < 1e-9 * found.norm.powi(3), "{found:?}");
+        }
+        let sum: f64 = found.eigenvalues.iter().map(|[re, _]| re).sum();
+        assert!((sum + 1.0 / 0.3).abs() < BOUND * found.norm, "{found:?}");
     }
 
     fn about_start(mechanism: &dyn AnyEquations, t: f64) -> SmallMotions {

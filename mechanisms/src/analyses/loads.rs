@@ -14,6 +14,12 @@ pub(super) fn multipliers<S: Dynamic<f64, N, M>, const N: usize, const M: usize>
     let array =
         |values: &[f64]| <[f64; N]>::try_from(values).map_err(|_| format!("{N} coordinates are needed"));
     let (q, qd) = (array(&state.q)?, array(&state.qd)?);
+    if let Some(unknown) = S::STATES.first().filter(|_| state.t != 0.0) {
+        return Err(format!(
+            "forces depend on the state `{}`, which is known at its start alone",
+            unknown.name
+        ));
+    }
     let mut mechanism = mechanism.clone();
     mechanism.start_phases(&q, state.t);
     let parameters = mechanism.parameters();

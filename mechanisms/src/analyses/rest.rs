@@ -1,7 +1,7 @@
 //! Static equilibrium: where a mechanism rests under its forces.
 
 use mbs_runtime::dynamics::{
-    Counts, Equilibrium, Formulation, Metric, Model, State, Unstabilized, closed, equilibrium,
+    Counts, Equilibrium, Formulation, Metric, Model, State, Unstabilized, closed, equilibrium, states_at_rest,
 };
 use mbs_runtime::{Dynamic, Failure, Motion as Moving};
 
@@ -74,31 +74,32 @@ pub(crate) fn rest<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
         outputs: outputs.as_ref(),
         closure: closure.fold(0.0, f64::max),
         iterations: found.iterations,
-        margin: margin(&mechanism, &found),
+        margin: margin(&mechanism, &found)?,
     });
-    let states = mechanism.start_states(&parameters);
+    let states = states_at_rest(&mechanism, 0.0, &found.q, &found.lambda)?;
     let moving = Moving { qd: &none, qdd: &none, lambda: &found.lambda, states: &states };
     let loads = mechanism.loads(&parameters, &position, &moving);
     let mut forces = Forces::of(S::LOADS, S::ROWS);
     let energy = mechanism.energy(&parameters, &position, &none);
     forces.push(energy, loads.as_ref(), &found.lambda);
+    forces.states = states.as_ref().to_vec();
     determined::push(&mut forces, &mechanism, (&parameters, &position), 0.0, &moving)?;
     motion.dynamics = Some(forces);
     let indifferent = S::COORDINATES.iter().zip(&found.indifferent).filter(|(_, indifferent)| **indifferent);
     let indifferent = indifferent.map(|(entry, _)| entry.name).collect();
-    Ok(Rest { motion, indifferent, held: depends_on_time(&mechanism, &found) })
+    Ok(Rest { motion, indifferent, held: depends_on_time(&mechanism, &found, &states) })
 }
 
 /// Whether forces or rows at the rest would be others at another time.
 fn depends_on_time<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
     mechanism: &S,
     found: &Equilibrium<f64, N, M>,
+    states: &S::States,
 ) -> bool {
     let (parameters, none) = (mechanism.parameters(), [0.0; N]);
-    let states = mechanism.start_states(&parameters);
     let at = |t: f64| {
         let position = mechanism.position(&parameters, &found.q, t);
-        let force = mechanism.force(&parameters, &position, &none, &states, &found.lambda);
+        let force = mechanism.force(&parameters, &position, &none, states, &found.lambda);
         (force, mechanism.phi(&parameters, &position), mechanism.phi_t(&parameters, &position))
     };
     OTHER_TIMES.iter().any(|t| at(*t) != at(0.0)) || at(0.0).2.iter().any(|rate| *rate != 0.0)
@@ -108,13 +109,13 @@ fn depends_on_time<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
 fn margin<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
     mechanism: &S,
     found: &Equilibrium<f64, N, M>,
-) -> f64 {
+) -> Result<f64, Failure> {
     let parameters = mechanism.parameters();
     let metric = Metric::of(mechanism, &parameters);
     let model =
         Model { mechanism, parameters: &parameters, metric: &metric, balanced: false, rank_rises: false };
-    let states = mechanism.start_states(&parameters);
+    let states = states_at_rest(mechanism, 0.0, &found.q, &found.lambda)?;
     let y = State { q: found.q, qd: [0.0; N], states, work: 0.0 };
     let solved = Unstabilized.solve(&model, 0.0, &y, &found.lambda, &mut Counts::default());
-    solved.map_or(f64::NAN, |solved| solved.margin)
+    Ok(solved.map_or(f64::NAN, |solved| solved.margin))
 }

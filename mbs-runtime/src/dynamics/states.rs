@@ -1,0 +1,190 @@
+//! First-order states beside the other unknowns: where they rest, and what they do to small motions.
+
+use super::metric::{Metric, worse};
+use super::model::Model;
+use super::vector::State;
+use crate::{Dynamic, Failure, Real, StateSlope, kinematics};
+
+/// Iterations of Newton's method for the rest of the states: one where their rates are linear in them.
+const MOST_ITERATIONS: u32 = 60;
+
+/// A correction that counts as rounding, in ε of the largest that the state has been.
+const STANDING: f64 = 64.0;
+
+/// A correction that no longer falls counts as converged below this, of the largest that the state has been.
+const STUCK: f64 = 1e-9;
+
+/// Part of the largest entry of its row below which a pivot is what rounding leaves of 0.
+const PIVOT: f64 = 1e-12;
+
+/// First-order states (of the text) that rest with the coordinates `q` (N) at rest at time `t` (s): ż = 0. `lambda` (M): the
+/// multipliers, where rates depend on them. A state whose rate is 0 whatever it is stays at its start value.
+///
+/// # Errors
+/// [`Failure::NonFinite`]; [`Failure::Unsettled`] with a state that has no rest: its rate does not vanish, or does not depend on it.
+pub fn states_at_rest<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
+    mechanism: &S,
+    t: R,
+    q: &[R; N],
+    lambda: &[R; M],
+) -> Result<S::States, Failure> {
+    let (zero, parameters) = (R::constant(0.0), mechanism.parameters());
+    let metric = Metric::of(mechanism, &parameters);
+    let model =
+        Model { mechanism, parameters: &parameters, metric: &metric, balanced: false, rank_rises: false };
+    let mut y = State { q: *q, qd: [zero; N], states: mechanism.start_states(&parameters), work: zero };
+    model.check(t, &y)?;
+    model.settle_states(t, &mut y, lambda)?;
+    Ok(y.states)
+}
+
+/// Fails where the text has first-order states, whose values the caller has not given.
+pub(super) fn require_no_states<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
+    t: R,
+) -> Result<(), Failure> {
+    match S::STATES.first() {
+        None => Ok(()),
+        Some(state) => Err(Failure::StatesUnknown { state: *state, time: t.to_f64() }),
+    }
+}
+
+impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, R, N, M> {
+    /// Puts the first-order states of `y` where they rest beside its coordinates and velocities: ż = 0.
+    pub(super) fn settle_states(
+        &self,
+        t: R,
+        y: &mut State<R, N, S::States>,
+        lambda: &[R; M],
+    ) -> Result<(), Failure> {
+        let Some(first) = S::STATES.first() else { return Ok(()) };
+        let unsettled = |index: usize| {
+            let state = *S::STATES.get(index).unwrap_or(first);
+            Failure::Unsettled { state, time: t.to_f64() }
+        };
+        let (zero, position) = (R::constant(0.0), self.position(t, y));
+        let (mut sizes, mut last, mut worst) = (y.states, R::constant(f64::MAX), 0);
+        sizes.as_mut().iter_mut().for_each(|size| *size = size.abs());
+        for _ in 0..MOST_ITERATIONS {
+            let mut step = self.mechanism.state_rates(self.parameters, &position, &y.qd, &y.states, lambda);
+            let slopes = self.mechanism.state_slopes(self.parameters, &position, &y.qd, &y.states, lambda);
+            let mut slopes = slopes.ok_or_else(|| unsettled(0))?;
+            if let Some(failure) = kinematics::non_finite_among(step.as_ref(), S::STATES) {
+                return Err(failure);
+            }
+            solve(&mut slopes, &mut step).map_err(unsettled)?;
+            let mut largest = zero;
+            let states = y.states.as_mut().iter_mut().zip(sizes.as_mut()).zip(step.as_ref());
+            for (index, ((state, size), step)) in states.enumerate() {
+                *state = *state - *step;
+                *size = size.max(state.abs());
+                let share = if zero < *size { step.abs() / *size } else { zero };
+                let larger = worse(largest, share);
+                if larger != largest {
+                    (largest, worst) = (larger, index);
+                }
+            }
+            let stuck = last <= largest && largest < R::constant(STUCK);
+            if stuck || largest <= R::constant(STANDING) * R::EPSILON {
+                return Ok(());
+            }
+            last = largest;
+        }
+        Err(unsettled(worst))
+    }
+
+    /// Adds to `stiffness` (N rows of N) what states that follow the coordinates make of it: with ż = 0 throughout,
+    /// z_q = −(ż_z)⁻¹ ż_q, so that −Q_z z_q comes to −∂Q/∂q.
+    pub(super) fn add_following_states(
+        &self,
+        position: &S::Position,
+        y: &State<R, N, S::States>,
+        lambda: &[R; M],
+        stiffness: &mut [[R; N]; N],
+    ) {
+        let slopes = self.mechanism.state_slopes(self.parameters, position, &y.qd, &y.states, lambda);
+        let Some(mut slopes) = slopes else { return };
+        let (forces, mut none) = (slopes, y.states);
+        none.as_mut().iter_mut().for_each(|value| *value = R::constant(0.0));
+        if solve(&mut slopes, &mut none).is_err() {
+            return;
+        }
+        for (force, follows) in forces.as_ref().iter().zip(slopes.as_ref()) {
+            for (row, force) in stiffness.iter_mut().zip(&force.force) {
+                row.iter_mut().zip(&follows.q).for_each(|(entry, q)| *entry = *entry + *force * *q);
+            }
+        }
+    }
+}
+
+/// Solves ż_z x = right, and ż_z X = ż_q beside it, in place, row k of `slopes` with what belongs to state k: Gauss–Jordan with
+/// pivots chosen among the rows, each over its largest entry. A state that no row depends on gets 0.
+///
+/// # Errors
+/// The index of a row that depends on no state that is left and whose `right` is not 0.
+fn solve<R: Real, const N: usize, Z, P>(slopes: &mut P, right: &mut Z) -> Result<(), usize>
+where
+    Z: Copy + AsRef<[R]> + AsMut<[R]>,
+    P: Copy + AsRef<[StateSlope<R, N, Z>]> + AsMut<[StateSlope<R, N, Z>]>,
+{
+    let (zero, one) = (R::constant(0.0), R::constant(1.0));
+    // The column that a row is solved for; −1 before it is for any.
+    let mut column_of = *right;
+    column_of.as_mut().iter_mut().for_each(|column| *column = -one);
+    for (row, right) in slopes.as_mut().iter_mut().zip(right.as_mut()) {
+        let size = row.states.as_ref().iter().fold(zero, |size, entry| size.max(entry.abs()));
+        if zero < size {
+            row.scale(one / size);
+            *right = *right / size;
+        }
+    }
+    let size = right.as_ref().iter().fold(zero, |size, right| size.max(right.abs()));
+    for column in 0..column_of.as_ref().len() {
+        let mut best = (R::constant(PIVOT), None);
+        for (index, (row, taken)) in slopes.as_ref().iter().zip(column_of.as_ref()).enumerate() {
+            let entry = row.entry(column).abs();
+            if *taken < zero && best.0 < entry {
+                best = (entry, Some(index));
+            }
+        }
+        let Some(index) = best.1 else { continue };
+        let found = (slopes.as_ref().get(index).copied(), right.as_ref().get(index).copied());
+        let (Some(mut pivot), Some(mut value)) = found else { continue };
+        value = value / pivot.entry(column);
+        pivot.scale(one / pivot.entry(column));
+        let rows = slopes.as_mut().iter_mut().zip(right.as_mut()).zip(column_of.as_mut());
+        for (other, ((row, right), taken)) in rows.enumerate() {
+            if other == index {
+                (*row, *right, *taken) = (pivot, value, R::constant(column as f64));
+            } else {
+                let factor = row.entry(column);
+                row.subtract(factor, &pivot);
+                *right = *right - factor * value;
+            }
+        }
+    }
+    let mut rows = right.as_ref().iter().zip(column_of.as_ref());
+    let open = rows.position(|(right, column)| *column < zero && R::constant(PIVOT) * size < right.abs());
+    if let Some(row) = open {
+        return Err(row);
+    }
+    sort(slopes, right, &column_of);
+    Ok(())
+}
+
+/// Brings each row to the place of the state that it is solved for; nothing stands where there is none.
+fn sort<R: Real, const N: usize, Z, P>(slopes: &mut P, right: &mut Z, column_of: &Z)
+where
+    Z: Copy + AsRef<[R]> + AsMut<[R]>,
+    P: Copy + AsRef<[StateSlope<R, N, Z>]> + AsMut<[StateSlope<R, N, Z>]>,
+{
+    let (rows, values) = (*slopes, *right);
+    for (place, (slope, right)) in slopes.as_mut().iter_mut().zip(right.as_mut()).enumerate() {
+        slope.scale(R::constant(0.0));
+        *right = R::constant(0.0);
+        for ((row, value), column) in rows.as_ref().iter().zip(values.as_ref()).zip(column_of.as_ref()) {
+            if *column == R::constant(place as f64) {
+                (*slope, *right) = (*row, *value);
+            }
+        }
+    }
+}
