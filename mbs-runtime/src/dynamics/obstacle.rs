@@ -27,7 +27,9 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         let mass = self.mechanism.mass(self.parameters, &position);
         let phi_q = self.mechanism.phi_q(self.parameters, &position);
         let residuals = self.mechanism.phi(self.parameters, &position);
-        if !(self.worst(&residuals, &self.metric.rows).0 < R::constant(LEFT)) {
+        // Written so that NaN is no obstacle.
+        let met = self.worst(&residuals, &self.metric.rows).0 < R::constant(LEFT);
+        if !met {
             return None;
         }
         let system = System::new(&mass, &phi_q, self.metric);
