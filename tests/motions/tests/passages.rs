@@ -113,7 +113,7 @@ fn errors<S, I, F, const N: usize, const M: usize>(method: Explicit<I, F>, k: u3
 where
     S: Dynamic<f64, N, M> + Turned,
     I: Embedded,
-    F: Formulation<S, f64, N, M>,
+    F: Formulation<S, f64, N, M> + Copy,
 {
     let loops = (N / 2 - 1) as f64;
     let (speed, frame, tolerance, grid) = start(k);
@@ -142,7 +142,7 @@ fn assert_all_pass<S, I, F, const N: usize, const M: usize>(
 ) where
     S: Dynamic<f64, N, M> + Turned,
     I: Embedded,
-    F: Formulation<S, f64, N, M>,
+    F: Formulation<S, f64, N, M> + Copy,
 {
     let mut largest = [0.0_f64; 2];
     for index in 0..starts {

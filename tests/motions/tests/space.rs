@@ -227,7 +227,7 @@ fn the_stiff_governor_is_right_at_steps_many_times_its_fastest_time_by_the_metho
             run.step_to(0.1, steps).expect("it moves");
             *run.q()
         });
-        let distance = rough.iter().zip(exact).fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()));
+        let distance = rough.iter().zip(&exact).map(|(a, b): (&f64, &f64)| (a - b).abs()).fold(0.0, f64::max);
         println!(
             "governor, dampers {factor} times as strong: {distance:.1e} between steps of 1e-3 and 1e-4 s"
         );
