@@ -240,7 +240,7 @@ mechanism! {
         out height: m = p[i, 1];
     }
     constraint tip { for i in LAST..N { for j in 0..1 { p[i][j] == 0.45m + 0.01m*sin(t/1s); } } }
-    out reach: m = sum(i in 0..N: L[i]*cos(phi[i])) - sum(i in 2..2: p[i]);
+    out reach: m = sum(i in 0..N: L[i]*cos(phi[i])) - sum(i in LAST..2: p[i]);
 }
 
 fn chain(q: &[Jet; 9], t: Jet) -> (Vec<Jet>, Vec<Jet>) {
