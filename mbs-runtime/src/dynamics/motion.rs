@@ -56,7 +56,7 @@ pub trait Method<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> {
     ) -> Result<Instant<R, N, M, S::States>, Failure>;
 
     /// The phases of drives that prescribe a rate after a step of `h` from `t` (s); none where they are those of
-    /// [`Mechanism::advance_phases`](crate::Mechanism::advance_phases).
+    /// [`Mechanism::advance_phases`].
     ///
     /// # Errors
     /// None but of what it calls.

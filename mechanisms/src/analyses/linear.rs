@@ -267,7 +267,7 @@ mod tests {
         body point { mass: 2, com: [x, 0] }
         potential spring = 0.5*100N/1m*x^2;
         force actuator: z on x;
-        der(z) == (2N - 300N/1m*x - 10N*s/1m*der(x) - z)/0.3s;
+        der(z) == (2N - 300N/1m*x - 10N*1s/1m*der(x) - z)/0.3s;
         start x = 0.1 rate 0;
     }
 
