@@ -32,6 +32,8 @@ where
     notes: Notes<R, L>,
     /// Lanes whose next step has more to do than follow the rates.
     waits: LaneMask<R, L>,
+    /// Why lanes are out.
+    retired: [Option<Failure>; L],
     /// What a lane has besides; what stands above is not up to date here.
     steppers: [Stepper<S::Lane, R, N, M>; L],
 }
@@ -62,54 +64,110 @@ where
     /// Assembles each lane of `mechanism` from its `guess` (L of N) at its time `t` (L, s).
     ///
     /// # Errors
-    /// The first lane that cannot be assembled, with its failure; see [`Stepper::assemble`].
+    /// The first lane that cannot be assembled, with its failure; see [`Stepper::assemble`]. To go on with those that can:
+    /// [`assemble_each`](Self::assemble_each).
     #[allow(
         clippy::result_large_err,
         reason = "once, before the motion, and there is no heap to keep a failure on"
     )]
     pub fn assemble(mechanism: S, guess: &[[R; N]; L], t: [R; L]) -> Result<Self, (usize, Failure)> {
+        let none = Failure::NonFinite { name: "t", line: 0 };
+        let batch = Self::assemble_each(mechanism, guess, t)
+            .map_err(|failures| (0, failures.first().copied().unwrap_or(none)))?;
+        let failed = batch.retired.iter().enumerate().find_map(|(lane, failure)| Some((lane, (*failure)?)));
+        failed.map_or(Ok(batch), Err)
+    }
+
+    /// Assembles those lanes of `mechanism` that can be, each from its `guess` (L of N) at its time `t` (L, s).
+    ///
+    /// The others are out, as if [retired](Self::retire) with their failure, which [`failures`](Self::failures) has; their
+    /// time, coordinates and rates are NaN until they are [assembled again](Self::revive).
+    ///
+    /// # Errors
+    /// The failure of each lane where no lane can be assembled; see [`Stepper::assemble`].
+    #[allow(
+        clippy::result_large_err,
+        reason = "once, before the motion, and there is no heap to keep a failure on"
+    )]
+    pub fn assemble_each(mechanism: S, guess: &[[R; N]; L], t: [R; L]) -> Result<Self, [Failure; L]> {
+        const { assert!(L > 0, "a batch has one lane or more") }
         let assembled: [Result<_, Failure>; L] = from_fn(|lane| {
             let start = guess.get(lane).copied().unwrap_or([R::constant(0.0); N]);
             Stepper::assemble(mechanism.lane(lane), start, Lanes(t).lane(lane))
         });
-        let mut first = None;
-        for (lane, result) in assembled.iter().enumerate() {
-            match result {
-                Ok(stepper) => first = first.or(Some(stepper.clone())),
-                Err(failure) => return Err((lane, *failure)),
-            }
-        }
-        let Some(first) = first else {
-            return Err((0, Failure::NonFinite { name: "t", line: 0 }));
+        let retired = assembled.each_ref().map(|result| result.as_ref().err().copied());
+        let Some(first) = assembled.iter().find_map(|result| result.as_ref().ok()).cloned() else {
+            return Err(retired.map(|failure| failure.unwrap_or(Failure::NonFinite { name: "t", line: 0 })));
         };
-        let zero = Lanes([R::constant(0.0); L]);
+        let (zero, none) = (Lanes([R::constant(0.0); L]), Lanes([R::constant(f64::NAN); L]));
         let parameters = mechanism.parameters();
         let steppers = assembled.map(|result| result.unwrap_or_else(|_| first.clone()));
-        let (q, qd, qdd) = ([zero; N], [zero; N], [zero; N]);
-        let (margin, notes, waits) = (zero, Notes::none(), LaneMask::new([false; L]));
+        let (q, qd, qdd) = ([none; N], [none; N], [none; N]);
+        let waits = LaneMask::new(retired.map(|failure| failure.is_some()));
+        let (margin, notes) = (zero, Notes::none());
         let weights = weights(&mechanism.coordinate_scales(&parameters));
-        let mut batch =
-            Batch { mechanism, parameters, weights, t: zero, q, qd, qdd, margin, notes, waits, steppers };
-        (0..L).for_each(|lane| batch.gather(lane));
+        let mut batch = Batch {
+            mechanism,
+            parameters,
+            weights,
+            t: none,
+            q,
+            qd,
+            qdd,
+            margin,
+            notes,
+            waits,
+            retired,
+            steppers,
+        };
+        for (lane, failure) in retired.iter().enumerate() {
+            if failure.is_none() {
+                batch.gather(lane);
+            }
+        }
         Ok(batch)
+    }
+
+    /// Why lanes are out, L; `None` of those that move.
+    pub fn failures(&self) -> &[Option<Failure>; L] {
+        &self.retired
+    }
+
+    /// Takes lane `lane` out: its steps answer `failure` and cost nothing, while a lane that fails in every step searches in
+    /// every one. It stays where it is; nothing happens where there is no such lane.
+    pub fn retire(&mut self, lane: usize, failure: Failure) {
+        set(&mut self.retired, lane, Some(failure));
+        self.note_waiting(lane);
+    }
+
+    /// Assembles lane `lane` anew from its `guess` (N) at its time `t` (s), whether it was out or not.
+    ///
+    /// # Errors
+    /// Where it cannot be assembled: nothing has changed then. See [`Stepper::assemble`].
+    #[allow(clippy::result_large_err, reason = "seldom, and there is no heap to keep a failure on")]
+    pub fn revive(&mut self, lane: usize, guess: &[R; N], t: R) -> Result<(), Failure> {
+        let stepper = Stepper::assemble(self.mechanism.lane(lane), *guess, t)?;
+        set(&mut self.steppers, lane, stepper);
+        set(&mut self.retired, lane, None);
+        self.gather(lane);
+        Ok(())
     }
 
     /// Moves each lane on to its time `t` (L, s).
     ///
-    /// Returns what the step of each lane cost (`evaluations` are those of the lane that needed most), or why it was not
-    /// made: that lane then is bit for bit what it was, the others have moved. See [`Stepper::advance_to`].
+    /// Returns what the step of each lane cost, or why it was not made: that lane then is bit for bit what it was, the others
+    /// have moved. See [`Stepper::advance_to`].
     pub fn advance_to(&mut self, t: [R; L]) -> [Result<Statistics, Failure>; L] {
         if !S::PHASES.is_empty() {
             return from_fn(|lane| self.alone(lane, Lanes(t).lane(lane)));
         }
         let Batch { mechanism, parameters, weights, q, qd, qdd, margin, .. } = &*self;
         let start = Start { t: self.t, q, qd, qdd, margin: *margin, weights };
-        let trial = Trial::of(mechanism, parameters, &start, Lanes(t));
-        let plain = trial.plain & !self.waits;
-        if !Lanes::<R, L>::all(plain) {
+        let trial = Trial::of(mechanism, parameters, &start, Lanes(t), !self.waits);
+        if !Lanes::<R, L>::all(trial.plain) {
             // The address of a copy, so that the trial itself stays in registers.
             let doubtful = trial;
-            return self.apart(&doubtful, plain, t);
+            return self.apart(&doubtful, t);
         }
         let notes = self.notes.after(&trial, self.margin, Lanes(t) - self.t);
         self.notes = notes;
@@ -118,15 +176,11 @@ where
         from_fn(|lane| Ok(notes.statistics(lane)))
     }
 
-    /// Takes the step over in the lanes of `plain`; the others are stepped alone.
+    /// Takes the step over in the lanes where it is plain; the others are stepped alone.
     #[cold]
     #[inline(never)]
-    fn apart(
-        &mut self,
-        trial: &Trial<Lanes<R, L>, N>,
-        plain: LaneMask<R, L>,
-        t: [R; L],
-    ) -> [Result<Statistics, Failure>; L] {
+    fn apart(&mut self, trial: &Trial<Lanes<R, L>, N>, t: [R; L]) -> [Result<Statistics, Failure>; L] {
+        let plain = trial.plain;
         let notes = self.notes.after(trial, self.margin, Lanes(t) - self.t);
         let merge = |old: &mut Lanes<R, L>, new: &Lanes<R, L>| *old = Lanes::select(plain, *new, *old);
         for (old, new) in [(&mut self.q, &trial.q), (&mut self.qd, &trial.qd), (&mut self.qdd, &trial.qdd)] {
@@ -156,10 +210,13 @@ where
         result
     }
 
-    /// The mechanism in lane `lane` alone; of the last lane where there are fewer.
+    /// The mechanism in lane `lane` alone; `None` where there is no such lane, or it has never been assembled.
     pub fn stepper(&self, lane: usize) -> Option<Stepper<S::Lane, R, N, M>> {
-        let mut stepper = self.steppers.get(lane).or(self.steppers.last()).cloned()?;
+        let mut stepper = self.steppers.get(lane).cloned()?;
         let (state, margin) = self.state(lane);
+        if state.0.to_f64().is_nan() {
+            return None;
+        }
         stepper.state.set(state, margin);
         let (drift, statistics) = (self.notes.drift(lane), self.notes.statistics(lane));
         stepper.state.note(drift, statistics, self.notes.passages(lane), self.notes.orientation(lane));
@@ -190,6 +247,9 @@ where
     #[cold]
     #[inline(never)]
     fn alone(&mut self, lane: usize, t: R) -> Result<Statistics, Failure> {
+        if let Some(failure) = at(&self.retired, lane, None) {
+            return Err(failure);
+        }
         let (state, margin) = self.state(lane);
         let Some(stepper) = self.steppers.get_mut(lane) else {
             return Err(Failure::NonFinite { name: "t", line: 0 });
@@ -221,10 +281,16 @@ where
         put(&mut self.margin, stepper.margin());
         self.notes.put(lane, stepper.state.drift, stepper.statistics());
         self.notes.count(lane, stepper.passages(), stepper.signature());
+        self.note_waiting(lane);
+    }
+
+    /// Whether the next step of lane `lane` has more to do than follow the rates.
+    fn note_waiting(&mut self, lane: usize) {
         let waits = self.waits;
-        let waiting = |other: usize| match other == lane {
-            true => stepper.waits(),
-            false => Lanes::<R, L>::test(waits, other),
+        let out = at(&self.retired, lane, None).is_some();
+        let waiting = |other: usize| match self.steppers.get(other) {
+            Some(stepper) if other == lane => out || stepper.waits(),
+            _ => Lanes::<R, L>::test(waits, other),
         };
         self.waits = LaneMask::new(from_fn(waiting));
     }
@@ -260,7 +326,7 @@ impl<R: Real, const L: usize> Notes<R, L> {
             residual: trial.residual,
             correction: trial.correction,
             row: from_fn(|lane| trial.row(lane)),
-            evaluations: [trial.evaluations; L],
+            evaluations: from_fn(|lane| trial.evaluations(lane)),
             fallback: [false; L],
             passed,
             passages: from_fn(|lane| self.passages(lane).saturating_add(u32::from(at(&passed, lane, false)))),

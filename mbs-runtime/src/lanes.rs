@@ -117,6 +117,7 @@ impl<R: Real, const L: usize> Scalar for Lanes<R, L> {
     type Real = R;
     type Mask = LaneMask<R, L>;
     type Lanes<X: Copy> = [X; L];
+    const LANES: usize = L;
 
     #[inline(always)]
     fn constant(value: f64) -> Self {

@@ -16,8 +16,10 @@ const EVALUATIONS: u32 = 5;
 pub(crate) struct Plain<T: Scalar> {
     /// Lanes in which every block has closed so far.
     pub closed: T::Mask,
-    /// Evaluations of residual and Jacobian, the most of any block.
+    /// Evaluations of residual and Jacobian, the most of any block and lane.
     pub evaluations: u32,
+    /// Those of each lane until it closed, where there are several.
+    pub counts: T,
     /// Largest |residual| over its tolerance.
     pub ratio: T,
     /// Index in Φ of its row.
@@ -25,11 +27,11 @@ pub(crate) struct Plain<T: Scalar> {
 }
 
 impl<T: Scalar> Plain<T> {
-    /// Before the first block.
+    /// Before the first block; lanes outside `lanes` are left as they are and cost nothing.
     #[inline(always)]
-    pub fn new() -> Self {
+    pub fn new(lanes: T::Mask) -> Self {
         let zero = T::constant(0.0);
-        Plain { closed: T::mask(true), evaluations: 0, ratio: zero, row: zero }
+        Plain { closed: lanes, evaluations: 0, counts: zero, ratio: zero, row: zero }
     }
 
     /// Takes up one more block; `weights`: reciprocals of the tolerances.
@@ -56,9 +58,13 @@ impl<T: Scalar> BlockSolver<T> for Plain<T> {
         let own = block.row_scales.map(own_rounding);
         // A division is paid for in every step, a reciprocal of a number of the text is one.
         let (mut weights, mut done, mut evaluations) = (reciprocals(&own), !self.closed, 0);
+        let mut counts = T::constant(0.0);
         let residuals = loop {
             let (residuals, jacobian) = evaluate(&x);
             evaluations += 1;
+            if T::LANES > 1 {
+                counts = T::select(done, counts, T::constant(f64::from(evaluations)));
+            }
             done = done | within(&residuals, &own);
             if evaluations > 1 && !T::all(done) {
                 let whole = granted(residuals, block.row_scales, x, jacobian);
@@ -78,6 +84,7 @@ impl<T: Scalar> BlockSolver<T> for Plain<T> {
         };
         self.closed = self.closed & done;
         self.evaluations = self.evaluations.max(evaluations);
+        self.counts = self.counts.max(counts);
         self.record(&block.rows, &residuals, &weights);
         (x, T::per_lane(|_| Outcome::Converged))
     }

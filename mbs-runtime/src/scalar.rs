@@ -30,6 +30,8 @@ pub trait Scalar:
         + Not<Output = Self::Mask>;
     /// One `X` a lane.
     type Lanes<X: Copy>: AsRef<[X]> + Copy;
+    /// How many lanes there are.
+    const LANES: usize = 1;
 
     /// The same number in every lane, rounded from `f64`.
     fn constant(value: f64) -> Self;

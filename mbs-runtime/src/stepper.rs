@@ -147,7 +147,7 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
             let State { q, qd, qdd, margin, .. } = &self.state;
             let weights = &weights(&self.mechanism.coordinate_scales(&self.parameters));
             let start = Start { t: self.state.t, q, qd, qdd, margin: *margin, weights };
-            let trial = Trial::of(&self.mechanism, &self.parameters, &start, t);
+            let trial = Trial::of(&self.mechanism, &self.parameters, &start, t, R::mask(true));
             if trial.plain {
                 return Ok(self.state.follow(&trial, t));
             }

@@ -35,7 +35,9 @@ pub(crate) struct Trial<T: Scalar, const N: usize> {
     pub residual: T,
     /// Index in Φ of its row.
     row: T,
-    pub evaluations: u32,
+    evaluations: u32,
+    /// Those of each lane, where there are several.
+    counts: T,
     /// Lanes in which nothing happened but what does next to a regular position. The others are stepped with care.
     pub plain: T::Mask,
 }
@@ -44,17 +46,18 @@ impl<T: Scalar, const N: usize> Trial<T, N> {
     /// Solves position, velocity and acceleration at `t` from the prediction q + h q̇ + h²/2 q̈.
     ///
     /// Not plain is a step from or into the singular zone, one that does not converge, ends so far from the prediction that it
-    /// may be in another assembly, violates a branch or leaves a limit, and one that is not finite.
+    /// may be in another assembly, violates a branch or leaves a limit, and one that is not finite. Nor is any outside `lanes`.
     #[inline(always)]
     pub(crate) fn of<S: Kinematic<T, N, M>, const M: usize>(
         mechanism: &S,
         parameters: &S::Parameters,
         start: &Start<'_, T, N>,
         t: T,
+        lanes: T::Mask,
     ) -> Self {
         let scales = mechanism.coordinate_scales(parameters);
         let prediction = start.predicted(t, &scales);
-        let mut solver = Plain::new();
+        let mut solver = Plain::new(lanes);
         let mut q = prediction;
         let (_, position) = mechanism.solve_with_position(parameters, &mut q, t, &mut solver);
         let (factors, margin) = mechanism.factorize(parameters, &position);
@@ -98,6 +101,7 @@ impl<T: Scalar, const N: usize> Trial<T, N> {
             residual: solver.ratio,
             row: solver.row,
             evaluations: solver.evaluations,
+            counts: solver.counts,
             plain,
         }
     }
@@ -106,13 +110,19 @@ impl<T: Scalar, const N: usize> Trial<T, N> {
     #[inline(always)]
     pub(crate) fn statistics(&self, lane: usize, passed: bool) -> Statistics {
         Statistics {
-            evaluations: self.evaluations,
+            evaluations: self.evaluations(lane),
             fallback: false,
             residual: self.residual.lane(lane).to_f64(),
             row: self.row(lane),
             correction: self.correction.lane(lane).to_f64(),
             passed,
         }
+    }
+
+    /// Evaluations of residual and Jacobian until lane `lane` closed, the most of any block.
+    #[inline(always)]
+    pub(crate) fn evaluations(&self, lane: usize) -> u32 {
+        if T::LANES > 1 { u32::from(index(self.counts, lane)) } else { self.evaluations }
     }
 
     /// Index in Φ of the row whose residual is largest over its tolerance, of lane `lane`.

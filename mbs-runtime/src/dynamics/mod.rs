@@ -120,7 +120,7 @@ pub use explicit::{FixedStep, RungeKutta4, SemiImplicitEuler};
 pub use extrapolated::Extrapolated;
 pub use generalized_alpha::GeneralizedAlpha;
 pub use inverse::{Driven, inverse, inverse_with_states};
-pub use linearization::{Linearization, linearize, linearize_in, linearize_with_states};
+pub use linearization::{Linearization, WithStates, linearize, linearize_in, linearize_with_states};
 pub use metric::{Metric, Tolerance};
 pub use model::{Counts, Doubt, Formulation, Model, Solved};
 pub use motion::{Equations, Explicit, Instant, Method};

@@ -52,6 +52,9 @@ impl Pair {
 const LONG_HALF_PI: [f64; 4] =
     [FRAC_PI_2, 6.123233995736766e-17, -1.4973849048591698e-33, 5.562271104316826e-50];
 
+/// Of π/2: the first beyond the kernels' range.
+const LAST_MULTIPLE: u32 = 63_662;
+
 /// x − n π/2 and n.
 fn reduced(x: f64) -> (Pair, i64) {
     let n = libm::rint(x / FRAC_PI_2);
@@ -174,19 +177,28 @@ fn the_reference_has_thirty_digits() {
     }
 }
 
+/// The double next to n π/2.
+fn multiple(n: f64) -> f64 {
+    let [high, low, ..] = LONG_HALF_PI;
+    let product = two_product(n, high);
+    product.0 + (product.1 + n * low)
+}
+
+/// The double next to each n π/2 and three on either side.
 #[test]
 fn numbers_next_to_multiples_of_a_quarter_turn_keep_their_digits() {
     let mut errors = Both::default();
-    let mut n = 0.0;
-    while n * FRAC_PI_2 <= LARGEST_ANGLE {
-        let nearest = n * FRAC_PI_2;
-        for x in [nearest, nearest.next_up(), nearest.next_down()] {
-            errors.take(x.min(LARGEST_ANGLE));
+    for n in 0..=LAST_MULTIPLE {
+        let mut x = (0..3).fold(multiple(f64::from(n)), |x, _| x.next_down());
+        for _ in 0..7 {
+            errors.take(x);
             errors.take(-x);
+            x = x.next_up();
         }
-        n += 1.0;
     }
     errors.assert_small();
+    let beyond = multiple(f64::from(LAST_MULTIPLE));
+    assert!(beyond > LARGEST_ANGLE, "all multiples of the kernels' range were met");
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Steps of several mechanisms at once are those of each alone.
 
-use mbs_runtime::{Batch, Failure, Kinematic, Lanes, Mechanism, Stepper, mechanism};
+use mbs_runtime::{Batch, Failure, Kinematic, Lanes, Mechanism, Real, Scalar, Stepper, mechanism};
 
 mechanism! {
     /// A four-bar whose crank may be too long.
@@ -56,7 +56,7 @@ fn designs_side_by_side_turn_as_each_alone() {
         for (lane, (found, stepper)) in found.iter().zip(&mut alone).enumerate() {
             let expected = stepper.advance_to(t).expect("it moves on");
             let found = found.as_ref().expect("it moves on");
-            assert!(found.evaluations >= expected.evaluations, "{lane}");
+            assert_eq!(found.evaluations, expected.evaluations, "{lane}");
         }
     }
     for (lane, alone) in alone.iter().enumerate() {
@@ -106,4 +106,107 @@ fn a_lane_fails_alone_with_its_own_failure_and_stays_what_it_was() {
     // Put right, it goes on.
     batch.change(|mechanism| mechanism.crank = Lanes([0.1, 0.08, 0.12, 0.05]));
     assert!(batch.advance_to([0.04; 4]).iter().all(Result::is_ok));
+}
+
+#[test]
+fn lanes_that_cannot_be_assembled_are_out_until_they_can() {
+    let mut mechanism = lanes();
+    mechanism.crank = Lanes([0.1, 5.0, 0.12, 0.05]);
+    let mut batch = Batch::assemble_each(mechanism, &[GUESS; 4], [0.0; 4]).expect("three can be assembled");
+    let out = batch.failures().map(|failure| failure.is_some());
+    assert_eq!(out, [false, true, false, false]);
+    assert!(batch.stepper(1).is_none() && batch.stepper(4).is_none() && batch.q()[1].0[1].is_nan());
+    let steps = batch.advance_to([0.01; 4]);
+    assert!(matches!(steps[1], Err(Failure::NotConverged { .. })), "{:?}", steps[1]);
+    assert!([0, 2, 3].iter().all(|lane| steps[*lane].is_ok()));
+    assert!(batch.revive(1, &GUESS, 0.01).is_err(), "it is as long as before");
+    batch.change(|mechanism| mechanism.crank = Lanes([0.1, 0.08, 0.12, 0.05]));
+    batch.revive(1, &GUESS, 0.01).expect("it closes now");
+    assert!(batch.advance_to([0.02; 4]).iter().all(Result::is_ok));
+    // Where all are out there is no batch, but a failure each.
+    mechanism.crank = Lanes([5.0; 4]);
+    let Err(failures) = Batch::assemble_each(mechanism, &[GUESS; 4], [0.0; 4]) else { panic!("none closes") };
+    assert!(failures.iter().all(|failure| matches!(failure, Failure::NotConverged { .. })));
+}
+
+#[test]
+fn a_retired_lane_stays_where_it_is_and_answers_its_failure() {
+    let mut batch =
+        Batch::assemble(lanes(), &[GUESS; 4], [0.0; 4]).map_err(|(_, f)| f).expect("they assemble");
+    batch.change(|mechanism| mechanism.crank = Lanes([0.1, 0.08, 5.0, 0.05]));
+    let Err(failure) = batch.advance_to([0.01; 4])[2] else { panic!("the crank is too long") };
+    batch.retire(2, failure);
+    let before = batch.q().map(|q| q.0[2]);
+    for k in 2..=50 {
+        let steps = batch.advance_to([0.01 * f64::from(k); 4]);
+        assert!([0, 1, 3].iter().all(|lane| steps[*lane].is_ok()));
+        assert_eq!(steps[2].map(|_| ()), Err(failure));
+    }
+    assert_eq!((batch.q().map(|q| q.0[2]), batch.t().0[2]), (before, 0.0));
+}
+
+mechanism! {
+    /// Four unknowns that hang together.
+    mechanism Ring;
+    param amount: 1 = 0.2;
+    coord x: [1; 4];
+    constraint ring { for i in 0..3 { x[i] + amount*sin(x[i + 1]) == sin(t/1s + i); } }
+    constraint last { x[3] + amount*sin(x[0]) == cos(t/1s); }
+}
+
+mechanism! {
+    /// More blocks than are written one by one.
+    mechanism Chain;
+    const LOOPS: 1 = 60;
+    coord p: [m; LOOPS + 1, 2] = 0.7;
+    drive motor: p[0, 0] == 0.5m*sin(TAU*t/1s);
+    constraint uprights { for i in 0..LOOPS + 1 { p[i, 0]^2 + p[i, 1]^2 == (1m)^2; } }
+    constraint couplers {
+        for i in 0..LOOPS { (1m + p[i + 1, 0] - p[i, 0])^2 + (p[i + 1, 1] - p[i, 1])^2 == (1m)^2; }
+    }
+}
+
+/// Eight lanes, each with steps of its own length, against eight mechanisms alone; `rounding`: relative.
+fn assert_as_alone<S, R: Real, const N: usize>(mechanism: S, guess: [f64; N], rounding: f64)
+where
+    S: Kinematic<Lanes<R, 8>, N>,
+    S::Lane: Kinematic<R, N>,
+{
+    let guess = guess.map(R::constant);
+    let mut alone: [_; 8] = core::array::from_fn(|lane| {
+        Stepper::assemble(mechanism.lane(lane), guess, R::constant(0.0)).expect("it assembles")
+    });
+    let batch = Batch::assemble(mechanism, &[guess; 8], [R::constant(0.0); 8]);
+    let mut batch = batch.map_err(|(_, failure)| failure).expect("they assemble");
+    for k in 1..=60 {
+        let times: [R; 8] =
+            core::array::from_fn(|lane| R::constant(f64::from(k) * 8e-4 * (lane as f64 + 1.0)));
+        let found = batch.advance_to(times);
+        for ((found, stepper), t) in found.iter().zip(&mut alone).zip(times) {
+            let expected = stepper.advance_to(t).expect("it moves on");
+            let found = found.as_ref().expect("it moves on");
+            assert_eq!(found.evaluations, expected.evaluations, "step {k}");
+        }
+    }
+    for (lane, alone) in alone.iter().enumerate() {
+        let batch = batch.stepper(lane).expect("a lane");
+        for (found, expected) in
+            [(batch.q(), alone.q()), (batch.qd(), alone.qd()), (batch.qdd(), alone.qdd())]
+        {
+            for (found, expected) in found.iter().zip(expected) {
+                let (found, expected) = (found.to_f64(), expected.to_f64());
+                assert!((found - expected).abs() <= rounding * (1.0 + expected.abs()), "{found} {expected}");
+            }
+        }
+    }
+}
+
+#[test]
+fn eight_lanes_go_as_each_alone_also_in_large_blocks_long_chains_and_single_precision() {
+    let uprights = core::array::from_fn(|k| (k % 2) as f64);
+    assert_as_alone::<_, f64, 3>(FourBar::default(), GUESS, ROUND_OFF);
+    assert_as_alone::<_, f64, 4>(Ring::default(), [0.0, 0.7, 0.7, 0.8], ROUND_OFF);
+    assert_as_alone::<_, f64, 122>(Chain::default(), uprights, 1e-10);
+    assert_as_alone::<_, f32, 3>(FourBar::default(), GUESS, 1e-4);
+    assert_as_alone::<_, f32, 4>(Ring::default(), [0.0, 0.7, 0.7, 0.8], 1e-4);
 }

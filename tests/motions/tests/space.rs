@@ -200,8 +200,14 @@ fn the_stiff_governor_is_right_at_steps_many_times_its_fastest_time_by_the_metho
     );
     let extrapolated = [100, 500].map(|steps| errors(Extrapolated, steps, &exact));
     println!(
-        "governor, extrapolated: s {:.1e} m of 1e-4 at 1e-3 s, {:.1e} of 1e-6 at 2e-4 s",
-        extrapolated[0][0], extrapolated[1][0]
+        "governor, extrapolated: s {:.1e} m of 1e-4 at 1e-3 s, {:.1e} of 1e-6 at 2e-4 s; phi {:.1e} and {:.1e} rad; energy \
+         {:.1e} and {:.1e} of the kinetic",
+        extrapolated[0][0],
+        extrapolated[1][0],
+        extrapolated[0][1],
+        extrapolated[1][1],
+        extrapolated[0][2],
+        extrapolated[1][2]
     );
     let rule = [100, 500].map(|steps| error_of_the_rule(steps, &exact));
     println!(

@@ -54,8 +54,9 @@ where
     black_box(entry::start_near(mechanism, step, motion.t(), q, qd)?);
     black_box(entry::determinacy(&motion, black_box(&mut [true; 4]))?);
     black_box(entry::linearize(motion.mechanism(), motion.instant())?);
-    black_box(entry::inverse(motion.mechanism(), motion.t(), &q)?);
-    black_box(entry::equilibrium(motion.mechanism(), motion.t(), &q)?);
+    black_box(entry::inverse(motion.mechanism(), motion.t(), &q, &motion.instant().y.states)?);
+    let rest = entry::equilibrium(motion.mechanism(), motion.t(), &q)?;
+    black_box(entry::states_at_rest(motion.mechanism(), motion.t(), &rest.q, &rest.lambda)?);
     fixed(mechanism, Explicit::new(SemiImplicitEuler, Unstabilized))?;
     fixed(mechanism, Explicit::new(RungeKutta4, Projection::default()))?;
     // Soft: a stiff one leaves too few digits of the multipliers that the friction is balanced with.

@@ -126,10 +126,11 @@ pub fn exercise_batch<S, R: Real, const N: usize, const M: usize>(
     start: &Start<R, N>,
 ) -> Result<(), Failure>
 where
-    S: Kinematic<Lanes<R, 2>, N, M>,
+    S: Kinematic<Lanes<R, 2>, N, M> + Clone,
     S::Lane: Kinematic<R, N, M>,
 {
     let Start { q, t, .. } = *black_box(start);
+    black_box(batch::assemble_each(mechanism.clone(), &[q; 2], [t; 2]).is_ok());
     let assembled = batch::assemble(black_box(mechanism), &[q; 2], [t; 2]);
     let mut pair = assembled.map_err(|(_, failure)| failure)?;
     for step in [1e-3, 3e-3, 0.2] {
@@ -140,5 +141,7 @@ where
     }
     black_box(batch::change(&mut pair, black_box(0), black_box(Lanes([R::constant(0.1); 2]))));
     black_box(batch::stepper(&pair, black_box(1)));
+    black_box(batch::retire(&mut pair, black_box(0), Failure::NonFinite { name: "t", line: 0 }));
+    black_box(batch::revive(&mut pair, black_box(0), &q, t).is_ok());
     Ok(())
 }

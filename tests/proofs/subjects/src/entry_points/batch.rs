@@ -10,6 +10,28 @@ entry_points! {
     where [S::Lane: Kinematic<R, N, M>] {
         Batch::assemble(mechanism, guess, t)
     }
+    /// The first positions of the lanes that have one.
+    fn assemble_each[
+        S: Kinematic<Lanes<R, L>, N, M>, R: Real, const L: usize, const N: usize, const M: usize
+    ](mechanism: S, guess: &[[R; N]; L], t: [R; L]) -> Result<Batch<S, R, L, N, M>, [Failure; L]>
+    where [S::Lane: Kinematic<R, N, M>] {
+        Batch::assemble_each(mechanism, guess, t)
+    }
+    /// A lane that is out.
+    fn retire[
+        S: Kinematic<Lanes<R, L>, N, M>, R: Real, const L: usize, const N: usize, const M: usize
+    ](batch: &mut Batch<S, R, L, N, M>, lane: usize, failure: Failure) -> bool
+    where [S::Lane: Kinematic<R, N, M>] {
+        batch.retire(lane, failure);
+        batch.failures().iter().any(Option::is_some)
+    }
+    /// A lane that is in again.
+    fn revive[
+        S: Kinematic<Lanes<R, L>, N, M>, R: Real, const L: usize, const N: usize, const M: usize
+    ](batch: &mut Batch<S, R, L, N, M>, lane: usize, guess: &[R; N], t: R) -> Result<(), Failure>
+    where [S::Lane: Kinematic<R, N, M>] {
+        batch.revive(lane, guess, t)
+    }
     /// A step in all lanes.
     fn advance_to[
         S: Kinematic<Lanes<R, L>, N, M>, R: Real, const L: usize, const N: usize, const M: usize

@@ -2,7 +2,7 @@
 
 use mbs_runtime::dynamics::{
     Balance, Determinacy, Direction, Doubt, Driven, Embedded, Equilibrium, Explicit, Formulation, Instant,
-    Linearization, Method, Simulation, Tolerance,
+    Method, Simulation, Tolerance, WithStates,
 };
 use mbs_runtime::{Dynamic, Failure, Real};
 
@@ -120,9 +120,9 @@ entry_points! {
     }
     /// Forces from motion.
     fn inverse[S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize](
-        mechanism: &S, t: R, q: &[R; N],
+        mechanism: &S, t: R, q: &[R; N], states: &S::States,
     ) -> Result<Driven<R, N, M, S::Loads>, Failure> {
-        mbs_runtime::dynamics::inverse(mechanism, t, q)
+        mbs_runtime::dynamics::inverse_with_states(mechanism, t, q, states)
     }
     /// A position of rest.
     fn equilibrium[S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize](
@@ -130,11 +130,16 @@ entry_points! {
     ) -> Result<Equilibrium<R, N, M>, Failure> {
         mbs_runtime::dynamics::equilibrium(mechanism, t, q)
     }
+    /// First-order states that rest with the coordinates.
+    fn states_at_rest[S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize](
+        mechanism: &S, t: R, q: &[R; N], lambda: &[R; M],
+    ) -> Result<S::States, Failure> {
+        mbs_runtime::dynamics::states_at_rest(mechanism, t, q, lambda)
+    }
     /// Small motions.
     fn linearize[S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize](
         mechanism: &S, instant: &Instant<R, N, M, S::States>,
-    ) -> Result<Linearization<R, N>, Failure> {
-        let state = (&instant.y.q, &instant.y.qd, &instant.solved.rate.qd);
-        mbs_runtime::dynamics::linearize(mechanism, instant.t, state, &instant.solved.lambda)
+    ) -> Result<WithStates<R, N, S::StateSlopes>, Failure> {
+        mbs_runtime::dynamics::linearize_with_states(mechanism, instant, &[])
     }
 }
