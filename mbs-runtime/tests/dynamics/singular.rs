@@ -235,7 +235,7 @@ fn where_rounding_decides_whether_a_loop_turns_aside_a_strict_run_says_so_and_a_
             let Failure::Undecided { margin, time } = failure else { panic!("{excess:e}: {failure}") };
             // Where the bars come in line.
             assert!((0.54..0.56).contains(&time) && margin < 1e-2, "{failure}");
-            assert!((0.5..time).contains(&strict.instant().t), "it stays where the last step ended");
+            assert!((0.5..=time).contains(&strict.t()), "{}: it stays where the last step ended", strict.t());
             assert!(failure.to_string().contains("loosen the tolerance"), "{failure}");
             undecided += 1;
         }
