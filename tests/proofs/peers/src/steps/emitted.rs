@@ -75,8 +75,8 @@ where
         steps.for_each(|k| step(&mut batch, k));
         [0, LANES / 2].map(|lane| motion(&batch.stepper(lane).expect("a lane")))
     });
-    // The lane in the middle is half a turn ahead.
-    let error = turn.error(&[half[0], whole[0]]).max(turn.error(&[whole[1], half[1]]));
+    // The lane in the middle is half a turn ahead: it ends the turn when the first is in the middle of it.
+    let error = turn.error(&[half[0], whole[0]]).max(turn.error(&half));
     let run = move || {
         let mut batch = black_box(&start).clone();
         (1..=STEPS).for_each(|k| step(&mut batch, k));
