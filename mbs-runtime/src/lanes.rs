@@ -2,6 +2,7 @@
 
 use core::array::from_fn;
 use core::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
+use core::sync::atomic::{Ordering, compiler_fence};
 
 use crate::{Real, Scalar};
 
@@ -138,6 +139,13 @@ impl<R: Real, const L: usize> Scalar for Lanes<R, L> {
     #[inline(always)]
     fn per_lane<X: Copy>(value: impl FnMut(usize) -> X) -> [X; L] {
         from_fn(value)
+    }
+    /// A loop over numbers that are many lanes each looks to the compiler like one over numbers that lie far apart: it would
+    /// gather one lane of several numbers into a register, and scatter what comes of them. Nothing may be moved over this
+    /// fence, which is no instruction, so each number's lanes are taken together.
+    #[inline(always)]
+    fn side_by_side() {
+        compiler_fence(Ordering::AcqRel);
     }
     #[inline(always)]
     fn mask(value: bool) -> LaneMask<R, L> {

@@ -44,6 +44,10 @@ pub trait Scalar:
     /// One `X` a lane, made in the order of the lanes.
     fn per_lane<X: Copy>(value: impl FnMut(usize) -> X) -> Self::Lanes<X>;
 
+    /// Stands behind a number in a loop over many: nothing here, while lanes keep the compiler from taking the numbers apart.
+    #[inline(always)]
+    fn side_by_side() {}
+
     /// The same truth in every lane.
     fn mask(value: bool) -> Self::Mask;
     /// `self < than`, false where either is NaN.

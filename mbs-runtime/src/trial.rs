@@ -61,7 +61,7 @@ impl<T: Scalar, const N: usize> Trial<T, N> {
         let mut q = prediction;
         let (_, position) = mechanism.solve_with_position(parameters, &mut q, t, &mut solver);
         let (factors, margin) = mechanism.factorize(parameters, &position);
-        let qd = mechanism.solve_linear(&factors, &mechanism.phi_t(parameters, &position).map(|rate| -rate));
+        let qd = mechanism.solve_linear(&factors, &negated(mechanism.phi_t(parameters, &position)));
         let qdd = mechanism.solve_linear(&factors, &mechanism.gamma(parameters, &position, &qd));
         let (mut way, mut extent) = (q, q);
         for (((way, extent), predicted), weight) in
@@ -69,10 +69,12 @@ impl<T: Scalar, const N: usize> Trial<T, N> {
         {
             *way = ((*way - *predicted) * *weight).abs();
             *extent = extent.abs() * *weight;
+            T::side_by_side();
         }
         let mut changes = qd;
         for (change, acceleration) in changes.iter_mut().zip(&qdd) {
             *change = *change + *acceleration;
+            T::side_by_side();
         }
         let correction = in_four_parts(&way, T::max);
         let (size, sum) = (in_four_parts(&extent, T::add), in_four_parts(&changes, T::add));
@@ -193,6 +195,16 @@ fn in_four_parts<T: Scalar, const N: usize>(values: &[T; N], operation: impl Fn(
     }
     let [a, b, c, d] = parts;
     operation(operation(a, b), operation(c, d))
+}
+
+/// The numbers with the other sign.
+#[inline(always)]
+fn negated<T: Scalar, const M: usize>(mut numbers: [T; M]) -> [T; M] {
+    for number in &mut numbers {
+        *number = -*number;
+        T::side_by_side();
+    }
+    numbers
 }
 
 /// Reciprocals of scales.
