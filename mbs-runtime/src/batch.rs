@@ -2,7 +2,7 @@
 
 use core::array::from_fn;
 
-use crate::diagnosis::Statistics;
+use crate::diagnosis::{Statistics, index};
 use crate::lanes::LaneMask;
 use crate::stepper::Drift;
 use crate::trial::{Start, Trial, weights};
@@ -44,8 +44,10 @@ struct Notes<R, const L: usize> {
     drift: Drift<Lanes<R, L>>,
     residual: Lanes<R, L>,
     correction: Lanes<R, L>,
-    row: [u16; L],
-    evaluations: [u32; L],
+    /// A number, so that it is written like the others.
+    row: Lanes<R, L>,
+    /// As well.
+    evaluations: Lanes<R, L>,
     fallback: [bool; L],
     passed: [bool; L],
     passages: [u32; L],
@@ -157,9 +159,21 @@ where
     ///
     /// Returns what the step of each lane cost, or why it was not made: that lane then is bit for bit what it was, the others
     /// have moved. See [`Stepper::advance_to`].
+    #[inline]
     pub fn advance_to(&mut self, t: [R; L]) -> [Result<Statistics, Failure>; L] {
+        match self.moved(t) {
+            None => from_fn(|lane| Ok(self.notes.statistics(lane))),
+            Some(steps) => steps,
+        }
+    }
+
+    /// Moves all lanes on to their times; what became of them, unless all steps were plain.
+    ///
+    /// Called, so that what a step cost is read out of the notes only where someone asks for it.
+    #[inline(never)]
+    fn moved(&mut self, t: [R; L]) -> Option<[Result<Statistics, Failure>; L]> {
         if !S::PHASES.is_empty() {
-            return from_fn(|lane| self.alone(lane, Lanes(t).lane(lane)));
+            return Some(from_fn(|lane| self.alone(lane, Lanes(t).lane(lane))));
         }
         let Batch { mechanism, parameters, weights, q, qd, qdd, margin, .. } = &*self;
         let start = Start { t: self.t, q, qd, qdd, margin: *margin, weights };
@@ -167,13 +181,17 @@ where
         if !Lanes::<R, L>::all(trial.plain) {
             // The address of a copy, so that the trial itself stays in registers.
             let doubtful = trial;
-            return self.apart(&doubtful, t);
+            return Some(self.apart(&doubtful, t));
         }
-        let notes = self.notes.after(&trial, self.margin, Lanes(t) - self.t);
-        self.notes = notes;
-        (self.t, self.q, self.qd, self.qdd) = (Lanes(t), trial.q, trial.qd, trial.qdd);
-        self.margin = trial.margin;
-        from_fn(|lane| Ok(notes.statistics(lane)))
+        self.notes.follow(&trial, self.margin, Lanes(t) - self.t);
+        (self.t, self.margin) = (Lanes(t), trial.margin);
+        for (old, new) in [(&mut self.q, &trial.q), (&mut self.qd, &trial.qd), (&mut self.qdd, &trial.qdd)] {
+            for (old, new) in old.iter_mut().zip(new) {
+                Lanes::<R, L>::side_by_side();
+                *old = *new;
+            }
+        }
+        None
     }
 
     /// Takes the step over in the lanes where it is plain; the others are stepped alone.
@@ -181,7 +199,8 @@ where
     #[inline(never)]
     fn apart(&mut self, trial: &Trial<Lanes<R, L>, N>, t: [R; L]) -> [Result<Statistics, Failure>; L] {
         let plain = trial.plain;
-        let notes = self.notes.after(trial, self.margin, Lanes(t) - self.t);
+        let mut notes = self.notes;
+        notes.follow(trial, self.margin, Lanes(t) - self.t);
         let merge = |old: &mut Lanes<R, L>, new: &Lanes<R, L>| *old = Lanes::select(plain, *new, *old);
         for (old, new) in [(&mut self.q, &trial.q), (&mut self.qd, &trial.qd), (&mut self.qdd, &trial.qdd)] {
             old.iter_mut().zip(new).for_each(|(old, new)| merge(old, new));
@@ -300,47 +319,51 @@ impl<R: Real, const L: usize> Notes<R, L> {
     /// Before the first step.
     fn none() -> Self {
         let zero = Lanes([R::constant(0.0); L]);
-        let (row, evaluations, passages, orientation) = ([0; L], [0; L], [0; L], [0; L]);
-        let (fallback, passed) = ([false; L], [false; L]);
-        let (residual, correction) = (zero, zero);
+        let (fallback, passed, passages, orientation) = ([false; L], [false; L], [0; L], [0; L]);
+        let (residual, correction, row, evaluations) = (zero, zero, zero, zero);
         let drift = Drift { change: zero, time: Lanes([R::constant(1.0); L]) };
         Notes { drift, residual, correction, row, evaluations, fallback, passed, passages, orientation }
     }
 
-    /// Those after the step that `trial` made in `time` (s) from where the margin was `margin`.
+    /// Becomes those after the step that `trial` made in `time` (s) from where the margin was `margin`.
     #[inline(always)]
-    fn after<const N: usize>(
-        &self,
+    fn follow<const N: usize>(
+        &mut self,
         trial: &Trial<Lanes<R, L>, N>,
         margin: Lanes<R, L>,
         time: Lanes<R, L>,
-    ) -> Self {
+    ) {
         let zero = Lanes::constant(0.0);
         let moves = time.less(zero) | zero.less(time);
-        let passed = from_fn(|lane| self.orientation(lane) != trial.orientation(lane));
-        Notes {
-            drift: Drift {
-                change: Lanes::select(moves, trial.margin - margin, self.drift.change),
-                time: Lanes::select(moves, time, self.drift.time),
-            },
-            residual: trial.residual,
-            correction: trial.correction,
-            row: from_fn(|lane| trial.row(lane)),
-            evaluations: from_fn(|lane| trial.evaluations(lane)),
-            fallback: [false; L],
-            passed,
-            passages: from_fn(|lane| self.passages(lane).saturating_add(u32::from(at(&passed, lane, false)))),
-            orientation: trial.orientation,
+        self.drift.change = Lanes::select(moves, trial.margin - margin, self.drift.change);
+        self.drift.time = Lanes::select(moves, time, self.drift.time);
+        (self.residual, self.row) = (trial.residual, trial.row);
+        (self.correction, self.evaluations) = (trial.correction, trial.counts);
+        (self.fallback, self.passed) = ([false; L], [false; L]);
+        let signs = self.orientation.iter().zip(&trial.orientation);
+        if signs.fold(0, |turned, (before, after)| turned | (before ^ after)) != 0 {
+            self.pass(trial.orientation);
         }
+    }
+
+    /// Counts the singular positions that lanes have passed.
+    #[cold]
+    #[inline(never)]
+    fn pass(&mut self, orientation: [u64; L]) {
+        self.passed = from_fn(|lane| self.orientation(lane) != at(&orientation, lane, 0));
+        for (passages, passed) in self.passages.iter_mut().zip(self.passed) {
+            *passages = passages.saturating_add(u32::from(passed));
+        }
+        self.orientation = orientation;
     }
 
     #[inline(always)]
     fn statistics(&self, lane: usize) -> Statistics {
         Statistics {
-            evaluations: at(&self.evaluations, lane, 0),
+            evaluations: self.evaluations.lane(lane).to_f64() as u32,
             fallback: at(&self.fallback, lane, false),
             residual: self.residual.lane(lane).to_f64(),
-            row: at(&self.row, lane, 0),
+            row: index(self.row, lane),
             correction: self.correction.lane(lane).to_f64(),
             passed: at(&self.passed, lane, false),
         }
@@ -369,8 +392,8 @@ impl<R: Real, const L: usize> Notes<R, L> {
         set(&mut self.drift.time.0, lane, drift.time);
         set(&mut self.residual.0, lane, R::constant(residual));
         set(&mut self.correction.0, lane, R::constant(correction));
-        set(&mut self.row, lane, row);
-        set(&mut self.evaluations, lane, evaluations);
+        set(&mut self.row.0, lane, R::constant(f64::from(row)));
+        set(&mut self.evaluations.0, lane, R::constant(f64::from(evaluations)));
         set(&mut self.fallback, lane, fallback);
         set(&mut self.passed, lane, passed);
     }

@@ -34,10 +34,10 @@ pub(crate) struct Trial<T: Scalar, const N: usize> {
     /// Largest |residual| over its tolerance.
     pub residual: T,
     /// Index in Φ of its row.
-    row: T,
+    pub row: T,
     evaluations: u32,
     /// Those of each lane, where there are several.
-    counts: T,
+    pub counts: T,
     /// Lanes in which nothing happened but what does next to a regular position. The others are stepped with care.
     pub plain: T::Mask,
 }
@@ -63,21 +63,8 @@ impl<T: Scalar, const N: usize> Trial<T, N> {
         let (factors, margin) = mechanism.factorize(parameters, &position);
         let qd = mechanism.solve_linear(&factors, &negated(mechanism.phi_t(parameters, &position)));
         let qdd = mechanism.solve_linear(&factors, &mechanism.gamma(parameters, &position, &qd));
-        let (mut way, mut extent) = (q, q);
-        for (((way, extent), predicted), weight) in
-            way.iter_mut().zip(&mut extent).zip(&prediction).zip(start.weights)
-        {
-            *way = ((*way - *predicted) * *weight).abs();
-            *extent = extent.abs() * *weight;
-            T::side_by_side();
-        }
-        let mut changes = qd;
-        for (change, acceleration) in changes.iter_mut().zip(&qdd) {
-            *change = *change + *acceleration;
-            T::side_by_side();
-        }
-        let correction = in_four_parts(&way, T::max);
-        let (size, sum) = (in_four_parts(&extent, T::add), in_four_parts(&changes, T::add));
+        let (correction, size) = way_and_size(&q, &prediction, start.weights);
+        let sum = sum_of_rates(&qd, &qdd);
         let zone = T::constant(REGULAR_ZONE);
         // Written so that NaN is not plain. A sum is finite and small where its terms are; where it is not, a careful step
         // looks at them one by one.
@@ -112,25 +99,13 @@ impl<T: Scalar, const N: usize> Trial<T, N> {
     #[inline(always)]
     pub(crate) fn statistics(&self, lane: usize, passed: bool) -> Statistics {
         Statistics {
-            evaluations: self.evaluations(lane),
+            evaluations: self.evaluations,
             fallback: false,
             residual: self.residual.lane(lane).to_f64(),
-            row: self.row(lane),
+            row: index(self.row, lane),
             correction: self.correction.lane(lane).to_f64(),
             passed,
         }
-    }
-
-    /// Evaluations of residual and Jacobian until lane `lane` closed, the most of any block.
-    #[inline(always)]
-    pub(crate) fn evaluations(&self, lane: usize) -> u32 {
-        if T::LANES > 1 { u32::from(index(self.counts, lane)) } else { self.evaluations }
-    }
-
-    /// Index in Φ of the row whose residual is largest over its tolerance, of lane `lane`.
-    #[inline(always)]
-    pub(crate) fn row(&self, lane: usize) -> u16 {
-        index(self.row, lane)
     }
 
     /// Signs of the blocks' determinants of lane `lane`.
@@ -184,6 +159,40 @@ fn carefully_predicted<T: Scalar, const N: usize>(
         *coordinate = *coordinate + h * *rate + second;
     }
     predicted
+}
+
+/// The largest way of a coordinate from its prediction, and the sum of the coordinates' sizes, in the reference metric.
+#[inline(always)]
+fn way_and_size<T: Scalar, const N: usize>(q: &[T; N], predicted: &[T; N], weights: &[T; N]) -> (T, T) {
+    let places = q.iter().zip(predicted).zip(weights);
+    if T::LANES > 1 {
+        // Straight away: the sum that each coordinate waits for keeps its lanes together.
+        let start = (T::constant(0.0), T::constant(0.0));
+        return places.fold(start, |(way, size), ((place, predicted), weight)| {
+            (way.max(((*place - *predicted) * *weight).abs()), size + place.abs() * *weight)
+        });
+    }
+    let (mut ways, mut sizes) = (*q, *q);
+    for (((way, size), predicted), weight) in ways.iter_mut().zip(&mut sizes).zip(predicted).zip(weights) {
+        *way = ((*way - *predicted) * *weight).abs();
+        *size = size.abs() * *weight;
+    }
+    (in_four_parts(&ways, T::max), in_four_parts(&sizes, T::add))
+}
+
+/// The sum of all velocities and accelerations: finite where they are.
+#[inline(always)]
+fn sum_of_rates<T: Scalar, const N: usize>(qd: &[T; N], qdd: &[T; N]) -> T {
+    let rates = qd.iter().zip(qdd);
+    if T::LANES > 1 {
+        // As in [`way_and_size`].
+        return rates.fold(T::constant(0.0), |sum, (rate, change)| sum + (*rate + *change));
+    }
+    let mut changes = *qd;
+    for (rate, change) in changes.iter_mut().zip(qdd) {
+        *rate = *rate + *change;
+    }
+    in_four_parts(&changes, T::add)
 }
 
 /// All `values` put together by `operation`, in four parts that need not wait for each other; from 0 on.
