@@ -1,5 +1,7 @@
 //! What the macro emits: a mechanism as functions of its coordinates.
 
+use core::hint::black_box;
+
 use crate::diagnosis::index;
 use crate::{FunctionEntry, Limit, Outcome, Phase, Real, Roots, Scalar};
 
@@ -430,7 +432,7 @@ impl<T: Scalar> Margin<T> {
     pub fn with_block(self, value: T, row: u16, coordinate: u16) -> Self {
         let nearer = value.less(self.value);
         Margin {
-            value: T::select(nearer, value, self.value),
+            value: in_one_piece::<T, _>(T::select(nearer, value, self.value)),
             row: T::select(nearer, T::constant(f64::from(row)), self.row),
             coordinate: T::select(nearer, T::constant(f64::from(coordinate)), self.coordinate),
             orientation: self.orientation,
@@ -454,8 +456,15 @@ impl<T: Scalar> Margin<T> {
             let signs = self.orientation.as_ref().get(lane).copied().unwrap_or(0);
             signs.rotate_left(1) ^ u64::from(T::test(reverses, lane))
         };
-        Margin { orientation: T::per_lane(turned), ..self }
+        Margin { orientation: in_one_piece::<T, _>(T::per_lane(turned)), ..self }
     }
+}
+
+/// What goes from block to block, in lanes put down once: over so many blocks the compiler would lose sight of the lanes that
+/// go together, and compute them in twos and ones.
+#[inline(always)]
+fn in_one_piece<T: Scalar, X>(lanes: X) -> X {
+    if T::LANES > 1 { black_box(lanes) } else { lanes }
 }
 
 /// `evaluate` at `x`, called: emitted code has it in line for solvers of which each block has a copy.

@@ -56,6 +56,13 @@ fn reciprocal_and_margin<T: Scalar>(determinant: T, scaled: T, bound: T) -> (T, 
     let (reciprocal, ratio) = (one / determinant, scaled.abs() / bound);
     // A determinant of 0 has an infinite reciprocal, a bound of 0 no finite ratio; a sum is finite where its terms are.
     let regular = (determinant + reciprocal + ratio).is_finite();
+    if T::LANES > 1 {
+        let invertible = (determinant + reciprocal).is_finite();
+        return (
+            T::select(invertible, reciprocal, one),
+            T::select(regular, ratio.min(one), T::constant(0.0)),
+        );
+    }
     if T::all(regular) { (reciprocal, ratio.min(one)) } else { regular_alone(regular, reciprocal, ratio) }
 }
 
