@@ -1,30 +1,41 @@
 //! Several mechanisms in motion side by side: designs, or phases of one turn.
 
-use core::array::from_fn;
+mod notes;
+mod standing;
 
-use crate::diagnosis::{Statistics, index};
+use core::array::from_fn;
+use core::f64::consts::PI;
+
+use notes::Notes;
+use standing::Standing;
+
+use crate::diagnosis::Statistics;
 use crate::lanes::LaneMask;
-use crate::stepper::Drift;
 use crate::trial::{Start, Trial, weights};
-use crate::{Failure, Kinematic, Lanes, Mechanism, Real, Scalar, Stepper};
+use crate::turns::second;
+use crate::{Failure, Kinematic, Lanes, Mechanism, Phase, Real, Scalar, Stepper};
 
 /// `L` mechanisms of one text, a lane each, each with its own design, time, state and failures.
 ///
 /// A step is taken in all lanes at once. A lane in which something else happens than next to a regular position (no
 /// convergence, the singular zone, a branch, a limit, a doubt about the assembly, changed inputs) is taken alone, by the
 /// [`Stepper`] that it would have as a single mechanism; the others do not notice. So each lane is, to round-off, what it
-/// is alone. Drives that prescribe a rate are taken alone in every step.
+/// is alone. Phases of drives that prescribe a rate move on in all lanes at once too; where a coordinate turns, a lane is taken
+/// alone only to take a whole turn off.
 #[derive(Clone)]
 pub struct Batch<S, R, const L: usize, const N: usize, const M: usize = N>
 where
     S: Mechanism<Lanes<R, L>, N, M>,
     R: Real,
 {
+    /// With the phases of drives that prescribe a rate, of all lanes.
     mechanism: S,
     parameters: S::Parameters,
     /// Reciprocals of the coordinates' scales.
     weights: [Lanes<R, L>; N],
     t: Lanes<R, L>,
+    /// The time of lanes with coordinates that turn, with what its rounding has left out.
+    clock: Phase<Lanes<R, L>>,
     q: [Lanes<R, L>; N],
     qd: [Lanes<R, L>; N],
     qdd: [Lanes<R, L>; N],
@@ -37,25 +48,6 @@ where
     /// What a lane has besides; what stands above is not up to date here.
     steppers: [Stepper<S::Lane, R, N, M>; L],
 }
-
-/// What the last step of each lane left behind, beside its position and rates.
-#[derive(Clone, Copy)]
-struct Notes<R, const L: usize> {
-    drift: Drift<Lanes<R, L>>,
-    residual: Lanes<R, L>,
-    correction: Lanes<R, L>,
-    /// A number, so that it is written like the others.
-    row: Lanes<R, L>,
-    /// As well.
-    evaluations: Lanes<R, L>,
-    fallback: [bool; L],
-    passed: [bool; L],
-    passages: [u32; L],
-    orientation: [u64; L],
-}
-
-/// Time, position, velocity and acceleration of a lane.
-type LaneState<R, const N: usize> = (R, [R; N], [R; N], [R; N]);
 
 impl<S, R, const L: usize, const N: usize, const M: usize> Batch<S, R, L, N, M>
 where
@@ -113,6 +105,7 @@ where
             parameters,
             weights,
             t: none,
+            clock: Phase::new(none, second()),
             q,
             qd,
             qdd,
@@ -172,41 +165,108 @@ where
     /// Called, so that what a step cost is read out of the notes only where someone asks for it.
     #[inline(never)]
     fn moved(&mut self, t: [R; L]) -> Option<[Result<Statistics, Failure>; L]> {
+        let before = self.mechanism.phases();
+        let (from, to) = self.span(t);
         if !S::PHASES.is_empty() {
-            return Some(from_fn(|lane| self.alone(lane, Lanes(t).lane(lane))));
+            self.mechanism.advance_phases(from, to);
         }
         let Batch { mechanism, parameters, weights, q, qd, qdd, margin, .. } = &*self;
-        let start = Start { t: self.t, q, qd, qdd, margin: *margin, weights };
-        let trial = Trial::of(mechanism, parameters, &start, Lanes(t), !self.waits);
+        let start = Start { t: from, q, qd, qdd, margin: *margin, weights };
+        let trial = Trial::of(mechanism, parameters, &start, to, !self.waits);
         if !Lanes::<R, L>::all(trial.plain) {
             // The address of a copy, so that the trial itself stays in registers.
             let doubtful = trial;
-            return Some(self.apart(&doubtful, t));
+            return Some(self.apart(&doubtful, &before, t));
         }
-        self.notes.follow(&trial, self.margin, Lanes(t) - self.t);
-        (self.t, self.margin) = (Lanes(t), trial.margin);
+        self.notes.follow(&trial, self.margin, to - from);
+        self.margin = trial.margin;
+        self.pass_time(Lanes::<R, L>::mask(true), Lanes(t));
         for (old, new) in [(&mut self.q, &trial.q), (&mut self.qd, &trial.qd), (&mut self.qdd, &trial.qdd)] {
             for (old, new) in old.iter_mut().zip(new) {
                 Lanes::<R, L>::side_by_side();
                 *old = *new;
             }
         }
+        if !S::TURNS.is_empty() {
+            self.take_turns_off();
+        }
         None
+    }
+
+    /// The times between which the lanes step to `t` (L, s): where coordinates turn, no function knows the time, and a step is one
+    /// from 0 on.
+    #[inline(always)]
+    fn span(&self, t: [R; L]) -> (Lanes<R, L>, Lanes<R, L>) {
+        match S::TURNS {
+            [] => (self.t, Lanes(t)),
+            _ => (Lanes::constant(0.0), Lanes(t) - self.t),
+        }
+    }
+
+    /// Lets the time of the lanes of `moved` be `t` (s).
+    #[inline(always)]
+    fn pass_time(&mut self, moved: LaneMask<R, L>, t: Lanes<R, L>) {
+        if S::TURNS.is_empty() {
+            self.t = Lanes::select(moved, t, self.t);
+            return;
+        }
+        let clock = self.clock.advanced(t - self.t, second());
+        self.clock = clock.where_true(moved, self.clock);
+        self.t = self.clock.value;
+    }
+
+    /// Takes whole turns off in the lanes where a coordinate that turns has left its own.
+    #[inline(always)]
+    fn take_turns_off(&mut self) {
+        let half = Lanes::constant(PI);
+        let beyond = |mask, turning: &u16| match self.q.get(usize::from(*turning)) {
+            Some(angle) => mask | half.less(angle.abs()),
+            None => mask,
+        };
+        let beyond = S::TURNS.iter().fold(Lanes::<R, L>::mask(false), beyond);
+        if !Lanes::<R, L>::all(!beyond) {
+            self.take_turns_off_alone(beyond);
+        }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn take_turns_off_alone(&mut self, beyond: LaneMask<R, L>) {
+        for lane in (0..L).filter(|lane| Lanes::<R, L>::test(beyond, *lane)) {
+            if let Some(stepper) = self.up_to_date(lane) {
+                stepper.take_turns_off();
+            }
+            self.gather(lane);
+        }
     }
 
     /// Takes the step over in the lanes where it is plain; the others are stepped alone.
     #[cold]
     #[inline(never)]
-    fn apart(&mut self, trial: &Trial<Lanes<R, L>, N>, t: [R; L]) -> [Result<Statistics, Failure>; L] {
+    fn apart(
+        &mut self,
+        trial: &Trial<Lanes<R, L>, N>,
+        before: &S::Phases,
+        t: [R; L],
+    ) -> [Result<Statistics, Failure>; L] {
         let plain = trial.plain;
         let mut notes = self.notes;
-        notes.follow(trial, self.margin, Lanes(t) - self.t);
+        let (from, to) = self.span(t);
+        notes.follow(trial, self.margin, to - from);
+        let mut phases = self.mechanism.phases();
+        for (phase, before) in phases.as_mut().iter_mut().zip(before.as_ref()) {
+            *phase = phase.where_true(plain, *before);
+        }
+        self.mechanism.set_phases(phases);
         let merge = |old: &mut Lanes<R, L>, new: &Lanes<R, L>| *old = Lanes::select(plain, *new, *old);
         for (old, new) in [(&mut self.q, &trial.q), (&mut self.qd, &trial.qd), (&mut self.qdd, &trial.qdd)] {
             old.iter_mut().zip(new).for_each(|(old, new)| merge(old, new));
         }
-        merge(&mut self.t, &Lanes(t));
         merge(&mut self.margin, &trial.margin);
+        self.pass_time(plain, Lanes(t));
+        if !S::TURNS.is_empty() {
+            self.take_turns_off();
+        }
         from_fn(|lane| {
             if !Lanes::<R, L>::test(plain, lane) {
                 return self.alone(lane, Lanes(t).lane(lane));
@@ -232,13 +292,11 @@ where
     /// The mechanism in lane `lane` alone; `None` where there is no such lane, or it has never been assembled.
     pub fn stepper(&self, lane: usize) -> Option<Stepper<S::Lane, R, N, M>> {
         let mut stepper = self.steppers.get(lane).cloned()?;
-        let (state, margin) = self.state(lane);
-        if state.0.to_f64().is_nan() {
+        let standing = self.standing(lane);
+        if standing.t.to_f64().is_nan() {
             return None;
         }
-        stepper.state.set(state, margin);
-        let (drift, statistics) = (self.notes.drift(lane), self.notes.statistics(lane));
-        stepper.state.note(drift, statistics, self.notes.passages(lane), self.notes.orientation(lane));
+        standing.hand_over(&mut stepper, &self.mechanism, lane);
         Some(stepper)
     }
 
@@ -269,22 +327,37 @@ where
         if let Some(failure) = at(&self.retired, lane, None) {
             return Err(failure);
         }
-        let (state, margin) = self.state(lane);
-        let Some(stepper) = self.steppers.get_mut(lane) else {
+        let Some(stepper) = self.up_to_date(lane) else {
             return Err(Failure::NonFinite { name: "t", line: 0 });
         };
-        stepper.state.set(state, margin);
-        let (drift, statistics) = (self.notes.drift(lane), self.notes.statistics(lane));
-        stepper.state.note(drift, statistics, self.notes.passages(lane), self.notes.orientation(lane));
         let statistics = stepper.advance_to(t)?;
         self.gather(lane);
         Ok(statistics)
     }
 
-    /// Time, position, velocity and acceleration of a lane, and its margin.
-    fn state(&self, lane: usize) -> (LaneState<R, N>, R) {
+    /// The stepper of a lane, where the lane is.
+    fn up_to_date(&mut self, lane: usize) -> Option<&mut Stepper<S::Lane, R, N, M>> {
+        let standing = self.standing(lane);
+        let stepper = self.steppers.get_mut(lane)?;
+        standing.hand_over(stepper, &self.mechanism, lane);
+        Some(stepper)
+    }
+
+    /// Where a lane stands.
+    fn standing(&self, lane: usize) -> Standing<R, N> {
         let of = |values: &[Lanes<R, L>; N]| values.map(|value| value.lane(lane));
-        ((self.t.lane(lane), of(&self.q), of(&self.qd), of(&self.qdd)), self.margin.lane(lane))
+        Standing {
+            t: self.t.lane(lane),
+            clock: self.clock.lane(lane),
+            q: of(&self.q),
+            qd: of(&self.qd),
+            qdd: of(&self.qdd),
+            margin: self.margin.lane(lane),
+            drift: self.notes.drift(lane),
+            statistics: self.notes.statistics(lane),
+            passages: self.notes.passages(lane),
+            orientation: self.notes.orientation(lane),
+        }
     }
 
     /// Puts the state of a lane's stepper beside the others'.
@@ -298,6 +371,12 @@ where
         }
         put(&mut self.t, stepper.t());
         put(&mut self.margin, stepper.margin());
+        self.clock.put(lane, stepper.turns.clock);
+        let mut phases = self.mechanism.phases();
+        for (phase, own) in phases.as_mut().iter_mut().zip(stepper.mechanism().phases().as_ref()) {
+            phase.put(lane, *own);
+        }
+        self.mechanism.set_phases(phases);
         self.notes.put(lane, stepper.state.drift, stepper.statistics());
         self.notes.count(lane, stepper.passages(), stepper.signature());
         self.note_waiting(lane);
@@ -312,95 +391,6 @@ where
             _ => Lanes::<R, L>::test(waits, other),
         };
         self.waits = LaneMask::new(from_fn(waiting));
-    }
-}
-
-impl<R: Real, const L: usize> Notes<R, L> {
-    /// Before the first step.
-    fn none() -> Self {
-        let zero = Lanes([R::constant(0.0); L]);
-        let (fallback, passed, passages, orientation) = ([false; L], [false; L], [0; L], [0; L]);
-        let (residual, correction, row, evaluations) = (zero, zero, zero, zero);
-        let drift = Drift { change: zero, time: Lanes([R::constant(1.0); L]) };
-        Notes { drift, residual, correction, row, evaluations, fallback, passed, passages, orientation }
-    }
-
-    /// Becomes those after the step that `trial` made in `time` (s) from where the margin was `margin`.
-    #[inline(always)]
-    fn follow<const N: usize>(
-        &mut self,
-        trial: &Trial<Lanes<R, L>, N>,
-        margin: Lanes<R, L>,
-        time: Lanes<R, L>,
-    ) {
-        let zero = Lanes::constant(0.0);
-        let moves = time.less(zero) | zero.less(time);
-        self.drift.change = Lanes::select(moves, trial.margin - margin, self.drift.change);
-        self.drift.time = Lanes::select(moves, time, self.drift.time);
-        (self.residual, self.row) = (trial.residual, trial.row);
-        (self.correction, self.evaluations) = (trial.correction, trial.counts);
-        (self.fallback, self.passed) = ([false; L], [false; L]);
-        let signs = self.orientation.iter().zip(&trial.orientation);
-        if signs.fold(0, |turned, (before, after)| turned | (before ^ after)) != 0 {
-            self.pass(trial.orientation);
-        }
-    }
-
-    /// Counts the singular positions that lanes have passed.
-    #[cold]
-    #[inline(never)]
-    fn pass(&mut self, orientation: [u64; L]) {
-        self.passed = from_fn(|lane| self.orientation(lane) != at(&orientation, lane, 0));
-        for (passages, passed) in self.passages.iter_mut().zip(self.passed) {
-            *passages = passages.saturating_add(u32::from(passed));
-        }
-        self.orientation = orientation;
-    }
-
-    #[inline(always)]
-    fn statistics(&self, lane: usize) -> Statistics {
-        Statistics {
-            evaluations: self.evaluations.lane(lane).to_f64() as u32,
-            fallback: at(&self.fallback, lane, false),
-            residual: self.residual.lane(lane).to_f64(),
-            row: index(self.row, lane),
-            correction: self.correction.lane(lane).to_f64(),
-            passed: at(&self.passed, lane, false),
-        }
-    }
-
-    #[inline(always)]
-    fn drift(&self, lane: usize) -> Drift<R> {
-        Drift { change: self.drift.change.lane(lane), time: self.drift.time.lane(lane) }
-    }
-
-    /// How many singular positions the lane has passed.
-    #[inline(always)]
-    fn passages(&self, lane: usize) -> u32 {
-        at(&self.passages, lane, 0)
-    }
-
-    /// Signs of the blocks' determinants in the lane.
-    #[inline(always)]
-    fn orientation(&self, lane: usize) -> u64 {
-        at(&self.orientation, lane, 0)
-    }
-
-    fn put(&mut self, lane: usize, drift: Drift<R>, statistics: Statistics) {
-        let Statistics { evaluations, fallback, residual, row, correction, passed } = statistics;
-        set(&mut self.drift.change.0, lane, drift.change);
-        set(&mut self.drift.time.0, lane, drift.time);
-        set(&mut self.residual.0, lane, R::constant(residual));
-        set(&mut self.correction.0, lane, R::constant(correction));
-        set(&mut self.row.0, lane, R::constant(f64::from(row)));
-        set(&mut self.evaluations.0, lane, R::constant(f64::from(evaluations)));
-        set(&mut self.fallback, lane, fallback);
-        set(&mut self.passed, lane, passed);
-    }
-
-    fn count(&mut self, lane: usize, passages: u32, orientation: u64) {
-        set(&mut self.passages, lane, passages);
-        set(&mut self.orientation, lane, orientation);
     }
 }
 

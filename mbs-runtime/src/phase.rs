@@ -2,7 +2,8 @@
 
 use core::f64::consts::TAU;
 
-use crate::{Real, Scalar};
+use crate::lanes::LaneMask;
+use crate::{Lanes, Real, Scalar};
 
 /// The phase of a `drive … : rate(x) == …`, with its rates: a signal that the stepper moves on.
 ///
@@ -89,6 +90,30 @@ impl<T: Scalar> Phase<T> {
             rate: self.rate.lane(lane),
             acceleration: self.acceleration.lane(lane),
             remainder: self.remainder.lane(lane),
+        }
+    }
+}
+
+impl<R: Real, const L: usize> Phase<Lanes<R, L>> {
+    /// This phase in the lanes of `mask`, `other` elsewhere.
+    pub(crate) fn where_true(self, mask: LaneMask<R, L>, other: Self) -> Self {
+        let chosen = |own, other| Lanes::select(mask, own, other);
+        Phase {
+            value: chosen(self.value, other.value),
+            rate: chosen(self.rate, other.rate),
+            acceleration: chosen(self.acceleration, other.acceleration),
+            remainder: chosen(self.remainder, other.remainder),
+        }
+    }
+
+    /// Puts `phase` in lane `lane`.
+    pub(crate) fn put(&mut self, lane: usize, phase: Phase<R>) {
+        let Phase { value, rate, acceleration, remainder } = phase;
+        let own = [&mut self.value, &mut self.rate, &mut self.acceleration, &mut self.remainder];
+        for (lanes, number) in own.into_iter().zip([value, rate, acceleration, remainder]) {
+            if let Some(place) = lanes.0.get_mut(lane) {
+                *place = number;
+            }
         }
     }
 }

@@ -37,7 +37,7 @@ pub(crate) struct Trial<T: Scalar, const N: usize> {
     pub row: T,
     evaluations: u32,
     /// Those of each lane, where there are several.
-    pub counts: T,
+    counts: T,
     /// Lanes in which nothing happened but what does next to a regular position. The others are stepped with care.
     pub plain: T::Mask,
 }
@@ -106,6 +106,12 @@ impl<T: Scalar, const N: usize> Trial<T, N> {
             correction: self.correction.lane(lane).to_f64(),
             passed,
         }
+    }
+
+    /// Evaluations of residual and Jacobian until each lane closed, the most of any block: numbers, written like the others.
+    #[inline(always)]
+    pub(crate) fn evaluations(&self) -> T {
+        if T::LANES > 1 { self.counts } else { T::constant(f64::from(self.evaluations)) }
     }
 
     /// Signs of the blocks' determinants of lane `lane`.

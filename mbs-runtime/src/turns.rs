@@ -2,7 +2,7 @@
 
 use core::f64::consts::{PI, TAU};
 
-use crate::{Failure, Kinematic, Phase, Real, Speed, Stepper};
+use crate::{Failure, Kinematic, Phase, Real, Scalar, Speed, Stepper};
 
 /// Whole turns of the coordinates of a [`Stepper`], and the time that its steps have taken.
 ///
@@ -12,12 +12,12 @@ pub(crate) struct Turns<R, const N: usize> {
     /// Whole turns of each coordinate: N.
     pub(crate) counts: [i64; N],
     /// The time (s), with what its rounding has left out.
-    clock: Phase<R>,
+    pub(crate) clock: Phase<R>,
 }
 
 /// Time passes at this rate.
-fn second<R: Real>() -> Speed<R> {
-    Speed { value: R::constant(1.0), rate: R::constant(0.0) }
+pub(crate) fn second<T: Scalar>() -> Speed<T> {
+    Speed { value: T::constant(1.0), rate: T::constant(0.0) }
 }
 
 impl<R: Real, const N: usize> Turns<R, N> {

@@ -57,6 +57,8 @@ fn reciprocal_and_margin<T: Scalar>(determinant: T, scaled: T, bound: T) -> (T, 
     // A determinant of 0 has an infinite reciprocal, a bound of 0 no finite ratio; a sum is finite where its terms are.
     let regular = (determinant + reciprocal + ratio).is_finite();
     if T::LANES > 1 {
+        // Without a decision: after one in every block the compiler no longer sees which lanes go together from block to block.
+        // What is solved does not wait for the ratio.
         let invertible = (determinant + reciprocal).is_finite();
         return (
             T::select(invertible, reciprocal, one),
@@ -66,8 +68,8 @@ fn reciprocal_and_margin<T: Scalar>(determinant: T, scaled: T, bound: T) -> (T, 
     if T::all(regular) { (reciprocal, ratio.min(one)) } else { regular_alone(regular, reciprocal, ratio) }
 }
 
-/// Reciprocal and margin in the lanes of `regular`, (1, 0) elsewhere: out of the way, so that what is solved does not wait for
-/// what nearly always holds.
+/// Reciprocal and margin where `regular`, (1, 0) elsewhere: out of the way, so that what is solved does not wait for what nearly
+/// always holds.
 #[cold]
 #[inline(never)]
 fn regular_alone<T: Scalar>(regular: T::Mask, reciprocal: T, ratio: T) -> (T, T) {

@@ -166,6 +166,30 @@ mechanism! {
     }
 }
 
+mechanism! {
+    /// A slider-crank whose motor has a speed, its crank an angle that turns for days.
+    mechanism Press;
+    param omega: rad/s = 40;
+    coord theta: turn = 0.3;
+    coord phi: rad = 0;
+    coord x: m = 0.2;
+    constraint closure { 50mm*unit(theta) + 180mm*unit(phi) == [x, 0]; }
+    drive motor: rate(theta) == omega;
+    branch ahead: cos(phi) > 0;
+}
+
+mechanism! {
+    /// The same with a speed that varies, and an angle that grows.
+    mechanism Pump;
+    param omega: rad/s = 40;
+    coord theta: rad = 0.3;
+    coord phi: rad = 0;
+    coord x: m = 0.2;
+    constraint closure { 50mm*unit(theta) + 180mm*unit(phi) == [x, 0]; }
+    drive motor: rate(theta) == omega*(1 + 0.5*sin(9*t/1s));
+    branch ahead: cos(phi) > 0;
+}
+
 /// Eight lanes, each with steps of its own length, against eight mechanisms alone; `rounding`: relative.
 fn assert_as_alone<S, R: Real, const N: usize>(mechanism: S, guess: [f64; N], rounding: f64)
 where
@@ -190,6 +214,7 @@ where
     }
     for (lane, alone) in alone.iter().enumerate() {
         let batch = batch.stepper(lane).expect("a lane");
+        assert_eq!((batch.turns(), batch.t().to_f64()), (alone.turns(), alone.t().to_f64()));
         for (found, expected) in
             [(batch.q(), alone.q()), (batch.qd(), alone.qd()), (batch.qdd(), alone.qdd())]
         {
@@ -209,4 +234,46 @@ fn eight_lanes_go_as_each_alone_also_in_large_blocks_long_chains_and_single_prec
     assert_as_alone::<_, f64, 122>(Chain::default(), uprights, 1e-10);
     assert_as_alone::<_, f32, 3>(FourBar::default(), GUESS, 1e-4);
     assert_as_alone::<_, f32, 4>(Ring::default(), [0.0, 0.7, 0.7, 0.8], 1e-4);
+}
+
+#[test]
+fn eight_lanes_hold_their_phases_and_count_their_turns_as_each_alone() {
+    let guess = [0.3, 0.0, 0.2];
+    let speeds = Lanes([40.0, 35.0, -20.0, 0.0, 40.0, 45.0, 50.0, 60.0]);
+    assert_as_alone::<_, f64, 3>(Press { omega: speeds, ..Press::default() }, guess, ROUND_OFF);
+    assert_as_alone::<_, f64, 3>(Pump { omega: speeds, ..Pump::default() }, guess, ROUND_OFF);
+    assert_as_alone::<_, f32, 3>(Press::default(), guess, 1e-4);
+}
+
+#[test]
+fn a_lane_that_fails_or_changes_speed_keeps_the_phase_that_it_had() {
+    let guess = [[0.3, 0.0, 0.2], [6.1, 0.0, 0.23]];
+    let batch = Batch::assemble(Press::<Lanes<f64, 2>>::default(), &guess, [0.0; 2]);
+    let mut batch = batch.map_err(|(_, failure)| failure).expect("they assemble");
+    let (mut angles, mut speeds) = ([0.3, 6.1], [40.0, 40.0]);
+    for k in 1..=200 {
+        // The first lane fails in each tenth step and makes up for it in the next.
+        let fails = k % 10 == 0;
+        let t = 1e-3 * f64::from(k);
+        let before = batch.t().0;
+        let steps = batch.advance_to([if fails { f64::NAN } else { t }, t]);
+        assert_eq!((steps[0].is_err(), steps[1].is_ok()), (fails, true), "{k}");
+        for lane in 0..2 {
+            angles[lane] += speeds[lane] * if lane == 0 && fails { 0.0 } else { t - before[lane] };
+            let stepper = batch.stepper(lane).expect("a lane");
+            let found = stepper.q()[0] + core::f64::consts::TAU * stepper.turns()[0] as f64;
+            assert!(
+                (found - angles[lane]).abs() < 1e-12 * f64::from(k),
+                "{k} {lane}: {found} {}",
+                angles[lane]
+            );
+            assert!(stepper.q()[0].abs() < 3.2 && (stepper.qd()[0] - speeds[lane]).abs() < 1e-9);
+        }
+        if k % 15 == 0 {
+            speeds = [60.0 - speeds[0], -speeds[1]];
+            batch.change(|press| press.omega = Lanes(speeds));
+        }
+    }
+    let turns = [0, 1].map(|lane| batch.stepper(lane).expect("a lane").turns()[0]);
+    assert!(turns[0] > 0, "{turns:?}");
 }

@@ -51,11 +51,12 @@ mechanism! {
     limit reach: 0 <= theta <= 2;
 }
 
-/// x² that counts its copies.
+/// x² that counts its copies, and how often a single number is looked up.
 struct Table;
 
 thread_local! {
     static COPIES: Cell<u32> = const { Cell::new(0) };
+    static ALONE: Cell<u32> = const { Cell::new(0) };
 }
 
 impl Clone for Table {
@@ -69,6 +70,7 @@ impl<T: Scalar> Function<T> for Table {
     const ORDER: usize = 2;
 
     fn jet<const K: usize>(&self, x: T) -> [T; K] {
+        ALONE.set(ALONE.get() + u32::from(T::LANES == 1));
         let all = [x * x, T::constant(2.0) * x, T::constant(2.0)];
         core::array::from_fn(|order| all.get(order).copied().unwrap_or(T::constant(0.0)))
     }
@@ -235,7 +237,7 @@ fn no_step_copies_a_function() {
 }
 
 #[test]
-fn no_step_of_a_batch_copies_a_function() {
+fn steps_of_a_batch_move_phases_together_and_copy_no_function() {
     type Two = Lanes<f64, 2>;
     let still =
         Signal { value: Two::constant(0.1), rate: Two::constant(0.0), acceleration: Two::constant(0.0) };
@@ -244,8 +246,13 @@ fn no_step_of_a_batch_copies_a_function() {
         .map_err(|(lane, failure)| panic!("{lane}: {failure}"))
         .unwrap();
     COPIES.set(0);
+    ALONE.set(0);
     for k in 1..=20 {
         assert!(batch.advance_to([0.01 * f64::from(k); 2]).iter().all(Result::is_ok));
+    }
+    assert_eq!(ALONE.get(), 0, "no lane is stepped alone");
+    for (angle, start) in batch.q()[0].0.into_iter().zip([1.0, 0.5]) {
+        assert!((angle - (start + 0.04)).abs() < 1e-12);
     }
     // A lane that fails stays where it was.
     let before = *batch.q();

@@ -1,0 +1,41 @@
+//! Where a lane of several mechanisms stands.
+
+use crate::diagnosis::Statistics;
+use crate::stepper::Drift;
+use crate::{Kinematic, Lanes, Mechanism, Phase, Real, Stepper};
+
+/// All that the stepper of a lane has to know to go on from where the lane is, but for the phases, which the mechanism has.
+pub(super) struct Standing<R, const N: usize> {
+    pub t: R,
+    pub clock: Phase<R>,
+    pub q: [R; N],
+    pub qd: [R; N],
+    pub qdd: [R; N],
+    pub margin: R,
+    pub drift: Drift<R>,
+    pub statistics: Statistics,
+    pub passages: u32,
+    pub orientation: u64,
+}
+
+impl<R: Real, const N: usize> Standing<R, N> {
+    /// Puts `stepper` where lane `lane` of `mechanism` stands.
+    pub fn hand_over<S, X, const L: usize, const M: usize>(
+        self,
+        stepper: &mut Stepper<X, R, N, M>,
+        mechanism: &S,
+        lane: usize,
+    ) where
+        S: Mechanism<Lanes<R, L>, N, M>,
+        X: Kinematic<R, N, M>,
+    {
+        stepper.state.set((self.t, self.q, self.qd, self.qdd), self.margin);
+        stepper.state.note(self.drift, self.statistics, self.passages, self.orientation);
+        stepper.turns.clock = self.clock;
+        let mut phases = stepper.mechanism.phases();
+        for (own, phase) in phases.as_mut().iter_mut().zip(mechanism.phases().as_ref()) {
+            *own = phase.lane(lane);
+        }
+        stepper.mechanism.set_phases(phases);
+    }
+}
