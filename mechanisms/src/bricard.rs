@@ -12,9 +12,11 @@
 //! Source: IFToMM benchmark A04, Bricard's mechanism: rods of 1 m and 1 kg with a square section of 0.1 m, P1 and P6 on the ground,
 //! free fall along −y, from rest.
 
+use core::f64::consts::FRAC_1_SQRT_2;
+
 use mbs_runtime::mechanism;
 
-use crate::drawing::Shape;
+use crate::drawing::{FRAC_1_SQRT_6, Shape};
 use crate::masses::boxed_redundant_masses;
 use crate::registry::{FreeCard, Preset, Usual};
 
@@ -83,20 +85,22 @@ mechanism! {
             dot(rotate(orientations[i], axis[i]), rotate(orientations[i + 1], athwart[i])) == 0;
         }
     }
+    out P1: [m; 3] = [0, 0, 0];
+    out P2: [m; 3] = centres[0] + half[0];
     /// The third joint, between the second rod and the third.
-    out third: [m; 3] = centres[1] + half[1];
-    // Seen from above the diagonal of the cube, y upwards.
-    let view = [[cos(30deg), 0, -cos(30deg)], [-1/2, 1, -1/2]];
-    out P1: [m; 2] = [0, 0];
-    out P2: [m; 2] = view*(centres[0] + half[0]);
-    out P3: [m; 2] = view*(centres[1] + half[1]);
-    out P4: [m; 2] = view*(centres[2] + half[2]);
-    out P5: [m; 2] = view*(centres[3] + half[3]);
-    out P6: [m; 2] = view*[0, 0, L];
+    out P3: [m; 3] = centres[1] + half[1];
+    out P4: [m; 3] = centres[2] + half[2];
+    out P5: [m; 3] = centres[3] + half[3];
+    out P6: [m; 3] = [0, 0, L];
 }
 
-/// How the mechanism is drawn: seen from above, along the diagonal of the axes.
+/// How the mechanism is drawn.
 pub const DRAWING: &[Shape] = &[
+    Shape::View {
+        right: [FRAC_1_SQRT_2, 0.0, -FRAC_1_SQRT_2],
+        up: [-FRAC_1_SQRT_6, 2.0 * FRAC_1_SQRT_6, -FRAC_1_SQRT_6],
+        label: "from x = y = z, y upwards",
+    },
     Shape::Ground { at: "P1" },
     Shape::Ground { at: "P6" },
     Shape::Link { points: &["P1", "P2"], label: "first" },

@@ -2,13 +2,14 @@
 
 use core::fmt::Write;
 
+use crate::analyses::linear::SmallMotions;
 use crate::facade::Motion;
 use crate::motion::{Forces, LoadCurve};
 
 /// The motions of several runs below one header with names and units.
 ///
-/// Columns: `run`, `t`, `q`, `q̇`, `q̈` of each coordinate, value and derivatives of each output, energies, loads and
-/// multipliers where there are masses, and the solver's figures. A load or multiplier that is one choice of many at some
+/// Columns: `run`, `t`, `q`, `q̇`, `q̈` of each coordinate, value and derivatives of each output, energies, loads,
+/// multipliers, powers and works where there are masses, and the solver's figures. A load or multiplier that is one choice of many at some
 /// instant of some run says so beside its unit, and the last column has the number of rows that follow from others. Numbers
 /// are the shortest that read back as the same bits. All motions are of one mechanism.
 pub fn write(runs: &[(&str, &Motion)]) -> String {
@@ -38,6 +39,38 @@ pub fn write(runs: &[(&str, &Motion)]) -> String {
             let figures = figures.into_iter().chain(dependent.map(|count| f64::from(*count)));
             for number in core::iter::once(*time).chain(numbers).chain(figures) {
                 write!(text, ",{number:?}").expect("a string takes all");
+            }
+            text.push('\n');
+        }
+    }
+    text
+}
+
+/// Modes of several runs below one header, one a line: the eigenvalue that speaks for it, what becomes of it, and real and imaginary
+/// part of its shape, coordinate by coordinate.
+pub fn write_modes(runs: &[(&str, &Motion, &SmallMotions)]) -> String {
+    let mut text = "run,mode,eigenvalues,real (1/s),imaginary (1/s),frequency (Hz),course".to_string();
+    for c in runs.iter().take(1).flat_map(|(_, motion, _)| &motion.coordinates) {
+        let column = |part: &str| quoted(&format!("{} {part} ({})", c.name, c.unit));
+        write!(text, ",{},{}", column("real"), column("imaginary")).expect("a string takes all");
+    }
+    text.push('\n');
+    for (label, motion, small) in runs {
+        for (number, mode) in small.modes.iter().enumerate() {
+            let [real, imaginary] = mode.eigenvalue;
+            let frequency = imaginary / core::f64::consts::TAU;
+            let (count, course) = (mode.of.len(), mode.course.word());
+            write!(
+                text,
+                "{},{},{count},{real:?},{imaginary:?},{frequency:?},{course}",
+                quoted(label),
+                number + 1
+            )
+            .expect("a string takes all");
+            for index in 0..motion.coordinates.len() {
+                // Of states alone nothing moves.
+                let [re, im] = mode.coordinates.get(index).copied().unwrap_or_default();
+                write!(text, ",{re:?},{im:?}").expect("a string takes all");
             }
             text.push('\n');
         }
@@ -93,6 +126,10 @@ fn force_columns(forces: &Forces) -> Vec<(String, &[f64])> {
     };
     columns.extend(forces.loads.iter().map(|load| (curve("", load), load.value.as_slice())));
     columns.extend(forces.multipliers.iter().map(|row| (curve("lambda ", row), row.value.as_slice())));
+    for supply in &forces.supplies {
+        columns.push((format!("power of {} (W)", supply.title()), supply.power.as_slice()));
+        columns.push((format!("work of {} (J)", supply.title()), supply.work.as_slice()));
+    }
     columns
 }
 
@@ -109,6 +146,7 @@ fn quoted(cell: &str) -> String {
 mod tests {
     use super::*;
     use crate::facade::{CoordinateCurve, OutputCurve};
+    use crate::supplies::{Supplier, SupplyCurve};
 
     fn motion() -> Motion {
         let tenth = 0.1 + 0.2;
@@ -144,21 +182,28 @@ mod tests {
             potential: vec![3.0, 4.0],
             loads: vec![curve("tension", "N")],
             multipliers: vec![curve("rod", "N/m")],
+            supplies: vec![SupplyCurve {
+                name: "motor",
+                by: Supplier::Drive,
+                power: vec![7.0, 8.0],
+                work: vec![0.0, 9.0],
+            }],
             dependent: vec![0, 2],
             ..Forces::default()
         };
         let whole = Motion { dynamics: Some(forces.clone()), ..motion() };
         let text = write(&[("run", &whole)]);
         let header = text.lines().next().unwrap_or("");
-        let end = "kinetic energy (J),potential energy (J),tension (N),lambda rod (N/m),closure (1),iterations (1),margin (1),dependent rows (1)";
+        let end = "kinetic energy (J),potential energy (J),tension (N),lambda rod (N/m),power of drive motor (W),work of drive motor (J),closure (1),\
+                   iterations (1),margin (1),dependent rows (1)";
         assert!(header.ends_with(end), "{header}");
-        assert!(text.ends_with(",2.0,4.0,6.0,6.0,1e-17,2.0,0.5,2.0\n"), "{text}");
+        assert!(text.ends_with(",2.0,4.0,6.0,6.0,8.0,9.0,1e-17,2.0,0.5,2.0\n"), "{text}");
         // What is one choice of many in any of the runs is marked in the header of all.
         let mut shared = forces;
         shared.multipliers[0].shared = 1;
         let text = write(&[("run", &whole), ("other", &Motion { dynamics: Some(shared), ..motion() })]);
         let header = text.lines().next().unwrap_or("");
-        assert!(header.contains(",tension (N),lambda rod (N/m; not unique),closure"), "{header}");
+        assert!(header.contains(",tension (N),lambda rod (N/m; not unique),power"), "{header}");
     }
 
     #[test]

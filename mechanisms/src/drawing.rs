@@ -1,17 +1,38 @@
 //! How a mechanism is drawn: shapes between points, which are vector outputs of the text.
 //!
 //! The report's page gets the shapes as JSON, one object a shape: `kind` is the variant's name in lower case, the
-//! other members are its fields. A point is the name of an `out` with two components in metres; what turns does so
-//! with its points, so that a shape has no lengths of its own and follows the parameters. A point whose name has an
+//! other members are its fields. A point is the name of an `out` with two components in metres, or with three where the
+//! drawing has a [`View`](Shape::View); what turns does so with its points, so that a shape has no lengths of its own and follows the parameters. A point whose name has an
 //! underscore (`slot_end`) helps to draw; its name does not stand beside it. A shape with an empty label is a further
 //! part of the body before it and has its colour.
 
+use core::f64::consts::FRAC_1_SQRT_2;
+
 use serde::Serialize;
+
+/// 1/√6.
+pub const FRAC_1_SQRT_6: f64 = 0.408_248_290_463_863;
+
+/// Along the diagonal of the axes, z upwards.
+pub const DIAGONAL_Z_UP: Shape = Shape::View {
+    right: [-FRAC_1_SQRT_2, FRAC_1_SQRT_2, 0.0],
+    up: [-FRAC_1_SQRT_6, -FRAC_1_SQRT_6, 2.0 * FRAC_1_SQRT_6],
+    label: "from x = y = z, z upwards",
+};
 
 /// A shape of the picture.
 #[derive(Clone, Copy, Debug, Serialize)]
 #[serde(tag = "kind", rename_all = "lowercase")]
 pub enum Shape {
+    /// How points in space are seen: what stands along these directions is drawn, what stands across them is not.
+    View {
+        /// Unit vector to the right of the picture.
+        right: [f64; 3],
+        /// Unit vector upwards in the picture, across the other.
+        up: [f64; 3],
+        /// From where it is seen.
+        label: &'static str,
+    },
     /// A support fixed to the ground.
     Ground {
         /// Point of the support.
@@ -119,6 +140,15 @@ pub enum Shape {
         /// Number of slots.
         slots: u32,
     },
+    /// The road that passes under a point at a speed of the picture's own: its height over the run, level before and behind.
+    Road {
+        /// The point on the road.
+        at: &'static str,
+        /// Speed (m/s) to the right at which the picture moves over the road.
+        speed: f64,
+        /// Name beside the road.
+        label: &'static str,
+    },
     /// The path that a point draws.
     Trace {
         /// The point.
@@ -146,10 +176,12 @@ impl Shape {
             Shape::Link { points, .. } | Shape::Plate { points, .. } | Shape::Slot { points, .. } => {
                 points.to_vec()
             }
+            Shape::View { .. } => Vec::new(),
             Shape::Ground { at }
             | Shape::Joint { at }
             | Shape::Slider { at, .. }
-            | Shape::Rail { at, .. } => {
+            | Shape::Rail { at, .. }
+            | Shape::Road { at, .. } => {
                 vec![at]
             }
             Shape::Spring { points, .. } => points.to_vec(),
@@ -168,6 +200,23 @@ impl Shape {
             | Shape::Rail { along: Along::Named(name), .. }
             | Shape::Cam { turn: name, .. } => Some(name),
             _ => None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::registry::FREE;
+
+    #[test]
+    fn views_are_orthonormal() {
+        for shape in FREE.iter().flat_map(|card| card.drawing) {
+            let Shape::View { right, up, .. } = shape else { continue };
+            let dot = |a: &[f64; 3], b: &[f64; 3]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+            for (found, expected) in [(dot(right, right), 1.0), (dot(up, up), 1.0), (dot(right, up), 0.0)] {
+                assert!((found - expected).abs() < 1e-15, "{shape:?}");
+            }
         }
     }
 }

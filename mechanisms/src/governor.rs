@@ -18,7 +18,7 @@
 
 use mbs_runtime::mechanism;
 
-use crate::drawing::Shape;
+use crate::drawing::{DIAGONAL_Z_UP, Shape};
 use crate::masses::boxed_masses;
 use crate::registry::{FreeCard, Preset, Usual};
 
@@ -116,23 +116,22 @@ mechanism! {
 
     /// Height of the slider.
     out height: m = s;
-    // Seen from above the diagonal of the axes.
-    let view = [[-cos(30deg), cos(30deg), 0], [-1/2, -1/2, 1]];
-    out O: [m; 2] = [0, 0];
-    out top: [m; 2] = view*[0, 0, L];
-    out S: [m; 2] = view*[0, 0, s];
-    out hinge_1: [m; 2] = view*([0, 0, L] + radial[0]);
-    out hinge_2: [m; 2] = view*([0, 0, L] + radial[1]);
-    out spring_1: [m; 2] = view*([0, 0, s] + radial[0]);
-    out spring_2: [m; 2] = view*([0, 0, s] + radial[1]);
-    out middle_1: [m; 2] = view*r[0];
-    out middle_2: [m; 2] = view*r[1];
-    out B1: [m; 2] = view*(r[0] + L/2*rotate(e[0], [1, 0, 0]));
-    out B2: [m; 2] = view*(r[1] + L/2*rotate(e[1], [1, 0, 0]));
+    out O: [m; 3] = [0, 0, 0];
+    out top: [m; 3] = [0, 0, L];
+    out S: [m; 3] = [0, 0, s];
+    out hinge_1: [m; 3] = [0, 0, L] + radial[0];
+    out hinge_2: [m; 3] = [0, 0, L] + radial[1];
+    out spring_1: [m; 3] = [0, 0, s] + radial[0];
+    out spring_2: [m; 3] = [0, 0, s] + radial[1];
+    out middle_1: [m; 3] = r[0];
+    out middle_2: [m; 3] = r[1];
+    out B1: [m; 3] = r[0] + L/2*rotate(e[0], [1, 0, 0]);
+    out B2: [m; 3] = r[1] + L/2*rotate(e[1], [1, 0, 0]);
 }
 
-/// How the mechanism is drawn: seen from above, along the diagonal of the axes.
+/// How the mechanism is drawn.
 pub const DRAWING: &[Shape] = &[
+    DIAGONAL_Z_UP,
     Shape::Ground { at: "O" },
     Shape::Link { points: &["O", "top"], label: "shaft" },
     Shape::Link { points: &["hinge_1", "top", "hinge_2"], label: "" },

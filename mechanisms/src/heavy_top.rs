@@ -13,7 +13,7 @@
 
 use mbs_runtime::mechanism;
 
-use crate::drawing::Shape;
+use crate::drawing::{DIAGONAL_Z_UP, Shape};
 use crate::masses::boxed_masses;
 use crate::registry::{FreeCard, Preset, Usual};
 
@@ -56,15 +56,14 @@ mechanism! {
     out spin: [rad/s; 3] = rotate([e[0], -e[1], -e[2], -e[3]], angular_velocity(e));
     /// Force of the pivot on the top.
     out support: [N; 3] = [-lambda(pivot[0]), -lambda(pivot[1]), -lambda(pivot[2])];
-    // Seen from x = y = z.
-    let view = [[-cos(30deg), cos(30deg), 0], [-1/2, -1/2, 1]];
-    out O: [m; 2] = [0, 0];
-    out C: [m; 2] = view*r;
-    out rim_point: [m; 2] = view*(r + rotate(e, [0.2*l, 0, 0]));
+    out O: [m; 3] = [0, 0, 0];
+    out C: [m; 3] = r;
+    out rim_point: [m; 3] = r + rotate(e, [0.2*l, 0, 0]);
 }
 
-/// How the mechanism is drawn: seen from above, along the diagonal of the axes.
+/// How the mechanism is drawn.
 pub const DRAWING: &[Shape] = &[
+    DIAGONAL_Z_UP,
     Shape::Ground { at: "O" },
     Shape::Link { points: &["O", "C"], label: "top" },
     Shape::Link { points: &["C", "rim_point"], label: "" },

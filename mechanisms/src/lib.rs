@@ -108,6 +108,7 @@ pub mod motion;
 pub mod registry;
 #[cfg(feature = "ready")]
 pub mod report;
+pub mod supplies;
 #[cfg(feature = "ready")]
 pub mod tabulated;
 pub mod target_directory;

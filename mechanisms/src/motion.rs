@@ -4,6 +4,7 @@ use mbs_runtime::{Energy, Entry, OutputValue};
 use serde::Serialize;
 
 use crate::facade::State;
+use crate::supplies::{Supplier, SupplyCurve, works};
 
 /// A motion as plain columns, one value an instant.
 #[derive(Clone, Debug, Default, Serialize)]
@@ -33,9 +34,10 @@ pub struct Forces {
     pub kinetic: Vec<f64>,
     /// Potential energy (J).
     pub potential: Vec<f64>,
-    /// What forces and drives have done since the start (J); empty where nothing is integrated.
+    /// What forces and drives have done since the start (J): integrated with a motion from forces, of a driven one by
+    /// [`works`]; empty at rest.
     pub work: Vec<f64>,
-    /// Energy less work less the energy at the start (J); empty where nothing is integrated.
+    /// Energy less work less the energy at the start (J); empty at rest.
     pub defect: Vec<f64>,
     /// Largest |Φ̇ᵢ|, each row measured in the reference metric (1/s); empty where nothing is integrated.
     pub closure_rate: Vec<f64>,
@@ -43,6 +45,8 @@ pub struct Forces {
     pub loads: Vec<LoadCurve>,
     /// Multipliers, one a row.
     pub multipliers: Vec<LoadCurve>,
+    /// Powers and works of forces, of rows and of the time; empty at rest.
+    pub supplies: Vec<SupplyCurve>,
     /// First-order states of the text at the last instant.
     #[serde(skip)]
     pub states: Vec<f64>,
@@ -140,7 +144,7 @@ impl Motion {
         let forces = self.dynamics.iter().map(|forces| {
             let optional = [&forces.work, &forces.defect, &forces.closure_rate];
             let optional = optional.iter().filter(|values| !values.is_empty()).count();
-            3 + optional + forces.loads.len() + forces.multipliers.len()
+            3 + optional + forces.loads.len() + forces.multipliers.len() + 2 * forces.supplies.len()
         });
         4 + 3 * self.coordinates.len() + outputs.sum::<usize>() + forces.sum::<usize>()
     }
@@ -253,6 +257,34 @@ impl Forces {
         }
     }
 
+    /// Powers (W) of one instant more, always the same ones in the same order.
+    pub fn push_supplies(&mut self, powers: impl Iterator<Item = (&'static str, Supplier, f64)>) {
+        let first = self.supplies.iter().all(|supply| supply.power.is_empty());
+        for (index, (name, by, power)) in powers.enumerate() {
+            if first {
+                self.supplies.push(SupplyCurve::of(name, by));
+            }
+            if let Some(supply) = self.supplies.get_mut(index) {
+                supply.power.push(power);
+            }
+        }
+    }
+
+    /// The work of each power over the instants `time` (s); where nothing was integrated beside the motion, also their sum
+    /// and what of the energy it does not account for.
+    pub fn add_works(&mut self, time: &[f64]) {
+        for supply in &mut self.supplies {
+            supply.work = works(time, &supply.power);
+        }
+        if self.work.is_empty() {
+            let sum = |instant: usize| self.supplies.iter().map(|supply| supply.work[instant]).sum();
+            self.work = (0..time.len()).map(sum).collect();
+            let energy = |instant: usize| self.kinetic[instant] + self.potential[instant];
+            self.defect =
+                self.work.iter().enumerate().map(|(k, work)| energy(k) - energy(0) - work).collect();
+        }
+    }
+
     fn picked(&self, kept: &[usize], pick: impl Fn(&Vec<f64>) -> Vec<f64>) -> Forces {
         let curves = |curves: &[LoadCurve]| {
             let curve = |curve: &LoadCurve| LoadCurve {
@@ -272,10 +304,32 @@ impl Forces {
             closure_rate: optional(&self.closure_rate),
             loads: curves(&self.loads),
             multipliers: curves(&self.multipliers),
+            supplies: self
+                .supplies
+                .iter()
+                .map(|supply| SupplyCurve { power: pick(&supply.power), work: pick(&supply.work), ..*supply })
+                .collect(),
             states: self.states.clone(),
             dependent: kept.iter().filter_map(|index| self.dependent.get(*index).copied()).collect(),
             dependent_rows: self.dependent_rows.clone(),
         }
+    }
+}
+
+/// Leaves out of all motions the rows that supply nothing in any of them, and a time that changes nothing.
+///
+/// Before: motions of one mechanism. After: the others in the same order, the same of every motion.
+pub fn drop_idle(motions: &mut [&mut Motion]) {
+    let supplies = |motion: &Motion| motion.dynamics.as_ref().map_or(0, |forces| forces.supplies.len());
+    let count = motions.iter().map(|motion| supplies(motion)).max().unwrap_or(0);
+    let idle = |motion: &&mut Motion, index: usize| {
+        let supply = motion.dynamics.as_ref().and_then(|forces| forces.supplies.get(index));
+        supply.is_none_or(SupplyCurve::is_idle)
+    };
+    let kept: Vec<bool> = (0..count).map(|index| !motions.iter().all(|motion| idle(motion, index))).collect();
+    for forces in motions.iter_mut().filter_map(|motion| motion.dynamics.as_mut()) {
+        let mut marks = kept.iter();
+        forces.supplies.retain(|_| marks.next().copied().unwrap_or(true));
     }
 }
 

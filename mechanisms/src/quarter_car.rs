@@ -79,6 +79,7 @@ pub const DRAWING: &[Shape] = &[
     Shape::Slider { at: "chassis_centre", along: Along::Fixed([0.0, 1.0]) },
     Shape::Slider { at: "hub", along: Along::Fixed([0.0, 1.0]) },
     Shape::Joint { at: "contact" },
+    Shape::Road { at: "contact", speed: 1.0, label: "road" },
 ];
 
 #[cfg(test)]

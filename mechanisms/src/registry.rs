@@ -473,8 +473,9 @@ mod tests {
         let fixed = ALL.iter().map(|card| (card.name, card.drawing));
         for (card, drawing) in fixed.chain(FREE.iter().map(|card| (card.name, card.drawing))) {
             let mechanism = equations(card).expect("in the list");
+            let spatial = drawing.iter().any(|shape| matches!(shape, Shape::View { .. }));
             for point in drawing.iter().flat_map(Shape::points) {
-                for component in [".0", ".1"] {
+                for component in [".0", ".1", ".2"].into_iter().take(if spatial { 3 } else { 2 }) {
                     let name = format!("{point}{component}");
                     let output = mechanism.outputs().iter().find(|output| output.name == name);
                     assert_eq!(output.map(|output| output.unit), Some("m"), "{card}: {name}");

@@ -2,12 +2,28 @@
 
 use serde::Serialize;
 
+use crate::analyses::linear::SmallMotions;
 use crate::drawing::Shape;
 use crate::facade::Motion;
 
 const PAGE: &str = include_str!("report/page.html");
 const STYLE: &str = include_str!("report/page.css");
-const SCRIPT: &str = include_str!("report/page.js");
+/// In one scope, what is used before what uses it.
+const SCRIPT: &str = concat!(
+    include_str!("report/elements.js"),
+    "\n",
+    include_str!("report/outlines.js"),
+    "\n",
+    include_str!("report/drawing.js"),
+    "\n",
+    include_str!("report/plots.js"),
+    "\n",
+    include_str!("report/forces.js"),
+    "\n",
+    include_str!("report/modes.js"),
+    "\n",
+    include_str!("report/page.js"),
+);
 
 /// What the page shows.
 #[derive(Clone, Debug, Serialize)]
@@ -40,6 +56,9 @@ pub struct Run<'a> {
     /// The motion.
     #[serde(flatten)]
     pub motion: &'a Motion,
+    /// Small motions about its last instant.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub small: Option<&'a SmallMotions>,
 }
 
 /// The page as one HTML file that needs no network.
@@ -93,7 +112,7 @@ mod tests {
             source,
             command: "mbs run name",
             facts: &[["steps".to_string(), "1".to_string()]],
-            runs: &[Run { label: "one", description: "", motion: &motion }],
+            runs: &[Run { label: "one", description: "", motion: &motion, small: None }],
             drawing: &[
                 Shape::Joint { at: "O" },
                 Shape::Slider { at: "S", along: Along::Fixed([1.0, 0.0]) },

@@ -170,6 +170,8 @@ fn rest_and_the_loads_of_a_driven_motion_are_analyses_too() {
         &["run", "slider_crank_mass:Driven", "--analysis", "inverse", "--steps", "36"],
     ));
     assert!(text.contains("motor_torque: -") && text.contains("N*m"), "{text}");
+    // A turn brings back the energy, the motor's work is nothing but what the quadrature leaves.
+    assert!(figure(&text, "work of drive crank_drive").abs() < 1e-3, "{text}");
     let header = scratch.text("motion.csv").lines().next().map(str::to_string).expect("a header");
     assert!(header.contains(",motor_torque (N*m),") && header.contains(",lambda closure.0 (N),"), "{header}");
 }
@@ -197,9 +199,14 @@ fn a_pendulum_rests_where_its_guess_leads_and_swings_about_it_with_its_frequency
     // ±√(g/L) i about the lower position, ±√(g/L) about the upper one.
     let rate = 9.81_f64.sqrt();
     let text = run(&["--analysis", "linear", "--guess", "P.0=0.1", "--guess", "P.1=-0.9"]);
-    let eigenvalue = text.lines().find_map(|line| line.trim().strip_prefix("eigenvalue 1: ")).expect("one");
+    let eigenvalue =
+        text.lines().find_map(|line| line.trim().strip_prefix("eigenvalues 1, 2: ")).expect("a pair");
     let frequency = eigenvalue.split(" ± ").nth(1).and_then(|rest| rest.split('i').next()).expect("a pair");
     assert!((frequency.parse::<f64>().expect("a number") - rate).abs() < 2e-6, "{text}");
+    assert!(eigenvalue.starts_with("0 ± ") && eigenvalue.ends_with(" Hz, undamped, marginal"), "{text}");
+    let modes = scratch.text("modes.csv");
+    let line = modes.lines().nth(1).expect("a mode");
+    assert!(line.starts_with("10 s,1,2,") && line.contains(",marginal,1.0,0.0,"), "{modes}");
     let text = run(&["--analysis", "linear", "--guess", "P.0=0.1", "--guess", "P.1=0.9"]);
     let both = [figure(&text, "eigenvalue 1"), figure(&text, "eigenvalue 2")];
     assert!(both.iter().all(|value| (value.abs() - rate).abs() < 2e-6) && both[0] * both[1] < 0.0, "{text}");
@@ -218,7 +225,10 @@ fn small_motions_about_a_moment_say_that_it_moves() {
     assert_eq!(scratch.text("motion.csv").lines().count(), 5);
     let text = standard_output(run_into(&scratch, &["run", "quarter_car", "--analysis", "linear"]));
     // Body and wheel on their springs with the other held still are near: 1.1 and 10 Hz.
-    assert!(text.contains("1.142825 Hz, damping ratio 0.2781") && text.contains("9.973777 Hz"), "{text}");
+    assert!(
+        text.contains("1.142825 Hz, damping ratio 0.2781, stable") && text.contains("9.973777 Hz"),
+        "{text}"
+    );
 }
 
 #[test]
@@ -311,7 +321,7 @@ fn a_multiplier_that_is_one_choice_of_many_is_never_shown_without_a_word() {
 
 #[test]
 fn what_an_analysis_has_no_use_for_is_refused() {
-    let cases: [(&[&str], &str); 20] = [
+    let cases: [(&[&str], &str); 22] = [
         (&["pendulum", "--analysis", "static", "--until", "3"], "a position of rest has none"),
         (&["pendulum", "--analysis", "static", "--steps", "3"], "a position of rest has none"),
         (
@@ -333,6 +343,8 @@ fn what_an_analysis_has_no_use_for_is_refused() {
         ),
         (&["pendulum", "--method", "extrapolated", "--integrator", "rk4"], "an implicit one takes `--step`"),
         (&["pendulum", "--integrator", "rk4", "--tolerance", "1e-3"], "equal ones take `--step`"),
+        (&["pendulum", "--method", "baumgarte", "--alpha", "1e5"], "belongs to `--method penalty`"),
+        (&["pendulum", "--method", "penalty", "--alpha", "1e9"], "at most 1e8"),
         (&["pendulum", "--guess", "P.0=1"], "use `--analysis static` or `linear`"),
         (&["pendulum", "--at", "0.3"], "use `--analysis linear`"),
         (&["pendulum", "--analysis", "static", "--at", "0.3"], "use `--analysis linear`"),
@@ -368,6 +380,14 @@ fn rest_is_found_beside_what_no_force_answers_and_is_called_by_its_name() {
         text.contains("this rest is: unstable: small motions grow, the fastest by e in 0.3193 s"),
         "{text}"
     );
+    // Pushed from there it falls to the stable one, which stands below with its own label.
+    let settled = text.split("\n10 s, settled\n").nth(1).expect("a second rest");
+    assert!(
+        text.contains("a stable rest is: found below") && figure(settled, "P.1 at rest") == -1.0,
+        "{text}"
+    );
+    assert!(settled.contains("this rest is: stable: small motions go on"), "{text}");
+    assert_eq!(scratch.text("motion.csv").lines().count(), 3);
     for (name, coordinates) in
         [("cart_pole", "x, P.0:"), ("governor", "phi, r.0.1, r.1.1, e.0.1"), ("heavy_top", "e.2, e.3:")]
     {

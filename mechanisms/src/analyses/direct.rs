@@ -10,7 +10,7 @@ use mbs_runtime::dynamics::{
 use mbs_runtime::{Dynamic, Failure, Motion as Moving, Partitioned};
 
 use super::start::{Start, start, text_start};
-use super::{AnyDynamics, determined};
+use super::{AnyDynamics, determined, supplied};
 use crate::facade::{Motion, State};
 use crate::motion::{self, Forces};
 
@@ -453,6 +453,7 @@ impl<'a> Record<'a> {
         let span = run.t() - times.first().copied().unwrap_or(0.0);
         // A run that is lost moves its margin as it likes: what ends it is all there is to say.
         let lost = matches!(self.failure, Some(Failure::Unbounded { .. } | Failure::NonFinite { .. }));
+        self.forces.add_works(&self.motion.time);
         self.motion.dynamics = Some(self.forces);
         Simulated {
             motion: self.motion,
@@ -494,5 +495,6 @@ where
     let (mechanism, parameters) = (run.mechanism(), run.mechanism().parameters());
     let position = mechanism.position(&parameters, run.q(), run.t());
     let moving = Moving { qd: run.qd(), qdd: run.qdd(), lambda: run.lambda(), states: run.states() };
+    supplied::push(forces, mechanism, (&parameters, &position), &moving);
     determined::push(forces, mechanism, (&parameters, &position), run.t(), &moving)
 }

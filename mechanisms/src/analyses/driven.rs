@@ -3,11 +3,11 @@
 use mbs_runtime::dynamics::{DormandPrince8, Explicit, Projection, Simulation, inverse_with_states};
 use mbs_runtime::{Dynamic, Failure, Motion as Moving};
 
-use super::determined;
+use super::{determined, supplied};
 use crate::facade::Motion;
 use crate::motion::Forces;
 
-/// Adds energies, loads and multipliers to the positions of `motion`, at which the rows hold.
+/// Adds energies, loads, multipliers, powers and works to the positions of `motion`, at which the rows hold.
 pub(crate) fn add_forces<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
     mechanism: &S,
     motion: &mut Motion,
@@ -31,7 +31,9 @@ pub(crate) fn add_forces<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
         forces.states = states.as_ref().to_vec();
         let moving = Moving { qd: &driven.qd, qdd: &driven.qdd, lambda: &driven.lambda, states: &states };
         determined::push(&mut forces, &mechanism, (&parameters, &position), *t, &moving)?;
+        supplied::push(&mut forces, &mechanism, (&parameters, &position), &moving);
     }
+    forces.add_works(&motion.time);
     motion.dynamics = Some(forces);
     Ok(())
 }

@@ -1,23 +1,23 @@
 //! Small motions about a position of rest or a moving state, and their eigenvalues.
 
-use mbs_runtime::dynamics::{Instant, Linearization, Solved, State, linearize_with_states};
-use mbs_runtime::{Dynamic, Entry, StateSlope};
-use nalgebra::{DMatrix, Schur};
+use mbs_runtime::dynamics::{Instant, Solved, State, linearize_with_states};
+use mbs_runtime::{Dynamic, Entry};
+use nalgebra::Schur;
+use serde::Serialize;
 
+use super::first_order::FirstOrder;
+use super::modes::{self, Mode};
 use crate::facade::Motion;
 
 /// Sweeps of the QR iteration an eigenvalue before it counts as not converging; two or three are usual.
 const SWEEPS: usize = 100;
-
-/// Rounds of balancing: each state's follows those of its neighbours.
-const BALANCINGS: u32 = 10;
 
 /// Part of the matrix's norm below which an eigenvalue is what rounding leaves of 0: a double one, of a motion that no
 /// force answers, moves by the root of ε.
 pub const ZERO: f64 = 1e-6;
 
 /// Eigenvalues of small motions q + R s on the constraints.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SmallMotions {
     /// Degrees of freedom.
     pub freedom: usize,
@@ -26,6 +26,8 @@ pub struct SmallMotions {
     pub eigenvalues: Vec<[f64; 2]>,
     /// Norm of the first-order system (1/s): below [`ZERO`] of it an eigenvalue is 0.
     pub norm: f64,
+    /// What moves in them, by the order of the eigenvalues; one of a pair speaks for both.
+    pub modes: Vec<Mode>,
     /// Whether the state moves: the eigenvalues are those of one moment (frozen-time).
     pub frozen: bool,
     /// The coordinates that s are the variations of about a state that moves; none about a rest.
@@ -95,8 +97,14 @@ pub(crate) fn small_motions<S: Dynamic<f64, N, M>, const N: usize, const M: usiz
     let instant = Instant { t, y, solved: Solved { rate, lambda, margin: 1.0 }, carried: qdd };
     let found = linearize_with_states(&mechanism, &instant, independent);
     let (linear, slopes) = found.map_err(|failure| failure.to_string())?;
-    let mut small = eigenvalues(&linear, slopes.as_ref().map_or(&[], AsRef::as_ref))
+    let equations = FirstOrder::of(&linear, slopes.as_ref().map_or(&[], AsRef::as_ref))
         .ok_or_else(|| "the masses of the free motions are not positive definite".to_string())?;
+    let mut small = solved(&equations, linear.frozen)
+        .ok_or_else(|| "the iteration for the eigenvalues does not end".to_string())?;
+    small.modes = modes::modes(&equations, &small, &linear.basis)
+        .into_iter()
+        .map(|mode| mode.shown(&mechanism, &q, t))
+        .collect();
     if linear.frozen {
         let marked = |index: usize| linear.independent.get(index).copied().unwrap_or(false);
         let named = |(_, entry): (usize, &Entry)| entry.name;
@@ -109,88 +117,27 @@ pub(crate) fn small_motions<S: Dynamic<f64, N, M>, const N: usize, const M: usiz
     Ok(small)
 }
 
-/// Eigenvalues of reduced matrices; none where the mass matrix is not positive definite.
-///
-/// With states the equations are those of (s, ṡ over a typical frequency, ζ).
-fn eigenvalues<Z: AsRef<[f64]>, const N: usize>(
-    linear: &Linearization<f64, N>,
-    slopes: &[StateSlope<f64, N, Z>],
-) -> Option<SmallMotions> {
-    let (size, states) = (linear.freedom, slopes.len());
-    let of = |matrix: &[[f64; N]; N]| DMatrix::from_fn(size, size, |i, j| matrix[i][j]);
+/// Eigenvalues and modes of the equations of small motions; none where the iteration for them does not end.
+fn solved(linear: &FirstOrder, frozen: bool) -> Option<SmallMotions> {
     let nothing = SmallMotions {
-        freedom: size,
+        freedom: linear.freedom(),
         eigenvalues: Vec::new(),
         norm: 0.0,
-        frozen: linear.frozen,
+        frozen,
+        modes: Vec::new(),
         coordinates: Vec::new(),
         passed_over: Vec::new(),
     };
-    if size + states == 0 {
+    let system = linear.system();
+    if system.nrows() == 0 {
         return Some(nothing);
     }
-    // M̄ = L Lᵀ and s = L⁻ᵀ y: symmetric matrices stay symmetric.
-    let lower = of(&linear.mass).cholesky()?.l();
-    let reduced = |matrix: DMatrix<f64>| {
-        let left = lower.solve_lower_triangular(&matrix)?;
-        Some(lower.solve_lower_triangular(&left.transpose())?.transpose())
-    };
-    let (stiffness, damping) = (reduced(of(&linear.stiffness)), reduced(of(&linear.damping)));
-    let (stiffness, damping) = (stiffness?, damping?);
-    // Velocities over a typical frequency, so that both halves of the system are of one size.
-    let frequency = stiffness.norm().sqrt().max(damping.norm());
-    let frequency = if frequency > 0.0 { frequency } else { 1.0 };
-    let order = 2 * size + states;
-    let mut system = DMatrix::from_fn(order, order, |i, j| match (i < size, j < size) {
-        _ if i.max(j) >= 2 * size => 0.0,
-        (true, true) => 0.0,
-        (true, false) => f64::from(u8::from(j - size == i)) * frequency,
-        (false, true) => -stiffness[(i - size, j)] / frequency,
-        (false, false) => -damping[(i - size, j - size)],
-    });
-    // s = L⁻ᵀ y: forces of states act as L⁻¹ Rᵀ Q_z, and what their rates have of s is applied to L⁻ᵀ.
-    let along = |pick: fn(&StateSlope<f64, N, Z>) -> &[f64; N]| {
-        lower.solve_lower_triangular(&DMatrix::from_fn(size, states, |i, k| pick(&slopes[k])[i]))
-    };
-    let (force, place, speed) = (along(|s| &s.force)?, along(|s| &s.q)?, along(|s| &s.qd)?);
-    for (k, slope) in slopes.iter().enumerate() {
-        for i in 0..size {
-            system[(size + i, 2 * size + k)] = force[(i, k)] / frequency;
-            system[(2 * size + k, i)] = place[(i, k)];
-            system[(2 * size + k, size + i)] = speed[(i, k)] * frequency;
-        }
-        slope
-            .states
-            .as_ref()
-            .iter()
-            .enumerate()
-            .for_each(|(l, entry)| system[(2 * size + k, 2 * size + l)] = *entry);
-    }
-    balance_states(&mut system, 2 * size);
-    let norm = system.norm();
-    let schur = Schur::try_new(system, f64::EPSILON, SWEEPS * order)?;
+    let schur = Schur::try_new(system.clone(), f64::EPSILON, SWEEPS * system.nrows())?;
     let mut found: Vec<[f64; 2]> = schur.complex_eigenvalues().iter().map(|z| [z.re, z.im]).collect();
     found.sort_by(|a, b| {
         a[1].abs().total_cmp(&b[1].abs()).then(a[0].total_cmp(&b[0])).then(a[1].total_cmp(&b[1]))
     });
-    Some(SmallMotions { eigenvalues: found, norm, ..nothing })
-}
-
-/// Measures each state beyond `first` so that what acts on it is as large as what it acts on, by powers of two: units of states
-/// are any, and beside newtons or pascals the norm would say nothing of the others.
-fn balance_states(system: &mut DMatrix<f64>, first: usize) {
-    for _ in 0..BALANCINGS {
-        for state in first..system.nrows() {
-            let others = |value: f64, index: usize| if index == state { 0.0 } else { value.abs() };
-            let row: f64 = (0..system.nrows()).map(|j| others(system[(state, j)], j)).sum();
-            let column: f64 = (0..system.nrows()).map(|i| others(system[(i, state)], i)).sum();
-            if row > 0.0 && column > 0.0 {
-                let factor = (0.5 * (column / row).log2()).round().exp2();
-                (0..system.nrows()).for_each(|j| system[(state, j)] *= factor);
-                (0..system.nrows()).for_each(|i| system[(i, state)] /= factor);
-            }
-        }
-    }
+    Some(SmallMotions { eigenvalues: found, norm: system.norm(), ..nothing })
 }
 
 #[cfg(test)]

@@ -4,10 +4,17 @@ mod determined;
 pub mod direct;
 pub mod driven;
 #[cfg(feature = "ready")]
+mod first_order;
+#[cfg(feature = "ready")]
 pub mod linear;
 mod loads;
+#[cfg(feature = "ready")]
+pub mod modes;
 pub mod rest;
+#[cfg(feature = "ready")]
+mod settling;
 pub mod start;
+mod supplied;
 
 use mbs_runtime::{Dynamic, Failure};
 
@@ -55,6 +62,10 @@ pub trait AnyDynamics {
     /// Why there are none, in words.
     #[cfg(feature = "ready")]
     fn small_motions(&self, motion: &Motion) -> Result<SmallMotions, String>;
+    /// A stable rest that it comes to from the rest `unstable` with `small` motions, its energy falling; none where it comes to none
+    /// that way, or where forces depend on the time.
+    #[cfg(feature = "ready")]
+    fn settled(&self, unstable: &Rest, small: &SmallMotions) -> Option<Rest>;
 }
 
 impl<S: Dynamic<f64, N, M>, const N: usize, const M: usize> AnyDynamics for MassFacade<S, N, M> {
@@ -84,5 +95,12 @@ impl<S: Dynamic<f64, N, M>, const N: usize, const M: usize> AnyDynamics for Mass
     #[cfg(feature = "ready")]
     fn small_motions(&self, motion: &Motion) -> Result<SmallMotions, String> {
         linear::small_motions(&self.kinematics.0, self.partitioned.independent, motion)
+    }
+
+    #[cfg(feature = "ready")]
+    fn settled(&self, unstable: &Rest, small: &SmallMotions) -> Option<Rest> {
+        let independent = self.partitioned.independent;
+        let fall = || settling::settled(&self.kinematics.0, independent, &unstable.motion, small);
+        (!unstable.held).then(fall).flatten()
     }
 }

@@ -53,6 +53,9 @@ pub fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<(), CommandErro
         let reason = "`--frequency` and `--damping` belong to `--methods baumgarte` or `penalty`";
         return Err(CommandError::Usage(reason.to_string()));
     }
+    if arguments.damping.is_penalty_given() && !arguments.methods.contains(&MethodName::Penalty) {
+        return Err(CommandError::Usage("`--alpha` belongs to `--methods penalty`".to_string()));
+    }
     let instance = subject.sound_instance(&subject.runs()[0], &arguments.parameters)?;
     let until = arguments.until.map_or_else(|| subject.duration(&instance), Ok)?;
     let times = instants(until, arguments.steps);

@@ -5,8 +5,10 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
+use mechanisms::analyses::linear::SmallMotions;
 use mechanisms::csv;
 use mechanisms::facade::{AnyEquations, Motion};
+use mechanisms::motion::drop_idle;
 use mechanisms::registry::{Preset, Usual, file_name};
 use mechanisms::report::{Report, Run, html};
 use mechanisms::target_directory::target_directory;
@@ -129,6 +131,8 @@ impl Arguments {
                 step: self.step.is_some(),
                 tolerance: self.tolerance.is_some(),
                 damping: self.damping.is_given(),
+                alpha: self.damping.is_penalty_given(),
+                penalty: method == MethodName::Penalty,
                 implicit: method.is_implicit(),
                 damped: method.is_damped(),
                 adaptive: integrator.rule().is_none(),
@@ -185,7 +189,7 @@ pub fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<(), CommandErro
     let (mut done, mut left_out) = (Vec::new(), Vec::new());
     for instance in &instances {
         match wish.done(subject, instance) {
-            Ok(found) => done.push(found),
+            Ok(found) => done.extend(found),
             // Of several loads some may have no position of rest.
             Err(CommandError::Failed(reason)) if wish.is_of_rest(subject) => left_out.push(reason),
             Err(error) => return Err(error),
@@ -194,22 +198,29 @@ pub fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<(), CommandErro
     if done.is_empty() {
         return Err(CommandError::Failed(left_out.join("\n")));
     }
+    drop_idle(&mut done.iter_mut().map(|done| &mut done.motion).collect::<Vec<_>>());
     let standard = || target_directory().join("mbs").join(file_name(subject.name()));
     let directory = arguments.out.clone().unwrap_or_else(standard);
     let mut facts = facts(&instances, &done);
     facts.extend(left_out.iter().map(|reason| ["left out".to_string(), reason.clone()]));
     // Before the table, which may meet a reader that has left.
-    let written =
-        write_report(&directory, &page(arguments, subject, &instances, &done, &facts), &values(&done));
+    let mut files = vec![
+        ("report.html", page(arguments, subject, &instances, &done, &facts)),
+        ("motion.csv", values(&done)),
+    ];
+    files.extend(modes(&done).map(|modes| ("modes.csv", modes)));
+    let written = write_report(&directory, &files);
     writeln!(out, "{}", subject.title())?;
     for done in &done {
-        table::write(out, subject.drawing(), done.label, &done.motion, &done.figures)?;
+        table::write(out, subject.drawing(), &done.label, &done.motion, &done.figures)?;
     }
     for reason in &left_out {
         writeln!(out, "\nleft out: {reason}")?;
     }
-    let (page, values) = written?;
-    writeln!(out, "\nreport  {}\nvalues  {}", page.display(), values.display())?;
+    writeln!(out)?;
+    for (name, path) in ["report", "values", "modes "].iter().zip(written?) {
+        writeln!(out, "{name}  {}", path.display())?;
+    }
     Ok(())
 }
 
@@ -250,7 +261,12 @@ fn page(
     let shown: Vec<Motion> = done.iter().map(|done| done.motion.thinned(shown)).collect();
     let mut runs = Vec::new();
     for (done, motion) in done.iter().zip(&shown) {
-        runs.push(Run { label: done.label, description: done.description, motion });
+        runs.push(Run {
+            label: &done.label,
+            description: done.description,
+            motion,
+            small: done.small.as_ref(),
+        });
     }
     html(&Report {
         name: subject.name(),
@@ -265,16 +281,24 @@ fn page(
 }
 
 fn values(done: &[Done]) -> String {
-    csv::write(&done.iter().map(|done| (done.label, &done.motion)).collect::<Vec<_>>())
+    csv::write(&done.iter().map(|done| (done.label.as_str(), &done.motion)).collect::<Vec<_>>())
 }
 
-/// Writes both files beside their places first, so that a full disk leaves no half of them.
-fn write_report(directory: &Path, page: &str, values: &str) -> Result<(PathBuf, PathBuf), CommandError> {
+/// Small motions as values, where they were asked for.
+fn modes(done: &[Done]) -> Option<String> {
+    let small: Vec<(&str, &Motion, &SmallMotions)> = done
+        .iter()
+        .filter_map(|done| Some((done.label.as_str(), &done.motion, done.small.as_ref()?)))
+        .collect();
+    (!small.is_empty()).then(|| csv::write_modes(&small))
+}
+
+/// Writes the files, names and texts, beside their places first, so that a full disk leaves no part of them.
+fn write_report(directory: &Path, files: &[(&str, String)]) -> Result<Vec<PathBuf>, CommandError> {
     let fail = |path: &Path, error: std::io::Error| {
         CommandError::Failed(format!("cannot write {}: {error}", path.display()))
     };
     fs::create_dir_all(directory).map_err(|error| fail(directory, error))?;
-    let files = [("report.html", page), ("motion.csv", values)];
     let draft = |name: &str| directory.join(format!(".{name}.{}.draft", std::process::id()));
     let written = files
         .iter()
@@ -289,7 +313,7 @@ fn write_report(directory: &Path, page: &str, values: &str) -> Result<(PathBuf, 
         // What is left of them; those already in place are whole.
         files.iter().for_each(|(name, _)| drop(fs::remove_file(draft(name))));
     }
-    placed.map(|()| (directory.join(files[0].0), directory.join(files[1].0)))
+    placed.map(|()| files.iter().map(|(name, _)| directory.join(name)).collect())
 }
 
 /// Most steps of a run: its motion is held in memory and written as text.
@@ -319,7 +343,8 @@ mod tests {
     fn a_report_that_cannot_be_written_leaves_nothing() {
         let directory = target_directory().join("tmp").join(format!("report-{}", std::process::id()));
         fs::create_dir_all(directory.join("motion.csv")).expect("a directory in the way");
-        assert!(write_report(&directory, "page", "values").is_err());
+        let files = [("report.html", "page".to_string()), ("motion.csv", "values".to_string())];
+        assert!(write_report(&directory, &files).is_err());
         let left = fs::read_dir(&directory).expect("the directory").flatten();
         assert!(left.into_iter().all(|file| !file.file_name().to_string_lossy().ends_with("draft")));
         fs::remove_dir_all(directory).expect("scratch");

@@ -59,6 +59,30 @@ pub fn short(value: f64) -> String {
     }
 }
 
+/// A number with so many digits, whatever its size, and no needless zeros.
+pub fn significant(value: f64, digits: usize) -> String {
+    if value == 0.0 {
+        return "0".to_string();
+    }
+    let rounded = format!("{value:.*e}", digits.saturating_sub(1));
+    let exponent: i32 = rounded.split_once('e').and_then(|(_, power)| power.parse().ok()).unwrap_or(0);
+    let trimmed = |text: &str| match text.contains('.') {
+        true => text.trim_end_matches('0').trim_end_matches('.').to_string(),
+        false => text.to_string(),
+    };
+    match (usize::try_from(exponent), rounded.split_once('e')) {
+        (Ok(power), _) if power < digits.max(6) => {
+            trimmed(&format!("{value:.*}", digits.saturating_sub(power + 1)))
+        }
+        (Err(_), _) if exponent >= -4 => {
+            let behind = digits.saturating_sub(1) + exponent.unsigned_abs() as usize;
+            trimmed(&format!("{value:.behind$}"))
+        }
+        (_, Some((mantissa, power))) => format!("{}e{power}", trimmed(mantissa)),
+        (_, None) => rounded,
+    }
+}
+
 /// A unit after a number; none where it is 1.
 pub fn unit(unit: &str) -> String {
     if unit == "1" { String::new() } else { format!(" {unit}") }
@@ -67,22 +91,28 @@ pub fn unit(unit: &str) -> String {
 fn write_point(out: &mut dyn Write, point: &str, name: &str, motion: &Motion) -> io::Result<()> {
     let component =
         |suffix: &str| motion.outputs.iter().find(|output| output.name == format!("{point}{suffix}"));
-    let (Some(x), Some(y)) = (component(".0"), component(".1")) else { return Ok(()) };
+    let components: Vec<&OutputCurve> = [".0", ".1", ".2"].into_iter().map_while(component).collect();
     writeln!(out, "  point {point} ({name}): position (m), velocity (m/s), acceleration (m/s²)")?;
-    writeln!(
-        out,
-        "  {:>9}  {:>10} {:>10}  {:>10} {:>10}  {:>11} {:>11}",
-        "t (s)", "x", "y", "vx", "vy", "ax", "ay"
-    )?;
+    write!(out, "  {:>9}", "t (s)")?;
+    for (mark, width) in [("", 10), ("v", 10), ("a", 11)] {
+        write!(out, " ")?;
+        for (axis, _) in ["x", "y", "z"].iter().zip(&components) {
+            write!(out, " {:>width$}", format!("{mark}{axis}"))?;
+        }
+    }
+    writeln!(out)?;
     for index in spread(motion.time.len(), ROWS) {
         write!(out, "  {:>9.5}", motion.time[index])?;
         let cell = |curve: &Option<Vec<f64>>| curve.as_ref().map_or(f64::NAN, |values| values[index]);
-        let pair = |pick: fn(&OutputCurve, usize) -> f64| (pick(x, index), pick(y, index));
-        let (px, py) = pair(|curve, index| curve.value[index]);
-        write!(out, "  {:>10.6} {:>10.6}", signless(px, 6), signless(py, 6))?;
-        write!(out, "  {:>10.5} {:>10.5}", signless(cell(&x.rate), 5), signless(cell(&y.rate), 5))?;
-        let (ax, ay) = (cell(&x.acceleration), cell(&y.acceleration));
-        writeln!(out, "  {:>11.4} {:>11.4}", signless(ax, 4), signless(ay, 4))?;
+        write!(out, " ")?;
+        components.iter().try_for_each(|curve| write!(out, " {:>10.6}", signless(curve.value[index], 6)))?;
+        write!(out, " ")?;
+        components.iter().try_for_each(|curve| write!(out, " {:>10.5}", signless(cell(&curve.rate), 5)))?;
+        write!(out, " ")?;
+        components
+            .iter()
+            .try_for_each(|curve| write!(out, " {:>11.4}", signless(cell(&curve.acceleration), 4)))?;
+        writeln!(out)?;
     }
     Ok(())
 }
@@ -95,6 +125,14 @@ fn signless(value: f64, digits: i32) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn significant_digits_are_kept_of_every_size() {
+        let found = [2.397_199_4, -0.000_123_456_789, 1.2e-5, 654_321.987, 9.999_999_9, 3e9, 0.0, -20.0];
+        let expected = ["2.397199", "-0.0001234568", "1.2e-5", "654322", "10", "3e9", "0", "-20"];
+        assert_eq!(found.map(|value| significant(value, 7)), expected);
+        assert_eq!((significant(0.1, 3), significant(1234.5, 3)), ("0.1".into(), "1234".into()));
+    }
 
     #[test]
     fn short_numbers_keep_what_matters() {

@@ -1,0 +1,111 @@
+//! Motions from forces.
+
+use std::time::Duration;
+
+use mbs_runtime::dynamics::{Counts, Doubt};
+use mechanisms::analyses::AnyDynamics;
+use mechanisms::analyses::direct::{Approach, Simulated};
+
+use super::loads::{energies, loads};
+use super::{Finding, Found};
+
+pub(super) fn direct(
+    dynamics: &dyn AnyDynamics,
+    approach: &Approach,
+    times: &[f64],
+    heard: &mut dyn FnMut(usize),
+) -> Found {
+    let found = dynamics.simulate(approach, times, heard).map_err(|failure| failure.to_string())?;
+    if let Some(failure) = found.failure {
+        return Err(failure.to_string());
+    }
+    let mut figures = balance(&found);
+    figures.extend(energies(&found.motion));
+    figures.extend(loads(&found.motion));
+    Ok(Finding::of(found.motion, figures))
+}
+
+/// Energy, constraints and cost of a motion from forces.
+fn balance(found: &Simulated) -> Vec<[String; 2]> {
+    let Some(forces) = &found.motion.dynamics else { return Vec::new() };
+    let pair = |name: &str, value: String| [name.to_string(), value];
+    let kinetic = largest(&forces.kinetic);
+    let margin = found.motion.margin.iter().copied().fold(f64::INFINITY, f64::min);
+    let mut figures = vec![
+        pair(
+            "largest energy defect",
+            format!("{:.1e} J, largest kinetic energy {kinetic:.4} J", largest(&forces.defect)),
+        ),
+        pair("largest |Φ|", format!("{:.1e} of the reference length", largest(&found.motion.closure))),
+        pair("largest |Φ̇|", format!("{:.1e} 1/s of the reference length", largest(&forces.closure_rate))),
+        pair("steps", format!("{}, {} rejected", found.counts.steps, found.rejected)),
+        pair("evaluations", evaluations(&found.counts)),
+        pair("smallest margin to singularity", format!("{margin:.3}")),
+        pair("time of computation", milliseconds(found.elapsed)),
+    ];
+    if found.replaced {
+        let reason =
+            "projection onto all rows together: of rows that may follow from others no blocks are made";
+        figures.push(pair("method", reason.to_string()));
+    }
+    if found.counts.rechosen > 0 {
+        let (rechosen, all) = (found.counts.rechosen, found.counts.evaluations);
+        let reason = "the independent coordinates hardly determine the others there";
+        figures.push(pair(
+            "independent motions chosen anew",
+            format!("{rechosen} of {all} evaluations: {reason}"),
+        ));
+    }
+    if found.counts.handed_over > 0 {
+        let (handed, all) = (found.counts.handed_over, found.counts.evaluations);
+        let reason = "the rows lose rank there";
+        figures.push(pair("handed over to projection", format!("{handed} of {all} evaluations: {reason}")));
+    }
+    if found.counts.rank_revealing > 0 {
+        figures.push(pair("rank-revealing factorizations", found.counts.rank_revealing.to_string()));
+    }
+    if let Some(t) = found.undetermined {
+        figures.push(pair("not determined", undetermined(t)));
+    }
+    if let Some(doubt) = found.doubt {
+        figures.push(pair("doubtful", doubtful(doubt).to_string()));
+    }
+    figures
+}
+
+/// What the steps cost, and what the instants between them.
+fn evaluations(counts: &Counts) -> String {
+    match counts.shown {
+        0 => counts.evaluations.to_string(),
+        shown => format!("{} of the steps, {shown} of the instants between them", counts.evaluations),
+    }
+}
+
+/// Largest magnitude.
+pub fn largest(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()))
+}
+
+/// What a method that does not lead through singular positions leaves open from `t` (s) on.
+pub fn undetermined(t: f64) -> String {
+    format!(
+        "the motion behind t = {t} s: it passes a singular position there, where this method may leave on another branch; use \
+         `--method projection`"
+    )
+}
+
+/// What is doubtful about a stabilisation, in one phrase.
+pub fn doubtful(doubt: Doubt) -> &'static str {
+    match doubt {
+        Doubt::StiffStabilization => "frequency times step above 0.3: the stabilisation costs accuracy",
+        Doubt::IdleStabilization => "frequency times duration below 5: violations have no time to decay",
+        Doubt::RisingRank => {
+            "rows that follow from others on the constraints do not beside them, where stages are: accelerations there are wrong \
+             by their own size; use `--method projection`"
+        }
+    }
+}
+
+fn milliseconds(elapsed: Duration) -> String {
+    format!("{:.1} ms", elapsed.as_secs_f64() * 1e3)
+}
