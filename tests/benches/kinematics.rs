@@ -35,7 +35,7 @@ const LARGEST_STEP_ERROR: f64 = 1e-10;
 /// Plain, and with common subexpressions eliminated.
 const CASADI: &[&str] = &["casadi_plain", "casadi_shared"];
 
-const NOTES: &str = "Eight lanes step at eight phases of the turn. The text by hand solves the same blocks in the same \
+const NOTES: &str = "Lanes step at as many phases of the turn. The text by hand solves the same blocks in the same \
                      order, without choice of positions, margins or checks. A row without a must is shown for \
                      completeness.";
 
@@ -128,6 +128,30 @@ const LINES: &[Line] = &[
         SHOWN,
     ),
     Line(
+        "four-bar, 4 lanes, a mechanism, against CasADi's C",
+        "four_bar",
+        "emitted_4_lanes",
+        Peer::Fastest(CASADI),
+        SHOWN,
+        SHOWN,
+    ),
+    Line(
+        "Andrews, 4 lanes, a mechanism, against CasADi's C",
+        "andrews",
+        "emitted_4_lanes",
+        Peer::Fastest(CASADI),
+        SHOWN,
+        SHOWN,
+    ),
+    Line(
+        "ten loops, 4 lanes, a mechanism, against CasADi's C",
+        "chain",
+        "emitted_4_lanes",
+        Peer::Fastest(CASADI),
+        SHOWN,
+        SHOWN,
+    ),
+    Line(
         "kinematic step, four-bar, against CasADi's Newton from the same prediction",
         "four_bar_step",
         "emitted",
@@ -160,6 +184,14 @@ const LINES: &[Line] = &[
         13.0,
     ),
     Line(
+        "kinematic step, ten loops, against Rust by hand",
+        "chain_step",
+        "emitted",
+        Peer::Fastest(&["by_hand"]),
+        1.0 / 1.1,
+        1.0,
+    ),
+    Line(
         "8-lane batch step, four-bar, a mechanism, against the single step",
         "four_bar_step",
         "emitted_lanes",
@@ -174,6 +206,22 @@ const LINES: &[Line] = &[
         Peer::Fastest(&["emitted"]),
         4.0,
         7.0,
+    ),
+    Line(
+        "4-lane batch step, four-bar, a mechanism, against the single step",
+        "four_bar_step",
+        "emitted_4_lanes",
+        Peer::Fastest(&["emitted"]),
+        SHOWN,
+        SHOWN,
+    ),
+    Line(
+        "4-lane batch step, ten loops, a mechanism, against the single step",
+        "chain_step",
+        "emitted_4_lanes",
+        Peer::Fastest(&["emitted"]),
+        SHOWN,
+        SHOWN,
     ),
     Line(
         "time a step, forty loops over ten (at most)",

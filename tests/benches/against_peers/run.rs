@@ -198,6 +198,7 @@ pub fn titles() -> BTreeMap<&'static str, &'static str> {
         ("emitted", "**emitted**"),
         ("emitted_adjustable", "**emitted**, numbers as parameters"),
         ("emitted_lanes", "**emitted**, 8 lanes, a mechanism"),
+        ("emitted_4_lanes", "**emitted**, 4 lanes, a mechanism"),
         ("emitted_40", "**emitted**, 40 loops"),
         ("emitted_order_5", "**emitted**, order 5(4)"),
         ("emitted_order_8", "**emitted**, order 8(5,3)"),

@@ -39,32 +39,30 @@ fn evaluate<S, T: Scalar, const N: usize, const Z: usize>(
     };
 }
 
-/// Mechanisms a call of [`lanes`].
-const LANES: usize = 8;
-
-type Eight = Lanes<f64, LANES>;
-
 #[inline(never)]
-fn eight<S, const N: usize, const Z: usize>(
+fn called<S, T: Scalar, const N: usize, const Z: usize>(
     mechanism: &S,
-    state: &([Eight; N], [Eight; N], Eight),
-    out: &mut Output<Eight, N, Z>,
+    state: &([T; N], [T; N], T),
+    out: &mut Output<T, N, Z>,
 ) where
-    S: Mechanism<Eight, N, N, Entries = [Eight; Z]>,
+    S: Mechanism<T, N, N, Entries = [T; Z]>,
 {
     evaluate(mechanism, &state.0, &state.1, state.2, out);
 }
 
-/// Eight mechanisms a call.
-pub fn lanes<S, const N: usize, const Z: usize>(problem: &Problem<N, Z>) -> Case
+/// L mechanisms a call.
+pub fn lanes<S, const L: usize, const N: usize, const Z: usize>(
+    name: &'static str,
+    problem: &Problem<N, Z>,
+) -> Case
 where
-    S: Mechanism<Eight, N, N, Entries = [Eight; Z]> + Default + 'static,
+    S: Mechanism<Lanes<f64, L>, N, N, Entries = [Lanes<f64, L>; Z]> + Default + 'static,
 {
-    let states: Vec<([Eight; N], [Eight; N], Eight)> = problem
+    let states: Vec<([Lanes<f64, L>; N], [Lanes<f64, L>; N], Lanes<f64, L>)> = problem
         .states
-        .chunks(LANES)
+        .chunks(L)
         .map(|chunk| {
-            let lanes = |value: &dyn Fn(usize) -> f64| Eight::from_lanes(value);
+            let lanes = |value: &dyn Fn(usize) -> f64| Lanes::from_lanes(value);
             (
                 std::array::from_fn(|k| lanes(&|lane| chunk[lane].q[k])),
                 std::array::from_fn(|k| lanes(&|lane| chunk[lane].qd[k])),
@@ -72,14 +70,15 @@ where
             )
         })
         .collect();
-    let zero = Eight::constant(0.0);
+    let zero = Lanes([0.0; L]);
     let mut out = Output { phi: [zero; N], entries: [zero; Z], phi_t: [zero; N], gamma: [zero; N] };
     let mechanism = S::default();
     let mut found = Vec::new();
     for state in &states {
-        eight(&mechanism, state, &mut out);
-        let of = |values: &[Eight], lane: usize| values.iter().map(|v| v.lane(lane)).collect::<Vec<_>>();
-        found.extend((0..LANES).map(|lane| Output {
+        called(&mechanism, state, &mut out);
+        let of =
+            |values: &[Lanes<f64, L>], lane: usize| values.iter().map(|v| v.lane(lane)).collect::<Vec<_>>();
+        found.extend((0..L).map(|lane| Output {
             phi: of(&out.phi, lane).try_into().expect("N values"),
             entries: of(&out.entries, lane).try_into().expect("Z values"),
             phi_t: of(&out.phi_t, lane).try_into().expect("N values"),
@@ -89,8 +88,8 @@ where
     let error = problem.error(&found);
     let run = move || {
         for state in black_box(&states) {
-            eight(&mechanism, state, black_box(&mut out));
+            called(&mechanism, state, black_box(&mut out));
         }
     };
-    Case { group: problem.name, name: "emitted_lanes", work: STATES as u32, error, run: Box::new(run) }
+    Case { group: problem.name, name, work: STATES as u32, error, run: Box::new(run) }
 }

@@ -55,7 +55,8 @@ pub fn four_bar() -> Vec<Case> {
     );
     let problem = Problem::new::<FourBar>("four_bar", states, generated::FOUR_BAR);
     cases.push(problem.case("emitted_adjustable", emitted::scalar::<AdjustableFourBar, 5, 13>));
-    cases.push(emitted::lanes::<FourBar<_>, _, _>(&problem));
+    cases.push(emitted::lanes::<FourBar<_>, 8, _, _>("emitted_lanes", &problem));
+    cases.push(emitted::lanes::<FourBar<_>, 4, _, _>("emitted_4_lanes", &problem));
     cases
 }
 
@@ -68,7 +69,10 @@ pub fn andrews() -> Vec<Case> {
         Some(0),
     );
     let problem = Problem::new::<Andrews>("andrews", states, generated::ANDREWS);
-    let lanes = emitted::lanes::<Andrews<_>, _, _>(&problem);
+    let lanes = [
+        emitted::lanes::<Andrews<_>, 8, _, _>("emitted_lanes", &problem),
+        emitted::lanes::<Andrews<_>, 4, _, _>("emitted_4_lanes", &problem),
+    ];
     let mut cases = problem.cases(
         generated::sympy_andrews,
         by_hand::andrews,
@@ -77,7 +81,7 @@ pub fn andrews() -> Vec<Case> {
         derived::differences::<derived::Andrews, 7, 23>,
         emitted::scalar::<Andrews, 7, 23>,
     );
-    cases.push(lanes);
+    cases.extend(lanes);
     cases
 }
 
@@ -86,7 +90,10 @@ pub fn chain() -> Vec<Case> {
     let center = std::array::from_fn(|k| if k % 2 == 0 { 0.1 } else { 0.9 } + 0.01 * (k * k % 7) as f64);
     let states = states(center, [0.2; 22], std::array::from_fn(|k| 1.0 - 0.1 * k as f64), None);
     let problem = Problem::new::<Chain10>("chain", states, generated::CHAIN);
-    let lanes = emitted::lanes::<Chain10<_>, _, _>(&problem);
+    let lanes = [
+        emitted::lanes::<Chain10<_>, 8, _, _>("emitted_lanes", &problem),
+        emitted::lanes::<Chain10<_>, 4, _, _>("emitted_4_lanes", &problem),
+    ];
     let mut cases = problem.cases(
         generated::sympy_chain,
         by_hand::chain,
@@ -95,7 +102,7 @@ pub fn chain() -> Vec<Case> {
         derived::differences::<derived::Chain, 22, 63>,
         emitted::scalar::<Chain10, 22, 63>,
     );
-    cases.push(lanes);
+    cases.extend(lanes);
     cases
 }
 

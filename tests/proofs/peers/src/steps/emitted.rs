@@ -44,36 +44,30 @@ where
     Case { group: turn.group, name: "emitted", work: STEPS, error, run: Box::new(run) }
 }
 
-/// Mechanisms a step of [`lanes`].
-const LANES: usize = 8;
-
-/// By how much of a turn (s) each lane is ahead of the one before.
-const AHEAD: f64 = 1.0 / LANES as f64;
-
-/// Steps of a turn of several mechanisms at once, each at its own phase of the turn.
-pub fn lanes<S, const N: usize>(turn: &Turn<N>, mechanism: S) -> Case
+/// Steps of a turn of L mechanisms at once, each at its own phase of the turn: the L-th part of it (s) ahead of the one before.
+pub fn lanes<S, const L: usize, const N: usize>(name: &'static str, turn: &Turn<N>, mechanism: S) -> Case
 where
-    S: Kinematic<Lanes<f64, LANES>, N> + Clone + 'static,
+    S: Kinematic<Lanes<f64, L>, N> + Clone + 'static,
     S::Lane: Kinematic<f64, N> + 'static,
-    <S as Mechanism<Lanes<f64, LANES>, N, N>>::Parameters: 'static,
+    <S as Mechanism<Lanes<f64, L>, N, N>>::Parameters: 'static,
 {
-    let assembled = Batch::assemble(mechanism, &[turn.start.q; LANES], [0.0; LANES]);
+    let assembled = Batch::assemble(mechanism, &[turn.start.q; L], [0.0; L]);
     let mut start = assembled.map_err(|(_, failure)| failure).expect("it can be assembled");
-    let advance = |batch: &mut Batch<S, f64, LANES, N>, times: [f64; LANES]| {
+    let advance = |batch: &mut Batch<S, f64, L, N>, times: [f64; L]| {
         let steps = batch.advance_to(times);
         assert!(steps.iter().all(Result::is_ok), "the mechanism is regular");
     };
-    let phases: [f64; LANES] = std::array::from_fn(|lane| lane as f64 * AHEAD);
+    let phases: [f64; L] = std::array::from_fn(|lane| lane as f64 / L as f64);
     for k in 1..=STEPS {
         advance(&mut start, phases.map(|phase| f64::from(k) * STEP * phase));
     }
-    let step = move |batch: &mut Batch<S, f64, LANES, N>, k: u32| {
+    let step = move |batch: &mut Batch<S, f64, L, N>, k: u32| {
         advance(batch, phases.map(|phase| phase + f64::from(k) * STEP));
     };
     let mut batch = start.clone();
     let [half, whole] = [1..=STEPS / 2, STEPS / 2 + 1..=STEPS].map(|steps| {
         steps.for_each(|k| step(&mut batch, k));
-        [0, LANES / 2].map(|lane| motion(&batch.stepper(lane).expect("a lane")))
+        [0, L / 2].map(|lane| motion(&batch.stepper(lane).expect("a lane")))
     });
     // The lane in the middle is half a turn ahead: it ends the turn when the first is in the middle of it.
     let error = turn.error(&[half[0], whole[0]]).max(turn.error(&half));
@@ -82,6 +76,6 @@ where
         (1..=STEPS).for_each(|k| step(&mut batch, k));
         black_box(batch.q());
     };
-    let work = STEPS * LANES as u32;
-    Case { group: turn.group, name: "emitted_lanes", work, error, run: Box::new(run) }
+    let work = STEPS * L as u32;
+    Case { group: turn.group, name, work, error, run: Box::new(run) }
 }

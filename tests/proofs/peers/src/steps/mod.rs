@@ -40,7 +40,8 @@ pub fn four_bar() -> Vec<Case> {
         turn.case("nalgebra", dense::four_bar),
         turn.case("by_hand", block_triangular::four_bar),
         emitted::turn(&turn, FourBar::default()),
-        emitted::lanes(&turn, FourBar::default()),
+        emitted::lanes::<_, 8, 5>("emitted_lanes", &turn, FourBar::default()),
+        emitted::lanes::<_, 4, 5>("emitted_4_lanes", &turn, FourBar::default()),
     ]
 }
 
@@ -55,8 +56,10 @@ pub fn chain() -> Vec<Case> {
             casadi::chain(t, motion);
         }),
         turn.case("nalgebra", dense::chain),
+        turn.case("by_hand", block_triangular::chain),
         emitted::turn(&turn, Chain10::default()),
-        emitted::lanes(&turn, Chain10::default()),
+        emitted::lanes::<_, 8, 22>("emitted_lanes", &turn, Chain10::default()),
+        emitted::lanes::<_, 4, 22>("emitted_4_lanes", &turn, Chain10::default()),
     ];
     cases.push(Case { name: "emitted_40", ..emitted::turn(&turn.longer(), Chain40::default()) });
     cases
