@@ -1,8 +1,9 @@
 //! CasADi and 50 digits against a text that uses every operator and function of the language, explicit time in every place where
 //! it can stand, inputs with rates and a drive that prescribes a rate: what no ready mechanism needs all at once.
 
-use mbs_runtime::mechanism;
-use mechanisms::verify::check;
+use mbs_runtime::{Lanes, mechanism};
+use mechanisms::verify::check::{Check, check_equations};
+use mechanisms::verify::{InLanes, check};
 
 mechanism! {
     /// Meaningless as a machine, complete as a text.
@@ -56,13 +57,22 @@ mechanism! {
     let place_y = turned[1];
 }
 
-#[test]
-fn both_oracles_confirm_every_operator_and_function() {
-    let check = check(Sampler::default()).unwrap_or_else(|error| panic!("{error}"));
+/// Prints what was found. The point of this text: no function is zero throughout.
+fn assert_complete(check: &Check) {
     println!("{check}");
-    // The point of this text: no function is zero throughout.
     for agreement in [&check.casadi, &check.digits] {
         assert_eq!(agreement.functions.len(), 9, "{agreement}");
         assert!(agreement.functions.iter().all(|function| function.scale > 0.0), "{agreement}");
     }
+}
+
+#[test]
+fn both_oracles_confirm_every_operator_and_function() {
+    assert_complete(&check(Sampler::default()).unwrap_or_else(|error| panic!("{error}")));
+}
+
+#[test]
+fn both_oracles_confirm_every_operator_and_function_in_eight_lanes() {
+    let mut lanes = InLanes::new(Sampler::<Lanes<f64, 8>>::default());
+    assert_complete(&check_equations(&mut lanes).unwrap_or_else(|error| panic!("{error}")));
 }

@@ -13,6 +13,7 @@ mod cards;
 pub mod check;
 pub mod compare;
 pub mod environment;
+mod in_lanes;
 mod layout;
 pub mod oracle;
 mod stand_in;
@@ -25,6 +26,7 @@ pub use agreement::{Agreement, BOUND, LargestError, Reference, Summary};
 pub use cards::{comparable, comparable_by_name, verify, verify_against, verify_digits};
 pub use check::{Check, CheckError, check};
 pub use environment::EnvironmentError;
+pub use in_lanes::InLanes;
 pub use oracle::{Oracle, OracleError};
 pub use stand_in::StandIn;
 

@@ -35,14 +35,15 @@ const LANES: usize = 8;
 /// A work by name, done so many times.
 type Work = (&'static str, fn(u32));
 
-const WORKS: [Work; 12] = [
+const WORKS: [Work; 13] = [
     ("evaluate_four_bar", evaluate::<FourBar, 5>),
     ("evaluate_andrews", evaluate::<Andrews, 7>),
     ("evaluate_chain", evaluate::<Chain10, 22>),
     ("evaluate_four_bar_in_8_lanes", evaluate_lanes),
     ("step_four_bar", |count| steps(FourBar::default(), [0.0, 0.0, 0.0, 0.9, 1.8], count)),
-    ("step_four_bar_in_8_lanes", batch),
+    ("step_four_bar_in_8_lanes", |count| batch(FourBar::default(), [0.0, 0.0, 0.0, 0.9, 1.8], count)),
     ("step_chain_of_10", |count| steps(Chain10::default(), upright(), count)),
+    ("step_chain_of_10_in_8_lanes", |count| batch(Chain10::default(), upright(), count)),
     ("step_chain_of_40", |count| steps(Chain40::default(), upright(), count)),
     ("step_chain_of_100", |count| steps(Chain100::default(), upright(), count)),
     ("rates_andrews", |count| rates::<Squeezer, 7, 6>(SQUEEZER, count)),
@@ -135,9 +136,12 @@ where
     }
 }
 
-fn batch(count: u32) {
-    let guess = [[0.0, 0.0, 0.0, 0.9, 1.8]; LANES];
-    let assembled = Batch::assemble(FourBar::default(), &guess, [0.0; LANES]);
+fn batch<S, const N: usize>(mechanism: S, guess: [f64; N], count: u32)
+where
+    S: Kinematic<Lanes<f64, LANES>, N>,
+    S::Lane: Kinematic<f64, N>,
+{
+    let assembled = Batch::assemble(mechanism, &[guess; LANES], [0.0; LANES]);
     let mut batch = assembled.map_err(|(_, failure)| failure).expect("it can be assembled");
     for k in 1..=count {
         let steps = batch.advance_to([f64::from(k) * STEP; LANES]);
