@@ -614,3 +614,43 @@ fn dependent_coordinates_are_found_and_independent_ones_stay() {
     assert_eq!(Pendulum::<f64>::INDEPENDENT, [0]);
     assert_eq!(FourBar::<f64>::INDEPENDENT, [0_u16; 0]);
 }
+
+mechanism! {
+    /// Two links, a force on their joint that the one or the other bears.
+    pub mechanism Borne;
+    const L: m = 0.5;
+    coord phi: [rad; 2] = [0.1, 0.2];
+    let elbow = L*unit(phi[0]);
+    body upper { mass: 1.5, com: elbow/2, inertia: 0.1, angle: phi[0] }
+    body lower { mass: 0.8, com: elbow + L/2*unit(phi[1]), inertia: 0.1, angle: phi[1] }
+    pin shoulder: ground, upper at [0, 0];
+    pin knuckle: upper, lower at elbow;
+    out bearing: [N; 2] = reaction(knuckle, lower);
+    effect by_upper { force hung: [10, -20] on elbow of upper; }
+    effect by_lower { force held: [10, -20] on elbow of lower; }
+    scene Hung = by_upper;
+    scene Held = by_lower;
+}
+
+#[test]
+fn a_force_on_a_joint_is_borne_by_the_body_that_the_text_names() {
+    let (q, qd) = ([0.3, 1.1], [0.7, -1.3]);
+    let (hung, held): (BorneHung, BorneHeld) = (BorneHung::default(), BorneHeld::default());
+    let (qdd, _) = solve(&hung, &q, &qd, 0.0);
+    assert_eq!(qdd, solve(&held, &q, &qd, 0.0).0);
+    let qdd = [qdd[0], qdd[1]];
+    let [[ax, ay], [bx, by]] = [0, 1].map(|i: usize| {
+        let (sine, cosine) = f64::sin_cos(q[i]);
+        [-qdd[i] * sine - qd[i] * qd[i] * cosine, qdd[i] * cosine - qd[i] * qd[i] * sine]
+    });
+    let inertia = [0.8 * (0.5 * ax + 0.25 * bx), 0.8 * (0.5 * ay + 0.25 * by)];
+    let motion = Motion { qd: &qd, qdd: &qdd, lambda: &[], states: &[] };
+    let p = hung.parameters();
+    let [x, y] = hung.loads(&p, &hung.position(&p, &q, 0.0), &motion);
+    close(x, inertia[0], "x, borne by the other");
+    close(y, inertia[1], "y, borne by the other");
+    let p = held.parameters();
+    let [x, y] = held.loads(&p, &held.position(&p, &q, 0.0), &motion);
+    close(x, inertia[0] - 10.0, "x, borne by itself");
+    close(y, inertia[1] + 20.0, "y, borne by itself");
+}

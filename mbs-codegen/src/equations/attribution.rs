@@ -67,17 +67,16 @@ impl Slopes {
         self.hold(|sample, column| Some((slope(sample, function, column)?, 0.0)))
     }
 
-    /// The body that a point moves with; `Some(None)` is the ground.
-    pub fn body_of(&self, point: [usize; 2], bodies: &[Frame]) -> Option<Option<usize>> {
-        if point.iter().all(|component| self.is_fixed(*component)) {
-            return Some(None);
-        }
-        let carries = |body: &Frame| {
-            [0, 1]
-                .into_iter()
-                .all(|component| self.hold(|sample, column| carried(sample, column, point, body, component)))
-        };
-        bodies.iter().position(carries).map(Some)
+    /// Whether no coordinate moves a point.
+    pub fn stands(&self, point: [usize; 2]) -> bool {
+        point.iter().all(|component| self.is_fixed(*component))
+    }
+
+    /// Whether a point moves with a body.
+    pub fn carries(&self, body: &Frame, point: [usize; 2]) -> bool {
+        [0, 1]
+            .into_iter()
+            .all(|component| self.hold(|sample, column| carried(sample, column, point, body, component)))
     }
 
     /// What a scalar function is, of bodies that are joined in pairs.

@@ -44,6 +44,8 @@ pub enum Place {
 pub struct Acting {
     /// Index among the named forces.
     pub force: usize,
+    /// 1 for the end of a tension, 0 for its begin and for what has but one place.
+    pub end: usize,
     pub place: Place,
     pub value: [NodeId; 2],
 }
@@ -91,7 +93,7 @@ pub fn derive(
                 }
                 let (values, places): (Vec<_>, Vec<_>) =
                     pairs.iter().map(|(value, on)| (of(*value), of(*on))).unzip();
-                work.acts(&places, &values);
+                work.acts(0, &places, &values);
                 power.0
             }
             Action::Dissipation(value) => work.dissipation(g, of(*value)),
@@ -153,14 +155,14 @@ struct Work<'a> {
 
 impl Work<'_> {
     /// Keeps where the current force acts.
-    fn acts(&mut self, places: &[NodeId], values: &[NodeId]) {
+    fn acts(&mut self, end: usize, places: &[NodeId], values: &[NodeId]) {
         let (place, value) = match (places, values) {
             ([place], [value]) => (Place::Scalar(*place), [*value; 2]),
             ([px, py], [x, y]) => (Place::Point([*px, *py]), [*x, *y]),
             (_, [value, ..]) => (Place::Elsewhere, [*value; 2]),
             (_, []) => return,
         };
-        self.acting.push(Acting { force: self.current, place, value });
+        self.acting.push(Acting { force: self.current, end, place, value });
     }
 
     /// Adds (∂place/∂q)ᵀ value.
@@ -273,8 +275,8 @@ impl Work<'_> {
             }
         }
         let ends = |points: &[Id]| points.iter().map(|point| of(*point)).collect::<Vec<_>>();
-        self.acts(&ends(&line.from), &pulls);
-        self.acts(&ends(&line.to), &forces);
+        self.acts(0, &ends(&line.from), &pulls);
+        self.acts(1, &ends(&line.to), &forces);
         let spring = stiffness.map(|k| (k, self.stretch(g, length, line.length.map(of))));
         self.element_power(g, spring, active, [own, moved, driven], line.stores)
     }
@@ -297,7 +299,7 @@ impl Work<'_> {
         if let Some(total) = total.0 {
             let torque = g.negate(total);
             self.along(g, torque, angle);
-            self.acts(&[angle], &[torque]);
+            self.acts(0, &[angle], &[torque]);
         }
         self.element_power(g, spring, active, [own, moved, driven], turn.stores)
     }

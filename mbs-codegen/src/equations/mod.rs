@@ -3,6 +3,7 @@
 
 mod attribution;
 mod carried;
+mod carriers;
 pub mod continuity;
 mod degree;
 mod dynamics;

@@ -7,6 +7,7 @@
 use proc_macro2::Span;
 
 use super::attribution::{Frame, Motion, Slopes};
+use super::carriers::Points;
 use super::dynamics::Dynamics;
 use super::elimination::{Column, solve};
 use super::forces::{Place, Sum};
@@ -85,8 +86,8 @@ pub fn complete(g: &mut Graph, model: &Model, declared: &Declared, derived: &mut
                 });
             }
         }
-        Err((message, help)) => {
-            let span = declared.loads.get(load).map(|load| load.span);
+        Err(Fault { span, message, help }) => {
+            let span = span.or_else(|| declared.loads.get(load).map(|load| load.span));
             derived.undetermined = span.map(|span| Undetermined { span, message, help });
         }
     }
@@ -131,8 +132,19 @@ pub fn attribution(model: &Model) -> Option<Attribution> {
     if asks { super::derive(model).dynamics.and_then(|derived| derived.attribution) } else { None }
 }
 
-/// Message and cure.
-type Fault = (String, String);
+/// Why the sums are not known.
+pub(super) struct Fault {
+    /// Where, if not at the output that asks for a force.
+    pub span: Option<Span>,
+    pub message: String,
+    pub help: String,
+}
+
+impl Fault {
+    fn new(message: String, help: &str) -> Self {
+        Fault { span: None, message, help: help.into() }
+    }
+}
 
 /// Both components of each pin's force on its first body.
 fn forces(
@@ -157,15 +169,15 @@ fn unattributable(declared: &Declared) -> Result<(), Fault> {
     let named = named.or(dissipation.map(|force| force.name.as_str()));
     let named = named.or(declared.potentials.first().map(|_| "a potential"));
     if let Some(name) = named {
-        return Err((
+        return Err(Fault::new(
             format!("the forces of pins are not known: on which body `{name}` acts is not said"),
-            "write what acts as `body`, `gravity`, `force`, `torque`, `tsda` or `rsda`".into(),
+            "write what acts as `body`, `gravity`, `force`, `torque`, `tsda` or `rsda`",
         ));
     }
     match declared.bodies.iter().find(|body| body.com.len() != 2) {
-        Some(body) => Err((
+        Some(body) => Err(Fault::new(
             format!("the forces of pins are not known: `{}` is no body of the plane", body.name),
-            "the sums of pins are those of plane bodies; `lambda(row)` has the force of a row".into(),
+            "the sums of pins are those of plane bodies; `lambda(row)` has the force of a row",
         )),
         None => Ok(()),
     }
@@ -220,8 +232,9 @@ impl<'a> Sums<'a> {
         let mut acting = Vec::new();
         for (part, place) in derived.acting.iter().zip(places) {
             let found = match part.place {
-                Place::Point(_) => {
-                    slopes.body_of(place, &bodies).map(|body| body.map_or(On::Ground, On::Point))
+                Place::Point(point) => {
+                    Points { slopes: &slopes, bodies: &bodies, declared, nodes: given.nodes }
+                        .carrier(part, point, place)?
                 }
                 Place::Scalar(_) if slopes.is_fixed(place[0]) => Some(On::Ground),
                 Place::Scalar(_) => slopes.motion_of(place[0], &bodies, &joined).map(On::Moves),
@@ -229,9 +242,9 @@ impl<'a> Sums<'a> {
             };
             let Some(found) = found else {
                 let name = declared.forces.get(part.force).map_or("", |force| force.name.as_str());
-                return Err((
+                return Err(Fault::new(
                     format!("the forces of pins are not known: on which body `{name}` acts is not said"),
-                    "let it act on a point of a body, or on the angle of one or between two".into(),
+                    "let it act on a point of a body, or on the angle of one or between two",
                 ));
             };
             acting.push((part.force, found));
@@ -247,12 +260,12 @@ impl<'a> Sums<'a> {
             model.rows.iter().zip(&self.rows).enumerate().filter(|(_, (row, _))| row.driven)
         {
             let Some(motion) = motion else {
-                return Err((
+                return Err(Fault::new(
                     format!(
                         "the forces of pins are not known: on which body the drive `{}` acts is not said",
                         row.name
                     ),
-                    "drive the angle of a body, or a component of its centre of mass".into(),
+                    "drive the angle of a body, or a component of its centre of mass, by itself: `phi == …`, not `3*phi == …`",
                 ));
             };
             driven.push((index, *motion));
@@ -272,15 +285,14 @@ impl<'a> Sums<'a> {
             found.rows.extend(guiding);
             return Ok(found);
         }
-        Err((
+        Err(Fault::new(
             format!(
                 "the forces of pins are indeterminate: bodies have {equations} sums, of which {freedom} give the \
                  accelerations, for {} unknown forces and moments",
                 2 * declared.pins.len() + drives + guides
             ),
             "name every joint by a `pin`, also those with `ground`; a guide holds a component of a centre of mass or an \
-             angle, by a row or by how it is written"
-                .into(),
+             angle, by a row or by how it is written",
         ))
     }
 

@@ -111,7 +111,20 @@ pub struct Force {
     pub name: String,
     /// What it does.
     pub action: Action,
+    /// The bodies that the text names beside its points: beside the only one, or beside its begin and its end.
+    pub carriers: [Option<Carrier>; 2],
     /// The declaring token.
+    pub span: Span,
+}
+
+/// The body that a point is one of: `A of rod`.
+#[derive(Debug)]
+pub struct Carrier {
+    /// As the text names it.
+    pub name: String,
+    /// The body by its index; `None` is the ground.
+    pub body: Option<usize>,
+    /// The naming token.
     pub span: Span,
 }
 

@@ -3,7 +3,7 @@
 use proc_macro2::Span;
 
 use super::bodies::inertia;
-use super::dynamics::{Action, Dynamics, Force, Kinetic, Line, Turn};
+use super::dynamics::{Action, Carrier, Dynamics, Force, Kinetic, Line, Turn};
 use super::elaborate::{Elaborator, Fault, Quantity, Reach, Value};
 use super::expression::{Id, Node};
 use super::initialiser::{fits_shape, initialiser};
@@ -12,7 +12,7 @@ use super::resolve::Resolver;
 use super::signs::{Least, Signed};
 use super::units::Dimension;
 use crate::diagnostics::nearest;
-use crate::syntax::ast::{Element, Energy, Expression, Field, Load, Name, Statement, StatementKind};
+use crate::syntax::ast::{Element, Energy, Expression, Field, Joined, Load, Name, Statement, StatementKind};
 
 /// Whether the statement says something of masses or forces, so that the text is one of dynamics.
 pub fn is_dynamic(statement: &Statement) -> bool {
@@ -28,6 +28,9 @@ pub fn is_dynamic(statement: &Statement) -> bool {
 
 /// The field that makes a body one in space.
 pub const ORIENTATION: &str = "orientation";
+
+/// The fields of a tension that are points of bodies.
+const ENDS: [&str; 2] = ["from", "to"];
 
 /// What a field holds.
 #[derive(Clone, Copy)]
@@ -122,7 +125,7 @@ impl Resolver<'_> {
         match kind {
             Element::Body => self.body(name, full, &given),
             Element::Gravity => self.gravity(name, &given),
-            Element::Tsda => self.line(name, full, &given),
+            Element::Tsda => self.line(name, full, &given, fields),
             Element::Friction => self.friction(name, full, &given),
             Element::Contact => self.contact(name, full, &given),
             Element::Rsda => {
@@ -143,7 +146,7 @@ impl Resolver<'_> {
         }
     }
 
-    fn line(&mut self, name: &Name, full: String, given: &Given) -> Result<(), Fault> {
+    fn line(&mut self, name: &Name, full: String, given: &Given, fields: &[Field]) -> Result<(), Fault> {
         let (from, to) = (given.vector("from"), given.vector("to"));
         if from.len() != to.len() {
             let message =
@@ -161,13 +164,18 @@ impl Resolver<'_> {
             actuator: given.scalar("actuator"),
             stores,
         };
-        self.force(name, full, Action::Line(line));
+        let mut carriers = [None, None];
+        for (carrier, end) in carriers.iter_mut().zip(ENDS) {
+            let field = fields.iter().find(|field| field.name.text == end);
+            *carrier = self.carrier(field.and_then(|field| field.of.as_ref()))?;
+        }
+        self.force_on(name, full, Action::Line(line), carriers);
         Ok(())
     }
 
     /// Before: fields as written. After: values of all that are known; others, and missing ones, are reported.
     fn fields(&mut self, kind: Element, name: &Name, fields: &[Field]) -> Result<Given, Fault> {
-        let known = known(kind);
+        let (kind_of, known) = (kind, known(kind));
         let mut given = Given(Vec::new());
         let mut faulty = false;
         for field in fields {
@@ -186,6 +194,14 @@ impl Resolver<'_> {
             if given.value(known_name).is_some() {
                 let message = format!("field `{known_name}` is given twice");
                 let _reported = self.fault(field.name.span, message, "remove one of them");
+                faulty = true;
+            }
+            if let Some(of) =
+                field.of.as_ref().filter(|_| kind_of != Element::Tsda || !ENDS.contains(known_name))
+            {
+                let message = format!("`{known_name}` is no point that acts on a body");
+                let help = "leave out `of …`: it stands behind the ends of a `tsda`, and behind the point of a `force`";
+                let _reported = self.fault(of.name.span, message, help);
                 faulty = true;
             }
             match self.field(field, *kind) {
@@ -260,7 +276,7 @@ impl Resolver<'_> {
         kind: Load,
         name: &Name,
         value: &Expression,
-        on: &Expression,
+        (on, of): (&Expression, Option<&Joined>),
     ) -> Result<(), Fault> {
         let full = self.numbered(name, "force")?;
         let (dimension, along) = match kind {
@@ -301,7 +317,8 @@ impl Resolver<'_> {
             Ok::<_, Fault>(value)
         })?;
         let pairs = value.items.iter().zip(&on.items).map(|(value, on)| (value.id, on.id)).collect();
-        self.force(name, full, Action::Work(pairs));
+        let carrier = self.carrier(of)?;
+        self.force_on(name, full, Action::Work(pairs), [carrier, None]);
         Ok(())
     }
 
@@ -352,7 +369,11 @@ impl Resolver<'_> {
     }
 
     pub(super) fn force(&mut self, name: &Name, full: String, action: Action) {
-        self.dynamics().forces.push(Force { name: full, action, span: name.span });
+        self.force_on(name, full, action, [None, None]);
+    }
+
+    fn force_on(&mut self, name: &Name, full: String, action: Action, carriers: [Option<Carrier>; 2]) {
+        self.dynamics().forces.push(Force { name: full, action, carriers, span: name.span });
     }
 
     /// `der(state) == rate;`

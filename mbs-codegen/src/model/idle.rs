@@ -15,12 +15,22 @@ pub fn check(model: &Model, diagnostics: &mut Diagnostics) {
         let name = &force.name;
         if let Some((message, help)) = without_value(force) {
             diagnostics.report(force.span, message, help);
+        } else if joins_a_point_to_itself(model, &force.action) {
+            let message = format!("`{name}` begins and ends at one point");
+            diagnostics.report(force.span, message, "let it join two points");
         } else if !places(&force.action).into_iter().any(moves) {
             let message = format!("`{name}` acts where nothing moves: no coordinate stands in its place");
             let help = "let it act on a point or an angle that coordinates move, or remove it";
             diagnostics.report(force.span, message, help);
         }
     }
+}
+
+/// Whether both ends of a tension are written alike.
+fn joins_a_point_to_itself(model: &Model, action: &Action) -> bool {
+    let Action::Line(Line { from, to, .. }) = action else { return false };
+    let alike = |(a, b): (&Id, &Id)| a == b || model.expressions.node(*a) == model.expressions.node(*b);
+    from.iter().zip(to).all(alike)
 }
 
 /// Gravity pulls bodies alone: what `kinetic` adds has no weight.

@@ -2,7 +2,7 @@
 
 use proc_macro2::Span;
 
-use super::dynamics::Pin;
+use super::dynamics::{Carrier, Pin};
 use super::elaborate::{Elaborator, Fault, Quantity, Reach, Scalar, Value};
 use super::expression::{Node, Unary};
 use super::initialiser::initialiser;
@@ -121,26 +121,42 @@ impl Resolver<'_> {
         Ok((numbered(&body.name.text, index), body.name.span))
     }
 
-    /// Before: all bodies and pins. After: pins know their bodies; names of none are reported.
+    /// The body that stands behind a point.
+    pub(super) fn carrier(&mut self, of: Option<&Joined>) -> Result<Option<Carrier>, Fault> {
+        let Some(of) = of else { return Ok(None) };
+        let (name, span) = self.joined(of)?;
+        Ok(Some(Carrier { name, body: None, span }))
+    }
+
+    /// Before: all bodies, pins and forces. After: pins know their bodies, forces those that the text names beside their points;
+    /// names of none are reported.
     pub(super) fn check_pins(&mut self) {
         let Some(dynamics) = &mut self.model.dynamics else { return };
         let bodies: Vec<String> = dynamics.bodies.iter().map(|body| body.name.clone()).collect();
+        let mut unknown = Vec::new();
+        let mut body_of = |name: &str, span: Span, user: &dyn Fn() -> String| {
+            let body = bodies.iter().position(|body| body == name);
+            if body.is_none() && name != GROUND {
+                unknown.push((name.to_owned(), span, user()));
+            }
+            body
+        };
         for pin in &mut dynamics.pins {
             for (slot, (name, span)) in pin.bodies.iter_mut().zip(&pin.joined) {
-                *slot = bodies.iter().position(|body| body == name);
-                if slot.is_some() || name == GROUND {
-                    continue;
-                }
-                let help = match nearest(name, bodies.iter().map(String::as_str)) {
-                    Some(known) => format!("did you mean `{known}`?"),
-                    None => format!("declare it: `body {name} {{ … }}`; what stands still is `{GROUND}`"),
-                };
-                self.diagnostics.report(
-                    *span,
-                    format!("the pin `{}` joins no body `{name}`", pin.name),
-                    help,
-                );
+                *slot = body_of(name, *span, &|| format!("the pin `{}` joins", pin.name));
             }
+        }
+        for force in &mut dynamics.forces {
+            for carrier in force.carriers.iter_mut().flatten() {
+                carrier.body = body_of(&carrier.name, carrier.span, &|| format!("`{}` acts on", force.name));
+            }
+        }
+        for (name, span, user) in unknown {
+            let help = match nearest(&name, bodies.iter().map(String::as_str)) {
+                Some(known) => format!("did you mean `{known}`?"),
+                None => format!("declare it: `body {name} {{ … }}`; what stands still is `{GROUND}`"),
+            };
+            self.diagnostics.report(span, format!("{user} no body `{name}`"), help);
         }
     }
 }

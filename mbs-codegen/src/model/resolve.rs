@@ -183,7 +183,9 @@ impl Resolver<'_> {
         match kind {
             StatementKind::Out { name, kind, value } => self.output(name, kind, value),
             StatementKind::Element { kind, name, fields } => self.element(*kind, name, fields),
-            StatementKind::Load { kind, name, value, on } => self.load(*kind, name, value, on),
+            StatementKind::Load { kind, name, value, on, of } => {
+                self.load(*kind, name, value, (on, of.as_ref()))
+            }
             StatementKind::Energy { kind, name, value } => self.energy(*kind, name, value),
             StatementKind::Rate { state, rate, span } => self.rate_of_state(state, rate, *span),
             _ => Ok(()),

@@ -224,6 +224,8 @@ pub enum StatementKind {
         name: Name,
         value: Expression,
         on: Expression,
+        /// The body that a force acts on.
+        of: Option<Joined>,
     },
     /// What adds to the energies or dissipates them.
     Energy {
@@ -273,9 +275,11 @@ pub enum StatementKind {
 pub struct Field {
     pub name: Name,
     pub value: Expression,
+    /// The body of a point.
+    pub of: Option<Joined>,
 }
 
-/// A body that a pin joins.
+/// A body that a pin joins, or that a point is one of.
 #[derive(Clone, Debug)]
 pub struct Joined {
     pub name: Name,
@@ -342,11 +346,16 @@ impl StatementKind {
             StatementKind::Branch { larger, smaller, .. } => vec![larger, smaller],
             StatementKind::Limit { low, value, high, .. } => vec![low, value, high],
             StatementKind::Out { kind, value, .. } => kind.shape.iter().chain([value]).collect(),
-            StatementKind::Element { fields, .. } => fields.iter().map(|field| &field.value).collect(),
+            StatementKind::Element { fields, .. } => fields
+                .iter()
+                .flat_map(|field| [&field.value].into_iter().chain(index_of(&field.of)))
+                .collect(),
             StatementKind::Pin { bodies, at, .. } => {
                 bodies.iter().filter_map(|body| body.index.as_ref()).chain([at]).collect()
             }
-            StatementKind::Load { value, on, .. } => vec![value, on],
+            StatementKind::Load { value, on, of, .. } => {
+                [value, on].into_iter().chain(index_of(of)).collect()
+            }
             StatementKind::Energy { value, .. } => vec![value],
             StatementKind::State { kind, value, .. } => kind.shape.iter().chain(value).collect(),
             StatementKind::Rate { state, rate, .. } => vec![state, rate],
@@ -362,6 +371,11 @@ impl StatementKind {
             | StatementKind::Faulty { .. } => Vec::new(),
         }
     }
+}
+
+/// The number of a body in a loop, where one is given.
+fn index_of(body: &Option<Joined>) -> Option<&Expression> {
+    body.as_ref()?.index.as_ref()
 }
 
 impl Item {

@@ -48,7 +48,8 @@ fn element(parser: &mut Parser<'_>, kind: Element, help: &str) -> Read<Statement
     while !parser.take('}') {
         let field = parser.name(help)?;
         parser.expect(':', help)?;
-        fields.push(Field { name: field, value: expression(parser)? });
+        let value = expression(parser)?;
+        fields.push(Field { name: field, value, of: of_body(parser, help)? });
         if !parser.take(',') {
             parser.expect('}', "fields are separated by commas, and end with `}`")?;
             break;
@@ -61,9 +62,9 @@ const PIN: &str = "write `pin B: crank, rod at [x, y];`, two bodies, or one and 
 pub fn read_pin(parser: &mut Parser<'_>) -> Read<StatementKind> {
     let name = parser.name(PIN)?;
     parser.expect(':', PIN)?;
-    let first = joined(parser)?;
+    let first = joined(parser, PIN)?;
     parser.expect(',', PIN)?;
-    let second = joined(parser)?;
+    let second = joined(parser, PIN)?;
     if !parser.take_word("at") {
         return parser.expected("`at`", PIN);
     }
@@ -73,11 +74,11 @@ pub fn read_pin(parser: &mut Parser<'_>) -> Read<StatementKind> {
 }
 
 /// `rod` or `rods[i]`
-fn joined(parser: &mut Parser<'_>) -> Read<Joined> {
-    let name = parser.name(PIN)?;
+fn joined(parser: &mut Parser<'_>, help: &str) -> Read<Joined> {
+    let name = parser.name(help)?;
     let index = if parser.take('[') {
         let index = expression(parser)?;
-        parser.expect(']', PIN)?;
+        parser.expect(']', help)?;
         Some(index)
     } else {
         None
@@ -85,7 +86,12 @@ fn joined(parser: &mut Parser<'_>) -> Read<Joined> {
     Ok(Joined { name, index })
 }
 
-const FORCE: &str = "write `force push: [0, -5] on P;`, a vector in N on a point";
+/// `of rod`, where it stands behind a point.
+fn of_body(parser: &mut Parser<'_>, help: &str) -> Read<Option<Joined>> {
+    if parser.take_word("of") { joined(parser, help).map(Some) } else { Ok(None) }
+}
+
+const FORCE: &str = "write `force push: [0, -5] on P;`, a vector in N on a point, or `on P of rod;`";
 pub fn read_force(parser: &mut Parser<'_>) -> Read<StatementKind> {
     load(parser, Load::Force, FORCE)
 }
@@ -104,8 +110,9 @@ fn load(parser: &mut Parser<'_>, kind: Load, help: &str) -> Read<StatementKind> 
         return parser.expected("`on`", help);
     }
     let on = expression(parser)?;
+    let of = if kind == Load::Force { of_body(parser, help)? } else { None };
     end(parser, help)?;
-    Ok(StatementKind::Load { kind, name, value, on })
+    Ok(StatementKind::Load { kind, name, value, on, of })
 }
 
 pub fn read_potential(parser: &mut Parser<'_>) -> Read<StatementKind> {

@@ -14,6 +14,7 @@ mechanism! {
     tsda slack { from: [0, 1], to: [x, 0], length: 1, damping: 3 }
     rsda loose { angle: phi, rest: 1 }
     torque fixed: 3 on 30deg;
+    tsda ring { from: [x, 0], to: [x, 0], stiffness: 10 }
 }
 
 fn main() {
