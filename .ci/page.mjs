@@ -24,11 +24,12 @@ async function open(report) {
     page.on('pageerror', error => complaints.push(error.message));
     page.on('request', request => request.url().startsWith('file:') || complaints.push(`asks for ${request.url()}`));
     await page.goto(`file://${report}`);
-    await use(page);
+    const rests = await page.isHidden('#play');
+    await (rests ? swing(page) : use(page));
     await fitsAPhone(page);
     assert.deepEqual(complaints, [], report);
     await page.close();
-    console.log(`${report.split('/').at(-2)}: slides, plays, switches, fits`);
+    console.log(`${report.split('/').at(-2)}: ${rests ? 'shows its modes' : 'slides, plays, switches'}, fits`);
 }
 
 async function use(page) {
@@ -64,6 +65,19 @@ async function use(page) {
     await page.mouse.move(x + 0.8 * width, y + height / 2, { steps: 5 });
     await page.mouse.up();
     assert.ok(await time() > from, 'dragging in a plot moves the time');
+}
+
+async function swing(page) {
+    const modes = await page.$$('.mode svg');
+    const lines = await page.$$eval('#small tbody tr', rows => rows.length);
+    assert.ok(modes.length > 0 && modes.length === lines, 'every mode has a line and a picture');
+    const points = await page.$$eval('#small tbody th', cells => cells.flatMap(cell => cell.textContent.split(',')).length);
+    assert.equal(await page.$$eval('#small circle title', titles => titles.length), points, 'every eigenvalue is a point of the plane');
+    for (const mode of modes) {
+        const still = await mode.innerHTML();
+        await mode.hover();
+        await page.waitForFunction(([svg, still]) => svg.innerHTML !== still, [mode, still]);
+    }
 }
 
 async function fitsAPhone(page) {

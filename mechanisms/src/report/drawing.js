@@ -360,7 +360,7 @@ function createStage(root, options) {
     f.text.append(node);
     f.labels.push(k => {
       const candidates = places(k, width);
-      const room = ([x, y, penalty = 0]) => -penalty + Math.min(view.bar / 2 + 8, ...f.obstacles.flatMap(([a, b]) => [-.5, 0, .5].map(s => distance([x + s * (width - 6), y], a, b))));
+      const room = ([x, y, penalty = 0]) => -penalty + Math.min(view.bar / 2 + 8, ...f.obstacles.flatMap(([a, b]) => [-.5, -.25, 0, .25, .5].map(s => distance([x + s * (width - 6), y], a, b))));
       const rooms = candidates.map(room), best = rooms.indexOf(Math.max(...rooms));
       if (rooms[best] > rooms[pick] + 4) pick = best;
       const [x, y] = candidates[pick];

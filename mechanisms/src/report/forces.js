@@ -21,7 +21,8 @@ function createSupplies(host) {
   const panels = [["power", "W"], ["work", "J"]].map(([key, unit]) => ({ title: key, unit, zero: true, get: (run, series) => find(run, series.name)[key] }));
   createGroup(host, "Power and work", names, panels);
   const body = el("tbody"), head = ["", "power now", "least", "largest", "work to now"];
-  host.append(el("table", { className: "forces" }, el("thead", {}, el("tr", {}, ...head.map(text => el("th", { scope: "col", textContent: text })))), body));
+  const top = el("thead", {}, el("tr", {}, ...head.map(text => el("th", { scope: "col", textContent: text }))));
+  host.append(el("div", { className: "scroll" }, el("table", { className: "forces" }, top, body)));
   const [watts, joules] = ["power", "work"].map(key => formatter(largest(runs.flatMap(run => supplies(run).map(supply => supply[key]))), 6));
   const updates = [];
   const line = (name, values) => {
@@ -49,7 +50,7 @@ function createForces(host, kind) {
   if (!entries.length) return;
   const body = el("tbody"), updates = [];
   const head = el("tr", {}, ...["", "now", "least", "largest"].map(text => el("th", { scope: "col", textContent: text })));
-  host.append(el("table", { className: "forces" }, el("thead", {}, head), body));
+  host.append(el("div", { className: "scroll" }, el("table", { className: "forces" }, el("thead", {}, head), body)));
   for (const { name, unit } of entries) {
     const get = run => (entriesOf(run, kind).find(entry => entry.name === name) || {}).value || [];
     const format = formatter(largest(runs.map(get)), 6), cells = [0, 1, 2].map(() => el("td"));
