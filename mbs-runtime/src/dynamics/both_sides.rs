@@ -1,6 +1,6 @@
 //! Accelerations where a motion passes a singular position: what they tend to from either side.
 
-use super::kkt::{Factors, System, TRUNCATION};
+use super::kkt::{Factors, System, truncation};
 use super::model::{Counts, Formulation, Model, Solved};
 use super::multipliers::Unstabilized;
 use super::projection::{Projection, Stages, correction_factors};
@@ -192,6 +192,6 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         let mass = self.mechanism.mass(self.parameters, &position);
         let phi_q = self.mechanism.phi_q(self.parameters, &position);
         let system = System::new(&mass, &phi_q, self.metric);
-        Ok(system.factorize_rank_revealing(R::constant(TRUNCATION), S::COORDINATES, t)?.margin())
+        Ok(system.factorize_rank_revealing(truncation::<R>(), S::COORDINATES, t)?.margin())
     }
 }

@@ -3,7 +3,7 @@
 //! Where rows depend on each other, Φ_qᵀ λ = Q − M q̈ has many solutions. Their sum on the coordinates is one and the same,
 //! so that the motion is; what a single row or joint bears is not, however many digits it is printed with.
 
-use super::kkt::{Factors, System};
+use super::kkt::{Factors, System, none};
 use super::metric::Metric;
 use crate::{Dynamic, Entry, Failure, Mechanism, Motion, Real};
 
@@ -77,7 +77,7 @@ impl<R: Real, const M: usize> Determinacy<R, M> {
                     own.iter_mut().zip(direction).for_each(|(own, along)| *own = *own - part * *along);
                 }
                 let length = dot(&own, &own).sqrt();
-                if let (true, Some(slot)) = (R::constant(OWN_PART).less(length), basis.get_mut(named)) {
+                if let (true, Some(slot)) = (none::<R>(OWN_PART).less(length), basis.get_mut(named)) {
                     *slot = own.map(|part| part / length);
                     *dependent = true;
                     named += 1;
@@ -131,7 +131,7 @@ impl<R: Real, const M: usize> Determinacy<R, M> {
                     alone.iter_mut().skip(row).take(1).for_each(|lambda| *lambda = *lambda + size * *share);
                     parts = parts + (of(&loads(&alone)) - of(&before)).abs();
                 }
-                *mark &= !(R::constant(CANCELLED) * parts).less((of(&whole) - of(&before)).abs());
+                *mark &= !(none::<R>(CANCELLED) * parts).less((of(&whole) - of(&before)).abs());
             }
         }
     }

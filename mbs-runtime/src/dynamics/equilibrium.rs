@@ -2,7 +2,8 @@
 
 use super::free_stiffness::{Answer, FreeStiffness};
 use super::implicit::{MOST_ITERATIONS, Tangent};
-use super::kkt::{System, TRUNCATION};
+use super::integrals::Integrals;
+use super::kkt::{System, truncation};
 use super::metric::Metric;
 use super::model::{Counts, Model};
 use super::signed::parameter_failure;
@@ -41,7 +42,7 @@ pub struct Equilibrium<R, const N: usize, const M: usize> {
 
 /// Solves Φ_qᵀ λ = Q(q) with Φ(q, t) = 0 at q̇ = 0, from `q` (N) at time `t` (s), which stands still.
 ///
-/// First-order states rest too: ż = 0, see [`states_at_rest`](super::states::states_at_rest).
+/// First-order states rest too: ż = 0. Those that integrate what depends on the coordinates come to the values that hold it at 0.
 ///
 /// No mass has a part in it, beyond what gravity makes of it. The nearest equilibrium is found, stable or not: see
 /// [`linearize`](super::linearization::linearize()). Newton's method takes capped steps, the shortest where a motion meets no
@@ -57,6 +58,18 @@ pub fn equilibrium<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>
     t: R,
     q: &[R; N],
 ) -> Result<Equilibrium<R, N, M>, Failure> {
+    equilibrium_with_states(mechanism, t, q).map(|(found, _)| found)
+}
+
+/// [`equilibrium`] and the first-order states of the text there.
+///
+/// # Errors
+/// As [`equilibrium`].
+pub fn equilibrium_with_states<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
+    mechanism: &S,
+    t: R,
+    q: &[R; N],
+) -> Result<(Equilibrium<R, N, M>, S::States), Failure> {
     if let Some(failure) = parameter_failure(mechanism) {
         return Err(failure);
     }
@@ -68,12 +81,13 @@ pub fn equilibrium<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>
     let mut y = State { q: *q, qd: [R::constant(0.0); N], states, work: R::constant(0.0) };
     model.check(t, &y)?;
     if let Some(found) = balanced(&model, t, &mut y)? {
-        return Ok(found);
+        return Ok((found, y.states));
     }
     model.check(t, &y)?;
+    model.require_integrated(t, &y, &[R::constant(0.0); M])?;
     approach(&model, t, &mut y)?;
     match balanced(&model, t, &mut y)? {
-        Some(found) => Ok(found),
+        Some(found) => Ok((found, y.states)),
         None => Err(model.unbalanced(&answer(&model, t, &y)?.step, t)),
     }
 }
@@ -89,11 +103,13 @@ fn balanced<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     let mut last = R::constant(f64::MAX);
     for iterations in 1..=MOST_ITERATIONS {
         model.settle_states(t, y, &lambda)?;
-        let (step, change) = correction(model, t, y, &lambda)?;
+        let Correction { step, change, integrals } = correction(model, t, y, &lambda)?;
         let share = capped(&step, &model.metric.coordinates);
         y.q = y.q.plus(-share, &[1.0], [&step]);
         lambda = lambda.plus(-share, &[1.0], [&change]);
-        if model.standing(&step, &y.q, &mut last)? {
+        let integrated = integrals.is_none_or(|integrals| integrals.step(&mut y.states, &step, share));
+        if model.standing(&step, &y.q, &mut last)? && integrated {
+            model.require_integrated(t, y, &lambda)?;
             model.settle_states(t, y, &lambda)?;
             // Rows that follow from others do so at the end alone: on the way their multipliers may have grown against each other.
             let (shortest, unique) = balancing(model, t, y)?;
@@ -106,24 +122,38 @@ fn balanced<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     Ok(None)
 }
 
-/// A step (N) of Newton's method against itself, and the change of the multipliers (M) that goes with it.
+/// A step of Newton's method against itself.
+struct Correction<R, const N: usize, const M: usize, P, Z> {
+    /// Of the coordinates: N.
+    step: [R; N],
+    /// Of the multipliers: M.
+    change: [R; M],
+    /// Of the first-order states that integrate.
+    integrals: Option<Integrals<P, Z>>,
+}
+
+/// The correction at `y` with the multipliers `lambda` (M).
 fn correction<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     model: &Model<'_, S, R, N, M>,
     t: R,
     y: &State<R, N, S::States>,
     lambda: &[R; M],
-) -> Result<([R; N], [R; M]), Failure> {
+) -> Result<Correction<R, N, M, S::StateSlopes, S::States>, Failure> {
     let (mechanism, parameters, none) = (model.mechanism, model.parameters, [R::constant(0.0); N]);
     let position = model.position(t, y);
-    let tangent = Tangent::at_rest(model, &position, y, lambda);
+    let (tangent, integrals) = Tangent::at_rest(model, &position, y, lambda);
     let phi_q = mechanism.phi_q(parameters, &position);
-    let imbalance = model.imbalance(&position, y, &none, lambda);
+    let mut imbalance = model.imbalance(&position, y, &none, lambda);
+    if let Some(integrals) = &integrals {
+        integrals.take_from(&mut imbalance);
+    }
     let phi = mechanism.phi(parameters, &position);
     let factors = System::new(&tangent.stiffness, &phi_q, model.metric).factorize(S::COORDINATES, t);
     if let Ok(factors) = &factors
         && !factors.is_rank_revealing()
     {
-        return Ok(factors.solve(&imbalance, &phi));
+        let (step, change) = factors.solve(&imbalance, &phi);
+        return Ok(Correction { step, change, integrals });
     }
     let answer = FreeStiffness::of(model, t, y, lambda)?.answer(&imbalance, &phi);
     let mut step = answer.step;
@@ -132,7 +162,7 @@ fn correction<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
         let far = R::constant(LARGEST_STEP) / largest(&answer.unanswered, &model.metric.coordinates);
         step = step.plus(far, &[1.0], [&answer.unanswered]);
     }
-    Ok((step, answer.change))
+    Ok(Correction { step, change: answer.change, integrals })
 }
 
 /// Moves `y` to where the forces of the free motions are nearest to balance, along the rows.
@@ -217,7 +247,7 @@ fn balancing<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     let force = model.mechanism.force(model.parameters, &position, &y.qd, &y.states, &[zero; M]);
     let phi_q = model.mechanism.phi_q(model.parameters, &position);
     let system = System::new(&model.metric.mass(), &phi_q, model.metric);
-    let factors = system.factorize_rank_revealing(R::constant(TRUNCATION), S::COORDINATES, t)?;
+    let factors = system.factorize_rank_revealing(truncation::<R>(), S::COORDINATES, t)?;
     Ok((factors.solve(&force, &[zero; M]).1, factors.unique_multipliers()))
 }
 

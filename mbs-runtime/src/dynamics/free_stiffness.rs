@@ -1,7 +1,7 @@
 //! The stiffness of the motions that the rows leave free, of any rank: what pushes back, what nothing answers.
 
 use super::implicit::Tangent;
-use super::kkt::{Factors, System, TRUNCATION};
+use super::kkt::{Factors, System, truncation};
 use super::model::Model;
 use super::vector::{State, Vector};
 use crate::linear::orthogonal::minimum_norm;
@@ -54,10 +54,10 @@ impl<R: Real, const N: usize, const M: usize> FreeStiffness<R, N, M> {
         lambda: &[R; M],
     ) -> Result<Self, Failure> {
         let (zero, position) = (R::constant(0.0), model.position(t, y));
-        let stiffness = Tangent::at_rest(model, &position, y, lambda).stiffness;
+        let stiffness = Tangent::at_rest(model, &position, y, lambda).0.stiffness;
         let phi_q = model.mechanism.phi_q(model.parameters, &position);
         let system = System::new(&model.metric.mass(), &phi_q, model.metric);
-        let factors = system.factorize_rank_revealing(R::constant(TRUNCATION), S::COORDINATES, t)?;
+        let factors = system.factorize_rank_revealing(truncation::<R>(), S::COORDINATES, t)?;
         let force = model.mechanism.force(model.parameters, &position, &y.qd, &y.states, lambda);
         let scales = &model.metric.coordinates;
         let mut size = zero;

@@ -1,5 +1,6 @@
 //! What implicit methods share: the tangent of the equations of motion, and the end of their iterations.
 
+use super::integrals::Integrals;
 use super::model::Model;
 use super::motion::Instant;
 use super::vector::{State, Vector};
@@ -41,16 +42,16 @@ impl<R: Real, const N: usize> Tangent<R, N> {
         Tangent { mass: mechanism.mass(parameters, position), damping, stiffness }
     }
 
-    /// That of a state at rest whose first-order states rest too and follow the coordinates.
+    /// That of a state at rest whose first-order states rest too and follow the coordinates, and what those do that integrate.
     pub(super) fn at_rest<S: Dynamic<R, N, M>, const M: usize>(
         model: &Model<'_, S, R, N, M>,
         position: &S::Position,
         y: &State<R, N, S::States>,
         lambda: &[R; M],
-    ) -> Self {
+    ) -> (Self, Option<Integrals<S::StateSlopes, S::States>>) {
         let mut tangent = Tangent::of(model, position, y, &[R::constant(0.0); N], lambda);
-        model.add_following_states(position, y, lambda, &mut tangent.stiffness);
-        tangent
+        let integrals = model.add_following_states(position, y, lambda, &mut tangent.stiffness);
+        (tangent, integrals)
     }
 
     /// `mass` M + `damping` C + `stiffness` K.

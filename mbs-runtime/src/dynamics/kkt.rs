@@ -15,7 +15,22 @@ const LEAST_PIVOT: f64 = 1e-4;
 const LARGEST_GROWTH: f64 = 1e3;
 
 /// Singular value of Φ_q in the metric, relative to the largest, below which a row counts as dependent.
-pub const TRUNCATION: f64 = 1e-10;
+const TRUNCATION: f64 = 1e-10;
+
+/// Rounding errors, in ε, that a dependent row may have as a part of its own: what a position on the constraints leaves of it, and the
+/// factorization. In double precision far below [`TRUNCATION`], in single precision 3e-5.
+const DEPENDENT_ROUNDINGS: f64 = 256.0;
+
+/// A part of a row, or of a combination of rows, that is none: `least`, or what rounding makes of nothing where that is more.
+pub(super) fn none<R: Real>(least: f64) -> R {
+    R::constant(least).max(R::constant(DEPENDENT_ROUNDINGS) * R::EPSILON)
+}
+
+/// Singular value of Φ_q in the metric, relative to the largest, below which a row counts as dependent: 1e-10, 3e-5 in single
+/// precision.
+pub fn truncation<R: Real>() -> R {
+    none(TRUNCATION)
+}
 
 /// M and Φ_q in the reference metric: S M S κ and W Φ_q S, S the coordinates' scales, W the rows' reciprocals, κ such
 /// that the largest entry of the first is 1. So no decision depends on units.
@@ -61,7 +76,7 @@ impl<R: Real, const N: usize, const M: usize> System<R, N, M> {
         if good {
             return Ok(Factors { kind: Kind::Blocks(blocks), ..self.factors(health.margin.sqrt()) });
         }
-        self.factorize_rank_revealing(R::constant(TRUNCATION), coordinates, t)
+        self.factorize_rank_revealing(truncation::<R>(), coordinates, t)
     }
 
     /// Factorises by LU whatever the pivots: for matrices that a penalty makes large in some directions.
@@ -73,7 +88,7 @@ impl<R: Real, const N: usize, const M: usize> System<R, N, M> {
         if R::constant(0.0) < health.margin {
             return Ok(Factors { kind: Kind::Blocks(blocks), ..self.factors(health.margin.sqrt()) });
         }
-        self.factorize_rank_revealing(R::constant(TRUNCATION), coordinates, t)
+        self.factorize_rank_revealing(truncation::<R>(), coordinates, t)
     }
 
     /// Factorises Φ_q rank-revealing and M on its null space; rows whose part of their own is below `truncation` count
@@ -100,7 +115,7 @@ impl<R: Real, const N: usize, const M: usize> System<R, N, M> {
     /// # Errors
     /// As [`factorize`](Self::factorize).
     pub(super) fn require_inertia(&self, share: R, coordinates: &[Entry], t: R) -> Result<(), Failure> {
-        self.null_space(R::constant(TRUNCATION), share, coordinates, t).map(|_| ())
+        self.null_space(truncation::<R>(), share, coordinates, t).map(|_| ())
     }
 
     /// The first row of Φ_q without an entry above `least` in the metric.

@@ -1,7 +1,7 @@
 //! Small motions about a state: M̄ s̈ + C̄ ṡ + K̄ s = 0 in as many coordinates s as there are degrees of freedom.
 
 use super::implicit::Tangent;
-use super::kkt::{System, TRUNCATION};
+use super::kkt::{System, truncation};
 use super::metric::Metric;
 use super::model::Model;
 use super::motion::Instant;
@@ -116,7 +116,7 @@ fn about<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     let slopes = mechanism.state_slopes(&parameters, &position, &y.qd, &y.states, lambda);
     let phi_q = mechanism.phi_q(&parameters, &position);
     let system = System::new(&tangent.mass, &phi_q, &metric);
-    let factors = system.factorize_rank_revealing(R::constant(TRUNCATION), S::COORDINATES, t)?;
+    let factors = system.factorize_rank_revealing(truncation::<R>(), S::COORDINATES, t)?;
     let scaled = |rates: &[R; N]| {
         let rates = rates.iter().zip(&metric.coordinates);
         rates.fold(zero, |largest, (rate, scale)| largest.max((*rate / *scale).abs()))

@@ -1,5 +1,6 @@
 //! The system where rows are dependent or nearly so: Φ_q rank-revealing, M on what it leaves free.
 
+use super::kkt::none;
 use crate::Real;
 use crate::linear::orthogonal::Reflection;
 
@@ -306,7 +307,7 @@ impl<R: Real, const N: usize, const M: usize> NullSpace<R, N, M> {
         let mut unique = [true; M];
         for combination in self.idle() {
             for (unique, share) in unique.iter_mut().zip(&combination) {
-                *unique &= share.abs() < R::constant(LEAST_SHARE);
+                *unique &= share.abs() < none::<R>(LEAST_SHARE);
             }
         }
         unique

@@ -1,7 +1,7 @@
 //! What stands in the way of a motion that no step leads on, as far as its state shows it.
 
 use super::both_sides::ZONE;
-use super::kkt::{System, TRUNCATION};
+use super::kkt::{System, truncation};
 use super::model::Model;
 use super::vector::State;
 use crate::{Dynamic, Failure, Real, kinematics};
@@ -9,6 +9,9 @@ use crate::{Dynamic, Failure, Real, kinematics};
 /// Largest entry of a row of Φ_q, in √ε in the metric, that is none: a row that is flat at a place holds it to the root of the 64 ε
 /// that its residual may have, 8 √ε, where its entries are twice that.
 const FLAT: f64 = 64.0;
+
+/// Largest entry of a row of Φ_q, in ε in the metric, that is none where a run starts: what rounding leaves of two points in one place.
+const FLAT_AT_START: f64 = 64.0;
 
 /// Residual of a row in the metric from which on a state has left the constraints and shows nothing about the mechanism.
 const LEFT: f64 = 1e-3;
@@ -37,7 +40,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
             let row = kinematics::entry(S::ROWS, u16::try_from(index).unwrap_or(u16::MAX));
             return Some(Failure::Flat { row, time: t.to_f64() });
         }
-        let margin = match system.factorize_rank_revealing(R::constant(TRUNCATION), S::COORDINATES, t) {
+        let margin = match system.factorize_rank_revealing(truncation::<R>(), S::COORDINATES, t) {
             Ok(factors) => factors.margin(),
             Err(failure) => return Some(failure),
         };
@@ -45,6 +48,16 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
             return Some(Failure::Undecided { margin: margin.to_f64(), time: t.to_f64() });
         }
         system.require_inertia(R::constant(LEAST_INERTIA), S::COORDINATES, t).err()
+    }
+
+    /// Fails where no coordinate changes a row at a state from which a run starts. Its accelerations are those without that row, and
+    /// where they keep it for a moment, as those of two points that fall side by side, no step would tell.
+    pub(super) fn require_no_flat_row(&self, t: R, y: &State<R, N, S::States>) -> Result<(), Failure> {
+        let phi_q = self.mechanism.phi_q(self.parameters, &self.position(t, y));
+        let system = System::new(&self.metric.mass(), &phi_q, self.metric);
+        let Some(index) = system.flat_row(R::constant(FLAT_AT_START) * R::EPSILON) else { return Ok(()) };
+        let row = kinematics::entry(S::ROWS, u16::try_from(index).unwrap_or(u16::MAX));
+        Err(Failure::Flat { row, time: t.to_f64() })
     }
 
     /// What a step from a state failed with, or what stands in its way there.

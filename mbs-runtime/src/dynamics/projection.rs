@@ -30,7 +30,8 @@ const LARGEST_REST: f64 = 1e8;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Stages {
     /// All where rows follow from others on the constraints alone, none elsewhere: beside the constraints the rank of Φ_q
-    /// rises there, and accelerations grow with the inverse of the distance. The start decides.
+    /// rises there, and accelerations grow with the inverse of the distance. Decided at the start, and again behind changed parameters and
+    /// singular positions.
     #[default]
     WhereNeeded,
     /// None: a step's end alone is.
@@ -52,7 +53,7 @@ pub struct Projection {
 }
 
 impl Projection {
-    /// Whether the stages of `model` are projected, as far as the start decides it.
+    /// Whether the stages of `model` are projected.
     fn stages_of<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
         &self,
         model: &Model<'_, S, R, N, M>,

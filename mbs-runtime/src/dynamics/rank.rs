@@ -5,19 +5,22 @@
 //! its own. Its γ there differs by order δ from what the others ask for in that direction, so that accelerations are wrong
 //! by their own size however small δ is, with every residual at rounding.
 
-use super::kkt::System;
+use super::kkt::{System, truncation};
 use super::model::{Counts, Model};
 use super::projection::project_position;
 use super::vector::State;
 use crate::{Dynamic, Real};
 
-/// How far the start is moved off the constraints to see whether the rank rises, in the reference metric: far above what a
+/// How far a state is moved off the constraints to see whether the rank rises, in the reference metric: far above what a
 /// projection leaves, 1e-14, and far above the part below which a row counts as dependent, 1e-10.
 const PROBE: f64 = 1e-4;
 
+/// How many times as far it is at least as the part below which a row counts as dependent: what counts in single precision.
+const PROBE_OVER_TRUNCATION: f64 = 64.0;
+
 /// Whether the rank of Φ_q is less on the constraints next to `y` than beside them.
 ///
-/// A start in a singular position tells nothing, nor does a row typed twice: the rank rises on the constraints too, or
+/// A singular position tells nothing, nor does a row typed twice: the rank rises on the constraints too, or
 /// nowhere. Where the states beside cannot be evaluated, the rank counts as rising.
 pub(super) fn rank_rises<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     model: &Model<'_, S, R, N, M>,
@@ -28,11 +31,12 @@ pub(super) fn rank_rises<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: 
         return false;
     }
     let mut beside = *y;
+    let probe = R::constant(PROBE).max(R::constant(PROBE_OVER_TRUNCATION) * truncation::<R>());
     let (mut sign, scales) = (R::constant(1.0), &model.metric.coordinates);
     for (index, (q, scale)) in (0_u16..).zip(beside.q.iter_mut().zip(scales)) {
         // No two alike, so that no symmetry of the mechanism is kept.
         let share = sign * R::constant(0.5 + 0.5 * f64::from(index + 1) / N as f64);
-        *q = *q + R::constant(PROBE) * share * *scale;
+        *q = *q + probe * share * *scale;
         sign = -sign;
     }
     let off = rank(model, t, &beside);

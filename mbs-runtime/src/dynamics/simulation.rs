@@ -45,8 +45,10 @@ pub struct Simulation<S: Dynamic<R, N, M>, X, R: Real, const N: usize, const M: 
     stale: bool,
     start: R,
     balanced: bool,
-    /// Whether rows follow from others on the constraints alone, as found at the start.
+    /// Whether rows follow from others on the constraints alone, as found at the start, behind changes and singular positions.
     rank_rises: bool,
+    /// Whether a singular position was passed since then.
+    passed: bool,
     /// Energy (J) at the start, moved along where parameters change it.
     reference: R,
     /// Energy (J) before a change that made it no number.
@@ -76,6 +78,15 @@ struct Progress<R, P> {
     passage: Option<Passage<R>>,
     /// Steps accepted by the control of their size.
     accepted: u32,
+}
+
+/// Where a step or an adaptive run begins.
+struct Fresh<R, const N: usize, const M: usize, Z> {
+    instant: Instant<R, N, M, Z>,
+    /// Energy (J) that came in as the state was put onto changed rows.
+    gained: R,
+    /// Whether rows follow from others on the constraints alone.
+    rank_rises: bool,
 }
 
 /// How a run went so far: energy that is not accounted for, rows that are violated, what it cost.
@@ -172,6 +183,7 @@ where
             Origin::Text => text_start::complete(&model, t, &mut y, &mut counts)?,
         }
         Projection::default().settle(&model, t, &mut y, &mut counts)?;
+        model.require_no_flat_row(t, &y)?;
         model.rank_rises = rank_rises(&model, t, &y);
         let solved = method.solve(&model, t, &y, &[R::constant(0.0); M], &mut counts)?;
         let now = Instant { t, y, solved, carried: solved.rate.qd };
@@ -190,6 +202,7 @@ where
             start: t,
             balanced: true,
             rank_rises,
+            passed: false,
             reference,
             known: None,
             tolerance: Tolerance { relative: tolerance, absolute: tolerance },
@@ -217,8 +230,8 @@ where
         }
         self.method.admit(h, self.now.t)?;
         let mut counts = self.counts;
-        let (from, gained) = self.fresh(&mut counts)?;
-        let model = self.model();
+        let Fresh { instant: from, gained, rank_rises } = self.fresh(&mut counts)?;
+        let model = Model { rank_rises, ..self.model() };
         let stepped = self.method.step(&model, &from, h, &mut counts);
         let stepped = stepped.and_then(|next| {
             model.require_bounded(next.t, &from.y, &next.y)?;
@@ -229,8 +242,11 @@ where
         let phases = self.method.phases_after(&model, from.t, h)?;
         counts.steps += 1;
         let ends = ((from.t, from.solved.margin), (next.t, next.solved.margin));
-        self.passage = self.passage.or(Passage::between(ends.0, ends.1));
+        let passage = Passage::between(ends.0, ends.1);
+        self.passage = self.passage.or(passage);
+        self.rank_rises = rank_rises;
         self.take(next, phases, counts);
+        self.passed = passage.is_some();
         self.reference = self.reference + gained;
         Ok(())
     }
@@ -249,21 +265,23 @@ where
         Ok(())
     }
 
-    /// The instant, solved anew where parameters or inputs have changed, and the energy (J) that came in as it was put onto
-    /// changed rows.
-    fn fresh(&self, counts: &mut Counts) -> Result<(Instant<R, N, M, S::States>, R), Failure> {
+    /// The instant, solved anew where parameters or inputs have changed.
+    fn fresh(&self, counts: &mut Counts) -> Result<Fresh<R, N, M, S::States>, Failure> {
         if let Some(failure) = self.fault {
             return Err(failure);
         }
+        let (Instant { t, mut y, solved, .. }, mut model) = (self.now, self.model());
         if !self.stale {
-            return Ok((self.now, R::constant(0.0)));
+            let rank_rises = self.rank_rises || self.passed && rank_rises(&model, t, &y);
+            return Ok(Fresh { instant: self.now, gained: R::constant(0.0), rank_rises });
         }
-        let Instant { t, mut y, solved, .. } = self.now;
-        let model = self.model();
         Projection::default().settle(&model, t, &mut y, counts)?;
+        model.require_no_flat_row(t, &y)?;
+        model.rank_rises = model.rank_rises || rank_rises(&model, t, &y);
         let solved = self.method.solve(&model, t, &y, &solved.lambda, counts)?;
         let gained = model.total_energy(t, &y) - model.total_energy(t, &self.now.y);
-        Ok((Instant { t, y, solved, carried: solved.rate.qd }, gained))
+        let instant = Instant { t, y, solved, carried: solved.rate.qd };
+        Ok(Fresh { instant, gained, rank_rises: model.rank_rises })
     }
 
     /// Goes on from `next`, with `phases` or with those that kinematics moves on.
@@ -278,6 +296,7 @@ where
         self.now = next;
         self.counts = counts;
         self.stale = false;
+        self.passed = false;
     }
 
     fn model(&self) -> Model<'_, S, R, N, M> {
@@ -529,7 +548,7 @@ where
     {
         let mut shown = self.clone();
         if self.stale {
-            let (_, gained) = self.fresh(&mut Counts::default())?;
+            let gained = self.fresh(&mut Counts::default())?.gained;
             shown.reference = shown.reference + gained;
         }
         let steps = self.adaptive.accepted;
@@ -597,8 +616,8 @@ where
     ) -> Result<bool, Failure> {
         let (mut counts, mut adaptive) = (self.counts, self.adaptive);
         self.tolerance.require_resolved(self.now.t)?;
-        let (from, gained) = self.fresh(&mut counts)?;
-        let model = self.model();
+        let Fresh { instant: from, gained, rank_rises } = self.fresh(&mut counts)?;
+        let model = Model { rank_rises, ..self.model() };
         let formulation = &self.method.formulation;
         let mut equations = Equations::new(&model, formulation, &from, counts).with_tolerance(self.tolerance);
         let start = beginning(model.mechanism, &from);
@@ -626,7 +645,9 @@ where
         counts.steps += u64::from(adaptive.accepted.wrapping_sub(taken));
         self.adaptive = adaptive;
         self.passage = self.passage.or(passage);
+        self.rank_rises = rank_rises;
         self.take(Instant { t, y: y.y, solved, carried: solved.rate.qd }, Some(phases), counts);
+        self.passed = passage.is_some();
         self.reference = self.reference + gained;
         failure.map_or(Ok(stopped.is_some()), Err)
     }

@@ -1,5 +1,6 @@
 //! First-order states beside the other unknowns: where they rest, and what they do to small motions.
 
+use super::integrals::Integrals;
 use super::metric::{Metric, worse};
 use super::model::Model;
 use super::vector::State;
@@ -18,7 +19,8 @@ const STUCK: f64 = 1e-9;
 const PIVOT: f64 = 1e-12;
 
 /// First-order states (of the text) that rest with the coordinates `q` (N) at rest at time `t` (s): ż = 0. `lambda` (M): the
-/// multipliers, where rates depend on them. A state whose rate is 0 whatever it is stays at its start value.
+/// multipliers, where rates depend on them. A state whose rate does not depend on it stays at its start value; what a rest under forces
+/// makes of it is with [`equilibrium_with_states`](super::equilibrium::equilibrium_with_states).
 ///
 /// # Errors
 /// [`Failure::NonFinite`]; [`Failure::Unsettled`] with a state that has no rest: its rate does not vanish, or does not depend on it.
@@ -35,6 +37,7 @@ pub fn states_at_rest<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usi
     let mut y = State { q: *q, qd: [zero; N], states: mechanism.start_states(&parameters), work: zero };
     model.check(t, &y)?;
     model.settle_states(t, &mut y, lambda)?;
+    model.require_integrated(t, &y, lambda)?;
     Ok(y.states)
 }
 
@@ -49,7 +52,8 @@ pub(super) fn require_no_states<S: Dynamic<R, N, M>, R: Real, const N: usize, co
 }
 
 impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, R, N, M> {
-    /// Puts the first-order states of `y` where they rest beside its coordinates and velocities: ż = 0.
+    /// Puts the first-order states of `y` where they rest beside its coordinates and velocities: ż = 0. Those that integrate what
+    /// depends on the coordinates stay as they are.
     pub(super) fn settle_states(
         &self,
         t: R,
@@ -71,7 +75,9 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
             if let Some(failure) = kinematics::non_finite_among(step.as_ref(), S::STATES) {
                 return Err(failure);
             }
-            solve(&mut slopes, &mut step).map_err(unsettled)?;
+            let column_of = eliminate(&mut slopes, &mut step);
+            require_closed(&slopes, &step, &column_of).map_err(unsettled)?;
+            sort(&mut slopes, &mut step, &column_of);
             let mut largest = zero;
             let states = y.states.as_mut().iter_mut().zip(sizes.as_mut()).zip(step.as_ref());
             for (index, ((state, size), step)) in states.enumerate() {
@@ -93,35 +99,35 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
     }
 
     /// Adds to `stiffness` (N rows of N) what states that follow the coordinates make of it: with ż = 0 throughout,
-    /// z_q = −(ż_z)⁻¹ ż_q, so that −Q_z z_q comes to −∂Q/∂q.
+    /// z_q = −(ż_z)⁻¹ ż_q, so that −Q_z z_q comes to −∂Q/∂q. Returns what those do that integrate.
     pub(super) fn add_following_states(
         &self,
         position: &S::Position,
         y: &State<R, N, S::States>,
         lambda: &[R; M],
         stiffness: &mut [[R; N]; N],
-    ) {
+    ) -> Option<Integrals<S::StateSlopes, S::States>> {
         let slopes = self.mechanism.state_slopes(self.parameters, position, &y.qd, &y.states, lambda);
-        let Some(mut slopes) = slopes else { return };
-        let (forces, mut none) = (slopes, y.states);
-        none.as_mut().iter_mut().for_each(|value| *value = R::constant(0.0));
-        if solve(&mut slopes, &mut none).is_err() {
-            return;
-        }
+        let (forces, mut slopes) = (slopes?, slopes?);
+        let mut rates = self.mechanism.state_rates(self.parameters, position, &y.qd, &y.states, lambda);
+        let column_of = eliminate(&mut slopes, &mut rates);
+        let (open, open_rates) = (slopes, rates);
+        sort(&mut slopes, &mut rates, &column_of);
         for (force, follows) in forces.as_ref().iter().zip(slopes.as_ref()) {
             for (row, force) in stiffness.iter_mut().zip(&force.force) {
                 row.iter_mut().zip(&follows.q).for_each(|(entry, q)| *entry = *entry + *force * *q);
             }
         }
+        let integrals = Integrals::of((&forces, &open), &open_rates, &column_of, stiffness, self.metric);
+        integrals.add_to(stiffness);
+        Some(integrals)
     }
 }
 
 /// Solves ż_z x = right, and ż_z X = ż_q beside it, in place, row k of `slopes` with what belongs to state k: Gauss–Jordan with
-/// pivots chosen among the rows, each over its largest entry. A state that no row depends on gets 0.
-///
-/// # Errors
-/// The index of a row that depends on no state that is left and whose `right` is not 0.
-fn solve<R: Real, const N: usize, Z, P>(slopes: &mut P, right: &mut Z) -> Result<(), usize>
+/// pivots chosen among the rows, each over its largest entry. Returns the column that each row is solved for, −1 where it depends on no
+/// state that is left.
+pub(super) fn eliminate<R: Real, const N: usize, Z, P>(slopes: &mut P, right: &mut Z) -> Z
 where
     Z: Copy + AsRef<[R]> + AsMut<[R]>,
     P: Copy + AsRef<[StateSlope<R, N, Z>]> + AsMut<[StateSlope<R, N, Z>]>,
@@ -137,7 +143,6 @@ where
             *right = *right / size;
         }
     }
-    let size = right.as_ref().iter().fold(zero, |size, right| size.max(right.abs()));
     for column in 0..column_of.as_ref().len() {
         let mut best = (R::constant(PIVOT), None);
         for (index, (row, taken)) in slopes.as_ref().iter().zip(column_of.as_ref()).enumerate() {
@@ -162,13 +167,23 @@ where
             }
         }
     }
-    let mut rows = right.as_ref().iter().zip(column_of.as_ref());
-    let open = rows.position(|(right, column)| *column < zero && R::constant(PIVOT) * size < right.abs());
-    if let Some(row) = open {
-        return Err(row);
-    }
-    sort(slopes, right, &column_of);
-    Ok(())
+    column_of
+}
+
+/// Fails with the index of a row that depends neither on a state that is left nor on the coordinates, and whose `right` is not 0.
+fn require_closed<R: Real, const N: usize, Z, P>(slopes: &P, right: &Z, column_of: &Z) -> Result<(), usize>
+where
+    Z: Copy + AsRef<[R]>,
+    P: AsRef<[StateSlope<R, N, Z>]>,
+{
+    let zero = R::constant(0.0);
+    let size = right.as_ref().iter().fold(zero, |size, right| size.max(right.abs()));
+    let mut rows = slopes.as_ref().iter().zip(right.as_ref().iter().zip(column_of.as_ref()));
+    let open = rows.position(|(row, (right, column))| {
+        let held = row.q.iter().all(|entry| entry.abs() <= R::constant(PIVOT));
+        *column < zero && held && R::constant(PIVOT) * size < right.abs()
+    });
+    open.map_or(Ok(()), Err)
 }
 
 /// Brings each row to the place of the state that it is solved for; nothing stands where there is none.

@@ -1,6 +1,6 @@
 //! How the motions that the rows leave free change along a motion: R, Ṙ and R̈ in independent coordinates.
 
-use super::kkt::{Factors, System, TRUNCATION};
+use super::kkt::{Factors, System, truncation};
 use super::model::Model;
 use super::vector::{State, Vector};
 use crate::linear::orthogonal::pivot_order;
@@ -55,7 +55,7 @@ impl<'a, S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Variation
                 *weight = *weight * R::constant(PREFERRED);
             }
         }
-        let truncation = R::constant(TRUNCATION);
+        let truncation = truncation::<R>();
         let (order, rank) = pivot_order(&phi_q, &model.metric.rows, &weights, truncation);
         let mut independent = [true; N];
         for dependent in order.iter().take(rank) {

@@ -1,6 +1,6 @@
 //! Velocity transformation: accelerations of independent coordinates alone, through the blocks of the constraints.
 
-use super::kkt::{System, TRUNCATION};
+use super::kkt::{System, truncation};
 use super::model::{Counts, Formulation, Model, Solved};
 use super::multipliers;
 use super::projection::Projection;
@@ -146,7 +146,7 @@ where
     let (mechanism, parameters) = (model.mechanism, model.parameters);
     let (mass, phi_q) = (mechanism.mass(parameters, position), mechanism.phi_q(parameters, position));
     let system = System::new(&mass, &phi_q, model.metric);
-    let factors = system.factorize_rank_revealing(R::constant(TRUNCATION), S::COORDINATES, t)?;
+    let factors = system.factorize_rank_revealing(truncation::<R>(), S::COORDINATES, t)?;
     if factors.rank() < M || !is_regular(factors.margin()) {
         counts.handed_over += 1;
         return Projection::default().solve(model, t, y, lambda, counts);

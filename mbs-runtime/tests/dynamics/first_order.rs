@@ -1,8 +1,8 @@
 //! Texts with first-order states: rest, small motions, inverse dynamics.
 
 use mbs_runtime::dynamics::{
-    DormandPrince8, Explicit, Projection, Simulation, Tolerance, equilibrium, inverse, inverse_with_states,
-    linearize, linearize_with_states, states_at_rest,
+    DormandPrince8, Explicit, Projection, Simulation, Tolerance, equilibrium, equilibrium_with_states,
+    inverse, inverse_with_states, linearize, linearize_with_states, states_at_rest,
 };
 use mbs_runtime::{Dynamic, Failure, Mechanism, mechanism};
 
@@ -58,6 +58,39 @@ mechanism! {
 }
 
 mechanism! {
+    /// The same where a row holds the point.
+    pub mechanism Held;
+    coord x: m = 0.1;
+    state z: N = 0;
+    body point { mass: 2, com: [x, 0] }
+    constraint clamp { x == 0.1m; }
+    force control: z on x;
+    der(z) == -3N/1m/1s*(x - 0.2m);
+}
+
+mechanism! {
+    /// An arm on a crank under two integral controls, of which one acts through a lagging motor, against its weight.
+    pub mechanism Controlled;
+    param gain: N*m/s = 4;
+    param stiffness: N*m = 0;
+    coord phi: rad = 0.2;
+    coord psi: rad = 0.1;
+    state total: N*m = 0;
+    state motor: N*m = 0.5;
+    state other: N*m = 1;
+    let elbow = 0.5m*unit(phi);
+    body upper { mass: 2, inertia: 0.04, com: elbow/2, angle: phi }
+    body lower { mass: 1, inertia: 0.02, com: elbow + 0.3m*unit(psi), angle: psi }
+    gravity weight { acceleration: [0, -9.81] }
+    torque shoulder: motor on phi;
+    torque elbow_motor: other on psi;
+    torque spring: -stiffness*(phi - 0.4) on phi;
+    der(total) == gain*(0.3 - phi);
+    der(motor) == (total - motor)/0.05s;
+    der(other) == gain*(sin(0.5) - sin(psi));
+}
+
+mechanism! {
     /// A bristle that moves with the speed alone: where it rests, it stays.
     pub mechanism Bristle;
     coord x: m = 0.1;
@@ -97,10 +130,36 @@ fn a_nonlinear_state_rests_on_a_curve() {
 fn what_has_no_rest_is_refused_and_what_rests_anywhere_stays() {
     let failure = equilibrium(&Stiffening::<f64>::default(), 0.0, &[0.1]).unwrap_err();
     assert!(matches!(failure, Failure::Unsettled { state, .. } if state.name == "k"), "{failure}");
-    let failure = equilibrium(&Integrating::<f64>::default(), 0.0, &[0.1]).unwrap_err();
+    let failure = states_at_rest(&Integrating::<f64>::default(), 0.0, &[0.1], &[]).unwrap_err();
+    assert!(matches!(failure, Failure::Unsettled { state, .. } if state.name == "z"), "{failure}");
+    // The rows hold what it integrates away from 0.
+    let failure = equilibrium(&Held::<f64>::default(), 0.0, &[0.1]).unwrap_err();
     assert!(matches!(failure, Failure::Unsettled { state, .. } if state.name == "z"), "{failure}");
     let rest = equilibrium(&Bristle::<f64>::default(), 0.0, &[0.1]).unwrap();
     assert!((rest.q[0] + 0.04).abs() < 1e-14, "{:?}", rest.q);
+}
+
+#[test]
+fn what_a_control_integrates_is_zero_at_rest_and_the_control_holds_what_acts() {
+    let (rest, [z]) = equilibrium_with_states(&Integrating::<f64>::default(), 0.0, &[0.1]).unwrap();
+    assert!((rest.q[0] - 0.2).abs() < 1e-13 && (z - 2.0).abs() < 1e-12, "{:?} {z}", rest.q);
+    assert!(rest.indifferent == [false] && rest.iterations <= 6, "{rest:?}");
+    for (gain, stiffness) in [(4.0, 0.0), (4.0, 20.0), (-0.3, 20.0), (4e3, 1e-3)] {
+        let arm: Controlled = Controlled { gain, stiffness };
+        let (rest, [total, motor, other]) = equilibrium_with_states(&arm, 0.0, &[0.2, 0.1]).unwrap();
+        let [phi, psi] = rest.q;
+        assert!((phi - 0.3).abs() < 1e-12 && (psi - 0.5).abs() < 1e-12, "{:?}", rest.q);
+        // Moments about both joints.
+        let upper = (2.0 * 0.25 + 0.5) * 9.81 * 0.3_f64.cos() - stiffness * 0.1;
+        let lower = 0.3 * 9.81 * 0.5_f64.cos();
+        assert!(
+            (motor - upper).abs() < 1e-9 && (total - motor).abs() < 1e-12 && (other - lower).abs() < 1e-9
+        );
+        assert!(rest.iterations <= 12, "{}", rest.iterations);
+    }
+    let single: Integrating<f32> = Integrating::default();
+    let (rest, [z]) = equilibrium_with_states(&single, 0.0, &[0.1]).unwrap();
+    assert!((rest.q[0] - 0.2).abs() < 1e-6 && (z - 2.0).abs() < 1e-4, "{:?} {z}", rest.q);
 }
 
 #[test]

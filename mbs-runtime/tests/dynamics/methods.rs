@@ -110,6 +110,37 @@ fn implicit_methods_are_of_order_two() {
 }
 
 #[test]
+fn generalised_alpha_is_of_order_two_whatever_it_damps_and_whatever_damps_the_motion() {
+    for damping in [0.0, 0.4] {
+        let swinging = Linkage { damping, ..pendulum() };
+        let accurate = Explicit::new(DormandPrince8, Projection::default());
+        let exact = Simulation::start(swinging, accurate, 0.0, [-1.0, 0.0], [0.0, 0.0]).unwrap();
+        let mut exact = exact.with_tolerance(Tolerance::new(1e-13));
+        exact.advance_to(4.0).unwrap();
+        // What damps has an effect: the order is not that of the motion without it.
+        assert_eq!(exact.balance().work < -1.0, damping > 0.0, "{:?}", exact.balance());
+        for rho in [0.0, 0.5, 0.9, 1.0] {
+            let errors = [2000, 4000, 8000].map(|steps| {
+                let method = GeneralizedAlpha { rho };
+                let mut run = Simulation::start(swinging, method, 0.0, [-1.0, 0.0], [0.0, 0.0]).unwrap();
+                run.step_to(4.0, steps).unwrap();
+                let found = run.q().iter().chain(run.qd());
+                let pairs = found.zip(exact.q().iter().chain(exact.qd()));
+                pairs.map(|(found, exact)| (found - exact).abs()).fold(0.0, f64::max)
+            });
+            for pair in errors.windows(2) {
+                let order = (pair[0] / pair[1]).log2();
+                println!(
+                    "generalised-α, ρ = {rho}, damping {damping} kg/s: order {order:.3}, {:.1e}",
+                    pair[1]
+                );
+                assert!((order - 2.0).abs() < 0.1, "ρ {rho}, damping {damping}: {errors:?}");
+            }
+        }
+    }
+}
+
+#[test]
 fn three_thirds_of_a_step_against_a_whole_one_are_of_order_three() {
     let [coarse, fine] = [500, 1000].map(|steps| error(&stepped(Extrapolated, steps)));
     let order = (coarse / fine).log2();

@@ -1,7 +1,7 @@
 //! Static equilibrium: where a mechanism rests under its forces.
 
 use mbs_runtime::dynamics::{
-    Counts, Equilibrium, Formulation, Metric, Model, State, Unstabilized, closed, equilibrium, states_at_rest,
+    Counts, Equilibrium, Formulation, Metric, Model, State, Unstabilized, closed, equilibrium_with_states,
 };
 use mbs_runtime::{Dynamic, Failure, Motion as Moving};
 
@@ -60,7 +60,7 @@ pub(crate) fn rest<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
 ) -> Result<Rest, Failure> {
     let mut mechanism = mechanism.clone();
     mechanism.start_phases(q, 0.0);
-    let found = equilibrium(&mechanism, 0.0, q)?;
+    let (found, states) = equilibrium_with_states(&mechanism, 0.0, q)?;
     let (parameters, none) = (mechanism.parameters(), [0.0; N]);
     let position = mechanism.position(&parameters, &found.q, 0.0);
     let outputs = mechanism.outputs(&parameters, &position, &none, &none);
@@ -74,9 +74,8 @@ pub(crate) fn rest<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
         outputs: outputs.as_ref(),
         closure: closure.fold(0.0, f64::max),
         iterations: found.iterations,
-        margin: margin(&mechanism, &found)?,
+        margin: margin(&mechanism, &found, &states),
     });
-    let states = states_at_rest(&mechanism, 0.0, &found.q, &found.lambda)?;
     let moving = Moving { qd: &none, qdd: &none, lambda: &found.lambda, states: &states };
     let loads = mechanism.loads(&parameters, &position, &moving);
     let mut forces = Forces::of(S::LOADS, S::ROWS);
@@ -109,13 +108,13 @@ fn depends_on_time<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
 fn margin<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
     mechanism: &S,
     found: &Equilibrium<f64, N, M>,
-) -> Result<f64, Failure> {
+    states: &S::States,
+) -> f64 {
     let parameters = mechanism.parameters();
     let metric = Metric::of(mechanism, &parameters);
     let model =
         Model { mechanism, parameters: &parameters, metric: &metric, balanced: false, rank_rises: false };
-    let states = states_at_rest(mechanism, 0.0, &found.q, &found.lambda)?;
-    let y = State { q: found.q, qd: [0.0; N], states, work: 0.0 };
+    let y = State { q: found.q, qd: [0.0; N], states: *states, work: 0.0 };
     let solved = Unstabilized.solve(&model, 0.0, &y, &found.lambda, &mut Counts::default());
-    Ok(solved.map_or(f64::NAN, |solved| solved.margin))
+    solved.map_or(f64::NAN, |solved| solved.margin)
 }

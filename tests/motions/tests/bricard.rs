@@ -171,3 +171,23 @@ fn at_rest_the_joints_share_the_weight_by_the_shortest_multipliers() {
         assert!((force - reaction).abs() < 1e-8, "{force} {reaction}");
     }
 }
+
+#[test]
+fn in_single_precision_the_same_row_follows_from_the_others() {
+    let method = Explicit::new(RungeKutta4, Projection::default());
+    let single = Simulation::start_from_text(Bricard::<f32>::default(), method, 0.0);
+    let double = Simulation::start_from_text(Bricard::<f64>::default(), method, 0.0);
+    let (mut single, mut double) = (single.expect("it starts"), double.expect("it starts"));
+    for step in 1..=20_u32 {
+        let found = single.determinacy().expect("finite rows");
+        let known = double.determinacy().expect("finite rows");
+        assert_eq!((found.rank, known.rank), (22, 22));
+        assert_eq!(found.dependent, known.dependent);
+        single.step_to(0.05 * step as f32, 10).expect("it moves");
+        double.step_to(0.05 * f64::from(step), 10).expect("it moves");
+    }
+    // Single precision: seven digits, of which a second of integration takes two.
+    let off = single.q().iter().zip(double.q()).map(|(a, b)| (f64::from(*a) - b).abs()).fold(0.0, f64::max);
+    println!("bricard in single precision: {off:.1e} of 1e-4 after 1 s, {:.1e} J", single.balance().defect);
+    assert!(off < 1e-4, "{off:e}");
+}

@@ -2,9 +2,10 @@
 
 use std::time::Duration;
 
+use mbs_runtime::Failure;
 use mbs_runtime::dynamics::{Counts, Doubt};
 use mechanisms::analyses::AnyDynamics;
-use mechanisms::analyses::direct::{Approach, Simulated};
+use mechanisms::analyses::direct::{Approach, Simulated, Stabilization};
 
 use super::loads::{energies, loads};
 use super::{Finding, Found};
@@ -17,12 +18,30 @@ pub(super) fn direct(
 ) -> Found {
     let found = dynamics.simulate(approach, times, heard).map_err(|failure| failure.to_string())?;
     if let Some(failure) = found.failure {
-        return Err(failure.to_string());
+        return Err(ended(failure, approach.stabilization));
     }
     let mut figures = balance(&found);
     figures.extend(energies(&found.motion));
     figures.extend(loads(&found.motion));
     Ok(Finding::of(found.motion, figures))
+}
+
+/// Why a motion from forces ended, and what leads on where its stabilisation does not lead through a singular position.
+fn ended(failure: Failure, stabilization: Stabilization) -> String {
+    let how = match stabilization {
+        Stabilization::None => "no stabilisation",
+        Stabilization::Baumgarte(_) => "Baumgarte's stabilisation",
+        Stabilization::Penalty(_) => "a penalty",
+        Stabilization::Projection | Stabilization::Velocity | Stabilization::Implicit(_) => {
+            return failure.to_string();
+        }
+    };
+    let Failure::Undecided { time, .. } = failure else { return failure.to_string() };
+    let before = (100.0 * time).floor() / 100.0;
+    format!(
+        "{failure}\n{how} leaves the rows violated by what the steps make of it: where bars come in line that decides which way they go. \
+         `--method projection` or `--method velocity` lead through, `--until {before}` ends before it"
+    )
 }
 
 /// Energy, constraints and cost of a motion from forces.
@@ -108,4 +127,28 @@ pub fn doubtful(doubt: Doubt) -> &'static str {
 
 fn milliseconds(elapsed: Duration) -> String {
     format!("{:.1} ms", elapsed.as_secs_f64() * 1e3)
+}
+
+#[cfg(test)]
+mod tests {
+    use mbs_runtime::dynamics::Baumgarte;
+
+    use super::*;
+
+    #[test]
+    fn where_a_stabilisation_does_not_lead_through_the_end_names_what_does() {
+        let failure = Failure::Undecided { margin: 1e-3, time: 7.061 };
+        let of = |stabilization| ended(failure, stabilization);
+        for lost in [Stabilization::None, Stabilization::Baumgarte(Baumgarte::default())] {
+            let message = of(lost);
+            assert!(message.starts_with(&failure.to_string()), "{message}");
+            assert!(
+                message.contains("`--method projection`") && message.contains("--until 7.06`"),
+                "{message}"
+            );
+        }
+        assert_eq!(of(Stabilization::Projection), failure.to_string());
+        let other = Failure::InvalidStep { step: 0.0, time: 1.0 };
+        assert_eq!(ended(other, Stabilization::None), other.to_string());
+    }
 }
