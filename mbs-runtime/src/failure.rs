@@ -414,8 +414,8 @@ impl fmt::Display for Failure {
             Failure::NonFinite { name, line } => write!(f, "`{name}` (line {line}) is not a finite number"),
             Failure::Negative { name, line, parameter, value } => write!(
                 f,
-                "`{name}` (line {line}) is {value:e}, with `{parameter}` as it is: masses, moments of inertia, stiffness, damping and \
-                 friction are at least 0"
+                "`{name}` (line {line}) is {value:e}, with `{parameter}` as it is: masses, moments of inertia and the sum of two less the third, \
+                 stiffness, damping and friction are at least 0"
             ),
             Failure::Unresolved { coordinate, value, .. } => write!(
                 f,

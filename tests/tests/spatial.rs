@@ -1,7 +1,7 @@
 //! Bodies in space against closed forms, other descriptions of the same body, and other frames.
 
 use mbs_runtime::dynamics::{DormandPrince8, Explicit, Projection, Simulation, Tolerance};
-use mbs_runtime::{Dynamic, Mechanism, mechanism};
+use mbs_runtime::{Dynamic, Failure, Mechanism, mechanism};
 
 mechanism! {
     /// A body that nothing acts on.
@@ -316,4 +316,53 @@ fn a_spring_between_points_of_two_bodies_changes_no_momentum_and_accounts_for_it
     }
     let balance = run.balance();
     assert!(balance.work < -0.1 && balance.defect.abs() < 1e-9 * balance.energy.kinetic, "{balance:?}");
+}
+
+mechanism! {
+    /// A free body with a moment of deviation.
+    mechanism Skewed;
+    param Jxy: kg*m^2 = 0;
+    param Jyz: kg*m^2 = 0;
+    param Jxz: kg*m^2 = 0;
+    coord r: [m; 3] = [0, 0, 0];
+    coord e: [1; 4] = [1, 0, 0, 0];
+    body top { mass: 2, com: r, inertia: [1, 1.2, 1.4, Jxy, Jxz, Jyz], orientation: e }
+    start e = [1, 0, 0, 0] rate [0, 0, 0, 0];
+}
+
+/// What a start says of an inertia.
+fn refused<S: Dynamic<f64, 7, 1>>(body: S) -> Option<Failure> {
+    let method = Explicit::new(DormandPrince8, Projection::default());
+    Simulation::start_from_text(body, method, 0.0).err()
+}
+
+#[test]
+fn an_inertia_that_no_body_has_is_refused_where_a_run_starts() {
+    let spinning = |last: f64| refused(Spinning { J: [1.0, 2.0, last], ..Spinning::default() });
+    // A flat body, and one of less than that; rounding of a flat one is none.
+    assert_eq!([3.0, 2.5, 1.0, 3.0 + 1e-9].map(spinning), [None; 4]);
+    for last in [3.01, 0.99] {
+        let failure = spinning(last).expect("no body");
+        let Failure::Negative { name, parameter, value, .. } = failure else { panic!("{failure}") };
+        assert_eq!((name, parameter), ("top.inertia, two moments less the third", "J.0"));
+        assert!((value + 0.01).abs() < 1e-5, "{value}");
+    }
+    let flat: Spinning<f32> = Spinning { J: [0.1, 0.2, 0.3], ..Spinning::default() };
+    let method = Explicit::new(DormandPrince8, Projection::default());
+    assert!(Simulation::start_from_text(flat, method, 0.0_f32).is_ok());
+    // 2 ∫ x² … = 1.6, 1.2, 0.8: |2 Jxy| up to √(1.6·1.2) = 1.386, and the determinant beside.
+    let skewed = |[jxy, jyz, jxz]: [f64; 3]| refused(Skewed { Jxy: jxy, Jyz: jyz, Jxz: jxz });
+    for possible in [[0.69, 0.0, 0.0], [0.0, -0.48, 0.0], [-0.4, 0.3, 0.4], [0.4, -0.3, 0.4]] {
+        assert_eq!(skewed(possible), None, "{possible:?}");
+    }
+    for (wrong, what) in [
+        ([0.7, 0.0, 0.0], "a minor of the second moments"),
+        ([0.0, -0.5, 0.0], "a minor of the second moments"),
+        ([0.4, 0.3, 0.3], "the determinant of the second moments"),
+        ([-0.4, -0.3, 0.3], "the determinant of the second moments"),
+    ] {
+        let failure = skewed(wrong).expect("no body");
+        let Failure::Negative { name, .. } = failure else { panic!("{failure}") };
+        assert!(name.ends_with(what), "{wrong:?}: {name}");
+    }
 }

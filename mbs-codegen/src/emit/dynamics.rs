@@ -7,7 +7,7 @@ use quote::{quote, quote_spanned};
 
 use super::functions::{array, body, matrix};
 use super::scope::Scope;
-use crate::equations::{Dynamics, Equations, Slope};
+use crate::equations::{Dynamics, Equations, Of, Slope};
 use crate::model::Model;
 use crate::model::dynamics::Dynamics as Declared;
 use crate::program::{DynamicsProgram, Program};
@@ -119,10 +119,18 @@ fn signed(
         return TokenStream::new();
     };
     let entries = dynamics.signed.iter().filter_map(|signed| {
-        let value = declared.signed.get(signed.index)?;
-        let name = format!("{}.{}", value.of, value.field);
+        let (name, span) = match signed.of {
+            Of::Field(index) => {
+                let value = declared.signed.get(index)?;
+                (format!("{}.{}", value.of, value.field), value.span)
+            }
+            Of::Inertia(index, condition) => {
+                let inertia = declared.inertias.get(index)?;
+                (format!("{}.inertia, {}", inertia.of, condition.name()), inertia.span)
+            }
+        };
         let parameter = model.variables.get(usize::try_from(signed.parameter).ok()?)?.name.as_str();
-        let line = quote_spanned!(value.span=> ::core::line!());
+        let line = quote_spanned!(span=> ::core::line!());
         Some(quote! { #runtime::Signed { name: #name, line: #line, parameter: #parameter } })
     });
     let values = array(dynamics.signed.iter().map(|signed| Some(signed.node)), early);

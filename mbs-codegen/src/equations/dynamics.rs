@@ -4,7 +4,8 @@ use super::carried;
 use super::forces::{self, Acting, Sum};
 use super::lower::Clock;
 use super::pins::{Attribution, Undetermined};
-use super::signed::{Signed, signed};
+use super::second_moments::second_moments;
+use super::signed::{Of, Signed, signed};
 use super::{Row, again, jacobian};
 use crate::model::dynamics::{Body, Dynamics as Declared, Rotation};
 use crate::model::expression::Id;
@@ -154,6 +155,16 @@ pub fn derive(
     let columns = transposed(rows, count);
     let reaction = products(g, &columns, Leaf::Multiplier);
     let reaction_q = hessian(g, &reaction);
+    let mut bounded: Vec<(Of, NodeId)> = Vec::new();
+    bounded.extend(
+        declared.signed.iter().enumerate().map(|(index, signed)| (Of::Field(index), of(signed.value))),
+    );
+    for (index, inertia) in declared.inertias.iter().enumerate() {
+        let entries: Vec<_> =
+            inertia.entries.iter().map(|(row, column, id)| (*row, *column, of(*id))).collect();
+        let conditions = second_moments(g, &entries).into_iter();
+        bounded.extend(conditions.map(|(condition, node)| (Of::Inertia(index, condition), node)));
+    }
     let start = |rates: &[(usize, Id)], index: usize| {
         rates.iter().find(|(coordinate, _)| *coordinate == index).map(|(_, rate)| of(*rate))
     };
@@ -175,7 +186,7 @@ pub fn derive(
         slopes,
         start_states: declared.states.iter().map(|state| state.start.map(of)).collect(),
         start_rates: (0..count).map(|index| start(&declared.rates, index)).collect(),
-        signed: signed(g, declared.signed.iter().map(|signed| of(signed.value))),
+        signed: signed(g, bounded.into_iter()),
         loads: declared.loads.iter().map(|load| of(load.value)).collect(),
         not_quadratic,
         acting,

@@ -13,6 +13,7 @@ mod joints;
 mod lower;
 mod manifold;
 pub mod pins;
+mod second_moments;
 mod signed;
 mod turning;
 pub mod turns;
@@ -25,6 +26,7 @@ pub use dynamics::{Dynamics, Slope, Sparse};
 use lower::Lowered;
 pub use lower::MARGIN;
 pub use pins::{Attribution, On};
+pub use signed::Of;
 
 /// One graph and its roots. `None` is a structural zero.
 #[derive(Debug)]

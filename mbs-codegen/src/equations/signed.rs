@@ -2,13 +2,23 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::second_moments::Condition;
 use crate::symbolic::{Graph, Leaf, Node, NodeId, Stage};
+
+/// What a value that is at least 0 is of.
+#[derive(Clone, Copy, Debug)]
+pub enum Of {
+    /// The model's signed value of this index, the first of those that are one node.
+    Field(usize),
+    /// The model's inertia in space of this index, by this condition.
+    Inertia(usize, Condition),
+}
 
 /// A value of parameters alone that is at least 0.
 #[derive(Clone, Copy, Debug)]
 pub struct Signed {
-    /// Which of the model's signed values it is, the first of those that are one node.
-    pub index: usize,
+    /// What it is of.
+    pub of: Of,
     /// The value.
     pub node: NodeId,
     /// The first parameter that it is made of.
@@ -17,9 +27,9 @@ pub struct Signed {
 
 /// Before: the signed values of a model as nodes. After: those that parameters alone decide about, each node once; numbers are
 /// judged already, and what else they are made of may change their sign on the way.
-pub fn signed(graph: &Graph, values: impl Iterator<Item = NodeId>) -> Vec<Signed> {
+pub fn signed(graph: &Graph, values: impl Iterator<Item = (Of, NodeId)>) -> Vec<Signed> {
     let mut known = BTreeSet::new();
-    let mut candidates: Vec<(usize, NodeId)> = values.enumerate().collect();
+    let mut candidates: Vec<(Of, NodeId)> = values.collect();
     candidates.retain(|(_, node)| graph.stage(*node) == Stage::Parameter && known.insert(*node));
     let mut parameters = BTreeMap::new();
     for id in graph.reachable(known) {
@@ -31,7 +41,5 @@ pub fn signed(graph: &Graph, values: impl Iterator<Item = NodeId>) -> Vec<Signed
         parameters.extend(own.map(|own| (id, own)));
     }
     let found = candidates.into_iter();
-    found
-        .filter_map(|(index, node)| Some(Signed { index, node, parameter: *parameters.get(&node)? }))
-        .collect()
+    found.filter_map(|(of, node)| Some(Signed { of, node, parameter: *parameters.get(&node)? })).collect()
 }
