@@ -1,6 +1,6 @@
 //! What implicit methods share: the tangent of the equations of motion, and the end of their iterations.
 
-use super::integrals::Integrals;
+use super::integrals::IntegralsOf;
 use super::model::Model;
 use super::motion::Instant;
 use super::vector::{State, Vector};
@@ -48,7 +48,7 @@ impl<R: Real, const N: usize> Tangent<R, N> {
         position: &S::Position,
         y: &State<R, N, S::States>,
         lambda: &[R; M],
-    ) -> (Self, Option<Integrals<S::StateSlopes, S::States>>) {
+    ) -> (Self, IntegralsOf<S, R, N, M>) {
         let mut tangent = Tangent::of(model, position, y, &[R::constant(0.0); N], lambda);
         let integrals = model.add_following_states(position, y, lambda, &mut tangent.stiffness);
         (tangent, integrals)

@@ -29,6 +29,10 @@ pub(super) struct Integrals<P, Z> {
     rates: Z,
 }
 
+/// Those of a mechanism of type `S`; none where its text has no first-order states.
+pub(super) type IntegralsOf<S, R, const N: usize, const M: usize> =
+    Option<Integrals<<S as Dynamic<R, N, M>>::StateSlopes, <S as Dynamic<R, N, M>>::States>>;
+
 impl<P, Z> Integrals<P, Z> {
     /// Before: ∂Q/∂z in `forces`; rows of ż eliminated for the states in `column_of`, with their right sides, in `rows` and `rates`;
     /// the stiffness of all other forces. After: a row that is left for each state that is left.

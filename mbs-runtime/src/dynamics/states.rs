@@ -1,6 +1,6 @@
 //! First-order states beside the other unknowns: where they rest, and what they do to small motions.
 
-use super::integrals::Integrals;
+use super::integrals::{Integrals, IntegralsOf};
 use super::metric::{Metric, worse};
 use super::model::Model;
 use super::vector::State;
@@ -106,7 +106,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         y: &State<R, N, S::States>,
         lambda: &[R; M],
         stiffness: &mut [[R; N]; N],
-    ) -> Option<Integrals<S::StateSlopes, S::States>> {
+    ) -> IntegralsOf<S, R, N, M> {
         let slopes = self.mechanism.state_slopes(self.parameters, position, &y.qd, &y.states, lambda);
         let (forces, mut slopes) = (slopes?, slopes?);
         let mut rates = self.mechanism.state_rates(self.parameters, position, &y.qd, &y.states, lambda);
