@@ -6,7 +6,7 @@
 
 use core::cell::Cell;
 
-use crate::{Block, Factorization, Margin, Scalar};
+use crate::{Block, Factorization, Scalar};
 
 /// A part of a long function. It never becomes one with what calls it, whose length would be that of all parts.
 #[inline(never)]
@@ -123,18 +123,34 @@ pub struct Place<const K: usize, const M: usize = K> {
     pub angles: [bool; K],
 }
 
+/// The share that blocks of a kind have of the metric.
+#[derive(Clone, Copy, Debug)]
+pub enum Metric<'a, T, const K: usize, const M: usize = K> {
+    /// Scales of the rows and of the coordinates of a block, the same in all: what is divided by them is once.
+    Shared([T; M], [T; K]),
+    /// Scales of all rows and all coordinates, from which each block takes its own.
+    Whole(&'a [T], &'a [T]),
+}
+
 impl<const K: usize, const M: usize> Place<K, M> {
-    /// The block with its share of the metric of all `rows` and all `coordinates`.
+    /// The block with its share of the metric.
     #[inline(always)]
-    pub fn block<T: Scalar>(&self, rows: &[T], coordinates: &[T]) -> Block<T, K, M> {
+    pub fn block<T: Scalar>(&self, metric: &Metric<'_, T, K, M>) -> Block<T, K, M> {
         let one = T::constant(1.0);
         let scale = |scales: &[T], index: u16| scales.get(usize::from(index)).map_or(one, |scale| *scale);
+        let (row_scales, coordinate_scales) = match *metric {
+            Metric::Shared(rows, coordinates) => (rows, coordinates),
+            Metric::Whole(rows, coordinates) => (
+                self.rows.map(|row| scale(rows, row)),
+                self.coordinates.map(|coordinate| scale(coordinates, coordinate)),
+            ),
+        };
         Block {
             rows: self.rows,
             coordinates: self.coordinates,
             angles: self.angles,
-            row_scales: self.rows.map(|row| scale(rows, row)),
-            coordinate_scales: self.coordinates.map(|coordinate| scale(coordinates, coordinate)),
+            row_scales,
+            coordinate_scales,
         }
     }
 
@@ -162,40 +178,6 @@ pub fn unfactorized<T: Scalar, F: Factorization<T, K>, const K: usize, const B: 
     let zero = T::constant(0.0);
     [F::factorize(&[[zero; K]; K], &[zero; K], &[zero; K]).0; B]
 }
-
-/// `factors` of all diagonal blocks of a kind, and what they make of the `margin` of the blocks before.
-///
-/// `places` and `tables` (index of each entry of a block among `entries`; [`NONE`] where it is zero): one a block.
-/// `rows` and `coordinates`: the metric of all rows and all coordinates.
-#[inline(never)]
-pub fn factorized<T: Scalar, F: Factorization<T, K>, const K: usize>(
-    places: &[Place<K, K>],
-    tables: &[[[u32; K]; K]],
-    entries: &[T],
-    (rows, coordinates): (&[T], &[T]),
-    mut margin: Margin<T>,
-    factors: &mut [F],
-) -> Margin<T> {
-    let zero = T::constant(0.0);
-    for ((factors, place), table) in factors.iter_mut().zip(places).zip(tables) {
-        let mut matrix = [[zero; K]; K];
-        for (row, indices) in matrix.iter_mut().zip(table) {
-            for (entry, index) in row.iter_mut().zip(indices) {
-                *entry = entries.get(*index as usize).map_or(zero, |entry| *entry);
-            }
-        }
-        let Block { row_scales, coordinate_scales, .. } = place.block(rows, coordinates);
-        let (found, value) = F::factorize(&matrix, &row_scales, &coordinate_scales);
-        let [row, coordinate] =
-            [place.rows, place.coordinates].map(|all| all.first().map_or(0, |first| *first));
-        margin = margin.with_block(value, row, coordinate).oriented(found.reverses());
-        *factors = found;
-    }
-    margin
-}
-
-/// The index of no entry.
-pub const NONE: u32 = u32::MAX;
 
 /// Entries at their places, row and column, among zeros.
 #[inline]

@@ -439,6 +439,13 @@ impl<T: Scalar> Margin<T> {
         }
     }
 
+    /// Becomes the smaller one of this margin and that of a block with its first row and coordinate (indices below 65 536), and takes
+    /// up the sign of its determinant: negative where `reverses`.
+    #[inline(always)]
+    pub fn take(&mut self, value: T, [row, coordinate]: [usize; 2], reverses: T::Mask) {
+        *self = self.with_block(value, row as u16, coordinate as u16).oriented(reverses);
+    }
+
     /// Index of the first row of the block, of lane `lane`.
     pub fn row(&self, lane: usize) -> u16 {
         index(self.row, lane)

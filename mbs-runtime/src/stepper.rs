@@ -43,7 +43,7 @@ pub(crate) struct State<R, const N: usize> {
     orientation: u64,
     /// Singular positions passed since the assembly.
     passages: u32,
-    /// The last position outside the singular zone.
+    /// The last position outside the singular zone, where `q` is within it; see [`last_regular`](Self::last_regular).
     pub(crate) regular: [R; N],
     /// The Newton step that is still to be made, where the position does not close.
     pub(crate) repair: Option<[R; N]>,
@@ -200,7 +200,7 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
     /// The state where the way of the drivers ends, for a position so far from its prediction that it may be in another
     /// assembly; `None` where no way is found.
     fn along_the_way(&self, first: Statistics, t: R) -> Option<State<R, N>> {
-        let end = self.way(t).end(&self.state.regular)?;
+        let end = self.way(t).end(self.state.last_regular())?;
         let (q, position, second) = solve_with_position(&self.mechanism, &self.parameters, &end, t).ok()?;
         let evaluations = first.evaluations.saturating_add(second.evaluations);
         let statistics = Statistics { evaluations, fallback: true, ..second };
@@ -338,7 +338,7 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
         let predicted = match state.is_regular() && !self.changed {
             true => self.repaired(self.extrapolated(t - state.t)),
             // Where two paths cross it is the one that the mechanism came on.
-            false => self.way(t).predicted(&state.regular, &[R::constant(0.0); M]),
+            false => self.way(t).predicted(state.last_regular(), &[R::constant(0.0); M]),
         };
         // A jump in time that overflows the prediction is left to the solver, from where the mechanism stands.
         if predicted.iter().fold(true, |all, coordinate| all & coordinate.is_finite()) {
@@ -418,13 +418,11 @@ impl<R: Real, const N: usize> State<R, N> {
         if t != self.t {
             self.drift = Drift { change: margin - self.margin, time: t - self.t };
         }
+        self.regular = *self.last_regular();
         (self.t, self.q, self.qd, self.qdd) = (t, q, qd, qdd);
         (self.margin, self.orientation, self.repair) = (margin, orientation, repair);
         self.statistics = Statistics { passed, ..statistics };
         self.passages = self.passages.saturating_add(u32::from(passed));
-        if self.is_regular() {
-            self.regular = q;
-        }
     }
 
     /// Becomes the state that a plain step came to. What it cost: read out of the state it would have to wait for the memory.
@@ -435,7 +433,7 @@ impl<R: Real, const N: usize> State<R, N> {
             self.drift = Drift { change: trial.margin - self.margin, time: t - self.t };
         }
         (self.t, self.q, self.qd, self.qdd) = (t, trial.q, trial.qd, trial.qdd);
-        (self.margin, self.orientation, self.regular) = (trial.margin, trial.orientation(0), trial.q);
+        (self.margin, self.orientation) = (trial.margin, trial.orientation(0));
         let statistics = trial.statistics(0, passed);
         self.statistics = statistics;
         self.passages = self.passages.saturating_add(u32::from(passed));
@@ -444,16 +442,21 @@ impl<R: Real, const N: usize> State<R, N> {
 
     /// Puts time, position, velocity and acceleration with their margin in place, as another keeper of the state has them.
     pub(crate) fn set(&mut self, (t, q, qd, qdd): (R, [R; N], [R; N], [R; N]), margin: R) {
+        self.regular = *self.last_regular();
         (self.t, self.q, self.qd, self.qdd, self.margin) = (t, q, qd, qdd, margin);
-        if self.is_regular() {
-            self.regular = q;
-        }
     }
 
     /// Puts in place what that keeper has noted of the last step, and of all.
     pub(crate) fn note(&mut self, drift: Drift<R>, statistics: Statistics, passages: u32, orientation: u64) {
         (self.drift, self.statistics) = (drift, statistics);
         (self.passages, self.orientation) = (passages, orientation);
+    }
+
+    /// The last position outside the singular zone. A plain step, which goes from one such position to another, has not written
+    /// it twice.
+    #[inline(always)]
+    fn last_regular(&self) -> &[R; N] {
+        if self.is_regular() { &self.q } else { &self.regular }
     }
 
     /// Whether the state is outside the singular zone.

@@ -1,5 +1,7 @@
 //! A step as it goes next to a regular position: straight on, with one decision at the end.
 
+use core::array::from_fn;
+
 use crate::diagnosis::index;
 use crate::instant::REGULAR_ZONE;
 use crate::kinematics::COARSEST_RESOLUTION;
@@ -59,10 +61,11 @@ impl<T: Scalar, const N: usize> Trial<T, N> {
         let prediction = start.predicted(t, &scales);
         let mut solver = Plain::new(lanes);
         let mut q = prediction;
-        let (_, position) = mechanism.solve_with_position(parameters, &mut q, t, &mut solver);
-        let (factors, margin) = mechanism.factorize(parameters, &position);
-        let qd = mechanism.solve_linear(&factors, &negated(mechanism.phi_t(parameters, &position)));
-        let qdd = mechanism.solve_linear(&factors, &mechanism.gamma(parameters, &position, &qd));
+        // By reference: what is long would be moved out of the pairs.
+        let (_, position) = &mechanism.solve_with_position(parameters, &mut q, t, &mut solver);
+        let (factors, margin) = &mechanism.factorize(parameters, position);
+        let qd = mechanism.solve_linear(factors, &negated(mechanism.phi_t(parameters, position)));
+        let qdd = mechanism.solve_linear(factors, &mechanism.gamma(parameters, position, &qd));
         let (correction, size) = way_and_size(&q, &prediction, start.weights);
         let sum = sum_of_rates(&qd, &qdd);
         let zone = T::constant(REGULAR_ZONE);
@@ -72,12 +75,12 @@ impl<T: Scalar, const N: usize> Trial<T, N> {
         plain = plain & correction.less(T::constant(LARGEST_APPROACH) * margin.value);
         plain = plain & size.less(T::constant(COARSEST_RESOLUTION / T::Real::EPSILON.to_f64()));
         plain = plain & sum.is_finite();
-        for (index, branch) in mechanism.branches(parameters, &position).as_ref().iter().enumerate() {
+        for (index, branch) in mechanism.branches(parameters, position).as_ref().iter().enumerate() {
             if !S::BRANCHES_AT_START.get(index).copied().unwrap_or(false) {
                 plain = plain & T::constant(0.0).less(*branch);
             }
         }
-        for limit in mechanism.limits(parameters, &position).as_ref() {
+        for limit in mechanism.limits(parameters, position).as_ref() {
             plain = plain & limit.low.less(limit.value) & limit.value.less(limit.high);
         }
         Trial {
@@ -138,7 +141,8 @@ impl<T: Scalar, const N: usize> Start<'_, T, N> {
             let alone = size_of::<T>() == size_of::<T::Real>();
             let looked_at = if alone { second + T::constant(0.0) * first } else { second };
             if !T::all(trusted(looked_at, *scale)) {
-                return carefully_predicted((self.q, self.qd, self.qdd), h, scales);
+                predicted = carefully_predicted((self.q, self.qd, self.qdd), h, scales);
+                break;
             }
             *coordinate = first + second;
         }
@@ -170,34 +174,28 @@ fn carefully_predicted<T: Scalar, const N: usize>(
 /// The largest way of a coordinate from its prediction, and the sum of the coordinates' sizes, in the reference metric.
 #[inline(always)]
 fn way_and_size<T: Scalar, const N: usize>(q: &[T; N], predicted: &[T; N], weights: &[T; N]) -> (T, T) {
-    let places = q.iter().zip(predicted).zip(weights);
     if T::LANES > 1 {
+        let places = q.iter().zip(predicted).zip(weights);
         // Straight away: the sum that each coordinate waits for keeps its lanes together.
         let start = (T::constant(0.0), T::constant(0.0));
         return places.fold(start, |(way, size), ((place, predicted), weight)| {
             (way.max(((*place - *predicted) * *weight).abs()), size + place.abs() * *weight)
         });
     }
-    let (mut ways, mut sizes) = (*q, *q);
-    for (((way, size), predicted), weight) in ways.iter_mut().zip(&mut sizes).zip(predicted).zip(weights) {
-        *way = ((*way - *predicted) * *weight).abs();
-        *size = size.abs() * *weight;
-    }
+    let ways: [T; N] = from_fn(|index| ((q[index] - predicted[index]) * weights[index]).abs());
+    let sizes: [T; N] = from_fn(|index| q[index].abs() * weights[index]);
     (in_four_parts(&ways, T::max), in_four_parts(&sizes, T::add))
 }
 
 /// The sum of all velocities and accelerations: finite where they are.
 #[inline(always)]
 fn sum_of_rates<T: Scalar, const N: usize>(qd: &[T; N], qdd: &[T; N]) -> T {
-    let rates = qd.iter().zip(qdd);
     if T::LANES > 1 {
+        let rates = qd.iter().zip(qdd);
         // As in [`way_and_size`].
         return rates.fold(T::constant(0.0), |sum, (rate, change)| sum + (*rate + *change));
     }
-    let mut changes = *qd;
-    for (rate, change) in changes.iter_mut().zip(qdd) {
-        *rate = *rate + *change;
-    }
+    let changes: [T; N] = from_fn(|index| qd[index] + qdd[index]);
     in_four_parts(&changes, T::add)
 }
 
@@ -205,9 +203,11 @@ fn sum_of_rates<T: Scalar, const N: usize>(qd: &[T; N], qdd: &[T; N]) -> T {
 #[inline(always)]
 fn in_four_parts<T: Scalar, const N: usize>(values: &[T; N], operation: impl Fn(T, T) -> T) -> T {
     let mut parts = [T::constant(0.0); 4];
-    for (index, value) in values.iter().enumerate() {
-        parts[index % 4] = operation(parts[index % 4], *value);
+    let (fours, rest) = values.as_chunks::<4>();
+    for four in fours {
+        parts.iter_mut().zip(four).for_each(|(part, value)| *part = operation(*part, *value));
     }
+    parts.iter_mut().zip(rest).for_each(|(part, value)| *part = operation(*part, *value));
     let [a, b, c, d] = parts;
     operation(operation(a, b), operation(c, d))
 }

@@ -113,7 +113,7 @@ pub fn bodies(
     let linear = linear::linear(equations, program, (&scope, &eliminations), independent, is_long);
     let position = kept(&program.position, &early, "__Position");
     let parts = (is_long || long::has_many_blocks(program, lengths))
-        .then(|| long::solve(program, &eliminations, &early));
+        .then(|| long::solve(equations, program, &eliminations, &early));
     let (solve_with_position, solve_blocks) = match &parts {
         Some(parts) if is_long => (parts.body.clone(), None),
         Some(parts) => (

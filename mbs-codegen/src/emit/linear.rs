@@ -6,6 +6,7 @@ use std::fmt::Write;
 use super::blocks::list;
 use super::code::{bind, lets};
 use super::elimination::Eliminations;
+use super::factorization::{Factorizations, Rounds};
 use super::given;
 use super::long::{self, Kind};
 use super::scope::{Scope, number};
@@ -43,7 +44,7 @@ pub fn linear(
     let asked = given::blocks(equations, program, scope.model);
     let kinds = if long { long::kinds(program) } else { BTreeMap::new() };
     let of_kinds = if long { long::factors(program, eliminations) } else { BTreeMap::new() };
-    let mut tables = Tables::default();
+    let mut rounds = Factorizations::default();
     let (mut diagonals, mut places) = (Vec::new(), Vec::new());
     for (index, block) in program.blocks.iter().enumerate() {
         let (mut place, size) = (format!("block{index}"), block.rows.len());
@@ -54,7 +55,7 @@ pub fn linear(
             match kinds.get(&kind).filter(|_| !asked && !block.has_surplus()) {
                 Some(number) => {
                     factors = of_kinds.get(&kind).cloned().unwrap_or(factors);
-                    place = tables.add(*number, block, (&factors, &entries));
+                    place = rounds.add(*number, block, (&factors, &entries));
                 }
                 None => {
                     diagonals.push(diagonal(equations, block, system, &entries, (index, asked, &factors)))
@@ -63,10 +64,12 @@ pub fn linear(
         }
         places.push((place, factors));
     }
-    let (factors, factorize) = in_one(&diagonals, &tables, program, &entries);
+    let rounds = rounds.print(&entries);
+    let (factors, factorize) = in_one(&diagonals, &rounds, program, &entries);
     if long {
         let Substitution { solve, complete, reduce, methods } =
             substitution(program, &places, independent, &entries);
+        let methods = rounds.methods + &methods;
         return Linear { factors, factorize, solve, complete, reduce, methods };
     }
     let n = scope.model.coordinates.len();
@@ -142,46 +145,14 @@ fn diagonal(
     Diagonal { index, kind, text, asked }
 }
 
-/// Blocks of a kind that are factorised in one loop.
-#[derive(Default)]
-struct Tables(BTreeMap<usize, Table>);
-
-#[derive(Default)]
-struct Table {
-    size: usize,
-    /// Type of the factors.
-    factors: String,
-    /// Where each entry of each block stands among the entries of Φ_q.
-    indices: Vec<String>,
-    /// Where each block stands.
-    places: Vec<String>,
-}
-
-impl Tables {
-    /// Adds a block of this kind; its place among the factors.
-    fn add(&mut self, kind: usize, block: &BlockProgram, (factors, entries): (&str, &Entries<'_>)) -> String {
-        let table = self.0.entry(kind).or_default();
-        table.size = block.rows.len();
-        table.factors = factors.to_owned();
-        let index = |(row, column): (usize, usize)| match entries.places.get(&(row, column)) {
-            Some(index) => index.to_string(),
-            None => "__mbs::long::NONE".into(),
-        };
-        let columns = |row: usize| list(block.coordinates.iter().map(|column| index((row, *column))));
-        table.indices.push(list(block.rows.iter().map(|row| columns(*row))));
-        table.places.push(long::place(block, entries.scope));
-        format!("kind{kind}[{}]", table.places.len() - 1)
-    }
-}
-
-/// Declaration and body: blocks of one kind in a loop, others a field each.
+/// Declaration and body: blocks of one kind as `rounds`, others a field each.
 fn in_one(
     diagonals: &[Diagonal],
-    tables: &Tables,
+    rounds: &Rounds,
     program: &Program,
     entries: &Entries<'_>,
 ) -> (String, String) {
-    let (mut fields, mut names) = (String::new(), String::new());
+    let (mut fields, mut names) = (rounds.fields.clone(), rounds.names.clone());
     let mut text = String::new();
     if entries.long {
         text += "let __entries = __mbs::Mechanism::phi_q_entries(self, __p, __s);\n";
@@ -189,23 +160,7 @@ fn in_one(
         lets(&program.phi_q, entries.scope, &mut text);
     }
     text += "let __margin = __mbs::Margin::<T>::regular();\n";
-    if !tables.0.is_empty() {
-        text += &long::scales(entries.scope.model);
-    }
-    for (kind, Table { size, factors, indices, places }) in &tables.0 {
-        let count = places.len();
-        let _ = writeln!(fields, "/// Diagonal blocks.\nkind{kind}: [{factors}; {count}],");
-        let _ = write!(names, "kind{kind}: __kind{kind}, ");
-        let (places, indices) = (list(places.iter().cloned()), list(indices.iter().cloned()));
-        let _ = writeln!(
-            text,
-            "const __PLACES{kind}: &[__mbs::long::Place<{size}, {size}>] = &{places};\n\
-             const __INDICES{kind}: &[[[::core::primitive::u32; {size}]; {size}]] = &{indices};\n\
-             let mut __kind{kind} = __mbs::long::unfactorized::<T, {factors}, {size}, {count}>();\n\
-             let __margin = __mbs::long::factorized::<T, {factors}, {size}>(__PLACES{kind}, __INDICES{kind}, \
-             &__entries, (&__row_scales, &__coordinate_scales), __margin, &mut __kind{kind});"
-        );
-    }
+    text += &rounds.body;
     for Diagonal { index, kind, text: factorize, asked } in diagonals {
         let _ = writeln!(fields, "/// Diagonal block {index}.\nblock{index}: {kind},");
         let _ = write!(names, "block{index}: __block{index}, ");
@@ -317,7 +272,7 @@ pub struct Entries<'a> {
     pub scope: &'a Scope<'a>,
     long: bool,
     /// Index of each entry, by row and column.
-    places: BTreeMap<(usize, usize), usize>,
+    pub places: BTreeMap<(usize, usize), usize>,
     /// Rows and entries of each column.
     columns: BTreeMap<usize, Vec<(usize, NodeId)>>,
     /// Where those that factors keep stand among them.

@@ -10,6 +10,7 @@ use super::lengths::Lengths;
 use super::parts::{Frame, Parts};
 use super::scope::{Scope, number as number_of};
 use super::statement::Statement;
+use crate::equations::Equations;
 use crate::model::Model;
 use crate::program::{BlockProgram, Line, Method, Program, System};
 use crate::symbolic::NodeId;
@@ -74,10 +75,20 @@ impl Kind {
 }
 
 /// Before: a long program. After: the solution of Φ = 0 with the position stage of its values.
-pub fn solve(program: &Program, eliminations: &Eliminations, scope: &Scope<'_>) -> Solution {
-    let segments = segments(program);
-    let emission =
-        Emission { scope, program, segments, kinds: kinds(program), factors: factors(program, eliminations) };
+pub fn solve(
+    equations: &Equations,
+    program: &Program,
+    eliminations: &Eliminations,
+    scope: &Scope<'_>,
+) -> Solution {
+    let emission = Emission {
+        scope,
+        program,
+        segments: segments(program),
+        kinds: kinds(program),
+        factors: factors(program, eliminations),
+        metrics: metrics(program, equations),
+    };
     let fields = &program.position.fields;
     let mut parts = Parts::new(fields.clone(), fields.len(), scope.lengths);
     emission.before(&mut parts);
@@ -120,7 +131,7 @@ pub fn factors(program: &Program, eliminations: &Eliminations) -> BTreeMap<Kind,
 }
 
 /// `Place { … }` of a block.
-pub fn place(block: &BlockProgram, scope: &Scope<'_>) -> String {
+fn place(block: &BlockProgram, scope: &Scope<'_>) -> String {
     let is_angle =
         |c: &usize| scope.model.coordinates.get(*c).is_some_and(|coordinate| coordinate.unit == "rad");
     format!(
@@ -131,6 +142,12 @@ pub fn place(block: &BlockProgram, scope: &Scope<'_>) -> String {
     )
 }
 
+/// Whether the reference metric is made of numbers alone.
+pub fn is_in_numbers(equations: &Equations) -> bool {
+    let mut scales = equations.row_scales.iter().chain(&equations.coordinate_scales);
+    scales.all(|scale| equations.graph.constant_value(*scale).is_some())
+}
+
 /// `let`s of the reference metric.
 pub fn scales(model: &Model) -> String {
     let (n, m) = (model.coordinates.len(), model.rows.len());
@@ -138,6 +155,34 @@ pub fn scales(model: &Model) -> String {
         "let __coordinate_scales: [T; {n}] = __mbs::Mechanism::coordinate_scales(self, __p);\n\
          let __row_scales: [T; {m}] = __mbs::Mechanism::row_scales(self, __p);\n"
     )
+}
+
+/// A metric whose blocks differ.
+const WHOLE_METRIC: &str = "__mbs::long::Metric::Whole(&__row_scales, &__coordinate_scales)";
+
+/// `Metric::…` of each kind: numbers where all blocks of a kind have the same ones.
+fn metrics(program: &Program, equations: &Equations) -> BTreeMap<Kind, String> {
+    let scale = |scales: &[NodeId], index: &usize| equations.graph.constant_value(*scales.get(*index)?);
+    let scales = |all: &[NodeId], of: &[usize]| {
+        Some(list(
+            of.iter().map(|index| scale(all, index).map(number_of)).collect::<Option<Vec<_>>>()?.into_iter(),
+        ))
+    };
+    let mut metrics: BTreeMap<Kind, String> = BTreeMap::new();
+    for block in &program.blocks {
+        if let Method::Newton(system) = &block.method {
+            let rows = scales(&equations.row_scales, &block.rows);
+            let coordinates = scales(&equations.coordinate_scales, &block.coordinates);
+            let own = rows.zip(coordinates).map_or(WHOLE_METRIC.to_owned(), |(rows, coordinates)| {
+                format!("__mbs::long::Metric::Shared({rows}, {coordinates})")
+            });
+            let of_kind = metrics.entry(Kind::of(block, system)).or_insert_with(|| own.clone());
+            if *of_kind != own {
+                *of_kind = WHOLE_METRIC.to_owned();
+            }
+        }
+    }
+    metrics
 }
 
 /// Body of `phi_q`: its entries, put in their places.
@@ -188,6 +233,7 @@ struct Emission<'a> {
     segments: Vec<Segment<'a>>,
     kinds: BTreeMap<Kind, usize>,
     factors: BTreeMap<Kind, String>,
+    metrics: BTreeMap<Kind, String>,
 }
 
 impl Emission<'_> {
@@ -312,7 +358,9 @@ impl Emission<'_> {
             "let __v = &__mbs::long::Passed::<T, {passed}>::none();\n\
              let mut __outcome = T::per_lane(|_| __mbs::Outcome::Converged);\n"
         );
-        text += &scales(self.scope.model);
+        if self.metrics.values().any(|metric| metric == WHOLE_METRIC) {
+            text += &scales(self.scope.model);
+        }
         for (kind, number) in &self.kinds {
             text += &self.places(*kind, *number);
         }
@@ -369,6 +417,7 @@ impl Emission<'_> {
     fn solved(&self, kind: Kind, number: usize) -> String {
         let Kind { unknowns, rows, dyad, branched } = kind;
         let factors = self.factors.get(&kind).map_or("", String::as_str);
+        let metric = self.metrics.get(&kind).map_or(WHOLE_METRIC, String::as_str);
         let method = if rows > unknowns {
             format!("solve_redundant::<{unknowns}, {rows}>")
         } else if dyad {
@@ -396,7 +445,7 @@ impl Emission<'_> {
              let mut __evaluate = |__x: &[T; {unknowns}]| {{\n\
              __last.set(*__x);\nif __S::COPIED {{ {evaluate} }} else {{ {called} }}\n}};\n\
              let (__x, __block) = __solver.{method}(\
-             &__place.block(&__row_scales, &__coordinate_scales), __place.of(&*__q), &mut __evaluate{more});\n\
+             &__place.block(&{metric}), __place.of(&*__q), &mut __evaluate{more});\n\
              if !__S::COPIED && !__mbs::mechanism::is_same(&__last.get(), &__x) {{ __evaluate(&__x); }}\n\
              __place.put(&__x, __q);\n__block\n"
         )

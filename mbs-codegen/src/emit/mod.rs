@@ -8,6 +8,7 @@ mod code;
 mod docs;
 mod dynamics;
 mod elimination;
+mod factorization;
 pub mod formula;
 mod functions;
 mod generics;
