@@ -368,22 +368,25 @@ impl Emission<'_> {
             self.kinds.iter().map(|(kind, number)| (number.to_string(), self.solved(*kind, *number)));
         let mut choice: Vec<(String, String)> = choice.collect();
         choice.push((String::new(), "continue".into()));
-        let kind_of = |segment: &Segment<'_>| {
+        // Twice the number of its kind, and 1 where something stands before the block: it seldom does.
+        let segment_of = |segment: &Segment<'_>| {
             let kind = segment.newton.and_then(|(block, system)| self.kinds.get(&Kind::of(block, system)));
-            kind.copied().unwrap_or(self.kinds.len()).to_string()
+            let kind = kind.copied().unwrap_or(self.kinds.len());
+            (2 * kind + usize::from(!segment.steps.is_empty())).to_string()
         };
-        let kinds = list(self.segments.iter().map(kind_of));
+        let segments = list(self.segments.iter().map(segment_of));
         let call = "self.__before(__s, __p, __q, __t, __v);";
         if self.kinds.is_empty() {
             let _ = writeln!(text, "for __s in 0..{} {{ {call} }}", self.segments.len());
         } else {
             let _ = writeln!(
                 text,
-                "const __KINDS: &[::core::primitive::u16] = &{kinds};\n\
-                 for (__s, __kind) in __KINDS.iter().enumerate() {{\n{call}\n\
+                "const __SEGMENTS: &[::core::primitive::u16] = &{segments};\n\
+                 for (__s, __segment) in __SEGMENTS.iter().enumerate() {{\n\
+                 if __segment % 2 == 1 {{ {call} }}\n\
                  let __block = {};\n\
                  __outcome = __mbs::failure::first_failure::<T>(__outcome, __block);\n}}",
-                selected("__kind", choice)
+                selected("__segment / 2", choice)
             );
         }
         text += rest;

@@ -23,8 +23,24 @@ use released::{NFourBar10, NFourBar40, Squeezer};
 use texts::{Andrews, Chain10, Chain40, FourBar};
 
 chain! {
-    /// A hundred loops: each step goes through their blocks in a loop.
+    /// One loop.
+    Chain1, 1
+}
+chain! {
+    /// As many blocks as are straight-line code.
+    Chain47, 47
+}
+chain! {
+    /// One more: each step goes through its blocks in a loop.
+    Chain48, 48
+}
+chain! {
+    /// A hundred loops.
     Chain100, 100
+}
+chain! {
+    /// As many as the language is tested with.
+    Chain200, 200
 }
 
 /// Time of a step (s).
@@ -35,17 +51,21 @@ const LANES: usize = 8;
 /// A work by name, done so many times.
 type Work = (&'static str, fn(u32));
 
-const WORKS: [Work; 13] = [
+const WORKS: [Work; 17] = [
     ("evaluate_four_bar", evaluate::<FourBar, 5>),
     ("evaluate_andrews", evaluate::<Andrews, 7>),
     ("evaluate_chain", evaluate::<Chain10, 22>),
     ("evaluate_four_bar_in_8_lanes", evaluate_lanes),
     ("step_four_bar", |count| steps(FourBar::default(), [0.0, 0.0, 0.0, 0.9, 1.8], count)),
     ("step_four_bar_in_8_lanes", |count| batch(FourBar::default(), [0.0, 0.0, 0.0, 0.9, 1.8], count)),
+    ("step_chain_of_1", |count| steps(Chain1::default(), upright(), count)),
     ("step_chain_of_10", |count| steps(Chain10::default(), upright(), count)),
     ("step_chain_of_10_in_8_lanes", |count| batch(Chain10::default(), upright(), count)),
     ("step_chain_of_40", |count| steps(Chain40::default(), upright(), count)),
+    ("step_chain_of_47", |count| steps(Chain47::default(), upright(), count)),
+    ("step_chain_of_48", |count| steps(Chain48::default(), upright(), count)),
     ("step_chain_of_100", |count| steps(Chain100::default(), upright(), count)),
+    ("step_chain_of_200", |count| steps(Chain200::default(), upright(), count)),
     ("rates_andrews", |count| rates::<Squeezer, 7, 6>(SQUEEZER, count)),
     ("rates_10_hanging_loops", |count| rates::<NFourBar10, 22, 21>(hanging(), count)),
     ("rates_40_hanging_loops", |count| rates::<NFourBar40, 82, 81>(hanging(), count)),
