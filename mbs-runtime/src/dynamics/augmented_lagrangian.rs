@@ -1,7 +1,7 @@
 //! Augmented Lagrangian of index 3 with projections: stiff and redundant mechanisms at coarse steps.
 
 use super::implicit::{MOST_ITERATIONS, Tangent, add};
-use super::kkt::{System, truncation};
+use super::kkt::{Factors, System, truncation};
 use super::metric::Metric;
 use super::model::{Counts, Formulation, Model, Solved};
 use super::motion::{Instant, Method};
@@ -25,6 +25,10 @@ const SLOW: f64 = 1e-5;
 /// α = 4·1e4 m/h² W², m the largest entry of the mass in the metric and W the reciprocals of the rows' scales: a fixed α fails
 /// for small steps. Redundant rows share their force and need no care. Order 2; first-order states by the trapezoidal
 /// rule within the same iteration.
+///
+/// The λ that holds the rows at a step's end makes up for the rule's own error there too, a third of what the accelerations change by
+/// in the step: it is of order 1. With what the projection of the accelerations takes, it is that of the state, of order 2; friction,
+/// first-order states, power and loads are given this one.
 /// Source: Bayo & Ledesma 1996; Cuadrado, Cardenal, Morer & Bayo 2004 for the projections with K and C.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct AugmentedLagrangian;
@@ -76,23 +80,24 @@ impl AugmentedLagrangian {
             (y.q, y.qd) = (start.q.plus(one, &[1.0], [&change]), qd);
             model.trapezoid(from, h, &mut y, &rate);
             let position = model.position(t, &y);
-            let tangent = Tangent::of(model, &position, &y, &qdd, &lambda);
-            let alpha = penalty(&tangent.mass, model.metric, quarter);
+            let penalized = Penalized::of(model, &position, (t, h), (&y, &qdd, &lambda))?;
             let phi = model.mechanism.phi(model.parameters, &position);
             let mut augmented = lambda;
             for (((augmented, lambda), alpha), phi) in
-                augmented.iter_mut().zip(&mut lambda).zip(&alpha).zip(&phi)
+                augmented.iter_mut().zip(&mut lambda).zip(&penalized.alpha).zip(&phi)
             {
                 // What the last correction left open, and the spring that closes it.
                 *lambda = if iteration == 0 { *lambda } else { *lambda + *alpha * *phi };
                 *augmented = *lambda + *alpha * *phi;
             }
-            rate = model.rates(&position, &y, qdd, &lambda);
-            let imbalance = model.imbalance(&position, &y, &qdd, &augmented);
-            let phi_q = model.mechanism.phi_q(model.parameters, &position);
-            let plain = tangent.combined(R::constant(1.0), R::constant(0.5) * h, quarter);
-            let factors = penalized(model, &plain, &phi_q, &alpha, quarter, t)?;
-            step = factors.solve(&imbalance, &[]).0.map(|step| step * quarter);
+            let mut bearing = augmented;
+            if S::FORCE_USES_MULTIPLIERS || !S::STATES.is_empty() {
+                let gamma = model.mechanism.gamma(model.parameters, &position, &y.qd);
+                bearing = augmented.plus(R::constant(1.0), &[1.0], [&penalized.put(&qdd, &gamma).1]);
+            }
+            rate = model.rates(&position, &y, qdd, &bearing);
+            let imbalance = model.imbalance(&position, &y, &qdd, (&augmented, &bearing));
+            step = penalized.factors.solve(&imbalance, &[]).0.map(|step| step * quarter);
             counts.iterations += 1;
             counts.evaluations += 1;
             change = change.plus(-one, &[1.0], [&step]);
@@ -132,55 +137,73 @@ fn penalty<R: Real, const N: usize, const M: usize>(
     metric.weights(mass).map(|weight| R::constant(PENALTY) * weight / quarter)
 }
 
-/// `plain` + h²/4 Φ_qᵀ α Φ_q, factorised.
-fn penalized<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
-    model: &Model<'_, S, R, N, M>,
-    plain: &[[R; N]; N],
-    phi_q: &[[R; N]; M],
-    alpha: &[R; M],
+/// A = W + h²/4 Φ_qᵀ α Φ_q with W = M + h/2 C + h²/4 K, factorised.
+struct Penalized<R, const N: usize, const M: usize> {
     quarter: R,
-    t: R,
-) -> Result<super::kkt::Factors<R, N, 0>, Failure> {
-    let mut matrix = *plain;
-    for (row, alpha) in phi_q.iter().zip(alpha) {
-        let outer = row.map(|a| row.map(|b| a * b));
-        add(&mut matrix, quarter * *alpha, &outer);
-    }
-    System::new(&matrix, &[], &model.metric.without_rows()).factorize_regular(S::COORDINATES, t)
+    alpha: [R; M],
+    phi_q: [[R; N]; M],
+    factors: Factors<R, N, 0>,
 }
 
-/// The end of a step: velocities and accelerations on the constraints, A q̇ = W q̇* − h²/4 Φ_qᵀ α Φ_t and
-/// A q̈ = W q̈* + h²/4 Φ_qᵀ α γ with W = M + h/2 C + h²/4 K and A = W + h²/4 Φ_qᵀ α Φ_q.
+impl<R: Real, const N: usize, const M: usize> Penalized<R, N, M> {
+    /// That of a step of `h` to `t` (s), about the state that it comes to with accelerations (N) and multipliers (M).
+    fn of<S: Dynamic<R, N, M>>(
+        model: &Model<'_, S, R, N, M>,
+        position: &S::Position,
+        (t, h): (R, R),
+        (y, qdd, lambda): (&State<R, N, S::States>, &[R; N], &[R; M]),
+    ) -> Result<Self, Failure> {
+        let quarter = R::constant(0.25) * h * h;
+        let tangent = Tangent::of(model, position, y, qdd, lambda);
+        let alpha = penalty(&tangent.mass, model.metric, quarter);
+        let phi_q = model.mechanism.phi_q(model.parameters, position);
+        let mut matrix = tangent.combined(R::constant(1.0), R::constant(0.5) * h, quarter);
+        for (row, alpha) in phi_q.iter().zip(&alpha) {
+            let outer = row.map(|a| row.map(|b| a * b));
+            add(&mut matrix, quarter * *alpha, &outer);
+        }
+        let system = System::new(&matrix, &[], &model.metric.without_rows());
+        let factors = system.factorize_regular(S::COORDINATES, t)?;
+        Ok(Penalized { quarter, alpha, phi_q, factors })
+    }
+
+    /// The rates next to `x` (N) with Φ_q x = `right` (M), A x' = W x + h²/4 Φ_qᵀ α `right`, and the multipliers h²/4 α (Φ_q x' −
+    /// `right`) that take them there: N and M.
+    fn put(&self, x: &[R; N], right: &[R; M]) -> ([R; N], [R; M]) {
+        let mut sum = [R::constant(0.0); N];
+        for ((row, alpha), right) in self.phi_q.iter().zip(&self.alpha).zip(right) {
+            let open = row.iter().zip(x).fold(*right, |open, (a, x)| open - *a * *x);
+            let weight = self.quarter * *alpha * open;
+            sum.iter_mut().zip(row).for_each(|(component, entry)| *component = *component + weight * *entry);
+        }
+        // Solved for what they change by: of the whole, the condition of A would cost a free turn eleven digits and one more a step.
+        let put = x.plus(R::constant(1.0), &[1.0], [&self.factors.solve(&sum, &[]).0]);
+        let mut multipliers = self.alpha;
+        for ((multiplier, row), right) in multipliers.iter_mut().zip(&self.phi_q).zip(right) {
+            let open = row.iter().zip(&put).fold(-*right, |sum, (entry, x)| sum + *entry * *x);
+            *multiplier = self.quarter * *multiplier * open;
+        }
+        (put, multipliers)
+    }
+}
+
+/// The end of a step: velocities and accelerations on the constraints, Φ_q q̇ = −Φ_t and Φ_q q̈ = γ, and the multipliers of both.
 fn projected<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     model: &Model<'_, S, R, N, M>,
     from: &Instant<R, N, M, S::States>,
     h: R,
     (mut y, qdd, lambda): (State<R, N, S::States>, [R; N], [R; M]),
 ) -> Result<Instant<R, N, M, S::States>, Failure> {
-    let (t, quarter) = (from.t + h, R::constant(0.25) * h * h);
+    let t = from.t + h;
     let position = model.position(t, &y);
     let (mechanism, parameters) = (model.mechanism, model.parameters);
-    let tangent = Tangent::of(model, &position, &y, &qdd, &lambda);
-    let alpha = penalty(&tangent.mass, model.metric, quarter);
-    let phi_q = mechanism.phi_q(parameters, &position);
-    let plain = tangent.combined(R::constant(1.0), R::constant(0.5) * h, quarter);
-    let factors = penalized(model, &plain, &phi_q, &alpha, quarter, t)?;
-    // Solved for what they change by: of the whole, the condition of A would cost a free turn eleven digits and one more a step.
-    let put = |x: &[R; N], right: &[R; M]| {
-        let mut sum = [R::constant(0.0); N];
-        for ((row, alpha), right) in phi_q.iter().zip(&alpha).zip(right) {
-            let open = row.iter().zip(x).fold(*right, |open, (a, x)| open - *a * *x);
-            let weight = quarter * *alpha * open;
-            sum.iter_mut().zip(row).for_each(|(component, entry)| *component = *component + weight * *entry);
-        }
-        x.plus(R::constant(1.0), &[1.0], [&factors.solve(&sum, &[]).0])
-    };
-    y.qd = put(&y.qd, &mechanism.phi_t(parameters, &position).map(|rate| -rate));
-    let qdd = put(&qdd, &mechanism.gamma(parameters, &position, &y.qd));
+    let penalized = Penalized::of(model, &position, (t, h), (&y, &qdd, &lambda))?;
+    y.qd = penalized.put(&y.qd, &mechanism.phi_t(parameters, &position).map(|rate| -rate)).0;
+    let (qdd, taken) = penalized.put(&qdd, &mechanism.gamma(parameters, &position, &y.qd));
+    let lambda = lambda.plus(R::constant(1.0), &[1.0], [&taken]);
     let rate = model.rates(&position, &y, qdd, &lambda);
     model.trapezoid(from, h, &mut y, &rate);
     let Metric { rows, coordinates, .. } = model.metric;
-    let solved =
-        Solved { rate, lambda, margin: margin_of_rows(&phi_q, rows, coordinates, truncation::<R>()) };
-    Ok(Instant { t, y, solved, carried: qdd })
+    let margin = margin_of_rows(&penalized.phi_q, rows, coordinates, truncation::<R>());
+    Ok(Instant { t, y, solved: Solved { rate, lambda, margin }, carried: qdd })
 }

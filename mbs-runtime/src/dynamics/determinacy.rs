@@ -30,7 +30,8 @@ pub struct Determinacy<R, const M: usize> {
 }
 
 impl<R: Real, const M: usize> Determinacy<R, M> {
-    /// That of `mechanism` at its `position`, by the decision that its accelerations are solved by.
+    /// That of `mechanism` at its `position`, by the decision that its accelerations are solved by; gradients of rows are measured by
+    /// those about the guess.
     ///
     /// Source: Wojtyra 2009 for what redundant rows leave determined.
     ///
@@ -42,9 +43,19 @@ impl<R: Real, const M: usize> Determinacy<R, M> {
         position: &S::Position,
         t: R,
     ) -> Result<Self, Failure> {
-        let metric = Metric::of(mechanism, parameters);
+        let metric = Metric::next_to(mechanism, parameters, t, &mechanism.guess(parameters));
+        Self::measured(mechanism, parameters, position, (t, &metric))
+    }
+
+    /// That of a position in a known metric.
+    pub(super) fn measured<S: Mechanism<R, N, M>, const N: usize>(
+        mechanism: &S,
+        parameters: &S::Parameters,
+        position: &S::Position,
+        (t, metric): (R, &Metric<R, N, M>),
+    ) -> Result<Self, Failure> {
         let phi_q = mechanism.phi_q(parameters, position);
-        let factors = System::new(&metric.mass(), &phi_q, &metric).factorize(S::COORDINATES, t)?;
+        let factors = System::new(&metric.mass(), &phi_q, metric).factorize(S::COORDINATES, t)?;
         Ok(Self::by(&factors, S::ROWS, S::REDUNDANT))
     }
 

@@ -74,7 +74,7 @@ pub fn equilibrium_with_states<S: Dynamic<R, N, M>, R: Real, const N: usize, con
         return Err(failure);
     }
     let parameters = mechanism.parameters();
-    let metric = Metric::of(mechanism, &parameters);
+    let metric = Metric::next_to(mechanism, &parameters, t, q);
     let model =
         Model { mechanism, parameters: &parameters, metric: &metric, balanced: false, rank_rises: false };
     let states = mechanism.start_states(&parameters);
@@ -143,7 +143,7 @@ fn correction<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     let position = model.position(t, y);
     let (tangent, integrals) = Tangent::at_rest(model, &position, y, lambda);
     let phi_q = mechanism.phi_q(parameters, &position);
-    let mut imbalance = model.imbalance(&position, y, &none, lambda);
+    let mut imbalance = model.imbalance(&position, y, &none, (lambda, lambda));
     if let Some(integrals) = &integrals {
         integrals.take_from(&mut imbalance);
     }
@@ -213,7 +213,7 @@ fn answer<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
 ) -> Result<Answer<R, N, M>, Failure> {
     let zero = R::constant(0.0);
     let (lambda, _) = balancing(model, t, y)?;
-    let imbalance = model.imbalance(&model.position(t, y), y, &[zero; N], &lambda);
+    let imbalance = model.imbalance(&model.position(t, y), y, &[zero; N], (&lambda, &lambda));
     Ok(FreeStiffness::of(model, t, y, &lambda)?.answer(&imbalance, &[zero; M]))
 }
 

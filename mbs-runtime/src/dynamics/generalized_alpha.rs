@@ -106,7 +106,7 @@ impl GeneralizedAlpha {
             model.trapezoid(from, h, &mut y, &rate);
             let position = model.position(t, &y);
             rate = model.rates(&position, &y, qdd, &lambda);
-            let imbalance = model.imbalance(&position, &y, &qdd, &lambda);
+            let imbalance = model.imbalance(&position, &y, &qdd, (&lambda, &lambda));
             let phi = model.mechanism.phi(model.parameters, &position);
             let tangent = Tangent::of(model, &position, &y, &qdd, &lambda);
             let matrix = tangent.combined(of_q, gamma / (beta * h), one);

@@ -76,18 +76,18 @@ fn subtract<R: Real, const N: usize>(sum: &mut [[R; N]; N], matrix: &[[R; N]; N]
 }
 
 impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, R, N, M> {
-    /// M q̈ + Φ_qᵀ λ − Q: N.
+    /// M q̈ + Φ_qᵀ λ − Q: N; the multipliers (M) of the rows, and those that friction is given.
     pub(super) fn imbalance(
         &self,
         position: &S::Position,
         y: &State<R, N, S::States>,
         qdd: &[R; N],
-        lambda: &[R; M],
+        (lambda, bearing): (&[R; M], &[R; M]),
     ) -> [R; N] {
         let (mechanism, parameters) = (self.mechanism, self.parameters);
         let inertia = mechanism.mass_times(parameters, position, qdd);
         let reaction = mechanism.reaction(parameters, position, lambda);
-        let force = mechanism.force(parameters, position, &y.qd, &y.states, lambda);
+        let force = mechanism.force(parameters, position, &y.qd, &y.states, bearing);
         inertia.plus(R::constant(1.0), &[1.0, -1.0], [&reaction, &force])
     }
 

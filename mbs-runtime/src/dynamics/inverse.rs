@@ -100,7 +100,7 @@ pub fn inverse_with_states<S: Dynamic<R, N, M>, R: Real, const N: usize, const M
         return Err(failure);
     }
     let parameters = mechanism.parameters();
-    let metric = Metric::of(mechanism, &parameters);
+    let metric = Metric::next_to(mechanism, &parameters, t, q);
     let model =
         Model { mechanism, parameters: &parameters, metric: &metric, balanced: false, rank_rises: false };
     let (zero, mut counts) = (R::constant(0.0), Counts::default());

@@ -32,8 +32,9 @@ pub fn truncation<R: Real>() -> R {
     none(TRUNCATION)
 }
 
-/// M and Φ_q in the reference metric: S M S κ and W Φ_q S, S the coordinates' scales, W the rows' reciprocals, κ such
-/// that the largest entry of the first is 1. So no decision depends on units.
+/// M and Φ_q in the reference metric: S M S κ and W Φ_q S, S the coordinates' scales, W the reciprocals of the rows' scales, or of
+/// their largest entries where those are more, κ such that the largest entry of the first is 1. So no decision depends on units, nor
+/// on what number a row is multiplied by.
 #[derive(Clone, Copy, Debug)]
 pub struct System<R, const N: usize, const M: usize> {
     pub(super) mass: [[R; N]; N],
@@ -46,7 +47,7 @@ impl<R: Real, const N: usize, const M: usize> System<R, N, M> {
     /// Takes up `mass` (N rows of N) and `phi_q` (M rows of N).
     pub fn new(mass: &[[R; N]; N], phi_q: &[[R; N]; M], metric: &Metric<R, N, M>) -> Self {
         let (zero, one) = (R::constant(0.0), R::constant(1.0));
-        let (mut mass, mut phi_q) = (*mass, *phi_q);
+        let (mut mass, mut phi_q, mut metric) = (*mass, *phi_q, *metric);
         let mut largest = zero;
         for (row, scale) in mass.iter_mut().zip(&metric.coordinates) {
             for (entry, other) in row.iter_mut().zip(&metric.coordinates) {
@@ -57,13 +58,15 @@ impl<R: Real, const N: usize, const M: usize> System<R, N, M> {
         let weight = one / largest;
         let mass_weight = if weight.is_finite() { weight } else { one };
         mass.iter_mut().flatten().for_each(|entry| *entry = *entry * mass_weight);
-        for (row, row_scale) in phi_q.iter_mut().zip(&metric.rows) {
+        for (row, row_scale) in phi_q.iter_mut().zip(&mut metric.rows) {
+            for (entry, scale) in row.iter_mut().zip(&metric.coordinates) {
+                *entry = *entry * *scale;
+                *row_scale = row_scale.max(entry.abs());
+            }
             let weight = one / *row_scale;
-            row.iter_mut()
-                .zip(&metric.coordinates)
-                .for_each(|(entry, scale)| *entry = *entry * *scale * weight);
+            row.iter_mut().for_each(|entry| *entry = *entry * weight);
         }
-        System { mass, phi_q, mass_weight, metric: *metric }
+        System { mass, phi_q, mass_weight, metric }
     }
 
     /// Factorises the system: LU with pivoting, or, where that is near singular, rank-revealing.

@@ -107,7 +107,7 @@ fn about<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     independent: &[u16],
 ) -> Result<WithStates<R, N, S::StateSlopes>, Failure> {
     let (zero, parameters) = (R::constant(0.0), mechanism.parameters());
-    let metric = Metric::of(mechanism, &parameters);
+    let metric = Metric::next_to(mechanism, &parameters, t, &y.q);
     let model =
         Model { mechanism, parameters: &parameters, metric: &metric, balanced: false, rank_rises: false };
     model.check(t, y)?;

@@ -2,13 +2,24 @@
 
 use crate::{Entry, Failure, Mechanism, Real, Scalar};
 
-/// Scales of coordinates and rows, fixed by units and dimensions alone, and kinds of unit.
+/// How far angles (rad) are moved to see how steep a row is apart from singular positions.
+const TURNED: f64 = 0.5;
+
+/// How far other coordinates are moved for it, in their scales: less than the shortest bars of a mechanism are long, so that a
+/// row of one is not measured as if it were another.
+const SHIFTED: f64 = 1e-3;
+
+/// Scales of coordinates, fixed by units and dimensions alone, scales of rows, and kinds of unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Metric<T, const N: usize, const M: usize> {
     /// 1 for angles and pure numbers, the reference length for lengths: N.
     pub coordinates: [T; N],
-    /// The reference length to the power that the row's unit has of metres: M.
+    /// What a residual is divided by: M. By [`of`](Self::of) the reference length to the power that the row's unit has of metres; by
+    /// [`next_to`](Self::next_to) the largest entry of the row's gradient, so that a residual counts as the distance that takes it
+    /// away, and a row counts the same times any number.
     pub rows: [T; M],
+    /// What margins of blocks of rows by units are at least, of rows by gradients: the smallest ratio of both scales.
+    pub(super) blocks: T,
     /// Of each coordinate the first one with the same unit: N.
     kinds: [usize; N],
 }
@@ -24,15 +35,58 @@ impl<T: Scalar, const N: usize, const M: usize> Metric<T, N, M> {
         Metric {
             coordinates: mechanism.coordinate_scales(parameters),
             rows: mechanism.row_scales(parameters),
+            blocks: T::constant(1.0),
             kinds,
         }
     }
 }
 
 impl<R: Real, const N: usize, const M: usize> Metric<R, N, M> {
+    /// That of a mechanism about `q` (N) at time `t` (s). A row's scale is the largest entry of its gradient, the coordinates over their
+    /// scales, there and where all coordinates are a little aside, so that a gradient which vanishes at a singular position is
+    /// seen to be small.
+    pub fn next_to<S: Mechanism<R, N, M>>(
+        mechanism: &S,
+        parameters: &S::Parameters,
+        t: R,
+        q: &[R; N],
+    ) -> Self {
+        let zero = R::constant(0.0);
+        let by_units = Metric::of(mechanism, parameters);
+        let mut steepest = [zero; M];
+        for side in [0.0, 1.0, -1.0] {
+            let mut beside = *q;
+            let places = beside.iter_mut().zip(&by_units.coordinates).zip(S::COORDINATES);
+            for (index, ((q, scale), entry)) in (0_u16..).zip(places) {
+                let far = if entry.is_angle() { TURNED } else { SHIFTED };
+                // No two alike, so that no symmetry of the mechanism is kept.
+                let share = 0.5 + 0.5 * f64::from(index + 1) / N as f64;
+                let sign = if (index + index / 2) % 2 == 0 { side } else { -side };
+                *q = *q + R::constant(sign * far * share) * *scale;
+            }
+            let phi_q = mechanism.phi_q(parameters, &mechanism.position(parameters, &beside, t));
+            for (steepest, row) in steepest.iter_mut().zip(&phi_q) {
+                let entries = row.iter().zip(&by_units.coordinates);
+                let steep =
+                    entries.fold(zero, |largest, (entry, scale)| worse(largest, (*entry * *scale).abs()));
+                // A place beside may be out of a table.
+                let known = steep.is_finite() && *steepest < steep;
+                *steepest = if known { steep } else { *steepest };
+            }
+        }
+        let (mut rows, mut blocks) = (by_units.rows, None);
+        for (scale, steepest) in rows.iter_mut().zip(&steepest) {
+            let unit = *scale;
+            *scale = if zero < *steepest { *steepest } else { unit };
+            let ratio = unit / *scale;
+            blocks = Some(blocks.map_or(ratio, |least: R| least.min(ratio)));
+        }
+        Metric { rows, blocks: blocks.unwrap_or(by_units.blocks), ..by_units }
+    }
+
     /// The same coordinates without rows.
     pub(super) fn without_rows(&self) -> Metric<R, N, 0> {
-        Metric { coordinates: self.coordinates, rows: [], kinds: self.kinds }
+        Metric { coordinates: self.coordinates, rows: [], blocks: self.blocks, kinds: self.kinds }
     }
 
     /// The metric as a mass, one in every direction: N rows of N.

@@ -474,7 +474,8 @@ where
 {
     /// Reference metric of a phase: that of rows of its unit, of which its drive is one.
     fn scale(&self, phase: &Entry) -> R {
-        let mut rows = S::ROWS.iter().zip(&self.model.metric.rows);
-        rows.find(|(row, _)| row.unit == phase.unit).map_or(R::constant(1.0), |(_, scale)| *scale)
+        let scales = self.model.mechanism.row_scales(self.model.parameters);
+        let mut rows = S::ROWS.iter().zip(scales);
+        rows.find(|(row, _)| row.unit == phase.unit).map_or(R::constant(1.0), |(_, scale)| scale)
     }
 }

@@ -6,9 +6,9 @@ use super::model::Model;
 use super::vector::State;
 use crate::{Dynamic, Failure, Real, kinematics};
 
-/// Largest entry of a row of Φ_q, in √ε in the metric, that is none: a row that is flat at a place holds it to the root of the 64 ε
-/// that its residual may have, 8 √ε, where its entries are twice that.
-const FLAT: f64 = 64.0;
+/// Largest entry of a row of Φ_q, in √ε of what it is a thousandth of a reference length aside, that is none: a row that is flat at a
+/// place holds it to the root of the 64 ε that its residual may have, and its entries there are 360 √ε of those aside.
+const FLAT: f64 = 512.0;
 
 /// Largest entry of a row of Φ_q, in ε in the metric, that is none where a run starts: what rounding leaves of two points in one place.
 const FLAT_AT_START: f64 = 64.0;

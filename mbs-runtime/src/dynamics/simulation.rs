@@ -17,8 +17,8 @@ use super::vector::State;
 use crate::limit::limit_failure;
 use crate::{Dynamic, Energy, Failure, Motion, Real, kinematics};
 
-/// Violation of a row that a start may have, in the reference metric (per second for its rate): numbers typed with
-/// nine digits. What it has is projected out.
+/// Violation of a row that a start may have, in the reference metric and of the coordinates (per second for its rate): numbers typed
+/// with nine digits. What it has is projected out.
 const START_ALLOWANCE: f64 = 1e-8;
 
 /// Tolerance of an adaptive integration where none is given, unless the number type has fewer digits.
@@ -98,7 +98,7 @@ pub struct Balance<R> {
     pub work: R,
     /// Energy less work less the energy at the start (J): 0 of an exact integration.
     pub defect: R,
-    /// Largest |Φᵢ| over its row's scale.
+    /// Largest |Φᵢ| over its row's scale: about the distance (rad, or reference lengths) from where it holds.
     pub phi: R,
     /// Largest |Φ̇ᵢ| over its row's scale (1/s).
     pub phi_d: R,
@@ -165,7 +165,7 @@ where
         }
         mechanism.start_phases(&q, t);
         let parameters = mechanism.parameters();
-        let metric = Metric::of(&mechanism, &parameters);
+        let metric = Metric::next_to(&mechanism, &parameters, t, &q);
         let mut model = Model {
             mechanism: &mechanism,
             parameters: &parameters,
@@ -182,6 +182,10 @@ where
             Origin::Near => {}
             Origin::Text => text_start::complete(&model, t, &mut y, &mut counts)?,
         }
+        Projection::default().settle(&model, t, &mut y, &mut counts)?;
+        // What a row's gradient is where the guess was counts no more.
+        let metric = Metric::next_to(&mechanism, &parameters, t, &y.q);
+        model.metric = &metric;
         Projection::default().settle(&model, t, &mut y, &mut counts)?;
         model.require_no_flat_row(t, &y)?;
         model.rank_rises = rank_rises(&model, t, &y);
@@ -321,7 +325,7 @@ where
             self.mechanism.set_phases(at_present(&self.mechanism, self.now.t));
         }
         self.parameters = self.mechanism.parameters();
-        self.metric = Metric::of(&self.mechanism, &self.parameters);
+        self.metric = Metric::next_to(&self.mechanism, &self.parameters, self.now.t, &self.now.y.q);
         self.fault = parameter_failure(&self.mechanism);
         let after = self.model().total_energy(self.now.t, &self.now.y);
         if (after - before).is_finite() {
@@ -419,7 +423,7 @@ where
     /// Those of [`Determinacy::of`].
     pub fn determinacy(&self) -> Result<Determinacy<R, M>, Failure> {
         let position = self.model().position(self.now.t, &self.now.y);
-        Determinacy::of(&self.mechanism, &self.parameters, &position, self.now.t)
+        Determinacy::measured(&self.mechanism, &self.parameters, &position, (self.now.t, &self.metric))
     }
 
     /// Marks in `unique`, one of each of [`loads`](Self::loads), those that are the same whichever multipliers bear the
@@ -429,7 +433,7 @@ where
     /// Those of [`Determinacy::of`].
     pub fn mark_unique_loads(&self, unique: &mut [bool]) -> Result<(), Failure> {
         let position = self.model().position(self.now.t, &self.now.y);
-        let found = Determinacy::of(&self.mechanism, &self.parameters, &position, self.now.t)?;
+        let found = self.determinacy()?;
         let motion =
             Motion { qd: self.qd(), qdd: self.qdd(), lambda: self.lambda(), states: &self.now.y.states };
         found.mark_loads(&self.mechanism, &self.parameters, &position, &motion, unique);
@@ -705,9 +709,14 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         let position = self.position(t, y);
         let (one, allowance) = (R::constant(1.0), R::constant(START_ALLOWANCE));
         let phi = self.mechanism.phi(self.parameters, &position);
-        self.require(t, &phi, &self.metric.rows.map(|scale| allowance * scale), one, false)?;
-        let mut allowed = self.mechanism.phi_t(self.parameters, &position);
         let phi_q = self.mechanism.phi_q(self.parameters, &position);
+        let mut allowed = self.metric.rows;
+        for (allowed, row) in allowed.iter_mut().zip(&phi_q) {
+            let reach = row.iter().zip(&y.q).fold(*allowed, |sum, (entry, q)| sum + (*entry * *q).abs());
+            *allowed = allowance * reach;
+        }
+        self.require(t, &phi, &allowed, one, false)?;
+        let mut allowed = self.mechanism.phi_t(self.parameters, &position);
         for ((allowed, row), scale) in allowed.iter_mut().zip(&phi_q).zip(&self.metric.rows) {
             let reach = row.iter().zip(&y.qd).fold(*scale, |sum, (entry, qd)| sum + (*entry * *qd).abs());
             *allowed = allowance * (reach + allowed.abs());

@@ -58,7 +58,7 @@ pub fn closed<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     held: &[u16],
 ) -> Result<[R; N], Failure> {
     let parameters = mechanism.parameters();
-    let metric = Metric::of(mechanism, &parameters);
+    let metric = Metric::next_to(mechanism, &parameters, t, q);
     let model =
         Model { mechanism, parameters: &parameters, metric: &metric, balanced: false, rank_rises: false };
     let (zero, states) = (R::constant(0.0), mechanism.start_states(&parameters));

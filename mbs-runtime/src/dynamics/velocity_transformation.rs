@@ -41,7 +41,7 @@ where
     ) -> Result<Solved<R, N, M, S::States>, Failure> {
         let position = model.position(t, y);
         let (partition, margin) = model.mechanism.partition(model.parameters, &position);
-        solve_at(model, (t, y), (&position, &partition, margin.value), lambda, counts)
+        solve_at(model, (t, y), (&position, &partition, margin.value * model.metric.blocks), lambda, counts)
     }
 
     #[inline]
@@ -211,7 +211,7 @@ where
     for _ in 0..MOST_CORRECTIONS {
         let position = model.position(t, y);
         let (partition, margin) = model.mechanism.partition(model.parameters, &position);
-        let place = Place { position, partition, margin: margin.value };
+        let place = Place { position, partition, margin: margin.value * model.metric.blocks };
         let phi = model.mechanism.phi(model.parameters, &place.position);
         if model.worst(&phi, &model.position_tolerances(&place.position, &y.q)).0 <= R::constant(1.0) {
             return Some(place);

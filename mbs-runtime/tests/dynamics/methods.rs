@@ -2,10 +2,12 @@
 
 use mbs_runtime::dynamics::velocity_transformation::{Transformed, accelerations};
 use mbs_runtime::dynamics::{
-    AugmentedLagrangian, DormandPrince8, Explicit, Extrapolated, GeneralizedAlpha, Method, Penalty,
-    Projection, RungeKutta4, Simulation, Tolerance, VelocityTransformation,
+    AugmentedLagrangian, Baumgarte, DormandPrince8, Explicit, Extrapolated, GeneralizedAlpha, Method,
+    Penalty, Projection, RungeKutta4, Simulation, Tolerance, VelocityTransformation,
 };
-use mbs_runtime::{Block, BlockSolver, Direct1, Factorization, Margin, Outcome, Partitioned};
+use mbs_runtime::{
+    Block, BlockSolver, Direct1, Dynamic, Factorization, Failure, Margin, Outcome, Partitioned, mechanism,
+};
 
 use crate::linkage::{End, Linkage, Rod, parallel_loops, pendulum};
 
@@ -235,4 +237,161 @@ fn a_penalty_is_another_mechanism_that_nears_the_rigid_one() {
 pub fn hanging() -> Linkage<2, 1> {
     let rod = Rod { from: End::Ground([0.0; 2]), to: End::Point(0), length: 2.0, mass: 0.0 };
     Linkage::new([rod], [3.0; 2], [0.0, -9.81])
+}
+
+mechanism! {
+    /// A pendulum on a pendulum, the rows of its rods times a number and times its square.
+    pub mechanism Multiplied;
+    const M2: m^2 = 1;
+    param k: 1 = 1;
+    coord p: [m; 2] = [0.5, 0];
+    coord q: [m; 2] = [0.9, 0];
+    body upper { mass: 1, com: p }
+    body lower { mass: 2, com: q }
+    gravity weight { acceleration: [0, -9.81] }
+    constraint rods {
+        k*(dot(p, p) - 0.25*M2) == 0;
+        k*k*(norm(q - p) - 0.4m) == 0;
+    }
+}
+
+/// A run of 0.3 s with rows times `k` and `k²`: coordinates, and the multipliers times `k` and `k²`.
+fn multiplied<X: Method<Multiplied, f64, 4, 2>>(method: X, k: f64) -> ([f64; 4], [f64; 2]) {
+    let mut run = Simulation::start_from_text(Multiplied { k }, method, 0.0).unwrap();
+    run.step_to(0.3, 60).unwrap();
+    let [first, second] = *run.lambda();
+    (*run.q(), [k * first, k * k * second])
+}
+
+#[test]
+fn rows_times_any_number_are_the_same_mechanism_for_every_method() {
+    fn check<X: Method<Multiplied, f64, 4, 2> + Copy>(name: &str, method: X) {
+        let (q, lambda) = multiplied(method, 1.0);
+        for k in [1e-6, 1e-3, 0.1, 30.0, 1e3, 1e6] {
+            let (q_k, lambda_k) = multiplied(method, k);
+            let moved = q.iter().zip(q_k).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            let borne = lambda.iter().zip(lambda_k).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            // The motion is not chaotic yet: rounding, and what corrections leave that are below it.
+            assert!(moved < 1e-10 && borne < 1e-7, "{name}, {k:e}: {moved:e} m, {borne:e} N");
+        }
+    }
+    check("projection", Explicit::new(RungeKutta4, Projection::default()));
+    check("velocity transformation", Explicit::new(RungeKutta4, VelocityTransformation));
+    check("Baumgarte", Explicit::new(RungeKutta4, Baumgarte::default()));
+    check("penalty", Explicit::new(RungeKutta4, Penalty::default()));
+    check("augmented Lagrangian", AugmentedLagrangian);
+    check("extrapolated", Extrapolated);
+    check("generalised-α", GeneralizedAlpha::default());
+}
+
+#[test]
+fn rows_times_any_number_refuse_the_same_starts() {
+    let method = Explicit::new(RungeKutta4, Projection::default());
+    for k in [1e-6, 1e-3, 1.0, 1e3, 1e6] {
+        let start = |off: f64| {
+            let q = [0.5, 0.0, 0.9 + off, 0.0];
+            Simulation::start(Multiplied { k }, method, 0.0, q, [0.0; 4])
+        };
+        assert!(start(1e-9).is_ok(), "{k:e}");
+        let failure = start(1e-6).unwrap_err();
+        let Failure::OffConstraints { row, .. } = failure else { panic!("{failure}") };
+        assert_eq!(row.name, "rods.1");
+    }
+}
+
+mechanism! {
+    /// A pendulum with a very short one on it, its rod by the square of its length.
+    pub mechanism ShortRod;
+    const M2: m^2 = 1;
+    param length: m = 0.002;
+    param guess: m = 0.0021;
+    coord p: [m; 2] = [1, 0];
+    coord q: [m; 2] = [1m + guess, 0];
+    body long { mass: 1, com: p }
+    body short { mass: 0.1, com: q }
+    gravity weight { acceleration: [0, -9.81] }
+    constraint rods { dot(p, p) == 1*M2; dot(q - p, q - p) == length^2; }
+}
+
+#[test]
+fn a_short_rod_is_as_long_as_the_text_says_whatever_the_guess() {
+    /// 64 roundings of a metre, on which the rod hangs, and of the coordinates.
+    const ROUNDING: f64 = 1e-13;
+    fn check<X: Method<ShortRod, f64, 4, 2>>(method: X, allowed: f64) {
+        let mut run = Simulation::start_from_text(ShortRod::default(), method, 0.0).unwrap();
+        let length = |[px, py, qx, qy]: [f64; 4]| (qx - px).hypot(qy - py);
+        assert!((length(*run.q()) - 0.002).abs() < ROUNDING, "{:e}", length(*run.q()));
+        run.step_to(0.02, 2000).unwrap();
+        assert!((length(*run.q()) - 0.002).abs() < allowed, "{:e}", length(*run.q()));
+    }
+    check(Explicit::new(RungeKutta4, Projection::default()), ROUNDING);
+    check(Explicit::new(RungeKutta4, VelocityTransformation), ROUNDING);
+    check(GeneralizedAlpha::default(), 1e-11);
+    check(AugmentedLagrangian, 1e-11);
+    let method = Explicit::new(RungeKutta4, Projection::default());
+    let beside = Simulation::start(ShortRod::default(), method, 0.0, [1.0, 0.0, 1.0021, 0.0], [0.0; 4]);
+    assert!(matches!(beside, Err(Failure::OffConstraints { .. })));
+}
+
+mechanism! {
+    /// A slider-crank that a motor turns.
+    pub mechanism Pump;
+    const SPEED: rad/s = 2;
+    const GAIN: rad/s^2 = 1;
+    coord th: rad = 0.3;
+    coord phi: rad = -0.1;
+    coord x: m = 0.2;
+    body crank { mass: 1, com: 0.02m*unit(th), angle: th, inertia: 0.001 }
+    body rod { mass: 0.6, inertia: 0.002, com: 0.05m*unit(th) + 0.09m*unit(phi), angle: phi }
+    body piston { mass: 0.5, com: [x, 0] }
+    gravity weight { acceleration: [0, -9.81] }
+    tsda spring { from: [0, 0], to: [x, 0], stiffness: 100, length: 0.1, damping: 2 }
+    constraint closure { 0.05m*unit(th) + 0.18m*unit(phi) == [x, 0]; }
+    drive motor: th == 0.3 + SPEED*t + GAIN*t^2/2;
+}
+
+mechanism! {
+    /// A bead that slides along a parabola with friction.
+    pub mechanism Bead;
+    coord p: [m; 2] = [0, 0];
+    body bead { mass: 1, com: p }
+    gravity weight { acceleration: [0, -9.81] }
+    constraint wire { p[1] == -0.5*p[0]*p[0]/1m; }
+    friction rub { along: p[0], normal: lambda(wire), coefficient: 0.3, speed: 0.01 }
+    start p = [0, 0] rate [1, 0];
+}
+
+/// Orders of coordinates, multipliers and work at 0.5 s, from 50 to 100 steps of a method.
+fn orders<S, X, const N: usize, const M: usize>(mechanism: S, method: X) -> [f64; 3]
+where
+    S: Dynamic<f64, N, M> + Copy,
+    X: Method<S, f64, N, M> + Copy,
+{
+    let exact = Explicit::new(DormandPrince8, Projection::default());
+    let exact = Simulation::start_from_text(mechanism, exact, 0.0).unwrap();
+    let mut exact = exact.with_tolerance(Tolerance::new(1e-13));
+    exact.advance_to(0.5).unwrap();
+    let errors = |steps| {
+        let mut run = Simulation::start_from_text(mechanism, method, 0.0).unwrap();
+        run.step_to(0.5, steps).unwrap();
+        let off = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        let work = (run.balance().work - exact.balance().work).abs();
+        [off(run.qd(), exact.qd()), off(run.lambda(), exact.lambda()), work]
+    };
+    let (coarse, fine): ([f64; 3], [f64; 3]) = (errors(50), errors(100));
+    println!("{coarse:?} {fine:?}");
+    core::array::from_fn(|part| (coarse[part] / fine[part]).log2())
+}
+
+#[test]
+fn multipliers_work_and_friction_of_implicit_methods_have_the_order_of_the_motion() {
+    let driven = orders(Pump::default(), AugmentedLagrangian);
+    assert!(driven.iter().all(|order| *order > 1.8), "{driven:?}");
+    for rubbing in
+        [orders(Bead::default(), AugmentedLagrangian), orders(Bead::default(), GeneralizedAlpha::default())]
+    {
+        assert!(rubbing.iter().all(|order| *order > 1.8), "{rubbing:?}");
+    }
+    let (driven, rubbing) = (orders(Pump::default(), Extrapolated), orders(Bead::default(), Extrapolated));
+    assert!(driven[2] > 2.7 && rubbing.iter().all(|order| *order > 2.7), "{driven:?} {rubbing:?}");
 }

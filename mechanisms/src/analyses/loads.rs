@@ -23,7 +23,7 @@ pub(super) fn multipliers<S: Dynamic<f64, N, M>, const N: usize, const M: usize>
     let mut mechanism = mechanism.clone();
     mechanism.start_phases(&q, state.t);
     let parameters = mechanism.parameters();
-    let metric = Metric::of(&mechanism, &parameters);
+    let metric = Metric::next_to(&mechanism, &parameters, state.t, &q);
     let model = Model {
         mechanism: &mechanism,
         parameters: &parameters,

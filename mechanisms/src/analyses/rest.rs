@@ -111,7 +111,7 @@ fn margin<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
     states: &S::States,
 ) -> f64 {
     let parameters = mechanism.parameters();
-    let metric = Metric::of(mechanism, &parameters);
+    let metric = Metric::next_to(mechanism, &parameters, 0.0, &found.q);
     let model =
         Model { mechanism, parameters: &parameters, metric: &metric, balanced: false, rank_rises: false };
     let y = State { q: found.q, qd: [0.0; N], states: *states, work: 0.0 };
