@@ -148,6 +148,24 @@ pub enum Failure {
         /// Time (s).
         time: f64,
     },
+    /// A number that sets a method, or its tolerance, is outside what it may be.
+    Unsuitable {
+        /// Its name.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+        /// The largest that is allowed; the least is 0.
+        most: f64,
+    },
+    /// No multiplier balances the forces that depend on it: friction changes it by as much as it takes up.
+    Locked {
+        /// The row whose multiplier changes most.
+        row: Entry,
+        /// Iterations spent.
+        iterations: u32,
+        /// Time (s).
+        time: f64,
+    },
     /// A step that is 0, negative, no number, or too small to change the time.
     InvalidStep {
         /// The step (s).
@@ -370,8 +388,12 @@ impl Failure {
             | Failure::Restless { time, .. }
             | Failure::Unsettled { time, .. }
             | Failure::StatesUnknown { time, .. }
+            | Failure::Locked { time, .. }
             | Failure::Unbalanced { time, .. } => *time = now,
-            Failure::NonFinite { .. } | Failure::Negative { .. } | Failure::Foreign { .. } => {}
+            Failure::NonFinite { .. }
+            | Failure::Negative { .. }
+            | Failure::Unsuitable { .. }
+            | Failure::Foreign { .. } => {}
         }
         self
     }
@@ -400,8 +422,12 @@ impl Failure {
             | Failure::Restless { time, .. }
             | Failure::Unsettled { time, .. }
             | Failure::StatesUnknown { time, .. }
+            | Failure::Locked { time, .. }
             | Failure::Unbalanced { time, .. } => *time,
-            Failure::NonFinite { .. } | Failure::Negative { .. } | Failure::Foreign { .. } => 0.0,
+            Failure::NonFinite { .. }
+            | Failure::Negative { .. }
+            | Failure::Unsuitable { .. }
+            | Failure::Foreign { .. } => 0.0,
         }
     }
 }
@@ -468,6 +494,18 @@ impl fmt::Display for Failure {
                 "the position at t = {time} s is not next to the saved one: `{}` (line {}) differs by {distance:.3e} in \
                  the reference metric, allowed {allowed:.3e}; start at the time and with the inputs of the saved state",
                 coordinate.name, coordinate.line
+            ),
+            Failure::Unsuitable { name, value, most } if most.is_finite() => {
+                write!(f, "the method's {name} is {value}: it must be between 0 and {most}")
+            }
+            Failure::Unsuitable { name, value, .. } => {
+                write!(f, "the method's {name} is {value:e}: it must be a number and at least 0")
+            }
+            Failure::Locked { row, iterations, .. } => write!(
+                f,
+                "no balance of forces at t = {time} s after {iterations} iterations: friction changes the force of row `{}` (line {}) by as \
+                 much as it takes up; with this coefficient the mechanism jams there, whatever the step",
+                row.name, row.line
             ),
             Failure::InvalidStep { step, .. } => write!(
                 f,
@@ -617,6 +655,7 @@ mod tests {
             Failure::Flat { row: ROW, time },
             Failure::Restless { coordinate: ROW, force: 0.5, time },
             Failure::Unbalanced { coordinate: ROW, iterations: 9, time },
+            Failure::Locked { row: ROW, iterations: 9, time },
             Failure::Unsettled { state: ROW, time },
             Failure::StatesUnknown { state: ROW, time },
         ];
@@ -625,6 +664,9 @@ mod tests {
         }
         let foreign = Failure::Foreign { mechanism: "Crank" }.to_string();
         assert_eq!(foreign, "the saved state is not one of `Crank`: name or coordinates differ");
+        let (name, most) = ("spectral radius rho", 1.0);
+        let radius = Failure::Unsuitable { name, value: 1.5, most }.to_string();
+        assert_eq!(radius, "the method's spectral radius rho is 1.5: it must be between 0 and 1");
         assert_eq!(Failure::NonFinite { name: "t", line: 0 }.to_string(), "`t` is not a finite number");
     }
 

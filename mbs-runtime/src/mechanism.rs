@@ -151,6 +151,13 @@ pub trait Mechanism<T: Scalar, const N: usize, const M: usize>: Clone {
     /// The design in lane `lane`.
     fn lane(&self, lane: usize) -> Self::Lane;
 
+    /// Whether a text with masses has inputs with rates.
+    const HAS_SIGNALS: bool = false;
+
+    /// Carries inputs with rates on: each is what that of `start` is `h` (s) later, if its acceleration lasts.
+    #[inline]
+    fn carry_signals(&mut self, _start: &Self, _h: T) {}
+
     /// The phases of drives that prescribe a rate, in the order of [`PHASES`](Self::PHASES).
     fn phases(&self) -> Self::Phases;
     /// Puts them back to what they were.

@@ -15,6 +15,7 @@ use super::long;
 use super::parts::{self, Frame};
 use super::phases;
 use super::scope::{Scope, Written, number};
+use super::signals;
 use super::work;
 use crate::equations::Equations;
 use crate::equations::continuity::{self, Demand};
@@ -47,7 +48,7 @@ pub struct Bodies {
     pub evaluate: Option<TokenStream>,
     pub branches: TokenStream,
     pub limits: TokenStream,
-    /// `start_phases`, `advance_phases` and `phase_rates`, where there are any.
+    /// `start_phases`, `advance_phases`, `phase_rates` and `carry_signals`, where there are any.
     pub phases: TokenStream,
     /// The function of speeds that they share.
     pub speeds: TokenStream,
@@ -107,7 +108,10 @@ pub fn bodies(
     lets(&program.outputs, &scope, &mut outputs_text);
     outputs_text += &outputs(equations, &scope);
     let (phases, speeds) = phases::functions(equations, program, &bare);
-    let phases = phases::turns(equations, model) + &phases;
+    let mut phases = phases::turns(equations, model) + &phases;
+    if equations.dynamics.is_some() {
+        phases += &signals::carry(model);
+    }
     let independent = &structure.independent;
     let eliminations = Eliminations::of(equations, program);
     let linear = linear::linear(equations, program, (&scope, &eliminations), independent, is_long);

@@ -25,6 +25,7 @@ pub mod report;
 mod rolled;
 mod scenes;
 mod scope;
+mod signals;
 mod statement;
 mod stub;
 mod substitution;

@@ -139,8 +139,6 @@ enum Motion {
     Coordinates,
     /// The time and inputs alone.
     Time,
-    /// Inputs alone.
-    Inputs,
 }
 
 struct Work<'a> {
@@ -202,8 +200,7 @@ impl Work<'_> {
             (Motion::All, _) => clock.total(g, leaf, false),
             (Motion::Coordinates, Leaf::Position(i)) => Some(g.leaf(Leaf::Velocity(i))),
             (Motion::Coordinates, _) => None,
-            (Motion::Inputs, Leaf::Time) => None,
-            (Motion::Time | Motion::Inputs, _) => clock.partial(g, leaf),
+            (Motion::Time, _) => clock.partial(g, leaf),
         };
         tangent(g, &[place], direction).pop().flatten()
     }
@@ -250,7 +247,7 @@ impl Work<'_> {
                 g.select(zero, length, ratio, zero)
             })
             .collect();
-        let [rate, own, moved, driven] = [Motion::All, Motion::Coordinates, Motion::Time, Motion::Inputs]
+        let [rate, own, moved] = [Motion::All, Motion::Coordinates, Motion::Time]
             .map(|motion| self.rate(g, &directions, &span, motion));
         let mut active = Sum(line.actuator.map(of));
         if let (Some(damping), Some(rate)) = (line.damping, rate.0) {
@@ -278,13 +275,13 @@ impl Work<'_> {
         self.acts(0, &ends(&line.from), &pulls);
         self.acts(1, &ends(&line.to), &forces);
         let spring = stiffness.map(|k| (k, self.stretch(g, length, line.length.map(of))));
-        self.element_power(g, spring, active, [own, moved, driven], line.stores)
+        self.element_power(g, spring, active, [own, moved], line.stores)
     }
 
     /// A torque against an angle.
     fn turn(&mut self, g: &mut Graph, turn: &Turn, of: &impl Fn(Id) -> NodeId) -> Option<NodeId> {
         let angle = of(turn.angle);
-        let [rate, own, moved, driven] = [Motion::All, Motion::Coordinates, Motion::Time, Motion::Inputs]
+        let [rate, own, moved] = [Motion::All, Motion::Coordinates, Motion::Time]
             .map(|motion| Sum(self.velocity(g, angle, motion)));
         let mut active = Sum(turn.torque.map(of));
         if let (Some(damping), Some(rate)) = (turn.damping, rate.0) {
@@ -301,7 +298,7 @@ impl Work<'_> {
             self.along(g, torque, angle);
             self.acts(0, &[angle], &[torque]);
         }
-        self.element_power(g, spring, active, [own, moved, driven], turn.stores)
+        self.element_power(g, spring, active, [own, moved], turn.stores)
     }
 
     fn stretch(&self, g: &mut Graph, value: NodeId, rest: Option<NodeId>) -> NodeId {
@@ -314,7 +311,7 @@ impl Work<'_> {
         g: &mut Graph,
         spring: Option<(NodeId, NodeId)>,
         mut active: Sum,
-        [own, moved, driven]: [Sum; 3],
+        [own, moved]: [Sum; 2],
         stores: bool,
     ) -> Option<NodeId> {
         let mut supplied = None;
@@ -328,7 +325,6 @@ impl Work<'_> {
                 if let Some(moved) = moved.0 {
                     let elastic = g.multiply(stiffness, stretch);
                     supplied = Some(g.multiply(elastic, moved));
-                    carried::spring(g, elastic, driven.0, &mut self.carried);
                 }
             } else {
                 let elastic = g.multiply(stiffness, stretch);

@@ -72,7 +72,7 @@ impl Inertia {
 
 impl Inertia {
     /// Adds what a body is given that the time turns along: (L e_t)ᵀ 4J L ë + 2 (L(ė) e_t)ᵀ 4J L ė, e_t the change of e with the
-    /// coordinates held, less (L ė)ᵀ 4J (L(e_u) ė + L ė_u), the parts of e and ė that come from moving inputs.
+    /// coordinates held.
     fn carry(
         &mut self,
         g: &mut Graph,
@@ -93,15 +93,6 @@ impl Inertia {
         let twice = dot(g, convected, momentum);
         for term in [dot(g, turned, changing), twice, twice].into_iter().flatten() {
             self.add_carried(g, term);
-        }
-        let moved = orientation.map(|part| rates.inputs(g, Some(part)));
-        let turned = velocity.map(|part| rates.inputs(g, part));
-        let parts = [turn(g, moved, velocity), turn(g, e, turned)];
-        for part in parts {
-            if let Some(term) = dot(g, part, momentum) {
-                let opposite = g.negate(term);
-                self.add_carried(g, opposite);
-            }
         }
     }
 }

@@ -90,10 +90,11 @@ impl AugmentedLagrangian {
                 *lambda = if iteration == 0 { *lambda } else { *lambda + *alpha * *phi };
                 *augmented = *lambda + *alpha * *phi;
             }
-            let mut bearing = augmented;
+            // Without the spring of this iteration, which goes beyond what it will come to.
+            let mut bearing = lambda;
             if S::FORCE_USES_MULTIPLIERS || !S::STATES.is_empty() {
                 let gamma = model.mechanism.gamma(model.parameters, &position, &y.qd);
-                bearing = augmented.plus(R::constant(1.0), &[1.0], [&penalized.put(&qdd, &gamma).1]);
+                bearing = lambda.plus(R::constant(1.0), &[1.0], [&penalized.put(&qdd, &gamma).1]);
             }
             rate = model.rates(&position, &y, qdd, &bearing);
             let imbalance = model.imbalance(&position, &y, &qdd, (&augmented, &bearing));

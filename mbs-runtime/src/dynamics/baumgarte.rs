@@ -1,5 +1,6 @@
 //! Baumgarte's stabilisation: the constraints as damped oscillators.
 
+use super::metric::require_least;
 use super::model::{Counts, Doubt, Formulation, Model, Solved};
 use super::multipliers::{factorize, solve};
 use super::vector::State;
@@ -58,10 +59,14 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Formulation<S
         solve(model, (t, y), &position, lambda, &factors, &gamma)
     }
 
+    fn require_suitable(&self) -> Result<(), Failure> {
+        require_least("damping xi", self.xi)?;
+        require_least("frequency omega", self.omega)
+    }
+
     fn admit(&self, h: R, t: R) -> Result<(), Failure> {
         let product = h.to_f64() * self.omega;
-        // Written so that NaN is refused.
-        if product <= LARGEST_PRODUCT && self.omega >= 0.0 && self.xi >= 0.0 {
+        if product <= LARGEST_PRODUCT {
             return Ok(());
         }
         Err(Failure::StepTooLong { product, allowed: LARGEST_PRODUCT, time: t.to_f64() })

@@ -2,6 +2,7 @@
 
 use super::implicit::{MOST_ITERATIONS, Tangent};
 use super::kkt::System;
+use super::metric::require_between;
 use super::model::{Counts, Formulation, Model, Solved};
 use super::motion::{Instant, Method};
 use super::multipliers::Unstabilized;
@@ -38,7 +39,7 @@ struct Coefficients<R> {
 
 impl GeneralizedAlpha {
     fn coefficients<R: Real>(self) -> Coefficients<R> {
-        let rho = self.rho.clamp(0.0, 1.0);
+        let rho = self.rho;
         let (alpha_m, alpha_f) = ((2.0 * rho - 1.0) / (rho + 1.0), rho / (rho + 1.0));
         let gamma = 0.5 + alpha_f - alpha_m;
         let beta = 0.25 * (gamma + 0.5) * (gamma + 0.5);
@@ -71,6 +72,10 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Method<S, R, 
         counts: &mut Counts,
     ) -> Result<Instant<R, N, M, S::States>, Failure> {
         model.moved(from.t, from.t + h, |model| self.stepped(model, from, h, counts))
+    }
+
+    fn require_suitable(&self) -> Result<(), Failure> {
+        require_between("spectral radius rho", self.rho, 1.0)
     }
 }
 

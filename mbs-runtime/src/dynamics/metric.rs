@@ -169,11 +169,12 @@ impl<R: Real> Tolerance<R> {
         R::constant(LEAST_TOLERANCE) * R::EPSILON
     }
 
-    /// Fails where rounding alone is more than it allows, or where it is no number.
+    /// Fails where rounding alone is more than it allows, or where it is negative or no number.
     pub(super) fn require_resolved(&self, t: R) -> Result<(), Failure> {
-        let sum = self.relative + self.absolute;
-        let (zero, least) = (R::constant(0.0), Self::least());
-        if zero <= self.relative && zero <= self.absolute && least <= sum {
+        require_least("relative tolerance", self.relative.to_f64())?;
+        require_least("absolute tolerance", self.absolute.to_f64())?;
+        let (sum, least) = (self.relative + self.absolute, Self::least());
+        if least <= sum {
             return Ok(());
         }
         Err(Failure::UnresolvedTolerance { tolerance: sum.to_f64(), least: least.to_f64(), time: t.to_f64() })
@@ -183,4 +184,16 @@ impl<R: Real> Tolerance<R> {
     pub fn new(tolerance: f64) -> Self {
         Tolerance { relative: R::constant(tolerance), absolute: R::constant(tolerance) }
     }
+}
+
+/// Fails where a number that sets a method is negative or none.
+pub(super) fn require_least(name: &'static str, value: f64) -> Result<(), Failure> {
+    require_between(name, value, f64::INFINITY)
+}
+
+/// Fails where a number that sets a method is negative, above `most`, or none.
+pub(super) fn require_between(name: &'static str, value: f64, most: f64) -> Result<(), Failure> {
+    // Written so that NaN is refused.
+    let suits = 0.0 <= value && value <= most && value.is_finite();
+    if suits { Ok(()) } else { Err(Failure::Unsuitable { name, value, most }) }
 }

@@ -119,6 +119,14 @@ pub trait Formulation<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usi
         self.solve(model, t, y, lambda, counts)
     }
 
+    /// Whether the numbers that set it are such as it may have.
+    ///
+    /// # Errors
+    /// [`Failure::Unsuitable`] with the first one that is not.
+    fn require_suitable(&self) -> Result<(), Failure> {
+        Ok(())
+    }
+
     /// Whether a step of `h` (s) is one that the formulation is stable with.
     ///
     /// # Errors
@@ -188,6 +196,10 @@ where
         (**self).settle_and_solve(model, t, y, lambda, counts)
     }
 
+    fn require_suitable(&self) -> Result<(), Failure> {
+        (**self).require_suitable()
+    }
+
     fn admit(&self, h: R, t: R) -> Result<(), Failure> {
         (**self).admit(h, t)
     }
@@ -223,14 +235,15 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         self.mechanism.position(self.parameters, &y.q, t)
     }
 
-    /// Calls `solve` with the mechanism as it is at time `to` (s): the phases of drives that prescribe a rate moved on from
-    /// time `from` (s).
+    /// Calls `solve` with the mechanism as it is at time `to` (s): inputs with rates and the phases of drives that prescribe a
+    /// rate moved on from time `from` (s).
     #[inline(always)]
     pub(super) fn moved<X>(&self, from: R, to: R, solve: impl FnOnce(&Model<'_, S, R, N, M>) -> X) -> X {
-        if S::PHASES.is_empty() {
+        if S::PHASES.is_empty() && !S::HAS_SIGNALS {
             return solve(self);
         }
         let mut mechanism = self.mechanism.clone();
+        mechanism.carry_signals(self.mechanism, to - from);
         mechanism.advance_phases(from, to);
         let parameters = mechanism.parameters();
         let Model { metric, balanced, rank_rises, .. } = *self;
@@ -342,7 +355,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         lambda: &[R; M],
         mut solve: impl FnMut(&[R; N]) -> ([R; N], [R; M]),
     ) -> Result<Balanced<R, N, M>, Failure> {
-        let mut known = *lambda;
+        let (mut known, mut worst) = (*lambda, 0);
         let mut force;
         for _ in 0..MOST_ITERATIONS {
             force = self.mechanism.force(self.parameters, position, &y.qd, &y.states, &known);
@@ -350,10 +363,24 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
             if !S::FORCE_USES_MULTIPLIERS || self.stands(&known, &found, standing) {
                 return Ok((qdd, found, force));
             }
+            worst = self.largest_change(&known, &found);
             known = found;
         }
-        let coordinate = kinematics::entry(S::COORDINATES, 0);
-        Err(Failure::Unbalanced { coordinate, iterations: MOST_ITERATIONS, time: t.to_f64() })
+        let row = kinematics::entry(S::ROWS, worst);
+        Err(Failure::Locked { row, iterations: MOST_ITERATIONS, time: t.to_f64() })
+    }
+
+    /// The row whose multiplier changes most, in the metric.
+    fn largest_change(&self, before: &[R; M], after: &[R; M]) -> u16 {
+        let mut worst = (0, R::constant(-1.0));
+        let pairs = before.iter().zip(after).zip(&self.metric.rows);
+        for (index, ((before, after), scale)) in (0_u16..).zip(pairs) {
+            let change = ((*after - *before) * *scale).abs();
+            if worst.1 < change {
+                worst = (index, change);
+            }
+        }
+        worst.0
     }
 
     /// Whether the multipliers have changed by rounding alone, `standing` ε of their size; also where they are no numbers.

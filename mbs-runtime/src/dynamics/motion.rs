@@ -69,6 +69,14 @@ pub trait Method<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> {
         Ok(None)
     }
 
+    /// See [`Formulation::require_suitable`].
+    ///
+    /// # Errors
+    /// [`Failure::Unsuitable`].
+    fn require_suitable(&self) -> Result<(), Failure> {
+        Ok(())
+    }
+
     /// See [`Formulation::admit`].
     ///
     /// # Errors
@@ -118,6 +126,10 @@ where
 
     fn phases_after(&self, model: &Model<'_, S, R, N, M>, t: R, h: R) -> Result<Option<S::Phases>, Failure> {
         (**self).phases_after(model, t, h)
+    }
+
+    fn require_suitable(&self) -> Result<(), Failure> {
+        (**self).require_suitable()
     }
 
     fn admit(&self, h: R, t: R) -> Result<(), Failure> {
@@ -193,6 +205,10 @@ where
         stepped::<I, S, R, N, M>(model.mechanism, t, h).map(Some)
     }
 
+    fn require_suitable(&self) -> Result<(), Failure> {
+        self.formulation.require_suitable()
+    }
+
     fn admit(&self, h: R, t: R) -> Result<(), Failure> {
         self.formulation.admit(h, t)
     }
@@ -225,9 +241,9 @@ pub struct Equations<'a, S: Dynamic<R, N, M>, F, R: Real, const N: usize, const 
     model: &'a Model<'a, S, R, N, M>,
     formulation: &'a F,
     tolerance: Tolerance<R>,
-    /// Time (s) that the phases of the mechanism belong to.
-    start: R,
-    /// The mechanism with its phases moved on to a state; none where no drive prescribes a rate.
+    /// Time (s) that phases and inputs of the mechanism belong to.
+    pub(super) start: R,
+    /// The mechanism with its phases and inputs moved on to a state; none where no drive prescribes a rate and no input has one.
     moving: Option<S>,
     /// Whether phases are integrated with the state, and not from `start` to each stage.
     integrating: bool,
@@ -260,7 +276,7 @@ where
         let (tolerance, start) = (Tolerance::new(0.0), from.t);
         let seen = (from.t, from.solved.margin);
         let (lambda, end) = (from.solved.lambda, (seen.0, seen.1, from.y));
-        let moving = (!S::PHASES.is_empty()).then(|| model.mechanism.clone());
+        let moving = (!S::PHASES.is_empty() || S::HAS_SIGNALS).then(|| model.mechanism.clone());
         Equations {
             model,
             formulation,
@@ -305,12 +321,25 @@ where
     }
 
     /// The phases at time `t` (s) that have moved on by `increments`.
-    pub(super) fn phases(&self, t: R, increments: &S::Phases) -> S::Phases {
-        let mechanism = self.model.mechanism;
-        advanced(mechanism.phases(), increments, &mechanism.phase_rates(t))
+    pub(super) fn phases(&mut self, t: R, increments: &S::Phases) -> S::Phases {
+        let rates = self.phase_rates(t);
+        advanced(self.model.mechanism.phases(), increments, &rates)
     }
 
-    /// Calls `solve` with the mechanism as it is at time `t` (s), its phases moved on by `increments`.
+    /// The rates that drives prescribe at time `t` (s), with inputs as they are then.
+    #[inline(always)]
+    fn phase_rates(&mut self, t: R) -> S::Phases {
+        let start = self.model.mechanism;
+        match &mut self.moving {
+            Some(mechanism) if S::HAS_SIGNALS => {
+                mechanism.carry_signals(start, t - self.start);
+                mechanism.phase_rates(t)
+            }
+            _ => start.phase_rates(t),
+        }
+    }
+
+    /// Calls `solve` with the mechanism as it is at time `t` (s), its inputs carried on and its phases moved on by `increments`.
     #[inline(always)]
     fn at<X>(
         &mut self,
@@ -321,6 +350,7 @@ where
         let phases = if S::PHASES.is_empty() { *increments } else { self.phases(t, increments) };
         let Equations { model, formulation, start, moving, integrating, lambda, counts, .. } = self;
         let Some(mechanism) = moving else { return solve(model, formulation, lambda, counts) };
+        mechanism.carry_signals(model.mechanism, t - *start);
         if *integrating {
             mechanism.set_phases(phases);
         } else {
@@ -349,8 +379,8 @@ where
 
     /// The rate of a state whose coordinates, velocities and first-order states have the rate `y`.
     #[inline(always)]
-    fn phased(&self, t: R, y: State<R, N, S::States>) -> Moving<S, R, N, M> {
-        Phased { y, phases: self.model.mechanism.phase_rates(t) }
+    fn phased(&mut self, t: R, y: State<R, N, S::States>) -> Moving<S, R, N, M> {
+        Phased { y, phases: self.phase_rates(t) }
     }
 
     /// Rates and multipliers of a state that a step ended in, which is put back onto the constraints.

@@ -64,7 +64,10 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
     pub(super) fn traced(&self, failure: Failure, t: R, y: &State<R, N, S::States>) -> Failure {
         let lost = matches!(
             failure,
-            Failure::Unbounded { .. } | Failure::OffConstraints { .. } | Failure::Unbalanced { .. }
+            Failure::Unbounded { .. }
+                | Failure::OffConstraints { .. }
+                | Failure::Unbalanced { .. }
+                | Failure::Locked { .. }
         );
         // Next to a singular position a shorter step may do, and the failure says so.
         let found = lost.then(|| self.obstacle(t, y)).flatten();

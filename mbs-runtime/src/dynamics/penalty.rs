@@ -1,6 +1,7 @@
 //! Penalty at acceleration level: the lecture's method without multipliers.
 
 use super::kkt::System;
+use super::metric::require_least;
 use super::model::{Counts, Formulation, Model, STANDING, Solved};
 use super::vector::State;
 use crate::{Dynamic, Failure, Real};
@@ -75,5 +76,11 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Formulation<S
         model.check_solved(&qdd, &lambda, &force, &target)?;
         let rate = model.rates(&position, y, qdd, &lambda);
         Ok(Solved { rate, lambda, margin: R::constant(1.0) })
+    }
+
+    fn require_suitable(&self) -> Result<(), Failure> {
+        require_least("penalty alpha", self.alpha)?;
+        require_least("damping xi", self.xi)?;
+        require_least("frequency omega", self.omega)
     }
 }

@@ -93,13 +93,20 @@ pub(super) fn at_present<S: Mechanism<T, N, M>, T: Scalar, const N: usize, const
 }
 
 /// The prescribed rates of a mechanism: phases move whatever else does.
-struct Rates<'a, S, const N: usize, const M: usize>(&'a S);
+struct Rates<'a, S, T, const N: usize, const M: usize> {
+    /// The mechanism as it is at time `from` (s).
+    start: &'a S,
+    from: T,
+    /// The same with its inputs carried on.
+    moved: S,
+}
 
-impl<S: Mechanism<T, N, M>, T: Scalar, const N: usize, const M: usize> Equation<T> for Rates<'_, S, N, M> {
+impl<S: Mechanism<T, N, M>, T: Scalar, const N: usize, const M: usize> Equation<T> for Rates<'_, S, T, N, M> {
     type State = Bare<T, S::Phases>;
 
     fn rate(&mut self, t: T, _: &Self::State) -> Result<Self::State, Failure> {
-        Ok(Phased { y: [], phases: self.0.phase_rates(t) })
+        self.moved.carry_signals(self.start, t - self.from);
+        Ok(Phased { y: [], phases: self.moved.phase_rates(t) })
     }
 }
 
@@ -116,9 +123,10 @@ where
     S: Mechanism<R, N, M>,
 {
     let start = mechanism.phases();
-    let mut equation = Rates::<S, N, M>(mechanism);
+    let mut equation = Rates::<S, R, N, M> { start: mechanism, from: t, moved: mechanism.clone() };
     let y: Bare<R, S::Phases> = Phased { y: [], phases: unmoved(start) };
     let rate = equation.rate(t, &y)?;
     let end = I::step(&mut equation, t, h, &y, &rate)?;
-    Ok(advanced(start, &end.phases, &mechanism.phase_rates(t + h)))
+    let rates = equation.rate(t + h, &end)?;
+    Ok(advanced(start, &end.phases, &rates.phases))
 }

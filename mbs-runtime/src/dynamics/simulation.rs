@@ -163,6 +163,7 @@ where
         if let Some(failure) = parameter_failure(&mechanism) {
             return Err(failure);
         }
+        method.require_suitable()?;
         mechanism.start_phases(&q, t);
         let parameters = mechanism.parameters();
         let metric = Metric::next_to(&mechanism, &parameters, t, &q);
@@ -178,11 +179,16 @@ where
         let mut y = State { q, qd, states, work: R::constant(0.0) };
         model.check(t, &y)?;
         match origin {
-            Origin::Consistent => model.require_consistent(t, &y)?,
+            Origin::Consistent => model
+                .require_consistent(t, &y)
+                .map_err(|failure| model.contradiction(t, &y, &mut counts).unwrap_or(failure))?,
             Origin::Near => {}
             Origin::Text => text_start::complete(&model, t, &mut y, &mut counts)?,
         }
-        Projection::default().settle(&model, t, &mut y, &mut counts)?;
+        let near = y;
+        Projection::default()
+            .settle(&model, t, &mut y, &mut counts)
+            .map_err(|failure| model.contradiction(t, &near, &mut counts).unwrap_or(failure))?;
         // What a row's gradient is where the guess was counts no more.
         let metric = Metric::next_to(&mechanism, &parameters, t, &y.q);
         model.metric = &metric;
@@ -191,7 +197,7 @@ where
         model.rank_rises = rank_rises(&model, t, &y);
         let solved = method.solve(&model, t, &y, &[R::constant(0.0); M], &mut counts)?;
         let now = Instant { t, y, solved, carried: solved.rate.qd };
-        model.check_assembly(t, &y, true)?;
+        model.check_assembly(t, (t, &y), true)?;
         let rank_rises = model.rank_rises;
         let tolerance = R::constant(TOLERANCE).max(Tolerance::least());
         let reference = model.total_energy(t, &y);
@@ -242,7 +248,7 @@ where
             model.check(next.t, &next.y).map(|()| next)
         });
         let next = stepped.map_err(|failure| model.traced(failure, from.t, &from.y))?;
-        model.check_assembly(next.t, &next.y, false)?;
+        model.check_assembly(from.t, (next.t, &next.y), false)?;
         let phases = self.method.phases_after(&model, from.t, h)?;
         counts.steps += 1;
         let ends = ((from.t, from.solved.margin), (next.t, next.solved.margin));
@@ -261,6 +267,10 @@ where
     /// As [`step`](Self::step); the state is then that before the step that failed.
     pub fn step_to(&mut self, until: R, steps: u32) -> Result<(), Failure> {
         let (from, count) = (self.now.t, R::constant(f64::from(steps)));
+        if steps == 0 {
+            let step = ((until - from) / count).to_f64();
+            return Err(Failure::InvalidStep { step, time: from.to_f64() });
+        }
         for index in 1..=steps {
             let share = R::constant(f64::from(index)) / count;
             let end = if index == steps { until } else { from + (until - from) * share };
@@ -290,11 +300,17 @@ where
 
     /// Goes on from `next`, with `phases` or with those that kinematics moves on.
     fn take(&mut self, next: Instant<R, N, M, S::States>, phases: Option<S::Phases>, counts: Counts) {
+        if S::HAS_SIGNALS {
+            let start = self.mechanism.clone();
+            self.mechanism.carry_signals(&start, next.t - self.now.t);
+        }
         if !S::PHASES.is_empty() {
             match phases {
                 Some(phases) => self.mechanism.set_phases(phases),
                 None => self.mechanism.advance_phases(self.now.t, next.t),
             }
+        }
+        if S::HAS_SIGNALS || !S::PHASES.is_empty() {
             self.parameters = self.mechanism.parameters();
         }
         self.now = next;
@@ -313,7 +329,9 @@ where
         }
     }
 
-    /// Changes parameters or inputs; the next step solves with the new values. Energy that the change brings in or
+    /// Changes parameters or inputs; the next step solves with the new values, which are those at the present time. Inputs with
+    /// rates are carried on from there within each step, and from step to step, as if their acceleration lasted; what a new value
+    /// differs from that is a jump. Energy that the change brings in or
     /// takes out is not counted as a defect.
     ///
     /// A value that is NaN or infinite, or a mass that is negative, is reported by that step; change it back, and go on.
@@ -664,14 +682,22 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         energy.kinetic + energy.potential
     }
 
-    /// Fails where a working range is left or a declared branch does not hold; `assembling`: those that pick the assembly alone count too.
-    fn check_assembly(&self, t: R, y: &State<R, N, S::States>, assembling: bool) -> Result<(), Failure> {
+    /// Fails where a working range is left or a declared branch does not hold; `from`: the time (s) that inputs and phases are known at;
+    /// `assembling`: those that pick the assembly alone count too.
+    fn check_assembly(
+        &self,
+        from: R,
+        (t, y): (R, &State<R, N, S::States>),
+        assembling: bool,
+    ) -> Result<(), Failure> {
         if S::BRANCHES.is_empty() && S::LIMITS.is_empty() {
             return Ok(());
         }
-        let position = self.position(t, y);
-        let failure = kinematics::branch_failure(self.mechanism, self.parameters, &position, t, assembling)
-            .or_else(|| limit_failure(self.mechanism, self.parameters, &position, t));
+        let failure = self.moved(from, t, |Model { mechanism, parameters, .. }| {
+            let position = mechanism.position(parameters, &y.q, t);
+            kinematics::branch_failure(*mechanism, parameters, &position, t, assembling)
+                .or_else(|| limit_failure(*mechanism, parameters, &position, t))
+        });
         failure.map_or(Ok(()), Err)
     }
 
@@ -687,12 +713,13 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         I: Embedded,
     {
         let (start, end) = (accepted.start.t, &accepted.end);
-        let ends = self.check_assembly(end.t, &end.y.y, false);
+        let from = equations.start;
+        let ends = self.check_assembly(from, (end.t, &end.y.y), false);
         if S::LIMITS.is_empty() && ends.is_ok() {
             return Ok(());
         }
         let Ok(polynomial) = accepted.polynomial(equations) else { return ends };
-        let at = |t: R| self.check_assembly(t, &polynomial.at(t).y, false);
+        let at = |t: R| self.check_assembly(from, (t, &polynomial.at(t).y), false);
         let mut inside = start;
         for part in 1..PARTS {
             let t = start + (end.t - start) * R::constant(f64::from(part) / f64::from(PARTS));

@@ -124,12 +124,12 @@ fn texts_that_the_time_does_nothing_to_have_no_such_power() {
     assert!((pumped.carried(&p, &here, &[1.0], &[0.0]).unwrap() - 0.2).abs() < 1e-15);
     let p = based.parameters();
     let here = based.position(&p, &[0.1, 0.0], 0.0);
-    // It has inputs with rates, which stand still.
+    // It has inputs with rates, which are 0.
     assert_eq!(based.carried(&p, &here, &[1.0, 0.5], &[2.0, 1.0]), Some(0.0));
 }
 
 #[test]
-fn inputs_with_rates_stand_still_while_a_motion_is_integrated() {
+fn inputs_with_rates_are_carried_along_and_do_their_work_while_a_motion_is_integrated() {
     let mut based: Based = Based { f: 2.0, k: 30.0, ..Based::default() };
     based.u.value = 0.1;
     based.u.rate = 0.7;
@@ -139,7 +139,9 @@ fn inputs_with_rates_stand_still_while_a_motion_is_integrated() {
     let mut run = run.with_tolerance(Tolerance::new(1e-12));
     run.advance_to(1.0).unwrap();
     assert!(run.balance().defect.abs() < 1e-9, "{:?}", run.balance());
-    // The base moves between two steps: that brings energy in, which is not a defect.
+    let u: mbs_runtime::Signal<f64> = run.mechanism().u;
+    assert!((u.value - 0.6).abs() < 1e-14 && (u.rate - 0.3).abs() < 1e-15, "{u:?}");
+    // The base jumps between two steps: that brings energy in, which is not a defect.
     run.change(|based| based.u.value = 0.2);
     run.advance_to(2.0).unwrap();
     assert!(run.balance().defect.abs() < 1e-9, "{:?}", run.balance());

@@ -1,8 +1,8 @@
 //! What cannot be simulated is refused with its name, and the state stays.
 
 use mbs_runtime::dynamics::{
-    Baumgarte, DormandPrince5, DormandPrince8, Explicit, Projection, RungeKutta4, Simulation, Tolerance,
-    kkt::System, metric::Metric,
+    Baumgarte, DormandPrince5, DormandPrince8, Explicit, GeneralizedAlpha, Method, Penalty, Projection,
+    RungeKutta4, Simulation, Tolerance, kkt::System, metric::Metric,
 };
 use mbs_runtime::{Failure, mechanism};
 
@@ -33,6 +33,8 @@ fn steps_that_lead_nowhere_are_refused_and_the_state_stays() {
         let failure = simulation.step(h).unwrap_err();
         assert!(matches!(failure, Failure::InvalidStep { .. }), "{failure}");
     }
+    let failure = simulation.step_to(1.0, 0).unwrap_err();
+    assert!(matches!(failure, Failure::InvalidStep { .. }), "{failure}");
     assert!(simulation.step(1e300).is_err());
     assert_eq!(before, *simulation.instant());
     let mut late: Pendulum =
@@ -213,7 +215,7 @@ fn a_tolerance_below_rounding_and_an_end_of_too_many_steps_are_refused_at_once()
     let method = Explicit::new(DormandPrince8, Projection::default());
     let start = Simulation::start(pendulum(), method, 0.0, [1.0, 0.0], [0.0; 2]).unwrap();
     let least: f64 = Tolerance::least();
-    for tolerance in [1e-30, 0.4 * least, -1e-9, f64::NAN] {
+    for tolerance in [1e-30, 0.4 * least] {
         let mut run = start.with_tolerance(Tolerance::new(tolerance));
         let failure = run.advance_to(1.0).unwrap_err();
         assert!(matches!(failure, Failure::UnresolvedTolerance { .. }), "{failure}");
@@ -268,4 +270,87 @@ fn a_limit_is_passed_where_it_is_and_not_at_the_end_of_a_step() {
     let (failure, _) = thrown(DormandPrince8, low);
     let Failure::BeyondLimit { time, .. } = failure else { panic!("{failure}") };
     assert!((time - above).abs() < 1e-9, "{time} {above}");
+}
+
+#[test]
+fn numbers_that_a_method_cannot_have_are_named_before_anything_moves() {
+    fn refused<X: Method<Linkage<2, 1>, f64, 2, 1>>(method: X) -> &'static str {
+        let failure =
+            Simulation::start(pendulum(), method, 0.0, [1.0, 0.0], [0.0; 2]).map(|_| ()).unwrap_err();
+        let Failure::Unsuitable { name, .. } = failure else { panic!("{failure}") };
+        name
+    }
+    for rho in [1.5, -0.5, f64::NAN] {
+        assert_eq!(refused(GeneralizedAlpha { rho }), "spectral radius rho");
+    }
+    let baumgarte = |xi, omega| refused(Explicit::new(RungeKutta4, Baumgarte { xi, omega }));
+    assert_eq!(baumgarte(-1.0, 10.0), "damping xi");
+    assert_eq!(baumgarte(1.0, f64::NAN), "frequency omega");
+    let penalty = Penalty { alpha: -1e7, ..Penalty::default() };
+    assert_eq!(refused(Explicit::new(RungeKutta4, penalty)), "penalty alpha");
+    let method = Explicit::new(DormandPrince8, Projection::default());
+    let start = Simulation::start(pendulum(), method, 0.0, [1.0, 0.0], [0.0; 2]).unwrap();
+    for value in [-1e-9, f64::NAN] {
+        let failure = start.with_tolerance(Tolerance::new(value)).advance_to(1.0).unwrap_err();
+        let Failure::Unsuitable { name, value: found, .. } = failure else { panic!("{failure}") };
+        assert!(name == "relative tolerance" && (found == value || value.is_nan()));
+    }
+}
+
+mechanism! {
+    /// A block on two floors.
+    pub mechanism Contradicting;
+    param off: m = 1e-3;
+    coord x: m = 0;
+    coord y: m = 0;
+    body block { mass: 1, com: [x, y] }
+    gravity weight { acceleration: [0, -9.81] }
+    constraint floors redundant { y == 0; 2*y == off; }
+}
+
+#[test]
+fn rows_that_contradict_each_other_are_named_at_the_start() {
+    let method = Explicit::new(RungeKutta4, Projection::default());
+    let near = Simulation::start_near(Contradicting::default(), method, 0.0, [0.0; 2], [0.0; 2]);
+    let strict = Simulation::start(Contradicting::default(), method, 0.0, [0.0; 2], [0.0; 2]);
+    for failure in [near.unwrap_err(), strict.unwrap_err()] {
+        let Failure::Inconsistent { rows, .. } = failure else { panic!("{failure}") };
+        assert_eq!(rows.rows().count(), 2, "{failure}");
+    }
+    assert!(Simulation::start(Contradicting { off: 0.0 }, method, 0.0, [0.0; 2], [0.0; 2]).is_ok());
+    // One of both is enough for a start that is off; the rows agree.
+    let beside = Simulation::start(Contradicting { off: 0.0 }, method, 0.0, [0.0, 1e-3], [0.0; 2]);
+    assert!(matches!(beside, Err(Failure::OffConstraints { .. })));
+}
+
+mechanism! {
+    /// A ladder between a floor and a wall, both rough.
+    pub mechanism Ladder;
+    param mu: 1 = 1.5;
+    coord x: m = 0.3;
+    coord y: m = 0.4;
+    coord phi: rad = 2.214_297_435_588_181;
+    let foot = [x, y] - 0.5m*unit(phi);
+    let head = [x, y] + 0.5m*unit(phi);
+    body rod { mass: 3, inertia: 0.25, com: [x, y], angle: phi }
+    gravity weight { acceleration: [0, -9.81] }
+    constraint floor { foot[1] == 0; }
+    constraint wall { head[0] == 0; }
+    friction below { along: foot[0], normal: lambda(floor), coefficient: mu, speed: 0.01 }
+    friction beside { along: head[1], normal: lambda(wall), coefficient: mu, speed: 0.01 }
+}
+
+#[test]
+fn friction_that_jams_a_mechanism_is_called_so_and_no_step_is_blamed() {
+    let method = Explicit::new(RungeKutta4, Projection::default());
+    let (phi, rate): (f64, f64) = (2.214_297_435_588_181, 0.8);
+    let q = [-0.5 * phi.cos(), 0.5 * phi.sin(), phi];
+    let qd = [0.5 * phi.sin() * rate, 0.5 * phi.cos() * rate, rate];
+    let failure = Simulation::start(Ladder::default(), method, 0.0, q, qd).unwrap_err();
+    let Failure::Locked { row, .. } = failure else { panic!("{failure}") };
+    assert!(
+        ["floor", "wall"].contains(&row.name) && failure.to_string().contains("whatever the step"),
+        "{failure}"
+    );
+    assert!(Simulation::start(Ladder { mu: 0.4 }, method, 0.0, q, qd).is_ok());
 }

@@ -265,23 +265,27 @@ fn multiplied<X: Method<Multiplied, f64, 4, 2>>(method: X, k: f64) -> ([f64; 4],
 
 #[test]
 fn rows_times_any_number_are_the_same_mechanism_for_every_method() {
-    fn check<X: Method<Multiplied, f64, 4, 2> + Copy>(name: &str, method: X) {
+    /// Newtons: what rounding leaves in accelerations, of 40 N.
+    const ROUNDING: f64 = 1e-8;
+    /// The same with rows times a penalty of 4e4 m/h² N/m, which has their rounding as many times.
+    const PENALIZED: f64 = 1e-5;
+    fn check<X: Method<Multiplied, f64, 4, 2> + Copy>(name: &str, method: X, allowed: f64) {
         let (q, lambda) = multiplied(method, 1.0);
         for k in [1e-6, 1e-3, 0.1, 30.0, 1e3, 1e6] {
             let (q_k, lambda_k) = multiplied(method, k);
             let moved = q.iter().zip(q_k).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
             let borne = lambda.iter().zip(lambda_k).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
             // The motion is not chaotic yet: rounding, and what corrections leave that are below it.
-            assert!(moved < 1e-10 && borne < 1e-7, "{name}, {k:e}: {moved:e} m, {borne:e} N");
+            assert!(moved < 1e-10 && borne < allowed, "{name}, {k:e}: {moved:e} m, {borne:e} N");
         }
     }
-    check("projection", Explicit::new(RungeKutta4, Projection::default()));
-    check("velocity transformation", Explicit::new(RungeKutta4, VelocityTransformation));
-    check("Baumgarte", Explicit::new(RungeKutta4, Baumgarte::default()));
-    check("penalty", Explicit::new(RungeKutta4, Penalty::default()));
-    check("augmented Lagrangian", AugmentedLagrangian);
-    check("extrapolated", Extrapolated);
-    check("generalised-α", GeneralizedAlpha::default());
+    check("projection", Explicit::new(RungeKutta4, Projection::default()), ROUNDING);
+    check("velocity transformation", Explicit::new(RungeKutta4, VelocityTransformation), ROUNDING);
+    check("Baumgarte", Explicit::new(RungeKutta4, Baumgarte::default()), ROUNDING);
+    check("penalty", Explicit::new(RungeKutta4, Penalty::default()), PENALIZED);
+    check("augmented Lagrangian", AugmentedLagrangian, PENALIZED);
+    check("extrapolated", Extrapolated, ROUNDING);
+    check("generalised-α", GeneralizedAlpha::default(), PENALIZED);
 }
 
 #[test]
@@ -357,41 +361,48 @@ mechanism! {
     body bead { mass: 1, com: p }
     gravity weight { acceleration: [0, -9.81] }
     constraint wire { p[1] == -0.5*p[0]*p[0]/1m; }
-    friction rub { along: p[0], normal: lambda(wire), coefficient: 0.3, speed: 0.01 }
+    friction rub { along: p[0], normal: lambda(wire), coefficient: 0.1, speed: 0.01 }
     start p = [0, 0] rate [1, 0];
 }
 
-/// Orders of coordinates, multipliers and work at 0.5 s, from 50 to 100 steps of a method.
-fn orders<S, X, const N: usize, const M: usize>(mechanism: S, method: X) -> [f64; 3]
+/// Errors of velocities, multipliers and work at 0.5 s.
+fn errors<S, X, const N: usize, const M: usize>(mechanism: S, method: X, steps: u32) -> [f64; 3]
 where
     S: Dynamic<f64, N, M> + Copy,
-    X: Method<S, f64, N, M> + Copy,
+    X: Method<S, f64, N, M>,
 {
     let exact = Explicit::new(DormandPrince8, Projection::default());
     let exact = Simulation::start_from_text(mechanism, exact, 0.0).unwrap();
     let mut exact = exact.with_tolerance(Tolerance::new(1e-13));
     exact.advance_to(0.5).unwrap();
-    let errors = |steps| {
-        let mut run = Simulation::start_from_text(mechanism, method, 0.0).unwrap();
-        run.step_to(0.5, steps).unwrap();
-        let off = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-        let work = (run.balance().work - exact.balance().work).abs();
-        [off(run.qd(), exact.qd()), off(run.lambda(), exact.lambda()), work]
-    };
-    let (coarse, fine): ([f64; 3], [f64; 3]) = (errors(50), errors(100));
-    println!("{coarse:?} {fine:?}");
-    core::array::from_fn(|part| (coarse[part] / fine[part]).log2())
+    let mut run = Simulation::start_from_text(mechanism, method, 0.0).unwrap();
+    run.step_to(0.5, steps).unwrap();
+    let off = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    let work = (run.balance().work - exact.balance().work).abs();
+    [off(run.qd(), exact.qd()), off(run.lambda(), exact.lambda()), work]
 }
 
 #[test]
 fn multipliers_work_and_friction_of_implicit_methods_have_the_order_of_the_motion() {
-    let driven = orders(Pump::default(), AugmentedLagrangian);
-    assert!(driven.iter().all(|order| *order > 1.8), "{driven:?}");
-    for rubbing in
-        [orders(Bead::default(), AugmentedLagrangian), orders(Bead::default(), GeneralizedAlpha::default())]
-    {
-        assert!(rubbing.iter().all(|order| *order > 1.8), "{rubbing:?}");
+    let (pump, bead, alpha) = (Pump::default(), Bead::default(), GeneralizedAlpha::default());
+    let pairs = [
+        [50, 100].map(|steps| errors(pump, AugmentedLagrangian, steps)),
+        [50, 100].map(|steps| errors(bead, AugmentedLagrangian, steps)),
+        [50, 100].map(|steps| errors(bead, alpha, steps)),
+    ];
+    for [coarse, fine] in pairs {
+        for (coarse, fine) in coarse.into_iter().zip(fine) {
+            assert!((coarse / fine).log2() > 1.8, "{pairs:?}");
+        }
     }
-    let (driven, rubbing) = (orders(Pump::default(), Extrapolated), orders(Bead::default(), Extrapolated));
-    assert!(driven[2] > 2.7 && rubbing.iter().all(|order| *order > 2.7), "{driven:?} {rubbing:?}");
+    // Of order 3 errors pass zero; they are a fiftieth of those of order 2.
+    for (second, third) in [
+        (errors(pump, AugmentedLagrangian, 50), errors(pump, Extrapolated, 50)),
+        (errors(bead, AugmentedLagrangian, 50), errors(bead, Extrapolated, 50)),
+    ] {
+        assert!(
+            second.iter().zip(&third).all(|(second, third)| 50.0 * third < *second),
+            "{second:?} {third:?}"
+        );
+    }
 }

@@ -1,0 +1,77 @@
+//! Rows that contradict each other: what of their residuals no coordinate changes.
+
+use super::kkt::System;
+use super::model::{Counts, Model};
+use super::vector::{State, Vector};
+use crate::failure::{Holding, Level};
+use crate::{Dynamic, Failure, Real};
+
+/// Corrections on the way to where the rows are least open: as many as a start takes.
+const MOST_CORRECTIONS: u32 = 25;
+
+/// Singular value of Φ_q in the metric, relative to the largest, below which a row counts as dependent: half the digits.
+const TRUNCATION: f64 = 1e-8;
+
+/// Part of the residuals that is in combinations of rows which no coordinate changes, from which on those are what holds them
+/// open. Of two equal rows one of which is met it is 0.7.
+const LEAST_PART: f64 = 0.5;
+
+/// What such a combination may be open by, in the metric: what a start may be off.
+const ALLOWED: f64 = 1e-8;
+
+impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, R, N, M> {
+    /// The rows that contradict each other about a state, where that is why it cannot be put onto them.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn contradiction(
+        &self,
+        t: R,
+        y: &State<R, N, S::States>,
+        counts: &mut Counts,
+    ) -> Option<Failure> {
+        let (zero, mut y) = (R::constant(0.0), *y);
+        for _ in 0..MOST_CORRECTIONS {
+            let position = self.position(t, &y);
+            let phi = self.mechanism.phi(self.parameters, &position);
+            let phi_q = self.mechanism.phi_q(self.parameters, &position);
+            let system = System::new(&self.metric.mass(), &phi_q, self.metric);
+            let factors = system.factorize_rank_revealing(R::constant(TRUNCATION), S::COORDINATES, t).ok()?;
+            counts.corrections += 1;
+            let step = factors.solve(&[zero; N], &phi).0;
+            y.q = y.q.plus(R::constant(-1.0), &[1.0], [&step]);
+        }
+        let position = self.position(t, &y);
+        let mut open = self.mechanism.phi(self.parameters, &position);
+        open.iter_mut().zip(&self.metric.rows).for_each(|(open, scale)| *open = *open / *scale);
+        let phi_q = self.mechanism.phi_q(self.parameters, &position);
+        let system = System::new(&self.metric.mass(), &phi_q, self.metric);
+        let factors = system.factorize_rank_revealing(R::constant(TRUNCATION), S::COORDINATES, t).ok()?;
+        let mut held = [zero; M];
+        for shares in &factors.idle_shares() {
+            let part = dot(shares, &open);
+            held = held.plus(part, &[1.0], [shares]);
+        }
+        let (part, whole) = (dot(&held, &held).sqrt(), dot(&open, &open).sqrt());
+        // Written so that NaN is no contradiction.
+        if !(R::constant(ALLOWED) < part && R::constant(LEAST_PART) * whole < part) {
+            return None;
+        }
+        let mut worst = (zero, zero);
+        for (held, scale) in held.iter().zip(&self.metric.rows) {
+            if worst.0 < held.abs() {
+                worst = (held.abs(), *scale);
+            }
+        }
+        Some(Failure::Inconsistent {
+            rows: Holding::of(S::ROWS, held.iter().map(|held| held.abs().to_f64())),
+            level: Level::Position,
+            residual: (worst.0 * worst.1).to_f64(),
+            required: (R::constant(ALLOWED) * worst.1).to_f64(),
+            time: t.to_f64(),
+        })
+    }
+}
+
+fn dot<R: Real, const M: usize>(a: &[R; M], b: &[R; M]) -> R {
+    a.iter().zip(b).fold(R::constant(0.0), |sum, (a, b)| sum + *a * *b)
+}
