@@ -10,8 +10,9 @@ use crate::{Dynamic, Failure, Real, kinematics};
 /// place holds it to the root of the 64 ε that its residual may have, and its entries there are 360 √ε of those aside.
 const FLAT: f64 = 512.0;
 
-/// Largest entry of a row of Φ_q, in ε in the metric, that is none where a run starts: what rounding leaves of two points in one place.
-const FLAT_AT_START: f64 = 64.0;
+/// Largest entry of a row of Φ_q, in ε of what it is a thousandth of a reference length aside, that is none where a run starts: what
+/// rounding leaves of two points in one place, 64 ε, a thousand times.
+const FLAT_AT_START: f64 = 64e3;
 
 /// Residual of a row in the metric from which on a state has left the constraints and shows nothing about the mechanism.
 const LEFT: f64 = 1e-3;
