@@ -26,7 +26,7 @@ pub const CARD: FreeCard = FreeCard {
     title: "Bricard's mechanism",
     description: "Five rods and the ground in a loop of six revolute joints: by count no degree of freedom, in truth one: a row \
                   of its joints follows from the others wherever it is.",
-    runs: &[Preset { label: "10 s", description: "from rest, by its weight", set: &[] }],
+    runs: &[Preset { label: "falling", description: "from rest, by its weight", set: &[] }],
     duration: 10.0,
     usual: Usual::Projection,
     drawing: DRAWING,

@@ -28,7 +28,7 @@ pub const CARD: FreeCard = FreeCard {
     title: "Stiff flyball governor",
     description: "Two balls on rods swing out as the shaft turns and carry a slider by springs and dampers so stiff that explicit \
                   steps of a millisecond would blow up.",
-    runs: &[Preset { label: "10 s", description: "free, one turn a second at the start", set: &[] }],
+    runs: &[Preset { label: "free", description: "free, one turn a second at the start", set: &[] }],
     duration: 10.0,
     usual: Usual::Extrapolated,
     drawing: DRAWING,

@@ -21,7 +21,7 @@ pub const CARD: FreeCard = FreeCard {
     title: "Two four-bars in a row",
     description: "Two parallelograms that share their uprights fall over and come up again, through positions with all \
                   rods in line, where the rows lose rank.",
-    runs: &[Preset { label: "10 s", description: "upright at the start, pushed to the right", set: &[] }],
+    runs: &[Preset { label: "pushed", description: "upright at the start, pushed to the right", set: &[] }],
     duration: 10.0,
     usual: Usual::Projection,
     drawing: DRAWING,

@@ -21,7 +21,7 @@ pub const CARD: FreeCard = FreeCard {
     title: "One four-bar",
     description: "A parallelogram falls over and comes up again, through positions with all rods in line, where the rows \
                   lose rank.",
-    runs: &[Preset { label: "10 s", description: "upright at the start, pushed to the right", set: &[] }],
+    runs: &[Preset { label: "pushed", description: "upright at the start, pushed to the right", set: &[] }],
     duration: 10.0,
     usual: Usual::Projection,
     drawing: DRAWING,

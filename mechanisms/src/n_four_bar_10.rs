@@ -15,7 +15,7 @@ pub const CARD: FreeCard = FreeCard {
     title: "Ten four-bars in a row",
     description: "Ten parallelograms that share their uprights fall over and come up again; with all rods in line they have \
                   eleven degrees of freedom.",
-    runs: &[Preset { label: "10 s", description: "upright at the start, pushed to the right", set: &[] }],
+    runs: &[Preset { label: "pushed", description: "upright at the start, pushed to the right", set: &[] }],
     duration: 10.0,
     usual: Usual::Velocity,
     drawing: DRAWING,

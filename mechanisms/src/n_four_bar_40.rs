@@ -15,7 +15,7 @@ pub const CARD: FreeCard = FreeCard {
     title: "Forty four-bars in a row",
     description: "Forty parallelograms that share their uprights fall over and come up again; with all rods in line they \
                   have 41 degrees of freedom.",
-    runs: &[Preset { label: "10 s", description: "upright at the start, pushed to the right", set: &[] }],
+    runs: &[Preset { label: "pushed", description: "upright at the start, pushed to the right", set: &[] }],
     duration: 10.0,
     usual: Usual::VelocityInEqualSteps,
     drawing: DRAWING,

@@ -17,7 +17,7 @@ pub const CARD: FreeCard = FreeCard {
     name: "pendulum",
     title: "Pendulum in Cartesian coordinates",
     description: "A bob on a massless rod, released level: one degree of freedom in two coordinates.",
-    runs: &[Preset { label: "10 s", description: "released level, at rest", set: &[] }],
+    runs: &[Preset { label: "released", description: "released level, at rest", set: &[] }],
     duration: 10.0,
     usual: Usual::Projection,
     drawing: DRAWING,

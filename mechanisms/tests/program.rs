@@ -152,6 +152,11 @@ fn every_integrator_and_the_penalty_can_be_chosen() {
     );
     assert_eq!((rk4.1, euler.1), (161.0, 41.0));
     assert!(rk4.0 < 1e-3 && 0.1 < euler.0, "{rk4:?} {euler:?}");
+    // A step is taken as long as it is asked for.
+    let scratch = Scratch::new("long-steps");
+    let long = ["run", "pendulum", "--until", "2", "--method", "generalized-alpha", "--step", "0.05"];
+    let text = standard_output(run_into(&scratch, &long));
+    assert_eq!((figure(&text, "steps"), figure(&text, "size of the equal steps")), (40.0, 0.05));
     let penalty = run(&["--method", "penalty", "--frequency", "20"]);
     assert!(1e-12 < penalty.2 && penalty.2 < 1e-6, "{penalty:?}");
 }
@@ -206,7 +211,7 @@ fn a_pendulum_rests_where_its_guess_leads_and_swings_about_it_with_its_frequency
     assert!(eigenvalue.starts_with("0 ± ") && eigenvalue.ends_with(" Hz, undamped, marginal"), "{text}");
     let modes = scratch.text("modes.csv");
     let line = modes.lines().nth(1).expect("a mode");
-    assert!(line.starts_with("10 s,1,2,") && line.contains(",marginal,1.0,0.0,"), "{modes}");
+    assert!(line.starts_with("released,1,2,") && line.contains(",marginal,1.0,0.0,"), "{modes}");
     let text = run(&["--analysis", "linear", "--guess", "P.0=0.1", "--guess", "P.1=0.9"]);
     let both = [figure(&text, "eigenvalue 1"), figure(&text, "eigenvalue 2")];
     assert!(both.iter().all(|value| (value.abs() - rate).abs() < 2e-6) && both[0] * both[1] < 0.0, "{text}");
@@ -381,7 +386,7 @@ fn rest_is_found_beside_what_no_force_answers_and_is_called_by_its_name() {
         "{text}"
     );
     // Pushed from there it falls to the stable one, which stands below with its own label.
-    let settled = text.split("\n10 s, settled\n").nth(1).expect("a second rest");
+    let settled = text.split("\nreleased, settled\n").nth(1).expect("a second rest");
     assert!(
         text.contains("a stable rest is: found below") && figure(settled, "P.1 at rest") == -1.0,
         "{text}"

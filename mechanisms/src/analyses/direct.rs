@@ -254,7 +254,7 @@ impl Approach {
 }
 
 /// How many equal steps not longer than `longest` lead through `span` (s).
-fn equal(span: f64, longest: f64) -> u32 {
+pub fn equal(span: f64, longest: f64) -> u32 {
     /// Part of a step that rounding may put on top of a whole number of them.
     const ROUNDING: f64 = 1e-9;
     ((span / longest - ROUNDING).ceil().max(1.0)) as u32

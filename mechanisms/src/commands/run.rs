@@ -69,7 +69,7 @@ pub struct Arguments {
     /// What integrates it, where the method has no steps of its own [default: order8, of forty four-bars rk4]
     #[arg(long, value_enum)]
     integrator: Option<IntegratorName>,
-    /// Longest of equal steps (s) [default: 1e-3 of an implicit method, 2.5e-3 of another]
+    /// Longest of equal steps (s), which end at instants: without `--steps` these are so few that it is reached [default: 1e-3 of an implicit method, 2.5e-3 of another]
     #[arg(long, value_name = "H", value_parser = above_zero, allow_negative_numbers = true)]
     step: Option<f64>,
     /// Tolerance of adaptive steps [default: 1e-10]

@@ -5,8 +5,9 @@ use std::time::Duration;
 use mbs_runtime::Failure;
 use mbs_runtime::dynamics::{Counts, Doubt};
 use mechanisms::analyses::AnyDynamics;
-use mechanisms::analyses::direct::{Approach, Simulated, Stabilization};
+use mechanisms::analyses::direct::{Approach, Simulated, Stabilization, equal};
 
+use super::super::table::significant;
 use super::loads::{energies, loads};
 use super::{Finding, Found};
 
@@ -21,6 +22,11 @@ pub(super) fn direct(
         return Err(ended(failure, approach.stabilization));
     }
     let mut figures = balance(&found);
+    let span = times.get(1).zip(times.first()).map(|(next, first)| next - first);
+    if let Some((span, longest)) = span.zip(approach.longest()) {
+        let length = span / f64::from(equal(span, longest));
+        figures.push(["size of the equal steps".to_string(), format!("{} s", significant(length, 4))]);
+    }
     figures.extend(energies(&found.motion));
     figures.extend(loads(&found.motion));
     Ok(Finding::of(found.motion, figures))

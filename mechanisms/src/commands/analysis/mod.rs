@@ -11,7 +11,7 @@ mod watch;
 
 use clap::ValueEnum;
 use mechanisms::analyses::AnyDynamics;
-use mechanisms::analyses::direct::{Approach, Stabilization, Steps};
+use mechanisms::analyses::direct::{Approach, Stabilization, Steps, equal};
 use mechanisms::analyses::linear::SmallMotions;
 use mechanisms::facade::{AnyMechanism, Motion};
 use mechanisms::registry::{Preset, instants};
@@ -166,7 +166,12 @@ impl Wish {
             (None, Some(until)) => until,
             (None, None) => subject.duration(instance)?,
         };
-        Ok(instants(duration, self.steps))
+        // Steps that someone asks for are not cut by instants that nobody did.
+        let most = match self.approach().longest() {
+            Some(longest) if self.given.step && !self.given.steps => equal(duration, longest),
+            _ => u32::MAX,
+        };
+        Ok(instants(duration, self.steps.min(most as usize)))
     }
 }
 
