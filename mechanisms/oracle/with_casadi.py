@@ -106,11 +106,13 @@ class Words:
             columns.append(column)
         scale = ca.diag(ca.vertcat(*([1, 1, 1 / length] * len(bodies))))
         scaled = ca.mtimes(scale, ca.horzcat(*columns))
-        orthogonal, upper = ca.qr(scaled)
-        for k in range(len(columns)):
+        # The sums are one more column: what they have along the others is exact however little orthogonal these are.
+        n = len(columns)
+        _, upper = ca.qr(ca.horzcat(scaled, ca.mtimes(scale, known)))
+        for k in range(n):
             own = ca.fabs(upper[k, k]) >= SHORTEST_COLUMN * ca.norm_2(scaled[:, k])
             self.joints_resolved = ca.logic_and(self.joints_resolved, own)
-        forces = ca.solve(upper, ca.mtimes(orthogonal.T, ca.mtimes(scale, known)))
+        forces = ca.solve(upper[:n, :n], upper[:n, n])
         return [forces[i] for i in range(2 * len(joints))]
 
     def replaced(self, e):

@@ -156,7 +156,8 @@ fn every_integrator_and_the_penalty_can_be_chosen() {
     let scratch = Scratch::new("long-steps");
     let long = ["run", "pendulum", "--until", "2", "--method", "generalized-alpha", "--step", "0.05"];
     let text = standard_output(run_into(&scratch, &long));
-    assert_eq!((figure(&text, "steps"), figure(&text, "size of the equal steps")), (40.0, 0.05));
+    assert!(text.contains(" steps: 40, 0 rejected"), "{text}");
+    assert_eq!(figure(&text, "size of the equal steps"), 0.05);
     let penalty = run(&["--method", "penalty", "--frequency", "20"]);
     assert!(1e-12 < penalty.2 && penalty.2 < 1e-6, "{penalty:?}");
 }
