@@ -4,25 +4,12 @@
 //! Elsewhere a pin's force would do work, and the sums over the bodies have no solution. Drives and guides that act on
 //! bodies by themselves are no help: their forces are among the sums.
 
-use super::attribution::scattered;
-use super::jacobian;
-use super::manifold::{Manifold, Orthogonal, Point, dot};
-use super::pins::{Attribution, Given, frame};
+use super::pins::{Attribution, Given};
+use super::velocities::{Here, Motions, Seen};
 use crate::model::Model;
 use crate::model::dynamics::{Dynamics as Declared, Pin};
 use crate::model::expression::Id;
-use crate::symbolic::evaluate::evaluate;
-use crate::symbolic::{Graph, Leaf, NodeId};
-
-/// Positions that are looked at: at one of them a pin of another place may fit by chance, never at all.
-const POINTS: usize = 3;
-/// Starts of the search for them.
-const TRIED: usize = 12;
-/// Multiplications that all searches may take, tenths of a second of a debug build, and that a single one may.
-const WORK: usize = 10_000_000;
-const MOST_WORK: usize = 1_000_000_000;
-/// Largest part of a velocity, relative to what it is the difference of, that is rounding.
-const SAME: f64 = 1e-6;
+use crate::symbolic::{Graph, NodeId};
 
 /// What is wrong with the place of a pin.
 pub enum Misplaced {
@@ -49,210 +36,38 @@ pub fn misplaced(
     given: Given<'_>,
     found: &Attribution,
 ) -> Option<Misplaced> {
-    let residuals: Vec<NodeId> = given.rows.iter().map(|row| row.phi).collect();
-    let manifold = Manifold::of(g, &residuals);
-    let work = Work::new(g, (model, declared), given, found);
-    let one = manifold.work().max(1);
-    if one > MOST_WORK {
-        return None;
-    }
-    let mut faults: Option<Vec<Option<Misplaced>>> = None;
-    let mut points = 0;
-    for trial in 0..(WORK / one).clamp(POINTS, TRIED) {
-        let Some(point) = manifold.point(g, |leaf| work.start(g, leaf, trial)) else { continue };
-        let Some(seen) = work.seen(g, &point, trial) else { continue };
-        faults = Some(match faults {
-            None => seen,
-            Some(known) => known.into_iter().zip(seen).map(|(known, seen)| known.and(seen)).collect(),
-        });
-        points += 1;
-        if points == POINTS {
-            break;
-        }
-    }
-    match faults {
-        Some(faults) => faults.into_iter().flatten().next(),
-        None => Some(Misplaced::Unseen),
+    let zero = g.constant(0.0);
+    let of = |id: Option<&Id>| id.and_then(|id| given.nodes.get(id.index())).copied().unwrap_or(zero);
+    let points: Vec<[NodeId; 2]> =
+        declared.pins.iter().map(|pin| [of(pin.at.first()), of(pin.at.get(1))]).collect();
+    let apart = |row: usize| found.rows.iter().all(|(known, _)| *known != row);
+    let motions = Motions::of(g, (model, declared), given, &points, apart);
+    let all = |here: &Here<'_>| {
+        declared.pins.iter().enumerate().map(|(index, pin)| at_pin(here, index, pin)).collect()
+    };
+    let both = |known: Vec<Option<Misplaced>>, seen: Vec<Option<Misplaced>>| {
+        known.into_iter().zip(seen).map(|(known, seen)| known.and(seen)).collect()
+    };
+    match motions.seen(g, all, both) {
+        Seen::Somewhere(faults) => faults.into_iter().flatten().next(),
+        Seen::Nowhere => Some(Misplaced::Unseen),
+        Seen::TooLong => None,
     }
 }
 
-/// Functions of the position whose slopes say how points move.
-struct Work<'a> {
-    model: &'a Model,
-    pins: &'a [Pin],
-    guesses: &'a [NodeId],
-    /// Values, then slopes along the coordinates: of the places of pins, of centres and angles, of rows.
-    roots: Vec<NodeId>,
-    /// Function and coordinate of each slope.
-    places: Vec<(usize, usize)>,
-    coordinates: usize,
-    /// Centres and angles by function, body by body.
-    bodies: Vec<([usize; 2], Option<usize>)>,
-    /// Rows whose forces the pins bear, by function.
-    rows: Vec<usize>,
-    functions: usize,
-}
-
-impl<'a> Work<'a> {
-    fn new(
-        g: &mut Graph,
-        (model, declared): (&'a Model, &'a Declared),
-        given: Given<'a>,
-        found: &Attribution,
-    ) -> Self {
-        let zero = g.constant(0.0);
-        let of = |id: Id| given.nodes.get(id.index()).copied().unwrap_or(zero);
-        let mut functions: Vec<NodeId> = Vec::new();
-        let mut add = |node: NodeId| {
-            functions.push(node);
-            functions.len() - 1
-        };
-        for pin in &declared.pins {
-            for component in [0, 1] {
-                add(pin.at.get(component).map_or(zero, |id| of(*id)));
-            }
-        }
-        let frames = declared.bodies.iter().map(|body| frame(body, of, zero));
-        let bodies = frames.map(|(centre, angle)| (centre.map(&mut add), angle.map(&mut add))).collect();
-        let apart = |row: &usize| found.rows.iter().all(|(known, _)| known != row);
-        let rows = given.rows.iter().enumerate().filter(|(index, _)| apart(index));
-        let rows = rows.map(|(_, row)| add(row.phi)).collect();
-        let coordinates = given.guesses.len();
-        let slopes = jacobian(g, &functions, coordinates, Leaf::Position);
-        let count = functions.len();
-        let (mut roots, mut places) = (functions, Vec::new());
-        for (function, slopes) in slopes.into_iter().enumerate() {
-            for (coordinate, slope) in slopes {
-                roots.push(slope);
-                places.push((function, coordinate));
-            }
-        }
-        let (pins, guesses) = (declared.pins.as_slice(), given.guesses);
-        Work { model, pins, guesses, roots, places, coordinates, bodies, rows, functions: count }
+/// Whether a pin is misplaced at a position; `None` where something there is no number.
+fn at_pin(here: &Here<'_>, index: usize, pin: &Pin) -> Option<Option<Misplaced>> {
+    let [first, second] = pin.bodies;
+    let (with_first, with_second) = (here.carried(first, index)?, here.carried(second, index)?);
+    if here.same(&with_first, &with_second) {
+        return Some(None);
     }
-
-    /// Where a search starts: near the guess and the parameters' defaults, every other time anywhere.
-    fn start(&self, g: &Graph, leaf: Leaf, trial: usize) -> f64 {
-        let anywhere = scattered(leaf, trial);
-        let off = NEAR * (anywhere - MIDDLE);
-        match leaf {
-            _ if trial % 2 == 1 => anywhere,
-            Leaf::Parameter(index) => {
-                let default = self.model.variables.get(index as usize).map_or(1.0, |known| known.default);
-                if default == 0.0 { off } else { default * (1.0 + off) }
-            }
-            Leaf::Position(index) => {
-                let Some(guess) = self.guesses.get(index as usize) else { return anywhere };
-                let guess = evaluate(g, &[*guess], |leaf| match leaf {
-                    Leaf::Position(_) => f64::NAN,
-                    other => self.start(g, other, trial),
-                });
-                guess.first().map_or(anywhere, |guess| guess + off)
-            }
-            _ => anywhere,
-        }
-    }
-
-    /// Of each pin whether it is misplaced at a position; `None` where something there is no number.
-    fn seen(&self, g: &Graph, point: &Point, trial: usize) -> Option<Vec<Option<Misplaced>>> {
-        let values = evaluate(g, &self.roots, |leaf| match point.get(&leaf) {
-            Some(value) => *value,
-            None => self.start(g, leaf, trial),
-        });
-        if !values.iter().all(|value| value.is_finite()) {
-            return None;
-        }
-        let mut slopes = vec![vec![0.0; self.coordinates]; self.functions];
-        for ((function, coordinate), slope) in self.places.iter().zip(values.iter().skip(self.functions)) {
-            *slopes.get_mut(*function)?.get_mut(*coordinate)? = *slope;
-        }
-        let mut rows = Orthogonal::default();
-        for row in &self.rows {
-            rows.add(slopes.get(*row)?.clone());
-        }
-        let here = Here { work: self, values: &values, slopes: &slopes, rows: &rows };
-        (0..self.pins.len()).map(|pin| here.pin(pin)).collect()
-    }
-}
-
-/// How far a start lies from the guess (rad, m) and, in parts of themselves, from the parameters' defaults at most twice; the
-/// middle of scattered values.
-const NEAR: f64 = 0.2;
-const MIDDLE: f64 = 0.7;
-
-/// A position.
-struct Here<'a> {
-    work: &'a Work<'a>,
-    values: &'a [f64],
-    slopes: &'a [Vec<f64>],
-    rows: &'a Orthogonal,
-}
-
-/// How a point moves.
-struct Velocity {
-    /// Slopes of both components.
-    slopes: [Vec<f64>; 2],
-    /// Squares of what they are the sum of: sums that vanish have the rounding of their terms.
-    squares: f64,
-}
-
-impl Here<'_> {
-    fn pin(&self, index: usize) -> Option<Option<Misplaced>> {
-        let pin = self.work.pins.get(index)?;
-        let place = [2 * index, 2 * index + 1];
-        let [first, second] = pin.bodies;
-        let (with_first, with_second) = (self.carried(first, place)?, self.carried(second, place)?);
-        if self.same(&with_first, &with_second) {
-            return Some(None);
-        }
-        let slopes = [self.slopes.get(place[0])?.clone(), self.slopes.get(place[1])?.clone()];
-        let own = Velocity { squares: squares(&slopes), slopes };
-        let on_first = self.same(&own, &with_first);
-        // The ground carries nothing: where the point stands on neither, the body is off.
-        let body = usize::from(on_first || first.is_none());
-        let on_other = on_first || self.same(&own, &with_second);
-        Some(Some(Misplaced::Off { pin: index, body, on_other }))
-    }
-
-    /// Velocity of the body's point that is at `place`: that of its centre, and the arm turned.
-    fn carried(&self, body: Option<usize>, place: [usize; 2]) -> Option<Velocity> {
-        let still = || vec![0.0; self.work.coordinates];
-        let Some(body) = body else { return Some(Velocity { slopes: [still(), still()], squares: 0.0 }) };
-        let (centre, angle) = self.work.bodies.get(body)?;
-        let turn = match angle {
-            Some(angle) => self.slopes.get(*angle)?.clone(),
-            None => still(),
-        };
-        let arm = |component: usize| {
-            Some(self.values.get(*place.get(component)?)? - self.values.get(*centre.get(component)?)?)
-        };
-        let (x, y) = (arm(0)?, arm(1)?);
-        let centre = [self.slopes.get(centre[0])?, self.slopes.get(centre[1])?];
-        let turned = |arm: f64| turn.iter().map(|turn| arm * turn).collect::<Vec<f64>>();
-        let turned = [turned(-y), turned(x)];
-        let squares = squares(&turned) + centre.iter().map(|slopes| dot(slopes, slopes)).sum::<f64>();
-        let both = |(centre, turned): (&Vec<f64>, &Vec<f64>)| {
-            centre.iter().zip(turned).map(|(centre, turned)| centre + turned).collect()
-        };
-        let [turned_x, turned_y] = &turned;
-        let [centre_x, centre_y] = centre;
-        let slopes = [both((centre_x, turned_x)), both((centre_y, turned_y))];
-        Some(Velocity { slopes, squares })
-    }
-
-    /// Whether two velocities are the same in every motion that the rows allow.
-    fn same(&self, a: &Velocity, b: &Velocity) -> bool {
-        let size = libm::sqrt(a.squares + b.squares);
-        a.slopes.iter().zip(&b.slopes).all(|(a, b)| {
-            let mut difference: Vec<f64> = a.iter().zip(b).map(|(a, b)| a - b).collect();
-            self.rows.take_from(&mut difference);
-            libm::sqrt(dot(&difference, &difference)) <= SAME * size
-        })
-    }
-}
-
-fn squares(slopes: &[Vec<f64>; 2]) -> f64 {
-    slopes.iter().map(|slopes| dot(slopes, slopes)).sum()
+    let own = here.own(index)?;
+    let on_first = here.same(&own, &with_first);
+    // The ground carries nothing: where the point stands on neither, the body is off.
+    let body = usize::from(on_first || first.is_none());
+    let on_other = on_first || here.same(&own, &with_second);
+    Some(Some(Misplaced::Off { pin: index, body, on_other }))
 }
 
 #[cfg(test)]

@@ -109,6 +109,11 @@ impl Orthogonal {
         (shares, rest)
     }
 
+    /// How many they are.
+    pub fn rank(&self) -> usize {
+        self.0.len()
+    }
+
     /// Takes what a row has along these from it, twice for its last digits; returns how much of each.
     pub fn take_from(&self, row: &mut [f64]) -> Vec<f64> {
         let mut shares = vec![0.0; self.0.len()];

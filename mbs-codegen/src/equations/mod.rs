@@ -17,6 +17,7 @@ mod second_moments;
 mod signed;
 mod turning;
 pub mod turns;
+mod velocities;
 
 use crate::model::Model;
 use crate::symbolic::{Graph, Leaf, NodeId, tangent, tangents};

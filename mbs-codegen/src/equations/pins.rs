@@ -230,12 +230,12 @@ impl<'a> Sums<'a> {
         let joined: Vec<_> = declared.pins.iter().map(|pin| pin.bodies).collect();
         let rows = rows.into_iter().map(|row| slopes.motion_of(row, &bodies, &joined)).collect();
         let mut acting = Vec::new();
-        for (part, place) in derived.acting.iter().zip(places) {
+        let points = Points { slopes: &slopes, bodies: &bodies, declared, nodes: given.nodes };
+        let parts: Vec<_> = derived.acting.iter().zip(places).collect();
+        let able = points.able(g, model, given, &parts);
+        for ((part, place), able) in parts.into_iter().zip(&able) {
             let found = match part.place {
-                Place::Point(point) => {
-                    Points { slopes: &slopes, bodies: &bodies, declared, nodes: given.nodes }
-                        .carrier(part, point, place)?
-                }
+                Place::Point(_) => points.carrier(part, place, able)?,
                 Place::Scalar(_) if slopes.is_fixed(place[0]) => Some(On::Ground),
                 Place::Scalar(_) => slopes.motion_of(place[0], &bodies, &joined).map(On::Moves),
                 Place::Elsewhere => None,

@@ -6,7 +6,7 @@ use super::bodies::inertia;
 use super::dynamics::{Action, Carrier, Dynamics, Force, Kinetic, Line, Turn};
 use super::elaborate::{Elaborator, Fault, Quantity, Reach, Value};
 use super::expression::{Id, Node};
-use super::initialiser::{fits_shape, initialiser};
+use super::initialiser::{filling, fits_shape, initialiser};
 use super::orientation::{moments, parameters};
 use super::resolve::Resolver;
 use super::signs::{Least, Signed};
@@ -451,7 +451,7 @@ impl Resolver<'_> {
         Ok(())
     }
 
-    /// A value in the unit of `coordinate` per `per`, of parameters alone.
+    /// A value in the unit of `coordinate` per `per`, of parameters alone; a scalar stands for every component.
     fn start_value(
         &mut self,
         value: &Expression,
@@ -463,8 +463,7 @@ impl Resolver<'_> {
             let dimension =
                 coordinate.items.first().map(|item| item.quantity.dimension()).unwrap_or_default();
             let value = initialiser(work, value, dimension.over(per))?;
-            fits_shape(work, &value, &coordinate.shape)?;
-            Ok::<_, Fault>(value)
+            filling(work, value, &coordinate.shape)
         })?;
         if value.items.iter().all(|item| self.model.is_constant(item.id)) {
             return Ok(value);
