@@ -326,10 +326,18 @@ pub fn drop_idle(motions: &mut [&mut Motion]) {
         let supply = motion.dynamics.as_ref().and_then(|forces| forces.supplies.get(index));
         supply.is_none_or(SupplyCurve::is_idle)
     };
-    let kept: Vec<bool> = (0..count).map(|index| !motions.iter().all(|motion| idle(motion, index))).collect();
+    // What a row is may be known only of the motions that it does work in.
+    let by = |index: usize, motions: &[&mut Motion]| {
+        let acting = motions.iter().find(|motion| !idle(motion, index))?;
+        acting.dynamics.as_ref()?.supplies.get(index).map(|supply| supply.by)
+    };
+    let kept: Vec<Option<Supplier>> = (0..count).map(|index| by(index, motions)).collect();
     for forces in motions.iter_mut().filter_map(|motion| motion.dynamics.as_mut()) {
         let mut marks = kept.iter();
-        forces.supplies.retain(|_| marks.next().copied().unwrap_or(true));
+        forces.supplies.retain_mut(|supply| match marks.next() {
+            Some(by) => by.map(|by| supply.by = by).is_some(),
+            None => true,
+        });
     }
 }
 

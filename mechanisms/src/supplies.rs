@@ -8,8 +8,10 @@ use serde::Serialize;
 pub enum Supplier {
     /// A force of the text that is neither gravity nor a potential.
     Force,
-    /// A row that depends on the time: λ Φ_t, of a drive its effort times the speed that it prescribes.
+    /// A row of a `drive`: λ Φ_t, its effort times the speed that it prescribes.
     Drive,
+    /// A row of a `constraint` that depends on the time: λ Φ_t.
+    Constraint,
     /// The time itself, where it carries masses along or changes a potential.
     Time,
 }
@@ -23,7 +25,7 @@ pub struct SupplyCurve {
     pub by: Supplier,
     /// Power (W).
     pub power: Vec<f64>,
-    /// Work since the first instant (J), see [`works`].
+    /// Work since the first instant (J): of a motion from forces integrated along its steps, else by [`works`].
     pub work: Vec<f64>,
 }
 
@@ -38,6 +40,7 @@ impl SupplyCurve {
         match self.by {
             Supplier::Force => format!("force {}", self.name),
             Supplier::Drive => format!("drive {}", self.name),
+            Supplier::Constraint => format!("constraint {}", self.name),
             Supplier::Time => self.name.to_string(),
         }
     }

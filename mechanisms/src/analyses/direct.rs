@@ -9,6 +9,7 @@ use mbs_runtime::dynamics::{
 };
 use mbs_runtime::{Dynamic, Failure, Motion as Moving, Partitioned};
 
+use super::single::{Quadrature, Single, add_works};
 use super::start::{Start, start, text_start};
 use super::{AnyDynamics, determined, supplied};
 use crate::facade::{Motion, State};
@@ -214,31 +215,42 @@ pub(crate) fn simulate<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
         Stabilization::Velocity => (partitioned.by_velocity)(mechanism, &start, steps, times, progress),
         Stabilization::Implicit(Implicit { method, longest }) => match method {
             ImplicitMethod::AugmentedLagrangian => {
-                implicit(mechanism, &AugmentedLagrangian, &start, longest, times, progress)
+                let by = (&AugmentedLagrangian as AnyMethod<'_, S, N, M>, Quadrature::Trapezoidal);
+                implicit(mechanism, by, &start, longest, times, progress)
             }
             ImplicitMethod::Extrapolated => {
-                implicit(mechanism, &Extrapolated, &start, longest, times, progress)
+                let by = (&Extrapolated as AnyMethod<'_, S, N, M>, Quadrature::Extrapolated);
+                implicit(mechanism, by, &start, longest, times, progress)
             }
             ImplicitMethod::GeneralizedAlpha => {
-                implicit(mechanism, &GeneralizedAlpha::default(), &start, longest, times, progress)
+                let by = GeneralizedAlpha::default();
+                let by = (&by as AnyMethod<'_, S, N, M>, Quadrature::Trapezoidal);
+                implicit(mechanism, by, &start, longest, times, progress)
             }
         },
     };
-    match approach.stabilization {
-        Stabilization::None | Stabilization::Baumgarte(_) => found,
-        _ => found.map(|found| Simulated { undetermined: None, ..found }),
+    let mut found = found?;
+    found.motion.dynamics.iter_mut().for_each(supplied::name_rows::<S, N, M>);
+    if !matches!(approach.stabilization, Stabilization::None | Stabilization::Baumgarte(_)) {
+        found.undetermined = None;
     }
+    Ok(found)
 }
 
 fn implicit<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
     mechanism: &S,
-    method: AnyMethod<'_, S, N, M>,
+    by: (AnyMethod<'_, S, N, M>, Quadrature),
     start: &Start<N>,
     longest: f64,
     times: &[f64],
     progress: &mut dyn FnMut(usize),
 ) -> Result<Simulated, Failure> {
-    stepped(mechanism, method, start, times, progress, &|span| equal(span, longest))
+    let count = |span| equal(span, longest);
+    let mut found = stepped(mechanism, by.0, start, times, progress, &count)?;
+    add_works(&mut found, |supply| {
+        stepped(mechanism, &Single { by, supply }, start, times, &mut |_| (), &count)
+    });
+    Ok(found)
 }
 
 impl Approach {
@@ -287,7 +299,23 @@ fn by_projection<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
     Ok(Simulated { replaced: true, ..found })
 }
 
+/// By steps of an explicit method, and the work of each supply.
 fn integrate<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
+    mechanism: &S,
+    formulation: AnyFormulation<'_, S, N, M>,
+    start: &Start<N>,
+    steps: Steps,
+    times: &[f64],
+    progress: &mut dyn FnMut(usize),
+) -> Result<Simulated, Failure> {
+    let mut found = explicit(mechanism, formulation, start, steps, times, progress)?;
+    add_works(&mut found, |supply| {
+        explicit(mechanism, &Single { by: formulation, supply }, start, steps, times, &mut |_| ())
+    });
+    Ok(found)
+}
+
+fn explicit<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
     mechanism: &S,
     formulation: AnyFormulation<'_, S, N, M>,
     start: &Start<N>,

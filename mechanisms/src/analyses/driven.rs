@@ -34,6 +34,7 @@ pub(crate) fn add_forces<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
         supplied::push(&mut forces, &mechanism, (&parameters, &position), &moving);
     }
     forces.add_works(&motion.time);
+    supplied::name_rows::<S, N, M>(&mut forces);
     motion.dynamics = Some(forces);
     Ok(())
 }

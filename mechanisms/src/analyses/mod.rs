@@ -13,6 +13,7 @@ pub mod modes;
 pub mod rest;
 #[cfg(feature = "ready")]
 mod settling;
+mod single;
 pub mod start;
 mod supplied;
 

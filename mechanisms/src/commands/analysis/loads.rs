@@ -67,23 +67,41 @@ fn range(values: &[f64], decimals: usize) -> String {
 pub(super) fn energies(motion: &Motion) -> Vec<[String; 2]> {
     let Some(forces) = &motion.dynamics else { return Vec::new() };
     let active: Vec<&SupplyCurve> = forces.supplies.iter().filter(|supply| !supply.is_idle()).collect();
+    let error = open(forces);
     let line = |supply: &&SupplyCurve| {
         let (least, most) = supply
             .power
             .iter()
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), power| (a.min(*power), b.max(*power)));
         let powers = format!("power {} to {} W", significant(least, 5), significant(most, 5));
-        [format!("work of {}", supply.title()), format!("{} J, {powers}", significant(supply.total(), 7))]
+        [format!("work of {}", supply.title()), format!("{} J, {powers}", settled(supply.total(), error))]
     };
     let mut lines: Vec<[String; 2]> = active.iter().take(MOST_LINES).map(line).collect();
     if let Some(left) = active.len().checked_sub(MOST_LINES).filter(|left| *left > 0) {
         let rest: f64 = active.iter().skip(MOST_LINES).map(|supply| supply.total()).sum();
-        lines.push([format!("work of {left} more"), format!("{} J", significant(rest, 7))]);
+        lines.push([format!("work of {left} more"), format!("{} J", settled(rest, error))]);
     }
     if !active.is_empty() {
         lines.push(balance(forces, &active));
     }
     lines
+}
+
+/// What the works leave open at the last instant (J): of the work that is integrated of all together, and of the change of the
+/// energy.
+fn open(forces: &Forces) -> f64 {
+    let last = |values: &[f64]| values.last().copied().unwrap_or(0.0);
+    let sum: f64 = forces.supplies.iter().map(SupplyCurve::total).sum();
+    (sum - last(&forces.work)).abs().max(last(&forces.defect).abs())
+}
+
+/// A work (J) with the digits that `error` (J) leaves, at most seven and at least one.
+fn settled(work: f64, error: f64) -> String {
+    const MOST: f64 = 7.0;
+    let digits = (work / error).abs().log10().floor();
+    // Neither where nothing is open nor where there is no work.
+    let digits = if digits.is_finite() { digits.clamp(1.0, MOST) } else { MOST };
+    significant(work, digits as usize)
 }
 
 /// How the works add up to the change of the energy.
@@ -96,13 +114,18 @@ fn balance(forces: &Forces, active: &[&SupplyCurve]) -> [String; 2] {
     let change = energy(true) - energy(false);
     let mut sum = 0.0;
     let mut parts = Vec::new();
-    for (by, name) in [(Supplier::Drive, "drives"), (Supplier::Force, "forces"), (Supplier::Time, "the time")]
-    {
+    let error = open(forces);
+    for (by, name) in [
+        (Supplier::Drive, "drives"),
+        (Supplier::Constraint, "constraints"),
+        (Supplier::Force, "forces"),
+        (Supplier::Time, "the time"),
+    ] {
         let of = || active.iter().filter(|supply| supply.by == by);
         if of().next().is_some() {
             let work: f64 = of().map(|supply| supply.total()).sum();
             sum += work;
-            parts.push(format!("{name} {} J", significant(work, 7)));
+            parts.push(format!("{name} {} J", settled(work, error)));
         }
     }
     let value = format!(
@@ -131,4 +154,18 @@ fn surplus(forces: &Forces) -> Option<[String; 2]> {
     let rest = format!("the multipliers of {shared} of {all} rows are not unique, but the shortest of many");
     (!rows.is_empty())
         .then(|| ["rows that follow from others".to_string(), format!("{}; {rest}", rows.join(", "))])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::settled;
+
+    #[test]
+    fn works_are_printed_with_the_digits_that_their_error_leaves() {
+        assert_eq!(settled(-0.003_125_412, 2e-7), "-0.003125");
+        assert_eq!(settled(-0.003_125_412, 0.0), "-0.003125412");
+        assert_eq!(settled(1_234.567_89, 1e-12), "1234.568");
+        assert_eq!(settled(3e-5, 1e-3), "3e-5");
+        assert_eq!(settled(0.0, 1e-3), "0");
+    }
 }
