@@ -264,7 +264,8 @@ pub enum Failure {
         /// Time (s).
         time: f64,
     },
-    /// Forces and inertia did not come into balance within the iterations of an implicit method.
+    /// Forces and inertia did not come into balance within the iterations of an implicit method, or of the search for a rest, or what
+    /// states integrate not to 0.
     Unbalanced {
         /// The coordinate that is farthest from balance.
         coordinate: Entry,
@@ -282,7 +283,8 @@ pub enum Failure {
         /// Time (s).
         time: f64,
     },
-    /// A first-order state has no value at which it rests: its rate does not vanish, or does not depend on it.
+    /// A first-order state has no value at which it rests: its rate is not 0 where the search came to its end and neither it nor a free
+    /// motion changes that, or is held at 0 by what no force of its own bears.
     Unsettled {
         /// The state.
         state: Entry,
@@ -583,7 +585,7 @@ impl fmt::Display for Failure {
             Failure::Unbalanced { coordinate, iterations, .. } => write!(
                 f,
                 "no balance of forces at t = {time} s after {iterations} iterations: `{}` (line {}) is farthest off; take \
-                 a smaller step",
+                 a smaller step, or search for a rest from nearer",
                 coordinate.name, coordinate.line
             ),
             Failure::Unsettled { state, .. } => write!(

@@ -1,30 +1,33 @@
 //! The stiffness of the motions that the rows leave free, of any rank: what pushes back, what nothing answers.
 
 use super::implicit::Tangent;
-use super::kkt::{Factors, System, truncation};
+use super::kkt::{Factors, System, none, truncation};
 use super::model::Model;
 use super::vector::{State, Vector};
 use crate::linear::orthogonal::minimum_norm;
 use crate::{Dynamic, Failure, Real};
 
 /// Part of the largest stiffness or force in the metric below which a motion meets no stiffness: beside what rounding of
-/// stiff springs leaves of a soft direction, nine digits.
+/// stiff springs leaves of a soft direction, nine digits, or what rounding makes of nothing where that is more.
 const UNANSWERED: f64 = 1e-9;
 
 /// Part of a coordinate in an indifferent motion, in the metric, from which it counts as indifferent.
-const SHARE: f64 = 1e-6;
+pub(super) const SHARE: f64 = 1e-6;
 
 /// K on the null space of Φ_q at one position, in the reference metric.
+#[derive(Clone, Copy)]
 pub(super) struct FreeStiffness<R, const N: usize, const M: usize> {
     /// Φ_q with the metric in place of a mass.
-    factors: Factors<R, N, M>,
-    freedom: usize,
+    pub factors: Factors<R, N, M>,
+    pub freedom: usize,
     /// The free motions Z, orthonormal in the metric, in the units of the coordinates; then zeros.
-    motions: [[R; N]; N],
+    pub motions: [[R; N]; N],
     /// K: N rows of N.
-    stiffness: [[R; N]; N],
+    pub stiffness: [[R; N]; N],
     /// Zᵀ K Z.
-    reduced: [[R; N]; N],
+    pub reduced: [[R; N]; N],
+    /// The largest force or stiffness in the metric (J).
+    pub size: R,
     /// Energy (J) an angle of 1 below which nothing answers.
     nothing: R,
 }
@@ -69,8 +72,8 @@ impl<R: Real, const N: usize, const M: usize> FreeStiffness<R, N, M> {
         }
         let motions = factors.free_motions();
         let reduced = motions.map(|left| motions.map(|right| dot(&left, &times(&stiffness, &right))));
-        let (freedom, nothing) = (N.saturating_sub(factors.rank()), R::constant(UNANSWERED) * size);
-        Ok(FreeStiffness { factors, freedom, motions, stiffness, reduced, nothing })
+        let (freedom, nothing) = (N.saturating_sub(factors.rank()), unanswered::<R>() * size);
+        Ok(FreeStiffness { factors, freedom, motions, stiffness, reduced, size, nothing })
     }
 
     /// What answers `imbalance` (N) where the rows are open by `phi` (M).
@@ -79,7 +82,7 @@ impl<R: Real, const N: usize, const M: usize> FreeStiffness<R, N, M> {
         let closing = self.factors.solve(&[zero; N], phi).0;
         let open = imbalance.plus(-one, &[1.0], [&times(&self.stiffness, &closing)]);
         let wanted = self.motions.map(|motion| dot(&motion, &open));
-        let found = self.shortest(&wanted);
+        let found = self.shortest(&self.reduced, &wanted);
         let left = wanted.plus(-one, &[1.0], [&times(&self.reduced, &found)]);
         let step = closing.plus(one, &[1.0], [&self.moved(&found)]);
         let rest = imbalance.plus(-one, &[1.0], [&times(&self.stiffness, &step)]);
@@ -101,7 +104,7 @@ impl<R: Real, const N: usize, const M: usize> FreeStiffness<R, N, M> {
         for index in 0..self.freedom {
             let mut unit = [zero; N];
             unit.iter_mut().skip(index).take(1).for_each(|component| *component = one);
-            let answered = self.shortest(&times(&self.reduced, &unit));
+            let answered = self.shortest(&self.reduced, &times(&self.reduced, &unit));
             let motion = self.moved(&unit.plus(-one, &[1.0], [&answered]));
             for ((mark, part), scale) in indifferent.iter_mut().zip(&motion).zip(scales) {
                 *mark |= R::constant(SHARE).less((*part / *scale).abs());
@@ -110,18 +113,18 @@ impl<R: Real, const N: usize, const M: usize> FreeStiffness<R, N, M> {
         indifferent
     }
 
-    /// The shortest w with Zᵀ K Z w = `wanted` in the least-squares sense, motions that nothing answers left out: N, zeros
+    /// The shortest w with `reduced` w = `wanted`, Zᵀ K Z or a part of it, in the least-squares sense, motions that nothing answers left out: N, zeros
     /// from the freedom on.
-    fn shortest(&self, wanted: &[R; N]) -> [R; N] {
+    pub(super) fn shortest(&self, reduced: &[[R; N]; N], wanted: &[R; N]) -> [R; N] {
         let one = R::constant(1.0);
         let mut largest = R::constant(0.0);
-        self.reduced.iter().flatten().for_each(|entry| largest = largest.max(entry.abs()));
-        let tolerance = R::constant(UNANSWERED).max(self.nothing / largest);
-        minimum_norm(&self.reduced, wanted, &[one; N], &[one; N], tolerance).0
+        reduced.iter().flatten().for_each(|entry| largest = largest.max(entry.abs()));
+        let tolerance = unanswered::<R>().max(self.nothing / largest);
+        minimum_norm(reduced, wanted, &[one; N], &[one; N], tolerance).0
     }
 
     /// Z w: N.
-    fn moved(&self, w: &[R; N]) -> [R; N] {
+    pub(super) fn moved(&self, w: &[R; N]) -> [R; N] {
         let mut moved = [R::constant(0.0); N];
         for (motion, share) in self.motions.iter().zip(w) {
             moved.iter_mut().zip(motion).for_each(|(sum, part)| *sum = *sum + *share * *part);
@@ -130,10 +133,15 @@ impl<R: Real, const N: usize, const M: usize> FreeStiffness<R, N, M> {
     }
 }
 
-fn dot<R: Real, const N: usize>(a: &[R; N], b: &[R; N]) -> R {
+/// Part of the largest force below which it is none.
+pub(super) fn unanswered<R: Real>() -> R {
+    none(UNANSWERED)
+}
+
+pub(super) fn dot<R: Real, const N: usize>(a: &[R; N], b: &[R; N]) -> R {
     a.iter().zip(b).fold(R::constant(0.0), |sum, (a, b)| sum + *a * *b)
 }
 
-fn times<R: Real, const N: usize>(matrix: &[[R; N]; N], x: &[R; N]) -> [R; N] {
+pub(super) fn times<R: Real, const N: usize>(matrix: &[[R; N]; N], x: &[R; N]) -> [R; N] {
     matrix.map(|row| dot(&row, x))
 }

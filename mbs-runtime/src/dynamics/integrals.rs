@@ -1,6 +1,7 @@
 //! First-order states that integrate what depends on the coordinates, as an integral control does: their rates do not depend on
 //! them, so that they rest wherever that vanishes, and what they push follows from the balance of forces.
 
+use super::kkt::none;
 use super::metric::Metric;
 use super::model::Model;
 use super::states::eliminate;
@@ -8,129 +9,128 @@ use super::vector::State;
 use crate::{Dynamic, Failure, Real, StateSlope};
 
 /// Part of its unit and scale that the integrand of a state at rest may be: √ε.
-fn integrand<R: Real>() -> R {
+pub(super) fn integrand<R: Real>() -> R {
     R::EPSILON.sqrt()
 }
 
-/// Stiffness of the integrals over that of the other forces: each iteration leaves the inverse of it, rounding makes ε times it of a
-/// state. The third root of ε leaves eleven digits of both.
-fn ratio<R: Real>() -> R {
-    R::EPSILON.powf(R::constant(-1.0 / 3.0))
-}
+/// Part of the entries of a rate that depends on other states below which what elimination leaves of it is rounding.
+const LEFT: f64 = 1e-12;
 
-/// What states that integrate do in an iteration of Newton's method for a rest: each moves by a weight W times its rate ahead,
-/// δz = W (ż + ż_q δq), which is its share of Newton's step but for 1/W, and leaves a system of the coordinates and multipliers alone.
-/// Source: Nocedal & Wright 2006, §17.3 (augmented Lagrangian), the states as multipliers of ż = 0.
+/// States that integrate at a rest, as further unknowns of the balance: Φ_qᵀ λ − Q(q, z) = 0, Φ = 0, ż(q) = 0. Solved for in
+/// [`Saddle`](super::saddle::Saddle).
 #[derive(Clone, Copy)]
 pub(super) struct Integrals<P, Z> {
-    /// Of each state that integrates what it does to the forces, with those that follow it, and W ż_q; zeros of the others.
-    slopes: P,
-    /// W ż; 0 of the others.
-    rates: Z,
+    /// Of each state that moves: ∂Q/∂z in the place of `q`, with what follows it, and in that of `states` what each state does when it
+    /// moves by 1. Zeros of the others.
+    pub pushes: P,
+    /// Of each state whose rate depends on the coordinates alone: ∂ż/∂q with what follows them. Zeros of the others.
+    pub rates: P,
+    /// The rates; 0 of the others.
+    pub values: Z,
 }
 
-/// Those of a mechanism of type `S`; none where its text has no first-order states.
+/// Those of a mechanism of type `S`; none where its text has no such states.
 pub(super) type IntegralsOf<S, R, const N: usize, const M: usize> =
     Option<Integrals<<S as Dynamic<R, N, M>>::StateSlopes, <S as Dynamic<R, N, M>>::States>>;
 
 impl<P, Z> Integrals<P, Z> {
-    /// Before: ∂Q/∂z in `forces`; rows of ż eliminated for the states in `column_of`, with their right sides, in `rows` and `rates`;
-    /// the stiffness of all other forces. After: a row that is left for each state that is left.
-    pub(super) fn of<R: Real, const N: usize, const M: usize>(
-        (forces, rows): (&P, &P),
-        rates: &Z,
+    /// Before: slopes as the text has them in `text`; its rows eliminated for the states in `column_of`, with their right sides, in
+    /// `rows` and `rates`. After: none where no rate is left that depends on the coordinates.
+    pub(super) fn of<R: Real, const N: usize>(
+        text: &P,
+        (rows, rates): (&P, &Z),
         column_of: &Z,
-        stiffness: &[[R; N]; N],
-        metric: &Metric<R, N, M>,
-    ) -> Self
+    ) -> Option<Self>
     where
         Z: Copy + AsRef<[R]> + AsMut<[R]>,
         P: Copy + AsRef<[StateSlope<R, N, Z>]> + AsMut<[StateSlope<R, N, Z>]>,
     {
         let zero = R::constant(0.0);
-        let mut found = Integrals { slopes: *forces, rates: *rates };
-        let mut stiff = zero;
-        for (row, scale) in stiffness.iter().zip(&metric.coordinates) {
-            stiff = stiff.max(*scale * largest(row, metric));
+        let mut found = Integrals { pushes: *text, rates: *rows, values: *rates };
+        let mut any = false;
+        let places = found.rates.as_mut().iter_mut().zip(found.values.as_mut());
+        for ((row, rate), (text, column)) in places.zip(text.as_ref().iter().zip(column_of.as_ref())) {
+            let open = *column < zero && !is_held(row, text);
+            // As in the text: elimination divides by the largest entry.
+            let size = dependence(text);
+            let size = if zero < size { size } else { R::constant(1.0) };
+            row.scale(if open { size } else { zero });
+            *rate = if open { *rate * size } else { zero };
+            any |= open;
         }
-        let solved = |row: &R| zero <= *row;
-        let mut open = (rows.as_ref().iter().zip(rates.as_ref()).zip(column_of.as_ref()))
-            .filter(|(_, column)| !solved(column));
-        let places = found.slopes.as_mut().iter_mut().zip(found.rates.as_mut());
-        for (place, (slope, rate)) in places.enumerate() {
-            let index = R::constant(place as f64);
-            let free = column_of.as_ref().iter().all(|column| *column != index);
-            let row = if free { open.next() } else { None };
-            let Some(((row, open_rate), _)) = row else {
-                (*slope, *rate) = (StateSlope { force: [zero; N], ..*slope }, zero);
-                slope.scale(zero);
-                continue;
-            };
-            // The states that are solved for follow this one.
-            for (follows, column) in
-                rows.as_ref().iter().zip(column_of.as_ref()).filter(|pair| solved(pair.1))
-            {
-                let mut all = (0_u16..).zip(forces.as_ref());
-                let Some((_, other)) = all.find(|(index, _)| R::constant(f64::from(*index)) == *column)
-                else {
-                    continue;
-                };
-                let share = follows.entry(place);
-                slope.force.iter_mut().zip(&other.force).for_each(|(sum, part)| *sum = *sum - share * *part);
-            }
-            let both = largest(&slope.force, metric) * largest(&row.q, metric);
-            let wanted = if zero < stiff { ratio::<R>() * stiff } else { R::constant(1.0) };
-            let weight = if zero < both { wanted / both } else { zero };
-            slope.q = row.q;
-            slope.scale(weight);
-            *rate = weight * *open_rate;
-        }
-        found
-    }
-
-    /// Adds their stiffness −Q_z W ż_q.
-    pub(super) fn add_to<R: Real, const N: usize>(&self, stiffness: &mut [[R; N]; N])
-    where
-        P: AsRef<[StateSlope<R, N, Z>]>,
-    {
-        for slope in self.slopes.as_ref() {
-            for (row, force) in stiffness.iter_mut().zip(&slope.force) {
-                row.iter_mut().zip(&slope.q).for_each(|(entry, q)| *entry = *entry - *force * *q);
+        for (place, push) in found.pushes.as_mut().iter_mut().enumerate() {
+            let stays = rests_anywhere(place, &found.rates, column_of);
+            push.scale(zero);
+            if !is_solved(place, column_of) && !stays {
+                follow(push, place, text, (rows, column_of));
             }
         }
-    }
-
-    /// Takes from `imbalance` (N) what they will push by their rates as they are.
-    pub(super) fn take_from<R: Real, const N: usize>(&self, imbalance: &mut [R; N])
-    where
-        P: AsRef<[StateSlope<R, N, Z>]>,
-        Z: AsRef<[R]>,
-    {
-        for (slope, rate) in self.slopes.as_ref().iter().zip(self.rates.as_ref()) {
-            imbalance.iter_mut().zip(&slope.force).for_each(|(sum, force)| *sum = *sum - *force * *rate);
-        }
-    }
-
-    /// Moves `states` along with `share` of a step (N) of Newton's method against itself. Returns whether they stand.
-    pub(super) fn step<R: Real, const N: usize>(&self, states: &mut Z, step: &[R; N], share: R) -> bool
-    where
-        P: AsRef<[StateSlope<R, N, Z>]>,
-        Z: AsRef<[R]> + AsMut<[R]>,
-    {
-        let moves = self.slopes.as_ref().iter().zip(self.rates.as_ref());
-        let mut stand = true;
-        for (state, (slope, rate)) in states.as_mut().iter_mut().zip(moves) {
-            let moved = slope.q.iter().zip(step).fold(*rate, |sum, (q, step)| sum - *q * *step);
-            *state = *state + share * moved;
-            // Written so that NaN does not stand.
-            stand = stand && moved.abs() <= integrand::<R>() * state.abs();
-        }
-        stand
+        any.then_some(found)
     }
 }
 
+/// Whether a row is solved for the state at `place`.
+pub(super) fn is_solved<R: Real, Z: AsRef<[R]>>(place: usize, column_of: &Z) -> bool {
+    column_of.as_ref().iter().any(|column| *column == R::constant(place as f64))
+}
+
+/// Whether the rate of the state at `place` is left and vanishes at rest whatever the coordinates are: it stays as it is.
+fn rests_anywhere<R: Real, const N: usize, Z, P>(place: usize, rates: &P, column_of: &Z) -> bool
+where
+    Z: AsRef<[R]>,
+    P: AsRef<[StateSlope<R, N, Z>]>,
+{
+    let zero = R::constant(0.0);
+    let left = column_of.as_ref().get(place).is_some_and(|column| *column < zero);
+    let own = rates.as_ref().get(place);
+    left && own.is_some_and(|row| row.q.iter().all(|entry| *entry == zero))
+}
+
+/// Before: a `push` of zeros. After: that of the state at `place`, and of the states that rows are solved for, which follow it.
+fn follow<R: Real, const N: usize, Z, P>(
+    push: &mut StateSlope<R, N, Z>,
+    place: usize,
+    text: &P,
+    (rows, column_of): (&P, &Z),
+) where
+    Z: AsRef<[R]> + AsMut<[R]>,
+    P: AsRef<[StateSlope<R, N, Z>]>,
+{
+    push.q = push.force;
+    for (index, (share, other)) in push.states.as_mut().iter_mut().zip(text.as_ref()).enumerate() {
+        if index == place {
+            *share = R::constant(1.0);
+        }
+        for (row, column) in rows.as_ref().iter().zip(column_of.as_ref()) {
+            if *column == R::constant(index as f64) {
+                *share = -row.entry(place);
+                let parts = push.q.iter_mut().zip(&other.force);
+                parts.for_each(|(sum, part)| *sum = *sum + *share * *part);
+            }
+        }
+    }
+}
+
+/// The largest entry of a rate by a state.
+pub(super) fn dependence<R: Real, const N: usize, Z: AsRef<[R]>>(slope: &StateSlope<R, N, Z>) -> R {
+    slope.states.as_ref().iter().fold(R::constant(0.0), |size, entry| size.max(entry.abs()))
+}
+
+/// Whether no coordinate changes the rate `row`, eliminated from that of the `text`.
+pub(super) fn is_held<R: Real, const N: usize, Z: AsRef<[R]>>(
+    row: &StateSlope<R, N, Z>,
+    text: &StateSlope<R, N, Z>,
+) -> bool {
+    let zero = R::constant(0.0);
+    let left = if zero < dependence(text) { none::<R>(LEFT) } else { zero };
+    row.q.iter().all(|entry| entry.abs() <= left)
+}
+
 /// Largest component of a gradient (N) in the metric.
-fn largest<R: Real, const N: usize, const M: usize>(gradient: &[R; N], metric: &Metric<R, N, M>) -> R {
+pub(super) fn largest<R: Real, const N: usize, const M: usize>(
+    gradient: &[R; N],
+    metric: &Metric<R, N, M>,
+) -> R {
     let parts = gradient.iter().zip(&metric.coordinates).map(|(part, scale)| (*part * *scale).abs());
     parts.fold(R::constant(0.0), |largest, part| largest.max(part))
 }

@@ -1,6 +1,7 @@
 //! First-order states beside the other unknowns: where they rest, and what they do to small motions.
 
-use super::integrals::{Integrals, IntegralsOf};
+use super::integrals::{Integrals, IntegralsOf, dependence, is_held, is_solved};
+use super::kkt::none;
 use super::metric::{Metric, worse};
 use super::model::Model;
 use super::vector::State;
@@ -15,7 +16,7 @@ const STANDING: f64 = 64.0;
 /// A correction that no longer falls counts as converged below this, of the largest that the state has been.
 const STUCK: f64 = 1e-9;
 
-/// Part of the largest entry of its row below which a pivot is what rounding leaves of 0.
+/// Part of the largest entry of its row below which a pivot is what rounding leaves of 0, or what rounding makes of 0 where that is more.
 const PIVOT: f64 = 1e-12;
 
 /// First-order states (of the text) that rest with the coordinates `q` (N) at rest at time `t` (s): ż = 0. `lambda` (M): the
@@ -51,6 +52,30 @@ pub(super) fn require_no_states<S: Dynamic<R, N, M>, R: Real, const N: usize, co
     }
 }
 
+/// Of each first-order state 1 where its rate is 0 at rest whatever it and the coordinates are, so that it stays as it is; 0 of the others.
+pub(super) fn resting_anywhere<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
+    model: &Model<'_, S, R, N, M>,
+    t: R,
+    y: &State<R, N, S::States>,
+    lambda: &[R; M],
+) -> S::States {
+    let (mechanism, position) = (model.mechanism, model.position(t, y));
+    let mut resting = y.states;
+    resting.as_mut().iter_mut().for_each(|resting| *resting = R::constant(0.0));
+    let slopes = mechanism.state_slopes(model.parameters, &position, &y.qd, &y.states, lambda);
+    let Some(text) = slopes else { return resting };
+    let (mut slopes, mut rates) = (text, resting);
+    let column_of = eliminate(&mut slopes, &mut rates);
+    let held = slopes.as_ref().iter().zip(text.as_ref()).map(|(row, text)| is_held(row, text));
+    let places = resting.as_mut().iter_mut().zip(held.zip(column_of.as_ref())).enumerate();
+    for (place, (resting, (held, column))) in places {
+        if held && *column < R::constant(0.0) && !is_solved(place, &column_of) {
+            *resting = R::constant(1.0);
+        }
+    }
+    resting
+}
+
 impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, R, N, M> {
     /// Puts the first-order states of `y` where they rest beside its coordinates and velocities: ż = 0. Those that integrate what
     /// depends on the coordinates stay as they are.
@@ -75,8 +100,9 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
             if let Some(failure) = kinematics::non_finite_among(step.as_ref(), S::STATES) {
                 return Err(failure);
             }
+            let text = slopes;
             let column_of = eliminate(&mut slopes, &mut step);
-            require_closed(&slopes, &step, &column_of).map_err(unsettled)?;
+            require_closed((&slopes, &text), &step, &column_of).map_err(unsettled)?;
             sort(&mut slopes, &mut step, &column_of);
             let mut largest = zero;
             let states = y.states.as_mut().iter_mut().zip(sizes.as_mut()).zip(step.as_ref());
@@ -108,19 +134,17 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         stiffness: &mut [[R; N]; N],
     ) -> IntegralsOf<S, R, N, M> {
         let slopes = self.mechanism.state_slopes(self.parameters, position, &y.qd, &y.states, lambda);
-        let (forces, mut slopes) = (slopes?, slopes?);
+        let (text, mut slopes) = (slopes?, slopes?);
         let mut rates = self.mechanism.state_rates(self.parameters, position, &y.qd, &y.states, lambda);
         let column_of = eliminate(&mut slopes, &mut rates);
-        let (open, open_rates) = (slopes, rates);
+        let integrals = Integrals::of(&text, (&slopes, &rates), &column_of);
         sort(&mut slopes, &mut rates, &column_of);
-        for (force, follows) in forces.as_ref().iter().zip(slopes.as_ref()) {
+        for (force, follows) in text.as_ref().iter().zip(slopes.as_ref()) {
             for (row, force) in stiffness.iter_mut().zip(&force.force) {
                 row.iter_mut().zip(&follows.q).for_each(|(entry, q)| *entry = *entry + *force * *q);
             }
         }
-        let integrals = Integrals::of((&forces, &open), &open_rates, &column_of, stiffness, self.metric);
-        integrals.add_to(stiffness);
-        Some(integrals)
+        integrals
     }
 }
 
@@ -137,14 +161,14 @@ where
     let mut column_of = *right;
     column_of.as_mut().iter_mut().for_each(|column| *column = -one);
     for (row, right) in slopes.as_mut().iter_mut().zip(right.as_mut()) {
-        let size = row.states.as_ref().iter().fold(zero, |size, entry| size.max(entry.abs()));
+        let size = dependence(row);
         if zero < size {
             row.scale(one / size);
             *right = *right / size;
         }
     }
     for column in 0..column_of.as_ref().len() {
-        let mut best = (R::constant(PIVOT), None);
+        let mut best = (none::<R>(PIVOT), None);
         for (index, (row, taken)) in slopes.as_ref().iter().zip(column_of.as_ref()).enumerate() {
             let entry = row.entry(column).abs();
             if *taken < zero && best.0 < entry {
@@ -170,18 +194,23 @@ where
     column_of
 }
 
-/// Fails with the index of a row that depends neither on a state that is left nor on the coordinates, and whose `right` is not 0.
-fn require_closed<R: Real, const N: usize, Z, P>(slopes: &P, right: &Z, column_of: &Z) -> Result<(), usize>
+/// Fails with the index of a row that depends neither on a state that is left nor on the coordinates, and whose `right` is not 0; `text`:
+/// the rows before elimination.
+fn require_closed<R: Real, const N: usize, Z, P>(
+    (slopes, text): (&P, &P),
+    right: &Z,
+    column_of: &Z,
+) -> Result<(), usize>
 where
     Z: Copy + AsRef<[R]>,
     P: AsRef<[StateSlope<R, N, Z>]>,
 {
     let zero = R::constant(0.0);
     let size = right.as_ref().iter().fold(zero, |size, right| size.max(right.abs()));
-    let mut rows = slopes.as_ref().iter().zip(right.as_ref().iter().zip(column_of.as_ref()));
-    let open = rows.position(|(row, (right, column))| {
-        let held = row.q.iter().all(|entry| entry.abs() <= R::constant(PIVOT));
-        *column < zero && held && R::constant(PIVOT) * size < right.abs()
+    let rows = slopes.as_ref().iter().zip(text.as_ref());
+    let mut rows = rows.zip(right.as_ref().iter().zip(column_of.as_ref()));
+    let open = rows.position(|((row, text), (right, column))| {
+        *column < zero && is_held(row, text) && none::<R>(PIVOT) * size < right.abs()
     });
     open.map_or(Ok(()), Err)
 }

@@ -5,6 +5,7 @@ mod balance;
 mod determinacy;
 mod failures;
 mod first_order;
+mod integral_control;
 mod integrators;
 mod linkage;
 mod methods;
