@@ -1,0 +1,150 @@
+//! What can be read of a mechanism in motion.
+
+use super::Simulation;
+use crate::dynamics::determinacy::Determinacy;
+use crate::dynamics::model::{Counts, Doubt};
+use crate::dynamics::motion::{Instant, Method};
+use crate::dynamics::passage::Passage;
+use crate::{Dynamic, Energy, Failure, Motion, Real};
+
+/// How a run went so far: energy that is not accounted for, rows that are violated, what it cost.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Balance<R> {
+    /// Kinetic and potential energy (J).
+    pub energy: Energy<R>,
+    /// What forces and drives have done since the start (J).
+    pub work: R,
+    /// Energy less work less the energy at the start (J): 0 of an exact integration.
+    pub defect: R,
+    /// Largest |Φᵢ| over its row's scale: about the distance (rad, or reference lengths) from where it holds.
+    pub phi: R,
+    /// Largest |Φ̇ᵢ| over its row's scale (1/s).
+    pub phi_d: R,
+}
+
+impl<S, X, R, const N: usize, const M: usize> Simulation<S, X, R, N, M>
+where
+    S: Dynamic<R, N, M>,
+    X: Method<S, R, N, M>,
+    R: Real,
+{
+    /// Time (s).
+    pub fn t(&self) -> R {
+        self.now.t
+    }
+
+    /// Coordinates: N.
+    pub fn q(&self) -> &[R; N] {
+        &self.now.y.q
+    }
+
+    /// Velocities: N, in coordinate unit per second.
+    pub fn qd(&self) -> &[R; N] {
+        &self.now.y.qd
+    }
+
+    /// Accelerations: N, in coordinate unit per second squared.
+    pub fn qdd(&self) -> &[R; N] {
+        &self.now.solved.rate.qd
+    }
+
+    /// Multipliers λ: M; a row's force on the coordinates is −Φ_qᵀ λ. Where rows follow from others they are one choice of
+    /// many, see [`determinacy`](Self::determinacy).
+    pub fn lambda(&self) -> &[R; M] {
+        &self.now.solved.lambda
+    }
+
+    /// First-order states of the text.
+    pub fn states(&self) -> &S::States {
+        &self.now.y.states
+    }
+
+    /// State, rates and multipliers together.
+    pub fn instant(&self) -> &Instant<R, N, M, S::States> {
+        &self.now
+    }
+
+    /// How near Φ_q is to losing rank: 0 where it does, at most 1.
+    pub fn margin(&self) -> R {
+        self.now.solved.margin
+    }
+
+    /// Where the run came so near to a singular position for the first time that it may have passed it.
+    pub fn passage(&self) -> Option<&Passage<R>> {
+        self.passage.as_ref()
+    }
+
+    /// The mechanism with its parameters and inputs.
+    pub fn mechanism(&self) -> &S {
+        &self.mechanism
+    }
+
+    /// What the run has spent.
+    pub fn counts(&self) -> Counts {
+        self.counts
+    }
+
+    /// What is doubtful about steps of `h` (s) from the start until now.
+    pub fn doubt(&self, h: R) -> Option<Doubt> {
+        if self.rank_rises && self.method.leaves_constraints() {
+            return Some(Doubt::RisingRank);
+        }
+        self.method.doubt(h, self.now.t - self.start)
+    }
+
+    /// Outputs with their time derivatives.
+    pub fn outputs(&self) -> S::Outputs {
+        let position = self.model().position(self.now.t, &self.now.y);
+        self.mechanism.outputs(&self.parameters, &position, self.qd(), self.qdd())
+    }
+
+    /// Outputs that use multipliers or states: reactions, efforts.
+    pub fn loads(&self) -> S::Loads {
+        let position = self.model().position(self.now.t, &self.now.y);
+        let motion =
+            Motion { qd: self.qd(), qdd: self.qdd(), lambda: self.lambda(), states: &self.now.y.states };
+        self.mechanism.loads(&self.parameters, &position, &motion)
+    }
+
+    /// Which multipliers are the only ones that move the mechanism so, and which rows follow from others here.
+    ///
+    /// # Errors
+    /// Those of [`Determinacy::of`].
+    pub fn determinacy(&self) -> Result<Determinacy<R, M>, Failure> {
+        let position = self.model().position(self.now.t, &self.now.y);
+        Determinacy::measured(&self.mechanism, &self.parameters, &position, (self.now.t, &self.metric))
+    }
+
+    /// Marks in `unique`, one of each of [`loads`](Self::loads), those that are the same whichever multipliers bear the
+    /// forces.
+    ///
+    /// # Errors
+    /// Those of [`Determinacy::of`].
+    pub fn mark_unique_loads(&self, unique: &mut [bool]) -> Result<(), Failure> {
+        let position = self.model().position(self.now.t, &self.now.y);
+        let found = self.determinacy()?;
+        let motion =
+            Motion { qd: self.qd(), qdd: self.qdd(), lambda: self.lambda(), states: &self.now.y.states };
+        found.mark_loads(&self.mechanism, &self.parameters, &position, &motion, unique);
+        Ok(())
+    }
+
+    /// Energy balance and constraint norms.
+    pub fn balance(&self) -> Balance<R> {
+        let model = self.model();
+        let Instant { t, y, .. } = &self.now;
+        let position = model.position(*t, y);
+        let energy = self.mechanism.energy(&self.parameters, &position, &y.qd);
+        let largest = |values: [R; M]| {
+            let over = values.iter().zip(&self.metric.rows).map(|(value, scale)| (*value / *scale).abs());
+            over.fold(R::constant(0.0), |largest, value| largest.max(value))
+        };
+        Balance {
+            energy,
+            work: y.work,
+            defect: energy.kinetic + energy.potential - y.work - self.reference,
+            phi: largest(self.mechanism.phi(&self.parameters, &position)),
+            phi_d: largest(model.constraint_rates(&position, &y.qd)),
+        }
+    }
+}
