@@ -9,6 +9,7 @@ mod docs;
 mod dynamics;
 mod elimination;
 mod factorization;
+mod fields;
 pub mod formula;
 mod functions;
 mod generics;
@@ -30,6 +31,7 @@ mod statement;
 mod stub;
 mod substitution;
 mod terms;
+mod view;
 mod work;
 
 use proc_macro2::TokenStream;

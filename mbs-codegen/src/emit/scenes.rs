@@ -4,8 +4,8 @@ use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 
 use super::Part;
+use super::fields::{ident, markers};
 use super::generics::Generics;
-use super::item::{ident, markers};
 use crate::diagnostics::Diagnostics;
 use crate::model::scenes::{Scene, Scenes, WHOLE, alias};
 use crate::syntax::Text;

@@ -1,0 +1,246 @@
+//! Failures in words: what is wrong, where, and what to do.
+
+use core::fmt;
+
+use super::{Failure, Level};
+use crate::Entry;
+
+impl fmt::Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let time = Time(self.time());
+        match self {
+            Failure::NonFinite { name, line: 0 } => write!(f, "`{name}` is not a finite number"),
+            Failure::NonFinite { name, line } => write!(f, "`{name}` (line {line}) is not a finite number"),
+            Failure::Negative { name, line, parameter, value } => write!(
+                f,
+                "`{name}` (line {line}) is {value:e}, with `{parameter}` as it is: masses, moments of inertia and the sum of two less the third, \
+                 stiffness, damping and friction are at least 0"
+            ),
+            Failure::Unresolved { coordinate, value, .. } => write!(
+                f,
+                "`{}` (line {}) is {value:.3e} {} at t = {time} s, too large for its number type to tell positions \
+                 apart; take off whole turns, or use `f64`",
+                coordinate.name, coordinate.line, coordinate.unit
+            ),
+            Failure::NotConverged { row, residual, required, iterations, .. } => write!(
+                f,
+                "no position at t = {time} s: after {iterations} iterations row `{}` (line {}) is still {residual:.3e} {} \
+                 off, required {required:.3e}; take a smaller step, or check that the mechanism can reach this position",
+                row.name, row.line, row.unit
+            ),
+            Failure::NotAssemblable { row, residual, rows, .. } => write!(
+                f,
+                "the mechanism cannot be assembled at t = {time} s: {rows} cannot hold {}, `{}` stays {residual:.3e} \
+                 {} open at best; check the dimensions, or start from a better guess",
+                if rows.rows().nth(1).is_some() { "together" } else { "with what is driven" },
+                row.name,
+                row.unit
+            ),
+            Failure::Singular { row, coordinate, margin, required, reference, .. } => {
+                write!(
+                    f,
+                    "the mechanism is singular at t = {time} s: rows around `{}` (line {}) do not determine `{}` (line \
+                     {}); margin {margin:.3e}, required {required:.3e}",
+                    row.name, row.line, coordinate.name, coordinate.line
+                )?;
+                match reference {
+                    Some(Entry { name, line, .. }) => {
+                        write!(f, ", lengths in parts of `{name}` (line {line})")
+                    }
+                    None => Ok(()),
+                }
+            }
+            Failure::WrongBranch { branch, value, .. } => write!(
+                f,
+                "the assembly found at t = {time} s is not the declared one: branch `{}` (line {}) is {value:.3e}, not \
+                 positive; take a smaller step, or assemble from a guess on the other side",
+                branch.name, branch.line
+            ),
+            Failure::BeyondLimit { limit, value, bound, .. } => write!(
+                f,
+                "limit `{}` (line {}) is passed at t = {time} s: {value} {} is beyond {bound}; turn back, or widen the \
+                 range",
+                limit.name, limit.line, limit.unit
+            ),
+            Failure::TooFar { coordinate, distance, allowed, .. } => write!(
+                f,
+                "the position at t = {time} s is not next to the saved one: `{}` (line {}) differs by {distance:.3e} in \
+                 the reference metric, allowed {allowed:.3e}; start at the time and with the inputs of the saved state",
+                coordinate.name, coordinate.line
+            ),
+            Failure::Unsuitable { name, value, most } if most.is_finite() => {
+                write!(f, "the method's {name} is {value}: it must be between 0 and {most}")
+            }
+            Failure::Unsuitable { name, value, .. } => {
+                write!(f, "the method's {name} is {value:e}: it must be a number and at least 0")
+            }
+            Failure::Locked { row, iterations, .. } => write!(
+                f,
+                "no balance of forces at t = {time} s after {iterations} iterations: friction changes the force of row `{}` (line {}) by as \
+                 much as it takes up; with this coefficient the mechanism jams there, whatever the step",
+                row.name, row.line
+            ),
+            Failure::InvalidStep { step, .. } => write!(
+                f,
+                "a step of {step:e} s from t = {time} s leads nowhere: it must be positive and change the time"
+            ),
+            Failure::Unbounded { coordinate, value, .. } => write!(
+                f,
+                "the motion grows without bound: a step takes `{}` (line {}) to {value:.3e} {} at t = {time} s; take smaller \
+                 steps, project onto the constraints where they drift, or use an implicit method where the mechanism is stiff",
+                coordinate.name, coordinate.line, coordinate.unit
+            ),
+            Failure::OutOfReach { until, step, .. } => write!(
+                f,
+                "t = {} s is out of reach from t = {time} s: steps of {step:.3e} s, as the tolerance asks for, are too many; \
+                 end earlier, loosen the tolerance, or advance in several calls",
+                Time(*until)
+            ),
+            Failure::UnresolvedTolerance { tolerance, least, .. } => write!(
+                f,
+                "rounding alone is more than a tolerance of {tolerance:e} allows: at least {least:.1e} is needed in numbers of \
+                 this type"
+            ),
+            Failure::Undecided { margin, .. } => write!(
+                f,
+                "rounding decides where the motion goes at t = {time} s, next to a singular position (margin {margin:.1e}): \
+                 project onto the constraints, give the dimensions all their digits, or loosen the tolerance"
+            ),
+            Failure::StepTooSmall { step, .. } => write!(
+                f,
+                "stuck at t = {time} s: even a step of {step:.3e} s is not accurate enough; loosen the tolerance, look for \
+                 a jump in the forces or for a mass or length of 0, or use an implicit method where the mechanism is stiff"
+            ),
+            Failure::StepTooLong { product, allowed, .. } => write!(
+                f,
+                "the step at t = {time} s is too long: step times frequency is {product:.3}, allowed {allowed:.3}; take a \
+                 smaller step or a lower frequency"
+            ),
+            Failure::Inconsistent { rows, level, residual, required, .. } => write!(
+                f,
+                "{}{rows} contradict each other at t = {time} s: {residual:.3e} stays open at best, required \
+                 {required:.3e}; give the dimensions that let these rows follow from one another all their digits, or \
+                 leave the surplus rows out",
+                match level {
+                    Level::Position => "",
+                    Level::Velocity => "the rates of ",
+                    Level::Acceleration => "the accelerations of ",
+                }
+            ),
+            Failure::OffConstraints { row, rate, residual, allowed, .. } => write!(
+                f,
+                "{} `{}` (line {}) is violated at t = {time} s: {residual:.3e}, allowed {allowed:.3e}; start on the \
+                 constraints or let the start be projected; on the way, take smaller steps",
+                if *rate { "the rate of row" } else { "row" },
+                row.name,
+                row.line
+            ),
+            Failure::Inertialess { coordinate, .. } => write!(
+                f,
+                "the acceleration of `{}` (line {}) is not determined at t = {time} s: it can move without any mass \
+                 moving; give it mass, or a row that fixes it",
+                coordinate.name, coordinate.line
+            ),
+            Failure::Flat { row, .. } => write!(
+                f,
+                "row `{}` (line {}) holds nothing at t = {time} s: no coordinate changes it there, as where a length is 0 or bars at \
+                 rest are in line; give the length a value, or start beside that position",
+                row.name, row.line
+            ),
+            Failure::Restless { coordinate, force, .. } => write!(
+                f,
+                "no position of rest at t = {time} s: where the forces come nearest to balance they still push `{}` (line \
+                 {}) with {force:.3e} J/{}; let a force answer it, hold it by a drive, or start elsewhere",
+                coordinate.name, coordinate.line, coordinate.unit
+            ),
+            Failure::Unbalanced { coordinate, iterations, .. } => write!(
+                f,
+                "no balance of forces at t = {time} s after {iterations} iterations: `{}` (line {}) is farthest off; take \
+                 a smaller step, or search for a rest from nearer",
+                coordinate.name, coordinate.line
+            ),
+            Failure::Unsettled { state, .. } => write!(
+                f,
+                "no position of rest at t = {time} s: the rate of the state `{}` (line {}) does not vanish for any value of it",
+                state.name, state.line
+            ),
+            Failure::StatesUnknown { state, .. } => write!(
+                f,
+                "the forces at t = {time} s depend on the state `{}` (line {}), whose value is not known; give the states too",
+                state.name, state.line
+            ),
+            Failure::Foreign { mechanism } => {
+                write!(f, "the saved state is not one of `{mechanism}`: name or coordinates differ")
+            }
+        }
+    }
+}
+
+/// A time in plain digits, or with an exponent where those would be many.
+struct Time(f64);
+
+impl fmt::Display for Time {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Time(time) = *self;
+        let plain = time == 0.0 || (1e-5..1e9).contains(&time.max(-time));
+        if plain { write!(f, "{time}") } else { write!(f, "{time:e}") }
+    }
+}
+
+impl core::error::Error for Failure {}
+
+#[cfg(test)]
+mod tests {
+    extern crate std;
+    use super::*;
+    use crate::failure::Holding;
+    use std::string::ToString;
+
+    const ROW: Entry = Entry { name: "closure.0", unit: "m", line: 21 };
+
+    #[test]
+    fn every_failure_names_its_line_in_the_text() {
+        let (time, residual, required) = (0.5, 1e-3, 1e-14);
+        let failures = [
+            Failure::NonFinite { name: "omega", line: 21 },
+            Failure::Negative { name: "rod.mass", line: 21, parameter: "rho", value: -1.0 },
+            Failure::Unresolved { coordinate: ROW, value: 1e300, time },
+            Failure::NotConverged { row: ROW, residual, required, iterations: 9, time },
+            Failure::NotAssemblable {
+                row: ROW,
+                residual,
+                rows: Holding::of(&[ROW], [1.0].into_iter()),
+                time,
+            },
+            Failure::Singular { row: ROW, coordinate: ROW, margin: 0.0, required, reference: None, time },
+            Failure::WrongBranch { branch: ROW, value: -1.0, time },
+            Failure::BeyondLimit { limit: ROW, value: 2.0, bound: 1.0, time },
+            Failure::TooFar { coordinate: ROW, distance: 1.0, allowed: 0.5, time },
+            Failure::Inconsistent {
+                rows: Holding::of(&[ROW], [1.0].into_iter()),
+                level: Level::Velocity,
+                residual,
+                required,
+                time,
+            },
+            Failure::OffConstraints { row: ROW, rate: false, residual, allowed: required, time },
+            Failure::Unbounded { coordinate: ROW, value: 1e12, time },
+            Failure::Inertialess { coordinate: ROW, time },
+            Failure::Flat { row: ROW, time },
+            Failure::Restless { coordinate: ROW, force: 0.5, time },
+            Failure::Unbalanced { coordinate: ROW, iterations: 9, time },
+            Failure::Locked { row: ROW, iterations: 9, time },
+            Failure::Unsettled { state: ROW, time },
+            Failure::StatesUnknown { state: ROW, time },
+        ];
+        for failure in failures {
+            assert!(failure.to_string().contains("(line 21)"), "{failure}");
+        }
+        let foreign = Failure::Foreign { mechanism: "Crank" }.to_string();
+        assert_eq!(foreign, "the saved state is not one of `Crank`: name or coordinates differ");
+        let (name, most) = ("spectral radius rho", 1.0);
+        let radius = Failure::Unsuitable { name, value: 1.5, most }.to_string();
+        assert_eq!(radius, "the method's spectral radius rho is 1.5: it must be between 0 and 1");
+        assert_eq!(Failure::NonFinite { name: "t", line: 0 }.to_string(), "`t` is not a finite number");
+    }
+}
