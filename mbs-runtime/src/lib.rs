@@ -47,6 +47,8 @@ mod starts;
 pub mod stepper;
 pub mod stop;
 pub mod sweep;
+#[doc(hidden)] // emitted code calls it
+pub mod tape;
 pub mod trace;
 mod trial;
 mod trigonometry;

@@ -63,6 +63,11 @@ pub trait Scalar:
 
     /// Sines and cosines of angles (rad) that are known together.
     fn sin_cos<const K: usize>(angles: [Self; K]) -> ([Self; K], [Self; K]);
+    /// As [`sin_cos`](Scalar::sin_cos), to the same bits, compiled once for all who call it: what long code is made of.
+    #[inline(never)]
+    fn sin_cos_called<const K: usize>(angles: [Self; K]) -> ([Self; K], [Self; K]) {
+        Self::sin_cos(angles)
+    }
     /// Square root, correctly rounded.
     fn sqrt(self) -> Self;
     /// e to the power of `self`.

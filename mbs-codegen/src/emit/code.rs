@@ -45,6 +45,9 @@ fn with_runtime(stream: TokenStream, runtime: &TokenStream) -> TokenStream {
     replaced.into_iter().collect()
 }
 
+/// How the sines' kernel is called.
+pub const SINE_COSINE: &str = "T::sin_cos(";
+
 /// Prints one `let` a line of the section; a long section is cut into closures that pass on what is used behind them.
 pub fn lets(section: &Section, scope: &Scope<'_>, text: &mut String) {
     lets_for(section, &section.results, scope, text);
@@ -178,7 +181,7 @@ pub fn sine_cosine(angles: &[Angle], names: &mut impl Naming, text: &mut String)
     let sines = list(angles, |angle| defined(angle.sine));
     let cosines = list(angles, |angle| defined(angle.cosine));
     let operands = list(angles, |known| names.operand(known.angle));
-    let _ = writeln!(text, "let ([{sines}], [{cosines}]) = T::sin_cos([{operands}]);");
+    let _ = writeln!(text, "let ([{sines}], [{cosines}]) = {SINE_COSINE}[{operands}]);");
 }
 
 /// Prints a call of a declared function.

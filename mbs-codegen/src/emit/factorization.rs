@@ -88,7 +88,7 @@ impl Factorizations {
                 given: format!("{given}&mut __kind{kind}, &mut __margin, "),
                 result: None,
             };
-            let calls = parts.sequence(&format!("__factorize{kind}"), &frame, &statements, group);
+            let calls = parts.sequence(&format!("__factorize{kind}"), &frame, &statements, (group, None));
             let (methods, passed) = parts.print();
             rounds.methods += &methods;
             let _ = writeln!(

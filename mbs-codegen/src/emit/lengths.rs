@@ -18,6 +18,10 @@ pub struct Lengths {
     pub in_line: usize,
     /// Most blocks of a part of a substitution.
     pub group: usize,
+    /// Most calls of the sines' kernel, without those in loops, that have it in them; of more all share one.
+    pub kernels: usize,
+    /// Most lines of a function, without those in loops, that are compiled; of more they are a tape.
+    pub straight: usize,
     /// Fewest rounds that make a loop.
     pub rounds: usize,
     /// Fewest lines that make one; those of several angles count as several.
@@ -33,12 +37,24 @@ impl Lengths {
         factors: 16,
         in_line: 48,
         group: 24,
+        kernels: 16,
+        straight: 400,
         rounds: 4,
         rolled: 32,
     };
 
     /// Short texts are cut as long ones: tests of these need no long texts.
     #[cfg(any(test, feature = "random"))]
-    pub const SHORT: Self =
-        Lengths { body: 7, function: 12, copies: 0, factors: 0, in_line: 0, group: 2, rounds: 2, rolled: 3 };
+    pub const SHORT: Self = Lengths {
+        body: 7,
+        function: 12,
+        copies: 0,
+        factors: 0,
+        in_line: 0,
+        group: 2,
+        kernels: 1,
+        straight: 16,
+        rounds: 2,
+        rolled: 3,
+    };
 }

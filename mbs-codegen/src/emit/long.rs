@@ -9,7 +9,7 @@ use super::elimination::{Eliminations, factorization};
 use super::lengths::Lengths;
 use super::parts::{Frame, Parts};
 use super::scope::{Scope, number as number_of};
-use super::statement::Statement;
+use super::statement::{PUT, Statement};
 use crate::equations::Equations;
 use crate::model::Model;
 use crate::program::{BlockProgram, Line, Method, Program, System};
@@ -339,16 +339,14 @@ impl Emission<'_> {
     fn rest(&self, parts: &mut Parts) -> String {
         let computed = self.computed();
         let fields = self.program.position.fields.iter().filter(|(value, _)| !computed.contains(value));
-        let put = |(value, slot): (&NodeId, &usize)| {
-            parts.wordings.put("__v.put(", *slot, Some(*value), self.scope)
-        };
+        let put = |(value, slot): (&NodeId, &usize)| parts.wordings.put(PUT, *slot, Some(*value), self.scope);
         let statements: Vec<Statement> = fields.map(put).collect();
         let n = self.scope.model.coordinates.len();
         parts.sequence(
             "__rest",
             &frame(format!("&[T; {n}]"), None, None),
             &statements,
-            self.scope.lengths.body,
+            (self.scope.lengths.body, None),
         )
     }
 

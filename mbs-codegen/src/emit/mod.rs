@@ -30,6 +30,7 @@ mod signals;
 mod statement;
 mod stub;
 mod substitution;
+mod tape;
 mod terms;
 mod view;
 mod work;

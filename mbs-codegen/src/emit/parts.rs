@@ -1,22 +1,31 @@
 //! Long code as methods of bounded length, which pass values on to each other.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
+use std::ops::Range;
 
+use super::code::SINE_COSINE;
 use super::lengths::Lengths;
 use super::repetition::{Stretch, stretches};
-use super::rolled::{Rolled, Text, earlier, slots};
+use super::rolled::{Rolled, Text, earlier};
 use super::scope::{Scope, Written};
-use super::statement::{Statement, Wordings};
+use super::statement::{PUT, Statement, Wordings};
+use super::tape::Tape;
 use crate::program::Section;
 use crate::symbolic::NodeId;
 
 /// Stands for the number of passed values until it is known.
 const PASSED: &str = "\u{3}";
 
+/// [`SINE_COSINE`] behind a call, where it would be long code in many places.
+const SINE_COSINE_CALLED: &str = "T::sin_cos_called(";
+
 /// Most statements of all arms together that stand wherever a solver asks for its block: behind a call the next block would have
 /// to wait for what goes through memory.
 const LONGEST_INLINED: usize = 120;
+
+/// Most statements of a tape: its values stay in a processor's caches, and their numbers in two bytes.
+const LONGEST_TAPE: usize = 1_000;
 
 /// Arguments of a family of methods, beside `self` and the passed values; a comma behind each.
 #[derive(Clone, Default)]
@@ -35,12 +44,58 @@ struct Method {
     frame: Frame,
     /// Calls before anything else.
     calls: String,
-    code: Rolled,
+    code: Code,
     /// Whether it does all rounds, not only the one that it is asked for.
     all: bool,
     /// Whether it passes on what it computes.
     exports: bool,
     inline: &'static str,
+}
+
+/// How it is done.
+enum Code {
+    Rolled(Rolled),
+    Tape(Tape),
+}
+
+impl Code {
+    /// Values that must be passed on to it.
+    fn passed(&self) -> Vec<NodeId> {
+        match self {
+            Code::Rolled(rolled) => rolled.passed().collect(),
+            Code::Tape(tape) => tape.passed().collect(),
+        }
+    }
+
+    /// Values that it computes, in their order.
+    fn defines(&self) -> Vec<NodeId> {
+        match self {
+            Code::Rolled(rolled) => rolled.defines().collect(),
+            Code::Tape(tape) => tape.defines().collect(),
+        }
+    }
+
+    /// How many rounds it has.
+    fn len(&self) -> usize {
+        match self {
+            Code::Rolled(rolled) => rolled.len(),
+            Code::Tape(_) => 1,
+        }
+    }
+}
+
+/// Statements of one method: rounds of a `length`, or a tape.
+struct Piece {
+    range: Range<usize>,
+    length: usize,
+    on_tape: bool,
+}
+
+impl Piece {
+    /// Whether these statements can stand on the same tape.
+    fn takes(&self, next: &Range<usize>) -> bool {
+        self.on_tape && self.range.end == next.start && next.end - self.range.start <= LONGEST_TAPE
+    }
 }
 
 /// Methods that share passed values.
@@ -76,32 +131,78 @@ impl Parts {
     }
 
     /// Adds statements that are executed in their order, at most `longest` in a method. After: the calls that do it.
+    ///
+    /// `recording`: the scope of statements that go on tapes where many are in no loop.
     pub fn sequence(
         &mut self,
         name: &str,
         frame: &Frame,
         statements: &[Statement],
-        longest: usize,
+        (longest, recording): (usize, Option<&Scope<'_>>),
     ) -> String {
-        let wordings: Vec<usize> = statements.iter().map(|statement| statement.wording).collect();
-        // A line of several angles is as long as several lines.
-        let weigh =
-            |index: usize| statements.get(index).map_or(0, |statement| statement.defines.len().max(1));
+        let stretches = self.stretches(statements, longest);
+        let once = |stretch: &Stretch| if let Stretch::Once(range) = stretch { range.len() } else { 0 };
+        let is_many = stretches.iter().map(once).sum::<usize>() > self.lengths.straight;
+        let recording = recording.filter(|_| is_many);
         let mut calls = String::new();
-        for (number, stretch) in stretches(&wordings, weigh, longest, self.lengths).into_iter().enumerate() {
-            let (range, length) = match stretch {
-                Stretch::Once(range) => (range.clone(), range.len()),
-                Stretch::Rounds { first, length, rounds } => (first..first + length * rounds, length),
-            };
-            let rounds = statements.get(range).unwrap_or_default().chunks(length.max(1));
+        for (number, piece) in self.pieces(stretches, statements, recording).into_iter().enumerate() {
+            let Piece { range, length, on_tape } = piece;
             let name = format!("{name}_{number}");
             let _ = writeln!(calls, "self.{name}({}__v);", frame.given);
-            let code = Rolled::of(rounds.map(<[Statement]>::to_vec).collect());
+            let statements = statements.get(range).unwrap_or_default();
+            let code = match recording.filter(|_| on_tape) {
+                Some(scope) => Code::Tape(Tape::of(statements, scope)),
+                None => {
+                    let rounds = statements.chunks(length.max(1));
+                    Code::Rolled(Rolled::of(rounds.map(<[Statement]>::to_vec).collect()))
+                }
+            };
             let frame = Frame { result: None, ..frame.clone() };
             let (calls, inline) = (String::new(), "#[inline(never)]");
             self.methods.push(Method { name, frame, calls, code, all: true, exports: true, inline });
         }
         calls
+    }
+
+    /// Before: stretches of statements. After: one piece a method.
+    fn pieces(
+        &self,
+        stretches: Vec<Stretch>,
+        statements: &[Statement],
+        recording: Option<&Scope<'_>>,
+    ) -> Vec<Piece> {
+        let bears = |statement: &Statement| {
+            recording.is_some_and(|scope| Tape::bears(statement, &self.wordings, scope))
+        };
+        let mut pieces: Vec<Piece> = Vec::new();
+        for stretch in stretches {
+            let (mut start, end) = match stretch {
+                Stretch::Once(range) => (range.start, range.end),
+                Stretch::Rounds { first, length, rounds } => {
+                    pieces.push(Piece { range: first..first + length * rounds, length, on_tape: false });
+                    continue;
+                }
+            };
+            let alike = statements.get(start..end).unwrap_or_default().chunk_by(|a, b| bears(a) == bears(b));
+            for alike in alike {
+                let (on_tape, end) = (alike.first().is_some_and(bears), start + alike.len());
+                match pieces.last_mut().filter(|last| on_tape && last.takes(&(start..end))) {
+                    Some(last) => last.range.end = end,
+                    None => pieces.push(Piece { range: start..end, length: alike.len(), on_tape }),
+                }
+                start = end;
+            }
+        }
+        pieces
+    }
+
+    /// Where statements repeat themselves.
+    fn stretches(&self, statements: &[Statement], longest: usize) -> Vec<Stretch> {
+        let wordings: Vec<usize> = statements.iter().map(|statement| statement.wording).collect();
+        // A line of several angles is as long as several lines.
+        let weigh =
+            |index: usize| statements.get(index).map_or(0, |statement| statement.defines.len().max(1));
+        stretches(&wordings, weigh, longest, self.lengths)
     }
 
     /// Adds a method that does what stands at `__s`: `arms`, each with its number below `count`. The last statement of an arm is
@@ -144,12 +245,12 @@ impl Parts {
             let (name, mut calls) = (format!("{name}_{number}"), String::new());
             if let Some(arm) = rounds.first_mut().filter(|arm| arm.len() > longest) {
                 let behind = arm.split_off(arm.len() - usize::from(result));
-                calls = self.sequence(&name, frame, arm, longest);
+                calls = self.sequence(&name, frame, arm, (longest, None));
                 *arm = behind;
             }
             let pattern = if result && number + 1 == last { "_".into() } else { (number + 1).to_string() };
             let _ = writeln!(choice, "{pattern} => self.{name}(__k, {}__v),", frame.given);
-            let code = Rolled::of(rounds);
+            let code = Code::Rolled(Rolled::of(rounds));
             let frame = frame.clone();
             self.methods.push(Method { name, frame, calls, code, all: false, exports, inline });
         }
@@ -177,12 +278,20 @@ impl Parts {
 
     /// Before: all is added. After: the text of all methods, and how many values they pass on.
     pub fn print(self) -> (String, usize) {
-        let Parts { wordings, methods, choices, slots: taken, next, .. } = self;
-        let all = methods.iter().map(|method| (&method.code, method.exports));
-        let (slots, count) = slots(all, taken, next);
+        let Parts { lengths, wordings, methods, choices, slots: taken, next } = self;
+        let (slots, count) = slots(&methods, taken, next);
+        let kernels =
+            |code: &Code| if let Code::Rolled(rolled) = code { rolled.kernels(&wordings) } else { 0 };
+        let kernels: usize = methods.iter().map(|method| kernels(&method.code)).sum();
         let mut text = String::new();
         for Method { name, frame, calls, code, all, exports, inline } in &methods {
-            let Text { tables, round } = code.print(&slots, *exports, &wordings);
+            let Text { tables, mut round } = match code {
+                Code::Rolled(rolled) => rolled.print(&slots, *exports, &wordings),
+                Code::Tape(tape) => Text { tables: String::new(), round: tape.print(&slots) },
+            };
+            if code.len() == 1 && kernels > lengths.kernels {
+                round = round.replace(SINE_COSINE, SINE_COSINE_CALLED);
+            }
             let asked = if *all { "" } else { "__k: ::core::primitive::usize, " };
             text += &declared(inline, name, asked, frame);
             let _ = match *all && code.len() > 1 {
@@ -237,9 +346,27 @@ pub fn function(
     let mut parts = Parts::new(slots, results.len(), scope.lengths);
     let mut statements = parts.lines(section, scope);
     for (place, result) in others {
-        statements.push(parts.wordings.put("__v.put(", place, result, scope));
+        statements.push(parts.wordings.put(PUT, place, result, scope));
     }
-    let calls = parts.sequence(name, frame, &statements, scope.lengths.body);
+    let calls = parts.sequence(name, frame, &statements, (scope.lengths.body, Some(scope)));
     let (methods, count) = parts.print();
     Function { body: format!("let __v = &__mbs::long::Passed::<T, {count}>::none();\n{calls}"), methods }
+}
+
+/// Before: all code that shares passed values, and places that are taken already, below `next`. After: places of all that is
+/// passed on, in the order in which it is computed, and how many there are.
+fn slots(
+    methods: &[Method],
+    taken: BTreeMap<NodeId, usize>,
+    next: usize,
+) -> (BTreeMap<NodeId, usize>, usize) {
+    let needed: BTreeSet<NodeId> = methods.iter().flat_map(|method| method.code.passed()).collect();
+    let (mut slots, mut next) = (taken, next);
+    for id in methods.iter().filter(|method| method.exports).flat_map(|method| method.code.defines()) {
+        if needed.contains(&id) && !slots.contains_key(&id) {
+            slots.insert(id, next);
+            next += 1;
+        }
+    }
+    (slots, next)
 }

@@ -1,6 +1,6 @@
 //! Several rounds of the same lines as one loop, which takes what differs from round to round from tables.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use super::code::local;
@@ -58,6 +58,12 @@ impl Rolled {
     /// How many rounds there are.
     pub fn len(&self) -> usize {
         self.rounds.len()
+    }
+
+    /// How many statements have a copy of the sines' kernel in them that a loop would share.
+    pub fn kernels(&self, wordings: &Wordings) -> usize {
+        let once = self.rounds.first().filter(|_| self.rounds.len() == 1);
+        once.into_iter().flatten().filter(|statement| wordings.has_kernel(statement.wording)).count()
     }
 
     /// Values that must be passed on to it.
@@ -258,22 +264,4 @@ fn rows<X>(columns: &[Vec<X>], rounds: usize, print: impl Fn(&X) -> String) -> S
 
 fn listed(name: &str, count: usize) -> String {
     format!("[{}]", (0..count).map(|index| format!("{name}{index}")).collect::<Vec<_>>().join(", "))
-}
-
-/// Before: all code that shares passed values, and places that are taken already, below `next`. After: places of all that is
-/// passed on, in the order in which it is computed, and how many there are.
-pub fn slots<'a>(
-    all: impl Iterator<Item = (&'a Rolled, bool)> + Clone,
-    taken: BTreeMap<NodeId, usize>,
-    next: usize,
-) -> (BTreeMap<NodeId, usize>, usize) {
-    let needed: BTreeSet<NodeId> = all.clone().flat_map(|(rolled, _)| rolled.passed()).collect();
-    let (mut slots, mut next) = (taken, next);
-    for id in all.filter(|(_, exports)| *exports).flat_map(|(rolled, _)| rolled.defines()) {
-        if needed.contains(&id) && !slots.contains_key(&id) {
-            slots.insert(id, next);
-            next += 1;
-        }
-    }
-    (slots, next)
 }

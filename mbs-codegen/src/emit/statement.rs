@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use super::code::{Naming, jet, sine_cosine, value};
+use super::code::{Naming, SINE_COSINE, jet, sine_cosine, value};
 use super::scope::{Scope, Written};
 use crate::program::Line;
 use crate::symbolic::NodeId;
@@ -13,6 +13,9 @@ pub const OPERAND: char = '\u{1}';
 
 /// Stands for the name of a computed value in a wording.
 pub const DEFINED: char = '\u{2}';
+
+/// What puts a value among those that are passed on.
+pub const PUT: &str = "__v.put(";
 
 /// Most angles of one call where code is long: what a processor takes at once, and a bound on the length of a line.
 const MOST_ANGLES: usize = 8;
@@ -57,6 +60,11 @@ impl Wordings {
     /// The wording of a number.
     pub fn text(&self, number: usize) -> &str {
         self.texts.get(number).map_or("", String::as_str)
+    }
+
+    /// Whether a statement of this number has the sines' kernel in it.
+    pub fn has_kernel(&self, number: usize) -> bool {
+        self.text(number).contains(SINE_COSINE)
     }
 
     /// Statements of a line: many angles are taken a few at a time.

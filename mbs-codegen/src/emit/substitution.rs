@@ -128,7 +128,7 @@ fn finished(
     let declared = format!("__factors: &__Factors<T>, {declared}");
     let frame = Frame { declared, given: format!("__factors, {given}"), result: None };
     let group = parts.lengths.group;
-    let calls = parts.sequence(name, &frame, &statements, group);
+    let calls = parts.sequence(name, &frame, &statements, (group, None));
     let (methods, passed) = parts.reserved(unknowns).print();
     (format!("let __v = &__mbs::long::Passed::<T, {passed}>::none();\n{calls}"), methods)
 }

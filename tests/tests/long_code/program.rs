@@ -1,7 +1,7 @@
 //! Mechanisms cut as long ones beside themselves in one piece.
 
 use mbs_runtime::dynamics::{Explicit, RungeKutta4, Simulation, VelocityTransformation};
-use mbs_runtime::{Dynamic, Kinematic, Partitioned, Stepper};
+use mbs_runtime::{Dynamic, Kinematic, Lanes, Mechanism, Partitioned, Real, Scalar, Stepper};
 
 /// Both do the same operations; loops over blocks may leave an iteration of Newton's method out, or do one more.
 const ROUNDING: f64 = 1e-11;
@@ -39,6 +39,33 @@ where
         motion.extend(run.q().iter().chain(run.qd()).chain(run.lambda()));
     }
     motion
+}
+
+/// All functions of some position and rates beside the guess, by their bits.
+fn evaluated<T: Scalar, S: Mechanism<T, N, M> + Default, const N: usize, const M: usize>() -> Vec<u64> {
+    let mechanism = S::default();
+    let p = mechanism.parameters();
+    let beside = |index: usize, lane: usize| 0.1 * (1.7 * index as f64 + 0.9 * lane as f64).sin();
+    let rates: [T; N] = std::array::from_fn(|index| T::from_lanes(|lane| T::Real::constant(beside(index, lane))));
+    let mut q = mechanism.guess(&p);
+    q.iter_mut().zip(rates).for_each(|(q, beside)| *q = *q + beside);
+    let s = mechanism.position(&p, &q, T::constant(0.3));
+    let numbers = [
+        mechanism.phi(&p, &s).to_vec(),
+        mechanism.phi_q_entries(&p, &s).as_ref().to_vec(),
+        mechanism.phi_t(&p, &s).to_vec(),
+        mechanism.phi_tt(&p, &s).to_vec(),
+        mechanism.phi_qt_qd(&p, &s, &rates).to_vec(),
+        mechanism.gamma(&p, &s, &rates).to_vec(),
+    ];
+    let lanes = |number: T| (0..T::LANES).map(move |lane| number.lane(lane).to_f64().to_bits());
+    numbers.concat().into_iter().flat_map(lanes).collect()
+}
+
+fn same(name: &str, cut: &[u64], whole: &[u64]) {
+    assert_eq!(cut, whole, "{name}");
+    assert!(whole.iter().any(|bits| f64::from_bits(*bits).abs() > 0.1), "{name}");
+    println!("{name}: {} numbers of the same bits", whole.len());
 }
 
 fn compared(name: &str, cut: Vec<f64>, whole: Vec<f64>) {
