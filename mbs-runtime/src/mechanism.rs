@@ -302,6 +302,16 @@ pub trait Factorization<T: Scalar, const K: usize>: Copy {
     fn solve(&self, b: &[T; K]) -> [T; K];
     /// Solves `aᵀ x = b`.
     fn solve_transposed(&self, b: &[T; K]) -> [T; K];
+    /// As [`solve`](Factorization::solve), compiled once for all who call it: what long code is made of.
+    #[inline(never)]
+    fn solve_called(&self, b: &[T; K]) -> [T; K] {
+        self.solve(b)
+    }
+    /// As [`solve_transposed`](Factorization::solve_transposed), compiled once for all who call it.
+    #[inline(never)]
+    fn solve_transposed_called(&self, b: &[T; K]) -> [T; K] {
+        self.solve_transposed(b)
+    }
     /// Whether the determinant of `a` is negative; of no meaning in a singular lane.
     fn reverses(&self) -> T::Mask;
 }

@@ -18,10 +18,12 @@ pub struct Lengths {
     pub in_line: usize,
     /// Most blocks of a part of a substitution.
     pub group: usize,
-    /// Most calls of the sines' kernel, without those in loops, that have it in them; of more all share one.
+    /// Most lines with kernels, those in loops not counted, that have a copy each; of more all share one.
     pub kernels: usize,
     /// Most lines of a function, without those in loops, that are compiled; of more they are a tape.
     pub straight: usize,
+    /// As many of what stands before the blocks, which each step goes through one by one.
+    pub straight_blocks: usize,
     /// Fewest rounds that make a loop.
     pub rounds: usize,
     /// Fewest lines that make one; those of several angles count as several.
@@ -39,6 +41,7 @@ impl Lengths {
         group: 24,
         kernels: 16,
         straight: 400,
+        straight_blocks: 10_000,
         rounds: 4,
         rolled: 32,
     };
@@ -54,6 +57,7 @@ impl Lengths {
         group: 2,
         kernels: 1,
         straight: 16,
+        straight_blocks: 8,
         rounds: 2,
         rolled: 3,
     };

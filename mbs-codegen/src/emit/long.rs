@@ -265,7 +265,7 @@ impl Emission<'_> {
             }
             arms.push((segment, arm));
         }
-        parts.choice("__before", &frame, arms, (self.segments.len(), true));
+        parts.choice("__before", &frame, arms, (self.segments.len(), true, Some(self.scope)));
     }
 
     /// `__evaluate…`: residuals and Jacobian of an iterate.
@@ -287,7 +287,7 @@ impl Emission<'_> {
         }
         let frame = self.frame_of_block("__x", unknowns, result);
         let name = format!("__evaluate{number}");
-        parts.choice(&name, &frame, arms, (self.segments.len(), true));
+        parts.choice(&name, &frame, arms, (self.segments.len(), true, None));
         parts.called(&name, &frame);
     }
 
@@ -309,7 +309,7 @@ impl Emission<'_> {
             arms.push((segment, arm));
         }
         let frame = self.frame_of_block("__x", kind.unknowns, "T::Mask".into());
-        parts.choice(&format!("__holds{number}"), &frame, arms, (self.segments.len(), false));
+        parts.choice(&format!("__holds{number}"), &frame, arms, (self.segments.len(), false, None));
     }
 
     /// `__roots…`: both positions of a dyad.
@@ -326,7 +326,7 @@ impl Emission<'_> {
         if !arms.is_empty() {
             let result = format!("__mbs::Roots<T, {}>", kind.unknowns);
             let frame = self.frame_of_block("__near", kind.unknowns, result);
-            parts.choice(&format!("__roots{number}"), &frame, arms, (self.segments.len(), false));
+            parts.choice(&format!("__roots{number}"), &frame, arms, (self.segments.len(), false, None));
         }
     }
 

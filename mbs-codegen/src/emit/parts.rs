@@ -4,21 +4,17 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 use std::ops::Range;
 
-use super::code::SINE_COSINE;
 use super::lengths::Lengths;
 use super::repetition::{Stretch, stretches};
 use super::rolled::{Rolled, Text, earlier};
 use super::scope::{Scope, Written};
-use super::statement::{PUT, Statement, Wordings};
+use super::statement::{KERNELS, PUT, Statement, Wordings};
 use super::tape::Tape;
 use crate::program::Section;
 use crate::symbolic::NodeId;
 
 /// Stands for the number of passed values until it is known.
 const PASSED: &str = "\u{3}";
-
-/// [`SINE_COSINE`] behind a call, where it would be long code in many places.
-const SINE_COSINE_CALLED: &str = "T::sin_cos_called(";
 
 /// Most statements of all arms together that stand wherever a solver asks for its block: behind a call the next block would have
 /// to wait for what goes through memory.
@@ -212,7 +208,7 @@ impl Parts {
         name: &str,
         frame: &Frame,
         arms: Vec<(usize, Vec<Statement>)>,
-        (count, exports): (usize, bool),
+        (count, exports, recording): (usize, bool, Option<&Scope<'_>>),
     ) {
         let longest = self.lengths.body;
         // Equal wordings that take their values from equal places among those of the arm.
@@ -235,6 +231,8 @@ impl Parts {
             }
         }
         let length: usize = grouped.iter().filter_map(|rounds| rounds.first()).map(Vec::len).sum();
+        let once: usize = grouped.iter().filter(|rounds| rounds.len() == 1).flatten().map(Vec::len).sum();
+        let recording = recording.filter(|_| once > self.lengths.straight_blocks);
         let (inline, choice_inline) = match length <= LONGEST_INLINED {
             true => ("#[inline(always)]", "#[inline(always)]"),
             false => ("#[inline(never)]", "#[inline]"),
@@ -243,14 +241,20 @@ impl Parts {
         let (last, result) = (grouped.len(), frame.result.is_some());
         for (number, mut rounds) in grouped.into_iter().enumerate() {
             let (name, mut calls) = (format!("{name}_{number}"), String::new());
-            if let Some(arm) = rounds.first_mut().filter(|arm| arm.len() > longest) {
+            let mut tape = None;
+            if let ([arm], Some(scope)) = (rounds.as_slice(), recording.filter(|_| !result))
+                && arm.len() <= LONGEST_TAPE
+                && arm.iter().all(|statement| Tape::bears(statement, &self.wordings, scope))
+            {
+                tape = Some(Code::Tape(Tape::of(arm, scope)));
+            } else if let Some(arm) = rounds.first_mut().filter(|arm| arm.len() > longest) {
                 let behind = arm.split_off(arm.len() - usize::from(result));
-                calls = self.sequence(&name, frame, arm, (longest, None));
+                calls = self.sequence(&name, frame, arm, (longest, recording));
                 *arm = behind;
             }
             let pattern = if result && number + 1 == last { "_".into() } else { (number + 1).to_string() };
             let _ = writeln!(choice, "{pattern} => self.{name}(__k, {}__v),", frame.given);
-            let code = Code::Rolled(Rolled::of(rounds));
+            let code = tape.unwrap_or_else(|| Code::Rolled(Rolled::of(rounds)));
             let frame = frame.clone();
             self.methods.push(Method { name, frame, calls, code, all: false, exports, inline });
         }
@@ -290,7 +294,7 @@ impl Parts {
                 Code::Tape(tape) => Text { tables: String::new(), round: tape.print(&slots) },
             };
             if code.len() == 1 && kernels > lengths.kernels {
-                round = round.replace(SINE_COSINE, SINE_COSINE_CALLED);
+                round = KERNELS.iter().fold(round, |round, (copied, called)| round.replace(copied, called));
             }
             let asked = if *all { "" } else { "__k: ::core::primitive::usize, " };
             text += &declared(inline, name, asked, frame);

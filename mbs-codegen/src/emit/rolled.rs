@@ -60,7 +60,7 @@ impl Rolled {
         self.rounds.len()
     }
 
-    /// How many statements have a copy of the sines' kernel in them that a loop would share.
+    /// How many statements have a copy of a kernel in them that a loop would share.
     pub fn kernels(&self, wordings: &Wordings) -> usize {
         let once = self.rounds.first().filter(|_| self.rounds.len() == 1);
         once.into_iter().flatten().filter(|statement| wordings.has_kernel(statement.wording)).count()

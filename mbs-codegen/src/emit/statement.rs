@@ -14,6 +14,13 @@ pub const OPERAND: char = '\u{1}';
 /// Stands for the name of a computed value in a wording.
 pub const DEFINED: char = '\u{2}';
 
+/// How kernels are called that are long code: with a copy of them in each place, and with one for all.
+pub const KERNELS: [(&str, &str); 3] = [
+    (SINE_COSINE, "T::sin_cos_called("),
+    ("::solve(__block, ", "::solve_called(__block, "),
+    ("::solve_transposed(__block, ", "::solve_transposed_called(__block, "),
+];
+
 /// What puts a value among those that are passed on.
 pub const PUT: &str = "__v.put(";
 
@@ -62,9 +69,9 @@ impl Wordings {
         self.texts.get(number).map_or("", String::as_str)
     }
 
-    /// Whether a statement of this number has the sines' kernel in it.
+    /// Whether a statement of this number has a copy of some kernel in it.
     pub fn has_kernel(&self, number: usize) -> bool {
-        self.text(number).contains(SINE_COSINE)
+        KERNELS.iter().any(|(copied, _)| self.text(number).contains(copied))
     }
 
     /// Statements of a line: many angles are taken a few at a time.

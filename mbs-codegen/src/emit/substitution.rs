@@ -30,8 +30,11 @@ pub fn substitution(
     let (solve, solved) =
         forward("__solve_linear", program, places, (&[], n), (&right_side, "__b, "), entries);
     let declared = format!("{right_side}__x: &mut [T; {n}], ");
-    let (complete, completed) =
-        forward("__complete", program, places, (independent, n), (&declared, "__b, __x, "), entries);
+    // Where nothing is given both are the same.
+    let (complete, completed) = match independent.is_empty() {
+        true => (solve.clone(), String::new()),
+        false => forward("__complete", program, places, (independent, n), (&declared, "__b, __x, "), entries),
+    };
     let (reduce, reduced) = backward(program, places, independent, entries);
     Substitution {
         solve: solve + "__v.kept()",
@@ -155,9 +158,10 @@ fn solved(
         }
         Method::Newton(_) => {
             let (names, right_sides) = (names.join(", "), list(right_sides.into_iter()));
+            let of = if block.has_surplus() { "__surplus" } else { "__block" };
             format!(
-                "if let ::core::option::Option::Some(__block) = {factors} {{\n\
-                 let [{names}] = {method}(__block, &{right_sides});\n{puts}}}\n"
+                "if let ::core::option::Option::Some({of}) = {factors} {{\n\
+                 let [{names}] = {method}({of}, &{right_sides});\n{puts}}}\n"
             )
         }
     }
