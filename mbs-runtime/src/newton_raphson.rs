@@ -23,7 +23,7 @@ pub fn newton_raphson<S: Mechanism<R, N, M>, R: Real, const N: usize, const M: u
     q: impl Into<[R; N]>,
     t: R,
 ) -> Result<([R; N], u32), Failure> {
-    newton_raphson_watched(mechanism, q, t, |_| ())
+    iterated(mechanism, q.into(), t, &mut |_| ())
 }
 
 /// A position on the way of [`newton_raphson`], before it is judged.
@@ -45,7 +45,16 @@ pub fn newton_raphson_watched<S: Mechanism<R, N, M>, R: Real, const N: usize, co
     t: R,
     mut watch: impl FnMut(Iterate<'_, R, N, M>),
 ) -> Result<([R; N], u32), Failure> {
-    let mut q = q.into();
+    iterated(mechanism, q.into(), t, &mut watch)
+}
+
+/// [`newton_raphson_watched`], compiled once a mechanism, whoever watches.
+fn iterated<S: Mechanism<R, N, M>, R: Real, const N: usize, const M: usize>(
+    mechanism: &S,
+    mut q: [R; N],
+    t: R,
+    watch: &mut dyn FnMut(Iterate<'_, R, N, M>),
+) -> Result<([R; N], u32), Failure> {
     let broken = time_failure(t).or(variable_failure(mechanism)).or(non_finite(&q, S::COORDINATES));
     if let Some(failure) = broken {
         return Err(failure);

@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 use mbs_runtime::{Entry, Failure, Frame, FunctionEntry, Kinematic, Mechanism, OutputValue, Stepper, Stop};
 
 use crate::analyses::AnyDynamics;
+use crate::branching::Branching;
 use crate::lecture::experiment::Experiment;
 use crate::masses::{Loads, Masses, Tables};
 use crate::motion;
@@ -248,8 +249,8 @@ impl<S: Kinematic<f64, N, M>, const N: usize, const M: usize> AnyMechanism for F
 }
 
 impl<S: Kinematic<f64, N, M>, const N: usize, const M: usize> Facade<S, N, M> {
-    fn assembled(&self, t: f64) -> Result<Stepper<S, f64, N, M>, Failure> {
-        Stepper::assemble(self.0.clone(), self.0.guess(&self.0.parameters()), t)
+    fn assembled(&self, t: f64) -> Result<Stepper<Branching<S>, f64, N, M>, Failure> {
+        Stepper::assemble(Branching::declared(self.0.clone()), self.0.guess(&self.0.parameters()), t)
     }
 }
 

@@ -96,6 +96,7 @@ pub mod three_rrr;
 pub mod watt;
 
 pub mod analyses;
+mod branching;
 #[cfg(feature = "ready")]
 pub mod csv;
 #[cfg(feature = "ready")]

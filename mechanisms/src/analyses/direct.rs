@@ -183,7 +183,10 @@ impl<S, const N: usize> PartitionedFunctions<S, N> {
 }
 
 /// Any formulation: what integrates a mechanism is compiled once for all of them.
-type AnyFormulation<'a, S, const N: usize, const M: usize> = &'a dyn Formulation<S, f64, N, M>;
+pub(super) type AnyFormulation<'a, S, const N: usize, const M: usize> = &'a dyn Formulation<S, f64, N, M>;
+
+/// Ends of steps on the constraints, stages where the rows need it: for other analyses, as [`AnyFormulation`].
+pub(super) const ENDS: Projection = Projection { stages: Stages::WhereNeeded };
 
 /// Any method with steps of a given size, as [`AnyFormulation`].
 type AnyMethod<'a, S, const N: usize, const M: usize> = &'a dyn Method<S, f64, N, M>;

@@ -1,8 +1,9 @@
 //! Inverse dynamics: the forces of a motion that drives prescribe.
 
-use mbs_runtime::dynamics::{DormandPrince8, Explicit, Projection, Simulation, inverse_with_states};
+use mbs_runtime::dynamics::{DormandPrince8, Explicit, Simulation, inverse_with_states};
 use mbs_runtime::{Dynamic, Failure, Motion as Moving};
 
+use super::direct::{AnyFormulation, ENDS};
 use super::{determined, supplied};
 use crate::facade::Motion;
 use crate::motion::Forces;
@@ -40,11 +41,12 @@ pub(crate) fn add_forces<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
 }
 
 /// A motion with masses that is integrated for its first-order states.
-type Run<S, const N: usize, const M: usize> = Simulation<S, Explicit<DormandPrince8, Projection>, f64, N, M>;
+type Run<'a, S, const N: usize, const M: usize> =
+    Simulation<S, Explicit<DormandPrince8, AnyFormulation<'a, S, N, M>>, f64, N, M>;
 
 /// The first-order states at `t` (s), integrated along the motion: `run` goes on from call to call, and starts at the first.
-fn states_at<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
-    run: &mut Option<Run<S, N, M>>,
+fn states_at<'a, S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
+    run: &mut Option<Run<'a, S, N, M>>,
     mechanism: &S,
     t: f64,
     q: &[f64; N],
@@ -55,7 +57,7 @@ fn states_at<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
     let mut moved = match run.take() {
         Some(run) => run,
         None => {
-            let method = Explicit::new(DormandPrince8, Projection::default());
+            let method = Explicit::new(DormandPrince8, &ENDS as AnyFormulation<'a, S, N, M>);
             Simulation::start_near(mechanism.clone(), method, t, *q, [0.0; N])?
         }
     };

@@ -1,8 +1,9 @@
 //! Where a mechanism comes to rest that leaves an unstable rest.
 
-use mbs_runtime::dynamics::{DormandPrince5, Explicit, Projection, Simulation, Tolerance};
+use mbs_runtime::dynamics::{DormandPrince5, Explicit, Simulation, Tolerance};
 use mbs_runtime::{Dynamic, Failure};
 
+use super::direct::{AnyFormulation, ENDS};
 use super::linear::{Fate, SmallMotions, small_motions};
 use super::rest::{Rest, rest};
 use crate::facade::Motion;
@@ -74,7 +75,7 @@ fn fallen<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
     stable: &mut impl FnMut(&[f64; N]) -> Option<Rest>,
 ) -> Result<Option<Rest>, Failure> {
     let stopped = |q: [f64; N]| {
-        let method = Explicit::new(DormandPrince5, Projection::default());
+        let method = Explicit::new(DormandPrince5, &ENDS as AnyFormulation<'_, S, N, M>);
         let run = Simulation::start_near(mechanism.clone(), method, 0.0, q, [0.0; N])?;
         Ok::<_, Failure>(run.with_tolerance(Tolerance::new(TOLERANCE)))
     };

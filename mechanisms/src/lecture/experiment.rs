@@ -7,8 +7,8 @@ use mbs_runtime::{
     newton_raphson, newton_raphson_watched, solve_position,
 };
 
-use super::branchless::Branchless;
 use super::formulas::{Formula, formulas};
+use crate::branching::Branching;
 use crate::facade::{AnyMechanism, Facade, State};
 use crate::motion::instants;
 
@@ -176,7 +176,8 @@ impl<S: Kinematic<f64, N, M>, const N: usize, const M: usize> Facade<S, N, M> {
         let mut solver = Traced::new(Newton::new(extent), &mut recorder);
         self.0.solve_blocks(&parameters, &mut guess.clone(), t, &mut solver);
         // Once more for the failure in words; the solver is deterministic.
-        let found = solve_position(&self.0, &parameters, guess, t).map(|(q, _)| q.to_vec());
+        let declared = Branching::declared(self.0.clone());
+        let found = solve_position(&declared, &parameters, guess, t).map(|(q, _)| q.to_vec());
         Protocol { blocks: recorder.blocks, found }
     }
 
@@ -215,18 +216,17 @@ impl<S: Kinematic<f64, N, M>, const N: usize, const M: usize> Experiment for Fac
     }
     fn assembled(&self, guess: &[f64], t: f64, branches: bool) -> Result<Vec<f64>, Failure> {
         let guess = array::<N>(guess);
-        let assembled = match branches {
-            true => assemble(&self.0, guess, t),
-            false => assemble(&Branchless(self.0.clone()), guess, t),
-        };
-        assembled.map(|assembled| assembled.q.to_vec())
+        let mechanism = self.0.clone();
+        let mechanism =
+            if branches { Branching::declared(mechanism) } else { Branching::none(mechanism) };
+        assemble(&mechanism, guess, t).map(|assembled| assembled.q.to_vec())
     }
     fn rates(&self, q: &[f64], t: f64) -> Result<[Vec<f64>; 2], Failure> {
-        let stepper = Stepper::assemble(Branchless(self.0.clone()), array::<N>(q), t)?;
+        let stepper = Stepper::assemble(Branching::none(self.0.clone()), array::<N>(q), t)?;
         Ok([stepper.qd().to_vec(), stepper.qdd().to_vec()])
     }
     fn advance(&self, q: &[f64], t: f64, until: f64) -> Result<(Vec<f64>, u32), Failure> {
-        let mut stepper = Stepper::assemble(Branchless(self.0.clone()), array::<N>(q), t)?;
+        let mut stepper = Stepper::assemble(Branching::none(self.0.clone()), array::<N>(q), t)?;
         let statistics = stepper.advance_to(until)?;
         // The first evaluation is that of the start.
         Ok((stepper.q().to_vec(), statistics.evaluations.saturating_sub(1)))

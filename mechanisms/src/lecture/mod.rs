@@ -4,7 +4,6 @@
 
 #[cfg(feature = "ready")]
 pub mod basins;
-mod branchless;
 #[cfg(feature = "ready")]
 pub mod comparison;
 #[cfg(feature = "ready")]

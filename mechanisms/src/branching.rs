@@ -1,18 +1,44 @@
-//! A mechanism as if its text declared no branch.
+//! A mechanism whose branches may count or not, as is said at run time: what solves it is compiled once for both.
 
 use mbs_runtime::{
-    Block, BlockSolver, Entry, Factorization, FunctionEntry, Kinematic, Margin, Mechanism, Outcome, Roots,
+    Block, BlockSolver, Entry, Factorization, FunctionEntry, Kinematic, Margin, Mechanism, Outcome, Reference,
+    Roots,
 };
 
-/// The mechanism `S` without its branch conditions: any assembly is right.
+/// The mechanism `S` with its branch conditions, or as if its text declared none.
 #[derive(Clone, Copy, Debug)]
-pub struct Branchless<S>(pub S);
+pub(crate) struct Branching<S> {
+    mechanism: S,
+    counted: bool,
+}
 
-impl<S: Kinematic<f64, N, M>, const N: usize, const M: usize> Mechanism<f64, N, M> for Branchless<S> {
+impl<S> Branching<S> {
+    /// `mechanism` as it is.
+    pub(crate) fn declared(mechanism: S) -> Self {
+        Branching { mechanism, counted: true }
+    }
+
+    /// `mechanism` without its branch conditions: any assembly is right.
+    pub(crate) fn none(mechanism: S) -> Self {
+        Branching { mechanism, counted: false }
+    }
+}
+
+/// Values of the branch conditions that count.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Counted<B>(Option<B>);
+
+impl<B: AsRef<[f64]>> AsRef<[f64]> for Counted<B> {
+    fn as_ref(&self) -> &[f64] {
+        self.0.as_ref().map_or(&[], |values| values.as_ref())
+    }
+}
+
+impl<S: Kinematic<f64, N, M>, const N: usize, const M: usize> Mechanism<f64, N, M> for Branching<S> {
     type Parameters = S::Parameters;
     type Position = S::Position;
     type Entries = S::Entries;
-    type Branches = [f64; 0];
+    type Branches = Counted<S::Branches>;
     type Limits = S::Limits;
     type Phases = S::Phases;
     type Outputs = S::Outputs;
@@ -26,77 +52,87 @@ impl<S: Kinematic<f64, N, M>, const N: usize, const M: usize> Mechanism<f64, N, 
     const REDUNDANT: &'static [bool] = S::REDUNDANT;
     const SPARSITY: &'static [(u16, u16)] = S::SPARSITY;
     const VARIABLES: &'static [Entry] = S::VARIABLES;
-    const BRANCHES: &'static [Entry] = &[];
+    const REFERENCE: Reference = S::REFERENCE;
+    const BRANCHES: &'static [Entry] = S::BRANCHES;
+    const BRANCHES_AT_START: &'static [bool] = S::BRANCHES_AT_START;
     const LIMITS: &'static [Entry] = S::LIMITS;
     const PHASES: &'static [Entry] = S::PHASES;
+    const TURNS: &'static [u16] = S::TURNS;
     const OUTPUTS: &'static [Entry] = S::OUTPUTS;
     const FUNCTIONS: &'static [FunctionEntry] = S::FUNCTIONS;
+    const HAS_SIGNALS: bool = S::HAS_SIGNALS;
 
     fn get(&self, index: usize) -> Option<f64> {
-        self.0.get(index)
+        self.mechanism.get(index)
     }
     fn set(&mut self, index: usize, value: f64) -> bool {
-        self.0.set(index, value)
+        self.mechanism.set(index, value)
     }
     fn lane(&self, lane: usize) -> S::Lane {
-        self.0.lane(lane)
+        self.mechanism.lane(lane)
+    }
+    fn carry_signals(&mut self, start: &Self, h: f64) {
+        self.mechanism.carry_signals(&start.mechanism, h);
+    }
+    fn turn_back(&mut self, coordinate: u16, turns: i64) {
+        self.mechanism.turn_back(coordinate, turns);
     }
     fn phases(&self) -> S::Phases {
-        self.0.phases()
+        self.mechanism.phases()
     }
     fn set_phases(&mut self, phases: S::Phases) {
-        self.0.set_phases(phases);
+        self.mechanism.set_phases(phases);
     }
     fn start_phases(&mut self, q: &[f64; N], t: f64) {
-        self.0.start_phases(q, t);
+        self.mechanism.start_phases(q, t);
     }
     fn advance_phases(&mut self, from: f64, to: f64) {
-        self.0.advance_phases(from, to);
+        self.mechanism.advance_phases(from, to);
     }
     fn phase_rates(&self, t: f64) -> S::Phases {
-        self.0.phase_rates(t)
+        self.mechanism.phase_rates(t)
     }
     fn parameters(&self) -> S::Parameters {
-        self.0.parameters()
+        self.mechanism.parameters()
     }
     fn guess(&self, parameters: &S::Parameters) -> [f64; N] {
-        self.0.guess(parameters)
+        self.mechanism.guess(parameters)
     }
     fn coordinate_scales(&self, parameters: &S::Parameters) -> [f64; N] {
-        self.0.coordinate_scales(parameters)
+        self.mechanism.coordinate_scales(parameters)
     }
     fn row_scales(&self, parameters: &S::Parameters) -> [f64; M] {
-        self.0.row_scales(parameters)
+        self.mechanism.row_scales(parameters)
     }
     fn position(&self, parameters: &S::Parameters, q: &[f64; N], t: f64) -> S::Position {
-        self.0.position(parameters, q, t)
+        self.mechanism.position(parameters, q, t)
     }
     fn phi(&self, parameters: &S::Parameters, position: &S::Position) -> [f64; M] {
-        self.0.phi(parameters, position)
+        self.mechanism.phi(parameters, position)
     }
     fn phi_q(&self, parameters: &S::Parameters, position: &S::Position) -> [[f64; N]; M] {
-        self.0.phi_q(parameters, position)
+        self.mechanism.phi_q(parameters, position)
     }
     fn phi_q_entries(&self, parameters: &S::Parameters, position: &S::Position) -> S::Entries {
-        self.0.phi_q_entries(parameters, position)
+        self.mechanism.phi_q_entries(parameters, position)
     }
     fn phi_t(&self, parameters: &S::Parameters, position: &S::Position) -> [f64; M] {
-        self.0.phi_t(parameters, position)
+        self.mechanism.phi_t(parameters, position)
     }
     fn phi_tt(&self, parameters: &S::Parameters, position: &S::Position) -> [f64; M] {
-        self.0.phi_tt(parameters, position)
+        self.mechanism.phi_tt(parameters, position)
     }
     fn phi_qt_qd(&self, parameters: &S::Parameters, position: &S::Position, qd: &[f64; N]) -> [f64; M] {
-        self.0.phi_qt_qd(parameters, position, qd)
+        self.mechanism.phi_qt_qd(parameters, position, qd)
     }
     fn gamma(&self, parameters: &S::Parameters, position: &S::Position, qd: &[f64; N]) -> [f64; M] {
-        self.0.gamma(parameters, position, qd)
+        self.mechanism.gamma(parameters, position, qd)
     }
-    fn branches(&self, _: &S::Parameters, _: &S::Position) -> [f64; 0] {
-        []
+    fn branches(&self, parameters: &S::Parameters, position: &S::Position) -> Counted<S::Branches> {
+        Counted(self.counted.then(|| self.mechanism.branches(parameters, position)))
     }
     fn limits(&self, parameters: &S::Parameters, position: &S::Position) -> S::Limits {
-        self.0.limits(parameters, position)
+        self.mechanism.limits(parameters, position)
     }
     fn outputs(
         &self,
@@ -105,11 +141,11 @@ impl<S: Kinematic<f64, N, M>, const N: usize, const M: usize> Mechanism<f64, N, 
         qd: &[f64; N],
         qdd: &[f64; N],
     ) -> S::Outputs {
-        self.0.outputs(parameters, position, qd, qdd)
+        self.mechanism.outputs(parameters, position, qd, qdd)
     }
 }
 
-impl<S: Kinematic<f64, N, M>, const N: usize, const M: usize> Kinematic<f64, N, M> for Branchless<S> {
+impl<S: Kinematic<f64, N, M>, const N: usize, const M: usize> Kinematic<f64, N, M> for Branching<S> {
     type Factors = S::Factors;
 
     fn solve_blocks<B: BlockSolver<f64>>(
@@ -119,27 +155,52 @@ impl<S: Kinematic<f64, N, M>, const N: usize, const M: usize> Kinematic<f64, N, 
         t: f64,
         solver: &mut B,
     ) -> [Outcome; 1] {
-        self.0.solve_blocks(parameters, q, t, &mut Blind(solver))
+        self.mechanism.solve_blocks(parameters, q, t, &mut Judging { solver, counted: self.counted })
+    }
+    fn solve_with_position<B: BlockSolver<f64>>(
+        &self,
+        parameters: &S::Parameters,
+        q: &mut [f64; N],
+        t: f64,
+        solver: &mut B,
+    ) -> ([Outcome; 1], S::Position) {
+        self.mechanism.solve_with_position(parameters, q, t, &mut Judging { solver, counted: self.counted })
     }
     fn factorize(&self, parameters: &S::Parameters, position: &S::Position) -> (S::Factors, Margin<f64>) {
-        self.0.factorize(parameters, position)
+        self.mechanism.factorize(parameters, position)
     }
     fn solve_linear(&self, factors: &S::Factors, b: &[f64; M]) -> [f64; N] {
-        self.0.solve_linear(factors, b)
+        self.mechanism.solve_linear(factors, b)
     }
 }
 
-/// A solver that no block tells which branches it decides.
-struct Blind<'a, B>(&'a mut B);
+/// A solver to which any position is right where branches do not count.
+struct Judging<'a, B> {
+    solver: &'a mut B,
+    counted: bool,
+}
 
-impl<B: BlockSolver<f64>> BlockSolver<f64> for Blind<'_, B> {
+impl<B: BlockSolver<f64>> BlockSolver<f64> for Judging<'_, B> {
+    const COPIED: bool = B::COPIED;
+
     fn solve<const K: usize, F: Factorization<f64, K>>(
         &mut self,
         block: &Block<f64, K>,
         x: [f64; K],
         evaluate: impl FnMut(&[f64; K]) -> ([f64; K], [[f64; K]; K]),
     ) -> ([f64; K], [Outcome; 1]) {
-        self.0.solve::<K, F>(block, x, evaluate)
+        self.solver.solve::<K, F>(block, x, evaluate)
+    }
+
+    fn solve_branched<const K: usize, F: Factorization<f64, K>>(
+        &mut self,
+        block: &Block<f64, K>,
+        x: [f64; K],
+        evaluate: impl FnMut(&[f64; K]) -> ([f64; K], [[f64; K]; K]),
+        mut holds: impl FnMut(&[f64; K]) -> bool,
+    ) -> ([f64; K], [Outcome; 1]) {
+        let counted = self.counted;
+        self.solver.solve_branched::<K, F>(block, x, evaluate, |x| !counted || holds(x))
     }
 
     fn solve_closed<const K: usize, F: Factorization<f64, K>>(
@@ -147,10 +208,11 @@ impl<B: BlockSolver<f64>> BlockSolver<f64> for Blind<'_, B> {
         block: &Block<f64, K>,
         x: [f64; K],
         evaluate: impl FnMut(&[f64; K]) -> ([f64; K], [[f64; K]; K]),
-        _holds: impl FnMut(&[f64; K]) -> bool,
+        mut holds: impl FnMut(&[f64; K]) -> bool,
         roots: impl FnOnce(&[f64; K]) -> Roots<f64, K>,
     ) -> ([f64; K], [Outcome; 1]) {
-        self.0.solve_closed::<K, F>(block, x, evaluate, |_| true, roots)
+        let counted = self.counted;
+        self.solver.solve_closed::<K, F>(block, x, evaluate, |x| !counted || holds(x), roots)
     }
 
     fn solve_redundant<const K: usize, const M: usize>(
@@ -158,9 +220,10 @@ impl<B: BlockSolver<f64>> BlockSolver<f64> for Blind<'_, B> {
         block: &Block<f64, K, M>,
         x: [f64; K],
         evaluate: impl FnMut(&[f64; K]) -> ([f64; M], [[f64; K]; M]),
-        _holds: impl FnMut(&[f64; K]) -> bool,
+        mut holds: impl FnMut(&[f64; K]) -> bool,
     ) -> ([f64; K], [Outcome; 1]) {
-        self.0.solve_redundant::<K, M>(block, x, evaluate, |_| true)
+        let counted = self.counted;
+        self.solver.solve_redundant::<K, M>(block, x, evaluate, |x| !counted || holds(x))
     }
 }
 
@@ -168,7 +231,7 @@ impl<B: BlockSolver<f64>> BlockSolver<f64> for Blind<'_, B> {
 mod tests {
     use mbs_runtime::{Mechanism, assemble, mechanism};
 
-    use super::Branchless;
+    use super::Branching;
 
     mechanism! {
         pub mechanism Bars;
@@ -186,10 +249,10 @@ mod tests {
         let guess = bars.guess(&bars.parameters());
         for (coupler, rocker) in [(0.9, 1.8), (-0.9, -1.8), (3.0, 0.1), (-2.0, 2.0)] {
             let from = [guess[0], coupler, rocker];
-            let found = assemble(&Branchless(bars), from, 0.0).expect("it assembles");
+            let found = assemble(&Branching::none(bars), from, 0.0).expect("it assembles");
             // A search from so far away takes more than what polishes a formula.
             assert!(!found.statistics.fallback && found.statistics.evaluations <= 3, "{found:?}");
-            let declared = assemble(&bars, from, 0.0).expect("it assembles");
+            let declared = assemble(&Branching::declared(bars), from, 0.0).expect("it assembles");
             assert!((declared.q[2] - declared.q[1]).sin() > 0.0);
         }
     }
