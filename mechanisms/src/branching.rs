@@ -1,8 +1,8 @@
 //! A mechanism whose branches may count or not, as is said at run time: what solves it is compiled once for both.
 
 use mbs_runtime::{
-    Block, BlockSolver, Entry, Factorization, FunctionEntry, Kinematic, Margin, Mechanism, Outcome, Reference,
-    Roots,
+    Block, BlockSolver, Entry, Factorization, FunctionEntry, Kinematic, Margin, Mechanism, Outcome,
+    Reference, Roots,
 };
 
 /// The mechanism `S` with its branch conditions, or as if its text declared none.

@@ -1,6 +1,6 @@
 //! Augmented Lagrangian of index 3 with projections: stiff and redundant mechanisms at coarse steps.
 
-use super::implicit::{MOST_ITERATIONS, Tangent, add};
+use super::implicit::{MOST_ITERATIONS, Tangent, add_outer};
 use super::kkt::{Factors, System, truncation};
 use super::metric::Metric;
 use super::model::{Counts, Formulation, Model, Solved};
@@ -160,8 +160,7 @@ impl<R: Real, const N: usize, const M: usize> Penalized<R, N, M> {
         let phi_q = model.mechanism.phi_q(model.parameters, position);
         let mut matrix = tangent.combined(R::constant(1.0), R::constant(0.5) * h, quarter);
         for (row, alpha) in phi_q.iter().zip(&alpha) {
-            let outer = row.map(|a| row.map(|b| a * b));
-            add(&mut matrix, quarter * *alpha, &outer);
+            add_outer(&mut matrix, quarter * *alpha, row);
         }
         let system = System::new(&matrix, &[], &model.metric.without_rows());
         let factors = system.factorize_regular(S::COORDINATES, t)?;

@@ -65,9 +65,16 @@ impl<R: Real, const N: usize> Tangent<R, N> {
 }
 
 /// `sum` + `factor` · `matrix`.
-pub(super) fn add<R: Real, const N: usize>(sum: &mut [[R; N]; N], factor: R, matrix: &[[R; N]; N]) {
+fn add<R: Real, const N: usize>(sum: &mut [[R; N]; N], factor: R, matrix: &[[R; N]; N]) {
     for (row, other) in sum.iter_mut().zip(matrix) {
         row.iter_mut().zip(other).for_each(|(entry, other)| *entry = *entry + factor * *other);
+    }
+}
+
+/// `sum` + `factor` · `row`ᵀ `row`.
+pub(super) fn add_outer<R: Real, const N: usize>(sum: &mut [[R; N]; N], factor: R, row: &[R; N]) {
+    for (line, a) in sum.iter_mut().zip(row) {
+        line.iter_mut().zip(row).for_each(|(entry, b)| *entry = *entry + factor * (*a * *b));
     }
 }
 

@@ -53,7 +53,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Formulation<S
         let mut matrix = mechanism.mass(parameters, &position);
         let alpha = model.metric.weights(&matrix).map(|weight| R::constant(self.alpha) * weight);
         for (row, alpha) in phi_q.iter().zip(&alpha) {
-            super::implicit::add(&mut matrix, *alpha, &row.map(|a| row.map(|b| a * b)));
+            super::implicit::add_outer(&mut matrix, *alpha, row);
         }
         let system = System::new(&matrix, &[], &model.metric.without_rows());
         let factors = system.factorize_regular(S::COORDINATES, t)?;

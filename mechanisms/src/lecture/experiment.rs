@@ -217,8 +217,7 @@ impl<S: Kinematic<f64, N, M>, const N: usize, const M: usize> Experiment for Fac
     fn assembled(&self, guess: &[f64], t: f64, branches: bool) -> Result<Vec<f64>, Failure> {
         let guess = array::<N>(guess);
         let mechanism = self.0.clone();
-        let mechanism =
-            if branches { Branching::declared(mechanism) } else { Branching::none(mechanism) };
+        let mechanism = if branches { Branching::declared(mechanism) } else { Branching::none(mechanism) };
         assemble(&mechanism, guess, t).map(|assembled| assembled.q.to_vec())
     }
     fn rates(&self, q: &[f64], t: f64) -> Result<[Vec<f64>; 2], Failure> {
