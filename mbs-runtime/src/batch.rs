@@ -10,6 +10,7 @@ use notes::Notes;
 use standing::Standing;
 
 use crate::diagnosis::Statistics;
+use crate::kinematics::are_finite;
 use crate::lanes::LaneMask;
 use crate::trial::{Start, Trial, weights};
 use crate::turns::second;
@@ -41,8 +42,14 @@ where
     qdd: [Lanes<R, L>; N],
     margin: Lanes<R, L>,
     notes: Notes<R, L>,
-    /// Lanes whose next step has more to do than follow the rates.
+    /// Lanes that are out.
+    out: LaneMask<R, L>,
+    /// Lanes whose next step cannot be plain: those that are out, and those with an input that is none.
     waits: LaneMask<R, L>,
+    /// Lanes whose parameters or inputs were changed since they were solved.
+    changed: LaneMask<R, L>,
+    /// Lanes whose steppers do not have the parameters and inputs that stand above.
+    outdated: [bool; L],
     /// Why lanes are out.
     retired: [Option<Failure>; L],
     /// What a lane has besides; what stands above is not up to date here.
@@ -97,7 +104,7 @@ where
         let parameters = mechanism.parameters();
         let steppers = assembled.map(|result| result.unwrap_or_else(|_| first.clone()));
         let (q, qd, qdd) = ([none; N], [none; N], [none; N]);
-        let waits = LaneMask::new(retired.map(|failure| failure.is_some()));
+        let out = LaneMask::new(retired.map(|failure| failure.is_some()));
         let (margin, notes) = (zero, Notes::none());
         let weights = weights(&mechanism.coordinate_scales(&parameters));
         let mut batch = Batch {
@@ -111,7 +118,10 @@ where
             qdd,
             margin,
             notes,
-            waits,
+            out,
+            waits: out,
+            changed: LaneMask::new([false; L]),
+            outdated: [false; L],
             retired,
             steppers,
         };
@@ -143,6 +153,7 @@ where
     pub fn revive(&mut self, lane: usize, guess: &[R; N], t: R) -> Result<(), Failure> {
         let stepper = Stepper::assemble(self.mechanism.lane(lane), *guess, t)?;
         set(&mut self.steppers, lane, stepper);
+        set(&mut self.outdated, lane, false);
         set(&mut self.retired, lane, None);
         self.gather(lane);
         Ok(())
@@ -173,11 +184,12 @@ where
         let Batch { mechanism, parameters, weights, q, qd, qdd, margin, .. } = &*self;
         let start = Start { t: from, q, qd, qdd, margin: *margin, weights };
         let trial = Trial::of(mechanism, parameters, &start, to, !self.waits);
-        if !Lanes::<R, L>::all(trial.plain) {
+        if !Lanes::<R, L>::all(trial.plain & !self.turned(&trial.orientation)) {
             // The address of a copy, so that the trial itself stays in registers.
             let doubtful = trial;
             return Some(self.apart(&doubtful, &before, t));
         }
+        self.changed = Lanes::<R, L>::mask(false);
         self.notes.follow(&trial, self.margin, to - from);
         self.margin = trial.margin;
         self.pass_time(Lanes::<R, L>::mask(true), Lanes(t));
@@ -191,6 +203,15 @@ where
             self.take_turns_off();
         }
         None
+    }
+
+    /// Lanes whose inputs were changed and whose step passes a singular position: the way of the drivers decides what it leads to.
+    #[inline(always)]
+    fn turned(&self, orientation: &[u64; L]) -> LaneMask<R, L> {
+        if Lanes::<R, L>::all(!self.changed) {
+            return self.changed;
+        }
+        self.changed & LaneMask::new(from_fn(|lane| at(orientation, lane, 0) != self.notes.orientation(lane)))
     }
 
     /// The times between which the lanes step to `t` (L, s): where coordinates turn, no function knows the time, and a step is one
@@ -249,7 +270,7 @@ where
         before: &S::Phases,
         t: [R; L],
     ) -> [Result<Statistics, Failure>; L] {
-        let plain = trial.plain;
+        let plain = trial.plain & !self.turned(&trial.orientation);
         let mut notes = self.notes;
         let (from, to) = self.span(t);
         notes.follow(trial, self.margin, to - from);
@@ -263,6 +284,7 @@ where
             old.iter_mut().zip(new).for_each(|(old, new)| merge(old, new));
         }
         merge(&mut self.margin, &trial.margin);
+        self.changed = self.changed & !plain;
         self.pass_time(plain, Lanes(t));
         if !S::TURNS.is_empty() {
             self.take_turns_off();
@@ -282,10 +304,9 @@ where
         let result = change(&mut self.mechanism);
         self.parameters = self.mechanism.parameters();
         self.weights = weights(&self.mechanism.coordinate_scales(&self.parameters));
-        for (lane, stepper) in self.steppers.iter_mut().enumerate() {
-            stepper.change(|mechanism| *mechanism = self.mechanism.lane(lane));
-        }
-        self.waits = LaneMask::new([true; L]);
+        // The steppers get theirs where they are needed.
+        (self.changed, self.outdated) = (Lanes::<R, L>::mask(true), [true; L]);
+        self.waits = self.out | !are_finite(&self.mechanism);
         result
     }
 
@@ -340,6 +361,7 @@ where
         let standing = self.standing(lane);
         let stepper = self.steppers.get_mut(lane)?;
         standing.hand_over(stepper, &self.mechanism, lane);
+        set(&mut self.outdated, lane, false);
         Some(stepper)
     }
 
@@ -357,6 +379,8 @@ where
             statistics: self.notes.statistics(lane),
             passages: self.notes.passages(lane),
             orientation: self.notes.orientation(lane),
+            changed: Lanes::<R, L>::test(self.changed, lane),
+            outdated: at(&self.outdated, lane, false),
         }
     }
 
@@ -379,18 +403,16 @@ where
         self.mechanism.set_phases(phases);
         self.notes.put(lane, stepper.state.drift, stepper.statistics());
         self.notes.count(lane, stepper.passages(), stepper.signature());
+        self.changed = self.changed.with(lane, stepper.changed);
         self.note_waiting(lane);
     }
 
-    /// Whether the next step of lane `lane` has more to do than follow the rates.
+    /// Notes whether lane `lane` is out, and whether its next step can be plain.
     fn note_waiting(&mut self, lane: usize) {
-        let waits = self.waits;
         let out = at(&self.retired, lane, None).is_some();
-        let waiting = |other: usize| match self.steppers.get(other) {
-            Some(stepper) if other == lane => out || stepper.waits(),
-            _ => Lanes::<R, L>::test(waits, other),
-        };
-        self.waits = LaneMask::new(from_fn(waiting));
+        let waits = self.steppers.get(lane).is_none_or(Stepper::waits);
+        self.out = self.out.with(lane, out);
+        self.waits = self.waits.with(lane, out || waits);
     }
 }
 

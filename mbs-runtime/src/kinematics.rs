@@ -4,7 +4,7 @@ use crate::diagnosis::{Diagnosis, Statistics, extent, largest};
 use crate::failure::{Holding, Level};
 use crate::linear::{determines_rates, least_margin};
 use crate::nearest::contradiction;
-use crate::{Entry, Failure, Kinematic, Margin, Mechanism, Newton, Outcome, Real};
+use crate::{Entry, Failure, Kinematic, Margin, Mechanism, Newton, Outcome, Real, Scalar};
 
 /// Factors of a Jacobian that is regular: the only ones that rates are solved with.
 #[derive(Clone, Copy, Debug)]
@@ -266,7 +266,25 @@ pub(crate) fn branch_failure<S: Mechanism<R, N, M>, R: Real, const N: usize, con
 }
 
 /// The parameter or input that is not finite, if any.
+#[inline]
 pub(crate) fn variable_failure<S: Mechanism<R, N, M>, R: Real, const N: usize, const M: usize>(
+    mechanism: &S,
+) -> Option<Failure> {
+    if are_finite(mechanism) { None } else { broken_variable(mechanism) }
+}
+
+/// Whether all parameters and inputs are finite, lane by lane.
+#[inline(always)]
+pub(crate) fn are_finite<S: Mechanism<T, N, M>, T: Scalar, const N: usize, const M: usize>(
+    mechanism: &S,
+) -> T::Mask {
+    let finite = |index| mechanism.get(index).map_or(T::mask(true), |value| value.is_finite());
+    (0..S::VARIABLES.len()).fold(T::mask(true), |all, index| all & finite(index))
+}
+
+#[cold]
+#[inline(never)]
+fn broken_variable<S: Mechanism<R, N, M>, R: Real, const N: usize, const M: usize>(
     mechanism: &S,
 ) -> Option<Failure> {
     let broken = |index: &usize| mechanism.get(*index).is_some_and(|value| !value.is_finite());

@@ -79,6 +79,14 @@ impl<R: Real, const L: usize> LaneMask<R, L> {
     pub fn new(truths: [bool; L]) -> Self {
         LaneMask(truths.map(word::<R>))
     }
+
+    /// These with the one of lane `lane`, if there is such a lane.
+    pub(crate) fn with(mut self, lane: usize, truth: bool) -> Self {
+        if let Some(word) = self.0.get_mut(lane) {
+            *word = self::word::<R>(truth);
+        }
+        self
+    }
 }
 
 /// A truth value as a word.

@@ -148,7 +148,9 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
             let weights = &weights(&self.mechanism.coordinate_scales(&self.parameters));
             let start = Start { t: self.state.t, q, qd, qdd, margin: *margin, weights };
             let trial = Trial::of(&self.mechanism, &self.parameters, &start, t, R::mask(true));
-            if trial.plain {
+            // Where inputs were changed, the way of the drivers decides what a passage leads to.
+            if trial.plain && (!self.changed || trial.orientation(0) == self.state.orientation) {
+                self.changed = false;
                 return Ok(self.state.follow(&trial, t));
             }
         }
@@ -238,9 +240,9 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
         result
     }
 
-    /// Whether the next step has more to do than follow the rates: inputs have changed, or a position is to be repaired.
+    /// Whether the next step cannot be plain: an input is none, or a position is to be repaired.
     pub(crate) fn waits(&self) -> bool {
-        self.changed || self.fault.is_some() || self.state.repair.is_some()
+        self.fault.is_some() || self.state.repair.is_some()
     }
 
     /// Time (s).

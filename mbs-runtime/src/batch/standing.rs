@@ -4,7 +4,8 @@ use crate::diagnosis::Statistics;
 use crate::stepper::Drift;
 use crate::{Kinematic, Lanes, Mechanism, Phase, Real, Stepper};
 
-/// All that the stepper of a lane has to know to go on from where the lane is, but for the phases, which the mechanism has.
+/// All that the stepper of a lane has to know to go on from where the lane is, but for what the mechanism has: phases, and
+/// parameters and inputs since they were changed.
 pub(super) struct Standing<R, const N: usize> {
     pub t: R,
     pub clock: Phase<R>,
@@ -16,6 +17,10 @@ pub(super) struct Standing<R, const N: usize> {
     pub statistics: Statistics,
     pub passages: u32,
     pub orientation: u64,
+    /// Whether parameters or inputs were changed since the lane was solved.
+    pub changed: bool,
+    /// Whether they are not those of the stepper.
+    pub outdated: bool,
 }
 
 impl<R: Real, const N: usize> Standing<R, N> {
@@ -26,12 +31,16 @@ impl<R: Real, const N: usize> Standing<R, N> {
         mechanism: &S,
         lane: usize,
     ) where
-        S: Mechanism<Lanes<R, L>, N, M>,
+        S: Mechanism<Lanes<R, L>, N, M, Lane = X>,
         X: Kinematic<R, N, M>,
     {
         stepper.state.set((self.t, self.q, self.qd, self.qdd), self.margin);
         stepper.state.note(self.drift, self.statistics, self.passages, self.orientation);
         stepper.turns.clock = self.clock;
+        if self.outdated {
+            stepper.change(|own| *own = mechanism.lane(lane));
+        }
+        stepper.changed = self.changed;
         let mut phases = stepper.mechanism.phases();
         for (own, phase) in phases.as_mut().iter_mut().zip(mechanism.phases().as_ref()) {
             *own = phase.lane(lane);
