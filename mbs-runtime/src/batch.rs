@@ -19,9 +19,9 @@ use crate::{Failure, Kinematic, Lanes, Mechanism, Phase, Real, Scalar, Stepper};
 /// `L` mechanisms of one text, a lane each, each with its own design, time, state and failures.
 ///
 /// A step is taken in all lanes at once. A lane in which something else happens than next to a regular position (no
-/// convergence, the singular zone, a branch, a limit, a doubt about the assembly, changed inputs) is taken alone, by the
-/// [`Stepper`] that it would have as a single mechanism; the others do not notice. So each lane is, to round-off, what it
-/// is alone. Phases of drives that prescribe a rate move on in all lanes at once too; where a coordinate turns, a lane is taken
+/// convergence, the singular zone, a branch, a limit, a doubt about the assembly, as after an input that jumps) is taken alone,
+/// by the [`Stepper`] that it would have as a single mechanism; the others do not notice. So each lane is, to round-off, what
+/// it is alone. Phases of drives that prescribe a rate move on in all lanes at once too; where a coordinate turns, a lane is taken
 /// alone only to take a whole turn off.
 #[derive(Clone)]
 pub struct Batch<S, R, const L: usize, const N: usize, const M: usize = N>

@@ -100,8 +100,8 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
 
     /// Moves on to time `t` (s).
     ///
-    /// Predicts q + h q̇ + h²/2 q̈, or after a change of inputs and near a singular position the path of the drivers
-    /// from the last regular one to second order; solves the position by [`Newton`](crate::Newton), factorises Φ_q
+    /// Predicts q + h q̇ + h²/2 q̈, or near a singular position the path of the drivers from the last regular one to second
+    /// order, and after a change of inputs too, where the rates have not foreseen it; solves the position by [`Newton`](crate::Newton), factorises Φ_q
     /// once, and solves velocity and acceleration with it. A position that is off its prediction by more than a
     /// quarter of its margin might be in another assembly: it is found again along the way of the drivers, in
     /// pieces that leave no doubt, if there is such a way.

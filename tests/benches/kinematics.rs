@@ -227,6 +227,22 @@ const LINES: &[Line] = &[
         SHOWN,
     ),
     Line(
+        "kinematic step with inputs set before each, four-bar, against the time-driven step",
+        "four_bar_step",
+        "emitted_with_inputs",
+        Peer::Fastest(&["emitted"]),
+        SHOWN,
+        SHOWN,
+    ),
+    Line(
+        "8-lane batch step with inputs set before each, four-bar, a mechanism, against the single step with inputs",
+        "four_bar_step",
+        "emitted_lanes_with_inputs",
+        Peer::Fastest(&["emitted_with_inputs"]),
+        SHOWN,
+        SHOWN,
+    ),
+    Line(
         "time a step, forty loops over ten (at most)",
         "chain_step",
         "emitted_40",

@@ -200,6 +200,8 @@ pub fn titles() -> BTreeMap<&'static str, &'static str> {
         ("emitted_lanes", "**emitted**, 8 lanes, a mechanism"),
         ("emitted_4_lanes", "**emitted**, 4 lanes, a mechanism"),
         ("emitted_40", "**emitted**, 40 loops"),
+        ("emitted_with_inputs", "**emitted**, inputs set before each step"),
+        ("emitted_lanes_with_inputs", "**emitted**, 8 lanes, inputs set before each step, a mechanism"),
         ("emitted_order_5", "**emitted**, order 5(4)"),
         ("emitted_order_8", "**emitted**, order 8(5,3)"),
         ("dense", "dense LU with multipliers, C by hand"),

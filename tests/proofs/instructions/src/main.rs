@@ -18,9 +18,11 @@ use std::hint::black_box;
 use std::process::ExitCode;
 
 use mbs_runtime::dynamics::{Counts, Formulation, Metric, Model, State, VelocityTransformation};
-use mbs_runtime::{Batch, Dynamic, Kinematic, Lanes, Mechanism, Partitioned, Stepper, mechanism};
+use mbs_runtime::{
+    Batch, Dynamic, Kinematic, Lanes, Mechanism, Partitioned, Scalar, Signal, Stepper, mechanism,
+};
 use released::{NFourBar10, NFourBar40, Squeezer};
-use texts::{Andrews, Chain10, Chain40, FourBar};
+use texts::{Andrews, Chain10, Chain40, CommandedFourBar, FourBar};
 
 chain! {
     /// One loop.
@@ -51,13 +53,15 @@ const LANES: usize = 8;
 /// A work by name, done so many times.
 type Work = (&'static str, fn(u32));
 
-const WORKS: [Work; 17] = [
+const WORKS: [Work; 19] = [
     ("evaluate_four_bar", evaluate::<FourBar, 5>),
     ("evaluate_andrews", evaluate::<Andrews, 7>),
     ("evaluate_chain", evaluate::<Chain10, 22>),
     ("evaluate_four_bar_in_8_lanes", evaluate_lanes),
     ("step_four_bar", |count| steps(FourBar::default(), [0.0, 0.0, 0.0, 0.9, 1.8], count)),
     ("step_four_bar_in_8_lanes", |count| batch(FourBar::default(), [0.0, 0.0, 0.0, 0.9, 1.8], count)),
+    ("step_four_bar_with_inputs", commanded_steps),
+    ("step_four_bar_with_inputs_in_8_lanes", commanded_batch),
     ("step_chain_of_1", |count| steps(Chain1::default(), upright(), count)),
     ("step_chain_of_10", |count| steps(Chain10::default(), upright(), count)),
     ("step_chain_of_10_in_8_lanes", |count| batch(Chain10::default(), upright(), count)),
@@ -114,6 +118,37 @@ fn steps<S: Kinematic<f64, N>, const N: usize>(mechanism: S, guess: [f64; N], co
         stepper.advance_to(f64::from(k) * STEP).expect("the mechanism is regular");
     }
     black_box(stepper.q());
+}
+
+/// Steps of a mechanism whose input is set before each.
+fn commanded_steps(count: u32) {
+    let assembled = Stepper::assemble(CommandedFourBar::default(), [0.0, 0.0, 0.0, 0.9, 1.8], 0.0);
+    let mut stepper = assembled.expect("it can be assembled");
+    for k in 1..=count {
+        let t = f64::from(k) * STEP;
+        stepper.change(|four_bar| four_bar.angle = angle(t));
+        stepper.advance_to(t).expect("the mechanism is regular");
+    }
+    black_box(stepper.q());
+}
+
+/// The same in lanes.
+fn commanded_batch(count: u32) {
+    let guess = [[0.0, 0.0, 0.0, 0.9, 1.8]; LANES];
+    let assembled = Batch::assemble(CommandedFourBar::default(), &guess, [0.0; LANES]);
+    let mut batch = assembled.map_err(|(_, failure)| failure).expect("it can be assembled");
+    for k in 1..=count {
+        let t = [f64::from(k) * STEP; LANES];
+        batch.change(|four_bar| four_bar.angle = angle(Lanes(t)));
+        assert!(batch.advance_to(t).iter().all(Result::is_ok), "the mechanism is regular");
+    }
+    black_box(batch.q());
+}
+
+/// Where the crank is commanded to be at time `t` (s): it turns once a second.
+fn angle<T: Scalar>(t: T) -> Signal<T> {
+    let rate = T::constant(std::f64::consts::TAU);
+    Signal { value: rate * t, rate, acceleration: T::constant(0.0) }
 }
 
 /// Where Andrews' mechanism starts.

@@ -61,6 +61,36 @@ mechanism! {
 }
 
 mechanism! {
+    /// The lecture's four-bar, its crank where an input says.
+    pub mechanism CommandedFourBar;
+
+    const L1: m = 0.20;
+    const L2: m = 0.60;
+    const L3: m = 0.50;
+    const L4: m = 0.55;
+    const L5: m = 0.35;
+    const ALPHA: rad = 30deg;
+
+    input angle: rad, rates;
+
+    coord x2: m;
+    coord y2: m;
+    coord phi1: rad;
+    coord phi2: rad = 0.9;
+    coord phi3: rad = 1.8;
+
+    constraint coupler_point {
+        x2 == L1*cos(phi1) + L5*cos(ALPHA + phi2);
+        y2 == L1*sin(phi1) + L5*sin(ALPHA + phi2);
+    }
+    constraint closure {
+        L3*cos(phi3) + L4 == L1*cos(phi1) + L2*cos(phi2);
+        L1*sin(phi1) + L2*sin(phi2) == L3*sin(phi3);
+    }
+    drive crank: phi1 == angle;
+}
+
+mechanism! {
     /// Andrews' squeezing mechanism, its motor driven.
     pub mechanism Andrews;
 

@@ -26,9 +26,25 @@ where
     S: Kinematic<f64, N> + Copy + 'static,
     Stepper<S, f64, N>: Clone,
 {
+    commanded("emitted", turn, mechanism, |_, _| {})
+}
+
+/// As [`turn`], with what `command` sets before each step for the time that it goes to.
+pub fn commanded<S, const N: usize>(
+    name: &'static str,
+    turn: &Turn<N>,
+    mechanism: S,
+    command: impl Fn(&mut Stepper<S, f64, N>, f64) + Copy + 'static,
+) -> Case
+where
+    S: Kinematic<f64, N> + Copy + 'static,
+    Stepper<S, f64, N>: Clone,
+{
     let start = assembled(mechanism, turn.start.q);
-    let step = |stepper: &mut Stepper<S, f64, N>, k: u32| {
-        stepper.advance_to(f64::from(k) * STEP).expect("the mechanism is regular");
+    let step = move |stepper: &mut Stepper<S, f64, N>, k: u32| {
+        let t = f64::from(k) * STEP;
+        command(stepper, t);
+        stepper.advance_to(t).expect("the mechanism is regular");
     };
     let mut stepper = start.clone();
     let ends = [1..=STEPS / 2, STEPS / 2 + 1..=STEPS].map(|steps| {
@@ -41,7 +57,7 @@ where
         (1..=STEPS).for_each(|k| step(&mut stepper, k));
         black_box(stepper.q());
     };
-    Case { group: turn.group, name: "emitted", work: STEPS, error, run: Box::new(run) }
+    Case { group: turn.group, name, work: STEPS, error, run: Box::new(run) }
 }
 
 /// Steps of a turn of L mechanisms at once, each at its own phase of the turn: the L-th part of it (s) ahead of the one before.
@@ -51,9 +67,25 @@ where
     S::Lane: Kinematic<f64, N> + 'static,
     <S as Mechanism<Lanes<f64, L>, N, N>>::Parameters: 'static,
 {
+    commanded_lanes::<S, L, N>(name, turn, mechanism, |_, _| {})
+}
+
+/// As [`lanes`], with what `command` sets before each step for the times that the lanes go to.
+pub fn commanded_lanes<S, const L: usize, const N: usize>(
+    name: &'static str,
+    turn: &Turn<N>,
+    mechanism: S,
+    command: impl Fn(&mut Batch<S, f64, L, N>, [f64; L]) + Copy + 'static,
+) -> Case
+where
+    S: Kinematic<Lanes<f64, L>, N> + Clone + 'static,
+    S::Lane: Kinematic<f64, N> + 'static,
+    <S as Mechanism<Lanes<f64, L>, N, N>>::Parameters: 'static,
+{
     let assembled = Batch::assemble(mechanism, &[turn.start.q; L], [0.0; L]);
     let mut start = assembled.map_err(|(_, failure)| failure).expect("it can be assembled");
-    let advance = |batch: &mut Batch<S, f64, L, N>, times: [f64; L]| {
+    let advance = move |batch: &mut Batch<S, f64, L, N>, times: [f64; L]| {
+        command(batch, times);
         let steps = batch.advance_to(times);
         assert!(steps.iter().all(Result::is_ok), "the mechanism is regular");
     };

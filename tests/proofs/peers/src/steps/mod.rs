@@ -5,10 +5,13 @@ mod casadi;
 mod dense;
 mod emitted;
 
+use std::f64::consts::TAU;
 use std::hint::black_box;
 
+use mbs_runtime::{Lanes, Scalar, Signal};
+
 use crate::measure::Case;
-use crate::texts::{Chain10, Chain40, FourBar};
+use crate::texts::{Chain10, Chain40, CommandedFourBar, FourBar};
 
 /// Steps of a turn.
 const STEPS: u32 = 1000;
@@ -42,7 +45,24 @@ pub fn four_bar() -> Vec<Case> {
         emitted::turn(&turn, FourBar::default()),
         emitted::lanes::<_, 8, 5>("emitted_lanes", &turn, FourBar::default()),
         emitted::lanes::<_, 4, 5>("emitted_4_lanes", &turn, FourBar::default()),
+        emitted::commanded("emitted_with_inputs", &turn, CommandedFourBar::default(), |stepper, t| {
+            stepper.change(|four_bar| four_bar.angle = angle(t));
+        }),
+        emitted::commanded_lanes::<_, 8, 5>(
+            "emitted_lanes_with_inputs",
+            &turn,
+            CommandedFourBar::default(),
+            |batch, times| {
+                batch.change(|four_bar| four_bar.angle = angle(Lanes(times)));
+            },
+        ),
     ]
+}
+
+/// Where the crank is commanded to be at time `t` (s): where it turns by itself otherwise.
+fn angle<T: Scalar>(t: T) -> Signal<T> {
+    let rate = T::constant(TAU);
+    Signal { value: rate * t, rate, acceleration: T::constant(0.0) }
 }
 
 /// Ten loops in natural coordinates, and forty to see the growth.
