@@ -1,6 +1,6 @@
 //! Inputs set before each step, in one mechanism and in lanes: nothing they do may change the assembly.
 
-use mbs_runtime::{Batch, Failure, Lanes, Mechanism, Signal, Stepper, mechanism};
+use mbs_runtime::{Batch, Failure, Kinematic, Lanes, Signal, Stepper, mechanism};
 
 mechanism! {
     /// A crank-rocker that goes where it is told.
@@ -74,7 +74,7 @@ fn told(theta: f64, numbers: &mut Numbers) -> Signal<f64> {
     }
 }
 
-fn assert_equal<S: mbs_runtime::Kinematic<f64, 3>>(found: &Stepper<S, f64, 3>, alone: &Stepper<S, f64, 3>) {
+fn assert_equal<S: Kinematic<f64, 3>>(found: &Stepper<S, f64, 3>, alone: &Stepper<S, f64, 3>) {
     for (found, expected) in [(found.q(), alone.q()), (found.qd(), alone.qd()), (found.qdd(), alone.qdd())] {
         for (found, expected) in found.iter().zip(expected) {
             assert!((found - expected).abs() <= ROUND_OFF * (1.0 + expected.abs()), "{found} {expected}");
@@ -161,7 +161,8 @@ fn an_input_of_one_lane_that_is_no_number_leaves_the_others_as_they_are() {
     let assembled = Batch::assemble(Commanded::<Eight>::default(), &[GUESS; LANES], [0.0; LANES]);
     let mut batch = assembled.map_err(|(_, failure)| failure).expect("they assemble");
     let tell = |batch: &mut Batch<Commanded<Eight>, f64, LANES, 3>, t: f64, third: f64| {
-        let mut theta = Signal { value: Lanes([t; LANES]), rate: Lanes([1.0; LANES]), ..Signal::default() };
+        let constant = |value: f64| Lanes([value; LANES]);
+        let mut theta = Signal { value: constant(t), rate: constant(1.0), acceleration: constant(0.0) };
         theta.value.0[3] = third;
         batch.change(|four_bar| four_bar.theta = theta);
     };
@@ -220,10 +221,12 @@ fn lanes_that_turn_as_fast_as_they_are_told_go_as_each_alone() {
 #[test]
 fn a_commanded_crank_costs_as_many_evaluations_as_one_that_turns_by_itself() {
     // What an input's rates foresee is foreseen: no step needs more than one that knows the time.
-    let mut stepper = Stepper::assemble(Commanded::default(), GUESS, 0.0).expect("it assembles");
+    let theta = |value: f64| Signal { value, rate: 1.0, acceleration: 0.0 };
+    let commanded = Commanded { theta: theta(0.0), ..Commanded::default() };
+    let mut stepper = Stepper::assemble(commanded, GUESS, 0.0).expect("it assembles");
     for k in 1..=1000 {
         let t = f64::from(k) * 1e-3;
-        stepper.change(|four_bar| four_bar.theta = Signal { value: t, rate: 1.0, acceleration: 0.0 });
+        stepper.change(|four_bar| four_bar.theta = theta(t));
         let statistics = stepper.advance_to(t).expect("it moves on");
         assert!(
             statistics.evaluations <= 2 && !statistics.fallback && statistics.correction < 1e-8,
