@@ -47,7 +47,7 @@ where
     /// Lanes whose next step cannot be plain: those that are out, and those with an input that is none.
     waits: LaneMask<R, L>,
     /// Lanes whose parameters or inputs were changed since they were solved.
-    changed: LaneMask<R, L>,
+    changed: [bool; L],
     /// Lanes whose steppers do not have the parameters and inputs that stand above.
     outdated: [bool; L],
     /// Why lanes are out.
@@ -120,7 +120,7 @@ where
             notes,
             out,
             waits: out,
-            changed: LaneMask::new([false; L]),
+            changed: [false; L],
             outdated: [false; L],
             retired,
             steppers,
@@ -184,12 +184,12 @@ where
         let Batch { mechanism, parameters, weights, q, qd, qdd, margin, .. } = &*self;
         let start = Start { t: from, q, qd, qdd, margin: *margin, weights };
         let trial = Trial::of(mechanism, parameters, &start, to, !self.waits);
-        if !Lanes::<R, L>::all(trial.plain & !self.turned(&trial.orientation)) {
+        if !Lanes::<R, L>::all(trial.plain) || self.turns_changed(&trial.orientation) {
             // The address of a copy, so that the trial itself stays in registers.
             let doubtful = trial;
             return Some(self.apart(&doubtful, &before, t));
         }
-        self.changed = Lanes::<R, L>::mask(false);
+        self.changed = [false; L];
         self.notes.follow(&trial, self.margin, to - from);
         self.margin = trial.margin;
         self.pass_time(Lanes::<R, L>::mask(true), Lanes(t));
@@ -205,13 +205,16 @@ where
         None
     }
 
-    /// Lanes whose inputs were changed and whose step passes a singular position: the way of the drivers decides what it leads to.
+    /// Whether any lane whose inputs were changed passes a singular position: the way of the drivers decides what it leads to.
     #[inline(always)]
-    fn turned(&self, orientation: &[u64; L]) -> LaneMask<R, L> {
-        if Lanes::<R, L>::all(!self.changed) {
-            return self.changed;
-        }
-        self.changed & LaneMask::new(from_fn(|lane| at(orientation, lane, 0) != self.notes.orientation(lane)))
+    fn turns_changed(&self, orientation: &[u64; L]) -> bool {
+        self.changed != [false; L] && (0..L).any(|lane| self.turns(lane, orientation))
+    }
+
+    /// Whether lane `lane` is such a lane.
+    #[inline(always)]
+    fn turns(&self, lane: usize, orientation: &[u64; L]) -> bool {
+        at(&self.changed, lane, false) && at(orientation, lane, 0) != self.notes.orientation(lane)
     }
 
     /// The times between which the lanes step to `t` (L, s): where coordinates turn, no function knows the time, and a step is one
@@ -270,7 +273,8 @@ where
         before: &S::Phases,
         t: [R; L],
     ) -> [Result<Statistics, Failure>; L] {
-        let plain = trial.plain & !self.turned(&trial.orientation);
+        let turns = LaneMask::new(from_fn(|lane| self.turns(lane, &trial.orientation)));
+        let plain = trial.plain & !turns;
         let mut notes = self.notes;
         let (from, to) = self.span(t);
         notes.follow(trial, self.margin, to - from);
@@ -284,7 +288,7 @@ where
             old.iter_mut().zip(new).for_each(|(old, new)| merge(old, new));
         }
         merge(&mut self.margin, &trial.margin);
-        self.changed = self.changed & !plain;
+        self.changed = from_fn(|lane| at(&self.changed, lane, false) && !Lanes::<R, L>::test(plain, lane));
         self.pass_time(plain, Lanes(t));
         if !S::TURNS.is_empty() {
             self.take_turns_off();
@@ -305,7 +309,7 @@ where
         self.parameters = self.mechanism.parameters();
         self.weights = weights(&self.mechanism.coordinate_scales(&self.parameters));
         // The steppers get theirs where they are needed.
-        (self.changed, self.outdated) = (Lanes::<R, L>::mask(true), [true; L]);
+        (self.changed, self.outdated) = ([true; L], [true; L]);
         self.waits = self.out | !are_finite(&self.mechanism);
         result
     }
@@ -379,7 +383,7 @@ where
             statistics: self.notes.statistics(lane),
             passages: self.notes.passages(lane),
             orientation: self.notes.orientation(lane),
-            changed: Lanes::<R, L>::test(self.changed, lane),
+            changed: at(&self.changed, lane, false),
             outdated: at(&self.outdated, lane, false),
         }
     }
@@ -403,7 +407,7 @@ where
         self.mechanism.set_phases(phases);
         self.notes.put(lane, stepper.state.drift, stepper.statistics());
         self.notes.count(lane, stepper.passages(), stepper.signature());
-        self.changed = self.changed.with(lane, stepper.changed);
+        set(&mut self.changed, lane, stepper.changed);
         self.note_waiting(lane);
     }
 
