@@ -13,6 +13,14 @@ use crate::{Real, Scalar};
 #[repr(C, align(64))]
 pub struct Lanes<R, const L: usize>(pub [R; L]);
 
+/// Zeros: inputs of a mechanism in lanes that are not set yet.
+impl<R: Real, const L: usize> Default for Lanes<R, L> {
+    #[inline]
+    fn default() -> Self {
+        Lanes([R::constant(0.0); L])
+    }
+}
+
 /// One truth value a lane, in words as wide as the numbers: what is compared stays in vector registers until it is decided.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LaneMask<R: Real, const L: usize>([R::Word; L]);

@@ -169,7 +169,7 @@ pub trait Mechanism<T: Scalar, const N: usize, const M: usize>: Clone {
     ///
     /// The increment is the integral of the prescribed rate. Parameters and inputs without rates count as held since
     /// `from`, inputs with rates as moving to their present value with their present acceleration; a rate that
-    /// varies within the step is integrated with [`integrals`](crate::phase::integrals).
+    /// varies within the step is averaged with [`means`](crate::phase::means).
     #[inline]
     fn advance_phases(&mut self, _from: T, _to: T) {}
     /// Time derivatives of the phases at time `t` (s): each value is the prescribed rate, with parameters and inputs as they

@@ -49,7 +49,7 @@ pub struct Work {
     pub coordinate_scales: Operations,
     /// Reference metric of the rows.
     pub row_scales: Operations,
-    /// The solution of Φ = 0, block after block.
+    /// The solution of Φ = 0: its blocks, those that cost the same together.
     pub blocks: &'static [BlockWork],
 }
 
@@ -77,9 +77,11 @@ impl Work {
     };
 }
 
-/// What a diagonal block costs.
+/// What diagonal blocks of one kind cost, each.
 #[derive(Clone, Copy, Debug)]
 pub struct BlockWork {
+    /// How many there are: a long chain has few kinds.
+    pub count: usize,
     /// Unknowns of Newton's method; 0 where the row gives its coordinate explicitly.
     pub unknowns: usize,
     /// Rows; more than unknowns where some may follow from others.
@@ -97,8 +99,9 @@ pub struct BlockWork {
 }
 
 impl BlockWork {
-    /// That of a block that costs nothing.
+    /// That of one block that costs nothing.
     pub const NONE: Self = BlockWork {
+        count: 1,
         unknowns: 0,
         rows: 0,
         before: Operations::NONE,
@@ -176,7 +179,8 @@ impl Budget {
         let mut total = frame.and(phases(work)).and(prediction(work)).and(state(work));
         let mut index = 0;
         while index < work.blocks.len() {
-            total = total.and(self.block(&work.blocks[index]));
+            let block = &work.blocks[index];
+            total = total.and(self.block(block).times(block.count as u64));
             index += 1;
         }
         total
@@ -239,11 +243,12 @@ const fn factors(work: &Work) -> Operations {
     let mut total = work.phi_q;
     let mut index = 0;
     while index < work.blocks.len() {
-        let k = work.blocks[index].unknowns as u64;
+        let block = &work.blocks[index];
+        let k = block.unknowns as u64;
         if k > 0 {
             let signs = if k > 3 { k } else { 1 };
-            let factors = work.blocks[index].factorize();
-            total = total.and(factors).and(compare(1 + signs)).and(select(1));
+            let factors = block.factorize().and(compare(1 + signs)).and(select(1));
+            total = total.and(factors.times(block.count as u64));
         }
         index += 1;
     }
@@ -255,8 +260,9 @@ const fn linear(work: &Work) -> Operations {
     let mut total = products(work.entries as u64).and(add(work.rows as u64)).and(divide(work.rows as u64));
     let mut index = 0;
     while index < work.blocks.len() {
-        if work.blocks[index].unknowns > 0 {
-            total = total.and(work.blocks[index].solve());
+        let block = &work.blocks[index];
+        if block.unknowns > 0 {
+            total = total.and(block.solve().times(block.count as u64));
         }
         index += 1;
     }
@@ -342,18 +348,19 @@ const fn contradicted(work: &Work) -> Operations {
     work.coordinate_scales.and(difference(n)).and(right).and(rates).and(held)
 }
 
-/// `Mechanism::advance_phases`: rates at four times, inputs moved to three of them, sums compensated.
+/// `Mechanism::advance_phases`: rates at four times, inputs moved to three of them, products and sums compensated.
 const fn phases(work: &Work) -> Operations {
     if work.phases == 0 {
         return Operations::NONE;
     }
     let quadrature = add(5).and(multiply(6));
     let moved = add(3).and(multiply(4)).times(3 * work.inputs as u64);
-    let integral = add(3).and(multiply(4));
-    let advanced = add(7).and(multiply(1)).and(select(3)).and(compare(1));
+    let mean = add(3).and(multiply(1));
+    let increment = add(13).and(multiply(8));
+    let advanced = add(13).and(multiply(1)).and(select(3)).and(compare(1));
     work.phase_speeds
         .times(4)
         .and(quadrature)
         .and(moved)
-        .and(integral.and(advanced).times(work.phases as u64))
+        .and(mean.and(increment).and(advanced).times(work.phases as u64))
 }

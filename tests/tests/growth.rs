@@ -225,8 +225,9 @@ fn total(count: Operations) -> usize {
 /// Operations of each emitted function.
 fn work<S: WorstCase>() -> [usize; 8] {
     let work = S::WORK;
-    let before = work.blocks.iter().map(|BlockWork { before, .. }| total(*before)).sum();
-    let evaluation = work.blocks.iter().map(|BlockWork { evaluation, .. }| total(*evaluation)).sum();
+    let before = work.blocks.iter().map(|BlockWork { count, before, .. }| count * total(*before)).sum();
+    let evaluation =
+        work.blocks.iter().map(|BlockWork { count, evaluation, .. }| count * total(*evaluation)).sum();
     let of = [work.position, work.phi, work.phi_q, work.phi_t, work.gamma, work.branch_values].map(total);
     let [position, phi, phi_q, phi_t, gamma, branches] = of;
     [position, phi, phi_q, phi_t, gamma, branches, before, evaluation]

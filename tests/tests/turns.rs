@@ -46,11 +46,10 @@ mechanism! {
 /// A day at 3000 rpm, as an angle of single precision (rad): its neighbours are 2 rad away.
 const A_DAY: f32 = 2.714_336e7;
 
-/// What the crank has done after `steps` steps of a millisecond from `start` (rad): single precision rounds the increment once,
-/// and not the sum.
+/// What the crank has done after `steps` steps of a millisecond, as single precision has it, from `start` (rad).
 fn exact(start: f32, steps: u32) -> f64 {
-    let increment = Turning::<f32>::default().omega * 0.001_f32;
-    f64::from(start) + f64::from(increment) * f64::from(steps)
+    let increment = f64::from(Turning::<f32>::default().omega) * f64::from(0.001_f32);
+    f64::from(start) + increment * f64::from(steps)
 }
 
 /// The rocker's angle (rad) from the crank's, by the intersection of two circles.

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::fmt::Write;
 
 use super::code::lets;
-use super::scope::{Scope, place};
+use super::scope::{Scope, number, place};
 use crate::equations::Equations;
 use crate::equations::turns::{Turning, turning};
 use crate::model::{Model, VariableKind};
@@ -80,7 +80,7 @@ fn advance(equations: &Equations, scope: &Scope<'_>) -> String {
     let mut text = String::new();
     let mut given = String::new();
     if varying.contains(&true) {
-        text += "let __integrals = __mbs::phase::integrals(__from, __to, |__t, __ahead| {\n";
+        text += "let __means = __mbs::phase::means(__from, __to, |__t, __ahead| {\n";
         let places = |id: &NodeId| match scope.graph.node(*id) {
             Node::Leaf(Leaf::Input(index)) => Some(place(scope.model, index as usize)),
             _ => None,
@@ -102,11 +102,11 @@ fn advance(equations: &Equations, scope: &Scope<'_>) -> String {
         }
     }
     for (index, (field, varies)) in fields(scope.model).zip(varying).enumerate() {
-        let increment = match varies {
-            true => format!("__integrals[{index}]"),
-            false => format!("__speeds[{index}].value * (__to - __from)"),
+        let mean = match varies {
+            true => format!("__means[{index}]"),
+            false => format!("[__speeds[{index}].value, {}]", number(0.0)),
         };
-        let _ = writeln!(text, "{field} = {field}.advanced({increment}, __speeds[{index}]);");
+        let _ = writeln!(text, "{field} = {field}.moved({mean}, __to - __from, __speeds[{index}]);");
     }
     format!(
         "#[inline]\nfn advance_phases(&mut self, __from: T, __to: T) {{\n\

@@ -1,5 +1,7 @@
 //! What the emitted functions of the kinematics cost, for the worst case of a step.
 
+use std::collections::BTreeMap;
+
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
@@ -28,7 +30,8 @@ pub fn work(
     let phase_speeds = of(program.phase_speeds.operations);
     let coordinate_scales = of(program.coordinate_scales.operations);
     let row_scales = of(program.row_scales.operations);
-    let blocks = program.blocks.iter().map(|block| {
+    let mut blocks = Kinds::default();
+    for block in &program.blocks {
         let (unknowns, evaluation) = match &block.method {
             Method::Explicit { .. } => (0, Operations::default()),
             Method::Newton(system) => (block.coordinates.len(), system.section.operations),
@@ -47,17 +50,16 @@ pub fn work(
         } else {
             quote! { ..#runtime::BlockWork::NONE }
         };
-        quote! {
-            #runtime::BlockWork {
-                unknowns: #unknowns, rows: #rows, before: #before, evaluation: #evaluation, #order
-            }
-        }
-    });
+        blocks.add(quote! {
+            unknowns: #unknowns, rows: #rows, before: #before, evaluation: #evaluation, #order
+        });
+    }
     // What the position stage lacks behind the blocks.
     let rest = of(program.rest.operations);
-    let rest = quote! {
-        #runtime::BlockWork { before: #rest, ..#runtime::BlockWork::NONE }
-    };
+    blocks.add(quote! { before: #rest, ..#runtime::BlockWork::NONE });
+    let blocks = blocks.kinds.into_iter().map(|(count, costs)| {
+        quote! { #runtime::BlockWork { count: #count, #costs } }
+    });
     quote! {
         #runtime::Work {
             coordinates: #n,
@@ -77,7 +79,25 @@ pub fn work(
             phase_speeds: #phase_speeds,
             coordinate_scales: #coordinate_scales,
             row_scales: #row_scales,
-            blocks: &[#(#blocks,)* #rest],
+            blocks: &[#(#blocks),*],
+        }
+    }
+}
+
+/// Blocks that cost the same, counted, in the order in which the first of each comes.
+#[derive(Default)]
+struct Kinds {
+    kinds: Vec<(usize, TokenStream)>,
+    /// Places by what is emitted.
+    places: BTreeMap<String, usize>,
+}
+
+impl Kinds {
+    fn add(&mut self, costs: TokenStream) {
+        let place = *self.places.entry(costs.to_string()).or_insert(self.kinds.len());
+        match self.kinds.get_mut(place) {
+            Some((count, _)) => *count += 1,
+            None => self.kinds.push((1, costs)),
         }
     }
 }

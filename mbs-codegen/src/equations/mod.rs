@@ -9,6 +9,7 @@ mod degree;
 mod dynamics;
 mod elimination;
 mod forces;
+mod gradients;
 mod joints;
 mod lower;
 mod manifold;
@@ -134,7 +135,7 @@ pub fn derive(model: &Model) -> Equations {
         outputs,
         guesses,
         coordinate_scales,
-        row_scales,
+        mut row_scales,
         length,
         calls,
         clock,
@@ -175,6 +176,7 @@ pub fn derive(model: &Model) -> Equations {
             gamma,
         })
         .collect::<Vec<Row>>();
+    gradients::measure_rows(model, g, &rows, &coordinate_scales, &mut row_scales);
     let dynamics = model
         .dynamics
         .as_ref()
