@@ -176,7 +176,11 @@ pub fn derive(model: &Model) -> Equations {
             gamma,
         })
         .collect::<Vec<Row>>();
-    gradients::measure_rows(model, g, &rows, &coordinate_scales, &mut row_scales);
+    gradients::Rows { rows: &rows, coordinates: &coordinate_scales, guesses: &guesses }.measure(
+        model,
+        g,
+        &mut row_scales,
+    );
     let dynamics = model
         .dynamics
         .as_ref()

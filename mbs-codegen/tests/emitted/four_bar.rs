@@ -644,6 +644,7 @@ const _: () = {
             row_scales: ::mbs_runtime::Operations::NONE,
             blocks: &[
                 ::mbs_runtime::BlockWork {
+                    count: 1usize,
                     unknowns: 0usize,
                     rows: 1usize,
                     before: ::mbs_runtime::Operations {
@@ -654,6 +655,7 @@ const _: () = {
                     ..::mbs_runtime::BlockWork::NONE
                 },
                 ::mbs_runtime::BlockWork {
+                    count: 1usize,
                     unknowns: 2usize,
                     rows: 2usize,
                     before: ::mbs_runtime::Operations {
@@ -670,6 +672,7 @@ const _: () = {
                     ..::mbs_runtime::BlockWork::NONE
                 },
                 ::mbs_runtime::BlockWork {
+                    count: 2usize,
                     unknowns: 0usize,
                     rows: 1usize,
                     before: ::mbs_runtime::Operations {
@@ -681,17 +684,7 @@ const _: () = {
                     ..::mbs_runtime::BlockWork::NONE
                 },
                 ::mbs_runtime::BlockWork {
-                    unknowns: 0usize,
-                    rows: 1usize,
-                    before: ::mbs_runtime::Operations {
-                        additions: 2,
-                        multiplications: 3,
-                        ..::mbs_runtime::Operations::NONE
-                    },
-                    evaluation: ::mbs_runtime::Operations::NONE,
-                    ..::mbs_runtime::BlockWork::NONE
-                },
-                ::mbs_runtime::BlockWork {
+                    count: 1usize,
                     before: ::mbs_runtime::Operations::NONE,
                     ..::mbs_runtime::BlockWork::NONE
                 },
