@@ -209,6 +209,7 @@ pub fn titles() -> BTreeMap<&'static str, &'static str> {
         ("cvodes", "CVODES (Adams) on CasADi C"),
         ("casadi_previous", "CasADi `fast_newton`, from the previous position"),
         ("casadi_predicted", "CasADi `fast_newton`, from the prediction"),
+        ("casadi_factored", "…, rates from one factorization"),
         ("nalgebra", "nalgebra dense Newton–Raphson, from the previous position"),
     ])
 }

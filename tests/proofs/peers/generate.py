@@ -84,8 +84,22 @@ def casadi_peer(name, define, n):
     rows, rate = jacobian(position, now)
     velocity = ca.solve(rows, -rate, "qr")
     acceleration = ca.solve(rows, right_side(position, velocity, now), "qr")
-    step = ca.Function(f"casadi_step_{name}", [start, now], [position, velocity, acceleration])
-    step.generate(f"casadi_step_{name}.c", {"with_header": False})
+    motion = [position, velocity, acceleration]
+    write_step(f"casadi_step_{name}", [start, now], motion)
+    # `ca.solve` factorizes for velocity and acceleration each; written out, one factorization serves both.
+    v, r, beta, row_order, column_order = ca.qr_sparse(phi_q)
+
+    def solved(right):
+        return ca.qr_solve(right, v, r, beta, row_order, column_order, False)
+
+    qd_solved = solved(-phi_t)
+    rates = [qd_solved, solved(ca.substitute(gamma, qd, qd_solved))]
+    rates = ca.Function("rates", [q, t], ca.cse(rates))
+    write_step(f"casadi_factored_step_{name}", [start, now], [position, *rates(position, now)])
+
+
+def write_step(name, arguments, motion):
+    ca.Function(name, arguments, motion).generate(f"{name}.c", {"with_header": False})
 
 
 def sympy_peer(name, define, n):

@@ -8,22 +8,26 @@ use super::Motion;
 type Function =
     unsafe extern "C" fn(*const *const f64, *mut *mut f64, *mut c_longlong, *mut f64, c_int) -> c_int;
 
-unsafe extern "C" {
-    fn casadi_step_four_bar(
-        arg: *const *const f64,
-        res: *mut *mut f64,
-        iw: *mut c_longlong,
-        w: *mut f64,
-        mem: c_int,
-    ) -> c_int;
-    fn casadi_step_chain(
-        arg: *const *const f64,
-        res: *mut *mut f64,
-        iw: *mut c_longlong,
-        w: *mut f64,
-        mem: c_int,
-    ) -> c_int;
+macro_rules! generated {
+    ($($name:ident),*) => {
+        unsafe extern "C" {
+            $(fn $name(
+                arg: *const *const f64,
+                res: *mut *mut f64,
+                iw: *mut c_longlong,
+                w: *mut f64,
+                mem: c_int,
+            ) -> c_int;)*
+        }
+    };
 }
+
+generated!(
+    casadi_step_four_bar,
+    casadi_step_chain,
+    casadi_factored_step_four_bar,
+    casadi_factored_step_chain
+);
 
 /// Work arrays, far larger than the functions ask for.
 struct Work(UnsafeCell<([c_longlong; 8192], [f64; 65536])>);
@@ -39,6 +43,16 @@ pub fn four_bar(t: f64, motion: &mut Motion<5>) {
 
 pub fn chain(t: f64, motion: &mut Motion<22>) {
     step(casadi_step_chain, t, motion);
+}
+
+/// Velocity and acceleration from one factorization.
+pub fn factored_four_bar(t: f64, motion: &mut Motion<5>) {
+    step(casadi_factored_step_four_bar, t, motion);
+}
+
+/// As [`factored_four_bar`].
+pub fn factored_chain(t: f64, motion: &mut Motion<22>) {
+    step(casadi_factored_step_chain, t, motion);
 }
 
 #[inline(always)]

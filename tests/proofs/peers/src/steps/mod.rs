@@ -40,6 +40,10 @@ pub fn four_bar() -> Vec<Case> {
             predict(motion);
             casadi::four_bar(t, motion);
         }),
+        turn.case("casadi_factored", |t, motion| {
+            predict(motion);
+            casadi::factored_four_bar(t, motion);
+        }),
         turn.case("nalgebra", dense::four_bar),
         turn.case("by_hand", block_triangular::four_bar),
         emitted::turn(&turn, FourBar::default()),
@@ -74,6 +78,10 @@ pub fn chain() -> Vec<Case> {
         turn.case("casadi_predicted", |t, motion| {
             predict(motion);
             casadi::chain(t, motion);
+        }),
+        turn.case("casadi_factored", |t, motion| {
+            predict(motion);
+            casadi::factored_chain(t, motion);
         }),
         turn.case("nalgebra", dense::chain),
         turn.case("by_hand", block_triangular::chain),
