@@ -71,7 +71,7 @@ pub use limit::{Limit, Warning};
 pub use linear::{Direct1, Direct2, Direct3, Elimination, Guarded, Lu, Orthogonal};
 pub use mechanism::{
     Block, BlockSolver, Entry, Evaluation, Factorization, Kinematic, Margin, Mechanism, OutputValue,
-    Reference, Signal, Whole,
+    Reference, Signal, Solved, Whole,
 };
 pub use newton::Newton;
 pub use newton_raphson::{Iterate, newton_raphson, newton_raphson_watched};

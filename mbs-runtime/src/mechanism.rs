@@ -408,6 +408,23 @@ pub trait Kinematic<T: Scalar, const N: usize, const M: usize = N>: Mechanism<T,
         (outcome, self.position(parameters, q, t))
     }
 
+    /// Position, velocity and acceleration in one go: [`solve_with_position`](Self::solve_with_position), then
+    /// [`factorize`](Self::factorize), then [`solve_linear`](Self::solve_linear) twice.
+    ///
+    /// Emitted code does the same operations block after block: the next block waits for a position alone, and meanwhile the
+    /// processor computes the rates of this one. Meaningful only in lanes that converged.
+    #[inline(always)]
+    fn solve_motion<S: BlockSolver<T>>(
+        &self,
+        parameters: &Self::Parameters,
+        q: &mut [T; N],
+        t: T,
+        solver: &mut S,
+        rates: (&mut [T; N], &mut [T; N]),
+    ) -> Solved<Self::Position, T> {
+        staged(self, parameters, q, t, solver, rates)
+    }
+
     /// Factorises Φ_q block by block, once for velocity and acceleration.
     ///
     /// Returns the factors and the smallest margin of any block (see [`Factorization::factorize`]).
@@ -420,6 +437,43 @@ pub trait Kinematic<T: Scalar, const N: usize, const M: usize = N>: Mechanism<T,
     /// Solves Φ_q x = b (M) with factors from [`factorize`](Self::factorize): `−Φ_t` gives q̇, `γ` gives q̈; by least
     /// squares in the reference metric where a block has more rows than coordinates.
     fn solve_linear(&self, factors: &Self::Factors, b: &[T; M]) -> [T; N];
+}
+
+/// What a position brings about.
+#[derive(Clone, Copy)]
+pub struct Solved<P, T: Scalar> {
+    /// Its stage-1 values.
+    pub position: P,
+    /// The smallest margin of any block.
+    pub margin: Margin<T>,
+}
+
+/// [`Kinematic::solve_motion`] stage after stage.
+#[inline(always)]
+pub(crate) fn staged<K: Kinematic<T, N, M>, T: Scalar, S: BlockSolver<T>, const N: usize, const M: usize>(
+    mechanism: &K,
+    parameters: &K::Parameters,
+    q: &mut [T; N],
+    t: T,
+    solver: &mut S,
+    (qd, qdd): (&mut [T; N], &mut [T; N]),
+) -> Solved<K::Position, T> {
+    // By reference: what is long would be moved out of the pairs.
+    let (_, position) = &mechanism.solve_with_position(parameters, q, t, solver);
+    let (factors, margin) = &mechanism.factorize(parameters, position);
+    *qd = mechanism.solve_linear(factors, &negated(mechanism.phi_t(parameters, position)));
+    *qdd = mechanism.solve_linear(factors, &mechanism.gamma(parameters, position, qd));
+    Solved { position: *position, margin: *margin }
+}
+
+/// The numbers with the other sign.
+#[inline(always)]
+fn negated<T: Scalar, const M: usize>(mut numbers: [T; M]) -> [T; M] {
+    for number in &mut numbers {
+        *number = -*number;
+        T::side_by_side();
+    }
+    numbers
 }
 
 /// How near a Jacobian is to singular, and where.

@@ -5,9 +5,10 @@ use core::array::from_fn;
 use crate::diagnosis::index;
 use crate::instant::REGULAR_ZONE;
 use crate::kinematics::COARSEST_RESOLUTION;
+use crate::mechanism::staged;
 use crate::path::{LARGEST_APPROACH, LARGEST_SECOND_ORDER_TERM};
 use crate::plain::Plain;
-use crate::{Kinematic, Real, Scalar, Statistics};
+use crate::{Kinematic, Real, Scalar, Solved, Statistics};
 
 /// Where a step begins, solved in every lane.
 pub(crate) struct Start<'a, T, const N: usize> {
@@ -61,11 +62,13 @@ impl<T: Scalar, const N: usize> Trial<T, N> {
         let prediction = start.predicted(t, &scales);
         let mut solver = Plain::new(lanes);
         let mut q = prediction;
-        // By reference: what is long would be moved out of the pairs.
-        let (_, position) = &mechanism.solve_with_position(parameters, &mut q, t, &mut solver);
-        let (factors, margin) = &mechanism.factorize(parameters, position);
-        let qd = mechanism.solve_linear(factors, &negated(mechanism.phi_t(parameters, position)));
-        let qdd = mechanism.solve_linear(factors, &mechanism.gamma(parameters, position, &qd));
+        // Lanes keep a processor busy as they are, and a compiler sees them together in short stages.
+        let (mut qd, mut qdd) = ([T::constant(0.0); N], [T::constant(0.0); N]);
+        let Solved { position, margin } = &if T::LANES > 1 {
+            staged(mechanism, parameters, &mut q, t, &mut solver, (&mut qd, &mut qdd))
+        } else {
+            mechanism.solve_motion(parameters, &mut q, t, &mut solver, (&mut qd, &mut qdd))
+        };
         let (correction, size) = way_and_size(&q, &prediction, start.weights);
         let sum = sum_of_rates(&qd, &qdd);
         let zone = T::constant(REGULAR_ZONE);
@@ -210,16 +213,6 @@ fn in_four_parts<T: Scalar, const N: usize>(values: &[T; N], operation: impl Fn(
     parts.iter_mut().zip(rest).for_each(|(part, value)| *part = operation(*part, *value));
     let [a, b, c, d] = parts;
     operation(operation(a, b), operation(c, d))
-}
-
-/// The numbers with the other sign.
-#[inline(always)]
-fn negated<T: Scalar, const M: usize>(mut numbers: [T; M]) -> [T; M] {
-    for number in &mut numbers {
-        *number = -*number;
-        T::side_by_side();
-    }
-    numbers
 }
 
 /// Reciprocals of scales.

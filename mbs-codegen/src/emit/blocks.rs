@@ -18,23 +18,37 @@ pub fn solve(
     scope: &Scope<'_>,
     position: &str,
 ) -> String {
-    let mut text = String::from("let __outcome = T::per_lane(|_| __mbs::Outcome::Converged);\n");
+    let mut text = start();
     for (index, block) in program.blocks.iter().enumerate() {
-        lets(&block.before, scope, &mut text);
-        match &block.method {
-            Method::Explicit { value, .. } => {
-                for coordinate in &block.coordinates {
-                    let _ = writeln!(text, "__q[{coordinate}] = {};", scope.operand(*value));
-                }
-            }
-            Method::Newton(system) => {
-                let factors = eliminations.factorization(index, block.rows.len());
-                newton(equations, block, (system, &factors), scope, &mut text);
-            }
-        }
+        let factors = eliminations.factorization(index, block.rows.len());
+        self::position(equations, block, &factors, scope, &mut text);
     }
     lets(&program.rest, scope, &mut text);
     text + "(__outcome, " + position + ")"
+}
+
+/// Before any block.
+pub fn start() -> String {
+    "let __outcome = T::per_lane(|_| __mbs::Outcome::Converged);\n".into()
+}
+
+/// The coordinates of a block.
+pub fn position(
+    equations: &Equations,
+    block: &BlockProgram,
+    factors: &str,
+    scope: &Scope<'_>,
+    text: &mut String,
+) {
+    lets(&block.before, scope, text);
+    match &block.method {
+        Method::Explicit { value, .. } => {
+            for coordinate in &block.coordinates {
+                let _ = writeln!(text, "__q[{coordinate}] = {};", scope.operand(*value));
+            }
+        }
+        Method::Newton(system) => newton(equations, block, (system, factors), scope, text),
+    }
 }
 
 /// Solvers without a copy for each block share what they evaluate.

@@ -12,6 +12,7 @@ use super::given;
 use super::lengths::Lengths;
 use super::linear;
 use super::long;
+use super::motion;
 use super::parts::{self, Frame};
 use super::phases;
 use super::scope::{Scope, Written, number};
@@ -62,6 +63,8 @@ pub struct Bodies {
     pub solve_with_position: TokenStream,
     /// Body of `solve_blocks`, where it is not that of `solve_with_position`.
     pub solve_blocks: Option<TokenStream>,
+    /// Body of `solve_motion`, where it is not what the others make.
+    pub solve_motion: Option<TokenStream>,
     /// Functions of bounded length that a long solution calls.
     pub methods: TokenStream,
     /// Those that other long functions call.
@@ -116,6 +119,7 @@ pub fn bodies(
     let eliminations = Eliminations::of(equations, program);
     let linear = linear::linear(equations, program, (&scope, &eliminations), independent, is_long);
     let position = kept(&program.position, &early, "__Position");
+    let solve_motion = motion::solve(equations, program, (&early, &eliminations), &position);
     let parts = (is_long || long::has_many_blocks(program, lengths))
         .then(|| long::solve(equations, program, &eliminations, &early));
     let (solve_with_position, solve_blocks) = match &parts {
@@ -174,6 +178,7 @@ pub fn bodies(
         factorizes_in_line: long::newton_blocks(program) <= lengths.factors,
         solve_with_position: block(&solve_with_position, runtime),
         solve_blocks: solve_blocks.map(|text| block(&text, runtime)),
+        solve_motion: solve_motion.map(|text| block(&text, runtime)),
         methods: tokens(&methods, runtime),
         parts: tokens(&emitter.parts, runtime),
         factorize: block(&linear.factorize, runtime),

@@ -213,6 +213,19 @@ fn kinematic(
     } else {
         quote! { #n, #m }
     };
+    let solve_motion = bodies.solve_motion.as_ref().map(|body| {
+        quote! {
+            #inline
+            fn solve_motion<__S: #runtime::BlockSolver<T>>(
+                &self,
+                __p: &__Parameters<T>,
+                __q: &mut [T; #n],
+                __t: T,
+                __solver: &mut __S,
+                (__qd, __qdd): (&mut [T; #n], &mut [T; #n]),
+            ) -> #runtime::Solved<__Position<T>, T> #body
+        }
+    });
     quote! {
         impl<#generics> #runtime::WorstCase for #name {
             const WORK: #runtime::Work = #work;
@@ -237,6 +250,7 @@ fn kinematic(
             ) -> (T::Lanes<#runtime::Outcome>, __Position<T>) #solve_with_position
             #factorize_inline
             fn factorize(&self, __p: &__Parameters<T>, __s: &__Position<T>) -> (__Factors<T>, #runtime::Margin<T>) #factorize
+            #solve_motion
             #inline
             fn solve_linear(&self, __factors: &__Factors<T>, __b: &[T; #m]) -> [T; #n] #solve_linear
         }

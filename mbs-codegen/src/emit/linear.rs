@@ -99,17 +99,18 @@ fn multiplier(row: usize) -> String {
 }
 
 /// A diagonal block that is factorised.
-struct Diagonal {
+pub struct Diagonal {
     index: usize,
     /// Type of its factors.
     kind: String,
     /// `let`s of its factors and of the margin of all blocks so far.
-    text: String,
+    pub text: String,
     /// Whether its own margin is kept, too.
     asked: bool,
 }
 
-fn diagonal(
+/// The factors of a block, and what they make of the margin.
+pub fn diagonal(
     equations: &Equations,
     block: &BlockProgram,
     system: &System,
@@ -280,7 +281,8 @@ pub struct Entries<'a> {
 }
 
 impl<'a> Entries<'a> {
-    fn of(equations: &'a Equations, program: &Program, scope: &'a Scope<'a>, long: bool) -> Self {
+    /// Those of a program.
+    pub fn of(equations: &'a Equations, program: &Program, scope: &'a Scope<'a>, long: bool) -> Self {
         let varies = |entry: &NodeId| scope.graph.constant_value(*entry).is_none();
         let mut kept = BTreeMap::new();
         if long {
@@ -332,6 +334,19 @@ impl<'a> Entries<'a> {
     ) -> impl Iterator<Item = &(usize, NodeId)> {
         let entries = self.columns.get(&coordinate).map(Vec::as_slice).unwrap_or_default();
         entries.iter().filter(move |(row, _)| block.is_none_or(|block| !block.rows.contains(row)))
+    }
+
+    /// `right_side − Σ Φ_q x` over coordinates of earlier blocks, whose unknowns stand in `array`.
+    pub fn beside(&self, row: usize, block: &BlockProgram, right_side: String, array: &str) -> String {
+        let mut text = right_side;
+        for (column, entry) in self.columns_beside(row, block) {
+            let _ = match self.equations.graph.constant_value(*entry) {
+                Some(1.0) => write!(text, " - {array}[{column}]"),
+                Some(-1.0) => write!(text, " + {array}[{column}]"),
+                _ => write!(text, " - {} * {array}[{column}]", self.scope.operand(*entry)),
+            };
+        }
+        text
     }
 
     /// `b − Σ Φ_q x` over coordinates of earlier blocks.

@@ -18,6 +18,7 @@ mod item;
 mod lengths;
 mod linear;
 mod long;
+mod motion;
 pub mod notation;
 mod parts;
 mod phases;

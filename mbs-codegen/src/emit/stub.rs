@@ -56,6 +56,7 @@ fn bodies(model: &Model, runtime: &TokenStream) -> Bodies {
         factorizes_in_line: false,
         solve_with_position: body(),
         solve_blocks: None,
+        solve_motion: None,
         methods: TokenStream::new(),
         parts: TokenStream::new(),
         factorize: body(),

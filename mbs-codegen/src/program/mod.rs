@@ -3,6 +3,7 @@
 mod angles;
 mod blocks;
 mod dynamics;
+pub mod motion;
 mod schedule;
 mod stages;
 
