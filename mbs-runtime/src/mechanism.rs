@@ -286,6 +286,13 @@ pub trait Factorization<T: Scalar, const K: usize>: Copy {
     /// Returns the factors and the margin to singularity: 0 where singular, at most 1, independent of units.
     /// A singular lane still gets finite factors wherever `a` is finite.
     fn factorize(a: &[[T; K]; K], row_scales: &[T; K], coordinate_scales: &[T; K]) -> (Self, T);
+    /// [`factorize`](Self::factorize) for one who looks at the last number of the result: it is finite where the block is neither
+    /// singular nor too large or too small for the number type. Elsewhere factors and margin are of no use; the margin may be above 1.
+    #[inline(always)]
+    fn factorize_unguarded(a: &[[T; K]; K], row_scales: &[T; K], coordinate_scales: &[T; K]) -> (Self, T, T) {
+        let (factors, margin) = Self::factorize(a, row_scales, coordinate_scales);
+        (factors, margin, margin)
+    }
     /// Solves `a x = b` (K) for a step of Newton's method, which solves no second time: what the right side is multiplied by
     /// need not be the factors. And whether the margin is above √ε, which keeps half the step's digits.
     #[inline(always)]
@@ -412,17 +419,17 @@ pub trait Kinematic<T: Scalar, const N: usize, const M: usize = N>: Mechanism<T,
     /// [`factorize`](Self::factorize), then [`solve_linear`](Self::solve_linear) twice.
     ///
     /// Emitted code does the same operations block after block: the next block waits for a position alone, and meanwhile the
-    /// processor computes the rates of this one. Meaningful only in lanes that converged.
+    /// processor computes the rates of this one. `motion`: q with its start values, and two more rows of N numbers, in; q, q̇, q̈
+    /// out, meaningful only in lanes that converged.
     #[inline(always)]
     fn solve_motion<S: BlockSolver<T>>(
         &self,
         parameters: &Self::Parameters,
-        q: &mut [T; N],
+        motion: &mut [[T; N]; 3],
         t: T,
         solver: &mut S,
-        rates: (&mut [T; N], &mut [T; N]),
     ) -> Solved<Self::Position, T> {
-        staged(self, parameters, q, t, solver, rates)
+        staged(self, parameters, motion, t, solver)
     }
 
     /// Factorises Φ_q block by block, once for velocity and acceleration.
@@ -446,6 +453,9 @@ pub struct Solved<P, T: Scalar> {
     pub position: P,
     /// The smallest margin of any block.
     pub margin: Margin<T>,
+    /// Finite where no block is singular, and where none is too large or too small for the number type. Elsewhere factors and
+    /// rates are of no use.
+    pub sum: T,
 }
 
 /// [`Kinematic::solve_motion`] stage after stage.
@@ -453,17 +463,16 @@ pub struct Solved<P, T: Scalar> {
 pub(crate) fn staged<K: Kinematic<T, N, M>, T: Scalar, S: BlockSolver<T>, const N: usize, const M: usize>(
     mechanism: &K,
     parameters: &K::Parameters,
-    q: &mut [T; N],
+    [q, qd, qdd]: &mut [[T; N]; 3],
     t: T,
     solver: &mut S,
-    (qd, qdd): (&mut [T; N], &mut [T; N]),
 ) -> Solved<K::Position, T> {
     // By reference: what is long would be moved out of the pairs.
     let (_, position) = &mechanism.solve_with_position(parameters, q, t, solver);
     let (factors, margin) = &mechanism.factorize(parameters, position);
     *qd = mechanism.solve_linear(factors, &negated(mechanism.phi_t(parameters, position)));
     *qdd = mechanism.solve_linear(factors, &mechanism.gamma(parameters, position, qd));
-    Solved { position: *position, margin: *margin }
+    Solved { position: *position, margin: *margin, sum: margin.value }
 }
 
 /// The numbers with the other sign.

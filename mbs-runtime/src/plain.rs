@@ -38,23 +38,25 @@ impl<T: Scalar> Plain<T> {
     #[inline(always)]
     fn record<const K: usize>(&mut self, rows: &[u16; K], residuals: &[T; K], weights: &[T; K]) {
         for ((residual, weight), row) in residuals.iter().zip(weights).zip(rows) {
-            let ratio = residual.abs() * *weight;
-            self.row = T::select(self.ratio.less(ratio), T::constant(f64::from(*row)), self.row);
-            self.ratio = self.ratio.max(ratio);
+            self.take(residual.abs() * *weight, T::constant(f64::from(*row)));
         }
     }
-}
 
-impl<T: Scalar> BlockSolver<T> for Plain<T> {
-    const COPIED: bool = true;
-
+    /// Takes up one more row.
     #[inline(always)]
-    fn solve<const K: usize, F: Factorization<T, K>>(
+    fn take(&mut self, ratio: T, row: T) {
+        self.row = T::select(self.ratio.less(ratio), row, self.row);
+        self.ratio = self.ratio.max(ratio);
+    }
+
+    /// [`solve`](BlockSolver::solve) in several lanes.
+    #[cfg_attr(not(debug_assertions), inline(always))] // each block of a debug build would have a frame of its own for it
+    fn solve_lanes<const K: usize, F: Factorization<T, K>>(
         &mut self,
         block: &Block<T, K>,
         mut x: [T; K],
         mut evaluate: impl FnMut(&[T; K]) -> ([T; K], [[T; K]; K]),
-    ) -> ([T; K], T::Lanes<Outcome>) {
+    ) -> [T; K] {
         let own = block.row_scales.map(own_rounding);
         // A division is paid for in every step, a reciprocal of a number of the text is one.
         let (mut weights, mut done, mut evaluations) = (reciprocals(&own), !self.closed, 0);
@@ -62,9 +64,7 @@ impl<T: Scalar> BlockSolver<T> for Plain<T> {
         let residuals = loop {
             let (residuals, jacobian) = evaluate(&x);
             evaluations += 1;
-            if T::LANES > 1 {
-                counts = T::select(done, counts, T::constant(f64::from(evaluations)));
-            }
+            counts = T::select(done, counts, T::constant(f64::from(evaluations)));
             done = done | within(&residuals, &own);
             if evaluations > 1 && !T::all(done) {
                 let whole = granted(residuals, block.row_scales, x, jacobian);
@@ -86,6 +86,61 @@ impl<T: Scalar> BlockSolver<T> for Plain<T> {
         self.evaluations = self.evaluations.max(evaluations);
         self.counts = self.counts.max(counts);
         self.record(&block.rows, &residuals, &weights);
+        x
+    }
+
+    /// [`solve`](BlockSolver::solve) in one lane, where what is rarely needed can stand out of the way.
+    #[cfg_attr(not(debug_assertions), inline(always))] // each block of a debug build would have a frame of its own for it
+    fn solve_alone<const K: usize, F: Factorization<T, K>>(
+        &mut self,
+        block: &Block<T, K>,
+        mut x: [T; K],
+        mut evaluate: impl FnMut(&[T; K]) -> ([T; K], [[T; K]; K]),
+    ) -> [T; K] {
+        let own = block.row_scales.map(own_rounding);
+        let (mut residuals, mut jacobian) = evaluate(&x);
+        let mut evaluations = 1;
+        while !all_within(&residuals, &own) {
+            if evaluations > 1 {
+                let (ratio, row) = worst_granted(residuals, block.row_scales, x, jacobian, block.rows);
+                if T::all(ratio.less(T::constant(1.0))) {
+                    self.evaluations = self.evaluations.max(evaluations);
+                    self.take(ratio, row);
+                    return x;
+                }
+                if evaluations == EVALUATIONS {
+                    self.closed = T::mask(false);
+                    break;
+                }
+            }
+            let (step, _) = F::solve_once(&jacobian, &residuals, &block.row_scales, &block.coordinate_scales);
+            for (component, change) in x.iter_mut().zip(&step) {
+                *component = *component - *change;
+            }
+            (residuals, jacobian) = evaluate(&x);
+            evaluations += 1;
+        }
+        self.evaluations = self.evaluations.max(evaluations);
+        // A division is paid for in every step, a reciprocal of a number of the text is one.
+        self.record(&block.rows, &residuals, &reciprocals(&own));
+        x
+    }
+}
+
+impl<T: Scalar> BlockSolver<T> for Plain<T> {
+    const COPIED: bool = true;
+
+    #[inline(always)]
+    fn solve<const K: usize, F: Factorization<T, K>>(
+        &mut self,
+        block: &Block<T, K>,
+        x: [T; K],
+        evaluate: impl FnMut(&[T; K]) -> ([T; K], [[T; K]; K]),
+    ) -> ([T; K], T::Lanes<Outcome>) {
+        let x = match T::LANES {
+            1 => self.solve_alone::<K, F>(block, x, evaluate),
+            _ => self.solve_lanes::<K, F>(block, x, evaluate),
+        };
         (x, T::per_lane(|_| Outcome::Converged))
     }
 
@@ -111,6 +166,32 @@ fn within<T: Scalar, const K: usize>(residuals: &[T; K], tolerances: &[T; K]) ->
         within = within & residual.abs().less(*tolerance);
     }
     within
+}
+
+/// [`within`] as decisions, row by row.
+#[inline(always)]
+fn all_within<T: Scalar, const K: usize>(residuals: &[T; K], tolerances: &[T; K]) -> bool {
+    let mut pairs = residuals.iter().zip(tolerances);
+    pairs.all(|(residual, tolerance)| T::all(residual.abs().less(*tolerance)))
+}
+
+/// The largest |residual| over its whole tolerance, with its row; 2 where a residual is no number.
+#[cold]
+#[inline(never)]
+fn worst_granted<T: Scalar, const K: usize>(
+    residuals: [T; K],
+    row_scales: [T; K],
+    x: [T; K],
+    jacobian: [[T; K]; K],
+    rows: [u16; K],
+) -> (T, T) {
+    let whole = granted(residuals, row_scales, x, jacobian);
+    if !all_within(&residuals, &whole) {
+        return (T::constant(2.0), T::constant(0.0));
+    }
+    let mut worst = Plain::new(T::mask(true));
+    worst.record(&rows, &residuals, &reciprocals(&whole));
+    (worst.ratio, worst.row)
 }
 
 /// The whole tolerances (see [`required`]) where the residual is not within its row's own rounding: with what large

@@ -10,6 +10,9 @@ use crate::path::{LARGEST_APPROACH, LARGEST_SECOND_ORDER_TERM};
 use crate::plain::Plain;
 use crate::{Kinematic, Real, Scalar, Solved, Statistics};
 
+/// Most coordinates that stay in registers from the end of a step to its state, which are written one by one.
+const FEW: usize = 8;
+
 /// Where a step begins, solved in every lane.
 pub(crate) struct Start<'a, T, const N: usize> {
     pub t: T,
@@ -61,16 +64,17 @@ impl<T: Scalar, const N: usize> Trial<T, N> {
         let scales = mechanism.coordinate_scales(parameters);
         let prediction = start.predicted(t, &scales);
         let mut solver = Plain::new(lanes);
-        let mut q = prediction;
+        let zeros = [T::constant(0.0); N];
+        let mut motion = [prediction, zeros, zeros];
         // Lanes keep a processor busy as they are, and a compiler sees them together in short stages.
-        let (mut qd, mut qdd) = ([T::constant(0.0); N], [T::constant(0.0); N]);
-        let Solved { position, margin } = &if T::LANES > 1 {
-            staged(mechanism, parameters, &mut q, t, &mut solver, (&mut qd, &mut qdd))
+        let Solved { position, margin, sum } = &if T::LANES > 1 {
+            staged(mechanism, parameters, &mut motion, t, &mut solver)
         } else {
-            mechanism.solve_motion(parameters, &mut q, t, &mut solver, (&mut qd, &mut qdd))
+            mechanism.solve_motion(parameters, &mut motion, t, &mut solver)
         };
+        let [q, qd, qdd] = motion;
         let (correction, size) = way_and_size(&q, &prediction, start.weights);
-        let sum = sum_of_rates(&qd, &qdd);
+        let sum = *sum + sum_of_rates(&qd, &qdd);
         let zone = T::constant(REGULAR_ZONE);
         // Written so that NaN is not plain. A sum is finite and small where its terms are; where it is not, a careful step
         // looks at them one by one.
@@ -133,6 +137,10 @@ impl<T: Scalar, const N: usize> Start<'_, T, N> {
     fn predicted(&self, t: T, scales: &[T; N]) -> [T; N] {
         let h = t - self.t;
         let half_square = T::constant(0.5) * h * h;
+        let alone = size_of::<T>() == size_of::<T::Real>();
+        if alone && N > FEW {
+            return self.predicted_side_by_side(h, scales);
+        }
         let mut predicted = *self.q;
         let rates = self.qd.iter().zip(self.qdd);
         for ((coordinate, (rate, acceleration)), scale) in predicted.iter_mut().zip(rates).zip(scales) {
@@ -141,13 +149,33 @@ impl<T: Scalar, const N: usize> Start<'_, T, N> {
             // A branch a coordinate, which looks at all that it is made of (nothing is added but 0, or NaN): without them the
             // compiler would load two at once, which were written one by one a moment ago, and the processor would have to
             // wait until they have reached the memory. Lanes are loaded as they were written.
-            let alone = size_of::<T>() == size_of::<T::Real>();
             let looked_at = if alone { second + T::constant(0.0) * first } else { second };
             if !T::all(trusted(looked_at, *scale)) {
                 predicted = carefully_predicted((self.q, self.qd, self.qdd), h, scales);
                 break;
             }
             *coordinate = first + second;
+        }
+        predicted
+    }
+}
+
+impl<T: Scalar, const N: usize> Start<'_, T, N> {
+    /// [`predicted`](Self::predicted) for so many coordinates that the last step has put them down together, behind all blocks:
+    /// they are loaded as they were written, and without decisions several at once.
+    #[inline(always)]
+    fn predicted_side_by_side(&self, h: T, scales: &[T; N]) -> [T; N] {
+        let half_square = T::constant(0.5) * h * h;
+        let mut all = T::mask(true);
+        for (acceleration, scale) in self.qdd.iter().zip(scales) {
+            all = all & trusted(half_square * *acceleration, *scale);
+        }
+        if !T::all(all) {
+            return carefully_predicted((self.q, self.qd, self.qdd), h, scales);
+        }
+        let mut predicted = *self.q;
+        for ((coordinate, rate), acceleration) in predicted.iter_mut().zip(self.qd).zip(self.qdd) {
+            *coordinate = *coordinate + h * *rate + half_square * *acceleration;
         }
         predicted
     }

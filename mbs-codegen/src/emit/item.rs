@@ -219,10 +219,9 @@ fn kinematic(
             fn solve_motion<__S: #runtime::BlockSolver<T>>(
                 &self,
                 __p: &__Parameters<T>,
-                __q: &mut [T; #n],
+                __motion: &mut [[T; #n]; 3],
                 __t: T,
                 __solver: &mut __S,
-                (__qd, __qdd): (&mut [T; #n], &mut [T; #n]),
             ) -> #runtime::Solved<__Position<T>, T> #body
         }
     });

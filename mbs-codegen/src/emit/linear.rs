@@ -58,7 +58,8 @@ pub fn linear(
                     place = rounds.add(*number, block, (&factors, &entries));
                 }
                 None => {
-                    diagonals.push(diagonal(equations, block, system, &entries, (index, asked, &factors)))
+                    let guarded = Factorized::Guarded { asked };
+                    diagonals.push(diagonal(block, system, &entries, (index, &factors), guarded))
                 }
             }
         }
@@ -109,15 +110,27 @@ pub struct Diagonal {
     asked: bool,
 }
 
+/// How a block is factorised.
+#[derive(Clone, Copy)]
+pub enum Factorized {
+    /// With finite factors wherever the block is singular; its margin is kept where it is `asked` for.
+    Guarded {
+        /// Whether it is.
+        asked: bool,
+    },
+    /// For one who looks at the sum of all blocks' witnesses.
+    Unguarded,
+}
+
 /// The factors of a block, and what they make of the margin.
 pub fn diagonal(
-    equations: &Equations,
     block: &BlockProgram,
     system: &System,
     entries: &Entries<'_>,
-    (index, asked, factors): (usize, bool, &str),
+    (index, factors): (usize, &str),
+    factorized: Factorized,
 ) -> Diagonal {
-    let scope = entries.scope;
+    let (equations, scope) = (entries.equations, entries.scope);
     let size = block.rows.len();
     let rows = list(system.phi_q.iter().map(|row| list(row.iter().map(|id| entries.of_block(*id)))));
     let scale = |scales: &[NodeId], index: &usize| scope.or_zero(scales.get(*index).copied());
@@ -134,12 +147,22 @@ pub fn diagonal(
         );
     } else {
         kind = factors.to_owned();
+        let given = format!("(&{rows}, &{row_scales}, &{scales})");
+        let call = match factorized {
+            Factorized::Guarded { .. } => format!(
+                "let (__block{index}, __value) = <{kind} as __mbs::Factorization<T, {size}>>::factorize{given};"
+            ),
+            Factorized::Unguarded => format!(
+                "let (__block{index}, __value, __witness) = <{kind} as __mbs::Factorization<T, {size}>>::factorize_unguarded{given};\nlet __sum = __sum + __witness;"
+            ),
+        };
         text = format!(
-            "let (__block{index}, __value) = <{kind} as __mbs::Factorization<T, {size}>>::factorize(&{rows}, &{row_scales}, &{scales});\n\
+            "{call}\n\
              let __margin = __margin.with_block(__value, {row}, {coordinate})\
              .oriented(<{kind} as __mbs::Factorization<T, {size}>>::reverses(&__block{index}));\n"
         );
     }
+    let asked = matches!(factorized, Factorized::Guarded { asked: true });
     if asked {
         let _ = writeln!(text, "let __margin{index} = __value;");
     }

@@ -5,8 +5,7 @@ use std::fmt::Write;
 use super::blocks::{self, list};
 use super::code::lets;
 use super::elimination::Eliminations;
-use super::lengths::Lengths;
-use super::linear::{Entries, diagonal, quotient};
+use super::linear::{Entries, Factorized, diagonal, quotient};
 use super::long;
 use super::scope::{Scope, number};
 use crate::equations::Equations;
@@ -14,7 +13,7 @@ use crate::program::motion::{self, BlockMotion};
 use crate::program::{BlockProgram, Method, Program};
 
 /// A compiler that saw where the rates are used would compute those of all blocks there, behind the last position.
-const IN_PLACE: &str = "let (__qd, __qdd) = ::core::hint::black_box((__qd, __qdd));\n";
+const IN_PLACE: &str = "let [__q, __qd, __qdd] = ::core::hint::black_box(__motion);\n";
 
 /// Body of `solve_motion`, where the rates of a block can be solved while the next one waits for its position: of square
 /// blocks, several of which take iterations; `position` makes the position stage of its values.
@@ -31,26 +30,21 @@ pub fn solve(
         return None;
     }
     let motion = motion::motion(equations, program);
-    if program.length() + motion.length() > longest(scope.lengths) {
+    if program.length() + motion.length() > scope.lengths.function {
         return None;
     }
     let entries = Entries::of(equations, program, scope, false);
     let mut text = blocks::start();
     text += IN_PLACE;
-    text += "let __margin = __mbs::Margin::<T>::regular();\n";
+    let _ = writeln!(text, "let __margin = __mbs::Margin::<T>::regular();\nlet __sum = {};", number(0.0));
     for (index, (block, rates)) in program.blocks.iter().zip(&motion.blocks).enumerate() {
         let factors = eliminations.factorization(index, block.rows.len());
         blocks::position(equations, block, &factors, scope, &mut text);
         solved(block, rates, (index, &factors), &entries, &mut text);
     }
     lets(&motion.rest, scope, &mut text);
-    text += &format!("__mbs::Solved {{ position: {position}, margin: __margin }}");
+    text += &format!("__mbs::Solved {{ position: {position}, margin: __margin, sum: __sum }}");
     Some(text)
-}
-
-/// As long as any other function that stays one.
-fn longest(lengths: Lengths) -> usize {
-    lengths.function
 }
 
 /// Factors of a block, its velocities and its accelerations, behind its position.
@@ -64,13 +58,13 @@ fn solved(
     let (equations, scope) = (entries.equations, entries.scope);
     lets(&rates.linear, scope, text);
     if let Method::Newton(system) = &block.method {
-        *text += &diagonal(equations, block, system, entries, (index, false, factors)).text;
+        *text += &diagonal(block, system, entries, (index, factors), Factorized::Unguarded).text;
     }
     let right_sides = |array: &str, part: &dyn Fn(usize) -> String| -> Vec<String> {
         block.rows.iter().map(|row| entries.beside(*row, block, part(*row), array)).collect()
     };
     let of = |row: usize| equations.rows.get(row);
-    // 0 with the sign of −Φ_t, so that nothing is subtracted from it.
+    // Where a row has no Φ_t it is −0, from which a difference is a change of sign.
     let rate = |row: usize| of(row).and_then(|row| row.phi_t).map(|id| format!("-{}", scope.operand(id)));
     let velocities = right_sides("__qd", &|row| rate(row).unwrap_or_else(|| number(-0.0)));
     assign("__qd", block, (index, factors), velocities, text);

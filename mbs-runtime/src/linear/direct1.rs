@@ -20,6 +20,14 @@ impl<T: Scalar> Factorization<T, 1> for Direct1<T> {
     }
 
     #[inline(always)]
+    fn factorize_unguarded(a: &[[T; 1]; 1], row_scales: &[T; 1], coordinate_scales: &[T; 1]) -> (Self, T, T) {
+        let [[scaled]] = super::in_metric(a, row_scales, coordinate_scales);
+        let [[a]] = *a;
+        let (reciprocal, margin) = (T::constant(1.0) / a, scaled.abs());
+        (Direct1 { reciprocal }, margin, a + reciprocal + margin)
+    }
+
+    #[inline(always)]
     fn solve_once(
         a: &[[T; 1]; 1],
         b: &[T; 1],

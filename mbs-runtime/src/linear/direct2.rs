@@ -21,6 +21,16 @@ impl<T: Scalar> Factorization<T, 2> for Direct2<T> {
         (Direct2 { inverse: [[a22 * r, -a12 * r], [-a21 * r, a11 * r]], reciprocal: r }, margin)
     }
 
+    #[inline(always)]
+    fn factorize_unguarded(a: &[[T; 2]; 2], row_scales: &[T; 2], coordinate_scales: &[T; 2]) -> (Self, T, T) {
+        let [[a11, a12], [a21, a22]] = *a;
+        let scaled @ [[b11, b12], [b21, b22]] = super::in_metric(a, row_scales, coordinate_scales);
+        let (determinant, in_metric) = (a11 * a22 - a12 * a21, b11 * b22 - b12 * b21);
+        let (r, margin) = (T::constant(1.0) / determinant, in_metric.abs() / super::mean_square(&scaled));
+        let factors = Direct2 { inverse: [[a22 * r, -a12 * r], [-a21 * r, a11 * r]], reciprocal: r };
+        (factors, margin, determinant + r + margin)
+    }
+
     /// By Cramer's rule: only the last product waits for the division.
     #[inline(always)]
     fn solve_once(
