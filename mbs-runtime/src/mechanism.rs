@@ -388,6 +388,8 @@ pub trait BlockSolver<T: Scalar> {
 pub trait Kinematic<T: Scalar, const N: usize, const M: usize = N>: Mechanism<T, N, M> {
     /// Factorised diagonal blocks and the entries of Φ_q off them.
     type Factors: Copy;
+    /// Whether [`solve_motion`](Self::solve_motion) goes block by block, so that steps gain from it.
+    const BLOCK_BY_BLOCK: bool = false;
 
     /// Solves Φ(q, t) = 0 block after block in the compile-time order, each to convergence before the next
     /// begins; coordinates that a row gives explicitly are assigned.
@@ -429,7 +431,12 @@ pub trait Kinematic<T: Scalar, const N: usize, const M: usize = N>: Mechanism<T,
         t: T,
         solver: &mut S,
     ) -> Solved<Self::Position, T> {
-        staged(self, parameters, motion, t, solver)
+        let [q, qd, qdd] = motion;
+        let (_, position) = self.solve_with_position(parameters, q, t, solver);
+        let (factors, margin) = self.factorize(parameters, &position);
+        *qd = self.solve_linear(&factors, &negated(self.phi_t(parameters, &position)));
+        *qdd = self.solve_linear(&factors, &self.gamma(parameters, &position, qd));
+        Solved { position, margin, sum: margin.value }
     }
 
     /// Factorises Φ_q block by block, once for velocity and acceleration.
@@ -458,26 +465,9 @@ pub struct Solved<P, T: Scalar> {
     pub sum: T,
 }
 
-/// [`Kinematic::solve_motion`] stage after stage.
-#[inline(always)]
-pub(crate) fn staged<K: Kinematic<T, N, M>, T: Scalar, S: BlockSolver<T>, const N: usize, const M: usize>(
-    mechanism: &K,
-    parameters: &K::Parameters,
-    [q, qd, qdd]: &mut [[T; N]; 3],
-    t: T,
-    solver: &mut S,
-) -> Solved<K::Position, T> {
-    // By reference: what is long would be moved out of the pairs.
-    let (_, position) = &mechanism.solve_with_position(parameters, q, t, solver);
-    let (factors, margin) = &mechanism.factorize(parameters, position);
-    *qd = mechanism.solve_linear(factors, &negated(mechanism.phi_t(parameters, position)));
-    *qdd = mechanism.solve_linear(factors, &mechanism.gamma(parameters, position, qd));
-    Solved { position: *position, margin: *margin, sum: margin.value }
-}
-
 /// The numbers with the other sign.
 #[inline(always)]
-fn negated<T: Scalar, const M: usize>(mut numbers: [T; M]) -> [T; M] {
+pub(crate) fn negated<T: Scalar, const M: usize>(mut numbers: [T; M]) -> [T; M] {
     for number in &mut numbers {
         *number = -*number;
         T::side_by_side();

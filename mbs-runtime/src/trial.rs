@@ -5,10 +5,10 @@ use core::array::from_fn;
 use crate::diagnosis::index;
 use crate::instant::REGULAR_ZONE;
 use crate::kinematics::COARSEST_RESOLUTION;
-use crate::mechanism::staged;
+use crate::mechanism::negated;
 use crate::path::{LARGEST_APPROACH, LARGEST_SECOND_ORDER_TERM};
 use crate::plain::Plain;
-use crate::{Kinematic, Real, Scalar, Solved, Statistics};
+use crate::{Kinematic, Margin, Real, Scalar, Statistics};
 
 /// Most coordinates that stay in registers from the end of a step to its state, which are written one by one.
 const FEW: usize = 8;
@@ -64,45 +64,25 @@ impl<T: Scalar, const N: usize> Trial<T, N> {
         let scales = mechanism.coordinate_scales(parameters);
         let prediction = start.predicted(t, &scales);
         let mut solver = Plain::new(lanes);
-        let zeros = [T::constant(0.0); N];
-        let mut motion = [prediction, zeros, zeros];
-        // Lanes keep a processor busy as they are, and a compiler sees them together in short stages.
-        let Solved { position, margin, sum } = &if T::LANES > 1 {
-            staged(mechanism, parameters, &mut motion, t, &mut solver)
-        } else {
-            mechanism.solve_motion(parameters, &mut motion, t, &mut solver)
-        };
-        let [q, qd, qdd] = motion;
-        let (correction, size) = way_and_size(&q, &prediction, start.weights);
-        let sum = *sum + sum_of_rates(&qd, &qdd);
-        let zone = T::constant(REGULAR_ZONE);
-        // Written so that NaN is not plain. A sum is finite and small where its terms are; where it is not, a careful step
-        // looks at them one by one.
-        let mut plain = zone.less(margin.value) & zone.less(start.margin) & solver.closed;
-        plain = plain & correction.less(T::constant(LARGEST_APPROACH) * margin.value);
-        plain = plain & size.less(T::constant(COARSEST_RESOLUTION / T::Real::EPSILON.to_f64()));
-        plain = plain & sum.is_finite();
-        for (index, branch) in mechanism.branches(parameters, position).as_ref().iter().enumerate() {
-            if !S::BRANCHES_AT_START.get(index).copied().unwrap_or(false) {
-                plain = plain & T::constant(0.0).less(*branch);
-            }
+        // Lanes keep a processor busy as they are, and a compiler sees them together in short stages. Each way is judged where it
+        // ends: what both had to put down for one judge would be copied.
+        if S::BLOCK_BY_BLOCK && T::LANES == 1 {
+            let zeros = [T::constant(0.0); N];
+            let mut motion = [prediction, zeros, zeros];
+            let solved = &mechanism.solve_motion(parameters, &mut motion, t, &mut solver);
+            let sum = solved.sum + sum_of_rates(&motion[1], &motion[2]);
+            let judge = Judge { mechanism, parameters, start, prediction: &prediction, solver };
+            return judge.judged(motion, (&solved.position, &solved.margin), sum);
         }
-        for limit in mechanism.limits(parameters, position).as_ref() {
-            plain = plain & limit.low.less(limit.value) & limit.value.less(limit.high);
-        }
-        Trial {
-            q,
-            qd,
-            qdd,
-            margin: margin.value,
-            orientation: margin.orientation,
-            correction,
-            residual: solver.ratio,
-            row: solver.row,
-            evaluations: solver.evaluations,
-            counts: solver.counts,
-            plain,
-        }
+        let mut q = prediction;
+        // By reference: what is long would be moved out of the pairs.
+        let (_, position) = &mechanism.solve_with_position(parameters, &mut q, t, &mut solver);
+        let (factors, margin) = &mechanism.factorize(parameters, position);
+        let qd = mechanism.solve_linear(factors, &negated(mechanism.phi_t(parameters, position)));
+        let qdd = mechanism.solve_linear(factors, &mechanism.gamma(parameters, position, &qd));
+        let sum = sum_of_rates(&qd, &qdd);
+        let judge = Judge { mechanism, parameters, start, prediction: &prediction, solver };
+        judge.judged([q, qd, qdd], (position, margin), sum)
     }
 
     /// What the step of lane `lane` cost; `passed`: whether a singular position lies before it.
@@ -128,6 +108,57 @@ impl<T: Scalar, const N: usize> Trial<T, N> {
     #[inline(always)]
     pub(crate) fn orientation(&self, lane: usize) -> u64 {
         self.orientation.as_ref().get(lane).copied().unwrap_or(0)
+    }
+}
+
+/// What a step is judged with.
+struct Judge<'a, S: Kinematic<T, N, M>, T: Scalar, const N: usize, const M: usize> {
+    mechanism: &'a S,
+    parameters: &'a S::Parameters,
+    start: &'a Start<'a, T, N>,
+    prediction: &'a [T; N],
+    solver: Plain<T>,
+}
+
+impl<S: Kinematic<T, N, M>, T: Scalar, const N: usize, const M: usize> Judge<'_, S, T, N, M> {
+    /// The step that ends at `motion` (q, q̇, q̈), whether it is plain with it; `sum`: finite where rates and factors are.
+    #[inline(always)]
+    fn judged(
+        self,
+        [q, qd, qdd]: [[T; N]; 3],
+        (position, margin): (&S::Position, &Margin<T>),
+        sum: T,
+    ) -> Trial<T, N> {
+        let (correction, size) = way_and_size(&q, self.prediction, self.start.weights);
+        let zone = T::constant(REGULAR_ZONE);
+        // Written so that NaN is not plain. A sum is finite and small where its terms are; where it is not, a careful step
+        // looks at them one by one.
+        let mut plain = zone.less(margin.value) & zone.less(self.start.margin) & self.solver.closed;
+        plain = plain & correction.less(T::constant(LARGEST_APPROACH) * margin.value);
+        plain = plain & size.less(T::constant(COARSEST_RESOLUTION / T::Real::EPSILON.to_f64()));
+        plain = plain & sum.is_finite();
+        for (index, branch) in self.mechanism.branches(self.parameters, position).as_ref().iter().enumerate()
+        {
+            if !S::BRANCHES_AT_START.get(index).copied().unwrap_or(false) {
+                plain = plain & T::constant(0.0).less(*branch);
+            }
+        }
+        for limit in self.mechanism.limits(self.parameters, position).as_ref() {
+            plain = plain & limit.low.less(limit.value) & limit.value.less(limit.high);
+        }
+        Trial {
+            q,
+            qd,
+            qdd,
+            margin: margin.value,
+            orientation: margin.orientation,
+            correction,
+            residual: self.solver.ratio,
+            row: self.solver.row,
+            evaluations: self.solver.evaluations,
+            counts: self.solver.counts,
+            plain,
+        }
     }
 }
 

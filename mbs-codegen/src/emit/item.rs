@@ -225,12 +225,14 @@ fn kinematic(
             ) -> #runtime::Solved<__Position<T>, T> #body
         }
     });
+    let block_by_block = solve_motion.as_ref().map(|_| quote! { const BLOCK_BY_BLOCK: bool = true; });
     quote! {
         impl<#generics> #runtime::WorstCase for #name {
             const WORK: #runtime::Work = #work;
         }
         impl<#generics> #runtime::Kinematic<T, #sizes> for #name {
             type Factors = __Factors<T>;
+            #block_by_block
             #[inline]
             fn solve_blocks<__S: #runtime::BlockSolver<T>>(
                 &self,
