@@ -44,7 +44,7 @@ const NOTES: &str = "Lanes step at as many phases of the turn. The text by hand 
 const BOUNDS: &[(&str, &str)] = &[
     (
         "kinematic step, ten loops, against Rust by hand",
-        "four fifths of a step are the eleven blocks one behind the other, each of which waits for the position of the one before; the text by hand does without margin and orientation of each, a tolerance for each row, the worst row, and has fewer numbers to put aside.",
+        "the eleven blocks go one behind the other, each of which waits for the position of the one before; the text by hand does without margin and orientation of each, a tolerance for each row, the worst row, and has fewer numbers to put aside.",
     ),
     (
         "four-bar, against Rust by hand",
