@@ -192,6 +192,7 @@ pub fn titles() -> BTreeMap<&'static str, &'static str> {
         ("casadi_shared", "CasADi C, `cse`"),
         ("sympy", "SymPy C, `cse`"),
         ("by_hand", "by hand in Rust, runtime's sine"),
+        ("by_hand_from_parts", "by hand in Rust, runtime's sine, α + φ2 from its parts"),
         ("by_hand_c_library", "by hand in Rust, C library's sine"),
         ("dual", "num-dual, forward"),
         ("differences", "central differences in Rust"),

@@ -39,12 +39,22 @@ both! {
     chain chain_c_library chain_formulas 22 63;
 }
 
+/// With the runtime's sine and cosine of three angles, those of the sum from its parts.
+pub fn four_bar_from_parts(q: &[f64; 5], qd: &[f64; 5], t: f64, out: &mut Output<f64, 5, 13>) {
+    *out = four_bar_formulas(q, qd, t, |[phi1, phi2, phi3, _]| {
+        let ([s1, s2, s3], [c1, c2, c3]) = runtime([phi1, phi2, phi3]);
+        // Of 30°.
+        let (sine, cosine) = (0.5, 0.866_025_403_784_438_6);
+        ([s1, s2, s3, s2 * cosine + c2 * sine], [c1, c2, c3, c2 * cosine - s2 * sine])
+    });
+}
+
 #[inline(always)]
 fn four_bar_formulas(
     &[x2, y2, phi1, phi2, phi3]: &[f64; 5],
     &[_, _, d1, d2, d3]: &[f64; 5],
     t: f64,
-    sine_cosine: SineCosine<4>,
+    sine_cosine: impl Fn([f64; 4]) -> ([f64; 4], [f64; 4]),
 ) -> Output<f64, 5, 13> {
     let ([s1, s2, s3, sa], [c1, c2, c3, ca]) = sine_cosine([phi1, phi2, phi3, PI / 6.0 + phi2]);
     let (a1, b1, a2, b2) = (0.20 * c1, 0.20 * s1, 0.60 * c2, 0.60 * s2);

@@ -54,6 +54,7 @@ pub fn four_bar() -> Vec<Case> {
         emitted::scalar::<FourBar, 5, 13>,
     );
     let problem = Problem::new::<FourBar>("four_bar", states, generated::FOUR_BAR);
+    cases.push(problem.case("by_hand_from_parts", by_hand::four_bar_from_parts));
     cases.push(problem.case("emitted_adjustable", emitted::scalar::<AdjustableFourBar, 5, 13>));
     cases.push(emitted::lanes::<FourBar<_>, 8, _, _>("emitted_lanes", &problem));
     cases.push(emitted::lanes::<FourBar<_>, 4, _, _>("emitted_4_lanes", &problem));
