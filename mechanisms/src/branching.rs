@@ -2,7 +2,7 @@
 
 use mbs_runtime::{
     Block, BlockSolver, Entry, Factorization, FunctionEntry, Kinematic, Margin, Mechanism, Outcome,
-    Reference, Roots,
+    Reference, Roots, Solved,
 };
 
 /// The mechanism `S` with its branch conditions, or as if its text declared none.
@@ -148,6 +148,8 @@ impl<S: Kinematic<f64, N, M>, const N: usize, const M: usize> Mechanism<f64, N, 
 impl<S: Kinematic<f64, N, M>, const N: usize, const M: usize> Kinematic<f64, N, M> for Branching<S> {
     type Factors = S::Factors;
 
+    const BLOCK_BY_BLOCK: bool = S::BLOCK_BY_BLOCK;
+
     fn solve_blocks<B: BlockSolver<f64>>(
         &self,
         parameters: &S::Parameters,
@@ -165,6 +167,15 @@ impl<S: Kinematic<f64, N, M>, const N: usize, const M: usize> Kinematic<f64, N, 
         solver: &mut B,
     ) -> ([Outcome; 1], S::Position) {
         self.mechanism.solve_with_position(parameters, q, t, &mut Judging { solver, counted: self.counted })
+    }
+    fn solve_motion<B: BlockSolver<f64>>(
+        &self,
+        parameters: &S::Parameters,
+        motion: &mut [[f64; N]; 3],
+        t: f64,
+        solver: &mut B,
+    ) -> Solved<S::Position, f64> {
+        self.mechanism.solve_motion(parameters, motion, t, &mut Judging { solver, counted: self.counted })
     }
     fn factorize(&self, parameters: &S::Parameters, position: &S::Position) -> (S::Factors, Margin<f64>) {
         self.mechanism.factorize(parameters, position)
