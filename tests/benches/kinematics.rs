@@ -51,6 +51,14 @@ const BOUNDS: &[(&str, &str)] = &[
         "by hand the angle α + φ2 takes the fourth place of a register of four beside the three others and costs nothing; emitted, its sine and cosine are made of those of its parts, which is worth a third of the time where registers hold two numbers. By hand from the parts it takes as long as emitted (next row).",
     ),
     (
+        "8-lane batch step, four-bar, a mechanism, against the single step",
+        "next to the must: its middle 80 % lie on both sides of it.",
+    ),
+    (
+        "8-lane batch step, ten loops, a mechanism, against the single step",
+        "a single step solves the rates of a block while the next one waits for its position; lanes go stage by stage through all blocks, where the processor has eight mechanisms to go on with. The single step became a quarter shorter that way, the lanes take as long as they did.",
+    ),
+    (
         "time a step, forty loops over ten (at most)",
         "instructions grow 3.8 times (`.ci/instructions`), time more.",
     ),
