@@ -6,6 +6,7 @@ use mbs_runtime::Lanes;
 use proof_subjects::{
     FourBar, Parallelogram, Platform, Start, cam, engine, exercise_batch, exercise_dynamics,
     exercise_emitted, exercise_functions, exercise_laws, exercise_masses, exercise_solvers, exercise_splines,
+    exercise_tape,
 };
 
 macro_rules! export {
@@ -98,6 +99,14 @@ pub extern "C" fn proof_drivers() -> bool {
     exercise_laws().is_ok() & exercise_splines().is_ok()
 }
 
+/// A tape, for numbers of any kind; false where one computes something else.
+#[unsafe(no_mangle)]
+pub extern "C" fn proof_tape() -> bool {
+    (exercise_tape::<f64>() == 3.0)
+        & (exercise_tape::<f32>() == 3.0)
+        & (exercise_tape::<Lanes<f64, 4>>().0 == [3.0; 4])
+}
+
 /// Where the linker begins to collect what is needed.
 #[unsafe(no_mangle)]
 pub extern "C" fn proof_entry() -> bool {
@@ -118,4 +127,5 @@ pub extern "C" fn proof_entry() -> bool {
         & proof_engine_f64()
         & proof_engine_f32()
         & proof_drivers()
+        & proof_tape()
 }

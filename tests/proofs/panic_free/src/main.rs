@@ -9,6 +9,7 @@ use mbs_runtime::{Failure, Kinematic, Lanes, Real, Scalar};
 use proof_subjects::{
     FourBar, Parallelogram, Platform, Start, cam, engine, exercise_batch, exercise_dynamics,
     exercise_emitted, exercise_functions, exercise_laws, exercise_masses, exercise_solvers, exercise_splines,
+    exercise_tape,
 };
 
 fn emitted<S: Kinematic<T, N, M>, T: Scalar, const N: usize, const M: usize>(mechanism: S) {
@@ -65,5 +66,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     exercise_splines()?;
     kinematics()?;
     dynamics()?;
+    assert!(exercise_tape::<f64>() == 3.0 && exercise_tape::<f32>() == 3.0);
+    assert!(exercise_tape::<Lanes<f64, 4>>().0 == [3.0; 4]);
     Ok(())
 }

@@ -13,6 +13,7 @@ pub mod exercise;
 pub mod four_bar;
 pub mod parallelogram;
 pub mod platform;
+pub mod tape;
 
 pub use cam::{Cam, cam};
 pub use drivers::{exercise_laws, exercise_splines};
@@ -22,3 +23,4 @@ pub use exercise::{Start, exercise_batch, exercise_emitted, exercise_functions, 
 pub use four_bar::FourBar;
 pub use parallelogram::Parallelogram;
 pub use platform::Platform;
+pub use tape::exercise_tape;

@@ -19,3 +19,4 @@ pub mod emitted;
 pub mod masses;
 pub mod simulations;
 pub mod solvers;
+pub mod tape;
