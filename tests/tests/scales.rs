@@ -37,7 +37,8 @@ fn off_plain<S: Kinematic<f64, 3>>(mechanism: S) -> f64 {
         plain.advance_to(t).expect("a step");
         let statistics = stepper.advance_to(t).expect("a step");
         assert!(!statistics.fallback && statistics.evaluations <= 3, "{t}: {statistics:?}");
-        assert!((stepper.margin() / plain.margin() - 1.0).abs() < MARGIN, "{t}: {}", stepper.margin());
+        let margin = stepper.margin() / plain.margin();
+        assert!((1.0 / MARGIN..MARGIN).contains(&margin), "{t}: {margin} of the plain one's");
         let apart = stepper.q().iter().zip(plain.q()).map(|(a, b)| (a - b).abs());
         largest = apart.fold(largest, f64::max);
     }
@@ -45,8 +46,8 @@ fn off_plain<S: Kinematic<f64, 3>>(mechanism: S) -> f64 {
     largest
 }
 
-/// Rows are measured by powers of two.
-const MARGIN: f64 = 3.0;
+/// Times that margins may differ: the plain rows, a quarter as steep as their unit, are measured by it, the others by powers of two.
+const MARGIN: f64 = 4.0;
 
 #[test]
 fn rows_times_a_number_are_the_same_mechanism() {
