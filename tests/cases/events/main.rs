@@ -1,0 +1,1 @@
+//! Events, contacts and limits within a step.

@@ -1,0 +1,1 @@
+//! Friction whose normal force is a Lagrange multiplier.

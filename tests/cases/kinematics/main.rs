@@ -1,0 +1,1 @@
+//! Positions, velocities and accelerations: assemblies kept, accuracy near singular positions, refusals.

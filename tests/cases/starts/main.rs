@@ -1,0 +1,1 @@
+//! Starts, first steps, equilibria, parameters of methods.
