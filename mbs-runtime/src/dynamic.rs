@@ -155,6 +155,19 @@ pub trait Dynamic<T: Scalar, const N: usize, const M: usize>: Mechanism<T, N, M>
         position: &Self::Position,
         lambda: &[T; M],
     ) -> [[T; N]; N];
+    /// What the third derivative of Φ says of accelerations, for the combination `lambda` (M) of the rows held:
+    /// d³/dt³ λᵀΦ = λᵀΦ_q q⃛ + 3 rᵀq̈ − c with r = Φ̇_qᵀ λ = ∂_q(λᵀ(Φ_q q̇ + Φ_t)): N, and c = λᵀγ̇, γ̇ the derivative of γ along (q̇, 1).
+    /// Where λᵀΦ_q vanishes, 3 rᵀq̈ = c takes the place of λᵀΦ_q q̈ = λᵀγ. None where it is not known.
+    #[inline]
+    fn third_derivative(
+        &self,
+        _parameters: &Self::Parameters,
+        _position: &Self::Position,
+        _qd: &[T; N],
+        _lambda: &[T; M],
+    ) -> Option<([T; N], T)> {
+        None
+    }
     /// Kinetic and potential energy (J).
     fn energy(&self, parameters: &Self::Parameters, position: &Self::Position, qd: &[T; N]) -> Energy<T>;
     /// Power of each force (W), positive where it feeds the mechanism; of springs that store it as potential energy,

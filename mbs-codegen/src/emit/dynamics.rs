@@ -28,6 +28,8 @@ pub struct DynamicBodies {
     pub mass_times_q: TokenStream,
     pub reaction: TokenStream,
     pub reaction_q: TokenStream,
+    /// Where it needs no derivative of a declared function that nothing else needs.
+    pub third: Option<TokenStream>,
     pub energy: TokenStream,
     pub powers: TokenStream,
     /// Where the time gives anything to the energies.
@@ -54,6 +56,7 @@ impl DynamicBodies {
             mass_times_q: body(),
             reaction: body(),
             reaction_q: body(),
+            third: None,
             energy: body(),
             powers: body(),
             carried: None,
@@ -94,6 +97,10 @@ pub fn bodies(
         mass_times_q: of(&program.mass_times_q, matrix(dynamics.mass_times_q.iter(), scope)),
         reaction: of(&program.reaction, vector(&dynamics.reaction, scope)),
         reaction_q: of(&program.reaction_q, matrix(dynamics.reaction_q.iter(), scope)),
+        third: dynamics.third.as_ref().map(|third| {
+            let (row, right) = (vector(&third.row, scope), scope.or_zero(third.right));
+            of(&program.third, format!("::core::option::Option::Some(({row}, {right}))"))
+        }),
         energy: of(&program.energy, energy),
         powers: of(&program.powers, vector(&dynamics.powers, scope)),
         carried: dynamics.carried.map(|power| {
@@ -177,6 +184,7 @@ pub fn implementation(
         mass_times_q,
         reaction,
         reaction_q,
+        third,
         energy,
         powers,
         carried,
@@ -194,6 +202,18 @@ pub fn implementation(
                 __qd: &[T; #n],
                 __qdd: &[T; #n],
             ) -> ::core::option::Option<T> #body
+        }
+    });
+    let third = third.as_ref().map(|body| {
+        quote! {
+            #[inline]
+            fn third_derivative(
+                &self,
+                __p: &__Parameters<T>,
+                __s: &__Position<T>,
+                __qd: &[T; #n],
+                __lambda: &[T; #m],
+            ) -> ::core::option::Option<([T; #n], T)> #body
         }
     });
     let design = quote! { &self, __p: &__Parameters<T>, __s: &__Position<T> };
@@ -234,6 +254,7 @@ pub fn implementation(
             fn reaction(#design, __lambda: &[T; #m]) -> [T; #n] #reaction
             #[inline]
             fn reaction_q(#design, __lambda: &[T; #m]) -> [[T; #n]; #n] #reaction_q
+            #third
             #[inline]
             fn energy(#design, __qd: &[T; #n]) -> #runtime::Energy<T> #energy
             #[inline]

@@ -34,6 +34,22 @@ impl Slope {
     }
 }
 
+/// Roots of d³/dt³ λᵀΦ = λᵀΦ_q q⃛ + 3 (Φ̇_qᵀ λ)ᵀ q̈ − λᵀγ̇, λ held.
+#[derive(Debug)]
+pub struct Third {
+    /// Φ̇_qᵀ λ = ∂_q(λᵀ(Φ_q q̇ + Φ_t)), one a coordinate.
+    pub row: Vec<Option<NodeId>>,
+    /// λᵀγ̇, γ̇ the derivative of γ along (q̇, 1): less the third directional derivative of λᵀΦ.
+    pub right: Option<NodeId>,
+}
+
+impl Third {
+    /// All of its roots.
+    pub fn roots(&self) -> impl Iterator<Item = NodeId> + '_ {
+        self.row.iter().copied().flatten().chain(self.right)
+    }
+}
+
 /// Roots of M q̈ + Φ_qᵀ λ = Q. `None` is a structural zero.
 #[derive(Debug)]
 pub struct Dynamics {
@@ -55,6 +71,9 @@ pub struct Dynamics {
     pub reaction: Vec<Option<NodeId>>,
     /// (Φ_qᵀ λ)_q, symmetric.
     pub reaction_q: Sparse,
+    /// What the third derivative of the rows says of accelerations; none where it needs a derivative of a declared function
+    /// that nothing else needs.
+    pub third: Option<Third>,
     /// Kinetic energy.
     pub kinetic: Option<NodeId>,
     /// Potential energy.
@@ -107,6 +126,9 @@ impl Dynamics {
         let mut roots: Vec<&mut NodeId> =
             matrices.into_iter().flatten().flatten().map(|(_, entry)| entry).collect();
         roots.extend(vectors.into_iter().flatten().flatten());
+        if let Some(third) = &mut self.third {
+            roots.extend(third.row.iter_mut().chain([&mut third.right]).flatten());
+        }
         roots.extend([&mut self.kinetic, &mut self.potential].into_iter().flatten());
         roots.extend(&mut self.loads);
         roots
@@ -155,6 +177,7 @@ pub fn derive(
     let columns = transposed(rows, count);
     let reaction = products(g, &columns, Leaf::Multiplier);
     let reaction_q = hessian(g, &reaction);
+    let third = third(g, rows, &reaction, clock);
     let mut bounded: Vec<(Of, NodeId)> = Vec::new();
     bounded.extend(
         declared.signed.iter().enumerate().map(|(index, signed)| (Of::Field(index), of(signed.value))),
@@ -178,6 +201,7 @@ pub fn derive(
         force_qd,
         reaction,
         reaction_q,
+        third: Some(third),
         kinetic: kinetic.0,
         potential: potential.0,
         powers,
@@ -394,6 +418,20 @@ fn slopes(g: &mut Graph, force: &[Option<NodeId>], rates: &[Option<NodeId>]) -> 
         Slope { force, q: row(q, state), qd: row(qd, state), states: row(own, state) }
     };
     (0..states).map(slope).collect()
+}
+
+/// The third derivative of the rows along a motion, each row times its multiplier, which is held.
+fn third(g: &mut Graph, rows: &[Row], reaction: &[Option<NodeId>], clock: &Clock) -> Third {
+    let row = again(g, reaction, |g, leaf| clock.total(g, leaf, false));
+    let gamma: Vec<Option<NodeId>> = rows.iter().map(|row| row.gamma).collect();
+    let mut right = Sum::default();
+    for (index, change) in again(g, &gamma, |g, leaf| clock.total(g, leaf, false)).into_iter().enumerate() {
+        let Some(change) = change else { continue };
+        let multiplier = g.leaf(Leaf::Multiplier(index as u32));
+        let product = g.multiply(multiplier, change);
+        right.add(g, product);
+    }
+    Third { row, right: right.0 }
 }
 
 /// Derivative of a gradient along the coordinates: the upper triangle, mirrored.

@@ -20,8 +20,10 @@ mod turning;
 pub mod turns;
 mod velocities;
 
+use std::collections::BTreeMap;
+
 use crate::model::Model;
-use crate::symbolic::{Graph, Leaf, NodeId, tangent, tangents};
+use crate::symbolic::{Graph, Leaf, Node, NodeId, tangent, tangents};
 
 pub use attribution::Motion;
 pub use dynamics::{Dynamics, Slope, Sparse};
@@ -123,6 +125,35 @@ impl Equations {
     }
 }
 
+impl Equations {
+    /// Before: all roots. After: no third derivative of rows that needs more of a declared function than the other roots: a caller
+    /// is not asked for it.
+    fn keep_third_derivative_of_known_functions(&mut self) {
+        if self.calls.is_empty() {
+            return;
+        }
+        let Some(third) = self.dynamics.as_mut().and_then(|dynamics| dynamics.third.take()) else { return };
+        let others: Vec<NodeId> = self.roots_mut().into_iter().map(|root| *root).collect();
+        let [known, needed] = [self.orders(others), self.orders(third.roots().collect())];
+        let covered = |(function, order)| known.get(function).is_some_and(|known| order <= known);
+        if let (true, Some(dynamics)) = (needed.iter().all(covered), &mut self.dynamics) {
+            dynamics.third = Some(third);
+        }
+    }
+
+    /// Of each declared function below `roots` the highest order.
+    fn orders(&self, roots: Vec<NodeId>) -> BTreeMap<u32, u8> {
+        let mut orders = BTreeMap::new();
+        for id in self.graph.reachable(roots) {
+            if let Node::Call { function, order, .. } = self.graph.node(id) {
+                let highest = orders.entry(function).or_insert(order);
+                *highest = order.max(*highest);
+            }
+        }
+        orders
+    }
+}
+
 /// Before: a resolved model. After: every function that is emitted, as roots of one graph.
 pub fn derive(model: &Model) -> Equations {
     let lowered = lower::lower(model);
@@ -193,7 +224,7 @@ pub fn derive(model: &Model) -> Equations {
         }
         _ => None,
     };
-    Equations {
+    let mut equations = Equations {
         graph,
         rows,
         branches,
@@ -205,7 +236,9 @@ pub fn derive(model: &Model) -> Equations {
         row_scales,
         dynamics,
         calls,
-    }
+    };
+    equations.keep_third_derivative_of_known_functions();
+    equations
 }
 
 /// Entries of each row, column by column along the axes of a kind of leaves.

@@ -25,6 +25,8 @@ pub struct DynamicsProgram {
     pub mass_times_q: Section,
     /// (Φ_qᵀ λ)_q
     pub reaction_q: Section,
+    /// The third derivative of the rows.
+    pub third: Section,
     /// Kinetic and potential energy.
     pub energy: Section,
     /// Powers of the forces.
@@ -54,6 +56,7 @@ pub struct Roots {
     force_qd: Vec<NodeId>,
     mass_times_q: Vec<NodeId>,
     reaction_q: Vec<NodeId>,
+    third: Vec<NodeId>,
     energy: Vec<NodeId>,
     powers: Vec<NodeId>,
     carried: Vec<NodeId>,
@@ -78,6 +81,7 @@ impl Roots {
             force_qd: entries(&dynamics.force_qd),
             mass_times_q: entries(&dynamics.mass_times_q),
             reaction_q: entries(&dynamics.reaction_q),
+            third: dynamics.third.iter().flat_map(|third| third.roots()).collect(),
             energy: some(&[dynamics.kinetic, dynamics.potential]),
             powers: some(&dynamics.powers),
             carried: some(&[dynamics.carried]),
@@ -95,12 +99,13 @@ impl Roots {
     }
 
     /// Functions that some methods call, or that nobody calls in every step: nothing is kept for them alone.
-    pub fn rare(&self) -> [&[NodeId]; 9] {
+    pub fn rare(&self) -> [&[NodeId]; 10] {
         [
             &self.force_q,
             &self.force_qd,
             &self.mass_times_q,
             &self.reaction_q,
+            &self.third,
             &self.energy,
             &self.powers,
             &self.carried,
@@ -130,6 +135,7 @@ impl Roots {
             force_qd: section(&self.force_qd),
             mass_times_q: section(&self.mass_times_q),
             reaction_q: section(&self.reaction_q),
+            third: section(&self.third),
             energy: section(&self.energy),
             powers: section(&self.powers),
             carried: section(&self.carried),

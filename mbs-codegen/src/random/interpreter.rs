@@ -55,6 +55,9 @@ pub fn run(equations: &Equations, program: &Program, state: &State) -> Vec<Found
         read("force_qd", &program.force_qd, dense(&dynamics.force_qd));
         read("mass_times_q", &program.mass_times_q, dense(&dynamics.mass_times_q));
         read("reaction_q", &program.reaction_q, dense(&dynamics.reaction_q));
+        if let Some(third) = &dynamics.third {
+            read("third", &program.third, third.row.iter().copied().chain([third.right]).collect());
+        }
         read("energy", &program.energy, vec![dynamics.kinetic, dynamics.potential]);
         read("power", &program.powers, dynamics.powers.clone());
         read("state_rate", &program.state_rates, dynamics.state_rates.clone());

@@ -22,6 +22,8 @@ enum Motion {
     Stopped,
     /// With q̈ in place of q̇ and the clock stopped: the vector that M is multiplied with.
     Product,
+    /// As the state says, without accelerations, in three directions: nothing is displaced or varied.
+    Thrice,
 }
 
 /// One number an expression, displaced and varied along an axis each.
@@ -36,10 +38,15 @@ impl Numbers {
                 Node::Time => moving(motion, [state.t, 1.0, 0.0]),
                 Node::Coordinate(index) => {
                     let rate = match motion {
-                        Motion::Free | Motion::Stopped => state.qd[index],
+                        Motion::Free | Motion::Stopped | Motion::Thrice => state.qd[index],
                         Motion::Product => state.qdd[index],
                     };
                     let mut terms = vec![(0, state.q[index]), (MOTION, rate), (AGAIN, rate)];
+                    if matches!(motion, Motion::Thrice) {
+                        terms.push((DISPLACED, rate));
+                        numbers.push(Nilpotent::new(&terms));
+                        continue;
+                    }
                     terms.extend(match displaced {
                         Axis::Position(moved) if moved == index => Some((DISPLACED, 1.0)),
                         // The rates that the text writes: ∂/∂q̇ leaves the way of the coordinates as it is.
@@ -232,6 +239,15 @@ fn moving(motion: Motion, [value, rate, acceleration]: [f64; 3]) -> Nilpotent {
         Motion::Free => {
             Nilpotent::new(&[(0, value), (MOTION, rate), (AGAIN, rate), (MOTION | AGAIN, acceleration)])
         }
+        Motion::Thrice => Nilpotent::new(&[
+            (0, value),
+            (MOTION, rate),
+            (AGAIN, rate),
+            (DISPLACED, rate),
+            (MOTION | AGAIN, acceleration),
+            (MOTION | DISPLACED, acceleration),
+            (AGAIN | DISPLACED, acceleration),
+        ]),
         Motion::Stopped | Motion::Product => Nilpotent::constant(value),
     }
 }
@@ -241,7 +257,7 @@ fn resisted(work: Nilpotent, [elastic, other, place]: [Nilpotent; 3]) -> Nilpote
     work.minus(elastic.plus(other).times(place.along(DISPLACED)))
 }
 
-/// All functions in the order in which the interpreter gives them: M, M q̈, Q, Φ_qᵀ λ, ∂Q/∂q, ∂Q/∂q̇, (M q̈)_q, (Φ_qᵀ λ)_q,
+/// All functions in the order in which the interpreter gives them: M, M q̈, Q, Φ_qᵀ λ, ∂Q/∂q, ∂Q/∂q̇, (M q̈)_q, (Φ_qᵀ λ)_q, Φ̇_qᵀ λ, λᵀγ̇,
 /// kinetic and potential energy, powers, rates of states, outputs of multipliers and states. Matrices row by row.
 pub fn run(model: &Model, declared: &Dynamics, state: &State) -> Vec<Expected> {
     let n = state.q.len();
@@ -280,6 +296,7 @@ pub fn run(model: &Model, declared: &Dynamics, state: &State) -> Vec<Expected> {
         [Motion::Free, Motion::Stopped].map(|motion| numbers(motion, Axis::Position(0), Axis::Position(0)));
     let mut expected: Vec<Expected> = [mass, mass_times, force, reaction].into_iter().flatten().collect();
     expected.extend([force_q, force_qd, mass_times_q, reaction_q].into_iter().flatten());
+    expected.extend(third(model, state));
     expected.extend(plain.energies(declared).map(|energy| one(energy, 0)));
     let power = |force| one(plain.power(&stopped, force, state, model), 0);
     expected.extend(declared.forces.iter().map(power));
@@ -314,6 +331,24 @@ fn inertial(declared: &Dynamics, places: &Numbers, rates: &Numbers) -> Nilpotent
         product = product.plus(rates.at(kinetic.value).along(DISPLACED));
     }
     product
+}
+
+/// Φ̇_qᵀ λ, and λᵀΦ less its third derivative along the motion.
+fn third(model: &Model, state: &State) -> Vec<Expected> {
+    let one = |number: Nilpotent, set: usize| Expected {
+        value: number.v[set],
+        bound: number.b[set],
+        torn: number.torn,
+    };
+    let axes = |index: usize| Numbers::of(model, state, Motion::Free, [Axis::Position(index); 2]);
+    let mut found: Vec<Expected> =
+        (0..state.q.len()).map(|index| one(reacting(model, &axes(index), state), MOTION)).collect();
+    let along = Numbers::of(model, state, Motion::Thrice, [Axis::Position(0); 2]);
+    let rows = model.rows.iter().zip(&state.lambda).fold(Nilpotent::constant(0.0), |sum, (row, lambda)| {
+        sum.minus(along.at(row.residual).times(Nilpotent::constant(*lambda)))
+    });
+    found.push(one(rows, MOTION | AGAIN | DISPLACED));
+    found
 }
 
 /// A component of Φ_qᵀ λ.

@@ -86,6 +86,7 @@ where
     let here = mechanism.position(&p, q, *t);
     let energy = mechanism.energy(&p, &here, qd);
     let motion = Motion { qd, qdd, lambda, states: &z };
+    let (row, right) = mechanism.third_derivative(&p, &here, qd, lambda).expect("no declared function");
     [
         &kinematics::<S, N, M>(&mechanism, &numbers)[..],
         mechanism.mass(&p, &here).as_flattened(),
@@ -96,6 +97,8 @@ where
         mechanism.force_qd(&p, &here, qd, &z, lambda).as_flattened(),
         mechanism.mass_times_q(&p, &here, qdd).as_flattened(),
         mechanism.reaction_q(&p, &here, lambda).as_flattened(),
+        &row,
+        &[right],
         &[energy.kinetic, energy.potential],
         mechanism.powers(&p, &here, qd, &z, lambda).as_ref(),
         mechanism.state_rates(&p, &here, qd, &z, lambda).as_ref(),

@@ -31,6 +31,7 @@ where
     black_box(masses::force_q(&mechanism, &parameters, &position, &motion));
     black_box(masses::force_qd(&mechanism, &parameters, &position, &motion));
     black_box(masses::reactions(&mechanism, &parameters, &position, &lambda));
+    black_box(masses::third_derivative(&mechanism, &parameters, &position, &qd, &lambda));
     black_box(masses::energy(&mechanism, &parameters, &position, &qd));
     black_box(masses::rates(&mechanism, &parameters, &position, &motion));
     black_box(masses::loads(&mechanism, &parameters, &position, &motion));

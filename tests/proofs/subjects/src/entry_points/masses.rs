@@ -58,6 +58,12 @@ entry_points! {
     ) -> ([T; N], Square<T, N>) {
         (mechanism.reaction(parameters, position, lambda), mechanism.reaction_q(parameters, position, lambda))
     }
+    /// Φ̇_qᵀ λ and λᵀγ̇.
+    fn third_derivative[S: Dynamic<T, N, M>, T: Scalar, const N: usize, const M: usize](
+        mechanism: &S, parameters: &S::Parameters, position: &S::Position, qd: &[T; N], lambda: &[T; M],
+    ) -> Option<([T; N], T)> {
+        mechanism.third_derivative(parameters, position, qd, lambda)
+    }
     /// Kinetic and potential energy.
     fn energy[S: Dynamic<T, N, M>, T: Scalar, const N: usize, const M: usize](
         mechanism: &S, parameters: &S::Parameters, position: &S::Position, qd: &[T; N],
