@@ -10,6 +10,7 @@ use super::scope::Scope;
 use crate::equations::{Dynamics, Equations, Of, Slope};
 use crate::model::Model;
 use crate::model::dynamics::Dynamics as Declared;
+use crate::model::expression::Node;
 use crate::program::{DynamicsProgram, Program};
 
 /// Bodies of the functions of `Dynamic`.
@@ -170,7 +171,7 @@ pub fn implementation(
     let (n, m) = (model.coordinates.len(), model.rows.len());
     let (states, forces, loads) = (declared.states.len(), declared.forces.len(), declared.loads.len());
     let tables = tables(declared, runtime);
-    let starts = starts(declared);
+    let starts = starts(model, declared);
     let DynamicBodies {
         force_uses_multipliers,
         start_states,
@@ -275,9 +276,10 @@ pub fn implementation(
     }
 }
 
-/// Which coordinates the text starts; nothing where it starts none.
-fn starts(declared: &Declared) -> TokenStream {
+/// Which coordinates the text starts; nothing where it starts none. Of a coordinate that a drive holds the start is a guess.
+fn starts(model: &Model, declared: &Declared) -> TokenStream {
     let sorted = |indices: &mut dyn Iterator<Item = usize>| {
+        let indices = indices.filter(|index| !is_driven(model, *index));
         let indices: BTreeSet<u16> = indices.filter_map(|index| u16::try_from(index).ok()).collect();
         indices.into_iter().collect::<Vec<u16>>()
     };
@@ -290,6 +292,17 @@ fn starts(declared: &Declared) -> TokenStream {
         const STARTED: &'static [u16] = &[#(#positions),*];
         const STARTED_RATES: &'static [u16] = &[#(#rates),*];
     }
+}
+
+/// Whether a drive says where a coordinate is, and not its rate alone.
+fn is_driven(model: &Model, index: usize) -> bool {
+    let is_phase = |node| matches!(node, Node::Variable(variable) if model.phases.iter().any(|phase| phase.variable == variable));
+    model.rows.iter().filter(|row| row.driven).any(|row| {
+        let contains = |is: &dyn Fn(Node) -> bool| model.expressions.contain(row.residual, is);
+        contains(&|node| matches!(node, Node::Coordinate(own) if own == index))
+            && !contains(&|node| matches!(node, Node::Coordinate(other) if other != index))
+            && !contains(&is_phase)
+    })
 }
 
 /// Names, units and lines as constants.

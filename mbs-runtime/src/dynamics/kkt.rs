@@ -224,6 +224,11 @@ impl<R: Real, const N: usize, const M: usize> Factors<R, N, M> {
         if let Kind::NullSpace(null_space) = &self.kind { null_space.idle() } else { none }
     }
 
+    /// What the rows were divided by, beside the metric's scales where those are less: M.
+    pub(super) fn row_scales(&self) -> &[R; M] {
+        &self.metric.rows
+    }
+
     /// The same in the units of the multipliers, each as long as the largest of them.
     pub(super) fn idle_multipliers(&self) -> [[R; M]; M] {
         self.idle_shares().map(|mut shares| {

@@ -134,6 +134,6 @@ pub use phases::Phased;
 pub use projection::{Projection, Stages};
 pub use simulation::{Balance, Simulation};
 pub use states::states_at_rest;
-pub use text_start::closed;
+pub use text_start::{MovedStart, closed};
 pub use vector::{State, Vector};
 pub use velocity_transformation::VelocityTransformation;

@@ -13,7 +13,7 @@ use super::phases::at_present;
 use super::projection::Projection;
 use super::rank::rank_rises;
 use super::signed::parameter_failure;
-use super::text_start;
+use super::text_start::{self, MovedStart};
 use super::vector::State;
 use crate::{Dynamic, Failure, Real};
 
@@ -48,6 +48,7 @@ pub struct Simulation<S: Dynamic<R, N, M>, X, R: Real, const N: usize, const M: 
     tolerance: Tolerance<R>,
     adaptive: Adaptive<R>,
     passage: Option<Passage<R>>,
+    moved_start: Option<MovedStart<R>>,
     counts: Counts,
 }
 
@@ -93,7 +94,7 @@ where
     }
 
     /// Starts next to `q` (N) and `qd` (N) at `t` (s): from the positions and velocities on the constraints that are
-    /// nearest in the mass's measure.
+    /// nearest in the mass's measure; [`moved_start`](Self::moved_start) says by how much they differ.
     ///
     /// # Errors
     /// [`Failure::NonFinite`]; [`Failure::Negative`]; [`Failure::OffConstraints`] where the constraints cannot be met from there; those of the
@@ -110,7 +111,7 @@ where
 
     /// Starts next to the text's guess with the text's start rates at `t` (s). What the text declares by `start` stays as
     /// declared where the rows can be met by the other coordinates; otherwise the nearest positions and velocities are
-    /// taken as in [`start_near`](Self::start_near).
+    /// taken as in [`start_near`](Self::start_near), and [`moved_start`](Self::moved_start) says by how much they differ.
     ///
     /// # Errors
     /// As [`start_near`](Self::start_near).
@@ -152,6 +153,7 @@ where
             Origin::Near => {}
             Origin::Text => text_start::complete(&model, t, &mut y, &mut counts)?,
         }
+        let declared = State { q, qd, ..y };
         let near = y;
         Projection::default()
             .settle(&model, t, &mut y, &mut counts)
@@ -168,6 +170,13 @@ where
         let rank_rises = model.rank_rises;
         let tolerance = R::constant(TOLERANCE).max(Tolerance::least());
         let reference = model.total_energy(t, &y);
+        let all = core::array::from_fn::<u16, N, _>(|index| u16::try_from(index).unwrap_or(u16::MAX));
+        let numbers: (&[u16], &[u16]) = match origin {
+            Origin::Consistent => (&[], &[]),
+            Origin::Near => (&all, &all),
+            Origin::Text => (S::STARTED, S::STARTED_RATES),
+        };
+        let moved_start = text_start::moved(&model, &declared, &y, numbers);
         Ok(Simulation {
             mechanism,
             parameters,
@@ -185,6 +194,7 @@ where
             tolerance: Tolerance { relative: tolerance, absolute: tolerance },
             adaptive: Adaptive::default(),
             passage: None,
+            moved_start,
             counts,
         })
     }

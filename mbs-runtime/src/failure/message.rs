@@ -104,7 +104,8 @@ impl fmt::Display for Failure {
             Failure::Undecided { margin, .. } => write!(
                 f,
                 "rounding decides where the motion goes at t = {time} s, next to a singular position (margin {margin:.1e}): \
-                 project onto the constraints, give the dimensions all their digits, or loosen the tolerance"
+                 project onto the constraints, give the dimensions all their digits, or loosen the tolerance; of a start, declare \
+                 the rates of all coordinates or start beside it"
             ),
             Failure::StepTooSmall { step, .. } => write!(
                 f,

@@ -27,7 +27,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
 
     /// Fails where a working range is left or a declared branch does not hold; `from`: the time (s) that inputs and phases are known at;
     /// `assembling`: those that pick the assembly alone count too.
-    pub(super) fn check_assembly(
+    pub(in crate::dynamics) fn check_assembly(
         &self,
         from: R,
         (t, y): (R, &State<R, N, S::States>),

@@ -5,6 +5,7 @@ use crate::dynamics::determinacy::Determinacy;
 use crate::dynamics::model::{Counts, Doubt};
 use crate::dynamics::motion::{Instant, Method};
 use crate::dynamics::passage::Passage;
+use crate::dynamics::text_start::MovedStart;
 use crate::{Dynamic, Energy, Failure, Motion, Real};
 
 /// How a run went so far: energy that is not accounted for, rows that are violated, what it cost.
@@ -72,6 +73,14 @@ where
     /// Where the run came so near to a singular position for the first time that it may have passed it.
     pub fn passage(&self) -> Option<&Passage<R>> {
         self.passage.as_ref()
+    }
+
+    /// The number of the start that differs most from what was declared or given; `None` where all are kept to nine digits.
+    ///
+    /// Of [`start_from_text`](Self::start_from_text) the numbers that the text declares by `start` count, of
+    /// [`start_near`](Self::start_near) all coordinates and rates.
+    pub fn moved_start(&self) -> Option<&MovedStart<R>> {
+        self.moved_start.as_ref()
     }
 
     /// The mechanism with its parameters and inputs.
