@@ -185,6 +185,16 @@ pub enum Failure {
         /// Time (s) of the step's end, or of a stage of it.
         time: f64,
     },
+    /// A step of fixed size ends with more kinetic energy than its start, potentials and forces give: it is too long to follow the
+    /// motion.
+    Unpaid {
+        /// Kinetic energy (J) at its end.
+        kinetic: f64,
+        /// Kinetic energy (J) at its start, with what potentials and forces give on the way.
+        available: f64,
+        /// Time (s) of the step's end.
+        time: f64,
+    },
     /// The end of an adaptive run takes more steps than one call may, as far as its first thousand tell.
     OutOfReach {
         /// The end (s).
@@ -321,6 +331,7 @@ impl Failure {
             | Failure::TooFar { time, .. }
             | Failure::InvalidStep { time, .. }
             | Failure::Unbounded { time, .. }
+            | Failure::Unpaid { time, .. }
             | Failure::OutOfReach { time, .. }
             | Failure::UnresolvedTolerance { time, .. }
             | Failure::Undecided { time, .. }
@@ -355,6 +366,7 @@ impl Failure {
             | Failure::TooFar { time, .. }
             | Failure::InvalidStep { time, .. }
             | Failure::Unbounded { time, .. }
+            | Failure::Unpaid { time, .. }
             | Failure::OutOfReach { time, .. }
             | Failure::UnresolvedTolerance { time, .. }
             | Failure::Undecided { time, .. }

@@ -1,6 +1,7 @@
 //! A mechanism as the methods see it: with its stage-0 values and its metric.
 
 use super::metric::Metric;
+use super::motion::Instant;
 use super::vector::State;
 use crate::{Dynamic, Failure, Real, kinematics};
 
@@ -286,6 +287,67 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         Err(Failure::Unbounded { coordinate, value: value.to_f64(), time: t.to_f64() })
     }
 
+    /// Fails where a step of `h` (s) ends with rates or an energy that no motion has: [`require_bounded`](Self::require_bounded), and of
+    /// a step that moves anything far what its kinetic energy comes from.
+    #[inline(always)]
+    pub(super) fn require_plausible<Z>(
+        &self,
+        (from, h): (&Instant<R, N, M, Z>, R),
+        next: &Instant<R, N, M, Z>,
+    ) -> Result<(), Failure>
+    where
+        S: Dynamic<R, N, M, States = Z>,
+    {
+        self.require_bounded(next.t, &from.y, &next.y)?;
+        let gate = R::constant(LARGE_MOTION);
+        let mut small = true;
+        for (rate, scale) in next.y.qd.iter().zip(&self.metric.coordinates) {
+            // Written so that NaN is not small.
+            small &= (h * *rate).abs() < gate * *scale;
+        }
+        if small { Ok(()) } else { self.require_paid((from, h), next) }
+    }
+
+    /// Fails where the kinetic energy at the end of a step of `h` (s) is several times what its start, potentials and forces
+    /// give, or the energy balance is several times off the energies.
+    #[cold]
+    #[inline(never)]
+    fn require_paid<Z>(
+        &self,
+        (from, h): (&Instant<R, N, M, Z>, R),
+        next: &Instant<R, N, M, Z>,
+    ) -> Result<(), Failure>
+    where
+        S: Dynamic<R, N, M, States = Z>,
+    {
+        let (zero, most) = (R::constant(0.0), R::constant(LARGEST_GAIN));
+        let at = |model: &Model<'_, S, R, N, M>, t: R, y: &State<R, N, S::States>| {
+            model.mechanism.energy(model.parameters, &model.position(t, y), &y.qd)
+        };
+        let start = at(self, from.t, &from.y);
+        let end = self.moved(from.t, next.t, |model| at(model, next.t, &next.y));
+        let released = start.potential - end.potential;
+        let work = if self.balanced {
+            next.y.work - from.y.work
+        } else {
+            let power = |model: &Model<'_, S, R, N, M>, instant: &Instant<R, N, M, Z>| {
+                let Instant { t, y, solved, .. } = instant;
+                model.power(&model.position(*t, y), y, &solved.rate.qd, &solved.lambda)
+            };
+            h * power(self, from).max(self.moved(from.t, next.t, |model| power(model, next)))
+        };
+        let available = start.kinetic + released.max(zero) + work.max(zero);
+        let known = start.kinetic + end.kinetic + released.abs();
+        let defect = end.kinetic - start.kinetic - released - work;
+        let balanced = !self.balanced || defect.abs() <= most * known;
+        // Written so that NaN is no energy.
+        if end.kinetic <= most * available && balanced {
+            return Ok(());
+        }
+        let (kinetic, available) = (end.kinetic.to_f64(), available.to_f64());
+        Err(Failure::Unpaid { kinetic, available, time: next.t.to_f64() })
+    }
+
     /// Fails with the name of the acceleration, multiplier or force that is no number.
     #[inline(always)]
     pub(super) fn check_solved(
@@ -398,6 +460,14 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
 /// Motion in one step of fixed size, in the reference metric (rad, or reference lengths), that no mechanism makes: the
 /// integration has lost it.
 const LARGEST_MOTION: f64 = 1e4;
+
+/// Motion in one step of fixed size by the rates of its end, in the reference metric (rad, or reference lengths), that is looked at more
+/// closely: a step of a control loop, or one that follows a motion at all, moves less.
+const LARGE_MOTION: f64 = 0.5;
+
+/// Kinetic energy at the end of such a step over what its start, potentials and forces give. Exactly it is 1 at most; what errors
+/// of a step that follows the motion add is a fraction, of the first step of a method of first order from rest the same again.
+const LARGEST_GAIN: f64 = 4.0;
 
 /// Iterations for friction, whose force depends on the multipliers that it changes. The change falls by the coefficient
 /// of friction times a ratio of lengths in each.

@@ -207,7 +207,7 @@ where
     /// Moves on by one step of `h` (s): a fixed amount of work.
     ///
     /// # Errors
-    /// [`Failure::InvalidStep`], [`Failure::StepTooLong`], [`Failure::Unbounded`], those of the method,
+    /// [`Failure::InvalidStep`], [`Failure::StepTooLong`], [`Failure::Unbounded`], [`Failure::Unpaid`], those of the method,
     /// [`Failure::WrongBranch`]; [`Failure::Flat`] and [`Failure::Inertialess`] where the state itself shows why. It is
     /// then bit for bit what it was.
     pub fn step(&mut self, h: R) -> Result<(), Failure> {
@@ -221,7 +221,7 @@ where
         let model = Model { rank_rises, ..self.model() };
         let stepped = self.method.step(&model, &from, h, &mut counts);
         let stepped = stepped.and_then(|next| {
-            model.require_bounded(next.t, &from.y, &next.y)?;
+            model.require_plausible((&from, h), &next)?;
             model.check(next.t, &next.y).map(|()| next)
         });
         let next = stepped.map_err(|failure| model.traced(failure, from.t, &from.y))?;

@@ -47,6 +47,7 @@ fn exact(r: f64, th: f64, w: f64) -> [(f64, f64); 2] {
 }
 
 /// Start angles from far off the upright crank to 2.7e-8 rad beside it, where the columns of the others have a singular value of as much.
+#[allow(clippy::approx_constant, reason = "numbers as a text has them, beside the upright crank")]
 const ANGLES: [f64; 13] =
     [0.3, 1.2, 1.5, 1.57, 1.5707, 1.57079, 1.570796, 1.5707963, 1.5708, 1.6, 2.5, -0.4, -1.5707963];
 

@@ -1,2 +1,3 @@
 //! Starts, first steps, equilibria, parameters of methods.
+mod d7_absurd_steps;
 mod d8_declared_starts;
