@@ -1,5 +1,6 @@
 //! What the macro emits for a text with bodies and forces: M q̈ + Φ_qᵀ λ = Q with Φ = 0.
 
+use crate::dynamics::friction::WithNormalForces;
 use crate::dynamics::velocity_transformation::Transformed;
 use crate::{BlockSolver, Entry, Margin, Mechanism, Outcome, Scalar};
 
@@ -139,6 +140,30 @@ pub trait Dynamic<T: Scalar, const N: usize, const M: usize>: Mechanism<T, N, M>
         states: &Self::States,
         lambda: &[T; M],
     ) -> [[T; N]; N];
+    /// ∂Q/∂λ: N rows of M. At a kink of friction the derivative of one side.
+    #[inline]
+    fn force_lambda(
+        &self,
+        _parameters: &Self::Parameters,
+        _position: &Self::Position,
+        _qd: &[T; N],
+        _states: &Self::States,
+        _lambda: &[T; M],
+    ) -> [[T; M]; N] {
+        [[T::constant(0.0); M]; N]
+    }
+    /// What `see` makes of [`NormalForces`](crate::dynamics::NormalForces), where Q depends on the multipliers in such a way alone.
+    #[inline]
+    fn normal_forces<V: WithNormalForces<T, N, M>>(
+        &self,
+        _parameters: &Self::Parameters,
+        _position: &Self::Position,
+        _qd: &[T; N],
+        _states: &Self::States,
+        _see: V,
+    ) -> Option<V::Output> {
+        None
+    }
     /// (M x)_q with x held, for linearisation and implicit methods: N rows of N.
     fn mass_times_q(
         &self,

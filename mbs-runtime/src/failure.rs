@@ -160,12 +160,21 @@ pub enum Failure {
         /// The largest that is allowed; the least is 0.
         most: f64,
     },
-    /// No multiplier balances the forces that depend on it: friction changes it by as much as it takes up.
+    /// No multipliers balance the forces that depend on them: friction jams the mechanism.
     Locked {
-        /// The row whose multiplier changes most.
+        /// The row whose multiplier friction changes most.
         row: Entry,
-        /// Iterations spent.
-        iterations: u32,
+        /// Time (s).
+        time: f64,
+    },
+    /// More than one set of multipliers balances the forces that depend on them: friction leaves the motion undetermined.
+    Ambiguous {
+        /// The row whose multiplier friction changes most.
+        row: Entry,
+        /// How many sets of multipliers.
+        solutions: u32,
+        /// Whether these are all; else there are at least so many, and it is not known that there is but one.
+        all: bool,
         /// Time (s).
         time: f64,
     },
@@ -345,6 +354,7 @@ impl Failure {
             | Failure::Unsettled { time, .. }
             | Failure::StatesUnknown { time, .. }
             | Failure::Locked { time, .. }
+            | Failure::Ambiguous { time, .. }
             | Failure::Unbalanced { time, .. } => *time = now,
             Failure::NonFinite { .. }
             | Failure::Negative { .. }
@@ -380,6 +390,7 @@ impl Failure {
             | Failure::Unsettled { time, .. }
             | Failure::StatesUnknown { time, .. }
             | Failure::Locked { time, .. }
+            | Failure::Ambiguous { time, .. }
             | Failure::Unbalanced { time, .. } => *time,
             Failure::NonFinite { .. }
             | Failure::Negative { .. }

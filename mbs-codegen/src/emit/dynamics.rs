@@ -1,13 +1,16 @@
 //! The emitted code of masses and forces: `impl Dynamic`.
 
 use std::collections::BTreeSet;
+use std::fmt::Write;
 
 use proc_macro2::TokenStream;
 use quote::{quote, quote_spanned};
 
+use super::code::{block, lets};
 use super::functions::{array, body, matrix};
 use super::scope::Scope;
-use crate::equations::{Dynamics, Equations, Of, Slope};
+use crate::equations::normal_forces::{Kind, NormalForces};
+use crate::equations::{Dynamics, Equations, Of, Slope, Sparse};
 use crate::model::Model;
 use crate::model::dynamics::Dynamics as Declared;
 use crate::model::expression::Node;
@@ -26,6 +29,10 @@ pub struct DynamicBodies {
     pub force: TokenStream,
     pub force_q: TokenStream,
     pub force_qd: TokenStream,
+    /// Where the force reads the multipliers.
+    pub force_lambda: Option<TokenStream>,
+    /// Where it does so as a sum of multipliers, their absolute values and norms.
+    pub normal_forces: Option<TokenStream>,
     pub mass_times_q: TokenStream,
     pub reaction: TokenStream,
     pub reaction_q: TokenStream,
@@ -54,6 +61,8 @@ impl DynamicBodies {
             force: body(),
             force_q: body(),
             force_qd: body(),
+            force_lambda: None,
+            normal_forces: None,
             mass_times_q: body(),
             reaction: body(),
             reaction_q: body(),
@@ -95,6 +104,18 @@ pub fn bodies(
         force: of(&program.force, vector(&dynamics.force, scope)),
         force_q: of(&program.force_q, matrix(dynamics.force_q.iter(), scope)),
         force_qd: of(&program.force_qd, matrix(dynamics.force_qd.iter(), scope)),
+        force_lambda: dynamics.force_uses_multipliers.then(|| {
+            let (n, m) = (scope.model.coordinates.len(), scope.model.rows.len());
+            let zeros = format!("let mut __rows = [[{}; {m}]; {n}];\n", scope.or_zero(None));
+            of(&program.force_lambda, zeros + &assigned("__rows", &dynamics.force_lambda, scope) + "__rows")
+        }),
+        normal_forces: dynamics.normal_forces.as_ref().map(|forces| {
+            let result = normal_forces(forces, scope);
+            let (m, k) = (scope.model.rows.len(), forces.terms.len());
+            let mut text = format!("let __lambda = [{}; {}];\n", scope.or_zero(None), m + k);
+            lets(&program.normal_forces, scope, &mut text);
+            block(&(text + &result), runtime)
+        }),
         mass_times_q: of(&program.mass_times_q, matrix(dynamics.mass_times_q.iter(), scope)),
         reaction: of(&program.reaction, vector(&dynamics.reaction, scope)),
         reaction_q: of(&program.reaction_q, matrix(dynamics.reaction_q.iter(), scope)),
@@ -113,6 +134,43 @@ pub fn bodies(
         state_rates: of(&program.state_rates, vector(&dynamics.state_rates, scope)),
         loads: of(&program.loads, array(dynamics.loads.iter().map(|id| Some(*id)), scope)),
     })
+}
+
+/// Assignments of the entries of a matrix to those of `rows`.
+fn assigned(rows: &str, matrix: &Sparse, scope: &Scope<'_>) -> String {
+    let mut text = String::new();
+    for (row, entries) in matrix.iter().enumerate() {
+        for (column, entry) in entries {
+            let _ = writeln!(text, "{rows}[{row}][{column}] = {};", scope.operand(*entry));
+        }
+    }
+    text
+}
+
+/// What is seen of the terms of Q in the multipliers.
+fn normal_forces(forces: &NormalForces, scope: &Scope<'_>) -> String {
+    let kinds = forces.terms.iter().map(|term| match term.kind {
+        Kind::Multiplier => "__mbs::dynamics::Term::Multiplier",
+        Kind::Absolute => "__mbs::dynamics::Term::Absolute",
+        Kind::Norm => "__mbs::dynamics::Term::Norm",
+    });
+    let kinds = kinds.collect::<Vec<_>>().join(", ");
+    let (n, m) = (scope.model.coordinates.len(), scope.model.rows.len());
+    let mut text = format!(
+        "let mut __forces = __mbs::dynamics::NormalForces::<T, {n}, {m}, {}>::of([{kinds}]);\n",
+        forces.terms.len()
+    );
+    text += &assigned("__forces.force", &forces.force, scope);
+    for (index, term) in forces.terms.iter().enumerate() {
+        for (component, offset) in term.components.iter().enumerate() {
+            let _ = writeln!(text, "__forces.offset[{index}][{component}] = {};", scope.operand(*offset));
+        }
+        text += &assigned(&format!("__forces.by_multiplier[{index}]"), &term.by_multiplier, scope);
+        text += &assigned(&format!("__forces.by_term[{index}]"), &term.by_term, scope);
+    }
+    text + &format!(
+        "::core::option::Option::Some(<__See as __mbs::dynamics::WithNormalForces<T, {n}, {m}>>::at(__see, &__forces))"
+    )
 }
 
 /// What must not be negative: its table, and the function that shows its values.
@@ -182,6 +240,8 @@ pub fn implementation(
         force,
         force_q,
         force_qd,
+        force_lambda,
+        normal_forces,
         mass_times_q,
         reaction,
         reaction_q,
@@ -225,6 +285,23 @@ pub fn implementation(
             fn state_slopes(#design, #motion) -> ::core::option::Option<Self::StateSlopes> #body
         }
     });
+    let force_lambda = force_lambda.as_ref().map(|body| {
+        quote! {
+            #[inline]
+            fn force_lambda(#design, #motion) -> [[T; #m]; #n] #body
+        }
+    });
+    let normal_forces = normal_forces.as_ref().map(|body| {
+        quote! {
+            #[inline]
+            fn normal_forces<__See: #runtime::dynamics::WithNormalForces<T, #n, #m>>(
+                #design,
+                __qd: &[T; #n],
+                __z: &[T; #states],
+                __see: __See,
+            ) -> ::core::option::Option<__See::Output> #body
+        }
+    });
     quote! {
         impl<#generics> #runtime::Dynamic<T, #n, #m> for #name {
             type States = [T; #states];
@@ -249,6 +326,8 @@ pub fn implementation(
             fn force_q(#design, #motion) -> [[T; #n]; #n] #force_q
             #[inline]
             fn force_qd(#design, #motion) -> [[T; #n]; #n] #force_qd
+            #force_lambda
+            #normal_forces
             #[inline]
             fn mass_times_q(#design, __x: &[T; #n]) -> [[T; #n]; #n] #mass_times_q
             #[inline]

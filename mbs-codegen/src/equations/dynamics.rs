@@ -3,6 +3,7 @@
 use super::carried;
 use super::forces::{self, Acting, Sum};
 use super::lower::Clock;
+use super::normal_forces::{NormalForces, normal_forces};
 use super::pins::{Attribution, Undetermined};
 use super::second_moments::second_moments;
 use super::signed::{Of, Signed, signed};
@@ -67,6 +68,10 @@ pub struct Dynamics {
     pub force_q: Sparse,
     /// ∂Q/∂q̇
     pub force_qd: Sparse,
+    /// ∂Q/∂λ
+    pub force_lambda: Sparse,
+    /// Q as a sum of multipliers, their absolute values and norms, where it depends on them in such a way alone.
+    pub normal_forces: Option<NormalForces>,
     /// Φ_qᵀ λ
     pub reaction: Vec<Option<NodeId>>,
     /// (Φ_qᵀ λ)_q, symmetric.
@@ -112,6 +117,7 @@ impl Dynamics {
             &mut self.mass_times_q,
             &mut self.force_q,
             &mut self.force_qd,
+            &mut self.force_lambda,
             &mut self.reaction_q,
         ];
         let vectors = [
@@ -131,6 +137,7 @@ impl Dynamics {
         }
         roots.extend([&mut self.kinetic, &mut self.potential].into_iter().flatten());
         roots.extend(&mut self.loads);
+        roots.extend(self.normal_forces.iter_mut().flat_map(NormalForces::roots_mut));
         roots
     }
 }
@@ -172,6 +179,8 @@ pub fn derive(
     let mass_times_q = derivative(g, &mass_times, count, Leaf::Position);
     let force_q = derivative(g, &force, count, Leaf::Position);
     let force_qd = derivative(g, &force, count, Leaf::Velocity);
+    let force_lambda = derivative(g, &force, rows.len(), Leaf::Multiplier);
+    let normal_forces = force_uses_multipliers.then(|| normal_forces(g, &force, rows.len())).flatten();
     let state_rates: Vec<Option<NodeId>> = declared.states.iter().map(|state| state.rate.map(of)).collect();
     let slopes = slopes(g, &force, &state_rates);
     let columns = transposed(rows, count);
@@ -199,6 +208,8 @@ pub fn derive(
         force_uses_multipliers,
         force_q,
         force_qd,
+        force_lambda,
+        normal_forces,
         reaction,
         reaction_q,
         third: Some(third),

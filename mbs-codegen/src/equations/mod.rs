@@ -13,6 +13,7 @@ mod gradients;
 mod joints;
 mod lower;
 mod manifold;
+pub mod normal_forces;
 pub mod pins;
 mod second_moments;
 mod signed;

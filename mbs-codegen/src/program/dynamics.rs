@@ -1,6 +1,7 @@
 //! Functions of masses and forces as code.
 
 use super::schedule::Section;
+use crate::equations::normal_forces::NormalForces;
 use crate::equations::{Dynamics, Sparse};
 use crate::symbolic::NodeId;
 
@@ -21,6 +22,10 @@ pub struct DynamicsProgram {
     pub force_q: Section,
     /// ∂Q/∂q̇
     pub force_qd: Section,
+    /// ∂Q/∂λ
+    pub force_lambda: Section,
+    /// Q in the multipliers, where they are its terms or those of absolute values and norms.
+    pub normal_forces: Section,
     /// (M x)_q
     pub mass_times_q: Section,
     /// (Φ_qᵀ λ)_q
@@ -54,6 +59,8 @@ pub struct Roots {
     state_rates: Vec<NodeId>,
     force_q: Vec<NodeId>,
     force_qd: Vec<NodeId>,
+    force_lambda: Vec<NodeId>,
+    normal_forces: Vec<NodeId>,
     mass_times_q: Vec<NodeId>,
     reaction_q: Vec<NodeId>,
     third: Vec<NodeId>,
@@ -79,6 +86,8 @@ impl Roots {
             state_rates: some(&dynamics.state_rates),
             force_q: entries(&dynamics.force_q),
             force_qd: entries(&dynamics.force_qd),
+            force_lambda: entries(&dynamics.force_lambda),
+            normal_forces: dynamics.normal_forces.iter().flat_map(NormalForces::roots).collect(),
             mass_times_q: entries(&dynamics.mass_times_q),
             reaction_q: entries(&dynamics.reaction_q),
             third: dynamics.third.iter().flat_map(|third| third.roots()).collect(),
@@ -99,10 +108,12 @@ impl Roots {
     }
 
     /// Functions that some methods call, or that nobody calls in every step: nothing is kept for them alone.
-    pub fn rare(&self) -> [&[NodeId]; 10] {
+    pub fn rare(&self) -> [&[NodeId]; 12] {
         [
             &self.force_q,
             &self.force_qd,
+            &self.force_lambda,
+            &self.normal_forces,
             &self.mass_times_q,
             &self.reaction_q,
             &self.third,
@@ -133,6 +144,8 @@ impl Roots {
             state_rates: section(&self.state_rates),
             force_q: section(&self.force_q),
             force_qd: section(&self.force_qd),
+            force_lambda: section(&self.force_lambda),
+            normal_forces: section(&self.normal_forces),
             mass_times_q: section(&self.mass_times_q),
             reaction_q: section(&self.reaction_q),
             third: section(&self.third),

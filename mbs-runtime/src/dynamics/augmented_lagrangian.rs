@@ -97,8 +97,11 @@ impl AugmentedLagrangian {
                 bearing = lambda.plus(R::constant(1.0), &[1.0], [&penalized.put(&qdd, &gamma).1]);
             }
             rate = model.rates(&position, &y, qdd, &bearing);
-            let imbalance = model.imbalance(&position, &y, &qdd, (&augmented, &bearing));
-            step = penalized.factors.solve(&imbalance, &[]).0.map(|step| step * quarter);
+            step = model
+                .corrected((&position, t), &y, &qdd, (&augmented, &bearing), &phi, |imbalance, phi| {
+                    penalized.corrected(imbalance, phi)
+                })?
+                .0;
             counts.iterations += 1;
             counts.evaluations += 1;
             change = change.plus(-one, &[1.0], [&step]);
@@ -165,6 +168,18 @@ impl<R: Real, const N: usize, const M: usize> Penalized<R, N, M> {
         let system = System::new(&matrix, &[], &model.metric.without_rows());
         let factors = system.factorize_regular(S::COORDINATES, t)?;
         Ok(Penalized { quarter, alpha, phi_q, factors })
+    }
+
+    /// The correction (N) that takes `imbalance` (N) away, and by how much the multipliers (M) fall where it leaves of `phi` (M) what
+    /// it does.
+    fn corrected(&self, imbalance: &[R; N], phi: &[R; M]) -> ([R; N], [R; M]) {
+        let step = self.factors.solve(imbalance, &[]).0.map(|step| step * self.quarter);
+        let mut change = self.alpha;
+        for ((change, row), phi) in change.iter_mut().zip(&self.phi_q).zip(phi) {
+            let left = row.iter().zip(&step).fold(*phi, |open, (entry, step)| open - *entry * *step);
+            *change = -(*change * left);
+        }
+        (step, change)
     }
 
     /// The rates next to `x` (N) with Φ_q x = `right` (M), A x' = W x + h²/4 Φ_qᵀ α `right`, and the multipliers h²/4 α (Φ_q x' −

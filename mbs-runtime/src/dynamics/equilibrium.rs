@@ -230,7 +230,9 @@ fn correction<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
         if let Ok(factors) = &factors
             && !factors.is_rank_revealing()
         {
-            let (step, change) = factors.solve(&imbalance, &phi);
+            let solve = |imbalance: &[R; N], phi: &[R; M]| factors.solve(imbalance, phi);
+            let (step, change) =
+                model.corrected((&position, t), y, &[zero; N], (lambda, lambda), &phi, solve)?;
             return Ok(Correction { step, change, states, saddle: None, left: ([zero; N], zero) });
         }
     }

@@ -111,13 +111,15 @@ impl GeneralizedAlpha {
             model.trapezoid(from, h, &mut y, &rate);
             let position = model.position(t, &y);
             rate = model.rates(&position, &y, qdd, &lambda);
-            let imbalance = model.imbalance(&position, &y, &qdd, (&lambda, &lambda));
             let phi = model.mechanism.phi(model.parameters, &position);
             let tangent = Tangent::of(model, &position, &y, &qdd, &lambda);
             let matrix = tangent.combined(of_q, gamma / (beta * h), one);
             let phi_q = model.mechanism.phi_q(model.parameters, &position);
             let factors = System::new(&matrix, &phi_q, model.metric).factorize(S::COORDINATES, t)?;
-            let (correction, change) = factors.solve(&imbalance, &phi);
+            let (correction, change) =
+                model.corrected((&position, t), &y, &qdd, (&lambda, &lambda), &phi, |imbalance, phi| {
+                    factors.solve(imbalance, phi)
+                })?;
             counts.iterations += 1;
             counts.evaluations += 1;
             step = correction;

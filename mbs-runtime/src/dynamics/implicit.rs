@@ -98,6 +98,40 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         inertia.plus(R::constant(1.0), &[1.0, -1.0], [&reaction, &force])
     }
 
+    /// A step of Newton's method against itself, of the coordinates (N) and the multipliers (M): `solve` makes it of what is left of
+    /// the balance of forces, as in [`imbalance`](Self::imbalance), and of `phi` (M). Friction has the multipliers that it leads to.
+    ///
+    /// # Errors
+    /// [`Failure::Locked`], [`Failure::Ambiguous`].
+    #[inline(always)]
+    pub(super) fn corrected(
+        &self,
+        (position, t): (&S::Position, R),
+        y: &State<R, N, S::States>,
+        qdd: &[R; N],
+        (lambda, bearing): (&[R; M], &[R; M]),
+        phi: &[R; M],
+        solve: impl Fn(&[R; N], &[R; M]) -> ([R; N], [R; M]),
+    ) -> Result<([R; N], [R; M]), Failure> {
+        if !S::FORCE_USES_MULTIPLIERS {
+            return Ok(solve(&self.imbalance(position, y, qdd, (lambda, bearing)), phi));
+        }
+        let (zero, one) = (R::constant(0.0), R::constant(1.0));
+        let (mechanism, parameters) = (self.mechanism, self.parameters);
+        let inertia = mechanism.mass_times(parameters, position, qdd);
+        let held = inertia.plus(one, &[1.0], [&mechanism.reaction(parameters, position, lambda)]);
+        let found = self.balanced(position, (t, y), bearing, |force, whole| {
+            let (step, change) = match whole {
+                true => solve(&held.plus(-one, &[1.0], [force]), phi),
+                false => solve(&force.map(|force| -force), &[zero; M]),
+            };
+            let before = if whole { *bearing } else { [zero; M] };
+            (step, before.plus(-one, &[1.0], [&change]))
+        });
+        let (step, after, _) = found?;
+        Ok((step, bearing.plus(-one, &[1.0], [&after])))
+    }
+
     /// First-order states and work at the end of a step, by the trapezoidal rule from the rates at both ends.
     pub(super) fn trapezoid(
         &self,

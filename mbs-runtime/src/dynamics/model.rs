@@ -394,15 +394,15 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         carried.map_or(sum, |carried| sum + carried)
     }
 
-    /// Solves with forces that may depend on the multipliers: `solve` gives accelerations and multipliers for a
-    /// force, and is asked again until the multipliers stand.
+    /// Solves with forces that may depend on the multipliers. `solve` gives accelerations and multipliers for a force, or, told
+    /// false, what the force alone adds to them.
     #[inline(always)]
     pub(super) fn balanced(
         &self,
         position: &S::Position,
         at: (R, &State<R, N, S::States>),
         lambda: &[R; M],
-        solve: impl FnMut(&[R; N]) -> ([R; N], [R; M]),
+        solve: impl FnMut(&[R; N], bool) -> ([R; N], [R; M]),
     ) -> Result<Balanced<R, N, M>, Failure> {
         self.balanced_to(STANDING, position, at, lambda, solve)
     }
@@ -413,27 +413,23 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         &self,
         standing: f64,
         position: &S::Position,
-        (t, y): (R, &State<R, N, S::States>),
+        at: (R, &State<R, N, S::States>),
         lambda: &[R; M],
-        mut solve: impl FnMut(&[R; N]) -> ([R; N], [R; M]),
+        mut solve: impl FnMut(&[R; N], bool) -> ([R; N], [R; M]),
     ) -> Result<Balanced<R, N, M>, Failure> {
-        let (mut known, mut worst) = (*lambda, 0);
-        let mut force;
-        for _ in 0..MOST_ITERATIONS {
-            force = self.mechanism.force(self.parameters, position, &y.qd, &y.states, &known);
-            let (qdd, found) = solve(&force);
-            if !S::FORCE_USES_MULTIPLIERS || self.stands(&known, &found, standing) {
-                return Ok((qdd, found, force));
-            }
-            worst = self.largest_change(&known, &found);
-            known = found;
-        }
-        let row = kinematics::entry(S::ROWS, worst);
-        Err(Failure::Locked { row, iterations: MOST_ITERATIONS, time: t.to_f64() })
+        let known = if S::FORCE_USES_MULTIPLIERS {
+            self.friction(standing, position, at, lambda, &mut solve)?
+        } else {
+            *lambda
+        };
+        let y = at.1;
+        let force = self.mechanism.force(self.parameters, position, &y.qd, &y.states, &known);
+        let (qdd, found) = solve(&force, true);
+        Ok((qdd, found, force))
     }
 
     /// The row whose multiplier changes most, in the metric.
-    fn largest_change(&self, before: &[R; M], after: &[R; M]) -> u16 {
+    pub(super) fn largest_change(&self, before: &[R; M], after: &[R; M]) -> u16 {
         let mut worst = (0, R::constant(-1.0));
         let pairs = before.iter().zip(after).zip(&self.metric.rows);
         for (index, ((before, after), scale)) in (0_u16..).zip(pairs) {
@@ -446,7 +442,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
     }
 
     /// Whether the multipliers have changed by rounding alone, `standing` ε of their size; also where they are no numbers.
-    fn stands(&self, before: &[R; M], after: &[R; M], standing: f64) -> bool {
+    pub(super) fn stands(&self, before: &[R; M], after: &[R; M], standing: f64) -> bool {
         let zero = R::constant(0.0);
         let (mut change, mut size) = (zero, zero);
         for ((before, after), scale) in before.iter().zip(after).zip(&self.metric.rows) {
@@ -468,10 +464,6 @@ const LARGE_MOTION: f64 = 0.5;
 /// Kinetic energy at the end of such a step over what its start, potentials and forces give. Exactly it is 1 at most; what errors
 /// of a step that follows the motion add is a fraction, of the first step of a method of first order from rest the same again.
 const LARGEST_GAIN: f64 = 4.0;
-
-/// Iterations for friction, whose force depends on the multipliers that it changes. The change falls by the coefficient
-/// of friction times a ratio of lengths in each.
-const MOST_ITERATIONS: u32 = 200;
 
 /// Change of the multipliers, in ε of their size, that counts as rounding.
 pub(super) const STANDING: f64 = 16.0;

@@ -59,8 +59,9 @@ pub(super) fn solve<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize
     factors: &Factors<R, N, M>,
     gamma: &[R; M],
 ) -> Result<Solved<R, N, M, S::States>, Failure> {
-    let (qdd, lambda, force) =
-        model.balanced(position, (t, y), lambda, |force| factors.solve(force, gamma))?;
+    let (qdd, lambda, force) = model.balanced(position, (t, y), lambda, |force, whole| {
+        if whole { factors.solve(force, gamma) } else { factors.solve(force, &[R::constant(0.0); M]) }
+    })?;
     model.check_solved(&qdd, &lambda, &force, gamma)?;
     let rate = model.rates(position, y, qdd, &lambda);
     Ok(Solved { rate, lambda, margin: factors.margin() })

@@ -69,6 +69,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
                 | Failure::OffConstraints { .. }
                 | Failure::Unbalanced { .. }
                 | Failure::Locked { .. }
+                | Failure::Ambiguous { .. }
         );
         // Next to a singular position a shorter step may do, and the failure says so.
         let found = lost.then(|| self.obstacle(t, y)).flatten();

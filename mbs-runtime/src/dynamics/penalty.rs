@@ -57,8 +57,9 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Formulation<S
         }
         let system = System::new(&matrix, &[], &model.metric.without_rows());
         let factors = system.factorize_regular(S::COORDINATES, t)?;
-        let solve = |force: &[R; N]| {
+        let solve = |force: &[R; N], whole: bool| {
             let mut right = *force;
+            let target = if whole { target } else { [R::constant(0.0); M] };
             for ((row, alpha), target) in phi_q.iter().zip(&alpha).zip(&target) {
                 right.iter_mut().zip(row).for_each(|(x, entry)| *x = *x + *alpha * *target * *entry);
             }

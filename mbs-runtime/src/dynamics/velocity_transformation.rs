@@ -115,8 +115,10 @@ where
     counts.evaluations += 1;
     let gamma = mechanism.gamma(parameters, position, &y.qd);
     let mut inert = true;
-    let (qdd, lambda, force) = model.balanced(position, (t, y), lambda, |force| {
-        let solved = mechanism.accelerations(parameters, position, partition, force, &gamma);
+    let (qdd, lambda, force) = model.balanced(position, (t, y), lambda, |force, whole| {
+        let none = [R::constant(0.0); M];
+        let gamma = if whole { &gamma } else { &none };
+        let solved = mechanism.accelerations(parameters, position, partition, force, gamma);
         inert = solved.inert;
         (solved.qdd, solved.lambda)
     })?;

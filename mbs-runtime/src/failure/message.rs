@@ -74,10 +74,22 @@ impl fmt::Display for Failure {
             Failure::Unsuitable { name, value, .. } => {
                 write!(f, "the method's {name} is {value:e}: it must be a number and at least 0")
             }
-            Failure::Locked { row, iterations, .. } => write!(
+            Failure::Locked { row, .. } => write!(
                 f,
-                "no balance of forces at t = {time} s after {iterations} iterations: friction changes the force of row `{}` (line {}) by as \
-                 much as it takes up; with this coefficient the mechanism jams there, whatever the step",
+                "no forces balance at t = {time} s: friction changes the force of row `{}` (line {}) by more than it takes up; with this \
+                 coefficient the mechanism jams there, whatever the step",
+                row.name, row.line
+            ),
+            Failure::Ambiguous { row, solutions, all: true, .. } => write!(
+                f,
+                "{solutions} sets of forces balance at t = {time} s: friction changes the force of row `{}` (line {}) by more than it takes \
+                 up, so that rigid bodies have no one motion there; lower the coefficient, or make a body elastic",
+                row.name, row.line
+            ),
+            Failure::Ambiguous { row, solutions, .. } => write!(
+                f,
+                "forces at t = {time} s are not known to be the only ones that balance ({solutions} found): friction changes the force of row \
+                 `{}` (line {}) by about what it takes up; lower the coefficient, or make a body elastic",
                 row.name, row.line
             ),
             Failure::InvalidStep { step, .. } => write!(
@@ -235,7 +247,9 @@ mod tests {
             Failure::Flat { row: ROW, time },
             Failure::Restless { coordinate: ROW, force: 0.5, time },
             Failure::Unbalanced { coordinate: ROW, iterations: 9, time },
-            Failure::Locked { row: ROW, iterations: 9, time },
+            Failure::Locked { row: ROW, time },
+            Failure::Ambiguous { row: ROW, solutions: 2, all: true, time },
+            Failure::Ambiguous { row: ROW, solutions: 1, all: false, time },
             Failure::Unsettled { state: ROW, time },
             Failure::StatesUnknown { state: ROW, time },
         ];

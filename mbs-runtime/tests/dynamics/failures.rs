@@ -326,7 +326,7 @@ fn rows_that_contradict_each_other_are_named_at_the_start() {
 mechanism! {
     /// A ladder between a floor and a wall, both rough.
     pub mechanism Ladder;
-    param mu: 1 = 1.5;
+    param mu: 1 = 2.5;
     coord x: m = 0.3;
     coord y: m = 0.4;
     coord phi: rad = 2.214_297_435_588_181;
@@ -352,5 +352,10 @@ fn friction_that_jams_a_mechanism_is_called_so_and_no_step_is_blamed() {
         ["floor", "wall"].contains(&row.name) && failure.to_string().contains("whatever the step"),
         "{failure}"
     );
-    assert!(Simulation::start(Ladder { mu: 0.4 }, method, 0.0, q, qd).is_ok());
+    let failure = Simulation::start(Ladder { mu: 1.9 }, method, 0.0, q, qd).unwrap_err();
+    assert!(matches!(failure, Failure::Ambiguous { solutions: 2, all: true, .. }), "{failure}");
+    // At 1.5 the forces turn round, and there is one set of them.
+    for mu in [0.4, 1.5] {
+        assert!(Simulation::start(Ladder { mu }, method, 0.0, q, qd).is_ok());
+    }
 }

@@ -1,0 +1,272 @@
+//! Forces that depend on the multipliers which they change: friction whose normal force is that of a row.
+//!
+//! Accelerations and multipliers are affine in the force, λ = λ₀ + A Q. Where Q is a sum of multipliers, of absolute values of such
+//! sums and of norms of two, its terms v = φ(g(λ)) solve v = φ(c + B v), with B from one solution a term; all solutions are counted.
+//! Where Q depends on λ otherwise, Newton's method takes the derivative ∂Q/∂λ.
+
+use super::model::Model;
+use super::piecewise::{Piecewise, Solutions, Term};
+use super::vector::{State, Vector};
+use crate::{Dynamic, Factorization, Failure, Lu, Real, Scalar, kinematics};
+
+/// Q in the multipliers, at one position, velocity and first-order state: Q = Q₀ + D v with vᵢ = φᵢ(g(λ, v)).
+///
+/// g is linear in the multipliers and in the terms that stand before; φ the identity, the absolute value of one component, or the norm
+/// of two.
+#[derive(Clone, Copy, Debug)]
+pub struct NormalForces<T, const N: usize, const M: usize, const K: usize> {
+    /// What φ is, one a term.
+    pub terms: [Term; K],
+    /// D = ∂Q/∂v: N rows of K.
+    pub force: [[T; K]; N],
+    /// g at λ = 0 and v = 0.
+    pub offset: [[T; 2]; K],
+    /// ∂g/∂λ.
+    pub by_multiplier: [[[T; M]; 2]; K],
+    /// ∂g/∂v.
+    pub by_term: [[[T; K]; 2]; K],
+}
+
+impl<T: Scalar, const N: usize, const M: usize, const K: usize> NormalForces<T, N, M, K> {
+    /// These terms, every entry 0.
+    pub fn of(terms: [Term; K]) -> Self {
+        let zero = T::constant(0.0);
+        NormalForces {
+            terms,
+            force: [[zero; K]; N],
+            offset: [[zero; 2]; K],
+            by_multiplier: [[[zero; M]; 2]; K],
+            by_term: [[[zero; K]; 2]; K],
+        }
+    }
+}
+
+/// A function of [`NormalForces`], whatever the number of its terms.
+pub trait WithNormalForces<T, const N: usize, const M: usize> {
+    /// Its result.
+    type Output;
+    /// Its value.
+    fn at<const K: usize>(self, forces: &NormalForces<T, N, M, K>) -> Self::Output;
+}
+
+impl<R: Real, const N: usize, const M: usize, const K: usize> NormalForces<R, N, M, K> {
+    /// v of given multipliers (M): K.
+    fn values(&self, lambda: &[R; M]) -> [R; K] {
+        let mut values = [R::constant(0.0); K];
+        let rows = self.terms.iter().zip(&self.offset).zip(self.by_multiplier.iter().zip(&self.by_term));
+        for (index, ((term, offset), (by_multiplier, by_term))) in rows.enumerate() {
+            let sum = |component: usize| {
+                let offset = offset.get(component).copied().unwrap_or(R::constant(0.0));
+                let of_lambda =
+                    by_multiplier.get(component).map_or(offset, |slopes| offset + dot(slopes, lambda));
+                by_term.get(component).map_or(of_lambda, |slopes| of_lambda + dot(slopes, &values))
+            };
+            let value = match term {
+                Term::Multiplier => sum(0),
+                Term::Absolute => sum(0).abs(),
+                Term::Norm => sum(0).hypot(sum(1)),
+            };
+            values.iter_mut().skip(index).take(1).for_each(|slot| *slot = value);
+        }
+        values
+    }
+}
+
+fn dot<R: Real, const L: usize>(a: &[R; L], b: &[R; L]) -> R {
+    a.iter().zip(b).fold(R::constant(0.0), |sum, (a, b)| sum + *a * *b)
+}
+
+/// Multipliers that balance the forces which depend on them.
+enum Found<R, const M: usize> {
+    One([R; M]),
+    None,
+    Several(u32),
+    AtLeast(u32),
+}
+
+/// [`NormalForces`] brought into balance: `solve` gives accelerations and multipliers of a force, or what a force alone adds to them.
+struct Balance<'a, R, F, const N: usize, const M: usize> {
+    /// Q at λ = 0: N.
+    force: [R; N],
+    /// The multipliers to start from: M.
+    lambda: &'a [R; M],
+    solve: &'a mut F,
+}
+
+impl<R, F, const N: usize, const M: usize> WithNormalForces<R, N, M> for Balance<'_, R, F, N, M>
+where
+    R: Real,
+    F: FnMut(&[R; N], bool) -> ([R; N], [R; M]),
+{
+    type Output = Found<R, M>;
+
+    fn at<const K: usize>(self, forces: &NormalForces<R, N, M, K>) -> Found<R, M> {
+        let (zero, one) = (R::constant(0.0), R::constant(1.0));
+        let mut lambda = (self.solve)(&self.force, true).1;
+        let mut answers = [[zero; M]; K];
+        let before = forces.values(&[zero; M]);
+        for (k, (answer, before)) in answers.iter_mut().zip(&before).enumerate() {
+            let column = forces.force.map(|row| row.get(k).copied().unwrap_or(zero));
+            if column.iter().any(|entry| *entry != zero) {
+                *answer = (self.solve)(&column, false).1;
+                lambda = lambda.plus(-*before, &[1.0], [&*answer]);
+            }
+        }
+        let NormalForces { terms, mut offset, by_term: mut slope, .. } = *forces;
+        let rows = offset.iter_mut().flatten().zip(slope.iter_mut().flatten());
+        for ((offset, slopes), by_multiplier) in rows.zip(forces.by_multiplier.iter().flatten()) {
+            *offset = *offset + dot(by_multiplier, &lambda);
+            for (slope, answer) in slopes.iter_mut().zip(&answers) {
+                *slope = *slope + dot(by_multiplier, answer);
+            }
+        }
+        let system = Piecewise { terms, offset, slope };
+        if !system.is_finite() {
+            // Named by the one who asked.
+            return Found::One(lambda);
+        }
+        match system.solve(&forces.values(self.lambda)) {
+            Solutions::One(v) => {
+                for (v, answer) in v.iter().zip(&answers) {
+                    lambda = lambda.plus(*v * one, &[1.0], [answer]);
+                }
+                Found::One(lambda)
+            }
+            Solutions::None => Found::None,
+            Solutions::Several(count) => Found::Several(count),
+            Solutions::AtLeast(count) => Found::AtLeast(count),
+        }
+    }
+}
+
+/// Steps of Newton's method where Q depends on the multipliers smoothly: they are few, or none leads on.
+const MOST_STEPS: u32 = 40;
+
+/// Times that such a step is halved.
+const HALVINGS: u32 = 20;
+
+/// Change of the multipliers by a step that no longer falls, in √ε of their size, that counts as rounding of an ill-conditioned balance.
+const STUCK: f64 = 1e-2;
+
+impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, R, N, M> {
+    /// Multipliers (M) that balance the forces at a state which depend on them, next to `lambda` (M). `solve` gives accelerations and
+    /// multipliers of a force (N), or, told false, what the force alone adds to them; it leaves changes of `standing` ε.
+    ///
+    /// # Errors
+    /// [`Failure::Locked`], [`Failure::Ambiguous`].
+    #[inline(never)]
+    pub(super) fn friction(
+        &self,
+        standing: f64,
+        position: &S::Position,
+        (t, y): (R, &State<R, N, S::States>),
+        lambda: &[R; M],
+        solve: &mut impl FnMut(&[R; N], bool) -> ([R; N], [R; M]),
+    ) -> Result<[R; M], Failure> {
+        let (mechanism, parameters) = (self.mechanism, self.parameters);
+        let force = mechanism.force(parameters, position, &y.qd, &y.states, &[R::constant(0.0); M]);
+        let balance = Balance { force, lambda, solve: &mut *solve };
+        let found = mechanism.normal_forces(parameters, position, &y.qd, &y.states, balance);
+        let time = t.to_f64();
+        let found = match found {
+            Some(found) => found,
+            None => self.smooth_friction(standing, position, y, lambda, solve),
+        };
+        let mut row = || {
+            let free = solve(&force, true).1;
+            let force = mechanism.force(parameters, position, &y.qd, &y.states, &free);
+            kinematics::entry(S::ROWS, self.largest_change(&free, &solve(&force, true).1))
+        };
+        match found {
+            Found::One(lambda) => Ok(lambda),
+            Found::None => Err(Failure::Locked { row: row(), time }),
+            Found::Several(solutions) => Err(Failure::Ambiguous { row: row(), solutions, all: true, time }),
+            Found::AtLeast(solutions) => Err(Failure::Ambiguous { row: row(), solutions, all: false, time }),
+        }
+    }
+
+    /// Newton's method on λ = λ₀ + A Q(λ), next to `lambda` (M), then from the multipliers without friction.
+    #[inline(never)]
+    fn smooth_friction(
+        &self,
+        standing: f64,
+        position: &S::Position,
+        y: &State<R, N, S::States>,
+        lambda: &[R; M],
+        solve: &mut impl FnMut(&[R; N], bool) -> ([R; N], [R; M]),
+    ) -> Found<R, M> {
+        let force =
+            |lambda: &[R; M]| self.mechanism.force(self.parameters, position, &y.qd, &y.states, lambda);
+        let free = solve(&force(&[R::constant(0.0); M]), true).1;
+        for start in [lambda, &free] {
+            if let Some(found) = self.newton(standing, position, y, start, solve) {
+                return Found::One(found);
+            }
+        }
+        Found::None
+    }
+
+    /// Multipliers (M) by Newton's method with halved steps.
+    fn newton<F: FnMut(&[R; N], bool) -> ([R; N], [R; M])>(
+        &self,
+        standing: f64,
+        position: &S::Position,
+        y: &State<R, N, S::States>,
+        start: &[R; M],
+        solve: &mut F,
+    ) -> Option<[R; M]> {
+        let (zero, one) = (R::constant(0.0), R::constant(1.0));
+        let (mechanism, parameters) = (self.mechanism, self.parameters);
+        let open = |solve: &mut F, lambda: &[R; M]| {
+            let force = mechanism.force(parameters, position, &y.qd, &y.states, lambda);
+            let found = solve(&force, true).1;
+            found.plus(-one, &[1.0], [lambda])
+        };
+        let mut known = *start;
+        let mut residual = open(solve, &known);
+        let mut matrix = [[zero; M]; M];
+        for _ in 0..MOST_STEPS {
+            let after = known.plus(one, &[1.0], [&residual]);
+            if self.stands(&known, &after, standing) {
+                // Written so that NaN, which stands too, is named by the one who asked.
+                return Some(after);
+            }
+            let slopes = mechanism.force_lambda(parameters, position, &y.qd, &y.states, &known);
+            for column in 0..M {
+                let force = slopes.map(|row| row.get(column).copied().unwrap_or(zero));
+                let answer =
+                    if force.iter().any(|entry| *entry != zero) { solve(&force, false).1 } else { [zero; M] };
+                for (index, (row, answer)) in matrix.iter_mut().zip(&answer).enumerate() {
+                    let unit = if index == column { one } else { zero };
+                    row.iter_mut().skip(column).take(1).for_each(|entry| *entry = unit - *answer);
+                }
+            }
+            let (factors, _) = Lu::factorize(&matrix, &[one; M], &[one; M]);
+            let step = factors.solve(&residual);
+            let size = self.weighted(&residual);
+            let mut share = one;
+            let mut trial = (known, residual);
+            for _ in 0..HALVINGS {
+                let lambda = known.plus(share, &[1.0], [&step]);
+                trial = (lambda, open(solve, &lambda));
+                if self.weighted(&trial.1) < size {
+                    break;
+                }
+                share = share * R::constant(0.5);
+            }
+            if !self.weighted(&trial.1).less(size) {
+                let small =
+                    self.weighted(&step) <= R::constant(STUCK) * R::EPSILON.sqrt() * self.weighted(&known);
+                return small.then_some(after);
+            }
+            (known, residual) = trial;
+        }
+        None
+    }
+
+    /// The sum of multipliers (M) in the metric.
+    fn weighted(&self, lambda: &[R; M]) -> R {
+        let rows = lambda.iter().zip(&self.metric.rows);
+        rows.fold(R::constant(0.0), |sum, (lambda, scale)| sum + (*lambda * *scale).abs())
+    }
+}
