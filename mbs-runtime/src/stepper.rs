@@ -163,8 +163,14 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
     fn advanced_with_care(&mut self, t: R) -> Result<Statistics, Failure> {
         let mut q = self.predicted(t);
         let (position, statistics, failure) = next_position(&self.mechanism, &self.parameters, &mut q, t);
-        if let Some(failure) = failure {
-            return Err(failure);
+        match failure {
+            // Next to a singular position a step may be too long for any prediction.
+            Some(failure @ Failure::NotConverged { .. }) => {
+                self.doubted(Err(failure), statistics, t)?;
+                return Ok(self.state.statistics);
+            }
+            Some(failure) => return Err(failure),
+            None => {}
         }
         let mut found = Found { t, q, position, statistics, open: None };
         let mut rates = Rates::none();

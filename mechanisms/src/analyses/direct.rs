@@ -483,7 +483,10 @@ impl<'a> Record<'a> {
         let counts = run.counts();
         let span = run.t() - times.first().copied().unwrap_or(0.0);
         // A run that is lost moves its margin as it likes: what ends it is all there is to say.
-        let lost = matches!(self.failure, Some(Failure::Unbounded { .. } | Failure::Unpaid { .. } | Failure::NonFinite { .. }));
+        let lost = matches!(
+            self.failure,
+            Some(Failure::Unbounded { .. } | Failure::Unpaid { .. } | Failure::NonFinite { .. })
+        );
         self.forces.add_works(&self.motion.time);
         self.motion.dynamics = Some(self.forces);
         Simulated {
