@@ -13,6 +13,17 @@ pub struct Energy<T> {
     pub potential: T,
 }
 
+/// The gap of a contact in one state.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Gap<T> {
+    /// Gap (m): open above 0, closed below.
+    pub gap: T,
+    /// Its rate (m/s).
+    pub rate: T,
+    /// Largest |second time derivative of the gap| while it is open (m/s²), where the text declares it.
+    pub bound: Option<T>,
+}
+
 /// What moves and pulls in one state: velocities, accelerations, multipliers, first-order states.
 ///
 /// The multipliers have the text's sign: a row's force on the coordinates is −Φ_qᵀ λ.
@@ -97,6 +108,18 @@ pub trait Dynamic<T: Scalar, const N: usize, const M: usize>: Mechanism<T, N, M>
     const FORCES: &'static [Entry];
     /// Outputs of [`loads`](Self::loads), component by component.
     const LOADS: &'static [Entry];
+
+    /// Contacts, in the order of [`gaps`](Self::gaps).
+    const CONTACTS: &'static [Entry] = &[];
+    /// Shows `see` the gaps of the contacts, one after the other.
+    fn gaps(
+        &self,
+        _parameters: &Self::Parameters,
+        _position: &Self::Position,
+        _qd: &[T; N],
+        _see: impl FnMut(Gap<T>),
+    ) {
+    }
 
     /// What must not be negative, in the order of [`signed`](Self::signed).
     const SIGNED: &'static [Signed] = &[];

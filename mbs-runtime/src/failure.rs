@@ -54,7 +54,7 @@ pub fn first_failure<T: Scalar>(first: T::Lanes<Outcome>, second: T::Lanes<Outco
 pub enum Failure {
     /// A value that came in, or a row evaluated from finite values, is NaN or infinite.
     NonFinite {
-        /// The coordinate, parameter, input, time or row.
+        /// The coordinate, parameter, input, time, row, limit or event function.
         name: &'static str,
         /// Its line in the text; 0 for the time.
         line: u32,

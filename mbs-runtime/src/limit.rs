@@ -38,9 +38,19 @@ pub const WARNING_SHARE: f64 = 0.05;
 const BOUND_ROUNDINGS: f64 = 64.0;
 
 impl<R: Real> Limit<R> {
+    fn slack(&self) -> R {
+        R::constant(BOUND_ROUNDINGS) * R::EPSILON * self.low.abs().max(self.high.abs())
+    }
+
+    /// What is left to the lower and to the upper bound: not negative as long as neither is passed.
+    pub(crate) fn left(&self) -> [R; 2] {
+        let slack = self.slack();
+        [self.value - (self.low - slack), self.high + slack - self.value]
+    }
+
     /// The bound that is passed, if any; NaN passes the upper one.
     fn passed(&self) -> Option<R> {
-        let slack = R::constant(BOUND_ROUNDINGS) * R::EPSILON * self.low.abs().max(self.high.abs());
+        let slack = self.slack();
         if self.value < self.low - slack {
             return Some(self.low);
         }
@@ -70,14 +80,24 @@ pub(crate) fn limit_failure<S: Mechanism<R, N, M>, R: Real, const N: usize, cons
     }
     let limits = mechanism.limits(parameters, position);
     let passed = |(index, limit): (usize, &Limit<R>)| limit.passed().map(|bound| (index, *limit, bound));
-    let (index, Limit { value, .. }, bound) = limits.as_ref().iter().enumerate().find_map(passed)?;
-    let limit = entry(S::LIMITS, u16::try_from(index).unwrap_or(u16::MAX));
-    Some(match value.is_finite() {
+    let (index, limit, bound) = limits.as_ref().iter().enumerate().find_map(passed)?;
+    Some(passed_failure(S::LIMITS, index, (&limit, bound), t))
+}
+
+/// The failure of the limit at `index` whose bound is passed.
+pub(crate) fn passed_failure<R: Real>(
+    limits: &'static [Entry],
+    index: usize,
+    (Limit { value, .. }, bound): (&Limit<R>, R),
+    t: R,
+) -> Failure {
+    let limit = entry(limits, u16::try_from(index).unwrap_or(u16::MAX));
+    match value.is_finite() {
         true => {
             Failure::BeyondLimit { limit, value: value.to_f64(), bound: bound.to_f64(), time: t.to_f64() }
         }
         false => Failure::NonFinite { name: limit.name, line: limit.line },
-    })
+    }
 }
 
 impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, R, N, M> {

@@ -10,7 +10,7 @@ use super::code::{block, lets};
 use super::functions::{array, body, matrix};
 use super::scope::Scope;
 use crate::equations::normal_forces::{Kind, NormalForces};
-use crate::equations::{Dynamics, Equations, Of, Slope, Sparse};
+use crate::equations::{Dynamics, Equations, Gap, Of, Slope, Sparse};
 use crate::model::Model;
 use crate::model::dynamics::Dynamics as Declared;
 use crate::model::expression::Node;
@@ -24,6 +24,8 @@ pub struct DynamicBodies {
     pub start_rates: TokenStream,
     /// Not a body: the table of what must not be negative and its function, where there is such.
     pub signed: TokenStream,
+    /// Not a body: the table of contacts and the function of their gaps, where there are any.
+    pub gaps: TokenStream,
     pub mass: TokenStream,
     pub mass_times: TokenStream,
     pub force: TokenStream,
@@ -56,6 +58,7 @@ impl DynamicBodies {
             start_states: body(),
             start_rates: body(),
             signed: TokenStream::new(),
+            gaps: TokenStream::new(),
             mass: body(),
             mass_times: body(),
             force: body(),
@@ -99,6 +102,7 @@ pub fn bodies(
         start_states: body(&program.start_states, early, &vector(&dynamics.start_states, early), runtime),
         start_rates: body(&program.start_rates, early, &vector(&dynamics.start_rates, early), runtime),
         signed: signed(dynamics, program, early, runtime),
+        gaps: gaps(dynamics, program, scope, runtime),
         mass: of(&program.mass, matrix(dynamics.mass.iter(), scope)),
         mass_times: of(&program.mass_times, vector(&dynamics.mass_times, scope)),
         force: of(&program.force, vector(&dynamics.force, scope)),
@@ -207,6 +211,44 @@ fn signed(
     }
 }
 
+/// The contacts: their table, and the function that shows their gaps.
+fn gaps(
+    dynamics: &Dynamics,
+    program: &DynamicsProgram,
+    scope: &Scope<'_>,
+    runtime: &TokenStream,
+) -> TokenStream {
+    let Some(declared) = scope.model.dynamics.as_ref().filter(|_| !dynamics.gaps.is_empty()) else {
+        return TokenStream::new();
+    };
+    let entries = declared.contacts.iter().map(|contact| {
+        let (name, line) = (&contact.name, quote_spanned!(contact.span=> ::core::line!()));
+        quote! { #runtime::Entry { name: #name, unit: "m", line: #line } }
+    });
+    let gap = |gap: &Gap| {
+        let bound = match gap.bound {
+            Some(bound) => format!("::core::option::Option::Some({})", scope.operand(bound)),
+            None => "::core::option::Option::None".to_owned(),
+        };
+        let (gap, rate) = (scope.operand(gap.gap), scope.or_zero(gap.rate));
+        format!("__mbs::Gap {{ gap: {gap}, rate: {rate}, bound: {bound} }}")
+    };
+    let values: Vec<String> = dynamics.gaps.iter().map(gap).collect();
+    let result = format!("[{}].into_iter().for_each(__see)", values.join(", "));
+    let show = body(&program.gaps, scope, &result, runtime);
+    let n = scope.model.coordinates.len();
+    quote! {
+        const CONTACTS: &'static [#runtime::Entry] = &[#(#entries),*];
+        fn gaps(
+            &self,
+            __p: &__Parameters<T>,
+            __s: &__Position<T>,
+            __qd: &[T; #n],
+            __see: impl FnMut(#runtime::Gap<T>),
+        ) #show
+    }
+}
+
 /// One struct a first-order state, in `Some`.
 fn slopes(slopes: &[Slope], scope: &Scope<'_>) -> String {
     let slope = |slope: &Slope| {
@@ -235,6 +277,7 @@ pub fn implementation(
         start_states,
         start_rates,
         signed,
+        gaps,
         mass,
         mass_times,
         force,
@@ -316,6 +359,7 @@ pub fn implementation(
             #[inline]
             fn start_rates(&self, __p: &__Parameters<T>) -> [T; #n] #start_rates
             #signed
+            #gaps
             #[inline]
             fn mass(#design) -> [[T; #n]; #n] #mass
             #[inline]

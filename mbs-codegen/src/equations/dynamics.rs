@@ -51,6 +51,24 @@ impl Third {
     }
 }
 
+/// The gap of a contact.
+#[derive(Debug)]
+pub struct Gap {
+    /// Gap.
+    pub gap: NodeId,
+    /// Its time derivative.
+    pub rate: Option<NodeId>,
+    /// Largest second derivative while it is open, where the text says.
+    pub bound: Option<NodeId>,
+}
+
+impl Gap {
+    /// All of its roots.
+    pub fn roots(&self) -> impl Iterator<Item = NodeId> {
+        [Some(self.gap), self.rate, self.bound].into_iter().flatten()
+    }
+}
+
 /// Roots of M q̈ + Φ_qᵀ λ = Q. `None` is a structural zero.
 #[derive(Debug)]
 pub struct Dynamics {
@@ -97,6 +115,8 @@ pub struct Dynamics {
     pub start_rates: Vec<Option<NodeId>>,
     /// Masses, moments of inertia and stiffnesses that parameters alone make, each value once.
     pub signed: Vec<Signed>,
+    /// One a contact.
+    pub gaps: Vec<Gap>,
     /// One an output of multipliers or states.
     pub loads: Vec<NodeId>,
     /// Indices of the text's kinetic energies that are not quadratic in the rates.
@@ -138,6 +158,10 @@ impl Dynamics {
         roots.extend([&mut self.kinetic, &mut self.potential].into_iter().flatten());
         roots.extend(&mut self.loads);
         roots.extend(self.normal_forces.iter_mut().flat_map(NormalForces::roots_mut));
+        for Gap { gap, rate, bound } in &mut self.gaps {
+            roots.push(gap);
+            roots.extend([rate, bound].into_iter().flatten());
+        }
         roots
     }
 }
@@ -200,6 +224,11 @@ pub fn derive(
     let start = |rates: &[(usize, Id)], index: usize| {
         rates.iter().find(|(coordinate, _)| *coordinate == index).map(|(_, rate)| of(*rate))
     };
+    let gaps = declared.contacts.iter().map(|contact| {
+        let rate = tangent(g, &[of(contact.gap)], |g, leaf| clock.total(g, leaf, false)).pop().flatten();
+        Gap { gap: of(contact.gap), rate, bound: contact.bound.map(of) }
+    });
+    let gaps = gaps.collect();
     Dynamics {
         mass,
         mass_times,
@@ -222,6 +251,7 @@ pub fn derive(
         start_states: declared.states.iter().map(|state| state.start.map(of)).collect(),
         start_rates: (0..count).map(|index| start(&declared.rates, index)).collect(),
         signed: signed(g, bounded.into_iter()),
+        gaps,
         loads: declared.loads.iter().map(|load| of(load.value)).collect(),
         not_quadratic,
         acting,

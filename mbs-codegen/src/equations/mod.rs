@@ -27,7 +27,7 @@ use crate::model::Model;
 use crate::symbolic::{Graph, Leaf, Node, NodeId, tangent, tangents};
 
 pub use attribution::Motion;
-pub use dynamics::{Dynamics, Slope, Sparse};
+pub use dynamics::{Dynamics, Gap, Slope, Sparse};
 use lower::Lowered;
 pub use lower::MARGIN;
 pub use pins::{Attribution, On};

@@ -2,7 +2,7 @@
 
 use proc_macro2::Span;
 
-use super::dynamics::Action;
+use super::dynamics::{Action, Contact};
 use super::elaborate::{Elaborator, Fault, Reach};
 use super::elements::Given;
 use super::expression::{Binary, Id, Node, Unary};
@@ -64,6 +64,8 @@ impl Resolver<'_> {
         let damping = given.scalar("damping");
         let force =
             self.elaborate(Reach::Force, |work| pressing(work, gap, stiffness, (power, damping), name.span))?;
+        let contact = Contact { name: full.clone(), gap, bound: given.scalar("bound"), span: name.span };
+        self.dynamics().contacts.push(contact);
         self.force(name, full, Action::Work(vec![(force, gap)]));
         Ok(())
     }

@@ -20,6 +20,8 @@ pub struct Dynamics {
     pub pins: Vec<Pin>,
     /// Forces by name, in the order of the text.
     pub forces: Vec<Force>,
+    /// Contacts, in the order of the text.
+    pub contacts: Vec<Contact>,
     /// Energies that `potential` adds (J).
     pub potentials: Vec<Id>,
     /// Energies that `kinetic` adds (J).
@@ -113,6 +115,19 @@ pub struct Force {
     pub action: Action,
     /// The bodies that the text names beside its points: beside the only one, or beside its begin and its end.
     pub carriers: [Option<Carrier>; 2],
+    /// The declaring token.
+    pub span: Span,
+}
+
+/// A contact, whose force is zero as long as its gap is open.
+#[derive(Debug)]
+pub struct Contact {
+    /// Its name.
+    pub name: String,
+    /// Gap (m).
+    pub gap: Id,
+    /// Largest |second time derivative of the gap| while it is open (m/s²), of parameters.
+    pub bound: Option<Id>,
     /// The declaring token.
     pub span: Span,
 }

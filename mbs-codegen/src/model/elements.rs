@@ -95,6 +95,11 @@ fn known(element: Element) -> Vec<Known> {
             ("exponent", Kind::Constant(Dimension::NUMBER), false),
             ("depth", Kind::Constant(Dimension::METRE), false),
             ("damping", scalar(Dimension::SECOND.over(Dimension::METRE)), false),
+            (
+                "bound",
+                Kind::Constant(Dimension::METRE.over(Dimension::SECOND).over(Dimension::SECOND)),
+                false,
+            ),
         ],
     }
 }

@@ -20,7 +20,7 @@ impl Least {
     pub fn of(field: &str) -> Option<Self> {
         match field {
             "mass" | "inertia" | "stiffness" | "damping" | "coefficient" | "viscous" => Some(Least::Zero),
-            "speed" | "depth" | "exponent" => Some(Least::AboveZero),
+            "speed" | "depth" | "exponent" | "bound" => Some(Least::AboveZero),
             _ => None,
         }
     }

@@ -2,7 +2,7 @@
 
 use super::schedule::Section;
 use crate::equations::normal_forces::NormalForces;
-use crate::equations::{Dynamics, Sparse};
+use crate::equations::{Dynamics, Gap, Sparse};
 use crate::symbolic::NodeId;
 
 /// One section a function.
@@ -42,6 +42,8 @@ pub struct DynamicsProgram {
     pub slopes: Section,
     /// Outputs of multipliers and states.
     pub loads: Section,
+    /// Gaps of contacts with their rates.
+    pub gaps: Section,
     /// First-order states at the start.
     pub start_states: Section,
     /// Rates at the start.
@@ -69,6 +71,7 @@ pub struct Roots {
     carried: Vec<NodeId>,
     slopes: Vec<NodeId>,
     loads: Vec<NodeId>,
+    gaps: Vec<NodeId>,
     start_states: Vec<NodeId>,
     start_rates: Vec<NodeId>,
     signed: Vec<NodeId>,
@@ -96,6 +99,7 @@ impl Roots {
             carried: some(&[dynamics.carried]),
             slopes: dynamics.slopes.iter().flat_map(|slope| slope.roots()).collect(),
             loads: dynamics.loads.clone(),
+            gaps: dynamics.gaps.iter().flat_map(Gap::roots).collect(),
             start_states: some(&dynamics.start_states),
             start_rates: some(&dynamics.start_rates),
             signed: dynamics.signed.iter().map(|signed| signed.node).collect(),
@@ -108,7 +112,7 @@ impl Roots {
     }
 
     /// Functions that some methods call, or that nobody calls in every step: nothing is kept for them alone.
-    pub fn rare(&self) -> [&[NodeId]; 12] {
+    pub fn rare(&self) -> [&[NodeId]; 13] {
         [
             &self.force_q,
             &self.force_qd,
@@ -122,6 +126,7 @@ impl Roots {
             &self.carried,
             &self.slopes,
             &self.loads,
+            &self.gaps,
         ]
     }
 
@@ -154,6 +159,7 @@ impl Roots {
             carried: section(&self.carried),
             slopes: section(&self.slopes),
             loads: section(&self.loads),
+            gaps: section(&self.gaps),
             start_states: early(&self.start_states),
             start_rates: early(&self.start_rates),
             // Asked once a run: nothing is kept for it.

@@ -2,6 +2,7 @@
 
 use super::embedded::{Embedded, Taken, TrialOf};
 use super::equation::{Equation, Measured};
+use super::event::Dense;
 use super::vector::Vector;
 use crate::{Failure, Real};
 
@@ -23,14 +24,16 @@ const FIRST_SHARE: f64 = 0.01;
 /// A step may be longer than planned by this share where it then reaches its end.
 const STRETCH: f64 = 1.1;
 
+/// Times that a step is shortened so that it ends at a kink: twice where the kink was outside its stages, a few times more where
+/// they felt it.
+const MOST_RETAKES: u32 = 12;
+
 /// Steps a call may take; a run that needs more does not advance.
 const MOST_STEPS: u32 = 10_000_000;
 
-/// Steps after which a run knows how long its steps are.
-const KNOWN_STEPS: u32 = 1_000;
-
-/// Steps that a run may seem to need after [`KNOWN_STEPS`], ten times [`MOST_STEPS`]: steps may still become longer.
-const MOST_STEPS_AHEAD: f64 = 1e8;
+/// Steps after which a run knows how long its steps are, and those that it may then seem to need: ten times [`MOST_STEPS`] at
+/// first, for steps may still become longer.
+const KNOWN_STEPS: [(u32, f64); 4] = [(1_000, 1e8), (10_000, 3e7), (100_000, 1.5e7), (1_000_000, 1e7)];
 
 /// An adaptive integration: the step that it will try next, and what it has spent.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -102,6 +105,12 @@ impl<M: Embedded, R: Real, Y: Vector<R>> Accepted<M, R, Y> {
         Ok(Polynomial { t: self.start.t, h, dense })
     }
 
+    /// The solution from the beginning of the step to its end: the polynomial, or where that cannot be made the cubic through both
+    /// ends.
+    pub fn course<E: Equation<R, State = Y>>(&self, equation: &mut E) -> Course<'_, M, R, Y> {
+        Course { accepted: self, polynomial: self.polynomial(equation).ok() }
+    }
+
     /// The state at `t` (s), inside the step, by the states and rates at its ends alone: for coarse steps of which the
     /// polynomial cannot be made. Order 3; not settled.
     pub(super) fn cubic(&self, t: R) -> Y {
@@ -128,6 +137,36 @@ impl<M: Embedded, R: Real, Y: Vector<R>> Polynomial<M, R, Y> {
     /// The state at `t` (s), inside the step; not settled.
     pub fn at(&self, t: R) -> Y {
         M::interpolate(&self.dense, (t - self.t) / self.h)
+    }
+}
+
+/// One accepted step from end to end.
+#[derive(Clone, Copy)]
+pub struct Course<'a, M: Embedded, R, Y: Copy> {
+    accepted: &'a Accepted<M, R, Y>,
+    polynomial: Option<Polynomial<M, R, Y>>,
+}
+
+impl<M: Embedded, R: Real, Y: Vector<R>> Dense<R> for Course<'_, M, R, Y> {
+    type State = Y;
+
+    fn start(&self) -> R {
+        self.accepted.start.t
+    }
+
+    fn end(&self) -> R {
+        self.accepted.end.t
+    }
+
+    fn at(&self, t: R) -> Y {
+        let Accepted { start, end, .. } = self.accepted;
+        if t <= start.t {
+            return start.y;
+        }
+        if end.t <= t {
+            return end.y;
+        }
+        self.polynomial.as_ref().map_or_else(|| self.accepted.cubic(t), |polynomial| polynomial.at(t))
     }
 }
 
@@ -180,12 +219,12 @@ impl<R: Real> Adaptive<R> {
         let mut planned = match self.step {
             Some(step) => step,
             None => {
-                let first = first_step::<M, R, E>(equation, from, until)?;
-                // A step that the end does not resolve would be taken more often than anyone waits for.
+                let (first, _) = first_step::<M, R, E>(equation, from, until, R::constant(0.0))?;
                 if first < R::EPSILON * until.abs() {
-                    return Err(out_of_reach(first, from.t, until));
+                    resolved_first_step::<M, R, E>(equation, from, until)?
+                } else {
+                    first
                 }
-                first
             }
         };
         planned = planned.min(self.largest);
@@ -220,6 +259,36 @@ impl<R: Real> Adaptive<R> {
                 }
             }
         }
+    }
+
+    /// An accepted step, taken again so that it ends where the equation is not smooth.
+    #[cold]
+    #[inline(never)]
+    fn up_to_kink<M: Embedded, E: Measured<R>>(
+        &mut self,
+        equation: &mut E,
+        mut accepted: Accepted<M, R, E::State>,
+    ) -> Result<Accepted<M, R, E::State>, Failure> {
+        for _ in 0..MOST_RETAKES {
+            let course = accepted.course(equation);
+            let Some(kink) = equation.kink(&course)? else { break };
+            let (start, end) = (accepted.start, accepted.end.t);
+            let least = R::constant(LEAST_STEP_ROUNDINGS) * R::EPSILON * start.t.abs().max(end.abs());
+            let until = kink.max(start.t + least);
+            if end - until <= least {
+                break;
+            }
+            let planned = self.step;
+            self.accepted = self.accepted.saturating_sub(1);
+            self.rejected = self.rejected.saturating_add(1);
+            equation.retake();
+            accepted = self.step::<M, E>(equation, &start, until, false)?;
+            // A step cut short says nothing against the one that was planned.
+            if until <= accepted.end.t {
+                self.step = planned;
+            }
+        }
+        Ok(accepted)
     }
 
     /// The step as it fits before the end, and whether it ends there.
@@ -281,15 +350,20 @@ impl<R: Real> Adaptive<R> {
         }
         let mut now = from;
         for taken in 0..MOST_STEPS {
-            if taken == KNOWN_STEPS {
-                let step = (now.t - from.t) / R::constant(f64::from(KNOWN_STEPS));
-                if R::constant(MOST_STEPS_AHEAD) * step < until - now.t {
+            if let Some((_, ahead)) = KNOWN_STEPS.iter().find(|(known, _)| *known == taken) {
+                // A run that grows out of small first steps is judged by those that it takes now.
+                let mean = (now.t - from.t) / R::constant(f64::from(taken));
+                let step = self.step.map_or(mean, |step| mean.max(step));
+                if R::constant(*ahead) * step < until - now.t {
                     return Err(out_of_reach(step, now.t, until));
                 }
             }
             let next_break = breakpoints(now.t).filter(|next| now.t < *next && *next <= until);
-            let accepted =
+            let mut accepted =
                 self.step::<M, E>(equation, &now, next_break.unwrap_or(until), next_break.is_some())?;
+            if equation.may_kink(now.t, &now.y, accepted.end.t) {
+                accepted = self.up_to_kink::<M, E>(equation, accepted)?;
+            }
             now = accepted.end;
             if !watch(equation, &accepted)? || until <= now.t {
                 return Ok(now);
@@ -304,16 +378,36 @@ fn out_of_reach<R: Real>(step: R, t: R, until: R) -> Failure {
     Failure::OutOfReach { until: until.to_f64(), step: step.to_f64(), time: t.to_f64() }
 }
 
-/// A first step that changes the state by a small share of its tolerances, judged by rate and curvature.
+/// The first step from a state that is zero but for rounding, of which no share says anything: it changes by a share of its
+/// tolerance. A step that the end does not resolve would be taken more often than anyone waits for.
+#[cold]
+#[inline(never)]
+fn resolved_first_step<M: Embedded, R: Real, E: Measured<R>>(
+    equation: &mut E,
+    from: &Point<R, E::State>,
+    until: R,
+) -> Result<R, Failure> {
+    let (first, bent) = first_step::<M, R, E>(equation, from, until, R::constant(1.0))?;
+    if bent < R::EPSILON * until.abs() {
+        return Err(out_of_reach(bent, from.t, until));
+    }
+    let resolved = R::constant(LEAST_STEP_ROUNDINGS) * R::EPSILON * from.t.abs().max(until.abs());
+    Ok(first.max(resolved))
+}
+
+/// A first step that changes the state by a small share of its tolerances, judged by rate and curvature; and what these two alone
+/// allow. A state is taken for no smaller than `least` tolerances.
 ///
 /// Source: Hairer, Nørsett & Wanner 1993, §II.4 (starting step size).
 fn first_step<M: Embedded, R: Real, E: Measured<R>>(
     equation: &mut E,
     from: &Point<R, E::State>,
     until: R,
-) -> Result<R, Failure> {
+    least: R,
+) -> Result<(R, R), Failure> {
     let (zero, share) = (R::constant(0.0), R::constant(FIRST_SHARE));
     let [size, speed] = equation.measure(&from.y, &from.y, [&from.y, &from.rate]);
+    let size = size.max(least);
     let span = until - from.t;
     let guess = if zero < size && zero < speed { share * size / speed } else { R::constant(1e-6) * span };
     let guess = guess.min(span);
@@ -321,7 +415,7 @@ fn first_step<M: Embedded, R: Real, E: Measured<R>>(
     let change = match equation.rate(from.t + guess, &moved) {
         Ok(rate) => rate.plus(R::constant(-1.0), &[1.0], [&from.rate]),
         // A start next to the border of what can be evaluated: the controller finds its way from a smaller step.
-        Err(_) => return Ok(share * guess),
+        Err(_) => return Ok((share * guess, share * guess)),
     };
     let [change] = equation.measure(&from.y, &from.y, [&change]);
     let curvature = change / guess;
@@ -330,7 +424,7 @@ fn first_step<M: Embedded, R: Real, E: Measured<R>>(
     let second = if zero < steepest { (share / steepest).powf(exponent) } else { guess };
     let step = (R::constant(100.0) * guess).min(second).min(span);
     if zero < step && step.is_finite() {
-        return Ok(step);
+        return Ok((step, second.min(span)));
     }
-    Ok(guess)
+    Ok((guess, guess))
 }

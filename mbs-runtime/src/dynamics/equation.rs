@@ -1,5 +1,6 @@
 //! The ordinary differential equation that an explicit integrator solves.
 
+use super::event::Dense;
 use super::vector::Vector;
 use crate::{Failure, Scalar};
 
@@ -46,6 +47,22 @@ pub trait Measured<T: Scalar>: Equation<T> {
     fn least_step(&self) -> T {
         T::constant(0.0)
     }
+
+    /// Whether the equation may not be smooth at a time within a step from `y` at time `from` to time `to` (s).
+    fn may_kink(&mut self, _from: T, _y: &Self::State, _to: T) -> bool {
+        false
+    }
+
+    /// The first time (s) within a step at which the equation is not smooth, so that steps end there: behind it by rounding.
+    ///
+    /// # Errors
+    /// Where that cannot be told.
+    fn kink(&mut self, _step: &impl Dense<T, State = Self::State>) -> Result<Option<T>, Failure> {
+        Ok(None)
+    }
+
+    /// The last step is taken again.
+    fn retake(&mut self) {}
 
     /// Why no step from the end of the last one is accurate enough, where the equation knows.
     fn obstacle(&self) -> Option<Failure> {

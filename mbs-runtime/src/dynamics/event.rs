@@ -1,15 +1,46 @@
-//! Where a function of the solution passes zero within a step.
+//! Functions of the solution that reach zero within a step: events, working ranges, contacts.
+//!
+//! The core is generic over what a step leaves behind: any [`Dense`] output, or a function of the time alone.
+//! A part of a step is judged by the polynomial of degree 8 through nine instants: its Bernstein coefficients bound it, its
+//! eighth difference tells how far the function may be from it. What neither clears nor shows one passage is halved.
 
-use super::adaptive::{Accepted, Polynomial};
-use super::embedded::Embedded;
-use super::vector::Vector;
+mod interpolant;
+mod monitor;
+#[cfg(test)]
+mod tests;
+
+use interpolant::{Interpolant, NODES};
+
 use crate::Real;
 
-/// Parts of a step in which a change of sign is looked for: two passages in one part cancel and are not seen.
-const PARTS: u32 = 8;
+pub use monitor::{Monitor, Stopped};
+
+/// Functions that are evaluated together at most.
+pub const GROUP: usize = 8;
 
 /// Halvings are at most this many: more than the digits of an `f64`.
 const MOST_ITERATIONS: u32 = 80;
+
+/// Parts that a search looks at: a passage takes about ten, a touch twenty-five, one of many passages the rest.
+const MOST_PARTS: u32 = 2_000;
+
+/// The same where a bound asks for more.
+const MOST_BOUNDED_PARTS: u32 = 1 << 18;
+
+/// Parts that the resolution may divide a step into; a step of more is to be cut.
+pub const MOST_RESOLVED: f64 = 512.0;
+
+/// Roundings of the largest value within a step up to which a value is none: those of some operations.
+const NONE: f64 = 64.0;
+
+/// The same for nine values of which the polynomial tells nothing more: its coefficients add up 560 roundings.
+const BLURRED: f64 = 2_048.0;
+
+/// Share of a part from which on a function that no polynomial fits is taken by the signs of its values.
+const ROUGH: f64 = 1.0 / 512.0;
+
+/// Smallest part in roundings of the time.
+const LEAST_ROUNDINGS: f64 = 4.0;
 
 /// Which passages through zero count.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -24,49 +55,220 @@ pub enum Direction {
 }
 
 impl Direction {
-    /// Whether a change from `before` to `after` counts. A value of 0 before has been passed already.
-    fn counts<R: Real>(self, before: R, after: R) -> bool {
-        let zero = R::constant(0.0);
-        let rising = before < zero && zero <= after;
-        let falling = zero < before && after <= zero;
+    /// Whether zero counts that is reached from `side`.
+    fn counts<R: Real>(self, side: R) -> bool {
+        let positive = R::constant(0.0) < side;
         match self {
-            Direction::Any => rising || falling,
-            Direction::Rising => rising,
-            Direction::Falling => falling,
+            Direction::Any => true,
+            Direction::Rising => !positive,
+            Direction::Falling => positive,
         }
     }
 }
 
-/// The time (s) of the first passage of `function` through zero within a step; `None` where there is none.
+/// The solution within one step.
+pub trait Dense<R> {
+    /// State of the solution.
+    type State;
+
+    /// Time (s) at the beginning of the step.
+    fn start(&self) -> R;
+    /// Time (s) at its end.
+    fn end(&self) -> R;
+    /// The state at `t` (s), inside the step; at its ends those that steps start from.
+    fn at(&self, t: R) -> Self::State;
+}
+
+/// How closely a function is looked at.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scrutiny<R> {
+    /// Nothing that lasts longer (s) is missed, whatever the function; an eighth of the step where there is none.
+    pub resolution: Option<R>,
+    /// Largest |g̈| (1/s²) of the function g, where it is known: nothing is missed then.
+    pub bound: Option<R>,
+    /// Whether a value that reaches zero and turns back counts.
+    pub touching: bool,
+    /// Least absolute value of which roundings count, whatever the function is within the step.
+    pub scale: R,
+}
+
+impl<R: Real> Scrutiny<R> {
+    /// Values beyond zero count alone, at the resolution of an eighth of a step.
+    pub fn beyond() -> Self {
+        Scrutiny { resolution: None, bound: None, touching: false, scale: R::constant(0.0) }
+    }
+
+    /// Parts of a step of `span` (s) that are looked at one by one.
+    fn parts(&self, span: R) -> u32 {
+        let wanted = self
+            .resolution
+            .map_or(1.0, |resolution| (span / (R::constant(8.0) * resolution)).to_f64().min(MOST_RESOLVED));
+        // A number of at most MOST_RESOLVED; NaN gives 0.
+        let whole = wanted as u32;
+        if f64::from(whole) < wanted { whole.saturating_add(1) } else { whole.max(1) }
+    }
+}
+
+/// Where a function reaches zero.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reach<R> {
+    /// Time (s): of a passage behind it, of a touch at the extremum.
+    pub t: R,
+    /// Largest absolute value that was seen in the step.
+    pub scale: R,
+}
+
+/// Time (s) at which a function is NaN.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Undefined<R>(pub R);
+
+/// The first time after `start` and up to `end` (s) at which `function`, whose sign at the start is that of `side`, reaches zero.
 ///
-/// Bracketed on the polynomial, then by the Illinois variant of the secant rule, which never leaves the bracket. The
-/// time returned is the end of the bracket where the sign has changed.
-/// Source: Dowell & Jarratt 1971.
-pub fn passage<M: Embedded, R: Real, Y: Vector<R>>(
-    step: &Accepted<M, R, Y>,
-    polynomial: &Polynomial<M, R, Y>,
-    direction: Direction,
-    mut function: impl FnMut(R, &Y) -> R,
-) -> Option<R> {
-    let (start, end) = (&step.start, &step.end);
-    let mut left = (start.t, function(start.t, &start.y));
-    for part in 1..=PARTS {
-        let right = if part == PARTS {
-            (end.t, function(end.t, &end.y))
-        } else {
-            let t = start.t + (end.t - start.t) * R::constant(f64::from(part) / f64::from(PARTS));
-            (t, function(t, &polynomial.at(t)))
-        };
-        if direction.counts(left.1, right.1) {
-            return Some(root(left, right, |t| function(t, &polynomial.at(t))));
+/// # Errors
+/// [`Undefined`] where a value is NaN.
+pub fn first_reach<R: Real>(
+    function: &mut impl FnMut(R) -> R,
+    (start, end): (R, R),
+    side: R,
+    scrutiny: &Scrutiny<R>,
+) -> Result<Option<Reach<R>>, Undefined<R>> {
+    let parts = scrutiny.parts(end - start);
+    let left = if scrutiny.bound.is_some() { MOST_BOUNDED_PARTS } else { MOST_PARTS };
+    let mut search = Search { side: side.sign(), scrutiny, scale: scrutiny.scale, left };
+    let at = |part: u32| match part == parts {
+        true => end,
+        false => start + (end - start) * R::constant(f64::from(part) / f64::from(parts)),
+    };
+    for part in 0..parts {
+        if let Some(t) = search.within(function, at(part), at(part + 1))? {
+            return Ok(Some(Reach { t, scale: search.scale }));
         }
-        left = right;
     }
-    None
+    Ok(None)
 }
 
-/// The far side of the passage between `left` and `right`, each a time and a value.
-fn root<R: Real>(mut left: (R, R), mut right: (R, R), mut function: impl FnMut(R) -> R) -> R {
+/// What nine values tell of a part.
+enum Verdict {
+    Clear,
+    /// Zero is first reached between the instant before this one and this one.
+    Passed(usize),
+    /// Zero is touched at this instant.
+    Touched(usize),
+    Unclear,
+}
+
+/// A search from the left, in parts that double where nothing is near and halve where something may be.
+struct Search<'a, R> {
+    side: R,
+    scrutiny: &'a Scrutiny<R>,
+    scale: R,
+    /// Parts that may still be looked at.
+    left: u32,
+}
+
+impl<R: Real> Search<'_, R> {
+    fn within(
+        &mut self,
+        function: &mut impl FnMut(R) -> R,
+        start: R,
+        end: R,
+    ) -> Result<Option<R>, Undefined<R>> {
+        let least = R::constant(LEAST_ROUNDINGS) * R::EPSILON * start.abs().max(end.abs());
+        let (whole, half) = (end - start, R::constant(0.5));
+        let (mut from, mut width) = (start, whole);
+        while from < end {
+            let last = end - from <= width;
+            let to = if last { end } else { from + width };
+            let part = Interpolant::through(function, from, to)?;
+            self.scale = self.scale.max(part.largest());
+            self.left = self.left.saturating_sub(1);
+            let rough = to - from <= whole * R::constant(ROUGH);
+            let verdict = self.verdict(&part, rough);
+            let smallest = self.left == 0 || to - from <= least;
+            match verdict {
+                Verdict::Passed(index) => return Ok(Some(self.root(function, &part, index)?)),
+                Verdict::Touched(index) => return Ok(Some(part.time(index))),
+                Verdict::Unclear if !smallest => {
+                    width = half * (to - from);
+                    continue;
+                }
+                Verdict::Unclear => {
+                    if let Some(index) = self.first_beyond(&part) {
+                        return Ok(Some(self.root(function, &part, index)?));
+                    }
+                }
+                Verdict::Clear => {}
+            }
+            from = to;
+            // Whoever has looked at too many parts goes on by the values alone.
+            width = if self.left == 0 { whole } else { (width + width).min(whole) };
+        }
+        Ok(None)
+    }
+
+    /// The first instant at which zero is reached; 0 for a part that begins beyond.
+    fn first_beyond(&self, part: &Interpolant<R>) -> Option<usize> {
+        let zero = R::constant(0.0);
+        let beyond = |value: R| if self.scrutiny.touching { value <= zero } else { value < zero };
+        part.values.iter().position(|value| beyond(self.side * *value))
+    }
+
+    fn verdict(&self, part: &Interpolant<R>, rough: bool) -> Verdict {
+        let blurred = part.largest() <= R::constant(BLURRED) * R::EPSILON * self.scale;
+        match self.first_beyond(part) {
+            Some(0) => Verdict::Passed(0),
+            Some(index) => {
+                let once = part.falls(self.side) || blurred || rough && part.changes(self.side) == 1;
+                if once { Verdict::Passed(index) } else { Verdict::Unclear }
+            }
+            None if self.clears(part) => Verdict::Clear,
+            None if blurred => {
+                let (index, least) = part.least();
+                let none = least <= R::constant(NONE) * R::EPSILON * self.scale;
+                if none && self.scrutiny.touching { Verdict::Touched(index) } else { Verdict::Clear }
+            }
+            None => Verdict::Unclear,
+        }
+    }
+
+    fn clears(&self, part: &Interpolant<R>) -> bool {
+        match self.scrutiny.bound {
+            Some(bound) => part.above_chords(self.side, bound),
+            None => part.above(self.side),
+        }
+    }
+
+    /// The far side of the passage between the instant before `index` and the one there, by the Illinois variant of the secant
+    /// rule, which never leaves the bracket.
+    /// Source: Dowell & Jarratt 1971.
+    fn root(
+        &self,
+        function: &mut impl FnMut(R) -> R,
+        part: &Interpolant<R>,
+        index: usize,
+    ) -> Result<R, Undefined<R>> {
+        let before = index.saturating_sub(1);
+        let value = |index: usize| part.values.get(index).copied().unwrap_or(R::constant(0.0));
+        let bracket = [before, index].map(|index| (part.time(index), value(index)));
+        far_side(bracket, |t| {
+            let value = function(t);
+            if is_nan(value) { Err(Undefined(t)) } else { Ok(value) }
+        })
+    }
+}
+
+fn is_nan<R: Real>(value: R) -> bool {
+    value.partial_cmp(&value).is_none()
+}
+
+/// The far side of the passage between two times with their values, of which the first is not beyond and the second is.
+///
+/// # Errors
+/// Those of `function`.
+pub fn far_side<R: Real, X>(
+    [mut left, mut right]: [(R, R); 2],
+    mut function: impl FnMut(R) -> Result<R, X>,
+) -> Result<R, X> {
     let (zero, half) = (R::constant(0.0), R::constant(0.5));
     let rising = left.1 < zero;
     let mut last_passed = None;
@@ -79,7 +281,7 @@ fn root<R: Real>(mut left: (R, R), mut right: (R, R), mut function: impl FnMut(R
         let secant = left.0 - left.1 * width / (right.1 - left.1);
         let inside = left.0 < secant && secant < right.0 && iteration % 4 != 3;
         let t = if inside { secant } else { left.0 + half * width };
-        let value = function(t);
+        let value = function(t)?;
         let passed = if rising { zero <= value } else { value <= zero };
         if passed {
             right = (t, value);
@@ -90,5 +292,87 @@ fn root<R: Real>(mut left: (R, R), mut right: (R, R), mut function: impl FnMut(R
         }
         last_passed = Some(passed);
     }
-    right.0
+    Ok(right.0)
+}
+
+/// Functions of the time that are evaluated together.
+pub trait Watched<R> {
+    /// Their number.
+    fn count(&self) -> usize;
+    /// Those from `first` on at `t` (s), as many as there are and as fit.
+    fn values(&mut self, t: R, first: usize, values: &mut [R; GROUP]);
+}
+
+/// A function among several, and where it reaches zero or is NaN.
+pub type Member<X> = (usize, X);
+
+/// The first of several functions that goes beyond zero between `start` and `end` (s), from the side on which it begins.
+/// `positive`: whether that is the positive one whatever the values are; otherwise the first value that is any tells.
+///
+/// # Errors
+/// [`Undefined`] where a value is NaN.
+pub fn first_beyond<R: Real>(
+    watched: &mut impl Watched<R>,
+    (start, mut end): (R, R),
+    positive: bool,
+    scrutiny: &Scrutiny<R>,
+) -> Result<Option<Member<R>>, Member<Undefined<R>>> {
+    let mut found = None;
+    let mut first = 0;
+    while first < watched.count() {
+        let mut near = [false; GROUP];
+        near_zero(watched, first, (start, end), (positive, scrutiny), &mut near)
+            .map_err(|(member, at)| (first + member, at))?;
+        for member in (0..GROUP).filter(|member| near.get(*member) == Some(&true)) {
+            let mut function = |t: R| {
+                let mut values = [R::constant(0.0); GROUP];
+                watched.values(t, first, &mut values);
+                values.get(member).copied().unwrap_or(R::constant(0.0))
+            };
+            let undefined = |at| (first + member, at);
+            let begin = match positive {
+                true => Some((start, R::constant(1.0))),
+                false => monitor::side(&mut function, (start, end), scrutiny.scale).map_err(undefined)?,
+            };
+            let Some((from, side)) = begin else { continue };
+            if let Some(reach) = first_reach(&mut function, (from, end), side, scrutiny).map_err(undefined)? {
+                end = reach.t;
+                found = Some((first + member, reach.t));
+            }
+        }
+        first += GROUP;
+    }
+    Ok(found)
+}
+
+/// Marks which functions of a group come near zero, or are looked at more closely than by nine values.
+fn near_zero<R: Real>(
+    watched: &mut impl Watched<R>,
+    first: usize,
+    (start, end): (R, R),
+    (positive, scrutiny): (bool, &Scrutiny<R>),
+    near: &mut [bool; GROUP],
+) -> Result<(), Member<Undefined<R>>> {
+    let mut rows = [[R::constant(0.0); GROUP]; NODES];
+    for (index, row) in rows.iter_mut().enumerate() {
+        watched.values(Interpolant::instant(start, end, index), first, row);
+    }
+    let count = watched.count().saturating_sub(first);
+    let closely = scrutiny.parts(end - start) > 1;
+    for (member, near) in near.iter_mut().enumerate().take(count) {
+        let mut index = 0;
+        let mut column = |_| {
+            let value = rows.get(index).and_then(|row| row.get(member)).copied();
+            index += 1;
+            value.unwrap_or(R::constant(0.0))
+        };
+        let part = Interpolant::through(&mut column, start, end).map_err(|at| (member, at))?;
+        let side = if positive { R::constant(1.0) } else { part.first() };
+        let scale = part.largest().max(scrutiny.scale);
+        let search = Search { side: side.sign(), scrutiny, scale, left: 1 };
+        let small = !positive && part.first().abs() <= R::constant(NONE) * R::EPSILON * scale;
+        let clear = !small && matches!(search.verdict(&part, false), Verdict::Clear);
+        *near = closely || !clear;
+    }
+    Ok(())
 }

@@ -72,6 +72,7 @@ pub mod augmented_lagrangian;
 pub mod baumgarte;
 mod blocks;
 mod both_sides;
+mod contact;
 mod contradiction;
 pub mod determinacy;
 pub mod dormand_prince5;

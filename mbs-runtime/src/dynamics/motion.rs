@@ -3,6 +3,7 @@
 use super::adaptive::Point;
 use super::both_sides::ZONE;
 use super::equation::{Equation, Measured};
+use super::event::{Dense, Scrutiny};
 use super::explicit::FixedStep;
 use super::metric::{Tolerance, worse};
 use super::model::{Counts, Doubt, Formulation, Model, Solved};
@@ -257,8 +258,16 @@ pub struct Equations<'a, S: Dynamic<R, N, M>, F, R: Real, const N: usize, const 
     seen: (R, R),
     /// The first passage since `start`.
     pub(super) passage: Option<Passage<R>>,
+    /// `end` and `passage` before the last step, where steps may be taken again.
+    before: Before<S, R, N, M>,
+    /// How closely contacts are looked at.
+    scrutiny: Scrutiny<R>,
     pub(super) counts: Counts,
 }
+
+/// Time (s), margin and state where a step begins, and the first passage before it.
+type Before<S, R, const N: usize, const M: usize> =
+    ((R, R, State<R, N, <S as Dynamic<R, N, M>>::States>), Option<Passage<R>>);
 
 impl<'a, S, F, R, const N: usize, const M: usize> Equations<'a, S, F, R, N, M>
 where
@@ -289,8 +298,15 @@ where
             end,
             seen,
             passage: None,
+            before: (end, None),
+            scrutiny: Scrutiny::beyond(),
             counts,
         }
+    }
+
+    /// Nothing of a contact is missed that lasts longer than `resolution` (s).
+    pub(super) fn with_resolution(self, resolution: Option<R>) -> Self {
+        Equations { scrutiny: Scrutiny { resolution, ..self.scrutiny }, ..self }
     }
 
     pub(super) fn with_tolerance(self, tolerance: Tolerance<R>) -> Self {
@@ -436,6 +452,9 @@ where
     fn settled_rate(&mut self, t: R, y: &mut Self::State) -> Result<Self::State, Failure> {
         let solved = self.settle_and_solve(t, y)?;
         let (before, margin, _) = self.end;
+        if !S::CONTACTS.is_empty() {
+            self.before = (self.end, self.passage);
+        }
         self.passage = self.passage.or(Passage::between((before, margin), (t, solved.margin)));
         self.end = (t, solved.margin, y.y);
         Ok(self.phased(t, solved.rate))
@@ -454,6 +473,20 @@ where
         let speed = self.model.largest(&y.qd);
         let step = R::constant(LEAST_MOTION) / speed;
         if *margin < R::constant(ZONE) && step.is_finite() { step } else { R::constant(0.0) }
+    }
+
+    #[inline(always)]
+    fn may_kink(&mut self, from: R, y: &Self::State, to: R) -> bool {
+        !S::CONTACTS.is_empty() && self.model.may_close(self.start, (from, &y.y), to)
+    }
+
+    fn kink(&mut self, step: &impl Dense<R, State = Self::State>) -> Result<Option<R>, Failure> {
+        let ends = (step.start(), step.end());
+        self.model.contact_change(self.start, ends, |t| step.at(t).y, &self.scrutiny)
+    }
+
+    fn retake(&mut self) {
+        (self.end, self.passage) = self.before;
     }
 
     fn obstacle(&self) -> Option<Failure> {

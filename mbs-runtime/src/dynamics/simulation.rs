@@ -5,6 +5,7 @@ mod checks;
 mod reading;
 
 use super::adaptive::Adaptive;
+use super::event::{Scrutiny, Stopped};
 use super::metric::{Metric, Tolerance};
 use super::model::{Counts, Formulation, Model};
 use super::motion::{Instant, Method};
@@ -47,6 +48,10 @@ pub struct Simulation<S: Dynamic<R, N, M>, X, R: Real, const N: usize, const M: 
     known: Option<R>,
     tolerance: Tolerance<R>,
     adaptive: Adaptive<R>,
+    /// How closely events, limits and contacts are looked at.
+    scrutiny: Scrutiny<R>,
+    /// The event that the last run ended at.
+    stopped: Option<Stopped<R>>,
     passage: Option<Passage<R>>,
     moved_start: Option<MovedStart<R>>,
     counts: Counts,
@@ -193,6 +198,8 @@ where
             known: None,
             tolerance: Tolerance { relative: tolerance, absolute: tolerance },
             adaptive: Adaptive::default(),
+            scrutiny: Scrutiny::beyond(),
+            stopped: None,
             passage: None,
             moved_start,
             counts,
@@ -238,7 +245,7 @@ where
         Ok(())
     }
 
-    /// Moves on to `until` (s) in `steps` equal steps.
+    /// Moves on to `until` (s) in `steps` equal steps; not at all where `until` is the present time.
     ///
     /// # Errors
     /// As [`step`](Self::step); the state is then that before the step that failed.
@@ -247,6 +254,9 @@ where
         if steps == 0 {
             let step = ((until - from) / count).to_f64();
             return Err(Failure::InvalidStep { step, time: from.to_f64() });
+        }
+        if until == from {
+            return self.stand();
         }
         for index in 1..=steps {
             let share = R::constant(f64::from(index)) / count;
@@ -273,6 +283,18 @@ where
         let gained = model.total_energy(t, &y) - model.total_energy(t, &self.now.y);
         let instant = Instant { t, y, solved, carried: solved.rate.qd };
         Ok(Fresh { instant, gained, rank_rises: model.rank_rises })
+    }
+
+    /// Solves the present instant anew where parameters or inputs have changed: a run of no length.
+    fn stand(&mut self) -> Result<(), Failure> {
+        let mut counts = self.counts;
+        let Fresh { instant, gained, rank_rises } = self.fresh(&mut counts)?;
+        if self.stale {
+            let phases = self.mechanism.phases();
+            self.take(instant, Some(phases), counts);
+            (self.rank_rises, self.reference) = (rank_rises, self.reference + gained);
+        }
+        Ok(())
     }
 
     /// Goes on from `next`, with `phases` or with those that kinematics moves on.

@@ -71,6 +71,9 @@ impl fmt::Display for Failure {
             Failure::Unsuitable { name, value, most } if most.is_finite() => {
                 write!(f, "the method's {name} is {value}: it must be between 0 and {most}")
             }
+            Failure::Unsuitable { name, value: 0.0, .. } => {
+                write!(f, "the method's {name} is 0: it must be above 0")
+            }
             Failure::Unsuitable { name, value, .. } => {
                 write!(f, "the method's {name} is {value:e}: it must be a number and at least 0")
             }

@@ -2,7 +2,7 @@
 
 use mbs_runtime::Failure;
 use mbs_runtime::dynamics::adaptive::{Adaptive, Point};
-use mbs_runtime::dynamics::event::passage;
+use mbs_runtime::dynamics::event::{Dense, Monitor, Scrutiny};
 use mbs_runtime::dynamics::{
     Direction, DormandPrince5, DormandPrince8, Embedded, Equation, FixedStep, Measured, RungeKutta4,
     SemiImplicitEuler, State,
@@ -122,6 +122,7 @@ fn a_passage_through_zero_is_found_in_its_direction() {
     let from = Point { t: 0.0, y, rate: equation.rate(0.0, &y).unwrap() };
     let mut found = Vec::new();
     let mut adaptive = Adaptive::default();
+    let mut monitor = Monitor::new(Direction::Rising, Scrutiny::beyond(), (0.0, 0.0), (None, false));
     adaptive
         .run::<DormandPrince8, _>(
             &mut equation,
@@ -129,8 +130,11 @@ fn a_passage_through_zero_is_found_in_its_direction() {
             7.0,
             |_| None,
             |equation, accepted| {
-                let polynomial = accepted.polynomial(equation)?;
-                found.extend(passage(accepted, &polynomial, Direction::Rising, |_, y| y.qd[0]));
+                let course = accepted.course(equation);
+                let step = (course.start(), course.end());
+                found.extend(
+                    monitor.first(step, |t| course.at(t).qd[0]).expect("a number").map(|found| found.t),
+                );
                 Ok(true)
             },
         )

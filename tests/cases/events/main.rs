@@ -1,1 +1,9 @@
 //! Events, contacts and limits within a step.
+
+mod d10_settings;
+mod d21_tables;
+mod d3_contacts;
+mod d3_events;
+mod d3_limits;
+mod d4_zero_start;
+mod t7_contact_damping;

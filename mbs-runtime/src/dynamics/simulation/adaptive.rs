@@ -4,12 +4,15 @@ use super::{Fresh, Simulation};
 use crate::dynamics::adaptive::{Accepted, Adaptive};
 use crate::dynamics::embedded::Embedded;
 use crate::dynamics::equation::Equation;
-use crate::dynamics::event::{Direction, passage};
+use crate::dynamics::event::{Dense, Direction, MOST_RESOLVED, Monitor, Scrutiny, Stopped, Undefined};
 use crate::dynamics::metric::Tolerance;
 use crate::dynamics::model::{Counts, Formulation, Model};
 use crate::dynamics::motion::{Equations, Explicit, Instant, Moving, beginning};
 use crate::dynamics::passage::Passage;
 use crate::{Dynamic, Failure, Real};
+
+/// The failure of an event function that is NaN.
+const UNDEFINED_EVENT: Failure = Failure::NonFinite { name: "event function", line: 0 };
 
 /// What a run has come to at the end of a step.
 struct Progress<R, P> {
@@ -33,7 +36,8 @@ where
         Simulation { tolerance, ..self }
     }
 
-    /// With adaptive steps not longer than `step` (s): for what happens between two steps and is over in a moment.
+    /// With adaptive steps not longer than `step` (s), positive: for forces that set in between two steps and are over in a moment. A
+    /// run with another is [`Failure::Unsuitable`].
     pub fn with_largest_step(self, step: R) -> Self {
         Simulation { adaptive: self.adaptive.with_largest(step), ..self }
     }
@@ -43,14 +47,28 @@ where
         &self.adaptive
     }
 
-    /// Moves on to `until` (s) with steps as long as the tolerance allows.
+    /// Nothing that lasts longer than `resolution` (s), positive, is missed of events, limits and contacts, whatever functions they
+    /// are. By default that is an eighth of each step; smooth functions are found however short they pass zero.
+    pub fn with_event_resolution(self, resolution: R) -> Self {
+        let scrutiny = Scrutiny { resolution: Some(resolution), ..self.scrutiny };
+        Simulation { scrutiny, ..self }
+    }
+
+    /// The event functions g of this run have second time derivatives |g̈| (unit of g per second squared) of at most `bound`,
+    /// positive: none of their passages is missed then.
+    pub fn with_event_bound(self, bound: R) -> Self {
+        Simulation { scrutiny: Scrutiny { bound: Some(bound), ..self.scrutiny }, ..self }
+    }
+
+    /// Moves on to `until` (s) with steps as long as the tolerance allows; not at all where `until` is the present time.
     ///
     /// # Errors
     /// [`Failure::InvalidStep`], [`Failure::UnresolvedTolerance`], [`Failure::StepTooSmall`], [`Failure::OutOfReach`], those of
     /// the method; [`Failure::BeyondLimit`] and [`Failure::WrongBranch`] with the time at which the limit is passed within a
     /// step. The state is then that at the end of the last step that was accepted.
     pub fn advance_to(&mut self, until: R) -> Result<(), Failure> {
-        self.advance(until, |_| None, |_, _| Ok(None)).map(|_| ())
+        self.advance(until, |_| None, None::<(Direction, fn(R, &[R; N], &[R; N]) -> R)>, |_, _| Ok(()))
+            .map(|_| ())
     }
 
     /// As [`advance_to`](Self::advance_to), hitting the times that `breakpoints` gives: the next one after its
@@ -63,29 +81,23 @@ where
         until: R,
         breakpoints: impl FnMut(R) -> Option<R>,
     ) -> Result<(), Failure> {
-        self.advance(until, breakpoints, |_, _| Ok(None)).map(|_| ())
+        self.advance(until, breakpoints, None::<(Direction, fn(R, &[R; N], &[R; N]) -> R)>, |_, _| Ok(()))
+            .map(|_| ())
     }
 
-    /// As [`advance_to`](Self::advance_to), but stops where `event` of time, coordinates and velocities passes zero.
-    /// Returns whether it did.
+    /// As [`advance_to`](Self::advance_to), but stops where `event` of time, coordinates and velocities first reaches zero, be
+    /// it to turn back there. Returns whether it did. A value of 0 at the start has been passed already, and a call that follows
+    /// goes on behind the event.
     ///
     /// # Errors
-    /// As [`advance_to`](Self::advance_to).
+    /// As [`advance_to`](Self::advance_to); [`Failure::NonFinite`] where `event` is NaN.
     pub fn advance_until_event(
         &mut self,
         until: R,
         direction: Direction,
-        mut event: impl FnMut(R, &[R; N], &[R; N]) -> R,
+        event: impl FnMut(R, &[R; N], &[R; N]) -> R,
     ) -> Result<bool, Failure> {
-        self.advance(
-            until,
-            |_| None,
-            |equations, accepted| {
-                let polynomial = accepted.polynomial(equations)?;
-                let found = passage(accepted, &polynomial, direction, |t, y| event(t, &y.y.q, &y.y.qd));
-                Ok(found.map(|t| (t, if t < accepted.end.t { polynomial.at(t) } else { accepted.end.y })))
-            },
-        )
+        self.advance(until, |_| None, Some((direction, event)), |_, _| Ok(()))
     }
 
     /// As [`advance_to`](Self::advance_to), and shows the instants at `samples` equal distances on the way, the end
@@ -137,9 +149,17 @@ where
     ) -> Result<(), Failure> {
         let (from, count) = (self.now.t, R::constant(f64::from(samples)));
         let (mut index, mut accepted_steps) = (1, self.adaptive.accepted);
+        if until == from {
+            self.stand()?;
+            let (phases, counts) = (self.mechanism.phases(), self.counts);
+            let progress = Progress { phases, counts, passage: None, accepted: accepted_steps };
+            (0..samples).for_each(|_| see(&self.now, &progress));
+            return Ok(());
+        }
         self.advance(
             until,
             |_| None,
+            None::<(Direction, fn(R, &[R; N], &[R; N]) -> R)>,
             |equations, accepted| {
                 let mut polynomial = None;
                 accepted_steps = accepted_steps.wrapping_add(1);
@@ -163,35 +183,68 @@ where
                     see(&instant, &Progress { phases, counts, passage, accepted: accepted_steps });
                     index += 1;
                 }
-                Ok(None)
+                Ok(())
             },
         )
         .map(|_| ())
     }
 
-    /// Runs to `until`, or to the instant that `stop` gives for a step; returns whether it was such an instant.
+    /// Runs to `until`, or to the first `event` on the way; returns whether it was an event. `see` is shown each step.
     fn advance(
         &mut self,
         until: R,
         breakpoints: impl FnMut(R) -> Option<R>,
-        mut stop: impl FnMut(
+        mut event: Option<(Direction, impl FnMut(R, &[R; N], &[R; N]) -> R)>,
+        mut see: impl FnMut(
             &mut Equations<'_, S, F, R, N, M>,
             &Accepted<I, R, Moving<S, R, N, M>>,
-        ) -> Result<Option<(R, Moving<S, R, N, M>)>, Failure>,
+        ) -> Result<(), Failure>,
     ) -> Result<bool, Failure> {
+        self.require_settings()?;
+        if until == self.now.t {
+            return self.stand().map(|()| false);
+        }
         let (mut counts, mut adaptive) = (self.counts, self.adaptive);
+        if let Some(resolution) = self.scrutiny.resolution {
+            adaptive.largest = adaptive.largest.min(R::constant(8.0 * MOST_RESOLVED) * resolution);
+        }
         self.tolerance.require_resolved(self.now.t)?;
         let Fresh { instant: from, gained, rank_rises } = self.fresh(&mut counts)?;
+        let mut monitor = match &mut event {
+            Some((direction, event)) => Some(self.monitor(*direction, &from, event)?),
+            None => None,
+        };
         let model = Model { rank_rises, ..self.model() };
         let formulation = &self.method.formulation;
         let mut equations = Equations::new(&model, formulation, &from, counts).with_tolerance(self.tolerance);
+        equations = equations.with_resolution(self.scrutiny.resolution);
         let start = beginning(model.mechanism, &from);
         let (mut stopped, mut last) = (None, start);
-        let taken = adaptive.accepted;
+        let (taken, resolution) = (adaptive.accepted, self.scrutiny.resolution);
         let run = adaptive.run::<I, _>(&mut equations, start, until, breakpoints, |equations, accepted| {
-            model.check(accepted.end.t, &accepted.end.y.y)?;
-            model.check_step(equations, accepted)?;
-            stopped = stop(equations, accepted)?;
+            let (start, mut end) = (accepted.start.t, accepted.end.t);
+            model.check(end, &accepted.end.y.y)?;
+            let ends = model.check_assembly(from.t, (end, &accepted.end.y.y), false);
+            if monitor.is_none() && S::LIMITS.is_empty() && ends.is_ok() {
+                see(equations, accepted)?;
+                last = accepted.end;
+                return Ok(true);
+            }
+            let course = equations.apart(|equations| accepted.course(equations));
+            if let (Some(monitor), Some((_, event))) = (&mut monitor, &mut event) {
+                let found = monitor.first((start, end), |t| {
+                    let y = course.at(t).y;
+                    event(t, &y.q, &y.qd)
+                });
+                if let Some(reach) = found.map_err(|Undefined(_)| UNDEFINED_EVENT)? {
+                    stopped = Some((reach, course.at(reach.t)));
+                    end = reach.t;
+                }
+            }
+            let at = |t| course.at(t).y;
+            model.check_ranges(from.t, (start, end), at, resolution)?;
+            model.check_end(from.t, (start, end), at)?;
+            see(equations, accepted)?;
             last = accepted.end;
             Ok(stopped.is_none())
         });
@@ -199,8 +252,8 @@ where
         if let (Some(failure), true) = (failure, last.t == from.t) {
             return Err(failure);
         }
-        let (t, mut y) = stopped.unwrap_or((last.t, last.y));
-        if stopped.is_some() {
+        let (t, mut y) = stopped.map_or((last.t, last.y), |(reach, y)| (reach.t, y));
+        if stopped.is_some() && t < last.t {
             Equation::settle(&mut equations, t, &mut y)?;
         }
         let solved = equations.solve(t, &y)?;
@@ -208,12 +261,51 @@ where
         counts = equations.counts;
         let passage = equations.passage;
         counts.steps += u64::from(adaptive.accepted.wrapping_sub(taken));
-        self.adaptive = adaptive;
+        self.adaptive = adaptive.with_largest(self.adaptive.largest);
         self.passage = self.passage.or(passage);
         self.rank_rises = rank_rises;
         self.take(Instant { t, y: y.y, solved, carried: solved.rate.qd }, Some(phases), counts);
         self.passed = passage.is_some();
         self.reference = self.reference + gained;
+        if let (Some((reach, _)), Some((_, event))) = (stopped, &mut event) {
+            self.stopped = Some(Stopped::new(t, event(t, &self.now.y.q, &self.now.y.qd), reach.scale));
+        }
         failure.map_or(Ok(stopped.is_some()), Err)
+    }
+
+    /// Fails where a setting of the run is no positive number.
+    fn require_settings(&self) -> Result<(), Failure> {
+        let Scrutiny { resolution, bound, .. } = self.scrutiny;
+        let positive = |value: R| R::constant(0.0) < value;
+        let settings = [
+            ("largest step", Some(self.adaptive.largest)),
+            ("event resolution", resolution),
+            ("event bound", bound),
+        ];
+        for (setting, value) in settings {
+            if let Some(value) = value.filter(|value| !positive(*value)) {
+                return Err(Failure::Unsuitable {
+                    name: setting,
+                    value: value.to_f64(),
+                    most: f64::INFINITY,
+                });
+            }
+        }
+        Ok(())
+    }
+
+    /// An event function as it is where a run begins.
+    fn monitor(
+        &self,
+        direction: Direction,
+        from: &Instant<R, N, M, S::States>,
+        event: &mut impl FnMut(R, &[R; N], &[R; N]) -> R,
+    ) -> Result<Monitor<R>, Failure> {
+        let value = event(from.t, &from.y.q, &from.y.qd);
+        if value.partial_cmp(&value).is_none() {
+            return Err(UNDEFINED_EVENT);
+        }
+        let scrutiny = Scrutiny { touching: true, ..self.scrutiny };
+        Ok(Monitor::new(direction, scrutiny, (from.t, value), (self.stopped, self.stale)))
     }
 }

@@ -1,21 +1,16 @@
 //! What a start and a step may not leave: rows, branches, working ranges.
 
-use crate::dynamics::adaptive::Accepted;
-use crate::dynamics::embedded::Embedded;
-use crate::dynamics::model::{Formulation, Model};
-use crate::dynamics::motion::{Equations, Moving};
+use crate::dynamics::event::{GROUP, Scrutiny, Undefined, Watched, first_beyond};
+use crate::dynamics::model::Model;
 use crate::dynamics::vector::State;
-use crate::limit::limit_failure;
+use crate::limit::{Limit, limit_failure, passed_failure};
 use crate::{Dynamic, Failure, Real, kinematics};
 
 /// Violation of a row that a start may have, in the reference metric and of the coordinates (per second for its rate): numbers typed
 /// with nine digits. What it has is projected out.
 const START_ALLOWANCE: f64 = 1e-8;
 
-/// Parts of an adaptive step at whose ends working ranges are looked at.
-const PARTS: u32 = 8;
-
-/// Halvings of such a part: as many digits as an `f64` has.
+/// Halvings of a step: as many digits as an `f64` has.
 const MOST_HALVINGS: u32 = 53;
 
 impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, R, N, M> {
@@ -44,34 +39,36 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         failure.map_or(Ok(()), Err)
     }
 
-    /// [`check_assembly`](Self::check_assembly) along an accepted step, with the time at which the state passes what it may not
-    /// pass. A range may be left and entered again within a step, a branch is looked at where the step ends.
-    pub(super) fn check_step<F, I>(
+    /// Fails with the first working range that is left along a step between `start` and `end` (s), with the time at which it is; `at`
+    /// gives the states of the step.
+    pub(super) fn check_ranges(
         &self,
-        equations: &mut Equations<'_, S, F, R, N, M>,
-        accepted: &Accepted<I, R, Moving<S, R, N, M>>,
-    ) -> Result<(), Failure>
-    where
-        F: Formulation<S, R, N, M>,
-        I: Embedded,
-    {
-        let (start, end) = (accepted.start.t, &accepted.end);
-        let from = equations.start;
-        let ends = self.check_assembly(from, (end.t, &end.y.y), false);
-        if S::LIMITS.is_empty() && ends.is_ok() {
+        from: R,
+        (start, end): (R, R),
+        at: impl Fn(R) -> State<R, N, S::States>,
+        resolution: Option<R>,
+    ) -> Result<(), Failure> {
+        if S::LIMITS.is_empty() {
             return Ok(());
         }
-        let Ok(polynomial) = accepted.polynomial(equations) else { return ends };
-        let at = |t: R| self.check_assembly(from, (t, &polynomial.at(t).y), false);
-        let mut inside = start;
-        for part in 1..PARTS {
-            let t = start + (end.t - start) * R::constant(f64::from(part) / f64::from(PARTS));
-            match at(t) {
-                Ok(()) => inside = t,
-                Err(failure) => return Err(first_failure(inside, (t, failure), at)),
-            }
+        let mut ranges = Ranges { model: self, from, at };
+        let scrutiny = Scrutiny { resolution, ..Scrutiny::beyond() };
+        match first_beyond(&mut ranges, (start, end), true, &scrutiny) {
+            Ok(None) => Ok(()),
+            Ok(Some((member, t))) | Err((member, Undefined(t))) => Err(ranges.failure(member, t)),
         }
-        ends.map_err(|failure| first_failure(inside, (end.t, failure), at))
+    }
+
+    /// [`check_assembly`](Self::check_assembly) at the end of a step from `start` (s), with the time at which the state passes what
+    /// it may not pass; `at` gives the states of the step. A branch is looked at where the step ends.
+    pub(super) fn check_end(
+        &self,
+        from: R,
+        (start, end): (R, R),
+        at: impl Fn(R) -> State<R, N, S::States>,
+    ) -> Result<(), Failure> {
+        let check = |t: R| self.check_assembly(from, (t, &at(t)), false);
+        check(end).map_err(|failure| first_failure(start, (end, failure), check))
     }
 
     /// Fails with the row that a start violates by more than it may.
@@ -112,4 +109,57 @@ fn first_failure<R: Real>(
         }
     }
     beyond.1
+}
+
+/// What is left of each working range along a step: below and above, one after the other.
+struct Ranges<'a, S: Dynamic<R, N, M>, R: Real, At, const N: usize, const M: usize> {
+    model: &'a Model<'a, S, R, N, M>,
+    /// Time (s) that inputs and phases are known at.
+    from: R,
+    at: At,
+}
+
+impl<S, R, At, const N: usize, const M: usize> Ranges<'_, S, R, At, N, M>
+where
+    S: Dynamic<R, N, M>,
+    R: Real,
+    At: Fn(R) -> State<R, N, S::States>,
+{
+    fn limits(&self, t: R) -> S::Limits {
+        let q = (self.at)(t).q;
+        self.model.moved(self.from, t, |Model { mechanism, parameters, .. }| {
+            mechanism.limits(parameters, &mechanism.position(parameters, &q, t))
+        })
+    }
+
+    /// The failure of a range that is left at `t` (s).
+    fn failure(&self, member: usize, t: R) -> Failure {
+        let limits = self.limits(t);
+        match limits.as_ref().get(member / 2) {
+            Some(limit) => {
+                let bound = if member.is_multiple_of(2) { limit.low } else { limit.high };
+                passed_failure(S::LIMITS, member / 2, (limit, bound), t)
+            }
+            None => Failure::NonFinite { name: "limit", line: 0 },
+        }
+    }
+}
+
+impl<S, R, At, const N: usize, const M: usize> Watched<R> for Ranges<'_, S, R, At, N, M>
+where
+    S: Dynamic<R, N, M>,
+    R: Real,
+    At: Fn(R) -> State<R, N, S::States>,
+{
+    fn count(&self) -> usize {
+        2 * S::LIMITS.len()
+    }
+
+    fn values(&mut self, t: R, first: usize, values: &mut [R; GROUP]) {
+        let limits = self.limits(t);
+        let left = limits.as_ref().iter().skip(first / 2).map(Limit::left);
+        for (pair, left) in values.chunks_exact_mut(2).zip(left) {
+            pair.iter_mut().zip(left).for_each(|(value, left)| *value = left);
+        }
+    }
 }

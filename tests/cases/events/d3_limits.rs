@@ -1,0 +1,65 @@
+//! D3: a limit that is left and entered again within a step.
+
+use mbs_runtime::dynamics::{
+    DormandPrince5, DormandPrince8, Explicit, Projection, Simulation, Tolerance, VelocityTransformation,
+};
+use mbs_runtime::{Failure, mechanism};
+
+mechanism! {
+    pub mechanism Thrown;
+    param top: m = 1.9;
+    coord y: m = 0;
+    coord x: m = 0;
+    body ball { mass: 1, com: [x, y] }
+    gravity weight { acceleration: [0, -9.81] }
+    limit height: -10m <= y <= top;
+}
+
+const G: f64 = 9.81;
+
+fn thrown(top: f64) -> Thrown<f64> {
+    Thrown { top, ..Thrown::default() }
+}
+
+#[test]
+fn a_limit_that_is_left_between_two_long_steps_is_told_with_its_time() {
+    let method = Explicit::new(DormandPrince8, Projection::default());
+    let mut run = Simulation::start(thrown(1.9), method, 0.0, [0.0; 2], [6.15, 0.0]).expect("a start");
+    let failure = run.advance_to(1.2).expect_err("the ball rises to 1.928 m");
+    let Failure::BeyondLimit { time, bound, .. } = failure else { panic!("{failure}") };
+    let left = (6.15 - (6.15_f64 * 6.15 - 2.0 * G * 1.9).sqrt()) / G;
+    assert!((time - left).abs() < 1e-9 && bound == 1.9, "{time} {left}");
+}
+
+/// 1000 throws whose windows above the bound are from 1e-6 of the flight to all of it, and as many that stay below.
+#[test]
+fn no_window_is_too_short_for_a_limit() {
+    let count = 1000;
+    for throw in 0..count {
+        // Rise above the bound: from 1e-12 m to a metre, on either side.
+        let beyond = 10.0_f64.powf(-12.0 + 12.0 * f64::from(throw) / f64::from(count - 1));
+        let speed = 6.0 + 0.7 * f64::from(throw % 7);
+        let apex = 0.5 * speed * speed / G;
+        for side in [-1.0, 1.0] {
+            let top = apex - side * beyond;
+            let q = [0.0; 2];
+            let result = if throw % 2 == 0 {
+                let method = Explicit::new(DormandPrince8, VelocityTransformation);
+                Simulation::start(thrown(top), method, 0.0, q, [speed, 0.3]).expect("a start").advance_to(1.9)
+            } else {
+                let method = Explicit::new(DormandPrince5, Projection::default());
+                let run = Simulation::start(thrown(top), method, 0.0, q, [speed, 0.3]).expect("a start");
+                run.with_tolerance(Tolerance::new(1e-6)).advance_to(1.9)
+            };
+            match result {
+                Err(Failure::BeyondLimit { time, .. }) => {
+                    let left = (speed - (2.0 * G * beyond).sqrt()) / G;
+                    // Roundings of the bounds, 64 ε of 10 m, and of the motion, over the speed of the passage.
+                    let allowed = 3e-13 / (2.0 * G * beyond).sqrt() + 1e-12;
+                    assert!(side > 0.0 && (time - left).abs() < allowed, "{throw}: {time} {left}");
+                }
+                other => assert!(other.is_ok() && side < 0.0, "{throw}: {beyond:e} {side} {other:?}"),
+            }
+        }
+    }
+}
