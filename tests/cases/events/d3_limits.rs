@@ -18,7 +18,7 @@ mechanism! {
 const G: f64 = 9.81;
 
 fn thrown(top: f64) -> Thrown<f64> {
-    Thrown { top, ..Thrown::default() }
+    Thrown { top }
 }
 
 #[test]

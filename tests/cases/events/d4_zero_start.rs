@@ -42,9 +42,7 @@ fn rest_but_for_rounding_with_a_spring_runs() {
     for small in [0.0, 6e-17, 1e-13, 1e-9] {
         for until in [0.1, 5.0, 100.0] {
             let method = Explicit::new(DormandPrince5, Projection::default());
-            let mut pushed = Pushed::default();
-            pushed.push = 2.0;
-            let start = Simulation::start(pushed, method, 0.0, [small, -small], [small, small]);
+            let start = Simulation::start(Pushed { push: 2.0 }, method, 0.0, [small, -small], [small, small]);
             let mut run = start.expect("a start");
             run.advance_to(until).unwrap_or_else(|failure| panic!("{small:e} {until}: {failure}"));
             // Two masses of 1 kg together on 100 N/m, pushed by 2 N from rest.
