@@ -103,7 +103,7 @@ force slip: -lambda(slot)*0.1 on s;
 tsda strut { from: [200mm, -400mm], to: hand, stiffness: k, length: 0.35, damping: 4, actuator: 3N*sin(2*t/1s) }
 rsda knee { angle: psi2, stiffness: 5, rest: 0.4, damping: 0.3, torque: 0.1 }
 potential well = 3N/1m*s^2*cos(psi1);
-kinetic rotor = 0.01*1kg*1m^2*der(psi2)*(der(psi2) + 3*der(psi1));
+kinetic rotor = 0.01 [kg*m^2]*der(psi2)*(der(psi2) + 3*der(psi1));
 dissipation bearing = 0.05*C*der(psi1)^2*exp(psi2);
 der(z) == (4N - z)/0.1s + 2N/1m*der(s);
 constraint slot { s == 300mm + 50mm*cos(psi2); }

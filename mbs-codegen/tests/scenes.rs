@@ -135,7 +135,7 @@ fn a_text_grows_with_its_scenes_and_no_faster() {
 #[test]
 fn views_of_a_scene_are_asked_for_by_its_name() {
     let text = "mechanism M; param c: 1 = 2; effect slow { coord a: rad; drive d: a == c*t/1s; }
-                effect fast { coord b: rad; drive d: b == t^2/1s^2; } scene Slow = slow; scene Fast = fast;";
+                effect fast { coord b: rad; drive d: b == t^2/1 [s^2]; } scene Slow = slow; scene Fast = fast;";
     let slow = mbs_codegen::structure_of(text, Some("Slow")).expect("a scene");
     assert_eq!((slow.name.as_str(), slow.coordinates[0].name.as_str()), ("MSlow", "a"));
     let fast = mbs_codegen::formulas(text, Some("Fast")).expect("a scene");

@@ -161,7 +161,7 @@ impl Budget {
     /// #     mechanism Crank;
     /// #     coord phi: rad = 0.1;
     /// #     coord x: m = 0.1;
-    /// #     constraint slide { x^2 + 0.1m*x == 0.02m^2*(2 + cos(phi)); }
+    /// #     constraint slide { x^2 + 0.1m*x == (0.02m)^2*(2 + cos(phi)); }
     /// #     drive motor: phi == 3*t/1s;
     /// # }
     /// const MOST: Operations = Budget { newton: 3, fallback: 0 }.worst_case::<Crank<f64>>();

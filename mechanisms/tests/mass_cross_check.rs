@@ -33,7 +33,7 @@ mechanism! {
         body rods { mass: m[i], inertia: J[i], com: elbow + i*s/2*unit(phi2) + omega*t*[s, i*s], angle: psi[i]*(1 + i*t/10s) }
     }
     body bob { mass: 0.4, com: p }
-    gravity g { acceleration: [0.3m/1s^2*sin(omega*t), -9.81] }
+    gravity g { acceleration: [0.3 [m/s^2]*sin(omega*t), -9.81] }
     force push: [2N + z, D*der(s)] on hand;
     force friction: -tanh(der(s)*10s/1m)*abs(lambda(slot)) on s;
     torque motor: u - C*der(psi[0])*w[0] on psi[0];
@@ -93,7 +93,7 @@ mechanism! {
     body crank { mass: 0.4, inertia: 3e-3, com: elbow/3, angle: theta }
     body rod { mass: 0.6, inertia: 0.6kg*b^2/12, com: elbow + b/2*unit(phi), angle: phi }
     body block { mass: 0.8, inertia: 2e-3, com: c, angle: beta }
-    gravity g { acceleration: [0.2m/1s^2, -1g0] }
+    gravity g { acceleration: [0.2 [m/s^2], -1g0] }
     pin O: ground, crank at [0, 0];
     pin A: rod, crank at elbow;
     pin B: rod, block at c;

@@ -269,9 +269,9 @@ mechanism! {
     body rod { mass: 0.5, inertia: 0.03, com: bob, angle: phi }
     gravity g { acceleration: [0, -9.81] }
     tsda strut { from: [0, 1m], to: bob, stiffness: 60, length: 0.5, damping: 3, actuator: 2 }
-    tsda stiffening { from: [0, -1m], to: bob, stiffness: K*(1 + x^2/1m^2), length: 0.1 }
+    tsda stiffening { from: [0, -1m], to: bob, stiffness: K*(1 + x^2/1 [m^2]), length: 0.1 }
     rsda hinge { angle: phi, stiffness: 2, rest: 0.1, damping: 0.2, torque: 0.3 }
-    potential well = K*x^4/4/1m^2;
+    potential well = K*x^4/4/1 [m^2];
     dissipation bearing = C*der(phi)^2/2;
     force motor: u on x;
 }

@@ -24,7 +24,7 @@ mechanism! {
     coord gamma: rad = 1.7;
     coord delta: rad = 0;
     let p = 0.25m*unit(alpha) + rot(beta)*[75mm, -80mm];
-    body plate { mass: m, inertia: 0.01kg*1m^2, com: p, angle: beta }
+    body plate { mass: m, inertia: 0.01 [kg*m^2], com: p, angle: beta }
     constraint four_bar { 0.25m*unit(alpha) + 0.15m*unit(beta) == [300mm, 0] + 0.25m*unit(gamma); }
     constraint rod { [-150mm, 160mm] + 50mm*unit(theta) + 0.3m*unit(delta) == p; }
     independent theta;

@@ -143,7 +143,7 @@ mechanism! {
     let tip = p + rot(phi)*c;
     let arm = L[0]*unit(phi);
     constraint point { r == tip + arm - [L.1, 0]*2; }
-    constraint length { dot(p - c, p - c) == 0.1m^2; }
+    constraint length { dot(p - c, p - c) == (0.1m)^2; }
     constraint side { cross(p, unit(phi)) == 50mm; }
     drive turn: phi == 0.3 + t*0.5/1s;
     out distance: m = norm(r - p);

@@ -2,6 +2,7 @@
 
 use proc_macro2::Span;
 
+use super::compound;
 use super::declared_functions;
 use super::evaluate;
 use super::expression::{Binary, Expressions, Id, Node, Unary};
@@ -9,10 +10,10 @@ use super::functions::{self, FUNCTIONS};
 use super::names::{Names, Symbol};
 use super::operands::Operands;
 use super::references::{REFERRING, is_reference};
-use super::units::{Dimension, with_suffix};
+use super::units::{Dimension, in_unit, with_suffix};
 use super::{Longest, Reference};
 use crate::diagnostics::{Diagnostics, nearest};
-use crate::syntax::ast::{Expression, Instruction, Name, Operation, Operator, Target};
+use crate::syntax::ast::{Expression, Instruction, Name, Operation, Operator, Target, Unit};
 
 /// A fault was reported.
 #[derive(Clone, Copy, Debug)]
@@ -169,8 +170,11 @@ impl Elaborator<'_> {
                 Operation::Name(_) if is_reference(&expression.code, index) => {}
                 Operation::Name(name) if !is_variable(name) => {
                     let known = self.names.get(name).is_some() || CONSTANTS.contains(&name.as_str());
-                    if !known {
-                        self.unknown_name(name, instruction.span);
+                    // The units of one product are one fault.
+                    let follows = compound::in_brackets(&expression.code, index).is_some()
+                        && !compound::is_first(&expression.code, index);
+                    if !known && !follows {
+                        self.unknown_name(name, (&expression.code, index));
                     }
                 }
                 Operation::Call { function, .. }
@@ -196,13 +200,13 @@ impl Elaborator<'_> {
         let instruction = expression.code.get(index).ok_or(Fault)?;
         let span = instruction.span;
         let value = match &instruction.operation {
-            Operation::Number { value, suffix, .. } => self.literal(*value, suffix.as_deref(), span)?,
+            Operation::Number { value, unit, .. } => self.literal(*value, unit.as_ref(), span)?,
             Operation::Name(_) if is_reference(&expression.code, index) => return Ok(index + 1),
             Operation::Name(name) if matches!(self.names.get(name), Some(Symbol::Value(_))) => {
                 stack.push_named(name, span);
                 return Ok(index + 1);
             }
-            Operation::Name(name) => self.name(name, span)?,
+            Operation::Name(name) => self.name(name, (&expression.code, index), span)?,
             Operation::Negate => {
                 let a = stack.pop(self.names)?;
                 self.each(&a, span, |work, item| work.unary_scalar(Unary::Negate, item, item.quantity, span))?
@@ -281,12 +285,15 @@ impl Elaborator<'_> {
     }
 
     /// A number as written, in SI.
-    fn literal(&mut self, value: f64, suffix: Option<&str>, span: Span) -> Result<Value, Fault> {
-        let Some(suffix) = suffix else { return Ok(Value::scalar(self.number_literal(value, span), span)) };
+    fn literal(&mut self, number: f64, unit: Option<&Unit>, span: Span) -> Result<Value, Fault> {
+        let Some(unit) = unit else { return Ok(Value::scalar(self.number_literal(number, span), span)) };
         let (value, dimension) =
-            with_suffix(value, suffix).map_err(|(message, help)| self.fault(span, message, help))?;
+            in_unit(number, unit).map_err(|(at, message, help)| self.fault(at, message, help))?;
         if !value.is_finite() {
             return Err(self.fault(span, "this number is too large in SI units", "choose another unit"));
+        }
+        if value == 0.0 && number != 0.0 {
+            return Err(self.fault(span, "this number is too small in SI units", "choose another unit"));
         }
         if dimension == Dimension::METRE {
             Longest::note(&mut self.longest, value, || format!("{} m", value.abs()), span);
@@ -303,7 +310,7 @@ impl Elaborator<'_> {
     }
 
     /// What a name stands for that is no declared value.
-    fn name(&mut self, name: &str, span: Span) -> Result<Value, Fault> {
+    fn name(&mut self, name: &str, place: (&[Instruction], usize), span: Span) -> Result<Value, Fault> {
         match self.names.get(name) {
             Some(Symbol::Count(count)) => {
                 let count = *count as f64;
@@ -330,7 +337,7 @@ impl Elaborator<'_> {
                 let quantity = Quantity::Known(Dimension::SECOND);
                 Ok(Value::scalar(Scalar { id, quantity, bare: false, span }, span))
             }
-            _ => Err(self.unknown_name(name, span)),
+            _ => Err(self.unknown_name(name, place)),
         }
     }
 
@@ -360,17 +367,22 @@ impl Elaborator<'_> {
     }
 
     /// A fault at an unknown name.
-    fn unknown_name(&mut self, name: &str, span: Span) -> Fault {
+    fn unknown_name(&mut self, name: &str, (code, index): (&[Instruction], usize)) -> Fault {
+        let span = code.get(index).map_or_else(Span::call_site, |instruction| instruction.span);
         if self.names.is_local(name) {
             let message = format!("`{name}` is known inside its `for` alone, behind its declaration");
             return self.fault(span, message, "move this into the loop, or declare a `let` outside of it");
         }
         let help = if FUNCTIONS.contains(&name) {
             format!("`{name}` is a function; write `{name}(…)`")
+        } else if let Some(number) = compound::in_brackets(code, index) {
+            format!("write a compound unit in brackets behind its number: `{number}`")
         } else if let Some(known) = nearest(name, self.names.all().chain(CONSTANTS)) {
             format!("did you mean `{known}`?")
         } else if with_suffix(1.0, name).is_ok() {
-            format!("a unit is one suffix joined to its number, `2{name}`; write `2rad/1s` for a quotient")
+            format!(
+                "a unit is joined to its number, `2{name}`, or stands in brackets behind it: `30 [rad/s]`"
+            )
         } else {
             "declare it with `const`, `param`, `input`, `coord` or `let`".into()
         };

@@ -2,6 +2,7 @@
 
 mod arithmetic;
 mod bodies;
+mod compound;
 mod declarations;
 mod declared_functions;
 mod drives;

@@ -5,6 +5,7 @@ use std::fmt;
 
 use crate::diagnostics::{Diagnostics, nearest};
 use crate::syntax::ast;
+use proc_macro2::Span;
 
 /// Exponents of the base units, in sixtieths, so that roots up to the sixth are exact.
 ///
@@ -200,6 +201,37 @@ fn unknown_unit(symbol: &str) -> (String, String) {
     (format!("`{symbol}` is no known unit"), help)
 }
 
+/// Value in SI and dimension of a number in a unit of any known symbols; `Err` holds place, message and cure.
+///
+/// Factors and divisors are multiplied apart, so that `1 [km/h]` is rounded once.
+pub fn in_unit(value: f64, unit: &ast::Unit) -> Result<(f64, Dimension), (Span, String, String)> {
+    if let [(symbol, 1)] = unit.factors.as_slice() {
+        return with_suffix(value, &symbol.text).map_err(|(message, help)| (symbol.span, message, help));
+    }
+    let (mut factor, mut divisor, mut dimension) = (1.0, 1.0, Dimension::NUMBER);
+    for (symbol, exponent) in &unit.factors {
+        let Ok((_, base)) = with_suffix(1.0, &symbol.text) else {
+            let (message, help) = unknown_suffix(&symbol.text);
+            return Err((symbol.span, message, help));
+        };
+        let known = SUFFIXES.iter().find(|(known, ..)| *known == symbol.text);
+        let (times, over) = known.map_or((1.0, 1.0), |(_, times, over, _)| (*times, *over));
+        let (times, over) = if *exponent < 0 { (over, times) } else { (times, over) };
+        let count = i32::try_from(exponent.unsigned_abs()).unwrap_or(i32::MAX);
+        factor *= f64::powi(times, count);
+        divisor *= f64::powi(over, count);
+        let power = base.power(f64::from(*exponent)).ok_or_else(|| {
+            (
+                symbol.span,
+                format!("`{}` has an exponent that is too large", unit.text),
+                "write smaller exponents".into(),
+            )
+        })?;
+        dimension = dimension.times(power);
+    }
+    Ok((value * factor / divisor, dimension))
+}
+
 /// Value and dimension of a number with a suffix; `Err` holds message and cure.
 pub fn with_suffix(value: f64, suffix: &str) -> Result<(f64, Dimension), (String, String)> {
     if let Some(dimension) = Dimension::of_symbol(suffix) {
@@ -274,6 +306,24 @@ mod tests {
         assert_eq!(with_suffix(180.0, "deg").expect("known").0, PI);
         assert_eq!(with_suffix(3000.0, "rpm").expect("known").0, 100.0 * PI);
         assert!(with_suffix(1.0, "mmm").expect_err("unknown").1.contains("`1mm`"));
+    }
+
+    #[test]
+    fn compound_units_multiply_the_factors_of_their_symbols() {
+        let of = |factors: &[(&str, i32)], value: f64| {
+            let span = Span::call_site();
+            let factors = factors
+                .iter()
+                .map(|(text, exponent)| (crate::syntax::ast::Name { text: (*text).into(), span }, *exponent))
+                .collect();
+            in_unit(value, &ast::Unit { factors, text: String::new(), span }).expect("known")
+        };
+        let area = Dimension::METRE.power(2.0).expect("area");
+        assert_eq!(of(&[("mm", 2)], 4.0), (4e-6, area));
+        assert_eq!(of(&[("km", 1), ("h", -1)], 36.0), (10.0, Dimension::METRE.over(Dimension::SECOND)));
+        assert_eq!(of(&[("N", 1), ("mm", -2)], 1.0), (1e6, Dimension::NEWTON.over(area)));
+        assert_eq!(of(&[("deg", 1), ("s", -1)], 180.0), (PI, Dimension::NUMBER.over(Dimension::SECOND)));
+        assert_eq!(of(&[], 2.0), (2.0, Dimension::NUMBER));
     }
 
     #[test]

@@ -19,15 +19,15 @@ fn with_masses(random: &mut Random) -> String {
     let acting = [format!("(lambda({row})/1N/1m)"), String::from("z")];
     let (heavy, turning) = (writer.design(2), writer.design(2));
     text += &format!(
-        "body plate {{ mass: 1kg*(1.5 + sin({heavy})), inertia: 1kg*1m^2*(1.5 + cos({turning})), com: 1m*({}), angle: {} }}\n",
+        "body plate {{ mass: 1kg*(1.5 + sin({heavy})), inertia: 1 [kg*m^2]*(1.5 + cos({turning})), com: 1m*({}), angle: {} }}\n",
         writer.vector(2),
         writer.scalar(2)
     );
     text += &format!("body bob {{ mass: 1kg*(2 + cos({heavy})), com: 1m*({}) }}\n", writer.vector(1));
-    text += &format!("gravity g {{ acceleration: 1m/1s^2*[{}, -9.81] }}\n", writer.speed(1));
+    text += &format!("gravity g {{ acceleration: 1 [m/s^2]*[{}, -9.81] }}\n", writer.speed(1));
     text += &format!("potential well = 1N*1m*({});\n", writer.scalar(2));
     let (a, b, c) = (writer.rate(), writer.rate(), writer.scalar(1));
-    text += &format!("kinetic rotor = 1kg*1m^2*(1.5 + sin({c}))*{a}*{b}/1s^2;\n");
+    text += &format!("kinetic rotor = 1 [kg*m^2]*(1.5 + sin({c}))*{a}*{b}/1 [s^2];\n");
     text += &format!("dissipation bearing = 1N*1m/1s*(1 + {a}^2)^1.5*exp(sin({c}));\n");
     let [push, twist, actuator, torque] = [0; 4].map(|_| writer.acting(&acting));
     text +=

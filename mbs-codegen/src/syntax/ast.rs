@@ -23,8 +23,8 @@ pub struct Instruction {
 /// What an [`Instruction`] does to the stack of values.
 #[derive(Clone, Debug)]
 pub enum Operation {
-    /// Pushes a number, in the unit of its suffix.
-    Number { value: f64, suffix: Option<String>, integer: bool },
+    /// Pushes a number, in the unit joined to it (`4mm`) or in brackets behind it (`4 [kg*m^2]`).
+    Number { value: f64, unit: Option<Unit>, integer: bool },
     /// Pushes what the name stands for.
     Name(String),
     /// Negates one value.

@@ -2,9 +2,10 @@
 
 use proc_macro2::Span;
 
-use super::ast::{Expression, Instruction, Name, Operation, Operator, Target};
+use super::ast::{Expression, Instruction, Name, Operation, Operator, Target, Unit};
 use super::parser::{GivenUp, Parser, Read};
 use super::tokens::Kind;
+use super::unit::unit_of_number;
 
 /// What waits for its right operand or its closing bracket.
 enum Pending {
@@ -118,16 +119,7 @@ impl Reader {
                 Ok(self.call(parser, word.clone(), 0, span))
             }
             Kind::Literal(text) => {
-                let Some(mut number) = number(text) else {
-                    return parser.expected("a number", "write numbers as `0.1`, `1e-3`, `100mm` or `30deg`");
-                };
-                if let Operation::Number { value, .. } = &mut number
-                    && let Some(fault) = range_fault(text, *value)
-                {
-                    parser.diagnostics.report(span, format!("`{text}` {fault}"), "choose another unit");
-                    *value = 1.0;
-                }
-                parser.skip(1);
+                let number = literal(parser, text)?;
                 self.push(number, span);
                 Ok(false)
             }
@@ -153,7 +145,7 @@ impl Reader {
                 parser.expect(']', help)?;
             } else if parser.take('.') {
                 let count = match parser.peek() {
-                    Kind::Literal(text) => number(text),
+                    Kind::Literal(text) => number(text, parser.span()),
                     _ => None,
                 };
                 let Some(count) = count else { return parser.expected("the number of a row", help) };
@@ -225,7 +217,7 @@ impl Reader {
             return self.derivative(parser, word);
         }
         if let Kind::Literal(text) = parser.peek()
-            && let Some(index) = number(text)
+            && let Some(index) = number(text, span)
             && matches!(index, Operation::Number { integer: true, .. })
         {
             self.push(index, parser.span());
@@ -345,8 +337,61 @@ pub fn closed_range(parser: &mut Parser<'_>) -> bool {
     closed
 }
 
-/// A literal as a number with its unit suffix; `None` where it is no decimal number.
-fn number(literal: &str) -> Option<Operation> {
+/// A number with its unit, which is joined to it or follows in brackets.
+fn literal(parser: &mut Parser<'_>, text: &str) -> Read<Operation> {
+    let span = parser.span();
+    let Some(mut number) = number(text, span) else {
+        return parser.expected("a number", NUMBER);
+    };
+    parser.skip(1);
+    if let Operation::Number { value, unit, .. } = &mut number {
+        if let Some(fault) = range_fault(text, *value) {
+            parser.diagnostics.report(span, format!("`{text}` {fault}"), "choose another unit");
+            *value = 1.0;
+        }
+        let digits = text.strip_suffix(unit.as_ref().map_or("", |unit| &unit.text)).unwrap_or(text);
+        let joined = unit.is_some();
+        if *parser.peek() == Kind::Open('[') {
+            if joined {
+                return parser.expected(
+                    "an operator",
+                    "a number has one unit: joined to it, `4mm`, or in brackets, `4 [mm^2]`",
+                );
+            }
+            *unit = Some(unit_of_number(parser)?);
+        }
+        if let (Some(unit), Kind::Punctuation('^', _)) = (unit, parser.peek()) {
+            two_readings(parser, span, digits, unit, joined);
+        }
+    }
+    Ok(number)
+}
+
+const NUMBER: &str = "write numbers as `0.1`, `1e-3`, `100mm` or `30deg`, compound units as `4 [m^2]`";
+
+/// Reports a power of a number with a unit: is it the number's or the unit's alone?
+fn two_readings(parser: &mut Parser<'_>, span: Span, digits: &str, unit: &Unit, joined: bool) {
+    let number = if joined { format!("{digits}{}", unit.text) } else { format!("{digits} [{}]", unit.text) };
+    let negative = matches!(parser.peek_at(1), Kind::Punctuation('-', _));
+    let exponent = match parser.peek_at(1 + usize::from(negative)) {
+        Kind::Literal(text) if text.bytes().all(|byte| byte.is_ascii_digit()) => {
+            format!("{}{text}", if negative { "-" } else { "" })
+        }
+        _ => "…".into(),
+    };
+    let is_symbol = unit.text.bytes().all(|byte| byte.is_ascii_alphanumeric());
+    let base = if is_symbol { unit.text.clone() } else { format!("({})", unit.text) };
+    parser.diagnostics.report(
+        span,
+        format!("`{number}^{exponent}` can be read in two ways"),
+        format!(
+            "write `{digits} [{base}^{exponent}]` for a power of the unit alone, `({number})^{exponent}` for a power of the number with its unit"
+        ),
+    );
+}
+
+/// A literal as a number with the unit joined to it; `None` where it is no decimal number.
+fn number(literal: &str, span: Span) -> Option<Operation> {
     let bytes = literal.as_bytes();
     let digits = |from: usize| {
         from + bytes.iter().skip(from).take_while(|byte| byte.is_ascii_digit() || **byte == b'_').count()
@@ -370,7 +415,8 @@ fn number(literal: &str) -> Option<Operation> {
     }
     let value = literal.get(..end)?.replace('_', "").parse().ok()?;
     let suffix = literal.get(end..).filter(|suffix| !suffix.is_empty()).map(str::to_owned);
-    Some(Operation::Number { value, suffix, integer })
+    let unit = suffix.map(|text| Unit { factors: vec![(Name { text: text.clone(), span }, 1)], text, span });
+    Some(Operation::Number { value, unit, integer })
 }
 
 /// What is wrong with a number that no `f64` comes near.
@@ -396,12 +442,15 @@ mod tests {
         let mut diagnostics = Diagnostics::default();
         let tokens = flatten(text.parse().expect("tokens"), &mut diagnostics);
         let read = expression(&mut Parser::new(&tokens, &mut diagnostics));
-        let Ok(expression) = read else { return diagnostics.to_text() };
+        let expression = match read {
+            Ok(expression) if diagnostics.is_empty() => expression,
+            _ => return diagnostics.to_text(),
+        };
         let mut words = Vec::new();
         for instruction in &expression.code {
             words.push(match &instruction.operation {
-                Operation::Number { value, suffix, .. } => {
-                    format!("{value}{}", suffix.clone().unwrap_or_default())
+                Operation::Number { value, unit, .. } => {
+                    format!("{value}{}", unit.as_ref().map_or("", |unit| &unit.text))
                 }
                 Operation::Name(name) => name.clone(),
                 Operation::Negate => "neg".into(),
@@ -441,6 +490,29 @@ mod tests {
     fn numbers_carry_their_suffix() {
         assert_eq!(postfix("100mm + 1.5e-3 + 30deg + 1_000"), "100mm 0.0015 add 30deg add 1000 add");
         assert!(postfix("'x'").contains("expected a number"));
+    }
+
+    #[test]
+    fn a_unit_in_brackets_follows_a_number() {
+        assert_eq!(postfix("4 [m^2] + -2[kg*m^2]*x"), "4m^2 2kg*m^2 neg x multiply add");
+        assert_eq!(postfix("[1, 2 [m/s], [3][0]]"), "1 2m/s 3 [1] 0 index/1 [3]");
+        assert_eq!(postfix("30 [rad/(s*A)^2]/x[1]"), "30rad/(s*A)^2 x 1 index/1 divide");
+        assert!(postfix("2 [x, y]").contains("`2*[x, y]`"));
+        assert!(postfix("2mm [m]").contains("a number has one unit"));
+    }
+
+    #[test]
+    fn a_power_of_a_number_with_a_unit_is_refused_with_both_readings() {
+        for text in ["4m^2", "4m ^ 2", "-4m^2*x", "sqrt(4m^2)", "x + 4m^2"] {
+            let message = postfix(text);
+            assert!(message.contains("`4 [m^2]`") && message.contains("`(4m)^2`"), "{message}");
+        }
+        assert!(postfix("2 [m/s]^-1").contains("`2 [(m/s)^-1]`"));
+        assert!(postfix("2 [m/s]^-1").contains("`(2 [m/s])^-1`"));
+        assert!(postfix("2e-3mm^k").contains("`(2e-3mm)^…`"));
+        assert_eq!(postfix("(4m)^2"), "4m 2 power");
+        assert_eq!(postfix("(4 [m])^2"), "4m 2 power");
+        assert_eq!(postfix("4^2 + x^2"), "4 2 power x 2 power add");
     }
 
     #[test]

@@ -428,7 +428,7 @@ pub fn read_loop(parser: &mut Parser<'_>) -> Read<Loop> {
     let mut high = expression(parser)?;
     if closed {
         // Read as what was meant, so that the body's rows are those.
-        let one = Operation::Number { value: 1.0, suffix: None, integer: true };
+        let one = Operation::Number { value: 1.0, unit: None, integer: true };
         high.code
             .extend([one, Operation::Binary(Operator::Add)].map(|operation| Instruction { operation, span }));
     }

@@ -35,8 +35,22 @@ fn array_type(parser: &mut Parser<'_>, help: &str) -> Read<Type> {
 
 const UNIT: &str = "write a unit as `m`, `rad/s`, `N*m` or `kg*m^2`; `1` where there is none";
 
+const UNIT_OF_NUMBER: &str = "brackets behind a number hold its unit, `4 [m^2]` or `30 [rad/s]`; a product needs its operator: `2*[x, y]`";
+
+/// `[unit]` behind a number.
+pub fn unit_of_number(parser: &mut Parser<'_>) -> Read<Unit> {
+    parser.skip(1);
+    let unit = product(parser, UNIT_OF_NUMBER)?;
+    parser.expect(']', UNIT_OF_NUMBER)?;
+    Ok(unit)
+}
+
 /// A unit with its parentheses multiplied out.
 pub fn unit(parser: &mut Parser<'_>) -> Read<Unit> {
+    product(parser, UNIT)
+}
+
+fn product(parser: &mut Parser<'_>, help: &str) -> Read<Unit> {
     let mut unit = Unit { factors: Vec::new(), text: String::new(), span: parser.span() };
     // Of each open parenthesis: where its factors begin, and the sign of its exponents.
     let mut open: Vec<(usize, i32)> = Vec::new();
@@ -56,11 +70,11 @@ pub fn unit(parser: &mut Parser<'_>) -> Read<Unit> {
                 unit.text.push('1');
             }
             Kind::Identifier(_) => {
-                let symbol = parser.name(UNIT)?;
+                let symbol = parser.name(help)?;
                 unit.text += &symbol.text;
                 unit.factors.push((symbol, 1));
             }
-            _ => return parser.expected("a unit", UNIT),
+            _ => return parser.expected("a unit", help),
         }
         finish_factor(parser, &mut unit, begin, sign)?;
         while !open.is_empty() && parser.take(')') {
@@ -71,7 +85,7 @@ pub fn unit(parser: &mut Parser<'_>) -> Read<Unit> {
         }
         let multiplies = parser.take('*');
         if !multiplies && !parser.take('/') {
-            return if open.is_empty() { Ok(unit) } else { parser.expected("`)`", UNIT) };
+            return if open.is_empty() { Ok(unit) } else { parser.expected("`)`", help) };
         }
         sign = if multiplies { 1 } else { -1 };
         unit.text.push(if multiplies { '*' } else { '/' });

@@ -163,9 +163,9 @@ mechanism! {
     body right { mass: 1, com: r }
     force gate: [0, jump/2*sign(p[1])] on p;
     constraint rods {
-        dot(p, p) == 1m^2;
-        dot(r - [1m, 0], r - [1m, 0]) == 1m^2;
-        dot(r - p, r - p) == 1m^2;
+        dot(p, p) == 1 [m^2];
+        dot(r - [1m, 0], r - [1m, 0]) == 1 [m^2];
+        dot(r - p, r - p) == 1 [m^2];
     }
     start p = [0, 1] rate [2, 0];
     start r = [1, 1] rate [2, 0];
@@ -209,12 +209,12 @@ mechanism! {
     body left { mass: 1, com: p }
     body right { mass: 1, com: r }
     constraint rods {
-        dot(p, p) == 1m^2;
-        dot(r - [1m, 0], r - [1m, 0]) == 1m^2;
-        dot(r - p, r - p) == 1m^2;
+        dot(p, p) == 1 [m^2];
+        dot(r - [1m, 0], r - [1m, 0]) == 1 [m^2];
+        dot(r - p, r - p) == 1 [m^2];
     }
     constraint tie redundant {
-        (dot(p, p) - 1m^2)*(1 + above*p[0]*max(p[1], 0)/1m + below*p[0]*max(-p[1], 0)/1m) == 0;
+        (dot(p, p) - 1 [m^2])*(1 + above*p[0]*max(p[1], 0)/1m + below*p[0]*max(-p[1], 0)/1m) == 0;
     }
     start p = [0, 1] rate [2, 0];
     start r = [1, 1] rate [2, 0];

@@ -30,7 +30,7 @@ mechanism! {
     param rod: [m; 3] = [0.40, 0.45, 0.50];
     coord p: [m; 2] = [0.3, 0.35];
     coord a: rad = 0.1;
-    constraint first { dot(p, p) == rod[0]^2 + 0.01m^2*sin(t/1s); }
+    constraint first { dot(p, p) == rod[0]^2 + (0.01m)^2*sin(t/1s); }
     constraint second {
         dot(p + 0.2m*unit(a) - [0.5m, 0], p + 0.2m*unit(a) - [0.5m, 0]) == rod[1]^2;
         dot(p + 0.2m*unit(a + 1) - [0.2m, 0.8m], p + 0.2m*unit(a + 1) - [0.2m, 0.8m]) == rod[2]^2;
@@ -75,7 +75,7 @@ mechanism! {
     constraint second redundant {
         0.06m*unit(a) + 0.08m*unit(psi) + 0.07m*unit(psi + TAU/4) == [0.08m, 0.07m] + 0.06m*unit(c);
     }
-    constraint slide redundant { x^2 + 0.1m*x == 0.02m^2*(2 + cos(c)); 2*x^2 + 0.2m*x == 2*0.02m^2*(2 + cos(c)); }
+    constraint slide redundant { x^2 + 0.1m*x == (0.02m)^2*(2 + cos(c)); 2*x^2 + 0.2m*x == 2*(0.02m)^2*(2 + cos(c)); }
     drive motor: a == far + 0.4 + sin(3*t/1s);
     branch level: cos(psi) > 0;
 }

@@ -314,7 +314,7 @@ mod tests {
         independent x;
         body bob { mass: 2, com: [x, y] }
         gravity weight { acceleration: [0, -9.81] }
-        constraint rod { x^2 + y^2 == 1m^2; }
+        constraint rod { x^2 + y^2 == 1 [m^2]; }
         start x = 1 rate 0;
         start y = 0 rate 3;
     }

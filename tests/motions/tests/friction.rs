@@ -21,7 +21,7 @@ mechanism! {
     coord x: m = 0;
     body block { mass: m, com: [x, 0] }
     tsda spring { from: [-1m, 0], to: [x, 0], stiffness: k, length: 1 }
-    friction belt { along: x - v*t, normal: m*9.81m/1s^2, coefficient: mu, speed: smooth }
+    friction belt { along: x - v*t, normal: m*9.81 [m/s^2], coefficient: mu, speed: smooth }
     start x = 0 rate v;
 }
 
@@ -88,7 +88,7 @@ mechanism! {
     body block { mass: m, com: -s*unit(alpha) }
     gravity weight { acceleration: [0, -9.81] }
     friction ground {
-        along: s, normal: m*9.81m/1s^2*cos(alpha) + push*(1 + sin(7*t/1s)), coefficient: mu, speed: smooth, viscous: viscous
+        along: s, normal: m*9.81 [m/s^2]*cos(alpha) + push*(1 + sin(7*t/1s)), coefficient: mu, speed: smooth, viscous: viscous
     }
     start s = 0 rate 0;
 }

@@ -37,7 +37,7 @@ mechanism! {
     tsda strut { from: [0.3, 0.1], to: pin, stiffness: stiffness, length: 0.2, damping: 2 }
     rsda coupling { angle: theta - shaft, stiffness: 0.4, damping: 0.02 }
     potential well = 0.2*1N*1m*cos(2*theta);
-    kinetic rotor = 0.5e-4*1kg*1m^2*der(theta)^2*(2 + cos(phi));
+    kinetic rotor = 0.5e-4 [kg*m^2]*der(theta)^2*(2 + cos(phi));
     dissipation bearing = 0.5e-3*1N*1m*1s*der(theta)^2;
     der(z) == (0.5N - z)/0.1s + 0.2N/1m*der(x);
 
