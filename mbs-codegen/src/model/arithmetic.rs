@@ -2,6 +2,7 @@
 
 use proc_macro2::Span;
 
+use super::bare::Bare;
 use super::elaborate::{Elaborator, Fault, Quantity, Scalar, Value};
 use super::expression::{Binary, Node, Unary};
 use super::units::Dimension;
@@ -138,7 +139,12 @@ impl Elaborator<'_> {
         quantity: Quantity,
         span: Span,
     ) -> Result<Scalar, Fault> {
-        Ok(Scalar { id: self.push_unary(function, a.id, span)?, quantity, bare: a.bare, span })
+        Ok(Scalar {
+            id: self.push_unary(function, a.id, span)?,
+            quantity,
+            bare: Bare::unary(function, a.bare),
+            span,
+        })
     }
 
     /// A function of two scalars.
@@ -165,7 +171,7 @@ impl Elaborator<'_> {
         Ok(Scalar {
             id: self.push_binary(function, a.id, b.id, span)?,
             quantity,
-            bare: a.bare && b.bare,
+            bare: Bare::binary(function, a.bare, b.bare),
             span,
         })
     }
@@ -205,7 +211,7 @@ impl Elaborator<'_> {
             (Quantity::Known(x), Quantity::Known(y)) => {
                 let help = if x.without_cycles() == y.without_cycles() {
                     "a cycle is TAU radians: multiply the frequency by `TAU`"
-                } else if a.bare || b.bare {
+                } else if a.bare == Bare::Wholly || b.bare == Bare::Wholly {
                     "a bare number has no unit; write it with one: `100mm`, `30deg`"
                 } else {
                     "bring both sides to one unit"

@@ -2,10 +2,11 @@
 
 use proc_macro2::Span;
 
+use super::bare::Bare;
 use super::dynamics::State;
 use super::elaborate::{Elaborator, Fault, LONGEST, Quantity, Reach, Scalar, Value};
 use super::expression::{Id, Node};
-use super::initialiser::{filling, initialiser, named, numbers};
+use super::initialiser::{definition, filling, in_unit, initialiser, numbers};
 use super::names::Names;
 use super::order::order;
 use super::turns::turning;
@@ -124,6 +125,7 @@ impl Declarations<'_> {
             names: self.names,
             diagnostics: self.diagnostics,
             reach: Reach::Position,
+            needs: Reach::Position,
             groups: &[],
             longest: self.model.longest.take(),
         };
@@ -156,7 +158,7 @@ impl Declarations<'_> {
                 let value = work.value(expression)?;
                 let value = initialiser(work, value, dimension.ok_or(Fault)?)?;
                 numbers(work, expression, &value, "a constant")?;
-                Ok::<_, Fault>(value)
+                Ok::<_, Fault>(in_unit(value, unit))
             });
             match value {
                 Ok(value) => {
@@ -229,7 +231,7 @@ impl Declarations<'_> {
         });
         let faulty = dimension.is_none() || sized.is_none();
         let (shape, size) = sized.unwrap_or_else(|| (vec![1; kind.shape.len()], 1));
-        Declared { dimension: dimension.unwrap_or_default(), shape, size, faulty }
+        Declared { dimension: dimension.unwrap_or_default(), bare: Bare::of(&kind.unit), shape, size, faulty }
     }
 
     fn parameter(&mut self, name: &Name, docs: Vec<String>, kind: &Type, value: Option<&Expression>) {
@@ -347,11 +349,12 @@ impl Declarations<'_> {
 
     /// Gives the name its value; a faulty declaration's uses are not reported.
     fn define(&mut self, name: &Name, declared: &Declared, ids: Vec<Id>) {
+        let bare = declared.bare;
         if declared.faulty {
             return self.names.give_up(&name.text);
         }
         let quantity = Quantity::Known(declared.dimension);
-        let items = ids.into_iter().map(|id| Scalar { id, quantity, bare: false, span: name.span }).collect();
+        let items = ids.into_iter().map(|id| Scalar { id, quantity, bare, span: name.span }).collect();
         self.names.define(&name.text, Value { shape: declared.shape.clone(), items, span: name.span });
     }
 
@@ -439,8 +442,11 @@ impl Declarations<'_> {
         let definitions: Vec<_> = lets.iter().map(|(name, _, value)| (*name, *value)).collect();
         for index in self.order(&definitions) {
             let Some((name, unit, expression)) = lets.get(index) else { continue };
-            match self.elaborate(|work| named(work, *unit, expression)) {
-                Ok(value) => self.names.define(&name.text, value),
+            match self.elaborate(|work| definition(work, *unit, expression)) {
+                Ok((value, needs)) => {
+                    self.names.define_needs(&name.text, needs);
+                    self.names.define(&name.text, value);
+                }
                 Err(Fault) => self.names.give_up(&name.text),
             }
         }
@@ -500,6 +506,8 @@ impl Declarations<'_> {
 /// A type that was declared.
 struct Declared {
     dimension: Dimension,
+    /// Whether its values are angles.
+    bare: Bare,
     shape: Vec<usize>,
     size: usize,
     /// Reported; the rest is a guess.

@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use proc_macro2::Span;
 
 use super::Function;
+use super::bare::Bare;
 use super::declarations::Declarations;
 use super::elaborate::{Elaborator, Fault, Quantity, Scalar, Value};
 use super::initialiser::{initialiser, numbers};
@@ -21,6 +22,8 @@ pub struct Callable {
     unit: Dimension,
     /// Unit of the argument.
     argument: Dimension,
+    /// Whether its values are angles.
+    bare: Bare,
 }
 
 impl Declarations<'_> {
@@ -36,7 +39,8 @@ impl Declarations<'_> {
             let period = self.elaborate(|work| {
                 let value = work.value(expression)?;
                 let scalar = work.scalar(&value, "a period", value.span)?;
-                if let (Quantity::Known(found), false, Some(taken)) = (scalar.quantity, scalar.bare, taken)
+                if let (Quantity::Known(found), Some(taken)) = (scalar.quantity, taken)
+                    && scalar.bare != Bare::Wholly
                     && found != taken
                 {
                     let (function, unit) = (&name.text, &argument.text);
@@ -54,9 +58,10 @@ impl Declarations<'_> {
             });
             period.ok()
         });
-        if let (Some(unit), Some(argument)) = (dimension, taken) {
+        if let (Some(value), Some(argument)) = (dimension, taken) {
             let index = self.model.functions.len();
-            self.names.define_function(&name.text, Callable { index, unit, argument });
+            self.names
+                .define_function(&name.text, Callable { index, unit: value, argument, bare: Bare::of(unit) });
         }
         self.model.functions.push(Function {
             name: name.clone(),
@@ -101,7 +106,7 @@ pub fn call(
         unit = unit.over(function.argument);
     }
     let id = work.expressions.push_call(function.index, order, scalar.id, span);
-    Ok(Value::scalar(Scalar { id, quantity: Quantity::Known(unit), bare: false, span }, span))
+    Ok(Value::scalar(Scalar { id, quantity: Quantity::Known(unit), bare: function.bare, span }, span))
 }
 
 /// The argument has the declared unit.
@@ -113,7 +118,7 @@ fn fits(
 ) -> Result<(), Fault> {
     match argument.quantity {
         Quantity::Known(unit) if unit != declared => {
-            let help = if argument.bare {
+            let help = if argument.bare == Bare::Wholly {
                 "a bare number has no unit; write it with one: `100mm`, `30deg`"
             } else {
                 "bring the argument to the unit that the declaration gives in parentheses"

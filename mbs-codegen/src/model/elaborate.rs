@@ -2,6 +2,7 @@
 
 use proc_macro2::Span;
 
+use super::bare::Bare;
 use super::compound;
 use super::declared_functions;
 use super::evaluate;
@@ -29,6 +30,10 @@ pub const LONGEST: usize = 6_000;
 /// Largest count, and most rounds of all loops together.
 pub const MOST_ROUNDS: usize = 100_000;
 
+const RATES: &str = "write rates in `out` definitions and forces; a drive takes its rates from the time and from inputs with rates";
+const ACCELERATIONS: &str =
+    "forces use positions and rates; what grows with the acceleration is a mass: `kinetic T = …;`";
+
 /// Names that have a value without a declaration.
 const CONSTANTS: [&str; 3] = ["t", "PI", "TAU"];
 
@@ -54,8 +59,8 @@ impl Quantity {
 pub struct Scalar {
     pub id: Id,
     pub quantity: Quantity,
-    /// Made of bare numbers, `PI` and `TAU` alone: as an initialiser it is in the declared unit.
-    pub bare: bool,
+    /// Whether it takes on a declared unit.
+    pub bare: Bare,
     /// The token that it comes from.
     pub span: Span,
 }
@@ -98,6 +103,8 @@ pub enum Reach {
     Force,
     /// `der2(x)` too.
     Output,
+    /// Any rate: the definition of a `let`, whose uses are checked.
+    Let,
 }
 
 /// Executes the postfix code of expressions.
@@ -107,6 +114,8 @@ pub struct Elaborator<'a> {
     pub diagnostics: &'a mut Diagnostics,
     /// What may stand here.
     pub reach: Reach,
+    /// What stood here so far.
+    pub needs: Reach,
     /// What `margin` and `ratio` can refer to.
     pub groups: &'a [Reference],
     /// Largest length of the text so far.
@@ -203,6 +212,7 @@ impl Elaborator<'_> {
             Operation::Number { value, unit, .. } => self.literal(*value, unit.as_ref(), span)?,
             Operation::Name(_) if is_reference(&expression.code, index) => return Ok(index + 1),
             Operation::Name(name) if matches!(self.names.get(name), Some(Symbol::Value(_))) => {
+                self.allows(name, span)?;
                 stack.push_named(name, span);
                 return Ok(index + 1);
             }
@@ -299,14 +309,17 @@ impl Elaborator<'_> {
             Longest::note(&mut self.longest, value, || format!("{} m", value.abs()), span);
         }
         let id = self.expressions.push(Node::Number(value));
-        let scalar = Scalar { id, quantity: Quantity::Known(dimension), bare: false, span };
+        let scalar = Scalar { id, quantity: Quantity::Known(dimension), bare: Bare::of(unit), span };
         Ok(Value::scalar(scalar, span))
     }
 
     /// A bare number; `0` fits any unit.
     pub fn number_literal(&mut self, value: f64, span: Span) -> Scalar {
-        let quantity = if value == 0.0 { Quantity::Any } else { Quantity::Known(Dimension::NUMBER) };
-        Scalar { id: self.expressions.push(Node::Number(value)), quantity, bare: true, span }
+        let (quantity, bare) = match value == 0.0 {
+            true => (Quantity::Any, Bare::Zero),
+            false => (Quantity::Known(Dimension::NUMBER), Bare::Wholly),
+        };
+        Scalar { id: self.expressions.push(Node::Number(value)), quantity, bare, span }
     }
 
     /// What a name stands for that is no declared value.
@@ -327,7 +340,7 @@ impl Elaborator<'_> {
         let number = |work: &mut Self, value| {
             let id = work.expressions.push(Node::Number(value));
             let quantity = Quantity::Known(Dimension::NUMBER);
-            Value::scalar(Scalar { id, quantity, bare: true, span }, span)
+            Value::scalar(Scalar { id, quantity, bare: Bare::Wholly, span }, span)
         };
         match name {
             "PI" => Ok(number(self, std::f64::consts::PI)),
@@ -335,7 +348,7 @@ impl Elaborator<'_> {
             "t" => {
                 let id = self.expressions.push(Node::Time);
                 let quantity = Quantity::Known(Dimension::SECOND);
-                Ok(Value::scalar(Scalar { id, quantity, bare: false, span }, span))
+                Ok(Value::scalar(Scalar { id, quantity, bare: Bare::Not, span }, span))
             }
             _ => Err(self.unknown_name(name, place)),
         }
@@ -403,11 +416,7 @@ impl Elaborator<'_> {
     pub fn rate(&mut self, arguments: Vec<Value>, name: &str, order: u8, span: Span) -> Result<Value, Fault> {
         let [argument] = self.arguments(name, arguments, span)?;
         if self.reach == Reach::Position {
-            return Err(self.fault(
-                span,
-                format!("`{name}` stands outside an output or a force"),
-                "write rates in `out` definitions and forces; a drive takes its rates from the time and from inputs with rates",
-            ));
+            return Err(self.fault(span, format!("`{name}` stands outside an output or a force"), RATES));
         }
         let inner = self.expressions.reachable(argument.items.iter().map(|item| item.id));
         let inside = |wanted: fn(Node) -> bool| {
@@ -420,20 +429,37 @@ impl Elaborator<'_> {
                 "take rates of coordinates, inputs with rates and the time; `der(z) == …;` defines that of a state",
             ));
         }
-        if self.reach == Reach::Force && (order > 1 || inside(|node| matches!(node, Node::Rate(..)))) {
-            return Err(self.fault(
-                span,
-                "an acceleration stands in a force",
-                "forces use positions and rates; what grows with the acceleration is a mass: `kinetic T = …;`",
-            ));
+        let accelerates = order > 1 || inside(|node| matches!(node, Node::Rate(..)));
+        if self.reach == Reach::Force && accelerates {
+            return Err(self.fault(span, "an acceleration stands in a force", ACCELERATIONS));
         }
+        self.needs = self.needs.max(if accelerates { Reach::Output } else { Reach::Force });
         let seconds = Dimension::SECOND.power(f64::from(order)).unwrap_or_default();
         for item in &argument.items {
             self.of_position(*item, name)?;
         }
         self.each(&argument, span, |work, item| {
             let quantity = Quantity::Known(item.quantity.dimension().over(seconds));
-            Ok(Scalar { id: work.expressions.push(Node::Rate(item.id, order)), quantity, bare: false, span })
+            Ok(Scalar {
+                id: work.expressions.push(Node::Rate(item.id, order)),
+                quantity,
+                bare: item.bare.rate(),
+                span,
+            })
+        })
+    }
+
+    /// Before: a name with a value. After: what its `let` uses may stand here, or the fault reported.
+    fn allows(&mut self, name: &str, span: Span) -> Result<(), Fault> {
+        let needs = self.names.needs(name);
+        self.needs = self.needs.max(needs);
+        if needs <= self.reach {
+            return Ok(());
+        }
+        Err(if self.reach == Reach::Position {
+            self.fault(span, format!("`{name}` takes a rate and stands outside an output or a force"), RATES)
+        } else {
+            self.fault(span, format!("`{name}` takes an acceleration and stands in a force"), ACCELERATIONS)
         })
     }
 
@@ -448,7 +474,7 @@ impl Elaborator<'_> {
         if function == "reaction" {
             return self.reaction(targets, counts, span);
         }
-        if self.reach == Reach::Position {
+        if matches!(self.reach, Reach::Position | Reach::Let) {
             return Err(self.fault(
                 span,
                 format!("`{function}` stands outside an output or a force"),
@@ -503,7 +529,7 @@ impl Elaborator<'_> {
         for (row, dimension) in &chosen {
             let quantity = Quantity::Known(Dimension::JOULE.over(*dimension));
             let id = self.expressions.push(Node::Multiplier(*row));
-            let scalar = Scalar { id, quantity, bare: false, span };
+            let scalar = Scalar { id, quantity, bare: Bare::Not, span };
             items.push(match function {
                 "effort" => self.unary_scalar(Unary::Negate, scalar, quantity, span)?,
                 _ => scalar,

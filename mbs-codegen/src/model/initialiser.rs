@@ -1,39 +1,67 @@
 //! What stands behind the `=` of a declaration: its unit, its shape, whether it is a number.
 
-use super::elaborate::{Elaborator, Fault, Quantity, Scalar, Value};
+use super::bare::Bare;
+use super::elaborate::{Elaborator, Fault, Quantity, Reach, Scalar, Value};
 use super::expression::Node;
 use super::names::Symbol;
 use super::units::Dimension;
 use crate::syntax::ast::{Expression, Operation, Unit};
 
-/// The value of a `let`, in its unit where one is declared.
-pub fn named(
+/// The value of a `let`, in its unit where one is declared, and what the places of its uses must allow.
+pub fn definition(
     work: &mut Elaborator<'_>,
     unit: Option<&Unit>,
     expression: &Expression,
-) -> Result<Value, Fault> {
+) -> Result<(Value, Reach), Fault> {
+    work.reach = Reach::Let;
+    named(work, unit, expression).map(|value| (value, work.needs))
+}
+
+fn named(work: &mut Elaborator<'_>, unit: Option<&Unit>, expression: &Expression) -> Result<Value, Fault> {
     let value = work.value(expression)?;
     match unit {
         None => Ok(value),
         Some(unit) => {
             let dimension = Dimension::of(unit, work.diagnostics).ok_or(Fault)?;
-            initialiser(work, value, dimension)
+            Ok(in_unit(initialiser(work, value, dimension)?, unit))
         }
     }
 }
 
-/// Before: the value behind a `=`. After: the same in the declared unit: bare numbers take it on, others must
-/// have it.
+/// A value that is known to be in a declared unit, which may be that of an angle.
+pub fn in_unit(value: Value, unit: &Unit) -> Value {
+    let items = value.items.iter().map(|item| Scalar { bare: Bare::of(unit), ..*item }).collect();
+    Value { items, ..value }
+}
+
+/// Before: the value behind a `=`. After: the same in the declared unit: bare numbers and their multiples without a unit take it
+/// on, others must have it.
 pub fn initialiser(work: &mut Elaborator<'_>, value: Value, declared: Dimension) -> Result<Value, Fault> {
     let mut items = Vec::new();
     for item in &value.items {
-        if !item.bare && item.quantity != Quantity::Any {
-            let expected = Scalar { quantity: Quantity::Known(declared), ..*item };
-            work.agree(expected, *item)?;
+        let takes_it = match item.bare {
+            Bare::Wholly | Bare::Zero => true,
+            Bare::Partly => item.quantity.dimension() == Dimension::NUMBER,
+            Bare::Not | Bare::Angle => item.quantity == Quantity::Any,
+        };
+        if !takes_it {
+            has_unit(work, *item, declared)?;
         }
-        items.push(Scalar { quantity: Quantity::Known(declared), bare: false, ..*item });
+        items.push(Scalar { quantity: Quantity::Known(declared), bare: Bare::Not, ..*item });
     }
     Ok(Value { items, ..value })
+}
+
+/// The declared unit, at a value that has one of its own.
+fn has_unit(work: &mut Elaborator<'_>, item: Scalar, declared: Dimension) -> Result<(), Fault> {
+    if item.quantity == Quantity::Known(Dimension::NUMBER) && declared != Dimension::NUMBER {
+        let message = format!("units differ: `1` here, `{declared}` on the other side");
+        let help =
+            format!("multiply it by a quantity of this unit, or write its number so: `1 [{declared}]*…`");
+        return Err(work.fault(item.span, message, help));
+    }
+    let expected = Scalar { quantity: Quantity::Known(declared), ..item };
+    work.agree(expected, item).map(|_| ())
 }
 
 /// The declared shape; a scalar stands for every component.

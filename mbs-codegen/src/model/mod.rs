@@ -1,6 +1,7 @@
 //! ast → resolved model: every name, shape, unit and loop resolved; after it nothing is mutable.
 
 mod arithmetic;
+mod bare;
 mod bodies;
 mod compound;
 mod declarations;

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use proc_macro2::Span;
 
 use super::declared_functions::Callable;
-use super::elaborate::Value;
+use super::elaborate::{Reach, Value};
 use super::functions::FUNCTIONS;
 use super::units::Dimension;
 use crate::diagnostics::Diagnostics;
@@ -60,6 +60,8 @@ pub struct Names {
     local: BTreeSet<String>,
     rows: BTreeMap<String, Rows>,
     pins: BTreeMap<String, Vec<Joint>>,
+    /// What a `let` uses, where that is more than positions.
+    needs: BTreeMap<String, Reach>,
     /// Whether the text has masses or forces, so that its rows have multipliers.
     pub dynamic: bool,
 }
@@ -132,6 +134,16 @@ impl Names {
     pub fn get(&self, name: &str) -> Option<&Symbol> {
         let scoped = self.scoped.iter().rev().find(|(known, _)| known == name).map(|(_, symbol)| symbol);
         scoped.or_else(|| self.declared.get(name).map(|(symbol, _)| symbol))
+    }
+
+    /// Notes what the value of a `let` uses.
+    pub fn define_needs(&mut self, name: &str, needs: Reach) {
+        self.needs.insert(name.to_owned(), needs);
+    }
+
+    /// What a place must allow that uses this name.
+    pub fn needs(&self, name: &str) -> Reach {
+        self.needs.get(name).copied().unwrap_or(Reach::Position)
     }
 
     /// All declared functions.

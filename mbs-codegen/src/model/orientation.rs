@@ -62,7 +62,7 @@ fn direction(
     let one = work.number_literal(1.0, span);
     let squares = work.sum_of_products([(j, j), (k, k)].into_iter(), span)?;
     let squares = twice(work, squares, span)?;
-    let along = join(work, Binary::Subtract, one, squares, span)?;
+    let along = Scalar { bare: squares.bare, ..join(work, Binary::Subtract, one, squares, span)? };
     let (ij, k0) = (work.multiply(i, j, span)?, work.multiply(k, e0, span)?);
     let (ik, j0) = (work.multiply(i, k, span)?, work.multiply(j, e0, span)?);
     let second = join(work, Binary::Add, ij, k0, span)?;
@@ -142,7 +142,9 @@ fn join(
 
 fn twice(work: &mut Elaborator<'_>, a: Scalar, span: Span) -> Result<Scalar, Fault> {
     let two = work.number_literal(2.0, span);
-    work.multiply(two, a, span)
+    let twice = work.multiply(two, a, span)?;
+    // A number of the formula is none of the text.
+    Ok(Scalar { bare: a.bare, ..twice })
 }
 
 impl Resolver<'_> {

@@ -2,6 +2,7 @@
 
 use proc_macro2::Span;
 
+use super::bare::Bare;
 use super::dynamics::{Carrier, Pin};
 use super::elaborate::{Elaborator, Fault, Quantity, Reach, Scalar, Value};
 use super::expression::{Node, Unary};
@@ -62,7 +63,7 @@ impl Elaborator<'_> {
         let mut items = Vec::new();
         for component in 0..2 {
             let id = self.expressions.push(Node::Pin(joint.pin, component));
-            let scalar = Scalar { id, quantity, bare: false, span };
+            let scalar = Scalar { id, quantity, bare: Bare::Not, span };
             items.push(match wanted == *first {
                 true => scalar,
                 false => self.unary_scalar(Unary::Negate, scalar, quantity, span)?,

@@ -3,6 +3,7 @@
 use proc_macro2::Span;
 
 use super::Reference;
+use super::bare::Bare;
 use super::elaborate::{Elaborator, Fault, Quantity, Reach, Scalar, Value};
 use super::expression::{Binary, Id, Node};
 use super::resolve::Resolver;
@@ -54,7 +55,7 @@ impl Elaborator<'_> {
             ("margin", []) => {
                 let id = self.expressions.push(Node::Margin(group.index));
                 let quantity = Quantity::Known(Dimension::NUMBER);
-                Ok(Value::scalar(Scalar { id, quantity, bare: false, span }, span))
+                Ok(Value::scalar(Scalar { id, quantity, bare: Bare::Not, span }, span))
             }
             ("ratio", [x]) => {
                 let Some((row, dimension)) = drive else {
@@ -66,7 +67,7 @@ impl Elaborator<'_> {
                 self.each(x, span, |work, item| {
                     let id = work.expressions.push(Node::Ratio(item.id, row));
                     let quantity = Quantity::Known(item.quantity.dimension().over(dimension));
-                    Ok(Scalar { id, quantity, bare: false, span })
+                    Ok(Scalar { id, quantity, bare: Bare::Not, span })
                 })
             }
             _ => Err(self.fault(span, format!("`{function}` has another number of arguments"), help)),

@@ -4,11 +4,12 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use proc_macro2::Span;
 
+use super::bare::Bare;
 use super::declarations::{self, component_names};
 use super::elaborate::{Elaborator, Fault, MOST_ROUNDS, Quantity, Reach, Scalar, Value};
 use super::elements::is_dynamic;
 use super::expression::{Binary, Id, Node};
-use super::initialiser::{fits_shape, initialiser, named};
+use super::initialiser::{definition, fits_shape, initialiser};
 use super::names::{Names, Rows, Symbol, report_double};
 use super::units::Dimension;
 use super::{Branch, Model, Output, Row, VariableKind, idle, inputs};
@@ -104,6 +105,7 @@ impl Resolver<'_> {
             names: self.names,
             diagnostics: self.diagnostics,
             reach,
+            needs: Reach::Position,
             groups: &self.model.references,
             longest: self.model.longest.take(),
         };
@@ -195,9 +197,11 @@ impl Resolver<'_> {
     /// A `let` in a loop: it holds to the end of the round.
     fn local(&mut self, name: &Name, unit: Option<&Unit>, value: &Expression) -> Result<(), Fault> {
         let free = self.names.is_free(name, self.diagnostics);
-        let value = self.elaborate(Reach::Position, |work| named(work, unit, value));
+        let defined = self.elaborate(Reach::Let, |work| definition(work, unit, value));
         if free {
-            self.names.enter(&name.text, value.map_or(Symbol::Faulty, Symbol::Value));
+            let needs = defined.as_ref().map_or(Reach::Position, |(_, needs)| *needs);
+            self.names.define_needs(&name.text, needs);
+            self.names.enter(&name.text, defined.map_or(Symbol::Faulty, |(value, _)| Symbol::Value(value)));
         }
         Ok(())
     }
@@ -461,7 +465,7 @@ fn residual(work: &mut Elaborator<'_>, a: Scalar, b: Scalar, span: Span) -> Resu
 /// A literal 0 in the shape of the other side.
 fn spread_zero(value: Value, other: &Value) -> Value {
     match value.items.as_slice() {
-        [zero] if value.shape.is_empty() && zero.quantity == Quantity::Any && zero.bare => {
+        [zero] if value.shape.is_empty() && zero.quantity == Quantity::Any && zero.bare == Bare::Zero => {
             Value { shape: other.shape.clone(), items: vec![*zero; other.items.len()], span: value.span }
         }
         _ => value,

@@ -1,1 +1,5 @@
 //! The language: texts that were misread, refused without need, or answered by messages of the compiler.
+
+mod d19_units_of_numbers;
+mod d20_rates_in_lets;
+mod k3_powers_of_numbers_with_units;

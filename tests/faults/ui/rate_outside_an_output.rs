@@ -10,6 +10,7 @@ mechanism! {
     let v = der2(p);
     constraint tip { p == L*unit(phi); }
     drive crank: der(phi) == omega;
+    branch ahead: v.0 > 0;
     out speed: m/s = der(p.0);
 }
 
