@@ -32,6 +32,7 @@ mod program;
     )
 )]
 pub mod random;
+mod scattered;
 mod structure;
 mod symbolic;
 mod syntax;

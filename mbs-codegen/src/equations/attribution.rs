@@ -4,6 +4,7 @@
 
 use super::jacobian;
 use crate::symbolic::evaluate::evaluate;
+use crate::symbolic::scattered;
 use crate::symbolic::{Graph, Leaf, NodeId};
 
 /// Positions that are tried; what is no number at one of them says nothing there.
@@ -157,23 +158,5 @@ fn carried(
 
 /// A value of a leaf, scattered but the same in every build; lengths and masses are positive.
 pub fn scattered(leaf: Leaf, trial: usize) -> f64 {
-    let (kind, index) = match leaf {
-        Leaf::Parameter(index) => (1, index),
-        Leaf::Input(index) => (2, index),
-        Leaf::Time => (3, 0),
-        Leaf::Position(index) => (4, index),
-        Leaf::Velocity(index) => (5, index),
-        Leaf::Acceleration(index) => (6, index),
-        Leaf::State(index) => (7, index),
-        Leaf::Multiplier(index) => (8, index),
-        Leaf::Direction(index) => (9, index),
-        Leaf::Given(group, index) => (10 + u64::from(group), index),
-    };
-    // The finalizer of SplitMix64: neighbouring leaves have unrelated values.
-    let mut bits = (kind << 40) ^ (u64::from(index) << 8) ^ trial as u64;
-    bits = bits.wrapping_add(0x9e37_79b9_7f4a_7c15);
-    bits = (bits ^ (bits >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    bits = (bits ^ (bits >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    bits ^= bits >> 31;
-    0.2 + (bits >> 11) as f64 / (1_u64 << 53) as f64
+    0.2 + scattered::scattered(leaf, trial)
 }

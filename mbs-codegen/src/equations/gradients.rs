@@ -3,6 +3,7 @@
 use super::Row;
 use crate::model::Model;
 use crate::symbolic::evaluate::evaluate;
+use crate::symbolic::scattered::scattered;
 use crate::symbolic::{Binary, Graph, Leaf, Node, NodeId, Stage, Unary};
 
 /// Times that the unit of a row may be off its gradient before the row is measured by the latter: bars of one linkage,
@@ -81,8 +82,8 @@ impl Rows<'_> {
             let at = |leaf: Leaf| match leaf {
                 Leaf::Position(index) => {
                     let index = index as usize;
-                    // No two alike, so that no symmetry of the mechanism is kept.
-                    let share = (index + 1) as f64 / self.coordinates.len() as f64;
+                    // No two alike and none in equal steps, so that no symmetry of the mechanism is kept.
+                    let share = 0.25 + 0.75 * scattered(leaf, 0);
                     let guess = guesses.get(index).copied().unwrap_or(0.0);
                     guess + side * ASIDE * share * coordinates.get(index).copied().unwrap_or(1.0)
                 }

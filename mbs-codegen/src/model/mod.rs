@@ -32,6 +32,7 @@ mod shared;
 pub mod signs;
 mod turns;
 pub mod units;
+mod vanishing;
 
 use proc_macro2::Span;
 

@@ -10,8 +10,8 @@ use super::elaborate::{Elaborator, Fault, Reach, Scalar, Value};
 use super::expression::{Binary, Expressions, Id, Node, Unary};
 use super::initialiser::initialiser;
 use super::resolve::Resolver;
-use super::signs::values;
 use super::units::Dimension;
+use super::vanishing::vanish;
 use super::{Row, elements::ORIENTATION};
 use crate::syntax::ast::{Field, Name};
 
@@ -198,22 +198,11 @@ impl Resolver<'_> {
             places.extend(coordinates.map(|(place, coordinate)| (*coordinate, (body, place))));
         }
         let parts = parts(&model.expressions, &places);
-        let trials = UNIT_VECTORS.map(|unit| {
-            values(&model.expressions, |leaf| match leaf {
-                Node::Coordinate(index) => {
-                    places.get(&index).and_then(|(_, place)| unit.get(*place)).copied()
-                }
-                _ => None,
-            })
-        });
-        let vanishes = |residual: Id| {
-            let values = trials.iter().map(|trial| trial.get(residual.index()).copied().flatten());
-            values.into_iter().all(|value| value.is_some_and(|value| value.abs() < VANISHING))
-        };
+        let vanish = vanish(&model.expressions, &places);
         for (index, row) in model.rows.iter().enumerate() {
             let Some(Part::Of(body)) = parts.get(row.residual.index()) else { continue };
             let Some((body, own)) = bodies.get(*body).filter(|(_, own)| *own != index) else { continue };
-            if vanishes(row.residual) {
+            if vanish.get(row.residual.index()) == Some(&true) {
                 let message = format!("the row `{}` repeats that of `{body}`", row.name);
                 let own = model.rows.get(*own).map_or(body.as_str(), |row| row.name.as_str());
                 let help = format!(
@@ -224,11 +213,6 @@ impl Resolver<'_> {
         }
     }
 }
-
-/// Unit vectors of four components, and what a residual of a few operations may be off by there.
-const UNIT_VECTORS: [[f64; 4]; 4] =
-    [[0.5, 0.5, -0.5, 0.5], [0.1, -0.7, 0.1, 0.7], [0.8, 0.0, 0.6, 0.0], [-0.2, 0.4, 0.4, 0.8]];
-const VANISHING: f64 = 1e-12;
 
 /// Whose parameters an expression is made of.
 #[derive(Clone, Copy, PartialEq, Eq)]

@@ -111,7 +111,7 @@ fn wrong(signed: &Signed, value: f64) -> Option<Impossible> {
 }
 
 /// The value of each expression that is made of numbers and of what `leaf` knows alone.
-pub fn values(expressions: &Expressions, leaf: impl Fn(Node) -> Option<f64>) -> Vec<Option<f64>> {
+fn values(expressions: &Expressions, leaf: impl Fn(Node) -> Option<f64>) -> Vec<Option<f64>> {
     let mut values: Vec<Option<f64>> = Vec::with_capacity(expressions.len());
     for (_, node) in expressions.iter() {
         let of = |id: Id| values.get(id.index()).copied().flatten();

@@ -1,6 +1,7 @@
 //! Dyads and single unknowns among the blocks: those of which both solutions are known as formulas.
 
 use super::polynomial::{Atom, Directions, Monomial, ONE, Polynomial, expand};
+use crate::symbolic::scattered::scattered;
 use crate::symbolic::{Graph, Leaf, NodeId, evaluate::evaluate};
 
 /// Coefficients of a dyad or a single unknown, of earlier coordinates and time alone; the runtime's `Dyad` and `Single`
@@ -210,7 +211,7 @@ fn circles(g: &mut Graph, table: &Table) -> Option<Dyad> {
 }
 
 /// Values of the leaves at which identities are tried.
-const SAMPLES: u32 = 3;
+const SAMPLES: usize = 3;
 
 /// Roundings that an identity may be off by: coefficients are products of a few sines and lengths.
 const ROUNDINGS: f64 = 1e-12;
@@ -256,22 +257,9 @@ fn sampled(
     })
 }
 
-/// A leaf's value in a sample: between ½ and 1½, in steps of the golden ratio's fraction.
-fn value(leaf: Leaf, sample: u32) -> f64 {
-    let (kind, index) = match leaf {
-        Leaf::Parameter(index) => (0, index),
-        Leaf::Input(index) => (1, index),
-        Leaf::Time => (2, 0),
-        Leaf::Position(index) => (3, index),
-        Leaf::Velocity(index) => (4, index),
-        Leaf::Acceleration(index) => (5, index),
-        Leaf::State(index) => (6, index),
-        Leaf::Multiplier(index) => (7, index),
-        Leaf::Direction(index) => (8, index),
-        Leaf::Given(_, index) => (9, index),
-    };
-    let number = f64::from(1 + kind + 11 * sample) + 23.0 * f64::from(index);
-    0.5 + (number * 0.618_033_988_749_895).fract()
+/// A leaf's value in a sample: between ½ and 1½.
+fn value(leaf: Leaf, sample: usize) -> f64 {
+    0.5 + scattered(leaf, sample)
 }
 
 #[cfg(test)]

@@ -3,6 +3,7 @@
 //! Closures come as vectors, so a single entry of a loop, −L sin φ, vanishes within each turn where two rows for two
 //! angles do not. So pivots are entries that stand still (numbers) or 2 × 2, and what is left at the end is up to 3 × 3.
 
+use crate::symbolic::scattered::scattered;
 use crate::symbolic::{Graph, Leaf, NodeId, evaluate::evaluate};
 
 /// Smallest block that is worth an order: closed forms are shorter below.
@@ -18,7 +19,7 @@ const NEAR: usize = 3;
 const LARGEST: usize = 64;
 
 /// States at which pivots are tried.
-const SAMPLES: u32 = 8;
+const SAMPLES: usize = 8;
 
 /// Of these so many must bear a pivot; at the others it costs the elimination with pivoting besides.
 const MOST_UNBORNE: usize = 2;
@@ -241,24 +242,10 @@ fn multipliers(a: &[Vec<f64>], row: usize, pivot: &Pivot, inverse: &[Vec<f64>]) 
     signed_multipliers(a, row, pivot, inverse).into_iter().map(f64::abs).collect()
 }
 
-/// A leaf's value in a sample, in steps of the golden ratio's fraction: what may be a length between ½ and 1½, a coordinate
-/// between −3 and 3.
-fn value(leaf: Leaf, sample: u32) -> f64 {
-    let (kind, index) = match leaf {
-        Leaf::Position(index) => (0, index),
-        Leaf::Parameter(index) => (1, index),
-        Leaf::Input(index) => (2, index),
-        Leaf::Time => (3, 0),
-        Leaf::Velocity(index)
-        | Leaf::Acceleration(index)
-        | Leaf::State(index)
-        | Leaf::Multiplier(index)
-        | Leaf::Direction(index)
-        | Leaf::Given(_, index) => (4, index),
-    };
-    let number = f64::from(1 + kind + 7 * sample) + 61.0 * f64::from(index);
-    let fraction = (number * 0.618_033_988_749_895).fract();
-    if kind == 0 { 6.0 * fraction - 3.0 } else { 0.5 + fraction }
+/// A leaf's value in a sample: what may be a length between ½ and 1½, a coordinate between −3 and 3.
+fn value(leaf: Leaf, sample: usize) -> f64 {
+    let fraction = scattered(leaf, sample);
+    if matches!(leaf, Leaf::Position(_)) { 6.0 * fraction - 3.0 } else { 0.5 + fraction }
 }
 
 #[cfg(test)]

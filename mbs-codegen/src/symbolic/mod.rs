@@ -7,6 +7,7 @@ pub mod differentiate;
 pub mod evaluate;
 pub mod graph;
 mod rules;
+pub mod scattered;
 pub mod substitute;
 
 pub use angles::{AngleSum, add_angles};
