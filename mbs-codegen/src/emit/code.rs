@@ -9,9 +9,7 @@ use quote::quote;
 use super::scope::Scope;
 use crate::program::{Angle, Jet, Line, Section};
 use crate::symbolic::{Binary, Node, NodeId, Unary};
-
-/// Text in which `__mbs` stands for the runtime's path.
-pub const RUNTIME: &str = "__mbs";
+use crate::syntax::keywords::RUNTIME;
 
 /// Before: printed code. After: its tokens, [`RUNTIME`] replaced by the path that the wrapper macro passed on.
 pub fn tokens(text: &str, runtime: &TokenStream) -> TokenStream {

@@ -5,11 +5,12 @@ use quote::{format_ident, quote};
 
 use super::code::tokens;
 use super::generics::Generics;
-use super::scope::{field_name, is_keyword, number, subscripts, variable};
+use super::scope::{field_name, number, subscripts, variable};
 use crate::model::scenes::{Scene, Scenes, alias};
 use crate::model::{Field, Function, Model, Role};
 use crate::syntax::Text;
 use crate::syntax::ast::Name;
+use crate::syntax::keywords::identifier;
 
 /// What stands for type parameters without a field.
 pub struct Markers {
@@ -23,18 +24,31 @@ pub struct Markers {
 pub fn markers(scenes: &Scenes) -> Markers {
     let marker = quote! { ::core::marker::PhantomData };
     let mut markers = Markers { declaration: TokenStream::new(), value: TokenStream::new() };
-    let Model { fields, functions, .. } = &scenes.shared;
-    if fields.is_empty() {
-        let taken = functions.iter().any(|function| function.name.text == "scalar");
-        let name = format_ident!("{}", if taken { "scalar_type" } else { "scalar" });
+    if scenes.shared.fields.is_empty() {
+        let name = unused(scenes, "scalar");
         markers.declaration.extend(quote! { #[doc(hidden)] pub #name: #marker<T>, });
         markers.value.extend(quote! { #name: #marker, });
     }
     if scenes.are_declared() {
-        markers.declaration.extend(quote! { #[doc(hidden)] pub __scene: #marker<S>, });
-        markers.value.extend(quote! { __scene: #marker, });
+        let name = unused(scenes, "__scene");
+        markers.declaration.extend(quote! { #[doc(hidden)] pub #name: #marker<S>, });
+        markers.value.extend(quote! { #name: #marker, });
     }
     markers
+}
+
+/// A name of a field that the text does not use.
+fn unused(scenes: &Scenes, name: &str) -> Ident {
+    let Model { fields, functions, .. } = &scenes.shared;
+    let taken = |name: &str| {
+        fields.iter().any(|field| field.name.text == name)
+            || functions.iter().any(|function| function.name.text == name)
+    };
+    let mut name = name.to_owned();
+    while taken(&name) {
+        name.push('_');
+    }
+    format_ident!("{name}")
 }
 
 /// `Default`, and with declared functions `new`.
@@ -66,7 +80,11 @@ pub fn constructors(text: &Text, scenes: &Scenes, generics: &Generics) -> TokenS
     let visibility = &text.header.visibility;
     let free = generics.of_all_scenes(runtime, &TokenStream::new());
     let idents: Vec<Ident> = shared.functions.iter().map(|function| ident(&function.name)).collect();
-    let given = idents.iter().zip(generics.functions()).map(|(ident, kind)| quote! { #ident: #kind });
+    // An argument is a pattern: `Some`, or a constant that the caller has, would be matched.
+    let arguments_of: Vec<Ident> =
+        shared.functions.iter().map(|function| format_ident!("__{}", function.name.text)).collect();
+    let given =
+        arguments_of.iter().zip(generics.functions()).map(|(argument, kind)| quote! { #argument: #kind });
     let functions = idents.iter().map(|_| quote! { #default::default() });
     let docs = new_docs(text, scenes);
     quote! {
@@ -76,7 +94,7 @@ pub fn constructors(text: &Text, scenes: &Scenes, generics: &Generics) -> TokenS
             #[must_use]
             #[allow(non_snake_case, clippy::too_many_arguments, reason = "the text names the functions")]
             #visibility fn new(#(#given),*) -> Self {
-                Self { #(#defaults)* #(#idents,)* #marker }
+                Self { #(#defaults)* #(#idents: #arguments_of,)* #marker }
             }
         }
 
@@ -96,7 +114,7 @@ fn new_docs(text: &Text, scenes: &Scenes) -> Vec<String> {
     if let Some(first) = first {
         let given =
             functions.iter().map(|function| function.name.text.as_str()).collect::<Vec<_>>().join(", ");
-        let (name, alias) = (&text.header.name, alias(&text.header, first));
+        let (name, alias) = (text.header.label(), alias(&text.header, first));
         let placeholders = vec!["_"; functions.len()].join(", ");
         docs.push(String::new());
         docs.push(format!(
@@ -258,9 +276,5 @@ pub fn function_docs(function: &Function) -> Vec<String> {
 
 /// The name as an identifier, raw where it is a keyword.
 pub fn ident(name: &Name) -> Ident {
-    if is_keyword(&name.text) {
-        Ident::new_raw(&name.text, name.span)
-    } else {
-        Ident::new(&name.text, name.span)
-    }
+    identifier(&name.text, name.span)
 }

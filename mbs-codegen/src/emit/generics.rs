@@ -3,10 +3,10 @@
 use proc_macro2::{Ident, Span, TokenStream};
 use quote::{format_ident, quote};
 
-use super::scope::is_keyword;
 use crate::model::Model;
-use crate::model::scenes::Scenes;
+use crate::model::scenes::{Scene, Scenes, alias};
 use crate::syntax::Text;
+use crate::syntax::keywords::is_keyword;
 
 /// Type parameters of a mechanism.
 pub struct Generics {
@@ -20,9 +20,11 @@ impl Generics {
     /// Before: the scenes of a text. After: one type a declared function, named as the function in capitals and lower
     /// case, `LiftLaw` for `lift_law`, and unlike every other type in reach.
     pub fn of(text: &Text, scenes: &Scenes) -> Self {
-        let mechanism = &text.header.name;
-        let mut taken =
-            vec!["T".into(), "S".into(), mechanism.to_string(), format!("{mechanism}Coordinates")];
+        let mut taken: Vec<String> = vec!["T".into(), "S".into(), "Whole".into()];
+        for scene in [""].into_iter().chain(scenes.scenes.iter().filter_map(Scene::label)) {
+            let alias = alias(&text.header, scene);
+            taken.extend([scene.to_owned(), format!("{alias}Coordinates"), alias]);
+        }
         let functions = scenes.shared.functions.iter().map(|function| {
             let base = camel_case(&function.name.text);
             let numbered = (2..).map(|number| format!("{base}Function{number}"));

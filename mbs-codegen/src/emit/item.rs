@@ -331,7 +331,7 @@ fn partitioned(
 fn tables(text: &Text, scenes: &Scenes, scene: &Scene, bodies: &Bodies) -> TokenStream {
     let runtime = &text.header.runtime;
     let source = scenes::source(text, scenes);
-    let (name, model) = (text.header.name.to_string(), &scene.model);
+    let (name, model) = (text.header.label(), &scene.model);
     let scene = scene.label().map(|scene| quote! { const SCENE: &'static ::core::primitive::str = #scene; });
     let entry = |name: &str, unit: &str, span: Span| {
         let line = quote_spanned!(span=> ::core::line!());

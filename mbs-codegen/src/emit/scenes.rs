@@ -9,6 +9,7 @@ use super::generics::Generics;
 use crate::diagnostics::Diagnostics;
 use crate::model::scenes::{Scene, Scenes, WHOLE, alias};
 use crate::syntax::Text;
+use crate::syntax::keywords::identifier;
 
 /// The mechanism in a scene: `Name<T>`, with functions `Name<Lift, T>`, with scenes `Name<T, marker>`.
 pub fn type_in(text: &Text, scenes: &Scenes, scene: &Scene, scalar: &TokenStream) -> TokenStream {
@@ -70,14 +71,14 @@ pub fn items(text: &Text, scenes: &Scenes, parts: &[Part<'_>]) -> TokenStream {
                 ::core::clone::Clone, ::core::marker::Copy, ::core::fmt::Debug, ::core::default::Default,
                 ::core::cmp::PartialEq, ::core::cmp::Eq
             )]
-            pub struct #name;
+            pub struct #name {}
         }
     });
     let generics = Generics::of(text, scenes);
     let aliases = declared().map(|(part, name)| {
         let functions = generics.functions();
-        let title = format!(" [`{}`] in its scene `{}`.", text.header.name, name.text);
-        let name = format_ident!("{}", alias(&text.header, &name.text), span = name.span);
+        let title = format!(" [`{}`] in its scene `{}`.", text.header.label(), name.text);
+        let name = identifier(&alias(&text.header, &name.text), name.span);
         let target = type_in(text, scenes, part.scene, &quote! { T });
         quote! {
             #[doc = #title]
@@ -86,7 +87,7 @@ pub fn items(text: &Text, scenes: &Scenes, parts: &[Part<'_>]) -> TokenStream {
         }
     });
     let (conversion, source) = (conversion(text, scenes), &text.source);
-    // By a glob, equal names of scenes in one module are no fault unless someone uses them.
+    // Types and no values, so that no variable of the caller's is taken for a scene. By a glob, equal names of scenes in one module are no fault unless someone uses them.
     quote! {
         #[doc(hidden)]
         #[allow(
@@ -138,5 +139,5 @@ fn conversion(text: &Text, scenes: &Scenes) -> TokenStream {
 
 /// The module of the markers.
 fn module(text: &Text) -> proc_macro2::Ident {
-    format_ident!("__{}Scenes", text.header.name)
+    format_ident!("__{}Scenes", text.header.label())
 }

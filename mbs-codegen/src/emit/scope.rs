@@ -7,6 +7,7 @@ use super::lengths::Lengths;
 use crate::equations::MARGIN;
 use crate::model::{Model, Role};
 use crate::symbolic::{Graph, Leaf, Node, NodeId, Stage};
+use crate::syntax::keywords::is_keyword;
 
 /// What is at hand within a function.
 pub struct Scope<'a> {
@@ -173,9 +174,4 @@ pub fn subscripts(component: usize, shape: &[usize]) -> String {
 /// The name as an identifier of Rust, raw where it is a keyword.
 pub fn field_name(name: &str) -> String {
     if is_keyword(name) { format!("r#{name}") } else { name.to_owned() }
-}
-
-/// Whether some edition keeps the word for itself; `syn` does not know those of 2024 yet.
-pub fn is_keyword(name: &str) -> bool {
-    name == "gen" || syn::parse_str::<syn::Ident>(name).is_err()
 }

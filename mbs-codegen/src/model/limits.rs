@@ -1,7 +1,8 @@
 //! Working ranges, and the coordinates that are meant as independent.
 
-use super::elaborate::{Fault, Reach};
+use super::elaborate::{Fault, Reach, Scalar, Value};
 use super::expression::Node;
+use super::initialiser::initialiser;
 use super::resolve::Resolver;
 use super::{Independent, Limit, VariableKind};
 use crate::syntax::ast::{Expression, Name};
@@ -23,9 +24,12 @@ impl Resolver<'_> {
             let scalar = [&low, &value, &high].map(|part| work.scalar(part, "a limit", part.span));
             let [low, value, high] = scalar;
             let (low, value, high) = (low?, value?, high?);
-            work.agree(value, low)?;
-            work.agree(value, high)?;
-            Ok::<_, Fault>([low, value, high])
+            let mut bound = |bound: Scalar| {
+                let bound = Value::scalar(bound, bound.span);
+                let bound = initialiser(work, bound, value.quantity.dimension())?;
+                bound.items.first().copied().ok_or(Fault)
+            };
+            Ok::<_, Fault>([bound(low)?, value, bound(high)?])
         })?;
         for bound in [low, high] {
             let varies = |node| match node {

@@ -10,15 +10,13 @@ use super::functions::FUNCTIONS;
 use super::units::Dimension;
 use crate::diagnostics::Diagnostics;
 use crate::syntax::ast::Name;
+use crate::syntax::keywords::{RUNTIME, UNUSABLE};
 
 /// Names with a meaning of their own.
 pub const RESERVED: [&str; 13] = [
     "t", "PI", "TAU", "der", "der2", "rate", "lambda", "effort", "reaction", "margin", "ratio", "joint",
     "curve",
 ];
-
-/// Words that cannot name a field of a struct, not even as raw identifiers.
-pub const UNUSABLE: [&str; 5] = ["self", "Self", "super", "crate", "_"];
 
 /// What a name stands for.
 #[derive(Clone, Debug)]
@@ -216,6 +214,8 @@ fn usable(name: &Name, diagnostics: &mut Diagnostics) -> bool {
         format!("`{text}` is the name of a function")
     } else if UNUSABLE.contains(&text) {
         format!("`{text}` is a word of Rust that cannot be a name")
+    } else if text == RUNTIME {
+        format!("`{text}` stands for the runtime in the emitted code")
     } else {
         return true;
     };

@@ -90,5 +90,5 @@ impl Scene {
 
 /// Name of the mechanism in a scene: of the alias, of the beginning of the view of the coordinates.
 pub fn alias(header: &Header, scene: &str) -> String {
-    format!("{}{scene}", header.name)
+    format!("{}{scene}", header.label())
 }

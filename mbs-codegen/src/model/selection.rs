@@ -2,11 +2,12 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::names::{UNUSABLE, report_double};
+use super::names::report_double;
 use super::scenes::{WHOLE, alias};
 use crate::diagnostics::{Diagnostics, nearest};
 use crate::syntax::ast::{Name, Statement, StatementKind};
-use crate::syntax::{Header, NAMELESS, declares_coordinate, stand_in};
+use crate::syntax::keywords::UNUSABLE;
+use crate::syntax::{Header, NAMELESS, OWN, declares_coordinate, stand_in};
 
 /// Most scenes: each is translated by itself.
 const MOST_SCENES: usize = 64;
@@ -58,7 +59,7 @@ pub fn select(
         if diagnostics.is_empty() {
             work.report_unused(diagnostics);
         }
-        if header.name == SCENE_PARAMETER {
+        if header.label() == SCENE_PARAMETER {
             diagnostics.report(
                 header.name.span(),
                 format!("`{SCENE_PARAMETER}` stands for the scene in the emitted code"),
@@ -216,7 +217,9 @@ fn is_free<'a>(
         format!("`{text}` is a word of Rust that cannot be a name")
     } else if text == WHOLE {
         format!("`{WHOLE}` is the scene of all effects, without a declaration")
-    } else if header.name == text {
+    } else if text.starts_with(OWN) {
+        format!("names that begin with `{OWN}` are those of the emitted code")
+    } else if header.label() == text {
         format!("`{text}` is the name of the mechanism")
     } else if let Some(other) =
         text.strip_suffix(VIEW).filter(|other| other.is_empty() || names.contains_key(*other))

@@ -1,9 +1,11 @@
 //! `{ attr } [ vis ] mechanism Name ;` in front of the statements.
 
 use proc_macro2::{Delimiter, Ident, Span, TokenStream, TokenTree};
+use syn::ext::IdentExt;
 use syn::parse::{Parse, ParseStream, Parser};
 use syn::{Attribute, Token, Visibility};
 
+use super::keywords::{UNUSABLE, identifier};
 use crate::diagnostics::Diagnostics;
 
 /// What stands in front of the statements.
@@ -14,9 +16,35 @@ pub struct Header {
     pub attributes: Vec<Attribute>,
     /// Visibility of everything emitted.
     pub visibility: Visibility,
-    /// Name of the mechanism.
+    /// Name of the mechanism, raw where it is a keyword.
     pub name: Ident,
 }
+
+impl Header {
+    /// The name without the `r#` of a raw identifier: as messages and other names have it.
+    pub fn label(&self) -> String {
+        self.name.unraw().to_string()
+    }
+
+    /// Why no type can have the name, if none can.
+    pub fn name_fault(&self) -> Option<String> {
+        let name = self.label();
+        if UNUSABLE.contains(&name.as_str()) {
+            Some(format!("`{name}` is a word of Rust that cannot be a name"))
+        } else if name == SCALAR {
+            Some(format!("`{name}` stands for the type of numbers in the emitted code"))
+        } else if name.starts_with(OWN) {
+            Some(format!("names that begin with `{OWN}` are those of the emitted code"))
+        } else {
+            None
+        }
+    }
+}
+
+/// Name of the emitted code's type parameter.
+const SCALAR: &str = "T";
+/// What names begin with that emitted code makes.
+pub const OWN: &str = "__";
 
 /// Before: the whole input. After: the runtime's path, which leads in parentheses (without it `::mbs_runtime`), the
 /// tokens up to the first `;`, which the header is read from, and the tokens behind it.
@@ -75,7 +103,9 @@ fn header(
     if keyword != "mechanism" {
         return Err(syn::Error::new(keyword.span(), format!("expected `mechanism`, found `{keyword}`")));
     }
-    let name = input.parse()?;
+    let nameless = |fault: syn::Error| syn::Error::new(fault.span(), "expected identifier");
+    let name: Ident = input.call(Ident::parse_any).map_err(nameless)?;
+    let name = identifier(&name.unraw().to_string(), name.span());
     let end: syn::Result<Token![;]> = input.parse();
     let rest: TokenStream = input.parse()?;
     // Behind the name a statement may stand, its `;` forgotten, or something that means nothing.

@@ -5,6 +5,7 @@ mod constraint;
 mod dynamics;
 mod expression;
 mod header;
+pub mod keywords;
 mod parser;
 mod scene;
 mod source;
@@ -15,12 +16,9 @@ mod unit;
 use proc_macro2::{Span, TokenStream};
 
 use crate::diagnostics::Diagnostics;
-pub use header::Header;
+pub use header::{Header, OWN};
 pub use scene::NAMELESS;
 use statement::parse;
-
-/// Name of the emitted code's type parameter.
-const SCALAR: &str = "T";
 
 /// A text as written.
 pub struct Text {
@@ -42,12 +40,8 @@ pub fn read(input: TokenStream, diagnostics: &mut Diagnostics) -> Option<Text> {
         return None;
     }
     let (header, rest) = header::read(first, runtime, diagnostics)?;
-    if header.name == SCALAR {
-        diagnostics.report(
-            header.name.span(),
-            format!("`{SCALAR}` stands for the type of numbers in the emitted code"),
-            "give the mechanism another name",
-        );
+    if let Some(fault) = header.name_fault() {
+        diagnostics.report(header.name.span(), fault, "give the mechanism another name");
         return None;
     }
     let body = tokens::flatten(rest.into_iter().chain(body).collect(), diagnostics);
@@ -56,7 +50,7 @@ pub fn read(input: TokenStream, diagnostics: &mut Diagnostics) -> Option<Text> {
         if diagnostics.is_empty() {
             diagnostics.report(
                 header.name.span(),
-                format!("`{}` has no coordinate", header.name),
+                format!("`{}` has no coordinate", header.label()),
                 "declare what is sought: `coord phi: rad = 0.5;`",
             );
         }

@@ -4,3 +4,4 @@ mod d19_units_of_numbers;
 mod d1_rows_on_euler_parameters;
 mod d20_rates_in_lets;
 mod k3_powers_of_numbers_with_units;
+mod k8_names_of_rust;
