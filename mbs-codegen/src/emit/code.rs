@@ -9,7 +9,9 @@ use quote::quote;
 use super::scope::Scope;
 use crate::program::{Angle, Jet, Line, Section};
 use crate::symbolic::{Binary, Node, NodeId, Unary};
-use crate::syntax::keywords::RUNTIME;
+
+/// Text in which `__mbs` stands for the runtime's path.
+pub const RUNTIME: &str = "__mbs";
 
 /// Before: printed code. After: its tokens, [`RUNTIME`] replaced by the path that the wrapper macro passed on.
 pub fn tokens(text: &str, runtime: &TokenStream) -> TokenStream {
@@ -32,7 +34,9 @@ fn with_runtime(stream: TokenStream, runtime: &TokenStream) -> TokenStream {
     let mut replaced: Vec<TokenTree> = Vec::new();
     for tree in stream {
         match tree {
-            TokenTree::Ident(name) if name == RUNTIME => replaced.extend(runtime.clone()),
+            TokenTree::Ident(name) if name == RUNTIME && !is_field(&replaced) => {
+                replaced.extend(runtime.clone());
+            }
             TokenTree::Group(group) => {
                 let inner = with_runtime(group.stream(), runtime);
                 replaced.push(TokenTree::Group(Group::new(group.delimiter(), inner)));
@@ -41,6 +45,15 @@ fn with_runtime(stream: TokenStream, runtime: &TokenStream) -> TokenStream {
         }
     }
     replaced.into_iter().collect()
+}
+
+/// Whether a name that follows these tokens is that of a field: it stands behind a single dot.
+fn is_field(before: &[TokenTree]) -> bool {
+    let is_dot = |back: usize| {
+        let tree = before.len().checked_sub(back).and_then(|index| before.get(index));
+        matches!(tree, Some(TokenTree::Punct(mark)) if mark.as_char() == '.')
+    };
+    is_dot(1) && !is_dot(2)
 }
 
 /// How the sines' kernel is called.

@@ -10,7 +10,7 @@ use super::functions::FUNCTIONS;
 use super::units::Dimension;
 use crate::diagnostics::Diagnostics;
 use crate::syntax::ast::Name;
-use crate::syntax::keywords::{RUNTIME, UNUSABLE};
+use crate::syntax::keywords::UNUSABLE;
 
 /// Names with a meaning of their own.
 pub const RESERVED: [&str; 13] = [
@@ -214,8 +214,6 @@ fn usable(name: &Name, diagnostics: &mut Diagnostics) -> bool {
         format!("`{text}` is the name of a function")
     } else if UNUSABLE.contains(&text) {
         format!("`{text}` is a word of Rust that cannot be a name")
-    } else if text == RUNTIME {
-        format!("`{text}` stands for the runtime in the emitted code")
     } else {
         return true;
     };

@@ -13,3 +13,6 @@ pub mod substitute;
 pub use angles::{AngleSum, add_angles};
 pub use differentiate::{tangent, tangents};
 pub use graph::{Binary, Graph, Leaf, Node, NodeId, Stage, Unary};
+
+#[cfg(test)]
+mod compositions_tests;

@@ -5,9 +5,6 @@ use proc_macro2::{Ident, Span};
 /// Words that cannot name anything, not even as raw identifiers.
 pub const UNUSABLE: [&str; 5] = ["self", "Self", "super", "crate", "_"];
 
-/// What the emitted code has in place of the runtime's path while it is text.
-pub const RUNTIME: &str = "__mbs";
-
 /// Whether some edition keeps the word for itself; `syn` does not know those of 2024 yet.
 pub fn is_keyword(name: &str) -> bool {
     name == "gen" || syn::parse_str::<Ident>(name).is_err()

@@ -16,5 +16,5 @@ mechanism! {
 }
 
 fn main() {
-    let _ = Plate::default();
+    let _ = Plate::<f64>::default();
 }

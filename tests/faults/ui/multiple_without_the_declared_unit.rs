@@ -16,5 +16,5 @@ mechanism! {
 }
 
 fn main() {
-    let _ = Thrown::default();
+    let _ = Thrown::<f64>::default();
 }

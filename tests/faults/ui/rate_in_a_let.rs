@@ -23,5 +23,5 @@ mechanism! {
 }
 
 fn main() {
-    let _ = Rod::default();
+    let _ = Rod::<f64>::default();
 }
