@@ -40,7 +40,7 @@ fn quadratic_rows_other_than_the_length_are_no_normalisation() {
         let mut terms = Vec::new();
         let mut squares = [0_i32; 4];
         let mut mixed = false;
-        for i in 0..4 {
+        for (i, square) in squares.iter_mut().enumerate() {
             for j in i..4 {
                 state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
                 let coefficient = (state >> 33) as i32 % 3 - 1;
@@ -49,7 +49,7 @@ fn quadratic_rows_other_than_the_length_are_no_normalisation() {
                     mixed |= i != j;
                 }
                 if i == j {
-                    squares[i] = coefficient;
+                    *square = coefficient;
                 }
             }
         }
