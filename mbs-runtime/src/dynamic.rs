@@ -280,7 +280,11 @@ pub trait Partitioned<T: Scalar, const N: usize, const M: usize>: Mechanism<T, N
     /// Factorised diagonal blocks over the dependent coordinates, and the other entries of Φ_q.
     type Partition: Copy;
 
-    /// The independent coordinates, ascending: N − M.
+    /// Whether there are such blocks. A text whose rows are more than its coordinates take has none: its partition is empty and of margin
+    /// 0, its functions give 0 and `NotConverged`, and [`VelocityTransformation`](crate::dynamics::VelocityTransformation) goes over to
+    /// [`Projection`](crate::dynamics::Projection).
+    const IS_PARTITIONED: bool = true;
+    /// The independent coordinates, ascending: N − M; none where there are no blocks.
     const INDEPENDENT: &'static [u16];
 
     /// Solves Φ(q, t) = 0 for the dependent coordinates; the independent ones of `q` (N) stay as they are.

@@ -178,6 +178,14 @@ pub enum Failure {
         /// Time (s).
         time: f64,
     },
+    /// Friction depends on a multiplier that is not unique: rows that follow from each other share a force in any way, and each way makes
+    /// another motion.
+    SharedNormalForce {
+        /// A row that shares the force.
+        row: Entry,
+        /// Time (s).
+        time: f64,
+    },
     /// A step that is 0, negative, no number, or too small to change the time.
     InvalidStep {
         /// The step (s).
@@ -355,6 +363,7 @@ impl Failure {
             | Failure::StatesUnknown { time, .. }
             | Failure::Locked { time, .. }
             | Failure::Ambiguous { time, .. }
+            | Failure::SharedNormalForce { time, .. }
             | Failure::Unbalanced { time, .. } => *time = now,
             Failure::NonFinite { .. }
             | Failure::Negative { .. }
@@ -391,6 +400,7 @@ impl Failure {
             | Failure::StatesUnknown { time, .. }
             | Failure::Locked { time, .. }
             | Failure::Ambiguous { time, .. }
+            | Failure::SharedNormalForce { time, .. }
             | Failure::Unbalanced { time, .. } => *time,
             Failure::NonFinite { .. }
             | Failure::Negative { .. }

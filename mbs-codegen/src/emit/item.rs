@@ -64,7 +64,10 @@ fn implementations(text: &Text, scenes: &Scenes, part: &Part<'_>) -> TokenStream
     let kinematic = part.square.then(|| kinematic(&name, (model, m), (bodies, &callable), runtime));
     // Surplus rows leave multipliers open that only all rows together determine.
     let is_partitioned = model.dynamics.is_some() && !part.surplus;
-    let partitioned = is_partitioned.then(|| partitioned(&name, (model, m), (part, &callable), runtime));
+    let partitioned = model.dynamics.as_ref().map(|_| match is_partitioned {
+        true => partitioned(&name, (model, m), (part, &callable), runtime),
+        false => unpartitioned(&name, (model, m), &callable, runtime),
+    });
     let factors = (part.square || is_partitioned).then_some(&bodies.factors);
     let dynamic = bodies
         .dynamics
@@ -322,6 +325,54 @@ fn partitioned(
                 #runtime::dynamics::velocity_transformation::accelerations::<Self, T, #n, #m, #freedom>(
                     self, __p, __s, __factors, __force, __gamma,
                 )
+            }
+        }
+    }
+}
+
+/// `impl Partitioned` of a text that has no blocks of its own coordinates: [`partitioned`] without any.
+fn unpartitioned(
+    name: &TokenStream,
+    (model, m): (&Model, usize),
+    generics: &TokenStream,
+    runtime: &TokenStream,
+) -> TokenStream {
+    let n = model.coordinates.len();
+    let zero = quote! { T::constant(0.0f64) };
+    quote! {
+        impl<#generics> #runtime::Partitioned<T, #n, #m> for #name {
+            type Partition = ();
+            const IS_PARTITIONED: ::core::primitive::bool = false;
+            const INDEPENDENT: &'static [::core::primitive::u16] = &[];
+            fn solve_dependent<__S: #runtime::BlockSolver<T>>(
+                &self,
+                _: &__Parameters<T>,
+                _: &mut [T; #n],
+                _: T,
+                _: &mut __S,
+            ) -> T::Lanes<#runtime::Outcome> {
+                T::per_lane(|_| #runtime::Outcome::NotConverged { row: 0 })
+            }
+            fn partition(&self, _: &__Parameters<T>, _: &__Position<T>) -> ((), #runtime::Margin<T>) {
+                ((), #runtime::Margin::regular().with_block(#zero, 0, 0))
+            }
+            fn complete(&self, _: &(), _: &[T; #m], _: &mut [T; #n]) {}
+            fn reduce(&self, _: &(), _: &mut [T; #n]) -> [T; #m] {
+                [#zero; #m]
+            }
+            fn accelerations(
+                &self,
+                _: &<Self as #runtime::Mechanism<T, #n, #m>>::Parameters,
+                _: &<Self as #runtime::Mechanism<T, #n, #m>>::Position,
+                _: &(),
+                _: &[T; #n],
+                _: &[T; #m],
+            ) -> #runtime::dynamics::velocity_transformation::Transformed<T, #n, #m> {
+                #runtime::dynamics::velocity_transformation::Transformed {
+                    qdd: [#zero; #n],
+                    lambda: [#zero; #m],
+                    inert: false,
+                }
             }
         }
     }

@@ -216,6 +216,7 @@ fn projected<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     y.qd = penalized.put(&y.qd, &mechanism.phi_t(parameters, &position).map(|rate| -rate)).0;
     let (qdd, taken) = penalized.put(&qdd, &mechanism.gamma(parameters, &position, &y.qd));
     let lambda = lambda.plus(R::constant(1.0), &[1.0], [&taken]);
+    model.require_unshared_by_rank((&position, t), &y, &lambda)?;
     let rate = model.rates(&position, &y, qdd, &lambda);
     model.trapezoid(from, h, &mut y, &rate);
     let Metric { rows, coordinates, .. } = model.metric;

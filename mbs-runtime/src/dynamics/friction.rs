@@ -4,6 +4,7 @@
 //! sums and of norms of two, its terms v = φ(g(λ)) solve v = φ(c + B v), with B from one solution a term; all solutions are counted.
 //! Where Q depends on λ otherwise, Newton's method takes the derivative ∂Q/∂λ.
 
+use super::kkt::{Factors, System, none};
 use super::model::Model;
 use super::piecewise::{Piecewise, Solutions, Term};
 use super::vector::{State, Vector};
@@ -136,6 +137,99 @@ where
             Solutions::Several(count) => Found::Several(count),
             Solutions::AtLeast(count) => Found::AtLeast(count),
         }
+    }
+}
+
+/// Parts of a normal force that cancel along a combination of multipliers without effect, of their sum: beside rounding.
+const CANCELLED: f64 = 1e-8;
+
+/// The row that a normal force which acts shares in any way, of combinations of multipliers without effect.
+struct Shared<R, const M: usize> {
+    /// The combinations, then zeros.
+    idle: [[R; M]; M],
+}
+
+impl<R: Real, const N: usize, const M: usize> WithNormalForces<R, N, M> for Shared<R, M> {
+    type Output = Option<usize>;
+
+    fn at<const K: usize>(self, forces: &NormalForces<R, N, M, K>) -> Option<usize> {
+        let zero = R::constant(0.0);
+        let mut shares = [None; K];
+        for k in 0..K {
+            let own = forces.by_multiplier.get(k)?.iter().find_map(|slopes| shared_row(slopes, &self.idle));
+            let mut inner = forces.by_term.get(k)?.iter().flat_map(|slopes| slopes.iter().zip(&shares));
+            let inner = inner.find_map(|(slope, share)| share.filter(|_| *slope != zero));
+            shares.iter_mut().skip(k).take(1).for_each(|share| *share = own.or(inner));
+        }
+        let acts = |k: usize| forces.force.iter().any(|row| row.get(k).is_some_and(|entry| *entry != zero));
+        shares.iter().enumerate().find_map(|(k, share)| share.filter(|_| acts(k)))
+    }
+}
+
+/// The row with the largest part of a sum of multipliers that changes along a combination without effect.
+fn shared_row<R: Real, const M: usize>(slopes: &[R; M], idle: &[[R; M]; M]) -> Option<usize> {
+    let zero = R::constant(0.0);
+    idle.iter().find_map(|idle| {
+        let (mut sum, mut size, mut largest) = (zero, zero, (zero, 0));
+        for (row, (slope, share)) in slopes.iter().zip(idle).enumerate() {
+            let part = *slope * *share;
+            (sum, size) = (sum + part, size + part.abs());
+            if largest.0 < part.abs() {
+                largest = (part.abs(), row);
+            }
+        }
+        (none::<R>(CANCELLED) * size < sum.abs()).then_some(largest.1)
+    })
+}
+
+impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, R, N, M> {
+    /// Fails where friction at a state depends on a multiplier that is not unique, of a text with rows that may follow from others, by
+    /// the `factors` of its position.
+    ///
+    /// # Errors
+    /// [`Failure::SharedNormalForce`].
+    #[cold]
+    #[inline(never)]
+    pub(super) fn require_unshared(
+        &self,
+        (position, t): (&S::Position, R),
+        y: &State<R, N, S::States>,
+        lambda: &[R; M],
+        factors: &Factors<R, N, M>,
+    ) -> Result<(), Failure> {
+        // A singular position of other texts is passed, and their multipliers are unique on both sides of it.
+        if !S::REDUNDANT.contains(&true) || factors.rank() >= M {
+            return Ok(());
+        }
+        let (mechanism, parameters) = (self.mechanism, self.parameters);
+        let idle = factors.idle_multipliers();
+        let shared = mechanism.normal_forces(parameters, position, &y.qd, &y.states, Shared { idle });
+        let row = shared.unwrap_or_else(|| {
+            let slopes = mechanism.force_lambda(parameters, position, &y.qd, &y.states, lambda);
+            slopes.iter().find_map(|slopes| shared_row(slopes, &idle))
+        });
+        let Some(row) = row else { return Ok(()) };
+        let row = kinematics::entry(S::ROWS, u16::try_from(row).unwrap_or(u16::MAX));
+        Err(Failure::SharedNormalForce { row, time: t.to_f64() })
+    }
+
+    /// [`require_unshared`](Self::require_unshared) of a method that has no factors of the rows.
+    ///
+    /// # Errors
+    /// Those of it, and [`Failure::Inertialess`].
+    #[inline]
+    pub(super) fn require_unshared_by_rank(
+        &self,
+        (position, t): (&S::Position, R),
+        y: &State<R, N, S::States>,
+        lambda: &[R; M],
+    ) -> Result<(), Failure> {
+        if !S::FORCE_USES_MULTIPLIERS || !S::REDUNDANT.contains(&true) {
+            return Ok(());
+        }
+        let phi_q = self.mechanism.phi_q(self.parameters, position);
+        let factors = System::new(&self.metric.mass(), &phi_q, self.metric).factorize(S::COORDINATES, t)?;
+        self.require_unshared((position, t), y, lambda, &factors)
     }
 }
 

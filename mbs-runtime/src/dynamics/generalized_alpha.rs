@@ -130,6 +130,7 @@ impl GeneralizedAlpha {
                 y.qd = y.qd.plus(-gamma / (beta * h), &[1.0], [&step]);
                 model.trapezoid(from, h, &mut y, &rate);
                 let rate = model.rates(&model.position(t, &y), &y, qdd, &lambda);
+                model.require_unshared_by_rank((&position, t), &y, &lambda)?;
                 let solved = Solved { rate, lambda, margin: factors.margin() };
                 return Ok(Instant { t, y, solved, carried: self.carried(a0, before, &qdd) });
             }

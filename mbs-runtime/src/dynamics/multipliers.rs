@@ -63,6 +63,9 @@ pub(super) fn solve<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize
         if whole { factors.solve(force, gamma) } else { factors.solve(force, &[R::constant(0.0); M]) }
     })?;
     model.check_solved(&qdd, &lambda, &force, gamma)?;
+    if S::FORCE_USES_MULTIPLIERS && factors.rank() < M {
+        model.require_unshared((position, t), y, &lambda, factors)?;
+    }
     let rate = model.rates(position, y, qdd, &lambda);
     Ok(Solved { rate, lambda, margin: factors.margin() })
 }

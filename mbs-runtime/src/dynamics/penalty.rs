@@ -75,6 +75,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Formulation<S
         let standing = STANDING * self.alpha.max(1.0);
         let (qdd, lambda, force) = model.balanced_to(standing, &position, (t, y), lambda, solve)?;
         model.check_solved(&qdd, &lambda, &force, &target)?;
+        model.require_unshared_by_rank((&position, t), y, &lambda)?;
         let rate = model.rates(&position, y, qdd, &lambda);
         Ok(Solved { rate, lambda, margin: R::constant(1.0) })
     }

@@ -21,7 +21,8 @@ const MOST_CORRECTIONS: u32 = 10;
 /// coordinates and not with its cube; multipliers follow by substitution. The same solves project positions and
 /// velocities by the shortest way in the mass's measure, so that nothing depends on which coordinates are independent.
 /// Where those determine the others too weakly, at a turning point, independent motions are chosen anew from the orthogonal
-/// factors of all rows, with R their null space; where the rows themselves lose rank, [`Projection`] goes on. Both are counted.
+/// factors of all rows, with R their null space; where the rows themselves lose rank, or are more than the coordinates take,
+/// [`Projection`] goes on. Both are counted.
 /// Source: García de Jalón & Bayo 1994, §5.2 and §8.2.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct VelocityTransformation;
@@ -39,6 +40,10 @@ where
         lambda: &[R; M],
         counts: &mut Counts,
     ) -> Result<Solved<R, N, M, S::States>, Failure> {
+        if !S::IS_PARTITIONED {
+            counts.handed_over += 1;
+            return Projection::default().solve(model, t, y, lambda, counts);
+        }
         let position = model.position(t, y);
         let (partition, margin) = model.mechanism.partition(model.parameters, &position);
         solve_at(model, (t, y), (&position, &partition, margin.value * model.metric.blocks), lambda, counts)
@@ -53,7 +58,7 @@ where
         counts: &mut Counts,
     ) -> Result<(), Failure> {
         let before = *y;
-        if settled(model, t, y, counts).is_some() {
+        if S::IS_PARTITIONED && settled(model, t, y, counts).is_some() {
             return Ok(());
         }
         *y = before;
@@ -69,6 +74,10 @@ where
         lambda: &[R; M],
         counts: &mut Counts,
     ) -> Result<Solved<R, N, M, S::States>, Failure> {
+        if !S::IS_PARTITIONED {
+            counts.handed_over += 1;
+            return Projection::default().settle_and_solve(model, t, y, lambda, counts);
+        }
         let before = *y;
         if let Some(place) = settled(model, t, y, counts) {
             return solve_apart(model, (t, y), &place, lambda, counts);

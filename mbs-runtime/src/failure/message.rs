@@ -95,6 +95,12 @@ impl fmt::Display for Failure {
                  `{}` (line {}) by about what it takes up; lower the coefficient, or make a body elastic",
                 row.name, row.line
             ),
+            Failure::SharedNormalForce { row, .. } => write!(
+                f,
+                "friction at t = {time} s depends on the force of row `{}` (line {}), which it shares in any way with rows that follow from \
+                 each other; leave out what is too many, make a body elastic, or give friction a force that they bear together",
+                row.name, row.line
+            ),
             Failure::InvalidStep { step, .. } => write!(
                 f,
                 "a step of {step:e} s from t = {time} s leads nowhere: it must be positive and change the time"
@@ -253,6 +259,7 @@ mod tests {
             Failure::Locked { row: ROW, time },
             Failure::Ambiguous { row: ROW, solutions: 2, all: true, time },
             Failure::Ambiguous { row: ROW, solutions: 1, all: false, time },
+            Failure::SharedNormalForce { row: ROW, time },
             Failure::Unsettled { state: ROW, time },
             Failure::StatesUnknown { state: ROW, time },
         ];

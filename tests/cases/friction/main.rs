@@ -1,5 +1,7 @@
 //! Friction whose normal force is a Lagrange multiplier.
 
+mod d11_shared_normal_forces;
+mod d12_velocity_transformation_of_redundant_rows;
 mod d5_every_method;
 mod d5_normal_forces;
 mod d5_slider_crank;
