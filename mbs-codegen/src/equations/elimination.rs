@@ -82,3 +82,42 @@ fn subtract(g: &mut Graph, vector: &mut Column, share: NodeId, column: &Column) 
         vector.extend(rest.0.map(|rest| (*row, rest)));
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What least squares make of a column and of a second one of which `share` is its own, on the right the sum of both.
+    fn solved(share: f64, scale: f64) -> Vec<f64> {
+        let mut g = Graph::default();
+        let mut column = |entries: [f64; 3]| -> Column {
+            entries.into_iter().enumerate().map(|(row, entry)| (row, g.constant(entry))).collect()
+        };
+        let first = column([3.0, 4.0, 0.0]);
+        let second = column([3.0 * scale, 4.0 * scale, 5.0 * share * scale]);
+        let known = column([3.0 * (1.0 + scale), 4.0 * (1.0 + scale), 5.0 * share * scale]);
+        let solution = solve(&mut g, &[first, second], known);
+        solution.iter().map(|node| g.constant_value(*node).expect("a number")).collect()
+    }
+
+    #[test]
+    fn columns_depend_on_earlier_ones_below_the_threshold_and_not_above() {
+        for scale in [1.0, 1e-9, 1e9] {
+            for share in [0.0, 1e-8, 0.8e-6] {
+                let solution = solved(share, scale);
+                assert_eq!(solution[1], 0.0, "{share:e} {scale:e}");
+                assert!((solution[0] / (1.0 + scale) - 1.0).abs() < 1e-12, "{solution:?}");
+            }
+            for share in [1.25e-6, 1e-3] {
+                let solution = solved(share, scale);
+                // What is its own has ε/share of its digits left.
+                let off = 10.0 * f64::EPSILON / share;
+                assert!((solution[1] - 1.0).abs() < off, "{share:e} {scale:e}: {solution:?}");
+                assert!(
+                    (solution[0] - 1.0).abs() < off * scale.max(1.0),
+                    "{share:e} {scale:e}: {solution:?}"
+                );
+            }
+        }
+    }
+}

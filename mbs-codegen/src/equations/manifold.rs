@@ -149,3 +149,48 @@ fn shortest(rows: Vec<Vec<f64>>, b: &[f64]) -> Vec<f64> {
 pub fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A row of which `share` is its own beside a first one.
+    fn nearly(share: f64) -> (Orthogonal, Vec<f64>) {
+        let mut rows = Orthogonal::default();
+        rows.add(vec![3.0, 4.0, 0.0]);
+        (rows, vec![3.0, 4.0, 5.0 * share])
+    }
+
+    #[test]
+    fn rows_follow_from_earlier_ones_below_the_threshold_and_not_above() {
+        for (share, rank) in [(0.0, 1), (1e-10, 1), (0.8e-8, 1), (1.25e-8, 2), (1e-6, 2)] {
+            let (mut rows, row) = nearly(share);
+            let (shares, rest) = rows.add(row);
+            assert_eq!(rows.rank(), rank, "{share:e}");
+            assert!((shares[0] - 5.0).abs() < 1e-14);
+            let own = if rank == 2 { 5.0 * share } else { 0.0 };
+            assert!((rest - own).abs() <= 1e-15, "{share:e}: {rest:e}");
+        }
+    }
+
+    /// Whatever the unit that a row is written in.
+    #[test]
+    fn the_threshold_is_a_share_of_the_row() {
+        for scale in [1e-12, 1e12] {
+            for (share, rank) in [(0.8e-8, 1), (1.25e-8, 2)] {
+                let (mut rows, row) = nearly(share);
+                rows.add(row.iter().map(|entry| scale * entry).collect());
+                assert_eq!(rows.rank(), rank, "{scale:e} {share:e}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_shortest_step_leaves_out_rows_that_follow() {
+        let step = |share: f64| shortest(vec![vec![3.0, 4.0, 0.0], vec![3.0, 4.0, 5.0 * share]], &[5.0, 5.0]);
+        let shortest = step(0.8e-8);
+        assert!((shortest[0] - 0.6).abs() < 1e-15 && shortest[2] == 0.0);
+        // Of a row of its own the same right side asks for nothing along what is its own.
+        assert!(step(1.25e-8)[2].abs() < 1e-6);
+    }
+}
