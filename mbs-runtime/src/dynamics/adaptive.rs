@@ -1,7 +1,7 @@
 //! The size of the next step, and the way to a given time with it.
 
 use super::embedded::{Embedded, Taken, TrialOf};
-use super::equation::{Equation, Measured};
+use super::equation::{Collocated, Collocation, Equation, Measured};
 use super::event::Dense;
 use super::vector::Vector;
 use crate::{Failure, Real};
@@ -93,16 +93,19 @@ impl<M: Embedded, R: Real, Y: Vector<R>> Accepted<M, R, Y> {
         &self,
         equation: &mut E,
     ) -> Result<Polynomial<M, R, Y>, Failure> {
-        let h = self.end.t - self.start.t;
-        let taken = Taken {
+        let taken = self.taken();
+        let dense = M::dense(&mut Clamped { equation, latest: self.end.t }, &taken)?;
+        Ok(Polynomial { t: taken.t, h: taken.h, dense })
+    }
+
+    fn taken(&self) -> Taken<'_, R, Y, M::Stages<Y>> {
+        Taken {
             t: self.start.t,
-            h,
+            h: self.end.t - self.start.t,
             start: (&self.start.y, &self.start.rate),
             end: (&self.end.y, &self.end.rate),
             stages: &self.stages,
-        };
-        let dense = M::dense(&mut Clamped { equation, latest: self.end.t }, &taken)?;
-        Ok(Polynomial { t: self.start.t, h, dense })
+        }
     }
 
     /// The solution from the beginning of the step to its end: the polynomial, or where that cannot be made the cubic through both
@@ -182,6 +185,10 @@ impl<R: Real, E: Equation<R>> Equation<R> for Clamped<'_, E, R> {
     fn rate(&mut self, t: R, y: &E::State) -> Result<E::State, Failure> {
         self.equation.rate(t.min(self.latest), y)
     }
+
+    fn collocate(&mut self, step: &Collocation<'_, R, E::State>) -> Result<Collocated<E::State>, Failure> {
+        self.equation.collocate(&Collocation { latest: step.latest.min(self.latest), ..*step })
+    }
 }
 
 /// An accepted step with the factor for the next, or the factor for another trial, and why where the equation failed.
@@ -216,6 +223,17 @@ impl<R: Real> Adaptive<R> {
         until: R,
         breaks: bool,
     ) -> Result<Accepted<M, R, E::State>, Failure> {
+        self.step_after(equation, from, (until, breaks), &M::Memory::default())
+    }
+
+    /// [`step`](Self::step) after the one that left `memory`.
+    fn step_after<M: Embedded, E: Measured<R>>(
+        &mut self,
+        equation: &mut E,
+        from: &Point<R, E::State>,
+        (until, breaks): (R, bool),
+        memory: &M::Memory<R, E::State>,
+    ) -> Result<Accepted<M, R, E::State>, Failure> {
         let mut planned = match self.step {
             Some(step) => step,
             None => {
@@ -236,7 +254,7 @@ impl<R: Real> Adaptive<R> {
             let latest = if ends && breaks { just_before(end) } else { end };
             let trial = {
                 let mut clamped = Clamped { equation: &mut *equation, latest };
-                M::trial(&mut clamped, from.t, end - from.t, &from.y, &from.rate)
+                M::trial(&mut clamped, (from.t, end - from.t), (&from.y, &from.rate), memory)
             };
             match self.judged::<M, E>(equation, from, end, trial) {
                 Ok((accepted, factor)) => {
@@ -310,7 +328,7 @@ impl<R: Real> Adaptive<R> {
         trial: Result<TrialOf<M, E::State>, Failure>,
     ) -> Judgement<M, R, E::State> {
         let least = R::constant(LEAST_GROWTH);
-        let trial = trial.map_err(|failure| (Some(failure), least))?;
+        let trial = trial.map_err(|failure| (Some(failure), R::constant(M::RETRY)))?;
         let error = M::error(equation, end - from.t, &from.y, &from.rate, &trial);
         let exponent = 1.0 / f64::from(M::ERROR_ORDER) - 0.75 * M::MEMORY;
         let ideal = R::constant(SAFETY) / error.powf(R::constant(exponent));
@@ -321,7 +339,7 @@ impl<R: Real> Adaptive<R> {
         let mut y = trial.y;
         let rate = equation.settled_rate(end, &mut y).map_err(|failure| (Some(failure), least))?;
         let remembered = self.last_error.powf(R::constant(M::MEMORY));
-        let largest = R::constant(if self.growth_barred { 1.0 } else { M::LARGEST_GROWTH });
+        let largest = R::constant(if self.growth_barred { 1.0 } else { M::growth(&trial.stages) });
         let factor = if R::constant(0.0) < error { ideal * remembered } else { largest };
         self.last_error = error.max(R::constant(LEAST_ERROR));
         let accepted = Accepted { start: *from, end: Point { t: end, y, rate }, stages: trial.stages };
@@ -348,7 +366,7 @@ impl<R: Real> Adaptive<R> {
         if !from.t.less(until) || !until.is_finite() {
             return Err(invalid);
         }
-        let mut now = from;
+        let (mut now, mut memory) = (from, M::Memory::default());
         for taken in 0..MOST_STEPS {
             if let Some((_, ahead)) = KNOWN_STEPS.iter().find(|(known, _)| *known == taken) {
                 // A run that grows out of small first steps is judged by those that it takes now.
@@ -359,11 +377,12 @@ impl<R: Real> Adaptive<R> {
                 }
             }
             let next_break = breakpoints(now.t).filter(|next| now.t < *next && *next <= until);
-            let mut accepted =
-                self.step::<M, E>(equation, &now, next_break.unwrap_or(until), next_break.is_some())?;
+            let end = (next_break.unwrap_or(until), next_break.is_some());
+            let mut accepted = self.step_after::<M, E>(equation, &now, end, &memory)?;
             if equation.may_kink(now.t, &now.y, accepted.end.t) {
                 accepted = self.up_to_kink::<M, E>(equation, accepted)?;
             }
+            memory = M::remember(&accepted.taken());
             now = accepted.end;
             if !watch(equation, &accepted)? || until <= now.t {
                 return Ok(now);

@@ -1,6 +1,6 @@
 //! Augmented Lagrangian of index 3 with projections: stiff and redundant mechanisms at coarse steps.
 
-use super::implicit::{MOST_ITERATIONS, Tangent, add_outer};
+use super::implicit::{Damping, MOST_ITERATIONS, MOST_ROUNDS, Tangent, add_outer};
 use super::kkt::{Factors, System, truncation};
 use super::metric::Metric;
 use super::model::{Counts, Formulation, Model, Solved};
@@ -75,7 +75,8 @@ impl AugmentedLagrangian {
         let mut change = start.q.zero().plus(h, &[1.0], [&start.qd]).plus(quarter, &[2.0], [before]);
         let (mut lambda, mut rate) = (from.solved.lambda, from.solved.rate);
         let (mut step, mut last) = ([R::constant(0.0); N], R::constant(f64::MAX));
-        for iteration in 0..MOST_ITERATIONS {
+        let (mut damping, mut closed) = (Damping::new(1.0), false);
+        for _ in 0..MOST_ROUNDS {
             let (qd, qdd) = trapezoidal(start, before, &change, h);
             (y.q, y.qd) = (start.q.plus(one, &[1.0], [&change]), qd);
             model.trapezoid(from, h, &mut y, &rate);
@@ -86,8 +87,8 @@ impl AugmentedLagrangian {
             for (((augmented, lambda), alpha), phi) in
                 augmented.iter_mut().zip(&mut lambda).zip(&penalized.alpha).zip(&phi)
             {
-                // What the last correction left open, and the spring that closes it.
-                *lambda = if iteration == 0 { *lambda } else { *lambda + *alpha * *phi };
+                // What the last correction left open, and the spring that closes it; a part of one leaves open what is not its own.
+                *lambda = if closed { *lambda + *alpha * *phi } else { *lambda };
                 *augmented = *lambda + *alpha * *phi;
             }
             // Without the spring of this iteration, which goes beyond what it will come to.
@@ -104,17 +105,30 @@ impl AugmentedLagrangian {
                 .0;
             counts.iterations += 1;
             counts.evaluations += 1;
-            change = change.plus(-one, &[1.0], [&step]);
             let standing = model.standing(&step, &y.q, &mut last)?;
-            let slow = iteration + 1 == MOST_ITERATIONS && last < R::constant(SLOW);
+            let slow = damping.is_last() && last < R::constant(SLOW);
             counts.unfinished += u64::from(slow && !standing);
             if standing || slow {
+                change = change.plus(-one, &[1.0], [&step]);
                 let (qd, qdd) = trapezoidal(start, before, &change, h);
                 (y.q, y.qd) = (start.q.plus(one, &[1.0], [&change]), qd);
                 return projected(model, from, h, (y, qdd, lambda));
             }
+            if damping.is_last() {
+                return Err(model.unbalanced(&step, t, MOST_ITERATIONS));
+            }
+            (change, closed) = damping.next(&change, (&step.map(|step| -step), last), |base| {
+                let (qd, bent) = trapezoidal(start, before, base, h);
+                let moved = State { q: start.q.plus(one, &[1.0], [base]), qd, ..y };
+                let place = model.position(t, &moved);
+                let last = Penalized::of(model, &place, (t, h), (&moved, &bent, &lambda))?;
+                let multipliers = (&augmented, &bearing);
+                let natural = model
+                    .corrected((&position, t), &y, &qdd, multipliers, &phi, |f, g| last.corrected(f, g))?;
+                Ok(model.largest(&natural.0))
+            })?;
         }
-        Err(model.unbalanced(&step, t))
+        Err(model.unbalanced(&step, t, MOST_ROUNDS))
     }
 }
 

@@ -53,18 +53,21 @@ impl Embedded for DormandPrince5 {
     const MEMORY: f64 = 0.04;
     /// Stages 3 to 7.
     type Stages<Y: Copy> = [Y; 5];
+    type Memory<R: Copy, Y: Copy> = ();
     type Dense<Y: Copy> = [Y; 5];
 
     #[inline]
     fn trial<R: Real, S: Equation<R>>(
         equation: &mut S,
-        t: R,
-        h: R,
-        y: &S::State,
-        rate: &S::State,
+        (t, h): (R, R),
+        (y, rate): (&S::State, &S::State),
+        _: &(),
     ) -> Result<Trial<S::State, [S::State; 5]>, Failure> {
         stages(equation, t, h, y, rate)
     }
+
+    #[inline]
+    fn remember<R: Real, Y: Vector<R>>(_: &Taken<'_, R, Y, [Y; 5]>) {}
 
     #[inline]
     fn error<R: Real, S: Measured<R>>(

@@ -245,18 +245,21 @@ impl Embedded for DormandPrince8 {
     const MEMORY: f64 = 0.0;
     /// Stages 6 to 12.
     type Stages<Y: Copy> = [Y; 7];
+    type Memory<R: Copy, Y: Copy> = ();
     type Dense<Y: Copy> = [Y; 8];
 
     #[inline]
     fn trial<R: Real, S: Equation<R>>(
         equation: &mut S,
-        t: R,
-        h: R,
-        y: &S::State,
-        rate: &S::State,
+        (t, h): (R, R),
+        (y, rate): (&S::State, &S::State),
+        _: &(),
     ) -> Result<Trial<S::State, [S::State; 7]>, Failure> {
         stages(equation, t, h, y, rate)
     }
+
+    #[inline]
+    fn remember<R: Real, Y: Vector<R>>(_: &Taken<'_, R, Y, [Y; 7]>) {}
 
     /// e₅²/√(e₅² + 0.01 e₃²) of the two estimates.
     #[inline]

@@ -13,21 +13,24 @@ pub trait Embedded: FixedStep {
     const LARGEST_GROWTH: f64;
     /// Share of the last step's error in the choice of the next, β of the controller.
     const MEMORY: f64;
+    /// Factor by which a step that failed is tried again.
+    const RETRY: f64 = 0.2;
+    /// What a step leaves for the next one.
+    type Memory<R: Copy, Y: Copy>: Copy + Default;
     /// Rates that later calls use again.
     type Stages<Y: Copy>: Copy;
     /// The polynomial of a step.
     type Dense<Y: Copy>: Copy;
 
-    /// A step of `h` from `y` at `t` (s), whose rate is known.
+    /// A step from `start`, a state and its rate, after the one that left `memory`; `span`: its beginning and its length (s).
     ///
     /// # Errors
     /// Those of the equation.
     fn trial<R: Real, E: Equation<R>>(
         equation: &mut E,
-        t: R,
-        h: R,
-        y: &E::State,
-        rate: &E::State,
+        span: (R, R),
+        start: (&E::State, &E::State),
+        memory: &Self::Memory<R, E::State>,
     ) -> Result<TrialOf<Self, E::State>, Failure>;
 
     /// The error of a trial over its tolerance.
@@ -38,6 +41,14 @@ pub trait Embedded: FixedStep {
         rate: &E::State,
         trial: &TrialOf<Self, E::State>,
     ) -> R;
+
+    /// The largest factor by which the next step may grow.
+    fn growth<Y: Copy>(_stages: &Self::Stages<Y>) -> f64 {
+        Self::LARGEST_GROWTH
+    }
+
+    /// What an accepted step leaves for the next one.
+    fn remember<R: Real, Y: Vector<R>>(step: &Taken<'_, R, Y, Self::Stages<Y>>) -> Self::Memory<R, Y>;
 
     /// The polynomial of an accepted step. `end` is the settled state and its rate, so that the polynomial meets what
     /// the next step starts from.

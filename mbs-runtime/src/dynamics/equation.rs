@@ -23,6 +23,18 @@ pub trait Equation<T: Scalar> {
         Ok(())
     }
 
+    /// The stages of an implicit step by collocation, Radau IIA of order 5.
+    ///
+    /// # Errors
+    /// [`Failure::Unsuitable`] of an equation that does not know its slopes; [`Failure::Unbalanced`] where the iteration for the
+    /// stages does not converge.
+    fn collocate(
+        &mut self,
+        _step: &Collocation<'_, T, Self::State>,
+    ) -> Result<Collocated<Self::State>, Failure> {
+        Err(Failure::Unsuitable { name: "number of slopes for an implicit step", value: 0.0, most: 0.0 })
+    }
+
     /// [`settle`](Self::settle), then the rate of what came of it.
     ///
     /// # Errors
@@ -31,6 +43,41 @@ pub trait Equation<T: Scalar> {
         self.settle(t, y)?;
         self.rate(t, y)
     }
+}
+
+/// A step by collocation that is to be solved.
+#[derive(Clone, Copy, Debug)]
+pub struct Collocation<'a, T, Y> {
+    /// Time (s) at its beginning.
+    pub t: T,
+    /// Its length (s).
+    pub h: T,
+    /// State at its beginning.
+    pub y: &'a Y,
+    /// The rate of that state.
+    pub rate: &'a Y,
+    /// Latest time (s) at which the equation is asked for.
+    pub latest: T,
+    /// Where the search for the stages starts, less the state at the beginning.
+    pub predicted: [Y; 3],
+}
+
+impl<'a, T: Scalar, Y: Vector<T>> Collocation<'a, T, Y> {
+    /// A step of `h` from `y` at `t` (s), whose rate is known.
+    pub fn new(t: T, h: T, y: &'a Y, rate: &'a Y) -> Self {
+        Collocation { t, h, y, rate, latest: t + h, predicted: [y.zero(); 3] }
+    }
+}
+
+/// The stages of a step by collocation.
+#[derive(Clone, Copy, Debug)]
+pub struct Collocated<Y> {
+    /// Stages less the state at the beginning; the last one is at the end.
+    pub stages: [Y; 3],
+    /// Estimate of the error at the end.
+    pub error: Y,
+    /// Largest ratio of one correction of the stages to the one before.
+    pub contraction: f64,
 }
 
 /// An equation with tolerances: what an adaptive integrator needs.

@@ -100,12 +100,12 @@ pub fn equilibrium_with_states<S: Dynamic<R, N, M>, R: Real, const N: usize, con
     model.check(t, &y)?;
     let last = correction(&model, t, &y, &balancing(&model, t, &y)?.0)?;
     if last.saddle.is_some() {
-        return Err(model.unbalanced(&last.step, t));
+        return Err(model.unbalanced(&last.step, t, MOST_ITERATIONS));
     }
     approach(&model, t, &mut y)?;
     match balanced(&model, t, &mut y)? {
         Some(found) => Ok((found, y.states)),
-        None => Err(model.unbalanced(&answer(&model, t, &y)?.step, t)),
+        None => Err(model.unbalanced(&answer(&model, t, &y)?.step, t, MOST_ITERATIONS)),
     }
 }
 

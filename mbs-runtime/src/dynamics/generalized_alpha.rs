@@ -1,6 +1,6 @@
 //! Generalised-α on the equations of index 3: accuracy of order 2 with damping of what the step does not resolve.
 
-use super::implicit::{MOST_ITERATIONS, Tangent};
+use super::implicit::{Damping, MOST_ITERATIONS, MOST_ROUNDS, Tangent};
 use super::kkt::System;
 use super::metric::require_between;
 use super::model::{Counts, Formulation, Model, Solved};
@@ -100,14 +100,19 @@ impl GeneralizedAlpha {
             sum.plus(alpha_f * weight, &[1.0], [before]).plus(-alpha_m * weight, &[1.0], [a0])
         };
         let half = R::constant(0.5);
-        let mut y = *start;
-        let mut rate = from.solved.rate;
-        let (mut step, mut last) = ([R::constant(0.0); N], R::constant(f64::MAX));
-        for _ in 0..MOST_ITERATIONS {
-            let a = a(&qdd);
+        let moved = |y: &State<R, N, S::States>, qdd: &[R; N]| {
+            let (mut y, a) = (*y, a(qdd));
             y.q = start.q.plus(h, &[1.0], [&start.qd]).plus(h * h * (half - beta), &[1.0], [a0]);
             y.q = y.q.plus(h * h * beta, &[1.0], [&a]);
             y.qd = start.qd.plus(h * (one - gamma), &[1.0], [a0]).plus(h * gamma, &[1.0], [&a]);
+            y
+        };
+        let mut y = *start;
+        let mut rate = from.solved.rate;
+        let (mut step, mut last) = ([R::constant(0.0); N], R::constant(f64::MAX));
+        let mut damping = Damping::new(0.5);
+        for _ in 0..MOST_ROUNDS {
+            y = moved(&y, &qdd);
             model.trapezoid(from, h, &mut y, &rate);
             let position = model.position(t, &y);
             rate = model.rates(&position, &y, qdd, &lambda);
@@ -123,9 +128,11 @@ impl GeneralizedAlpha {
             counts.iterations += 1;
             counts.evaluations += 1;
             step = correction;
-            qdd = qdd.plus(-of_q, &[1.0], [&step]);
-            lambda = lambda.plus(-one, &[1.0], [&change]);
-            if model.standing(&step, &y.q, &mut last)? {
+            let here = Balance { qdd, lambda };
+            let whole = Balance { qdd: step.map(|x| -of_q * x), lambda: change.map(|x| -x) };
+            let standing = model.standing(&step, &y.q, &mut last)?;
+            if standing {
+                Balance { qdd, lambda } = here.plus(one, &[1.0], [&whole]);
                 y.q = y.q.plus(-one, &[1.0], [&step]);
                 y.qd = y.qd.plus(-gamma / (beta * h), &[1.0], [&step]);
                 model.trapezoid(from, h, &mut y, &rate);
@@ -134,8 +141,43 @@ impl GeneralizedAlpha {
                 let solved = Solved { rate, lambda, margin: factors.margin() };
                 return Ok(Instant { t, y, solved, carried: self.carried(a0, before, &qdd) });
             }
+            if damping.is_last() {
+                return Err(model.unbalanced(&step, t, MOST_ITERATIONS));
+            }
+            (Balance { qdd, lambda }, _) = damping.next(&here, (&whole, last), |base| {
+                let before = moved(&y, &base.qdd);
+                let place = model.position(t, &before);
+                let tangent = Tangent::of(model, &place, &before, &base.qdd, &base.lambda);
+                let matrix = tangent.combined(of_q, gamma / (beta * h), one);
+                let phi_q = model.mechanism.phi_q(model.parameters, &place);
+                let last = System::new(&matrix, &phi_q, model.metric).factorize(S::COORDINATES, t)?;
+                let multipliers = (&here.lambda, &here.lambda);
+                let natural = model
+                    .corrected((&position, t), &y, &here.qdd, multipliers, &phi, |f, g| last.solve(f, g))?;
+                Ok(model.largest(&natural.0))
+            })?;
         }
-        Err(model.unbalanced(&step, t))
+        Err(model.unbalanced(&step, t, MOST_ROUNDS))
+    }
+}
+
+/// Accelerations (N) and multipliers (M) of a step's end.
+#[derive(Clone, Copy)]
+struct Balance<R, const N: usize, const M: usize> {
+    qdd: [R; N],
+    lambda: [R; M],
+}
+
+impl<R: Real, const N: usize, const M: usize> Vector<R> for Balance<R, N, M> {
+    #[inline(always)]
+    fn zero(&self) -> Self {
+        Balance { qdd: self.qdd.zero(), lambda: self.lambda.zero() }
+    }
+
+    #[inline(always)]
+    fn plus<const K: usize>(&self, h: R, weights: &[f64; K], terms: [&Self; K]) -> Self {
+        let qdd = self.qdd.plus(h, weights, terms.map(|term| &term.qdd));
+        Balance { qdd, lambda: self.lambda.plus(h, weights, terms.map(|term| &term.lambda)) }
     }
 }
 

@@ -9,12 +9,96 @@ use crate::{Dynamic, Failure, Real, kinematics};
 /// Iterations of a step: four do where the motion is smooth.
 pub(super) const MOST_ITERATIONS: u32 = 40;
 
+/// Iterations and halved corrections of a step.
+pub(super) const MOST_ROUNDS: u32 = 160;
+
 /// A correction that counts as rounding, in ε of the coordinates in the metric.
 const STANDING: f64 = 64.0;
 
 /// A correction that no longer falls counts as converged below this, in the metric: nine digits, beyond what a method of
 /// order 2 has.
 const STUCK: f64 = 1e-9;
+
+/// Halvings of one correction: as many as lead from a step's length to the bend of a law that is smoothed over a millionth of it.
+const MOST_HALVINGS: u32 = 20;
+
+/// Newton's method that does not overshoot a bend of the forces: where a correction has not fallen, nor the one of the last tangents,
+/// half of the last correction is tried again.
+///
+/// On both sides of a bend, as of friction smoothed over a small speed, the tangents are nearly flat, and whole corrections lead from
+/// one side to the other for ever. Regular steps are not touched: their corrections fall.
+/// Source: Deuflhard 2004, §3.3 (natural monotonicity).
+pub(super) struct Damping<R, Y> {
+    /// Part of the correction before from which on a correction has not fallen.
+    suspect: R,
+    /// The point with the last whole correction, that correction, and its size in the metric.
+    last: Option<(Y, Y, R)>,
+    share: R,
+    halvings: u32,
+    /// Whole corrections so far.
+    taken: u32,
+    /// Whether any was halved.
+    halved: bool,
+}
+
+impl<R: Real, Y: Vector<R>> Damping<R, Y> {
+    /// Corrections are looked at that are more than `suspect` times the one before: 1 where multipliers come slowly.
+    pub(super) fn new(suspect: f64) -> Self {
+        Damping {
+            suspect: R::constant(suspect),
+            last: None,
+            share: R::constant(1.0),
+            halvings: 0,
+            taken: 0,
+            halved: false,
+        }
+    }
+
+    /// Whether the next correction is the last one; where some were halved all of [`MOST_ROUNDS`] are tried.
+    pub(super) fn is_last(&self) -> bool {
+        MOST_ITERATIONS <= self.taken + 1 && !self.halved
+    }
+
+    /// The next point from `here`, where `correction` of `size` was found, and whether that is a whole correction. `natural`: the
+    /// size of the correction here by the tangents of a point before.
+    ///
+    /// # Errors
+    /// Those of `natural`.
+    #[inline]
+    pub(super) fn next(
+        &mut self,
+        here: &Y,
+        (correction, size): (&Y, R),
+        natural: impl FnOnce(&Y) -> Result<R, Failure>,
+    ) -> Result<(Y, bool), Failure> {
+        let suspect = self.last.as_ref().is_some_and(|(.., least)| self.suspect * *least <= size);
+        if suspect && let Some(point) = self.halved(natural)? {
+            return Ok((point, false));
+        }
+        let one = R::constant(1.0);
+        self.last = Some((*here, *correction, size));
+        (self.share, self.halvings) = (one, 0);
+        self.taken += 1;
+        Ok((here.plus(one, &[1.0], [correction]), true))
+    }
+
+    /// The point with half as much of the last correction, where the present share of it has led to no smaller residual.
+    #[cold]
+    #[inline(never)]
+    fn halved(&mut self, natural: impl FnOnce(&Y) -> Result<R, Failure>) -> Result<Option<Y>, Failure> {
+        let Some((base, before, least)) = &self.last else { return Ok(None) };
+        if self.halvings == MOST_HALVINGS {
+            return Ok(None);
+        }
+        if natural(base)? < (R::constant(1.0) - R::constant(0.25) * self.share) * *least {
+            return Ok(None);
+        }
+        self.share = R::constant(0.5) * self.share;
+        self.halvings += 1;
+        self.halved = true;
+        Ok(Some(base.plus(self.share, &[1.0], [before])))
+    }
+}
 
 /// M x₂ + C x₁ + K x₀ about a state: ∂/∂q̈, ∂/∂q̇ and ∂/∂q of M q̈ + Φ_qᵀ λ − Q, N rows of N each.
 pub(super) struct Tangent<R, const N: usize> {
@@ -163,8 +247,8 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         Ok(stuck || size <= R::constant(STANDING) * R::EPSILON * extent)
     }
 
-    /// No balance within [`MOST_ITERATIONS`]: the coordinate with the largest correction `step` (N).
-    pub(super) fn unbalanced(&self, step: &[R; N], t: R) -> Failure {
+    /// No balance within so many `iterations`: the coordinate with the largest correction `step` (N).
+    pub(super) fn unbalanced(&self, step: &[R; N], t: R, iterations: u32) -> Failure {
         let mut worst = (0_u16, R::constant(-1.0));
         for ((index, step), scale) in (0..).zip(step).zip(&self.metric.coordinates) {
             if worst.1 < (*step / *scale).abs() {
@@ -172,6 +256,6 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
             }
         }
         let coordinate = kinematics::entry(S::COORDINATES, worst.0);
-        Failure::Unbalanced { coordinate, iterations: MOST_ITERATIONS, time: t.to_f64() }
+        Failure::Unbalanced { coordinate, iterations, time: t.to_f64() }
     }
 }

@@ -2,14 +2,15 @@
 
 use super::adaptive::Point;
 use super::both_sides::ZONE;
-use super::equation::{Equation, Measured};
+use super::equation::{Collocated, Collocation, Equation, Measured};
 use super::event::{Dense, Scrutiny};
 use super::explicit::FixedStep;
 use super::metric::{Tolerance, worse};
 use super::model::{Counts, Doubt, Formulation, Model, Solved};
 use super::passage::Passage;
 use super::phases::{ORDER_OF_INTEGRALS, Phased, advanced, stepped, unmoved};
-use super::vector::State;
+use super::radau::{self, MOST_UNKNOWNS, Slopes};
+use super::vector::{State, Vector};
 use crate::{Dynamic, Entry, Failure, Mechanism, Real};
 
 /// Least motion of a step in the zone of a singular position, in the reference metric: smaller ones resolve how rods that
@@ -282,7 +283,7 @@ where
         from: &Instant<R, N, M, S::States>,
         counts: Counts,
     ) -> Self {
-        let (tolerance, start) = (Tolerance::new(0.0), from.t);
+        let (tolerance, start) = (radau::of_fixed_steps(), from.t);
         let seen = (from.t, from.solved.margin);
         let (lambda, end) = (from.solved.lambda, (seen.0, seen.1, from.y));
         let moving = (!S::PHASES.is_empty() || S::HAS_SIGNALS).then(|| model.mechanism.clone());
@@ -393,6 +394,45 @@ where
         })
     }
 
+    /// Slopes of accelerations and of the rates of first-order states about the beginning of a step, of positions in its middle: stiff
+    /// directions turn with the mechanism, and the iteration gains a fifth.
+    pub(super) fn slopes(
+        &mut self,
+        step: &Collocation<'_, R, Moving<S, R, N, M>>,
+    ) -> Result<Slopes<S, R, N, M>, Failure> {
+        let mut middle = step.y.y;
+        middle.q = middle.q.plus(step.h, &[0.5], [&middle.qd]);
+        self.at(step.t, &step.y.phases, |model, _, lambda, _| {
+            Slopes::of(model, (step.t, &middle), &step.rate.y.qd, lambda)
+        })
+    }
+
+    /// Scales of the coordinates: N.
+    pub(super) fn scales(&self) -> &'a [R; N] {
+        &self.model.metric.coordinates
+    }
+
+    /// The smaller of the tolerances that are not 0.
+    pub(super) fn narrowest(&self) -> R {
+        let Tolerance { relative, absolute } = self.tolerance;
+        let zero = R::constant(0.0);
+        if zero < relative && zero < absolute { relative.min(absolute) } else { relative.max(absolute) }
+    }
+
+    /// Whether no step can be made smaller.
+    pub(super) fn is_fixed(&self) -> bool {
+        self.fixed
+    }
+
+    /// The failure of an iteration for the stages of a step with the last correction of them.
+    pub(super) fn unbalanced(
+        &self,
+        step: &Collocation<'_, R, Moving<S, R, N, M>>,
+        (correction, iterations): (&Moving<S, R, N, M>, u32),
+    ) -> Failure {
+        self.model.unbalanced(&correction.y.qd, step.t + step.h, iterations)
+    }
+
     /// The rate of a state whose coordinates, velocities and first-order states have the rate `y`.
     #[inline(always)]
     fn phased(&mut self, t: R, y: State<R, N, S::States>) -> Moving<S, R, N, M> {
@@ -440,6 +480,19 @@ where
             Ok(solved)
         })?;
         Ok(self.phased(t, solved.rate))
+    }
+
+    fn collocate(
+        &mut self,
+        step: &Collocation<'_, R, Self::State>,
+    ) -> Result<Collocated<Self::State>, Failure> {
+        const {
+            assert!(
+                N + M <= MOST_UNKNOWNS,
+                "an implicit step takes at most 120 coordinates and rows together: its matrices are on the stack"
+            );
+        }
+        radau::collocate(self, step)
     }
 
     #[inline]

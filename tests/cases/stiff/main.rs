@@ -1,1 +1,7 @@
 //! Stiff motions.
+
+mod d15_equal_steps;
+mod d15_stiff_motions;
+mod d15_what_a_text_may_have;
+mod peers;
+mod texts;
