@@ -61,6 +61,7 @@
 //! |---|---|---|
 //! | [`DormandPrince8`] | 8(5,3), adaptive | errors of 1e-7 and less |
 //! | [`DormandPrince5`] | 5(4), adaptive | errors of 1e-3 to 1e-7 |
+//! | [`Radau5`] | 5(3), implicit, adaptive | stiff forces, smoothed friction, first-order states with short time constants |
 //! | [`RungeKutta4`] | 4, fixed steps | control loops, comparison |
 //! | [`SemiImplicitEuler`] | 1, fixed steps | the cheapest step |
 //! | [`AugmentedLagrangian`] | 2, implicit, fixed steps | stiff forces, redundant rows |

@@ -147,7 +147,7 @@ where
     }
 }
 
-/// An explicit integrator `I` with a formulation `F`.
+/// An integrator `I` of equations that are explicit in the accelerations, with the formulation `F` that solves for these.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Explicit<I, F> {
     /// The integrator.

@@ -4,8 +4,8 @@ use core::hint::black_box;
 
 use mbs_runtime::dynamics::{
     AugmentedLagrangian, Baumgarte, Direction, DormandPrince5, DormandPrince8, Embedded, Explicit,
-    Formulation, GeneralizedAlpha, Method, Penalty, Projection, RungeKutta4, SemiImplicitEuler, Simulation,
-    Unstabilized, VelocityTransformation,
+    Formulation, GeneralizedAlpha, Method, Penalty, Projection, Radau5, RungeKutta4, SemiImplicitEuler,
+    Simulation, Unstabilized, VelocityTransformation,
 };
 use mbs_runtime::{Dynamic, Failure, Motion, Partitioned, Real, Scalar};
 
@@ -66,6 +66,8 @@ where
     fixed(mechanism, Explicit::new(RungeKutta4, VelocityTransformation))?;
     fixed(mechanism, GeneralizedAlpha::default())?;
     fixed(mechanism, AugmentedLagrangian)?;
+    fixed(mechanism, Explicit::new(Radau5, Projection::default()))?;
+    adaptive(mechanism, Explicit::new(Radau5, Projection::default()))?;
     adaptive(mechanism, Explicit::new(DormandPrince5, Projection::default()))?;
     adaptive(mechanism, Explicit::new(DormandPrince8, VelocityTransformation))?;
     adaptive(mechanism, Explicit::new(DormandPrince8, Projection::default()))
