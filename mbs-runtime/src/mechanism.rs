@@ -27,10 +27,10 @@ impl Entry {
     }
 }
 
-/// What sets the reference length, in parts of which lengths count: the largest of these, 1 m where there is none.
+/// What sets the reference length, in parts of which lengths count: the largest of these; where there is none the largest guess, or 1 m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reference {
-    /// The largest length (m) among constants, numbers and guesses.
+    /// The largest length (m) among constants and numbers; among guesses too where rows have lengths of another origin.
     pub longest: Option<(&'static Entry, f64)>,
     /// Indices of parameters that are lengths.
     pub parameters: &'static [u16],

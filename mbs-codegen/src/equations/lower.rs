@@ -180,7 +180,7 @@ fn derivatives(model: &Model, graph: &Graph, clock: &Clock, value: NodeId) -> u8
     left.min().unwrap_or(2).min(2)
 }
 
-/// The largest length among constants, numbers, guesses and parameters; 1 m where there is none.
+/// The largest length among constants, numbers and parameters; where there is none that of the guesses, 1 m where there is none either.
 fn reference_length(model: &Model, g: &mut Graph) -> NodeId {
     let mut longest = g.constant(model.longest.as_ref().map_or(0.0, |longest| longest.length));
     for index in model.lengths() {
@@ -188,8 +188,9 @@ fn reference_length(model: &Model, g: &mut Graph) -> NodeId {
         let length = g.unary(Unary::Abs, parameter);
         longest = g.binary(Binary::Max, longest, length);
     }
-    let (zero, one) = (g.constant(0.0), g.constant(1.0));
-    g.select(zero, longest, longest, one)
+    let other = g.constant(model.longest_guess.as_ref().map_or(1.0, |guess| guess.length));
+    let zero = g.constant(0.0);
+    g.select(zero, longest, longest, other)
 }
 
 fn unary(function: expression::Unary) -> Unary {

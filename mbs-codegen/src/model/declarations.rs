@@ -366,6 +366,7 @@ impl Declarations<'_> {
             return;
         }
         let (dimension, size) = (declared.dimension, declared.size);
+        let dimensions = core::mem::replace(&mut self.model.longest, self.model.longest_guess.take());
         let guesses = guess.filter(|_| !declared.faulty).map(|expression| {
             self.elaborate(|work| {
                 let value = work.value(expression)?;
@@ -381,6 +382,7 @@ impl Declarations<'_> {
             Some(Err(Fault)) => vec![Some(self.model.expressions.push(Node::Number(0.0))); size],
             None => vec![None; size],
         };
+        self.model.longest_guess = core::mem::replace(&mut self.model.longest, dimensions);
         let first = self.model.coordinates.len();
         let unit = kind.unit.text.clone();
         for (component, guess) in component_names(&name.text, &declared.shape).zip(guesses) {

@@ -463,13 +463,16 @@ impl Resolver<'_> {
         coordinate: &Value,
         per: Dimension,
     ) -> Result<Value, Fault> {
+        let dimensions = core::mem::replace(&mut self.model.longest, self.model.longest_guess.take());
         let value = self.elaborate(Reach::Position, |work| {
             let value = work.value(value)?;
             let dimension =
                 coordinate.items.first().map(|item| item.quantity.dimension()).unwrap_or_default();
             let value = initialiser(work, value, dimension.over(per))?;
             filling(work, value, &coordinate.shape)
-        })?;
+        });
+        self.model.longest_guess = core::mem::replace(&mut self.model.longest, dimensions);
+        let value = value?;
         if value.items.iter().all(|item| self.model.is_constant(item.id)) {
             return Ok(value);
         }

@@ -71,8 +71,10 @@ pub struct Model {
     pub outputs: Vec<Output>,
     /// Bodies, forces and first-order states, where the text has any.
     pub dynamics: Option<Dynamics>,
-    /// Largest length among constants, numbers and guesses.
+    /// Largest length among constants and numbers; among guesses and starts too where those tell what these do not.
     pub longest: Option<Longest>,
+    /// Largest length among guesses and starts.
+    pub longest_guess: Option<Longest>,
 }
 
 /// A length of the text, and where it stands.
@@ -97,6 +99,36 @@ impl Longest {
 }
 
 impl Model {
+    /// Before: all rows. After: guesses and starts set the reference length where no constant, number or parameter is a length, or
+    /// where rows have lengths of another origin: of an input, a function, a speed or an area. Elsewhere they do not, for they may be
+    /// far off: a mechanism in millimetres with its guess in metres is the same mechanism.
+    fn settle_reference_length(&mut self) {
+        let declared = self.longest.is_some() || self.lengths().next().is_some();
+        let is_open = self
+            .rows
+            .iter()
+            .any(|row| self.expressions.contain(row.residual, |node| self.brings_length(node)));
+        if let Some(Longest { length, name, span }) =
+            self.longest_guess.clone().filter(|_| is_open || !declared)
+        {
+            Longest::note(&mut self.longest, length, || name, span);
+        }
+    }
+
+    /// Whether a node is a length, or makes one, of which the text does not say how large it is.
+    fn brings_length(&self, node: Node) -> bool {
+        match node {
+            Node::Variable(index) => self.variables.get(index).is_some_and(|variable| {
+                let is_length = variable.dimension == Dimension::METRE;
+                variable.dimension.metres() != 0.0 && (!is_length || variable.kind != VariableKind::Parameter)
+            }),
+            Node::Call { function, .. } => self.functions.get(function).is_some_and(|function| {
+                function.dimensions.iter().flatten().any(|dimension| dimension.metres() != 0.0)
+            }),
+            _ => false,
+        }
+    }
+
     /// Fields that keep the phases, in the order of these.
     pub fn phase_fields(&self) -> impl Iterator<Item = &Field> {
         self.fields.iter().filter(|field| field.role == Role::Phase)

@@ -49,6 +49,7 @@ pub fn resolve(statements: &[Statement], diagnostics: &mut Diagnostics) -> Model
     }
     work.check_normalisations();
     work.check_guesses();
+    work.model.settle_reference_length();
     inputs::check(work.model, work.diagnostics);
     idle::check(work.model, work.diagnostics);
     model

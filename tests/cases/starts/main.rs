@@ -1,3 +1,4 @@
 //! Starts, first steps, equilibria, parameters of methods.
 mod d7_absurd_steps;
 mod d8_declared_starts;
+mod d9_reference_length;
