@@ -12,4 +12,5 @@ mod methods;
 mod pendulum;
 mod prescribed;
 mod singular;
+mod terms;
 mod variations;
