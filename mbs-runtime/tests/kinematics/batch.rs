@@ -130,6 +130,30 @@ fn lanes_that_cannot_be_assembled_are_out_until_they_can() {
 }
 
 #[test]
+fn a_lane_that_is_revived_is_itself_whichever_it_is() {
+    let mechanism = lanes();
+    let assembled =
+        || Batch::assemble(mechanism, &[GUESS; 4], [0.0; 4]).map_err(|(_, f)| f).expect("they assemble");
+    for lane in 0..4 {
+        let (mut batch, mut others) = (assembled(), assembled());
+        for k in 1..=5 {
+            let t = [0.01, 0.012, 0.014, 0.016].map(|h| h * f64::from(k));
+            assert!(batch.advance_to(t).iter().chain(&others.advance_to(t)).all(Result::is_ok));
+        }
+        let t = 0.03 + 0.001 * lane as f64;
+        batch.revive(lane, &GUESS, t).expect("it assembles");
+        let mut alone = Stepper::assemble(mechanism.lane(lane), GUESS, t).expect("it assembles");
+        equal(&batch.stepper(lane).expect("it is in"), &alone);
+        alone.advance_to(0.1).expect("it moves on");
+        assert!(batch.advance_to([0.1; 4]).iter().chain(&others.advance_to([0.1; 4])).all(Result::is_ok));
+        for (other, expected) in (0..4).map(|other| (other, others.stepper(other).expect("it is in"))) {
+            let found = batch.stepper(other).expect("it is in");
+            equal(&found, if other == lane { &alone } else { &expected });
+        }
+    }
+}
+
+#[test]
 fn a_retired_lane_stays_where_it_is_and_answers_its_failure() {
     let mut batch =
         Batch::assemble(lanes(), &[GUESS; 4], [0.0; 4]).map_err(|(_, f)| f).expect("they assemble");

@@ -12,4 +12,5 @@ mod motion;
 mod ranges;
 mod reset;
 mod stops;
+mod terms;
 mod transmission;
