@@ -113,6 +113,7 @@ fn translate_scene(scene: &Scene) -> Result<emit::Translated<'_>, Diagnostics> {
         return Err(diagnostics);
     };
     program::share_angles(&mut equations, &mut structure);
+    program::take_roots(&mut equations, &mut structure);
     let program = program::order(&equations, &structure);
     Ok(emit::Translated { scene, equations, structure, program })
 }

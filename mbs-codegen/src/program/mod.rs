@@ -4,6 +4,7 @@ mod angles;
 mod blocks;
 mod dynamics;
 pub mod motion;
+mod powers;
 mod schedule;
 mod stages;
 
@@ -16,6 +17,7 @@ use crate::symbolic::{Graph, NodeId};
 pub use angles::share_angles;
 pub use blocks::{BlockProgram, Method, System};
 pub use dynamics::DynamicsProgram;
+pub use powers::take_roots;
 pub use schedule::{Angle, Jet, Line, Operations, Section};
 
 /// Everything that is emitted, in the order in which it is computed.

@@ -6,6 +6,7 @@ mod angles;
 pub mod differentiate;
 pub mod evaluate;
 pub mod graph;
+mod powers;
 mod rules;
 pub mod scattered;
 pub mod substitute;
@@ -13,6 +14,7 @@ pub mod substitute;
 pub use angles::{AngleSum, add_angles};
 pub use differentiate::{tangent, tangents};
 pub use graph::{Binary, Graph, Leaf, Node, NodeId, Stage, Unary};
+pub use powers::take_roots;
 
 #[cfg(test)]
 mod compositions_tests;

@@ -20,12 +20,13 @@
 //! | 12 `division_by_two_powers_multiplies` | `x/c → x·(1/c)` where c is a power of two | nothing |
 //! | 13 `reversed_differences_are_negations` | `y − x → −(x − y)` in products, sums and rule 10, where `x − y` is the older one | the sign of a zero result |
 //! | 14 `doubled_terms_add_first` | `(x + x) ± (y + y) → (x ± y) + (x ± y)` | nothing but an overflow on the way |
+//! | 15 `fractional_powers_take_roots` | `x^(n + ½) → x^n·√x`, `x^(n + ¼) → x^n·√√x`, `x^(n + ¾) → x^n·(√x·√√x)`, `x^−p → 1/x^p` for n up to 16, once all derivatives are there | the roundings of two roots and n products; the sign at −0; digits of results below the normal range; a power of −∞ |
 
 use super::evaluate;
 use super::graph::{Binary, Graph, Node, NodeId, Stage, Unary};
 
 /// Largest exponent that is multiplied out.
-const LARGEST_POWER: i32 = 16;
+pub(super) const LARGEST_POWER: i32 = 16;
 
 impl Graph {
     /// `−x`

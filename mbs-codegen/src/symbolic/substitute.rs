@@ -39,6 +39,24 @@ pub fn replace(
     images
 }
 
+/// [`replace`], with what is built of the images of a node's operands in the place of the node.
+pub fn replace_by(
+    graph: &mut Graph,
+    roots: &[NodeId],
+    build: impl Fn(&mut Graph, NodeId) -> Option<NodeId>,
+) -> Images {
+    let nodes = graph.reachable(roots.iter().copied());
+    let mut images = Images(vec![None; graph.len()]);
+    for id in nodes {
+        let image = rebuilt(graph, id, &images);
+        let image = build(graph, image).unwrap_or(image);
+        if let Some(slot) = images.0.get_mut(id.index()) {
+            *slot = Some(image);
+        }
+    }
+    images
+}
+
 /// The node with the images of its operands.
 fn rebuilt(graph: &mut Graph, id: NodeId, images: &Images) -> NodeId {
     let of = |id: NodeId| images.of(id);
