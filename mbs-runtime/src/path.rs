@@ -146,3 +146,17 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Way<'_, S, 
         None
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_no_number_is_not_near() {
+        let nan = f64::NAN;
+        assert!(is_near(0.01, 0.1) && !is_near(0.03, 0.1));
+        assert!(
+            !is_near(nan, 0.1) && !is_near(0.01, nan) && !is_near(nan, nan) && !is_near(f64::INFINITY, 1.0)
+        );
+    }
+}

@@ -144,6 +144,18 @@ mod tests {
     }
 
     #[test]
+    fn a_margin_that_is_no_number_determines_nothing() {
+        assert!(determines_rates(1e-6) && !determines_rates(1e-7) && !determines_rates(f64::NAN));
+        assert!(is_regular(1e-7_f64) && !is_regular(1e-9_f64) && !is_regular(f64::NAN));
+        for (determinant, scaled, bound) in
+            [(f64::NAN, 1.0, 1.0), (1.0, f64::NAN, 1.0), (1.0, 1.0, f64::NAN), (0.0, 0.0, 0.0)]
+        {
+            let (_, margin) = reciprocal_and_margin(determinant, scaled, bound);
+            assert_eq!(margin, 0.0, "{determinant} {scaled} {bound}");
+        }
+    }
+
+    #[test]
     fn every_factorization_solves_with_its_transpose() {
         let mut sequence = Sequence::new(11);
         transposed_is_solved::<Direct1<f64>, 1>(&mut sequence);
