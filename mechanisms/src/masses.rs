@@ -75,6 +75,15 @@ where
     Box::new(MassFacade::<S, N, M>::new(S::default()))
 }
 
+/// A new mechanism of type `S` with masses and more than 120 coordinates and rows, which its rows may leave free.
+pub fn boxed_large_masses<S, const N: usize, const M: usize>() -> Box<dyn AnyEquations>
+where
+    S: Dynamic<f64, N, M> + Partitioned<f64, N, M> + Default + 'static,
+{
+    let partitioned = PartitionedFunctions::of_large::<M>();
+    Box::new(MassFacade::<S, N, M> { kinematics: Facade(S::default()), partitioned })
+}
+
 /// A new mechanism of type `S` with masses, of whose rows some follow from others, and which they leave free.
 pub fn boxed_redundant_masses<S, const N: usize, const M: usize>() -> Box<dyn AnyEquations>
 where

@@ -5,7 +5,7 @@
 use mbs_runtime::mechanism;
 
 use crate::drawing::Shape;
-use crate::masses::boxed_masses;
+use crate::masses::boxed_large_masses;
 use crate::n_four_bar::uprights;
 use crate::registry::{FreeCard, Preset, Usual};
 
@@ -19,7 +19,7 @@ pub const CARD: FreeCard = FreeCard {
     duration: 10.0,
     usual: Usual::VelocityInEqualSteps,
     drawing: DRAWING,
-    make: boxed_masses::<NFourBar40, 82, 81>,
+    make: boxed_large_masses::<NFourBar40, 82, 81>,
 };
 
 mechanism! {

@@ -4,8 +4,8 @@ use std::time::{Duration, Instant};
 
 use mbs_runtime::dynamics::{
     AugmentedLagrangian, Baumgarte, Counts, DormandPrince5, DormandPrince8, Doubt, Embedded, Explicit,
-    Extrapolated, Formulation, GeneralizedAlpha, Method, Penalty, Projection, RungeKutta4, SemiImplicitEuler,
-    Simulation, Stages, Tolerance, Unstabilized, VelocityTransformation,
+    Extrapolated, Formulation, GeneralizedAlpha, Method, Penalty, Projection, Radau5, RungeKutta4,
+    SemiImplicitEuler, Simulation, Stages, Tolerance, Unstabilized, VelocityTransformation,
 };
 use mbs_runtime::{Dynamic, Failure, Motion as Moving, Partitioned};
 
@@ -31,6 +31,8 @@ pub enum Stabilization {
     Velocity,
     /// By an implicit method, which is on them at each step's end; it has steps of its own.
     Implicit(Implicit),
+    /// Projected after each step of Radau IIA, adaptive within the tolerance or as long as they are given.
+    Radau,
 }
 
 /// Implicit steps, equal ones from instant to instant.
@@ -151,6 +153,8 @@ pub struct PartitionedFunctions<S, const N: usize> {
     pub start: fn(&S, f64) -> Start<N>,
     /// A motion from a start through times (s).
     pub by_velocity: Simulate<S, N>,
+    /// The same by steps of Radau IIA; none where its matrices are too large for a stack.
+    pub by_radau: Option<Simulate<S, N>>,
     /// The independent coordinates: as the text names them, or chosen.
     pub independent: &'static [u16],
 }
@@ -164,6 +168,7 @@ impl<S, const N: usize> PartitionedFunctions<S, N> {
         PartitionedFunctions {
             start: start::<S, N, M>,
             by_velocity: by_velocity::<S, N, M>,
+            by_radau: Some(by_radau::<S, N, M>),
             independent: <S as Partitioned<f64, N, M>>::INDEPENDENT,
         }
     }
@@ -177,7 +182,21 @@ impl<S, const N: usize> PartitionedFunctions<S, N> {
         PartitionedFunctions {
             start: text_start::<S, N, M>,
             by_velocity: by_projection::<S, N, M>,
+            by_radau: Some(by_radau::<S, N, M>),
             independent: &[],
+        }
+    }
+
+    /// Those of `S` with more coordinates and rows than a step of Radau IIA may have.
+    pub fn of_large<const M: usize>() -> Self
+    where
+        S: Dynamic<f64, N, M> + Partitioned<f64, N, M>,
+    {
+        PartitionedFunctions {
+            start: start::<S, N, M>,
+            by_velocity: by_velocity::<S, N, M>,
+            by_radau: None,
+            independent: <S as Partitioned<f64, N, M>>::INDEPENDENT,
         }
     }
 }
@@ -216,6 +235,13 @@ pub(crate) fn simulate<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
             by(&Projection { stages })
         }
         Stabilization::Velocity => (partitioned.by_velocity)(mechanism, &start, steps, times, progress),
+        Stabilization::Radau => match partitioned.by_radau {
+            Some(by_radau) => by_radau(mechanism, &start, steps, times, progress),
+            None => {
+                let name = "number of coordinates and rows for `radau`";
+                Err(Failure::Unsuitable { name, value: (N + M) as f64, most: 120.0 })
+            }
+        },
         Stabilization::Implicit(Implicit { method, longest }) => match method {
             ImplicitMethod::AugmentedLagrangian => {
                 let by = (&AugmentedLagrangian as AnyMethod<'_, S, N, M>, Quadrature::Trapezoidal);
@@ -300,6 +326,33 @@ fn by_projection<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
     let all = Projection { stages: Stages::All };
     let found = integrate(mechanism, &all, start, steps, times, progress)?;
     Ok(Simulated { replaced: true, ..found })
+}
+
+/// By steps of Radau IIA with projection, and the work of each supply.
+fn by_radau<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
+    mechanism: &S,
+    start: &Start<N>,
+    steps: Steps,
+    times: &[f64],
+    progress: &mut dyn FnMut(usize),
+) -> Result<Simulated, Failure> {
+    let run = |formulation: AnyFormulation<'_, S, N, M>, progress: &mut dyn FnMut(usize)| {
+        let method = Explicit::new(Radau5, formulation);
+        match steps {
+            Steps::Adaptive { tolerance, .. } => {
+                adaptive(mechanism, method, start, tolerance, times, progress)
+            }
+            Steps::Equal { longest, .. } => {
+                stepped(mechanism, &method, start, times, progress, &|span| equal(span, longest))
+            }
+            Steps::Fixed(_) => stepped(mechanism, &method, start, times, progress, &|_| 1),
+        }
+    };
+    let mut found = run(&ENDS, progress)?;
+    add_works(&mut found, |supply| {
+        run(&Single { by: &ENDS as AnyFormulation<'_, S, N, M>, supply }, &mut |_| ())
+    });
+    Ok(found)
 }
 
 /// By steps of an explicit method, and the work of each supply.

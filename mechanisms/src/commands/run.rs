@@ -134,6 +134,7 @@ impl Arguments {
                 alpha: self.damping.is_penalty_given(),
                 penalty: method == MethodName::Penalty,
                 implicit: method.is_implicit(),
+                radau: method == MethodName::Radau,
                 damped: method.is_damped(),
                 adaptive: integrator.rule().is_none(),
             },

@@ -144,7 +144,7 @@ mechanism! {
     coord p: [m; 2] = [1, 0];
     body bob { mass: 2, com: p }
     gravity weight { acceleration: [0, -9.81] }
-    constraint rod redundant { dot(p, p) == 1m^2; 2*dot(p, p) == 2*1m^2; }
+    constraint rod redundant { dot(p, p) == 1 [m^2]; 2*dot(p, p) == 2 [m^2]; }
     start p = [1, 0] rate [0, 0];
 }
 

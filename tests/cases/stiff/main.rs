@@ -1,6 +1,7 @@
 //! Stiff motions.
 
 mod d15_equal_steps;
+mod d15_limits_of_the_stiff_method;
 mod d15_stiff_motions;
 mod d15_what_a_text_may_have;
 mod peers;

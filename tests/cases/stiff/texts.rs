@@ -23,7 +23,7 @@ mechanism! {
     coord x: m = 0;
     body block { mass: m, com: [x, 0] }
     force pull: [k*(a*sin(omega*t) - x), 0] on [x, 0];
-    friction ground { along: x, normal: m*9.81m/1s^2, coefficient: mu, speed: smooth }
+    friction ground { along: x, normal: m*9.81 [m/s^2], coefficient: mu, speed: smooth }
     start x = 0 rate 0;
 }
 
@@ -41,7 +41,7 @@ mechanism! {
     let across = unit(ALPHA + 90deg);
     let x = dot(P, unit(ALPHA));
     body block { mass: m, com: P }
-    gravity weight { acceleration: -9.81m/1s^2*unit(ALPHA + 90deg) }
+    gravity weight { acceleration: -9.81 [m/s^2]*unit(ALPHA + 90deg) }
     force pull: k*(a*sin(omega*t) - x)*unit(ALPHA) on P;
     constraint ground { dot(P, across) == 0m; }
     friction rubbing { along: x, normal: lambda(ground), coefficient: mu, speed: smooth }
@@ -59,7 +59,7 @@ mechanism! {
     coord x: m = 0.05;
     body block { mass: m, com: [x, 0] }
     tsda spring { from: [-1m, 0], to: [x, 0], stiffness: k, length: 1 }
-    friction belt { along: x - v*t, normal: m*9.81m/1s^2, coefficient: mu, speed: smooth }
+    friction belt { along: x - v*t, normal: m*9.81 [m/s^2], coefficient: mu, speed: smooth }
     start x = 0.05 rate 0;
 }
 

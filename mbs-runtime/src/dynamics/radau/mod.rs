@@ -30,7 +30,7 @@ pub(super) use slopes::Slopes;
 /// use mbs_runtime::dynamics::{Explicit, Projection, Radau5, Simulation};
 /// mbs_runtime::mechanism! {
 ///     pub mechanism Chain;
-///     coord p: [m; 61, 2];
+///     coord p: [m; 61, 2] = 0;
 ///     for i in 0..61 { body bob { mass: 1, com: p[i] } }
 /// }
 /// let method = Explicit::new(Radau5, Projection::default());

@@ -38,7 +38,10 @@ fn ended(failure: Failure, stabilization: Stabilization) -> String {
         Stabilization::None => "no stabilisation",
         Stabilization::Baumgarte(_) => "Baumgarte's stabilisation",
         Stabilization::Penalty(_) => "a penalty",
-        Stabilization::Projection | Stabilization::Velocity | Stabilization::Implicit(_) => {
+        Stabilization::Projection
+        | Stabilization::Velocity
+        | Stabilization::Implicit(_)
+        | Stabilization::Radau => {
             return failure.to_string();
         }
     };

@@ -25,6 +25,8 @@ pub struct Given {
     pub penalty: bool,
     /// Whether the method that runs has steps of its own.
     pub implicit: bool,
+    /// Whether it is `radau`, which adapts steps of its own.
+    pub radau: bool,
     /// Whether it damps violations.
     pub damped: bool,
     /// Whether the steps of an explicit integrator adapt themselves.
@@ -88,6 +90,11 @@ impl Wish {
                 implicit && self.given.integrator,
                 "`--integrator`",
                 "is for methods without steps of their own; an implicit one takes `--step`",
+            ),
+            (
+                self.given.radau && self.given.integrator,
+                "`--integrator`",
+                "is for methods without steps of their own; `radau` adapts its steps to `--tolerance`",
             ),
             (
                 implicit && self.given.tolerance,

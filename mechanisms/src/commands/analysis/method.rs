@@ -25,6 +25,8 @@ pub enum MethodName {
     Extrapolated,
     /// Implicit steps of `--step` by generalised-alpha, for stiff forces
     GeneralizedAlpha,
+    /// Implicit steps by Radau IIA of order 5, adaptive within `--tolerance`, for stiff forces
+    Radau,
 }
 
 impl MethodName {
@@ -119,6 +121,7 @@ impl Damping {
             MethodName::AugmentedLagrangian => implicit(ImplicitMethod::AugmentedLagrangian),
             MethodName::Extrapolated => implicit(ImplicitMethod::Extrapolated),
             MethodName::GeneralizedAlpha => implicit(ImplicitMethod::GeneralizedAlpha),
+            MethodName::Radau => Stabilization::Radau,
             MethodName::Projection => Stabilization::Projection,
             MethodName::None => Stabilization::None,
             MethodName::Velocity => Stabilization::Velocity,
