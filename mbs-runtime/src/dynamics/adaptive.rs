@@ -16,7 +16,7 @@ const LEAST_GROWTH: f64 = 0.2;
 const LEAST_ERROR: f64 = 1e-4;
 
 /// Smallest step in units of the rounding of the time: below it t + c h no longer tells stages apart.
-const LEAST_STEP_ROUNDINGS: f64 = 16.0;
+pub(super) const LEAST_STEP_ROUNDINGS: f64 = 16.0;
 
 /// First step: it may change the state by this share of it, or of its tolerance's inverse.
 const FIRST_SHARE: f64 = 0.01;
@@ -26,7 +26,7 @@ const STRETCH: f64 = 1.1;
 
 /// Times that a step is shortened so that it ends at a kink: twice where the kink was outside its stages, a few times more where
 /// they felt it.
-const MOST_RETAKES: u32 = 12;
+pub(super) const MOST_RETAKES: u32 = 12;
 
 /// Steps a call may take; a run that needs more does not advance.
 const MOST_STEPS: u32 = 10_000_000;
@@ -117,15 +117,20 @@ impl<M: Embedded, R: Real, Y: Vector<R>> Accepted<M, R, Y> {
     /// The state at `t` (s), inside the step, by the states and rates at its ends alone: for coarse steps of which the
     /// polynomial cannot be made. Order 3; not settled.
     pub(super) fn cubic(&self, t: R) -> Y {
-        let (one, h) = (R::constant(1.0), self.end.t - self.start.t);
-        let theta = (t - self.start.t) / h;
-        let left = one - theta;
-        let change = self.end.y.plus(-one, &[1.0], [&self.start.y]);
-        let along = change.zero().plus(h, &[1.0], [&self.start.rate]).plus(-one, &[1.0], [&change]);
-        let against = change.plus(-h, &[1.0], [&self.end.rate]);
-        let bent = along.zero().plus(left, &[1.0], [&along]).plus(theta, &[1.0], [&against]);
-        self.start.y.plus(theta, &[1.0], [&change]).plus(theta * left, &[1.0], [&bent])
+        cubic(&self.start, &self.end, t)
     }
+}
+
+/// The state at `t` (s) between two points by their states and rates; not settled.
+pub(super) fn cubic<R: Real, Y: Vector<R>>(start: &Point<R, Y>, end: &Point<R, Y>, t: R) -> Y {
+    let (one, h) = (R::constant(1.0), end.t - start.t);
+    let theta = (t - start.t) / h;
+    let left = one - theta;
+    let change = end.y.plus(-one, &[1.0], [&start.y]);
+    let along = change.zero().plus(h, &[1.0], [&start.rate]).plus(-one, &[1.0], [&change]);
+    let against = change.plus(-h, &[1.0], [&end.rate]);
+    let bent = along.zero().plus(left, &[1.0], [&along]).plus(theta, &[1.0], [&against]);
+    start.y.plus(theta, &[1.0], [&change]).plus(theta * left, &[1.0], [&bent])
 }
 
 /// The solution within one step.

@@ -2,6 +2,7 @@
 
 mod adaptive;
 mod checks;
+mod fixed;
 mod reading;
 
 use super::adaptive::Adaptive;
@@ -209,61 +210,6 @@ where
     /// Without the integral of the forces' work, which costs an evaluation of every power a stage.
     pub fn without_work(self) -> Self {
         Simulation { balanced: false, ..self }
-    }
-
-    /// Moves on by one step of `h` (s): a fixed amount of work.
-    ///
-    /// # Errors
-    /// [`Failure::InvalidStep`], [`Failure::StepTooLong`], [`Failure::Unbounded`], [`Failure::Unpaid`], those of the method,
-    /// [`Failure::WrongBranch`]; [`Failure::Flat`] and [`Failure::Inertialess`] where the state itself shows why. It is
-    /// then bit for bit what it was.
-    pub fn step(&mut self, h: R) -> Result<(), Failure> {
-        let t = self.now.t + h;
-        if !R::constant(0.0).less(h) || !t.is_finite() || t == self.now.t {
-            return Err(Failure::InvalidStep { step: h.to_f64(), time: self.now.t.to_f64() });
-        }
-        self.method.admit(h, self.now.t)?;
-        let mut counts = self.counts;
-        let Fresh { instant: from, gained, rank_rises } = self.fresh(&mut counts)?;
-        let model = Model { rank_rises, ..self.model() };
-        let stepped = self.method.step(&model, &from, h, &mut counts);
-        let stepped = stepped.and_then(|next| {
-            model.require_plausible((&from, h), &next)?;
-            model.check(next.t, &next.y).map(|()| next)
-        });
-        let next = stepped.map_err(|failure| model.traced(failure, from.t, &from.y))?;
-        model.check_assembly(from.t, (next.t, &next.y), false)?;
-        let phases = self.method.phases_after(&model, from.t, h)?;
-        counts.steps += 1;
-        let ends = ((from.t, from.solved.margin), (next.t, next.solved.margin));
-        let passage = Passage::between(ends.0, ends.1);
-        self.passage = self.passage.or(passage);
-        self.rank_rises = rank_rises;
-        self.take(next, phases, counts);
-        self.passed = passage.is_some();
-        self.reference = self.reference + gained;
-        Ok(())
-    }
-
-    /// Moves on to `until` (s) in `steps` equal steps; not at all where `until` is the present time.
-    ///
-    /// # Errors
-    /// As [`step`](Self::step); the state is then that before the step that failed.
-    pub fn step_to(&mut self, until: R, steps: u32) -> Result<(), Failure> {
-        let (from, count) = (self.now.t, R::constant(f64::from(steps)));
-        if steps == 0 {
-            let step = ((until - from) / count).to_f64();
-            return Err(Failure::InvalidStep { step, time: from.to_f64() });
-        }
-        if until == from {
-            return self.stand();
-        }
-        for index in 1..=steps {
-            let share = R::constant(f64::from(index)) / count;
-            let end = if index == steps { until } else { from + (until - from) * share };
-            self.step(end - self.now.t)?;
-        }
-        Ok(())
     }
 
     /// The instant, solved anew where parameters or inputs have changed.

@@ -4,6 +4,7 @@ mod d10_settings;
 mod d21_tables;
 mod d3_contacts;
 mod d3_events;
+mod d3_fixed_steps;
 mod d3_limits;
 mod d4_zero_start;
 mod t7_contact_damping;

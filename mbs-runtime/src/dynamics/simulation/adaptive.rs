@@ -1,18 +1,16 @@
 //! Runs with steps as long as a tolerance allows.
 
+use super::fixed::UNDEFINED_EVENT;
 use super::{Fresh, Simulation};
 use crate::dynamics::adaptive::{Accepted, Adaptive};
 use crate::dynamics::embedded::Embedded;
 use crate::dynamics::equation::Equation;
-use crate::dynamics::event::{Dense, Direction, MOST_RESOLVED, Monitor, Scrutiny, Stopped, Undefined};
+use crate::dynamics::event::{Dense, Direction, MOST_RESOLVED, Stopped, Undefined};
 use crate::dynamics::metric::Tolerance;
 use crate::dynamics::model::{Counts, Formulation, Model};
 use crate::dynamics::motion::{Equations, Explicit, Instant, Moving, beginning};
 use crate::dynamics::passage::Passage;
 use crate::{Dynamic, Failure, Real};
-
-/// The failure of an event function that is NaN.
-const UNDEFINED_EVENT: Failure = Failure::NonFinite { name: "event function", line: 0 };
 
 /// What a run has come to at the end of a step.
 struct Progress<R, P> {
@@ -45,19 +43,6 @@ where
     /// Steps accepted and rejected by the control of their size, and the size that it will try next.
     pub fn adaptive(&self) -> &Adaptive<R> {
         &self.adaptive
-    }
-
-    /// Nothing that lasts longer than `resolution` (s), positive, is missed of events, limits and contacts, whatever functions they
-    /// are. By default that is an eighth of each step; smooth functions are found however short they pass zero.
-    pub fn with_event_resolution(self, resolution: R) -> Self {
-        let scrutiny = Scrutiny { resolution: Some(resolution), ..self.scrutiny };
-        Simulation { scrutiny, ..self }
-    }
-
-    /// The event functions g of this run have second time derivatives |g̈| (unit of g per second squared) of at most `bound`,
-    /// positive: none of their passages is missed then.
-    pub fn with_event_bound(self, bound: R) -> Self {
-        Simulation { scrutiny: Scrutiny { bound: Some(bound), ..self.scrutiny }, ..self }
     }
 
     /// Moves on to `until` (s) with steps as long as the tolerance allows; not at all where `until` is the present time.
@@ -271,41 +256,5 @@ where
             self.stopped = Some(Stopped::new(t, event(t, &self.now.y.q, &self.now.y.qd), reach.scale));
         }
         failure.map_or(Ok(stopped.is_some()), Err)
-    }
-
-    /// Fails where a setting of the run is no positive number.
-    fn require_settings(&self) -> Result<(), Failure> {
-        let Scrutiny { resolution, bound, .. } = self.scrutiny;
-        let positive = |value: R| R::constant(0.0) < value;
-        let settings = [
-            ("largest step", Some(self.adaptive.largest)),
-            ("event resolution", resolution),
-            ("event bound", bound),
-        ];
-        for (setting, value) in settings {
-            if let Some(value) = value.filter(|value| !positive(*value)) {
-                return Err(Failure::Unsuitable {
-                    name: setting,
-                    value: value.to_f64(),
-                    most: f64::INFINITY,
-                });
-            }
-        }
-        Ok(())
-    }
-
-    /// An event function as it is where a run begins.
-    fn monitor(
-        &self,
-        direction: Direction,
-        from: &Instant<R, N, M, S::States>,
-        event: &mut impl FnMut(R, &[R; N], &[R; N]) -> R,
-    ) -> Result<Monitor<R>, Failure> {
-        let value = event(from.t, &from.y.q, &from.y.qd);
-        if value.partial_cmp(&value).is_none() {
-            return Err(UNDEFINED_EVENT);
-        }
-        let scrutiny = Scrutiny { touching: true, ..self.scrutiny };
-        Ok(Monitor::new(direction, scrutiny, (from.t, value), (self.stopped, self.stale)))
     }
 }
