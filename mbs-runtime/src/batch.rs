@@ -12,6 +12,7 @@ use standing::Standing;
 use crate::diagnosis::Statistics;
 use crate::kinematics::are_finite;
 use crate::lanes::LaneMask;
+use crate::path::{LARGEST_PIECE, largest_change};
 use crate::trial::{Start, Trial, weights};
 use crate::turns::second;
 use crate::{Failure, Kinematic, Lanes, Mechanism, Phase, Real, Scalar, Stepper};
@@ -19,7 +20,7 @@ use crate::{Failure, Kinematic, Lanes, Mechanism, Phase, Real, Scalar, Stepper};
 /// `L` mechanisms of one text, a lane each, each with its own design, time, state and failures.
 ///
 /// A step is taken in all lanes at once. A lane in which something else happens than next to a regular position (no
-/// convergence, the singular zone, a branch, a limit, a doubt about the assembly, as after an input that jumps) is taken alone,
+/// convergence, the singular zone, a passage, a branch, a limit, a doubt about the assembly, as after an input that jumps) is taken alone,
 /// by the [`Stepper`] that it would have as a single mechanism; the others do not notice. So each lane is, to round-off, what
 /// it is alone. Phases of drives that prescribe a rate move on in all lanes at once too; where a coordinate turns, a lane is taken
 /// alone only to take a whole turn off.
@@ -50,6 +51,8 @@ where
     changed: [bool; L],
     /// Lanes whose steppers do not have the parameters and inputs that stand above.
     outdated: [bool; L],
+    /// In changed lanes, parameters, inputs and phases as they were when the lane was solved.
+    solved: S::Values,
     /// Why lanes are out.
     retired: [Option<Failure>; L],
     /// What a lane has besides; what stands above is not up to date here.
@@ -108,6 +111,7 @@ where
         let (margin, notes) = (zero, Notes::none());
         let weights = weights(&mechanism.coordinate_scales(&parameters));
         let mut batch = Batch {
+            solved: mechanism.values(),
             mechanism,
             parameters,
             weights,
@@ -184,7 +188,7 @@ where
         let Batch { mechanism, parameters, weights, q, qd, qdd, margin, .. } = &*self;
         let start = Start { t: from, q, qd, qdd, margin: *margin, weights };
         let trial = Trial::of(mechanism, parameters, &start, to, !self.waits);
-        if !Lanes::<R, L>::all(trial.plain) || self.turns_changed(&trial.orientation) {
+        if !Lanes::<R, L>::all(trial.plain) || self.notes.passes(&trial.orientation) {
             // The address of a copy, so that the trial itself stays in registers.
             let doubtful = trial;
             return Some(self.apart(&doubtful, &before, t));
@@ -203,18 +207,6 @@ where
             self.take_turns_off();
         }
         None
-    }
-
-    /// Whether any lane whose inputs were changed passes a singular position: the way of the drivers decides what it leads to.
-    #[inline(always)]
-    fn turns_changed(&self, orientation: &[u64; L]) -> bool {
-        self.changed != [false; L] && (0..L).any(|lane| self.turns(lane, orientation))
-    }
-
-    /// Whether lane `lane` is such a lane.
-    #[inline(always)]
-    fn turns(&self, lane: usize, orientation: &[u64; L]) -> bool {
-        at(&self.changed, lane, false) && at(orientation, lane, 0) != self.notes.orientation(lane)
     }
 
     /// The times between which the lanes step to `t` (L, s): where coordinates turn, no function knows the time, and a step is one
@@ -273,8 +265,9 @@ where
         before: &S::Phases,
         t: [R; L],
     ) -> [Result<Statistics, Failure>; L] {
-        let turns = LaneMask::new(from_fn(|lane| self.turns(lane, &trial.orientation)));
-        let plain = trial.plain & !turns;
+        // The homotopy decides what a passage leads to.
+        let passes = LaneMask::new(from_fn(|lane| trial.orientation(lane) != self.notes.orientation(lane)));
+        let plain = trial.plain & !passes;
         let mut notes = self.notes;
         let (from, to) = self.span(t);
         notes.follow(trial, self.margin, to - from);
@@ -305,13 +298,31 @@ where
 
     /// Changes parameters or inputs of any lanes; see [`Stepper::change`].
     pub fn change<X>(&mut self, change: impl FnOnce(&mut S) -> X) -> X {
+        if self.changed == [false; L] {
+            self.solved = self.mechanism.values();
+        } else {
+            self.keep_solved();
+        }
         let result = change(&mut self.mechanism);
         self.parameters = self.mechanism.parameters();
         self.weights = weights(&self.mechanism.coordinate_scales(&self.parameters));
         // The steppers get theirs where they are needed.
         (self.changed, self.outdated) = ([true; L], [true; L]);
         self.waits = self.out | !are_finite(&self.mechanism);
+        let change = largest_change(S::ANGLES, &self.solved, &self.mechanism.values());
+        self.waits = self.waits | Lanes::constant(LARGEST_PIECE).less(change);
         result
+    }
+
+    /// Takes parameters, inputs and phases of the lanes that were solved since they were changed last.
+    #[cold]
+    #[inline(never)]
+    fn keep_solved(&mut self) {
+        let changed = LaneMask::new(self.changed);
+        let now = self.mechanism.values();
+        for (old, new) in self.solved.as_mut().iter_mut().zip(now.as_ref()) {
+            *old = Lanes::select(changed, *old, *new);
+        }
     }
 
     /// The mechanism in lane `lane` alone; `None` where there is no such lane, or it has never been assembled.
@@ -321,7 +332,7 @@ where
         if standing.t.to_f64().is_nan() {
             return None;
         }
-        standing.hand_over(&mut stepper, &self.mechanism, lane);
+        standing.hand_over(&mut stepper, &self.mechanism, &self.solved, lane);
         Some(stepper)
     }
 
@@ -364,7 +375,7 @@ where
     fn up_to_date(&mut self, lane: usize) -> Option<&mut Stepper<S::Lane, R, N, M>> {
         let standing = self.standing(lane);
         let stepper = self.steppers.get_mut(lane)?;
-        standing.hand_over(stepper, &self.mechanism, lane);
+        standing.hand_over(stepper, &self.mechanism, &self.solved, lane);
         set(&mut self.outdated, lane, false);
         Some(stepper)
     }

@@ -78,7 +78,7 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
     /// Inputs jump to their present value in the first step. Where they have moved far in the time missed, change
     /// them in parts, with a [`step`](Self::step) after each.
     pub fn skip(&mut self, period: R, periods: u32, budget: Budget) -> Step {
-        let before = (self.state, self.changed, self.turns, self.mechanism.clone());
+        let before = (self.state, self.changed, self.turns, self.mechanism.clone(), self.anchor, self.led);
         let periods = periods.max(1);
         let mut evaluations = 0_u32;
         let mut step = Step::Refused(Failure::NonFinite { name: "t", line: 0 });
@@ -88,7 +88,7 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
                 _ => self.step(period, budget),
             };
             let (Step::Done(statistics) | Step::Degraded { statistics, .. }) = &mut step else {
-                (self.state, self.changed, self.turns, self.mechanism) = before;
+                (self.state, self.changed, self.turns, self.mechanism, self.anchor, self.led) = before;
                 return step;
             };
             evaluations = evaluations.saturating_add(statistics.evaluations);
@@ -123,12 +123,17 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
         if let Some(failure) = self.fault.or(time_failure(t)) {
             return Err(failure);
         }
-        self.with_phases(t, |stepper| stepper.within_budget(t, budget))
+        self.with_phases(t, |stepper, phases| stepper.within_budget(t, phases, budget))
     }
 
     #[inline]
-    fn within_budget(&mut self, t: R, budget: Budget) -> Result<Step, Failure> {
-        let start = self.predicted(t);
+    fn within_budget(&mut self, t: R, phases: S::Phases, budget: Budget) -> Result<Step, Failure> {
+        let most = budget.evaluations();
+        if !self.is_ready() {
+            return self.along_the_way(t, phases, 0, most).map(Step::Done);
+        }
+        let prediction = self.predicted(t);
+        let start = prediction.q;
         let scales = self.mechanism.coordinate_scales(&self.parameters);
         let mut solver = Budgeted::new(extent(&start, &scales), budget);
         let mut q = start;
@@ -140,7 +145,14 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
         if let Some(failure @ (Failure::NonFinite { .. } | Failure::Inconsistent { .. })) = open {
             return Err(contradiction(&self.mechanism, &self.parameters, &q, t, failure));
         }
-        self.accept(Found { t, q, position, statistics, open })?;
+        if !self.is_taken(Found { t, q, position, statistics, open }, &prediction)? {
+            let left = most.saturating_sub(statistics.evaluations);
+            let done = self.along_the_way(t, phases, statistics.evaluations, left);
+            return match (done, open) {
+                (Err(Failure::NotFollowed { .. }), Some(failure)) => Err(failure),
+                (done, _) => done.map(Step::Done),
+            };
+        }
         let statistics = self.statistics();
         Ok(match open {
             None => Step::Done(statistics),

@@ -92,6 +92,24 @@ pub enum Failure {
         /// Time (s) of the position that was sought.
         time: f64,
     },
+    /// From the last position to the one that is sought no way leads that leaves no doubt of the assembly.
+    NotFollowed {
+        /// Part of the way (0 to 1) to which it was followed.
+        part: f64,
+        /// Margin to singularity there.
+        margin: f64,
+        /// Time (s) of the position that was sought.
+        time: f64,
+    },
+    /// A row jumps between the last position and the one that is sought: a function of the time or of an input is not continuous.
+    Discontinuous {
+        /// The row that changes most.
+        row: Entry,
+        /// Part of the way (0 to 1) at which it jumps.
+        part: f64,
+        /// Time (s) of the position that was sought.
+        time: f64,
+    },
     /// No start led to a position: the mechanism cannot be assembled as it is dimensioned, or not from there.
     NotAssemblable {
         /// The row with the largest part of the least residual found, in the reference metric.
@@ -341,6 +359,8 @@ impl Failure {
         match &mut self {
             Failure::Unresolved { time, .. }
             | Failure::NotConverged { time, .. }
+            | Failure::NotFollowed { time, .. }
+            | Failure::Discontinuous { time, .. }
             | Failure::NotAssemblable { time, .. }
             | Failure::Singular { time, .. }
             | Failure::WrongBranch { time, .. }
@@ -378,6 +398,8 @@ impl Failure {
         match self {
             Failure::Unresolved { time, .. }
             | Failure::NotConverged { time, .. }
+            | Failure::NotFollowed { time, .. }
+            | Failure::Discontinuous { time, .. }
             | Failure::NotAssemblable { time, .. }
             | Failure::Singular { time, .. }
             | Failure::WrongBranch { time, .. }

@@ -7,11 +7,20 @@ use crate::linear::determines_rates;
 use crate::path::is_near;
 use crate::redundancy::disagreement;
 use crate::stepper::State;
-use crate::{Failure, Kinematic, Margin, Mechanism, Real};
+use crate::{Failure, Kinematic, Margin, Mechanism, Real, Scalar};
 
-/// Margin to singularity below which the path from the last regular position predicts, not the rates of the state: those
-/// are wrong by the inverse square of the margin, and past a change point pick the assembly by chance.
-pub(crate) const REGULAR_ZONE: f64 = 1e-2;
+/// Margin to singularity below which the homotopy predicts, not the rates of the state: those are wrong by the inverse square of the
+/// margin, and past a change point pick the assembly by chance.
+const REGULAR_ZONE: f64 = 1e-2;
+
+/// The same in ε, for numbers of few digits: 0.075 in `f32`, the margin from which on a position leads to the next one there.
+const ZONE_ROUNDINGS: f64 = 630_000.0;
+
+/// Margin below which a position is in the singular zone.
+#[inline(always)]
+pub(crate) fn regular_zone<T: Scalar>() -> T {
+    T::constant(REGULAR_ZONE.max(ZONE_ROUNDINGS * T::Real::EPSILON.to_f64()))
+}
 
 /// A position that a solver came to.
 pub(crate) struct Found<S: Mechanism<R, N, M>, R: Real, const N: usize, const M: usize> {
@@ -53,6 +62,11 @@ impl<R: Real, const N: usize> Rates<R, N> {
         Rates { qd: [zero; N], qdd: [zero; N], margin: zero, orientation: 0, repair: None }
     }
 
+    /// Whether they are those of a position outside the singular zone.
+    pub fn is_regular(&self) -> bool {
+        regular_zone::<R>() <= self.margin
+    }
+
     /// Solves them at a position that closes, or nearly so; what stands against it, if so.
     #[inline(always)]
     pub fn solve<S: Kinematic<R, N, M>, const M: usize>(
@@ -71,7 +85,7 @@ impl<R: Real, const N: usize> Rates<R, N> {
         if !determines_rates(margin.value) {
             return Some(singular(mechanism, &margin, t));
         }
-        if margin.value < R::constant(REGULAR_ZONE) && found.open.is_none() {
+        if margin.value < regular_zone() && found.open.is_none() {
             found.polish(mechanism, parameters, &factors);
             (factors, margin) = factorized(mechanism, parameters, &found.position);
             if !determines_rates(margin.value) {

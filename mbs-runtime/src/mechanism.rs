@@ -103,6 +103,8 @@ pub trait Mechanism<T: Scalar, const N: usize, const M: usize>: Clone {
     type Limits: AsRef<[Limit<T>]> + Copy;
     /// The phase of each drive that prescribes a rate.
     type Phases: Copy + AsRef<[Phase<T>]> + AsMut<[Phase<T>]>;
+    /// One value a variable.
+    type Values: Copy + AsRef<[T]> + AsMut<[T]>;
     /// One value a component of an `out` of the text.
     type Outputs: AsRef<[OutputValue<T>]> + Copy;
     /// The same design in one lane, for fallbacks and diagnosis.
@@ -126,6 +128,8 @@ pub trait Mechanism<T: Scalar, const N: usize, const M: usize>: Clone {
     /// them: [`variable`](Self::variable) finds the index
     /// that [`get`](Self::get) and [`set`](Self::set) take.
     const VARIABLES: &'static [Entry];
+    /// Indices of parameters and inputs that are angles, without their rates: what comes round again may have moved far.
+    const ANGLES: &'static [u16] = &[];
     /// What sets the reference length; see [`reference`](Self::reference).
     const REFERENCE: Reference = Reference::NONE;
     /// Branch conditions.
@@ -150,6 +154,16 @@ pub trait Mechanism<T: Scalar, const N: usize, const M: usize>: Clone {
     fn set(&mut self, index: usize, value: T) -> bool;
     /// The design in lane `lane`.
     fn lane(&self, lane: usize) -> Self::Lane;
+
+    /// The parameters and inputs of [`VARIABLES`](Self::VARIABLES), in their order.
+    fn values(&self) -> Self::Values;
+    /// Puts them back to what they were.
+    #[inline]
+    fn set_values(&mut self, values: Self::Values) {
+        for (index, value) in values.as_ref().iter().enumerate() {
+            self.set(index, *value);
+        }
+    }
 
     /// Whether a text with masses has inputs with rates.
     const HAS_SIGNALS: bool = false;

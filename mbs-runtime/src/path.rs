@@ -1,11 +1,13 @@
-//! The way of the drivers from one position to another, followed in pieces so small that no assembly is changed.
+//! Homotopy in time, inputs and parameters from the last regular position, in pieces so small that they keep the assembly.
 
 use crate::kinematics::{branch_failure, largest_difference};
-use crate::{Kinematic, Real};
+use crate::{Kinematic, Margin, Real, Scalar};
 
-/// Largest part of a prediction (rad, or reference lengths) that may come from its second-order term: beyond it the
-/// step is too long for a second-order polynomial, and the first-order one is nearer.
-pub(crate) const LARGEST_SECOND_ORDER_TERM: f64 = 0.5;
+/// Largest second-order term of a prediction (rad, or reference lengths) from which a step is certain in one piece.
+///
+/// The third-order term, by which the prediction is off, is less than a tenth of it where coordinates move by some tenths:
+/// far less than a quarter of any margin outside the singular zone.
+pub(crate) const LARGEST_SECOND_ORDER_TERM: f64 = 0.01;
 
 /// Largest way from a point to the solution that it leads to, in the reference metric, over the margin there.
 ///
@@ -14,15 +16,69 @@ pub(crate) const LARGEST_SECOND_ORDER_TERM: f64 = 0.5;
 /// nearer to the solution that it leads to than to where the assemblies meet.
 pub(crate) const LARGEST_APPROACH: f64 = 0.25;
 
-/// Pieces tried before the way is given up: each halving of a piece takes one, and so does each piece. Past a place of margin μ the
-/// coordinates that come near to losing rank turn by half a turn, by ∛μ a piece: 700 at 1e-6, and as many that are halved.
-const PIECES: u32 = 2000;
+/// The same where the determinant changes its sign, beside what rounding needs: of two assemblies that come as near as μ to each
+/// other and do not meet, the other one is off the prediction from margin m by (μ/m)² of m.
+const LARGEST_APPROACH_OF_A_PASSAGE: f64 = 1.0 / 64.0;
+
+/// Largest movement of a coordinate in a piece (rad, or reference lengths): its third-order term is below 1e-2.
+pub(crate) const LARGEST_PIECE: f64 = 0.35;
+
+/// Largest second-order term of a piece over the margin at its end.
+const LARGEST_BEND: f64 = 0.5;
+
+/// Largest difference of the slopes at the end of a piece, foreseen and found, over the larger one. Assemblies that cross differ by
+/// as much as they have slope, at whatever distance from where they do.
+const LARGEST_KINK: f64 = 0.25;
+
+/// Evaluations before the way is given up: a turn takes some twenty pieces of four, a singular position six.
+pub(crate) const EVALUATIONS: u32 = 8_000;
+
+/// Those of one piece: where the way begins, how long the piece is, its forecast, a correction and its end.
+pub(crate) const LEAST_EVALUATIONS: u32 = 5;
 
 /// Newton steps of a piece. From a quarter of the margin they end in rounding; what does not is halved.
-const CORRECTIONS: u32 = 5;
+const CORRECTIONS: u32 = 6;
 
-/// A Newton step, in the reference metric, after which a piece is done: its square is rounding.
-const CLOSED: f64 = 1e-8;
+/// A piece over the one before. What drives the mechanism may come round again within a long one, and look as if it had not moved.
+const LARGEST_GROWTH: f64 = 4.0;
+
+/// Part of a piece between the points of its difference quotients, which are all in it. So they are as exact as the piece is foreseen:
+/// next to where assemblies cross, what they leave out counts by the inverse margin, and is of the fourth order.
+const THIRD: f64 = 1.0 / 3.0;
+
+/// ε^(1/4): rounding leaves ε/m of a position open at margin m, and ε/m² of its slope; where a piece is as long as the margin, a
+/// prediction is off by rounding as much as by its own third-order term.
+#[inline(always)]
+fn balance<R: Real>() -> R {
+    R::EPSILON.sqrt().sqrt()
+}
+
+/// Margin from which on a position leads to the next one; nearer to the singular position it is found from the last such
+/// position.
+pub(crate) fn leads<R: Real>(margin: R) -> bool {
+    R::constant(4.0) * balance::<R>() <= margin
+}
+
+/// Largest margin at either end of a piece in which the determinant changes its sign.
+fn passes<R: Real>() -> R {
+    R::constant(8.0) * balance::<R>()
+}
+
+/// [`LARGEST_APPROACH_OF_A_PASSAGE`] with what difference quotients have of rounding, some 50 ε/m² at m = [`leads`].
+fn approach_of_a_passage<R: Real>() -> R {
+    R::constant(LARGEST_APPROACH_OF_A_PASSAGE) + R::constant(3.0) * balance::<R>()
+}
+
+/// Square of a Newton step over the margin after which a piece is done: that much of the position is left open, ε^(3/4).
+fn closed<R: Real>() -> R {
+    let root = balance::<R>();
+    root * root * root
+}
+
+/// Part of the way that no piece is shorter than: beyond it values of the way differ by their rounding alone.
+fn shortest<R: Real>() -> R {
+    R::constant(64.0) * R::EPSILON
+}
 
 /// Whether a point that led `distance` (in the reference metric) far to a solution of `margin` leads there for certain.
 #[inline(always)]
@@ -30,120 +86,404 @@ pub(crate) fn is_near<R: Real>(distance: R, margin: R) -> bool {
     distance <= R::constant(LARGEST_APPROACH) * margin
 }
 
-/// q + `first` + `second`, without the last term where it is too large to be trusted; `scales` are the coordinates'.
+/// The largest difference of those values that `angles` are the indices of.
 #[inline(always)]
-pub(crate) fn displaced<R: Real, const N: usize>(
-    q: &[R; N],
-    first: &[R; N],
-    second: &[R; N],
-    scales: &[R; N],
-) -> [R; N] {
-    let limit = R::constant(LARGEST_SECOND_ORDER_TERM);
-    let mut trusted = true;
-    for (term, scale) in second.iter().zip(scales) {
-        trusted &= term.abs() <= limit * *scale;
-    }
-    let mut displaced = *q;
-    for ((coordinate, first), second) in displaced.iter_mut().zip(first).zip(second) {
-        let second = if trusted { *second } else { R::constant(0.0) };
-        *coordinate = *coordinate + *first + second;
-    }
-    displaced
+pub(crate) fn largest_change<T: Scalar, V: AsRef<[T]>>(angles: &[u16], old: &V, new: &V) -> T {
+    let (old, new) = (old.as_ref(), new.as_ref());
+    let pairs = angles.iter().filter_map(|index| old.get(usize::from(*index)).zip(new.get(usize::from(*index))));
+    pairs.fold(T::constant(0.0), |largest, (old, new)| (*new - *old).abs().max(largest))
 }
 
-/// A mechanism at the end of a way: time and inputs are those of the position that is sought.
+/// A position as one before it foresees it.
+pub(crate) struct Prediction<R, const N: usize> {
+    pub q: [R; N],
+    /// Movement by the first-order term, in the reference metric.
+    pub first: R,
+    /// The second-order term.
+    pub second: R,
+}
+
+impl<R: Real, const N: usize> Prediction<R, N> {
+    /// Whether a solution of `margin` next to it can be in no other assembly.
+    pub fn is_certain(&self, margin: R) -> bool {
+        let most = R::constant(2.0 * LARGEST_PIECE);
+        self.first <= most && self.second <= R::constant(LARGEST_BEND) * margin
+    }
+}
+
+/// A position with all that it belongs to: time, parameters, inputs and phases.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Anchor<V, R, const N: usize> {
+    /// Time (s).
+    pub t: R,
+    pub q: [R; N],
+    /// Values of parameters, inputs and phases.
+    pub values: V,
+}
+
+/// From a regular position to time and inputs of the one that is sought.
 pub(crate) struct Way<'a, S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> {
-    pub mechanism: &'a S,
-    pub parameters: &'a S::Parameters,
+    pub from: &'a Anchor<S::Values, R, N>,
+    /// Its values change as the way is followed, and are those of the end before and afterwards.
+    pub mechanism: &'a mut S,
+    /// Values of the position that is sought.
+    pub values: S::Values,
     /// Time (s) at the end.
     pub t: R,
 }
 
-impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Way<'_, S, R, N, M> {
-    /// Second-order prediction from `q` of where the rows are open by `left` (M), in the units of the rows.
-    ///
-    /// Chebyshev's step q + Δ₁ + Δ₂ with Φ_q Δ₁ = `left` − Φ and Φ_q Δ₂ = −½ (Φ_q Δ₁)_q Δ₁, all at `q`. What is open
-    /// at a position that the mechanism had is what the drivers have moved since; so however many they are, they are
-    /// followed in what they did: an encoder that jitters, dwells, turns back or gives no rates.
-    #[inline(never)]
-    pub fn predicted(&self, q: &[R; N], left: &[R; M]) -> [R; N] {
-        let Way { mechanism, parameters, t } = *self;
-        let position = mechanism.position(parameters, q, t);
-        let (factors, _) = mechanism.factorize(parameters, &position);
-        let mut opened = mechanism.phi(parameters, &position);
-        opened.iter_mut().zip(left).for_each(|(residual, left)| *residual = *left - *residual);
-        let first = mechanism.solve_linear(&factors, &opened);
-        // γ is −(Φ_q v)_q v − 2 Φ_qt v − Φ_tt: its even part in v without that at rest is the quadratic term alone.
-        let gamma = |v: &[R; N]| mechanism.gamma(parameters, &position, v);
-        let half = R::constant(0.5);
-        let mut bent = gamma(&[R::constant(0.0); N]);
-        let (ahead, back) = (gamma(&first), gamma(&first.map(|step| -step)));
-        for ((rest, ahead), back) in bent.iter_mut().zip(ahead).zip(back) {
-            *rest = half * (half * (ahead + back) - *rest);
-        }
-        let second = mechanism.solve_linear(&factors, &bent);
-        displaced(q, &first, &second, &mechanism.coordinate_scales(parameters))
-    }
+/// How far a way was followed.
+pub(crate) struct Followed<R, const N: usize> {
+    /// The last position: the end where `share` is 1.
+    pub q: [R; N],
+    /// Part of the way.
+    pub share: R,
+    /// Margin there.
+    pub margin: R,
+    /// Evaluations of rows and Jacobian.
+    pub evaluations: u32,
+    /// The row that jumps behind it, if one does.
+    pub jump: Option<u16>,
+}
 
-    /// The end of the way that begins at `from` (N), a regular position of the mechanism; `None` where it leads nowhere.
+/// Values and time at a place of the way.
+struct Station<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> {
+    values: S::Values,
+    parameters: S::Parameters,
+    t: R,
+    /// What the rows are open by there.
+    left: [R; M],
+}
+
+/// A position on the way.
+struct Spot<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> {
+    q: [R; N],
+    share: R,
+    factors: S::Factors,
+    /// What rounding has left of the rows.
+    rest: [R; M],
+    margin: R,
+    orientation: u64,
+}
+
+/// What a spot foresees of the next piece.
+struct Forecast<R, const N: usize> {
+    /// Position at the end of the piece.
+    q: [R; N],
+    /// Movement by the slope alone, and what is beyond it, in the reference metric.
+    first: R,
+    second: R,
+    /// Slope at the end.
+    slope: [R; N],
+}
+
+impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Station<S, R, N, M> {
+    fn open(&self, mechanism: &S, position: &S::Position) -> [R; M] {
+        let mut open = mechanism.phi(&self.parameters, position);
+        open.iter_mut().zip(&self.left).for_each(|(residual, left)| *residual = *residual - *left);
+        open
+    }
+}
+
+impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Way<'_, S, R, N, M> {
+    /// Follows the way for at most `limit` evaluations.
     ///
-    /// Follows Φ(q, t) = (1 − σ) Φ(`from`, t) from σ = 0 to 1: the rows that a driver moves are closed by and by, all
-    /// others stay closed, as in the motion itself. A piece counts if it ends so near to its prediction that
-    /// it can be no other assembly, and in the declared branches; else it is halved. Where two assemblies come nearer to each
-    /// other than a piece is long, the straight way leads into the other one; the branches tell.
+    /// Solves Φ(q, θ(σ), p(σ), phases(σ), t(σ)) = (1 − σ) Φ(q₀, σ = 0) from σ = 0 to 1, parameters, inputs, phases and time straight
+    /// from what they were at q₀ to what they are. The right-hand side is rounding, unless the caller has replaced a function.
+    /// Source of the method: Allgower & Georg 2003, Introduction to Numerical Continuation Methods, ch. 2 and 6.
+    ///
+    /// A piece counts if it ends so near to where its start foresees it, and with such a slope, that it can be no other assembly;
+    /// else it is shortened. A determinant changes its sign in pieces alone that begin and end next to where it is 0: two
+    /// assemblies that do not meet there are told from two that do.
     #[cold]
     #[inline(never)]
-    pub fn end(&self, from: &[R; N]) -> Option<[R; N]> {
+    pub fn followed(&mut self, limit: u32) -> Followed<R, N> {
+        let (values, start) = (self.values, self.from.q);
+        let mut walk = Walk { way: self, open: [R::constant(0.0); M], evaluations: 0, limit };
+        let station = walk.station(R::constant(0.0));
+        walk.open = walk.residuals(&station, &start);
+        let followed = walk.followed(start);
+        self.mechanism.set_values(values);
+        followed
+    }
+
+    /// Values and time (s) at a `share` of the way.
+    pub fn place(&self, share: R) -> (S::Values, R) {
+        let mut values = self.values;
+        if R::constant(1.0) <= share {
+            return (values, self.t);
+        }
+        for (value, old) in values.as_mut().iter_mut().zip(self.from.values.as_ref()) {
+            *value = *old + share * (*value - *old);
+        }
+        (values, self.from.t + share * (self.t - self.from.t))
+    }
+}
+
+/// Part of a piece from `at` to `next` after which to end instead, if one of them is too far from where the determinant changes its sign,
+/// or an end on the way so near that nothing leads on from there: next to it, before it where the piece begins farther away, else behind it.
+fn aimed<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize>(
+    at: &Spot<S, R, N, M>,
+    next: &Spot<S, R, N, M>,
+) -> Option<R> {
+    let next_to = R::constant(0.5) * passes::<R>();
+    let passage = at.orientation != next.orientation;
+    let fall = if passage { at.margin + next.margin } else { at.margin - next.margin };
+    let far = passage && passes::<R>() < at.margin.max(next.margin);
+    let near = next.share < R::constant(1.0) && !leads(next.margin + next.margin) && leads(at.margin + at.margin);
+    if !(far || near && R::constant(0.0) < fall) {
+        return None;
+    }
+    let before = passes::<R>() < at.margin;
+    let way = if before { at.margin - next_to } else { at.margin + next_to };
+    let most = if before { R::constant(0.9) } else { R::constant(LARGEST_GROWTH) };
+    Some((way / fall).min(most).max(R::constant(0.02)))
+}
+
+/// A linear combination.
+fn combined<R: Real, const M: usize>(weights: [R; 4], of: [&[R; M]; 4]) -> [R; M] {
+    let mut sum = [R::constant(0.0); M];
+    for (weight, values) in weights.into_iter().zip(of) {
+        sum.iter_mut().zip(values).for_each(|(sum, value)| *sum = *sum + weight * *value);
+    }
+    sum
+}
+
+/// A way as it is followed.
+struct Walk<'a, 'b, S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> {
+    way: &'a mut Way<'b, S, R, N, M>,
+    /// What the rows are open by where the way begins.
+    open: [R; M],
+    evaluations: u32,
+    /// Most of them.
+    limit: u32,
+}
+
+impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Walk<'_, '_, S, R, N, M> {
+    /// [`Way::followed`] from `start`.
+    fn followed(&mut self, start: [R; N]) -> Followed<R, N> {
         let (one, half) = (R::constant(1.0), R::constant(0.5));
-        let start = self.mechanism.position(self.parameters, from, self.t);
-        let opened = self.mechanism.phi(self.parameters, &start);
-        let (mut q, mut done, mut piece) = (*from, R::constant(0.0), half);
-        for _ in 0..PIECES {
-            let next = (done + piece).min(one);
-            if next == done {
+        let mut at = self.spot(start, R::constant(0.0));
+        let mut piece = self.first_piece(&at);
+        let mut jump = None;
+        while at.share < one && !self.is_spent() {
+            if piece < shortest() {
+                jump = self.jump(&at, piece + piece);
                 break;
             }
-            let left = opened.map(|residual| (one - next) * residual);
-            match self.corrected(self.predicted(&q, &left), &left) {
-                Some(position) if !self.holds(&position) => piece = piece * half,
-                Some(position) if next == one => return Some(position),
-                Some(position) => {
-                    (q, done) = (position, next);
-                    piece = piece + piece;
-                }
-                None => piece = piece * half,
+            let rest = one - at.share;
+            let length = piece.min(rest);
+            let share = if length < rest { at.share + length } else { one };
+            let most = R::constant(LARGEST_PIECE).min(at.margin.abs().sqrt());
+            let forecast = self.forecast(&at, length);
+            // Written so that NaN is too much.
+            if !(forecast.first <= most + most) {
+                let shorter = length * most / forecast.first;
+                piece = if shorter <= half * length { shorter.max(length * R::constant(1e-3)) } else { half * length };
+                continue;
             }
+            let Some(next) = self.landed(&at, &forecast, share, length) else {
+                piece = half * length;
+                continue;
+            };
+            if let Some(part) = aimed(&at, &next) {
+                piece = part * length;
+                continue;
+            }
+            // As long as the margin lets the next piece be.
+            let most = R::constant(LARGEST_PIECE).min(next.margin.abs().sqrt());
+            piece = length * (most / forecast.first.max(shortest())).min(R::constant(LARGEST_GROWTH));
+            if next.orientation == at.orientation && next.margin < passes() && next.margin < at.margin {
+                // Next to where the determinant is 0 if its margin falls as it did: just beyond.
+                let slope = (at.margin - next.margin) / length;
+                piece = piece.min((next.margin + half * passes()) / slope);
+            }
+            at = next;
         }
-        None
+        let Spot { q, share, margin, .. } = at;
+        Followed { q, share, margin, evaluations: self.evaluations, jump }
     }
 
-    /// Whether the branches hold at `q` (N).
-    fn holds(&self, q: &[R; N]) -> bool {
-        let position = self.mechanism.position(self.parameters, q, self.t);
-        branch_failure(self.mechanism, self.parameters, &position, self.t, false).is_none()
+    fn is_spent(&self) -> bool {
+        self.limit <= self.evaluations
     }
 
-    /// Newton's method on all rows from a `prediction`, if it ends near by.
-    fn corrected(&self, prediction: [R; N], left: &[R; M]) -> Option<[R; N]> {
-        let Way { mechanism, parameters, t } = *self;
-        let scales = mechanism.coordinate_scales(parameters);
-        let mut q = prediction;
-        for _ in 0..CORRECTIONS {
-            let position = mechanism.position(parameters, &q, t);
-            let (factors, margin) = mechanism.factorize(parameters, &position);
-            let mut rest = mechanism.phi(parameters, &position);
-            rest.iter_mut().zip(left).for_each(|(residual, left)| *residual = *left - *residual);
-            let step = mechanism.solve_linear(&factors, &rest);
-            q.iter_mut().zip(&step).for_each(|(coordinate, change)| *coordinate = *coordinate + *change);
-            // Written so that NaN is not near.
-            if !is_near(largest_difference(&q, &prediction, &scales), margin.value) {
+    /// Length of the first piece, from the slope over a short one.
+    fn first_piece(&mut self, at: &Spot<S, R, N, M>) -> R {
+        self.evaluations = self.evaluations.saturating_add(1);
+        let (slope, _) = self.slope(at, balance());
+        let most = R::constant(LARGEST_PIECE).min(at.margin.abs().sqrt());
+        let piece = most / self.size(&slope).max(most);
+        if piece.is_finite() { piece } else { balance() }
+    }
+
+    fn station(&mut self, share: R) -> Station<S, R, N, M> {
+        let (values, t) = self.way.place(share);
+        self.way.mechanism.set_values(values);
+        let parameters = self.way.mechanism.parameters();
+        let left = self.open.map(|residual| (R::constant(1.0) - share) * residual);
+        Station { values, parameters, t, left }
+    }
+
+    /// The mechanism at a station, with its position there.
+    fn position(&mut self, station: &Station<S, R, N, M>, q: &[R; N]) -> (&S, S::Position) {
+        self.way.mechanism.set_values(station.values);
+        (self.way.mechanism, self.way.mechanism.position(&station.parameters, q, station.t))
+    }
+
+    fn residuals(&mut self, station: &Station<S, R, N, M>, q: &[R; N]) -> [R; M] {
+        let (mechanism, position) = self.position(station, q);
+        station.open(mechanism, &position)
+    }
+
+    /// Position `q` at a `share` of the way, with its factors.
+    fn spot(&mut self, q: [R; N], share: R) -> Spot<S, R, N, M> {
+        self.evaluations = self.evaluations.saturating_add(1);
+        let station = self.station(share);
+        let (mechanism, position) = self.position(&station, &q);
+        let (factors, Margin { value: margin, orientation, .. }) =
+            mechanism.factorize(&station.parameters, &position);
+        let rest = station.open(mechanism, &position);
+        let orientation = orientation.as_ref().first().copied().unwrap_or(0);
+        Spot { q, share, factors, rest, margin, orientation }
+    }
+
+    /// dq/dσ at a spot, by a one-sided difference quotient over `length`, and the stations that it was taken at.
+    fn slope(&mut self, at: &Spot<S, R, N, M>, length: R) -> ([R; N], [Station<S, R, N, M>; 3]) {
+        let third = R::constant(THIRD) * length;
+        let stations = [third, third + third, length].map(|ahead| self.station(at.share + ahead));
+        let [one, two, three] = stations.each_ref().map(|station| self.residuals(station, &at.q));
+        let weights = [-11.0, 18.0, -9.0, 2.0].map(|weight| R::constant(-weight / 6.0) / third);
+        let rate = combined(weights, [&at.rest, &one, &two, &three]);
+        (self.way.mechanism.solve_linear(&at.factors, &rate), stations)
+    }
+
+    /// Taylor's polynomial of the second order: the slope, then the curvature of what the rows are open by along it.
+    fn forecast(&mut self, at: &Spot<S, R, N, M>, length: R) -> Forecast<R, N> {
+        self.evaluations = self.evaluations.saturating_add(1);
+        let (slope, stations) = self.slope(at, length);
+        let third = R::constant(THIRD) * length;
+        let along = |times: R| {
+            let mut q = at.q;
+            q.iter_mut().zip(slope).for_each(|(coordinate, rate)| *coordinate = *coordinate + times * rate);
+            q
+        };
+        let [first, second, last] = &stations;
+        let one = self.residuals(first, &along(third));
+        let two = self.residuals(second, &along(third + third));
+        let three = self.residuals(last, &along(length));
+        // Half the second derivative times the square of three thirds.
+        let weights = [2.0, -5.0, 4.0, -1.0].map(|weight| R::constant(-4.5 * weight));
+        let right = combined(weights, [&at.rest, &one, &two, &three]);
+        let bend = self.way.mechanism.solve_linear(&at.factors, &right);
+        let mut q = along(length);
+        q.iter_mut().zip(&bend).for_each(|(coordinate, bend)| *coordinate = *coordinate + *bend);
+        let mut tip = slope;
+        let twice = R::constant(2.0) / length;
+        tip.iter_mut().zip(bend).for_each(|(rate, bend)| *rate = *rate + twice * bend);
+        let first = self.size(&slope) * length;
+        Forecast { q, first, second: self.size(&bend), slope: tip }
+    }
+
+    /// The spot at `share` that a piece of `length` from `at` leads to, if it is certain.
+    fn landed(
+        &mut self,
+        at: &Spot<S, R, N, M>,
+        forecast: &Forecast<R, N>,
+        share: R,
+        length: R,
+    ) -> Option<Spot<S, R, N, M>> {
+        let (q, off) = self.corrected(&forecast.q, share)?;
+        if self.is_spent() {
+            return None;
+        }
+        let next = self.spot(q, share);
+        if !self.holds(&q, share) {
+            return None;
+        }
+        let passage = next.orientation != at.orientation;
+        // One that begins or ends too far away is not taken, but shows where the next one is to end.
+        let tight = passage && at.margin.max(next.margin) <= passes();
+        let approach = if tight { approach_of_a_passage() } else { R::constant(LARGEST_APPROACH) };
+        // Written so that NaN is not near.
+        let near = off <= approach * next.margin
+            && forecast.second <= R::constant(LARGEST_BEND) * next.margin;
+        if !near {
+            return None;
+        }
+        // Nearer to a singular position the difference quotients are no slope.
+        let square = forecast.first * forecast.first;
+        if leads(R::constant(8.0) * next.margin) && square <= R::constant(4.0) * next.margin {
+            let (slope, _) = self.slope(&next, -length);
+            let mut kink = slope;
+            kink.iter_mut().zip(&forecast.slope).for_each(|(rate, foreseen)| *rate = *rate - *foreseen);
+            let largest = self.size(&slope).max(self.size(&forecast.slope));
+            if !(self.size(&kink) <= R::constant(LARGEST_KINK) * largest) && next.margin < forecast.first {
                 return None;
             }
-            if largest_difference(&step, &[R::constant(0.0); N], &scales) <= R::constant(CLOSED) {
-                return Some(q);
+        }
+        Some(next)
+    }
+
+    /// Whether the declared branches hold at `q` (N). Where two assemblies come nearer to each other than a piece is long, it may step
+    /// across; the branches tell.
+    fn holds(&mut self, q: &[R; N], share: R) -> bool {
+        if S::BRANCHES.is_empty() {
+            return true;
+        }
+        let station = self.station(share);
+        let (mechanism, position) = self.position(&station, q);
+        branch_failure(mechanism, &station.parameters, &position, station.t, false).is_none()
+    }
+
+    /// Newton's method from a `prediction` at a `share` of the way, if it ends near by, and how far from there.
+    fn corrected(&mut self, prediction: &[R; N], share: R) -> Option<([R; N], R)> {
+        let station = self.station(share);
+        let scales = self.way.mechanism.coordinate_scales(&station.parameters);
+        let mut q = *prediction;
+        for _ in 0..CORRECTIONS {
+            if self.is_spent() {
+                return None;
+            }
+            self.evaluations = self.evaluations.saturating_add(1);
+            let (mechanism, position) = self.position(&station, &q);
+            let (factors, margin) = mechanism.factorize(&station.parameters, &position);
+            let step = mechanism.solve_linear(&factors, &station.open(mechanism, &position));
+            q.iter_mut().zip(&step).for_each(|(coordinate, change)| *coordinate = *coordinate - *change);
+            let off = largest_difference(&q, prediction, &scales);
+            // Written so that NaN is not near.
+            if !(off <= margin.value) {
+                return None;
+            }
+            let last = largest_difference(&step, &[R::constant(0.0); N], &scales);
+            if last * last <= closed::<R>() * margin.value {
+                return Some((q, off));
             }
         }
         None
+    }
+
+    /// The row that changes most between a spot and the end of a piece, if that is no rounding: a function jumps there.
+    fn jump(&mut self, at: &Spot<S, R, N, M>, piece: R) -> Option<u16> {
+        let far = piece + piece + piece + piece;
+        let [near, far] = [piece, far].map(|piece| self.station((at.share + piece).min(R::constant(1.0))));
+        let scales = self.way.mechanism.row_scales(&near.parameters);
+        let (mut row, mut largest) = (None, R::EPSILON.sqrt());
+        let (near, far) = (self.residuals(&near, &at.q), self.residuals(&far, &at.q));
+        let open = near.iter().zip(&far).zip(&at.rest).zip(&scales);
+        for (index, (((near, far), rest), scale)) in (0_u16..).zip(open) {
+            let [near, far] = [near, far].map(|open| ((*open - *rest) / *scale).abs());
+            // What is continuous changes four times as much over four times the way.
+            if largest < near && far <= near + near {
+                (row, largest) = (Some(index), near);
+            }
+        }
+        row
+    }
+
+    fn size(&self, difference: &[R; N]) -> R {
+        let scales = self.way.mechanism.coordinate_scales(&self.way.mechanism.parameters());
+        largest_difference(difference, &[R::constant(0.0); N], &scales)
     }
 }
 

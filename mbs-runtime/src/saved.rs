@@ -154,8 +154,7 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
         let position = mechanism.position(&parameters, &q, t);
         let found = Found { t, q, position, statistics, open: None };
         let state = State::at(&mechanism, &parameters, found, Before::Saved)?;
-        let turns = Turns::new(saved.turns, t);
-        let mut stepper = Stepper { mechanism, parameters, fault: None, changed: false, state, turns };
+        let mut stepper = Self::at(mechanism, parameters, state, Turns::new(saved.turns, t));
         stepper.take_turns_off();
         Ok(stepper)
     }

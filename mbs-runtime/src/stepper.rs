@@ -1,12 +1,17 @@
 //! A mechanism in motion: state and mechanism in one place, one call a step.
 
-use crate::diagnosis::Statistics;
-use crate::instant::{Before, Found, REGULAR_ZONE, Rates};
-use crate::kinematics::{next_position, solve_with_position, time_failure, variable_failure};
-use crate::path::{Way, displaced, is_near};
+use crate::budgeted::Budgeted;
+use crate::diagnosis::{Statistics, extent};
+use crate::instant::{Before, Found, Rates, regular_zone};
+use crate::kinematics::{entry, largest_difference, next_position, position_failure, solve_with_position, time_failure, variable_failure};
+use crate::path::{Anchor, EVALUATIONS, Followed, LEAST_EVALUATIONS, LARGEST_PIECE, Prediction, Way, is_near, largest_change, leads};
 use crate::trial::{Start, Trial, weights};
 use crate::turns::{Turns, within_a_turn};
-use crate::{Assembled, Failure, Kinematic, Mechanism, Real, Sweep, assemble};
+use crate::{Assembled, Budget, Failure, Kinematic, Mechanism, Real, Sweep, assemble};
+
+/// Work beside the homotopy at the end of a way that is followed in bounded work: from there Newton's method is in rounding in two
+/// evaluations.
+pub(crate) const FINAL: Budget = Budget { newton: 3, fallback: 0 };
 
 /// A mechanism with its state. It owns everything, allocates nothing, and a failed call leaves it as it was.
 ///
@@ -23,6 +28,11 @@ pub struct Stepper<S: Mechanism<R, N, M>, R: Real, const N: usize, const M: usiz
     pub(crate) changed: bool,
     pub(crate) state: State<R, N>,
     pub(crate) turns: Turns<R, N>,
+    /// Where the next way begins, if not at the state: the last position that leads on, and with parameters or inputs that were
+    /// changed at the state what they were.
+    pub(crate) anchor: Anchor<S::Values, R, N>,
+    /// Whether the way begins there although the state leads on: a step was refused on it for want of budget.
+    pub(crate) led: bool,
 }
 
 /// Position, velocity and acceleration at one time.
@@ -43,8 +53,6 @@ pub(crate) struct State<R, const N: usize> {
     orientation: u64,
     /// Singular positions passed since the assembly.
     passages: u32,
-    /// The last position outside the singular zone, where `q` is within it; see [`last_regular`](Self::last_regular).
-    pub(crate) regular: [R; N],
     /// The Newton step that is still to be made, where the position does not close.
     pub(crate) repair: Option<[R; N]>,
 }
@@ -83,10 +91,20 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
         let position = mechanism.position(&parameters, &q, t);
         let found = Found { t, q, position, statistics, open: None };
         let state = State::at(&mechanism, &parameters, found, Before::Guess)?;
-        let turns = Turns::new(counts, t);
-        let mut stepper = Stepper { mechanism, parameters, fault: None, changed: false, state, turns };
+        let mut stepper = Self::at(mechanism, parameters, state, Turns::new(counts, t));
         stepper.take_turns_off();
         Ok(stepper)
+    }
+
+    /// A stepper in its first state.
+    pub(crate) fn at(
+        mechanism: S,
+        parameters: S::Parameters,
+        state: State<R, N>,
+        turns: Turns<R, N>,
+    ) -> Self {
+        let anchor = Anchor { t: state.t, q: state.q, values: mechanism.values() };
+        Stepper { mechanism, parameters, fault: None, changed: false, state, turns, anchor, led: false }
     }
 
     /// Moves on by `h` (s); 0 solves anew, negative goes back.
@@ -100,15 +118,16 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
 
     /// Moves on to time `t` (s).
     ///
-    /// Predicts q + h q̇ + h²/2 q̈, or near a singular position the path of the drivers from the last regular one to second
-    /// order, and after a change of inputs too, where the rates have not foreseen it; solves the position by [`Newton`](crate::Newton), factorises Φ_q
-    /// once, and solves velocity and acceleration with it. A position that is off its prediction by more than a
-    /// quarter of its margin might be in another assembly: it is found again along the way of the drivers, in
-    /// pieces that leave no doubt, if there is such a way.
+    /// Next to a regular position: predicts q + h q̇ + h²/2 q̈, solves the position by Newton's method, factorises Φ_q once, and
+    /// solves velocity and acceleration with it. Such a step is taken where it leaves no doubt: its second-order term is small, it ends
+    /// within a quarter of the margin of its prediction, and no determinant changes its sign.
+    ///
+    /// Every other step follows the homotopy Φ(q, θ(σ), p(σ), phases(σ), t(σ)) = 0 from the last position that leads on: parameters,
+    /// inputs and time go straight from what they were there to what they are, in pieces that keep the assembly.
     ///
     /// # Errors
-    /// [`Failure::NonFinite`], [`Failure::NotConverged`], [`Failure::Singular`], [`Failure::WrongBranch`],
-    /// [`Failure::BeyondLimit`]; the state is then bit for bit what it was.
+    /// [`Failure::NonFinite`], [`Failure::NotConverged`], [`Failure::NotFollowed`], [`Failure::Discontinuous`],
+    /// [`Failure::Singular`], [`Failure::WrongBranch`], [`Failure::BeyondLimit`]; the state is then bit for bit what it was.
     #[inline]
     pub fn advance_to(&mut self, t: R) -> Result<Statistics, Failure> {
         match S::TURNS {
@@ -122,111 +141,192 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
         if let Some(failure) = self.fault.or(time_failure(t)) {
             return Err(failure);
         }
-        self.with_phases(t, |stepper| stepper.advanced(t))
+        self.with_phases(t, |stepper, phases| stepper.advanced(t, phases))
     }
 
-    /// Moves the phases of drives that prescribe a rate on to `t`, then does `step`; a failure takes them back.
+    /// Moves the phases of drives that prescribe a rate on to `t`, then does `step`, which is told what they were; a failure takes
+    /// them back.
     #[inline(always)]
     pub(crate) fn with_phases<X>(
         &mut self,
         t: R,
-        step: impl FnOnce(&mut Self) -> Result<X, Failure>,
+        step: impl FnOnce(&mut Self, S::Phases) -> Result<X, Failure>,
     ) -> Result<X, Failure> {
-        if S::PHASES.is_empty() {
-            return step(self);
-        }
         let before = self.mechanism.phases();
+        if S::PHASES.is_empty() {
+            return step(self, before);
+        }
         self.mechanism.advance_phases(self.state.t, t);
-        step(self).inspect_err(|_| self.mechanism.set_phases(before))
+        step(self, before).inspect_err(|_| self.mechanism.set_phases(before))
     }
 
     #[inline(always)]
-    fn advanced(&mut self, t: R) -> Result<Statistics, Failure> {
+    fn advanced(&mut self, t: R, phases: S::Phases) -> Result<Statistics, Failure> {
         // Rows that may contradict each other are always looked at.
-        if M == N && self.state.is_regular() && !self.waits() {
+        if M == N && self.is_ready() && !self.waits() {
             let State { q, qd, qdd, margin, .. } = &self.state;
             let weights = &weights(&self.mechanism.coordinate_scales(&self.parameters));
             let start = Start { t: self.state.t, q, qd, qdd, margin: *margin, weights };
             let trial = Trial::of(&self.mechanism, &self.parameters, &start, t, R::mask(true));
-            // Where inputs were changed, the way of the drivers decides what a passage leads to.
-            if trial.plain && (!self.changed || trial.orientation(0) == self.state.orientation) {
+            // The homotopy decides what a passage leads to.
+            if trial.plain && trial.orientation(0) == self.state.orientation {
                 self.changed = false;
                 return Ok(self.state.follow(&trial, t));
             }
         }
-        self.advanced_with_care(t)
+        self.advanced_with_care(t, phases)
     }
 
     /// A step with all that can happen in it.
     #[cold]
     #[inline(never)]
-    fn advanced_with_care(&mut self, t: R) -> Result<Statistics, Failure> {
-        let mut q = self.predicted(t);
-        let (position, statistics, failure) = next_position(&self.mechanism, &self.parameters, &mut q, t);
-        match failure {
-            // Next to a singular position a step may be too long for any prediction.
-            Some(failure @ Failure::NotConverged { .. }) => {
-                self.doubted(Err(failure), statistics, t)?;
+    fn advanced_with_care(&mut self, t: R, phases: S::Phases) -> Result<Statistics, Failure> {
+        let ready = self.is_ready();
+        let mut first = 0;
+        if ready && (M > N || self.state.repair.is_some()) {
+            let prediction = self.predicted(t);
+            let mut q = prediction.q;
+            let (position, statistics, failure) =
+                next_position(&self.mechanism, &self.parameters, &mut q, t);
+            first = statistics.evaluations;
+            let found = Found { t, q, position, statistics, open: None };
+            if failure.is_none() && self.is_taken(found, &prediction)? {
                 return Ok(self.state.statistics);
             }
-            Some(failure) => return Err(failure),
-            None => {}
         }
-        let mut found = Found { t, q, position, statistics, open: None };
+        self.along_the_way(t, phases, first, EVALUATIONS)
+    }
+
+    /// Whether the state leads on by its rates.
+    #[inline(always)]
+    pub(crate) fn is_ready(&self) -> bool {
+        self.state.is_regular() && !self.led
+    }
+
+    /// Becomes the state at a position next to its prediction, if that leaves no doubt of the assembly.
+    pub(crate) fn is_taken(
+        &mut self,
+        mut found: Found<S, R, N, M>,
+        prediction: &Prediction<R, N>,
+    ) -> Result<bool, Failure> {
         let mut rates = Rates::none();
         let before = Before::State(&self.state);
         let failure = rates.solve(&self.mechanism, &self.parameters, &mut found, before);
-        let near = is_near(R::constant(statistics.correction), rates.margin);
+        let certain = rates.is_regular()
+            && rates.orientation == self.state.orientation
+            && prediction.is_certain(rates.margin)
+            && is_near(R::constant(found.statistics.correction), rates.margin);
         match failure {
-            None if near => {
-                self.state.move_on(found, rates);
-                self.changed = false;
+            Some(failure) if certain => Err(failure),
+            None if certain => {
+                self.move_on(found, rates, None);
+                Ok(true)
             }
-            Some(failure) if !matches!(failure, Failure::WrongBranch { .. }) => return Err(failure),
-            failure => self.doubted(failure.map_or(Ok((found, rates)), Err), statistics, t)?,
+            _ => Ok(false),
         }
-        Ok(self.state.statistics)
     }
 
-    /// Takes the state where the way of the drivers ends, or the doubtful one where there is no way.
+    /// Takes the state where the homotopy ends, in `limit` evaluations beside the `first`.
     #[cold]
     #[inline(never)]
-    fn doubted(
+    pub(crate) fn along_the_way(
         &mut self,
-        doubtful: Result<(Found<S, R, N, M>, Rates<R, N>), Failure>,
-        statistics: Statistics,
         t: R,
-    ) -> Result<(), Failure> {
-        match self.along_the_way(statistics, t) {
-            Some(state) => self.state = state,
-            None => doubtful.map(|(found, rates)| self.state.move_on(found, rates))?,
+        phases: S::Phases,
+        first: u32,
+        limit: u32,
+    ) -> Result<Statistics, Failure> {
+        if limit < LEAST_EVALUATIONS + FINAL.newton {
+            let margin = self.state.margin.to_f64();
+            return Err(Failure::NotFollowed { part: 0.0, margin, time: t.to_f64() });
         }
-        self.changed = false;
-        Ok(())
-    }
-
-    /// The state where the way of the drivers ends, for a position so far from its prediction that it may be in another
-    /// assembly; `None` where no way is found.
-    fn along_the_way(&self, first: Statistics, t: R) -> Option<State<R, N>> {
-        let end = self.way(t).end(self.state.last_regular())?;
-        let (q, position, second) = solve_with_position(&self.mechanism, &self.parameters, &end, t).ok()?;
-        let evaluations = first.evaluations.saturating_add(second.evaluations);
+        let from = self.last_leading(phases);
+        let values = self.mechanism.values();
+        let mut way = Way { from: &from, mechanism: &mut self.mechanism, values, t };
+        let bounded = limit < EVALUATIONS;
+        let end = way.followed(if bounded { limit - FINAL.newton } else { limit });
+        let place = way.place(end.share);
+        if end.share < R::constant(1.0) {
+            let failure = self.not_followed(&end, t, limit);
+            if bounded && matches!(failure, Failure::NotFollowed { .. }) && leads(end.margin) {
+                // The next step goes on from there.
+                let (values, t) = place;
+                (self.anchor, self.led) = (Anchor { t, q: end.q, values }, true);
+            }
+            return Err(failure);
+        }
+        let (q, position, second) = if bounded {
+            self.closed(&end.q, t)?
+        } else {
+            solve_with_position(&self.mechanism, &self.parameters, &end.q, t)?
+        };
+        let evaluations = first.saturating_add(end.evaluations).saturating_add(second.evaluations);
         let statistics = Statistics { evaluations, fallback: true, ..second };
-        let found = Found { t, q, position, statistics, open: None };
-        State::at(&self.mechanism, &self.parameters, found, Before::State(&self.state)).ok()
-    }
-
-    /// Makes the state at a position that follows the present one.
-    #[inline(always)]
-    pub(crate) fn accept(&mut self, mut found: Found<S, R, N, M>) -> Result<(), Failure> {
+        let mut found = Found { t, q, position, statistics, open: None };
         let mut rates = Rates::none();
         let before = Before::State(&self.state);
         if let Some(failure) = rates.solve(&self.mechanism, &self.parameters, &mut found, before) {
             return Err(failure);
         }
+        self.move_on(found, rates, Some(from));
+        Ok(self.state.statistics)
+    }
+
+    /// The position at the end of a way, to rounding, in bounded work.
+    fn closed(&self, end: &[R; N], t: R) -> Result<([R; N], S::Position, Statistics), Failure> {
+        let scales = self.mechanism.coordinate_scales(&self.parameters);
+        let mut solver = Budgeted::new(extent(end, &scales), FINAL);
+        let mut q = *end;
+        let (outcome, position) =
+            self.mechanism.solve_with_position(&self.parameters, &mut q, t, &mut solver);
+        let open = position_failure::<S, R, N, M>(outcome, solver.diagnosis(), t);
+        open.map_or(Ok((q, position, Statistics::of(solver.diagnosis()))), Err)
+    }
+
+    /// Why no way leads to `t` (s): no position there, a singular one, a jump, or none of these in `limit` evaluations.
+    #[cold]
+    #[inline(never)]
+    fn not_followed(&self, end: &Followed<R, N>, t: R, limit: u32) -> Failure {
+        let (part, time) = (end.share.to_f64(), t.to_f64());
+        if let Some(row) = end.jump {
+            return Failure::Discontinuous { row: entry(S::ROWS, row), part, time };
+        }
+        let doubtful = Failure::NotFollowed { part, margin: end.margin.to_f64(), time };
+        if limit < EVALUATIONS {
+            return doubtful;
+        }
+        let mut q = end.q;
+        let (position, statistics, failure) = next_position(&self.mechanism, &self.parameters, &mut q, t);
+        let mut found = Found { t, q, position, statistics, open: None };
+        let rates = || {
+            Rates::none().solve(&self.mechanism, &self.parameters, &mut found, Before::State(&self.state))
+        };
+        failure.or_else(rates).unwrap_or(doubtful)
+    }
+
+    /// The last position that leads on, with what belongs to it; `phases` are those before the step.
+    fn last_leading(&mut self, phases: S::Phases) -> Anchor<S::Values, R, N> {
+        if self.led || !leads(self.state.margin) {
+            return self.anchor;
+        }
+        let State { t, q, .. } = self.state;
+        if self.changed {
+            return Anchor { t, q, values: self.anchor.values };
+        }
+        let moved = self.mechanism.phases();
+        self.mechanism.set_phases(phases);
+        let values = self.mechanism.values();
+        self.mechanism.set_phases(moved);
+        Anchor { t, q, values }
+    }
+
+    /// Becomes the state at the position that follows, found along a way from an anchor or next to its prediction.
+    fn move_on(&mut self, found: Found<S, R, N, M>, rates: Rates<R, N>, from: Option<Anchor<S::Values, R, N>>) {
         self.state.move_on(found, rates);
-        self.changed = false;
-        Ok(())
+        (self.changed, self.led) = (false, false);
+        if let Some(anchor) = from.filter(|_| !leads(self.state.margin)) {
+            self.anchor = anchor;
+        }
     }
 
     /// The frames from now to `until` (s) in `steps` equal steps; see [`Sweep`].
@@ -239,11 +339,42 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
     /// A value that is NaN or infinite is reported by that advance; change it back, and go on.
     #[inline]
     pub fn change<X>(&mut self, change: impl FnOnce(&mut S) -> X) -> X {
+        if !self.changed {
+            self.keep();
+        }
         let result = change(&mut self.mechanism);
+        self.take_up();
+        self.lead_far();
+        result
+    }
+
+    /// Keeps what parameters, inputs and phases are at a state that leads on, before they are changed.
+    #[inline]
+    fn keep(&mut self) {
+        if !self.led && leads(self.state.margin) {
+            self.anchor.values = self.mechanism.values();
+        }
+    }
+
+    /// Lets the way begin at the state where an angle was changed so far that it may come round to where it was.
+    #[inline]
+    pub(crate) fn lead_far(&mut self) {
+        if !self.led && leads(self.state.margin) {
+            let values = self.mechanism.values();
+            let change = largest_change(S::ANGLES, &self.anchor.values, &values);
+            // Written so that NaN is far.
+            if !(change <= R::constant(LARGEST_PIECE)) {
+                (self.anchor.t, self.anchor.q, self.led) = (self.state.t, self.state.q, true);
+            }
+        }
+    }
+
+    /// Takes up what was changed.
+    #[inline]
+    pub(crate) fn take_up(&mut self) {
         self.parameters = self.mechanism.parameters();
         self.fault = variable_failure(&self.mechanism);
         self.changed = true;
-        result
     }
 
     /// Whether the next step cannot be plain: an input is none, or a position is to be repaired.
@@ -339,44 +470,25 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
         self.mechanism.position(&self.parameters, &self.state.q, self.state.t)
     }
 
-    /// The position at `t` as the state foresees it.
+    /// The position at `t` as a regular state foresees it.
     #[inline(always)]
-    pub(crate) fn predicted(&self, t: R) -> [R; N] {
-        let state = &self.state;
-        let predicted = match state.is_regular() && !self.changed {
-            true => self.repaired(self.extrapolated(t - state.t)),
-            // Where two paths cross it is the one that the mechanism came on.
-            false => self.way(t).predicted(state.last_regular(), &[R::constant(0.0); M]),
-        };
-        // A jump in time that overflows the prediction is left to the solver, from where the mechanism stands.
-        if predicted.iter().fold(true, |all, coordinate| all & coordinate.is_finite()) {
-            predicted
-        } else {
-            state.q
-        }
-    }
-
-    /// With the step of Newton's method that a degraded position still lacks.
-    #[inline(always)]
-    fn repaired(&self, mut predicted: [R; N]) -> [R; N] {
-        if let Some(repair) = &self.state.repair {
-            predicted.iter_mut().zip(repair).for_each(|(coordinate, step)| *coordinate = *coordinate + *step);
-        }
-        predicted
-    }
-
-    /// q + h q̇ + h²/2 q̈, without the last term where it is too large to be trusted.
-    #[inline(always)]
-    fn extrapolated(&self, h: R) -> [R; N] {
-        let State { q, qd, qdd, .. } = &self.state;
+    pub(crate) fn predicted(&self, t: R) -> Prediction<R, N> {
+        let State { t: now, q, qd, qdd, repair, .. } = &self.state;
+        let h = t - *now;
         let half_square = R::constant(0.5) * h * h;
-        let (first, second) = (qd.map(|rate| h * rate), qdd.map(|acceleration| half_square * acceleration));
-        displaced(q, &first, &second, &self.mechanism.coordinate_scales(&self.parameters))
-    }
-
-    /// What lies ahead with the mechanism's inputs as they are and time `t` (s).
-    fn way(&self, t: R) -> Way<'_, S, R, N, M> {
-        Way { mechanism: &self.mechanism, parameters: &self.parameters, t }
+        let scales = self.mechanism.coordinate_scales(&self.parameters);
+        let (first, second) = (qd.map(|rate| h * rate), qdd.map(|change| half_square * change));
+        let mut predicted = *q;
+        for (coordinate, (first, second)) in predicted.iter_mut().zip(first.iter().zip(&second)) {
+            *coordinate = *coordinate + *first + *second;
+        }
+        // The step of Newton's method that a degraded position still lacks.
+        for (coordinate, step) in predicted.iter_mut().zip(repair.iter().flatten()) {
+            *coordinate = *coordinate + *step;
+        }
+        let none = [R::constant(0.0); N];
+        let size = |term: &[R; N]| largest_difference(term, &none, &scales);
+        Prediction { q: predicted, first: size(&first), second: size(&second) }
     }
 }
 
@@ -405,7 +517,6 @@ impl<R: Real, const N: usize> State<R, N> {
                 statistics: found.statistics,
                 orientation: rates.orientation,
                 passages: 0,
-                regular: found.q,
                 repair: None,
             },
         };
@@ -426,31 +537,27 @@ impl<R: Real, const N: usize> State<R, N> {
         if t != self.t {
             self.drift = Drift { change: margin - self.margin, time: t - self.t };
         }
-        self.regular = *self.last_regular();
         (self.t, self.q, self.qd, self.qdd) = (t, q, qd, qdd);
         (self.margin, self.orientation, self.repair) = (margin, orientation, repair);
         self.statistics = Statistics { passed, ..statistics };
         self.passages = self.passages.saturating_add(u32::from(passed));
     }
 
-    /// Becomes the state that a plain step came to. What it cost: read out of the state it would have to wait for the memory.
+    /// Becomes the state that a plain step without a passage came to. What it cost: read out of the state it would have to wait for the memory.
     #[inline(always)]
     fn follow(&mut self, trial: &Trial<R, N>, t: R) -> Statistics {
-        let passed = self.orientation != trial.orientation(0);
         if t != self.t {
             self.drift = Drift { change: trial.margin - self.margin, time: t - self.t };
         }
         (self.t, self.q, self.qd, self.qdd) = (t, trial.q, trial.qd, trial.qdd);
-        (self.margin, self.orientation) = (trial.margin, trial.orientation(0));
-        let statistics = trial.statistics(0, passed);
+        self.margin = trial.margin;
+        let statistics = trial.statistics(0, false);
         self.statistics = statistics;
-        self.passages = self.passages.saturating_add(u32::from(passed));
         statistics
     }
 
     /// Puts time, position, velocity and acceleration with their margin in place, as another keeper of the state has them.
     pub(crate) fn set(&mut self, (t, q, qd, qdd): (R, [R; N], [R; N], [R; N]), margin: R) {
-        self.regular = *self.last_regular();
         (self.t, self.q, self.qd, self.qdd, self.margin) = (t, q, qd, qdd, margin);
     }
 
@@ -460,15 +567,9 @@ impl<R: Real, const N: usize> State<R, N> {
         (self.passages, self.orientation) = (passages, orientation);
     }
 
-    /// The last position outside the singular zone. A plain step, which goes from one such position to another, has not written
-    /// it twice.
-    #[inline(always)]
-    fn last_regular(&self) -> &[R; N] {
-        if self.is_regular() { &self.q } else { &self.regular }
-    }
-
     /// Whether the state is outside the singular zone.
+    #[inline(always)]
     fn is_regular(&self) -> bool {
-        R::constant(REGULAR_ZONE) <= self.margin
+        regular_zone::<R>() <= self.margin
     }
 }

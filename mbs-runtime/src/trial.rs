@@ -3,7 +3,7 @@
 use core::array::from_fn;
 
 use crate::diagnosis::index;
-use crate::instant::REGULAR_ZONE;
+use crate::instant::regular_zone;
 use crate::kinematics::COARSEST_RESOLUTION;
 use crate::mechanism::negated;
 use crate::path::{LARGEST_APPROACH, LARGEST_SECOND_ORDER_TERM};
@@ -51,8 +51,9 @@ pub(crate) struct Trial<T: Scalar, const N: usize> {
 impl<T: Scalar, const N: usize> Trial<T, N> {
     /// Solves position, velocity and acceleration at `t` from the prediction q + h q̇ + h²/2 q̈.
     ///
-    /// Not plain is a step from or into the singular zone, one that does not converge, ends so far from the prediction that it
-    /// may be in another assembly, violates a branch or leaves a limit, and one that is not finite. Nor is any outside `lanes`.
+    /// Not plain is a step from or into the singular zone, one too long to be foreseen, one that does not converge, ends so far from
+    /// the prediction that it may be in another assembly, violates a branch or leaves a limit, and one that is not finite. Nor is any
+    /// outside `lanes`. A passage is plain here.
     #[inline(always)]
     pub(crate) fn of<S: Kinematic<T, N, M>, const M: usize>(
         mechanism: &S,
@@ -62,7 +63,7 @@ impl<T: Scalar, const N: usize> Trial<T, N> {
         lanes: T::Mask,
     ) -> Self {
         let scales = mechanism.coordinate_scales(parameters);
-        let prediction = start.predicted(t, &scales);
+        let (prediction, trusted) = start.predicted(t, &scales);
         let mut solver = Plain::new(lanes);
         // Lanes keep a processor busy as they are, and a compiler sees them together in short stages. Each way is judged where it
         // ends: what both had to put down for one judge would be copied.
@@ -71,7 +72,7 @@ impl<T: Scalar, const N: usize> Trial<T, N> {
             let mut motion = [prediction, zeros, zeros];
             let solved = &mechanism.solve_motion(parameters, &mut motion, t, &mut solver);
             let sum = solved.sum + sum_of_rates(&motion[1], &motion[2]);
-            let judge = Judge { mechanism, parameters, start, prediction: &prediction, solver };
+            let judge = Judge { mechanism, parameters, start, prediction: &prediction, trusted, solver };
             return judge.judged(motion, (&solved.position, &solved.margin), sum);
         }
         let mut q = prediction;
@@ -81,7 +82,7 @@ impl<T: Scalar, const N: usize> Trial<T, N> {
         let qd = mechanism.solve_linear(factors, &negated(mechanism.phi_t(parameters, position)));
         let qdd = mechanism.solve_linear(factors, &mechanism.gamma(parameters, position, &qd));
         let sum = sum_of_rates(&qd, &qdd);
-        let judge = Judge { mechanism, parameters, start, prediction: &prediction, solver };
+        let judge = Judge { mechanism, parameters, start, prediction: &prediction, trusted, solver };
         judge.judged([q, qd, qdd], (position, margin), sum)
     }
 
@@ -117,6 +118,8 @@ struct Judge<'a, S: Kinematic<T, N, M>, T: Scalar, const N: usize, const M: usiz
     parameters: &'a S::Parameters,
     start: &'a Start<'a, T, N>,
     prediction: &'a [T; N],
+    /// Lanes whose prediction has a second-order term small enough.
+    trusted: T::Mask,
     solver: Plain<T>,
 }
 
@@ -130,10 +133,10 @@ impl<S: Kinematic<T, N, M>, T: Scalar, const N: usize, const M: usize> Judge<'_,
         sum: T,
     ) -> Trial<T, N> {
         let (correction, size) = way_and_size(&q, self.prediction, self.start.weights);
-        let zone = T::constant(REGULAR_ZONE);
+        let zone = regular_zone::<T>();
         // Written so that NaN is not plain. A sum is finite and small where its terms are; where it is not, a careful step
         // looks at them one by one.
-        let mut plain = zone.less(margin.value) & zone.less(self.start.margin) & self.solver.closed;
+        let mut plain = zone.less(margin.value) & zone.less(self.start.margin) & self.solver.closed & self.trusted;
         plain = plain & correction.less(T::constant(LARGEST_APPROACH) * margin.value);
         plain = plain & size.less(T::constant(COARSEST_RESOLUTION / T::Real::EPSILON.to_f64()));
         plain = plain & sum.is_finite();
@@ -163,9 +166,9 @@ impl<S: Kinematic<T, N, M>, T: Scalar, const N: usize, const M: usize> Judge<'_,
 }
 
 impl<T: Scalar, const N: usize> Start<'_, T, N> {
-    /// q + h q̇ + h²/2 q̈, without the last term where it is too large to be trusted.
+    /// q + h q̇ + h²/2 q̈, and the lanes where the last term is small enough; elsewhere it is no prediction.
     #[inline(always)]
-    fn predicted(&self, t: T, scales: &[T; N]) -> [T; N] {
+    fn predicted(&self, t: T, scales: &[T; N]) -> ([T; N], T::Mask) {
         let h = t - self.t;
         let half_square = T::constant(0.5) * h * h;
         let alone = size_of::<T>() == size_of::<T::Real>();
@@ -173,6 +176,7 @@ impl<T: Scalar, const N: usize> Start<'_, T, N> {
             return self.predicted_side_by_side(h, scales);
         }
         let mut predicted = *self.q;
+        let mut all = T::mask(true);
         let rates = self.qd.iter().zip(self.qdd);
         for ((coordinate, (rate, acceleration)), scale) in predicted.iter_mut().zip(rates).zip(scales) {
             let first = *coordinate + h * *rate;
@@ -181,13 +185,14 @@ impl<T: Scalar, const N: usize> Start<'_, T, N> {
             // compiler would load two at once, which were written one by one a moment ago, and the processor would have to
             // wait until they have reached the memory. Lanes are loaded as they were written.
             let looked_at = if alone { second + T::constant(0.0) * first } else { second };
-            if !T::all(trusted(looked_at, *scale)) {
-                predicted = carefully_predicted((self.q, self.qd, self.qdd), h, scales);
-                break;
+            let trusted = trusted(looked_at, *scale);
+            if alone && !T::all(trusted) {
+                return (*self.q, T::mask(false));
             }
+            all = all & trusted;
             *coordinate = first + second;
         }
-        predicted
+        (predicted, all)
     }
 }
 
@@ -195,42 +200,18 @@ impl<T: Scalar, const N: usize> Start<'_, T, N> {
     /// [`predicted`](Self::predicted) for so many coordinates that the last step has put them down together, behind all blocks:
     /// they are loaded as they were written, and without decisions several at once.
     #[inline(always)]
-    fn predicted_side_by_side(&self, h: T, scales: &[T; N]) -> [T; N] {
+    fn predicted_side_by_side(&self, h: T, scales: &[T; N]) -> ([T; N], T::Mask) {
         let half_square = T::constant(0.5) * h * h;
         let mut all = T::mask(true);
         for (acceleration, scale) in self.qdd.iter().zip(scales) {
             all = all & trusted(half_square * *acceleration, *scale);
         }
-        if !T::all(all) {
-            return carefully_predicted((self.q, self.qd, self.qdd), h, scales);
-        }
         let mut predicted = *self.q;
         for ((coordinate, rate), acceleration) in predicted.iter_mut().zip(self.qd).zip(self.qdd) {
             *coordinate = *coordinate + h * *rate + half_square * *acceleration;
         }
-        predicted
+        (predicted, all)
     }
-}
-
-/// The prediction from position, velocity and acceleration where the last term is too large for a lane.
-#[cold]
-#[inline(never)]
-fn carefully_predicted<T: Scalar, const N: usize>(
-    (q, qd, qdd): (&[T; N], &[T; N], &[T; N]),
-    h: T,
-    scales: &[T; N],
-) -> [T; N] {
-    let half_square = T::constant(0.5) * h * h;
-    let mut all = T::mask(true);
-    for (acceleration, scale) in qdd.iter().zip(scales) {
-        all = all & trusted(half_square * *acceleration, *scale);
-    }
-    let mut predicted = *q;
-    for ((coordinate, rate), acceleration) in predicted.iter_mut().zip(qd).zip(qdd) {
-        let second = T::select(all, half_square * *acceleration, T::constant(0.0));
-        *coordinate = *coordinate + h * *rate + second;
-    }
-    predicted
 }
 
 /// The largest way of a coordinate from its prediction, and the sum of the coordinates' sizes, in the reference metric.

@@ -98,17 +98,28 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
         }
     }
 
+    /// Takes whole turns off the phases of the last position that leads on.
+    fn turn_anchor_back(&mut self, coordinate: u16, turns: i64) {
+        let (values, phases) = (self.mechanism.values(), self.mechanism.phases());
+        self.mechanism.set_values(self.anchor.values);
+        self.mechanism.turn_back(coordinate, turns);
+        self.anchor.values = self.mechanism.values();
+        self.mechanism.set_values(values);
+        self.mechanism.set_phases(phases);
+    }
+
     #[cold]
     fn take_off(&mut self, coordinate: u16) {
         let index = usize::from(coordinate);
-        let place = (self.state.q.get_mut(index), self.state.regular.get_mut(index));
-        if let (Some(angle), Some(regular), Some(count)) =
+        let place = (self.state.q.get_mut(index), self.anchor.q.get_mut(index));
+        if let (Some(angle), Some(last), Some(count)) =
             (place.0, place.1, self.turns.counts.get_mut(index))
         {
             let turns = whole_turns(*angle);
-            (*angle, *regular) = (less(*angle, turns), less(*regular, turns));
+            (*angle, *last) = (less(*angle, turns), less(*last, turns));
             *count = count.saturating_add(turns);
             self.mechanism.turn_back(coordinate, turns);
+            self.turn_anchor_back(coordinate, turns);
         }
     }
 }

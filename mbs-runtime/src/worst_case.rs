@@ -29,6 +29,10 @@ pub struct Work {
     pub phases: usize,
     /// Number of inputs with rates.
     pub inputs: usize,
+    /// Number of parameters and inputs, components and rates.
+    pub variables: usize,
+    /// Values of parameters and inputs that functions share.
+    pub parameters: Operations,
     /// Values of `(q, t)` that functions share.
     pub position: Operations,
     /// Φ
@@ -63,6 +67,8 @@ impl Work {
         limits: 0,
         phases: 0,
         inputs: 0,
+        variables: 0,
+        parameters: Operations::NONE,
         position: Operations::NONE,
         phi: Operations::NONE,
         phi_q: Operations::NONE,
@@ -176,7 +182,24 @@ impl Budget {
         let n = work.coordinates as u64;
         // Time, its test, extent, correction.
         let frame = add(1).and(compare(2)).and(largest(n)).and(difference(n)).and(work.coordinate_scales);
-        let mut total = frame.and(phases(work)).and(prediction(work)).and(state(work));
+        let frame = frame.and(phases(work)).and(prediction(work)).and(state(work));
+        // The homotopy has what the first solution leaves of the budget. More of one is less of the other, in straight pieces: the most
+        // is where one of them begins or ends.
+        let all = self.evaluations();
+        let newton = if self.newton == 0 { 1 } else { self.newton };
+        let ends = self.solution(work).or(self.followed_after(1, work));
+        frame.and(ends.or(self.followed_after(newton, work)).or(way(work, all)))
+    }
+
+    /// A solution in so many evaluations, then the homotopy in the rest.
+    const fn followed_after(self, evaluations: u32, work: &Work) -> Operations {
+        let left = self.evaluations().saturating_sub(evaluations);
+        Budget { newton: evaluations, fallback: 0 }.solution(work).and(way(work, left))
+    }
+
+    /// The blocks by the solver of `step`.
+    const fn solution(self, work: &Work) -> Operations {
+        let mut total = Operations::NONE;
         let mut index = 0;
         while index < work.blocks.len() {
             let block = &work.blocks[index];
@@ -274,26 +297,53 @@ const fn rates(work: &Work) -> Operations {
     linear(work).and(add(work.rows as u64)).and(compare(work.coordinates as u64))
 }
 
-/// `displaced`
-const fn displaced(work: &Work) -> Operations {
+/// `Stepper::predicted` with a repair, and how certain it is.
+const fn prediction(work: &Work) -> Operations {
     let n = work.coordinates as u64;
-    work.coordinate_scales.and(select(n)).and(multiply(n)).and(compare(n)).and(add(2 * n))
+    work.coordinate_scales
+        .and(add(1 + 3 * n))
+        .and(multiply(4 + 2 * n))
+        .and(difference(n).times(2))
+        .and(compare(6))
 }
 
-/// The larger of `extrapolated` with a repair and `Way::predicted`.
-const fn prediction(work: &Work) -> Operations {
+/// `Way::followed` in at most `evaluations`, the position and the rates at its end.
+const fn way(work: &Work, evaluations: u32) -> Operations {
+    let end = crate::stepper::FINAL;
+    if evaluations < crate::path::LEAST_EVALUATIONS + end.newton {
+        return Operations::NONE;
+    }
+    let bounded = (evaluations - end.newton) as u64;
     let (n, m) = (work.coordinates as u64, work.rows as u64);
-    let extrapolated = add(1 + n).and(multiply(2 + 2 * n));
-    let way = work
-        .position
+    let station = add(3 + 2 * work.variables as u64 + m)
+        .and(multiply(1 + work.variables as u64 + m))
+        .and(compare(2))
+        .and(work.parameters);
+    let residuals = work.position.and(work.phi).and(add(m));
+    let combined = multiply(4 * m).and(add(4 * m)).and(divide(4)).and(multiply(4));
+    let size = work.parameters.and(work.coordinate_scales).and(difference(n)).and(add(n));
+    let slope = station.and(residuals).times(3).and(combined).and(linear(work)).and(multiply(4)).and(add(2));
+    // Of a spot, a forecast and a correction none costs more than this; each is one evaluation, of the four that a piece is made of at least.
+    let forecast = slope
+        .and(residuals.and(multiply(n)).and(add(n)).times(3))
+        .and(combined)
+        .and(linear(work))
+        .and(add(3 * n))
+        .and(multiply(3 * n))
+        .and(size.times(2));
+    let spot = station.and(residuals).and(factors(work)).and(slope).and(size.times(3)).and(add(n));
+    let correction = station
+        .and(residuals)
         .and(factors(work))
-        .and(work.phi)
-        .and(add(m))
-        .and(linear(work).times(2))
-        .and(work.gamma.times(3))
-        .and(add(n + 2 * m))
-        .and(multiply(2 * m));
-    extrapolated.or(way).and(displaced(work)).and(compare(1 + n))
+        .and(linear(work))
+        .and(work.coordinate_scales)
+        .and(add(n))
+        .and(difference(n).times(2));
+    let decided = compare(40).and(multiply(40)).and(divide(8)).and(root(12)).and(add(20));
+    let most = forecast.or(spot).or(correction).and(decided);
+    let end = end.solution(work).and(state(work)).and(difference(n)).and(work.coordinate_scales);
+    // Beside them: where the way begins, and the row that jumps.
+    most.times(bounded).and(spot).and(slope).and(station.and(residuals).times(3)).and(end)
 }
 
 /// `State::at`

@@ -41,6 +41,7 @@ impl<S: Kinematic<f64, N, M>, const N: usize, const M: usize> Mechanism<f64, N, 
     type Branches = Counted<S::Branches>;
     type Limits = S::Limits;
     type Phases = S::Phases;
+    type Values = S::Values;
     type Outputs = S::Outputs;
     type Lane = S::Lane;
 
@@ -52,6 +53,7 @@ impl<S: Kinematic<f64, N, M>, const N: usize, const M: usize> Mechanism<f64, N, 
     const REDUNDANT: &'static [bool] = S::REDUNDANT;
     const SPARSITY: &'static [(u16, u16)] = S::SPARSITY;
     const VARIABLES: &'static [Entry] = S::VARIABLES;
+    const ANGLES: &'static [u16] = S::ANGLES;
     const REFERENCE: Reference = S::REFERENCE;
     const BRANCHES: &'static [Entry] = S::BRANCHES;
     const BRANCHES_AT_START: &'static [bool] = S::BRANCHES_AT_START;
@@ -67,6 +69,12 @@ impl<S: Kinematic<f64, N, M>, const N: usize, const M: usize> Mechanism<f64, N, 
     }
     fn set(&mut self, index: usize, value: f64) -> bool {
         self.mechanism.set(index, value)
+    }
+    fn values(&self) -> S::Values {
+        self.mechanism.values()
+    }
+    fn set_values(&mut self, values: S::Values) {
+        self.mechanism.set_values(values);
     }
     fn lane(&self, lane: usize) -> S::Lane {
         self.mechanism.lane(lane)

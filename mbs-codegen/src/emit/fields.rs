@@ -127,7 +127,7 @@ fn new_docs(text: &Text, scenes: &Scenes) -> Vec<String> {
     docs
 }
 
-/// `get`, `set`, `phases` and `lane`: a scene sees its own fields, and keeps the others.
+/// `get`, `set`, `values`, `phases` and `lane`: a scene sees its own fields, and keeps the others.
 pub fn access(text: &Text, scenes: &Scenes, model: &Model) -> TokenStream {
     let (name, runtime) = (&text.header.name, &text.header.runtime);
     let places: Vec<TokenStream> =
@@ -150,6 +150,11 @@ pub fn access(text: &Text, scenes: &Scenes, model: &Model) -> TokenStream {
         _ => quote! { __phases: Self::Phases },
     };
     let put = (!phases.is_empty()).then(|| quote! { [#(self.#phases),*] = __phases; });
+    let set_values = match places.as_slice() {
+        [] => quote! { _: [T; 0] },
+        _ => quote! { __values: Self::Values },
+    };
+    let put_values = (!places.is_empty()).then(|| quote! { [#(#places),*] = __values; });
     let set = match places.as_slice() {
         [] => quote! { (_, _) => false, },
         _ => quote! { #((#indices, __value) => { #places = __value; true })* (_, _) => false, },
@@ -167,6 +172,12 @@ pub fn access(text: &Text, scenes: &Scenes, model: &Model) -> TokenStream {
         fn set(&mut self, __index: ::core::primitive::usize, __value: T) -> ::core::primitive::bool {
             match (__index, __value) { #set }
         }
+        #[inline]
+        fn values(&self) -> Self::Values {
+            [#(#places),*]
+        }
+        #[inline]
+        fn set_values(&mut self, #set_values) { #put_values }
         #[inline]
         fn phases(&self) -> Self::Phases {
             [#(self.#phases),*]

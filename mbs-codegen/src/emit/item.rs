@@ -11,7 +11,7 @@ use super::view::coordinates_view;
 use super::{Part, scenes};
 use crate::diagnostics::Diagnostics;
 use crate::model::scenes::{Scene, Scenes};
-use crate::model::{Function, Longest, Model};
+use crate::model::{Function, Longest, Model, Role};
 use crate::syntax::Text;
 
 /// Before: bodies of all functions of all scenes. After: everything that the user's module gets.
@@ -75,6 +75,7 @@ fn implementations(text: &Text, scenes: &Scenes, part: &Part<'_>) -> TokenStream
         .map(|bodies| dynamics::implementation(&name, model, (bodies, &callable), runtime));
     let (n, branches, outputs) = (model.coordinates.len(), model.branches.len(), model.outputs.len());
     let (limits, phase_count) = (model.limits.len(), model.phases.len());
+    let variable_count = model.variables.len();
     let tables = tables(text, scenes, scene, bodies);
     let access = access(text, scenes, model);
     let Bodies {
@@ -143,6 +144,7 @@ fn implementations(text: &Text, scenes: &Scenes, part: &Part<'_>) -> TokenStream
                 type Branches = [T; #branches];
                 type Limits = [#runtime::Limit<T>; #limits];
                 type Phases = [#runtime::Phase<T>; #phase_count];
+                type Values = [T; #variable_count];
                 type Outputs = [#runtime::OutputValue<T>; #outputs];
                 type Lane = #lane;
                 #tables
@@ -396,6 +398,7 @@ fn tables(text: &Text, scenes: &Scenes, scene: &Scene, bodies: &Bodies) -> Token
     });
     let reference = reference(model, runtime);
     let variables = model.variables.iter().map(|v| entry(&v.name, &v.unit, v.span));
+    let angles = angles(model);
     let branches = model.branches.iter().map(|b| entry(&b.name, &b.dimension.to_string(), b.span));
     let at_start = model.branches.iter().map(|branch| branch.at_start);
     let limits = model.limits.iter().map(|limit| entry(&limit.name, &limit.unit, limit.span));
@@ -416,6 +419,7 @@ fn tables(text: &Text, scenes: &Scenes, scene: &Scene, bodies: &Bodies) -> Token
         #marked
         #reference
         const VARIABLES: &'static [#runtime::Entry] = &[#(#variables),*];
+        #angles
         const BRANCHES: &'static [#runtime::Entry] = &[#(#branches),*];
         const BRANCHES_AT_START: &'static [::core::primitive::bool] = &[#(#at_start),*];
         const LIMITS: &'static [#runtime::Entry] = &[#(#limits),*];
@@ -423,6 +427,22 @@ fn tables(text: &Text, scenes: &Scenes, scene: &Scene, bodies: &Bodies) -> Token
         const OUTPUTS: &'static [#runtime::Entry] = &[#(#outputs),*];
         #functions
     }
+}
+
+/// `ANGLES`, where a parameter or an input is one.
+fn angles(model: &Model) -> Option<TokenStream> {
+    let held = model.fields.iter().filter(|field| field.unit == "rad" && field.role != Role::Phase);
+    let indices = held.flat_map(|field| {
+        let parts = if field.role == Role::InputWithRates { 3 } else { 1 };
+        (0..field.shape.iter().product()).map(move |component: usize| field.first + parts * component)
+    });
+    let indices: Vec<u16> = indices.filter_map(|index| u16::try_from(index).ok()).collect();
+    (!indices.is_empty()).then(|| {
+        quote! {
+            #[allow(clippy::zero_prefixed_literal, reason = "places in the text's order")]
+            const ANGLES: &'static [::core::primitive::u16] = &[#(#indices),*];
+        }
+    })
 }
 
 /// What sets the reference length, where something is measured by it.

@@ -23,6 +23,7 @@ pub fn work(
     let inputs = model.fields.iter().filter(|field| field.role == Role::InputWithRates);
     let inputs: usize = inputs.map(|field| field.shape.iter().product::<usize>()).sum();
     let of = |count: Operations| operations(count, runtime);
+    let (variables, parameters) = (model.variables.len(), of(program.parameters.section.operations));
     let position = of(program.position.section.operations);
     let (phi, phi_q) = (of(program.phi.operations), of(program.phi_q.operations));
     let (phi_t, gamma) = (of(program.phi_t.operations), of(program.gamma.operations));
@@ -69,6 +70,8 @@ pub fn work(
             limits: #limits,
             phases: #phases,
             inputs: #inputs,
+            variables: #variables,
+            parameters: #parameters,
             position: #position,
             phi: #phi,
             phi_q: #phi_q,

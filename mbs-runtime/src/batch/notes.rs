@@ -1,6 +1,5 @@
 //! What the steps of several mechanisms leave behind for those who ask.
 
-use core::array::from_fn;
 
 use super::{at, set};
 use crate::diagnosis::{Statistics, index};
@@ -49,21 +48,13 @@ impl<R: Real, const L: usize> Notes<R, L> {
         (self.residual, self.row) = (trial.residual, trial.row);
         (self.correction, self.evaluations) = (trial.correction, trial.evaluations());
         (self.fallback, self.passed) = ([false; L], [false; L]);
-        let signs = self.orientation.iter().zip(&trial.orientation);
-        if signs.fold(0, |turned, (before, after)| turned | (before ^ after)) != 0 {
-            self.pass(trial.orientation);
-        }
     }
 
-    /// Counts the singular positions that lanes have passed.
-    #[cold]
-    #[inline(never)]
-    fn pass(&mut self, orientation: [u64; L]) {
-        self.passed = from_fn(|lane| self.orientation(lane) != at(&orientation, lane, 0));
-        for (passages, passed) in self.passages.iter_mut().zip(self.passed) {
-            *passages = passages.saturating_add(u32::from(passed));
-        }
-        self.orientation = orientation;
+    /// Whether a lane passes a singular position with a step to such signs.
+    #[inline(always)]
+    pub fn passes(&self, orientation: &[u64; L]) -> bool {
+        let signs = self.orientation.iter().zip(orientation);
+        signs.fold(0, |turned, (before, after)| turned | (before ^ after)) != 0
     }
 
     #[inline(always)]

@@ -1,8 +1,9 @@
 //! Where a lane of several mechanisms stands.
 
 use crate::diagnosis::Statistics;
+use crate::path::leads;
 use crate::stepper::Drift;
-use crate::{Kinematic, Lanes, Mechanism, Phase, Real, Stepper};
+use crate::{Kinematic, Lanes, Mechanism, Phase, Real, Scalar, Stepper};
 
 /// All that the stepper of a lane has to know to go on from where the lane is, but for what the mechanism has: phases, and
 /// parameters and inputs since they were changed.
@@ -24,11 +25,12 @@ pub(super) struct Standing<R, const N: usize> {
 }
 
 impl<R: Real, const N: usize> Standing<R, N> {
-    /// Puts `stepper` where lane `lane` of `mechanism` stands.
+    /// Puts `stepper` where lane `lane` of `mechanism` stands; where it was changed, `solved` is what it was before.
     pub fn hand_over<S, X, const L: usize, const M: usize>(
         self,
         stepper: &mut Stepper<X, R, N, M>,
         mechanism: &S,
+        solved: &S::Values,
         lane: usize,
     ) where
         S: Mechanism<Lanes<R, L>, N, M, Lane = X>,
@@ -37,8 +39,19 @@ impl<R: Real, const N: usize> Standing<R, N> {
         stepper.state.set((self.t, self.q, self.qd, self.qdd), self.margin);
         stepper.state.note(self.drift, self.statistics, self.passages, self.orientation);
         stepper.turns.clock = self.clock;
+        stepper.led &= !leads(self.margin);
+        // Nearer to a singular position the stepper has what belongs to the last position that leads on.
+        if self.changed && leads(self.margin) {
+            for (own, solved) in stepper.anchor.values.as_mut().iter_mut().zip(solved.as_ref()) {
+                *own = solved.lane(lane);
+            }
+        }
         if self.outdated {
-            stepper.change(|own| *own = mechanism.lane(lane));
+            stepper.mechanism = mechanism.lane(lane);
+            stepper.take_up();
+        }
+        if self.changed {
+            stepper.lead_far();
         }
         stepper.changed = self.changed;
         let mut phases = stepper.mechanism.phases();

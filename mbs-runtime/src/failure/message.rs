@@ -28,6 +28,17 @@ impl fmt::Display for Failure {
                  off, required {required:.3e}; take a smaller step, or check that the mechanism can reach this position",
                 row.name, row.line, row.unit
             ),
+            Failure::NotFollowed { part, margin, .. } => write!(
+                f,
+                "the way to the position at t = {time} s is lost after {part:.6} of it, at margin {margin:.3e}: beyond, the assembly is in \
+                 doubt; take a smaller step, or one that ends farther from the singular position"
+            ),
+            Failure::Discontinuous { row, part, .. } => write!(
+                f,
+                "row `{}` (line {}) jumps on the way to the position at t = {time} s, after {part:.6} of it; make what drives it \
+                 continuous, or assemble anew behind the jump",
+                row.name, row.line
+            ),
             Failure::NotAssemblable { row, residual, rows, .. } => write!(
                 f,
                 "the mechanism cannot be assembled at t = {time} s: {rows} cannot hold {}, `{}` stays {residual:.3e} \

@@ -122,6 +122,7 @@ impl<const N: usize, const M: usize> Mechanism<f64, N, M> for Linkage<N, M> {
     type Branches = [f64; 0];
     type Limits = [Limit<f64>; 0];
     type Phases = [Phase<f64>; 0];
+    type Values = [f64; 1];
     type Outputs = [OutputValue<f64>; 0];
     type Lane = Self;
 
@@ -140,6 +141,9 @@ impl<const N: usize, const M: usize> Mechanism<f64, N, M> for Linkage<N, M> {
     fn set(&mut self, index: usize, value: f64) -> bool {
         self.push = if index == 0 { value } else { self.push };
         index == 0
+    }
+    fn values(&self) -> [f64; 1] {
+        [self.push]
     }
     fn phases(&self) -> [Phase<f64>; 0] {
         []

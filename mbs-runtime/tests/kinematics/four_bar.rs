@@ -83,6 +83,7 @@ impl<T: Scalar, const B: usize> Mechanism<T, 5, 5> for FourBar<T, B> {
     type Branches = [T; B];
     type Limits = [Limit<T>; 0];
     type Phases = [Phase<T>; 0];
+    type Values = [T; 8];
     type Outputs = [OutputValue<T>; 1];
     type Lane = FourBar<T::Real, B>;
 
@@ -149,6 +150,9 @@ impl<T: Scalar, const B: usize> Mechanism<T, 5, 5> for FourBar<T, B> {
         };
         *place = value;
         true
+    }
+    fn values(&self) -> [T; 8] {
+        core::array::from_fn(|index| self.get(index).unwrap_or(T::constant(0.0)))
     }
     fn phases(&self) -> [Phase<T>; 0] {
         []

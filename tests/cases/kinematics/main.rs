@@ -1,2 +1,6 @@
 //! Positions, velocities and accelerations: assemblies kept, accuracy near singular positions, refusals.
+
+mod linkages;
+
+mod k1_assemblies_are_kept;
 mod k6_declared_branch_near_a_change_point;
