@@ -16,6 +16,9 @@ pub(crate) const LARGEST_SECOND_ORDER_TERM: f64 = 0.01;
 /// nearer to the solution that it leads to than to where the assemblies meet.
 pub(crate) const LARGEST_APPROACH: f64 = 0.25;
 
+/// The same from where nothing leads on for certain: rounding has a part in the prediction.
+const LARGEST_APPROACH_INSIDE: f64 = 1.0 / 16.0;
+
 /// The same where the determinant changes its sign, beside what rounding needs: of two assemblies that come as near as μ to each
 /// other and do not meet, the other one is off the prediction from margin m by (μ/m)² of m.
 const LARGEST_APPROACH_OF_A_PASSAGE: f64 = 1.0 / 64.0;
@@ -30,8 +33,9 @@ const LARGEST_BEND: f64 = 0.5;
 /// as much as they have slope, at whatever distance from where they do.
 const LARGEST_KINK: f64 = 0.25;
 
-/// Evaluations before the way is given up: a turn takes some twenty pieces of four, a singular position six.
-pub(crate) const EVALUATIONS: u32 = 8_000;
+/// Evaluations before the way is given up: a turn takes some twenty pieces of four, a singular position six. Past a place of margin μ where
+/// two assemblies do not meet a coordinate turns by half a turn, by ∛μ a piece: a thousand at 1e-6, and as many that are shortened.
+pub(crate) const EVALUATIONS: u32 = 30_000;
 
 /// Those of one piece: where the way begins, how long the piece is, its forecast, a correction and its end.
 pub(crate) const LEAST_EVALUATIONS: u32 = 5;
@@ -41,6 +45,9 @@ const CORRECTIONS: u32 = 6;
 
 /// A piece over the one before. What drives the mechanism may come round again within a long one, and look as if it had not moved.
 const LARGEST_GROWTH: f64 = 4.0;
+
+/// Times that an end too near to a singular position is moved: two assemblies that do not meet there allow no other.
+const MOST_AIMS: u32 = 3;
 
 /// Part of a piece between the points of its difference quotients, which are all in it. So they are as exact as the piece is foreseen:
 /// next to where assemblies cross, what they leave out counts by the inverse margin, and is of the fourth order.
@@ -90,7 +97,8 @@ pub(crate) fn is_near<R: Real>(distance: R, margin: R) -> bool {
 #[inline(always)]
 pub(crate) fn largest_change<T: Scalar, V: AsRef<[T]>>(angles: &[u16], old: &V, new: &V) -> T {
     let (old, new) = (old.as_ref(), new.as_ref());
-    let pairs = angles.iter().filter_map(|index| old.get(usize::from(*index)).zip(new.get(usize::from(*index))));
+    let pairs =
+        angles.iter().filter_map(|index| old.get(usize::from(*index)).zip(new.get(usize::from(*index))));
     pairs.fold(T::constant(0.0), |largest, (old, new)| (*new - *old).abs().max(largest))
 }
 
@@ -230,7 +238,8 @@ fn aimed<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize>(
     let passage = at.orientation != next.orientation;
     let fall = if passage { at.margin + next.margin } else { at.margin - next.margin };
     let far = passage && passes::<R>() < at.margin.max(next.margin);
-    let near = next.share < R::constant(1.0) && !leads(next.margin + next.margin) && leads(at.margin + at.margin);
+    let near =
+        next.share < R::constant(1.0) && !leads(next.margin + next.margin) && leads(at.margin + at.margin);
     if !(far || near && R::constant(0.0) < fall) {
         return None;
     }
@@ -265,7 +274,7 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Walk<'_, '_
         let (one, half) = (R::constant(1.0), R::constant(0.5));
         let mut at = self.spot(start, R::constant(0.0));
         let mut piece = self.first_piece(&at);
-        let mut jump = None;
+        let (mut jump, mut aims) = (None, 0);
         while at.share < one && !self.is_spent() {
             if piece < shortest() {
                 jump = self.jump(&at, piece + piece);
@@ -279,20 +288,28 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Walk<'_, '_
             // Written so that NaN is too much.
             if !(forecast.first <= most + most) {
                 let shorter = length * most / forecast.first;
-                piece = if shorter <= half * length { shorter.max(length * R::constant(1e-3)) } else { half * length };
+                piece = if shorter <= half * length {
+                    shorter.max(length * R::constant(1e-3))
+                } else {
+                    half * length
+                };
                 continue;
             }
-            let Some(next) = self.landed(&at, &forecast, share, length) else {
+            let Some((next, growth)) = self.landed(&at, &forecast, share, length) else {
                 piece = half * length;
                 continue;
             };
-            if let Some(part) = aimed(&at, &next) {
+            if let Some(part) =
+                aimed(&at, &next).filter(|_| aims < MOST_AIMS || next.orientation != at.orientation)
+            {
+                aims += 1;
                 piece = part * length;
                 continue;
             }
+            aims = 0;
             // As long as the margin lets the next piece be.
             let most = R::constant(LARGEST_PIECE).min(next.margin.abs().sqrt());
-            piece = length * (most / forecast.first.max(shortest())).min(R::constant(LARGEST_GROWTH));
+            piece = length * (most / forecast.first.max(shortest())).min(growth);
             if next.orientation == at.orientation && next.margin < passes() && next.margin < at.margin {
                 // Next to where the determinant is 0 if its margin falls as it did: just beyond.
                 let slope = (at.margin - next.margin) / length;
@@ -385,14 +402,14 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Walk<'_, '_
         Forecast { q, first, second: self.size(&bend), slope: tip }
     }
 
-    /// The spot at `share` that a piece of `length` from `at` leads to, if it is certain.
+    /// The spot at `share` that a piece of `length` from `at` leads to, if it is certain, and how much longer the next one may be.
     fn landed(
         &mut self,
         at: &Spot<S, R, N, M>,
         forecast: &Forecast<R, N>,
         share: R,
         length: R,
-    ) -> Option<Spot<S, R, N, M>> {
+    ) -> Option<(Spot<S, R, N, M>, R)> {
         let (q, off) = self.corrected(&forecast.q, share)?;
         if self.is_spent() {
             return None;
@@ -404,13 +421,19 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Walk<'_, '_
         let passage = next.orientation != at.orientation;
         // One that begins or ends too far away is not taken, but shows where the next one is to end.
         let tight = passage && at.margin.max(next.margin) <= passes();
-        let approach = if tight { approach_of_a_passage() } else { R::constant(LARGEST_APPROACH) };
+        let approach = match (tight, leads(at.margin + at.margin)) {
+            (true, _) => approach_of_a_passage(),
+            (_, true) => R::constant(LARGEST_APPROACH),
+            _ => R::constant(LARGEST_APPROACH_INSIDE),
+        };
+        let allowed = [approach * next.margin, R::constant(LARGEST_BEND) * next.margin];
         // Written so that NaN is not near.
-        let near = off <= approach * next.margin
-            && forecast.second <= R::constant(LARGEST_BEND) * next.margin;
-        if !near {
+        if !(off <= allowed[0] && forecast.second <= allowed[1]) {
             return None;
         }
+        // What is off grows with the third power of the length.
+        let ratio = (off / allowed[0]).max(forecast.second / allowed[1]);
+        let growth = R::constant(0.8) * ratio.max(shortest()).powf(R::constant(-THIRD));
         // Nearer to a singular position the difference quotients are no slope.
         let square = forecast.first * forecast.first;
         if leads(R::constant(8.0) * next.margin) && square <= R::constant(4.0) * next.margin {
@@ -422,7 +445,7 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Walk<'_, '_
                 return None;
             }
         }
-        Some(next)
+        Some((next, growth.min(R::constant(LARGEST_GROWTH))))
     }
 
     /// Whether the declared branches hold at `q` (N). Where two assemblies come nearer to each other than a piece is long, it may step

@@ -3,8 +3,14 @@
 use crate::budgeted::Budgeted;
 use crate::diagnosis::{Statistics, extent};
 use crate::instant::{Before, Found, Rates, regular_zone};
-use crate::kinematics::{entry, largest_difference, next_position, position_failure, solve_with_position, time_failure, variable_failure};
-use crate::path::{Anchor, EVALUATIONS, Followed, LEAST_EVALUATIONS, LARGEST_PIECE, Prediction, Way, is_near, largest_change, leads};
+use crate::kinematics::{
+    entry, largest_difference, next_position, position_failure, solve_with_position, time_failure,
+    variable_failure,
+};
+use crate::path::{
+    Anchor, EVALUATIONS, Followed, LARGEST_PIECE, LEAST_EVALUATIONS, Prediction, Way, is_near,
+    largest_change, leads,
+};
 use crate::trial::{Start, Trial, weights};
 use crate::turns::{Turns, within_a_turn};
 use crate::{Assembled, Budget, Failure, Kinematic, Mechanism, Real, Sweep, assemble};
@@ -186,8 +192,7 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
         if ready && (M > N || self.state.repair.is_some()) {
             let prediction = self.predicted(t);
             let mut q = prediction.q;
-            let (position, statistics, failure) =
-                next_position(&self.mechanism, &self.parameters, &mut q, t);
+            let (position, statistics, failure) = next_position(&self.mechanism, &self.parameters, &mut q, t);
             first = statistics.evaluations;
             let found = Found { t, q, position, statistics, open: None };
             if failure.is_none() && self.is_taken(found, &prediction)? {
@@ -298,9 +303,8 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
         let mut q = end.q;
         let (position, statistics, failure) = next_position(&self.mechanism, &self.parameters, &mut q, t);
         let mut found = Found { t, q, position, statistics, open: None };
-        let rates = || {
-            Rates::none().solve(&self.mechanism, &self.parameters, &mut found, Before::State(&self.state))
-        };
+        let rates =
+            || Rates::none().solve(&self.mechanism, &self.parameters, &mut found, Before::State(&self.state));
         failure.or_else(rates).unwrap_or(doubtful)
     }
 
@@ -321,7 +325,12 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
     }
 
     /// Becomes the state at the position that follows, found along a way from an anchor or next to its prediction.
-    fn move_on(&mut self, found: Found<S, R, N, M>, rates: Rates<R, N>, from: Option<Anchor<S::Values, R, N>>) {
+    fn move_on(
+        &mut self,
+        found: Found<S, R, N, M>,
+        rates: Rates<R, N>,
+        from: Option<Anchor<S::Values, R, N>>,
+    ) {
         self.state.move_on(found, rates);
         (self.changed, self.led) = (false, false);
         if let Some(anchor) = from.filter(|_| !leads(self.state.margin)) {

@@ -136,7 +136,8 @@ impl<S: Kinematic<T, N, M>, T: Scalar, const N: usize, const M: usize> Judge<'_,
         let zone = regular_zone::<T>();
         // Written so that NaN is not plain. A sum is finite and small where its terms are; where it is not, a careful step
         // looks at them one by one.
-        let mut plain = zone.less(margin.value) & zone.less(self.start.margin) & self.solver.closed & self.trusted;
+        let mut plain =
+            zone.less(margin.value) & zone.less(self.start.margin) & self.solver.closed & self.trusted;
         plain = plain & correction.less(T::constant(LARGEST_APPROACH) * margin.value);
         plain = plain & size.less(T::constant(COARSEST_RESOLUTION / T::Real::EPSILON.to_f64()));
         plain = plain & sum.is_finite();

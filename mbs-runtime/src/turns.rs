@@ -112,9 +112,7 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
     fn take_off(&mut self, coordinate: u16) {
         let index = usize::from(coordinate);
         let place = (self.state.q.get_mut(index), self.anchor.q.get_mut(index));
-        if let (Some(angle), Some(last), Some(count)) =
-            (place.0, place.1, self.turns.counts.get_mut(index))
-        {
+        if let (Some(angle), Some(last), Some(count)) = (place.0, place.1, self.turns.counts.get_mut(index)) {
             let turns = whole_turns(*angle);
             (*angle, *last) = (less(*angle, turns), less(*last, turns));
             *count = count.saturating_add(turns);

@@ -1,6 +1,5 @@
 //! What the steps of several mechanisms leave behind for those who ask.
 
-
 use super::{at, set};
 use crate::diagnosis::{Statistics, index};
 use crate::stepper::Drift;

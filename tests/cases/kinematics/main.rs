@@ -3,4 +3,6 @@
 mod linkages;
 
 mod k1_assemblies_are_kept;
+mod k2_single_precision;
+mod k4_next_to_a_change_point;
 mod k6_declared_branch_near_a_change_point;

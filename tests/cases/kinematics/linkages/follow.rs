@@ -101,7 +101,7 @@ pub fn samples(motion: Motion, linkage: &Linkage, step: f64, count: usize, rando
 
 /// How the steps are made.
 #[derive(Clone, Copy, Debug)]
-pub enum By2 {
+pub enum Steps {
     Advance,
     Within(Budget),
 }
@@ -135,10 +135,17 @@ impl Tally {
     }
 
     /// Compares what a step to crank angle `theta` came to.
-    pub fn take(&mut self, linkage: &Linkage, theta: f64, side: f64, epsilon: f64, step: Result<[f64; 2], Failure>) -> bool {
+    pub fn take(
+        &mut self,
+        linkage: &Linkage,
+        theta: f64,
+        side: f64,
+        epsilon: f64,
+        step: Result<[f64; 2], Failure>,
+    ) -> bool {
         self.steps += 1;
         // What rounding leaves open of a position at the margin there.
-        let open = 2e3 * epsilon / linkage.margin(theta).max(epsilon.sqrt());
+        let open = (2e3 + theta.abs()) * epsilon / linkage.margin(theta).max(epsilon.sqrt());
         match step {
             Err(_) => {
                 let inside = linkage.margin(theta) < 0.05;
@@ -159,7 +166,12 @@ impl Tally {
 }
 
 /// A linkage assembled at its first sample.
-pub fn assembled<S, R, const N: usize>(mut mechanism: S, linkage: &Linkage, theta: f64, side: f64) -> Stepper<S, R, N>
+pub fn assembled<S, R, const N: usize>(
+    mut mechanism: S,
+    linkage: &Linkage,
+    theta: f64,
+    side: f64,
+) -> Stepper<S, R, N>
 where
     S: Case<R, N>,
     R: Real,
@@ -180,7 +192,7 @@ pub fn follow<S, R, const N: usize>(
     angles: &[f64],
     side: f64,
     rates: Rates,
-    by: By2,
+    by: Steps,
 ) -> Tally
 where
     S: Case<R, N>,
@@ -192,33 +204,25 @@ where
     let mut stepper = assembled::<S, R, N>(mechanism, linkage, start, side);
     let mut tally = Tally::default();
     let (mut last, mut stands) = (start, start);
-    for (k, angle) in angles.iter().skip(1).enumerate() {
+    for angle in angles.iter().skip(1) {
         let theta = exact(*angle);
         let rate = match (S::BY, rates) {
             (By::Rate, _) => theta - stands,
             (_, Rates::Differences) => theta - last,
             (_, Rates::Zero) => 0.0,
         };
-        let t = match S::BY {
-            By::Time(speed) => R::constant(theta / speed),
-            // A period of 1 s, or with `f32` no time that runs away.
-            _ => R::constant(f64::from(u32::try_from(k % 64).unwrap_or(0)) + 1.0),
-        };
-        if k % 64 == 0 && !matches!(S::BY, By::Time(_)) {
-            let back = stepper.t();
-            let _ = back;
-        }
         if !matches!(S::BY, By::Time(_)) {
             stepper.change(|mechanism| mechanism.command(R::constant(theta), R::constant(rate)));
         }
-        let h = match S::BY {
-            By::Time(_) => t - stepper.t(),
-            _ => R::constant(1.0),
+        let t = match S::BY {
+            By::Time(speed) => R::constant(theta / speed),
+            _ => stepper.t() + R::constant(1.0),
         };
+        let h = t - stepper.t();
         let done = match (by, S::BY) {
-            (By2::Advance, By::Time(_)) => stepper.advance_to(t).map(|_| ()),
-            (By2::Advance, _) => stepper.advance(h).map(|_| ()),
-            (By2::Within(budget), _) => match stepper.step(h, budget) {
+            (Steps::Advance, By::Time(_)) => stepper.advance_to(t).map(|_| ()),
+            (Steps::Advance, _) => stepper.advance(h).map(|_| ()),
+            (Steps::Within(budget), _) => match stepper.step(h, budget) {
                 Step::Done(_) | Step::Degraded { .. } => Ok(()),
                 Step::Refused(failure) => Err(failure),
             },
@@ -229,12 +233,9 @@ where
             _ => theta,
         };
         let q = stepper.q().map(R::to_f64);
-        if std::env::var("VERBOSE").is_ok() {
-            let p = S::point(linkage, q);
-            eprintln!("{k} {theta:.6} {} margin {:.2e}/{:.2e} {:.2e} {:.2e}", match &done { Ok(()) => "ok".into(), Err(e) => e.to_string() }, linkage.margin(theta), stepper.margin().to_f64(), distance(p, linkage.point(theta, side)), distance(p, linkage.point(theta, -side)));
-        }
         if tally.take(linkage, theta, side, epsilon, done.map(|()| S::point(linkage, q))) {
-            let between = |centre: &f64| ((stands - centre) / TAU).floor() != ((theta - centre) / TAU).floor();
+            let between =
+                |centre: &f64| ((stands - centre) / TAU).floor() != ((theta - centre) / TAU).floor();
             tally.passages += linkage.centres.iter().filter(|centre| between(centre)).count() as u64;
             stands = theta;
         }
@@ -249,7 +250,12 @@ fn crank<S: Case<R, N>, R: Real, const N: usize>(stepper: &Stepper<S, R, N>, the
 }
 
 /// Follows four runs in lanes.
-pub fn follow_in_lanes<S, R, const N: usize>(mechanism: S, linkage: &Linkage, runs: &[(Vec<f64>, f64); 4], rates: Rates) -> Tally
+pub fn follow_in_lanes<S, R, const N: usize>(
+    mechanism: S,
+    linkage: &Linkage,
+    runs: &[(Vec<f64>, f64); 4],
+    rates: Rates,
+) -> Tally
 where
     R: Real,
     S: Case<Lanes<R, 4>, N>,

@@ -236,27 +236,139 @@ fn of_relative(l: &Linkage, theta: f64, tip: [f64; 2], b: [f64; 2]) -> [f64; 3] 
     [theta, p2 - theta, p3 - p2]
 }
 
-case!(AnglesByTime, 3, By::Time(1.0), |_crank, _theta, _rate| (), |l, theta, tip, b| of_angles(l, theta, tip, b), |l, q| rocker(l, q[2]));
-case!(AnglesByTimeInARow, 2, By::Time(1.0), |_crank, _theta, _rate| (), |l, theta, tip, b| bars(l, tip, b), |l, q| rocker(l, q[1]));
-case!(AnglesByFunctionInARow<Twice>, 2, By::Time(2.0), |_crank, _theta, _rate| (), |l, theta, tip, b| bars(l, tip, b), |l, q| rocker(l, q[1]));
-case!(AnglesByInput, 3, By::Input, |crank, theta, rate| crank.theta = signal(theta, rate), |l, theta, tip, b| of_angles(l, theta, tip, b), |l, q| rocker(l, q[2]));
-case!(AnglesByInputInARow, 2, By::Input, |crank, theta, rate| crank.theta = signal(theta, rate), |l, theta, tip, b| bars(l, tip, b), |l, q| rocker(l, q[1]));
-case!(AnglesBySine, 3, By::Input, |crank, theta, rate| crank.theta = signal(theta, rate), |l, theta, tip, b| of_angles(l, theta, tip, b), |l, q| rocker(l, q[2]));
-case!(AnglesByRate, 3, By::Rate, |crank, _theta, rate| crank.omega = rate, |l, theta, tip, b| of_angles(l, theta, tip, b), |l, q| rocker(l, q[2]));
-case!(RelativeByTime, 3, By::Time(1.0), |_crank, _theta, _rate| (), |l, theta, tip, b| of_relative(l, theta, tip, b), |l, q| rocker(l, q[0] + q[1] + q[2]));
-case!(RelativeByInput, 3, By::Input, |crank, theta, rate| crank.theta = signal(theta, rate), |l, theta, tip, b| of_relative(l, theta, tip, b), |l, q| rocker(l, q[0] + q[1] + q[2]));
-case!(NaturalByTimeInARow, 4, By::Time(1.0), |_crank, _theta, _rate| (), |_l, theta, tip, b| [tip[0], tip[1], b[0], b[1]], |_l, q| [q[2], q[3]]);
-case!(NaturalByInputInARow, 4, By::Input, |crank, theta, rate| crank.theta = signal(theta, rate), |_l, theta, tip, b| [tip[0], tip[1], b[0], b[1]], |_l, q| [q[2], q[3]]);
-case!(NaturalByInput, 4, By::Input, |crank, theta, rate| crank.theta = signal(theta, rate), |_l, theta, tip, b| [tip[0], tip[1], b[0], b[1]], |_l, q| [q[2], q[3]]);
-case!(NaturalByRate, 5, By::Rate, |crank, _theta, rate| crank.omega = rate, |_l, theta, tip, b| [theta, tip[0], tip[1], b[0], b[1]], |_l, q| [q[3], q[4]]);
-case!(ReferencePointsByInput, 9, By::Input, |crank, theta, rate| crank.theta = signal(theta, rate), |l, theta, tip, b| {
-    let [p2, p3] = bars(l, tip, b);
-    let middle = |from: [f64; 2], to: [f64; 2]| [(from[0] + to[0]) / 2.0, (from[1] + to[1]) / 2.0];
-    let [r1, r2, r3] = [middle([0.0; 2], tip), middle(tip, b), middle([l.ground, 0.0], b)];
-    [r1[0], r1[1], theta, r2[0], r2[1], p2, r3[0], r3[1], p3]
-}, |l, q| rocker(l, q[8]));
-case!(MixedByInputInARow, 4, By::Input, |crank, theta, rate| crank.theta = signal(theta, rate), |l, theta, tip, b| {
-    let [p2, p3] = bars(l, tip, b);
-    [tip[0], tip[1], p2, p3]
-}, |l, q| rocker(l, q[3]));
-case!(MixedByTime, 4, By::Time(1.0), |_crank, _theta, _rate| (), |l, theta, tip, b| [theta, b[0], b[1], bars(l, tip, b)[1]], |_l, q| [q[1], q[2]]);
+case!(
+    AnglesByTime,
+    3,
+    By::Time(1.0),
+    |_crank, _theta, _rate| (),
+    |l, theta, tip, b| of_angles(l, theta, tip, b),
+    |l, q| rocker(l, q[2])
+);
+case!(
+    AnglesByTimeInARow,
+    2,
+    By::Time(1.0),
+    |_crank, _theta, _rate| (),
+    |l, theta, tip, b| bars(l, tip, b),
+    |l, q| rocker(l, q[1])
+);
+case!(
+    AnglesByFunctionInARow<Twice>,
+    2,
+    By::Time(2.0),
+    |_crank, _theta, _rate| (),
+    |l, theta, tip, b| bars(l, tip, b),
+    |l, q| rocker(l, q[1])
+);
+case!(
+    AnglesByInput,
+    3,
+    By::Input,
+    |crank, theta, rate| crank.theta = signal(theta, rate),
+    |l, theta, tip, b| of_angles(l, theta, tip, b),
+    |l, q| rocker(l, q[2])
+);
+case!(
+    AnglesByInputInARow,
+    2,
+    By::Input,
+    |crank, theta, rate| crank.theta = signal(theta, rate),
+    |l, theta, tip, b| bars(l, tip, b),
+    |l, q| rocker(l, q[1])
+);
+case!(
+    AnglesBySine,
+    3,
+    By::Input,
+    |crank, theta, rate| crank.theta = signal(theta, rate),
+    |l, theta, tip, b| of_angles(l, theta, tip, b),
+    |l, q| rocker(l, q[2])
+);
+case!(
+    AnglesByRate,
+    3,
+    By::Rate,
+    |crank, _theta, rate| crank.omega = rate,
+    |l, theta, tip, b| of_angles(l, theta, tip, b),
+    |l, q| rocker(l, q[2])
+);
+case!(
+    RelativeByTime,
+    3,
+    By::Time(1.0),
+    |_crank, _theta, _rate| (),
+    |l, theta, tip, b| of_relative(l, theta, tip, b),
+    |l, q| rocker(l, q[0] + q[1] + q[2])
+);
+case!(
+    RelativeByInput,
+    3,
+    By::Input,
+    |crank, theta, rate| crank.theta = signal(theta, rate),
+    |l, theta, tip, b| of_relative(l, theta, tip, b),
+    |l, q| rocker(l, q[0] + q[1] + q[2])
+);
+case!(
+    NaturalByTimeInARow,
+    4,
+    By::Time(1.0),
+    |_crank, _theta, _rate| (),
+    |_l, theta, tip, b| [tip[0], tip[1], b[0], b[1]],
+    |_l, q| [q[2], q[3]]
+);
+case!(
+    NaturalByInputInARow,
+    4,
+    By::Input,
+    |crank, theta, rate| crank.theta = signal(theta, rate),
+    |_l, theta, tip, b| [tip[0], tip[1], b[0], b[1]],
+    |_l, q| [q[2], q[3]]
+);
+case!(
+    NaturalByInput,
+    4,
+    By::Input,
+    |crank, theta, rate| crank.theta = signal(theta, rate),
+    |_l, theta, tip, b| [tip[0], tip[1], b[0], b[1]],
+    |_l, q| [q[2], q[3]]
+);
+case!(
+    NaturalByRate,
+    5,
+    By::Rate,
+    |crank, _theta, rate| crank.omega = rate,
+    |_l, theta, tip, b| [theta, tip[0], tip[1], b[0], b[1]],
+    |_l, q| [q[3], q[4]]
+);
+case!(
+    ReferencePointsByInput,
+    9,
+    By::Input,
+    |crank, theta, rate| crank.theta = signal(theta, rate),
+    |l, theta, tip, b| {
+        let [p2, p3] = bars(l, tip, b);
+        let middle = |from: [f64; 2], to: [f64; 2]| [(from[0] + to[0]) / 2.0, (from[1] + to[1]) / 2.0];
+        let [r1, r2, r3] = [middle([0.0; 2], tip), middle(tip, b), middle([l.ground, 0.0], b)];
+        [r1[0], r1[1], theta, r2[0], r2[1], p2, r3[0], r3[1], p3]
+    },
+    |l, q| rocker(l, q[8])
+);
+case!(
+    MixedByInputInARow,
+    4,
+    By::Input,
+    |crank, theta, rate| crank.theta = signal(theta, rate),
+    |l, theta, tip, b| {
+        let [p2, p3] = bars(l, tip, b);
+        [tip[0], tip[1], p2, p3]
+    },
+    |l, q| rocker(l, q[3])
+);
+case!(
+    MixedByTime,
+    4,
+    By::Time(1.0),
+    |_crank, _theta, _rate| (),
+    |l, theta, tip, b| [theta, b[0], b[1], bars(l, tip, b)[1]],
+    |_l, q| [q[1], q[2]]
+);
