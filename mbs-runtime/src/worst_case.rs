@@ -304,7 +304,8 @@ const fn prediction(work: &Work) -> Operations {
         .and(add(1 + 3 * n))
         .and(multiply(4 + 2 * n))
         .and(difference(n).times(2))
-        .and(compare(6))
+        .and(select(2 * n + 8))
+        .and(compare(8))
 }
 
 /// `Way::followed` in at most `evaluations`, the position and the rates at its end.

@@ -115,6 +115,7 @@ const _: () = {
         type Branches = [T; 1usize];
         type Limits = [::mbs_runtime::Limit<T>; 0usize];
         type Phases = [::mbs_runtime::Phase<T>; 0usize];
+        type Values = [T; 1usize];
         type Outputs = [::mbs_runtime::OutputValue<T>; 1usize];
         type Lane = FourBar<T::Real>;
         const NAME: &'static ::core::primitive::str = "FourBar";
@@ -247,6 +248,14 @@ const _: () = {
                 }
                 (_, _) => false,
             }
+        }
+        #[inline]
+        fn values(&self) -> Self::Values {
+            [self.omega]
+        }
+        #[inline]
+        fn set_values(&mut self, __values: Self::Values) {
+            [self.omega] = __values;
         }
         #[inline]
         fn phases(&self) -> Self::Phases {
@@ -612,6 +621,11 @@ const _: () = {
             limits: 0usize,
             phases: 0usize,
             inputs: 0usize,
+            variables: 1usize,
+            parameters: ::mbs_runtime::Operations {
+                additions: 1,
+                ..::mbs_runtime::Operations::NONE
+            },
             position: ::mbs_runtime::Operations {
                 additions: 2,
                 multiplications: 12,

@@ -205,7 +205,7 @@ fn hopeless(budget: Budget) -> Operations {
     let stuck = Stuck::<Counted>::default();
     let guess = stuck.guess(&stuck.parameters());
     let mut stepper = Stepper::assemble(stuck, guess, Counted(0.0)).unwrap();
-    stepper.change(|stuck| (stuck.k, stuck.far) = (Counted(1.0), Counted(1e3)));
+    stepper.change(|stuck| (stuck.k, stuck.far) = (Counted(1.0), Counted(0.4)));
     let (step, cost) = counted(|| stepper.step(Counted(0.1), budget));
     assert!(matches!(step, Step::Refused(_)), "{step:?}");
     cost
@@ -236,7 +236,7 @@ fn the_worst_case_of_surplus_rows_is_no_more_than_four_times_what_a_hopeless_ste
         let torn = Torn::<Counted>::default();
         let guess = torn.guess(&torn.parameters());
         let mut stepper = Stepper::assemble(torn, guess, Counted(0.0)).unwrap();
-        stepper.change(|torn| (torn.k, torn.far) = (Counted(2.0), Counted(1e3)));
+        stepper.change(|torn| (torn.k, torn.far) = (Counted(2.0), Counted(0.4)));
         let (step, cost) = counted(|| stepper.step(Counted(0.1), budget));
         println!("{budget:?}\n  cost {cost}\n  most {most}");
         assert!(matches!(step, Step::Refused(_)), "{step:?}");
