@@ -286,7 +286,8 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Walk<'_, '_
             let most = R::constant(LARGEST_PIECE).min(at.margin.abs().sqrt());
             let forecast = self.forecast(&at, length);
             // Written so that NaN is too much.
-            if !(forecast.first <= most + most) {
+            let moderate = forecast.first <= most + most;
+            if !moderate {
                 let shorter = length * most / forecast.first;
                 piece = if shorter <= half * length {
                     shorter.max(length * R::constant(1e-3))
@@ -441,7 +442,8 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Walk<'_, '_
             let mut kink = slope;
             kink.iter_mut().zip(&forecast.slope).for_each(|(rate, foreseen)| *rate = *rate - *foreseen);
             let largest = self.size(&slope).max(self.size(&forecast.slope));
-            if !(self.size(&kink) <= R::constant(LARGEST_KINK) * largest) && next.margin < forecast.first {
+            let smooth = self.size(&kink) <= R::constant(LARGEST_KINK) * largest;
+            if !smooth && next.margin < forecast.first {
                 return None;
             }
         }
@@ -475,7 +477,8 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Walk<'_, '_
             q.iter_mut().zip(&step).for_each(|(coordinate, change)| *coordinate = *coordinate - *change);
             let off = largest_difference(&q, prediction, &scales);
             // Written so that NaN is not near.
-            if !(off <= margin.value) {
+            let near = off <= margin.value;
+            if !near {
                 return None;
             }
             let last = largest_difference(&step, &[R::constant(0.0); N], &scales);

@@ -372,7 +372,8 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
             let values = self.mechanism.values();
             let change = largest_change(S::ANGLES, &self.anchor.values, &values);
             // Written so that NaN is far.
-            if !(change <= R::constant(LARGEST_PIECE)) {
+            let near = change <= R::constant(LARGEST_PIECE);
+            if !near {
                 (self.anchor.t, self.anchor.q, self.led) = (self.state.t, self.state.q, true);
             }
         }
