@@ -144,8 +144,8 @@ impl Tally {
         step: Result<[f64; 2], Failure>,
     ) -> bool {
         self.steps += 1;
-        // What rounding leaves open of a position at the margin there.
-        let open = (2e3 + theta.abs()) * epsilon / linkage.margin(theta).max(epsilon.sqrt());
+        // What rounding leaves open of a position at the margin there: of residuals, and of angles that have grown over many turns.
+        let open = (2e3 + 32.0 * theta.abs()) * epsilon / linkage.margin(theta).max(epsilon.sqrt());
         match step {
             Err(_) => {
                 let inside = linkage.margin(theta) < 0.05;
