@@ -351,7 +351,7 @@ pub fn implementation(
             type StateSlopes = [#runtime::StateSlope<T, #n, [T; #states]>; #states];
             type Powers = [T; #forces];
             type Loads = [T; #loads];
-            const FORCE_USES_MULTIPLIERS: bool = #force_uses_multipliers;
+            const FORCE_USES_MULTIPLIERS: ::core::primitive::bool = #force_uses_multipliers;
             #starts
             #tables
             #[inline]

@@ -230,7 +230,8 @@ fn kinematic(
             ) -> #runtime::Solved<__Position<T>, T> #body
         }
     });
-    let block_by_block = solve_motion.as_ref().map(|_| quote! { const BLOCK_BY_BLOCK: bool = true; });
+    let block_by_block =
+        solve_motion.as_ref().map(|_| quote! { const BLOCK_BY_BLOCK: ::core::primitive::bool = true; });
     quote! {
         impl<#generics> #runtime::WorstCase for #name {
             const WORK: #runtime::Work = #work;

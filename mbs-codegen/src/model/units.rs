@@ -1,10 +1,10 @@
 //! Units: dimensions of declared units and of number suffixes.
 
-use std::f64::consts::{PI, TAU};
 use std::fmt;
 
 use crate::diagnostics::{Diagnostics, nearest};
 use crate::syntax::ast;
+use crate::syntax::unit_symbols::{SUFFIXES, SYMBOLS, as_product};
 use proc_macro2::Span;
 
 /// Exponents of the base units, in sixtieths, so that roots up to the sixth are exact.
@@ -16,69 +16,6 @@ pub struct Dimension([i16; 8]);
 const BASE: [&str; 8] = ["m", "kg", "s", "A", "K", "mol", "cd", "cycle"];
 const WHOLE: i16 = 60;
 const CYCLE: usize = 7;
-
-/// Symbols of coherent SI units with their exponents of m, kg, s, A, K, mol, cd, cycle.
-const SYMBOLS: [(&str, [i16; 8]); 23] = [
-    ("m", [1, 0, 0, 0, 0, 0, 0, 0]),
-    ("kg", [0, 1, 0, 0, 0, 0, 0, 0]),
-    ("s", [0, 0, 1, 0, 0, 0, 0, 0]),
-    ("A", [0, 0, 0, 1, 0, 0, 0, 0]),
-    ("K", [0, 0, 0, 0, 1, 0, 0, 0]),
-    ("mol", [0, 0, 0, 0, 0, 1, 0, 0]),
-    ("cd", [0, 0, 0, 0, 0, 0, 1, 0]),
-    ("rad", [0; 8]),
-    ("N", [1, 1, -2, 0, 0, 0, 0, 0]),
-    ("J", [2, 1, -2, 0, 0, 0, 0, 0]),
-    ("W", [2, 1, -3, 0, 0, 0, 0, 0]),
-    ("Pa", [-1, 1, -2, 0, 0, 0, 0, 0]),
-    ("Hz", [0, 0, -1, 0, 0, 0, 0, 1]),
-    ("V", [2, 1, -3, -1, 0, 0, 0, 0]),
-    ("C", [0, 0, 1, 1, 0, 0, 0, 0]),
-    ("F", [-2, -1, 4, 2, 0, 0, 0, 0]),
-    ("ohm", [2, 1, -3, -2, 0, 0, 0, 0]),
-    ("H", [2, 1, -2, -2, 0, 0, 0, 0]),
-    ("T", [0, 1, -2, -1, 0, 0, 0, 0]),
-    ("Wb", [2, 1, -2, -1, 0, 0, 0, 0]),
-    ("S", [-2, -1, 3, 2, 0, 0, 0, 0]),
-    ("sr", [0; 8]),
-    ("lm", [0, 0, 0, 0, 0, 0, 1, 0]),
-];
-
-/// Suffixes of numbers that are no coherent SI units: value = number · factor / divisor, in the SI unit.
-const SUFFIXES: [(&str, f64, f64, &str); 31] = [
-    ("km", 1e3, 1.0, "m"),
-    ("cm", 1.0, 1e2, "m"),
-    ("mm", 1.0, 1e3, "m"),
-    ("um", 1.0, 1e6, "m"),
-    ("nm", 1.0, 1e9, "m"),
-    ("inch", 254.0, 1e4, "m"),
-    ("gram", 1.0, 1e3, "kg"),
-    ("tonne", 1e3, 1.0, "kg"),
-    ("ms", 1.0, 1e3, "s"),
-    ("us", 1.0, 1e6, "s"),
-    ("ns", 1.0, 1e9, "s"),
-    ("min", 60.0, 1.0, "s"),
-    ("h", 3600.0, 1.0, "s"),
-    ("deg", PI, 180.0, "rad"),
-    ("mrad", 1.0, 1e3, "rad"),
-    ("turn", TAU, 1.0, "rad"),
-    ("rpm", PI, 30.0, "rad/s"),
-    ("kHz", 1e3, 1.0, "Hz"),
-    ("mN", 1.0, 1e3, "N"),
-    ("kN", 1e3, 1.0, "N"),
-    ("MN", 1e6, 1.0, "N"),
-    ("kPa", 1e3, 1.0, "Pa"),
-    ("MPa", 1e6, 1.0, "Pa"),
-    ("GPa", 1e9, 1.0, "Pa"),
-    ("bar", 1e5, 1.0, "Pa"),
-    ("mJ", 1.0, 1e3, "J"),
-    ("kJ", 1e3, 1.0, "J"),
-    ("kW", 1e3, 1.0, "W"),
-    ("mA", 1.0, 1e3, "A"),
-    ("mV", 1.0, 1e3, "V"),
-    // Standard gravity, ISO 80000-3.
-    ("g0", 9.80665, 1.0, "m/s^2"),
-];
 
 impl Dimension {
     /// Of pure numbers and angles.
@@ -180,7 +117,7 @@ pub fn coherent(symbol: &str) -> Result<(f64, &'static str), (String, String)> {
 fn unknown_suffix(symbol: &str) -> (String, String) {
     let known =
         || SYMBOLS.iter().map(|(symbol, _)| *symbol).chain(SUFFIXES.iter().map(|(suffix, ..)| *suffix));
-    let help = match nearest(symbol, known()) {
+    let help = match as_product(symbol).or_else(|| nearest(symbol, known()).map(str::to_owned)) {
         Some(known) => format!("did you mean `{known}`?"),
         None => format!("known are {}", known().collect::<Vec<_>>().join(", ")),
     };
@@ -194,7 +131,8 @@ fn unknown_unit(symbol: &str) -> (String, String) {
             format!("declare `{coherent}` and write the unit behind the number: `100{symbol}`"),
         );
     }
-    let help = match nearest(symbol, SYMBOLS.iter().map(|(known, _)| *known)) {
+    let near = || nearest(symbol, SYMBOLS.iter().map(|(known, _)| *known)).map(str::to_owned);
+    let help = match as_product(symbol).or_else(near) {
         Some(known) => format!("did you mean `{known}`?"),
         None => format!("known are 1, {}", SYMBOLS.map(|(known, _)| known).join(", ")),
     };
@@ -249,9 +187,10 @@ pub fn with_suffix(value: f64, suffix: &str) -> Result<(f64, Dimension), (String
         None => {
             let known =
                 SYMBOLS.iter().map(|(symbol, _)| *symbol).chain(SUFFIXES.iter().map(|(suffix, ..)| *suffix));
-            let help = match nearest(suffix, known) {
-                Some(known) => format!("did you mean `{value}{known}`?"),
-                None => {
+            let help = match (as_product(suffix), nearest(suffix, known)) {
+                (Some(product), _) => format!("did you mean `{value} [{product}]`?"),
+                (None, Some(known)) => format!("did you mean `{value}{known}`?"),
+                (None, None) => {
                     format!("known are the SI symbols and {}", SUFFIXES.map(|(suffix, ..)| suffix).join(", "))
                 }
             };
@@ -298,6 +237,8 @@ fn power(base: &str, sixtieths: i16) -> String {
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::PI;
+
     use super::*;
 
     #[test]

@@ -5,7 +5,7 @@ use proc_macro2::Span;
 use super::ast::{Expression, Instruction, Name, Operation, Operator, Target, Unit};
 use super::parser::{GivenUp, Parser, Read};
 use super::tokens::Kind;
-use super::unit::unit_of_number;
+use super::unit::{unit_behind_a_space, unit_of_number};
 
 /// What waits for its right operand or its closing bracket.
 enum Pending {
@@ -360,6 +360,13 @@ fn literal(parser: &mut Parser<'_>, text: &str) -> Read<Operation> {
             }
             *unit = Some(unit_of_number(parser)?);
         }
+        if let (None, Some(apart)) = (&unit, unit_behind_a_space(parser)) {
+            let number =
+                if is_alphanumeric(&apart) { format!("{text}{apart}") } else { format!("{text} [{apart}]") };
+            let message = format!("the unit `{apart}` stands apart from its number");
+            parser.diagnostics.report(parser.span(), message, format!("write `{number}`"));
+            return Err(GivenUp);
+        }
         if let (Some(unit), Kind::Punctuation('^', _)) = (unit, parser.peek()) {
             two_readings(parser, span, digits, unit, joined);
         }
@@ -379,8 +386,7 @@ fn two_readings(parser: &mut Parser<'_>, span: Span, digits: &str, unit: &Unit, 
         }
         _ => "…".into(),
     };
-    let is_symbol = unit.text.bytes().all(|byte| byte.is_ascii_alphanumeric());
-    let base = if is_symbol { unit.text.clone() } else { format!("({})", unit.text) };
+    let base = if is_alphanumeric(&unit.text) { unit.text.clone() } else { format!("({})", unit.text) };
     parser.diagnostics.report(
         span,
         format!("`{number}^{exponent}` can be read in two ways"),
@@ -388,6 +394,11 @@ fn two_readings(parser: &mut Parser<'_>, span: Span, digits: &str, unit: &Unit, 
             "write `{digits} [{base}^{exponent}]` for a power of the unit alone, `({number})^{exponent}` for a power of the number with its unit"
         ),
     );
+}
+
+/// `true` for a unit of one symbol without an exponent.
+fn is_alphanumeric(unit: &str) -> bool {
+    unit.bytes().all(|byte| byte.is_ascii_alphanumeric())
 }
 
 /// A literal as a number with the unit joined to it; `None` where it is no decimal number.
@@ -499,6 +510,28 @@ mod tests {
         assert_eq!(postfix("30 [rad/(s*A)^2]/x[1]"), "30rad/(s*A)^2 x 1 index/1 divide");
         assert!(postfix("2 [x, y]").contains("`2*[x, y]`"));
         assert!(postfix("2mm [m]").contains("a number has one unit"));
+    }
+
+    #[test]
+    fn a_unit_apart_from_its_number_is_put_in_brackets() {
+        for (text, meant) in [
+            ("9.81 m/s^2", "9.81 [m/s^2]"),
+            ("2*9.81 m/s^2*cos(a)", "9.81 [m/s^2]"),
+            ("-5 N*m", "5 [N*m]"),
+            ("[0, 4 m ^ -2]", "4 [m^-2]"),
+            ("f(9 mm)", "9mm"),
+            ("30 deg + x", "30deg"),
+            ("5 Nm/rad", "5 [N*m/rad]"),
+            ("3 m*min(a, b)", "3m"),
+            ("1/2 s", "2s"),
+        ] {
+            let message = postfix(text);
+            assert!(
+                message.contains("apart") && message.ends_with(&format!("write `{meant}`\n")),
+                "{message}"
+            );
+        }
+        assert!(postfix("(2 rate)").contains("an operator or a closing bracket"));
     }
 
     #[test]

@@ -12,6 +12,7 @@ mod source;
 mod statement;
 mod tokens;
 mod unit;
+pub mod unit_symbols;
 
 use proc_macro2::{Span, TokenStream};
 

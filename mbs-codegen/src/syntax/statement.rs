@@ -98,11 +98,26 @@ fn docs(parser: &mut Parser<'_>) -> Vec<String> {
     lines
 }
 
-/// Goes behind the statement that was given up: past its `;`, or past its braces, but not past the beginning
-/// of the next statement.
+/// Goes behind the statement that was given up: out of the brackets that it was read into, past its `;`, or past its
+/// braces, but not past the beginning of the next statement.
 fn resynchronise(parser: &mut Parser<'_>, start: &[Token]) {
-    if parser.rest().len() == start.len() {
+    let read = start.get(..start.len().saturating_sub(parser.rest().len())).unwrap_or(&[]);
+    let mut open = Vec::new();
+    for token in read {
+        match token.kind {
+            Kind::Open(bracket) => open.push(bracket),
+            Kind::Close(_) => drop(open.pop()),
+            _ => {}
+        }
+    }
+    if read.is_empty() {
         parser.skip(1);
+    }
+    while let Some(bracket) = open.pop() {
+        parser.skip_group();
+        if bracket == '{' && open.is_empty() {
+            return;
+        }
     }
     loop {
         match parser.peek() {

@@ -140,18 +140,32 @@ pub fn flatten(stream: TokenStream, diagnostics: &mut Diagnostics) -> Vec<Token>
     tokens
 }
 
-/// Whether an operator beside a group without delimiters would take it apart.
+/// `true` where an operator beside a group without delimiters would take it apart.
+///
+/// `$e^2` with `4m` for `$e` has one reading, where the text `4m^2` has two. The number `-4` may have its unit behind it.
 fn binds(previous: Option<&Token>, group: &Group, next: Option<&TokenTree>) -> bool {
-    let mut content = group.stream().into_iter();
-    let is_one_token = !matches!(content.next(), Some(TokenTree::Group(_))) && content.next().is_none();
+    let content: Vec<TokenTree> = group.stream().into_iter().take(3).collect();
+    let (is_literal, is_number, is_one_token) = match content.as_slice() {
+        [TokenTree::Literal(_)] => (true, true, true),
+        [TokenTree::Punct(minus), TokenTree::Literal(_)] => (false, minus.as_char() == '-', false),
+        [TokenTree::Group(_)] => (false, false, false),
+        [_] | [] => (false, false, true),
+        _ => (false, false, false),
+    };
     let behind =
         previous.is_some_and(|token| matches!(token.kind, Kind::Punctuation('+' | '-' | '*' | '/' | '^', _)));
     let before = match next {
         Some(TokenTree::Punct(mark)) => match mark.as_char() {
+            '^' if is_literal => return true,
             '.' => mark.spacing() == Spacing::Alone,
             character => matches!(character, '+' | '-' | '*' | '/' | '^'),
         },
-        Some(TokenTree::Group(index)) => index.delimiter() == Delimiter::Bracket,
+        Some(TokenTree::Group(index)) if index.delimiter() == Delimiter::Bracket => {
+            if is_number {
+                return false;
+            }
+            true
+        }
         _ => false,
     };
     !is_one_token && (behind || before)
@@ -179,6 +193,19 @@ mod tests {
         let nested = TokenTree::from(Group::new(Delimiter::None, text));
         let power = "^2".parse::<TokenStream>().expect("tokens");
         assert_eq!(words(std::iter::once(nested).chain(power).collect()), "(2*(a+b))^2");
+    }
+
+    #[test]
+    fn a_number_of_a_macro_is_one_operand() {
+        for (number, behind, read) in [
+            ("4m", "^2", "(4m)^2"),
+            ("4", "[m^2]", "4[m^2]"),
+            ("-4", "[m^2]", "-4[m^2]"),
+            ("-4", "^2", "(-4)^2"),
+        ] {
+            let behind = behind.parse::<TokenStream>().expect("tokens");
+            assert_eq!(words(std::iter::once(undelimited(number)).chain(behind).collect()), read);
+        }
     }
 
     #[test]

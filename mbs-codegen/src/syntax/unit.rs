@@ -4,6 +4,7 @@ use super::ast::{Type, Unit};
 use super::expression::expression;
 use super::parser::{Parser, Read};
 use super::tokens::Kind;
+use super::unit_symbols::{as_product, is_symbol};
 
 /// A unit, or `[unit; length, …]`; `help` shows the declaration that it belongs to.
 pub fn declared_type(parser: &mut Parser<'_>, help: &str) -> Read<Type> {
@@ -43,6 +44,35 @@ pub fn unit_of_number(parser: &mut Parser<'_>) -> Read<Unit> {
     let unit = product(parser, UNIT_OF_NUMBER)?;
     parser.expect(']', UNIT_OF_NUMBER)?;
     Ok(unit)
+}
+
+/// The unit that begins at the next token, as far as its symbols are known; nothing is taken.
+pub fn unit_behind_a_space(parser: &Parser<'_>) -> Option<String> {
+    let symbol = |ahead: usize| match (parser.peek_at(ahead), parser.peek_at(ahead + 1)) {
+        (Kind::Identifier(_), Kind::Open('(')) => None,
+        (Kind::Identifier(word), _) if is_symbol(word) => Some(word.clone()),
+        (Kind::Identifier(word), _) => as_product(word),
+        _ => None,
+    };
+    let mut text = symbol(0)?;
+    let mut ahead = 1;
+    loop {
+        if matches!(parser.peek_at(ahead), Kind::Punctuation('^', _)) {
+            let is_negative = matches!(parser.peek_at(ahead + 1), Kind::Punctuation('-', _));
+            let digits = ahead + 1 + usize::from(is_negative);
+            let Kind::Literal(exponent) = parser.peek_at(digits) else { return Some(text) };
+            text = format!("{text}^{}{exponent}", if is_negative { "-" } else { "" });
+            ahead = digits + 1;
+        }
+        let (Kind::Punctuation(operator @ ('*' | '/'), _), Some(next)) =
+            (parser.peek_at(ahead), symbol(ahead + 1))
+        else {
+            return Some(text);
+        };
+        text.push(*operator);
+        text += &next;
+        ahead += 2;
+    }
 }
 
 /// A unit with its parentheses multiplied out.

@@ -48,6 +48,24 @@ fn both_readings_are_accepted() {
     }
 }
 
+#[test]
+fn a_unit_apart_from_its_number_is_told_its_form() {
+    for (unit, value, meant) in [
+        ("m/s^2", "9.81 m/s^2", "9.81 [m/s^2]"),
+        ("m/s^2", "-2*9.81 m/s^2*2", "9.81 [m/s^2]"),
+        ("N*m", "5 Nm", "5 [N*m]"),
+        ("N*m", "5Nm", "5 [N*m]"),
+        ("m^2", "4 m^2", "4 [m^2]"),
+        ("m", "9 mm", "9mm"),
+        ("1", "sin(30 deg)", "30deg"),
+        ("m/s", "3 km/h", "3 [km/h]"),
+    ] {
+        let report = report(unit, value);
+        assert_eq!(report.lines().count(), 2, "{value}: {report}");
+        assert!(report.contains(&format!("`{meant}`")), "{value}: {report}");
+    }
+}
+
 /// `$length^2` is the square of the whole argument.
 macro_rules! plate {
     ($name:ident, $length:expr) => {
@@ -60,6 +78,24 @@ macro_rules! plate {
     };
 }
 plate!(Plate, (4m));
+plate!(PlateOfANumber, 4m);
+macro_rules! plate_of_a_literal {
+    ($name:ident, $length:literal) => {
+        plate!($name, $length);
+    };
+}
+plate_of_a_literal!(PlateOfALiteral, 4m);
+macro_rules! with_area {
+    ($name:ident, $area:expr) => {
+        mechanism! {
+            mechanism $name;
+            coord x: m;
+            drive d: x == 1m*t/1s;
+            out area: m^2 = $area [mm^2];
+        }
+    };
+}
+with_area!(OwnArea, -4);
 
 mechanism! {
     mechanism Readings;
@@ -76,6 +112,17 @@ fn a_power_is_of_what_stands_before_it() {
     let motion = Stepper::assemble(Readings::default(), [0.0], 0.0).expect("assembled");
     let values: Vec<f64> = motion.outputs().iter().map(|output| output.value).collect();
     assert_eq!(values, [4.0, 16.0, 2e-6, 2e-3 * 2e-3]);
-    let motion = Stepper::assemble(Plate::default(), [0.0], 0.0).expect("assembled");
-    assert_eq!(motion.outputs()[0].value, 16.0);
+}
+
+#[test]
+fn an_argument_of_a_macro_is_one_operand() {
+    macro_rules! area {
+        ($mechanism:expr) => {
+            Stepper::assemble($mechanism, [0.0], 0.0).expect("assembled").outputs()[0].value
+        };
+    }
+    assert_eq!(area!(Plate::default()), 16.0);
+    assert_eq!(area!(PlateOfANumber::default()), 16.0);
+    assert_eq!(area!(PlateOfALiteral::default()), 16.0);
+    assert_eq!(area!(OwnArea::default()), -4e-6);
 }

@@ -213,8 +213,33 @@ mechanism! {
     scene fn = one;
 }
 
+/// A scope in which the names of Rust's own types are the caller's.
+mod types_of_the_caller {
+    macro_rules! named {
+        ($($name:ident)*) => { $(#[allow(non_camel_case_types, dead_code, reason = "the name is the test")] pub struct $name;)* };
+    }
+    named!(bool char str f32 f64 i8 i16 i32 i64 u8 u16 u32 u64 usize isize);
+
+    super::mechanism! {
+        pub mechanism Ball;
+        param L: m = 2;
+        coord x: m = 0.1;
+        coord y: m = 1;
+        body ball { mass: 1, com: [x, y] }
+        friction slide { along: x, normal: 10, coefficient: 0.1, speed: 0.01 }
+        constraint rod redundant { x^2 + y^2 == L^2/4; 2*x^2 + 2*y^2 == L^2/2; }
+        limit stroke: -3 <= x <= 3;
+        branch up: y > 0;
+        effect one { drive d: x == 0.1m + 0.1m*t/1s; out z: m = x; }
+        scene Driven = one;
+    }
+}
+
 #[test]
 fn what_is_named_so_compiles_and_runs() {
+    let ball = types_of_the_caller::BallDriven::default();
+    let motion = Stepper::assemble(ball, [0.1, 1.0], 0.0).expect("assembled");
+    assert!((motion.q()[1] - 0.99_f64.sqrt()).abs() < 1e-15);
     let s = Square;
     let functions = FunctionsDriven::new(s, s, s, s, s, s, s, s, s, s, s, s, s, s, s, s);
     let motion = Stepper::assemble(functions, [0.0], 3.0).expect("assembled");
