@@ -116,6 +116,15 @@ mechanism! {
     drive turning: dot(rotate(e, [1, 0, 0]), [0, 0, 1]) == 0.4*sin(1*t/1s);
 }
 
+/// A share well above the rounding of a row makes it another one, a share below it does not.
+#[test]
+fn rows_that_nearly_repeat_the_normalisation_are_rows_of_their_own() {
+    for (share, repeats) in [("1e-9", false), ("1e-11", false), ("1e-14", true)] {
+        let found = report(&format!("dot(e, e) + {share}*e[0]*e[1] == 1;"));
+        assert_eq!(found.contains("repeats"), repeats, "{share}: {found}");
+    }
+}
+
 #[test]
 fn the_row_that_was_refused_holds_along_a_motion() {
     let upright = Upright::default();
