@@ -50,6 +50,19 @@ pub struct Signed {
     pub parameter: &'static str,
 }
 
+/// A derivative of the forces that a declared function is not smooth enough for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MissingSlope {
+    /// The derivative that is missing: `∂Q/∂q`.
+    pub slope: &'static str,
+    /// The declared function.
+    pub function: Entry,
+    /// Order of its derivative that would be needed.
+    pub order: u8,
+    /// Order up to which the text declares it continuous.
+    pub declared: u8,
+}
+
 /// How one first-order state z acts, and what its rate ż depends on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StateSlope<T, const N: usize, Z> {
@@ -98,6 +111,10 @@ pub trait Dynamic<T: Scalar, const N: usize, const M: usize>: Mechanism<T, N, M>
     /// Whether [`force`](Self::force) depends on the multipliers: friction. Where it does not, methods save the
     /// iteration for it.
     const FORCE_USES_MULTIPLIERS: bool = true;
+    /// Why one of [`force_q`](Self::force_q), [`force_qd`](Self::force_qd), [`mass_times_q`](Self::mass_times_q),
+    /// [`reaction_q`](Self::reaction_q) and [`state_slopes`](Self::state_slopes) is missing, if one is: its entries are NaN, or it is
+    /// `None`. Explicit methods do without; what needs them fails with [`Failure::NotSmooth`](crate::Failure::NotSmooth).
+    const MISSING_SLOPE: Option<&'static MissingSlope> = None;
     /// Coordinates whose start the text declares, ascending.
     const STARTED: &'static [u16] = &[];
     /// Coordinates of which it declares the rate at the start, ascending.

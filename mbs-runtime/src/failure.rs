@@ -3,7 +3,7 @@
 mod holding;
 mod message;
 
-use crate::{Entry, Scalar};
+use crate::{Entry, MissingSlope, Scalar};
 
 pub use holding::Holding;
 
@@ -346,6 +346,11 @@ pub enum Failure {
         /// Time (s).
         time: f64,
     },
+    /// What is asked for needs a derivative of the forces that a declared function is not smooth enough for.
+    NotSmooth {
+        /// The derivative, the function, and what it would have to be.
+        missing: &'static MissingSlope,
+    },
     /// The saved state is that of a mechanism with another name or other coordinates.
     Foreign {
         /// Name of the mechanism that it was to be the state of.
@@ -388,6 +393,7 @@ impl Failure {
             Failure::NonFinite { .. }
             | Failure::Negative { .. }
             | Failure::Unsuitable { .. }
+            | Failure::NotSmooth { .. }
             | Failure::Foreign { .. } => {}
         }
         self
@@ -427,6 +433,7 @@ impl Failure {
             Failure::NonFinite { .. }
             | Failure::Negative { .. }
             | Failure::Unsuitable { .. }
+            | Failure::NotSmooth { .. }
             | Failure::Foreign { .. } => 0.0,
         }
     }

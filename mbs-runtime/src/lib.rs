@@ -62,7 +62,7 @@ pub use boundary::Matrices;
 pub use budget::{Budget, Step};
 pub use diagnosis::{Diagnosis, Statistics, Worst};
 pub use dyad::{Dyad, Roots, Single};
-pub use dynamic::{Dynamic, Energy, Gap, Motion, Partitioned, Signed, StateSlope};
+pub use dynamic::{Dynamic, Energy, Gap, MissingSlope, Motion, Partitioned, Signed, StateSlope};
 pub use failure::{Failure, Holding, Level, Outcome};
 pub use function::{Function, FunctionEntry};
 pub use kinematics::{RegularFactors, factorize, solve_acceleration, solve_position, solve_velocity};

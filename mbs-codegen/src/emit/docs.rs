@@ -147,6 +147,15 @@ fn functions(model: &Model, equations: &Equations, lines: &mut Vec<String>) {
         lines.push(format!("Function `{name}` (`{unit}` of `{argument}`): {most}."));
         lines.push(String::new());
     }
+    for missing in equations.dynamics.iter().flat_map(|dynamics| &dynamics.missing) {
+        let Some(function) = model.functions.get(missing.function) else { continue };
+        let (slope, derivative) = (missing.slopes.name(), missing.derivative());
+        let (name, declared) = (&function.name.text, function.continuity);
+        lines.push(format!(
+            "No implicit methods, rests and small motions: {slope} needs {derivative} of `{name}`, declared C{declared}."
+        ));
+        lines.push(String::new());
+    }
 }
 
 fn plural(word: &str, count: usize) -> String {

@@ -8,7 +8,8 @@ use quote::{quote, quote_spanned};
 
 use super::code::{block, lets};
 use super::functions::{array, body, matrix};
-use super::scope::Scope;
+use super::scope::{Scope, number};
+use crate::equations::deferred::Slopes;
 use crate::equations::normal_forces::{Kind, NormalForces};
 use crate::equations::{Dynamics, Equations, Gap, Of, Slope, Sparse};
 use crate::model::Model;
@@ -24,6 +25,8 @@ pub struct DynamicBodies {
     pub start_rates: TokenStream,
     /// Not a body: the table of what must not be negative and its function, where there is such.
     pub signed: TokenStream,
+    /// Not a body: the function that is left out, where one is.
+    pub missing: TokenStream,
     /// Not a body: the table of contacts and the function of their gaps, where there are any.
     pub gaps: TokenStream,
     pub mass: TokenStream,
@@ -58,6 +61,7 @@ impl DynamicBodies {
             start_states: body(),
             start_rates: body(),
             signed: TokenStream::new(),
+            missing: TokenStream::new(),
             gaps: TokenStream::new(),
             mass: body(),
             mass_times: body(),
@@ -97,17 +101,23 @@ pub fn bodies(
     let vector =
         |nodes: &[Option<crate::symbolic::NodeId>], scope: &Scope<'_>| array(nodes.iter().copied(), scope);
     let of = |section, result: String| body(section, scope, &result, runtime);
+    let slopes_or_nan = |slopes: Slopes, rows: &Sparse| {
+        let is_missing = dynamics.missing.iter().any(|missing| missing.slopes == slopes);
+        let (n, nan) = (rows.len(), number(f64::NAN));
+        if is_missing { format!("[[{nan}; {n}]; {n}]") } else { matrix(rows.iter(), scope) }
+    };
     Some(DynamicBodies {
         force_uses_multipliers: dynamics.force_uses_multipliers,
         start_states: body(&program.start_states, early, &vector(&dynamics.start_states, early), runtime),
         start_rates: body(&program.start_rates, early, &vector(&dynamics.start_rates, early), runtime),
         signed: signed(dynamics, program, early, runtime),
+        missing: missing(dynamics, scope.model, runtime),
         gaps: gaps(dynamics, program, scope, runtime),
         mass: of(&program.mass, matrix(dynamics.mass.iter(), scope)),
         mass_times: of(&program.mass_times, vector(&dynamics.mass_times, scope)),
         force: of(&program.force, vector(&dynamics.force, scope)),
-        force_q: of(&program.force_q, matrix(dynamics.force_q.iter(), scope)),
-        force_qd: of(&program.force_qd, matrix(dynamics.force_qd.iter(), scope)),
+        force_q: of(&program.force_q, slopes_or_nan(Slopes::ForceByPlace, &dynamics.force_q)),
+        force_qd: of(&program.force_qd, slopes_or_nan(Slopes::ForceBySpeed, &dynamics.force_qd)),
         force_lambda: dynamics.force_uses_multipliers.then(|| {
             let (n, m) = (scope.model.coordinates.len(), scope.model.rows.len());
             let zeros = format!("let mut __rows = [[{}; {m}]; {n}];\n", scope.or_zero(None));
@@ -120,9 +130,9 @@ pub fn bodies(
             lets(&program.normal_forces, scope, &mut text);
             block(&(text + &result), runtime)
         }),
-        mass_times_q: of(&program.mass_times_q, matrix(dynamics.mass_times_q.iter(), scope)),
+        mass_times_q: of(&program.mass_times_q, slopes_or_nan(Slopes::Inertia, &dynamics.mass_times_q)),
         reaction: of(&program.reaction, vector(&dynamics.reaction, scope)),
-        reaction_q: of(&program.reaction_q, matrix(dynamics.reaction_q.iter(), scope)),
+        reaction_q: of(&program.reaction_q, slopes_or_nan(Slopes::Reaction, &dynamics.reaction_q)),
         third: dynamics.third.as_ref().map(|third| {
             let (row, right) = (vector(&third.row, scope), scope.or_zero(third.right));
             of(&program.third, format!("::core::option::Option::Some(({row}, {right}))"))
@@ -211,6 +221,28 @@ fn signed(
     }
 }
 
+/// The first of the functions that are left out, with the declared function that is not smooth enough for it.
+fn missing(dynamics: &Dynamics, model: &Model, runtime: &TokenStream) -> TokenStream {
+    let first = dynamics.missing.first();
+    let Some((missing, function)) =
+        first.and_then(|missing| Some((missing, model.functions.get(missing.function)?)))
+    else {
+        return TokenStream::new();
+    };
+    let (slope, order, declared) = (missing.slopes.name(), missing.order, function.continuity);
+    let (name, unit) = (&function.name.text, &function.unit);
+    let line = quote_spanned!(function.name.span=> ::core::line!());
+    quote! {
+        const MISSING_SLOPE: ::core::option::Option<&'static #runtime::MissingSlope> =
+            ::core::option::Option::Some(&#runtime::MissingSlope {
+                slope: #slope,
+                function: #runtime::Entry { name: #name, unit: #unit, line: #line },
+                order: #order,
+                declared: #declared,
+            });
+    }
+}
+
 /// The contacts: their table, and the function that shows their gaps.
 fn gaps(
     dynamics: &Dynamics,
@@ -277,6 +309,7 @@ pub fn implementation(
         start_states,
         start_rates,
         signed,
+        missing,
         gaps,
         mass,
         mass_times,
@@ -359,6 +392,7 @@ pub fn implementation(
             #[inline]
             fn start_rates(&self, __p: &__Parameters<T>) -> [T; #n] #start_rates
             #signed
+            #missing
             #gaps
             #[inline]
             fn mass(#design) -> [[T; #n]; #n] #mass

@@ -75,7 +75,7 @@ fn contains_coordinate(equations: &Equations, value: NodeId) -> bool {
 }
 
 /// "the value", "the second derivative".
-fn derivative(order: u8) -> String {
+pub(super) fn derivative(order: u8) -> String {
     const ORDINALS: [&str; 4] =
         ["the value", "the first derivative", "the second derivative", "the third derivative"];
     match ORDINALS.get(usize::from(order)) {
@@ -130,7 +130,7 @@ fn demands(model: &Model, equations: &Equations) -> Vec<Demand> {
 }
 
 /// The functions of masses and forces.
-fn of_dynamics(dynamics: &Dynamics) -> [(&'static str, Vec<NodeId>); 15] {
+fn of_dynamics(dynamics: &Dynamics) -> [(&'static str, Vec<NodeId>); 17] {
     let some = |nodes: &[Option<NodeId>]| nodes.iter().copied().flatten().collect::<Vec<_>>();
     let entries = |matrix: &Sparse| matrix.iter().flatten().map(|(_, entry)| *entry).collect::<Vec<_>>();
     [
@@ -140,6 +140,7 @@ fn of_dynamics(dynamics: &Dynamics) -> [(&'static str, Vec<NodeId>); 15] {
         ("Φ_qᵀ λ", some(&dynamics.reaction)),
         ("∂Q/∂q", entries(&dynamics.force_q)),
         ("∂Q/∂q̇", entries(&dynamics.force_qd)),
+        ("∂Q/∂λ", entries(&dynamics.force_lambda)),
         ("(M x)_q", entries(&dynamics.mass_times_q)),
         ("(Φ_qᵀ λ)_q", entries(&dynamics.reaction_q)),
         ("the energy", some(&[dynamics.kinetic, dynamics.potential])),
@@ -148,6 +149,7 @@ fn of_dynamics(dynamics: &Dynamics) -> [(&'static str, Vec<NodeId>); 15] {
         ("the rate of a state", some(&dynamics.state_rates)),
         ("a derivative by a state", dynamics.slopes.iter().flat_map(|slope| slope.roots()).collect()),
         ("an output of multipliers or states", dynamics.loads.clone()),
+        ("the gap of a contact", dynamics.gaps.iter().flat_map(|gap| gap.roots()).collect()),
         ("the start", [some(&dynamics.start_states), some(&dynamics.start_rates)].concat()),
     ]
 }

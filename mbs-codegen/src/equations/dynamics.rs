@@ -1,6 +1,7 @@
 //! Masses and forces → M, Q, their derivatives, energies and powers.
 
 use super::carried;
+use super::deferred::Missing;
 use super::forces::{self, Acting, Sum};
 use super::lower::Clock;
 use super::normal_forces::{NormalForces, normal_forces};
@@ -117,6 +118,8 @@ pub struct Dynamics {
     pub signed: Vec<Signed>,
     /// One a contact.
     pub gaps: Vec<Gap>,
+    /// Which of ∂Q/∂q, ∂Q/∂q̇, (M x)_q, (Φ_qᵀ λ)_q and the slopes are left out, for declared functions are not smooth enough.
+    pub missing: Vec<Missing>,
     /// One an output of multipliers or states.
     pub loads: Vec<NodeId>,
     /// Indices of the text's kinetic energies that are not quadratic in the rates.
@@ -252,6 +255,7 @@ pub fn derive(
         start_rates: (0..count).map(|index| start(&declared.rates, index)).collect(),
         signed: signed(g, bounded.into_iter()),
         gaps,
+        missing: Vec::new(),
         loads: declared.loads.iter().map(|load| of(load.value)).collect(),
         not_quadratic,
         acting,

@@ -5,6 +5,7 @@ mod attribution;
 mod carried;
 mod carriers;
 pub mod continuity;
+pub mod deferred;
 mod degree;
 mod dynamics;
 mod elimination;
@@ -238,6 +239,7 @@ pub fn derive(model: &Model) -> Equations {
         dynamics,
         calls,
     };
+    equations.defer_slopes(model);
     equations.keep_third_derivative_of_known_functions();
     equations
 }

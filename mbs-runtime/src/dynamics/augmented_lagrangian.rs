@@ -1,6 +1,6 @@
 //! Augmented Lagrangian of index 3 with projections: stiff and redundant mechanisms at coarse steps.
 
-use super::implicit::{Damping, MOST_ITERATIONS, MOST_ROUNDS, Tangent, add_outer};
+use super::implicit::{Damping, MOST_ITERATIONS, MOST_ROUNDS, Tangent, add_outer, require_slopes};
 use super::kkt::{Factors, System, truncation};
 use super::metric::Metric;
 use super::model::{Counts, Formulation, Model, Solved};
@@ -55,6 +55,10 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Method<S, R, 
         counts: &mut Counts,
     ) -> Result<Instant<R, N, M, S::States>, Failure> {
         model.moved(from.t, from.t + h, |model| self.stepped(model, from, h, counts))
+    }
+
+    fn require_suitable(&self) -> Result<(), Failure> {
+        require_slopes::<S, R, N, M>()
     }
 }
 

@@ -1,7 +1,8 @@
 //! Static equilibrium: where a mechanism rests.
 
+use super::free_play::with_play;
 use super::free_stiffness::{Answer, FreeStiffness};
-use super::implicit::{MOST_ITERATIONS, Tangent};
+use super::implicit::{MOST_ITERATIONS, Tangent, require_slopes};
 use super::kkt::{System, truncation};
 use super::metric::Metric;
 use super::model::{Counts, Model};
@@ -43,7 +44,8 @@ pub struct Equilibrium<R, const N: usize, const M: usize> {
     pub lambda: [R; M],
     /// Which multipliers are the only ones that hold it so; the others are the shortest of many: M.
     pub unique: [bool; M],
-    /// Which coordinates may move without any force answering: N. They are where the search came to.
+    /// Which coordinates may move without any force answering, to one side at least, as on the edge of a play: N. They are where the
+    /// search came to.
     pub indifferent: [bool; N],
     /// Iterations spent.
     pub iterations: u32,
@@ -61,7 +63,7 @@ pub struct Equilibrium<R, const N: usize, const M: usize> {
 /// # Errors
 /// [`Failure::NonFinite`]; [`Failure::Restless`] with the coordinate that is still pushed where the forces are nearest to
 /// balance; [`Failure::Unbalanced`] with the coordinate that moved most in the last iteration; [`Failure::Unsettled`] with a state
-/// whose rate is not 0 where the search came to its end and no motion changes it.
+/// whose rate is not 0 where the search came to its end and no motion changes it; [`Failure::NotSmooth`].
 pub fn equilibrium<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     mechanism: &S,
     t: R,
@@ -79,6 +81,7 @@ pub fn equilibrium_with_states<S: Dynamic<R, N, M>, R: Real, const N: usize, con
     t: R,
     q: &[R; N],
 ) -> Result<(Equilibrium<R, N, M>, S::States), Failure> {
+    require_slopes::<S, R, N, M>()?;
     if let Some(failure) = parameter_failure(mechanism) {
         return Err(failure);
     }
@@ -120,6 +123,7 @@ pub fn undetermined_states<S: Dynamic<R, N, M>, R: Real, const N: usize, const M
     found: &Equilibrium<R, N, M>,
     states: &S::States,
 ) -> Result<S::States, Failure> {
+    require_slopes::<S, R, N, M>()?;
     let (zero, parameters) = (R::constant(0.0), mechanism.parameters());
     let metric = Metric::next_to(mechanism, &parameters, t, &found.q);
     let model =
@@ -168,10 +172,15 @@ fn balanced<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
             // Rows that follow from others do so at the end alone: on the way their multipliers may have grown against each other.
             let (shortest, unique) = balancing(model, t, y)?;
             lambda = if unique.contains(&false) { shortest } else { lambda };
+            // What rounding has left of forces on the way would be a stiffness where no force is left.
+            let held = if S::FORCE_USES_MULTIPLIERS { lambda } else { shortest };
             let scales = &model.metric.coordinates;
             let indifferent = match &self::correction(model, t, y, &lambda)?.saddle {
                 Some(saddle) => saddle.indifferent(scales).0,
-                None => FreeStiffness::of(model, t, y, &lambda)?.indifferent(scales),
+                None => {
+                    let indifferent = FreeStiffness::of(model, t, y, &held)?.indifferent(scales);
+                    with_play(model, t, y, &held, indifferent)?
+                }
             };
             return Ok(Some(Equilibrium { q: y.q, lambda, unique, indifferent, iterations }));
         }

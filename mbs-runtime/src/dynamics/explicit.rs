@@ -8,6 +8,8 @@ use crate::{Failure, Scalar};
 pub trait FixedStep: Copy {
     /// Order of convergence.
     const ORDER: u32;
+    /// Whether its steps need derivatives of the forces.
+    const USES_SLOPES: bool = false;
 
     /// The state at `t + h`, not yet settled, from the state `y` at `t` (s) and its rate.
     ///

@@ -1,6 +1,7 @@
 //! The augmented Lagrangian with its error of second order taken out: three thirds of a step against a whole one.
 
 use super::augmented_lagrangian::AugmentedLagrangian;
+use super::implicit::require_slopes;
 use super::model::{Counts, Formulation, Model, Solved};
 use super::motion::{Instant, Method};
 use super::multipliers::Unstabilized;
@@ -51,6 +52,10 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Method<S, R, 
             Unstabilized.solve(model, whole.t, &y, &end.solved.lambda, counts)
         })?;
         Ok(Instant { t: whole.t, y, solved, carried: solved.rate.qd })
+    }
+
+    fn require_suitable(&self) -> Result<(), Failure> {
+        require_slopes::<S, R, N, M>()
     }
 }
 

@@ -99,18 +99,40 @@ impl<R: Real, const N: usize, const M: usize> FreeStiffness<R, N, M> {
 
     /// Which coordinates move without any force changing: N.
     pub(super) fn indifferent(&self, scales: &[R; N]) -> [bool; N] {
-        let (zero, one) = (R::constant(0.0), R::constant(1.0));
         let mut indifferent = [false; N];
         for index in 0..self.freedom {
-            let mut unit = [zero; N];
-            unit.iter_mut().skip(index).take(1).for_each(|component| *component = one);
-            let answered = self.shortest(&self.reduced, &times(&self.reduced, &unit));
-            let motion = self.moved(&unit.plus(-one, &[1.0], [&answered]));
+            let (motion, _) = self.unanswered_part(index);
             for ((mark, part), scale) in indifferent.iter_mut().zip(&motion).zip(scales) {
                 *mark |= R::constant(SHARE).less((*part / *scale).abs());
             }
         }
         indifferent
+    }
+
+    /// What nothing answers of the free motion at `index`, as a motion (N), and its share of that motion.
+    pub(super) fn unanswered_part(&self, index: usize) -> ([R; N], R) {
+        let (zero, one) = (R::constant(0.0), R::constant(1.0));
+        let mut unit = [zero; N];
+        unit.iter_mut().skip(index).take(1).for_each(|component| *component = one);
+        let answered = self.shortest(&self.reduced, &times(&self.reduced, &unit));
+        let left = unit.plus(-one, &[1.0], [&answered]);
+        (self.moved(&left), left.get(index).copied().unwrap_or(zero))
+    }
+
+    /// Number of motions that nothing answers: the trace of the projection onto them.
+    pub(super) fn unanswered_motions(&self) -> R {
+        let shares = (0..self.freedom).map(|index| self.unanswered_part(index).1);
+        shares.fold(R::constant(0.0), |sum, share| sum + share)
+    }
+
+    /// What nothing answers of `motion` (N), of which the free motions alone count.
+    pub(super) fn unanswered(&self, motion: &[R; N], scales: &[R; N]) -> [R; N] {
+        let one = R::constant(1.0);
+        let mut scaled = *motion;
+        scaled.iter_mut().zip(scales).for_each(|(part, scale)| *part = *part / (*scale * *scale));
+        let shares = self.motions.map(|free| dot(&free, &scaled));
+        let answered = self.shortest(&self.reduced, &times(&self.reduced, &shares));
+        self.moved(&shares.plus(-one, &[1.0], [&answered]))
     }
 
     /// The shortest w with `reduced` w = `wanted`, Zᵀ K Z or a part of it, in the least-squares sense, motions that nothing answers left out: N, zeros

@@ -1,6 +1,6 @@
 //! Generalised-α on the equations of index 3: accuracy of order 2 with damping of what the step does not resolve.
 
-use super::implicit::{Damping, MOST_ITERATIONS, MOST_ROUNDS, Tangent};
+use super::implicit::{Damping, MOST_ITERATIONS, MOST_ROUNDS, Tangent, require_slopes};
 use super::kkt::System;
 use super::metric::require_between;
 use super::model::{Counts, Formulation, Model, Solved};
@@ -75,6 +75,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Method<S, R, 
     }
 
     fn require_suitable(&self) -> Result<(), Failure> {
+        require_slopes::<S, R, N, M>()?;
         require_between("spectral radius rho", self.rho, 1.0)
     }
 }

@@ -100,6 +100,15 @@ impl<R: Real, Y: Vector<R>> Damping<R, Y> {
     }
 }
 
+/// Fails where a text has functions that are not smooth enough for a [`Tangent`].
+///
+/// # Errors
+/// [`Failure::NotSmooth`].
+pub(super) fn require_slopes<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>()
+-> Result<(), Failure> {
+    S::MISSING_SLOPE.map_or(Ok(()), |missing| Err(Failure::NotSmooth { missing }))
+}
+
 /// M x₂ + C x₁ + K x₀ about a state: ∂/∂q̈, ∂/∂q̇ and ∂/∂q of M q̈ + Φ_qᵀ λ − Q, N rows of N each.
 pub(super) struct Tangent<R, const N: usize> {
     pub mass: [[R; N]; N],

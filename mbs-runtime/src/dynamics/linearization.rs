@@ -1,6 +1,6 @@
 //! Small motions about a state: M̄ s̈ + C̄ ṡ + K̄ s = 0 in as many coordinates s as there are degrees of freedom.
 
-use super::implicit::Tangent;
+use super::implicit::{Tangent, require_slopes};
 use super::kkt::{System, truncation};
 use super::metric::Metric;
 use super::model::Model;
@@ -49,7 +49,7 @@ pub struct Linearization<R, const N: usize> {
 ///
 /// # Errors
 /// [`Failure::NonFinite`]; [`Failure::Inertialess`] where a free motion moves no mass; [`Failure::StatesUnknown`] for a text with
-/// first-order states, see [`linearize_with_states`].
+/// first-order states, see [`linearize_with_states`]; [`Failure::NotSmooth`].
 pub fn linearize<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     mechanism: &S,
     t: R,
@@ -106,6 +106,7 @@ fn about<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     lambda: &[R; M],
     independent: &[u16],
 ) -> Result<WithStates<R, N, S::StateSlopes>, Failure> {
+    require_slopes::<S, R, N, M>()?;
     let (zero, parameters) = (R::constant(0.0), mechanism.parameters());
     let metric = Metric::next_to(mechanism, &parameters, t, &y.q);
     let model =

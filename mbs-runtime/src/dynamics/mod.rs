@@ -84,6 +84,7 @@ pub mod equilibrium;
 pub mod event;
 pub mod explicit;
 pub mod extrapolated;
+mod free_play;
 mod free_stiffness;
 pub mod friction;
 pub mod generalized_alpha;

@@ -5,6 +5,7 @@ use super::both_sides::ZONE;
 use super::equation::{Collocated, Collocation, Equation, Measured};
 use super::event::{Dense, Scrutiny};
 use super::explicit::FixedStep;
+use super::implicit::require_slopes;
 use super::metric::{Tolerance, worse};
 use super::model::{Counts, Doubt, Formulation, Model, Solved};
 use super::passage::Passage;
@@ -74,7 +75,7 @@ pub trait Method<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> {
     /// See [`Formulation::require_suitable`].
     ///
     /// # Errors
-    /// [`Failure::Unsuitable`].
+    /// [`Failure::Unsuitable`]; [`Failure::NotSmooth`] of a method that needs derivatives of the forces.
     fn require_suitable(&self) -> Result<(), Failure> {
         Ok(())
     }
@@ -208,6 +209,9 @@ where
     }
 
     fn require_suitable(&self) -> Result<(), Failure> {
+        if I::USES_SLOPES {
+            require_slopes::<S, R, N, M>()?;
+        }
         self.formulation.require_suitable()
     }
 

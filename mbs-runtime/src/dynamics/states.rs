@@ -1,5 +1,6 @@
 //! First-order states beside the other unknowns: where they rest, and what they do to small motions.
 
+use super::implicit::require_slopes;
 use super::integrals::{Integrals, IntegralsOf, dependence, is_held, is_solved};
 use super::kkt::none;
 use super::metric::{Metric, worse};
@@ -24,13 +25,17 @@ const PIVOT: f64 = 1e-12;
 /// makes of it is with [`equilibrium_with_states`](super::equilibrium::equilibrium_with_states).
 ///
 /// # Errors
-/// [`Failure::NonFinite`]; [`Failure::Unsettled`] with a state that has no rest: its rate does not vanish, or does not depend on it.
+/// [`Failure::NonFinite`]; [`Failure::Unsettled`] with a state that has no rest: its rate does not vanish, or does not depend on it;
+/// [`Failure::NotSmooth`].
 pub fn states_at_rest<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     mechanism: &S,
     t: R,
     q: &[R; N],
     lambda: &[R; M],
 ) -> Result<S::States, Failure> {
+    if !S::STATES.is_empty() {
+        require_slopes::<S, R, N, M>()?;
+    }
     let (zero, parameters) = (R::constant(0.0), mechanism.parameters());
     let metric = Metric::next_to(mechanism, &parameters, t, q);
     let model =

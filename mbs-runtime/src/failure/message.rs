@@ -3,7 +3,7 @@
 use core::fmt;
 
 use super::{Failure, Level};
-use crate::Entry;
+use crate::{Entry, MissingSlope};
 
 impl fmt::Display for Failure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -206,6 +206,11 @@ impl fmt::Display for Failure {
                 f,
                 "the forces at t = {time} s depend on the state `{}` (line {}), whose value is not known; give the states too",
                 state.name, state.line
+            ),
+            Failure::NotSmooth { missing: MissingSlope { slope, function, order, declared } } => write!(
+                f,
+                "{slope} needs the derivative of order {order} of `{}` (line {}), which is declared C{declared}: declare it C{order} and supply such a function, or take an explicit method",
+                function.name, function.line
             ),
             Failure::Foreign { mechanism } => {
                 write!(f, "the saved state is not one of `{mechanism}`: name or coordinates differ")

@@ -2,7 +2,9 @@
 
 mod d11_shared_normal_forces;
 mod d12_velocity_transformation_of_redundant_rows;
+mod d16_free_play;
 mod d17_fractional_exponents;
+mod d18_gaps_of_tables;
 mod d5_every_method;
 mod d5_normal_forces;
 mod d5_slider_crank;

@@ -4,7 +4,7 @@ use mbs_runtime::{Function, Mechanism, Scalar, mechanism};
 mechanism! {
     pub mechanism Follower;
     param m: kg = 0.3;
-    function lift: m(rad), C2, periodic TAU;
+    function lift: m(rad), C1, periodic TAU;
     coord phi: rad = 0.1;
     body valve { mass: m, com: [0, lift(phi)] }
 }

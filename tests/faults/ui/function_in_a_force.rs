@@ -3,11 +3,11 @@ use mbs_runtime::{Function, Mechanism, Scalar, mechanism};
 
 mechanism! {
     pub mechanism Slider;
-    function push: N(m), C0;
+    function push: J(m), C0;
     function pull: N(m), C0;
     coord x: m = 0.1;
     body slider { mass: 2, com: [x, 0] }
-    force gas: push(x) on x;
+    potential gas = push(x);
     force hand: pull(t*1m/1s) on x;
 }
 

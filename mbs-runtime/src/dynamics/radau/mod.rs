@@ -77,6 +77,7 @@ impl Radau5 {
 
 impl FixedStep for Radau5 {
     const ORDER: u32 = 5;
+    const USES_SLOPES: bool = true;
 
     #[inline(never)]
     fn step<T: Scalar, E: Equation<T>>(
