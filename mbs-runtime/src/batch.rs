@@ -12,7 +12,7 @@ use standing::Standing;
 use crate::diagnosis::Statistics;
 use crate::kinematics::are_finite;
 use crate::lanes::LaneMask;
-use crate::path::{LARGEST_PIECE, largest_change};
+use crate::path::{LARGEST_PIECE, largest_change, put_short_way_round};
 use crate::trial::{Start, Trial, weights};
 use crate::turns::second;
 use crate::{Failure, Kinematic, Lanes, Mechanism, Phase, Real, Scalar, Stepper};
@@ -303,7 +303,11 @@ where
         } else {
             self.keep_solved();
         }
+        let before = (!S::TURNING_INPUTS.is_empty()).then(|| self.mechanism.values());
         let result = change(&mut self.mechanism);
+        if let Some(before) = before {
+            self.go_short_way_round(&before);
+        }
         self.parameters = self.mechanism.parameters();
         self.weights = weights(&self.mechanism.coordinate_scales(&self.parameters));
         // The steppers get theirs where they are needed.
@@ -312,6 +316,29 @@ where
         let change = largest_change(S::ANGLES, &self.solved, &self.mechanism.values());
         self.waits = self.waits | Lanes::constant(LARGEST_PIECE).less(change);
         result
+    }
+
+    /// Lets inputs that turn go the short way round from their values `before` a change, in each lane.
+    fn go_short_way_round(&mut self, before: &S::Values) {
+        let now = self.mechanism.values();
+        for index in S::TURNING_INPUTS.iter().map(|index| usize::from(*index)) {
+            let solved = self.solved.as_mut().get_mut(index);
+            let (Some(solved), Some(before), Some(now)) =
+                (solved, before.as_ref().get(index), now.as_ref().get(index))
+            else {
+                continue;
+            };
+            for (lane, stepper) in self.steppers.iter_mut().enumerate() {
+                let (from, to) = ([before.lane(lane)], [now.lane(lane)]);
+                if let Some(solved) = solved.0.get_mut(lane) {
+                    put_short_way_round(&[0], core::slice::from_mut(solved), &from, &to);
+                }
+                // That of a lane next to a singular position, which is led from farther away.
+                if let Some(kept) = stepper.anchor.values.as_mut().get_mut(index) {
+                    put_short_way_round(&[0], core::slice::from_mut(kept), &from, &to);
+                }
+            }
+        }
     }
 
     /// Takes parameters, inputs and phases of the lanes that were solved since they were changed last.

@@ -130,6 +130,9 @@ pub trait Mechanism<T: Scalar, const N: usize, const M: usize>: Clone {
     const VARIABLES: &'static [Entry];
     /// Indices of parameters and inputs that are angles, without their rates: what comes round again may have moved far.
     const ANGLES: &'static [u16] = &[];
+    /// Indices of inputs that the text declares as `turn`, without their rates: nothing changes with a whole turn of theirs, and they
+    /// change the short way round.
+    const TURNING_INPUTS: &'static [u16] = &[];
     /// What sets the reference length; see [`reference`](Self::reference).
     const REFERENCE: Reference = Reference::NONE;
     /// Branch conditions.

@@ -1,5 +1,7 @@
 //! Homotopy in time, inputs and parameters from the last regular position, in pieces so small that they keep the assembly.
 
+use core::f64::consts::TAU;
+
 use crate::kinematics::{branch_failure, largest_difference};
 use crate::{Kinematic, Margin, Real, Scalar};
 
@@ -100,6 +102,23 @@ pub(crate) fn largest_change<T: Scalar, V: AsRef<[T]>>(angles: &[u16], old: &V, 
     let pairs =
         angles.iter().filter_map(|index| old.get(usize::from(*index)).zip(new.get(usize::from(*index))));
     pairs.fold(T::constant(0.0), |largest, (old, new)| (*new - *old).abs().max(largest))
+}
+
+/// Puts those `kept` values that `turning` are the indices of on by as many whole turns as the short way from `before` to `now` goes
+/// round: the way of their numbers is then the short one. A value before that is no number counts as the kept one.
+pub(crate) fn put_short_way_round<R: Real>(turning: &[u16], kept: &mut [R], before: &[R], now: &[R]) {
+    for index in turning.iter().map(|index| usize::from(*index)) {
+        let (Some(kept), Some(before), Some(now)) = (kept.get_mut(index), before.get(index), now.get(index))
+        else {
+            continue;
+        };
+        let [old, from, to] = [*kept, *before, *now].map(R::to_f64);
+        let from = if from.is_finite() { from } else { old };
+        let turns = libm::rint((to - from) / TAU);
+        if turns.is_finite() && turns != 0.0 {
+            *kept = R::constant(old + turns * TAU);
+        }
+    }
 }
 
 /// A position as one before it foresees it.

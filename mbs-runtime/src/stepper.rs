@@ -9,7 +9,7 @@ use crate::kinematics::{
 };
 use crate::path::{
     Anchor, EVALUATIONS, Followed, LARGEST_PIECE, LEAST_EVALUATIONS, Prediction, Way, is_near,
-    largest_change, leads,
+    largest_change, leads, put_short_way_round,
 };
 use crate::trial::{Start, Trial, weights};
 use crate::turns::{Turns, within_a_turn};
@@ -345,13 +345,21 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
 
     /// Changes parameters or inputs. The state stands until the next advance solves with the new values.
     ///
+    /// An input that is declared as `turn` goes the short way round from its value before this change, whatever whole turns its
+    /// numbers count; half a turn goes the way of its numbers, as any change of other angles does.
+    ///
     /// A value that is NaN or infinite is reported by that advance; change it back, and go on.
     #[inline]
     pub fn change<X>(&mut self, change: impl FnOnce(&mut S) -> X) -> X {
         if !self.changed {
             self.keep();
         }
+        let before = (!S::TURNING_INPUTS.is_empty()).then(|| self.mechanism.values());
         let result = change(&mut self.mechanism);
+        if let Some(before) = before {
+            let (kept, now) = (self.anchor.values.as_mut(), self.mechanism.values());
+            put_short_way_round(S::TURNING_INPUTS, kept, before.as_ref(), now.as_ref());
+        }
         self.take_up();
         self.lead_far();
         result

@@ -54,6 +54,7 @@ impl<S: Kinematic<f64, N, M>, const N: usize, const M: usize> Mechanism<f64, N, 
     const SPARSITY: &'static [(u16, u16)] = S::SPARSITY;
     const VARIABLES: &'static [Entry] = S::VARIABLES;
     const ANGLES: &'static [u16] = S::ANGLES;
+    const TURNING_INPUTS: &'static [u16] = S::TURNING_INPUTS;
     const REFERENCE: Reference = S::REFERENCE;
     const BRANCHES: &'static [Entry] = S::BRANCHES;
     const BRANCHES_AT_START: &'static [bool] = S::BRANCHES_AT_START;

@@ -264,7 +264,9 @@ pub fn field_docs(field: &Field, model: &Model) -> Vec<String> {
     if !docs.is_empty() {
         docs.push(String::new());
     }
-    docs.push(format!(" {role} (`{}`){default}.", field.unit));
+    let turns = model.variables.get(field.first).is_some_and(|variable| variable.turns);
+    let way = if turns { ", the short way round" } else { "" };
+    docs.push(format!(" {role} (`{}`){default}{way}.", field.unit));
     docs
 }
 

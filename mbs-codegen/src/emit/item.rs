@@ -400,6 +400,7 @@ fn tables(text: &Text, scenes: &Scenes, scene: &Scene, bodies: &Bodies) -> Token
     let reference = reference(model, runtime);
     let variables = model.variables.iter().map(|v| entry(&v.name, &v.unit, v.span));
     let angles = angles(model);
+    let turning = turning_inputs(model);
     let branches = model.branches.iter().map(|b| entry(&b.name, &b.dimension.to_string(), b.span));
     let at_start = model.branches.iter().map(|branch| branch.at_start);
     let limits = model.limits.iter().map(|limit| entry(&limit.name, &limit.unit, limit.span));
@@ -421,6 +422,7 @@ fn tables(text: &Text, scenes: &Scenes, scene: &Scene, bodies: &Bodies) -> Token
         #reference
         const VARIABLES: &'static [#runtime::Entry] = &[#(#variables),*];
         #angles
+        #turning
         const BRANCHES: &'static [#runtime::Entry] = &[#(#branches),*];
         const BRANCHES_AT_START: &'static [::core::primitive::bool] = &[#(#at_start),*];
         const LIMITS: &'static [#runtime::Entry] = &[#(#limits),*];
@@ -442,6 +444,18 @@ fn angles(model: &Model) -> Option<TokenStream> {
         quote! {
             #[allow(clippy::zero_prefixed_literal, reason = "places in the text's order")]
             const ANGLES: &'static [::core::primitive::u16] = &[#(#indices),*];
+        }
+    })
+}
+
+/// `TURNING_INPUTS`, where an input is declared as `turn`.
+fn turning_inputs(model: &Model) -> Option<TokenStream> {
+    let all = model.variables.iter().enumerate().filter(|(_, variable)| variable.turns);
+    let indices: Vec<u16> = all.filter_map(|(index, _)| u16::try_from(index).ok()).collect();
+    (!indices.is_empty()).then(|| {
+        quote! {
+            #[allow(clippy::zero_prefixed_literal, reason = "places in the text's order")]
+            const TURNING_INPUTS: &'static [::core::primitive::u16] = &[#(#indices),*];
         }
     })
 }

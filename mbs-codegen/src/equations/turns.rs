@@ -1,4 +1,5 @@
-//! Coordinates that turn for days: that nothing changes with a whole turn of them, but for the phases that hold them.
+//! Coordinates that turn for days, and inputs that turn: that nothing changes with a whole turn of them, but for the phases that hold
+//! such a coordinate.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::TAU;
@@ -8,40 +9,57 @@ use proc_macro2::Span;
 use super::Equations;
 use crate::diagnostics::Diagnostics;
 use crate::model::expression::{self, Id};
-use crate::model::{Model, Row};
+use crate::model::{Model, Row, VariableKind};
 use crate::symbolic::{Binary, Leaf, Node, NodeId, Unary};
 
-/// Most coordinates whose turns one value may add up; of more it counts as changing otherwise, which keeps the work linear.
+/// Most angles whose turns one value may add up; of more it counts as changing otherwise, which keeps the work linear.
 const MOST_ADDED: usize = 8;
 
 /// A period in turns that is nearer to a whole number than this, in roundings of the quotient, is one.
 const WHOLE: f64 = 4.0 * f64::EPSILON;
 
-/// What whole turns of the coordinates do to a value.
+/// An angle that the text declares as `turn`, by its index.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Angle {
+    Coordinate(usize),
+    /// Among the variables.
+    Input(usize),
+}
+
+/// What whole turns of these angles do to a value.
 #[derive(Clone, Debug, PartialEq)]
 enum Shift {
-    /// It changes by so many turns with each turn of a coordinate; nothing where none is named.
-    Turns(BTreeMap<usize, f64>),
-    /// It changes otherwise with a turn of this coordinate.
-    Otherwise(usize),
+    /// It changes by so many turns with each turn of an angle; nothing where none is named.
+    Turns(BTreeMap<Angle, f64>),
+    /// It changes otherwise with a turn of this angle.
+    Otherwise(Angle),
 }
 
 impl Shift {
     const NONE: Shift = Shift::Turns(BTreeMap::new());
 
-    /// A coordinate with whose turns the value changes.
-    fn coordinate(&self) -> Option<usize> {
+    /// Of the angle itself.
+    fn turn_of(angle: Angle) -> Shift {
+        Shift::Turns(BTreeMap::from([(angle, 1.0)]))
+    }
+
+    /// An angle with whose turns the value changes.
+    fn angle(&self) -> Option<Angle> {
         match self {
             Shift::Turns(turns) => turns.keys().next().copied(),
-            Shift::Otherwise(coordinate) => Some(*coordinate),
+            Shift::Otherwise(angle) => Some(*angle),
         }
     }
 
-    /// A coordinate with which the value changes by other than whole turns.
-    fn broken(&self) -> Option<usize> {
+    /// An angle with which the value changes by other than what its phase is turned back by: whole turns of a coordinate.
+    fn broken(&self) -> Option<Angle> {
+        let is_held =
+            |angle: &Angle, count: &f64| matches!(angle, Angle::Coordinate(_)) && count.fract() == 0.0;
         match self {
-            Shift::Turns(turns) => turns.iter().find(|(_, count)| count.fract() != 0.0).map(|(c, _)| *c),
-            Shift::Otherwise(coordinate) => Some(*coordinate),
+            Shift::Turns(turns) => {
+                turns.iter().find(|(angle, count)| !is_held(angle, count)).map(|(angle, _)| *angle)
+            }
+            Shift::Otherwise(angle) => Some(*angle),
         }
     }
 
@@ -52,8 +70,8 @@ impl Shift {
             return either.cloned().unwrap_or(Shift::NONE);
         };
         let mut turns = left.clone();
-        for (coordinate, count) in right {
-            *turns.entry(*coordinate).or_insert(0.0) += sign * count;
+        for (angle, count) in right {
+            *turns.entry(*angle).or_insert(0.0) += sign * count;
         }
         turns.retain(|_, count| *count != 0.0);
         match turns.keys().next() {
@@ -73,8 +91,8 @@ impl Shift {
 
     /// Of a function that depends on the values: it stays where they stay.
     fn of_any(values: &[&Shift]) -> Shift {
-        match values.iter().find_map(|shift| shift.coordinate()) {
-            Some(coordinate) => Shift::Otherwise(coordinate),
+        match values.iter().find_map(|shift| shift.angle()) {
+            Some(angle) => Shift::Otherwise(angle),
             None => Shift::NONE,
         }
     }
@@ -106,50 +124,53 @@ pub fn turning(model: &Model, equations: &Equations) -> Vec<Turning> {
         coordinates(model).map(|c| (c, Vec::new())).collect();
     for (index, phase) in equations.phases.iter().enumerate() {
         if let Some(Shift::Turns(turns)) = shifts.get(&phase.argument) {
-            for (coordinate, count) in turns {
-                turning.entry(*coordinate).or_default().push((index, *count as i64));
+            for (angle, count) in turns {
+                if let Angle::Coordinate(coordinate) = angle {
+                    turning.entry(*coordinate).or_default().push((index, *count as i64));
+                }
             }
         }
     }
     turning.into_iter().map(|(coordinate, phases)| Turning { coordinate, phases }).collect()
 }
 
-/// Before: the equations of a model. After: rows, branches and limits that change with a whole turn of a coordinate that turns
-/// are reported, and what depends on the time beside one.
+/// Before: the equations of a model. After: rows, prescribed rates, branches and limits that change with a whole turn of an angle
+/// declared as `turn` are reported, and what depends on the time beside such a coordinate.
 pub fn check(model: &Model, equations: &Equations, diagnostics: &mut Diagnostics) {
-    let Some(first) = coordinates(model).next() else { return };
     let shifts = shifts(model, equations);
     let none = Shift::NONE;
     let mut reported = BTreeSet::new();
     let shift = |id: NodeId| shifts.get(&id).unwrap_or(&none);
     for (row, derived) in model.rows.iter().zip(&equations.rows) {
         let change = shift(derived.phi);
-        let wrong = if holds_a_phase(model, row) { change.broken() } else { change.coordinate() };
-        if let Some(coordinate) = wrong {
-            let cure = match row.driven {
-                true => format!("prescribe a rate, `drive {}: rate({{}}) == …;`", row.name),
-                false => CURE.to_owned(),
+        let wrong = if holds_a_phase(model, row) { change.broken() } else { change.angle() };
+        if let Some(angle) = wrong {
+            let cure = match (row.driven, angle) {
+                (true, Angle::Coordinate(_)) => {
+                    format!("prescribe a rate, `drive {}: rate({{}}) == …;`", row.name)
+                }
+                _ => CURE.to_owned(),
             };
-            changes(model, coordinate, (&format!("row `{}`", row.name), row.span), &cure, diagnostics);
+            changes(model, angle, (&format!("row `{}`", row.name), row.span), &cure, diagnostics);
             reported.insert(derived.phi);
         }
     }
     for (branch, value) in model.branches.iter().zip(&equations.branches) {
-        if let Some(coordinate) = shift(*value).coordinate() {
-            changes(
-                model,
-                coordinate,
-                (&format!("branch `{}`", branch.name), branch.span),
-                CURE,
-                diagnostics,
-            );
+        if let Some(angle) = shift(*value).angle() {
+            changes(model, angle, (&format!("branch `{}`", branch.name), branch.span), CURE, diagnostics);
         }
     }
     for (limit, values) in model.limits.iter().zip(&equations.limits) {
-        if let Some(coordinate) = values.iter().find_map(|value| shift(*value).coordinate()) {
-            changes(model, coordinate, (&format!("limit `{}`", limit.name), limit.span), CURE, diagnostics);
+        if let Some(angle) = values.iter().find_map(|value| shift(*value).angle()) {
+            changes(model, angle, (&format!("limit `{}`", limit.name), limit.span), CURE, diagnostics);
         }
     }
+    for (what, root, span) in speeds(model, equations) {
+        if let Some(angle @ Angle::Input(_)) = shift(root).angle() {
+            changes(model, angle, (&what, span), CURE, diagnostics);
+        }
+    }
+    let Some(first) = coordinates(model).next() else { return };
     let roots: Vec<(String, NodeId, Span)> = roots(model, equations).collect();
     let timed = timed(equations, roots.iter().map(|(_, root, _)| *root));
     for (what, root, span) in roots {
@@ -170,19 +191,31 @@ pub fn check(model: &Model, equations: &Equations, diagnostics: &mut Diagnostics
 const CURE: &str =
     "write `{}` within `sin`, `cos`, `unit`, `rot` or a function of period TAU, times a whole number";
 
-/// Reports what changes with a turn of a coordinate; `{}` in the cure is its name.
+/// Reports what changes with a turn of an angle; `{}` in the cure is its name.
 fn changes(
     model: &Model,
-    coordinate: usize,
+    angle: Angle,
     (what, span): (&str, Span),
     cure: &str,
     diagnostics: &mut Diagnostics,
 ) {
-    let name = model.coordinates.get(coordinate).map_or("", |coordinate| coordinate.name.as_str());
+    let (name, other) = match angle {
+        Angle::Coordinate(index) => {
+            let name = model.coordinates.get(index).map_or("", |coordinate| coordinate.name.as_str());
+            (name, format!("coord {name}: rad"))
+        }
+        Angle::Input(index) => {
+            let variable = model.variables.get(index);
+            let name = variable.map_or("", |variable| variable.name.as_str());
+            let rated = variable.is_some_and(|variable| variable.kind == VariableKind::InputWithRates);
+            let rates = if rated { ", rates" } else { "" };
+            (name, format!("input {}: rad{rates}", name.split('.').next().unwrap_or(name)))
+        }
+    };
     diagnostics.report(
         span,
         format!("{what} changes with a whole turn of `{name}`, which is declared as `turn`"),
-        format!("{}, or declare `coord {name}: rad`", cure.replace("{}", name)),
+        format!("{}, or declare `{other}`", cure.replace("{}", name)),
     );
 }
 
@@ -209,17 +242,24 @@ fn roots<'a>(
 ) -> impl Iterator<Item = (String, NodeId, Span)> + 'a {
     let rows = model.rows.iter().zip(&equations.rows);
     let rows = rows.map(|(row, derived)| (format!("row `{}`", row.name), derived.phi, row.span));
-    let speeds = model.phases.iter().zip(&equations.phases).filter_map(|(phase, derived)| {
-        let variable = model.variables.get(phase.variable)?;
-        Some((format!("the rate that moves `{}`", variable.name), derived.speed, variable.span))
-    });
     let branches = model.branches.iter().zip(&equations.branches);
     let branches = branches.map(|(branch, value)| (format!("branch `{}`", branch.name), *value, branch.span));
     let limits = model.limits.iter().zip(&equations.limits);
     let limits = limits.map(|(limit, [_, value, _])| (format!("limit `{}`", limit.name), *value, limit.span));
     let outputs = model.outputs.iter().zip(&equations.outputs);
     let outputs = outputs.map(|(out, derived)| (format!("output `{}`", out.name), derived.value, out.span));
-    rows.chain(speeds).chain(branches).chain(limits).chain(outputs)
+    rows.chain(speeds(model, equations)).chain(branches).chain(limits).chain(outputs)
+}
+
+/// The prescribed rates of phases, with names and places.
+fn speeds<'a>(
+    model: &'a Model,
+    equations: &'a Equations,
+) -> impl Iterator<Item = (String, NodeId, Span)> + 'a {
+    model.phases.iter().zip(&equations.phases).filter_map(|(phase, derived)| {
+        let variable = model.variables.get(phase.variable)?;
+        Some((format!("the rate that moves `{}`", variable.name), derived.speed, variable.span))
+    })
 }
 
 /// What depends on the time among `roots` and all that they are made of.
@@ -239,13 +279,13 @@ fn timed(equations: &Equations, roots: impl Iterator<Item = NodeId>) -> BTreeSet
 /// What turns do to each value below rows, branches, limits and driven arguments, as far as they do anything.
 fn shifts(model: &Model, equations: &Equations) -> BTreeMap<NodeId, Shift> {
     let mut shifts: BTreeMap<NodeId, Shift> = BTreeMap::new();
-    if coordinates(model).next().is_none() {
+    if coordinates(model).next().is_none() && !model.variables.iter().any(|variable| variable.turns) {
         return shifts;
     }
     let rows = equations.rows.iter().map(|row| row.phi);
     let others = equations.branches.iter().copied().chain(equations.limits.iter().flatten().copied());
-    let arguments = equations.phases.iter().map(|phase| phase.argument);
-    for id in equations.graph.reachable(rows.chain(others).chain(arguments)) {
+    let phases = equations.phases.iter().flat_map(|phase| [phase.argument, phase.speed]);
+    for id in equations.graph.reachable(rows.chain(others).chain(phases)) {
         let shift = of_node(equations.graph.node(id), model, equations, &shifts);
         if shift != Shift::NONE {
             shifts.insert(id, shift);
@@ -262,7 +302,12 @@ fn of_node(node: Node, model: &Model, equations: &Equations, known: &BTreeMap<No
         Node::Leaf(Leaf::Position(index)) => {
             let index = index as usize;
             let turns = model.coordinates.get(index).is_some_and(|coordinate| coordinate.turns);
-            if turns { Shift::Turns(BTreeMap::from([(index, 1.0)])) } else { Shift::NONE }
+            if turns { Shift::turn_of(Angle::Coordinate(index)) } else { Shift::NONE }
+        }
+        Node::Leaf(Leaf::Input(index)) => {
+            let index = index as usize;
+            let turns = model.variables.get(index).is_some_and(|variable| variable.turns);
+            if turns { Shift::turn_of(Angle::Input(index)) } else { Shift::NONE }
         }
         Node::Constant(_) | Node::Leaf(_) => Shift::NONE,
         Node::Unary(Unary::Negate, a) => of(a).times(-1.0),

@@ -282,6 +282,8 @@ impl Declarations<'_> {
     }
 
     fn input(&mut self, name: &Name, docs: Vec<String>, kind: &Type, rates: bool) {
+        let (kind, turns) = turning(kind);
+        let kind = kind.as_ref();
         let declared = self.declared(kind);
         if !self.owns(name) {
             return;
@@ -302,9 +304,15 @@ impl Declarations<'_> {
                     unit: format!("{}/s{}", kind.unit.text, if order == 1 { "" } else { "^2" }),
                     dimension: dimension.over(seconds),
                     default: 0.0,
+                    turns: false,
                     kind: VariableKind::InputRate,
                     span: name.span,
                 });
+            }
+        }
+        for item in &items {
+            if let Some(variable) = self.model.variables.get_mut(*item) {
+                variable.turns = turns;
             }
         }
         let role = if rates { Role::InputWithRates } else { Role::Input };
@@ -325,6 +333,7 @@ impl Declarations<'_> {
             unit: kind.unit.text.clone(),
             dimension,
             default,
+            turns: false,
             kind: what,
             span: name.span,
         });

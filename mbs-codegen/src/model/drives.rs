@@ -104,6 +104,7 @@ impl Resolver<'_> {
                 unit: format!("{unit}{per}"),
                 dimension: dimension.over(seconds),
                 default: 0.0,
+                turns: false,
                 kind: if order == 0 { VariableKind::InputWithRates } else { VariableKind::InputRate },
                 span: name.span,
             });

@@ -23,9 +23,11 @@ pub fn check(model: &Model, diagnostics: &mut Diagnostics) {
         };
         let name = &field.name.text;
         let lengths = field.shape.iter().map(usize::to_string).collect::<Vec<_>>().join(", ");
+        let turns = model.variables.get(field.first).is_some_and(|variable| variable.turns);
+        let unit = if turns { "turn" } else { &field.unit };
         let kind = match field.shape.as_slice() {
-            [] => field.unit.clone(),
-            _ => format!("[{}; {lengths}]", field.unit),
+            [] => unit.to_owned(),
+            _ => format!("[{unit}; {lengths}]"),
         };
         diagnostics.report(
             field.name.span,

@@ -259,6 +259,8 @@ pub struct Variable {
     pub dimension: Dimension,
     /// Default value; 0 for inputs.
     pub default: f64,
+    /// Whether the text declares it as `turn`: an input whose changes go the short way round.
+    pub turns: bool,
     /// What it is.
     pub kind: VariableKind,
     /// The declaring token.

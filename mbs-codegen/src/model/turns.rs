@@ -1,10 +1,10 @@
-//! Coordinates that turn for days, `coord phi: turn;`: angles whose whole turns are kept apart.
+//! Angles declared as `turn`: coordinates whose whole turns are kept apart, inputs that change the short way round.
 
 use std::borrow::Cow;
 
 use crate::syntax::ast::{Name, Type, Unit};
 
-/// Before: the type of a coordinate as written. After: its type, an angle where it is declared as `turn`, and whether it is.
+/// Before: the type of a coordinate or an input as written. After: its type, an angle where it is declared as `turn`, and whether it is.
 pub(super) fn turning(kind: &Type) -> (Cow<'_, Type>, bool) {
     if kind.unit.text != "turn" {
         return (Cow::Borrowed(kind), false);

@@ -1,6 +1,8 @@
 //! The four-bar in every kind of coordinates, its crank driven in every way.
 
-use mbs_runtime::{Function, Kinematic, Scalar, Signal, mechanism};
+use core::f64::consts::TAU;
+
+use mbs_runtime::{Function, Kinematic, Real, Scalar, Signal, mechanism};
 
 use super::Linkage;
 
@@ -51,6 +53,19 @@ linkage!(AnglesByInputInARow {
     coord p2: rad = 0.5;
     coord p3: rad = 0.5;
     constraint closure { a*unit(theta) + b*unit(p2) == [d, 0] + c*unit(p3); }
+});
+linkage!(AnglesByTurnInARow {
+    input theta: turn, rates;
+    coord p2: rad = 0.5;
+    coord p3: rad = 0.5;
+    constraint closure { a*unit(theta) + b*unit(p2) == [d, 0] + c*unit(p3); }
+});
+linkage!(NaturalByTurn {
+    input theta: turn, rates;
+    coord A: [m; 2] = [0.5, 0.5];
+    coord B: [m; 2] = [0.5, 0.5];
+    constraint crank { A == a*unit(theta); }
+    constraint bars { norm(B - A) == b; norm(B - [d, 0]) == c; }
 });
 linkage!(AnglesBySine {
     input theta: rad, rates;
@@ -211,6 +226,14 @@ fn signal<T: Scalar>(value: T, rate: T) -> Signal<T> {
     Signal { value, rate, acceleration: T::constant(0.0) }
 }
 
+/// What an encoder shows of an angle: from −π to π.
+fn within_a_turn<T: Scalar>(theta: T) -> T {
+    T::from_lanes(|lane| {
+        let angle = theta.lane(lane).to_f64();
+        T::Real::constant(angle - TAU * (angle / TAU).round())
+    })
+}
+
 /// Direction (rad) of a vector.
 fn angle(from: [f64; 2], to: [f64; 2]) -> f64 {
     (to[1] - from[1]).atan2(to[0] - from[0])
@@ -275,6 +298,22 @@ case!(
     |crank, theta, rate| crank.theta = signal(theta, rate),
     |l, theta, tip, b| bars(l, tip, b),
     |l, q| rocker(l, q[1])
+);
+case!(
+    AnglesByTurnInARow,
+    2,
+    By::Input,
+    |crank, theta, rate| crank.theta = signal(within_a_turn(theta), rate),
+    |l, theta, tip, b| bars(l, tip, b),
+    |l, q| rocker(l, q[1])
+);
+case!(
+    NaturalByTurn,
+    4,
+    By::Input,
+    |crank, theta, rate| crank.theta = signal(within_a_turn(theta), rate),
+    |_l, theta, tip, b| [tip[0], tip[1], b[0], b[1]],
+    |_l, q| [q[2], q[3]]
 );
 case!(
     AnglesBySine,

@@ -1,0 +1,179 @@
+//! K1: an encoder that wraps from π to −π drove its crank all the way back, over the change points there.
+
+use core::f64::consts::{PI, TAU};
+
+use mbs_runtime::{Batch, Lanes, Real, Signal, Stepper, mechanism};
+
+use crate::linkages::follow::*;
+use crate::linkages::texts::*;
+use crate::linkages::*;
+
+/// Such angles (rad) with each one on the short way from the one before.
+fn the_short_way(angles: &[f64]) -> Vec<f64> {
+    let mut all = vec![angles[0]];
+    for angle in &angles[1..] {
+        let last = all[all.len() - 1];
+        all.push(last + (angle - last) - TAU * ((angle - last) / TAU).round());
+    }
+    all
+}
+
+/// Every motion of every linkage in steps that wrap many times.
+fn wrapped<S: Case<R, N> + Copy, R: Real, const N: usize>(mechanism: S) -> Tally {
+    let mut sum = Tally::default();
+    let mut random = Random(7);
+    for linkage in LINKAGES {
+        for motion in MOTIONS {
+            for step in [0.01, 0.1, 0.3, 1.0, 3.0] {
+                for (side, rates) in [(1.0, Rates::Differences), (-1.0, Rates::Zero)] {
+                    // Numbers of seven digits tell positions apart for some turns.
+                    let turns = if R::EPSILON.to_f64() > 1e-10 { 2.0 } else { 1e3 };
+                    let count = if step < 0.02 { 300 } else { 60.min((turns * TAU / step) as usize + 2) };
+                    let angles = the_short_way(&samples(motion, &linkage, step, count, &mut random));
+                    let tally = follow::<S, R, N>(mechanism, &linkage, &angles, side, rates, Steps::Advance);
+                    if tally.wrong + tally.off + tally.refused > 0 {
+                        println!("  {} {motion:?} {step} {rates:?} {side}: {tally:?}", linkage.name);
+                    }
+                    sum = sum.and(tally);
+                }
+            }
+        }
+    }
+    sum
+}
+
+/// Jumps of up to 6 rad either way, from and to anywhere.
+fn jumped<S: Case<R, N> + Copy, R: Real, const N: usize>(mechanism: S) -> Tally {
+    let mut sum = Tally::default();
+    let mut random = Random(11);
+    for linkage in LINKAGES {
+        for side in [1.0, -1.0] {
+            let start = linkage.centres.first().unwrap_or(&1.0) + 1.3;
+            let mut angles = vec![start];
+            for _ in 0..100 {
+                angles.push(angles[angles.len() - 1] + random.between(-6.0, 6.0));
+            }
+            let angles = the_short_way(&angles);
+            sum = sum.and(follow::<S, R, N>(mechanism, &linkage, &angles, side, Rates::Zero, Steps::Advance));
+        }
+    }
+    sum
+}
+
+fn is_kept(tally: Tally) {
+    println!("{tally:?}");
+    assert!(tally.passages > 100, "{tally:?}");
+    assert_eq!((tally.wrong, tally.off, tally.refused), (0, 0, 0), "{tally:?}");
+}
+
+#[test]
+fn an_encoder_that_wraps_next_to_a_change_point_keeps_the_assembly() {
+    is_kept(wrapped::<_, f64, 2>(AnglesByTurnInARow::default()));
+    is_kept(wrapped::<_, f64, 4>(NaturalByTurn::default()));
+}
+
+#[test]
+fn an_encoder_that_wraps_keeps_the_assembly_in_single_precision() {
+    for tally in
+        [wrapped::<_, f32, 2>(AnglesByTurnInARow::default()), wrapped::<_, f32, 4>(NaturalByTurn::default())]
+    {
+        println!("{tally:?}");
+        assert!(tally.passages > 100, "{tally:?}");
+        assert_eq!((tally.wrong, tally.off), (0, 0), "{tally:?}");
+    }
+}
+
+#[test]
+fn jumps_of_an_input_that_turns_go_the_short_way_round() {
+    is_kept(jumped::<_, f64, 2>(AnglesByTurnInARow::default()));
+    is_kept(jumped::<_, f64, 4>(NaturalByTurn::default()));
+}
+
+#[test]
+fn encoders_that_wrap_in_lanes_keep_their_assemblies() {
+    let mut random = Random(13);
+    let mut sum = Tally::default();
+    for linkage in LINKAGES {
+        for motion in MOTIONS {
+            for step in [0.03, 0.3, 3.0] {
+                let mut run = |side| (the_short_way(&samples(motion, &linkage, step, 60, &mut random)), side);
+                let runs = [run(1.0), run(-1.0), run(1.0), run(-1.0)];
+                let mechanism = AnglesByTurnInARow::<Lanes<f64, 4>>::default();
+                sum = sum.and(follow_in_lanes::<_, f64, 2>(mechanism, &linkage, &runs, Rates::Differences));
+            }
+        }
+    }
+    assert_eq!((sum.wrong, sum.off, sum.refused), (0, 0, 0), "{sum:?}");
+}
+
+mechanism! {
+    /// Two cranks, and two rods from their tips to one point.
+    pub mechanism TwoCranks;
+    input alpha: turn, rates;
+    input beta: turn, rates;
+    coord B: [m; 2] = [1, 0.7];
+    constraint rods { norm(B - 1m*unit(alpha)) == 1.2m; norm(B - [2m, 0] - 1m*unit(beta)) == 1.2m; }
+}
+
+/// Cranks at such angles (rad).
+fn turned(value: f64) -> Signal<f64> {
+    Signal { value, ..Signal::default() }
+}
+
+/// The point where both cranks stand at `angle` (rad): the rods are 2 m apart there.
+fn above(angle: f64) -> [f64; 2] {
+    [1.0 + angle.cos(), 0.44_f64.sqrt() + angle.sin()]
+}
+
+#[test]
+fn two_inputs_at_once_go_straight_through_their_wraps() {
+    for (from, to) in [(3.0, 5.5 - TAU), (-2.0, 2.0), (0.2, 2.9), (PI - 1e-3, 1e-2 - PI)] {
+        let mechanism = TwoCranks { alpha: turned(from), beta: turned(from) };
+        let stepper: Stepper<_, f64, 2> = Stepper::assemble(mechanism, above(from), 0.0).unwrap();
+        let mut both = stepper;
+        both.change(|cranks| (cranks.alpha.value, cranks.beta.value) = (to, to));
+        both.advance(1e-3).unwrap();
+        assert!(distance(*both.q(), above(to)) < 1e-12, "{from} {to}");
+        // Whatever whole turns the numbers count.
+        let mut counted = stepper;
+        counted.change(|cranks| (cranks.alpha.value, cranks.beta.value) = (to + 3.0 * TAU, to - 2.0 * TAU));
+        counted.advance(1e-3).unwrap();
+        assert!(distance(*counted.q(), above(to)) < 1e-12, "{from} {to}");
+    }
+    // One after the other they come too far apart, which the way notices though its end does not.
+    let mechanism = TwoCranks { alpha: turned(0.2), beta: turned(0.2) };
+    let mut one: Stepper<_, f64, 2> = Stepper::assemble(mechanism, above(0.2), 0.0).unwrap();
+    one.change(|cranks| cranks.alpha.value = 2.9);
+    assert!(one.advance(1e-3).is_err());
+    one.change(|cranks| cranks.beta.value = 2.9);
+    one.advance(1e-3).unwrap();
+    assert!(distance(*one.q(), above(2.9)) < 1e-12);
+}
+
+#[test]
+fn changes_that_wait_for_a_step_add_up_in_lanes_too() {
+    let start = 3.0;
+    let mechanism = TwoCranks { alpha: turned(start), beta: turned(start) };
+    let mut stepper: Stepper<_, f64, 2> = Stepper::assemble(mechanism, above(start), 0.0).unwrap();
+    let lanes = TwoCranks::<Lanes<f64, 2>> {
+        alpha: Signal { value: Lanes([start; 2]), ..Signal::default() },
+        beta: Signal { value: Lanes([start; 2]), ..Signal::default() },
+    };
+    let mut batch: Batch<_, f64, 2, 2> = Batch::assemble(lanes, &[above(start); 2], [0.0; 2]).unwrap();
+    // No number on the way, and back: 3 rad, −2 rad the short way, then on to 0.5 rad.
+    for angle in [-2.0, f64::NAN, 0.5] {
+        stepper.change(|cranks| (cranks.alpha.value, cranks.beta.value) = (angle, angle));
+        batch.change(|cranks| {
+            (cranks.alpha.value, cranks.beta.value) = (Lanes([angle; 2]), Lanes([angle; 2]));
+        });
+        if angle.is_nan() {
+            assert!(stepper.advance(1e-3).is_err());
+        }
+    }
+    stepper.advance(1e-3).unwrap();
+    assert!(distance(*stepper.q(), above(0.5)) < 1e-12);
+    for (lane, step) in batch.advance_to([1e-3; 2]).into_iter().enumerate() {
+        step.unwrap();
+        assert!(distance(batch.q().map(|q| q.0[lane]), above(0.5)) < 1e-12);
+    }
+}
