@@ -44,18 +44,24 @@ impl<R: Real, const M: usize> Determinacy<R, M> {
         t: R,
     ) -> Result<Self, Failure> {
         let metric = Metric::next_to(mechanism, parameters, t, &mechanism.guess(parameters));
-        Self::measured(mechanism, parameters, position, (t, &metric))
+        Self::measured(mechanism, parameters, position, (t, &metric), None)
     }
 
-    /// That of a position in a known metric.
+    /// That of a position in a known metric; of rows that the position holds more weakly than `weakest`, where it is given, multipliers
+    /// are not defined.
     pub(super) fn measured<S: Mechanism<R, N, M>, const N: usize>(
         mechanism: &S,
         parameters: &S::Parameters,
         position: &S::Position,
         (t, metric): (R, &Metric<R, N, M>),
+        weakest: Option<R>,
     ) -> Result<Self, Failure> {
         let phi_q = mechanism.phi_q(parameters, position);
-        let factors = System::new(&metric.mass(), &phi_q, metric).factorize(S::COORDINATES, t)?;
+        let system = System::new(&metric.mass(), &phi_q, metric);
+        let factors = match weakest {
+            Some(weakest) => system.factorize_rank_revealing(weakest, S::COORDINATES, t)?,
+            None => system.factorize(S::COORDINATES, t)?,
+        };
         Ok(Self::by(&factors, S::ROWS, S::REDUNDANT))
     }
 

@@ -126,6 +126,32 @@ impl<R: Real, const N: usize, const M: usize> System<R, N, M> {
         self.phi_q.iter().position(|row| row.iter().all(|entry| entry.abs() < least))
     }
 
+    /// The combination of rows of the metric with `shares` (M): N.
+    pub(super) fn combined(&self, shares: &[R; M]) -> [R; N] {
+        let mut sum = [R::constant(0.0); N];
+        for (row, share) in self.phi_q.iter().zip(shares) {
+            sum.iter_mut().zip(row).for_each(|(sum, entry)| *sum = *sum + *share * *entry);
+        }
+        sum
+    }
+
+    /// `shares` (M) of rows of the metric as factors of the rows themselves: M.
+    pub(super) fn multipliers(&self, shares: &[R; M]) -> [R; M] {
+        let mut multipliers = *shares;
+        multipliers.iter_mut().zip(&self.metric.rows).for_each(|(share, scale)| *share = *share / *scale);
+        multipliers
+    }
+
+    /// What rows of the metric are the rows over: M.
+    pub(super) fn row_scales(&self) -> &[R; M] {
+        &self.metric.rows
+    }
+
+    /// What coordinates of the metric are the coordinates over: N.
+    pub(super) fn coordinate_scales(&self) -> &[R; N] {
+        &self.metric.coordinates
+    }
+
     fn null_space(
         &self,
         truncation: R,
@@ -200,6 +226,15 @@ impl<R: Real, const N: usize, const M: usize> Factors<R, N, M> {
             }
         }
         motions
+    }
+
+    /// The part of `x` (N) of the metric that the rows leave free, in other axes of the same lengths and angles. Of a rank-revealing
+    /// factorization; of another none.
+    pub(super) fn free_part(&self, x: &[R; N]) -> [R; N] {
+        match &self.kind {
+            Kind::NullSpace(null_space) => null_space.free_part(x),
+            _ => [R::constant(0.0); N],
+        }
     }
 
     /// How near Φ_q is to losing rank: about its smallest over its largest singular value in the metric; of rows that

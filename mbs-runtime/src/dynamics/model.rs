@@ -45,7 +45,7 @@ pub struct Counts {
     pub handed_over: u64,
     /// Stages that were put onto the constraints before they were evaluated.
     pub projected_stages: u64,
-    /// Of the evaluations, those next to a singular position, for accelerations that were taken from both sides of it.
+    /// Of the evaluations, those next to a singular position, whose rows lose their hold there.
     pub singular: u64,
     /// Corrections of positions and velocities by a projection.
     pub corrections: u64,

@@ -1,11 +1,12 @@
 //! A mechanism as an ordinary differential equation, and the explicit methods that integrate it.
 
-use super::adaptive::Point;
-use super::both_sides::ZONE;
+use super::adaptive::{Adaptive, Point};
+use super::embedded::Embedded;
 use super::equation::{Collocated, Collocation, Equation, Measured};
 use super::event::{Dense, Scrutiny};
 use super::explicit::FixedStep;
 use super::implicit::require_slopes;
+use super::limit_rows::ZONE;
 use super::metric::{Tolerance, worse};
 use super::model::{Counts, Doubt, Formulation, Model, Solved};
 use super::passage::Passage;
@@ -17,6 +18,9 @@ use crate::{Dynamic, Entry, Failure, Mechanism, Real};
 /// Least motion of a step in the zone of a singular position, in the reference metric: smaller ones resolve how rods that
 /// differ by 1e-14 turn aside there, which rounding decides.
 const LEAST_MOTION: f64 = 1e-7;
+
+/// First step, of the way to an instant that the polynomial of a step does not lead to.
+const SHOWN_SHARE: f64 = 0.25;
 
 /// One instant of a motion: state, accelerations, multipliers.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -322,12 +326,35 @@ where
     /// smaller for it.
     pub(super) fn apart<X>(&mut self, look: impl FnOnce(&mut Self) -> X) -> X {
         let (counts, lambda, fixed) = (self.counts, self.lambda, self.fixed);
+        let (end, passage) = (self.end, self.passage);
         self.fixed = true;
         let found = look(self);
-        self.fixed = fixed;
+        (self.fixed, self.end, self.passage) = (fixed, end, passage);
         let shown = counts.shown + self.counts.evaluations.wrapping_sub(counts.evaluations);
         (self.counts, self.lambda) = (Counts { shown, ..counts }, lambda);
         found
+    }
+
+    /// [`settle_and_solve`](Self::settle_and_solve) of a state on the polynomial of a step from `from`, or of the one that smaller steps
+    /// lead to where that is too far beside the constraints to be put onto them.
+    pub(super) fn shown<I: Embedded>(
+        &mut self,
+        t: R,
+        from: &Point<R, Moving<S, R, N, M>>,
+        y: &mut Moving<S, R, N, M>,
+    ) -> Result<Solved<R, N, M, S::States>, Failure> {
+        let before = *y;
+        let failure = match self.settle_and_solve(t, y) {
+            Err(failure) if from.t < t => failure,
+            settled => return settled,
+        };
+        self.fixed = false;
+        let first = R::constant(SHOWN_SHARE) * (t - from.t);
+        let mut steps = Adaptive::default().with_first(first);
+        let run = steps.run::<I, _>(self, *from, t, |_| None, |_, _| Ok(true));
+        self.fixed = true;
+        *y = run.map_err(|_| failure).map_or(before, |point| point.y);
+        self.settle_and_solve(t, y)
     }
 
     /// Takes an instant between the ends of steps for where a singular position may be passed.

@@ -193,6 +193,14 @@ impl<R: Real, const N: usize, const M: usize> NullSpace<R, N, M> {
         self.left.iter().take(self.rank).for_each(|reflection| reflection.apply(x));
     }
 
+    /// Qᵀ x from the rank on.
+    pub(super) fn free_part(&self, x: &[R; N]) -> [R; N] {
+        let mut free = *x;
+        self.transposed(&mut free);
+        free.iter_mut().take(self.rank).for_each(|component| *component = R::constant(0.0));
+        free
+    }
+
     /// Solves for `f` (N) and `g` (M).
     pub(super) fn solve(&self, f: &[R; N], g: &[R; M]) -> ([R; N], [R; M]) {
         let mut x = self.determined(g);

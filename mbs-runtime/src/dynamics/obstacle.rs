@@ -1,7 +1,7 @@
 //! What stands in the way of a motion that no step leads on, as far as its state shows it.
 
-use super::both_sides::ZONE;
 use super::kkt::{System, truncation};
+use super::limit_rows::ZONE;
 use super::model::Model;
 use super::vector::State;
 use crate::{Dynamic, Failure, Real, kinematics};
@@ -9,6 +9,9 @@ use crate::{Dynamic, Failure, Real, kinematics};
 /// Largest entry of a row of Φ_q, in √ε of what it is a thousandth of a reference length aside, that is none: a row that is flat at a
 /// place holds it to the root of the 64 ε that its residual may have, and its entries there are 360 √ε of those aside.
 const FLAT: f64 = 512.0;
+
+/// Rate at which a row takes hold, of that of the motion.
+const TAKES_HOLD: f64 = 1e-6;
 
 /// Largest entry of a row of Φ_q, in ε of what it is a thousandth of a reference length aside, that is none where a run starts: what
 /// rounding leaves of two points in one place, 64 ε, a thousand times.
@@ -37,7 +40,8 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
             return None;
         }
         let system = System::new(&mass, &phi_q, self.metric);
-        if let Some(index) = system.flat_row(R::constant(FLAT) * R::EPSILON.sqrt()) {
+        let flat = system.flat_row(R::constant(FLAT) * R::EPSILON.sqrt());
+        if let Some(index) = flat.filter(|index| !self.takes_hold(&position, y, *index)) {
             let row = kinematics::entry(S::ROWS, u16::try_from(index).unwrap_or(u16::MAX));
             return Some(Failure::Flat { row, time: t.to_f64() });
         }
@@ -49,6 +53,19 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
             return Some(Failure::Undecided { margin: margin.to_f64(), time: t.to_f64() });
         }
         system.require_inertia(R::constant(LEAST_INERTIA), S::COORDINATES, t).err()
+    }
+
+    /// Whether a row that no coordinate changes is changed by them as soon as the mechanism moves on: bars that pass a line are no bar
+    /// without length.
+    fn takes_hold(&self, position: &S::Position, y: &State<R, N, S::States>, index: usize) -> bool {
+        let mut row = [R::constant(0.0); M];
+        if let (Some(place), Some(scale)) = (row.get_mut(index), self.metric.rows.get(index)) {
+            *place = R::constant(1.0) / *scale;
+        }
+        let change = self.mechanism.third_derivative(self.parameters, position, &y.qd, &row);
+        let mut entries = change.map_or([R::constant(0.0); N], |(rate, _)| rate);
+        entries.iter_mut().zip(&self.metric.coordinates).for_each(|(x, scale)| *x = *x * *scale * *scale);
+        (R::constant(TAKES_HOLD) * self.largest(&y.qd)).less(self.largest(&entries))
     }
 
     /// Fails where no coordinate changes a row at a state from which a run starts. Its accelerations are those without that row, and

@@ -1,7 +1,7 @@
 //! Projection: positions and velocities put back onto the constraints by the shortest way in the mass's measure.
 
-use super::both_sides::{ZONE, from_both_sides};
 use super::kkt::{Factors, System};
+use super::limit_rows::{Passing, ZONE, at_limit};
 use super::metric::worse;
 use super::model::{Counts, Formulation, Model, Solved};
 use super::multipliers::{factorize, solve};
@@ -83,11 +83,14 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Formulation<S
         let position = model.position(t, &y);
         let factors = factorize(model, t, &position, counts)?;
         let gamma = model.mechanism.gamma(model.parameters, &position, &y.qd);
-        let solved = solve(model, (t, &y), &position, lambda, &factors, &gamma)?;
-        if solved.margin < R::constant(ZONE) {
-            return from_both_sides(model, (t, &y), solved, (&factors, stages), counts);
+        if factors.margin() < R::constant(ZONE) {
+            let rows = (&gamma, factors.margin());
+            let found = at_limit(model, (t, &y), &position, lambda, rows, counts)?;
+            if let Some(Passing { solved, .. }) = found {
+                return Ok(solved);
+            }
         }
-        Ok(solved)
+        solve(model, (t, &y), &position, lambda, &factors, &gamma)
     }
 
     fn solve_as_it_is(

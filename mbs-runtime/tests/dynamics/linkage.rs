@@ -298,6 +298,19 @@ impl<const N: usize, const M: usize> Dynamic<f64, N, M> for Linkage<N, M> {
             })
         })
     }
+    fn third_derivative(
+        &self,
+        parameters: &(),
+        position: &Self::Position,
+        qd: &[f64; N],
+        lambda: &[f64; M],
+    ) -> Option<([f64; N], f64)> {
+        let (_, [_, rate, second]) = position;
+        let rates = self.reaction_q(parameters, position, lambda);
+        let row = rates.map(|row| row.iter().zip(qd).map(|(entry, qd)| entry * qd).sum());
+        // Rows are quadratic; the third derivative of a moving ground is not known.
+        (*rate == 0.0 && *second == 0.0).then_some((row, 0.0))
+    }
     fn energy(&self, parameters: &(), position: &Self::Position, qd: &[f64; N]) -> Energy<f64> {
         let q = &position.0;
         let momentum = self.mass_times(parameters, position, qd);

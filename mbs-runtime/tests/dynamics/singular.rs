@@ -138,17 +138,19 @@ fn where_rounding_decides_whether_a_loop_turns_aside_a_strict_run_goes_on_or_say
             assert!(loose.balance().defect.abs() < DEFECT, "{excess:e}: {:e} J", loose.balance().defect);
             let mut strict = unequal(excess, Stages::None).with_tolerance(Tolerance::new(1e-11));
             if let Err(failure) = strict.advance_to(2.0) {
-                assert_undecided_in_line(failure, strict.t(), 0.55);
+                assert_undecided_in_line(failure, strict.t(), &[0.55, 1.085]);
             }
         }
     }
 }
 
-/// A failure of a run that stays at `reached` (s) names the position in which the bars are in line, at `in_line` (s).
+/// A failure of a run that stays at `reached` (s) names a position in which the bars are in line, at one of `in_line` (s).
 #[track_caller]
-fn assert_undecided_in_line(failure: Failure, reached: f64, in_line: f64) {
+fn assert_undecided_in_line(failure: Failure, reached: f64, in_line: &[f64]) {
     let Failure::Undecided { margin, time } = failure else { panic!("{failure}") };
-    assert!((time - in_line).abs() < 0.01 && margin < 1e-2, "{failure}");
+    let near = in_line.iter().find(|in_line| (time - **in_line).abs() < 0.01);
+    let in_line = *near.unwrap_or_else(|| panic!("{failure}"));
+    assert!(margin < 1e-2, "{failure}");
     assert!((in_line - 0.05..=time).contains(&reached), "{reached}: it stays where the last step ended");
     assert!(failure.to_string().contains("loosen the tolerance"), "{failure}");
 }
@@ -195,7 +197,7 @@ fn where_a_force_jumps_in_line_a_strict_run_stops_there_and_a_loose_one_goes_on(
     let parts = 1000;
     let width = core::f64::consts::FRAC_PI_2 / f64::from(parts);
     let in_line = (0..parts).map(|part| slowness((f64::from(part) + 0.5) * width) * width).sum::<f64>();
-    assert_undecided_in_line(failure, stopped.t(), in_line);
+    assert_undecided_in_line(failure, stopped.t(), &[in_line]);
 }
 
 mechanism! {

@@ -1,1 +1,6 @@
 //! Motion from forces through singular positions.
+#![forbid(unsafe_code)]
+
+mod d2_four_bar;
+mod d2_singular_positions_under_forces;
+mod n_four_bars;

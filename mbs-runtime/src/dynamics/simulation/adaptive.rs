@@ -158,8 +158,7 @@ where
                         let known = *polynomial.get_or_insert_with(|| accepted.polynomial(equations).ok());
                         let between = || known.map_or_else(|| accepted.cubic(t), |known| known.at(t));
                         let mut y = if t < accepted.end.t { between() } else { accepted.end.y };
-                        Equation::settle(equations, t, &mut y)?;
-                        let solved = equations.solve(t, &y)?;
+                        let solved = equations.shown::<I>(t, &accepted.start, &mut y)?;
                         let phases = equations.phases(t, &y.phases);
                         Ok((Instant { t, y: y.y, solved, carried: solved.rate.qd }, phases))
                     })?;

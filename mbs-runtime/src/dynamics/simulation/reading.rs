@@ -2,6 +2,7 @@
 
 use super::Simulation;
 use crate::dynamics::determinacy::Determinacy;
+use crate::dynamics::limit_rows::{SINGULAR, ZONE, is_at_limit};
 use crate::dynamics::model::{Counts, Doubt};
 use crate::dynamics::motion::{Instant, Method};
 use crate::dynamics::passage::Passage;
@@ -115,13 +116,19 @@ where
         self.mechanism.loads(&self.parameters, &position, &motion)
     }
 
-    /// Which multipliers are the only ones that move the mechanism so, and which rows follow from others here.
+    /// Which multipliers are the only ones that move the mechanism so, and which rows follow from others here. Where a motion passes a
+    /// singular position, multipliers of rows that lose their hold grow without bound; they are not unique there, and
+    /// [`lambda`](Self::lambda) is without what is not defined.
     ///
     /// # Errors
     /// Those of [`Determinacy::of`].
     pub fn determinacy(&self) -> Result<Determinacy<R, M>, Failure> {
         let position = self.model().position(self.now.t, &self.now.y);
-        Determinacy::measured(&self.mechanism, &self.parameters, &position, (self.now.t, &self.metric))
+        let (t, y, margin) = (self.now.t, &self.now.y, self.now.solved.margin);
+        let model = self.model();
+        let passing = margin < R::constant(ZONE) && is_at_limit(&model, (t, y), self.lambda(), margin);
+        let weakest = passing.then_some(R::constant(SINGULAR));
+        Determinacy::measured(&self.mechanism, &self.parameters, &position, (t, &self.metric), weakest)
     }
 
     /// Marks in `unique`, one of each of [`loads`](Self::loads), those that are the same whichever multipliers bear the
