@@ -4,7 +4,7 @@ use crate::diagnosis::{Diagnosis, Worst, outer_rounding, required};
 use crate::newton::{all_finite, newton, within};
 use crate::redundant::gauss_newton;
 use crate::safeguarded::levenberg_marquardt;
-use crate::{Block, BlockSolver, Budget, Factorization, Outcome, Real};
+use crate::{Block, BlockSolver, Budget, Factorization, Outcome, Real, Widths};
 
 /// As [`Newton`](crate::Newton), with at most [`Budget::evaluations`] in each block; where they do not do, the best
 /// of all points met comes back.
@@ -65,6 +65,7 @@ impl<R: Real> BlockSolver<R> for Budgeted<R> {
     fn solve_redundant<const K: usize, const M: usize>(
         &mut self,
         block: &Block<R, K, M>,
+        widths: &Widths<R, M>,
         x: [R; K],
         mut evaluate: impl FnMut(&[R; K]) -> ([R; M], [[R; K]; M]),
         _holds: impl FnMut(&[R; K]) -> bool,
@@ -77,7 +78,7 @@ impl<R: Real> BlockSolver<R> for Budgeted<R> {
             (residuals, jacobian)
         };
         let steps = self.budget.newton.saturating_sub(1);
-        let first = gauss_newton(block, x, true, extent, steps, &mut watched);
+        let first = gauss_newton((block, widths), x, true, extent, steps, &mut watched);
         if first.attempt.converged || first.contradicts {
             first.record(&mut self.diagnosis, true);
             return (first.attempt.x, first.outcomes());

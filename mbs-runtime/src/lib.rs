@@ -78,6 +78,7 @@ pub use newton_raphson::{Iterate, newton_raphson, newton_raphson_watched};
 pub use operations::Operations;
 pub use phase::{Phase, Speed};
 pub use redundancy::Redundancy;
+pub use redundant::Widths;
 pub use resolution::IllScaled;
 pub use safeguarded::Safeguarded;
 pub use saved::Saved;

@@ -3,7 +3,7 @@
 use core::hint::black_box;
 
 use crate::diagnosis::index;
-use crate::{FunctionEntry, Limit, Outcome, Phase, Real, Roots, Scalar};
+use crate::{FunctionEntry, Limit, Outcome, Phase, Real, Roots, Scalar, Widths};
 
 /// The scene of a text with all its effects, which every mechanism is in unless a type says otherwise.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -208,6 +208,12 @@ pub trait Mechanism<T: Scalar, const N: usize, const M: usize>: Clone {
     fn coordinate_scales(&self, parameters: &Self::Parameters) -> [T; N];
     /// Reference metric, rows: the reference length to the power that the row's unit has of metres: M.
     fn row_scales(&self, parameters: &Self::Parameters) -> [T; M];
+    /// How far rows of constraints marked `redundant within …` may contradict each other, in the unit of the row; 0 for
+    /// all others: M.
+    #[inline]
+    fn widths(&self, _parameters: &Self::Parameters) -> [T; M] {
+        [T::constant(0.0); M]
+    }
 
     /// Stage 1: what depends on `q` (N) and `t` (s).
     fn position(&self, parameters: &Self::Parameters, q: &[T; N], t: T) -> Self::Position;
@@ -389,11 +395,12 @@ pub trait BlockSolver<T: Scalar> {
     /// As [`solve_branched`](Self::solve_branched), for a block of M rows for K coordinates, M > K, of which some may
     /// follow from others.
     ///
-    /// The least residual counts as a solution where it is within every row's tolerance; where it is not, the rows
-    /// contradict each other: [`Outcome::Inconsistent`].
+    /// The least residual counts as a solution where it is within every row's tolerance and what `widths` allow beside;
+    /// where it is not, the rows contradict each other: [`Outcome::Inconsistent`].
     fn solve_redundant<const K: usize, const M: usize>(
         &mut self,
         block: &Block<T, K, M>,
+        widths: &Widths<T, M>,
         x: [T; K],
         evaluate: impl FnMut(&[T; K]) -> ([T; M], [[T; K]; M]),
         holds: impl FnMut(&[T; K]) -> T::Mask,

@@ -4,7 +4,9 @@ use crate::diagnosis::{Diagnosis, Statistics, extent};
 use crate::failure::Holding;
 use crate::kinematics::{largest_difference, position_failure};
 use crate::safeguarded::attempt;
-use crate::{Block, BlockSolver, Factorization, Failure, Kinematic, Mechanism, Outcome, Real, redundant};
+use crate::{
+    Block, BlockSolver, Factorization, Failure, Kinematic, Mechanism, Outcome, Real, Widths, redundant,
+};
 
 /// Solves Φ(q, t) = 0 by Levenberg–Marquardt from `start` (N) and from there alone.
 ///
@@ -90,11 +92,12 @@ impl<R: Real> BlockSolver<R> for Nearest<R> {
     fn solve_redundant<const K: usize, const M: usize>(
         &mut self,
         block: &Block<R, K, M>,
+        widths: &Widths<R, M>,
         x: [R; K],
         mut evaluate: impl FnMut(&[R; K]) -> ([R; M], [[R; K]; M]),
         _holds: impl FnMut(&[R; K]) -> bool,
     ) -> ([R; K], R::Lanes<Outcome>) {
-        let settled = redundant::from_far(block, x, true, self.extent, &mut evaluate);
+        let settled = redundant::from_far((block, widths), x, true, self.extent, &mut evaluate);
         settled.record(&mut self.diagnosis, true);
         (settled.attempt.x, settled.outcomes())
     }

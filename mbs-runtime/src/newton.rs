@@ -3,7 +3,7 @@
 use crate::diagnosis::{Diagnosis, Worst, outer_rounding, required};
 use crate::linear::{is_regular, orthogonal::minimum_norm};
 use crate::safeguarded::{TRIALS, levenberg_marquardt};
-use crate::{Block, BlockSolver, Factorization, Outcome, Real, Scalar, redundant};
+use crate::{Block, BlockSolver, Factorization, Outcome, Real, Scalar, Widths, redundant};
 
 /// Iterations before the safeguarded method takes over. Quadratic convergence needs 2 to 6; at a change point it
 /// is linear, a quarter of the residual a step, and 17 were measured on a four-bar in line.
@@ -75,11 +75,12 @@ impl<T: Scalar> BlockSolver<T> for Newton<T> {
     fn solve_redundant<const K: usize, const M: usize>(
         &mut self,
         block: &Block<T, K, M>,
+        widths: &Widths<T, M>,
         x: [T; K],
         mut evaluate: impl FnMut(&[T; K]) -> ([T; M], [[T; K]; M]),
         _holds: impl FnMut(&[T; K]) -> T::Mask,
     ) -> ([T; K], T::Lanes<Outcome>) {
-        let (settled, plain) = redundant::next(block, x, self.extent, &mut evaluate);
+        let (settled, plain) = redundant::next((block, widths), x, self.extent, &mut evaluate);
         settled.record(&mut self.diagnosis, plain);
         (settled.attempt.x, settled.outcomes())
     }

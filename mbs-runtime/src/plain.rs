@@ -3,7 +3,7 @@
 use crate::diagnosis::{own_rounding, required};
 use crate::newton::select;
 use crate::trial::weights as reciprocals;
-use crate::{Block, BlockSolver, Factorization, Outcome, Scalar};
+use crate::{Block, BlockSolver, Factorization, Outcome, Scalar, Widths};
 
 /// Evaluations of a block at most. From a good prediction it takes two; a step so long that four do not do is worth
 /// being looked at.
@@ -149,6 +149,7 @@ impl<T: Scalar> BlockSolver<T> for Plain<T> {
     fn solve_redundant<const K: usize, const M: usize>(
         &mut self,
         _block: &Block<T, K, M>,
+        _widths: &Widths<T, M>,
         x: [T; K],
         _evaluate: impl FnMut(&[T; K]) -> ([T; M], [[T; K]; M]),
         _holds: impl FnMut(&[T; K]) -> T::Mask,

@@ -3,7 +3,7 @@
 use crate::failure::Holding;
 use crate::kinematics::largest_difference;
 use crate::linear::least_margin;
-use crate::redundant::product;
+use crate::redundant::{largest_width, product};
 use crate::{Entry, Failure, Kinematic, Level, Mechanism, Real, Stepper};
 
 /// The rank of Φ_q at a position and the rows that follow from the others there.
@@ -79,6 +79,10 @@ fn dot<R: Real, const N: usize>(a: &[R; N], b: &[R; N]) -> R {
     a.iter().zip(b).fold(R::constant(0.0), |sum, (a, b)| sum + *a * *b)
 }
 
+/// What rows may be off in their rates, in widths times the rates of the coordinates: what a text allows a position to be open
+/// changes as fast as the links turn, twice as fast in accelerations.
+const RATES_OF_WIDTH: f64 = 8.0;
+
 /// Rates that solve `Φ_q x = b` in the mean, and what they are measured by.
 struct RateEquations<'a, R, const N: usize, const M: usize> {
     /// x: N.
@@ -91,6 +95,8 @@ struct RateEquations<'a, R, const N: usize, const M: usize> {
     known: R,
     /// Margin to singularity of Φ_q.
     margin: R,
+    /// Largest width that the text states, in the reference metric.
+    width: R,
 }
 
 /// Why the rows of a mechanism with more of them than coordinates contradict each other in their rates `qd` and `qdd` (N
@@ -106,12 +112,13 @@ pub(crate) fn disagreement<S: Mechanism<R, N, M>, R: Real, const N: usize, const
 ) -> Option<Failure> {
     let zero = R::constant(0.0);
     let speed = largest_difference(qd, &[zero; N], &mechanism.coordinate_scales(parameters));
+    let width = largest_width(&mechanism.widths(parameters), &mechanism.row_scales(parameters));
     let (phi_t, gamma) = (mechanism.phi_t(parameters, position), mechanism.gamma(parameters, position, qd));
     let right = &phi_t.map(|rate| -rate);
-    let velocities = RateEquations { rates: qd, right, level: Level::Velocity, known: zero, margin };
+    let velocities = RateEquations { rates: qd, right, level: Level::Velocity, known: zero, margin, width };
     let known = speed * speed;
     let accelerations =
-        RateEquations { rates: qdd, right: &gamma, level: Level::Acceleration, known, margin };
+        RateEquations { rates: qdd, right: &gamma, level: Level::Acceleration, known, margin, width };
     rate_failure(mechanism, parameters, position, &velocities, t)
         .or_else(|| rate_failure(mechanism, parameters, position, &accelerations, t))
 }
@@ -136,7 +143,7 @@ fn rate_failure<S: Mechanism<R, N, M>, R: Real, const N: usize, const M: usize>(
     let mut size = rates.known;
     rates.rates.iter().zip(&scales).for_each(|(rate, scale)| size = size.max((*rate / *scale).abs()));
     rates.right.iter().zip(&row_scales).for_each(|(right, scale)| size = size.max((*right / *scale).abs()));
-    let allowed = least_margin::<R>() / rates.margin * size;
+    let allowed = (least_margin::<R>() + R::constant(RATES_OF_WIDTH) * rates.width) / rates.margin * size;
     let (mut worst, mut unit) = (R::constant(0.0), R::constant(1.0));
     for (open, scale) in open.iter().zip(&row_scales) {
         if worst < *open {

@@ -7,6 +7,52 @@ use crate::safeguarded::{OTHER_STARTS, TRIALS, levenberg_marquardt};
 use crate::starts::displaced;
 use crate::{Block, Outcome, Scalar};
 
+/// What the least residual of rows that contradict each other may be beside rounding, relative to the row's scale: what
+/// dimensions leave that are typed with 15 digits. Each is off by 5e-15 of itself at most, and a row has some ten.
+const TYPED_DIGITS: f64 = 5e-14;
+
+/// How far the rows of a block may contradict each other: the widths that the text states, M, in the units of the rows.
+#[derive(Clone, Copy, Debug)]
+pub struct Widths<T, const M: usize>([T; M]);
+
+impl<T: Scalar, const M: usize> Widths<T, M> {
+    /// Of a text that states none.
+    #[inline(always)]
+    pub fn none() -> Self {
+        Widths([T::constant(0.0); M])
+    }
+
+    /// Those of the block of `rows` (M), out of `all`.
+    #[inline]
+    pub fn of(all: &[T], rows: &[u16; M]) -> Self {
+        let width = |row: u16| all.get(usize::from(row)).map_or(T::constant(0.0), |width| *width);
+        Widths(rows.map(width))
+    }
+
+    /// What each row's least residual may be beside rounding, in the unit of the row.
+    ///
+    /// Least squares share a contradiction among all rows that take part in it, so rows without a width have the largest one
+    /// of the block, in the reference metric.
+    fn granted(&self, row_scales: &[T; M]) -> [T; M] {
+        let largest = largest_width(&self.0, row_scales).max(T::constant(TYPED_DIGITS));
+        let mut granted = *row_scales;
+        for (granted, width) in granted.iter_mut().zip(&self.0) {
+            let stated = T::constant(0.0).less(*width);
+            *granted = T::select(stated, width.max(T::constant(TYPED_DIGITS) * *granted), largest * *granted);
+        }
+        granted
+    }
+}
+
+/// The largest of `widths` (M) in the reference metric.
+pub(crate) fn largest_width<T: Scalar, const M: usize>(widths: &[T; M], row_scales: &[T; M]) -> T {
+    let mut largest = T::constant(0.0);
+    for (width, scale) in widths.iter().zip(row_scales) {
+        largest = largest.max(*width / *scale);
+    }
+    largest
+}
+
 /// What Gauss–Newton came to.
 #[derive(Clone, Copy)]
 pub(crate) struct Settled<T: Scalar, const K: usize> {
@@ -52,12 +98,12 @@ impl<T: Scalar, const K: usize> Settled<T, K> {
 /// Gauss–Newton from `start` in the lanes of `active`; the others stay. At most `iterations` steps.
 ///
 /// A step is the minimum-norm least-squares solution of all rows in the reference metric. Where what the next step could
-/// still close is within every row's tolerance, the least residual is reached: it is rounding, or the rows
-/// contradict each other. So contradicting rows are told from a method that ran out of iterations.
+/// still close is within every row's tolerance, the least residual is reached: it is rounding or within the widths, or
+/// the rows contradict each other. So contradicting rows are told from a method that ran out of iterations.
 /// Source: Nocedal & Wright 2006, §10.3.
 #[inline(never)]
 pub(crate) fn gauss_newton<T: Scalar, const K: usize, const M: usize>(
-    block: &Block<T, K, M>,
+    (block, widths): (&Block<T, K, M>, &Widths<T, M>),
     start: [T; K],
     active: T::Mask,
     extent: T,
@@ -65,7 +111,7 @@ pub(crate) fn gauss_newton<T: Scalar, const K: usize, const M: usize>(
     evaluate: &mut impl FnMut(&[T; K]) -> ([T; M], [[T; K]; M]),
 ) -> Settled<T, K> {
     let one = T::constant(1.0);
-    let none = [T::constant(0.0); M];
+    let (none, granted) = ([T::constant(0.0); M], widths.granted(&block.row_scales));
     let mut x = start;
     let (mut residuals, mut jacobian) = evaluate(&x);
     let mut evaluations = 1;
@@ -81,7 +127,8 @@ pub(crate) fn gauss_newton<T: Scalar, const K: usize, const M: usize>(
         let (factors, _) = Orthogonal::factorize(&jacobian, &block.row_scales, &block.coordinate_scales);
         let step = factors.solve(&residuals.map(|r| -r));
         let change = product(&jacobian, &step);
-        let allowances = outer_rounding(extent, &block.coordinate_scales, &jacobian);
+        let mut allowances = outer_rounding(extent, &block.coordinate_scales, &jacobian);
+        allowances.iter_mut().zip(&granted).for_each(|(allowed, granted)| *allowed = *allowed + *granted);
         let settled = open & within(&change, &tolerances, &none);
         let mut rest = residuals;
         rest.iter_mut().zip(&change).for_each(|(rest, change)| *rest = *rest + *change);
@@ -99,28 +146,29 @@ pub(crate) fn gauss_newton<T: Scalar, const K: usize, const M: usize>(
         tolerances = required(&block.row_scales, &x, &jacobian);
         evaluations += 1;
     }
+    tolerances.iter_mut().zip(&granted).for_each(|(tolerance, granted)| *tolerance = *tolerance + *granted);
     let worst = Worst::of_block(block, &residuals, &tolerances);
     Settled { attempt: Attempt { x, converged, worst, evaluations }, contradicts }
 }
 
 /// The next position: Gauss–Newton, then Levenberg–Marquardt from the same start. Returns whether the first was enough.
 pub(crate) fn next<T: Scalar, const K: usize, const M: usize>(
-    block: &Block<T, K, M>,
+    (block, widths): (&Block<T, K, M>, &Widths<T, M>),
     x: [T; K],
     extent: T,
     evaluate: &mut impl FnMut(&[T; K]) -> ([T; M], [[T; K]; M]),
 ) -> (Settled<T, K>, bool) {
-    let first = gauss_newton(block, x, T::mask(true), extent, ITERATIONS, evaluate);
+    let first = gauss_newton((block, widths), x, T::mask(true), extent, ITERATIONS, evaluate);
     let decided = first.attempt.converged | first.contradicts;
     if T::all(decided) {
         return (first, true);
     }
-    (first.continued_by(decided, from_far(block, x, !decided, extent, evaluate)), false)
+    (first.continued_by(decided, from_far((block, widths), x, !decided, extent, evaluate)), false)
 }
 
 /// Levenberg–Marquardt from `start` in the lanes of `active`, finished by Gauss–Newton, which judges the end.
 pub(crate) fn from_far<T: Scalar, const K: usize, const M: usize>(
-    block: &Block<T, K, M>,
+    (block, widths): (&Block<T, K, M>, &Widths<T, M>),
     start: [T; K],
     active: T::Mask,
     extent: T,
@@ -132,7 +180,7 @@ pub(crate) fn from_far<T: Scalar, const K: usize, const M: usize>(
     if T::all(!left) {
         return first;
     }
-    first.continued_by(!left, gauss_newton(block, attempt.x, left, extent, ITERATIONS, evaluate))
+    first.continued_by(!left, gauss_newton((block, widths), attempt.x, left, extent, ITERATIONS, evaluate))
 }
 
 /// From the start value, then from a fixed list of others until the rows close and the branches hold. Returns whether
@@ -141,13 +189,13 @@ pub(crate) fn from_far<T: Scalar, const K: usize, const M: usize>(
 /// Where they never do, the first solution comes back, and the caller sees the branch that it violates; without any
 /// solution the end with the least residual, so that rows contradict each other at their best, not at their first.
 pub(crate) fn search<T: Scalar, const K: usize, const M: usize>(
-    block: &Block<T, K, M>,
+    (block, widths): (&Block<T, K, M>, &Widths<T, M>),
     x: [T; K],
     extent: T,
     evaluate: &mut impl FnMut(&[T; K]) -> ([T; M], [[T; K]; M]),
     holds: &mut impl FnMut(&[T; K]) -> T::Mask,
 ) -> (Settled<T, K>, bool) {
-    let mut found = from_far(block, x, T::mask(true), extent, evaluate);
+    let mut found = from_far((block, widths), x, T::mask(true), extent, evaluate);
     let mut done = found.attempt.converged & holds(&found.attempt.x);
     let plain = T::all(done);
     for start in 1..=OTHER_STARTS {
@@ -158,7 +206,7 @@ pub(crate) fn search<T: Scalar, const K: usize, const M: usize>(
         // A solution of another assembly is a better centre than a poor guess.
         let centre = select(converged, &near, &x);
         let from = displaced(&centre, &block.angles, &block.coordinate_scales, start, OTHER_STARTS);
-        let next = from_far(block, from, !done, extent, evaluate);
+        let next = from_far((block, widths), from, !done, extent, evaluate);
         let right = next.attempt.converged & holds(&next.attempt.x) & !done;
         let nearer = !next.attempt.converged & next.attempt.worst.ratio.less(worst.ratio);
         let taken = right | (!done & !converged & (next.attempt.converged | nearer));
@@ -212,11 +260,20 @@ mod tests {
             for solver in 0..2 {
                 let circles = circles(error);
                 let (x, [found]) = match solver {
-                    0 => Newton::new(1.0).solve_redundant::<2, 3>(&block(), [1.2, 1.9], &circles, |_| true),
-                    _ => {
-                        Safeguarded::new(1.0)
-                            .solve_redundant::<2, 3>(&block(), [3.0, 7.0], &circles, |_| true)
-                    }
+                    0 => Newton::new(1.0).solve_redundant::<2, 3>(
+                        &block(),
+                        &Widths::none(),
+                        [1.2, 1.9],
+                        &circles,
+                        |_| true,
+                    ),
+                    _ => Safeguarded::new(1.0).solve_redundant::<2, 3>(
+                        &block(),
+                        &Widths::none(),
+                        [3.0, 7.0],
+                        &circles,
+                        |_| true,
+                    ),
                 };
                 assert_eq!(core::mem::discriminant(&found), core::mem::discriminant(&outcome), "{found:?}");
                 assert!((x[0] - 1.0).abs() < 1e-8 && (x[1] - 2.0).abs() < 1e-8, "{x:?}");
@@ -229,8 +286,9 @@ mod tests {
         let circles = circles(Lanes([0.0, 1e-3]));
         let start = [Lanes([1.2, 1.2]), Lanes([1.9, 1.9])];
         let mut newton = Newton::new(Lanes::constant(1.0));
-        let (x, outcome) =
-            newton.solve_redundant::<2, 3>(&block(), start, &circles, |_| Lanes::<f64, 2>::mask(true));
+        let (x, outcome) = newton.solve_redundant::<2, 3>(&block(), &Widths::none(), start, &circles, |_| {
+            Lanes::<f64, 2>::mask(true)
+        });
         assert!(matches!(outcome, [Outcome::Converged, Outcome::Inconsistent { .. }]), "{outcome:?}");
         assert!((x[0].0[0] - 1.0).abs() < 1e-14 && (x[1].0[0] - 2.0).abs() < 1e-14);
     }

@@ -4,7 +4,7 @@ use crate::diagnosis::{Diagnosis, Worst, outer_rounding, required};
 use crate::dyad::{Roots, closed, taking};
 use crate::newton::{Attempt, ITERATIONS, all_finite, capped, newton, select, within};
 use crate::starts::displaced;
-use crate::{Block, BlockSolver, Factorization, Outcome, Real, Scalar, redundant};
+use crate::{Block, BlockSolver, Factorization, Outcome, Real, Scalar, Widths, redundant};
 
 /// Trial steps a start; one costs as much as a Newton step. From 1000 rad away 52 were measured on a four-bar.
 pub(crate) const TRIALS: u32 = 120;
@@ -114,11 +114,12 @@ impl<T: Scalar> BlockSolver<T> for Safeguarded<T> {
     fn solve_redundant<const K: usize, const M: usize>(
         &mut self,
         block: &Block<T, K, M>,
+        widths: &Widths<T, M>,
         x: [T; K],
         mut evaluate: impl FnMut(&[T; K]) -> ([T; M], [[T; K]; M]),
         mut holds: impl FnMut(&[T; K]) -> T::Mask,
     ) -> ([T; K], T::Lanes<Outcome>) {
-        let (found, plain) = redundant::search(block, x, self.extent, &mut evaluate, &mut holds);
+        let (found, plain) = redundant::search((block, widths), x, self.extent, &mut evaluate, &mut holds);
         found.record(&mut self.diagnosis, plain);
         (found.attempt.x, found.outcomes())
     }

@@ -1,6 +1,6 @@
 //! Watching a solver at work: each iterate of each block, for teaching and for diagnosis.
 
-use crate::{Block, BlockSolver, Factorization, Outcome, Roots, Scalar};
+use crate::{Block, BlockSolver, Factorization, Outcome, Roots, Scalar, Widths};
 
 /// Hears what a [`Traced`] solver does.
 pub trait Trace<T: Scalar> {
@@ -100,6 +100,7 @@ impl<T: Scalar, S: BlockSolver<T>, L: Trace<T>> BlockSolver<T> for Traced<'_, S,
     fn solve_redundant<const K: usize, const M: usize>(
         &mut self,
         block: &Block<T, K, M>,
+        widths: &Widths<T, M>,
         x: [T; K],
         mut evaluate: impl FnMut(&[T; K]) -> ([T; M], [[T; K]; M]),
         holds: impl FnMut(&[T; K]) -> T::Mask,
@@ -111,7 +112,7 @@ impl<T: Scalar, S: BlockSolver<T>, L: Trace<T>> BlockSolver<T> for Traced<'_, S,
             trace.iterate(block, x, &residuals, &jacobian);
             (residuals, jacobian)
         };
-        let (x, outcome) = self.solver.solve_redundant::<K, M>(block, x, watched, holds);
+        let (x, outcome) = self.solver.solve_redundant::<K, M>(block, widths, x, watched, holds);
         self.trace.end(&outcome);
         (x, outcome)
     }

@@ -6,6 +6,7 @@ use super::code::{lets, local};
 use super::elimination::Eliminations;
 use super::scope::{Scope, number};
 use crate::equations::Equations;
+use crate::model::Model;
 use crate::program::{BlockProgram, Method, Program, System};
 use crate::structure::dyad::Dyad;
 use crate::symbolic::NodeId;
@@ -90,7 +91,9 @@ fn newton(
         (None, false) => format!("solve_branched::<{size}, {factors}>"),
     };
     let call = format!("let (__x, __block) = __solver.{method}");
-    let _ = write!(text, "{call}(&{description}, {starts}, #[inline(always)] |__x| {EVALUATED}");
+    let rows = list(block.rows.iter().map(usize::to_string));
+    let widths = if surplus { widths(scope.model, &rows) } else { String::new() };
+    let _ = write!(text, "{call}(&{description}, {widths}{starts}, #[inline(always)] |__x| {EVALUATED}");
     if !branches.is_empty() {
         *text += ", |__x| {\n";
         lets(branch_section, &inner, text);
@@ -160,6 +163,14 @@ fn description(equations: &Equations, block: &BlockProgram, scope: &Scope<'_>) -
         list(block.rows.iter().map(|row| scale(&equations.row_scales, row))),
         list(block.coordinates.iter().map(|c| scale(&equations.coordinate_scales, c))),
     )
+}
+
+/// The argument of `solve_redundant` that says how far `rows` may contradict each other.
+pub fn widths(model: &Model, rows: &str) -> String {
+    match model.rows.iter().any(|row| row.within.is_some()) {
+        true => format!("&__mbs::Widths::of(&__mbs::Mechanism::widths(self, __p), &{rows}), "),
+        false => "&__mbs::Widths::none(), ".into(),
+    }
 }
 
 /// `[a, b, …]`

@@ -35,6 +35,8 @@ pub struct Bodies {
     pub guess: TokenStream,
     pub coordinate_scales: TokenStream,
     pub row_scales: TokenStream,
+    /// None where no row has a width.
+    pub widths: Option<TokenStream>,
     pub position: TokenStream,
     pub phi: TokenStream,
     pub phi_q: TokenStream,
@@ -153,6 +155,8 @@ pub fn bodies(
             &some(&equations.coordinate_scales),
         ),
         row_scales: emitter.of_parameters("row_scales", &program.row_scales, &some(&equations.row_scales)),
+        widths: (!equations.widths.is_empty())
+            .then(|| emitter.of_parameters("widths", &program.widths, &some(&equations.widths))),
         position: emitter.position(&program.position),
         phi: emitter.of_position("phi", &program.phi, &rows(|row| Some(row.phi))),
         phi_q: block(&phi_q, runtime),

@@ -86,6 +86,7 @@ fn implementations(text: &Text, scenes: &Scenes, part: &Part<'_>) -> TokenStream
         guess,
         coordinate_scales,
         row_scales,
+        widths,
         position,
         phi,
         phi_q,
@@ -105,6 +106,12 @@ fn implementations(text: &Text, scenes: &Scenes, part: &Part<'_>) -> TokenStream
     } = bodies;
     let nonzeros = sparsity.len();
     let places = sparsity.iter().map(|(row, column)| quote! { (#row, #column) });
+    let widths = widths.as_ref().map(|widths| {
+        quote! {
+            #[inline]
+            fn widths(&self, __p: &__Parameters<T>) -> [T; #m] #widths
+        }
+    });
     let evaluate = evaluate.as_ref().map(|evaluate| {
         quote! {
             #[inline]
@@ -159,6 +166,7 @@ fn implementations(text: &Text, scenes: &Scenes, part: &Part<'_>) -> TokenStream
                 fn coordinate_scales(&self, __p: &__Parameters<T>) -> [T; #n] #coordinate_scales
                 #[inline]
                 fn row_scales(&self, __p: &__Parameters<T>) -> [T; #m] #row_scales
+                #widths
                 #[inline]
                 fn position(&self, __p: &__Parameters<T>, __q: &[T; #n], __t: T) -> __Position<T> #position
                 #[inline]

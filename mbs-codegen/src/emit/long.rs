@@ -438,6 +438,11 @@ impl Emission<'_> {
         if dyad {
             let _ = write!(more, ", |__near| {}", call("roots", "__near"));
         }
+        let widths = if rows > unknowns {
+            super::blocks::widths(self.scope.model, "__place.rows")
+        } else {
+            String::new()
+        };
         let nowhere = number_of(f64::INFINITY);
         let (evaluate, called) = (call("evaluate", "__x"), call("called_evaluate", "__x"));
         format!(
@@ -446,7 +451,7 @@ impl Emission<'_> {
              let mut __evaluate = |__x: &[T; {unknowns}]| {{\n\
              __last.set(*__x);\nif __S::COPIED {{ {evaluate} }} else {{ {called} }}\n}};\n\
              let (__x, __block) = __solver.{method}(\
-             &__place.block(&{metric}), __place.of(&*__q), &mut __evaluate{more});\n\
+             &__place.block(&{metric}), {widths}__place.of(&*__q), &mut __evaluate{more});\n\
              if !__S::COPIED && !__mbs::mechanism::is_same(&__last.get(), &__x) {{ __evaluate(&__x); }}\n\
              __place.put(&__x, __q);\n__block\n"
         )

@@ -33,6 +33,7 @@ fn bodies(model: &Model, runtime: &TokenStream) -> Bodies {
         guess: body(),
         coordinate_scales: body(),
         row_scales: body(),
+        widths: None,
         position: body(),
         phi: body(),
         phi_q: body(),

@@ -18,6 +18,8 @@ pub struct Lowered {
     pub guesses: Vec<NodeId>,
     pub coordinate_scales: Vec<NodeId>,
     pub row_scales: Vec<NodeId>,
+    /// How far rows may contradict each other; empty where no text says so.
+    pub widths: Vec<NodeId>,
     /// The reference length.
     pub length: NodeId,
     /// One a call of a declared function, in the order of the model.
@@ -114,6 +116,10 @@ pub fn lower(model: &Model) -> Lowered {
         guesses: model.coordinates.iter().map(|coordinate| coordinate.guess.map_or(zero, of)).collect(),
         coordinate_scales: model.coordinates.iter().map(|coordinate| scale(coordinate.dimension)).collect(),
         row_scales: model.rows.iter().map(|row| scale(row.dimension)).collect(),
+        widths: match model.rows.iter().any(|row| row.within.is_some()) {
+            true => model.rows.iter().map(|row| row.within.map_or(zero, of)).collect(),
+            false => Vec::new(),
+        },
         length,
         calls: model.expressions.calls().iter().map(|call| of(call.id)).collect(),
         graph,

@@ -55,6 +55,8 @@ pub struct Equations {
     pub coordinate_scales: Vec<NodeId>,
     /// Reference metric of the rows.
     pub row_scales: Vec<NodeId>,
+    /// How far rows may contradict each other, in their units; empty where no text says so.
+    pub widths: Vec<NodeId>,
     /// Masses and forces, where the text has any.
     pub dynamics: Option<Dynamics>,
     /// One a call of a declared function, in the order of the model.
@@ -119,6 +121,7 @@ impl Equations {
             roots.extend(&mut phase.acceleration);
         }
         roots.extend(self.limits.iter_mut().flatten());
+        roots.extend(&mut self.widths);
         let lists =
             [&mut self.branches, &mut self.guesses, &mut self.coordinate_scales, &mut self.row_scales];
         roots.extend(lists.into_iter().flatten());
@@ -169,6 +172,7 @@ pub fn derive(model: &Model) -> Equations {
         guesses,
         coordinate_scales,
         mut row_scales,
+        widths,
         length,
         calls,
         clock,
@@ -236,6 +240,7 @@ pub fn derive(model: &Model) -> Equations {
         guesses,
         coordinate_scales,
         row_scales,
+        widths,
         dynamics,
         calls,
     };

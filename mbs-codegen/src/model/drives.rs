@@ -66,6 +66,7 @@ impl Resolver<'_> {
             driven: true,
             reversed: false,
             redundant: false,
+            within: None,
             span: equation.span,
         };
         self.push_row(group, row);

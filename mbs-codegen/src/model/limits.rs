@@ -1,7 +1,7 @@
 //! Working ranges, and the coordinates that are meant as independent.
 
 use super::elaborate::{Fault, Reach, Scalar, Value};
-use super::expression::Node;
+use super::expression::{Id, Node};
 use super::initialiser::initialiser;
 use super::resolve::Resolver;
 use super::{Independent, Limit, VariableKind};
@@ -32,14 +32,7 @@ impl Resolver<'_> {
             Ok::<_, Fault>([bound(low)?, value, bound(high)?])
         })?;
         for bound in [low, high] {
-            let varies = |node| match node {
-                Node::Number(_) | Node::Unary(..) | Node::Binary(..) => false,
-                Node::Variable(index) => {
-                    self.model.variables.get(index).is_none_or(|v| v.kind != VariableKind::Parameter)
-                }
-                _ => true,
-            };
-            if self.contains(bound.id, varies) {
+            if self.varies(bound.id) {
                 self.diagnostics.report(
                     bound.span,
                     format!("a bound of limit `{}` varies in time", name.text),
@@ -73,6 +66,17 @@ impl Resolver<'_> {
         });
         self.count_row(group, round);
         Ok(())
+    }
+
+    /// Whether a value is made of more than numbers, constants and parameters.
+    pub(super) fn varies(&self, id: Id) -> bool {
+        self.contains(id, |node| match node {
+            Node::Number(_) | Node::Unary(..) | Node::Binary(..) => false,
+            Node::Variable(index) => {
+                self.model.variables.get(index).is_none_or(|v| v.kind != VariableKind::Parameter)
+            }
+            _ => true,
+        })
     }
 
     /// Coordinates by name; an array stands for all its components.

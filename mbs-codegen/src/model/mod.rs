@@ -33,6 +33,7 @@ pub mod signs;
 mod turns;
 pub mod units;
 mod vanishing;
+mod width;
 
 use proc_macro2::Span;
 
@@ -295,6 +296,8 @@ pub struct Row {
     pub reversed: bool,
     /// Whether it may follow from others: its constraint is marked `redundant`.
     pub redundant: bool,
+    /// How far it may be open where it contradicts others, in its unit.
+    pub within: Option<Id>,
     /// The `==`.
     pub span: Span,
 }

@@ -249,5 +249,5 @@ fn parts(expressions: &Expressions, places: &BTreeMap<usize, (usize, usize)>) ->
 
 fn normalised(residual: Id, span: Span) -> Row {
     let (name, driven, reversed, redundant) = (String::new(), false, false, false);
-    Row { name, dimension: Dimension::NUMBER, residual, driven, reversed, redundant, span }
+    Row { name, dimension: Dimension::NUMBER, residual, driven, reversed, redundant, within: None, span }
 }

@@ -161,11 +161,11 @@ impl Resolver<'_> {
 
     fn row_statement(&mut self, kind: &StatementKind) -> Result<(), Fault> {
         match kind {
-            StatementKind::Constraint { name, redundant, items } => {
+            StatementKind::Constraint { name, redundant, within, items } => {
                 let first = self.model.rows.len();
                 self.constraint(name, items)?;
                 self.model.rows.iter_mut().skip(first).for_each(|row| row.redundant = *redundant);
-                Ok(())
+                within.as_ref().map_or(Ok(()), |within| self.width(first, within))
             }
             StatementKind::Drive { name, equation } => self.drive(name, equation),
             StatementKind::Branch { name, at_start, larger, smaller } => {
@@ -345,7 +345,7 @@ impl Resolver<'_> {
         for (residual, dimension) in residuals {
             let reversed = self.is_reversed(residual);
             let (name, driven, redundant) = (String::new(), false, false);
-            let row = Row { name, dimension, residual, driven, reversed, redundant, span };
+            let row = Row { name, dimension, residual, driven, reversed, redundant, within: None, span };
             self.push_row(group, row);
         }
         Ok(())

@@ -57,6 +57,8 @@ pub struct Program {
     pub coordinate_scales: Section,
     /// Reference metric of the rows.
     pub row_scales: Section,
+    /// How far rows may contradict each other.
+    pub widths: Section,
     /// The solution of Φ = 0, block after block.
     pub blocks: Vec<BlockProgram>,
     /// Values of the position stage that no block has computed.
@@ -91,6 +93,7 @@ pub fn order(equations: &Equations, structure: &Structure) -> Program {
     consumers.push(&roots.guesses);
     consumers.push(&roots.coordinate_scales);
     consumers.push(&roots.row_scales);
+    consumers.push(&roots.widths);
     consumers.push(&blocks);
     let parameter_fields = stages::parameter_fields(graph, &consumers);
     let none = BTreeSet::new();
@@ -118,6 +121,7 @@ pub fn order(equations: &Equations, structure: &Structure) -> Program {
         guesses: early(&roots.guesses),
         coordinate_scales: early(&roots.coordinate_scales),
         row_scales: early(&roots.row_scales),
+        widths: early(&roots.widths),
         blocks: solution.blocks,
         rest: solution.rest,
         dynamics: dynamics.map(|roots| roots.order(section, early)),
@@ -165,6 +169,7 @@ struct Roots {
     guesses: Vec<NodeId>,
     coordinate_scales: Vec<NodeId>,
     row_scales: Vec<NodeId>,
+    widths: Vec<NodeId>,
 }
 
 impl Roots {
@@ -196,6 +201,7 @@ impl Roots {
             guesses: equations.guesses.clone(),
             coordinate_scales: equations.coordinate_scales.clone(),
             row_scales: equations.row_scales.clone(),
+            widths: equations.widths.clone(),
         }
     }
 

@@ -180,6 +180,8 @@ pub enum StatementKind {
         name: Name,
         /// Whether rows may follow from others.
         redundant: bool,
+        /// How far such rows may contradict each other.
+        within: Option<Expression>,
         items: Vec<Item>,
     },
     Drive {
@@ -341,7 +343,9 @@ impl StatementKind {
             }
             StatementKind::Input { kind, .. } => kind.shape.iter().collect(),
             StatementKind::Function { signature, .. } => signature.period.iter().collect(),
-            StatementKind::Constraint { items, .. } => items.iter().flat_map(Item::expressions).collect(),
+            StatementKind::Constraint { within, items, .. } => {
+                within.iter().chain(items.iter().flat_map(Item::expressions)).collect()
+            }
             StatementKind::Drive { equation, .. } => vec![&equation.left, &equation.right],
             StatementKind::Branch { larger, smaller, .. } => vec![larger, smaller],
             StatementKind::Limit { low, value, high, .. } => vec![low, value, high],

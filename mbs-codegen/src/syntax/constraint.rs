@@ -1,6 +1,6 @@
 //! Equations, and the constraints that group them.
 
-use super::ast::{Declares, Equation, Item, StatementKind};
+use super::ast::{Declares, Equation, Expression, Item, StatementKind};
 use super::expression::expression;
 use super::parser::{GivenUp, Parser, Read};
 use super::statement::{at_statement, end, read_loop};
@@ -13,6 +13,7 @@ pub fn read_constraint(parser: &mut Parser<'_>) -> Read<StatementKind> {
     if redundant {
         parser.skip(1);
     }
+    let within = width(parser, redundant)?;
     parser.expect('{', CONSTRAINT)?;
     let mut items = Vec::new();
     let mut loops = 0_usize;
@@ -28,7 +29,7 @@ pub fn read_constraint(parser: &mut Parser<'_>) -> Read<StatementKind> {
                 let message = format!("constraint `{}` has no equation", name.text);
                 parser.diagnostics.report(name.span, message, "write `lhs == rhs;` in the braces");
             }
-            return Ok(StatementKind::Constraint { name, redundant, items });
+            return Ok(StatementKind::Constraint { name, redundant, within, items });
         }
         let read = if parser.at_word("for") {
             parser.skip(1);
@@ -46,11 +47,27 @@ pub fn read_constraint(parser: &mut Parser<'_>) -> Read<StatementKind> {
             Err(GivenUp) => {
                 complete = false;
                 if !behind_equation(parser) {
-                    return Ok(StatementKind::Constraint { name, redundant, items });
+                    return Ok(StatementKind::Constraint { name, redundant, within, items });
                 }
             }
         }
     }
+}
+
+/// `within 1e-6m`
+fn width(parser: &mut Parser<'_>, redundant: bool) -> Read<Option<Expression>> {
+    if !parser.at_word("within") {
+        return Ok(None);
+    }
+    if !redundant {
+        return parser.expected(
+            "`{`",
+            "rows that all count are met to rounding; mark those that follow from others: \
+             `constraint pin redundant within 1e-6m { … }`",
+        );
+    }
+    parser.skip(1);
+    expression(parser).map(Some)
 }
 
 /// Whether a statement stands here: a word and behind it a name, as in no equation.

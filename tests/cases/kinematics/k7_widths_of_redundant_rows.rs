@@ -1,0 +1,227 @@
+//! K7: a redundant row that is off by the digits of its data was refused, and no text could say how far it may be off.
+
+use mbs_runtime::{Budget, Failure, Lanes, Level, Real, Step, Stepper, mechanism};
+
+mechanism! {
+    /// A plate on three cranks, of which the third is longer by `error`.
+    pub mechanism Exact;
+    param error: m = 0;
+    coord alpha: rad = 0.5;
+    coord beta: rad = 0.5;
+    coord gamma: rad = 0.5;
+    coord psi: rad = 0;
+    constraint first redundant { 1m*unit(alpha) + 2m*unit(psi) == [2m, 0] + 1m*unit(beta); }
+    constraint second redundant { 1m*unit(alpha) + 1m*unit(psi) == [1m, 0] + (1m + error)*unit(gamma); }
+    drive crank: alpha == 0.5 + 0.4*sin(2*t/1s);
+}
+
+mechanism! {
+    /// The same with a width.
+    pub mechanism Stated;
+    param error: m = 0;
+    param play: m = 1e-6;
+    coord alpha: rad = 0.5;
+    coord beta: rad = 0.5;
+    coord gamma: rad = 0.5;
+    coord psi: rad = 0;
+    constraint first redundant { 1m*unit(alpha) + 2m*unit(psi) == [2m, 0] + 1m*unit(beta); }
+    constraint second redundant within play { 1m*unit(alpha) + 1m*unit(psi) == [1m, 0] + (1m + error)*unit(gamma); }
+    drive crank: alpha == 0.5 + 0.4*sin(2*t/1s);
+}
+
+mechanism! {
+    /// The same in natural coordinates, in millimetres, its rows squares of lengths; the width is a number.
+    pub mechanism Points;
+    param error: m = 0;
+    coord A: [m; 2] = [877mm, 479mm];
+    coord B: [m; 2] = [2877mm, 479mm];
+    coord P: [m; 2] = [1877mm, 479mm];
+    constraint crank { A == 1m*unit(0.5 + 0.4*sin(2*t/1s)); }
+    constraint plate { dot(B - A, B - A) == 4 [m^2]; P == 0.5*(A + B); }
+    constraint rocker { dot(B - [2m, 0], B - [2m, 0]) == 1 [m^2]; }
+    constraint third redundant within 2e-6 [m^2] { dot(P - [1m, 0], P - [1m, 0]) == (1m + error)^2; }
+}
+
+mechanism! {
+    /// The doubled row of a pendulum, the second a little longer.
+    pub mechanism Doubled;
+    param error: m = 0;
+    coord p: [m; 2] = [1, 0];
+    constraint rod { norm(p) == 1m; }
+    constraint again redundant within 1e-4m { norm(p) == 1m + error; }
+    body bob { mass: 2, com: p }
+    gravity weight { acceleration: [0, -9.81] }
+}
+
+const GUESS: [f64; 4] = [0.5, 0.5, 0.5, 0.0];
+
+/// What a crank of such a length does to the angle of the plate: least squares of four rows for three angles, to first order.
+///
+/// At ψ = 0, α = β = γ the rows' Jacobian in (β, γ, ψ) is written by hand and its normal equations solved.
+fn least_squares(alpha: f64, error: f64) -> ([f64; 3], [f64; 4]) {
+    let (sine, cosine) = alpha.sin_cos();
+    let rows = [[sine, 0.0, 0.0], [-cosine, 0.0, 2.0], [0.0, sine, 0.0], [0.0, -cosine, 1.0]];
+    let open = [0.0, 0.0, -error * cosine, -error * sine];
+    let mut normal = [[0.0; 4]; 3];
+    for (row, open) in rows.iter().zip(open) {
+        for (i, line) in normal.iter_mut().enumerate() {
+            for j in 0..3 {
+                line[j] += row[i] * row[j];
+            }
+            line[3] -= row[i] * open;
+        }
+    }
+    for i in 0..3 {
+        for k in 0..3 {
+            if k != i {
+                let factor = normal[k][i] / normal[i][i];
+                for j in 0..4 {
+                    normal[k][j] -= factor * normal[i][j];
+                }
+            }
+        }
+    }
+    let step = std::array::from_fn(|i| normal[i][3] / normal[i][i]);
+    let rest = std::array::from_fn(|k| {
+        open[k] + rows[k].iter().zip(&step).map(|(entry, change): (&f64, &f64)| entry * change).sum::<f64>()
+    });
+    (step, rest)
+}
+
+#[test]
+fn what_data_of_fifteen_digits_leave_is_no_contradiction() {
+    for error in [1e-15, 1e-14, 3e-14, 1e-13, -1e-13] {
+        let mut exact =
+            Stepper::assemble(Exact::<f64> { error }, GUESS, 0.0).expect("the digits of the data");
+        for k in 1..=300 {
+            exact.advance_to(0.01 * f64::from(k)).expect("the digits of the data");
+        }
+    }
+    let found = Stepper::assemble(Exact::<f64> { error: 3e-12 }, GUESS, 0.0);
+    assert!(matches!(found, Err(Failure::Inconsistent { level: Level::Position, .. })));
+}
+
+#[test]
+fn rows_within_their_width_are_solved_by_least_squares() {
+    for error in [1e-10, 1e-8, -1e-7, 1e-6, -2e-6] {
+        let mut stated = Stepper::assemble(Stated::<f64> { error, play: 1e-6 }, GUESS, 0.0).expect("within");
+        let mut largest = 0.0_f64;
+        for k in 1..=400 {
+            stated.advance_to(0.01 * f64::from(k)).expect("within the width");
+            let alpha = stated.q()[0];
+            assert!((alpha - 0.5 - 0.4 * (2.0 * stated.t()).sin()).abs() < 1e-14, "the drive is held");
+            let (step, rest) = least_squares(alpha, error);
+            let changes = [stated.q()[1] - alpha, stated.q()[2] - alpha, stated.q()[3]];
+            // To second order in the error: the normal equations have a condition of 1e2 here.
+            let allowed = 1e2 * error * error + 5e-13;
+            assert!(
+                changes.iter().zip(step).all(|(a, b)| (a - b).abs() < allowed),
+                "{error} {changes:?} {step:?}"
+            );
+            let open = stated.phi();
+            assert!(
+                open[..4].iter().zip(rest).all(|(a, b)| (a.abs() - b.abs()).abs() < allowed),
+                "{open:?} {rest:?}"
+            );
+            largest = open[..4].iter().fold(largest, |largest, open| largest.max(open.abs()));
+            // Rates of the plate are those of the exact one, but for what the width does to them.
+            assert!((stated.qd()[1] - stated.qd()[0]).abs() < 1e2 * error.abs() + 1e-12);
+        }
+        assert!(largest <= 1e-6, "no row is open by more than the width: {largest}");
+    }
+}
+
+#[test]
+fn rows_beyond_their_width_are_refused() {
+    for (error, play) in
+        [(1e-5, 1e-6), (1e-4, 1e-5), (1e-9, 1e-10), (1e-3, 0.0), (1e-3, f64::NAN), (1e-3, -1.0)]
+    {
+        let found = Stepper::assemble(Stated::<f64> { error, play }, GUESS, 0.0);
+        if play.is_nan() {
+            assert!(found.is_err());
+            continue;
+        }
+        let Err(Failure::Inconsistent { residual, required, .. }) = found else { panic!("{error} {play}") };
+        assert!(residual > required && required < play.max(0.0) + 2e-13, "{residual} {required}");
+    }
+}
+
+#[test]
+fn a_width_that_is_left_in_motion_is_refused_there() {
+    // The share of each row goes with the direction of the cranks: cos and sin of the angle.
+    let width = 0.9 * largest_rest(1e-5);
+    let mut stated = Stepper::assemble(Stated::<f64> { error: 1e-5, play: width }, GUESS, 0.0);
+    let mut outcomes = [0; 2];
+    for k in 0..400 {
+        let t = 0.01 * f64::from(k);
+        let refused = match &mut stated {
+            Ok(stepper) => stepper.advance_to(t).err(),
+            Err(failure) => Some(*failure),
+        };
+        let alpha = 0.5 + 0.4 * (2.0 * t).sin();
+        let rest = least_squares(alpha, 1e-5).1.iter().fold(0.0_f64, |largest, rest| largest.max(rest.abs()));
+        // Where the least squares of first order leave the width, but for their second order.
+        if (rest - width).abs() > 1e-8 {
+            assert_eq!(refused.is_some(), rest > width, "{t}: {rest} of {width}: {refused:?}");
+        }
+        if let Some(failure) = refused {
+            assert!(matches!(failure, Failure::Inconsistent { .. }), "{failure:?}");
+            outcomes[1] += 1;
+            if stated.is_err() {
+                let next = 0.5 + 0.4 * (2.0 * (t + 0.01)).sin();
+                stated =
+                    Stepper::assemble(Stated { error: 1e-5, play: width }, [next, next, next, 0.0], t + 0.01);
+            }
+        } else {
+            outcomes[0] += 1;
+        }
+    }
+    assert!(outcomes.iter().all(|count| *count > 20), "{outcomes:?}");
+}
+
+/// The largest residual of the least squares over the motion.
+fn largest_rest(error: f64) -> f64 {
+    let rests = (0..400).flat_map(|k| least_squares(0.5 + 0.4 * (0.02 * f64::from(k)).sin(), error).1);
+    rests.fold(0.0, |largest, rest| largest.max(rest.abs()))
+}
+
+#[test]
+fn natural_coordinates_budgets_and_lanes_have_the_same_width() {
+    let guess = [0.877, 0.479, 2.877, 0.479, 1.877, 0.479];
+    for error in [1e-9, 1e-7, 1e-6] {
+        let mut points = Stepper::assemble(Points::<f64> { error }, guess, 0.0).expect("within the width");
+        for k in 1..=200 {
+            let step = points.step(0.01, Budget { newton: 6, fallback: 4 });
+            assert!(matches!(step, Step::Done(_)), "{k}: {step:?}");
+        }
+    }
+    assert!(matches!(
+        Stepper::assemble(Points::<f64> { error: 1e-5 }, guess, 0.0),
+        Err(Failure::Inconsistent { .. })
+    ));
+    let lanes = Stated::<Lanes<f64, 4>> {
+        error: Lanes([0.0, 1e-7, 1e-5, 1e-7]),
+        play: Lanes([1e-6, 1e-6, 1e-6, 1e-9]),
+    };
+    let outcome = lanes_outcome(lanes);
+    assert_eq!(outcome, [true, true, false, false]);
+}
+
+fn lanes_outcome(lanes: Stated<Lanes<f64, 4>>) -> [bool; 4] {
+    use mbs_runtime::{Kinematic, Mechanism, Newton, Outcome};
+    let parameters = lanes.parameters();
+    let mut q = GUESS.map(|angle| Lanes([angle; 4]));
+    let outcome = lanes.solve_blocks(&parameters, &mut q, Lanes([0.1; 4]), &mut Newton::new(Lanes([1.0; 4])));
+    outcome.map(|outcome| outcome == Outcome::Converged)
+}
+
+#[test]
+fn single_precision_has_widths_too() {
+    fn assembles<R: Real>(error: f64, play: f64) -> bool {
+        let (error, play) = (R::constant(error), R::constant(play));
+        let guess = GUESS.map(R::constant);
+        Stepper::<_, R, 4, 5>::assemble(Stated { error, play }, guess, R::constant(0.0)).is_ok()
+    }
+    assert!(assembles::<f32>(1e-4, 1e-4) && !assembles::<f32>(1e-3, 1e-4));
+    assert!(assembles::<f64>(1e-4, 1e-4) && !assembles::<f64>(1e-3, 1e-4));
+}
