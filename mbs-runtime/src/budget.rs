@@ -64,7 +64,7 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
     /// [`Failure::BeyondLimit`].
     #[inline]
     pub fn step(&mut self, h: R, budget: Budget) -> Step {
-        self.turning(h, |stepper, t| stepper.within(t, budget)).unwrap_or_else(Step::Refused)
+        self.turning(h, |stepper, t, rest| stepper.within(t, rest, budget)).unwrap_or_else(Step::Refused)
     }
 
     /// Moves on by `periods` periods of `period` (s) after missed deadlines, in a step a period; 0 counts as 1.
@@ -83,8 +83,8 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
         let mut evaluations = 0_u32;
         let mut step = Step::Refused(Failure::NonFinite { name: "t", line: 0 });
         for k in 1..=periods {
-            step = match S::TURNS {
-                [] => self.step_to(before.0.t + period * R::constant(f64::from(k)), budget),
+            step = match (S::TURNS, S::PHASES) {
+                ([], []) => self.step_to(before.0.t + period * R::constant(f64::from(k)), budget),
                 _ => self.step(period, budget),
             };
             let (Step::Done(statistics) | Step::Degraded { statistics, .. }) = &mut step else {
@@ -115,15 +115,15 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
 
     #[inline]
     fn step_to(&mut self, t: R, budget: Budget) -> Step {
-        self.within(t, budget).unwrap_or_else(Step::Refused)
+        self.within(t, R::constant(0.0), budget).unwrap_or_else(Step::Refused)
     }
 
     #[inline]
-    fn within(&mut self, t: R, budget: Budget) -> Result<Step, Failure> {
+    fn within(&mut self, t: R, rest: R, budget: Budget) -> Result<Step, Failure> {
         if let Some(failure) = self.fault.or(time_failure(t)) {
             return Err(failure);
         }
-        self.with_phases(t, |stepper, phases| stepper.within_budget(t, phases, budget))
+        self.with_phases((t, rest), |stepper, phases| stepper.within_budget(t, phases, budget))
     }
 
     #[inline]

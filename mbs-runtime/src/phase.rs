@@ -89,6 +89,19 @@ impl<T: Scalar> Phase<T> {
         Phase { value, remainder, ..self }
     }
 
+    /// The phase a `rest` of a step (s) further on, so short that its rate does not change.
+    #[inline]
+    pub(crate) fn later(self, rest: T) -> Self {
+        let Phase { rate, acceleration, .. } = self;
+        self.summed(rate * rest, self.own_remainder(), Speed { value: rate, rate: acceleration })
+    }
+
+    /// What the rounding of the value has left out.
+    #[inline]
+    pub(crate) fn left_out(&self) -> T {
+        self.own_remainder()
+    }
+
     /// What the rounding of the value has left out; a remainder above half a rounding belongs to another value, which was
     /// overwritten since.
     #[inline]

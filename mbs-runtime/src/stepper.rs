@@ -137,25 +137,25 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
     #[inline]
     pub fn advance_to(&mut self, t: R) -> Result<Statistics, Failure> {
         match S::TURNS {
-            [] => self.arrive(t),
+            [] => self.at_time(t, Self::arrive),
             _ => self.advance(t - self.state.t),
         }
     }
 
     #[inline(always)]
-    fn arrive(&mut self, t: R) -> Result<Statistics, Failure> {
+    fn arrive(&mut self, t: R, rest: R) -> Result<Statistics, Failure> {
         if let Some(failure) = self.fault.or(time_failure(t)) {
             return Err(failure);
         }
-        self.with_phases(t, |stepper, phases| stepper.advanced(t, phases))
+        self.with_phases((t, rest), |stepper, phases| stepper.advanced(t, phases))
     }
 
-    /// Moves the phases of drives that prescribe a rate on to `t`, then does `step`, which is told what they were; a failure takes
-    /// them back.
+    /// Moves the phases of drives that prescribe a rate on to `t`, and by the `rest` (s) that the times' rounding leaves out, then
+    /// does `step`, which is told what they were; a failure takes them back.
     #[inline(always)]
     pub(crate) fn with_phases<X>(
         &mut self,
-        t: R,
+        (t, rest): (R, R),
         step: impl FnOnce(&mut Self, S::Phases) -> Result<X, Failure>,
     ) -> Result<X, Failure> {
         let before = self.mechanism.phases();
@@ -163,6 +163,9 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
             return step(self, before);
         }
         self.mechanism.advance_phases(self.state.t, t);
+        let mut phases = self.mechanism.phases();
+        phases.as_mut().iter_mut().for_each(|phase| *phase = phase.later(rest));
+        self.mechanism.set_phases(phases);
         step(self, before).inspect_err(|_| self.mechanism.set_phases(before))
     }
 

@@ -59,22 +59,59 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
         &self.turns.counts
     }
 
+    /// Makes `step` to time `t` (s); it is given what roundings of the time leave out, too.
+    #[inline(always)]
+    pub(crate) fn at_time<X>(
+        &mut self,
+        t: R,
+        step: impl FnOnce(&mut Self, R, R) -> Result<X, Failure>,
+    ) -> Result<X, Failure> {
+        match S::PHASES {
+            [] => step(self, t, R::constant(0.0)),
+            _ => self.clocked(Phase::new(t, second()), step),
+        }
+    }
+
+    /// Makes `step` to the time of `clock`. What a phase moves by is what passes on the clock: the difference of two late
+    /// times is wrong by their rounding, in the same direction step after step.
+    #[inline(always)]
+    fn clocked<X>(
+        &mut self,
+        clock: Phase<R>,
+        step: impl FnOnce(&mut Self, R, R) -> Result<X, Failure>,
+    ) -> Result<X, Failure> {
+        let rest = clock.left_out() - self.clock().left_out();
+        let done = step(self, clock.value, rest)?;
+        self.turns.clock = clock;
+        Ok(done)
+    }
+
+    /// The time of the state; another keeper of it may have moved it on, without what the rounding leaves out.
+    #[inline(always)]
+    fn clock(&self) -> Phase<R> {
+        let clock = self.turns.clock;
+        if clock.value == self.state.t { clock } else { Phase::new(self.state.t, second()) }
+    }
+
     /// Makes `step` to the time that it is given, `h` (s) from now.
     #[inline(always)]
     pub(crate) fn turning<X>(
         &mut self,
         h: R,
-        step: impl FnOnce(&mut Self, R) -> Result<X, Failure>,
+        step: impl FnOnce(&mut Self, R, R) -> Result<X, Failure>,
     ) -> Result<X, Failure> {
-        if S::TURNS.is_empty() {
-            return step(self, self.state.t + h);
+        let none = R::constant(0.0);
+        match (S::TURNS, S::PHASES) {
+            ([], []) => return step(self, self.state.t + h, none),
+            ([], _) => return self.clocked(self.clock().advanced(h, second()), step),
+            _ => {}
         }
         let now = self.state.t;
         let mut clock = self.turns.clock;
         clock.value = now;
         let clock = clock.advanced(h, second());
         self.state.t = R::constant(0.0);
-        match step(self, h) {
+        match step(self, h, none) {
             Ok(done) => {
                 (self.state.t, self.turns.clock) = (clock.value, clock);
                 self.take_turns_off();

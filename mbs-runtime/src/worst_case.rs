@@ -230,6 +230,8 @@ impl Budget {
             // Once more where the solution, for what the position stage keeps of it, was not the last point.
             .and(block.evaluation.and(compare(2 * k)))
             .and(steps.times(newton - 1))
+            // What the least residual of surplus rows may be.
+            .and(if m > k { widths(m) } else { Operations::NONE })
             // Iterations that ask whether the residual has stalled.
             .and(
                 outer_rounding(m, k)
@@ -255,6 +257,16 @@ impl Budget {
 }
 
 // The instant: `kinematics`, `stepper`, `path`, `limit`, `phase`, `redundancy`.
+
+/// `Widths::granted`, added to allowances and tolerances.
+const fn widths(m: u64) -> Operations {
+    largest_width(m).and(multiply(2 * m)).and(select(2 * m)).and(compare(m)).and(select(1)).and(add(2 * m))
+}
+
+/// `largest_width`
+const fn largest_width(m: u64) -> Operations {
+    divide(m).and(select(m))
+}
 
 /// Whether some rows may follow from others.
 const fn has_surplus(work: &Work) -> bool {
@@ -392,11 +404,17 @@ const fn contradicted(work: &Work) -> Operations {
     let scales = work.row_scales.and(work.coordinate_scales);
     let open = work.phi_q.and(products(n * m)).and(add(m)).and(divide(m)).and(select(m));
     let size = divide(n + m).and(select(2 * (n + m)));
-    let allowed = divide(1).and(multiply(3)).and(root(1)).and(compare(1 + m));
+    let allowed = divide(1).and(multiply(4)).and(add(1)).and(root(1)).and(compare(1 + m));
     let rates = scales.and(open).and(size).and(allowed).times(2);
     let right = work.phi_t.and(work.gamma).and(add(m)).and(multiply(1));
     let held = work.position.and(work.phi).and(work.row_scales).and(divide(m)).and(select(m));
-    work.coordinate_scales.and(difference(n)).and(right).and(rates).and(held)
+    work.coordinate_scales
+        .and(difference(n))
+        .and(right)
+        .and(rates)
+        .and(held)
+        .and(work.row_scales)
+        .and(largest_width(m))
 }
 
 /// `Mechanism::advance_phases`: rates at four times, inputs moved to three of them, products and sums compensated.
@@ -409,8 +427,14 @@ const fn phases(work: &Work) -> Operations {
     let mean = add(3).and(multiply(1));
     let increment = add(13).and(multiply(8));
     let advanced = add(13).and(multiply(1)).and(select(3)).and(compare(1));
+    // The rest of the time that its rounding leaves out: the clock with its sum, and each phase moved on by it.
+    let left_out = multiply(1).and(select(1)).and(compare(1));
+    let clock = left_out.times(3).and(add(14)).and(compare(1));
+    let rest = left_out.and(add(13)).and(multiply(1));
     work.phase_speeds
         .times(4)
+        .and(clock)
+        .and(rest.times(work.phases as u64))
         .and(quadrature)
         .and(moved)
         .and(mean.and(increment).and(advanced).times(work.phases as u64))

@@ -2,7 +2,7 @@
 
 use mbs_runtime::{
     Block, BlockSolver, Entry, Factorization, FunctionEntry, Kinematic, Margin, Mechanism, Outcome,
-    Reference, Roots, Solved,
+    Reference, Roots, Solved, Widths,
 };
 
 /// The mechanism `S` with its branch conditions, or as if its text declared none.
@@ -112,6 +112,9 @@ impl<S: Kinematic<f64, N, M>, const N: usize, const M: usize> Mechanism<f64, N, 
     }
     fn row_scales(&self, parameters: &S::Parameters) -> [f64; M] {
         self.mechanism.row_scales(parameters)
+    }
+    fn widths(&self, parameters: &S::Parameters) -> [f64; M] {
+        self.mechanism.widths(parameters)
     }
     fn position(&self, parameters: &S::Parameters, q: &[f64; N], t: f64) -> S::Position {
         self.mechanism.position(parameters, q, t)
@@ -238,12 +241,13 @@ impl<B: BlockSolver<f64>> BlockSolver<f64> for Judging<'_, B> {
     fn solve_redundant<const K: usize, const M: usize>(
         &mut self,
         block: &Block<f64, K, M>,
+        widths: &Widths<f64, M>,
         x: [f64; K],
         evaluate: impl FnMut(&[f64; K]) -> ([f64; M], [[f64; K]; M]),
         mut holds: impl FnMut(&[f64; K]) -> bool,
     ) -> ([f64; K], [Outcome; 1]) {
         let counted = self.counted;
-        self.solver.solve_redundant::<K, M>(block, x, evaluate, |x| !counted || holds(x))
+        self.solver.solve_redundant::<K, M>(block, widths, x, evaluate, |x| !counted || holds(x))
     }
 }
 

@@ -89,7 +89,7 @@ const fn capped(k: u64) -> Operations {
 pub const fn gauss_newton_step(m: u64, k: u64) -> Operations {
     let ratio = divide(m).and(select(2 * m)).and(compare(1));
     let factors = orthogonal(m, k).and(add(m)).and(orthogonal_solve(m, k));
-    let change = products(m * k).and(outer_rounding(m, k)).and(within(m).times(3)).and(add(m));
+    let change = products(m * k).and(outer_rounding(m, k)).and(within(m).times(3)).and(add(2 * m));
     finite(m, k).and(ratio).and(factors).and(change).and(capped(k)).and(add(k)).and(select(k))
 }
 

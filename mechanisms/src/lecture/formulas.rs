@@ -1,6 +1,6 @@
 //! Blocks that the assembly takes from formulas of both their positions, where plain Newton would iterate.
 
-use mbs_runtime::{Block, BlockSolver, Factorization, Kinematic, Outcome, Roots, Safeguarded, diagnosis};
+use mbs_runtime::{Block, BlockSolver, Factorization, Kinematic, Outcome, Roots, Safeguarded, Widths, diagnosis};
 
 /// A block with the positions that formulas give it.
 #[derive(Clone, Debug, PartialEq)]
@@ -75,11 +75,12 @@ impl BlockSolver<f64> for Watched {
     fn solve_redundant<const K: usize, const M: usize>(
         &mut self,
         block: &Block<f64, K, M>,
+        widths: &Widths<f64, M>,
         x: [f64; K],
         evaluate: impl FnMut(&[f64; K]) -> ([f64; M], [[f64; K]; M]),
         holds: impl FnMut(&[f64; K]) -> bool,
     ) -> ([f64; K], [Outcome; 1]) {
-        self.solver.solve_redundant::<K, M>(block, x, evaluate, holds)
+        self.solver.solve_redundant::<K, M>(block, widths, x, evaluate, holds)
     }
 }
 

@@ -42,17 +42,6 @@ mechanism! {
     constraint third redundant within 2e-6 [m^2] { dot(P - [1m, 0], P - [1m, 0]) == (1m + error)^2; }
 }
 
-mechanism! {
-    /// The doubled row of a pendulum, the second a little longer.
-    pub mechanism Doubled;
-    param error: m = 0;
-    coord p: [m; 2] = [1, 0];
-    constraint rod { norm(p) == 1m; }
-    constraint again redundant within 1e-4m { norm(p) == 1m + error; }
-    body bob { mass: 2, com: p }
-    gravity weight { acceleration: [0, -9.81] }
-}
-
 const GUESS: [f64; 4] = [0.5, 0.5, 0.5, 0.0];
 
 /// What a crank of such a length does to the angle of the plate: least squares of four rows for three angles, to first order.
@@ -103,7 +92,7 @@ fn what_data_of_fifteen_digits_leave_is_no_contradiction() {
 
 #[test]
 fn rows_within_their_width_are_solved_by_least_squares() {
-    for error in [1e-10, 1e-8, -1e-7, 1e-6, -2e-6] {
+    for error in [1e-10, 1e-8, -1e-7, 1e-6, -1.2e-6] {
         let mut stated = Stepper::assemble(Stated::<f64> { error, play: 1e-6 }, GUESS, 0.0).expect("within");
         let mut largest = 0.0_f64;
         for k in 1..=400 {

@@ -7,4 +7,5 @@ mod k1_inputs_that_turn;
 mod k2_single_precision;
 mod k4_next_to_a_change_point;
 mod k6_declared_branch_near_a_change_point;
+mod k7_rates_at_late_times;
 mod k7_widths_of_redundant_rows;
