@@ -188,7 +188,7 @@ where
         let Batch { mechanism, parameters, weights, q, qd, qdd, margin, .. } = &*self;
         let start = Start { t: from, q, qd, qdd, margin: *margin, weights };
         let trial = Trial::of(mechanism, parameters, &start, to, !self.waits);
-        if !Lanes::<R, L>::all(trial.plain) || self.notes.passes(&trial.orientation) {
+        if !Lanes::<R, L>::all(trial.plain & !trial.coarse) || self.notes.passes(&trial.orientation) {
             // The address of a copy, so that the trial itself stays in registers.
             let doubtful = trial;
             return Some(self.apart(&doubtful, &before, t));
@@ -267,7 +267,7 @@ where
     ) -> [Result<Statistics, Failure>; L] {
         // The homotopy decides what a passage leads to.
         let passes = LaneMask::new(from_fn(|lane| trial.orientation(lane) != self.notes.orientation(lane)));
-        let plain = trial.plain & !passes;
+        let plain = trial.plain & !trial.coarse & !passes;
         let mut notes = self.notes;
         let (from, to) = self.span(t);
         notes.follow(trial, self.margin, to - from);

@@ -179,11 +179,32 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
             let trial = Trial::of(&self.mechanism, &self.parameters, &start, t, R::mask(true));
             // The homotopy decides what a passage leads to.
             if trial.plain && trial.orientation(0) == self.state.orientation {
-                self.changed = false;
-                return Ok(self.state.follow(&trial, t));
+                if !trial.coarse {
+                    self.changed = false;
+                    return Ok(self.state.follow(&trial, t));
+                }
+                if let Some(statistics) = self.polished(trial.q, trial.statistics(0, false), t) {
+                    return Ok(statistics);
+                }
             }
         }
         self.advanced_with_care(t, phases)
+    }
+
+    /// Becomes the state at a position of a plain step, closed further; `None` where there is something against it.
+    #[cold]
+    #[inline(never)]
+    fn polished(&mut self, q: [R; N], statistics: Statistics, t: R) -> Option<Statistics> {
+        let position = self.mechanism.position(&self.parameters, &q, t);
+        let mut found = Found { t, q, position, statistics, open: None };
+        let mut rates = Rates::none();
+        let before = Before::State(&self.state);
+        let failure = rates.solve(&self.mechanism, &self.parameters, &mut found, before);
+        if failure.is_some() || !rates.is_regular() || rates.orientation != self.state.orientation {
+            return None;
+        }
+        self.move_on(found, rates, None);
+        Some(self.state.statistics)
     }
 
     /// A step with all that can happen in it.

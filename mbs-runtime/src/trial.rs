@@ -3,7 +3,7 @@
 use core::array::from_fn;
 
 use crate::diagnosis::index;
-use crate::instant::regular_zone;
+use crate::instant::{is_coarse, regular_zone};
 use crate::kinematics::COARSEST_RESOLUTION;
 use crate::mechanism::negated;
 use crate::path::{LARGEST_APPROACH, LARGEST_SECOND_ORDER_TERM};
@@ -46,6 +46,8 @@ pub(crate) struct Trial<T: Scalar, const N: usize> {
     counts: T,
     /// Lanes in which nothing happened but what does next to a regular position. The others are stepped with care.
     pub plain: T::Mask,
+    /// Lanes in which what is left of the residual is seen in the accelerations.
+    pub coarse: T::Mask,
 }
 
 impl<T: Scalar, const N: usize> Trial<T, N> {
@@ -162,6 +164,7 @@ impl<S: Kinematic<T, N, M>, T: Scalar, const N: usize, const M: usize> Judge<'_,
             evaluations: self.solver.evaluations,
             counts: self.solver.counts,
             plain,
+            coarse: is_coarse(self.solver.ratio, margin.value),
         }
     }
 }

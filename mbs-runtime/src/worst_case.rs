@@ -363,7 +363,7 @@ const fn way(work: &Work, evaluations: u32) -> Operations {
 const fn state(work: &Work) -> Operations {
     let (n, m) = (work.coordinates as u64, work.rows as u64);
     let (branches, limits) = (work.branches as u64, work.limits as u64);
-    let placed = work.position.and(factors(work)).and(multiply(2)).and(compare(3));
+    let placed = work.position.and(factors(work)).and(multiply(4)).and(compare(5));
     let resolved = work.coordinate_scales.and(select(n)).and(multiply(2 * n)).and(compare(3 * n));
     let correction = work.phi.and(rates(work));
     // A position that closes is polished in the singular zone, one that does not gets the step that it lacks.

@@ -1,6 +1,8 @@
 //! Blocks that the assembly takes from formulas of both their positions, where plain Newton would iterate.
 
-use mbs_runtime::{Block, BlockSolver, Factorization, Kinematic, Outcome, Roots, Safeguarded, Widths, diagnosis};
+use mbs_runtime::{
+    Block, BlockSolver, Factorization, Kinematic, Outcome, Roots, Safeguarded, Widths, diagnosis,
+};
 
 /// A block with the positions that formulas give it.
 #[derive(Clone, Debug, PartialEq)]

@@ -6,6 +6,8 @@ mod k1_assemblies_are_kept;
 mod k1_inputs_that_turn;
 mod k2_single_precision;
 mod k4_next_to_a_change_point;
+mod k5_accelerations_at_small_margins;
 mod k6_declared_branch_near_a_change_point;
 mod k7_rates_at_late_times;
+mod k7_singular_exactly;
 mod k7_widths_of_redundant_rows;
