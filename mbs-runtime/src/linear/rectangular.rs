@@ -104,6 +104,30 @@ mod tests {
         assert!(margin < 1e-15 && (x - 1.0_f64).abs() < 1e-14 && (y - 1.0_f64).abs() < 1e-14);
     }
 
+    /// The solution for the second of two columns that differ by `share` √ε across the first.
+    fn of_near_columns<R: Real>(share: f64) -> [f64; 2] {
+        let (along, across) = ([1.0, 2.0, 2.0], [2.0, 1.0, -2.0]);
+        let offset = share * R::EPSILON.to_f64().sqrt();
+        let second = core::array::from_fn(|row| R::constant((along[row] + offset * across[row]) / 3.0));
+        let a = core::array::from_fn(|row| [R::constant(along[row] / 3.0), second[row]]);
+        let (factors, _) = Orthogonal::factorize(&a, &[R::constant(1.0); 3], &[R::constant(1.0); 2]);
+        factors.solve(&second).map(R::to_f64)
+    }
+
+    #[test]
+    fn columns_count_as_dependent_below_the_root_of_epsilon_and_not_above() {
+        for solution in [of_near_columns::<f64>, of_near_columns::<f32>] {
+            for share in [0.0, 0.01, 0.1, 0.8] {
+                let [x, y] = solution(share);
+                assert!((x - 0.5).abs() < 1e-3 && (y - 0.5).abs() < 1e-3, "{share}: {x} {y}");
+            }
+            for share in [1.25, 10.0, 100.0, 1000.0] {
+                let [x, y] = solution(share);
+                assert!(x.abs() < 1e-2 && (y - 1.0).abs() < 1e-2, "{share}: {x} {y}");
+            }
+        }
+    }
+
     #[test]
     fn each_lane_pivots_for_itself() {
         let lanes = |a: f64, b: f64| Lanes([a, b]);

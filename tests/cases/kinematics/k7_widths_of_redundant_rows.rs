@@ -61,13 +61,10 @@ fn least_squares(alpha: f64, error: f64) -> ([f64; 3], [f64; 4]) {
         }
     }
     for i in 0..3 {
-        for k in 0..3 {
-            if k != i {
-                let factor = normal[k][i] / normal[i][i];
-                for j in 0..4 {
-                    normal[k][j] -= factor * normal[i][j];
-                }
-            }
+        let pivot = normal[i];
+        for (_, line) in normal.iter_mut().enumerate().filter(|(k, _)| *k != i) {
+            let factor = line[i] / pivot[i];
+            line.iter_mut().zip(pivot).for_each(|(entry, above)| *entry -= factor * above);
         }
     }
     let step = std::array::from_fn(|i| normal[i][3] / normal[i][i]);
