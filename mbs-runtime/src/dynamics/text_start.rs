@@ -209,7 +209,7 @@ fn require_decided<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>
 /// Singular value below which the second derivative of the rows tells more of a rate than the first: ∛ε, where the error ε/σ² of the
 /// one is that of the other, σ.
 fn doubtful<R: Real>() -> R {
-    R::constant(libm::cbrt(R::EPSILON.to_f64()))
+    R::EPSILON.powf(R::constant(1.0 / 3.0))
 }
 
 /// The combination of rows (M, in the metric) that is dependent in `without` and not in `factors`, of which there is one.
