@@ -158,8 +158,13 @@ fn packed<T: Angle, A: Arithmetic<T>, const K: usize, const WIDE: usize, const N
         // It has nothing to go beside it.
         near = reduce::<T, A, K, true>(&mut sines, &mut cosines, angles);
     } else {
-        let packs = sines.chunks_mut(WIDE).zip(cosines.chunks_mut(WIDE)).zip(angles.chunks(WIDE));
-        for ((sines, cosines), angles) in packs {
+        // No zipped chunks: their number is a division by their size, which cold callers keep apart with a path for zero.
+        let mut start = 0;
+        while start < K {
+            let all = start..K.min(start + WIDE);
+            let parts = (sines.get_mut(all.clone()), cosines.get_mut(all.clone()), angles.get(all));
+            start += WIDE;
+            let (Some(sines), Some(cosines), Some(angles)) = parts else { break };
             near &= if angles.len() <= NARROW {
                 if K <= 2 {
                     padded::<T, A, NARROW, true>(sines, cosines, angles)
