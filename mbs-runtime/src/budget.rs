@@ -60,7 +60,8 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
     /// evaluation a period still follows the motion.
     ///
     /// [`Step::Refused`] with [`Failure::NonFinite`], [`Failure::NotConverged`] (too far from any position for the
-    /// budget, or there is none), [`Failure::Singular`], [`Failure::WrongBranch`],
+    /// budget, or there is none), [`Failure::NotFollowed`] (the next step goes on where the budget ended),
+    /// [`Failure::Discontinuous`], [`Failure::Singular`], [`Failure::WrongBranch`],
     /// [`Failure::BeyondLimit`].
     #[inline]
     pub fn step(&mut self, h: R, budget: Budget) -> Step {

@@ -3,6 +3,7 @@
 use core::hint::black_box;
 
 use crate::diagnosis::index;
+use crate::saved::Kept;
 use crate::{FunctionEntry, Limit, Outcome, Phase, Real, Roots, Scalar, Widths};
 
 /// The scene of a text with all its effects, which every mechanism is in unless a type says otherwise.
@@ -105,6 +106,8 @@ pub trait Mechanism<T: Scalar, const N: usize, const M: usize>: Clone {
     type Phases: Copy + AsRef<[Phase<T>]> + AsMut<[Phase<T>]>;
     /// One value a variable.
     type Values: Copy + AsRef<[T]> + AsMut<[T]>;
+    /// As many numbers, for a [`Saved`](crate::Saved) state.
+    type Kept: Kept;
     /// One value a component of an `out` of the text.
     type Outputs: AsRef<[OutputValue<T>]> + Copy;
     /// The same design in one lane, for fallbacks and diagnosis.

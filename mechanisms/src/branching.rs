@@ -42,6 +42,7 @@ impl<S: Kinematic<f64, N, M>, const N: usize, const M: usize> Mechanism<f64, N, 
     type Limits = S::Limits;
     type Phases = S::Phases;
     type Values = S::Values;
+    type Kept = S::Kept;
     type Outputs = S::Outputs;
     type Lane = S::Lane;
 

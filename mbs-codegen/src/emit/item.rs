@@ -152,6 +152,7 @@ fn implementations(text: &Text, scenes: &Scenes, part: &Part<'_>) -> TokenStream
                 type Limits = [#runtime::Limit<T>; #limits];
                 type Phases = [#runtime::Phase<T>; #phase_count];
                 type Values = [T; #variable_count];
+                type Kept = [::core::primitive::f64; #variable_count];
                 type Outputs = [#runtime::OutputValue<T>; #outputs];
                 type Lane = #lane;
                 #tables

@@ -116,6 +116,7 @@ const _: () = {
         type Limits = [::mbs_runtime::Limit<T>; 0usize];
         type Phases = [::mbs_runtime::Phase<T>; 0usize];
         type Values = [T; 1usize];
+        type Kept = [::core::primitive::f64; 1usize];
         type Outputs = [::mbs_runtime::OutputValue<T>; 1usize];
         type Lane = FourBar<T::Real>;
         const NAME: &'static ::core::primitive::str = "FourBar";

@@ -123,6 +123,7 @@ impl<const N: usize, const M: usize> Mechanism<f64, N, M> for Linkage<N, M> {
     type Limits = [Limit<f64>; 0];
     type Phases = [Phase<f64>; 0];
     type Values = [f64; 1];
+    type Kept = [f64; 1];
     type Outputs = [OutputValue<f64>; 0];
     type Lane = Self;
 

@@ -84,6 +84,7 @@ impl<T: Scalar, const B: usize> Mechanism<T, 5, 5> for FourBar<T, B> {
     type Limits = [Limit<T>; 0];
     type Phases = [Phase<T>; 0];
     type Values = [T; 8];
+    type Kept = [f64; 8];
     type Outputs = [OutputValue<T>; 1];
     type Lane = FourBar<T::Real, B>;
 

@@ -58,7 +58,7 @@ fn every_call_that_moves_refuses_what_lies_beyond() {
         assert_eq!(bits(&rail), before);
         assert!(matches!(at(theta), Err(Failure::BeyondLimit { .. })));
     }
-    let saved: Saved<2> = rail.save();
+    let saved: Saved<2, _> = rail.save();
     let failure = Rail::assemble_near(*rail.mechanism(), &saved, 0.0).unwrap_err();
     assert!(matches!(failure, Failure::BeyondLimit { .. }));
     // The bound itself belongs to the range, whatever rounding makes of it.

@@ -1,14 +1,17 @@
 //! From a saved state back into motion.
 
-use mbs_runtime::{Failure, Mechanism, Real, Saved, Stepper, saved::NEAR};
+use mbs_runtime::{
+    Failure, Mechanism, Real, Saved, Stepper,
+    saved::{Kept, NEAR},
+};
 
 use crate::four_bar::{FourBar, GUESS};
 
 /// Through bytes, as through a memory that keeps them.
-fn kept<const N: usize>(saved: &Saved<N>) -> Saved<N> {
-    let mut memory = [0xFF; 256];
+fn kept<const N: usize, V: Kept>(saved: &Saved<N, V>) -> Saved<N, V> {
+    let mut memory = [0xFF; 512];
     let written = saved.to_le_bytes_into(&mut memory).unwrap();
-    assert_eq!(written, Saved::<N>::BYTES);
+    assert_eq!(written, Saved::<N, V>::BYTES);
     Saved::from_le_bytes(&memory).unwrap()
 }
 
@@ -87,7 +90,9 @@ mod other {
         coord c: rad;
         coord d: rad;
         coord e: rad;
-        drive first: a == 1*t/1s;
+        /// As many as those of the four-bar.
+        param k: [1; 8] = 1;
+        drive first: a == k[0]*t/1s;
         drive second: b == a;
         drive third: c == b;
         drive fourth: d == c;

@@ -4,6 +4,7 @@ mod linkages;
 
 mod k1_assemblies_are_kept;
 mod k1_inputs_that_turn;
+mod k1_saved_states;
 mod k2_single_precision;
 mod k4_next_to_a_change_point;
 mod k5_accelerations_at_small_margins;

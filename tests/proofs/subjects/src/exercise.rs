@@ -107,10 +107,10 @@ pub fn exercise_solvers<S: Kinematic<R, N, M> + Copy, R: Real, const N: usize, c
     let budget = black_box(Budget { newton: 4, fallback: 4 });
     let _ = black_box(solvers::step(&mut stepper, black_box(R::constant(1e-3)), budget));
     let _ = black_box(solvers::skip(&mut stepper, black_box(R::constant(1e-3)), black_box(3), budget));
-    // Room for 60 coordinates.
-    let mut bytes = [0; 512];
+    // Room for 60 coordinates and 30 values.
+    let mut bytes = [0; 1968];
     let written = solvers::save(&stepper, black_box(&mut bytes)).unwrap_or(0);
-    if let Some(saved) = solvers::saved::<N>(black_box(bytes.get(..written).unwrap_or(&[]))) {
+    if let Some(saved) = solvers::saved::<N, _>(black_box(bytes.get(..written).unwrap_or(&[]))) {
         let t = stepper.t();
         black_box(solvers::assemble_near(*stepper.mechanism(), &saved, t)?);
     }

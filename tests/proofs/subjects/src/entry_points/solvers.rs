@@ -1,5 +1,6 @@
 //! Solvers of kinematics.
 
+use mbs_runtime::saved::Kept;
 use mbs_runtime::{
     Assembled, Budget, Failure, Frame, Kinematic, Real, RegularFactors, Saved, Statistics, Step, Stepper,
 };
@@ -73,12 +74,12 @@ entry_points! {
         stepper.save().to_le_bytes_into(bytes)
     }
     /// A state from bytes.
-    fn saved[const N: usize](bytes: &[u8]) -> Option<Saved<N>> {
+    fn saved[const N: usize, V: Kept](bytes: &[u8]) -> Option<Saved<N, V>> {
         Saved::from_le_bytes(bytes)
     }
     /// A stepper after a reset.
     fn assemble_near[S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize](
-        mechanism: S, saved: &Saved<N>, t: R,
+        mechanism: S, saved: &Saved<N, S::Kept>, t: R,
     ) -> Result<Stepper<S, R, N, M>, Failure> {
         Stepper::assemble_near(mechanism, saved, t)
     }
