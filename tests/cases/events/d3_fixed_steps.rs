@@ -75,7 +75,7 @@ fn the_state_at_an_event_is_one_of_the_method() {
         (first_zero(Explicit::new(RungeKutta4, Projection::default())), 2e-5),
         (first_zero(Explicit::new(RungeKutta4, Baumgarte::default())), 2e-5),
         (first_zero(Explicit::new(SemiImplicitEuler, VelocityTransformation)), 0.06),
-        (first_zero(AugmentedLagrangian::default()), 5e-3),
+        (first_zero(AugmentedLagrangian), 5e-3),
         (first_zero(GeneralizedAlpha::default()), 2e-2),
     ];
     for ((error, x), order) in found {
