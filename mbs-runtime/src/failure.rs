@@ -220,12 +220,11 @@ pub enum Failure {
         /// Time (s) of the step's end, or of a stage of it.
         time: f64,
     },
-    /// A step of fixed size ends with more kinetic energy than its start, potentials and forces give: it is too long to follow the
-    /// motion.
-    Unpaid {
+    /// A step of fixed size whose energy grows by more than the power supplied can explain: it is too long to follow the motion.
+    EnergyGain {
         /// Kinetic energy (J) at its end.
         kinetic: f64,
-        /// Kinetic energy (J) at its start, with what potentials and forces give on the way.
+        /// Kinetic energy (J) at its start, with the potential energy released and the work of the power supplied on the way.
         available: f64,
         /// Time (s) of the step's end.
         time: f64,
@@ -373,7 +372,7 @@ impl Failure {
             | Failure::TooFar { time, .. }
             | Failure::InvalidStep { time, .. }
             | Failure::Unbounded { time, .. }
-            | Failure::Unpaid { time, .. }
+            | Failure::EnergyGain { time, .. }
             | Failure::OutOfReach { time, .. }
             | Failure::UnresolvedTolerance { time, .. }
             | Failure::Undecided { time, .. }
@@ -413,7 +412,7 @@ impl Failure {
             | Failure::TooFar { time, .. }
             | Failure::InvalidStep { time, .. }
             | Failure::Unbounded { time, .. }
-            | Failure::Unpaid { time, .. }
+            | Failure::EnergyGain { time, .. }
             | Failure::OutOfReach { time, .. }
             | Failure::UnresolvedTolerance { time, .. }
             | Failure::Undecided { time, .. }

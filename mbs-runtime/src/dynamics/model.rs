@@ -305,14 +305,14 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
             // Written so that NaN is not small.
             small &= (h * *rate).abs() < gate * *scale;
         }
-        if small { Ok(()) } else { self.require_paid((from, h), next) }
+        if small { Ok(()) } else { self.require_explained_energy((from, h), next) }
     }
 
-    /// Fails where the kinetic energy at the end of a step of `h` (s) is several times what its start, potentials and forces
-    /// give, or the energy balance is several times off the energies.
+    /// Fails where the kinetic energy at the end of a step of `h` (s) is several times what its start, potentials and the power
+    /// supplied explain, or the energy balance is several times off the energies.
     #[cold]
     #[inline(never)]
-    fn require_paid<Z>(
+    fn require_explained_energy<Z>(
         &self,
         (from, h): (&Instant<R, N, M, Z>, R),
         next: &Instant<R, N, M, Z>,
@@ -345,7 +345,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
             return Ok(());
         }
         let (kinetic, available) = (end.kinetic.to_f64(), available.to_f64());
-        Err(Failure::Unpaid { kinetic, available, time: next.t.to_f64() })
+        Err(Failure::EnergyGain { kinetic, available, time: next.t.to_f64() })
     }
 
     /// Fails with the name of the acceleration, multiplier or force that is no number.
@@ -461,7 +461,7 @@ const LARGEST_MOTION: f64 = 1e4;
 /// closely: a step of a control loop, or one that follows a motion at all, moves less.
 const LARGE_MOTION: f64 = 0.5;
 
-/// Kinetic energy at the end of such a step over what its start, potentials and forces give. Exactly it is 1 at most; what errors
+/// Kinetic energy at the end of such a step over what its start, potentials and the power supplied explain. Exactly it is 1 at most; what errors
 /// of a step that follows the motion add is a fraction, of the first step of a method of first order from rest the same again.
 const LARGEST_GAIN: f64 = 4.0;
 

@@ -122,10 +122,10 @@ impl fmt::Display for Failure {
                  steps, project onto the constraints where they drift, or use an implicit method where the mechanism is stiff",
                 coordinate.name, coordinate.line, coordinate.unit
             ),
-            Failure::Unpaid { kinetic, available, .. } => write!(
+            Failure::EnergyGain { kinetic, available, .. } => write!(
                 f,
                 "the step to t = {time} s is too long to follow the motion: it ends with a kinetic energy of {kinetic:.3e} J, where its \
-                 start, potentials and forces give {available:.3e} J; take smaller steps, or let `advance_to` choose them"
+                 start, potentials and the power supplied explain {available:.3e} J; take smaller steps, or let `advance_to` choose them"
             ),
             Failure::OutOfReach { until, step, .. } => write!(
                 f,

@@ -538,7 +538,7 @@ impl<'a> Record<'a> {
         // A run that is lost moves its margin as it likes: what ends it is all there is to say.
         let lost = matches!(
             self.failure,
-            Some(Failure::Unbounded { .. } | Failure::Unpaid { .. } | Failure::NonFinite { .. })
+            Some(Failure::Unbounded { .. } | Failure::EnergyGain { .. } | Failure::NonFinite { .. })
         );
         self.forces.add_works(&self.motion.time);
         self.motion.dynamics = Some(self.forces);

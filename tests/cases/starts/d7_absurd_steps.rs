@@ -92,7 +92,7 @@ fn no_step_of_any_method_ends_with_an_energy_from_nowhere() {
                         kinetic(TwoRods::<f64>::default(), $method, h, watched),
                     ];
                     for (end, most) in ends.iter().zip(MOST) {
-                        refused += u32::from(matches!(end, Err(Failure::Unpaid { .. })));
+                        refused += u32::from(matches!(end, Err(Failure::EnergyGain { .. })));
                         assert!(end.is_err() || end.is_ok_and(|energy| energy <= most), "{h} s: {end:?}");
                     }
                 )* };
@@ -121,7 +121,7 @@ fn the_long_step_of_a_pendulum_says_what_is_wrong() {
     let method = Explicit::new(RungeKutta4, Projection::default());
     let failure = kinetic(PointPendulum::<f64>::default(), method, 10.0, true).unwrap_err();
     assert!(
-        matches!(failure, Failure::Unpaid { kinetic, available, .. } if kinetic > 1e3 && available < 10.0)
+        matches!(failure, Failure::EnergyGain { kinetic, available, .. } if kinetic > 1e3 && available < 10.0)
     );
     let message = failure.to_string();
     assert!(message.contains("t = 10 s is too long") && message.contains("`advance_to`"), "{message}");

@@ -83,7 +83,7 @@ where
     /// into eight parts at most, each found by some steps.
     ///
     /// # Errors
-    /// [`Failure::InvalidStep`], [`Failure::StepTooLong`], [`Failure::Unbounded`], [`Failure::Unpaid`], those of the method,
+    /// [`Failure::InvalidStep`], [`Failure::StepTooLong`], [`Failure::Unbounded`], [`Failure::EnergyGain`], those of the method,
     /// [`Failure::WrongBranch`], [`Failure::BeyondLimit`]; [`Failure::Flat`] and [`Failure::Inertialess`] where the state itself
     /// shows why. It is then bit for bit what it was.
     pub fn step(&mut self, h: R) -> Result<(), Failure> {
