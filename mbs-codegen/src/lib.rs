@@ -36,6 +36,8 @@ mod scattered;
 mod structure;
 mod symbolic;
 mod syntax;
+#[doc(hidden)] // tests compare the language reference with it
+pub mod tables;
 
 use diagnostics::Diagnostics;
 use emit::Lengths;

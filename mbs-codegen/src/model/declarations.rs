@@ -17,7 +17,7 @@ use crate::syntax::ast::{Declares, Expression, Loop, Name, Statement, StatementK
 
 /// Most coordinates. A step is linear in them and has arrays of as many on its stack; Φ_q as a whole, which no step asks
 /// for, is a dense array of 288 MB then.
-const MOST_COORDINATES: usize = 6_000;
+pub const MOST_COORDINATES: usize = 6_000;
 
 /// Before: statements in any order. After: all declarations outside loops are in `model` and `names`.
 pub fn declare(

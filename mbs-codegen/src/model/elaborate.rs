@@ -22,9 +22,9 @@ pub struct Fault;
 
 /// Most operations that a text may unroll to: their derivatives and stages are several times as many. Of a text that repeats itself
 /// these are the 100 000 of `.ci/growth`, and some more.
-const MOST_OPERATIONS: usize = 64_000;
+pub const MOST_OPERATIONS: usize = 64_000;
 /// Most expressions, numbers included, which cost less.
-const MOST_EXPRESSIONS: usize = 200_000;
+pub const MOST_EXPRESSIONS: usize = 200_000;
 /// Longest array.
 pub const LONGEST: usize = 6_000;
 /// Largest count, and most rounds of all loops together.

@@ -34,7 +34,7 @@ const ENDS: [&str; 2] = ["from", "to"];
 
 /// What a field holds.
 #[derive(Clone, Copy)]
-enum Kind {
+pub enum Kind {
     /// A number of a unit, of parameters alone.
     Constant(Dimension),
     /// A number of a unit, at the reach.
@@ -50,9 +50,10 @@ enum Kind {
 }
 
 /// A field of an element: its name, what it holds, whether it must be given.
-type Known = (&'static str, Kind, bool);
+pub type Known = (&'static str, Kind, bool);
 
-fn known(element: Element) -> Vec<Known> {
+/// Fields of an element, in the order of the reference.
+pub fn known(element: Element) -> Vec<Known> {
     let per_metre = Dimension::NEWTON.over(Dimension::METRE);
     let scalar = |dimension| Kind::Scalar(dimension, Reach::Force);
     match element {

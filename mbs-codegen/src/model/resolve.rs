@@ -56,9 +56,9 @@ pub fn resolve(statements: &[Statement], diagnostics: &mut Diagnostics) -> Model
 }
 
 /// Most rows.
-const MOST_ROWS: usize = 6_000;
+pub const MOST_ROWS: usize = 6_000;
 /// Most outputs, each with two derivatives.
-const MOST_OUTPUTS: usize = 2_000;
+pub const MOST_OUTPUTS: usize = 2_000;
 
 /// A group of rows, branches or outputs under one name.
 struct Group {

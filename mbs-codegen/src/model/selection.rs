@@ -10,7 +10,7 @@ use crate::syntax::keywords::UNUSABLE;
 use crate::syntax::{Header, NAMELESS, OWN, declares_coordinate, stand_in};
 
 /// Most scenes: each is translated by itself.
-const MOST_SCENES: usize = 64;
+pub const MOST_SCENES: usize = 64;
 
 /// The statements of a scene in the order of the text, no braces of effects among them.
 pub struct Selection {

@@ -42,7 +42,7 @@ pub fn expression(parser: &mut Parser<'_>) -> Read<Expression> {
 }
 
 /// Functions of rows, drives, pins and bodies.
-const REFERRING: [&str; 3] = ["lambda", "effort", "reaction"];
+pub const REFERRING: [&str; 3] = ["lambda", "effort", "reaction"];
 
 /// `references`: whether [`REFERRING`] functions are read as such; not in their own indices, so that nothing nests.
 fn read(parser: &mut Parser<'_>, references: bool) -> Read<Expression> {

@@ -10,16 +10,18 @@ mod parser;
 mod scene;
 mod source;
 mod statement;
-mod tokens;
+pub mod tokens;
 mod unit;
 pub mod unit_symbols;
 
 use proc_macro2::{Span, TokenStream};
 
 use crate::diagnostics::Diagnostics;
+pub use expression::REFERRING;
 pub use header::{Header, OWN};
 pub use scene::NAMELESS;
 use statement::parse;
+pub use statement::{LATER, STATEMENTS};
 
 /// A text as written.
 pub struct Text {

@@ -14,7 +14,7 @@ use super::unit::{declared_type, unit};
 use crate::diagnostics::{Diagnostics, nearest};
 
 /// Words that begin a statement of this version.
-const STATEMENTS: [&str; 29] = [
+pub const STATEMENTS: [&str; 29] = [
     "const",
     "param",
     "input",
@@ -47,7 +47,7 @@ const STATEMENTS: [&str; 29] = [
 ];
 
 /// Words that begin a statement of the language which this version does not translate.
-const LATER: [&str; 2] = ["data", "include"];
+pub const LATER: [&str; 2] = ["data", "include"];
 
 /// Before: flat tokens behind the header. After: all statements that could be read, loops and effects flattened and
 /// balanced, effects and scenes at the top level alone; every other one is reported.

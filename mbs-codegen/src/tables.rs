@@ -1,0 +1,61 @@
+//! Words, symbols and limits of the language as the parser has them: the tests compare the language reference with them.
+
+use crate::model::{declarations, elaborate, elements, names, references, resolve, selection};
+use crate::syntax::{LATER, REFERRING, STATEMENTS, ast::Element, tokens, unit_symbols};
+
+pub use crate::model::functions::FUNCTIONS;
+pub use crate::syntax::unit_symbols::SUFFIXES;
+
+/// Words that begin a statement.
+pub fn statements() -> impl Iterator<Item = &'static str> {
+    STATEMENTS.into_iter()
+}
+
+/// Words that begin a statement of a later version.
+pub fn later() -> impl Iterator<Item = &'static str> {
+    LATER.into_iter()
+}
+
+/// Names that a text cannot declare, those of functions left out.
+pub fn reserved() -> impl Iterator<Item = &'static str> {
+    names::RESERVED.into_iter()
+}
+
+/// Functions whose arguments are names of rows, drives, pins or bodies.
+pub fn referring() -> impl Iterator<Item = &'static str> {
+    REFERRING.into_iter().chain(references::REFERRING)
+}
+
+/// Symbols of coherent SI units.
+pub fn symbols() -> impl Iterator<Item = &'static str> {
+    unit_symbols::SYMBOLS.into_iter().map(|(symbol, _)| symbol)
+}
+
+/// Statements with fields in braces: the word, each field, `true` where the field is required.
+pub fn fields() -> impl Iterator<Item = (&'static str, &'static str, bool)> {
+    let elements = [
+        ("body", Element::Body),
+        ("gravity", Element::Gravity),
+        ("tsda", Element::Tsda),
+        ("rsda", Element::Rsda),
+        ("friction", Element::Friction),
+        ("contact", Element::Contact),
+    ];
+    elements.into_iter().flat_map(|(word, element)| {
+        elements::known(element).into_iter().map(move |(field, _, required)| (word, field, required))
+    })
+}
+
+/// Limits of a text, by the names that the reference gives them.
+pub const LIMITS: [(&str, usize); 10] = [
+    ("tokens", tokens::LONGEST),
+    ("levels of brackets", tokens::DEEPEST),
+    ("coordinates", declarations::MOST_COORDINATES),
+    ("rows", resolve::MOST_ROWS),
+    ("components of outputs", resolve::MOST_OUTPUTS),
+    ("components of an array", elaborate::LONGEST),
+    ("operations of the unrolled text", elaborate::MOST_OPERATIONS),
+    ("operations and numbers of the unrolled text", elaborate::MOST_EXPRESSIONS),
+    ("rounds of all loops", elaborate::MOST_ROUNDS),
+    ("scenes", selection::MOST_SCENES),
+];
