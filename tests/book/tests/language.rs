@@ -239,3 +239,17 @@ fn every_faulty_example_has_the_message_that_the_reference_shows() {
     }
     assert!(count > 10, "{count} faulty examples");
 }
+
+#[test]
+fn every_message_in_a_table_is_one_of_the_compiler() {
+    let folders = ["", "/syntax", "/model", "/equations", "/structure"];
+    let sources = folders.map(|folder| files(&format!("mbs-codegen/src{folder}"), "rs")).concat();
+    let source: String = sources.into_iter().map(|(_, text)| text.replace('`', "")).collect();
+    let text = reference();
+    let messages = column(&text, "| message |");
+    assert!(messages.len() > 20, "{} messages", messages.len());
+    let parts =
+        messages.iter().flat_map(|message| message.split('…').map(|part| part.trim_matches([' ', ':'])));
+    let unknown: Vec<&str> = parts.filter(|part| !source.contains(part)).collect();
+    assert!(unknown.is_empty(), "in no message of mbs-codegen: {unknown:?}");
+}
