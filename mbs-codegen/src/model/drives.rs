@@ -43,10 +43,14 @@ impl Resolver<'_> {
             work.agree(Scalar { quantity: Quantity::Known(rate), ..argument }, speed)?;
             Ok::<_, Fault>((argument, speed))
         })?;
-        if self.contains(speed.id, |node| matches!(node, Node::Coordinate(_))) {
+        let kinds = [
+            ("a coordinate", self.contains(speed.id, |node| matches!(node, Node::Coordinate(_)))),
+            ("a state", self.contains(speed.id, |node| matches!(node, Node::State(_)))),
+        ];
+        if let Some((kind, _)) = kinds.into_iter().find(|(_, found)| *found) {
             self.diagnostics.report(
                 speed.span,
-                format!("the rate that drive `{}` prescribes depends on a coordinate", name.text),
+                format!("the rate that drive `{}` prescribes depends on {kind}", name.text),
                 "make it of the time, parameters and inputs alone",
             );
             return Err(Fault);

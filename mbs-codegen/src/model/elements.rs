@@ -493,7 +493,7 @@ impl Resolver<'_> {
         ))
     }
 
-    /// Every state has a rate, and its start is constant; none stands in a row.
+    /// Every state has a rate, and its start is constant; no row, branch, limit or guess uses one.
     pub(super) fn check_states(&mut self) {
         let model = &*self.model;
         let Some(dynamics) = model.dynamics.as_ref().filter(|dynamics| !dynamics.states.is_empty()) else {
@@ -503,7 +503,8 @@ impl Resolver<'_> {
         let rows = model.rows.iter().map(|row| (row.residual, row.span, &row.name));
         let branches = model.branches.iter().map(|branch| (branch.value, branch.span, &branch.name));
         let guesses = model.coordinates.iter().filter_map(|c| Some((c.guess?, c.span, &c.name)));
-        for (value, span, name) in rows.chain(branches).chain(guesses) {
+        let limits = model.limits.iter().map(|limit| (limit.value, limit.span, &limit.name));
+        for (value, span, name) in rows.chain(branches).chain(limits).chain(guesses) {
             if !model.made_of(value, plain) {
                 let help = "states may stand in forces and outputs alone; what a row needs is a `coord`";
                 self.diagnostics.report(span, format!("`{name}` uses a state"), help);
