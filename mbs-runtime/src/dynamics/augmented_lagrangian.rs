@@ -19,6 +19,10 @@ const PENALTY: f64 = 1e4;
 /// rule leaves at the steps that the method is for.
 const SLOW: f64 = 1e-5;
 
+/// Rounds in which the springs close the rows of one correction, where forces hang on the multipliers: four digits each. What the first
+/// leaves, a ten thousandth, a normal force that feeds back by b would have 1/(1 − b) of.
+const SWEEPS: u32 = 3;
+
 /// Trapezoidal rule for M q̈ + Φ_qᵀ (λ + α Φ) = Q with λ ← λ + α Φ, then velocities and accelerations put onto Φ̇ = 0 and
 /// Φ̈ = 0 by the same matrix.
 ///
@@ -85,14 +89,16 @@ impl AugmentedLagrangian {
             (y.q, y.qd) = (start.q.plus(one, &[1.0], [&change]), qd);
             model.trapezoid(from, h, &mut y, &rate);
             let position = model.position(t, &y);
-            let penalized = Penalized::of(model, &position, (t, h), (&y, &qdd, &lambda))?;
+            let held = model.held(damping.has_halved(), t, (&y, &lambda), counts);
+            let penalized = Penalized::of(model, &position, (t, h), (&y, &qdd, &held))?;
             let phi = model.mechanism.phi(model.parameters, &position);
             let mut augmented = lambda;
             for (((augmented, lambda), alpha), phi) in
                 augmented.iter_mut().zip(&mut lambda).zip(&penalized.alpha).zip(&phi)
             {
                 // What the last correction left open, and the spring that closes it; a part of one leaves open what is not its own.
-                *lambda = if closed { *lambda + *alpha * *phi } else { *lambda };
+                *lambda =
+                    if closed && !S::FORCE_USES_MULTIPLIERS { *lambda + *alpha * *phi } else { *lambda };
                 *augmented = *lambda + *alpha * *phi;
             }
             // Without the spring of this iteration, which goes beyond what it will come to.
@@ -102,11 +108,15 @@ impl AugmentedLagrangian {
                 bearing = lambda.plus(R::constant(1.0), &[1.0], [&penalized.put(&qdd, &gamma).1]);
             }
             rate = model.rates(&position, &y, qdd, &bearing);
-            step = model
-                .corrected((&position, t), &y, &qdd, (&augmented, &bearing), &phi, |imbalance, phi| {
-                    penalized.corrected(imbalance, phi)
-                })?
-                .0;
+            let (correction, taken) = model.corrected(
+                (&position, t),
+                &y,
+                &qdd,
+                (&augmented, &bearing),
+                &phi,
+                |imbalance, phi| penalized.corrected::<S>(imbalance, phi),
+            )?;
+            step = correction;
             counts.iterations += 1;
             counts.evaluations += 1;
             let standing = model.standing(&step, &y.q, &mut last)?;
@@ -114,6 +124,9 @@ impl AugmentedLagrangian {
             counts.unfinished += u64::from(slow && !standing);
             if standing || slow {
                 change = change.plus(-one, &[1.0], [&step]);
+                if S::FORCE_USES_MULTIPLIERS {
+                    lambda = lambda.plus(-one, &[1.0], [&taken]);
+                }
                 let (qd, qdd) = trapezoidal(start, before, &change, h);
                 (y.q, y.qd) = (start.q.plus(one, &[1.0], [&change]), qd);
                 return projected(model, from, h, (y, qdd, lambda));
@@ -121,18 +134,44 @@ impl AugmentedLagrangian {
             if damping.is_last() {
                 return Err(model.unbalanced(&step, t, MOST_ITERATIONS));
             }
-            (change, closed) = damping.next(&change, (&step.map(|step| -step), last), |base| {
-                let (qd, bent) = trapezoidal(start, before, base, h);
-                let moved = State { q: start.q.plus(one, &[1.0], [base]), qd, ..y };
+            // The springs alone take the rows' multipliers on, but those that friction hangs on, which belong to the coordinates.
+            let moved = if S::FORCE_USES_MULTIPLIERS { taken.map(|part| -part) } else { lambda.zero() };
+            let whole = Balance { moved: step.map(|part| -part), lambda: moved };
+            let next = damping.next(&Balance { moved: change, lambda }, (&whole, last), |base| {
+                let (qd, bent) = trapezoidal(start, before, &base.moved, h);
+                let moved = State { q: start.q.plus(one, &[1.0], [&base.moved]), qd, ..y };
                 let place = model.position(t, &moved);
-                let last = Penalized::of(model, &place, (t, h), (&moved, &bent, &lambda))?;
+                let held = model.held(true, t, (&moved, &base.lambda), counts);
+                let last = Penalized::of(model, &place, (t, h), (&moved, &bent, &held))?;
                 let multipliers = (&augmented, &bearing);
-                let natural = model
-                    .corrected((&position, t), &y, &qdd, multipliers, &phi, |f, g| last.corrected(f, g))?;
+                let natural = model.corrected((&position, t), &y, &qdd, multipliers, &phi, |f, g| {
+                    last.corrected::<S>(f, g)
+                })?;
                 Ok(model.largest(&natural.0))
             })?;
+            (Balance { moved: change, lambda }, closed) = next;
         }
         Err(model.unbalanced(&step, t, MOST_ROUNDS))
+    }
+}
+
+/// By how much coordinates (N) change in a step, and multipliers (M) at its end.
+#[derive(Clone, Copy)]
+struct Balance<R, const N: usize, const M: usize> {
+    moved: [R; N],
+    lambda: [R; M],
+}
+
+impl<R: Real, const N: usize, const M: usize> Vector<R> for Balance<R, N, M> {
+    #[inline(always)]
+    fn zero(&self) -> Self {
+        Balance { moved: self.moved.zero(), lambda: self.lambda.zero() }
+    }
+
+    #[inline(always)]
+    fn plus<const K: usize>(&self, h: R, weights: &[f64; K], terms: [&Self; K]) -> Self {
+        let moved = self.moved.plus(h, weights, terms.map(|term| &term.moved));
+        Balance { moved, lambda: self.lambda.plus(h, weights, terms.map(|term| &term.lambda)) }
     }
 }
 
@@ -189,15 +228,40 @@ impl<R: Real, const N: usize, const M: usize> Penalized<R, N, M> {
     }
 
     /// The correction (N) that takes `imbalance` (N) away, and by how much the multipliers (M) fall where it leaves of `phi` (M) what
-    /// it does.
-    fn corrected(&self, imbalance: &[R; N], phi: &[R; M]) -> ([R; N], [R; M]) {
-        let step = self.factors.solve(imbalance, &[]).0.map(|step| step * self.quarter);
-        let mut change = self.alpha;
-        for ((change, row), phi) in change.iter_mut().zip(&self.phi_q).zip(phi) {
-            let left = row.iter().zip(&step).fold(*phi, |open, (entry, step)| open - *entry * *step);
-            *change = -(*change * left);
+    /// it does. Where forces hang on the multipliers it leaves none of it.
+    fn corrected<S: Dynamic<R, N, M>>(&self, imbalance: &[R; N], phi: &[R; M]) -> ([R; N], [R; M]) {
+        let mut step = self.factors.solve(imbalance, &[]).0.map(|step| step * self.quarter);
+        let mut change = self.sprung(&step, phi);
+        if S::FORCE_USES_MULTIPLIERS {
+            self.close(phi, (&mut step, &mut change));
         }
         (step, change)
+    }
+
+    /// By how much the multipliers (M) fall by the springs on what `step` (N) leaves of `phi` (M).
+    fn sprung(&self, step: &[R; N], phi: &[R; M]) -> [R; M] {
+        let mut change = self.alpha;
+        for ((change, row), phi) in change.iter_mut().zip(&self.phi_q).zip(phi) {
+            let left = row.iter().zip(step).fold(*phi, |open, (entry, step)| open - *entry * *step);
+            *change = -(*change * left);
+        }
+        change
+    }
+
+    /// Takes the correction and the fall of the multipliers on until the rows are closed.
+    #[inline(never)]
+    fn close(&self, phi: &[R; M], (step, change): (&mut [R; N], &mut [R; M])) {
+        let (one, mut fallen) = (R::constant(1.0), *change);
+        for _ in 0..SWEEPS {
+            let mut force = [R::constant(0.0); N];
+            for (row, fallen) in self.phi_q.iter().zip(&fallen) {
+                let weight = self.quarter * *fallen;
+                force.iter_mut().zip(row).for_each(|(sum, entry)| *sum = *sum + weight * *entry);
+            }
+            *step = step.plus(-one, &[1.0], [&self.factors.solve(&force, &[]).0]);
+            fallen = self.sprung(step, phi);
+            *change = change.plus(one, &[1.0], [&fallen]);
+        }
     }
 
     /// The rates next to `x` (N) with Φ_q x = `right` (M), A x' = W x + h²/4 Φ_qᵀ α `right`, and the multipliers h²/4 α (Φ_q x' −

@@ -118,7 +118,8 @@ impl GeneralizedAlpha {
             let position = model.position(t, &y);
             rate = model.rates(&position, &y, qdd, &lambda);
             let phi = model.mechanism.phi(model.parameters, &position);
-            let tangent = Tangent::of(model, &position, &y, &qdd, &lambda);
+            let held = model.held(damping.has_halved(), t, (&y, &lambda), counts);
+            let tangent = Tangent::of(model, &position, &y, &qdd, &held);
             let matrix = tangent.combined(of_q, gamma / (beta * h), one);
             let phi_q = model.mechanism.phi_q(model.parameters, &position);
             let factors = System::new(&matrix, &phi_q, model.metric).factorize(S::COORDINATES, t)?;
@@ -148,7 +149,8 @@ impl GeneralizedAlpha {
             (Balance { qdd, lambda }, _) = damping.next(&here, (&whole, last), |base| {
                 let before = moved(&y, &base.qdd);
                 let place = model.position(t, &before);
-                let tangent = Tangent::of(model, &place, &before, &base.qdd, &base.lambda);
+                let held = model.held(true, t, (&before, &base.lambda), counts);
+                let tangent = Tangent::of(model, &place, &before, &base.qdd, &held);
                 let matrix = tangent.combined(of_q, gamma / (beta * h), one);
                 let phi_q = model.mechanism.phi_q(model.parameters, &place);
                 let last = System::new(&matrix, &phi_q, model.metric).factorize(S::COORDINATES, t)?;

@@ -1,8 +1,9 @@
 //! What implicit methods share: the tangent of the equations of motion, and the end of their iterations.
 
 use super::integrals::IntegralsOf;
-use super::model::Model;
+use super::model::{Counts, Formulation, Model};
 use super::motion::Instant;
+use super::multipliers::Unstabilized;
 use super::vector::{State, Vector};
 use crate::{Dynamic, Failure, Real, kinematics};
 
@@ -57,6 +58,11 @@ impl<R: Real, Y: Vector<R>> Damping<R, Y> {
     /// Whether the next correction is the last one; where some were halved all of [`MOST_ROUNDS`] are tried.
     pub(super) fn is_last(&self) -> bool {
         MOST_ITERATIONS <= self.taken + 1 && !self.halved
+    }
+
+    /// Whether any correction was halved.
+    pub(super) fn has_halved(&self) -> bool {
+        self.halved
     }
 
     /// The next point from `here`, where `correction` of `size` was found, and whether that is a whole correction. `natural`: the
@@ -223,6 +229,27 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         });
         let (step, after, _) = found?;
         Ok((step, bearing.plus(-one, &[1.0], [&after])))
+    }
+
+    /// Multipliers (M) that tangents are taken with: `lambda` (M) of the iteration, or where corrections overshoot those that belong to
+    /// the state, if it has any. Friction that locks nearly changes them a thousandfold within its smoothing, and the slopes of one
+    /// side would be wrong by as much on the other.
+    #[inline(always)]
+    pub(super) fn held(
+        &self,
+        overshoots: bool,
+        t: R,
+        (y, lambda): (&State<R, N, S::States>, &[R; M]),
+        counts: &mut Counts,
+    ) -> [R; M] {
+        if S::FORCE_USES_MULTIPLIERS && overshoots { self.held_by(t, (y, lambda), counts) } else { *lambda }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn held_by(&self, t: R, (y, lambda): (&State<R, N, S::States>, &[R; M]), counts: &mut Counts) -> [R; M] {
+        let solved = Unstabilized.solve(self, t, y, lambda, counts);
+        solved.map_or(*lambda, |solved| solved.lambda)
     }
 
     /// First-order states and work at the end of a step, by the trapezoidal rule from the rates at both ends.
