@@ -246,6 +246,7 @@ impl Resolver<'_> {
             Kind::Orientation => (Dimension::NUMBER, Reach::Position),
         };
         let user = format!("`{}`", field.name.text);
+        let lengths = self.model.longest.clone();
         let value = self.elaborate(reach, |work| {
             let value = work.value(&field.value)?;
             let value = initialiser(work, value, dimension)?;
@@ -256,7 +257,13 @@ impl Resolver<'_> {
                 Kind::Orientation => parameters(work, &value, &user).map(|_| ())?,
             }
             Ok::<_, Fault>(value)
-        })?;
+        });
+        if matches!(kind, Kind::Constant(dimension) | Kind::Vector(dimension) if dimension != Dimension::METRE)
+        {
+            // The millimetre of a speed is no length of the mechanism.
+            self.model.longest = lengths;
+        }
+        let value = value?;
         if reach == Reach::Position {
             self.stateless(&value)?;
         }

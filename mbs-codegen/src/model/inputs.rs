@@ -6,7 +6,7 @@ use super::{Field, Model, Role};
 use crate::diagnostics::Diagnostics;
 
 /// Before: a resolved model. After: inputs without rates that stand in a row, in the place of a body or of a spring, or in what
-/// a force takes the rate of, are reported: there their rates would silently be 0.
+/// a force or an output takes the rate of, are reported: there their rates would silently be 0.
 pub fn check(model: &Model, diagnostics: &mut Diagnostics) {
     let inputs: Vec<&Field> = model.fields.iter().filter(|field| field.role == Role::Input).collect();
     if inputs.is_empty() {
@@ -41,7 +41,19 @@ pub fn check(model: &Model, diagnostics: &mut Diagnostics) {
 fn places(model: &Model) -> Vec<(Id, String)> {
     let rows = model.rows.iter().map(|row| (row.residual, "a constraint or drive".to_string()));
     let mut places: Vec<(Id, String)> = rows.collect();
-    let Some(dynamics) = &model.dynamics else { return places };
+    if let Some(dynamics) = &model.dynamics {
+        places.extend(of_dynamics(model, dynamics));
+    }
+    for output in &model.outputs {
+        let phrase = format!("what output `{}` takes the rate of", output.name);
+        places.extend(rates(model, [output.value]).map(|argument| (argument, phrase.clone())));
+    }
+    places
+}
+
+/// Those of bodies and forces.
+fn of_dynamics(model: &Model, dynamics: &Dynamics) -> Vec<(Id, String)> {
+    let mut places = Vec::new();
     for body in &dynamics.bodies {
         let parts = of_body(body).into_iter();
         places.extend(parts.flat_map(|(field, ids)| named(field, &body.name, ids)));
@@ -87,11 +99,16 @@ fn rated(model: &Model, dynamics: &Dynamics) -> Vec<(Id, String)> {
         }
     });
     let states = dynamics.states.iter().filter_map(|state| state.rate);
-    let reached = model.expressions.reachable(values.chain(states));
-    let nodes = model.expressions.iter().filter(|(id, _)| reached.get(id.index()) == Some(&true));
-    let arguments = nodes.filter_map(|(_, node)| match node {
+    let arguments = rates(model, values.chain(states));
+    arguments.map(|argument| (argument, "what a force takes the rate of".to_string())).collect()
+}
+
+/// What stands under a rate in these expressions.
+fn rates(model: &Model, values: impl IntoIterator<Item = Id>) -> impl Iterator<Item = Id> {
+    let reached = model.expressions.reachable(values);
+    let nodes = model.expressions.iter().filter(move |(id, _)| reached.get(id.index()) == Some(&true));
+    nodes.filter_map(|(_, node)| match node {
         Node::Rate(argument, _) => Some(argument),
         _ => None,
-    });
-    arguments.map(|argument| (argument, "what a force takes the rate of".to_string())).collect()
+    })
 }

@@ -137,17 +137,19 @@ impl AugmentedLagrangian {
             // The springs alone take the rows' multipliers on, but those that friction hangs on, which belong to the coordinates.
             let moved = if S::FORCE_USES_MULTIPLIERS { taken.map(|part| -part) } else { lambda.zero() };
             let whole = Balance { moved: step.map(|part| -part), lambda: moved };
-            let next = damping.next(&Balance { moved: change, lambda }, (&whole, last), |base| {
+            let here = Balance { moved: change, lambda };
+            let next = damping.next(&here, (&whole, last), |base, least| {
                 let (qd, bent) = trapezoidal(start, before, &base.moved, h);
                 let moved = State { q: start.q.plus(one, &[1.0], [&base.moved]), qd, ..y };
+                if S::FORCE_USES_MULTIPLIERS {
+                    let weight = one / quarter;
+                    let here = model.residual(t, &y, &qdd, &lambda, weight)?;
+                    return Ok((here, model.residual(t, &moved, &bent, &base.lambda, weight)?));
+                }
                 let place = model.position(t, &moved);
-                let held = model.held(true, t, (&moved, &base.lambda), counts);
-                let last = Penalized::of(model, &place, (t, h), (&moved, &bent, &held))?;
-                let multipliers = (&augmented, &bearing);
-                let natural = model.corrected((&position, t), &y, &qdd, multipliers, &phi, |f, g| {
-                    last.corrected::<S>(f, g)
-                })?;
-                Ok(model.largest(&natural.0))
+                let last = Penalized::of(model, &place, (t, h), (&moved, &bent, &base.lambda))?;
+                let imbalance = model.imbalance(&position, &y, &qdd, (&augmented, &bearing));
+                Ok((model.largest(&last.corrected::<S>(&imbalance, &phi).0), least))
             })?;
             (Balance { moved: change, lambda }, closed) = next;
         }

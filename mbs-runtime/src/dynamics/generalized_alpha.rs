@@ -146,18 +146,19 @@ impl GeneralizedAlpha {
             if damping.is_last() {
                 return Err(model.unbalanced(&step, t, MOST_ITERATIONS));
             }
-            (Balance { qdd, lambda }, _) = damping.next(&here, (&whole, last), |base| {
+            (Balance { qdd, lambda }, _) = damping.next(&here, (&whole, last), |base, least| {
                 let before = moved(&y, &base.qdd);
+                if S::FORCE_USES_MULTIPLIERS {
+                    let here = model.residual(t, &y, &here.qdd, &here.lambda, of_q)?;
+                    return Ok((here, model.residual(t, &before, &base.qdd, &base.lambda, of_q)?));
+                }
                 let place = model.position(t, &before);
-                let held = model.held(true, t, (&before, &base.lambda), counts);
-                let tangent = Tangent::of(model, &place, &before, &base.qdd, &held);
+                let tangent = Tangent::of(model, &place, &before, &base.qdd, &base.lambda);
                 let matrix = tangent.combined(of_q, gamma / (beta * h), one);
                 let phi_q = model.mechanism.phi_q(model.parameters, &place);
                 let last = System::new(&matrix, &phi_q, model.metric).factorize(S::COORDINATES, t)?;
-                let multipliers = (&here.lambda, &here.lambda);
-                let natural = model
-                    .corrected((&position, t), &y, &here.qdd, multipliers, &phi, |f, g| last.solve(f, g))?;
-                Ok(model.largest(&natural.0))
+                let imbalance = model.imbalance(&position, &y, &here.qdd, (&here.lambda, &here.lambda));
+                Ok((model.largest(&last.solve(&imbalance, &phi).0), least))
             })?;
         }
         Err(model.unbalanced(&step, t, MOST_ROUNDS))

@@ -1,6 +1,7 @@
 //! What implicit methods share: the tangent of the equations of motion, and the end of their iterations.
 
 use super::integrals::IntegralsOf;
+use super::kkt::System;
 use super::model::{Counts, Formulation, Model};
 use super::motion::Instant;
 use super::multipliers::Unstabilized;
@@ -66,7 +67,8 @@ impl<R: Real, Y: Vector<R>> Damping<R, Y> {
     }
 
     /// The next point from `here`, where `correction` of `size` was found, and whether that is a whole correction. `natural`: the
-    /// size of the correction here by the tangents of a point before.
+    /// size here of what is to fall, and there, by the tangents of the point before, where it is that of
+    /// the correction.
     ///
     /// # Errors
     /// Those of `natural`.
@@ -75,7 +77,7 @@ impl<R: Real, Y: Vector<R>> Damping<R, Y> {
         &mut self,
         here: &Y,
         (correction, size): (&Y, R),
-        natural: impl FnOnce(&Y) -> Result<R, Failure>,
+        natural: impl FnOnce(&Y, R) -> Result<(R, R), Failure>,
     ) -> Result<(Y, bool), Failure> {
         let suspect = self.last.as_ref().is_some_and(|(.., least)| self.suspect * *least <= size);
         if suspect && let Some(point) = self.halved(natural)? {
@@ -91,12 +93,16 @@ impl<R: Real, Y: Vector<R>> Damping<R, Y> {
     /// The point with half as much of the last correction, where the present share of it has led to no smaller residual.
     #[cold]
     #[inline(never)]
-    fn halved(&mut self, natural: impl FnOnce(&Y) -> Result<R, Failure>) -> Result<Option<Y>, Failure> {
+    fn halved(
+        &mut self,
+        natural: impl FnOnce(&Y, R) -> Result<(R, R), Failure>,
+    ) -> Result<Option<Y>, Failure> {
         let Some((base, before, least)) = &self.last else { return Ok(None) };
         if self.halvings == MOST_HALVINGS {
             return Ok(None);
         }
-        if natural(base)? < (R::constant(1.0) - R::constant(0.25) * self.share) * *least {
+        let (here, there) = natural(base, *least)?;
+        if here < (R::constant(1.0) - R::constant(0.25) * self.share) * there {
             return Ok(None);
         }
         self.share = R::constant(0.5) * self.share;
@@ -229,6 +235,32 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         });
         let (step, after, _) = found?;
         Ok((step, bearing.plus(-one, &[1.0], [&after])))
+    }
+
+    /// Size of the correction at a point by mass over `weight` alone, without slopes: the residual of the forces where friction has the
+    /// multipliers of the point. Where those feed back, the correction itself may grow towards the solution, for its slopes fall faster
+    /// than what it is to take away.
+    ///
+    /// # Errors
+    /// [`Failure::Locked`], [`Failure::Ambiguous`], [`Failure::Inertialess`].
+    #[cold]
+    #[inline(never)]
+    pub(super) fn residual(
+        &self,
+        t: R,
+        y: &State<R, N, S::States>,
+        qdd: &[R; N],
+        lambda: &[R; M],
+        weight: R,
+    ) -> Result<R, Failure> {
+        let (mechanism, parameters) = (self.mechanism, self.parameters);
+        let position = self.position(t, y);
+        let mass = mechanism.mass(parameters, &position).map(|row| row.map(|entry| weight * entry));
+        let (phi, phi_q) = (mechanism.phi(parameters, &position), mechanism.phi_q(parameters, &position));
+        let factors = System::new(&mass, &phi_q, self.metric).factorize(S::COORDINATES, t)?;
+        let solve = |force: &[R; N], phi: &[R; M]| factors.solve(force, phi);
+        let found = self.corrected((&position, t), y, qdd, (lambda, lambda), &phi, solve)?;
+        Ok(self.largest(&found.0))
     }
 
     /// Multipliers (M) that tangents are taken with: `lambda` (M) of the iteration, or where corrections overshoot those that belong to

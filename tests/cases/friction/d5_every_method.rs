@@ -90,6 +90,50 @@ fn a_normal_force_swings_through_zero_under_every_method() {
     }
 }
 
+/// Speed of the block after `t` (s), with its friction smooth below 1 mm/s: N = N₀ + b τ |N|, by Runge and Kutta's method.
+fn slid_and_stuck(wedge: &Wedge, t: f64) -> f64 {
+    // Slopes of the friction are 2e6/s at most.
+    let steps = 2_000_000;
+    let h = t / f64::from(steps);
+    let rate = |t: f64, v: f64| {
+        let (load, share) = (10.0 * (3.0 * t).cos() + 1.0, (v / 1e-3).tanh());
+        let normal = if load > 0.0 { load / (1.0 - wedge.b * share) } else { load / (1.0 + wedge.b * share) };
+        (wedge.pull - 0.5 * normal.abs() * share) / 2.0
+    };
+    (0..steps).fold(5.0, |v, step| {
+        let t = h * f64::from(step);
+        let a = rate(t, v);
+        let b = rate(t + 0.5 * h, v + 0.5 * h * a);
+        let c = rate(t + 0.5 * h, v + 0.5 * h * b);
+        let d = rate(t + h, v + h * c);
+        v + h / 6.0 * (a + 2.0 * (b + c) + d)
+    })
+}
+
+#[test]
+fn a_brake_that_nearly_locks_itself_sticks_and_slips_under_implicit_steps() {
+    fn speed(wedge: Wedge, method: impl Method<Wedge, f64, 2, 1>, h: f64) -> Result<f64, Failure> {
+        let mut run = Simulation::start_from_text(wedge, method, 0.0)?;
+        (0..(2.0 / h).round() as u32).try_for_each(|_| run.step(h))?;
+        Ok(run.qd()[0])
+    }
+    // N is N₀/(1 − |b|) as long as it slides, a thousandth of it where it sticks.
+    let wedge = Wedge { b: -0.999, pull: 40.0 };
+    let truth = slid_and_stuck(&wedge, 2.0);
+    for h in [1e-2, 1e-3] {
+        let found = [
+            speed(wedge, AugmentedLagrangian, h),
+            speed(wedge, Extrapolated, h),
+            speed(wedge, GeneralizedAlpha::default(), h),
+        ];
+        for found in found {
+            let error = (found.unwrap_or_else(|failure| panic!("{h}: {failure}")) - truth).abs();
+            // When it comes loose again is known to a step's length, in which its pull adds 20 m/s² h.
+            assert!(error < 20.0 * h, "{h}: {error:e} of {truth}");
+        }
+    }
+}
+
 #[test]
 fn several_or_no_normal_forces_are_answered_so_by_every_method() {
     // Beyond b = 1 a load that presses has no solution, one that lifts two.

@@ -93,3 +93,20 @@ fn guesses_count_where_the_text_has_no_other_lengths() {
     let zero = Ratios { r: 0.0 };
     assert_eq!(zero.coordinate_scales(&zero.parameters()), [4.0; 3]);
 }
+
+mechanism! {
+    /// A block without a length: the millimetre of a speed is none.
+    pub mechanism Block;
+    coord x: m = 0;
+    coord y: m = 0;
+    body block { mass: 2, com: [x, y] }
+    force load: 10N on y;
+    constraint guide { y == 0; }
+    friction rub { along: x, normal: lambda(guide), coefficient: 0.5, speed: 1mm/1s }
+}
+
+#[test]
+fn the_millimetre_of_a_speed_is_no_length_of_the_mechanism() {
+    let block = Block::<f64>::default();
+    assert_eq!(block.coordinate_scales(&block.parameters()), [1.0; 2]);
+}
