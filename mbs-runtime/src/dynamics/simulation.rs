@@ -38,6 +38,8 @@ pub struct Simulation<S: Dynamic<R, N, M>, X, R: Real, const N: usize, const M: 
     /// Whether parameters or inputs have changed since the instant was solved.
     stale: bool,
     start: R,
+    /// A time (s) that a step ended at, and what its rounding leaves out of the steps asked for.
+    clock: (R, R),
     balanced: bool,
     /// Whether rows follow from others on the constraints alone, as found at the start, behind changes and singular positions.
     rank_rises: bool,
@@ -192,6 +194,7 @@ where
             now,
             stale: false,
             start: t,
+            clock: (t, R::constant(0.0)),
             balanced: true,
             rank_rises,
             passed: false,

@@ -2,3 +2,4 @@
 mod d7_absurd_steps;
 mod d8_declared_starts;
 mod d9_reference_length;
+mod k7_times_of_steps;

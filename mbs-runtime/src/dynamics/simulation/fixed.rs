@@ -80,13 +80,38 @@ where
     }
 
     /// Moves on by one step of `h` (s): a fixed amount of work, but for a step in which a contact closes or opens. That is cut there,
-    /// into eight parts at most, each found by some steps.
+    /// into eight parts at most, each found by some steps. The time is that of all steps in a row together, to rounding: what that of
+    /// one step leaves out the next makes up for.
+    ///
+    /// A step that gains energy is refused, one that is inaccurate without that is not: its error would take a second step to tell, and
+    /// a long step of a uniform motion is exact, be it many turns. `advance_to` keeps to a tolerance.
     ///
     /// # Errors
     /// [`Failure::InvalidStep`], [`Failure::StepTooLong`], [`Failure::Unbounded`], [`Failure::EnergyGain`], those of the method,
     /// [`Failure::WrongBranch`], [`Failure::BeyondLimit`]; [`Failure::Flat`] and [`Failure::Inertialess`] where the state itself
     /// shows why. It is then bit for bit what it was.
     pub fn step(&mut self, h: R) -> Result<(), Failure> {
+        let (length, rest) = self.length(h);
+        self.stepped(length)?;
+        self.clock = (self.now.t, rest);
+        Ok(())
+    }
+
+    /// The length (s) of a step of `h` (s) as times have it, with what earlier ones left out, and what it leaves out itself.
+    fn length(&self, h: R) -> (R, R) {
+        let (zero, from) = (R::constant(0.0), self.now.t);
+        let wanted = if self.clock.0 == from { h + self.clock.1 } else { h };
+        let length = (from + wanted) - from;
+        // A step that is none is named as it was given.
+        if zero.less(h) && from + h != from && zero.less(length) {
+            (length, wanted - length)
+        } else {
+            (h, zero)
+        }
+    }
+
+    /// A step of `h` (s), as it is.
+    fn stepped(&mut self, h: R) -> Result<(), Failure> {
         let ahead = self.ahead(h, self.counts)?;
         if !S::CONTACTS.is_empty() && self.kink(&ahead)?.is_some() {
             return self.step_in_parts(ahead.next.t);
@@ -107,7 +132,7 @@ where
             return self.stand();
         }
         for index in 1..=steps {
-            self.step(end_of(from, until, (index, steps)) - self.now.t)?;
+            self.stepped(end_of(from, until, (index, steps)) - self.now.t)?;
         }
         Ok(())
     }
