@@ -4,13 +4,13 @@ use std::time::{Duration, Instant};
 
 use mbs_runtime::dynamics::{
     AugmentedLagrangian, Baumgarte, Counts, DormandPrince5, DormandPrince8, Doubt, Embedded, Explicit,
-    Extrapolated, Formulation, GeneralizedAlpha, Method, Penalty, Projection, Radau5, RungeKutta4,
-    SemiImplicitEuler, Simulation, Stages, Tolerance, Unstabilized, VelocityTransformation,
+    Extrapolated, Formulation, GeneralizedAlpha, Method, MovedStart, Penalty, Projection, Radau5,
+    RungeKutta4, SemiImplicitEuler, Simulation, Stages, Tolerance, Unstabilized, VelocityTransformation,
 };
 use mbs_runtime::{Dynamic, Failure, Motion as Moving, Partitioned};
 
 use super::single::{Quadrature, Single, add_works};
-use super::start::{Start, start, text_start};
+use super::start::{Start, moved_start, start, text_start};
 use super::{AnyDynamics, determined, supplied};
 use crate::facade::{Motion, State};
 use crate::motion::{self, Forces};
@@ -131,6 +131,8 @@ pub struct Simulated {
     pub rejected: u32,
     /// Whether all rows together took the place of independent coordinates, which the mechanism does not have.
     pub replaced: bool,
+    /// The number of the text's start that the rows moved most.
+    pub moved_start: Option<MovedStart<f64>>,
     /// What is doubtful about the stabilisation.
     pub doubt: Option<Doubt>,
     /// Time (s) from which on the motion is not determined, where the method does not lead through a singular position; none of a run
@@ -259,6 +261,7 @@ pub(crate) fn simulate<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
         },
     };
     let mut found = found?;
+    found.moved_start = moved_start(mechanism, &found.motion);
     found.motion.dynamics.iter_mut().for_each(supplied::name_rows::<S, N, M>);
     if !matches!(approach.stabilization, Stabilization::None | Stabilization::Baumgarte(_)) {
         found.undetermined = None;
@@ -547,6 +550,7 @@ impl<'a> Record<'a> {
             counts,
             rejected: 0,
             replaced: false,
+            moved_start: None,
             doubt: run.doubt(span / counts.steps.max(1) as f64),
             undetermined: run.passage().filter(|_| !lost).map(|passage| passage.t),
             failure: self.failure,

@@ -1,6 +1,9 @@
 //! Where a motion from forces starts.
 
+use mbs_runtime::dynamics::MovedStart;
 use mbs_runtime::{Dynamic, Newton, Outcome, Partitioned};
+
+use crate::motion::Motion;
 
 /// Residual of a row in the reference metric, or of its rate (1/s), that counts as met: numbers typed with nine digits.
 const MET: f64 = 1e-8;
@@ -53,4 +56,39 @@ pub(crate) fn text_start<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
 ) -> Start<N> {
     let parameters = mechanism.parameters();
     (mechanism.guess(&parameters), mechanism.start_rates(&parameters))
+}
+
+/// Speed (1/s, in the reference metric) below which no rate counts as moved: that of a scale in 1000 seconds.
+const REST: f64 = 1e-3;
+
+/// The number that the text declares by `start` and that differs most from where `motion` begins, of coordinates, or where none of them
+/// was moved, of rates; none where all are kept to nine digits.
+pub(crate) fn moved_start<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
+    mechanism: &S,
+    motion: &Motion,
+) -> Option<MovedStart<f64>> {
+    let parameters = mechanism.parameters();
+    let scales = mechanism.coordinate_scales(&parameters);
+    let (q, qd) = (mechanism.guess(&parameters), mechanism.start_rates(&parameters));
+    let actual: Vec<[f64; 2]> = motion
+        .coordinates
+        .iter()
+        .map(|curve| [&curve.q, &curve.qd].map(|values| values.first().copied().unwrap_or(f64::NAN)))
+        .collect();
+    let most = |indices: &[u16], declared: &[f64; N], rate: bool, unit: &dyn Fn(f64, f64) -> f64| {
+        let mut worst = (MET, None);
+        for index in indices.iter().map(|index| usize::from(*index)) {
+            let (coordinate, declared) = (*S::COORDINATES.get(index)?, *declared.get(index)?);
+            let actual = actual.get(index)?[usize::from(rate)];
+            let change = ((actual - declared) / unit(*scales.get(index)?, declared)).abs();
+            if worst.0 < change {
+                worst = (change, Some(MovedStart { coordinate, rate, declared, actual }));
+            }
+        }
+        worst.1
+    };
+    let speeds = qd.iter().zip(&scales).map(|(qd, scale)| (qd / scale).abs());
+    let speed = speeds.fold(REST, f64::max);
+    most(S::STARTED, &q, false, &|scale, declared| scale.max(declared.abs()))
+        .or_else(|| most(S::STARTED_RATES, &qd, true, &|scale, _| scale * speed))
 }

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use mbs_runtime::Failure;
-use mbs_runtime::dynamics::{Counts, Doubt};
+use mbs_runtime::dynamics::{Counts, Doubt, MovedStart};
 use mechanisms::analyses::AnyDynamics;
 use mechanisms::analyses::direct::{Approach, Simulated, Stabilization, equal};
 
@@ -92,6 +92,9 @@ fn balance(found: &Simulated) -> Vec<[String; 2]> {
     if found.counts.rank_revealing > 0 {
         figures.push(pair("rank-revealing factorizations", found.counts.rank_revealing.to_string()));
     }
+    if let Some(start) = &found.moved_start {
+        figures.push(pair("start moved", moved(start)));
+    }
     if let Some(t) = found.undetermined {
         figures.push(pair("not determined", undetermined(t)));
     }
@@ -99,6 +102,20 @@ fn balance(found: &Simulated) -> Vec<[String; 2]> {
         figures.push(pair("doubtful", doubtful(doubt).to_string()));
     }
     figures
+}
+
+/// By how much the rows moved what the text declares.
+fn moved(start: &MovedStart<f64>) -> String {
+    let MovedStart { coordinate, rate, declared, actual } = start;
+    let (what, per) = if *rate { ("the rate of ", "/s") } else { ("", "") };
+    format!(
+        "{what}`{}` (line {}) from {} to {} {}{per}: the other numbers of the start do not meet the rows with it",
+        coordinate.name,
+        coordinate.line,
+        significant(*declared, 9),
+        significant(*actual, 9),
+        coordinate.unit
+    )
 }
 
 /// What the steps cost, and what the instants between them.
