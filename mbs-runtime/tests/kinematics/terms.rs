@@ -105,6 +105,43 @@ fn a_plain_step_ends_within_both_bounds_of_a_limit() {
 }
 
 mechanism! {
+    /// A slide between two stops that takes another one along, which has its own.
+    pub mechanism Coupled;
+    input reach: m, rates;
+    coord x: m = 0;
+    coord y: m = 0;
+    drive slide: x == reach;
+    constraint bar { y == 2*x; }
+    limit first: -1m <= x <= 1m;
+    limit second: -0.2m <= y <= 0.3m;
+}
+
+#[test]
+fn a_plain_step_ends_within_every_limit_and_each_lane_has_its_own_inputs() {
+    let values = [0.01, -0.02, 0.03, -0.04];
+    let mut batch =
+        Batch::assemble(Coupled::<Lanes<f64, 4>>::default(), &[[0.0; 2]; 4], [0.0; 4]).ok().unwrap();
+    batch.change(|m| m.reach.value = Lanes(values));
+    for (lane, value) in values.into_iter().enumerate() {
+        assert_eq!(batch.stepper(lane).unwrap().mechanism().reach.value, value, "{lane}");
+    }
+    for (side, bound) in [(-1.0, -0.2), (1.0, 0.3)] {
+        let mut run = Stepper::assemble(Coupled::<f64>::default(), [0.0; 2], 0.0).unwrap();
+        let step = (1..=100).find_map(|k| {
+            run.change(|m| {
+                m.reach = Signal { value: side * 0.004 * f64::from(k), rate: side, acceleration: 0.0 }
+            });
+            run.advance(0.004).err()
+        });
+        assert!(
+            matches!(step, Some(Failure::BeyondLimit { bound: found, .. }) if found == bound),
+            "{step:?}"
+        );
+        assert!((run.q()[1] - bound).abs() < 0.008, "{:?}", run.q());
+    }
+}
+
+mechanism! {
     /// A law whose rate is infinite at its end, where its value is not.
     pub mechanism Ended;
     coord x: m = 0.5;
@@ -126,6 +163,24 @@ fn a_plain_step_to_infinite_rates_is_refused() {
     let steps = batch.advance_to([0.99995, 1.0, 0.99995, 0.99999]);
     assert!(matches!(steps[1], Err(Failure::NonFinite { .. })), "{:?}", steps[1]);
     assert!([0, 2, 3].iter().all(|lane| steps[*lane].is_ok()));
+}
+
+mechanism! {
+    /// A law whose acceleration is infinite at its end, where its value and its rate are not.
+    pub mechanism Jerked;
+    coord x: m = 0.5;
+    coord y: m = 0.5;
+    drive law: x == 1m*(1 - t/1s)^1.5;
+    constraint other { y == 2*x; }
+}
+
+#[test]
+fn a_plain_step_to_infinite_accelerations_is_refused() {
+    let mut run = Stepper::assemble(Jerked::<f64>::default(), [0.0; 2], 0.9999).unwrap();
+    let before = *run.q();
+    let step = run.advance_to(1.0);
+    assert!(matches!(step, Err(Failure::NonFinite { .. })), "{step:?} {:?}", run.qdd());
+    assert_eq!(*run.q(), before);
 }
 
 mechanism! {

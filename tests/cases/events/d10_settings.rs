@@ -42,6 +42,25 @@ fn a_setting_that_is_not_positive_is_told_by_its_name() {
 }
 
 #[test]
+fn a_bound_without_end_and_a_resolution_beyond_what_is_looked_at_are_told() {
+    let method = Explicit::new(DormandPrince8, Projection::default());
+    let run = Simulation::start(Weight::default(), method, 0.0, [0.0], [1.0]).expect("a start");
+    let unbounded = run.with_event_bound(f64::INFINITY);
+    let fine = run.with_event_resolution(1e-12);
+    let fixed = |mut run: Simulation<_, _, _, 1, 0>| {
+        run.step_until_event(1.0, 100, Direction::Any, |t, _, _| t - 0.5).expect_err("a setting").to_string()
+    };
+    let mut adaptive = unbounded;
+    let told = adaptive.advance_until_event(1.0, Direction::Any, |t, _, _| t - 0.5);
+    let told = told.expect_err("a setting").to_string();
+    assert_eq!(told, fixed(unbounded));
+    assert_eq!(told, "the method's event bound is inf: it must be a number and at least 0");
+    let told = fixed(fine);
+    let expected = "the method's length of a step over the event resolution is 10000000000: it must be between 0 and 4096";
+    assert_eq!(told, expected);
+}
+
+#[test]
 fn an_end_that_is_out_of_reach_is_told_soon() {
     let begun = Instant::now();
     // A frequency of 1e4 rad/s for 1e4 s: 2e7 steps of 0.5 ms, and more.

@@ -189,11 +189,11 @@ where
 
     /// Fails where the resolution of events would divide a step of `h` (s) into more parts than are looked at.
     fn require_resolution(&self, h: R) -> Result<(), Failure> {
-        let least = h / R::constant(8.0 * MOST_RESOLVED);
-        match self.scrutiny.resolution.filter(|resolution| *resolution < least) {
-            Some(resolution) => {
-                let name = "event resolution beside steps more than 4096 times as long";
-                Err(Failure::Unsuitable { name, value: resolution.to_f64(), most: f64::INFINITY })
+        let most = R::constant(8.0 * MOST_RESOLVED);
+        match self.scrutiny.resolution.map(|resolution| h / resolution).filter(|parts| most < *parts) {
+            Some(parts) => {
+                let (name, value) = ("length of a step over the event resolution", parts.to_f64());
+                Err(Failure::Unsuitable { name, value, most: most.to_f64() })
             }
             None => Ok(()),
         }
@@ -341,17 +341,18 @@ where
         Ok((behind, found))
     }
 
-    /// Fails where a setting of the run is no positive number.
+    /// Fails where a setting of the run is no positive number, or the bound of an event's second derivative no finite one: every step would
+    /// be looked at as if it could hold any number of events.
     pub(super) fn require_settings(&self) -> Result<(), Failure> {
         let Scrutiny { resolution, bound, .. } = self.scrutiny;
         let positive = |value: R| R::constant(0.0) < value;
         let settings = [
-            ("largest step", Some(self.adaptive.largest)),
-            ("event resolution", resolution),
-            ("event bound", bound),
+            ("largest step", Some(self.adaptive.largest), true),
+            ("event resolution", resolution, true),
+            ("event bound", bound, bound.is_none_or(R::is_finite)),
         ];
-        for (setting, value) in settings {
-            if let Some(value) = value.filter(|value| !positive(*value)) {
+        for (setting, value, suits) in settings {
+            if let Some(value) = value.filter(|value| !(positive(*value) && suits)) {
                 return Err(Failure::Unsuitable {
                     name: setting,
                     value: value.to_f64(),
