@@ -253,7 +253,8 @@ fn power(g: &mut Graph, y: NodeId, (a, da): Moving, (b, db): Moving) -> Option<N
     let first = da.map(|da| {
         let one = g.constant(1.0);
         let less = g.subtract(b, one);
-        let lower = g.power(a, less);
+        let lower = lowered(g, b, less);
+        let lower = g.power(a, lower);
         let slope = g.multiply(b, lower);
         g.multiply(slope, da)
     });
@@ -263,6 +264,17 @@ fn power(g: &mut Graph, y: NodeId, (a, da): Moving, (b, db): Moving) -> Option<N
         g.multiply(slope, db)
     });
     sum(g, first, second)
+}
+
+/// The exponent of the slope of a power, `less` than that of the power, `b`. 0 where `b` is 0, whatever its value at run time: the slope
+/// is 0 then, at the base 0 too, where 0⁻¹ times 0 would be no number.
+fn lowered(g: &mut Graph, b: NodeId, less: NodeId) -> NodeId {
+    if g.constant_value(b).is_some() {
+        return less;
+    }
+    let sign = g.unary(Unary::Sign, b);
+    let is_positive_or_negative = g.multiply(sign, sign);
+    g.multiply(less, is_positive_or_negative)
 }
 
 fn sum(g: &mut Graph, a: Option<NodeId>, b: Option<NodeId>) -> Option<NodeId> {

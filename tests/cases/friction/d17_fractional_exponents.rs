@@ -47,3 +47,32 @@ fn hertzs_force_and_its_slopes_are_numbers_where_the_contact_opens() {
         assert!((slope - expected.1).abs() <= -8.0 * f64::EPSILON * expected.1, "{depth}: {slope}");
     }
 }
+
+mechanism! {
+    /// A point on a curve, in a field of force, both of a power that the caller sets.
+    mechanism Shaped;
+    param n: 1 = 1;
+    coord x: m = 0;
+    coord y: m = 0;
+    body point { mass: 1, com: [x, y] }
+    constraint curve { y == 1m*(x/1m)^n; }
+    potential field = 1J*(x/1m)^n;
+}
+
+#[test]
+fn powers_of_whole_parameters_have_derivatives_at_the_base_0() {
+    // Of xⁿ: the first two derivatives at 0, and the third along x.
+    for (n, [slope, curvature, third]) in
+        [(0.0, [0.0; 3]), (1.0, [1.0, 0.0, 0.0]), (2.0, [0.0, 2.0, 0.0]), (3.0, [0.0, 0.0, 6.0])]
+    {
+        let shaped: Shaped = Shaped { n };
+        let parameters = shaped.parameters();
+        let position = shaped.position(&parameters, &[0.0, 0.0], 0.0);
+        let rates = [1.0, slope];
+        assert_eq!(shaped.force(&parameters, &position, &rates, &[], &[0.0])[0], -slope, "{n}");
+        assert_eq!(shaped.force_q(&parameters, &position, &rates, &[], &[0.0])[0][0], -curvature, "{n}");
+        assert_eq!(shaped.gamma(&parameters, &position, &rates), [curvature], "{n}");
+        let known = shaped.third_derivative(&parameters, &position, &rates, &[1.0]);
+        assert_eq!(known, Some(([-curvature, 0.0], third)), "{n}");
+    }
+}
