@@ -86,7 +86,7 @@ where
     X: Method<S, R, N, M>,
     R: Real,
 {
-    /// Starts from `q` (N) and `qd` (N) at `t` (s), which must be on the constraints to nine digits; the rest is
+    /// Starts from `q` (N) and `qd` (N) at `t` (s), which must be on the constraints to nine digits, or to the rounding of `R`; the rest is
     /// projected.
     ///
     /// # Errors

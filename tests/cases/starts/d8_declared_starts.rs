@@ -199,3 +199,29 @@ fn a_declared_start_is_kept_in_the_declared_branch_from_a_guess_of_the_other() {
     let q = OpenedCoordinates::from(*run.q());
     assert!(run.moved_start().is_none() && q.phi1 == 0.4 && (q.phi3 - q.phi2).sin() > 0.0, "{q:?}");
 }
+
+mechanism! {
+    /// A mass that slides along an inclined line.
+    pub mechanism Inclined;
+    param slope: rad = 0.3;
+    coord p: [m; 2] = [0, 0];
+    body b { mass: 1, com: p }
+    constraint line { det(unit(slope), p) == 0; }
+}
+
+#[test]
+fn a_consistent_start_in_single_precision_may_have_the_rounding_of_its_type() {
+    for k in 1..=1000u16 {
+        let (slope, speed) = (f32::from(k) * 1.5e-3, f32::from(k % 7 + 1));
+        let along = |size: f32| [size * slope.cos(), size * slope.sin()];
+        let inclined: Inclined<f32> = Inclined { slope };
+        let method = Explicit::new(DormandPrince8, Projection::default());
+        let run = Simulation::start(inclined, method, 0.0, along(1.7), along(speed));
+        assert!(run.is_ok(), "{slope}: {:?}", run.map(|run| *run.q()));
+        // A rate that is off by more than its digits is refused.
+        let [x, y] = along(speed);
+        let rates = [x - 1e-4 * speed * slope.sin(), y + 1e-4 * speed * slope.cos()];
+        let off = Simulation::start(inclined, method, 0.0, along(1.7), rates);
+        assert!(matches!(off, Err(Failure::OffConstraints { rate: true, .. })), "{slope}");
+    }
+}

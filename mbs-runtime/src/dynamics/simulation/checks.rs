@@ -10,6 +10,9 @@ use crate::{Dynamic, Failure, Real, kinematics};
 /// with nine digits. What it has is projected out.
 const START_ALLOWANCE: f64 = 1e-8;
 
+/// Rounding errors, in ε of the terms of a row, that such a violation may be where that is more.
+const START_ROUNDINGS: f64 = 64.0;
+
 /// Halvings of a step: as many digits as an `f64` has.
 const MOST_HALVINGS: u32 = 53;
 
@@ -74,7 +77,8 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
     /// Fails with the row that a start violates by more than it may.
     pub(super) fn require_consistent(&self, t: R, y: &State<R, N, S::States>) -> Result<(), Failure> {
         let position = self.position(t, y);
-        let (one, allowance) = (R::constant(1.0), R::constant(START_ALLOWANCE));
+        let one = R::constant(1.0);
+        let allowance = R::constant(START_ALLOWANCE).max(R::constant(START_ROUNDINGS) * R::EPSILON);
         let phi = self.mechanism.phi(self.parameters, &position);
         let phi_q = self.mechanism.phi_q(self.parameters, &position);
         let mut allowed = self.metric.rows;
