@@ -61,6 +61,8 @@ pub struct MissingSlope {
     pub order: u8,
     /// Order up to which the text declares it continuous.
     pub declared: u8,
+    /// `true` where a position of rest depends on it: not on ∂Q/∂q̇.
+    pub acts_at_rest: bool,
 }
 
 /// How one first-order state z acts, and what its rate ż depends on.

@@ -230,6 +230,7 @@ fn missing(dynamics: &Dynamics, model: &Model, runtime: &TokenStream) -> TokenSt
         return TokenStream::new();
     };
     let (slope, order, declared) = (missing.slopes.name(), missing.order, function.continuity);
+    let acts_at_rest = missing.slopes.acts_at_rest();
     let (name, unit) = (&function.name.text, &function.unit);
     let line = quote_spanned!(function.name.span=> ::core::line!());
     quote! {
@@ -239,6 +240,7 @@ fn missing(dynamics: &Dynamics, model: &Model, runtime: &TokenStream) -> TokenSt
                 function: #runtime::Entry { name: #name, unit: #unit, line: #line },
                 order: #order,
                 declared: #declared,
+                acts_at_rest: #acts_at_rest,
             });
     }
 }

@@ -5,7 +5,7 @@ use super::{Equations, Sparse};
 use crate::model::Model;
 use crate::symbolic::{Node, NodeId};
 
-/// The functions that implicit methods, rests and small motions alone need, in the order in which they are named.
+/// The functions that implicit methods, rests and small motions alone need; those that a rest needs are named first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Slopes {
     /// ∂Q/∂q
@@ -22,7 +22,12 @@ pub enum Slopes {
 
 impl Slopes {
     const ALL: [Slopes; 5] =
-        [Slopes::ForceByPlace, Slopes::ForceBySpeed, Slopes::Inertia, Slopes::Reaction, Slopes::States];
+        [Slopes::ForceByPlace, Slopes::Reaction, Slopes::States, Slopes::ForceBySpeed, Slopes::Inertia];
+
+    /// `true` for those that a position of rest depends on.
+    pub fn acts_at_rest(self) -> bool {
+        !matches!(self, Slopes::ForceBySpeed | Slopes::Inertia)
+    }
 
     /// Its name in messages.
     pub fn name(self) -> &'static str {

@@ -2,7 +2,7 @@
 
 use super::free_play::with_play;
 use super::free_stiffness::{Answer, FreeStiffness};
-use super::implicit::{MOST_ITERATIONS, Tangent, require_slopes};
+use super::implicit::{MOST_ITERATIONS, Tangent, require_slopes_at_rest};
 use super::kkt::{System, truncation};
 use super::metric::Metric;
 use super::model::{Counts, Model};
@@ -31,7 +31,7 @@ const PROMISED: f64 = 1e-4;
 /// control leaves of it is rounding.
 const FAR: f64 = 0.5;
 
-/// How far a start is moved where no coordinate changes what a state integrates, as at the turning point of a square: in the metric, less
+/// Distance by which a start is moved where no coordinate changes what a state integrates, as at the turning point of a square: in the metric, less
 /// than the shortest bars of a mechanism are long.
 const ASIDE: f64 = 1e-3;
 
@@ -81,7 +81,7 @@ pub fn equilibrium_with_states<S: Dynamic<R, N, M>, R: Real, const N: usize, con
     t: R,
     q: &[R; N],
 ) -> Result<(Equilibrium<R, N, M>, S::States), Failure> {
-    require_slopes::<S, R, N, M>()?;
+    require_slopes_at_rest::<S, R, N, M>()?;
     if let Some(failure) = parameter_failure(mechanism) {
         return Err(failure);
     }
@@ -123,7 +123,7 @@ pub fn undetermined_states<S: Dynamic<R, N, M>, R: Real, const N: usize, const M
     found: &Equilibrium<R, N, M>,
     states: &S::States,
 ) -> Result<S::States, Failure> {
-    require_slopes::<S, R, N, M>()?;
+    require_slopes_at_rest::<S, R, N, M>()?;
     let (zero, parameters) = (R::constant(0.0), mechanism.parameters());
     let metric = Metric::next_to(mechanism, &parameters, t, &found.q);
     let model =
@@ -177,11 +177,9 @@ fn balanced<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
             let scales = &model.metric.coordinates;
             let indifferent = match &self::correction(model, t, y, &lambda)?.saddle {
                 Some(saddle) => saddle.indifferent(scales).0,
-                None => {
-                    let indifferent = FreeStiffness::of(model, t, y, &held)?.indifferent(scales);
-                    with_play(model, t, y, &held, indifferent)?
-                }
+                None => FreeStiffness::of(model, t, y, &held)?.indifferent(scales),
             };
+            let indifferent = with_play(model, t, y, &held, indifferent)?;
             return Ok(Some(Equilibrium { q: y.q, lambda, unique, indifferent, iterations }));
         }
     }
@@ -196,9 +194,9 @@ struct Correction<R, const N: usize, const M: usize, P, Z> {
     change: [R; M],
     /// Of the first-order states that integrate.
     states: Z,
-    /// What it was solved by where states integrate.
+    /// The system that it was solved by where states integrate.
     saddle: Option<Saddle<R, N, M, P, Z>>,
-    /// What neither stiffness nor states answer, as a motion (N), and its length (J).
+    /// The part that neither stiffness nor states answer, as a motion (N), and its length (J).
     left: ([R; N], R),
 }
 
@@ -351,7 +349,7 @@ fn approach<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     Err(restless(model, t, &last.pull, last.imbalance))
 }
 
-/// What the free stiffness makes of the forces at `y`, on the rows.
+/// The answer of the free stiffness to the forces at `y`, on the rows.
 fn answer<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     model: &Model<'_, S, R, N, M>,
     t: R,

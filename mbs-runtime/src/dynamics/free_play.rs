@@ -16,6 +16,22 @@ const NOTHING: f64 = 32.0;
 /// Free motions up to which sums and differences of two are tried too: a play may be open to none of the motions themselves.
 const PAIRED: usize = 6;
 
+/// Steps from beside a rest to the nearest place where no force is left, beyond one a freedom: a contact passes what it takes on to the
+/// next one.
+const RELAXATIONS: usize = 8;
+
+/// Most of them.
+const MOST_RELAXATIONS: usize = 40;
+
+/// Share of Newton's step that they take: contacts that share a load stay closed till it has reached all of them.
+const RELAXATION: f64 = 0.5;
+
+/// Whole steps behind them, for what shares of steps have left.
+const WHOLE_STEPS: usize = 3;
+
+/// Part of the distance beside a rest that such a place is away from it at least.
+const AWAY: f64 = 1e-3;
+
 /// A play found beside a rest has lost a motion that was answered: ranks are whole numbers.
 const HALF: f64 = 0.5;
 
@@ -46,11 +62,16 @@ pub(super) fn with_play<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: u
                 beside.mark(&probe.map(|part| R::constant(sign) * part), &mut indifferent);
             }
         }
+        for sign in [1.0, -1.0] {
+            if let Some(motion) = beside.relaxed(&beside.motion(first).map(|part| R::constant(sign) * part)) {
+                beside.mark_idle(&motion, &mut indifferent);
+            }
+        }
     }
     Ok(indifferent)
 }
 
-/// How far beside `q` (N) is looked, in the metric.
+/// Distance from `q` (N) that is looked at, in the metric.
 fn aside<R: Real, const N: usize>(q: &[R; N], scales: &[R; N]) -> R {
     let extents = q.iter().zip(scales).map(|(q, scale)| (*q / *scale).abs());
     let extent = extents.fold(R::constant(1.0), |largest, part| largest.max(part));
@@ -91,6 +112,45 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Beside<'_, S,
         }
     }
 
+    /// The direction (N) from the rest to a place where no force is left, from beside it, where `probe` (N) leads: where several contacts
+    /// let go together no free motion of the rest is such a one.
+    fn relaxed(&self, probe: &[R; N]) -> Option<[R; N]> {
+        let (mut y, there) = self.moved(probe)?;
+        let mut lambda = *self.lambda;
+        let (mut whole, mut other) = (y, lambda);
+        self.relax(&there, R::constant(1.0), (&mut whole, &mut other));
+        self.away(&whole)?;
+        let parts = (self.here.freedom + RELAXATIONS).min(MOST_RELAXATIONS);
+        for step in 0..parts + WHOLE_STEPS {
+            let share = if step < parts { RELAXATION } else { 1.0 };
+            let there = FreeStiffness::of(self.model, self.t, &y, &lambda).ok()?;
+            self.relax(&there, R::constant(share), (&mut y, &mut lambda));
+        }
+        self.away(&y)
+    }
+
+    /// `share` of Newton's step at `y` with multipliers `lambda` (M).
+    fn relax(
+        &self,
+        there: &FreeStiffness<R, N, M>,
+        share: R,
+        (y, lambda): (&mut State<R, N, S::States>, &mut [R; M]),
+    ) {
+        let model = self.model;
+        let position = model.position(self.t, y);
+        let imbalance = model.imbalance(&position, y, &[R::constant(0.0); N], (lambda, lambda));
+        let answer = there.answer(&imbalance, &model.mechanism.phi(model.parameters, &position));
+        y.q = y.q.plus(-share, &[1.0], [&answer.step]);
+        *lambda = lambda.plus(-share, &[1.0], [&answer.change]);
+    }
+
+    /// The direction (N) from the rest to `y`, where they are apart.
+    fn away(&self, y: &State<R, N, S::States>) -> Option<[R; N]> {
+        let motion = y.q.plus(R::constant(-1.0), &[1.0], [&self.y.q]);
+        let distance = self.model.largest(&motion);
+        (R::constant(AWAY) * self.aside).less(distance).then(|| motion.map(|part| part / distance))
+    }
+
     /// Marks the coordinates of `motion` (N) where forces balance along it too.
     fn mark_idle(&self, motion: &[R; N], indifferent: &mut [bool; N]) {
         let zero = R::constant(0.0);
@@ -107,10 +167,11 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Beside<'_, S,
         let nothing = R::constant(NOTHING) * R::EPSILON * extent * there.size * self.model.largest(motion);
         // NaN is no balance.
         let balanced = work.abs() <= nothing;
-        if !balanced {
+        let share = R::constant(SHARE);
+        if !balanced || self.model.changes_integrals(self.t, self.y, self.lambda, (motion, share)) {
             return;
         }
-        let share = R::constant(SHARE).max(R::constant(ASIDE) * self.aside) * self.model.largest(motion);
+        let share = share.max(R::constant(ASIDE) * self.aside) * self.model.largest(motion);
         for ((mark, part), scale) in indifferent.iter_mut().zip(motion).zip(scales) {
             *mark |= share.less((*part / *scale).abs());
         }

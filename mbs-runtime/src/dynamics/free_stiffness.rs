@@ -32,13 +32,13 @@ pub(super) struct FreeStiffness<R, const N: usize, const M: usize> {
     nothing: R,
 }
 
-/// What a free stiffness makes of forces.
+/// The answer of a free stiffness to forces.
 pub(super) struct Answer<R, const N: usize, const M: usize> {
     /// The shortest step (N) that takes the imbalance away as far as stiffness answers it, and closes the rows.
     pub step: [R; N],
     /// The change of the multipliers (M) that goes with it.
     pub change: [R; M],
-    /// What is left of the imbalance, as a motion (N) against which no stiffness stands.
+    /// The rest of the imbalance, as a motion (N) against which no stiffness stands.
     pub unanswered: [R; N],
     /// Its length (J), 0 where rounding may be all of it.
     pub push: R,
@@ -76,7 +76,7 @@ impl<R: Real, const N: usize, const M: usize> FreeStiffness<R, N, M> {
         Ok(FreeStiffness { factors, freedom, motions, stiffness, reduced, size, nothing })
     }
 
-    /// What answers `imbalance` (N) where the rows are open by `phi` (M).
+    /// The answer to `imbalance` (N) where the rows are open by `phi` (M).
     pub(super) fn answer(&self, imbalance: &[R; N], phi: &[R; M]) -> Answer<R, N, M> {
         let (zero, one) = (R::constant(0.0), R::constant(1.0));
         let closing = self.factors.solve(&[zero; N], phi).0;
@@ -109,7 +109,7 @@ impl<R: Real, const N: usize, const M: usize> FreeStiffness<R, N, M> {
         indifferent
     }
 
-    /// What nothing answers of the free motion at `index`, as a motion (N), and its share of that motion.
+    /// The part of the free motion at `index` that nothing answers, as a motion (N), and its share of that motion.
     pub(super) fn unanswered_part(&self, index: usize) -> ([R; N], R) {
         let (zero, one) = (R::constant(0.0), R::constant(1.0));
         let mut unit = [zero; N];
@@ -125,7 +125,7 @@ impl<R: Real, const N: usize, const M: usize> FreeStiffness<R, N, M> {
         shares.fold(R::constant(0.0), |sum, share| sum + share)
     }
 
-    /// What nothing answers of `motion` (N), of which the free motions alone count.
+    /// The part of `motion` (N) that nothing answers, of which the free motions alone count.
     pub(super) fn unanswered(&self, motion: &[R; N], scales: &[R; N]) -> [R; N] {
         let one = R::constant(1.0);
         let mut scaled = *motion;

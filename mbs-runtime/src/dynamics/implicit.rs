@@ -39,7 +39,7 @@ pub(super) struct Damping<R, Y> {
     halvings: u32,
     /// Whole corrections so far.
     taken: u32,
-    /// Whether any was halved.
+    /// True where any was halved.
     halved: bool,
 }
 
@@ -56,7 +56,7 @@ impl<R: Real, Y: Vector<R>> Damping<R, Y> {
         }
     }
 
-    /// Whether the next correction is the last one; where some were halved all of [`MOST_ROUNDS`] are tried.
+    /// True where the next correction is the last one; where some were halved all of [`MOST_ROUNDS`] are tried.
     pub(super) fn is_last(&self) -> bool {
         MOST_ITERATIONS <= self.taken + 1 && !self.halved
     }
@@ -119,6 +119,16 @@ impl<R: Real, Y: Vector<R>> Damping<R, Y> {
 pub(super) fn require_slopes<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>()
 -> Result<(), Failure> {
     S::MISSING_SLOPE.map_or(Ok(()), |missing| Err(Failure::NotSmooth { missing }))
+}
+
+/// [`require_slopes`] of a position of rest: ∂Q/∂q̇ has no part in it.
+///
+/// # Errors
+/// [`Failure::NotSmooth`].
+pub(super) fn require_slopes_at_rest<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>()
+-> Result<(), Failure> {
+    let missing = S::MISSING_SLOPE.filter(|missing| missing.acts_at_rest);
+    missing.map_or(Ok(()), |missing| Err(Failure::NotSmooth { missing }))
 }
 
 /// M x₂ + C x₁ + K x₀ about a state: ∂/∂q̈, ∂/∂q̇ and ∂/∂q of M q̈ + Φ_qᵀ λ − Q, N rows of N each.

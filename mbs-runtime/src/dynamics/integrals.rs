@@ -69,12 +69,12 @@ impl<P, Z> Integrals<P, Z> {
     }
 }
 
-/// Whether a row is solved for the state at `place`.
+/// True where a row is solved for the state at `place`.
 pub(super) fn is_solved<R: Real, Z: AsRef<[R]>>(place: usize, column_of: &Z) -> bool {
     column_of.as_ref().iter().any(|column| *column == R::constant(place as f64))
 }
 
-/// Whether the rate of the state at `place` is left and vanishes at rest whatever the coordinates are: it stays as it is.
+/// True where the rate of the state at `place` is left and vanishes at rest whatever the coordinates are: it stays as it is.
 fn rests_anywhere<R: Real, const N: usize, Z, P>(place: usize, rates: &P, column_of: &Z) -> bool
 where
     Z: AsRef<[R]>,
@@ -116,7 +116,7 @@ pub(super) fn dependence<R: Real, const N: usize, Z: AsRef<[R]>>(slope: &StateSl
     slope.states.as_ref().iter().fold(R::constant(0.0), |size, entry| size.max(entry.abs()))
 }
 
-/// Whether no coordinate changes the rate `row`, eliminated from that of the `text`.
+/// True where no coordinate changes the rate `row`, eliminated from that of the `text`.
 pub(super) fn is_held<R: Real, const N: usize, Z: AsRef<[R]>>(
     row: &StateSlope<R, N, Z>,
     text: &StateSlope<R, N, Z>,
@@ -156,5 +156,26 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
             }
         }
         Ok(())
+    }
+
+    /// True where `motion` (N) from `y` changes what a state integrates, by more than `share` of what the coordinates alone can.
+    pub(super) fn changes_integrals(
+        &self,
+        t: R,
+        y: &State<R, N, S::States>,
+        lambda: &[R; M],
+        (motion, share): (&[R; N], R),
+    ) -> bool {
+        let position = self.position(t, y);
+        let slopes = self.mechanism.state_slopes(self.parameters, &position, &y.qd, &y.states, lambda);
+        let Some(mut slopes) = slopes else { return false };
+        let mut rates = self.mechanism.state_rates(self.parameters, &position, &y.qd, &y.states, lambda);
+        let column_of = eliminate(&mut slopes, &mut rates);
+        slopes.as_ref().iter().zip(column_of.as_ref()).any(|(row, column)| {
+            let change =
+                row.q.iter().zip(motion).fold(R::constant(0.0), |sum, (slope, part)| sum + *slope * *part);
+            let allowed = share * largest(&row.q, self.metric) * self.largest(motion);
+            *column < R::constant(0.0) && allowed < change.abs()
+        })
     }
 }

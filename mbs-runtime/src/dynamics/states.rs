@@ -1,6 +1,6 @@
 //! First-order states beside the other unknowns: where they rest, and what they do to small motions.
 
-use super::implicit::require_slopes;
+use super::implicit::require_slopes_at_rest;
 use super::integrals::{Integrals, IntegralsOf, dependence, is_held, is_solved};
 use super::kkt::none;
 use super::metric::{Metric, worse};
@@ -34,7 +34,7 @@ pub fn states_at_rest<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usi
     lambda: &[R; M],
 ) -> Result<S::States, Failure> {
     if !S::STATES.is_empty() {
-        require_slopes::<S, R, N, M>()?;
+        require_slopes_at_rest::<S, R, N, M>()?;
     }
     let (zero, parameters) = (R::constant(0.0), mechanism.parameters());
     let metric = Metric::next_to(mechanism, &parameters, t, q);

@@ -207,7 +207,7 @@ impl fmt::Display for Failure {
                 "the forces at t = {time} s depend on the state `{}` (line {}), whose value is not known; give the states too",
                 state.name, state.line
             ),
-            Failure::NotSmooth { missing: MissingSlope { slope, function, order, declared } } => write!(
+            Failure::NotSmooth { missing: MissingSlope { slope, function, order, declared, .. } } => write!(
                 f,
                 "{slope} needs the derivative of order {order} of `{}` (line {}), which is declared C{declared}: declare it C{order} and supply such a function, or take an explicit method",
                 function.name, function.line

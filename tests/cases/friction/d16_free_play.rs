@@ -1,7 +1,7 @@
 //! D16: a rest on the edge of a free play is indifferent, whichever side the search came from, and names the coordinate.
 
 use mbs_runtime::dynamics::equilibrium;
-use mbs_runtime::mechanism;
+use mbs_runtime::{Mechanism, mechanism};
 
 mechanism! {
     /// A slider between two buffers 0.2 m apart, beside one on a spring.
@@ -125,4 +125,55 @@ fn a_play_of_a_closed_loop_names_all_coordinates_that_move() {
     let found = started(10.0).expect("a rest");
     assert!((found.q[2] - 1.2 - 1e-4).abs() < 1e-9, "{found:?}");
     assert_eq!(found.indifferent, [false; 3], "{found:?}");
+}
+
+mechanism! {
+    /// Eight masses that hang on each other, each with play: together they may rise, and none alone.
+    mechanism Chain;
+    param g: m/s^2 = 0;
+    coord y: [m; 8] = [-0.1, -0.2, -0.3, -0.4, -0.5, -0.6, -0.7, -0.8];
+    for i in 0..8 { body link { mass: 1, com: [0, y[i]] } }
+    gravity weight { acceleration: [0, -g] }
+    contact top { gap: 0.1m + y[0], stiffness: 1e4 }
+    for i in 0..7 { contact joint { gap: 0.1m - y[i] + y[i + 1], stiffness: 1e4 } }
+}
+
+#[test]
+fn a_play_to_which_eight_freedoms_move_together_is_indifferent() {
+    // Exactly at the end of every play, and pulled farther.
+    let ends: [f64; 8] = core::array::from_fn(|index| -0.125 * (index + 1) as f64);
+    let hanging = |y: [f64; 8], g: f64| equilibrium(&Chain::<f64> { g }, 0.0, &y).expect("a rest");
+    for start in
+        [Chain::<f64>::default().guess(&Chain::<f64>::default().parameters()), ends, ends.map(|y| 1.5 * y)]
+    {
+        let found = hanging(start, 0.0);
+        assert_eq!(found.indifferent, [true; 8], "{found:?}");
+    }
+    assert_eq!(hanging(ends, 9.81).indifferent, [false; 8]);
+}
+
+mechanism! {
+    /// A mass whose position an integral control holds, beside one between buffers, and one that a spring holds.
+    mechanism Controlled;
+    coord x: m = 0;
+    coord y: m = 0;
+    coord z: m = 0.1;
+    body first { mass: 1, com: [x, 0] }
+    body second { mass: 1, com: [y, 1m] }
+    body third { mass: 1, com: [z, 2m] }
+    state held: N = 0;
+    der(held) == 10 [N/(m*s)]*(0.5m - x);
+    force control: [held - 3N, 0] on [x, 0];
+    force hold: [-1e3 [N/m]*z, 0] on [z, 2m];
+    contact left { gap: y, stiffness: 1e4 }
+    contact right { gap: 0.2m - y, stiffness: 1e4 }
+}
+
+#[test]
+fn a_play_beside_a_state_that_integrates_is_indifferent_at_both_ends() {
+    for (from, at) in [(-0.01, 0.0), (0.0, 0.0), (0.1, 0.1), (0.2, 0.2), (0.3, 0.2)] {
+        let found = equilibrium(&Controlled::<f64>::default(), 0.0, &[0.0, from, 0.1]).expect("a rest");
+        assert!((found.q[0] - 0.5).abs() < 1e-12 && (found.q[1] - at).abs() < 1e-12, "{found:?}");
+        assert_eq!(found.indifferent, [false, true, false], "from {from}: {found:?}");
+    }
 }

@@ -3,7 +3,7 @@
 use mbs_runtime::dynamics::{
     AugmentedLagrangian, Baumgarte, DormandPrince5, DormandPrince8, Explicit, Extrapolated, GeneralizedAlpha,
     Method, Penalty, Projection, Radau5, RungeKutta4, Simulation, Tolerance, VelocityTransformation,
-    equilibrium, linearize, states_at_rest,
+    equilibrium, equilibrium_with_states, linearize, linearize_with_states, states_at_rest,
 };
 use mbs_runtime::{Dynamic, Failure, Function, Mechanism, Scalar, mechanism};
 
@@ -151,4 +151,42 @@ fn what_needs_the_third_derivative_of_a_gap_says_so() {
     assert!(by_place.as_flattened().iter().all(|entry: &f64| entry.is_nan()), "nobody takes it for a slope");
     let by_speed = ball.force_qd(&parameters, &position, &[0.0; 2], &[], &[]);
     assert_eq!(by_speed, [[0.0; 2]; 2]);
+}
+
+/// A polyline through 0 with two slopes, which knows no derivative.
+#[derive(Clone, Copy)]
+struct Bent;
+
+impl<T: Scalar> Function<T> for Bent {
+    const ORDER: usize = 0;
+
+    fn jet<const K: usize>(&self, x: T) -> [T; K] {
+        assert!(K <= 1, "no more than what is declared is asked for");
+        [T::constant(2.0) * x + x.abs(); K]
+    }
+}
+
+mechanism! {
+    /// A mass on a spring with a damper of a table, and a control with a short memory.
+    mechanism Damped;
+    function drag: N(m/s), C0;
+    coord x: m = 0;
+    body mass { mass: 1, com: [x, 0] }
+    state lag: N = 0;
+    der(lag) == (10N - 20 [N/m]*x - lag)/0.1s;
+    force all: [lag - drag(der(x)) - 80 [N/m]*x, 0] on [x, 0];
+}
+
+#[test]
+fn a_damper_of_a_polyline_rests_and_has_no_small_motions() {
+    let damped = Damped::new(Bent);
+    let (rest, [lag]) = equilibrium_with_states(&damped, 0.0, &[0.3]).expect("no speed has a part in a rest");
+    assert!((rest.q[0] - 0.1).abs() < 1e-15 && (lag - 8.0).abs() < 1e-14, "{rest:?}, {lag}");
+    assert_eq!(states_at_rest(&damped, 0.0, &rest.q, &[]), Ok([lag]));
+    let method = Explicit::new(DormandPrince8, Projection::default());
+    let run = Simulation::start(damped, method, 0.0, rest.q, [0.0]).expect("an explicit method");
+    let Err(Failure::NotSmooth { missing }) = linearize_with_states(&damped, run.instant(), &[]) else {
+        panic!("not refused as it should be")
+    };
+    assert_eq!((missing.slope, missing.function.name, missing.order), ("∂Q/∂q̇", "drag", 1));
 }
