@@ -16,7 +16,7 @@ use crate::{Dynamic, Factorization, Failure, Lu, Real, Scalar, kinematics};
 /// of two.
 #[derive(Clone, Copy, Debug)]
 pub struct NormalForces<T, const N: usize, const M: usize, const K: usize> {
-    /// What φ is, one a term.
+    /// φ, one a term.
     pub terms: [Term; K],
     /// D = ∂Q/∂v: N rows of K.
     pub force: [[T; K]; N],
@@ -239,6 +239,16 @@ const MOST_STEPS: u32 = 40;
 /// Times that such a step is halved.
 const HALVINGS: u32 = 20;
 
+/// Starts beside the known ones, of each multiplier that a force depends on: to both sides as far as all forces are large, and several
+/// times as far.
+const OTHER_STARTS: [f64; 4] = [1.0, -1.0, 8.0, -8.0];
+
+/// More of them where no solution is known: so far that a law which saturates is flat.
+const FAR_STARTS: [f64; 4] = [64.0, -64.0, 1024.0, -1024.0];
+
+/// Distance of two solutions, in √ε of their size, from which they are two.
+const APART: f64 = 16.0;
+
 /// Change of the multipliers by a step that no longer falls, in √ε of their size, that counts as rounding of an ill-conditioned balance.
 const STUCK: f64 = 1e-2;
 
@@ -279,7 +289,8 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         }
     }
 
-    /// Newton's method on λ = λ₀ + A Q(λ), next to `lambda` (M), then from the multipliers without friction.
+    /// Newton's method on λ = λ₀ + A Q(λ), next to `lambda` (M), then from the multipliers without friction, then from others: such a law
+    /// may have several solutions, and those that are not found are not known.
     #[inline(never)]
     fn smooth_friction(
         &self,
@@ -292,12 +303,39 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         let force =
             |lambda: &[R; M]| self.mechanism.force(self.parameters, position, &y.qd, &y.states, lambda);
         let free = solve(&force(&[R::constant(0.0); M]), true).1;
+        let mut known = None;
         for start in [lambda, &free] {
-            if let Some(found) = self.newton(standing, position, y, start, solve) {
-                return Found::One(found);
+            known = known.or_else(|| self.newton(standing, position, y, start, solve));
+        }
+        let size = self.weighted(known.as_ref().unwrap_or(&free)).max(self.weighted(&free));
+        let mut beside = |row: usize, share: f64, from: &[R; M]| {
+            let mut start = *from;
+            let scaled = start.iter_mut().zip(&self.metric.rows).skip(row).take(1);
+            scaled.for_each(|(lambda, scale)| *lambda = R::constant(share) * size / *scale);
+            let acts = force(&start) != force(from);
+            let found = if acts { self.newton(standing, position, y, &start, solve) } else { None };
+            found.filter(|found| self.weighted(found).is_finite())
+        };
+        if known.is_none() {
+            for share in OTHER_STARTS.into_iter().chain(FAR_STARTS) {
+                for row in 0..M {
+                    known = known.or_else(|| beside(row, share, &free));
+                }
             }
         }
-        Found::None
+        let Some(first) = known else { return Found::None };
+        let apart = R::constant(APART) * R::EPSILON.sqrt() * size;
+        for share in OTHER_STARTS {
+            for row in 0..M {
+                let other = beside(row, share, &first);
+                let distance =
+                    other.map(|other| self.weighted(&other.plus(-R::constant(1.0), &[1.0], [&first])));
+                if distance.is_some_and(|distance| apart < distance) {
+                    return Found::AtLeast(2);
+                }
+            }
+        }
+        Found::One(first)
     }
 
     /// Multipliers (M) by Newton's method with halved steps.
