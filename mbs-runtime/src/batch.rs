@@ -15,7 +15,7 @@ use crate::lanes::LaneMask;
 use crate::path::{LARGEST_PIECE, largest_change, put_short_way_round};
 use crate::trial::{Start, Trial, weights};
 use crate::turns::second;
-use crate::{Failure, Kinematic, Lanes, Mechanism, Phase, Real, Scalar, Stepper};
+use crate::{Failure, Kinematic, Lanes, Mechanism, Phase, Real, Scalar, Stepper, lengths};
 
 /// `L` mechanisms of one text, a lane each, each with its own design, time, state and failures.
 ///
@@ -188,7 +188,8 @@ where
         let Batch { mechanism, parameters, weights, q, qd, qdd, margin, .. } = &*self;
         let start = Start { t: from, q, qd, qdd, margin: *margin, weights };
         let trial = Trial::of(mechanism, parameters, &start, to, !self.waits);
-        if !Lanes::<R, L>::all(trial.plain & !trial.coarse) || self.notes.passes(&trial.orientation) {
+        let quick = trial.plain & !(trial.coarse | trial.doubtful);
+        if !Lanes::<R, L>::all(quick) || self.notes.passes(&trial.orientation) {
             // The address of a copy, so that the trial itself stays in registers.
             let doubtful = trial;
             return Some(self.apart(&doubtful, &before, t));
@@ -267,9 +268,18 @@ where
     ) -> [Result<Statistics, Failure>; L] {
         // The homotopy decides what a passage leads to.
         let passes = LaneMask::new(from_fn(|lane| trial.orientation(lane) != self.notes.orientation(lane)));
-        let plain = trial.plain & !trial.coarse & !passes;
-        let mut notes = self.notes;
         let (from, to) = self.span(t);
+        let Batch { q, qd, qdd, margin, weights, .. } = &*self;
+        let start = Start { t: from, q, qd, qdd, margin: *margin, weights };
+        let mut plain = trial.plain & !trial.coarse & !passes;
+        if !Lanes::<R, L>::all(!(plain & trial.doubtful)) {
+            let scales = self.mechanism.coordinate_scales(&self.parameters);
+            // Only its own stepper knows what a lane was changed from.
+            let settles = !LaneMask::new(self.changed)
+                & trial.settles((&lengths::points(S::COORDINATES), &scales), &start, to);
+            plain = plain & (!trial.doubtful | settles);
+        }
+        let mut notes = self.notes;
         notes.follow(trial, self.margin, to - from);
         let mut phases = self.mechanism.phases();
         for (phase, before) in phases.as_mut().iter_mut().zip(before.as_ref()) {

@@ -5,6 +5,7 @@ use crate::diagnosis::{Statistics, extent};
 use crate::instant::Found;
 use crate::kinematics::{entry, largest_difference, position_failure, time_failure};
 use crate::nearest::contradiction;
+use crate::path::EVALUATIONS_OF_A_TANGENT;
 use crate::{Entry, Failure, Kinematic, Real, Stepper};
 
 /// The work that a step may cost at most, in each block.
@@ -60,7 +61,7 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
     /// evaluation a period still follows the motion.
     ///
     /// [`Step::Refused`] with [`Failure::NonFinite`], [`Failure::NotConverged`] (too far from any position for the
-    /// budget, or there is none), [`Failure::NotFollowed`] (the next step goes on where the budget ended),
+    /// budget, or there is none), [`Failure::OverBudget`] (the next step goes on where the budget ended), [`Failure::NotFollowed`],
     /// [`Failure::Discontinuous`], [`Failure::Singular`], [`Failure::WrongBranch`],
     /// [`Failure::BeyondLimit`].
     #[inline]
@@ -79,7 +80,8 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
     /// Inputs jump to their present value in the first step. Where they have moved far in the time missed, change
     /// them in parts, with a [`step`](Self::step) after each.
     pub fn skip(&mut self, period: R, periods: u32, budget: Budget) -> Step {
-        let before = (self.state, self.changed, self.turns, self.mechanism.clone(), self.anchor, self.led);
+        let before =
+            (self.state, self.changed, self.turns, self.mechanism.clone(), self.anchor, self.led, self.piece);
         let periods = periods.max(1);
         let mut evaluations = 0_u32;
         let mut step = Step::Refused(Failure::NonFinite { name: "t", line: 0 });
@@ -89,7 +91,8 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
                 _ => self.step(period, budget),
             };
             let (Step::Done(statistics) | Step::Degraded { statistics, .. }) = &mut step else {
-                (self.state, self.changed, self.turns, self.mechanism, self.anchor, self.led) = before;
+                (self.state, self.changed, self.turns, self.mechanism, self.anchor, self.led, self.piece) =
+                    before;
                 return step;
             };
             evaluations = evaluations.saturating_add(statistics.evaluations);
@@ -146,11 +149,16 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
         if let Some(failure @ (Failure::NonFinite { .. } | Failure::Inconsistent { .. })) = open {
             return Err(contradiction(&self.mechanism, &self.parameters, &q, t, failure));
         }
-        if !self.is_taken(Found { t, q, position, statistics, open }, &prediction)? {
-            let left = most.saturating_sub(statistics.evaluations);
+        let spare = statistics.evaluations + EVALUATIONS_OF_A_TANGENT <= most;
+        if !self.is_taken(Found { t, q, position, statistics, open }, &prediction, (phases, spare))? {
+            // Some may have gone into a doubt.
+            let spent = statistics.evaluations.saturating_add(EVALUATIONS_OF_A_TANGENT);
+            let left = most.saturating_sub(spent);
             let done = self.along_the_way(t, phases, statistics.evaluations, left);
             return match (done, open) {
-                (Err(Failure::NotFollowed { .. }), Some(failure)) => Err(failure),
+                (Err(Failure::NotFollowed { .. } | Failure::OverBudget { .. }), Some(failure)) => {
+                    Err(failure)
+                }
                 (done, _) => done.map(Step::Done),
             };
         }

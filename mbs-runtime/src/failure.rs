@@ -101,6 +101,18 @@ pub enum Failure {
         /// Time (s) of the position that was sought.
         time: f64,
     },
+    /// The budget of a step ended on the way to the position that is sought; the next step goes on from where it ended, unless the
+    /// budget leaves fewer evaluations than any part of a way takes.
+    OverBudget {
+        /// Part of the way (0 to 1) that was followed, from where this step began.
+        part: f64,
+        /// Evaluations of the constraints that the budget left for the way.
+        evaluations: u32,
+        /// The fewest that a part of a way takes.
+        required: u32,
+        /// Time (s) of the position that was sought.
+        time: f64,
+    },
     /// A row jumps between the last position and the one that is sought: a function of the time or of an input is not continuous.
     Discontinuous {
         /// The row that changes most.
@@ -364,6 +376,7 @@ impl Failure {
             Failure::Unresolved { time, .. }
             | Failure::NotConverged { time, .. }
             | Failure::NotFollowed { time, .. }
+            | Failure::OverBudget { time, .. }
             | Failure::Discontinuous { time, .. }
             | Failure::NotAssemblable { time, .. }
             | Failure::Singular { time, .. }
@@ -404,6 +417,7 @@ impl Failure {
             Failure::Unresolved { time, .. }
             | Failure::NotConverged { time, .. }
             | Failure::NotFollowed { time, .. }
+            | Failure::OverBudget { time, .. }
             | Failure::Discontinuous { time, .. }
             | Failure::NotAssemblable { time, .. }
             | Failure::Singular { time, .. }

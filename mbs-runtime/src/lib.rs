@@ -25,6 +25,7 @@ mod function;
 mod instant;
 pub mod kinematics;
 pub mod lanes;
+mod lengths;
 pub mod limit;
 pub mod linear;
 #[doc(hidden)] // emitted code calls it

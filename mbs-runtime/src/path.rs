@@ -3,7 +3,7 @@
 use core::f64::consts::TAU;
 
 use crate::kinematics::{branch_failure, largest_difference};
-use crate::{Kinematic, Margin, Real, Scalar};
+use crate::{Kinematic, Margin, Real, Scalar, lengths};
 
 /// Largest second-order term of a prediction (rad, or reference lengths) from which a step is certain in one piece.
 ///
@@ -42,6 +42,13 @@ pub(crate) const EVALUATIONS: u32 = 30_000;
 /// Those of one piece: where the way begins, how long the piece is, its forecast, a correction and its end.
 pub(crate) const LEAST_EVALUATIONS: u32 = 5;
 
+/// Largest way of a length to where its prediction leads, and of a Newton step after its first one, over what the length moves by in the
+/// piece, or over that first one: a link that turns by a radian has a sixth and a tenth, however short it is.
+pub(crate) const LARGEST_PART: f64 = 0.25;
+
+/// The same of a step so small that it need not shrink further: some rounding is in it.
+const LEAST_PART: f64 = 1.0 / 64.0;
+
 /// Newton steps of a piece. From a quarter of the margin they end in rounding; what does not is halved.
 const CORRECTIONS: u32 = 6;
 
@@ -50,6 +57,15 @@ const LARGEST_GROWTH: f64 = 4.0;
 
 /// Times that an end too near to a singular position is moved: two assemblies that do not meet there allow no other.
 const MOST_AIMS: u32 = 3;
+
+/// Halvings from a whole way to where its values differ by their rounding alone.
+const BISECTIONS: u32 = 64;
+
+/// Part of a way over which its tangent is taken.
+const TANGENT: f64 = 0.25;
+
+/// Evaluations that a tangent costs.
+pub(crate) const EVALUATIONS_OF_A_TANGENT: u32 = 2;
 
 /// Part of a piece between the points of its difference quotients, which are all in it. So they are as exact as the piece is foreseen:
 /// next to where assemblies cross, what they leave out counts by the inverse margin, and is of the fourth order.
@@ -171,6 +187,20 @@ pub(crate) struct Followed<R, const N: usize> {
     pub evaluations: u32,
     /// The row that jumps behind it, if one does.
     pub jump: Option<u16>,
+    /// Whether the evaluations ended before the way did.
+    pub spent: bool,
+    /// The last position from which the next one is foreseen.
+    pub leading: Leading<R, N>,
+}
+
+/// A position that a way may be gone on from.
+#[derive(Clone, Copy)]
+pub(crate) struct Leading<R, const N: usize> {
+    pub q: [R; N],
+    /// Part of the way.
+    pub share: R,
+    /// Part of the rest to try next.
+    pub piece: R,
 }
 
 /// Values and time at a place of the way.
@@ -200,8 +230,12 @@ struct Forecast<R, const N: usize> {
     /// Movement by the slope alone, and what is beyond it, in the reference metric.
     first: R,
     second: R,
+    /// Slope where the piece begins.
+    start: [R; N],
     /// Slope at the end.
     slope: [R; N],
+    /// Reciprocals of the movements of lengths.
+    weights: [R; N],
 }
 
 impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Station<S, R, N, M> {
@@ -213,7 +247,7 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Station<S, 
 }
 
 impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Way<'_, S, R, N, M> {
-    /// Follows the way for at most `limit` evaluations.
+    /// Follows the way for at most `limit` evaluations, the first `piece` of it at most so long.
     ///
     /// Solves Φ(q, θ(σ), p(σ), phases(σ), t(σ)) = (1 − σ) Φ(q₀, σ = 0) from σ = 0 to 1, parameters, inputs, phases and time straight
     /// from what they were at q₀ to what they are. The right-hand side is rounding, unless the caller has replaced a function.
@@ -224,14 +258,26 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Way<'_, S, 
     /// assemblies that do not meet there are told from two that do.
     #[cold]
     #[inline(never)]
-    pub fn followed(&mut self, limit: u32) -> Followed<R, N> {
+    pub fn followed(&mut self, piece: R, limit: u32) -> Followed<R, N> {
         let (values, start) = (self.values, self.from.q);
         let mut walk = Walk { way: self, open: [R::constant(0.0); M], evaluations: 0, limit };
         let station = walk.station(R::constant(0.0));
         walk.open = walk.residuals(&station, &start);
-        let followed = walk.followed(start);
+        let followed = walk.followed(start, piece);
         self.mechanism.set_values(values);
         followed
+    }
+
+    /// What the whole way moves the coordinates by as it begins.
+    pub fn tangent(&mut self) -> [R; N] {
+        let (values, start) = (self.values, self.from.q);
+        let mut walk = Walk { way: self, open: [R::constant(0.0); M], evaluations: 0, limit: 0 };
+        let station = walk.station(R::constant(0.0));
+        walk.open = walk.residuals(&station, &start);
+        let at = walk.spot(start, R::constant(0.0));
+        let (slope, _) = walk.slope(&at, R::constant(TANGENT));
+        self.mechanism.set_values(values);
+        slope
     }
 
     /// Values and time (s) at a `share` of the way.
@@ -252,6 +298,7 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Way<'_, S, 
 fn aimed<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize>(
     at: &Spot<S, R, N, M>,
     next: &Spot<S, R, N, M>,
+    aims: u32,
 ) -> Option<R> {
     let next_to = R::constant(0.5) * passes::<R>();
     let passage = at.orientation != next.orientation;
@@ -262,10 +309,43 @@ fn aimed<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize>(
     if !(far || near && R::constant(0.0) < fall) {
         return None;
     }
-    let before = passes::<R>() < at.margin;
+    // Where it does not end well behind, the next one begins nearer.
+    let before = passes::<R>() < at.margin || aims % 2 == 1 && leads(at.margin);
     let way = if before { at.margin - next_to } else { at.margin + next_to };
     let most = if before { R::constant(0.9) } else { R::constant(LARGEST_GROWTH) };
     Some((way / fall).min(most).max(R::constant(0.02)))
+}
+
+/// The length to try instead of `length` where a forecast moves by more than twice what a piece may; a `first` that is NaN is too much.
+fn shortened<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize>(
+    at: &Spot<S, R, N, M>,
+    first: R,
+    length: R,
+) -> Option<R> {
+    let most = R::constant(LARGEST_PIECE).min(at.margin.abs().sqrt());
+    if first <= most + most {
+        return None;
+    }
+    let (shorter, half) = (length * most / first, R::constant(0.5) * length);
+    Some(if shorter <= half { shorter.max(length * R::constant(1e-3)) } else { half })
+}
+
+/// Length of the piece behind one from `at` to `next`, which moved by `first`: as the margin lets it be, and no more than `growth` lets it.
+fn next_piece<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize>(
+    at: &Spot<S, R, N, M>,
+    next: &Spot<S, R, N, M>,
+    first: R,
+    length: R,
+    growth: R,
+) -> R {
+    let most = R::constant(LARGEST_PIECE).min(next.margin.abs().sqrt());
+    let piece = length * (most / first.max(shortest())).min(growth);
+    if next.orientation == at.orientation && next.margin < passes() && next.margin < at.margin {
+        // Next to where the determinant is 0 if its margin falls as it did: just beyond.
+        let slope = (at.margin - next.margin) / length;
+        return piece.min((next.margin + R::constant(0.5) * passes()) / slope);
+    }
+    piece
 }
 
 /// A linear combination.
@@ -289,56 +369,50 @@ struct Walk<'a, 'b, S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usi
 
 impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Walk<'_, '_, S, R, N, M> {
     /// [`Way::followed`] from `start`.
-    fn followed(&mut self, start: [R; N]) -> Followed<R, N> {
+    fn followed(&mut self, start: [R; N], piece: R) -> Followed<R, N> {
         let (one, half) = (R::constant(1.0), R::constant(0.5));
         let mut at = self.spot(start, R::constant(0.0));
-        let mut piece = self.first_piece(&at);
-        let (mut jump, mut aims) = (None, 0);
-        while at.share < one && !self.is_spent() {
-            if piece < shortest() {
-                jump = self.jump(&at, piece + piece);
-                break;
-            }
+        // One that was tried before is known better.
+        let mut piece = if piece < one { piece } else { self.first_piece(&at) };
+        let mut leading = Leading { q: start, share: at.share, piece };
+        let (mut failed, mut aims) = (piece, 0);
+        while at.share < one && !self.is_spent() && shortest::<R>() <= piece {
             let rest = one - at.share;
             let length = piece.min(rest);
             let share = if length < rest { at.share + length } else { one };
-            let most = R::constant(LARGEST_PIECE).min(at.margin.abs().sqrt());
             let forecast = self.forecast(&at, length);
-            // Written so that NaN is too much.
-            let moderate = forecast.first <= most + most;
-            if !moderate {
-                let shorter = length * most / forecast.first;
-                piece = if shorter <= half * length {
-                    shorter.max(length * R::constant(1e-3))
-                } else {
-                    half * length
-                };
+            if let Some(shorter) = shortened(&at, forecast.first, length) {
+                (piece, failed) = (shorter, length);
                 continue;
             }
             let Some((next, growth)) = self.landed(&at, &forecast, share, length) else {
-                piece = half * length;
+                (piece, failed) = (half * length, length);
                 continue;
             };
             if let Some(part) =
-                aimed(&at, &next).filter(|_| aims < MOST_AIMS || next.orientation != at.orientation)
+                aimed(&at, &next, aims).filter(|_| aims < MOST_AIMS || next.orientation != at.orientation)
             {
                 aims += 1;
-                piece = part * length;
+                (piece, failed) = (part * length, length);
                 continue;
             }
             aims = 0;
-            // As long as the margin lets the next piece be.
-            let most = R::constant(LARGEST_PIECE).min(next.margin.abs().sqrt());
-            piece = length * (most / forecast.first.max(shortest())).min(growth);
-            if next.orientation == at.orientation && next.margin < passes() && next.margin < at.margin {
-                // Next to where the determinant is 0 if its margin falls as it did: just beyond.
-                let slope = (at.margin - next.margin) / length;
-                piece = piece.min((next.margin + half * passes()) / slope);
+            piece = next_piece(&at, &next, forecast.first, length, growth);
+            (at, failed) = (next, piece);
+            if leads(at.margin) {
+                leading = Leading { q: at.q, share: at.share, piece };
             }
-            at = next;
         }
+        let lost = at.share < one && piece < shortest();
+        let jump = if lost { self.jump(&at, failed) } else { None };
+        let spent = at.share < one && !lost;
+        if at.share <= leading.share {
+            leading.piece = piece;
+        }
+        // A part of what is left of the way from there.
+        leading.piece = leading.piece / (one - leading.share).max(shortest());
         let Spot { q, share, margin, .. } = at;
-        Followed { q, share, margin, evaluations: self.evaluations, jump }
+        Followed { q, share, margin, evaluations: self.evaluations, jump, spent, leading }
     }
 
     fn is_spent(&self) -> bool {
@@ -417,9 +491,13 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Walk<'_, '_
         q.iter_mut().zip(&bend).for_each(|(coordinate, bend)| *coordinate = *coordinate + *bend);
         let mut tip = slope;
         let twice = R::constant(2.0) / length;
-        tip.iter_mut().zip(bend).for_each(|(rate, bend)| *rate = *rate + twice * bend);
+        tip.iter_mut().zip(&bend).for_each(|(rate, bend)| *rate = *rate + twice * *bend);
         let first = self.size(&slope) * length;
-        Forecast { q, first, second: self.size(&bend), slope: tip }
+        let scales = self.way.mechanism.coordinate_scales(&last.parameters);
+        let straight = slope.map(|rate| length * rate);
+        let points = lengths::points(S::COORDINATES);
+        let weights = lengths::weights(&points, &scales, [&straight, &bend], at.margin);
+        Forecast { q, first, second: self.size(&bend), start: slope, slope: tip, weights }
     }
 
     /// The spot at `share` that a piece of `length` from `at` leads to, if it is certain, and how much longer the next one may be.
@@ -430,7 +508,10 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Walk<'_, '_
         share: R,
         length: R,
     ) -> Option<(Spot<S, R, N, M>, R)> {
-        let (q, off) = self.corrected(&forecast.q, share)?;
+        let (q, off) = self.corrected(forecast, share)?;
+        let mut way = q;
+        way.iter_mut().zip(&forecast.q).for_each(|(way, from)| *way = *way - *from);
+        let part = lengths::weighted(&way, &forecast.weights);
         if self.is_spent() {
             return None;
         }
@@ -447,8 +528,9 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Walk<'_, '_
             _ => R::constant(LARGEST_APPROACH_INSIDE),
         };
         let allowed = [approach * next.margin, R::constant(LARGEST_BEND) * next.margin];
+        let most_part = if tight { approach } else { R::constant(LARGEST_PART) };
         // Written so that NaN is not near.
-        if !(off <= allowed[0] && forecast.second <= allowed[1]) {
+        if !(off <= allowed[0] && forecast.second <= allowed[1] && part <= most_part) {
             return None;
         }
         // What is off grows with the third power of the length.
@@ -462,7 +544,9 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Walk<'_, '_
             kink.iter_mut().zip(&forecast.slope).for_each(|(rate, foreseen)| *rate = *rate - *foreseen);
             let largest = self.size(&slope).max(self.size(&forecast.slope));
             let smooth = self.size(&kink) <= R::constant(LARGEST_KINK) * largest;
-            if !smooth && next.margin < forecast.first {
+            if !smooth && next.margin < forecast.first
+                || !self.turns_little(forecast, &slope, length, next.margin)
+            {
                 return None;
             }
         }
@@ -481,10 +565,11 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Walk<'_, '_
     }
 
     /// Newton's method from a `prediction` at a `share` of the way, if it ends near by, and how far from there.
-    fn corrected(&mut self, prediction: &[R; N], share: R) -> Option<([R; N], R)> {
+    fn corrected(&mut self, forecast: &Forecast<R, N>, share: R) -> Option<([R; N], R)> {
         let station = self.station(share);
         let scales = self.way.mechanism.coordinate_scales(&station.parameters);
-        let mut q = *prediction;
+        let prediction = &forecast.q;
+        let (mut q, mut most) = (*prediction, R::constant(LARGEST_PART));
         for _ in 0..CORRECTIONS {
             if self.is_spent() {
                 return None;
@@ -495,11 +580,13 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Walk<'_, '_
             let step = mechanism.solve_linear(&factors, &station.open(mechanism, &position));
             q.iter_mut().zip(&step).for_each(|(coordinate, change)| *coordinate = *coordinate - *change);
             let off = largest_difference(&q, prediction, &scales);
+            let part = lengths::weighted(&step, &forecast.weights);
             // Written so that NaN is not near.
-            let near = off <= margin.value;
+            let near = off <= margin.value && part <= most;
             if !near {
                 return None;
             }
+            most = most.min((R::constant(LARGEST_PART) * part).max(R::constant(LEAST_PART)));
             let last = largest_difference(&step, &[R::constant(0.0); N], &scales);
             if last * last <= closed::<R>() * margin.value {
                 return Some((q, off));
@@ -508,22 +595,50 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Walk<'_, '_
         None
     }
 
-    /// The row that changes most between a spot and the end of a piece, if that is no rounding: a function jumps there.
-    fn jump(&mut self, at: &Spot<S, R, N, M>, piece: R) -> Option<u16> {
-        let far = piece + piece + piece + piece;
-        let [near, far] = [piece, far].map(|piece| self.station((at.share + piece).min(R::constant(1.0))));
-        let scales = self.way.mechanism.row_scales(&near.parameters);
-        let (mut row, mut largest) = (None, R::EPSILON.sqrt());
-        let (near, far) = (self.residuals(&near, &at.q), self.residuals(&far, &at.q));
-        let open = near.iter().zip(&far).zip(&at.rest).zip(&scales);
-        for (index, (((near, far), rest), scale)) in (0_u16..).zip(open) {
-            let [near, far] = [near, far].map(|open| ((*open - *rest) / *scale).abs());
-            // What is continuous changes four times as much over four times the way.
-            if largest < near && far <= near + near {
-                (row, largest) = (Some(index), near);
+    /// Whether the rates of lengths at the end of a piece are those foreseen.
+    fn turns_little(&self, forecast: &Forecast<R, N>, slope: &[R; N], length: R, margin: R) -> bool {
+        let mut change = forecast.slope;
+        change.iter_mut().zip(&forecast.start).for_each(|(tip, start)| *tip = (*tip - *start) / length);
+        let scales = self.way.mechanism.coordinate_scales(&self.way.mechanism.parameters());
+        let points = lengths::points(S::COORDINATES);
+        let least = lengths::rounding(margin);
+        lengths::turn_little((&points, &scales), [&forecast.start, &change, slope], length, least)
+    }
+
+    /// The row that jumps within `failed` behind a spot, if one does: halved until values of the way differ by their rounding alone, the
+    /// place where it changes most holds all of its change.
+    fn jump(&mut self, at: &Spot<S, R, N, M>, failed: R) -> Option<u16> {
+        let one = R::constant(1.0);
+        let mut ends = [at.share, (at.share + failed + failed).min(one)];
+        let mut row = None;
+        for _ in 0..BISECTIONS {
+            let middle = R::constant(0.5) * (ends[0] + ends[1]);
+            if ends[1] - ends[0] <= shortest::<R>() {
+                break;
             }
+            let [first, second] = [[ends[0], middle], [middle, ends[1]]].map(|ends| self.change(at, ends));
+            let (half, changed) =
+                if first.1 < second.1 { ([middle, ends[1]], second) } else { ([ends[0], middle], first) };
+            (ends, row) = (half, Some(changed.0));
         }
-        row
+        let wide = (ends[1] - ends[0]) * R::constant(4.0);
+        let around = [(ends[0] - wide).max(R::constant(0.0)), (ends[1] + wide).min(one)];
+        let [near, far] = [ends, around].map(|ends| self.change(at, ends).1);
+        // What is continuous changes several times as much over nine times the way.
+        row.filter(|_| R::EPSILON.sqrt() < near && far <= near + near)
+    }
+
+    /// The row that changes most between two places of the way at the position of a spot, and by how much in the reference metric.
+    fn change(&mut self, at: &Spot<S, R, N, M>, ends: [R; 2]) -> (u16, R) {
+        let [from, to] = ends.map(|share| self.station(share));
+        let scales = self.way.mechanism.row_scales(&from.parameters);
+        let [from, to] = [from, to].map(|station| self.residuals(&station, &at.q));
+        let changes =
+            from.iter().zip(&to).zip(&scales).map(|((from, to), scale)| ((*to - *from) / *scale).abs());
+        let none = (0, R::constant(0.0));
+        (0_u16..)
+            .zip(changes)
+            .fold(none, |most, (row, change)| if most.1 < change { (row, change) } else { most })
     }
 
     fn size(&self, difference: &[R; N]) -> R {

@@ -265,7 +265,7 @@ fn led<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize>(
     t: R,
 ) -> Option<([R; N], Statistics)> {
     let values = mechanism.values();
-    let end = Way { from, mechanism, values, t }.followed(EVALUATIONS);
+    let end = Way { from, mechanism, values, t }.followed(R::constant(1.0), EVALUATIONS);
     if end.share < R::constant(1.0) {
         return None;
     }

@@ -11,13 +11,17 @@ use crate::path::{
     Anchor, EVALUATIONS, Followed, LARGEST_PIECE, LEAST_EVALUATIONS, Prediction, Way, is_near,
     largest_change, leads, put_short_way_round,
 };
-use crate::trial::{Start, Trial, weights};
+use crate::trial::{Start, Trial, quick, weights};
 use crate::turns::{Turns, within_a_turn};
-use crate::{Assembled, Budget, Failure, Kinematic, Mechanism, Real, Sweep, assemble};
+use crate::{Assembled, Budget, Failure, Kinematic, Mechanism, Real, Sweep, assemble, lengths};
 
 /// Work beside the homotopy at the end of a way that is followed in bounded work: from there Newton's method is in rounding in two
 /// evaluations.
 pub(crate) const FINAL: Budget = Budget { newton: 3, fallback: 0 };
+
+/// Newton step over the margin that a position may lack where nothing but a small turn of inputs speaks for its assembly: links of a
+/// twenty-fifth of the reference length are a quarter of their own away from another one.
+const LARGEST_REPAIR: f64 = 0.01;
 
 /// A mechanism with its state. It owns everything, allocates nothing, and a failed call leaves it as it was.
 ///
@@ -39,6 +43,8 @@ pub struct Stepper<S: Mechanism<R, N, M>, R: Real, const N: usize, const M: usiz
     pub(crate) anchor: Anchor<S::Values, R, N>,
     /// Whether the way begins there although the state leads on: a step was refused on it for want of budget.
     pub(crate) led: bool,
+    /// Part of that way to try first: less where the budget ended on a piece too long.
+    pub(crate) piece: R,
 }
 
 /// Position, velocity and acceleration at one time.
@@ -82,6 +88,13 @@ impl<R: Real> Drift<R> {
     }
 }
 
+/// Way from the prediction over the margin up to which nothing is to be asked of a step.
+#[inline(always)]
+fn approach<S: Mechanism<R, N, M>, R: Real, const N: usize, const M: usize>() -> f64 {
+    let [_, approach] = quick::<R>(const { lengths::any(S::COORDINATES) });
+    approach
+}
+
 impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, R, N, M> {
     /// Assembles `mechanism` from `guess` (N) at time `t` (s); velocity and acceleration follow.
     ///
@@ -110,7 +123,18 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
         turns: Turns<R, N>,
     ) -> Self {
         let anchor = Anchor { t: state.t, q: state.q, values: mechanism.values() };
-        Stepper { mechanism, parameters, fault: None, changed: false, state, turns, anchor, led: false }
+        let piece = R::constant(1.0);
+        Stepper {
+            mechanism,
+            parameters,
+            fault: None,
+            changed: false,
+            state,
+            turns,
+            anchor,
+            led: false,
+            piece,
+        }
     }
 
     /// Moves on by `h` (s); 0 solves anew, negative goes back.
@@ -179,11 +203,13 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
             let trial = Trial::of(&self.mechanism, &self.parameters, &start, t, R::mask(true));
             // The homotopy decides what a passage leads to.
             if trial.plain && trial.orientation(0) == self.state.orientation {
-                if !trial.coarse {
+                if !(trial.coarse | trial.doubtful) {
                     self.changed = false;
                     return Ok(self.state.follow(&trial, t));
                 }
-                if let Some(statistics) = self.polished(trial.q, trial.statistics(0, false), t) {
+                // The address of a copy, so that the trial itself stays in registers.
+                let looked_at = trial;
+                if let Some(statistics) = self.looked_at(&looked_at, t, phases) {
                     return Ok(statistics);
                 }
             }
@@ -191,9 +217,33 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
         self.advanced_with_care(t, phases)
     }
 
-    /// Becomes the state at a position of a plain step, closed further; `None` where there is something against it.
+    /// Becomes the state that a plain step came to, of which not all is plain; `None` where there is something against it.
     #[cold]
     #[inline(never)]
+    fn looked_at(&mut self, trial: &Trial<R, N>, t: R, phases: S::Phases) -> Option<Statistics> {
+        if trial.doubtful {
+            let near = trial.correction <= R::constant(approach::<S, R, N, M>()) * trial.margin;
+            let settles = if self.changed && !near {
+                self.tangent_leads(&trial.q, trial.margin, t, phases)
+            } else {
+                let scales = self.mechanism.coordinate_scales(&self.parameters);
+                let points = lengths::points(S::COORDINATES);
+                let State { q, qd, qdd, margin, .. } = &self.state;
+                let start = Start { t: self.state.t, q, qd, qdd, margin: *margin, weights: &scales };
+                trial.settles((&points, &scales), &start, t)
+            };
+            if !settles {
+                return None;
+            }
+        }
+        if trial.coarse {
+            return self.polished(trial.q, trial.statistics(0, false), t);
+        }
+        self.changed = false;
+        Some(self.state.follow(trial, t))
+    }
+
+    /// Becomes the state at a position of a plain step, closed further; `None` where there is something against it.
     fn polished(&mut self, q: [R; N], statistics: Statistics, t: R) -> Option<Statistics> {
         let position = self.mechanism.position(&self.parameters, &q, t);
         let mut found = Found { t, q, position, statistics, open: None };
@@ -219,7 +269,7 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
             let (position, statistics, failure) = next_position(&self.mechanism, &self.parameters, &mut q, t);
             first = statistics.evaluations;
             let found = Found { t, q, position, statistics, open: None };
-            if failure.is_none() && self.is_taken(found, &prediction)? {
+            if failure.is_none() && self.is_taken(found, &prediction, (phases, true))? {
                 return Ok(self.state.statistics);
             }
         }
@@ -232,11 +282,12 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
         self.state.is_regular() && !self.led
     }
 
-    /// Becomes the state at a position next to its prediction, if that leaves no doubt of the assembly.
+    /// Becomes the state at a position next to its prediction, if that leaves no doubt of the assembly; see [`settles`](Self::settles).
     pub(crate) fn is_taken(
         &mut self,
         mut found: Found<S, R, N, M>,
         prediction: &Prediction<R, N>,
+        (phases, spare): (S::Phases, bool),
     ) -> Result<bool, Failure> {
         let mut rates = Rates::none();
         let before = Before::State(&self.state);
@@ -244,7 +295,8 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
         let certain = rates.is_regular()
             && rates.orientation == self.state.orientation
             && prediction.is_certain(rates.margin)
-            && is_near(R::constant(found.statistics.correction), rates.margin);
+            && is_near(R::constant(found.statistics.correction), rates.margin)
+            && self.settles(&found, prediction, &rates, (phases, spare));
         match failure {
             Some(failure) if certain => Err(failure),
             None if certain => {
@@ -253,6 +305,55 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
             }
             _ => Ok(false),
         }
+    }
+
+    /// Whether the tangent of the way from the state leads to `q` (N) at a `margin`, so that nothing lies between.
+    #[cold]
+    #[inline(never)]
+    fn tangent_leads(&mut self, q: &[R; N], margin: R, t: R, phases: S::Phases) -> bool {
+        let from = self.last_leading(phases);
+        let values = self.mechanism.values();
+        let tangent = Way { from: &from, mechanism: &mut self.mechanism, values, t }.tangent();
+        let mut way = *q;
+        way.iter_mut().zip(&from.q).for_each(|(way, from)| *way = *way - *from);
+        let scales = self.mechanism.coordinate_scales(&self.parameters);
+        lengths::bend_little((&lengths::points(S::COORDINATES), &scales), &tangent, &way, margin)
+    }
+
+    /// Whether the links of a step turned so little that it leads to no other assembly, however short they are; without a `spare` part of
+    /// its budget one that only a tangent could tell does not.
+    fn settles(
+        &mut self,
+        found: &Found<S, R, N, M>,
+        prediction: &Prediction<R, N>,
+        rates: &Rates<R, N>,
+        (phases, spare): (S::Phases, bool),
+    ) -> bool {
+        let scales = self.mechanism.coordinate_scales(&self.parameters);
+        let points = lengths::points(S::COORDINATES);
+        let metric = (&points, &scales);
+        let State { t, qd, qdd, .. } = &self.state;
+        let (h, margin) = (found.t - *t, rates.margin);
+        let approach = R::constant(approach::<S, R, N, M>());
+        let near = R::constant(found.statistics.correction) <= approach * margin;
+        if let Some(repair) = rates.repair {
+            // Newton's method was not at its end: its next step is small beside what was foreseen, or inputs turned hardly.
+            let size = largest_difference(&repair, &[R::constant(0.0); N], &scales);
+            let turned = match self.changed {
+                true => largest_change(S::ANGLES, &self.anchor.values, &self.mechanism.values()),
+                false => R::constant(0.0),
+            };
+            let slight = size <= R::constant(LARGEST_REPAIR) * margin
+                && turned <= R::constant(LARGEST_REPAIR) * margin;
+            return slight || lengths::are_foreseen(metric, &repair, [qd, qdd], (h, margin));
+        }
+        if self.changed && !near {
+            return spare && self.tangent_leads(&found.q, margin, found.t, phases);
+        }
+        let mut off = found.q;
+        off.iter_mut().zip(&prediction.q).for_each(|(off, foreseen)| *off = *off - *foreseen);
+        lengths::turn_little(metric, [qd, qdd, &rates.qd], h, lengths::least(margin))
+            && lengths::are_foreseen(metric, &off, [qd, qdd], (h, margin))
     }
 
     /// Takes the state where the homotopy ends, in `limit` evaluations beside the `first`.
@@ -265,24 +366,27 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
         first: u32,
         limit: u32,
     ) -> Result<Statistics, Failure> {
-        if limit < LEAST_EVALUATIONS + FINAL.newton {
-            let margin = self.state.margin.to_f64();
-            return Err(Failure::NotFollowed { part: 0.0, margin, time: t.to_f64() });
+        let required = LEAST_EVALUATIONS + FINAL.newton;
+        if limit < required {
+            return Err(Failure::OverBudget { part: 0.0, evaluations: limit, required, time: t.to_f64() });
         }
         let from = self.last_leading(phases);
         let values = self.mechanism.values();
+        let piece = if self.led { self.piece } else { R::constant(1.0) };
         let mut way = Way { from: &from, mechanism: &mut self.mechanism, values, t };
         let bounded = limit < EVALUATIONS;
-        let end = way.followed(if bounded { limit - FINAL.newton } else { limit });
-        let place = way.place(end.share);
+        let end = way.followed(piece, if bounded { limit - FINAL.newton } else { limit });
+        let place = way.place(end.leading.share);
         if end.share < R::constant(1.0) {
-            let failure = self.not_followed(&end, t, limit);
-            if bounded && matches!(failure, Failure::NotFollowed { .. }) && leads(end.margin) {
+            if bounded && end.spent {
                 // The next step goes on from there.
-                let (values, t) = place;
-                (self.anchor, self.led) = (Anchor { t, q: end.q, values }, true);
+                let (values, now) = place;
+                (self.anchor, self.led) = (Anchor { t: now, q: end.leading.q, values }, true);
+                self.piece = end.leading.piece;
+                let part = end.leading.share.to_f64();
+                return Err(Failure::OverBudget { part, evaluations: limit, required, time: t.to_f64() });
             }
-            return Err(failure);
+            return Err(self.not_followed(&end, t, limit));
         }
         let (q, position, second) = if bounded {
             self.closed(&end.q, t)?

@@ -8,10 +8,30 @@ use crate::kinematics::COARSEST_RESOLUTION;
 use crate::mechanism::negated;
 use crate::path::{LARGEST_APPROACH, LARGEST_SECOND_ORDER_TERM};
 use crate::plain::Plain;
-use crate::{Kinematic, Margin, Real, Scalar, Statistics};
+use crate::{Kinematic, Margin, Real, Scalar, Statistics, lengths};
 
 /// Most coordinates that stay in registers from the end of a step to its state, which are written one by one.
 const FEW: usize = 8;
+
+/// Second-order term (reference lengths) from which on a step of a mechanism with coordinates that are lengths is looked at: with less, no
+/// link of a thousandth turns by half a radian.
+const QUICK_SECOND_ORDER_TERM: f64 = 1e-4;
+
+/// Way from the prediction over the margin from which on such a step is looked at, beside what rounding needs.
+const QUICK_APPROACH: f64 = 1e-5;
+
+/// Roundings of a position at which it is not looked at either.
+const QUICK_ROUNDINGS: f64 = 2e3;
+
+/// Second-order term and way from the prediction over the margin up to which nothing is to be asked of a step, `with_lengths` among the
+/// coordinates or without.
+#[inline(always)]
+pub(crate) fn quick<R: Real>(with_lengths: bool) -> [f64; 2] {
+    if with_lengths {
+        return [QUICK_SECOND_ORDER_TERM, QUICK_APPROACH.max(QUICK_ROUNDINGS * R::EPSILON.to_f64())];
+    }
+    [LARGEST_SECOND_ORDER_TERM, lengths::APPROACH_OF_ANGLES]
+}
 
 /// Where a step begins, solved in every lane.
 pub(crate) struct Start<'a, T, const N: usize> {
@@ -48,6 +68,8 @@ pub(crate) struct Trial<T: Scalar, const N: usize> {
     pub plain: T::Mask,
     /// Lanes in which what is left of the residual is seen in the accelerations.
     pub coarse: T::Mask,
+    /// Lanes in which a link much shorter than the reference length may have turned far: [`settles`](Self::settles) tells.
+    pub doubtful: T::Mask,
 }
 
 impl<T: Scalar, const N: usize> Trial<T, N> {
@@ -65,7 +87,9 @@ impl<T: Scalar, const N: usize> Trial<T, N> {
         lanes: T::Mask,
     ) -> Self {
         let scales = mechanism.coordinate_scales(parameters);
-        let (prediction, trusted) = start.predicted(t, &scales);
+        let [most_second, most_way] = quick::<T::Real>(const { lengths::any(S::COORDINATES) });
+        let (prediction, trusted, far) = start.predicted(t, &scales, most_second);
+        let most_way = T::constant(most_way);
         let mut solver = Plain::new(lanes);
         // Lanes keep a processor busy as they are, and a compiler sees them together in short stages. Each way is judged where it
         // ends: what both had to put down for one judge would be copied.
@@ -74,7 +98,16 @@ impl<T: Scalar, const N: usize> Trial<T, N> {
             let mut motion = [prediction, zeros, zeros];
             let solved = &mechanism.solve_motion(parameters, &mut motion, t, &mut solver);
             let sum = solved.sum + sum_of_rates(&motion[1], &motion[2]);
-            let judge = Judge { mechanism, parameters, start, prediction: &prediction, trusted, solver };
+            let judge = Judge {
+                mechanism,
+                parameters,
+                start,
+                prediction: &prediction,
+                trusted,
+                far,
+                most_way,
+                solver,
+            };
             return judge.judged(motion, (&solved.position, &solved.margin), sum);
         }
         let mut q = prediction;
@@ -84,7 +117,8 @@ impl<T: Scalar, const N: usize> Trial<T, N> {
         let qd = mechanism.solve_linear(factors, &negated(mechanism.phi_t(parameters, position)));
         let qdd = mechanism.solve_linear(factors, &mechanism.gamma(parameters, position, &qd));
         let sum = sum_of_rates(&qd, &qdd);
-        let judge = Judge { mechanism, parameters, start, prediction: &prediction, trusted, solver };
+        let judge =
+            Judge { mechanism, parameters, start, prediction: &prediction, trusted, far, most_way, solver };
         judge.judged([q, qd, qdd], (position, margin), sum)
     }
 
@@ -107,6 +141,25 @@ impl<T: Scalar, const N: usize> Trial<T, N> {
         if T::LANES > 1 { self.counts } else { T::constant(f64::from(self.evaluations)) }
     }
 
+    /// Whether the links of a doubtful step from `start` to `t`, whose rates foresaw it, turned so little that it leads to no other assembly.
+    #[cold]
+    #[inline(never)]
+    pub(crate) fn settles(
+        &self,
+        metric: (&lengths::Points<N>, &[T; N]),
+        start: &Start<'_, T, N>,
+        t: T,
+    ) -> T::Mask {
+        let h = t - start.t;
+        let (prediction, _, far) = start.predicted_far(h, metric.1);
+        let least = lengths::least(self.margin);
+        let little = lengths::turn_little(metric, [start.qd, start.qdd, &self.qd], h, least);
+        let mut off = self.q;
+        off.iter_mut().zip(&prediction).for_each(|(off, foreseen)| *off = *off - *foreseen);
+        let foreseen = lengths::are_foreseen(metric, &off, [start.qd, start.qdd], (h, self.margin));
+        (!far | little) & foreseen
+    }
+
     /// Signs of the blocks' determinants of lane `lane`.
     #[inline(always)]
     pub(crate) fn orientation(&self, lane: usize) -> u64 {
@@ -122,6 +175,10 @@ struct Judge<'a, S: Kinematic<T, N, M>, T: Scalar, const N: usize, const M: usiz
     prediction: &'a [T; N],
     /// Lanes whose prediction has a second-order term small enough.
     trusted: T::Mask,
+    /// Lanes in which that term is not so small that links cannot have turned far.
+    far: T::Mask,
+    /// Way from the prediction over the margin up to which nothing is to be asked.
+    most_way: T,
     solver: Plain<T>,
 }
 
@@ -141,6 +198,7 @@ impl<S: Kinematic<T, N, M>, T: Scalar, const N: usize, const M: usize> Judge<'_,
         let mut plain =
             zone.less(margin.value) & zone.less(self.start.margin) & self.solver.closed & self.trusted;
         plain = plain & correction.less(T::constant(LARGEST_APPROACH) * margin.value);
+        let doubtful = self.far | !correction.less(self.most_way * margin.value);
         plain = plain & size.less(T::constant(COARSEST_RESOLUTION / T::Real::EPSILON.to_f64()));
         plain = plain & sum.is_finite();
         for (index, branch) in self.mechanism.branches(self.parameters, position).as_ref().iter().enumerate()
@@ -165,19 +223,21 @@ impl<S: Kinematic<T, N, M>, T: Scalar, const N: usize, const M: usize> Judge<'_,
             counts: self.solver.counts,
             plain,
             coarse: is_coarse(self.solver.ratio, margin.value),
+            doubtful,
         }
     }
 }
 
 impl<T: Scalar, const N: usize> Start<'_, T, N> {
-    /// q + h q̇ + h²/2 q̈, and the lanes where the last term is small enough; elsewhere it is no prediction.
+    /// q + h q̇ + h²/2 q̈, the lanes where the last term is small enough (elsewhere it is no prediction), and those where it is more than
+    /// `most` reference lengths (or rad).
     #[inline(always)]
-    fn predicted(&self, t: T, scales: &[T; N]) -> ([T; N], T::Mask) {
+    fn predicted(&self, t: T, scales: &[T; N], most: f64) -> ([T; N], T::Mask, T::Mask) {
         let h = t - self.t;
         let half_square = T::constant(0.5) * h * h;
         let alone = size_of::<T>() == size_of::<T::Real>();
         if alone && N > FEW {
-            return self.predicted_side_by_side(h, scales);
+            return self.predicted_side_by_side(h, scales, most);
         }
         let mut predicted = *self.q;
         let mut all = T::mask(true);
@@ -189,32 +249,53 @@ impl<T: Scalar, const N: usize> Start<'_, T, N> {
             // compiler would load two at once, which were written one by one a moment ago, and the processor would have to
             // wait until they have reached the memory. Lanes are loaded as they were written.
             let looked_at = if alone { second + T::constant(0.0) * first } else { second };
-            let trusted = trusted(looked_at, *scale);
+            let trusted = trusted(looked_at, *scale, most);
             if alone && !T::all(trusted) {
-                return (*self.q, T::mask(false));
+                return self.predicted_far(h, scales);
             }
             all = all & trusted;
             *coordinate = first + second;
         }
-        (predicted, all)
+        if most < LARGEST_SECOND_ORDER_TERM && !T::all(all) {
+            return self.predicted_far(h, scales);
+        }
+        (predicted, all, T::mask(false))
     }
-}
 
-impl<T: Scalar, const N: usize> Start<'_, T, N> {
     /// [`predicted`](Self::predicted) for so many coordinates that the last step has put them down together, behind all blocks:
     /// they are loaded as they were written, and without decisions several at once.
     #[inline(always)]
-    fn predicted_side_by_side(&self, h: T, scales: &[T; N]) -> ([T; N], T::Mask) {
+    fn predicted_side_by_side(&self, h: T, scales: &[T; N], most: f64) -> ([T; N], T::Mask, T::Mask) {
         let half_square = T::constant(0.5) * h * h;
         let mut all = T::mask(true);
         for (acceleration, scale) in self.qdd.iter().zip(scales) {
-            all = all & trusted(half_square * *acceleration, *scale);
+            all = all & trusted(half_square * *acceleration, *scale, most);
+        }
+        if !T::all(all) {
+            return self.predicted_far(h, scales);
         }
         let mut predicted = *self.q;
         for ((coordinate, rate), acceleration) in predicted.iter_mut().zip(self.qd).zip(self.qdd) {
             *coordinate = *coordinate + h * *rate + half_square * *acceleration;
         }
-        (predicted, all)
+        (predicted, all, T::mask(false))
+    }
+
+    /// [`predicted`](Self::predicted) where the second-order term of a coordinate is not small in a lane.
+    #[cold]
+    #[inline(never)]
+    fn predicted_far(&self, h: T, scales: &[T; N]) -> ([T; N], T::Mask, T::Mask) {
+        let half_square = T::constant(0.5) * h * h;
+        let mut predicted = *self.q;
+        let (mut all, mut quick) = (T::mask(true), T::mask(true));
+        let rates = self.qd.iter().zip(self.qdd);
+        for ((coordinate, (rate, acceleration)), scale) in predicted.iter_mut().zip(rates).zip(scales) {
+            let second = half_square * *acceleration;
+            all = all & trusted(second, *scale, LARGEST_SECOND_ORDER_TERM);
+            quick = quick & trusted(second, *scale, QUICK_SECOND_ORDER_TERM);
+            *coordinate = *coordinate + h * *rate + second;
+        }
+        (predicted, all, !quick)
     }
 }
 
@@ -269,8 +350,8 @@ pub(crate) fn weights<T: Scalar, const N: usize>(scales: &[T; N]) -> [T; N] {
     weights
 }
 
-/// Whether the second-order term of a coordinate of this scale is small enough; false for NaN.
+/// Whether the second-order term of a coordinate of this scale is less than `most`; false for NaN.
 #[inline(always)]
-fn trusted<T: Scalar>(term: T, scale: T) -> T::Mask {
-    term.abs().less(T::constant(LARGEST_SECOND_ORDER_TERM) * scale)
+fn trusted<T: Scalar>(term: T, scale: T, most: f64) -> T::Mask {
+    term.abs().less(T::constant(most) * scale)
 }

@@ -33,6 +33,16 @@ impl fmt::Display for Failure {
                 "the way to the position at t = {time} s is lost after {part:.6} of it, at margin {margin:.3e}: beyond, the assembly is in \
                  doubt; take a smaller step, or one that ends farther from the singular position"
             ),
+            Failure::OverBudget { evaluations, required, .. } if evaluations < required => write!(
+                f,
+                "the budget leaves {evaluations} evaluations for the way to the position at t = {time} s, which no part of it takes: give \
+                 it {required} more, or take a smaller step"
+            ),
+            Failure::OverBudget { part, evaluations, .. } => write!(
+                f,
+                "the budget of {evaluations} evaluations ended after {part:.6} of the way to the position at t = {time} s; the next step \
+                 goes on from there"
+            ),
             Failure::Discontinuous { row, part, .. } => write!(
                 f,
                 "row `{}` (line {}) jumps on the way to the position at t = {time} s, after {part:.6} of it; make what drives it \

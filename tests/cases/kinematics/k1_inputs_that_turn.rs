@@ -26,9 +26,7 @@ fn wrapped<S: Case<R, N> + Copy, R: Real, const N: usize>(mechanism: S) -> Tally
         for motion in MOTIONS {
             for step in [0.01, 0.1, 0.3, 1.0, 3.0] {
                 for (side, rates) in [(1.0, Rates::Differences), (-1.0, Rates::Zero)] {
-                    // Numbers of seven digits tell positions apart for some turns.
-                    let turns = if R::EPSILON.to_f64() > 1e-10 { 2.0 } else { 1e3 };
-                    let count = if step < 0.02 { 300 } else { 60.min((turns * TAU / step) as usize + 2) };
+                    let count = if step < 0.02 { 300 } else { 60 };
                     let angles = the_short_way(&samples(motion, &linkage, step, count, &mut random));
                     let tally = follow::<S, R, N>(mechanism, &linkage, &angles, side, rates, Steps::Advance);
                     if tally.wrong + tally.off + tally.refused > 0 {

@@ -1,0 +1,85 @@
+//! K1: links much shorter than the reference length turned far within one step, and ended in the other assembly with `Ok`.
+
+use core::f64::consts::PI;
+
+use mbs_runtime::Real;
+
+use crate::linkages::follow::*;
+use crate::linkages::texts::*;
+use crate::linkages::*;
+
+/// A parallelogram with cranks of `length` on rods of 1 m.
+fn parallelogram(length: f64) -> Linkage {
+    Linkage {
+        name: "short/1/short/1",
+        crank: length,
+        rocker: length,
+        coupler: 1.0,
+        ground: 1.0,
+        centres: &[0.0, PI],
+    }
+}
+
+/// A crank of `length` that stretches two rods of 1 m once a turn.
+fn stretched(length: f64) -> Linkage {
+    Linkage {
+        name: "short/1/1/2 - short",
+        crank: length,
+        rocker: 1.0,
+        coupler: 1.0,
+        ground: 2.0 - length,
+        centres: &[PI],
+    }
+}
+
+/// Every motion in such steps, with rates and without.
+fn run<S: Case<R, N> + Copy, R: Real, const N: usize>(mechanism: S, linkage: &Linkage) -> Tally {
+    let (mut sum, mut random) = (Tally::default(), Random(5));
+    for step in [0.03, 0.1, 0.3, 1.0, 3.0] {
+        for motion in MOTIONS {
+            for (rates, side) in [(Rates::Differences, 1.0), (Rates::Zero, -1.0)] {
+                let angles = samples(motion, linkage, step, 120, &mut random);
+                let tally = follow::<S, R, N>(mechanism, linkage, &angles, side, rates, Steps::Advance);
+                if tally.wrong + tally.off > 0 {
+                    println!("  {} {} {motion:?} {step} {rates:?} {side}: {tally:?}", S::NAME, linkage.name);
+                }
+                sum = sum.and(tally);
+            }
+        }
+    }
+    println!("{} {} {}: {sum:?}", S::NAME, linkage.name, linkage.crank);
+    sum
+}
+
+fn is_kept(tally: Tally) {
+    assert!(tally.passages > 100, "{tally:?}");
+    assert_eq!((tally.wrong, tally.off, tally.refused), (0, 0, 0), "{tally:?}");
+}
+
+#[test]
+fn points_of_short_links_keep_the_assembly() {
+    for length in [0.1, 0.01] {
+        for linkage in [parallelogram(length), stretched(length)] {
+            is_kept(run::<_, f64, 4>(NaturalByTurn::default(), &linkage));
+            is_kept(run::<_, f64, 4>(NaturalByTimeInARow::default(), &linkage));
+        }
+    }
+}
+
+#[test]
+fn angles_led_by_short_links_keep_the_assembly() {
+    for length in [0.1, 0.01] {
+        for linkage in [parallelogram(length), stretched(length)] {
+            is_kept(run::<_, f64, 2>(AnglesByTurnInARow::default(), &linkage));
+        }
+    }
+}
+
+#[test]
+fn short_links_keep_the_assembly_in_single_precision() {
+    for linkage in [parallelogram(0.3), stretched(0.3)] {
+        let tally = run::<_, f32, 4>(NaturalByTurn::default(), &linkage);
+        assert!(tally.passages > 100, "{tally:?}");
+        assert_eq!((tally.wrong, tally.off), (0, 0), "{tally:?}");
+    }
+}
