@@ -5,7 +5,6 @@ use crate::diagnosis::{Statistics, extent};
 use crate::instant::Found;
 use crate::kinematics::{entry, largest_difference, position_failure, time_failure};
 use crate::nearest::contradiction;
-use crate::path::EVALUATIONS_OF_A_TANGENT;
 use crate::{Entry, Failure, Kinematic, Real, Stepper};
 
 /// The work that a step may cost at most, in each block.
@@ -149,11 +148,8 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
         if let Some(failure @ (Failure::NonFinite { .. } | Failure::Inconsistent { .. })) = open {
             return Err(contradiction(&self.mechanism, &self.parameters, &q, t, failure));
         }
-        let spare = statistics.evaluations + EVALUATIONS_OF_A_TANGENT <= most;
-        if !self.is_taken(Found { t, q, position, statistics, open }, &prediction, (phases, spare))? {
-            // Some may have gone into a doubt.
-            let spent = statistics.evaluations.saturating_add(EVALUATIONS_OF_A_TANGENT);
-            let left = most.saturating_sub(spent);
+        if !self.is_taken(Found { t, q, position, statistics, open }, &prediction, None)? {
+            let left = most.saturating_sub(statistics.evaluations);
             let done = self.along_the_way(t, phases, statistics.evaluations, left);
             return match (done, open) {
                 (Err(Failure::NotFollowed { .. } | Failure::OverBudget { .. }), Some(failure)) => {

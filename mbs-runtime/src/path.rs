@@ -64,9 +64,6 @@ const BISECTIONS: u32 = 64;
 /// Part of a way over which its tangent is taken.
 const TANGENT: f64 = 0.25;
 
-/// Evaluations that a tangent costs.
-pub(crate) const EVALUATIONS_OF_A_TANGENT: u32 = 2;
-
 /// Part of a piece between the points of its difference quotients, which are all in it. So they are as exact as the piece is foreseen:
 /// next to where assemblies cross, what they leave out counts by the inverse margin, and is of the fourth order.
 const THIRD: f64 = 1.0 / 3.0;
@@ -78,10 +75,12 @@ fn balance<R: Real>() -> R {
     R::EPSILON.sqrt().sqrt()
 }
 
-/// Margin from which on a position leads to the next one; nearer to the singular position it is found from the last such
-/// position.
+/// Margin from which on a position leads to the next one, 4 ε^(1/4) or more; nearer to the singular position it is found from the last such
+/// position. Every change of inputs asks: products take the place of roots.
+#[inline(always)]
 pub(crate) fn leads<R: Real>(margin: R) -> bool {
-    R::constant(4.0) * balance::<R>() <= margin
+    let square = margin * margin;
+    R::constant(0.0) < margin && R::constant(256.0) * R::EPSILON <= square * square
 }
 
 /// Largest margin at either end of a piece in which the determinant changes its sign.
@@ -616,6 +615,9 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Walk<'_, '_
             if ends[1] - ends[0] <= shortest::<R>() {
                 break;
             }
+            if self.limit < self.evaluations.saturating_add(4) {
+                return None;
+            }
             let [first, second] = [[ends[0], middle], [middle, ends[1]]].map(|ends| self.change(at, ends));
             let (half, changed) =
                 if first.1 < second.1 { ([middle, ends[1]], second) } else { ([ends[0], middle], first) };
@@ -630,6 +632,7 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Walk<'_, '_
 
     /// The row that changes most between two places of the way at the position of a spot, and by how much in the reference metric.
     fn change(&mut self, at: &Spot<S, R, N, M>, ends: [R; 2]) -> (u16, R) {
+        self.evaluations = self.evaluations.saturating_add(1);
         let [from, to] = ends.map(|share| self.station(share));
         let scales = self.way.mechanism.row_scales(&from.parameters);
         let [from, to] = [from, to].map(|station| self.residuals(&station, &at.q));

@@ -19,10 +19,6 @@ use crate::{Assembled, Budget, Failure, Kinematic, Mechanism, Real, Sweep, assem
 /// evaluations.
 pub(crate) const FINAL: Budget = Budget { newton: 3, fallback: 0 };
 
-/// Newton step over the margin that a position may lack where nothing but a small turn of inputs speaks for its assembly: links of a
-/// twenty-fifth of the reference length are a quarter of their own away from another one.
-const LARGEST_REPAIR: f64 = 0.01;
-
 /// A mechanism with its state. It owns everything, allocates nothing, and a failed call leaves it as it was.
 ///
 /// For a control loop: [`change`](Self::change) the inputs, [`advance`](Self::advance), read
@@ -269,7 +265,7 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
             let (position, statistics, failure) = next_position(&self.mechanism, &self.parameters, &mut q, t);
             first = statistics.evaluations;
             let found = Found { t, q, position, statistics, open: None };
-            if failure.is_none() && self.is_taken(found, &prediction, (phases, true))? {
+            if failure.is_none() && self.is_taken(found, &prediction, Some(phases))? {
                 return Ok(self.state.statistics);
             }
         }
@@ -282,12 +278,13 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
         self.state.is_regular() && !self.led
     }
 
-    /// Becomes the state at a position next to its prediction, if that leaves no doubt of the assembly; see [`settles`](Self::settles).
+    /// Becomes the state at a position next to its prediction, if that leaves no doubt of the assembly. With the
+    /// `phases` before the step short links are [looked at](Self::settles), which takes more than a bounded step has.
     pub(crate) fn is_taken(
         &mut self,
         mut found: Found<S, R, N, M>,
         prediction: &Prediction<R, N>,
-        (phases, spare): (S::Phases, bool),
+        phases: Option<S::Phases>,
     ) -> Result<bool, Failure> {
         let mut rates = Rates::none();
         let before = Before::State(&self.state);
@@ -296,7 +293,7 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
             && rates.orientation == self.state.orientation
             && prediction.is_certain(rates.margin)
             && is_near(R::constant(found.statistics.correction), rates.margin)
-            && self.settles(&found, prediction, &rates, (phases, spare));
+            && phases.is_none_or(|phases| self.settles(&found, prediction, &rates, phases));
         match failure {
             Some(failure) if certain => Err(failure),
             None if certain => {
@@ -320,36 +317,25 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
         lengths::bend_little((&lengths::points(S::COORDINATES), &scales), &tangent, &way, margin)
     }
 
-    /// Whether the links of a step turned so little that it leads to no other assembly, however short they are; without a `spare` part of
-    /// its budget one that only a tangent could tell does not.
+    /// Whether the links of a step turned so little that it leads to no other assembly, however short they are.
     fn settles(
         &mut self,
         found: &Found<S, R, N, M>,
         prediction: &Prediction<R, N>,
         rates: &Rates<R, N>,
-        (phases, spare): (S::Phases, bool),
+        phases: S::Phases,
     ) -> bool {
+        let margin = rates.margin;
+        let approach = R::constant(approach::<S, R, N, M>());
+        let near = R::constant(found.statistics.correction) <= approach * margin;
+        if self.changed && !near {
+            return self.tangent_leads(&found.q, margin, found.t, phases);
+        }
         let scales = self.mechanism.coordinate_scales(&self.parameters);
         let points = lengths::points(S::COORDINATES);
         let metric = (&points, &scales);
         let State { t, qd, qdd, .. } = &self.state;
-        let (h, margin) = (found.t - *t, rates.margin);
-        let approach = R::constant(approach::<S, R, N, M>());
-        let near = R::constant(found.statistics.correction) <= approach * margin;
-        if let Some(repair) = rates.repair {
-            // Newton's method was not at its end: its next step is small beside what was foreseen, or inputs turned hardly.
-            let size = largest_difference(&repair, &[R::constant(0.0); N], &scales);
-            let turned = match self.changed {
-                true => largest_change(S::ANGLES, &self.anchor.values, &self.mechanism.values()),
-                false => R::constant(0.0),
-            };
-            let slight = size <= R::constant(LARGEST_REPAIR) * margin
-                && turned <= R::constant(LARGEST_REPAIR) * margin;
-            return slight || lengths::are_foreseen(metric, &repair, [qd, qdd], (h, margin));
-        }
-        if self.changed && !near {
-            return spare && self.tangent_leads(&found.q, margin, found.t, phases);
-        }
+        let h = found.t - *t;
         let mut off = found.q;
         off.iter_mut().zip(&prediction.q).for_each(|(off, foreseen)| *off = *off - *foreseen);
         lengths::turn_little(metric, [qd, qdd, &rates.qd], h, lengths::least(margin))

@@ -353,10 +353,23 @@ const fn way(work: &Work, evaluations: u32) -> Operations {
         .and(add(n))
         .and(difference(n).times(2));
     let decided = compare(40).and(multiply(40)).and(divide(8)).and(root(12)).and(add(20));
-    let most = forecast.or(spot).or(correction).and(decided);
+    // Movements of points, and what is measured by them.
+    let measured = work
+        .coordinate_scales
+        .and(add(8 * n))
+        .and(multiply(12 * n))
+        .and(divide(8 * n + 2))
+        .and(select(6 * n))
+        .and(compare(8 * n));
+    let most = forecast.or(spot).or(correction).and(decided).and(measured);
     let end = end.solution(work).and(state(work)).and(difference(n)).and(work.coordinate_scales);
     // Beside them: where the way begins, and the row that jumps.
-    most.times(bounded).and(spot).and(slope).and(station.and(residuals).times(3)).and(end)
+    most.times(bounded)
+        .and(spot)
+        .and(slope)
+        .and(measured)
+        .and(station.and(residuals).and(difference(m)).times(4))
+        .and(end)
 }
 
 /// `State::at`

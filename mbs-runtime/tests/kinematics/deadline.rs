@@ -163,7 +163,9 @@ fn a_position_in_the_wrong_assembly_is_refused_however_small_the_budget() {
             stepper.change(|mechanism| mechanism.side = -1.0);
             assert!(matches!(
                 stepper.step(1e-3, AMPLE),
-                Step::Refused(Failure::WrongBranch { .. } | Failure::NotFollowed { .. })
+                Step::Refused(
+                    Failure::WrongBranch { .. } | Failure::NotFollowed { .. } | Failure::OverBudget { .. }
+                )
             ));
             assert_eq!(bits(&stepper), before);
         }

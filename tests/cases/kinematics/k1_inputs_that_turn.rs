@@ -9,7 +9,7 @@ use crate::linkages::texts::*;
 use crate::linkages::*;
 
 /// Such angles (rad) with each one on the short way from the one before.
-fn the_short_way(angles: &[f64]) -> Vec<f64> {
+pub fn the_short_way(angles: &[f64]) -> Vec<f64> {
     let mut all = vec![angles[0]];
     for angle in &angles[1..] {
         let last = all[all.len() - 1];
