@@ -81,7 +81,7 @@ fn a_jump_is_bracketed<R: Real>(open: f64) {
 fn a_function_that_jumps_between_two_instants_is_refused_with_its_place() {
     a_jump_is_bracketed::<f64>(1e-12);
     // 64 roundings of rows of 3.5 m over the margin there, a third.
-    a_jump_is_bracketed::<f32>(1e-4);
+    a_jump_is_bracketed::<f32>(2e-4);
 }
 
 /// The time from 0.9 rad on, at ten times the speed behind `at` (s), or lifted by 0.6 rad within some `width` (s) there.
