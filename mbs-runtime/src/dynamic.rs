@@ -140,6 +140,19 @@ pub trait Dynamic<T: Scalar, const N: usize, const M: usize>: Mechanism<T, N, M>
     ) {
     }
 
+    /// Contacts whose force is evaluated, in the order of [`CONTACTS`](Self::CONTACTS): all where nobody says otherwise. Of the others
+    /// [`force`](Self::force), its derivatives and [`powers`](Self::powers) are those of an open contact, and cost one test. Empty where
+    /// contacts cannot be left out.
+    #[inline]
+    fn evaluated(_parameters: &Self::Parameters) -> &[bool] {
+        &[]
+    }
+    /// The same, to leave open contacts out.
+    #[inline]
+    fn evaluated_mut(_parameters: &mut Self::Parameters) -> &mut [bool] {
+        &mut []
+    }
+
     /// What must not be negative, in the order of [`signed`](Self::signed).
     const SIGNED: &'static [Signed] = &[];
 

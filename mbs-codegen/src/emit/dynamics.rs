@@ -7,6 +7,7 @@ use proc_macro2::TokenStream;
 use quote::{quote, quote_spanned};
 
 use super::code::{block, lets};
+use super::contacts::{self, Blocks};
 use super::functions::{array, body, matrix};
 use super::scope::{Scope, number};
 use crate::equations::deferred::Slopes;
@@ -101,10 +102,15 @@ pub fn bodies(
     let vector =
         |nodes: &[Option<crate::symbolic::NodeId>], scope: &Scope<'_>| array(nodes.iter().copied(), scope);
     let of = |section, result: String| body(section, scope, &result, runtime);
+    let is_missing = |slopes| dynamics.missing.iter().any(|missing| missing.slopes == slopes);
     let slopes_or_nan = |slopes: Slopes, rows: &Sparse| {
-        let is_missing = dynamics.missing.iter().any(|missing| missing.slopes == slopes);
         let (n, nan) = (rows.len(), number(f64::NAN));
-        if is_missing { format!("[[{nan}; {n}]; {n}]") } else { matrix(rows.iter(), scope) }
+        if is_missing(slopes) { format!("[[{nan}; {n}]; {n}]") } else { matrix(rows.iter(), scope) }
+    };
+    let blocks = dynamics.by_contact.as_ref().zip(program.by_contact.as_ref());
+    let blocks = blocks.map(|(by_contact, program)| Blocks { by_contact, program, scope, runtime });
+    let contact_slopes = |slopes, by_velocity| {
+        blocks.as_ref().filter(|_| !is_missing(slopes)).map(|blocks| blocks.slopes(by_velocity))
     };
     Some(DynamicBodies {
         force_uses_multipliers: dynamics.force_uses_multipliers,
@@ -115,9 +121,15 @@ pub fn bodies(
         gaps: gaps(dynamics, program, scope, runtime),
         mass: of(&program.mass, matrix(dynamics.mass.iter(), scope)),
         mass_times: of(&program.mass_times, vector(&dynamics.mass_times, scope)),
-        force: of(&program.force, vector(&dynamics.force, scope)),
-        force_q: of(&program.force_q, slopes_or_nan(Slopes::ForceByPlace, &dynamics.force_q)),
-        force_qd: of(&program.force_qd, slopes_or_nan(Slopes::ForceBySpeed, &dynamics.force_qd)),
+        force: match &blocks {
+            Some(blocks) => blocks.force(),
+            None => of(&program.force, vector(&dynamics.force, scope)),
+        },
+        force_q: contact_slopes(Slopes::ForceByPlace, false)
+            .unwrap_or_else(|| of(&program.force_q, slopes_or_nan(Slopes::ForceByPlace, &dynamics.force_q))),
+        force_qd: contact_slopes(Slopes::ForceBySpeed, true).unwrap_or_else(|| {
+            of(&program.force_qd, slopes_or_nan(Slopes::ForceBySpeed, &dynamics.force_qd))
+        }),
         force_lambda: dynamics.force_uses_multipliers.then(|| {
             let (n, m) = (scope.model.coordinates.len(), scope.model.rows.len());
             let zeros = format!("let mut __rows = [[{}; {m}]; {n}];\n", scope.or_zero(None));
@@ -138,7 +150,10 @@ pub fn bodies(
             of(&program.third, format!("::core::option::Option::Some(({row}, {right}))"))
         }),
         energy: of(&program.energy, energy),
-        powers: of(&program.powers, vector(&dynamics.powers, scope)),
+        powers: match &blocks {
+            Some(blocks) => blocks.powers(&dynamics.powers),
+            None => of(&program.powers, vector(&dynamics.powers, scope)),
+        },
         carried: dynamics.carried.map(|power| {
             let result = format!("::core::option::Option::Some({})", scope.operand(power));
             of(&program.carried, result)
@@ -245,6 +260,12 @@ fn missing(dynamics: &Dynamics, model: &Model, runtime: &TokenStream) -> TokenSt
     }
 }
 
+/// Number of contacts, where their forces are evaluated one by one.
+pub fn contacts(equations: &Equations) -> Option<usize> {
+    let dynamics = equations.dynamics.as_ref()?;
+    dynamics.by_contact.as_ref().map(|_| dynamics.gaps.len())
+}
+
 /// The contacts: their table, and the function that shows their gaps.
 fn gaps(
     dynamics: &Dynamics,
@@ -271,8 +292,10 @@ fn gaps(
     let result = format!("[{}].into_iter().for_each(__see)", values.join(", "));
     let show = body(&program.gaps, scope, &result, runtime);
     let n = scope.model.coordinates.len();
+    let access = dynamics.by_contact.as_ref().map(|_| contacts::access());
     quote! {
         const CONTACTS: &'static [#runtime::Entry] = &[#(#entries),*];
+        #access
         fn gaps(
             &self,
             __p: &__Parameters<T>,

@@ -30,6 +30,8 @@ pub struct Bodies {
     /// Of each declared function, the highest derivative that is asked for.
     pub orders: Vec<u8>,
     pub kept_parameters: usize,
+    /// Number of contacts, where their forces are evaluated one by one.
+    pub contacts: Option<usize>,
     pub kept_position: usize,
     pub parameters: TokenStream,
     pub guess: TokenStream,
@@ -103,7 +105,9 @@ pub fn bodies(
     let early = Scope { parameters: Some(&program.parameters.fields), ..bare };
     let scope = Scope { position: Some(&program.position.fields), ..early };
     let is_long = long::is_long(program, lengths);
-    let mut emitter = Emitter { scope: &scope, early: &early, is_long, parts: String::new(), runtime };
+    let contacts = dynamics::contacts(equations);
+    let mut emitter =
+        Emitter { scope: &scope, early: &early, is_long, contacts, parts: String::new(), runtime };
     let rows = |part: fn(&crate::equations::Row) -> Option<NodeId>| -> Vec<Option<NodeId>> {
         equations.rows.iter().map(part).collect()
     };
@@ -145,6 +149,7 @@ pub fn bodies(
     let entries: Vec<(usize, usize, NodeId)> = entries(equations).collect();
     Bodies {
         kept_parameters: program.parameters.fields.len(),
+        contacts,
         kept_position: program.position.fields.len(),
         orders: orders(model, &demands),
         parameters: emitter.parameters(&program.parameters, smooth_enough(&demands, &bare), &bare),
@@ -200,6 +205,8 @@ struct Emitter<'a> {
     scope: &'a Scope<'a>,
     early: &'a Scope<'a>,
     is_long: bool,
+    /// Number of contacts, where their forces are evaluated one by one.
+    contacts: Option<usize>,
     /// The parts, all together.
     parts: String,
     runtime: &'a TokenStream,
@@ -244,12 +251,14 @@ impl Emitter<'_> {
         stage: &Stage,
         (scope, first): (&Scope<'_>, String),
     ) -> TokenStream {
+        let more = self.contacts.filter(|_| kind == "__Parameters").map(closed).unwrap_or_default();
         if !self.is_long {
-            return body(&stage.section, scope, &(first + &kept(stage, scope, kind)), self.runtime);
+            let result = format!("{kind}({}{more})", kept_values(stage, scope));
+            return body(&stage.section, scope, &(first + &result), self.runtime);
         }
         let results: Vec<Option<NodeId>> = stage.fields.keys().copied().map(Some).collect();
         let body = self.in_parts((name, frame), &stage.section, &results, scope);
-        block(&format!("{first}{body}{kind}(__v.kept())"), self.runtime)
+        block(&format!("{first}{body}{kind}(__v.kept(){more})"), self.runtime)
     }
 
     fn emitted(
@@ -282,7 +291,16 @@ impl Emitter<'_> {
 
 /// Within a stage itself its values are locals.
 fn kept(stage: &Stage, scope: &Scope<'_>, name: &str) -> String {
-    format!("{name}({})", array(stage.fields.keys().map(|id| Some(*id)), scope))
+    format!("{name}({})", kept_values(stage, scope))
+}
+
+fn kept_values(stage: &Stage, scope: &Scope<'_>) -> String {
+    array(stage.fields.keys().map(|id| Some(*id)), scope)
+}
+
+/// The forces of all contacts are evaluated where nobody says otherwise.
+fn closed(contacts: usize) -> String {
+    format!(", [true; {contacts}]")
 }
 
 fn frame(declared: &str, given: &str) -> Frame {

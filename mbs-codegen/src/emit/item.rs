@@ -105,6 +105,7 @@ fn implementations(text: &Text, scenes: &Scenes, part: &Part<'_>) -> TokenStream
         ..
     } = bodies;
     let nonzeros = sparsity.len();
+    let closed = bodies.contacts.map(|contacts| quote! { , [::core::primitive::bool; #contacts] });
     let places = sparsity.iter().map(|(row, column)| quote! { (#row, #column) });
     let widths = widths.as_ref().map(|widths| {
         quote! {
@@ -136,7 +137,7 @@ fn implementations(text: &Text, scenes: &Scenes, part: &Part<'_>) -> TokenStream
         const _: () = {
             /// Values of parameters alone.
             #[derive(::core::clone::Clone, ::core::marker::Copy, ::core::fmt::Debug)]
-            pub struct __Parameters<T>([T; #kept_parameters]);
+            pub struct __Parameters<T>([T; #kept_parameters] #closed);
 
             /// Values of `(q, t)` that functions share.
             #[derive(::core::clone::Clone, ::core::marker::Copy, ::core::fmt::Debug)]

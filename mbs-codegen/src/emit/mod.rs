@@ -5,6 +5,7 @@ pub mod casadi;
 mod casadi_dynamics;
 mod casadi_pins;
 mod code;
+mod contacts;
 mod docs;
 mod dynamics;
 mod elimination;

@@ -27,6 +27,7 @@ fn bodies(model: &Model, runtime: &TokenStream) -> Bodies {
     let body = || quote! { { ::core::unreachable!() } };
     Bodies {
         orders: vec![0; model.functions.len()],
+        contacts: None,
         kept_parameters: 0,
         kept_position: 0,
         parameters: body(),

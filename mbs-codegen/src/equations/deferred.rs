@@ -71,8 +71,14 @@ impl Equations {
             let Some(dynamics) = &mut self.dynamics else { return };
             let clear = |matrix: &mut Sparse| matrix.iter_mut().for_each(Vec::clear);
             match slopes {
-                Slopes::ForceByPlace => clear(&mut dynamics.force_q),
-                Slopes::ForceBySpeed => clear(&mut dynamics.force_qd),
+                Slopes::ForceByPlace => {
+                    clear(&mut dynamics.force_q);
+                    dynamics.pushes_mut().for_each(|push| clear(&mut push.force_q));
+                }
+                Slopes::ForceBySpeed => {
+                    clear(&mut dynamics.force_qd);
+                    dynamics.pushes_mut().for_each(|push| clear(&mut push.force_qd));
+                }
                 Slopes::Inertia => clear(&mut dynamics.mass_times_q),
                 Slopes::Reaction => clear(&mut dynamics.reaction_q),
                 Slopes::States => dynamics.slopes.clear(),

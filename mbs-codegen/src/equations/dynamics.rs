@@ -1,6 +1,7 @@
 //! Masses and forces → M, Q, their derivatives, energies and powers.
 
 use super::carried;
+use super::contacts::{ByContact, Push, by_contact};
 use super::deferred::Missing;
 use super::forces::{self, Acting, Sum};
 use super::lower::Clock;
@@ -118,6 +119,8 @@ pub struct Dynamics {
     pub signed: Vec<Signed>,
     /// One a contact.
     pub gaps: Vec<Gap>,
+    /// Q contact by contact, where there are contacts.
+    pub by_contact: Option<ByContact>,
     /// Which of ∂Q/∂q, ∂Q/∂q̇, (M x)_q, (Φ_qᵀ λ)_q and the slopes are left out, for declared functions are not smooth enough.
     pub missing: Vec<Missing>,
     /// One an output of multipliers or states.
@@ -133,6 +136,11 @@ pub struct Dynamics {
 }
 
 impl Dynamics {
+    /// The forces of contacts, and those with all contacts open.
+    pub fn pushes_mut(&mut self) -> impl Iterator<Item = &mut Push> {
+        self.by_contact.iter_mut().flat_map(ByContact::pushes_mut)
+    }
+
     /// The roots of every function that is emitted, to be replaced.
     pub fn roots_mut(&mut self) -> Vec<&mut NodeId> {
         let matrices = [
@@ -165,6 +173,7 @@ impl Dynamics {
             roots.push(gap);
             roots.extend([rate, bound].into_iter().flatten());
         }
+        roots.extend(self.by_contact.iter_mut().flat_map(ByContact::roots_mut));
         roots
     }
 }
@@ -193,9 +202,15 @@ pub fn derive(
     }
     let Inertia { mass, bias, kinetic, carried } = inertia;
     let forces::Forces { force, potential, powers, acting, carried } =
-        forces::derive(g, declared, &of, clock, (count, carried));
-    let force: Vec<Option<NodeId>> =
-        force.into_iter().zip(&bias).map(|(force, bias)| force.minus(g, bias.0).0).collect();
+        forces::derive(g, declared, &of, clock, (count, carried, &[]));
+    let less_bias = |g: &mut Graph, force: Vec<Sum>| -> Vec<Option<NodeId>> {
+        force.into_iter().zip(&bias).map(|(force, bias)| force.minus(g, bias.0).0).collect()
+    };
+    let force = less_bias(g, force);
+    let by_contact = by_contact(g, declared, &of, &powers, |g, contacts| {
+        let others = forces::derive(g, declared, &of, clock, (count, carried, contacts));
+        less_bias(g, others.force)
+    });
 
     let used = g.reachable(force.iter().copied().flatten());
     let force_uses_multipliers =
@@ -255,6 +270,7 @@ pub fn derive(
         start_rates: (0..count).map(|index| start(&declared.rates, index)).collect(),
         signed: signed(g, bounded.into_iter()),
         gaps,
+        by_contact,
         missing: Vec::new(),
         loads: declared.loads.iter().map(|load| of(load.value)).collect(),
         not_quadratic,
@@ -435,7 +451,7 @@ fn products(g: &mut Graph, matrix: &Sparse, vector: impl Fn(u32) -> Leaf) -> Vec
 }
 
 /// Entries of the derivative of roots that may be zero.
-fn derivative(g: &mut Graph, roots: &[Option<NodeId>], count: usize, axis: fn(u32) -> Leaf) -> Sparse {
+pub fn derivative(g: &mut Graph, roots: &[Option<NodeId>], count: usize, axis: fn(u32) -> Leaf) -> Sparse {
     let zero = g.constant(0.0);
     let roots: Vec<NodeId> = roots.iter().map(|root| root.unwrap_or(zero)).collect();
     jacobian(g, &roots, count, axis)

@@ -65,13 +65,13 @@ pub struct Forces {
 }
 
 /// Before: the forces of the text; the number of coordinates, and what the time gives to the kinetic energy. After: their sum on
-/// each coordinate, their potential, the powers of the named ones, what the time gives.
+/// each coordinate, their potential, the powers of the named ones, what the time gives. Named forces of `left_out` are not among them.
 pub fn derive(
     g: &mut Graph,
     declared: &Declared,
     of: &impl Fn(Id) -> NodeId,
     clock: &Clock,
-    (count, carried): (usize, Sum),
+    (count, carried, left_out): (usize, Sum, &[usize]),
 ) -> Forces {
     let mut work = Work {
         force: vec![Sum::default(); count],
@@ -84,6 +84,10 @@ pub fn derive(
     let mut powers = Vec::new();
     for (index, force) in declared.forces.iter().enumerate() {
         work.current = index;
+        if left_out.contains(&index) {
+            powers.push(None);
+            continue;
+        }
         powers.push(match &force.action {
             Action::Work(pairs) => {
                 let mut power = Sum::default();

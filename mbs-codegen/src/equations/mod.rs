@@ -4,6 +4,7 @@
 mod attribution;
 mod carried;
 mod carriers;
+mod contacts;
 pub mod continuity;
 pub mod deferred;
 mod degree;
@@ -28,6 +29,7 @@ use crate::model::Model;
 use crate::symbolic::{Graph, Leaf, Node, NodeId, tangent, tangents};
 
 pub use attribution::Motion;
+pub use contacts::{ByContact, Pressing, Push};
 pub use dynamics::{Dynamics, Gap, Slope, Sparse};
 use lower::Lowered;
 pub use lower::MARGIN;

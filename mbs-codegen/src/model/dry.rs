@@ -64,8 +64,10 @@ impl Resolver<'_> {
         let damping = given.scalar("damping");
         let force =
             self.elaborate(Reach::Force, |work| pressing(work, gap, stiffness, (power, damping), name.span))?;
-        let contact = Contact { name: full.clone(), gap, bound: given.scalar("bound"), span: name.span };
-        self.dynamics().contacts.push(contact);
+        let (bound, span) = (given.scalar("bound"), name.span);
+        let dynamics = self.dynamics();
+        let force_index = dynamics.forces.len();
+        dynamics.contacts.push(Contact { name: full.clone(), force: force_index, gap, bound, span });
         self.force(name, full, Action::Work(vec![(force, gap)]));
         Ok(())
     }

@@ -124,6 +124,8 @@ pub struct Force {
 pub struct Contact {
     /// Its name.
     pub name: String,
+    /// Index of its force among the forces.
+    pub force: usize,
     /// Gap (m).
     pub gap: Id,
     /// Largest |second time derivative of the gap| while it is open (m/s²), of parameters.

@@ -1,9 +1,10 @@
 //! Functions of masses and forces as code.
 
+use super::contacts::{ContactProgram, ContactRoots};
 use super::schedule::Section;
 use crate::equations::normal_forces::NormalForces;
 use crate::equations::{Dynamics, Gap, Sparse};
-use crate::symbolic::NodeId;
+use crate::symbolic::{Graph, NodeId};
 
 /// One section a function.
 #[derive(Debug)]
@@ -44,6 +45,8 @@ pub struct DynamicsProgram {
     pub loads: Section,
     /// Gaps of contacts with their rates.
     pub gaps: Section,
+    /// Forces by contact, where there are contacts.
+    pub by_contact: Option<ContactProgram>,
     /// First-order states at the start.
     pub start_states: Section,
     /// Rates at the start.
@@ -72,6 +75,7 @@ pub struct Roots {
     slopes: Vec<NodeId>,
     loads: Vec<NodeId>,
     gaps: Vec<NodeId>,
+    by_contact: Option<ContactRoots>,
     start_states: Vec<NodeId>,
     start_rates: Vec<NodeId>,
     signed: Vec<NodeId>,
@@ -100,6 +104,7 @@ impl Roots {
             slopes: dynamics.slopes.iter().flat_map(|slope| slope.roots()).collect(),
             loads: dynamics.loads.clone(),
             gaps: dynamics.gaps.iter().flat_map(Gap::roots).collect(),
+            by_contact: ContactRoots::of(dynamics),
             start_states: some(&dynamics.start_states),
             start_rates: some(&dynamics.start_rates),
             signed: dynamics.signed.iter().map(|signed| signed.node).collect(),
@@ -108,12 +113,13 @@ impl Roots {
 
     /// Functions that every step of every method calls.
     pub fn each_step(&self) -> [&[NodeId]; 5] {
-        [&self.mass, &self.mass_times, &self.force, &self.reaction, &self.state_rates]
+        let force = self.by_contact.as_ref().map_or(self.force.as_slice(), ContactRoots::force);
+        [&self.mass, &self.mass_times, force, &self.reaction, &self.state_rates]
     }
 
     /// Functions that some methods call, or that nobody calls in every step: nothing is kept for them alone.
-    pub fn rare(&self) -> [&[NodeId]; 13] {
-        [
+    pub fn rare(&self) -> impl Iterator<Item = &[NodeId]> {
+        let all: [&[NodeId]; 13] = [
             &self.force_q,
             &self.force_qd,
             &self.force_lambda,
@@ -127,7 +133,10 @@ impl Roots {
             &self.slopes,
             &self.loads,
             &self.gaps,
-        ]
+        ];
+        let by_contact = self.by_contact.iter();
+        let whole = by_contact.clone().map(|_| self.force.as_slice());
+        all.into_iter().chain(whole).chain(by_contact.flat_map(ContactRoots::rare))
     }
 
     /// Functions of the parameters.
@@ -135,10 +144,13 @@ impl Roots {
         [&self.start_states, &self.start_rates]
     }
 
-    /// Before: what orders the code of a function of the state, and of one of parameters alone. After: all in order.
+    /// Before: what orders the code of a function of the state, of one behind another, and of one of parameters alone. After: all in
+    /// order.
     pub fn order(
         &self,
+        graph: &Graph,
         section: impl Fn(&[NodeId]) -> Section,
+        behind: impl Fn(&Section, &[NodeId]) -> Section,
         early: impl Fn(&[NodeId]) -> Section,
     ) -> DynamicsProgram {
         DynamicsProgram {
@@ -160,6 +172,7 @@ impl Roots {
             slopes: section(&self.slopes),
             loads: section(&self.loads),
             gaps: section(&self.gaps),
+            by_contact: self.by_contact.as_ref().map(|roots| roots.order(graph, &section, behind)),
             start_states: early(&self.start_states),
             start_rates: early(&self.start_rates),
             // Asked once a run: nothing is kept for it.

@@ -2,6 +2,7 @@
 
 mod angles;
 mod blocks;
+mod contacts;
 mod dynamics;
 pub mod motion;
 mod powers;
@@ -16,6 +17,7 @@ use crate::symbolic::{Graph, NodeId};
 
 pub use angles::share_angles;
 pub use blocks::{BlockProgram, Method, System};
+pub use contacts::{ContactProgram, PushProgram};
 pub use dynamics::DynamicsProgram;
 pub use powers::take_roots;
 pub use schedule::{Angle, Jet, Line, Operations, Section};
@@ -103,6 +105,9 @@ pub fn order(equations: &Equations, structure: &Structure) -> Program {
     let known: BTreeSet<NodeId> = after_parameters.iter().chain(position.fields.keys()).copied().collect();
     let section = |roots: &[NodeId]| schedule::schedule(graph, roots, &known);
     let early = |roots: &[NodeId]| schedule::schedule(graph, roots, &after_parameters);
+    let behind = |first: &Section, roots: &[NodeId]| {
+        schedule::schedule(graph, roots, &known.iter().copied().chain(first.computed()).collect())
+    };
     let kept: Vec<NodeId> = position.fields.keys().copied().collect();
     let solution = blocks::order(equations, structure, &after_parameters, &kept);
     Program {
@@ -124,7 +129,7 @@ pub fn order(equations: &Equations, structure: &Structure) -> Program {
         widths: early(&roots.widths),
         blocks: solution.blocks,
         rest: solution.rest,
-        dynamics: dynamics.map(|roots| roots.order(section, early)),
+        dynamics: dynamics.map(|roots| roots.order(graph, section, behind, early)),
         parameters,
         position,
     }

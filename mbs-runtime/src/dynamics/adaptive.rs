@@ -381,10 +381,13 @@ impl<R: Real> Adaptive<R> {
                     return Err(out_of_reach(step, now.t, until));
                 }
             }
+            if equation.begin(now.t, &now.y) {
+                now.rate = equation.rate(now.t, &now.y)?;
+            }
             let next_break = breakpoints(now.t).filter(|next| now.t < *next && *next <= until);
             let end = (next_break.unwrap_or(until), next_break.is_some());
             let mut accepted = self.step_after::<M, E>(equation, &now, end, &memory)?;
-            if equation.may_kink(now.t, &now.y, accepted.end.t) {
+            if equation.may_kink(accepted.end.t) {
                 accepted = self.up_to_kink::<M, E>(equation, accepted)?;
             }
             memory = M::remember(&accepted.taken());

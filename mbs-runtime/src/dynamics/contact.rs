@@ -1,9 +1,12 @@
 //! Contacts that close or open within a step.
 
-use super::event::{GROUP, Scrutiny, Undefined, Watched, first_beyond};
+use super::event::{GROUP, NONE, Scrutiny, Undefined, Watched, first_beyond};
 use super::model::Model;
 use super::vector::State;
 use crate::{Dynamic, Entry, Failure, Gap, Real, kinematics};
+
+/// Roundings of a time that is computed from a gap, its rate and its bound.
+const REACH_ROUNDINGS: f64 = 16.0;
 
 impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, R, N, M> {
     /// Shows the gaps of a state at `t` (s), where inputs and phases are known at time `from` (s).
@@ -13,37 +16,47 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         });
     }
 
-    /// Whether a contact may close or open in a step from `t` to `to` (s): not where all are open and stay so by the bounds that the
-    /// text declares, g + ġ h − b h²/2 > 0.
-    pub(super) fn may_close(&self, from: R, (t, y): (R, &State<R, N, S::States>), to: R) -> bool {
-        let (zero, half, h) = (R::constant(0.0), R::constant(0.5), to - t);
-        let mut open = true;
+    /// Leaves those contacts out of `parameters` that are open at the beginning of a step at `t` (s).
+    pub(super) fn leave_out(
+        &self,
+        from: R,
+        (t, y): (R, &State<R, N, S::States>),
+        parameters: &mut S::Parameters,
+    ) -> Open<R> {
+        let (zero, none) = (R::constant(0.0), R::constant(NONE) * R::EPSILON * self.gap_scale());
+        let mut open = Open { changes: false, until: R::constant(f64::MAX) };
+        let mut evaluated = S::evaluated_mut(parameters).iter_mut();
         self.gaps(from, (t, y), |Gap { gap, rate, bound }| {
-            // The least value of a parabola that bends down is at an end.
-            let stays = bound.is_some_and(|bound| zero < gap + h * (rate - half * bound * h));
-            open = open && zero < gap && stays;
+            // Written so that NaN is closed.
+            let is_open = none < gap;
+            let quiet = bound.filter(|_| is_open).map_or(zero, |bound| reach(gap, rate, bound));
+            open.until = open.until.min(t + quiet);
+            if let Some(evaluated) = evaluated.next() {
+                open.changes = open.changes || *evaluated == is_open;
+                *evaluated = !is_open;
+            }
         });
-        !open
+        open
+    }
+
+    /// Gap (m) of which roundings are none.
+    fn gap_scale(&self) -> R {
+        self.metric.coordinates.iter().fold(R::constant(0.0), |sum, scale| sum.max(*scale))
     }
 
     /// The first time (s) of a step between `start` and `end` (s) at which a contact closes or opens, behind it by rounding; `at` gives
-    /// the states of the step.
+    /// the states of the step. `from`: the time (s) that inputs and phases are known at, with the contacts that the step evaluates:
+    /// the others are open where it begins.
     pub(super) fn contact_change(
         &self,
-        from: R,
+        (from, evaluated): (R, &[bool]),
         (start, end): (R, R),
         at: impl Fn(R) -> State<R, N, S::States>,
         scrutiny: &Scrutiny<R>,
     ) -> Result<Option<R>, Failure> {
-        let largest = |sum: R, scale: &R| sum.max(*scale);
-        let scale = self.metric.coordinates.iter().fold(R::constant(0.0), largest);
-        let mut bound = Some(R::constant(0.0));
-        self.gaps(from, (start, &at(start)), |gap| {
-            bound = bound.zip(gap.bound).map(|(one, other)| one.max(other));
-        });
-        let scrutiny = Scrutiny { bound, scale, touching: false, ..*scrutiny };
-        let mut contacts = Contacts { model: self, from, at };
-        match first_beyond(&mut contacts, (start, end), false, &scrutiny) {
+        let scrutiny = Scrutiny { bound: None, scale: self.gap_scale(), touching: false, ..*scrutiny };
+        let mut contacts = Contacts { model: self, from, evaluated, scrutiny, at };
+        match first_beyond(&mut contacts, (start, end)) {
             Ok(found) => Ok(found.map(|(_, t)| t)),
             Err((contact, Undefined(_))) => {
                 let Entry { name, line, .. } =
@@ -54,11 +67,37 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
     }
 }
 
+/// What is known of the contacts where a step begins.
+pub(super) struct Open<R> {
+    /// Whether another contact is evaluated than before.
+    pub(super) changes: bool,
+    /// Time (s) up to which all stay open by the bounds that the text declares.
+    pub(super) until: R,
+}
+
+/// Time (s) after which a gap may be closed whose second derivative is at least −`bound`: gap + rate h − bound h²/2 = 0.
+fn reach<R: Real>(gap: R, rate: R, bound: R) -> R {
+    let (zero, two) = (R::constant(0.0), R::constant(2.0));
+    let root = (rate * rate + two * bound * gap).sqrt();
+    // Neither of both subtracts.
+    let time = if rate < zero { two * gap / (root - rate) } else { (rate + root) / bound };
+    if zero < bound || rate < zero && bound == zero {
+        time * (R::constant(1.0) - R::constant(REACH_ROUNDINGS) * R::EPSILON)
+    } else if bound == zero {
+        R::constant(f64::MAX)
+    } else {
+        zero
+    }
+}
+
 /// The gaps along a step.
 struct Contacts<'a, S: Dynamic<R, N, M>, R: Real, At, const N: usize, const M: usize> {
     model: &'a Model<'a, S, R, N, M>,
     /// Time (s) that inputs and phases are known at.
     from: R,
+    /// Contacts that the step evaluates.
+    evaluated: &'a [bool],
+    scrutiny: Scrutiny<R>,
     at: At,
 }
 
@@ -70,6 +109,22 @@ where
 {
     fn count(&self) -> usize {
         S::CONTACTS.len()
+    }
+
+    fn positive(&self, member: usize) -> bool {
+        self.evaluated.get(member) == Some(&false)
+    }
+
+    /// The bound holds of an open gap.
+    fn scrutiny(&mut self, member: usize, start: R) -> Scrutiny<R> {
+        let (mut index, mut bound) = (0, None);
+        if self.positive(member) {
+            self.model.gaps(self.from, (start, &(self.at)(start)), |gap| {
+                bound = if index == member { gap.bound } else { bound };
+                index += 1;
+            });
+        }
+        Scrutiny { bound, ..self.scrutiny }
     }
 
     fn values(&mut self, t: R, first: usize, values: &mut [R; GROUP]) {

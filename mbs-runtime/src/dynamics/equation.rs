@@ -95,8 +95,13 @@ pub trait Measured<T: Scalar>: Equation<T> {
         T::constant(0.0)
     }
 
-    /// Whether the equation may not be smooth at a time within a step from `y` at time `from` to time `to` (s).
-    fn may_kink(&mut self, _from: T, _y: &Self::State, _to: T) -> bool {
+    /// A step begins at `y` at time `t` (s). Whether the rate of `y` is to be evaluated anew: another part of the equation may hold from here.
+    fn begin(&mut self, _t: T, _y: &Self::State) -> bool {
+        false
+    }
+
+    /// Whether the equation may not be smooth at a time within the step that has begun, up to time `to` (s).
+    fn may_kink(&mut self, _to: T) -> bool {
         false
     }
 

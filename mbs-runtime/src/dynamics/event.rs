@@ -31,7 +31,7 @@ const MOST_BOUNDED_PARTS: u32 = 1 << 18;
 pub const MOST_RESOLVED: f64 = 512.0;
 
 /// Roundings of the largest value within a step up to which a value is none: those of some operations.
-const NONE: f64 = 64.0;
+pub const NONE: f64 = 64.0;
 
 /// The same for nine values of which the polynomial tells nothing more: its coefficients add up 560 roundings.
 const BLURRED: f64 = 2_048.0;
@@ -301,29 +301,31 @@ pub trait Watched<R> {
     fn count(&self) -> usize;
     /// Those from `first` on at `t` (s), as many as there are and as fit.
     fn values(&mut self, t: R, first: usize, values: &mut [R; GROUP]);
+    /// Whether a function begins positive whatever its value is; otherwise the first value that is any tells the side.
+    fn positive(&self, member: usize) -> bool;
+    /// How closely a function is looked at in a step that begins at `start` (s).
+    fn scrutiny(&mut self, member: usize, start: R) -> Scrutiny<R>;
 }
 
 /// A function among several, and where it reaches zero or is NaN.
 pub type Member<X> = (usize, X);
 
 /// The first of several functions that goes beyond zero between `start` and `end` (s), from the side on which it begins.
-/// `positive`: whether that is the positive one whatever the values are; otherwise the first value that is any tells.
 ///
 /// # Errors
 /// [`Undefined`] where a value is NaN.
 pub fn first_beyond<R: Real>(
     watched: &mut impl Watched<R>,
     (start, mut end): (R, R),
-    positive: bool,
-    scrutiny: &Scrutiny<R>,
 ) -> Result<Option<Member<R>>, Member<Undefined<R>>> {
     let mut found = None;
     let mut first = 0;
     while first < watched.count() {
         let mut near = [false; GROUP];
-        near_zero(watched, first, (start, end), (positive, scrutiny), &mut near)
-            .map_err(|(member, at)| (first + member, at))?;
+        near_zero(watched, first, (start, end), &mut near).map_err(|(member, at)| (first + member, at))?;
         for member in (0..GROUP).filter(|member| near.get(*member) == Some(&true)) {
+            let scrutiny = watched.scrutiny(first + member, start);
+            let positive = watched.positive(first + member);
             let mut function = |t: R| {
                 let mut values = [R::constant(0.0); GROUP];
                 watched.values(t, first, &mut values);
@@ -335,7 +337,9 @@ pub fn first_beyond<R: Real>(
                 false => monitor::side(&mut function, (start, end), scrutiny.scale).map_err(undefined)?,
             };
             let Some((from, side)) = begin else { continue };
-            if let Some(reach) = first_reach(&mut function, (from, end), side, scrutiny).map_err(undefined)? {
+            if let Some(reach) =
+                first_reach(&mut function, (from, end), side, &scrutiny).map_err(undefined)?
+            {
                 end = reach.t;
                 found = Some((first + member, reach.t));
             }
@@ -350,7 +354,6 @@ fn near_zero<R: Real>(
     watched: &mut impl Watched<R>,
     first: usize,
     (start, end): (R, R),
-    (positive, scrutiny): (bool, &Scrutiny<R>),
     near: &mut [bool; GROUP],
 ) -> Result<(), Member<Undefined<R>>> {
     let mut rows = [[R::constant(0.0); GROUP]; NODES];
@@ -358,8 +361,9 @@ fn near_zero<R: Real>(
         watched.values(Interpolant::instant(start, end, index), first, row);
     }
     let count = watched.count().saturating_sub(first);
-    let closely = scrutiny.parts(end - start) > 1;
     for (member, near) in near.iter_mut().enumerate().take(count) {
+        let scrutiny = watched.scrutiny(first + member, start);
+        let positive = watched.positive(first + member);
         let mut index = 0;
         let mut column = |_| {
             let value = rows.get(index).and_then(|row| row.get(member)).copied();
@@ -369,10 +373,10 @@ fn near_zero<R: Real>(
         let part = Interpolant::through(&mut column, start, end).map_err(|at| (member, at))?;
         let side = if positive { R::constant(1.0) } else { part.first() };
         let scale = part.largest().max(scrutiny.scale);
-        let search = Search { side: side.sign(), scrutiny, scale, left: 1 };
+        let search = Search { side: side.sign(), scrutiny: &scrutiny, scale, left: 1 };
         let small = !positive && part.first().abs() <= R::constant(NONE) * R::EPSILON * scale;
         let clear = !small && matches!(search.verdict(&part, false), Verdict::Clear);
-        *near = closely || !clear;
+        *near = scrutiny.parts(end - start) > 1 || !clear;
     }
     Ok(())
 }

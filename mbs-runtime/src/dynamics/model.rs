@@ -246,9 +246,18 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         let mut mechanism = self.mechanism.clone();
         mechanism.carry_signals(self.mechanism, to - from);
         mechanism.advance_phases(from, to);
-        let parameters = mechanism.parameters();
+        let parameters = self.alike(mechanism.parameters());
         let Model { metric, balanced, rank_rises, .. } = *self;
         solve(&Model { mechanism: &mechanism, parameters: &parameters, metric, balanced, rank_rises })
+    }
+
+    /// Parameters with the same contacts left out as here.
+    #[inline(always)]
+    pub(super) fn alike(&self, mut parameters: S::Parameters) -> S::Parameters {
+        for (to, from) in S::evaluated_mut(&mut parameters).iter_mut().zip(S::evaluated(self.parameters)) {
+            *to = *from;
+        }
+        parameters
     }
 
     /// Fails where a coordinate, velocity or state is no number, or a coordinate is not resolved.

@@ -271,6 +271,10 @@ pub struct Equations<'a, S: Dynamic<R, N, M>, F, R: Real, const N: usize, const 
     before: Before<S, R, N, M>,
     /// How closely contacts are looked at.
     scrutiny: Scrutiny<R>,
+    /// The parameters without the contacts that are open in the present step.
+    parameters: S::Parameters,
+    /// Time (s) up to which all contacts stay open by the bounds that the text declares.
+    quiet: R,
     pub(super) counts: Counts,
 }
 
@@ -309,6 +313,8 @@ where
             passage: None,
             before: (end, None),
             scrutiny: Scrutiny::beyond(),
+            parameters: *model.parameters,
+            quiet: start,
             counts,
         }
     }
@@ -327,9 +333,11 @@ where
     pub(super) fn apart<X>(&mut self, look: impl FnOnce(&mut Self) -> X) -> X {
         let (counts, lambda, fixed) = (self.counts, self.lambda, self.fixed);
         let (end, passage) = (self.end, self.passage);
+        let (parameters, quiet) = (self.parameters, self.quiet);
         self.fixed = true;
         let found = look(self);
         (self.fixed, self.end, self.passage) = (fixed, end, passage);
+        (self.parameters, self.quiet) = (parameters, quiet);
         let shown = counts.shown + self.counts.evaluations.wrapping_sub(counts.evaluations);
         (self.counts, self.lambda) = (Counts { shown, ..counts }, lambda);
         found
@@ -355,6 +363,11 @@ where
         self.fixed = true;
         *y = run.map_err(|_| failure).map_or(before, |point| point.y);
         self.settle_and_solve(t, y)
+    }
+
+    /// Evaluates all contacts, as at an instant by itself.
+    pub(super) fn with_all_contacts(&mut self) {
+        self.parameters = *self.model.parameters;
     }
 
     /// Takes an instant between the ends of steps for where a singular position may be passed.
@@ -396,8 +409,14 @@ where
         solve: impl FnOnce(&Model<'_, S, R, N, M>, &F, &mut [R; M], &mut Counts) -> X,
     ) -> X {
         let phases = if S::PHASES.is_empty() { *increments } else { self.phases(t, increments) };
-        let Equations { model, formulation, start, moving, integrating, lambda, counts, .. } = self;
-        let Some(mechanism) = moving else { return solve(model, formulation, lambda, counts) };
+        let Equations { model, formulation, start, moving, integrating, parameters, lambda, counts, .. } =
+            self;
+        let Model { mechanism: own, metric, balanced, rank_rises, .. } = **model;
+        let present = Model { mechanism: own, parameters, metric, balanced, rank_rises };
+        let Some(mechanism) = moving else {
+            let model = if S::CONTACTS.is_empty() { *model } else { &present };
+            return solve(model, formulation, lambda, counts);
+        };
         mechanism.carry_signals(model.mechanism, t - *start);
         if *integrating {
             mechanism.set_phases(phases);
@@ -405,8 +424,7 @@ where
             mechanism.set_phases(model.mechanism.phases());
             mechanism.advance_phases(*start, t);
         }
-        let parameters = mechanism.parameters();
-        let Model { metric, balanced, rank_rises, .. } = **model;
+        let parameters = present.alike(mechanism.parameters());
         let moved = Model { mechanism, parameters: &parameters, metric, balanced, rank_rises };
         solve(&moved, formulation, lambda, counts)
     }
@@ -560,13 +578,25 @@ where
     }
 
     #[inline(always)]
-    fn may_kink(&mut self, from: R, y: &Self::State, to: R) -> bool {
-        !S::CONTACTS.is_empty() && self.model.may_close(self.start, (from, &y.y), to)
+    fn begin(&mut self, t: R, y: &Self::State) -> bool {
+        if S::CONTACTS.is_empty() {
+            return false;
+        }
+        let open = self.model.leave_out(self.start, (t, &y.y), &mut self.parameters);
+        self.quiet = open.until;
+        open.changes
+    }
+
+    #[inline(always)]
+    fn may_kink(&mut self, to: R) -> bool {
+        // Written so that NaN is not quiet.
+        !S::CONTACTS.is_empty() && !(to <= self.quiet)
     }
 
     fn kink(&mut self, step: &impl Dense<R, State = Self::State>) -> Result<Option<R>, Failure> {
         let ends = (step.start(), step.end());
-        self.model.contact_change(self.start, ends, |t| step.at(t).y, &self.scrutiny)
+        let evaluated = S::evaluated(&self.parameters);
+        self.model.contact_change((self.start, evaluated), ends, |t| step.at(t).y, &self.scrutiny)
     }
 
     fn retake(&mut self) {

@@ -240,6 +240,7 @@ where
         if stopped.is_some() && t < last.t {
             Equation::settle(&mut equations, t, &mut y)?;
         }
+        equations.with_all_contacts();
         let solved = equations.solve(t, &y)?;
         let phases = equations.phases(t, &y.phases);
         counts = equations.counts;

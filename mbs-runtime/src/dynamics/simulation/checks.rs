@@ -54,9 +54,8 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         if S::LIMITS.is_empty() {
             return Ok(());
         }
-        let mut ranges = Ranges { model: self, from, at };
-        let scrutiny = Scrutiny { resolution, ..Scrutiny::beyond() };
-        match first_beyond(&mut ranges, (start, end), true, &scrutiny) {
+        let mut ranges = Ranges { model: self, from, resolution, at };
+        match first_beyond(&mut ranges, (start, end)) {
             Ok(None) => Ok(()),
             Ok(Some((member, t))) | Err((member, Undefined(t))) => Err(ranges.failure(member, t)),
         }
@@ -120,6 +119,7 @@ struct Ranges<'a, S: Dynamic<R, N, M>, R: Real, At, const N: usize, const M: usi
     model: &'a Model<'a, S, R, N, M>,
     /// Time (s) that inputs and phases are known at.
     from: R,
+    resolution: Option<R>,
     at: At,
 }
 
@@ -157,6 +157,14 @@ where
 {
     fn count(&self) -> usize {
         2 * S::LIMITS.len()
+    }
+
+    fn positive(&self, _: usize) -> bool {
+        true
+    }
+
+    fn scrutiny(&mut self, _: usize, _: R) -> Scrutiny<R> {
+        Scrutiny { resolution: self.resolution, ..Scrutiny::beyond() }
     }
 
     fn values(&mut self, t: R, first: usize, values: &mut [R; GROUP]) {

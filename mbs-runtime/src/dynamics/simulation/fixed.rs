@@ -56,6 +56,14 @@ impl<R: Real, P, const N: usize, const M: usize, Z: Copy + AsRef<[R]> + AsMut<[R
     }
 }
 
+/// A step of a simulation that is not judged yet.
+struct Trial<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> {
+    ahead: AheadOf<S, R, N, M>,
+    /// Parameters without the contacts that are open where it begins, and the time (s) up to which they stay open by the bounds of
+    /// the text.
+    left_out: Option<(S::Parameters, R)>,
+}
+
 /// A step of a simulation.
 type AheadOf<S, R, const N: usize, const M: usize> =
     Ahead<R, <S as crate::Mechanism<R, N, M>>::Phases, N, M, <S as Dynamic<R, N, M>>::States>;
@@ -112,10 +120,10 @@ where
 
     /// A step of `h` (s), as it is.
     fn stepped(&mut self, h: R) -> Result<(), Failure> {
-        let ahead = self.ahead(h, self.counts)?;
-        if !S::CONTACTS.is_empty() && self.kink(&ahead)?.is_some() {
-            return self.step_in_parts(ahead.next.t);
+        if !S::CONTACTS.is_empty() {
+            return self.step_with_contacts(h);
         }
+        let ahead = self.ahead(h, self.counts, false)?;
         self.check_ahead(&ahead)?;
         self.go(ahead);
         Ok(())
@@ -164,12 +172,12 @@ where
             let end = end_of(from, until, (index, steps));
             for part in 1..=MOST_PARTS {
                 let h = end - self.now.t;
-                let whole =
-                    if part == MOST_PARTS { self.ahead(h, self.counts)? } else { self.ahead_to_kink(h)? };
+                let to_kink = part < MOST_PARTS;
+                let whole = if to_kink { self.ahead_to_kink(h)? } else { self.ahead(h, self.counts, false)? };
                 let before = monitor;
                 let found = reached(&mut monitor, &whole, &mut event)?;
                 let (last, is_event) = match found {
-                    Some((t, _)) => self.ahead_to_event(whole, t, before, &mut event)?,
+                    Some((t, _)) => self.ahead_to_event((whole, to_kink), t, before, &mut event)?,
                     None => (whole, false),
                 };
                 self.check_ahead(&last)?;
@@ -207,8 +215,14 @@ where
         Ok(())
     }
 
-    /// A step of `h` (s), with the failures of its end; `counts`: what was spent before.
-    fn ahead(&self, h: R, mut counts: Counts) -> Result<AheadOf<S, R, N, M>, Failure> {
+    /// A step of `h` (s), with the failures of its end; `counts`: what was spent before; `without_open`: contacts that are open where it
+    /// begins are left out.
+    fn ahead(&self, h: R, counts: Counts, without_open: bool) -> Result<AheadOf<S, R, N, M>, Failure> {
+        self.trial(h, counts, without_open).and_then(|trial| self.judged(trial.ahead))
+    }
+
+    /// A step of `h` (s) of which the end is not judged yet.
+    fn trial(&self, h: R, mut counts: Counts, without_open: bool) -> Result<Trial<S, R, N, M>, Failure> {
         let t = self.now.t + h;
         if !R::constant(0.0).less(h) || !t.is_finite() || t == self.now.t {
             return Err(Failure::InvalidStep { step: h.to_f64(), time: self.now.t.to_f64() });
@@ -217,15 +231,32 @@ where
         let fresh = self.fresh(&mut counts)?;
         let (from, rank_rises) = (&fresh.instant, fresh.rank_rises);
         let model = Model { rank_rises, ..self.model() };
-        let stepped = self.method.step(&model, from, h, &mut counts);
-        let stepped = stepped.and_then(|next| {
-            model.require_plausible((from, h), &next)?;
-            model.check(next.t, &next.y).map(|()| next)
+        let left_out = (without_open && !S::CONTACTS.is_empty()).then(|| {
+            let mut parameters = self.parameters;
+            let open = model.leave_out(from.t, (from.t, &from.y), &mut parameters);
+            (parameters, open.until)
         });
-        let next = stepped.map_err(|failure| model.traced(failure, from.t, &from.y))?;
+        let parameters = left_out.as_ref().map_or(&self.parameters, |(parameters, _)| parameters);
+        let model = Model { parameters, ..model };
+        let next = self
+            .method
+            .step(&model, from, h, &mut counts)
+            .map_err(|failure| model.traced(failure, from.t, &from.y))?;
         let phases = self.method.phases_after(&model, from.t, h)?;
         counts.steps = self.counts.steps + 1;
-        Ok(Ahead { from: fresh, next, phases, counts })
+        Ok(Trial { ahead: Ahead { from: fresh, next, phases, counts }, left_out })
+    }
+
+    /// A step whose end is one of a motion.
+    #[inline(always)]
+    fn judged(&self, ahead: AheadOf<S, R, N, M>) -> Result<AheadOf<S, R, N, M>, Failure> {
+        let (from, next) = (&ahead.from.instant, &ahead.next);
+        let model = Model { rank_rises: ahead.from.rank_rises, ..self.model() };
+        let judged = model.require_plausible((from, next.t - from.t), next);
+        match judged.and_then(|()| model.check(next.t, &next.y)) {
+            Ok(()) => Ok(ahead),
+            Err(failure) => Err(model.traced(failure, from.t, &from.y)),
+        }
     }
 
     /// Fails where a step leaves a working range or a branch.
@@ -248,27 +279,39 @@ where
     }
 
     /// The first time (s) within a step at which a contact closes or opens, unless that is its end.
-    fn kink(&self, ahead: &AheadOf<S, R, N, M>) -> Result<Option<R>, Failure> {
+    fn kink(&self, Trial { ahead, left_out }: &Trial<S, R, N, M>) -> Result<Option<R>, Failure> {
         let (model, (start, end)) = (self.model(), ahead.times());
-        if !model.may_close(start, (start, &ahead.from.instant.y), end) {
+        let (parameters, quiet) =
+            left_out.as_ref().map_or((&self.parameters, start), |(parameters, quiet)| (parameters, *quiet));
+        if end <= quiet || S::CONTACTS.is_empty() {
             return Ok(None);
         }
-        let kink = model.contact_change(start, (start, end), |t| ahead.at(t), &self.scrutiny)?;
+        let evaluated = (start, S::evaluated(parameters));
+        let kink = model.contact_change(evaluated, (start, end), |t| ahead.at(t), &self.scrutiny)?;
         let least = R::constant(LEAST_STEP_ROUNDINGS) * R::EPSILON * start.abs().max(end.abs());
         Ok(kink.map(|kink| kink.max(start + least)).filter(|kink| least < end - *kink))
     }
 
-    /// A step of `h` (s), or up to where a contact closes or opens.
+    /// A step of `h` (s), or up to where a contact closes or opens. What lies behind that is not judged.
     fn ahead_to_kink(&self, h: R) -> Result<AheadOf<S, R, N, M>, Failure> {
-        let mut ahead = self.ahead(h, self.counts)?;
-        if S::CONTACTS.is_empty() {
-            return Ok(ahead);
-        }
+        let mut trial = self.trial(h, self.counts, true)?;
         for _ in 0..MOST_RETAKES {
-            let Some(kink) = self.kink(&ahead)? else { break };
-            ahead = self.ahead(kink - self.now.t, ahead.counts)?;
+            let Some(kink) = self.kink(&trial)? else { break };
+            trial = self.trial(kink - self.now.t, trial.ahead.counts, true)?;
         }
-        Ok(ahead)
+        self.judged(trial.ahead)
+    }
+
+    /// A step of `h` (s) of a text with contacts.
+    fn step_with_contacts(&mut self, h: R) -> Result<(), Failure> {
+        let trial = self.trial(h, self.counts, true)?;
+        if self.kink(&trial)?.is_some() {
+            return self.step_in_parts(trial.ahead.next.t);
+        }
+        let ahead = self.judged(trial.ahead)?;
+        self.check_ahead(&ahead)?;
+        self.go(ahead);
+        Ok(())
     }
 
     /// Moves on to `until` (s) by a step in which contacts close or open, part after part.
@@ -293,7 +336,8 @@ where
     fn parts(&mut self, until: R) -> Result<(), Failure> {
         for part in 1..=MOST_PARTS {
             let h = until - self.now.t;
-            let ahead = if part == MOST_PARTS { self.ahead(h, self.counts)? } else { self.ahead_to_kink(h)? };
+            let to_kink = part < MOST_PARTS;
+            let ahead = if to_kink { self.ahead_to_kink(h)? } else { self.ahead(h, self.counts, false)? };
             self.check_ahead(&ahead)?;
             self.go(ahead);
             if until <= self.now.t {
@@ -307,7 +351,7 @@ where
     /// the whole step and false, where no step within it comes to the event.
     fn ahead_to_event(
         &self,
-        whole: AheadOf<S, R, N, M>,
+        (whole, without_open): (AheadOf<S, R, N, M>, bool),
         mut t: R,
         monitor: Monitor<R>,
         event: &mut impl FnMut(R, &[R; N], &[R; N]) -> R,
@@ -321,7 +365,7 @@ where
             if behind.next.t - t <= least {
                 break;
             }
-            let trial = self.ahead(t - start, behind.counts)?;
+            let trial = self.ahead(t - start, behind.counts, without_open)?;
             let middle = |from: R, to: R| from + half * (to - from);
             if let Some((found, _)) = reached(&mut monitor.clone(), &trial, event)? {
                 t = if before < found { found } else { middle(before, trial.next.t) };

@@ -1,0 +1,102 @@
+//! Forces of contacts as code: what acts with all contacts open, and what each adds.
+
+use std::collections::BTreeSet;
+
+use super::schedule::Section;
+use crate::equations::{ByContact, Dynamics, Push};
+use crate::symbolic::{Graph, NodeId};
+
+/// Parts of Q, ∂Q/∂q, ∂Q/∂q̇ and of the powers.
+#[derive(Debug)]
+pub struct PushProgram {
+    /// Q
+    pub force: Section,
+    /// ∂Q/∂q
+    pub force_q: Section,
+    /// ∂Q/∂q̇
+    pub force_qd: Section,
+    /// Powers of the forces.
+    pub powers: Section,
+}
+
+/// One section a function.
+#[derive(Debug)]
+pub struct ContactProgram {
+    /// All other forces.
+    pub open: PushProgram,
+    /// One a contact: what stands behind the other forces.
+    pub contacts: Vec<PushProgram>,
+}
+
+/// The roots of each function.
+pub struct ContactRoots {
+    open: [Vec<NodeId>; 4],
+    contacts: Vec<[Vec<NodeId>; 4]>,
+}
+
+impl ContactRoots {
+    pub fn of(dynamics: &Dynamics) -> Option<Self> {
+        let ByContact { open, contacts } = dynamics.by_contact.as_ref()?;
+        let is_contact = |index: usize| contacts.iter().any(|contact| contact.named == index);
+        let others = dynamics.powers.iter().enumerate().filter(|(index, _)| !is_contact(*index));
+        Some(ContactRoots {
+            open: of_push(open, others.filter_map(|(_, power)| *power).collect()),
+            contacts: contacts
+                .iter()
+                .map(|contact| of_push(&contact.push, contact.power.into_iter().collect()))
+                .collect(),
+        })
+    }
+
+    /// The forces that every step of every method evaluates.
+    pub fn force(&self) -> &[NodeId] {
+        let [force, ..] = &self.open;
+        force
+    }
+
+    /// All functions but the one of these.
+    pub fn rare(&self) -> impl Iterator<Item = &[NodeId]> {
+        self.open.iter().skip(1).chain(self.contacts.iter().flatten()).map(Vec::as_slice)
+    }
+
+    /// Before: what orders the code of a function of the state, and of one behind another. After: all in order; the first section of each
+    /// function has what the contacts use of it among its results.
+    pub fn order(
+        &self,
+        graph: &Graph,
+        section: impl Fn(&[NodeId]) -> Section,
+        behind: impl Fn(&Section, &[NodeId]) -> Section,
+    ) -> ContactProgram {
+        let mut function = |index: usize| {
+            let roots = |all: &'_ [Vec<NodeId>; 4]| all.get(index).cloned().unwrap_or_default();
+            let mut first = section(&roots(&self.open));
+            let computed: BTreeSet<NodeId> = first.computed().collect();
+            let contact = |all: &[Vec<NodeId>; 4]| {
+                let roots = roots(all);
+                let code = behind(&first, &roots);
+                let used = code.lines.iter().flat_map(|line| line.operands(graph)).chain(roots);
+                let used: Vec<NodeId> = used.filter(|id| computed.contains(id)).collect();
+                (code, used)
+            };
+            let (contacts, used): (Vec<Section>, Vec<_>) = self.contacts.iter().map(contact).unzip();
+            first.results.extend(used.into_iter().flatten());
+            (first, contacts)
+        };
+        let [force, force_q, force_qd, powers] = [0, 1, 2, 3].map(&mut function);
+        let open = PushProgram { force: force.0, force_q: force_q.0, force_qd: force_qd.0, powers: powers.0 };
+        let contacts = force.1.into_iter().zip(force_q.1).zip(force_qd.1).zip(powers.1);
+        let contacts = contacts.map(|(((force, force_q), force_qd), powers)| PushProgram {
+            force,
+            force_q,
+            force_qd,
+            powers,
+        });
+        ContactProgram { open, contacts: contacts.collect() }
+    }
+}
+
+fn of_push(push: &Push, powers: Vec<NodeId>) -> [Vec<NodeId>; 4] {
+    let entries =
+        |matrix: &[Vec<(usize, NodeId)>]| matrix.iter().flatten().map(|(_, entry)| *entry).collect();
+    [push.force.iter().copied().flatten().collect(), entries(&push.force_q), entries(&push.force_qd), powers]
+}
