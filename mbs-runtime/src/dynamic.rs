@@ -1,8 +1,9 @@
 //! What the macro emits for a text with bodies and forces: M q̈ + Φ_qᵀ λ = Q with Φ = 0.
 
+use crate::dynamics::event::WithIntervals;
 use crate::dynamics::friction::WithNormalForces;
 use crate::dynamics::velocity_transformation::Transformed;
-use crate::{BlockSolver, Entry, Margin, Mechanism, Outcome, Scalar};
+use crate::{BlockSolver, Entry, Limit, Margin, Mechanism, Outcome, Scalar};
 
 /// Kinetic and potential energy of one state (J).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -151,6 +152,23 @@ pub trait Dynamic<T: Scalar, const N: usize, const M: usize>: Mechanism<T, N, M>
     #[inline]
     fn evaluated_mut(_parameters: &mut Self::Parameters) -> &mut [bool] {
         &mut []
+    }
+
+    /// What `see` makes of the mechanism in intervals, with parameters and inputs as they are. None where the text calls functions or has
+    /// drives that prescribe a rate.
+    #[inline]
+    fn enclosed<V: WithIntervals<T, N, M>>(&self, _see: V) -> Option<V::Output> {
+        None
+    }
+    /// Shows `see` the time derivatives of the working ranges, one after the other, where [`enclosed`](Self::enclosed) gives anything.
+    #[inline]
+    fn limit_rates(
+        &self,
+        _parameters: &Self::Parameters,
+        _position: &Self::Position,
+        _qd: &[T; N],
+        _see: impl FnMut(Limit<T>),
+    ) {
     }
 
     /// What must not be negative, in the order of [`signed`](Self::signed).

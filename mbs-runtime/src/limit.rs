@@ -1,7 +1,7 @@
 //! Working ranges that a text declares: a warning before, a failure beyond.
 
 use crate::kinematics::entry;
-use crate::{Entry, Failure, Kinematic, Mechanism, Real, Stepper};
+use crate::{Entry, Failure, Kinematic, Mechanism, Real, Scalar, Stepper};
 
 /// A quantity with the range that a `limit` of the text allows it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,17 +37,19 @@ pub const WARNING_SHARE: f64 = 0.05;
 /// dead centre that stands on the bound is not beyond it.
 const BOUND_ROUNDINGS: f64 = 64.0;
 
-impl<R: Real> Limit<R> {
-    fn slack(&self) -> R {
-        R::constant(BOUND_ROUNDINGS) * R::EPSILON * self.low.abs().max(self.high.abs())
+impl<T: Scalar> Limit<T> {
+    fn slack(&self) -> T {
+        T::constant(BOUND_ROUNDINGS) * T::splat(T::Real::EPSILON) * self.low.abs().max(self.high.abs())
     }
 
     /// What is left to the lower and to the upper bound: not negative as long as neither is passed.
-    pub(crate) fn left(&self) -> [R; 2] {
+    pub(crate) fn left(&self) -> [T; 2] {
         let slack = self.slack();
         [self.value - (self.low - slack), self.high + slack - self.value]
     }
+}
 
+impl<R: Real> Limit<R> {
     /// The bound that is passed, if any; NaN passes the upper one.
     fn passed(&self) -> Option<R> {
         let slack = self.slack();

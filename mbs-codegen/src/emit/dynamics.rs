@@ -17,6 +17,7 @@ use crate::model::Model;
 use crate::model::dynamics::Dynamics as Declared;
 use crate::model::expression::Node;
 use crate::program::{DynamicsProgram, Program};
+use crate::symbolic::NodeId;
 
 /// Bodies of the functions of `Dynamic`.
 pub struct DynamicBodies {
@@ -30,6 +31,8 @@ pub struct DynamicBodies {
     pub missing: TokenStream,
     /// Not a body: the table of contacts and the function of their gaps, where there are any.
     pub gaps: TokenStream,
+    /// Not a body: the function of the rates of working ranges, where there are any.
+    pub limit_rates: TokenStream,
     pub mass: TokenStream,
     pub mass_times: TokenStream,
     pub force: TokenStream,
@@ -64,6 +67,7 @@ impl DynamicBodies {
             signed: TokenStream::new(),
             missing: TokenStream::new(),
             gaps: TokenStream::new(),
+            limit_rates: TokenStream::new(),
             mass: body(),
             mass_times: body(),
             force: body(),
@@ -119,6 +123,7 @@ pub fn bodies(
         signed: signed(dynamics, program, early, runtime),
         missing: missing(dynamics, scope.model, runtime),
         gaps: gaps(dynamics, program, scope, runtime),
+        limit_rates: limit_rates(dynamics, program, scope, runtime),
         mass: of(&program.mass, matrix(dynamics.mass.iter(), scope)),
         mass_times: of(&program.mass_times, vector(&dynamics.mass_times, scope)),
         force: match &blocks {
@@ -306,6 +311,35 @@ fn gaps(
     }
 }
 
+/// The function that shows the rates of working ranges.
+fn limit_rates(
+    dynamics: &Dynamics,
+    program: &DynamicsProgram,
+    scope: &Scope<'_>,
+    runtime: &TokenStream,
+) -> TokenStream {
+    if dynamics.limit_rates.is_empty() {
+        return TokenStream::new();
+    }
+    let rates = |[low, value, high]: &[Option<NodeId>; 3]| {
+        let of = |id: &Option<NodeId>| scope.or_zero(*id);
+        format!("__mbs::Limit {{ low: {}, value: {}, high: {} }}", of(low), of(value), of(high))
+    };
+    let values: Vec<String> = dynamics.limit_rates.iter().map(rates).collect();
+    let result = format!("[{}].into_iter().for_each(__see)", values.join(", "));
+    let show = body(&program.limit_rates, scope, &result, runtime);
+    let n = scope.model.coordinates.len();
+    quote! {
+        fn limit_rates(
+            &self,
+            __p: &__Parameters<T>,
+            __s: &__Position<T>,
+            __qd: &[T; #n],
+            __see: impl FnMut(#runtime::Limit<T>),
+        ) #show
+    }
+}
+
 /// One struct a first-order state, in `Some`.
 fn slopes(slopes: &[Slope], scope: &Scope<'_>) -> String {
     let slope = |slope: &Slope| {
@@ -321,7 +355,7 @@ fn slopes(slopes: &[Slope], scope: &Scope<'_>) -> String {
 pub fn implementation(
     name: &TokenStream,
     model: &Model,
-    (bodies, generics): (&DynamicBodies, &TokenStream),
+    (bodies, generics, enclosed): (&DynamicBodies, &TokenStream, &TokenStream),
     runtime: &TokenStream,
 ) -> TokenStream {
     let Some(declared) = &model.dynamics else { return TokenStream::new() };
@@ -336,6 +370,7 @@ pub fn implementation(
         signed,
         missing,
         gaps,
+        limit_rates,
         mass,
         mass_times,
         force,
@@ -419,6 +454,8 @@ pub fn implementation(
             #signed
             #missing
             #gaps
+            #limit_rates
+            #enclosed
             #[inline]
             fn mass(#design) -> [[T; #n]; #n] #mass
             #[inline]

@@ -5,6 +5,7 @@ use quote::{format_ident, quote};
 
 use super::code::tokens;
 use super::generics::Generics;
+use super::scenes::type_in;
 use super::scope::{field_name, number, subscripts, variable};
 use crate::model::scenes::{Scene, Scenes, alias};
 use crate::model::{Field, Function, Model, Role};
@@ -187,6 +188,54 @@ pub fn access(text: &Text, scenes: &Scenes, model: &Model) -> TokenStream {
         #[inline]
         fn lane(&self, #lane_name: ::core::primitive::usize) -> Self::Lane {
             #name { #(#lanes)* #(#functions)* #marker }
+        }
+    }
+}
+
+/// `enclosed`: the mechanism in intervals, where parts of a motion can be enclosed and something asks for it.
+pub fn enclosed(text: &Text, scenes: &Scenes, scene: &Scene, (model, m): (&Model, usize)) -> TokenStream {
+    let contacts = model.dynamics.as_ref().is_some_and(|dynamics| !dynamics.contacts.is_empty());
+    let is_asked = contacts || !model.limits.is_empty();
+    if !is_asked || !model.can_be_enclosed() {
+        return TokenStream::new();
+    }
+    let (name, runtime, n) = (&text.header.name, &text.header.runtime, model.coordinates.len());
+    let target = type_in(text, scenes, scene, &quote! { #runtime::Interval<T::Real> });
+    let fields = scenes.shared.fields.iter().map(|field| {
+        let ident = ident(&field.name);
+        let value = nested(&field.shape, &|component| interval(field, component));
+        let value = tokens(&value, runtime);
+        quote! { #ident: #value, }
+    });
+    let functions = scenes.shared.functions.iter().map(|function| {
+        let ident = ident(&function.name);
+        quote! { #ident: ::core::clone::Clone::clone(&self.#ident), }
+    });
+    let marker = markers(scenes).value;
+    quote! {
+        fn enclosed<__V: #runtime::dynamics::WithIntervals<T, #n, #m>>(
+            &self,
+            __see: __V,
+        ) -> ::core::option::Option<__V::Output> {
+            let __enclosed: #target = #name { #(#fields)* #(#functions)* #marker };
+            ::core::option::Option::Some(<__V as #runtime::dynamics::WithIntervals<T, #n, #m>>::at(__see, &__enclosed))
+        }
+    }
+}
+
+/// A field of the mechanism in intervals. Phases of other scenes are not asked for.
+fn interval(field: &Field, component: usize) -> String {
+    let place = format!("self.{}{}", field_name(&field.name.text), subscripts(component, &field.shape));
+    let of = |place: &str| format!("__mbs::Interval::of(T::lane({place}, 0))");
+    match field.role {
+        Role::Parameter | Role::Input => of(&place),
+        Role::InputWithRates => {
+            let part = |part: &str| format!("{part}: {}", of(&format!("{place}.{part}")));
+            format!("__mbs::Signal {{ {}, {}, {} }}", part("value"), part("rate"), part("acceleration"))
+        }
+        Role::Phase => {
+            let zero = "__mbs::Interval::of(<T::Real as __mbs::Scalar>::constant(0.0))";
+            format!("__mbs::Phase::new({zero}, __mbs::Speed {{ value: {zero}, rate: {zero} }})")
         }
     }
 }

@@ -4,7 +4,7 @@ use proc_macro2::{Span, TokenStream};
 use quote::{quote, quote_spanned};
 
 use super::dynamics;
-use super::fields::{access, constructors, field_docs, field_type, function_docs, ident, markers};
+use super::fields::{access, constructors, enclosed, field_docs, field_type, function_docs, ident, markers};
 use super::functions::Bodies;
 use super::generics::Generics;
 use super::view::coordinates_view;
@@ -69,10 +69,10 @@ fn implementations(text: &Text, scenes: &Scenes, part: &Part<'_>) -> TokenStream
         false => unpartitioned(&name, (model, m), &callable, runtime),
     });
     let factors = (part.square || is_partitioned).then_some(&bodies.factors);
-    let dynamic = bodies
-        .dynamics
-        .as_ref()
-        .map(|bodies| dynamics::implementation(&name, model, (bodies, &callable), runtime));
+    let dynamic = bodies.dynamics.as_ref().map(|bodies| {
+        let enclosed = enclosed(text, scenes, scene, (model, m));
+        dynamics::implementation(&name, model, (bodies, &callable, &enclosed), runtime)
+    });
     let (n, branches, outputs) = (model.coordinates.len(), model.branches.len(), model.outputs.len());
     let (limits, phase_count) = (model.limits.len(), model.phases.len());
     let variable_count = model.variables.len();

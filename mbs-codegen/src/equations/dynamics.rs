@@ -121,6 +121,9 @@ pub struct Dynamics {
     pub gaps: Vec<Gap>,
     /// Q contact by contact, where there are contacts.
     pub by_contact: Option<ByContact>,
+    /// Time derivatives of the working ranges, where the text calls no function and no drive prescribes a rate: then parts of a motion
+    /// can be enclosed.
+    pub limit_rates: Vec<[Option<NodeId>; 3]>,
     /// Which of ∂Q/∂q, ∂Q/∂q̇, (M x)_q, (Φ_qᵀ λ)_q and the slopes are left out, for declared functions are not smooth enough.
     pub missing: Vec<Missing>,
     /// One an output of multipliers or states.
@@ -173,6 +176,7 @@ impl Dynamics {
             roots.push(gap);
             roots.extend([rate, bound].into_iter().flatten());
         }
+        roots.extend(self.limit_rates.iter_mut().flatten().flatten());
         roots.extend(self.by_contact.iter_mut().flat_map(ByContact::roots_mut));
         roots
     }
@@ -271,6 +275,7 @@ pub fn derive(
         signed: signed(g, bounded.into_iter()),
         gaps,
         by_contact,
+        limit_rates: Vec::new(),
         missing: Vec::new(),
         loads: declared.loads.iter().map(|load| of(load.value)).collect(),
         not_quadratic,

@@ -228,6 +228,11 @@ pub fn derive(model: &Model) -> Equations {
         (Some(mut derived), Some(declared)) => {
             let given = pins::Given { nodes: &nodes, clock: &clock, length, rows: &rows, guesses: &guesses };
             pins::complete(g, model, declared, &mut derived, given);
+            if model.can_be_enclosed() {
+                let mut rate =
+                    |id: &NodeId| tangent(g, &[*id], |g, leaf| clock.total(g, leaf, false)).pop().flatten();
+                derived.limit_rates = limits.iter().map(|limit| limit.each_ref().map(&mut rate)).collect();
+            }
             Some(derived)
         }
         _ => None,

@@ -271,7 +271,10 @@ impl Resolver<'_> {
         for item in &value.items {
             if matches!(kind, Kind::Constant(_) | Kind::Inertia) && !self.model.is_constant(item.id) {
                 let message = format!("{user} varies");
-                let help = "make it of numbers and parameters; what varies is an energy: `kinetic T = …;`";
+                let help = match field.name.text.as_str() {
+                    "bound" => "make it of numbers and parameters: the largest of all of the motion",
+                    _ => "make it of numbers and parameters; what varies is an energy: `kinetic T = …;`",
+                };
                 return Err(self.fault(value.span, message, help));
             }
             let free = |node| !matches!(node, Node::Coordinate(_) | Node::State(_) | Node::Multiplier(_));

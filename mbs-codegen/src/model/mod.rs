@@ -100,6 +100,12 @@ impl Longest {
 }
 
 impl Model {
+    /// Whether functions of the text can be bounded over parts of a motion: it calls no function of the caller's, and no drive
+    /// prescribes a rate.
+    pub fn can_be_enclosed(&self) -> bool {
+        self.functions.is_empty() && self.phases.is_empty()
+    }
+
     /// Before: all rows. After: guesses and starts set the reference length where no constant, number or parameter is a length, or
     /// where rows have lengths of another origin: of an input, a function, a speed or an area. Elsewhere they do not, for they may be
     /// far off: a mechanism in millimetres with its guess in metres is the same mechanism.

@@ -105,6 +105,9 @@ fn wrong(signed: &Signed, value: f64) -> Option<Impossible> {
         "speed" => "friction is smooth below this speed: write a small one, `speed: 1mm/1s`",
         "depth" => "the stiffness is force over depth there: write a depth that is reached, `depth: 1mm`",
         "exponent" => "the force rises with the depth to this power: `exponent: 1.5` for spheres",
+        "bound" => {
+            "it is the largest |second time derivative| of the open gap: under its weight alone `bound: 9.81`"
+        }
         _ => "masses and moments of inertia are at least 0",
     };
     Some(Impossible { message, help, span: *span })

@@ -8,7 +8,7 @@ use crate::structure::Structure;
 use crate::symbolic::{AngleSum, Binary, Graph, Node, NodeId, Stage, Unary, add_angles};
 
 /// Functions as bits.
-type Functions = u32;
+type Functions = u64;
 
 /// Φ and Φ_q: what they need of the coordinates all other functions of a position have at hand.
 const ROWS: Functions = 0b11;

@@ -32,6 +32,8 @@ pub struct ContactProgram {
 pub struct ContactRoots {
     open: [Vec<NodeId>; 4],
     contacts: Vec<[Vec<NodeId>; 4]>,
+    /// All of the contacts.
+    all: Vec<NodeId>,
 }
 
 impl ContactRoots {
@@ -39,12 +41,14 @@ impl ContactRoots {
         let ByContact { open, contacts } = dynamics.by_contact.as_ref()?;
         let is_contact = |index: usize| contacts.iter().any(|contact| contact.named == index);
         let others = dynamics.powers.iter().enumerate().filter(|(index, _)| !is_contact(*index));
+        let each: Vec<_> = contacts
+            .iter()
+            .map(|contact| of_push(&contact.push, contact.power.into_iter().collect()))
+            .collect();
         Some(ContactRoots {
             open: of_push(open, others.filter_map(|(_, power)| *power).collect()),
-            contacts: contacts
-                .iter()
-                .map(|contact| of_push(&contact.push, contact.power.into_iter().collect()))
-                .collect(),
+            all: each.iter().flatten().flatten().copied().collect(),
+            contacts: each,
         })
     }
 
@@ -54,9 +58,9 @@ impl ContactRoots {
         force
     }
 
-    /// All functions but the one of these.
+    /// All functions but the one of these, those of the contacts as one.
     pub fn rare(&self) -> impl Iterator<Item = &[NodeId]> {
-        self.open.iter().skip(1).chain(self.contacts.iter().flatten()).map(Vec::as_slice)
+        self.open.iter().skip(1).chain([&self.all]).map(Vec::as_slice)
     }
 
     /// Before: what orders the code of a function of the state, and of one behind another. After: all in order; the first section of each

@@ -45,6 +45,8 @@ pub struct DynamicsProgram {
     pub loads: Section,
     /// Gaps of contacts with their rates.
     pub gaps: Section,
+    /// Rates of working ranges.
+    pub limit_rates: Section,
     /// Forces by contact, where there are contacts.
     pub by_contact: Option<ContactProgram>,
     /// First-order states at the start.
@@ -75,6 +77,7 @@ pub struct Roots {
     slopes: Vec<NodeId>,
     loads: Vec<NodeId>,
     gaps: Vec<NodeId>,
+    limit_rates: Vec<NodeId>,
     by_contact: Option<ContactRoots>,
     start_states: Vec<NodeId>,
     start_rates: Vec<NodeId>,
@@ -104,6 +107,7 @@ impl Roots {
             slopes: dynamics.slopes.iter().flat_map(|slope| slope.roots()).collect(),
             loads: dynamics.loads.clone(),
             gaps: dynamics.gaps.iter().flat_map(Gap::roots).collect(),
+            limit_rates: dynamics.limit_rates.iter().flatten().copied().flatten().collect(),
             by_contact: ContactRoots::of(dynamics),
             start_states: some(&dynamics.start_states),
             start_rates: some(&dynamics.start_rates),
@@ -119,7 +123,7 @@ impl Roots {
 
     /// Functions that some methods call, or that nobody calls in every step: nothing is kept for them alone.
     pub fn rare(&self) -> impl Iterator<Item = &[NodeId]> {
-        let all: [&[NodeId]; 13] = [
+        let all: [&[NodeId]; 14] = [
             &self.force_q,
             &self.force_qd,
             &self.force_lambda,
@@ -133,6 +137,7 @@ impl Roots {
             &self.slopes,
             &self.loads,
             &self.gaps,
+            &self.limit_rates,
         ];
         let by_contact = self.by_contact.iter();
         let whole = by_contact.clone().map(|_| self.force.as_slice());
@@ -172,6 +177,7 @@ impl Roots {
             slopes: section(&self.slopes),
             loads: section(&self.loads),
             gaps: section(&self.gaps),
+            limit_rates: section(&self.limit_rates),
             by_contact: self.by_contact.as_ref().map(|roots| roots.order(graph, &section, behind)),
             start_states: early(&self.start_states),
             start_rates: early(&self.start_rates),

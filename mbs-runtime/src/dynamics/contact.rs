@@ -1,9 +1,11 @@
 //! Contacts that close or open within a step.
 
-use super::event::{GROUP, NONE, Scrutiny, Undefined, Watched, first_beyond};
+use super::event::{
+    Enclosure, Enclosures, GROUP, NONE, Part, Scrutiny, Undefined, Watched, WithIntervals, first_beyond,
+};
 use super::model::Model;
 use super::vector::State;
-use crate::{Dynamic, Entry, Failure, Gap, Real, kinematics};
+use crate::{Dynamic, Entry, Failure, Gap, Interval, Real, Scalar, kinematics};
 
 /// Roundings of a time that is computed from a gap, its rate and its bound.
 const REACH_ROUNDINGS: f64 = 16.0;
@@ -32,7 +34,8 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
             let quiet = bound.filter(|_| is_open).map_or(zero, |bound| reach(gap, rate, bound));
             open.until = open.until.min(t + quiet);
             if let Some(evaluated) = evaluated.next() {
-                open.changes = open.changes || *evaluated == is_open;
+                // A contact that has opened gives nothing: rates stay.
+                open.changes = open.changes || !*evaluated && !is_open;
                 *evaluated = !is_open;
             }
         });
@@ -69,7 +72,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
 
 /// What is known of the contacts where a step begins.
 pub(super) struct Open<R> {
-    /// Whether another contact is evaluated than before.
+    /// Whether a contact is evaluated that was not before.
     pub(super) changes: bool,
     /// Time (s) up to which all stay open by the bounds that the text declares.
     pub(super) until: R,
@@ -127,6 +130,11 @@ where
         Scrutiny { bound, ..self.scrutiny }
     }
 
+    fn enclosures(&mut self, first: usize, times: (R, R)) -> Option<Enclosures<R>> {
+        let part = Part::of(self.from, times, &self.at)?;
+        self.model.mechanism.enclosed(GapsOver { part, first }).flatten()
+    }
+
     fn values(&mut self, t: R, first: usize, values: &mut [R; GROUP]) {
         let mut index = 0_usize;
         self.model.gaps(self.from, (t, &(self.at)(t)), |gap| {
@@ -135,5 +143,42 @@ where
             }
             index += 1;
         });
+    }
+}
+
+/// Bounds of gaps over a part of a step.
+struct GapsOver<R, const N: usize> {
+    part: Part<R, N>,
+    first: usize,
+}
+
+impl<T, R, const N: usize, const M: usize> WithIntervals<T, N, M> for GapsOver<R, N>
+where
+    T: Scalar<Real = R>,
+    R: Real,
+{
+    type Output = Option<Enclosures<R>>;
+
+    fn at<S: Dynamic<Interval<R>, N, M>>(self, mechanism: &S) -> Self::Output {
+        let (none, width) = (Interval::of(R::constant(0.0)), self.part.width());
+        let mut middles = [none; GROUP];
+        let mut enclosures = [None; GROUP];
+        self.part.each(mechanism, |mechanism, parameters, position, qd, is_whole| {
+            let mut places = middles.iter_mut().zip(&mut enclosures);
+            let mut index = 0;
+            mechanism.gaps(parameters, position, qd, |Gap { gap, rate, .. }| {
+                index += 1;
+                if index <= self.first {
+                    return;
+                }
+                let Some((middle, enclosure)) = places.next() else { return };
+                if is_whole {
+                    *enclosure = Some(Enclosure::of(*middle, (gap, rate), width));
+                } else {
+                    *middle = gap;
+                }
+            });
+        });
+        Some(enclosures)
     }
 }

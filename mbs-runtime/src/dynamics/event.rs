@@ -4,6 +4,7 @@
 //! A part of a step is judged by the polynomial of degree 8 through nine instants: its Bernstein coefficients bound it, its
 //! eighth difference tells how far the function may be from it. What neither clears nor shows one passage is halved.
 
+mod enclosure;
 mod interpolant;
 mod monitor;
 #[cfg(test)]
@@ -13,6 +14,7 @@ use interpolant::{Interpolant, NODES};
 
 use crate::Real;
 
+pub use enclosure::{Enclosure, Enclosures, Part, WithIntervals};
 pub use monitor::{Monitor, Stopped};
 
 /// Functions that are evaluated together at most.
@@ -26,6 +28,9 @@ const MOST_PARTS: u32 = 2_000;
 
 /// The same where a bound asks for more.
 const MOST_BOUNDED_PARTS: u32 = 1 << 18;
+
+/// The same where parts are enclosed: a passage or a near miss takes about a hundred, whatever comes near zero often the rest.
+const MOST_ENCLOSED_PARTS: u32 = 4_096;
 
 /// Parts that the resolution may divide a step into; a step of more is to be cut.
 pub const MOST_RESOLVED: f64 = 512.0;
@@ -79,6 +84,22 @@ pub trait Dense<R> {
     fn at(&self, t: R) -> Self::State;
 }
 
+/// A function of the time.
+pub trait Function<R> {
+    /// Its value at `t` (s).
+    fn value(&mut self, t: R) -> R;
+    /// Bounds of it between two times (s), where any are known.
+    fn enclosure(&mut self, _from: R, _to: R) -> Option<Enclosure<R>> {
+        None
+    }
+}
+
+impl<R, F: FnMut(R) -> R> Function<R> for F {
+    fn value(&mut self, t: R) -> R {
+        self(t)
+    }
+}
+
 /// How closely a function is looked at.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scrutiny<R> {
@@ -127,14 +148,19 @@ pub struct Undefined<R>(pub R);
 /// # Errors
 /// [`Undefined`] where a value is NaN.
 pub fn first_reach<R: Real>(
-    function: &mut impl FnMut(R) -> R,
+    function: &mut impl Function<R>,
     (start, end): (R, R),
     side: R,
     scrutiny: &Scrutiny<R>,
 ) -> Result<Option<Reach<R>>, Undefined<R>> {
     let parts = scrutiny.parts(end - start);
-    let left = if scrutiny.bound.is_some() { MOST_BOUNDED_PARTS } else { MOST_PARTS };
-    let mut search = Search { side: side.sign(), scrutiny, scale: scrutiny.scale, left };
+    let is_enclosed = function.enclosure(start, end).is_some();
+    let left = match scrutiny.bound {
+        Some(_) => MOST_BOUNDED_PARTS,
+        None if is_enclosed => MOST_ENCLOSED_PARTS,
+        None => MOST_PARTS,
+    };
+    let mut search = Search { side: side.sign(), scrutiny, scale: scrutiny.scale, left, is_enclosed };
     let at = |part: u32| match part == parts {
         true => end,
         false => start + (end - start) * R::constant(f64::from(part) / f64::from(parts)),
@@ -164,26 +190,39 @@ struct Search<'a, R> {
     scale: R,
     /// Parts that may still be looked at.
     left: u32,
+    /// Whether bounds of the function are known.
+    is_enclosed: bool,
 }
 
 impl<R: Real> Search<'_, R> {
     fn within(
         &mut self,
-        function: &mut impl FnMut(R) -> R,
+        function: &mut impl Function<R>,
         start: R,
         end: R,
     ) -> Result<Option<R>, Undefined<R>> {
         let least = R::constant(LEAST_ROUNDINGS) * R::EPSILON * start.abs().max(end.abs());
         let (whole, half) = (end - start, R::constant(0.5));
         let (mut from, mut width) = (start, whole);
+        let mut of_twice = None;
         while from < end {
             let last = end - from <= width;
             let to = if last { end } else { from + width };
-            let part = Interpolant::through(function, from, to)?;
-            self.scale = self.scale.max(part.largest());
             self.left = self.left.saturating_sub(1);
+            let enclosure = if self.is_enclosed { function.enclosure(from, to) } else { None };
+            if let Some(enclosure) = enclosure.filter(|enclosure| enclosure.stays(self.side)) {
+                self.scale = self.scale.max(enclosure.least());
+                (from, of_twice) = (to, None);
+                width = (width + width).min(whole);
+                continue;
+            }
+            let mut values = |t: R| function.value(t);
+            let part = Interpolant::through(&mut values, from, to)?;
+            self.scale = self.scale.max(part.largest());
             let rough = to - from <= whole * R::constant(ROUGH);
-            let verdict = self.verdict(&part, rough);
+            let told = enclosure.filter(|enclosure| !enclosure.is_exhausted(of_twice));
+            of_twice = enclosure.map(|enclosure| enclosure.width());
+            let verdict = self.verdict(&part, (rough, told));
             let smallest = self.left == 0 || to - from <= least;
             match verdict {
                 Verdict::Passed(index) => return Ok(Some(self.root(function, &part, index)?)),
@@ -199,7 +238,7 @@ impl<R: Real> Search<'_, R> {
                 }
                 Verdict::Clear => {}
             }
-            from = to;
+            (from, of_twice) = (to, None);
             // Whoever has looked at too many parts goes on by the values alone.
             width = if self.left == 0 { whole } else { (width + width).min(whole) };
         }
@@ -213,15 +252,20 @@ impl<R: Real> Search<'_, R> {
         part.values.iter().position(|value| beyond(self.side * *value))
     }
 
-    fn verdict(&self, part: &Interpolant<R>, rough: bool) -> Verdict {
+    /// `rough`: whether the part is small within the step.
+    fn verdict(&self, part: &Interpolant<R>, (rough, enclosure): (bool, Option<Enclosure<R>>)) -> Verdict {
+        // What bounds do not tell, nine values do not either.
+        let is_open = enclosure.is_some() && self.scrutiny.bound.is_none();
+        let is_monotone = enclosure.is_none_or(|enclosure| enclosure.is_monotone());
         let blurred = part.largest() <= R::constant(BLURRED) * R::EPSILON * self.scale;
         match self.first_beyond(part) {
             Some(0) => Verdict::Passed(0),
             Some(index) => {
-                let once = part.falls(self.side) || blurred || rough && part.changes(self.side) == 1;
+                let falls = part.falls(self.side) && is_monotone;
+                let once = falls || blurred || rough && part.changes(self.side) == 1;
                 if once { Verdict::Passed(index) } else { Verdict::Unclear }
             }
-            None if self.clears(part) => Verdict::Clear,
+            None if !is_open && self.clears(part) => Verdict::Clear,
             None if blurred => {
                 let (index, least) = part.least();
                 let none = least <= R::constant(NONE) * R::EPSILON * self.scale;
@@ -243,7 +287,7 @@ impl<R: Real> Search<'_, R> {
     /// Source: Dowell & Jarratt 1971.
     fn root(
         &self,
-        function: &mut impl FnMut(R) -> R,
+        function: &mut impl Function<R>,
         part: &Interpolant<R>,
         index: usize,
     ) -> Result<R, Undefined<R>> {
@@ -251,7 +295,7 @@ impl<R: Real> Search<'_, R> {
         let value = |index: usize| part.values.get(index).copied().unwrap_or(R::constant(0.0));
         let bracket = [before, index].map(|index| (part.time(index), value(index)));
         far_side(bracket, |t| {
-            let value = function(t);
+            let value = function.value(t);
             if is_nan(value) { Err(Undefined(t)) } else { Ok(value) }
         })
     }
@@ -305,6 +349,10 @@ pub trait Watched<R> {
     fn positive(&self, member: usize) -> bool;
     /// How closely a function is looked at in a step that begins at `start` (s).
     fn scrutiny(&mut self, member: usize, start: R) -> Scrutiny<R>;
+    /// Bounds of those from `first` on between two times (s), where any are known.
+    fn enclosures(&mut self, _first: usize, _times: (R, R)) -> Option<Enclosures<R>> {
+        None
+    }
 }
 
 /// A function among several, and where it reaches zero or is NaN.
@@ -326,11 +374,7 @@ pub fn first_beyond<R: Real>(
         for member in (0..GROUP).filter(|member| near.get(*member) == Some(&true)) {
             let scrutiny = watched.scrutiny(first + member, start);
             let positive = watched.positive(first + member);
-            let mut function = |t: R| {
-                let mut values = [R::constant(0.0); GROUP];
-                watched.values(t, first, &mut values);
-                values.get(member).copied().unwrap_or(R::constant(0.0))
-            };
+            let mut function = One { watched, first, member };
             let undefined = |at| (first + member, at);
             let begin = match positive {
                 true => Some((start, R::constant(1.0))),
@@ -349,6 +393,27 @@ pub fn first_beyond<R: Real>(
     Ok(found)
 }
 
+/// One of several functions.
+struct One<'a, W> {
+    watched: &'a mut W,
+    /// First of its group, and its place there.
+    first: usize,
+    member: usize,
+}
+
+impl<R: Real, W: Watched<R>> Function<R> for One<'_, W> {
+    fn value(&mut self, t: R) -> R {
+        let mut values = [R::constant(0.0); GROUP];
+        self.watched.values(t, self.first, &mut values);
+        values.get(self.member).copied().unwrap_or(R::constant(0.0))
+    }
+
+    fn enclosure(&mut self, from: R, to: R) -> Option<Enclosure<R>> {
+        let enclosures = self.watched.enclosures(self.first, (from, to))?;
+        enclosures.get(self.member).copied().flatten()
+    }
+}
+
 /// Marks which functions of a group come near zero, or are looked at more closely than by nine values.
 fn near_zero<R: Real>(
     watched: &mut impl Watched<R>,
@@ -356,12 +421,26 @@ fn near_zero<R: Real>(
     (start, end): (R, R),
     near: &mut [bool; GROUP],
 ) -> Result<(), Member<Undefined<R>>> {
+    let count = watched.count().saturating_sub(first);
+    let enclosures = watched.enclosures(first, (start, end)).unwrap_or([None; GROUP]);
+    let (positive, negative) = (R::constant(1.0), R::constant(-1.0));
+    let mut all_clear = true;
+    for (member, (near, enclosure)) in near.iter_mut().zip(&enclosures).enumerate().take(count) {
+        let stays = |enclosure: &Enclosure<R>| {
+            enclosure.stays(positive) || !watched.positive(first + member) && enclosure.stays(negative)
+        };
+        *near = !enclosure.as_ref().is_some_and(stays);
+        all_clear = all_clear && !*near;
+    }
+    if all_clear {
+        return Ok(());
+    }
     let mut rows = [[R::constant(0.0); GROUP]; NODES];
     for (index, row) in rows.iter_mut().enumerate() {
         watched.values(Interpolant::instant(start, end, index), first, row);
     }
-    let count = watched.count().saturating_sub(first);
-    for (member, near) in near.iter_mut().enumerate().take(count) {
+    let open = near.iter_mut().zip(&enclosures).enumerate().take(count);
+    for (member, (near, enclosure)) in open.filter(|(_, (near, _))| **near) {
         let scrutiny = watched.scrutiny(first + member, start);
         let positive = watched.positive(first + member);
         let mut index = 0;
@@ -373,9 +452,10 @@ fn near_zero<R: Real>(
         let part = Interpolant::through(&mut column, start, end).map_err(|at| (member, at))?;
         let side = if positive { R::constant(1.0) } else { part.first() };
         let scale = part.largest().max(scrutiny.scale);
-        let search = Search { side: side.sign(), scrutiny: &scrutiny, scale, left: 1 };
+        let is_enclosed = enclosure.is_some();
+        let search = Search { side: side.sign(), scrutiny: &scrutiny, scale, left: 1, is_enclosed };
         let small = !positive && part.first().abs() <= R::constant(NONE) * R::EPSILON * scale;
-        let clear = !small && matches!(search.verdict(&part, false), Verdict::Clear);
+        let clear = !small && matches!(search.verdict(&part, (false, *enclosure)), Verdict::Clear);
         *near = scrutiny.parts(end - start) > 1 || !clear;
     }
     Ok(())

@@ -125,6 +125,7 @@ pub use embedded::Embedded;
 pub use equation::{Equation, Measured};
 pub use equilibrium::{Equilibrium, equilibrium, equilibrium_with_states, undetermined_states};
 pub use event::Direction;
+pub use event::WithIntervals;
 pub use explicit::{FixedStep, RungeKutta4, SemiImplicitEuler};
 pub use extrapolated::Extrapolated;
 pub use friction::{NormalForces, WithNormalForces};

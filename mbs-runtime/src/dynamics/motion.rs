@@ -271,8 +271,8 @@ pub struct Equations<'a, S: Dynamic<R, N, M>, F, R: Real, const N: usize, const 
     before: Before<S, R, N, M>,
     /// How closely contacts are looked at.
     scrutiny: Scrutiny<R>,
-    /// The parameters without the contacts that are open in the present step.
-    parameters: S::Parameters,
+    /// The parameters without the contacts that are open in the present step, where there are contacts.
+    parameters: Option<S::Parameters>,
     /// Time (s) up to which all contacts stay open by the bounds that the text declares.
     quiet: R,
     pub(super) counts: Counts,
@@ -313,7 +313,7 @@ where
             passage: None,
             before: (end, None),
             scrutiny: Scrutiny::beyond(),
-            parameters: *model.parameters,
+            parameters: (!S::CONTACTS.is_empty()).then_some(*model.parameters),
             quiet: start,
             counts,
         }
@@ -333,11 +333,13 @@ where
     pub(super) fn apart<X>(&mut self, look: impl FnOnce(&mut Self) -> X) -> X {
         let (counts, lambda, fixed) = (self.counts, self.lambda, self.fixed);
         let (end, passage) = (self.end, self.passage);
-        let (parameters, quiet) = (self.parameters, self.quiet);
+        let open = (!S::CONTACTS.is_empty()).then_some((self.parameters, self.quiet));
         self.fixed = true;
         let found = look(self);
         (self.fixed, self.end, self.passage) = (fixed, end, passage);
-        (self.parameters, self.quiet) = (parameters, quiet);
+        if let Some(open) = open {
+            (self.parameters, self.quiet) = open;
+        }
         let shown = counts.shown + self.counts.evaluations.wrapping_sub(counts.evaluations);
         (self.counts, self.lambda) = (Counts { shown, ..counts }, lambda);
         found
@@ -367,7 +369,9 @@ where
 
     /// Evaluates all contacts, as at an instant by itself.
     pub(super) fn with_all_contacts(&mut self) {
-        self.parameters = *self.model.parameters;
+        if !S::CONTACTS.is_empty() {
+            self.parameters = Some(*self.model.parameters);
+        }
     }
 
     /// Takes an instant between the ends of steps for where a singular position may be passed.
@@ -411,10 +415,15 @@ where
         let phases = if S::PHASES.is_empty() { *increments } else { self.phases(t, increments) };
         let Equations { model, formulation, start, moving, integrating, parameters, lambda, counts, .. } =
             self;
-        let Model { mechanism: own, metric, balanced, rank_rises, .. } = **model;
+        let model = *model;
+        let Model { mechanism: own, metric, balanced, rank_rises, .. } = *model;
+        let parameters = match parameters {
+            Some(parameters) if !S::CONTACTS.is_empty() => parameters,
+            _ => model.parameters,
+        };
         let present = Model { mechanism: own, parameters, metric, balanced, rank_rises };
         let Some(mechanism) = moving else {
-            let model = if S::CONTACTS.is_empty() { *model } else { &present };
+            let model = if S::CONTACTS.is_empty() { model } else { &present };
             return solve(model, formulation, lambda, counts);
         };
         mechanism.carry_signals(model.mechanism, t - *start);
@@ -582,20 +591,21 @@ where
         if S::CONTACTS.is_empty() {
             return false;
         }
-        let open = self.model.leave_out(self.start, (t, &y.y), &mut self.parameters);
+        let Some(parameters) = &mut self.parameters else { return false };
+        let open = self.model.leave_out(self.start, (t, &y.y), parameters);
         self.quiet = open.until;
         open.changes
     }
 
     #[inline(always)]
     fn may_kink(&mut self, to: R) -> bool {
-        // Written so that NaN is not quiet.
-        !S::CONTACTS.is_empty() && !(to <= self.quiet)
+        let is_quiet = to <= self.quiet;
+        !S::CONTACTS.is_empty() && !is_quiet
     }
 
     fn kink(&mut self, step: &impl Dense<R, State = Self::State>) -> Result<Option<R>, Failure> {
         let ends = (step.start(), step.end());
-        let evaluated = S::evaluated(&self.parameters);
+        let evaluated = S::evaluated(self.parameters.as_ref().unwrap_or(self.model.parameters));
         self.model.contact_change((self.start, evaluated), ends, |t| step.at(t).y, &self.scrutiny)
     }
 

@@ -1,10 +1,14 @@
 //! Events, contacts and limits within a step.
 
+mod counted;
 mod d10_settings;
 mod d21_tables;
 mod d3_contacts;
 mod d3_events;
 mod d3_fixed_steps;
 mod d3_limits;
+mod d3_many;
+mod d3_open_contacts;
+mod d3_spikes;
 mod d4_zero_start;
 mod t7_contact_damping;

@@ -10,7 +10,7 @@ use std::path::PathBuf;
 use mbs_tests::{proofs::Workshop, tools};
 
 /// One a mechanism and scalar type: all emitted functions and, but for lanes, all solvers.
-const EXPORTS: [&str; 17] = [
+const EXPORTS: [&str; 18] = [
     "proof_batch",
     "proof_cam_f32",
     "proof_cam_f64",
@@ -22,6 +22,7 @@ const EXPORTS: [&str; 17] = [
     "proof_four_bar_f32",
     "proof_four_bar_f64",
     "proof_four_bar_lanes",
+    "proof_hammer",
     "proof_parallelogram_f32",
     "proof_parallelogram_f64",
     "proof_parallelogram_lanes",

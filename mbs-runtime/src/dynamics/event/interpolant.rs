@@ -1,7 +1,7 @@
 //! The polynomial of degree 8 through nine equally spaced values, bounded by its Bernstein coefficients.
 
 use super::{Undefined, is_nan};
-use crate::Real;
+use crate::{Interval, Real};
 
 /// Instants of a part.
 pub(super) const NODES: usize = 9;
@@ -116,6 +116,22 @@ impl<R: Real> Interpolant<R> {
         let width = (self.end - self.start) * R::constant(1.0 / (NODES - 1) as f64);
         let off = bound * width * width * R::constant(0.125);
         self.values.iter().all(|value| off < side * *value)
+    }
+
+    /// The value in the middle, those of all of the polynomial, and its derivatives (1/s), where coefficients are known to `slack`.
+    pub(super) fn enclosures(&self, slack: R) -> (Interval<R>, Interval<R>, Interval<R>) {
+        let [first, ..] = self.coefficients;
+        let around = |(low, high): (R, R), value: R| (low.min(value), high.max(value));
+        let values = self.coefficients.iter().fold((first, first), |range, value| around(range, *value));
+        let infinite = R::constant(f64::INFINITY);
+        let later = self.coefficients.iter().skip(1);
+        let changes = self.coefficients.iter().zip(later).map(|(one, next)| *next - *one);
+        let changes = changes.fold((infinite, -infinite), around);
+        let between = |(low, high): (R, R), slack: R| Interval::between(low - slack, high + slack);
+        let per_time = Interval::of(R::constant((NODES - 1) as f64) / (self.end - self.start));
+        let middle = self.values.get(NODES / 2).copied().unwrap_or(first);
+        let rates = between(changes, slack + slack) * per_time;
+        (Interval::of(middle), between(values, slack), rates)
     }
 
     /// Whether the polynomial falls from `side` throughout, so that it passes zero once at most.

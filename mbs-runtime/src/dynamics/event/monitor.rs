@@ -1,7 +1,7 @@
 //! An event function watched from step to step.
 
 use super::interpolant::Interpolant;
-use super::{Direction, NONE, Scrutiny, Undefined, first_reach, is_nan};
+use super::{Direction, Function, NONE, Scrutiny, Undefined, first_reach, is_nan};
 use crate::Real;
 
 /// Passages of a step that do not count, before one that does.
@@ -99,12 +99,12 @@ impl<R: Real> Monitor<R> {
 
 /// The side on which a function begins that may be zero at the start but for rounding, and from when on (s).
 pub(super) fn side<R: Real>(
-    function: &mut impl FnMut(R) -> R,
+    function: &mut impl Function<R>,
     (start, end): (R, R),
     scale: R,
 ) -> Result<Option<(R, R)>, Undefined<R>> {
     let none = R::constant(NONE) * R::EPSILON * scale;
-    let (value, least) = (function(start), none.max(least(function, (start, end))?));
+    let (value, least) = (function.value(start), none.max(least(function, (start, end))?));
     if least < value.abs() {
         return Ok(Some((start, value.sign())));
     }
@@ -112,13 +112,15 @@ pub(super) fn side<R: Real>(
 }
 
 /// Roundings of the largest of nine values.
-fn least<R: Real>(function: &mut impl FnMut(R) -> R, (start, end): (R, R)) -> Result<R, Undefined<R>> {
-    Ok(R::constant(NONE) * R::EPSILON * Interpolant::through(function, start, end)?.largest())
+fn least<R: Real>(function: &mut impl Function<R>, (start, end): (R, R)) -> Result<R, Undefined<R>> {
+    Ok(R::constant(NONE)
+        * R::EPSILON
+        * Interpolant::through(&mut |t| function.value(t), start, end)?.largest())
 }
 
 /// The first time (s) after the start from which a function is larger than `none` and rounding, with its sign.
 fn away<R: Real>(
-    function: &mut impl FnMut(R) -> R,
+    function: &mut impl Function<R>,
     (start, end): (R, R),
     none: R,
 ) -> Result<Option<(R, R)>, Undefined<R>> {
@@ -129,7 +131,7 @@ fn away<R: Real>(
     }
     for _ in 0..=HALVINGS {
         let t = (start + (end - start) * share).min(end);
-        let value = function(t);
+        let value = function.value(t);
         if is_nan(value) {
             return Err(Undefined(t));
         }

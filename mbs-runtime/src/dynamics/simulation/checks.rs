@@ -1,10 +1,12 @@
 //! What a start and a step may not leave: rows, branches, working ranges.
 
-use crate::dynamics::event::{GROUP, Scrutiny, Undefined, Watched, first_beyond};
+use crate::dynamics::event::{
+    Enclosure, Enclosures, GROUP, Part, Scrutiny, Undefined, Watched, WithIntervals, first_beyond,
+};
 use crate::dynamics::model::Model;
 use crate::dynamics::vector::State;
 use crate::limit::{Limit, limit_failure, passed_failure};
-use crate::{Dynamic, Failure, Real, kinematics};
+use crate::{Dynamic, Failure, Interval, Real, Scalar, kinematics};
 
 /// Violation of a row that a start may have, in the reference metric and of the coordinates (per second for its rate): numbers typed
 /// with nine digits. What it has is projected out.
@@ -167,11 +169,57 @@ where
         Scrutiny { resolution: self.resolution, ..Scrutiny::beyond() }
     }
 
+    fn enclosures(&mut self, first: usize, times: (R, R)) -> Option<Enclosures<R>> {
+        let part = Part::of(self.from, times, &self.at)?;
+        self.model.mechanism.enclosed(RangesOver { part, first }).flatten()
+    }
+
     fn values(&mut self, t: R, first: usize, values: &mut [R; GROUP]) {
         let limits = self.limits(t);
         let left = limits.as_ref().iter().skip(first / 2).map(Limit::left);
         for (pair, left) in values.chunks_exact_mut(2).zip(left) {
             pair.iter_mut().zip(left).for_each(|(value, left)| *value = left);
         }
+    }
+}
+
+/// Bounds of what is left of working ranges over a part of a step.
+struct RangesOver<R, const N: usize> {
+    part: Part<R, N>,
+    first: usize,
+}
+
+impl<T, R, const N: usize, const M: usize> WithIntervals<T, N, M> for RangesOver<R, N>
+where
+    T: Scalar<Real = R>,
+    R: Real,
+{
+    type Output = Option<Enclosures<R>>;
+
+    fn at<S: Dynamic<Interval<R>, N, M>>(self, mechanism: &S) -> Self::Output {
+        let (none, width) = (Interval::of(R::constant(0.0)), self.part.width());
+        let mut middles = [none; GROUP];
+        let mut enclosures = [None; GROUP];
+        self.part.each(mechanism, |mechanism, parameters, position, qd, is_whole| {
+            let limits = mechanism.limits(parameters, position);
+            let limits = limits.as_ref().iter().skip(self.first / 2).flat_map(Limit::left);
+            if !is_whole {
+                middles.iter_mut().zip(limits).for_each(|(middle, left)| *middle = left);
+                return;
+            }
+            let mut places = enclosures.iter_mut().zip(middles).zip(limits);
+            let mut index = 0;
+            mechanism.limit_rates(parameters, position, qd, |Limit { low, value, high }| {
+                index += 1;
+                if index <= self.first / 2 {
+                    return;
+                }
+                for rate in [value - low, high - value] {
+                    let Some(((enclosure, middle), left)) = places.next() else { return };
+                    *enclosure = Some(Enclosure::of(middle, (left, rate), width));
+                }
+            });
+        });
+        Some(enclosures)
     }
 }

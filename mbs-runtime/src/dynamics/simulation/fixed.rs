@@ -294,7 +294,7 @@ where
 
     /// A step of `h` (s), or up to where a contact closes or opens. What lies behind that is not judged.
     fn ahead_to_kink(&self, h: R) -> Result<AheadOf<S, R, N, M>, Failure> {
-        let mut trial = self.trial(h, self.counts, true)?;
+        let mut trial = self.trial_with_contacts(h, self.counts)?;
         for _ in 0..MOST_RETAKES {
             let Some(kink) = self.kink(&trial)? else { break };
             trial = self.trial(kink - self.now.t, trial.ahead.counts, true)?;
@@ -302,9 +302,14 @@ where
         self.judged(trial.ahead)
     }
 
+    /// A step of `h` (s) that does not feel the contacts that it runs into; one that does, where there is none without them.
+    fn trial_with_contacts(&self, h: R, counts: Counts) -> Result<Trial<S, R, N, M>, Failure> {
+        self.trial(h, counts, true).or_else(|_| self.trial(h, counts, false))
+    }
+
     /// A step of `h` (s) of a text with contacts.
     fn step_with_contacts(&mut self, h: R) -> Result<(), Failure> {
-        let trial = self.trial(h, self.counts, true)?;
+        let trial = self.trial_with_contacts(h, self.counts)?;
         if self.kink(&trial)?.is_some() {
             return self.step_in_parts(trial.ahead.next.t);
         }

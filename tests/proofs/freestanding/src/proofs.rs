@@ -4,9 +4,9 @@ use core::hint::black_box;
 
 use mbs_runtime::Lanes;
 use proof_subjects::{
-    FourBar, Parallelogram, Platform, Start, cam, engine, exercise_batch, exercise_dynamics,
-    exercise_emitted, exercise_functions, exercise_laws, exercise_masses, exercise_solvers, exercise_splines,
-    exercise_tape,
+    FourBar, Hammer, Parallelogram, Platform, Start, cam, engine, exercise_batch, exercise_contacts,
+    exercise_dynamics, exercise_emitted, exercise_functions, exercise_laws, exercise_masses,
+    exercise_solvers, exercise_splines, exercise_tape,
 };
 
 macro_rules! export {
@@ -93,6 +93,13 @@ pub extern "C" fn proof_engine_lanes() {
     exercise_masses(mechanism, &start);
 }
 
+/// Contacts and limits that intervals bound; false where a solver fails.
+#[unsafe(no_mangle)]
+pub extern "C" fn proof_hammer() -> bool {
+    exercise_contacts(black_box(Hammer::<f64>::default())).is_ok()
+        & exercise_contacts(black_box(Hammer::<f32>::default())).is_ok()
+}
+
 /// Motion laws and splines, fits included; false where one fails.
 #[unsafe(no_mangle)]
 pub extern "C" fn proof_drivers() -> bool {
@@ -126,6 +133,7 @@ pub extern "C" fn proof_entry() -> bool {
         & proof_batch()
         & proof_engine_f64()
         & proof_engine_f32()
+        & proof_hammer()
         & proof_drivers()
         & proof_tape()
 }

@@ -7,9 +7,9 @@ use std::error::Error;
 
 use mbs_runtime::{Failure, Kinematic, Lanes, Real, Scalar};
 use proof_subjects::{
-    FourBar, Parallelogram, Platform, Start, cam, engine, exercise_batch, exercise_dynamics,
-    exercise_emitted, exercise_functions, exercise_laws, exercise_masses, exercise_solvers, exercise_splines,
-    exercise_tape,
+    FourBar, Hammer, Parallelogram, Platform, Start, cam, engine, exercise_batch, exercise_contacts,
+    exercise_dynamics, exercise_emitted, exercise_functions, exercise_laws, exercise_masses,
+    exercise_solvers, exercise_splines, exercise_tape,
 };
 
 fn emitted<S: Kinematic<T, N, M>, T: Scalar, const N: usize, const M: usize>(mechanism: S) {
@@ -57,6 +57,8 @@ fn dynamics() -> Result<(), Failure> {
     exercise_masses(engine::<f64>(), &Start::of(&engine()));
     exercise_masses(engine::<f32>(), &Start::of(&engine()));
     exercise_masses(engine::<Lanes<f64, 4>>(), &Start::of(&engine()));
+    exercise_contacts(Hammer::<f64>::default())?;
+    exercise_contacts(Hammer::<f32>::default())?;
     exercise_dynamics(engine::<f64>())?;
     exercise_dynamics(engine::<f32>())
 }

@@ -73,6 +73,18 @@ where
     adaptive(mechanism, Explicit::new(DormandPrince8, Projection::default()))
 }
 
+/// Contacts and limits, which are the same for every method but for the steps that look for them.
+///
+/// # Errors
+/// Those of the solvers.
+pub fn exercise_contacts<S, R: Real, const N: usize, const M: usize>(mechanism: S) -> Result<(), Failure>
+where
+    S: Dynamic<R, N, M> + Partitioned<R, N, M> + Copy,
+{
+    fixed(mechanism, Explicit::new(RungeKutta4, Projection::default()))?;
+    adaptive(mechanism, Explicit::new(DormandPrince8, Projection::default()))
+}
+
 /// Steps of fixed size.
 fn fixed<S, X, R: Real, const N: usize, const M: usize>(
     mechanism: S,
