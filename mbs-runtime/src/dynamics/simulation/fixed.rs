@@ -56,12 +56,14 @@ impl<R: Real, P, const N: usize, const M: usize, Z: Copy + AsRef<[R]> + AsMut<[R
     }
 }
 
+/// Parameters without the contacts that are open where a step begins, and the time (s) up to which all stay open by the bounds of the
+/// text.
+type LeftOut<S, R, const N: usize, const M: usize> = (<S as crate::Mechanism<R, N, M>>::Parameters, R);
+
 /// A step of a simulation that is not judged yet.
 struct Trial<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> {
     ahead: AheadOf<S, R, N, M>,
-    /// Parameters without the contacts that are open where it begins, and the time (s) up to which they stay open by the bounds of
-    /// the text.
-    left_out: Option<(S::Parameters, R)>,
+    open: Option<LeftOut<S, R, N, M>>,
 }
 
 /// A step of a simulation.
@@ -218,11 +220,25 @@ where
     /// A step of `h` (s), with the failures of its end; `counts`: what was spent before; `without_open`: contacts that are open where it
     /// begins are left out.
     fn ahead(&self, h: R, counts: Counts, without_open: bool) -> Result<AheadOf<S, R, N, M>, Failure> {
-        self.trial(h, counts, without_open).and_then(|trial| self.judged(trial.ahead))
+        let mut open = None;
+        let mut ahead = self.trial(h, counts, without_open.then_some(&mut open));
+        if let Ok(known) = &ahead
+            && let Err(failure) = self.judge(known)
+        {
+            ahead = Err(failure);
+        }
+        ahead
     }
 
-    /// A step of `h` (s) of which the end is not judged yet.
-    fn trial(&self, h: R, mut counts: Counts, without_open: bool) -> Result<Trial<S, R, N, M>, Failure> {
+    /// A step of `h` (s) of which the end is not judged yet. Contacts that are open where it begins are left out where `open` is asked
+    /// for.
+    #[inline(always)]
+    fn trial(
+        &self,
+        h: R,
+        mut counts: Counts,
+        open: Option<&mut Option<LeftOut<S, R, N, M>>>,
+    ) -> Result<AheadOf<S, R, N, M>, Failure> {
         let t = self.now.t + h;
         if !R::constant(0.0).less(h) || !t.is_finite() || t == self.now.t {
             return Err(Failure::InvalidStep { step: h.to_f64(), time: self.now.t.to_f64() });
@@ -231,12 +247,12 @@ where
         let fresh = self.fresh(&mut counts)?;
         let (from, rank_rises) = (&fresh.instant, fresh.rank_rises);
         let model = Model { rank_rises, ..self.model() };
-        let left_out = (without_open && !S::CONTACTS.is_empty()).then(|| {
-            let mut parameters = self.parameters;
-            let open = model.leave_out(from.t, (from.t, &from.y), &mut parameters);
-            (parameters, open.until)
-        });
-        let parameters = left_out.as_ref().map_or(&self.parameters, |(parameters, _)| parameters);
+        let mut parameters = &self.parameters;
+        if let Some(open) = open.filter(|_| !S::CONTACTS.is_empty()) {
+            let (left_out, quiet) = open.insert((self.parameters, from.t));
+            *quiet = model.leave_out(from.t, (from.t, &from.y), left_out).until;
+            parameters = left_out;
+        }
         let model = Model { parameters, ..model };
         let next = self
             .method
@@ -244,19 +260,17 @@ where
             .map_err(|failure| model.traced(failure, from.t, &from.y))?;
         let phases = self.method.phases_after(&model, from.t, h)?;
         counts.steps = self.counts.steps + 1;
-        Ok(Trial { ahead: Ahead { from: fresh, next, phases, counts }, left_out })
+        Ok(Ahead { from: fresh, next, phases, counts })
     }
 
-    /// A step whose end is one of a motion.
+    /// Fails where a step does not end as one of a motion.
     #[inline(always)]
-    fn judged(&self, ahead: AheadOf<S, R, N, M>) -> Result<AheadOf<S, R, N, M>, Failure> {
+    fn judge(&self, ahead: &AheadOf<S, R, N, M>) -> Result<(), Failure> {
         let (from, next) = (&ahead.from.instant, &ahead.next);
         let model = Model { rank_rises: ahead.from.rank_rises, ..self.model() };
         let judged = model.require_plausible((from, next.t - from.t), next);
-        match judged.and_then(|()| model.check(next.t, &next.y)) {
-            Ok(()) => Ok(ahead),
-            Err(failure) => Err(model.traced(failure, from.t, &from.y)),
-        }
+        let judged = judged.and_then(|()| model.check(next.t, &next.y));
+        judged.map_err(|failure| model.traced(failure, from.t, &from.y))
     }
 
     /// Fails where a step leaves a working range or a branch.
@@ -279,10 +293,10 @@ where
     }
 
     /// The first time (s) within a step at which a contact closes or opens, unless that is its end.
-    fn kink(&self, Trial { ahead, left_out }: &Trial<S, R, N, M>) -> Result<Option<R>, Failure> {
+    fn kink(&self, Trial { ahead, open }: &Trial<S, R, N, M>) -> Result<Option<R>, Failure> {
         let (model, (start, end)) = (self.model(), ahead.times());
         let (parameters, quiet) =
-            left_out.as_ref().map_or((&self.parameters, start), |(parameters, quiet)| (parameters, *quiet));
+            open.as_ref().map_or((&self.parameters, start), |(parameters, quiet)| (parameters, *quiet));
         if end <= quiet || S::CONTACTS.is_empty() {
             return Ok(None);
         }
@@ -294,17 +308,24 @@ where
 
     /// A step of `h` (s), or up to where a contact closes or opens. What lies behind that is not judged.
     fn ahead_to_kink(&self, h: R) -> Result<AheadOf<S, R, N, M>, Failure> {
+        if S::CONTACTS.is_empty() {
+            return self.ahead(h, self.counts, false);
+        }
         let mut trial = self.trial_with_contacts(h, self.counts)?;
         for _ in 0..MOST_RETAKES {
             let Some(kink) = self.kink(&trial)? else { break };
-            trial = self.trial(kink - self.now.t, trial.ahead.counts, true)?;
+            trial = self.trial_with_contacts(kink - self.now.t, trial.ahead.counts)?;
         }
-        self.judged(trial.ahead)
+        self.judge(&trial.ahead).map(|()| trial.ahead)
     }
 
     /// A step of `h` (s) that does not feel the contacts that it runs into; one that does, where there is none without them.
     fn trial_with_contacts(&self, h: R, counts: Counts) -> Result<Trial<S, R, N, M>, Failure> {
-        self.trial(h, counts, true).or_else(|_| self.trial(h, counts, false))
+        let mut open = None;
+        match self.trial(h, counts, Some(&mut open)) {
+            Ok(ahead) => Ok(Trial { ahead, open }),
+            Err(_) => self.trial(h, counts, None).map(|ahead| Trial { ahead, open: None }),
+        }
     }
 
     /// A step of `h` (s) of a text with contacts.
@@ -313,9 +334,9 @@ where
         if self.kink(&trial)?.is_some() {
             return self.step_in_parts(trial.ahead.next.t);
         }
-        let ahead = self.judged(trial.ahead)?;
-        self.check_ahead(&ahead)?;
-        self.go(ahead);
+        self.judge(&trial.ahead)?;
+        self.check_ahead(&trial.ahead)?;
+        self.go(trial.ahead);
         Ok(())
     }
 
