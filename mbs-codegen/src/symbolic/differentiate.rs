@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::graph::{Binary, Graph, Leaf, Node, NodeId, Unary};
+use super::graph::{Binary, Graph, Leaf, Node, NodeId, Stage, Unary};
 
 /// Derivatives of `roots` along the direction in which each leaf moves by `direction(leaf)`.
 ///
@@ -266,10 +266,10 @@ fn power(g: &mut Graph, y: NodeId, (a, da): Moving, (b, db): Moving) -> Option<N
     sum(g, first, second)
 }
 
-/// The exponent of the slope of a power, `less` than that of the power, `b`. 0 where `b` is 0, whatever its value at run time: the slope
-/// is 0 then, at the base 0 too, where 0⁻¹ times 0 would be no number.
+/// The exponent of the slope of a power, `less` than that of the power, `b`. Of an exponent of parameters alone it is 0 where `b` is 0:
+/// the slope is 0 then, at the base 0 too, where 0⁻¹ times 0 would be no number. An exponent that moves keeps its slope at 0.
 fn lowered(g: &mut Graph, b: NodeId, less: NodeId) -> NodeId {
-    if g.constant_value(b).is_some() {
+    if g.stage(b) != Stage::Parameter {
         return less;
     }
     let sign = g.unary(Unary::Sign, b);
