@@ -276,7 +276,7 @@ where
             let scales = self.mechanism.coordinate_scales(&self.parameters);
             // Only its own stepper knows what a lane was changed from.
             let settles = !LaneMask::new(self.changed)
-                & trial.settles((&lengths::points(S::COORDINATES), &scales), &start, to);
+                & trial.settles((&const { lengths::points(S::COORDINATES) }, &scales), &start, to);
             plain = plain & (!trial.doubtful | settles);
         }
         let mut notes = self.notes;

@@ -40,21 +40,48 @@ pub(crate) const fn any(coordinates: &[Entry]) -> bool {
     false
 }
 
-/// The points that coordinates belong to: components of a vector, or such lengths that are declared side by side.
-pub(crate) fn points<const N: usize>(coordinates: &[Entry]) -> Points<N> {
+/// The points that coordinates belong to: components of a vector, or such lengths that are declared side by side. Asked while a mechanism
+/// is compiled.
+pub(crate) const fn points<const N: usize>(coordinates: &[Entry]) -> Points<N> {
     let mut points = [None; N];
-    let mut last: Option<(&str, usize)> = None;
-    for ((index, point), entry) in points.iter_mut().enumerate().zip(coordinates) {
-        if !is_length(entry.unit) {
+    let mut last: Option<(&[u8], usize)> = None;
+    let mut index = 0;
+    while index < N && index < coordinates.len() {
+        let entry = &coordinates[index];
+        if is_length(entry.unit) {
+            let name = name_of_vector(entry.name.as_bytes());
+            let first = match last {
+                Some((before, first)) if are_equal(before, name) => first,
+                _ => index,
+            };
+            points[index] = Some(first);
+            last = Some((name, first));
+        } else {
             last = None;
-            continue;
         }
-        let name = entry.name.rsplit_once('.').map_or("", |(name, _)| name);
-        let first = last.filter(|(before, _)| *before == name).map_or(index, |(_, first)| first);
-        *point = Some(first);
-        last = Some((name, first));
+        index += 1;
     }
     points
+}
+
+/// The name before the last dot; nothing where there is none.
+const fn name_of_vector(name: &[u8]) -> &[u8] {
+    let mut end = name.len();
+    while end > 0 {
+        end -= 1;
+        if name[end] == b'.' {
+            return name.split_at(end).0;
+        }
+    }
+    &[]
+}
+
+const fn are_equal(a: &[u8], b: &[u8]) -> bool {
+    let mut index = 0;
+    while index < a.len() && index < b.len() && a[index] == b[index] {
+        index += 1;
+    }
+    index == a.len() && index == b.len()
 }
 
 const fn is_length(unit: &str) -> bool {

@@ -494,7 +494,7 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Walk<'_, '_
         let first = self.size(&slope) * length;
         let scales = self.way.mechanism.coordinate_scales(&last.parameters);
         let straight = slope.map(|rate| length * rate);
-        let points = lengths::points(S::COORDINATES);
+        let points = const { lengths::points(S::COORDINATES) };
         let weights = lengths::weights(&points, &scales, [&straight, &bend], at.margin);
         Forecast { q, first, second: self.size(&bend), start: slope, slope: tip, weights }
     }
@@ -599,7 +599,7 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Walk<'_, '_
         let mut change = forecast.slope;
         change.iter_mut().zip(&forecast.start).for_each(|(tip, start)| *tip = (*tip - *start) / length);
         let scales = self.way.mechanism.coordinate_scales(&self.way.mechanism.parameters());
-        let points = lengths::points(S::COORDINATES);
+        let points = const { lengths::points(S::COORDINATES) };
         let least = lengths::rounding(margin);
         lengths::turn_little((&points, &scales), [&forecast.start, &change, slope], length, least)
     }

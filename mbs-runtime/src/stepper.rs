@@ -223,7 +223,7 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
                 self.tangent_leads(&trial.q, trial.margin, t, phases)
             } else {
                 let scales = self.mechanism.coordinate_scales(&self.parameters);
-                let points = lengths::points(S::COORDINATES);
+                let points = const { lengths::points(S::COORDINATES) };
                 let State { q, qd, qdd, margin, .. } = &self.state;
                 let start = Start { t: self.state.t, q, qd, qdd, margin: *margin, weights: &scales };
                 trial.settles((&points, &scales), &start, t)
@@ -314,7 +314,7 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
         let mut way = *q;
         way.iter_mut().zip(&from.q).for_each(|(way, from)| *way = *way - *from);
         let scales = self.mechanism.coordinate_scales(&self.parameters);
-        lengths::bend_little((&lengths::points(S::COORDINATES), &scales), &tangent, &way, margin)
+        lengths::bend_little((&const { lengths::points(S::COORDINATES) }, &scales), &tangent, &way, margin)
     }
 
     /// Whether the links of a step turned so little that it leads to no other assembly, however short they are.
@@ -332,7 +332,7 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
             return self.tangent_leads(&found.q, margin, found.t, phases);
         }
         let scales = self.mechanism.coordinate_scales(&self.parameters);
-        let points = lengths::points(S::COORDINATES);
+        let points = const { lengths::points(S::COORDINATES) };
         let metric = (&points, &scales);
         let State { t, qd, qdd, .. } = &self.state;
         let h = found.t - *t;
