@@ -74,6 +74,7 @@ pub mod baumgarte;
 mod blocks;
 mod contact;
 mod contradiction;
+mod crossing;
 pub mod determinacy;
 pub mod dormand_prince5;
 pub mod dormand_prince8;

@@ -17,6 +17,8 @@ pub struct Model<'a, S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usiz
     pub balanced: bool,
     /// Whether rows follow from others on the constraints alone, so that beside them the rank of Φ_q rises.
     pub rank_rises: bool,
+    /// Whether limits of rows next to a singular position have their first order: in steps of fixed size, and in their parts.
+    pub first_order: bool,
 }
 
 /// Rates of one state, with the multipliers that belong to them.
@@ -247,8 +249,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         mechanism.carry_signals(self.mechanism, to - from);
         mechanism.advance_phases(from, to);
         let parameters = self.alike(mechanism.parameters());
-        let Model { metric, balanced, rank_rises, .. } = *self;
-        solve(&Model { mechanism: &mechanism, parameters: &parameters, metric, balanced, rank_rises })
+        solve(&Model { mechanism: &mechanism, parameters: &parameters, ..*self })
     }
 
     /// Parameters with the same contacts left out as here.

@@ -1,6 +1,7 @@
 //! A mechanism as an ordinary differential equation, and the explicit methods that integrate it.
 
 use super::adaptive::{Adaptive, Point};
+use super::crossing::{MOST_ROWS, NEAR, is_next_to_singular_position};
 use super::embedded::Embedded;
 use super::equation::{Collocated, Collocation, Equation, Measured};
 use super::event::{Dense, Scrutiny};
@@ -196,13 +197,25 @@ where
         let mut motion = Equations::new(model, &self.formulation, from, *counts).of_fixed_steps(I::ORDER);
         let t = from.t + h;
         let start = beginning(model.mechanism, from);
-        let mut end = I::step(&mut motion, from.t, h, &start.y, &start.rate)?;
-        let solved = match motion.settle_and_solve(t, &mut end) {
-            Ok(solved) => solved,
-            Err(failure) => return model.require_bounded(t, &from.y, &end.y).and(Err(failure)),
-        };
+        let stepped = I::step(&mut motion, from.t, h, &start.y, &start.rate);
+        let ended = stepped.and_then(|mut end| match motion.settle_and_solve(t, &mut end) {
+            Ok(solved) => Ok((end.y, solved)),
+            Err(failure) => model.require_bounded(t, &from.y, &end.y).and(Err(failure)),
+        });
+        let margin = ended.as_ref().map_or(from.solved.margin, |(_, solved)| solved.margin);
+        let entered = motion.counts.singular != counts.singular;
+        if entered || margin.min(from.solved.margin) < R::constant(NEAR) {
+            let divisible = M <= MOST_ROWS && !(I::USES_SLOPES || self.formulation.leaves_constraints());
+            if divisible && (entered || is_next_to_singular_position(model, from, h)) {
+                // What the step itself failed with says more than its parts do.
+                let next = motion.in_parts(start, t).map_err(|failure| ended.err().unwrap_or(failure))?;
+                *counts = motion.counts;
+                return Ok(next);
+            }
+        }
+        let (y, solved) = ended?;
         *counts = motion.counts;
-        Ok(Instant { t, y: end.y, solved, carried: solved.rate.qd })
+        Ok(Instant { t, y, solved, carried: solved.rate.qd })
     }
 
     fn phases_after(&self, model: &Model<'_, S, R, N, M>, t: R, h: R) -> Result<Option<S::Phases>, Failure> {
@@ -380,6 +393,11 @@ where
         self.seen = (instant.t, instant.solved.margin);
     }
 
+    /// Steps can be made smaller from now on, and are controlled with `tolerance`.
+    pub(super) fn divide(&mut self, tolerance: Tolerance<R>) {
+        (self.fixed, self.tolerance) = (false, tolerance);
+    }
+
     /// Of steps of a method of `order` that cannot be made smaller.
     pub(super) fn of_fixed_steps(self, order: u32) -> Self {
         Equations { fixed: true, integrating: order > ORDER_OF_INTEGRALS, ..self }
@@ -416,12 +434,11 @@ where
         let Equations { model, formulation, start, moving, integrating, parameters, lambda, counts, .. } =
             self;
         let model = *model;
-        let Model { mechanism: own, metric, balanced, rank_rises, .. } = *model;
         let parameters = match parameters {
             Some(parameters) if !S::CONTACTS.is_empty() => parameters,
             _ => model.parameters,
         };
-        let present = Model { mechanism: own, parameters, metric, balanced, rank_rises };
+        let present = Model { parameters, ..*model };
         let Some(mechanism) = moving else {
             let model = if S::CONTACTS.is_empty() { model } else { &present };
             return solve(model, formulation, lambda, counts);
@@ -434,7 +451,7 @@ where
             mechanism.advance_phases(*start, t);
         }
         let parameters = present.alike(mechanism.parameters());
-        let moved = Model { mechanism, parameters: &parameters, metric, balanced, rank_rises };
+        let moved = Model { mechanism, parameters: &parameters, ..*model };
         solve(&moved, formulation, lambda, counts)
     }
 

@@ -149,6 +149,7 @@ where
             metric: &metric,
             balanced: true,
             rank_rises: false,
+            first_order: false,
         };
         let mut counts = Counts::default();
         let states = mechanism.start_states(&parameters);
@@ -274,6 +275,7 @@ where
             metric: &self.metric,
             balanced: self.balanced,
             rank_rises: self.rank_rises,
+            first_order: false,
         }
     }
 

@@ -30,6 +30,7 @@ pub(super) fn multipliers<S: Dynamic<f64, N, M>, const N: usize, const M: usize>
         metric: &metric,
         balanced: false,
         rank_rises: false,
+        first_order: false,
     };
     let y = dynamics::State { q, qd, states: mechanism.start_states(&parameters), work: 0.0 };
     let solved = Unstabilized.solve(&model, state.t, &y, &[0.0; M], &mut Counts::default());

@@ -220,6 +220,5 @@ fn moved<S: Dynamic<f64, N, M>, X, const N: usize, const M: usize>(
     mechanism.carry_signals(model.mechanism, to - from);
     mechanism.advance_phases(from, to);
     let parameters = mechanism.parameters();
-    let Model { metric, balanced, rank_rises, .. } = *model;
-    look(&Model { mechanism: &mechanism, parameters: &parameters, metric, balanced, rank_rises })
+    look(&Model { mechanism: &mechanism, parameters: &parameters, ..*model })
 }

@@ -143,7 +143,6 @@ fn fixed_steps_take_a_four_bar_through_positions_in_line_on_its_branch() {
         "four-bar, 120 fixed step counts: angle {:.1e}, energy {:.1e} J, {refused} refused",
         largest[0], largest[1]
     );
-    // Of 60 J: an acceleration by the limit of a row lacks σ/3 of the jerk, 1e-3 of it at most, for one stage of a step.
-    // A step that ends in line, with more beside the rows than it may have, is refused.
-    assert!(largest[1] < 2e-3 && largest[0] < 2e-3 && refused < 60);
+    // Of 60 J, and of order 4: what a smooth motion leaves at 6000 steps. Steps next to positions in line are taken in parts.
+    assert!(largest[1] < 1e-6 && largest[0] < 1e-6 && refused == 0);
 }

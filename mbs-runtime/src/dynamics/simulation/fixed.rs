@@ -89,9 +89,10 @@ where
         Simulation { scrutiny: Scrutiny { bound: Some(bound), ..self.scrutiny }, ..self }
     }
 
-    /// Moves on by one step of `h` (s): a fixed amount of work, but for a step in which a contact closes or opens. That is cut there,
-    /// into eight parts at most, each found by some steps. The time is that of all steps in a row together, to rounding: what that of
-    /// one step leaves out the next makes up for.
+    /// Moves on by one step of `h` (s): a fixed amount of work, but for a step in which a contact closes or opens, and for one next to a
+    /// singular position. The first is cut there, into eight parts at most, each found by some steps. The second is taken in parts
+    /// with an estimate of their error, by [`DormandPrince8`](crate::dynamics::DormandPrince8). The time is that of all steps in a row
+    /// together, to rounding: what that of one step leaves out the next makes up for.
     ///
     /// A step that gains energy is refused, one that is inaccurate without that is not: its error would take a second step to tell, and
     /// a long step of a uniform motion is exact, be it many turns. `advance_to` keeps to a tolerance.
@@ -246,7 +247,7 @@ where
         self.method.admit(h, self.now.t)?;
         let fresh = self.fresh(&mut counts)?;
         let (from, rank_rises) = (&fresh.instant, fresh.rank_rises);
-        let model = Model { rank_rises, ..self.model() };
+        let model = Model { rank_rises, first_order: true, ..self.model() };
         let mut parameters = &self.parameters;
         if let Some(open) = open.filter(|_| !S::CONTACTS.is_empty()) {
             let (left_out, quiet) = open.insert((self.parameters, from.t));

@@ -182,6 +182,7 @@ where
         metric: &metric,
         balanced: false,
         rank_rises: false,
+        first_order: false,
     };
     let mut counts = Counts::default();
     let y = State { q, qd: [0.7; N], states: mechanism.start_states(&parameters), work: 0.0 };

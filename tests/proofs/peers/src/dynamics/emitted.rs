@@ -27,6 +27,7 @@ where
             metric: &metric,
             balanced: false,
             rank_rises: false,
+            first_order: false,
         };
         let y = Moving { q: state.q, qd: state.qd, states, work: 0.0 };
         let solved = VelocityTransformation.solve(&model, 0.0, &y, &[0.0; M], &mut Counts::default());
