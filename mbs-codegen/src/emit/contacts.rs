@@ -73,7 +73,7 @@ impl Blocks<'_> {
         )
     }
 
-    /// What acts with all contacts open, then a block a contact.
+    /// Forces with all contacts open, then a block a contact.
     fn function(
         &self,
         section: fn(&PushProgram) -> &Section,

@@ -37,7 +37,7 @@ pub struct Pressing {
     pub contact: usize,
     /// Index among the named forces.
     pub named: usize,
-    /// What it does where it is closed.
+    /// Force of the closed contact.
     pub push: Push,
     /// Its power.
     pub power: Option<NodeId>,

@@ -44,7 +44,7 @@ impl Slopes {
 /// A function of dynamics that is not emitted, and why.
 #[derive(Clone, Copy, Debug)]
 pub struct Missing {
-    /// What is missing.
+    /// The missing slopes.
     pub slopes: Slopes,
     /// Index of the declared function that is not smooth enough.
     pub function: usize,

@@ -18,7 +18,7 @@ pub struct Lowered {
     pub guesses: Vec<NodeId>,
     pub coordinate_scales: Vec<NodeId>,
     pub row_scales: Vec<NodeId>,
-    /// How far rows may contradict each other; empty where no text says so.
+    /// Widths by which rows may contradict each other; empty where no text says so.
     pub widths: Vec<NodeId>,
     /// The reference length.
     pub length: NodeId,

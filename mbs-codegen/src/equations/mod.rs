@@ -57,7 +57,7 @@ pub struct Equations {
     pub coordinate_scales: Vec<NodeId>,
     /// Reference metric of the rows.
     pub row_scales: Vec<NodeId>,
-    /// How far rows may contradict each other, in their units; empty where no text says so.
+    /// Widths by which rows may contradict each other, in their units; empty where no text says so.
     pub widths: Vec<NodeId>,
     /// Masses and forces, where the text has any.
     pub dynamics: Option<Dynamics>,

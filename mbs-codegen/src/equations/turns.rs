@@ -26,7 +26,7 @@ enum Angle {
     Input(usize),
 }
 
-/// What whole turns of these angles do to a value.
+/// Change of a value with whole turns of these angles.
 #[derive(Clone, Debug, PartialEq)]
 enum Shift {
     /// It changes by so many turns with each turn of an angle; nothing where none is named.
