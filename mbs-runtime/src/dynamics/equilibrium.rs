@@ -87,14 +87,7 @@ pub fn equilibrium_with_states<S: Dynamic<R, N, M>, R: Real, const N: usize, con
     }
     let parameters = mechanism.parameters();
     let metric = Metric::next_to(mechanism, &parameters, t, q);
-    let model = Model {
-        mechanism,
-        parameters: &parameters,
-        metric: &metric,
-        balanced: false,
-        rank_rises: false,
-        first_order: false,
-    };
+    let model = Model::of_states(mechanism, &parameters, &metric);
     let states = mechanism.start_states(&parameters);
     let mut y = State { q: *q, qd: [R::constant(0.0); N], states, work: R::constant(0.0) };
     model.check(t, &y)?;
@@ -132,14 +125,7 @@ pub fn undetermined_states<S: Dynamic<R, N, M>, R: Real, const N: usize, const M
     require_slopes_at_rest::<S, R, N, M>()?;
     let (zero, parameters) = (R::constant(0.0), mechanism.parameters());
     let metric = Metric::next_to(mechanism, &parameters, t, &found.q);
-    let model = Model {
-        mechanism,
-        parameters: &parameters,
-        metric: &metric,
-        balanced: false,
-        rank_rises: false,
-        first_order: false,
-    };
+    let model = Model::of_states(mechanism, &parameters, &metric);
     let y = State { q: found.q, qd: [zero; N], states: *states, work: zero };
     model.check(t, &y)?;
     let mut undetermined = resting_anywhere(&model, t, &y, &found.lambda);

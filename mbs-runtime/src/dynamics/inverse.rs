@@ -101,14 +101,7 @@ pub fn inverse_with_states<S: Dynamic<R, N, M>, R: Real, const N: usize, const M
     }
     let parameters = mechanism.parameters();
     let metric = Metric::next_to(mechanism, &parameters, t, q);
-    let model = Model {
-        mechanism,
-        parameters: &parameters,
-        metric: &metric,
-        balanced: false,
-        rank_rises: false,
-        first_order: false,
-    };
+    let model = Model::of_states(mechanism, &parameters, &metric);
     let (zero, mut counts) = (R::constant(0.0), Counts::default());
     let mut y = State { q: *q, qd: [zero; N], states: *states, work: zero };
     model.check(t, &y)?;

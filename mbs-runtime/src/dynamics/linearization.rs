@@ -109,14 +109,7 @@ fn about<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     require_slopes::<S, R, N, M>()?;
     let (zero, parameters) = (R::constant(0.0), mechanism.parameters());
     let metric = Metric::next_to(mechanism, &parameters, t, &y.q);
-    let model = Model {
-        mechanism,
-        parameters: &parameters,
-        metric: &metric,
-        balanced: false,
-        rank_rises: false,
-        first_order: false,
-    };
+    let model = Model::of_states(mechanism, &parameters, &metric);
     model.check(t, y)?;
     let position = model.position(t, y);
     let tangent = Tangent::of(&model, &position, y, qdd, lambda);

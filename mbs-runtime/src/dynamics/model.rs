@@ -231,6 +231,13 @@ pub enum Doubt {
     RisingRank,
 }
 
+impl<'a, S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'a, S, R, N, M> {
+    /// Model for single states: no work is integrated, the rank of Φ_q is that of its margin, no step is taken.
+    pub fn of_states(mechanism: &'a S, parameters: &'a S::Parameters, metric: &'a Metric<R, N, M>) -> Self {
+        Model { mechanism, parameters, metric, balanced: false, rank_rises: false, first_order: false }
+    }
+}
+
 impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, R, N, M> {
     /// Stage-1 values of a state.
     #[inline(always)]

@@ -38,14 +38,7 @@ pub fn states_at_rest<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usi
     }
     let (zero, parameters) = (R::constant(0.0), mechanism.parameters());
     let metric = Metric::next_to(mechanism, &parameters, t, q);
-    let model = Model {
-        mechanism,
-        parameters: &parameters,
-        metric: &metric,
-        balanced: false,
-        rank_rises: false,
-        first_order: false,
-    };
+    let model = Model::of_states(mechanism, &parameters, &metric);
     let mut y = State { q: *q, qd: [zero; N], states: mechanism.start_states(&parameters), work: zero };
     model.check(t, &y)?;
     model.settle_states(t, &mut y, lambda)?;

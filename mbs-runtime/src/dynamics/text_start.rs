@@ -290,14 +290,7 @@ pub fn closed<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
 ) -> Result<[R; N], Failure> {
     let parameters = mechanism.parameters();
     let metric = Metric::next_to(mechanism, &parameters, t, q);
-    let model = Model {
-        mechanism,
-        parameters: &parameters,
-        metric: &metric,
-        balanced: false,
-        rank_rises: false,
-        first_order: false,
-    };
+    let model = Model::of_states(mechanism, &parameters, &metric);
     let (zero, states) = (R::constant(0.0), mechanism.start_states(&parameters));
     let mut y = State { q: *q, qd: [zero; N], states, work: zero };
     model.check(t, &y)?;

@@ -112,14 +112,7 @@ fn margin<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
 ) -> f64 {
     let parameters = mechanism.parameters();
     let metric = Metric::next_to(mechanism, &parameters, 0.0, &found.q);
-    let model = Model {
-        mechanism,
-        parameters: &parameters,
-        metric: &metric,
-        balanced: false,
-        rank_rises: false,
-        first_order: false,
-    };
+    let model = Model::of_states(mechanism, &parameters, &metric);
     let y = State { q: found.q, qd: [0.0; N], states: *states, work: 0.0 };
     let solved = Unstabilized.solve(&model, 0.0, &y, &found.lambda, &mut Counts::default());
     solved.map_or(f64::NAN, |solved| solved.margin)

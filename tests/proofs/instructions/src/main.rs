@@ -176,14 +176,7 @@ where
     let mechanism = S::default();
     let parameters = mechanism.parameters();
     let metric = Metric::of(&mechanism, &parameters);
-    let model = Model {
-        mechanism: &mechanism,
-        parameters: &parameters,
-        metric: &metric,
-        balanced: false,
-        rank_rises: false,
-        first_order: false,
-    };
+    let model = Model::of_states(&mechanism, &parameters, &metric);
     let mut counts = Counts::default();
     let y = State { q, qd: [0.7; N], states: mechanism.start_states(&parameters), work: 0.0 };
     for _ in 0..count {

@@ -21,14 +21,7 @@ where
     let metric = Metric::of(&mechanism, &parameters);
     let states = mechanism.start_states(&parameters);
     move |state| {
-        let model = Model {
-            mechanism: &mechanism,
-            parameters: &parameters,
-            metric: &metric,
-            balanced: false,
-            rank_rises: false,
-            first_order: false,
-        };
+        let model = Model::of_states(&mechanism, &parameters, &metric);
         let y = Moving { q: state.q, qd: state.qd, states, work: 0.0 };
         let solved = VelocityTransformation.solve(&model, 0.0, &y, &[0.0; M], &mut Counts::default());
         solved.expect("the state is regular").rate.qd
