@@ -5,13 +5,13 @@ use std::collections::{BTreeMap, BTreeSet};
 use proc_macro2::{Span, TokenStream};
 use quote::quote_spanned;
 
-/// Most faults that are kept: nobody reads more, and the compiler takes its time over each.
+/// Largest number of faults that are kept: more are not read, and the compiler takes its time over each.
 const MOST: usize = 100;
 
-/// One fault: what is wrong, where, and what to do.
+/// One fault: its message, its token and its cure.
 #[derive(Clone, Debug)]
 pub struct Diagnostic {
-    /// What is wrong: lower case, no full stop, names in backticks.
+    /// Message: lower case, no full stop, names in backticks.
     pub message: String,
     /// The cure.
     pub help: String,
@@ -23,7 +23,7 @@ pub struct Diagnostic {
 #[derive(Clone, Debug, Default)]
 pub struct Diagnostics {
     faults: Vec<Diagnostic>,
-    /// Line, column and message of each: what a loop runs into in every round is reported once.
+    /// Line, column and message of each: a fault that a loop repeats in every round is reported once.
     known: BTreeSet<(usize, usize, String)>,
 }
 
@@ -63,7 +63,7 @@ impl Diagnostics {
         self.sorted().into_iter().next()
     }
 
-    /// Whether nothing is wrong so far.
+    /// `true` if there is no fault so far.
     pub fn is_empty(&self) -> bool {
         self.faults.is_empty()
     }
@@ -101,8 +101,7 @@ impl Diagnostics {
     }
 }
 
-/// The known name nearest to `name`, if it is near enough to be a slip of the hand; of several the one that begins
-/// most like it.
+/// The known name nearest to `name`, if it is near enough to be a typing error; of several the one that begins most like it.
 pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let letters: Vec<char> = name.chars().take(LONGEST_NAME).collect();
     let limit = (letters.len() / 3).max(1);
@@ -115,7 +114,7 @@ pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Opti
                 false => edit_distance(&letters, &other),
             };
             let common = letters.iter().zip(&other).take_while(|(a, b)| a == b).count();
-            // Of a name of one letter nothing is left when that is replaced.
+            // A name of one letter would be replaced completely.
             (distance <= limit && distance < letters.len()).then_some((
                 distance,
                 std::cmp::Reverse(common),

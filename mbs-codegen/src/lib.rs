@@ -2,6 +2,7 @@
 //!
 //! Data flows one way, and no folder uses one to its right:
 //! tokens → `syntax` → `model` → `symbolic` → `equations` → `structure` → `program` → `emit` → tokens.
+//! `picture` is apart from this order: it reads `syntax`, `model`, `symbolic` and `equations`, and no stage reads it.
 
 // A text may be anything; the compiler of a user must not see us panic.
 #![cfg_attr(
@@ -20,6 +21,7 @@ mod diagnostics;
 mod emit;
 mod equations;
 mod model;
+pub mod picture;
 mod program;
 #[cfg(any(test, feature = "random"))]
 #[cfg_attr(
@@ -40,19 +42,20 @@ mod syntax;
 pub mod tables;
 
 use diagnostics::Diagnostics;
-use emit::Lengths;
 pub use emit::casadi::stand_in;
+use emit::formula::notation::Notation;
 pub use emit::formula::{DynamicFormulas, Formulas};
-use emit::notation::Notation;
 pub use emit::report::{BlockReport, CoordinateReport, EntryKind, RowReport, StructureReport};
+use emit::rust::Lengths;
 use model::scenes::{Scene, Scenes};
+pub use picture::picture;
 use proc_macro2::TokenStream;
 pub use program::Operations;
 pub use structure::mobility::Mobility;
 
 /// Expands the text of a mechanism, led by the runtime's path in parentheses (without it `::mbs_runtime`).
 ///
-/// A faulty text gives one `compile_error!` a fault, each on its token, and a stub beside them.
+/// A faulty text gives one `compile_error!` a fault, each on its token, and a stub in addition.
 pub fn expand(input: TokenStream) -> TokenStream {
     let mut diagnostics = Diagnostics::default();
     let Some(text) = syntax::read(input, &mut diagnostics) else { return diagnostics.to_tokens() };
@@ -61,19 +64,22 @@ pub fn expand(input: TokenStream) -> TokenStream {
         Some(items) => items,
         None => {
             let mut items = diagnostics.to_tokens();
-            items.extend(emit::stub(&text, &scenes));
+            items.extend(emit::rust::stub(&text, &scenes));
             items
         }
     }
 }
 
-/// The stages behind the front end; `None` where a fault is known.
+/// The stages after the front end; `None` where a fault is known.
 fn translate(
     text: &syntax::Text,
     scenes: &Scenes,
     diagnostics: &mut Diagnostics,
     lengths: Lengths,
 ) -> Option<TokenStream> {
+    if diagnostics.is_empty() {
+        picture::check(text, scenes, diagnostics);
+    }
     if !diagnostics.is_empty() {
         return None;
     }
@@ -97,16 +103,16 @@ fn translate(
         }
         Some(Err(faults)) => Some(faults),
     };
-    Some(emit::rust(text, scenes, &translated, left_out.as_ref(), lengths))
+    Some(emit::rust::rust(text, scenes, &translated, left_out.as_ref(), lengths))
 }
 
 /// A scene through all stages, or its faults.
-fn translate_scene(scene: &Scene) -> Result<emit::Translated<'_>, Diagnostics> {
+fn translate_scene(scene: &Scene) -> Result<emit::rust::Translated<'_>, Diagnostics> {
     if !scene.faults.is_empty() {
         return Err(scene.faults.clone());
     }
     let mut diagnostics = Diagnostics::default();
-    model::signs::check(&scene.model, &mut diagnostics);
+    model::non_negative::check(&scene.model, &mut diagnostics);
     let mut equations = equations::derive(&scene.model);
     equations::continuity::check(&scene.model, &equations, &mut diagnostics);
     equations::turns::check(&scene.model, &equations, &mut diagnostics);
@@ -117,7 +123,7 @@ fn translate_scene(scene: &Scene) -> Result<emit::Translated<'_>, Diagnostics> {
     program::share_angles(&mut equations, &mut structure);
     program::take_roots(&mut equations, &mut structure);
     let program = program::order(&equations, &structure);
-    Ok(emit::Translated { scene, equations, structure, program })
+    Ok(emit::rust::Translated { scene, equations, structure, program })
 }
 
 /// Expands a text that is kept as a string, a mechanism's `SOURCE` for instance, with all its scenes.
@@ -128,7 +134,7 @@ pub fn expand_source(source: &str) -> Result<TokenStream, String> {
     expand_cut(source, Lengths::USUAL)
 }
 
-/// [`expand_source`], functions cut and repetitions rolled into loops as those of long texts are, however short the text.
+/// [`expand_source`] for a short text as for a long one: functions cut into parts, repetitions rolled into loops.
 ///
 /// # Errors
 /// Those of [`expand_source`].
@@ -139,17 +145,17 @@ pub fn expand_source_as_long(source: &str) -> Result<TokenStream, String> {
 
 fn expand_cut(source: &str, lengths: Lengths) -> Result<TokenStream, String> {
     let mut diagnostics = Diagnostics::default();
-    let items = read_source(source, &mut diagnostics)
+    let items = model::scenes::read_source(source, &mut diagnostics)
         .and_then(|(text, scenes)| translate(&text, &scenes, &mut diagnostics, lengths));
     items.ok_or_else(|| diagnostics.to_text())
 }
 
-/// A scene of a text that is kept as a string as a CasADi definition: a Python module with `define(ca, q, v, t, der)`.
+/// CasADi definition of a scene of a text that is kept as a string: a Python module with `define(ca, q, v, t, der)`.
 ///
 /// `scene`: its name; without one the whole text.
 ///
 /// # Errors
-/// The faults, two lines each: `line:column: message` and `help: cure`; or which scenes there are.
+/// The faults, two lines each: `line:column: message` and `help: cure`; or a list of the scenes.
 pub fn casadi_definition(source: &str, scene: Option<&str>) -> Result<String, String> {
     in_scene(source, scene, |name, scene| {
         let attribution = equations::pins::attribution(&scene.model);
@@ -157,8 +163,8 @@ pub fn casadi_definition(source: &str, scene: Option<&str>) -> Result<String, St
     })
 }
 
-/// Φ and its derivatives as plain text, of a scene (without a name the whole text) of a text that is kept as a string;
-/// need not be square.
+/// Φ and its derivatives as plain text, for a text that is kept as a string and a scene (without a name the whole
+/// text). The system need not be square.
 ///
 /// # Errors
 /// As [`casadi_definition`].
@@ -174,8 +180,8 @@ pub fn latex_formulas(source: &str, scene: Option<&str>) -> Result<Formulas, Str
     in_scene(source, scene, |name, scene| Ok(formulas_in(name, scene, Notation::Latex)))
 }
 
-/// M, Q and the energies as plain text, of a scene (without a name the whole text) of a text that is kept as a string; `None`
-/// where it has no masses.
+/// M, Q and the energies as plain text, for a text that is kept as a string and a scene (without a name the whole text).
+/// `None` where it has no masses.
 ///
 /// # Errors
 /// As [`casadi_definition`].
@@ -209,20 +215,19 @@ pub fn unit_of_suffix(symbol: &str) -> Result<(f64, &'static str), (String, Stri
     model::units::coherent(symbol)
 }
 
-/// Sparsity, matching and block-triangular order of a scene (without a name the whole text) of a text that is kept as
-/// a string.
+/// Sparsity, matching and block-triangular order of a text that is kept as a string, in a scene (without a name the whole text).
 ///
 /// # Errors
 /// As [`casadi_definition`].
 pub fn structure_of(source: &str, scene: Option<&str>) -> Result<StructureReport, String> {
     in_scene(source, scene, |name, scene| {
-        let emit::Translated { scene, equations, structure, program } = translate_scene(scene)?;
+        let emit::rust::Translated { scene, equations, structure, program } = translate_scene(scene)?;
         Ok(emit::report::report(&scene.model, &equations, &structure, &program, name))
     })
 }
 
-/// Masses, moments of inertia, stiffnesses and the like of a scene (without a name the whole text) that nothing can have, with
-/// parameters and inputs as `given` has them by name, each in a phrase.
+/// Physically impossible masses, moments of inertia, stiffnesses and the like of a scene (without a name the whole text), each
+/// in a phrase. `given` has parameters and inputs by name.
 ///
 /// # Errors
 /// As [`casadi_definition`].
@@ -232,18 +237,21 @@ pub fn impossible_values(
     given: impl Fn(&str) -> Option<f64>,
 ) -> Result<Vec<String>, String> {
     in_scene(source, scene, |_, scene| {
-        Ok(model::signs::impossible(&scene.model, given).into_iter().map(|found| found.message).collect())
+        Ok(model::non_negative::impossible(&scene.model, given)
+            .into_iter()
+            .map(|found| found.message)
+            .collect())
     })
 }
 
-/// What `view` makes of a scene without faults and of the mechanism's name in it.
+/// Applies `view` to the mechanism's name in a scene and to the scene, if that is without faults.
 fn in_scene<T>(
     source: &str,
     scene: Option<&str>,
     view: impl FnOnce(&str, &Scene) -> Result<T, Diagnostics>,
 ) -> Result<T, String> {
     let mut diagnostics = Diagnostics::default();
-    let (text, scenes) = match read_source(source, &mut diagnostics) {
+    let (text, scenes) = match model::scenes::read_source(source, &mut diagnostics) {
         Some(read) if diagnostics.is_empty() => read,
         _ => return Err(diagnostics.to_text()),
     };
@@ -253,21 +261,4 @@ fn in_scene<T>(
     }
     let name = model::scenes::alias(&text.header, found.label().unwrap_or_default());
     view(&name, found).map_err(|faults| faults.to_text())
-}
-
-fn read_source(source: &str, diagnostics: &mut Diagnostics) -> Option<(syntax::Text, Scenes)> {
-    let input = match source.parse::<TokenStream>() {
-        Ok(input) => input,
-        Err(fault) => {
-            diagnostics.report(
-                fault.span(),
-                format!("the text is no Rust token stream: {fault}"),
-                "close every bracket and quote",
-            );
-            return None;
-        }
-    };
-    let text = syntax::read(input, diagnostics)?;
-    let scenes = Scenes::resolve(&text, diagnostics);
-    Some((text, scenes))
 }

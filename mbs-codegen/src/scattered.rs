@@ -1,6 +1,6 @@
 //! Numbers at which identities are tried: without relations among each other, and the same in every build.
 
-/// A number from 0 up to 1, by what it stands for and the number of the trial.
+/// A number from 0 up to 1, by the kind and index of its quantity and the number of the trial.
 ///
 /// The finalizer of SplitMix64: neighbouring keys have unrelated values. Numbers chosen by hand, or in equal steps, fulfil
 /// equations of their own: e₁e₂ + e₀e₃ = 0, or a − 2b + c = 0.

@@ -1,6 +1,8 @@
 //! Words, symbols and limits of the language as the parser has them: the tests compare the language reference with them.
 
 use crate::model::{declarations, elaborate, elements, names, references, resolve, selection};
+use crate::picture::MOST_SHAPES;
+use crate::syntax::picture::{PICTURES, TURN, forms};
 use crate::syntax::{LATER, REFERRING, STATEMENTS, ast::Element, tokens, unit_symbols};
 
 pub use crate::model::functions::FUNCTIONS;
@@ -8,7 +10,13 @@ pub use crate::syntax::unit_symbols::SUFFIXES;
 
 /// Words that begin a statement.
 pub fn statements() -> impl Iterator<Item = &'static str> {
-    STATEMENTS.into_iter()
+    STATEMENTS.into_iter().chain(PICTURES)
+}
+
+/// Shapes after `draw`, and the words after their points.
+pub fn drawn() -> impl Iterator<Item = &'static str> {
+    let words = forms::FORMS.iter().flat_map(|form| form.words.iter().map(|(word, ..)| *word));
+    forms::FORMS.iter().map(|form| form.word).chain(words).chain([TURN])
 }
 
 /// Words that begin a statement of a later version.
@@ -47,7 +55,7 @@ pub fn fields() -> impl Iterator<Item = (&'static str, &'static str, bool)> {
 }
 
 /// Limits of a text, by the names that the reference gives them.
-pub const LIMITS: [(&str, usize); 10] = [
+pub const LIMITS: [(&str, usize); 11] = [
     ("tokens", tokens::LONGEST),
     ("levels of brackets", tokens::DEEPEST),
     ("coordinates", declarations::MOST_COORDINATES),
@@ -58,4 +66,5 @@ pub const LIMITS: [(&str, usize); 10] = [
     ("operations and numbers of the unrolled text", elaborate::MOST_EXPRESSIONS),
     ("rounds of all loops", elaborate::MOST_ROUNDS),
     ("scenes", selection::MOST_SCENES),
+    ("shapes of a picture", MOST_SHAPES),
 ];

@@ -32,7 +32,7 @@ fn series(terms: usize) -> String {
     )
 }
 
-/// A sum whose terms differ in their form, as nobody writes it.
+/// A sum whose terms all differ in form.
 fn disorder(terms: usize) -> String {
     let mut state = 1_u32;
     let mut next = |below: u32| {
@@ -101,8 +101,8 @@ fn longest_body(tokens: TokenStream) -> usize {
     longest
 }
 
-/// Most tokens of a function: 200 lines of sines and cosines of eight angles at most, with what they take from other functions and
-/// pass on, or 2000 short ones in closures of 200.
+/// Most tokens of a function: 200 lines of sines and cosines of eight angles at most, with the values that they exchange with
+/// other functions, or 2000 short ones in closures of 200.
 const LONGEST: usize = 20_000;
 
 #[test]
@@ -131,7 +131,7 @@ fn repeated_lines_take_no_more_functions_and_no_more_operations() {
     assert!(many.iter().zip(&some).all(|(many, some)| many <= some), "{some:?} {many:?}");
 }
 
-/// What this thread has spent on a processor, where the system tells: other work on the machine does not count.
+/// Processor time of this thread, where the system tells it: other work on the machine does not count.
 fn processor_time() -> Option<Duration> {
     let told = fs::read_to_string("/proc/thread-self/schedstat").ok()?;
     told.split(' ').next()?.parse().ok().map(Duration::from_nanos)

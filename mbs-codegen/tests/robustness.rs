@@ -1,4 +1,4 @@
-//! Whatever comes in, an expansion ends soon, and with Rust or with a report; it never panics or overflows its stack.
+//! Any input ends the expansion soon, with Rust or with a report; it never panics or overflows its stack.
 #![forbid(unsafe_code)]
 
 use std::panic::{UnwindSafe, catch_unwind};
@@ -38,7 +38,7 @@ out speed: [m/s; 2] = der(p);
 out length: m = sum(i in 0..3: abs(L[i])) + max(norm(p), hypot(L1, L.0), 1m) + det([p, a])/1m;
 ";
 
-/// What the four-bar has no use for.
+/// Statements that the four-bar does not need.
 const PRESS: &str = "
 /// Press with a phase.
 pub mechanism Press;
@@ -113,8 +113,39 @@ out squeeze: N = lambda(slot) + z;
 out torque_1: N*m = effort(lead);
 ";
 
-/// Every statement of the language stands in one of them.
-const TEXTS: [&str; 4] = [FOUR_BAR, PRESS, MACHINE, ARM];
+/// Statements of the picture.
+const DRAWN: &str = "
+/// A crank that is looked at.
+pub mechanism Crank;
+param r: [m; 2] = [50mm, 0.2];
+param omega: rad/s = 30;
+const N: 1 = 3;
+coord theta: rad = 0.8;
+drive motor: theta == omega*t;
+body disc { mass: 2kg, com: 0.5*r[0]*unit(theta), inertia: 0.1, angle: theta }
+pin hinge: disc, ground at [0, 0];
+tsda strut { from: [0, 0], to: r[0]*unit(theta), stiffness: 3 }
+out A: [m; 2] = r[0]*unit(theta);
+out row: [m; 3, 2] = [[0, 0], [1, 0], A];
+let A = r[0]*unit(theta);
+title \"A crank\";
+about \"It turns, \" \"always\";
+preset fast \"at twice the speed\" { omega: 600rpm, r: [40mm, 0.1], r[1]: 2*N }
+draw ground row[0], hinge;
+for i in 1..N { let B = [i*r[0], 0]; draw link bars: row[i - 1], row[i], B; draw joint B; }
+draw spring strut.from, strut.to;
+draw slider A along [1, 0];
+draw gear \"g\": hinge rim A teeth 2*N inside;
+draw cam hinge contact disc.com turn theta;
+draw road R: A speed 3 [m/s];
+effect slow { span turn(omega); trace \"path\": A; }
+effect short { span 2s; draw geneva A pin A wheel A rim A slots N; draw face A, A back A; }
+scene Slow = slow { draw rail A along theta; }
+scene Short = short;
+";
+
+/// Every statement of the language occurs in one of them.
+const TEXTS: [&str; 5] = [FOUR_BAR, PRESS, MACHINE, ARM, DRAWN];
 
 /// Runs `work` as the compiler runs a macro; `what` names it where it fails.
 fn expands(what: &str, work: impl Fn() -> String + Send + UnwindSafe + Clone + 'static) -> String {
@@ -138,13 +169,13 @@ fn expands(what: &str, work: impl Fn() -> String + Send + UnwindSafe + Clone + '
     panic!("{shortest:?} for {shown}")
 }
 
-/// What this thread has spent on a processor, where the system tells.
+/// Processor time of this thread, where the system tells it.
 fn processor_time() -> Option<Duration> {
     let told = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
     told.split(' ').next()?.parse().ok().map(Duration::from_nanos)
 }
 
-/// Expands a text in every way there is; returns the report where it is faulty.
+/// Expands a text in all ways; returns the report where it is faulty.
 fn check(text: &str) -> Option<String> {
     let source = text.to_owned();
     let report = expands(text, move || match mbs_codegen::expand_source(&source) {
@@ -156,6 +187,12 @@ fn check(text: &str) -> Option<String> {
         Ok(_) => String::new(),
         Err(report) => report,
     });
+    let source = text.to_owned();
+    let picture = expands(text, move || match mbs_codegen::picture(&source, None) {
+        Ok(picture) => picture.points([&[], &[], &[]], 0.0, &[]).iter().take(0).map(|_| ' ').collect(),
+        Err(report) => report,
+    });
+    assert!(picture.is_empty() || !report.is_empty(), "{picture}{text}");
     // Structure is no matter of a definition.
     assert!(definition.is_empty() || !report.is_empty(), "{text}");
     if let Ok(tokens) = text.parse::<TokenStream>() {
@@ -477,7 +514,7 @@ fn deep_nests_of_groups_without_delimiters() {
 fn long_chains() {
     check(&with(&format!("out y: 1 = {}phi;", "- ".repeat(100_000))));
     for term in ["phi + ", "phi*", "sin(phi) - ", "phi^3 + ", "phi/", "1/t*", "1 + "] {
-        // Longer than any use; those that are refused behind it are longer than may be.
+        // Longer than any use; texts after it that are refused are longer than allowed.
         let term_count = if term.len() > 6 { 6_000 } else { 10_000 };
         check(&with(&format!("out y: 1 = {}phi;", term.repeat(term_count))));
     }
@@ -521,6 +558,11 @@ fn huge_loops() {
         "param A: [1; 1000] = sum(i in 0..400000: 1); out y: 1 = sum(i in 0..400000: A[0]);",
         "input A: [1; 1000]; out y: 1 = sum(i in 0..400000: A[0]);",
         "input A: [1; 1000]; for i in 0..100000 { let a = A[0]; }",
+        "let P = [phi*1m, 0]; for i in 0..99999 { draw joint P; }",
+        "for i in 0..9000 { let P = [i*phi*1m, 0]; draw link bars: P, P; draw joint P, P, P, P; }",
+        "for i in 0..99999 { draw joint PP; draw link Q, R; trace A; preset fast { omga: 1 } }",
+        "out P: [m; 900, 2] = 0; let A = 0; for i in 0..900 { draw joint P[i]; draw spring s: P[i], P[0]; }",
+        "for i in 0..400 { for j in 0..400 { title \"A title\"; span 2s; draw view diagonal; } }",
     ] {
         check(&with(text));
     }

@@ -6,8 +6,8 @@ use std::collections::BTreeMap;
 use quote::ToTokens;
 use syn::visit::{Visit, visit_item_impl};
 
-/// Texts in two parts: what is common, and an effect. The effect brings longer lengths, names, rows and branches of
-/// its own, all of which would show in the operations, the metric and the order of solution.
+/// Texts in two parts: a common one, and an effect. The effect has longer lengths, and names, rows and branches of
+/// its own. Any of these would change the operations, the metric or the order of solution.
 const TEXTS: [(&str, &str); 4] = [
     (
         "param r: m = 0.05; param L: m = 0.18; param omega: rad/s = 10; input shift: m, rates;
@@ -35,7 +35,7 @@ const TEXTS: [(&str, &str); 4] = [
     ),
 ];
 
-/// Items of the implementations for one type, by trait and name; what may differ left out.
+/// Items of the implementations for one type, by trait and name, without the parts that may differ.
 struct Found<'a> {
     scene: Option<&'a str>,
     items: BTreeMap<String, String>,
@@ -112,8 +112,8 @@ fn a_scene_computes_what_the_text_of_its_effects_alone_computes() {
             "mechanism M; {common} effect extra {{ {effect} }} effect none {{}} scene With = extra; scene Without = none;"
         );
         assert_eq!(items(&text, Some("With")), written_out);
-        // No other effect brings anything: the whole text is the same.
-        assert_eq!(items(&text, Some("Whole")), written_out);
+        // No other effect adds a statement: the whole text is the same.
+        assert_eq!(items(&text, Some("AllEffects")), written_out);
         assert_eq!(items(&format!("mechanism M; {common} effect extra {{ {effect} }}"), None), written_out);
     }
 }
@@ -143,9 +143,9 @@ fn views_of_a_scene_are_asked_for_by_its_name() {
     let casadi = mbs_codegen::casadi_definition(text, Some("Slow")).expect("a scene");
     assert!(casadi.contains("NAME = \"MSlow\"") && casadi.contains("v[0]"), "{casadi}");
     let unknown = mbs_codegen::structure_of(text, Some("Slo")).expect_err("no such scene");
-    assert_eq!(unknown, "there is no scene `Slo`; the text has `Slow`, `Fast`, `Whole`");
-    // The whole text says why it is none: both effects declare `d`.
+    assert_eq!(unknown, "there is no scene `Slo`; the text has `Slow`, `Fast`, `AllEffects`");
+    // The whole text is faulty: both effects declare `d`.
     let whole = mbs_codegen::structure_of(text, None).expect_err("both drives are called `d`");
     assert!(whole.contains("`d` is declared twice"), "{whole}");
-    assert!(mbs_codegen::formulas(text, Some("Whole")).is_err());
+    assert!(mbs_codegen::formulas(text, Some("AllEffects")).is_err());
 }

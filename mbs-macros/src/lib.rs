@@ -1,4 +1,4 @@
-//! The procedural macro behind `mbs_runtime::mechanism!`.
+//! The procedural macro of `mbs_runtime::mechanism!`.
 //!
 //! Use it through `mbs-runtime`, which passes its own path on, so that the crate may be renamed.
 

@@ -1,108 +1,169 @@
 //! Fixed-size, allocation-free solvers for mechanisms declared with [`mechanism!`].
 //!
-//! A mechanism is written once as text; the macro differentiates it and emits an implementation of
-//! [`Mechanism`] and, where the structure is square, of [`Kinematic`]. The solvers here work on those
-//! traits alone. Nothing allocates, nothing panics, every failure is a [`Failure`] value that
-//! names the row or the coordinate and its line in the text.
+//! A mechanism is a text of coordinates, constraints, drives and bodies. The macro differentiates it symbolically while the crate
+//! compiles, and implements [`Mechanism`] and, by what the text has, [`Kinematic`] and [`Dynamic`]. The solvers use these traits
+//! alone. Nothing allocates, nothing panics, and every failure is a [`Failure`] that names the row or the coordinate and its line.
+//!
+//! ```
+//! use mbs_runtime::{Mechanism, Stepper, mechanism};
+//!
+//! mechanism! {
+//!     /// A crank and a rod that slides along x.
+//!     pub mechanism SliderCrank;
+//!     param crank: m = 50mm;
+//!     param rod: m = 180mm;
+//!     coord theta: rad = 0;
+//!     coord phi: rad = 0;
+//!     coord x: m = 0.2;
+//!     constraint closure { crank*unit(theta) + rod*unit(phi) == [x, 0]; }
+//!     drive motor: theta == 300rpm*t;
+//!     branch ahead: cos(phi) > 0;
+//!     out travel: m = x;
+//! }
+//!
+//! let machine: SliderCrank = SliderCrank::default();
+//! let guess = machine.guess(&machine.parameters());
+//! let mut motion = Stepper::assemble(machine, guess, 0.0)?;
+//! motion.advance(0.001)?; // 1 ms on
+//! let [travel] = motion.outputs();
+//! println!("{} m, {:?} m/s, {:?} m/s²", travel.value, travel.rate, travel.acceleration);
+//! assert!((travel.value - 0.22997).abs() < 1e-5);
+//! # Ok::<(), mbs_runtime::Failure>(())
+//! ```
+//!
+//! Six programs are in the folder `examples`; the book of the project has the language and the methods.
+//!
+//! # Tasks
+//!
+//! | task | item |
+//! |---|---|
+//! | declare a mechanism | [`mechanism!`] |
+//! | position, velocity and acceleration along the time | [`Stepper`], [`Stepper::advance`] |
+//! | a step of bounded work in a control loop | [`Stepper::step`] with a [`Budget`], [`Step`], [`WorstCase`] |
+//! | a measured quantity as input | [`Signal`], [`Stepper::change`] |
+//! | save and restore a state | [`Stepper::save`], [`Saved`], [`Stepper::assemble_near`] |
+//! | reach of a driver | [`Stepper::reach_towards`], [`Stepper::reach_of`] |
+//! | one position without a motion | [`assemble()`], [`newton_raphson()`] |
+//! | rates at a position | [`solve_velocity`], [`solve_acceleration`] |
+//! | dependent rows, scaling | [`Stepper::redundancy`], [`Redundancy`], [`IllScaled`] |
+//! | many designs at once | [`Batch`], [`Lanes`] |
+//! | motion from forces | [`dynamics::Simulation`] |
+//! | forces from motion | [`dynamics::inverse()`] |
+//! | position of rest | [`dynamics::equilibrium()`] |
+//! | small motions, eigenvalues | [`dynamics::linearize()`] |
+//! | motion laws, splines through tables | [`driver`] |
+//! | code that takes any mechanism | [`Reveal`], [`Visitor`] |
+//!
+//! # Symbols
+//!
+//! | symbol | shape | meaning |
+//! |---|---|---|
+//! | q, q̇, q̈ | N | coordinates, velocities, accelerations |
+//! | t | 1 | time (s) |
+//! | Φ(q, t) | M | rows: constraints and drives, 0 at a position |
+//! | Φ_q | M × N | Jacobian of the rows |
+//! | Φ_t, Φ_tt | M | explicit time derivatives; velocities solve Φ_q q̇ = −Φ_t |
+//! | γ | M | right-hand side of the accelerations: Φ_q q̈ = γ |
+//! | M | N × N | mass matrix |
+//! | Q | N | generalized forces |
+//! | λ | M | multipliers: M q̈ + Φ_qᵀ λ = Q; the effort of a drive is −λ |
+//! | h | 1 | length of a step (s) |
+//! | ε | 1 | machine epsilon of the number type, which tolerances scale with |
+//!
+//! Units are coherent SI, angles are in rad. N counts coordinates and M rows; both are part of the types.
+//!
+//! # Features
+//!
+//! | feature | effect |
+//! |---|---|
+//! | `nalgebra` (default) | conversions to nalgebra's vectors and matrices of fixed size, `Matrices` |
+//! | `fma` | fused products in sine and cosine where the target has the instruction; links `std` |
+//! | `libm` | sine and cosine of the crate `libm`, bit for bit |
 #![no_std]
 #![forbid(unsafe_code)]
 // Whether an index is in range, LLVM decides, and a proof on the linked binary shows that it did (`tests/proofs`).
 #![cfg_attr(not(test), deny(clippy::expect_used, clippy::panic, clippy::unreachable, clippy::unwrap_used))]
 
-pub mod assembly;
+#[doc(hidden)] // emitted code calls it
+pub mod __private;
 mod batch;
-#[cfg(feature = "nalgebra")]
-pub mod boundary;
-pub mod budget;
-mod budgeted;
-pub mod diagnosis;
+mod block_solvers;
 pub mod driver;
-pub mod dyad;
-pub mod dynamic;
 pub mod dynamics;
-pub mod failure;
-mod function;
-mod instant;
-pub mod interval;
-pub mod kinematics;
-pub mod lanes;
-mod lengths;
-pub mod limit;
-pub mod linear;
-#[doc(hidden)] // emitted code calls it
-pub mod long;
-pub mod mechanism;
-mod nearest;
-pub mod newton;
-pub mod newton_raphson;
-pub mod operations;
-mod path;
-pub mod phase;
-mod plain;
-pub mod redundancy;
-mod redundant;
-pub mod resolution;
-pub mod safeguarded;
-pub mod saved;
-pub mod scalar;
-mod starts;
-pub mod stepper;
-pub mod stop;
-pub mod sweep;
-#[doc(hidden)] // emitted code calls it
-pub mod tape;
-pub mod trace;
-mod trial;
-mod trigonometry;
-mod turns;
-pub mod worst_case;
-
-pub use assembly::{Assembled, assemble};
-pub use batch::Batch;
+mod failure;
+mod kinematics;
+mod linear_algebra;
+mod mechanism;
 #[cfg(feature = "nalgebra")]
-pub use boundary::Matrices;
-pub use budget::{Budget, Step};
-pub use diagnosis::{Diagnosis, Statistics, Worst};
-pub use dyad::{Dyad, Roots, Single};
-pub use dynamic::{Dynamic, Energy, Gap, MissingSlope, Motion, Partitioned, Signed, StateSlope};
-pub use failure::{Failure, Holding, Level, Outcome};
-pub use function::{Function, FunctionEntry};
-pub use interval::Interval;
-pub use kinematics::{RegularFactors, factorize, solve_acceleration, solve_position, solve_velocity};
-pub use lanes::Lanes;
-pub use limit::{Limit, Warning};
-pub use linear::{Direct1, Direct2, Direct3, Elimination, Guarded, Lu, Orthogonal};
-pub use mechanism::{
-    Block, BlockSolver, Entry, Evaluation, Factorization, Kinematic, Margin, Mechanism, OutputValue,
-    Reference, Signal, Solved, Whole,
+pub mod nalgebra;
+mod scalar;
+mod stepper;
+mod worst_case;
+
+#[cfg(feature = "nalgebra")]
+pub use self::nalgebra::Matrices;
+pub use batch::Batch;
+pub use block_solvers::budget::Budget;
+pub use block_solvers::convergence::{Diagnosis, Statistics, Worst};
+pub use block_solvers::dyad::{Dyad, Single};
+pub use block_solvers::levenberg_marquardt::AssemblySolver;
+pub use block_solvers::newton::Newton;
+pub use block_solvers::trace::{Trace, Traced};
+pub use failure::conflicting_rows::ConflictingRows;
+pub use failure::{DerivativeOrder, Failure, FailureKind, FailureSource};
+pub use kinematics::assembly::{Assembled, assemble};
+pub use kinematics::newton_raphson::{Iterate, newton_raphson, newton_raphson_watched};
+pub use kinematics::position::{
+    RegularFactors, factorize, solve_acceleration, solve_position, solve_velocity,
 };
-pub use newton::Newton;
-pub use newton_raphson::{Iterate, newton_raphson, newton_raphson_watched};
-pub use operations::Operations;
-pub use phase::{Phase, Speed};
-pub use redundancy::Redundancy;
-pub use redundant::Widths;
-pub use resolution::IllScaled;
-pub use safeguarded::Safeguarded;
-pub use saved::Saved;
-pub use scalar::{Real, Scalar};
+pub use linear_algebra::direct1::Direct1;
+pub use linear_algebra::direct2::Direct2;
+pub use linear_algebra::direct3::Direct3;
+pub use linear_algebra::factorization::Factorization;
+pub use linear_algebra::guarded::{Elimination, Guarded};
+pub use linear_algebra::lu::Lu;
+pub use linear_algebra::rectangular::Orthogonal;
+pub use linear_algebra::vectors::extent;
+pub use mechanism::dynamic::{
+    Dynamic, DynamicState, Energy, Gap, MissingSlope, NonNegative, Partitioned, StateSlope,
+};
+pub use mechanism::function::{Function, FunctionEntry};
+pub use mechanism::kept::Kept;
+pub use mechanism::limit::{Limit, WARNING_SHARE, Warning};
+pub use mechanism::operations::Operations;
+pub use mechanism::outcome::Outcome;
+pub use mechanism::phase::{Phase, Speed};
+pub use mechanism::reveal::{Reveal, Visitor};
+pub use mechanism::roots::Roots;
+pub use mechanism::widths::Widths;
+pub use mechanism::{
+    AllEffects, Block, BlockSolver, Entry, Evaluation, Kinematic, Margin, Mechanism, OutputValue, Reference,
+    Signal, Solved,
+};
+pub use scalar::interval::Interval;
+pub use scalar::lanes::Lanes;
+pub use scalar::number::{Real, Scalar};
 pub use stepper::Stepper;
-pub use stop::Stop;
-pub use sweep::{Frame, Sweep};
-pub use trace::{Trace, Traced};
+pub use stepper::bounded_step::Step;
+pub use stepper::dependent_rows::Redundancy;
+pub use stepper::reach::ReachLimit;
+pub use stepper::saved::{NEAR, Saved};
+pub use stepper::scaling::IllScaled;
+pub use stepper::sweep::{Frame, Sweep};
 pub use worst_case::{BlockWork, Work, WorstCase};
 
-/// Declares a mechanism: a struct with its parameters, and implementations of [`Mechanism`], of [`Kinematic`] where the
-/// rows fix every coordinate, and of [`Dynamic`] where the text has masses or forces.
+/// Declares a mechanism: a struct with its parameters, and implementations of [`Mechanism`], of [`Kinematic`] if the
+/// rows fix every coordinate, and of [`Dynamic`] if the text has masses or forces.
 ///
 /// The text is a header and statements: `const`, `param`, `input`, `coord`, `let`, `constraint`, `drive`, `branch`,
 /// `limit`, `out`, `function` and `for`; for dynamics `body`, `gravity`, `force`, `torque`, `tsda`, `rsda`, `potential`,
 /// `kinetic`, `dissipation`, `state` and `start`; `effect` and `scene` for several mechanisms in one text. Units are
 /// checked, vectors are arrays, derivatives are exact. The emitted struct has the parameters and inputs as public fields,
-/// `Default`, a view of the coordinates by name, and in its documentation shapes, sparsity, order of solution and operation
+/// `Default`, and a view of the coordinates by name. Its documentation has shapes, sparsity, order of solution and operation
 /// counts. With functions it has a type parameter and a public field for each, before the scalar, and `new` that takes
-/// them. A constraint marked `redundant` may have rows that follow from others. With scenes it has a type parameter behind the scalar's for the scene, [`Whole`] where nothing else is said, and
-/// an alias for each scene. The README explains every statement.
+/// them. A constraint marked `redundant` may have rows that follow from others. With scenes it has a type parameter for the scene
+/// after the scalar's, [`AllEffects`] by default, and an alias for each scene. The language reference of the book explains every
+/// statement.
 ///
 /// ```
 /// use mbs_runtime::{Mechanism, Stepper, mechanism};

@@ -10,23 +10,11 @@
 //! Magherini 2008), whose letters the parameters keep.
 
 use mbs_runtime::mechanism;
-
-use crate::drawing::Shape;
-use crate::masses::boxed_masses;
-use crate::registry::{FreeCard, Preset, Usual};
+use mbs_workbench::card;
+use mbs_workbench::card::Card;
 
 /// In the list of free mechanisms.
-pub const CARD: FreeCard = FreeCard {
-    name: "andrews",
-    title: "Andrews' squeezer",
-    description: "A constant torque drives a crank with seven bodies against a spring: three loops, a time scale of \
-                  milliseconds, accelerations up to 5e5 rad/s².",
-    runs: &[Preset { label: "0.03 s", description: "from rest, under a constant torque", set: &[] }],
-    duration: 0.03,
-    usual: Usual::Projection,
-    drawing: DRAWING,
-    make: boxed_masses::<Andrews, 7, 6>,
-};
+pub const CARD: Card = card!(Andrews::default());
 
 mechanism! {
     /// Andrews' squeezer: one degree of freedom in seven angles.
@@ -132,37 +120,31 @@ mechanism! {
     out upper_force: [N; 2] = reaction(hub_of_upper, upper);
     /// Force at E on the rod EH.
     out lower_force: [N; 2] = reaction(hub_of_lower, lower);
-}
 
-/// How the mechanism is drawn.
-pub const DRAWING: &[Shape] = &[
-    Shape::Ground { at: "crank_centre" },
-    Shape::Ground { at: "upper_bearing" },
-    Shape::Ground { at: "lower_bearing" },
-    Shape::Ground { at: "spring_bearing" },
-    Shape::Spring { points: ["spring_bearing", "spring_end"], label: "spring" },
-    Shape::Plate { points: &["lower_bearing", "hub", "spring_end"], label: "triangle" },
-    Shape::Link { points: &["upper_bearing", "upper_end"], label: "upper guide" },
-    Shape::Link { points: &["upper_end", "hub"], label: "upper rod" },
-    Shape::Link { points: &["upper_bearing", "lower_end"], label: "lower guide" },
-    Shape::Link { points: &["lower_end", "hub"], label: "lower rod" },
-    Shape::Link { points: &["crank_pin", "hub"], label: "rod" },
-    Shape::Link { points: &["crank_centre", "crank_pin"], label: "crank" },
-    Shape::Joint { at: "crank_centre" },
-    Shape::Joint { at: "crank_pin" },
-    Shape::Joint { at: "hub" },
-    Shape::Joint { at: "spring_end" },
-    Shape::Joint { at: "upper_end" },
-    Shape::Joint { at: "lower_end" },
-    Shape::Trace { of: "hub", label: "hub" },
-];
+    title "Andrews' squeezer";
+    about "A constant torque drives a crank with seven bodies against a spring: three loops, a time scale of \
+           milliseconds, accelerations up to 5e5 rad/s².";
+    preset "0.03 s" "from rest, under a constant torque" {}
+    span 0.03s;
+    draw ground crank_centre, upper_bearing, lower_bearing, spring_bearing;
+    draw spring spring: spring_bearing, spring_end;
+    draw plate triangle: lower_bearing, hub, spring_end;
+    draw link "upper guide": upper_bearing, upper_end;
+    draw link "upper rod": upper_end, hub;
+    draw link "lower guide": upper_bearing, lower_end;
+    draw link "lower rod": lower_end, hub;
+    draw link rod: crank_pin, hub;
+    draw link crank: crank_centre, crank_pin;
+    draw joint crank_centre, crank_pin, hub, spring_end, upper_end, lower_end;
+    trace hub;
+}
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::facade::Motion;
     use crate::newton_euler::{Body, Unknown, assert_agree, cross, forces, pin, plus, turning};
     use crate::reference::{dynamics_of, load};
+    use mbs_workbench::erased::facade::Motion;
 
     /// Pins in the order of [`sums`].
     const PINS: [&str; 10] = [
@@ -250,7 +232,7 @@ mod tests {
 
     #[test]
     fn forces_of_pins_are_newtons_and_eulers_and_those_of_the_reference() {
-        let found = dynamics_of(&CARD, &CARD.runs[0], 60);
+        let found = dynamics_of(&CARD, 0, 60);
         let expected: Vec<Vec<f64>> = (0..found.motion.time.len()).map(|k| sums(&found.motion, k)).collect();
         assert_agree("andrews", &found.motion, &PINS, |_| 0.033, &expected);
         // At the start, by an independent code: the forces at E on the triangle and on both rods, which do not move yet.

@@ -12,26 +12,12 @@
 //! Source: IFToMM benchmark A04, Bricard's mechanism: rods of 1 m and 1 kg with a square section of 0.1 m, P1 and P6 on the ground,
 //! free fall along −y, from rest.
 
-use core::f64::consts::FRAC_1_SQRT_2;
-
 use mbs_runtime::mechanism;
-
-use crate::drawing::{FRAC_1_SQRT_6, Shape};
-use crate::masses::boxed_redundant_masses;
-use crate::registry::{FreeCard, Preset, Usual};
+use mbs_workbench::card;
+use mbs_workbench::card::Card;
 
 /// In the list of free mechanisms.
-pub const CARD: FreeCard = FreeCard {
-    name: "bricard",
-    title: "Bricard's mechanism",
-    description: "Five rods and the ground in a loop of six revolute joints: by count no degree of freedom, in truth one: a row \
-                  of its joints follows from the others wherever it is.",
-    runs: &[Preset { label: "falling", description: "from rest, by its weight", set: &[] }],
-    duration: 10.0,
-    usual: Usual::Projection,
-    drawing: DRAWING,
-    make: boxed_redundant_masses::<Bricard, 23, 23>,
-};
+pub const CARD: Card = card!(Bricard::default());
 
 mechanism! {
     /// Bricard's mechanism: one degree of freedom in 23 coordinates.
@@ -92,27 +78,47 @@ mechanism! {
     out P4: [m; 3] = centres[2] + half[2];
     out P5: [m; 3] = centres[3] + half[3];
     out P6: [m; 3] = [0, 0, L];
+
+    title "Bricard's mechanism";
+    about "Five rods and the ground in a loop of six revolute joints: by count no degree of freedom, in truth \
+           one: a row of its joints follows from the others wherever it is.";
+    preset falling "from rest, by its weight" {}
+    span 10s;
+    draw view "from x = y = z, y upwards": right [1, 0, -1] up [-1, 2, -1];
+    draw ground P1, P6;
+    draw link first: P1, P2;
+    draw link second: P2, P3;
+    draw link third: P3, P4;
+    draw link fourth: P4, P5;
+    draw link fifth: P5, P6;
+    draw joint P1, P2, P3, P4, P5, P6;
+    trace "third joint": P3;
 }
 
-/// How the mechanism is drawn.
-pub const DRAWING: &[Shape] = &[
-    Shape::View {
-        right: [FRAC_1_SQRT_2, 0.0, -FRAC_1_SQRT_2],
-        up: [-FRAC_1_SQRT_6, 2.0 * FRAC_1_SQRT_6, -FRAC_1_SQRT_6],
-        label: "from x = y = z, y upwards",
-    },
-    Shape::Ground { at: "P1" },
-    Shape::Ground { at: "P6" },
-    Shape::Link { points: &["P1", "P2"], label: "first" },
-    Shape::Link { points: &["P2", "P3"], label: "second" },
-    Shape::Link { points: &["P3", "P4"], label: "third" },
-    Shape::Link { points: &["P4", "P5"], label: "fourth" },
-    Shape::Link { points: &["P5", "P6"], label: "fifth" },
-    Shape::Joint { at: "P1" },
-    Shape::Joint { at: "P2" },
-    Shape::Joint { at: "P3" },
-    Shape::Joint { at: "P4" },
-    Shape::Joint { at: "P5" },
-    Shape::Joint { at: "P6" },
-    Shape::Trace { of: "P3", label: "third joint" },
-];
+#[cfg(test)]
+mod tests {
+    use super::Bricard;
+    use mbs_runtime::dynamics::{closed, equilibrium};
+    use mbs_runtime::{Dynamic, Mechanism};
+
+    /// Off the rows the dependent one holds the loop as well: Newton's method may end at any position that closes.
+    #[test]
+    fn a_loop_with_a_dependent_row_rests_where_its_forces_balance() {
+        let bricard = Bricard::<f64>::default();
+        let parameters = bricard.parameters();
+        for (first, pieces) in [(0.3, 3), (0.3, 4), (0.1, 2), (0.7, 5), (1.1, 6)] {
+            let mut q = bricard.guess(&parameters);
+            for piece in 1..=pieces {
+                q[0] = first * f64::from(piece) / f64::from(pieces);
+                q = closed(&bricard, 0.0, &q, &[0]).expect("the loop closes");
+            }
+            let rest = equilibrium(&bricard, 0.0, &q).expect("a position of rest");
+            let position = bricard.position(&parameters, &rest.q, 0.0);
+            let force = bricard.force(&parameters, &position, &[0.0; 23], &[], &rest.lambda);
+            let reaction = bricard.reaction(&parameters, &position, &rest.lambda);
+            let open = reaction.iter().zip(&force).map(|(reaction, force)| (reaction - force).abs());
+            assert!(open.fold(0.0, f64::max) < 1e-9, "{first}: {rest:?}");
+            assert!(rest.q[0].cos().abs() < 1e-7 && rest.indifferent == [false; 23], "{first}: {rest:?}");
+        }
+    }
+}

@@ -24,10 +24,8 @@
 //! follower).
 
 use mbs_runtime::mechanism;
-
-use crate::drawing::{Along, Shape};
-use crate::facade;
-use crate::registry::{Card, Preset, Span};
+use mbs_workbench::card;
+use mbs_workbench::card::Card;
 
 mechanism! {
     /// Disc cam with a flat-faced follower.
@@ -59,30 +57,23 @@ mechanism! {
     out face_right: [m; 2] = [0.6*rb, y];
     out G: [m; 2] = [0, y + 1.6*rb];
     out radius_of_curvature: m = curvature_radius;
+
+    title "Cam with a flat follower";
+    about "A disc cam lifts a flat-faced follower. The point of contact runs to and fro under the face as the \
+           derivative of the motion law.";
+    preset "one turn" "the cam at constant speed" {}
+    span turn(omega);
+    draw rail G along [0, 1];
+    draw slider G along [0, 1];
+    draw ground O;
+    draw face follower: face_left, face_right back G;
+    draw cam cam: O contact P turn theta;
+    draw joint O;
+    trace "point of contact": P;
 }
 
-/// How the mechanism is drawn.
-pub const DRAWING: &[Shape] = &[
-    Shape::Rail { at: "G", along: Along::Fixed([0.0, 1.0]) },
-    Shape::Slider { at: "G", along: Along::Fixed([0.0, 1.0]) },
-    Shape::Ground { at: "O" },
-    Shape::Face { points: ["face_left", "face_right"], back: "G", label: "follower" },
-    Shape::Cam { at: "O", contact: "P", turn: "theta", label: "cam" },
-    Shape::Joint { at: "O" },
-    Shape::Trace { of: "P", label: "point of contact" },
-];
-
 /// Entry in the list of mechanisms.
-pub const CARD: Card = Card {
-    name: "cam_flat",
-    title: "Cam with a flat follower",
-    description: "A disc cam lifts a flat-faced follower. The point of contact runs to and fro under the face as the \
-                  derivative of the motion law.",
-    runs: &[Preset { label: "one turn", description: "the cam at constant speed", set: &[] }],
-    span: Span::Turn { rate: "omega" },
-    drawing: DRAWING,
-    make: facade::boxed::<CamFlat, 4>,
-};
+pub const CARD: Card = card!(CamFlat::default());
 
 #[cfg(test)]
 mod tests {
@@ -102,13 +93,13 @@ mod tests {
 
     #[test]
     fn the_follower_obeys_the_motion_law() {
-        let motion = one_turn(&CARD, &CARD.runs[0], 180);
+        let motion = one_turn(&CARD, 0, 180);
         assert_moves_as(&motion, &["theta", "c", "x", "y"], 1e-12, coordinates);
     }
 
     #[test]
     fn the_profile_is_convex() {
-        let motion = one_turn(&CARD, &CARD.runs[0], 360);
+        let motion = one_turn(&CARD, 0, 360);
         let radius = motion.outputs.last().expect("the radius of curvature");
         assert!(radius.value.iter().all(|radius| *radius > 0.0299));
     }

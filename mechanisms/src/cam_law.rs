@@ -25,11 +25,10 @@ use core::f64::consts::{PI, TAU};
 
 use mbs_runtime::driver::{Polynomial4567, Segment, Segments};
 use mbs_runtime::mechanism;
-
-use crate::drawing::{Along, Shape};
-use crate::facade::{AnyMechanism, Facade};
-use crate::registry::{Card, Preset, Span};
-use crate::verify::StandIn;
+use mbs_workbench::card;
+use mbs_workbench::card::Card;
+use mbs_workbench::erased::erase::erase;
+use mbs_workbench::verify::StandIn;
 
 mechanism! {
     /// Disc cam with a flat-faced follower, the motion law from outside.
@@ -53,6 +52,19 @@ mechanism! {
     out face_right: [m; 2] = [0.6*rb, y];
     out G: [m; 2] = [0, y + 1.6*rb];
     out radius_of_curvature: m = rb + lift(theta) + lift.d2(theta);
+
+    title "Cam with a law given at run time";
+    about "A disc cam lifts a flat-faced follower by 8 mm, lets it dwell and takes it back, by a law that the \
+           text declares and the caller supplies.";
+    preset "one turn" "the cam at constant speed" {}
+    span turn(omega);
+    draw rail G along [0, 1];
+    draw slider G along [0, 1];
+    draw ground O;
+    draw face follower: face_left, face_right back G;
+    draw cam cam: O contact P turn theta;
+    draw joint O;
+    trace "point of contact": P;
 }
 
 /// The law of the follower that `mbs` shows.
@@ -64,46 +76,18 @@ const RISEN: f64 = 2.0;
 const LEAVES: f64 = PI;
 const BACK: f64 = 5.0;
 
-/// The cam with the law that `mbs` shows.
-pub fn shown() -> CamLaw<Law> {
-    const LAW: Law = {
-        let parts =
-            [Segment::to(HEIGHT, RISEN), Segment::dwell(LEAVES), Segment::to(0.0, BACK), Segment::dwell(TAU)];
-        match Law::new(0.0, parts) {
-            Ok(law) => law,
-            Err(_) => panic!("four segments, one behind the other"),
-        }
-    };
-    CamLaw::new(LAW)
-}
-
-/// The cam with a law that the cross-check knows.
-pub fn compared() -> Box<dyn AnyMechanism> {
-    Box::new(Facade::<_, 3, 3>(CamLaw::new(StandIn::<0>)))
-}
-
-/// How the mechanism is drawn.
-pub const DRAWING: &[Shape] = &[
-    Shape::Rail { at: "G", along: Along::Fixed([0.0, 1.0]) },
-    Shape::Slider { at: "G", along: Along::Fixed([0.0, 1.0]) },
-    Shape::Ground { at: "O" },
-    Shape::Face { points: ["face_left", "face_right"], back: "G", label: "follower" },
-    Shape::Cam { at: "O", contact: "P", turn: "theta", label: "cam" },
-    Shape::Joint { at: "O" },
-    Shape::Trace { of: "P", label: "point of contact" },
-];
+/// The law that `mbs` shows.
+const LAW: Law = {
+    let parts =
+        [Segment::to(HEIGHT, RISEN), Segment::dwell(LEAVES), Segment::to(0.0, BACK), Segment::dwell(TAU)];
+    match Law::new(0.0, parts) {
+        Ok(law) => law,
+        Err(_) => panic!("four segments, one behind the other"),
+    }
+};
 
 /// Entry in the list of mechanisms.
-pub const CARD: Card = Card {
-    name: "cam_law",
-    title: "Cam with a law given at run time",
-    description: "A disc cam lifts a flat-faced follower by 8 mm, lets it dwell and takes it back, by a law that the text \
-                  declares and the caller supplies.",
-    runs: &[Preset { label: "one turn", description: "the cam at constant speed", set: &[] }],
-    span: Span::Turn { rate: "omega" },
-    drawing: DRAWING,
-    make: || Box::new(Facade::<_, 3, 3>(shown())),
-};
+pub const CARD: Card = card!(CamLaw::new(LAW)).compared_as(|| erase(CamLaw::new(StandIn::<0>)));
 
 #[cfg(test)]
 mod tests {
@@ -134,13 +118,13 @@ mod tests {
     #[test]
     fn the_follower_obeys_the_law() {
         // Not a divisor of the turn, so that no instant falls on the end of a segment.
-        let moved = one_turn(&CARD, &CARD.runs[0], 181);
+        let moved = one_turn(&CARD, 0, 181);
         assert_moves_as(&moved, &["theta", "x", "y"], 1e-12, coordinates);
     }
 
     #[test]
     fn the_profile_is_convex_and_its_curvature_has_one_rate() {
-        let moved = one_turn(&CARD, &CARD.runs[0], 360);
+        let moved = one_turn(&CARD, 0, 360);
         let radius = moved.outputs.last().expect("the radius of curvature");
         assert!(radius.value.iter().all(|radius| *radius > 0.015));
         assert!(radius.rate.is_some() && radius.acceleration.is_none());

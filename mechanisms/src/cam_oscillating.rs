@@ -23,10 +23,8 @@
 //! roller follower).
 
 use mbs_runtime::mechanism;
-
-use crate::drawing::Shape;
-use crate::facade;
-use crate::registry::{Card, Preset, Span};
+use mbs_workbench::card;
+use mbs_workbench::card::Card;
 
 mechanism! {
     /// Disc cam with an oscillating roller follower.
@@ -61,31 +59,21 @@ mechanism! {
     out D: [m; 2] = pivot;
     out S: [m; 2] = centre;
     out P: [m; 2] = centre - rr*normal/norm(normal);
+
+    title "Cam with an oscillating follower";
+    about "A disc cam swings an arm with a roller at its end.";
+    preset "one turn" "the cam at constant speed" {}
+    span turn(omega);
+    draw ground O, D;
+    draw cam cam: O contact P turn theta;
+    draw link arm: D, S;
+    draw wheel roller: S rim P;
+    draw joint O, D, S;
+    trace roller: S;
 }
 
-/// How the mechanism is drawn.
-pub const DRAWING: &[Shape] = &[
-    Shape::Ground { at: "O" },
-    Shape::Ground { at: "D" },
-    Shape::Cam { at: "O", contact: "P", turn: "theta", label: "cam" },
-    Shape::Link { points: &["D", "S"], label: "arm" },
-    Shape::Wheel { at: "S", rim: "P", label: "roller" },
-    Shape::Joint { at: "O" },
-    Shape::Joint { at: "D" },
-    Shape::Joint { at: "S" },
-    Shape::Trace { of: "S", label: "roller" },
-];
-
 /// Entry in the list of mechanisms.
-pub const CARD: Card = Card {
-    name: "cam_oscillating",
-    title: "Cam with an oscillating follower",
-    description: "A disc cam swings an arm with a roller at its end.",
-    runs: &[Preset { label: "one turn", description: "the cam at constant speed", set: &[] }],
-    span: Span::Turn { rate: "omega" },
-    drawing: DRAWING,
-    make: facade::boxed::<CamOscillating, 3>,
-};
+pub const CARD: Card = card!(CamOscillating::default());
 
 #[cfg(test)]
 mod tests {
@@ -110,7 +98,7 @@ mod tests {
 
     #[test]
     fn the_arm_obeys_the_motion_law() {
-        let motion = one_turn(&CARD, &CARD.runs[0], 180);
+        let motion = one_turn(&CARD, 0, 180);
         assert_moves_as(&motion, &["theta", "c", "psi", "P.0", "P.1"], 1e-12, columns);
     }
 }

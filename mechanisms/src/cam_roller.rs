@@ -24,10 +24,8 @@
 //! roller follower).
 
 use mbs_runtime::mechanism;
-
-use crate::drawing::{Along, Shape};
-use crate::facade;
-use crate::registry::{Card, Preset, Span};
+use mbs_workbench::card;
+use mbs_workbench::card::Card;
 
 mechanism! {
     /// Disc cam with an offset roller follower.
@@ -58,31 +56,24 @@ mechanism! {
     out P: [m; 2] = [e, y] - rr*normal/norm(normal);
     out G: [m; 2] = [e, y + 1.6*rb];
     out pressure_angle: rad = atan2(slope - e, height);
+
+    title "Cam with a roller follower";
+    about "A disc cam lifts a roller whose stem runs beside the cam's centre. The pressure angle is an \
+           output.";
+    preset "one turn" "the cam at constant speed" {}
+    span turn(omega);
+    draw rail G along [0, 1];
+    draw slider G along [0, 1];
+    draw ground O;
+    draw cam cam: O contact P turn theta;
+    draw link follower: S, G;
+    draw wheel roller: S rim P;
+    draw joint O, S;
+    trace roller: S;
 }
 
-/// How the mechanism is drawn.
-pub const DRAWING: &[Shape] = &[
-    Shape::Rail { at: "G", along: Along::Fixed([0.0, 1.0]) },
-    Shape::Slider { at: "G", along: Along::Fixed([0.0, 1.0]) },
-    Shape::Ground { at: "O" },
-    Shape::Cam { at: "O", contact: "P", turn: "theta", label: "cam" },
-    Shape::Link { points: &["S", "G"], label: "follower" },
-    Shape::Wheel { at: "S", rim: "P", label: "roller" },
-    Shape::Joint { at: "O" },
-    Shape::Joint { at: "S" },
-    Shape::Trace { of: "S", label: "roller" },
-];
-
 /// Entry in the list of mechanisms.
-pub const CARD: Card = Card {
-    name: "cam_roller",
-    title: "Cam with a roller follower",
-    description: "A disc cam lifts a roller whose stem runs beside the cam's centre. The pressure angle is an output.",
-    runs: &[Preset { label: "one turn", description: "the cam at constant speed", set: &[] }],
-    span: Span::Turn { rate: "omega" },
-    drawing: DRAWING,
-    make: facade::boxed::<CamRoller, 3>,
-};
+pub const CARD: Card = card!(CamRoller::default());
 
 #[cfg(test)]
 mod tests {
@@ -113,14 +104,14 @@ mod tests {
 
     #[test]
     fn the_follower_obeys_the_motion_law() {
-        let motion = one_turn(&CARD, &CARD.runs[0], 180);
+        let motion = one_turn(&CARD, 0, 180);
         assert_moves_as(&motion, &["theta", "c", "y", "P.0", "P.1"], 1e-12, columns);
     }
 
     /// The usual bound of the trade for a translating follower.
     #[test]
     fn the_pressure_angle_stays_below_30_degrees() {
-        let motion = one_turn(&CARD, &CARD.runs[0], 360);
+        let motion = one_turn(&CARD, 0, 360);
         let angle = motion.outputs.last().expect("the pressure angle");
         assert!(angle.value.iter().all(|angle| angle.abs() < 30.0_f64.to_radians()));
     }

@@ -13,23 +13,11 @@
 //! parameters keep.
 
 use mbs_runtime::mechanism;
-
-use crate::drawing::Shape;
-use crate::masses::boxed_masses;
-use crate::registry::{FreeCard, Preset, Usual};
+use mbs_workbench::card;
+use mbs_workbench::card::Card;
 
 /// In the list of free mechanisms.
-pub const CARD: FreeCard = FreeCard {
-    name: "car_axis",
-    title: "Car axle on a bumpy road",
-    description: "An axle between two springs, one on flat ground and one on a road that rises and falls: rows that \
-                  depend on time, and do work.",
-    runs: &[Preset { label: "3 s", description: "moving to the left at the start", set: &[] }],
-    duration: 3.0,
-    usual: Usual::Projection,
-    drawing: DRAWING,
-    make: boxed_masses::<CarAxis, 4, 2>,
-};
+pub const CARD: Card = card!(CarAxis::default());
 
 mechanism! {
     /// Car axle: two degrees of freedom in four coordinates, with rows that depend on time.
@@ -69,19 +57,20 @@ mechanism! {
     out right_end: [m; 2] = right;
     /// Force in the axle, positive where it pulls.
     out tension: N = 2*L*lambda(axle);
-}
 
-/// How the mechanism is drawn.
-pub const DRAWING: &[Shape] = &[
-    Shape::Ground { at: "A" },
-    Shape::Spring { points: ["A", "left_end"], label: "left spring" },
-    Shape::Spring { points: ["B", "right_end"], label: "right spring" },
-    Shape::Link { points: &["left_end", "right_end"], label: "axle" },
-    Shape::Joint { at: "left_end" },
-    Shape::Joint { at: "right_end" },
-    Shape::Trace { of: "B", label: "road" },
-    Shape::Trace { of: "right_end", label: "right end" },
-];
+    title "Car axle on a bumpy road";
+    about "An axle between two springs, one on flat ground and one on a road that rises and falls: rows that \
+           depend on time, and do work.";
+    preset "3 s" "moving to the left at the start" {}
+    span 3s;
+    draw ground A;
+    draw spring "left spring": A, left_end;
+    draw spring "right spring": B, right_end;
+    draw link axle: left_end, right_end;
+    draw joint left_end, right_end;
+    trace road: B;
+    trace "right end": right_end;
+}
 
 #[cfg(test)]
 mod tests {
@@ -94,7 +83,7 @@ mod tests {
     #[test]
     fn positions_velocities_and_multipliers_are_the_published_ones() {
         let reference = table(include_str!("../tests/data/car_axis.csv"));
-        let found = dynamics_of(&CARD, &CARD.runs[0], 12);
+        let found = dynamics_of(&CARD, 0, 12);
         let forces = found.motion.dynamics.as_ref().expect("it has masses");
         let positions = found.motion.coordinates.iter().map(|coordinate| &coordinate.q);
         let velocities = found.motion.coordinates.iter().map(|coordinate| &coordinate.qd);

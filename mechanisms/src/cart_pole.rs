@@ -12,23 +12,11 @@
 //! v² = 2 g L/(μ (1 + μ)), μ the ratio of the masses, the pole turns at (1 + μ) v/L.
 
 use mbs_runtime::mechanism;
-
-use crate::drawing::{Along, Shape};
-use crate::masses::boxed_masses;
-use crate::registry::{FreeCard, Preset, Usual};
+use mbs_workbench::card;
+use mbs_workbench::card::Card;
 
 /// In the list of free mechanisms.
-pub const CARD: FreeCard = FreeCard {
-    name: "cart_pole",
-    title: "Pole on a light cart",
-    description: "A bob of 1 kg on a pole whose cart has a milligram: the bob falls and rises, the cart shoots through \
-                  below it.",
-    runs: &[Preset { label: "4 s", description: "released level, at rest", set: &[] }],
-    duration: 4.0,
-    usual: Usual::Projection,
-    drawing: DRAWING,
-    make: boxed_masses::<CartPole, 4, 2>,
-};
+pub const CARD: Card = card!(CartPole::default());
 
 mechanism! {
     /// A pole on a cart: two degrees of freedom in four coordinates.
@@ -55,16 +43,18 @@ mechanism! {
     start phi = 0 rate 0;
     out S: [m; 2] = [x, 0];
     out bob: [m; 2] = P;
-}
 
-/// How the mechanism is drawn.
-pub const DRAWING: &[Shape] = &[
-    Shape::Rail { at: "S", along: Along::Fixed([1.0, 0.0]) },
-    Shape::Slider { at: "S", along: Along::Fixed([1.0, 0.0]) },
-    Shape::Link { points: &["S", "bob"], label: "pole" },
-    Shape::Joint { at: "S" },
-    Shape::Trace { of: "bob", label: "bob" },
-];
+    title "Pole on a light cart";
+    about "A bob of 1 kg on a pole whose cart has a milligram: the bob falls and rises, the cart shoots \
+           through below it.";
+    preset "4 s" "released level, at rest" {}
+    span 4s;
+    draw rail S along [1, 0];
+    draw slider S along [1, 0];
+    draw link pole: S, bob;
+    draw joint S;
+    trace bob;
+}
 
 #[cfg(test)]
 mod tests {
@@ -72,7 +62,7 @@ mod tests {
 
     use mbs_runtime::dynamics::{Direction, DormandPrince8, Explicit, Projection, Simulation, Tolerance};
 
-    use mbs_runtime::Failure;
+    use mbs_runtime::{Failure, FailureKind};
 
     use super::*;
 
@@ -99,14 +89,19 @@ mod tests {
         let method = Explicit::new(DormandPrince8, Projection::default());
         let start = |cart_pole| Simulation::start_from_text(cart_pole, method, 0.0);
         let failure = start(CartPole { m: -1.0, ..CartPole::default() }).expect_err("no mass");
-        let Failure::Negative { name, parameter, value, line } = failure else { panic!("{failure}") };
+        let Failure { kind: FailureKind::Negative { name, parameter, value, line }, .. } = failure else {
+            panic!("{failure}")
+        };
         assert_eq!((name, parameter, value), ("bob.mass", "m", -1.0));
         assert!(line > 0 && failure.to_string().contains("`bob.mass` (line "), "{failure}");
         let mut run = start(CartPole::default()).expect("it starts");
         run.change(|cart_pole| cart_pole.cart_mass = -1e-6);
         let before = *run.instant();
         let failure = run.advance_to(0.01).expect_err("no mass");
-        assert!(matches!(failure, Failure::Negative { name: "cart.mass", .. }), "{failure}");
+        assert!(
+            matches!(failure, Failure { kind: FailureKind::Negative { name: "cart.mass", .. }, .. }),
+            "{failure}"
+        );
         assert_eq!(before, *run.instant());
         run.change(|cart_pole| cart_pole.cart_mass = 0.0);
         run.advance_to(0.01).expect("nothing is a mass too");

@@ -6,7 +6,7 @@
 use core::f64::consts::{FRAC_PI_2, PI, TAU};
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
-use crate::facade::Motion;
+use mbs_workbench::erased::facade::Motion;
 
 /// A value with its first and second time derivatives.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -23,10 +23,8 @@
 //! Numbers: chosen here. Source of the determinant: the lecture's slides on joints, "Coppia prismatica".
 
 use mbs_runtime::mechanism;
-
-use crate::drawing::{Along, Shape};
-use crate::facade;
-use crate::registry::{Card, Preset, Span};
+use mbs_workbench::card;
+use mbs_workbench::card::Card;
 
 mechanism! {
     /// Turning guide with a slider on a rocker, the prismatic joint as two determinants.
@@ -63,37 +61,23 @@ mechanism! {
     out A: [m; 2] = a;
     out B: [m; 2] = b;
     out S: [m; 2] = [x, y];
+
+    title "Prismatic guide by a determinant";
+    about "A slider on a turning guide: the prismatic joint is the lecture's determinant of three points in \
+           line, once for either end of the slider.";
+    preset "slider ahead" "the slider on the forward side of the guide" {}
+    span turn(omega);
+    draw ground O, D;
+    draw slider S along phi;
+    draw link guide: A, B;
+    draw link O, A;
+    draw link rocker: D, S;
+    draw joint O, D, S;
+    trace slider: S;
 }
 
-/// How the mechanism is drawn.
-pub const DRAWING: &[Shape] = &[
-    Shape::Ground { at: "O" },
-    Shape::Ground { at: "D" },
-    Shape::Slider { at: "S", along: Along::Named("phi") },
-    Shape::Link { points: &["A", "B"], label: "guide" },
-    Shape::Link { points: &["O", "A"], label: "" },
-    Shape::Link { points: &["D", "S"], label: "rocker" },
-    Shape::Joint { at: "O" },
-    Shape::Joint { at: "D" },
-    Shape::Joint { at: "S" },
-    Shape::Trace { of: "S", label: "slider" },
-];
-
 /// Entry in the list of mechanisms.
-pub const CARD: Card = Card {
-    name: "determinant_guide",
-    title: "Prismatic guide by a determinant",
-    description: "A slider on a turning guide: the prismatic joint is the lecture's determinant of three points in \
-                  line, once for either end of the slider.",
-    runs: &[Preset {
-        label: "slider ahead",
-        description: "the slider on the forward side of the guide",
-        set: &[],
-    }],
-    span: Span::Turn { rate: "omega" },
-    drawing: DRAWING,
-    make: facade::boxed::<DeterminantGuide, 5>,
-};
+pub const CARD: Card = card!(DeterminantGuide::default());
 
 #[cfg(test)]
 mod tests {
@@ -114,20 +98,20 @@ mod tests {
 
     #[test]
     fn the_motion_equals_the_closed_form() {
-        let motion = one_turn(&CARD, &CARD.runs[0], 180);
+        let motion = one_turn(&CARD, 0, 180);
         assert_moves_as(&motion, &["theta", "x", "y", "phi", "psi"], 1e-12, coordinates);
     }
 
     /// The rows are twice the area of the triangles, as the slide's determinant expands.
     #[test]
     fn the_rows_are_the_slide_s_determinants() {
-        let state = crate::facade::State {
+        let state = mbs_workbench::erased::facade::State {
             q: vec![0.3, 0.16, 0.02, 0.5, 0.2],
             qd: vec![0.0; 5],
             qdd: vec![0.0; 5],
             t: 0.0,
         };
-        let phi = (CARD.make)().evaluate(&state).phi;
+        let phi = CARD.equations().evaluate(&state).phi;
         let (s, c) = 0.3_f64.sin_cos();
         let (a, b) = ([-0.035 * s, 0.035 * c], [0.2 * c - 0.035 * s, 0.2 * s + 0.035 * c]);
         for (row, h) in [(0, -0.015), (1, 0.015)] {

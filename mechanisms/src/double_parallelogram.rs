@@ -24,10 +24,8 @@
 //! Numbers: chosen here.
 
 use mbs_runtime::mechanism;
-
-use crate::drawing::Shape;
-use crate::facade;
-use crate::registry::{Card, Preset, Span};
+use mbs_workbench::card;
+use mbs_workbench::card::Card;
 
 mechanism! {
     /// Plate on three parallel cranks: four rows for three angles, one of them redundant.
@@ -59,43 +57,29 @@ mechanism! {
     out A: [m; 2] = L*unit(alpha);
     out B: [m; 2] = [d, 0] + (L + error)*unit(beta);
     out C: [m; 2] = [e, h] + L*unit(gamma);
+
+    title "Double parallelogram";
+    about "A plate on three equal parallel cranks: one loop more than it needs, which takes it over the \
+           change points of the other. Its rows are marked `redundant`.";
+    preset "a turn" "the cranks turn at constant speed" {}
+    span turn(omega);
+    draw ground D, E, F;
+    draw link plate: A, B, C;
+    draw link crank: D, A;
+    draw link E, B;
+    draw link F, C;
+    draw joint A, B, C, D, E, F;
+    trace "plate corner": C;
 }
 
-/// How the mechanism is drawn.
-pub const DRAWING: &[Shape] = &[
-    Shape::Ground { at: "D" },
-    Shape::Ground { at: "E" },
-    Shape::Ground { at: "F" },
-    Shape::Link { points: &["A", "B", "C"], label: "plate" },
-    Shape::Link { points: &["D", "A"], label: "crank" },
-    Shape::Link { points: &["E", "B"], label: "" },
-    Shape::Link { points: &["F", "C"], label: "" },
-    Shape::Joint { at: "A" },
-    Shape::Joint { at: "B" },
-    Shape::Joint { at: "C" },
-    Shape::Joint { at: "D" },
-    Shape::Joint { at: "E" },
-    Shape::Joint { at: "F" },
-    Shape::Trace { of: "C", label: "plate corner" },
-];
-
 /// Entry in the list of mechanisms.
-pub const CARD: Card = Card {
-    name: "double_parallelogram",
-    title: "Double parallelogram",
-    description: "A plate on three equal parallel cranks: one loop more than it needs, which takes it over the change \
-                  points of the other. Its rows are marked `redundant`.",
-    runs: &[Preset { label: "a turn", description: "the cranks turn at constant speed", set: &[] }],
-    span: Span::Turn { rate: "omega" },
-    drawing: DRAWING,
-    make: facade::boxed_redundant::<DoubleParallelogram, 4, 5>,
-};
+pub const CARD: Card = card!(DoubleParallelogram::default());
 
 #[cfg(test)]
 mod tests {
     use core::f64::consts::TAU;
 
-    use mbs_runtime::{Entry, Failure, Level, Mechanism, Stepper};
+    use mbs_runtime::{DerivativeOrder, Entry, Failure, FailureKind, Mechanism, Stepper};
 
     use super::*;
     use crate::closed_form::{Jet, assert_moves_as};
@@ -113,7 +97,7 @@ mod tests {
             vec![angle, angle, angle, Jet::from(0.0)]
         };
         let names = ["alpha", "beta", "gamma", "psi"];
-        assert_moves_as(&one_turn(&CARD, &CARD.runs[0], 90), &names, 1e-12, coordinates);
+        assert_moves_as(&one_turn(&CARD, 0, 90), &names, 1e-12, coordinates);
     }
 
     #[test]
@@ -129,11 +113,14 @@ mod tests {
         let with = |error: f64| assembled(DoubleParallelogram { error, ..DoubleParallelogram::default() });
         assert!(with(1e-17).is_ok());
         for error in [1e-13, 1e-10, 1e-6, 1e-4] {
-            let Err(Failure::Inconsistent { rows, level, residual, required, .. }) = with(error) else {
+            let Err(Failure {
+                kind: FailureKind::Inconsistent { rows, level, residual, required, .. }, ..
+            }) = with(error)
+            else {
                 panic!("{error}: {:?}", with(error).map(|stepper| *stepper.q()));
             };
             assert!(
-                level == Level::Position && residual > required && residual < error,
+                level == DerivativeOrder::Position && residual > required && residual < error,
                 "{error}: {residual}"
             );
             assert!(rows.rows().count() >= 2);

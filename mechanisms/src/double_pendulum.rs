@@ -11,25 +11,11 @@
 //! Closed form of small swings: φ₂ = √2 φ₁ with ω² = (2 − √2) g/L (Landau & Lifshitz, Mechanics, §23).
 
 use mbs_runtime::mechanism;
-
-use crate::drawing::Shape;
-use crate::masses::boxed_masses;
-use crate::registry::{FreeCard, Preset, Usual};
+use mbs_workbench::card;
+use mbs_workbench::card::Card;
 
 /// In the list of free mechanisms.
-pub const CARD: FreeCard = FreeCard {
-    name: "double_pendulum",
-    title: "Double pendulum",
-    description: "Two equal points on two equal rods: a mode of small swings, and a motion that nobody predicts for long.",
-    runs: &[
-        Preset { label: "large", description: "from far out, at rest", set: &[("amplitude", 1.5)] },
-        Preset { label: "small", description: "the slow mode, at rest", set: &[("amplitude", 0.1)] },
-    ],
-    duration: 6.0,
-    usual: Usual::Projection,
-    drawing: DRAWING,
-    make: boxed_masses::<DoublePendulum, 4, 2>,
-};
+pub const CARD: Card = card!(DoublePendulum::default());
 
 mechanism! {
     /// A double pendulum: two degrees of freedom in four coordinates.
@@ -59,30 +45,33 @@ mechanism! {
     out A: [m; 2] = P1;
     out B: [m; 2] = P2;
     out tension: [N; 2] = [2*L*lambda(rods[0]), 2*L*lambda(rods[1])];
-}
 
-/// How the mechanism is drawn.
-pub const DRAWING: &[Shape] = &[
-    Shape::Ground { at: "O" },
-    Shape::Link { points: &["O", "A"], label: "upper rod" },
-    Shape::Link { points: &["A", "B"], label: "lower rod" },
-    Shape::Joint { at: "O" },
-    Shape::Joint { at: "A" },
-    Shape::Trace { of: "B", label: "end" },
-];
+    title "Double pendulum";
+    about "Two equal points on two equal rods: a mode of small swings, and a motion that nobody predicts for \
+           long.";
+    preset large "from far out, at rest" { amplitude: 1.5 }
+    preset small "the slow mode, at rest" { amplitude: 0.1 }
+    span 6s;
+    draw ground O;
+    draw link "upper rod": O, A;
+    draw link "lower rod": A, B;
+    draw joint O, A;
+    trace end: B;
+}
 
 #[cfg(test)]
 mod tests {
     use core::f64::consts::TAU;
 
     use super::*;
-    use crate::analyses::direct::{Approach, Pair, Stabilization, Steps};
     use crate::reference::dynamics_of;
-    use crate::registry::instants;
+    use mbs_workbench::erased::dynamics::direct::{Approach, Pair, Stabilization, Steps};
+    use mbs_workbench::mismatch::set;
+    use mbs_workbench::motion::instants;
 
     #[test]
     fn a_large_motion_keeps_its_energy() {
-        let found = dynamics_of(&CARD, &CARD.runs[0], 60);
+        let found = dynamics_of(&CARD, 0, 60);
         let forces = found.motion.dynamics.expect("it has masses");
         let most = |values: &[f64]| values.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
         assert!(most(&forces.defect) < 1e-9 * most(&forces.kinetic), "{:e}", most(&forces.defect));
@@ -91,8 +80,8 @@ mod tests {
     #[test]
     fn small_swings_have_the_period_of_their_mode() {
         const SMALL: f64 = 1e-3;
-        let small = Preset { label: "", description: "", set: &[("amplitude", SMALL)] };
-        let mechanism = CARD.instance(&small).expect("a parameter");
+        let mut mechanism = CARD.equations();
+        set(mechanism.as_mut(), "amplitude", SMALL).expect("a parameter");
         let period = TAU / ((2.0 - 2.0_f64.sqrt()) * 9.81).sqrt();
         let steps = Steps::Adaptive { pair: Pair::Order8, tolerance: 1e-12 };
         let approach = Approach { stabilization: Stabilization::Velocity, steps };

@@ -22,10 +22,8 @@
 //! Numbers: chosen here; the lecture's figure gives none.
 
 use mbs_runtime::mechanism;
-
-use crate::drawing::Shape;
-use crate::facade;
-use crate::registry::{Card, Preset, Span};
+use mbs_workbench::card;
+use mbs_workbench::card::Card;
 
 mechanism! {
     /// One loop with five moving angles, three of them driven.
@@ -65,41 +63,26 @@ mechanism! {
     out C: [m; 2] = c;
     out E: [m; 2] = c + L5*unit(theta5);
     out D: [m; 2] = [L1, 0];
+
+    title "One loop, five moving angles";
+    about "The lecture's first closed figure: three angles are driven, the two others follow from the closure \
+           of the loop.";
+    preset "upper assembly" "E above the line C D" { side: 1 }
+    preset "lower assembly" "E below the line C D" { side: -1 }
+    span turn(omega);
+    draw ground O, D;
+    draw link "link 3": A, B;
+    draw link "link 2": O, A;
+    draw link "link 4": B, C;
+    draw link "link 5": C, E;
+    draw link "link 6": E, D;
+    draw joint O, A, B, C, E, D;
+    trace "end of the driven links": C;
+    trace "dependent joint": E;
 }
 
-/// How the mechanism is drawn.
-pub const DRAWING: &[Shape] = &[
-    Shape::Ground { at: "O" },
-    Shape::Ground { at: "D" },
-    Shape::Link { points: &["A", "B"], label: "link 3" },
-    Shape::Link { points: &["O", "A"], label: "link 2" },
-    Shape::Link { points: &["B", "C"], label: "link 4" },
-    Shape::Link { points: &["C", "E"], label: "link 5" },
-    Shape::Link { points: &["E", "D"], label: "link 6" },
-    Shape::Joint { at: "O" },
-    Shape::Joint { at: "A" },
-    Shape::Joint { at: "B" },
-    Shape::Joint { at: "C" },
-    Shape::Joint { at: "E" },
-    Shape::Joint { at: "D" },
-    Shape::Trace { of: "C", label: "end of the driven links" },
-    Shape::Trace { of: "E", label: "dependent joint" },
-];
-
 /// Entry in the list of mechanisms.
-pub const CARD: Card = Card {
-    name: "five_angle_loop",
-    title: "One loop, five moving angles",
-    description: "The lecture's first closed figure: three angles are driven, the two others follow from the \
-                  closure of the loop.",
-    runs: &[
-        Preset { label: "upper assembly", description: "E above the line C D", set: &[("side", 1.0)] },
-        Preset { label: "lower assembly", description: "E below the line C D", set: &[("side", -1.0)] },
-    ],
-    span: Span::Turn { rate: "omega" },
-    drawing: DRAWING,
-    make: facade::boxed::<FiveAngleLoop, 5>,
-};
+pub const CARD: Card = card!(FiveAngleLoop::default());
 
 #[cfg(test)]
 mod tests {
@@ -122,7 +105,7 @@ mod tests {
 
     #[test]
     fn the_motion_equals_the_closed_form() {
-        for (run, side) in CARD.runs.iter().zip([1.0, -1.0]) {
+        for (run, side) in [1.0, -1.0].into_iter().enumerate() {
             let motion = one_turn(&CARD, run, 180);
             let names = ["theta2", "theta3", "theta4", "theta5", "theta6"];
             assert_moves_as(&motion, &names, 1e-12, |t| angles(t, side));
@@ -131,7 +114,7 @@ mod tests {
 
     #[test]
     fn the_dependent_links_are_never_in_line() {
-        let motion = one_turn(&CARD, &CARD.runs[0], 720);
+        let motion = one_turn(&CARD, 0, 720);
         let reach = |k: usize| {
             let at = |name| column(&motion, name).1[0][k];
             (at("D.0") - at("C.0")).hypot(at("D.1") - at("C.1"))

@@ -23,10 +23,8 @@
 //! Numbers: the reference problem in `tests/data/four_bar.csv`.
 
 use mbs_runtime::mechanism;
-
-use crate::drawing::Shape;
-use crate::facade;
-use crate::registry::{Card, Preset, Span};
+use mbs_workbench::card;
+use mbs_workbench::card::Card;
 
 mechanism! {
     /// Four-bar linkage with a coupler point.
@@ -64,50 +62,29 @@ mechanism! {
     out D: [m; 2] = [L4, 0];
     out P: [m; 2] = [x2, y2];
     out transmission_angle: rad = phi3 - phi2;
+
+    title "Four-bar linkage with coupler point";
+    about "The lecture's example: a crank turns at constant speed, the coupler carries a point P. Both \
+           assemblies of the same links come from one text.";
+    preset "open assembly" "coupler and rocker on the upper side" { side: 1 }
+    preset "crossed assembly" "coupler and rocker on the lower side" { side: -1 }
+    span turn(omega);
+    draw ground O, D;
+    draw plate coupler: A, B, P;
+    draw link crank: O, A;
+    draw link rocker: D, B;
+    draw joint O, A, B, D;
+    trace "coupler curve": P;
 }
 
-/// How the mechanism is drawn.
-pub const DRAWING: &[Shape] = &[
-    Shape::Ground { at: "O" },
-    Shape::Ground { at: "D" },
-    Shape::Plate { points: &["A", "B", "P"], label: "coupler" },
-    Shape::Link { points: &["O", "A"], label: "crank" },
-    Shape::Link { points: &["D", "B"], label: "rocker" },
-    Shape::Joint { at: "O" },
-    Shape::Joint { at: "A" },
-    Shape::Joint { at: "B" },
-    Shape::Joint { at: "D" },
-    Shape::Trace { of: "P", label: "coupler curve" },
-];
-
 /// Entry in the list of mechanisms.
-pub const CARD: Card = Card {
-    name: "four_bar",
-    title: "Four-bar linkage with coupler point",
-    description: "The lecture's example: a crank turns at constant speed, the coupler carries a point P. \
-                  Both assemblies of the same links come from one text.",
-    runs: &[
-        Preset {
-            label: "open assembly",
-            description: "coupler and rocker on the upper side",
-            set: &[("side", 1.0)],
-        },
-        Preset {
-            label: "crossed assembly",
-            description: "coupler and rocker on the lower side",
-            set: &[("side", -1.0)],
-        },
-    ],
-    span: Span::Turn { rate: "omega" },
-    drawing: DRAWING,
-    make: facade::boxed::<FourBar, 5>,
-};
+pub const CARD: Card = card!(FourBar::default());
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::facade::State;
     use crate::reference::{assert_follows, assert_near, table};
+    use mbs_workbench::erased::facade::State;
 
     /// The lecture's numbers of one state, `q = [x2 y2 φ1 φ2 φ3]`.
     struct Slide {
@@ -143,7 +120,7 @@ mod tests {
                 l1 * p1.sin() + l2 * p2.sin() - l3 * p3.sin(),
                 p1 - omega * state.t,
             ];
-            assert_near(&(CARD.make)().evaluate(&state).phi, &expected, 1e-14);
+            assert_near(&CARD.equations().evaluate(&state).phi, &expected, 1e-14);
         }
     }
 
@@ -159,14 +136,14 @@ mod tests {
                 0.0, 0.0, l1 * p1.cos(), l2 * p2.cos(), -l3 * p3.cos(),
                 0.0, 0.0, 1.0, 0.0, 0.0,
             ];
-            assert_near(&(CARD.make)().evaluate(&state).phi_q, &expected, 1e-15);
+            assert_near(&CARD.equations().evaluate(&state).phi_q, &expected, 1e-15);
         }
     }
 
     #[test]
     fn time_derivatives_equal_the_slides() {
         for Slide { omega, state, .. } in slides() {
-            let functions = (CARD.make)().evaluate(&state);
+            let functions = CARD.equations().evaluate(&state);
             assert_near(&functions.phi_t, &[0.0, 0.0, 0.0, 0.0, -omega], 1e-15);
             assert_eq!(functions.phi_tt, [0.0; 5]);
             assert_eq!(functions.phi_qt_qd, [0.0; 5]);
@@ -187,7 +164,7 @@ mod tests {
                 -d1 * d1 * l1 * p1.sin() - d2 * d2 * l2 * p2.sin() + d3 * d3 * l3 * p3.sin(),
                 0.0,
             ];
-            assert_near(&(CARD.make)().evaluate(&state).gamma, &slide.map(|value| -value), 1e-13);
+            assert_near(&CARD.equations().evaluate(&state).gamma, &slide.map(|value| -value), 1e-13);
         }
     }
 
@@ -195,21 +172,21 @@ mod tests {
     fn the_motion_follows_the_reference() {
         let rows = table(include_str!("../tests/data/four_bar.csv"));
         assert_eq!(rows.len(), 8);
-        assert_follows(&CARD, &CARD.runs[0], 0.005, &rows, 1e-11);
+        assert_follows(&CARD, 0, 0.005, &rows, 1e-11);
     }
 
     #[test]
     fn either_assembly_keeps_its_side_for_a_turn() {
-        for (run, side) in CARD.runs.iter().zip([1.0, -1.0]) {
+        for (run, side) in [1.0, -1.0].into_iter().enumerate() {
             let motion = crate::reference::one_turn(&CARD, run, 360);
             let angle = motion.outputs.last().expect("the transmission angle");
-            assert!(angle.value.iter().all(|angle| side * angle.sin() > 0.3), "{}", run.label);
+            assert!(angle.value.iter().all(|angle| side * angle.sin() > 0.3), "{}", run);
         }
     }
 
     #[test]
     fn the_coupler_point_moves_as_its_coordinates() {
-        let motion = crate::reference::one_turn(&CARD, &CARD.runs[0], 50);
+        let motion = crate::reference::one_turn(&CARD, 0, 50);
         for (component, coordinate) in [(8, 0), (9, 1)] {
             let output = &motion.outputs[component];
             assert_near(&output.value, &motion.coordinates[coordinate].q, 1e-15);

@@ -23,9 +23,8 @@
 
 use mbs_runtime::mechanism;
 
-use crate::four_bar;
-use crate::masses::{boxed_driven, boxed_masses};
-use crate::registry::{Card, FreeCard, Preset, Span, Usual};
+use mbs_workbench::card;
+use mbs_workbench::card::Card;
 
 mechanism! {
     /// Four-bar linkage with masses and a massless coupler point.
@@ -94,55 +93,45 @@ mechanism! {
         out motor_torque: N*m = effort(crank_drive);
     }
     /// Forces move it.
-    scene Released = released;
+    scene Released = released {
+        title "Four-bar with masses, moved by forces";
+        about "The lecture's four-bar with masses on its links in the lecture's coordinates, of which the \
+               coupler point has no mass; a constant torque on the crank, or weight alone, moves it.";
+        preset released "from rest at 60°, by its weight alone" { tau: 0 }
+        preset torque "from rest at 60°, 2.5 N m on the crank" { tau: 2.5 }
+        span 2s;
+    }
     /// A motor moves it.
-    scene Driven = driven;
+    scene Driven = driven {
+        title "Four-bar with masses, the crank driven";
+        about "The lecture's four-bar with masses on its links, the crank at constant speed; inverse dynamics \
+               gives the motor's torque and the force in the rocker's pin.";
+        preset "open assembly" "coupler and rocker on the upper side" {}
+        span turn(omega);
+    }
+
+    draw ground O, D;
+    draw plate coupler: A, B, P;
+    draw link crank: O, A;
+    draw link rocker: D, B;
+    draw joint O, A, B, D;
+    trace "coupler curve": P;
 }
 
 /// Entry in the list of mechanisms: moved by forces.
-pub const RELEASED: FreeCard = FreeCard {
-    name: "four_bar_mass:Released",
-    title: "Four-bar with masses, moved by forces",
-    description: "The lecture's four-bar with masses on its links in the lecture's coordinates, of which the coupler \
-                  point has no mass; a constant torque on the crank, or weight alone, moves it.",
-    runs: &[
-        Preset {
-            label: "released",
-            description: "from rest at 60°, by its weight alone",
-            set: &[("tau", 0.0)],
-        },
-        Preset {
-            label: "torque",
-            description: "from rest at 60°, 2.5 N m on the crank",
-            set: &[("tau", 2.5)],
-        },
-    ],
-    duration: 2.0,
-    usual: Usual::Projection,
-    drawing: four_bar::DRAWING,
-    make: boxed_masses::<FourBarMassReleased, 5, 4>,
-};
+pub const RELEASED: Card = card!(FourBarMassReleased::default());
 
 /// Entry in the list of mechanisms: the crank driven.
-pub const DRIVEN: Card = Card {
-    name: "four_bar_mass:Driven",
-    title: "Four-bar with masses, the crank driven",
-    description: "The lecture's four-bar with masses on its links, the crank at constant speed; inverse dynamics gives \
-                  the motor's torque and the force in the rocker's pin.",
-    runs: &[Preset { label: "open assembly", description: "coupler and rocker on the upper side", set: &[] }],
-    span: Span::Turn { rate: "omega" },
-    drawing: four_bar::DRAWING,
-    make: boxed_driven::<FourBarMassDriven, 5>,
-};
+pub const DRIVEN: Card = card!(FourBarMassDriven::default());
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::facade::Motion;
     use crate::newton_euler::{
         self, Body, Unknown, assert_torque_is_the_slope_of_the_energy, forces, pin, plus, turning,
     };
     use crate::reference::{dynamics_of, load, one_turn};
+    use mbs_workbench::erased::facade::Motion;
 
     mechanism! {
         /// The same, its coupler point a body without mass.
@@ -181,13 +170,16 @@ mod tests {
             drive crank_drive: phi1 == 60deg + omega*t;
             out motor_torque: N*m = effort(crank_drive);
         }
-        scene Released = released;
-        scene Driven = driven;
+        scene Released = released {
+            preset released { tau: 0 }
+            preset torque { tau: 2.5 }
+            span 2s;
+        }
+        scene Driven = driven { span turn(omega); }
     }
 
-    const DUMMY_RELEASED: FreeCard =
-        FreeCard { make: boxed_masses::<WithDummyReleased, 5, 4>, drawing: &[], ..RELEASED };
-    const DUMMY_DRIVEN: Card = Card { make: boxed_driven::<WithDummyDriven, 5>, drawing: &[], ..DRIVEN };
+    const DUMMY_RELEASED: Card = card!(WithDummyReleased::default());
+    const DUMMY_DRIVEN: Card = card!(WithDummyDriven::default());
 
     /// Forces in the four pins, of the frame or of the link before on the link behind, and the torque on the crank, at
     /// instant `k`.
@@ -232,8 +224,8 @@ mod tests {
     #[test]
     fn effort_and_forces_of_pins_of_the_driven_crank_are_newtons_and_eulers() {
         for (name, card) in NAMES.into_iter().zip([DRIVEN, DUMMY_DRIVEN]) {
-            let mut motion = one_turn(&card, &card.runs[0], 180);
-            let mechanism = (card.make)();
+            let mut motion = one_turn(&card, 0, 180);
+            let mechanism = card.equations();
             let forces = mechanism.dynamics().expect("it has masses").add_forces(&mut motion);
             forces.expect("it moves");
             let torque = load(&motion, "motor_torque").to_vec();
@@ -246,7 +238,7 @@ mod tests {
     #[test]
     fn the_motion_from_forces_needs_the_torque_that_causes_it_and_keeps_its_energy() {
         for (name, card) in NAMES.into_iter().zip([RELEASED, DUMMY_RELEASED]) {
-            for (run, tau) in card.runs.iter().zip([0.0, 2.5]) {
+            for (run, tau) in [0.0, 2.5].into_iter().enumerate() {
                 let found = dynamics_of(&card, run, 60);
                 assert_agree(name, &found.motion, |_| tau);
                 let forces = found.motion.dynamics.as_ref().expect("it has masses");

@@ -21,10 +21,8 @@
 
 use mbs_runtime::mechanism;
 
-use crate::drawing::Shape;
-use crate::facade;
-use crate::four_bar;
-use crate::registry::{Card, Span};
+use mbs_workbench::card;
+use mbs_workbench::card::Card;
 
 mechanism! {
     /// Four-bar linkage in natural coordinates.
@@ -63,22 +61,23 @@ mechanism! {
     out B: [m; 2] = b;
     out D: [m; 2] = d;
     out P: [m; 2] = p;
+
+    title "Four-bar in natural coordinates";
+    about "The lecture's four-bar with Cartesian points as coordinates: constant distances squared, the \
+           coupler point by linear combination, no angle at all.";
+    preset "open assembly" "coupler and rocker on the upper side" { side: 1 }
+    preset "crossed assembly" "coupler and rocker on the lower side" { side: -1 }
+    span turn(omega);
+    draw ground O, D;
+    draw plate coupler: A, B, P;
+    draw link crank: O, A;
+    draw link rocker: D, B;
+    draw joint O, A, B, D;
+    trace "coupler curve": P;
 }
 
-/// How the mechanism is drawn.
-pub const DRAWING: &[Shape] = four_bar::DRAWING;
-
 /// Entry in the list of mechanisms.
-pub const CARD: Card = Card {
-    name: "four_bar_natural",
-    title: "Four-bar in natural coordinates",
-    description: "The lecture's four-bar with Cartesian points as coordinates: constant distances squared, the \
-                  coupler point by linear combination, no angle at all.",
-    runs: four_bar::CARD.runs,
-    span: Span::Turn { rate: "omega" },
-    drawing: DRAWING,
-    make: facade::boxed::<FourBarNatural, 6>,
-};
+pub const CARD: Card = card!(FourBarNatural::default());
 
 #[cfg(test)]
 mod tests {
@@ -88,7 +87,7 @@ mod tests {
 
     #[test]
     fn the_motion_equals_the_closed_form() {
-        for (run, side) in CARD.runs.iter().zip([1.0, -1.0]) {
+        for (run, side) in [1.0, -1.0].into_iter().enumerate() {
             let motion = one_turn(&CARD, run, 180);
             assert_moves_as(&motion, &["a.0", "a.1", "b.0", "b.1", "p.0", "p.1"], 1e-12, |t| {
                 let [a, b, _, p] = lecture_four_bar(t, side);
@@ -99,6 +98,6 @@ mod tests {
 
     #[test]
     fn the_coupler_point_moves_as_in_the_lecture_s_coordinates() {
-        assert_moves_like(&CARD, &four_bar::CARD, &["A.0", "A.1", "B.0", "B.1", "P.0", "P.1"], 1e-12);
+        assert_moves_like(&CARD, &crate::four_bar::CARD, &["A.0", "A.1", "B.0", "B.1", "P.0", "P.1"], 1e-12);
     }
 }

@@ -19,10 +19,8 @@
 
 use mbs_runtime::mechanism;
 
-use crate::drawing::Shape;
-use crate::facade;
-use crate::four_bar;
-use crate::registry::{Card, Span};
+use mbs_workbench::card;
+use mbs_workbench::card::Card;
 
 mechanism! {
     /// Four-bar linkage in reference-point coordinates.
@@ -63,22 +61,23 @@ mechanism! {
     out B: [m; 2] = coupler + L2/2*unit(phi2);
     out D: [m; 2] = [L4, 0];
     out P: [m; 2] = coupler + rot(phi2)*[L5*cos(alpha) - L2/2, L5*sin(alpha)];
+
+    title "Four-bar in reference-point coordinates";
+    about "The lecture's four-bar with x, y and φ of each moving body as coordinates and a pair of rows for \
+           each revolute joint: the same motion from nine coordinates.";
+    preset "open assembly" "coupler and rocker on the upper side" { side: 1 }
+    preset "crossed assembly" "coupler and rocker on the lower side" { side: -1 }
+    span turn(omega);
+    draw ground O, D;
+    draw plate coupler: A, B, P;
+    draw link crank: O, A;
+    draw link rocker: D, B;
+    draw joint O, A, B, D;
+    trace "coupler curve": P;
 }
 
-/// How the mechanism is drawn.
-pub const DRAWING: &[Shape] = four_bar::DRAWING;
-
 /// Entry in the list of mechanisms.
-pub const CARD: Card = Card {
-    name: "four_bar_reference_point",
-    title: "Four-bar in reference-point coordinates",
-    description: "The lecture's four-bar with x, y and φ of each moving body as coordinates and a pair of rows for \
-                  each revolute joint: the same motion from nine coordinates.",
-    runs: four_bar::CARD.runs,
-    span: Span::Turn { rate: "omega" },
-    drawing: DRAWING,
-    make: facade::boxed::<FourBarReferencePoint, 9>,
-};
+pub const CARD: Card = card!(FourBarReferencePoint::default());
 
 #[cfg(test)]
 mod tests {
@@ -90,7 +89,7 @@ mod tests {
 
     #[test]
     fn the_motion_equals_the_closed_form() {
-        for (run, side) in CARD.runs.iter().zip([1.0, -1.0]) {
+        for (run, side) in [1.0, -1.0].into_iter().enumerate() {
             let motion = one_turn(&CARD, run, 180);
             let names = ["phi1", "x2", "y2", "phi2", "x3", "y3", "phi3", "P.0", "P.1"];
             assert_moves_as(&motion, &names, 1e-12, |t| {
@@ -104,6 +103,6 @@ mod tests {
 
     #[test]
     fn the_coupler_point_moves_as_in_the_lecture_s_coordinates() {
-        assert_moves_like(&CARD, &four_bar::CARD, &["A.0", "A.1", "B.0", "B.1", "P.0", "P.1"], 1e-12);
+        assert_moves_like(&CARD, &crate::four_bar::CARD, &["A.0", "A.1", "B.0", "B.1", "P.0", "P.1"], 1e-12);
     }
 }

@@ -22,10 +22,8 @@
 //! Numbers: chosen here.
 
 use mbs_runtime::mechanism;
-
-use crate::drawing::Shape;
-use crate::facade;
-use crate::registry::{Card, Preset, Span};
+use mbs_workbench::card;
+use mbs_workbench::card::Card;
 
 mechanism! {
     /// Geneva drive with four slots, one turn of its driver.
@@ -50,30 +48,20 @@ mechanism! {
     out A: [m; 2] = r1*unit(theta);
     out D: [m; 2] = [d, 0];
     out R: [m; 2] = [d, 0] - r2*unit(phi);
+
+    title "Geneva drive";
+    about "A pin on the driver turns the four-slot wheel by a quarter during a quarter of its turn; during \
+           the rest the wheel is locked.";
+    preset "one turn" "dwell, engagement, dwell" {}
+    span turn(omega);
+    draw ground O, D;
+    draw geneva O pin A wheel D rim R slots 4;
+    draw joint O, A, D;
+    trace "end of a slot": R;
 }
 
-/// How the mechanism is drawn.
-pub const DRAWING: &[Shape] = &[
-    Shape::Ground { at: "O" },
-    Shape::Ground { at: "D" },
-    Shape::Geneva { at: "O", pin: "A", wheel: "D", rim: "R", slots: 4 },
-    Shape::Joint { at: "O" },
-    Shape::Joint { at: "A" },
-    Shape::Joint { at: "D" },
-    Shape::Trace { of: "R", label: "end of a slot" },
-];
-
 /// Entry in the list of mechanisms.
-pub const CARD: Card = Card {
-    name: "geneva",
-    title: "Geneva drive",
-    description: "A pin on the driver turns the four-slot wheel by a quarter during a quarter of its turn; during \
-                  the rest the wheel is locked.",
-    runs: &[Preset { label: "one turn", description: "dwell, engagement, dwell", set: &[] }],
-    span: Span::Turn { rate: "omega" },
-    drawing: DRAWING,
-    make: facade::boxed::<Geneva, 3>,
-};
+pub const CARD: Card = card!(Geneva::default());
 
 #[cfg(test)]
 mod tests {
@@ -96,7 +84,7 @@ mod tests {
     #[test]
     fn the_motion_equals_the_closed_form() {
         // 180 steps: no instant is an end of the engagement, where the acceleration has two values.
-        let motion = one_turn(&CARD, &CARD.runs[0], 180);
+        let motion = one_turn(&CARD, 0, 180);
         assert_moves_as(&motion, &["theta", "phi", "s"], 1e-12, coordinates);
     }
 
@@ -104,7 +92,7 @@ mod tests {
     /// acceleration at the ends of the engagement is `ω² tan 45°`.
     #[test]
     fn the_known_ratios_are_met() {
-        let motion = one_turn(&CARD, &CARD.runs[0], 7200);
+        let motion = one_turn(&CARD, 0, 7200);
         let wheel = &motion.coordinates[1];
         let fastest = wheel.qd.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
         assert!((fastest / TAU - 2.414_213_562).abs() < 1e-6, "{fastest}");

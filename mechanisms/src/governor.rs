@@ -17,23 +17,11 @@
 //! 3000 kg/m³, balls of 5 kg, springs of 8e5 N/m and 4e4 N s/m, free fall along −z, 2π rad/s about the shaft at the start.
 
 use mbs_runtime::mechanism;
-
-use crate::drawing::{DIAGONAL_Z_UP, Shape};
-use crate::masses::boxed_masses;
-use crate::registry::{FreeCard, Preset, Usual};
+use mbs_workbench::card;
+use mbs_workbench::card::{Card, Usual};
 
 /// In the list of free mechanisms.
-pub const CARD: FreeCard = FreeCard {
-    name: "governor",
-    title: "Stiff flyball governor",
-    description: "Two balls on rods swing out as the shaft turns and carry a slider by springs and dampers so stiff that explicit \
-                  steps of a millisecond would blow up.",
-    runs: &[Preset { label: "free", description: "free, one turn a second at the start", set: &[] }],
-    duration: 10.0,
-    usual: Usual::Extrapolated,
-    drawing: DRAWING,
-    make: boxed_masses::<Governor, 16, 12>,
-};
+pub const CARD: Card = card!(Governor::default()).moved_by(Usual::Extrapolated);
 
 mechanism! {
     /// A flyball governor: four degrees of freedom in 16 coordinates.
@@ -127,23 +115,24 @@ mechanism! {
     out middle_2: [m; 3] = r[1];
     out B1: [m; 3] = r[0] + L/2*rotate(e[0], [1, 0, 0]);
     out B2: [m; 3] = r[1] + L/2*rotate(e[1], [1, 0, 0]);
-}
 
-/// How the mechanism is drawn.
-pub const DRAWING: &[Shape] = &[
-    DIAGONAL_Z_UP,
-    Shape::Ground { at: "O" },
-    Shape::Link { points: &["O", "top"], label: "shaft" },
-    Shape::Link { points: &["hinge_1", "top", "hinge_2"], label: "" },
-    Shape::Link { points: &["hinge_1", "B1"], label: "first rod" },
-    Shape::Link { points: &["hinge_2", "B2"], label: "second rod" },
-    Shape::Spring { points: ["spring_1", "middle_1"], label: "" },
-    Shape::Spring { points: ["spring_2", "middle_2"], label: "" },
-    Shape::Link { points: &["spring_1", "S", "spring_2"], label: "slider" },
-    Shape::Joint { at: "B1" },
-    Shape::Joint { at: "B2" },
-    Shape::Trace { of: "B1", label: "first ball" },
-];
+    title "Stiff flyball governor";
+    about "Two balls on rods swing out as the shaft turns and carry a slider by springs and dampers so stiff \
+           that explicit steps of a millisecond would blow up.";
+    preset free "free, one turn a second at the start" {}
+    span 10s;
+    draw view diagonal;
+    draw ground O;
+    draw link shaft: O, top;
+    draw link hinge_1, top, hinge_2;
+    draw link "first rod": hinge_1, B1;
+    draw link "second rod": hinge_2, B2;
+    draw spring spring_1, middle_1;
+    draw spring spring_2, middle_2;
+    draw link slider: spring_1, S, spring_2;
+    draw joint B1, B2;
+    trace "first ball": B1;
+}
 
 #[cfg(test)]
 mod tests {
@@ -153,7 +142,7 @@ mod tests {
 
     #[test]
     fn what_must_not_be_negative_is_known_with_its_parameter_each_value_once() {
-        let signed = <Governor as Dynamic<f64, 16, 12>>::SIGNED;
+        let signed = <Governor as Dynamic<f64, 16, 12>>::NON_NEGATIVE;
         let parameter = |name: &str| signed.iter().find(|signed| signed.name == name).map(|s| s.parameter);
         assert_eq!(parameter("shaft.mass"), Some("rho"));
         assert_eq!(parameter("ball.mass"), Some("ball_mass"));

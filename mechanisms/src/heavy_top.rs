@@ -12,23 +12,11 @@
 //! multibody dynamics"): 15 kg at 1 m, 150 rad/s about its axis.
 
 use mbs_runtime::mechanism;
-
-use crate::drawing::{DIAGONAL_Z_UP, Shape};
-use crate::masses::boxed_masses;
-use crate::registry::{FreeCard, Preset, Usual};
+use mbs_workbench::card;
+use mbs_workbench::card::Card;
 
 /// In the list of free mechanisms.
-pub const CARD: FreeCard = FreeCard {
-    name: "heavy_top",
-    title: "Heavy top",
-    description: "A fast top on a fixed point: a body in space by its position and Euler parameters, whose length a row keeps \
-                  at 1, and three rows for the pivot.",
-    runs: &[Preset { label: "2 s", description: "150 rad/s about its level axis", set: &[] }],
-    duration: 2.0,
-    usual: Usual::Projection,
-    drawing: DRAWING,
-    make: boxed_masses::<HeavyTop, 7, 4>,
-};
+pub const CARD: Card = card!(HeavyTop::default());
 
 mechanism! {
     /// A heavy top: three degrees of freedom in seven coordinates.
@@ -59,23 +47,25 @@ mechanism! {
     out O: [m; 3] = [0, 0, 0];
     out C: [m; 3] = r;
     out rim_point: [m; 3] = r + rotate(e, [0.2*l, 0, 0]);
-}
 
-/// How the mechanism is drawn.
-pub const DRAWING: &[Shape] = &[
-    DIAGONAL_Z_UP,
-    Shape::Ground { at: "O" },
-    Shape::Link { points: &["O", "C"], label: "top" },
-    Shape::Link { points: &["C", "rim_point"], label: "" },
-    Shape::Joint { at: "O" },
-    Shape::Trace { of: "C", label: "centre of mass" },
-];
+    title "Heavy top";
+    about "A fast top on a fixed point: a body in space by its position and Euler parameters, whose length a \
+           row keeps at 1, and three rows for the pivot.";
+    preset "2 s" "150 rad/s about its level axis" {}
+    span 2s;
+    draw view diagonal;
+    draw ground O;
+    draw link top: O, C;
+    draw link C, rim_point;
+    draw joint O;
+    trace "centre of mass": C;
+}
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::facade::Motion;
     use crate::reference::{dynamics_of, load, table};
+    use mbs_workbench::erased::facade::Motion;
 
     /// Bound of the errors, relative to a column's largest value of the run.
     const BOUND: f64 = 1e-8;
@@ -100,7 +90,7 @@ mod tests {
     #[test]
     fn position_velocity_spin_and_support_are_those_of_the_reference() {
         let rows = table(include_str!("../tests/data/heavy_top.csv"));
-        let motion = dynamics_of(&CARD, &CARD.runs[0], rows.len() - 1).motion;
+        let motion = dynamics_of(&CARD, 0, rows.len() - 1).motion;
         let mut worst = [0.0_f64; 4];
         for axis in 0..3 {
             let found = [
@@ -119,7 +109,7 @@ mod tests {
     #[test]
     fn the_axes_are_those_of_the_reference_and_the_parameters_keep_their_length() {
         let rows = table(include_str!("../tests/data/heavy_top.csv"));
-        let motion = dynamics_of(&CARD, &CARD.runs[0], rows.len() - 1).motion;
+        let motion = dynamics_of(&CARD, 0, rows.len() - 1).motion;
         for (k, row) in rows.iter().enumerate() {
             let e: Vec<f64> = motion.coordinates[3..].iter().map(|curve| curve.q[k]).collect();
             // e and −e are one orientation.

@@ -23,10 +23,8 @@
 //! d = 40.1, e = 55.8, f = 39.4, g = 36.7, h = 65.7, i = 49, j = 50, k = 61.9, with l = 7.8 and m = 15; here in mm.
 
 use mbs_runtime::mechanism;
-
-use crate::drawing::Shape;
-use crate::facade;
-use crate::registry::{Card, Preset, Span};
+use mbs_workbench::card;
+use mbs_workbench::card::Card;
 
 mechanism! {
     /// Theo Jansen's walking leg.
@@ -92,40 +90,26 @@ mechanism! {
     out V: [m; 2] = rear;
     out W: [m; 2] = heel;
     out F: [m; 2] = foot;
+
+    title "Theo Jansen's leg";
+    about "One crank moves a leg of eleven bars; with Jansen's numbers the foot goes along the ground on a \
+           nearly level line and returns through the air.";
+    preset "one step" "the crank turns clockwise" {}
+    span turn(omega);
+    draw ground O, B;
+    draw plate "b d e": B, T, V;
+    draw plate "g h i": K, W, F;
+    draw link j: A, T;
+    draw link k: A, K;
+    draw link c: B, K;
+    draw link f: V, W;
+    draw link m: O, A;
+    draw joint O, A, B, T, K, V, W;
+    trace foot: F;
 }
 
-/// How the mechanism is drawn.
-pub const DRAWING: &[Shape] = &[
-    Shape::Ground { at: "O" },
-    Shape::Ground { at: "B" },
-    Shape::Plate { points: &["B", "T", "V"], label: "b d e" },
-    Shape::Plate { points: &["K", "W", "F"], label: "g h i" },
-    Shape::Link { points: &["A", "T"], label: "j" },
-    Shape::Link { points: &["A", "K"], label: "k" },
-    Shape::Link { points: &["B", "K"], label: "c" },
-    Shape::Link { points: &["V", "W"], label: "f" },
-    Shape::Link { points: &["O", "A"], label: "m" },
-    Shape::Joint { at: "O" },
-    Shape::Joint { at: "A" },
-    Shape::Joint { at: "B" },
-    Shape::Joint { at: "T" },
-    Shape::Joint { at: "K" },
-    Shape::Joint { at: "V" },
-    Shape::Joint { at: "W" },
-    Shape::Trace { of: "F", label: "foot" },
-];
-
 /// Entry in the list of mechanisms.
-pub const CARD: Card = Card {
-    name: "jansen",
-    title: "Theo Jansen's leg",
-    description: "One crank moves a leg of eleven bars; with Jansen's numbers the foot goes along the ground on a \
-                  nearly level line and returns through the air.",
-    runs: &[Preset { label: "one step", description: "the crank turns clockwise", set: &[] }],
-    span: Span::Turn { rate: "omega" },
-    drawing: DRAWING,
-    make: facade::boxed::<Jansen, 11>,
-};
+pub const CARD: Card = card!(Jansen::default());
 
 #[cfg(test)]
 mod tests {
@@ -149,7 +133,7 @@ mod tests {
 
     #[test]
     fn the_motion_equals_the_closed_form() {
-        let motion = one_turn(&CARD, &CARD.runs[0], 180);
+        let motion = one_turn(&CARD, 0, 180);
         let names: Vec<_> = motion.coordinates.iter().map(|coordinate| coordinate.name).collect();
         assert_moves_as(&motion, &names, 1e-12, coordinates);
     }
@@ -157,7 +141,7 @@ mod tests {
     /// While the foot moves back, fast, it stays within a few millimetres of its lowest height.
     #[test]
     fn the_foot_walks() {
-        let motion = one_turn(&CARD, &CARD.runs[0], 360);
+        let motion = one_turn(&CARD, 0, 360);
         let (x, y) = (&motion.coordinates[9], &motion.coordinates[10]);
         let lowest = y.q.iter().copied().fold(f64::INFINITY, f64::min);
         let ground: Vec<usize> = (0..x.q.len()).filter(|k| y.q[*k] < lowest + 0.003).collect();

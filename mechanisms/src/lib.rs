@@ -1,119 +1,56 @@
-//! Ready mechanisms, and what the `mbs` program does with them.
+//! Ready mechanisms, a file each: its text with title, presets and picture, and tests against a closed form or a reference solution.
 //!
-//! Every mechanism is one file: its text, how it is drawn, and tests against a closed form or a reference
-//! solution. [`registry::ALL`] lists them; [`facade::AnyMechanism`] runs any of them; [`report`] and [`csv`] write
-//! motions down; [`verify`] compares the emitted code with CasADi; [`lecture`] is what the
-//! teaching commands compute; [`tabulated`] lays splines along tables from files.
-//!
-//! Without the feature `ready` there are no ready mechanisms, but what compares one of your own: [`facade`] and [`verify`].
+//! [`CATALOGUE`] lists them; a new one is a file, its `mod` and its line there. The program `mbs-catalogue` runs, draws, prints and
+//! checks them.
 //!
 //! ```
-//! let card = mechanisms::registry::find("four_bar").expect("in the list");
-//! let mechanism = card.instance(&card.runs[0]).expect("parameters of the preset");
-//! let motion = mechanisms::registry::sweep(mechanism.as_ref(), 1.0, 100).expect("it turns fully");
+//! let card = mechanisms::CATALOGUE.find("four_bar").expect("in the list");
+//! let runs = card.runs().expect("presets of the text");
+//! let mechanism = card.fixed_instance(&runs[0]).expect("parameters of the preset");
+//! let motion = mbs_workbench::catalogue::sweep(mechanism.as_ref(), 1.0, 100).expect("it turns fully");
 //! assert!(motion.closure.iter().all(|error| *error < 1e-12));
 //! ```
 
-#[cfg(feature = "ready")]
 pub mod andrews;
-#[cfg(feature = "ready")]
 pub mod bricard;
-#[cfg(feature = "ready")]
 pub mod cam_flat;
-#[cfg(feature = "ready")]
 pub mod cam_law;
-#[cfg(feature = "ready")]
 pub mod cam_oscillating;
-#[cfg(feature = "ready")]
 pub mod cam_roller;
-#[cfg(feature = "ready")]
 pub mod car_axis;
-#[cfg(feature = "ready")]
 pub mod cart_pole;
-#[cfg(feature = "ready")]
 pub mod determinant_guide;
-#[cfg(feature = "ready")]
 pub mod double_parallelogram;
-#[cfg(feature = "ready")]
 pub mod double_pendulum;
-#[cfg(feature = "ready")]
 pub mod five_angle_loop;
-#[cfg(feature = "ready")]
 pub mod four_bar;
-#[cfg(feature = "ready")]
 pub mod four_bar_mass;
-#[cfg(feature = "ready")]
 pub mod four_bar_mixed;
-#[cfg(feature = "ready")]
 pub mod four_bar_natural;
-#[cfg(feature = "ready")]
 pub mod four_bar_reference_point;
-#[cfg(feature = "ready")]
 pub mod geneva;
-#[cfg(feature = "ready")]
 pub mod governor;
-#[cfg(feature = "ready")]
 pub mod heavy_top;
-#[cfg(feature = "ready")]
 pub mod jansen;
-#[cfg(feature = "ready")]
 pub mod loop_length;
-#[cfg(feature = "ready")]
 pub mod loop_relative;
-#[cfg(feature = "ready")]
 pub mod n_four_bar;
-#[cfg(feature = "ready")]
 pub mod n_four_bar_1;
-#[cfg(feature = "ready")]
 pub mod n_four_bar_10;
-#[cfg(feature = "ready")]
 pub mod n_four_bar_40;
-#[cfg(feature = "ready")]
 pub mod open_chain;
-#[cfg(feature = "ready")]
 pub mod peaucellier;
-#[cfg(feature = "ready")]
 pub mod pendulum;
-#[cfg(feature = "ready")]
 pub mod planetary_gear;
-#[cfg(feature = "ready")]
 pub mod quarter_car;
-#[cfg(feature = "ready")]
 pub mod quick_return;
-#[cfg(feature = "ready")]
 pub mod scotch_yoke;
-#[cfg(feature = "ready")]
 pub mod slider_crank;
-#[cfg(feature = "ready")]
 pub mod slider_crank_mass;
-#[cfg(feature = "ready")]
 pub mod slider_crank_scenes;
-#[cfg(feature = "ready")]
 pub mod stephenson;
-#[cfg(feature = "ready")]
 pub mod three_rrr;
-#[cfg(feature = "ready")]
 pub mod watt;
-
-pub mod analyses;
-mod branching;
-#[cfg(feature = "ready")]
-pub mod csv;
-#[cfg(feature = "ready")]
-pub mod drawing;
-pub mod facade;
-pub mod lecture;
-pub mod masses;
-pub mod motion;
-#[cfg(feature = "ready")]
-pub mod registry;
-#[cfg(feature = "ready")]
-pub mod report;
-pub mod supplies;
-#[cfg(feature = "ready")]
-pub mod tabulated;
-pub mod target_directory;
-pub mod verify;
 
 #[cfg(test)]
 mod closed_form;
@@ -121,3 +58,57 @@ mod closed_form;
 mod newton_euler;
 #[cfg(test)]
 mod reference;
+#[cfg(test)]
+mod workbench;
+
+use mbs_workbench::catalogue::Catalogue;
+
+/// Every ready mechanism.
+pub static CATALOGUE: Catalogue = Catalogue {
+    cards: &[
+        four_bar::CARD,
+        loop_relative::CARD,
+        loop_length::CARD,
+        open_chain::CARD,
+        slider_crank::CARD,
+        five_angle_loop::CARD,
+        four_bar_reference_point::CARD,
+        four_bar_natural::CARD,
+        four_bar_mixed::CARD,
+        determinant_guide::CARD,
+        quick_return::CARD,
+        scotch_yoke::CARD,
+        geneva::CARD,
+        watt::CARD,
+        stephenson::CARD,
+        jansen::CARD,
+        peaucellier::CARD,
+        three_rrr::CARD,
+        cam_flat::CARD,
+        cam_roller::CARD,
+        cam_oscillating::CARD,
+        cam_law::CARD,
+        planetary_gear::CARD,
+        double_parallelogram::CARD,
+        slider_crank_scenes::DRIVEN_CRANK,
+        slider_crank_scenes::DRIVEN_SLIDER,
+        slider_crank_scenes::TELESCOPING_ROD,
+        slider_crank_mass::DRIVEN,
+        four_bar_mass::DRIVEN,
+        pendulum::CARD,
+        double_pendulum::CARD,
+        cart_pole::CARD,
+        n_four_bar_1::CARD,
+        n_four_bar::CARD,
+        n_four_bar_10::CARD,
+        n_four_bar_40::CARD,
+        andrews::CARD,
+        heavy_top::CARD,
+        car_axis::CARD,
+        quarter_car::CARD,
+        bricard::CARD,
+        governor::CARD,
+        slider_crank_mass::RELEASED,
+        four_bar_mass::RELEASED,
+    ],
+};

@@ -21,10 +21,8 @@
 //! it stays between 63.2 mm and 167.3 mm.
 
 use mbs_runtime::mechanism;
-
-use crate::drawing::{Along, Shape};
-use crate::facade;
-use crate::registry::{Card, Preset, Span};
+use mbs_workbench::card;
+use mbs_workbench::card::Card;
 
 mechanism! {
     /// Closed loop whose third coordinate is a length.
@@ -55,34 +53,23 @@ mechanism! {
     out D: [m; 2] = [OD, 0];
     out G: [m; 2] = a + 180mm*unit(psi1 + psi2);
     out guide: rad = psi1 + psi2;
+
+    title "Closed loop with a length as coordinate";
+    about "The twin of the closed loop in relative coordinates: the third joint slides, its coordinate is the \
+           length from the crank pin to the slider.";
+    preset "slider ahead" "the slider ahead of the crank pin" {}
+    span turn(omega);
+    draw ground O, D;
+    draw link crank: O, A;
+    draw slider B along guide;
+    draw link guide: A, G;
+    draw link "link 3": B, D;
+    draw joint O, A, B, D;
+    trace "end of the guide": G;
 }
 
-/// How the mechanism is drawn.
-pub const DRAWING: &[Shape] = &[
-    Shape::Ground { at: "O" },
-    Shape::Ground { at: "D" },
-    Shape::Link { points: &["O", "A"], label: "crank" },
-    Shape::Slider { at: "B", along: Along::Named("guide") },
-    Shape::Link { points: &["A", "G"], label: "guide" },
-    Shape::Link { points: &["B", "D"], label: "link 3" },
-    Shape::Joint { at: "O" },
-    Shape::Joint { at: "A" },
-    Shape::Joint { at: "B" },
-    Shape::Joint { at: "D" },
-    Shape::Trace { of: "G", label: "end of the guide" },
-];
-
 /// Entry in the list of mechanisms.
-pub const CARD: Card = Card {
-    name: "loop_length",
-    title: "Closed loop with a length as coordinate",
-    description: "The twin of the closed loop in relative coordinates: the third joint slides, its coordinate is \
-                  the length from the crank pin to the slider.",
-    runs: &[Preset { label: "slider ahead", description: "the slider ahead of the crank pin", set: &[] }],
-    span: Span::Turn { rate: "omega" },
-    drawing: DRAWING,
-    make: facade::boxed::<LoopLength, 3>,
-};
+pub const CARD: Card = card!(LoopLength::default());
 
 #[cfg(test)]
 mod tests {
@@ -129,7 +116,7 @@ mod tests {
 
     #[test]
     fn the_motion_equals_the_closed_form() {
-        let motion = one_turn(&CARD, &CARD.runs[0], 72);
+        let motion = one_turn(&CARD, 0, 72);
         let [_, psi2, psi3] = &motion.coordinates[..] else { unreachable!("three coordinates") };
         for (step, t) in motion.time.iter().enumerate() {
             let (s, beta) = (length(TAU * t, TAU), guide(TAU * t, TAU));
@@ -144,7 +131,7 @@ mod tests {
 
     #[test]
     fn the_length_stays_within_the_documented_range() {
-        let motion = one_turn(&CARD, &CARD.runs[0], 360);
+        let motion = one_turn(&CARD, 0, 360);
         let shortest = motion.coordinates[2].q.iter().copied().fold(f64::INFINITY, f64::min);
         let longest = motion.coordinates[2].q.iter().copied().fold(0.0, f64::max);
         assert!(

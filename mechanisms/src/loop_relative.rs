@@ -20,10 +20,8 @@
 //! Numbers: chosen here, a crank-rocker by Grashof's rule, `L1 + OD = 0.40 m < L2 + L3 = 0.45 m`.
 
 use mbs_runtime::mechanism;
-
-use crate::drawing::Shape;
-use crate::facade;
-use crate::registry::{Card, Preset, Span};
+use mbs_workbench::card;
+use mbs_workbench::card::Card;
 
 mechanism! {
     /// Closed loop of three moving links in relative coordinates.
@@ -55,36 +53,23 @@ mechanism! {
     out B: [m; 2] = b;
     out D: [m; 2] = [OD, 0];
     out M: [m; 2] = (a + b)/2;
+
+    title "Closed loop in relative coordinates";
+    about "The lecture's loop of three moving links: each angle counts from the link before, the vector sum \
+           of the links closes at D.";
+    preset "upper assembly" "B above the ground line" { side: 1 }
+    preset "lower assembly" "B below the ground line" { side: -1 }
+    span turn(omega);
+    draw ground O, D;
+    draw link "link 1": O, A;
+    draw link "link 2": A, B;
+    draw link "link 3": B, D;
+    draw joint O, A, B, D;
+    trace "middle of link 2": M;
 }
 
-/// How the mechanism is drawn.
-pub const DRAWING: &[Shape] = &[
-    Shape::Ground { at: "O" },
-    Shape::Ground { at: "D" },
-    Shape::Link { points: &["O", "A"], label: "link 1" },
-    Shape::Link { points: &["A", "B"], label: "link 2" },
-    Shape::Link { points: &["B", "D"], label: "link 3" },
-    Shape::Joint { at: "O" },
-    Shape::Joint { at: "A" },
-    Shape::Joint { at: "B" },
-    Shape::Joint { at: "D" },
-    Shape::Trace { of: "M", label: "middle of link 2" },
-];
-
 /// Entry in the list of mechanisms.
-pub const CARD: Card = Card {
-    name: "loop_relative",
-    title: "Closed loop in relative coordinates",
-    description: "The lecture's loop of three moving links: each angle counts from the link before, the \
-                  vector sum of the links closes at D.",
-    runs: &[
-        Preset { label: "upper assembly", description: "B above the ground line", set: &[("side", 1.0)] },
-        Preset { label: "lower assembly", description: "B below the ground line", set: &[("side", -1.0)] },
-    ],
-    span: Span::Turn { rate: "omega" },
-    drawing: DRAWING,
-    make: facade::boxed::<LoopRelative, 3>,
-};
+pub const CARD: Card = card!(LoopRelative::default());
 
 #[cfg(test)]
 mod tests {
@@ -127,7 +112,7 @@ mod tests {
 
     #[test]
     fn the_motion_equals_the_closed_form() {
-        for (run, side) in CARD.runs.iter().zip([1.0, -1.0]) {
+        for (run, side) in [1.0, -1.0].into_iter().enumerate() {
             let motion = one_turn(&CARD, run, 72);
             for (step, t) in motion.time.iter().enumerate() {
                 let angle = angles(TAU * t, side);
@@ -149,7 +134,7 @@ mod tests {
 
     #[test]
     fn the_time_constraint_stands_first() {
-        let names: Vec<_> = (CARD.make)().rows().iter().map(|row| row.name).collect();
+        let names: Vec<_> = CARD.equations().rows().iter().map(|row| row.name).collect();
         assert_eq!(names, ["crank", "closure.0", "closure.1"]);
     }
 }

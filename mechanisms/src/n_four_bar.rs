@@ -10,23 +10,11 @@
 //! 1 m/s towards +x. With all rods in line (uprights level) Φ_q loses rank.
 
 use mbs_runtime::mechanism;
-
-use crate::drawing::Shape;
-use crate::masses::boxed_masses;
-use crate::registry::{FreeCard, Preset, Usual};
+use mbs_workbench::card;
+use mbs_workbench::card::Card;
 
 /// In the list of free mechanisms.
-pub const CARD: FreeCard = FreeCard {
-    name: "n_four_bar",
-    title: "Two four-bars in a row",
-    description: "Two parallelograms that share their uprights fall over and come up again, through positions with all \
-                  rods in line, where the rows lose rank.",
-    runs: &[Preset { label: "pushed", description: "upright at the start, pushed to the right", set: &[] }],
-    duration: 10.0,
-    usual: Usual::Projection,
-    drawing: DRAWING,
-    make: boxed_masses::<NFourBar, 6, 5>,
-};
+pub const CARD: Card = card!(NFourBar::default());
 
 mechanism! {
     /// Two parallelograms: one degree of freedom in six coordinates.
@@ -62,56 +50,18 @@ mechanism! {
     out B0: [m; 2] = B[0];
     out B1: [m; 2] = B[1];
     out B2: [m; 2] = B[2];
-}
 
-/// How the mechanism is drawn.
-pub const DRAWING: &[Shape] = &[
-    Shape::Ground { at: "A0" },
-    Shape::Ground { at: "A1" },
-    Shape::Ground { at: "A2" },
-    Shape::Link { points: &["A0", "B0"], label: "left upright" },
-    Shape::Link { points: &["A1", "B1"], label: "middle upright" },
-    Shape::Link { points: &["A2", "B2"], label: "right upright" },
-    Shape::Link { points: &["B0", "B1"], label: "left coupler" },
-    Shape::Link { points: &["B1", "B2"], label: "right coupler" },
-    Shape::Joint { at: "A0" },
-    Shape::Joint { at: "A1" },
-    Shape::Joint { at: "A2" },
-    Shape::Joint { at: "B0" },
-    Shape::Joint { at: "B1" },
-    Shape::Joint { at: "B2" },
-    Shape::Trace { of: "B1", label: "middle joint" },
-];
-
-/// How a row of uprights is drawn, for the numbers of `lower_end` and `upper_end`: `uprights!(0 1 2)`.
-macro_rules! uprights {
-    (@pairs [$($shapes:tt)*] $last:literal) => {
-        &[
-            $($shapes)*
-            Shape::Trace { of: concat!("upper_end.", $last), label: "last joint" },
-        ]
-    };
-    (@pairs [$($shapes:tt)*] $one:literal $next:literal $($more:literal)*) => {
-        uprights!(@pairs [
-            $($shapes)*
-            Shape::Link {
-                points: &[concat!("upper_end.", $one), concat!("upper_end.", $next)],
-                label: if $one == 0 { "couplers" } else { "" },
-            },
-        ] $next $($more)*)
-    };
-    ($($index:literal)*) => {
-        uprights!(@pairs [
-            $(
-                Shape::Ground { at: concat!("lower_end.", $index) },
-                Shape::Joint { at: concat!("lower_end.", $index) },
-                Shape::Joint { at: concat!("upper_end.", $index) },
-                Shape::Link {
-                    points: &[concat!("lower_end.", $index), concat!("upper_end.", $index)],
-                    label: if $index == 0 { "uprights" } else { "" },
-                },
-            )*
-        ] $($index)*)
-    };
+    title "Two four-bars in a row";
+    about "Two parallelograms that share their uprights fall over and come up again, through positions with \
+           all rods in line, where the rows lose rank.";
+    preset pushed "upright at the start, pushed to the right" {}
+    span 10s;
+    draw ground A0, A1, A2;
+    draw link "left upright": A0, B0;
+    draw link "middle upright": A1, B1;
+    draw link "right upright": A2, B2;
+    draw link "left coupler": B0, B1;
+    draw link "right coupler": B1, B2;
+    draw joint A0, A1, A2, B0, B1, B2;
+    trace "middle joint": B1;
 }
-pub(crate) use uprights;

@@ -9,24 +9,11 @@
 //! Source: IFToMM benchmark A02, N-four-bar mechanism with N = 1; [`n_four_bar`](crate::n_four_bar) has N = 2.
 
 use mbs_runtime::mechanism;
-
-use crate::drawing::Shape;
-use crate::masses::boxed_masses;
-use crate::n_four_bar::uprights;
-use crate::registry::{FreeCard, Preset, Usual};
+use mbs_workbench::card;
+use mbs_workbench::card::Card;
 
 /// In the list of free mechanisms.
-pub const CARD: FreeCard = FreeCard {
-    name: "n_four_bar_1",
-    title: "One four-bar",
-    description: "A parallelogram falls over and comes up again, through positions with all rods in line, where the rows \
-                  lose rank.",
-    runs: &[Preset { label: "pushed", description: "upright at the start, pushed to the right", set: &[] }],
-    duration: 10.0,
-    usual: Usual::Projection,
-    drawing: DRAWING,
-    make: boxed_masses::<NFourBar1, 4, 3>,
-};
+pub const CARD: Card = card!(NFourBar1::default());
 
 mechanism! {
     /// A parallelogram: one degree of freedom in four coordinates.
@@ -58,7 +45,17 @@ mechanism! {
     }
     out lower_end: [m; N + 1, 2] = [[0, 0], [L, 0]];
     out upper_end: [m; N + 1, 2] = B;
-}
 
-/// How the mechanism is drawn.
-pub const DRAWING: &[Shape] = uprights!(0 1);
+    title "One four-bar";
+    about "A parallelogram falls over and comes up again, through positions with all rods in line, where the \
+           rows lose rank.";
+    preset pushed "upright at the start, pushed to the right" {}
+    span 10s;
+    for i in 0..N + 1 {
+        draw ground lower_end[i];
+        draw joint lower_end[i], upper_end[i];
+        draw link uprights: lower_end[i], upper_end[i];
+    }
+    for i in 0..N { draw link couplers: upper_end[i], upper_end[i + 1]; }
+    trace "last joint": upper_end[N];
+}

@@ -3,24 +3,11 @@
 //! Source: IFToMM benchmark A02, N-four-bar mechanism with N = 10; [`n_four_bar`](crate::n_four_bar) has N = 2 and a picture.
 
 use mbs_runtime::mechanism;
-
-use crate::drawing::Shape;
-use crate::masses::boxed_masses;
-use crate::n_four_bar::uprights;
-use crate::registry::{FreeCard, Preset, Usual};
+use mbs_workbench::card;
+use mbs_workbench::card::{Card, Usual};
 
 /// In the list of free mechanisms.
-pub const CARD: FreeCard = FreeCard {
-    name: "n_four_bar_10",
-    title: "Ten four-bars in a row",
-    description: "Ten parallelograms that share their uprights fall over and come up again; with all rods in line they have \
-                  eleven degrees of freedom.",
-    runs: &[Preset { label: "pushed", description: "upright at the start, pushed to the right", set: &[] }],
-    duration: 10.0,
-    usual: Usual::Velocity,
-    drawing: DRAWING,
-    make: boxed_masses::<NFourBar10, 22, 21>,
-};
+pub const CARD: Card = card!(NFourBar10::default()).moved_by(Usual::Velocity);
 
 mechanism! {
     /// Ten parallelograms: one degree of freedom in 22 coordinates.
@@ -55,7 +42,17 @@ mechanism! {
         [10*L, 0]
     ];
     out upper_end: [m; N + 1, 2] = B;
-}
 
-/// How the mechanism is drawn.
-pub const DRAWING: &[Shape] = uprights!(0 1 2 3 4 5 6 7 8 9 10);
+    title "Ten four-bars in a row";
+    about "Ten parallelograms that share their uprights fall over and come up again; with all rods in line \
+           they have eleven degrees of freedom.";
+    preset pushed "upright at the start, pushed to the right" {}
+    span 10s;
+    for i in 0..N + 1 {
+        draw ground lower_end[i];
+        draw joint lower_end[i], upper_end[i];
+        draw link uprights: lower_end[i], upper_end[i];
+    }
+    for i in 0..N { draw link couplers: upper_end[i], upper_end[i + 1]; }
+    trace "last joint": upper_end[N];
+}

@@ -3,24 +3,11 @@
 //! Source: IFToMM benchmark A02, N-four-bar mechanism with N = 40; [`n_four_bar`](crate::n_four_bar) has N = 2 and a picture.
 
 use mbs_runtime::mechanism;
-
-use crate::drawing::Shape;
-use crate::masses::boxed_large_masses;
-use crate::n_four_bar::uprights;
-use crate::registry::{FreeCard, Preset, Usual};
+use mbs_workbench::card;
+use mbs_workbench::card::{Card, Usual};
 
 /// In the list of free mechanisms.
-pub const CARD: FreeCard = FreeCard {
-    name: "n_four_bar_40",
-    title: "Forty four-bars in a row",
-    description: "Forty parallelograms that share their uprights fall over and come up again; with all rods in line they \
-                  have 41 degrees of freedom.",
-    runs: &[Preset { label: "pushed", description: "upright at the start, pushed to the right", set: &[] }],
-    duration: 10.0,
-    usual: Usual::VelocityInEqualSteps,
-    drawing: DRAWING,
-    make: boxed_large_masses::<NFourBar40, 82, 81>,
-};
+pub const CARD: Card = card!(NFourBar40::default()).moved_by(Usual::VelocityInEqualSteps);
 
 mechanism! {
     /// Forty parallelograms: one degree of freedom in 82 coordinates.
@@ -58,10 +45,17 @@ mechanism! {
         [37*L, 0], [38*L, 0], [39*L, 0], [40*L, 0]
     ];
     out upper_end: [m; N + 1, 2] = B;
-}
 
-/// How the mechanism is drawn.
-pub const DRAWING: &[Shape] = uprights!(
-    0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20
-    21 22 23 24 25 26 27 28 29 30 31 32 33 34 35 36 37 38 39 40
-);
+    title "Forty four-bars in a row";
+    about "Forty parallelograms that share their uprights fall over and come up again; with all rods in line \
+           they have 41 degrees of freedom.";
+    preset pushed "upright at the start, pushed to the right" {}
+    span 10s;
+    for i in 0..N + 1 {
+        draw ground lower_end[i];
+        draw joint lower_end[i], upper_end[i];
+        draw link uprights: lower_end[i], upper_end[i];
+    }
+    for i in 0..N { draw link couplers: upper_end[i], upper_end[i + 1]; }
+    trace "last joint": upper_end[N];
+}

@@ -1,8 +1,8 @@
 //! Newton's and Euler's sums of plane bodies as one linear system, for tests: it knows masses, places and accelerations,
 //! and nothing of constraints, multipliers or virtual work.
 
-use crate::facade::Motion;
 use crate::reference::load;
+use mbs_workbench::erased::facade::Motion;
 
 /// Bound of the differences of forces, relative to the largest of the motion.
 const BOUND: f64 = 1e-10;

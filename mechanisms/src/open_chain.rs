@@ -18,10 +18,8 @@
 //! Numbers: chosen here, an arm of 0.75 m whose end draws a closed curve once a turn of `omega`.
 
 use mbs_runtime::mechanism;
-
-use crate::drawing::Shape;
-use crate::facade;
-use crate::registry::{Card, Preset, Span};
+use mbs_workbench::card;
+use mbs_workbench::card::Card;
 
 mechanism! {
     /// Open chain of three links, each joint driven.
@@ -50,31 +48,22 @@ mechanism! {
     out B: [m; 2] = b;
     out P: [m; 2] = b + L3*unit(theta1 + theta2 + theta3);
     out speed: m/s = norm(der(b + L3*unit(theta1 + theta2 + theta3)));
+
+    title "Open chain of three links";
+    about "Independent coordinates: three joint angles, each given as a function of the time, move the end \
+           point of an arm.";
+    preset "one cycle" "two joints swing, the last one turns" {}
+    span turn(omega);
+    draw ground O;
+    draw link "link 1": O, A;
+    draw link "link 2": A, B;
+    draw link "link 3": B, P;
+    draw joint O, A, B;
+    trace "end point": P;
 }
 
-/// How the mechanism is drawn.
-pub const DRAWING: &[Shape] = &[
-    Shape::Ground { at: "O" },
-    Shape::Link { points: &["O", "A"], label: "link 1" },
-    Shape::Link { points: &["A", "B"], label: "link 2" },
-    Shape::Link { points: &["B", "P"], label: "link 3" },
-    Shape::Joint { at: "O" },
-    Shape::Joint { at: "A" },
-    Shape::Joint { at: "B" },
-    Shape::Trace { of: "P", label: "end point" },
-];
-
 /// Entry in the list of mechanisms.
-pub const CARD: Card = Card {
-    name: "open_chain",
-    title: "Open chain of three links",
-    description: "Independent coordinates: three joint angles, each given as a function of the time, move the end \
-                  point of an arm.",
-    runs: &[Preset { label: "one cycle", description: "two joints swing, the last one turns", set: &[] }],
-    span: Span::Turn { rate: "omega" },
-    drawing: DRAWING,
-    make: facade::boxed::<OpenChain, 3>,
-};
+pub const CARD: Card = card!(OpenChain::default());
 
 #[cfg(test)]
 mod tests {
@@ -112,7 +101,7 @@ mod tests {
 
     #[test]
     fn the_angles_follow_their_time_laws() {
-        let motion = one_turn(&CARD, &CARD.runs[0], 48);
+        let motion = one_turn(&CARD, 0, 48);
         for (step, t) in motion.time.iter().enumerate() {
             for (coordinate, law) in motion.coordinates.iter().zip(laws(*t)) {
                 let found = [coordinate.q[step], coordinate.qd[step], coordinate.qdd[step]];
@@ -129,7 +118,7 @@ mod tests {
 
     #[test]
     fn the_end_point_moves_as_the_polar_formulas_say() {
-        let motion = one_turn(&CARD, &CARD.runs[0], 48);
+        let motion = one_turn(&CARD, 0, 48);
         for (step, t) in motion.time.iter().enumerate() {
             let [place, velocity, acceleration] = end_point(*t);
             for (axis, output) in motion.outputs[6..8].iter().enumerate() {

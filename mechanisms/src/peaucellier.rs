@@ -22,10 +22,8 @@
 //! Numbers: chosen here. Source: Peaucellier 1864, as in Kempe, How to Draw a Straight Line, 1877.
 
 use mbs_runtime::mechanism;
-
-use crate::drawing::Shape;
-use crate::facade;
-use crate::registry::{Card, Preset, Span};
+use mbs_workbench::card;
+use mbs_workbench::card::Card;
 
 mechanism! {
     /// Peaucellier's straight-line linkage.
@@ -58,40 +56,27 @@ mechanism! {
     out A: [m; 2] = a;
     out B: [m; 2] = b;
     out S: [m; 2] = s;
+
+    title "Peaucellier's straight line";
+    about "A rhombus on two arms inverts a circle through the fixed joint into a line: the first linkage that \
+           draws an exact straight line.";
+    preset "to and fro" "the crank swings by 60° to either side" {}
+    span turn(omega);
+    draw ground O, Q;
+    draw link arm: O, A;
+    draw link O, B;
+    draw link rhombus: A, P;
+    draw link B, P;
+    draw link A, S;
+    draw link B, S;
+    draw link crank: Q, P;
+    draw joint O, Q, P, A, B, S;
+    trace "straight line": S;
+    trace "circle through O": P;
 }
 
-/// How the mechanism is drawn.
-pub const DRAWING: &[Shape] = &[
-    Shape::Ground { at: "O" },
-    Shape::Ground { at: "Q" },
-    Shape::Link { points: &["O", "A"], label: "arm" },
-    Shape::Link { points: &["O", "B"], label: "" },
-    Shape::Link { points: &["A", "P"], label: "rhombus" },
-    Shape::Link { points: &["B", "P"], label: "" },
-    Shape::Link { points: &["A", "S"], label: "" },
-    Shape::Link { points: &["B", "S"], label: "" },
-    Shape::Link { points: &["Q", "P"], label: "crank" },
-    Shape::Joint { at: "O" },
-    Shape::Joint { at: "Q" },
-    Shape::Joint { at: "P" },
-    Shape::Joint { at: "A" },
-    Shape::Joint { at: "B" },
-    Shape::Joint { at: "S" },
-    Shape::Trace { of: "S", label: "straight line" },
-    Shape::Trace { of: "P", label: "circle through O" },
-];
-
 /// Entry in the list of mechanisms.
-pub const CARD: Card = Card {
-    name: "peaucellier",
-    title: "Peaucellier's straight line",
-    description: "A rhombus on two arms inverts a circle through the fixed joint into a line: the first linkage \
-                  that draws an exact straight line.",
-    runs: &[Preset { label: "to and fro", description: "the crank swings by 60° to either side", set: &[] }],
-    span: Span::Turn { rate: "omega" },
-    drawing: DRAWING,
-    make: facade::boxed::<Peaucellier, 7>,
-};
+pub const CARD: Card = card!(Peaucellier::default());
 
 #[cfg(test)]
 mod tests {
@@ -118,13 +103,13 @@ mod tests {
 
     #[test]
     fn the_motion_equals_the_closed_form() {
-        let motion = one_turn(&CARD, &CARD.runs[0], 180);
+        let motion = one_turn(&CARD, 0, 180);
         assert_moves_as(&motion, &["theta", "a.0", "a.1", "b.0", "b.1", "s.0", "s.1"], 1e-12, coordinates);
     }
 
     #[test]
     fn the_line_is_straight() {
-        let motion = one_turn(&CARD, &CARD.runs[0], 720);
+        let motion = one_turn(&CARD, 0, 720);
         let s = &motion.coordinates[5..7];
         assert!(s[0].q.iter().all(|x| (x - LINE).abs() < 1e-12));
         let [low, high] = [f64::min, f64::max].map(|pick| s[1].q.iter().copied().fold(0.0, pick));

@@ -7,22 +7,11 @@
 //! Source: IFToMM benchmark A01, simple pendulum: 1 kg on 1 m, released at (−1, 0) under 9.81 m/s².
 
 use mbs_runtime::mechanism;
-
-use crate::drawing::Shape;
-use crate::masses::boxed_masses;
-use crate::registry::{FreeCard, Preset, Usual};
+use mbs_workbench::card;
+use mbs_workbench::card::Card;
 
 /// In the list of free mechanisms.
-pub const CARD: FreeCard = FreeCard {
-    name: "pendulum",
-    title: "Pendulum in Cartesian coordinates",
-    description: "A bob on a massless rod, released level: one degree of freedom in two coordinates.",
-    runs: &[Preset { label: "released", description: "released level, at rest", set: &[] }],
-    duration: 10.0,
-    usual: Usual::Projection,
-    drawing: DRAWING,
-    make: boxed_masses::<Pendulum, 2, 1>,
-};
+pub const CARD: Card = card!(Pendulum::default());
 
 mechanism! {
     /// A simple pendulum: one degree of freedom in two coordinates.
@@ -42,12 +31,13 @@ mechanism! {
     out tension: N = 2*L*lambda(rod);
     out A: [m; 2] = [0, 0];
     out bob: [m; 2] = P;
-}
 
-/// How the mechanism is drawn.
-pub const DRAWING: &[Shape] = &[
-    Shape::Ground { at: "A" },
-    Shape::Link { points: &["A", "bob"], label: "rod" },
-    Shape::Joint { at: "A" },
-    Shape::Trace { of: "bob", label: "bob" },
-];
+    title "Pendulum in Cartesian coordinates";
+    about "A bob on a massless rod, released level: one degree of freedom in two coordinates.";
+    preset released "released level, at rest" {}
+    span 10s;
+    draw ground A;
+    draw link rod: A, bob;
+    draw joint A;
+    trace bob;
+}

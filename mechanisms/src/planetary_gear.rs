@@ -20,10 +20,8 @@
 //! Numbers: chosen here, module 4 mm.
 
 use mbs_runtime::mechanism;
-
-use crate::drawing::Shape;
-use crate::facade;
-use crate::registry::{Card, Preset, Span};
+use mbs_workbench::card;
+use mbs_workbench::card::Card;
 
 mechanism! {
     /// Planetary gear with a fixed ring.
@@ -57,35 +55,26 @@ mechanism! {
     out M: [m; 2] = p1 + rp*unit(theta_p);
     out rim_2: [m; 2] = p2 + rp*unit(theta_p);
     out rim_3: [m; 2] = p3 + rp*unit(theta_p);
+
+    title "Planetary gear";
+    about "The sun drives three planets that roll in a fixed ring; their carrier turns three times more \
+           slowly.";
+    preset "one turn of the sun" "the carrier turns by 120°" {}
+    span turn(omega);
+    draw gear ring: S rim ring_rim teeth 60 inside;
+    draw gear sun: S rim sun_rim teeth 30;
+    draw gear planet: P1 rim M teeth 15;
+    draw gear P2 rim rim_2 teeth 15;
+    draw gear P3 rim rim_3 teeth 15;
+    draw link carrier: S, P1;
+    draw link S, P2;
+    draw link S, P3;
+    draw joint S, P1, P2, P3;
+    trace "point of a planet": M;
 }
 
-/// How the mechanism is drawn.
-pub const DRAWING: &[Shape] = &[
-    Shape::Gear { at: "S", rim: "ring_rim", teeth: 60, inside: true, label: "ring" },
-    Shape::Gear { at: "S", rim: "sun_rim", teeth: 30, inside: false, label: "sun" },
-    Shape::Gear { at: "P1", rim: "M", teeth: 15, inside: false, label: "planet" },
-    Shape::Gear { at: "P2", rim: "rim_2", teeth: 15, inside: false, label: "" },
-    Shape::Gear { at: "P3", rim: "rim_3", teeth: 15, inside: false, label: "" },
-    Shape::Link { points: &["S", "P1"], label: "carrier" },
-    Shape::Link { points: &["S", "P2"], label: "" },
-    Shape::Link { points: &["S", "P3"], label: "" },
-    Shape::Joint { at: "S" },
-    Shape::Joint { at: "P1" },
-    Shape::Joint { at: "P2" },
-    Shape::Joint { at: "P3" },
-    Shape::Trace { of: "M", label: "point of a planet" },
-];
-
 /// Entry in the list of mechanisms.
-pub const CARD: Card = Card {
-    name: "planetary_gear",
-    title: "Planetary gear",
-    description: "The sun drives three planets that roll in a fixed ring; their carrier turns three times more slowly.",
-    runs: &[Preset { label: "one turn of the sun", description: "the carrier turns by 120°", set: &[] }],
-    span: Span::Turn { rate: "omega" },
-    drawing: DRAWING,
-    make: facade::boxed::<PlanetaryGear, 4>,
-};
+pub const CARD: Card = card!(PlanetaryGear::default());
 
 #[cfg(test)]
 mod tests {
@@ -107,7 +96,7 @@ mod tests {
 
     #[test]
     fn the_motion_is_that_of_willis_s_formula() {
-        let motion = one_turn(&CARD, &CARD.runs[0], 180);
+        let motion = one_turn(&CARD, 0, 180);
         let names = ["theta_s", "theta_p", "theta_c", "theta_r", "M.0", "M.1"];
         assert_moves_as(&motion, &names, 1e-13, columns);
     }
@@ -115,7 +104,7 @@ mod tests {
     /// Where gears touch, neither slips on the other: velocities of bodies at the point of contact.
     #[test]
     fn the_planet_rolls_on_the_ring_and_on_the_sun() {
-        let motion = one_turn(&CARD, &CARD.runs[0], 24);
+        let motion = one_turn(&CARD, 0, 24);
         let rate = |k: usize| &motion.coordinates[k].qd;
         for step in 0..motion.time.len() {
             let (sun, planet, carrier) = (rate(0)[step], rate(1)[step], rate(2)[step]);

@@ -14,26 +14,11 @@
 //! and so the exponential of a matrix of six rows.
 
 use mbs_runtime::mechanism;
-
-use crate::drawing::{Along, Shape};
-use crate::masses::boxed_masses;
-use crate::registry::{FreeCard, Preset, Usual};
+use mbs_workbench::card;
+use mbs_workbench::card::Card;
 
 /// In the list of free mechanisms.
-pub const CARD: FreeCard = FreeCard {
-    name: "quarter_car",
-    title: "Quarter car on a wavy road",
-    description: "Body and wheel on suspension and tyre: a linear system that a road excites, near the resonance of the \
-                  body or of the wheel.",
-    runs: &[
-        Preset { label: "body", description: "waves at 1.2 Hz: the body bounces", set: &[("omega", 7.5)] },
-        Preset { label: "wheel", description: "waves at 10 Hz: the wheel hops", set: &[("omega", 63.0)] },
-    ],
-    duration: 3.0,
-    usual: Usual::Projection,
-    drawing: DRAWING,
-    make: boxed_masses::<QuarterCar, 2, 0>,
-};
+pub const CARD: Card = card!(QuarterCar::default());
 
 mechanism! {
     /// Quarter car: two degrees of freedom, no rows.
@@ -70,17 +55,20 @@ mechanism! {
     out hub: [m; 2] = wheel_centre;
     out contact: [m; 2] = patch;
     out load_change: N = k[1]*(road - y[1]);
-}
 
-/// How the mechanism is drawn.
-pub const DRAWING: &[Shape] = &[
-    Shape::Spring { points: ["hub", "chassis_centre"], label: "suspension" },
-    Shape::Spring { points: ["contact", "hub"], label: "tyre" },
-    Shape::Slider { at: "chassis_centre", along: Along::Fixed([0.0, 1.0]) },
-    Shape::Slider { at: "hub", along: Along::Fixed([0.0, 1.0]) },
-    Shape::Joint { at: "contact" },
-    Shape::Road { at: "contact", speed: 1.0, label: "road" },
-];
+    title "Quarter car on a wavy road";
+    about "Body and wheel on suspension and tyre: a linear system that a road excites, near the resonance of \
+           the body or of the wheel.";
+    preset body "waves at 1.2 Hz: the body bounces" { omega: 7.5 }
+    preset wheel "waves at 10 Hz: the wheel hops" { omega: 63 }
+    span 3s;
+    draw spring suspension: hub, chassis_centre;
+    draw spring tyre: contact, hub;
+    draw slider chassis_centre along [0, 1];
+    draw slider hub along [0, 1];
+    draw joint contact;
+    draw road road: contact speed 1 [m/s];
+}
 
 #[cfg(test)]
 mod tests {
@@ -107,7 +95,7 @@ mod tests {
 
     #[test]
     fn body_and_wheel_move_as_the_linear_system_does() {
-        for (run, omega) in CARD.runs.iter().zip([7.5, 63.0]) {
+        for (run, omega) in [7.5, 63.0].into_iter().enumerate() {
             let found = dynamics_of(&CARD, run, 60);
             let ([m1, m2], [k1, k2], c) = ([300.0, 40.0], [18_000.0, 160_000.0], 1500.0);
             // y, ẏ, sin ω t, cos ω t.
@@ -125,10 +113,10 @@ mod tests {
                 for (i, coordinate) in found.motion.coordinates.iter().enumerate() {
                     let error = (coordinate.q[k] - exact[i][5]).abs() / 0.01;
                     worst = worst.max(error);
-                    assert!(error < 1e-9, "{}, {t} s: {error:e}", run.label);
+                    assert!(error < 1e-9, "preset {run}, {t} s: {error:e}");
                 }
             }
-            println!("quarter car, {}: q {worst:.1e} of 1e-9", run.label);
+            println!("quarter car, preset {run}: q {worst:.1e} of 1e-9");
             let forces = found.motion.dynamics.as_ref().expect("it has masses");
             let most = |values: &[f64]| values.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
             assert!(most(&forces.defect) < 1e-9 * most(&forces.work), "{:e}", most(&forces.defect));

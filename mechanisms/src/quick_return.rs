@@ -22,10 +22,8 @@
 //! Numbers: chosen here.
 
 use mbs_runtime::mechanism;
-
-use crate::drawing::{Along, Shape};
-use crate::facade;
-use crate::registry::{Card, Preset, Span};
+use mbs_workbench::card;
+use mbs_workbench::card::Card;
 
 mechanism! {
     /// Whitworth's quick-return mechanism.
@@ -59,38 +57,26 @@ mechanism! {
     out C: [m; 2] = [x, -d];
     out slot_start: [m; 2] = pivot + 0.3*(r - d)*lever;
     out slot_end: [m; 2] = pivot + 1.15*(r + d)*lever;
+
+    title "Whitworth's quick return";
+    about "The crank pin runs in the slot of a lever that turns about a point beside the crank's centre: the \
+           ram goes slowly one way and fast the other.";
+    preset "one turn" "the ram to the right of the lever" {}
+    span turn(omega);
+    draw rail C along [1, 0];
+    draw slider C along [1, 0];
+    draw ground O, D;
+    draw slot lever: slot_start, slot_end;
+    draw link E, D, slot_start;
+    draw link rod: E, C;
+    draw slider A along phi;
+    draw link crank: O, A;
+    draw joint O, A, D, E, C;
+    trace ram: C;
 }
 
-/// How the mechanism is drawn.
-pub const DRAWING: &[Shape] = &[
-    Shape::Rail { at: "C", along: Along::Fixed([1.0, 0.0]) },
-    Shape::Slider { at: "C", along: Along::Fixed([1.0, 0.0]) },
-    Shape::Ground { at: "O" },
-    Shape::Ground { at: "D" },
-    Shape::Slot { points: &["slot_start", "slot_end"], label: "lever" },
-    Shape::Link { points: &["E", "D", "slot_start"], label: "" },
-    Shape::Link { points: &["E", "C"], label: "rod" },
-    Shape::Slider { at: "A", along: Along::Named("phi") },
-    Shape::Link { points: &["O", "A"], label: "crank" },
-    Shape::Joint { at: "O" },
-    Shape::Joint { at: "A" },
-    Shape::Joint { at: "D" },
-    Shape::Joint { at: "E" },
-    Shape::Joint { at: "C" },
-    Shape::Trace { of: "C", label: "ram" },
-];
-
 /// Entry in the list of mechanisms.
-pub const CARD: Card = Card {
-    name: "quick_return",
-    title: "Whitworth's quick return",
-    description: "The crank pin runs in the slot of a lever that turns about a point beside the crank's centre: the \
-                  ram goes slowly one way and fast the other.",
-    runs: &[Preset { label: "one turn", description: "the ram to the right of the lever", set: &[] }],
-    span: Span::Turn { rate: "omega" },
-    drawing: DRAWING,
-    make: facade::boxed::<QuickReturn, 5>,
-};
+pub const CARD: Card = card!(QuickReturn::default());
 
 #[cfg(test)]
 mod tests {
@@ -111,13 +97,13 @@ mod tests {
 
     #[test]
     fn the_motion_equals_the_closed_form() {
-        let motion = one_turn(&CARD, &CARD.runs[0], 180);
+        let motion = one_turn(&CARD, 0, 180);
         assert_moves_as(&motion, &["theta", "phi", "s", "beta", "x"], 1e-12, coordinates);
     }
 
     #[test]
     fn the_return_is_quicker_by_the_known_ratio() {
-        let motion = one_turn(&CARD, &CARD.runs[0], 3600);
+        let motion = one_turn(&CARD, 0, 3600);
         let forward = motion.coordinates[4].qd.iter().filter(|rate| **rate > 0.0).count() as f64;
         let ratio = forward / (motion.time.len() as f64 - forward);
         let lag = 2.0 * (0.045_f64 / 0.1).asin();

@@ -2,10 +2,12 @@
 
 use core::f64::consts::{PI, TAU};
 
-use crate::analyses::direct::{Approach, Pair, Simulated, Stabilization, Steps};
 use crate::closed_form::{Jet, assert_moves_as, column};
-use crate::facade::Motion;
-use crate::registry::{Card, FreeCard, Preset, instants, sweep};
+use mbs_workbench::card::{Card, Preset};
+use mbs_workbench::catalogue::sweep;
+use mbs_workbench::erased::dynamics::direct::{Approach, Pair, Simulated, Stabilization, Steps};
+use mbs_workbench::erased::facade::Motion;
+use mbs_workbench::motion::instants;
 
 /// Rows of numbers of a table with `#` comments and one line of column names.
 pub fn table(text: &str) -> Vec<Vec<f64>> {
@@ -28,14 +30,21 @@ pub fn angle_difference(a: f64, b: f64) -> f64 {
     ((a - b + PI).rem_euclid(TAU) - PI).abs()
 }
 
+/// The preset of this index in the card's text.
+#[track_caller]
+fn preset(card: &Card, run: usize) -> Preset {
+    card.runs().expect("a text").swap_remove(run)
+}
+
 /// The card's run over its span in `steps` steps.
 #[track_caller]
-pub fn one_turn(card: &Card, run: &Preset, steps: usize) -> Motion {
-    let mechanism = card.instance(run).expect("parameters of the preset");
+pub fn one_turn(card: &Card, run: usize, steps: usize) -> Motion {
+    let run = preset(card, run);
+    let mechanism = card.fixed_instance(&run).expect("parameters of the preset");
     let duration = card.duration(mechanism.as_ref()).expect("a duration");
     match sweep(mechanism.as_ref(), duration, steps) {
         Ok(motion) => motion,
-        Err(failure) => panic!("{}, {}: {failure}", card.name, run.label),
+        Err(failure) => panic!("{}, {}: {failure}", card.name(), run.label),
     }
 }
 
@@ -43,8 +52,8 @@ pub fn one_turn(card: &Card, run: &Preset, steps: usize) -> Motion {
 ///
 /// Every time of the rows must be a multiple of `step`.
 #[track_caller]
-pub fn assert_follows(card: &Card, run: &Preset, step: f64, rows: &[Vec<f64>], bound: f64) {
-    let mechanism = card.instance(run).expect("parameters of the preset");
+pub fn assert_follows(card: &Card, run: usize, step: f64, rows: &[Vec<f64>], bound: f64) {
+    let mechanism = card.fixed_instance(&preset(card, run)).expect("parameters of the preset");
     let index = |t: f64| (t / step).round() as usize;
     let last = rows.iter().map(|row| index(row[0])).max().unwrap_or(0);
     let mut times: Vec<f64> = (0..=last).map(|k| k as f64 * step).collect();
@@ -55,7 +64,7 @@ pub fn assert_follows(card: &Card, run: &Preset, step: f64, rows: &[Vec<f64>], b
     let motion = mechanism.follow(&times, &mut |_| ()).unwrap_or_else(|failure| panic!("{failure}"));
     for row in rows {
         let at = index(row[0]);
-        let columns = |pick: fn(&crate::facade::CoordinateCurve) -> &Vec<f64>| {
+        let columns = |pick: fn(&mbs_workbench::erased::facade::CoordinateCurve) -> &Vec<f64>| {
             motion.coordinates.iter().map(|coordinate| pick(coordinate)[at]).collect::<Vec<_>>()
         };
         let found = [columns(|c| &c.q), columns(|c| &c.qd), columns(|c| &c.qdd)].concat();
@@ -66,8 +75,9 @@ pub fn assert_follows(card: &Card, run: &Preset, step: f64, rows: &[Vec<f64>], b
 /// Over a turn of each preset the columns `names` of one mechanism are those of another, within `bound`.
 #[track_caller]
 pub fn assert_moves_like(card: &Card, other: &Card, names: &[&str], bound: f64) {
-    for (run, other_run) in card.runs.iter().zip(other.runs) {
-        let (motion, expected) = (one_turn(card, run, 180), one_turn(other, other_run, 180));
+    let count = |card: &Card| card.runs().expect("a text").len();
+    for run in 0..count(card).min(count(other)) {
+        let (motion, expected) = (one_turn(card, run, 180), one_turn(other, run, 180));
         let columns: Vec<_> = names.iter().map(|name| column(&expected, name).1).collect();
         let mut steps = 0..;
         assert_moves_as(&motion, names, bound, |_| {
@@ -79,16 +89,18 @@ pub fn assert_moves_like(card: &Card, other: &Card, names: &[&str], bound: f64) 
 
 /// The motion from forces of `run` over the card's duration in `steps` instants, with projection at tolerance 1e-12.
 #[track_caller]
-pub fn dynamics_of(card: &FreeCard, run: &Preset, steps: usize) -> Simulated {
-    let mechanism = card.instance(run).expect("parameters of the preset");
+pub fn dynamics_of(card: &Card, run: usize, steps: usize) -> Simulated {
+    let run = preset(card, run);
+    let mechanism = card.instance(&run).expect("parameters of the preset");
+    let duration = card.duration(mechanism.equations()).expect("a duration");
     let dynamics = mechanism.dynamics().expect("it has masses");
     let approach = Approach {
         stabilization: Stabilization::Projection,
         steps: Steps::Adaptive { pair: Pair::Order8, tolerance: 1e-12 },
     };
-    let found = dynamics.simulate(&approach, &instants(card.duration, steps), &mut |_| ());
-    let found = found.unwrap_or_else(|failure| panic!("{}, {}: {failure}", card.name, run.label));
-    assert_eq!(found.failure, None, "{}, {}", card.name, run.label);
+    let found = dynamics.simulate(&approach, &instants(duration, steps), &mut |_| ());
+    let found = found.unwrap_or_else(|failure| panic!("{}, {}: {failure}", card.name(), run.label));
+    assert_eq!(found.failure, None, "{}, {}", card.name(), run.label);
     found
 }
 

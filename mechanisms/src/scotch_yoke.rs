@@ -18,10 +18,8 @@
 //! Numbers: chosen here.
 
 use mbs_runtime::mechanism;
-
-use crate::drawing::{Along, Shape};
-use crate::facade;
-use crate::registry::{Card, Preset, Span};
+use mbs_workbench::card;
+use mbs_workbench::card::Card;
 
 mechanism! {
     /// Scotch yoke.
@@ -45,35 +43,27 @@ mechanism! {
     out L: [m; 2] = [x - b, 0];
     out slot_top: [m; 2] = [x, 1.25*r];
     out slot_bottom: [m; 2] = [x, -1.25*r];
+
+    title "Scotch yoke";
+    about "A crank pin in a crosswise slot: the yoke moves harmonically.";
+    preset "one turn" "the crank at constant speed" {}
+    span turn(omega);
+    draw rail R along [1, 0];
+    draw rail L along [1, 0];
+    draw slider R along [1, 0];
+    draw slider L along [1, 0];
+    draw ground O;
+    draw link yoke: L, R;
+    draw slot slot_bottom, slot_top;
+    draw slider A along [0, 1];
+    draw link crank: O, A;
+    draw joint O, A;
+    trace "crank pin": A;
+    trace rod: R;
 }
 
-/// How the mechanism is drawn.
-pub const DRAWING: &[Shape] = &[
-    Shape::Rail { at: "R", along: Along::Fixed([1.0, 0.0]) },
-    Shape::Rail { at: "L", along: Along::Fixed([1.0, 0.0]) },
-    Shape::Slider { at: "R", along: Along::Fixed([1.0, 0.0]) },
-    Shape::Slider { at: "L", along: Along::Fixed([1.0, 0.0]) },
-    Shape::Ground { at: "O" },
-    Shape::Link { points: &["L", "R"], label: "yoke" },
-    Shape::Slot { points: &["slot_bottom", "slot_top"], label: "" },
-    Shape::Slider { at: "A", along: Along::Fixed([0.0, 1.0]) },
-    Shape::Link { points: &["O", "A"], label: "crank" },
-    Shape::Joint { at: "O" },
-    Shape::Joint { at: "A" },
-    Shape::Trace { of: "A", label: "crank pin" },
-    Shape::Trace { of: "R", label: "rod" },
-];
-
 /// Entry in the list of mechanisms.
-pub const CARD: Card = Card {
-    name: "scotch_yoke",
-    title: "Scotch yoke",
-    description: "A crank pin in a crosswise slot: the yoke moves harmonically.",
-    runs: &[Preset { label: "one turn", description: "the crank at constant speed", set: &[] }],
-    span: Span::Turn { rate: "omega" },
-    drawing: DRAWING,
-    make: facade::boxed::<ScotchYoke, 3>,
-};
+pub const CARD: Card = card!(ScotchYoke::default());
 
 #[cfg(test)]
 mod tests {
@@ -83,7 +73,7 @@ mod tests {
 
     #[test]
     fn the_yoke_moves_harmonically() {
-        let motion = one_turn(&CARD, &CARD.runs[0], 180);
+        let motion = one_turn(&CARD, 0, 180);
         assert_moves_as(&motion, &["theta", "x", "y"], 1e-14, |Jet([t, ..])| {
             let (w, r) = (10.0, 0.06);
             let (s, c) = (w * t).sin_cos();

@@ -18,10 +18,8 @@
 //! Numbers: the reference problem in `tests/data/slider_crank.csv` (`theta = 30 t`).
 
 use mbs_runtime::mechanism;
-
-use crate::drawing::{Along, Shape};
-use crate::facade;
-use crate::registry::{Card, Preset, Span};
+use mbs_workbench::card;
+use mbs_workbench::card::Card;
 
 mechanism! {
     /// Slider-crank whose guide passes beside the crank's centre.
@@ -47,32 +45,23 @@ mechanism! {
     out A: [m; 2] = r*unit(theta);
     out S: [m; 2] = [x, offset];
     out M: [m; 2] = r*unit(theta) + L/2*unit(phi);
+
+    title "Offset slider-crank";
+    about "A crank at constant speed moves a slider whose guide passes beside the crank's centre.";
+    preset "one turn" "the slider to the right of the crank" {}
+    span turn(omega);
+    draw ground O;
+    draw rail S along [1, 0];
+    draw slider S along [1, 0];
+    draw link crank: O, A;
+    draw link rod: A, S;
+    draw joint O, A, S;
+    trace slider: S;
+    trace "middle of the rod": M;
 }
 
-/// How the mechanism is drawn.
-pub const DRAWING: &[Shape] = &[
-    Shape::Ground { at: "O" },
-    Shape::Rail { at: "S", along: Along::Fixed([1.0, 0.0]) },
-    Shape::Slider { at: "S", along: Along::Fixed([1.0, 0.0]) },
-    Shape::Link { points: &["O", "A"], label: "crank" },
-    Shape::Link { points: &["A", "S"], label: "rod" },
-    Shape::Joint { at: "O" },
-    Shape::Joint { at: "A" },
-    Shape::Joint { at: "S" },
-    Shape::Trace { of: "S", label: "slider" },
-    Shape::Trace { of: "M", label: "middle of the rod" },
-];
-
 /// Entry in the list of mechanisms.
-pub const CARD: Card = Card {
-    name: "slider_crank",
-    title: "Offset slider-crank",
-    description: "A crank at constant speed moves a slider whose guide passes beside the crank's centre.",
-    runs: &[Preset { label: "one turn", description: "the slider to the right of the crank", set: &[] }],
-    span: Span::Turn { rate: "omega" },
-    drawing: DRAWING,
-    make: facade::boxed::<SliderCrank, 3>,
-};
+pub const CARD: Card = card!(SliderCrank::default());
 
 #[cfg(test)]
 mod tests {
@@ -83,13 +72,13 @@ mod tests {
     fn the_motion_follows_the_reference() {
         let rows = table(include_str!("../tests/data/slider_crank.csv"));
         assert_eq!(rows.len(), 8);
-        assert_follows(&CARD, &CARD.runs[0], 0.0025, &rows, 1e-11);
+        assert_follows(&CARD, 0, 0.0025, &rows, 1e-11);
     }
 
     #[test]
     fn the_stroke_is_that_of_the_two_dead_centres() {
         let (r, l, e) = (0.05_f64, 0.18_f64, 0.01_f64);
-        let motion = one_turn(&CARD, &CARD.runs[0], 3600);
+        let motion = one_turn(&CARD, 0, 3600);
         let x = &motion.coordinates[2].q;
         let longest = x.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let shortest = x.iter().copied().fold(f64::INFINITY, f64::min);

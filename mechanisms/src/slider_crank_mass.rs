@@ -20,9 +20,8 @@
 
 use mbs_runtime::mechanism;
 
-use crate::masses::{boxed_driven, boxed_masses};
-use crate::registry::{Card, FreeCard, Preset, Span, Usual};
-use crate::slider_crank;
+use mbs_workbench::card;
+use mbs_workbench::card::Card;
 
 mechanism! {
     /// Slider-crank with masses.
@@ -77,56 +76,49 @@ mechanism! {
         out motor_torque: N*m = effort(crank_drive);
     }
     /// Forces move it.
-    scene Released = released;
+    scene Released = released {
+        title "Slider-crank with masses, moved by forces";
+        about "Crank, rod and piston have masses; a constant torque on the crank, or their weight alone, \
+               moves them.";
+        preset released "from rest at 60°, by its weight alone" { tau: 0 }
+        preset torque "from rest at 60°, 0.5 N m on the crank" { tau: 0.5 }
+        span 0.6s;
+    }
     /// A motor moves it.
-    scene Driven = driven;
+    scene Driven = driven {
+        title "Slider-crank with masses, the crank driven";
+        about "Crank, rod and piston have masses and the crank turns at constant speed; inverse dynamics \
+               gives the motor's torque and the force in the piston pin.";
+        preset "one turn" "the slider to the right of the crank" {}
+        span turn(omega);
+    }
+
+    draw ground O;
+    draw rail S along [1, 0];
+    draw slider S along [1, 0];
+    draw link crank: O, A;
+    draw link rod: A, S;
+    draw joint O, A, S;
+    trace slider: S;
+    trace "middle of the rod": M;
 }
 
 /// Entry in the list of mechanisms: moved by forces.
-pub const RELEASED: FreeCard = FreeCard {
-    name: "slider_crank_mass:Released",
-    title: "Slider-crank with masses, moved by forces",
-    description: "Crank, rod and piston have masses; a constant torque on the crank, or their weight alone, moves them.",
-    runs: &[
-        Preset {
-            label: "released",
-            description: "from rest at 60°, by its weight alone",
-            set: &[("tau", 0.0)],
-        },
-        Preset {
-            label: "torque",
-            description: "from rest at 60°, 0.5 N m on the crank",
-            set: &[("tau", 0.5)],
-        },
-    ],
-    duration: 0.6,
-    usual: Usual::Projection,
-    drawing: slider_crank::DRAWING,
-    make: boxed_masses::<CrankPistonReleased, 3, 2>,
-};
+pub const RELEASED: Card = card!(CrankPistonReleased::default());
 
 /// Entry in the list of mechanisms: the crank driven.
-pub const DRIVEN: Card = Card {
-    name: "slider_crank_mass:Driven",
-    title: "Slider-crank with masses, the crank driven",
-    description: "Crank, rod and piston have masses and the crank turns at constant speed; inverse dynamics gives the \
-                  motor's torque and the force in the piston pin.",
-    runs: &[Preset { label: "one turn", description: "the slider to the right of the crank", set: &[] }],
-    span: Span::Turn { rate: "omega" },
-    drawing: slider_crank::DRAWING,
-    make: boxed_driven::<CrankPistonDriven, 3>,
-};
+pub const DRIVEN: Card = card!(CrankPistonDriven::default());
 
 #[cfg(test)]
 mod tests {
     use mbs_runtime::dynamics::{DormandPrince8, Explicit, Projection, Simulation};
 
     use super::*;
-    use crate::facade::Motion;
     use crate::newton_euler::{
         self, Body, Unknown, assert_torque_is_the_slope_of_the_energy, forces, pin, plus, turning,
     };
     use crate::reference::{dynamics_of, load, one_turn};
+    use mbs_workbench::erased::facade::Motion;
 
     /// Forces of the frame on the crank, of the crank and of the piston on the rod, and the torque on the crank, at
     /// instant `k`.
@@ -171,8 +163,8 @@ mod tests {
 
     #[test]
     fn effort_and_pin_force_of_the_driven_crank_are_newtons_and_eulers() {
-        let mut motion = one_turn(&DRIVEN, &DRIVEN.runs[0], 180);
-        let mechanism = (DRIVEN.make)();
+        let mut motion = one_turn(&DRIVEN, 0, 180);
+        let mechanism = DRIVEN.equations();
         let forces = mechanism.dynamics().expect("it has masses").add_forces(&mut motion);
         forces.expect("it moves");
         let torque = load(&motion, "motor_torque").to_vec();
@@ -196,7 +188,7 @@ mod tests {
 
     #[test]
     fn the_motion_from_forces_needs_the_torque_that_causes_it_and_keeps_its_energy() {
-        for (run, tau) in RELEASED.runs.iter().zip([0.0, 0.5]) {
+        for (run, tau) in [0.0, 0.5].into_iter().enumerate() {
             let found = dynamics_of(&RELEASED, run, 60);
             assert_eq!(found.motion.coordinates[0].q[0], 60_f64.to_radians());
             assert_agree(&found.motion, |_| tau);

@@ -23,10 +23,8 @@
 //! a coordinate in the third. Numbers: those of `slider_crank`; strokes that keep 20 mm from the dead centres.
 
 use mbs_runtime::mechanism;
-
-use crate::drawing::{Along, Shape};
-use crate::facade;
-use crate::registry::{Card, Preset, Span};
+use mbs_workbench::card;
+use mbs_workbench::card::Card;
 
 mechanism! {
     /// Slider-crank whose drive is chosen by the scene.
@@ -48,7 +46,17 @@ mechanism! {
     out S: [m; 2] = [x, offset];
 
     /// A rod of constant length.
-    effect rigid_rod { let rod = L; }
+    effect rigid_rod {
+        let rod = L;
+        draw ground O;
+        draw rail S along [1, 0];
+        draw slider S along [1, 0];
+        draw link crank: O, A;
+        draw link rod: A, S;
+        draw joint O, A, S;
+        trace "crank pin": A;
+        trace slider: S;
+    }
     effect crank_driven {
         param omega: rad/s = 30;
         drive crank: theta == omega*t;
@@ -69,77 +77,50 @@ mechanism! {
         branch above: sin(theta - phi) > 0;
         out tube_end: [m; 2] = r*unit(theta) + 0.6*L*unit(phi);
         out piston: [m; 2] = [x, offset] - 0.6*L*unit(phi);
+        draw ground O;
+        draw rail S along [1, 0];
+        draw slider S along [1, 0];
+        draw link crank: O, A;
+        draw slot cylinder: A, tube_end;
+        draw link "piston rod": piston, S;
+        draw slider piston along phi;
+        draw joint O, A, S;
+        trace "crank pin": A;
     }
 
     /// The crank turns at constant speed.
-    scene DrivenCrank = rigid_rod + crank_driven;
+    scene DrivenCrank = rigid_rod + crank_driven {
+        title "Slider-crank in scenes: the crank driven";
+        about "The crank turns at constant speed; the first of three scenes of one text.";
+        preset "one turn" "the slider to the right of the crank" {}
+        span turn(omega);
+    }
     /// The slider swings and rocks the crank.
-    scene DrivenSlider = rigid_rod + slider_driven;
+    scene DrivenSlider = rigid_rod + slider_driven {
+        title "Slider-crank in scenes: the slider driven";
+        about "The slider swings between the dead centres and rocks the crank; the second of three scenes of \
+               one text.";
+        preset "one swing" "the crank pin above the guide" {}
+        span turn(pace);
+    }
     /// A cylinder rocks the crank while the slider is locked.
-    scene TelescopingRod = telescoping_rod;
+    scene TelescopingRod = telescoping_rod {
+        title "Slider-crank in scenes: a cylinder as rod";
+        about "The slider is locked and a cylinder in place of the rod rocks the crank; the last of three \
+               scenes of one text.";
+        preset "one swing" "the crank pin above the guide" {}
+        span turn(pace);
+    }
 }
 
-/// How the crank, the rod and the slider are drawn.
-pub const DRAWING: &[Shape] = &[
-    Shape::Ground { at: "O" },
-    Shape::Rail { at: "S", along: Along::Fixed([1.0, 0.0]) },
-    Shape::Slider { at: "S", along: Along::Fixed([1.0, 0.0]) },
-    Shape::Link { points: &["O", "A"], label: "crank" },
-    Shape::Link { points: &["A", "S"], label: "rod" },
-    Shape::Joint { at: "O" },
-    Shape::Joint { at: "A" },
-    Shape::Joint { at: "S" },
-    Shape::Trace { of: "A", label: "crank pin" },
-    Shape::Trace { of: "S", label: "slider" },
-];
-
-/// How the cylinder is drawn in place of the rod.
-pub const DRAWING_WITH_CYLINDER: &[Shape] = &[
-    Shape::Ground { at: "O" },
-    Shape::Rail { at: "S", along: Along::Fixed([1.0, 0.0]) },
-    Shape::Slider { at: "S", along: Along::Fixed([1.0, 0.0]) },
-    Shape::Link { points: &["O", "A"], label: "crank" },
-    Shape::Slot { points: &["A", "tube_end"], label: "cylinder" },
-    Shape::Link { points: &["piston", "S"], label: "piston rod" },
-    Shape::Slider { at: "piston", along: Along::Named("phi") },
-    Shape::Joint { at: "O" },
-    Shape::Joint { at: "A" },
-    Shape::Joint { at: "S" },
-    Shape::Trace { of: "A", label: "crank pin" },
-];
-
 /// Entry in the list of mechanisms: the crank driven.
-pub const DRIVEN_CRANK: Card = Card {
-    name: "slider_crank_scenes:DrivenCrank",
-    title: "Slider-crank in scenes: the crank driven",
-    description: "The crank turns at constant speed; the first of three scenes of one text.",
-    runs: &[Preset { label: "one turn", description: "the slider to the right of the crank", set: &[] }],
-    span: Span::Turn { rate: "omega" },
-    drawing: DRAWING,
-    make: facade::boxed::<CrankSliderDrivenCrank, 3>,
-};
+pub const DRIVEN_CRANK: Card = card!(CrankSliderDrivenCrank::default());
 
 /// Entry in the list of mechanisms: the slider driven.
-pub const DRIVEN_SLIDER: Card = Card {
-    name: "slider_crank_scenes:DrivenSlider",
-    title: "Slider-crank in scenes: the slider driven",
-    description: "The slider swings between the dead centres and rocks the crank; the second of three scenes of one text.",
-    runs: &[Preset { label: "one swing", description: "the crank pin above the guide", set: &[] }],
-    span: Span::Turn { rate: "pace" },
-    drawing: DRAWING,
-    make: facade::boxed::<CrankSliderDrivenSlider, 3>,
-};
+pub const DRIVEN_SLIDER: Card = card!(CrankSliderDrivenSlider::default());
 
 /// Entry in the list of mechanisms: a cylinder in place of the rod.
-pub const TELESCOPING_ROD: Card = Card {
-    name: "slider_crank_scenes:TelescopingRod",
-    title: "Slider-crank in scenes: a cylinder as rod",
-    description: "The slider is locked and a cylinder in place of the rod rocks the crank; the last of three scenes of one text.",
-    runs: &[Preset { label: "one swing", description: "the crank pin above the guide", set: &[] }],
-    span: Span::Turn { rate: "pace" },
-    drawing: DRAWING_WITH_CYLINDER,
-    make: facade::boxed::<CrankSliderTelescopingRod, 4>,
-};
+pub const TELESCOPING_ROD: Card = card!(CrankSliderTelescopingRod::default());
 
 #[cfg(test)]
 mod tests {
@@ -161,7 +142,7 @@ mod tests {
 
     #[test]
     fn a_driven_slider_turns_the_crank_by_the_triangle_of_crank_and_rod() {
-        let motion = one_turn(&DRIVEN_SLIDER, &DRIVEN_SLIDER.runs[0], 180);
+        let motion = one_turn(&DRIVEN_SLIDER, 0, 180);
         assert_moves_as(&motion, &["x", "theta", "phi", "A.0", "A.1"], 1e-11, |t| {
             let s = Vector((t * TAU).sin() * 0.03 + 0.18, OFFSET.into());
             let a = Vector::fixed(0.0, 0.0).meet(R, s, L, 1.0);
@@ -171,7 +152,7 @@ mod tests {
 
     #[test]
     fn a_telescoping_rod_turns_the_crank_by_the_law_of_cosines() {
-        let motion = one_turn(&TELESCOPING_ROD, &TELESCOPING_ROD.runs[0], 180);
+        let motion = one_turn(&TELESCOPING_ROD, 0, 180);
         let (s, base) = (Vector::fixed(0.18, OFFSET), 0.18_f64.hypot(OFFSET));
         let names = ["x", "rod", "theta", "phi", "A.0", "A.1", "tube_end.0", "piston.1"];
         assert_moves_as(&motion, &names, 1e-11, |t| {
@@ -192,8 +173,9 @@ mod tests {
         let pump = CrankSlider::<f64, DrivenCrank> { r: 0.04, ..Default::default() };
         let tipper: CrankSliderTelescopingRod = pump.scene();
         assert_eq!((tipper.r, tipper.pace, tipper.omega), (0.04, TAU, 30.0));
-        let names =
-            |card: &Card| -> Vec<&str> { (card.make)().variables().iter().map(|entry| entry.name).collect() };
+        let names = |card: &Card| -> Vec<&str> {
+            card.equations().variables().iter().map(|entry| entry.name).collect()
+        };
         assert_eq!(names(&DRIVEN_CRANK), ["r", "L", "offset", "omega"]);
         assert_eq!(names(&DRIVEN_SLIDER), ["r", "L", "offset", "stroke", "pace"]);
         assert_eq!(names(&TELESCOPING_ROD), ["r", "L", "offset", "reach", "pace"]);

@@ -23,10 +23,8 @@
 //! Numbers: chosen here.
 
 use mbs_runtime::mechanism;
-
-use crate::drawing::Shape;
-use crate::facade;
-use crate::registry::{Card, Preset, Span};
+use mbs_workbench::card;
+use mbs_workbench::card::Card;
 
 mechanism! {
     /// Stephenson's six-bar linkage driven off its four-bar loop.
@@ -66,40 +64,25 @@ mechanism! {
     out E: [m; 2] = pivot + r*unit(theta);
     out F: [m; 2] = pivot;
     out P: [m; 2] = p;
+
+    title "Stephenson's six-bar, driven off its loop";
+    about "The crank pushes the coupler point of a four-bar: four angles are one block of equations, which no \
+           construction of triangles solves one after the other.";
+    preset "one turn" "the four-bar in its open assembly" {}
+    span turn(omega);
+    draw ground O, D, F;
+    draw plate coupler: A, B, P;
+    draw link rocker: O, A;
+    draw link rocker: D, B;
+    draw link rod: E, P;
+    draw link crank: F, E;
+    draw joint O, A, B, D, E, F, P;
+    trace "coupler point": P;
+    trace rocker: B;
 }
 
-/// How the mechanism is drawn.
-pub const DRAWING: &[Shape] = &[
-    Shape::Ground { at: "O" },
-    Shape::Ground { at: "D" },
-    Shape::Ground { at: "F" },
-    Shape::Plate { points: &["A", "B", "P"], label: "coupler" },
-    Shape::Link { points: &["O", "A"], label: "rocker" },
-    Shape::Link { points: &["D", "B"], label: "rocker" },
-    Shape::Link { points: &["E", "P"], label: "rod" },
-    Shape::Link { points: &["F", "E"], label: "crank" },
-    Shape::Joint { at: "O" },
-    Shape::Joint { at: "A" },
-    Shape::Joint { at: "B" },
-    Shape::Joint { at: "D" },
-    Shape::Joint { at: "E" },
-    Shape::Joint { at: "F" },
-    Shape::Joint { at: "P" },
-    Shape::Trace { of: "P", label: "coupler point" },
-    Shape::Trace { of: "B", label: "rocker" },
-];
-
 /// Entry in the list of mechanisms.
-pub const CARD: Card = Card {
-    name: "stephenson",
-    title: "Stephenson's six-bar, driven off its loop",
-    description: "The crank pushes the coupler point of a four-bar: four angles are one block of equations, which no \
-                  construction of triangles solves one after the other.",
-    runs: &[Preset { label: "one turn", description: "the four-bar in its open assembly", set: &[] }],
-    span: Span::Turn { rate: "omega" },
-    drawing: DRAWING,
-    make: facade::boxed::<Stephenson, 5>,
-};
+pub const CARD: Card = card!(Stephenson::default());
 
 #[cfg(test)]
 mod tests {
@@ -120,7 +103,7 @@ mod tests {
     /// The four-bar is a triangle once `α` is known; what remains is one equation in `α`, the length of the rod.
     #[test]
     fn the_motion_equals_the_closed_form_with_one_root() {
-        let motion = one_turn(&CARD, &CARD.runs[0], 180);
+        let motion = one_turn(&CARD, 0, 180);
         let mut start = 1.1;
         let crank = |t: Jet| Vector::fixed(-0.15, 0.16) + Vector::unit(t * TAU) * 0.05;
         assert_moves_as(&motion, &["theta", "alpha", "beta", "gamma", "delta", "P.0", "P.1"], 1e-11, |t| {
@@ -137,7 +120,7 @@ mod tests {
 
     #[test]
     fn it_returns_to_where_it_began() {
-        let motion = one_turn(&CARD, &CARD.runs[0], 180);
+        let motion = one_turn(&CARD, 0, 180);
         for coordinate in &motion.coordinates[1..] {
             let (first, last) = (coordinate.q[0], coordinate.q[180]);
             assert!((first - last).abs() < 1e-12, "{}", coordinate.name);

@@ -21,10 +21,8 @@
 //! Numbers: chosen here.
 
 use mbs_runtime::mechanism;
-
-use crate::drawing::Shape;
-use crate::facade;
-use crate::registry::{Card, Preset, Span};
+use mbs_workbench::card;
+use mbs_workbench::card::Card;
 
 mechanism! {
     /// Planar parallel platform with three driven legs.
@@ -76,46 +74,25 @@ mechanism! {
     out C1: [m; 2] = [x, y] + arm1;
     out C2: [m; 2] = [x, y] + arm2;
     out P: [m; 2] = [x, y];
+
+    title "Planar platform on three driven legs";
+    about "Three cranks move a plate in x, y and its angle: a parallel robot of the kind 3-RRR.";
+    preset "one cycle" "the drives swing a third of a period apart" {}
+    span turn(omega);
+    draw ground O0, O1, O2;
+    draw plate platform: C0, C1, C2;
+    draw link crank: O0, B0;
+    draw link O1, B1;
+    draw link O2, B2;
+    draw link rod: B0, C0;
+    draw link B1, C1;
+    draw link B2, C2;
+    draw joint O0, O1, O2, B0, B1, B2, C0, C1, C2;
+    trace "centre of the platform": P;
 }
 
-/// How the mechanism is drawn.
-pub const DRAWING: &[Shape] = &[
-    Shape::Ground { at: "O0" },
-    Shape::Ground { at: "O1" },
-    Shape::Ground { at: "O2" },
-    Shape::Plate { points: &["C0", "C1", "C2"], label: "platform" },
-    Shape::Link { points: &["O0", "B0"], label: "crank" },
-    Shape::Link { points: &["O1", "B1"], label: "" },
-    Shape::Link { points: &["O2", "B2"], label: "" },
-    Shape::Link { points: &["B0", "C0"], label: "rod" },
-    Shape::Link { points: &["B1", "C1"], label: "" },
-    Shape::Link { points: &["B2", "C2"], label: "" },
-    Shape::Joint { at: "O0" },
-    Shape::Joint { at: "O1" },
-    Shape::Joint { at: "O2" },
-    Shape::Joint { at: "B0" },
-    Shape::Joint { at: "B1" },
-    Shape::Joint { at: "B2" },
-    Shape::Joint { at: "C0" },
-    Shape::Joint { at: "C1" },
-    Shape::Joint { at: "C2" },
-    Shape::Trace { of: "P", label: "centre of the platform" },
-];
-
 /// Entry in the list of mechanisms.
-pub const CARD: Card = Card {
-    name: "three_rrr",
-    title: "Planar platform on three driven legs",
-    description: "Three cranks move a plate in x, y and its angle: a parallel robot of the kind 3-RRR.",
-    runs: &[Preset {
-        label: "one cycle",
-        description: "the drives swing a third of a period apart",
-        set: &[],
-    }],
-    span: Span::Turn { rate: "omega" },
-    drawing: DRAWING,
-    make: facade::boxed::<ThreeRrr, 9>,
-};
+pub const CARD: Card = card!(ThreeRrr::default());
 
 #[cfg(test)]
 mod tests {
@@ -149,7 +126,7 @@ mod tests {
     /// What remains is one equation in `ψ0`, the length of the third leg.
     #[test]
     fn the_motion_equals_the_closed_form_with_one_root() {
-        let motion = one_turn(&CARD, &CARD.runs[0], 180);
+        let motion = one_turn(&CARD, 0, 180);
         let names: Vec<_> = motion.coordinates.iter().map(|coordinate| coordinate.name).collect();
         let mut start = -2.66;
         assert_moves_as(&motion, &names, 1e-11, |t| {

@@ -21,10 +21,8 @@
 //! Numbers: chosen here.
 
 use mbs_runtime::mechanism;
-
-use crate::drawing::Shape;
-use crate::facade;
-use crate::registry::{Card, Preset, Span};
+use mbs_workbench::card;
+use mbs_workbench::card::Card;
 
 mechanism! {
     /// Watt's six-bar linkage.
@@ -63,39 +61,24 @@ mechanism! {
     out E: [m; 2] = [f, 0] + L6*unit(theta6);
     out F: [m; 2] = [f, 0];
     out M: [m; 2] = c + L5/2*unit(theta5);
+
+    title "Watt's six-bar linkage";
+    about "Two four-bars in series: the rocker of the first one has three joints and drives the second one.";
+    preset "one turn" "both loops in their open assembly" {}
+    span turn(omega);
+    draw ground O, D, F;
+    draw plate ternary: D, B, C;
+    draw link coupler: A, B;
+    draw link crank: O, A;
+    draw link "second coupler": C, E;
+    draw link rocker: F, E;
+    draw joint O, A, B, C, D, E, F;
+    trace "middle of the second coupler": M;
+    trace "output rocker": E;
 }
 
-/// How the mechanism is drawn.
-pub const DRAWING: &[Shape] = &[
-    Shape::Ground { at: "O" },
-    Shape::Ground { at: "D" },
-    Shape::Ground { at: "F" },
-    Shape::Plate { points: &["D", "B", "C"], label: "ternary" },
-    Shape::Link { points: &["A", "B"], label: "coupler" },
-    Shape::Link { points: &["O", "A"], label: "crank" },
-    Shape::Link { points: &["C", "E"], label: "second coupler" },
-    Shape::Link { points: &["F", "E"], label: "rocker" },
-    Shape::Joint { at: "O" },
-    Shape::Joint { at: "A" },
-    Shape::Joint { at: "B" },
-    Shape::Joint { at: "C" },
-    Shape::Joint { at: "D" },
-    Shape::Joint { at: "E" },
-    Shape::Joint { at: "F" },
-    Shape::Trace { of: "M", label: "middle of the second coupler" },
-    Shape::Trace { of: "E", label: "output rocker" },
-];
-
 /// Entry in the list of mechanisms.
-pub const CARD: Card = Card {
-    name: "watt",
-    title: "Watt's six-bar linkage",
-    description: "Two four-bars in series: the rocker of the first one has three joints and drives the second one.",
-    runs: &[Preset { label: "one turn", description: "both loops in their open assembly", set: &[] }],
-    span: Span::Turn { rate: "omega" },
-    drawing: DRAWING,
-    make: facade::boxed::<Watt, 5>,
-};
+pub const CARD: Card = card!(Watt::default());
 
 #[cfg(test)]
 mod tests {
@@ -117,7 +100,7 @@ mod tests {
 
     #[test]
     fn the_motion_equals_the_closed_form() {
-        let motion = one_turn(&CARD, &CARD.runs[0], 180);
+        let motion = one_turn(&CARD, 0, 180);
         let names = ["theta2", "theta3", "theta4", "theta5", "theta6"];
         assert_moves_as(&motion, &names, 1e-12, coordinates);
     }

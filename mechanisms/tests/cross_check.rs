@@ -1,14 +1,14 @@
-//! Emitted code against CasADi and 50 digits: definitions that the second back end prints from the same text, and
-//! definitions typed by hand from the lecture.
+//! Emitted code against CasADi and 50 digits. Definitions are printed from the same text by the second back end, or
+//! typed by hand from the lecture.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use mechanisms::registry::{ALL, find};
-use mechanisms::verify::compare::compare;
-use mechanisms::verify::{
+use mbs_workbench::verify::compare::compare;
+use mbs_workbench::verify::{
     DIGITS_STATES, Oracle, STATES, Summary, VerifyError, verify, verify_against, verify_digits,
 };
+use mechanisms::CATALOGUE;
 
 fn oracle() -> Oracle {
     Oracle::new(&|_| ()).unwrap_or_else(|error| panic!("{error}"))
@@ -22,7 +22,7 @@ fn by_hand(name: &str) -> PathBuf {
 fn casadi_confirms_every_function_of_every_mechanism() {
     let oracle = oracle();
     let mut summary = Summary::default();
-    for card in ALL {
+    for card in CATALOGUE.fixed() {
         let agreement = verify(card, &oracle, STATES).unwrap_or_else(|error| panic!("{error}"));
         assert!(agreement.holds(), "{agreement}");
         assert!(agreement.states >= 1000 && agreement.functions.len() >= 9);
@@ -35,11 +35,11 @@ fn casadi_confirms_every_function_of_every_mechanism() {
 fn fifty_digits_confirm_every_function_of_every_mechanism() {
     let oracle = oracle();
     let mut summary = Summary::default();
-    for card in ALL {
+    for card in CATALOGUE.fixed() {
         let agreement = verify_digits(card, &oracle, DIGITS_STATES).unwrap_or_else(|error| panic!("{error}"));
         assert!(agreement.holds(), "{agreement}");
-        // A square mechanism has N² + 5N values beside its outputs; few of them may be torn by kinks.
-        let n = (card.make)().coordinates().len();
+        // A square mechanism has N² + 5N values in addition to its outputs; few of them may be uncertain at kinks.
+        let n = card.equations().coordinates().len();
         assert!(agreement.values * 10 > 9 * DIGITS_STATES * n * (n + 5), "{agreement}");
         summary.add(agreement);
     }
@@ -49,15 +49,15 @@ fn fifty_digits_confirm_every_function_of_every_mechanism() {
 #[test]
 fn definitions_typed_by_hand_confirm_every_mechanism() {
     let oracle = oracle();
-    for card in ALL {
-        let agreement = verify_against(card.name, &by_hand(&card.file_name()), &oracle);
-        let agreement = agreement.unwrap_or_else(|error| panic!("{}: {error}", card.name));
+    for card in CATALOGUE.fixed() {
+        let agreement = verify_against(card, &by_hand(&card.file_name()), &oracle);
+        let agreement = agreement.unwrap_or_else(|error| panic!("{}: {error}", card.name()));
         println!("{agreement}");
         assert!(agreement.holds() && agreement.states >= 1000, "{agreement}");
     }
 }
 
-/// The control of the tests above: every one of these slips of the pen must show.
+/// The control of the tests above: every one of these slips of the pen must be detected.
 #[test]
 fn a_slip_in_a_definition_is_found() {
     let slips = [
@@ -77,10 +77,10 @@ fn a_slip_in_a_definition_is_found() {
     ];
     let oracle = oracle();
     for (name, right, wrong) in slips {
-        let card = find(name).expect("in the list");
+        let card = CATALOGUE.find(name).expect("in the list");
         let text = fs::read_to_string(by_hand(&card.file_name())).expect("a definition");
         assert!(text.contains(right), "{name}: {right}");
-        let mut mechanism = (card.make)();
+        let mut mechanism = card.equations();
         let agreement = compare(mechanism.as_mut(), &oracle, &text.replace(right, wrong), 50);
         assert!(!agreement.expect("values").holds(), "{name}: {wrong}");
     }
@@ -89,11 +89,9 @@ fn a_slip_in_a_definition_is_found() {
 #[test]
 fn what_cannot_be_compared_says_why() {
     let oracle = oracle();
-    let missing = verify_against("four_bar", Path::new("no/such/file.py"), &oracle);
+    let four_bar = CATALOGUE.find("four_bar").expect("in the list");
+    let missing = verify_against(four_bar, Path::new("no/such/file.py"), &oracle);
     assert!(matches!(missing, Err(VerifyError::File { .. })));
-    let unknown = verify_against("five_bar", &by_hand("four_bar"), &oracle);
-    assert!(matches!(unknown, Err(VerifyError::Mechanism(_))));
-    let another =
-        verify_against("four_bar", &by_hand("slider_crank"), &oracle).expect_err("another mechanism");
+    let another = verify_against(four_bar, &by_hand("slider_crank"), &oracle).expect_err("another mechanism");
     assert!(another.to_string().contains("`SliderCrank` has 3 coordinates"), "{another}");
 }

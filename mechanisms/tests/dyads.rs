@@ -1,20 +1,20 @@
-//! Which blocks of the ready mechanisms the compiler recognises as dyads: a stored list.
+//! Blocks of the ready mechanisms that the compiler recognises as dyads: a stored list.
 //!
 //! After a change that is meant, run `UPDATE_SNAPSHOTS=1 cargo test -p mechanisms --test dyads` and read the difference.
 
 use std::fmt::Write;
 use std::path::Path;
 
-use mechanisms::registry::ALL;
+use mechanisms::CATALOGUE;
 
-/// A line a block that is solved for: its coordinates, and how it is assembled.
+/// A line for each block that is solved: its coordinates, and the method of its assembly.
 fn solved_blocks() -> String {
     let mut text = String::new();
-    for card in ALL {
-        let mechanism = (card.make)();
+    for card in CATALOGUE.fixed() {
+        let mechanism = card.equations();
         let report = mbs_codegen::structure_of(mechanism.source(), Some(mechanism.scene()))
-            .unwrap_or_else(|faults| panic!("{}: {faults}", card.name));
-        let _ = writeln!(text, "{}", card.name);
+            .unwrap_or_else(|faults| panic!("{}: {faults}", card.name()));
+        let _ = writeln!(text, "{}", card.name());
         for block in report.blocks.iter().filter(|block| !block.explicit) {
             let names: Vec<&str> =
                 block.coordinates.iter().map(|index| report.coordinates[*index].name.as_str()).collect();

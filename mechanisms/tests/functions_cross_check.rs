@@ -1,7 +1,7 @@
-//! CasADi and 50 digits against texts with declared functions, of which both sides know the values.
+//! CasADi and 50 digits against texts with declared functions, whose values both sides know.
 
 use mbs_runtime::mechanism;
-use mechanisms::verify::{CheckError, StandIn, check};
+use mbs_workbench::verify::{CheckError, StandIn, check};
 
 mechanism! {
     /// Every place where a declared function can stand.

@@ -1,9 +1,10 @@
-//! CasADi and 50 digits against a text that uses every operator and function of the language, explicit time in every place where
-//! it can stand, inputs with rates and a drive that prescribes a rate: what no ready mechanism needs all at once.
+//! CasADi and 50 digits against a text that uses every operator and function of the language, and explicit time in every
+//! possible place. It has inputs with rates and a drive that prescribes a rate; no ready mechanism needs all at once.
 
 use mbs_runtime::{Lanes, mechanism};
-use mechanisms::verify::check::{Check, check_equations};
-use mechanisms::verify::{InLanes, check};
+use mbs_workbench::erased::lanes::InLanes;
+use mbs_workbench::verify::check;
+use mbs_workbench::verify::check::{Check, check_equations};
 
 mechanism! {
     /// Meaningless as a machine, complete as a text.
@@ -32,7 +33,7 @@ mechanism! {
         a + arm.1*unit(phi[1]*(1 + 0.2*sin(omega*t))) == p + shift;
     }
     constraint functions {
-        arm[2]*(exp(-sin(phi[2])^2) + ln(2 + cos(phi[0]))) == s*tanh(phi[1]) + SPAN*cosh(0.3*sin(phi[2]*t/1s));
+        arm[2]*(exp(-sin(phi[2])^2) + ln(2 + cos(phi[0]))) == s*tanh(phi[1]) + SPAN*cosh(0.3*sin(phi[2]*t/1s)) + SPAN*(asinh(phi[0]) + acosh(1.5 + phi[1]^2) + atanh(0.6*sin(phi[2])));
         SPAN*(asin(0.5*sin(phi[0])) - acos(0.4*cos(phi[1])) + atan(phi[2])) == b*sinh(0.2*phi[0]);
         atan2(p[1] + s, b) + tan(0.3*sin(phi[1])) == hypot(s/SPAN, p[0]/SPAN)^1.5/10;
     }

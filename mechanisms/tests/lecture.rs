@@ -1,4 +1,4 @@
-//! The teaching commands of `mbs` as a person meets them.
+//! The teaching commands of `mbs`, called as a user calls them.
 
 use std::fs;
 use std::path::PathBuf;
@@ -30,7 +30,7 @@ impl Drop for Scratch {
 }
 
 fn mbs(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_mbs")).args(arguments).output().expect("the program starts")
+    Command::new(env!("CARGO_BIN_EXE_mbs-catalogue")).args(arguments).output().expect("the program starts")
 }
 
 #[track_caller]
@@ -57,7 +57,7 @@ fn line<'a>(text: &'a str, start: &str) -> &'a str {
         .unwrap_or_else(|| panic!("{start}:\n{text}"))
 }
 
-/// What stands after the name of a line, as numbers.
+/// The numbers of a line, without its other words.
 #[track_caller]
 fn numbers(line: &str) -> Vec<f64> {
     line.split_whitespace().filter_map(|word| word.parse().ok()).collect()
@@ -89,14 +89,15 @@ fn print_shows_formulas_with_the_names_of_the_text() {
 
 #[test]
 fn free_mechanisms_have_formulas_structure_matrices_and_degrees_of_freedom() {
-    for card in mechanisms::registry::FREE {
-        assert!(text_of(&["print", card.name, "--symbols"]).contains(card.title));
-        let text = text_of(&["print", card.name, "q", "qd", "qdd", "Phi"]);
+    for card in mechanisms::CATALOGUE.free() {
+        let (name, title) = (card.name(), card.picture().expect("a text").title);
+        assert!(text_of(&["print", &name, "--symbols"]).contains(&title));
+        let text = text_of(&["print", &name, "q", "qd", "qdd", "Phi"]);
         assert!(text.contains("qdd") && !text.contains("NaN"), "{text}");
-        assert!(text_of(&["structure", card.name]).contains("Phi_q"), "{}", card.name);
-        let text = text_of(&["dof", card.name]);
+        assert!(text_of(&["structure", &name]).contains("Phi_q"), "{name}");
+        let text = text_of(&["dof", &name]);
         assert!(text.contains("forces move the others") && text.contains("joints and guides take"), "{text}");
-        assert!(text_of(&["latex", card.name]).ends_with("\\end{document}\n"));
+        assert!(text_of(&["latex", &name]).ends_with("\\end{document}\n"));
     }
     // Rows that may follow from others have no blocks; of the others one coordinate is left.
     let drawn = Scratch::new("bricard.svg");
@@ -117,12 +118,13 @@ fn free_mechanisms_have_formulas_structure_matrices_and_degrees_of_freedom() {
 
 #[test]
 fn every_mechanism_has_formulas_structure_and_degrees_of_freedom() {
-    for card in mechanisms::registry::ALL {
-        assert!(text_of(&["print", card.name, "--symbols"]).contains(card.title));
-        assert!(text_of(&["structure", card.name]).contains("solved block after block"), "{}", card.name);
-        let text = text_of(&["dof", card.name]);
-        assert!(text.contains("every coordinate is determined"), "{}: {text}", card.name);
-        assert!(text_of(&["latex", card.name]).ends_with("\\end{document}\n"));
+    for card in mechanisms::CATALOGUE.fixed() {
+        let (name, title) = (card.name(), card.picture().expect("a text").title);
+        assert!(text_of(&["print", &name, "--symbols"]).contains(&title));
+        assert!(text_of(&["structure", &name]).contains("solved block after block"), "{name}");
+        let text = text_of(&["dof", &name]);
+        assert!(text.contains("every coordinate is determined"), "{name}: {text}");
+        assert!(text_of(&["latex", &name]).ends_with("\\end{document}\n"));
     }
 }
 
@@ -243,7 +245,7 @@ fn dof_names_independent_and_dependent_coordinates() {
     assert!(text.contains("Chosen, for the text names none"), "{text}");
     assert!(line(&text, "dependent").ends_with(" x2, y2, phi2, phi3"), "{text}");
     assert!(line(&text, "Grübler's count").ends_with("5 − 4 = 1"), "{text}");
-    // Of what the rows leave, joints of the declared bodies take the rest: four pins.
+    // Joints of the declared bodies take the freedoms that the rows do not: four pins.
     let text = text_of(&["dof", "four_bar_mass:Driven"]);
     assert!(text.contains("9 freedoms apart; joints and guides take 8"), "{text}");
 }
@@ -333,7 +335,7 @@ fn a_position_beyond_a_limit_says_when_the_mechanism_locks() {
 #[test]
 fn masses_forces_multipliers_and_energies_are_printed_too() {
     let text = text_of(&["print", "pendulum", "M", "Q", "lambda", "energy"]);
-    // Level and at rest: the rod bears nothing.
+    // Level and at rest: the rod carries no force.
     for line in
         ["P.0  1.000000         0", "P.1  -9.810000", "rod (N/m)  0", "kinetic (J)    0", "potential (J)  0"]
     {

@@ -1,5 +1,5 @@
-//! One four-bar with masses in the lecture's coordinates with a dummy body, in relative angles, in natural and in mixed
-//! coordinates: the same fall, the same forces in its pins.
+//! One four-bar with masses in four kinds of coordinates: the lecture's with a dummy body, relative angles, natural and mixed
+//! coordinates. The motion and the forces in its pins are the same.
 #![forbid(unsafe_code)]
 
 use mbs_runtime::dynamics::{DormandPrince8, Explicit, Projection, Simulation, Tolerance};
@@ -105,7 +105,7 @@ mechanism! {
 /// Bound of the differences of places (m) and of the energy, as a part of the largest kinetic energy.
 const BOUND: f64 = 1e-9;
 
-/// Bound of the differences of forces (N): accelerations lose what the tolerance of the integration leaves.
+/// Bound of the differences of forces (N): accelerations have larger errors than the tolerance of the integration.
 const FORCE_BOUND: f64 = 1e-8;
 
 /// A and B, and the force of the coupler on the rocker, in steps of 0.1 s of a fall of 2 s.

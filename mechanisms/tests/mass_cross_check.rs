@@ -1,12 +1,12 @@
-//! CasADi against a text that uses every statement of dynamics: energies and works go in, Lagrange's equations come
-//! out, and must be what the macro emits from Jacobians.
+//! CasADi against a text that uses every statement of dynamics. Its Lagrange's equations from energies and works must agree
+//! with the equations that the macro emits from Jacobians.
 
 use mbs_runtime::mechanism;
-use mechanisms::facade::AnyEquations;
-use mechanisms::masses::{boxed_driven, boxed_masses};
-use mechanisms::registry::FREE;
-use mechanisms::verify::compare::compare;
-use mechanisms::verify::{Oracle, generated_definition, states_of};
+use mbs_workbench::erased::erase::erase;
+use mbs_workbench::erased::facade::AnyEquations;
+use mbs_workbench::verify::compare::compare;
+use mbs_workbench::verify::{Oracle, generated_definition, states_of};
+use mechanisms::CATALOGUE;
 
 mechanism! {
     /// Meaningless as a machine, complete as a text of dynamics.
@@ -137,10 +137,13 @@ mechanism! {
 #[test]
 fn casadi_confirms_every_function_of_masses_and_forces() {
     let oracle = Oracle::new(&|_| ()).unwrap_or_else(|error| panic!("{error}"));
-    let driven: Box<dyn AnyEquations> = boxed_driven::<Driven, 3>();
-    let ready = FREE.iter().map(|card| (card.make)());
-    let joints: [Box<dyn AnyEquations>; 2] = [boxed_masses::<Jointed, 5, 4>(), boxed_driven::<Natural, 4>()];
-    for mut mechanism in [boxed_masses::<Heap, 5, 2>(), driven].into_iter().chain(joints).chain(ready) {
+    let driven: Box<dyn AnyEquations> = erase(Driven::default()).into_equations();
+    let ready = CATALOGUE.free().map(|card| card.equations());
+    let joints: [Box<dyn AnyEquations>; 2] =
+        [erase(Jointed::default()).into_equations(), erase(Natural::default()).into_equations()];
+    for mut mechanism in
+        [erase(Heap::default()).into_equations(), driven].into_iter().chain(joints).chain(ready)
+    {
         let definition = generated_definition(mechanism.as_ref()).unwrap_or_else(|error| panic!("{error}"));
         let states = states_of(mechanism.coordinates().len());
         let agreement = compare(mechanism.as_mut(), &oracle, &definition, states);
@@ -154,11 +157,11 @@ fn casadi_confirms_every_function_of_masses_and_forces() {
     }
 }
 
-/// The control of the test above: a sign in the text of a force must show, and where.
+/// The control of the test above: a wrong sign in the text of a force must be detected, with its place.
 #[test]
 fn a_slip_in_a_force_is_found() {
     let oracle = Oracle::new(&|_| ()).unwrap_or_else(|error| panic!("{error}"));
-    let mut mechanism = boxed_masses::<Heap, 5, 2>();
+    let mut mechanism = erase(Heap::default()).into_equations();
     let definition = generated_definition(mechanism.as_ref()).unwrap_or_else(|error| panic!("{error}"));
     let right = "potential.append(elastic * (place -";
     assert!(definition.contains(right));

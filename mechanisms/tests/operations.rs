@@ -1,4 +1,4 @@
-//! What the emitted functions of the ready mechanisms cost: a stored list, a line a mechanism and function.
+//! Operations of the emitted functions of the ready mechanisms: a stored list with a line for each mechanism and function.
 //!
 //! After a change that is meant, run `UPDATE_SNAPSHOTS=1 cargo test -p mechanisms --test operations` and read the difference.
 
@@ -6,15 +6,15 @@ use std::fmt::Write;
 use std::path::Path;
 
 use mbs_codegen::Operations;
-use mechanisms::registry::ALL;
+use mechanisms::CATALOGUE;
 
 /// Functions that compute nothing are left out.
 fn costs() -> String {
     let mut text = String::new();
-    for card in ALL {
-        let mechanism = (card.make)();
+    for card in CATALOGUE.fixed() {
+        let mechanism = card.equations();
         let report = mbs_codegen::structure_of(mechanism.source(), Some(mechanism.scene()))
-            .unwrap_or_else(|faults| panic!("{}: {faults}", card.name));
+            .unwrap_or_else(|faults| panic!("{}: {faults}", card.name()));
         for (function, count) in report.costs {
             if count == Operations::default() {
                 continue;
@@ -25,7 +25,7 @@ fn costs() -> String {
                 text,
                 "{} {function}: {additions} + −, {multiplications} ×, {divisions} ÷, {sine_cosines} sin cos, \
                  {functions} other functions, {selects} selections, {calls} declared functions",
-                card.name
+                card.name()
             );
         }
     }

@@ -27,7 +27,7 @@ impl Drop for Scratch {
 }
 
 fn mbs(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_mbs")).args(arguments).output().expect("the program starts")
+    Command::new(env!("CARGO_BIN_EXE_mbs-catalogue")).args(arguments).output().expect("the program starts")
 }
 
 fn run_into(scratch: &Scratch, arguments: &[&str]) -> Output {
@@ -71,17 +71,18 @@ fn without_arguments_the_four_bar_runs_one_turn() {
 #[test]
 fn the_list_names_every_mechanism_with_its_parameters() {
     let text = standard_output(mbs(&["list"]));
-    for card in mechanisms::registry::ALL {
-        assert!(text.contains(card.name) && text.contains(card.title), "{text}");
+    for card in mechanisms::CATALOGUE.fixed() {
+        let title = card.picture().expect("a text").title;
+        assert!(text.contains(&card.name()) && text.contains(&title), "{text}");
     }
     assert!(text.contains("omega=30 rad/s"), "{text}");
 }
 
 #[test]
 fn every_mechanism_runs_and_writes_its_report() {
-    let fixed = mechanisms::registry::ALL.iter().map(|card| (card.name, card.runs.len()));
-    let free = mechanisms::registry::FREE.iter().map(|card| (card.name, card.runs.len()));
-    for (name, runs) in fixed.chain(free) {
+    for card in mechanisms::CATALOGUE.iter() {
+        let (name, runs) = (card.name(), card.runs().expect("a text").len());
+        let name = name.as_str();
         let scratch = Scratch::new(name);
         // Matrices of 163 rows, and implicit steps of a millisecond, take a moment each where nothing is optimised.
         let until = match name {
@@ -122,7 +123,7 @@ fn a_free_mechanism_moves_by_its_forces_and_the_constraints_tell_the_methods_apa
         figure(&text, "largest |Φ|")
     };
     let [none, baumgarte, projection, velocity] = ["none", "baumgarte", "projection", "velocity"].map(run);
-    // Rounding, what damping leaves, what nothing takes away.
+    // Rounding, the residue of damping, the undamped drift.
     assert!(
         projection.max(velocity) < 1e-13 && 1e-13 < baumgarte && 10.0 * baumgarte < none,
         "{none} {baumgarte}"
@@ -142,7 +143,7 @@ fn every_integrator_and_the_penalty_can_be_chosen() {
     };
     let order5 = run(&["--integrator", "order5", "--tolerance", "1e-8"]);
     assert!(order5.0 < 1e-6 && order5.2 < 1e-13, "{order5:?}");
-    // What a tolerance costs is seen whatever the instants are.
+    // The cost of a tolerance is visible for any instants.
     let [exact, coarse] = ["1e-12", "1e-3"].map(|tolerance| run(&["--tolerance", tolerance]));
     assert!(exact.0 < 1e-10 && 1e-10 < coarse.0 && coarse.1 < 0.3 * exact.1, "{exact:?} {coarse:?}");
     // Four evaluations a step of Runge and Kutta's method, one of Euler's, and one to start with.
@@ -165,18 +166,14 @@ fn every_integrator_and_the_penalty_can_be_chosen() {
 #[test]
 fn rest_and_the_loads_of_a_driven_motion_are_analyses_too() {
     let scratch = Scratch::new("analyses");
-    let held =
-        standard_output(run_into(&scratch, &["run", "slider_crank_mass:Driven", "--analysis", "static"]));
+    let held = standard_output(run_into(&scratch, &["equilibrium", "slider_crank_mass:Driven"]));
     // At 60° the piston's pin carries half the rod, the motor that at the crank's end and the crank's own weight.
     assert!((figure(&held, "piston_pin.1") - 0.5 * 0.6 * 9.81).abs() < 1e-6, "{held}");
     let torque = 0.5 * 9.81 * (0.4 * 0.025 + 0.5 * 0.6 * 0.05);
     assert!((figure(&held, "motor_torque") - torque).abs() < 1e-6, "{held}");
-    let text = standard_output(run_into(
-        &scratch,
-        &["run", "slider_crank_mass:Driven", "--analysis", "inverse", "--steps", "36"],
-    ));
+    let text = standard_output(run_into(&scratch, &["inverse", "slider_crank_mass:Driven", "--steps", "36"]));
     assert!(text.contains("motor_torque: -") && text.contains("N*m"), "{text}");
-    // A turn brings back the energy, the motor's work is nothing but what the quadrature leaves.
+    // The energy is the same after a turn: the motor's work is the error of the quadrature.
     assert!(figure(&text, "work of drive crank_drive").abs() < 1e-3, "{text}");
     let header = scratch.text("motion.csv").lines().next().map(str::to_string).expect("a header");
     assert!(header.contains(",motor_torque (N*m),") && header.contains(",lambda closure.0 (N),"), "{header}");
@@ -185,11 +182,10 @@ fn rest_and_the_loads_of_a_driven_motion_are_analyses_too() {
 #[test]
 fn a_pendulum_rests_where_its_guess_leads_and_swings_about_it_with_its_frequency() {
     let scratch = Scratch::new("rest");
-    let run =
-        |arguments: &[&str]| standard_output(run_into(&scratch, &[&["run", "pendulum"], arguments].concat()));
+    let run = |arguments: &[&str]| standard_output(run_into(&scratch, arguments));
     for (side, tension) in [("-0.9", 9.81), ("0.9", -9.81)] {
         let guess = format!("P.1={side}");
-        let text = run(&["--analysis", "static", "--guess", "P.0=0.1", "--guess", &guess]);
+        let text = run(&["equilibrium", "pendulum", "--guess", "P.0=0.1", "--guess", &guess]);
         assert!(figure(&text, "P.0 at rest").abs() < 1e-9, "{text}");
         assert!(
             (figure(&text, "P.1 at rest") - side.parse::<f64>().unwrap().signum()).abs() < 1e-9,
@@ -199,12 +195,12 @@ fn a_pendulum_rests_where_its_guess_leads_and_swings_about_it_with_its_frequency
         assert!(
             scratch
                 .text("report.html")
-                .contains(&format!("--analysis static --guess P.0=0.1 --guess {guess}"))
+                .contains(&format!("mbs equilibrium pendulum --guess P.0=0.1 --guess {guess}"))
         );
     }
     // ±√(g/L) i about the lower position, ±√(g/L) about the upper one.
     let rate = 9.81_f64.sqrt();
-    let text = run(&["--analysis", "linear", "--guess", "P.0=0.1", "--guess", "P.1=-0.9"]);
+    let text = run(&["modes", "pendulum", "--guess", "P.0=0.1", "--guess", "P.1=-0.9"]);
     let eigenvalue =
         text.lines().find_map(|line| line.trim().strip_prefix("eigenvalues 1, 2: ")).expect("a pair");
     let frequency = eigenvalue.split(" ± ").nth(1).and_then(|rest| rest.split('i').next()).expect("a pair");
@@ -213,7 +209,7 @@ fn a_pendulum_rests_where_its_guess_leads_and_swings_about_it_with_its_frequency
     let modes = scratch.text("modes.csv");
     let line = modes.lines().nth(1).expect("a mode");
     assert!(line.starts_with("released,1,2,") && line.contains(",marginal,1.0,0.0,"), "{modes}");
-    let text = run(&["--analysis", "linear", "--guess", "P.0=0.1", "--guess", "P.1=0.9"]);
+    let text = run(&["modes", "pendulum", "--guess", "P.0=0.1", "--guess", "P.1=0.9"]);
     let both = [figure(&text, "eigenvalue 1"), figure(&text, "eigenvalue 2")];
     assert!(both.iter().all(|value| (value.abs() - rate).abs() < 2e-6) && both[0] * both[1] < 0.0, "{text}");
 }
@@ -221,7 +217,7 @@ fn a_pendulum_rests_where_its_guess_leads_and_swings_about_it_with_its_frequency
 #[test]
 fn small_motions_about_a_moment_say_that_it_moves() {
     let scratch = Scratch::new("moment");
-    let arguments = ["run", "pendulum", "--analysis", "linear", "--at", "0.3", "--steps", "3"];
+    let arguments = ["modes", "pendulum", "--at", "0.3", "--steps", "3"];
     let text = standard_output(run_into(&scratch, &arguments));
     assert!(
         text.contains("small motions about: the state at t = 0.3 s, which moves")
@@ -229,7 +225,7 @@ fn small_motions_about_a_moment_say_that_it_moves() {
     );
     assert_eq!(figure(&text, "degrees of freedom"), 1.0);
     assert_eq!(scratch.text("motion.csv").lines().count(), 5);
-    let text = standard_output(run_into(&scratch, &["run", "quarter_car", "--analysis", "linear"]));
+    let text = standard_output(run_into(&scratch, &["modes", "quarter_car"]));
     // Body and wheel on their springs with the other held still are near: 1.1 and 10 Hz.
     assert!(
         text.contains("1.142825 Hz, damping ratio 0.2781, stable") && text.contains("9.973777 Hz"),
@@ -241,12 +237,12 @@ fn small_motions_about_a_moment_say_that_it_moves() {
 fn small_motions_are_those_of_the_text_s_independent_coordinates_where_they_determine_the_others() {
     let scratch = Scratch::new("independent");
     let about = |t: &str| {
-        let arguments = ["run", "pendulum", "--analysis", "linear", "--at", t, "--steps", "3"];
+        let arguments = ["modes", "pendulum", "--at", t, "--steps", "3"];
         standard_output(run_into(&scratch, &arguments))
     };
     let fallen = about("0.3");
     assert!(fallen.lines().any(|line| line.trim() == "in the coordinates: P.0"), "{fallen}");
-    // Level, x does not determine y.
+    // If the rod is level, x does not determine y.
     let level = about("0");
     assert!(level.contains("in the coordinates: P.1; P.0 would not determine the others there"), "{level}");
 }
@@ -276,7 +272,7 @@ fn what_stands_in_the_way_of_a_motion_is_named() {
         let message = fails(&[&["pendulum", "--param", "L=0"], method].concat());
         assert!(message.contains("row `rod` (line ") && message.contains("a length is 0"), "{message}");
     }
-    // A bob on a massless cart falls straight down until the pole stands upright.
+    // A bob on a massless cart falls straight down until the pole is upright.
     let light = ["cart_pole", "--param", "cart_mass=0", "--steps", "4", "--tolerance", "1e-6"];
     let message = fails(&light);
     assert!(message.contains("can move without any mass moving; give it mass"), "{message}");
@@ -290,7 +286,7 @@ fn what_really_ran_in_place_of_independent_coordinates_is_said() {
     let text = run(&["bricard", "--method", "velocity", "--steps", "2", "--until", "0.02"]);
     assert!(text.contains("method: projection onto all rows together"), "{text}");
     assert!(scratch.text("report.html").contains("projection onto all rows together"));
-    // Level, x does not determine y.
+    // If the rod is level, x does not determine y.
     let text = run(&["pendulum", "--method", "velocity", "--steps", "4", "--until", "2"]);
     assert!(figure(&text, "independent motions chosen anew") > 0.0 && !text.contains("method: "), "{text}");
     assert!(!run(&["pendulum", "--steps", "4", "--until", "2"]).contains("chosen anew"));
@@ -329,55 +325,88 @@ fn a_multiplier_that_is_one_choice_of_many_is_never_shown_without_a_word() {
 
 #[test]
 fn what_an_analysis_has_no_use_for_is_refused() {
-    let cases: [(&[&str], &str); 22] = [
-        (&["pendulum", "--analysis", "static", "--until", "3"], "a position of rest has none"),
-        (&["pendulum", "--analysis", "static", "--steps", "3"], "a position of rest has none"),
+    let cases: [(&[&str], &str); 21] = [
+        (&["equilibrium", "pendulum", "--until", "3"], "unexpected argument '--until'"),
+        (&["equilibrium", "pendulum", "--steps", "3"], "unexpected argument '--steps'"),
+        (&["equilibrium", "pendulum", "--at", "0.3"], "unexpected argument '--at'"),
+        (&["simulate", "pendulum", "--guess", "P.0=1"], "unexpected argument '--guess'"),
+        (&["kinematics", "four_bar", "--method", "velocity"], "unexpected argument '--method'"),
+        (&["modes", "pendulum", "--at", "1", "--until", "2"], "unexpected argument '--until'"),
+        (&["modes", "pendulum", "--at", "0.3", "--guess", "P.0=1"], "cannot be used with"),
+        (&["modes", "pendulum", "--steps", "3"], "--at <T>"),
+        (&["modes", "pendulum", "--method", "none"], "use `mbs simulate`, or `mbs modes` with `--at`"),
         (
-            &["pendulum", "--analysis", "static", "--method", "none"],
-            "use `--analysis dynamic`, or `linear` with `--at`",
+            &["run", "four_bar", "--method", "velocity"],
+            "`--method` is how a motion from forces is integrated",
         ),
         (
-            &["pendulum", "--analysis", "linear", "--at", "1", "--until", "2"],
-            "small motions are looked at `--at`",
+            &["run", "four_bar", "--integrator", "rk4"],
+            "`--integrator` is how a motion from forces is integrated",
         ),
-        (&["four_bar", "--method", "velocity"], "`--method` is how a motion from forces is integrated"),
-        (&["four_bar", "--integrator", "rk4"], "`--integrator` is how a motion from forces is integrated"),
-        (&["four_bar", "--tolerance", "1e-3"], "`--tolerance` is how a motion from forces is integrated"),
-        (&["pendulum", "--step", "0.1"], "adaptive steps take `--tolerance`"),
-        (&["pendulum", "--frequency", "3"], "belong to `--method baumgarte` or `penalty`"),
         (
-            &["pendulum", "--method", "extrapolated", "--tolerance", "1e-3"],
+            &["run", "four_bar", "--tolerance", "1e-3"],
+            "`--tolerance` is how a motion from forces is integrated",
+        ),
+        (&["simulate", "pendulum", "--step", "0.1"], "adaptive steps take `--tolerance`"),
+        (&["simulate", "pendulum", "--frequency", "3"], "belong to `--method baumgarte` or `penalty`"),
+        (
+            &["simulate", "pendulum", "--method", "extrapolated", "--tolerance", "1e-3"],
             "an implicit method takes `--step`",
         ),
-        (&["pendulum", "--method", "extrapolated", "--integrator", "rk4"], "an implicit one takes `--step`"),
-        (&["pendulum", "--integrator", "rk4", "--tolerance", "1e-3"], "equal ones take `--step`"),
-        (&["pendulum", "--method", "baumgarte", "--alpha", "1e5"], "belongs to `--method penalty`"),
-        (&["pendulum", "--method", "penalty", "--alpha", "1e9"], "at most 1e8"),
-        (&["pendulum", "--guess", "P.0=1"], "use `--analysis static` or `linear`"),
-        (&["pendulum", "--at", "0.3"], "use `--analysis linear`"),
-        (&["pendulum", "--analysis", "static", "--at", "0.3"], "use `--analysis linear`"),
         (
-            &["pendulum", "--analysis", "linear", "--at", "0.3", "--guess", "P.0=1"],
-            "`--at` follows the motion",
+            &["simulate", "pendulum", "--method", "extrapolated", "--integrator", "rk4"],
+            "an implicit one takes `--step`",
         ),
-        (&["pendulum", "--analysis", "linear", "--at", "-1"], "at least 0"),
-        (&["pendulum", "--analysis", "static", "--guess", "P=1"], "known: P.0, P.1"),
-        (&["pendulum", "--analysis", "static", "--guess", "P.0=far"], "not a number"),
-        (&["four_bar", "--analysis", "static"], "neither masses nor forces"),
+        (&["simulate", "pendulum", "--integrator", "rk4", "--tolerance", "1e-3"], "equal ones take `--step`"),
+        (
+            &["simulate", "pendulum", "--method", "baumgarte", "--alpha", "1e5"],
+            "belongs to `--method penalty`",
+        ),
+        (&["simulate", "pendulum", "--method", "penalty", "--alpha", "1e9"], "at most 1e8"),
+        (&["equilibrium", "pendulum", "--guess", "P=1"], "known: P.0, P.1"),
+        (&["equilibrium", "four_bar"], "neither masses nor forces"),
     ];
     for (arguments, words) in cases {
-        let message = failure(mbs(&[&["run"], arguments].concat()), 2);
+        let message = failure(mbs(arguments), 2);
         assert!(message.contains(words), "{arguments:?}: {message}");
+    }
+    assert!(failure(mbs(&["modes", "pendulum", "--at", "-1"]), 2).contains("at least 0"));
+    assert!(failure(mbs(&["equilibrium", "pendulum", "--guess", "P.0=far"]), 2).contains("not a number"));
+}
+
+/// Values that the option `--analysis` of earlier versions gave: command, file, row, and numbers of the row.
+#[test]
+fn commands_give_the_numbers_of_the_analyses_that_they_replace() {
+    let stored = include_str!("analyses.txt");
+    let scratch = Scratch::new("replaced-analyses");
+    let cases: Vec<&str> = stored.split("\n\n").filter(|case| !case.trim().is_empty()).collect();
+    assert_eq!(cases.len(), 9, "a command each, with `run` and small motions of two kinds");
+    for case in cases {
+        let mut lines = case.trim().lines();
+        let (command, file) = (lines.next().expect("a command"), lines.next().expect("a file"));
+        standard_output(run_into(&scratch, &command.split(' ').collect::<Vec<_>>()));
+        let text = scratch.text(file);
+        let found: Vec<&str> = text.lines().collect();
+        let (rows, lines) = ([found[1], found[found.len() - 1]], lines.collect::<Vec<_>>());
+        assert_eq!(lines.len(), rows.len(), "{command}");
+        for (expected, found) in lines.into_iter().zip(rows) {
+            let numbers = |row: &str| row.split(',').map(|cell| cell.parse::<f64>().ok()).collect::<Vec<_>>();
+            let (expected, found) = (numbers(expected), numbers(found));
+            assert_eq!(expected.len(), found.len(), "{command}");
+            for (a, b) in expected.iter().zip(&found) {
+                let near = a.zip(*b).is_none_or(|(a, b)| (a - b).abs() <= 1e-9 * a.abs().max(1.0));
+                assert!(near && a.is_some() == b.is_some(), "{command}: {a:?} {b:?}");
+            }
+        }
     }
 }
 
 #[test]
 fn rest_is_found_beside_what_no_force_answers_and_is_called_by_its_name() {
     let scratch = Scratch::new("stability");
-    let run = |arguments: &[&str]| {
-        standard_output(run_into(&scratch, &[&["run"], arguments, &["--analysis", "static"]].concat()))
-    };
-    // Level, the rod gives no stiffness: the weight shows the way.
+    let run =
+        |arguments: &[&str]| standard_output(run_into(&scratch, &[&["equilibrium"], arguments].concat()));
+    // A level rod gives no stiffness: the weight gives the direction.
     let text = run(&["pendulum"]);
     assert!(
         text.contains("this rest is: stable: small motions go on") && figure(&text, "P.1 at rest") == -1.0,
@@ -388,7 +417,7 @@ fn rest_is_found_beside_what_no_force_answers_and_is_called_by_its_name() {
         text.contains("this rest is: unstable: small motions grow, the fastest by e in 0.3193 s"),
         "{text}"
     );
-    // Pushed from there it falls to the stable one, which stands below with its own label.
+    // Pushed from there it falls to the stable equilibrium, which is listed below with its own label.
     let settled = text.split("\nreleased, settled\n").nth(1).expect("a second rest");
     assert!(
         text.contains("a stable rest is: found below") && figure(settled, "P.1 at rest") == -1.0,
@@ -411,24 +440,23 @@ fn rest_is_found_beside_what_no_force_answers_and_is_called_by_its_name() {
     let reason = "left out: slider_crank_mass:Released, torque: no position of rest at t = 0 s";
     assert!(text.contains("theta at rest: 1.570796 rad") && text.contains(reason), "{text}");
     assert!(scratch.text("report.html").contains("torque: no position of rest at t = 0 s"));
-    let message =
-        failure(mbs(&["run", "slider_crank_mass:Released", "--param", "tau=1", "--analysis", "static"]), 1);
+    let message = failure(mbs(&["equilibrium", "slider_crank_mass:Released", "--param", "tau=1"]), 1);
     assert!(message.contains("still push `theta`") && message.contains("`--guess theta=…`"), "{message}");
-    // One coordinate as the guess says, the others where the rows want them.
+    // One coordinate at its guess, the others follow so that the rows hold.
     let text = run(&["bricard", "--guess", "first=0.3"]);
-    assert!((figure(&text, "first at rest") - 0.823575).abs() < 1e-6, "{text}");
-    let text = standard_output(run_into(&scratch, &["run", "car_axis", "--analysis", "linear"]));
+    assert!((figure(&text, "first at rest") - std::f64::consts::FRAC_PI_2).abs() < 1e-6, "{text}");
+    let text = standard_output(run_into(&scratch, &["modes", "car_axis"]));
     assert!(text.contains("small motions about: a position of rest, the time held at 0 s"), "{text}");
 }
 
 #[test]
 fn an_analysis_that_cannot_be_says_which_can() {
     let refused = |arguments: &[&str]| failure(mbs(arguments), 2);
-    let message = refused(&["run", "four_bar", "--analysis", "dynamic"]);
+    let message = refused(&["simulate", "four_bar"]);
     assert!(message.contains("neither masses nor forces"), "{message}");
-    for analysis in ["kinematic", "inverse"] {
-        let message = refused(&["run", "pendulum", "--analysis", analysis]);
-        assert!(message.contains("free to move") && message.contains("--analysis dynamic"), "{message}");
+    for analysis in ["kinematics", "inverse"] {
+        let message = refused(&[analysis, "pendulum"]);
+        assert!(message.contains("free to move") && message.contains("mbs simulate pendulum"), "{message}");
     }
     refused(&["run", "pendulum", "--until", "0"]);
     refused(&["run", "pendulum", "--method", "hope"]);
@@ -449,10 +477,10 @@ fn a_parameter_changes_the_motion() {
 fn the_values_are_those_of_the_library_bit_by_bit() {
     let scratch = Scratch::new("bits");
     standard_output(run_into(&scratch, &["run", "four_bar", "--steps", "7"]));
-    let card = mechanisms::registry::find("four_bar").expect("in the list");
-    let mechanism = card.instance(&card.runs[0]).expect("a preset");
+    let card = mechanisms::CATALOGUE.find("four_bar").expect("in the list");
+    let mechanism = card.fixed_instance(&card.runs().expect("a text")[0]).expect("a preset");
     let duration = card.duration(mechanism.as_ref()).expect("a duration");
-    let motion = mechanisms::registry::sweep(mechanism.as_ref(), duration, 7).expect("it turns");
+    let motion = mbs_workbench::catalogue::sweep(mechanism.as_ref(), duration, 7).expect("it turns");
     for (row, line) in scratch.text("motion.csv").lines().skip(1).take(8).enumerate() {
         let found = cells(line);
         assert_eq!(found[0].to_bits(), motion.time[row].to_bits());
@@ -556,7 +584,7 @@ fn a_directory_that_cannot_be_made_is_named() {
 #[test]
 fn a_reader_that_leaves_is_no_error() {
     for arguments in [&["list"][..], &["expand", "four_bar"]] {
-        let mut child = Command::new(env!("CARGO_BIN_EXE_mbs"))
+        let mut child = Command::new(env!("CARGO_BIN_EXE_mbs-catalogue"))
             .args(arguments)
             .stdout(Stdio::piped())
             .stderr(Stdio::piped())
@@ -575,7 +603,7 @@ fn a_reader_that_leaves_is_no_error() {
 #[test]
 fn a_reader_that_leaves_still_gets_the_report() {
     let scratch = Scratch::new("pipe");
-    let mut child = Command::new(env!("CARGO_BIN_EXE_mbs"))
+    let mut child = Command::new(env!("CARGO_BIN_EXE_mbs-catalogue"))
         .args(["run", "open_chain", "--steps", "2", "--out"])
         .arg(&scratch.0)
         .stdout(Stdio::piped())
@@ -631,7 +659,7 @@ fn verify_prints_the_largest_error_of_each_function() {
 
 #[test]
 fn verify_without_python_names_the_cure() {
-    let output = Command::new(env!("CARGO_BIN_EXE_mbs"))
+    let output = Command::new(env!("CARGO_BIN_EXE_mbs-catalogue"))
         .args(["verify", "four_bar"])
         .env("MBS_PYTHON", "no-such-python")
         .output()

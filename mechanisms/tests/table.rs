@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 use mbs_runtime::Function;
-use mechanisms::tabulated::sample;
+use mbs_workbench::tables::sample;
 
 mod valve_lift {
     include!("data/valve_lift.rs");
@@ -17,8 +17,13 @@ fn path(name: &str) -> PathBuf {
 }
 
 fn mbs(arguments: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_mbs"));
-    command.current_dir(path("data")).arg("table").args(arguments).output().expect("the program starts")
+    let mut command = Command::new(env!("CARGO_BIN_EXE_mbs-catalogue"));
+    command
+        .current_dir(path("../mbs-workbench/data"))
+        .arg("table")
+        .args(arguments)
+        .output()
+        .expect("the program starts")
 }
 
 #[track_caller]
@@ -36,7 +41,7 @@ fn failure(output: Output, code: i32) -> String {
     message
 }
 
-/// The number behind `before`.
+/// The number after `before`.
 #[track_caller]
 fn figure(text: &str, before: &str) -> f64 {
     let behind = text.split(before).nth(1).unwrap_or_else(|| panic!("{before} is missing in {text}"));
@@ -54,8 +59,8 @@ fn a_table_is_summed_up_and_drawn() {
     assert!(text.contains("periodic quintic, 48 knots, 4 continuous derivatives"), "{text}");
     // A gauge of 1 µm rounds by half of it, and the fit adds its own error.
     assert!(figure(&text, "at most ") < 1.5e-6 && figure(&text, "root mean square ") < 5e-7, "{text}");
-    // Noise in the second derivative grows like the power 5/2 of the knots: 7.5^2.5 = 154, and half of it for what the
-    // two splines make of the shortest waves.
+    // Noise in the second derivative grows like the power 5/2 of the number of knots: 7.5^2.5 = 154. The two splines treat the
+    // shortest waves differently, for which half of it is allowed.
     let factor = text.lines().find_map(|line| line.trim().split_once(" times less")).expect("a comparison");
     assert!(factor.0.parse::<f64>().is_ok_and(|factor| factor > 77.0), "{text}");
     let svg = fs::read_to_string(&picture).expect("the picture");

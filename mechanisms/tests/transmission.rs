@@ -1,9 +1,9 @@
 //! CasADi's and 50 digits' solutions of their own Jacobians against ratios of transmission.
 
 use mbs_runtime::mechanism;
-use mechanisms::facade::boxed;
-use mechanisms::verify::compare::compare;
-use mechanisms::verify::{Oracle, STATES, check};
+use mbs_workbench::erased::erase::erase;
+use mbs_workbench::verify::compare::compare;
+use mbs_workbench::verify::{Oracle, STATES, check};
 
 mechanism! {
     /// A four-bar on a crank that is measured, with its prescribed side on the left, and a slide on it.
@@ -35,7 +35,7 @@ fn casadi_and_50_digits_confirm_ratios() {
 
 #[test]
 fn a_ratio_of_the_wrong_sign_is_found() {
-    let mut transmission = boxed::<Transmission, 5>();
+    let mut transmission = erase(Transmission::default()).into_equations();
     let definition = mbs_codegen::casadi_definition(transmission.source(), None)
         .unwrap_or_else(|faults| panic!("{faults}"));
     let oracle = Oracle::new(&|_| ()).unwrap_or_else(|error| panic!("{error}"));

@@ -5,7 +5,7 @@
 //! ```
 //!
 //! Measured, checked and written as by the bench `kinematics`, to `bench/dynamics.md` and `bench/dynamics.svg` below the
-//! target directory; with `-- --docs` also beside this file.
+//! target directory; with `-- --docs` also next to this file.
 #![forbid(unsafe_code)]
 
 mod against_peers;
@@ -14,8 +14,8 @@ use std::process::ExitCode;
 
 use against_peers::{Line, Peer, SHOWN, Subject};
 
-/// Largest error of accelerations, over the largest acceleration of all states: a thousand roundings, which is what
-/// the factorizations of Andrews' mechanism differ by.
+/// Largest error of accelerations, over the largest acceleration of all states: a thousand roundings, by which the
+/// factorizations of Andrews' mechanism differ.
 const LARGEST_ERROR_OF_RATES: f64 = 1e-12;
 
 /// The same of CasADi's sparse QR with multipliers, which does not pivot for size.
@@ -35,10 +35,10 @@ const NOTES: &str = "Accelerations are asked for as an integrator does, with mul
                      method and functional iteration; its right-hand side is compiled C of CasADi's (multipliers by sparse QR, \
                      Baumgarte ξ = 1, ω = 10).";
 
-/// What bounds the goals that were missed when this was measured.
+/// Limits of the goals that were missed at the last measurement: work and reason.
 const BOUNDS: &[(&str, &str)] = &[(
     "right-hand side, forty loops over ten (at most)",
-    "instructions grow 3.96 times (`.ci/instructions`); without the processor's own instructions time grows 4.2 times, with them ten loops gain more than forty.",
+    "instructions grow 3.96 times (`cargo xtask instructions`); without the processor's own instructions time grows 4.2 times, with them ten loops gain more than forty.",
 )];
 
 const LINES: &[Line] = &[

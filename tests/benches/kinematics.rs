@@ -4,13 +4,13 @@
 //! cargo bench -p mbs-tests --bench kinematics
 //! ```
 //!
-//! Builds the emitted code and its peers (`tests/proofs/peers`) for this processor and for the default target, runs
-//! both, and writes a table and a plot to `bench/kinematics.md` and `bench/kinematics.svg` below the target directory;
-//! with `-- --docs` also beside this file and into the project's README; `-- --rounds 5` is enough to see that
+//! Builds the emitted code and its peers (`tests/proofs/peers`) for this processor and for the default target, and runs
+//! both. Writes a table and a plot to `bench/kinematics.md` and `bench/kinematics.svg` below the target directory;
+//! with `-- --docs` also next to this file, from where the book takes it; `-- --rounds 5` is enough to see that
 //! everything works. Every ratio is the median over rounds in which all implementations took turns; accuracy is checked
 //! before anything is timed. Needs Python 3 (for CasADi and SymPy) and a C compiler.
 //!
-//! Fails where a result is wrong, not where it is slow: how far a ratio is from its goal stands in the table.
+//! Fails if a result is wrong, not if it is slow: the table shows each ratio with its goal.
 #![forbid(unsafe_code)]
 
 mod against_peers;
@@ -19,14 +19,14 @@ use std::process::ExitCode;
 
 use against_peers::{Line, Peer, SHOWN, Subject};
 
-/// Largest error of an exact evaluation, relative to the largest value of its row. SymPy's code and dual numbers come
-/// to 1.4e-13 in the chain, whose γ is a difference of larger numbers there.
+/// Largest error of an exact evaluation, relative to the largest value of its row. SymPy's code and dual numbers reach
+/// 1.4e-13 in the chain, whose γ is a difference of larger numbers there.
 const LARGEST_EVALUATION_ERROR: f64 = 1e-12;
 
-/// Largest one of what is emitted.
+/// Largest error of emitted code.
 const LARGEST_EMITTED_ERROR: f64 = 1e-14;
 
-/// Largest one of central differences, whose steps weigh rounding against truncation.
+/// Largest error of central differences, whose steps balance rounding against truncation.
 const LARGEST_ERROR_OF_DIFFERENCES: f64 = 1e-5;
 
 /// Largest error of a step, relative to the largest position, velocity, acceleration: positions are solved to 1e-12.
@@ -40,7 +40,7 @@ const NOTES: &str = "Lanes step at as many phases of the turn. The text by hand 
                      is its `fast_newton`, behind which `solve` factorizes once for the velocity and once for the acceleration; \
                      written out by hand, one factorization does for both. A row without a must is shown for completeness.";
 
-/// What bounds the goals that were missed when this was measured.
+/// Limits of the goals that were missed at the last measurement: work and reason.
 const BOUNDS: &[(&str, &str)] = &[
     (
         "kinematic step, ten loops, against Rust by hand",
@@ -60,7 +60,7 @@ const BOUNDS: &[(&str, &str)] = &[
     ),
     (
         "time a step, forty loops over ten (at most)",
-        "instructions grow 3.8 times (`.ci/instructions`), time more.",
+        "instructions grow 3.8 times (`cargo xtask instructions`), time more.",
     ),
 ];
 

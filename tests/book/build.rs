@@ -8,8 +8,12 @@ use std::{env, fs};
 fn main() -> Result<(), Box<dyn Error>> {
     let root = Path::new(&env::var("CARGO_MANIFEST_DIR")?).join("../..").canonicalize()?;
     let book = root.join("book/src");
-    let mut chapters = vec![root.join("README.md")];
-    collect(&book, &mut chapters)?;
+    let mut chapters = Vec::new();
+    // A package of this crate alone has neither.
+    if book.is_dir() {
+        chapters.push(root.join("README.md"));
+        collect(&book, &mut chapters)?;
+    }
     chapters.sort();
     let mut modules = String::new();
     for chapter in &chapters {

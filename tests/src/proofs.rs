@@ -13,7 +13,7 @@ pub fn directory() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("proofs")
 }
 
-/// Where the proof crates are built: once for each set of compiler flags, below the tests' own target directory.
+/// Build directory of the proof crates, one for each set of compiler flags, below the tests' own target directory.
 pub struct Workshop {
     target: PathBuf,
     flags: &'static str,
@@ -31,20 +31,20 @@ impl Workshop {
         self.variables.push((name, value.to_owned()));
     }
 
-    /// Directory of what is built.
+    /// Target directory of the builds.
     pub fn target(&self) -> &Path {
         &self.target
     }
 
     /// Runs `cargo build` with `arguments` and copies `product`, relative to the target directory, to `copy` there.
     ///
-    /// The product's name does not tell its features, so that only a copy made before the next build is the one.
+    /// The product's name does not contain its features: a copy is needed before the next build overwrites it.
     ///
     /// # Errors
-    /// What the compiler or the linker complains about.
+    /// Messages of the compiler or the linker.
     ///
     /// # Panics
-    /// Where cargo does not start or a file cannot be written.
+    /// If cargo does not start or a file cannot be written.
     pub fn build(&self, arguments: &[&str], product: &str, copy: &str) -> Result<PathBuf, String> {
         let made = |path: &Path, result: std::io::Result<()>| {
             result.unwrap_or_else(|error| panic!("{}: {error}", path.display()));
@@ -77,6 +77,6 @@ impl Workshop {
     }
 }
 
-/// Of cargo and rustc; they would change the code that is proven, or where it lies.
+/// Variables of cargo and rustc that would change the code under proof or its place.
 const OUTER_SETTINGS: [&str; 4] =
     ["CARGO_ENCODED_RUSTFLAGS", "CARGO_BUILD_RUSTFLAGS", "CARGO_BUILD_TARGET", "CARGO_INCREMENTAL"];

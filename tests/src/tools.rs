@@ -7,10 +7,10 @@ use std::process::{Command, Output};
 
 const BINUTILS: &str = "install a C compiler and binutils (Debian, Ubuntu: package `build-essential`), or name them in CC, NM and OBJDUMP";
 
-/// What `command` says.
+/// Output of `command`.
 ///
 /// # Panics
-/// Where the program does not start; `cure` says what to do.
+/// If the program does not start; the message ends with `cure`.
 pub fn run(command: &mut Command, cure: &str) -> Output {
     match command.env("LC_ALL", "C").output() {
         Ok(output) => output,
@@ -18,10 +18,10 @@ pub fn run(command: &mut Command, cure: &str) -> Output {
     }
 }
 
-/// What a successful `command` writes to its standard output.
+/// Standard output of a successful `command`.
 ///
 /// # Errors
-/// Everything it said, where it fails.
+/// All output of `command`, if it fails.
 ///
 /// # Panics
 /// As [`run`].
@@ -34,10 +34,10 @@ pub fn output(command: &mut Command, cure: &str) -> Result<String, String> {
 /// Compiles and links with the C compiler.
 ///
 /// # Errors
-/// What the compiler or the linker complains about.
+/// Messages of the compiler or the linker.
 ///
 /// # Panics
-/// Where there is no C compiler, with the cure.
+/// If there is no C compiler, with the cure.
 pub fn compile(arguments: &[&OsStr]) -> Result<String, String> {
     output(program("CC", "cc").args(arguments), BINUTILS)
 }
@@ -45,7 +45,7 @@ pub fn compile(arguments: &[&OsStr]) -> Result<String, String> {
 /// The symbols of a linked program as `nm` lists them: kind and name.
 ///
 /// # Panics
-/// Where there is no `nm`, with the cure, or it does not understand the program.
+/// If there is no `nm`, with the cure, or it does not understand the program.
 pub fn symbols(program_file: &Path) -> Vec<(char, String)> {
     let listed = output(program("NM", "nm").arg("--format=posix").arg(program_file), BINUTILS);
     let listed = listed.unwrap_or_else(|complaint| panic!("{complaint}"));
@@ -57,12 +57,12 @@ pub fn symbols(program_file: &Path) -> Vec<(char, String)> {
     listed.lines().filter_map(symbol).collect()
 }
 
-/// Functions of an object file or archive that `wanted` picks by name: of each its instructions as bytes, and behind
-/// an instruction what the linker puts into it: offset within the function, kind of reference, and the target where
-/// the compiler's naming does not hide it.
+/// Functions of an object file or archive that `wanted` picks by name, with their instructions as bytes. An instruction is
+/// followed by the reference that the linker resolves in it: offset within the function, kind, and target. The target is
+/// left out if the compiler's naming hides it.
 ///
 /// # Panics
-/// Where there is no `objdump`, with the cure, or it does not understand the file.
+/// If there is no `objdump`, with the cure, or it does not understand the file.
 pub fn disassembly(file: &Path, wanted: fn(&str) -> bool) -> BTreeMap<String, Vec<String>> {
     let mut command = program("OBJDUMP", "objdump");
     let listed = output(command.args(["--disassemble", "--reloc"]).arg(file), BINUTILS);

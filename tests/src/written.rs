@@ -5,8 +5,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// How they are built, those of `tests/editions` too. Without notes for a debugger the macro's library is built as it is for
-/// programs: once.
+/// Profiles of these crates and of `tests/editions`. Without debug information the macro's library is built only once, as for
+/// programs.
 const PROFILE: &str = r#"
 [profile.dev]
 debug = false
@@ -25,10 +25,10 @@ impl WrittenCrate {
     /// A crate below `scratch`, a test's `CARGO_TARGET_TMPDIR`, with this `Cargo.toml`; in it `../../` is this
     /// workspace.
     ///
-    /// It has the workspace's versions of everything, and what such crates need is built once for all of them.
+    /// It has the workspace's versions of all dependencies, which are built once for all such crates.
     ///
     /// # Panics
-    /// Where a file cannot be written.
+    /// If a file cannot be written.
     pub fn new(scratch: &str, name: &str, manifest: &str) -> Self {
         let scratch = Path::new(scratch);
         let target = scratch.parent().unwrap_or(scratch).to_path_buf();
@@ -41,10 +41,10 @@ impl WrittenCrate {
         made
     }
 
-    /// Writes a file, unless it is there already: cargo builds again what is newer.
+    /// Writes a file, unless it exists with this text: cargo rebuilds what is newer.
     ///
     /// # Panics
-    /// Where it cannot be written.
+    /// If it cannot be written.
     pub fn write(&self, path: &str, text: &str) {
         let path = self.directory.join(path);
         let made = |result: std::io::Result<()>| {

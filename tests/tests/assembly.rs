@@ -3,20 +3,21 @@
 use std::sync::Mutex;
 use std::thread;
 
-use mechanisms::lecture::experiment::{SAME, difference};
-use mechanisms::registry::{ALL, Card, Preset};
-use mechanisms::verify::states::Generator;
+use mbs_workbench::card::{Card, Preset};
+use mbs_workbench::erased::experiment::{SAME, difference};
+use mbs_workbench::verify::states::Generator;
+use mechanisms::CATALOGUE;
 
 /// Guesses of each mechanism.
 const GUESSES: u32 = 2000;
 
-/// Every coordinate of the guess is off by as much as this: a whole turn of angles, four reference lengths.
+/// Largest error of every coordinate of the guess: a whole turn of angles, four reference lengths.
 const ANGLE: f64 = core::f64::consts::PI;
 const LENGTHS: f64 = 2.0;
 
 /// Assembles a mechanism that declares a branch from [`GUESSES`] guesses; false where it declares none.
 fn assembles_from_any_guess(card: &Card, preset: &Preset) -> bool {
-    let mechanism = card.instance(preset).unwrap_or_else(|fault| panic!("{}: {fault}", card.name));
+    let mechanism = card.fixed_instance(preset).unwrap_or_else(|fault| panic!("{}: {fault}", card.name()));
     let experiment = mechanism.experiment();
     if experiment.branches().is_empty() {
         return false;
@@ -34,20 +35,24 @@ fn assembles_from_any_guess(card: &Card, preset: &Preset) -> bool {
         match experiment.assembled(&guess, 0.0, true) {
             Ok(found) => {
                 let values = experiment.branch_values(&found, 0.0);
-                assert!(values.iter().all(|value| *value > 0.0), "{}: {guess:?}", card.name);
+                assert!(values.iter().all(|value| *value > 0.0), "{}: {guess:?}", card.name());
                 right += u32::from(difference(&found, &declared, entries, &scales) < SAME);
             }
             Err(_) => refused += 1,
         }
     }
-    println!("{}, {}: {right} right, {refused} refused of {GUESSES}", card.name, preset.label);
-    assert_eq!((right, refused), (GUESSES, 0), "{}, {}", card.name, preset.label);
+    println!("{}, {}: {right} right, {refused} refused of {GUESSES}", card.name(), preset.label);
+    assert_eq!((right, refused), (GUESSES, 0), "{}, {}", card.name(), preset.label);
     true
 }
 
 #[test]
 fn a_declared_branch_is_assembled_from_any_guess() {
-    let presets = Mutex::new(ALL.iter().flat_map(|card| card.runs.iter().map(move |preset| (card, preset))));
+    let presets = Mutex::new(
+        CATALOGUE
+            .fixed()
+            .flat_map(|card| card.runs().expect("a text").into_iter().map(move |preset| (card, preset))),
+    );
     let next = || presets.lock().expect("no thread stops in between").next();
     let of_a_thread =
         || std::iter::from_fn(next).filter(|(card, preset)| assembles_from_any_guess(card, preset)).count();

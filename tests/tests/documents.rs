@@ -1,4 +1,4 @@
-//! README, ARCHITECTURE and CHANGELOG are true today.
+//! README, ARCHITECTURE and the book's list of commands and mechanisms agree with the code.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -11,7 +11,7 @@ fn read(name: &str) -> String {
     fs::read_to_string(root().join(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
 }
 
-/// What stands in single back quotes.
+/// Texts in single back quotes.
 fn quoted(text: &str) -> Vec<&str> {
     let prose = text.split("```").step_by(2);
     prose.flat_map(|part| part.split('`').skip(1).step_by(2)).collect()
@@ -29,6 +29,17 @@ fn every_path_that_the_architecture_names_exists() {
 }
 
 #[test]
+fn every_long_motion_is_listed_with_the_feature_that_it_needs() {
+    let manifest = read("tests/motions/Cargo.toml");
+    for file in fs::read_dir(root().join("tests/motions/tests")).expect("the folder").flatten() {
+        let path = file.path();
+        let name = path.file_stem().expect("a name").to_string_lossy().into_owned();
+        let entry = format!("[[test]]\nname = \"{name}\"\nrequired-features = [\"long\"]\n");
+        assert!(manifest.contains(&entry), "tests/motions/Cargo.toml does not list `{name}`");
+    }
+}
+
+#[test]
 fn every_folder_of_the_code_generator_is_on_the_map() {
     let text = read("ARCHITECTURE.md");
     let folders = fs::read_dir(root().join("mbs-codegen/src")).expect("the folder");
@@ -42,48 +53,53 @@ fn every_folder_of_the_code_generator_is_on_the_map() {
 }
 
 #[test]
-fn no_folder_of_the_code_generator_uses_one_to_its_right() {
-    let order = ["syntax", "model", "symbolic", "equations", "structure", "program", "emit"];
-    for (index, folder) in order.iter().enumerate() {
-        for file in fs::read_dir(root().join("mbs-codegen/src").join(folder)).expect("the folder") {
-            let path = file.expect("an entry").path();
-            let text = fs::read_to_string(&path).expect("a source file");
-            for later in order.iter().skip(index + 1) {
-                let used = [format!("crate::{later}"), format!("    {later}::")];
-                let found = used.iter().find(|used| text.contains(used.as_str()));
-                assert!(found.is_none(), "{} uses `{later}`", path.display());
-            }
-            let used = text.contains("use syn") || text.contains("use quote");
-            assert!(*folder != "symbolic" || !used, "{} knows of Rust's syntax", path.display());
-        }
+fn the_readme_fits_on_three_pages_and_its_links_lead_to_files() {
+    let text = read("README.md");
+    assert!(text.lines().count() <= 150, "{} lines", text.lines().count());
+    let prose: String = text.split("```").step_by(2).collect();
+    let links = prose.split("](").skip(1).filter_map(|rest| rest.split(')').next());
+    let links: Vec<&str> = links.collect();
+    assert!(links.len() > 15, "{links:?}");
+    for link in links {
+        let file = link.split('#').next().unwrap_or(link);
+        assert!(root().join(file).exists(), "README.md links to `{link}`, which is not there");
     }
 }
 
 #[test]
-fn every_mechanism_and_command_stands_in_the_readme() {
+fn the_readme_has_the_two_commands_and_the_first_example() {
     let text = read("README.md");
+    assert!(text.contains("cargo run --release") && text.contains("cargo test --workspace"));
+    let example = read("mbs-runtime/examples/four_bar.rs");
+    let (_, program) = example.split_once("\n\n").expect("a heading and a program");
+    assert!(text.contains(&format!("```rust\n{program}```")), "README.md does not show\n{program}");
+}
+
+#[test]
+fn every_mechanism_and_command_stands_in_the_chapter_on_the_program() {
+    let text = read("book/src/program.md");
     for command in [
         "list",
-        "run NAME",
-        "expand NAME",
-        "verify NAME",
-        "verify --all",
-        "print NAME",
-        "latex NAME",
-        "structure NAME",
-        "newton NAME",
-        "basins NAME",
-        "next NAME",
-        "dof NAME",
-        "drift NAME",
-        "compare NAME",
-        "table FILE.csv",
+        "run",
+        "print",
+        "latex",
+        "structure",
+        "newton",
+        "basins",
+        "next",
+        "dof",
+        "drift",
+        "compare",
+        "table",
+        "expand",
+        "verify",
     ] {
-        assert!(text.contains(&format!("`mbs {command}")), "README.md does not show `mbs {command}`");
+        assert!(text.contains(&format!("## `mbs {command}`")), "no section on `mbs {command}`");
     }
-    let free = mechanisms::registry::FREE.iter().map(|card| card.name);
-    for name in mechanisms::registry::ALL.iter().map(|card| card.name).chain(free) {
-        assert!(text.contains(&format!("`{name}`")), "README.md does not name `{name}`");
+    for command in ["run", "kinematics", "simulate", "inverse", "equilibrium", "modes"] {
+        assert!(text.contains(&format!("| `mbs {command}` |")), "no row on `mbs {command}`");
     }
-    assert!(text.contains("cargo run --release") && text.contains("cargo test --workspace"));
+    for name in mechanisms::CATALOGUE.names() {
+        assert!(text.contains(&format!("`{name}`")), "the chapter on the program does not name `{name}`");
+    }
 }

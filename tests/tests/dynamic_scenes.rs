@@ -4,7 +4,7 @@
 
 use mbs_runtime::driver::Polynomial;
 use mbs_runtime::dynamics::{DormandPrince8, Explicit, Projection, Simulation, Tolerance};
-use mbs_runtime::{Dynamic, Function, Lanes, Mechanism, Motion, Scalar, Stepper, mechanism};
+use mbs_runtime::{Dynamic, DynamicState, Function, Lanes, Mechanism, Scalar, Stepper, mechanism};
 
 mechanism! {
     /// A slider-crank that is driven, loaded, weighed, or left to itself.
@@ -163,7 +163,7 @@ fn a_driven_scene_with_masses_moves_as_the_one_without() {
     assert_eq!((still.q(), still.qd(), still.qdd()), (driven.q(), driven.qd(), driven.qdd()));
 }
 
-/// Kinetic and potential energy and what the gas supplied stay in balance, over a second of free motion.
+/// Kinetic and potential energy and the work of the gas stay in balance over a second of free motion.
 #[track_caller]
 fn swings<S: Dynamic<f64, 3, 2, States = [f64; 0]> + Clone>(scene: S) -> f64 {
     let parameters = scene.parameters();
@@ -223,7 +223,7 @@ where
     let lambda = [4.0, -7.0, 1.0].map(&number);
     let position = scene.position(&parameters, &q, number(0.1));
     let energy = scene.energy(&parameters, &position, &qd);
-    let motion = Motion { qd: &qd, qdd: &qdd, lambda: &lambda, states: &[] };
+    let motion = DynamicState { qd: &qd, qdd: &qdd, lambda: &lambda, states: &[] };
     let mut all = vec![energy.kinetic, energy.potential];
     all.extend(scene.mass(&parameters, &position).as_flattened());
     all.extend(scene.mass_times(&parameters, &position, &qdd));

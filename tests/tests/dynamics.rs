@@ -1,12 +1,12 @@
-//! Masses and forces end to end: M, Q, energies and loads against d'Alembert's sums in second-order Taylor
-//! arithmetic, their derivatives against differences, accelerations against closed forms.
+//! Masses and forces end to end. M, Q, energies and loads are compared with d'Alembert's sums in second-order Taylor
+//! arithmetic, their derivatives with differences, accelerations with closed forms.
 #![forbid(unsafe_code)]
 
 #[allow(dead_code, reason = "the comparison of kinematics has a test file of its own")]
 mod jet;
 
 use jet::{Jet, close};
-use mbs_runtime::{Dynamic, Mechanism, Motion, Newton, Outcome, Partitioned, mechanism};
+use mbs_runtime::{Dynamic, DynamicState, Mechanism, Newton, Outcome, Partitioned, mechanism};
 use mechanisms::andrews::Andrews;
 use mechanisms::n_four_bar::NFourBar;
 
@@ -145,7 +145,7 @@ fn arm(arm: &Arm, [psi1, psi2, s]: [Jet; 3], t: Jet, z: f64, lambda: f64) -> (Ve
     (masses, forces)
 }
 
-/// Σ m ∂p/∂q_i p̈ − Σ F ∂P/∂q_i for each coordinate: what M q̈ − Q must be.
+/// Σ m ∂p/∂q_i p̈ − Σ F ∂P/∂q_i for each coordinate: the expected M q̈ − Q.
 fn d_alembert(design: &Arm, state: &State) -> [f64; 3] {
     let State { q, qd, qdd, t, .. } = *state;
     let at = |qd: [f64; 3], qdd: [f64; 3], pace: f64| {
@@ -368,7 +368,7 @@ fn a_pendulum_falls_as_it_should_and_its_rod_pulls() {
     close(qdd[0], 0.7 * (-angular * sine - rate * rate * cosine), "ẍ");
     close(qdd[1], 0.7 * (angular * cosine - rate * rate * sine), "ÿ");
     let position = pendulum.position(&p, &q, 0.0);
-    let motion = Motion { qd: &qd, qdd: &[qdd[0], qdd[1]], lambda: &[lambda[0]], states: &[] };
+    let motion = DynamicState { qd: &qd, qdd: &[qdd[0], qdd[1]], lambda: &[lambda[0]], states: &[] };
     let [tension] = pendulum.loads(&p, &position, &motion);
     close(tension, 2.0 * (0.7 * rate * rate - 9.81 * sine), "tension");
     let energy = pendulum.energy(&p, &position, &qd);
@@ -387,7 +387,7 @@ fn states_have_starts_and_rates_and_stand_in_outputs() {
     close(rate, (4.0 - z[0]) / 0.1 + 2.0 * qd[2], "ż");
     let names: Vec<&str> = Arm::<f64>::LOADS.iter().map(|load| load.name).collect();
     assert_eq!(names, ["squeeze", "mixed"]);
-    let loads = arm.loads(&p, &here, &Motion { qd, qdd, lambda, states: z });
+    let loads = arm.loads(&p, &here, &DynamicState { qd, qdd, lambda, states: z });
     assert_eq!(loads, [lambda[0] + z[0], qdd[2] + lambda[0]]);
     assert_eq!(Arm::<f64>::OUTPUTS[0].name, "speed");
 }
@@ -513,11 +513,11 @@ const ANDREWS: [[[f64; 7]; 3]; 3] = [
     ],
 ];
 
-/// The states above are good to 15 digits, of which a derivative at these rates leaves ten.
+/// The states above have 15 digits; a derivative at these rates has ten.
 const REFERENCE: f64 = 1e-9;
 
-/// Accelerations and multipliers of a mechanism with one degree of freedom, without any matrix of all rows: the
-/// dependent coordinates follow the independent one, the inertia is that of the independent one alone.
+/// Accelerations and multipliers of a mechanism with one degree of freedom, without any matrix of all rows. The dependent
+/// coordinates follow the independent one, and the inertia is reduced to it.
 fn follow<S, const N: usize, const M: usize>(
     mechanism: &S,
     q: &[f64; N],
@@ -610,7 +610,7 @@ fn dependent_coordinates_are_found_and_independent_ones_stay() {
     for residual in andrews.phi(&p, &andrews.position(&p, &q, 0.0)) {
         assert!(residual.abs() < 1e-15, "{residual}");
     }
-    // What the text says comes first: the pendulum's start names both coordinates, so the later one depends.
+    // The text decides first: the pendulum's start names both coordinates, so the later one is dependent.
     assert_eq!(Pendulum::<f64>::INDEPENDENT, [0]);
     assert_eq!(FourBar::<f64>::INDEPENDENT, [0_u16; 0]);
 }
@@ -644,7 +644,7 @@ fn a_force_on_a_joint_is_borne_by_the_body_that_the_text_names() {
         [-qdd[i] * sine - qd[i] * qd[i] * cosine, qdd[i] * cosine - qd[i] * qd[i] * sine]
     });
     let inertia = [0.8 * (0.5 * ax + 0.25 * bx), 0.8 * (0.5 * ay + 0.25 * by)];
-    let motion = Motion { qd: &qd, qdd: &qdd, lambda: &[], states: &[] };
+    let motion = DynamicState { qd: &qd, qdd: &qdd, lambda: &[], states: &[] };
     let p = hung.parameters();
     let [x, y] = hung.loads(&p, &hung.position(&p, &q, 0.0), &motion);
     close(x, inertia[0], "x, borne by the other");

@@ -1,4 +1,4 @@
-//! Crates of editions 2018, 2021 and 2024 that call the runtime by another name, without std: they are built, their
+//! Crates of editions 2018, 2021 and 2024 that call the runtime by another name, without std. They are built, their
 //! lints are satisfied, and their own tests pass.
 #![forbid(unsafe_code)]
 

@@ -1,15 +1,15 @@
-//! Blocks of four and more unknowns, eliminated in an order that the compiler chose: against dense elimination, where that order is
-//! good, where it fails, and in lanes of which one fails.
+//! Blocks of four and more unknowns, eliminated in an order chosen at compile time, against dense elimination. The order is good,
+//! or fails, or fails in one of several lanes.
 
 use mbs_runtime::{Kinematic, Lanes, Mechanism, Partitioned, mechanism};
 use mechanisms::stephenson::Stephenson;
 use mechanisms::three_rrr::ThreeRrr;
 
-/// Error of a solution times the margin, relative: both sides lose digits as the margin says.
+/// Relative error of a solution times the margin: both sides lose digits in proportion to the inverse of the margin.
 const ERROR: f64 = 1e-12;
 
 /// Factor between the margins of two orders of pivots: the largest multiplier that either accepts.
-const MARGINS_APART: f64 = mbs_runtime::linear::LARGEST_MULTIPLIER;
+const MARGINS_APART: f64 = mbs_runtime::__private::LARGEST_MULTIPLIER;
 
 /// Margin below which digits are too few to compare.
 const LEAST_MARGIN: f64 = 1e-4;
@@ -106,7 +106,7 @@ fn compare<S: Kinematic<f64, N>, const N: usize>(mechanism: &S, q: &[f64; N], b:
     margin.value
 }
 
-/// Compares at `count` random positions; how many were regular enough.
+/// Compares at `count` random positions; returns the number that were regular enough.
 fn at_random<S: Kinematic<f64, N>, const N: usize>(mechanism: &S, count: u32) -> u32 {
     let mut sequence = Sequence(5);
     let mut regular = 0;

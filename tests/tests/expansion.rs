@@ -9,7 +9,7 @@ use std::process::Command;
 use std::{env, fs, thread};
 use texts::workspace;
 
-/// Where a child process writes what it expands.
+/// Environment variable with the file to which a child process writes its expansions.
 const OUTPUT: &str = "EXPANSION_OUTPUT";
 
 fn expand((path, text): &(String, String)) -> String {

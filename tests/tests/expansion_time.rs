@@ -1,4 +1,4 @@
-//! Expansion of every text of the workspace: soon. Alone in its program, so that no other test shares the caches.
+//! Time to expand every text of the workspace. Alone in its program, so that no other test shares the caches.
 #![forbid(unsafe_code)]
 
 #[path = "texts/mod.rs"]
@@ -13,10 +13,10 @@ const LONGEST: Duration = Duration::from_millis(50);
 /// Emitted `let`s: the kinematics of any mechanism here. Scenes with masses and pins have several times as many.
 const VALUES: u32 = 1000;
 const RUNS: usize = 12;
-/// Where texts are that no user would write, of ten thousand operations and more.
+/// Files with texts that no user would write, of ten thousand operations and more.
 const LARGE_ON_PURPOSE: [&str; 2] = ["size.rs", "growth.rs"];
 
-/// What this thread has spent on a processor, where the system tells: other work on the machine does not count.
+/// Processor time of this thread, if the system reports it: other work on the machine does not count.
 fn processor_time() -> Option<Duration> {
     let told = fs::read_to_string("/proc/thread-self/schedstat").ok()?;
     told.split(' ').next()?.parse().ok().map(Duration::from_nanos)
@@ -38,7 +38,7 @@ fn every_text_expands_within_50_ms_a_thousand_values() {
         let code = mbs_codegen::expand_source(&text.1).expect("a text without faults").to_string();
         let values = u32::try_from(code.matches("let ").count()).expect("a number of `let`s");
         let longest = LONGEST * values.div_ceil(VALUES).max(1);
-        // What the best does, the first that is soon enough does too.
+        // The first run that is fast enough decides, as the best one would.
         let mut best = Duration::MAX;
         let is_soon = (0..RUNS).any(|_| {
             best = best.min(time());

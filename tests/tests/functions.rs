@@ -143,7 +143,7 @@ fn outputs_have_as_many_derivatives_as_are_continuous() {
     assert_eq!(known, [(true, true), (true, false), (false, false), (true, true), (true, false)]);
 }
 
-/// Hears how many derivatives are asked for at which argument.
+/// Records the number of derivatives of each call, with its argument.
 #[derive(Clone, Debug, Default)]
 struct Counting {
     asked: RefCell<Vec<(usize, f64)>>,
@@ -218,7 +218,7 @@ fn blocks_share_the_jets_of_what_is_solved_already() {
     let _ = counting.heard();
     let _outcome = mechanism.solve_blocks(&parameters, &mut q, 0.3, &mut Newton::new(1.0));
     let heard = counting.heard();
-    // At x once for both rows and for the position stage behind them, whatever the number of iterations at c + x.
+    // At x once for both rows and for the position stage after them, for any number of iterations at c + x.
     let known = heard.iter().filter(|(_, x)| *x == 0.3).collect::<Vec<_>>();
     assert_eq!(known, [&(4, 0.3)]);
     // At each iterate once, of the order that the position stage keeps of the last one.

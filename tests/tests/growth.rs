@@ -1,11 +1,11 @@
-//! Chains of four-bar loops: right at any length, at a cost that grows with it, and no faster.
+//! Chains of four-bar loops: correct at any length, at a cost that grows linearly with it.
 #![forbid(unsafe_code)]
 
 use mbs_runtime::{BlockWork, Kinematic, Mechanism, Operations, Stepper, WorstCase, mechanism};
 
 /// Drag links that turn each other: link i of `mean ± difference` drives link i + 1 of `mean ∓ difference` over a coupler. In
-/// every second loop the ground points the other way, so that it is the loop before seen from its other side: links of
-/// even number turn as the motor does, those of odd number as the rocker of one four-bar, however long the chain is.
+/// every second loop the ground points the other way, so that it is the mirrored loop before. Links of even number turn as the
+/// motor does, those of odd number as the rocker of one four-bar, for any length of the chain.
 macro_rules! chain {
     ($name:ident, $loops:literal) => {
         mechanism! {
@@ -37,8 +37,8 @@ chain!(Ten, 10);
 chain!(Forty, 40);
 chain!(TwoHundred, 200);
 
-/// Rounding of a position: Newton's method stops within 64 roundings of a row, and each loop adds what the ones before
-/// left, at a quotient of rates of at most 2 up and as much down again.
+/// Rounding of a position: Newton's method stops within 64 roundings of a row. Each loop adds the errors of those before, times
+/// a quotient of rates of at most 2, which the next loop reverses.
 const PER_LOOP: f64 = 2e-13;
 
 /// Angle, rate and acceleration.
@@ -137,8 +137,8 @@ fn two_hundred_loops_are_four_bars() {
     every_loop_is_one_four_bar::<TwoHundred, _>();
 }
 
-/// Stack of a debug build for an assembly and steps: what any mechanism takes, and what each loop adds (bytes). Forty loops, which
-/// stand in one function, need up to 0.7 of it, the others less than half. An overflow ends the program.
+/// Stack of a debug build for an assembly and steps (bytes): a part for any mechanism, and a part for each loop. Forty loops,
+/// which are in one function, need up to 0.7 of it, the others less than half. An overflow ends the program.
 const STACK: usize = 256 << 10;
 const STACK_A_LOOP: usize = 8 << 10;
 

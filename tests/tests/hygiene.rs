@@ -1,4 +1,4 @@
-//! Emitted code minds its own names, whatever the caller has declared, and passes the caller's lints.
+//! Hygiene of names: emitted code is independent of the caller's declarations and passes the caller's lints.
 #![no_std]
 #![deny(warnings, missing_docs, missing_debug_implementations, unreachable_pub, unused)]
 #![deny(clippy::all, clippy::pedantic)]
@@ -318,7 +318,7 @@ mod through_macros {
     #[test]
     fn the_text_of_a_macro_means_what_it_says() {
         assert_eq!(super::runs(Forwarded::default()), [2.0]);
-        // The value is a sum, and stands as one operand wherever the macro puts it: 2·v − v/0.5 is 0.
+        // The value is a sum, and is one operand wherever the macro puts it: 2·v − v/0.5 is 0.
         let parsed = Parsed::<f64>::default();
         assert_eq!(super::runs(parsed), [0.5, -0.5]);
         let source = <Parsed as mbs_runtime::Mechanism<f64, 2, 2>>::SOURCE;

@@ -1,6 +1,6 @@
-//! The language end to end: texts compiled into code that computes what they say.
+//! The language end to end: compiled texts compute the values of their formulas.
 //!
-//! Every text stands beside its formulas in Rust, written for second-order [`Jet`]s that share nothing with the
+//! Every text is followed by its formulas in Rust, written for second-order [`Jet`]s that share nothing with the
 //! macro; [`check`] compares all functions of the emitted code with them.
 #![forbid(unsafe_code)]
 #![deny(missing_docs)]
@@ -303,7 +303,7 @@ fn inputs_bring_their_rates_along() {
         let power = 3.0 * p0.rate() - 4.0 * p1.rate();
         (rows, vec![power, 2.0 * u, u.rate(), 3.0 * p0 - 4.0 * p1])
     });
-    // What uses a load has no rates that are known; what uses a first rate has one more.
+    // Outputs that use a load have no known rates; those that use a first rate have one more.
     let position = measured.position(&measured.parameters(), &[0.0; 3], 0.0);
     let [power, angle, turning, work] =
         measured.outputs(&measured.parameters(), &position, &[0.0; 3], &[0.0; 3]);
@@ -650,7 +650,7 @@ fn coordinates_have_names_and_guesses() {
     assert_eq!(FourBar::<f64>::NAME, "FourBar");
 }
 
-/// The line of `needle` behind the line of `mark`, counted from 1.
+/// The line of `needle` after the line of `mark`, counted from 1.
 fn line_of(mark: &str, needle: &str) -> u32 {
     let behind = FILE.find(mark).expect(mark);
     let place = behind + FILE[behind..].find(needle).expect(needle);

@@ -1,5 +1,5 @@
-//! The feature `libm` of the runtime takes sine and cosine of the library, bit for bit, in place of the kernels, which
-//! without it are in use. A crate of its own: all others of the workspace share one choice of features.
+//! The feature `libm` of the runtime replaces the kernels of sine and cosine by those of the library, bit for bit. A
+//! crate of its own: all others of the workspace share one choice of features.
 #![forbid(unsafe_code)]
 
 use mbs_tests::tools;

@@ -1,5 +1,5 @@
-//! Texts cut into parts and loops as if they were long move as they do in one piece. No long text is written for it: what long
-//! code is made of, each block of a kind in one loop, each row in parts, stands here around mechanisms with known motions.
+//! Texts cut into parts and loops, as if they were long, move as they do in one piece. No long text is needed. Mechanisms with
+//! known motions are compiled like long code: each kind of block in one loop, each row in parts.
 #![forbid(unsafe_code)]
 
 use mbs_runtime::Mechanism;
@@ -22,25 +22,27 @@ mbs-runtime = { path = "../../mbs-runtime", default-features = false }
 [workspace]
 "#;
 
-/// What the crate does with a mechanism of rows that fix all coordinates, and with one that forces move.
+/// Program of the crate, for a mechanism whose rows fix all coordinates and for one that forces move.
 const PROGRAM: &str = include_str!("long_code/program.rs");
 
-/// Rows with every operation that there is; nothing in them is a loop.
+/// Rows with every operation that there is, and one that sets a coordinate equal to another; nothing in them is a loop.
 const ODD: &str = "
 pub mechanism Odd;
 param gain: 1 = 0.3;
 coord crank: 1 = 0.5;
 coord x: 1 = 0.4;
 coord y: 1 = 0.6;
+coord follower: 1 = 0.5;
 drive motor: crank == 0.5 + t/1s;
+constraint follow { follower == crank; }
 constraint rows {
     x + 0.1*sin(y) == 0.05*(exp(-crank) + ln(2 + crank) + sqrt(2 + x) + tan(0.3*crank) + asin(0.3*x) + acos(0.2*y)
         + atan(crank*gain) + cos(3*crank)*sin(x*y) + sinh(gain*x) + cosh(y)*tanh(crank));
-    y + 0.1*cos(x) == 0.05*(atan2(x, 1 + y^2) + abs(crank - x) + min(x, y) + max(crank, y) + hypot(x, y + 2)
+    y + 0.1*cos(x) == 0.05*(follower - crank + atan2(x, 1 + y^2) + abs(crank - x) + min(x, y) + max(crank, y) + hypot(x, y + 2)
         + (x + 2)^y + cos(x - y)/(2 + sin(crank + x)));
 }";
 
-/// The text's module, the name of its type, what moves it.
+/// The text's module, the name of its type, the text, and its motion.
 fn texts() -> [(&'static str, &'static str, &'static str, &'static str); 6] {
     [
         ("odd", "Odd", ODD, "turn"),
@@ -61,7 +63,7 @@ fn mechanisms_cut_as_long_ones_move_as_in_one_piece() {
         let cut = mbs_codegen::expand_source_as_long(source).expect("a text without faults").to_string();
         // The control: the code is another one, in loops and parts.
         assert!(cut.contains("Passed") && !whole.contains("Passed"), "{name}");
-        // Every operation stands on a tape, where its results have the same bits in numbers of any kind.
+        // Every operation is on a tape, where its results have the same bits in numbers of any kind.
         if module == "odd" {
             assert!(cut.contains("tape :: run"));
             for number in ["f64", "f32", "Lanes<f64, 4>"] {

@@ -1,4 +1,4 @@
-//! The README's cross-check of a mechanism of one's own: as written there, in a crate that is none of ours.
+//! The tutorial's cross-check of a mechanism of one's own: as written there, in a crate outside the workspace.
 #![forbid(unsafe_code)]
 
 use std::fs;
@@ -7,7 +7,7 @@ use std::sync::LazyLock;
 
 use mbs_tests::tools;
 use mbs_tests::written::WrittenCrate;
-use mechanisms::verify::environment::INTERPRETER_VARIABLE;
+use mbs_workbench::verify::environment::INTERPRETER_VARIABLE;
 
 fn file(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(path)
@@ -26,7 +26,7 @@ static COPY: LazyLock<WrittenCrate> = LazyLock::new(|| {
     copy
 });
 
-/// `cargo test` in the copy; `Err` where a test fails, with all that was said either way.
+/// `cargo test` in the copy; `Err` if a test fails. Both hold all output.
 fn cargo_test(arguments: &[&str], interpreter: Option<&str>) -> Result<String, String> {
     let mut command = COPY.cargo(&["test"]);
     command.args(arguments).args(["--", "--nocapture"]);
@@ -37,9 +37,10 @@ fn cargo_test(arguments: &[&str], interpreter: Option<&str>) -> Result<String, S
 }
 
 #[test]
-fn the_readme_shows_the_test_that_runs() {
+fn the_tutorial_shows_the_test_that_runs() {
     let test = read("own/tests/derivatives.rs");
-    assert!(read("../README.md").contains(&format!("```rust\n{test}```")), "README.md does not show\n{test}");
+    let tutorial = read("../book/src/tutorial.md");
+    assert!(tutorial.contains(&format!("```rust\n{test}```")), "the tutorial does not show\n{test}");
     assert_eq!(test.lines().count(), 5);
 }
 

@@ -1,4 +1,4 @@
-//! A sample of the random texts, compiled by rustc: beside second-order Taylor arithmetic at every state, and beside
+//! A sample of the random texts, compiled by rustc: against second-order Taylor arithmetic at every state, and against
 //! 50-digit arithmetic at some.
 #![forbid(unsafe_code)]
 
@@ -17,7 +17,7 @@ const SLIP: f64 = 1e-9;
 /// Texts that are compiled.
 const SAMPLE: usize = 50;
 
-/// Every third of them is cut: the kinds, of which there are ten, come all.
+/// Every third of them is cut; as there are ten kinds, all are among them.
 const EVERY_CUT: usize = 3;
 
 const MANIFEST: &str = r#"
@@ -27,7 +27,7 @@ edition = "2024"
 
 [dependencies]
 mbs-runtime = { path = "../../mbs-runtime", default-features = false }
-mechanisms = { path = "../../mechanisms", default-features = false }
+mbs-workbench = { path = "../../mbs-workbench", default-features = false }
 
 [workspace]
 "#;
@@ -54,7 +54,7 @@ struct Sampled {
     kind: Kind,
     seed: u64,
     scenes: Vec<ExpectedScene>,
-    /// Whether it is compiled in parts and loops, as long texts are.
+    /// `true` if the text is compiled in parts and loops, as long texts are.
     is_cut: bool,
 }
 
@@ -181,7 +181,7 @@ fn fifty_digits_confirm_compiled_texts() {
     println!("{said}");
 }
 
-/// What each stands for can be written in no other way.
+/// Elements of the language that can be written in no other way.
 const LANGUAGE: [&str; 56] = [
     "sin(",
     "cos(",

@@ -1,9 +1,10 @@
-//! Constraints marked `redundant`: solved where they agree, refused with their names where they do not.
+//! Constraints marked `redundant`: solved if they are consistent, refused with their names if not.
 
 use std::f64::consts::TAU;
 
 use mbs_runtime::{
-    Budget, Failure, Kinematic, Lanes, Level, Mechanism, Outcome, Real, Step, Stepper, mechanism,
+    Budget, DerivativeOrder, Failure, FailureKind, Kinematic, Lanes, Mechanism, Outcome, Real, Step, Stepper,
+    mechanism,
 };
 
 mechanism! {
@@ -183,7 +184,7 @@ fn a_side_out_of_phase_carries_the_other_over_its_dead_centre() {
         let start = f64::from(k) * 0.05;
         Stepper::assemble(broken, [TAU * start + 0.3, TAU * start + 0.3, 0.0, 0.0], start).err()
     });
-    assert!(matches!(refused, Some(Failure::Inconsistent { .. })), "{refused:?}");
+    assert!(matches!(refused, Some(Failure { kind: FailureKind::Inconsistent { .. }, .. })), "{refused:?}");
 }
 
 #[test]
@@ -191,7 +192,10 @@ fn an_error_of_the_dimensions_is_refused_with_the_rows_from_rounding_on() {
     for exponent in 3..=12 {
         let error = 10_f64.powi(-exponent);
         let found = assembled::<_, f64, 4, 5>(Cranks { error, ..Cranks::default() });
-        let Err(Failure::Inconsistent { rows, level: Level::Position, residual, required, .. }) = found
+        let Err(Failure {
+            kind: FailureKind::Inconsistent { rows, level: DerivativeOrder::Position, residual, required, .. },
+            ..
+        }) = found
         else {
             panic!("{error}: {:?}", found.map(|stepper| *stepper.q()));
         };
@@ -211,9 +215,12 @@ fn an_error_that_appears_in_motion_is_refused_and_nothing_is_lost() {
     cranks.advance(0.01).expect("it moves");
     let before = *cranks.q();
     cranks.change(|cranks| cranks.error = 1e-6);
-    assert!(matches!(cranks.advance(0.01), Err(Failure::Inconsistent { .. })));
+    assert!(matches!(cranks.advance(0.01), Err(Failure { kind: FailureKind::Inconsistent { .. }, .. })));
     let budget = Budget { newton: 5, fallback: 5 };
-    assert!(matches!(cranks.step(0.01, budget), Step::Refused(Failure::Inconsistent { .. })));
+    assert!(matches!(
+        cranks.step(0.01, budget),
+        Step::Refused(Failure { kind: FailureKind::Inconsistent { .. }, .. })
+    ));
     assert_eq!((*cranks.q(), cranks.t()), (before, 0.01));
     cranks.change(|cranks| cranks.error = 0.0);
     assert!(matches!(cranks.step(0.01, budget), Step::Done(_)));
@@ -242,7 +249,9 @@ fn nanometres_and_kilometres_have_the_same_rank_and_the_same_failures() {
         assert!((cranks.margin() / reference.margin() - 1.0).abs() < 1e-9, "{unit_length}");
         for error in [1e-12, 1e-6] {
             let found = assembled::<_, f64, 4, 5>(Cranks { unit_length, error });
-            let Err(Failure::Inconsistent { residual, .. }) = found else { panic!("{unit_length} {error}") };
+            let Err(Failure { kind: FailureKind::Inconsistent { residual, .. }, .. }) = found else {
+                panic!("{unit_length} {error}")
+            };
             assert!(residual / unit_length > 0.05 * error && residual / unit_length < error);
         }
     }
@@ -251,7 +260,10 @@ fn nanometres_and_kilometres_have_the_same_rank_and_the_same_failures() {
 #[test]
 fn rows_that_agree_at_one_instant_alone_are_refused_in_their_rates() {
     let found = assembled::<_, f64, 2, 3>(Once::default());
-    let Err(Failure::Inconsistent { rows, level: Level::Velocity, .. }) = found else {
+    let Err(Failure {
+        kind: FailureKind::Inconsistent { rows, level: DerivativeOrder::Velocity, .. }, ..
+    }) = found
+    else {
         panic!("{:?}", found.map(|stepper| *stepper.qd()));
     };
     assert!(rows.rows().any(|row| row.name.starts_with("slide")));
@@ -287,7 +299,7 @@ fn single_precision_solves_and_refuses_too() {
     assert!(assembled::<_, f32, 4, 5>(cranks).is_ok());
     assert!(matches!(
         assembled::<_, f32, 4, 5>(Cranks { error: 1e-3, ..cranks }),
-        Err(Failure::Inconsistent { .. })
+        Err(Failure { kind: FailureKind::Inconsistent { .. }, .. })
     ));
 }
 
@@ -312,7 +324,7 @@ fn margins_and_ratios_are_those_of_the_rows_that_agree_in_any_unit() {
             let values: Vec<f64> = stepper.outputs().as_ref().iter().map(|output| output.value).collect();
             let [first, height, turn, rise] = values[..] else { panic!("four outputs") };
             assert!((first - stepper.margin()).abs() < 1e-15 && height == 1.0, "{values:?}");
-            // What rounding leaves of the position, a few ε, over the margin.
+            // Rounding error of the position, a few ε, over the margin.
             let bound = 1e-14 / stepper.margin();
             // Crank and plate: ∂γ/∂α = 1, ∂y/∂α = cos α, and rates over the crank's.
             assert!((turn - 1.0).abs() < bound, "{turn}");

@@ -2,7 +2,7 @@
 #![forbid(unsafe_code)]
 #![deny(warnings, missing_docs, unreachable_pub)]
 
-use mbs_runtime::{Kinematic, Lanes, Mechanism, Stepper, Whole, mechanism};
+use mbs_runtime::{AllEffects, Kinematic, Lanes, Mechanism, Stepper, mechanism};
 
 mechanism! {
     /// A crank whose rod pushes a slider; what is driven differs.
@@ -126,7 +126,7 @@ fn the_text_and_its_names_are_those_of_all_scenes() {
     assert_eq!(<SlideRam as Mechanism<f64, 3, 3>>::SCENE, "Ram");
     assert_eq!(<SlideRam as Mechanism<f64, 3, 3>>::NAME, "Slide");
     assert_eq!(<SlideRam as Mechanism<f64, 3, 3>>::SOURCE, <SlideRod as Mechanism<f64, 4, 4>>::SOURCE);
-    assert_eq!(<Plain as Mechanism<f64, 1, 1>>::SCENE, "Whole");
+    assert_eq!(<Plain as Mechanism<f64, 1, 1>>::SCENE, "AllEffects");
 }
 
 #[test]
@@ -143,7 +143,7 @@ fn the_whole_text_is_a_scene_where_its_effects_agree() {
     let whole: Swing = Swing { level: 0.2, ..Default::default() };
     let q = SwingCoordinates::from(at(whole, 0.5));
     assert!((q.tip[1] - 2.0 * (0.2 * 0.5_f64.sin()).sin()).abs() < 1e-15);
-    let same: Swing<f64, Whole> = whole;
+    let same: Swing<f64, AllEffects> = whole;
     assert_eq!(same.scene::<__SwingScenes::Ram>().length, 2.0);
 }
 

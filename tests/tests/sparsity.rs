@@ -3,7 +3,7 @@
 use mbs_runtime::Mechanism;
 use mechanisms::{four_bar::FourBar, jansen::Jansen, three_rrr::ThreeRrr};
 
-/// The entries put where the table says, beside the dense matrix.
+/// The entries at the places of the table against the dense matrix.
 fn scattered_and_dense<S: Mechanism<f64, N, M> + Default, const N: usize, const M: usize>()
 -> [[[f64; N]; M]; 2] {
     let mechanism = S::default();

@@ -1,7 +1,7 @@
 //! Bodies in space against closed forms, other descriptions of the same body, and other frames.
 
 use mbs_runtime::dynamics::{DormandPrince8, Explicit, Projection, Simulation, Tolerance};
-use mbs_runtime::{Dynamic, Failure, Mechanism, mechanism};
+use mbs_runtime::{Dynamic, Failure, FailureKind, Mechanism, mechanism};
 
 mechanism! {
     /// A body that nothing acts on.
@@ -269,7 +269,7 @@ fn a_force_at_a_point_is_one_at_the_centre_with_its_moment() {
     let (q, qd) = ([1.0, 2.0, 3.0, e[0], e[1], e[2], e[3]], [0.5, 0.1, -0.7, d0, d1, d2, d3]);
     let (s, u) = (point.position(&p, &q, 0.0), centre.position(&o, &q, 0.0));
     let (found, expected) = (point.force(&p, &s, &qd, &[], &[0.0]), centre.force(&o, &u, &qd, &[], &[0.0]));
-    // Along e the row e·e = 1 takes what is left: compared is what turns, e⁻¹ Q.
+    // The row e·e = 1 takes the component along e; the moment e⁻¹ Q is compared.
     let turning = |force: [f64; 7]| {
         let [_, x, y, z] = product(conjugate(e), [force[3], force[4], force[5], force[6]]);
         [force[0], force[1], force[2], x, y, z]
@@ -330,7 +330,7 @@ mechanism! {
     start e = [1, 0, 0, 0] rate [0, 0, 0, 0];
 }
 
-/// What a start says of an inertia.
+/// Failure of a start with an inertia, if it is refused.
 fn refused<S: Dynamic<f64, 7, 1>>(body: S) -> Option<Failure> {
     let method = Explicit::new(DormandPrince8, Projection::default());
     Simulation::start_from_text(body, method, 0.0).err()
@@ -343,7 +343,9 @@ fn an_inertia_that_no_body_has_is_refused_where_a_run_starts() {
     assert_eq!([3.0, 2.5, 1.0, 3.0 + 1e-9].map(spinning), [None; 4]);
     for last in [3.01, 0.99] {
         let failure = spinning(last).expect("no body");
-        let Failure::Negative { name, parameter, value, .. } = failure else { panic!("{failure}") };
+        let Failure { kind: FailureKind::Negative { name, parameter, value, .. }, .. } = failure else {
+            panic!("{failure}")
+        };
         assert!(
             name == "top.inertia, two moments less the third" && parameter.starts_with("J."),
             "{failure}"
@@ -353,7 +355,7 @@ fn an_inertia_that_no_body_has_is_refused_where_a_run_starts() {
     let flat: Spinning<f32> = Spinning { J: [0.1, 0.2, 0.3], ..Spinning::default() };
     let method = Explicit::new(DormandPrince8, Projection::default());
     assert!(Simulation::start_from_text(flat, method, 0.0_f32).is_ok());
-    // 2 ∫ x² … = 1.6, 1.2, 0.8: |2 Jxy| up to √(1.6·1.2) = 1.386, and the determinant beside.
+    // 2 ∫ x² … = 1.6, 1.2, 0.8: |2 Jxy| up to √(1.6·1.2) = 1.386, and the bound of the determinant.
     let skewed = |[jxy, jyz, jxz]: [f64; 3]| refused(Skewed { Jxy: jxy, Jyz: jyz, Jxz: jxz });
     for possible in [[0.69, 0.0, 0.0], [0.0, -0.48, 0.0], [-0.4, 0.3, 0.4], [0.4, -0.3, 0.4]] {
         assert_eq!(skewed(possible), None, "{possible:?}");
@@ -365,7 +367,7 @@ fn an_inertia_that_no_body_has_is_refused_where_a_run_starts() {
         ([-0.4, -0.3, 0.3], "the determinant of the second moments"),
     ] {
         let failure = skewed(wrong).expect("no body");
-        let Failure::Negative { name, .. } = failure else { panic!("{failure}") };
+        let Failure { kind: FailureKind::Negative { name, .. }, .. } = failure else { panic!("{failure}") };
         assert!(name.ends_with(what), "{wrong:?}: {name}");
     }
 }

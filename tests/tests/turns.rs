@@ -1,8 +1,8 @@
-//! Coordinates that turn for days: `coord phi: turn`, in single precision.
+//! Coordinates that rotate for days: `coord phi: turn`, in single precision.
 
 use core::f64::consts::TAU;
 
-use mbs_runtime::{Budget, Failure, Mechanism, Saved, Stepper, mechanism};
+use mbs_runtime::{Budget, Failure, FailureKind, Mechanism, Saved, Stepper, mechanism};
 
 mechanism! {
     /// A four-bar linkage whose crank turns.
@@ -46,7 +46,7 @@ mechanism! {
 /// A day at 3000 rpm, as an angle of single precision (rad): its neighbours are 2 rad away.
 const A_DAY: f32 = 2.714_336e7;
 
-/// What the crank has done after `steps` steps of a millisecond, as single precision has it, from `start` (rad).
+/// Angle (rad) of the crank after `steps` steps of a millisecond from `start` (rad), with the increment of single precision.
 fn exact(start: f32, steps: u32) -> f64 {
     let increment = f64::from(Turning::<f32>::default().omega) * f64::from(0.001_f32);
     f64::from(start) + increment * f64::from(steps)
@@ -107,7 +107,7 @@ fn a_crank_in_single_precision_turns_for_days() {
     println!(
         "largest errors of crank and rocker: {worst:?} rad, of the rocker in ten turns {within_ten_turns} rad"
     );
-    // What the solver leaves open depends on where in a turn it stops: it is no more later on.
+    // The solver's error depends on the position within a turn: it does not grow with time.
     assert!(worst[0] <= ROUNDED && worst[1] <= 2.0 * within_ten_turns, "{worst:?} {within_ten_turns}");
 }
 
@@ -122,7 +122,7 @@ fn an_angle_that_grows_loses_its_digits() {
     }
     // Steps add up exactly; the angle itself, up to 3142 rad, is rounded to 1.2e-4.
     assert!(worst > 100.0 * ROUNDED, "{worst}");
-    assert!(matches!(growing(A_DAY), Err(Failure::Unresolved { .. })));
+    assert!(matches!(growing(A_DAY), Err(Failure { kind: FailureKind::Unresolved { .. }, .. })));
 }
 
 #[test]
@@ -170,9 +170,10 @@ fn what_is_driven_turns_too_and_phases_turn_by_their_factor() {
     assert!(stepper.closure_error() < 1e-12 && stepper.mechanism().motor_phase.value.abs() < TAU + 1e-9);
 }
 
-/// Whether two steppers are at one position, as far as their solvers close the rows in single precision.
+/// `true` if two steppers are at one position, within 32 ε. `advance` iterates to rounding. A bounded step ends where the rows are within their
+/// tolerance: 1.9e-6 rad from the closed form here, 5.8e-6 rad in the worst of 10 000 steps.
 fn close(one: &Stepper<Turning<f32>, f32, 3>, other: &Stepper<Turning<f32>, f32, 3>) -> bool {
-    one.q().iter().zip(other.q()).all(|(one, other)| (one - other).abs() < 2e-6)
+    one.q().iter().zip(other.q()).all(|(one, other)| (one - other).abs() < 32.0 * f32::EPSILON)
 }
 
 #[test]

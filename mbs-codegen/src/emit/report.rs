@@ -1,6 +1,6 @@
-//! The structure as data: what a program draws and prints of it.
+//! The structure as data, for programs that draw or print it.
 
-use super::docs;
+use crate::emit::rust::docs;
 use crate::equations::Equations;
 use crate::model::Model;
 use crate::program::{Method, Operations, Program, Section};
@@ -33,9 +33,9 @@ pub struct StructureReport {
 /// A coordinate.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CoordinateReport {
-    /// As the text spells it.
+    /// Name as the text spells it.
     pub name: String,
-    /// As the text spells it.
+    /// Unit as the text spells it.
     pub unit: String,
 }
 
@@ -46,9 +46,9 @@ pub struct RowReport {
     pub name: String,
     /// Unit of the residual.
     pub unit: String,
-    /// Whether a `drive` declares it.
+    /// `true` if a `drive` declares it.
     pub driven: bool,
-    /// Whether it may follow from others: its constraint is marked `redundant`.
+    /// `true` if it may follow from others: its constraint is marked `redundant`.
     pub redundant: bool,
     /// Entries of the row of Φ_q that are not structurally zero: index of the coordinate and kind, ascending.
     pub entries: Vec<(usize, EntryKind)>,
@@ -56,10 +56,10 @@ pub struct RowReport {
     pub matched: Option<usize>,
 }
 
-/// What an entry of Φ_q depends on.
+/// Dependence of an entry of Φ_q.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EntryKind {
-    /// Nothing: a number.
+    /// None: a number.
     Number,
     /// Parameters alone.
     Parameters,
@@ -74,11 +74,11 @@ pub struct BlockReport {
     pub rows: Vec<usize>,
     /// Indices of its coordinates, ascending, as many as rows; fewer where rows may follow from others.
     pub coordinates: Vec<usize>,
-    /// Whether the coordinate is assigned, not solved for.
+    /// `true` if the coordinate is assigned, not solved for.
     pub explicit: bool,
     /// The dyad that it is: both its positions are known as formulas.
     pub dyad: Option<&'static str>,
-    /// How the linear steps of four and more unknowns are taken.
+    /// Method of the linear solution for four and more unknowns.
     pub elimination: String,
 }
 
@@ -128,7 +128,7 @@ pub fn report(
     }
 }
 
-/// What one step computes: each block once, then all functions of the position that it found.
+/// Number of operations of one step: each block once, then all functions of the solved position.
 fn operations(program: &Program) -> usize {
     let functions = [
         &program.position.section,

@@ -1,17 +1,17 @@
-//! On which body something acts: a point that moves with it, an angle that turns with it.
+//! Attribution of forces and rows to bodies: a point that moves with a body, an angle that turns with it.
 //!
-//! Found by what moves alike at a few positions, not by how it is written: virtual displacements alone count.
+//! Found by equal motion at a few positions, not by how it is written: virtual displacements alone count.
 
 use super::jacobian;
 use crate::symbolic::evaluate::evaluate;
 use crate::symbolic::scattered;
 use crate::symbolic::{Graph, Leaf, NodeId};
 
-/// Positions that are tried; what is no number at one of them says nothing there.
+/// Positions that are tried; a function that is not finite at one of them is not judged there.
 const TRIED: usize = 12;
-/// How many of them must agree.
+/// Number of positions that must agree.
 const AGREEING: usize = 3;
-/// Largest difference of what is the same, relative to its size: rounding of a few hundred operations.
+/// Largest difference of equal values, relative to their size: rounding of a few hundred operations.
 const SAME: f64 = 1e-9;
 
 /// Scalar functions of the position with their slopes, at a few positions.
@@ -29,9 +29,9 @@ pub struct Frame {
     pub angle: Option<usize>,
 }
 
-/// What a scalar function of the position is.
+/// Body motion that a scalar function of the position measures.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Motion {
+pub enum RowMotion {
     /// The angle of a body against another or the ground, times `sign`.
     Angle { body: usize, against: Option<usize>, sign: f64 },
     /// A component of the place of a body's centre of mass, times `sign`.
@@ -63,30 +63,30 @@ impl Slopes {
         Slopes { samples: (0..TRIED).map(sample).collect() }
     }
 
-    /// Whether a function depends on no coordinate.
+    /// `true` if a function depends on no coordinate.
     pub fn is_fixed(&self, function: usize) -> bool {
         self.hold(|sample, column| Some((slope(sample, function, column)?, 0.0)))
     }
 
-    /// Whether no coordinate moves a point.
-    pub fn stands(&self, point: [usize; 2]) -> bool {
+    /// `true` if no coordinate moves a point.
+    pub fn is_fixed_point(&self, point: [usize; 2]) -> bool {
         point.iter().all(|component| self.is_fixed(*component))
     }
 
-    /// Whether a point moves with a body.
+    /// `true` if a point moves with a body.
     pub fn carries(&self, body: &Frame, point: [usize; 2]) -> bool {
         [0, 1]
             .into_iter()
             .all(|component| self.hold(|sample, column| carried(sample, column, point, body, component)))
     }
 
-    /// What a scalar function is, of bodies that are joined in pairs.
+    /// Body motion that a scalar function measures, for bodies that are joined in pairs.
     pub fn motion_of(
         &self,
         function: usize,
         bodies: &[Frame],
         joined: &[[Option<usize>; 2]],
-    ) -> Option<Motion> {
+    ) -> Option<RowMotion> {
         let alone = (0..bodies.len()).map(|body| (body, None));
         let pairs = joined.iter().filter_map(|[a, b]| Some(((*a)?, Some((*b)?))));
         let angle = alone.chain(pairs).flat_map(|pair| [(pair, 1.0), (pair, -1.0)]).find(|(pair, sign)| {
@@ -97,7 +97,7 @@ impl Slopes {
             })
         });
         if let Some(((body, against), sign)) = angle {
-            return Some(Motion::Angle { body, against, sign });
+            return Some(RowMotion::Angle { body, against, sign });
         }
         let components = (0..bodies.len()).flat_map(|body| [(body, 0), (body, 1)]);
         let found = components.flat_map(|place| [(place, 1.0), (place, -1.0)]).find(|(place, sign)| {
@@ -106,10 +106,10 @@ impl Slopes {
                 Some((slope(sample, function, column)?, sign * slope(sample, centre, column)?))
             })
         });
-        found.map(|((body, component), sign)| Motion::Component { body, component, sign })
+        found.map(|((body, component), sign)| RowMotion::Component { body, component, sign })
     }
 
-    /// Whether two slopes are the same wherever both are numbers, and are numbers often enough.
+    /// `true` if two slopes are equal at all positions where both are finite, and if these are enough.
     fn hold(&self, slopes: impl Fn(&Sample, usize) -> Option<(f64, f64)>) -> bool {
         let mut agreeing = 0;
         for sample in &self.samples {

@@ -43,7 +43,7 @@ pub struct Pressing {
     pub power: Option<NodeId>,
 }
 
-/// Q as what acts with all contacts open, and what each adds where it is closed.
+/// Q with all contacts open, and the force that each closed contact adds.
 #[derive(Debug)]
 pub struct ByContact {
     /// All other forces, velocity-quadratic terms included.
@@ -68,8 +68,8 @@ impl ByContact {
     }
 }
 
-/// Before: the forces of the text with the power of each, all that acts but for `left_out`, forces by their index. After: the contacts by
-/// themselves; none where there is none.
+/// Before: the forces of the text with the power of each; `open` gives Q without the forces of these indices. After: the contacts
+/// by themselves; `None` where there are none.
 pub fn by_contact(
     g: &mut Graph,
     declared: &Declared,

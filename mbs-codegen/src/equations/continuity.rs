@@ -1,4 +1,4 @@
-//! Which derivatives of declared functions the equations need, and whether the text declares them continuous.
+//! Derivatives of declared functions that the equations need, checked against the continuity that the text declares.
 
 use std::collections::BTreeMap;
 
@@ -16,16 +16,16 @@ pub struct Demand {
     pub function: usize,
     /// Order of the derivative; 0 where the value is enough.
     pub order: u8,
-    /// What needs it, as a message calls it.
+    /// Quantity that needs it, as a message calls it.
     pub by: String,
-    /// Where the text calls the function for it.
+    /// Call of the function in the text.
     pub span: Span,
-    /// What the function is called with.
+    /// Argument of the call.
     argument: NodeId,
 }
 
-/// Before: the equations of a model. After: a demand that goes beyond the declared continuity is reported where the
-/// text calls the function, once a call, with what needs most.
+/// Before: the equations of a model. After: a demand beyond the declared continuity is reported where the text calls
+/// the function, once a call, with the quantity of the highest demand.
 pub fn check(model: &Model, equations: &Equations, diagnostics: &mut Diagnostics) {
     let mut worst: BTreeMap<(usize, usize, usize), Demand> = BTreeMap::new();
     for demand in demands(model, equations) {
@@ -56,8 +56,8 @@ pub fn check(model: &Model, equations: &Equations, diagnostics: &mut Diagnostics
     }
 }
 
-/// Before: the equations of a model. After: of each function that something calls, what needs its highest
-/// derivative, in the order of the functions.
+/// Before: the equations of a model. After: the demand for the highest derivative of each function that is called, in
+/// the order of the functions.
 pub fn highest(model: &Model, equations: &Equations) -> Vec<Demand> {
     let mut highest: BTreeMap<usize, Demand> = BTreeMap::new();
     for demand in demands(model, equations) {
@@ -97,7 +97,7 @@ fn demands(model: &Model, equations: &Equations) -> Vec<Demand> {
         nodes.map(|id| equations.graph.node(id)).any(|node| matches!(node, Node::Call { .. }))
     };
     for (row, derived) in model.rows.iter().zip(&equations.rows).filter(|(_, derived)| calls_any(derived)) {
-        // The later of equals is named: γ says most.
+        // The later of equals is named: γ is the most informative.
         for (part, roots) in parts(derived).into_iter().rev() {
             of(&format!("{part} of row `{}`", row.name), &roots);
         }
@@ -181,7 +181,7 @@ fn origins(model: &Model, equations: &Equations) -> Origins {
     origins
 }
 
-/// The calls below `roots`, each with where the text makes it: a derivative comes from the call of the highest order
+/// The calls below `roots`, each with its place in the text: a derivative comes from the call of the highest order
 /// below its own at the same argument.
 fn calls(equations: &Equations, origins: &Origins, by: &str, roots: &[NodeId]) -> Vec<Demand> {
     let reached = equations.graph.reachable(roots.iter().copied()).into_iter();

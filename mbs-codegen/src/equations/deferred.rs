@@ -41,7 +41,7 @@ impl Slopes {
     }
 }
 
-/// A function of dynamics that is not emitted, and why.
+/// A function of dynamics that is not emitted, with the reason.
 #[derive(Clone, Copy, Debug)]
 pub struct Missing {
     /// The missing slopes.
@@ -99,7 +99,7 @@ impl Equations {
         matrix.iter().flatten().map(|(_, entry)| *entry).collect()
     }
 
-    /// The first function, and the highest order of it below `roots`, that goes beyond what the text declares.
+    /// The first function below `roots` with a higher order than the text declares, and its highest order.
     fn beyond(&self, model: &Model, roots: Vec<NodeId>) -> Option<(usize, u8)> {
         let calls = self.graph.reachable(roots).into_iter().filter_map(|id| match self.graph.node(id) {
             Node::Call { function, order, .. } => Some((function as usize, order)),

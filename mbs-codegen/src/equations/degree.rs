@@ -2,7 +2,7 @@
 
 use crate::symbolic::{Binary, Graph, Leaf, Node, NodeId, Stage, Unary};
 
-/// Whether `root` is a sum of products of two rates each, the rest of each free of rates.
+/// `true` if `root` is a sum of products of two rates each, the rest of each free of rates.
 pub fn is_quadratic(graph: &Graph, root: NodeId) -> bool {
     let nodes = graph.reachable([root]);
     let mut degrees: Vec<Option<i64>> = vec![None; graph.len()];

@@ -1,23 +1,23 @@
 //! Masses and forces → M, Q, their derivatives, energies and powers.
 
-use super::carried;
 use super::contacts::{ByContact, Push, by_contact};
 use super::deferred::Missing;
 use super::forces::{self, Acting, Sum};
 use super::lower::Clock;
+use super::non_negative::{NonNegative, Of, signed};
 use super::normal_forces::{NormalForces, normal_forces};
 use super::pins::{Attribution, Undetermined};
+use super::power_of_time;
 use super::second_moments::second_moments;
-use super::signed::{Of, Signed, signed};
 use super::{Row, again, jacobian};
 use crate::model::dynamics::{Body, Dynamics as Declared, Rotation};
 use crate::model::expression::Id;
 use crate::symbolic::{Graph, Leaf, Node, NodeId, Stage, tangent};
 
-/// Rows of a matrix: column and entry, ascending; what is not there is a structural zero.
+/// Rows of a matrix: column and entry, ascending; missing entries are structural zeros.
 pub type Sparse = Vec<Vec<(usize, NodeId)>>;
 
-/// How a first-order state acts, and what its rate depends on.
+/// Derivatives of the forces by a first-order state, and of its rate.
 #[derive(Debug)]
 pub struct Slope {
     /// ∂Q/∂z, one a coordinate.
@@ -60,7 +60,7 @@ pub struct Gap {
     pub gap: NodeId,
     /// Its time derivative.
     pub rate: Option<NodeId>,
-    /// Largest second derivative while it is open, where the text says.
+    /// Largest second derivative while it is open, where the text gives it.
     pub bound: Option<NodeId>,
 }
 
@@ -82,7 +82,7 @@ pub struct Dynamics {
     pub mass_times_q: Sparse,
     /// Q, velocity-quadratic terms included.
     pub force: Vec<Option<NodeId>>,
-    /// Whether a multiplier stands in Q: friction.
+    /// `true` if Q depends on a multiplier: friction.
     pub force_uses_multipliers: bool,
     /// ∂Q/∂q
     pub force_q: Sparse,
@@ -96,8 +96,8 @@ pub struct Dynamics {
     pub reaction: Vec<Option<NodeId>>,
     /// (Φ_qᵀ λ)_q, symmetric.
     pub reaction_q: Sparse,
-    /// What the third derivative of the rows says of accelerations; none where it needs a derivative of a declared function
-    /// that nothing else needs.
+    /// Third derivative of the rows as a condition on accelerations; none where it needs a derivative of a declared
+    /// function that nothing else needs.
     pub third: Option<Third>,
     /// Kinetic energy.
     pub kinetic: Option<NodeId>,
@@ -105,7 +105,7 @@ pub struct Dynamics {
     pub potential: Option<NodeId>,
     /// One a named force.
     pub powers: Vec<Option<NodeId>>,
-    /// What the time alone gives to kinetic and potential energy.
+    /// Power with which time alone changes kinetic and potential energy.
     pub carried: Option<NodeId>,
     /// One a first-order state.
     pub state_rates: Vec<Option<NodeId>>,
@@ -116,7 +116,7 @@ pub struct Dynamics {
     /// One a coordinate.
     pub start_rates: Vec<Option<NodeId>>,
     /// Masses, moments of inertia and stiffnesses that parameters alone make, each value once.
-    pub signed: Vec<Signed>,
+    pub signed: Vec<NonNegative>,
     /// One a contact.
     pub gaps: Vec<Gap>,
     /// Q contact by contact, where there are contacts.
@@ -124,17 +124,18 @@ pub struct Dynamics {
     /// Time derivatives of the working ranges, where the text calls no function and no drive prescribes a rate: then parts of a motion
     /// can be enclosed.
     pub limit_rates: Vec<[Option<NodeId>; 3]>,
-    /// Which of ∂Q/∂q, ∂Q/∂q̇, (M x)_q, (Φ_qᵀ λ)_q and the slopes are left out, for declared functions are not smooth enough.
+    /// Derivatives that are left out of ∂Q/∂q, ∂Q/∂q̇, (M x)_q, (Φ_qᵀ λ)_q and the slopes, for declared functions are not
+    /// smooth enough.
     pub missing: Vec<Missing>,
     /// One an output of multipliers or states.
     pub loads: Vec<NodeId>,
     /// Indices of the text's kinetic energies that are not quadratic in the rates.
     pub not_quadratic: Vec<usize>,
-    /// Where the named forces act.
+    /// Points, angles and lengths that the named forces act on.
     pub acting: Vec<Acting>,
-    /// Why the forces of pins are not known, though an output asks for them.
+    /// Reason why the forces of pins are unknown, though an output asks for them.
     pub undetermined: Option<Undetermined>,
-    /// What acts on which body, where an output asks for the force of a pin and it is known.
+    /// Body that each force and row acts on, where an output asks for the force of a pin and it is known.
     pub attribution: Option<Attribution>,
 }
 
@@ -285,7 +286,7 @@ pub fn derive(
     }
 }
 
-/// Entries of the upper triangle of M, the inertia forces at q̈ = 0, the kinetic energy and what the time gives to it.
+/// Entries of the upper triangle of M, the inertia forces at q̈ = 0, the kinetic energy and the power of time alone in it.
 pub struct Inertia {
     mass: Vec<Vec<(usize, Sum)>>,
     bias: Vec<Sum>,
@@ -309,7 +310,7 @@ impl Inertia {
         self.kinetic.add(g, energy);
     }
 
-    /// Adds to what the time gives to it.
+    /// Adds to the power of time alone in it.
     pub fn add_carried(&mut self, g: &mut Graph, power: NodeId) {
         self.carried.add(g, power);
     }
@@ -353,7 +354,7 @@ impl Inertia {
             }
         }
         let velocity = velocity.into_iter().next().flatten();
-        carried::point(g, place, velocity, mass, clock, &mut self.carried);
+        power_of_time::point(g, place, velocity, mass, clock, &mut self.carried);
         if let Some(velocity) = velocity {
             let half = g.constant(0.5);
             let square = g.multiply(velocity, velocity);
@@ -384,7 +385,7 @@ impl Inertia {
                 self.bias_at(g, *row, change);
             }
         }
-        carried::energy(g, energy, &momenta, clock, &mut self.carried);
+        power_of_time::energy(g, energy, &momenta, clock, &mut self.carried);
         for (row, slope) in jacobian(g, &[energy], count, Leaf::Position).into_iter().flatten() {
             let opposite = g.negate(slope);
             self.bias_at(g, row, opposite);

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use super::forces::Sum;
 use crate::symbolic::{Graph, NodeId};
 
-/// Entries of a column by their row; what is not there is zero.
+/// Entries of a column by their row; missing entries are zero.
 pub type Column = BTreeMap<usize, NodeId>;
 
 /// A column of which less than this share of its square is its own depends on earlier ones: 1e-6 of its length.
@@ -58,7 +58,7 @@ pub fn solve(g: &mut Graph, columns: &[Column], known: Column) -> Vec<NodeId> {
     (0..columns.len()).map(|index| solution.get(&index).copied().unwrap_or(zero)).collect()
 }
 
-/// What a vector has along an orthogonal column, as a multiple of it.
+/// Component of a vector along an orthogonal column, as a multiple of it.
 fn share(g: &mut Graph, column: &Column, inverse: NodeId, vector: &Column) -> Option<NodeId> {
     dot(g, column, vector).map(|product| g.multiply(product, inverse))
 }
@@ -87,7 +87,7 @@ fn subtract(g: &mut Graph, vector: &mut Column, share: NodeId, column: &Column) 
 mod tests {
     use super::*;
 
-    /// What least squares make of a column and of a second one of which `share` is its own, on the right the sum of both.
+    /// Least-squares solution for a column and a second one of which `share` is its own. The right side is the sum of both.
     fn solved(share: f64, scale: f64) -> Vec<f64> {
         let mut g = Graph::default();
         let mut column = |entries: [f64; 3]| -> Column {
@@ -110,7 +110,7 @@ mod tests {
             }
             for share in [1.25e-6, 1e-3] {
                 let solution = solved(share, scale);
-                // What is its own has ε/share of its digits left.
+                // The own share of the column has ε/share of its digits left.
                 let off = 10.0 * f64::EPSILON / share;
                 assert!((solution[1] - 1.0).abs() < off, "{share:e} {scale:e}: {solution:?}");
                 assert!(

@@ -1,8 +1,8 @@
-//! Named forces, gravity and potentials → generalized forces by virtual work, and what they do to the energy.
+//! Named forces, gravity and potentials → generalized forces by virtual work, with powers and energies.
 
-use super::carried;
 use super::jacobian;
 use super::lower::Clock;
+use super::power_of_time;
 use crate::model::dynamics::{Action, Dynamics as Declared, Line, Turn};
 use crate::model::expression::Id;
 use crate::symbolic::{Graph, Leaf, NodeId, Unary, tangent};
@@ -12,7 +12,7 @@ use crate::symbolic::{Graph, Leaf, NodeId, Unary, tangent};
 pub struct Sum(pub Option<NodeId>);
 
 impl Sum {
-    /// Adds a term behind the others.
+    /// Adds a term after the others.
     pub fn add(&mut self, g: &mut Graph, term: NodeId) {
         self.0 = Some(match self.0 {
             Some(sum) => g.add(sum, term),
@@ -30,7 +30,7 @@ impl Sum {
     }
 }
 
-/// What a force acts on: a point of the plane, or an angle or a length.
+/// Place that a force acts on: a point of the plane, or an angle or a length.
 #[derive(Clone, Copy, Debug)]
 pub enum Place {
     Point([NodeId; 2]),
@@ -44,13 +44,13 @@ pub enum Place {
 pub struct Acting {
     /// Index among the named forces.
     pub force: usize,
-    /// 1 for the end of a tension, 0 for its begin and for what has but one place.
+    /// 1 for the end of a tension, 0 for its begin and for forces with one place.
     pub end: usize,
     pub place: Place,
     pub value: [NodeId; 2],
 }
 
-/// What all forces add up to.
+/// Sum of all forces.
 pub struct Forces {
     /// One a coordinate.
     pub force: Vec<Sum>,
@@ -58,14 +58,15 @@ pub struct Forces {
     pub potential: Sum,
     /// One a named force: its power, without what it stores as potential energy.
     pub powers: Vec<Option<NodeId>>,
-    /// Where the named forces act, without those that come from a function of dissipation.
+    /// Places that the named forces act on, without those that come from a function of dissipation.
     pub acting: Vec<Acting>,
-    /// What the time alone gives to the energies.
+    /// Power with which time alone changes the energies.
     pub carried: Sum,
 }
 
-/// Before: the forces of the text; the number of coordinates, and what the time gives to the kinetic energy. After: their sum on
-/// each coordinate, their potential, the powers of the named ones, what the time gives. Named forces of `left_out` are not among them.
+/// Before: the forces of the text; the number of coordinates, and the power of time alone in the kinetic energy. After: the sum
+/// on each coordinate, the potential, the powers of the named forces and that of time alone. Named forces of `left_out` are
+/// omitted.
 pub fn derive(
     g: &mut Graph,
     declared: &Declared,
@@ -117,14 +118,14 @@ pub fn derive(
                 let energy = g.multiply(weight, of(*place));
                 let energy = g.negate(energy);
                 work.potential.add(g, energy);
-                carried::weight(g, weight, of(*place), clock, &mut work.carried);
+                power_of_time::weight(g, weight, of(*place), clock, &mut work.carried);
             }
         }
     }
     for potential in &declared.potentials {
         work.slope(g, of(*potential), Leaf::Position);
         work.potential.add(g, of(*potential));
-        carried::potential(g, of(*potential), clock, &mut work.carried);
+        power_of_time::potential(g, of(*potential), clock, &mut work.carried);
     }
     Forces {
         force: work.force,
@@ -135,9 +136,9 @@ pub fn derive(
     }
 }
 
-/// What moves.
+/// Variables that move.
 #[derive(Clone, Copy)]
-enum Motion {
+enum RateOf {
     All,
     /// The coordinates alone.
     Coordinates,
@@ -156,7 +157,7 @@ struct Work<'a> {
 }
 
 impl Work<'_> {
-    /// Keeps where the current force acts.
+    /// Keeps the place of the current force.
     fn acts(&mut self, end: usize, places: &[NodeId], values: &[NodeId]) {
         let (place, value) = match (places, values) {
             ([place], [value]) => (Place::Scalar(*place), [*value; 2]),
@@ -190,27 +191,27 @@ impl Work<'_> {
         slopes
     }
 
-    /// Adds value · ∂place/∂q q̇: what the time moves of the place by itself gives nothing to the mechanism.
+    /// Adds value · ∂place/∂q q̇: the part of the place's velocity due to time alone gives no power to the mechanism.
     fn power(&self, g: &mut Graph, value: NodeId, place: NodeId, power: &mut Sum) {
-        if let Some(velocity) = self.velocity(g, place, Motion::Coordinates) {
+        if let Some(velocity) = self.velocity(g, place, RateOf::Coordinates) {
             let term = g.multiply(value, velocity);
             power.add(g, term);
         }
     }
 
-    fn velocity(&self, g: &mut Graph, place: NodeId, motion: Motion) -> Option<NodeId> {
+    fn velocity(&self, g: &mut Graph, place: NodeId, motion: RateOf) -> Option<NodeId> {
         let clock = self.clock;
         let direction = |g: &mut Graph, leaf| match (motion, leaf) {
-            (Motion::All, _) => clock.total(g, leaf, false),
-            (Motion::Coordinates, Leaf::Position(i)) => Some(g.leaf(Leaf::Velocity(i))),
-            (Motion::Coordinates, _) => None,
-            (Motion::Time, _) => clock.partial(g, leaf),
+            (RateOf::All, _) => clock.total(g, leaf, false),
+            (RateOf::Coordinates, Leaf::Position(i)) => Some(g.leaf(Leaf::Velocity(i))),
+            (RateOf::Coordinates, _) => None,
+            (RateOf::Time, _) => clock.partial(g, leaf),
         };
         tangent(g, &[place], direction).pop().flatten()
     }
 
     /// Σ direction · velocity.
-    fn rate(&self, g: &mut Graph, directions: &[NodeId], places: &[NodeId], motion: Motion) -> Sum {
+    fn rate(&self, g: &mut Graph, directions: &[NodeId], places: &[NodeId], motion: RateOf) -> Sum {
         let mut rate = Sum::default();
         for (direction, place) in directions.iter().zip(places) {
             if let Some(velocity) = self.velocity(g, *place, motion) {
@@ -251,7 +252,7 @@ impl Work<'_> {
                 g.select(zero, length, ratio, zero)
             })
             .collect();
-        let [rate, own, moved] = [Motion::All, Motion::Coordinates, Motion::Time]
+        let [rate, own, moved] = [RateOf::All, RateOf::Coordinates, RateOf::Time]
             .map(|motion| self.rate(g, &directions, &span, motion));
         let mut active = Sum(line.actuator.map(of));
         if let (Some(damping), Some(rate)) = (line.damping, rate.0) {
@@ -285,7 +286,7 @@ impl Work<'_> {
     /// A torque against an angle.
     fn turn(&mut self, g: &mut Graph, turn: &Turn, of: &impl Fn(Id) -> NodeId) -> Option<NodeId> {
         let angle = of(turn.angle);
-        let [rate, own, moved] = [Motion::All, Motion::Coordinates, Motion::Time]
+        let [rate, own, moved] = [RateOf::All, RateOf::Coordinates, RateOf::Time]
             .map(|motion| Sum(self.velocity(g, angle, motion)));
         let mut active = Sum(turn.torque.map(of));
         if let (Some(damping), Some(rate)) = (turn.damping, rate.0) {

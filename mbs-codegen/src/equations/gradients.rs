@@ -1,4 +1,4 @@
-//! How steep rows are: what a row that is written a thousand times over, or in another unit, is measured by.
+//! Gradients of rows: the measure of a row that is multiplied by a thousand, or written in another unit.
 
 use super::Row;
 use crate::model::Model;
@@ -10,21 +10,22 @@ use crate::symbolic::{Binary, Graph, Leaf, Node, NodeId, Stage, Unary};
 /// gears and squares of lengths are well measured by their units, and keep round numbers.
 const MOST_OFF: f64 = 8.0;
 
-/// How far from the guess rows are looked at, in the scales of the coordinates: out of positions at which a gradient vanishes.
+/// Distance from the guess at which rows are evaluated, in the scales of the coordinates: away from positions at which a
+/// gradient vanishes.
 const ASIDE: f64 = 0.5;
 
-/// Rows of a text with what measures them by their units.
+/// Rows of a text with their measures by units.
 pub struct Rows<'a> {
     pub rows: &'a [Row],
     /// Scales of the coordinates.
     pub coordinates: &'a [NodeId],
-    /// Where the search for an assembly begins.
+    /// Start of the search for an assembly.
     pub guesses: &'a [NodeId],
 }
 
 impl Rows<'_> {
-    /// Before: scales of rows by their units. After: times a power of two where the gradient is far from the unit's both by what its
-    /// terms can be and about the guess, with parameters at their defaults.
+    /// Before: scales of rows by their units. After: times a power of two where the gradient is far from the unit's. It must be
+    /// far both by the bounds of its terms and about the guess, with parameters at their defaults.
     pub fn measure(&self, model: &Model, g: &mut Graph, row_scales: &mut [NodeId]) {
         let bounds = self.bounds(model, g, row_scales);
         if bounds.iter().flatten().all(|ratio| !is_far(*ratio)) {
@@ -42,12 +43,12 @@ impl Rows<'_> {
         }
     }
 
-    /// Most that the gradient of each row can be of its scale; `None` where nothing is known of it.
+    /// Bound on the gradient of each row, relative to its scale; `None` where none is known.
     fn bounds(&self, model: &Model, g: &Graph, row_scales: &[NodeId]) -> Vec<Option<f64>> {
         let entries = self.rows.iter().flat_map(|row| row.phi_q.iter().map(|(_, entry)| *entry));
         let scales: Vec<NodeId> = self.coordinates.iter().chain(row_scales).copied().collect();
         let mut sizes = Sizes { sizes: vec![None; g.len()], model, coordinates: self.coordinates };
-        // A coordinate is as large as its scale, which is made of parameters: those come first.
+        // The size of a coordinate is its scale, which depends on parameters: those come first.
         sizes.fill(g, g.reachable(scales.iter().copied()));
         sizes.fill(g, g.reachable(entries));
         let size = |id: &NodeId| sizes.of(*id);
@@ -82,7 +83,7 @@ impl Rows<'_> {
             let at = |leaf: Leaf| match leaf {
                 Leaf::Position(index) => {
                     let index = index as usize;
-                    // No two alike and none in equal steps, so that no symmetry of the mechanism is kept.
+                    // All values differ, not in equal steps, so that no symmetry of the mechanism is kept.
                     let share = 0.25 + 0.75 * scattered(leaf, 0);
                     let guess = guesses.get(index).copied().unwrap_or(0.0);
                     guess + side * ASIDE * share * coordinates.get(index).copied().unwrap_or(1.0)
@@ -106,7 +107,7 @@ fn is_far(ratio: f64) -> bool {
     !(1.0 / MOST_OFF..=MOST_OFF).contains(&ratio)
 }
 
-/// About how large values become; of some nothing is known.
+/// Estimated size of values; `None` where it is unknown.
 struct Sizes<'a> {
     sizes: Vec<Option<f64>>,
     model: &'a Model,

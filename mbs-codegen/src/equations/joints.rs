@@ -1,8 +1,7 @@
-//! Whether pins stand where their bodies keep together: the points of both bodies there have one velocity in every motion
-//! that the rows allow.
+//! Check of the places of pins: there the points of both bodies have one velocity in every motion that the rows allow.
 //!
-//! Elsewhere a pin's force would do work, and the sums over the bodies have no solution. Drives and guides that act on
-//! bodies by themselves are no help: their forces are among the sums.
+//! At another place a pin's force would do work, and the sums over the bodies have no solution. Drives and guides that
+//! act on bodies directly do not matter: their forces are among the sums.
 
 use super::pins::{Attribution, Given};
 use super::velocities::{Here, Motions, Seen};
@@ -11,25 +10,25 @@ use crate::model::dynamics::{Dynamics as Declared, Pin};
 use crate::model::expression::Id;
 use crate::symbolic::{Graph, NodeId};
 
-/// What is wrong with the place of a pin.
+/// Fault in the place of a pin.
 pub enum Misplaced {
-    /// It does not stand on one of its bodies.
+    /// It is not a point of one of its bodies.
     Off {
         /// Its index.
         pin: usize,
         /// The body of the two that passes its point: 0 or 1.
         body: usize,
-        /// Whether the point moves with the other.
+        /// `true` if the point moves with the other.
         on_other: bool,
     },
-    /// No position is found at which all rows hold, to look at it.
+    /// No position is found at which all rows hold, so that it cannot be checked.
     Unseen,
 }
 
-/// Before: what acts on which body. After: the first pin at whose point its bodies move apart, seen at positions that fulfil
-/// all rows.
+/// Before: the body that each force and row acts on. After: the first pin at whose point its bodies move apart, at positions
+/// that fulfil all rows.
 ///
-/// What holds at a few scattered positions of a design without special numbers holds at all around.
+/// A property of a few scattered positions of a design without special numbers holds at all positions around them.
 pub fn misplaced(
     g: &mut Graph,
     (model, declared): (&Model, &Declared),
@@ -55,7 +54,7 @@ pub fn misplaced(
     }
 }
 
-/// Whether a pin is misplaced at a position; `None` where something there is no number.
+/// Fault of a pin at a position, if it is misplaced there; the outer `None` where a value is not finite.
 fn at_pin(here: &Here<'_>, index: usize, pin: &Pin) -> Option<Option<Misplaced>> {
     let [first, second] = pin.bodies;
     let (with_first, with_second) = (here.carried(first, index)?, here.carried(second, index)?);
@@ -64,7 +63,7 @@ fn at_pin(here: &Here<'_>, index: usize, pin: &Pin) -> Option<Option<Misplaced>>
     }
     let own = here.own(index)?;
     let on_first = here.same(&own, &with_first);
-    // The ground carries nothing: where the point stands on neither, the body is off.
+    // The ground carries no point: where the point belongs to neither, the body is off.
     let body = usize::from(on_first || first.is_none());
     let on_other = on_first || here.same(&own, &with_second);
     Some(Some(Misplaced::Off { pin: index, body, on_other }))
@@ -72,7 +71,7 @@ fn at_pin(here: &Here<'_>, index: usize, pin: &Pin) -> Option<Option<Misplaced>>
 
 #[cfg(test)]
 mod tests {
-    /// What the compiler says of a text with `knee` as the place of that pin.
+    /// Report of the compiler on a text with `knee` as the place of that pin.
     fn fault(text: &str, knee: &str) -> Option<String> {
         crate::expand_source(&text.replace("KNEE", knee)).err()
     }

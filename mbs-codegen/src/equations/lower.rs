@@ -11,14 +11,14 @@ pub struct Lowered {
     pub branches: Vec<NodeId>,
     /// Lower bound, value, upper bound.
     pub limits: Vec<[NodeId; 3]>,
-    /// What is driven, and its rate.
+    /// Driven argument, and its rate.
     pub phases: Vec<[NodeId; 2]>,
-    /// Value, and how many time derivatives its definition leaves it.
+    /// Value, and the number of time derivatives that its definition admits.
     pub outputs: Vec<(NodeId, u8)>,
     pub guesses: Vec<NodeId>,
     pub coordinate_scales: Vec<NodeId>,
     pub row_scales: Vec<NodeId>,
-    /// Widths by which rows may contradict each other; empty where no text says so.
+    /// Widths by which rows may contradict each other; empty where the text gives none.
     pub widths: Vec<NodeId>,
     /// The reference length.
     pub length: NodeId,
@@ -31,10 +31,10 @@ pub struct Lowered {
 
 /// First index of a given leaf that is a margin, by its group; others are ∂q/∂drive, by the drive's row.
 pub const MARGIN: u32 = u32::MAX;
-/// First index of a given leaf that stands for the force of a pin until its sums are known, by pin and component.
+/// First index of a given leaf that represents the force of a pin until its sums are known, by pin and component.
 pub const PIN: u32 = u32::MAX - 1;
 
-/// How leaves move in time.
+/// Time derivatives of leaves.
 pub struct Clock {
     kinds: Vec<VariableKind>,
 }
@@ -44,13 +44,13 @@ impl Clock {
     pub fn partial(&self, g: &mut Graph, leaf: Leaf) -> Option<NodeId> {
         match leaf {
             Leaf::Time => Some(g.constant(1.0)),
-            // The rate stands behind the value, the acceleration behind the rate.
+            // The rate follows the value, the acceleration follows the rate.
             Leaf::Input(i) if self.moves(i) => Some(g.leaf(Leaf::Input(i + 1))),
             _ => None,
         }
     }
 
-    /// Motion of everything; `accelerating`: whether q̇ moves too.
+    /// Motion of all leaves; `accelerating`: `true` if q̇ moves too.
     pub fn total(&self, g: &mut Graph, leaf: Leaf, accelerating: bool) -> Option<NodeId> {
         match leaf {
             Leaf::Position(i) => Some(g.leaf(Leaf::Velocity(i))),
@@ -63,7 +63,7 @@ impl Clock {
         self.kinds.get(index as usize).copied()
     }
 
-    /// Whether the next variable is this one's rate.
+    /// `true` if the next variable is this one's rate.
     fn moves(&self, index: u32) -> bool {
         match self.kind(index) {
             Some(VariableKind::InputWithRates) => true,
@@ -74,7 +74,7 @@ impl Clock {
         }
     }
 
-    /// How many times a leaf was differentiated already, of two.
+    /// Number of times that a leaf was differentiated already, of two.
     fn order(&self, leaf: Leaf) -> u8 {
         match leaf {
             Leaf::Parameter(_) | Leaf::Time | Leaf::Position(_) => 0,
@@ -145,8 +145,8 @@ fn expressions(model: &Model, clock: &Clock, g: &mut Graph) -> Vec<NodeId> {
             expression::Node::State(i) => g.leaf(Leaf::State(i as u32)),
             expression::Node::Multiplier(i) => g.leaf(Leaf::Multiplier(i as u32)),
             expression::Node::Pin(pin, component) => g.leaf(Leaf::Given(PIN, (2 * pin + component) as u32)),
-            expression::Node::Unary(function, a) => g.unary(unary(function), of(a)),
-            expression::Node::Binary(function, a, b) => g.binary(binary(function), of(a), of(b)),
+            expression::Node::Unary(function, a) => g.unary(function, of(a)),
+            expression::Node::Binary(function, a, b) => g.binary(function, of(a), of(b)),
             expression::Node::Margin(group) => g.leaf(Leaf::Given(MARGIN, group as u32)),
             expression::Node::Ratio(a, row) => {
                 let gain = |g: &mut Graph, leaf| match leaf {
@@ -172,8 +172,8 @@ fn expressions(model: &Model, clock: &Clock, g: &mut Graph) -> Vec<NodeId> {
     nodes
 }
 
-/// How many exact time derivatives a value has, where q̈ and the accelerations of inputs are the last that is known,
-/// and of a declared function as many derivatives as are continuous.
+/// Number of exact time derivatives of a value. q̈ and the accelerations of inputs are the last that are known, and a
+/// declared function has as many derivatives as are continuous.
 fn derivatives(model: &Model, graph: &Graph, clock: &Clock, value: NodeId) -> u8 {
     let left = graph.reachable([value]).into_iter().filter_map(|id| match graph.node(id) {
         Node::Leaf(leaf) => Some(2_u8.saturating_sub(clock.order(leaf))),
@@ -197,38 +197,4 @@ fn reference_length(model: &Model, g: &mut Graph) -> NodeId {
     let other = g.constant(model.longest_guess.as_ref().map_or(1.0, |guess| guess.length));
     let zero = g.constant(0.0);
     g.select(zero, longest, longest, other)
-}
-
-fn unary(function: expression::Unary) -> Unary {
-    match function {
-        expression::Unary::Negate => Unary::Negate,
-        expression::Unary::Sqrt => Unary::Sqrt,
-        expression::Unary::Exp => Unary::Exp,
-        expression::Unary::Ln => Unary::Ln,
-        expression::Unary::Sin => Unary::Sin,
-        expression::Unary::Cos => Unary::Cos,
-        expression::Unary::Tan => Unary::Tan,
-        expression::Unary::Asin => Unary::Asin,
-        expression::Unary::Acos => Unary::Acos,
-        expression::Unary::Atan => Unary::Atan,
-        expression::Unary::Sinh => Unary::Sinh,
-        expression::Unary::Cosh => Unary::Cosh,
-        expression::Unary::Tanh => Unary::Tanh,
-        expression::Unary::Abs => Unary::Abs,
-        expression::Unary::Sign => Unary::Sign,
-    }
-}
-
-fn binary(function: expression::Binary) -> Binary {
-    match function {
-        expression::Binary::Add => Binary::Add,
-        expression::Binary::Subtract => Binary::Subtract,
-        expression::Binary::Multiply => Binary::Multiply,
-        expression::Binary::Divide => Binary::Divide,
-        expression::Binary::Power => Binary::Power,
-        expression::Binary::Atan2 => Binary::Atan2,
-        expression::Binary::Min => Binary::Min,
-        expression::Binary::Max => Binary::Max,
-        expression::Binary::Hypot => Binary::Hypot,
-    }
 }

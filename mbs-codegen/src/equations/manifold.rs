@@ -1,7 +1,6 @@
-//! Positions at which all rows hold, found by numbers while a text is compiled.
+//! Positions at which all rows hold, found numerically while a text is compiled.
 //!
-//! Parameters, time and inputs give way as coordinates do, so that what is seen there holds for every design, and
-//! redundant rows agree.
+//! Parameters, time and inputs vary as coordinates do. So the results hold for every design, and redundant rows agree.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -12,9 +11,9 @@ use crate::symbolic::{Graph, Leaf, Node, NodeId, tangents};
 const ITERATIONS: usize = 30;
 /// Largest step of one, in the units of the text: angles beyond a radian are another place.
 const LARGEST_STEP: f64 = 1.0;
-/// A step so small ends the search: what the next would change is rounding.
+/// Step size that ends the search: the next change would be rounding.
 const SMALLEST_STEP: f64 = 1e-9;
-/// What may be left of a row, in its unit, where lengths and angles are near 1.
+/// Largest residual of a row that counts as closed, in its unit, where lengths and angles are near 1.
 const CLOSED: f64 = 1e-11;
 /// A row of which less than this share is its own follows from earlier ones.
 const DEPENDENT: f64 = 1e-8;
@@ -33,7 +32,7 @@ pub struct Manifold {
 }
 
 impl Manifold {
-    /// Before: residuals of rows. After: what Newton's method needs of them.
+    /// Before: residuals of rows. After: the data for Newton's method on them.
     pub fn of(g: &mut Graph, residuals: &[NodeId]) -> Self {
         let moves = |id: &NodeId| match g.node(*id) {
             Node::Leaf(leaf @ (Leaf::Position(_) | Leaf::Parameter(_) | Leaf::Input(_) | Leaf::Time)) => {
@@ -95,8 +94,8 @@ impl Manifold {
 pub struct Orthogonal(Vec<Vec<f64>>);
 
 impl Orthogonal {
-    /// Before: a row. After: it is among them, unless it follows; what it has of the earlier ones, and the length of the
-    /// rest, 0 where it follows.
+    /// Before: a row. After: it is among them, unless it follows; returns its components along the earlier ones, and the
+    /// length of the rest, 0 where it follows.
     pub fn add(&mut self, mut row: Vec<f64>) -> (Vec<f64>, f64) {
         let before = libm::sqrt(dot(&row, &row));
         let shares = self.take_from(&mut row);
@@ -109,12 +108,12 @@ impl Orthogonal {
         (shares, rest)
     }
 
-    /// How many they are.
+    /// Number of these rows.
     pub fn rank(&self) -> usize {
         self.0.len()
     }
 
-    /// Takes what a row has along these from it, twice for its last digits; returns how much of each.
+    /// Subtracts from a row its components along these, twice for the last digits; returns the components.
     pub fn take_from(&self, row: &mut [f64]) -> Vec<f64> {
         let mut shares = vec![0.0; self.0.len()];
         for _ in 0..2 {
@@ -132,7 +131,7 @@ impl Orthogonal {
 fn shortest(rows: Vec<Vec<f64>>, b: &[f64]) -> Vec<f64> {
     let mut x = vec![0.0; rows.first().map_or(0, Vec::len)];
     let mut orthogonal = Orthogonal::default();
-    // What x has along each, by forward substitution.
+    // Component of x along each, by forward substitution.
     let mut along: Vec<f64> = Vec::new();
     for (row, b) in rows.into_iter().zip(b) {
         let (shares, rest) = orthogonal.add(row);
@@ -154,7 +153,7 @@ pub fn dot(a: &[f64], b: &[f64]) -> f64 {
 mod tests {
     use super::*;
 
-    /// A row of which `share` is its own beside a first one.
+    /// A row of which `share` is its own, next to a first one.
     fn nearly(share: f64) -> (Orthogonal, Vec<f64>) {
         let mut rows = Orthogonal::default();
         rows.add(vec![3.0, 4.0, 0.0]);
@@ -173,7 +172,7 @@ mod tests {
         }
     }
 
-    /// Whatever the unit that a row is written in.
+    /// The unit of a row does not matter.
     #[test]
     fn the_threshold_is_a_share_of_the_row() {
         for scale in [1e-12, 1e12] {
@@ -190,7 +189,7 @@ mod tests {
         let step = |share: f64| shortest(vec![vec![3.0, 4.0, 0.0], vec![3.0, 4.0, 5.0 * share]], &[5.0, 5.0]);
         let shortest = step(0.8e-8);
         assert!((shortest[0] - 0.6).abs() < 1e-15 && shortest[2] == 0.0);
-        // Of a row of its own the same right side asks for nothing along what is its own.
+        // With a row of its own, the same right side requires no step along that row's own direction.
         assert!(step(1.25e-8)[2].abs() < 1e-6);
     }
 }

@@ -2,24 +2,24 @@
 //! metric; M, Q and their derivatives, energies, powers.
 
 mod attribution;
-mod carried;
-mod carriers;
 mod contacts;
 pub mod continuity;
 pub mod deferred;
 mod degree;
 mod dynamics;
 mod elimination;
+mod force_attachment;
 mod forces;
 mod gradients;
 mod joints;
 mod lower;
 mod manifold;
+mod non_negative;
 pub mod normal_forces;
 pub mod pins;
+mod power_of_time;
 mod second_moments;
-mod signed;
-mod turning;
+mod spatial_inertia;
 pub mod turns;
 mod velocities;
 
@@ -28,13 +28,19 @@ use std::collections::BTreeMap;
 use crate::model::Model;
 use crate::symbolic::{Graph, Leaf, Node, NodeId, tangent, tangents};
 
-pub use attribution::Motion;
+pub use attribution::RowMotion;
 pub use contacts::{ByContact, Pressing, Push};
 pub use dynamics::{Dynamics, Gap, Slope, Sparse};
 use lower::Lowered;
 pub use lower::MARGIN;
+pub use non_negative::Of;
 pub use pins::{Attribution, On};
-pub use signed::Of;
+
+/// All expressions of a model as nodes of one graph, in their order.
+pub fn lowered(model: &Model) -> (Graph, Vec<NodeId>) {
+    let Lowered { graph, nodes, .. } = lower::lower(model);
+    (graph, nodes)
+}
 
 /// One graph and its roots. `None` is a structural zero.
 #[derive(Debug)]
@@ -57,7 +63,7 @@ pub struct Equations {
     pub coordinate_scales: Vec<NodeId>,
     /// Reference metric of the rows.
     pub row_scales: Vec<NodeId>,
-    /// Widths by which rows may contradict each other, in their units; empty where no text says so.
+    /// Widths by which rows may contradict each other, in their units; empty where the text gives none.
     pub widths: Vec<NodeId>,
     /// Masses and forces, where the text has any.
     pub dynamics: Option<Dynamics>,
@@ -82,10 +88,10 @@ pub struct Row {
     pub gamma: Option<NodeId>,
 }
 
-/// What a drive that prescribes a rate needs.
+/// Terms of a drive that prescribes a rate.
 #[derive(Debug)]
 pub struct Phase {
-    /// What is driven.
+    /// Driven expression.
     pub argument: NodeId,
     /// Its rate.
     pub speed: NodeId,
@@ -148,7 +154,7 @@ impl Equations {
         }
     }
 
-    /// Of each declared function below `roots` the highest order.
+    /// Highest order of each declared function below `roots`.
     fn orders(&self, roots: Vec<NodeId>) -> BTreeMap<u32, u8> {
         let mut orders = BTreeMap::new();
         for id in self.graph.reachable(roots) {

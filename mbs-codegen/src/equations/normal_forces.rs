@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::{Sparse, jacobian};
 use crate::symbolic::{Binary, Graph, Leaf, Node, NodeId, Unary};
 
-/// What a term does with its components.
+/// Function that a term applies to its components.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// The multiplier itself.
@@ -19,9 +19,9 @@ pub enum Kind {
 /// One term v.
 #[derive(Debug)]
 pub struct Term {
-    /// What it is.
+    /// Its function.
     pub kind: Kind,
-    /// One or two sums of multipliers and of terms before; multipliers from M on stand for the terms.
+    /// One or two sums of multipliers and of terms before; multipliers from M on represent the terms.
     pub components: Vec<NodeId>,
     /// Its derivatives by each multiplier, one row a component.
     pub by_multiplier: Sparse,
@@ -32,7 +32,7 @@ pub struct Term {
 /// Q = Q₀ + D v.
 #[derive(Debug)]
 pub struct NormalForces {
-    /// The terms; those that a term is made of stand before it.
+    /// The terms; those that a term depends on precede it.
     pub terms: Vec<Term>,
     /// D: one row a coordinate.
     pub force: Sparse,
@@ -94,7 +94,7 @@ pub fn normal_forces(g: &mut Graph, force: &[Option<NodeId>], rows: usize) -> Op
     Some(NormalForces { terms: terms.collect(), force })
 }
 
-/// The multipliers that stand in `roots` by themselves, ascending.
+/// The multipliers that are leaves of `roots`, ascending.
 fn plain_multipliers(g: &Graph, roots: &[NodeId], rows: usize) -> Vec<usize> {
     let mut found: Vec<usize> = g
         .reachable(roots.iter().copied())
@@ -111,14 +111,14 @@ fn plain_multipliers(g: &Graph, roots: &[NodeId], rows: usize) -> Vec<usize> {
 
 /// A walk over Q, operands first.
 struct Walk {
-    /// Of each node that depends on a multiplier what it is with its terms as leaves; none where it is no such sum.
+    /// Form of each node that depends on a multiplier, with its terms as leaves; `None` where it is no such sum.
     images: BTreeMap<NodeId, Option<NodeId>>,
     terms: Vec<(Kind, Vec<NodeId>)>,
     rows: usize,
 }
 
 impl Walk {
-    /// What stands for a node.
+    /// Node that replaces another one.
     fn image(&self, id: NodeId) -> Option<NodeId> {
         self.images.get(&id).copied().unwrap_or(Some(id))
     }

@@ -1,15 +1,15 @@
 //! Forces of pins by Newton's and Euler's sums over the bodies that they join.
 //!
-//! Of each body the sums are known: inertia less what acts. Pins, and the guides of bodies that the coordinates hold, are
-//! the unknowns, as the least squares of all sums: these have a solution wherever the rows are regular, whichever of the
-//! sums are redundant there.
+//! The sums of each body are known: inertia less the applied forces. Pins, and the guides of bodies that the coordinates
+//! hold, are the unknowns, found by least squares of all sums. These have a solution wherever the rows are regular,
+//! whichever of the sums are redundant there.
 
 use proc_macro2::Span;
 
-use super::attribution::{Frame, Motion, Slopes};
-use super::carriers::Points;
+use super::attribution::{Frame, RowMotion, Slopes};
 use super::dynamics::Dynamics;
 use super::elimination::{Column, solve};
+use super::force_attachment::Points;
 use super::forces::{Place, Sum};
 use super::joints::{Misplaced, misplaced};
 use super::lower::{Clock, PIN};
@@ -21,39 +21,39 @@ use crate::model::expression::Id;
 use crate::symbolic::substitute::substitute;
 use crate::symbolic::{Graph, Leaf, Node, NodeId, tangent};
 
-/// Why the forces of pins are not known.
+/// Reason why the forces of pins are unknown.
 #[derive(Clone, Debug)]
 pub struct Undetermined {
-    /// Where the text asks for one, or has a pin at another place than its joint.
+    /// Output that asks for one, or pin at another place than its joint.
     pub span: Span,
     pub message: String,
     pub help: String,
 }
 
-/// What acts on which body, and what holds it beside pins.
+/// Body that each force and row acts on, and what holds bodies apart from pins.
 #[derive(Clone, Debug)]
 pub struct Attribution {
     /// One a part of a named force, with the force's index: of a tension the part at its begin, then that at its end.
     pub acting: Vec<(usize, On)>,
     /// Rows whose multipliers act on bodies: drives, and guides.
-    pub rows: Vec<(usize, Motion)>,
+    pub rows: Vec<(usize, RowMotion)>,
     /// Bodies and components, 2 for the angle, that the coordinates hold: forces and moments unknown as pins are.
     pub held: Vec<(usize, usize)>,
 }
 
-/// What the coordinates hold, and what rows hold.
-type Guides = (Vec<(usize, usize)>, Vec<(usize, Motion)>);
+/// Components held by the coordinates, and components held by rows.
+type Guides = (Vec<(usize, usize)>, Vec<(usize, RowMotion)>);
 
-/// What a part of a force acts on.
+/// Body or motion that a part of a force acts on.
 #[derive(Clone, Copy, Debug)]
 pub enum On {
     Ground,
     /// A point of a body.
     Point(usize),
-    Moves(Motion),
+    Moves(RowMotion),
 }
 
-/// What the sums are made of.
+/// Terms of the sums.
 #[derive(Clone, Copy)]
 pub struct Given<'a> {
     pub nodes: &'a [NodeId],
@@ -65,7 +65,8 @@ pub struct Given<'a> {
     pub guesses: &'a [NodeId],
 }
 
-/// Before: outputs in which leaves stand for forces of pins. After: their sums stand there, or why there are none.
+/// Before: outputs in which leaves represent forces of pins. After: the forces replace the leaves, or the reason is
+/// noted why they are unknown.
 pub fn complete(g: &mut Graph, model: &Model, declared: &Declared, derived: &mut Dynamics, given: Given<'_>) {
     let asks = |g: &Graph, load: NodeId| {
         let leaf = |id: &NodeId| matches!(g.node(*id), Node::Leaf(Leaf::Given(PIN, _)));
@@ -75,7 +76,7 @@ pub fn complete(g: &mut Graph, model: &Model, declared: &Declared, derived: &mut
     match forces(g, model, declared, derived, given) {
         Ok((forces, attribution)) => {
             if let Some(found) = misplaced(g, (model, declared), given, &attribution) {
-                derived.undetermined = said(declared, &found);
+                derived.undetermined = message(declared, &found);
                 return;
             }
             derived.attribution = Some(attribution);
@@ -93,8 +94,8 @@ pub fn complete(g: &mut Graph, model: &Model, declared: &Declared, derived: &mut
     }
 }
 
-/// What is wrong with the place of a pin, in words.
-fn said(declared: &Declared, found: &Misplaced) -> Option<Undetermined> {
+/// Message about a misplaced pin.
+fn message(declared: &Declared, found: &Misplaced) -> Option<Undetermined> {
     let Misplaced::Off { pin, body, on_other } = *found else {
         let ([(_, span), _], name) = declared.pins.first().map(|pin| (&pin.joined, &pin.name))?;
         let message = format!("where the pin `{name}` stands cannot be judged: no position fulfils all rows");
@@ -126,15 +127,15 @@ pub fn check(equations: &Equations, diagnostics: &mut Diagnostics) {
     }
 }
 
-/// Before: a resolved model. After: what acts on which body, where an output asks for the force of a pin.
+/// Before: a resolved model. After: the body that each force and row acts on, where an output asks for the force of a pin.
 pub fn attribution(model: &Model) -> Option<Attribution> {
     let asks = model.dynamics.as_ref().is_some_and(|declared| !declared.pins.is_empty());
     if asks { super::derive(model).dynamics.and_then(|derived| derived.attribution) } else { None }
 }
 
-/// Why the sums are not known.
+/// Reason why the sums are unknown.
 pub(super) struct Fault {
-    /// Where, if not at the output that asks for a force.
+    /// Token, if not the output that asks for a force.
     pub span: Option<Span>,
     pub message: String,
     pub help: String,
@@ -162,7 +163,7 @@ fn forces(
     Ok((forces, attribution))
 }
 
-/// Energies act on bodies that nobody names; bodies of space have more sums.
+/// Refuses energies, whose bodies the text does not name, and bodies in space, which have more sums.
 fn unattributable(declared: &Declared) -> Result<(), Fault> {
     let dissipation = declared.forces.iter().find(|force| matches!(force.action, Action::Dissipation(_)));
     let named = declared.kinetics.first().map(|kinetic| kinetic.name.as_str());
@@ -188,8 +189,8 @@ struct Sums<'a> {
     given: Given<'a>,
     slopes: Slopes,
     bodies: Vec<Frame>,
-    /// What each row, each part of a force moves.
-    rows: Vec<Option<Motion>>,
+    /// Motion that each row measures.
+    rows: Vec<Option<RowMotion>>,
     acting: Vec<(usize, On)>,
     /// Nodes of centres and angles.
     frames: Vec<([NodeId; 2], Option<NodeId>)>,
@@ -232,7 +233,7 @@ impl<'a> Sums<'a> {
         let mut acting = Vec::new();
         let points = Points { slopes: &slopes, bodies: &bodies, declared, nodes: given.nodes };
         let parts: Vec<_> = derived.acting.iter().zip(places).collect();
-        let able = points.able(g, model, given, &parts);
+        let able = points.attached(g, model, given, &parts);
         for ((part, place), able) in parts.into_iter().zip(&able) {
             let found = match part.place {
                 Place::Point(_) => points.carrier(part, place, able)?,
@@ -252,8 +253,8 @@ impl<'a> Sums<'a> {
         Ok(Sums { given, slopes, bodies, rows, acting, frames })
     }
 
-    /// What acts where, and what else holds bodies where the pins do not: as many as the sums leave, or the forces are
-    /// indeterminate.
+    /// Body of each force and drive, and the guides that hold bodies where pins do not. There are as many unknowns as
+    /// sums, or the forces are indeterminate.
     fn attribution(&self, model: &Model, declared: &Declared) -> Result<Attribution, Fault> {
         let mut driven = Vec::new();
         for (index, (row, motion)) in
@@ -311,9 +312,9 @@ impl<'a> Sums<'a> {
                 }
             }
         }
-        let guides = |motion: &Motion| match motion {
-            Motion::Component { body, .. } => !on_ground(*body),
-            Motion::Angle { against, .. } => against.is_none(),
+        let guides = |motion: &RowMotion| match motion {
+            RowMotion::Component { body, .. } => !on_ground(*body),
+            RowMotion::Angle { against, .. } => against.is_none(),
         };
         let rows = model.rows.iter().zip(&self.rows).enumerate().filter(|(_, (row, _))| !row.driven);
         let rows = rows.filter_map(|(index, (_, motion))| Some((index, (*motion)?)));
@@ -397,18 +398,18 @@ impl<'a> Sums<'a> {
         [Some(force_x), Some(force_y), moment]
     }
 
-    /// Subtracts what a force or torque `value` along a motion does to the bodies.
-    fn subtract_along(&self, g: &mut Graph, known: &mut [Sum], motion: Motion, value: NodeId) {
+    /// Subtracts the forces and moments on the bodies due to a force or torque `value` along a motion.
+    fn subtract_along(&self, g: &mut Graph, known: &mut [Sum], motion: RowMotion, value: NodeId) {
         let signed = |g: &mut Graph, sign: f64| if sign < 0.0 { g.negate(value) } else { value };
         match motion {
-            Motion::Angle { body, against, sign } => {
+            RowMotion::Angle { body, against, sign } => {
                 let (on, back) = (signed(g, sign), signed(g, -sign));
                 subtract(g, known, body, [None, None, Some(on)]);
                 if let Some(against) = against {
                     subtract(g, known, against, [None, None, Some(back)]);
                 }
             }
-            Motion::Component { body, component, sign } => {
+            RowMotion::Component { body, component, sign } => {
                 let on = Some(signed(g, sign));
                 let parts = if component == 0 { [on, None, None] } else { [None, on, None] };
                 subtract(g, known, body, parts);

@@ -1,9 +1,9 @@
-//! What the masses of a body in space leave of its inertia: second moments ∫ x xᵀ dm = ½ tr J 1 − J without a negative one.
+//! Physically possible inertia of a body in space: no second moment in ∫ x xᵀ dm = ½ tr J 1 − J is negative.
 
 use crate::symbolic::{Graph, NodeId};
 
-/// What a value may be below 0, in parts of the trace of the inertia to its power: moments of a flat body, whose value is 0, rounded to
-/// single precision.
+/// Amount by which a value may be below 0, in parts of the trace of the inertia to its power. The value of a flat body is 0; its
+/// moments may be rounded to single precision.
 const ROUNDING: f64 = 1e-6;
 
 /// One of the conditions that no second moment is negative about any axis: the principal minors.
@@ -18,7 +18,7 @@ pub enum Condition {
 }
 
 impl Condition {
-    /// What its value is, behind the name of the inertia.
+    /// Description of its value, printed after the name of the inertia.
     pub fn name(self) -> &'static str {
         match self {
             Condition::Third => "two moments less the third",
@@ -28,8 +28,8 @@ impl Condition {
     }
 }
 
-/// Before: the upper triangle of a matrix of inertia about the centre of mass, row, column, entry. After: values that are at least 0
-/// where a body has this inertia, each with what it is; those of a diagonal matrix are three.
+/// Before: the upper triangle of a matrix of inertia about the centre of mass, row, column, entry. After: values that are at
+/// least 0 where a body has this inertia, each with its condition; those of a diagonal matrix are three.
 pub fn second_moments(g: &mut Graph, entries: &[(usize, usize, NodeId)]) -> Vec<(Condition, NodeId)> {
     let entry = |g: &Graph, row: usize, column: usize| {
         let found = entries.iter().find(|(r, c, _)| (*r, *c) == (row, column));
@@ -41,7 +41,7 @@ pub fn second_moments(g: &mut Graph, entries: &[(usize, usize, NodeId)]) -> Vec<
     let trace = g.add(both, zz);
     let allowed = g.constant(ROUNDING);
     let allowed = g.multiply(allowed, trace);
-    // Twice the second moments about each axis, and beside the diagonal.
+    // Twice the second moments about each axis, and off the diagonal.
     let doubled = [xx, yy, zz].map(|moment| {
         let twice = g.add(moment, moment);
         g.subtract(trace, twice)
@@ -68,7 +68,7 @@ pub fn second_moments(g: &mut Graph, entries: &[(usize, usize, NodeId)]) -> Vec<
         found.push((Condition::Pair, g.add(minor, room)));
     }
     room = g.multiply(room, trace);
-    // With −2 J beside the diagonal: abc − 2·ab·bc·ac − a·bc² − b·ac² − c·ab².
+    // −2 J off the diagonal gives abc − 2·ab·bc·ac − a·bc² − b·ac² − c·ab².
     let product = g.multiply(a, b);
     let mut determinant = g.multiply(product, c);
     let product = g.multiply(ab, bc);

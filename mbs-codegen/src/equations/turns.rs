@@ -1,4 +1,4 @@
-//! Coordinates that turn for days, and inputs that turn: that nothing changes with a whole turn of them, but for the phases that hold
+//! Coordinates and inputs that turn without bound: no value may change with a whole turn of them, except the phases that hold
 //! such a coordinate.
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -29,7 +29,7 @@ enum Angle {
 /// Change of a value with whole turns of these angles.
 #[derive(Clone, Debug, PartialEq)]
 enum Shift {
-    /// It changes by so many turns with each turn of an angle; nothing where none is named.
+    /// It changes by so many turns with each turn of an angle; an empty map means no change.
     Turns(BTreeMap<Angle, f64>),
     /// It changes otherwise with a turn of this angle.
     Otherwise(Angle),
@@ -38,7 +38,7 @@ enum Shift {
 impl Shift {
     const NONE: Shift = Shift::Turns(BTreeMap::new());
 
-    /// Of the angle itself.
+    /// Change of the angle itself.
     fn turn_of(angle: Angle) -> Shift {
         Shift::Turns(BTreeMap::from([(angle, 1.0)]))
     }
@@ -51,7 +51,7 @@ impl Shift {
         }
     }
 
-    /// An angle with which the value changes by other than what its phase is turned back by: whole turns of a coordinate.
+    /// An angle with which the value changes by other than whole turns of a coordinate, which its phase is turned back by.
     fn broken(&self) -> Option<Angle> {
         let is_held =
             |angle: &Angle, count: &f64| matches!(angle, Angle::Coordinate(_)) && count.fract() == 0.0;
@@ -89,7 +89,7 @@ impl Shift {
         }
     }
 
-    /// Of a function that depends on the values: it stays where they stay.
+    /// Change of a function of the values: it is constant where they are.
     fn of_any(values: &[&Shift]) -> Shift {
         match values.iter().find_map(|shift| shift.angle()) {
             Some(angle) => Shift::Otherwise(angle),
@@ -97,7 +97,7 @@ impl Shift {
         }
     }
 
-    /// Of a function of the value with a period of so many turns.
+    /// Change of a function of the value with a period of so many turns.
     fn periodic(&self, period: f64) -> Shift {
         let counts = self.times(1.0 / period);
         let near = |count: f64| (count - count.round()).abs() <= WHOLE * count.abs();
@@ -113,11 +113,11 @@ impl Shift {
 pub struct Turning {
     /// Its index.
     pub coordinate: usize,
-    /// Phases that hold it, and by how many turns they change with one of it.
+    /// Phases that hold it, and the number of turns by which they change with one of it.
     pub phases: Vec<(usize, i64)>,
 }
 
-/// Before: equations that [`check`] has no fault of. After: the coordinates that turn, in their order.
+/// Before: equations without a fault of [`check`]. After: the coordinates that turn, in their order.
 pub fn turning(model: &Model, equations: &Equations) -> Vec<Turning> {
     let shifts = shifts(model, equations);
     let mut turning: BTreeMap<usize, Vec<(usize, i64)>> =
@@ -135,7 +135,7 @@ pub fn turning(model: &Model, equations: &Equations) -> Vec<Turning> {
 }
 
 /// Before: the equations of a model. After: rows, prescribed rates, branches and limits that change with a whole turn of an angle
-/// declared as `turn` are reported, and what depends on the time beside such a coordinate.
+/// declared as `turn` are reported. So is explicit dependence on the time where such a coordinate exists.
 pub fn check(model: &Model, equations: &Equations, diagnostics: &mut Diagnostics) {
     let shifts = shifts(model, equations);
     let none = Shift::NONE;
@@ -191,7 +191,7 @@ pub fn check(model: &Model, equations: &Equations, diagnostics: &mut Diagnostics
 const CURE: &str =
     "write `{}` within `sin`, `cos`, `unit`, `rot` or a function of period TAU, times a whole number";
 
-/// Reports what changes with a turn of an angle; `{}` in the cure is its name.
+/// Reports a value that changes with a turn of an angle; `{}` in the cure is its name.
 fn changes(
     model: &Model,
     angle: Angle,
@@ -224,7 +224,7 @@ fn coordinates(model: &Model) -> impl Iterator<Item = usize> + '_ {
     all.filter(|(_, coordinate)| coordinate.turns).map(|(index, _)| index)
 }
 
-/// Whether the row is that of a drive that prescribes a rate: its phase turns with it.
+/// `true` if the row is that of a drive that prescribes a rate: its phase turns with it.
 fn holds_a_phase(model: &Model, row: &Row) -> bool {
     let node = |id: Id| model.expressions.node(id);
     let is_phase = |id: Id| match node(id) {
@@ -232,7 +232,7 @@ fn holds_a_phase(model: &Model, row: &Row) -> bool {
         _ => false,
     };
     row.driven
-        && matches!(node(row.residual), expression::Node::Binary(expression::Binary::Subtract, _, b) if is_phase(b))
+        && matches!(node(row.residual), expression::Node::Binary(Binary::Subtract, _, b) if is_phase(b))
 }
 
 /// Everything that the kinematics evaluate, with its name and place.
@@ -262,7 +262,7 @@ fn speeds<'a>(
     })
 }
 
-/// What depends on the time among `roots` and all that they are made of.
+/// Nodes that depend on the time, of `roots` and all nodes below them.
 fn timed(equations: &Equations, roots: impl Iterator<Item = NodeId>) -> BTreeSet<NodeId> {
     let (mut timed, mut operands) = (BTreeSet::new(), Vec::new());
     for id in equations.graph.reachable(roots) {
@@ -276,7 +276,7 @@ fn timed(equations: &Equations, roots: impl Iterator<Item = NodeId>) -> BTreeSet
     timed
 }
 
-/// What turns do to each value below rows, branches, limits and driven arguments, as far as they do anything.
+/// Shift by a whole turn of each value below rows, branches, limits and driven arguments, as far as there is one.
 fn shifts(model: &Model, equations: &Equations) -> BTreeMap<NodeId, Shift> {
     let mut shifts: BTreeMap<NodeId, Shift> = BTreeMap::new();
     if coordinates(model).next().is_none() && !model.variables.iter().any(|variable| variable.turns) {

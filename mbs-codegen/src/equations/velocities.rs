@@ -1,4 +1,4 @@
-//! How points and bodies move at positions that fulfil the rows, in every motion that some of the rows allow.
+//! Velocities of points and bodies at positions that fulfil the rows, in every motion that some of the rows allow.
 
 use super::attribution::scattered;
 use super::jacobian;
@@ -10,21 +10,21 @@ use crate::model::expression::Id;
 use crate::symbolic::evaluate::evaluate;
 use crate::symbolic::{Graph, Leaf, NodeId};
 
-/// Positions that are looked at: at one of them a point of another place may fit by chance, never at all.
+/// Positions that are evaluated: at one of them a point of another place may fit by chance, at all of them never.
 const POINTS: usize = 3;
 /// Starts of the search for them.
 const TRIED: usize = 12;
-/// Multiplications that all searches may take, tenths of a second of a debug build, and that a single one may.
+/// Most multiplications of all searches, tenths of a second of a debug build, and of a single one.
 const WORK: usize = 10_000_000;
 const MOST_WORK: usize = 1_000_000_000;
-/// Largest part of a velocity, relative to what it is the difference of, that is rounding.
+/// Largest part of a velocity that counts as rounding, relative to the terms of its difference.
 const SAME: f64 = 1e-6;
-/// How far a start lies from the guess (rad, m) and, in parts of themselves, from the parameters' defaults at most twice; the
-/// middle of scattered values.
+/// Range of starts about the guess (rad, m) and about the parameters' defaults, relative to them: twice the largest distance.
+/// Middle of the scattered values.
 const NEAR: f64 = 0.2;
 const MIDDLE: f64 = 0.7;
 
-/// What is seen at a few positions.
+/// Result at a few positions.
 pub enum Seen<R> {
     Somewhere(R),
     /// No position is found at which all rows hold.
@@ -33,7 +33,7 @@ pub enum Seen<R> {
     TooLong,
 }
 
-/// Functions of the position whose slopes say how points move.
+/// Functions of the position whose slopes give the velocities of points.
 pub struct Motions<'a> {
     model: &'a Model,
     guesses: &'a [NodeId],
@@ -51,7 +51,8 @@ pub struct Motions<'a> {
 }
 
 impl<'a> Motions<'a> {
-    /// Before: points of the plane. After: what says how they and the bodies move where the rows that `decide` hold.
+    /// Before: points of the plane. After: the functions for the motion of these and of the bodies where the rows
+    /// that `decide` hold.
     pub fn of(
         g: &mut Graph,
         (model, declared): (&'a Model, &Declared),
@@ -86,8 +87,7 @@ impl<'a> Motions<'a> {
         Motions { model, guesses, manifold, roots, places, coordinates, bodies, rows, functions: count }
     }
 
-    /// Before: what is to be seen at a position, `None` where something there is no number. After: what all of a few positions
-    /// have seen.
+    /// Evaluates `see` at up to `POINTS` positions and joins the results; `None` from `see` means a value that is not finite.
     pub fn seen<R>(
         &self,
         g: &Graph,
@@ -114,7 +114,7 @@ impl<'a> Motions<'a> {
         all
     }
 
-    /// Where a search starts: near the guess and the parameters' defaults, every other time anywhere.
+    /// Start of a search: near the guess and the parameters' defaults, every other time anywhere.
     fn start(&self, g: &Graph, leaf: Leaf, trial: usize) -> f64 {
         let anywhere = scattered(leaf, trial);
         let off = NEAR * (anywhere - MIDDLE);
@@ -170,16 +170,16 @@ pub struct Here<'a> {
     rows: &'a Orthogonal,
 }
 
-/// How a point moves.
+/// Velocity of a point.
 pub struct Velocity {
     /// Slopes of both components.
     slopes: [Vec<f64>; 2],
-    /// Squares of what they are the sum of: sums that vanish have the rounding of their terms.
+    /// Squares of the terms that they are the sum of: sums that vanish have the rounding of their terms.
     squares: f64,
 }
 
 impl Here<'_> {
-    /// Whether the rows leave a motion.
+    /// `true` if the rows leave a motion.
     pub fn moves(&self) -> bool {
         self.rows.rank() < self.motions.coordinates
     }
@@ -217,7 +217,7 @@ impl Here<'_> {
         Some(Velocity { slopes, squares })
     }
 
-    /// Whether two velocities are the same in every motion that the rows allow.
+    /// `true` if two velocities are the same in every motion that the rows allow.
     pub fn same(&self, a: &Velocity, b: &Velocity) -> bool {
         let size = libm::sqrt(a.squares + b.squares);
         a.slopes.iter().zip(&b.slopes).all(|(a, b)| {

@@ -4,8 +4,9 @@ use proc_macro2::Span;
 
 use super::bare::Bare;
 use super::elaborate::{Elaborator, Fault, Quantity, Scalar, Value};
-use super::expression::{Binary, Node, Unary};
+use super::expression::Node;
 use super::units::Dimension;
+use crate::symbolic::{Binary, Unary};
 use crate::syntax::ast::Operator;
 
 impl Elaborator<'_> {
@@ -278,7 +279,7 @@ impl Elaborator<'_> {
         self.fault(span, message, format!("write `{function}({parameters})`"))
     }
 
-    /// As many arguments as the function takes.
+    /// Arguments in the number that the function takes.
     pub fn arguments<const K: usize>(
         &mut self,
         function: &str,

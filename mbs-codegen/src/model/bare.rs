@@ -1,6 +1,6 @@
-//! Bare numbers: which expressions take on the unit of the place that they are written for.
+//! Bare numbers: the expressions that take on the unit of the place that they are written for.
 
-use super::expression::{Binary, Unary};
+use crate::symbolic::operations::{Binary, Unary, Units};
 use crate::syntax::ast::Unit;
 
 /// Share that bare numbers, `PI` and `TAU` have in a scalar as factors or terms.
@@ -9,9 +9,9 @@ use crate::syntax::ast::Unit;
 /// number that could be in newtons, and an angle is in `rad` already: `phi/2` is no length.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Bare {
-    /// It is a 0 as written, which fits any unit and says nothing of what it is added to.
+    /// It is a 0 as written, which fits any unit and does not determine that of the other terms.
     Zero,
-    /// Nothing else.
+    /// Bare numbers alone.
     Wholly,
     /// One of them among quantities and values of functions.
     Partly,
@@ -25,13 +25,13 @@ pub enum Bare {
 const ANGLES: [&str; 6] = ["rad", "deg", "mrad", "turn", "rpm", "sr"];
 
 impl Bare {
-    /// Of a quantity with this unit.
+    /// Share in a quantity with this unit.
     pub fn of(unit: &Unit) -> Self {
         let is_angle = unit.factors.iter().any(|(symbol, _)| ANGLES.contains(&symbol.text.as_str()));
         if is_angle { Bare::Angle } else { Bare::Not }
     }
 
-    /// Of a product, quotient or sum.
+    /// Share in a product, quotient or sum.
     fn with(self, other: Self) -> Self {
         match (self, other) {
             (Bare::Zero, other) | (other, Bare::Zero) => other,
@@ -42,21 +42,21 @@ impl Bare {
         }
     }
 
-    /// Of a value that is no multiple of its arguments: their numbers are no factors of it.
+    /// Share in a value that is no multiple of its arguments: their numbers are no factors of it.
     fn transcendental(self, otherwise: Self) -> Self {
         if matches!(self, Bare::Wholly | Bare::Zero) { Bare::Wholly } else { otherwise }
     }
 
-    /// Of a function of one argument.
+    /// Share in a function of one argument.
     pub fn unary(function: Unary, argument: Self) -> Self {
-        match function {
-            Unary::Negate | Unary::Abs | Unary::Sqrt => argument,
-            Unary::Asin | Unary::Acos | Unary::Atan => argument.transcendental(Bare::Angle),
-            _ => argument.transcendental(Bare::Not),
+        match function.entry().units {
+            Units::Same | Units::Root => argument,
+            Units::Angle => argument.transcendental(Bare::Angle),
+            Units::Number | Units::Any => argument.transcendental(Bare::Not),
         }
     }
 
-    /// Of a function of two arguments.
+    /// Share in a function of two arguments.
     pub fn binary(function: Binary, a: Self, b: Self) -> Self {
         match (function, b) {
             (Binary::Atan2, _) => a.with(b).transcendental(Bare::Angle),
@@ -66,7 +66,7 @@ impl Bare {
         }
     }
 
-    /// Of a rate.
+    /// Share in a rate.
     pub fn rate(self) -> Self {
         if self == Bare::Angle { Bare::Angle } else { Bare::Not }
     }

@@ -1,4 +1,4 @@
-//! Bodies: what moves and what turns, in a plane or in space.
+//! Bodies: their masses and rotations, in a plane or in space.
 
 use super::dynamics::{Body, Rotation};
 use super::elaborate::{Elaborator, Fault, Value};
@@ -41,7 +41,7 @@ impl Resolver<'_> {
         self.fault(name.span, message, "give points and gravity as many components as the space has")
     }
 
-    /// What turns with which inertia: both or none.
+    /// Inertia and orientation of a body: both or none.
     fn rotation(&mut self, name: &Name, given: &Given) -> Result<Option<Rotation>, Fault> {
         let body = &name.text;
         let (message, help) = match (given.value("inertia"), given.scalar("angle"), given.value(ORIENTATION))

@@ -20,13 +20,13 @@ pub fn in_brackets(code: &[Instruction], index: usize) -> Option<String> {
     (next > index).then(|| format!("{value} [{text}]"))
 }
 
-/// Whether the name at `index` stands next to the number that leads its chain.
+/// `true` if the name at `index` follows the number that leads its chain.
 pub fn is_first(code: &[Instruction], index: usize) -> bool {
     let before = index.checked_sub(1).and_then(|before| code.get(before));
     matches!(before.map(|before| &before.operation), Some(Operation::Number { unit: Some(_), .. }))
 }
 
-/// Where the number stands that leads the chain of factors up to `index`.
+/// Index of the number that leads the chain of factors up to `index`.
 fn start(code: &[Instruction], mut index: usize) -> Option<usize> {
     loop {
         let before = index.checked_sub(1)?;
@@ -41,7 +41,7 @@ fn start(code: &[Instruction], mut index: usize) -> Option<usize> {
     }
 }
 
-/// The unit at `index`, with its exponent, and how many instructions it takes.
+/// The unit at `index`, with its exponent, and the number of its instructions.
 fn factor(code: &[Instruction], index: usize) -> Option<(String, usize)> {
     let operation = |index: usize| code.get(index).map(|instruction| &instruction.operation);
     let Some(Operation::Name(symbol)) = operation(index) else { return None };

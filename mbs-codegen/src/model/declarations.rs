@@ -86,7 +86,7 @@ pub fn declare(
     work.give_up(&top, |_| true);
 }
 
-/// The statements that stand in no loop, and those that stand in one.
+/// The statements outside loops, and those within one.
 fn split_at_loops(statements: &[Statement]) -> (Vec<&Statement>, Vec<&Statement>) {
     let mut depth = 0_usize;
     statements.iter().partition(|statement| {
@@ -154,12 +154,17 @@ impl Declarations<'_> {
         for index in self.order(&definitions) {
             let Some((name, unit, expression)) = constants.get(index) else { continue };
             let dimension = Dimension::of(unit, self.diagnostics);
+            let lengths = self.model.longest.clone();
             let value = self.elaborate(|work| {
                 let value = work.value(expression)?;
                 let value = initialiser(work, value, dimension.ok_or(Fault)?)?;
                 numbers(work, expression, &value, "a constant")?;
                 Ok::<_, Fault>(in_unit(value, unit))
             });
+            if dimension != Some(Dimension::METRE) {
+                // The millimetre of a stiffness is no length of the mechanism.
+                self.model.longest = lengths;
+            }
             match value {
                 Ok(value) => {
                     self.note_lengths(&value, &name.text, name.span);
@@ -170,7 +175,7 @@ impl Declarations<'_> {
         }
     }
 
-    /// Definitions behind those that they use; those that lead back to themselves are given up.
+    /// Definitions in order of use; circular ones are given up.
     fn order(&mut self, definitions: &[(&Name, &Expression)]) -> Vec<usize> {
         let sorted = order(definitions, self.diagnostics);
         let mut circular = vec![true; definitions.len()];
@@ -185,7 +190,7 @@ impl Declarations<'_> {
         sorted
     }
 
-    /// Whether this declaration, not an earlier one of the same name, stands behind the name.
+    /// `true` if this declaration, not an earlier one of the same name, defines the name.
     pub(super) fn owns(&self, name: &Name) -> bool {
         self.names.declared_at(&name.text).is_some_and(|span| same_place(span, name.span))
     }
@@ -200,7 +205,7 @@ impl Declarations<'_> {
         }
     }
 
-    /// Before: a type as written. After: its dimension and lengths; what is faulty is reported and replaced by an
+    /// Before: a type as written. After: its dimension and lengths; a faulty part is reported and replaced by an
     /// array of one component, a number.
     fn declared(&mut self, kind: &Type) -> Declared {
         let dimension = Dimension::of(&kind.unit, self.diagnostics);
@@ -517,7 +522,7 @@ impl Declarations<'_> {
 /// A type that was declared.
 struct Declared {
     dimension: Dimension,
-    /// Whether its values are angles.
+    /// `Bare::Angle` if its values are angles.
     bare: Bare,
     shape: Vec<usize>,
     size: usize,

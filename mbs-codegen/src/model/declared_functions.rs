@@ -22,7 +22,7 @@ pub struct Callable {
     unit: Dimension,
     /// Unit of the argument.
     argument: Dimension,
-    /// Whether its values are angles.
+    /// `Bare::Angle` if its values are angles.
     bare: Bare,
 }
 
@@ -74,7 +74,7 @@ impl Declarations<'_> {
         });
     }
 
-    /// Stands for a declaration that could not be read, so that the stub has as many functions.
+    /// Replaces a declaration that could not be read, so that the stub has as many functions.
     pub(super) fn unknown_function(&mut self, name: &Name, docs: Vec<String>) {
         self.model.functions.push(Function {
             name: name.clone(),
@@ -88,8 +88,8 @@ impl Declarations<'_> {
     }
 }
 
-/// Before: arguments as they stand on the stack. After: the value of a declared function, or of its derivative of
-/// this order, or the fault reported.
+/// Before: arguments in the order of the stack. After: the value of a declared function, or of its derivative of this
+/// order, or the fault reported.
 pub fn call(
     work: &mut Elaborator<'_>,
     function: Callable,
@@ -131,9 +131,9 @@ fn fits(
     }
 }
 
-/// Reports declared functions that nothing in the text calls: each would ask its caller for a type to no purpose.
+/// Reports declared functions that the text does not call: each would ask its caller for a type to no purpose.
 ///
-/// In a text with other faults the calls may be what could not be read.
+/// In a text with other faults the calls may be in parts that could not be read.
 pub fn check_called(statements: &[Statement], diagnostics: &mut Diagnostics) {
     if !diagnostics.is_empty() {
         return;

@@ -1,10 +1,11 @@
 //! Drives: rows that prescribe a motion, or a rate whose integral the stepper keeps as a phase.
 
 use super::elaborate::{Fault, Quantity, Reach, Scalar};
-use super::expression::{Binary, Id, Node};
+use super::expression::{Id, Node};
 use super::resolve::Resolver;
 use super::units::Dimension;
 use super::{Field, Phase, Role, Row, Variable, VariableKind};
+use crate::symbolic::Binary;
 use crate::syntax::ast::{Equation, Expression, Instruction, Name, Operation};
 
 impl Resolver<'_> {
@@ -122,7 +123,7 @@ impl Resolver<'_> {
     }
 }
 
-/// What stands in `rate(…)`, where that is all of the expression.
+/// Argument of `rate(…)`, where that is all of the expression.
 fn rated(expression: &Expression) -> Option<Expression> {
     let (Instruction { operation, .. }, argument) = expression.code.split_last()?;
     match operation {

@@ -1,11 +1,11 @@
-//! What moves and pulls: bodies, forces, energies, first-order states, starts.
+//! Terms of the equations of motion: bodies, forces, energies, first-order states, starts.
 
 use proc_macro2::Span;
 
 use super::Output;
 use super::expression::Id;
 use super::inertia::Inertia;
-use super::signs::Signed;
+use super::non_negative::NonNegative;
 
 /// Everything of a text beyond its kinematics.
 #[derive(Debug, Default)]
@@ -34,8 +34,8 @@ pub struct Dynamics {
     pub started: Vec<usize>,
     /// Outputs that use multipliers or states, component by component.
     pub loads: Vec<Output>,
-    /// What is at least 0, or above.
-    pub signed: Vec<Signed>,
+    /// Values that must be at least 0, or above.
+    pub signed: Vec<NonNegative>,
     /// Inertia of bodies in space.
     pub inertias: Vec<Inertia>,
 }
@@ -49,7 +49,7 @@ pub struct Body {
     pub mass: Id,
     /// Centre of mass (m), as many components as the space has.
     pub com: Vec<Id>,
-    /// What turns, if anything does.
+    /// Rotation, if it has any.
     pub rotation: Option<Rotation>,
 }
 
@@ -63,7 +63,7 @@ impl Body {
     }
 }
 
-/// Inertia about the centre of mass, and what it turns with.
+/// Inertia about the centre of mass, with the angle or the Euler parameters of the body.
 #[derive(Debug)]
 pub enum Rotation {
     /// About the normal of a plane.
@@ -89,9 +89,9 @@ pub struct Pin {
     pub name: String,
     /// The joined bodies by their index; `None` is the ground.
     pub bodies: [Option<usize>; 2],
-    /// As the text names them, with the token.
+    /// Names in the text, with the token.
     pub joined: [(String, Span); 2],
-    /// Where it is (m).
+    /// Position (m).
     pub at: Vec<Id>,
 }
 
@@ -111,9 +111,9 @@ pub struct Kinetic {
 pub struct Force {
     /// Its name.
     pub name: String,
-    /// What it does.
+    /// Its action.
     pub action: Action,
-    /// The bodies that the text names beside its points: beside the only one, or beside its begin and its end.
+    /// The bodies that the text names with its points: with the only one, or with its begin and its end.
     pub carriers: [Option<Carrier>; 2],
     /// The declaring token.
     pub span: Span,
@@ -137,7 +137,7 @@ pub struct Contact {
 /// The body that a point is one of: `A of rod`.
 #[derive(Debug)]
 pub struct Carrier {
-    /// As the text names it.
+    /// Name in the text.
     pub name: String,
     /// The body by its index; `None` is the ground.
     pub body: Option<usize>,
@@ -145,10 +145,10 @@ pub struct Carrier {
     pub span: Span,
 }
 
-/// What a force does.
+/// Action of a force.
 #[derive(Debug)]
 pub enum Action {
-    /// Work on displacements: components of a force or torque, and what each acts along.
+    /// Work on displacements: components of a force or torque, and the displacement of each.
     Work(Vec<(Id, Id)>),
     /// Rayleigh's function R (W/2): the generalized forces are −∂R/∂q̇.
     Dissipation(Id),
@@ -160,12 +160,12 @@ pub enum Action {
 
 /// Spring, damper and actuator between two points: tension k (l − l₀) + c l̇ + f.
 ///
-/// At zero length there is no direction: k (P − Q) is exact there, what has l₀, c or f vanishes.
+/// At zero length there is no direction: k (P − Q) is exact there; the terms of l₀, c and f vanish.
 #[derive(Debug)]
 pub struct Line {
-    /// Where it begins (m).
+    /// Start point (m).
     pub from: Vec<Id>,
-    /// Where it ends (m).
+    /// End point (m).
     pub to: Vec<Id>,
     /// k (N/m)
     pub stiffness: Option<Id>,
@@ -175,7 +175,7 @@ pub struct Line {
     pub damping: Option<Id>,
     /// f (N), pulls the points together where positive.
     pub actuator: Option<Id>,
-    /// Whether the spring stores energy: k and l₀ are of parameters alone.
+    /// `true` if the spring stores energy: k and l₀ are of parameters alone.
     pub stores: bool,
 }
 
@@ -192,7 +192,7 @@ pub struct Turn {
     pub damping: Option<Id>,
     /// τ (N m), turns back where positive.
     pub torque: Option<Id>,
-    /// Whether the spring stores energy: k and α₀ are of parameters alone.
+    /// `true` if the spring stores energy: k and α₀ are of parameters alone.
     pub stores: bool,
 }
 

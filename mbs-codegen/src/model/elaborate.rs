@@ -5,8 +5,7 @@ use proc_macro2::Span;
 use super::bare::Bare;
 use super::compound;
 use super::declared_functions;
-use super::evaluate;
-use super::expression::{Binary, Expressions, Id, Node, Unary};
+use super::expression::{Expressions, Id, Node};
 use super::functions::{self, FUNCTIONS};
 use super::names::{Names, Symbol};
 use super::operands::Operands;
@@ -14,6 +13,7 @@ use super::references::{REFERRING, is_reference};
 use super::units::{Dimension, in_unit, with_suffix};
 use super::{Longest, Reference};
 use crate::diagnostics::{Diagnostics, nearest};
+use crate::symbolic::{Binary, Unary};
 use crate::syntax::ast::{Expression, Instruction, Name, Operation, Operator, Target, Unit};
 
 /// A fault was reported.
@@ -21,7 +21,7 @@ use crate::syntax::ast::{Expression, Instruction, Name, Operation, Operator, Tar
 pub struct Fault;
 
 /// Most operations that a text may unroll to: their derivatives and stages are several times as many. Of a text that repeats itself
-/// these are the 100 000 of `.ci/growth`, and some more.
+/// these are the 100 000 of `cargo xtask growth`, and some more.
 pub const MOST_OPERATIONS: usize = 64_000;
 /// Most expressions, numbers included, which cost less.
 pub const MOST_EXPRESSIONS: usize = 200_000;
@@ -59,7 +59,7 @@ impl Quantity {
 pub struct Scalar {
     pub id: Id,
     pub quantity: Quantity,
-    /// Whether it takes on a declared unit.
+    /// Share of bare numbers, which take on a declared unit.
     pub bare: Bare,
     /// The token that it comes from.
     pub span: Span,
@@ -82,7 +82,7 @@ impl Value {
         Value { shape: Vec::new(), items: vec![scalar], span }
     }
 
-    /// As a message calls it.
+    /// Description in a message.
     pub fn describe(&self) -> String {
         match self.shape.as_slice() {
             [] => "a scalar".into(),
@@ -94,10 +94,10 @@ impl Value {
     }
 }
 
-/// What an expression may use beside coordinates, parameters, inputs and the time.
+/// Quantities that an expression may use in addition to coordinates, parameters, inputs and the time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Reach {
-    /// Nothing more.
+    /// None of them.
     Position,
     /// `der(x)`, multipliers and first-order states.
     Force,
@@ -112,11 +112,11 @@ pub struct Elaborator<'a> {
     pub expressions: &'a mut Expressions,
     pub names: &'a mut Names,
     pub diagnostics: &'a mut Diagnostics,
-    /// What may stand here.
+    /// Quantities that are allowed here.
     pub reach: Reach,
-    /// What stood here so far.
+    /// Quantities used here so far.
     pub needs: Reach,
-    /// What `margin` and `ratio` can refer to.
+    /// Groups that `margin` and `ratio` can refer to.
     pub groups: &'a [Reference],
     /// Largest length of the text so far.
     pub longest: Option<Longest>,
@@ -167,7 +167,7 @@ impl Elaborator<'_> {
         result
     }
 
-    /// Reports the unknown names behind a fault, which nothing evaluates any more.
+    /// Reports the unknown names after a fault, which are not evaluated any more.
     fn unknown_names(&mut self, expression: &Expression, from: usize) {
         let is_variable = |name: &str| {
             expression.code.iter().any(|instruction| {
@@ -322,7 +322,7 @@ impl Elaborator<'_> {
         Scalar { id: self.expressions.push(Node::Number(value)), quantity, bare, span }
     }
 
-    /// What a name stands for that is no declared value.
+    /// Value of a name that is no declared value.
     fn name(&mut self, name: &str, place: (&[Instruction], usize), span: Span) -> Result<Value, Fault> {
         match self.names.get(name) {
             Some(Symbol::Count(count)) => {
@@ -354,7 +354,7 @@ impl Elaborator<'_> {
         }
     }
 
-    /// A fault at a name that stands before its declaration can be used.
+    /// A fault at a name that is used before its declaration allows it.
     fn too_early(&mut self, name: &str, span: Span) -> Fault {
         self.fault(
             span,
@@ -363,14 +363,14 @@ impl Elaborator<'_> {
         )
     }
 
-    /// Whether the name is that of a function, or stands for something that was reported.
+    /// `true` if the name is that of a function, or of a declaration that was reported.
     fn knows_function(&self, name: &str) -> bool {
         let declared =
             matches!(self.names.get(name), Some(Symbol::Function(_) | Symbol::Pending | Symbol::Faulty));
         declared || FUNCTIONS.contains(&name)
     }
 
-    /// A fault at the derivative of what is no declared function.
+    /// A fault at the derivative of a function that is not declared.
     fn no_derivative(&mut self, name: &str, span: Span) -> Fault {
         if !FUNCTIONS.contains(&name) {
             return self.unknown_function(name, span);
@@ -449,7 +449,7 @@ impl Elaborator<'_> {
         })
     }
 
-    /// Before: a name with a value. After: what its `let` uses may stand here, or the fault reported.
+    /// Before: a name with a value. After: the quantities of its `let` are allowed here, or the fault is reported.
     fn allows(&mut self, name: &str, span: Span) -> Result<(), Fault> {
         let needs = self.names.needs(name);
         self.needs = self.needs.max(needs);
@@ -548,7 +548,7 @@ impl Elaborator<'_> {
         self.fault(group.span, message, "write the equation whose force is meant")
     }
 
-    /// A value that counts something: a non-negative integer made of literals, constants and loop names.
+    /// A value that counts: a non-negative integer from literals, constants and loop names.
     pub fn count(&mut self, value: &Value) -> Result<usize, Fault> {
         let help = "counts are made of integers, integer constants and loop names";
         let number = match value.items.as_slice() {
@@ -573,7 +573,7 @@ impl Elaborator<'_> {
     }
 
     /// The counts of a range from `low` up to the one before `high`; `written`: both are numbers as written. Constants and
-    /// outer loops may leave nothing between them, numbers are then none that anyone means.
+    /// outer loops may leave a range empty; an empty range of numbers is a fault.
     pub fn range(&mut self, low: &Value, high: &Value, written: bool) -> Result<(usize, usize), Fault> {
         let (first, end) = (self.count(low)?, self.count(high)?);
         if written && first >= end {
@@ -642,7 +642,7 @@ impl Elaborator<'_> {
     /// Before: any operands. After: an expression of numbers is folded to its value, which must be finite.
     pub fn push_unary(&mut self, function: Unary, a: Id, span: Span) -> Result<Id, Fault> {
         match self.expressions.node(a) {
-            Node::Number(a) => self.folded(evaluate::unary(function, a), span),
+            Node::Number(a) => self.folded((function.entry().value)(a), span),
             _ => Ok(self.expressions.push(Node::Unary(function, a))),
         }
     }
@@ -650,7 +650,7 @@ impl Elaborator<'_> {
     /// Before: any operands. After: an expression of numbers is folded to its value, which must be finite.
     pub fn push_binary(&mut self, function: Binary, a: Id, b: Id, span: Span) -> Result<Id, Fault> {
         match (self.expressions.node(a), self.expressions.node(b)) {
-            (Node::Number(a), Node::Number(b)) => self.folded(evaluate::binary(function, a, b), span),
+            (Node::Number(a), Node::Number(b)) => self.folded((function.entry().value)(a, b), span),
             _ => Ok(self.expressions.push(Node::Binary(function, a, b))),
         }
     }
@@ -667,7 +667,7 @@ impl Elaborator<'_> {
     }
 }
 
-/// Whether the two values before `index` are numbers as written.
+/// `true` if the two values before `index` are numbers as written.
 fn follows_literals(code: &[Instruction], index: usize) -> bool {
     let is_literal = |back: usize| {
         let before = index.checked_sub(back).and_then(|index| code.get(index));

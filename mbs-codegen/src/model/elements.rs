@@ -7,14 +7,14 @@ use super::dynamics::{Action, Carrier, Dynamics, Force, Kinetic, Line, Turn};
 use super::elaborate::{Elaborator, Fault, Quantity, Reach, Value};
 use super::expression::{Id, Node};
 use super::initialiser::{filling, fits_shape, initialiser};
+use super::non_negative::{Least, NonNegative};
 use super::orientation::{moments, parameters};
 use super::resolve::Resolver;
-use super::signs::{Least, Signed};
 use super::units::Dimension;
 use crate::diagnostics::nearest;
 use crate::syntax::ast::{Element, Energy, Expression, Field, Joined, Load, Name, Statement, StatementKind};
 
-/// Whether the statement says something of masses or forces, so that the text is one of dynamics.
+/// `true` if the statement is one of masses or forces, so that the text is one of dynamics.
 pub fn is_dynamic(statement: &Statement) -> bool {
     matches!(
         statement.kind,
@@ -32,7 +32,7 @@ pub const ORIENTATION: &str = "orientation";
 /// The fields of a tension that are points of bodies.
 const ENDS: [&str; 2] = ["from", "to"];
 
-/// What a field holds.
+/// Kind of value in a field.
 #[derive(Clone, Copy)]
 pub enum Kind {
     /// A number of a unit, of parameters alone.
@@ -49,7 +49,7 @@ pub enum Kind {
     Orientation,
 }
 
-/// A field of an element: its name, what it holds, whether it must be given.
+/// A field of an element: its name, its kind of value, `true` if it must be given.
 pub type Known = (&'static str, Kind, bool);
 
 /// Fields of an element, in the order of the reference.
@@ -227,12 +227,13 @@ impl Resolver<'_> {
         if faulty { Err(Fault) } else { Ok(given) }
     }
 
-    /// Keeps what has a least value; of an inertia the entries beside its diagonal can.
+    /// Keeps values that have a least one; entries of an inertia off its diagonal have none.
     fn signed(&mut self, field: &'static str, name: &Name, value: &Value) {
         if let Some(least) = Least::of(field) {
             let (of, span) = (name.text.clone(), value.span);
             let diagonal = value.items.iter().take(3);
-            let signed = diagonal.map(|item| Signed { field, least, of: of.clone(), value: item.id, span });
+            let signed =
+                diagonal.map(|item| NonNegative { field, least, of: of.clone(), value: item.id, span });
             self.dynamics().signed.extend(signed);
         }
     }
@@ -258,9 +259,17 @@ impl Resolver<'_> {
             }
             Ok::<_, Fault>(value)
         });
-        if matches!(kind, Kind::Constant(dimension) | Kind::Vector(dimension) if dimension != Dimension::METRE)
-        {
-            // The millimetre of a speed is no length of the mechanism.
+        let measures = match kind {
+            Kind::Constant(dimension) | Kind::Vector(dimension) => dimension == Dimension::METRE,
+            Kind::Scalar(dimension, _) => {
+                let is_constant =
+                    |value: &Value| value.items.iter().all(|item| self.model.is_constant(item.id));
+                dimension == Dimension::METRE || !value.as_ref().is_ok_and(is_constant)
+            }
+            Kind::Point | Kind::Inertia | Kind::Orientation => true,
+        };
+        if !measures {
+            // The millimetre of a speed or a stiffness is no length of the mechanism.
             self.model.longest = lengths;
         }
         let value = value?;
@@ -467,7 +476,7 @@ impl Resolver<'_> {
         Ok(())
     }
 
-    /// A value in the unit of `coordinate` per `per`, of parameters alone; a scalar stands for every component.
+    /// A value in the unit of `coordinate` per `per`, of parameters alone; a scalar fills every component.
     fn start_value(
         &mut self,
         value: &Expression,
@@ -490,7 +499,7 @@ impl Resolver<'_> {
         Err(self.fault(value.span, "a start varies", "make it of numbers, constants and parameters"))
     }
 
-    /// A place is where the coordinates are; a state has no part in it.
+    /// Refuses a state in a place, which depends on coordinates alone.
     pub(super) fn stateless(&mut self, value: &Value) -> Result<(), Fault> {
         let plain = |node| !matches!(node, Node::State(_));
         if value.items.iter().all(|item| self.model.made_of(item.id, plain)) {

@@ -1,6 +1,8 @@
-//! Scalar expressions in one arena; operands always stand before what uses them.
+//! Scalar expressions in one arena; operands always precede their users.
 
 use proc_macro2::Span;
+
+use crate::symbolic::{Binary, Unary};
 
 /// Index into [`Expressions`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -46,42 +48,8 @@ pub struct Call {
     pub span: Span,
 }
 
-/// Functions of one argument.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Unary {
-    Negate,
-    Sqrt,
-    Exp,
-    Ln,
-    Sin,
-    Cos,
-    Tan,
-    Asin,
-    Acos,
-    Atan,
-    Sinh,
-    Cosh,
-    Tanh,
-    Abs,
-    Sign,
-}
-
-/// Functions of two arguments.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Binary {
-    Add,
-    Subtract,
-    Multiply,
-    Divide,
-    Power,
-    Atan2,
-    Min,
-    Max,
-    Hypot,
-}
-
 /// The arena.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct Expressions {
     nodes: Vec<Node>,
     operations: usize,
@@ -96,7 +64,7 @@ impl Expressions {
         Id((self.nodes.len() - 1) as u32)
     }
 
-    /// Adds a call that stands at `span`.
+    /// Adds a call at `span`.
     pub fn push_call(&mut self, function: usize, order: u8, argument: Id, span: Span) -> Id {
         let id = self.push(Node::Call { function, order, argument });
         self.calls.push(Call { id, span });
@@ -128,7 +96,12 @@ impl Expressions {
         self.nodes.iter().enumerate().map(|(index, node)| (Id(index as u32), *node))
     }
 
-    /// Whether something that `root` is made of, itself included, is of this kind.
+    /// The expressions from the one at `first` on, operands first.
+    pub fn nodes_from(&self, first: usize) -> &[Node] {
+        self.nodes.get(first..).unwrap_or_default()
+    }
+
+    /// `true` if `root`, or an expression that it depends on, is of this kind.
     pub fn contain(&self, root: Id, is: impl Fn(Node) -> bool) -> bool {
         let mut marked = vec![false; self.nodes.len()];
         let mut waiting = vec![root];
@@ -144,7 +117,7 @@ impl Expressions {
         false
     }
 
-    /// Marks all that something of a kind is in: one flag an expression.
+    /// Marks the expressions that depend on one of a kind, these included: one flag an expression.
     pub fn made_of(&self, is: impl Fn(Node) -> bool) -> Vec<bool> {
         let mut marked = Vec::with_capacity(self.nodes.len());
         for node in &self.nodes {
@@ -154,7 +127,7 @@ impl Expressions {
         marked
     }
 
-    /// Marks what `roots` are made of, themselves included: one flag an expression.
+    /// Marks `roots` and the expressions that they depend on: one flag an expression.
     pub fn reachable(&self, roots: impl IntoIterator<Item = Id>) -> Vec<bool> {
         let mut marked = vec![false; self.nodes.len()];
         let mut waiting: Vec<Id> = roots.into_iter().collect();
@@ -178,7 +151,7 @@ impl Id {
 }
 
 impl Node {
-    /// The expressions that it is made of.
+    /// Its operands.
     pub fn operands(self) -> impl Iterator<Item = Id> {
         let (first, second) = match self {
             Node::Number(_)

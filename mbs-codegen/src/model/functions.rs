@@ -3,12 +3,13 @@
 use proc_macro2::Span;
 
 use super::elaborate::{Elaborator, Fault, Quantity, Scalar, Value};
-use super::expression::{Binary, Unary};
 use super::orientation;
 use super::units::Dimension;
+use crate::symbolic::operations::Units;
+use crate::symbolic::{Binary, Unary};
 
 /// Names of all functions.
-pub const FUNCTIONS: [&str; 29] = [
+pub const FUNCTIONS: [&str; 32] = [
     "sqrt",
     "exp",
     "ln",
@@ -22,6 +23,9 @@ pub const FUNCTIONS: [&str; 29] = [
     "sinh",
     "cosh",
     "tanh",
+    "asinh",
+    "acosh",
+    "atanh",
     "abs",
     "sign",
     "min",
@@ -40,30 +44,14 @@ pub const FUNCTIONS: [&str; 29] = [
     "der2",
 ];
 
-/// Before: arguments as they stand on the stack. After: the value of `function`, or the fault reported.
+/// Before: arguments in the order of the stack. After: the value of `function`, or the fault reported.
 pub fn call(
     work: &mut Elaborator<'_>,
     function: &str,
     arguments: Vec<Value>,
     span: Span,
 ) -> Result<Value, Fault> {
-    use Unary::{Abs, Acos, Asin, Atan, Cos, Cosh, Exp, Ln, Sign, Sin, Sinh, Tan, Tanh};
-    let number = |unary| Rule::Number(unary);
-    let rule = match function {
-        "sqrt" => return sqrt(work, arguments, span),
-        "exp" => number(Exp),
-        "ln" => number(Ln),
-        "sin" => number(Sin),
-        "cos" => number(Cos),
-        "tan" => number(Tan),
-        "asin" => number(Asin),
-        "acos" => number(Acos),
-        "atan" => number(Atan),
-        "sinh" => number(Sinh),
-        "cosh" => number(Cosh),
-        "tanh" => number(Tanh),
-        "abs" => Rule::Same(Abs),
-        "sign" => Rule::Sign(Sign),
+    match function {
         "atan2" => return atan2(work, arguments, span),
         "min" => return fold(work, "min", Binary::Min, arguments, span),
         "max" => return fold(work, "max", Binary::Max, arguments, span),
@@ -86,35 +74,22 @@ pub fn call(
                 "write `drive crank: rate(phi) == omega;`; outputs take rates as `der(x)`",
             ));
         }
-        unknown => return Err(work.unknown_function(unknown, span)),
-    };
+        _ => {}
+    }
+    let found = Unary::ALL.iter().find(|unary| **unary != Unary::Negate && unary.entry().name == function);
+    let Some(unary) = found else { return Err(work.unknown_function(function, span)) };
     let [argument] = work.arguments(function, arguments, span)?;
     let scalar = work.scalar(&argument, &format!("`{function}`"), argument.span)?;
-    Ok(match rule {
-        Rule::Number(unary) => {
+    let quantity = match unary.entry().units {
+        Units::Number | Units::Angle => {
             work.number(scalar, &format!("the argument of `{function}`"), argument.span)?;
-            work.unary(unary, scalar, Quantity::Known(Dimension::NUMBER), span)?
+            Quantity::Known(Dimension::NUMBER)
         }
-        Rule::Same(unary) => work.unary(unary, scalar, scalar.quantity, span)?,
-        Rule::Sign(unary) => work.unary(unary, scalar, Quantity::Known(Dimension::NUMBER), span)?,
-    })
-}
-
-/// What a function of one argument asks of units.
-enum Rule {
-    /// A number in, a number out.
-    Number(Unary),
-    /// The argument's unit stays.
-    Same(Unary),
-    /// Any unit in, a number out.
-    Sign(Unary),
-}
-
-fn sqrt(work: &mut Elaborator<'_>, arguments: Vec<Value>, span: Span) -> Result<Value, Fault> {
-    let [argument] = work.arguments("sqrt", arguments, span)?;
-    let scalar = work.scalar(&argument, "`sqrt`", argument.span)?;
-    let quantity = work.root(scalar.quantity, 0.5, span)?;
-    work.unary(Unary::Sqrt, scalar, quantity, span)
+        Units::Any => Quantity::Known(Dimension::NUMBER),
+        Units::Same => scalar.quantity,
+        Units::Root => work.root(scalar.quantity, 0.5, span)?,
+    };
+    work.unary(*unary, scalar, quantity, span)
 }
 
 fn atan2(work: &mut Elaborator<'_>, arguments: Vec<Value>, span: Span) -> Result<Value, Fault> {
@@ -184,7 +159,7 @@ fn norm(work: &mut Elaborator<'_>, arguments: Vec<Value>, span: Span) -> Result<
     }
 }
 
-/// Of a matrix, or of its rows as 2 or 3 vectors.
+/// Determinant of a matrix, or of its rows as 2 or 3 vectors.
 fn det(work: &mut Elaborator<'_>, arguments: Vec<Value>, span: Span) -> Result<Value, Fault> {
     let matrix = match arguments.len() {
         1 => arguments.into_iter().next().ok_or(Fault)?,

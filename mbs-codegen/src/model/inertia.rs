@@ -3,7 +3,7 @@
 use proc_macro2::Span;
 
 use super::expression::Id;
-use super::signs::Impossible;
+use super::non_negative::Impossible;
 
 /// Upper triangle of a matrix of inertia, row, column, entry, and whose it is.
 #[derive(Clone, Debug)]
@@ -12,19 +12,19 @@ pub struct Inertia {
     pub of: String,
     /// Entries about the centre of mass (kg m²).
     pub entries: Vec<(usize, usize, Id)>,
-    /// Where the text says so.
+    /// Place in the text.
     pub span: Span,
 }
 
-/// What principal moments may be off by, in parts of the largest: a flat body's are at the bound, and come from a few
+/// Tolerance of principal moments, in parts of the largest. A flat body's are at the bound, and result from a few
 /// rounded operations of the text.
 const ROUNDING: f64 = 1e-9;
 
 /// Rotations of Jacobi's method, three a sweep: it doubles the digits each sweep once it is near.
 const ROTATIONS: usize = 30;
 
-/// Why no body has this inertia, where all entries are known: a principal moment is negative, or the largest is above the
-/// sum of the others, ∫ (y² + z²) > ∫ (x² + z²) + ∫ (x² + y²). Negative entries of the diagonal have an answer of their own.
+/// Reason why no body has this inertia, where all entries are known. A principal moment is negative, or the largest exceeds the
+/// sum of the others, ∫ (y² + z²) > ∫ (x² + z²) + ∫ (x² + y²). Negative entries of the diagonal have a message of their own.
 pub fn wrong(inertia: &Inertia, value: impl Fn(Id) -> Option<f64>) -> Option<Impossible> {
     let mut matrix = [[0.0; 3]; 3];
     for (row, column, entry) in &inertia.entries {

@@ -1,4 +1,4 @@
-//! What stands behind the `=` of a declaration: its unit, its shape, whether it is a number.
+//! Values after the `=` of a declaration: their unit, their shape, and the check that they are numbers.
 
 use super::bare::Bare;
 use super::elaborate::{Elaborator, Fault, Quantity, Reach, Scalar, Value};
@@ -7,7 +7,7 @@ use super::names::Symbol;
 use super::units::Dimension;
 use crate::syntax::ast::{Expression, Operation, Unit};
 
-/// The value of a `let`, in its unit where one is declared, and what the places of its uses must allow.
+/// The value of a `let`, in its unit where one is declared, and the quantities that must be allowed where it is used.
 pub fn definition(
     work: &mut Elaborator<'_>,
     unit: Option<&Unit>,
@@ -34,7 +34,7 @@ pub fn in_unit(value: Value, unit: &Unit) -> Value {
     Value { items, ..value }
 }
 
-/// Before: the value behind a `=`. After: the same in the declared unit: bare numbers and their multiples without a unit take it
+/// Before: the value after a `=`. After: the same in the declared unit: bare numbers and their multiples without a unit take it
 /// on, others must have it.
 pub fn initialiser(work: &mut Elaborator<'_>, value: Value, declared: Dimension) -> Result<Value, Fault> {
     let mut items = Vec::new();
@@ -64,7 +64,7 @@ fn has_unit(work: &mut Elaborator<'_>, item: Scalar, declared: Dimension) -> Res
     work.agree(expected, item).map(|_| ())
 }
 
-/// The declared shape; a scalar stands for every component.
+/// Value of the declared shape; a scalar fills every component.
 pub fn filling(work: &mut Elaborator<'_>, value: Value, shape: &[usize]) -> Result<Value, Fault> {
     if let ([item], []) = (value.items.as_slice(), value.shape.as_slice()) {
         let items = vec![*item; shape.iter().product()];

@@ -1,12 +1,12 @@
-//! Inputs of which no rate is known: they stand where none is needed.
+//! Inputs without known rates: they are allowed where no rate is needed.
 
 use super::dynamics::{Action, Body, Dynamics, Rotation};
 use super::expression::{Id, Node};
 use super::{Field, Model, Role};
 use crate::diagnostics::Diagnostics;
 
-/// Before: a resolved model. After: inputs without rates that stand in a row, in the place of a body or of a spring, or in what
-/// a force or an output takes the rate of, are reported: there their rates would silently be 0.
+/// Before: a resolved model. After: inputs without rates are reported where their rates would silently be 0: in a row, in the
+/// place of a body or of a spring, or in an expression whose rate a force or an output uses.
 pub fn check(model: &Model, diagnostics: &mut Diagnostics) {
     let inputs: Vec<&Field> = model.fields.iter().filter(|field| field.role == Role::Input).collect();
     if inputs.is_empty() {
@@ -37,7 +37,7 @@ pub fn check(model: &Model, diagnostics: &mut Diagnostics) {
     }
 }
 
-/// Everything whose rates the equations need, with a phrase for where it stands.
+/// Expressions whose rates the equations need, with a phrase for their place.
 fn places(model: &Model) -> Vec<(Id, String)> {
     let rows = model.rows.iter().map(|row| (row.residual, "a constraint or drive".to_string()));
     let mut places: Vec<(Id, String)> = rows.collect();
@@ -86,7 +86,7 @@ fn named(field: &'static str, of: &str, ids: Vec<Id>) -> impl Iterator<Item = (I
     ids.into_iter().map(move |id| (id, phrase.clone()))
 }
 
-/// What stands under a rate in a force or in the rate of a state: `der(x)`, what friction acts along, a contact's gap.
+/// Arguments of rates in a force or in the rate of a state: `der(x)`, the displacement of friction, a contact's gap.
 fn rated(model: &Model, dynamics: &Dynamics) -> Vec<(Id, String)> {
     let values = dynamics.forces.iter().flat_map(|force| match &force.action {
         Action::Work(pairs) => pairs.iter().map(|(value, _)| *value).collect(),
@@ -103,7 +103,7 @@ fn rated(model: &Model, dynamics: &Dynamics) -> Vec<(Id, String)> {
     arguments.map(|argument| (argument, "what a force takes the rate of".to_string())).collect()
 }
 
-/// What stands under a rate in these expressions.
+/// Arguments of rates in these expressions.
 fn rates(model: &Model, values: impl IntoIterator<Item = Id>) -> impl Iterator<Item = Id> {
     let reached = model.expressions.reachable(values);
     let nodes = model.expressions.iter().filter(move |(id, _)| reached.get(id.index()) == Some(&true));

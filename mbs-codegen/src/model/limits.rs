@@ -18,8 +18,11 @@ impl Resolver<'_> {
     ) -> Result<(), Fault> {
         let group = self.group(name, "limit")?;
         let [low, value, high] = self.elaborate(Reach::Position, |work| {
-            let values = [low, value, high].map(|part| work.value(part));
-            let [low, value, high] = values;
+            let value = work.value(value);
+            // A bound of 1e9 m that means none does not show the size of the mechanism.
+            let lengths = work.longest.clone();
+            let [low, high] = [low, high].map(|part| work.value(part));
+            work.longest = lengths;
             let (low, value, high) = (low?, value?, high?);
             let scalar = [&low, &value, &high].map(|part| work.scalar(part, "a limit", part.span));
             let [low, value, high] = scalar;
@@ -68,7 +71,7 @@ impl Resolver<'_> {
         Ok(())
     }
 
-    /// Whether a value is made of more than numbers, constants and parameters.
+    /// `true` if a value depends on more than numbers, constants and parameters.
     pub(super) fn varies(&self, id: Id) -> bool {
         self.contains(id, |node| match node {
             Node::Number(_) | Node::Unary(..) | Node::Binary(..) => false,
@@ -79,7 +82,7 @@ impl Resolver<'_> {
         })
     }
 
-    /// Coordinates by name; an array stands for all its components.
+    /// Coordinates by name; an array includes all its components.
     pub(super) fn independent(&mut self, names: &[Name]) -> Result<(), Fault> {
         for name in names {
             let field = self.model.coordinate_fields.iter().find(|field| field.name.text == name.text);

@@ -1,25 +1,24 @@
-//! ast → resolved model: every name, shape, unit and loop resolved; after it nothing is mutable.
+//! ast → resolved model: every name, shape, unit and loop resolved; later stages do not change it.
 
 mod arithmetic;
-mod bare;
+pub mod bare;
 mod bodies;
 mod compound;
 pub mod declarations;
 mod declared_functions;
 mod drives;
-mod dry;
 pub mod dynamics;
 pub mod elaborate;
 pub mod elements;
-mod evaluate;
 pub mod expression;
+mod friction_contact;
 pub mod functions;
-mod idle;
 mod inertia;
-mod initialiser;
+pub mod initialiser;
 mod inputs;
 mod limits;
 pub mod names;
+pub mod non_negative;
 mod operands;
 mod order;
 mod orientation;
@@ -29,16 +28,17 @@ pub mod resolve;
 pub mod scenes;
 pub mod selection;
 mod shared;
-pub mod signs;
 mod turns;
 pub mod units;
+mod unused_elements;
 mod vanishing;
 mod width;
 
 use proc_macro2::Span;
 
+use crate::symbolic::Binary;
 use dynamics::Dynamics;
-use expression::{Binary, Expressions, Id, Node};
+use expression::{Expressions, Id, Node};
 use units::Dimension;
 
 /// A mechanism with every name resolved.
@@ -66,31 +66,31 @@ pub struct Model {
     pub limits: Vec<Limit>,
     /// Constraints and drives that outputs can refer to.
     pub references: Vec<Reference>,
-    /// Coordinates that are meant as independent; none where the text does not say.
+    /// Coordinates that are declared independent; none where the text declares none.
     pub independent: Vec<Independent>,
     /// Outputs, component by component.
     pub outputs: Vec<Output>,
     /// Bodies, forces and first-order states, where the text has any.
     pub dynamics: Option<Dynamics>,
-    /// Largest length among constants and numbers; among guesses and starts too where those tell what these do not.
+    /// Largest length among constants and numbers; among guesses and starts too, where the former give none.
     pub longest: Option<Longest>,
     /// Largest length among guesses and starts.
     pub longest_guess: Option<Longest>,
 }
 
-/// A length of the text, and where it stands.
+/// A length of the text, and its place there.
 #[derive(Clone, Debug)]
 pub struct Longest {
     /// Its magnitude (m).
     pub length: f64,
     /// The constant, `guess of x`, or the number itself.
     pub name: String,
-    /// Where it is written.
+    /// Place in the text.
     pub span: Span,
 }
 
 impl Longest {
-    /// The larger of `known` and a length; of equal ones the later, which names what an earlier number is for.
+    /// The larger of `known` and a length. Of equal ones the later counts: it names the purpose of an earlier number.
     fn note(known: &mut Option<Self>, length: f64, name: impl FnOnce() -> String, span: Span) {
         let length = length.abs();
         if known.as_ref().is_none_or(|known| known.length <= length) && length > 0.0 {
@@ -100,7 +100,7 @@ impl Longest {
 }
 
 impl Model {
-    /// Whether functions of the text can be bounded over parts of a motion: it calls no function of the caller's, and no drive
+    /// `true` if functions of the text can be bounded over parts of a motion: it calls no function of the caller's, and no drive
     /// prescribes a rate.
     pub fn can_be_enclosed(&self) -> bool {
         self.functions.is_empty() && self.phases.is_empty()
@@ -122,7 +122,7 @@ impl Model {
         }
     }
 
-    /// Whether a node is a length, or makes one, of which the text does not say how large it is.
+    /// `true` if a node brings a length whose size the text does not give: a variable or a call of a declared function.
     fn brings_length(&self, node: Node) -> bool {
         match node {
             Node::Variable(index) => self.variables.get(index).is_some_and(|variable| {
@@ -150,13 +150,13 @@ impl Model {
         variables.filter(move |(_, variable)| is_length(variable)).map(|(index, _)| index)
     }
 
-    /// Whether some coordinate or row is measured by the reference length.
+    /// `true` if some coordinate or row is measured by the reference length.
     pub fn is_measured_by_length(&self) -> bool {
         let rows = self.rows.iter().map(|row| row.dimension);
         self.coordinates.iter().map(|c| c.dimension).chain(rows).any(|dimension| dimension.metres() != 0.0)
     }
 
-    /// Whether a value is made of numbers and parameters alone.
+    /// `true` if a value depends on numbers and parameters alone.
     pub fn is_constant(&self, value: Id) -> bool {
         self.made_of(value, |node| match node {
             Node::Variable(index) => {
@@ -167,7 +167,7 @@ impl Model {
         })
     }
 
-    /// Whether every leaf and every rate of a value is one of those that `allowed` accepts.
+    /// `true` if every leaf and every rate of a value is one of those that `allowed` accepts.
     fn made_of(&self, value: Id, allowed: impl Fn(Node) -> bool) -> bool {
         let refused = |node| !matches!(node, Node::Unary(..) | Node::Binary(..)) && !allowed(node);
         !self.expressions.contain(value, refused)
@@ -187,11 +187,11 @@ pub struct Field {
     pub shape: Vec<usize>,
     /// Index of the first component's first variable.
     pub first: usize,
-    /// What it holds.
+    /// Its role.
     pub role: Role,
 }
 
-/// What a field holds.
+/// Role of a field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
     /// Part of the design.
@@ -232,7 +232,7 @@ pub struct Coordinate {
     pub unit: String,
     /// Its dimension.
     pub dimension: Dimension,
-    /// Whether the text declares it as `turn`: an angle that is kept within a turn, whole turns apart.
+    /// `true` if the text declares it as `turn`: an angle that is kept within a turn, whole turns apart.
     pub turns: bool,
     /// Start value of the assembly, of parameters alone.
     pub guess: Option<Id>,
@@ -266,15 +266,15 @@ pub struct Variable {
     pub dimension: Dimension,
     /// Default value; 0 for inputs.
     pub default: f64,
-    /// Whether the text declares it as `turn`: an input whose changes go the short way round.
+    /// `true` if the text declares it as `turn`: an input whose changes go the short way round.
     pub turns: bool,
-    /// What it is.
+    /// Its kind.
     pub kind: VariableKind,
     /// The declaring token.
     pub span: Span,
 }
 
-/// What a [`Variable`] is.
+/// Kind of a [`Variable`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum VariableKind {
     /// Constant in time.
@@ -296,13 +296,13 @@ pub struct Row {
     pub dimension: Dimension,
     /// `left − right`.
     pub residual: Id,
-    /// Whether a `drive` declares it.
+    /// `true` if a `drive` declares it.
     pub driven: bool,
-    /// Whether the prescribed side stands on the left.
+    /// `true` if the prescribed side is the left one.
     pub reversed: bool,
-    /// Whether it may follow from others: its constraint is marked `redundant`.
+    /// `true` if it may follow from others: its constraint is marked `redundant`.
     pub redundant: bool,
-    /// How far it may be open where it contradicts others, in its unit.
+    /// Largest residual allowed where it contradicts other rows, in its unit.
     pub within: Option<Id>,
     /// The `==`.
     pub span: Span,
@@ -339,12 +339,12 @@ pub struct Reference {
     pub drive: Option<(usize, units::Dimension)>,
 }
 
-/// What a drive that prescribes a rate holds its argument at.
+/// Value at which a drive that prescribes a rate holds its argument.
 #[derive(Debug)]
 pub struct Phase {
     /// Index of the variable that holds its value.
     pub variable: usize,
-    /// What is driven.
+    /// Driven expression.
     pub argument: Id,
     /// Its rate, of time, parameters and inputs.
     pub speed: Id,
@@ -359,7 +359,7 @@ pub struct Limit {
     pub unit: String,
     /// Lower bound, of parameters alone.
     pub low: Id,
-    /// What is bounded.
+    /// Bounded expression.
     pub value: Id,
     /// Upper bound, of parameters alone.
     pub high: Id,
@@ -372,7 +372,7 @@ pub struct Limit {
 pub struct Independent {
     /// Its index.
     pub coordinate: usize,
-    /// Where the text says so.
+    /// Place in the text.
     pub span: Span,
 }
 
@@ -383,7 +383,7 @@ pub struct Branch {
     pub name: String,
     /// Dimension of the value.
     pub dimension: Dimension,
-    /// Whether it is checked at the assembly alone.
+    /// `true` if it is checked at the assembly alone.
     pub at_start: bool,
     /// Positive where the condition holds.
     pub value: Id,

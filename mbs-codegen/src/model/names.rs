@@ -1,4 +1,4 @@
-//! What a name of the text stands for.
+//! Names of the text and their meaning.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -18,7 +18,7 @@ pub const RESERVED: [&str; 13] = [
     "curve",
 ];
 
-/// What a name stands for.
+/// Meaning of a name.
 #[derive(Clone, Debug)]
 pub enum Symbol {
     /// A value: constants, parameters, inputs, coordinates, and `let`s once they are elaborated.
@@ -38,7 +38,7 @@ pub enum Symbol {
 pub struct Rows {
     /// Indices in Φ, and the dimension of each.
     pub rows: Vec<(usize, Dimension)>,
-    /// Whether a `drive` declares them.
+    /// `true` if a `drive` declares them.
     pub driven: bool,
 }
 
@@ -50,7 +50,7 @@ pub struct Joint {
 }
 
 /// Names of values, with the scopes of loops and sums; names of rows and pins apart.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct Names {
     declared: BTreeMap<String, (Symbol, Span)>,
     scoped: Vec<(String, Symbol)>,
@@ -58,9 +58,9 @@ pub struct Names {
     local: BTreeSet<String>,
     rows: BTreeMap<String, Rows>,
     pins: BTreeMap<String, Vec<Joint>>,
-    /// What a `let` uses, where that is more than positions.
+    /// Quantities that a `let` uses, where these are more than positions.
     needs: BTreeMap<String, Reach>,
-    /// Whether the text has masses or forces, so that its rows have multipliers.
+    /// `true` if the text has masses or forces, so that its rows have multipliers.
     pub dynamic: bool,
 }
 
@@ -77,7 +77,7 @@ impl Names {
         }
     }
 
-    /// Whether a loop, a sum or a `let` in a loop may use this name; otherwise the clash is reported.
+    /// `true` if a loop, a sum or a `let` in a loop may use this name; otherwise the clash is reported.
     pub fn is_free(&self, name: &Name, diagnostics: &mut Diagnostics) -> bool {
         if !usable(name, diagnostics) {
             return false;
@@ -102,7 +102,7 @@ impl Names {
         self.local.insert(name.text.clone());
     }
 
-    /// Whether some loop declares the name for itself.
+    /// `true` if some loop declares the name for itself.
     pub fn is_local(&self, name: &str) -> bool {
         self.local.contains(name)
     }
@@ -128,18 +128,23 @@ impl Names {
         }
     }
 
-    /// What the name stands for in the innermost scope.
+    /// Meaning of the name in the innermost scope.
     pub fn get(&self, name: &str) -> Option<&Symbol> {
         let scoped = self.scoped.iter().rev().find(|(known, _)| known == name).map(|(_, symbol)| symbol);
         scoped.or_else(|| self.declared.get(name).map(|(symbol, _)| symbol))
     }
 
-    /// Notes what the value of a `let` uses.
+    /// `true` for a name of a loop that is being unrolled.
+    pub fn is_scoped(&self, name: &str) -> bool {
+        self.scoped.iter().any(|(known, _)| known == name)
+    }
+
+    /// Notes the quantities that the value of a `let` uses.
     pub fn define_needs(&mut self, name: &str, needs: Reach) {
         self.needs.insert(name.to_owned(), needs);
     }
 
-    /// What a place must allow that uses this name.
+    /// Quantities that must be allowed where this name is used.
     pub fn needs(&self, name: &str) -> Reach {
         self.needs.get(name).copied().unwrap_or(Reach::Position)
     }
@@ -188,7 +193,7 @@ impl Names {
         self.pins.keys().map(String::as_str)
     }
 
-    /// Where the name was declared outside any loop.
+    /// Token that declares the name outside any loop.
     pub fn declared_at(&self, name: &str) -> Option<Span> {
         self.declared.get(name).map(|(_, span)| *span)
     }

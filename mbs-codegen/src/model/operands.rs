@@ -1,4 +1,4 @@
-//! Values that wait for their operator, a declared array by its name alone: `A[0]` costs what it takes, whatever A's length.
+//! Values that wait for their operator; a declared array is kept by its name: the cost of `A[0]` does not depend on A's length.
 
 use proc_macro2::Span;
 
@@ -13,7 +13,7 @@ pub struct Operands<'a> {
 
 enum Operand<'a> {
     Value(Value),
-    /// A name that stands for a value, and its token.
+    /// A name with a value, and its token.
     Named(&'a str, Span),
 }
 
@@ -23,7 +23,7 @@ impl<'a> Operands<'a> {
         self.stack.push(Operand::Value(value));
     }
 
-    /// Puts on top what `name` stands for: a value.
+    /// Puts the value of `name` on top.
     pub fn push_named(&mut self, name: &'a str, span: Span) {
         self.stack.push(Operand::Named(name, span));
     }
@@ -51,7 +51,7 @@ impl<'a> Operands<'a> {
         }
     }
 
-    /// Takes the topmost array; what is left of it are `length` components from the one at `first` on.
+    /// Takes the topmost array and returns its `length` components from the one at `first` on.
     pub fn pop_components(
         &mut self,
         first: usize,

@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use crate::diagnostics::Diagnostics;
 use crate::syntax::ast::{Expression, Name, Operation};
 
-/// Before: named definitions in any order. After: their indices, each behind those it uses; definitions that
-/// lead back to themselves are reported and left out.
+/// Before: named definitions in any order. After: their indices, each after those it uses; circular definitions are
+/// reported and left out.
 pub fn order(definitions: &[(&Name, &Expression)], diagnostics: &mut Diagnostics) -> Vec<usize> {
     let index: BTreeMap<&str, usize> =
         definitions.iter().enumerate().rev().map(|(i, (name, _))| (name.text.as_str(), i)).collect();

@@ -7,12 +7,13 @@ use std::collections::BTreeMap;
 use proc_macro2::Span;
 
 use super::elaborate::{Elaborator, Fault, Reach, Scalar, Value};
-use super::expression::{Binary, Expressions, Id, Node, Unary};
+use super::expression::{Expressions, Id, Node};
 use super::initialiser::initialiser;
 use super::resolve::Resolver;
 use super::units::Dimension;
 use super::vanishing::vanish;
 use super::{Row, elements::ORIENTATION};
+use crate::symbolic::{Binary, Unary};
 use crate::syntax::ast::{Field, Name};
 
 /// Four parameters of an orientation.
@@ -53,7 +54,7 @@ fn direction(
     column: usize,
     span: Span,
 ) -> Result<[Scalar; 3], Fault> {
-    // The axis itself and the two behind it in cyclic order.
+    // The axis itself and the two that follow it in cyclic order.
     let [i, j, k] = match column {
         0 => [ex, ey, ez],
         1 => [ey, ez, ex],
@@ -97,7 +98,7 @@ pub fn angular_velocity(
     Ok(Value { shape: vec![3], items, span })
 }
 
-/// What a moment (N m, in the axes of the ground) does on each parameter: 2 (−ε·τ, e₀ τ + τ × ε).
+/// Generalized forces of a moment (N m, in the axes of the ground) on each parameter: 2 (−ε·τ, e₀ τ + τ × ε).
 pub fn moments(
     work: &mut Elaborator<'_>,
     moment: &Value,
@@ -148,7 +149,7 @@ fn twice(work: &mut Elaborator<'_>, a: Scalar, span: Span) -> Result<Scalar, Fau
 }
 
 impl Resolver<'_> {
-    /// Before: a body as written. After: where its orientation is made of coordinates, the row e·e − 1 = 0 of the body's name
+    /// Before: a body as written. After: if its orientation consists of coordinates, the row e·e − 1 = 0 of the body's name
     /// is in the model; bodies that share their parameters share the row of the first.
     ///
     /// Parameters that are expressions, `[cos(phi/2), 0, 0, sin(phi/2)]`, are of length 1 by their definition.
@@ -182,10 +183,10 @@ impl Resolver<'_> {
         Ok(())
     }
 
-    /// Before: all rows. After: rows of the text that hold where e·e = 1 does, and say nothing else, are reported.
+    /// Before: all rows. After: rows of the text that hold wherever e·e = 1 does, and add no other condition, are reported.
     ///
-    /// Which they are is seen by what they are made of, the parameters of one body alone, and by their values at unit
-    /// vectors: it matters not how they are written.
+    /// They are recognised by their leaves, the parameters of one body alone, and by their values at unit vectors,
+    /// not by how they are written.
     pub(super) fn check_normalisations(&mut self) {
         if self.oriented.is_empty() {
             return;
@@ -214,7 +215,7 @@ impl Resolver<'_> {
     }
 }
 
-/// Whose parameters an expression is made of.
+/// Euler parameters that an expression depends on.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Part {
     /// Numbers alone.
@@ -225,8 +226,8 @@ enum Part {
     Other,
 }
 
-/// Before: the body and the place in its parameters of each coordinate that is one. After: whose parameters each expression
-/// is made of.
+/// Before: the body and the place in its parameters of each coordinate that is one. After: the parameters that each
+/// expression depends on.
 fn parts(expressions: &Expressions, places: &BTreeMap<usize, (usize, usize)>) -> Vec<Part> {
     let mut parts: Vec<Part> = Vec::with_capacity(expressions.len());
     for (_, node) in expressions.iter() {

@@ -5,15 +5,16 @@ use proc_macro2::Span;
 use super::bare::Bare;
 use super::dynamics::{Carrier, Pin};
 use super::elaborate::{Elaborator, Fault, Quantity, Reach, Scalar, Value};
-use super::expression::{Node, Unary};
+use super::expression::Node;
 use super::initialiser::initialiser;
 use super::names::Joint;
 use super::resolve::Resolver;
 use super::units::Dimension;
 use crate::diagnostics::nearest;
+use crate::symbolic::Unary;
 use crate::syntax::ast::{Expression, Joined, Name, Target};
 
-/// What stands still, where no body has the name.
+/// Name of the fixed body, where no other body has it.
 const GROUND: &str = "ground";
 
 impl Elaborator<'_> {
@@ -80,7 +81,7 @@ impl Resolver<'_> {
         let [first, second] = bodies;
         let joined = [self.joined(first)?, self.joined(second)?];
         let [(first, _), (second, _)] = &joined;
-        // Known even where its point is none, so that what asks for its force is not reported too.
+        // Known even where its point is faulty, so that uses of its force are not reported too.
         let joint = Joint { pin: self.dynamics().pins.len(), bodies: [first.clone(), second.clone()] };
         self.names.define_pin(&name.text, joint);
         let at = self.elaborate(Reach::Position, |work| {
@@ -122,15 +123,15 @@ impl Resolver<'_> {
         Ok((numbered(&body.name.text, index), body.name.span))
     }
 
-    /// The body that stands behind a point.
+    /// The body that carries a point.
     pub(super) fn carrier(&mut self, of: Option<&Joined>) -> Result<Option<Carrier>, Fault> {
         let Some(of) = of else { return Ok(None) };
         let (name, span) = self.joined(of)?;
         Ok(Some(Carrier { name, body: None, span }))
     }
 
-    /// Before: all bodies, pins and forces. After: pins know their bodies, forces those that the text names beside their points;
-    /// names of none are reported.
+    /// Before: all bodies, pins and forces. After: pins know their bodies, forces those that the text names with their points;
+    /// unknown names are reported.
     pub(super) fn check_pins(&mut self) {
         let Some(dynamics) = &mut self.model.dynamics else { return };
         let bodies: Vec<String> = dynamics.bodies.iter().map(|body| body.name.clone()).collect();

@@ -5,16 +5,17 @@ use proc_macro2::Span;
 use super::Reference;
 use super::bare::Bare;
 use super::elaborate::{Elaborator, Fault, Quantity, Reach, Scalar, Value};
-use super::expression::{Binary, Id, Node};
+use super::expression::{Id, Node};
 use super::resolve::Resolver;
 use super::units::Dimension;
 use crate::diagnostics::nearest;
+use crate::symbolic::Binary;
 use crate::syntax::ast::{Instruction, Operation};
 
 /// Functions whose last argument is the name of a constraint or drive, not a value.
 pub const REFERRING: [&str; 2] = ["margin", "ratio"];
 
-/// Whether the name at `index` is the last argument of one of them.
+/// `true` if the name at `index` is the last argument of one of them.
 pub fn is_reference(code: &[Instruction], index: usize) -> bool {
     matches!(
         code.get(index + 1).map(|next| &next.operation),
@@ -74,7 +75,7 @@ impl Elaborator<'_> {
         }
     }
 
-    /// Reports what is known with the factors or the rates alone, where its derivative is asked for.
+    /// Reports values that are known with the factors or the rates alone, where their derivative is asked for.
     pub fn of_position(&mut self, x: Scalar, function: &str) -> Result<(), Fault> {
         let needs = |node: Node| match function {
             "ratio" => matches!(node, Node::Margin(_) | Node::Ratio(..) | Node::Rate(..)),
@@ -92,7 +93,7 @@ impl Elaborator<'_> {
 }
 
 impl Resolver<'_> {
-    /// Before: all rows. After: what outputs can refer to.
+    /// Before: all rows. After: the constraints and drives that outputs can refer to.
     pub(super) fn references(&self) -> Vec<Reference> {
         let mut references = Vec::new();
         for (index, (name, kind, rows)) in self.row_groups().enumerate() {
@@ -105,7 +106,7 @@ impl Resolver<'_> {
         references
     }
 
-    /// Reports an output of margins or ratios where what it needs is not known together with them.
+    /// Reports an output of margins or ratios where its other values are not known together with them.
     pub(super) fn check_reference(&mut self, value: &Value) -> Result<(), Fault> {
         let refers = |node| matches!(node, Node::Margin(_) | Node::Ratio(..));
         for item in value.items.iter().filter(|item| self.contains(item.id, refers)) {
@@ -130,7 +131,7 @@ impl Resolver<'_> {
         Ok(())
     }
 
-    /// Whether the prescribed side of a row stands on its left: its residual falls where the drive rises.
+    /// `true` if the prescribed side of a row is the left one: its residual falls where the drive rises.
     pub(super) fn is_reversed(&self, residual: Id) -> bool {
         let moves = |id: Id| self.contains(id, |node| matches!(node, Node::Coordinate(_)));
         match self.model.expressions.node(residual) {

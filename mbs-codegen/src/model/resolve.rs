@@ -8,18 +8,19 @@ use super::bare::Bare;
 use super::declarations::{self, component_names};
 use super::elaborate::{Elaborator, Fault, MOST_ROUNDS, Quantity, Reach, Scalar, Value};
 use super::elements::is_dynamic;
-use super::expression::{Binary, Id, Node};
+use super::expression::{Id, Node};
 use super::initialiser::{definition, fits_shape, initialiser};
 use super::names::{Names, Rows, Symbol, report_double};
 use super::units::Dimension;
-use super::{Branch, Model, Output, Row, VariableKind, idle, inputs};
+use super::{Branch, Model, Output, Row, VariableKind, inputs, unused_elements};
 use crate::diagnostics::Diagnostics;
+use crate::symbolic::Binary;
 use crate::syntax::ast::{
     Element, Equation, Expression, Item, Loop, Name, Statement, StatementKind, Type, Unit,
 };
 
-/// Before: statements as written. After: the resolved model; every fault of meaning is reported.
-pub fn resolve(statements: &[Statement], diagnostics: &mut Diagnostics) -> Model {
+/// Before: statements as written. After: the resolved model and the meaning of its names; every fault of meaning is reported.
+pub fn resolve(statements: &[Statement], diagnostics: &mut Diagnostics) -> (Model, Names) {
     let mut model = Model::default();
     let mut names = Names::default();
     declarations::declare(statements, &mut model, &mut names, diagnostics);
@@ -51,8 +52,8 @@ pub fn resolve(statements: &[Statement], diagnostics: &mut Diagnostics) -> Model
     work.check_guesses();
     work.model.settle_reference_length();
     inputs::check(work.model, work.diagnostics);
-    idle::check(work.model, work.diagnostics);
-    model
+    unused_elements::check(work.model, work.diagnostics);
+    (model, names)
 }
 
 /// Most rows.
@@ -90,7 +91,7 @@ pub(super) struct Resolver<'a> {
     pass: Pass,
 }
 
-/// What is resolved: multipliers, margins and ratios are known once all rows are.
+/// Statements resolved in one pass: multipliers, margins and ratios are known once all rows are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Pass {
     /// Constraints, drives, branches, starts.
@@ -136,7 +137,7 @@ impl Resolver<'_> {
         }
     }
 
-    /// Whether loops unroll to more than anyone wants; reported once.
+    /// `true` if loops unroll to more rows, outputs or rounds than allowed; reported once.
     fn too_large(&mut self) -> bool {
         let large = self.model.rows.len() > MOST_ROWS || self.model.outputs.len() > MOST_OUTPUTS;
         if large {
@@ -233,7 +234,7 @@ impl Resolver<'_> {
         }
     }
 
-    /// At the end of a loop's body: where its next round begins, or `None` behind the last.
+    /// Start of a loop's next round at the end of its body, or `None` after the last.
     fn repeat(&mut self) -> Option<usize> {
         let mut frame = self.loops.pop()?;
         self.names.leave(frame.scope);
@@ -295,7 +296,7 @@ impl Resolver<'_> {
         Ok(())
     }
 
-    /// How many rows, branches, limits or rounds of outputs a group has so far.
+    /// Number of rows, branches, limits or rounds of outputs that a group has so far.
     pub(super) fn rows_of(&self, group: usize) -> usize {
         self.groups.get(group).map_or(0, |group| group.rows.len())
     }
@@ -313,7 +314,7 @@ impl Resolver<'_> {
         self.model.rows.push(row);
     }
 
-    /// Whether an expression is made of such nodes among others.
+    /// `true` if an expression depends on such nodes among others.
     pub(super) fn contains(&self, root: Id, is: impl Fn(Node) -> bool) -> bool {
         self.model.expressions.contain(root, is)
     }
@@ -473,7 +474,7 @@ fn spread_zero(value: Value, other: &Value) -> Value {
     }
 }
 
-/// Whether something for the second pass stands in the loop whose body begins at `next`.
+/// `true` if the loop whose body begins at `next` contains a statement for the second pass.
 fn holds_load(
     statements: &[Statement],
     next: usize,
@@ -485,7 +486,7 @@ fn holds_load(
     body.iter().any(|statement| is_load(&statement.kind))
 }
 
-/// Whether the statement may use what is known once all rows are.
+/// `true` if the statement may use values that are known once all rows are.
 fn is_load(kind: &StatementKind) -> bool {
     matches!(
         kind,
@@ -497,8 +498,8 @@ fn is_load(kind: &StatementKind) -> bool {
     )
 }
 
-/// Index behind the end that matches a loop whose body begins at `next`.
-fn behind_loop<T>(
+/// Index after the end of the loop whose body begins at `next`.
+pub fn behind_loop<T>(
     items: &[T],
     mut next: usize,
     begins: impl Fn(&T) -> bool,

@@ -1,23 +1,26 @@
 //! The scenes of a text, each a model of its own, over the fields that they share.
 
+use proc_macro2::TokenStream;
+
 use super::declared_functions::check_called;
+use super::names::Names;
 use super::resolve::resolve;
 use super::selection::{Selection, select};
 use super::{Model, shared};
 use crate::diagnostics::Diagnostics;
 use crate::syntax::ast::Name;
-use crate::syntax::{Header, Text};
+use crate::syntax::{self, Header, Text};
 
 /// The scene of all effects.
-pub const WHOLE: &str = "Whole";
+pub const WHOLE: &str = "AllEffects";
 
 /// All scenes of a text.
 pub struct Scenes {
     /// The declared scenes in the order of the text; of a text that declares none, the whole text.
     pub scenes: Vec<Scene>,
-    /// Beside declared scenes the whole text, which may be faulty.
+    /// The whole text in addition to declared scenes; it may be faulty.
     pub whole: Option<Scene>,
-    /// The fields of all scenes, and their variables; nothing else.
+    /// The fields of all scenes, and their variables; no other parts.
     pub shared: Model,
 }
 
@@ -29,15 +32,17 @@ pub struct Scene {
     pub docs: Vec<String>,
     /// Names of its effects.
     pub effects: Vec<String>,
-    /// What its statements say, as of a text without effects.
+    /// Meaning of its statements, as of a text without effects.
     pub model: Model,
+    /// Meaning of its names.
+    pub names: Names,
     /// Faults of its meaning.
     pub faults: Diagnostics,
 }
 
 impl Scenes {
-    /// Before: a text as written. After: its scenes, every fault of meaning reported; those of the whole text beside
-    /// declared scenes are kept apart, for it is no fault that effects exclude each other.
+    /// Before: a text as written. After: its scenes, every fault of meaning reported. With declared scenes, faults of
+    /// the whole text are kept apart, for effects may exclude each other.
     pub fn resolve(text: &Text, diagnostics: &mut Diagnostics) -> Self {
         let (selections, all) = select(&text.header, &text.statements, diagnostics);
         // A text whose scenes are all faulty is one with scenes nevertheless.
@@ -54,7 +59,7 @@ impl Scenes {
         Scenes { scenes, whole, shared }
     }
 
-    /// Whether the text declares scenes.
+    /// `true` if the text declares scenes.
     pub fn are_declared(&self) -> bool {
         self.whole.is_some()
     }
@@ -62,7 +67,7 @@ impl Scenes {
     /// The scene of this name; the whole text where there is no name.
     ///
     /// # Errors
-    /// Which scenes there are.
+    /// A list of the scenes.
     pub fn find(&self, name: Option<&str>) -> Result<&Scene, String> {
         let wanted = name.filter(|name| *name != WHOLE);
         let found = self.scenes.iter().chain(&self.whole).find(|scene| scene.label() == wanted);
@@ -74,12 +79,25 @@ impl Scenes {
     }
 }
 
+impl Scenes {
+    /// The scene of this name, taken out.
+    ///
+    /// # Errors
+    /// Those of [`find`](Self::find).
+    pub fn take(self, name: Option<&str>) -> Result<Scene, String> {
+        let fault = self.find(name).err();
+        let wanted = name.filter(|name| *name != WHOLE);
+        let found = self.scenes.into_iter().chain(self.whole).find(|scene| scene.label() == wanted);
+        found.ok_or_else(|| fault.unwrap_or_default())
+    }
+}
+
 impl Scene {
     fn resolve(selection: Selection) -> Self {
         let Selection { name, docs, effects, statements } = selection;
         let mut faults = Diagnostics::default();
-        let model = resolve(&statements, &mut faults);
-        Scene { name, docs, effects, model, faults }
+        let (model, names) = resolve(&statements, &mut faults);
+        Scene { name, docs, effects, model, names, faults }
     }
 
     /// The name that the text gives it.
@@ -91,4 +109,22 @@ impl Scene {
 /// Name of the mechanism in a scene: of the alias, of the beginning of the view of the coordinates.
 pub fn alias(header: &Header, scene: &str) -> String {
     format!("{}{scene}", header.label())
+}
+
+/// The text and its scenes; `None` where it cannot be read at all.
+pub fn read_source(source: &str, diagnostics: &mut Diagnostics) -> Option<(Text, Scenes)> {
+    let input = match source.parse::<TokenStream>() {
+        Ok(input) => input,
+        Err(fault) => {
+            diagnostics.report(
+                fault.span(),
+                format!("the text is no Rust token stream: {fault}"),
+                "close every bracket and quote",
+            );
+            return None;
+        }
+    };
+    let text = syntax::read(input, diagnostics)?;
+    let scenes = Scenes::resolve(&text, diagnostics);
+    Some((text, scenes))
 }

@@ -1,4 +1,4 @@
-//! Which statements belong to which scene.
+//! Selection of the statements that belong to each scene.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -20,7 +20,7 @@ pub struct Selection {
     pub docs: Vec<String>,
     /// Names of its effects.
     pub effects: Vec<String>,
-    /// What the selected effects say, and what stands in no effect.
+    /// Statements of the selected effects, and those outside any effect.
     pub statements: Vec<Statement>,
 }
 
@@ -36,7 +36,7 @@ pub fn select(
     let scenes: Vec<_> = statements
         .iter()
         .filter_map(|statement| match &statement.kind {
-            StatementKind::Scene { name, effects } => Some((name, &statement.docs, effects.as_slice())),
+            StatementKind::Scene { name, effects, .. } => Some((name, &statement.docs, effects.as_slice())),
             _ => None,
         })
         .collect();
@@ -76,11 +76,11 @@ const SCENE_PARAMETER: &str = "S";
 
 /// The text divided into its effects.
 struct Effects<'a> {
-    /// Of each name the effects that have it, a second one only where that is reported.
+    /// Effects of each name; a second one only where that is reported.
     declared: BTreeMap<&'a str, Vec<usize>>,
     /// Each statement with the index of its effect.
     parts: Vec<(Option<usize>, &'a Statement)>,
-    /// Of each effect its name, and whether a scene selects it.
+    /// Name of each effect, and `true` if a scene selects it.
     selected: Vec<(&'a Name, bool)>,
 }
 
@@ -106,7 +106,7 @@ impl<'a> Effects<'a> {
         }
     }
 
-    /// Indices of the effects that a scene names; of equal names all, so that nothing that they declare is missing.
+    /// Indices of the effects that a scene names; of equal names all, so that none of their declarations is missing.
     fn choose(&mut self, scene: &Name, effects: &[Name], diagnostics: &mut Diagnostics) -> Vec<usize> {
         let mut chosen = Vec::new();
         for name in effects {
@@ -151,14 +151,14 @@ impl<'a> Effects<'a> {
         }
     }
 
-    /// Whether an earlier effect has the same name, which is reported.
+    /// `true` if an earlier effect has the same name, which is reported.
     fn is_repeated(&self, effect: usize) -> bool {
         let name = self.selected.get(effect).map(|(name, _)| name.text.as_str());
         let first = name.and_then(|name| self.declared.get(name)).and_then(|indices| indices.first());
         first.is_some_and(|first| *first != effect)
     }
 
-    /// What no scene selects would be reached by the whole text alone.
+    /// Reports effects that no scene selects: the whole text alone would contain them.
     fn report_unused(&self, diagnostics: &mut Diagnostics) {
         for (name, _) in self.selected.iter().filter(|(name, used)| !used && name.text != NAMELESS) {
             diagnostics.report(
@@ -170,7 +170,7 @@ impl<'a> Effects<'a> {
     }
 }
 
-/// The name that a statement declares, beside what kind of names it must differ from.
+/// The name that a statement declares, after the kind of names that it must differ from.
 fn declares(kind: &StatementKind) -> Option<(&'static str, &str)> {
     let (kind, name) = match kind {
         StatementKind::Const { name, .. }
@@ -196,12 +196,14 @@ fn declares(kind: &StatementKind) -> Option<(&'static str, &str)> {
         | StatementKind::EndFor
         | StatementKind::Effect { .. }
         | StatementKind::EndEffect
-        | StatementKind::Scene { .. } => return None,
+        | StatementKind::Scene { .. }
+        | StatementKind::EndScene
+        | StatementKind::Picture { .. } => return None,
     };
     Some((kind, &name.text))
 }
 
-/// Whether the types of the scene can have their names; a clash is reported.
+/// `true` if the types of the scene can have their names; a clash is reported.
 fn is_free<'a>(
     header: &Header,
     name: &'a Name,
@@ -235,7 +237,7 @@ fn is_free<'a>(
     false
 }
 
-/// What the name of the view of the coordinates ends with.
+/// Suffix in the name of the view of the coordinates.
 const VIEW: &str = "Coordinates";
 
 /// A scene needs a coordinate; it gets one where that is reported.

@@ -8,7 +8,7 @@ use crate::diagnostics::Diagnostics;
 use crate::syntax::ast::{Name, Statement, StatementKind};
 
 /// Before: the models of all scenes. After: the fields and functions of all of them, those outside effects first, then
-/// effect after effect, in the order of the text; a name that stands for two different ones is reported.
+/// effect after effect, in the order of the text. A name with two different meanings is reported.
 pub fn merge(statements: &[Statement], scenes: &[Scene], diagnostics: &mut Diagnostics) -> Model {
     let known: Vec<BTreeMap<&str, &Field>> = scenes
         .iter()
@@ -16,7 +16,7 @@ pub fn merge(statements: &[Statement], scenes: &[Scene], diagnostics: &mut Diagn
         .collect();
     let mut shared = Model::default();
     let mut done = BTreeSet::new();
-    // No parameter or input: the phase of a drive that prescribes a rate, or what a faulty statement declares.
+    // Other fields: the phase of a drive that prescribes a rate, or the name of a faulty statement.
     let others = scenes.iter().flat_map(|scene| &scene.model.fields).map(|field| field.name.text.as_str());
     for name in declared(statements).chain(others).filter(|name| done.insert(*name)) {
         let mut found = scenes.iter().zip(&known).filter_map(|(scene, known)| {

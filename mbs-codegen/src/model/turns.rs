@@ -4,7 +4,8 @@ use std::borrow::Cow;
 
 use crate::syntax::ast::{Name, Type, Unit};
 
-/// Before: the type of a coordinate or an input as written. After: its type, an angle where it is declared as `turn`, and whether it is.
+/// Before: the type of a coordinate or an input as written. After: its type, an angle if it is declared as `turn`, and `true` if
+/// it is.
 pub(super) fn turning(kind: &Type) -> (Cow<'_, Type>, bool) {
     if kind.unit.text != "turn" {
         return (Cow::Borrowed(kind), false);

@@ -18,20 +18,20 @@ const WHOLE: i16 = 60;
 const CYCLE: usize = 7;
 
 impl Dimension {
-    /// Of pure numbers and angles.
+    /// Dimension of pure numbers and angles.
     pub const NUMBER: Self = Dimension([0; 8]);
-    /// Of lengths.
+    /// Dimension of lengths.
     pub const METRE: Self = Dimension([WHOLE, 0, 0, 0, 0, 0, 0, 0]);
-    /// Of times.
+    /// Dimension of times.
     pub const SECOND: Self = Dimension([0, 0, WHOLE, 0, 0, 0, 0, 0]);
 
-    /// Of masses.
+    /// Dimension of masses.
     pub const KILOGRAM: Self = Dimension([0, WHOLE, 0, 0, 0, 0, 0, 0]);
-    /// Of forces.
+    /// Dimension of forces.
     pub const NEWTON: Self = Dimension([WHOLE, WHOLE, -2 * WHOLE, 0, 0, 0, 0, 0]);
-    /// Of energies and torques.
+    /// Dimension of energies and torques.
     pub const JOULE: Self = Dimension([2 * WHOLE, WHOLE, -2 * WHOLE, 0, 0, 0, 0, 0]);
-    /// Of moments of inertia.
+    /// Dimension of moments of inertia.
     pub const INERTIA: Self = Dimension([2 * WHOLE, WHOLE, 0, 0, 0, 0, 0, 0]);
 
     /// Dimension of a product.
@@ -66,7 +66,7 @@ impl Dimension {
         Some(Dimension(product))
     }
 
-    /// With a cycle turned into 2π radians.
+    /// Dimension with a cycle turned into 2π radians.
     pub fn without_cycles(self) -> Self {
         let mut exponents = self.0;
         exponents[CYCLE] = 0;
@@ -85,8 +85,8 @@ impl Dimension {
             .map(|(_, exponents)| Dimension(exponents.map(|e| e * WHOLE)))
     }
 
-    /// Before: a unit as written. After: its dimension; symbols that are no coherent unit are reported, and `None`
-    /// stands for what they leave open.
+    /// Before: a unit as written. After: its dimension; symbols that are no coherent unit are reported, and the
+    /// dimension is then `None`.
     pub fn of(unit: &ast::Unit, diagnostics: &mut Diagnostics) -> Option<Self> {
         let mut dimension = Some(Dimension::NUMBER);
         for (symbol, exponent) in &unit.factors {

@@ -1,24 +1,24 @@
-//! Rows that hold wherever Euler parameters have length 1: found by numbers, however they are written.
+//! Rows that hold wherever Euler parameters have length 1, found numerically, however they are written.
 
 use std::collections::BTreeMap;
 
-use super::evaluate;
-use super::expression::{Binary, Expressions, Id, Node, Unary};
+use super::expression::{Expressions, Id, Node};
 use crate::scattered::fraction;
+use crate::symbolic::{Binary, Unary};
 
-/// Unit vectors that are tried. What is analytic and vanishes on an open part of the sphere vanishes on all of it, and at a
-/// point without relations of its own it vanishes for no other reason; more than one take care of a near miss.
+/// Unit vectors that are tried. An analytic function that vanishes on an open part of the sphere vanishes on all of it. At
+/// a point without relations of its own it vanishes for no other reason; more than one point exclude a near miss.
 const TRIALS: usize = 8;
-/// What is left of a sum that vanishes, in parts of its terms: rounding of a few thousand operations.
+/// Remainder of a sum that vanishes, in parts of its terms: rounding of a few thousand operations.
 const ROUNDING: f64 = 1e-12;
-/// Apart from other keys of scattered numbers.
+/// Distinguishes these from other keys of scattered numbers.
 const KIND: u64 = 1 << 20;
 
 /// A value and the size of the terms that it is the sum of.
 type Sized = (f64, f64);
 
-/// Before: the place of each coordinate that is an Euler parameter in those of its body. After: whether each expression that is
-/// made of numbers and one body's parameters vanishes at unit vectors.
+/// Before: the place of each coordinate that is an Euler parameter in those of its body. After: `true` for each expression of
+/// numbers and one body's parameters that vanishes at unit vectors.
 pub fn vanish(expressions: &Expressions, places: &BTreeMap<usize, (usize, usize)>) -> Vec<bool> {
     let mut vanish = vec![true; expressions.len()];
     for trial in 0..TRIALS {
@@ -38,8 +38,8 @@ fn unit_vector(trial: usize) -> [f64; 4] {
     vector.map(|component| component / length)
 }
 
-/// Values of expressions that are made of numbers and coordinates with a place; `None` of others, and of kinks, which may
-/// vanish beside each other without meaning it.
+/// Values of expressions that depend on numbers and coordinates with a place. `None` for others, and for kinks: two of
+/// them may vanish together by chance.
 fn values(expressions: &Expressions, place: impl Fn(usize) -> Option<f64>) -> Vec<Option<Sized>> {
     let mut values: Vec<Option<Sized>> = Vec::with_capacity(expressions.len());
     for (_, node) in expressions.iter() {
@@ -61,18 +61,18 @@ fn values(expressions: &Expressions, place: impl Fn(usize) -> Option<f64>) -> Ve
 const MOVED: f64 = 1e-6;
 
 fn unary(function: Unary, (a, size): Sized) -> Sized {
-    let value = evaluate::unary(function, a);
-    let steepness = (evaluate::unary(function, a + MOVED * size) - value).abs() / MOVED;
+    let value = (function.entry().value)(a);
+    let steepness = ((function.entry().value)(a + MOVED * size) - value).abs() / MOVED;
     (value, value.abs() + if steepness.is_finite() { steepness } else { 0.0 })
 }
 
 fn binary(function: Binary, (a, size_a): Sized, (b, size_b): Sized) -> Sized {
-    let value = evaluate::binary(function, a, b);
+    let value = (function.entry().value)(a, b);
     let size = match function {
         Binary::Add | Binary::Subtract | Binary::Hypot => size_a + size_b,
         Binary::Multiply => size_a * size_b,
         Binary::Divide => size_a / b.abs() + value.abs() * size_b / b.abs(),
-        Binary::Power => evaluate::binary(Binary::Power, size_a, b).abs(),
+        Binary::Power => (Binary::Power.entry().value)(size_a, b).abs(),
         Binary::Atan2 | Binary::Min | Binary::Max => (size_a + size_b) / libm::hypot(a, b),
     };
     (value, size.max(value.abs()))

@@ -1,4 +1,4 @@
-//! How far rows of a constraint marked `redundant` may contradict each other.
+//! Largest contradiction allowed between rows of a constraint marked `redundant`.
 
 use super::elaborate::{Fault, Reach, Value};
 use super::expression::Node;

@@ -1,4 +1,4 @@
-//! Which sines and cosines come from those of the angle's parts, so that no function computes them anew.
+//! Sines and cosines from those of the angle's parts, so that no function computes them anew.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -10,7 +10,7 @@ use crate::symbolic::{AngleSum, Binary, Graph, Node, NodeId, Stage, Unary, add_a
 /// Functions as bits.
 type Functions = u64;
 
-/// Φ and Φ_q: what they need of the coordinates all other functions of a position have at hand.
+/// Φ and Φ_q: the values of the coordinates that they need are known to all other functions of a position.
 const ROWS: Functions = 0b11;
 
 /// Bound on the error of a sine or a cosine that the kernel computes, in units of half an ε: 2e-16.
@@ -18,15 +18,15 @@ const DIRECT: u32 = 2;
 /// Bound on what an addition theorem adds to the errors of both parts, in the same unit: as the product of two complex numbers
 /// of magnitude 1, √5, rounded up.
 const THEOREM: u32 = 3;
-/// Largest bound on an error that is accepted, 1.3e-15: one theorem behind another, with parts from the kernel; the next is
-/// computed from its angle again. A sum of angles near two turns is itself rounded by two thirds of that, without its sine.
+/// Largest accepted bound on an error, 1.3e-15: two theorems in sequence, with parts from the kernel; the next is computed
+/// from its angle again. A sum of angles near two turns is itself rounded by two thirds of that, without its sine.
 const ACCEPTED: u32 = 12;
 
-/// Before: equations and their block order. After: sines and cosines of sums are expressed by those of the parts where no
-/// function computes a sine or a cosine more for that, and the error stays within a fixed bound.
+/// Before: equations and their block order. After: sines and cosines of sums are expressed by those of their parts. No
+/// function computes an additional sine or cosine for that, and the error stays within a fixed bound.
 ///
-/// The parts are parameters and numbers, or angles whose sine or cosine every function that needs the sum has at hand. A part
-/// may come from the sum likewise.
+/// The parts are parameters and numbers, or angles whose sine or cosine every function that needs the sum knows. A part may
+/// be expressed by the sum likewise.
 pub fn share_angles(equations: &mut Equations, structure: &mut Structure) {
     let sums = sums(equations);
     if sums.is_empty() {
@@ -40,7 +40,7 @@ pub fn share_angles(equations: &mut Equations, structure: &mut Structure) {
     }
 }
 
-/// The angles that are not computed directly, those first that others are made of.
+/// The angles that are not computed directly; those that others depend on come first.
 fn sums(equations: &mut Equations) -> Vec<AngleSum> {
     let roots = Roots::of(equations);
     let dynamics = equations.dynamics.as_ref().map(dynamics::Roots::of);
@@ -103,12 +103,12 @@ fn plain_angles(graph: &Graph, functions: &[&[NodeId]]) -> BTreeSet<NodeId> {
     angles
 }
 
-/// What has been decided.
+/// Decisions made so far.
 struct Choice<'a> {
     graph: &'a mut Graph,
-    /// Of each angle the functions that need its sine or its cosine.
+    /// Functions that need the sine or the cosine of each angle.
     users: BTreeMap<NodeId, Functions>,
-    /// Functions that get nothing from the position stage.
+    /// Functions that use no value of the position stage.
     nowhere_else: Functions,
     sums: Vec<AngleSum>,
     /// Bounds on the errors of the sums.
@@ -116,7 +116,7 @@ struct Choice<'a> {
 }
 
 impl Choice<'_> {
-    /// The angles that are another and what is known with the parameters: the angle, as a sum of the two.
+    /// Sums of another angle and a value that is known with the parameters.
     fn offsets(&mut self) -> Vec<AngleSum> {
         let angles: Vec<NodeId> = self.users.keys().copied().collect();
         angles.into_iter().filter_map(|angle| self.offset(angle)).collect()
@@ -154,7 +154,7 @@ impl Choice<'_> {
         Some(AngleSum { angle, first, second, minus: turned })
     }
 
-    /// One angle is computed for several that differ from it by what is known with the parameters.
+    /// Introduces one angle for several that differ from it by a value known with the parameters.
     fn introduce(&mut self, offsets: &[AngleSum]) {
         let mut common: BTreeMap<NodeId, Vec<Functions>> = BTreeMap::new();
         for offset in offsets {
@@ -174,7 +174,7 @@ impl Choice<'_> {
         }
     }
 
-    /// Sums from their parts, in the order in which sums are made of each other.
+    /// Replaces sums by their parts, in the order in which sums depend on each other.
     fn take_sums(&mut self, offsets: &[AngleSum]) {
         let mut offsets = offsets.iter().copied().peekable();
         let angles: Vec<NodeId> = self.users.keys().copied().collect();
@@ -223,7 +223,7 @@ impl Choice<'_> {
         }
     }
 
-    /// Takes the sum, if its parts are at hand wherever it is needed and their errors small enough.
+    /// Accepts the sum, if its parts are known wherever it is needed and their errors are small enough.
     fn take(&mut self, sum: AngleSum) -> bool {
         let users = self.users.get(&sum.angle).copied().unwrap_or_default();
         if !self.is_at_hand(sum.first, users) || !self.is_at_hand(sum.second, users) {
@@ -238,7 +238,7 @@ impl Choice<'_> {
         true
     }
 
-    /// Whether sine and cosine of the part cost none of these functions anything.
+    /// `true` if sine and cosine of the part cost none of these functions anything.
     fn is_at_hand(&self, part: NodeId, functions: Functions) -> bool {
         if self.graph.stage(part) < Stage::Position {
             return true;

@@ -60,11 +60,11 @@ fn a_sum_whose_part_is_not_at_hand_keeps_its_sine() {
         constraint tip { p == 0.1m*unit(theta[0]) + 0.1m*unit(theta[0] + theta[1]); }
         out height: 1 = sin(theta[1]) + sin(theta[1] - 2*theta[0]);";
     let (_, _, program) = shared(text);
-    // The output's first sine comes from the sum; twice an angle is at hand nowhere.
+    // The output's first sine comes from the sum; twice an angle is known nowhere.
     assert_eq!(sine_cosines(&program), [2, 0, 1]);
 }
 
-/// As [`ACCEPTED`] says, and half an ε for the sine that it is compared with.
+/// Bound of [`ACCEPTED`], and half an ε for the sine that it is compared with.
 const BOUND: f64 = (ACCEPTED as f64 + 1.0) * f64::EPSILON / 2.0;
 
 #[test]
@@ -77,7 +77,7 @@ fn errors_of_a_chain_of_sums_stay_within_their_bound() {
             constraint sums { s[i] == cos(sum(k in 0..i + 1: theta[k])); }
         }";
     let (plain, equations, program) = shared(text);
-    // Of the eleven sums beyond the first angle every third is computed from its angle again.
+    // Every third of the eleven sums beyond the first angle is computed from its angle again.
     assert_eq!(sine_cosines(&program), [12 + 3, 0, 0]);
     for sample in 0..200_u32 {
         // Numbers of few digits, so that their sums are exact and only sines, cosines and theorems err.

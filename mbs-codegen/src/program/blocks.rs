@@ -1,4 +1,4 @@
-//! The diagonal blocks as code: what is known before a block is computed once, outside its iteration.
+//! The diagonal blocks as code: values known before a block are computed once, outside its iteration.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -18,18 +18,18 @@ pub struct BlockProgram {
     pub coordinates: Vec<usize>,
     /// Computed before the block's coordinates are known.
     pub before: Section,
-    /// How the coordinates are found.
+    /// Solution method of the coordinates.
     pub method: Method,
 }
 
 impl BlockProgram {
-    /// Whether it has more rows than coordinates.
+    /// `true` if it has more rows than coordinates.
     pub fn has_surplus(&self) -> bool {
         self.rows.len() > self.coordinates.len()
     }
 }
 
-/// How a block's coordinates are found.
+/// Solution method of a block's coordinates.
 #[derive(Debug)]
 pub enum Method {
     /// Assigned.
@@ -82,7 +82,7 @@ pub fn roots(equations: &Equations, structure: &Structure) -> Vec<NodeId> {
     roots
 }
 
-/// The blocks, and what the position stage lacks behind them.
+/// The blocks, and the rest of the position stage after them.
 #[derive(Debug)]
 pub struct Solution {
     /// The solution of Φ = 0, block after block.
@@ -131,10 +131,10 @@ pub fn order(
     Solution { blocks: programs, rest: schedule(graph, position, &known) }
 }
 
-/// Who uses what in blocks and position stage.
+/// Users of each node in blocks and position stage.
 struct Uses<'a> {
     companions: Companions,
-    /// Of each node those that have it as an operand.
+    /// Nodes that have each node as an operand.
     users: BTreeMap<NodeId, Vec<NodeId>>,
     /// Values that the position stage keeps.
     position: &'a [NodeId],
@@ -151,7 +151,7 @@ impl Uses<'_> {
     }
 }
 
-/// Of each node below the roots those that have it as an operand.
+/// Nodes that have each node below the roots as an operand.
 fn users(graph: &Graph, roots: &[NodeId]) -> BTreeMap<NodeId, Vec<NodeId>> {
     let mut users: BTreeMap<NodeId, Vec<NodeId>> = BTreeMap::new();
     for id in graph.reachable(roots.iter().copied()) {
@@ -160,7 +160,7 @@ fn users(graph: &Graph, roots: &[NodeId]) -> BTreeMap<NodeId, Vec<NodeId>> {
     users
 }
 
-/// What one operation brings about: calls of declared functions by function and argument, sine and cosine by their angle.
+/// Values of one operation: calls of declared functions by function and argument, sine and cosine by their angle.
 struct Companions(BTreeMap<(Option<u32>, NodeId), Vec<NodeId>>);
 
 impl Companions {
@@ -174,8 +174,8 @@ impl Companions {
         Companions(companions)
     }
 
-    /// Before: values to be computed. After: these, and what the operations that they use bring about besides, so that
-    /// what comes later finds it and does not ask for the same jet or angle again.
+    /// Before: values to be computed. After: these, and the other results of the operations that they use. So later
+    /// code finds these, and does not compute the same jet or angle again.
     fn completed(&self, graph: &Graph, known: &BTreeSet<NodeId>, mut values: Vec<NodeId>) -> Vec<NodeId> {
         if self.0.is_empty() {
             return values;
@@ -198,7 +198,7 @@ fn operation(node: Node) -> Option<(Option<u32>, NodeId)> {
     }
 }
 
-/// Of each block the branch conditions of which it fixes the last coordinate.
+/// For each block, the branch conditions whose last coordinate it fixes.
 fn decided(equations: &Equations, structure: &Structure) -> BTreeMap<usize, Vec<NodeId>> {
     let graph = &equations.graph;
     let mut solved_in = BTreeMap::new();
@@ -218,7 +218,7 @@ fn decided(equations: &Equations, structure: &Structure) -> BTreeMap<usize, Vec<
     decided
 }
 
-/// Before: what is `known` when the block begins. After: its code; known is what is computed before its iteration, too.
+/// Before: values `known` when the block begins. After: its code; values computed before its iteration are known, too.
 fn newton(
     equations: &Equations,
     block: &Block,
@@ -230,7 +230,7 @@ fn newton(
     let (phi, phi_q) = residuals_and_jacobian(equations, block);
     let roots: Vec<NodeId> = phi.iter().copied().chain(phi_q.iter().flatten().copied().flatten()).collect();
     let moving = moving(graph, &roots, &block.coordinates);
-    // What stands still during the iteration, as far as what moves uses it.
+    // Constant values of the iteration, as far as moving ones use them.
     let mut still: BTreeSet<NodeId> = roots.iter().copied().filter(|id| !moving.contains(id)).collect();
     for id in &moving {
         still.extend(graph.node(*id).operands().filter(|operand| !moving.contains(operand)));

@@ -1,4 +1,4 @@
-//! Forces of contacts as code: what acts with all contacts open, and what each adds.
+//! Forces of contacts as code: the forces with all contacts open, and the force that each contact adds.
 
 use std::collections::BTreeSet;
 
@@ -24,7 +24,7 @@ pub struct PushProgram {
 pub struct ContactProgram {
     /// All other forces.
     pub open: PushProgram,
-    /// One a contact: what stands behind the other forces.
+    /// One a contact: its code after the other forces.
     pub contacts: Vec<PushProgram>,
 }
 
@@ -63,8 +63,8 @@ impl ContactRoots {
         self.open.iter().skip(1).chain([&self.all]).map(Vec::as_slice)
     }
 
-    /// Before: what orders the code of a function of the state, and of one behind another. After: all in order; the first section of each
-    /// function has what the contacts use of it among its results.
+    /// Before: functions that order the code of a function of the state, and of one after another. After: all in order; the first
+    /// section of each function has the values that contacts use among its results.
     pub fn order(
         &self,
         graph: &Graph,

@@ -37,7 +37,7 @@ pub struct DynamicsProgram {
     pub energy: Section,
     /// Powers of the forces.
     pub powers: Section,
-    /// What the time alone gives to the energies.
+    /// Power with which time alone changes the energies.
     pub carried: Section,
     /// Derivatives by first-order states, and of their rates.
     pub slopes: Section,
@@ -53,7 +53,7 @@ pub struct DynamicsProgram {
     pub start_states: Section,
     /// Rates at the start.
     pub start_rates: Section,
-    /// What must not be negative.
+    /// Values that must be non-negative.
     pub signed: Section,
 }
 
@@ -121,7 +121,7 @@ impl Roots {
         [&self.mass, &self.mass_times, force, &self.reaction, &self.state_rates]
     }
 
-    /// Functions that some methods call, or that nobody calls in every step: nothing is kept for them alone.
+    /// Functions that some methods call, or that are not called in every step: no value is kept for them alone.
     pub fn rare(&self) -> impl Iterator<Item = &[NodeId]> {
         let all: [&[NodeId]; 14] = [
             &self.force_q,
@@ -149,8 +149,8 @@ impl Roots {
         [&self.start_states, &self.start_rates]
     }
 
-    /// Before: what orders the code of a function of the state, of one behind another, and of one of parameters alone. After: all in
-    /// order.
+    /// Before: functions that order the code of a function of the state, of one after another, and of one of parameters alone.
+    /// After: all in order.
     pub fn order(
         &self,
         graph: &Graph,
@@ -181,7 +181,7 @@ impl Roots {
             by_contact: self.by_contact.as_ref().map(|roots| roots.order(graph, &section, behind)),
             start_states: early(&self.start_states),
             start_rates: early(&self.start_rates),
-            // Asked once a run: nothing is kept for it.
+            // Evaluated once a run: no value is kept for it.
             signed: early(&self.signed),
         }
     }

@@ -47,9 +47,9 @@ pub struct Program {
     pub branches: Section,
     /// Working ranges.
     pub limits: Section,
-    /// Arguments of drives that prescribe a rate, from nothing.
+    /// Arguments of drives that prescribe a rate, without known values.
     pub phase_arguments: Section,
-    /// Their rates, from nothing.
+    /// Their rates, without known values.
     pub phase_speeds: Section,
     /// Outputs with their rates.
     pub outputs: Section,
@@ -59,7 +59,7 @@ pub struct Program {
     pub coordinate_scales: Section,
     /// Reference metric of the rows.
     pub row_scales: Section,
-    /// How far rows may contradict each other.
+    /// Largest contradictions allowed between rows.
     pub widths: Section,
     /// The solution of Φ = 0, block after block.
     pub blocks: Vec<BlockProgram>,
@@ -74,7 +74,7 @@ pub struct Program {
 pub struct Stage {
     /// The code.
     pub section: Section,
-    /// Where each kept value stands.
+    /// Index of each kept value.
     pub fields: BTreeMap<NodeId, usize>,
 }
 

@@ -1,4 +1,4 @@
-//! Velocities and accelerations block after block, each behind its position.
+//! Velocities and accelerations block after block, each after its position.
 
 use std::collections::BTreeSet;
 
@@ -7,26 +7,26 @@ use super::{Method, Program};
 use crate::equations::Equations;
 use crate::symbolic::NodeId;
 
-/// What a motion lacks behind the position of each block.
+/// Code for velocities and accelerations after the position of each block.
 #[derive(Debug)]
 pub struct MotionProgram {
-    /// Of each block of the program.
+    /// One a block of the program.
     pub blocks: Vec<BlockMotion>,
-    /// Values of the position stage that nothing before has computed.
+    /// Values of the position stage that are not computed before.
     pub rest: Section,
 }
 
-/// What is computed of a block whose coordinates are known.
+/// Code for the rates of a block whose coordinates are known.
 #[derive(Debug)]
 pub struct BlockMotion {
     /// Φ_q and Φ_t of its rows.
     pub linear: Section,
-    /// γ of its rows, behind its velocities.
+    /// γ of its rows, after its velocities.
     pub gamma: Section,
 }
 
-/// Before: the program of equations whose rows fix every coordinate. After: what its blocks' rates take in the order of
-/// solution; a value that an earlier block computed is not computed again.
+/// Before: the program of equations whose rows fix every coordinate. After: the code for its blocks' rates in the order
+/// of solution; a value that an earlier block computed is not computed again.
 pub fn motion(equations: &Equations, program: &Program) -> MotionProgram {
     let graph = &equations.graph;
     let mut known: BTreeSet<NodeId> = program.parameters.fields.keys().copied().collect();
@@ -48,7 +48,7 @@ pub fn motion(equations: &Equations, program: &Program) -> MotionProgram {
 }
 
 impl MotionProgram {
-    /// Operations that stand in one function with those of the positions.
+    /// Number of operations in one function with those of the positions.
     pub fn length(&self) -> usize {
         let block = |block: &BlockMotion| block.linear.lines.len() + block.gamma.lines.len();
         self.blocks.iter().map(block).sum::<usize>() + self.rest.lines.len()

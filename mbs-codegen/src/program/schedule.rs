@@ -9,11 +9,11 @@ use crate::symbolic::{Binary, Graph, Leaf, Node, NodeId, Unary};
 /// Straight-line code.
 #[derive(Debug, Default)]
 pub struct Section {
-    /// Operands stand before what uses them.
+    /// Operands precede their users.
     pub lines: Vec<Line>,
-    /// What it costs.
+    /// Number of its operations.
     pub operations: Operations,
-    /// Values that are used behind it.
+    /// Values that are used after it.
     pub results: BTreeSet<NodeId>,
 }
 
@@ -79,7 +79,7 @@ pub struct Angle {
     pub cosine: Option<NodeId>,
 }
 
-/// What can be computed once the sines and cosines of lower levels are known.
+/// Operations that can be computed once the sines and cosines of lower levels are known.
 #[derive(Default)]
 struct Level {
     /// All but sines and cosines, operands first.
@@ -119,12 +119,12 @@ impl AddAssign for Operations {
 }
 
 /// Before: roots, and values that are known already. After: the rest in order, all angles of one depth together, in the
-/// order of the coordinates that they begin with: so neighbours among them are neighbours in what they are read from, and in
-/// what uses them, and a compiler needs fewer operations to put them into registers and to take them out.
+/// order of the coordinates that they begin with. Neighbours among them are then neighbours in their operands and in their
+/// users. So a compiler needs fewer operations to move them into and out of registers.
 pub fn schedule(graph: &Graph, roots: &[NodeId], known: &BTreeSet<NodeId>) -> Section {
     let nodes = needed(graph, roots, known);
     let mut jets = jets(graph, &nodes);
-    // How many sines and cosines stand one behind the other up to a node.
+    // Number of dependent sines and cosines up to a node.
     let mut depths = vec![0_usize; graph.len()];
     let mut first = FirstCoordinates(vec![0; graph.len()]);
     let mut levels: BTreeMap<usize, Level> = BTreeMap::new();
@@ -170,8 +170,8 @@ pub fn schedule(graph: &Graph, roots: &[NodeId], known: &BTreeSet<NodeId>) -> Se
     section
 }
 
-/// Of each node the lowest of the coordinates that it is made of, where that is found below the values that are known already;
-/// one more than its index, and 0 for none, which costs nothing to set up: a section is scheduled for every block.
+/// Lowest coordinate that each node depends on, as far as it is found below the values that are known already. It is stored
+/// plus one, with 0 for none: zeros need no setup, and a section is scheduled for every block.
 struct FirstCoordinates(Vec<u32>);
 
 impl FirstCoordinates {

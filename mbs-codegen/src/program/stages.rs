@@ -1,4 +1,4 @@
-//! Which values a stage keeps for the stages behind it.
+//! Values that a stage keeps for later stages.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -20,10 +20,10 @@ pub fn parameter_fields(graph: &Graph, functions: &[&[NodeId]]) -> BTreeSet<Node
     fields
 }
 
-/// Values of `(q, t)` that several functions share, as far as something that is not shared uses them.
+/// Values of `(q, t)` that several functions share, as far as a value that is not shared uses them.
 ///
-/// Coordinates and time themselves count as shared: functions behind the stage do not get them again. What only
-/// `rare` functions share is not kept.
+/// Coordinates and time themselves count as shared: functions after the stage do not get them again. Values that only
+/// `rare` functions share are not kept.
 pub fn position_fields(graph: &Graph, functions: &[&[NodeId]], rare: &[&[NodeId]]) -> BTreeSet<NodeId> {
     let all: Vec<&[NodeId]> = functions.iter().chain(rare).copied().collect();
     let reached: Vec<Vec<NodeId>> = all.iter().map(|roots| graph.reachable(roots.iter().copied())).collect();

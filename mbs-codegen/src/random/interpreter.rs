@@ -1,10 +1,10 @@
-//! Runs a program as the emitted code runs: stage by stage, line by line, nothing read that was not computed.
+//! Runs a program as the emitted code runs: stage by stage, line by line, without reading a value that was not computed.
 
 use super::law;
 use super::oracle::State;
 use crate::equations::{Equations, Sparse};
 use crate::program::{Line, Program, Section, Stage};
-use crate::symbolic::{Graph, Leaf, Node, NodeId, Unary, evaluate};
+use crate::symbolic::{Graph, Leaf, Node, NodeId, Unary};
 
 /// A value of a function and its index there.
 pub struct Found {
@@ -75,7 +75,7 @@ struct Machine<'a> {
 type Values = Vec<Option<f64>>;
 
 impl Machine<'_> {
-    /// What is known, and the values that a stage keeps.
+    /// Known values, and those that a stage keeps.
     fn stage(&self, stage: &Stage, known: &Values) -> Values {
         let values = self.section(&stage.section, known);
         let mut kept = known.clone();
@@ -85,7 +85,7 @@ impl Machine<'_> {
         kept
     }
 
-    /// Executes a section on top of what is known.
+    /// Executes a section with the known values.
     fn section(&self, section: &Section, known: &Values) -> Values {
         let mut values = known.clone();
         for line in &section.lines {
@@ -99,7 +99,7 @@ impl Machine<'_> {
                         let angle = self.value(known.angle, &values);
                         for (function, id) in [(Unary::Sin, known.sine), (Unary::Cos, known.cosine)] {
                             if let Some(id) = id {
-                                values[id.index()] = Some(evaluate::unary(function, angle));
+                                values[id.index()] = Some((function.entry().value)(angle));
                             }
                         }
                     }
@@ -121,8 +121,8 @@ impl Machine<'_> {
     fn operation(&self, id: NodeId, values: &Values) -> f64 {
         let of = |id: NodeId| self.value(id, values);
         match self.graph.node(id) {
-            Node::Unary(function, a) => evaluate::unary(function, of(a)),
-            Node::Binary(function, a, b) => evaluate::binary(function, of(a), of(b)),
+            Node::Unary(function, a) => (function.entry().value)(of(a)),
+            Node::Binary(function, a, b) => (function.entry().value)(of(a), of(b)),
             Node::Select { less, than, yes, no } => {
                 if of(less) < of(than) {
                     of(yes)

@@ -1,13 +1,13 @@
 //! Value, first and second derivative along a line, each with a running bound on its rounding error.
 
-use crate::model::expression::{Binary, Unary};
+use crate::symbolic::{Binary, Unary};
 
 /// A quantity along a line: `v[k]` is its k-th derivative, `b[k]·2⁻⁵³` bounds what rounding does to it.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Jet {
     pub v: [f64; 3],
     pub b: [f64; 3],
-    /// So near a kink that rounding decides on which side.
+    /// `true` if the value is so near a kink that rounding decides on its side.
     pub torn: bool,
 }
 
@@ -109,7 +109,7 @@ impl Jet {
             Unary::Sinh => self.chain([x.sinh(), x.cosh(), x.sinh(), x.cosh()]),
             Unary::Cosh => self.chain([x.cosh(), x.sinh(), x.cosh(), x.sinh()]),
             Unary::Tanh => {
-                // Where tanh saturates, its slope has the rounding of 1.
+                // Saturated, tanh has a slope with the rounding of 1.
                 let (t, square) = (x.tanh(), x.tanh() * x.tanh());
                 let derivatives =
                     |s: f64, sign: f64| [t, s, 2.0 * sign * t * s, (2.0 * sign * s + 4.0 * square) * s];
@@ -117,6 +117,20 @@ impl Jet {
                     derivatives(1.0 - square, -1.0),
                     derivatives(1.0 + square, 1.0).map(f64::abs),
                 )
+            }
+            Unary::Asinh => {
+                let w = 1.0 / (1.0 + x * x);
+                let r = w.sqrt();
+                self.chain([x.asinh(), r, -x * w * r, (2.0 * x * x - 1.0) * w * w * r])
+            }
+            Unary::Acosh => {
+                let w = 1.0 / (x * x - 1.0);
+                let r = w.sqrt();
+                self.chain([x.acosh(), r, -x * w * r, (2.0 * x * x + 1.0) * w * w * r])
+            }
+            Unary::Atanh => {
+                let w = 1.0 / (1.0 - x * x);
+                self.chain([x.atanh(), w, 2.0 * x * w * w, (6.0 * x * x + 2.0) * w * w * w])
             }
             Unary::Abs if x < 0.0 => self.signed().unary(Unary::Negate),
             Unary::Abs => self.signed(),

@@ -1,6 +1,6 @@
-//! What the declared functions of random texts are: sums of sines, the ones that every cross-check takes for them.
+//! Declared functions of random texts: sums of sines, the same in every cross-check.
 
-use crate::stand_in;
+use crate::emit::casadi::stand_in;
 
 /// Derivative of order `order` of the function with index `function` at `x`.
 pub fn derivative(function: u32, order: u8, x: f64) -> f64 {

@@ -3,26 +3,27 @@
 use super::nilpotent::{AGAIN, DISPLACED, MOTION, Nilpotent, VARIED};
 use super::oracle::{Expected, State};
 use crate::model::dynamics::{Action, Body, Dynamics, Force, Line, Rotation, Turn};
-use crate::model::expression::{Id, Node, Unary};
+use crate::model::expression::{Id, Node};
 use crate::model::{Model, VariableKind};
+use crate::symbolic::Unary;
 
-/// What is displaced or varied: a coordinate, or its rate.
+/// Displaced or varied quantity: a coordinate, or its rate.
 #[derive(Clone, Copy)]
 enum Axis {
     Position(usize),
     Velocity(usize),
 }
 
-/// How the coordinates move in the two directions of the motion.
+/// Path of the coordinates along the two directions of the motion.
 #[derive(Clone, Copy)]
-enum Motion {
-    /// As the state says, without accelerations.
+enum Path {
+    /// Along the state's rates, without accelerations.
     Free,
     /// The same with the clock stopped.
     Stopped,
-    /// With q̈ in place of q̇ and the clock stopped: the vector that M is multiplied with.
+    /// Along q̈ in place of q̇, with the clock stopped: the vector that M is multiplied with.
     Product,
-    /// As the state says, without accelerations, in three directions: nothing is displaced or varied.
+    /// Along the state's rates, without accelerations, in three directions; no quantity is displaced or varied.
     Thrice,
 }
 
@@ -30,7 +31,7 @@ enum Motion {
 struct Numbers(Vec<Nilpotent>);
 
 impl Numbers {
-    fn of(model: &Model, state: &State, motion: Motion, [displaced, varied]: [Axis; 2]) -> Self {
+    fn of(model: &Model, state: &State, motion: Path, [displaced, varied]: [Axis; 2]) -> Self {
         let mut numbers: Vec<Nilpotent> = Vec::with_capacity(model.expressions.len());
         for (_, node) in model.expressions.iter() {
             let number = match node {
@@ -38,18 +39,18 @@ impl Numbers {
                 Node::Time => moving(motion, [state.t, 1.0, 0.0]),
                 Node::Coordinate(index) => {
                     let rate = match motion {
-                        Motion::Free | Motion::Stopped | Motion::Thrice => state.qd[index],
-                        Motion::Product => state.qdd[index],
+                        Path::Free | Path::Stopped | Path::Thrice => state.qd[index],
+                        Path::Product => state.qdd[index],
                     };
                     let mut terms = vec![(0, state.q[index]), (MOTION, rate), (AGAIN, rate)];
-                    if matches!(motion, Motion::Thrice) {
+                    if matches!(motion, Path::Thrice) {
                         terms.push((DISPLACED, rate));
                         numbers.push(Nilpotent::new(&terms));
                         continue;
                     }
                     terms.extend(match displaced {
                         Axis::Position(moved) if moved == index => Some((DISPLACED, 1.0)),
-                        // The rates that the text writes: ∂/∂q̇ leaves the way of the coordinates as it is.
+                        // The rates that the text writes: ∂/∂q̇ leaves the path of the coordinates unchanged.
                         Axis::Velocity(moved) if moved == index => Some((DISPLACED | AGAIN, 1.0)),
                         _ => None,
                     });
@@ -105,7 +106,7 @@ impl Numbers {
         all
     }
 
-    /// Tension of an element between two points and its length: what is elastic, what is not.
+    /// Tension of an element between two points: elastic part, other part, and its length.
     fn line(&self, line: &Line) -> [Nilpotent; 3] {
         let mut square = Nilpotent::constant(0.0);
         for (from, to) in line.from.iter().zip(&line.to) {
@@ -160,7 +161,7 @@ impl Numbers {
         work
     }
 
-    /// What is lost on the displacement of a rate: ∂R/∂q̇ and d/dt ∂T/∂q̇.
+    /// Loss on the displacement of a rate: ∂R/∂q̇ and d/dt ∂T/∂q̇.
     fn loss(&self, declared: &Dynamics) -> Nilpotent {
         let mut loss = Nilpotent::constant(0.0);
         for force in &declared.forces {
@@ -174,8 +175,8 @@ impl Numbers {
         loss
     }
 
-    /// What a named force gives to the coordinates, and what is moved in time gives to a spring that stores; `stopped`: the
-    /// same state with the clock stopped.
+    /// Power of a named force on the coordinates, and power of moved places on a spring that stores; `stopped`: the same
+    /// state with the clock stopped.
     fn power(&self, stopped: &Self, force: &Force, state: &State, model: &Model) -> Nilpotent {
         let zero = Nilpotent::constant(0.0);
         let element = |[elastic, other, place]: [Nilpotent; 3], still: [Nilpotent; 3], stores: bool| {
@@ -190,7 +191,7 @@ impl Numbers {
                 .fold(zero, |power, (value, on)| power.plus(self.at(*value).times(stopped.at(*on).rate()))),
             Action::Dissipation(function) => (0..state.q.len()).fold(zero, |power, index| {
                 let axes = [Axis::Velocity(index), Axis::Position(index)];
-                let slope = Numbers::of(model, state, Motion::Free, axes).at(*function).along(DISPLACED);
+                let slope = Numbers::of(model, state, Path::Free, axes).at(*function).along(DISPLACED);
                 power.minus(slope.times(Nilpotent::constant(state.qd[index])))
             }),
             Action::Line(line) => element(self.line(line), stopped.line(line), line.stores),
@@ -234,12 +235,12 @@ impl Numbers {
     }
 }
 
-fn moving(motion: Motion, [value, rate, acceleration]: [f64; 3]) -> Nilpotent {
+fn moving(motion: Path, [value, rate, acceleration]: [f64; 3]) -> Nilpotent {
     match motion {
-        Motion::Free => {
+        Path::Free => {
             Nilpotent::new(&[(0, value), (MOTION, rate), (AGAIN, rate), (MOTION | AGAIN, acceleration)])
         }
-        Motion::Thrice => Nilpotent::new(&[
+        Path::Thrice => Nilpotent::new(&[
             (0, value),
             (MOTION, rate),
             (AGAIN, rate),
@@ -248,7 +249,7 @@ fn moving(motion: Motion, [value, rate, acceleration]: [f64; 3]) -> Nilpotent {
             (MOTION | DISPLACED, acceleration),
             (AGAIN | DISPLACED, acceleration),
         ]),
-        Motion::Stopped | Motion::Product => Nilpotent::constant(value),
+        Path::Stopped | Path::Product => Nilpotent::constant(value),
     }
 }
 
@@ -274,13 +275,13 @@ pub fn run(model: &Model, declared: &Dynamics, state: &State) -> Vec<Expected> {
         let (place, rate) = (Axis::Position(row), Axis::Velocity(row));
         for column in 0..n {
             let (by_place, by_rate) = (Axis::Position(column), Axis::Velocity(column));
-            let [along, slow] = [place, rate].map(|axis| numbers(Motion::Free, axis, by_place));
-            let [turned, fast] = [place, rate].map(|axis| numbers(Motion::Free, axis, by_rate));
+            let [along, slow] = [place, rate].map(|axis| numbers(Path::Free, axis, by_place));
+            let [turned, fast] = [place, rate].map(|axis| numbers(Path::Free, axis, by_rate));
             let forced = along.work(declared).minus(slow.loss(declared));
             force_q.push(one(forced, VARIED));
             force_qd.push(one(turned.work(declared).minus(fast.loss(declared)), VARIED));
             mass.push(one(entry(declared, &along, &fast), 0));
-            let [places, rates] = [place, rate].map(|axis| numbers(Motion::Product, axis, by_place));
+            let [places, rates] = [place, rate].map(|axis| numbers(Path::Product, axis, by_place));
             let product = inertial(declared, &places, &rates);
             mass_times_q.push(one(product, VARIED));
             let reacting = reacting(model, &along, state);
@@ -293,7 +294,7 @@ pub fn run(model: &Model, declared: &Dynamics, state: &State) -> Vec<Expected> {
         }
     }
     let [plain, stopped] =
-        [Motion::Free, Motion::Stopped].map(|motion| numbers(motion, Axis::Position(0), Axis::Position(0)));
+        [Path::Free, Path::Stopped].map(|motion| numbers(motion, Axis::Position(0), Axis::Position(0)));
     let mut expected: Vec<Expected> = [mass, mass_times, force, reaction].into_iter().flatten().collect();
     expected.extend([force_q, force_qd, mass_times_q, reaction_q].into_iter().flatten());
     expected.extend(third(model, state));
@@ -305,7 +306,7 @@ pub fn run(model: &Model, declared: &Dynamics, state: &State) -> Vec<Expected> {
     expected
 }
 
-/// An entry of M: what is displaced along its row and varied along its column, by positions and by rates.
+/// An entry of M: displaced along its row and varied along its column, by positions and by rates.
 fn entry(declared: &Dynamics, places: &Numbers, rates: &Numbers) -> Nilpotent {
     let mut entry = Nilpotent::constant(0.0);
     for body in &declared.bodies {
@@ -340,10 +341,10 @@ fn third(model: &Model, state: &State) -> Vec<Expected> {
         bound: number.b[set],
         torn: number.torn,
     };
-    let axes = |index: usize| Numbers::of(model, state, Motion::Free, [Axis::Position(index); 2]);
+    let axes = |index: usize| Numbers::of(model, state, Path::Free, [Axis::Position(index); 2]);
     let mut found: Vec<Expected> =
         (0..state.q.len()).map(|index| one(reacting(model, &axes(index), state), MOTION)).collect();
-    let along = Numbers::of(model, state, Motion::Thrice, [Axis::Position(0); 2]);
+    let along = Numbers::of(model, state, Path::Thrice, [Axis::Position(0); 2]);
     let rows = model.rows.iter().zip(&state.lambda).fold(Nilpotent::constant(0.0), |sum, (row, lambda)| {
         sum.minus(along.at(row.residual).times(Nilpotent::constant(*lambda)))
     });

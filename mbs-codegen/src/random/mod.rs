@@ -1,8 +1,9 @@
 //! Randomly written texts against an oracle that shares no code with the symbolic core.
 //!
-//! A text goes through the whole front end. On one side its program is interpreted line by line, stage by stage, as
-//! the emitted code would run; on the other the model's expressions are evaluated with jets, second-order Taylor
-//! arithmetic that carries its own bound on rounding, and masses and forces by virtual work in mixed derivatives. `tests/tests/random_texts.rs` compiles a sample.
+//! A text passes through the whole front end. On one side its program is interpreted line by line, stage by stage, as the emitted
+//! code would run. On the other the model's expressions are evaluated with jets, second-order Taylor arithmetic that carries its
+//! own bound on rounding. Masses and forces are evaluated by virtual work in mixed derivatives. `tests/tests/random_texts.rs`
+//! compiles a sample.
 
 #[cfg(test)]
 mod interpreter;
@@ -32,10 +33,10 @@ const STATES_WITH_MASSES: usize = 3;
 /// Roundings granted for each operation that the oracle's bound counts.
 const ROUNDINGS: f64 = 64.0 * f64::EPSILON / 2.0;
 
-/// What a random text may have beside the rest of the language.
+/// Features of a random text in addition to the rest of the language.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// Nothing.
+    /// None of them.
     Plain,
     /// Two declared functions.
     Functions,
@@ -48,12 +49,13 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// Whether the text declares functions: two, of which [`crate::stand_in`] gives the values.
+    /// `true` if the text declares functions: two, of which [`crate::stand_in`] gives the values.
     pub fn has_functions(self) -> bool {
         matches!(self, Kind::Functions | Kind::ScenesWithFunctions)
     }
 
-    /// States that a text of the sample is looked at: with masses every entry of a matrix is an evaluation of its own.
+    /// Number of states at which a text of the sample is evaluated: with masses every entry of a matrix is an
+    /// evaluation of its own.
     pub fn states(self) -> usize {
         if self == Kind::Masses { STATES_WITH_MASSES } else { STATES }
     }
@@ -64,21 +66,21 @@ pub fn text(kind: Kind, seed: u64) -> String {
     text::write(kind, &mut Random(seed))
 }
 
-/// What a scene computes.
+/// Values of a scene.
 pub struct ExpectedScene {
     /// Its name; empty where the text has no scenes.
     pub name: String,
     /// Number of rows.
     pub rows: usize,
-    /// At each state: Φ, Φ_q row by row, Φ_t, Φ_tt, Φ_qt q̇, γ, branches, outputs with rate and acceleration; then what
-    /// belongs to masses.
+    /// At each state: Φ, Φ_q row by row, Φ_t, Φ_tt, Φ_qt q̇, γ, branches, outputs with rate and acceleration; then the
+    /// functions of masses.
     pub states: Vec<(State, Vec<Expected>)>,
 }
 
-/// What a seed's text computes, scene by scene. `None` where the text is refused.
+/// Values of a seed's text, scene by scene. `None` where the text is refused.
 ///
 /// # Panics
-/// Where the front end finds a fault in it.
+/// If the front end finds a fault in it.
 pub fn expected(kind: Kind, seed: u64) -> Option<Vec<ExpectedScene>> {
     let scene = |understood: Option<Understood>| {
         let Understood { name, model, .. } = understood?;
@@ -108,7 +110,7 @@ fn understand(text: &str) -> Option<Understood> {
     understand_scenes(text).into_iter().next().flatten()
 }
 
-/// All scenes; now and then a row says nothing, `q2 == q2`, and is refused.
+/// All scenes. Occasionally a row is an identity, `q2 == q2`, and is refused.
 fn understand_scenes(text: &str) -> Vec<Option<Understood>> {
     let mut diagnostics = Diagnostics::default();
     let read = syntax::read(text.parse().expect("tokens"), &mut diagnostics).expect("a header");
@@ -139,7 +141,7 @@ impl Random {
         ((z ^ (z >> 31)) >> 11) % limit
     }
 
-    /// In ±2, in steps that print exactly.
+    /// Number in ±2, in steps that print exactly.
     fn number(&mut self) -> f64 {
         (self.below(4001) as f64 - 2000.0) / 1000.0
     }
@@ -206,13 +208,13 @@ fn random_texts_with_masses_compute_what_virtual_work_in_mixed_derivatives_compu
     assert!(tally.compared > 400 * TEXTS_WITH_MASSES as usize, "{} values", tally.compared);
 }
 
-/// What was compared so far.
+/// Comparisons so far.
 #[cfg(test)]
 #[derive(Default)]
 struct Tally {
     compared: usize,
     refused: u64,
-    /// Largest error as a part of what is allowed.
+    /// Largest error as a part of the allowed one.
     worst: f64,
 }
 
@@ -245,6 +247,6 @@ impl Tally {
     fn report(&self, texts: u64) {
         let Tally { compared, refused, worst } = self;
         println!("{compared} values of {texts} texts compared, largest error {worst:.2e} of what is allowed");
-        assert!(*refused < texts / 50, "{refused} refused");
+        assert!(*refused <= texts / 50, "{refused} refused");
     }
 }

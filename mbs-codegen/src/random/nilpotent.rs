@@ -1,18 +1,18 @@
 //! Mixed derivatives along several directions at once, each with a running bound on its rounding error.
 //!
 //! A number is a polynomial in directions whose squares vanish, so that the coefficient of a product of directions is the
-//! mixed derivative along them. Two directions stand for the motion, q(t + ε₁ + ε₂), two for what is varied.
+//! mixed derivative along them. Two directions are the motion, q(t + ε₁ + ε₂), two are variations.
 
 use super::law;
-use crate::model::expression::{Binary, Unary};
+use crate::symbolic::{Binary, Unary};
 
 /// The motion.
 pub const MOTION: usize = 0b0001;
 /// The motion once more: for accelerations, and for the rates that a text writes.
 pub const AGAIN: usize = 0b0010;
-/// What is displaced.
+/// Virtual displacement.
 pub const DISPLACED: usize = 0b0100;
-/// What the result is differentiated by.
+/// Direction that the result is differentiated along.
 pub const VARIED: usize = 0b1000;
 
 /// One coefficient a set of directions.
@@ -26,7 +26,7 @@ const ORDERS: usize = 6;
 pub struct Nilpotent {
     pub v: [f64; SETS],
     pub b: [f64; SETS],
-    /// So near a kink that rounding decides on which side.
+    /// `true` if the value is so near a kink that rounding decides on its side.
     pub torn: bool,
 }
 
@@ -109,7 +109,8 @@ impl Nilpotent {
         product
     }
 
-    /// Σ cₖ nᵏ, n what is not constant in this number, cₖ = f⁽ᵏ⁾/k! from `f` and the absolute values of its terms.
+    /// Σ cₖ nᵏ, with n the part of this number that is not constant, and cₖ = f⁽ᵏ⁾/k! from `f` and the absolute
+    /// values of its terms.
     fn chain(self, f: [f64; ORDERS], abs: [f64; ORDERS]) -> Self {
         let mut power = Nilpotent { torn: self.torn, ..Nilpotent::constant(1.0) };
         power.b[0] = 0.0;
@@ -181,9 +182,12 @@ impl Nilpotent {
             Unary::Tanh => {
                 let t = x.tanh();
                 let slopes = tanh_slopes();
-                // Where tanh saturates, its slope has the rounding of 1.
+                // Saturated, tanh has a slope with the rounding of 1.
                 self.chain(slopes.map(|p| value(&p, t)), slopes.map(|p| value(&p.map(f64::abs), t.abs())))
             }
+            Unary::Asinh => self.integrated(x.asinh(), power_series([1.0 + x * x, 2.0 * x, 1.0], -0.5)),
+            Unary::Acosh => self.integrated(x.acosh(), power_series([x * x - 1.0, 2.0 * x, 1.0], -0.5)),
+            Unary::Atanh => self.integrated(x.atanh(), power_series([1.0 - x * x, -2.0 * x, -1.0], -1.0)),
             Unary::Abs if x < 0.0 => self.signed().negated(),
             Unary::Abs => self.signed(),
             Unary::Sign => {
@@ -283,6 +287,8 @@ mod tests {
             Unary::Sinh,
             Unary::Cosh,
             Unary::Tanh,
+            Unary::Asinh,
+            Unary::Atanh,
         ];
         for function in all {
             let at = |x: f64| {

@@ -26,7 +26,7 @@ pub struct State {
 }
 
 impl State {
-    /// Numbers within ±2, whatever the constraints say.
+    /// Numbers within ±2; the constraints need not hold.
     pub(super) fn draw(model: &Model, random: &mut Random) -> Self {
         let mut numbers = |count: usize| (0..count).map(|_| random.number()).collect::<Vec<_>>();
         let n = model.coordinates.len();
@@ -46,9 +46,9 @@ impl State {
 pub struct Expected {
     /// The number.
     pub value: f64,
-    /// Sum of the absolute values that are rounded on the way.
+    /// Sum of the absolute values of all intermediate results that are rounded.
     pub bound: f64,
-    /// Whether rounding decides on which side of a kink it is computed.
+    /// `true` if rounding decides on which side of a kink it is computed.
     pub torn: bool,
 }
 
@@ -99,7 +99,7 @@ pub fn run(model: &Model, state: &State) -> Vec<Expected> {
     }
     expected.extend(part(&time, 1, 1.0));
     expected.extend(part(&time, 2, 1.0));
-    // By polarisation: twice the mixed derivative is what the joint motion has beyond its parts.
+    // Polarisation: twice the mixed derivative is the second derivative of the joint motion less those of its parts.
     for ((both, motion), time) in both.iter().zip(&motion).zip(&time) {
         let value = 0.5 * (both.v[2] - motion.v[2] - time.v[2]);
         expected.push(Expected { value, bound: both.b[2] + motion.b[2] + time.b[2], torn: both.torn });
@@ -142,7 +142,7 @@ fn evaluate(model: &Model, state: &State, line: Line) -> Vec<Jet> {
                     orders.map(|order| law::magnitude(function, order)),
                 )
             }
-            // Of forces alone: where it stood in anything else, nothing would agree.
+            // Part of forces alone: anywhere else it would make every comparison fail.
             Node::Rate(..) | Node::State(_) | Node::Multiplier(_) => Jet::constant(f64::NAN),
             Node::Pin(..) | Node::Margin(_) | Node::Ratio(..) => {
                 unreachable!("random texts use no pin, no margin and no ratio")

@@ -1,6 +1,7 @@
 //! Texts that use the whole language, each well defined at every state.
 
 use super::{Kind, Random};
+use crate::symbolic::Unary;
 
 /// A random text: scalar and vector coordinates, parameters, inputs with rates, `let`s, loops, drives, outputs.
 pub(super) fn write(kind: Kind, random: &mut Random) -> String {
@@ -52,7 +53,7 @@ fn with_masses(random: &mut Random) -> String {
     text
 }
 
-/// A text with two effects that give the same names different meanings, before the rest or behind it, and three scenes.
+/// A text with two effects that give the same names different meanings, before or after the rest, and three scenes.
 fn with_scenes(random: &mut Random, functions: bool) -> String {
     let (text, mut writer) = begin(random, functions);
     let (header, common) = text.split_once('\n').unwrap_or((&text, ""));
@@ -103,7 +104,7 @@ fn begin(random: &mut Random, functions: bool) -> (String, Writer<'_>) {
     writer.names.extend(["b[0]", "b.1"].map(String::from));
     let surplus = writer.random.below(4) == 0;
     let marked = if surplus && writer.random.below(2) == 0 { "redundant " } else { "" };
-    // Both sides of rows that surplus ones can follow from; a phase stands in no text.
+    // Both sides of rows that surplus ones can follow from; a phase has no name in the text.
     let mut sides = Vec::new();
     for index in 0..scalars {
         let (left, right) = (writer.scalar(3), writer.scalar(4));
@@ -139,7 +140,7 @@ fn begin(random: &mut Random, functions: bool) -> (String, Writer<'_>) {
     }
     text += &format!("branch open: {} > q0 + {};\n", writer.scalar(3), writer.scalar(2));
     if functions {
-        // A function that nothing calls is a fault.
+        // A function that is not called is a fault.
         text += &format!("out x: 1 = rise({}) - sag.d1({});\n", writer.scalar(2), writer.scalar(1));
     }
     text += &format!("out y: 1 = {};\nout z: [1; 2] = {};\n", writer.scalar(4), writer.vector(3));
@@ -149,7 +150,7 @@ fn begin(random: &mut Random, functions: bool) -> (String, Writer<'_>) {
 struct Writer<'a> {
     random: &'a mut Random,
     names: Vec<String>,
-    /// Whether declared functions may be called.
+    /// `true` if declared functions may be called.
     functions: bool,
 }
 
@@ -163,21 +164,7 @@ impl Writer<'_> {
         let a = self.scalar(depth - 1);
         let b = if (18..36).contains(&choice) { self.scalar(depth - 1) } else { String::new() };
         match choice {
-            0 => format!("sin({a})"),
-            1 => format!("cos({a})"),
-            2 => format!("exp(0.3*sin({a}))"),
-            3 => format!("ln(2 + sin({a}))"),
-            4 => format!("sqrt(1.5 + ({a})^2)"),
-            5 => format!("tan(0.4*sin({a}))"),
-            6 => format!("asin(0.6*sin({a}))"),
-            7 => format!("acos(0.6*cos({a}))"),
-            8 => format!("atan({a})"),
-            9 => format!("sinh(sin({a}))"),
-            10 => format!("cosh(cos({a}))"),
-            11 => format!("tanh({a})"),
-            12 => format!("abs({a})"),
-            13 => format!("sign({a})*C"),
-            14 => format!("-({a})"),
+            0..=14 => self.of_one(&a),
             15 => format!("(2 + cos({a}))^-1.5"),
             16 => format!("(1.2 + sin({a}))^3"),
             17 => format!("sum(k{depth} in 0..3: L[k{depth}]*sin({a} + k{depth}))"),
@@ -202,7 +189,19 @@ impl Writer<'_> {
         }
     }
 
-    /// A constraint of rows that hold wherever those of `sides` do: multiples, sums, differences of squares.
+    /// A function of one argument, any one of the table.
+    fn of_one(&mut self, a: &str) -> String {
+        let function = Unary::ALL[self.random.below(Unary::ALL.len() as u64) as usize];
+        let argument = function.entry().domain.replace("{}", a);
+        match function {
+            Unary::Negate => format!("-({a})"),
+            // A factor without a unit, for any unit of the argument.
+            Unary::Sign => format!("sign({argument})*C"),
+            _ => format!("{}({argument})", function.entry().name),
+        }
+    }
+
+    /// A constraint of rows that follow from those of `sides`: multiples, sums, differences of squares.
     fn surplus(&mut self, sides: &[[String; 2]]) -> String {
         let mut rows = String::new();
         for _ in 0..=self.random.below(2) {
@@ -249,7 +248,7 @@ impl Writer<'_> {
         format!("(der(q0*cos({}))*1s)", self.scalar(1))
     }
 
-    /// A number that rates and the names of `acting` stand in too.
+    /// A number that may contain rates and the names of `acting` too.
     fn acting(&mut self, acting: &[String]) -> String {
         let known = self.names.len();
         let rates = [self.rate(), self.rate()];

@@ -23,7 +23,7 @@ pub enum Dyad {
 }
 
 impl Dyad {
-    /// As an engineer calls it.
+    /// Name in engineering.
     pub fn name(&self) -> &'static str {
         match self {
             Dyad::Bars { .. } => "dyad of two bars",
@@ -56,9 +56,8 @@ impl Dyad {
 
 /// Before: the residuals of a block of two rows, and its two coordinates. After: the dyad that it is, if it is one.
 ///
-/// Whether a coefficient vanishes, and whether a matrix is a similarity, is seen at a few fixed values of all leaves: an
-/// identity holds at each, anything else fails at one. What is found is where assembly starts, and Newton's method has
-/// the last word.
+/// Vanishing coefficients and similarity of matrices are tested at a few fixed values of all leaves: an identity holds at
+/// each, anything else fails at one. Assembly starts from the dyad found, and Newton's method decides.
 pub fn recognise(g: &mut Graph, residuals: [NodeId; 2], unknowns: [usize; 2]) -> Option<Dyad> {
     let mut directions = Directions::new();
     let first = expand(g, residuals[0], unknowns, &mut directions)?;
@@ -103,7 +102,7 @@ struct Table {
 }
 
 impl Table {
-    /// Whether every monomial of both rows is among these.
+    /// `true` if every monomial of both rows is among these.
     fn has_only(&self, monomials: &[Monomial]) -> bool {
         self.rows.iter().flat_map(|row| row.0.keys()).all(|monomial| monomials.contains(monomial))
     }
@@ -220,7 +219,7 @@ fn close(a: f64, b: f64) -> bool {
     (a - b).abs() <= ROUNDINGS * (a.abs() + b.abs())
 }
 
-/// Whether it turns and scales, or mirrors and scales, and does not vanish.
+/// `true` if it turns and scales, or mirrors and scales, and does not vanish.
 fn is_similarity([[a, b], [c, d]]: [[f64; 2]; 2]) -> bool {
     let size = a * a + b * b + c * c + d * d;
     let equal = (a * a + c * c - b * b - d * d).abs() <= ROUNDINGS * size;
@@ -243,7 +242,7 @@ fn present(g: &Graph, polynomial: Polynomial) -> Option<Polynomial> {
     Some(Polynomial(kept.map(|(_, entry)| entry).collect()))
 }
 
-/// Whether something holds of two matrices at every sample.
+/// `true` if something holds of two matrices at every sample.
 fn sampled(
     g: &Graph,
     a: &[[NodeId; 2]; 2],

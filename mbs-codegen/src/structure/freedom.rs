@@ -1,4 +1,4 @@
-//! Whether masses and rows give every coordinate an acceleration.
+//! Check that masses and rows give every coordinate an acceleration.
 
 use super::{list, matching};
 use crate::diagnostics::Diagnostics;
@@ -21,7 +21,7 @@ pub fn report(model: &Model, dynamics: &Dynamics, rows: &[Vec<usize>], diagnosti
         }
     }
     let count = model.coordinates.len();
-    // Rows that fix nothing, and energies that are none, are reported as such.
+    // Rows that fix no coordinate, and energies that are not quadratic, are reported as such.
     if !dynamics.not_quadratic.is_empty() || matching::match_rows(rows, count).free_rows().next().is_some() {
         return;
     }

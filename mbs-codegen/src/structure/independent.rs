@@ -1,11 +1,11 @@
-//! Whether the coordinates that a text names as independent determine the others.
+//! Check that the coordinates that a text names as independent determine the others.
 
 use super::{count, list, matching};
 use crate::diagnostics::Diagnostics;
 use crate::model::Model;
 
 /// Before: columns that each row uses. After: a choice of independent coordinates that leaves others open, or with
-/// too many or too few in it, is reported; a text that names none is not asked.
+/// too many or too few in it, is reported; a text that names none is not checked.
 ///
 /// The rows that no drive declares, restricted to the other coordinates, need a perfect matching: without one their
 /// Jacobian is singular at every position.

@@ -1,6 +1,6 @@
 //! Maximum matching of rows and coordinates.
 
-/// Which coordinate each row determines.
+/// Coordinate that each row determines.
 #[derive(Debug)]
 pub struct Matching {
     /// One a row.
@@ -26,8 +26,8 @@ pub fn match_rows(rows: &[Vec<usize>], columns: usize) -> Matching {
     match_in_order(rows, columns, 0..rows.len())
 }
 
-/// Before: the columns of each row. After: a matching of most rows; those that `order` names first are served first,
-/// so that what stays free is as late in it as can be.
+/// Before: the columns of each row. After: a matching of most rows; those that `order` names first are matched first,
+/// so that free ones are as late in it as can be.
 pub fn match_in_order(
     rows: &[Vec<usize>],
     columns: usize,

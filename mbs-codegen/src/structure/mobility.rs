@@ -1,4 +1,4 @@
-//! Degrees of freedom as they are counted, whatever the position: structural rank, and Grübler's count.
+//! Degrees of freedom as they are counted, independent of the position: structural rank, and Grübler's count.
 
 use super::matching;
 use crate::equations::Equations;
@@ -25,7 +25,7 @@ pub struct Mobility {
     /// Freedoms that all of these would have without joints: three of a body in the plane, six of one in space, one a
     /// dimension of a point.
     pub apart: usize,
-    /// Kinetic energies of the text: what has mass beside the declared bodies, and is in none of these counts.
+    /// Kinetic energies of the text: masses in addition to the declared bodies, which are in none of these counts.
     pub energies: usize,
 }
 
@@ -44,8 +44,8 @@ impl Mobility {
         difference(self.coordinates, self.constraints)
     }
 
-    /// What joints and guides take of the freedoms that the declared bodies would have apart; `None` where no bodies are
-    /// declared, or so few that the coordinates have more freedoms than they.
+    /// Degrees of freedom that joints and guides take from the declared bodies. `None` where no bodies are declared, or
+    /// so few that the coordinates have more freedoms than they.
     pub fn taken(&self) -> Option<usize> {
         let taken = difference(self.apart, 0) - self.grubler();
         usize::try_from(taken).ok().filter(|_| self.apart > 0)

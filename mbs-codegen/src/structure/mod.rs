@@ -1,4 +1,4 @@
-//! Sparsity → matching → block-triangular order; what is not square is reported by name.
+//! Sparsity → matching → block-triangular order; a system that is not square is reported by name.
 
 pub mod dyad;
 mod freedom;
@@ -27,7 +27,7 @@ use pivots::Order;
 pub struct Structure {
     /// Diagonal blocks; each uses coordinates of earlier blocks, independent ones and its own alone.
     pub blocks: Vec<Block>,
-    /// Whether the rows fix every coordinate.
+    /// `true` if the rows fix every coordinate.
     pub square: bool,
     /// Coordinates that no block solves for, ascending.
     pub independent: Vec<usize>,
@@ -36,7 +36,7 @@ pub struct Structure {
 }
 
 impl Structure {
-    /// Whether there are more rows than can be matched.
+    /// `true` if there are more rows than can be matched.
     pub fn has_surplus(&self) -> bool {
         self.matched.iter().any(Option::is_none)
     }
@@ -101,7 +101,7 @@ pub fn analyse(model: &Model, equations: &mut Equations, diagnostics: &mut Diagn
     let surplus: Vec<usize> = matching.free_rows().collect();
     let uncounted = square && surplus.is_empty() && is_uncounted(model);
     if !square && !surplus.is_empty() || uncounted {
-        // Nothing is solved for in blocks: the equations of motion take all rows together.
+        // No block is solved: the equations of motion take all rows together.
         let independent: Vec<usize> = (0..model.coordinates.len()).collect();
         missing_guesses(model, &[], &independent, diagnostics);
         let open = |row: usize| uncounted && model.rows.get(row).is_some_and(|row| row.redundant);
@@ -125,7 +125,7 @@ pub fn analyse(model: &Model, equations: &mut Equations, diagnostics: &mut Diagn
             let explicit = explicit(equations, &rows, &coordinates);
             let dyad = if explicit.is_some() { None } else { dyad(equations, &rows, &coordinates) };
             let order = order(equations, &rows, &coordinates);
-            // A surplus row is a part of its own that determines nothing.
+            // A surplus row is a part of its own that determines no coordinate.
             (!coordinates.is_empty()).then_some(Block { rows, coordinates, explicit, dyad, order })
         })
         .collect::<Vec<_>>();
@@ -134,8 +134,8 @@ pub fn analyse(model: &Model, equations: &mut Equations, diagnostics: &mut Diagn
     diagnostics.is_empty().then_some(Structure { blocks, square, independent, matched: matching.of_row })
 }
 
-/// Whether masses move freely although there are as many rows as coordinates: some follow from others, as the text says, and
-/// nothing is driven. By count such a loop is rigid: Bricard's mechanism.
+/// `true` if masses move freely although there are as many rows as coordinates. Then some rows follow from others, as the text
+/// declares, and no coordinate is driven. By count such a loop is rigid: Bricard's mechanism.
 fn is_uncounted(model: &Model) -> bool {
     let rows = &model.rows;
     model.dynamics.is_some() && rows.iter().any(|row| row.redundant) && !rows.iter().any(|row| row.driven)
@@ -206,7 +206,7 @@ fn order(equations: &Equations, rows: &[usize], coordinates: &[usize]) -> Option
     pivots::order(&equations.graph, &phi_q)
 }
 
-/// The rows that each coordinate stands in.
+/// The rows that contain each coordinate.
 fn columns_of(rows: &[Vec<usize>], coordinates: usize) -> Vec<Vec<usize>> {
     let mut columns = vec![Vec::new(); coordinates];
     for (row, used) in rows.iter().enumerate() {
@@ -310,11 +310,11 @@ struct Part {
     ends: Vec<usize>,
 }
 
-/// Before: unmatched nodes of one side, the edges from that side, and what each node of the other is matched to.
-/// After: all that alternating paths reach from them, ascending, one part a connected piece.
+/// Before: unmatched nodes of one side, the edges from that side, and the match of each node of the other. After: all
+/// nodes that alternating paths reach from them, ascending, one part a connected piece.
 fn parts(free: impl Iterator<Item = usize>, edges: &[Vec<usize>], matched: &[Option<usize>]) -> Vec<Part> {
     let mut pieces: Vec<Part> = Vec::new();
-    // Of each piece the one that it is part of; itself, if it is not.
+    // Piece that each piece is part of; itself, if there is none.
     let mut whole: Vec<usize> = Vec::new();
     let mut owners: BTreeMap<usize, usize> = BTreeMap::new();
     for start in free {
@@ -323,7 +323,7 @@ fn parts(free: impl Iterator<Item = usize>, edges: &[Vec<usize>], matched: &[Opt
         whole.push(piece);
         while let Some(node) = waiting.pop() {
             for end in edges.get(node).into_iter().flatten() {
-                // Parts that share an end are one, and what lies behind it is known.
+                // Parts that share an end are one, and the nodes reached from it are known.
                 if let Some(owner) = owners.get(end) {
                     let root = root(*owner, &mut whole);
                     whole.get_mut(root).into_iter().for_each(|whole| *whole = piece);
@@ -353,7 +353,7 @@ fn parts(free: impl Iterator<Item = usize>, edges: &[Vec<usize>], matched: &[Opt
     parts
 }
 
-/// The piece that a piece is part of, all in all; what is found on the way is kept.
+/// Root of the tree of pieces that a piece is part of; the path to it is shortened.
 fn root(piece: usize, whole: &mut [usize]) -> usize {
     let mut piece = piece;
     while let Some(above) = whole.get(piece).copied().filter(|above| *above != piece) {

@@ -1,4 +1,4 @@
-//! Which coordinates of a mechanism with degrees of freedom its rows solve for.
+//! Dependent coordinates: those that the rows of a mechanism with degrees of freedom are solved for.
 
 use super::matching::{Matching, match_rows};
 use super::triangular;
@@ -10,10 +10,11 @@ const MOST_EXCHANGES: usize = 2_000;
 /// Before: rows that can all be matched, fewer than coordinates. After: a matching of all rows; the columns that it
 /// leaves free are the independent coordinates.
 ///
-/// What the text names as independent stays free where it can, then what a `start` gives, then angles before lengths,
-/// earlier ones before later ones: coordinates are offered to the rows in the opposite order, and the sets that
-/// a matching can cover form a matroid, so that no other choice leaves more of the wanted ones free. Where the
-/// text says nothing, an exchange of one coordinate for another is kept if the blocks get cheaper.
+/// Coordinates that the text names as independent stay free where they can, then those that a `start` gives. Angles
+/// stay free before lengths, earlier coordinates before later ones. Coordinates are offered to the rows in the
+/// opposite order. The sets that a matching can cover form a matroid, so no other choice leaves more of the wanted
+/// ones free. Where the text says nothing, an exchange of one coordinate for another is kept if the blocks get
+/// cheaper.
 pub fn choose(model: &Model, rows: &[Vec<usize>]) -> Matching {
     let columns = super::columns_of(rows, model.coordinates.len());
     let named = |column: usize| model.independent.iter().any(|chosen| chosen.coordinate == column);
@@ -64,7 +65,7 @@ fn cheaper(mut matching: Matching, order: &[usize], columns: &[Vec<usize>], rows
             if tried > MOST_EXCHANGES {
                 return matching;
             }
-            // The free one is offered first, the other one last, what is matched before what is free.
+            // The free one is offered first, the other one last; matched ones are offered before free ones.
             let is_matched = |column: &usize| matching.of_column.get(*column).copied().flatten().is_some();
             let mut exchanged: Vec<usize> = order.iter().copied().filter(is_matched).collect();
             exchanged.retain(|column| column != other);

@@ -1,7 +1,7 @@
-//! The order in which a block of four and more unknowns is eliminated: decided here, kept under guard at run time.
+//! The order in which a block of four and more unknowns is eliminated: decided here, guarded at run time.
 //!
-//! Closures come as vectors, so a single entry of a loop, −L sin φ, vanishes within each turn where two rows for two
-//! angles do not. So pivots are entries that stand still (numbers) or 2 × 2, and what is left at the end is up to 3 × 3.
+//! Closures are vectors. So a single entry of a loop, −L sin φ, vanishes within each turn, whereas the two rows for two
+//! angles do not. Pivots are therefore constant entries (numbers) or 2 × 2, and the remaining block is up to 3 × 3.
 
 use crate::symbolic::scattered::scattered;
 use crate::symbolic::{Graph, Leaf, NodeId, evaluate::evaluate};
@@ -9,10 +9,10 @@ use crate::symbolic::{Graph, Leaf, NodeId, evaluate::evaluate};
 /// Smallest block that is worth an order: closed forms are shorter below.
 const SMALLEST: usize = 4;
 
-/// Largest block of which all pairs of rows are tried as pivots; of a larger one pairs that are near each other.
+/// Largest block of which all pairs of rows are tried as pivots; of a larger one, pairs within `NEAR`.
 const LARGEST_TRIED: usize = 12;
 
-/// How near rows of a large block have to be to be tried: the components of a vector equation and its neighbours.
+/// Largest distance of two rows of a large block that are tried together: the components of a vector equation and its neighbours.
 const NEAR: usize = 3;
 
 /// Largest block that is eliminated by straight-line code.
@@ -21,10 +21,10 @@ const LARGEST: usize = 64;
 /// States at which pivots are tried.
 const SAMPLES: usize = 8;
 
-/// Of these so many must bear a pivot; at the others it costs the elimination with pivoting besides.
+/// Most samples at which a pivot may be refused; at such states the elimination with pivoting is an extra cost.
 const MOST_UNBORNE: usize = 2;
 
-/// Largest multiplier of a state that bears a pivot: half of what the run time accepts.
+/// Largest multiplier of an accepted pivot: half of the limit at run time.
 const LARGEST_MULTIPLIER: f64 = 8.0;
 
 /// Price of a reciprocal in products.
@@ -33,10 +33,10 @@ const RECIPROCAL: usize = 8;
 /// Price of the determinant and the inverse of a 2 × 2 pivot without its reciprocal.
 const INVERSE: usize = 8;
 
-/// Pivots in the order of the elimination; each has as many rows as columns, the last one takes what is left.
+/// Pivots in the order of the elimination; each has as many rows as columns, the last one is the rest.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Order {
-    /// Of one or two rows, the last one of up to three.
+    /// Pivots of one or two rows, the last one of up to three.
     pub pivots: Vec<Pivot>,
 }
 
@@ -49,8 +49,8 @@ pub struct Pivot {
     pub columns: Vec<usize>,
 }
 
-/// Before: the Jacobian of a block, row by row. After: the order with the fewest products at each step that most states
-/// bear; none where there is none, or the block is too small or too large.
+/// Before: the Jacobian of a block, row by row. After: the order with the fewest products at each step, of pivots that
+/// most states accept. `None` where there is no such order, or the block is too small or too large.
 pub fn order(graph: &Graph, phi_q: &[Vec<Option<NodeId>>]) -> Option<Order> {
     let size = phi_q.len();
     if !(SMALLEST..=LARGEST).contains(&size) {
@@ -59,7 +59,7 @@ pub fn order(graph: &Graph, phi_q: &[Vec<Option<NodeId>>]) -> Option<Order> {
     let mut rest = Rest::of(graph, phi_q)?;
     let mut pivots = Vec::new();
     while rest.rows.len() > 3 {
-        let best = rest.candidates().into_iter().filter(|pivot| rest.bears(pivot));
+        let best = rest.candidates().into_iter().filter(|pivot| rest.accepts(pivot));
         let best = best.min_by_key(|pivot| (rest.price(pivot), pivot.rows.clone(), pivot.columns.clone()))?;
         rest.eliminate(&best);
         pivots.push(best);
@@ -68,7 +68,7 @@ pub fn order(graph: &Graph, phi_q: &[Vec<Option<NodeId>>]) -> Option<Order> {
     Some(Order { pivots })
 }
 
-/// What is not eliminated yet.
+/// Part that is not eliminated yet.
 struct Rest {
     rows: Vec<usize>,
     columns: Vec<usize>,
@@ -111,7 +111,7 @@ impl Rest {
         self.fixed.get(row).and_then(|row| row.get(column)).copied().unwrap_or(false)
     }
 
-    /// The remaining columns that stand in a row.
+    /// The remaining columns with an entry in a row.
     fn columns_of(&self, row: usize) -> Vec<usize> {
         self.columns.iter().copied().filter(|column| self.is_present(row, *column)).collect()
     }
@@ -141,7 +141,7 @@ impl Rest {
         candidates
     }
 
-    /// Rows beside a pivot that have an entry in its columns, and columns beside it with one in its rows.
+    /// Rows outside a pivot that have an entry in its columns, and columns outside it with one in its rows.
     fn beside(&self, pivot: &Pivot) -> (Vec<usize>, Vec<usize>) {
         let rows = self.rows.iter().copied().filter(|row| !pivot.rows.contains(row));
         let rows = rows.filter(|row| pivot.columns.iter().any(|column| self.is_present(*row, *column)));
@@ -163,13 +163,13 @@ impl Rest {
         2 * (inverse + multipliers + rows.len() * size * columns.len()) / size
     }
 
-    /// Whether enough samples keep their multipliers small.
-    fn bears(&self, pivot: &Pivot) -> bool {
+    /// `true` if enough samples keep their multipliers small.
+    fn accepts(&self, pivot: &Pivot) -> bool {
         let (rows, _) = self.beside(pivot);
         let unborne = self.samples.iter().filter(|a| {
             let inverse = inverse(a, pivot);
             let largest = |row: &usize| multipliers(a, *row, pivot, &inverse).into_iter().fold(0.0, f64::max);
-            // NaN is not borne.
+            // NaN is refused.
             !rows.iter().all(|row| largest(row) <= LARGEST_MULTIPLIER)
                 || !inverse.iter().flatten().all(|x| x.is_finite())
         });
@@ -229,7 +229,7 @@ fn inverse(a: &[Vec<f64>], pivot: &Pivot) -> Vec<Vec<f64>> {
     }
 }
 
-/// What of the pivot's rows is taken off a row: one factor each.
+/// Multipliers with which the pivot's rows are subtracted from a row: one factor each.
 fn signed_multipliers(a: &[Vec<f64>], row: usize, pivot: &Pivot, inverse: &[Vec<f64>]) -> Vec<f64> {
     let column = |k: usize| {
         let entries = pivot.columns.iter().zip(inverse);
@@ -293,7 +293,7 @@ mod tests {
     #[test]
     fn loops_of_two_rows_are_taken_together() {
         let order = of(&["xxx.", "xxx.", "x..x", "x..x"]);
-        // The second loop has one angle of its own alone: the first goes.
+        // The second loop has one angle of its own alone: the first is eliminated.
         let order = order.expect("an order");
         assert_eq!(pivots(&order).first(), Some(&([0, 1].as_slice(), [1, 2].as_slice())), "{order:?}");
     }

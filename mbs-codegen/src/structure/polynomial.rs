@@ -85,7 +85,7 @@ fn combined(
     }
 }
 
-/// Cosine and sine of an angle that is a sum of the unknowns, with integer coefficients, and of what is known.
+/// Cosine and sine of an angle that is a sum of the unknowns, with integer coefficients, and of known values.
 fn circular(g: &mut Graph, angle: &Polynomial, directions: &mut Directions) -> Option<[Polynomial; 2]> {
     let (mut sum, mut offset) = ([0_i32; 2], None);
     for (monomial, coefficient) in &angle.0 {

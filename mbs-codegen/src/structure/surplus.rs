@@ -1,4 +1,4 @@
-//! Rows that may follow from others: which of them are too many, and the blocks that they are solved with.
+//! Rows that may follow from others: which of them are surplus, and the blocks that they are solved with.
 
 use std::collections::BTreeSet;
 
@@ -13,7 +13,7 @@ pub fn order(model: &Model) -> Vec<usize> {
     order
 }
 
-/// What to do about `rows` of which `surplus` are too many: to mark their constraint where the rest would be square.
+/// Advice on `rows` of which `surplus` are too many: to mark their constraint where the rest would be square.
 pub fn cure(model: &Model, rows: &[Vec<usize>], part: &[usize], surplus: usize) -> String {
     let plain = "remove what follows from the other rows, or declare the coordinate that is missing in them";
     let is_driven = |row: usize| model.rows.get(row).is_some_and(|row| row.driven);
@@ -38,11 +38,11 @@ pub fn cure(model: &Model, rows: &[Vec<usize>], part: &[usize], surplus: usize) 
 }
 
 /// Before: square blocks in the order of their solution, and rows that none of them took. After: each such row is
-/// solved together with every block that it depends on, so that it determines what these leave open where they are
-/// singular; blocks that are explicit and depend on no such block stay for themselves.
+/// solved together with every block that it depends on. So it determines what these leave open where they are singular.
+/// Explicit blocks that depend on no such block remain separate.
 ///
-/// What a surplus row depends on is closed: a block in it depends on blocks in it alone. So explicit blocks go first,
-/// then the merged ones, then all others in their order.
+/// The blocks that a surplus row depends on are closed: each depends on blocks among them alone. So explicit blocks
+/// go first, then the merged ones, then all others in their order.
 pub fn merged(
     blocks: Vec<Block>,
     surplus: &[usize],
@@ -80,7 +80,7 @@ pub fn merged(
     }
     let mut kept: Vec<Option<Block>> = blocks.into_iter().map(Some).collect();
     let mut take = |index: usize| kept.get_mut(index).and_then(Option::take);
-    // What is assigned beside one row may be the one assignment that another stands in; then that part goes first.
+    // A block assigned for one row may be the only assignment possible for another; then that part is first.
     parts.sort_by_key(|(members, _)| members.last().copied());
     let is_joint = |index: &usize| parts.iter().any(|(members, _)| members.contains(index));
     let first: Vec<usize> = first.into_iter().filter(|index| !is_joint(index)).collect();
@@ -123,8 +123,8 @@ fn depended_on(
     reached
 }
 
-/// Those of the `reached` blocks that are solved together; the others are assigned before them. Where all could be
-/// assigned it is the last one: the surplus row needs a block to stand in.
+/// Those of the `reached` blocks that are solved together; the others are assigned before them. If all could be
+/// assigned it is the last one, for the surplus row must be in a block.
 fn solved_together(
     reached: &BTreeSet<usize>,
     blocks: &[Block],

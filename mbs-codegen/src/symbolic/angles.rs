@@ -2,7 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use super::graph::{Graph, Node, NodeId, Unary};
+use super::graph::{Graph, Node, NodeId};
+use super::operations::Unary;
 use super::substitute::{Images, replace};
 
 /// An angle as the sum of two others, or as their difference.
@@ -14,13 +15,13 @@ pub struct AngleSum {
     pub first: NodeId,
     /// The second of them.
     pub second: NodeId,
-    /// Whether the second is taken off the first.
+    /// `true` if the second is taken off the first.
     pub minus: bool,
 }
 
-/// Before: roots, and sums with those first that others are made of; no sine and no cosine of one of the angles stands below
-/// an angle. After: `sin(a ± b) = sin a cos b ± cos a sin b` and `cos(a ± b) = cos a cos b ∓ sin a sin b` in place of the
-/// sines and cosines of the sums below the roots, which leaves a few roundings of values up to 1, wherever the angle is.
+/// Before: roots, and sums ordered so that sums which others depend on come first. No sine and no cosine of one of the
+/// angles is below an angle. After: `sin(a ± b) = sin a cos b ± cos a sin b` and `cos(a ± b) = cos a cos b ∓ sin a sin b`
+/// replace the sines and cosines of the sums below the roots. At any angle the error is a few roundings of values up to 1.
 pub fn add_angles(graph: &mut Graph, roots: &[NodeId], sums: &[AngleSum]) -> Images {
     let mut pairs: BTreeMap<NodeId, [NodeId; 2]> = BTreeMap::new();
     for AngleSum { angle, first, second, minus } in sums {

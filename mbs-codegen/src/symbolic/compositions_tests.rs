@@ -1,13 +1,13 @@
-//! Whatever is built of whatever means what it says: compositions of all functions against an evaluation that knows no graph.
+//! Compositions of all functions against an evaluation that knows no graph: every composition has the value of its text.
 //!
 //! A wrong rewrite is one of a short expression: √(x²) → x, ln(x²) → 2 ln x, √x·√x → x. So all short expressions are tried, and
 //! a sample of longer ones.
 
-use super::evaluate;
 use super::evaluate::evaluate as values;
-use super::graph::{Binary, Graph, Leaf, NodeId, Unary};
+use super::graph::{Graph, Leaf, NodeId};
+use super::operations::{Binary, Unary};
 
-/// An expression as it is meant.
+/// An expression before its construction in the graph.
 #[derive(Clone, Debug)]
 enum Tree {
     /// Coordinates 0 and 1, and a parameter, 2.
@@ -18,35 +18,9 @@ enum Tree {
 }
 use Tree::{Leaf as L, Number};
 
-const UNARY: [Unary; 15] = [
-    Unary::Negate,
-    Unary::Sqrt,
-    Unary::Exp,
-    Unary::Ln,
-    Unary::Sin,
-    Unary::Cos,
-    Unary::Tan,
-    Unary::Asin,
-    Unary::Acos,
-    Unary::Atan,
-    Unary::Sinh,
-    Unary::Cosh,
-    Unary::Tanh,
-    Unary::Abs,
-    Unary::Sign,
-];
-const BINARY: [Binary; 9] = [
-    Binary::Add,
-    Binary::Subtract,
-    Binary::Multiply,
-    Binary::Divide,
-    Binary::Power,
-    Binary::Atan2,
-    Binary::Min,
-    Binary::Max,
-    Binary::Hypot,
-];
-/// Of all signs and both sides of 1, so that no domain and no sign is left out.
+const UNARY: [Unary; Unary::ALL.len()] = Unary::ALL;
+const BINARY: [Binary; Binary::ALL.len()] = Binary::ALL;
+/// Points with all signs and on both sides of 1, so that no domain and no sign is left out.
 const POINTS: [[f64; 3]; 9] = [
     [0.4, 0.7, 1.3],
     [-0.4, 0.7, -1.3],
@@ -86,7 +60,7 @@ fn build(g: &mut Graph, tree: &Tree) -> NodeId {
 /// Roundings of one operation that rules may add: a power of 16 has as many products.
 const ROUNDINGS: f64 = 32.0 * f64::EPSILON;
 
-/// The value, and what roundings of all operations may move it by; infinite where it stands at the edge of a domain.
+/// The value, and a bound on the error of all roundings; infinite at the edge of a domain.
 fn meant(tree: &Tree, point: &[f64; 3]) -> (f64, f64) {
     let moved = |value: f64, others: &[f64]| {
         let change = others.iter().map(|other| (other - value).abs()).fold(0.0, f64::max);
@@ -98,30 +72,30 @@ fn meant(tree: &Tree, point: &[f64; 3]) -> (f64, f64) {
         Number(value) => (*value, 0.0),
         Tree::Unary(function, a) => {
             let (a, off) = meant(a, point);
-            let of = |a| evaluate::unary(*function, a);
+            let of = |a| (function.entry().value)(a);
             moved(of(a), &[of(a - off), of(a + off)])
         }
         Tree::Binary(function, a, c) => {
             let ((a, off_a), (c, off_c)) = (meant(a, point), meant(c, point));
-            let of = |a, c| evaluate::binary(*function, a, c);
+            let of = |a, c| (function.entry().value)(a, c);
             let corners = [(-1.0, -1.0), (-1.0, 1.0), (1.0, -1.0), (1.0, 1.0)];
             moved(of(a, c), &corners.map(|(s, t): (f64, f64)| of(a + s * off_a, c + t * off_c)))
         }
     }
 }
 
-/// Whether a value is the one that is meant; what is moved by as much as its size is not judged.
+/// `true` if a value is the expected one; a value with an error bound near its own size is accepted.
 fn agrees(value: f64, (meant, off): (f64, f64)) -> bool {
     let unknown = off.is_nan() || off >= 0.1 * meant.abs().max(1e-3);
     if meant.is_finite() {
         unknown || (value - meant).abs() <= off + f64::MIN_POSITIVE
     } else {
-        // What has no value has none by a detour either, unless it stands at the edge of having one.
+        // Without a value there is none by another path either, except at the edge of a domain.
         off.is_infinite() || !value.is_finite()
     }
 }
 
-/// Where an expression that the graph has built has another value, if anywhere.
+/// First point where an expression that the graph has built has another value, if any.
 fn fault(tree: &Tree) -> Option<String> {
     let mut g = Graph::default();
     let root = build(&mut g, tree);
@@ -200,7 +174,7 @@ fn longer_expressions_mean_what_they_say() {
     all_hold((0..20_000).map(|_| random(&mut state, 4)));
 }
 
-/// Rewrites that someone may believe in, each wrong for some signs or outside of some domain.
+/// Plausible rewrites, each wrong for some signs or outside of some domain.
 fn wrong() -> Vec<(Tree, Tree)> {
     use Binary::{Add, Atan2, Divide, Hypot, Max, Min, Multiply, Power, Subtract};
     use Unary::{Abs, Acos, Asin, Atan, Cos, Cosh, Exp, Ln, Negate, Sign, Sin, Sinh, Sqrt, Tan, Tanh};

@@ -1,5 +1,6 @@
 use super::*;
 use crate::symbolic::evaluate::evaluate;
+use crate::symbolic::operations::{Binary, Unary};
 
 /// A fixed sequence of pseudo-random numbers.
 struct Random(u64);
@@ -64,6 +65,18 @@ impl Jet {
                 let slope = 1.0 - x.tanh() * x.tanh();
                 self.chain(x.tanh(), slope, -2.0 * x.tanh() * slope)
             }
+            Unary::Asinh => {
+                let root = (1.0 + x * x).sqrt();
+                self.chain(x.asinh(), 1.0 / root, -x / (root * root * root))
+            }
+            Unary::Acosh => {
+                let root = (x * x - 1.0).sqrt();
+                self.chain(x.acosh(), 1.0 / root, -x / (root * root * root))
+            }
+            Unary::Atanh => {
+                let slope = 1.0 / (1.0 - x * x);
+                self.chain(x.atanh(), slope, 2.0 * x * slope * slope)
+            }
             Unary::Abs => self.chain(x.abs(), if x < 0.0 { -1.0 } else { 1.0 }, 0.0),
             Unary::Sign => Jet(
                 if x > 0.0 {
@@ -86,7 +99,7 @@ impl Jet {
             Binary::Divide => self.times(b.inverse()),
             Binary::Power => b.times(self.unary(Unary::Ln)).unary(Unary::Exp),
             Binary::Atan2 => {
-                // Of (b, a) with b > 0 it is the arc tangent of the quotient; turned by π/2 otherwise.
+                // For (b, a) with b > 0 it is the arc tangent of the quotient; turned by π/2 otherwise.
                 let quotient = self.times(b.inverse()).unary(Unary::Atan);
                 Jet(self.0.atan2(b.0), quotient.1, quotient.2)
             }
@@ -109,34 +122,8 @@ impl Jet {
     }
 }
 
-const UNARY: [Unary; 15] = [
-    Unary::Negate,
-    Unary::Sqrt,
-    Unary::Exp,
-    Unary::Ln,
-    Unary::Sin,
-    Unary::Cos,
-    Unary::Tan,
-    Unary::Asin,
-    Unary::Acos,
-    Unary::Atan,
-    Unary::Sinh,
-    Unary::Cosh,
-    Unary::Tanh,
-    Unary::Abs,
-    Unary::Sign,
-];
-const BINARY: [Binary; 9] = [
-    Binary::Add,
-    Binary::Subtract,
-    Binary::Multiply,
-    Binary::Divide,
-    Binary::Power,
-    Binary::Atan2,
-    Binary::Min,
-    Binary::Max,
-    Binary::Hypot,
-];
+const UNARY: [Unary; Unary::ALL.len()] = Unary::ALL;
+const BINARY: [Binary; Binary::ALL.len()] = Binary::ALL;
 const LEAVES: u32 = 4;
 
 /// A random graph.
@@ -178,7 +165,7 @@ fn random_graph(random: &mut Random, size: usize) -> Sample {
     Sample { graph, nodes, state }
 }
 
-/// Direction (q̇, 0): each coordinate moves by its rate, rates stand still.
+/// Direction (q̇, 0): each coordinate moves by its rate, rates are constant.
 fn along(graph: &mut Graph, leaf: Leaf) -> Option<NodeId> {
     match leaf {
         Leaf::Position(index) => Some(graph.leaf(Leaf::Velocity(index))),

@@ -1,6 +1,8 @@
-//! The graph: equal terms exist once, operands always stand before what uses them.
+//! The graph: equal terms exist once, operands always precede their users.
 
 use std::collections::BTreeMap;
+
+use super::operations::{Binary, Unary};
 
 /// Index into a [`Graph`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -28,9 +30,9 @@ pub enum Leaf {
     Velocity(u32),
     /// Rate of its rate.
     Acceleration(u32),
-    /// Varies beside the coordinates, with a rate of its own.
+    /// Varies in addition to the coordinates, with a rate of its own.
     State(u32),
-    /// What is given from outside together with velocities: multipliers.
+    /// Lagrange multiplier, given from outside together with velocities.
     Multiplier(u32),
     /// Component of any vector that a matrix is applied to.
     Direction(u32),
@@ -38,7 +40,7 @@ pub enum Leaf {
     Given(u32, u32),
 }
 
-/// When a value becomes known; a value is computed once, in its stage.
+/// Stage in which a value becomes known; a value is computed once, in its stage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Stage {
     Constant,
@@ -70,40 +72,6 @@ pub enum Node {
         order: u8,
         argument: NodeId,
     },
-}
-
-/// Functions of one argument.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Unary {
-    Negate,
-    Sqrt,
-    Exp,
-    Ln,
-    Sin,
-    Cos,
-    Tan,
-    Asin,
-    Acos,
-    Atan,
-    Sinh,
-    Cosh,
-    Tanh,
-    Abs,
-    Sign,
-}
-
-/// Functions of two arguments.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Binary {
-    Add,
-    Subtract,
-    Multiply,
-    Divide,
-    Power,
-    Atan2,
-    Min,
-    Max,
-    Hypot,
 }
 
 /// The graph.
@@ -172,7 +140,7 @@ impl Graph {
                 Stage::Velocity
             }
             Node::Leaf(Leaf::Acceleration(_) | Leaf::Given(..)) => Stage::Acceleration,
-            // What a function gives is known with the design, not before, even at a number.
+            // The value of a function is known with the design, not before, even at a number.
             Node::Call { argument, .. } => self.stage(argument).max(Stage::Parameter),
             Node::Unary(_, a) => self.stage(a),
             Node::Binary(_, a, b) => self.stage(a).max(self.stage(b)),
@@ -186,7 +154,7 @@ impl Graph {
         id
     }
 
-    /// What `roots` are made of, themselves included, operands first.
+    /// Nodes that `roots` depend on, themselves included, operands first.
     pub fn reachable(&self, roots: impl IntoIterator<Item = NodeId>) -> Vec<NodeId> {
         let mut marked = vec![false; self.nodes.len()];
         let mut waiting: Vec<NodeId> = roots.into_iter().collect();
@@ -225,7 +193,7 @@ pub fn in_order(mut found: Vec<NodeId>, marked: &[bool]) -> Vec<NodeId> {
 }
 
 impl Node {
-    /// The nodes that it is made of.
+    /// Its operands.
     pub fn operands(self) -> impl Iterator<Item = NodeId> {
         let operands = match self {
             Node::Constant(_) | Node::Leaf(_) => [None; 4],

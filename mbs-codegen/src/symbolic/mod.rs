@@ -1,11 +1,13 @@
 //! Hash-consed graph of scalar functions: construction by numbered rules, exact differentiation, evaluation.
 //!
-//! Knows nothing of mechanisms, of syntax or of Rust: leaves are `(kind, index)`.
+//! It does not depend on mechanisms, on syntax or on Rust: leaves are `(kind, index)`.
 
 mod angles;
+mod derivatives;
 pub mod differentiate;
 pub mod evaluate;
 pub mod graph;
+pub mod operations;
 mod powers;
 mod rules;
 pub mod scattered;
@@ -13,7 +15,8 @@ pub mod substitute;
 
 pub use angles::{AngleSum, add_angles};
 pub use differentiate::{tangent, tangents};
-pub use graph::{Binary, Graph, Leaf, Node, NodeId, Stage, Unary};
+pub use graph::{Graph, Leaf, Node, NodeId, Stage};
+pub use operations::{Binary, Unary};
 pub use powers::take_roots;
 
 #[cfg(test)]

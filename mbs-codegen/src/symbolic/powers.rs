@@ -1,6 +1,7 @@
 //! Powers of halves and quarters by roots and products, once all derivatives are there.
 
-use super::graph::{Binary, Graph, Node, NodeId, Unary};
+use super::graph::{Graph, Node, NodeId};
+use super::operations::{Binary, Unary};
 use super::rules::LARGEST_POWER;
 use super::substitute::{Images, replace_by};
 

@@ -44,7 +44,7 @@ fn fractional_powers_take_roots() {
             for (known, found) in values(&before).into_iter().zip(values(&after)) {
                 // Two roots, and at most eight products: the rounding of each.
                 let close = ((known - found) / known).abs() <= 16.0 * f64::EPSILON;
-                // Of −0 the sign of the power, and of its reciprocal, is lost.
+                // The sign of the power of −0, and of its reciprocal, is lost.
                 let turned = a == 0.0 && a.is_sign_negative() && known == -found;
                 let tiny = known.abs() < f64::MIN_POSITIVE && found.abs() < f64::MIN_POSITIVE;
                 let same = known == found || turned || tiny || known.is_nan() && found.is_nan();

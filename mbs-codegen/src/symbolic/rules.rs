@@ -22,8 +22,8 @@
 //! | 14 `doubled_terms_add_first` | `(x + x) ± (y + y) → (x ± y) + (x ± y)` | nothing but an overflow on the way |
 //! | 15 `fractional_powers_take_roots` | `x^(n + ½) → x^n·√x`, `x^(n + ¼) → x^n·√√x`, `x^(n + ¾) → x^n·(√x·√√x)`, `x^−p → 1/x^p` for n up to 16, once all derivatives are there | the roundings of two roots and n products; the sign at −0; digits of results below the normal range; a power of −∞ |
 
-use super::evaluate;
-use super::graph::{Binary, Graph, Node, NodeId, Stage, Unary};
+use super::graph::{Graph, Node, NodeId, Stage};
+use super::operations::{Binary, Parity, Unary};
 
 /// Largest exponent that is multiplied out.
 pub(super) const LARGEST_POWER: i32 = 16;
@@ -148,7 +148,7 @@ impl Graph {
 
     /// `a / b`
     pub fn divide(&mut self, a: NodeId, b: NodeId) -> NodeId {
-        // Of differences it saves nothing here, and might turn an infinite quotient.
+        // Reversed differences would save no operation here, and might turn an infinite quotient.
         let (a, b, negative) = self.take_signs(a, b, Self::negated);
         let quotient = self.divide_positive(a, b);
         if negative { self.negate(quotient) } else { quotient }
@@ -174,17 +174,14 @@ impl Graph {
             return self.negate(x);
         }
         if let Some(value) = self.constant_value(x) {
-            let folded = evaluate::unary(function, value);
+            let folded = (function.entry().value)(value);
             if folded.is_finite() {
                 return self.constant(folded);
             }
         }
-        match (function, self.opposite(x)) {
-            (Unary::Cos | Unary::Cosh | Unary::Abs, Some(inner)) => self.intern(Node::Unary(function, inner)),
-            (
-                Unary::Sin | Unary::Tan | Unary::Asin | Unary::Atan | Unary::Sinh | Unary::Tanh,
-                Some(inner),
-            ) => {
+        match (function.entry().parity, self.opposite(x)) {
+            (Parity::Even, Some(inner)) => self.intern(Node::Unary(function, inner)),
+            (Parity::Odd, Some(inner)) => {
                 let odd = self.intern(Node::Unary(function, inner));
                 self.negate(odd)
             }
@@ -262,7 +259,7 @@ impl Graph {
     }
 
     fn fold_binary(&mut self, function: Binary, a: NodeId, b: NodeId) -> Option<NodeId> {
-        let value = evaluate::binary(function, self.constant_value(a)?, self.constant_value(b)?);
+        let value = (function.entry().value)(self.constant_value(a)?, self.constant_value(b)?);
         value.is_finite().then(|| self.constant(value))
     }
 
@@ -300,7 +297,7 @@ impl Graph {
         (x != y && (halved(x).is_none() || halved(y).is_none())).then_some((x, y))
     }
 
-    /// Both operands without their signs, and whether what is made of them is negative.
+    /// Both operands without their signs, and `true` if the product or quotient of them is negative.
     fn take_signs(
         &mut self,
         a: NodeId,
@@ -312,7 +309,7 @@ impl Graph {
     }
 }
 
-/// Whether 1/x is exact and x·(1/x) is 1.
+/// `true` if 1/x is exact and x·(1/x) is 1.
 fn is_power_of_two(x: f64) -> bool {
     const MANTISSA: u64 = (1 << 52) - 1;
     x.is_normal() && x.to_bits() & MANTISSA == 0 && (1.0 / x).is_normal()

@@ -28,7 +28,7 @@ fn leaves(g: &mut Graph) -> [NodeId; 3] {
     [0, 1, 2].map(|index| g.leaf(Leaf::Position(index)))
 }
 
-/// Checks that the graph's own construction computes what `meaning` says on all pairs of samples.
+/// Checks that the graph's own construction computes the value of `meaning` on all pairs of samples.
 fn check(
     build: impl Fn(&mut Graph, NodeId, NodeId) -> NodeId,
     meaning: impl Fn(f64, f64) -> f64,
@@ -69,7 +69,7 @@ fn constants_fold() {
                     continue; // rule 9 says what it loses
                 }
                 let node = g.binary(function, x, y);
-                let expected = evaluate::binary(function, a, b);
+                let expected = (function.entry().value)(a, b);
                 let folded = g.constant_value(node);
                 assert!(
                     !expected.is_finite() || folded.is_some_and(|value| equal(value, expected)),
@@ -318,7 +318,7 @@ fn odd_and_even_functions_take_signs_out() {
                 let n = g.negate(x);
                 g.unary(function, n)
             },
-            |a, _| evaluate::unary(function, -a),
+            |a, _| (function.entry().value)(-a),
             identical,
         );
         let inner = match g.node(root) {
@@ -366,7 +366,7 @@ fn division_by_two_powers_multiplies() {
 fn reversed_differences_are_negations() {
     type Build = fn(&mut Graph, NodeId, NodeId) -> NodeId;
     type Meaning = fn(f64, f64) -> f64;
-    // What is made of a difference, then of the reversed one: one value up to sign, and no operation more than that.
+    // Functions of a difference, then of the reversed one: one value up to sign, and no additional operation.
     let made: [(Build, Meaning); 5] = [
         (|g, d, _| g.add(d, d), |d, _| d + d),
         (|g, d, y| g.multiply(d, y), |d, b| d * b),
@@ -411,7 +411,7 @@ fn reversed_differences_are_negations() {
 
 #[test]
 fn doubled_terms_add_first() {
-    // Twice as large still is a number: there the rule loses nothing.
+    // Twice as large is still finite: there the rule loses no digit.
     let finite = |a: f64, b: f64| (a + a).is_finite() && (b + b).is_finite();
     let mut g = Graph::default();
     let [x, y, _] = leaves(&mut g);

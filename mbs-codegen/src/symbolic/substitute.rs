@@ -2,11 +2,11 @@
 
 use super::graph::{Graph, Leaf, Node, NodeId};
 
-/// What became of the nodes below the roots of a replacement.
+/// Images of the nodes below the roots of a replacement.
 pub struct Images(Vec<Option<NodeId>>);
 
 impl Images {
-    /// What stands for the node now: itself, where nothing below it was replaced.
+    /// Image of a node: itself, where nothing below it was replaced.
     pub fn of(&self, id: NodeId) -> NodeId {
         self.0.get(id.index()).copied().flatten().unwrap_or(id)
     }
@@ -21,8 +21,8 @@ pub fn substitute(graph: &mut Graph, root: NodeId, replacement: impl Fn(Leaf) ->
     images.of(root)
 }
 
-/// Before: roots of a graph. After: below them every node for which `replacement` gives another is replaced by it, and what
-/// uses it is built anew.
+/// Before: roots of a graph. After: below them every node for which `replacement` gives another is replaced by it, and its
+/// users are built anew.
 pub fn replace(
     graph: &mut Graph,
     roots: &[NodeId],
@@ -39,7 +39,7 @@ pub fn replace(
     images
 }
 
-/// [`replace`], with what is built of the images of a node's operands in the place of the node.
+/// [`replace`], where `build` gets each node with the images of its operands.
 pub fn replace_by(
     graph: &mut Graph,
     roots: &[NodeId],

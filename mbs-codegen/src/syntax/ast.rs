@@ -2,7 +2,9 @@
 
 use proc_macro2::Span;
 
-/// A name and where it stands.
+use super::picture::Picture;
+
+/// A name and its token.
 #[derive(Clone, Debug)]
 pub struct Name {
     /// Without the `r#` of a raw identifier.
@@ -11,21 +13,21 @@ pub struct Name {
     pub span: Span,
 }
 
-/// One instruction of an expression in postfix order: operands stand before their operator.
+/// One instruction of an expression in postfix order: operands precede their operator.
 #[derive(Clone, Debug)]
 pub struct Instruction {
-    /// What to do with the values on the stack.
+    /// Operation on the values of the stack.
     pub operation: Operation,
     /// The token that it comes from.
     pub span: Span,
 }
 
-/// What an [`Instruction`] does to the stack of values.
+/// Effect of an [`Instruction`] on the stack of values.
 #[derive(Clone, Debug)]
 pub enum Operation {
-    /// Pushes a number, in the unit joined to it (`4mm`) or in brackets behind it (`4 [kg*m^2]`).
+    /// Pushes a number, in the unit joined to it (`4mm`) or in brackets after it (`4 [kg*m^2]`).
     Number { value: f64, unit: Option<Unit>, integer: bool },
-    /// Pushes what the name stands for.
+    /// Pushes the value of a name.
     Name(String),
     /// Negates one value.
     Negate,
@@ -49,7 +51,7 @@ pub enum Operation {
 #[derive(Clone, Debug)]
 pub struct Target {
     pub name: Name,
-    /// Whether a count in brackets follows it.
+    /// `true` if a count in brackets follows it.
     pub indexed: bool,
 }
 
@@ -71,7 +73,7 @@ pub struct Expression {
 }
 
 impl Expression {
-    /// Whether it is a number as written.
+    /// `true` if it is a number as written.
     pub fn is_literal(&self) -> bool {
         matches!(self.code.as_slice(), [Instruction { operation: Operation::Number { .. }, .. }])
     }
@@ -97,7 +99,7 @@ pub struct Type {
     pub shape: Vec<Expression>,
 }
 
-/// What a declared function takes and gives, and how smooth it is.
+/// Units, continuity and period of a declared function.
 #[derive(Clone, Debug)]
 pub struct Signature {
     /// Unit of the value.
@@ -119,7 +121,7 @@ pub struct Equation {
     pub span: Span,
 }
 
-/// What stands in the braces of a constraint, loops flattened to begin and end.
+/// Item in the braces of a constraint, loops flattened to begin and end.
 #[derive(Clone, Debug)]
 pub enum Item {
     Equation(Equation),
@@ -140,7 +142,7 @@ pub struct Loop {
 pub struct Statement {
     /// Lines of the doc comment.
     pub docs: Vec<String>,
-    /// What it declares.
+    /// Its declaration.
     pub kind: StatementKind,
 }
 
@@ -178,9 +180,9 @@ pub enum StatementKind {
     },
     Constraint {
         name: Name,
-        /// Whether rows may follow from others.
+        /// `true` if rows may follow from others.
         redundant: bool,
-        /// How far such rows may contradict each other.
+        /// Largest contradiction allowed between such rows.
         within: Option<Expression>,
         items: Vec<Item>,
     },
@@ -208,7 +210,7 @@ pub enum StatementKind {
         kind: Type,
         value: Expression,
     },
-    /// A body, or what acts between two places, by its fields.
+    /// A body, or an element between two places, by its fields.
     Element {
         kind: Element,
         name: Name,
@@ -229,7 +231,7 @@ pub enum StatementKind {
         /// The body that a force acts on.
         of: Option<Joined>,
     },
-    /// What adds to the energies or dissipates them.
+    /// A part of the energies or of the dissipation.
     Energy {
         kind: Energy,
         name: Name,
@@ -254,17 +256,25 @@ pub enum StatementKind {
     },
     For(Loop),
     EndFor,
-    /// Of the top level alone.
+    /// At the top level alone.
     Effect {
         name: Name,
     },
     EndEffect,
-    /// Of the top level alone.
+    /// At the top level alone.
     Scene {
         name: Name,
         effects: Vec<Name>,
+        /// `true` where braces with statements of its picture follow.
+        open: bool,
     },
-    /// Reported; what it declares is kept, so that its uses are not reported too.
+    EndScene,
+    /// A description for the viewer; `span` is its first word.
+    Picture {
+        picture: Picture,
+        span: Span,
+    },
+    /// Reported; its name is kept, so that its uses are not reported too.
     Faulty {
         name: Name,
         declares: Declares,
@@ -285,11 +295,11 @@ pub struct Field {
 #[derive(Clone, Debug)]
 pub struct Joined {
     pub name: Name,
-    /// Which one of those that a loop declares.
+    /// Index of one of those that a loop declares.
     pub index: Option<Expression>,
 }
 
-/// What is declared by fields.
+/// Element that is declared by fields.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Element {
     Body,
@@ -304,14 +314,14 @@ pub enum Element {
     Contact,
 }
 
-/// What acts along a displacement.
+/// Load along a displacement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Load {
     Force,
     Torque,
 }
 
-/// What an energy statement adds.
+/// Kind of an energy statement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Energy {
     Potential,
@@ -320,7 +330,7 @@ pub enum Energy {
     Dissipation,
 }
 
-/// What a statement declares.
+/// Kind of name that a statement declares.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Declares {
     Param,
@@ -329,7 +339,7 @@ pub enum Declares {
     },
     Coord,
     Function,
-    /// What is no field: constants, `let`s, declarations of later versions.
+    /// Names without a field: constants, `let`s, declarations of later versions.
     Value,
 }
 
@@ -372,6 +382,8 @@ impl StatementKind {
             | StatementKind::Effect { .. }
             | StatementKind::EndEffect
             | StatementKind::Scene { .. }
+            | StatementKind::EndScene
+            | StatementKind::Picture { .. }
             | StatementKind::Faulty { .. } => Vec::new(),
         }
     }

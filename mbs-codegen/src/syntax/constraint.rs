@@ -70,12 +70,12 @@ fn width(parser: &mut Parser<'_>, redundant: bool) -> Read<Option<Expression>> {
     expression(parser).map(Some)
 }
 
-/// Whether a statement stands here: a word and behind it a name, as in no equation.
+/// `true` if a statement begins here: a word followed by a name, as in no equation.
 fn misplaced(parser: &Parser<'_>) -> bool {
     at_statement(parser) && matches!(parser.peek_at(1), Kind::Identifier(_))
 }
 
-/// Reports a statement in a constraint; what it declares is known as faulty.
+/// Reports a statement in a constraint; its name is known as faulty.
 fn misplaced_statement(parser: &mut Parser<'_>) -> Read<Item> {
     let span = parser.span();
     let word = parser.name(CONSTRAINT)?.text;
@@ -93,7 +93,7 @@ fn misplaced_statement(parser: &mut Parser<'_>) -> Read<Item> {
     parser.declare(declares, CONSTRAINT, |_, _| Err(GivenUp)).map(|(_, never)| never)
 }
 
-/// Goes behind the `;` of an equation that was given up; false where the constraint ends before one.
+/// Skips to the token after the `;` of an equation that was given up; `false` where the constraint ends before one.
 fn behind_equation(parser: &mut Parser<'_>) -> bool {
     loop {
         match parser.peek() {

@@ -86,7 +86,7 @@ fn joined(parser: &mut Parser<'_>, help: &str) -> Read<Joined> {
     Ok(Joined { name, index })
 }
 
-/// `of rod`, where it stands behind a point.
+/// Reads `of rod`, where it follows a point.
 fn of_body(parser: &mut Parser<'_>, help: &str) -> Read<Option<Joined>> {
     if parser.take_word("of") { joined(parser, help).map(Some) } else { Ok(None) }
 }

@@ -7,7 +7,7 @@ use super::parser::{GivenUp, Parser, Read};
 use super::tokens::Kind;
 use super::unit::{unit_behind_a_space, unit_of_number};
 
-/// What waits for its right operand or its closing bracket.
+/// Operator or bracket that waits for its right operand or its closing bracket.
 enum Pending {
     Negate(Span),
     Binary(Operator, Span),
@@ -44,7 +44,7 @@ pub fn expression(parser: &mut Parser<'_>) -> Read<Expression> {
 /// Functions of rows, drives, pins and bodies.
 pub const REFERRING: [&str; 3] = ["lambda", "effort", "reaction"];
 
-/// `references`: whether [`REFERRING`] functions are read as such; not in their own indices, so that nothing nests.
+/// `references`: `true` if [`REFERRING`] functions are read as such; not in their own indices, so that they do not nest.
 fn read(parser: &mut Parser<'_>, references: bool) -> Read<Expression> {
     let mut reader = Reader { code: Vec::new(), pending: Vec::new(), references };
     let mut operand = true;
@@ -70,7 +70,7 @@ impl Reader {
         self.code.push(Instruction { operation, span });
     }
 
-    /// Reads where an operand must stand; returns whether an operand must stand next.
+    /// Reads where an operand is expected; returns `true` if an operand must come next.
     fn operand(&mut self, parser: &mut Parser<'_>) -> Read<bool> {
         let span = parser.span();
         match parser.peek() {
@@ -129,7 +129,7 @@ impl Reader {
         }
     }
 
-    /// What stands in the parentheses of `lambda(row)` and its like: names, each with at most one count.
+    /// Reads the parentheses of `lambda(row)` and its like: names, each with at most one count.
     fn reference(&mut self, parser: &mut Parser<'_>, function: &str, span: Span) -> Read<()> {
         let help = match function {
             "lambda" => "write `lambda(closure[0])`, a row of a constraint",
@@ -164,8 +164,8 @@ impl Reader {
         Ok(())
     }
 
-    /// Reads where an operator or the end may stand; returns whether an operand must stand next, or `None` at
-    /// the end of the expression.
+    /// Reads where an operator or the end is expected; returns whether an operand must come next, or `None` at the
+    /// end of the expression.
     fn behind_operand(&mut self, parser: &mut Parser<'_>) -> Read<Option<bool>> {
         let span = parser.span();
         if let Kind::Punctuation(character, _) = parser.peek() {
@@ -207,7 +207,7 @@ impl Reader {
         }
     }
 
-    /// `.2` behind a vector.
+    /// Reads `.2` after a vector.
     fn component(&mut self, parser: &mut Parser<'_>) -> Read<Option<bool>> {
         let span = parser.span();
         parser.skip(1);
@@ -228,7 +228,7 @@ impl Reader {
         parser.expected("the number of a component", "write `p.0` or `p[0]`; of a matrix `m[0, 1]`")
     }
 
-    /// `d1(…)` behind a function's name and its dot.
+    /// Reads `d1(…)` after a function's name and its dot.
     fn derivative(&mut self, parser: &mut Parser<'_>, word: &str) -> Read<Option<bool>> {
         let order = match word {
             "d1" => 1,
@@ -247,7 +247,7 @@ impl Reader {
         Ok(Some(self.call(parser, function, order, span)))
     }
 
-    /// What stands behind the opening parenthesis of a call; returns whether an operand must stand next.
+    /// Reads on after the opening parenthesis of a call; `true` if an operand must come next.
     fn call(&mut self, parser: &mut Parser<'_>, function: String, order: u8, span: Span) -> bool {
         if parser.take(')') {
             self.push(Operation::Call { function, order, arguments: 0 }, span);
@@ -257,7 +257,7 @@ impl Reader {
         true
     }
 
-    /// What closes a bracket or separates the parts of a `sum`, or ends the expression.
+    /// Reads the token that closes a bracket, separates the parts of a `sum`, or ends the expression.
     fn bracket(&mut self, parser: &mut Parser<'_>) -> Read<Option<bool>> {
         self.reduce(0, true);
         let close = matches!(parser.peek(), Kind::Close(_));
@@ -430,7 +430,7 @@ fn number(literal: &str, span: Span) -> Option<Operation> {
     Some(Operation::Number { value, unit, integer })
 }
 
-/// What is wrong with a number that no `f64` comes near.
+/// Fault of a number that no `f64` approximates.
 fn range_fault(literal: &str, value: f64) -> Option<&'static str> {
     let mut digits = literal.bytes().take_while(|byte| byte.is_ascii_digit() || matches!(byte, b'.' | b'_'));
     if value.is_infinite() {

@@ -8,7 +8,7 @@ use syn::{Attribute, Token, Visibility};
 use super::keywords::{UNUSABLE, identifier};
 use crate::diagnostics::Diagnostics;
 
-/// What stands in front of the statements.
+/// Head of a text, before its statements.
 pub struct Header {
     /// Path of the runtime crate, as the wrapper macro passes it on.
     pub runtime: TokenStream,
@@ -26,7 +26,7 @@ impl Header {
         self.name.unraw().to_string()
     }
 
-    /// Why no type can have the name, if none can.
+    /// Reason why no type can have the name, if there is one.
     pub fn name_fault(&self) -> Option<String> {
         let name = self.label();
         if UNUSABLE.contains(&name.as_str()) {
@@ -43,11 +43,11 @@ impl Header {
 
 /// Name of the emitted code's type parameter.
 const SCALAR: &str = "T";
-/// What names begin with that emitted code makes.
+/// Prefix of the names that emitted code defines.
 pub const OWN: &str = "__";
 
-/// Before: the whole input. After: the runtime's path, which leads in parentheses (without it `::mbs_runtime`), the
-/// tokens up to the first `;`, which the header is read from, and the tokens behind it.
+/// Before: the whole input. After: the runtime's path in parentheses at its begin (without it `::mbs_runtime`); the
+/// tokens up to the first `;`, which the header is read from; the tokens after it.
 pub fn split(input: TokenStream) -> (TokenStream, TokenStream, TokenStream) {
     let mut tokens = input.into_iter().peekable();
     let runtime = match tokens.peek() {
@@ -92,7 +92,7 @@ pub fn read(
     found
 }
 
-/// The header, the tokens that do not belong to it, and what is wrong where its `;` should stand.
+/// The header, the tokens that do not belong to it, and the fault where its `;` is missing.
 fn header(
     input: ParseStream<'_>,
     runtime: TokenStream,
@@ -108,7 +108,7 @@ fn header(
     let name = identifier(&name.unraw().to_string(), name.span());
     let end: syn::Result<Token![;]> = input.parse();
     let rest: TokenStream = input.parse()?;
-    // Behind the name a statement may stand, its `;` forgotten, or something that means nothing.
+    // After the name a statement may follow, its `;` forgotten, or tokens without meaning.
     let is_statement = matches!(rest.clone().into_iter().next(), Some(TokenTree::Ident(_)));
     let rest = if is_statement { rest } else { TokenStream::new() };
     Ok((Header { runtime, attributes, visibility, name }, rest, end.err()))

@@ -5,7 +5,7 @@ use proc_macro2::{Ident, Span};
 /// Words that cannot name anything, not even as raw identifiers.
 pub const UNUSABLE: [&str; 5] = ["self", "Self", "super", "crate", "_"];
 
-/// Whether some edition keeps the word for itself; `syn` does not know those of 2024 yet.
+/// `true` if some edition keeps the word for itself; `syn` does not know those of 2024 yet.
 pub fn is_keyword(name: &str) -> bool {
     name == "gen" || syn::parse_str::<Ident>(name).is_err()
 }

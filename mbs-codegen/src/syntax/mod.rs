@@ -1,4 +1,4 @@
-//! Tokens → [`ast`], spans kept, error-tolerant, iterative wherever a text can nest.
+//! Tokens → [`ast`], spans kept, error-tolerant, iterative for all nested texts.
 
 pub mod ast;
 mod constraint;
@@ -7,6 +7,7 @@ mod expression;
 mod header;
 pub mod keywords;
 mod parser;
+pub mod picture;
 mod scene;
 mod source;
 mod statement;
@@ -25,10 +26,12 @@ pub use statement::{LATER, STATEMENTS};
 
 /// A text as written.
 pub struct Text {
-    /// What stands before the statements.
+    /// Head of the text, before its statements.
     pub header: Header,
-    /// The statements that could be read.
+    /// The statements that could be read, without those of the picture: code is emitted for them.
     pub statements: Vec<ast::Statement>,
+    /// All statements, where some are of the picture; else none.
+    pub pictured: Vec<ast::Statement>,
     /// The whole text as the user laid it out.
     pub source: String,
 }
@@ -49,6 +52,7 @@ pub fn read(input: TokenStream, diagnostics: &mut Diagnostics) -> Option<Text> {
     }
     let body = tokens::flatten(rest.into_iter().chain(body).collect(), diagnostics);
     let mut statements = parse(&body, diagnostics);
+    let pictured = picture::take(&mut statements);
     if !statements.iter().any(declares_coordinate) {
         if diagnostics.is_empty() {
             diagnostics.report(
@@ -61,10 +65,10 @@ pub fn read(input: TokenStream, diagnostics: &mut Diagnostics) -> Option<Text> {
     }
     all.pop();
     all.extend(body);
-    Some(Text { header, statements, source: source::layout(&all) })
+    Some(Text { header, statements, pictured, source: source::layout(&all) })
 }
 
-/// Whether the statement declares a coordinate, were it faulty.
+/// `true` if the statement declares a coordinate, even a faulty one.
 pub fn declares_coordinate(statement: &ast::Statement) -> bool {
     matches!(
         statement.kind,
@@ -72,7 +76,7 @@ pub fn declares_coordinate(statement: &ast::Statement) -> bool {
     )
 }
 
-/// Whether the statement declares a scene.
+/// `true` if the statement declares a scene.
 pub fn declares_scene(statement: &ast::Statement) -> bool {
     matches!(statement.kind, ast::StatementKind::Scene { .. })
 }

@@ -6,7 +6,7 @@ use super::ast::{Declares, Name, StatementKind, Type};
 use super::tokens::{Kind, Token};
 use crate::diagnostics::Diagnostics;
 
-/// A fault was reported; the statement is given up and reading goes on behind it.
+/// A fault was reported; the statement is given up and reading continues after it.
 #[derive(Debug)]
 pub struct GivenUp;
 
@@ -17,9 +17,9 @@ pub type Read<T> = Result<T, GivenUp>;
 pub struct Parser<'a> {
     tokens: &'a [Token],
     next: usize,
-    /// Where faults go.
+    /// Receiver of faults.
     pub diagnostics: &'a mut Diagnostics,
-    /// Declarations and scenes that were given up behind their name.
+    /// Declarations and scenes that were given up after their name.
     pub faulty: Vec<StatementKind>,
 }
 
@@ -52,7 +52,7 @@ impl<'a> Parser<'a> {
         self.tokens.get(self.next..).unwrap_or(&[])
     }
 
-    /// Goes on by `count` tokens.
+    /// Advances by `count` tokens.
     pub fn skip(&mut self, count: usize) {
         self.next = (self.next + count).min(self.tokens.len().saturating_sub(1));
     }
@@ -66,7 +66,7 @@ impl<'a> Parser<'a> {
         found
     }
 
-    /// Whether the next two tokens are this pair of punctuation.
+    /// `true` if the next two tokens are this pair of punctuation.
     pub fn at_pair(&self, first: char, second: char) -> bool {
         matches!(self.peek(), Kind::Punctuation(c, true) if *c == first)
             && matches!(self.peek_at(1), Kind::Punctuation(c, _) if *c == second)
@@ -81,7 +81,7 @@ impl<'a> Parser<'a> {
         found
     }
 
-    /// Whether the next token is this word.
+    /// `true` if the next token is this word.
     pub fn at_word(&self, word: &str) -> bool {
         matches!(self.peek(), Kind::Identifier(text) if text == word)
     }
@@ -111,7 +111,7 @@ impl<'a> Parser<'a> {
         }
     }
 
-    /// Keeps what a declaration declares where `read` gives it up behind its name.
+    /// Keeps the name of a declaration that `read` gives up after it.
     pub fn declare<T>(
         &mut self,
         declares: Declares,
@@ -129,7 +129,7 @@ impl<'a> Parser<'a> {
         }
     }
 
-    /// Goes behind the bracket that closes the one just before the cursor, or to the end.
+    /// Skips to the token after the bracket that closes the one just before the cursor, or to the end.
     pub fn skip_group(&mut self) {
         let mut depth = 1;
         while depth > 0 && *self.peek() != Kind::End {

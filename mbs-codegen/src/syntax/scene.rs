@@ -1,4 +1,4 @@
-//! Effects and scenes, and what stands open around a statement.
+//! Effects and scenes, and the braces that are open around a statement.
 
 use proc_macro2::Span;
 
@@ -12,7 +12,7 @@ use crate::diagnostics::Diagnostics;
 pub const NAMELESS: &str = "_";
 
 const EFFECT: &str = "write `effect guide_friction { … }`";
-/// What stands behind `effect`, the brace that opens its body included.
+/// Reads an effect after its keyword, the brace that opens its body included.
 pub fn read_effect(parser: &mut Parser<'_>) -> Read<StatementKind> {
     let span = parser.span();
     let name = match parser.name(EFFECT) {
@@ -26,29 +26,36 @@ pub fn read_effect(parser: &mut Parser<'_>) -> Read<StatementKind> {
 }
 
 const SCENE: &str = "write `scene Loaded = weight + guide_friction;`";
-/// What stands behind `scene`.
+/// Statements in the braces of a scene.
+const OF_SCENE: &str =
+    "move it into an effect that the scene selects; here stand title, about, preset, span, draw and trace";
+/// Reads a scene after its keyword.
 pub fn read_scene(parser: &mut Parser<'_>) -> Read<StatementKind> {
     let name = parser.name(SCENE)?;
     let mut effects = Vec::new();
     match read_effects(parser, &mut effects) {
-        Ok(()) => Ok(StatementKind::Scene { name, effects }),
+        Ok(open) => Ok(StatementKind::Scene { name, effects, open }),
         Err(GivenUp) => {
-            parser.faulty.push(StatementKind::Scene { name, effects });
+            parser.faulty.push(StatementKind::Scene { name, effects, open: false });
             Err(GivenUp)
         }
     }
 }
 
-fn read_effects(parser: &mut Parser<'_>, effects: &mut Vec<Name>) -> Read<()> {
+/// Reads the effects after the `=`; returns `true` if braces follow, which are then open.
+fn read_effects(parser: &mut Parser<'_>, effects: &mut Vec<Name>) -> Read<bool> {
     parser.expect('=', SCENE)?;
     effects.push(parser.name(SCENE)?);
     while parser.take('+') {
         effects.push(parser.name(SCENE)?);
     }
-    end(parser, SCENE)
+    if parser.take('{') {
+        return Ok(true);
+    }
+    end(parser, SCENE).map(|()| false)
 }
 
-/// The braces of loops and effects that stand open.
+/// The open braces of loops, effects and scenes.
 #[derive(Default)]
 pub struct Open {
     braces: Vec<Brace>,
@@ -58,12 +65,13 @@ pub struct Open {
 enum Brace {
     Loop,
     Effect,
-    /// Of an effect where none may stand: reported, its statements belong to what is around it.
+    Scene,
+    /// Those of an effect or scene that is not allowed there: reported, its statements belong to the braces around it.
     Misplaced,
 }
 
 impl Open {
-    /// Whether a `}` closes something.
+    /// `true` if a `}` closes something.
     pub fn is_any(&self) -> bool {
         !self.braces.is_empty()
     }
@@ -73,25 +81,33 @@ impl Open {
         match self.braces.pop()? {
             Brace::Loop => Some(StatementKind::EndFor),
             Brace::Effect => Some(StatementKind::EndEffect),
+            Brace::Scene => Some(StatementKind::EndScene),
             Brace::Misplaced => None,
         }
     }
 
-    /// Before: a statement that begins at `span`. After: it, its brace noted; `None` where it may not stand here,
-    /// which is reported.
+    /// Before: a statement that begins at `span`. After: it, its brace noted; `None` where it is not allowed, which is reported.
     pub fn enter(
         &mut self,
         kind: StatementKind,
         span: Span,
         diagnostics: &mut Diagnostics,
     ) -> Option<StatementKind> {
+        if !self.may_stand(&kind) {
+            self.braces.extend(
+                matches!(kind, StatementKind::Effect { .. } | StatementKind::Scene { open: true, .. })
+                    .then_some(Brace::Misplaced),
+            );
+            diagnostics.report(span, "this cannot stand in a scene", OF_SCENE);
+            return None;
+        }
         let (word, brace) = match kind {
             StatementKind::For(_) => {
                 self.braces.push(Brace::Loop);
                 return Some(kind);
             }
             StatementKind::Effect { .. } => ("effect", Some(Brace::Effect)),
-            StatementKind::Scene { .. } => ("scene", None),
+            StatementKind::Scene { open, .. } => ("scene", open.then_some(Brace::Scene)),
             _ => return Some(kind),
         };
         let around = if self.braces.contains(&Brace::Effect) {
@@ -109,5 +125,15 @@ impl Open {
             format!("move the {word} out of the braces; a scene adds effects: `scene Both = one + other;`"),
         );
         None
+    }
+
+    /// `true` if a statement is allowed within the open braces: in those of a scene its picture alone.
+    fn may_stand(&self, kind: &StatementKind) -> bool {
+        !self.braces.contains(&Brace::Scene)
+            || match kind {
+                StatementKind::Picture { .. } | StatementKind::For(_) => true,
+                StatementKind::Let { .. } => self.braces.last() == Some(&Brace::Loop),
+                _ => false,
+            }
     }
 }

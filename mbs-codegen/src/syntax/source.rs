@@ -56,7 +56,7 @@ fn needs_space(previous: &Token, token: &Token) -> bool {
     !joint && token.kind != Kind::End && (end.line, end.column) != (start.line, start.column)
 }
 
-/// `/// text` where the tokens are the attribute that the compiler makes of one, and how many tokens that is.
+/// `/// text` where the tokens are the attribute that the compiler replaces it by, and the number of these tokens.
 fn doc_comment(tokens: &[Token]) -> Option<(String, usize)> {
     let text = super::parser::doc_attribute(tokens)?;
     let [mark, bracket, ..] = tokens else { return None };

@@ -1,4 +1,4 @@
-//! Statements: one after the other, going on behind each fault.
+//! Statements: one after the other; reading continues after each fault.
 
 use super::ast::{
     Declares, Expression, Instruction, Loop, Name, Operation, Operator, Signature, Statement, StatementKind,
@@ -8,6 +8,7 @@ use super::constraint::{equation, read_constraint};
 use super::dynamics;
 use super::expression::{closed_range, expression};
 use super::parser::{DOC_ATTRIBUTE, GivenUp, Parser, Read, doc_attribute};
+use super::picture;
 use super::scene::{Open, read_effect, read_scene};
 use super::tokens::{Kind, Token};
 use super::unit::{declared_type, unit};
@@ -49,7 +50,7 @@ pub const STATEMENTS: [&str; 29] = [
 /// Words that begin a statement of the language which this version does not translate.
 pub const LATER: [&str; 2] = ["data", "include"];
 
-/// Before: flat tokens behind the header. After: all statements that could be read, loops and effects flattened and
+/// Before: flat tokens after the header. After: all statements that could be read, loops and effects flattened and
 /// balanced, effects and scenes at the top level alone; every other one is reported.
 pub fn parse(tokens: &[Token], diagnostics: &mut Diagnostics) -> Vec<Statement> {
     let mut parser = Parser::new(tokens, diagnostics);
@@ -98,8 +99,8 @@ fn docs(parser: &mut Parser<'_>) -> Vec<String> {
     lines
 }
 
-/// Goes behind the statement that was given up: out of the brackets that it was read into, past its `;`, or past its
-/// braces, but not past the beginning of the next statement.
+/// Skips the rest of the statement that was given up: out of the brackets that it was read into, past its `;`, or
+/// past its braces, but not past the beginning of the next statement.
 fn resynchronise(parser: &mut Parser<'_>, start: &[Token]) {
     let read = start.get(..start.len().saturating_sub(parser.rest().len())).unwrap_or(&[]);
     let mut open = Vec::new();
@@ -136,11 +137,13 @@ fn resynchronise(parser: &mut Parser<'_>, start: &[Token]) {
     }
 }
 
-/// Whether the next token begins a statement, or ends them.
+/// `true` if the next token begins a statement, or ends them.
 pub fn at_statement(parser: &Parser<'_>) -> bool {
     match parser.peek() {
         Kind::End | Kind::Close('}') => true,
-        Kind::Identifier(word) => STATEMENTS.iter().chain(&LATER).any(|known| known == word),
+        Kind::Identifier(word) => {
+            STATEMENTS.iter().chain(&LATER).any(|known| known == word) || picture::starts(parser)
+        }
         Kind::Punctuation('#', _) => doc_attribute(parser.rest()).is_some(),
         _ => false,
     }
@@ -164,7 +167,7 @@ pub fn end(parser: &mut Parser<'_>, help: &str) -> Read<()> {
 
 fn statement(parser: &mut Parser<'_>) -> Read<StatementKind> {
     let Kind::Identifier(word) = parser.peek() else {
-        return parser.expected("a statement", &format!("begin with one of {}", STATEMENTS.join(", ")));
+        return parser.expected("a statement", &known());
     };
     let span = parser.span();
     if word == "der" && *parser.peek_at(1) == Kind::Open('(') {
@@ -173,6 +176,10 @@ fn statement(parser: &mut Parser<'_>) -> Read<StatementKind> {
     if let Some(read) = reader(word) {
         parser.skip(1);
         return read(parser);
+    }
+    if picture::PICTURES.contains(&word.as_str()) {
+        parser.skip(1);
+        return picture::read(parser, word, span);
     }
     if LATER.contains(&word.as_str()) {
         parser.diagnostics.report(
@@ -193,23 +200,28 @@ fn statement(parser: &mut Parser<'_>) -> Read<StatementKind> {
         parser.skip(1);
         return Err(GivenUp);
     }
-    let meant = nearest(word, STATEMENTS);
+    let meant = nearest(word, STATEMENTS.into_iter().chain(picture::PICTURES));
     let help = match meant {
         Some(known) => format!("did you mean `{known}`?"),
-        None => format!("begin with one of {}", STATEMENTS.join(", ")),
+        None => known(),
     };
     parser.diagnostics.report(span, format!("`{word}` begins no statement"), help);
     parser.skip(1);
     match meant.and_then(reader) {
-        // Read as what was meant, so that what it declares is known.
+        // Read as the intended statement, so that its name is known.
         Some(read) if matches!(parser.peek(), Kind::Identifier(_)) => read(parser),
         _ => Err(GivenUp),
     }
 }
 
+/// Words that a statement may begin with, as a cure.
+fn known() -> String {
+    format!("begin with one of {}, {}", STATEMENTS.join(", "), picture::PICTURES.join(", "))
+}
+
 type Reader = fn(&mut Parser<'_>) -> Read<StatementKind>;
 
-/// What reads the statement that begins with `word`.
+/// Reader of the statement that begins with `word`.
 fn reader(word: &str) -> Option<Reader> {
     Some(match word {
         "const" => read_const,
@@ -428,7 +440,7 @@ fn read_independent(parser: &mut Parser<'_>) -> Read<StatementKind> {
 }
 
 const FOR: &str = "write `for i in 0..3 { … }`";
-/// What stands behind `for`, the brace that opens its body included.
+/// Reads a loop after `for`, the brace that opens its body included.
 pub fn read_loop(parser: &mut Parser<'_>) -> Read<Loop> {
     let variable = parser.name(FOR)?;
     if !parser.take_word("in") {

@@ -17,26 +17,26 @@ const LONGEST_QUOTE: usize = 40;
 pub struct Token {
     pub kind: Kind,
     pub span: Span,
-    /// Whether an identifier was written `r#so`.
+    /// `true` if an identifier was written `r#so`.
     pub raw: bool,
 }
 
-/// What a [`Token`] is.
+/// Kind of a [`Token`].
 #[derive(Clone, Debug, PartialEq)]
 pub enum Kind {
     /// Without the `r#` of a raw identifier.
     Identifier(String),
     Literal(String),
-    /// Whether another punctuation character follows at once.
+    /// `true` if another punctuation character follows at once.
     Punctuation(char, bool),
     Open(char),
     Close(char),
-    /// Behind the last token.
+    /// After the last token.
     End,
 }
 
 impl Token {
-    /// As it would be quoted in a message, which is one line.
+    /// Quotation in a message, which is one line.
     pub fn describe(&self) -> String {
         match &self.kind {
             Kind::Identifier(text) | Kind::Literal(text) => {
@@ -53,11 +53,11 @@ impl Token {
     }
 }
 
-/// Before: any token stream. After: one list, groups as `Open` and `Close`, `End` last; nothing nests deeper than
-/// [`DEEPEST`] and nothing is longer than [`LONGEST`]: what is, is reported and left out.
+/// Before: any token stream. After: one list, groups as `Open` and `Close`, `End` last. Tokens nested deeper than
+/// [`DEEPEST`] or beyond [`LONGEST`] are reported and left out.
 ///
-/// Groups without delimiters are looked through; where one stands beside an operator it is put in parentheses,
-/// because `2*$e` of a `macro_rules!` means twice the whole of `$e`.
+/// Groups without delimiters are dissolved. One next to an operator is put in parentheses, because `2*$e` of a
+/// `macro_rules!` means twice the whole of `$e`.
 pub fn flatten(stream: TokenStream, diagnostics: &mut Diagnostics) -> Vec<Token> {
     let mut tokens: Vec<Token> = Vec::new();
     // Tokens up to the end of the last whole statement.
@@ -87,7 +87,7 @@ pub fn flatten(stream: TokenStream, diagnostics: &mut Diagnostics) -> Vec<Token>
         }
         match tree {
             TokenTree::Group(group) if depth > DEEPEST => {
-                // A zero fits wherever an expression stands, so that nothing else is wrong with it.
+                // A zero fits in place of any expression, so that no further fault follows.
                 tokens.push(Token { kind: Kind::Literal("0".into()), span: group.span_open(), raw: false });
                 if !too_deep {
                     diagnostics.report(
@@ -140,9 +140,9 @@ pub fn flatten(stream: TokenStream, diagnostics: &mut Diagnostics) -> Vec<Token>
     tokens
 }
 
-/// `true` where an operator beside a group without delimiters would take it apart.
+/// `true` if an operator next to a group without delimiters would take it apart.
 ///
-/// `$e^2` with `4m` for `$e` has one reading, where the text `4m^2` has two. The number `-4` may have its unit behind it.
+/// `$e^2` with `4m` for `$e` has one reading, where the text `4m^2` has two. The number `-4` may have its unit after it.
 fn binds(previous: Option<&Token>, group: &Group, next: Option<&TokenTree>) -> bool {
     let content: Vec<TokenTree> = group.stream().into_iter().take(3).collect();
     let (is_literal, is_number, is_one_token) = match content.as_slice() {

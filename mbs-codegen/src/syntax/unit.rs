@@ -16,7 +16,7 @@ pub fn declared_type(parser: &mut Parser<'_>, help: &str) -> Read<Type> {
 
 const LENGTHS: &str = "write all lengths behind one `;`, the outermost first: `[m; 3, 2]` is three points, `p[i, 0]` a component";
 
-/// What stands behind the `[`, the `]` included.
+/// Reads an array type after its `[`, the `]` included.
 fn array_type(parser: &mut Parser<'_>, help: &str) -> Read<Type> {
     if matches!(parser.peek(), Kind::Open('[')) {
         return parser.expected("a unit", LENGTHS);
@@ -38,7 +38,7 @@ const UNIT: &str = "write a unit as `m`, `rad/s`, `N*m` or `kg*m^2`; `1` where t
 
 const UNIT_OF_NUMBER: &str = "brackets behind a number hold its unit, `4 [m^2]` or `30 [rad/s]`; a product needs its operator: `2*[x, y]`";
 
-/// `[unit]` behind a number.
+/// Reads `[unit]` after a number.
 pub fn unit_of_number(parser: &mut Parser<'_>) -> Read<Unit> {
     parser.skip(1);
     let unit = product(parser, UNIT_OF_NUMBER)?;
@@ -46,7 +46,7 @@ pub fn unit_of_number(parser: &mut Parser<'_>) -> Read<Unit> {
     Ok(unit)
 }
 
-/// The unit that begins at the next token, as far as its symbols are known; nothing is taken.
+/// The unit that begins at the next token, as far as its symbols are known; no token is taken.
 pub fn unit_behind_a_space(parser: &Parser<'_>) -> Option<String> {
     let symbol = |ahead: usize| match (parser.peek_at(ahead), parser.peek_at(ahead + 1)) {
         (Kind::Identifier(_), Kind::Open('(')) => None,
@@ -82,7 +82,7 @@ pub fn unit(parser: &mut Parser<'_>) -> Read<Unit> {
 
 fn product(parser: &mut Parser<'_>, help: &str) -> Read<Unit> {
     let mut unit = Unit { factors: Vec::new(), text: String::new(), span: parser.span() };
-    // Of each open parenthesis: where its factors begin, and the sign of its exponents.
+    // Index of the first factor within each open parenthesis, and the sign of its exponents.
     let mut open: Vec<(usize, i32)> = Vec::new();
     let mut sign = 1;
     loop {

@@ -775,10 +775,13 @@ const _: () = {
                     [__q[3], __q[4]],
                     #[inline(always)]
                     |__x| {
-                        if __S::COPIED {
+                        if __S::INLINED_PER_BLOCK {
                             __evaluate(__x)
                         } else {
-                            ::mbs_runtime::mechanism::called(&mut __evaluate, __x)
+                            ::mbs_runtime::__private::call_never_inlined(
+                                &mut __evaluate,
+                                __x,
+                            )
                         }
                     },
                     |__x| {
@@ -809,14 +812,16 @@ const _: () = {
                     },
                 );
             let mut __values = __kept.get();
-            if !__S::COPIED && !::mbs_runtime::mechanism::is_same(&__values.0, &__x) {
-                ::mbs_runtime::mechanism::called(&mut __evaluate, &__x);
+            if !__S::INLINED_PER_BLOCK
+                && !::mbs_runtime::__private::is_same(&__values.0, &__x)
+            {
+                ::mbs_runtime::__private::call_never_inlined(&mut __evaluate, &__x);
                 __values = __kept.get();
             }
             let [__n29, __n30, __n32, __n33, __n36, __n37, __n39, __n40] = __values.1;
             __q[3] = __x[0];
             __q[4] = __x[1];
-            let __outcome = ::mbs_runtime::failure::first_failure::<
+            let __outcome = ::mbs_runtime::__private::first_failure::<
                 T,
             >(__outcome, __block);
             let __n141 = __n32 * T::constant(0.9210609940028851f64);
@@ -918,3 +923,8 @@ const _: () = {
         }
     }
 };
+impl ::mbs_runtime::Reveal for FourBar<::core::primitive::f64> {
+    fn reveal<__V: ::mbs_runtime::Visitor<Self>>(self, __visitor: __V) -> __V::Output {
+        __visitor.kinematic::<5usize, 5usize>(self)
+    }
+}

@@ -1,11 +1,11 @@
 //! Cubic splines along points.
 
-use super::FitError;
-use super::basis::{Knots, combine};
-use super::points::{check_knots, check_points};
-use super::triangle::{Row, Triangle};
+use crate::driver::basis::{Knots, combine};
+use crate::driver::error::FitError;
+use crate::driver::points::{check_knots, check_points};
+use crate::driver::triangle::{Row, Triangle};
 
-/// What a cubic spline obeys at an end.
+/// End condition of a cubic spline.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum End {
     /// Second derivative 0: goes on as a straight line.
@@ -30,7 +30,7 @@ pub type CubicRow = Row<4, 0>;
 
 /// Lays a cubic spline along points by least squares; through them where they are as many as knots.
 ///
-/// For tables whose size is known at run time alone; [`CubicSpline`](super::CubicSpline) has it in its type. `x`, `y`: as many
+/// For tables whose size is known at run time alone; [`CubicSpline`](crate::driver::cubic_spline::CubicSpline) has it in its type. `x`, `y`: as many
 /// points as knots or more, increasing, between the first and the last knot. Fills one piece a knot, Taylor coefficients
 /// from the knot on; the last one is the continuation beyond the last knot.
 /// Source: de Boor 2001, A Practical Guide to Splines, ch. XIV.

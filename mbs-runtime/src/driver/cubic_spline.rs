@@ -1,13 +1,15 @@
 //! Cubic splines of a size that is known to the compiler.
 
-use super::cubic_fit::{CubicRow, End, fit_cubic};
-use super::{FitError, Table};
-use crate::{Function, Scalar};
+use crate::driver::cubic_fit::{CubicRow, End, fit_cubic};
+use crate::driver::error::FitError;
+use crate::driver::table::Table;
+use crate::mechanism::function::Function;
+use crate::scalar::number::Scalar;
 
 /// A cubic spline with `P` knots, twice continuously differentiable everywhere.
 ///
 /// Beyond its ends it goes on with value, slope and curvature: a straight line where the end is natural, a parabola
-/// elsewhere. The error of a clamped spline through points of a smooth function falls with the fourth power of their
+/// elsewhere. Through points of a smooth function the error of a clamped spline falls with the fourth power of their
 /// distance, that of the derivative of order k with the power 4 − k; near a natural end only with the power 2 − k.
 /// Source: de Boor 2001, A Practical Guide to Splines, ch. IV, V, XIV.
 ///
@@ -53,7 +55,7 @@ impl<const P: usize> CubicSpline<P> {
 
     /// Along points that are as many as the knots or more, with the least sum of squares.
     ///
-    /// Takes 80 bytes of stack a knot beside the result.
+    /// Takes 80 bytes of stack a knot in addition to the result.
     ///
     /// # Errors
     /// [`FitError`], with the point or the knot.

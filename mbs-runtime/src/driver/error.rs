@@ -1,9 +1,9 @@
-//! What can be wrong with the data of a driver.
+//! Errors in the data of a driver.
 
 use core::error::Error;
 use core::fmt;
 
-/// Why a motion law was not made.
+/// Errors in the data of a motion law.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum LawError {
@@ -38,7 +38,7 @@ impl fmt::Display for LawError {
 
 impl Error for LawError {}
 
-/// Why no spline was laid through or along points. Points and knots are counted from 0.
+/// Errors in the data of a spline through or along points. Points and knots are counted from 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum FitError {

@@ -1,7 +1,8 @@
 //! Harmonic motion.
 
-use super::SMOOTH;
-use crate::{Function, Scalar};
+use crate::driver::SMOOTH;
+use crate::mechanism::function::Function;
+use crate::scalar::number::Scalar;
 
 /// `a + b sin(c t − d)`.
 ///

@@ -2,8 +2,8 @@
 
 use core::f64::consts::TAU;
 
-use super::piecewise::{distance, each, taylor};
-use crate::{Real, Scalar};
+use crate::driver::piecewise::{distance, each, taylor};
+use crate::scalar::number::{Real, Scalar};
 
 /// A motion law from 0 to 1 with s(u) + s(1 − u) = 1, at rest at both ends.
 ///

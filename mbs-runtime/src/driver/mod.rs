@@ -1,8 +1,8 @@
 //! Driving functions: harmonics, polynomials, motion laws, trapezoidal velocity, splines through tables.
 //!
 //! Each is a [`Function`](crate::Function): value and derivatives at any scalar, lanes and `f32` included. The data are
-//! `f64` numbers that can stand in flash; where an argument lies in a table, `f64` decides, lane by lane, and the distance to
-//! that place is taken without rounding it to a coarser scalar first. An argument that is not finite gives NaN.
+//! `f64` numbers that can be placed in flash. The place of an argument in a table is found in `f64`, lane by lane, and the
+//! distance to that place is not rounded to a coarser scalar first. An argument that is not finite gives NaN.
 //!
 //! | driver | formula | continuous derivatives |
 //! |---|---|---|
@@ -16,24 +16,25 @@
 //! | [`PeriodicQuintic`] | through points or along them | 4 |
 //!
 //! Rows need two derivatives of a `function` (γ has the second). [`Trapezoidal`], whose acceleration jumps, drives a row as an
-//! `input …, rates` that is set before each step from its [`jet`](crate::Function::jet), or stands in outputs.
+//! `input …, rates` that is set before each step from its [`jet`](crate::mechanism::function::Function::jet), or appears in
+//! outputs.
 
-mod basis;
-mod cubic_fit;
-mod cubic_spline;
-mod error;
-mod harmonic;
-mod law;
-mod periodic_quintic;
-mod piecewise;
-mod points;
-mod polynomial;
-mod quintic_fit;
-mod rise;
-mod segments;
-mod table;
-mod trapezoidal;
-mod triangle;
+pub(crate) mod basis;
+pub(crate) mod cubic_fit;
+pub(crate) mod cubic_spline;
+pub(crate) mod error;
+pub(crate) mod harmonic;
+pub(crate) mod law;
+pub(crate) mod periodic_quintic;
+pub(crate) mod piecewise;
+pub(crate) mod points;
+pub(crate) mod polynomial;
+pub(crate) mod quintic_fit;
+pub(crate) mod rise;
+pub(crate) mod segments;
+pub(crate) mod table;
+pub(crate) mod trapezoidal;
+pub(crate) mod triangle;
 
 pub use cubic_fit::{CubicRow, End, fit_cubic};
 pub use cubic_spline::CubicSpline;

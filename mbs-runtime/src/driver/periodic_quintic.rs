@@ -1,12 +1,14 @@
 //! Periodic quintic splines of a size that is known to the compiler.
 
-use super::quintic_fit::{QuinticRow, fit_periodic_quintic};
-use super::{FitError, Table};
-use crate::{Function, Scalar};
+use crate::driver::error::FitError;
+use crate::driver::quintic_fit::{QuinticRow, fit_periodic_quintic};
+use crate::driver::table::Table;
+use crate::mechanism::function::Function;
+use crate::scalar::number::Scalar;
 
 /// A periodic quintic spline with `P` knots, four times continuously differentiable: a measured cam.
 ///
-/// The error of a spline through points of a smooth function falls with the sixth power of their distance, that of the
+/// Through points of a smooth function the error of the spline falls with the sixth power of their distance, that of the
 /// derivative of order k with the power 6 − k. With fewer knots than points it smooths them: rounding and noise grow
 /// with the square of the knots' density in the second derivative.
 /// Source: de Boor 2001, A Practical Guide to Splines, ch. IX, XIV.
@@ -47,7 +49,7 @@ impl<const P: usize> PeriodicQuintic<P> {
 
     /// Along points that are as many as the knots or more, over any number of periods, with the least sum of squares.
     ///
-    /// Takes 144 bytes of stack a knot beside the result.
+    /// Takes 144 bytes of stack a knot in addition to the result.
     ///
     /// # Errors
     /// [`FitError`], with the point or the knot.

@@ -2,7 +2,7 @@
 
 use core::array::from_fn;
 
-use crate::{Real, Scalar};
+use crate::scalar::number::{Real, Scalar};
 
 /// Σ `coefficients[j]` (x − `origin`)ʲ.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,7 +43,7 @@ pub(super) fn each<T: Scalar, X: Copy>(found: &T::Lanes<X>, number: impl Fn(&X) 
 
 /// Value and `K` − 1 derivatives of Σ `coefficients[j]` xʲ; NaN throughout where `x` is not finite.
 ///
-/// Horner's scheme for the value and, beside it, for every derivative over its factorial.
+/// Horner's scheme for the value and, in the same loop, for every derivative over its factorial.
 /// Source: Knuth 1997, The Art of Computer Programming 2, §4.6.4.
 #[inline(always)]
 pub(super) fn taylor<T: Scalar, const C: usize, const K: usize>(coefficients: [T; C], x: T) -> [T; K] {

@@ -1,6 +1,6 @@
-//! What is asked of points and knots before a fit.
+//! Checks of points and knots before a fit.
 
-use super::FitError;
+use crate::driver::error::FitError;
 
 /// Points `x`, `y` that are finite and in order.
 pub(super) fn check_points(x: &[f64], y: &[f64]) -> Result<(), FitError> {

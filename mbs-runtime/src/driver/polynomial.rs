@@ -1,8 +1,9 @@
 //! Polynomials.
 
-use super::SMOOTH;
-use super::piecewise::taylor;
-use crate::{Function, Scalar};
+use crate::driver::SMOOTH;
+use crate::driver::piecewise::taylor;
+use crate::mechanism::function::Function;
+use crate::scalar::number::Scalar;
 
 /// `a₀ + a₁ t + a₂ t² + …`, `C` coefficients, the constant first.
 ///

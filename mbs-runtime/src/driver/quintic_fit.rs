@@ -1,10 +1,10 @@
 //! Periodic quintic splines along points.
 
-use super::FitError;
-use super::basis::{Knots, combine};
-use super::piecewise::turns;
-use super::points::{check_knots, check_points};
-use super::triangle::{Row, Triangle};
+use crate::driver::basis::{Knots, combine};
+use crate::driver::error::FitError;
+use crate::driver::piecewise::turns;
+use crate::driver::points::{check_knots, check_points};
+use crate::driver::triangle::{Row, Triangle};
 
 /// B-splines that do not vanish in an interval; the least number of knots.
 const WIDTH: usize = 6;
@@ -14,7 +14,7 @@ pub type QuinticRow = Row<6, 5>;
 
 /// Lays a periodic quintic spline along points by least squares; through them where they are as many as knots.
 ///
-/// For tables whose size is known at run time alone; [`PeriodicQuintic`](super::PeriodicQuintic) has it in its type. `x`, `y`:
+/// For tables whose size is known at run time alone; [`PeriodicQuintic`](crate::driver::periodic_quintic::PeriodicQuintic) has it in its type. `x`, `y`:
 /// as many points as knots or more, increasing, over as many periods as there are. Fills one piece a knot, Taylor
 /// coefficients from the knot on.
 /// Source: de Boor 2001, A Practical Guide to Splines, ch. XIV; Dierckx 1993, §2.2 (periodic splines).
@@ -66,7 +66,7 @@ pub fn fit_periodic_quintic(
 
 /// The equation of `splines` in an interval, unknowns counted around the period, and the first unknown of its band.
 ///
-/// The last five unknowns stand in the tail.
+/// The last five unknowns are in the tail.
 fn equation(count: usize, interval: usize, splines: [f64; WIDTH], y: f64) -> (usize, QuinticRow) {
     let banded = count.saturating_sub(WIDTH - 1);
     // A band that wraps around begins at the first unknown.

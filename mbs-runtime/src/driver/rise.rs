@@ -2,9 +2,10 @@
 
 use core::marker::PhantomData;
 
-use super::LawError;
-use super::law::{Law, Stretch, jet};
-use crate::{Function, Scalar};
+use crate::driver::error::LawError;
+use crate::driver::law::{Law, Stretch, jet};
+use crate::mechanism::function::Function;
+use crate::scalar::number::Scalar;
 
 /// A motion from one height to another by the law `L`; rest before and after.
 ///

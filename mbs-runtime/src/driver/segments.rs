@@ -2,10 +2,11 @@
 
 use core::marker::PhantomData;
 
-use super::LawError;
-use super::law::{Law, Stretch, jet};
-use super::piecewise::turns;
-use crate::{Function, Scalar};
+use crate::driver::error::LawError;
+use crate::driver::law::{Law, Stretch, jet};
+use crate::driver::piecewise::turns;
+use crate::mechanism::function::Function;
+use crate::scalar::number::Scalar;
 
 /// A part of a cam law that ends at an argument.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,7 +32,7 @@ impl Segment {
 /// A periodic law of `S` segments that all move by the law `L`.
 ///
 /// It closes by construction: the first segment begins at the height that the last one ends at. A rise may be
-/// followed by a return without a dwell between; what is continuous is the same.
+/// followed by a return without a dwell between, with the same continuity.
 ///
 /// ```
 /// use core::f64::consts::{PI, TAU};
@@ -53,7 +54,7 @@ pub struct Segments<L, const S: usize> {
 }
 
 impl<L: Law, const S: usize> Segments<L, S> {
-    /// Segments from `start` on; the period is what they take together.
+    /// Segments from `start` on; the period is their total length.
     ///
     /// # Errors
     /// [`LawError::SegmentNotFinite`], [`LawError::SegmentEmpty`] with the segment's index; [`LawError::NoHeight`].
@@ -81,7 +82,7 @@ impl<L: Law, const S: usize> Segments<L, S> {
         Ok(Segments { start, period: origin - start, stretches, law: PhantomData })
     }
 
-    /// What the segments take together, in the argument's unit.
+    /// Total length of the segments, in the argument's unit.
     pub const fn period(&self) -> f64 {
         self.period
     }

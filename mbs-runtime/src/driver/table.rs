@@ -1,12 +1,13 @@
 //! Tables of polynomials between knots.
 
-use super::piecewise::{Piece, jet};
-use crate::{Function, Scalar};
+use crate::driver::piecewise::{Piece, jet};
+use crate::mechanism::function::Function;
+use crate::scalar::number::Scalar;
 
 /// Polynomials of `C` coefficients between knots, `C` − 2 times continuously differentiable: a spline.
 ///
-/// A view of numbers that stand elsewhere: in flash, in a [`CubicSpline`](super::CubicSpline), on a heap. Piece j is
-/// Σ cᵢ (x − knotⱼ)ⁱ from its knot to the next one. Evenly spaced knots are found at once, others by halving.
+/// A view of numbers stored elsewhere: in flash, in a [`CubicSpline`](crate::driver::cubic_spline::CubicSpline), on a heap. Piece
+/// j is Σ cᵢ (x − knotⱼ)ⁱ from its knot to the next one. Evenly spaced knots are found at once, others by halving.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Table<'a, const C: usize> {
     pub(super) knots: &'a [f64],
@@ -19,8 +20,8 @@ pub struct Table<'a, const C: usize> {
 impl<'a, const C: usize> Table<'a, C> {
     /// As many pieces as knots; the last one holds beyond the last knot.
     ///
-    /// Before the first knot the first piece goes on without its highest power: value, slope and curvature of a cubic
-    /// spline are continued, which is a straight line where it ends naturally and a parabola elsewhere.
+    /// Before the first knot the first piece goes on without its highest power. So value, slope and curvature of a cubic
+    /// spline are continued: a straight line where it ends naturally, a parabola elsewhere.
     pub const fn open(knots: &'a [f64], pieces: &'a [[f64; C]]) -> Self {
         Table { knots, pieces, period: None, rate: rate(knots, None) }
     }

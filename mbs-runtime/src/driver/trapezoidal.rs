@@ -1,8 +1,9 @@
 //! Motion between two rests with bounded speed and acceleration.
 
-use super::LawError;
-use super::piecewise::{Piece, jet};
-use crate::{Function, Scalar};
+use crate::driver::error::LawError;
+use crate::driver::piecewise::{Piece, jet};
+use crate::mechanism::function::Function;
+use crate::scalar::number::Scalar;
 
 /// From 0 to a distance within the least time: constant acceleration, constant speed, constant deceleration.
 ///

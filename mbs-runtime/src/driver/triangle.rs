@@ -1,13 +1,13 @@
 //! Least squares with banded rows: one rotation after the other, never the normal equations.
 
-use super::FitError;
+use crate::driver::error::FitError;
 
-/// Pivots below √ε of the largest leave less than half the digits of what they determine.
+/// Pivots below √ε of the largest leave less than half the digits of their unknowns.
 const LEAST_PIVOT: f64 = 1.0 / 67_108_864.0;
 
 /// A row of a fit's triangular factor: `W` entries from the diagonal on, `E` entries in the last columns.
 ///
-/// Room for a fit, one row a knot. What it holds afterwards is of no use.
+/// Room for a fit, one row a knot. Its content afterwards is of no use.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Row<const W: usize, const E: usize> {
     pub(super) band: [f64; W],
@@ -19,7 +19,7 @@ impl<const W: usize, const E: usize> Row<W, E> {
     /// A row of zeros.
     pub const EMPTY: Self = Row { band: [0.0; W], tail: [0.0; E], right: 0.0 };
 
-    /// The entry on the diagonal; `banded` rows stand before those with a tail alone.
+    /// The entry on the diagonal; `banded` rows precede those with a tail alone.
     fn pivot(&self, index: usize, banded: usize) -> f64 {
         match index.checked_sub(banded) {
             None => first(&self.band),

@@ -1,8 +1,8 @@
-//! Motion from forces: M q̈ + Φ_qᵀ λ = Q with Φ = 0. Forces from motion are in [`mod@inverse`].
+//! Motion from forces: M q̈ + Φ_qᵀ λ = Q with Φ = 0. Forces from motion are in [`inverse()`].
 //!
 //! # Direct dynamics
 //!
-//! A text says what has mass, what pulls and what holds; which coordinates move follows from that.
+//! A text states masses, forces and constraints; the coordinates that move follow from them.
 //!
 //! ```
 //! use mbs_runtime::dynamics::{DormandPrince8, Explicit, Simulation, VelocityTransformation};
@@ -40,8 +40,8 @@
 //! ```
 //!
 //! [`Simulation`] owns the state: [`step`](Simulation::step) for control loops, [`advance_to`](Simulation::advance_to)
-//! with the steps that a tolerance asks for, [`balance`](Simulation::balance) for what went into the energy and how
-//! far the rows are violated, [`counts`](Simulation::counts) for what it cost. [`equilibrium()`] finds a position of
+//! with adaptive steps for a tolerance. [`balance`](Simulation::balance) gives the energy balance and the violation of the
+//! rows, [`counts`](Simulation::counts) the cost. [`equilibrium()`] finds a position of
 //! rest, [`linearize()`] the small motions about a state.
 //!
 //! # Which method
@@ -68,83 +68,53 @@
 //! | [`Extrapolated`] | 3, implicit, fixed steps | the same, where forces damp what the step does not show |
 //! | [`GeneralizedAlpha`] | 2, implicit, fixed steps | stiff vibrations that shall die out |
 
-pub mod adaptive;
-pub mod augmented_lagrangian;
-pub mod baumgarte;
-mod blocks;
-mod contact;
-mod contradiction;
-mod crossing;
-pub mod determinacy;
-pub mod dormand_prince5;
-pub mod dormand_prince8;
-pub mod embedded;
-pub mod equation;
-pub mod equilibrium;
-pub mod event;
-pub mod explicit;
-pub mod extrapolated;
-mod free_play;
-mod free_stiffness;
-pub mod friction;
-pub mod generalized_alpha;
-mod implicit;
-mod integrals;
-pub mod inverse;
-pub mod kkt;
-mod limit_rows;
-pub mod linearization;
-pub mod metric;
-pub mod model;
-pub mod motion;
-pub mod multipliers;
-mod null_space;
-mod obstacle;
-pub mod passage;
-pub mod penalty;
-pub mod phases;
-mod piecewise;
-pub mod projection;
-pub mod radau;
-mod rank;
-mod saddle;
-mod signed;
-pub mod simulation;
-pub mod states;
-mod text_start;
-mod variation;
-pub mod vector;
-pub mod velocity_transformation;
+pub(crate) mod analyses;
+pub(crate) mod equilibrium;
+pub(crate) mod formulations;
+pub(crate) mod implicit;
+pub(crate) mod integration;
+pub(crate) mod integrators;
+pub(crate) mod linear_systems;
+pub(crate) mod model;
+pub(crate) mod simulation;
 
-pub use adaptive::Adaptive;
-pub use augmented_lagrangian::AugmentedLagrangian;
-pub use baumgarte::Baumgarte;
-pub use determinacy::Determinacy;
-pub use dormand_prince5::DormandPrince5;
-pub use dormand_prince8::DormandPrince8;
-pub use embedded::Embedded;
-pub use equation::{Equation, Measured};
+pub use crate::mechanism::enclosure::WithIntervals;
+pub use crate::mechanism::normal_forces::{NormalForces, Term, WithNormalForces};
+pub use crate::mechanism::transformed::Transformed;
+pub use analyses::determinacy::Determinacy;
+pub use analyses::inverse::{Driven, inverse, inverse_with_states};
+pub use analyses::linearization::{
+    Linearization, WithStates, linearize, linearize_in, linearize_with_states,
+};
+pub use equilibrium::consistent_start::{MovedStart, closed};
+pub use equilibrium::states::states_at_rest;
 pub use equilibrium::{Equilibrium, equilibrium, equilibrium_with_states, undetermined_states};
-pub use event::Direction;
-pub use event::WithIntervals;
-pub use explicit::{FixedStep, RungeKutta4, SemiImplicitEuler};
-pub use extrapolated::Extrapolated;
-pub use friction::{NormalForces, WithNormalForces};
-pub use generalized_alpha::GeneralizedAlpha;
-pub use inverse::{Driven, inverse, inverse_with_states};
-pub use linearization::{Linearization, WithStates, linearize, linearize_in, linearize_with_states};
-pub use metric::{Metric, Tolerance};
-pub use model::{Counts, Doubt, Formulation, Model, Solved};
-pub use motion::{Equations, Explicit, Instant, Method};
-pub use multipliers::Unstabilized;
-pub use passage::Passage;
-pub use penalty::Penalty;
-pub use phases::Phased;
-pub use piecewise::Term;
-pub use projection::{Projection, Stages};
-pub use radau::Radau5;
-pub use simulation::{Balance, Simulation};
-pub use states::states_at_rest;
-pub use text_start::{MovedStart, closed};
-pub use vector::{State, Vector};
-pub use velocity_transformation::VelocityTransformation;
+pub use formulations::baumgarte::Baumgarte;
+pub use formulations::penalty::Penalty;
+pub use formulations::projection::{Projection, Stages};
+pub use formulations::singular::passage::Passage;
+pub use formulations::unstabilized::Unstabilized;
+pub use formulations::velocity_transformation::VelocityTransformation;
+pub use implicit::augmented_lagrangian::AugmentedLagrangian;
+pub use implicit::extrapolated::Extrapolated;
+pub use implicit::generalized_alpha::GeneralizedAlpha;
+pub use integration::equations::Equations;
+pub use integration::explicit::Explicit;
+pub use integration::phases::Phased;
+pub use integration::radau::Radau5;
+pub use integrators::dormand_prince5::DormandPrince5;
+pub use integrators::dormand_prince8::DormandPrince8;
+pub use integrators::embedded::Embedded;
+pub use integrators::equation::{Equation, ErrorNorm};
+pub use integrators::event::monitor::{Monitor, Stopped};
+pub use integrators::event::{Dense, Direction, Scrutiny};
+pub use integrators::fixed_step::{FixedStep, RungeKutta4, SemiImplicitEuler};
+pub use integrators::step_control::{Adaptive, Point};
+pub use integrators::vector::{State, Vector};
+pub use linear_systems::kkt::System;
+pub use model::instant::Instant;
+pub use model::method::Method;
+pub use model::metric::{Metric, Tolerance};
+pub use model::{Counts, Formulation, MethodWarning, Model, Solved};
+pub use simulation::Simulation;
+pub use simulation::reading::Balance;

@@ -1,55 +1,63 @@
-//! Failures in words: what is wrong, where, and what to do.
+//! Messages of failures: the fault, its place, and the cure.
 
 use core::fmt;
 
-use super::{Failure, Level};
-use crate::{Entry, MissingSlope};
+use crate::failure::checks::WIDTH;
+use crate::failure::{DerivativeOrder, Failure, FailureKind};
+use crate::mechanism::Entry;
+use crate::mechanism::dynamic::MissingSlope;
 
 impl fmt::Display for Failure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let time = Time(self.time());
-        match self {
-            Failure::NonFinite { name, line: 0 } => write!(f, "`{name}` is not a finite number"),
-            Failure::NonFinite { name, line } => write!(f, "`{name}` (line {line}) is not a finite number"),
-            Failure::Negative { name, line, parameter, value } => write!(
+        let time = Time(self.time.unwrap_or(0.0));
+        match &self.kind {
+            FailureKind::NonFinite { name, line: 0 } => write!(f, "`{name}` is not a finite number"),
+            FailureKind::NonFinite { name, line } => {
+                write!(f, "`{name}` (line {line}) is not a finite number")
+            }
+            FailureKind::Negative { name, line, parameter: WIDTH, value } => write!(
+                f,
+                "the width of row `{name}` (line {line}) is {value:e}: a row may contradict others by 0 or more"
+            ),
+            FailureKind::Negative { name, line, parameter, value } => write!(
                 f,
                 "`{name}` (line {line}) is {value:e}, with `{parameter}` as it is: masses, moments of inertia and the sum of two less the third, \
                  stiffness, damping and friction are at least 0"
             ),
-            Failure::Unresolved { coordinate, value, .. } => write!(
+            FailureKind::Unresolved { coordinate, value, .. } => write!(
                 f,
                 "`{}` (line {}) is {value:.3e} {} at t = {time} s, too large for its number type to tell positions \
                  apart; take off whole turns, or use `f64`",
                 coordinate.name, coordinate.line, coordinate.unit
             ),
-            Failure::NotConverged { row, residual, required, iterations, .. } => write!(
+            FailureKind::NotConverged { row, residual, required, iterations, .. } => write!(
                 f,
                 "no position at t = {time} s: after {iterations} iterations row `{}` (line {}) is still {residual:.3e} {} \
                  off, required {required:.3e}; take a smaller step, or check that the mechanism can reach this position",
                 row.name, row.line, row.unit
             ),
-            Failure::NotFollowed { part, margin, .. } => write!(
+            FailureKind::NotFollowed { part, margin, .. } => write!(
                 f,
                 "the way to the position at t = {time} s is lost after {part:.6} of it, at margin {margin:.3e}: beyond, the assembly is in \
                  doubt; take a smaller step, or one that ends farther from the singular position"
             ),
-            Failure::OverBudget { evaluations, required, .. } if evaluations < required => write!(
+            FailureKind::OverBudget { evaluations, required, .. } if evaluations < required => write!(
                 f,
                 "the budget leaves {evaluations} evaluations for the way to the position at t = {time} s, which no part of it takes: give \
                  it {required} more, or take a smaller step"
             ),
-            Failure::OverBudget { part, evaluations, .. } => write!(
+            FailureKind::OverBudget { part, evaluations, .. } => write!(
                 f,
                 "the budget of {evaluations} evaluations ended after {part:.6} of the way to the position at t = {time} s; the next step \
                  goes on from there"
             ),
-            Failure::Discontinuous { row, part, .. } => write!(
+            FailureKind::Discontinuous { row, part, .. } => write!(
                 f,
                 "row `{}` (line {}) jumps on the way to the position at t = {time} s, after {part:.6} of it; make what drives it \
                  continuous, or assemble anew behind the jump",
                 row.name, row.line
             ),
-            Failure::NotAssemblable { row, residual, rows, .. } => write!(
+            FailureKind::NotAssemblable { row, residual, rows, .. } => write!(
                 f,
                 "the mechanism cannot be assembled at t = {time} s: {rows} cannot hold {}, `{}` stays {residual:.3e} \
                  {} open at best; check the dimensions, or start from a better guess",
@@ -57,7 +65,7 @@ impl fmt::Display for Failure {
                 row.name,
                 row.unit
             ),
-            Failure::Singular { row, coordinate, margin, required, reference, .. } => {
+            FailureKind::Singular { row, coordinate, margin, required, reference, .. } => {
                 write!(
                     f,
                     "the mechanism is singular at t = {time} s: rows around `{}` (line {}) do not determine `{}` (line \
@@ -71,111 +79,118 @@ impl fmt::Display for Failure {
                     None => Ok(()),
                 }
             }
-            Failure::WrongBranch { branch, value, .. } => write!(
+            FailureKind::WrongBranch { branch, value, .. } => write!(
                 f,
                 "the assembly found at t = {time} s is not the declared one: branch `{}` (line {}) is {value:.3e}, not \
                  positive; take a smaller step, or assemble from a guess on the other side",
                 branch.name, branch.line
             ),
-            Failure::BeyondLimit { limit, value, bound, .. } => write!(
+            FailureKind::BeyondLimit { limit, value, bound, .. } => write!(
                 f,
                 "limit `{}` (line {}) is passed at t = {time} s: {value} {} is beyond {bound}; turn back, or widen the \
                  range",
                 limit.name, limit.line, limit.unit
             ),
-            Failure::TooFar { coordinate, distance, allowed, .. } => write!(
+            FailureKind::TooFar { coordinate, distance, allowed, .. } => write!(
                 f,
                 "the position at t = {time} s is not next to the saved one: `{}` (line {}) differs by {distance:.3e} in \
                  the reference metric, allowed {allowed:.3e}; start at the time and with the inputs of the saved state",
                 coordinate.name, coordinate.line
             ),
-            Failure::Unsuitable { name, value, most } if most.is_finite() => {
+            FailureKind::InvalidMethodParameter { name, value, most } if most.is_finite() => {
                 write!(f, "the method's {name} is {value}: it must be between 0 and {most}")
             }
-            Failure::Unsuitable { name, value: 0.0, .. } => {
+            FailureKind::InvalidMethodParameter { name, value: 0.0, .. } => {
                 write!(f, "the method's {name} is 0: it must be above 0")
             }
-            Failure::Unsuitable { name, value, .. } => {
+            FailureKind::InvalidMethodParameter { name, value, .. } => {
                 write!(f, "the method's {name} is {value:e}: it must be a number and at least 0")
             }
-            Failure::Locked { row, .. } => write!(
+            FailureKind::FrictionLocked { row, .. } => write!(
                 f,
                 "no forces balance at t = {time} s: friction changes the force of row `{}` (line {}) by more than it takes up; with this \
                  coefficient the mechanism jams there, whatever the step",
                 row.name, row.line
             ),
-            Failure::Ambiguous { row, solutions, all: true, .. } => write!(
+            FailureKind::Ambiguous { row, solutions, all: true, .. } => write!(
                 f,
                 "{solutions} sets of forces balance at t = {time} s: friction changes the force of row `{}` (line {}) by more than it takes \
                  up, so that rigid bodies have no one motion there; lower the coefficient, or make a body elastic",
                 row.name, row.line
             ),
-            Failure::Ambiguous { row, solutions, .. } => write!(
+            FailureKind::Ambiguous { row, solutions, .. } => write!(
                 f,
                 "forces at t = {time} s are not known to be the only ones that balance ({solutions} found): friction changes the force of row \
                  `{}` (line {}) by about what it takes up; lower the coefficient, or make a body elastic",
                 row.name, row.line
             ),
-            Failure::SharedNormalForce { row, .. } => write!(
+            FailureKind::SharedNormalForce { row, .. } => write!(
                 f,
                 "friction at t = {time} s depends on the force of row `{}` (line {}), which it shares in any way with rows that follow from \
                  each other; leave out what is too many, make a body elastic, or give friction a force that they bear together",
                 row.name, row.line
             ),
-            Failure::InvalidStep { step, .. } => write!(
+            FailureKind::InvalidStep { step, .. } => write!(
                 f,
                 "a step of {step:e} s from t = {time} s leads nowhere: it must be positive and change the time"
             ),
-            Failure::Unbounded { coordinate, value, .. } => write!(
+            FailureKind::Unbounded { coordinate, value, .. } => write!(
                 f,
                 "the motion grows without bound: a step takes `{}` (line {}) to {value:.3e} {} at t = {time} s; take smaller \
                  steps, project onto the constraints where they drift, or use an implicit method where the mechanism is stiff",
                 coordinate.name, coordinate.line, coordinate.unit
             ),
-            Failure::EnergyGain { kinetic, available, .. } => write!(
+            FailureKind::EnergyGain { kinetic, available, .. } => write!(
                 f,
                 "the step to t = {time} s is too long to follow the motion: it ends with a kinetic energy of {kinetic:.3e} J, where its \
                  start, potentials and the power supplied explain {available:.3e} J; take smaller steps, or let `advance_to` choose them"
             ),
-            Failure::OutOfReach { until, step, .. } => write!(
+            FailureKind::OutOfReach { until, step, .. } => write!(
                 f,
                 "t = {} s is out of reach from t = {time} s: steps of {step:.3e} s, as the tolerance asks for, are too many; \
                  end earlier, loosen the tolerance, or advance in several calls",
                 Time(*until)
             ),
-            Failure::UnresolvedTolerance { tolerance, least, .. } => write!(
+            FailureKind::UnresolvedTolerance { tolerance, least, .. } => write!(
                 f,
                 "rounding alone is more than a tolerance of {tolerance:e} allows: at least {least:.1e} is needed in numbers of \
                  this type"
             ),
-            Failure::Undecided { margin, .. } => write!(
+            FailureKind::Undecided { margin, single } => write!(
                 f,
-                "rounding decides where the motion goes at t = {time} s, next to a singular position (margin {margin:.1e}): \
-                 project onto the constraints, give the dimensions all their digits, or loosen the tolerance; of a start, declare \
-                 the rates of all coordinates or start beside it"
+                "rounding{} decides where the motion goes at t = {time} s, next to a singular position (margin {margin:.1e}): \
+                 {}project onto the constraints, give the dimensions all their digits, or loosen the tolerance; of a start, declare \
+                 the rates of all coordinates or start beside it",
+                if *single { " of `f32`" } else { "" },
+                if *single { "compute in `f64`, which decides nearer to it; or " } else { "" },
             ),
-            Failure::StepTooSmall { step, .. } => write!(
+            FailureKind::StepTooSmall { step, .. } => write!(
                 f,
                 "stuck at t = {time} s: even a step of {step:.3e} s is not accurate enough; loosen the tolerance, look for \
                  a jump in the forces or for a mass or length of 0, or use an implicit method where the mechanism is stiff"
             ),
-            Failure::StepTooLong { product, allowed, .. } => write!(
+            FailureKind::StepTooShort { step, least } => write!(
+                f,
+                "the step of {step:.1e} s to t = {time} s is too short for numbers of this type: rounding of positions, over its square, \
+                 hides the multipliers that friction needs; take steps of {least:.1e} s or more, compute in `f64`, or use `Extrapolated`"
+            ),
+            FailureKind::StepTooLong { product, allowed, .. } => write!(
                 f,
                 "the step at t = {time} s is too long: step times frequency is {product:.3}, allowed {allowed:.3}; take a \
                  smaller step or a lower frequency"
             ),
-            Failure::Inconsistent { rows, level, residual, required, .. } => write!(
+            FailureKind::Inconsistent { rows, level, residual, required, .. } => write!(
                 f,
                 "{}{rows} contradict each other at t = {time} s: {residual:.3e} stays open at best, required \
                  {required:.3e}; give the dimensions that let these rows follow from one another all their digits, or \
                  leave the surplus rows out",
                 match level {
-                    Level::Position => "",
-                    Level::Velocity => "the rates of ",
-                    Level::Acceleration => "the accelerations of ",
+                    DerivativeOrder::Position => "",
+                    DerivativeOrder::Velocity => "the rates of ",
+                    DerivativeOrder::Acceleration => "the accelerations of ",
                 }
             ),
-            Failure::OffConstraints { row, rate, residual, allowed, .. } => write!(
+            FailureKind::OffConstraints { row, rate, residual, allowed, .. } => write!(
                 f,
                 "{} `{}` (line {}) is violated at t = {time} s: {residual:.3e}, allowed {allowed:.3e}; start on the \
                  constraints or let the start be projected; on the way, take smaller steps",
@@ -183,46 +198,48 @@ impl fmt::Display for Failure {
                 row.name,
                 row.line
             ),
-            Failure::Inertialess { coordinate, .. } => write!(
+            FailureKind::SingularMass { coordinate, .. } => write!(
                 f,
                 "the acceleration of `{}` (line {}) is not determined at t = {time} s: it can move without any mass \
                  moving; give it mass, or a row that fixes it",
                 coordinate.name, coordinate.line
             ),
-            Failure::Flat { row, .. } => write!(
+            FailureKind::VanishingGradient { row, .. } => write!(
                 f,
                 "row `{}` (line {}) holds nothing at t = {time} s: no coordinate changes it there, as where a length is 0 or bars at \
                  rest are in line; give the length a value, or start beside that position",
                 row.name, row.line
             ),
-            Failure::Restless { coordinate, force, .. } => write!(
+            FailureKind::NoEquilibrium { coordinate, force, .. } => write!(
                 f,
                 "no position of rest at t = {time} s: where the forces come nearest to balance they still push `{}` (line \
                  {}) with {force:.3e} J/{}; let a force answer it, hold it by a drive, or start elsewhere",
                 coordinate.name, coordinate.line, coordinate.unit
             ),
-            Failure::Unbalanced { coordinate, iterations, .. } => write!(
+            FailureKind::EquilibriumNotConverged { coordinate, iterations, .. } => write!(
                 f,
                 "no balance of forces at t = {time} s after {iterations} iterations: `{}` (line {}) is farthest off; take \
                  a smaller step, or search for a rest from nearer",
                 coordinate.name, coordinate.line
             ),
-            Failure::Unsettled { state, .. } => write!(
+            FailureKind::NoStateEquilibrium { state, .. } => write!(
                 f,
                 "no position of rest at t = {time} s: the rate of the state `{}` (line {}) does not vanish for any value of it",
                 state.name, state.line
             ),
-            Failure::StatesUnknown { state, .. } => write!(
+            FailureKind::StatesUnknown { state, .. } => write!(
                 f,
                 "the forces at t = {time} s depend on the state `{}` (line {}), whose value is not known; give the states too",
                 state.name, state.line
             ),
-            Failure::NotSmooth { missing: MissingSlope { slope, function, order, declared, .. } } => write!(
-                f,
-                "{slope} needs the derivative of order {order} of `{}` (line {}), which is declared C{declared}: declare it C{order} and supply such a function, or take an explicit method",
-                function.name, function.line
-            ),
-            Failure::Foreign { mechanism } => {
+            FailureKind::NotSmooth { missing: MissingSlope { slope, function, order, declared, .. } } => {
+                write!(
+                    f,
+                    "{slope} needs the derivative of order {order} of `{}` (line {}), which is declared C{declared}: declare it C{order} and supply such a function, or take an explicit method",
+                    function.name, function.line
+                )
+            }
+            FailureKind::MechanismMismatch { mechanism } => {
                 write!(f, "the saved state is not one of `{mechanism}`: name or coordinates differ")
             }
         }
@@ -246,57 +263,65 @@ impl core::error::Error for Failure {}
 mod tests {
     extern crate std;
     use super::*;
-    use crate::failure::Holding;
+    use crate::failure::conflicting_rows::ConflictingRows;
     use std::string::ToString;
 
-    const ROW: Entry = Entry { name: "closure.0", unit: "m", line: 21 };
+    const ROWS: &[Entry] = &[*ROW];
+    const ROW: &Entry = &Entry { name: "closure.0", unit: "m", line: 21 };
 
     #[test]
     fn every_failure_names_its_line_in_the_text() {
         let (time, residual, required) = (0.5, 1e-3, 1e-14);
         let failures = [
-            Failure::NonFinite { name: "omega", line: 21 },
-            Failure::Negative { name: "rod.mass", line: 21, parameter: "rho", value: -1.0 },
-            Failure::Unresolved { coordinate: ROW, value: 1e300, time },
-            Failure::NotConverged { row: ROW, residual, required, iterations: 9, time },
-            Failure::NotAssemblable {
+            FailureKind::NonFinite { name: "omega", line: 21 }.without_time(),
+            FailureKind::Negative { name: "rod.mass", line: 21, parameter: "rho", value: -1.0 }
+                .without_time(),
+            FailureKind::Negative { name: "pin.0", line: 21, parameter: WIDTH, value: -1.0 }.without_time(),
+            FailureKind::Unresolved { coordinate: ROW, value: 1e300 }.at(time),
+            FailureKind::NotConverged { row: ROW, residual, required, iterations: 9 }.at(time),
+            FailureKind::NotAssemblable {
                 row: ROW,
                 residual,
-                rows: Holding::of(&[ROW], [1.0].into_iter()),
-                time,
-            },
-            Failure::Singular { row: ROW, coordinate: ROW, margin: 0.0, required, reference: None, time },
-            Failure::WrongBranch { branch: ROW, value: -1.0, time },
-            Failure::BeyondLimit { limit: ROW, value: 2.0, bound: 1.0, time },
-            Failure::TooFar { coordinate: ROW, distance: 1.0, allowed: 0.5, time },
-            Failure::Inconsistent {
-                rows: Holding::of(&[ROW], [1.0].into_iter()),
-                level: Level::Velocity,
+                rows: ConflictingRows::of(ROWS, [1.0].into_iter()),
+            }
+            .at(time),
+            FailureKind::Singular { row: ROW, coordinate: ROW, margin: 0.0, required, reference: None }
+                .at(time),
+            FailureKind::WrongBranch { branch: ROW, value: -1.0 }.at(time),
+            FailureKind::BeyondLimit { limit: ROW, value: 2.0, bound: 1.0 }.at(time),
+            FailureKind::TooFar { coordinate: ROW, distance: 1.0, allowed: 0.5 }.at(time),
+            FailureKind::Inconsistent {
+                rows: ConflictingRows::of(ROWS, [1.0].into_iter()),
+                level: DerivativeOrder::Velocity,
                 residual,
                 required,
-                time,
-            },
-            Failure::OffConstraints { row: ROW, rate: false, residual, allowed: required, time },
-            Failure::Unbounded { coordinate: ROW, value: 1e12, time },
-            Failure::Inertialess { coordinate: ROW, time },
-            Failure::Flat { row: ROW, time },
-            Failure::Restless { coordinate: ROW, force: 0.5, time },
-            Failure::Unbalanced { coordinate: ROW, iterations: 9, time },
-            Failure::Locked { row: ROW, time },
-            Failure::Ambiguous { row: ROW, solutions: 2, all: true, time },
-            Failure::Ambiguous { row: ROW, solutions: 1, all: false, time },
-            Failure::SharedNormalForce { row: ROW, time },
-            Failure::Unsettled { state: ROW, time },
-            Failure::StatesUnknown { state: ROW, time },
+            }
+            .at(time),
+            FailureKind::OffConstraints { row: ROW, rate: false, residual, allowed: required }.at(time),
+            FailureKind::Unbounded { coordinate: ROW, value: 1e12 }.at(time),
+            FailureKind::SingularMass { coordinate: ROW }.at(time),
+            FailureKind::VanishingGradient { row: ROW }.at(time),
+            FailureKind::NoEquilibrium { coordinate: ROW, force: 0.5 }.at(time),
+            FailureKind::EquilibriumNotConverged { coordinate: ROW, iterations: 9 }.at(time),
+            FailureKind::FrictionLocked { row: ROW }.at(time),
+            FailureKind::Ambiguous { row: ROW, solutions: 2, all: true }.at(time),
+            FailureKind::Ambiguous { row: ROW, solutions: 1, all: false }.at(time),
+            FailureKind::SharedNormalForce { row: ROW }.at(time),
+            FailureKind::NoStateEquilibrium { state: ROW }.at(time),
+            FailureKind::StatesUnknown { state: ROW }.at(time),
         ];
         for failure in failures {
             assert!(failure.to_string().contains("(line 21)"), "{failure}");
         }
-        let foreign = Failure::Foreign { mechanism: "Crank" }.to_string();
+        let foreign = FailureKind::MechanismMismatch { mechanism: "Crank" }.without_time().to_string();
         assert_eq!(foreign, "the saved state is not one of `Crank`: name or coordinates differ");
         let (name, most) = ("spectral radius rho", 1.0);
-        let radius = Failure::Unsuitable { name, value: 1.5, most }.to_string();
+        let radius =
+            FailureKind::InvalidMethodParameter { name, value: 1.5, most }.without_time().to_string();
         assert_eq!(radius, "the method's spectral radius rho is 1.5: it must be between 0 and 1");
-        assert_eq!(Failure::NonFinite { name: "t", line: 0 }.to_string(), "`t` is not a finite number");
+        assert_eq!(
+            FailureKind::NonFinite { name: "t", line: 0 }.without_time().to_string(),
+            "`t` is not a finite number"
+        );
     }
 }

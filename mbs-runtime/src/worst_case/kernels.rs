@@ -1,6 +1,6 @@
-//! What the runtime's kernels cost at most: m rows for k unknowns, as many of both or more rows.
+//! Largest operation counts of the runtime's kernels: m rows for k unknowns, m ≥ k.
 
-use crate::Operations;
+use crate::mechanism::operations::Operations;
 
 pub const fn add(count: u64) -> Operations {
     Operations { additions: count, ..Operations::NONE }
@@ -215,7 +215,7 @@ const fn minimum_norm(k: u64) -> Operations {
     total
 }
 
-/// `Reflection::of` of m components, and what it costs to apply one.
+/// `Reflection::of` of m components, and the cost of applying one.
 const fn reflection(m: u64) -> (Operations, Operations) {
     let made = products(2 * m).and(root(1)).and(compare(2)).and(add(1)).and(divide(1));
     (made, products(2 * m).and(multiply(m)))

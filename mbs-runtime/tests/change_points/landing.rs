@@ -1,6 +1,6 @@
 //! On the change point itself.
 
-use mbs_runtime::{Failure, Signal, Stepper};
+use mbs_runtime::{Failure, FailureKind, Signal, Stepper};
 
 use crate::linkage::{InAngles, InPoints, Linkage, Moving, PARALLELOGRAM, STRETCHED, distance};
 
@@ -20,7 +20,7 @@ fn lands_and_goes_on<S: Moving>(linkage: &Linkage, side: f64) {
             if k == 20 {
                 let failure = result.expect_err("rates are not determined here");
                 assert!(
-                    matches!(failure, Failure::Singular { margin, required, .. } if margin < required),
+                    matches!(failure, Failure { kind: FailureKind::Singular { margin, required, .. }, .. } if margin < required),
                     "{failure}"
                 );
                 assert_eq!(moving.bits(), before, "the state is what it was");
@@ -48,5 +48,5 @@ fn landing_on_the_point_is_singular_and_the_next_call_goes_on() {
 fn a_start_on_the_point_has_no_history_and_is_refused() {
     let design = InAngles { theta: signal(0.0), ..InAngles::default() };
     let failure = Stepper::assemble(design, [0.0; 3], 0.0).expect_err("two assemblies meet here");
-    assert!(matches!(failure, Failure::Singular { .. }), "{failure}");
+    assert!(matches!(failure, Failure { kind: FailureKind::Singular { .. }, .. }), "{failure}");
 }

@@ -106,7 +106,7 @@ pub trait Moving {
     fn follow(&mut self, theta: Signal<f64>, t: f64) -> Result<(), Failure>;
     /// The point between coupler and rocker (m).
     fn point(&self) -> [f64; 2];
-    /// How often it passed a singular position.
+    /// Number of singular positions passed.
     fn passages(&self) -> u32;
     /// All that the stepper shows, bit for bit.
     fn bits(&self) -> Vec<u64>;

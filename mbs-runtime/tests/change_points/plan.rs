@@ -1,4 +1,4 @@
-//! What an encoder may report while a crank is near its change point.
+//! Encoder reports of a crank near its change point.
 
 use mbs_runtime::Signal;
 
@@ -24,7 +24,7 @@ impl Random {
     }
 }
 
-/// How the crank moves, or how it is reported.
+/// Motion of the crank, or kind of its reports.
 #[derive(Clone, Copy, Debug)]
 pub enum Kind {
     /// At constant speed.
@@ -39,7 +39,7 @@ pub enum Kind {
     DoubledSample,
 }
 
-/// Which rates come with a reported angle.
+/// Rates that come with a reported angle.
 #[derive(Clone, Copy, Debug)]
 enum Rates {
     /// Those of the true motion.
@@ -50,7 +50,7 @@ enum Rates {
     Zero,
 }
 
-/// What the encoder reports, sample by sample.
+/// Reports of the encoder, sample by sample.
 #[derive(Debug)]
 pub struct Plan {
     /// Crank angle (rad) at the start, relative to the change point.

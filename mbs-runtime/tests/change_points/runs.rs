@@ -1,6 +1,6 @@
 //! Two hundred runs of each kind, and not one in the wrong assembly.
 
-use mbs_runtime::{Failure, Stepper};
+use mbs_runtime::{Failure, FailureKind, Stepper};
 
 use crate::linkage::{InAngles, InPoints, Linkage, Moving, PARALLELOGRAM, STRETCHED, distance};
 use crate::plan::{Kind, Plan, Random};
@@ -16,7 +16,7 @@ const APART: f64 = 1e-6;
 /// below 32 √ε = 4.8e-7 there.
 const REFUSED: f64 = 1e-6;
 
-/// What a kind of runs came to.
+/// Results of one kind of runs.
 #[derive(Debug, Default)]
 struct Tally {
     samples: u32,
@@ -45,7 +45,9 @@ fn run<S: Moving>(linkage: &Linkage, kind: Kind, seed: u64, tally: &mut Tally) {
                 crossed += u32::from(last * relative < 0.0);
                 last = relative;
             }
-            Err(Failure::Singular { .. }) if relative.abs() < REFUSED => tally.refused += 1,
+            Err(Failure { kind: FailureKind::Singular { .. }, .. }) if relative.abs() < REFUSED => {
+                tally.refused += 1
+            }
             Err(other) => panic!("{}, {kind:?}, seed {seed}, {relative}: {other}", linkage.name),
         }
     }

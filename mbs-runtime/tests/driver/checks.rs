@@ -1,4 +1,4 @@
-//! What every driver must do.
+//! Checks that every driver must pass.
 
 use mbs_runtime::{Function, Lanes};
 

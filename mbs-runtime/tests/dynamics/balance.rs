@@ -79,7 +79,7 @@ mechanism! {
     start y = 0 rate 0;
 }
 
-/// What is not accounted for after two seconds, of the largest energy.
+/// Asserts that the energy defect after two seconds is as small as the tolerance.
 #[track_caller]
 fn assert_balanced<S: Dynamic<f64, N, M> + Copy, const N: usize, const M: usize>(mechanism: S) {
     let method = Explicit::new(DormandPrince8, Projection::default());

@@ -1,7 +1,7 @@
 //! Rests under integral controls: what they integrate is 0, and they bear the loads.
 
 use mbs_runtime::dynamics::{equilibrium_with_states, undetermined_states};
-use mbs_runtime::{Failure, mechanism};
+use mbs_runtime::{Failure, FailureKind, mechanism};
 
 mechanism! {
     /// A load that a control lifts to a height.
@@ -150,7 +150,13 @@ fn states_that_may_have_other_values_are_named() {
 #[test]
 fn a_state_without_a_rest_is_named_only_where_that_was_found() {
     let failure = equilibrium_with_states(&Unheard::<f64>::default(), 0.0, &[0.1]).unwrap_err();
-    assert!(matches!(failure, Failure::Unsettled { state, .. } if state.name == "z"), "{failure}");
+    assert!(
+        matches!(failure, Failure { kind: FailureKind::NoStateEquilibrium { state, .. }, .. } if state.name == "z"),
+        "{failure}"
+    );
     let failure = equilibrium_with_states(&Positive::<f64>::default(), 0.0, &[0.1]).unwrap_err();
-    assert!(matches!(failure, Failure::Unbalanced { coordinate, .. } if coordinate.name == "x"), "{failure}");
+    assert!(
+        matches!(failure, Failure { kind: FailureKind::EquilibriumNotConverged { coordinate, .. }, .. } if coordinate.name == "x"),
+        "{failure}"
+    );
 }

@@ -1,6 +1,6 @@
 //! Rods between points in natural coordinates, written by hand: what the macro would emit, without the macro.
 
-use mbs_runtime::{Dynamic, Energy, Entry, Limit, Mechanism, Motion, OutputValue, Phase, StateSlope};
+use mbs_runtime::{Dynamic, DynamicState, Energy, Entry, Limit, Mechanism, OutputValue, Phase, StateSlope};
 
 /// One end of a rod.
 #[derive(Clone, Copy, Debug)]
@@ -73,7 +73,7 @@ impl<const N: usize, const M: usize> Linkage<N, M> {
         [to[0] - from[0], to[1] - from[1]]
     }
 
-    /// How a rod's end moves with coordinate `j`, 1 or 0, and whether that is x or y.
+    /// Derivative of a rod's end by coordinate `j`, in the direction of that coordinate: 1 or 0.
     fn share(end: End, j: usize) -> f64 {
         if matches!(end, End::Point(i) if i == j / 2) { 1.0 } else { 0.0 }
     }
@@ -327,7 +327,7 @@ impl<const N: usize, const M: usize> Dynamic<f64, N, M> for Linkage<N, M> {
     fn state_rates(&self, _: &(), _: &Self::Position, _: &[f64; N], _: &[f64; 0], _: &[f64; M]) -> [f64; 0] {
         []
     }
-    fn loads(&self, _: &(), _: &Self::Position, _: &Motion<'_, f64, N, M, [f64; 0]>) -> [f64; 0] {
+    fn loads(&self, _: &(), _: &Self::Position, _: &DynamicState<'_, f64, N, M, [f64; 0]>) -> [f64; 0] {
         []
     }
 }

@@ -1,12 +1,13 @@
 //! Independent coordinates, implicit methods, penalty: each against the same exact motions.
 
-use mbs_runtime::dynamics::velocity_transformation::{Transformed, accelerations};
 use mbs_runtime::dynamics::{
     AugmentedLagrangian, Baumgarte, DormandPrince8, Explicit, Extrapolated, GeneralizedAlpha, Method,
     Penalty, Projection, RungeKutta4, Simulation, Tolerance, VelocityTransformation,
 };
+use mbs_runtime::{__private::accelerations, dynamics::Transformed};
 use mbs_runtime::{
-    Block, BlockSolver, Direct1, Dynamic, Factorization, Failure, Margin, Outcome, Partitioned, mechanism,
+    Block, BlockSolver, Direct1, Dynamic, Factorization, Failure, FailureKind, Margin, Outcome, Partitioned,
+    mechanism,
 };
 
 use crate::linkage::{End, Linkage, Rod, parallel_loops, pendulum};
@@ -298,7 +299,9 @@ fn rows_times_any_number_refuse_the_same_starts() {
         };
         assert!(start(1e-9).is_ok(), "{k:e}");
         let failure = start(1e-6).unwrap_err();
-        let Failure::OffConstraints { row, .. } = failure else { panic!("{failure}") };
+        let Failure { kind: FailureKind::OffConstraints { row, .. }, .. } = failure else {
+            panic!("{failure}")
+        };
         assert_eq!(row.name, "rods.1");
     }
 }
@@ -334,7 +337,7 @@ fn a_short_rod_is_as_long_as_the_text_says_whatever_the_guess() {
     check(AugmentedLagrangian, 1e-11);
     let method = Explicit::new(RungeKutta4, Projection::default());
     let beside = Simulation::start(ShortRod::default(), method, 0.0, [1.0, 0.0, 1.0021, 0.0], [0.0; 4]);
-    assert!(matches!(beside, Err(Failure::OffConstraints { .. })));
+    assert!(matches!(beside, Err(Failure { kind: FailureKind::OffConstraints { .. }, .. })));
 }
 
 mechanism! {

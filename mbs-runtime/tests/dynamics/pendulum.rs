@@ -1,10 +1,10 @@
 //! The point pendulum in x and y, from the horizontal: every method against the exact motion.
 
-use mbs_runtime::Failure;
 use mbs_runtime::dynamics::{
-    Baumgarte, Direction, DormandPrince5, DormandPrince8, Doubt, Embedded, Explicit, FixedStep, Formulation,
-    Method, Projection, RungeKutta4, SemiImplicitEuler, Simulation, Stages, Tolerance, Unstabilized,
+    Baumgarte, Direction, DormandPrince5, DormandPrince8, Embedded, Explicit, FixedStep, Formulation, Method,
+    MethodWarning, Projection, RungeKutta4, SemiImplicitEuler, Simulation, Stages, Tolerance, Unstabilized,
 };
+use mbs_runtime::{Failure, FailureKind};
 
 use crate::linkage::{Linkage, pendulum};
 
@@ -89,13 +89,16 @@ fn drift_is_removed_by_projection_bounded_by_baumgarte_and_left_by_neither() {
 fn baumgarte_warns_of_long_steps_and_short_runs_and_refuses_unstable_ones() {
     let mut simulation = released(Explicit::new(RungeKutta4, Baumgarte::default()));
     simulation.step(0.02).unwrap();
-    assert_eq!(simulation.doubt(0.02), Some(Doubt::IdleStabilization));
+    assert_eq!(simulation.doubt(0.02), Some(MethodWarning::IdleStabilization));
     simulation.step_to(1.0, 49).unwrap();
     assert_eq!(simulation.doubt(0.02), None);
-    assert_eq!(simulation.doubt(0.04), Some(Doubt::StiffStabilization));
+    assert_eq!(simulation.doubt(0.04), Some(MethodWarning::StiffStabilization));
     let before = *simulation.instant();
     let failure = simulation.step(0.11).unwrap_err();
-    assert!(matches!(failure, Failure::StepTooLong { allowed: 1.0, .. }), "{failure}");
+    assert!(
+        matches!(failure, Failure { kind: FailureKind::StepTooLong { allowed: 1.0, .. }, .. }),
+        "{failure}"
+    );
     assert_eq!(before, *simulation.instant());
 }
 

@@ -196,7 +196,7 @@ fn signal(t: f64) -> Signal<f64> {
     Signal { value: 0.3 * sine, rate: 0.9 * cosine, acceleration: -2.7 * sine }
 }
 
-/// What a run with signals that are set before each of `steps` steps to 1 s leaves: angle, and energy that is not accounted for.
+/// Angle and energy defect at 1 s of a run whose signals are set before each of `steps` steps.
 fn followed<S, F, const N: usize, const M: usize>(
     mut mechanism: S,
     formulation: F,

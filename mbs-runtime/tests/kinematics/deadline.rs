@@ -2,7 +2,7 @@
 
 use core::f64::consts::TAU;
 
-use mbs_runtime::{Budget, Failure, Mechanism, Step, Stepper, mechanism};
+use mbs_runtime::{Budget, Failure, FailureKind, Mechanism, Step, Stepper, mechanism};
 
 use crate::four_bar::{EVALUATIONS, FourBar, GUESS};
 
@@ -33,7 +33,7 @@ fn side<const B: usize>(stepper: &Open<B>) -> f64 {
     (stepper.q()[4] - stepper.q()[3]).sin()
 }
 
-/// What `work` evaluates.
+/// Result of `work` with its number of evaluations.
 fn evaluations<X>(work: impl FnOnce() -> X) -> (X, u32) {
     EVALUATIONS.set(0);
     let result = work();
@@ -164,7 +164,9 @@ fn a_position_in_the_wrong_assembly_is_refused_however_small_the_budget() {
             assert!(matches!(
                 stepper.step(1e-3, AMPLE),
                 Step::Refused(
-                    Failure::WrongBranch { .. } | Failure::NotFollowed { .. } | Failure::OverBudget { .. }
+                    Failure { kind: FailureKind::WrongBranch { .. }, .. }
+                        | Failure { kind: FailureKind::NotFollowed { .. }, .. }
+                        | Failure { kind: FailureKind::OverBudget { .. }, .. }
                 )
             ));
             assert_eq!(bits(&stepper), before);
@@ -179,12 +181,12 @@ fn what_is_no_number_is_refused_and_the_last_good_state_kept() {
     let _ = stepper.step(0.02, SINGLE);
     let (good, before) = (*stepper.mechanism(), bits(&stepper));
     for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
-        let time = Failure::NonFinite { name: "t", line: 0 };
+        let time = FailureKind::NonFinite { name: "t", line: 0 }.without_time();
         assert_eq!(stepper.step(bad, AMPLE), Step::Refused(time));
         assert_eq!(stepper.skip(bad, 3, AMPLE), Step::Refused(time));
         for (index, entry) in <FourBar<f64> as Mechanism<f64, 5, 5>>::VARIABLES.iter().enumerate() {
             stepper.change(|mechanism| mechanism.set(index, bad));
-            let expected = Failure::NonFinite { name: entry.name, line: entry.line };
+            let expected = FailureKind::NonFinite { name: entry.name, line: entry.line }.without_time();
             assert_eq!(stepper.step(0.01, AMPLE), Step::Refused(expected));
             assert_eq!(stepper.skip(0.01, 2, SINGLE), Step::Refused(expected));
             stepper.change(|mechanism| *mechanism = good);
@@ -216,7 +218,11 @@ fn a_crank_that_stops_is_refused_beyond_and_foreseen_before() {
             }
         };
         assert!(
-            matches!(failure, Failure::NotConverged { .. } | Failure::Singular { .. }),
+            matches!(
+                failure,
+                Failure { kind: FailureKind::NotConverged { .. }, .. }
+                    | Failure { kind: FailureKind::Singular { .. }, .. }
+            ),
             "{budget:?}: {failure}"
         );
         assert!(limit - stepper.t() < 0.05, "{budget:?}: {}", limit - stepper.t());

@@ -5,8 +5,8 @@ use core::f64::consts::TAU;
 use std::cell::Cell;
 
 use mbs_runtime::{
-    Batch, Budget, Failure, Function, Kinematic, Lanes, Mechanism, Saved, Scalar, Signal, Step, Stepper,
-    mechanism, newton_raphson,
+    Batch, Budget, Failure, FailureKind, Function, Kinematic, Lanes, Mechanism, Saved, Scalar, Signal, Step,
+    Stepper, mechanism, newton_raphson,
 };
 
 mechanism! {
@@ -190,7 +190,10 @@ fn a_failure_takes_the_phase_back() {
     assert!(stepper.advance(f64::INFINITY).is_err());
     assert_eq!(bits(&stepper), before);
     stepper.change(|motor| motor.omega = f64::NAN);
-    assert!(matches!(stepper.advance(0.01), Err(Failure::NonFinite { name: "omega", .. })));
+    assert!(matches!(
+        stepper.advance(0.01),
+        Err(Failure { kind: FailureKind::NonFinite { name: "omega", .. }, .. })
+    ));
     stepper.change(|motor| motor.omega = 10.0);
     assert_eq!(bits(&stepper), before);
     stepper.advance(0.01).unwrap();
@@ -230,7 +233,7 @@ fn no_step_copies_a_function() {
         assert_eq!(stepper.mechanism().u, Signal { value: 0.1 + 0.001 * f64::from(k), ..signal(0.1) });
     }
     let before = (stepper.q()[0], stepper.mechanism().motor_phase);
-    assert!(matches!(stepper.advance(1e3), Err(Failure::BeyondLimit { .. })));
+    assert!(matches!(stepper.advance(1e3), Err(Failure { kind: FailureKind::BeyondLimit { .. }, .. })));
     assert!(matches!(stepper.step(1e3, Budget::DEFAULT), Step::Refused(_)));
     assert_eq!((stepper.q()[0], stepper.mechanism().motor_phase), before);
     assert_eq!(COPIES.get(), 0);

@@ -4,7 +4,8 @@ use core::cell::Cell;
 use core::f64::consts::TAU;
 
 use mbs_runtime::{
-    Failure, Function, Kinematic, Lanes, Mechanism, Outcome, Safeguarded, Scalar, assemble, mechanism,
+    AssemblySolver, Failure, FailureKind, Function, Kinematic, Lanes, Mechanism, Outcome, Scalar, assemble,
+    mechanism,
 };
 
 mechanism! {
@@ -140,7 +141,7 @@ fn bars_that_do_not_reach_are_refused_without_a_search() {
     let apart = Bars::<f64> { crank: 1.0, ..Bars::default() };
     for guess in [[0.0; 3], [500.0, -300.0, 900.0]] {
         let parameters = apart.parameters();
-        let mut solver = Safeguarded::new(1.0);
+        let mut solver = AssemblySolver::new(1.0);
         let mut q = guess;
         let outcome = apart.solve_blocks(&parameters, &mut q, 0.0, &mut solver);
         assert!(matches!(outcome, [Outcome::NotConverged { .. }]));
@@ -149,7 +150,10 @@ fn bars_that_do_not_reach_are_refused_without_a_search() {
         // Crank and ground leave 0.7 m, the bars reach 0.45 m.
         let open = apart.phi(&parameters, &apart.position(&parameters, &q, 0.0));
         assert!((open[0].hypot(open[1]) - 0.25).abs() < 1e-9, "{open:?}");
-        assert!(matches!(assemble(&apart, guess, 0.0), Err(Failure::NotAssemblable { .. })));
+        assert!(matches!(
+            assemble(&apart, guess, 0.0),
+            Err(Failure { kind: FailureKind::NotAssemblable { .. }, .. })
+        ));
     }
 }
 
@@ -188,7 +192,10 @@ fn pivots_that_drives_hold_apart_are_refused_from_the_first_start_and_others_are
     let asked = |chained: Chained<Asked>| {
         ASKED.set(0);
         let failure = assemble(&chained, [0.0; 5], 1.0);
-        assert!(matches!(failure, Err(Failure::NotAssemblable { .. })), "{failure:?}");
+        assert!(
+            matches!(failure, Err(Failure { kind: FailureKind::NotAssemblable { .. }, .. })),
+            "{failure:?}"
+        );
         ASKED.get()
     };
     let first = asked(Chained { crank: 1.0, ..Chained::new(Asked) });
@@ -222,7 +229,7 @@ fn lanes_are_assembled_from_their_own_roots() {
         ..Bars::<Three>::default()
     };
     let parameters = mechanism.parameters();
-    let mut solver = Safeguarded::new(Three::constant(1.0));
+    let mut solver = AssemblySolver::new(Three::constant(1.0));
     let mut q = [Lanes([0.0; 3]), Lanes([5.0, -7.0, 0.1]), Lanes([-9.0, 0.2, 0.3])];
     let outcome = mechanism.solve_blocks(&parameters, &mut q, Three::constant(0.1), &mut solver);
     assert!(matches!(outcome, [Outcome::Converged, Outcome::Converged, Outcome::NotConverged { .. }]));

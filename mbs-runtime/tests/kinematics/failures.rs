@@ -1,6 +1,6 @@
-//! What cannot be solved is told, and the state stays.
+//! Failures of the solvers name their cause, and the state stays.
 
-use mbs_runtime::{Entry, Failure, Mechanism, Stepper, assemble, mechanism};
+use mbs_runtime::{Entry, Failure, FailureKind, Mechanism, Stepper, assemble, mechanism};
 
 use crate::four_bar::{FourBar, GUESS};
 
@@ -21,7 +21,10 @@ fn snapshot<const B: usize>(stepper: &Stepper<FourBar<f64, B>, f64, 5>) -> Vec<u
 #[test]
 fn a_crank_beyond_its_limit_is_not_assemblable_and_says_by_how_much() {
     let failure = assemble(&lock_up(), [0.0, 0.0, 1.5, 0.2, 1.0], 1.5).unwrap_err();
-    let Failure::NotAssemblable { row, residual, rows, time } = failure else { panic!("{failure}") };
+    let Failure { kind: FailureKind::NotAssemblable { row, residual, rows }, time: Some(time) } = failure
+    else {
+        panic!("{failure}")
+    };
     // Coupler and rocker in line leave a gap, of which the larger component is at least 1/√2.
     let gap = (25.0 - 24.0 * 1.5_f64.cos()).sqrt() - 4.0;
     assert!(row.name.starts_with("closure.") && residual < gap && residual > 0.7 * gap, "{row:?} {residual}");
@@ -48,7 +51,11 @@ fn lock_up_ends_the_motion_at_the_limit_with_the_last_good_state() {
         }
         let failure = failure.expect("the crank cannot turn to 1.6");
         assert!(
-            matches!(failure, Failure::NotConverged { .. } | Failure::Singular { .. }),
+            matches!(
+                failure,
+                Failure { kind: FailureKind::NotConverged { .. }, .. }
+                    | Failure { kind: FailureKind::Singular { .. }, .. }
+            ),
             "{steps} steps: {failure}"
         );
         assert_eq!(stepper.t(), last);
@@ -61,11 +68,11 @@ fn the_limit_itself_is_singular_or_not_reached() {
     let mut stepper = Stepper::assemble(lock_up(), [0.0, 0.0, 0.5, 0.0, 1.5], 0.5).unwrap();
     let failure = stepper.advance_to(lock_angle()).unwrap_err();
     match failure {
-        Failure::Singular { row, coordinate, margin, required, .. } => {
+        Failure { kind: FailureKind::Singular { row, coordinate, margin, required, .. }, .. } => {
             assert_eq!((row.name, coordinate.name), ("closure.0", "phi2"));
             assert!(margin < required);
         }
-        Failure::NotConverged { .. } => {}
+        Failure { kind: FailureKind::NotConverged { .. }, .. } => {}
         other => panic!("{other}"),
     }
 }
@@ -88,11 +95,11 @@ fn numbers_that_are_none_are_named() {
         for (index, entry) in <FourBar<f64> as Mechanism<f64, 5, 5>>::COORDINATES.iter().enumerate() {
             let mut guess = GUESS;
             guess[index] = bad;
-            let expected = Failure::NonFinite { name: entry.name, line: entry.line };
+            let expected = FailureKind::NonFinite { name: entry.name, line: entry.line }.without_time();
             assert_eq!(assemble(&mechanism, guess, 0.0).unwrap_err(), expected);
         }
         for (index, entry) in <FourBar<f64> as Mechanism<f64, 5, 5>>::VARIABLES.iter().enumerate() {
-            let expected = Failure::NonFinite { name: entry.name, line: entry.line };
+            let expected = FailureKind::NonFinite { name: entry.name, line: entry.line }.without_time();
             let mut broken = mechanism;
             assert!(broken.set(index, bad));
             assert_eq!(assemble(&broken, GUESS, 0.0).unwrap_err(), expected);
@@ -104,7 +111,10 @@ fn numbers_that_are_none_are_named() {
             stepper.change(|changed| *changed = mechanism);
             stepper.advance(0.01).unwrap();
         }
-        assert_eq!(assemble(&mechanism, GUESS, bad).unwrap_err(), Failure::NonFinite { name: "t", line: 0 });
+        assert_eq!(
+            assemble(&mechanism, GUESS, bad).unwrap_err(),
+            FailureKind::NonFinite { name: "t", line: 0 }.without_time()
+        );
     }
 }
 
@@ -126,7 +136,7 @@ fn an_assembly_on_the_other_side_of_the_branch_is_refused() {
     stepper.change(|mechanism| mechanism.side = -1.0);
     let failure = stepper.advance(0.01).unwrap_err();
     assert!(
-        matches!(failure, Failure::WrongBranch { branch, value, .. } if branch.name == "open" && value < 0.0)
+        matches!(failure, Failure { kind: FailureKind::WrongBranch { branch, value, .. }, .. } if branch.name == "open" && value < 0.0)
     );
     assert_eq!(snapshot(&stepper), before);
 }
@@ -152,7 +162,7 @@ fn a_sweep_to_nowhere_yields_the_state_and_a_failure() {
 fn the_parallelogram_in_line_is_a_singular_start() {
     let mechanism = FourBar::<f64, 0>::dimensioned(1.0, 2.0, 1.0, 2.0);
     let failure = Stepper::assemble(mechanism, [0.0; 5], 0.0).unwrap_err();
-    assert!(matches!(failure, Failure::Singular { .. }), "{failure}");
+    assert!(matches!(failure, Failure { kind: FailureKind::Singular { .. }, .. }), "{failure}");
 }
 
 #[test]
@@ -169,7 +179,9 @@ fn a_parallelogram_stays_one_across_its_change_point() {
         match failed {
             None => assert!((stepper.q()[4] + 0.3).abs() < 1e-9, "{steps} steps: {:?}", stepper.q()),
             // Landing on the point itself leaves rates undetermined.
-            Some(Failure::Singular { .. }) => assert!(stepper.t().abs() < 0.61 / f64::from(steps)),
+            Some(Failure { kind: FailureKind::Singular { .. }, .. }) => {
+                assert!(stepper.t().abs() < 0.61 / f64::from(steps))
+            }
             Some(other) => panic!("{steps} steps: {other}"),
         }
     }
@@ -181,7 +193,11 @@ fn single_precision_stops_at_the_limit_too() {
     let mut stepper = Stepper::assemble(mechanism, [0.0, 0.0, 0.5, 0.0, 1.5], 0.5).unwrap();
     let failures: Vec<_> = stepper.sweep(1.6, 300).filter_map(|frame| frame.err()).collect();
     assert!(
-        matches!(failures[..], [Failure::NotConverged { .. } | Failure::Singular { .. }]),
+        matches!(
+            failures[..],
+            [Failure { kind: FailureKind::NotConverged { .. }, .. }
+                | Failure { kind: FailureKind::Singular { .. }, .. }]
+        ),
         "{failures:?}"
     );
     assert!(f64::from(stepper.t()) < lock_angle() && lock_angle() - f64::from(stepper.t()) < 5e-3);
@@ -228,7 +244,7 @@ fn an_angle_beyond_the_resolution_of_its_type_is_refused() {
     let mut stepper = Stepper::assemble(FourBar::<f32>::reference(1.0), guess, 0.0).unwrap();
     let failure = stepper.advance_to(1e4).unwrap_err();
     assert!(
-        matches!(failure, Failure::Unresolved { coordinate, .. } if coordinate.name == "phi1"),
+        matches!(failure, Failure { kind: FailureKind::Unresolved { coordinate, .. }, .. } if coordinate.name == "phi1"),
         "{failure}"
     );
 }
@@ -254,11 +270,11 @@ mechanism! {
     constraint tied { sin(a) + b == 0; a + sin(b) == 0.1*t/1s; }
 }
 
-/// What the failure at the start says of lengths.
+/// Entry that sets the reference length, by the failure at the start.
 fn reference<S: mbs_runtime::Kinematic<f64, N>, const N: usize>(mechanism: S) -> Option<&'static Entry> {
     let guess = mechanism.guess(&mechanism.parameters());
     match Stepper::assemble(mechanism, guess, 0.0).map(|stepper| *stepper.q()) {
-        Err(failure @ Failure::Singular { reference, .. }) => {
+        Err(failure @ Failure { kind: FailureKind::Singular { reference, .. }, .. }) => {
             let text = failure.to_string();
             assert_eq!(text.contains("lengths in parts of"), reference.is_some(), "{text}");
             reference
@@ -290,7 +306,10 @@ fn a_guess_that_cannot_be_resolved_is_refused_by_every_way_to_a_position() {
             mbs_runtime::solve_position(&four_bar, &(), &guess, 0.0).map(|_| ()),
         ];
         for found in found {
-            assert!(matches!(found, Err(Failure::Unresolved { .. })), "{index} {huge}: {found:?}");
+            assert!(
+                matches!(found, Err(Failure { kind: FailureKind::Unresolved { .. }, .. })),
+                "{index} {huge}: {found:?}"
+            );
         }
     }
 }

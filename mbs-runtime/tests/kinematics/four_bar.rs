@@ -1,8 +1,8 @@
 //! The lecture's four-bar with coupler point, written by hand as the macro would emit it.
 
 use mbs_runtime::{
-    Block, BlockSolver, Direct2, Entry, Factorization, Kinematic, Limit, Margin, Mechanism, Outcome,
-    OutputValue, Phase, Scalar, failure::first_failure,
+    __private::first_failure, Block, BlockSolver, Direct2, Entry, Factorization, Kinematic, Limit, Margin,
+    Mechanism, Outcome, OutputValue, Phase, Scalar,
 };
 
 /// q = [x2 y2 φ1 φ2 φ3]; `B` is 1 with the declared branch `side · sin(φ3 − φ2) > 0`, 0 without.

@@ -1,7 +1,7 @@
 //! Several mechanisms side by side are each as alone.
 
-use mbs_runtime::diagnosis::extent;
-use mbs_runtime::{Kinematic, Lanes, Mechanism, Newton, Outcome, Safeguarded, Scalar};
+use mbs_runtime::extent;
+use mbs_runtime::{AssemblySolver, Kinematic, Lanes, Mechanism, Newton, Outcome, Scalar};
 
 use crate::four_bar::FourBar;
 
@@ -27,7 +27,7 @@ fn one_lane_fails_alone_and_the_others_equal_the_single_solver() {
     let scales = mechanism.coordinate_scales(&());
     let outcomes = mechanism.solve_blocks(&(), &mut q, t, &mut Newton::new(extent(&start(), &scales)));
     let mut assembled = start();
-    let mut solver = Safeguarded::new(extent(&start(), &scales));
+    let mut solver = AssemblySolver::new(extent(&start(), &scales));
     let assembly = mechanism.solve_blocks(&(), &mut assembled, t, &mut solver);
     for lane in 0..4 {
         let single = mechanism.lane(lane);
@@ -41,7 +41,7 @@ fn one_lane_fails_alone_and_the_others_equal_the_single_solver() {
             assert_eq!(q.map(|x| x.lane(lane)), alone);
         }
         let mut alone = alone_start;
-        let mut solver = Safeguarded::new(alone_extent);
+        let mut solver = AssemblySolver::new(alone_extent);
         let [outcome] = single.solve_blocks(&(), &mut alone, t.lane(lane), &mut solver);
         assert_eq!(assembly[lane], outcome);
         if lane != 2 {

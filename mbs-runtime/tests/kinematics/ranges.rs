@@ -1,6 +1,6 @@
 //! Working ranges: a warning before, a failure beyond, the state as it was.
 
-use mbs_runtime::{Budget, Failure, Mechanism, Saved, Step, Stepper, limit::WARNING_SHARE, mechanism};
+use mbs_runtime::{Budget, Failure, FailureKind, Mechanism, Saved, Step, Stepper, WARNING_SHARE, mechanism};
 
 mechanism! {
     /// A crank that may swing, and a slide that must stay on its rail.
@@ -47,20 +47,26 @@ fn every_call_that_moves_refuses_what_lies_beyond() {
         rail.change(|slide| slide.theta.value = theta);
         let before = bits(&rail);
         let failure = rail.advance(1e-3).unwrap_err();
-        let Failure::BeyondLimit { limit, value, bound, time } = failure else { panic!("{failure}") };
+        let Failure { kind: FailureKind::BeyondLimit { limit, value, bound }, time: Some(time) } = failure
+        else {
+            panic!("{failure}")
+        };
         assert_eq!((limit.name, bound, time), ("stroke", 0.15, 1e-3));
         assert!(value > 0.15 && limit.line > 0);
         assert!(failure.to_string().starts_with("limit `stroke` (line "), "{failure}");
         for budget in [Budget { newton: 1, fallback: 0 }, Budget { newton: 9, fallback: 9 }] {
             assert_eq!(rail.step(1e-3, budget), Step::Refused(failure));
-            assert!(matches!(rail.skip(1e-3, 3, budget), Step::Refused(Failure::BeyondLimit { .. })));
+            assert!(matches!(
+                rail.skip(1e-3, 3, budget),
+                Step::Refused(Failure { kind: FailureKind::BeyondLimit { .. }, .. })
+            ));
         }
         assert_eq!(bits(&rail), before);
-        assert!(matches!(at(theta), Err(Failure::BeyondLimit { .. })));
+        assert!(matches!(at(theta), Err(Failure { kind: FailureKind::BeyondLimit { .. }, .. })));
     }
     let saved: Saved<2, _> = rail.save();
     let failure = Rail::assemble_near(*rail.mechanism(), &saved, 0.0).unwrap_err();
-    assert!(matches!(failure, Failure::BeyondLimit { .. }));
+    assert!(matches!(failure, Failure { kind: FailureKind::BeyondLimit { .. }, .. }));
     // The bound itself belongs to the range, whatever rounding makes of it.
     rail.change(|slide| slide.theta.value = edge);
     rail.advance(1e-3).unwrap();
@@ -98,7 +104,13 @@ fn a_quantity_is_warned_of_before_it_passes_its_bound() {
 fn a_bound_that_is_no_number_is_reported() {
     let mut rail = at(0.1).unwrap();
     rail.change(|slide| slide.reach = f64::NAN);
-    assert!(matches!(rail.advance(0.0), Err(Failure::NonFinite { name: "reach", .. })));
+    assert!(matches!(
+        rail.advance(0.0),
+        Err(Failure { kind: FailureKind::NonFinite { name: "reach", .. }, .. })
+    ));
     rail.change(|slide| slide.reach = 0.01);
-    assert!(matches!(rail.advance(0.0), Err(Failure::BeyondLimit { .. })), "an empty range holds nothing");
+    assert!(
+        matches!(rail.advance(0.0), Err(Failure { kind: FailureKind::BeyondLimit { .. }, .. })),
+        "an empty range holds nothing"
+    );
 }

@@ -2,7 +2,7 @@
 
 use core::f64::consts::{PI, TAU};
 
-use mbs_runtime::{Batch, Failure, Lanes, Signal, Stepper, mechanism};
+use mbs_runtime::{Batch, Failure, FailureKind, Lanes, Signal, Stepper, mechanism};
 
 mechanism! {
     /// A point on a crank that an input turns, and a bar from it to a slide.
@@ -96,8 +96,12 @@ fn a_plain_step_ends_within_both_bounds_of_a_limit() {
             );
             assert!([0, 1, 3].iter().all(|lane| steps[*lane].is_ok()));
             if !within {
-                assert!(matches!(step, Err(Failure::BeyondLimit { bound: found, .. }) if found == bound));
-                assert!(matches!(steps[2], Err(Failure::BeyondLimit { bound: found, .. }) if found == bound));
+                assert!(
+                    matches!(step, Err(Failure { kind: FailureKind::BeyondLimit { bound: found, .. }, .. }) if found == bound)
+                );
+                assert!(
+                    matches!(steps[2], Err(Failure { kind: FailureKind::BeyondLimit { bound: found, .. }, .. }) if found == bound)
+                );
                 break;
             }
         }
@@ -134,7 +138,7 @@ fn a_plain_step_ends_within_every_limit_and_each_lane_has_its_own_inputs() {
             run.advance(0.004).err()
         });
         assert!(
-            matches!(step, Some(Failure::BeyondLimit { bound: found, .. }) if found == bound),
+            matches!(step, Some(Failure { kind: FailureKind::BeyondLimit { bound: found, .. }, .. }) if found == bound),
             "{step:?}"
         );
         assert!((run.q()[1] - bound).abs() < 0.008, "{:?}", run.q());
@@ -156,12 +160,16 @@ fn a_plain_step_to_infinite_rates_is_refused() {
     let mut run = Stepper::assemble(Ended::<f64>::default(), [1.5, 3.0], 0.9999).unwrap();
     let before = *run.q();
     let step = run.advance_to(1.0);
-    assert!(matches!(step, Err(Failure::NonFinite { .. })), "{step:?} {:?}", run.qd());
+    assert!(
+        matches!(step, Err(Failure { kind: FailureKind::NonFinite { .. }, .. })),
+        "{step:?} {:?}",
+        run.qd()
+    );
     assert_eq!(*run.q(), before);
     let mut batch =
         Batch::assemble(Ended::<Lanes<f64, 4>>::default(), &[[1.5, 3.0]; 4], [0.9999; 4]).ok().unwrap();
     let steps = batch.advance_to([0.99995, 1.0, 0.99995, 0.99999]);
-    assert!(matches!(steps[1], Err(Failure::NonFinite { .. })), "{:?}", steps[1]);
+    assert!(matches!(steps[1], Err(Failure { kind: FailureKind::NonFinite { .. }, .. })), "{:?}", steps[1]);
     assert!([0, 2, 3].iter().all(|lane| steps[*lane].is_ok()));
 }
 
@@ -179,7 +187,11 @@ fn a_plain_step_to_infinite_accelerations_is_refused() {
     let mut run = Stepper::assemble(Jerked::<f64>::default(), [0.0; 2], 0.9999).unwrap();
     let before = *run.q();
     let step = run.advance_to(1.0);
-    assert!(matches!(step, Err(Failure::NonFinite { .. })), "{step:?} {:?}", run.qdd());
+    assert!(
+        matches!(step, Err(Failure { kind: FailureKind::NonFinite { .. }, .. })),
+        "{step:?} {:?}",
+        run.qdd()
+    );
     assert_eq!(*run.q(), before);
 }
 

@@ -1,6 +1,6 @@
 //! Which of several assemblies is found, and how the caller can tell.
 
-use mbs_runtime::{Failure, Signal, Stepper, assemble, mechanism};
+use mbs_runtime::{Failure, FailureKind, Signal, Stepper, assemble, mechanism};
 
 mechanism! {
     /// A crank-rocker of ground 4, crank 1, coupler 3, rocker 3.5; without a branch.
@@ -120,7 +120,7 @@ fn a_motion_in_the_undeclared_assembly_is_refused_with_the_branch_and_its_line()
     stepper.change(|design| design.side = -side);
     let failure = stepper.advance(0.01).expect_err("the other side is declared now");
     assert!(
-        matches!(failure, Failure::WrongBranch { branch, .. } if branch.name == "open" && branch.line > 1)
+        matches!(failure, Failure { kind: FailureKind::WrongBranch { branch, .. }, .. } if branch.name == "open" && branch.line > 1)
     );
     assert_eq!((*stepper.q(), *stepper.qd(), *stepper.qdd()), before);
 }
@@ -144,7 +144,10 @@ fn a_slider_over_the_bearing_goes_on_in_the_motion_that_it_came_in() {
                 }
                 Err(failure) => {
                     assert!(lands && 2 * k == steps, "{steps}, {k}: {failure}");
-                    assert!(matches!(failure, Failure::Singular { .. }), "{failure}");
+                    assert!(
+                        matches!(failure, Failure { kind: FailureKind::Singular { .. }, .. }),
+                        "{failure}"
+                    );
                 }
             }
         }

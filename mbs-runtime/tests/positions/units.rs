@@ -1,6 +1,6 @@
 //! The unit of length is a name: nanometres and kilometres give the same answers with the same effort.
 
-use mbs_runtime::{Failure, Kinematic, Signal, Stepper, Stop, mechanism};
+use mbs_runtime::{Failure, FailureKind, Kinematic, ReachLimit, Signal, Stepper, mechanism};
 
 mechanism! {
     /// A four-bar in angles.
@@ -108,10 +108,12 @@ fn points_take_the_same_way_in_every_unit() {
 fn a_lock_up_is_found_at_the_same_angle_with_the_same_rows_in_every_unit() {
     for unit in UNITS {
         let stepper = assembled(bars([3.0, 2.0, 2.0, 4.0], unit), 0.5);
-        let Stop { reachable, refused, failure, .. } = stepper.stop_towards(1.5).expect("it locks up");
+        let ReachLimit { reachable, refused, failure, .. } = stepper.reach_towards(1.5).expect("it locks up");
         let lock = (9.0_f64 / 24.0).acos();
         assert!(reachable < lock + 1e-14 && lock - 1e-12 < refused && refused - reachable <= 1e-9, "{unit}");
-        let Failure::NotAssemblable { residual, rows, .. } = failure else { panic!("{failure}") };
+        let Failure { kind: FailureKind::NotAssemblable { residual, rows, .. }, .. } = failure else {
+            panic!("{failure}")
+        };
         let mut names: Vec<_> = rows.rows().map(|row| row.name).collect();
         names.sort_unstable();
         assert_eq!(names, ["closure.0", "closure.1"]);
@@ -128,7 +130,11 @@ fn a_parallelogram_in_line_is_singular_in_every_unit() {
         let failure =
             Stepper::assemble(flat, [1.0, 0.0, 3.0, 0.0].map(|x| x * unit), 0.0).expect_err("in line");
         assert!(
-            matches!(failure, Failure::Singular { .. } | Failure::WrongBranch { .. }),
+            matches!(
+                failure,
+                Failure { kind: FailureKind::Singular { .. }, .. }
+                    | Failure { kind: FailureKind::WrongBranch { .. }, .. }
+            ),
             "{unit}: {failure}"
         );
         // A ten-thousandth beside it is regular.

@@ -40,7 +40,7 @@ fn function(value: f64) -> Counted {
 }
 
 /// An `f64` of which every operation is counted.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Counted(pub f64);
 
 impl PartialEq for Counted {
@@ -172,6 +172,15 @@ impl Scalar for Counted {
     }
     fn tanh(self) -> Self {
         function(self.0.tanh())
+    }
+    fn asinh(self) -> Self {
+        function(self.0.asinh())
+    }
+    fn acosh(self) -> Self {
+        function(self.0.acosh())
+    }
+    fn atanh(self) -> Self {
+        function(self.0.atanh())
     }
     fn powf(self, exponent: Self) -> Self {
         function(self.0.powf(exponent.0))

@@ -1,11 +1,12 @@
-//! What steps of bounded work cost, counted operation by operation, against what they may cost at most.
+//! Operations of steps of bounded work, counted one by one, against their largest count.
 #![forbid(unsafe_code)]
 
 mod counted;
 
 use counted::{Counted, counted};
 use mbs_runtime::{
-    Budget, Failure, Kinematic, Mechanism, Operations, Signal, Step, Stepper, WorstCase, mechanism,
+    Budget, Failure, FailureKind, Kinematic, Mechanism, Operations, Signal, Step, Stepper, WorstCase,
+    mechanism,
 };
 
 mechanism! {
@@ -105,7 +106,7 @@ const BUDGETS: [Budget; 7] = [
     Budget::DEFAULT,
 ];
 
-/// How the steps of a run ended.
+/// Outcomes of the steps of a run.
 #[derive(Debug, Default)]
 struct Ends {
     done: u32,
@@ -142,8 +143,10 @@ where
                 }
                 Step::Refused(failure) => {
                     ends.refused += 1;
-                    ends.singular += u32::from(matches!(failure, Failure::Singular { .. }));
-                    ends.beyond += u32::from(matches!(failure, Failure::BeyondLimit { .. }));
+                    ends.singular +=
+                        u32::from(matches!(failure, Failure { kind: FailureKind::Singular { .. }, .. }));
+                    ends.beyond +=
+                        u32::from(matches!(failure, Failure { kind: FailureKind::BeyondLimit { .. }, .. }));
                 }
             }
         }
@@ -199,8 +202,8 @@ fn no_step_of_blocks_with_surplus_rows_costs_more_than_its_worst_case() {
     assert!(torn.done > 200 && torn.fallbacks > 0 && torn.refused > 50, "{torn:?}");
 }
 
-/// What a step costs from a regular state where the rows agree about nothing and lie far away. It does not come to the homotopy, each
-/// evaluation of which costs up to four times as much as one of Newton's method in a mechanism of few operations.
+/// Operations of a step from a regular state whose rows agree about nothing and lie far away. It does not come to the homotopy,
+/// each evaluation of which costs up to four times as much as one of Newton's method in a mechanism of few operations.
 fn hopeless(budget: Budget) -> Operations {
     let stuck = Stuck::<Counted>::default();
     let guess = stuck.guess(&stuck.parameters());

@@ -4,7 +4,7 @@ use super::run::{Implementation, Measured, fastest};
 
 /// A ratio with its goal.
 pub struct Goal {
-    /// What is compared, in words.
+    /// Description of the compared work.
     pub work: &'static str,
     /// The peer's time over ours: median, 10 %, 90 % of the rounds; `None` where one was not measured.
     pub ratio: Option<[f64; 3]>,
@@ -19,18 +19,18 @@ pub struct Goal {
 /// A line of the table: work in words, problem, ours, against whom, least ratio, wanted ratio; NaN where none is asked.
 pub struct Line(pub &'static str, pub &'static str, pub &'static str, pub Peer, pub f64, pub f64);
 
-/// Of a ratio that is shown, not asked for.
+/// Goal of a ratio that is only shown.
 pub const SHOWN: f64 = f64::NAN;
 
-/// Who it is compared with.
+/// Peer of a comparison.
 pub enum Peer {
     /// The fastest one of these in each round.
     Fastest(&'static [&'static str]),
-    /// Ours for another size; the ratio is turned, so that growth stands in it.
+    /// Ours for another size; the ratio is inverted to show the growth.
     Growth(&'static str),
 }
 
-/// All goals with what was reached for this processor and for the default target.
+/// All goals with the ratios reached on this processor and on the default target.
 pub fn reached(lines: &[Line], native: &Measured, default: &Measured) -> Vec<Goal> {
     lines
         .iter()
@@ -61,24 +61,24 @@ impl Line {
 }
 
 impl Goal {
-    /// Whether less is better.
+    /// `true` if a smaller ratio is better.
     pub fn is_limit(&self) -> bool {
         self.aim < self.must
     }
 
-    /// What was reached over what must be, above 1 where it is; `None` where nothing is asked.
+    /// Ratio reached over the least one, at least 1 if the goal is met; `None` if there is no goal or no measurement.
     pub fn part(&self) -> Option<f64> {
         let [median, ..] = self.ratio?;
         let part = if self.is_limit() { self.must / median } else { median / self.must };
         (!part.is_nan()).then_some(part)
     }
 
-    /// What is wanted over what must be.
+    /// Ratio wanted over the least one.
     pub fn wanted_part(&self) -> f64 {
         if self.is_limit() { self.must / self.aim } else { self.aim / self.must }
     }
 
-    /// In words.
+    /// Verdict in words.
     pub fn verdict(&self) -> &'static str {
         let Some([median, ..]) = self.ratio else { return "not measured" };
         let Some(part) = self.part() else { return "" };

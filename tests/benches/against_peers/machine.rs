@@ -3,7 +3,7 @@
 use std::fs;
 use std::process::Command;
 
-/// Processor, compilers, and what the peers are made by, in one sentence each.
+/// Processor, compilers and generators of the peers, in one sentence each.
 pub fn description(requirements: &str) -> String {
     let peers: Vec<&str> = requirements.lines().filter(|line| !line.trim().is_empty()).collect();
     format!(

@@ -1,9 +1,8 @@
-//! Builds the peers, measures, writes table and plot: what the benches share.
+//! Common part of the benches: builds the peers, measures, writes table and plot.
 
 mod goals;
 mod machine;
 mod plot;
-mod readme;
 mod run;
 mod table;
 
@@ -13,23 +12,23 @@ use std::process::ExitCode;
 
 pub use goals::{Line, Peer, SHOWN};
 
-/// What a bench compares.
+/// Subject of a bench.
 pub struct Subject {
     /// Its name, as `proof-peers` knows it; files have it too.
     pub name: &'static str,
     /// Title of the table.
     pub title: &'static str,
-    /// What is to be known about it.
+    /// Notes for the reader of the table.
     pub notes: &'static str,
     /// The ratios that the project wants to reach.
     pub lines: &'static [Line],
     /// Largest error by problem and implementation.
     pub limit: run::Limit,
-    /// What bounds a goal that is missed, and what was tried: by its work.
+    /// Limits of missed goals, and attempts to meet them: by the work of the goal.
     pub bounds: &'static [(&'static str, &'static str)],
 }
 
-/// Measures the subject where `cargo bench` asks for it.
+/// Measures the subject if `cargo bench` asks for it.
 pub fn run(subject: &Subject) -> ExitCode {
     let arguments: Vec<String> = std::env::args().collect();
     let given = |name: &str| arguments.iter().any(|argument| argument == name);
@@ -58,7 +57,6 @@ fn measure(subject: &Subject, rounds: &str, docs: bool) -> Result<(), String> {
     let mut directories = vec![Path::new(env!("CARGO_TARGET_TMPDIR")).with_file_name("bench")];
     if docs {
         directories.push(PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/benches")));
-        readme::replace(subject.name, &table::summary(&goals))?;
     }
     for directory in directories {
         save(&directory, &format!("{}.md", subject.name), &text)?;

@@ -1,4 +1,4 @@
-//! The plot: what was reached over what must be, one bar a goal.
+//! The plot: ratio reached over the least one, one bar for each goal.
 
 use std::fmt::Write;
 
@@ -34,7 +34,7 @@ pub fn svg(goals: &[Goal]) -> String {
     text
 }
 
-/// Where a part is drawn.
+/// Horizontal position (pixels) of a part.
 fn x(part: f64) -> f64 {
     LABELS as f64 + part.min(LARGEST_PART) / LARGEST_PART * WIDTH as f64
 }
@@ -54,7 +54,7 @@ fn axis(count: usize, text: &mut String) {
     }
 }
 
-/// One goal: its work, the bar, a line where the aim is, and the ratio right of both.
+/// One goal: its work, the bar, a line at the aim, and the ratio to the right of both.
 fn bar(goal: &Goal, part: f64, y: usize, text: &mut String) {
     // Blue and orange, which the colour-blind can tell apart.
     let color = if part >= 1.0 { "#0072b2" } else { "#d55e00" };

@@ -7,14 +7,14 @@ use std::process::Command;
 
 use mbs_tests::proofs::{self, Workshop};
 use mbs_tests::tools;
-use mechanisms::verify::environment::Environment;
+use mbs_workbench::verify::environment::Environment;
 
 use super::machine;
 
-/// What generates the peers' C code, with versions.
+/// Python packages that generate the peers' C code, with versions.
 pub const REQUIREMENTS: &str = include_str!("../../proofs/peers/requirements.txt");
 
-/// What one implementation showed.
+/// Result of one implementation.
 pub struct Implementation {
     /// Largest difference from the reference.
     pub error: f64,
@@ -22,21 +22,21 @@ pub struct Implementation {
     pub times: Vec<f64>,
 }
 
-/// What a target's code showed: problems, and implementations by name.
+/// Results of a target's code: problems, and implementations by name.
 pub struct Measured {
     /// The compiler's flags in words.
     pub target: &'static str,
-    /// Mean number of waiting programs in the minute before, where the system tells it.
+    /// Mean number of waiting programs in the minute before, if the system reports it.
     pub load: Option<String>,
     /// In the order of measuring.
     pub problems: Vec<(String, Vec<(String, Implementation)>)>,
 }
 
-/// How a program is built.
+/// Build settings of a program.
 struct Target {
     /// In words.
     title: &'static str,
-    /// Directory of what is built.
+    /// Directory of the build.
     directory: &'static str,
     rust_flags: &'static str,
     c_flags: &'static str,
@@ -52,11 +52,11 @@ const TARGETS: [Target; 2] = [
     Target { title: "default target", directory: "peers-default", rust_flags: "", c_flags: "" },
 ];
 
-/// For this processor, and for the default target.
+/// Results for this processor, and for the default target.
 ///
 /// # Errors
-/// What cannot be built, and every implementation that is not as exact as `limit` asks of it: those are found before
-/// anything is timed.
+/// A message with the part that cannot be built, or with every implementation whose error exceeds `limit`. Errors are
+/// checked before anything is timed.
 pub fn all(subject: &str, rounds: &str, limit: Limit) -> Result<[Measured; 2], String> {
     let sources = sources()?;
     let [native, default] = &TARGETS;
@@ -134,7 +134,7 @@ impl Measured {
         implementations.iter().find(|(known, _)| known == name).map(|(_, implementation)| implementation)
     }
 
-    /// What is not as exact as it has to be.
+    /// Implementations whose error exceeds `limit`.
     fn faults(&self, limit: Limit) -> Vec<String> {
         let mut faults = Vec::new();
         for (problem, implementations) in &self.problems {

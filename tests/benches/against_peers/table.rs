@@ -7,7 +7,7 @@ use super::goals::Goal;
 use super::machine;
 use super::run::{Measured, REQUIREMENTS, titles};
 
-/// Where and how was measured, goals, what bounds those that are missed, then every implementation with its time and
+/// Machine and method of the measurement, goals, limits of the missed ones, then every implementation with its time and
 /// error.
 pub fn markdown(
     subject: &Subject,
@@ -37,8 +37,8 @@ pub fn markdown(
     text
 }
 
-/// The goals and what was reached.
-pub fn summary(goals: &[Goal]) -> String {
+/// Goals and ratios reached.
+fn summary(goals: &[Goal]) -> String {
     let mut text = String::from(
         "| work | ratio | 10 … 90 % | must | aim | | default target |\n|---|---|---|---|---|---|---|\n",
     );
@@ -66,7 +66,7 @@ fn waiting(native: &Measured, default: &Measured) -> String {
     }
 }
 
-/// What bounds those goals that are missed.
+/// Limits of the missed goals.
 fn reasons(goals: &[Goal], bounds: &[(&str, &str)], text: &mut String) {
     let missed = goals.iter().filter(|goal| goal.part().is_some_and(|part| part < 1.0));
     let reasons = missed.filter_map(|goal| bounds.iter().find(|(work, _)| *work == goal.work));

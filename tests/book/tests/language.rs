@@ -58,7 +58,7 @@ fn every_word_of_the_parser_stands_in_the_reference() {
     let words = words_in_code(&reference());
     let known =
         tables::statements().chain(tables::FUNCTIONS).chain(tables::referring()).chain(tables::reserved());
-    let known = known.chain(tables::later()).map(str::to_owned).chain(inner_words());
+    let known = known.chain(tables::later()).chain(tables::drawn()).map(str::to_owned).chain(inner_words());
     let missing: Vec<String> = known.filter(|word| !words.contains(word)).collect();
     assert!(missing.is_empty(), "not in book/src/language: {missing:?}");
 }
@@ -71,6 +71,7 @@ fn the_grammar_and_the_parser_know_the_same_words() {
     let known: BTreeSet<String> = tables::statements()
         .chain(tables::referring().filter(|word| !["margin", "ratio"].contains(word)))
         .chain(read_by_letters)
+        .chain(tables::drawn())
         .map(str::to_owned)
         .chain(inner_words())
         .collect();
@@ -182,7 +183,7 @@ fn the_table_of_limits_is_that_of_the_parser() {
     }
 }
 
-/// Blocks of a language in a chapter: what stands behind the language, the lines with hidden ones shown, the text behind.
+/// Blocks of a language in a chapter: the attributes after the language, the lines with hidden ones shown, the text after it.
 fn blocks<'a>(text: &'a str, language: &str) -> Vec<(&'a str, String, &'a str)> {
     let mut blocks = Vec::new();
     let mut rest = text;
@@ -242,7 +243,7 @@ fn every_faulty_example_has_the_message_that_the_reference_shows() {
 
 #[test]
 fn every_message_in_a_table_is_one_of_the_compiler() {
-    let folders = ["", "/syntax", "/model", "/equations", "/structure"];
+    let folders = ["", "/syntax", "/model", "/equations", "/structure", "/picture"];
     let sources = folders.map(|folder| files(&format!("mbs-codegen/src{folder}"), "rs")).concat();
     let source: String = sources.into_iter().map(|(_, text)| text.replace('`', "")).collect();
     let text = reference();

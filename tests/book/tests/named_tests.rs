@@ -88,7 +88,7 @@ fn commands(text: &str) -> Vec<String> {
     spans.filter(|span| span.starts_with("cargo test -p ")).map(str::to_owned).collect()
 }
 
-/// Whether the command selects a test.
+/// `true` if the command selects at least one test.
 fn selects(command: &str) -> bool {
     let mut words = command.split(' ').skip(3);
     let Some(folder) = words.next().and_then(package) else { return false };
@@ -98,6 +98,7 @@ fn selects(command: &str) -> bool {
             "--test" => target = words.next(),
             "--lib" => target = Some(word),
             "--doc" => return true,
+            "--features" => drop(words.next()),
             _ if word.starts_with("--") => {}
             _ => filter = word,
         }

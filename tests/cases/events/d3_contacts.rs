@@ -135,7 +135,7 @@ mechanism! {
     contact right { gap: 2m - x, stiffness: 4e6 }
 }
 
-/// A hundred bounces between two walls: half a period of ω in each contact, whatever the speed.
+/// A hundred bounces between two walls: half a period of ω in each contact, at any speed.
 #[test]
 fn bounces_between_two_walls_keep_their_time() {
     for speed in [0.01, 1.0, 30.0] {
@@ -194,7 +194,7 @@ mechanism! {
     contact wall { gap: p[0] + 0.2m, stiffness: 1e7 }
 }
 
-/// A pendulum that starts from the horizontal hits a wall behind its lowest point: energy is kept, and it turns back.
+/// A pendulum that starts from the horizontal hits a wall after its lowest point: energy is conserved, and it turns back.
 #[test]
 fn a_pendulum_does_not_swing_through_a_wall() {
     for (index, tolerance) in [1e-4, 1e-6, 1e-9].into_iter().enumerate() {

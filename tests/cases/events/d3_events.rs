@@ -1,7 +1,7 @@
 //! D3: events between two long steps, windows, touches, order, ends of steps, NaN.
 
 use mbs_runtime::dynamics::{Direction, DormandPrince5, DormandPrince8, Explicit, Projection, Simulation};
-use mbs_runtime::{Failure, mechanism};
+use mbs_runtime::{Failure, FailureKind, mechanism};
 
 mechanism! {
     pub mechanism Ball;
@@ -140,7 +140,7 @@ fn an_event_function_that_is_nan_is_a_failure() {
         let mut run = ball(6.0);
         let event = |t: f64, _: &[f64; 1], _: &[f64; 1]| if from <= t { f64::NAN } else { 1.0 };
         let failure = run.advance_until_event(1.0, Direction::Any, event).expect_err("no number");
-        assert_eq!(failure, Failure::NonFinite { name: "event function", line: 0 });
+        assert_eq!(failure, FailureKind::NonFinite { name: "event function", line: 0 }.without_time());
         assert!(run.t() <= from, "{}", run.t());
         // The run goes on from there.
         run.advance_to(1.0).expect("it runs");
@@ -163,7 +163,7 @@ fn what_comes_behind_an_event_is_not_told_before_it() {
     );
     assert!((run.q()[0] - 1.0_f64).abs() < 1e-9);
     let failure = run.advance_until_event(1.0, Direction::Any, |_, q, _| q[0] - 1.6).expect_err("the limit");
-    assert!(matches!(failure, Failure::BeyondLimit { .. }), "{failure}");
+    assert!(matches!(failure, Failure { kind: FailureKind::BeyondLimit { .. }, .. }), "{failure}");
 }
 
 #[test]
@@ -187,5 +187,42 @@ fn with_a_bound_no_pulse_is_too_short() {
         let mut run = ball(6.0).with_event_bound(3.0 / (width * width));
         assert!(run.advance_until_event(1.2, Direction::Any, event).expect("it runs"), "{place}");
         assert!((run.t() - (place - width * 1.5_f64.ln().sqrt())).abs() < 1e-9);
+    }
+}
+
+#[test]
+fn with_a_bound_every_passage_of_a_fast_wave_is_found_one_by_one() {
+    let rate = 1000.0;
+    let wave = |t: f64, _: &[f64; 1], _: &[f64; 1]| (rate * (t - 0.001)).sin();
+    let mut run = ball(0.0).with_event_bound(rate * rate);
+    let mut count = 0;
+    while run.advance_until_event(1.0, Direction::Any, wave).expect("it runs") {
+        let time = 0.001 + f64::from(count) * std::f64::consts::PI / rate;
+        assert!((run.t() - time).abs() < 1e-12, "{} {time}", run.t());
+        count += 1;
+    }
+    // Whole half periods in 0.999 s, and the one at 0.001 s.
+    assert_eq!(count, 318);
+}
+
+#[test]
+fn a_bound_that_asks_for_more_parts_than_are_looked_at_is_told() {
+    let mut run = ball(0.0).with_event_bound(1e24);
+    let failure =
+        run.advance_until_event(1.0, Direction::Any, |_, _, _| 1.0).expect_err("1e11 parts a second");
+    assert!(matches!(failure, Failure { kind: FailureKind::InvalidMethodParameter { .. }, .. }), "{failure}");
+}
+
+#[test]
+fn an_event_function_that_is_infinite_is_a_failure() {
+    for infinite in [f64::INFINITY, f64::NEG_INFINITY] {
+        for from in [0.0, 0.4] {
+            let event = |t: f64, _: &[f64; 1], _: &[f64; 1]| if t < from { 1.0 } else { infinite };
+            let found = ball(0.0).advance_until_event(1.0, Direction::Any, event);
+            assert!(
+                matches!(found, Err(Failure { kind: FailureKind::NonFinite { .. }, .. })),
+                "{infinite} {from} {found:?}"
+            );
+        }
     }
 }

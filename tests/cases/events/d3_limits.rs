@@ -3,7 +3,7 @@
 use mbs_runtime::dynamics::{
     DormandPrince5, DormandPrince8, Explicit, Projection, Simulation, Tolerance, VelocityTransformation,
 };
-use mbs_runtime::{Failure, mechanism};
+use mbs_runtime::{Failure, FailureKind, mechanism};
 
 mechanism! {
     pub mechanism Thrown;
@@ -26,7 +26,9 @@ fn a_limit_that_is_left_between_two_long_steps_is_told_with_its_time() {
     let method = Explicit::new(DormandPrince8, Projection::default());
     let mut run = Simulation::start(thrown(1.9), method, 0.0, [0.0; 2], [6.15, 0.0]).expect("a start");
     let failure = run.advance_to(1.2).expect_err("the ball rises to 1.928 m");
-    let Failure::BeyondLimit { time, bound, .. } = failure else { panic!("{failure}") };
+    let Failure { kind: FailureKind::BeyondLimit { bound, .. }, time: Some(time) } = failure else {
+        panic!("{failure}")
+    };
     let left = (6.15 - (6.15_f64 * 6.15 - 2.0 * G * 1.9).sqrt()) / G;
     assert!((time - left).abs() < 1e-9 && bound == 1.9, "{time} {left}");
 }
@@ -52,7 +54,7 @@ fn no_window_is_too_short_for_a_limit() {
                 run.with_tolerance(Tolerance::new(1e-6)).advance_to(1.9)
             };
             match result {
-                Err(Failure::BeyondLimit { time, .. }) => {
+                Err(Failure { kind: FailureKind::BeyondLimit { .. }, time: Some(time) }) => {
                     let left = (speed - (2.0 * G * beyond).sqrt()) / G;
                     // Roundings of the bounds, 64 ε of 10 m, and of the motion, over the speed of the passage.
                     let allowed = 3e-13 / (2.0 * G * beyond).sqrt() + 1e-12;
@@ -62,4 +64,38 @@ fn no_window_is_too_short_for_a_limit() {
             }
         }
     }
+}
+
+/// Position at which a ball leaves its range. It is thrown upwards from 1 m at 5 m/s, rises to 2.274 m and falls to −2.5 m.
+macro_rules! leaves {
+    ($($test:ident: $text:ident, $low:expr, $high:expr, $passed:expr;)*) => {$(
+        mechanism! {
+            pub mechanism $text;
+            const r: m = 0.5;
+            coord y: m = 1;
+            body ball { mass: 1, com: [r/1000, y] }
+            gravity weight { acceleration: [0, -9.81] }
+            limit height: $low <= y <= $high;
+        }
+
+        #[test]
+        fn $test() {
+            let method = Explicit::new(DormandPrince8, Projection::default());
+            let run = Simulation::start($text::<f64>::default(), method, 0.0, [1.0], [5.0]);
+            let failure = run.expect("a start").advance_to(1.5).expect_err("it leaves");
+            let Failure { kind: FailureKind::BeyondLimit { value, bound, .. }, .. } = failure else { panic!("{failure}") };
+            assert!(bound == $passed && (value - bound).abs() < 1e-12, "{value} {bound}");
+            let run = Simulation::start($text::<f32>::default(), method, 0.0, [1.0], [5.0]);
+            let failure = run.expect("a start").advance_to(1.5).expect_err("it leaves");
+            let Failure { kind: FailureKind::BeyondLimit { value, bound, .. }, .. } = failure else { panic!("{failure}") };
+            assert!((bound - $passed).abs() < 1e-6 && (value - bound).abs() < 1e-4, "f32 {value} {bound}");
+        }
+    )*};
+}
+
+leaves! {
+    a_lower_bound_that_stands_for_none_leaves_the_upper_one_where_it_is: NoLow, -1e30, 1.9, 1.9;
+    an_upper_bound_that_stands_for_none_leaves_the_lower_one_where_it_is: NoHigh, -1, 1e6, -1.0;
+    an_upper_bound_that_stands_for_none_leaves_a_lower_one_of_zero_where_it_is: AboveZero, 0, 1e30, 0.0;
+    a_bound_in_metres_that_stands_for_none_is_no_reference_length: InMetres, 0, 1e12 [m], 0.0;
 }

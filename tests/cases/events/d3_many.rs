@@ -1,8 +1,8 @@
 //! D3: many contacts and limits, prescribed rates, functions of the caller, scenes, forces that depend on multipliers.
 
-use super::counted::{Counted, operations};
+use super::counted::{Counted, counted};
 use mbs_runtime::dynamics::{DormandPrince8, Explicit, Projection, RungeKutta4, Simulation};
-use mbs_runtime::{Dynamic, Failure, Function, Mechanism, Scalar, mechanism};
+use mbs_runtime::{Dynamic, Failure, FailureKind, Function, Mechanism, Scalar, mechanism};
 
 mechanism! {
     pub mechanism Walls;
@@ -28,7 +28,7 @@ mechanism! {
     limit six: -1m <= y + 2m*exp(-((x - 1.1m)/1um)^2) <= 1m;
 }
 
-/// The tenth and the eleventh contact, and the sixth limit, are behind the first group of eight.
+/// The tenth and the eleventh contact, and the sixth limit, are after the first group of eight.
 #[test]
 fn contacts_and_limits_behind_the_first_eight_are_found() {
     let method = Explicit::new(DormandPrince8, Projection::default());
@@ -36,7 +36,9 @@ fn contacts_and_limits_behind_the_first_eight_are_found() {
         Simulation::start(Walls::<f64>::default(), method, 0.0, [1.2, 0.0], [1.0, 0.0]).expect("a start");
     // From 1.2 to 1.5, half a period of 1 ms in contact, and back: then the spike at 1.1.
     let failure = run.advance_to(3.0).expect_err("the spike");
-    let Failure::BeyondLimit { limit, time, .. } = failure else { panic!("{failure}") };
+    let Failure { kind: FailureKind::BeyondLimit { limit, .. }, time: Some(time) } = failure else {
+        panic!("{failure}")
+    };
     let back = 0.7 + core::f64::consts::PI * 1e-3;
     assert!(limit.name == "six" && (time - back).abs() < 3e-6, "{} {time} {back}", limit.name);
     let mut left =
@@ -45,7 +47,7 @@ fn contacts_and_limits_behind_the_first_eight_are_found() {
     assert!((left.q()[0] - 0.0).abs() < 1e-7 && (left.qd()[0] - 2.0).abs() < 1e-7, "{:?}", left.q());
 }
 
-/// A function of the caller, which intervals do not pass.
+/// A function of the caller, which has no interval evaluation.
 #[derive(Clone, Copy, Debug, Default)]
 struct Pulse;
 
@@ -76,7 +78,7 @@ mechanism! {
     contact wall { gap: 0.5m - pulse(x), stiffness: 1e6 }
 }
 
-/// The pulse closes the gap for 18 ms of a step of a second: less than an eighth of it, more than the resolution that is asked for.
+/// The pulse closes the gap for 18 ms of a step of a second: less than an eighth of it, more than the required resolution.
 #[test]
 fn what_calls_functions_keeps_to_the_resolution() {
     for shift in 0..20 {
@@ -161,8 +163,8 @@ mechanism! {
     limit width: -1m <= x <= 1m;
 }
 
-/// A coordinate that rests on its bound, another that swings from bound to bound: neither leaves its range, and looking for it costs
-/// what the steps cost, not thousands of parts.
+/// A coordinate that rests on its bound, another that swings from bound to bound: neither leaves its range. The search costs as
+/// much as the steps, not thousands of parts.
 #[test]
 fn what_rests_on_its_bound_is_looked_at_a_few_times() {
     let count = |least: f64| {
@@ -170,7 +172,8 @@ fn what_rests_on_its_bound_is_looked_at_a_few_times() {
         let resting = Resting { least: Counted(least) };
         let [zero, one] = [0.0, 1.0].map(Counted);
         let mut run = Simulation::start(resting, method, zero, [one, zero], [zero; 2]).expect("a start");
-        operations(|| run.advance_to(Counted(20.0)).expect("it stays within")).1 / run.counts().steps
+        let ((), operations) = counted(|| run.advance_to(Counted(20.0)).expect("it stays within"));
+        operations.total() / run.counts().steps
     };
     let (free, resting) = (count(-1.0), count(0.0));
     println!("{free} {resting} operations a step");

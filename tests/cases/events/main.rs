@@ -1,11 +1,13 @@
 //! Events, contacts and limits within a step.
 
+#[path = "../../../mbs-runtime/tests/worst_case/counted.rs"]
 mod counted;
 mod d10_settings;
 mod d21_tables;
 mod d3_contacts;
 mod d3_events;
 mod d3_fixed_steps;
+mod d3_jumps;
 mod d3_limits;
 mod d3_many;
 mod d3_open_contacts;

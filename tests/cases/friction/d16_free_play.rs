@@ -1,4 +1,4 @@
-//! D16: a rest on the edge of a free play is indifferent, whichever side the search came from, and names the coordinate.
+//! D16: an equilibrium on the edge of a free play is indifferent, from whichever side the search came, and names the coordinate.
 
 use mbs_runtime::dynamics::equilibrium;
 use mbs_runtime::{Mechanism, mechanism};

@@ -1,11 +1,11 @@
-//! D18: a contact whose gap is a table with two continuous derivatives: explicit methods run, the others say what is missing.
+//! D18: a contact whose gap is a table with two continuous derivatives: explicit methods run, the others report the missing one.
 
 use mbs_runtime::dynamics::{
     AugmentedLagrangian, Baumgarte, DormandPrince5, DormandPrince8, Explicit, Extrapolated, GeneralizedAlpha,
     Method, Penalty, Projection, Radau5, RungeKutta4, Simulation, Tolerance, VelocityTransformation,
     equilibrium, equilibrium_with_states, linearize, linearize_with_states, states_at_rest,
 };
-use mbs_runtime::{Dynamic, Failure, Function, Mechanism, Scalar, mechanism};
+use mbs_runtime::{Dynamic, Failure, FailureKind, Function, Mechanism, Scalar, mechanism};
 
 /// A straight or parabolic flank, s x + c x²/2, that knows no third derivative.
 #[derive(Clone, Copy, Default)]
@@ -72,7 +72,7 @@ fn a_gap_of_a_table_with_two_derivatives_runs_with_explicit_methods() {
             explicit_error(Explicit::new(DormandPrince5, Baumgarte::default()), slope),
             explicit_error(Explicit::new(RungeKutta4, Penalty::default()), slope),
         ];
-        // Rounding; of order 4 also what its stages take for open where each oscillation comes back to a gap of 0.
+        // Rounding; with order 4 also the error of stages that take the contact for open as an oscillation returns to a gap of 0.
         for (error, most) in errors.into_iter().zip([1e-11, 1e-11, 1e-11, 2e-10]) {
             assert!(error < most, "{slope}: {error:e}");
         }
@@ -124,7 +124,9 @@ fn a_curved_gap_agrees_with_equations_typed_by_hand() {
 }
 
 fn refused<T>(found: Result<T, Failure>) {
-    let Err(failure @ Failure::NotSmooth { missing }) = found else { panic!("not refused as it should be") };
+    let Err(failure @ Failure { kind: FailureKind::NotSmooth { missing }, .. }) = found else {
+        panic!("not refused as it should be")
+    };
     assert_eq!((missing.slope, missing.function.name), ("∂Q/∂q", "flank"));
     assert_eq!((missing.order, missing.declared), (3, 2));
     let message = failure.to_string();
@@ -185,7 +187,9 @@ fn a_damper_of_a_polyline_rests_and_has_no_small_motions() {
     assert_eq!(states_at_rest(&damped, 0.0, &rest.q, &[]), Ok([lag]));
     let method = Explicit::new(DormandPrince8, Projection::default());
     let run = Simulation::start(damped, method, 0.0, rest.q, [0.0]).expect("an explicit method");
-    let Err(Failure::NotSmooth { missing }) = linearize_with_states(&damped, run.instant(), &[]) else {
+    let Err(Failure { kind: FailureKind::NotSmooth { missing }, .. }) =
+        linearize_with_states(&damped, run.instant(), &[])
+    else {
         panic!("not refused as it should be")
     };
     assert_eq!((missing.slope, missing.function.name, missing.order), ("∂Q/∂q̇", "drag", 1));

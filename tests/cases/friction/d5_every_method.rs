@@ -4,7 +4,7 @@ use mbs_runtime::dynamics::{
     AugmentedLagrangian, Baumgarte, DormandPrince8, Explicit, Extrapolated, Formulation, GeneralizedAlpha,
     Method, Penalty, Projection, Simulation, Tolerance, Unstabilized, VelocityTransformation, inverse,
 };
-use mbs_runtime::{Dynamic, Failure, Mechanism, mechanism};
+use mbs_runtime::{Dynamic, Failure, FailureKind, Mechanism, mechanism};
 
 mechanism! {
     /// A block that slides on a guide; its friction presses it on by b of the normal force, and a load swings through zero.
@@ -37,7 +37,7 @@ fn slid(wedge: &Wedge, t: f64) -> [f64; 2] {
     [x, v]
 }
 
-/// How far place and speed are from the law after 2 s, of a run in steps of `h` (s), or with a tolerance.
+/// Error of place and speed against the law after 2 s, for a run in steps of `h` (s) or with a tolerance.
 fn error(wedge: Wedge, method: impl Method<Wedge, f64, 2, 1>, h: f64) -> Result<f64, Failure> {
     let mut run = Simulation::start_from_text(wedge, method, 0.0)?;
     for _ in 0..(2.0 / h).round() as u32 {
@@ -58,7 +58,7 @@ fn adaptive(wedge: Wedge, formulation: impl Formulation<Wedge, f64, 2, 1>) -> Re
 #[test]
 fn a_normal_force_swings_through_zero_under_every_method() {
     for b in [0.34, 0.78, 0.999, -0.78] {
-        // N grows with 1/(1 − b): pulled on, the block does not come to rest.
+        // N grows with 1/(1 − b): pulled on, the block does not stop.
         let pull = if b > 0.9 { 6000.0 } else { 40.0 };
         let wedge = Wedge { b, pull };
         let size = 1.0 + 5.0 / (1.0 - b);
@@ -70,7 +70,7 @@ fn a_normal_force_swings_through_zero_under_every_method() {
         ];
         for found in explicit {
             let error = found.unwrap_or_else(|failure| panic!("b = {b}: {failure}"));
-            // What the error estimate does not see of the kinks of |N| that steps go over.
+            // Error that the estimate misses in steps across kinks of |N|.
             assert!(error < 1e-6 * size, "b = {b}: {error:e}");
         }
         // A spring of stiffness α in place of the guide: 1/α of the force, and of 1/(1 − b) of it.
@@ -151,10 +151,19 @@ fn several_or_no_normal_forces_are_answered_so_by_every_method() {
         ]
     };
     for found in of(Wedge { b: 1.5, pull: 40.0 }, 0.0) {
-        assert!(matches!(found, Err(Failure::Locked { row, .. }) if row.name == "guide"), "{found:?}");
+        assert!(
+            matches!(found, Err(Failure { kind: FailureKind::FrictionLocked { row, .. }, .. }) if row.name == "guide"),
+            "{found:?}"
+        );
     }
     for found in of(Wedge { b: 1.5, pull: 40.0 }, 1.0) {
-        assert!(matches!(found, Err(Failure::Ambiguous { solutions: 2, all: true, .. })), "{found:?}");
+        assert!(
+            matches!(
+                found,
+                Err(Failure { kind: FailureKind::Ambiguous { solutions: 2, all: true, .. }, .. })
+            ),
+            "{found:?}"
+        );
         assert!(found.unwrap_err().to_string().contains("2 sets of forces"));
     }
 }
@@ -170,7 +179,10 @@ fn implicit_steps_stop_where_the_normal_force_stops_being_one() {
         (0..100).try_for_each(|_| run.step(1e-2)).expect_err("two solutions")
     }
     for failure in [stop(AugmentedLagrangian), stop(Extrapolated), stop(GeneralizedAlpha::default())] {
-        assert!(matches!(failure, Failure::Ambiguous { solutions: 2, .. }), "{failure}");
+        assert!(
+            matches!(failure, Failure { kind: FailureKind::Ambiguous { solutions: 2, .. }, .. }),
+            "{failure}"
+        );
     }
 }
 
@@ -221,10 +233,13 @@ fn a_norm_of_two_multipliers_is_a_normal_force_under_every_method() {
         }
     }
     for found in speeds(Collar { mu: 1.0, tilt: 2.0 }) {
-        assert!(matches!(found, Err(Failure::Locked { .. })), "{found:?}");
+        assert!(matches!(found, Err(Failure { kind: FailureKind::FrictionLocked { .. }, .. })), "{found:?}");
     }
     for found in speeds(Collar { mu: 1.0, tilt: -2.0 }) {
-        assert!(matches!(found, Err(Failure::Ambiguous { solutions: 2, .. })), "{found:?}");
+        assert!(
+            matches!(found, Err(Failure { kind: FailureKind::Ambiguous { solutions: 2, .. }, .. })),
+            "{found:?}"
+        );
     }
 }
 
@@ -293,7 +308,8 @@ fn any_other_dependence_is_solved_by_newtons_method_and_its_balances_counted() {
                     let residual = n - 10.0 - b * law(kind, n);
                     assert!(residual.abs() < 1e-12 * (1.0 + n.abs()), "{b}, {kind}: {n} leaves {residual:e}");
                 }
-                (0, Err(Failure::Locked { .. })) | (2.., Err(Failure::Ambiguous { .. })) => {}
+                (0, Err(Failure { kind: FailureKind::FrictionLocked { .. }, .. }))
+                | (2.., Err(Failure { kind: FailureKind::Ambiguous { .. }, .. })) => {}
                 (count, found) => panic!("{b}, {kind}: {count} solutions, and {found:?}"),
             }
         }
@@ -343,5 +359,8 @@ fn inverse_dynamics_solves_for_friction() {
             assert!((found.loads[0] - expected).abs() < 1e-12 * (1.0 + normal.abs()) / (1.0 - b), "{b}, {t}");
         }
     }
-    assert!(matches!(inverse(&Drawn { b: 1.5 }, 0.0, &[0.0, 0.0]), Err(Failure::Locked { .. })));
+    assert!(matches!(
+        inverse(&Drawn { b: 1.5 }, 0.0, &[0.0, 0.0]),
+        Err(Failure { kind: FailureKind::FrictionLocked { .. }, .. })
+    ));
 }

@@ -1,9 +1,9 @@
-//! D5: normal forces that change each other, N = N₀ + B |N|: found wherever there is one solution, counted where there are several.
+//! D5: normal forces that depend on each other, N = N₀ + B |N|: found if there is one solution, counted if there are several.
 //!
-//! `Locked` was the answer wherever Picard's iteration did not settle, as next to a sign change of N₀ with b = 0.34.
+//! `Locked` was the answer if Picard's iteration did not converge, as next to a sign change of N₀ with b = 0.34.
 
 use mbs_runtime::dynamics::{Explicit, Projection, RungeKutta4, Simulation};
-use mbs_runtime::{Failure, mechanism};
+use mbs_runtime::{Failure, FailureKind, mechanism};
 
 mechanism! {
     /// Pins that a cart drags along: each presses on its guide, and its friction presses the others.
@@ -91,7 +91,7 @@ fn enumerated(b: &[Vec<f64>], c: &[f64]) -> Vec<Vec<f64>> {
     found
 }
 
-/// What the runtime answers for the normal forces of `Rack`s: in the order of a text that drags at 1 m/s.
+/// Normal forces of `Rack`s from the runtime, in the order of a text that drags at 1 m/s.
 macro_rules! answered {
     ($rack:ident, $k:literal, $b:expr, $c:expr) => {{
         let (b, c): (&[Vec<f64>], &[f64]) = ($b, $c);
@@ -107,16 +107,18 @@ macro_rules! answered {
     }};
 }
 
-/// Which of both answers, and by how much a solution is off.
+/// Kind of the answer (0 locked, 1 unique, 2 all of several, 3 some of several) and relative error of a unique solution.
 fn judged(b: &[Vec<f64>], c: &[f64], answer: Result<Vec<f64>, Failure>) -> (usize, f64) {
     let truth = enumerated(b, c);
     match (truth.as_slice(), answer) {
-        ([], Err(Failure::Locked { .. })) => (0, 0.0),
+        ([], Err(Failure { kind: FailureKind::FrictionLocked { .. }, .. })) => (0, 0.0),
         ([w], Ok(lambda)) => {
             let size = w.iter().fold(0.0_f64, |size, w| size.max(w.abs()));
             (1, w.iter().zip(&lambda).fold(0.0, |error: f64, (w, found)| error.max((w - found).abs() / size)))
         }
-        (several, Err(Failure::Ambiguous { solutions, all, .. })) if several.len() > 1 => {
+        (several, Err(Failure { kind: FailureKind::Ambiguous { solutions, all, .. }, .. }))
+            if several.len() > 1 =>
+        {
             assert!(if all {
                 solutions as usize == several.len()
             } else {
@@ -146,7 +148,7 @@ fn normal_forces_that_change_each_other_agree_with_enumeration() {
     let mut worst = 0.0_f64;
     for round in 0..1600 {
         let k = 1 + round % 8;
-        // From weak to beyond what one solution can be sure of.
+        // From weak to stronger than a single solution is certain for.
         let size = [0.3, 0.9, 1.5, 4.0][round / 8 % 4] / (k as f64).sqrt();
         let b: Vec<Vec<f64>> = (0..k).map(|_| (0..k).map(|_| size * random.next()).collect()).collect();
         let c: Vec<f64> = (0..k).map(|_| random.next()).collect();

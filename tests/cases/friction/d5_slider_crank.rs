@@ -1,9 +1,10 @@
-//! D5: a slider-crank whose guide rubs: 35 of 76 coefficients stopped with `Locked` where the normal force changes its sign.
+//! D5: a slider-crank with friction in its guide: 35 of 76 coefficients stopped with `Locked` at a sign change of the normal
+//! force.
 
 use mbs_runtime::dynamics::{
     DormandPrince8, Explicit, Formulation, Projection, Simulation, Tolerance, VelocityTransformation,
 };
-use mbs_runtime::{Failure, mechanism};
+use mbs_runtime::{Failure, FailureKind, mechanism};
 
 mechanism! {
     /// A crank with a motor, a rod without mass, a slider with friction.
@@ -30,7 +31,7 @@ mechanism! {
 }
 
 /// φ̈ of the same by the free-body diagrams of slider and crank: the force S of the rod from one equation that has two pieces.
-/// None where not just one of both holds.
+/// None unless exactly one of both holds.
 fn acceleration(p: &Press, phi: f64, rate: f64) -> Option<f64> {
     let (sine, cosine) = (-p.r / p.L * phi.sin(), (1.0 - (p.r / p.L * phi.sin()).powi(2)).sqrt());
     let psi_rate = -p.r * phi.cos() * rate / (p.L * cosine);
@@ -43,7 +44,7 @@ fn acceleration(p: &Press, phi: f64, rate: f64) -> Option<f64> {
     let direction = (x_rate / p.smooth).tanh();
     let weight = 9.81 * p.m;
     let arm = p.r * (sine * phi.cos() - cosine * phi.sin());
-    // m (a φ̈ + b) = S cos ψ − μ |N| d, N = m g − S sin ψ, J φ̈ = T − S arm: S on the slider, −S on the crank.
+    // m (a φ̈ + b) = S cos ψ − μ |N| d, N = m g − S sin ψ, J φ̈ = T − S arm; S on the slider, −S on the crank.
     let roots = [1.0, -1.0].map(|side| {
         let friction = p.mu * direction * side;
         let left = -p.m * by_acceleration * arm / p.J - cosine - friction * sine;
@@ -100,7 +101,13 @@ fn a_slider_crank_turns_unless_its_forces_have_no_or_two_solutions() {
                 turning += 1;
                 worst = worst.max((found[0] - truth[0]).abs()).max((found[1] - truth[1]).abs() / 40.0);
             }
-            (Err(known), Err(Failure::Locked { time, .. } | Failure::Ambiguous { time, .. })) => {
+            (
+                Err(known),
+                Err(
+                    Failure { kind: FailureKind::FrictionLocked { .. }, time: Some(time) }
+                    | Failure { kind: FailureKind::Ambiguous { .. }, time: Some(time) },
+                ),
+            ) => {
                 late = late.max((time - known).abs());
             }
             (truth, found) => panic!("mu = {}: {found:?}, the law says {truth:?}", press.mu),

@@ -53,7 +53,7 @@ fn holds(tally: Tally) {
     assert_eq!((tally.wrong, tally.off, tally.refused), (0, 0, 0), "{tally:?}");
 }
 
-/// Numbers of seven digits: a passage that rounding leaves in doubt is refused, and so is each step behind it until the crank is back.
+/// Numbers of seven digits: a passage that rounding makes doubtful is refused, and so is each step until the crank is back.
 fn holds_in_single(tally: Tally) {
     assert!(tally.passages > 100, "{tally:?}");
     assert_eq!((tally.wrong, tally.off), (0, 0), "{tally:?}");
@@ -130,6 +130,17 @@ fn lanes_keep_their_assemblies() {
     let rate = in_lanes::<_, f64, 3>(AnglesByRate::<Lanes<f64, 4>>::default());
     for tally in [angles, points, rate] {
         assert_eq!((tally.wrong, tally.off, tally.refused), (0, 0, 0), "{tally:?}");
+    }
+}
+
+#[test]
+fn lanes_keep_their_assemblies_in_single_precision() {
+    let angles = in_lanes::<_, f32, 2>(AnglesByInputInARow::<Lanes<f32, 4>>::default());
+    let points = in_lanes::<_, f32, 4>(NaturalByTimeInARow::<Lanes<f32, 4>>::default());
+    let rate = in_lanes::<_, f32, 3>(AnglesByRate::<Lanes<f32, 4>>::default());
+    for tally in [angles, points, rate] {
+        assert_eq!((tally.wrong, tally.off), (0, 0), "{tally:?}");
+        assert!(25 * tally.refused <= tally.steps, "{tally:?}");
     }
 }
 

@@ -118,7 +118,7 @@ fn turned(value: f64) -> Signal<f64> {
     Signal { value, ..Signal::default() }
 }
 
-/// The point where both cranks stand at `angle` (rad): the rods are 2 m apart there.
+/// The point with both cranks at `angle` (rad): the rods are 2 m apart there.
 fn above(angle: f64) -> [f64; 2] {
     [1.0 + angle.cos(), 0.44_f64.sqrt() + angle.sin()]
 }

@@ -28,7 +28,7 @@ fn restored<S: Case<R, N> + Copy, R: Real, const N: usize>(
     tally.take(linkage, theta, side, R::EPSILON.to_f64(), point);
 }
 
-/// Saved beside a change point, and on it; restored on either side of it.
+/// Saved next to a change point, and at it; restored on either side of it.
 fn around_change_points<S: Case<R, N> + Copy, R: Real, const N: usize>(mechanism: S) -> Tally {
     let mut tally = Tally::default();
     let mut random = Random(17);

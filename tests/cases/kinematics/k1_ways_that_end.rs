@@ -1,6 +1,8 @@
-//! K1: ways that end before the position that is sought: at a jump, or where the budget ends; and functions replaced on them.
+//! K1: homotopies that end before the required position, at a jump or at the end of the budget; functions replaced on the way.
 
-use mbs_runtime::{Budget, Failure, Function, Real, Scalar, Step, Stepper, mechanism};
+use core::f64::consts::TAU;
+
+use mbs_runtime::{Budget, Failure, FailureKind, Function, Real, Scalar, Step, Stepper, mechanism};
 
 use crate::linkages::follow::*;
 use crate::linkages::texts::*;
@@ -15,7 +17,7 @@ mechanism! {
     constraint closure { 1m*unit(law(t)) + 2.5m*unit(p2) == [3.5m, 0] + 2m*unit(p3); }
 }
 
-/// The time from `start` (rad) on, and a step of `by` (rad) behind `at` (s).
+/// The time from `start` (rad) on, and a step of `by` (rad) after `at` (s).
 #[derive(Clone, Copy, Debug)]
 struct Law {
     start: f64,
@@ -39,7 +41,7 @@ fn bars(theta: f64, side: f64) -> [f64; 2] {
     [(b[1] - tip[1]).atan2(b[0] - tip[0]), b[1].atan2(b[0] - STRETCHED.ground)]
 }
 
-/// The distance of the point between coupler and rocker from where it belongs at crank angle `theta` (rad).
+/// Distance of the point between coupler and rocker from its exact position at crank angle `theta` (rad).
 fn error<R: Real>(stepper: &Stepper<Led<Law, R>, R, 2>, theta: f64, side: f64) -> f64 {
     let p3 = stepper.q()[1].to_f64();
     distance([STRETCHED.ground + 2.0 * p3.cos(), 2.0 * p3.sin()], STRETCHED.point(theta, side))
@@ -63,7 +65,10 @@ fn a_jump_is_bracketed<R: Real>(open: f64) {
                 }
                 let before = *stepper.q();
                 let failure = stepper.advance_to(R::constant(11.0 * h)).expect_err("a jump");
-                let Failure::Discontinuous { row, part, time } = failure else { panic!("{by} {failure}") };
+                let Failure { kind: FailureKind::Discontinuous { row, part }, time: Some(time) } = failure
+                else {
+                    panic!("{by} {failure}")
+                };
                 assert!(row.name.starts_with("closure"), "{row:?}");
                 // Found as narrowly as values of the way differ by more than their rounding.
                 assert!((part - share).abs() < 1e4 * R::EPSILON.to_f64(), "{part} {share}");
@@ -84,7 +89,7 @@ fn a_function_that_jumps_between_two_instants_is_refused_with_its_place() {
     a_jump_is_bracketed::<f32>(2e-4);
 }
 
-/// The time from 0.9 rad on, at ten times the speed behind `at` (s), or lifted by 0.6 rad within some `width` (s) there.
+/// The time from 0.9 rad on, at ten times the speed after `at` (s), or lifted by 0.6 rad within some `width` (s) there.
 #[derive(Clone, Copy, Debug)]
 struct Sudden {
     at: f64,
@@ -162,7 +167,7 @@ fn a_function_replaced_between_steps_keeps_the_assembly() {
     }
 }
 
-/// A jump of the crank in steps of a small budget: how many it takes.
+/// Number of steps of a small budget that a jump of the crank takes.
 fn resumed(linkage: &Linkage, from: f64, to: f64, side: f64, newton: u32) -> u32 {
     let mut stepper: Stepper<_, f64, 2> =
         assembled(AnglesByInputInARow::<f64>::default(), linkage, from, side);
@@ -170,12 +175,12 @@ fn resumed(linkage: &Linkage, from: f64, to: f64, side: f64, newton: u32) -> u32
     let mut last = -1.0;
     for count in 1..1_000 {
         match stepper.step(1e-3, Budget { newton, fallback: 0 }) {
-            Step::Refused(Failure::OverBudget { part, .. }) => {
-                // Each goes on from where the one before came to, so none stands still for long.
+            Step::Refused(Failure { kind: FailureKind::OverBudget { part, .. }, .. }) => {
+                // Each continues where the one before ended, so none stays in place for long.
                 assert!((0.0..1.0).contains(&part), "{part}");
                 last = part;
             }
-            Step::Refused(Failure::NotConverged { .. }) if count == 1 => {}
+            Step::Refused(Failure { kind: FailureKind::NotConverged { .. }, .. }) if count == 1 => {}
             Step::Refused(failure) => panic!("{failure}"),
             Step::Degraded { .. } => {}
             Step::Done(_) => {
@@ -215,12 +220,50 @@ fn a_way_that_once_stood_still_is_resumed() {
     assert!(count < 40, "{count}");
 }
 
+/// A crank commanded to advance by `turns` whole turns, then by a tenth of a radian.
+fn too_far<R: Real>(linkage: &Linkage, turns: f64, side: f64)
+where
+    AnglesByInputInARow<R>: Case<R, 2>,
+{
+    let from = linkage.centres.first().unwrap_or(&1.0) + 1.3;
+    let mut stepper: Stepper<_, R, 2> = assembled(AnglesByInputInARow::<R>::default(), linkage, from, side);
+    let before = (*stepper.q(), *stepper.qd(), *stepper.qdd(), stepper.t());
+    stepper.change(|crank| crank.theta.value = R::constant(from + turns * TAU));
+    let failure = stepper.advance(R::constant(1e-3)).expect_err("more pieces than a way has");
+    let name = linkage.name;
+    let Failure { kind: FailureKind::NotFollowed { part, .. }, time: Some(time) } = failure else {
+        panic!("{name} {turns} {side}: {failure}")
+    };
+    println!("{name} {turns} {side}: {part}");
+    assert!((0.0..1.0).contains(&part), "{name} {turns} {side}: {part}");
+    assert!((time - 1e-3).abs() < 1e-9, "{time}");
+    assert_eq!((*stepper.q(), *stepper.qd(), *stepper.qdd(), stepper.t()), before);
+    stepper.change(|crank| crank.theta.value = R::constant(from + 0.1));
+    stepper.advance(R::constant(1e-3)).expect("a step next to where it stood");
+    let point = AnglesByInputInARow::<R>::point(linkage, stepper.q().map(R::to_f64));
+    let right = distance(point, linkage.point(from + 0.1, side));
+    // Sixty-four roundings over the margin, a third.
+    assert!(right < 200.0 * R::EPSILON.to_f64(), "{name} {turns} {side}: {right}");
+}
+
+#[test]
+fn a_way_of_more_pieces_than_are_followed_is_refused_and_changes_nothing() {
+    for linkage in LINKAGES {
+        for side in [1.0, -1.0] {
+            // From a turn a piece of rounding in single precision on, the pieces end before the evaluations do.
+            too_far::<f64>(&linkage, 3e3, side);
+            too_far::<f64>(&linkage, -3e5, side);
+            too_far::<f32>(&linkage, 3e3, side);
+        }
+    }
+}
+
 #[test]
 fn a_budget_too_small_for_any_part_of_a_way_says_so() {
     let mut stepper: Stepper<_, f64, 2> =
         assembled(AnglesByInputInARow::<f64>::default(), &STRETCHED, 1.0, 1.0);
     stepper.change(|crank| crank.theta.value = 2.5);
-    let Step::Refused(Failure::OverBudget { evaluations: 3, required: 8, .. }) =
+    let Step::Refused(Failure { kind: FailureKind::OverBudget { evaluations: 3, required: 9, .. }, .. }) =
         stepper.step(1e-3, Budget { newton: 3, fallback: 0 })
     else {
         panic!("refused with what is missing");

@@ -1,4 +1,4 @@
-//! K2: thresholds of the way that did not scale with the number type; `f32` ended in the other assembly with `Ok`.
+//! K2: thresholds of the homotopy that did not scale with the number type; `f32` ended in the other assembly with `Ok`.
 
 use core::f64::consts::PI;
 
@@ -8,7 +8,7 @@ use crate::linkages::follow::assembled;
 use crate::linkages::texts::{AnglesBySine, Case};
 use crate::linkages::{PARALLELOGRAM, distance};
 
-/// One step over the change point at π; the distance of the point between coupler and rocker from where it belongs.
+/// One step over the change point at π; the distance of the point between coupler and rocker from its exact position.
 fn error<R: Real>(from: f64, to: f64, side: f64) -> f64
 where
     AnglesBySine<R>: Case<R, 3>,

@@ -1,4 +1,4 @@
-//! K5: accelerations at margins of 0.01 to 0.1 had 7 to 9 digits: what Newton's method left of the position was seen in them.
+//! K5: accelerations at margins of 0.01 to 0.1 had 7 to 9 digits because of the residual of Newton's method in the position.
 
 use mbs_runtime::{Batch, Budget, Kinematic, Lanes, Step, Stepper, mechanism};
 
@@ -45,8 +45,8 @@ fn exact(theta: f64) -> [f64; 3] {
     [cosine + root, -sine - product / root, acceleration]
 }
 
-/// Steps to a place before the end of the range, each from a place farther off: the mechanism's margin there with the error
-/// of its acceleration, relative to it.
+/// Results of `step` for 3000 positions (m, distance to the end of the range at 1) and step lengths, which begin farther
+/// away.
 fn errors<X>(mut step: impl FnMut(f64, f64) -> X) -> Vec<X> {
     let mut seed = 12345_u64;
     let places = (0..3000).map(|k| {
@@ -69,10 +69,10 @@ fn assembled<S: Kinematic<f64, N> + Default, const N: usize>(t: f64) -> Stepper<
     Stepper::assemble(mechanism, guess, t).expect("it assembles")
 }
 
-/// The error that is allowed at a margin μ: rounding of the rows over μ², and what is left there that is not worth a further step.
+/// Largest allowed error at a margin μ: rounding of the rows over μ², and a residual that is not worth a further step.
 ///
-/// Rounding: rows of some four terms are wrong by 3 ε at most, and a residual r by 6 r/μ² in the acceleration. Left: 1e-11 from a
-/// margin of 0.017 on.
+/// Rounding: rows of some four terms have errors of 3 ε at most, and a residual r causes 6 r/μ² in the acceleration. Residual:
+/// 1e-11 from a margin of 0.017 on.
 fn allowed(margin: f64) -> f64 {
     let rounding = 30.0 * f64::EPSILON / (margin * margin);
     rounding.max(1e-11_f64.min(64.0 * rounding))
@@ -106,7 +106,7 @@ fn steps_of_bounded_work_and_lanes_keep_them_too() {
         (step, stepper.t(), stepper.margin(), stepper.qdd()[2])
     });
     for (step, t, margin, acceleration) in stepped {
-        // A budget may be too small for a step that long; what is made is right.
+        // A budget may be too small for a step that long; the accepted ones are right.
         if matches!(step, Step::Done(_)) {
             assert!(error(acceleration, t) < allowed(margin), "{margin}: {:e}", error(acceleration, t));
         }

@@ -1,4 +1,4 @@
-//! K6: a declared branch was refused step after step behind a place where two assemblies nearly meet.
+//! K6: a declared branch was refused step after step after a position at which two assemblies nearly meet.
 
 use mbs_runtime::{Real, Stepper, mechanism};
 
@@ -49,7 +49,7 @@ const STEPS: [f64; 7] = [0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1.0];
 /// Distances of the pivot (m): the pin passes it at 1 mm to 1 µm, on one side and the other.
 const PIVOTS: [f64; 6] = [0.101, 0.1001, 0.100001, 0.0999, 0.09999, 0.099999];
 
-/// The first step behind which the lever is wrong, or that fails.
+/// The first step after which the lever is wrong, or that fails.
 fn wrong<R: Real>(
     d: f64,
     step: f64,

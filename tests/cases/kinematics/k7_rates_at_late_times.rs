@@ -1,4 +1,4 @@
-//! K7: a drive that prescribes a rate gained speed at late times, where the step between two rounded times is not the one asked for.
+//! K7: a drive that prescribes a rate gained speed at late times, at which the difference of two rounded times is not the step.
 
 use mbs_runtime::{Batch, Budget, Lanes, Real, Step, Stepper, mechanism};
 

@@ -1,8 +1,8 @@
-//! K7: a step that ends exactly on a change point was told as one that did not converge in natural coordinates.
+//! K7: a step that ends exactly at a change point was reported as one that did not converge in natural coordinates.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use mbs_runtime::{Failure, Kinematic, Real, Stepper, mechanism};
+use mbs_runtime::{Failure, FailureKind, Kinematic, Real, Stepper, mechanism};
 
 mechanism! {
     /// A parallelogram by the points of its joints, its crank turned by the time.
@@ -54,7 +54,7 @@ mechanism! {
     constraint rod { norm([x, 0] - A) == 1m; }
 }
 
-/// What a step of such a length exactly onto a singular place is told as: (singular, right positions, others).
+/// Results of steps that end exactly at a singular position, as numbers of (singular, right positions, others).
 fn steps_onto<S: Kinematic<R, N>, R: Real, const N: usize>(
     start: impl Fn() -> Stepper<S, R, N>,
     place: f64,
@@ -74,7 +74,7 @@ fn steps_onto<S: Kinematic<R, N>, R: Real, const N: usize>(
             }
             let before = *stepper.q();
             match turn(&mut stepper, R::constant(place)) {
-                Err(Failure::Singular { margin, required, .. }) => {
+                Err(Failure { kind: FailureKind::Singular { margin, required, .. }, .. }) => {
                     assert!(margin < required && *stepper.q() == before);
                     told[0] += 1;
                 }

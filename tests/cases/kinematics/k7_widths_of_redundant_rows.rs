@@ -1,6 +1,8 @@
-//! K7: a redundant row that is off by the digits of its data was refused, and no text could say how far it may be off.
+//! K7: a redundant row with an error of the size of its data's digits was refused, and no text could give an allowed error.
 
-use mbs_runtime::{Budget, Failure, Lanes, Level, Real, Step, Stepper, mechanism};
+use mbs_runtime::{
+    Batch, Budget, DerivativeOrder, Failure, FailureKind, Lanes, Real, Step, Stepper, mechanism,
+};
 
 mechanism! {
     /// A plate on three cranks, of which the third is longer by `error`.
@@ -44,7 +46,7 @@ mechanism! {
 
 const GUESS: [f64; 4] = [0.5, 0.5, 0.5, 0.0];
 
-/// What a crank of such a length does to the angle of the plate: least squares of four rows for three angles, to first order.
+/// Changes of three angles and residuals of four rows caused by a crank's length error: least squares to first order.
 ///
 /// At ψ = 0, α = β = γ the rows' Jacobian in (β, γ, ψ) is written by hand and its normal equations solved.
 fn least_squares(alpha: f64, error: f64) -> ([f64; 3], [f64; 4]) {
@@ -84,7 +86,10 @@ fn what_data_of_fifteen_digits_leave_is_no_contradiction() {
         }
     }
     let found = Stepper::assemble(Exact::<f64> { error: 3e-12 }, GUESS, 0.0);
-    assert!(matches!(found, Err(Failure::Inconsistent { level: Level::Position, .. })));
+    assert!(matches!(
+        found,
+        Err(Failure { kind: FailureKind::Inconsistent { level: DerivativeOrder::Position, .. }, .. })
+    ));
 }
 
 #[test]
@@ -110,7 +115,7 @@ fn rows_within_their_width_are_solved_by_least_squares() {
                 "{open:?} {rest:?}"
             );
             largest = open[..4].iter().fold(largest, |largest, open| largest.max(open.abs()));
-            // Rates of the plate are those of the exact one, but for what the width does to them.
+            // Rates of the plate are those of the exact one, but for the effect of the width.
             assert!((stated.qd()[1] - stated.qd()[0]).abs() < 1e2 * error.abs() + 1e-12);
         }
         assert!(largest <= 1e-6, "no row is open by more than the width: {largest}");
@@ -119,16 +124,16 @@ fn rows_within_their_width_are_solved_by_least_squares() {
 
 #[test]
 fn rows_beyond_their_width_are_refused() {
-    for (error, play) in
-        [(1e-5, 1e-6), (1e-4, 1e-5), (1e-9, 1e-10), (1e-3, 0.0), (1e-3, f64::NAN), (1e-3, -1.0)]
-    {
+    for (error, play) in [(1e-5, 1e-6), (1e-4, 1e-5), (1e-9, 1e-10), (1e-3, 0.0), (1e-3, f64::NAN)] {
         let found = Stepper::assemble(Stated::<f64> { error, play }, GUESS, 0.0);
         if play.is_nan() {
             assert!(found.is_err());
             continue;
         }
-        let Err(Failure::Inconsistent { residual, required, .. }) = found else { panic!("{error} {play}") };
-        assert!(residual > required && required < play.max(0.0) + 2e-13, "{residual} {required}");
+        let Err(Failure { kind: FailureKind::Inconsistent { residual, required, .. }, .. }) = found else {
+            panic!("{error} {play}")
+        };
+        assert!(residual > required && required < play + 2e-13, "{residual} {required}");
     }
 }
 
@@ -146,12 +151,12 @@ fn a_width_that_is_left_in_motion_is_refused_there() {
         };
         let alpha = 0.5 + 0.4 * (2.0 * t).sin();
         let rest = least_squares(alpha, 1e-5).1.iter().fold(0.0_f64, |largest, rest| largest.max(rest.abs()));
-        // Where the least squares of first order leave the width, but for their second order.
+        // Refused if the residual of first order exceeds the width; differences of second order are not judged.
         if (rest - width).abs() > 1e-8 {
             assert_eq!(refused.is_some(), rest > width, "{t}: {rest} of {width}: {refused:?}");
         }
         if let Some(failure) = refused {
-            assert!(matches!(failure, Failure::Inconsistent { .. }), "{failure:?}");
+            assert!(matches!(failure, Failure { kind: FailureKind::Inconsistent { .. }, .. }), "{failure:?}");
             outcomes[1] += 1;
             if stated.is_err() {
                 let next = 0.5 + 0.4 * (2.0 * (t + 0.01)).sin();
@@ -183,7 +188,7 @@ fn natural_coordinates_budgets_and_lanes_have_the_same_width() {
     }
     assert!(matches!(
         Stepper::assemble(Points::<f64> { error: 1e-5 }, guess, 0.0),
-        Err(Failure::Inconsistent { .. })
+        Err(Failure { kind: FailureKind::Inconsistent { .. }, .. })
     ));
     let lanes = Stated::<Lanes<f64, 4>> {
         error: Lanes([0.0, 1e-7, 1e-5, 1e-7]),
@@ -210,4 +215,33 @@ fn single_precision_has_widths_too() {
     }
     assert!(assembles::<f32>(1e-4, 1e-4) && !assembles::<f32>(1e-3, 1e-4));
     assert!(assembles::<f64>(1e-4, 1e-4) && !assembles::<f64>(1e-3, 1e-4));
+}
+
+#[test]
+fn a_width_below_zero_is_refused_by_its_row() {
+    let refused = |failure: Failure| {
+        assert!(
+            matches!(failure, Failure { kind: FailureKind::Negative { value: -1e-6, .. }, .. }),
+            "{failure}"
+        );
+        let message = failure.to_string();
+        assert!(message.starts_with("the width of row `second.0` (line "), "{message}");
+        assert!(message.contains(") is -1e-6: "), "{message}");
+    };
+    let below = Stated { error: 0.0, play: -1e-6 };
+    refused(Stepper::assemble(below, GUESS, 0.0).map(|_| ()).expect_err("a width below zero"));
+    let mut stated = Stepper::assemble(Stated { error: 0.0, play: 1e-6 }, GUESS, 0.0).expect("an assembly");
+    stated.change(|stated| stated.play = -1e-6);
+    refused(stated.advance(0.01).expect_err("a width below zero"));
+    stated.change(|stated| stated.play = 0.0);
+    stated.advance(0.01).expect("a width of zero");
+    let play = Lanes([1e-6, -1e-6, 0.0, 1e-6]);
+    let lanes = Stated { error: Lanes([0.0; 4]), play };
+    let mut lanes = Batch::assemble_each(lanes, &[GUESS; 4], [0.0; 4]).expect("other lanes");
+    refused(lanes.failures()[1].expect("a width below zero in a lane"));
+    assert!([0, 2, 3].iter().all(|lane| lanes.failures()[*lane].is_none()));
+    lanes.change(|stated| stated.play = Lanes([-1e-6, 1e-6, 0.0, 1e-6]));
+    let steps = lanes.advance_to([0.01; 4]);
+    refused(steps[0].expect_err("a width below zero in a lane"));
+    assert!(steps[2].is_ok() && steps[3].is_ok());
 }

@@ -14,3 +14,4 @@ mod k6_declared_branch_near_a_change_point;
 mod k7_rates_at_late_times;
 mod k7_singular_exactly;
 mod k7_widths_of_redundant_rows;
+mod t8_lanes_begin_at_their_own_values;

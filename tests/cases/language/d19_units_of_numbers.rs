@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use mbs_codegen::expand_source;
 use mbs_runtime::{Dynamic, Mechanism, Stepper, mechanism};
 
-/// What is wrong with a text, if anything.
+/// Messages about a text; empty if it is right.
 fn report(statement: &str) -> String {
     let text = format!(
         "mechanism M; param L: m = 0.5; param n: 1 = 3; coord phi: rad = 0.1; \

@@ -1,9 +1,9 @@
-//! D1: `dot(rotate(e, [1, 0, 0]), [0, 1, 0]) == 0` was said to repeat e·e = 1: all vectors that were tried fulfil it.
+//! D1: `dot(rotate(e, [1, 0, 0]), [0, 1, 0]) == 0` was reported to repeat e·e = 1, because all tried vectors fulfil it.
 
 use mbs_codegen::{expand_source, structure_of};
 use mbs_runtime::{Stepper, mechanism};
 
-/// What is wrong with rows on the parameters of a body, if anything.
+/// Messages about rows on the parameters of a body; empty if they are right.
 fn report(rows: &str) -> String {
     let text = format!(
         "mechanism M; coord e: [1; 4] = [1, 0, 0, 0]; \

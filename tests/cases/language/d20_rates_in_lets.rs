@@ -92,7 +92,7 @@ fn a_rate_in_a_let_is_that_of_the_place_where_it_is_used() {
     }
 }
 
-/// What is wrong with a text whose `let`s are rates.
+/// Messages about a text whose `let`s are rates; empty if it is right.
 fn report(statement: &str) -> String {
     let text = format!(
         "mechanism M; coord x: m = 0.1; coord y: m = 0.2; let u = v; let v = der(x); let a = der(u); let b = der2(y); \

@@ -1,4 +1,4 @@
-//! K8: `function Some|Ok|Err|None` and `mechanism gen` gave errors of the compiler in code that nobody sees.
+//! K8: `function Some|Ok|Err|None` and `mechanism gen` gave errors of the compiler in emitted code.
 
 use std::collections::BTreeSet;
 
@@ -6,8 +6,8 @@ use mbs_codegen::expand_source;
 use mbs_runtime::{Function, Mechanism, Scalar, Stepper, mechanism};
 use proc_macro2::{TokenStream, TokenTree};
 
-/// Keywords of all editions, reserved and weak ones; words of the language; names of the prelude, of primitive types and of
-/// what the emitted code or the runtime names.
+/// Keywords of all editions, reserved and weak ones; words of the language; names of the prelude, of primitive types, of the
+/// emitted code and of the runtime.
 const NAMES: &str = "as break const continue crate else enum extern false fn for if impl in let loop match mod move mut \
     pub ref return self Self static struct super trait true type unsafe use where while async await dyn abstract become \
     box do final macro override priv typeof unsized virtual yield try gen union auto macro_rules raw safe default \
@@ -15,7 +15,7 @@ const NAMES: &str = "as break const continue crate else enum extern false fn for
     independent gravity periodic redundant rates at on of \
     Some None Ok Err Option Result Vec String Box Copy Clone Debug Default Drop Fn From Into Iterator Send Sync Sized \
     PartialEq Eq Ord ToString f64 f32 usize u8 i32 bool str char core std alloc mbs_runtime \
-    T S R N M K Scalar Function Mechanism Kinematic Dynamic Partitioned Whole Lanes Entry Signal Phase Parameters Position \
+    T S R N M K Scalar Function Mechanism Kinematic Dynamic Partitioned AllEffects Lanes Entry Signal Phase Parameters Position \
     Factors Coordinates PhantomData new get set phases lane scalar coordinate value parameters position q qd x _ \
     __S __Parameters __scene __mbs";
 
@@ -23,7 +23,7 @@ fn names() -> impl Iterator<Item = &'static str> {
     NAMES.split_whitespace()
 }
 
-/// Whether a word stands among tokens as an identifier that is not raw.
+/// `true` if the tokens contain the word as an identifier that is not raw.
 fn has_word(tokens: TokenStream, word: &str) -> bool {
     tokens.into_iter().any(|tree| match tree {
         TokenTree::Group(group) => has_word(group.stream(), word),
@@ -32,7 +32,7 @@ fn has_word(tokens: TokenStream, word: &str) -> bool {
     })
 }
 
-/// What a text expands to is Rust, or its faults are told at the name, each with a cure. Returns whether it is Rust.
+/// Checks that a text expands to Rust, or that its faults are reported at the name, each with a cure. `true` if it is Rust.
 fn is_rust_or_a_fault_of_ours(text: &str, name: &str) -> bool {
     match expand_source(text) {
         Ok(items) => {
@@ -57,7 +57,7 @@ fn refused(statement: impl Fn(&str) -> String) -> BTreeSet<&'static str> {
     names().filter(|name| !is_rust_or_a_fault_of_ours(&statement(name), name)).collect()
 }
 
-/// What nothing that becomes a name of Rust can be called, and what else is kept.
+/// Names refused for everything that becomes a name of Rust, and `more`.
 fn kept(more: &[&'static str]) -> BTreeSet<&'static str> {
     ["self", "Self", "super", "crate", "_"].iter().chain(more).copied().collect()
 }
@@ -69,7 +69,7 @@ fn every_name_of_a_mechanism_a_scene_or_a_function_works_or_is_refused_by_us() {
     let found = refused(|name| {
         format!("mechanism Machine; coord y: m; effect one {{ drive d: y == 1m; }} scene {name} = one;")
     });
-    assert_eq!(found, kept(&["Whole", "Coordinates", "__S", "__Parameters", "__scene", "__mbs"]));
+    assert_eq!(found, kept(&["AllEffects", "Coordinates", "__S", "__Parameters", "__scene", "__mbs"]));
     let found = refused(|name| {
         format!("mechanism Machine; function {name}: m(1), C2; coord y: m; drive d: y == {name}(t/1s);")
     });
@@ -159,7 +159,7 @@ impl<T: Scalar> Function<T> for Square {
     }
 }
 
-/// What a caller may have beside the mechanism.
+/// A constant of the caller next to the mechanism.
 #[allow(non_upper_case_globals, dead_code, reason = "it must not be taken for an argument")]
 const lift: f64 = 1.0;
 

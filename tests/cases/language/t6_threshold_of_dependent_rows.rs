@@ -1,4 +1,4 @@
-//! T6: the threshold of `Stepper::redundancy` times 1000 was noticed by no test.
+//! T6: no test noticed a threshold of `Stepper::redundancy` that is 1000 times as large.
 
 use mbs_runtime::{Real, Stepper, mechanism};
 
@@ -13,7 +13,7 @@ mechanism! {
     constraint third redundant { x - y == 0m; }
 }
 
-/// The rows that follow from others where of the second so much is its own, in parts of its length and of √ε.
+/// The rows that follow from others. The independent part of the second row is `share` times √ε of its length.
 fn dependent<R: Real>(share: f64) -> Vec<&'static str> {
     // Of (1, 1 + δ) the part across (1, 1) is δ/2 of its length, to first order.
     let off = R::constant(2.0 * share) * R::EPSILON.sqrt();

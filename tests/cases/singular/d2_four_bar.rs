@@ -1,4 +1,4 @@
-//! D2: a four-bar whose bars 1/2.5/2/3.5 come in line once a turn, where plain steps go over to its other assembly.
+//! D2: a four-bar whose bars 1/2.5/2/3.5 come in line once a turn, at which plain steps change to its other assembly.
 
 use mbs_runtime::dynamics::{
     DormandPrince8, Explicit, Formulation, Projection, RungeKutta4, Simulation, Tolerance,
@@ -41,7 +41,7 @@ fn inertia_and_potential(angle: f64) -> [f64; 2] {
 }
 
 /// The time (s) that the crank takes from 0.5 rad at `speed` (rad/s) to `end` (rad): the quadrature of 1/φ̇, φ̇ from the energy.
-fn time(speed: f64, end: f64) -> f64 {
+pub fn time(speed: f64, end: f64) -> f64 {
     // Gauss's points and weights of order 10; panels end where the bars are in line.
     const POINTS: [(f64, f64); 5] = [
         (0.0, 0.568_888_888_888_888_9),
@@ -73,7 +73,7 @@ fn time(speed: f64, end: f64) -> f64 {
 
 const SECONDS: f64 = 10.0;
 
-/// Error of the crank's angle (rad) after ten seconds, and the energy that is not accounted for (J).
+/// Error of the crank's angle (rad) after ten seconds, and the energy defect (J).
 fn judged(speed: f64, angle: f64, rate: f64, defect: f64) -> [f64; 2] {
     [((time(speed, angle) - SECONDS) * rate).abs(), defect.abs()]
 }
@@ -99,9 +99,8 @@ where
 fn a_four_bar_with_its_bars_in_line_stays_on_its_branch() {
     // Errors of the energy come back as errors of time over ten seconds: 1e3 times the tolerance of a step.
     const ANGLE: f64 = 1e3;
-    // Next to the rounding of the rows a run may say that it decides; most go on.
-    for (tolerance, most_refused) in [(1e-7, 0), (1e-9, 0), (1e-11, 12)] {
-        let (mut largest, mut refused) = ([0.0_f64; 2], 0);
+    for tolerance in [1e-7, 1e-9, 1e-11] {
+        let mut largest = [0.0_f64; 2];
         for k in 0..16 {
             let speed = 6.0 + 0.02 * f64::from(k);
             let runs = [
@@ -109,18 +108,16 @@ fn a_four_bar_with_its_bars_in_line_stays_on_its_branch() {
                 adaptive::<_, _, 3, 2>(FourBar { speed }, VelocityTransformation, speed, tolerance),
             ];
             for run in runs {
-                match run {
-                    Ok([angle, defect]) => largest = [largest[0].max(angle), largest[1].max(defect)],
-                    Err(Failure::Undecided { .. }) => refused += 1,
-                    Err(failure) => panic!("{speed} rad/s, {tolerance:e}: {failure}"),
-                }
+                let [angle, defect] =
+                    run.unwrap_or_else(|failure| panic!("{speed} rad/s, {tolerance:e}: {failure}"));
+                largest = [largest[0].max(angle), largest[1].max(defect)];
             }
         }
         println!(
-            "four-bar, tolerance {tolerance:e}: angle {:.1e} rad, energy {:.1e} J, {refused} of 32 refused",
+            "four-bar, tolerance {tolerance:e}: angle {:.1e} rad, energy {:.1e} J",
             largest[0], largest[1]
         );
-        assert!(largest.iter().all(|error| *error < ANGLE * tolerance) && refused <= most_refused);
+        assert!(largest.iter().all(|error| *error < ANGLE * tolerance));
     }
 }
 
@@ -134,7 +131,7 @@ fn fixed_steps_take_a_four_bar_through_positions_in_line_on_its_branch() {
             refused += 1;
             continue;
         }
-        // Of order 4: what a smooth motion leaves at 6000 steps, less at more.
+        // Of order 4: the error of a smooth motion at 6000 steps, smaller at more.
         let coarse = (6000.0 / f64::from(count)).powi(4);
         let found = judged(6.0, run.q()[0], run.qd()[0], run.balance().defect);
         largest = [largest[0].max(found[0] / coarse), largest[1].max(found[1])];
@@ -143,6 +140,6 @@ fn fixed_steps_take_a_four_bar_through_positions_in_line_on_its_branch() {
         "four-bar, 120 fixed step counts: angle {:.1e}, energy {:.1e} J, {refused} refused",
         largest[0], largest[1]
     );
-    // Of 60 J, and of order 4: what a smooth motion leaves at 6000 steps. Steps next to positions in line are taken in parts.
+    // Of 60 J, and of order 4: the error of a smooth motion at 6000 steps. Steps next to positions in line are taken in parts.
     assert!(largest[1] < 1e-6 && largest[0] < 1e-6 && refused == 0);
 }

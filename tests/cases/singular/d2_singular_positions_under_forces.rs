@@ -16,7 +16,7 @@ const SECONDS: f64 = 10.0;
 /// The default of adaptive steps.
 const TOLERANCE: f64 = 1e-9;
 
-/// Largest distance (m) of the first head from where it should be after ten seconds.
+/// Largest distance (m) of the first head from its exact position after ten seconds.
 const DISTANCE: f64 = 1e-6;
 
 /// Reproducible numbers in [−1, 1): the additive sequence of the powers of a root. Source: Roberts 2018.
@@ -46,7 +46,7 @@ fn by_centre<const N: usize>(q: &[f64; N], _: &Design) -> [f64; 2] {
     [2.0 * q[0], 2.0 * q[1]]
 }
 
-/// Distance (m) of the first head from where it should be.
+/// Distance (m) of the first head from its exact position.
 fn distance<const N: usize>(q: &[f64; N], head: Head<N>, design: &Design, angle: f64) -> f64 {
     let [x, y] = head(q, design);
     (x - design.upright * angle.sin()).hypot(y - design.upright * angle.cos())
@@ -135,7 +135,7 @@ fn strict_runs_pass_with_their_bars_in_line_too() {
     assert_all_pass::<Mixed1, DormandPrince8, _, 3, 2>(projected(), RUNS, by_angle);
 }
 
-/// Largest energy (J) that is not accounted for in runs of fixed steps that end; how many are refused.
+/// Largest energy defect (J) in runs of fixed steps that end; number of refused runs.
 fn gained<S, F, const N: usize, const M: usize>(
     formulation: F,
     counts: impl Iterator<Item = u32>,

@@ -2,5 +2,7 @@
 #![forbid(unsafe_code)]
 
 mod d2_four_bar;
+mod d2_parallelogram;
+mod d2_single_precision;
 mod d2_singular_positions_under_forces;
 mod n_four_bars;

@@ -128,7 +128,7 @@ macro_rules! texts {
     };
 }
 
-/// What distinguishes one run from the next.
+/// Parameters that differ from run to run.
 #[derive(Clone, Copy, Debug)]
 pub struct Design {
     /// Length of an upright (m).

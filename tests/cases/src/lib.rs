@@ -1,1 +1,1 @@
-//! Faults that were found, one file a fault, named by its entry: the text that showed it and tests of its class.
+//! Faults that were found, one file for each, named by its entry: the text with the fault and tests of its class.

@@ -1,11 +1,11 @@
-//! D8: a declared start was moved without a word, though the other coordinates could meet the rows.
+//! D8: a declared start was changed without a report, though the other coordinates could meet the rows.
 
 use core::f64::consts::FRAC_PI_2;
 
 use mbs_runtime::dynamics::{
     AugmentedLagrangian, DormandPrince8, Explicit, Projection, Simulation, VelocityTransformation,
 };
-use mbs_runtime::{Failure, mechanism};
+use mbs_runtime::{Failure, FailureKind, mechanism};
 
 mechanism! {
     /// A slider-crank whose rod is as long as its crank: with the crank upright the slider is at the pivot and the bars are in line.
@@ -46,7 +46,8 @@ fn exact(r: f64, th: f64, w: f64) -> [(f64, f64); 2] {
     [(2.0 * r * th.cos(), -2.0 * r * th.sin() * w), (0.0, 0.0)]
 }
 
-/// Start angles from far off the upright crank to 2.7e-8 rad beside it, where the columns of the others have a singular value of as much.
+/// Start angles from far off the upright crank to 2.7e-8 rad from it. There the columns of the other coordinates have a singular
+/// value of the same size.
 #[allow(clippy::approx_constant, reason = "numbers as a text has them, beside the upright crank")]
 const ANGLES: [f64; 13] =
     [0.3, 1.2, 1.5, 1.57, 1.5707, 1.57079, 1.570796, 1.5707963, 1.5708, 1.6, 2.5, -0.4, -1.5707963];
@@ -64,7 +65,7 @@ fn a_declared_start_is_kept_though_the_others_nearly_lose_rank() {
             let (q, qd, p, pd) = (angles.q(), angles.qd(), points.q(), points.qd());
             for (th, w, x, v) in [(q[0], qd[0], q[2], qd[2]), (p[0], pd[0], p[3], pd[3])] {
                 assert!((th - th0).abs() < 1e-14 && (w - w0).abs() < 1e-13, "{th0} {w0}: {th} {w}");
-                // 1e-5: next to singular values of ∛ε, 6e-6, neither derivative of the rows tells a rate better.
+                // 1e-5: next to singular values of ∛ε, 6e-6, neither derivative of the rows determines a rate better.
                 let error =
                     exact(0.18, th0, w0).map(|(place, speed)| (x - place).abs().max((v - speed).abs()));
                 assert!(error[0].min(error[1]) < 1e-5, "{th0} {w0}: x {x}, v {v}, {error:?}");
@@ -105,11 +106,11 @@ fn a_declared_start_is_kept_in_single_precision() {
 
 #[test]
 fn rates_on_a_change_point_that_belong_to_no_motion_are_undecided() {
-    // Upright the slider may stay at the pivot or leave it: the rate of the crank does not say which.
+    // Upright the slider may stay at the pivot or leave it: the rate of the crank does not decide that.
     let method = || Explicit::new(DormandPrince8, Projection::default());
     let m = Isosceles::<f64> { th0: FRAC_PI_2, ..Isosceles::default() };
     let start = Simulation::start_from_text(m, method(), 0.0).map(|run| (*run.q(), *run.qd()));
-    assert!(matches!(start, Err(Failure::Undecided { .. })), "{start:?}");
+    assert!(matches!(start, Err(Failure { kind: FailureKind::Undecided { .. }, .. })), "{start:?}");
     // At rest nothing is to be decided yet.
     let m = Isosceles::<f64> { th0: FRAC_PI_2, w0: 0.0, ..Isosceles::default() };
     assert!(Simulation::start_from_text(m, method(), 0.0).unwrap().moved_start().is_none());
@@ -218,10 +219,13 @@ fn a_consistent_start_in_single_precision_may_have_the_rounding_of_its_type() {
         let method = Explicit::new(DormandPrince8, Projection::default());
         let run = Simulation::start(inclined, method, 0.0, along(1.7), along(speed));
         assert!(run.is_ok(), "{slope}: {:?}", run.map(|run| *run.q()));
-        // A rate that is off by more than its digits is refused.
+        // A rate with an error of more than its digits is refused.
         let [x, y] = along(speed);
         let rates = [x - 1e-4 * speed * slope.sin(), y + 1e-4 * speed * slope.cos()];
         let off = Simulation::start(inclined, method, 0.0, along(1.7), rates);
-        assert!(matches!(off, Err(Failure::OffConstraints { rate: true, .. })), "{slope}");
+        assert!(
+            matches!(off, Err(Failure { kind: FailureKind::OffConstraints { rate: true, .. }, .. })),
+            "{slope}"
+        );
     }
 }

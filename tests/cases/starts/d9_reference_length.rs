@@ -1,4 +1,4 @@
-//! D9: a guess in other units than the dimensions set the reference length, and with it what counted as exact.
+//! D9: a guess in other units than the dimensions set the reference length, and with it the tolerance.
 
 use mbs_runtime::dynamics::{DormandPrince8, Explicit, Projection, Simulation};
 use mbs_runtime::{Mechanism, Stepper, mechanism};
@@ -16,7 +16,7 @@ mechanism! {
     start x = x0 rate 0;
 }
 
-/// Place at `t` (s) of a pendulum of length `l` (m) that starts at rest at the angle `phi`: Runge and Kutta's method in the angle.
+/// Place at `t` (s) of a pendulum of length `l` (m) that starts at rest at the angle `phi`, by RK4 in the angle.
 fn swung(l: f64, phi: f64, t: f64) -> [f64; 2] {
     let (steps, rate) = (4000, |[phi, w]: [f64; 2]| [w, -9.81 / l * phi.sin()]);
     let h = t / f64::from(steps);
@@ -109,4 +109,23 @@ mechanism! {
 fn the_millimetre_of_a_speed_is_no_length_of_the_mechanism() {
     let block = Block::<f64>::default();
     assert_eq!(block.coordinate_scales(&block.parameters()), [1.0; 2]);
+}
+
+mechanism! {
+    /// A block on a floor whose stiffness is a force over a millimetre.
+    pub mechanism Sprung;
+    const soft: N/m = 5N/1mm;
+    coord x: m = 0;
+    coord y: m = 0;
+    body block { mass: 2, com: [x, y] }
+    force drive: [3N, 0] on [x, y];
+    contact floor { gap: y, stiffness: 2N/1mm, damping: 1s/1mm }
+    tsda hold { from: [-1, 0], to: [x, y], stiffness: soft, damping: 3 [N*s]/1mm }
+    constraint guide { y == 0; }
+}
+
+#[test]
+fn the_millimetre_of_a_stiffness_is_no_length_of_the_mechanism() {
+    let sprung = Sprung::<f64>::default();
+    assert_eq!(sprung.coordinate_scales(&sprung.parameters()), [1.0; 2]);
 }

@@ -4,7 +4,7 @@ use mbs_runtime::dynamics::{
     AugmentedLagrangian, Explicit, Projection, RungeKutta4, SemiImplicitEuler, Simulation,
     VelocityTransformation,
 };
-use mbs_runtime::{Dynamic, Failure, Real, mechanism};
+use mbs_runtime::{Dynamic, Failure, FailureKind, Real, mechanism};
 
 mechanism! {
     /// A ball that falls beside a wheel that is driven at a rate.
@@ -19,7 +19,7 @@ mechanism! {
     start y = 0 rate 0;
 }
 
-/// Steps of a thousandth of a second from `from` (s) on: by how much the time and the height are off.
+/// Errors of the time and the height after steps of a thousandth of a second from `from` (s) on.
 fn after<R: Real>(steps: u32, from: f64) -> [f64; 2]
 where
     Fall<R>: Dynamic<R, 2, 1> + Default,
@@ -55,15 +55,15 @@ fn every_method_keeps_the_time_and_a_refused_step_leaves_it() {
             for step in 0..10_000 {
                 if step % 1000 == 0 {
                     let refused = run.step(0.0);
-                    assert!(matches!(refused, Err(Failure::InvalidStep { step: 0.0, .. })), "{refused:?}");
+                    assert!(matches!(refused, Err(Failure { kind: FailureKind::InvalidStep { step: 0.0, .. }, .. })), "{refused:?}");
                     assert!(run.step(1e-12).is_err() && run.step(f64::NAN).is_err() && run.step(-1e-3).is_err());
                 }
                 run.step(1e-3).expect("a step");
             }
             assert_eq!(run.t(), 1e6 + 10.0);
-            // The rate of the wheel, whatever the times' digits.
+            // The rate of the wheel is independent of the times' digits.
             assert!((run.qd()[1] - 10.0).abs() < 1e-12, "{}", run.qd()[1]);
-            // Equal steps to an end come to the end.
+            // Equal steps to an end reach it exactly.
             run.step_to(1e6 + 11.3, 1300).expect("steps");
             assert_eq!(run.t(), 1e6 + 11.3);
         )* };

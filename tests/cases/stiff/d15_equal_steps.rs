@@ -11,11 +11,12 @@ use crate::texts::{Belt, Grounded, Oscillator};
 /// Steps of each run: the coarsest pass a whole time of sticking.
 const STEPS: [u32; 4] = [100, 300, 1000, 5000];
 
-/// Speed (m/s) that no block reaches: equal steps miss an instant of sticking by a step at most, and this times the step is how far a
-/// block is off then.
+/// Upper bound of the speed of all blocks (m/s). Equal steps miss an instant of sticking by a step at most; the error of a
+/// block is then at most this speed times the step.
 const FASTEST: f64 = 0.6;
 
-/// Runs of all step counts, each to the reference as far as steps that do not end where the block sticks can be.
+/// Runs with all step counts, each compared with the reference within the error of steps that do not end at the instant of
+/// sticking.
 fn arrives<S: Dynamic<f64, N, M>, X: Method<S, f64, N, M> + Copy, const N: usize, const M: usize>(
     (name, problem, end): (&str, &str, f64),
     mechanism: &S,

@@ -1,4 +1,4 @@
-//! D15: no method led through stiff motions with steps as long as a tolerance allows. Radau IIA of order 5 beside SciPy's.
+//! D15: no method integrated stiff motions with steps as long as a tolerance allows. Radau IIA of order 5 against SciPy's.
 
 use mbs_runtime::Dynamic;
 use mbs_runtime::dynamics::{Explicit, Projection, Radau5, Simulation, Tolerance};
@@ -12,7 +12,7 @@ const TOLERANCES: [f64; 7] = [1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9];
 /// Right-hand sides at equal true error, over SciPy's.
 const MOST: f64 = 2.0;
 
-/// True error over the tolerance: a local error of each step adds up, and where a block sticks is decided to some steps.
+/// True error over the tolerance: local errors of the steps add up, and the instant of sticking has an error of some steps.
 const LARGEST_ERROR: f64 = 100.0;
 
 fn run<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
@@ -29,7 +29,7 @@ fn run<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
     run
 }
 
-/// Right-hand sides beside SciPy's at the same true error of one coordinate, the mean over the tolerances; each error within the
+/// Right-hand sides over SciPy's at the same true error of one coordinate, the mean over the tolerances; each error within the
 /// tolerance times a factor.
 fn keeps_up<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
     problem: &str,
@@ -94,6 +94,6 @@ fn the_matrices_of_a_stiff_step_fit_a_small_stack() {
     let andrews = Radau5::stack::<Andrews, f64, 7, 6>();
     let block = Radau5::stack::<Oscillator, f64, 1, 0>();
     println!("stack of a stiff step: governor {governor} B, Andrews {andrews} B, block {block} B");
-    // Two slopes, a real and a complex matrix of N² numbers, and a few vectors beside them.
+    // Two slopes, a real and a complex matrix of N² numbers, and a few vectors.
     assert!(governor < 6 * 16 * 16 * 8 && andrews < 7 * 7 * 7 * 8 && block < 512);
 }

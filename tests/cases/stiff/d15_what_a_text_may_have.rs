@@ -1,4 +1,4 @@
-//! D15: the stiff method with what a text may have beside coordinates: first-order states, rates, events, redundant rows, `f32`.
+//! D15: the stiff method with all further features of a text: first-order states, rates, events, redundant rows, `f32`.
 
 use mbs_runtime::dynamics::{Direction, Explicit, Projection, Radau5, Simulation, Tolerance};
 use mbs_runtime::mechanism;
@@ -33,7 +33,7 @@ fn exponential(matrix: [[f64; 4]; 4], start: [f64; 4]) -> [f64; 4] {
         core::array::from_fn(|i| core::array::from_fn(|j| (0..4).map(|k| a[i][k] * b[k][j]).sum()))
     };
     let small = matrix.map(|row| row.map(|entry| entry / 2_f64.powi(SQUARES)));
-    // e^B − 1, which keeps its digits beside the 1.
+    // e^B − 1, which keeps its digits without the 1.
     let mut less_one = small;
     let mut term = small;
     for order in 2..12 {

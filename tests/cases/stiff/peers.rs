@@ -1,4 +1,4 @@
-//! What `scipy_radau.py` printed: references, and what SciPy's Radau costs at an error.
+//! Output of `scipy_radau.py`: references, and the cost of SciPy's Radau for an error.
 
 /// Problem, tolerance, right-hand sides, Jacobians, factorizations, error, value of the reference.
 const SCIPY: &str = include_str!("data/scipy_radau.csv");
@@ -19,7 +19,7 @@ pub fn reference(problem: &str) -> f64 {
     number(line[6])
 }
 
-/// How far both methods are apart.
+/// Uncertainty of the reference: the difference between two methods.
 pub fn doubt(problem: &str) -> f64 {
     let line = lines(problem).find(|cells| cells[1] == "reference").expect("a reference");
     number(line[5])

@@ -1,4 +1,4 @@
-//! What a user sees: the compiler's own messages, one fault a file, and nothing else red beside them.
+//! Messages that a user sees: the compiler's own, for one fault in each file, and no further errors.
 //!
 //! Every case uses the mechanism too, so that the stored messages prove that the stub serves. After a change that is
 //! meant, run `TRYBUILD=overwrite cargo test -p mbs-faults` and read the difference.

@@ -10,7 +10,7 @@ mechanism! {
     constraint tip { p == L*unit(phi); }
     effect turning { drive crank: phi == omega*t; }
     scene Free = turning;
-    scene Whole = turning;
+    scene AllEffects = turning;
 }
 
 fn main() {

@@ -1,8 +1,9 @@
-//! Bricard's mechanism as what it is: a threefold-symmetric loop of one degree of freedom, with two angles for six joints.
+//! Bricard's mechanism: a threefold-symmetric loop of one degree of freedom, with two angles for six joints.
 #![forbid(unsafe_code)]
 
 use mbs_runtime::dynamics::{
-    DormandPrince8, Doubt, Explicit, Projection, RungeKutta4, Simulation, Stages, Tolerance, equilibrium,
+    DormandPrince8, Explicit, MethodWarning, Projection, RungeKutta4, Simulation, Stages, Tolerance,
+    equilibrium,
 };
 use mbs_runtime::{Dynamic, Mechanism};
 use mechanisms::bricard::Bricard;
@@ -40,7 +41,8 @@ fn turned(axes: Axes, about: usize, angle: f64) -> Axes {
     found
 }
 
-/// The last point of the open chain of five rods from P1, with the energy (J), for joints that turn by a and b in turn, at their rates.
+/// The last point of the open chain of five rods from P1, with the energy (J). Its joints turn alternately by a and b, at their
+/// rates.
 fn chain([a, b]: [f64; 2], [a_d, b_d]: [f64; 2]) -> (Vector, f64) {
     /// Axis of the joint before each rod, and the rod at the start.
     const RODS: [(usize, Vector); 5] = [
@@ -70,7 +72,7 @@ fn chain([a, b]: [f64; 2], [a_d, b_d]: [f64; 2]) -> (Vector, f64) {
 
 #[test]
 fn bricards_loop_moves_as_one_degree_of_freedom_with_two_angles() {
-    /// Distance of the loop's ends (m), of the angles from their relation; energy, of the largest weight's; angle a step (rad).
+    /// Distance of the loop's ends (m), error of the angles' relation, energy over the largest weight's, angle a step (rad).
     const EXACT: f64 = 1e-9;
     const STEP: f64 = 0.01;
     let method = Explicit::new(DormandPrince8, Projection { stages: Stages::All });
@@ -121,7 +123,7 @@ fn in_equal_steps(
 
 #[test]
 fn by_default_rk4_keeps_its_order_where_rows_follow_from_others_on_the_constraints_alone() {
-    /// Ratio of the energy that is not accounted for at twice the step: 2⁴ and what the terms of order 5 and 6 put to it.
+    /// Ratio of the energy defects at twice the step and at the step: 2⁴ and a contribution of the terms of order 5 and 6.
     const RATIOS: std::ops::Range<f64> = 12.0..50.0;
     let runs = [0.04, 0.02, 0.01].map(|h| in_equal_steps(Projection::default(), h));
     let defects = runs.map(|run| run.balance().defect.abs());
@@ -135,7 +137,7 @@ fn by_default_rk4_keeps_its_order_where_rows_follow_from_others_on_the_constrain
 #[test]
 fn stages_left_beside_the_constraints_are_doubtful_where_the_rank_rises_there() {
     let run = in_equal_steps(Projection { stages: Stages::None }, 1e-3);
-    assert_eq!(run.doubt(1e-3), Some(Doubt::RisingRank));
+    assert_eq!(run.doubt(1e-3), Some(MethodWarning::RisingRank));
     println!("bricard, RK4 with stages beside the constraints: energy {:.2} J", run.balance().defect);
     assert!(run.balance().defect.abs() > 0.1);
 }
@@ -159,7 +161,7 @@ fn at_rest_the_joints_share_the_weight_by_the_shortest_multipliers() {
     let bricard: Bricard = Bricard::default();
     let guess = bricard.guess(&bricard.parameters());
     let rest = equilibrium(&bricard, 0.0, &guess).expect("it rests");
-    // Five rods of 1 kg: no joint bears more than a few times their weight.
+    // Five rods of 1 kg: no joint carries more than a few times their weight.
     let largest = rest.lambda.iter().fold(0.0_f64, |largest, lambda| largest.max(lambda.abs()));
     println!("bricard at rest: largest multiplier {largest:.3}");
     assert!(largest > 1.0 && largest < 200.0, "{:?}", rest.lambda);

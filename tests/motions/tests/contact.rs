@@ -1,4 +1,4 @@
-//! Contacts against closed forms: how long they last, how deep they go, what they give back.
+//! Contacts against closed forms: duration, depth and returned energy.
 #![forbid(unsafe_code)]
 
 use core::f64::consts::PI;
@@ -63,7 +63,7 @@ fn a_ball_bounces_to_its_height_and_touches_when_it_should() {
     assert!(worst < EXACT && run.balance().defect.abs() < EXACT, "{worst:e}");
 }
 
-/// The ball at the deepest point, when it leaves, and how long it was in contact.
+/// The ball at the deepest point and when it leaves, and the duration of the contact.
 fn shot(shot: Shot) -> ([f64; 2], Simulation<Shot, Method, f64, 1, 0>, f64) {
     let run = Simulation::start_from_text(shot, Method::default(), 0.0).expect("it starts");
     let mut run = run.with_tolerance(Tolerance::new(1e-13));
@@ -99,7 +99,7 @@ fn hertzs_impact_is_as_deep_as_energy_allows_and_as_long_as_published() {
 fn damping_takes_what_its_power_says_whatever_the_exponent() {
     let damped: Shot = Shot { d: 1.5, ..Shot::default() };
     let (_, run, _) = shot(damped);
-    // v dv/(1 + d v) = −(force/m) dp, whose right side is the same on both ways: v/d − ln(1 + d v)/d² is at −v' what it is at v.
+    // v dv/(1 + d v) = −(force/m) dp, whose right side is the same on both ways. So v/d − ln(1 + d v)/d² is equal at −v' and v.
     let at = |v: f64| v / damped.d - (damped.d * v).ln_1p() / (damped.d * damped.d);
     let left = run.qd()[0];
     let (arrived, leaves) = (at(damped.v), at(-left));

@@ -51,7 +51,7 @@ fn a_block_on_a_belt_sticks_then_slides_as_the_law_says() {
     let run = Simulation::start_from_text(belt, Explicit::new(DormandPrince8, Projection::default()), 0.0);
     let mut run = run.expect("it starts").with_tolerance(Tolerance::new(1e-11));
     let frequency = (belt.k / belt.m).sqrt();
-    // What friction can hold, and when the belt has carried the block there.
+    // Displacement that friction can hold, and the time at which the belt has carried the block there.
     let held = belt.mu * belt.m * G / belt.k;
     let slips = held / belt.v;
     let (mut error, mut apart) = (0.0_f64, 0.0_f64);
@@ -165,7 +165,7 @@ fn grounded<X: mbs_runtime::dynamics::Method<Grounded, f64, 2, 1>>(
 
 #[test]
 fn friction_with_a_multiplier_is_friction_with_the_force_it_stands_for() {
-    /// What RK4 leaves of steps of a tenth of a millisecond (m, m/s, N).
+    /// Error of RK4 with steps of a tenth of a millisecond (m, m/s, N).
     const EXACT: f64 = 1e-10;
     for viscous in [0.0, 3.0] {
         let slope: Slope = Slope { push: 4.0, viscous, smooth: 0.05, ..Slope::default() };

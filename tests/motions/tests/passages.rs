@@ -1,5 +1,5 @@
-//! Adaptive steps through positions with all rods in line, where the rows lose rank: from many starts, in turned frames, with any
-//! tolerance and grid, by every explicit method, none gets stuck and all end where the closed form does.
+//! Adaptive steps through positions with all rods in line, at which the rows lose rank. From many starts, in turned frames, with
+//! any tolerance and grid, by every explicit method, no run gets stuck. All end at the position of the closed form.
 #![forbid(unsafe_code)]
 
 use std::f64::consts::PI;
@@ -58,7 +58,7 @@ four_bars!(Ten, 10);
 const SECONDS: f64 = 5.0;
 const STARTS: u32 = 60;
 const TOLERANCES: [f64; 5] = [1e-6, 1e-7, 1e-8, 1e-9, 1e-10];
-/// Instants that a run is stopped at.
+/// Number of instants at which a run is stopped.
 const GRIDS: [u32; 4] = [1, 7, 100, 1000];
 const GRAVITY: f64 = 9.81;
 
@@ -85,8 +85,8 @@ fn exact(loops: f64, speed: f64) -> f64 {
     angle
 }
 
-/// Where and how fast the upper ends are with all uprights at `angle` (rad) from the vertical, turning at `rate` (rad/s), in a
-/// frame turned by `frame` (rad).
+/// Positions and velocities of the upper ends. All uprights are at `angle` (rad) from the vertical and turn at `rate` (rad/s),
+/// in a frame turned by `frame` (rad).
 fn state<const N: usize>(angle: f64, rate: f64, frame: f64) -> [[f64; N]; 2] {
     let turned = |x: f64, y: f64, j: usize| {
         if j.is_multiple_of(2) {
@@ -100,15 +100,15 @@ fn state<const N: usize>(angle: f64, rate: f64, frame: f64) -> [[f64; N]; 2] {
     [std::array::from_fn(place), std::array::from_fn(velocity)]
 }
 
-/// How the `k`th run starts: its speed (rad/s) is 1 ± 2 %, two of three frames are turned.
+/// Speed (rad/s), frame (rad), tolerance and grid of run `k`: the speed is 1 ± 2 %, two of three frames are turned.
 fn start(k: u32) -> (f64, f64, f64, u32) {
     let speed = 1.0 + 0.02 * (2.0 * f64::from(k) / f64::from(STARTS - 1) - 1.0);
     let frame = if k.is_multiple_of(3) { 0.0 } else { PI * f64::from(k * 17 % STARTS) / f64::from(STARTS) };
     (speed, frame, TOLERANCES[k as usize % TOLERANCES.len()], GRIDS[k as usize / 3 % GRIDS.len()])
 }
 
-/// The distance (m) of the upper ends from where they should be, and the energy that is not accounted for over what the rods
-/// fall through; both over the tolerance.
+/// Distance (m) of the upper ends from their exact positions, and energy defect over the potential energy that the rods lose;
+/// both over the tolerance.
 fn errors<S, I, F, const N: usize, const M: usize>(method: Explicit<I, F>, k: u32) -> ([f64; 2], [f64; N])
 where
     S: Dynamic<f64, N, M> + Turned,
@@ -130,8 +130,8 @@ where
     ([distance / tolerance, energy / tolerance], *run.q())
 }
 
-/// Largest errors at the end over the tolerance of a step: places, after a few hundred steps of a motion that carries errors of
-/// its energy on as errors of its time; energy.
+/// Largest errors at the end over the tolerance of a step, of positions and of the energy. The motion lasts a few hundred steps
+/// and turns errors of its energy into errors of its time.
 const LARGEST: [f64; 2] = [1e3, 2e1];
 
 fn assert_all_pass<S, I, F, const N: usize, const M: usize>(

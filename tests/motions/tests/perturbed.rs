@@ -1,5 +1,5 @@
-//! Two four-bars through all positions with every rod in line, in fixed steps: from 200 starts that differ a little, with an
-//! upright once and twice, in metres and in millimetres.
+//! Two four-bars through all positions with every rod in line, in fixed steps. The 200 starts differ a little; an upright is
+//! there once or twice, and units are metres or millimetres.
 #![forbid(unsafe_code)]
 
 use std::f64::consts::PI;
@@ -70,8 +70,8 @@ fn spread(k: u32) -> [f64; 3] {
     [1, 2, 3].map(|power| 2.0 * (0.5 + f64::from(k) * ROOT.powi(-power)).fract() - 1.0)
 }
 
-/// The angle (rad) of all uprights from the vertical at the end: θ̈ = (C/I) g sin θ from `speed` (rad/s), C = (N+1)/2 + N,
-/// I = (N+1)/3 + N, N = 2, by a composition of leapfrogs; halving its steps moves no digit of twelve.
+/// The angle (rad) of all uprights from the vertical at the end, by a composition of leapfrogs; halving its steps moves no digit
+/// of twelve. θ̈ = (C/I) g sin θ from `speed` (rad/s), C = (N+1)/2 + N, I = (N+1)/3 + N, N = 2.
 /// Source: Yoshida 1990.
 fn exact(speed: f64) -> f64 {
     const STEPS: u32 = 50_000;
@@ -88,7 +88,7 @@ fn exact(speed: f64) -> f64 {
     angle
 }
 
-/// Distance (m) of the first upper end from where it should be after a run of steps of `h` (s).
+/// Distance (m) of the first upper end from its exact position after a run of steps of `h` (s).
 fn error<S: Dynamic<f64, 6, M> + Perturbed, const M: usize>(
     unit: f64,
     [h, speed, frame]: [f64; 3],
@@ -104,8 +104,8 @@ fn error<S: Dynamic<f64, 6, M> + Perturbed, const M: usize>(
     (x - sine).hypot(y - cosine)
 }
 
-/// Runs with h = 1e-3 s ± 5 %, start speed 1 m/s ± 2 %, the frame turned: median, 99 % and largest of the errors (m) are within
-/// a tenth of what the benchmark asks of the last two and what it asks of the first.
+/// Runs with h = 1e-3 s ± 5 %, start speed 1 m/s ± 2 %, the frame turned. The median of the errors (m) is within the
+/// benchmark's bound, the 99 % quantile and the largest one within a tenth of theirs.
 #[track_caller]
 fn assert_all_end_right<S: Dynamic<f64, 6, M> + Perturbed, const M: usize>(runs: usize, unit: f64) {
     const BOUNDS: [f64; 3] = [2e-9, 1e-8, 1e-7];

@@ -1,4 +1,4 @@
-//! Mechanisms of the plane that are free to move, as long as their benchmarks ask for.
+//! Mechanisms of the plane that are free to move, over the durations of their benchmarks.
 #![forbid(unsafe_code)]
 
 use core::f64::consts::{FRAC_PI_2, PI, SQRT_2};
@@ -44,7 +44,7 @@ impl Compared {
         }
     }
 
-    /// Prints the error, relative to the run's largest value, beside its bound; fails where it is not within.
+    /// Prints the error, relative to the run's largest value, with its bound; fails if it is not within.
     #[track_caller]
     fn assert_within(self, name: &str, bound: f64) {
         println!("{name} {:.1e} of {bound:e}", self.error / self.largest);
@@ -52,7 +52,7 @@ impl Compared {
     }
 }
 
-/// Prints a difference beside its bound; fails where it is not within.
+/// Prints a difference with its bound; fails if it is not within.
 #[track_caller]
 fn assert_below(name: &str, found: f64, bound: f64) {
     println!("{name} {:.1e} of {bound:e}", found.abs());
@@ -194,7 +194,7 @@ fn the_pole_on_a_light_cart_falls_in_the_time_that_momentum_and_energy_leave() {
     let quarter = fall(&pole, FRAC_PI_2);
     assert_below("cart-pole: period less 1.8061 (s)", 4.0 * quarter - 1.8061, 5e-5);
     let (mut late, mut cart) = (0.0_f64, 0.0_f64);
-    // Before and behind the bottom, where the cart dashes below the bob within a fraction of a millisecond.
+    // Before and after the bottom, at which the cart passes below the bob within a fraction of a millisecond.
     for t in [0.1, 0.3, 0.44, 0.46, 0.6, 0.8] {
         run.advance_to(t).expect("it falls");
         let [x, phi, ..] = *run.q();

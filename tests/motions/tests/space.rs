@@ -1,16 +1,16 @@
-//! Mechanisms of bodies in space, as long as their benchmarks ask for.
+//! Mechanisms of bodies in space, over the durations of their benchmarks.
 #![forbid(unsafe_code)]
 
 use mbs_runtime::Dynamic;
 use mbs_runtime::Mechanism;
-use mbs_runtime::dynamics::kkt::System;
+use mbs_runtime::dynamics::System;
 use mbs_runtime::dynamics::{
     AugmentedLagrangian, DormandPrince8, Explicit, Extrapolated, Method, Metric, Projection, Simulation,
     Stages, Tolerance,
 };
+use mbs_workbench::card::Usual;
 use mechanisms::bricard::Bricard;
 use mechanisms::governor::{self, Governor};
-use mechanisms::registry::Usual;
 
 #[test]
 fn bricards_loop_keeps_its_energy_with_its_redundant_row() {
@@ -46,8 +46,8 @@ fn bricards_loop_keeps_its_energy_with_its_redundant_row() {
     assert!(violation < 1e-12, "{violation:e}");
 }
 
-/// The governor by the angles φ of the shaft, β of both rods below the level, and the height s of the slider, the angular momentum
-/// about the shaft given: β, s, their rates, φ.
+/// The governor at a given angular momentum about the shaft, with the state β, s, their rates, φ. Here φ is the angle of the
+/// shaft, β that of both rods below the level, s the height of the slider.
 struct Reduced {
     rod: f64,
     ball: f64,
@@ -106,7 +106,7 @@ impl Reduced {
 impl Reduced {
     /// One step of the trapezoidal rule (s), by Newton's method with differences.
     fn trapezoidal(&self, y: [f64; 5], h: f64) -> [f64; 5] {
-        /// Of the matrix alone: what it lacks costs iterations, no digits.
+        /// Step of the differences for the matrix: its error costs iterations, no digits.
         const DIFFERENCE: f64 = 1e-7;
         let (from, mut end) = (self.rates(y), y);
         let mut matrix = [[0.0; 5]; 5];
@@ -148,7 +148,7 @@ const START: [f64; 5] = [core::f64::consts::FRAC_PI_6, 0.5, 0.0, 0.0, 0.0];
 
 const SECONDS: u32 = 10;
 
-/// s and φ at every tenth of a second, by steps at a third of the limit of stability: halving them moves no digit of twelve.
+/// s and φ at every tenth of a second, by steps of a third of the limit of stability; halving them moves no digit of twelve.
 fn reference() -> Vec<[f64; 2]> {
     const STEPS: u32 = 4000;
     let (reduced, mut y) = (Reduced::new(), START);
@@ -162,8 +162,8 @@ fn reference() -> Vec<[f64; 2]> {
     found
 }
 
-/// Largest errors of s (m) and φ (rad) at every tenth of a second, in `steps` each; energy not accounted for (J), of the largest kinetic
-/// one.
+/// Largest errors of s (m) and φ (rad) at every tenth of a second, in `steps` each; energy defect over the largest kinetic
+/// energy.
 fn errors<X: Method<Governor, f64, 16, 12>>(method: X, steps: u32, exact: &[[f64; 2]]) -> [f64; 3] {
     let mut run = Simulation::start_from_text(Governor::default(), method, 0.0).expect("it starts");
     let (mut s, mut phi, mut defect, mut kinetic) = (0.0_f64, 0.0_f64, 0.0_f64, 0.0_f64);
@@ -178,7 +178,7 @@ fn errors<X: Method<Governor, f64, 16, 12>>(method: X, steps: u32, exact: &[[f64
     [s, phi, defect / kinetic]
 }
 
-/// Largest error of s (m) that the trapezoidal rule itself leaves, in the coordinates that the motion is free in.
+/// Largest error of s (m) of the trapezoidal rule itself, in independent coordinates.
 fn error_of_the_rule(steps: u32, exact: &[[f64; 2]]) -> f64 {
     let (reduced, mut y, mut error) = (Reduced::new(), START, 0.0_f64);
     for exact in exact {
@@ -214,7 +214,7 @@ fn the_stiff_governor_is_right_at_steps_many_times_its_fastest_time_by_the_metho
         "governor, the trapezoidal rule in free coordinates: s {:.1e} m at 1e-3 s, {:.1e} at 2e-4 s",
         rule[0], rule[1]
     );
-    // What the augmented Lagrangian leaves is the rule's own, in more coordinates.
+    // The error of the augmented Lagrangian is that of the rule itself, in more coordinates.
     assert!(
         lagrangian.iter().zip(rule).all(|(errors, rule)| errors[0] < 2.0 * rule),
         "{lagrangian:?} {rule:?}"

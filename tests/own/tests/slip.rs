@@ -1,37 +1,15 @@
 //! The control of `derivatives.rs`: a slip in the emitted code must show.
 
-use mbs_runtime::{Entry, FunctionEntry};
-use mechanisms::facade::{AnyEquations, Facade, Functions, State};
-use mechanisms::verify::{CheckError, check::check_equations};
+use mbs_workbench::erased::facade::{AnyEquations, Description, Facade, Functions, State};
+use mbs_workbench::verify::{CheckError, check::check_equations};
 use my_crate::Mine;
 
 /// `Mine` with a wrong sign in one entry of Φ_q.
 struct Slipped(Facade<Mine, 2, 2>);
 
 impl AnyEquations for Slipped {
-    fn type_name(&self) -> &'static str {
-        self.0.type_name()
-    }
-    fn scene(&self) -> &'static str {
-        self.0.scene()
-    }
-    fn source(&self) -> &'static str {
-        self.0.source()
-    }
-    fn coordinates(&self) -> &'static [Entry] {
-        self.0.coordinates()
-    }
-    fn rows(&self) -> &'static [Entry] {
-        self.0.rows()
-    }
-    fn variables(&self) -> &'static [Entry] {
-        self.0.variables()
-    }
-    fn outputs(&self) -> &'static [Entry] {
-        self.0.outputs()
-    }
-    fn functions(&self) -> &'static [FunctionEntry] {
-        self.0.functions()
+    fn description(&self) -> &'static Description {
+        self.0.description()
     }
     fn get(&self, index: usize) -> Option<f64> {
         self.0.get(index)
@@ -54,9 +32,9 @@ impl AnyEquations for Slipped {
 
 #[test]
 fn a_slip_is_found_and_named() {
-    let error = check_equations(&mut Slipped(Facade(Mine::default()))).expect_err("a slip");
+    let error = check_equations(&mut Slipped(Facade::of(Mine::default()))).expect_err("a slip");
     assert!(matches!(error, CheckError::Differs(_)), "{error}");
-    // What `unwrap` prints.
+    // The output of `unwrap`.
     let report = format!("{error:?}");
     assert!(report.contains("closure.1, beta at state") && report.contains("DIFFERS"), "{report}");
     assert!(report.contains(", CasADi ") && report.contains(", 50 digits "), "{report}");

@@ -1,5 +1,5 @@
-//! Compiles the C code of the peers, every `.c` file of the directory that `MBS_PEERS` names and what is written by hand,
-//! and links CasADi's library, which that directory points to.
+//! Compiles the C code of the peers: every `.c` file of the directory that `MBS_PEERS` names, and the code written by hand.
+//! Links CasADi's library, to which that directory points.
 
 use std::{env, fs};
 

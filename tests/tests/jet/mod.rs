@@ -26,7 +26,7 @@ impl Jet {
         self.0
     }
 
-    /// The derivative; what would follow the second is unknown.
+    /// The derivative; its own second derivative is unknown (NaN).
     pub fn rate(self) -> Self {
         Jet([self.0[1], self.0[2], f64::NAN])
     }

@@ -1,11 +1,11 @@
-//! Sine and cosine of the runtime with the feature `libm` beside those of the `libm` crate: the same bits.
+//! Sine and cosine of the runtime with the feature `libm` against those of the `libm` crate: the same bits.
 
 use mbs_runtime::{Lanes, Scalar};
 
 /// Angles of each size.
 const ANGLES: usize = 1000;
 
-/// Whether two numbers are the same bit for bit; all that are none count as one.
+/// `true` if two numbers are equal bit for bit; all NaNs count as one.
 fn same(found: f64, expected: f64) -> bool {
     found.to_bits() == expected.to_bits() || found.is_nan() && expected.is_nan()
 }

@@ -1,4 +1,4 @@
-//! Mechanisms cut as long ones beside themselves in one piece.
+//! Mechanisms cut as long ones, compared with themselves in one piece.
 
 use mbs_runtime::dynamics::{Explicit, RungeKutta4, Simulation, VelocityTransformation};
 use mbs_runtime::{Dynamic, Kinematic, Lanes, Mechanism, Partitioned, Real, Scalar, Stepper};
@@ -41,7 +41,7 @@ where
     motion
 }
 
-/// All functions of some position and rates beside the guess, by their bits.
+/// All functions at a position near the guess with some rates, by their bits.
 fn evaluated<T: Scalar, S: Mechanism<T, N, M> + Default, const N: usize, const M: usize>() -> Vec<u64> {
     let mechanism = S::default();
     let p = mechanism.parameters();

@@ -1,5 +1,5 @@
 //! No allocation and no panic, proven by the linker: emitted code and solvers link as a static program without any
-//! library, with no symbol undefined but the four functions on memory that the compiler itself calls.
+//! library. The only undefined symbols are the four functions on memory that the compiler itself calls.
 //!
 //! The program is `tests/proofs/freestanding`. ELF linkers only.
 #![cfg(target_os = "linux")]

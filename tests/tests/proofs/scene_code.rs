@@ -1,5 +1,5 @@
-//! What a scene leaves out leaves no instruction: the machine code of its functions is that of the text that never
-//! mentioned it, byte by byte.
+//! Effects that a scene leaves out cause no instruction: the machine code of its functions equals, byte by byte, that of a
+//! text without them.
 //!
 //! The library is `tests/proofs/scenes`, built three times. ELF alone.
 #![cfg(target_os = "linux")]
@@ -33,8 +33,8 @@ const FUNCTIONS: [&str; 21] = [
     "set",
 ];
 
-/// Machine code: functions by name, and what they call of the machine and of the runtime, which has no name that
-/// three builds agree on.
+/// Machine code: functions by name, and the functions of the machine and of the runtime that they call. The latter have
+/// different names in the three builds.
 #[derive(Debug, PartialEq)]
 struct Code {
     functions: BTreeMap<String, Vec<String>>,

@@ -2,10 +2,10 @@
 
 use std::io::{self, BufRead, Write};
 
-use mbs_runtime::{Dynamic, Mechanism, Motion, OutputValue};
-use mechanisms::facade::Facade;
-use mechanisms::verify::compare::compare_digits;
-use mechanisms::verify::{Oracle, StandIn, Summary, generated_definition};
+use mbs_runtime::{Dynamic, DynamicState, Mechanism, OutputValue};
+use mbs_workbench::erased::facade::Facade;
+use mbs_workbench::verify::compare::compare_digits;
+use mbs_workbench::verify::{Oracle, StandIn, Summary, generated_definition};
 
 /// States compared in 50 digits.
 const DIGITS_STATES: usize = 5;
@@ -17,8 +17,8 @@ fn main() {
     }
 }
 
-/// A line a state: the number of the text or scene, and the bits of q, q̇, q̈, t, λ and states of a text with masses, variables; a
-/// line of bits comes back.
+/// Reads one line for each state: the number of the text or scene, then the bits of q, q̇, q̈, t, λ and states (with masses),
+/// variables. Answers with a line of bits.
 fn answer() {
     let mut out = io::BufWriter::new(io::stdout().lock());
     for line in io::stdin().lock().lines() {
@@ -85,7 +85,7 @@ where
     let Numbers { q, qd, qdd, t, .. } = &numbers;
     let here = mechanism.position(&p, q, *t);
     let energy = mechanism.energy(&p, &here, qd);
-    let motion = Motion { qd, qdd, lambda, states: &z };
+    let motion = DynamicState { qd, qdd, lambda, states: &z };
     let (row, right) = mechanism.third_derivative(&p, &here, qd, lambda).expect("no declared function");
     [
         &kinematics::<S, N, M>(&mechanism, &numbers)[..],
@@ -142,7 +142,7 @@ fn digits<S: Mechanism<f64, N, M> + Default, const N: usize, const M: usize>(
     oracle: &Oracle,
     summary: &mut Summary,
 ) {
-    let mut facade = Facade::<S, N, M>(S::default());
+    let mut facade = Facade::<S, N, M>::of(S::default());
     let definition = generated_definition(&facade).unwrap_or_else(|error| panic!("{error}"));
     let agreement = compare_digits(&mut facade, oracle, &definition, DIGITS_STATES);
     let agreement = agreement.unwrap_or_else(|error| panic!("{error}"));

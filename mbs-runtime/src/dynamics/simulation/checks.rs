@@ -1,15 +1,19 @@
-//! What a start and a step may not leave: rows, branches, working ranges.
+//! Conditions that a start and a step must keep: rows, branches, working ranges.
 
-use crate::dynamics::event::{
-    Enclosure, Enclosures, GROUP, Part, Scrutiny, Undefined, Watched, WithIntervals, first_beyond,
-};
+use crate::dynamics::integrators::event::enclosure::{Enclosures, Functions, GroupOver, Part};
+use crate::dynamics::integrators::event::{GROUP, Scrutiny, Unanswered, Watched, first_beyond};
+use crate::dynamics::integrators::vector::State;
 use crate::dynamics::model::Model;
-use crate::dynamics::vector::State;
-use crate::limit::{Limit, limit_failure, passed_failure};
-use crate::{Dynamic, Failure, Interval, Real, Scalar, kinematics};
+use crate::failure::checks::{limit_failure, passed_failure};
+use crate::failure::{Failure, FailureKind};
+use crate::kinematics::position;
+use crate::mechanism::dynamic::Dynamic;
+use crate::mechanism::limit::{Limit, size};
+use crate::scalar::interval::Interval;
+use crate::scalar::number::Real;
 
 /// Violation of a row that a start may have, in the reference metric and of the coordinates (per second for its rate): numbers typed
-/// with nine digits. What it has is projected out.
+/// with nine digits. It is projected out.
 const START_ALLOWANCE: f64 = 1e-8;
 
 /// Rounding errors, in ε of the terms of a row, that such a violation may be where that is more.
@@ -38,8 +42,9 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         }
         let failure = self.moved(from, t, |Model { mechanism, parameters, .. }| {
             let position = mechanism.position(parameters, &y.q, t);
-            kinematics::branch_failure(*mechanism, parameters, &position, t, assembling)
-                .or_else(|| limit_failure(*mechanism, parameters, &position, t))
+            position::branch_failure(*mechanism, parameters, &position, t, assembling).or_else(|| {
+                limit_failure(*mechanism, parameters, &position, (t, &y.q), &self.metric.coordinates)
+            })
         });
         failure.map_or(Ok(()), Err)
     }
@@ -56,15 +61,19 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         if S::LIMITS.is_empty() {
             return Ok(());
         }
-        let mut ranges = Ranges { model: self, from, resolution, at };
+        let size = [start, end].map(|t| size(&self.metric.coordinates, &at(t).q));
+        let size = size.into_iter().fold(R::constant(0.0), R::max);
+        let mut ranges = Ranges { model: self, from, resolution, size, at };
         match first_beyond(&mut ranges, (start, end)) {
             Ok(None) => Ok(()),
-            Ok(Some((member, t))) | Err((member, Undefined(t))) => Err(ranges.failure(member, t)),
+            Ok(Some((member, t))) | Err((member, Unanswered::Undefined(t) | Unanswered::OutOfParts(t))) => {
+                Err(ranges.failure(member, t))
+            }
         }
     }
 
-    /// [`check_assembly`](Self::check_assembly) at the end of a step from `start` (s), with the time at which the state passes what
-    /// it may not pass; `at` gives the states of the step. A branch is looked at where the step ends.
+    /// [`check_assembly`](Self::check_assembly) at the end of a step from `start` (s), with the time at which the state passes a
+    /// limit; `at` gives the states of the step. A branch is tested at the end of the step.
     pub(super) fn check_end(
         &self,
         from: R,
@@ -116,12 +125,14 @@ fn first_failure<R: Real>(
     beyond.1
 }
 
-/// What is left of each working range along a step: below and above, one after the other.
+/// Distances to the bounds of each working range along a step: lower and upper, one after the other.
 struct Ranges<'a, S: Dynamic<R, N, M>, R: Real, At, const N: usize, const M: usize> {
     model: &'a Model<'a, S, R, N, M>,
     /// Time (s) that inputs and phases are known at.
     from: R,
     resolution: Option<R>,
+    /// That of the coordinates.
+    size: R,
     at: At,
 }
 
@@ -146,7 +157,7 @@ where
                 let bound = if member.is_multiple_of(2) { limit.low } else { limit.high };
                 passed_failure(S::LIMITS, member / 2, (limit, bound), t)
             }
-            None => Failure::NonFinite { name: "limit", line: 0 },
+            None => FailureKind::NonFinite { name: "limit", line: 0 }.without_time(),
         }
     }
 }
@@ -171,55 +182,39 @@ where
 
     fn enclosures(&mut self, first: usize, times: (R, R)) -> Option<Enclosures<R>> {
         let part = Part::of(self.from, times, &self.at)?;
-        self.model.mechanism.enclosed(RangesOver { part, first }).flatten()
+        self.model.mechanism.enclosed(GroupOver { part, first, functions: Left { size: self.size } })
     }
 
     fn values(&mut self, t: R, first: usize, values: &mut [R; GROUP]) {
         let limits = self.limits(t);
-        let left = limits.as_ref().iter().skip(first / 2).map(Limit::left);
+        let left = limits.as_ref().iter().skip(first / 2).map(|limit| limit.left(self.size));
         for (pair, left) in values.chunks_exact_mut(2).zip(left) {
             pair.iter_mut().zip(left).for_each(|(value, left)| *value = left);
         }
     }
 }
 
-/// Bounds of what is left of working ranges over a part of a step.
-struct RangesOver<R, const N: usize> {
-    part: Part<R, N>,
-    first: usize,
+/// Distances to the limits of all working ranges, below and above.
+struct Left<R> {
+    /// That of the coordinates.
+    size: R,
 }
 
-impl<T, R, const N: usize, const M: usize> WithIntervals<T, N, M> for RangesOver<R, N>
-where
-    T: Scalar<Real = R>,
-    R: Real,
-{
-    type Output = Option<Enclosures<R>>;
-
-    fn at<S: Dynamic<Interval<R>, N, M>>(self, mechanism: &S) -> Self::Output {
-        let (none, width) = (Interval::of(R::constant(0.0)), self.part.width());
-        let mut middles = [none; GROUP];
-        let mut enclosures = [None; GROUP];
-        self.part.each(mechanism, |mechanism, parameters, position, qd, is_whole| {
-            let limits = mechanism.limits(parameters, position);
-            let limits = limits.as_ref().iter().skip(self.first / 2).flat_map(Limit::left);
-            if !is_whole {
-                middles.iter_mut().zip(limits).for_each(|(middle, left)| *middle = left);
-                return;
+impl<R: Real> Functions<R> for Left<R> {
+    fn show<S: Dynamic<Interval<R>, N, M>, const N: usize, const M: usize>(
+        &self,
+        mechanism: &S,
+        parameters: &S::Parameters,
+        position: &S::Position,
+        qd: &[Interval<R>; N],
+        mut see: impl FnMut(Interval<R>, Interval<R>),
+    ) {
+        let limits = mechanism.limits(parameters, position);
+        let mut left = limits.as_ref().iter().flat_map(|limit| limit.left(Interval::of(self.size)));
+        mechanism.limit_rates(parameters, position, qd, |Limit { low, value, high }| {
+            for rate in [value - low, high - value] {
+                left.next().into_iter().for_each(|left| see(left, rate));
             }
-            let mut places = enclosures.iter_mut().zip(middles).zip(limits);
-            let mut index = 0;
-            mechanism.limit_rates(parameters, position, qd, |Limit { low, value, high }| {
-                index += 1;
-                if index <= self.first / 2 {
-                    return;
-                }
-                for rate in [value - low, high - value] {
-                    let Some(((enclosure, middle), left)) = places.next() else { return };
-                    *enclosure = Some(Enclosure::of(middle, (left, rate), width));
-                }
-            });
         });
-        Some(enclosures)
     }
 }

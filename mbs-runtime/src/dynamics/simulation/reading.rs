@@ -1,20 +1,23 @@
-//! What can be read of a mechanism in motion.
+//! Readings of a mechanism in motion.
 
-use super::Simulation;
-use crate::dynamics::determinacy::Determinacy;
-use crate::dynamics::limit_rows::{SINGULAR, ZONE, is_at_limit};
-use crate::dynamics::model::{Counts, Doubt};
-use crate::dynamics::motion::{Instant, Method};
-use crate::dynamics::passage::Passage;
-use crate::dynamics::text_start::MovedStart;
-use crate::{Dynamic, Energy, Failure, Motion, Real};
+use crate::dynamics::analyses::determinacy::Determinacy;
+use crate::dynamics::equilibrium::consistent_start::MovedStart;
+use crate::dynamics::formulations::singular::limit_rows::{SINGULAR, ZONE, is_at_limit};
+use crate::dynamics::formulations::singular::passage::Passage;
+use crate::dynamics::model::instant::Instant;
+use crate::dynamics::model::method::Method;
+use crate::dynamics::model::{Counts, MethodWarning};
+use crate::dynamics::simulation::Simulation;
+use crate::failure::Failure;
+use crate::mechanism::dynamic::{Dynamic, DynamicState, Energy};
+use crate::scalar::number::Real;
 
-/// How a run went so far: energy that is not accounted for, rows that are violated, what it cost.
+/// Balance of a run so far: energy that is not accounted for, and rows that are violated.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Balance<R> {
     /// Kinetic and potential energy (J).
     pub energy: Energy<R>,
-    /// What forces and drives have done since the start (J).
+    /// Work of forces and drives since the start (J).
     pub work: R,
     /// Energy less work less the energy at the start (J): 0 of an exact integration.
     pub defect: R,
@@ -66,19 +69,19 @@ where
         &self.now
     }
 
-    /// How near Φ_q is to losing rank: 0 where it does, at most 1.
+    /// Margin of Φ_q to a loss of rank: 0 at the loss, at most 1.
     pub fn margin(&self) -> R {
         self.now.solved.margin
     }
 
-    /// Where the run came so near to a singular position for the first time that it may have passed it.
+    /// First approach of the run to a singular position that it may have passed.
     pub fn passage(&self) -> Option<&Passage<R>> {
         self.passage.as_ref()
     }
 
-    /// The number of the start that differs most from what was declared or given; `None` where all are kept to nine digits.
+    /// Entry of the start that differs most from its declared or given value; `None` where all are kept to nine digits.
     ///
-    /// Of [`start_from_text`](Self::start_from_text) the numbers that the text declares by `start` count, of
+    /// Of [`start_from_text`](Self::start_from_text) the entries that the text declares by `start` count, of
     /// [`start_near`](Self::start_near) all coordinates and rates.
     pub fn moved_start(&self) -> Option<&MovedStart<R>> {
         self.moved_start.as_ref()
@@ -89,15 +92,15 @@ where
         &self.mechanism
     }
 
-    /// What the run has spent.
+    /// Evaluations, steps and iterations of the run.
     pub fn counts(&self) -> Counts {
         self.counts
     }
 
-    /// What is doubtful about steps of `h` (s) from the start until now.
-    pub fn doubt(&self, h: R) -> Option<Doubt> {
+    /// Warning about steps of `h` (s) from the start until now.
+    pub fn doubt(&self, h: R) -> Option<MethodWarning> {
         if self.rank_rises && self.method.leaves_constraints() {
-            return Some(Doubt::RisingRank);
+            return Some(MethodWarning::RisingRank);
         }
         self.method.doubt(h, self.now.t - self.start)
     }
@@ -111,14 +114,18 @@ where
     /// Outputs that use multipliers or states: reactions, efforts.
     pub fn loads(&self) -> S::Loads {
         let position = self.model().position(self.now.t, &self.now.y);
-        let motion =
-            Motion { qd: self.qd(), qdd: self.qdd(), lambda: self.lambda(), states: &self.now.y.states };
+        let motion = DynamicState {
+            qd: self.qd(),
+            qdd: self.qdd(),
+            lambda: self.lambda(),
+            states: &self.now.y.states,
+        };
         self.mechanism.loads(&self.parameters, &position, &motion)
     }
 
-    /// Which multipliers are the only ones that move the mechanism so, and which rows follow from others here. Where a motion passes a
-    /// singular position, multipliers of rows that lose their hold grow without bound; they are not unique there, and
-    /// [`lambda`](Self::lambda) is without what is not defined.
+    /// Multipliers that are unique, and rows that follow from others, at the present position. Where a motion passes a
+    /// singular position, multipliers of rows that lose their hold grow without bound. They are not unique there, and
+    /// [`lambda`](Self::lambda) is without their undefined part.
     ///
     /// # Errors
     /// Those of [`Determinacy::of`].
@@ -131,16 +138,20 @@ where
         Determinacy::measured(&self.mechanism, &self.parameters, &position, (t, &self.metric), weakest)
     }
 
-    /// Marks in `unique`, one of each of [`loads`](Self::loads), those that are the same whichever multipliers bear the
-    /// forces.
+    /// Marks in `unique`, one of each of [`loads`](Self::loads), those that are the same for every choice of the
+    /// multipliers.
     ///
     /// # Errors
     /// Those of [`Determinacy::of`].
     pub fn mark_unique_loads(&self, unique: &mut [bool]) -> Result<(), Failure> {
         let position = self.model().position(self.now.t, &self.now.y);
         let found = self.determinacy()?;
-        let motion =
-            Motion { qd: self.qd(), qdd: self.qdd(), lambda: self.lambda(), states: &self.now.y.states };
+        let motion = DynamicState {
+            qd: self.qd(),
+            qdd: self.qdd(),
+            lambda: self.lambda(),
+            states: &self.now.y.states,
+        };
         found.mark_loads(&self.mechanism, &self.parameters, &position, &motion, unique);
         Ok(())
     }

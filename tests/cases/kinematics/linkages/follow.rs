@@ -25,12 +25,12 @@ impl Random {
     }
 }
 
-/// What the crank does.
+/// Motion of the crank.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Motion {
     /// At constant speed.
     Steady,
-    /// Every sample rounded to so many bits a turn, and off by up to two counts.
+    /// Every sample rounded to this number of bits a turn, with an error of up to two counts.
     Jitter(i32),
     /// Stops next to a change point for twenty samples, the last digit of 13 bits flickering.
     Dwell,
@@ -50,7 +50,7 @@ pub const MOTIONS: [Motion; 7] = [
     Motion::Doubled,
 ];
 
-/// Which rates an input comes with.
+/// Rates of an input.
 #[derive(Clone, Copy, Debug)]
 pub enum Rates {
     /// Differences of the samples.
@@ -99,14 +99,14 @@ pub fn samples(motion: Motion, linkage: &Linkage, step: f64, count: usize, rando
     angles
 }
 
-/// How the steps are made.
+/// Kind of steps.
 #[derive(Clone, Copy, Debug)]
 pub enum Steps {
     Advance,
     Within(Budget),
 }
 
-/// What runs came to.
+/// Counts of the results of runs.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Tally {
     pub steps: u64,
@@ -134,7 +134,7 @@ impl Tally {
         }
     }
 
-    /// Compares what a step to crank angle `theta` came to.
+    /// Counts the result of a step to crank angle `theta`.
     pub fn take(
         &mut self,
         linkage: &Linkage,
@@ -144,7 +144,7 @@ impl Tally {
         step: Result<[f64; 2], Failure>,
     ) -> bool {
         self.steps += 1;
-        // What rounding leaves open of a position at the margin there: of residuals, and of angles that have grown over many turns.
+        // Rounding error of a position at the margin there: of residuals, and of angles that have grown over many turns.
         let open = (2e3 + 32.0 * theta.abs()) * epsilon / linkage.margin(theta).max(epsilon.sqrt());
         match step {
             Err(_) => {
@@ -228,7 +228,7 @@ where
             },
         };
         let theta = match S::BY {
-            // What the number type makes of the rate's integral.
+            // The integral of the rate in the number type.
             By::Rate => crank::<S, R, N>(&stepper, theta, done.is_ok()),
             _ => theta,
         };

@@ -1,11 +1,11 @@
-//! Four-bars that fold flat, and one that does not: where each of their assemblies is, in closed form.
+//! Four-bars that fold flat, and one that does not: their assemblies in closed form.
 
 pub mod follow;
 pub mod texts;
 
 use core::f64::consts::PI;
 
-/// Lengths of a linkage and where it folds flat.
+/// Lengths of a linkage and its change points.
 #[derive(Clone, Copy, Debug)]
 pub struct Linkage {
     pub name: &'static str,

@@ -174,10 +174,10 @@ impl<T: Scalar> Function<T> for Twice {
     }
 }
 
-/// How the crank is driven.
+/// Driver of the crank.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum By {
-    /// By the time, so many rad/s.
+    /// By the time, at this speed (rad/s).
     Time(f64),
     /// By an input with rates.
     Input,
@@ -226,7 +226,7 @@ fn signal<T: Scalar>(value: T, rate: T) -> Signal<T> {
     Signal { value, rate, acceleration: T::constant(0.0) }
 }
 
-/// What an encoder shows of an angle: from −π to π.
+/// Reading of an encoder: the angle from −π to π.
 fn within_a_turn<T: Scalar>(theta: T) -> T {
     T::from_lanes(|lane| {
         let angle = theta.lane(lane).to_f64();

@@ -1,8 +1,8 @@
-//! What the proof must reject, in place of all that it proves.
+//! Controls: code that the proof must reject, in place of the proven code.
 
 use core::hint::black_box;
 
-/// Where the linker begins to collect what is needed.
+/// Entry point, from which the linker collects the needed code.
 #[unsafe(no_mangle)]
 pub extern "C" fn proof_entry() -> bool {
     let mut met = false;

@@ -1,7 +1,7 @@
 //! Emitted code and solvers as a library for `cc -nostdlib -static`.
 //!
 //! The panic handler calls a function that is defined nowhere: a path to a panic is a link error. The handler
-//! itself would not do, for inlined it may leave no symbol behind.
+//! itself would not suffice, for inlined it may leave no symbol.
 #![no_std]
 
 #[cfg(any(feature = "control-allocates", feature = "control-panics"))]

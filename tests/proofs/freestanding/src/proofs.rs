@@ -1,4 +1,4 @@
-//! What is proven: every subject through all its entry points, each an exported function.
+//! Code under proof: every subject through all its entry points, each an exported function.
 
 use core::hint::black_box;
 
@@ -114,7 +114,7 @@ pub extern "C" fn proof_tape() -> bool {
         & (exercise_tape::<Lanes<f64, 4>>().0 == [3.0; 4])
 }
 
-/// Where the linker begins to collect what is needed.
+/// Entry point, from which the linker collects the needed code.
 #[unsafe(no_mangle)]
 pub extern "C" fn proof_entry() -> bool {
     proof_four_bar_lanes();

@@ -4,7 +4,7 @@
 //! proof-instructions WORK REPETITIONS
 //! ```
 //!
-//! `.ci/instructions` runs each work twice and takes the difference, so that what comes before and after does not count.
+//! `cargo xtask instructions` runs each work twice and takes the difference, so that start and end of the program do not count.
 //! Without arguments the names of the works are printed.
 
 #[macro_use]
@@ -145,13 +145,13 @@ fn commanded_batch(count: u32) {
     black_box(batch.q());
 }
 
-/// Where the crank is commanded to be at time `t` (s): it turns once a second.
+/// Commanded angle of the crank at time `t` (s): it turns once a second.
 fn angle<T: Scalar>(t: T) -> Signal<T> {
     let rate = T::constant(std::f64::consts::TAU);
     Signal { value: rate * t, rate, acceleration: T::constant(0.0) }
 }
 
-/// Where Andrews' mechanism starts.
+/// Start of Andrews' mechanism (rad).
 const SQUEEZER: [f64; 7] = [
     -0.061_713_890_014_276_45,
     0.0,

@@ -4,8 +4,8 @@
 //! proof-peers ROUNDS kinematics|dynamics
 //! ```
 //!
-//! Prints one line for each implementation of each problem: problem, name, largest difference from the reference, and
-//! the time (ns) of an evaluation or a step in every round. Without rounds (0) nothing is timed.
+//! Prints one line for each implementation of each problem. It has problem, name, largest difference from the reference,
+//! and the time (ns) of an evaluation or a step in every round. Without rounds (0) nothing is timed.
 
 mod dynamics;
 mod evaluation;

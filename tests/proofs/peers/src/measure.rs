@@ -8,7 +8,7 @@ pub struct Case {
     pub group: &'static str,
     /// The implementation.
     pub name: &'static str,
-    /// How many evaluations or steps, of one mechanism each, a call of `run` makes.
+    /// Number of evaluations or steps, of one mechanism each, in a call of `run`.
     pub work: u32,
     /// Largest difference from the reference.
     pub error: f64,
@@ -16,13 +16,13 @@ pub struct Case {
     pub run: Box<dyn FnMut()>,
 }
 
-/// What a round of one case is meant to take (s).
+/// Intended duration of a round of one case (s).
 const ROUND: f64 = 1.5e-3;
 
 /// Times the cases against each other. Prints a line for each: group, name, error, and the time (ns) of one
 /// evaluation or step in every round.
 ///
-/// Within a round all cases are timed one after the other, so that a ratio of two is free of the machine's moods.
+/// Within a round all cases are timed one after the other, so that changes of the machine's speed cancel in a ratio of two.
 pub fn compare(cases: &mut [Case], rounds: usize) {
     let repetitions: Vec<u32> =
         cases.iter_mut().map(|case| if rounds == 0 { 0 } else { repetitions(case) }).collect();
@@ -43,7 +43,7 @@ pub fn compare(cases: &mut [Case], rounds: usize) {
     }
 }
 
-/// How often a case is run in a round.
+/// Number of runs of a case in a round.
 fn repetitions(case: &mut Case) -> u32 {
     time(case, 2);
     let once = time(case, 4) / 4.0;
@@ -59,8 +59,8 @@ fn time(case: &mut Case, repetitions: u32) -> f64 {
     processor_time() - start
 }
 
-/// What this thread has computed so far (s): what other programs have had of the processor meanwhile does not count, or
-/// long runs, which are interrupted more often, would look slower than they are.
+/// Processor time of this thread so far (s). Time of other programs is left out: long runs are interrupted more often and
+/// would seem slower than they are.
 #[cfg(target_os = "linux")]
 fn processor_time() -> f64 {
     #[repr(C)]
@@ -80,7 +80,7 @@ fn processor_time() -> f64 {
     time.seconds as f64 + 1e-9 * time.nanoseconds as f64
 }
 
-/// Elsewhere the time on the wall (s).
+/// Elsewhere the wall-clock time (s).
 #[cfg(not(target_os = "linux"))]
 fn processor_time() -> f64 {
     use std::time::Instant;

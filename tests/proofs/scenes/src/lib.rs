@@ -1,7 +1,7 @@
 //! The emitted functions of a slider-crank under fixed symbols, to be compared byte by byte between three builds.
 //!
-//! The text of the machine stands once; `alone` compiles it as it is, the other features with an effect of another
-//! machine hung to its slider, whose parameters are longer than those of the slider-crank, and with two scenes.
+//! The text of the machine is written once; `alone` compiles it as it is. The other features add two scenes and an effect of
+//! another machine at its slider, whose parameters are longer than those of the slider-crank.
 #![no_std]
 
 use mbs_runtime::{Evaluation, Kinematic, Margin, Mechanism, Newton, Outcome};

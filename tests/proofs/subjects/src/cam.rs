@@ -1,4 +1,4 @@
-//! A function given at run time, in an assignment and in a block: a spline table that stands among the constants.
+//! A function given at run time, in an assignment and in a block: a spline table among the constants.
 
 use core::f64::consts::{FRAC_PI_2, TAU};
 

@@ -7,7 +7,7 @@ use mbs_runtime::dynamics::{
     Formulation, GeneralizedAlpha, Method, Penalty, Projection, Radau5, RungeKutta4, SemiImplicitEuler,
     Simulation, Unstabilized, VelocityTransformation,
 };
-use mbs_runtime::{Dynamic, Failure, Motion, Partitioned, Real, Scalar};
+use mbs_runtime::{Dynamic, DynamicState, Failure, Partitioned, Real, Scalar};
 
 use crate::Start;
 use crate::entry_points::{emitted, masses, simulations as entry};
@@ -23,7 +23,7 @@ where
     let position = emitted::position(&mechanism, &parameters, &q, t);
     let (states, rates) = black_box(masses::starts(&mechanism, &parameters));
     let lambda = black_box([T::constant(1.0); M]);
-    let motion = Motion { qd: &qd, qdd: &qdd, lambda: &lambda, states: &states };
+    let motion = DynamicState { qd: &qd, qdd: &qdd, lambda: &lambda, states: &states };
     black_box(masses::mass(&mechanism, &parameters, &position));
     black_box(masses::mass_times(&mechanism, &parameters, &position, &rates));
     black_box(masses::mass_times_q(&mechanism, &parameters, &position, &rates));
@@ -41,7 +41,7 @@ where
     black_box(masses::transformed(&mechanism, &parameters, &position, &partition, &force, &gamma));
 }
 
-/// Every formulation, every integrator, every implicit method, and what needs no integration.
+/// Every formulation, every integrator, every implicit method, and the analyses without integration.
 ///
 /// # Errors
 /// Those of the solvers.

@@ -2,7 +2,7 @@
 
 use core::hint::black_box;
 
-use mbs_runtime::{Budget, Failure, Kinematic, Lanes, Mechanism, Real, Scalar};
+use mbs_runtime::{Budget, Failure, FailureKind, Kinematic, Lanes, Mechanism, Real, Scalar};
 
 use crate::entry_points::{batch, emitted as entry, solvers};
 
@@ -102,7 +102,7 @@ pub fn exercise_solvers<S: Kinematic<R, N, M> + Copy, R: Real, const N: usize, c
     black_box(solvers::open(&stepper));
     black_box(solvers::ill_scaled(&stepper));
     black_box(solvers::stop(&stepper, black_box(R::constant(1.0))));
-    black_box(solvers::stop_of(&stepper, black_box(0), black_box(R::constant(1e3))));
+    black_box(solvers::reach_of(&stepper, black_box(0), black_box(R::constant(1e3))));
 
     let budget = black_box(Budget { newton: 4, fallback: 4 });
     let _ = black_box(solvers::step(&mut stepper, black_box(R::constant(1e-3)), budget));
@@ -141,7 +141,11 @@ where
     }
     black_box(batch::change(&mut pair, black_box(0), black_box(Lanes([R::constant(0.1); 2]))));
     black_box(batch::stepper(&pair, black_box(1)));
-    black_box(batch::retire(&mut pair, black_box(0), Failure::NonFinite { name: "t", line: 0 }));
+    black_box(batch::retire(
+        &mut pair,
+        black_box(0),
+        FailureKind::NonFinite { name: "t", line: 0 }.without_time(),
+    ));
     black_box(batch::revive(&mut pair, black_box(0), &q, t).is_ok());
     Ok(())
 }

@@ -10,7 +10,7 @@ use crate::entry_points::tape as entry;
 /// Reads two numbers, adds them, passes the sum on, and ends in the middle of a run.
 const TAPE: &[u8] = b"@\0\0\x02\0\0\0\0\x01\0\0+\0\0\x01\0\0\0\x01\0>\0\0\x01\0\x02\0\0\0\0*\0\0\x09\0";
 
-/// What it passes on.
+/// The number that the tape passes on.
 pub fn exercise_tape<T: Scalar>() -> T {
     let (mut values, passed) = ([T::constant(0.0); 3], [Cell::new(T::constant(0.0))]);
     let given = [T::constant(1.0), T::constant(2.0)];

@@ -76,7 +76,7 @@ impl Integrator {
         self.results[0] = self.states.as_mut_ptr();
         let (arguments, results) = (self.arguments.as_mut_ptr(), self.results.as_mut_ptr());
         let (integers, numbers) = (self.integers.as_mut_ptr(), self.numbers.as_mut_ptr());
-        // SAFETY: arrays as large as the function says that it needs, state and result as large as they are.
+        // SAFETY: arrays of the sizes that the function reports, state and result of their sizes.
         let code = unsafe { casadi_c_eval_id(self.id, arguments, results, integers, numbers, self.memory) };
         assert_eq!(code, 0, "CVODES comes to the end");
     }

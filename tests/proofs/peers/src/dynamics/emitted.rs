@@ -11,7 +11,7 @@ use mbs_runtime::{Dynamic, Lanes, Partitioned, Scalar};
 use super::{Accelerations, Attempt, State};
 use crate::measure::Case;
 
-/// Accelerations as an integrator asks for them: with multipliers, margin and all that may go wrong.
+/// Accelerations as an integrator evaluates them: with multipliers, margin and all failures.
 pub fn rates<S, const N: usize, const M: usize>() -> impl Fn(&State<N>) -> [f64; N] + 'static
 where
     S: Dynamic<f64, N, M> + Partitioned<f64, N, M> + Default + 'static,
@@ -91,7 +91,7 @@ pub struct Run<const N: usize> {
 }
 
 impl<const N: usize> Run<N> {
-    /// With both pairs and all tolerances; `error` is that of what a simulation shows on its way.
+    /// Attempts with both pairs and all tolerances; `error` is the error of the states that a simulation shows on its way.
     pub fn attempts<S, const M: usize>(&self, error: impl Fn(&mut dyn Shown<N>) -> f64) -> Vec<Attempt>
     where
         S: Dynamic<f64, N, M> + Partitioned<f64, N, M> + Default + Copy + 'static,

@@ -25,7 +25,7 @@ pub struct State<const N: usize> {
 struct Accelerations<const N: usize> {
     group: &'static str,
     states: Vec<State<N>>,
-    /// What they are, from elsewhere.
+    /// Reference accelerations, independently computed.
     expected: Vec<[f64; N]>,
 }
 
@@ -44,7 +44,7 @@ impl<const N: usize> Accelerations<N> {
         Case { group: self.group, name, work, error, run: Box::new(run) }
     }
 
-    /// Largest difference from what is expected, over the largest acceleration of all states.
+    /// Largest difference from the reference, over the largest acceleration of all states.
     fn error(&self, found: &[[f64; N]]) -> f64 {
         let scale = self.expected.iter().flatten().fold(0.0_f64, |scale, value| scale.max(value.abs()));
         let pairs = self.expected.iter().flatten().zip(found.iter().flatten());
@@ -65,7 +65,7 @@ struct Attempt {
     run: Box<dyn FnMut()>,
 }
 
-/// Of each name the first attempt that is within `limit`; where none is, the last one.
+/// The first attempt of each name that is within `limit`; if none is, the last one.
 ///
 /// Attempts come with their tolerances falling, so that the first one is the fastest; choosing by a measured time would
 /// choose another one in every run.

@@ -14,7 +14,7 @@ const END: f64 = 10.0;
 /// Samples of the motion at which it is compared.
 const SAMPLES: u32 = 1000;
 
-/// What the first point may be off by at any sample (m).
+/// Largest allowed error of the first point at any sample (m).
 const LIMIT: f64 = 1e-7;
 
 /// States on the way.

@@ -10,7 +10,7 @@ use mbs_runtime::dynamics::{DormandPrince8, Explicit, Simulation, VelocityTransf
 /// Duration (s) of the published problem.
 const END: f64 = 0.03;
 
-/// Where it starts, at rest.
+/// Coordinates at the start, at rest (rad).
 const START: [f64; 7] = [
     -0.061_713_890_014_276_45,
     0.0,
@@ -21,8 +21,8 @@ const START: [f64; 7] = [
     1.230_547_444_549_821_2,
 ];
 
-/// Where it is at the end, to eleven digits, from integrations of order 8 and 16 with tolerances of 1e-13 that agree; the Test
-/// Set for IVP Solvers gives eight of them.
+/// Coordinates at the end (rad) to eleven digits, on which integrations of order 8 and 16 with tolerances of 1e-13 agree. The
+/// Test Set for IVP Solvers gives eight of them.
 const AT_END: [f64; 7] = [
     15.810_771_195_153_707,
     -15.756_371_058_411_839,
@@ -33,7 +33,7 @@ const AT_END: [f64; 7] = [
     1.048_080_741_041_938,
 ];
 
-/// What a motion may be off by at its end (rad).
+/// Largest allowed error of a motion at its end (rad).
 const LIMIT: f64 = 2e-7;
 
 /// States on the way.

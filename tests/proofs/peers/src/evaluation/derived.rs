@@ -9,7 +9,7 @@ use super::Output;
 
 /// Φ for any number type.
 pub trait Residuals<const N: usize, const Z: usize> {
-    /// Where Φ_q is not zero, row by row.
+    /// Rows and columns of the nonzeros of Φ_q, row by row.
     const PLACES: [(usize, usize); Z];
     fn residuals<D: DualNum<Primitive = f64> + Copy>(q: &[D; N], t: D) -> [D; N];
 }

@@ -1,4 +1,4 @@
-//! What the macro emits.
+//! The code that the macro emits.
 
 use std::hint::black_box;
 

@@ -66,7 +66,7 @@ impl Casadi {
         call(self.shared, q, qd, t, out);
     }
 
-    /// Where the entry at each of `places` stands among CasADi's.
+    /// Index of the entry at each of `places` among CasADi's.
     pub fn order(&self, places: &[(u16, u16)]) -> Vec<usize> {
         // SAFETY: rows, columns, one start a column and the end, one row an entry.
         let pattern = unsafe {

@@ -16,7 +16,7 @@ use generated::Casadi;
 /// States that a run walks along.
 const STATES: usize = 256;
 
-/// What all implementations store: N rows, Z entries of Φ_q row by row.
+/// Results of all implementations: N rows, Z entries of Φ_q row by row.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct Output<T, const N: usize, const Z: usize> {
@@ -128,7 +128,7 @@ fn states<const N: usize>(
     })
 }
 
-/// What is evaluated where, and what CasADi finds there.
+/// A problem: states, places of the entries, and CasADi's results.
 struct Problem<const N: usize, const Z: usize> {
     name: &'static str,
     states: [State<N>; STATES],
@@ -175,7 +175,7 @@ impl<const N: usize, const Z: usize> Problem<N, Z> {
                     call(&casadi, &state.q, &state.qd, state.t, black_box(&mut out));
                 }
             };
-            // It is what the others are measured by.
+            // It is the reference of the others.
             Case { group: self.name, name, work: STATES as u32, error: 0.0, run: Box::new(run) }
         };
         let sympy_case = {

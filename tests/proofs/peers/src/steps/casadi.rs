@@ -29,7 +29,7 @@ generated!(
     casadi_factored_step_chain
 );
 
-/// Work arrays, far larger than the functions ask for.
+/// Work arrays, far larger than the functions need.
 struct Work(UnsafeCell<([c_longlong; 8192], [f64; 65536])>);
 
 // SAFETY: the program has one thread.

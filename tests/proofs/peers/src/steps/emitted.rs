@@ -29,7 +29,7 @@ where
     commanded("emitted", turn, mechanism, |_, _| {})
 }
 
-/// As [`turn`], with what `command` sets before each step for the time that it goes to.
+/// As [`turn`], with inputs that `command` sets before each step for the time of its end.
 pub fn commanded<S, const N: usize>(
     name: &'static str,
     turn: &Turn<N>,
@@ -60,7 +60,7 @@ where
     Case { group: turn.group, name, work: STEPS, error, run: Box::new(run) }
 }
 
-/// Steps of a turn of L mechanisms at once, each at its own phase of the turn: the L-th part of it (s) ahead of the one before.
+/// Steps of a turn of L mechanisms at once, each the L-th part of a turn (s) ahead of the one before.
 pub fn lanes<S, const L: usize, const N: usize>(name: &'static str, turn: &Turn<N>, mechanism: S) -> Case
 where
     S: Kinematic<Lanes<f64, L>, N> + Clone + 'static,
@@ -70,7 +70,7 @@ where
     commanded_lanes::<S, L, N>(name, turn, mechanism, |_, _| {})
 }
 
-/// As [`lanes`], with what `command` sets before each step for the times that the lanes go to.
+/// As [`lanes`], with inputs that `command` sets before each step for the times of the lanes' ends.
 pub fn commanded_lanes<S, const L: usize, const N: usize>(
     name: &'static str,
     turn: &Turn<N>,

@@ -63,7 +63,7 @@ pub fn four_bar() -> Vec<Case> {
     ]
 }
 
-/// Where the crank is commanded to be at time `t` (s): where it turns by itself otherwise.
+/// Commanded angle of the crank at time `t` (s): the same as in the texts driven by time.
 fn angle<T: Scalar>(t: T) -> Signal<T> {
     let rate = T::constant(TAU);
     Signal { value: rate * t, rate, acceleration: T::constant(0.0) }

@@ -1,7 +1,7 @@
 //! Emitted functions of masses and forces, of any scalar type.
 
-use mbs_runtime::dynamics::velocity_transformation::Transformed;
-use mbs_runtime::{Dynamic, Energy, Margin, Motion, Newton, Outcome, Partitioned, Scalar};
+use mbs_runtime::dynamics::Transformed;
+use mbs_runtime::{Dynamic, DynamicState, Energy, Margin, Newton, Outcome, Partitioned, Scalar};
 
 /// N rows of N.
 pub type Square<T, const N: usize> = [[T; N]; N];
@@ -34,21 +34,21 @@ entry_points! {
     /// Q.
     fn force[S: Dynamic<T, N, M>, T: Scalar, const N: usize, const M: usize](
         mechanism: &S, parameters: &S::Parameters, position: &S::Position,
-        motion: &Motion<'_, T, N, M, S::States>,
+        motion: &DynamicState<'_, T, N, M, S::States>,
     ) -> [T; N] {
         mechanism.force(parameters, position, motion.qd, motion.states, motion.lambda)
     }
     /// ∂Q/∂q.
     fn force_q[S: Dynamic<T, N, M>, T: Scalar, const N: usize, const M: usize](
         mechanism: &S, parameters: &S::Parameters, position: &S::Position,
-        motion: &Motion<'_, T, N, M, S::States>,
+        motion: &DynamicState<'_, T, N, M, S::States>,
     ) -> Square<T, N> {
         mechanism.force_q(parameters, position, motion.qd, motion.states, motion.lambda)
     }
     /// ∂Q/∂q̇.
     fn force_qd[S: Dynamic<T, N, M>, T: Scalar, const N: usize, const M: usize](
         mechanism: &S, parameters: &S::Parameters, position: &S::Position,
-        motion: &Motion<'_, T, N, M, S::States>,
+        motion: &DynamicState<'_, T, N, M, S::States>,
     ) -> Square<T, N> {
         mechanism.force_qd(parameters, position, motion.qd, motion.states, motion.lambda)
     }
@@ -73,9 +73,9 @@ entry_points! {
     /// Powers of the forces and rates of the states.
     fn rates[S: Dynamic<T, N, M>, T: Scalar, const N: usize, const M: usize](
         mechanism: &S, parameters: &S::Parameters, position: &S::Position,
-        motion: &Motion<'_, T, N, M, S::States>,
+        motion: &DynamicState<'_, T, N, M, S::States>,
     ) -> (S::Powers, S::States) {
-        let Motion { qd, states, lambda, .. } = motion;
+        let DynamicState { qd, states, lambda, .. } = motion;
         (
             mechanism.powers(parameters, position, qd, states, lambda),
             mechanism.state_rates(parameters, position, qd, states, lambda),
@@ -84,7 +84,7 @@ entry_points! {
     /// Outputs of multipliers and states.
     fn loads[S: Dynamic<T, N, M>, T: Scalar, const N: usize, const M: usize](
         mechanism: &S, parameters: &S::Parameters, position: &S::Position,
-        motion: &Motion<'_, T, N, M, S::States>,
+        motion: &DynamicState<'_, T, N, M, S::States>,
     ) -> S::Loads {
         mechanism.loads(parameters, position, motion)
     }

@@ -1,8 +1,8 @@
 //! Motion from forces, forces from motion, rest.
 
 use mbs_runtime::dynamics::{
-    Balance, Determinacy, Direction, Doubt, Driven, Embedded, Equilibrium, Explicit, Formulation, Instant,
-    Method, Simulation, Tolerance, WithStates,
+    Balance, Determinacy, Direction, Driven, Embedded, Equilibrium, Explicit, Formulation, Instant, Method,
+    MethodWarning, Simulation, Tolerance, WithStates,
 };
 use mbs_runtime::{Dynamic, Failure, Real};
 
@@ -46,7 +46,7 @@ entry_points! {
     /// Energies and violations; what is doubtful.
     fn balance[S: Dynamic<R, N, M>, X: Method<S, R, N, M>, R: Real, const N: usize, const M: usize](
         simulation: &Simulation<S, X, R, N, M>, h: R,
-    ) -> (Balance<R>, Option<Doubt>) {
+    ) -> (Balance<R>, Option<MethodWarning>) {
         (simulation.balance(), simulation.doubt(h))
     }
     /// Outputs.

@@ -1,6 +1,6 @@
 //! Solvers of kinematics.
 
-use mbs_runtime::saved::Kept;
+use mbs_runtime::Kept;
 use mbs_runtime::{
     Assembled, Budget, Failure, Frame, Kinematic, Real, RegularFactors, Saved, Statistics, Step, Stepper,
 };
@@ -91,17 +91,17 @@ entry_points! {
     }
     /// Where a motion stops: its bracket.
     fn stop[S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize](stepper: &Stepper<S, R, N, M>, t: R) -> Option<(R, R)> {
-        stepper.stop_towards(t).map(|stop| (stop.reachable, stop.refused))
+        stepper.reach_towards(t).map(|stop| (stop.reachable, stop.refused))
     }
     /// A length too small beside the rest.
     fn ill_scaled[S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize](stepper: &Stepper<S, R, N, M>) -> Option<f64> {
         stepper.ill_scaled().map(|found| found.resolution)
     }
     /// Where a variable stops.
-    fn stop_of[S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize](
+    fn reach_of[S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize](
         stepper: &Stepper<S, R, N, M>, index: usize, value: R,
     ) -> Option<(R, R)> {
-        stepper.stop_of(index, value).map(|stop| (stop.reachable, stop.refused))
+        stepper.reach_of(index, value).map(|stop| (stop.reachable, stop.refused))
     }
     /// The state with its outputs.
     fn frame[S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize](

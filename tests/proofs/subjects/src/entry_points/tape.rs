@@ -2,7 +2,8 @@
 
 use core::cell::Cell;
 
-use mbs_runtime::{Scalar, tape};
+use mbs_runtime::__private::tape;
+use mbs_runtime::Scalar;
 
 entry_points! {
     /// Any bytes as a tape.

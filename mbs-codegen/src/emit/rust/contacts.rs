@@ -1,0 +1,123 @@
+//! Forces by contact: the block of an open contact is skipped.
+
+use std::fmt::Write;
+
+use proc_macro2::TokenStream;
+use quote::quote;
+
+use crate::emit::rust::code::{block, lets};
+use crate::emit::rust::functions::array;
+use crate::emit::rust::scope::Scope;
+use crate::equations::{ByContact, Pressing, Push, Sparse};
+use crate::program::{ContactProgram, PushProgram, Section};
+use crate::symbolic::NodeId;
+
+/// Field of the parameter stage with the contacts that are evaluated.
+const CLOSED: &str = "__p.1";
+
+/// Forces of a text with contacts.
+pub struct Blocks<'a> {
+    pub by_contact: &'a ByContact,
+    pub program: &'a ContactProgram,
+    pub scope: &'a Scope<'a>,
+    pub runtime: &'a TokenStream,
+}
+
+impl Blocks<'_> {
+    /// Q
+    pub fn force(&self) -> TokenStream {
+        let first = array(self.by_contact.open.force.iter().copied(), self.scope);
+        self.function(
+            |program| &program.force,
+            first,
+            |contact| added("__sum", contact.push.force.iter().copied().enumerate(), self.scope),
+        )
+    }
+
+    /// ∂Q/∂q or ∂Q/∂q̇.
+    pub fn slopes(&self, by_velocity: bool) -> TokenStream {
+        let entries = |push: &Push| -> Sparse {
+            if by_velocity { push.force_qd.clone() } else { push.force_q.clone() }
+        };
+        let open = entries(&self.by_contact.open);
+        let n = open.len();
+        let mut first = format!("[[{}; {n}]; {n}]", self.scope.or_zero(None));
+        for (row, entries) in open.iter().enumerate() {
+            for (column, entry) in entries {
+                let _ = write!(first, ";\n__sum[{row}][{column}] = {}", self.scope.operand(*entry));
+            }
+        }
+        let section: fn(&PushProgram) -> &Section =
+            if by_velocity { |program| &program.force_qd } else { |program| &program.force_q };
+        self.function(section, first, |contact| {
+            let rows = entries(&contact.push);
+            rows.iter().enumerate().fold(String::new(), |text, (row, entries)| {
+                let entries = entries.iter().map(|(column, entry)| (*column, Some(*entry)));
+                text + &added(&format!("__sum[{row}]"), entries, self.scope)
+            })
+        })
+    }
+
+    /// Powers of the forces.
+    pub fn powers(&self, powers: &[Option<NodeId>]) -> TokenStream {
+        let contacts = &self.by_contact.contacts;
+        let is_contact = |index: usize| contacts.iter().any(|contact| contact.named == index);
+        let others = powers.iter().enumerate().map(|(index, power)| power.filter(|_| !is_contact(index)));
+        self.function(
+            |program| &program.powers,
+            array(others, self.scope),
+            |contact| match contact.power {
+                Some(power) => format!("__sum[{}] = {};\n", contact.named, self.scope.operand(power)),
+                None => String::new(),
+            },
+        )
+    }
+
+    /// Forces with all contacts open, then a block a contact.
+    fn function(
+        &self,
+        section: fn(&PushProgram) -> &Section,
+        first: String,
+        add: impl Fn(&Pressing) -> String,
+    ) -> TokenStream {
+        let mut text = String::new();
+        lets(section(&self.program.open), self.scope, &mut text);
+        let _ = writeln!(text, "let mut __sum = {first};");
+        for (contact, program) in self.by_contact.contacts.iter().zip(&self.program.contacts) {
+            let added = add(contact);
+            if added.is_empty() {
+                continue;
+            }
+            let _ = writeln!(text, "if {CLOSED}[{}] {{", contact.contact);
+            lets(section(program), self.scope, &mut text);
+            text += &added;
+            text += "}\n";
+        }
+        block(&(text + "__sum"), self.runtime)
+    }
+}
+
+/// Sums of entries of an array and the terms added to them.
+fn added(array: &str, entries: impl Iterator<Item = (usize, Option<NodeId>)>, scope: &Scope<'_>) -> String {
+    let mut text = String::new();
+    for (index, entry) in entries {
+        if let Some(entry) = entry {
+            let _ = writeln!(text, "{array}[{index}] = {array}[{index}] + {};", scope.operand(entry));
+        }
+    }
+    text
+}
+
+/// Access to the contacts that are evaluated.
+pub fn access() -> TokenStream {
+    quote! {
+        #[inline]
+        fn evaluated(__p: &__Parameters<T>) -> &[::core::primitive::bool] {
+            &__p.1
+        }
+        #[inline]
+        fn evaluated_mut(__p: &mut __Parameters<T>) -> &mut [::core::primitive::bool] {
+            &mut __p.1
+        }
+    }
+}

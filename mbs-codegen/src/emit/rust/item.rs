@@ -1,0 +1,550 @@
+//! The emitted items: struct, views, tables, trait implementations.
+
+use proc_macro2::{Span, TokenStream};
+use quote::{quote, quote_spanned};
+
+use crate::diagnostics::Diagnostics;
+use crate::emit::rust::Part;
+use crate::emit::rust::dynamics;
+use crate::emit::rust::fields::{
+    access, constructors, enclosed, field_docs, field_type, function_docs, ident, markers,
+};
+use crate::emit::rust::functions::Bodies;
+use crate::emit::rust::generics::Generics;
+use crate::emit::rust::scenes;
+use crate::emit::rust::view::coordinates_view;
+use crate::model::scenes::{Scene, Scenes};
+use crate::model::{Function, Longest, Model, Role};
+use crate::syntax::Text;
+
+/// Before: bodies of all functions of all scenes. After: everything that the user's module gets.
+pub fn item(text: &Text, scenes: &Scenes, parts: &[Part<'_>], left_out: Option<&Diagnostics>) -> TokenStream {
+    let header = &text.header;
+    let (visibility, name, runtime) = (&header.visibility, &header.name, &header.runtime);
+    let attributes = &header.attributes;
+    let shared = &scenes.shared;
+    let fields = shared.fields.iter().map(|field| {
+        let (docs, ident, kind) = (field_docs(field, shared), ident(&field.name), field_type(field, runtime));
+        quote! { #(#[doc = #docs])* pub #ident: #kind, }
+    });
+    let generics = Generics::of(text, scenes);
+    let functions = shared.functions.iter().zip(generics.functions()).map(|(function, kind)| {
+        let (docs, ident) = (function_docs(function), ident(&function.name));
+        quote! { #(#[doc = #docs])* pub #ident: #kind, }
+    });
+    let (declared, declaration) = (generics.declared(runtime), markers(scenes).declaration);
+    let constructors = constructors(text, scenes, &generics);
+    let docs = scenes::docs(text, scenes, parts, left_out);
+    let of_scenes = scenes::items(text, scenes, parts);
+    let views = parts.iter().map(|part| coordinates_view(text, part.scene));
+    let private = parts.iter().map(|part| implementations(text, scenes, part));
+    quote! {
+        #(#attributes)*
+        #(#[doc = #docs])*
+        #[allow(non_snake_case, reason = "the text names the parameters")]
+        #[derive(::core::clone::Clone, ::core::marker::Copy, ::core::fmt::Debug, ::core::cmp::PartialEq)]
+        #visibility struct #name<#declared> { #(#fields)* #(#functions)* #declaration }
+
+        #constructors
+
+        #of_scenes
+        #(#views)*
+        #(#private)*
+    }
+}
+
+/// Trait implementations, with the types that only they name.
+fn implementations(text: &Text, scenes: &Scenes, part: &Part<'_>) -> TokenStream {
+    let runtime = &text.header.runtime;
+    let Part { scene, bodies, .. } = part;
+    let model = &scene.model;
+    let name = scenes::type_in(text, scenes, scene, &quote! { T });
+    let lane = scenes::type_in(text, scenes, scene, &quote! { T::Real });
+    let callable = Generics::of(text, scenes).callable(model, runtime);
+    // The stub of a square text has as many rows as it was meant to have.
+    let more = model.rows.len() > model.coordinates.len() && model.rows.iter().any(|row| row.redundant);
+    let m = if part.square && !more { model.coordinates.len() } else { model.rows.len() };
+    let kinematic = part.square.then(|| kinematic(&name, (model, m), (bodies, &callable), runtime));
+    // Surplus rows leave multipliers open that only all rows together determine.
+    let is_partitioned = model.dynamics.is_some() && !part.surplus;
+    let partitioned = model.dynamics.as_ref().map(|_| match is_partitioned {
+        true => partitioned(&name, (model, m), (part, &callable), runtime),
+        false => unpartitioned(&name, (model, m), &callable, runtime),
+    });
+    let factors = (part.square || is_partitioned).then_some(&bodies.factors);
+    let dynamic = bodies.dynamics.as_ref().map(|bodies| {
+        let enclosed = enclosed(text, scenes, scene, (model, m));
+        dynamics::implementation(&name, model, (bodies, &callable, &enclosed), runtime)
+    });
+    let revealed = revealed(text, scenes, part, m);
+    let (n, branches, outputs) = (model.coordinates.len(), model.branches.len(), model.outputs.len());
+    let (limits, phase_count) = (model.limits.len(), model.phases.len());
+    let variable_count = model.variables.len();
+    let tables = tables(text, scenes, scene, bodies);
+    let access = access(text, scenes, model);
+    let Bodies {
+        orders: _,
+        kept_parameters,
+        kept_position,
+        parameters,
+        guess,
+        coordinate_scales,
+        row_scales,
+        widths,
+        position,
+        phi,
+        phi_q,
+        phi_q_entries,
+        sparsity,
+        phi_t,
+        phi_tt,
+        phi_qt_qd,
+        gamma,
+        evaluate,
+        branches: branches_body,
+        limits: limits_body,
+        phases,
+        speeds,
+        outputs: outputs_body,
+        ..
+    } = bodies;
+    let nonzeros = sparsity.len();
+    let closed = bodies.contacts.map(|contacts| quote! { , [::core::primitive::bool; #contacts] });
+    let places = sparsity.iter().map(|(row, column)| quote! { (#row, #column) });
+    let widths = widths.as_ref().map(|widths| {
+        quote! {
+            #[inline]
+            fn widths(&self, __p: &__Parameters<T>) -> [T; #m] #widths
+        }
+    });
+    let evaluate = evaluate.as_ref().map(|evaluate| {
+        quote! {
+            #[inline]
+            fn evaluate(
+                &self,
+                __p: &__Parameters<T>,
+                __q: &[T; #n],
+                __t: T,
+                __qd: &[T; #n],
+            ) -> #runtime::Evaluation<T, [T; #nonzeros], #m> #evaluate
+        }
+    });
+    // They are not called where the rows of a text do not fix the coordinates.
+    let methods = (part.square || is_partitioned).then_some(&bodies.methods).filter(|text| !text.is_empty());
+    let parts = &bodies.parts;
+    let own_item = match methods.is_none() && model.phases.is_empty() && parts.is_empty() {
+        true => TokenStream::new(),
+        false => quote! { impl<#callable> #name { #speeds #methods #parts } },
+    };
+    quote! {
+        #[allow(clippy::approx_constant, reason = "numbers of the text stay as they are")]
+        const _: () = {
+            /// Values of parameters alone.
+            #[derive(::core::clone::Clone, ::core::marker::Copy, ::core::fmt::Debug)]
+            pub struct __Parameters<T>([T; #kept_parameters] #closed);
+
+            /// Values of `(q, t)` that functions share.
+            #[derive(::core::clone::Clone, ::core::marker::Copy, ::core::fmt::Debug)]
+            pub struct __Position<T>([T; #kept_position]);
+
+            #own_item
+
+            impl<#callable> #runtime::Mechanism<T, #n, #m> for #name {
+                type Parameters = __Parameters<T>;
+                type Position = __Position<T>;
+                type Entries = [T; #nonzeros];
+                type Branches = [T; #branches];
+                type Limits = [#runtime::Limit<T>; #limits];
+                type Phases = [#runtime::Phase<T>; #phase_count];
+                type Values = [T; #variable_count];
+                type Kept = [::core::primitive::f64; #variable_count];
+                type Outputs = [#runtime::OutputValue<T>; #outputs];
+                type Lane = #lane;
+                #tables
+                const SPARSITY: &'static [(::core::primitive::u16, ::core::primitive::u16)] = &[#(#places),*];
+                #access
+                #phases
+                #[inline]
+                fn parameters(&self) -> __Parameters<T> #parameters
+                #[inline]
+                fn guess(&self, __p: &__Parameters<T>) -> [T; #n] #guess
+                #[inline]
+                fn coordinate_scales(&self, __p: &__Parameters<T>) -> [T; #n] #coordinate_scales
+                #[inline]
+                fn row_scales(&self, __p: &__Parameters<T>) -> [T; #m] #row_scales
+                #widths
+                #[inline]
+                fn position(&self, __p: &__Parameters<T>, __q: &[T; #n], __t: T) -> __Position<T> #position
+                #[inline]
+                fn phi(&self, __p: &__Parameters<T>, __s: &__Position<T>) -> [T; #m] #phi
+                #[inline]
+                fn phi_q(&self, __p: &__Parameters<T>, __s: &__Position<T>) -> [[T; #n]; #m] #phi_q
+                #[inline]
+                fn phi_q_entries(&self, __p: &__Parameters<T>, __s: &__Position<T>) -> [T; #nonzeros] #phi_q_entries
+                #[inline]
+                fn phi_t(&self, __p: &__Parameters<T>, __s: &__Position<T>) -> [T; #m] #phi_t
+                #[inline]
+                fn phi_tt(&self, __p: &__Parameters<T>, __s: &__Position<T>) -> [T; #m] #phi_tt
+                #[inline]
+                fn phi_qt_qd(&self, __p: &__Parameters<T>, __s: &__Position<T>, __qd: &[T; #n]) -> [T; #m] #phi_qt_qd
+                #[inline]
+                fn gamma(&self, __p: &__Parameters<T>, __s: &__Position<T>, __qd: &[T; #n]) -> [T; #m] #gamma
+                #evaluate
+                #[inline]
+                fn branches(&self, __p: &__Parameters<T>, __s: &__Position<T>) -> [T; #branches] #branches_body
+                #[inline]
+                fn limits(&self, __p: &__Parameters<T>, __s: &__Position<T>) -> [#runtime::Limit<T>; #limits] #limits_body
+                #[inline]
+                fn outputs(
+                    &self,
+                    __p: &__Parameters<T>,
+                    __s: &__Position<T>,
+                    __qd: &[T; #n],
+                    __qdd: &[T; #n],
+                ) -> [#runtime::OutputValue<T>; #outputs] #outputs_body
+            }
+
+            #factors
+
+            #kinematic
+            #partitioned
+            #dynamic
+        };
+
+        #revealed
+    }
+}
+
+/// Coordinates and multipliers beyond which methods with dense matrices of all of them leave no room on the stack.
+const LARGE: usize = 120;
+
+/// `impl Reveal`: the sizes and the traits of a scene in double precision.
+fn revealed(text: &Text, scenes: &Scenes, part: &Part<'_>, m: usize) -> TokenStream {
+    let (runtime, model) = (&text.header.runtime, &part.scene.model);
+    let name = scenes::type_in(text, scenes, part.scene, &quote! { ::core::primitive::f64 });
+    let generics = Generics::of(text, scenes).revealed(model, runtime);
+    let n = model.coordinates.len();
+    let method = match (model.dynamics.is_some(), part.square, n + m > LARGE) {
+        (false, false, _) => "described",
+        (false, true, _) => "kinematic",
+        (true, false, false) => "free",
+        (true, true, false) => "driven",
+        (true, false, true) => "large_free",
+        (true, true, true) => "large_driven",
+    };
+    let method = quote::format_ident!("{method}");
+    quote! {
+        impl<#generics> #runtime::Reveal for #name {
+            fn reveal<__V: #runtime::Visitor<Self>>(self, __visitor: __V) -> __V::Output {
+                __visitor.#method::<#n, #m>(self)
+            }
+        }
+    }
+}
+
+/// `impl Kinematic` with the factors that it keeps.
+fn kinematic(
+    name: &TokenStream,
+    (model, m): (&Model, usize),
+    (bodies, generics): (&Bodies, &TokenStream),
+    runtime: &TokenStream,
+) -> TokenStream {
+    let n = model.coordinates.len();
+    let Bodies { solve_with_position, factorize, solve_linear, work, .. } = bodies;
+    let (inline, factorize_inline) = (inlined(bodies.short), inlined(bodies.factorizes_in_line));
+    let solve_blocks = match &bodies.solve_blocks {
+        Some(body) => body.clone(),
+        None => quote! { { #runtime::Kinematic::solve_with_position(self, __p, __q, __t, __solver).0 } },
+    };
+    let sizes = if m == n {
+        quote! { #n }
+    } else {
+        quote! { #n, #m }
+    };
+    let solve_motion = bodies.solve_motion.as_ref().map(|body| {
+        quote! {
+            #inline
+            fn solve_motion<__S: #runtime::BlockSolver<T>>(
+                &self,
+                __p: &__Parameters<T>,
+                __motion: &mut [[T; #n]; 3],
+                __t: T,
+                __solver: &mut __S,
+            ) -> #runtime::Solved<__Position<T>, T> #body
+        }
+    });
+    let block_by_block =
+        solve_motion.as_ref().map(|_| quote! { const BLOCK_BY_BLOCK: ::core::primitive::bool = true; });
+    quote! {
+        impl<#generics> #runtime::WorstCase for #name {
+            const WORK: #runtime::Work = #work;
+        }
+        impl<#generics> #runtime::Kinematic<T, #sizes> for #name {
+            type Factors = __Factors<T>;
+            #block_by_block
+            #[inline]
+            fn solve_blocks<__S: #runtime::BlockSolver<T>>(
+                &self,
+                __p: &__Parameters<T>,
+                __q: &mut [T; #n],
+                __t: T,
+                __solver: &mut __S,
+            ) -> T::Lanes<#runtime::Outcome> #solve_blocks
+            #inline
+            fn solve_with_position<__S: #runtime::BlockSolver<T>>(
+                &self,
+                __p: &__Parameters<T>,
+                __q: &mut [T; #n],
+                __t: T,
+                __solver: &mut __S,
+            ) -> (T::Lanes<#runtime::Outcome>, __Position<T>) #solve_with_position
+            #factorize_inline
+            fn factorize(&self, __p: &__Parameters<T>, __s: &__Position<T>) -> (__Factors<T>, #runtime::Margin<T>) #factorize
+            #solve_motion
+            #inline
+            fn solve_linear(&self, __factors: &__Factors<T>, __b: &[T; #m]) -> [T; #n] #solve_linear
+        }
+    }
+}
+
+/// The attribute of a function that is inlined always, or perhaps.
+fn inlined(always: bool) -> TokenStream {
+    match always {
+        true => quote! { #[inline(always)] },
+        false => quote! { #[inline] },
+    }
+}
+
+/// `impl Partitioned`: the blocks over the dependent coordinates, and the part of a force that the rows carry.
+fn partitioned(
+    name: &TokenStream,
+    (model, m): (&Model, usize),
+    (part, generics): (&Part<'_>, &TokenStream),
+    runtime: &TokenStream,
+) -> TokenStream {
+    let n = model.coordinates.len();
+    let Bodies { solve_with_position, factorize, independent, complete, reduce, .. } = &part.bodies;
+    let (freedom, inline) = (independent.len(), inlined(part.bodies.factorizes_in_line));
+    // For a square text these are the functions of `Kinematic`.
+    let (solve_blocks, factorize) = match part.square {
+        true => (
+            quote! { #runtime::Kinematic::solve_blocks(self, __p, __q, __t, __solver) },
+            quote! { { #runtime::Kinematic::factorize(self, __p, __s) } },
+        ),
+        false => (
+            quote! {
+                (|| -> (T::Lanes<#runtime::Outcome>, __Position<T>) #solve_with_position)().0
+            },
+            factorize.clone(),
+        ),
+    };
+    quote! {
+        impl<#generics> #runtime::Partitioned<T, #n, #m> for #name {
+            type Partition = __Factors<T>;
+            const INDEPENDENT: &'static [::core::primitive::u16] = &[#(#independent),*];
+            #[inline]
+            fn solve_dependent<__S: #runtime::BlockSolver<T>>(
+                &self,
+                __p: &__Parameters<T>,
+                __q: &mut [T; #n],
+                __t: T,
+                __solver: &mut __S,
+            ) -> T::Lanes<#runtime::Outcome> { #solve_blocks }
+            #inline
+            fn partition(&self, __p: &__Parameters<T>, __s: &__Position<T>) -> (__Factors<T>, #runtime::Margin<T>) #factorize
+            #inline
+            fn complete(&self, __factors: &__Factors<T>, __b: &[T; #m], __x: &mut [T; #n]) #complete
+            #inline
+            fn reduce(&self, __factors: &__Factors<T>, __y: &mut [T; #n]) -> [T; #m] #reduce
+            #[inline(always)]
+            fn accelerations(
+                &self,
+                __p: &<Self as #runtime::Mechanism<T, #n, #m>>::Parameters,
+                __s: &<Self as #runtime::Mechanism<T, #n, #m>>::Position,
+                __factors: &__Factors<T>,
+                __force: &[T; #n],
+                __gamma: &[T; #m],
+            ) -> #runtime::dynamics::Transformed<T, #n, #m>
+            where
+                Self: #runtime::Dynamic<T, #n, #m>,
+            {
+                #runtime::__private::accelerations::<Self, T, #n, #m, #freedom>(
+                    self, __p, __s, __factors, __force, __gamma,
+                )
+            }
+        }
+    }
+}
+
+/// `impl Partitioned` of a text that has no blocks of its own coordinates: [`partitioned`] without any.
+fn unpartitioned(
+    name: &TokenStream,
+    (model, m): (&Model, usize),
+    generics: &TokenStream,
+    runtime: &TokenStream,
+) -> TokenStream {
+    let n = model.coordinates.len();
+    let zero = quote! { T::constant(0.0f64) };
+    quote! {
+        impl<#generics> #runtime::Partitioned<T, #n, #m> for #name {
+            type Partition = ();
+            const IS_PARTITIONED: ::core::primitive::bool = false;
+            const INDEPENDENT: &'static [::core::primitive::u16] = &[];
+            fn solve_dependent<__S: #runtime::BlockSolver<T>>(
+                &self,
+                _: &__Parameters<T>,
+                _: &mut [T; #n],
+                _: T,
+                _: &mut __S,
+            ) -> T::Lanes<#runtime::Outcome> {
+                T::per_lane(|_| #runtime::Outcome::NotConverged { row: 0 })
+            }
+            fn partition(&self, _: &__Parameters<T>, _: &__Position<T>) -> ((), #runtime::Margin<T>) {
+                ((), #runtime::Margin::regular().with_block(#zero, 0, 0))
+            }
+            fn complete(&self, _: &(), _: &[T; #m], _: &mut [T; #n]) {}
+            fn reduce(&self, _: &(), _: &mut [T; #n]) -> [T; #m] {
+                [#zero; #m]
+            }
+            fn accelerations(
+                &self,
+                _: &<Self as #runtime::Mechanism<T, #n, #m>>::Parameters,
+                _: &<Self as #runtime::Mechanism<T, #n, #m>>::Position,
+                _: &(),
+                _: &[T; #n],
+                _: &[T; #m],
+            ) -> #runtime::dynamics::Transformed<T, #n, #m> {
+                #runtime::dynamics::Transformed {
+                    qdd: [#zero; #n],
+                    lambda: [#zero; #m],
+                    inert: false,
+                }
+            }
+        }
+    }
+}
+
+/// Names, units and lines as constants.
+fn tables(text: &Text, scenes: &Scenes, scene: &Scene, bodies: &Bodies) -> TokenStream {
+    let runtime = &text.header.runtime;
+    let source = scenes::source(text, scenes);
+    let (name, model) = (text.header.label(), &scene.model);
+    let scene = scene.label().map(|scene| quote! { const SCENE: &'static ::core::primitive::str = #scene; });
+    let entry = |name: &str, unit: &str, span: Span| {
+        let line = quote_spanned!(span=> ::core::line!());
+        quote! { #runtime::Entry { name: #name, unit: #unit, line: #line } }
+    };
+    let coordinates = model.coordinates.iter().map(|c| entry(&c.name, &c.unit, c.span));
+    let rows = model.rows.iter().map(|row| entry(&row.name, &row.unit(model), row.span));
+    let marked = model.rows.iter().map(|row| row.redundant);
+    let marked = model.rows.iter().any(|row| row.redundant).then(|| {
+        quote! { const REDUNDANT: &'static [::core::primitive::bool] = &[#(#marked),*]; }
+    });
+    let reference = reference(model, runtime);
+    let variables = model.variables.iter().map(|v| entry(&v.name, &v.unit, v.span));
+    let angles = angles(model);
+    let turning = turning_inputs(model);
+    let branches = model.branches.iter().map(|b| entry(&b.name, &b.dimension.to_string(), b.span));
+    let at_start = model.branches.iter().map(|branch| branch.at_start);
+    let limits = model.limits.iter().map(|limit| entry(&limit.name, &limit.unit, limit.span));
+    let phases = model.phases.iter().filter_map(|phase| model.variables.get(phase.variable));
+    let phases = phases.map(|variable| entry(&variable.name, &variable.unit, variable.span));
+    let outputs = model.outputs.iter().map(|output| entry(&output.name, &output.unit, output.span));
+    let functions = model.functions.iter().zip(&bodies.orders);
+    let functions = functions.map(|(function, order)| function_entry(function, *order, runtime));
+    let functions = (!model.functions.is_empty()).then(|| {
+        quote! { const FUNCTIONS: &'static [#runtime::FunctionEntry] = &[#(#functions),*]; }
+    });
+    quote! {
+        const NAME: &'static ::core::primitive::str = #name;
+        #scene
+        const SOURCE: &'static ::core::primitive::str = #source;
+        const COORDINATES: &'static [#runtime::Entry] = &[#(#coordinates),*];
+        const ROWS: &'static [#runtime::Entry] = &[#(#rows),*];
+        #marked
+        #reference
+        const VARIABLES: &'static [#runtime::Entry] = &[#(#variables),*];
+        #angles
+        #turning
+        const BRANCHES: &'static [#runtime::Entry] = &[#(#branches),*];
+        const BRANCHES_AT_START: &'static [::core::primitive::bool] = &[#(#at_start),*];
+        const LIMITS: &'static [#runtime::Entry] = &[#(#limits),*];
+        const PHASES: &'static [#runtime::Entry] = &[#(#phases),*];
+        const OUTPUTS: &'static [#runtime::Entry] = &[#(#outputs),*];
+        #functions
+    }
+}
+
+/// `ANGLES`, where a parameter or an input is one.
+fn angles(model: &Model) -> Option<TokenStream> {
+    let held = model.fields.iter().filter(|field| field.unit == "rad" && field.role != Role::Phase);
+    let indices = held.flat_map(|field| {
+        let parts = if field.role == Role::InputWithRates { 3 } else { 1 };
+        (0..field.shape.iter().product()).map(move |component: usize| field.first + parts * component)
+    });
+    let indices: Vec<u16> = indices.filter_map(|index| u16::try_from(index).ok()).collect();
+    (!indices.is_empty()).then(|| {
+        quote! {
+            #[allow(clippy::zero_prefixed_literal, reason = "places in the text's order")]
+            const ANGLES: &'static [::core::primitive::u16] = &[#(#indices),*];
+        }
+    })
+}
+
+/// `TURNING_INPUTS`, where an input is declared as `turn`.
+fn turning_inputs(model: &Model) -> Option<TokenStream> {
+    let all = model.variables.iter().enumerate().filter(|(_, variable)| variable.turns);
+    let indices: Vec<u16> = all.filter_map(|(index, _)| u16::try_from(index).ok()).collect();
+    (!indices.is_empty()).then(|| {
+        quote! {
+            #[allow(clippy::zero_prefixed_literal, reason = "places in the text's order")]
+            const TURNING_INPUTS: &'static [::core::primitive::u16] = &[#(#indices),*];
+        }
+    })
+}
+
+/// Sources of the reference length, where something is measured by it.
+fn reference(model: &Model, runtime: &TokenStream) -> Option<TokenStream> {
+    let parameters: Vec<u16> = model.lengths().filter_map(|index| u16::try_from(index).ok()).collect();
+    if !model.is_measured_by_length() || (model.longest.is_none() && parameters.is_empty()) {
+        return None;
+    }
+    let longest = match &model.longest {
+        None => quote! { ::core::option::Option::None },
+        Some(Longest { length, name, span }) => {
+            let line = quote_spanned!(*span=> ::core::line!());
+            quote! {
+                ::core::option::Option::Some((
+                    &#runtime::Entry { name: #name, unit: "m", line: #line }, #length
+                ))
+            }
+        }
+    };
+    Some(quote! {
+        #[allow(clippy::zero_prefixed_literal, reason = "the place of a number of the text, which may begin with 0")]
+        const REFERENCE: #runtime::Reference =
+            #runtime::Reference { longest: #longest, parameters: &[#(#parameters),*] };
+    })
+}
+
+/// A declared function in the table.
+fn function_entry(function: &Function, order: u8, runtime: &TokenStream) -> TokenStream {
+    let Function { name, unit, argument_unit, continuity, period, .. } = function;
+    let line = quote_spanned!(name.span=> ::core::line!());
+    let name = &name.text;
+    let period = match period {
+        Some(period) => quote! { ::core::option::Option::Some(#period) },
+        None => quote! { ::core::option::Option::None },
+    };
+    quote! {
+        #runtime::FunctionEntry {
+            name: #name,
+            unit: #unit,
+            argument_unit: #argument_unit,
+            continuity: #continuity,
+            order: #order,
+            period: #period,
+            line: #line,
+        }
+    }
+}

@@ -1,0 +1,408 @@
+//! The linear systems of the diagonal blocks: factors, rates, multipliers.
+
+use std::collections::BTreeMap;
+use std::fmt::Write;
+
+use crate::emit::rust::blocks::list;
+use crate::emit::rust::code::{bind, lets};
+use crate::emit::rust::elimination::Eliminations;
+use crate::emit::rust::given;
+use crate::emit::rust::long::factorization::{Factorizations, Rounds};
+use crate::emit::rust::long::substitution::{Substitution, substitution};
+use crate::emit::rust::long::{self, Kind};
+use crate::emit::rust::scope::{Scope, number};
+use crate::equations::Equations;
+use crate::program::{BlockProgram, Method, Program, System};
+use crate::symbolic::NodeId;
+
+/// Code of the linear systems.
+pub struct Linear {
+    /// Declaration of the factors.
+    pub factors: String,
+    /// Body of `factorize`, or of `partition`.
+    pub factorize: String,
+    /// Body of `solve_linear`: the unknowns of all blocks from the right-hand sides.
+    pub solve: String,
+    /// Body of `complete`: the dependent entries of `x` from the independent ones.
+    pub complete: String,
+    /// Body of `reduce`: the multipliers, and their part in the independent entries of `y`.
+    pub reduce: String,
+    /// Methods that long ones call.
+    pub methods: String,
+}
+
+/// Before: blocks in the order of solution, and the coordinates that none solves for. After: the code of their linear
+/// systems, a `long` one in parts.
+pub fn linear(
+    equations: &Equations,
+    program: &Program,
+    (scope, eliminations): (&Scope<'_>, &Eliminations),
+    independent: &[usize],
+    long: bool,
+) -> Linear {
+    let entries = Entries::of(equations, program, scope, long);
+    let asked = given::blocks(equations, program, scope.model);
+    let kinds = if long { long::kinds(program) } else { BTreeMap::new() };
+    let of_kinds = if long { long::factors(program, eliminations) } else { BTreeMap::new() };
+    let mut rounds = Factorizations::default();
+    let (mut diagonals, mut places) = (Vec::new(), Vec::new());
+    for (index, block) in program.blocks.iter().enumerate() {
+        let (mut place, size) = (format!("block{index}"), block.rows.len());
+        let mut factors = eliminations.factorization(index, size);
+        if let Method::Newton(system) = &block.method {
+            let asked = asked.contains(&index);
+            let kind = Kind::of(block, system);
+            match kinds.get(&kind).filter(|_| !asked && !block.has_surplus()) {
+                Some(number) => {
+                    factors = of_kinds.get(&kind).cloned().unwrap_or(factors);
+                    place = rounds.add(*number, block, (&factors, &entries));
+                }
+                None => {
+                    let guarded = Factorized::Guarded { asked };
+                    diagonals.push(diagonal(block, system, &entries, (index, &factors), guarded))
+                }
+            }
+        }
+        places.push((place, factors));
+    }
+    let rounds = rounds.print(&entries);
+    let (factors, factorize) = in_one(&diagonals, &rounds, program, &entries);
+    if long {
+        let Substitution { solve, complete, reduce, methods } =
+            substitution(program, &places, independent, &entries);
+        let methods = rounds.methods + &methods;
+        return Linear { factors, factorize, solve, complete, reduce, methods };
+    }
+    let n = scope.model.coordinates.len();
+    let pieces = program.blocks.iter().zip(&places);
+    let solved: String =
+        pieces.map(|(block, (place, kind))| solution(block, (place, kind), &entries)).collect();
+    let unknowns = list((0..n).map(unknown));
+    let mut given = String::new();
+    let known = independent.iter().map(|coordinate| (unknown(*coordinate), format!("__x[{coordinate}]")));
+    bind(known, &mut given);
+    Linear {
+        factors,
+        factorize,
+        complete: complete(given + &solved, independent, n),
+        solve: solved + &unknowns,
+        reduce: reduce(transposed(program, &places, &entries), independent, &entries),
+        methods: String::new(),
+    }
+}
+
+fn unknown(coordinate: usize) -> String {
+    format!("__x{coordinate}")
+}
+
+fn multiplier(row: usize) -> String {
+    format!("__l{row}")
+}
+
+/// A diagonal block that is factorised.
+pub struct Diagonal {
+    index: usize,
+    /// Type of its factors.
+    kind: String,
+    /// `let`s of its factors and of the margin of all blocks so far.
+    pub text: String,
+    /// `true` if its own margin is kept, too.
+    asked: bool,
+}
+
+/// Factorization of a block.
+#[derive(Clone, Copy)]
+pub enum Factorized {
+    /// Finite factors even where the block is singular; its margin is kept where it is `asked` for.
+    Guarded {
+        /// `true` if the margin is asked for.
+        asked: bool,
+    },
+    /// Unguarded factors, for callers that check the sum of all blocks' witnesses.
+    Unguarded,
+}
+
+/// The factors of a block, and their part of the margin.
+pub fn diagonal(
+    block: &BlockProgram,
+    system: &System,
+    entries: &Entries<'_>,
+    (index, factors): (usize, &str),
+    factorized: Factorized,
+) -> Diagonal {
+    let (equations, scope) = (entries.equations, entries.scope);
+    let size = block.rows.len();
+    let rows = list(system.phi_q.iter().map(|row| list(row.iter().map(|id| entries.of_block(*id)))));
+    let scale = |scales: &[NodeId], index: &usize| scope.or_zero(scales.get(*index).copied());
+    let row_scales = list(block.rows.iter().map(|row| scale(&equations.row_scales, row)));
+    let scales = list(block.coordinates.iter().map(|c| scale(&equations.coordinate_scales, c)));
+    let (row, coordinate) = (block.rows.first().unwrap_or(&0), block.coordinates.first().unwrap_or(&0));
+    let (kind, mut text);
+    if block.has_surplus() {
+        kind = format!("__mbs::Orthogonal<T, {}, {size}>", block.coordinates.len());
+        // There is no determinant, hence no orientation.
+        text = format!(
+            "let (__block{index}, __value) = <{kind}>::factorize(&{rows}, &{row_scales}, &{scales});\n\
+             let __margin = __margin.with_block(__value, {row}, {coordinate});\n"
+        );
+    } else {
+        kind = factors.to_owned();
+        let given = format!("(&{rows}, &{row_scales}, &{scales})");
+        let call = match factorized {
+            Factorized::Guarded { .. } => format!(
+                "let (__block{index}, __value) = <{kind} as __mbs::Factorization<T, {size}>>::factorize{given};"
+            ),
+            Factorized::Unguarded => format!(
+                "let (__block{index}, __value, __witness) = <{kind} as __mbs::Factorization<T, {size}>>::factorize_unguarded{given};\nlet __sum = __sum + __witness;"
+            ),
+        };
+        text = format!(
+            "{call}\n\
+             let __margin = __margin.with_block(__value, {row}, {coordinate})\
+             .oriented(<{kind} as __mbs::Factorization<T, {size}>>::reverses(&__block{index}));\n"
+        );
+    }
+    let asked = matches!(factorized, Factorized::Guarded { asked: true });
+    if asked {
+        let _ = writeln!(text, "let __margin{index} = __value;");
+    }
+    Diagonal { index, kind, text, asked }
+}
+
+/// Declaration and body: blocks of one kind as `rounds`, others a field each.
+fn in_one(
+    diagonals: &[Diagonal],
+    rounds: &Rounds,
+    program: &Program,
+    entries: &Entries<'_>,
+) -> (String, String) {
+    let (mut fields, mut names) = (rounds.fields.clone(), rounds.names.clone());
+    let mut text = String::new();
+    if entries.long {
+        text += "let __entries = __mbs::Mechanism::phi_q_entries(self, __p, __s);\n";
+    } else {
+        lets(&program.phi_q, entries.scope, &mut text);
+    }
+    text += "let __margin = __mbs::Margin::<T>::regular();\n";
+    text += &rounds.body;
+    for Diagonal { index, kind, text: factorize, asked } in diagonals {
+        let _ = writeln!(fields, "/// Diagonal block {index}.\nblock{index}: {kind},");
+        let _ = write!(names, "block{index}: __block{index}, ");
+        text += factorize;
+        if *asked {
+            let _ = writeln!(fields, "/// Its margin.\nmargin{index}: T,");
+            let _ = write!(names, "margin{index}: __margin{index}, ");
+        }
+    }
+    let (count, kept) = match entries.long {
+        true => (entries.places.len(), "__entries".to_owned()),
+        false => (entries.kept.len(), list(entries.kept.keys().map(|id| entries.scope.operand(*id)))),
+    };
+    let _ = write!(text, "(__Factors {{ entries: {kept}, {names} }}, __margin)");
+    let declaration = format!(
+        "/// Factorised diagonal blocks, and the entries of Φ_q off them.\n\
+         #[derive(::core::clone::Clone, ::core::marker::Copy, ::core::fmt::Debug)]\n\
+         pub struct __Factors<T: __mbs::Scalar> {{\n\
+         /// Entries off the diagonal blocks.\nentries: [T; {count}],\n{fields}}}"
+    );
+    (declaration, text)
+}
+
+/// The unknowns of a block from the right-hand sides and earlier unknowns.
+fn solution(block: &BlockProgram, (place, kind): (&str, &str), entries: &Entries<'_>) -> String {
+    let right_sides = block.rows.iter().map(|row| entries.right_side(*row, block));
+    let defines: Vec<String> = block.coordinates.iter().map(|coordinate| unknown(*coordinate)).collect();
+    match &block.method {
+        Method::Explicit { coefficient, .. } => assigned(&defines, right_sides, *coefficient),
+        Method::Newton(_) => {
+            let (size, unknowns) = (block.rows.len(), defines.join(", "));
+            let right_sides = list(right_sides);
+            if block.has_surplus() {
+                let kind = format!("__mbs::Orthogonal<T, {}, {size}>", block.coordinates.len());
+                format!("let [{unknowns}] = <{kind}>::solve(&__factors.{place}, &{right_sides});\n")
+            } else {
+                format!(
+                    "let [{unknowns}] = <{kind} as __mbs::Factorization<T, {size}>>::solve(&__factors.{place}, &{right_sides});\n"
+                )
+            }
+        }
+    }
+}
+
+/// Φ_qdᵀ λ = y_d, the last block first; empty where surplus rows leave λ open.
+fn transposed(program: &Program, places: &[(String, String)], entries: &Entries<'_>) -> String {
+    if program.blocks.iter().any(BlockProgram::has_surplus) {
+        return String::new();
+    }
+    let pieces = program.blocks.iter().zip(places).rev().map(|(block, (place, kind))| {
+        let name = |row: usize| multiplier(row);
+        let right_sides = block.coordinates.iter().map(|c| entries.transposed(*c, Some(block), name));
+        let defines: Vec<String> = block.rows.iter().map(|row| multiplier(*row)).collect();
+        match &block.method {
+            Method::Explicit { coefficient, .. } => assigned(&defines, right_sides, *coefficient),
+            Method::Newton(_) => {
+                let size = block.rows.len();
+                let (multipliers, right_sides) = (defines.join(", "), list(right_sides));
+                format!(
+                    "let [{multipliers}] = <{kind} as __mbs::Factorization<T, {size}>>::solve_transposed(&__factors.{place}, &{right_sides});\n"
+                )
+            }
+        }
+    });
+    pieces.collect()
+}
+
+fn assigned(locals: &[String], right_sides: impl Iterator<Item = String>, coefficient: f64) -> String {
+    let assign =
+        |(local, value): (&String, String)| format!("let {local} = {};\n", quotient(&value, coefficient));
+    locals.iter().zip(right_sides).map(assign).collect()
+}
+
+/// A value over a number.
+pub fn quotient(value: &str, divisor: f64) -> String {
+    match divisor {
+        1.0 => value.to_owned(),
+        -1.0 => format!("-({value})"),
+        other => format!("({value}) / {}", number(other)),
+    }
+}
+
+fn complete(solved: String, independent: &[usize], coordinates: usize) -> String {
+    let mut text = solved;
+    for coordinate in (0..coordinates).filter(|coordinate| independent.binary_search(coordinate).is_err()) {
+        let _ = writeln!(text, "__x[{coordinate}] = {};", unknown(coordinate));
+    }
+    text
+}
+
+fn reduce(solved: String, independent: &[usize], entries: &Entries<'_>) -> String {
+    let mut text = solved;
+    for coordinate in independent {
+        let place = format!("__y[{coordinate}]");
+        let value = entries.transposed(*coordinate, None, multiplier);
+        // A coordinate in no row keeps what it has.
+        if value != place {
+            let _ = writeln!(text, "{place} = {value};");
+        }
+    }
+    text + &list((0..entries.equations.rows.len()).map(multiplier))
+}
+
+/// Entries of Φ_q that are no numbers: those off the diagonal blocks, or all where the code is long.
+pub struct Entries<'a> {
+    /// The equations.
+    pub equations: &'a Equations,
+    /// Scope of the code that uses them.
+    pub scope: &'a Scope<'a>,
+    long: bool,
+    /// Index of each entry, by row and column.
+    pub places: BTreeMap<(usize, usize), usize>,
+    /// Rows and entries of each column.
+    columns: BTreeMap<usize, Vec<(usize, NodeId)>>,
+    /// Index among them of each entry that the factors store.
+    pub kept: BTreeMap<NodeId, usize>,
+}
+
+impl<'a> Entries<'a> {
+    /// Those of a program.
+    pub fn of(equations: &'a Equations, program: &Program, scope: &'a Scope<'a>, long: bool) -> Self {
+        let varies = |entry: &NodeId| scope.graph.constant_value(*entry).is_none();
+        let mut kept = BTreeMap::new();
+        if long {
+            let all = equations.rows.iter().flat_map(|row| &row.phi_q).enumerate();
+            kept.extend(all.map(|(index, (_, entry))| (*entry, index)).filter(|(entry, _)| varies(entry)));
+        } else {
+            for block in &program.blocks {
+                for row in block.rows.iter().filter_map(|row| equations.rows.get(*row)) {
+                    let beside = row.phi_q.iter().filter(|(column, _)| !block.coordinates.contains(column));
+                    kept.extend(beside.map(|(_, entry)| (*entry, 0)).filter(|(entry, _)| varies(entry)));
+                }
+            }
+            for (index, slot) in kept.values_mut().enumerate() {
+                *slot = index;
+            }
+        }
+        let mut columns: BTreeMap<usize, Vec<(usize, NodeId)>> = BTreeMap::new();
+        for (index, row) in equations.rows.iter().enumerate() {
+            for (column, entry) in &row.phi_q {
+                columns.entry(*column).or_default().push((index, *entry));
+            }
+        }
+        let all = equations.rows.iter().enumerate();
+        let all =
+            all.flat_map(|(row, equation)| equation.phi_q.iter().map(move |(column, _)| (row, *column)));
+        let places = all.enumerate().map(|(index, place)| (place, index)).collect();
+        Entries { equations, scope, long, places, columns, kept }
+    }
+
+    /// An entry of a diagonal block.
+    fn of_block(&self, entry: Option<NodeId>) -> String {
+        match entry.and_then(|entry| self.kept.get(&entry)).filter(|_| self.long) {
+            Some(index) => format!("__entries[{index}]"),
+            None => self.scope.or_zero(entry),
+        }
+    }
+
+    /// Columns and entries of a row outside its block.
+    pub fn columns_beside(&self, row: usize, block: &BlockProgram) -> impl Iterator<Item = &(usize, NodeId)> {
+        let entries = self.equations.rows.get(row).map(|row| row.phi_q.as_slice()).unwrap_or_default();
+        entries.iter().filter(|(column, _)| !block.coordinates.contains(column))
+    }
+
+    /// Rows and entries of a column outside its block; all rows where the coordinate is independent.
+    pub fn rows_beside(
+        &self,
+        coordinate: usize,
+        block: Option<&BlockProgram>,
+    ) -> impl Iterator<Item = &(usize, NodeId)> {
+        let entries = self.columns.get(&coordinate).map(Vec::as_slice).unwrap_or_default();
+        entries.iter().filter(move |(row, _)| block.is_none_or(|block| !block.rows.contains(row)))
+    }
+
+    /// `right_side − Σ Φ_q x` over coordinates of earlier blocks, with their unknowns in `array`.
+    pub fn beside(&self, row: usize, block: &BlockProgram, right_side: String, array: &str) -> String {
+        let mut text = right_side;
+        for (column, entry) in self.columns_beside(row, block) {
+            let _ = match self.equations.graph.constant_value(*entry) {
+                Some(1.0) => write!(text, " - {array}[{column}]"),
+                Some(-1.0) => write!(text, " + {array}[{column}]"),
+                _ => write!(text, " - {} * {array}[{column}]", self.scope.operand(*entry)),
+            };
+        }
+        text
+    }
+
+    /// `b − Σ Φ_q x` over coordinates of earlier blocks.
+    fn right_side(&self, row: usize, block: &BlockProgram) -> String {
+        let mut text = format!("__b[{row}]");
+        for (column, entry) in self.columns_beside(row, block) {
+            self.subtract(*entry, &unknown(*column), &mut text);
+        }
+        text
+    }
+
+    /// `y − Σ Φ_qᵀ λ` over the rows of later blocks; over all rows where the coordinate is independent.
+    fn transposed(
+        &self,
+        coordinate: usize,
+        block: Option<&BlockProgram>,
+        name: impl Fn(usize) -> String,
+    ) -> String {
+        let mut text = format!("__y[{coordinate}]");
+        for (row, entry) in self.rows_beside(coordinate, block) {
+            self.subtract(*entry, &name(*row), &mut text);
+        }
+        text
+    }
+
+    /// ` - entry * factor`
+    fn subtract(&self, entry: NodeId, factor: &str, text: &mut String) {
+        match (self.kept.get(&entry), self.equations.graph.constant_value(entry)) {
+            (_, Some(1.0)) => drop(write!(text, " - {factor}")),
+            (_, Some(-1.0)) => drop(write!(text, " + {factor}")),
+            (_, Some(value)) => drop(write!(text, " - {} * {factor}", number(value))),
+            (Some(index), None) => drop(write!(text, " - __factors.entries[{index}] * {factor}")),
+            (None, None) => {}
+        }
+    }
+}

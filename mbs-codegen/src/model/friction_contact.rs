@@ -1,0 +1,106 @@
+//! Dry friction and contact → forces along a length.
+
+use proc_macro2::Span;
+
+use super::dynamics::{Action, Contact};
+use super::elaborate::{Elaborator, Fault, Reach};
+use super::elements::Given;
+use super::expression::{Id, Node};
+use super::resolve::Resolver;
+use crate::symbolic::{Binary, Unary};
+use crate::syntax::ast::Name;
+
+impl Resolver<'_> {
+    /// −(μ |N| tanh(ṡ/v₀) + c ṡ) along s: Coulomb's law, smooth below the speed v₀.
+    ///
+    /// Source: Andersson, Söderberg & Björklund 2007, the tanh model.
+    pub(super) fn friction(&mut self, name: &Name, full: String, given: &Given) -> Result<(), Fault> {
+        let field = |field: &str| given.scalar(field).ok_or(Fault);
+        let (along, normal) = (field("along")?, field("normal")?);
+        let (coefficient, speed) = (field("coefficient")?, field("speed")?);
+        let force = self.elaborate(Reach::Force, |work| {
+            let span = name.span;
+            let rate = work.expressions.push(Node::Rate(along, 1));
+            let ratio = work.push_binary(Binary::Divide, rate, speed, span)?;
+            let direction = work.push_unary(Unary::Tanh, ratio, span)?;
+            let pressure = work.push_unary(Unary::Abs, normal, span)?;
+            let limit = work.push_binary(Binary::Multiply, coefficient, pressure, span)?;
+            let mut force = work.push_binary(Binary::Multiply, limit, direction, span)?;
+            if let Some(viscous) = given.scalar("viscous") {
+                let drag = work.push_binary(Binary::Multiply, viscous, rate, span)?;
+                force = work.push_binary(Binary::Add, force, drag, span)?;
+            }
+            work.push_unary(Unary::Negate, force, span)
+        })?;
+        self.force(name, full, Action::Work(vec![(force, along)]));
+        Ok(())
+    }
+
+    /// k p₀ (p/p₀)ⁿ max(1 + d ṗ, 0) along the gap g, with the depth p = max(−g, 0): never a pull.
+    ///
+    /// Source: Hunt & Crossley 1975; n = 3/2 is Hertz's contact of spheres.
+    pub(super) fn contact(&mut self, name: &Name, full: String, given: &Given) -> Result<(), Fault> {
+        let field = |field: &str| given.scalar(field).ok_or(Fault);
+        let (gap, stiffness) = (field("gap")?, field("stiffness")?);
+        let power = match (given.scalar("exponent"), given.scalar("depth")) {
+            (None, None) => None,
+            (Some(exponent), Some(depth)) => Some((exponent, depth)),
+            (Some(_), None) => {
+                let help = "write `depth: …`: the stiffness is force over depth there";
+                return Err(self.fault(
+                    name.span,
+                    format!("contact `{}` has an exponent and no depth", name.text),
+                    help,
+                ));
+            }
+            (None, Some(_)) => {
+                let help = "write `exponent: 1.5`, or leave out both for a force that rises with the depth";
+                return Err(self.fault(
+                    name.span,
+                    format!("contact `{}` has a depth and no exponent", name.text),
+                    help,
+                ));
+            }
+        };
+        let damping = given.scalar("damping");
+        let force =
+            self.elaborate(Reach::Force, |work| pressing(work, gap, stiffness, (power, damping), name.span))?;
+        let (bound, span) = (given.scalar("bound"), name.span);
+        let dynamics = self.dynamics();
+        let force_index = dynamics.forces.len();
+        dynamics.contacts.push(Contact { name: full.clone(), force: force_index, gap, bound, span });
+        self.force(name, full, Action::Work(vec![(force, gap)]));
+        Ok(())
+    }
+}
+
+fn pressing(
+    work: &mut Elaborator<'_>,
+    gap: Id,
+    stiffness: Id,
+    (power, damping): (Option<(Id, Id)>, Option<Id>),
+    span: Span,
+) -> Result<Id, Fault> {
+    let zero = work.expressions.push(Node::Number(0.0));
+    let closed = work.push_unary(Unary::Negate, gap, span)?;
+    let depth = work.push_binary(Binary::Max, closed, zero, span)?;
+    // (p/p₀)ⁿ and not p (p/p₀)ⁿ⁻¹, whose slope is no number at p = 0.
+    let depth = match power {
+        None => depth,
+        Some((exponent, reference)) => {
+            let ratio = work.push_binary(Binary::Divide, depth, reference, span)?;
+            let rise = work.push_binary(Binary::Power, ratio, exponent, span)?;
+            work.push_binary(Binary::Multiply, reference, rise, span)?
+        }
+    };
+    let mut force = work.push_binary(Binary::Multiply, stiffness, depth, span)?;
+    if let Some(damping) = damping {
+        let one = work.expressions.push(Node::Number(1.0));
+        let opening = work.expressions.push(Node::Rate(gap, 1));
+        let share = work.push_binary(Binary::Multiply, damping, opening, span)?;
+        let factor = work.push_binary(Binary::Subtract, one, share, span)?;
+        let factor = work.push_binary(Binary::Max, factor, zero, span)?;
+        force = work.push_binary(Binary::Multiply, force, factor, span)?;
+    }
+    Ok(force)
+}

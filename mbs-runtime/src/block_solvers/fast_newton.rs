@@ -1,0 +1,225 @@
+//! Newton's method as it goes next to a regular position: nothing is asked on the way, everything at its end.
+
+use crate::block_solvers::convergence::{own_rounding, required};
+use crate::linear_algebra::factorization::Factorization;
+use crate::linear_algebra::vectors::{select, weights as reciprocals};
+use crate::mechanism::outcome::Outcome;
+use crate::mechanism::widths::Widths;
+use crate::mechanism::{Block, BlockSolver};
+use crate::scalar::number::Scalar;
+
+/// Evaluations of a block at most. From a good prediction it takes two; a step so long that four do not do is worth
+/// being looked at.
+const EVALUATIONS: u32 = 5;
+
+/// Newton's method without safeguards: no cap, no guard, no other method.
+///
+/// The caller judges the result. It is a solution in the lanes of [`closed`](Self::closed), but its assembly and its margin were
+/// not checked during the iteration. A lane that does not close stays and delays no other one.
+pub(crate) struct FastNewton<T: Scalar> {
+    /// Lanes in which every block has closed so far.
+    pub closed: T::Mask,
+    /// Evaluations of residual and Jacobian, the most of any block and lane.
+    pub evaluations: u32,
+    /// Those of each lane until it closed, where there are several.
+    pub counts: T,
+    /// Largest |residual| over its tolerance.
+    pub ratio: T,
+    /// Index in Φ of its row, in several lanes: a number, so that it is chosen like the ratio.
+    pub row: T,
+    /// Index in Φ of its row, in one lane.
+    pub row_alone: u16,
+}
+
+impl<T: Scalar> FastNewton<T> {
+    /// Before the first block; lanes outside `lanes` are left as they are and cost nothing.
+    #[inline(always)]
+    pub fn new(lanes: T::Mask) -> Self {
+        let zero = T::constant(0.0);
+        FastNewton { closed: lanes, evaluations: 0, counts: zero, ratio: zero, row: zero, row_alone: 0 }
+    }
+
+    /// Takes up one more block; `weights`: reciprocals of the tolerances.
+    #[inline(always)]
+    fn record<const K: usize>(&mut self, rows: &[u16; K], residuals: &[T; K], weights: &[T; K]) {
+        for ((residual, weight), row) in residuals.iter().zip(weights).zip(rows) {
+            self.take(residual.abs() * *weight, *row);
+        }
+    }
+
+    /// Takes up one more row.
+    #[inline(always)]
+    fn take(&mut self, ratio: T, row: u16) {
+        let larger = self.ratio.less(ratio);
+        if T::LANES > 1 {
+            self.row = T::select(larger, T::constant(f64::from(row)), self.row);
+        } else if T::all(larger) {
+            self.row_alone = row;
+        }
+        self.ratio = self.ratio.max(ratio);
+    }
+
+    /// [`solve`](BlockSolver::solve) in several lanes.
+    #[cfg_attr(not(debug_assertions), inline(always))] // each block of a debug build would have a frame of its own for it
+    fn solve_lanes<const K: usize, F: Factorization<T, K>>(
+        &mut self,
+        block: &Block<T, K>,
+        mut x: [T; K],
+        mut evaluate: impl FnMut(&[T; K]) -> ([T; K], [[T; K]; K]),
+    ) -> [T; K] {
+        let own = block.row_scales.map(own_rounding);
+        // A division is paid for in every step, a reciprocal of a number of the text is one.
+        let (mut weights, mut done, mut evaluations) = (reciprocals(&own), !self.closed, 0);
+        let mut counts = T::constant(0.0);
+        let residuals = loop {
+            let (residuals, jacobian) = evaluate(&x);
+            evaluations += 1;
+            counts = T::select(done, counts, T::constant(f64::from(evaluations)));
+            done = done | within(&residuals, &own);
+            if evaluations > 1 && !T::all(done) {
+                let whole = granted(residuals, block.row_scales, x, jacobian);
+                let closes = !done & within(&residuals, &whole);
+                weights = select(closes, &reciprocals(&whole), &weights);
+                done = done | closes;
+            }
+            if T::all(done) || evaluations == EVALUATIONS {
+                break residuals;
+            }
+            let (step, _) = F::solve_once(&jacobian, &residuals, &block.row_scales, &block.coordinate_scales);
+            let mut next = x;
+            for (component, change) in next.iter_mut().zip(&step) {
+                *component = *component - *change;
+            }
+            x = select(done, &x, &next);
+        };
+        self.closed = self.closed & done;
+        self.evaluations = self.evaluations.max(evaluations);
+        self.counts = self.counts.max(counts);
+        self.record(&block.rows, &residuals, &weights);
+        x
+    }
+
+    /// [`solve`](BlockSolver::solve) in one lane, with the rarely needed code kept apart.
+    #[cfg_attr(not(debug_assertions), inline(always))] // each block of a debug build would have a frame of its own for it
+    fn solve_alone<const K: usize, F: Factorization<T, K>>(
+        &mut self,
+        block: &Block<T, K>,
+        mut x: [T; K],
+        mut evaluate: impl FnMut(&[T; K]) -> ([T; K], [[T; K]; K]),
+    ) -> [T; K] {
+        let own = block.row_scales.map(own_rounding);
+        let (mut residuals, mut jacobian) = evaluate(&x);
+        let mut evaluations = 1;
+        while !all_within(&residuals, &own) {
+            if evaluations > 1 {
+                let (ratio, row) = worst_granted(residuals, block.row_scales, x, jacobian, block.rows);
+                if T::all(ratio.less(T::constant(1.0))) {
+                    self.evaluations = self.evaluations.max(evaluations);
+                    self.take(ratio, row);
+                    return x;
+                }
+                if evaluations == EVALUATIONS {
+                    self.closed = T::mask(false);
+                    break;
+                }
+            }
+            let (step, _) = F::solve_once(&jacobian, &residuals, &block.row_scales, &block.coordinate_scales);
+            for (component, change) in x.iter_mut().zip(&step) {
+                *component = *component - *change;
+            }
+            (residuals, jacobian) = evaluate(&x);
+            evaluations += 1;
+        }
+        self.evaluations = self.evaluations.max(evaluations);
+        // A division is paid for in every step, a reciprocal of a number of the text is one.
+        self.record(&block.rows, &residuals, &reciprocals(&own));
+        x
+    }
+}
+
+impl<T: Scalar> BlockSolver<T> for FastNewton<T> {
+    const INLINED_PER_BLOCK: bool = true;
+
+    #[inline(always)]
+    fn solve<const K: usize, F: Factorization<T, K>>(
+        &mut self,
+        block: &Block<T, K>,
+        x: [T; K],
+        evaluate: impl FnMut(&[T; K]) -> ([T; K], [[T; K]; K]),
+    ) -> ([T; K], T::Lanes<Outcome>) {
+        let x = match T::LANES {
+            1 => self.solve_alone::<K, F>(block, x, evaluate),
+            _ => self.solve_lanes::<K, F>(block, x, evaluate),
+        };
+        (x, T::per_lane(|_| Outcome::Converged))
+    }
+
+    /// Rows that may contradict each other are always looked at.
+    #[inline(always)]
+    fn solve_redundant<const K: usize, const M: usize>(
+        &mut self,
+        _block: &Block<T, K, M>,
+        _widths: &Widths<T, M>,
+        x: [T; K],
+        _evaluate: impl FnMut(&[T; K]) -> ([T; M], [[T; K]; M]),
+        _holds: impl FnMut(&[T; K]) -> T::Mask,
+    ) -> ([T; K], T::Lanes<Outcome>) {
+        self.closed = T::mask(false);
+        (x, T::per_lane(|_| Outcome::Converged))
+    }
+}
+
+/// `true` if every residual is within its tolerance; false for NaN.
+#[inline(always)]
+fn within<T: Scalar, const K: usize>(residuals: &[T; K], tolerances: &[T; K]) -> T::Mask {
+    let mut within = T::mask(true);
+    for (residual, tolerance) in residuals.iter().zip(tolerances) {
+        within = within & residual.abs().less(*tolerance);
+    }
+    within
+}
+
+/// [`within`] as decisions, row by row.
+#[inline(always)]
+fn all_within<T: Scalar, const K: usize>(residuals: &[T; K], tolerances: &[T; K]) -> bool {
+    let mut pairs = residuals.iter().zip(tolerances);
+    pairs.all(|(residual, tolerance)| T::all(residual.abs().less(*tolerance)))
+}
+
+/// The largest |residual| over its whole tolerance, with its row; 2 where a residual is no number.
+#[cold]
+#[inline(never)]
+fn worst_granted<T: Scalar, const K: usize>(
+    residuals: [T; K],
+    row_scales: [T; K],
+    x: [T; K],
+    jacobian: [[T; K]; K],
+    rows: [u16; K],
+) -> (T, u16) {
+    let whole = granted(residuals, row_scales, x, jacobian);
+    if !all_within(&residuals, &whole) {
+        return (T::constant(2.0), 0);
+    }
+    let mut worst = FastNewton::new(T::mask(true));
+    worst.record(&rows, &residuals, &reciprocals(&whole));
+    (worst.ratio, worst.row_alone)
+}
+
+/// The whole tolerances (see [`required`]) where the residual is not within its row's own rounding: with the part of large
+/// coordinates, which is needed only many turns away.
+///
+/// By value, so that the numbers of the solver stay in registers.
+#[inline(never)]
+fn granted<T: Scalar, const K: usize>(
+    residuals: [T; K],
+    row_scales: [T; K],
+    x: [T; K],
+    jacobian: [[T; K]; K],
+) -> [T; K] {
+    let mut granted = required(&row_scales, &x, &jacobian);
+    for ((tolerance, residual), scale) in granted.iter_mut().zip(residuals).zip(row_scales) {
+        let own = own_rounding(scale);
+        *tolerance = T::select(residual.abs().less(own), own, *tolerance);
+    }
+    granted
+}

@@ -1,0 +1,12 @@
+//! Solvers of one nonlinear block: next position, assembly, redundant rows, bounded work.
+
+pub(crate) mod bounded_newton;
+pub(crate) mod budget;
+pub(crate) mod convergence;
+pub(crate) mod dyad;
+pub(crate) mod fast_newton;
+pub(crate) mod gauss_newton;
+pub(crate) mod levenberg_marquardt;
+pub(crate) mod multistart;
+pub(crate) mod newton;
+pub(crate) mod trace;

@@ -1,0 +1,5 @@
+//! Analyses of one state: inverse dynamics, small motions, uniqueness of multipliers.
+
+pub(crate) mod determinacy;
+pub(crate) mod inverse;
+pub(crate) mod linearization;

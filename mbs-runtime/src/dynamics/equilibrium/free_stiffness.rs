@@ -1,0 +1,168 @@
+//! The stiffness of the motions that the rows leave free, of any rank: restoring forces, and motions that nothing answers.
+
+use crate::dynamics::integrators::vector::{State, Vector};
+use crate::dynamics::linear_systems::kkt::{Factors, System, none, truncation};
+use crate::dynamics::linear_systems::tangent::Tangent;
+use crate::dynamics::model::Model;
+use crate::failure::Failure;
+use crate::linear_algebra::orthogonal::minimum_norm;
+use crate::linear_algebra::vectors::dot;
+use crate::mechanism::dynamic::Dynamic;
+use crate::scalar::number::Real;
+
+/// Part of the largest stiffness or force in the metric below which a motion meets no stiffness. Rounding of
+/// stiff springs leaves nine digits of a soft direction; the rounding of 0 counts where that is more.
+const UNANSWERED: f64 = 1e-9;
+
+/// Part of a coordinate in an indifferent motion, in the metric, from which it counts as indifferent.
+pub(crate) const SHARE: f64 = 1e-6;
+
+/// K on the null space of Φ_q at one position, in the reference metric.
+#[derive(Clone, Copy)]
+pub(crate) struct FreeStiffness<R, const N: usize, const M: usize> {
+    /// Φ_q with the metric in place of a mass.
+    pub factors: Factors<R, N, M>,
+    pub freedom: usize,
+    /// The free motions Z, orthonormal in the metric, in the units of the coordinates; then zeros.
+    pub motions: [[R; N]; N],
+    /// K: N rows of N.
+    pub stiffness: [[R; N]; N],
+    /// Zᵀ K Z.
+    pub reduced: [[R; N]; N],
+    /// The largest force or stiffness in the metric (J).
+    pub size: R,
+    /// Energy (J) an angle of 1 below which nothing answers.
+    nothing: R,
+}
+
+/// The answer of a free stiffness to forces.
+pub(crate) struct Answer<R, const N: usize, const M: usize> {
+    /// The shortest step (N) that takes the imbalance away as far as stiffness answers it, and closes the rows.
+    pub step: [R; N],
+    /// The change of the multipliers (M) that goes with it.
+    pub change: [R; M],
+    /// The rest of the imbalance, as a motion (N) that meets no stiffness.
+    pub unanswered: [R; N],
+    /// Its length (J), 0 where rounding may be all of it.
+    pub push: R,
+    /// The whole imbalance as a motion (N).
+    pub pull: [R; N],
+    /// Its length (J), 0 where rounding may be all of it.
+    pub imbalance: R,
+}
+
+impl<R: Real, const N: usize, const M: usize> FreeStiffness<R, N, M> {
+    /// That of a state at rest with multipliers `lambda` (M).
+    pub(crate) fn of<S: Dynamic<R, N, M>>(
+        model: &Model<'_, S, R, N, M>,
+        t: R,
+        y: &State<R, N, S::States>,
+        lambda: &[R; M],
+    ) -> Result<Self, Failure> {
+        let (zero, position) = (R::constant(0.0), model.position(t, y));
+        let stiffness = Tangent::at_rest(model, &position, y, lambda).0.stiffness;
+        let phi_q = model.mechanism.phi_q(model.parameters, &position);
+        let system = System::new(&model.metric.mass(), &phi_q, model.metric);
+        let factors = system.factorize_rank_revealing(truncation::<R>(), S::COORDINATES, t)?;
+        let force = model.mechanism.force(model.parameters, &position, &y.qd, &y.states, lambda);
+        let scales = &model.metric.coordinates;
+        let mut size = zero;
+        for ((row, force), scale) in stiffness.iter().zip(&force).zip(scales) {
+            size = size.max((*force * *scale).abs());
+            for (entry, other) in row.iter().zip(scales) {
+                size = size.max((*entry * *scale * *other).abs());
+            }
+        }
+        let motions = factors.free_motions();
+        let reduced = motions.map(|left| motions.map(|right| dot(&left, &times(&stiffness, &right))));
+        let (freedom, nothing) = (N.saturating_sub(factors.rank()), unanswered::<R>() * size);
+        Ok(FreeStiffness { factors, freedom, motions, stiffness, reduced, size, nothing })
+    }
+
+    /// The answer to `imbalance` (N) where the rows are open by `phi` (M).
+    pub(crate) fn answer(&self, imbalance: &[R; N], phi: &[R; M]) -> Answer<R, N, M> {
+        let (zero, one) = (R::constant(0.0), R::constant(1.0));
+        let closing = self.factors.solve(&[zero; N], phi).0;
+        let open = imbalance.plus(-one, &[1.0], [&times(&self.stiffness, &closing)]);
+        let wanted = self.motions.map(|motion| dot(&motion, &open));
+        let found = self.shortest(&self.reduced, &wanted);
+        let left = wanted.plus(-one, &[1.0], [&times(&self.reduced, &found)]);
+        let step = closing.plus(one, &[1.0], [&self.moved(&found)]);
+        let rest = imbalance.plus(-one, &[1.0], [&times(&self.stiffness, &step)]);
+        let (push, whole) = (dot(&left, &left).sqrt(), dot(&wanted, &wanted).sqrt());
+        Answer {
+            step,
+            change: self.factors.solve(&rest, &[zero; M]).1,
+            unanswered: self.moved(&left),
+            push: if self.nothing.less(push) { push } else { zero },
+            pull: self.moved(&wanted),
+            imbalance: if self.nothing.less(whole) { whole } else { zero },
+        }
+    }
+
+    /// `true` for each coordinate that moves without any force changing: N.
+    pub(crate) fn indifferent(&self, scales: &[R; N]) -> [bool; N] {
+        let mut indifferent = [false; N];
+        for index in 0..self.freedom {
+            let (motion, _) = self.unanswered_part(index);
+            for ((mark, part), scale) in indifferent.iter_mut().zip(&motion).zip(scales) {
+                *mark |= R::constant(SHARE).less((*part / *scale).abs());
+            }
+        }
+        indifferent
+    }
+
+    /// The part of the free motion at `index` that nothing answers, as a motion (N), and its share of that motion.
+    pub(crate) fn unanswered_part(&self, index: usize) -> ([R; N], R) {
+        let (zero, one) = (R::constant(0.0), R::constant(1.0));
+        let mut unit = [zero; N];
+        unit.iter_mut().skip(index).take(1).for_each(|component| *component = one);
+        let answered = self.shortest(&self.reduced, &times(&self.reduced, &unit));
+        let left = unit.plus(-one, &[1.0], [&answered]);
+        (self.moved(&left), left.get(index).copied().unwrap_or(zero))
+    }
+
+    /// Number of motions that nothing answers: the trace of the projection onto them.
+    pub(crate) fn unanswered_motions(&self) -> R {
+        let shares = (0..self.freedom).map(|index| self.unanswered_part(index).1);
+        shares.fold(R::constant(0.0), |sum, share| sum + share)
+    }
+
+    /// The part of `motion` (N) that nothing answers, of which the free motions alone count.
+    pub(crate) fn unanswered(&self, motion: &[R; N], scales: &[R; N]) -> [R; N] {
+        let one = R::constant(1.0);
+        let mut scaled = *motion;
+        scaled.iter_mut().zip(scales).for_each(|(part, scale)| *part = *part / (*scale * *scale));
+        let shares = self.motions.map(|free| dot(&free, &scaled));
+        let answered = self.shortest(&self.reduced, &times(&self.reduced, &shares));
+        self.moved(&shares.plus(-one, &[1.0], [&answered]))
+    }
+
+    /// The shortest w with `reduced` w = `wanted`, Zᵀ K Z or a part of it, in the least-squares sense, motions that nothing answers left out: N, zeros
+    /// from the freedom on.
+    pub(crate) fn shortest(&self, reduced: &[[R; N]; N], wanted: &[R; N]) -> [R; N] {
+        let one = R::constant(1.0);
+        let mut largest = R::constant(0.0);
+        reduced.iter().flatten().for_each(|entry| largest = largest.max(entry.abs()));
+        let tolerance = unanswered::<R>().max(self.nothing / largest);
+        minimum_norm(reduced, wanted, &[one; N], &[one; N], tolerance).0
+    }
+
+    /// Z w: N.
+    pub(crate) fn moved(&self, w: &[R; N]) -> [R; N] {
+        let mut moved = [R::constant(0.0); N];
+        for (motion, share) in self.motions.iter().zip(w) {
+            moved.iter_mut().zip(motion).for_each(|(sum, part)| *sum = *sum + *share * *part);
+        }
+        moved
+    }
+}
+
+/// Part of the largest force below which it is none.
+pub(crate) fn unanswered<R: Real>() -> R {
+    none(UNANSWERED)
+}
+
+pub(crate) fn times<R: Real, const N: usize>(matrix: &[[R; N]; N], x: &[R; N]) -> [R; N] {
+    matrix.map(|row| dot(&row, x))
+}

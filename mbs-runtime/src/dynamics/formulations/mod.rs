@@ -1,0 +1,10 @@
+//! Formulations: accelerations and multipliers from a state, and the way back onto the constraints.
+
+pub(crate) mod baumgarte;
+pub(crate) mod friction;
+pub(crate) mod penalty;
+pub(crate) mod projection;
+pub(crate) mod singular;
+pub(crate) mod unstabilized;
+pub(crate) mod variation;
+pub(crate) mod velocity_transformation;

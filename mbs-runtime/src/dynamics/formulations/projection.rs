@@ -1,0 +1,357 @@
+//! Projection: positions and velocities put back onto the constraints by the shortest way in the mass's measure.
+
+use crate::dynamics::formulations::singular::limit_rows::{Passing, ZONE, at_limit};
+use crate::dynamics::formulations::unstabilized::{factorize, solve};
+use crate::dynamics::integrators::vector::{State, Vector};
+use crate::dynamics::linear_systems::kkt::{Factors, System};
+use crate::dynamics::model::metric::worse;
+use crate::dynamics::model::{Counts, Formulation, Model, Solved};
+use crate::failure::{Failure, FailureKind, checks};
+use crate::mechanism::dynamic::Dynamic;
+use crate::scalar::number::Real;
+
+/// Rounding errors of a row's own terms that a projected residual may hold, in ε times the row's scale; the same as
+/// for positions of driven mechanisms.
+const TERM_ROUNDINGS: f64 = 64.0;
+
+/// Rounding errors of a coordinate that a residual may hold, in ε times the coordinate.
+const COORDINATE_ROUNDINGS: f64 = 4.0;
+
+/// Corrections of one position: two do after a step, a start off the constraints needs a few more.
+const MOST_CORRECTIONS: u32 = 25;
+
+/// A correction with old factors that leaves more than this share of the residual is worth new factors.
+const STALE: f64 = 0.1;
+
+/// Largest residual over its tolerance that remains although nothing lowers it any more: that of a direction which is too weak
+/// to be corrected, 1e-2 of the residual of a step in it. Beyond it (1e-6 of a reference length) the constraints cannot be
+/// met.
+const LARGEST_REST: f64 = 1e8;
+
+/// Stages of a step that are put onto the constraints before they are evaluated.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Stages {
+    /// All if rows follow from others on the constraints alone, none otherwise: off the constraints the rank of Φ_q
+    /// rises, and accelerations grow with the inverse of the distance. Decided at the start, and again after changed parameters
+    /// and singular positions.
+    #[default]
+    WhereNeeded,
+    /// None: a step's end alone is.
+    None,
+    /// All, at twice the cost and a fifth of the error. Next to a singular position a stage may be too far off. An adaptive
+    /// step is then tried again smaller; in one of fixed size the stage is taken as it is, unless the rank rises there.
+    All,
+}
+
+/// Index 1 with projection of q and q̇ after each step: the accurate default.
+///
+/// Δq solves M Δq + Φ_qᵀ μ = 0, Φ_q Δq = −Φ, repeated to rounding; then Δq̇ solves the same with
+/// −(Φ_q q̇ + Φ_t). Nothing is divided by M, which may be singular.
+/// Source: Eich 1993; García de Jalón & Gutiérrez-López 2013 for singular M.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Projection {
+    /// Stages that are projected too.
+    pub stages: Stages,
+}
+
+impl Projection {
+    /// Stages of `model` that are projected.
+    fn stages_of<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
+        &self,
+        model: &Model<'_, S, R, N, M>,
+    ) -> Stages {
+        match self.stages {
+            Stages::WhereNeeded if model.rank_rises => Stages::All,
+            Stages::WhereNeeded => Stages::None,
+            chosen => chosen,
+        }
+    }
+}
+
+impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Formulation<S, R, N, M> for Projection {
+    fn solve(
+        &self,
+        model: &Model<'_, S, R, N, M>,
+        t: R,
+        y: &State<R, N, S::States>,
+        lambda: &[R; M],
+        counts: &mut Counts,
+    ) -> Result<Solved<R, N, M, S::States>, Failure> {
+        let (mut y, stages) = (*y, self.stages_of(model));
+        if stages == Stages::All {
+            counts.projected_stages += 1;
+            self.project(model, t, &mut y, counts)?;
+        }
+        let position = model.position(t, &y);
+        let factors = factorize(model, t, &position, counts)?;
+        let gamma = model.mechanism.gamma(model.parameters, &position, &y.qd);
+        if factors.margin() < R::constant(ZONE) && factors.margin() < model.zone(stages) {
+            let rows = (&gamma, factors.margin());
+            let found = at_limit(model, (t, &y), &position, lambda, rows, counts)?;
+            if let Some(Passing { solved, .. }) = found {
+                return Ok(solved);
+            }
+        }
+        solve(model, (t, &y), &position, lambda, &factors, &gamma)
+    }
+
+    fn solve_as_it_is(
+        &self,
+        model: &Model<'_, S, R, N, M>,
+        t: R,
+        y: &State<R, N, S::States>,
+        lambda: &[R; M],
+        counts: &mut Counts,
+    ) -> Result<Solved<R, N, M, S::States>, Failure> {
+        let rises = model.rank_rises && self.stages != Stages::None;
+        let stages = if rises { Stages::All } else { Stages::None };
+        Projection { stages }.solve(model, t, y, lambda, counts)
+    }
+
+    fn leaves_constraints(&self) -> bool {
+        self.stages == Stages::None
+    }
+
+    #[inline]
+    fn project(
+        &self,
+        model: &Model<'_, S, R, N, M>,
+        t: R,
+        y: &mut State<R, N, S::States>,
+        counts: &mut Counts,
+    ) -> Result<(), Failure> {
+        let factors = project_position(model, t, y, counts)?;
+        project_velocity(model, t, y, factors, counts)
+    }
+}
+
+/// Puts `y.q` onto Φ(q, t) = 0; returns the last factors, which are those of a position next to it.
+pub(crate) fn project_position<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
+    model: &Model<'_, S, R, N, M>,
+    t: R,
+    y: &mut State<R, N, S::States>,
+    counts: &mut Counts,
+) -> Result<Option<Factors<R, N, M>>, Failure> {
+    let none = [R::constant(0.0); N];
+    let mut progress = Progress::new();
+    for _ in 0..MOST_CORRECTIONS {
+        let position = model.position(t, y);
+        let phi = model.mechanism.phi(model.parameters, &position);
+        let ratio = model.worst(&phi, &model.position_tolerances(&position, &y.q)).0;
+        if progress.ends(ratio, &y.q) {
+            break;
+        }
+        let factors = progress.factors(|| correction_factors(model, t, &position))?;
+        let (step, _) = factors.solve(&none, &phi);
+        counts.corrections += 1;
+        progress.moved(&step, &y.q, &model.metric.coordinates);
+        y.q = y.q.plus(R::constant(-1.0), &[1.0], [&step]);
+    }
+    y.q = progress.best.unwrap_or(y.q);
+    let position = model.position(t, y);
+    let phi = model.mechanism.phi(model.parameters, &position);
+    model.require(t, &phi, &model.position_tolerances(&position, &y.q), R::constant(LARGEST_REST), false)?;
+    Ok(progress.factors)
+}
+
+/// Puts `y.qd` onto Φ_q q̇ = −Φ_t.
+fn project_velocity<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
+    model: &Model<'_, S, R, N, M>,
+    t: R,
+    y: &mut State<R, N, S::States>,
+    factors: Option<Factors<R, N, M>>,
+    counts: &mut Counts,
+) -> Result<(), Failure> {
+    let none = [R::constant(0.0); N];
+    let position = model.position(t, y);
+    let tolerances = model.rate_tolerances(&position, &y.qd);
+    let mut progress = Progress { factors, ..Progress::new() };
+    for _ in 0..MOST_CORRECTIONS {
+        let phi_d = model.constraint_rates(&position, &y.qd);
+        let ratio = model.worst(&phi_d, &tolerances).0;
+        if progress.ends(ratio, &y.qd) {
+            break;
+        }
+        let factors = progress.factors(|| correction_factors(model, t, &position))?;
+        let (step, _) = factors.solve(&none, &phi_d);
+        counts.corrections += 1;
+        progress.moved(&step, &y.qd, &[R::constant(0.0); N]);
+        y.qd = y.qd.plus(R::constant(-1.0), &[1.0], [&step]);
+    }
+    y.qd = progress.best.unwrap_or(y.qd);
+    let (phi_d, rest) = (model.constraint_rates(&position, &y.qd), R::constant(LARGEST_REST));
+    if model.worst(&phi_d, &tolerances).0 <= rest {
+        return Ok(());
+    }
+    model.require(t, &phi_d, &model.frame_free_rate_tolerances(&position, &y.qd), rest, true)
+}
+
+/// The factors that corrections are solved with: without the directions that the rows determine too weakly.
+pub(crate) fn correction_factors<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
+    model: &Model<'_, S, R, N, M>,
+    t: R,
+    position: &S::Position,
+) -> Result<Factors<R, N, M>, Failure> {
+    let mass = model.mechanism.mass(model.parameters, position);
+    let phi_q = model.mechanism.phi_q(model.parameters, position);
+    let system = System::new(&mass, &phi_q, model.metric);
+    let factors = system.factorize(S::COORDINATES, t)?;
+    let weakest = R::constant(ZONE);
+    if weakest < factors.margin() {
+        return Ok(factors);
+    }
+    system.factorize_rank_revealing(weakest, S::COORDINATES, t)
+}
+
+/// The way of a projection to its end: corrections with the same factors as long as those are good enough.
+struct Progress<R, const N: usize, const M: usize> {
+    factors: Option<Factors<R, N, M>>,
+    /// The point with the least residual so far, and that residual over its tolerance.
+    best: Option<[R; N]>,
+    least: R,
+    /// `true` if the last correction was made with factors of its own point.
+    fresh: bool,
+    /// `true` if the last correction was no more than rounding.
+    still: bool,
+}
+
+impl<R: Real, const N: usize, const M: usize> Progress<R, N, M> {
+    fn new() -> Self {
+        Progress { factors: None, best: None, least: R::constant(f64::MAX), fresh: false, still: false }
+    }
+
+    /// Takes up the residual of a point; `true` if no further correction is worthwhile.
+    fn ends(&mut self, ratio: R, x: &[R; N]) -> bool {
+        let first = self.best.is_none();
+        let falls = |share: f64| ratio < R::constant(share) * self.least;
+        let (stale, stuck) = (!falls(STALE), !falls(0.5));
+        if ratio < self.least {
+            (self.least, self.best) = (ratio, Some(*x));
+        }
+        if !first && stale {
+            if self.fresh && (stuck || self.still) {
+                return true;
+            }
+            self.factors = None;
+        }
+        ratio <= R::constant(1.0) || self.still
+    }
+
+    fn factors(
+        &mut self,
+        make: impl FnOnce() -> Result<Factors<R, N, M>, Failure>,
+    ) -> Result<Factors<R, N, M>, Failure> {
+        self.fresh = self.factors.is_none();
+        let factors = match self.factors {
+            Some(factors) => factors,
+            None => make()?,
+        };
+        self.factors = Some(factors);
+        Ok(factors)
+    }
+
+    /// Takes up a correction from `x`; `scales` (N) measure a coordinate in addition to its own size.
+    fn moved(&mut self, step: &[R; N], x: &[R; N], scales: &[R; N]) {
+        let zero = R::constant(0.0);
+        let largest = |values: &[R; N]| values.iter().fold(zero, |largest, x| largest.max(x.abs()));
+        let size = largest(x).max(largest(scales));
+        self.still = largest(step) <= R::constant(COORDINATE_ROUNDINGS) * R::EPSILON * size;
+    }
+}
+
+impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, R, N, M> {
+    /// Φ̇ = Φ_q q̇ + Φ_t: M.
+    #[inline(always)]
+    pub(crate) fn constraint_rates(&self, position: &S::Position, qd: &[R; N]) -> [R; M] {
+        let mut rates = self.mechanism.phi_t(self.parameters, position);
+        self.add_products(position, qd, |product| product, &mut rates);
+        rates
+    }
+
+    /// Adds to each of `sums` (M) the `part` of Φ_qᵢⱼ xⱼ, for all entries that are not zero by structure.
+    #[inline(always)]
+    fn add_products(&self, position: &S::Position, x: &[R; N], part: impl Fn(R) -> R, sums: &mut [R; M]) {
+        let entries = self.mechanism.phi_q_entries(self.parameters, position);
+        for ((row, column), entry) in S::SPARSITY.iter().zip(entries.as_ref()) {
+            if let (Some(sum), Some(x)) = (sums.get_mut(usize::from(*row)), x.get(usize::from(*column))) {
+                *sum = *sum + part(*entry * *x);
+            }
+        }
+    }
+
+    /// Residual that rounding can leave in each row: ε (64 ρᵢ + 4 Σⱼ |Φ_qᵢⱼ| |qⱼ|).
+    pub(crate) fn position_tolerances(&self, position: &S::Position, q: &[R; N]) -> [R; M] {
+        self.tolerances(position, q, self.metric.rows)
+    }
+
+    /// Residual that rounding can leave in each row's rate: ε (64 |Φ_t| + 68 Σⱼ |Φ_qᵢⱼ| |q̇ⱼ|), and as much as a row's scale per
+    /// 1000 seconds would leave, so that a mechanism at rest has a tolerance too.
+    pub(crate) fn rate_tolerances(&self, position: &S::Position, qd: &[R; N]) -> [R; M] {
+        let mut floor = self.mechanism.phi_t(self.parameters, position);
+        let speeds = qd.map(|qd| qd * R::constant(1.0 + TERM_ROUNDINGS / COORDINATE_ROUNDINGS));
+        for (rate, scale) in floor.iter_mut().zip(&self.metric.rows) {
+            *rate = rate.abs() + R::constant(1e-3) * *scale;
+        }
+        self.tolerances(position, &speeds, floor)
+    }
+
+    fn tolerances(&self, position: &S::Position, x: &[R; N], floor: [R; M]) -> [R; M] {
+        let mut reach = [R::constant(0.0); M];
+        self.add_products(position, x, R::abs, &mut reach);
+        let mut tolerances = floor;
+        for (tolerance, reach) in tolerances.iter_mut().zip(&reach) {
+            *tolerance = R::EPSILON
+                * (R::constant(TERM_ROUNDINGS) * *tolerance + R::constant(COORDINATE_ROUNDINGS) * *reach);
+        }
+        tolerances
+    }
+
+    /// The largest residual over its tolerance, and its row.
+    pub(crate) fn worst(&self, residuals: &[R; M], tolerances: &[R; M]) -> (R, usize) {
+        let mut worst = (R::constant(0.0), 0);
+        for (index, (residual, tolerance)) in residuals.iter().zip(tolerances).enumerate() {
+            let ratio = worse(worst.0, residual.abs() / *tolerance);
+            if ratio != worst.0 {
+                worst = (ratio, index);
+            }
+        }
+        worst
+    }
+
+    /// The same as if all coordinates moved as fast as the fastest one in the metric, and with a row's scale at that speed. So it
+    /// does not vanish where a rod lies along one axis of the frame and moves along the other, nor where all bars of a loop lie
+    /// along an axis, whose row along it has no entry left.
+    #[cold]
+    #[inline(never)]
+    fn frame_free_rate_tolerances(&self, position: &S::Position, qd: &[R; N]) -> [R; M] {
+        let speed = self.largest(qd);
+        let mut tolerances =
+            self.rate_tolerances(position, &self.metric.coordinates.map(|scale| scale * speed));
+        for (tolerance, scale) in tolerances.iter_mut().zip(&self.metric.rows) {
+            *tolerance = *tolerance + R::constant(TERM_ROUNDINGS) * R::EPSILON * speed * *scale;
+        }
+        tolerances
+    }
+
+    /// Fails with the worst row where a residual exceeds `factor` times its tolerance, or is no number.
+    pub(crate) fn require(
+        &self,
+        t: R,
+        residuals: &[R; M],
+        tolerances: &[R; M],
+        factor: R,
+        rate: bool,
+    ) -> Result<(), Failure> {
+        let (ratio, index) = self.worst(residuals, tolerances);
+        if ratio <= factor {
+            return Ok(());
+        }
+        let at = |values: &[R; M]| values.get(index).copied().unwrap_or(R::constant(0.0));
+        let row = checks::entry(S::ROWS, u16::try_from(index).unwrap_or(u16::MAX));
+        let (residual, allowed) = (at(residuals).abs().to_f64(), (factor * at(tolerances)).to_f64());
+        if !at(residuals).is_finite() {
+            return Err(FailureKind::NonFinite { name: row.name, line: row.line }.without_time());
+        }
+        Err(FailureKind::OffConstraints { row, rate, residual, allowed }.at(t.to_f64()))
+    }
+}

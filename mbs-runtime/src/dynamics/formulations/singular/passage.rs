@@ -1,0 +1,41 @@
+//! Singular positions that a run reached or passed, as its steps show them.
+
+use crate::scalar::number::Real;
+
+/// Margin from which on nothing is taken for a passage.
+const NEAR: f64 = 0.1;
+
+/// Time (s) at which a run came so near to a singular position that it may have passed it.
+///
+/// After it the motion depends on the method: projection and velocity transformation go on as the momentum
+/// leads, Baumgarte's stabilisation and none may leave on another branch.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Passage<R> {
+    /// Time (s) of the step's end that was nearest.
+    pub t: R,
+    /// Margin of Φ_q to a loss of rank there.
+    pub margin: R,
+}
+
+impl<R: Real> Passage<R> {
+    /// Passage between the ends of a step, each with its time (s) and margin: where the margin changes by more than its
+    /// remainder, so that its next zero is within a step.
+    pub(crate) fn between(before: (R, R), after: (R, R)) -> Option<Self> {
+        let (t, margin) = if before.1 < after.1 { before } else { after };
+        let passes = margin < R::constant(NEAR) && margin < (after.1 - before.1).abs();
+        passes.then_some(Passage { t, margin })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::dynamics::formulations::singular::passage::Passage;
+
+    #[test]
+    fn a_margin_that_would_be_gone_within_a_step_is_a_passage_and_one_that_stays_is_none() {
+        assert_eq!(Passage::between((1.0, 0.09), (2.0, 0.03)), Some(Passage { t: 2.0, margin: 0.03 }));
+        assert_eq!(Passage::between((1.0, 0.02), (2.0, 0.05)), Some(Passage { t: 1.0, margin: 0.02 }));
+        assert_eq!(Passage::between((1.0, 0.05), (2.0, 0.04)), None);
+        assert_eq!(Passage::between((1.0, 0.7), (2.0, 0.2)), None);
+    }
+}

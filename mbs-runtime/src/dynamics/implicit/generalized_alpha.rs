@@ -1,0 +1,244 @@
+//! Generalised-α on the equations of index 3: accuracy of order 2 with damping of vibrations that the step does not resolve.
+
+use crate::dynamics::formulations::unstabilized::Unstabilized;
+use crate::dynamics::implicit::iteration::{Damping, MOST_ITERATIONS, MOST_ROUNDS};
+use crate::dynamics::integrators::vector::{State, Vector};
+use crate::dynamics::linear_systems::kkt::System;
+use crate::dynamics::linear_systems::tangent::Tangent;
+use crate::dynamics::model::instant::Instant;
+use crate::dynamics::model::method::{Method, require_slopes};
+use crate::dynamics::model::metric::require_between;
+use crate::dynamics::model::{Counts, Formulation, Model, Solved};
+use crate::failure::{Failure, FailureKind};
+use crate::linear_algebra::vectors::extent;
+use crate::mechanism::dynamic::Dynamic;
+use crate::scalar::number::Real;
+
+/// Generalised-α with Φ = 0 at every step's end; Φ̇ = 0 holds to order 2.
+///
+/// q = q₀ + h q̇₀ + h² ((½ − β) a₀ + β a), q̇ = q̇₀ + h ((1 − γ) a₀ + γ a), (1 − α_m) a + α_m a₀ = (1 − α_f) q̈ + α_f q̈₀, with
+/// M q̈ + Φ_qᵀ λ = Q. Newton's matrix is brought to the size of the mass before it is factorised, so that its condition
+/// does not grow with 1/h². First-order states by the trapezoidal rule within the same iteration, which converges where
+/// h is below twice their time constant.
+/// Source: Arnold & Brüls 2007; Chung & Hulbert 1993.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GeneralizedAlpha {
+    /// Spectral radius ρ∞ at infinite frequency, 0 … 1: the remainder after a step of a vibration that is too fast for it.
+    pub rho: f64,
+}
+
+impl Default for GeneralizedAlpha {
+    /// ρ∞ = 0.8.
+    fn default() -> Self {
+        GeneralizedAlpha { rho: 0.8 }
+    }
+}
+
+/// Acceleration that one rounding of the positions makes over a step, of that of the motion, below which multipliers are resolved.
+const UNSEEN: f64 = 1e-3;
+
+/// Share of the multipliers that may be rounding. Below one none changes its sign by it, and friction, which is linear between, feels
+/// nothing on the whole: speeds are right to 1e-4 up to there.
+const LARGEST_BLUR: f64 = 0.75;
+
+/// α_m, α_f, β, γ.
+struct Coefficients<R> {
+    alpha_m: R,
+    alpha_f: R,
+    beta: R,
+    gamma: R,
+}
+
+impl GeneralizedAlpha {
+    fn coefficients<R: Real>(self) -> Coefficients<R> {
+        let rho = self.rho;
+        let (alpha_m, alpha_f) = ((2.0 * rho - 1.0) / (rho + 1.0), rho / (rho + 1.0));
+        let gamma = 0.5 + alpha_f - alpha_m;
+        let beta = 0.25 * (gamma + 0.5) * (gamma + 0.5);
+        Coefficients {
+            alpha_m: R::constant(alpha_m),
+            alpha_f: R::constant(alpha_f),
+            beta: R::constant(beta),
+            gamma: R::constant(gamma),
+        }
+    }
+}
+
+impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Method<S, R, N, M> for GeneralizedAlpha {
+    fn solve(
+        &self,
+        model: &Model<'_, S, R, N, M>,
+        t: R,
+        y: &State<R, N, S::States>,
+        lambda: &[R; M],
+        counts: &mut Counts,
+    ) -> Result<Solved<R, N, M, S::States>, Failure> {
+        Unstabilized.solve(model, t, y, lambda, counts)
+    }
+
+    fn step(
+        &self,
+        model: &Model<'_, S, R, N, M>,
+        from: &Instant<R, N, M, S::States>,
+        h: R,
+        counts: &mut Counts,
+    ) -> Result<Instant<R, N, M, S::States>, Failure> {
+        model.moved(from.t, from.t + h, |model| self.stepped(model, from, h, counts))
+    }
+
+    fn require_suitable(&self) -> Result<(), Failure> {
+        require_slopes::<S, R, N, M>()?;
+        require_between("spectral radius rho", self.rho, 1.0)
+    }
+}
+
+impl GeneralizedAlpha {
+    /// The step, with the mechanism as it is at its end.
+    fn stepped<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
+        self,
+        model: &Model<'_, S, R, N, M>,
+        from: &Instant<R, N, M, S::States>,
+        h: R,
+        counts: &mut Counts,
+    ) -> Result<Instant<R, N, M, S::States>, Failure> {
+        let (one, t) = (R::constant(1.0), from.t + h);
+        let Coefficients { alpha_m, alpha_f, beta, gamma } = self.coefficients::<R>();
+        let (start, before, a0) = (&from.y, &from.solved.rate.qd, &from.carried);
+        let of_q = (one - alpha_m) / (beta * h * h * (one - alpha_f));
+        let mut qdd = *before;
+        let mut lambda = from.solved.lambda;
+        let a = |qdd: &[R; N]| {
+            let weight = one / (one - alpha_m);
+            let sum = a0.zero().plus((one - alpha_f) * weight, &[1.0], [qdd]);
+            sum.plus(alpha_f * weight, &[1.0], [before]).plus(-alpha_m * weight, &[1.0], [a0])
+        };
+        let half = R::constant(0.5);
+        let moved = |y: &State<R, N, S::States>, qdd: &[R; N]| {
+            let (mut y, a) = (*y, a(qdd));
+            y.q = start.q.plus(h, &[1.0], [&start.qd]).plus(h * h * (half - beta), &[1.0], [a0]);
+            y.q = y.q.plus(h * h * beta, &[1.0], [&a]);
+            y.qd = start.qd.plus(h * (one - gamma), &[1.0], [a0]).plus(h * gamma, &[1.0], [&a]);
+            y
+        };
+        let mut y = *start;
+        let mut rate = from.solved.rate;
+        let (mut step, mut last) = ([R::constant(0.0); N], R::constant(f64::MAX));
+        let mut damping = Damping::new(0.5);
+        for _ in 0..MOST_ROUNDS {
+            y = moved(&y, &qdd);
+            model.trapezoid(from, h, &mut y, &rate);
+            let position = model.position(t, &y);
+            rate = model.rates(&position, &y, qdd, &lambda);
+            let phi = model.mechanism.phi(model.parameters, &position);
+            let held = model.held(damping.has_halved(), t, (&y, &lambda), counts);
+            let tangent = Tangent::of(model, &position, &y, &qdd, &held);
+            let matrix = tangent.combined(of_q, gamma / (beta * h), one);
+            let phi_q = model.mechanism.phi_q(model.parameters, &position);
+            let factors = System::new(&matrix, &phi_q, model.metric).factorize(S::COORDINATES, t)?;
+            let (correction, change) =
+                model.corrected((&position, t), &y, &qdd, (&lambda, &lambda), &phi, |imbalance, phi| {
+                    factors.solve(imbalance, phi)
+                })?;
+            counts.iterations += 1;
+            counts.evaluations += 1;
+            step = correction;
+            let here = Balance { qdd, lambda };
+            let whole = Balance { qdd: step.map(|x| -of_q * x), lambda: change.map(|x| -x) };
+            let standing = model.standing_after(&from.y.q, &step, &y.q, &mut last)?;
+            if standing {
+                Balance { qdd, lambda } = here.plus(one, &[1.0], [&whole]);
+                y.q = y.q.plus(-one, &[1.0], [&step]);
+                y.qd = y.qd.plus(-gamma / (beta * h), &[1.0], [&step]);
+                model.trapezoid(from, h, &mut y, &rate);
+                let rate = model.rates(&model.position(t, &y), &y, qdd, &lambda);
+                model.require_unshared_by_rank((&position, t), &y, &lambda)?;
+                if S::FORCE_USES_MULTIPLIERS {
+                    require_resolved(model, (t, h), &y, (&qdd, &lambda), counts)?;
+                }
+                let solved = Solved { rate, lambda, margin: factors.margin() };
+                return Ok(Instant { t, y, solved, carried: self.carried(a0, before, &qdd) });
+            }
+            if damping.is_last() {
+                return Err(model.unbalanced(&step, t, MOST_ITERATIONS));
+            }
+            (Balance { qdd, lambda }, _) = damping.next(&here, (&whole, last), |base, least| {
+                let before = moved(&y, &base.qdd);
+                if S::FORCE_USES_MULTIPLIERS {
+                    let here = model.residual(t, &y, &here.qdd, &here.lambda, of_q)?;
+                    return Ok((here, model.residual(t, &before, &base.qdd, &base.lambda, of_q)?));
+                }
+                let place = model.position(t, &before);
+                let tangent = Tangent::of(model, &place, &before, &base.qdd, &base.lambda);
+                let matrix = tangent.combined(of_q, gamma / (beta * h), one);
+                let phi_q = model.mechanism.phi_q(model.parameters, &place);
+                let last = System::new(&matrix, &phi_q, model.metric).factorize(S::COORDINATES, t)?;
+                let imbalance = model.imbalance(&position, &y, &here.qdd, (&here.lambda, &here.lambda));
+                Ok((model.largest(&last.solve(&imbalance, &phi).0), least))
+            })?;
+        }
+        Err(model.unbalanced(&step, t, MOST_ROUNDS))
+    }
+}
+
+/// Fails where multipliers (M) of a step of `h` (s) are rounding of the positions over its square. They are compared with those of the
+/// state that it ends in, which have no part of that.
+#[cold]
+#[inline(never)]
+fn require_resolved<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
+    model: &Model<'_, S, R, N, M>,
+    (t, h): (R, R),
+    y: &State<R, N, S::States>,
+    (qdd, lambda): (&[R; N], &[R; M]),
+    counts: &mut Counts,
+) -> Result<(), Failure> {
+    let rounding = R::EPSILON * extent(&y.q, &model.metric.coordinates) / (h * h);
+    let speed = model.largest(&y.qd);
+    if rounding.less(R::constant(UNSEEN) * (model.largest(qdd) + speed * speed)) {
+        return Ok(());
+    }
+    // Friction that has no answer there, or several, is told by the steps.
+    let Ok(exact) = Unstabilized.solve(model, t, y, lambda, counts) else { return Ok(()) };
+    let scales = model.metric.rows;
+    let (mut blur, mut size) = (R::constant(0.0), R::constant(0.0));
+    for ((lambda, exact), scale) in lambda.iter().zip(&exact.lambda).zip(&scales) {
+        blur = blur.max((*lambda - *exact).abs() * *scale);
+        size = size.max(exact.abs() * *scale);
+    }
+    let allowed = R::constant(LARGEST_BLUR) * size;
+    if !allowed.less(blur) {
+        return Ok(());
+    }
+    let least = h * (blur / allowed).sqrt();
+    Err(FailureKind::StepTooShort { step: h.to_f64(), least: least.to_f64() }.at(t.to_f64()))
+}
+
+/// Accelerations (N) and multipliers (M) of a step's end.
+#[derive(Clone, Copy)]
+struct Balance<R, const N: usize, const M: usize> {
+    qdd: [R; N],
+    lambda: [R; M],
+}
+
+impl<R: Real, const N: usize, const M: usize> Vector<R> for Balance<R, N, M> {
+    #[inline(always)]
+    fn zero(&self) -> Self {
+        Balance { qdd: self.qdd.zero(), lambda: self.lambda.zero() }
+    }
+
+    #[inline(always)]
+    fn plus<const K: usize>(&self, h: R, weights: &[f64; K], terms: [&Self; K]) -> Self {
+        let qdd = self.qdd.plus(h, weights, terms.map(|term| &term.qdd));
+        Balance { qdd, lambda: self.lambda.plus(h, weights, terms.map(|term| &term.lambda)) }
+    }
+}
+
+impl GeneralizedAlpha {
+    /// The accelerations a that the next step starts from.
+    fn carried<R: Real, const N: usize>(self, a0: &[R; N], before: &[R; N], qdd: &[R; N]) -> [R; N] {
+        let Coefficients { alpha_m, alpha_f, .. } = self.coefficients::<R>();
+        let one = R::constant(1.0);
+        let weight = one / (one - alpha_m);
+        let sum = a0.zero().plus((one - alpha_f) * weight, &[1.0], [qdd]);
+        sum.plus(alpha_f * weight, &[1.0], [before]).plus(-alpha_m * weight, &[1.0], [a0])
+    }
+}

@@ -1,0 +1,6 @@
+//! Implicit methods of equal steps.
+
+pub(crate) mod augmented_lagrangian;
+pub(crate) mod extrapolated;
+pub(crate) mod generalized_alpha;
+pub(crate) mod iteration;

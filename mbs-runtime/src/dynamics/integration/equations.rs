@@ -1,0 +1,456 @@
+//! The equations of motion as integrators see them.
+
+use crate::dynamics::formulations::singular::limit_rows::ZONE;
+use crate::dynamics::formulations::singular::passage::Passage;
+use crate::dynamics::integration::phases::{ORDER_OF_INTEGRALS, Phased, advanced};
+use crate::dynamics::integration::radau;
+use crate::dynamics::integration::radau::slopes::Slopes;
+use crate::dynamics::integration::radau::{MOST_UNKNOWNS, newton};
+use crate::dynamics::integrators::embedded::Embedded;
+use crate::dynamics::integrators::equation::{Collocated, Collocation, Equation, ErrorNorm};
+use crate::dynamics::integrators::event::{Dense, Scrutiny};
+use crate::dynamics::integrators::step_control::{Adaptive, Point};
+use crate::dynamics::integrators::vector::{State, Vector};
+use crate::dynamics::model::instant::Instant;
+use crate::dynamics::model::metric::{Tolerance, worse};
+use crate::dynamics::model::{Counts, Formulation, Model, Solved};
+use crate::failure::{Failure, FailureKind};
+use crate::mechanism::dynamic::Dynamic;
+use crate::mechanism::{Entry, Mechanism};
+use crate::scalar::number::Real;
+
+/// Least motion of a step in the zone of a singular position, in the reference metric: smaller ones resolve how rods that
+/// differ by 1e-14 turn aside there, which rounding decides.
+pub(crate) const LEAST_MOTION: f64 = 1e-7;
+
+/// First step, of the way to an instant that the polynomial of a step does not lead to.
+const SHOWN_SHARE: f64 = 0.25;
+
+/// State vector of a mechanism that is integrated.
+pub type Moving<S, R, const N: usize, const M: usize> =
+    Phased<State<R, N, <S as Dynamic<R, N, M>>::States>, <S as Mechanism<R, N, M>>::Phases>;
+
+/// The equations of motion as an integrator sees them.
+pub struct Equations<'a, S: Dynamic<R, N, M>, F, R: Real, const N: usize, const M: usize> {
+    pub(crate) model: &'a Model<'a, S, R, N, M>,
+    formulation: &'a F,
+    tolerance: Tolerance<R>,
+    /// Time (s) that phases and inputs of the mechanism belong to.
+    pub(crate) start: R,
+    /// The mechanism with its phases and inputs moved on to a state; none where no drive prescribes a rate and no input has one.
+    moving: Option<S>,
+    /// `true` if phases are integrated with the state, and not from `start` to each stage.
+    integrating: bool,
+    /// `true` if no step can be made smaller.
+    fixed: bool,
+    /// Multipliers (M) of the last evaluation.
+    lambda: [R; M],
+    /// Time (s), margin and state of the last step's end.
+    pub(crate) end: (R, R, State<R, N, S::States>),
+    /// Time (s) and margin of the last instant that was shown.
+    seen: (R, R),
+    /// The first passage since `start`.
+    pub(crate) passage: Option<Passage<R>>,
+    /// `end` and `passage` before the last step, where steps may be taken again.
+    before: Before<S, R, N, M>,
+    /// Resolution and bounds of the search for contacts.
+    scrutiny: Scrutiny<R>,
+    /// The parameters without the contacts that are open in the present step, where there are contacts.
+    parameters: Option<S::Parameters>,
+    /// Time (s) up to which all contacts stay open by the bounds that the text declares.
+    quiet: R,
+    pub(crate) counts: Counts,
+}
+
+/// Time (s), margin and state where a step begins, and the first passage before it.
+type Before<S, R, const N: usize, const M: usize> =
+    ((R, R, State<R, N, <S as Dynamic<R, N, M>>::States>), Option<Passage<R>>);
+
+impl<'a, S, F, R, const N: usize, const M: usize> Equations<'a, S, F, R, N, M>
+where
+    S: Dynamic<R, N, M>,
+    F: Formulation<S, R, N, M>,
+    R: Real,
+{
+    /// Those of a motion that continues `from`.
+    pub(crate) fn new(
+        model: &'a Model<'a, S, R, N, M>,
+        formulation: &'a F,
+        from: &Instant<R, N, M, S::States>,
+        counts: Counts,
+    ) -> Self {
+        let (tolerance, start) = (radau::of_fixed_steps(), from.t);
+        let seen = (from.t, from.solved.margin);
+        let (lambda, end) = (from.solved.lambda, (seen.0, seen.1, from.y));
+        let moving = (!S::PHASES.is_empty() || S::HAS_SIGNALS).then(|| model.mechanism.clone());
+        Equations {
+            model,
+            formulation,
+            tolerance,
+            start,
+            moving,
+            integrating: true,
+            fixed: false,
+            lambda,
+            end,
+            seen,
+            passage: None,
+            before: (end, None),
+            scrutiny: Scrutiny::beyond(),
+            parameters: (!S::CONTACTS.is_empty()).then_some(*model.parameters),
+            quiet: start,
+            counts,
+        }
+    }
+
+    /// Nothing of a contact is missed that lasts longer than `resolution` (s).
+    pub(crate) fn with_resolution(self, resolution: Option<R>) -> Self {
+        Equations { scrutiny: Scrutiny { resolution, ..self.scrutiny }, ..self }
+    }
+
+    pub(crate) fn with_tolerance(self, tolerance: Tolerance<R>) -> Self {
+        Equations { tolerance, ..self }
+    }
+
+    /// Result of `look`, which leaves no trace in the run but the count of its evaluations, kept apart. No step can be made
+    /// smaller for it.
+    pub(crate) fn apart<X>(&mut self, look: impl FnOnce(&mut Self) -> X) -> X {
+        let (counts, lambda, fixed) = (self.counts, self.lambda, self.fixed);
+        let (end, passage) = (self.end, self.passage);
+        let open = (!S::CONTACTS.is_empty()).then_some((self.parameters, self.quiet));
+        self.fixed = true;
+        let found = look(self);
+        (self.fixed, self.end, self.passage) = (fixed, end, passage);
+        if let Some(open) = open {
+            (self.parameters, self.quiet) = open;
+        }
+        let shown = counts.shown + self.counts.evaluations.wrapping_sub(counts.evaluations);
+        (self.counts, self.lambda) = (Counts { shown, ..counts }, lambda);
+        found
+    }
+
+    /// [`project_and_solve`](Self::project_and_solve) of a state on the polynomial of a step from `from`. Where that is too far
+    /// off the constraints to be projected, of the state that smaller steps lead to.
+    pub(crate) fn shown<I: Embedded>(
+        &mut self,
+        t: R,
+        from: &Point<R, Moving<S, R, N, M>>,
+        y: &mut Moving<S, R, N, M>,
+    ) -> Result<Solved<R, N, M, S::States>, Failure> {
+        let before = *y;
+        let failure = match self.project_and_solve(t, y) {
+            Err(failure) if from.t < t => failure,
+            settled => return settled,
+        };
+        self.fixed = false;
+        let first = R::constant(SHOWN_SHARE) * (t - from.t);
+        let mut steps = Adaptive::default().with_first(first);
+        let run = steps.run::<I, _>(self, *from, t, |_| None, |_, _| Ok(true));
+        self.fixed = true;
+        *y = run.map_err(|_| failure).map_or(before, |point| point.y);
+        self.project_and_solve(t, y)
+    }
+
+    /// Evaluates all contacts, as at an instant by itself.
+    pub(crate) fn with_all_contacts(&mut self) {
+        if !S::CONTACTS.is_empty() {
+            self.parameters = Some(*self.model.parameters);
+        }
+    }
+
+    /// Takes an instant between the ends of steps for where a singular position may be passed.
+    pub(crate) fn pass(&mut self, instant: &Instant<R, N, M, S::States>) {
+        self.passage = self.passage.or(Passage::between(self.seen, (instant.t, instant.solved.margin)));
+        self.seen = (instant.t, instant.solved.margin);
+    }
+
+    /// Steps can be made smaller from now on, and are controlled with `tolerance`.
+    pub(crate) fn divide(&mut self, tolerance: Tolerance<R>) {
+        (self.fixed, self.tolerance) = (false, tolerance);
+    }
+
+    /// Of steps of a method of `order` that cannot be made smaller.
+    pub(crate) fn of_fixed_steps(self, order: u32) -> Self {
+        Equations { fixed: true, integrating: order > ORDER_OF_INTEGRALS, ..self }
+    }
+
+    /// The phases at time `t` (s) that have moved on by `increments`.
+    pub(crate) fn phases(&mut self, t: R, increments: &S::Phases) -> S::Phases {
+        let rates = self.phase_rates(t);
+        advanced(self.model.mechanism.phases(), increments, &rates)
+    }
+
+    /// The rates that drives prescribe at time `t` (s), with inputs as they are then.
+    #[inline(always)]
+    fn phase_rates(&mut self, t: R) -> S::Phases {
+        let start = self.model.mechanism;
+        match &mut self.moving {
+            Some(mechanism) if S::HAS_SIGNALS => {
+                mechanism.carry_signals(start, t - self.start);
+                mechanism.phase_rates(t)
+            }
+            _ => start.phase_rates(t),
+        }
+    }
+
+    /// Calls `solve` with the mechanism as it is at time `t` (s), its inputs carried on and its phases moved on by `increments`.
+    #[inline(always)]
+    fn at<X>(
+        &mut self,
+        t: R,
+        increments: &S::Phases,
+        solve: impl FnOnce(&Model<'_, S, R, N, M>, &F, &mut [R; M], &mut Counts) -> X,
+    ) -> X {
+        let phases = if S::PHASES.is_empty() { *increments } else { self.phases(t, increments) };
+        let Equations { model, formulation, start, moving, integrating, parameters, lambda, counts, .. } =
+            self;
+        let model = *model;
+        let parameters = match parameters {
+            Some(parameters) if !S::CONTACTS.is_empty() => parameters,
+            _ => model.parameters,
+        };
+        let present = Model { parameters, ..*model };
+        let Some(mechanism) = moving else {
+            let model = if S::CONTACTS.is_empty() { model } else { &present };
+            return solve(model, formulation, lambda, counts);
+        };
+        mechanism.carry_signals(model.mechanism, t - *start);
+        if *integrating {
+            mechanism.set_phases(phases);
+        } else {
+            mechanism.set_phases(model.mechanism.phases());
+            mechanism.advance_phases(*start, t);
+        }
+        let parameters = present.alike(mechanism.parameters());
+        let moved = Model { mechanism, parameters: &parameters, ..*model };
+        solve(&moved, formulation, lambda, counts)
+    }
+
+    /// Rates and multipliers of a state.
+    #[inline]
+    pub(crate) fn solve(
+        &mut self,
+        t: R,
+        y: &Moving<S, R, N, M>,
+    ) -> Result<Solved<R, N, M, S::States>, Failure> {
+        self.at(t, &y.phases, |model, formulation, lambda, counts| {
+            let solved = formulation.solve(model, t, &y.y, lambda, counts)?;
+            *lambda = solved.lambda;
+            Ok(solved)
+        })
+    }
+
+    /// Slopes of accelerations and of the rates of first-order states about the beginning of a step, of positions in its middle: stiff
+    /// directions turn with the mechanism, and the iteration gains a fifth.
+    pub(crate) fn slopes(
+        &mut self,
+        step: &Collocation<'_, R, Moving<S, R, N, M>>,
+    ) -> Result<Slopes<S, R, N, M>, Failure> {
+        let mut middle = step.y.y;
+        middle.q = middle.q.plus(step.h, &[0.5], [&middle.qd]);
+        self.at(step.t, &step.y.phases, |model, _, lambda, _| {
+            Slopes::of(model, (step.t, &middle), &step.rate.y.qd, lambda)
+        })
+    }
+
+    /// Scales of the coordinates: N.
+    pub(crate) fn scales(&self) -> &'a [R; N] {
+        &self.model.metric.coordinates
+    }
+
+    /// The smaller of the tolerances that are not 0.
+    pub(crate) fn narrowest(&self) -> R {
+        let Tolerance { relative, absolute } = self.tolerance;
+        let zero = R::constant(0.0);
+        if zero < relative && zero < absolute { relative.min(absolute) } else { relative.max(absolute) }
+    }
+
+    /// `true` if no step can be made smaller.
+    pub(crate) fn is_fixed(&self) -> bool {
+        self.fixed
+    }
+
+    /// The failure of an iteration for the stages of a step with the last correction of them.
+    pub(crate) fn unbalanced(
+        &self,
+        step: &Collocation<'_, R, Moving<S, R, N, M>>,
+        (correction, iterations): (&Moving<S, R, N, M>, u32),
+    ) -> Failure {
+        self.model.unbalanced(&correction.y.qd, step.t + step.h, iterations)
+    }
+
+    /// The rate of a state whose coordinates, velocities and first-order states have the rate `y`.
+    #[inline(always)]
+    fn phased(&mut self, t: R, y: State<R, N, S::States>) -> Moving<S, R, N, M> {
+        Phased { y, phases: self.phase_rates(t) }
+    }
+
+    /// Rates and multipliers of a state that a step ended in, which is put back onto the constraints.
+    #[inline]
+    pub(crate) fn project_and_solve(
+        &mut self,
+        t: R,
+        y: &mut Moving<S, R, N, M>,
+    ) -> Result<Solved<R, N, M, S::States>, Failure> {
+        let Phased { y, phases } = y;
+        self.at(t, phases, |model, formulation, lambda, counts| {
+            let solved = formulation.project_and_solve(model, t, y, lambda, counts)?;
+            *lambda = solved.lambda;
+            Ok(solved)
+        })
+    }
+}
+
+impl<S, F, R, const N: usize, const M: usize> Equation<R> for Equations<'_, S, F, R, N, M>
+where
+    S: Dynamic<R, N, M>,
+    F: Formulation<S, R, N, M>,
+    R: Real,
+{
+    type State = Moving<S, R, N, M>;
+
+    #[inline]
+    fn rate(&mut self, t: R, y: &Self::State) -> Result<Self::State, Failure> {
+        match self.solve(t, y) {
+            Err(failure) if self.fixed => {
+                self.model.require_bounded(t, &self.end.2, &y.y)?;
+                if !matches!(failure, Failure { kind: FailureKind::OffConstraints { .. }, .. }) {
+                    return Err(failure);
+                }
+            }
+            solved => return Ok(self.phased(t, solved?.rate)),
+        }
+        let solved = self.at(t, &y.phases, |model, formulation, lambda, counts| {
+            let solved = formulation.solve_as_it_is(model, t, &y.y, lambda, counts)?;
+            *lambda = solved.lambda;
+            Ok(solved)
+        })?;
+        Ok(self.phased(t, solved.rate))
+    }
+
+    fn collocate(
+        &mut self,
+        step: &Collocation<'_, R, Self::State>,
+    ) -> Result<Collocated<Self::State>, Failure> {
+        const {
+            assert!(
+                N + M <= MOST_UNKNOWNS,
+                "an implicit step takes at most 120 coordinates and rows together: its matrices are on the stack"
+            );
+        }
+        newton::collocate(self, step)
+    }
+
+    #[inline]
+    fn project(&mut self, t: R, y: &mut Self::State) -> Result<(), Failure> {
+        let Phased { y, phases } = y;
+        self.at(t, phases, |model, formulation, _, counts| formulation.project(model, t, y, counts))
+    }
+
+    #[inline]
+    fn settled_rate(&mut self, t: R, y: &mut Self::State) -> Result<Self::State, Failure> {
+        let solved = self.project_and_solve(t, y)?;
+        let (before, margin, _) = self.end;
+        if !S::CONTACTS.is_empty() {
+            self.before = (self.end, self.passage);
+        }
+        self.passage = self.passage.or(Passage::between((before, margin), (t, solved.margin)));
+        self.end = (t, solved.margin, y.y);
+        Ok(self.phased(t, solved.rate))
+    }
+}
+
+impl<S, F, R, const N: usize, const M: usize> ErrorNorm<R> for Equations<'_, S, F, R, N, M>
+where
+    S: Dynamic<R, N, M>,
+    F: Formulation<S, R, N, M>,
+    R: Real,
+{
+    /// In the zone of a singular position a ten-millionth of a radian, or of a reference length.
+    fn least_step(&self) -> R {
+        let (_, margin, y) = &self.end;
+        let speed = self.model.largest(&y.qd);
+        let step = R::constant(LEAST_MOTION) / speed;
+        if *margin < R::constant(ZONE) && step.is_finite() { step } else { R::constant(0.0) }
+    }
+
+    #[inline(always)]
+    fn begin(&mut self, t: R, y: &Self::State) -> bool {
+        if S::CONTACTS.is_empty() {
+            return false;
+        }
+        let Some(parameters) = &mut self.parameters else { return false };
+        let open = self.model.leave_out(self.start, (t, &y.y), parameters);
+        self.quiet = open.until;
+        open.changes
+    }
+
+    #[inline(always)]
+    fn may_kink(&mut self, to: R) -> bool {
+        let is_quiet = to <= self.quiet;
+        !S::CONTACTS.is_empty() && !is_quiet
+    }
+
+    fn kink(&mut self, step: &impl Dense<R, State = Self::State>) -> Result<Option<R>, Failure> {
+        let ends = (step.start(), step.end());
+        let evaluated = S::evaluated(self.parameters.as_ref().unwrap_or(self.model.parameters));
+        self.model.contact_change((self.start, evaluated), ends, |t| step.at(t).y, &self.scrutiny)
+    }
+
+    fn retake(&mut self) {
+        (self.end, self.passage) = self.before;
+    }
+
+    fn obstacle(&self) -> Option<Failure> {
+        let (t, _, y) = &self.end;
+        self.model.moved(self.start, *t, |model| model.obstacle(*t, y))
+    }
+
+    /// The worst of coordinates, velocities, states and phases. Work is watched, not controlled: that it is watched changes no
+    /// step.
+    #[inline]
+    fn measure<const K: usize>(
+        &self,
+        before: &Self::State,
+        after: &Self::State,
+        errors: [&Self::State; K],
+    ) -> [R; K] {
+        let (metric, tolerance) = (self.model.metric, &self.tolerance);
+        let (old, new) = (&before.y, &after.y);
+        let q = metric.measure(tolerance, &old.q, &new.q, errors.map(|error| &error.y.q));
+        let mut largest = metric.measure(tolerance, &old.qd, &new.qd, errors.map(|error| &error.y.qd));
+        for ((largest, q), error) in largest.iter_mut().zip(q).zip(errors) {
+            let states = old.states.as_ref().iter().zip(new.states.as_ref()).zip(error.y.states.as_ref());
+            *largest = states.fold(worse(q, *largest), |largest, ((before, after), error)| {
+                let size = before.abs().max(after.abs());
+                worse(largest, error.abs() / (tolerance.relative * size + tolerance.absolute))
+            });
+            let phases = before
+                .phases
+                .as_ref()
+                .iter()
+                .zip(after.phases.as_ref())
+                .zip(error.phases.as_ref())
+                .zip(S::PHASES);
+            *largest = phases.fold(*largest, |largest, (((before, after), error), entry)| {
+                let size = before.value.abs().max(after.value.abs());
+                let allowed = tolerance.relative * size + tolerance.absolute * self.scale(entry);
+                worse(largest, error.value.abs() / allowed)
+            });
+        }
+        largest
+    }
+}
+
+impl<S, F, R, const N: usize, const M: usize> Equations<'_, S, F, R, N, M>
+where
+    S: Dynamic<R, N, M>,
+    R: Real,
+{
+    /// Reference metric of a phase: that of rows of its unit, of which its drive is one.
+    fn scale(&self, phase: &Entry) -> R {
+        let scales = self.model.mechanism.row_scales(self.model.parameters);
+        let mut rows = S::ROWS.iter().zip(scales);
+        rows.find(|(row, _)| row.unit == phase.unit).map_or(R::constant(1.0), |(_, scale)| scale)
+    }
+}

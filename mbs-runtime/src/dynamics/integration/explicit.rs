@@ -1,0 +1,122 @@
+//! A formulation with an integrator: methods that are explicit in the accelerations.
+
+use crate::dynamics::integration::crossing::{MOST_ROWS, is_next_to_singular_position, near};
+use crate::dynamics::integration::equations::{Equations, Moving};
+use crate::dynamics::integration::phases::{ORDER_OF_INTEGRALS, Phased, stepped, unmoved};
+use crate::dynamics::integrators::fixed_step::FixedStep;
+use crate::dynamics::integrators::step_control::Point;
+use crate::dynamics::integrators::vector::State;
+use crate::dynamics::model::instant::Instant;
+use crate::dynamics::model::method::{Method, require_slopes};
+use crate::dynamics::model::{Counts, Formulation, MethodWarning, Model, Solved};
+use crate::failure::Failure;
+use crate::mechanism::dynamic::Dynamic;
+use crate::scalar::number::Real;
+
+/// An integrator `I` of equations that are explicit in the accelerations, with the formulation `F` that solves for these.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Explicit<I, F> {
+    /// The integrator.
+    pub integrator: I,
+    /// Formulation that gives the accelerations of a state.
+    pub formulation: F,
+}
+
+impl<I, F> Explicit<I, F> {
+    /// Both parts.
+    pub fn new(integrator: I, formulation: F) -> Self {
+        Explicit { integrator, formulation }
+    }
+}
+
+impl<S, R, I, F, const N: usize, const M: usize> Method<S, R, N, M> for Explicit<I, F>
+where
+    S: Dynamic<R, N, M>,
+    R: Real,
+    I: FixedStep,
+    F: Formulation<S, R, N, M>,
+{
+    fn solve(
+        &self,
+        model: &Model<'_, S, R, N, M>,
+        t: R,
+        y: &State<R, N, S::States>,
+        lambda: &[R; M],
+        counts: &mut Counts,
+    ) -> Result<Solved<R, N, M, S::States>, Failure> {
+        self.formulation.solve(model, t, y, lambda, counts)
+    }
+
+    fn step(
+        &self,
+        model: &Model<'_, S, R, N, M>,
+        from: &Instant<R, N, M, S::States>,
+        h: R,
+        counts: &mut Counts,
+    ) -> Result<Instant<R, N, M, S::States>, Failure> {
+        let mut motion = Equations::new(model, &self.formulation, from, *counts).of_fixed_steps(I::ORDER);
+        let t = from.t + h;
+        let start = beginning(model.mechanism, from);
+        let stepped = I::step(&mut motion, from.t, h, &start.y, &start.rate);
+        let ended = stepped.and_then(|mut end| match motion.project_and_solve(t, &mut end) {
+            Ok(solved) => Ok((end.y, solved)),
+            Err(failure) => model.require_bounded(t, &from.y, &end.y).and(Err(failure)),
+        });
+        let margin = ended.as_ref().map_or(from.solved.margin, |(_, solved)| solved.margin);
+        let entered = motion.counts.singular != counts.singular;
+        if entered || margin.min(from.solved.margin) < near() {
+            let keeps = !(I::USES_SLOPES || self.formulation.leaves_constraints());
+            if keeps && (entered || is_next_to_singular_position(model, from, h)) {
+                let next = if M <= MOST_ROWS {
+                    // What the step itself failed with says more than its parts do.
+                    motion.in_parts(start, t).map_err(|failure| ended.err().unwrap_or(failure))?
+                } else {
+                    let (y, solved) = ended?;
+                    Instant { t, y, solved, carried: solved.rate.qd }
+                };
+                model.require_one_branch(from, &next)?;
+                *counts = motion.counts;
+                return Ok(next);
+            }
+        }
+        let (y, solved) = ended?;
+        *counts = motion.counts;
+        Ok(Instant { t, y, solved, carried: solved.rate.qd })
+    }
+
+    fn phases_after(&self, model: &Model<'_, S, R, N, M>, t: R, h: R) -> Result<Option<S::Phases>, Failure> {
+        if S::PHASES.is_empty() || I::ORDER <= ORDER_OF_INTEGRALS {
+            return Ok(None);
+        }
+        stepped::<I, S, R, N, M>(model.mechanism, t, h).map(Some)
+    }
+
+    fn require_suitable(&self) -> Result<(), Failure> {
+        if I::USES_SLOPES {
+            require_slopes::<S, R, N, M>()?;
+        }
+        self.formulation.require_suitable()
+    }
+
+    fn check_step(&self, h: R, t: R) -> Result<(), Failure> {
+        self.formulation.check_step(h, t)
+    }
+
+    fn leaves_constraints(&self) -> bool {
+        self.formulation.leaves_constraints()
+    }
+
+    fn doubt(&self, h: R, span: R) -> Option<MethodWarning> {
+        self.formulation.doubt(h, span)
+    }
+}
+
+/// Initial point of a run of `mechanism` that continues `from`.
+pub(crate) fn beginning<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
+    mechanism: &S,
+    from: &Instant<R, N, M, S::States>,
+) -> Point<R, Moving<S, R, N, M>> {
+    let y = Phased { y: from.y, phases: unmoved(mechanism.phases()) };
+    let rate = Phased { y: from.solved.rate, phases: mechanism.phase_rates(from.t) };
+    Point { t: from.t, y, rate }
+}

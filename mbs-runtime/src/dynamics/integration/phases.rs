@@ -1,0 +1,134 @@
+//! Phases of drives that prescribe a rate, integrated with the motion.
+
+use crate::dynamics::integrators::equation::Equation;
+use crate::dynamics::integrators::fixed_step::FixedStep;
+use crate::dynamics::integrators::vector::Vector;
+use crate::failure::Failure;
+use crate::mechanism::Mechanism;
+use crate::mechanism::phase::{Phase, Speed};
+use crate::scalar::number::{Real, Scalar};
+
+/// Order of the integrals that [`Mechanism::advance_phases`] takes over a step: methods of a higher order integrate the
+/// prescribed rates themselves.
+pub(crate) const ORDER_OF_INTEGRALS: u32 = 6;
+
+/// A state with the increments of phases of drives that prescribe a rate, since a run began; as a rate, with the
+/// prescribed rates. So the step control sees the error of phases of a rate that varies.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Phased<Y, P> {
+    /// Coordinates, velocities, first-order states, work.
+    pub y: Y,
+    /// One phase a drive that prescribes a rate, of which the values count alone.
+    pub phases: P,
+}
+
+impl<T: Scalar, Y: Vector<T>, P: Copy + AsRef<[Phase<T>]> + AsMut<[Phase<T>]>> Vector<T> for Phased<Y, P> {
+    #[inline(always)]
+    fn zero(&self) -> Self {
+        Phased { y: self.y.zero(), phases: unmoved(self.phases) }
+    }
+
+    #[inline(always)]
+    fn plus<const K: usize>(&self, h: T, weights: &[f64; K], terms: [&Self; K]) -> Self {
+        let y = self.y.plus(h, weights, terms.map(|term| &term.y));
+        Phased { y, phases: moved(self.phases, h, weights, terms.map(|term| term.phases.as_ref())) }
+    }
+
+    #[inline(always)]
+    fn semi_implicit(&self, h: T, rate: &Self) -> Self {
+        let y = self.y.semi_implicit(h, &rate.y);
+        Phased { y, phases: moved(self.phases, h, &[1.0], [rate.phases.as_ref()]) }
+    }
+}
+
+/// `phases` plus h Σ weightₖ termₖ.
+#[inline(always)]
+fn moved<T: Scalar, P: AsMut<[Phase<T>]>, const K: usize>(
+    mut phases: P,
+    h: T,
+    weights: &[f64; K],
+    terms: [&[Phase<T>]; K],
+) -> P {
+    for (index, phase) in phases.as_mut().iter_mut().enumerate() {
+        let mut change = T::constant(0.0);
+        for (weight, term) in weights.iter().zip(terms) {
+            if let Some(term) = term.get(index) {
+                change = change + T::constant(*weight) * term.value;
+            }
+        }
+        phase.value = phase.value + h * change;
+    }
+    phases
+}
+
+/// As many phases, none moved on.
+#[inline(always)]
+pub(crate) fn unmoved<T: Scalar, P: AsMut<[Phase<T>]>>(mut phases: P) -> P {
+    phases.as_mut().iter_mut().for_each(|phase| phase.value = T::constant(0.0));
+    phases
+}
+
+/// Phases at the beginning of a run, `increments` further on, where the prescribed rates are `rates`.
+#[inline]
+pub(crate) fn advanced<T: Scalar, P: Copy + AsRef<[Phase<T>]> + AsMut<[Phase<T>]>>(
+    mut start: P,
+    increments: &P,
+    rates: &P,
+) -> P {
+    let moves = increments.as_ref().iter().zip(rates.as_ref());
+    for (phase, (increment, rate)) in start.as_mut().iter_mut().zip(moves) {
+        *phase = phase.advanced(increment.value, Speed { value: rate.value, rate: rate.rate });
+    }
+    start
+}
+
+/// Phases without a state.
+type Bare<R, P> = Phased<[R; 0], P>;
+
+/// The phases of `mechanism` where they are, with the rates that its drives prescribe at time `t` (s).
+pub(crate) fn at_present<S: Mechanism<T, N, M>, T: Scalar, const N: usize, const M: usize>(
+    mechanism: &S,
+    t: T,
+) -> S::Phases {
+    let phases = mechanism.phases();
+    advanced(phases, &unmoved(phases), &mechanism.phase_rates(t))
+}
+
+/// The prescribed rates of a mechanism: phases move whatever else does.
+struct Rates<'a, S, T, const N: usize, const M: usize> {
+    /// The mechanism as it is at time `from` (s).
+    start: &'a S,
+    from: T,
+    /// The same with its inputs carried on.
+    moved: S,
+}
+
+impl<S: Mechanism<T, N, M>, T: Scalar, const N: usize, const M: usize> Equation<T> for Rates<'_, S, T, N, M> {
+    type State = Bare<T, S::Phases>;
+
+    fn rate(&mut self, t: T, _: &Self::State) -> Result<Self::State, Failure> {
+        self.moved.carry_signals(self.start, t - self.from);
+        Ok(Phased { y: [], phases: self.moved.phase_rates(t) })
+    }
+}
+
+/// The phases after a step of `h` from `t` (s) by method `I`: those that the stages of its own steps come to.
+///
+/// # Errors
+/// None of its own.
+pub(crate) fn stepped<I: FixedStep, S, R: Real, const N: usize, const M: usize>(
+    mechanism: &S,
+    t: R,
+    h: R,
+) -> Result<S::Phases, Failure>
+where
+    S: Mechanism<R, N, M>,
+{
+    let start = mechanism.phases();
+    let mut equation = Rates::<S, R, N, M> { start: mechanism, from: t, moved: mechanism.clone() };
+    let y: Bare<R, S::Phases> = Phased { y: [], phases: unmoved(start) };
+    let rate = equation.rate(t, &y)?;
+    let end = I::step(&mut equation, t, h, &y, &rate)?;
+    let rates = equation.rate(t + h, &end)?;
+    Ok(advanced(start, &end.phases, &rates.phases))
+}

@@ -1,0 +1,95 @@
+//! Embedded pairs: a step, an estimate of its error, and a polynomial through it.
+
+use crate::dynamics::integrators::equation::{Equation, ErrorNorm};
+use crate::dynamics::integrators::fixed_step::FixedStep;
+use crate::dynamics::integrators::vector::Vector;
+use crate::failure::Failure;
+use crate::scalar::number::Real;
+
+/// An explicit Runge–Kutta method that estimates its own error and gives the solution between its steps.
+pub trait Embedded: FixedStep {
+    /// Exponent of the step size in the error estimate.
+    const ERROR_ORDER: u32;
+    /// Largest factor by which a step may grow.
+    const LARGEST_GROWTH: f64;
+    /// The same once steps are in tune with the motion, where the estimate may be small by chance.
+    const LARGEST_GROWTH_IN_TUNE: f64 = Self::LARGEST_GROWTH;
+    /// Share of the last step's error in the choice of the next, β of the controller.
+    const MEMORY: f64;
+    /// Factor by which a step that failed is tried again.
+    const RETRY: f64 = 0.2;
+    /// Data that a step leaves for the next one.
+    type Memory<R: Copy, Y: Copy>: Copy + Default;
+    /// Rates that later calls use again.
+    type Stages<Y: Copy>: Copy;
+    /// The polynomial of a step.
+    type Dense<Y: Copy>: Copy;
+
+    /// A step from `start`, a state and its rate, after the one that left `memory`; `span`: its beginning and its length (s).
+    ///
+    /// # Errors
+    /// Those of the equation.
+    fn trial<R: Real, E: Equation<R>>(
+        equation: &mut E,
+        span: (R, R),
+        start: (&E::State, &E::State),
+        memory: &Self::Memory<R, E::State>,
+    ) -> Result<AttemptOf<Self, E::State>, Failure>;
+
+    /// The error of a trial over its tolerance.
+    fn error<R: Real, E: ErrorNorm<R>>(
+        equation: &E,
+        h: R,
+        y: &E::State,
+        rate: &E::State,
+        trial: &AttemptOf<Self, E::State>,
+    ) -> R;
+
+    /// The largest factor by which the next step may grow.
+    fn growth<Y: Copy>(_stages: &Self::Stages<Y>) -> f64 {
+        Self::LARGEST_GROWTH
+    }
+
+    /// Data that an accepted step leaves for the next one.
+    fn remember<R: Real, Y: Vector<R>>(step: &Taken<'_, R, Y, Self::Stages<Y>>) -> Self::Memory<R, Y>;
+
+    /// The polynomial of an accepted step. `end` is the settled state and its rate, so that the polynomial meets the start of
+    /// the next step.
+    ///
+    /// # Errors
+    /// Those of the equation, where the polynomial needs stages of its own.
+    fn dense<R: Real, E: Equation<R>>(
+        equation: &mut E,
+        step: &Taken<'_, R, E::State, Self::Stages<E::State>>,
+    ) -> Result<Self::Dense<E::State>, Failure>;
+
+    /// The polynomial at `theta`, 0 at the beginning of the step, 1 at its end.
+    fn interpolate<R: Real, Y: Vector<R>>(dense: &Self::Dense<Y>, theta: R) -> Y;
+}
+
+/// Result of a trial step of method `X`.
+pub type AttemptOf<X, Y> = StepAttempt<Y, <X as Embedded>::Stages<Y>>;
+
+/// A step that is still to be judged.
+#[derive(Clone, Copy, Debug)]
+pub struct StepAttempt<Y, K> {
+    /// The state that it leads to, not settled.
+    pub y: Y,
+    /// Its rates.
+    pub stages: K,
+}
+
+/// A step that was accepted and settled.
+#[derive(Clone, Copy, Debug)]
+pub struct Taken<'a, R, Y, K> {
+    /// Time (s) at its beginning.
+    pub t: R,
+    /// Its length (s).
+    pub h: R,
+    /// State and rate at its beginning.
+    pub start: (&'a Y, &'a Y),
+    /// State and rate at its end.
+    pub end: (&'a Y, &'a Y),
+    /// Its rates in between.
+    pub stages: &'a K,
+}

@@ -1,0 +1,506 @@
+//! Functions of the solution that reach zero within a step: events, working ranges, contacts.
+//!
+//! The core is generic over the solution within a step: any [`Dense`] output, or a function of the time alone.
+//! A part of a step is judged by the polynomial of degree 8 through nine instants. Its Bernstein coefficients bound it, and its
+//! eighth difference bounds the distance of the function from it. A part that they neither clear nor show one passage in is
+//! halved.
+
+pub(crate) mod enclosure;
+pub(crate) mod interpolant;
+pub(crate) mod monitor;
+#[cfg(test)]
+mod tests;
+
+use crate::dynamics::integrators::event::enclosure::Enclosures;
+use crate::dynamics::integrators::event::interpolant::{Interpolant, NODES};
+use crate::mechanism::enclosure::Enclosure;
+use crate::scalar::number::Real;
+
+/// Functions that are evaluated together at most.
+pub const GROUP: usize = 8;
+
+/// Halvings are at most this many: more than the digits of an `f64`.
+const MOST_ITERATIONS: u32 = 80;
+
+/// Parts that a search looks at: a passage takes about ten, a touch twenty-five, one of many passages the rest.
+const MOST_PARTS: u32 = 2_000;
+
+/// The same where a bound asks for more.
+pub const MOST_BOUNDED_PARTS: u32 = 1 << 18;
+
+/// The same where parts are enclosed: a passage or a near miss takes about a hundred, whatever comes near zero often the rest.
+const MOST_ENCLOSED_PARTS: u32 = 4_096;
+
+/// Parts that the resolution may divide a step into; a step of more is to be cut.
+pub const MOST_RESOLVED: f64 = 512.0;
+
+/// Roundings of the largest value within a step up to which a value is none: those of some operations.
+pub const NONE: f64 = 64.0;
+
+/// The same for nine values of which the polynomial tells nothing more: its coefficients add up 560 roundings.
+const BLURRED: f64 = 2_048.0;
+
+/// Share of a part from which on a function that no polynomial fits is taken by the signs of its values.
+const ROUGH: f64 = 1.0 / 512.0;
+
+/// Roundings of a time by which a function that is exactly zero there is asked before it: one that has jumped to zero is zero there too.
+const STAYING_ROUNDINGS: f64 = 16.0;
+
+/// Smallest part in roundings of the time.
+const LEAST_ROUNDINGS: f64 = 4.0;
+
+/// Passages through zero that count.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Direction {
+    /// Both.
+    #[default]
+    Any,
+    /// From negative to positive.
+    Rising,
+    /// From positive to negative.
+    Falling,
+}
+
+impl Direction {
+    /// `true` if a zero that is reached from `side` counts.
+    fn counts<R: Real>(self, side: R) -> bool {
+        let positive = R::constant(0.0) < side;
+        match self {
+            Direction::Any => true,
+            Direction::Rising => !positive,
+            Direction::Falling => positive,
+        }
+    }
+}
+
+/// The solution within one step.
+pub trait Dense<R> {
+    /// State of the solution.
+    type State;
+
+    /// Time (s) at the beginning of the step.
+    fn start(&self) -> R;
+    /// Time (s) at its end.
+    fn end(&self) -> R;
+    /// The state at `t` (s), inside the step; at its ends those that steps start from.
+    fn at(&self, t: R) -> Self::State;
+}
+
+/// A function of the time.
+pub trait Function<R> {
+    /// Its value at `t` (s).
+    fn value(&mut self, t: R) -> R;
+    /// Bounds of it between two times (s), where any are known.
+    fn enclosure(&mut self, _from: R, _to: R) -> Option<Enclosure<R>> {
+        None
+    }
+}
+
+impl<R, F: FnMut(R) -> R> Function<R> for F {
+    fn value(&mut self, t: R) -> R {
+        self(t)
+    }
+}
+
+/// Resolution and bounds of the search for zeros of a function.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scrutiny<R> {
+    /// Nothing that lasts longer (s) is missed, whatever the function; an eighth of the step where there is none.
+    pub resolution: Option<R>,
+    /// Largest |g̈| (1/s²) of the function g, where it is known: nothing is missed then.
+    pub bound: Option<R>,
+    /// `true` if a value that reaches zero and turns back counts.
+    pub touching: bool,
+    /// Least absolute value of which roundings count, whatever the function is within the step.
+    pub scale: R,
+}
+
+impl<R: Real> Scrutiny<R> {
+    /// Values beyond zero count alone, at the resolution of an eighth of a step.
+    pub fn beyond() -> Self {
+        Scrutiny { resolution: None, bound: None, touching: false, scale: R::constant(0.0) }
+    }
+
+    /// Parts of a step of `span` (s) that are looked at one by one.
+    fn parts(&self, span: R) -> u32 {
+        let wanted = self
+            .resolution
+            .map_or(1.0, |resolution| (span / (R::constant(8.0) * resolution)).to_f64().min(MOST_RESOLVED));
+        // A number of at most MOST_RESOLVED; NaN gives 0.
+        let whole = wanted as u32;
+        if f64::from(whole) < wanted { whole.saturating_add(1) } else { whole.max(1) }
+    }
+}
+
+/// Zero of a function within a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reach<R> {
+    /// Time (s): of a passage just after it, of a touch at the extremum.
+    pub t: R,
+    /// Largest absolute value that was seen in the step.
+    pub scale: R,
+}
+
+/// Reason for which a search has no answer.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Unanswered<R> {
+    /// The function is not a finite number at this time (s).
+    Undefined(R),
+    /// From this time (s) on the bound of the second derivative asks for more parts than are looked at.
+    OutOfParts(R),
+}
+
+/// The first time after `start` and up to `end` (s) at which `function`, whose sign at the start is that of `side`, reaches zero.
+///
+/// # Errors
+/// [`Unanswered`].
+pub fn first_reach<R: Real>(
+    function: &mut impl Function<R>,
+    (start, end): (R, R),
+    side: R,
+    scrutiny: &Scrutiny<R>,
+) -> Result<Option<Reach<R>>, Unanswered<R>> {
+    let parts = scrutiny.parts(end - start);
+    let is_enclosed = function.enclosure(start, end).is_some();
+    let left = match scrutiny.bound {
+        Some(_) => MOST_BOUNDED_PARTS,
+        None if is_enclosed => MOST_ENCLOSED_PARTS,
+        None => MOST_PARTS,
+    };
+    let mut search = Search { side: side.sign(), scrutiny, scale: scrutiny.scale, left, is_enclosed };
+    let at = |part: u32| match part == parts {
+        true => end,
+        false => start + (end - start) * R::constant(f64::from(part) / f64::from(parts)),
+    };
+    for part in 0..parts {
+        if let Some(t) = search.within(function, at(part), at(part + 1))? {
+            return Ok(Some(Reach { t, scale: search.scale }));
+        }
+    }
+    Ok(None)
+}
+
+/// Decision on a part by its nine values.
+enum Verdict {
+    Clear,
+    /// Zero is first reached between the instant before this one and this one.
+    Passed(usize),
+    /// Zero is touched at this instant.
+    Touched(usize),
+    Unclear,
+}
+
+/// A search from the left, in parts that double where nothing is near and halve where something may be.
+struct Search<'a, R> {
+    side: R,
+    scrutiny: &'a Scrutiny<R>,
+    scale: R,
+    /// Parts that may still be looked at.
+    left: u32,
+    /// `true` if bounds of the function are known.
+    is_enclosed: bool,
+}
+
+impl<R: Real> Search<'_, R> {
+    fn within(
+        &mut self,
+        function: &mut impl Function<R>,
+        start: R,
+        end: R,
+    ) -> Result<Option<R>, Unanswered<R>> {
+        let least = R::constant(LEAST_ROUNDINGS) * R::EPSILON * start.abs().max(end.abs());
+        let (whole, half) = (end - start, R::constant(0.5));
+        let (mut from, mut width) = (start, whole);
+        let mut of_twice = None;
+        while from < end {
+            let last = end - from <= width;
+            let to = if last { end } else { from + width };
+            self.left = self.left.saturating_sub(1);
+            let enclosure = if self.is_enclosed { function.enclosure(from, to) } else { None };
+            if let Some(enclosure) = enclosure.filter(|enclosure| enclosure.stays(self.side)) {
+                self.scale = self.scale.max(enclosure.least());
+                (from, of_twice) = (to, None);
+                width = (width + width).min(whole);
+                continue;
+            }
+            let mut values = |t: R| function.value(t);
+            let part = Interpolant::through(&mut values, from, to)?;
+            self.scale = self.scale.max(part.largest());
+            let rough = to - from <= whole * R::constant(ROUGH);
+            let told = enclosure.filter(|enclosure| !enclosure.is_exhausted(of_twice));
+            of_twice = enclosure.map(|enclosure| enclosure.width());
+            let verdict = self.verdict(&part, (rough, told));
+            let smallest = self.left == 0 || to - from <= least;
+            match verdict {
+                Verdict::Passed(index) => return Ok(Some(self.root(function, &part, index)?)),
+                Verdict::Touched(index) => return Ok(Some(part.time(index))),
+                Verdict::Unclear if !smallest => {
+                    width = half * (to - from);
+                    continue;
+                }
+                Verdict::Unclear if self.left == 0 && self.scrutiny.bound.is_some() && !self.is_enclosed => {
+                    return Err(Unanswered::OutOfParts(from));
+                }
+                Verdict::Unclear => {
+                    if let Some(index) = self.first_beyond(&part) {
+                        return Ok(Some(self.root(function, &part, index)?));
+                    }
+                }
+                Verdict::Clear => {}
+            }
+            (from, of_twice) = (to, None);
+            // Whoever has looked at too many parts goes on by the values alone.
+            width = if self.left == 0 { whole } else { (width + width).min(whole) };
+        }
+        Ok(None)
+    }
+
+    /// The first instant at which zero is reached; 0 for a part that begins beyond.
+    fn first_beyond(&self, part: &Interpolant<R>) -> Option<usize> {
+        let zero = R::constant(0.0);
+        let beyond = |value: R| if self.scrutiny.touching { value <= zero } else { value < zero };
+        part.values.iter().position(|value| beyond(self.side * *value))
+    }
+
+    /// `rough`: `true` if the part is small within the step.
+    fn verdict(&self, part: &Interpolant<R>, (rough, enclosure): (bool, Option<Enclosure<R>>)) -> Verdict {
+        // What bounds do not tell, nine values do not either.
+        let is_open = enclosure.is_some() && self.scrutiny.bound.is_none();
+        let is_monotone = enclosure.is_none_or(|enclosure| enclosure.is_monotone());
+        let blurred = part.largest() <= R::constant(BLURRED) * R::EPSILON * self.scale;
+        match self.first_beyond(part) {
+            Some(0) => Verdict::Passed(0),
+            Some(index) => {
+                let falls = part.falls(self.side) && is_monotone;
+                let once = match self.scrutiny.bound {
+                    Some(bound) => blurred || part.falls_first_at(index, self.side, bound),
+                    None => falls || blurred || rough && part.changes(self.side) == 1,
+                };
+                if once { Verdict::Passed(index) } else { Verdict::Unclear }
+            }
+            None if !is_open && self.clears(part) => Verdict::Clear,
+            None if blurred => {
+                let (index, least) = part.least();
+                let none = least <= R::constant(NONE) * R::EPSILON * self.scale;
+                if none && self.scrutiny.touching { Verdict::Touched(index) } else { Verdict::Clear }
+            }
+            None => Verdict::Unclear,
+        }
+    }
+
+    fn clears(&self, part: &Interpolant<R>) -> bool {
+        match self.scrutiny.bound {
+            Some(bound) => part.above_chords(self.side, bound),
+            None => part.above(self.side),
+        }
+    }
+
+    /// The far side of the passage between the instant before `index` and the one there, by the Illinois variant of the secant
+    /// rule, which never leaves the bracket.
+    /// Source: Dowell & Jarratt 1971.
+    fn root(
+        &self,
+        function: &mut impl Function<R>,
+        part: &Interpolant<R>,
+        index: usize,
+    ) -> Result<R, Unanswered<R>> {
+        let before = index.saturating_sub(1);
+        let value = |index: usize| part.values.get(index).copied().unwrap_or(R::constant(0.0));
+        let bracket = [before, index].map(|index| (part.time(index), value(index)));
+        far_side(bracket, |t| {
+            let value = function.value(t);
+            if is_nan(value) { Err(Unanswered::Undefined(t)) } else { Ok(value) }
+        })
+    }
+}
+
+fn is_nan<R: Real>(value: R) -> bool {
+    value.partial_cmp(&value).is_none()
+}
+
+/// The far side of the passage between two times with their values, of which the first is not beyond and the second is.
+///
+/// # Errors
+/// Those of `function`.
+pub fn far_side<R: Real, X>(
+    [mut left, mut right]: [(R, R); 2],
+    mut function: impl FnMut(R) -> Result<R, X>,
+) -> Result<R, X> {
+    let (zero, half) = (R::constant(0.0), R::constant(0.5));
+    let rising = left.1 < zero;
+    let mut last_passed = None;
+    for iteration in 0..MOST_ITERATIONS {
+        let width = right.0 - left.0;
+        let resolution = R::EPSILON * (left.0.abs() + right.0.abs());
+        if width <= resolution {
+            break;
+        }
+        if right.1 == zero {
+            return first_zero([left.0, right.0], resolution, |t| {
+                function(t).map(|value| if rising { zero <= value } else { value <= zero })
+            });
+        }
+        let secant = left.0 - left.1 * width / (right.1 - left.1);
+        let inside = left.0 < secant && secant < right.0 && iteration % 4 != 3;
+        let t = if inside { secant } else { left.0 + half * width };
+        let value = function(t)?;
+        let passed = if rising { zero <= value } else { value <= zero };
+        if passed {
+            right = (t, value);
+            left.1 = if last_passed == Some(true) { half * left.1 } else { left.1 };
+        } else {
+            left = (t, value);
+            right.1 = if last_passed == Some(false) { half * right.1 } else { right.1 };
+        }
+        last_passed = Some(passed);
+    }
+    Ok(right.0)
+}
+
+/// The first time from which on a function is zero that is so at the last of two times, but not at the first. One that passes zero is
+/// so there alone; one that jumps to zero stays there.
+fn first_zero<R: Real, X>(
+    [mut left, mut right]: [R; 2],
+    resolution: R,
+    mut passed: impl FnMut(R) -> Result<bool, X>,
+) -> Result<R, X> {
+    let before = right - R::constant(STAYING_ROUNDINGS) * resolution;
+    if before <= left || !passed(before)? {
+        return Ok(right);
+    }
+    right = before;
+    for _ in 0..MOST_ITERATIONS {
+        if right - left <= resolution {
+            break;
+        }
+        let middle = left + R::constant(0.5) * (right - left);
+        if passed(middle)? {
+            right = middle;
+        } else {
+            left = middle;
+        }
+    }
+    Ok(right)
+}
+
+/// Functions of the time that are evaluated together.
+pub trait Watched<R> {
+    /// Their number.
+    fn count(&self) -> usize;
+    /// Those from `first` on at `t` (s), as many as there are and as fit.
+    fn values(&mut self, t: R, first: usize, values: &mut [R; GROUP]);
+    /// `true` if a function begins positive whatever its value is; otherwise the first value that is not zero gives the side.
+    fn positive(&self, member: usize) -> bool;
+    /// Resolution and bounds of the search in a step that begins at `start` (s).
+    fn scrutiny(&mut self, member: usize, start: R) -> Scrutiny<R>;
+    /// Bounds of those from `first` on between two times (s), where any are known.
+    fn enclosures(&mut self, _first: usize, _times: (R, R)) -> Option<Enclosures<R>> {
+        None
+    }
+}
+
+/// Index of a function among several, with its zero or with the reason for which it has no answer.
+pub type Member<X> = (usize, X);
+
+/// The first of several functions that goes beyond zero between `start` and `end` (s), from the side on which it begins.
+///
+/// # Errors
+/// [`Unanswered`].
+pub fn first_beyond<R: Real>(
+    watched: &mut impl Watched<R>,
+    (start, mut end): (R, R),
+) -> Result<Option<Member<R>>, Member<Unanswered<R>>> {
+    let mut found = None;
+    let mut first = 0;
+    while first < watched.count() {
+        let mut near = [false; GROUP];
+        near_zero(watched, first, (start, end), &mut near).map_err(|(member, why)| (first + member, why))?;
+        for member in (0..GROUP).filter(|member| near.get(*member) == Some(&true)) {
+            let scrutiny = watched.scrutiny(first + member, start);
+            let positive = watched.positive(first + member);
+            let mut function = One { watched, first, member };
+            let unanswered = |why| (first + member, why);
+            let begin = match positive {
+                true => Some((start, R::constant(1.0))),
+                false => monitor::side(&mut function, (start, end), scrutiny.scale).map_err(unanswered)?,
+            };
+            let Some((from, side)) = begin else { continue };
+            if let Some(reach) =
+                first_reach(&mut function, (from, end), side, &scrutiny).map_err(unanswered)?
+            {
+                end = reach.t;
+                found = Some((first + member, reach.t));
+            }
+        }
+        first += GROUP;
+    }
+    Ok(found)
+}
+
+/// One of several functions.
+struct One<'a, W> {
+    watched: &'a mut W,
+    /// First of its group, and its place there.
+    first: usize,
+    member: usize,
+}
+
+impl<R: Real, W: Watched<R>> Function<R> for One<'_, W> {
+    fn value(&mut self, t: R) -> R {
+        let mut values = [R::constant(0.0); GROUP];
+        self.watched.values(t, self.first, &mut values);
+        values.get(self.member).copied().unwrap_or(R::constant(0.0))
+    }
+
+    fn enclosure(&mut self, from: R, to: R) -> Option<Enclosure<R>> {
+        let enclosures = self.watched.enclosures(self.first, (from, to))?;
+        enclosures.get(self.member).copied().flatten()
+    }
+}
+
+/// Marks which functions of a group come near zero, or are looked at more closely than by nine values.
+fn near_zero<R: Real>(
+    watched: &mut impl Watched<R>,
+    first: usize,
+    (start, end): (R, R),
+    near: &mut [bool; GROUP],
+) -> Result<(), Member<Unanswered<R>>> {
+    let count = watched.count().saturating_sub(first);
+    let enclosures = watched.enclosures(first, (start, end)).unwrap_or([None; GROUP]);
+    let (positive, negative) = (R::constant(1.0), R::constant(-1.0));
+    let mut all_clear = true;
+    for (member, (near, enclosure)) in near.iter_mut().zip(&enclosures).enumerate().take(count) {
+        let stays = |enclosure: &Enclosure<R>| {
+            enclosure.stays(positive) || !watched.positive(first + member) && enclosure.stays(negative)
+        };
+        *near = !enclosure.as_ref().is_some_and(stays);
+        all_clear = all_clear && !*near;
+    }
+    if all_clear {
+        return Ok(());
+    }
+    let mut rows = [[R::constant(0.0); GROUP]; NODES];
+    for (index, row) in rows.iter_mut().enumerate() {
+        watched.values(Interpolant::instant(start, end, index), first, row);
+    }
+    let open = near.iter_mut().zip(&enclosures).enumerate().take(count);
+    for (member, (near, enclosure)) in open.filter(|(_, (near, _))| **near) {
+        let scrutiny = watched.scrutiny(first + member, start);
+        let positive = watched.positive(first + member);
+        let mut index = 0;
+        let mut column = |_| {
+            let value = rows.get(index).and_then(|row| row.get(member)).copied();
+            index += 1;
+            value.unwrap_or(R::constant(0.0))
+        };
+        let part = Interpolant::through(&mut column, start, end).map_err(|why| (member, why))?;
+        let side = if positive { R::constant(1.0) } else { part.first() };
+        let scale = part.largest().max(scrutiny.scale);
+        let is_enclosed = enclosure.is_some();
+        let search = Search { side: side.sign(), scrutiny: &scrutiny, scale, left: 1, is_enclosed };
+        let small = !positive && part.first().abs() <= R::constant(NONE) * R::EPSILON * scale;
+        let clear = !small && matches!(search.verdict(&part, (false, *enclosure)), Verdict::Clear);
+        *near = scrutiny.parts(end - start) > 1 || !clear;
+    }
+    Ok(())
+}

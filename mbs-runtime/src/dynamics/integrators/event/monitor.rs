@@ -1,0 +1,146 @@
+//! An event function watched from step to step.
+
+use crate::dynamics::integrators::event::interpolant::Interpolant;
+use crate::dynamics::integrators::event::{
+    Direction, Function, NONE, Scrutiny, Unanswered, first_reach, is_nan,
+};
+use crate::scalar::number::Real;
+
+/// Passages of a step that do not count, before one that does.
+const MOST_IGNORED: u32 = 64;
+
+/// Halvings of a step towards its start, where a function that is zero there becomes positive or negative.
+const HALVINGS: u32 = 40;
+
+/// Values of a function next to one that counts as zero, over that one, from which on it is on a side.
+const AWAY: f64 = 4.0;
+
+/// Roundings of the largest value by which an event function may change where a state is solved anew.
+const SOLVED_ANEW: f64 = 1024.0;
+
+/// Event at which a run stopped, so that the next run does not stop there again.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stopped<R> {
+    t: R,
+    value: R,
+    scale: R,
+}
+
+impl<R: Real> Stopped<R> {
+    /// At `t` (s), where the function is `value`; `scale`: its largest absolute value in that step.
+    pub fn new(t: R, value: R, scale: R) -> Self {
+        Stopped { t, value, scale }
+    }
+
+    /// `true` if a function of `value` at `t` (s) is the one that stopped the run; `anew`: the state was solved again since.
+    fn known(&self, t: R, value: R, anew: bool) -> bool {
+        let roundings = R::constant(SOLVED_ANEW) * R::EPSILON * self.scale;
+        let allowed = if anew { R::constant(AWAY) * self.value.abs() + roundings } else { R::constant(0.0) };
+        t == self.t && (value - self.value).abs() <= allowed
+    }
+}
+
+/// The side of zero that an event function is on, from step to step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Monitor<R> {
+    direction: Direction,
+    scrutiny: Scrutiny<R>,
+    /// The sign that the function has; none where it is about zero.
+    side: Option<R>,
+    /// Largest absolute value that is none.
+    none: R,
+}
+
+impl<R: Real> Monitor<R> {
+    /// Of a function that is `value` at `t` (s), where a run begins. A value of 0 has been passed already, so has one at
+    /// which the last run `stopped`; `anew`: the state was solved again since.
+    pub fn new(
+        direction: Direction,
+        scrutiny: Scrutiny<R>,
+        (t, value): (R, R),
+        (stopped, anew): (Option<Stopped<R>>, bool),
+    ) -> Self {
+        let passed = stopped.is_some_and(|stopped| stopped.known(t, value, anew));
+        let side = (!passed && value != R::constant(0.0)).then(|| value.sign());
+        Monitor { direction, scrutiny, side, none: R::constant(AWAY) * value.abs() }
+    }
+
+    /// The first time (s) between two times at which `function` reaches zero so that it counts, with its largest absolute value
+    /// until then. `None` if it does not; the next call goes on from there.
+    ///
+    /// # Errors
+    /// `Unanswered`.
+    pub fn first(
+        &mut self,
+        (start, end): (R, R),
+        mut function: impl FnMut(R) -> R,
+    ) -> Result<Option<crate::dynamics::integrators::event::Reach<R>>, Unanswered<R>> {
+        let mut from = start;
+        for _ in 0..MOST_IGNORED {
+            let side = match self.side {
+                Some(side) => side,
+                None => {
+                    let Some(found) = away(&mut function, (from, end), self.none)? else { return Ok(None) };
+                    from = found.0;
+                    found.1
+                }
+            };
+            self.side = Some(side);
+            let Some(reach) = first_reach(&mut function, (from, end), side, &self.scrutiny)? else {
+                return Ok(None);
+            };
+            (from, self.side) = (reach.t, None);
+            self.none = R::constant(AWAY) * function(from).abs();
+            if self.direction.counts(side) {
+                return Ok(Some(reach));
+            }
+        }
+        Ok(None)
+    }
+}
+
+/// The side on which a function begins that may be zero at the start but for rounding, and from when on (s).
+pub(super) fn side<R: Real>(
+    function: &mut impl Function<R>,
+    (start, end): (R, R),
+    scale: R,
+) -> Result<Option<(R, R)>, Unanswered<R>> {
+    let none = R::constant(NONE) * R::EPSILON * scale;
+    let (value, least) = (function.value(start), none.max(least(function, (start, end))?));
+    if least < value.abs() {
+        return Ok(Some((start, value.sign())));
+    }
+    away(function, (start, end), least.max(R::constant(AWAY) * value.abs()))
+}
+
+/// Roundings of the largest of nine values.
+fn least<R: Real>(function: &mut impl Function<R>, (start, end): (R, R)) -> Result<R, Unanswered<R>> {
+    Ok(R::constant(NONE)
+        * R::EPSILON
+        * Interpolant::through(&mut |t| function.value(t), start, end)?.largest())
+}
+
+/// The first time (s) after the start from which a function is larger than `none` and rounding, with its sign.
+fn away<R: Real>(
+    function: &mut impl Function<R>,
+    (start, end): (R, R),
+    none: R,
+) -> Result<Option<(R, R)>, Unanswered<R>> {
+    let none = none.max(least(function, (start, end))?);
+    let (half, mut share) = (R::constant(0.5), R::constant(1.0));
+    for _ in 0..HALVINGS {
+        share = half * share;
+    }
+    for _ in 0..=HALVINGS {
+        let t = (start + (end - start) * share).min(end);
+        let value = function.value(t);
+        if is_nan(value) {
+            return Err(Unanswered::Undefined(t));
+        }
+        if none < value.abs() && start < t {
+            return Ok(Some((t, value.sign())));
+        }
+        share = share + share;
+    }
+    Ok(None)
+}

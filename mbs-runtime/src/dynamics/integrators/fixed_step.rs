@@ -1,0 +1,73 @@
+//! Steps of fixed size: semi-implicit Euler and the classical Runge–Kutta method.
+
+use crate::dynamics::integrators::equation::Equation;
+use crate::dynamics::integrators::vector::Vector;
+use crate::failure::Failure;
+use crate::scalar::number::Scalar;
+
+/// An explicit method with steps of the caller's size: fixed work, no memory of earlier steps.
+pub trait FixedStep: Copy {
+    /// Order of convergence.
+    const ORDER: u32;
+    /// `true` if its steps need derivatives of the forces.
+    const USES_SLOPES: bool = false;
+
+    /// The state at `t + h`, not yet settled, from the state `y` at `t` (s) and its rate.
+    ///
+    /// # Errors
+    /// Those of the equation.
+    fn step<T: Scalar, E: Equation<T>>(
+        equation: &mut E,
+        t: T,
+        h: T,
+        y: &E::State,
+        rate: &E::State,
+    ) -> Result<E::State, Failure>;
+}
+
+/// q̇ₙ₊₁ = q̇ₙ + h q̈ₙ, then qₙ₊₁ = qₙ + h q̇ₙ₊₁: one evaluation a step, order 1, and no drift of the energy of
+/// an oscillation as long as ω h < 2.
+///
+/// Source: Hairer, Lubich & Wanner 2006, §I.1.2 (symplectic Euler).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct SemiImplicitEuler;
+
+impl FixedStep for SemiImplicitEuler {
+    const ORDER: u32 = 1;
+
+    #[inline]
+    fn step<T: Scalar, E: Equation<T>>(
+        _: &mut E,
+        _: T,
+        h: T,
+        y: &E::State,
+        rate: &E::State,
+    ) -> Result<E::State, Failure> {
+        Ok(y.semi_implicit(h, rate))
+    }
+}
+
+/// The classical method of order 4, four evaluations a step.
+///
+/// Source: Hairer, Nørsett & Wanner 1993, table II.1.2 (left).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct RungeKutta4;
+
+impl FixedStep for RungeKutta4 {
+    const ORDER: u32 = 4;
+
+    #[inline]
+    fn step<T: Scalar, E: Equation<T>>(
+        equation: &mut E,
+        t: T,
+        h: T,
+        y: &E::State,
+        rate: &E::State,
+    ) -> Result<E::State, Failure> {
+        let middle = t + T::constant(0.5) * h;
+        let k2 = equation.rate(middle, &y.plus(h, &[0.5], [rate]))?;
+        let k3 = equation.rate(middle, &y.plus(h, &[0.5], [&k2]))?;
+        let k4 = equation.rate(t + h, &y.plus(h, &[1.0], [&k3]))?;
+        Ok(y.plus(h, &[1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0], [rate, &k2, &k3, &k4]))
+    }
+}

@@ -1,0 +1,96 @@
+//! The open terms of a part alone.
+
+use crate::dynamics::linear_systems::piecewise::{Given, Piecewise};
+use crate::scalar::number::Real;
+
+/// Terms that a part leaves open, with the others expressed by them: v = φ(c + B v) of the open ones alone.
+pub(super) struct Reduced<R, const K: usize> {
+    pub open: [bool; K],
+    pub offset: [[R; 2]; K],
+    pub slope: [[[R; K]; 2]; K],
+}
+
+impl<R: Real, const K: usize> Piecewise<R, K> {
+    /// The open terms of a part alone; none where the others are not determined by them one after the other.
+    pub(super) fn reduced(&self, given: Given) -> Option<Reduced<R, K>> {
+        let (zero, one) = (R::constant(0.0), R::constant(1.0));
+        let open = self.open(given);
+        let Piecewise { mut offset, mut slope, .. } = *self;
+        let directions = self.directions(given, &[zero; K]);
+        for l in 0..K {
+            if open[l] {
+                continue;
+            }
+            let sign = directions[l][0];
+            let pivot = one - sign * slope[l][0][l];
+            let factor = sign / pivot;
+            if !factor.is_finite() {
+                return None;
+            }
+            let (constant, mut shares) = (factor * offset[l][0], slope[l][0].map(|slope| factor * slope));
+            shares[l] = zero;
+            for (offsets, slopes) in offset.iter_mut().zip(&mut slope) {
+                for (offset, slopes) in offsets.iter_mut().zip(slopes) {
+                    let own = slopes[l];
+                    slopes[l] = zero;
+                    *offset = *offset + own * constant;
+                    slopes.iter_mut().zip(&shares).for_each(|(slope, share)| *slope = *slope + own * *share);
+                }
+            }
+        }
+        Some(Reduced { open, offset, slope })
+    }
+}
+
+impl<R: Real, const K: usize> Reduced<R, K> {
+    /// `true` if φ(c + B v) contracts, in a norm that weighs each term: I − L with L the norms of the entries of B is an M-matrix,
+    /// whose pivots are positive. Then there is one solution.
+    /// Source: Ortega & Rheinboldt 1970, §§2.4, 13.1.
+    pub(super) fn contracts(&self) -> bool {
+        let zero = R::constant(0.0);
+        let mut matrix = [[zero; K]; K];
+        let rows = matrix.iter_mut().zip(&self.slope).zip(&self.open);
+        for ((row, [along, across]), open) in rows {
+            let entries = row.iter_mut().zip(along.iter().zip(across)).zip(&self.open);
+            for ((entry, (x, y)), _) in entries.filter(|(_, other)| *open && **other) {
+                let size = if *y == zero { x.abs() } else { x.hypot(*y) };
+                *entry = size;
+            }
+        }
+        is_m_matrix(&matrix)
+    }
+
+    /// The roots of n = |c + b n|, n the only open term.
+    pub(super) fn roots_alone(&self, index: usize) -> Option<[Option<R>; 2]> {
+        let (zero, one) = (R::constant(0.0), R::constant(1.0));
+        let [cx, cy] = *self.offset.get(index)?;
+        let [bx, by] = self.slope.get(index)?.map(|slopes| slopes.get(index).copied().unwrap_or(zero));
+        let (leading, half, last) = (one - (bx * bx + by * by), bx * cx + by * cy, cx * cx + cy * cy);
+        let discriminant = half * half + leading * last;
+        if discriminant < zero {
+            return Some([None; 2]);
+        }
+        let root = discriminant.sqrt();
+        let sum = if half < zero { half - root } else { half + root };
+        Some([Some(sum / leading), Some(-last / sum)].map(|root| root.filter(|root| root.is_finite())))
+    }
+}
+
+/// Pivots of I − T positive, T of entries that are at least 0: its spectral radius is below 1.
+pub(super) fn is_m_matrix<R: Real, const V: usize>(spread: &[[R; V]; V]) -> bool {
+    let (zero, one) = (R::constant(0.0), R::constant(1.0));
+    let mut matrix = spread.map(|row| row.map(|entry| zero - entry));
+    (0..V).for_each(|k| matrix[k][k] = one + matrix[k][k]);
+    for k in 0..V {
+        let upper = matrix[k];
+        // Written so that NaN does not contract.
+        if !zero.less(upper[k]) {
+            return false;
+        }
+        for row in matrix.iter_mut().skip(k + 1) {
+            let factor = row[k] / upper[k];
+            row.iter_mut().zip(&upper).skip(k).for_each(|(entry, above)| *entry = *entry - factor * *above);
+        }
+    }
+    true
+}

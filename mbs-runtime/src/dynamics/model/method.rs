@@ -1,0 +1,144 @@
+//! Contract of a method of integration for mechanisms.
+
+use crate::dynamics::integrators::vector::State;
+use crate::dynamics::model::instant::Instant;
+use crate::dynamics::model::{Counts, MethodWarning, Model, Solved};
+use crate::failure::{Failure, FailureKind};
+use crate::mechanism::dynamic::Dynamic;
+use crate::scalar::number::Real;
+
+/// Fails where a text has functions that are not smooth enough for a [`Tangent`].
+///
+/// # Errors
+/// [`FailureKind::NotSmooth`].
+pub(crate) fn require_slopes<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>()
+-> Result<(), Failure> {
+    S::MISSING_SLOPE.map_or(Ok(()), |missing| Err(FailureKind::NotSmooth { missing }.without_time()))
+}
+
+/// [`require_slopes`] of a position of rest: ∂Q/∂q̇ has no part in it.
+///
+/// # Errors
+/// [`FailureKind::NotSmooth`].
+pub(crate) fn require_slopes_at_rest<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>()
+-> Result<(), Failure> {
+    let missing = S::MISSING_SLOPE.filter(|missing| missing.acts_at_rest);
+    missing.map_or(Ok(()), |missing| Err(FailureKind::NotSmooth { missing }.without_time()))
+}
+
+/// A way to move on: integrator and formulation in one.
+pub trait Method<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> {
+    /// Accelerations and multipliers at a state.
+    ///
+    /// # Errors
+    /// Those of [`Formulation::solve`](crate::dynamics::Formulation::solve).
+    fn solve(
+        &self,
+        model: &Model<'_, S, R, N, M>,
+        t: R,
+        y: &State<R, N, S::States>,
+        lambda: &[R; M],
+        counts: &mut Counts,
+    ) -> Result<Solved<R, N, M, S::States>, Failure>;
+
+    /// One step of `h` (s), positive.
+    ///
+    /// # Errors
+    /// Those of [`Formulation::solve`](crate::dynamics::Formulation::solve) and [`Formulation::project`](crate::dynamics::Formulation::project); [`FailureKind::EquilibriumNotConverged`] of implicit methods.
+    fn step(
+        &self,
+        model: &Model<'_, S, R, N, M>,
+        from: &Instant<R, N, M, S::States>,
+        h: R,
+        counts: &mut Counts,
+    ) -> Result<Instant<R, N, M, S::States>, Failure>;
+
+    /// The phases of drives that prescribe a rate after a step of `h` from `t` (s); none where they are those of
+    /// [`Mechanism::advance_phases`](crate::Mechanism::advance_phases).
+    ///
+    /// # Errors
+    /// None but those of its calls.
+    fn phases_after(
+        &self,
+        _model: &Model<'_, S, R, N, M>,
+        _t: R,
+        _h: R,
+    ) -> Result<Option<S::Phases>, Failure> {
+        Ok(None)
+    }
+
+    /// See [`Formulation::require_suitable`](crate::dynamics::Formulation::require_suitable).
+    ///
+    /// # Errors
+    /// [`FailureKind::InvalidMethodParameter`]; [`FailureKind::NotSmooth`] of a method that needs derivatives of the forces.
+    fn require_suitable(&self) -> Result<(), Failure> {
+        Ok(())
+    }
+
+    /// See [`Formulation::check_step`](crate::dynamics::Formulation::check_step).
+    ///
+    /// # Errors
+    /// [`FailureKind::StepTooLong`].
+    fn check_step(&self, _h: R, _t: R) -> Result<(), Failure> {
+        Ok(())
+    }
+
+    /// See [`Formulation::leaves_constraints`](crate::dynamics::Formulation::leaves_constraints).
+    fn leaves_constraints(&self) -> bool {
+        false
+    }
+
+    /// See [`Formulation::doubt`](crate::dynamics::Formulation::doubt).
+    fn doubt(&self, _h: R, _span: R) -> Option<MethodWarning> {
+        None
+    }
+}
+
+/// A reference has the behaviour of its target, which may be known at run time only.
+impl<S, R, X, const N: usize, const M: usize> Method<S, R, N, M> for &X
+where
+    S: Dynamic<R, N, M>,
+    R: Real,
+    X: Method<S, R, N, M> + ?Sized,
+{
+    fn solve(
+        &self,
+        model: &Model<'_, S, R, N, M>,
+        t: R,
+        y: &State<R, N, S::States>,
+        lambda: &[R; M],
+        counts: &mut Counts,
+    ) -> Result<Solved<R, N, M, S::States>, Failure> {
+        (**self).solve(model, t, y, lambda, counts)
+    }
+
+    fn step(
+        &self,
+        model: &Model<'_, S, R, N, M>,
+        from: &Instant<R, N, M, S::States>,
+        h: R,
+        counts: &mut Counts,
+    ) -> Result<Instant<R, N, M, S::States>, Failure> {
+        (**self).step(model, from, h, counts)
+    }
+
+    fn phases_after(&self, model: &Model<'_, S, R, N, M>, t: R, h: R) -> Result<Option<S::Phases>, Failure> {
+        (**self).phases_after(model, t, h)
+    }
+
+    fn require_suitable(&self) -> Result<(), Failure> {
+        (**self).require_suitable()
+    }
+
+    fn check_step(&self, h: R, t: R) -> Result<(), Failure> {
+        (**self).check_step(h, t)
+    }
+
+    fn leaves_constraints(&self) -> bool {
+        (**self).leaves_constraints()
+    }
+
+    fn doubt(&self, h: R, span: R) -> Option<MethodWarning> {
+        (**self).doubt(h, span)
+    }
+}

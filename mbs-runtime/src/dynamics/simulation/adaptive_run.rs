@@ -1,0 +1,273 @@
+//! Runs with steps as long as a tolerance allows.
+
+use crate::dynamics::formulations::singular::passage::Passage;
+use crate::dynamics::integration::equations::{Equations, Moving};
+use crate::dynamics::integration::explicit::{Explicit, beginning};
+use crate::dynamics::integrators::embedded::Embedded;
+use crate::dynamics::integrators::equation::Equation;
+use crate::dynamics::integrators::event::monitor::Stopped;
+use crate::dynamics::integrators::event::{Dense, Direction, MOST_RESOLVED};
+use crate::dynamics::integrators::step_control::{Accepted, Adaptive};
+use crate::dynamics::model::instant::Instant;
+use crate::dynamics::model::metric::Tolerance;
+use crate::dynamics::model::{Counts, Formulation, Model};
+use crate::dynamics::simulation::fixed_run::event_failure;
+use crate::dynamics::simulation::{Fresh, Simulation};
+use crate::failure::Failure;
+use crate::mechanism::dynamic::Dynamic;
+use crate::scalar::number::Real;
+
+/// Absence of an event, with a closure's type rather than a function pointer's: nothing is called through a pointer then, and a
+/// linked binary can be shown to have no panic.
+#[allow(clippy::type_complexity, reason = "a type that no one can write, of a call that is none")]
+fn no_event<R: Real, const N: usize>() -> Option<(Direction, impl FnMut(R, &[R; N], &[R; N]) -> R)> {
+    fn none<E>(_: E) -> Option<(Direction, E)> {
+        None
+    }
+    none(|t: R, _: &[R; N], _: &[R; N]| t)
+}
+
+/// Figures of a run at the end of a step.
+struct Progress<R, P> {
+    /// Phases of drives that prescribe a rate.
+    phases: P,
+    counts: Counts,
+    passage: Option<Passage<R>>,
+    /// Steps accepted by the control of their size.
+    accepted: u32,
+}
+
+impl<S, I, F, R, const N: usize, const M: usize> Simulation<S, Explicit<I, F>, R, N, M>
+where
+    S: Dynamic<R, N, M>,
+    I: Embedded,
+    F: Formulation<S, R, N, M>,
+    R: Real,
+{
+    /// With other tolerances than 1e-9 for adaptive steps.
+    pub fn with_tolerance(self, tolerance: Tolerance<R>) -> Self {
+        Simulation { tolerance, ..self }
+    }
+
+    /// With adaptive steps not longer than `step` (s), positive: for forces that set in between two steps and are over in a moment. A
+    /// run with another is [`InvalidMethodParameter`](crate::FailureKind::InvalidMethodParameter).
+    pub fn with_largest_step(self, step: R) -> Self {
+        Simulation { adaptive: self.adaptive.with_largest(step), ..self }
+    }
+
+    /// Steps accepted and rejected by the control of their size, and the size that it will try next.
+    pub fn adaptive(&self) -> &Adaptive<R> {
+        &self.adaptive
+    }
+
+    /// Moves on to `until` (s) with steps as long as the tolerance allows; not at all where `until` is the present time.
+    ///
+    /// # Errors
+    /// [`InvalidStep`](crate::FailureKind::InvalidStep), [`UnresolvedTolerance`](crate::FailureKind::UnresolvedTolerance), [`StepTooSmall`](crate::FailureKind::StepTooSmall), [`OutOfReach`](crate::FailureKind::OutOfReach), those of
+    /// the method; [`BeyondLimit`](crate::FailureKind::BeyondLimit) and [`WrongBranch`](crate::FailureKind::WrongBranch) with the time at which the limit is passed within a
+    /// step. The state is then that at the end of the last step that was accepted.
+    pub fn advance_to(&mut self, until: R) -> Result<(), Failure> {
+        self.advance(until, |_| None, no_event(), |_, _| Ok(())).map(|_| ())
+    }
+
+    /// As [`advance_to`](Self::advance_to), hitting the times that `breakpoints` gives: the next one after its
+    /// argument where a force or a drive is not smooth. So the order of the method is kept.
+    ///
+    /// # Errors
+    /// As [`advance_to`](Self::advance_to).
+    pub fn advance_through(
+        &mut self,
+        until: R,
+        breakpoints: impl FnMut(R) -> Option<R>,
+    ) -> Result<(), Failure> {
+        self.advance(until, breakpoints, no_event(), |_, _| Ok(())).map(|_| ())
+    }
+
+    /// As [`advance_to`](Self::advance_to), but stops where `event` of time, coordinates and velocities first reaches zero, even
+    /// if it turns back there. Returns `true` if it did. A value of 0 at the start has been passed already, and the next call
+    /// goes on after the event.
+    ///
+    /// # Errors
+    /// As [`advance_to`](Self::advance_to); [`NonFinite`](crate::FailureKind::NonFinite) where `event` is NaN or infinite; [`InvalidMethodParameter`](crate::FailureKind::InvalidMethodParameter) where the event bound asks for too many parts.
+    pub fn advance_until_event(
+        &mut self,
+        until: R,
+        direction: Direction,
+        event: impl FnMut(R, &[R; N], &[R; N]) -> R,
+    ) -> Result<bool, Failure> {
+        self.advance(until, |_| None, Some((direction, event)), |_, _| Ok(()))
+    }
+
+    /// As [`advance_to`](Self::advance_to), and shows the instants at `samples` equal distances on the way, the end
+    /// included, each on the constraints.
+    ///
+    /// # Errors
+    /// As [`advance_to`](Self::advance_to).
+    pub fn sample(
+        &mut self,
+        until: R,
+        samples: u32,
+        mut see: impl FnMut(&Instant<R, N, M, S::States>),
+    ) -> Result<(), Failure> {
+        self.sampled(until, samples, |instant, _| see(instant))
+    }
+
+    /// As [`sample`](Self::sample), and shows the whole simulation as it is at each of these instants: its outputs, loads and
+    /// balance. Its [`counts`](Self::counts) are those of the steps, without the cost of the instants between them.
+    ///
+    /// # Errors
+    /// As [`advance_to`](Self::advance_to).
+    pub fn watch(&mut self, until: R, samples: u32, mut see: impl FnMut(&Self)) -> Result<(), Failure>
+    where
+        F: Clone,
+    {
+        let mut shown = self.clone();
+        if self.stale {
+            let gained = self.fresh(&mut Counts::default())?.gained;
+            shown.reference = shown.reference + gained;
+        }
+        let steps = self.adaptive.accepted;
+        self.sampled(until, samples, |instant, run| {
+            let mut counts = run.counts;
+            counts.steps += u64::from(run.accepted.wrapping_sub(steps));
+            shown.take(*instant, Some(run.phases), counts);
+            shown.passage = shown.passage.or(run.passage);
+            see(&shown);
+        })
+    }
+
+    /// Shows the instants at `samples` equal distances to `until` (s), with the results of the run.
+    ///
+    /// The samples do not change the run: rates between its steps are kept apart from it.
+    fn sampled(
+        &mut self,
+        until: R,
+        samples: u32,
+        mut see: impl FnMut(&Instant<R, N, M, S::States>, &Progress<R, S::Phases>),
+    ) -> Result<(), Failure> {
+        let (from, count) = (self.now.t, R::constant(f64::from(samples)));
+        let (mut index, mut accepted_steps) = (1, self.adaptive.accepted);
+        if until == from {
+            self.stand()?;
+            let (phases, counts) = (self.mechanism.phases(), self.counts);
+            let progress = Progress { phases, counts, passage: None, accepted: accepted_steps };
+            (0..samples).for_each(|_| see(&self.now, &progress));
+            return Ok(());
+        }
+        self.advance(
+            until,
+            |_| None,
+            no_event(),
+            |equations, accepted| {
+                let mut polynomial = None;
+                accepted_steps = accepted_steps.wrapping_add(1);
+                while index <= samples {
+                    let share = R::constant(f64::from(index)) / count;
+                    let t = if index == samples { until } else { from + (until - from) * share };
+                    if accepted.end.t < t {
+                        break;
+                    }
+                    let (instant, phases) = equations.apart(|equations| {
+                        let known = *polynomial.get_or_insert_with(|| accepted.polynomial(equations).ok());
+                        let between = || known.map_or_else(|| accepted.cubic(t), |known| known.at(t));
+                        let mut y = if t < accepted.end.t { between() } else { accepted.end.y };
+                        let solved = equations.shown::<I>(t, &accepted.start, &mut y)?;
+                        let phases = equations.phases(t, &y.phases);
+                        Ok((Instant { t, y: y.y, solved, carried: solved.rate.qd }, phases))
+                    })?;
+                    equations.pass(&instant);
+                    let (counts, passage) = (equations.counts, equations.passage);
+                    see(&instant, &Progress { phases, counts, passage, accepted: accepted_steps });
+                    index += 1;
+                }
+                Ok(())
+            },
+        )
+        .map(|_| ())
+    }
+
+    /// Runs to `until`, or to the first `event`; returns `true` if it was an event. `see` is shown each step.
+    fn advance(
+        &mut self,
+        until: R,
+        breakpoints: impl FnMut(R) -> Option<R>,
+        mut event: Option<(Direction, impl FnMut(R, &[R; N], &[R; N]) -> R)>,
+        mut see: impl FnMut(
+            &mut Equations<'_, S, F, R, N, M>,
+            &Accepted<I, R, Moving<S, R, N, M>>,
+        ) -> Result<(), Failure>,
+    ) -> Result<bool, Failure> {
+        self.require_settings()?;
+        if until == self.now.t {
+            return self.stand().map(|()| false);
+        }
+        let (mut counts, mut adaptive) = (self.counts, self.adaptive);
+        if let Some(resolution) = self.scrutiny.resolution {
+            adaptive.largest = adaptive.largest.min(R::constant(8.0 * MOST_RESOLVED) * resolution);
+        }
+        self.tolerance.require_resolved(self.now.t)?;
+        let Fresh { instant: from, gained, rank_rises } = self.fresh(&mut counts)?;
+        let mut monitor = match &mut event {
+            Some((direction, event)) => Some(self.monitor(*direction, &from, event)?),
+            None => None,
+        };
+        let model = Model { rank_rises, ..self.model() };
+        let formulation = &self.method.formulation;
+        let mut equations = Equations::new(&model, formulation, &from, counts).with_tolerance(self.tolerance);
+        equations = equations.with_resolution(self.scrutiny.resolution);
+        let start = beginning(model.mechanism, &from);
+        let (mut stopped, mut last) = (None, start);
+        let (taken, resolution) = (adaptive.accepted, self.scrutiny.resolution);
+        let run = adaptive.run::<I, _>(&mut equations, start, until, breakpoints, |equations, accepted| {
+            let (start, mut end) = (accepted.start.t, accepted.end.t);
+            model.check(end, &accepted.end.y.y)?;
+            let ends = model.check_assembly(from.t, (end, &accepted.end.y.y), false);
+            if monitor.is_none() && S::LIMITS.is_empty() && ends.is_ok() {
+                see(equations, accepted)?;
+                last = accepted.end;
+                return Ok(true);
+            }
+            let course = equations.apart(|equations| accepted.course(equations));
+            if let (Some(monitor), Some((_, event))) = (&mut monitor, &mut event) {
+                let found = monitor.first((start, end), |t| {
+                    let y = course.at(t).y;
+                    event(t, &y.q, &y.qd)
+                });
+                if let Some(reach) = found.map_err(event_failure)? {
+                    stopped = Some((reach, course.at(reach.t)));
+                    end = reach.t;
+                }
+            }
+            let at = |t| course.at(t).y;
+            model.check_ranges(from.t, (start, end), at, resolution)?;
+            model.check_end(from.t, (start, end), at)?;
+            see(equations, accepted)?;
+            last = accepted.end;
+            Ok(stopped.is_none())
+        });
+        let failure = run.err();
+        if let (Some(failure), true) = (failure, last.t == from.t) {
+            return Err(failure);
+        }
+        let (t, mut y) = stopped.map_or((last.t, last.y), |(reach, y)| (reach.t, y));
+        if stopped.is_some() && t < last.t {
+            Equation::project(&mut equations, t, &mut y)?;
+        }
+        equations.with_all_contacts();
+        let solved = equations.solve(t, &y)?;
+        let phases = equations.phases(t, &y.phases);
+        counts = equations.counts;
+        let passage = equations.passage;
+        counts.steps += u64::from(adaptive.accepted.wrapping_sub(taken));
+        self.adaptive = adaptive.with_largest(self.adaptive.largest);
+        self.passage = self.passage.or(passage);
+        self.rank_rises = rank_rises;
+        self.take(Instant { t, y: y.y, solved, carried: solved.rate.qd }, Some(phases), counts);
+        self.passed = passage.is_some();
+        self.reference = self.reference + gained;
+        if let (Some((reach, _)), Some((_, event))) = (stopped, &mut event) {
+            self.stopped = Some(Stopped::new(t, event(t, &self.now.y.q, &self.now.y.qd), reach.scale));
+        }
+        failure.map_or(Ok(stopped.is_some()), Err)
+    }
+}

@@ -1,0 +1,166 @@
+//! Contacts that close or open within a step.
+
+use crate::dynamics::integrators::event::enclosure::{Enclosures, Functions, GroupOver, Part};
+use crate::dynamics::integrators::event::{GROUP, NONE, Scrutiny, Watched, first_beyond};
+use crate::dynamics::integrators::vector::State;
+use crate::dynamics::model::Model;
+use crate::failure::{Failure, FailureKind, checks};
+use crate::mechanism::Entry;
+use crate::mechanism::dynamic::{Dynamic, Gap};
+use crate::scalar::interval::Interval;
+use crate::scalar::number::Real;
+
+/// Roundings of a time that is computed from a gap, its rate and its bound.
+const REACH_ROUNDINGS: f64 = 16.0;
+
+impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, R, N, M> {
+    /// Shows the gaps of a state at `t` (s), where inputs and phases are known at time `from` (s).
+    fn gaps(&self, from: R, (t, y): (R, &State<R, N, S::States>), see: impl FnMut(Gap<R>)) {
+        self.moved(from, t, |Model { mechanism, parameters, .. }| {
+            mechanism.gaps(parameters, &mechanism.position(parameters, &y.q, t), &y.qd, see);
+        });
+    }
+
+    /// Leaves those contacts out of `parameters` that are open at the beginning of a step at `t` (s).
+    pub(crate) fn leave_out(
+        &self,
+        from: R,
+        (t, y): (R, &State<R, N, S::States>),
+        parameters: &mut S::Parameters,
+    ) -> Open<R> {
+        let (zero, none) = (R::constant(0.0), R::constant(NONE) * R::EPSILON * self.gap_scale());
+        let mut open = Open { changes: false, until: R::constant(f64::MAX) };
+        let mut evaluated = S::evaluated_mut(parameters).iter_mut();
+        self.gaps(from, (t, y), |Gap { gap, rate, bound }| {
+            // Written so that NaN is closed.
+            let is_open = none < gap;
+            let quiet = bound.filter(|_| is_open).map_or(zero, |bound| reach(gap, rate, bound));
+            open.until = open.until.min(t + quiet);
+            if let Some(evaluated) = evaluated.next() {
+                // A contact that has opened gives nothing: rates stay.
+                open.changes = open.changes || !*evaluated && !is_open;
+                *evaluated = !is_open;
+            }
+        });
+        open
+    }
+
+    /// Gap (m) of which roundings are none.
+    fn gap_scale(&self) -> R {
+        self.metric.coordinates.iter().fold(R::constant(0.0), |sum, scale| sum.max(*scale))
+    }
+
+    /// The first time (s) of a step between `start` and `end` (s) at which a contact closes or opens, after it by rounding; `at`
+    /// gives the states of the step. `from`: the time (s) that inputs and phases are known at, with the contacts that the step
+    /// evaluates: the others are open where it begins.
+    pub(crate) fn contact_change(
+        &self,
+        (from, evaluated): (R, &[bool]),
+        (start, end): (R, R),
+        at: impl Fn(R) -> State<R, N, S::States>,
+        scrutiny: &Scrutiny<R>,
+    ) -> Result<Option<R>, Failure> {
+        let scrutiny = Scrutiny { bound: None, scale: self.gap_scale(), touching: false, ..*scrutiny };
+        let mut contacts = Contacts { model: self, from, evaluated, scrutiny, at };
+        match first_beyond(&mut contacts, (start, end)) {
+            Ok(found) => Ok(found.map(|(_, t)| t)),
+            Err((contact, _)) => {
+                let Entry { name, line, .. } =
+                    checks::entry(S::CONTACTS, u16::try_from(contact).unwrap_or(u16::MAX));
+                Err(FailureKind::NonFinite { name, line: *line }.without_time())
+            }
+        }
+    }
+}
+
+/// State of the contacts at the start of a step.
+pub(crate) struct Open<R> {
+    /// `true` if a contact is evaluated that was not before.
+    pub(crate) changes: bool,
+    /// Time (s) up to which all stay open by the bounds that the text declares.
+    pub(crate) until: R,
+}
+
+/// Time (s) after which a gap may be closed whose second derivative is at least −`bound`: gap + rate h − bound h²/2 = 0.
+fn reach<R: Real>(gap: R, rate: R, bound: R) -> R {
+    let (zero, two) = (R::constant(0.0), R::constant(2.0));
+    let root = (rate * rate + two * bound * gap).sqrt();
+    // Neither of both subtracts.
+    let time = if rate < zero { two * gap / (root - rate) } else { (rate + root) / bound };
+    if zero < bound || rate < zero && bound == zero {
+        time * (R::constant(1.0) - R::constant(REACH_ROUNDINGS) * R::EPSILON)
+    } else if bound == zero {
+        R::constant(f64::MAX)
+    } else {
+        zero
+    }
+}
+
+/// The gaps along a step.
+struct Contacts<'a, S: Dynamic<R, N, M>, R: Real, At, const N: usize, const M: usize> {
+    model: &'a Model<'a, S, R, N, M>,
+    /// Time (s) that inputs and phases are known at.
+    from: R,
+    /// Contacts that the step evaluates.
+    evaluated: &'a [bool],
+    scrutiny: Scrutiny<R>,
+    at: At,
+}
+
+impl<S, R, At, const N: usize, const M: usize> Watched<R> for Contacts<'_, S, R, At, N, M>
+where
+    S: Dynamic<R, N, M>,
+    R: Real,
+    At: Fn(R) -> State<R, N, S::States>,
+{
+    fn count(&self) -> usize {
+        S::CONTACTS.len()
+    }
+
+    fn positive(&self, member: usize) -> bool {
+        self.evaluated.get(member) == Some(&false)
+    }
+
+    /// The bound holds of an open gap.
+    fn scrutiny(&mut self, member: usize, start: R) -> Scrutiny<R> {
+        let (mut index, mut bound) = (0, None);
+        if self.positive(member) {
+            self.model.gaps(self.from, (start, &(self.at)(start)), |gap| {
+                bound = if index == member { gap.bound } else { bound };
+                index += 1;
+            });
+        }
+        Scrutiny { bound, ..self.scrutiny }
+    }
+
+    fn enclosures(&mut self, first: usize, times: (R, R)) -> Option<Enclosures<R>> {
+        let part = Part::of(self.from, times, &self.at)?;
+        self.model.mechanism.enclosed(GroupOver { part, first, functions: Gaps })
+    }
+
+    fn values(&mut self, t: R, first: usize, values: &mut [R; GROUP]) {
+        let mut index = 0_usize;
+        self.model.gaps(self.from, (t, &(self.at)(t)), |gap| {
+            if let Some(value) = index.checked_sub(first).and_then(|place| values.get_mut(place)) {
+                *value = gap.gap;
+            }
+            index += 1;
+        });
+    }
+}
+
+/// Gaps of all contacts.
+struct Gaps;
+
+impl<R: Real> Functions<R> for Gaps {
+    fn show<S: Dynamic<Interval<R>, N, M>, const N: usize, const M: usize>(
+        &self,
+        mechanism: &S,
+        parameters: &S::Parameters,
+        position: &S::Position,
+        qd: &[Interval<R>; N],
+        mut see: impl FnMut(Interval<R>, Interval<R>),
+    ) {
+        mechanism.gaps(parameters, position, qd, |Gap { gap, rate, .. }| see(gap, rate));
+    }
+}

@@ -1,0 +1,99 @@
+//! Agreement of redundant rows in their rates.
+
+use crate::block_solvers::gauss_newton::product;
+use crate::failure::conflicting_rows::ConflictingRows;
+use crate::failure::{DerivativeOrder, Failure, FailureKind};
+use crate::linear_algebra::least_margin;
+use crate::linear_algebra::vectors::largest_difference;
+use crate::mechanism::Mechanism;
+use crate::mechanism::widths::largest_width;
+use crate::scalar::number::Real;
+
+/// Residual allowed to rows in their rates, in widths times the rates of the coordinates. The residual that a text allows a
+/// position changes as fast as the links turn, twice as fast in accelerations.
+const RATES_OF_WIDTH: f64 = 8.0;
+
+/// Rates that solve `Φ_q x = b` in the mean, and the data that measure them.
+struct RateEquations<'a, R, const N: usize, const M: usize> {
+    /// x: N.
+    rates: &'a [R; N],
+    /// b: M.
+    right: &'a [R; M],
+    /// Order of the derivative of the position.
+    level: DerivativeOrder,
+    /// Size in the reference metric of the terms of `right`, which may have cancelled.
+    known: R,
+    /// Margin to singularity of Φ_q.
+    margin: R,
+    /// Largest width that the text states, in the reference metric.
+    width: R,
+}
+
+/// Contradiction in the rates `qd` and `qdd` (N each) of a mechanism with more rows than coordinates, if there is
+/// one, at `margin` to singularity.
+#[inline(never)]
+pub(crate) fn disagreement<S: Mechanism<R, N, M>, R: Real, const N: usize, const M: usize>(
+    mechanism: &S,
+    parameters: &S::Parameters,
+    position: &S::Position,
+    (qd, qdd): (&[R; N], &[R; N]),
+    margin: R,
+    t: R,
+) -> Option<Failure> {
+    let zero = R::constant(0.0);
+    let speed = largest_difference(qd, &[zero; N], &mechanism.coordinate_scales(parameters));
+    let width = largest_width(&mechanism.widths(parameters), &mechanism.row_scales(parameters));
+    let (phi_t, gamma) = (mechanism.phi_t(parameters, position), mechanism.gamma(parameters, position, qd));
+    let right = &phi_t.map(|rate| -rate);
+    let velocities =
+        RateEquations { rates: qd, right, level: DerivativeOrder::Velocity, known: zero, margin, width };
+    let known = speed * speed;
+    let accelerations = RateEquations {
+        rates: qdd,
+        right: &gamma,
+        level: DerivativeOrder::Acceleration,
+        known,
+        margin,
+        width,
+    };
+    rate_failure(mechanism, parameters, position, &velocities, t)
+        .or_else(|| rate_failure(mechanism, parameters, position, &accelerations, t))
+}
+
+/// [`FailureKind::Inconsistent`] where the rows contradict each other in a time derivative, though not in position:
+/// dimensions that fit at one instant alone.
+///
+/// Rates are promised with half their digits at margin 1 (see [`least_margin`]) and with fewer as it falls; that is
+/// the residual allowed to the surplus rows.
+fn rate_failure<S: Mechanism<R, N, M>, R: Real, const N: usize, const M: usize>(
+    mechanism: &S,
+    parameters: &S::Parameters,
+    position: &S::Position,
+    rates: &RateEquations<'_, R, N, M>,
+    t: R,
+) -> Option<Failure> {
+    let (row_scales, scales) = (mechanism.row_scales(parameters), mechanism.coordinate_scales(parameters));
+    let mut open = product(&mechanism.phi_q(parameters, position), rates.rates);
+    open.iter_mut().zip(rates.right).zip(&row_scales).for_each(|((open, right), scale)| {
+        *open = ((*open - *right) / *scale).abs();
+    });
+    let mut size = rates.known;
+    rates.rates.iter().zip(&scales).for_each(|(rate, scale)| size = size.max((*rate / *scale).abs()));
+    rates.right.iter().zip(&row_scales).for_each(|(right, scale)| size = size.max((*right / *scale).abs()));
+    let allowed = (least_margin::<R>() + R::constant(RATES_OF_WIDTH) * rates.width) / rates.margin * size;
+    let (mut worst, mut unit) = (R::constant(0.0), R::constant(1.0));
+    for (open, scale) in open.iter().zip(&row_scales) {
+        if worst < *open {
+            (worst, unit) = (*open, *scale);
+        }
+    }
+    (allowed < worst).then(|| {
+        FailureKind::Inconsistent {
+            rows: ConflictingRows::of(S::ROWS, open.iter().map(|open| open.to_f64())),
+            level: rates.level,
+            residual: (worst * unit).to_f64(),
+            required: (allowed * unit).to_f64(),
+        }
+        .at(t.to_f64())
+    })
+}

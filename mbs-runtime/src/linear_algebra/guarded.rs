@@ -1,0 +1,88 @@
+//! Four and more unknowns in an order that emitted code knows, with pivoting where that order would lose digits.
+
+use crate::linear_algebra::factorization::Factorization;
+use crate::linear_algebra::lu::Lu;
+use crate::scalar::number::Scalar;
+
+/// Largest multiplier (in the reference metric) of an elimination in a fixed order. Two digits at most are lost to each
+/// pivot then; partial pivoting holds them below 1.
+pub const LARGEST_MULTIPLIER: f64 = 16.0;
+
+/// The factors of a block by straight-line code: entries that are zero or a number are neither stored nor computed.
+///
+/// Emitted for blocks of four and more unknowns. Pivots are single entries or 2 × 2, the last one up to 3 × 3; which ones
+/// is decided when the mechanism is compiled.
+pub trait Elimination<T: Scalar, const K: usize>: Copy {
+    /// Eliminates `a` (K rows of K) and measures it in the reference metric, as [`Factorization::factorize`] does.
+    ///
+    /// Returns the factors, the margin, and the lanes in which every multiplier is below [`LARGEST_MULTIPLIER`]. Elsewhere the
+    /// factors, which may not be finite, are of no use.
+    fn eliminate(a: &[[T; K]; K], row_scales: &[T; K], coordinate_scales: &[T; K]) -> (Self, T, T::Mask);
+    /// Solves `a x = b`.
+    fn solve(&self, b: &[T; K]) -> [T; K];
+    /// Solves `aᵀ x = b`.
+    fn solve_transposed(&self, b: &[T; K]) -> [T; K];
+    /// `true` if the determinant of `a` is negative.
+    fn reverses(&self) -> T::Mask;
+}
+
+/// Factors by the order `E`, or with pivoting in all lanes where a lane asks for it.
+#[derive(Clone, Copy, Debug)]
+#[allow(clippy::large_enum_variant, reason = "both live on the stack: nothing here allocates")]
+pub enum Guarded<E, T: Scalar, const K: usize> {
+    /// In the order of the emitted code.
+    Ordered(E),
+    /// With pivoting.
+    Pivoted(Lu<T, K>),
+}
+
+/// The way that is rarely taken, out of the way of the other.
+#[cold]
+#[inline(never)]
+fn pivoted<T: Scalar, const K: usize>(
+    a: &[[T; K]; K],
+    row_scales: &[T; K],
+    coordinate_scales: &[T; K],
+) -> (Lu<T, K>, T) {
+    Lu::factorize(a, row_scales, coordinate_scales)
+}
+
+impl<E: Elimination<T, K>, T: Scalar, const K: usize> Factorization<T, K> for Guarded<E, T, K> {
+    /// The margin is the smallest size of a pivot over the largest entry, in the reference metric. Sizes are those by the
+    /// best rows, so that the margin does not depend on the order by more than a small factor. For two rows it is their
+    /// determinant over the largest entry of its columns, times the largest multiplier. For the rest at the end it is its largest
+    /// entry times its own margin.
+    #[inline(always)]
+    fn factorize(a: &[[T; K]; K], row_scales: &[T; K], coordinate_scales: &[T; K]) -> (Self, T) {
+        let (factors, margin, bounded) = E::eliminate(a, row_scales, coordinate_scales);
+        if T::all(bounded) {
+            return (Guarded::Ordered(factors), margin);
+        }
+        let (factors, margin) = pivoted(a, row_scales, coordinate_scales);
+        (Guarded::Pivoted(factors), margin)
+    }
+
+    #[inline(always)]
+    fn solve(&self, b: &[T; K]) -> [T; K] {
+        match self {
+            Guarded::Ordered(factors) => factors.solve(b),
+            Guarded::Pivoted(factors) => factors.solve(b),
+        }
+    }
+
+    #[inline(always)]
+    fn solve_transposed(&self, b: &[T; K]) -> [T; K] {
+        match self {
+            Guarded::Ordered(factors) => factors.solve_transposed(b),
+            Guarded::Pivoted(factors) => factors.solve_transposed(b),
+        }
+    }
+
+    #[inline(always)]
+    fn reverses(&self) -> T::Mask {
+        match self {
+            Guarded::Ordered(factors) => factors.reverses(),
+            Guarded::Pivoted(factors) => factors.reverses(),
+        }
+    }
+}

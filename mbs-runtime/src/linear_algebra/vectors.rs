@@ -1,0 +1,62 @@
+//! Norms, differences and products of vectors in the reference metric.
+
+use crate::scalar::number::{Real, Scalar};
+
+/// Largest difference of two positions in the reference metric (rad, or reference lengths).
+#[inline(always)]
+pub(crate) fn largest_difference<R: Real, const N: usize>(new: &[R; N], old: &[R; N], scales: &[R; N]) -> R {
+    let mut parts = *new;
+    for ((part, old), scale) in parts.iter_mut().zip(old).zip(scales) {
+        // The reciprocal of a constant is one.
+        *part = (*part - *old) * (R::constant(1.0) / *scale);
+    }
+    largest(&parts)
+}
+
+/// Component by component `yes` where the mask is true, `no` elsewhere.
+#[inline(always)]
+pub(crate) fn select<T: Scalar, const K: usize>(mask: T::Mask, yes: &[T; K], no: &[T; K]) -> [T; K] {
+    let mut chosen = *no;
+    for (component, yes) in chosen.iter_mut().zip(yes) {
+        *component = T::select(mask, *yes, *component);
+    }
+    chosen
+}
+
+/// Largest coordinate in the reference metric: maxⱼ |qⱼ|/sⱼ.
+#[inline]
+pub fn extent<T: Scalar, const N: usize>(q: &[T; N], coordinate_scales: &[T; N]) -> T {
+    let mut parts = *q;
+    for (part, scale) in parts.iter_mut().zip(coordinate_scales) {
+        // The reciprocal of a constant is one.
+        *part = *part * (T::constant(1.0) / *scale);
+    }
+    largest(&parts)
+}
+
+/// Largest absolute value, in four parts that need not wait for each other.
+#[inline(always)]
+pub(crate) fn largest<T: Scalar, const N: usize>(values: &[T; N]) -> T {
+    let mut parts = [T::constant(0.0); 4];
+    for values in values.chunks(4) {
+        for (part, value) in parts.iter_mut().zip(values) {
+            *part = part.max(value.abs());
+        }
+    }
+    let [a, b, c, d] = parts;
+    a.max(b).max(c.max(d))
+}
+
+/// Reciprocals of scales.
+#[inline(always)]
+pub(crate) fn weights<T: Scalar, const N: usize>(scales: &[T; N]) -> [T; N] {
+    let mut weights = *scales;
+    for weight in &mut weights {
+        *weight = T::constant(1.0) / *weight;
+    }
+    weights
+}
+
+pub(crate) fn dot<R: Real, const N: usize>(a: &[R; N], b: &[R; N]) -> R {
+    a.iter().zip(b).fold(R::constant(0.0), |sum, (a, b)| sum + *a * *b)
+}

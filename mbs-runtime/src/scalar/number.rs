@@ -1,0 +1,361 @@
+//! The numbers that emitted code computes with: `f32`, `f64`, [lanes](crate::Lanes), your own.
+
+use core::fmt::Debug;
+use core::ops::Add;
+use core::ops::BitAnd;
+use core::ops::BitOr;
+use core::ops::Div;
+use core::ops::Mul;
+use core::ops::Neg;
+use core::ops::Not;
+use core::ops::Sub;
+
+use crate::scalar::trigonometry;
+
+/// A number as emitted code sees it; open to implementations outside this crate.
+///
+/// Deliberately not `PartialOrd`: comparing gives a mask and branching is [`select`](Scalar::select), so
+/// that one text serves a single number and many lanes alike. Decisions are taken lane by lane on
+/// [`Real`](Scalar::Real).
+pub trait Scalar:
+    Copy
+    + Debug
+    + 'static
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+{
+    /// The number in one lane.
+    type Real: Real;
+    /// One truth value a lane.
+    type Mask: Copy
+        + Debug
+        + BitAnd<Output = Self::Mask>
+        + BitOr<Output = Self::Mask>
+        + Not<Output = Self::Mask>;
+    /// One `X` a lane.
+    type Lanes<X: Copy>: AsRef<[X]> + Copy;
+    /// Number of lanes.
+    const LANES: usize = 1;
+
+    /// The same number in every lane, rounded from `f64`.
+    fn constant(value: f64) -> Self;
+    /// The same number in every lane.
+    fn splat(value: Self::Real) -> Self;
+    /// One number a lane.
+    fn from_lanes(value: impl FnMut(usize) -> Self::Real) -> Self;
+    /// The number in lane `lane`; of the last lane where there are fewer.
+    fn lane(self, lane: usize) -> Self::Real;
+    /// One `X` a lane, made in the order of the lanes.
+    fn per_lane<X: Copy>(value: impl FnMut(usize) -> X) -> Self::Lanes<X>;
+
+    /// Fence after a number in a loop over many: nothing here, while lanes keep the compiler from taking the numbers apart.
+    #[inline(always)]
+    fn side_by_side() {}
+
+    /// The same truth in every lane.
+    fn mask(value: bool) -> Self::Mask;
+    /// `self < than`, false where either is NaN.
+    fn less(self, than: Self) -> Self::Mask;
+    /// Neither NaN nor infinite.
+    fn is_finite(self) -> Self::Mask;
+    /// True in every lane.
+    fn all(mask: Self::Mask) -> bool;
+    /// True in lane `lane`; of the last lane where there are fewer.
+    fn test(mask: Self::Mask, lane: usize) -> bool;
+    /// `yes` where the mask is true, `no` elsewhere; the other side may be anything, NaN included.
+    fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
+
+    /// Sines and cosines of angles (rad) that are known together.
+    fn sin_cos<const K: usize>(angles: [Self; K]) -> ([Self; K], [Self; K]);
+    /// As [`sin_cos`](Scalar::sin_cos), to the same bits, compiled once for all callers: for long code.
+    #[inline(never)]
+    fn sin_cos_called<const K: usize>(angles: [Self; K]) -> ([Self; K], [Self; K]) {
+        Self::sin_cos(angles)
+    }
+    /// Square root, correctly rounded.
+    fn sqrt(self) -> Self;
+    /// e to the power of `self`.
+    fn exp(self) -> Self;
+    /// Natural logarithm.
+    fn ln(self) -> Self;
+    /// Tangent of an angle (rad).
+    fn tan(self) -> Self;
+    /// Arc sine (rad).
+    fn asin(self) -> Self;
+    /// Arc cosine (rad).
+    fn acos(self) -> Self;
+    /// Arc tangent (rad).
+    fn atan(self) -> Self;
+    /// Angle (rad) of the point `(x, self)` in (−π, π].
+    fn atan2(self, x: Self) -> Self;
+    /// Hyperbolic sine.
+    fn sinh(self) -> Self;
+    /// Hyperbolic cosine.
+    fn cosh(self) -> Self;
+    /// Hyperbolic tangent.
+    fn tanh(self) -> Self;
+    /// Inverse hyperbolic sine.
+    fn asinh(self) -> Self;
+    /// Inverse hyperbolic cosine, not negative; NaN below 1.
+    fn acosh(self) -> Self;
+    /// Inverse hyperbolic tangent; NaN outside of [−1, 1].
+    fn atanh(self) -> Self;
+    /// `self` to the power of `exponent`.
+    fn powf(self, exponent: Self) -> Self;
+    /// `√(self² + other²)` without undue overflow.
+    fn hypot(self, other: Self) -> Self;
+
+    /// Absolute value.
+    #[inline(always)]
+    fn abs(self) -> Self {
+        Self::select(self.less(Self::constant(0.0)), -self, self)
+    }
+    /// −1, 0 or 1; NaN stays.
+    #[inline(always)]
+    fn sign(self) -> Self {
+        let zero = Self::constant(0.0);
+        Self::select(
+            self.less(zero),
+            Self::constant(-1.0),
+            Self::select(zero.less(self), Self::constant(1.0), self),
+        )
+    }
+    /// The smaller one; `other` at a tie.
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        Self::select(self.less(other), self, other)
+    }
+    /// The larger one; `self` at a tie.
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        Self::select(self.less(other), other, self)
+    }
+}
+
+/// A single number, on which decisions are taken: `f32` or `f64`.
+pub trait Real: Scalar<Real = Self, Mask = bool> + PartialOrd {
+    /// A truth value as wide as the number, so that those of several lanes share a vector register: no bit set, or all.
+    type Word: Copy
+        + Debug
+        + Eq
+        + BitAnd<Output = Self::Word>
+        + BitOr<Output = Self::Word>
+        + Not<Output = Self::Word>;
+
+    /// Distance from 1 to the next number.
+    const EPSILON: Self;
+    /// No bit set.
+    const FALSE: Self::Word;
+    /// The same value, for reports.
+    fn to_f64(self) -> f64;
+    /// As [`sin_cos`](Scalar::sin_cos), of K angles in L lanes each.
+    #[inline(always)]
+    fn sin_cos_of_lanes<const L: usize, const K: usize>(
+        angles: [[Self; L]; K],
+    ) -> ([[Self; L]; K], [[Self; L]; K]) {
+        let (mut sines, mut cosines) = (angles, angles);
+        for ((sines, cosines), angles) in sines.iter_mut().zip(&mut cosines).zip(angles) {
+            (*sines, *cosines) = Self::sin_cos(angles);
+        }
+        (sines, cosines)
+    }
+}
+
+macro_rules! real {
+    ($real:ident, $word:ident, $sincos:path, $lanes:path, $sqrt:ident, $exp:ident, $ln:ident, $tan:ident, $asin:ident, $acos:ident, $atan:ident,
+     $atan2:ident, $sinh:ident, $cosh:ident, $tanh:ident, $asinh:ident, $acosh:ident, $atanh:ident, $pow:ident, $hypot:ident) => {
+        impl Scalar for $real {
+            type Real = $real;
+            type Mask = bool;
+            type Lanes<X: Copy> = [X; 1];
+
+            #[inline(always)]
+            fn constant(value: f64) -> Self {
+                value as $real
+            }
+            #[inline(always)]
+            fn splat(value: $real) -> Self {
+                value
+            }
+            #[inline(always)]
+            fn from_lanes(mut value: impl FnMut(usize) -> $real) -> Self {
+                value(0)
+            }
+            #[inline(always)]
+            fn lane(self, _: usize) -> $real {
+                self
+            }
+            #[inline(always)]
+            fn per_lane<X: Copy>(mut value: impl FnMut(usize) -> X) -> [X; 1] {
+                [value(0)]
+            }
+            #[inline(always)]
+            fn mask(value: bool) -> bool {
+                value
+            }
+            #[inline(always)]
+            fn less(self, than: Self) -> bool {
+                self < than
+            }
+            #[inline(always)]
+            fn is_finite(self) -> bool {
+                <$real>::is_finite(self)
+            }
+            #[inline(always)]
+            fn all(mask: bool) -> bool {
+                mask
+            }
+            #[inline(always)]
+            fn test(mask: bool, _: usize) -> bool {
+                mask
+            }
+            #[inline(always)]
+            fn select(mask: bool, yes: Self, no: Self) -> Self {
+                if mask { yes } else { no }
+            }
+            #[inline(always)]
+            fn sin_cos<const K: usize>(angles: [Self; K]) -> ([Self; K], [Self; K]) {
+                $sincos(angles)
+            }
+            #[inline(always)]
+            fn abs(self) -> Self {
+                <$real>::abs(self)
+            }
+            #[inline(always)]
+            fn sqrt(self) -> Self {
+                libm::$sqrt(self)
+            }
+            #[inline(always)]
+            fn exp(self) -> Self {
+                libm::$exp(self)
+            }
+            #[inline(always)]
+            fn ln(self) -> Self {
+                libm::$ln(self)
+            }
+            #[inline(always)]
+            fn tan(self) -> Self {
+                libm::$tan(self)
+            }
+            #[inline(always)]
+            fn asin(self) -> Self {
+                libm::$asin(self)
+            }
+            #[inline(always)]
+            fn acos(self) -> Self {
+                libm::$acos(self)
+            }
+            #[inline(always)]
+            fn atan(self) -> Self {
+                libm::$atan(self)
+            }
+            #[inline(always)]
+            fn atan2(self, x: Self) -> Self {
+                libm::$atan2(self, x)
+            }
+            #[inline(always)]
+            fn sinh(self) -> Self {
+                libm::$sinh(self)
+            }
+            #[inline(always)]
+            fn cosh(self) -> Self {
+                libm::$cosh(self)
+            }
+            #[inline(always)]
+            fn tanh(self) -> Self {
+                libm::$tanh(self)
+            }
+            #[inline(always)]
+            fn asinh(self) -> Self {
+                libm::$asinh(self)
+            }
+            #[inline(always)]
+            fn acosh(self) -> Self {
+                libm::$acosh(self)
+            }
+            #[inline(always)]
+            fn atanh(self) -> Self {
+                libm::$atanh(self)
+            }
+            #[inline(always)]
+            fn powf(self, exponent: Self) -> Self {
+                libm::$pow(self, exponent)
+            }
+            #[inline(always)]
+            fn hypot(self, other: Self) -> Self {
+                libm::$hypot(self, other)
+            }
+        }
+
+        impl Real for $real {
+            type Word = $word;
+
+            const EPSILON: Self = $real::EPSILON;
+            const FALSE: $word = 0;
+            #[inline(always)]
+            fn to_f64(self) -> f64 {
+                self as f64
+            }
+            #[inline(always)]
+            fn sin_cos_of_lanes<const L: usize, const K: usize>(
+                angles: [[Self; L]; K],
+            ) -> ([[Self; L]; K], [[Self; L]; K]) {
+                $lanes(angles)
+            }
+        }
+    };
+}
+
+real!(
+    f64,
+    u64,
+    trigonometry::sin_cos,
+    trigonometry::sin_cos_of_lanes,
+    sqrt,
+    exp,
+    log,
+    tan,
+    asin,
+    acos,
+    atan,
+    atan2,
+    sinh,
+    cosh,
+    tanh,
+    asinh,
+    acosh,
+    atanh,
+    pow,
+    hypot
+);
+real!(
+    f32,
+    u32,
+    trigonometry::sin_cos_single,
+    trigonometry::sin_cos_of_lanes_single,
+    sqrtf,
+    expf,
+    logf,
+    tanf,
+    asinf,
+    acosf,
+    atanf,
+    atan2f,
+    sinhf,
+    coshf,
+    tanhf,
+    asinhf,
+    acoshf,
+    atanhf,
+    powf,
+    hypotf
+);
+
+/// An index that a number carries, of lane `lane`; the cast saturates.
+#[inline(always)]
+pub(crate) fn index<T: Scalar>(number: T, lane: usize) -> u16 {
+    number.lane(lane).to_f64() as u16
+}

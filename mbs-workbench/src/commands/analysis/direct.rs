@@ -1,0 +1,186 @@
+//! Motions from forces.
+
+use std::time::Duration;
+
+use crate::erased::dynamics::AnyDynamics;
+use crate::erased::dynamics::direct::{Approach, Simulated, Stabilization, equal};
+use mbs_runtime::dynamics::{Counts, MethodWarning, MovedStart};
+use mbs_runtime::{Failure, FailureKind};
+
+use super::super::table::significant;
+use super::loads::{energies, loads};
+use super::{Analysed, AnalysisResult};
+
+pub(super) fn direct(
+    dynamics: &dyn AnyDynamics,
+    approach: &Approach,
+    times: &[f64],
+    on_progress: &mut dyn FnMut(usize),
+) -> Analysed {
+    let found = dynamics.simulate(approach, times, on_progress).map_err(|failure| failure.to_string())?;
+    if let Some(failure) = found.failure {
+        return Err(ended(failure, approach.stabilization));
+    }
+    let mut figures = balance(&found);
+    let span = times.get(1).zip(times.first()).map(|(next, first)| next - first);
+    if let Some((span, longest)) = span.zip(approach.longest()) {
+        let length = span / f64::from(equal(span, longest));
+        figures.push(["size of the equal steps".to_string(), format!("{} s", significant(length, 4))]);
+    }
+    figures.extend(energies(&found.motion));
+    figures.extend(loads(&found.motion));
+    Ok(AnalysisResult::of(found.motion, figures))
+}
+
+/// Reason why a motion from forces ended; at a singular position that its stabilisation cannot pass, also the cure.
+fn ended(failure: Failure, stabilization: Stabilization) -> String {
+    let how = match stabilization {
+        Stabilization::None => "no stabilisation",
+        Stabilization::Baumgarte(_) => "Baumgarte's stabilisation",
+        Stabilization::Penalty(_) => "a penalty",
+        Stabilization::Projection
+        | Stabilization::Velocity
+        | Stabilization::Implicit(_)
+        | Stabilization::Radau => {
+            return failure.to_string();
+        }
+    };
+    let Failure { kind: FailureKind::Undecided { .. }, time: Some(time) } = failure else {
+        return failure.to_string();
+    };
+    let before = (100.0 * time).floor() / 100.0;
+    format!(
+        "{failure}\n{how} leaves the rows violated by what the steps make of it: where bars come in line that decides which way they go. \
+         `--method projection` or `--method velocity` lead through, `--until {before}` ends before it"
+    )
+}
+
+/// Energy, constraints and cost of a motion from forces.
+fn balance(found: &Simulated) -> Vec<[String; 2]> {
+    let Some(forces) = &found.motion.dynamics else { return Vec::new() };
+    let pair = |name: &str, value: String| [name.to_string(), value];
+    let kinetic = largest(&forces.kinetic);
+    let margin = found.motion.margin.iter().copied().fold(f64::INFINITY, f64::min);
+    let mut figures = vec![
+        pair(
+            "largest energy defect",
+            format!("{:.1e} J, largest kinetic energy {kinetic:.4} J", largest(&forces.defect)),
+        ),
+        pair("largest |Φ|", format!("{:.1e} of the reference length", largest(&found.motion.closure))),
+        pair("largest |Φ̇|", format!("{:.1e} 1/s of the reference length", largest(&forces.closure_rate))),
+        pair("steps", format!("{}, {} rejected", found.counts.steps, found.rejected)),
+        pair("evaluations", evaluations(&found.counts)),
+        pair("smallest margin to singularity", format!("{margin:.3}")),
+        pair("time of computation", milliseconds(found.elapsed)),
+    ];
+    if found.replaced {
+        let reason =
+            "projection onto all rows together: of rows that may follow from others no blocks are made";
+        figures.push(pair("method", reason.to_string()));
+    }
+    if found.counts.rechosen > 0 {
+        let (rechosen, all) = (found.counts.rechosen, found.counts.evaluations);
+        let reason = "the independent coordinates hardly determine the others there";
+        figures.push(pair(
+            "independent motions chosen anew",
+            format!("{rechosen} of {all} evaluations: {reason}"),
+        ));
+    }
+    if found.counts.handed_over > 0 {
+        let (handed, all) = (found.counts.handed_over, found.counts.evaluations);
+        let reason = "the rows lose rank there";
+        figures.push(pair("handed over to projection", format!("{handed} of {all} evaluations: {reason}")));
+    }
+    if found.counts.rank_revealing > 0 {
+        figures.push(pair("rank-revealing factorizations", found.counts.rank_revealing.to_string()));
+    }
+    if let Some(start) = &found.moved_start {
+        figures.push(pair("start moved", moved(start)));
+    }
+    if let Some(t) = found.undetermined {
+        figures.push(pair("not determined", undetermined(t)));
+    }
+    if let Some(doubt) = found.doubt {
+        figures.push(pair("doubtful", doubtful(doubt).to_string()));
+    }
+    figures
+}
+
+/// Change of a declared coordinate or rate by which the start meets the rows.
+fn moved(start: &MovedStart<f64>) -> String {
+    let MovedStart { coordinate, rate, declared, actual } = start;
+    let (what, per) = if *rate { ("the rate of ", "/s") } else { ("", "") };
+    format!(
+        "{what}`{}` (line {}) from {} to {} {}{per}: the other numbers of the start do not meet the rows with it",
+        coordinate.name,
+        coordinate.line,
+        significant(*declared, 9),
+        significant(*actual, 9),
+        coordinate.unit
+    )
+}
+
+/// Evaluations by the steps, and by the instants between them.
+fn evaluations(counts: &Counts) -> String {
+    match counts.shown {
+        0 => counts.evaluations.to_string(),
+        shown => format!("{} of the steps, {shown} of the instants between them", counts.evaluations),
+    }
+}
+
+/// Largest magnitude.
+pub fn largest(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()))
+}
+
+/// Phrase for the motion after `t` (s), which a method that does not pass singular positions leaves undetermined.
+pub fn undetermined(t: f64) -> String {
+    format!(
+        "the motion behind t = {t} s: it passes a singular position there, where this method may leave on another branch; use \
+         `--method projection`"
+    )
+}
+
+/// Warning about a stabilisation, in one phrase.
+pub fn doubtful(doubt: MethodWarning) -> &'static str {
+    match doubt {
+        MethodWarning::StiffStabilization => {
+            "frequency times step above 0.3: the stabilisation costs accuracy"
+        }
+        MethodWarning::IdleStabilization => {
+            "frequency times duration below 5: violations have no time to decay"
+        }
+        MethodWarning::RisingRank => {
+            "rows that follow from others on the constraints do not beside them, where stages are: accelerations there are wrong \
+             by their own size; use `--method projection`"
+        }
+    }
+}
+
+fn milliseconds(elapsed: Duration) -> String {
+    format!("{:.1} ms", elapsed.as_secs_f64() * 1e3)
+}
+
+#[cfg(test)]
+mod tests {
+    use mbs_runtime::dynamics::Baumgarte;
+
+    use super::*;
+
+    #[test]
+    fn where_a_stabilisation_does_not_lead_through_the_end_names_what_does() {
+        let failure = FailureKind::Undecided { margin: 1e-3, single: false }.at(7.061);
+        let of = |stabilization| ended(failure, stabilization);
+        for lost in [Stabilization::None, Stabilization::Baumgarte(Baumgarte::default())] {
+            let message = of(lost);
+            assert!(message.starts_with(&failure.to_string()), "{message}");
+            assert!(
+                message.contains("`--method projection`") && message.contains("--until 7.06`"),
+                "{message}"
+            );
+        }
+        assert_eq!(of(Stabilization::Projection), failure.to_string());
+        let other = FailureKind::InvalidStep { step: 0.0 }.at(1.0);
+        assert_eq!(ended(other, Stabilization::None), other.to_string());
+    }
+}

@@ -1,0 +1,171 @@
+//! Summary of the forces in a motion: loads or multipliers, powers and works, redundant rows.
+
+use crate::erased::facade::Motion;
+use crate::motion::power_balance::{PowerCurve, PowerSource};
+use crate::motion::{DependentRow, Forces, LoadCurve};
+
+use crate::commands::table::significant;
+
+/// Largest number of curves of one name and unit that have a line each; more of them share one line.
+const MOST_LINES: usize = 24;
+
+/// Ranges of the text's loads, or of the multipliers if it has none. Many rows of one constraint share one range.
+pub(super) fn loads(motion: &Motion) -> Vec<[String; 2]> {
+    let Some(forces) = &motion.dynamics else { return Vec::new() };
+    let (prefix, curves) =
+        if forces.loads.is_empty() { ("lambda ", &forces.multipliers) } else { ("", &forces.loads) };
+    let mut lines = Vec::new();
+    let mut rest = curves.as_slice();
+    while let Some(first) = rest.first() {
+        let alike = |curve: &LoadCurve| family(curve.name) == family(first.name) && curve.unit == first.unit;
+        let count = rest.iter().take_while(|curve| alike(curve)).count();
+        let (family_of, others) = rest.split_at(count);
+        rest = others;
+        if count > MOST_LINES {
+            lines.push(together(prefix, family_of));
+        } else {
+            lines.extend(family_of.iter().map(|curve| line(prefix, curve)));
+        }
+    }
+    lines.extend(surplus(forces));
+    lines
+}
+
+/// The name without its indices.
+fn family(name: &str) -> &str {
+    name.split('.').next().unwrap_or(name)
+}
+
+fn line(prefix: &str, curve: &LoadCurve) -> [String; 2] {
+    let shared = match curve.shared {
+        0 => String::new(),
+        all if all == curve.value.len() => ", not unique: the shortest of many".to_string(),
+        some => format!(", not unique at {some} of {} instants", curve.value.len()),
+    };
+    [format!("{prefix}{}", curve.name), format!("{} {}{shared}", range(&curve.value, 4), curve.unit)]
+}
+
+/// One line of all curves of a name.
+fn together(prefix: &str, curves: &[LoadCurve]) -> [String; 2] {
+    let values: Vec<f64> = curves.iter().flat_map(|curve| curve.value.iter().copied()).collect();
+    let shared = match curves.iter().filter(|curve| curve.shared > 0).count() {
+        0 => String::new(),
+        count => format!(", {count} of them not unique at some instants"),
+    };
+    let (name, unit) = curves.first().map_or(("", ""), |curve| (family(curve.name), curve.unit.as_str()));
+    [format!("{prefix}{name}, all {}", curves.len()), format!("{} {unit}{shared}", range(&values, 4))]
+}
+
+/// Least and largest value, of a single one the value.
+fn range(values: &[f64], decimals: usize) -> String {
+    let least = values.iter().copied().fold(f64::INFINITY, f64::min);
+    let most = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    if values.len() == 1 { format!("{least:.6}") } else { format!("{least:.decimals$} to {most:.decimals$}") }
+}
+
+/// The work of each force and drive with the range of its power, and the energy balance.
+pub(super) fn energies(motion: &Motion) -> Vec<[String; 2]> {
+    let Some(forces) = &motion.dynamics else { return Vec::new() };
+    let active: Vec<&PowerCurve> = forces.supplies.iter().filter(|supply| !supply.is_idle()).collect();
+    let error = open(forces);
+    let line = |supply: &&PowerCurve| {
+        let (least, most) = supply
+            .power
+            .iter()
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), power| (a.min(*power), b.max(*power)));
+        let powers = format!("power {} to {} W", significant(least, 5), significant(most, 5));
+        [format!("work of {}", supply.title()), format!("{} J, {powers}", settled(supply.total(), error))]
+    };
+    let mut lines: Vec<[String; 2]> = active.iter().take(MOST_LINES).map(line).collect();
+    if let Some(left) = active.len().checked_sub(MOST_LINES).filter(|left| *left > 0) {
+        let rest: f64 = active.iter().skip(MOST_LINES).map(|supply| supply.total()).sum();
+        lines.push([format!("work of {left} more"), format!("{} J", settled(rest, error))]);
+    }
+    if !active.is_empty() {
+        lines.push(balance(forces, &active));
+    }
+    lines
+}
+
+/// Error of the works at the last instant (J). It is the larger of two differences: their sum less the work integrated for all
+/// together, and the energy defect.
+fn open(forces: &Forces) -> f64 {
+    let last = |values: &[f64]| values.last().copied().unwrap_or(0.0);
+    let sum: f64 = forces.supplies.iter().map(PowerCurve::total).sum();
+    (sum - last(&forces.work)).abs().max(last(&forces.defect).abs())
+}
+
+/// A work (J) with the digits that are reliable at an error of `error` (J), at most seven and at least one.
+fn settled(work: f64, error: f64) -> String {
+    const MOST: f64 = 7.0;
+    let digits = (work / error).abs().log10().floor();
+    // Neither if the error is zero nor if there is no work.
+    let digits = if digits.is_finite() { digits.clamp(1.0, MOST) } else { MOST };
+    significant(work, digits as usize)
+}
+
+/// Energy balance: the change of the energy and the works that add up to it, as name and value.
+fn balance(forces: &Forces, active: &[&PowerCurve]) -> [String; 2] {
+    let at = |values: &[f64], last: bool| {
+        let value = if last { values.last() } else { values.first() };
+        value.copied().unwrap_or(0.0)
+    };
+    let energy = |last: bool| at(&forces.kinetic, last) + at(&forces.potential, last);
+    let change = energy(true) - energy(false);
+    let mut sum = 0.0;
+    let mut parts = Vec::new();
+    let error = open(forces);
+    for (by, name) in [
+        (PowerSource::Drive, "drives"),
+        (PowerSource::Constraint, "constraints"),
+        (PowerSource::Force, "forces"),
+        (PowerSource::Time, "the time"),
+    ] {
+        let of = || active.iter().filter(|supply| supply.by == by);
+        if of().next().is_some() {
+            let work: f64 = of().map(|supply| supply.total()).sum();
+            sum += work;
+            parts.push(format!("{name} {} J", settled(work, error)));
+        }
+    }
+    let value = format!(
+        "{} J, work of {}; {:.1e} J between them",
+        significant(change, 7),
+        parts.join(" + "),
+        change - sum
+    );
+    ["change of kinetic and potential energy".to_string(), value]
+}
+
+/// The rows that follow from others, each once, and the number of multipliers that are not unique because of them.
+fn surplus(forces: &Forces) -> Option<[String; 2]> {
+    let instants = forces.dependent.len();
+    let row = |row: &DependentRow| {
+        let when = if row.instants == instants {
+            String::new()
+        } else {
+            format!(" at {} of {instants} instants", row.instants)
+        };
+        format!("`{}` (line {}){when}", row.name, row.line)
+    };
+    let rows: Vec<String> = forces.dependent_rows.iter().map(row).collect();
+    let shared = forces.multipliers.iter().filter(|curve| curve.shared > 0).count();
+    let all = forces.multipliers.len();
+    let rest = format!("the multipliers of {shared} of {all} rows are not unique, but the shortest of many");
+    (!rows.is_empty())
+        .then(|| ["rows that follow from others".to_string(), format!("{}; {rest}", rows.join(", "))])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::settled;
+
+    #[test]
+    fn works_are_printed_with_the_digits_that_their_error_leaves() {
+        assert_eq!(settled(-0.003_125_412, 2e-7), "-0.003125");
+        assert_eq!(settled(-0.003_125_412, 0.0), "-0.003125412");
+        assert_eq!(settled(1_234.567_89, 1e-12), "1234.568");
+        assert_eq!(settled(3e-5, 1e-3), "3e-5");
+        assert_eq!(settled(0.0, 1e-3), "0");
+    }
+}

@@ -1,0 +1,171 @@
+//! Arguments that the teaching commands share: mechanism, parameters, time and output file.
+
+use std::fs;
+use std::path::Path;
+
+use crate::catalogue::Catalogue;
+use crate::erased::dynamics::direct::moved_to;
+use crate::erased::erase::Erased;
+use crate::erased::experiment::state_at;
+use crate::erased::facade::{AnyEquations, AnyMechanism, State};
+use crate::mismatch::{Mismatch, nearest};
+use clap::Args;
+use mbs_codegen::StructureReport;
+
+use super::subject::Target;
+use super::{CommandError, table};
+
+#[derive(Args)]
+pub struct Chosen {
+    /// Name of the mechanism, as `mbs list` prints it
+    name: String,
+    /// Set a parameter, in the unit that `mbs list` prints
+    #[arg(long = "param", value_name = "NAME=VALUE", value_parser = assignment)]
+    parameters: Vec<(String, f64)>,
+}
+
+/// A mechanism with the parameters of its first preset and of the command line.
+pub struct Choice {
+    pub subject: Target,
+    pub mechanism: Box<dyn AnyMechanism>,
+}
+
+/// A mechanism that its rows fix or that forces move, with the same parameters.
+pub struct Described {
+    pub subject: Target,
+    instance: Erased,
+}
+
+impl Chosen {
+    pub fn described(&self, catalogue: &Catalogue) -> Result<Described, CommandError> {
+        let subject = Target::find(catalogue, &self.name)?;
+        let instance = subject.sound_instance(&subject.runs()[0], &self.parameters)?;
+        Ok(Described { subject, instance })
+    }
+
+    pub fn choice(&self, catalogue: &Catalogue) -> Result<Choice, CommandError> {
+        let subject = Target::find(catalogue, &self.name)?;
+        let instance = subject.instance(&subject.runs()[0], &self.parameters)?;
+        let free = || Mismatch::Free { name: self.name.clone() };
+        let mechanism = instance.into_mechanism().ok_or_else(free)?;
+        Ok(Choice { subject, mechanism })
+    }
+}
+
+/// Sparsity, matching and order of solution.
+fn structure(mechanism: &dyn AnyEquations) -> Result<StructureReport, CommandError> {
+    mbs_codegen::structure_of(mechanism.source(), Some(mechanism.scene())).map_err(CommandError::Failed)
+}
+
+impl Described {
+    /// Names and functions.
+    pub fn equations(&self) -> &dyn AnyEquations {
+        self.instance.equations()
+    }
+
+    /// Sparsity, matching and order of solution.
+    pub fn structure(&self) -> Result<StructureReport, CommandError> {
+        structure(self.equations())
+    }
+
+    /// The state at `t` (s): followed there from the assembly at 0, or moved there by forces from the text's start.
+    pub fn state(&self, t: f64) -> Result<State, CommandError> {
+        let state = match &self.instance {
+            Erased::Fixed(mechanism) => {
+                state_at(mechanism.as_ref(), self.subject.duration(mechanism.as_ref())?, t)
+            }
+            Erased::Free(mechanism) if t >= 0.0 => match mechanism.dynamics() {
+                Some(dynamics) => moved_to(dynamics, t),
+                None => Ok(State::default()),
+            },
+            Erased::Free(_) => {
+                return Err(CommandError::Usage(
+                    "forces move a mechanism on from 0 s; `--at` is before".into(),
+                ));
+            }
+        };
+        state.map_err(|failure| CommandError::Failed(format!("{}: {failure}", self.subject.name())))
+    }
+}
+
+impl Choice {
+    /// Sparsity, matching and order of solution.
+    pub fn structure(&self) -> Result<StructureReport, CommandError> {
+        structure(self.mechanism.as_ref())
+    }
+
+    /// Index of the coordinate called `name`.
+    pub fn coordinate(&self, name: &str) -> Result<usize, CommandError> {
+        coordinate(self.mechanism.as_ref(), self.subject.name(), name)
+    }
+
+    /// `phi2 = 2.5 rad, …` for coordinates by their indices.
+    pub fn values(&self, indices: &[usize], q: &[f64]) -> String {
+        let of_block: Vec<f64> = indices.iter().map(|index| q[*index]).collect();
+        self.block_values(indices, &of_block)
+    }
+
+    /// The same where `x` holds the values of these coordinates alone.
+    pub fn block_values(&self, indices: &[usize], x: &[f64]) -> String {
+        let coordinates = self.mechanism.coordinates();
+        let value = |(index, value): (&usize, &f64)| {
+            let entry = coordinates[*index];
+            format!("{} = {}{}", entry.name, table::short(*value), table::unit(entry.unit))
+        };
+        indices.iter().zip(x).map(value).collect::<Vec<_>>().join(", ")
+    }
+}
+
+/// Index of the coordinate called `name` of the mechanism that was asked for as `card`.
+pub fn coordinate(mechanism: &dyn AnyEquations, card: &str, name: &str) -> Result<usize, CommandError> {
+    let coordinates = mechanism.coordinates();
+    coordinates.iter().position(|entry| entry.name == name).ok_or_else(|| {
+        let known: Vec<&str> = coordinates.iter().map(|entry| entry.name).collect();
+        let near = nearest(name, known.iter().copied());
+        let near = near.map_or_else(String::new, |near| format!("; did you mean `{near}`?"));
+        let list = known.join(", ");
+        CommandError::Usage(format!("`{card}` has no coordinate `{name}`{near}\nknown: {list}"))
+    })
+}
+
+/// `NAME=VALUE` with a finite number.
+pub fn assignment(text: &str) -> Result<(String, f64), String> {
+    let (name, value) = text.split_once('=').ok_or("write it as NAME=VALUE, for example omega=20")?;
+    let (name, value) = (name.trim(), value.trim());
+    if name.is_empty() {
+        return Err("a name is needed before the `=`".to_string());
+    }
+    finite(value).map(|value| (name.to_string(), value))
+}
+
+/// A finite number.
+pub fn finite(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(number) if number.is_finite() => Ok(number),
+        Ok(_) => Err(format!("`{text}` is not a finite number")),
+        Err(_) => Err(format!("`{text}` is not a number")),
+    }
+}
+
+/// Writes a file, its directory included.
+pub fn write_file(path: &Path, text: &str) -> Result<(), CommandError> {
+    let fail =
+        |error: std::io::Error| CommandError::Failed(format!("cannot write {}: {error}", path.display()));
+    if let Some(directory) = path.parent().filter(|directory| !directory.as_os_str().is_empty()) {
+        fs::create_dir_all(directory).map_err(fail)?;
+    }
+    fs::write(path, text).map_err(fail)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn assignments_are_names_with_finite_numbers() {
+        assert_eq!(assignment("omega=2e1"), Ok(("omega".to_string(), 20.0)));
+        for bad in ["omega", "=2", "omega=", "omega=nan", "omega=1e999", "omega=two"] {
+            assert!(assignment(bad).is_err(), "{bad}");
+        }
+    }
+}

@@ -1,0 +1,84 @@
+//! `mbs compare`.
+
+use crate::catalogue::Catalogue;
+use std::io::Write;
+
+use crate::card::Card;
+use crate::catalogue::KINDS;
+use crate::mismatch::Mismatch;
+use crate::teaching::comparison::{Candidate, Fault, candidate, difference};
+use clap::Args;
+
+use super::{CommandError, positive};
+
+/// The point whose motion is compared.
+const POINT: &str = "P";
+
+#[derive(Args)]
+pub struct Arguments {
+    /// Name of the mechanism, as `mbs list` prints it
+    name: String,
+    /// Kinds of coordinates: `natural` stands for the mechanism NAME_natural, `relative` for NAME itself where there
+    /// is no NAME_relative
+    #[arg(long, value_delimiter = ',', default_values = KINDS)]
+    coordinates: Vec<String>,
+    /// Equal steps that the motion is divided into
+    #[arg(long, default_value_t = 720, value_parser = positive)]
+    steps: usize,
+}
+
+/// Prints the cost of each set of coordinates and the differences between their motions.
+pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut dyn Write) -> Result<(), CommandError> {
+    let cards = arguments.coordinates.iter().map(|kind| catalogue.variant(&arguments.name, kind));
+    let cards = cards.collect::<Result<Vec<&Card>, Mismatch>>()?;
+    let mut candidates = Vec::new();
+    for card in cards {
+        candidates.push(candidate(card, arguments.steps).map_err(|fault| explain(card, fault))?);
+    }
+    let width = candidates.iter().map(|c| c.name.len()).max().unwrap_or(0);
+    writeln!(
+        out,
+        "{:width$}   n   m  entries  largest block  operations  time a step  condition   margin",
+        "coordinates"
+    )?;
+    for candidate in &candidates {
+        write_line(out, candidate, width)?;
+    }
+    writeln!(
+        out,
+        "\nentries: of Phi_q that are not structurally zero; operations: of a step with one iteration of every block;\n\
+         condition: the largest of Phi_q over the motion, in the reference metric; margin: the smallest to singularity"
+    )?;
+    let Some((first, others)) = candidates.split_first() else { return Ok(()) };
+    for other in others {
+        match difference(&first.motion, &other.motion, POINT) {
+            Some([place, velocity, acceleration]) => writeln!(
+                out,
+                "{POINT} in {} against {}: position {place:.1e}, velocity {velocity:.1e}, acceleration {acceleration:.1e} \
+                 of the largest",
+                other.name, first.name
+            )?,
+            None => writeln!(out, "{} or {} has no output {POINT} to compare", first.name, other.name)?,
+        }
+    }
+    Ok(())
+}
+
+fn explain(card: &Card, fault: Fault) -> CommandError {
+    match fault {
+        Fault::Mismatch(mismatch) => mismatch.into(),
+        Fault::Failure(failure) => CommandError::Failed(format!("{}: {failure}", card.name())),
+        Fault::Text(text) => CommandError::Failed(text),
+    }
+}
+
+fn write_line(out: &mut dyn Write, candidate: &Candidate, width: usize) -> std::io::Result<()> {
+    let Candidate { name, coordinates, rows, entries, largest_block, operations, .. } = candidate;
+    let time = format!("{:.2} µs", candidate.step_time.as_secs_f64() * 1e6);
+    writeln!(
+        out,
+        "{name:width$}  {coordinates:>2}  {rows:>2}  {entries:>7}  {largest_block:>13}  {operations:>10}  {time:>11}  \
+         {:>9.1}  {:>7.3}",
+        candidate.condition, candidate.margin
+    )
+}

@@ -1,0 +1,39 @@
+//! `mbs latex`.
+
+use crate::catalogue::Catalogue;
+use std::io::Write;
+use std::path::PathBuf;
+
+use crate::output::latex::document;
+use clap::Args;
+
+use super::CommandError;
+use super::chosen::{Chosen, write_file};
+
+#[derive(Args)]
+pub struct Arguments {
+    #[command(flatten)]
+    chosen: Chosen,
+    /// File to write [default: standard output]
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+}
+
+/// Φ, Φ_q, Φ_t and γ, of a mechanism with masses M, Q and the energies too, as a document for `pdflatex`.
+pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut dyn Write) -> Result<(), CommandError> {
+    let choice = arguments.chosen.described(catalogue)?;
+    let mechanism = choice.equations();
+    let formulas = mbs_codegen::latex_formulas(mechanism.source(), Some(mechanism.scene()))
+        .map_err(CommandError::Failed)?;
+    let dynamic = mbs_codegen::latex_dynamic_formulas(mechanism.source(), Some(mechanism.scene()))
+        .map_err(CommandError::Failed)?;
+    let text = document(mechanism, &formulas, dynamic.as_ref(), choice.subject.title());
+    match &arguments.out {
+        None => out.write_all(text.as_bytes())?,
+        Some(path) => {
+            write_file(path, &text)?;
+            writeln!(out, "document  {}", path.display())?;
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,80 @@
+//! The commands of `mbs`, one file each.
+
+mod analysis;
+pub mod basins;
+mod chosen;
+pub mod compare;
+pub mod dof;
+pub mod drift;
+pub mod expand;
+pub mod latex;
+pub mod list;
+pub mod newton;
+pub mod next;
+pub mod print;
+pub mod run;
+pub mod structure;
+mod subject;
+mod table;
+pub mod table_file;
+pub mod verify;
+
+use std::fmt;
+use std::io::{self, ErrorKind};
+
+use crate::mismatch::Mismatch;
+
+/// Failure of a command.
+#[derive(Debug)]
+pub enum CommandError {
+    /// The command line names something that does not exist or cannot be.
+    Usage(String),
+    /// The mechanism, the check or the file system reports a failure.
+    Failed(String),
+    /// The output could not be written.
+    Output(io::Error),
+}
+
+impl CommandError {
+    pub fn exit_code(&self) -> u8 {
+        match self {
+            CommandError::Usage(_) => 2,
+            CommandError::Failed(_) | CommandError::Output(_) => 1,
+        }
+    }
+
+    /// `true` if the reader of the output has closed it, as `head` does: no failure of the command.
+    pub fn is_closed_pipe(&self) -> bool {
+        matches!(self, CommandError::Output(error) if error.kind() == ErrorKind::BrokenPipe)
+    }
+}
+
+impl fmt::Display for CommandError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            CommandError::Usage(text) | CommandError::Failed(text) => f.write_str(text),
+            CommandError::Output(error) => write!(f, "cannot write the output: {error}"),
+        }
+    }
+}
+
+impl From<io::Error> for CommandError {
+    fn from(error: io::Error) -> Self {
+        CommandError::Output(error)
+    }
+}
+
+impl From<Mismatch> for CommandError {
+    fn from(mismatch: Mismatch) -> Self {
+        CommandError::Usage(mismatch.to_string())
+    }
+}
+
+/// A whole number of at least one.
+fn positive(text: &str) -> Result<usize, String> {
+    match text.parse::<usize>() {
+        Ok(0) => Err("at least 1 is needed".to_string()),
+        Ok(number) => Ok(number),
+        Err(_) => Err("a whole number is needed".to_string()),
+    }
+}

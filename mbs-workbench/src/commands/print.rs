@@ -1,0 +1,248 @@
+//! `mbs print`.
+
+use crate::catalogue::Catalogue;
+use std::io::Write;
+
+use crate::erased::facade::{AnyEquations, State};
+use crate::erased::masses::{Loads, Masses};
+use crate::motion::multiplier_unit;
+use crate::output::matrix::{Named, number};
+use clap::{Args, ValueEnum};
+
+use super::CommandError;
+use super::chosen::{Chosen, finite};
+
+#[derive(Args)]
+pub struct Arguments {
+    #[command(flatten)]
+    chosen: Chosen,
+    /// Quantities to print
+    #[arg(value_enum, default_values = ["Phi", "Phi_q", "Phi_t", "gamma"])]
+    quantities: Vec<Quantity>,
+    /// Time (s) of the position
+    #[arg(long, value_name = "T", default_value_t = 0.0, value_parser = finite, allow_negative_numbers = true)]
+    at: f64,
+    /// Formulas instead of numbers
+    #[arg(long, conflicts_with = "numbers")]
+    symbols: bool,
+    /// Numbers at the solved position: the default
+    #[arg(long)]
+    numbers: bool,
+}
+
+/// Vectors and matrices of a mechanism.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Quantity {
+    #[value(name = "q", help = "coordinates")]
+    Position,
+    #[value(name = "qd", help = "velocities")]
+    Velocity,
+    #[value(name = "qdd", help = "accelerations")]
+    Acceleration,
+    #[value(name = "Phi", aliases = ["phi", "PHI"], help = "constraints and drives")]
+    Phi,
+    #[value(name = "Phi_q", aliases = ["phi_q", "PHI_Q"], help = "Jacobian")]
+    Jacobian,
+    #[value(name = "Phi_t", aliases = ["phi_t", "PHI_T"], help = "partial time derivative")]
+    PhiT,
+    #[value(name = "Phi_tt", aliases = ["phi_tt", "PHI_TT"], help = "second partial time derivative")]
+    PhiTt,
+    #[value(name = "gamma", aliases = ["Gamma", "GAMMA"], help = "right-hand side of the accelerations")]
+    Gamma,
+    #[value(name = "M", help = "mass matrix")]
+    Mass,
+    #[value(name = "Q", help = "generalized forces, those of the velocities included")]
+    Force,
+    #[value(name = "lambda", aliases = ["Lambda", "LAMBDA"], help = "multipliers: M qdd + Phi_q^T lambda = Q")]
+    Multipliers,
+    #[value(name = "energy", help = "kinetic and potential energy")]
+    Energy,
+}
+
+impl Quantity {
+    /// `true` if the quantity depends on masses and forces.
+    fn is_dynamic(self) -> bool {
+        matches!(self, Quantity::Mass | Quantity::Force | Quantity::Multipliers | Quantity::Energy)
+    }
+}
+
+/// The matrices, names on rows and columns.
+pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut dyn Write) -> Result<(), CommandError> {
+    let choice = arguments.chosen.described(catalogue)?;
+    let mechanism = choice.equations();
+    let dynamic = arguments.quantities.iter().any(|quantity| quantity.is_dynamic());
+    if dynamic && mechanism.dynamics().is_none() {
+        let name = choice.subject.name();
+        return Err(CommandError::Usage(format!(
+            "`{name}` has neither masses nor forces: no M, Q, lambda or energy"
+        )));
+    }
+    if arguments.symbols {
+        let formulas = mbs_codegen::formulas(mechanism.source(), Some(mechanism.scene()))
+            .map_err(CommandError::Failed)?;
+        writeln!(out, "{}", choice.subject.title())?;
+        for quantity in arguments.quantities.iter().filter(|quantity| !quantity.is_dynamic()) {
+            write(out, &symbolic(&formulas, *quantity))?;
+        }
+        define(out, &formulas.definitions)?;
+        if dynamic {
+            let formulas = mbs_codegen::dynamic_formulas(mechanism.source(), Some(mechanism.scene()))
+                .map_err(CommandError::Failed)?
+                .unwrap_or_default();
+            for quantity in arguments.quantities.iter().filter(|quantity| quantity.is_dynamic()) {
+                write(out, &symbolic_dynamic(mechanism, &formulas, *quantity))?;
+            }
+            define(out, &formulas.definitions)?;
+        }
+        return Ok(());
+    }
+    let state = choice.state(arguments.at)?;
+    writeln!(out, "{} at t = {} s", choice.subject.title(), arguments.at)?;
+    let (loads, masses) = match mechanism.dynamics().filter(|_| dynamic) {
+        None => (Loads::default(), Masses::default()),
+        Some(dynamics) => {
+            if arguments.at > 0.0 && mechanism.tables().is_some_and(|tables| !tables.states.is_empty()) {
+                let reason = "the text's first-order states are known at 0 s alone: leave out `--at`";
+                return Err(CommandError::Usage(reason.to_string()));
+            }
+            let loads = dynamics.multipliers(&state).map_err(CommandError::Failed)?;
+            let masses = mechanism.masses(&state, &loads).unwrap_or_default();
+            (loads, masses)
+        }
+    };
+    for quantity in &arguments.quantities {
+        match quantity.is_dynamic() {
+            true => write(out, &numeric_dynamic(mechanism, (&loads, &masses), *quantity))?,
+            false => write(out, &numeric(mechanism, &state, *quantity))?,
+        }
+    }
+    Ok(())
+}
+
+fn define(out: &mut dyn Write, definitions: &[(String, String)]) -> Result<(), CommandError> {
+    for (name, meaning) in definitions {
+        writeln!(out, "\n{name} = {meaning}")?;
+    }
+    Ok(())
+}
+
+fn write(out: &mut dyn Write, matrix: &Named) -> Result<(), CommandError> {
+    writeln!(out)?;
+    for line in matrix.lines() {
+        writeln!(out, "{line}")?;
+    }
+    Ok(())
+}
+
+fn symbolic_dynamic(
+    mechanism: &dyn AnyEquations,
+    formulas: &mbs_codegen::DynamicFormulas,
+    quantity: Quantity,
+) -> Named {
+    let mbs_codegen::DynamicFormulas { coordinates, mass, force, kinetic, potential, .. } = formulas;
+    match quantity {
+        Quantity::Mass => Named {
+            title: "M".into(),
+            rows: coordinates.clone(),
+            columns: coordinates.clone(),
+            cells: mass.clone(),
+        },
+        Quantity::Force => Named::vector("Q", coordinates, force),
+        Quantity::Energy => {
+            let names = ["kinetic", "potential"].map(str::to_string);
+            Named::vector("energy", &names, &[kinetic.clone(), potential.clone()])
+        }
+        _ => {
+            let rows: Vec<String> = mechanism.rows().iter().map(|row| row.name.to_string()).collect();
+            let names: Vec<String> = (0..rows.len()).map(|row| format!("lambda.{row}")).collect();
+            Named::vector("lambda: M qdd + Phi_q^T lambda = Q", &rows, &names)
+        }
+    }
+    .aligned_left()
+}
+
+fn numeric_dynamic(
+    mechanism: &dyn AnyEquations,
+    (loads, masses): (&Loads, &Masses),
+    quantity: Quantity,
+) -> Named {
+    let names =
+        |entries: &[mbs_runtime::Entry]| entries.iter().map(|e| e.name.to_string()).collect::<Vec<_>>();
+    let cells = |values: &[f64]| values.iter().copied().map(number).collect::<Vec<_>>();
+    let coordinates = names(mechanism.coordinates());
+    match quantity {
+        Quantity::Mass => Named {
+            title: "M".into(),
+            rows: coordinates.clone(),
+            cells: masses.mass.chunks(coordinates.len().max(1)).map(cells).collect(),
+            columns: coordinates,
+        },
+        Quantity::Force => Named::vector("Q", &coordinates, &cells(&masses.force)),
+        Quantity::Energy => {
+            let names = ["kinetic (J)", "potential (J)"].map(str::to_string);
+            Named::vector("energy", &names, &cells(&masses.energy))
+        }
+        _ => {
+            let unit = |row: &mbs_runtime::Entry| format!("{} ({})", row.name, multiplier_unit(row.unit));
+            let rows: Vec<String> = mechanism.rows().iter().map(unit).collect();
+            Named::vector("lambda", &rows, &cells(&loads.lambda))
+        }
+    }
+}
+
+fn symbolic(formulas: &mbs_codegen::Formulas, quantity: Quantity) -> Named {
+    let mbs_codegen::Formulas { rows, coordinates, .. } = formulas;
+    let rates = |mark: &str| coordinates.iter().map(|name| format!("{name}{mark}")).collect::<Vec<_>>();
+    match quantity {
+        Quantity::Position => Named::vector("q", coordinates, coordinates),
+        Quantity::Velocity => Named::vector("qd", coordinates, &rates("'")),
+        Quantity::Acceleration => Named::vector("qdd", coordinates, &rates("''")),
+        Quantity::Phi => Named::vector("Phi", rows, &formulas.phi),
+        Quantity::PhiT => Named::vector("Phi_t", rows, &formulas.phi_t),
+        Quantity::PhiTt => Named::vector("Phi_tt", rows, &formulas.phi_tt),
+        Quantity::Gamma => Named::vector("gamma", rows, &formulas.gamma),
+        Quantity::Jacobian => Named {
+            title: "Phi_q".into(),
+            rows: rows.clone(),
+            columns: coordinates.clone(),
+            cells: formulas.phi_q.clone(),
+        },
+        // Printed with masses and forces.
+        Quantity::Mass | Quantity::Force | Quantity::Multipliers | Quantity::Energy => Named::default(),
+    }
+    .aligned_left()
+}
+
+fn numeric(mechanism: &dyn AnyEquations, state: &State, quantity: Quantity) -> Named {
+    let functions = mechanism.evaluate(state);
+    let names = |entries: &[mbs_runtime::Entry], per: &str| {
+        let with_unit = |entry: &mbs_runtime::Entry| match (entry.unit, per) {
+            ("1", "") => entry.name.to_string(),
+            (unit, per) => format!("{} ({unit}{per})", entry.name),
+        };
+        entries.iter().map(with_unit).collect::<Vec<_>>()
+    };
+    let cells = |values: &[f64]| values.iter().copied().map(number).collect::<Vec<_>>();
+    let of_rows =
+        |title, per, values: &[f64]| Named::vector(title, &names(mechanism.rows(), per), &cells(values));
+    let of_columns = |title, per, values: &[f64]| {
+        Named::vector(title, &names(mechanism.coordinates(), per), &cells(values))
+    };
+    match quantity {
+        Quantity::Position => of_columns("q", "", &state.q),
+        Quantity::Velocity => of_columns("qd", "/s", &state.qd),
+        Quantity::Acceleration => of_columns("qdd", "/s^2", &state.qdd),
+        Quantity::Phi => of_rows("Phi", "", &functions.phi),
+        Quantity::PhiT => of_rows("Phi_t", "/s", &functions.phi_t),
+        Quantity::PhiTt => of_rows("Phi_tt", "/s^2", &functions.phi_tt),
+        Quantity::Gamma => of_rows("gamma", "/s^2", &functions.gamma),
+        Quantity::Jacobian => Named {
+            title: "Phi_q".into(),
+            rows: names(mechanism.rows(), ""),
+            columns: mechanism.coordinates().iter().map(|entry| entry.name.to_string()).collect(),
+            cells: functions.phi_q.chunks(state.q.len().max(1)).map(cells).collect(),
+        },
+        // Printed with masses and forces.
+        Quantity::Mass | Quantity::Force | Quantity::Multipliers | Quantity::Energy => Named::default(),
+    }
+}

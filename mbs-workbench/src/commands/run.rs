@@ -1,0 +1,470 @@
+//! The analyses of the command line: `mbs run`, `kinematics`, `simulate`, `inverse`, `equilibrium`, `modes`.
+
+use crate::catalogue::Catalogue;
+use std::fs;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use crate::card::Usual;
+use crate::erased::dynamics::linear::SmallMotions;
+use crate::erased::erase::Erased;
+use crate::erased::facade::{AnyEquations, Motion};
+use crate::motion::drop_idle;
+use crate::output::animation::animation;
+use crate::output::csv;
+use crate::output::places::places;
+use crate::output::report::{Report, Run, html};
+use crate::output::shapes::shapes;
+use crate::target_directory::target_directory;
+use clap::{Args, ValueEnum};
+use mbs_codegen::picture::Preset;
+
+use super::analysis::{
+    Analysis, Damping, IntegratorName, MethodName, Request, RunResult, UsedOptions, above_zero,
+    at_least_zero, tolerance,
+};
+use super::chosen::{assignment, write_file};
+use super::subject::Target;
+use super::{CommandError, positive, table};
+
+/// Default number of steps: half a degree each, smooth in a picture and few enough for a page.
+const STEPS: usize = 720;
+
+/// Default tolerance: two digits more than a picture or a comparison needs, at little cost for the integrator of order 8.
+const TOLERANCE: f64 = 1e-10;
+
+/// Step (s) of implicit methods with which the stiff mechanisms of the list are correct to four digits.
+const STEP: f64 = 1e-3;
+
+/// Step (s) of RK4 with which a swing of one second is correct to six digits.
+const EQUAL_STEP: f64 = 2.5e-3;
+
+/// Instants of a run on the page, at most; beyond them a browser slows down and an eye sees no more.
+const SHOWN: usize = 2000;
+
+/// Numbers of all runs on the page, at most: two megabytes of text, which a page opens with at once.
+const NUMBERS: usize = 170_000;
+
+/// Instants of a run on the page, however many columns it has: twenty-four a second of a motion of ten.
+const LEAST_SHOWN: usize = 240;
+
+/// Mechanism, its parameters and the files to write: options of every analysis.
+#[derive(Args, Clone, Default)]
+pub struct Selection {
+    /// Name of the mechanism, as `mbs list` prints it
+    name: String,
+    /// Set a parameter, in the unit that `mbs list` prints
+    #[arg(long = "param", value_name = "NAME=VALUE", value_parser = assignment)]
+    parameters: Vec<(String, f64)>,
+    /// Directory for the report [default: mbs/NAME in cargo's target directory]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Also write the first motion as an SVG file that moves by itself
+    #[arg(long, value_name = "FILE.svg")]
+    svg: Option<PathBuf>,
+}
+
+/// End and instants of a motion.
+#[derive(Args, Clone, Default)]
+pub struct Span {
+    /// End of the motion (s) [default: one turn, or as long as is worth seeing]
+    #[arg(long, value_name = "T", value_parser = above_zero, allow_negative_numbers = true)]
+    until: Option<f64>,
+    /// Equal steps that the motion is divided into; equal ones of the integrator end there too, adaptive ones are interpolated [default: 720]
+    #[arg(long, value_parser = steps, allow_negative_numbers = true)]
+    steps: Option<usize>,
+}
+
+/// Integration of a motion from forces.
+#[derive(Args, Clone, Default)]
+pub struct Integration {
+    /// Method that keeps a motion from forces on its constraints [default: projection, of many rows velocity, of stiff mechanisms extrapolated]
+    #[arg(long, value_enum)]
+    method: Option<MethodName>,
+    /// Integrator, where the method has no steps of its own [default: order8, of forty four-bars rk4]
+    #[arg(long, value_enum)]
+    integrator: Option<IntegratorName>,
+    /// Longest of equal steps (s), which end at instants: without `--steps` these are so few that it is reached [default: 1e-3 of an implicit method, 2.5e-3 of another]
+    #[arg(long, value_name = "H", value_parser = above_zero, allow_negative_numbers = true)]
+    step: Option<f64>,
+    /// Tolerance of adaptive steps [default: 1e-10]
+    #[arg(long, value_parser = tolerance, allow_negative_numbers = true)]
+    tolerance: Option<f64>,
+    #[command(flatten)]
+    damping: Damping,
+}
+
+/// Options of `mbs run` and `mbs simulate`.
+#[derive(Args)]
+pub struct MotionArguments {
+    #[command(flatten)]
+    selection: Selection,
+    #[command(flatten)]
+    span: Span,
+    #[command(flatten)]
+    integration: Integration,
+}
+
+/// Options of `mbs kinematics` and `mbs inverse`.
+#[derive(Args)]
+pub struct DrivenArguments {
+    #[command(flatten)]
+    selection: Selection,
+    #[command(flatten)]
+    span: Span,
+}
+
+/// Options of `mbs equilibrium`.
+#[derive(Args)]
+pub struct EquilibriumArguments {
+    #[command(flatten)]
+    selection: Selection,
+    /// Start the search for the equilibrium from another value of a coordinate, in the unit of the text
+    #[arg(long = "guess", value_name = "NAME=VALUE", value_parser = assignment)]
+    guesses: Vec<(String, f64)>,
+}
+
+/// Options of `mbs modes`.
+#[derive(Args)]
+pub struct ModesArguments {
+    #[command(flatten)]
+    selection: Selection,
+    /// Start the search for the equilibrium from another value of a coordinate, in the unit of the text
+    #[arg(long = "guess", value_name = "NAME=VALUE", value_parser = assignment)]
+    guesses: Vec<(String, f64)>,
+    /// Time (s) of the state that small motions are about, followed there from the start [default: the equilibrium]
+    #[arg(long, value_name = "T", value_parser = at_least_zero, allow_negative_numbers = true, conflicts_with = "guesses")]
+    at: Option<f64>,
+    /// Equal steps that the motion up to `--at` is divided into [default: 720]
+    #[arg(long, value_parser = steps, allow_negative_numbers = true, requires = "at")]
+    steps: Option<usize>,
+    #[command(flatten)]
+    integration: Integration,
+}
+
+/// An analysis with its options, whichever command they come from.
+#[derive(Default)]
+pub struct Arguments {
+    /// Command of the program.
+    command: &'static str,
+    selection: Selection,
+    analysis: Option<Analysis>,
+    guesses: Vec<(String, f64)>,
+    at: Option<f64>,
+    span: Span,
+    integration: Integration,
+}
+
+impl Arguments {
+    /// `mbs run` with default options for the mechanism called `name`.
+    pub fn defaults(name: &str) -> Self {
+        let selection = Selection { name: name.to_string(), ..Selection::default() };
+        Arguments { command: "run", selection, ..Arguments::default() }
+    }
+
+    /// `mbs run`: the analysis that suits the mechanism.
+    pub fn run(arguments: MotionArguments) -> Self {
+        let MotionArguments { selection, span, integration } = arguments;
+        Arguments { command: "run", selection, span, integration, ..Arguments::default() }
+    }
+
+    /// `mbs simulate`.
+    pub fn simulate(arguments: MotionArguments) -> Self {
+        Arguments { command: "simulate", analysis: Some(Analysis::Simulation), ..Arguments::run(arguments) }
+    }
+
+    /// `mbs kinematics`.
+    pub fn kinematics(DrivenArguments { selection, span }: DrivenArguments) -> Self {
+        let analysis = Some(Analysis::Kinematics);
+        Arguments { command: "kinematics", analysis, selection, span, ..Arguments::default() }
+    }
+
+    /// `mbs inverse`.
+    pub fn inverse(arguments: DrivenArguments) -> Self {
+        Arguments {
+            command: "inverse",
+            analysis: Some(Analysis::Inverse),
+            ..Arguments::kinematics(arguments)
+        }
+    }
+
+    /// `mbs equilibrium`.
+    pub fn equilibrium(EquilibriumArguments { selection, guesses }: EquilibriumArguments) -> Self {
+        let analysis = Some(Analysis::Equilibrium);
+        Arguments { command: "equilibrium", analysis, selection, guesses, ..Arguments::default() }
+    }
+
+    /// `mbs modes`.
+    pub fn modes(arguments: ModesArguments) -> Self {
+        let ModesArguments { selection, guesses, at, steps, integration } = arguments;
+        let (analysis, span) = (Some(Analysis::Modes), Span { until: None, steps });
+        Arguments { command: "modes", selection, analysis, guesses, at, span, integration }
+    }
+
+    fn wish(&self, subject: &Target) -> Request {
+        let method = self.integration.method.unwrap_or(match subject.usual() {
+            Usual::Projection => MethodName::Projection,
+            Usual::Velocity | Usual::VelocityInEqualSteps => MethodName::Velocity,
+            Usual::Extrapolated => MethodName::Extrapolated,
+        });
+        let usual = match subject.usual() {
+            Usual::VelocityInEqualSteps
+                if self.integration.method.is_none() && self.integration.tolerance.is_none() =>
+            {
+                IntegratorName::Rk4
+            }
+            _ => IntegratorName::Order8,
+        };
+        let integrator = self.integration.integrator.unwrap_or(usual);
+        let tolerance = self.integration.tolerance.unwrap_or(TOLERANCE);
+        Request {
+            analysis: self.analysis,
+            stabilization: self
+                .integration
+                .damping
+                .stabilization(method, self.integration.step.unwrap_or(STEP)),
+            steps_of_method: integrator.steps(tolerance, self.integration.step.unwrap_or(EQUAL_STEP)),
+            guesses: self.guesses.clone(),
+            at: self.at,
+            until: self.span.until,
+            steps: self.span.steps.unwrap_or(STEPS),
+            given: UsedOptions {
+                steps: self.span.steps.is_some(),
+                method: self.integration.method.is_some(),
+                integrator: self.integration.integrator.is_some(),
+                step: self.integration.step.is_some(),
+                tolerance: self.integration.tolerance.is_some(),
+                damping: self.integration.damping.is_given(),
+                alpha: self.integration.damping.is_penalty_given(),
+                penalty: method == MethodName::Penalty,
+                implicit: method.is_implicit(),
+                radau: method == MethodName::Radau,
+                damped: method.is_damped(),
+                adaptive: integrator.rule().is_none(),
+            },
+        }
+    }
+
+    /// The command line again.
+    fn command(&self) -> String {
+        let mut command = format!("mbs {} {}", self.command, self.selection.name);
+        if let Some(steps) = self.span.steps {
+            command.push_str(&format!(" --steps {steps}"));
+        }
+        let named = |value: &dyn Fn() -> Option<clap::builder::PossibleValue>| {
+            value().map_or_else(String::new, |value| value.get_name().to_string())
+        };
+        if let Some(until) = self.span.until {
+            command.push_str(&format!(" --until {until}"));
+        }
+        if let Some(method) = self.integration.method {
+            command.push_str(&format!(" --method {}", named(&|| method.to_possible_value())));
+        }
+        if let Some(integrator) = self.integration.integrator {
+            command.push_str(&format!(" --integrator {}", named(&|| integrator.to_possible_value())));
+        }
+        command.push_str(&self.integration.damping.command());
+        if let Some(step) = self.integration.step {
+            command.push_str(&format!(" --step {step:e}"));
+        }
+        if let Some(tolerance) = self.integration.tolerance {
+            command.push_str(&format!(" --tolerance {tolerance:e}"));
+        }
+        if let Some(at) = self.at {
+            command.push_str(&format!(" --at {at}"));
+        }
+        for (name, value) in &self.guesses {
+            command.push_str(&format!(" --guess {name}={value}"));
+        }
+        for (name, value) in &self.selection.parameters {
+            command.push_str(&format!(" --param {name}={value}"));
+        }
+        command
+    }
+}
+
+/// Runs the presets, prints a table and writes the report. Nothing is written if a run fails.
+pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut dyn Write) -> Result<(), CommandError> {
+    let subject = Target::find(catalogue, &arguments.selection.name)?;
+    let instances = subject.instances(&arguments.selection.parameters)?;
+    let wish = arguments.wish(&subject);
+    let (mut done, mut left_out) = (Vec::new(), Vec::new());
+    for (index, instance) in instances.iter().enumerate() {
+        match wish.done(&subject, instance) {
+            Ok(found) => done.extend(found.into_iter().map(|done| RunResult { instance: index, ..done })),
+            // Under some of several loads there may be no equilibrium.
+            Err(CommandError::Failed(reason)) if wish.is_of_rest(&subject) => left_out.push(reason),
+            Err(error) => return Err(error),
+        }
+    }
+    if done.is_empty() {
+        return Err(CommandError::Failed(left_out.join("\n")));
+    }
+    drop_idle(&mut done.iter_mut().map(|done| &mut done.motion).collect::<Vec<_>>());
+    let standard = || target_directory().join("mbs").join(subject.file_name());
+    let directory = arguments.selection.out.clone().unwrap_or_else(standard);
+    let mut facts = facts(&instances, &done);
+    facts.extend(left_out.iter().map(|reason| ["left out".to_string(), reason.clone()]));
+    // Written before the table: printing fails if the reader of the output has left.
+    let mut files = vec![
+        ("report.html", page(arguments, &subject, &instances, &done, &facts)),
+        ("motion.csv", values(&done)),
+    ];
+    files.extend(modes(&done).map(|modes| ("modes.csv", modes)));
+    if let Some(path) = &arguments.selection.svg {
+        write_file(path, &animated(&subject, instances[done[0].instance].1.equations(), &done[0].motion)?)?;
+    }
+    let written = write_report(&directory, &files);
+    writeln!(out, "{}", subject.title())?;
+    for done in &done {
+        table::write(out, subject.shapes(), &done.label, &done.motion, &done.figures)?;
+    }
+    for reason in &left_out {
+        writeln!(out, "\nleft out: {reason}")?;
+    }
+    writeln!(out)?;
+    for (name, path) in ["report", "values", "modes "].iter().zip(written?) {
+        writeln!(out, "{name}  {}", path.display())?;
+    }
+    Ok(())
+}
+
+/// The motion as an animated picture.
+fn animated(subject: &Target, mechanism: &dyn AnyEquations, motion: &Motion) -> Result<String, CommandError> {
+    let places = places(subject.picture(), mechanism, motion, None);
+    animation(&shapes(subject.shapes()), motion, &places)
+        .map_err(|reason| CommandError::Failed(format!("no animated drawing: {reason}")))
+}
+
+fn facts(instances: &[(Preset, Erased)], done: &[RunResult]) -> Vec<[String; 2]> {
+    let first = instances[0].1.equations();
+    let mut facts = vec![["coordinates".to_string(), first.coordinates().len().to_string()]];
+    for (index, entry) in first.variables().iter().enumerate() {
+        let written = |mechanism: &dyn AnyEquations| {
+            let value = mechanism.get(index).unwrap_or(f64::NAN);
+            format!("{}{}", table::short(value), table::unit(entry.unit))
+        };
+        if instances.iter().all(|(_, other)| other.equations().get(index) == first.get(index)) {
+            facts.push([entry.name.to_string(), written(first)]);
+            continue;
+        }
+        for (preset, instance) in instances {
+            facts.push([format!("{}, {}", entry.name, preset.label), written(instance.equations())]);
+        }
+    }
+    for done in done {
+        facts.push([format!("instants, {}", done.label), done.motion.time.len().to_string()]);
+        for [name, value] in &done.figures {
+            facts.push([format!("{name}, {}", done.label), value.clone()]);
+        }
+    }
+    facts
+}
+
+fn page(
+    arguments: &Arguments,
+    subject: &Target,
+    instances: &[(Preset, Erased)],
+    done: &[RunResult],
+    facts: &[[String; 2]],
+) -> String {
+    let columns: usize = done.iter().map(|done| done.motion.columns()).sum();
+    let shown = (NUMBERS / columns.max(1)).clamp(LEAST_SHOWN, SHOWN);
+    let shown: Vec<Motion> = done.iter().map(|done| done.motion.decimate(shown)).collect();
+    let drawn = done.iter().zip(&shown).map(|(done, motion)| {
+        let mechanism = instances[done.instance].1.equations();
+        places(subject.picture(), mechanism, motion, done.small.as_ref())
+    });
+    let drawn: Vec<_> = drawn.collect();
+    let mut runs = Vec::new();
+    for ((done, motion), places) in done.iter().zip(&shown).zip(&drawn) {
+        runs.push(Run {
+            label: &done.label,
+            description: &done.description,
+            motion,
+            places,
+            small: done.small.as_ref(),
+        });
+    }
+    html(&Report {
+        name: subject.name(),
+        title: subject.title(),
+        description: subject.description(),
+        source: instances[0].1.equations().source(),
+        command: &arguments.command(),
+        facts,
+        runs: &runs,
+        drawing: &shapes(subject.shapes()),
+    })
+}
+
+fn values(done: &[RunResult]) -> String {
+    csv::write(&done.iter().map(|done| (done.label.as_str(), &done.motion)).collect::<Vec<_>>())
+}
+
+/// Small motions as values, where they were asked for.
+fn modes(done: &[RunResult]) -> Option<String> {
+    let small: Vec<(&str, &Motion, &SmallMotions)> = done
+        .iter()
+        .filter_map(|done| Some((done.label.as_str(), &done.motion, done.small.as_ref()?)))
+        .collect();
+    (!small.is_empty()).then(|| csv::write_modes(&small))
+}
+
+/// Writes files of given names and texts. Each is written next to its place first, so that a full disk leaves no incomplete file.
+fn write_report(directory: &Path, files: &[(&str, String)]) -> Result<Vec<PathBuf>, CommandError> {
+    let fail = |path: &Path, error: std::io::Error| {
+        CommandError::Failed(format!("cannot write {}: {error}", path.display()))
+    };
+    fs::create_dir_all(directory).map_err(|error| fail(directory, error))?;
+    let draft = |name: &str| directory.join(format!(".{name}.{}.draft", std::process::id()));
+    let written = files
+        .iter()
+        .try_for_each(|(name, text)| fs::write(draft(name), text).map_err(|error| fail(&draft(name), error)));
+    let placed = written.and_then(|()| {
+        files.iter().try_for_each(|(name, _)| {
+            let place = directory.join(name);
+            fs::rename(draft(name), &place).map_err(|error| fail(&place, error))
+        })
+    });
+    if placed.is_err() {
+        // Removes the temporary files; those already in place are complete.
+        files.iter().for_each(|(name, _)| drop(fs::remove_file(draft(name))));
+    }
+    placed.map(|()| files.iter().map(|(name, _)| directory.join(name)).collect())
+}
+
+/// Most steps of a run: its motion is held in memory and written as text.
+const MOST_STEPS: usize = 1_000_000;
+
+/// A number of steps that memory and disk can take.
+pub fn steps(text: &str) -> Result<usize, String> {
+    match positive(text)? {
+        steps if steps <= MOST_STEPS => Ok(steps),
+        _ => Err(format!("at most {MOST_STEPS} are possible")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn steps_are_bounded() {
+        assert_eq!(steps("720"), Ok(720));
+        for bad in ["0", "-1", "1.5", "1000001", "99999999999", "two"] {
+            assert!(steps(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn a_report_that_cannot_be_written_leaves_nothing() {
+        let directory = target_directory().join("tmp").join(format!("report-{}", std::process::id()));
+        fs::create_dir_all(directory.join("motion.csv")).expect("a directory in the way");
+        let files = [("report.html", "page".to_string()), ("motion.csv", "values".to_string())];
+        assert!(write_report(&directory, &files).is_err());
+        let left = fs::read_dir(&directory).expect("the directory").flatten();
+        assert!(left.into_iter().all(|file| !file.file_name().to_string_lossy().ends_with("draft")));
+        fs::remove_dir_all(directory).expect("scratch");
+    }
+}

@@ -1,0 +1,225 @@
+//! The work of each force, of each row and of the time, by the quadrature of the method that moves the mechanism.
+//!
+//! A method integrates one work with the motion, which changes none of its steps. So a run that counts the power of one supply
+//! takes the same steps. The works of all such runs add up to the work of all supplies but for rounding, for any instants.
+
+use mbs_runtime::dynamics::{
+    AugmentedLagrangian, Counts, Formulation, Instant, Method, Model, Solved, State,
+};
+use mbs_runtime::{Dynamic, DynamicState, Failure};
+
+use super::direct::Simulated;
+use super::power_balance;
+use crate::motion::power_balance::PowerSource;
+
+/// Largest number of supplies with a run each; the works of more supplies are quadratures over the instants.
+const MOST_RUNS: usize = 8;
+
+/// The work of one supply, counted as [`power_balance::powers`] lists them, in place of that of all, for `by`.
+pub(super) struct Single<X> {
+    /// Formulation or method.
+    pub by: X,
+    /// Index of the supply.
+    pub supply: usize,
+}
+
+/// Quadrature of the work within a step of an implicit method.
+#[derive(Clone, Copy)]
+pub(super) enum Quadrature {
+    /// By the powers at both ends.
+    Trapezoidal,
+    /// By three thirds of the trapezoidal rule against a whole one, extrapolated.
+    Extrapolated,
+}
+
+/// Sets the work of each supply of `found` to the one that `run` integrates for it alone. If a single supply acts, the work of
+/// all is its own.
+pub(super) fn add_works(found: &mut Simulated, run: impl Fn(usize) -> Result<Simulated, Failure>) {
+    let Some(forces) = &mut found.motion.dynamics else { return };
+    let acting: Vec<usize> =
+        (0..).zip(&forces.supplies).filter(|(_, s)| acts(&s.power)).map(|(k, _)| k).collect();
+    // A force without power at all instants may do work between them.
+    let silent = forces.supplies.iter().any(|supply| supply.by == PowerSource::Force && !acts(&supply.power));
+    if acting.len() > MOST_RUNS {
+        return;
+    }
+    for index in &acting {
+        let Some(supply) = forces.supplies.get_mut(*index) else { continue };
+        let alone = acting.len() == 1 && !silent;
+        let work = if alone { Some(forces.work.clone()) } else { run(*index).ok().and_then(work_of) };
+        if let Some(work) = work.filter(|work| work.len() == supply.power.len()) {
+            supply.work = work;
+        }
+    }
+}
+
+fn acts(power: &[f64]) -> bool {
+    power.iter().any(|power| *power != 0.0)
+}
+
+fn work_of(run: Simulated) -> Option<Vec<f64>> {
+    run.motion.dynamics.map(|forces| forces.work)
+}
+
+impl<X> Single<X> {
+    /// The power (W) of the supply in a state whose rates are known.
+    fn power<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
+        &self,
+        model: &Model<'_, S, f64, N, M>,
+        t: f64,
+        y: &State<f64, N, S::States>,
+        solved: &Solved<f64, N, M, S::States>,
+    ) -> f64 {
+        let position = model.position(t, y);
+        let motion =
+            DynamicState { qd: &y.qd, qdd: &solved.rate.qd, lambda: &solved.lambda, states: &y.states };
+        let powers = power_balance::powers(model.mechanism, (model.parameters, &position), &motion);
+        powers.get(self.supply).map_or(0.0, |(_, _, power)| *power)
+    }
+
+    /// The rates with the power of the supply alone.
+    fn alone<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
+        &self,
+        model: &Model<'_, S, f64, N, M>,
+        t: f64,
+        y: &State<f64, N, S::States>,
+        mut solved: Solved<f64, N, M, S::States>,
+    ) -> Solved<f64, N, M, S::States> {
+        solved.rate.work = self.power(model, t, y, &solved);
+        solved
+    }
+}
+
+impl<S, F, const N: usize, const M: usize> Formulation<S, f64, N, M> for Single<&F>
+where
+    S: Dynamic<f64, N, M>,
+    F: Formulation<S, f64, N, M> + ?Sized,
+{
+    fn solve(
+        &self,
+        model: &Model<'_, S, f64, N, M>,
+        t: f64,
+        y: &State<f64, N, S::States>,
+        lambda: &[f64; M],
+        counts: &mut Counts,
+    ) -> Result<Solved<f64, N, M, S::States>, Failure> {
+        let solved = self.by.solve(model, t, y, lambda, counts)?;
+        Ok(self.alone(model, t, y, solved))
+    }
+
+    fn solve_as_it_is(
+        &self,
+        model: &Model<'_, S, f64, N, M>,
+        t: f64,
+        y: &State<f64, N, S::States>,
+        lambda: &[f64; M],
+        counts: &mut Counts,
+    ) -> Result<Solved<f64, N, M, S::States>, Failure> {
+        let solved = self.by.solve_as_it_is(model, t, y, lambda, counts)?;
+        Ok(self.alone(model, t, y, solved))
+    }
+
+    fn project(
+        &self,
+        model: &Model<'_, S, f64, N, M>,
+        t: f64,
+        y: &mut State<f64, N, S::States>,
+        counts: &mut Counts,
+    ) -> Result<(), Failure> {
+        self.by.project(model, t, y, counts)
+    }
+
+    fn project_and_solve(
+        &self,
+        model: &Model<'_, S, f64, N, M>,
+        t: f64,
+        y: &mut State<f64, N, S::States>,
+        lambda: &[f64; M],
+        counts: &mut Counts,
+    ) -> Result<Solved<f64, N, M, S::States>, Failure> {
+        let solved = self.by.project_and_solve(model, t, y, lambda, counts)?;
+        Ok(self.alone(model, t, y, solved))
+    }
+}
+
+impl<S, X, const N: usize, const M: usize> Method<S, f64, N, M> for Single<(&X, Quadrature)>
+where
+    S: Dynamic<f64, N, M>,
+    X: Method<S, f64, N, M> + ?Sized,
+{
+    fn solve(
+        &self,
+        model: &Model<'_, S, f64, N, M>,
+        t: f64,
+        y: &State<f64, N, S::States>,
+        lambda: &[f64; M],
+        counts: &mut Counts,
+    ) -> Result<Solved<f64, N, M, S::States>, Failure> {
+        let solved = self.by.0.solve(model, t, y, lambda, counts)?;
+        Ok(self.alone(model, t, y, solved))
+    }
+
+    fn step(
+        &self,
+        model: &Model<'_, S, f64, N, M>,
+        from: &Instant<f64, N, M, S::States>,
+        h: f64,
+        counts: &mut Counts,
+    ) -> Result<Instant<f64, N, M, S::States>, Failure> {
+        let mut next = self.by.0.step(model, from, h, counts)?;
+        let (before, after) = (from.solved.rate.work, self.power_at(model, from.t, &next));
+        let work = match self.by.1 {
+            Quadrature::Trapezoidal => 0.5 * h * (before + after),
+            Quadrature::Extrapolated => self.extrapolated(model, from, h)?,
+        };
+        next.y.work = from.y.work + work;
+        next.solved.rate.work = after;
+        Ok(next)
+    }
+}
+
+impl<X> Single<X> {
+    /// The power (W) at a later instant; the mechanism itself is as it was at `start` (s).
+    fn power_at<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
+        &self,
+        model: &Model<'_, S, f64, N, M>,
+        start: f64,
+        instant: &Instant<f64, N, M, S::States>,
+    ) -> f64 {
+        moved(model, start, instant.t, |model| self.power(model, instant.t, &instant.y, &instant.solved))
+    }
+
+    /// The work (J) of a step of `h` (s) by the thirds and the whole step that [`Quadrature::Extrapolated`] goes through.
+    fn extrapolated<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
+        &self,
+        model: &Model<'_, S, f64, N, M>,
+        from: &Instant<f64, N, M, S::States>,
+        h: f64,
+    ) -> Result<f64, Failure> {
+        let (mut counts, before, third) = (Counts::default(), from.solved.rate.work, 1.0 / 3.0 * h);
+        let whole = AugmentedLagrangian.step(model, from, h, &mut counts)?;
+        let once = 0.5 * h * (before + self.power_at(model, from.t, &whole));
+        let (mut at, mut sum) = (*from, before);
+        for weight in [2.0, 2.0, 1.0] {
+            at =
+                moved(model, from.t, at.t, |model| AugmentedLagrangian.step(model, &at, third, &mut counts))?;
+            sum += weight * self.power_at(model, from.t, &at);
+        }
+        let thrice = 0.5 * third * sum;
+        Ok(thrice + (thrice - once) / 8.0)
+    }
+}
+
+/// Result of `look` for the mechanism at `to` (s): inputs with rates and phases are advanced from `from` (s).
+fn moved<S: Dynamic<f64, N, M>, X, const N: usize, const M: usize>(
+    model: &Model<'_, S, f64, N, M>,
+    from: f64,
+    to: f64,
+    look: impl FnOnce(&Model<'_, S, f64, N, M>) -> X,
+) -> X {
+    let mut mechanism = model.mechanism.clone();
+    mechanism.carry_signals(model.mechanism, to - from);
+    mechanism.advance_phases(from, to);
+    let parameters = mechanism.parameters();
+    look(&Model { mechanism: &mechanism, parameters: &parameters, ..*model })
+}

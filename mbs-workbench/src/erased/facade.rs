@@ -1,0 +1,315 @@
+//! Object-safe traits for all mechanisms: the emitted types differ in their array lengths, these traits do not.
+
+use core::fmt;
+use core::hint::black_box;
+use std::time::{Duration, Instant};
+
+use mbs_runtime::{
+    Entry, Failure, Frame, FunctionEntry, Kinematic, Mechanism, OutputValue, ReachLimit, Scalar, Stepper,
+};
+
+use crate::erased::branching::Branching;
+use crate::erased::dynamics::AnyDynamics;
+use crate::erased::experiment::Experiment;
+use crate::erased::masses::{Loads, Masses, Tables};
+use crate::motion;
+pub use crate::motion::{CoordinateCurve, Motion, OutputCurve, State, spread};
+
+/// Names and functions of a mechanism of any size, with its parameters; it need not be square. Vectors are in the
+/// order of the text.
+pub trait AnyEquations {
+    /// Names of the emitted type.
+    fn description(&self) -> &'static Description;
+    /// Value of a parameter or input, in the unit of the text.
+    fn get(&self, index: usize) -> Option<f64>;
+    /// Sets a parameter or input, in the unit of the text; false where there is none at `index`.
+    fn set(&mut self, index: usize, value: f64) -> bool;
+    /// Reference metric of the coordinates: 1 for angles, the reference length for lengths: N.
+    fn coordinate_scales(&self) -> Vec<f64>;
+    /// Reference metric of the rows: the reference length to the power that the row has of metres: M.
+    fn row_scales(&self) -> Vec<f64>;
+    /// All functions of one state, which need not satisfy the constraints.
+    ///
+    /// # Panics
+    /// If the state's vectors do not have N components.
+    fn evaluate(&self, state: &State) -> Functions;
+
+    /// Name of the emitted type.
+    fn type_name(&self) -> &'static str {
+        self.description().type_name
+    }
+    /// Name of the scene; `AllEffects` where the text declares none.
+    fn scene(&self) -> &'static str {
+        self.description().scene
+    }
+    /// The text.
+    fn source(&self) -> &'static str {
+        self.description().source
+    }
+    /// Coordinates: N.
+    fn coordinates(&self) -> &'static [Entry] {
+        self.description().coordinates
+    }
+    /// Constraint rows: M.
+    fn rows(&self) -> &'static [Entry] {
+        self.description().rows
+    }
+    /// Parameters and inputs, component by component.
+    fn variables(&self) -> &'static [Entry] {
+        self.description().variables
+    }
+    /// Outputs, component by component.
+    fn outputs(&self) -> &'static [Entry] {
+        self.description().outputs
+    }
+    /// Functions that the text declares.
+    fn functions(&self) -> &'static [FunctionEntry] {
+        self.description().functions
+    }
+    /// Name of the type in its scene, as generated code and definitions for CasADi spell it.
+    fn full_name(&self) -> String {
+        let scene = if self.scene() == "AllEffects" { "" } else { self.scene() };
+        format!("{}{scene}", self.type_name())
+    }
+    /// Names of states, forces and loads; `None` if the text has no masses or forces.
+    fn tables(&self) -> Option<Tables> {
+        None
+    }
+    /// Functions of masses and forces at one state; `None` if there are none, or if a vector has a wrong length.
+    fn masses(&self, _state: &State, _loads: &Loads) -> Option<Masses> {
+        None
+    }
+    /// Direct and inverse dynamics; `None` if the text has no masses or forces.
+    fn dynamics(&self) -> Option<&dyn AnyDynamics> {
+        None
+    }
+}
+
+/// Names of an emitted type.
+#[derive(Clone, Copy, Debug)]
+pub struct Description {
+    /// Name of the type.
+    pub type_name: &'static str,
+    /// Name of the scene; `AllEffects` where the text declares none.
+    pub scene: &'static str,
+    /// The text.
+    pub source: &'static str,
+    /// Coordinates: N.
+    pub coordinates: &'static [Entry],
+    /// Constraint rows: M.
+    pub rows: &'static [Entry],
+    /// Parameters and inputs, component by component.
+    pub variables: &'static [Entry],
+    /// Outputs, component by component.
+    pub outputs: &'static [Entry],
+    /// Functions that the text declares.
+    pub functions: &'static [FunctionEntry],
+}
+
+impl Description {
+    /// That of `S`.
+    pub const fn of<S: Mechanism<T, N, M>, T: Scalar, const N: usize, const M: usize>() -> Self {
+        Description {
+            type_name: S::NAME,
+            scene: S::SCENE,
+            source: S::SOURCE,
+            coordinates: S::COORDINATES,
+            rows: S::ROWS,
+            variables: S::VARIABLES,
+            outputs: S::OUTPUTS,
+            functions: S::FUNCTIONS,
+        }
+    }
+}
+
+/// A mechanism of any size that can be solved.
+pub trait AnyMechanism: AnyEquations {
+    /// Assembles the mechanism at the first instant (s) and follows it through the others.
+    ///
+    /// `progress` gets the number of instants done. An empty list gives an empty motion.
+    ///
+    /// # Errors
+    /// The solver's [`Failure`] at the first instant that has no solution.
+    fn follow(&self, times: &[f64], progress: &mut dyn FnMut(usize)) -> Result<Motion, Failure>;
+    /// Time of one step (position, velocity, acceleration and outputs), the mean over `times` (s).
+    ///
+    /// # Errors
+    /// The solver's [`Failure`].
+    fn time_a_step(&self, times: &[f64]) -> Result<Duration, Failure>;
+    /// Limit of a motion over `times` (s) that fails; `None` if it does not assemble or has no limit.
+    fn stop(&self, times: &[f64]) -> Option<MotionStop>;
+    /// Single steps of the solvers, for teaching.
+    fn experiment(&self) -> &dyn Experiment;
+}
+
+impl fmt::Debug for dyn AnyMechanism + '_ {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "AnyMechanism({})", self.type_name())
+    }
+}
+
+/// Bracket in time of a motion's end; see [`mbs_runtime::ReachLimit`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MotionStop {
+    /// The last time (s) with a position.
+    pub reachable: f64,
+    /// The first time (s) that is refused.
+    pub refused: f64,
+    /// Failure at the end of the refused step.
+    pub failure: Failure,
+}
+
+/// Every emitted function at one state.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Functions {
+    /// Φ: M.
+    pub phi: Vec<f64>,
+    /// Φ_q, row after row: M·N.
+    pub phi_q: Vec<f64>,
+    /// Φ_t: M.
+    pub phi_t: Vec<f64>,
+    /// Φ_tt: M.
+    pub phi_tt: Vec<f64>,
+    /// Φ_qt q̇: M.
+    pub phi_qt_qd: Vec<f64>,
+    /// γ: M.
+    pub gamma: Vec<f64>,
+    /// Outputs with their time derivatives.
+    pub outputs: Vec<OutputValue<f64>>,
+}
+
+/// A mechanism of `N` coordinates and `M` rows behind the common face, with its masses and forces where `F` has them.
+#[derive(Clone, Debug)]
+pub struct Facade<S, const N: usize, const M: usize = N, F = ()>(pub S, pub(super) F);
+
+/// Masses and forces of `S`, as a part of its [`Facade`]; `()` where it has none.
+pub trait Forced<S, const N: usize, const M: usize>: Sized {
+    /// Names beyond the kinematics.
+    const TABLES: Option<Tables> = None;
+
+    /// Functions of masses and forces of one state.
+    fn masses(_mechanism: &S, _state: &State, _loads: &Loads) -> Option<Masses> {
+        None
+    }
+    /// Motion from forces and forces from motion.
+    fn dynamics(_facade: &Facade<S, N, M, Self>) -> Option<&dyn AnyDynamics> {
+        None
+    }
+}
+
+impl<S, const N: usize, const M: usize> Forced<S, N, M> for () {}
+
+impl<S, const N: usize, const M: usize> Facade<S, N, M> {
+    /// `mechanism` without its masses and forces.
+    pub fn of(mechanism: S) -> Self {
+        Facade(mechanism, ())
+    }
+}
+
+impl<S, F, const N: usize, const M: usize> AnyEquations for Facade<S, N, M, F>
+where
+    S: Mechanism<f64, N, M>,
+    F: Forced<S, N, M>,
+{
+    fn description(&self) -> &'static Description {
+        const { &Description::of::<S, f64, N, M>() }
+    }
+    fn get(&self, index: usize) -> Option<f64> {
+        self.0.get(index)
+    }
+    fn set(&mut self, index: usize, value: f64) -> bool {
+        self.0.set(index, value)
+    }
+    fn coordinate_scales(&self) -> Vec<f64> {
+        self.0.coordinate_scales(&self.0.parameters()).to_vec()
+    }
+    fn row_scales(&self) -> Vec<f64> {
+        self.0.row_scales(&self.0.parameters()).to_vec()
+    }
+
+    fn evaluate(&self, state: &State) -> Functions {
+        let array = |values: &[f64]| <[f64; N]>::try_from(values).expect("a state has N components");
+        let (q, qd, qdd) = (array(&state.q), array(&state.qd), array(&state.qdd));
+        let parameters = self.0.parameters();
+        let position = self.0.position(&parameters, &q, state.t);
+        Functions {
+            phi: self.0.phi(&parameters, &position).to_vec(),
+            phi_q: self.0.phi_q(&parameters, &position).as_flattened().to_vec(),
+            phi_t: self.0.phi_t(&parameters, &position).to_vec(),
+            phi_tt: self.0.phi_tt(&parameters, &position).to_vec(),
+            phi_qt_qd: self.0.phi_qt_qd(&parameters, &position, &qd).to_vec(),
+            gamma: self.0.gamma(&parameters, &position, &qd).to_vec(),
+            outputs: self.0.outputs(&parameters, &position, &qd, &qdd).as_ref().to_vec(),
+        }
+    }
+
+    fn tables(&self) -> Option<Tables> {
+        F::TABLES
+    }
+    fn masses(&self, state: &State, loads: &Loads) -> Option<Masses> {
+        F::masses(&self.0, state, loads)
+    }
+    fn dynamics(&self) -> Option<&dyn AnyDynamics> {
+        F::dynamics(self)
+    }
+}
+
+impl<S, F, const N: usize, const M: usize> AnyMechanism for Facade<S, N, M, F>
+where
+    S: Kinematic<f64, N, M>,
+    F: Forced<S, N, M>,
+{
+    fn follow(&self, times: &[f64], progress: &mut dyn FnMut(usize)) -> Result<Motion, Failure> {
+        let Some((first, rest)) = times.split_first() else { return Ok(Motion::default()) };
+        let mut stepper = self.assembled(*first)?;
+        let mut motion = Motion::of(S::COORDINATES, S::OUTPUTS, stepper.outputs().as_ref());
+        push(&mut motion, &stepper.frame());
+        for (done, time) in rest.iter().enumerate() {
+            progress(done + 1);
+            stepper.advance_to(*time)?;
+            push(&mut motion, &stepper.frame());
+        }
+        progress(times.len());
+        Ok(motion)
+    }
+
+    fn time_a_step(&self, times: &[f64]) -> Result<Duration, Failure> {
+        let Some((first, rest)) = times.split_first() else { return Ok(Duration::ZERO) };
+        let mut stepper = self.assembled(*first)?;
+        let start = Instant::now();
+        for time in rest {
+            stepper.advance_to(*time)?;
+            black_box(stepper.outputs());
+        }
+        Ok(start.elapsed() / u32::try_from(rest.len().max(1)).unwrap_or(u32::MAX))
+    }
+
+    fn stop(&self, times: &[f64]) -> Option<MotionStop> {
+        let (first, rest) = times.split_first()?;
+        let mut stepper = self.assembled(*first).ok()?;
+        let beyond = rest.iter().find(|time| stepper.advance_to(**time).is_err())?;
+        let ReachLimit { reachable, refused, failure, .. } = stepper.reach_towards(*beyond)?;
+        Some(MotionStop { reachable, refused, failure })
+    }
+
+    fn experiment(&self) -> &dyn Experiment {
+        self
+    }
+}
+
+impl<S: Kinematic<f64, N, M>, F, const N: usize, const M: usize> Facade<S, N, M, F> {
+    fn assembled(&self, t: f64) -> Result<Stepper<Branching<S>, f64, N, M>, Failure> {
+        Stepper::assemble(Branching::declared(self.0.clone()), self.0.guess(&self.0.parameters()), t)
+    }
+}
+
+fn push<O: AsRef<[OutputValue<f64>]>, const N: usize>(motion: &mut Motion, frame: &Frame<f64, O, N>) {
+    motion.push(&motion::Instant {
+        t: frame.t,
+        q: [&frame.q, &frame.qd, &frame.qdd],
+        outputs: frame.outputs.as_ref(),
+        closure: frame.closure_error,
+        iterations: frame.statistics.evaluations,
+        margin: frame.margin,
+    });
+}

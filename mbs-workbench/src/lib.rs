@@ -1,0 +1,31 @@
+//! Tools for any mechanism: the command line of `mbs`, analyses, reports, cross-checks, teaching commands.
+//!
+//! [`program()`] is the command line over a list of mechanisms, a [`Catalogue`](catalogue::Catalogue); the crate `mechanisms` has the
+//! ready ones. [`erased`] runs a mechanism of any size behind one trait; it has all code that is generic over mechanisms.
+//! [`verify`] compares emitted code with CasADi, in a test of the crate that declares the mechanism too.
+//!
+//! Without the feature `program` there is no command line, only the comparison of a mechanism of one's own: [`erased`], [`verify`].
+
+#[cfg(feature = "program")]
+pub mod card;
+#[cfg(feature = "program")]
+pub mod catalogue;
+#[cfg(feature = "program")]
+mod commands;
+pub mod erased;
+#[cfg(feature = "program")]
+pub mod mismatch;
+pub mod motion;
+#[cfg(feature = "program")]
+pub mod output;
+#[cfg(feature = "program")]
+mod program;
+#[cfg(feature = "program")]
+pub mod tables;
+pub mod target_directory;
+#[cfg(feature = "program")]
+pub mod teaching;
+pub mod verify;
+
+#[cfg(feature = "program")]
+pub use program::program;

@@ -1,0 +1,168 @@
+//! Names and values that do not fit a mechanism, with proposals.
+
+use core::fmt;
+
+use crate::erased::facade::AnyEquations;
+
+/// A name or a value that does not fit a mechanism.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Mismatch {
+    /// No mechanism of this name.
+    Mechanism {
+        /// The name asked for.
+        name: String,
+        /// The names that there are.
+        known: Vec<String>,
+    },
+    /// The text has several scenes, each a mechanism of its own.
+    Scenes {
+        /// The name asked for.
+        name: String,
+        /// Their names.
+        scenes: Vec<String>,
+    },
+    /// The mechanism is written in one set of coordinates.
+    Alone {
+        /// The mechanism.
+        name: String,
+        /// The linkage that it is a variant of, and the kind of its coordinates.
+        variant_of: Option<(String, &'static str)>,
+        /// The linkages that are written in several.
+        several: Vec<String>,
+    },
+    /// No variant of the mechanism in these coordinates.
+    Coordinates {
+        /// The mechanism.
+        name: String,
+        /// The kind asked for.
+        kind: String,
+        /// Those that there are.
+        known: Vec<&'static str>,
+    },
+    /// The mechanism is free to move, and the command needs rows that fix it.
+    Free {
+        /// The name asked for.
+        name: String,
+    },
+    /// No parameter of this name.
+    Parameter {
+        /// The name asked for.
+        name: String,
+        /// The mechanism.
+        mechanism: String,
+        /// The names that there are.
+        known: Vec<&'static str>,
+    },
+    /// A parameter that is no finite number.
+    NotFinite {
+        /// The parameter.
+        name: String,
+    },
+    /// The text of a mechanism cannot be read.
+    Text {
+        /// The mechanism.
+        name: String,
+        /// The faults, as the macro would report them.
+        faults: String,
+    },
+    /// A turn never ends.
+    NoTurn {
+        /// The parameter that gives the angular velocity.
+        rate: String,
+        /// Its value (rad/s).
+        value: f64,
+    },
+}
+
+/// Sets the parameter or input `name` (coherent SI unit of the text).
+///
+/// # Errors
+/// [`Mismatch::Parameter`] and [`Mismatch::NotFinite`]; the mechanism is then as it was.
+pub fn set(mechanism: &mut dyn AnyEquations, name: &str, value: f64) -> Result<(), Mismatch> {
+    let variables = mechanism.variables();
+    let index = variables.iter().position(|entry| entry.name == name);
+    if !value.is_finite() {
+        return Err(Mismatch::NotFinite { name: name.to_string() });
+    }
+    match index {
+        Some(index) if mechanism.set(index, value) => Ok(()),
+        _ => Err(Mismatch::Parameter {
+            name: name.to_string(),
+            mechanism: mechanism.type_name().to_string(),
+            known: variables.iter().map(|entry| entry.name).collect(),
+        }),
+    }
+}
+
+/// The name of `known` that is nearest to `name`, if any is near.
+pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    /// Below this Jaro-Winkler similarity a proposal confuses more than it helps.
+    const NEAR: f64 = 0.75;
+    let rated = known.into_iter().map(|known| (strsim::jaro_winkler(name, known), known));
+    rated.filter(|(nearness, _)| *nearness > NEAR).max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, known)| known)
+}
+
+fn write_known<S: AsRef<str>>(f: &mut fmt::Formatter<'_>, name: &str, known: &[S]) -> fmt::Result {
+    let known: Vec<&str> = known.iter().map(AsRef::as_ref).collect();
+    if let Some(nearest) = nearest(name, known.iter().copied()) {
+        write!(f, "; did you mean `{nearest}`?")?;
+    }
+    write!(f, "\nknown: {}", known.join(", "))
+}
+
+impl Mismatch {
+    /// The same of the mechanism as it was asked for: types of one text share a part of their names.
+    pub fn of(self, card: &str) -> Self {
+        match self {
+            Mismatch::Parameter { name, known, .. } => {
+                Mismatch::Parameter { name, mechanism: card.to_string(), known }
+            }
+            other => other,
+        }
+    }
+}
+
+impl fmt::Display for Mismatch {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Mismatch::Mechanism { name, known } => {
+                write!(f, "there is no mechanism `{name}`")?;
+                write_known(f, name, known)
+            }
+            Mismatch::Scenes { name, scenes } => write!(
+                f,
+                "`{name}` has several scenes, each a mechanism of its own; name one: {}",
+                scenes.iter().map(|scene| format!("`{scene}`")).collect::<Vec<_>>().join(", ")
+            ),
+            Mismatch::Alone { name, variant_of, several } => {
+                write!(f, "`{name}` is written in one set of coordinates")?;
+                if let Some((linkage, kind)) = variant_of {
+                    write!(f, ": it is `{linkage}` in coordinates of the kind `{kind}`")?;
+                }
+                let several: Vec<String> =
+                    several.iter().map(|name| format!("`mbs compare {name}`")).collect();
+                if several.is_empty() { Ok(()) } else { write!(f, "; several have: {}", several.join(", ")) }
+            }
+            Mismatch::Coordinates { name, kind, known } => {
+                write!(f, "`{name}` is not written in coordinates of the kind `{kind}`")?;
+                write_known(f, kind, known)
+            }
+            Mismatch::Free { name } => write!(
+                f,
+                "`{name}` is free to move: its rows do not fix it; `mbs run {name}` moves it by its forces, and \
+                 `print`, `latex`, `structure`, `dof`, `expand` and `verify` know it too"
+            ),
+            Mismatch::Parameter { name, mechanism, known } => {
+                write!(f, "`{mechanism}` has no parameter `{name}`")?;
+                write_known(f, name, known)
+            }
+            Mismatch::NotFinite { name } => write!(f, "parameter `{name}` must be a finite number"),
+            Mismatch::Text { name, faults } => write!(f, "the text of `{name}` cannot be read\n{faults}"),
+            Mismatch::NoTurn { rate, value } => {
+                write!(f, "at `{rate}` = {value} rad/s a turn never ends; give `{rate}` another value")
+            }
+        }
+    }
+}
+
+impl core::error::Error for Mismatch {}

@@ -1,0 +1,167 @@
+//! One self-contained HTML page with the moving mechanism, plots and figures.
+
+use serde::Serialize;
+
+use crate::erased::dynamics::linear::SmallMotions;
+use crate::erased::facade::Motion;
+use crate::output::places::PlaceCurve;
+
+const PAGE: &str = include_str!("report/page.html");
+const STYLE: &str = include_str!("report/page.css");
+/// Scripts of one scope, in the order of their dependencies.
+const SCRIPT: &str = concat!(
+    include_str!("report/elements.js"),
+    "\n",
+    include_str!("report/outlines.js"),
+    "\n",
+    include_str!("report/drawing.js"),
+    "\n",
+    include_str!("report/plots.js"),
+    "\n",
+    include_str!("report/forces.js"),
+    "\n",
+    include_str!("report/modes.js"),
+    "\n",
+    include_str!("report/page.js"),
+);
+
+/// Content of the page.
+#[derive(Clone, Debug, Serialize)]
+pub struct Report<'a> {
+    /// Name on the command line.
+    pub name: &'a str,
+    /// Heading.
+    pub title: &'a str,
+    /// One or two sentences.
+    pub description: &'a str,
+    /// The text of the mechanism.
+    pub source: &'a str,
+    /// The command that makes this page again.
+    pub command: &'a str,
+    /// Pairs of a name and a value worth knowing.
+    pub facts: &'a [[String; 2]],
+    /// Motions of the same mechanism.
+    pub runs: &'a [Run<'a>],
+    /// Shapes as [`shapes`](crate::output::shapes::shapes()) writes them.
+    pub drawing: &'a [serde_json::Value],
+}
+
+/// A motion with its name.
+#[derive(Clone, Debug, Serialize)]
+pub struct Run<'a> {
+    /// Short name.
+    pub label: &'a str,
+    /// One phrase.
+    pub description: &'a str,
+    /// The motion.
+    #[serde(flatten)]
+    pub motion: &'a Motion,
+    /// Drawn places that are no outputs.
+    #[serde(skip_serializing_if = "<[PlaceCurve]>::is_empty")]
+    pub places: &'a [PlaceCurve],
+    /// Small motions about its last instant.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub small: Option<&'a SmallMotions>,
+}
+
+/// The page as one HTML file that needs no network.
+pub fn html(report: &Report) -> String {
+    let json = serde_json::to_string(report).expect("plain data has a JSON form");
+    // A script element must contain neither `</script>` nor `<!--`, which comments of a text may have.
+    let json = json.replace('<', "\\u003c");
+    let title = escaped(report.title);
+    let marks = [
+        ("/*TITLE*/", title.as_str()),
+        ("/*STYLE*/", STYLE),
+        ("/*DATA*/", json.as_str()),
+        ("/*SCRIPT*/", SCRIPT),
+    ];
+    filled(PAGE, &marks)
+}
+
+/// The template with each mark replaced; inserted text is not searched for marks again.
+fn filled(template: &str, marks: &[(&str, &str)]) -> String {
+    let mut page =
+        String::with_capacity(template.len() + marks.iter().map(|(_, text)| text.len()).sum::<usize>());
+    let mut rest = template;
+    let next = |rest: &str| {
+        let found = marks.iter().filter_map(|(mark, text)| rest.find(mark).map(|at| (at, mark.len(), *text)));
+        found.min_by_key(|(at, ..)| *at)
+    };
+    while let Some((at, length, text)) = next(rest) {
+        page.push_str(&rest[..at]);
+        page.push_str(text);
+        rest = &rest[at + length..];
+    }
+    page.push_str(rest);
+    page
+}
+
+fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use mbs_codegen::picture::{Along, Shape};
+
+    use crate::output::shapes::shapes;
+
+    fn page(source: &str) -> String {
+        let name = str::to_owned;
+        let motion = Motion { time: vec![0.0], closure: vec![1e-17], ..Motion::default() };
+        html(&Report {
+            name: "name",
+            title: "A & B",
+            description: "",
+            source,
+            command: "mbs run name",
+            facts: &[["steps".to_string(), "1".to_string()]],
+            runs: &[Run { label: "one", description: "", motion: &motion, places: &[], small: None }],
+            drawing: &shapes(&[
+                Shape::Joint { at: name("O") },
+                Shape::Slider { at: name("S"), along: Along::Fixed([1.0, 0.0]) },
+                Shape::Trace { of: name("P"), label: name("curve") },
+                Shape::Slider { at: name("S"), along: Along::Named(name("phi")) },
+                Shape::Face { points: ["L", "R"].map(name), back: name("G"), label: name("follower") },
+            ]),
+        })
+    }
+
+    fn data(page: &str) -> serde_json::Value {
+        let (_, rest) = page.split_once("id=\"data\">").expect("the data element");
+        let (json, _) = rest.split_once("</script>").expect("its end");
+        serde_json::from_str(json).expect("JSON")
+    }
+
+    #[test]
+    fn the_data_has_the_schema_of_the_page() {
+        let data = data(&page("mechanism!"));
+        assert_eq!(data["runs"][0]["label"], "one");
+        assert_eq!(data["runs"][0]["closure"][0], 1e-17);
+        assert_eq!(data["facts"][0], serde_json::json!(["steps", "1"]));
+        assert_eq!(data["drawing"][1], serde_json::json!({"kind": "slider", "at": "S", "along": [1.0, 0.0]}));
+        assert_eq!(data["drawing"][3]["along"], "phi");
+        assert_eq!(data["drawing"][4]["points"], serde_json::json!(["L", "R"]));
+        assert_eq!(data["drawing"][2], serde_json::json!({"kind": "trace", "of": "P", "label": "curve"}));
+    }
+
+    #[test]
+    fn a_text_cannot_end_the_script_element() {
+        let source = "</script><!-- /*STYLE*/ /*DATA*/ & \u{2028}";
+        assert_eq!(data(&page(source))["source"], source);
+    }
+
+    #[test]
+    fn all_marks_are_filled_and_nothing_is_fetched() {
+        let page = page("text");
+        assert!(page.contains("<title>A &amp; B</title>"));
+        for mark in ["/*TITLE*/", "/*STYLE*/", "/*DATA*/", "/*SCRIPT*/"] {
+            assert!(!page.contains(mark), "{mark}");
+        }
+        for fetch in ["src=\"http", "href=\"http", "url(http", "@import", "fetch(", "import("] {
+            assert!(!page.contains(fetch), "{fetch}");
+        }
+    }
+}

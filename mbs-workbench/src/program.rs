@@ -1,0 +1,136 @@
+//! Command line of `mbs`: runs, draws, prints and checks the mechanisms of a list.
+//!
+//! Exit codes: 0 done; 1 a mechanism could not be moved, a check failed, a file could not be written; 2 the
+//! command line does not make sense.
+
+use std::io::{self, Write};
+use std::process::ExitCode;
+use std::thread;
+
+use clap::{Parser, Subcommand};
+
+use crate::card::Card;
+use crate::catalogue::Catalogue;
+use crate::commands::run::Arguments as Analysis;
+use crate::commands::{self, CommandError};
+
+/// Mechanisms as exact code: run, draw, print and check them.
+#[derive(Parser)]
+#[command(name = "mbs", version, after_help = "Without a command, the first mechanism of the list runs.")]
+struct Arguments {
+    #[command(subcommand)]
+    command: Option<Command>,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// List the mechanisms
+    List,
+    /// Run the analysis that suits a mechanism; write a report page and a table of its motion
+    Run(commands::run::MotionArguments),
+    /// Compute positions, velocities and accelerations that drives prescribe
+    Kinematics(commands::run::DrivenArguments),
+    /// Integrate the motion that forces cause
+    Simulate(commands::run::MotionArguments),
+    /// Compute efforts of drives and loads of the motion that drives prescribe
+    Inverse(commands::run::DrivenArguments),
+    /// Find the position of rest and its stability
+    Equilibrium(commands::run::EquilibriumArguments),
+    /// Compute eigenvalues and modes of small motions about the equilibrium, or about a state
+    Modes(commands::run::ModesArguments),
+    /// Print the code that a mechanism's text becomes
+    Expand(commands::expand::Arguments),
+    /// Compare a mechanism's derivatives with CasADi's
+    Verify(commands::verify::Arguments),
+    /// Print Φ, Φ_q, Φ_t, γ with names on rows and columns: numbers at a time, or formulas
+    Print(commands::print::Arguments),
+    /// Write Φ, Φ_q, Φ_t, γ as a LaTeX document
+    Latex(commands::latex::Arguments),
+    /// Print sparsity, matching and the order of solution; draw the ordered Jacobian
+    Structure(commands::structure::Arguments),
+    /// Print Newton's iterations from a guess and the assembly that they end in
+    Newton(commands::newton::Arguments),
+    /// Draw which assembly is found from which guess
+    Basins(commands::basins::Arguments),
+    /// Print the largest time step for which Newton converges from the previous position, with and without the predictor
+    Next(commands::next::Arguments),
+    /// Print degrees of freedom, ranks, independent and dependent coordinates
+    Dof(commands::dof::Arguments),
+    /// Draw how far the constraints drift by several stabilisations
+    Drift(commands::drift::Arguments),
+    /// Compare one linkage in several kinds of coordinates
+    Compare(commands::compare::Arguments),
+    /// Lay a spline along a table from a file; say how far to trust it, draw it, print it as Rust
+    Table(commands::table_file::Arguments),
+}
+
+/// Stack of the program (bytes). Dense matrices are on it, for 82 coordinates with their multipliers half a megabyte each,
+/// and a build without optimisation keeps every copy.
+const STACK: usize = 64 << 20;
+
+/// Runs the command line on mechanisms, as `program(&[card!(Wiper::default())])`.
+///
+/// Exit codes: 0 done; 1 a mechanism could not be moved, a check failed, a file could not be written; 2 the command line
+/// or the list of mechanisms does not make sense.
+pub fn program(cards: &[Card]) -> ExitCode {
+    let command = Arguments::parse().command;
+    let catalogue = Catalogue { cards };
+    let run = || match execute(&catalogue, command) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => report(&error),
+    };
+    thread::scope(|scope| {
+        let started = thread::Builder::new().stack_size(STACK).spawn_scoped(scope, run);
+        match started.map(thread::ScopedJoinHandle::join) {
+            Ok(Ok(code)) => code,
+            // It panicked, with a message.
+            Ok(Err(_)) => ExitCode::from(101),
+            Err(error) => report(&CommandError::Failed(format!("cannot start a thread: {error}"))),
+        }
+    })
+}
+
+fn execute(catalogue: &Catalogue, command: Option<Command>) -> Result<(), CommandError> {
+    if let Some(name) = catalogue.repeated() {
+        return Err(CommandError::Usage(format!(
+            "two mechanisms are called `{name}`; put each in a module of its own, or make it by a function of its own name"
+        )));
+    }
+    let mut out = io::stdout().lock();
+    let analysis = |of: Analysis, out: &mut dyn Write| commands::run::run(catalogue, &of, out);
+    match command {
+        None => match catalogue.first() {
+            Some(card) => analysis(Analysis::defaults(&card.name()), &mut out),
+            None => commands::list::run(catalogue, &mut out),
+        },
+        Some(Command::List) => commands::list::run(catalogue, &mut out),
+        Some(Command::Run(arguments)) => analysis(Analysis::run(arguments), &mut out),
+        Some(Command::Kinematics(arguments)) => analysis(Analysis::kinematics(arguments), &mut out),
+        Some(Command::Simulate(arguments)) => analysis(Analysis::simulate(arguments), &mut out),
+        Some(Command::Inverse(arguments)) => analysis(Analysis::inverse(arguments), &mut out),
+        Some(Command::Equilibrium(arguments)) => analysis(Analysis::equilibrium(arguments), &mut out),
+        Some(Command::Modes(arguments)) => analysis(Analysis::modes(arguments), &mut out),
+        Some(Command::Expand(arguments)) => commands::expand::run(catalogue, &arguments, &mut out),
+        Some(Command::Verify(arguments)) => commands::verify::run(catalogue, &arguments, &mut out),
+        Some(Command::Print(arguments)) => commands::print::run(catalogue, &arguments, &mut out),
+        Some(Command::Latex(arguments)) => commands::latex::run(catalogue, &arguments, &mut out),
+        Some(Command::Structure(arguments)) => commands::structure::run(catalogue, &arguments, &mut out),
+        Some(Command::Newton(arguments)) => commands::newton::run(catalogue, &arguments, &mut out),
+        Some(Command::Basins(arguments)) => commands::basins::run(catalogue, &arguments, &mut out),
+        Some(Command::Next(arguments)) => commands::next::run(catalogue, &arguments, &mut out),
+        Some(Command::Dof(arguments)) => commands::dof::run(catalogue, &arguments, &mut out),
+        Some(Command::Drift(arguments)) => commands::drift::run(catalogue, &arguments, &mut out),
+        Some(Command::Compare(arguments)) => commands::compare::run(catalogue, &arguments, &mut out),
+        Some(Command::Table(arguments)) => commands::table_file::run(&arguments, &mut out),
+    }?;
+    out.flush().map_err(CommandError::Output)
+}
+
+fn report(error: &CommandError) -> ExitCode {
+    if error.is_closed_pipe() {
+        return ExitCode::SUCCESS;
+    }
+    // If the message cannot be written, the exit code alone reports the failure.
+    let _ = writeln!(io::stderr(), "error: {error}");
+    ExitCode::from(error.exit_code())
+}

@@ -1,0 +1,17 @@
+//! Tests of the workbench on ready mechanisms.
+
+mod basins;
+mod catalogue;
+mod comparison;
+mod drawing;
+mod experiment;
+mod facade;
+mod formulas;
+mod freedom;
+mod latex;
+mod modes;
+mod motion;
+mod next_position;
+mod picture;
+mod powers;
+mod settling;

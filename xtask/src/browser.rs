@@ -1,0 +1,80 @@
+//! Reports of all mechanisms in headless Chromium; `xtask/src/page.mjs` uses each page.
+
+use std::fs;
+use std::path::Path;
+use std::sync::Mutex;
+use std::thread;
+
+use crate::shell::{command, install, need, output, root, step, target};
+
+/// Library that controls the browser; it contains no browser itself.
+const DRIVER: &str = "playwright-core@1.55.0";
+
+/// Mechanisms at rest, which have modes in place of a motion.
+const WITH_MODES: [&str; 3] = ["double_pendulum", "quarter_car", "governor"];
+
+/// Writes the report of each mechanism and opens it.
+///
+/// # Errors
+/// A missing tool with its cure, a report that cannot be written, a page that fails.
+pub fn run() -> Result<(), String> {
+    install("chromium", "chromium")?;
+    need("npm", "install Node.js 20 or newer")?;
+    let scratch = target().join("browser");
+    let written = |error: std::io::Error| format!("{}: {error}", scratch.display());
+    fs::create_dir_all(&scratch).map_err(written)?;
+    if !scratch.join("node_modules/playwright-core").is_dir() {
+        let options = ["install", "--silent", "--no-save", "--no-audit", "--no-fund", "--prefix"];
+        step(command("npm", &options).arg(&scratch).arg(DRIVER))?;
+    }
+    // The same build as for the tests of the whole workspace, where the program is built too.
+    step(&mut command("cargo", &["test", "--quiet", "--workspace", "--test", "program", "--no-run"]))?;
+    println!("\n== reports in a browser");
+    let pages = reports(&target().join("debug/mbs-catalogue"), &scratch)?;
+    // Next to node_modules, where Node looks for it.
+    let page = scratch.join("page.mjs");
+    fs::copy(root().join("xtask/src/page.mjs"), &page).map_err(written)?;
+    let chromium = output(&mut command("sh", &["-c", "command -v chromium"]))?;
+    crate::shell::run(command("node", &[]).arg(page).arg(chromium.trim()).args(pages))
+}
+
+/// Reports of all mechanisms, two at a time; their pages.
+fn reports(program: &Path, scratch: &Path) -> Result<Vec<String>, String> {
+    let program = program.to_str().ok_or("the target directory is not UTF-8")?;
+    let list = output(&mut command(program, &["list"]))?;
+    let names = list.lines().filter(|line| line.starts_with(|first: char| first.is_ascii_lowercase()));
+    let names = names.filter_map(|line| line.split_whitespace().next());
+    let mut wanted: Vec<(String, Vec<&str>)> =
+        names.map(|name| (name.to_string(), [&["run"], &options(name)[..]].concat())).collect();
+    let modes = WITH_MODES.map(|name| (format!("{name}-linear"), vec!["modes", name]));
+    wanted.extend(modes);
+    let pages =
+        wanted.iter().map(|(name, _)| format!("{}/report.html", scratch.join(name).display())).collect();
+    let queue = Mutex::new(wanted.iter());
+    let worker = || {
+        loop {
+            let next = queue.lock().map_err(|_| "a report has failed")?.next();
+            let Some((name, options)) = next else { return Ok::<(), String>(()) };
+            let mut run = command(program, options);
+            output(run.arg("--out").arg(scratch.join(name)))?;
+        }
+    };
+    thread::scope(|scope| {
+        let workers = [scope.spawn(worker), scope.spawn(worker)];
+        workers
+            .into_iter()
+            .try_for_each(|worker| worker.join().map_err(|_| "a report has failed".to_string())?)
+    })?;
+    Ok(pages)
+}
+
+/// Name and shorter motions of mechanisms whose debug build takes long.
+fn options(name: &str) -> Vec<&str> {
+    match name {
+        // Matrices of 163 rows take a moment each where nothing is optimised.
+        "n_four_bar_40" => vec![name, "--until", "0.1"],
+        // Each of its forces has a run of its own for its work.
+        "governor" => vec![name, "--until", "1"],
+        _ => vec![name],
+    }
+}

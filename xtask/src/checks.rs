@@ -1,0 +1,77 @@
+//! Two tiers of checks: a change must pass the first, a release the second.
+
+use crate::shell::{command, exists, need, output, root, step};
+use crate::{browser, documents, growth, instructions, lines};
+
+/// The oldest compiler that the workspace names.
+const OLDEST: &str = "1.89";
+
+/// Format, lints, documentation, tests, counts of instructions.
+///
+/// # Errors
+/// The first step that fails, or a missing tool with its cure.
+pub fn ci() -> Result<(), String> {
+    need("python3", "install Python 3.11 or newer with venv")?;
+    need("cc", "install a C compiler")?;
+    need("nm", "install binutils")?;
+    step(&mut command("cargo", &["fmt", "--all", "--check"]))?;
+    step(&mut command("cargo", &["fmt", "--all", "--check", "--manifest-path", "tests/proofs/Cargo.toml"]))?;
+    step(&mut command(
+        "cargo",
+        &["clippy", "--workspace", "--all-targets", "--features", "mbs-motions/long", "--", "-D", "warnings"],
+    ))?;
+    documents::rustdoc()?;
+    step(&mut command("cargo", &["test", "--workspace"]))?;
+    instructions::run(false)
+}
+
+/// All of [`ci`], and checks that take long or need further tools.
+///
+/// # Errors
+/// Those of its parts.
+pub fn full() -> Result<(), String> {
+    // Before the checks that take long.
+    need("npm", "install Node.js 20 or newer")?;
+    documents::need_book()?;
+    need("cargo-llvm-lines", "`cargo install cargo-llvm-lines`")?;
+    ci()?;
+    step(&mut command("cargo", &["test", "-p", "mbs-motions", "--features", "long"]))?;
+    browser::run()?;
+    documents::book()?;
+    documents::package()?;
+    growth::run()?;
+    lines::run(false)?;
+    oldest()
+}
+
+/// Compiles with the oldest compiler, where rustup has it.
+fn oldest() -> Result<(), String> {
+    let listed = if exists("rustup") {
+        output(&mut command("rustup", &["toolchain", "list"]))?
+    } else {
+        String::new()
+    };
+    let name = listed.lines().find(|name| name.starts_with(OLDEST)).and_then(|line| line.split(' ').next());
+    let Some(name) = name else {
+        println!(
+            "\n== not run: a build with Rust {OLDEST}, which is not installed (`rustup toolchain install {OLDEST}`)"
+        );
+        return Ok(());
+    };
+    let mut check = command("rustup", &["run", name, "cargo", "check", "--workspace"]);
+    step(check.env("CARGO_TARGET_DIR", crate::shell::target().join(OLDEST)))
+}
+
+/// Both benches; `options` are theirs.
+///
+/// # Errors
+/// A missing tool with its cure, or a bench that fails.
+pub fn bench(options: &[&str]) -> Result<(), String> {
+    need("python3", "install Python 3.11 or newer with venv")?;
+    need("cc", "install a C compiler")?;
+    for bench in ["kinematics", "dynamics"] {
+        let mut command = command("cargo", &["bench", "-p", "mbs-tests", "--bench", bench, "--"]);
+        step(command.args(options).current_dir(root()))?;
+    }
+    Ok(())
+}

@@ -1,0 +1,62 @@
+//! Tasks of the project: `cargo xtask TASK`.
+
+mod browser;
+mod checks;
+mod documents;
+mod growth;
+mod instructions;
+mod lines;
+mod shell;
+mod words;
+
+use std::process::ExitCode;
+
+const USAGE: &str = "\
+cargo xtask TASK
+
+ci                       what a change must pass: format, lints, documents, tests, counts of instructions
+full                     `ci`, long motions, reports in a browser, the book, packages, growth, lines, Rust 1.89 where it is installed
+bench [OPTIONS]          kinematics and dynamics against their peers; `--docs` writes the tables of the book
+growth                   times that a compiler takes over long mechanisms
+instructions [--update]  instructions of evaluations and steps, compared with the stored counts or stored
+lines [--update]         lines of LLVM code that the workbench costs a mechanism, compared with the stored ones or stored
+docs                     documentation of all crates without warnings, doc tests of README and book, the book
+browser                  reports of all mechanisms in headless Chromium
+package                  packages of all crates, each compiled as a registry would have it
+words [--count]          reader's aid: doc comments that begin with a question word, sentences of more than 25 words";
+
+fn main() -> ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let (task, options) = match arguments.split_first() {
+        Some((task, options)) => (task.as_str(), options),
+        None => ("help", &[][..]),
+    };
+    let options: Vec<&str> = options.iter().map(String::as_str).collect();
+    let done = match (task, &options[..]) {
+        ("help" | "--help" | "-h", []) => {
+            println!("{USAGE}");
+            Ok(())
+        }
+        ("ci", []) => checks::ci(),
+        ("full", []) => checks::full(),
+        ("bench", options) => checks::bench(options),
+        ("growth", []) => growth::run(),
+        ("instructions", []) => instructions::run(false),
+        ("instructions", ["--update"]) => instructions::run(true),
+        ("lines", []) => lines::run(false),
+        ("lines", ["--update"]) => lines::run(true),
+        ("docs", []) => documents::all(),
+        ("browser", []) => browser::run(),
+        ("package", []) => documents::package(),
+        ("words", []) => words::run(false),
+        ("words", ["--count"]) => words::run(true),
+        _ => Err(format!("unknown task `{}`\n\n{USAGE}", arguments.join(" "))),
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(reason) => {
+            eprintln!("{reason}");
+            ExitCode::FAILURE
+        }
+    }
+}
