@@ -104,6 +104,12 @@ mod tests {
     /// Off the rows the dependent one holds the loop as well: Newton's method may end at any position that closes.
     #[test]
     fn a_loop_with_a_dependent_row_rests_where_its_forces_balance() {
+        // Three quarters of what a thread of a test has, for the analysis with most numbers at once on the largest text here.
+        let small = std::thread::Builder::new().stack_size(3 << 19);
+        small.spawn(rest_is_balanced).expect("a thread").join().expect("a position of rest");
+    }
+
+    fn rest_is_balanced() {
         let bricard = Bricard::<f64>::default();
         let parameters = bricard.parameters();
         for (first, pieces) in [(0.3, 3), (0.3, 4), (0.1, 2), (0.7, 5), (1.1, 6)] {

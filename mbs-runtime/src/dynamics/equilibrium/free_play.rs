@@ -118,33 +118,29 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Beside<'_, S,
     /// The direction (N) from the equilibrium to a place where no force is left, from the side to which `probe` (N) leads. Where
     /// several contacts let go together, no free motion of the equilibrium is such a direction.
     fn relaxed(&self, probe: &[R; N]) -> Option<[R; N]> {
-        let (mut y, there) = self.moved(probe)?;
-        let mut lambda = *self.lambda;
+        let (mut y, mut lambda) = (self.beside(probe)?, *self.lambda);
         let (mut whole, mut other) = (y, lambda);
-        self.relax(&there, R::constant(1.0), (&mut whole, &mut other));
+        self.relax(R::constant(1.0), (&mut whole, &mut other))?;
         self.away(&whole)?;
         let parts = (self.here.freedom + RELAXATIONS).min(MOST_RELAXATIONS);
         for step in 0..parts + WHOLE_STEPS {
             let share = if step < parts { RELAXATION } else { 1.0 };
-            let there = FreeStiffness::of(self.model, self.t, &y, &lambda).ok()?;
-            self.relax(&there, R::constant(share), (&mut y, &mut lambda));
+            self.relax(R::constant(share), (&mut y, &mut lambda))?;
         }
         self.away(&y)
     }
 
-    /// `share` of Newton's step at `y` with multipliers `lambda` (M).
-    fn relax(
-        &self,
-        there: &FreeStiffness<R, N, M>,
-        share: R,
-        (y, lambda): (&mut State<R, N, S::States>, &mut [R; M]),
-    ) {
+    /// `share` of Newton's step at `y` with multipliers `lambda` (M); none where there is no stiffness.
+    #[inline(never)]
+    fn relax(&self, share: R, (y, lambda): (&mut State<R, N, S::States>, &mut [R; M])) -> Option<()> {
         let model = self.model;
+        let there = FreeStiffness::of(model, self.t, y, lambda).ok()?;
         let position = model.position(self.t, y);
         let imbalance = model.imbalance(&position, y, &[R::constant(0.0); N], (lambda, lambda));
         let answer = there.answer(&imbalance, &model.mechanism.phi(model.parameters, &position));
         y.q = y.q.plus(-share, &[1.0], [&answer.step]);
         *lambda = lambda.plus(-share, &[1.0], [&answer.change]);
+        Some(())
     }
 
     /// The direction (N) from the rest to `y`, where they are apart.
@@ -182,13 +178,19 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Beside<'_, S,
 
     /// The state at the side along `motion` (N), and its free stiffness; none where there is no motion, or no stiffness there.
     fn moved(&self, motion: &[R; N]) -> Option<Place<S, R, N, M>> {
+        let y = self.beside(motion)?;
+        let there = FreeStiffness::of(self.model, self.t, &y, self.lambda).ok()?;
+        Some((y, there))
+    }
+
+    /// The state at the side along `motion` (N); none where there is no motion.
+    fn beside(&self, motion: &[R; N]) -> Option<State<R, N, S::States>> {
         let size = self.model.largest(motion);
         if !R::constant(SHARE).less(size) {
             return None;
         }
         let mut y = *self.y;
         y.q = y.q.plus(self.aside / size, &[1.0], [motion]);
-        let there = FreeStiffness::of(self.model, self.t, &y, self.lambda).ok()?;
-        Some((y, there))
+        Some(y)
     }
 }

@@ -61,9 +61,7 @@ impl<R: Real, const N: usize, const M: usize> FreeStiffness<R, N, M> {
     ) -> Result<Self, Failure> {
         let (zero, position) = (R::constant(0.0), model.position(t, y));
         let stiffness = Tangent::at_rest(model, &position, y, lambda).0.stiffness;
-        let phi_q = model.mechanism.phi_q(model.parameters, &position);
-        let system = System::new(&model.metric.mass(), &phi_q, model.metric);
-        let factors = system.factorize_rank_revealing(truncation::<R>(), S::COORDINATES, t)?;
+        let factors = model.free_factors(&position, t)?;
         let force = model.mechanism.force(model.parameters, &position, &y.qd, &y.states, lambda);
         let scales = &model.metric.coordinates;
         let mut size = zero;
@@ -74,7 +72,7 @@ impl<R: Real, const N: usize, const M: usize> FreeStiffness<R, N, M> {
             }
         }
         let motions = factors.free_motions();
-        let reduced = motions.map(|left| motions.map(|right| dot(&left, &times(&stiffness, &right))));
+        let reduced = projected(&motions, &stiffness);
         let (freedom, nothing) = (N.saturating_sub(factors.rank()), unanswered::<R>() * size);
         Ok(FreeStiffness { factors, freedom, motions, stiffness, reduced, size, nothing })
     }
@@ -155,6 +153,25 @@ impl<R: Real, const N: usize, const M: usize> FreeStiffness<R, N, M> {
             moved.iter_mut().zip(motion).for_each(|(sum, part)| *sum = *sum + *share * *part);
         }
         moved
+    }
+}
+
+/// Zᵀ K Z of `motions` Z (N of N) and `stiffness` K (N rows of N).
+#[inline(never)]
+fn projected<R: Real, const N: usize>(motions: &[[R; N]; N], stiffness: &[[R; N]; N]) -> [[R; N]; N] {
+    motions.map(|left| motions.map(|right| dot(&left, &times(stiffness, &right))))
+}
+
+impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, R, N, M> {
+    /// Factors of Φ_q at `position`, rank-revealing, with the metric in place of a mass.
+    ///
+    /// # Errors
+    /// As [`System::factorize`].
+    #[inline(never)]
+    pub(crate) fn free_factors(&self, position: &S::Position, t: R) -> Result<Factors<R, N, M>, Failure> {
+        let phi_q = self.mechanism.phi_q(self.parameters, position);
+        let system = System::new(&self.metric.mass(), &phi_q, self.metric);
+        system.factorize_rank_revealing(truncation::<R>(), S::COORDINATES, t)
     }
 }
 

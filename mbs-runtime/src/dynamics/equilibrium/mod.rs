@@ -1,20 +1,21 @@
 //! Static equilibrium: where a mechanism rests.
 
 pub(crate) mod consistent_start;
+pub(crate) mod correction;
 pub(crate) mod free_play;
 pub(crate) mod free_stiffness;
 pub(crate) mod states;
 pub(crate) mod with_integrators;
 
 use crate::dynamics::equilibrium::consistent_start::close;
+use crate::dynamics::equilibrium::correction::{
+    HALVINGS, PROMISED, capped, correction, damped, largest, saddle,
+};
 use crate::dynamics::equilibrium::free_play::with_play;
 use crate::dynamics::equilibrium::free_stiffness::{Answer, FreeStiffness};
 use crate::dynamics::equilibrium::states::resting_anywhere;
-use crate::dynamics::equilibrium::with_integrators::Saddle;
 use crate::dynamics::implicit::iteration::MOST_ITERATIONS;
 use crate::dynamics::integrators::vector::{State, Vector};
-use crate::dynamics::linear_systems::kkt::{System, truncation};
-use crate::dynamics::linear_systems::tangent::Tangent;
 use crate::dynamics::model::method::require_slopes_at_rest;
 use crate::dynamics::model::metric::Metric;
 use crate::dynamics::model::sign_checks::parameter_failure;
@@ -23,23 +24,9 @@ use crate::failure::{Failure, FailureKind, checks};
 use crate::mechanism::dynamic::Dynamic;
 use crate::scalar::number::Real;
 
-/// Largest change of a coordinate in one iteration, in the metric (rad, or reference lengths): half a radian, as in the
-/// search for an assembly.
-const LARGEST_STEP: f64 = 0.5;
-
 /// Moves of the search for the place where the forces are nearest to balance: ten turns of a coordinate, or a dozen digits of
 /// a place where they only come near.
 const MOST_MOVES: u32 = 120;
-
-/// Times that a move is halved before it counts as leading nowhere: to a thousandth.
-const HALVINGS: u32 = 10;
-
-/// Least part of the predicted decrease that a move must give. Source: Nocedal & Wright 2006, §3.1 (Armijo).
-const PROMISED: f64 = 1e-4;
-
-/// Largest part of the distance to an equilibrium after a step in which lengths may move farther than [`LARGEST_STEP`]: after
-/// a linear control it is rounding.
-const FAR: f64 = 0.5;
 
 /// Distance to the equilibrium of the free motions, in the metric and in √ε, at which a position with dependent rows is at rest: 1e-6
 /// in `f64`. The first-order motion of a free coordinate leaves the square of a step on the rows, so √ε is what the step resolves.
@@ -132,15 +119,23 @@ pub fn equilibrium_with_states<S: Dynamic<R, N, M>, R: Real, const N: usize, con
         return Ok((found, y.states));
     }
     model.check(t, &y)?;
-    let last = correction(&model, t, &y, &balancing(&model, t, &y)?.0)?;
-    if last.saddle.is_some() {
-        return Err(model.unbalanced(&last.step, t, MOST_ITERATIONS));
-    }
+    require_no_integral(&model, t, &y)?;
     approach(&model, t, &mut y)?;
     match balanced(&model, t, &mut y)? {
         Some(found) => Ok((found, y.states)),
         None => Err(model.unbalanced(&answer(&model, t, &y)?.step, t, MOST_ITERATIONS)),
     }
+}
+
+/// Fails where Newton's method ended at `y` without an equilibrium and states integrate.
+#[inline(never)]
+fn require_no_integral<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
+    model: &Model<'_, S, R, N, M>,
+    t: R,
+    y: &State<R, N, S::States>,
+) -> Result<(), Failure> {
+    let last = correction(model, t, y, &balancing(model, t, y)?.0)?;
+    if last.integrated { Err(model.unbalanced(&last.step, t, MOST_ITERATIONS)) } else { Ok(()) }
 }
 
 /// 1 for each first-order state that may have other values at the equilibrium `found` too: where two integrate one
@@ -161,7 +156,7 @@ pub fn undetermined_states<S: Dynamic<R, N, M>, R: Real, const N: usize, const M
     let y = State { q: found.q, qd: [zero; N], states: *states, work: zero };
     model.check(t, &y)?;
     let mut undetermined = resting_anywhere(&model, t, &y, &found.lambda);
-    if let Some(saddle) = correction(&model, t, &y, &found.lambda)?.saddle {
+    if let Some(saddle) = saddle(&model, t, &y, &found.lambda)? {
         let others = saddle.indifferent(&metric.coordinates).1;
         let marks = undetermined.as_mut().iter_mut().zip(others.as_ref());
         marks.for_each(|(mark, other)| *mark = mark.max(*other));
@@ -190,34 +185,74 @@ fn balanced<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     let (mut lambda, _) = balancing(model, t, y)?;
     let mut last = R::constant(f64::MAX);
     for iterations in 1..=MOST_ITERATIONS {
-        model.settle_states(t, y, &lambda)?;
-        let correction = correction(model, t, y, &lambda)?;
-        let share = damped(model, t, (y, &lambda), &correction);
-        (*y, lambda) = correction.moved(y, &lambda, share);
-        let stand = correction.saddle.as_ref().is_none_or(|saddle| saddle.stand(&correction.states));
-        if model.standing(&correction.step, &y.q, &mut last)? && stand {
-            model.settle_states(t, y, &lambda)?;
-            model.require_integrated(t, y, &lambda)?;
-            model.require_borne(t, &correction)?;
-            // Rows that follow from others do so at the end alone: on the way their multipliers may have grown against each other.
-            let (shortest, unique) = balancing(model, t, y)?;
-            // Off the rows, dependent ones hold every motion: a step that ends there says nothing of the forces.
-            if unique.contains(&false) && correction.saddle.is_none() && !is_balanced(model, t, y)? {
-                return Ok(None);
-            }
-            lambda = if unique.contains(&false) { shortest } else { lambda };
-            // What rounding has left of forces on the way would be a stiffness where no force is left.
-            let held = if S::FORCE_USES_MULTIPLIERS { lambda } else { shortest };
-            let scales = &model.metric.coordinates;
-            let indifferent = match &self::correction(model, t, y, &lambda)?.saddle {
-                Some(saddle) => saddle.indifferent(scales).0,
-                None => FreeStiffness::of(model, t, y, &held)?.indifferent(scales),
-            };
-            let indifferent = with_play(model, t, y, &held, indifferent)?;
-            return Ok(Some(Equilibrium { q: y.q, lambda, unique, indifferent, iterations }));
+        if let Some(integrated) = stands_after_step(model, t, (y, &mut lambda), &mut last)? {
+            let found = found_at(model, t, y, &lambda, integrated)?;
+            return Ok(found.map(|found| Equilibrium { iterations, ..found }));
         }
     }
     Ok(None)
+}
+
+/// Moves `y` and the multipliers `lambda` (M) by a step of Newton's method, the one before it of the size `last`. Of an equilibrium
+/// `true` where states integrate; none where the search goes on.
+#[inline(never)]
+fn stands_after_step<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
+    model: &Model<'_, S, R, N, M>,
+    t: R,
+    (y, lambda): (&mut State<R, N, S::States>, &mut [R; M]),
+    last: &mut R,
+) -> Result<Option<bool>, Failure> {
+    model.settle_states(t, y, lambda)?;
+    let correction = correction(model, t, y, lambda)?;
+    let share = damped(model, t, (y, lambda), &correction);
+    (*y, *lambda) = correction.moved(y, lambda, share);
+    if !model.standing(&correction.step, &y.q, last)? || !correction.stand {
+        return Ok(None);
+    }
+    model.settle_states(t, y, lambda)?;
+    model.require_integrated(t, y, lambda)?;
+    model.require_borne(t, &correction)?;
+    Ok(Some(correction.integrated))
+}
+
+/// The equilibrium at `y`, where Newton's method ended with the multipliers `lambda` (M), states `integrated` or not; none where
+/// dependent rows have hidden that forces do not balance.
+#[inline(never)]
+fn found_at<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
+    model: &Model<'_, S, R, N, M>,
+    t: R,
+    y: &State<R, N, S::States>,
+    lambda: &[R; M],
+    integrated: bool,
+) -> Result<Option<Equilibrium<R, N, M>>, Failure> {
+    // Rows that follow from others do so at the end alone: on the way their multipliers may have grown against each other.
+    let (shortest, unique) = balancing(model, t, y)?;
+    // Off the rows, dependent ones hold every motion: a step that ends there says nothing of the forces.
+    if unique.contains(&false) && !integrated && !is_balanced(model, t, y)? {
+        return Ok(None);
+    }
+    let lambda = if unique.contains(&false) { shortest } else { *lambda };
+    // What rounding has left of forces on the way would be a stiffness where no force is left.
+    let held = if S::FORCE_USES_MULTIPLIERS { lambda } else { shortest };
+    let indifferent = unanswered_coordinates(model, t, y, (&lambda, &held))?;
+    let indifferent = with_play(model, t, y, &held, indifferent)?;
+    Ok(Some(Equilibrium { q: y.q, lambda, unique, indifferent, iterations: 0 }))
+}
+
+/// `true` for each coordinate (N) that moves without any force answering at the equilibrium `y` with multipliers `lambda` (M), of
+/// which `held` (M) give the stiffness.
+#[inline(never)]
+fn unanswered_coordinates<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
+    model: &Model<'_, S, R, N, M>,
+    t: R,
+    y: &State<R, N, S::States>,
+    (lambda, held): (&[R; M], &[R; M]),
+) -> Result<[bool; N], Failure> {
+    let scales = &model.metric.coordinates;
+    match &saddle(model, t, y, lambda)? {
+        Some(saddle) => Ok(saddle.indifferent(scales).0),
+        None => Ok(FreeStiffness::of(model, t, y, held)?.indifferent(scales)),
+    }
 }
 
 /// `true` if the motions that the rows leave free, at a position `y` that meets them, lead to no equilibrium farther than
@@ -233,161 +268,6 @@ fn is_balanced<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     let allowed = R::constant(UNBALANCED) * R::EPSILON.sqrt();
     let near = largest(&answer.step, &model.metric.coordinates) <= allowed;
     Ok(near && !R::constant(0.0).less(answer.push))
-}
-
-/// A step of Newton's method against itself.
-struct Correction<R, const N: usize, const M: usize, P, Z> {
-    /// Of the coordinates: N.
-    step: [R; N],
-    /// Of the multipliers: M.
-    change: [R; M],
-    /// Of the first-order states that integrate.
-    states: Z,
-    /// The system that it was solved by where states integrate.
-    saddle: Option<Saddle<R, N, M, P, Z>>,
-    /// The part that neither stiffness nor states answer, as a motion (N), and its length (J).
-    left: ([R; N], R),
-}
-
-impl<R: Real, const N: usize, const M: usize, P, Z: Copy + AsRef<[R]> + AsMut<[R]>>
-    Correction<R, N, M, P, Z>
-{
-    /// `y` and the multipliers `lambda` (M) after `share` of it.
-    fn moved(&self, y: &State<R, N, Z>, lambda: &[R; M], share: R) -> (State<R, N, Z>, [R; M]) {
-        let mut moved = *y;
-        moved.q = y.q.plus(-share, &[1.0], [&self.step]);
-        let states = moved.states.as_mut().iter_mut().zip(self.states.as_ref());
-        states.for_each(|(state, step)| *state = *state - share * *step);
-        (moved, lambda.plus(-share, &[1.0], [&self.change]))
-    }
-}
-
-/// That of a mechanism of type `S`.
-type CorrectionOf<S, R, const N: usize, const M: usize> =
-    Correction<R, N, M, <S as Dynamic<R, N, M>>::StateSlopes, <S as Dynamic<R, N, M>>::States>;
-
-/// The correction at `y` with the multipliers `lambda` (M).
-fn correction<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
-    model: &Model<'_, S, R, N, M>,
-    t: R,
-    y: &State<R, N, S::States>,
-    lambda: &[R; M],
-) -> Result<CorrectionOf<S, R, N, M>, Failure> {
-    let (mechanism, parameters, zero) = (model.mechanism, model.parameters, R::constant(0.0));
-    let position = model.position(t, y);
-    let (tangent, integrals) = Tangent::at_rest(model, &position, y, lambda);
-    let phi_q = mechanism.phi_q(parameters, &position);
-    let imbalance = model.imbalance(&position, y, &[zero; N], (lambda, lambda));
-    let phi = mechanism.phi(parameters, &position);
-    let (mut states, scales) = (y.states, &model.metric.coordinates);
-    states.as_mut().iter_mut().for_each(|state| *state = zero);
-    if integrals.is_none() {
-        let factors = System::new(&tangent.stiffness, &phi_q, model.metric).factorize(S::COORDINATES, t);
-        if let Ok(factors) = &factors
-            && !factors.is_rank_revealing()
-        {
-            let solve = |imbalance: &[R; N], phi: &[R; M]| factors.solve(imbalance, phi);
-            let (step, change) =
-                model.corrected((&position, t), y, &[zero; N], (lambda, lambda), &phi, solve)?;
-            return Ok(Correction { step, change, states, saddle: None, left: ([zero; N], zero) });
-        }
-    }
-    let free = FreeStiffness::of(model, t, y, lambda)?;
-    let saddle = integrals.map(|integrals| Saddle::of(free, integrals, &y.states, scales));
-    let of = |imbalance: &[R; N], phi: &[R; M]| match &saddle {
-        Some(saddle) => saddle.answer(imbalance, phi),
-        None => (free.answer(imbalance, phi), states),
-    };
-    let answered = match S::FORCE_USES_MULTIPLIERS {
-        false => of(&imbalance, &phi),
-        true => {
-            of(&model.borne((&position, t), y, lambda, &phi, |imbalance, phi| of(imbalance, phi).0)?, &phi)
-        }
-    };
-    let answer = answered.0;
-    states = answered.1;
-    let (mut step, size) = (answer.step, largest(&answer.unanswered, scales));
-    // Of a motion that changes what a state integrates nothing but rounding is left.
-    if R::constant(0.0).less(answer.push) && (saddle.is_none() || zero < size) {
-        // No stiffness stands against this part of the forces: it moves the mechanism as far as a step may.
-        step = step.plus(R::constant(LARGEST_STEP) / size, &[1.0], [&answer.unanswered]);
-    }
-    Ok(Correction { step, change: answer.change, states, saddle, left: (answer.pull, answer.push) })
-}
-
-/// The share of a correction that brings `y` with the multipliers `lambda` (M) nearer to an equilibrium, where states integrate.
-/// Elsewhere, and where none of those tried does, the share that moves no coordinate too far. One that comes much nearer may move
-/// lengths farther.
-fn damped<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
-    model: &Model<'_, S, R, N, M>,
-    t: R,
-    (y, lambda): (&State<R, N, S::States>, &[R; M]),
-    correction: &CorrectionOf<S, R, N, M>,
-) -> R {
-    let whole = capped(&correction.step, &model.metric.coordinates);
-    let Some(saddle) = &correction.saddle else { return whole };
-    let now = saddle.distance(model, t, y, lambda);
-    let comes_below = |share: R, distance: R| {
-        let (mut trial, other) = correction.moved(y, lambda, share);
-        let settled = model.settle_states(t, &mut trial, &other).is_ok();
-        settled && saddle.distance(model, t, &trial, &other).less(distance)
-    };
-    let far = capped_turn::<S, R, N, M>(&correction.step);
-    if whole < far && comes_below(far, now * R::constant(FAR)) {
-        return far;
-    }
-    let mut share = whole;
-    for _ in 0..HALVINGS {
-        if comes_below(share, now * (R::constant(1.0) - R::constant(PROMISED) * share)) {
-            return share;
-        }
-        share = share * R::constant(0.5);
-    }
-    whole
-}
-
-impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, R, N, M> {
-    /// Φ_qᵀ λ − Q at rest: N; friction has the multipliers (M) that the correction `answer` of forces (N) and `phi` (M) leads to.
-    ///
-    /// # Errors
-    /// [`FailureKind::FrictionLocked`], [`FailureKind::Ambiguous`].
-    #[cold]
-    #[inline(never)]
-    fn borne(
-        &self,
-        (position, t): (&S::Position, R),
-        y: &State<R, N, S::States>,
-        lambda: &[R; M],
-        phi: &[R; M],
-        answer: impl Fn(&[R; N], &[R; M]) -> Answer<R, N, M>,
-    ) -> Result<[R; N], Failure> {
-        let (zero, one) = (R::constant(0.0), R::constant(1.0));
-        let held = self.mechanism.reaction(self.parameters, position, lambda);
-        // Of rates that are not 0 a force alone answers nothing.
-        let nothing = answer(&[zero; N], &[zero; M]).change;
-        let found = self.balanced(position, (t, y), lambda, |force, whole| {
-            let found = match whole {
-                true => lambda.plus(-one, &[1.0], [&answer(&held.plus(-one, &[1.0], [force]), phi).change]),
-                false => nothing.plus(-one, &[1.0], [&answer(&force.map(|force| -force), &[zero; M]).change]),
-            };
-            ([zero; N], found)
-        });
-        Ok(held.plus(-one, &[1.0], [&found?.2]))
-    }
-
-    /// Fails where the rates of states that integrate hold the mechanism, and forces still push it: with a state that pushes
-    /// nothing, or else with the coordinate.
-    fn require_borne(&self, t: R, correction: &CorrectionOf<S, R, N, M>) -> Result<(), Failure> {
-        let (left, push) = correction.left;
-        let Some(saddle) = &correction.saddle else { return Ok(()) };
-        if !R::constant(0.0).less(push) {
-            return Ok(());
-        }
-        match saddle.idle().and_then(|place| S::STATES.get(place)) {
-            Some(state) => Err(FailureKind::NoStateEquilibrium { state }.at(t.to_f64())),
-            None => Err(no_equilibrium(self, t, &left, push)),
-        }
-    }
 }
 
 /// Moves `y` to where the forces of the free motions are nearest to balance, along the rows.
@@ -450,7 +330,7 @@ fn answer<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
 
 /// The first coordinate that moves as the forces push, by `pull` (N) of the length `imbalance` (J), at least half as far as the
 /// farthest; with the work (J) of the forces along its unit.
-fn no_equilibrium<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
+pub(crate) fn no_equilibrium<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     model: &Model<'_, S, R, N, M>,
     t: R,
     pull: &[R; N],
@@ -477,26 +357,6 @@ fn balancing<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     let zero = R::constant(0.0);
     let position = model.position(t, y);
     let force = model.mechanism.force(model.parameters, &position, &y.qd, &y.states, &[zero; M]);
-    let phi_q = model.mechanism.phi_q(model.parameters, &position);
-    let system = System::new(&model.metric.mass(), &phi_q, model.metric);
-    let factors = system.factorize_rank_revealing(truncation::<R>(), S::COORDINATES, t)?;
+    let factors = model.free_factors(&position, t)?;
     Ok((factors.solve(&force, &[zero; M]).1, factors.unique_multipliers()))
-}
-
-/// The share of `step` (N) that moves no coordinate by more than [`LARGEST_STEP`].
-fn capped<R: Real, const N: usize>(step: &[R; N], scales: &[R; N]) -> R {
-    R::constant(LARGEST_STEP) / R::constant(LARGEST_STEP).max(largest(step, scales))
-}
-
-/// The share of `step` (N) that turns no angle by more than [`LARGEST_STEP`].
-fn capped_turn<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(step: &[R; N]) -> R {
-    let most = R::constant(LARGEST_STEP);
-    let turns = step.iter().zip(S::COORDINATES).filter(|(_, entry)| entry.is_angle());
-    most / turns.fold(most, |largest, (step, _)| largest.max(step.abs()))
-}
-
-/// Largest component of a motion (N) in the metric.
-fn largest<R: Real, const N: usize>(motion: &[R; N], scales: &[R; N]) -> R {
-    let parts = motion.iter().zip(scales).map(|(part, scale)| (*part / *scale).abs());
-    parts.fold(R::constant(0.0), |largest, part| largest.max(part))
 }

@@ -88,7 +88,7 @@ impl<R: Real, const N: usize, const M: usize> System<R, N, M> {
         let good = R::constant(LEAST_PIVOT) < health.margin && health.growth < R::constant(LARGEST_GROWTH);
         let sure = R::constant(SURE_PIVOT) < health.margin;
         if good && (sure || holds_well(&blocks)) {
-            return Ok(Factors { kind: Kind::Blocks(blocks), ..self.factors(health.margin.sqrt()) });
+            return Ok(self.factors(Kind::Blocks(blocks), health.margin.sqrt()));
         }
         self.factorize_rank_revealing(truncation::<R>(), coordinates, t)
     }
@@ -104,7 +104,7 @@ impl<R: Real, const N: usize, const M: usize> System<R, N, M> {
     ) -> Result<Factors<R, N, M>, Failure> {
         let (blocks, health) = Blocks::factorize(&self.mass, &self.phi_q);
         if R::constant(0.0) < health.margin {
-            return Ok(Factors { kind: Kind::Blocks(blocks), ..self.factors(health.margin.sqrt()) });
+            return Ok(self.factors(Kind::Blocks(blocks), health.margin.sqrt()));
         }
         self.factorize_rank_revealing(truncation::<R>(), coordinates, t)
     }
@@ -125,7 +125,7 @@ impl<R: Real, const N: usize, const M: usize> System<R, N, M> {
         let null_space =
             self.null_space(truncation, R::constant(LEAST_INERTIA) * R::EPSILON, coordinates, t)?;
         let margin = null_space.margin();
-        Ok(Factors { kind: Kind::NullSpace(null_space), ..self.factors(margin) })
+        Ok(self.factors(Kind::NullSpace(null_space), margin))
     }
 
     /// Fails where a motion that the rows leave free moves less than `share` of the mass that all of them move.
@@ -186,8 +186,8 @@ impl<R: Real, const N: usize, const M: usize> System<R, N, M> {
         })
     }
 
-    fn factors(&self, margin: R) -> Factors<R, N, M> {
-        Factors { kind: Kind::None, margin, mass_weight: self.mass_weight, metric: self.metric }
+    fn factors(&self, kind: Kind<R, N, M>, margin: R) -> Factors<R, N, M> {
+        Factors { kind, margin, mass_weight: self.mass_weight, metric: self.metric }
     }
 }
 
@@ -225,7 +225,6 @@ pub struct Factors<R, const N: usize, const M: usize> {
 #[derive(Clone, Copy, Debug)]
 #[allow(clippy::large_enum_variant, reason = "both live on the stack: nothing here allocates")]
 enum Kind<R, const N: usize, const M: usize> {
-    None,
     Blocks(Blocks<R, N, M>),
     NullSpace(NullSpace<R, N, M>),
 }
@@ -245,7 +244,6 @@ impl<R: Real, const N: usize, const M: usize> Factors<R, N, M> {
             .zip(&self.metric.rows)
             .for_each(|(component, scale)| *component = *component / *scale);
         let (mut x, mut lambda) = match &self.kind {
-            Kind::None => (upper, lower),
             Kind::Blocks(blocks) => blocks.solve(upper, lower),
             Kind::NullSpace(null_space) => null_space.solve(&upper, &lower),
         };
@@ -274,9 +272,10 @@ impl<R: Real, const N: usize, const M: usize> Factors<R, N, M> {
     /// The part of `x` (N) of the metric that the rows leave free, in other axes of the same lengths and angles. Of a rank-revealing
     /// factorization; of another none.
     pub(crate) fn free_part(&self, x: &[R; N]) -> [R; N] {
-        match &self.kind {
-            Kind::NullSpace(null_space) => null_space.free_part(x),
-            _ => [R::constant(0.0); N],
+        if let Kind::NullSpace(null_space) = &self.kind {
+            null_space.free_part(x)
+        } else {
+            [R::constant(0.0); N]
         }
     }
 
