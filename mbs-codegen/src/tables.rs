@@ -1,6 +1,6 @@
 //! Words, symbols and limits of the language as the parser has them: the tests compare the language reference with them.
 
-use crate::model::{declarations, elaborate, elements, names, references, resolve, selection};
+use crate::model::{counts, declarations, elaborate, elements, names, references, resolve, selection};
 use crate::picture::MOST_SHAPES;
 use crate::syntax::picture::{PICTURES, TURN, forms};
 use crate::syntax::{LATER, REFERRING, STATEMENTS, ast::Element, tokens, unit_symbols};
@@ -61,10 +61,10 @@ pub const LIMITS: [(&str, usize); 11] = [
     ("coordinates", declarations::MOST_COORDINATES),
     ("rows", resolve::MOST_ROWS),
     ("components of outputs", resolve::MOST_OUTPUTS),
-    ("components of an array", elaborate::LONGEST),
+    ("components of an array", counts::LONGEST),
     ("operations of the unrolled text", elaborate::MOST_OPERATIONS),
     ("operations and numbers of the unrolled text", elaborate::MOST_EXPRESSIONS),
-    ("rounds of all loops", elaborate::MOST_ROUNDS),
+    ("rounds of all loops", counts::MOST_ROUNDS),
     ("scenes", selection::MOST_SCENES),
     ("shapes of a picture", MOST_SHAPES),
 ];

@@ -3,9 +3,10 @@
 use proc_macro2::Span;
 
 use super::bare::Bare;
-use super::elaborate::{Elaborator, Fault, Quantity, Scalar, Value};
+use super::elaborate::{Elaborator, Fault};
 use super::expression::Node;
 use super::units::Dimension;
+use super::value::{Quantity, Scalar, Value};
 use crate::symbolic::{Binary, Unary};
 use crate::syntax::ast::Operator;
 

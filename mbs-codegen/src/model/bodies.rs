@@ -1,10 +1,11 @@
 //! Bodies: their masses and rotations, in a plane or in space.
 
 use super::dynamics::{Body, Rotation};
-use super::elaborate::{Elaborator, Fault, Value};
+use super::elaborate::{Elaborator, Fault};
 use super::elements::{Given, ORIENTATION};
 use super::inertia::Inertia;
 use super::resolve::Resolver;
+use super::value::Value;
 use crate::syntax::ast::Name;
 
 impl Resolver<'_> {

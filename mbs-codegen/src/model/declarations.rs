@@ -3,14 +3,17 @@
 use proc_macro2::Span;
 
 use super::bare::Bare;
+use super::counts::LONGEST;
 use super::dynamics::State;
-use super::elaborate::{Elaborator, Fault, LONGEST, Quantity, Reach, Scalar, Value};
+use super::elaborate::{Elaborator, Fault};
 use super::expression::{Id, Node};
 use super::initialiser::{definition, filling, in_unit, initialiser, numbers};
 use super::names::Names;
 use super::order::order;
+use super::rates::Reach;
 use super::turns::turning;
 use super::units::Dimension;
+use super::value::{Quantity, Scalar, Value};
 use super::{Coordinate, CoordinateField, Field, Longest, Model, Role, Variable, VariableKind};
 use crate::diagnostics::Diagnostics;
 use crate::syntax::ast::{Declares, Expression, Loop, Name, Statement, StatementKind, Type, Unit};

@@ -7,9 +7,10 @@ use proc_macro2::Span;
 use super::Function;
 use super::bare::Bare;
 use super::declarations::Declarations;
-use super::elaborate::{Elaborator, Fault, Quantity, Scalar, Value};
+use super::elaborate::{Elaborator, Fault};
 use super::initialiser::{initialiser, numbers};
 use super::units::Dimension;
+use super::value::{Quantity, Scalar, Value};
 use crate::diagnostics::Diagnostics;
 use crate::syntax::ast::{Name, Operation, Signature, Statement, StatementKind};
 

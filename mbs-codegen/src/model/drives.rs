@@ -1,9 +1,11 @@
 //! Drives: rows that prescribe a motion, or a rate whose integral the stepper keeps as a phase.
 
-use super::elaborate::{Fault, Quantity, Reach, Scalar};
+use super::elaborate::Fault;
 use super::expression::{Id, Node};
+use super::rates::Reach;
 use super::resolve::Resolver;
 use super::units::Dimension;
+use super::value::{Quantity, Scalar};
 use super::{Field, Phase, Role, Row, Variable, VariableKind};
 use crate::symbolic::Binary;
 use crate::syntax::ast::{Equation, Expression, Instruction, Name, Operation};

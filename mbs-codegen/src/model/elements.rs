@@ -4,13 +4,15 @@ use proc_macro2::Span;
 
 use super::bodies::inertia;
 use super::dynamics::{Action, Carrier, Dynamics, Force, Kinetic, Line, Turn};
-use super::elaborate::{Elaborator, Fault, Quantity, Reach, Value};
+use super::elaborate::{Elaborator, Fault};
 use super::expression::{Id, Node};
 use super::initialiser::{filling, fits_shape, initialiser};
 use super::non_negative::{Least, NonNegative};
 use super::orientation::{moments, parameters};
+use super::rates::Reach;
 use super::resolve::Resolver;
 use super::units::Dimension;
+use super::value::{Quantity, Value};
 use crate::diagnostics::nearest;
 use crate::syntax::ast::{Element, Energy, Expression, Field, Joined, Load, Name, Statement, StatementKind};
 
@@ -415,7 +417,7 @@ impl Resolver<'_> {
             let dimensions = state.items.iter().map(|item| item.quantity.dimension().over(Dimension::SECOND));
             let pairs: Vec<_> = dimensions.zip(&rate.items).collect();
             for (dimension, item) in &pairs {
-                let expected = super::elaborate::Scalar { quantity: Quantity::Known(*dimension), ..**item };
+                let expected = super::value::Scalar { quantity: Quantity::Known(*dimension), ..**item };
                 work.agree(expected, **item)?;
             }
             Ok::<_, Fault>(rate)

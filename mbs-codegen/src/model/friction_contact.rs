@@ -3,9 +3,10 @@
 use proc_macro2::Span;
 
 use super::dynamics::{Action, Contact};
-use super::elaborate::{Elaborator, Fault, Reach};
+use super::elaborate::{Elaborator, Fault};
 use super::elements::Given;
 use super::expression::{Id, Node};
+use super::rates::Reach;
 use super::resolve::Resolver;
 use crate::symbolic::{Binary, Unary};
 use crate::syntax::ast::Name;

@@ -2,9 +2,10 @@
 
 use proc_macro2::Span;
 
-use super::elaborate::{Elaborator, Fault, Quantity, Scalar, Value};
+use super::elaborate::{Elaborator, Fault};
 use super::orientation;
 use super::units::Dimension;
+use super::value::{Quantity, Scalar, Value};
 use crate::symbolic::operations::Units;
 use crate::symbolic::{Binary, Unary};
 

@@ -5,9 +5,10 @@ use std::collections::{BTreeMap, BTreeSet};
 use proc_macro2::Span;
 
 use super::declared_functions::Callable;
-use super::elaborate::{Reach, Value};
 use super::functions::FUNCTIONS;
+use super::rates::Reach;
 use super::units::Dimension;
+use super::value::Value;
 use crate::diagnostics::Diagnostics;
 use crate::syntax::ast::Name;
 use crate::syntax::keywords::UNUSABLE;

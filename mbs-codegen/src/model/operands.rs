@@ -2,8 +2,9 @@
 
 use proc_macro2::Span;
 
-use super::elaborate::{Fault, Scalar, Value};
+use super::elaborate::Fault;
 use super::names::{Names, Symbol};
+use super::value::{Scalar, Value};
 
 /// A stack of operands, made by an expression whose names live for `'a`.
 #[derive(Default)]

@@ -6,11 +6,13 @@ use std::collections::BTreeMap;
 
 use proc_macro2::Span;
 
-use super::elaborate::{Elaborator, Fault, Reach, Scalar, Value};
+use super::elaborate::{Elaborator, Fault};
 use super::expression::{Expressions, Id, Node};
 use super::initialiser::initialiser;
+use super::rates::Reach;
 use super::resolve::Resolver;
 use super::units::Dimension;
+use super::value::{Scalar, Value};
 use super::vanishing::vanish;
 use super::{Row, elements::ORIENTATION};
 use crate::symbolic::{Binary, Unary};

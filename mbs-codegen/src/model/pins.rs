@@ -4,12 +4,14 @@ use proc_macro2::Span;
 
 use super::bare::Bare;
 use super::dynamics::{Carrier, Pin};
-use super::elaborate::{Elaborator, Fault, Quantity, Reach, Scalar, Value};
+use super::elaborate::{Elaborator, Fault};
 use super::expression::Node;
 use super::initialiser::initialiser;
 use super::names::Joint;
+use super::rates::Reach;
 use super::resolve::Resolver;
 use super::units::Dimension;
+use super::value::{Quantity, Scalar, Value};
 use crate::diagnostics::nearest;
 use crate::symbolic::Unary;
 use crate::syntax::ast::{Expression, Joined, Name, Target};

@@ -4,10 +4,12 @@ use proc_macro2::Span;
 
 use super::Reference;
 use super::bare::Bare;
-use super::elaborate::{Elaborator, Fault, Quantity, Reach, Scalar, Value};
+use super::elaborate::{Elaborator, Fault};
 use super::expression::{Id, Node};
+use super::rates::Reach;
 use super::resolve::Resolver;
 use super::units::Dimension;
+use super::value::{Quantity, Scalar, Value};
 use crate::diagnostics::nearest;
 use crate::symbolic::Binary;
 use crate::syntax::ast::{Instruction, Operation};

@@ -5,13 +5,16 @@ use std::collections::{BTreeMap, BTreeSet};
 use proc_macro2::Span;
 
 use super::bare::Bare;
+use super::counts::MOST_ROUNDS;
 use super::declarations::{self, component_names};
-use super::elaborate::{Elaborator, Fault, MOST_ROUNDS, Quantity, Reach, Scalar, Value};
+use super::elaborate::{Elaborator, Fault};
 use super::elements::is_dynamic;
 use super::expression::{Id, Node};
 use super::initialiser::{definition, fits_shape, initialiser};
 use super::names::{Names, Rows, Symbol, report_double};
+use super::rates::Reach;
 use super::units::Dimension;
+use super::value::{Quantity, Scalar, Value};
 use super::{Branch, Model, Output, Row, VariableKind, inputs, unused_elements};
 use crate::diagnostics::Diagnostics;
 use crate::symbolic::Binary;

@@ -1,10 +1,12 @@
 //! Largest contradiction allowed between rows of a constraint marked `redundant`.
 
-use super::elaborate::{Fault, Reach, Value};
+use super::elaborate::Fault;
 use super::expression::Node;
 use super::initialiser::initialiser;
+use super::rates::Reach;
 use super::resolve::Resolver;
 use super::units::Dimension;
+use super::value::Value;
 use crate::syntax::ast::Expression;
 
 impl Resolver<'_> {

@@ -1,9 +1,9 @@
 //! Values of names in the picture.
 
 use crate::model::bare::Bare;
-use crate::model::elaborate::{Quantity, Scalar, Value};
 use crate::model::expression::{Id, Node};
 use crate::model::units::Dimension;
+use crate::model::value::{Quantity, Scalar, Value};
 
 /// A value found for a name.
 pub struct Found {

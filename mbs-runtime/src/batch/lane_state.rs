@@ -6,7 +6,8 @@ use crate::mechanism::phase::Phase;
 use crate::mechanism::{Kinematic, Mechanism};
 use crate::scalar::lanes::Lanes;
 use crate::scalar::number::{Real, Scalar};
-use crate::stepper::{Drift, Stepper};
+use crate::stepper::Stepper;
+use crate::stepper::state::Drift;
 
 /// Data with which the stepper of a lane goes on from the state of the lane. Phases, and parameters and inputs since they were
 /// changed, are taken from the mechanism.

@@ -4,8 +4,8 @@ use crate::batch::{at, set};
 use crate::block_solvers::convergence::Statistics;
 use crate::scalar::lanes::Lanes;
 use crate::scalar::number::{Real, Scalar, index};
-use crate::stepper::Drift;
 use crate::stepper::fast_step::FastStep;
+use crate::stepper::state::Drift;
 
 /// Statistics of the last step of each lane, besides its position and rates.
 #[derive(Clone, Copy)]

@@ -10,7 +10,7 @@ use crate::linear_algebra::determines_rates;
 use crate::linear_algebra::vectors::largest_difference;
 use crate::mechanism::{Kinematic, Margin, Mechanism};
 use crate::scalar::number::{Real, Scalar};
-use crate::stepper::State;
+use crate::stepper::state::State;
 
 /// Margin to singularity below which the homotopy predicts, not the rates of the state: those are wrong by the inverse square of the
 /// margin, and past a change point pick the assembly by chance.

@@ -12,9 +12,10 @@ use crate::linear_algebra::vectors::largest_difference;
 use crate::mechanism::kept::Kept;
 use crate::mechanism::{Kinematic, Mechanism};
 use crate::scalar::number::Real;
+use crate::stepper::Stepper;
 use crate::stepper::instant::{Predecessor, SolvedPosition};
+use crate::stepper::state::State;
 use crate::stepper::whole_turns::Turns;
-use crate::stepper::{State, Stepper};
 
 /// Version of the layout of [`Saved`], in its first bytes. Neither erased (0xFF) nor zeroed memory has it.
 const VERSION: u32 = 4;

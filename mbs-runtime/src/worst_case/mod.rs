@@ -377,7 +377,7 @@ const fn settled(work: &Work) -> Operations {
 
 /// `Way::followed` in at most `evaluations`, the position and the rates at its end.
 const fn way(work: &Work, evaluations: u32) -> Operations {
-    let end = crate::stepper::FINAL;
+    let end = crate::stepper::homotopy_step::FINAL;
     if evaluations < crate::kinematics::homotopy::LEAST_EVALUATIONS + end.newton {
         return Operations::NONE;
     }

@@ -1,0 +1,129 @@
+//! Sizes of pivots in the reference metric, of which the margin is made.
+
+use std::collections::BTreeMap;
+use std::fmt::Write;
+
+use super::printer::Printer;
+use super::value::{Entry, Value};
+use crate::emit::rust::scope::number;
+use crate::equations::Equations;
+use crate::program::BlockProgram;
+use crate::structure::pivots::Pivot;
+use crate::symbolic::NodeId;
+
+/// Scale of each row and column, by its index in the block: equal scales share the first index.
+#[derive(Default)]
+pub(super) struct Scales {
+    pub(super) rows: Vec<usize>,
+    /// `None` for 1.
+    pub(super) columns: Vec<Option<usize>>,
+}
+
+impl Scales {
+    pub(super) fn of(equations: &Equations, block: &BlockProgram) -> Self {
+        let of = |scales: &[NodeId], indices: &[usize]| -> Vec<Option<NodeId>> {
+            indices.iter().map(|index| scales.get(*index).copied()).collect()
+        };
+        let first = |all: &[Option<NodeId>], index: usize| {
+            all.iter().position(|scale| all.get(index) == Some(scale)).unwrap_or(index)
+        };
+        let is_one =
+            |scale: &Option<NodeId>| scale.and_then(|id| equations.graph.constant_value(id)) == Some(1.0);
+        let rows = of(&equations.row_scales, &block.rows);
+        let columns = of(&equations.coordinate_scales, &block.coordinates);
+        let column = |(index, scale)| (!is_one(scale)).then(|| first(&columns, index));
+        Scales {
+            columns: columns.iter().enumerate().map(column).collect(),
+            rows: (0..rows.len()).map(|index| first(&rows, index)).collect(),
+        }
+    }
+
+    pub(super) fn row(&self, row: usize) -> usize {
+        self.rows.get(row).copied().unwrap_or(row)
+    }
+}
+
+impl Printer {
+    pub(super) fn absolute(&mut self, entry: &Value) -> String {
+        match entry {
+            Value::Number(value) => number(value.abs()),
+            Value::Local(name) => {
+                self.operations.selects += 1;
+                format!("T::abs({name})")
+            }
+        }
+    }
+
+    /// A size in the reference metric.
+    pub(super) fn weighted(&mut self, size: String, row: usize, column: usize) -> String {
+        self.operations.multiplications += 1;
+        let mut text = format!("{size} * __weight{}", self.scales.row(row));
+        if let Some(scale) = self.scales.columns.get(column).copied().flatten() {
+            let _ = write!(text, " * __coordinate_scales[{scale}]");
+            self.operations.multiplications += 1;
+        }
+        text
+    }
+
+    /// The largest of the entries in the reference metric, as text: those of one scale are compared before they are weighted.
+    pub(super) fn largest(&mut self, places: impl Iterator<Item = (usize, usize)>) -> String {
+        let mut groups: BTreeMap<(usize, Option<usize>), (usize, usize, String)> = BTreeMap::new();
+        for (row, column) in places {
+            let Some(entry) = self.entry(row, column) else { continue };
+            let scale = (self.scales.row(row), self.scales.columns.get(column).copied().flatten());
+            let size = self.absolute(&entry);
+            match groups.get_mut(&scale) {
+                None => drop(groups.insert(scale, (row, column, size))),
+                Some((.., largest)) if *largest == size => {}
+                Some((.., largest)) => {
+                    *largest = format!("T::max({largest}, {size})");
+                    self.operations.selects += 1;
+                }
+            }
+        }
+        let mut all = String::new();
+        for (row, column, size) in groups.into_values() {
+            let size = self.weighted(size, row, column);
+            all = match all.is_empty() {
+                true => size,
+                false => format!("T::max({all}, {size})"),
+            };
+            self.operations.selects += 1;
+        }
+        if all.is_empty() { number(0.0) } else { all }
+    }
+
+    /// The largest entry of a pivot's columns; empty for a single entry.
+    pub(super) fn block(&mut self, pivot: &Pivot) -> String {
+        if pivot.rows.len() < 2 {
+            return String::new();
+        }
+        let size = self.entries.len();
+        let places = (0..size).flat_map(|row| pivot.columns.iter().map(move |column| (row, *column)));
+        let text = self.largest(places);
+        self.name(&text).text()
+    }
+
+    /// Prints the update by the size of a pivot, as the best choice of rows for its columns would leave it; for two rows the
+    /// determinant over their largest entry.
+    pub(super) fn measure(&mut self, pivot: &Pivot, determinant: Entry, block: &str, growth: &str) {
+        let Some(determinant) = determinant else { return };
+        let mut size = self.absolute(&determinant);
+        for (row, column) in pivot.rows.iter().zip(&pivot.columns) {
+            size = self.weighted(size, *row, *column);
+        }
+        if !block.is_empty() {
+            size = format!("{size} / {block}");
+            self.operations.divisions += 1;
+        }
+        if !growth.is_empty() {
+            size = format!("{size} * T::max(__one, {growth})");
+            self.operations.multiplications += 1;
+            self.operations.selects += 1;
+        }
+        if self.sizes.insert(size.clone()) {
+            let _ = writeln!(self.text, "__least = T::min(__least, {size});");
+            self.operations.selects += 1;
+        }
+    }
+}

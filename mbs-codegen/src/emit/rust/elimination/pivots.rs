@@ -1,0 +1,208 @@
+//! Elimination by one pivot after the other, and the closed form of what is left.
+
+use std::fmt::Write;
+
+use super::printer::Printer;
+use super::value::{Entry, Value, negated};
+use crate::emit::rust::blocks::list;
+use crate::emit::rust::scope::number;
+use crate::program::Operations;
+use crate::structure::pivots::{Order, Pivot};
+
+/// Exclusive or of the sign so far and that of another pivot.
+const TURN: &str = "__reverses = (__reverses | __turn) & !(__reverses & __turn);";
+
+/// A pivot with what was eliminated by it.
+pub(super) struct Eliminated {
+    pub(super) pivot: Pivot,
+    /// Row by row; empty for the last pivot.
+    pub(super) inverse: Vec<Vec<Entry>>,
+    /// Rows below, and the multipliers of the pivot's rows that are subtracted from each.
+    pub(super) multipliers: Vec<(usize, Vec<Entry>)>,
+    /// Columns outside the pivot, and the pivot's rows there.
+    pub(super) upper: Vec<(usize, Vec<Entry>)>,
+}
+
+impl Printer {
+    pub(super) fn eliminate(&mut self, pivot: &Pivot) -> Eliminated {
+        let (inverse, determinant) = match (pivot.rows.as_slice(), pivot.columns.as_slice()) {
+            (&[first, second], &[left, right]) => self.inverse([first, second], [left, right]),
+            (&[row], &[column]) => (vec![vec![self.reciprocal(row, column)]], self.entry(row, column)),
+            _ => (Vec::new(), None),
+        };
+        let size = self.entries.len();
+        let (mut growth, block) = (String::new(), self.block(pivot));
+        let rows: Vec<usize> = (0..size).filter(|row| !pivot.rows.contains(row)).collect();
+        let columns: Vec<usize> = (0..size).filter(|column| !pivot.columns.contains(column)).collect();
+        let above = |printer: &Self, column: usize| -> Vec<Entry> {
+            pivot.rows.iter().map(|row| printer.entry(*row, column)).collect()
+        };
+        let upper: Vec<(usize, Vec<Entry>)> =
+            columns.iter().map(|column| (*column, above(self, *column))).collect();
+        let upper: Vec<(usize, Vec<Entry>)> =
+            upper.into_iter().filter(|(_, entries)| entries.iter().any(Option::is_some)).collect();
+        let mut multipliers = Vec::new();
+        for row in rows {
+            let below: Vec<Entry> = pivot.columns.iter().map(|column| self.entry(row, *column)).collect();
+            if below.iter().all(Option::is_none) {
+                continue;
+            }
+            let factors: Vec<Entry> =
+                (0..pivot.rows.len()).map(|k| self.multiplier(&below, &inverse, k)).collect();
+            for (factor, of) in factors.iter().zip(&pivot.rows) {
+                self.bound(factor, row, *of, &mut growth);
+            }
+            for (column, entries) in &upper {
+                let start = self.entry(row, *column);
+                let products = factors.iter().cloned().zip(entries.iter().cloned()).collect();
+                let value = self.less(start, products);
+                self.set(row, *column, value);
+            }
+            multipliers.push((row, factors));
+        }
+        self.measure(pivot, determinant, &block, &growth);
+        for row in &pivot.rows {
+            (0..size).for_each(|column| self.set(*row, column, None));
+        }
+        for column in &pivot.columns {
+            (0..size).for_each(|row| self.set(row, *column, None));
+        }
+        let mut keep_all = |entries: Vec<Entry>| -> Vec<Entry> {
+            entries.into_iter().map(|entry| self.keep(entry)).collect()
+        };
+        Eliminated {
+            inverse: inverse.into_iter().map(&mut keep_all).collect(),
+            multipliers: multipliers.into_iter().map(|(row, entries)| (row, keep_all(entries))).collect(),
+            upper: upper.into_iter().map(|(column, entries)| (column, keep_all(entries))).collect(),
+            pivot: pivot.clone(),
+        }
+    }
+
+    /// Σ over the pivot's columns of the row's entries times column `k` of the inverse.
+    fn multiplier(&mut self, below: &[Entry], inverse: &[Vec<Entry>], k: usize) -> Entry {
+        let products =
+            below.iter().zip(inverse).map(|(entry, row)| (negated(entry), row.get(k).cloned().flatten()));
+        let products: Vec<(Entry, Entry)> = products.collect();
+        self.less(None, products)
+    }
+
+    /// One over a pivot.
+    fn reciprocal(&mut self, row: usize, column: usize) -> Entry {
+        let pivot = self.entry(row, column)?;
+        self.turn(&pivot);
+        match pivot {
+            Value::Number(value) => Some(Value::Number(1.0 / value)),
+            Value::Local(name) => {
+                self.operations.divisions += 1;
+                let reciprocal = self.name(&format!("__one / {name}"));
+                self.finite(&reciprocal);
+                Some(reciprocal)
+            }
+        }
+    }
+
+    /// The inverse of two rows, and their determinant.
+    fn inverse(
+        &mut self,
+        [first, second]: [usize; 2],
+        [left, right]: [usize; 2],
+    ) -> (Vec<Vec<Entry>>, Entry) {
+        let places = [(first, left), (first, right), (second, left), (second, right)];
+        let [p, q, r, s] = places.map(|(row, column)| self.entry(row, column));
+        let cross = self.less(None, vec![(q.clone(), r.clone())]);
+        let determinant = self.less(cross, vec![(negated(&p), s.clone())]).unwrap_or(Value::Number(0.0));
+        self.turn(&determinant);
+        self.operations.divisions += 1;
+        let reciprocal = self.name(&format!("__one / {}", determinant.text()));
+        self.finite(&reciprocal);
+        let reciprocal = Some(reciprocal);
+        let mut entry = |value: Entry, negative: bool| {
+            let value = if negative { value } else { negated(&value) };
+            self.less(None, vec![(value, reciprocal.clone())])
+        };
+        let inverse = vec![vec![entry(s, false), entry(q, true)], vec![entry(r, true), entry(p, false)]];
+        (inverse, Some(determinant))
+    }
+
+    /// Notes that a reciprocal must be finite: a pivot without entries below it has no multiplier that would show it.
+    fn finite(&mut self, reciprocal: &Value) {
+        let _ = writeln!(self.text, "__bounded = __bounded & T::is_finite({});", reciprocal.text());
+        self.comparisons += 1;
+    }
+
+    /// Prints the update by the sign of a pivot's determinant.
+    fn turn(&mut self, determinant: &Value) {
+        match determinant {
+            Value::Number(value) => self.odd ^= *value < 0.0,
+            Value::Local(name) => {
+                let _ = writeln!(self.text, "let __turn = T::less({name}, {});\n{TURN}", number(0.0));
+                self.comparisons += 1;
+            }
+        }
+    }
+
+    /// Prints the bound on the multiplier of row `of` in `row`; `growth` is the largest of these.
+    fn bound(&mut self, multiplier: &Entry, row: usize, of: usize, growth: &mut String) {
+        let (from, to) = (self.scales.row(of), self.scales.row(row));
+        let mut size = match multiplier {
+            None => return,
+            Some(Value::Number(value)) if from == to && value.abs() <= 1.0 => return,
+            Some(multiplier) => format!("T::abs({})", multiplier.text()),
+        };
+        if from != to {
+            let _ = write!(size, " * __row_scales[{from}] * __weight{to}");
+            self.operations.multiplications += 2;
+        }
+        let size = self.name(&size).text();
+        let _ = writeln!(self.text, "__bounded = __bounded & T::less({size}, __limit);");
+        self.operations.selects += 1;
+        self.comparisons += 1;
+        if !growth.is_empty() {
+            *growth = format!("T::max({growth}, {size})");
+            self.operations.selects += 1;
+        } else {
+            *growth = size;
+        }
+    }
+
+    /// Closed form of the rows and columns that are left, and the margin of all.
+    pub(super) fn last(&mut self, last: &Pivot, odd: bool) {
+        let rank = last.rows.len();
+        let zero = || number(0.0);
+        let text = |entry: Entry| entry.map_or_else(zero, |value| value.text());
+        let rows = last.rows.iter().map(|row| list(last.columns.iter().map(|c| text(self.entry(*row, *c)))));
+        let rows = list(rows);
+        let scales = |name: &str, indices: &[usize]| list(indices.iter().map(|i| format!("{name}[{i}]")));
+        let (row_scales, coordinate_scales) =
+            (scales("__row_scales", &last.rows), scales("__coordinate_scales", &last.columns));
+        let places = last.rows.iter().flat_map(|row| last.columns.iter().map(|column| (*row, *column)));
+        let left = self.largest(places);
+        let odd = if odd != self.odd { "__reverses = !__reverses;\n" } else { "" };
+        let _ = write!(
+            self.text,
+            "let (__last, __own) = <__mbs::Direct{rank}<T> as __mbs::Factorization<T, {rank}>>::factorize(\
+             &{rows}, &{row_scales}, &{coordinate_scales});\n\
+             let __turn = <__mbs::Direct{rank}<T> as __mbs::Factorization<T, {rank}>>::reverses(&__last);\n\
+             {TURN}\n{odd}\
+             let __ratio = T::min(__least, {left} * __own) / __largest;\n\
+             let __margin = T::select(T::is_finite(__ratio), T::min(__ratio, __one), {});\n",
+            zero()
+        );
+        self.operations += Operations { divisions: 1, multiplications: 1, selects: 3, ..Default::default() };
+        self.comparisons += 2;
+    }
+}
+
+/// `true` if the order of rows and that of columns differ by an odd permutation.
+pub(super) fn is_odd(order: &Order) -> bool {
+    let odd = |indices: Vec<usize>| {
+        let pairs = indices
+            .iter()
+            .enumerate()
+            .flat_map(|(place, index)| indices.iter().skip(place + 1).filter(move |later| *later < index));
+        pairs.count() % 2 == 1
+    };
+    let rows = order.pivots.iter().flat_map(|pivot| pivot.rows.clone()).collect();
+    let columns = order.pivots.iter().flat_map(|pivot| pivot.columns.clone()).collect();
+    odd(rows) != odd(columns)
+}

@@ -1,0 +1,171 @@
+//! Code of a type of factors.
+
+use std::collections::BTreeSet;
+use std::fmt::Write;
+
+use super::margin::Scales;
+use super::pivots::is_odd;
+use super::value::{Entry, Value};
+use super::{Cost, Elimination, NAME};
+use crate::emit::rust::blocks::list;
+use crate::emit::rust::scope::number;
+use crate::program::Operations;
+use crate::structure::pivots::{Order, Pivot};
+
+/// Code of a type, printed so far.
+#[derive(Default)]
+pub(super) struct Printer {
+    pub(super) entries: Vec<Vec<Entry>>,
+    pub(super) scales: Scales,
+    pub(super) text: String,
+    pub(super) locals: usize,
+    pub(super) operations: Operations,
+    pub(super) comparisons: usize,
+    /// Sizes that are printed already.
+    pub(super) sizes: BTreeSet<String>,
+    /// `true` if the pivots that are numbers turn the determinant's sign.
+    pub(super) odd: bool,
+    /// Names that the factors keep, in the order of their array.
+    pub(super) kept: Vec<String>,
+}
+
+impl Printer {
+    pub(super) fn print(mut self, order: &Order) -> Elimination {
+        let size = self.entries.len();
+        let (mut done, mut last) = (Vec::new(), None);
+        self.text = "let __one = T::constant(1.0);\n\
+                     let __limit = T::constant(__mbs::__private::LARGEST_MULTIPLIER);\n\
+                     let mut __bounded = T::mask(true);\n\
+                     let mut __reverses = T::mask(false);\n\
+                     let mut __least = T::constant(::core::primitive::f64::MAX);\n"
+            .into();
+        self.scales_of_rows();
+        let places = (0..size).flat_map(|row| (0..size).map(move |column| (row, column)));
+        let largest = self.largest(places);
+        let _ = writeln!(self.text, "let __largest = {largest};");
+        for (index, pivot) in order.pivots.iter().enumerate() {
+            if index + 1 == order.pivots.len() {
+                last = Some(pivot.clone());
+            } else {
+                let eliminated = self.eliminate(pivot);
+                done.push(eliminated);
+            }
+        }
+        let last = last.unwrap_or(Pivot { rows: Vec::new(), columns: Vec::new() });
+        self.last(&last, is_odd(order));
+        let elimination = core::mem::take(&mut self.operations);
+        let factors = core::mem::take(&mut self.text);
+        let solve = self.solve(&done, &last);
+        let substitution = core::mem::take(&mut self.operations);
+        let transposed = self.transposed(&done, &last);
+        let (kept, count) = (list(self.kept.iter().cloned()), self.kept.len());
+        let rank = last.rows.len();
+        let text = format!(
+            "/// Factors of {size} unknowns in the order that their sparsity makes the shortest.\n\
+             #[derive(::core::clone::Clone, ::core::marker::Copy, ::core::fmt::Debug)]\n\
+             pub struct {NAME}<T: __mbs::Scalar> {{\n\
+             /// Inverses of pivots, multipliers, rows beside the pivots.\nvalues: [T; {count}],\n\
+             /// What is left at the end.\nlast: __mbs::Direct{rank}<T>,\n\
+             /// Where the determinant is negative.\nreverses: T::Mask,\n}}\n\
+             impl<T: __mbs::Scalar> __mbs::Elimination<T, {size}> for {NAME}<T> {{\n\
+             #[inline]\nfn eliminate(__a: &[[T; {size}]; {size}], __row_scales: &[T; {size}], \
+             __coordinate_scales: &[T; {size}]) -> (Self, T, T::Mask) {{\n{factors}\
+             ({NAME} {{ values: {kept}, last: __last, reverses: __reverses }}, __margin, __bounded)\n}}\n\
+             #[inline]\nfn solve(&self, __b: &[T; {size}]) -> [T; {size}] {{\n{solve}}}\n\
+             #[inline]\nfn solve_transposed(&self, __b: &[T; {size}]) -> [T; {size}] {{\n{transposed}}}\n\
+             #[inline]\nfn reverses(&self) -> T::Mask {{ self.reverses }}\n}}\n"
+        );
+        let cost = Cost { elimination, comparisons: self.comparisons, substitution, last: rank };
+        Elimination { text, cost }
+    }
+
+    /// Reciprocals of the rows' scales, each once.
+    fn scales_of_rows(&mut self) {
+        let mut firsts = self.scales.rows.clone();
+        firsts.sort_unstable();
+        firsts.dedup();
+        for row in firsts {
+            let _ = writeln!(self.text, "let __weight{row} = __one / __row_scales[{row}];");
+            self.operations.divisions += 1;
+        }
+    }
+
+    pub(super) fn entry(&self, row: usize, column: usize) -> Entry {
+        self.entries.get(row).and_then(|row| row.get(column)).cloned().flatten()
+    }
+
+    pub(super) fn set(&mut self, row: usize, column: usize, value: Entry) {
+        if let Some(entry) = self.entries.get_mut(row).and_then(|row| row.get_mut(column)) {
+            *entry = value;
+        }
+    }
+
+    /// `start − Σ a b`, as a number where all are, else under a name of its own.
+    pub(super) fn less(&mut self, start: Entry, products: Vec<(Entry, Entry)>) -> Entry {
+        let products: Vec<(Value, Value)> = products.into_iter().filter_map(|(a, b)| a.zip(b)).collect();
+        if products.is_empty() {
+            return start;
+        }
+        let numbers = products.iter().map(|(a, b)| match (a, b) {
+            (Value::Number(a), Value::Number(b)) => Some(a * b),
+            _ => None,
+        });
+        let known = match &start {
+            None => Some(0.0),
+            Some(Value::Number(value)) => Some(*value),
+            Some(Value::Local(_)) => None,
+        };
+        if let Some(value) = numbers.fold(known, |sum, product| Some(sum? - product?)) {
+            return (value != 0.0).then_some(Value::Number(value));
+        }
+        let mut text = start.map_or(String::new(), |start| start.text());
+        for (a, b) in products {
+            let (negative, product) = self.product(&a, &b);
+            self.operations.additions += usize::from(!text.is_empty() || !negative);
+            text += match (negative, text.is_empty()) {
+                (true, true) => "",
+                (true, false) => " + ",
+                (false, true) => "-",
+                (false, false) => " - ",
+            };
+            text += &product;
+        }
+        Some(self.name(&text))
+    }
+
+    /// A product, its sign apart.
+    pub(super) fn product(&mut self, a: &Value, b: &Value) -> (bool, String) {
+        let ((a_negative, a), (b_negative, b)) = (a.parts(), b.parts());
+        let text = match (a, b) {
+            (Some(a), Some(b)) => {
+                self.operations.multiplications += 1;
+                format!("{a} * {b}")
+            }
+            (Some(one), None) | (None, Some(one)) => one,
+            (None, None) => number(1.0),
+        };
+        (a_negative != b_negative, text)
+    }
+
+    /// A name for a value.
+    pub(super) fn name(&mut self, text: &str) -> Value {
+        let name = format!("__n{}", self.locals);
+        self.locals += 1;
+        let _ = writeln!(self.text, "let {name} = {text};");
+        Value::Local(name)
+    }
+
+    /// Reference to a value that the factors store; numbers are written where they are used.
+    pub(super) fn keep(&mut self, value: Entry) -> Entry {
+        match value {
+            Some(Value::Local(name)) => {
+                let index = self.kept.iter().position(|kept| *kept == name).unwrap_or(self.kept.len());
+                if index == self.kept.len() {
+                    self.kept.push(name);
+                }
+                Some(Value::Local(format!("self.values[{index}]")))
+            }
+            number => number,
+        }
+    }
+}

@@ -1,0 +1,103 @@
+//! Faults at names that are unknown, or not known where they stand.
+
+use proc_macro2::Span;
+
+use super::compound;
+use super::elaborate::{CONSTANTS, Elaborator, Fault};
+use super::functions::FUNCTIONS;
+use super::names::Symbol;
+use super::references::{REFERRING, is_reference};
+use super::units::with_suffix;
+use crate::diagnostics::nearest;
+use crate::syntax::ast::{Expression, Instruction, Operation};
+
+impl Elaborator<'_> {
+    /// Reports the unknown names after a fault, which are not evaluated any more.
+    pub(super) fn unknown_names(&mut self, expression: &Expression, from: usize) {
+        let is_variable = |name: &str| {
+            expression.code.iter().any(|instruction| {
+                matches!(&instruction.operation, Operation::SumBegin { variable, .. } if variable.text == name)
+            })
+        };
+        for (index, instruction) in expression.code.iter().enumerate().skip(from) {
+            match &instruction.operation {
+                Operation::Name(_) if is_reference(&expression.code, index) => {}
+                Operation::Name(name) if !is_variable(name) => {
+                    let known = self.names.get(name).is_some() || CONSTANTS.contains(&name.as_str());
+                    // The units of one product are one fault.
+                    let follows = compound::in_brackets(&expression.code, index).is_some()
+                        && !compound::is_first(&expression.code, index);
+                    if !known && !follows {
+                        self.unknown_name(name, (&expression.code, index));
+                    }
+                }
+                Operation::Call { function, .. }
+                    if function != "rate"
+                        && !REFERRING.contains(&function.as_str())
+                        && !self.knows_function(function) =>
+                {
+                    self.unknown_function(function, instruction.span);
+                }
+                _ => {}
+            }
+        }
+    }
+
+    /// A fault at a name that is used before its declaration allows it.
+    pub(super) fn too_early(&mut self, name: &str, span: Span) -> Fault {
+        self.fault(
+            span,
+            format!("`{name}` cannot be used here"),
+            "constants and defaults use constants alone, guesses use constants and parameters",
+        )
+    }
+
+    /// `true` if the name is that of a function, or of a declaration that was reported.
+    fn knows_function(&self, name: &str) -> bool {
+        let declared =
+            matches!(self.names.get(name), Some(Symbol::Function(_) | Symbol::Pending | Symbol::Faulty));
+        declared || FUNCTIONS.contains(&name)
+    }
+
+    /// A fault at the derivative of a function that is not declared.
+    pub(super) fn no_derivative(&mut self, name: &str, span: Span) -> Fault {
+        if !FUNCTIONS.contains(&name) {
+            return self.unknown_function(name, span);
+        }
+        let message = format!("`{name}` is no declared function, and has no `.d1` or `.d2`");
+        self.fault(span, message, "write its derivative as an expression")
+    }
+
+    /// A fault at an unknown name.
+    pub(super) fn unknown_name(&mut self, name: &str, (code, index): (&[Instruction], usize)) -> Fault {
+        let span = code.get(index).map_or_else(Span::call_site, |instruction| instruction.span);
+        if self.names.is_local(name) {
+            let message = format!("`{name}` is known inside its `for` alone, behind its declaration");
+            return self.fault(span, message, "move this into the loop, or declare a `let` outside of it");
+        }
+        let help = if FUNCTIONS.contains(&name) {
+            format!("`{name}` is a function; write `{name}(…)`")
+        } else if let Some(number) = compound::in_brackets(code, index) {
+            format!("write a compound unit in brackets behind its number: `{number}`")
+        } else if let Some(known) = nearest(name, self.names.all().chain(CONSTANTS)) {
+            format!("did you mean `{known}`?")
+        } else if with_suffix(1.0, name).is_ok() {
+            format!(
+                "a unit is joined to its number, `2{name}`, or stands in brackets behind it: `30 [rad/s]`"
+            )
+        } else {
+            "declare it with `const`, `param`, `input`, `coord` or `let`".into()
+        };
+        self.fault(span, format!("unknown name `{name}`"), help)
+    }
+
+    /// A fault at an unknown function.
+    pub fn unknown_function(&mut self, name: &str, span: Span) -> Fault {
+        let known = || self.names.functions().chain(FUNCTIONS);
+        let help = match nearest(name, known()) {
+            Some(known) => format!("did you mean `{known}`?"),
+            None => format!("known are {}", known().collect::<Vec<_>>().join(", ")),
+        };
+        self.fault(span, format!("unknown function `{name}`"), help)
+    }
+}
