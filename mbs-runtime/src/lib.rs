@@ -98,6 +98,7 @@ mod mechanism;
 pub mod nalgebra;
 mod scalar;
 mod stepper;
+mod tolerances;
 mod worst_case;
 
 #[cfg(feature = "nalgebra")]

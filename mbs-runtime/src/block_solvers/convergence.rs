@@ -2,16 +2,7 @@
 
 use crate::mechanism::Block;
 use crate::scalar::number::{Real, Scalar, index};
-
-/// Rounding errors of a row's own terms that a converged residual may hold, in ε times the row's scale.
-///
-/// A closure row sums some ten terms of at most the reference length, each wrong by an ε or two. So 64 leaves a
-/// factor of three, and is still 1.4e-14 of the length in `f64`.
-pub(crate) const TERM_ROUNDINGS: f64 = 64.0;
-
-/// Rounding errors of a coordinate that a residual may hold, in ε times the coordinate: half an ε for its own
-/// rounding, the same for each sum that it enters.
-const COORDINATE_ROUNDINGS: f64 = 4.0;
+use crate::tolerances::rows;
 
 /// The residual that counts as zero: ε (64 ρᵢ + 4 Σⱼ |Jᵢⱼ| |xⱼ|), M, in the unit of the row.
 ///
@@ -23,15 +14,13 @@ pub(crate) fn required<T: Scalar, const K: usize, const M: usize>(
     x: &[T; K],
     jacobian: &[[T; K]; M],
 ) -> [T; M] {
-    let epsilon = T::splat(T::Real::EPSILON);
     let mut required = *row_scales;
     for (tolerance, row) in required.iter_mut().zip(jacobian) {
         let mut reach = T::constant(0.0);
         for (entry, coordinate) in row.iter().zip(x) {
             reach = reach + (*entry * *coordinate).abs();
         }
-        *tolerance =
-            epsilon * (T::constant(TERM_ROUNDINGS) * *tolerance + T::constant(COORDINATE_ROUNDINGS) * reach);
+        *tolerance = rows::OF_TERMS.of::<T>() * *tolerance + rows::OF_COORDINATES.of::<T>() * reach;
     }
     required
 }
@@ -39,7 +28,7 @@ pub(crate) fn required<T: Scalar, const K: usize, const M: usize>(
 /// The part of [`required`] that no position changes: ε 64 ρ, the rounding of the row's own terms.
 #[inline(always)]
 pub(crate) fn own_rounding<T: Scalar>(row_scale: T) -> T {
-    T::splat(T::Real::EPSILON) * (T::constant(TERM_ROUNDINGS) * row_scale)
+    rows::OF_TERMS.of::<T>() * row_scale
 }
 
 /// Rounding of coordinates outside the block, granted besides [`required`]: 4 ε e Σⱼ |Jᵢⱼ| sⱼ with the extent e of all of q.
@@ -57,7 +46,7 @@ pub(crate) fn outer_rounding<T: Scalar, const K: usize, const M: usize>(
         for (entry, scale) in row.into_iter().zip(coordinate_scales) {
             reach = reach + (entry * *scale).abs();
         }
-        T::splat(T::Real::EPSILON) * T::constant(COORDINATE_ROUNDINGS) * extent * reach
+        rows::OF_COORDINATES.of::<T>() * extent * reach
     })
 }
 

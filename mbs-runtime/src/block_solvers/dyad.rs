@@ -7,7 +7,8 @@ use crate::linear_algebra::is_regular;
 use crate::linear_algebra::vectors::select;
 use crate::mechanism::Block;
 use crate::mechanism::roots::Roots;
-use crate::scalar::number::{Real, Scalar};
+use crate::scalar::number::Scalar;
+use crate::tolerances::rows;
 
 /// Two rows in two unknowns, written with the values known before them. `e(α)` is the vector (cos α, sin α).
 #[derive(Clone, Copy, Debug)]
@@ -69,9 +70,6 @@ pub enum Single<T> {
         row: [T; 3],
     },
 }
-
-/// Roundings of its own terms within which a discriminant below zero counts as zero: the bars are in line.
-const IN_LINE_ROUNDINGS: f64 = 64.0;
 
 impl<T: Scalar> Dyad<T> {
     /// Both positions, angles within half a turn of `near`.
@@ -201,7 +199,7 @@ fn quadratic<T: Scalar>(square: T, half: T, level: T, size: T) -> ([T; 2], T::Ma
 /// √discriminant, 0 where it is below; true where it is not, or by rounding alone; `size`: of its terms.
 fn root<T: Scalar>(discriminant: T, size: T) -> (T, T::Mask) {
     let zero = T::constant(0.0);
-    let slack = T::splat(T::Real::EPSILON) * T::constant(IN_LINE_ROUNDINGS) * size;
+    let slack = rows::IN_LINE.of::<T>() * size;
     (discriminant.max(zero).sqrt(), !discriminant.less(-slack))
 }
 

@@ -11,7 +11,8 @@ use crate::mechanism::outcome::Outcome;
 use crate::mechanism::roots::Roots;
 use crate::mechanism::widths::Widths;
 use crate::mechanism::{Block, BlockSolver};
-use crate::scalar::number::{Real, Scalar};
+use crate::scalar::number::Scalar;
+use crate::tolerances::rows;
 
 /// Trial steps a start; one costs as much as a Newton step. From 1000 rad away 52 were measured on a four-bar.
 pub(crate) const TRIALS: u32 = 120;
@@ -32,9 +33,6 @@ const DAMPING_RISE: f64 = 4.0;
 /// step no longer changes its coordinates.
 const LEAST_DAMPING: f64 = 1e-12;
 const LARGEST_DAMPING: f64 = 1e16;
-
-/// A point is stationary where ‖Jᵀr‖ ≤ 1e-2 √ε ‖J‖ ‖r‖: the residual can fall there by no more than √ε of itself.
-const STATIONARY: f64 = 1e-4;
 
 /// Levenberg–Marquardt from any guess, finished by Newton's method: the solver of the assembly.
 ///
@@ -331,7 +329,7 @@ impl<T: Scalar, const K: usize> NormalEquations<T, K> {
     /// `true` if the gradient is zero within rounding.
     fn is_stationary(&self) -> T::Mask {
         let gradient = self.gradient.iter().fold(T::constant(0.0), |sum, g| sum + *g * *g);
-        let bound = T::splat(T::Real::EPSILON) * T::constant(STATIONARY) * self.trace() * self.cost;
+        let bound = rows::STATIONARY.of::<T>() * self.trace() * self.cost;
         !bound.less(gradient)
     }
 

@@ -10,7 +10,8 @@ use crate::linear_algebra::vectors::select;
 use crate::mechanism::outcome::Outcome;
 use crate::mechanism::widths::Widths;
 use crate::mechanism::{Block, BlockSolver};
-use crate::scalar::number::{Real, Scalar};
+use crate::scalar::number::Scalar;
+use crate::tolerances::singular;
 
 /// Iterations before the safeguarded method takes over. Quadratic convergence needs 2 to 6; at a change point it
 /// is linear, a quarter of the residual a step, and 17 were measured on a four-bar in line.
@@ -355,7 +356,7 @@ fn shortest_steps<T: Scalar, const K: usize>(
         let b = residuals.map(|r| -r.lane(lane));
         let row_scales = block.row_scales.map(|scale| scale.lane(lane));
         let coordinate_scales = block.coordinate_scales.map(|scale| scale.lane(lane));
-        minimum_norm(&a, &b, &row_scales, &coordinate_scales, T::Real::EPSILON.sqrt()).0
+        minimum_norm(&a, &b, &row_scales, &coordinate_scales, singular::HALF_THE_DIGITS.of()).0
     });
     let component = |lane: usize, k: usize| shortest.as_ref().get(lane).and_then(|x| x.get(k)).copied();
     core::array::from_fn(|k| T::from_lanes(|lane| component(lane, k).unwrap_or(T::Real::constant(0.0))))

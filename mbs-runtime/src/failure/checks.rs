@@ -4,6 +4,7 @@ use crate::failure::{Failure, FailureKind};
 use crate::mechanism::limit::{Limit, size};
 use crate::mechanism::{Entry, Mechanism};
 use crate::scalar::number::{Real, Scalar};
+use crate::tolerances::rows;
 
 /// The first limit that is passed, if any.
 #[inline(always)]
@@ -95,10 +96,6 @@ pub(crate) fn non_finite<R: Real, const K: usize>(values: &[R; K], entries: &[En
     non_finite_among(values, entries)
 }
 
-/// Coarsest resolution of a coordinate, relative to its scale, that still is a position: 1e-3 rad. An `f64` angle
-/// has it for 7e11 turns, an `f32` angle for 1300: an `f32` angle at 3000 rpm is worthless after minutes.
-pub(crate) const COARSEST_RESOLUTION: f64 = 1e-3;
-
 /// The first coordinate that is not finite, or too large to be resolved.
 #[inline(always)]
 pub(crate) fn coordinate_failure<S: Mechanism<R, N, M>, R: Real, const N: usize, const M: usize>(
@@ -106,7 +103,7 @@ pub(crate) fn coordinate_failure<S: Mechanism<R, N, M>, R: Real, const N: usize,
     scales: &[R; N],
     t: R,
 ) -> Option<Failure> {
-    let limit = R::constant(COARSEST_RESOLUTION);
+    let limit = rows::COARSEST_RESOLUTION.of::<R>();
     let resolved = |(coordinate, scale): (&R, &R)| R::EPSILON * coordinate.abs() <= limit * *scale;
     if q.iter().zip(scales).fold(true, |all, pair| all & resolved(pair)) {
         return None;

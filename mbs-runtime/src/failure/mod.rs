@@ -8,6 +8,7 @@ use crate::failure::conflicting_rows::ConflictingRows;
 use crate::mechanism::Entry;
 use crate::mechanism::dynamic::MissingSlope;
 use crate::scalar::number::Real;
+use crate::tolerances::is_single;
 
 /// Position, or one of its time derivatives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -386,7 +387,7 @@ impl FailureKind {
 
     /// [`Undecided`](FailureKind::Undecided) at a `margin`.
     pub(crate) fn undecided<R: Real>(margin: R) -> Self {
-        FailureKind::Undecided { margin: margin.to_f64(), single: f64::EPSILON < R::EPSILON.to_f64() }
+        FailureKind::Undecided { margin: margin.to_f64(), single: is_single::<R>() }
     }
 
     /// The failure of this kind at `time` (s).

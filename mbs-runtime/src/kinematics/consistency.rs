@@ -3,11 +3,11 @@
 use crate::block_solvers::gauss_newton::product;
 use crate::failure::conflicting_rows::ConflictingRows;
 use crate::failure::{DerivativeOrder, Failure, FailureKind};
-use crate::linear_algebra::least_margin;
 use crate::linear_algebra::vectors::largest_difference;
 use crate::mechanism::Mechanism;
 use crate::mechanism::widths::largest_width;
 use crate::scalar::number::Real;
+use crate::tolerances::singular::LEAST_MARGIN;
 
 /// Residual allowed to rows in their rates, in widths times the rates of the coordinates. The residual that a text allows a
 /// position changes as fast as the links turn, twice as fast in accelerations.
@@ -63,7 +63,7 @@ pub(crate) fn disagreement<S: Mechanism<R, N, M>, R: Real, const N: usize, const
 /// [`FailureKind::Inconsistent`] where the rows contradict each other in a time derivative, though not in position:
 /// dimensions that fit at one instant alone.
 ///
-/// Rates are promised with half their digits at margin 1 (see [`least_margin`]) and with fewer as it falls; that is
+/// Rates are promised with half their digits at margin 1 (see [`LEAST_MARGIN`]) and with fewer as it falls; that is
 /// the residual allowed to the surplus rows.
 fn rate_failure<S: Mechanism<R, N, M>, R: Real, const N: usize, const M: usize>(
     mechanism: &S,
@@ -80,7 +80,7 @@ fn rate_failure<S: Mechanism<R, N, M>, R: Real, const N: usize, const M: usize>(
     let mut size = rates.known;
     rates.rates.iter().zip(&scales).for_each(|(rate, scale)| size = size.max((*rate / *scale).abs()));
     rates.right.iter().zip(&row_scales).for_each(|(right, scale)| size = size.max((*right / *scale).abs()));
-    let allowed = (least_margin::<R>() + R::constant(RATES_OF_WIDTH) * rates.width) / rates.margin * size;
+    let allowed = (LEAST_MARGIN.of::<R>() + R::constant(RATES_OF_WIDTH) * rates.width) / rates.margin * size;
     let (mut worst, mut unit) = (R::constant(0.0), R::constant(1.0));
     for (open, scale) in open.iter().zip(&row_scales) {
         if worst < *open {

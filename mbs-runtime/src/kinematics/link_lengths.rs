@@ -3,6 +3,7 @@
 
 use crate::mechanism::Entry;
 use crate::scalar::number::{Real, Scalar};
+use crate::tolerances::rows;
 
 /// Largest difference of a rate from the one foreseen, over the sizes of both and of their change.
 ///
@@ -17,18 +18,12 @@ const LARGEST_BEND: f64 = 0.125;
 /// times an angle.
 const LARGEST_BEND_OF_MARGIN: f64 = 0.5;
 
-/// Movement over the margin that is ignored in a plain step: of links so short, or of coordinates that do not move.
-const LEAST_MOVEMENT: f64 = 1e-5;
-
 /// Bend of an angle over the margin that is ignored. Where the other assembly is next to the former angle, it is off by twice the
 /// margin.
 const LEAST_BEND: f64 = 1.0 / 32.0;
 
 /// Distance of an angle from its prediction over the margin up to which it needs no test.
 pub(crate) const APPROACH_OF_ANGLES: f64 = 1.0 / 256.0;
-
-/// Movement in roundings over the margin below which it is rounding to a hundredth.
-const ROUNDINGS: f64 = 1e3;
 
 /// Of each coordinate that is a length, the first one of its point; of all others, none.
 pub(crate) type Points<const N: usize> = [Option<usize>; N];
@@ -106,12 +101,12 @@ fn sizes<T: Scalar, const N: usize>(points: &Points<N>, scales: &[T; N], values:
 
 /// Movement over the margin that is rounding.
 pub(crate) fn rounding<R: Real>(margin: R) -> R {
-    R::constant(ROUNDINGS) * R::EPSILON / margin
+    rows::ROUNDED_MOVEMENT.of::<R>() / margin
 }
 
 /// Movement that is not looked at.
 pub(crate) fn least<T: Scalar>(margin: T) -> T {
-    T::constant(LEAST_MOVEMENT).max(T::constant(ROUNDINGS) * T::splat(T::Real::EPSILON)) * margin
+    rows::LEAST_MOVEMENT.of::<T>() * margin
 }
 
 /// `true` if no point's `differences` are more than `part` of its `movements` together and `least`; false for NaN.

@@ -10,6 +10,7 @@ use crate::linear_algebra::orthogonal::least_independent_column;
 use crate::linear_algebra::rectangular::Orthogonal;
 use crate::mechanism::Mechanism;
 use crate::scalar::number::Real;
+use crate::tolerances::singular::HALF_THE_DIGITS;
 
 /// Iterations before giving up; from 0.1 rad away five are enough.
 const ITERATIONS: u32 = 50;
@@ -159,7 +160,7 @@ fn singular<S: Mechanism<R, N, M>, R: Real, const N: usize, const M: usize>(
         row: entry(S::ROWS, index(row)),
         coordinate: entry(S::COORDINATES, index(coordinate)),
         margin: margin.to_f64(),
-        required: R::EPSILON.sqrt().to_f64(),
+        required: HALF_THE_DIGITS.of::<R>().to_f64(),
         reference: mechanism.reference(),
     }
     .at(t.to_f64())

@@ -6,11 +6,12 @@ use crate::failure::checks::{UNNAMED, all_finite, coordinate_failure, entry, non
 use crate::failure::conflicting_rows::ConflictingRows;
 use crate::failure::{DerivativeOrder, Failure, FailureKind};
 use crate::kinematics::least_squares_assembly::contradiction;
+use crate::linear_algebra::determines_rates;
 use crate::linear_algebra::vectors::{extent, largest_difference};
-use crate::linear_algebra::{determines_rates, least_margin};
 use crate::mechanism::outcome::Outcome;
 use crate::mechanism::{Kinematic, Margin, Mechanism};
 use crate::scalar::number::Real;
+use crate::tolerances::singular::LEAST_MARGIN;
 
 /// Factors of a Jacobian that is regular: the only ones that rates are solved with.
 #[derive(Clone, Copy, Debug)]
@@ -21,7 +22,7 @@ pub struct RegularFactors<F, R> {
 }
 
 impl<F, R: Copy> RegularFactors<F, R> {
-    /// Margin to singularity, above `least_margin`, at most 1.
+    /// Margin to singularity, above 32 √ε, at most 1.
     pub fn margin(&self) -> R {
         self.margin
     }
@@ -236,7 +237,7 @@ pub(crate) fn singular<S: Mechanism<R, N, M>, R: Real, const N: usize, const M: 
         row: entry(S::ROWS, margin.row(0)),
         coordinate: entry(S::COORDINATES, margin.coordinate(0)),
         margin: margin.value.to_f64(),
-        required: least_margin::<R>().to_f64(),
+        required: LEAST_MARGIN.of::<R>().to_f64(),
         reference: mechanism.reference(),
     }
     .at(t.to_f64())

@@ -12,29 +12,18 @@ pub(crate) mod rectangular;
 pub(crate) mod vectors;
 
 use crate::scalar::number::{Real, Scalar};
+use crate::tolerances::singular;
 
-/// [`least_margin`] squared, in ε.
-const LEAST_MARGIN_SQUARE: f64 = 1024.0;
-
-/// Margin to singularity below which rates are refused: 32 √ε, 4.8e-7 in `f64`.
-///
-/// A residual within 64 ε leaves 64 ε/μ of position open at margin μ, and so much is μ itself in doubt. At a
-/// dead centre the position found is √(64 ε) off and looks as if μ = 8 √ε; four times
-/// that leaves rates wrong by a sixteenth at worst, with the square of the distance less beyond.
-pub fn least_margin<R: Real>() -> R {
-    (R::EPSILON * R::constant(LEAST_MARGIN_SQUARE)).sqrt()
-}
-
-/// `true` if a margin is above [`least_margin`], without a square root; false for NaN.
+/// `true` if a margin is above [`singular::LEAST_MARGIN`], without a square root; false for NaN.
 #[inline(always)]
 pub(crate) fn determines_rates<R: Real>(margin: R) -> bool {
-    R::EPSILON * R::constant(LEAST_MARGIN_SQUARE) < margin * margin
+    singular::LEAST_MARGIN_SQUARED.of::<R>() < margin * margin
 }
 
 /// `true` if a Newton step keeps half its digits: margin above √ε; false for NaN.
 #[inline(always)]
 pub(crate) fn is_regular<T: Scalar>(margin: T) -> T::Mask {
-    T::splat(T::Real::EPSILON).less(margin * margin)
+    singular::HALF_THE_DIGITS_SQUARED.of::<T>().less(margin * margin)
 }
 
 /// 1/determinant of a block and its margin |det S|/(‖S‖²/K)^(K/2), S the block in the reference metric.
@@ -76,7 +65,7 @@ fn regular_alone<T: Scalar>(regular: T::Mask, reciprocal: T, ratio: T) -> (T, T)
 fn reciprocal_if_regular<T: Scalar>(determinant: T, scaled: T, bound_square: T) -> (T, T::Mask) {
     let reciprocal = T::constant(1.0) / determinant;
     // Written so that NaN, and a bound of 0, are not regular.
-    let above = (T::splat(T::Real::EPSILON) * bound_square).less(scaled * scaled);
+    let above = (singular::HALF_THE_DIGITS_SQUARED.of::<T>() * bound_square).less(scaled * scaled);
     (reciprocal, above & (bound_square + reciprocal).is_finite())
 }
 

@@ -4,6 +4,7 @@ use core::fmt;
 
 use crate::linear_algebra::orthogonal::{Pivoted, pivoted, scaled_columns};
 use crate::scalar::number::{Real, Scalar};
+use crate::tolerances::singular;
 
 /// Unknowns up to which square blocks are measured by their determinant; here by the volume that the columns span.
 const LARGEST_MEASURED_BY_VOLUME: usize = 3;
@@ -29,7 +30,7 @@ impl<T: Scalar, const K: usize, const M: usize> Orthogonal<T, K, M> {
             let a = a.map(|row| row.map(|entry| entry.lane(lane)));
             let (row_scales, scales) =
                 (row_scales.map(|scale| scale.lane(lane)), coordinate_scales.map(|scale| scale.lane(lane)));
-            pivoted(scaled_columns(&a, &row_scales, &scales), T::Real::EPSILON.sqrt())
+            pivoted(scaled_columns(&a, &row_scales, &scales), singular::HALF_THE_DIGITS.of())
         });
         let margin = T::from_lanes(|lane| lanes.as_ref().get(lane).map_or(T::Real::constant(0.0), margin));
         (Orthogonal { lanes, row_scales: *row_scales, coordinate_scales: *coordinate_scales }, margin)

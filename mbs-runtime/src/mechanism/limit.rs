@@ -2,6 +2,7 @@
 
 use crate::mechanism::Entry;
 use crate::scalar::number::{Real, Scalar};
+use crate::tolerances::rows;
 
 /// A quantity with the range that a `limit` of the text allows it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,16 +34,12 @@ pub struct Warning {
 /// whole range as a sine spends a seventh of a half period in the last twentieth: time to react.
 pub const WARNING_SHARE: f64 = 0.05;
 
-/// Roundings by which a quantity may pass a bound: those that a closed position may hold, so that a dead centre on the
-/// bound is not beyond it.
-const BOUND_ROUNDINGS: f64 = 64.0;
-
 impl<T: Scalar> Limit<T> {
     /// Distance by which a quantity of coordinates of at most `size` may exceed `bound`: roundings of both, but of no more than
     /// the larger bound. So a bound of 1e300, written for no bound, does not widen the other one.
     fn slack(&self, bound: T, size: T) -> T {
         let largest = self.low.abs().max(self.high.abs()).min(bound.abs().max(size));
-        T::constant(BOUND_ROUNDINGS) * T::splat(T::Real::EPSILON) * largest
+        rows::OF_BOUND.of::<T>() * largest
     }
 
     /// Distances to the lower and to the upper bound: not negative as long as neither is passed. `size`: that of the coordinates.

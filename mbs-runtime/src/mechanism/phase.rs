@@ -4,6 +4,7 @@ use core::f64::consts::TAU;
 
 use crate::scalar::lanes::{LaneMask, Lanes};
 use crate::scalar::number::{Real, Scalar};
+use crate::tolerances::is_single;
 
 /// The phase of a `drive … : rate(x) == …`, with its rates: a signal that the stepper moves on.
 ///
@@ -173,14 +174,11 @@ fn exact_product<T: Scalar>(a: T, b: T) -> (T, T) {
 #[inline]
 fn halves<T: Scalar>(value: T) -> (T, T) {
     // 2^⌈p/2⌉ + 1 of numbers with p binary digits, ε = 2^(1 − p).
-    let split = if T::Real::EPSILON.to_f64() > SINGLE { 4_097.0 } else { 134_217_729.0 };
+    let split = if is_single::<T::Real>() { 4_097.0 } else { 134_217_729.0 };
     let stretched = T::constant(split) * value;
     let high = stretched - (stretched - value);
     (high, value - high)
 }
-
-/// Less than ε of single, more than that of double precision.
-const SINGLE: f64 = 1e-10;
 
 /// Outer places and weights of Gauss–Legendre integration with three points over (0, 1): ½ ∓ √15/10, 5/18; the rest is of the middle.
 const OUTER_PLACE: f64 = 0.112_701_665_379_258_31;

@@ -1,10 +1,7 @@
 //! Contradiction that redundant rows may keep.
 
 use crate::scalar::number::Scalar;
-
-/// Contradiction allowed to rows in addition to rounding, relative to the row's scale: the error of dimensions typed with 15
-/// digits. Each is off by 5e-15 of itself at most, and a row has some ten.
-const TYPED_DIGITS: f64 = 5e-14;
+use crate::tolerances::rows;
 
 /// Contradiction that the rows of a block may keep: the widths that the text states, M, in the units of the rows.
 #[derive(Clone, Copy, Debug)]
@@ -29,11 +26,12 @@ impl<T: Scalar, const M: usize> Widths<T, M> {
     /// Least squares share a contradiction among all rows that take part in it, so rows without a width have the largest one
     /// of the block, in the reference metric.
     pub(crate) fn granted(&self, row_scales: &[T; M]) -> [T; M] {
-        let largest = largest_width(&self.0, row_scales).max(T::constant(TYPED_DIGITS));
+        let largest = largest_width(&self.0, row_scales).max(rows::OF_DIMENSIONS.of());
         let mut granted = *row_scales;
         for (granted, width) in granted.iter_mut().zip(&self.0) {
             let stated = T::constant(0.0).less(*width);
-            *granted = T::select(stated, width.max(T::constant(TYPED_DIGITS) * *granted), largest * *granted);
+            *granted =
+                T::select(stated, width.max(rows::OF_DIMENSIONS.of::<T>() * *granted), largest * *granted);
         }
         granted
     }

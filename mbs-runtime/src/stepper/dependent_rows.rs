@@ -3,6 +3,7 @@
 use crate::mechanism::{Entry, Kinematic};
 use crate::scalar::number::Real;
 use crate::stepper::Stepper;
+use crate::tolerances::singular;
 
 /// The rank of Φ_q at a position and the rows that follow from the others there.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -64,7 +65,7 @@ fn remainder<R: Real, const N: usize>(row: [R; N], basis: &[[R; N]; N]) -> Optio
             rest.iter_mut().zip(direction).for_each(|(entry, along)| *entry = *entry - part * *along);
         }
     }
-    unit(rest, R::EPSILON.sqrt())
+    unit(rest, singular::HALF_THE_DIGITS.of())
 }
 
 /// `vector` made of length 1; `None` where it is no longer than `least`.

@@ -4,12 +4,12 @@ use core::array::from_fn;
 
 use crate::block_solvers::convergence::Statistics;
 use crate::block_solvers::fast_newton::FastNewton;
-use crate::failure::checks::COARSEST_RESOLUTION;
 use crate::kinematics::homotopy::{LARGEST_APPROACH, LARGEST_SECOND_ORDER_TERM};
 use crate::kinematics::link_lengths;
 use crate::mechanism::{Kinematic, Margin, negated};
 use crate::scalar::number::{Real, Scalar, index};
-use crate::stepper::instant::{is_coarse, regular_zone};
+use crate::stepper::instant::is_coarse;
+use crate::tolerances::{rows, singular};
 
 /// Most coordinates that stay in registers from the end of a step to its state, which are written one by one.
 const FEW: usize = 8;
@@ -18,18 +18,12 @@ const FEW: usize = 8;
 /// less, no link of a thousandth turns by half a radian.
 const QUICK_SECOND_ORDER_TERM: f64 = 1e-4;
 
-/// Distance from the prediction over the margin from which on such a step is checked, in addition to what rounding needs.
-const QUICK_APPROACH: f64 = 1e-5;
-
-/// Roundings of a position at which it is not looked at either.
-const QUICK_ROUNDINGS: f64 = 2e3;
-
 /// Second-order term, and distance from the prediction over the margin, up to which a step needs no test, `with_lengths` among
 /// the coordinates or without.
 #[inline(always)]
 pub(crate) fn quick<R: Real>(with_lengths: bool) -> [f64; 2] {
     if with_lengths {
-        return [QUICK_SECOND_ORDER_TERM, QUICK_APPROACH.max(QUICK_ROUNDINGS * R::EPSILON.to_f64())];
+        return [QUICK_SECOND_ORDER_TERM, rows::QUICK_APPROACH.of::<R>().to_f64()];
     }
     [LARGEST_SECOND_ORDER_TERM, link_lengths::APPROACH_OF_ANGLES]
 }
@@ -170,7 +164,7 @@ impl<T: Scalar, const N: usize> FastStep<T, N> {
 
     /// Lanes that are solved, regular at both ends, finite, on their branches and within their limits.
     fn is_sound(&self) -> T::Mask {
-        self.held & regular_zone::<T>().less(self.margin) & self.size.less(largest_size())
+        self.held & singular::ZONE.of::<T>().less(self.margin) & self.size.less(largest_size())
     }
 
     /// `true` if the links of a doubtful step from `start` to `t` turned as predicted, so little that the assembly is kept.
@@ -228,7 +222,7 @@ impl<S: Kinematic<T, N, M>, T: Scalar, const N: usize, const M: usize> Judge<'_,
         let mut held = self.solver.closed;
         // A single mechanism is asked before its step.
         if T::LANES > 1 {
-            held = held & regular_zone::<T>().less(self.start.margin);
+            held = held & singular::ZONE.of::<T>().less(self.start.margin);
         }
         for (index, branch) in self.mechanism.branches(self.parameters, position).as_ref().iter().enumerate()
         {
@@ -242,7 +236,7 @@ impl<S: Kinematic<T, N, M>, T: Scalar, const N: usize, const M: usize> Judge<'_,
         let few = size.less(largest_size()) & !is_coarse(self.solver.ratio, margin.value);
         // The limits of a quick step are within those of a plain one. Products are compared by one comparison for two: both are
         // less than that of the margin.
-        let zone = self.most_way * regular_zone::<T>();
+        let zone = self.most_way * singular::ZONE.of::<T>();
         let near = correction.max(zone).less(self.most_way * margin.value);
         let quick = held & self.foreseen & few & near;
         FastStep {
@@ -400,5 +394,5 @@ fn trusted<T: Scalar>(term: T, scale: T, most: f64) -> T::Mask {
 /// Sum of the coordinates' sizes in the reference metric up to which their rounding leaves digits enough.
 #[inline(always)]
 fn largest_size<T: Scalar>() -> T {
-    T::constant(COARSEST_RESOLUTION / T::Real::EPSILON.to_f64())
+    T::splat(rows::COARSEST_RESOLUTION.of::<T::Real>() / T::Real::EPSILON)
 }

@@ -11,34 +11,12 @@ use crate::linear_algebra::vectors::largest_difference;
 use crate::mechanism::{Kinematic, Margin, Mechanism};
 use crate::scalar::number::{Real, Scalar};
 use crate::stepper::state::State;
-
-/// Margin to singularity below which the homotopy predicts, not the rates of the state: those are wrong by the inverse square of the
-/// margin, and past a change point pick the assembly by chance.
-const REGULAR_ZONE: f64 = 1e-2;
-
-/// The same in ε, for numbers of few digits: 0.075 in `f32`, the margin from which on a position leads to the next one there.
-const ZONE_ROUNDINGS: f64 = 630_000.0;
-
-/// Margin below which a position is in the singular zone.
-#[inline(always)]
-pub(crate) fn regular_zone<T: Scalar>() -> T {
-    T::constant(REGULAR_ZONE.max(ZONE_ROUNDINGS * T::Real::EPSILON.to_f64()))
-}
-
-/// Largest residual over its tolerance, and over the square of the margin μ, that is left in a position as it is.
-///
-/// A residual of r reference lengths is an error of r/μ in the position and of 3 to 6 r/μ² of the acceleration in that (measured on sliders
-/// next to the end of their range). With the tolerance of 64 ε it is 27 000 ε or 6e-12 at most; above margins of 0.12 no step is
-/// looked at twice, and at 0.1 one of a hundred.
-const COARSE: f64 = 70.0;
-
-/// Largest residual over its tolerance that is rounding alone: 4 of 64 roundings. A further step does not lower it.
-const FINE: f64 = 0.0625;
+use crate::tolerances::{rows, singular};
 
 /// `true` if a residual of `ratio` tolerances is seen in the accelerations at such a `margin`.
 #[inline(always)]
 pub(crate) fn is_coarse<T: Scalar>(ratio: T, margin: T) -> T::Mask {
-    (T::constant(COARSE) * margin * margin).max(T::constant(FINE)).less(ratio)
+    (rows::COARSE.of::<T>() * margin * margin).max(rows::FINE.of()).less(ratio)
 }
 
 /// Position found by a solver.
@@ -83,7 +61,7 @@ impl<R: Real, const N: usize> Rates<R, N> {
 
     /// `true` if the rates are those of a position outside the singular zone.
     pub fn is_regular(&self) -> bool {
-        regular_zone::<R>() <= self.margin
+        singular::ZONE.of::<R>() <= self.margin
     }
 
     /// Solves the rates at a position that closes, or nearly so; returns the failure, if any.
@@ -105,7 +83,7 @@ impl<R: Real, const N: usize> Rates<R, N> {
             return Some(singular(mechanism, &margin, t));
         }
         let coarse = M == N && is_coarse(R::constant(found.statistics.residual), margin.value);
-        if (coarse || margin.value < regular_zone()) && found.open.is_none() {
+        if (coarse || margin.value < singular::ZONE.of()) && found.open.is_none() {
             found.polish(mechanism, parameters, &factors);
             (factors, margin) = factorized(mechanism, parameters, &found.position);
             if !determines_rates(margin.value) {

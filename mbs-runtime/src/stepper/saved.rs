@@ -16,6 +16,7 @@ use crate::stepper::Stepper;
 use crate::stepper::instant::{Predecessor, SolvedPosition};
 use crate::stepper::state::State;
 use crate::stepper::whole_turns::Turns;
+use crate::tolerances::rows;
 
 /// Version of the layout of [`Saved`], in its first bytes. Neither erased (0xFF) nor zeroed memory has it.
 const VERSION: u32 = 4;
@@ -270,13 +271,9 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
     }
 }
 
-/// Largest difference of saved values, which went through another number type or a phase's start, from the original ones, in
-/// roundings.
-const SAME: f64 = 16.0;
-
 /// `true` if the values are those that were saved.
 fn same<R: Real>(saved: &[R], values: &[R]) -> bool {
-    let rounding = R::constant(SAME) * R::EPSILON;
+    let rounding = rows::OF_SAVED.of::<R>();
     saved.iter().zip(values).all(|(saved, value)| (*saved - *value).abs() <= rounding * saved.abs())
 }
 

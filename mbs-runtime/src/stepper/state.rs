@@ -5,7 +5,8 @@ use crate::failure::Failure;
 use crate::mechanism::{Kinematic, Mechanism};
 use crate::scalar::number::Real;
 use crate::stepper::fast_step::FastStep;
-use crate::stepper::instant::{Predecessor, Rates, SolvedPosition, regular_zone};
+use crate::stepper::instant::{Predecessor, Rates, SolvedPosition};
+use crate::tolerances::singular;
 
 /// Position, velocity and acceleration at one time.
 ///
@@ -127,6 +128,6 @@ impl<R: Real, const N: usize> State<R, N> {
     /// `true` if the state is outside the singular zone.
     #[inline(always)]
     pub(crate) fn is_regular(&self) -> bool {
-        regular_zone::<R>() <= self.margin
+        singular::ZONE.of::<R>() <= self.margin
     }
 }

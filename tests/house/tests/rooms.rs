@@ -21,6 +21,7 @@ const HOUSES: &[House] = &[
         source: "mbs-runtime/src",
         rooms: &[
             "scalar",
+            "tolerances",
             "linear_algebra",
             "mechanism",
             "failure",

@@ -3,19 +3,13 @@
 //! If rows depend on each other, Φ_qᵀ λ = Q − M q̈ has many solutions. Their sum on the coordinates is unique, and so is the
 //! motion. The force of a single row or joint is not, however many digits it is printed with.
 
-use crate::dynamics::linear_systems::kkt::{Factors, System, none};
+use crate::dynamics::linear_systems::kkt::{Factors, System};
 use crate::dynamics::model::metric::Metric;
 use crate::failure::Failure;
 use crate::mechanism::dynamic::{Dynamic, DynamicState};
 use crate::mechanism::{Entry, Mechanism};
 use crate::scalar::number::Real;
-
-/// Part of a row outside the span of others, in the metric, below which it counts as their combination in the choice of the
-/// rows that are named: half the digits.
-const OWN_PART: f64 = 1e-8;
-
-/// Largest sum, relative to its terms, of changes of a load that cancel; rounding alone is 1e-13 of large forces.
-const CANCELLED: f64 = 1e-8;
+use crate::tolerances::{forces, singular};
 
 /// Multipliers that the position determines, and rows that follow from the others.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -97,7 +91,8 @@ impl<R: Real, const M: usize> Determinacy<R, M> {
                     own.iter_mut().zip(direction).for_each(|(own, along)| *own = *own - part * *along);
                 }
                 let length = dot(&own, &own).sqrt();
-                if let (true, Some(slot)) = (none::<R>(OWN_PART).less(length), basis.get_mut(named)) {
+                if let (true, Some(slot)) = (singular::OWN_PART.of::<R>().less(length), basis.get_mut(named))
+                {
                     *slot = own.map(|part| part / length);
                     *dependent = true;
                     named += 1;
@@ -152,7 +147,7 @@ impl<R: Real, const M: usize> Determinacy<R, M> {
                     alone.iter_mut().skip(row).take(1).for_each(|lambda| *lambda = *lambda + size * *share);
                     parts = parts + (of(&loads(&alone)) - of(&before)).abs();
                 }
-                *mark &= !(none::<R>(CANCELLED) * parts).less((of(&whole) - of(&before)).abs());
+                *mark &= !(forces::CANCELLED.of::<R>() * parts).less((of(&whole) - of(&before)).abs());
             }
         }
     }

@@ -3,7 +3,7 @@
 use crate::dynamics::equilibrium::free_stiffness::FreeStiffness;
 use crate::dynamics::formulations::variation::{FreeMotion, Variation};
 use crate::dynamics::integrators::vector::{State, Vector};
-use crate::dynamics::linear_systems::kkt::{System, none, truncation};
+use crate::dynamics::linear_systems::kkt::System;
 use crate::dynamics::linear_systems::states::require_no_states;
 use crate::dynamics::linear_systems::tangent::Tangent;
 use crate::dynamics::model::Model;
@@ -13,13 +13,7 @@ use crate::dynamics::model::metric::Metric;
 use crate::failure::Failure;
 use crate::mechanism::dynamic::{Dynamic, StateSlope};
 use crate::scalar::number::Real;
-
-/// Rates in the metric (1/s, 1/s²) that a state at rest may have, and its distance from the equilibrium in the metric: that of an
-/// equilibrium typed with nine digits. In single precision it is rounding.
-const AT_REST: f64 = 1e-9;
-
-/// Roundings, in ε of its terms, that the rate of a first-order state at rest may have.
-const ROUNDINGS: f64 = 64.0;
+use crate::tolerances::{forces, singular};
 
 /// Matrices of small motions q + R s on the constraints.
 ///
@@ -145,13 +139,13 @@ fn about<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     let slopes = mechanism.state_slopes(&parameters, &position, &y.qd, &y.states, lambda);
     let phi_q = mechanism.phi_q(&parameters, &position);
     let system = System::new(&tangent.mass, &phi_q, &metric);
-    let factors = system.factorize_rank_revealing(truncation::<R>(), S::COORDINATES, t)?;
+    let factors = system.factorize_rank_revealing(singular::DEPENDENT.of(), S::COORDINATES, t)?;
     let scaled = |rates: &[R; N]| {
         let rates = rates.iter().zip(&metric.coordinates);
         rates.fold(zero, |largest, (rate, scale)| largest.max((*rate / *scale).abs()))
     };
-    let slow = scaled(&y.qd) <= none(AT_REST);
-    if !slow || (none::<R>(AT_REST) < scaled(qdd) && !rests(&model, t, y, (&position, qdd), lambda)?) {
+    let slow = scaled(&y.qd) <= forces::AT_REST.of();
+    if !slow || (forces::AT_REST.of::<R>() < scaled(qdd) && !rests(&model, t, y, (&position, qdd), lambda)?) {
         let variation = Variation::of(&model, (t, y, qdd), &position, independent)?;
         let (linear, rates) = moving(&tangent, &variation);
         return Ok((linear, slopes.map(|slopes| coupled(slopes, &linear, &rates))));
@@ -183,10 +177,10 @@ fn rests<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     let inertia = model.mechanism.mass_times(model.parameters, position, qdd);
     let answer = FreeStiffness::of(model, t, y, lambda)?.answer(&inertia, &[R::constant(0.0); M]);
     // Written so that NaN moves.
-    Ok(answer.push <= R::constant(0.0) && model.largest(&answer.step) <= none(AT_REST))
+    Ok(answer.push <= R::constant(0.0) && model.largest(&answer.step) <= forces::AT_REST.of())
 }
 
-/// `true` if a first-order state moves: by more than [`AT_REST`] of itself, or of its unit, a second, and by more than rounding.
+/// `true` if a first-order state moves: by more than [`forces::AT_REST`] of itself, or of its unit, a second, and by more than rounding.
 fn has_moving_states<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     model: &Model<'_, S, R, N, M>,
     position: &S::Position,
@@ -201,9 +195,9 @@ fn has_moving_states<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usiz
             let by_place = slope.q.iter().zip(&y.q).fold(R::constant(0.0), size);
             slope.states.as_ref().iter().zip(y.states.as_ref()).fold(by_place, size)
         });
-        R::constant(ROUNDINGS) * R::EPSILON * sum
+        forces::OF_STATE_RATE.of::<R>() * sum
     };
-    let allowed = |state: &R| none::<R>(AT_REST) * state.abs().max(R::constant(1.0));
+    let allowed = |state: &R| forces::AT_REST.of::<R>() * state.abs().max(R::constant(1.0));
     let states = rates.as_ref().iter().zip(y.states.as_ref()).enumerate();
     let mut moving = states.map(|(index, (rate, state))| allowed(state).max(rounding(index)) < rate.abs());
     moving.any(|moves| moves)

@@ -9,6 +9,7 @@ use crate::failure::{Failure, FailureKind, checks};
 use crate::mechanism::Entry;
 use crate::mechanism::dynamic::Dynamic;
 use crate::scalar::number::Real;
+use crate::tolerances::{motion, rows, singular};
 
 /// Corrections of a start. Next to a position where the coordinates that may move lose rank each halves the distance alone: half
 /// the digits of an `f64` take 26, and as many lead there.
@@ -20,29 +21,8 @@ const LARGEST_STEP: f64 = 0.5;
 /// Halvings of a correction that does not lower the residual, before the search is given up.
 const HALVINGS: u32 = 10;
 
-/// Singular value in the metric, in √ε, below which a direction of the free columns is not corrected: declared values may leave
-/// rows without any column. Where a residual of rounding is left of a position that loses rank, the singular value is about √ε.
-const WEAKEST: f64 = 0.125;
-
-/// Singular value in the metric below which one correction more is made after the last one that is needed. The error of the
-/// position by a residual within its tolerance is seen in the rates, by the square of the margin.
-const POLISHED: f64 = 1e-2;
-
 /// Starts tried besides the text's guess for the coordinates without a declaration, as in the search for an assembly.
 const OTHER_STARTS: u32 = 32;
-
-/// Part of the rows' second derivatives that no accelerations answer where the rows lose rank. The singular values left out,
-/// at most ∛ε, leave as much for accelerations a thousand times as large as γ.
-const UNANSWERED: f64 = 1e-2;
-
-/// Change of a declared number, in its scale, that is none: numbers typed with nine digits.
-const KEPT: f64 = 1e-8;
-
-/// Rounding errors, in ε, that such a change may be where that is more.
-const KEPT_ROUNDINGS: f64 = 64.0;
-
-/// Speed (1/s, in the metric) below which no rate counts as changed: that of a scale in 1000 seconds.
-const REST: f64 = 1e-3;
 
 /// The declared number of a start that differs most from the one that the motion begins with.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -67,7 +47,7 @@ pub(crate) fn moved<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize
     y: &State<R, N, S::States>,
     (q, qd): (&[u16], &[u16]),
 ) -> Option<MovedStart<R>> {
-    let speed = R::constant(REST).max(model.largest(&declared.qd)).max(model.largest(&y.qd));
+    let speed = motion::AT_REST.of::<R>().max(model.largest(&declared.qd)).max(model.largest(&y.qd));
     let place = |scale: R, declared: R| scale.max(declared.abs());
     most_moved(model, (&declared.q, &y.q), q, place).or_else(|| {
         let moved = most_moved(model, (&declared.qd, &y.qd), qd, |scale, _| scale * speed)?;
@@ -83,7 +63,7 @@ fn most_moved<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     indices: &[u16],
     unit: impl Fn(R, R) -> R,
 ) -> Option<MovedStart<R>> {
-    let allowed = R::constant(KEPT).max(R::constant(KEPT_ROUNDINGS) * R::EPSILON);
+    let allowed = rows::OF_START.of::<R>();
     let mut worst = (allowed, None);
     for index in indices {
         let at = |values: &[R; N]| values.get(usize::from(*index)).copied();
@@ -146,12 +126,12 @@ fn completed_rates<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>
     let (zero, one, back) = (R::constant(0.0), R::constant(1.0), R::constant(-1.0));
     let none = [zero; N];
     let system = free_columns(model, position, S::STARTED_RATES);
-    let factors = system.factorize_rank_revealing(weakest(), S::COORDINATES, t)?;
+    let factors = system.factorize_rank_revealing(singular::WEAKEST_OF_START.of(), S::COORDINATES, t)?;
     let found = y.qd.plus(back, &[1.0], [&factors.solve(&none, rates).0]);
-    if doubtful::<R>() < factors.margin() {
+    if singular::DOUBTFUL.of::<R>() < factors.margin() {
         return Ok((y.q, found));
     }
-    let without = system.factorize_rank_revealing(doubtful(), S::COORDINATES, t)?;
+    let without = system.factorize_rank_revealing(singular::DOUBTFUL.of(), S::COORDINATES, t)?;
     if without.rank() + 1 != factors.rank() {
         return Ok((y.q, found));
     }
@@ -195,24 +175,19 @@ fn require_decided<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>
     let zero = R::constant(0.0);
     let position = model.position(t, y);
     let system = free_columns(model, &position, &[]);
-    let factors = system.factorize_rank_revealing(doubtful(), S::COORDINATES, t)?;
+    let factors = system.factorize_rank_revealing(singular::DOUBTFUL.of(), S::COORDINATES, t)?;
     let mut gamma = model.mechanism.gamma(model.parameters, &position, &y.qd);
     gamma.iter_mut().zip(factors.row_scales()).for_each(|(part, scale)| *part = *part / *scale);
     let dot = |a: &[R; M], b: &[R; M]| a.iter().zip(b).fold(zero, |sum, (a, b)| sum + *a * *b);
     let speed = model.largest(&y.qd);
-    let allowed = R::constant(UNANSWERED) * dot(&gamma, &gamma).sqrt() + doubtful::<R>() * speed * speed;
+    let allowed = singular::UNANSWERED.of::<R>() * dot(&gamma, &gamma).sqrt()
+        + singular::DOUBTFUL.of::<R>() * speed * speed;
     let shares = factors.idle_shares();
     if shares.iter().any(|share| allowed < dot(share, &gamma).abs()) {
         let margin = system.factorize_rank_revealing(zero, S::COORDINATES, t)?.margin();
         return Err(FailureKind::undecided(margin).at(t.to_f64()));
     }
     Ok(())
-}
-
-/// Singular value below which the second derivative of the rows tells more of a rate than the first: ∛ε, where the error ε/σ² of the
-/// one is that of the other, σ.
-fn doubtful<R: Real>() -> R {
-    R::EPSILON.powf(R::constant(1.0 / 3.0))
 }
 
 /// The combination of rows (M, in the metric) that is dependent in `without` and not in `factors`, of which there is one.
@@ -319,8 +294,8 @@ pub(crate) fn close<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize
         let phi = model.mechanism.phi(model.parameters, &position);
         let closed = model.worst(&phi, &model.position_tolerances(&position, &y.q)).0 <= one;
         let system = free_columns(model, &position, held);
-        let factors = system.factorize_rank_revealing(weakest(), S::COORDINATES, t)?;
-        if closed && R::constant(POLISHED) < factors.margin() {
+        let factors = system.factorize_rank_revealing(singular::WEAKEST_OF_START.of(), S::COORDINATES, t)?;
+        if closed && singular::ZONE_OF_FORCES.of::<R>() < factors.margin() {
             return Ok(());
         }
         let (step, _) = factors.solve(&[R::constant(0.0); N], &phi);
@@ -381,9 +356,4 @@ fn free_columns<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
         }
     }
     System::new(&model.metric.mass(), &phi_q, model.metric)
-}
-
-/// See [`WEAKEST`].
-fn weakest<R: Real>() -> R {
-    R::constant(WEAKEST) * R::EPSILON.sqrt()
 }

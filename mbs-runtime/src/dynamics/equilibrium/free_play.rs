@@ -1,19 +1,12 @@
 //! Free play: motions to one side of a rest that nothing answers, where the stiffness at the rest is that of the other side.
 
-use crate::dynamics::equilibrium::free_stiffness::{FreeStiffness, SHARE};
+use crate::dynamics::equilibrium::free_stiffness::FreeStiffness;
 use crate::dynamics::integrators::vector::{State, Vector};
 use crate::dynamics::model::Model;
 use crate::failure::Failure;
 use crate::mechanism::dynamic::Dynamic;
 use crate::scalar::number::Real;
-
-/// Distance to both sides of an equilibrium, in √ε of the coordinates in the metric. Compared with it the side on which rounding
-/// has put the equilibrium is nothing, and the forces left by a curved motion, its square, are no more than rounding.
-const ASIDE: f64 = 4.0;
-
-/// Largest work along a play that counts as none, in [`ASIDE`] ε of the largest force or stiffness: the forces left by the search
-/// for an equilibrium, and the square of the distance to the side.
-const NOTHING: f64 = 32.0;
+use crate::tolerances::{forces, singular};
 
 /// Free motions up to which sums and differences of two are tried too: a play may be open to none of the motions themselves.
 const PAIRED: usize = 6;
@@ -30,6 +23,9 @@ const RELAXATION: f64 = 0.5;
 
 /// Whole steps after them, for the rest that shares of steps have left.
 const WHOLE_STEPS: usize = 3;
+
+/// Distance up to which a coordinate moves with a play whatever the motion is, over the distance to the side.
+const PROBED: f64 = 4.0;
 
 /// Least distance of such a place from the equilibrium, over the distance to the side.
 const AWAY: f64 = 1e-3;
@@ -78,7 +74,7 @@ pub(crate) fn with_play<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: u
 fn probe_distance<R: Real, const N: usize>(q: &[R; N], scales: &[R; N]) -> R {
     let extents = q.iter().zip(scales).map(|(q, scale)| (*q / *scale).abs());
     let extent = extents.fold(R::constant(1.0), |largest, part| largest.max(part));
-    R::constant(ASIDE) * R::EPSILON.sqrt() * extent
+    forces::BESIDE.of::<R>() * extent
 }
 
 /// A state, and its free stiffness.
@@ -162,15 +158,15 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Beside<'_, S,
         for ((pull, part), scale) in pull.iter().zip(motion).zip(scales) {
             work = work + *pull * *part / (*scale * *scale);
         }
-        let extent = self.aside / R::EPSILON.sqrt();
-        let nothing = R::constant(NOTHING) * R::EPSILON * extent * there.size * self.model.largest(motion);
+        let extent = self.aside / singular::HALF_THE_DIGITS.of();
+        let nothing = forces::NO_WORK.of::<R>() * extent * there.size * self.model.largest(motion);
         // NaN is no balance.
         let balanced = work.abs() <= nothing;
-        let share = R::constant(SHARE);
+        let share = forces::INDIFFERENT.of::<R>();
         if !balanced || self.model.changes_integrals(self.t, self.y, self.lambda, (motion, share)) {
             return;
         }
-        let share = share.max(R::constant(ASIDE) * self.aside) * self.model.largest(motion);
+        let share = share.max(R::constant(PROBED) * self.aside) * self.model.largest(motion);
         for ((mark, part), scale) in indifferent.iter_mut().zip(motion).zip(scales) {
             *mark |= share.less((*part / *scale).abs());
         }
@@ -186,7 +182,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Beside<'_, S,
     /// The state at the side along `motion` (N); none where there is no motion.
     fn beside(&self, motion: &[R; N]) -> Option<State<R, N, S::States>> {
         let size = self.model.largest(motion);
-        if !R::constant(SHARE).less(size) {
+        if !forces::INDIFFERENT.of::<R>().less(size) {
             return None;
         }
         let mut y = *self.y;

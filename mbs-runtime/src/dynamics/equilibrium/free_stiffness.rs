@@ -1,7 +1,7 @@
 //! The stiffness of the motions that the rows leave free, of any rank: restoring forces, and motions that nothing answers.
 
 use crate::dynamics::integrators::vector::{State, Vector};
-use crate::dynamics::linear_systems::kkt::{Factors, System, none, truncation};
+use crate::dynamics::linear_systems::kkt::{Factors, System};
 use crate::dynamics::linear_systems::tangent::Tangent;
 use crate::dynamics::model::Model;
 use crate::failure::Failure;
@@ -9,13 +9,7 @@ use crate::linear_algebra::orthogonal::minimum_norm;
 use crate::linear_algebra::vectors::dot;
 use crate::mechanism::dynamic::Dynamic;
 use crate::scalar::number::Real;
-
-/// Part of the largest stiffness or force in the metric below which a motion meets no stiffness. Rounding of
-/// stiff springs leaves nine digits of a soft direction; the rounding of 0 counts where that is more.
-const UNANSWERED: f64 = 1e-9;
-
-/// Part of a coordinate in an indifferent motion, in the metric, from which it counts as indifferent.
-pub(crate) const SHARE: f64 = 1e-6;
+use crate::tolerances::{forces, singular};
 
 /// K on the null space of Φ_q at one position, in the reference metric.
 #[derive(Clone, Copy)]
@@ -73,7 +67,7 @@ impl<R: Real, const N: usize, const M: usize> FreeStiffness<R, N, M> {
         }
         let motions = factors.free_motions();
         let reduced = projected(&motions, &stiffness);
-        let (freedom, nothing) = (N.saturating_sub(factors.rank()), unanswered::<R>() * size);
+        let (freedom, nothing) = (N.saturating_sub(factors.rank()), forces::NO_STIFFNESS.of::<R>() * size);
         Ok(FreeStiffness { factors, freedom, motions, stiffness, reduced, size, nothing })
     }
 
@@ -104,7 +98,7 @@ impl<R: Real, const N: usize, const M: usize> FreeStiffness<R, N, M> {
         for index in 0..self.freedom {
             let (motion, _) = self.unanswered_part(index);
             for ((mark, part), scale) in indifferent.iter_mut().zip(&motion).zip(scales) {
-                *mark |= R::constant(SHARE).less((*part / *scale).abs());
+                *mark |= forces::INDIFFERENT.of::<R>().less((*part / *scale).abs());
             }
         }
         indifferent
@@ -142,7 +136,7 @@ impl<R: Real, const N: usize, const M: usize> FreeStiffness<R, N, M> {
         let one = R::constant(1.0);
         let mut largest = R::constant(0.0);
         reduced.iter().flatten().for_each(|entry| largest = largest.max(entry.abs()));
-        let tolerance = unanswered::<R>().max(self.nothing / largest);
+        let tolerance = forces::NO_STIFFNESS.of::<R>().max(self.nothing / largest);
         minimum_norm(reduced, wanted, &[one; N], &[one; N], tolerance).0
     }
 
@@ -171,13 +165,8 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
     pub(crate) fn free_factors(&self, position: &S::Position, t: R) -> Result<Factors<R, N, M>, Failure> {
         let phi_q = self.mechanism.phi_q(self.parameters, position);
         let system = System::new(&self.metric.mass(), &phi_q, self.metric);
-        system.factorize_rank_revealing(truncation::<R>(), S::COORDINATES, t)
+        system.factorize_rank_revealing(singular::DEPENDENT.of(), S::COORDINATES, t)
     }
-}
-
-/// Part of the largest force below which it is none.
-pub(crate) fn unanswered<R: Real>() -> R {
-    none(UNANSWERED)
 }
 
 pub(crate) fn times<R: Real, const N: usize>(matrix: &[[R; N]; N], x: &[R; N]) -> [R; N] {

@@ -23,14 +23,11 @@ use crate::dynamics::model::{Counts, Model};
 use crate::failure::{Failure, FailureKind, checks};
 use crate::mechanism::dynamic::Dynamic;
 use crate::scalar::number::Real;
+use crate::tolerances::forces;
 
 /// Moves of the search for the place where the forces are nearest to balance: ten turns of a coordinate, or a dozen digits of
 /// a place where they only come near.
 const MOST_MOVES: u32 = 120;
-
-/// Distance to the equilibrium of the free motions, in the metric and in √ε, at which a position with dependent rows is at rest: 1e-6
-/// in `f64`. The first-order motion of a free coordinate leaves the square of a step on the rows, so √ε is what the step resolves.
-const UNBALANCED: f64 = 64.0;
 
 /// Distance by which a start is moved if no coordinate changes the integrand of a state, as at the turning point of a square. In
 /// the metric, less than the length of the shortest bars of a mechanism.
@@ -256,7 +253,7 @@ fn unanswered_coordinates<S: Dynamic<R, N, M>, R: Real, const N: usize, const M:
 }
 
 /// `true` if the motions that the rows leave free, at a position `y` that meets them, lead to no equilibrium farther than
-/// [`UNBALANCED`] away.
+/// [`forces::BALANCED`] away.
 #[cold]
 #[inline(never)]
 fn is_balanced<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
@@ -265,8 +262,7 @@ fn is_balanced<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     y: &State<R, N, S::States>,
 ) -> Result<bool, Failure> {
     let answer = answer(model, t, y)?;
-    let allowed = R::constant(UNBALANCED) * R::EPSILON.sqrt();
-    let near = largest(&answer.step, &model.metric.coordinates) <= allowed;
+    let near = largest(&answer.step, &model.metric.coordinates) <= forces::BALANCED.of();
     Ok(near && !R::constant(0.0).less(answer.push))
 }
 

@@ -1,12 +1,13 @@
 //! Newton's method for a rest under integral controls: coordinates, multipliers and the states that integrate, solved together.
 
-use crate::dynamics::equilibrium::free_stiffness::{Answer, FreeStiffness, SHARE, times, unanswered};
+use crate::dynamics::equilibrium::free_stiffness::{Answer, FreeStiffness, times};
 use crate::dynamics::integrators::vector::{State, Vector};
-use crate::dynamics::linear_systems::integrals::{Integrals, integrand};
+use crate::dynamics::linear_systems::integrals::Integrals;
 use crate::dynamics::model::Model;
 use crate::linear_algebra::vectors::dot;
 use crate::mechanism::dynamic::{Dynamic, StateSlope};
 use crate::scalar::number::Real;
+use crate::tolerances::forces;
 
 /// K δq + Φ_qᵀ δλ − B δz = F, Φ_q δq = Φ, G δq = ż, on the motions that the rows leave free. All ranks may be deficient: of rates
 /// and of forces of states that follow from others, and of the stiffness of the motions that no state has a part in.
@@ -101,10 +102,10 @@ where
         }
         let mut unled = beside(&unborne, &self.rates, &self.leading);
         // Rounding, where every motion along the force changes a rate.
-        if dot(&unled, &unled).sqrt() <= unanswered::<R>() * push {
+        if dot(&unled, &unled).sqrt() <= forces::NO_STIFFNESS.of::<R>() * push {
             unled = [zero; N];
         }
-        let push = if (unanswered::<R>() * self.size).less(push) { push } else { zero };
+        let push = if (forces::NO_STIFFNESS.of::<R>() * self.size).less(push) { push } else { zero };
         let answer = Answer {
             step,
             change: free.factors.solve(&rest, &[zero; M]).1,
@@ -131,7 +132,7 @@ where
     /// `true` if the forces of a step of the states are small compared with the others.
     pub(crate) fn stand(&self, step: &Z) -> bool {
         let mut parts = step.as_ref().iter().zip(self.forces.as_ref());
-        parts.all(|(step, force)| (*step * *force).abs() <= integrand::<R>() * self.size)
+        parts.all(|(step, force)| (*step * *force).abs() <= forces::INTEGRAND.of::<R>() * self.size)
     }
 
     /// Index of the first state without a force of its own, if the states have fewer forces than rates to be held at 0.
@@ -182,7 +183,7 @@ where
 
     /// Coordinates (N), and states (1 of those), that move without any force or rate changing.
     pub(crate) fn indifferent(&self, scales: &[R; N]) -> ([bool; N], Z) {
-        let (one, share) = (R::constant(1.0), R::constant(SHARE));
+        let (one, share) = (R::constant(1.0), forces::INDIFFERENT.of::<R>());
         let (mut indifferent, mut states) = ([false; N], self.integrals.values);
         for (place, mark) in states.as_mut().iter_mut().enumerate() {
             *mark = if self.changes_nothing(place) { one } else { R::constant(0.0) };
@@ -220,7 +221,7 @@ where
                 // A combination starts as one part of its own state.
                 self.moves(index)
                     && *pushing == zero
-                    && R::constant(SHARE).less((push.entry(place) * weight(place)).abs())
+                    && forces::INDIFFERENT.of::<R>().less((push.entry(place) * weight(place)).abs())
             })
     }
 
@@ -270,7 +271,7 @@ where
     let mut done = *like;
     done.as_mut().iter_mut().for_each(|done| *done = zero);
     for _ in 0..like.as_ref().len() {
-        let mut best = (unanswered::<R>(), None);
+        let mut best = (forces::NO_STIFFNESS.of::<R>(), None);
         for (index, (row, done)) in rows.as_ref().iter().zip(done.as_ref()).enumerate() {
             let length = dot(&row.q, &row.q).sqrt();
             if *done == zero && best.0 < length {

@@ -5,7 +5,7 @@
 //! counted. Newton's method takes the derivative ∂Q/∂λ where Q depends on λ otherwise.
 
 use crate::dynamics::integrators::vector::{State, Vector};
-use crate::dynamics::linear_systems::kkt::{Factors, System, none};
+use crate::dynamics::linear_systems::kkt::{Factors, System};
 use crate::dynamics::linear_systems::piecewise::{Piecewise, Solutions};
 use crate::dynamics::model::Model;
 use crate::failure::{Failure, FailureKind, checks};
@@ -14,6 +14,7 @@ use crate::linear_algebra::lu::Lu;
 use crate::mechanism::dynamic::Dynamic;
 use crate::mechanism::normal_forces::{NormalForces, Term, WithNormalForces};
 use crate::scalar::number::Real;
+use crate::tolerances::forces;
 
 impl<R: Real, const N: usize, const M: usize, const K: usize> NormalForces<R, N, M, K> {
     /// v of given multipliers (M): K.
@@ -106,9 +107,6 @@ where
     }
 }
 
-/// Largest sum, relative to its terms, of parts of a normal force that cancel along a combination of multipliers without effect.
-const CANCELLED: f64 = 1e-8;
-
 /// The row that a normal force which acts shares in any way, of combinations of multipliers without effect.
 struct Shared<R, const M: usize> {
     /// The combinations, then zeros.
@@ -144,7 +142,7 @@ fn shared_row<R: Real, const M: usize>(slopes: &[R; M], idle: &[[R; M]; M]) -> O
                 largest = (part.abs(), row);
             }
         }
-        (none::<R>(CANCELLED) * size < sum.abs()).then_some(largest.1)
+        (forces::CANCELLED.of::<R>() * size < sum.abs()).then_some(largest.1)
     })
 }
 
@@ -212,12 +210,6 @@ const OTHER_STARTS: [f64; 4] = [1.0, -1.0, 8.0, -8.0];
 /// More of them where no solution is known: so far that a law which saturates is flat.
 const FAR_STARTS: [f64; 4] = [64.0, -64.0, 1024.0, -1024.0];
 
-/// Distance of two solutions, in √ε of their size, from which they are two.
-const APART: f64 = 16.0;
-
-/// Change of the multipliers by a step that no longer falls, in √ε of their size, that counts as rounding of an ill-conditioned balance.
-const STUCK: f64 = 1e-2;
-
 impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, R, N, M> {
     /// Multipliers (M) that balance the forces at a state which depend on them, next to `lambda` (M). `solve` gives accelerations and
     /// multipliers of a force (N), or, for `false`, the increment by the force alone; it leaves changes of `standing` ε.
@@ -227,7 +219,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
     #[inline(never)]
     pub(crate) fn friction(
         &self,
-        standing: f64,
+        standing: R,
         position: &S::Position,
         (t, y): (R, &State<R, N, S::States>),
         lambda: &[R; M],
@@ -264,7 +256,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
     #[inline(never)]
     fn smooth_friction(
         &self,
-        standing: f64,
+        standing: R,
         position: &S::Position,
         y: &State<R, N, S::States>,
         lambda: &[R; M],
@@ -294,7 +286,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
             }
         }
         let Some(first) = known else { return Found::None };
-        let apart = R::constant(APART) * R::EPSILON.sqrt() * size;
+        let apart = forces::APART.of::<R>() * size;
         for share in OTHER_STARTS {
             for row in 0..M {
                 let other = beside(row, share, &first);
@@ -311,7 +303,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
     /// Multipliers (M) by Newton's method with halved steps.
     fn newton<F: FnMut(&[R; N], bool) -> ([R; N], [R; M])>(
         &self,
-        standing: f64,
+        standing: R,
         position: &S::Position,
         y: &State<R, N, S::States>,
         start: &[R; M],
@@ -358,7 +350,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
             }
             if !self.weighted(&trial.1).less(size) {
                 let small =
-                    self.weighted(&step) <= R::constant(STUCK) * R::EPSILON.sqrt() * self.weighted(&known);
+                    self.weighted(&step) <= forces::STUCK_MULTIPLIERS.of::<R>() * self.weighted(&known);
                 return small.then_some(after);
             }
             (known, residual) = trial;

@@ -3,10 +3,11 @@
 use crate::dynamics::integrators::vector::State;
 use crate::dynamics::linear_systems::kkt::System;
 use crate::dynamics::model::metric::require_least;
-use crate::dynamics::model::{Counts, Formulation, Model, STANDING, Solved};
+use crate::dynamics::model::{Counts, Formulation, Model, Solved};
 use crate::failure::Failure;
 use crate::mechanism::dynamic::Dynamic;
 use crate::scalar::number::Real;
+use crate::tolerances::forces;
 
 /// (M + Φ_qᵀ α Φ_q) q̈ = Q + Φ_qᵀ α (γ − 2ξω Φ̇ − ω² Φ), λ = α (Φ_q q̈ − γ + 2ξω Φ̇ + ω² Φ).
 ///
@@ -74,7 +75,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Formulation<S
             (qdd, lambda)
         };
         // λ = α (Φ_q q̈ − …) has the rounding of its terms α times over: friction cannot stand better.
-        let standing = STANDING * self.alpha.max(1.0);
+        let standing = forces::STANDING.of::<R>() * R::constant(self.alpha.max(1.0));
         let (qdd, lambda, force) = model.balanced_to(standing, &position, (t, y), lambda, solve)?;
         model.check_solved(&qdd, &lambda, &force, &target)?;
         model.require_unshared_by_rank((&position, t), y, &lambda)?;

@@ -1,6 +1,6 @@
 //! Projection: positions and velocities put back onto the constraints by the shortest way in the mass's measure.
 
-use crate::dynamics::formulations::singular::limit_rows::{Passing, ZONE, at_limit};
+use crate::dynamics::formulations::singular::limit_rows::{Passing, at_limit};
 use crate::dynamics::formulations::unstabilized::{factorize, solve};
 use crate::dynamics::integrators::vector::{State, Vector};
 use crate::dynamics::linear_systems::kkt::{Factors, System};
@@ -9,24 +9,13 @@ use crate::dynamics::model::{Counts, Formulation, Model, Solved};
 use crate::failure::{Failure, FailureKind, checks};
 use crate::mechanism::dynamic::Dynamic;
 use crate::scalar::number::Real;
-
-/// Rounding errors of a row's own terms that a projected residual may hold, in ε times the row's scale; the same as
-/// for positions of driven mechanisms.
-const TERM_ROUNDINGS: f64 = 64.0;
-
-/// Rounding errors of a coordinate that a residual may hold, in ε times the coordinate.
-const COORDINATE_ROUNDINGS: f64 = 4.0;
+use crate::tolerances::{motion, rows, singular};
 
 /// Corrections of one position: two do after a step, a start off the constraints needs a few more.
 const MOST_CORRECTIONS: u32 = 25;
 
 /// A correction with old factors that leaves more than this share of the residual is worth new factors.
 const STALE: f64 = 0.1;
-
-/// Largest residual over its tolerance that remains although nothing lowers it any more: that of a direction which is too weak
-/// to be corrected, 1e-2 of the residual of a step in it. Beyond it (1e-6 of a reference length) the constraints cannot be
-/// met.
-const LARGEST_REST: f64 = 1e8;
 
 /// Stages of a step that are put onto the constraints before they are evaluated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -85,7 +74,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Formulation<S
         let position = model.position(t, &y);
         let factors = factorize(model, t, &position, counts)?;
         let gamma = model.mechanism.gamma(model.parameters, &position, &y.qd);
-        if factors.margin() < R::constant(ZONE) && factors.margin() < model.zone(stages) {
+        if factors.margin() < singular::ZONE_OF_FORCES.of() && factors.margin() < model.zone(stages) {
             let rows = (&gamma, factors.margin());
             let found = at_limit(model, (t, &y), &position, lambda, rows, counts)?;
             if let Some(Passing { solved, .. }) = found {
@@ -150,7 +139,7 @@ pub(crate) fn project_position<S: Dynamic<R, N, M>, R: Real, const N: usize, con
     y.q = progress.best.unwrap_or(y.q);
     let position = model.position(t, y);
     let phi = model.mechanism.phi(model.parameters, &position);
-    model.require(t, &phi, &model.position_tolerances(&position, &y.q), R::constant(LARGEST_REST), false)?;
+    model.require(t, &phi, &model.position_tolerances(&position, &y.q), unmet(), false)?;
     Ok(progress.factors)
 }
 
@@ -179,11 +168,16 @@ fn project_velocity<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize
         y.qd = y.qd.plus(R::constant(-1.0), &[1.0], [&step]);
     }
     y.qd = progress.best.unwrap_or(y.qd);
-    let (phi_d, rest) = (model.constraint_rates(&position, &y.qd), R::constant(LARGEST_REST));
+    let (phi_d, rest) = (model.constraint_rates(&position, &y.qd), unmet());
     if model.worst(&phi_d, &tolerances).0 <= rest {
         return Ok(());
     }
     model.require(t, &phi_d, &model.frame_free_rate_tolerances(&position, &y.qd), rest, true)
+}
+
+/// Largest residual over its tolerance with which the rows still are met.
+fn unmet<R: Real>() -> R {
+    rows::UNMET.of::<R>() / rows::OF_TERMS.of()
 }
 
 /// The factors that corrections are solved with: without the directions that the rows determine too weakly.
@@ -196,7 +190,7 @@ pub(crate) fn correction_factors<S: Dynamic<R, N, M>, R: Real, const N: usize, c
     let phi_q = model.mechanism.phi_q(model.parameters, position);
     let system = System::new(&mass, &phi_q, model.metric);
     let factors = system.factorize(S::COORDINATES, t)?;
-    let weakest = R::constant(ZONE);
+    let weakest = singular::ZONE_OF_FORCES.of();
     if weakest < factors.margin() {
         return Ok(factors);
     }
@@ -255,7 +249,7 @@ impl<R: Real, const N: usize, const M: usize> Progress<R, N, M> {
         let zero = R::constant(0.0);
         let largest = |values: &[R; N]| values.iter().fold(zero, |largest, x| largest.max(x.abs()));
         let size = largest(x).max(largest(scales));
-        self.still = largest(step) <= R::constant(COORDINATE_ROUNDINGS) * R::EPSILON * size;
+        self.still = largest(step) <= rows::OF_COORDINATES.of::<R>() * size;
     }
 }
 
@@ -288,9 +282,10 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
     /// 1000 seconds would leave, so that a mechanism at rest has a tolerance too.
     pub(crate) fn rate_tolerances(&self, position: &S::Position, qd: &[R; N]) -> [R; M] {
         let mut floor = self.mechanism.phi_t(self.parameters, position);
-        let speeds = qd.map(|qd| qd * R::constant(1.0 + TERM_ROUNDINGS / COORDINATE_ROUNDINGS));
+        let speeds =
+            qd.map(|qd| qd * (R::constant(1.0) + rows::OF_TERMS.of::<R>() / rows::OF_COORDINATES.of()));
         for (rate, scale) in floor.iter_mut().zip(&self.metric.rows) {
-            *rate = rate.abs() + R::constant(1e-3) * *scale;
+            *rate = rate.abs() + motion::AT_REST.of::<R>() * *scale;
         }
         self.tolerances(position, &speeds, floor)
     }
@@ -300,8 +295,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         self.add_products(position, x, R::abs, &mut reach);
         let mut tolerances = floor;
         for (tolerance, reach) in tolerances.iter_mut().zip(&reach) {
-            *tolerance = R::EPSILON
-                * (R::constant(TERM_ROUNDINGS) * *tolerance + R::constant(COORDINATE_ROUNDINGS) * *reach);
+            *tolerance = rows::OF_TERMS.of::<R>() * *tolerance + rows::OF_COORDINATES.of::<R>() * *reach;
         }
         tolerances
     }
@@ -328,7 +322,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         let mut tolerances =
             self.rate_tolerances(position, &self.metric.coordinates.map(|scale| scale * speed));
         for (tolerance, scale) in tolerances.iter_mut().zip(&self.metric.rows) {
-            *tolerance = *tolerance + R::constant(TERM_ROUNDINGS) * R::EPSILON * speed * *scale;
+            *tolerance = *tolerance + rows::OF_TERMS.of::<R>() * speed * *scale;
         }
         tolerances
     }

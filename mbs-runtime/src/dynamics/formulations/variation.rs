@@ -1,12 +1,13 @@
 //! Change along a motion of the motions that the rows leave free: R, Ṙ and R̈ in independent coordinates.
 
 use crate::dynamics::integrators::vector::{State, Vector};
-use crate::dynamics::linear_systems::kkt::{Factors, System, truncation};
+use crate::dynamics::linear_systems::kkt::{Factors, System};
 use crate::dynamics::model::Model;
 use crate::failure::Failure;
 use crate::linear_algebra::orthogonal::pivot_order;
 use crate::mechanism::dynamic::Dynamic;
 use crate::scalar::number::Real;
+use crate::tolerances::singular;
 
 /// Weight of a preferred independent coordinate in the choice of the dependent ones. They leave a digit of six to one that is
 /// not preferred, and are dependent only where nothing else is.
@@ -57,7 +58,7 @@ impl<'a, S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Variation
                 *weight = *weight * R::constant(PREFERRED);
             }
         }
-        let truncation = truncation::<R>();
+        let truncation = singular::DEPENDENT.of();
         let (order, rank) = pivot_order(&phi_q, &model.metric.rows, &weights, truncation);
         let mut independent = [true; N];
         for dependent in order.iter().take(rank) {

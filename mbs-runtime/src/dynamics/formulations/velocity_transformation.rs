@@ -3,17 +3,14 @@
 use crate::dynamics::formulations::projection::Projection;
 use crate::dynamics::formulations::unstabilized;
 use crate::dynamics::integrators::vector::{State, Vector};
-use crate::dynamics::linear_systems::kkt::{System, truncation};
+use crate::dynamics::linear_systems::kkt::System;
 use crate::dynamics::model::{Counts, Formulation, Model, Solved};
 use crate::failure::Failure;
 use crate::mechanism::Mechanism;
 use crate::mechanism::dynamic::{Dynamic, Partitioned};
 use crate::mechanism::transformed::Transformed;
 use crate::scalar::number::{Real, Scalar};
-
-/// Margin of the dependent columns below which the independent coordinates are not used: they are at a turning point,
-/// or the mechanism is singular. Rounding grows by its inverse square: at 1e-2, four digits.
-const LEAST_MARGIN: f64 = 1e-2;
+use crate::tolerances::singular;
 
 /// Corrections of positions, and of velocities: one or two do after a step.
 const MOST_CORRECTIONS: u32 = 10;
@@ -106,7 +103,7 @@ type PlaceOf<S, R, const N: usize, const M: usize> =
 /// `true` if the independent coordinates determine the others well.
 #[inline(always)]
 fn is_regular<R: Real>(margin: R) -> bool {
-    R::constant(LEAST_MARGIN).less(margin)
+    singular::ZONE_OF_FORCES.of::<R>().less(margin)
 }
 
 /// Rates and multipliers of a state whose position is factorised.
@@ -161,7 +158,7 @@ where
     let (mechanism, parameters) = (model.mechanism, model.parameters);
     let (mass, phi_q) = (mechanism.mass(parameters, position), mechanism.phi_q(parameters, position));
     let system = System::new(&mass, &phi_q, model.metric);
-    let factors = system.factorize_rank_revealing(truncation::<R>(), S::COORDINATES, t)?;
+    let factors = system.factorize_rank_revealing(singular::DEPENDENT.of(), S::COORDINATES, t)?;
     if factors.rank() < M || !is_regular(factors.margin()) {
         counts.handed_over += 1;
         return Projection::default().solve(model, t, y, lambda, counts);

@@ -3,7 +3,7 @@
 use crate::dynamics::formulations::unstabilized::Unstabilized;
 use crate::dynamics::implicit::iteration::{Damping, MOST_ITERATIONS, MOST_ROUNDS};
 use crate::dynamics::integrators::vector::{State, Vector};
-use crate::dynamics::linear_systems::kkt::{Factors, System, truncation};
+use crate::dynamics::linear_systems::kkt::{Factors, System};
 use crate::dynamics::linear_systems::tangent::{Tangent, add_outer};
 use crate::dynamics::model::instant::Instant;
 use crate::dynamics::model::method::{Method, require_slopes};
@@ -13,15 +13,11 @@ use crate::failure::Failure;
 use crate::linear_algebra::orthogonal::margin_of_rows;
 use crate::mechanism::dynamic::Dynamic;
 use crate::scalar::number::Real;
+use crate::tolerances::{forces, singular};
 
 /// α h²/4 over the largest entry of the mass, in the metric. Each iteration of the multipliers then gains four digits where the
 /// rows are independent, and the matrix keeps twelve of its sixteen.
 const PENALTY: f64 = 1e4;
-
-/// Largest correction (rad, or reference lengths) with which a step may end that has not converged. Next to a singular position
-/// the multiplier of the weak direction converges slowly, and the positions hardly move with it. Below the error of the
-/// trapezoidal rule at the steps that the method is for.
-const SLOW: f64 = 1e-5;
 
 /// Rounds in which the springs close the rows of one correction, where forces depend on the multipliers: four digits each. A
 /// normal force that feeds back by b would have 1/(1 − b) of the rest after the first, a ten thousandth.
@@ -124,7 +120,7 @@ impl AugmentedLagrangian {
             counts.iterations += 1;
             counts.evaluations += 1;
             let standing = model.standing_after(&from.y.q, &step, &y.q, &mut last)?;
-            let slow = damping.is_last() && last < R::constant(SLOW);
+            let slow = damping.is_last() && last < forces::SLOW.of();
             counts.unfinished += u64::from(slow && !standing);
             if standing || slow {
                 change = change.plus(-one, &[1.0], [&step]);
@@ -308,6 +304,6 @@ fn projected<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     let rate = model.rates(&position, &y, qdd, &lambda);
     model.trapezoid(from, h, &mut y, &rate);
     let Metric { rows, coordinates, .. } = model.metric;
-    let margin = margin_of_rows(&penalized.phi_q, rows, coordinates, truncation::<R>());
+    let margin = margin_of_rows(&penalized.phi_q, rows, coordinates, singular::DEPENDENT.of());
     Ok(Instant { t, y, solved: Solved { rate, lambda, margin }, carried: qdd })
 }

@@ -13,6 +13,7 @@ use crate::failure::{Failure, FailureKind};
 use crate::linear_algebra::vectors::extent;
 use crate::mechanism::dynamic::Dynamic;
 use crate::scalar::number::Real;
+use crate::tolerances::forces;
 
 /// Generalised-α with Φ = 0 at every step's end; Φ̇ = 0 holds to order 2.
 ///
@@ -33,9 +34,6 @@ impl Default for GeneralizedAlpha {
         GeneralizedAlpha { rho: 0.8 }
     }
 }
-
-/// Acceleration that one rounding of the positions makes over a step, of that of the motion, below which multipliers are resolved.
-const UNSEEN: f64 = 1e-3;
 
 /// Share of the multipliers that may be rounding. Below one none changes its sign by it, and friction, which is linear between, feels
 /// nothing on the whole: speeds are right to 1e-4 up to there.
@@ -193,7 +191,7 @@ fn require_resolved<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize
 ) -> Result<(), Failure> {
     let rounding = R::EPSILON * extent(&y.q, &model.metric.coordinates) / (h * h);
     let speed = model.largest(&y.qd);
-    if rounding.less(R::constant(UNSEEN) * (model.largest(qdd) + speed * speed)) {
+    if rounding.less(forces::UNSEEN.of::<R>() * (model.largest(qdd) + speed * speed)) {
         return Ok(());
     }
     // Friction that has no answer there, or several, is told by the steps.

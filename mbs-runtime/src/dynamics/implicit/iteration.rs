@@ -8,6 +8,7 @@ use crate::dynamics::model::{Counts, Formulation, Model};
 use crate::failure::{Failure, FailureKind, checks};
 use crate::mechanism::dynamic::Dynamic;
 use crate::scalar::number::Real;
+use crate::tolerances::forces;
 
 /// Iterations of a step: four do where the motion is smooth.
 pub(crate) const MOST_ITERATIONS: u32 = 40;
@@ -15,18 +16,8 @@ pub(crate) const MOST_ITERATIONS: u32 = 40;
 /// Iterations and halved corrections of a step.
 pub(crate) const MOST_ROUNDS: u32 = 160;
 
-/// A correction that counts as rounding, in ε of the coordinates in the metric.
-const STANDING: f64 = 64.0;
-
-/// A correction that no longer falls counts as converged below this, in the metric: nine digits, more than a method of
-/// order 2 has.
-const STUCK: f64 = 1e-9;
-
 /// Ratio of a correction to the one before at which quadratic convergence is about to end.
 const FALLEN: f64 = 1e-2;
-
-/// Roundings of the movement in a step up to which a correction is none.
-const NONE: f64 = 4.0;
 
 /// Halvings of one correction: as many as lead from a step's length to the bend of a law that is smoothed over a millionth of it.
 const MOST_HALVINGS: u32 = 20;
@@ -242,9 +233,9 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
             size = size.max((*step / *scale).abs());
             extent = extent.max((*q / *scale).abs());
         }
-        let stuck = *last <= size && size < R::constant(STUCK);
+        let stuck = *last <= size && size < forces::STUCK.of();
         *last = size;
-        Ok(stuck || size <= R::constant(STANDING) * R::EPSILON * extent)
+        Ok(stuck || size <= forces::CORRECTED.of::<R>() * extent)
     }
 
     /// The same for a step from `start` (N). The rounding of a position may be as large as the whole movement of a short step,
@@ -268,7 +259,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         let is_first = R::constant(f64::from(f32::MAX)) <= before;
         let has_fallen = !is_first && size <= R::constant(FALLEN) * before;
         let moved = self.largest(&q.plus(R::constant(-1.0), &[1.0], [start]));
-        Ok(before <= size || has_fallen || size <= R::constant(NONE) * R::EPSILON * moved)
+        Ok(before <= size || has_fallen || size <= forces::OF_MOVEMENT.of::<R>() * moved)
     }
 
     /// No balance within so many `iterations`: the coordinate with the largest correction `step` (N).

@@ -9,7 +9,7 @@
 //! velocity and energy.
 
 use crate::dynamics::formulations::singular::limit_rows::passes_within;
-use crate::dynamics::integration::equations::{Equations, LEAST_MOTION, Moving};
+use crate::dynamics::integration::equations::{Equations, Moving};
 use crate::dynamics::integrators::dormand_prince8::DormandPrince8;
 use crate::dynamics::integrators::embedded::Embedded;
 use crate::dynamics::integrators::step_control::{Accepted, Adaptive, Point};
@@ -20,22 +20,11 @@ use crate::dynamics::model::{Formulation, Model};
 use crate::failure::{Failure, FailureKind};
 use crate::mechanism::dynamic::Dynamic;
 use crate::scalar::number::Real;
-
-/// Margin of a step's ends from which on it is not looked at, however fast it goes.
-const NEAR: f64 = 0.1;
-
-/// Margin that rounding adds to it, in √ε: it makes δ/s² of an acceleration at a distance s, δ the rounding of the rows. 0.17 in
-/// single precision, nothing in double. Of 120 step counts of a parallelogram 21 ended wrong without it, with 0.1 one stepped
-/// over a singular position unseen, with 0.17 none.
-const NEAR_ROUNDED: f64 = 500.0;
+use crate::tolerances::{motion, singular};
 
 /// Steps between a singular position and a step that is next to it: a four-bar of 60 J keeps its energy to 1e-7 J then, and to 2e-3 J
 /// where only steps over the position are taken in parts.
 const STEPS: f64 = 3.0;
-
-/// Tolerances of the parts, one after the other until one of them leads through: the error of a step of 1e-3 of a period, and the
-/// effect of rounding of the rows in any set of coordinates.
-const TOLERANCES: [f64; 2] = [1e-10, 1e-9];
 
 /// Rows of a text whose steps are taken in parts at most: an evaluation next to a singular position factorizes several times, at a cost of
 /// the third order in them. Ten seconds of forty loops, 81 rows, took more than eight minutes in tests, 20 s without parts.
@@ -45,26 +34,19 @@ pub(crate) const MOST_ROWS: usize = 32;
 /// thousandth of it far.
 const MOST_PARTS: u32 = 10_000;
 
-/// Distance, in √ε of a reference length, within which rounding turns a mechanism aside: rows may be 64 ε off the constraints.
-const TURNED: f64 = 8.0;
-
 /// Share of a velocity that may change within that distance, and over a step in addition to the change by the accelerations of
 /// its ends. Two branches differ by much of the velocity; that of a parallelogram of short bars changes by 5e-4 of it within the
 /// distance.
 const ASIDE: f64 = 0.1;
 
-/// Largest energy defect over a step, in √ε of the energy that is moved: 1.7e-4 in single precision. Runs in bar angles that end
-/// right leave less; with 16 in place of it runs in natural coordinates end 0.03 m off.
-const UNEXPLAINED: f64 = 0.5;
-
 /// Margin of a step's ends from which on it is not looked at.
 pub(crate) fn near<R: Real>() -> R {
-    R::constant(NEAR) + R::constant(NEAR_ROUNDED) * R::EPSILON.sqrt()
+    singular::NO_PASSAGE.of::<R>() + singular::NO_PASSAGE_ROUNDED.of()
 }
 
 /// Numbers so coarse that steps resolve the turns which their rounding makes.
 fn is_coarse<R: Real>() -> bool {
-    R::constant(LEAST_MOTION).less(R::EPSILON.sqrt())
+    singular::LEAST_MOTION.of::<R>().less(singular::HALF_THE_DIGITS.of())
 }
 
 /// `true` if a step of `h` (s) that begins with `from` comes next to a singular position.
@@ -97,8 +79,8 @@ where
         until: R,
     ) -> Result<Instant<R, N, M, S::States>, Failure> {
         let mut failed = None;
-        for tolerance in TOLERANCES {
-            let tolerance = R::constant(tolerance).max(Tolerance::least());
+        for law in motion::OF_PARTS {
+            let tolerance = law.of();
             self.divide(Tolerance { relative: tolerance, absolute: tolerance });
             let mut parts = 0;
             let run = Adaptive::default().run::<DormandPrince8, _>(
@@ -133,7 +115,7 @@ where
     fn require_lasting<I: Embedded>(&self, part: &Accepted<I, R, Moving<S, R, N, M>>) -> Result<(), Failure> {
         let (model, end) = (self.model, &part.end);
         let (speed, change) = (model.largest(&end.y.y.qd), model.largest(&end.rate.y.qd));
-        let turned = R::constant(TURNED) * R::EPSILON.sqrt() * change;
+        let turned = singular::TURNED.of::<R>() * change;
         // Written so that NaN does not last.
         if !is_coarse::<R>() || turned.less(R::constant(ASIDE) * speed * speed) {
             return Ok(());
@@ -181,6 +163,6 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         let (gained, released) = (end.kinetic - start.kinetic, start.potential - end.potential);
         let defect = gained - released - (next.y.work - from.y.work);
         let known = start.kinetic + end.kinetic + released.abs();
-        defect.abs().less(R::constant(UNEXPLAINED) * R::EPSILON.sqrt() * known)
+        defect.abs().less(motion::UNEXPLAINED.of::<R>() * known)
     }
 }

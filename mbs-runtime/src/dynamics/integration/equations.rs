@@ -1,6 +1,5 @@
 //! The equations of motion as integrators see them.
 
-use crate::dynamics::formulations::singular::limit_rows::ZONE;
 use crate::dynamics::formulations::singular::passage::Passage;
 use crate::dynamics::integration::phases::{ORDER_OF_INTEGRALS, Phased, advanced};
 use crate::dynamics::integration::radau;
@@ -18,10 +17,7 @@ use crate::failure::{Failure, FailureKind};
 use crate::mechanism::dynamic::Dynamic;
 use crate::mechanism::{Entry, Mechanism};
 use crate::scalar::number::Real;
-
-/// Least motion of a step in the zone of a singular position, in the reference metric: smaller ones resolve how rods that
-/// differ by 1e-14 turn aside there, which rounding decides.
-pub(crate) const LEAST_MOTION: f64 = 1e-7;
+use crate::tolerances::singular;
 
 /// First step, of the way to an instant that the polynomial of a step does not lead to.
 const SHOWN_SHARE: f64 = 0.25;
@@ -370,8 +366,8 @@ where
     fn least_step(&self) -> R {
         let (_, margin, y) = &self.end;
         let speed = self.model.largest(&y.qd);
-        let step = R::constant(LEAST_MOTION) / speed;
-        if *margin < R::constant(ZONE) && step.is_finite() { step } else { R::constant(0.0) }
+        let step = singular::LEAST_MOTION.of::<R>() / speed;
+        if *margin < singular::ZONE_OF_FORCES.of() && step.is_finite() { step } else { R::constant(0.0) }
     }
 
     #[inline(always)]

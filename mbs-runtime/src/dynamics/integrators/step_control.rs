@@ -6,6 +6,7 @@ use crate::dynamics::integrators::event::Dense;
 use crate::dynamics::integrators::vector::Vector;
 use crate::failure::{Failure, FailureKind};
 use crate::scalar::number::Real;
+use crate::tolerances::motion;
 
 /// Share of the step that the error estimate would allow: the estimate is wrong by a little.
 const SAFETY: f64 = 0.9;
@@ -15,9 +16,6 @@ const LEAST_GROWTH: f64 = 0.2;
 
 /// Least error that the controller remembers: below it the last step says nothing about the next.
 const LEAST_ERROR: f64 = 1e-4;
-
-/// Smallest step in units of the rounding of the time: below it t + c h no longer tells stages apart.
-pub(crate) const LEAST_STEP_ROUNDINGS: f64 = 16.0;
 
 /// First step: it may change the state by this share of it, or of its tolerance's inverse.
 const FIRST_SHARE: f64 = 0.01;
@@ -256,7 +254,7 @@ impl<R: Real> Adaptive<R> {
         };
         planned = planned.min(self.largest);
         loop {
-            let resolved = R::constant(LEAST_STEP_ROUNDINGS) * R::EPSILON * from.t.abs().max(until.abs());
+            let resolved = motion::LEAST_STEP.of::<R>() * from.t.abs().max(until.abs());
             let least = resolved.max(equation.least_step());
             let (h, ends) = self.clipped(planned, until - from.t);
             let end = if ends { until } else { from.t + h };
@@ -300,7 +298,7 @@ impl<R: Real> Adaptive<R> {
             let course = accepted.course(equation);
             let Some(kink) = equation.kink(&course)? else { break };
             let (start, end) = (accepted.start, accepted.end.t);
-            let least = R::constant(LEAST_STEP_ROUNDINGS) * R::EPSILON * start.t.abs().max(end.abs());
+            let least = motion::LEAST_STEP.of::<R>() * start.t.abs().max(end.abs());
             let until = kink.max(start.t + least);
             if end - until <= least {
                 break;
@@ -427,7 +425,7 @@ fn resolved_first_step<M: Embedded, R: Real, E: ErrorNorm<R>>(
     if bent < R::EPSILON * until.abs() {
         return Err(out_of_reach(bent, from.t, until));
     }
-    let resolved = R::constant(LEAST_STEP_ROUNDINGS) * R::EPSILON * from.t.abs().max(until.abs());
+    let resolved = motion::LEAST_STEP.of::<R>() * from.t.abs().max(until.abs());
     Ok(first.max(resolved))
 }
 

@@ -2,21 +2,13 @@
 //! them, so that they rest wherever that function vanishes, and their force follows from the balance of forces.
 
 use crate::dynamics::integrators::vector::State;
-use crate::dynamics::linear_systems::kkt::none;
 use crate::dynamics::linear_systems::states::eliminate;
 use crate::dynamics::model::Model;
 use crate::dynamics::model::metric::Metric;
 use crate::failure::{Failure, FailureKind};
 use crate::mechanism::dynamic::{Dynamic, StateSlope};
 use crate::scalar::number::Real;
-
-/// Part of its unit and scale that the integrand of a state at rest may be: √ε.
-pub(crate) fn integrand<R: Real>() -> R {
-    R::EPSILON.sqrt()
-}
-
-/// Part of the entries of a rate that depends on other states below which the result of elimination is rounding.
-const LEFT: f64 = 1e-12;
+use crate::tolerances::forces;
 
 /// States that integrate at a rest, as further unknowns of the balance: Φ_qᵀ λ − Q(q, z) = 0, Φ = 0, ż(q) = 0. Solved for in
 /// [`Saddle`](crate::dynamics::equilibrium::with_integrators::Saddle).
@@ -125,7 +117,7 @@ pub(crate) fn is_held<R: Real, const N: usize, Z: AsRef<[R]>>(
     text: &StateSlope<R, N, Z>,
 ) -> bool {
     let zero = R::constant(0.0);
-    let left = if zero < dependence(text) { none::<R>(LEFT) } else { zero };
+    let left = if zero < dependence(text) { forces::NO_PIVOT.of::<R>() } else { zero };
     row.q.iter().all(|entry| entry.abs() <= left)
 }
 
@@ -153,7 +145,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         let column_of = eliminate(&mut slopes, &mut rates);
         let rows = slopes.as_ref().iter().zip(rates.as_ref()).zip(column_of.as_ref()).zip(S::STATES);
         for (((row, rate), column), state) in rows {
-            let allowed = integrand::<R>() * largest(&row.q, self.metric);
+            let allowed = forces::INTEGRAND.of::<R>() * largest(&row.q, self.metric);
             if *column < R::constant(0.0) && allowed < rate.abs() {
                 return Err(FailureKind::NoStateEquilibrium { state }.at(t.to_f64()));
             }

@@ -1,46 +1,15 @@
 //! M x + Φ_qᵀ λ = f with Φ_q x = g: accelerations and multipliers, and every projection.
 
 use crate::dynamics::linear_systems::blocks::Blocks;
-use crate::dynamics::linear_systems::null_space::{LEAST_INERTIA, NullSpace};
+use crate::dynamics::linear_systems::null_space::NullSpace;
 use crate::dynamics::model::metric::Metric;
 use crate::failure::{Failure, FailureKind};
 use crate::mechanism::Entry;
 use crate::scalar::number::Real;
-
-/// Smallest over largest pivot below which the LU factors are not used.
-///
-/// In the metric a nearly dependent row of singular value σ leaves a pivot σ²: at 1e-4 the row is dependent to two
-/// digits, and the multipliers have lost four of theirs. Orthogonal factors lose two. It may leave two pivots of σ as well: see
-/// [`holds_well`].
-const LEAST_PIVOT: f64 = 1e-4;
-
-/// Smallest over largest pivot from which on no row is nearly dependent: two pivots of σ at [`WEAKEST`], twenty times.
-const SURE_PIVOT: f64 = 2e-2;
-
-/// Singular value of Φ_q in the metric below which orthogonal factors are used whatever the pivots: twice the one below which adaptive steps
-/// look for limits of rows, for its estimate is some tenths too large where masses differ.
-const WEAKEST: f64 = 1e-3;
+use crate::tolerances::singular;
 
 /// Largest growth of an entry in the elimination: beyond it three digits are lost to the order of the pivots.
 const LARGEST_GROWTH: f64 = 1e3;
-
-/// Singular value of Φ_q in the metric, relative to the largest, below which a row counts as dependent.
-const TRUNCATION: f64 = 1e-10;
-
-/// Rounding errors, in ε, that a dependent row may have as a part of its own: the error of a position on the constraints, and of
-/// the factorization. In double precision far below [`TRUNCATION`], in single precision 3e-5.
-const DEPENDENT_ROUNDINGS: f64 = 256.0;
-
-/// Largest part of a row, or of a combination of rows, that counts as none: `least`, or the rounding of 0 where that is more.
-pub(crate) fn none<R: Real>(least: f64) -> R {
-    R::constant(least).max(R::constant(DEPENDENT_ROUNDINGS) * R::EPSILON)
-}
-
-/// Singular value of Φ_q in the metric, relative to the largest, below which a row counts as dependent: 1e-10, 3e-5 in single
-/// precision.
-pub fn truncation<R: Real>() -> R {
-    none(TRUNCATION)
-}
 
 /// M and Φ_q in the reference metric: S M S κ and W Φ_q S. S holds the coordinates' scales, W the reciprocals of the rows'
 /// scales, or of their largest entries where those are more. κ makes the largest entry of the first 1. So no decision depends on
@@ -85,12 +54,13 @@ impl<R: Real, const N: usize, const M: usize> System<R, N, M> {
     /// [`FailureKind::SingularMass`] where no mass moves with a motion that the rows leave free: ker M ∩ ker Φ_q ≠ {0}.
     pub fn factorize(&self, coordinates: &'static [Entry], t: R) -> Result<Factors<R, N, M>, Failure> {
         let (blocks, health) = Blocks::factorize(&self.mass, &self.phi_q);
-        let good = R::constant(LEAST_PIVOT) < health.margin && health.growth < R::constant(LARGEST_GROWTH);
-        let sure = R::constant(SURE_PIVOT) < health.margin;
+        let good =
+            singular::LEAST_PIVOT.of::<R>() < health.margin && health.growth < R::constant(LARGEST_GROWTH);
+        let sure = singular::SURE_PIVOT.of::<R>() < health.margin;
         if good && (sure || holds_well(&blocks)) {
             return Ok(self.factors(Kind::Blocks(blocks), health.margin.sqrt()));
         }
-        self.factorize_rank_revealing(truncation::<R>(), coordinates, t)
+        self.factorize_rank_revealing(singular::DEPENDENT.of(), coordinates, t)
     }
 
     /// Factorises by LU whatever the pivots: for matrices that a penalty makes large in some directions.
@@ -106,7 +76,7 @@ impl<R: Real, const N: usize, const M: usize> System<R, N, M> {
         if R::constant(0.0) < health.margin {
             return Ok(self.factors(Kind::Blocks(blocks), health.margin.sqrt()));
         }
-        self.factorize_rank_revealing(truncation::<R>(), coordinates, t)
+        self.factorize_rank_revealing(singular::DEPENDENT.of(), coordinates, t)
     }
 
     /// Factorises Φ_q rank-revealing and M on its null space; rows whose part of their own is below `truncation` count
@@ -122,8 +92,7 @@ impl<R: Real, const N: usize, const M: usize> System<R, N, M> {
         coordinates: &'static [Entry],
         t: R,
     ) -> Result<Factors<R, N, M>, Failure> {
-        let null_space =
-            self.null_space(truncation, R::constant(LEAST_INERTIA) * R::EPSILON, coordinates, t)?;
+        let null_space = self.null_space(truncation, singular::LEAST_INERTIA.of(), coordinates, t)?;
         let margin = null_space.margin();
         Ok(self.factors(Kind::NullSpace(null_space), margin))
     }
@@ -138,7 +107,7 @@ impl<R: Real, const N: usize, const M: usize> System<R, N, M> {
         coordinates: &'static [Entry],
         t: R,
     ) -> Result<(), Failure> {
-        self.null_space(truncation::<R>(), share, coordinates, t).map(|_| ())
+        self.null_space(singular::DEPENDENT.of(), share, coordinates, t).map(|_| ())
     }
 
     /// The first row of Φ_q without an entry above `least` in the metric.
@@ -210,7 +179,7 @@ fn holds_well<R: Real, const N: usize, const M: usize>(blocks: &Blocks<R, N, M>)
     }
     let (_, weak) = blocks.solve([zero; N], generic);
     let (motion, _) = blocks.solve([zero; N], weak);
-    (R::constant(WEAKEST) * length(&motion)).less(length(&weak))
+    (singular::LIMIT_ROWS.of::<R>() * length(&motion)).less(length(&weak))
 }
 
 /// A factorised system.

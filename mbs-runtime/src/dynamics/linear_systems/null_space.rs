@@ -1,14 +1,8 @@
 //! The system where rows are dependent or nearly so: Φ_q rank-revealing, M on the motions that it leaves free.
 
-use crate::dynamics::linear_systems::kkt::none;
 use crate::linear_algebra::orthogonal::Reflection;
 use crate::scalar::number::Real;
-
-/// Part of a null vector below which a multiplier has no share in it, and is unique.
-const LEAST_SHARE: f64 = 1e-8;
-
-/// Smallest pivot of the reduced mass over its trace, in ε: below it, nothing but rounding moves.
-pub(crate) const LEAST_INERTIA: f64 = 64.0;
+use crate::tolerances::singular;
 
 /// A complete orthogonal decomposition of Φ_q, and LU of M on its null space, all in the reference metric.
 ///
@@ -315,7 +309,7 @@ impl<R: Real, const N: usize, const M: usize> NullSpace<R, N, M> {
         let mut unique = [true; M];
         for combination in self.idle() {
             for (unique, share) in unique.iter_mut().zip(&combination) {
-                *unique &= share.abs() < none::<R>(LEAST_SHARE);
+                *unique &= share.abs() < singular::OWN_PART.of();
             }
         }
         unique

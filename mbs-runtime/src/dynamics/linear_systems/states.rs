@@ -2,24 +2,15 @@
 
 use crate::dynamics::integrators::vector::State;
 use crate::dynamics::linear_systems::integrals::{Integrals, IntegralsOf, dependence, is_held};
-use crate::dynamics::linear_systems::kkt::none;
 use crate::dynamics::model::Model;
 use crate::dynamics::model::metric::worse;
 use crate::failure::{Failure, FailureKind, checks};
 use crate::mechanism::dynamic::{Dynamic, StateSlope};
 use crate::scalar::number::Real;
+use crate::tolerances::forces;
 
 /// Iterations of Newton's method for the rest of the states: one where their rates are linear in them.
 const MOST_ITERATIONS: u32 = 60;
-
-/// A correction that counts as rounding, in ε of the largest that the state has been.
-const STANDING: f64 = 64.0;
-
-/// A correction that no longer falls counts as converged below this, of the largest that the state has been.
-const STUCK: f64 = 1e-9;
-
-/// Part of the largest entry of its row below which a pivot counts as 0: rounding of the row, or of 0 where that is more.
-const PIVOT: f64 = 1e-12;
 
 /// Fails where the text has first-order states, whose values the caller has not given.
 pub(crate) fn require_no_states<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
@@ -70,8 +61,8 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
                     (largest, worst) = (larger, index);
                 }
             }
-            let stuck = last <= largest && largest < R::constant(STUCK);
-            if stuck || largest <= R::constant(STANDING) * R::EPSILON {
+            let stuck = last <= largest && largest < forces::STUCK.of();
+            if stuck || largest <= forces::CORRECTED.of() {
                 return Ok(());
             }
             last = largest;
@@ -123,7 +114,7 @@ where
         }
     }
     for column in 0..column_of.as_ref().len() {
-        let mut best = (none::<R>(PIVOT), None);
+        let mut best = (forces::NO_PIVOT.of::<R>(), None);
         for (index, (row, taken)) in slopes.as_ref().iter().zip(column_of.as_ref()).enumerate() {
             let entry = row.entry(column).abs();
             if *taken < zero && best.0 < entry {
@@ -165,7 +156,7 @@ where
     let rows = slopes.as_ref().iter().zip(text.as_ref());
     let mut rows = rows.zip(right.as_ref().iter().zip(column_of.as_ref()));
     let open = rows.position(|((row, text), (right, column))| {
-        *column < zero && is_held(row, text) && none::<R>(PIVOT) * size < right.abs()
+        *column < zero && is_held(row, text) && forces::NO_PIVOT.of::<R>() * size < right.abs()
     });
     open.map_or(Ok(()), Err)
 }

@@ -3,6 +3,7 @@
 use crate::failure::{Failure, FailureKind};
 use crate::mechanism::{Entry, Mechanism};
 use crate::scalar::number::{Real, Scalar};
+use crate::tolerances::motion;
 
 /// Rotation of angles (rad) by which the steepness of a row is measured apart from singular positions.
 const TURNED: f64 = 0.5;
@@ -162,13 +163,10 @@ pub struct Tolerance<R> {
     pub absolute: R,
 }
 
-/// Smallest sum of both tolerances, in ε: the twelve stages that a step and its error are summed of leave as many roundings.
-const LEAST_TOLERANCE: f64 = 32.0;
-
 impl<R: Real> Tolerance<R> {
     /// The smallest sum of both that numbers of this type can keep to: 32 ε.
     pub fn least() -> R {
-        R::constant(LEAST_TOLERANCE) * R::EPSILON
+        motion::LEAST.of()
     }
 
     /// Fails where rounding alone is more than it allows, or where it is negative or no number.

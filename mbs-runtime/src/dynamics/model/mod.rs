@@ -11,6 +11,7 @@ use crate::dynamics::model::metric::Metric;
 use crate::failure::{Failure, FailureKind, checks};
 use crate::mechanism::dynamic::Dynamic;
 use crate::scalar::number::Real;
+use crate::tolerances::forces;
 
 /// A mechanism with the values that do not change while it moves.
 pub struct Model<'a, S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> {
@@ -428,14 +429,14 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         lambda: &[R; M],
         solve: impl FnMut(&[R; N], bool) -> ([R; N], [R; M]),
     ) -> Result<Balanced<R, N, M>, Failure> {
-        self.balanced_to(STANDING, position, at, lambda, solve)
+        self.balanced_to(forces::STANDING.of(), position, at, lambda, solve)
     }
 
-    /// The same where `solve` leaves changes of `standing` ε in the multipliers.
+    /// The same where `solve` leaves changes of `standing` of their size in the multipliers.
     #[inline(always)]
     pub(crate) fn balanced_to(
         &self,
-        standing: f64,
+        standing: R,
         position: &S::Position,
         at: (R, &State<R, N, S::States>),
         lambda: &[R; M],
@@ -465,15 +466,15 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         worst.0
     }
 
-    /// `true` if the multipliers have changed by rounding alone, `standing` ε of their size; also where they are no numbers.
-    pub(crate) fn multipliers_converged(&self, before: &[R; M], after: &[R; M], standing: f64) -> bool {
+    /// `true` if the multipliers have changed by rounding alone, `standing` of their size; also where they are no numbers.
+    pub(crate) fn multipliers_converged(&self, before: &[R; M], after: &[R; M], standing: R) -> bool {
         let zero = R::constant(0.0);
         let (mut change, mut size) = (zero, zero);
         for ((before, after), scale) in before.iter().zip(after).zip(&self.metric.rows) {
             change = change + ((*after - *before) * *scale).abs();
             size = size + (*after * *scale).abs();
         }
-        !(R::constant(standing) * R::EPSILON * size).less(change)
+        !(standing * size).less(change)
     }
 }
 
@@ -489,6 +490,3 @@ const LARGE_MOTION: f64 = 0.5;
 /// at most. Errors of a step that follows the motion add a fraction; the first step of a method of first order from rest adds 1
 /// again.
 const LARGEST_GAIN: f64 = 4.0;
-
-/// Change of the multipliers, in ε of their size, that counts as rounding.
-pub(crate) const STANDING: f64 = 16.0;

@@ -11,13 +11,7 @@ use crate::mechanism::dynamic::Dynamic;
 use crate::mechanism::limit::{Limit, size};
 use crate::scalar::interval::Interval;
 use crate::scalar::number::Real;
-
-/// Violation of a row that a start may have, in the reference metric and of the coordinates (per second for its rate): numbers typed
-/// with nine digits. It is projected out.
-const START_ALLOWANCE: f64 = 1e-8;
-
-/// Rounding errors, in ε of the terms of a row, that such a violation may be where that is more.
-const START_ROUNDINGS: f64 = 64.0;
+use crate::tolerances::rows;
 
 /// Halvings of a step: as many digits as an `f64` has.
 const MOST_HALVINGS: u32 = 53;
@@ -88,7 +82,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
     pub(super) fn require_consistent(&self, t: R, y: &State<R, N, S::States>) -> Result<(), Failure> {
         let position = self.position(t, y);
         let one = R::constant(1.0);
-        let allowance = R::constant(START_ALLOWANCE).max(R::constant(START_ROUNDINGS) * R::EPSILON);
+        let allowance = rows::OF_START.of::<R>();
         let phi = self.mechanism.phi(self.parameters, &position);
         let phi_q = self.mechanism.phi_q(self.parameters, &position);
         let mut allowed = self.metric.rows;

@@ -1,7 +1,7 @@
 //! Contacts that close or open within a step.
 
 use crate::dynamics::integrators::event::enclosure::{Enclosures, Functions, GroupOver, Part};
-use crate::dynamics::integrators::event::{GROUP, NONE, Scrutiny, Watched, first_beyond};
+use crate::dynamics::integrators::event::{GROUP, Scrutiny, Watched, first_beyond};
 use crate::dynamics::integrators::vector::State;
 use crate::dynamics::model::Model;
 use crate::failure::{Failure, FailureKind, checks};
@@ -9,9 +9,7 @@ use crate::mechanism::Entry;
 use crate::mechanism::dynamic::{Dynamic, Gap};
 use crate::scalar::interval::Interval;
 use crate::scalar::number::Real;
-
-/// Roundings of a time that is computed from a gap, its rate and its bound.
-const REACH_ROUNDINGS: f64 = 16.0;
+use crate::tolerances::motion;
 
 impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, R, N, M> {
     /// Shows the gaps of a state at `t` (s), where inputs and phases are known at time `from` (s).
@@ -28,7 +26,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         (t, y): (R, &State<R, N, S::States>),
         parameters: &mut S::Parameters,
     ) -> Open<R> {
-        let (zero, none) = (R::constant(0.0), R::constant(NONE) * R::EPSILON * self.gap_scale());
+        let (zero, none) = (R::constant(0.0), motion::NO_VALUE.of::<R>() * self.gap_scale());
         let mut open = Open { changes: false, until: R::constant(f64::MAX) };
         let mut evaluated = S::evaluated_mut(parameters).iter_mut();
         self.gaps(from, (t, y), |Gap { gap, rate, bound }| {
@@ -88,7 +86,7 @@ fn reach<R: Real>(gap: R, rate: R, bound: R) -> R {
     // Neither of both subtracts.
     let time = if rate < zero { two * gap / (root - rate) } else { (rate + root) / bound };
     if zero < bound || rate < zero && bound == zero {
-        time * (R::constant(1.0) - R::constant(REACH_ROUNDINGS) * R::EPSILON)
+        time * (R::constant(1.0) - motion::OF_REACH.of::<R>())
     } else if bound == zero {
         R::constant(f64::MAX)
     } else {

@@ -5,7 +5,7 @@ use crate::dynamics::integrators::event::monitor::{Monitor, Stopped};
 use crate::dynamics::integrators::event::{
     Direction, MOST_BOUNDED_PARTS, MOST_RESOLVED, Scrutiny, Unanswered,
 };
-use crate::dynamics::integrators::step_control::{LEAST_STEP_ROUNDINGS, MOST_RETAKES, Point, cubic};
+use crate::dynamics::integrators::step_control::{MOST_RETAKES, Point, cubic};
 use crate::dynamics::integrators::vector::State;
 use crate::dynamics::model::instant::Instant;
 use crate::dynamics::model::method::Method;
@@ -14,6 +14,7 @@ use crate::dynamics::simulation::{Fresh, Simulation};
 use crate::failure::{Failure, FailureKind};
 use crate::mechanism::dynamic::Dynamic;
 use crate::scalar::number::Real;
+use crate::tolerances::motion;
 
 /// The failure of an event function that is NaN or infinite.
 const UNDEFINED_EVENT: Failure = FailureKind::NonFinite { name: "event function", line: 0 }.without_time();
@@ -314,7 +315,7 @@ where
         }
         let evaluated = (start, S::evaluated(parameters));
         let kink = model.contact_change(evaluated, (start, end), |t| ahead.at(t), &self.scrutiny)?;
-        let least = R::constant(LEAST_STEP_ROUNDINGS) * R::EPSILON * start.abs().max(end.abs());
+        let least = motion::LEAST_STEP.of::<R>() * start.abs().max(end.abs());
         Ok(kink.map(|kink| kink.max(start + least)).filter(|kink| least < end - *kink))
     }
 
@@ -395,7 +396,7 @@ where
         event: &mut impl FnMut(R, &[R; N], &[R; N]) -> R,
     ) -> Result<(AheadOf<S, R, N, M>, bool), Failure> {
         let (start, end) = whole.times();
-        let least = R::constant(LEAST_STEP_ROUNDINGS) * R::EPSILON * start.abs().max(end.abs());
+        let least = motion::LEAST_STEP.of::<R>() * start.abs().max(end.abs());
         let (half, mut before, mut growth) = (R::constant(0.5), start, R::constant(1.0));
         let (mut behind, mut shortened, mut near) = (whole, false, None);
         for _ in 0..MOST_TRIALS {

@@ -24,9 +24,7 @@ use crate::dynamics::model::{Counts, Formulation, Model};
 use crate::failure::Failure;
 use crate::mechanism::dynamic::Dynamic;
 use crate::scalar::number::Real;
-
-/// Tolerance of an adaptive integration where none is given, unless the number type has fewer digits.
-const TOLERANCE: f64 = 1e-9;
+use crate::tolerances::motion;
 
 /// A mechanism in motion with method `X`. It owns everything, allocates nothing, and a failed call leaves it as it was.
 ///
@@ -211,7 +209,7 @@ where
         let now = Instant { t, y, solved, carried: solved.rate.qd };
         model.check_assembly(t, (t, &y), true)?;
         let rank_rises = model.rank_rises;
-        let tolerance = R::constant(TOLERANCE).max(Tolerance::least());
+        let tolerance = motion::DEFAULT.of();
         let reference = model.total_energy(t, &y);
         let all = core::array::from_fn::<u16, N, _>(|index| u16::try_from(index).unwrap_or(u16::MAX));
         let numbers: (&[u16], &[u16]) = match origin {

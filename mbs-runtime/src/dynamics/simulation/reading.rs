@@ -2,7 +2,7 @@
 
 use crate::dynamics::analyses::determinacy::Determinacy;
 use crate::dynamics::equilibrium::consistent_start::MovedStart;
-use crate::dynamics::formulations::singular::limit_rows::{SINGULAR, ZONE, is_at_limit};
+use crate::dynamics::formulations::singular::limit_rows::is_at_limit;
 use crate::dynamics::formulations::singular::passage::Passage;
 use crate::dynamics::model::instant::Instant;
 use crate::dynamics::model::method::Method;
@@ -11,6 +11,7 @@ use crate::dynamics::simulation::Simulation;
 use crate::failure::Failure;
 use crate::mechanism::dynamic::{Dynamic, DynamicState, Energy};
 use crate::scalar::number::Real;
+use crate::tolerances::singular;
 
 /// Balance of a run so far: energy that is not accounted for, and rows that are violated.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -133,8 +134,9 @@ where
         let position = self.model().position(self.now.t, &self.now.y);
         let (t, y, margin) = (self.now.t, &self.now.y, self.now.solved.margin);
         let model = self.model();
-        let passing = margin < R::constant(ZONE) && is_at_limit(&model, (t, y), self.lambda(), margin);
-        let weakest = passing.then_some(R::constant(SINGULAR));
+        let passing =
+            margin < singular::ZONE_OF_FORCES.of() && is_at_limit(&model, (t, y), self.lambda(), margin);
+        let weakest = passing.then_some(singular::LIMIT_ROWS.of());
         Determinacy::measured(&self.mechanism, &self.parameters, &position, (t, &self.metric), weakest)
     }
 

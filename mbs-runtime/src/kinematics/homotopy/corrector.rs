@@ -3,12 +3,13 @@
 use crate::kinematics::homotopy::predictor::{Forecast, THIRD};
 use crate::kinematics::homotopy::step_length::LARGEST_GROWTH;
 use crate::kinematics::homotopy::walk::{Spot, Walk};
-use crate::kinematics::homotopy::{LARGEST_APPROACH, LARGEST_BEND, balance, leads, passes, shortest};
+use crate::kinematics::homotopy::{LARGEST_APPROACH, LARGEST_BEND, leads};
 use crate::kinematics::link_lengths;
 use crate::kinematics::position::branch_failure;
 use crate::linear_algebra::vectors::largest_difference;
 use crate::mechanism::Kinematic;
 use crate::scalar::number::Real;
+use crate::tolerances::{rows, singular};
 
 /// The same from where nothing leads on for certain: rounding has a part in the prediction.
 const LARGEST_APPROACH_INSIDE: f64 = 1.0 / 16.0;
@@ -37,12 +38,12 @@ const CORRECTIONS: u32 = 6;
 
 /// [`LARGEST_APPROACH_OF_A_PASSAGE`] with the rounding of difference quotients, some 50 ε/m² at m = [`leads`].
 fn approach_of_a_passage<R: Real>() -> R {
-    R::constant(LARGEST_APPROACH_OF_A_PASSAGE) + R::constant(3.0) * balance::<R>()
+    R::constant(LARGEST_APPROACH_OF_A_PASSAGE) + R::constant(3.0) * singular::BALANCE.of::<R>()
 }
 
 /// Square of a Newton step over the margin after which a piece is done: that much of the position is left open, ε^(3/4).
 fn closed<R: Real>() -> R {
-    let root = balance::<R>();
+    let root = singular::BALANCE.of::<R>();
     root * root * root
 }
 
@@ -80,7 +81,7 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Walk<'_, '_
         }
         let passage = next.orientation != at.orientation;
         // One that begins or ends too far away is not taken, but shows where the next one is to end.
-        let tight = passage && at.margin.max(next.margin) <= passes();
+        let tight = passage && at.margin.max(next.margin) <= singular::PASSES.of();
         let approach = match (tight, leads(at.margin + at.margin)) {
             (true, _) => approach_of_a_passage(),
             (_, true) => R::constant(LARGEST_APPROACH),
@@ -97,7 +98,7 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Walk<'_, '_
         }
         // What is beyond a forecast's second order grows with the third power of the length at least.
         let ratio = (off / allowed[0]).max(forecast.second / allowed[1]).max(forecast.third / allowed[2]);
-        let growth = R::constant(0.8) * ratio.max(shortest()).powf(R::constant(-THIRD));
+        let growth = R::constant(0.8) * ratio.max(rows::SHORTEST_PIECE.of()).powf(R::constant(-THIRD));
         // Nearer to a singular position the difference quotients are no slope.
         let square = forecast.first * forecast.first;
         if leads(R::constant(8.0) * next.margin) && square <= R::constant(4.0) * next.margin {

@@ -11,6 +11,7 @@ use core::f64::consts::TAU;
 use crate::kinematics::homotopy::walk::Walk;
 use crate::mechanism::Kinematic;
 use crate::scalar::number::{Real, Scalar};
+use crate::tolerances::singular;
 
 /// Largest second-order term of a prediction (rad, or reference lengths) from which a step is certain in one piece.
 ///
@@ -41,29 +42,12 @@ pub(crate) const LEAST_EVALUATIONS: u32 = 6;
 /// Part of a way over which its tangent is taken.
 const TANGENT: f64 = 0.25;
 
-/// ε^(1/4): rounding leaves ε/m of a position open at margin m, and ε/m² of its slope; where a piece is as long as the margin, a
-/// prediction is off by rounding as much as by its own third-order term.
-#[inline(always)]
-fn balance<R: Real>() -> R {
-    R::EPSILON.sqrt().sqrt()
-}
-
-/// Margin from which on a position leads to the next one, 4 ε^(1/4) or more; nearer to the singular position it is found from the last such
-/// position. Every change of inputs asks: products take the place of roots, and no margin is below 0.
+/// `true` if a position of such a margin leads to the next one. Every change of inputs asks: products take the place of roots, and no
+/// margin is below 0.
 #[inline(always)]
 pub(crate) fn leads<R: Real>(margin: R) -> bool {
     let square = margin * margin;
-    R::constant(256.0) * R::EPSILON <= square * square
-}
-
-/// Largest margin at either end of a piece in which the determinant changes its sign.
-fn passes<R: Real>() -> R {
-    R::constant(8.0) * balance::<R>()
-}
-
-/// Part of the way that no piece is shorter than: beyond it values of the way differ by their rounding alone.
-fn shortest<R: Real>() -> R {
-    R::constant(64.0) * R::EPSILON
+    singular::LEADS_TO_THE_FOURTH.of::<R>() <= square * square
 }
 
 /// `true` if a point at `distance` (in the reference metric) from a solution of `margin` leads to that solution for certain.

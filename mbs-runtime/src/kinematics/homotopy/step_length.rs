@@ -1,9 +1,10 @@
 //! Lengths of the pieces of the homotopy: limited by movement, by the margin and by where a determinant is 0.
 
 use crate::kinematics::homotopy::walk::{Spot, Walk};
-use crate::kinematics::homotopy::{LARGEST_PIECE, balance, leads, passes, shortest};
+use crate::kinematics::homotopy::{LARGEST_PIECE, leads};
 use crate::mechanism::Kinematic;
 use crate::scalar::number::Real;
+use crate::tolerances::{rows, singular};
 
 /// A piece over the one before. Drivers may come round again within a long one, and look as if they had not moved.
 pub(super) const LARGEST_GROWTH: f64 = 4.0;
@@ -16,17 +17,17 @@ pub(super) fn aimed<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usi
     next: &Spot<S, R, N, M>,
     aims: u32,
 ) -> Option<R> {
-    let next_to = R::constant(0.5) * passes::<R>();
+    let next_to = R::constant(0.5) * singular::PASSES.of::<R>();
     let passage = at.orientation != next.orientation;
     let fall = if passage { at.margin + next.margin } else { at.margin - next.margin };
-    let far = passage && passes::<R>() < at.margin.max(next.margin);
+    let far = passage && singular::PASSES.of::<R>() < at.margin.max(next.margin);
     let near =
         next.share < R::constant(1.0) && !leads(next.margin + next.margin) && leads(at.margin + at.margin);
     if !(far || near && R::constant(0.0) < fall) {
         return None;
     }
     // Where it does not end well behind, the next one begins nearer.
-    let before = passes::<R>() < at.margin || aims % 2 == 1 && leads(at.margin);
+    let before = singular::PASSES.of::<R>() < at.margin || aims % 2 == 1 && leads(at.margin);
     let way = if before { at.margin - next_to } else { at.margin + next_to };
     let most = if before { R::constant(0.9) } else { R::constant(LARGEST_GROWTH) };
     Some((way / fall).min(most).max(R::constant(0.02)))
@@ -56,11 +57,11 @@ pub(super) fn next_piece<S: Kinematic<R, N, M>, R: Real, const N: usize, const M
     growth: R,
 ) -> R {
     let most = R::constant(LARGEST_PIECE).min(next.margin.abs().sqrt());
-    let piece = length * (most / first.max(shortest())).min(growth);
-    if next.orientation == at.orientation && next.margin < passes() && next.margin < at.margin {
+    let piece = length * (most / first.max(rows::SHORTEST_PIECE.of())).min(growth);
+    if next.orientation == at.orientation && next.margin < singular::PASSES.of() && next.margin < at.margin {
         // Next to where the determinant is 0 if its margin falls as it did: just beyond.
         let slope = (at.margin - next.margin) / length;
-        return piece.min((next.margin + R::constant(0.5) * passes()) / slope);
+        return piece.min((next.margin + R::constant(0.5) * singular::PASSES.of()) / slope);
     }
     piece
 }
@@ -69,9 +70,9 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Walk<'_, '_
     /// Length of the first piece, from the slope over a short one.
     pub(super) fn first_piece(&mut self, at: &Spot<S, R, N, M>) -> R {
         self.evaluations = self.evaluations.saturating_add(1);
-        let (slope, _) = self.slope(at, balance());
+        let (slope, _) = self.slope(at, singular::BALANCE.of());
         let most = R::constant(LARGEST_PIECE).min(at.margin.abs().sqrt());
         let piece = most / self.size(&slope).max(most);
-        if piece.is_finite() { piece } else { balance() }
+        if piece.is_finite() { piece } else { singular::BALANCE.of() }
     }
 }

@@ -7,19 +7,14 @@ use crate::failure::conflicting_rows::ConflictingRows;
 use crate::failure::{DerivativeOrder, Failure, FailureKind};
 use crate::mechanism::dynamic::Dynamic;
 use crate::scalar::number::Real;
+use crate::tolerances::{rows, singular};
 
 /// Corrections on the way to where the rows are least open: as many as a start takes.
 const MOST_CORRECTIONS: u32 = 25;
 
-/// Singular value of Φ_q in the metric, relative to the largest, below which a row counts as dependent: half the digits.
-const TRUNCATION: f64 = 1e-8;
-
 /// Least part of the residuals in combinations of rows which no coordinate changes that counts as their cause. For two equal
 /// rows one of which is met it is 0.7.
 const LEAST_PART: f64 = 0.5;
-
-/// Largest residual of such a combination, in the metric, that is allowed: the error that a start may have.
-const ALLOWED: f64 = 1e-8;
 
 impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, R, N, M> {
     /// The rows that contradict each other about a state, where that is why it cannot be put onto them.
@@ -37,7 +32,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
             let phi = self.mechanism.phi(self.parameters, &position);
             let phi_q = self.mechanism.phi_q(self.parameters, &position);
             let system = System::new(&self.metric.mass(), &phi_q, self.metric);
-            let factors = system.factorize_rank_revealing(R::constant(TRUNCATION), S::COORDINATES, t).ok()?;
+            let factors = system.factorize_rank_revealing(singular::OWN_PART.of(), S::COORDINATES, t).ok()?;
             counts.corrections += 1;
             let step = factors.solve(&[zero; N], &phi).0;
             y.q = y.q.plus(R::constant(-1.0), &[1.0], [&step]);
@@ -47,7 +42,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         open.iter_mut().zip(&self.metric.rows).for_each(|(open, scale)| *open = *open / *scale);
         let phi_q = self.mechanism.phi_q(self.parameters, &position);
         let system = System::new(&self.metric.mass(), &phi_q, self.metric);
-        let factors = system.factorize_rank_revealing(R::constant(TRUNCATION), S::COORDINATES, t).ok()?;
+        let factors = system.factorize_rank_revealing(singular::OWN_PART.of(), S::COORDINATES, t).ok()?;
         let mut held = [zero; M];
         for shares in &factors.idle_shares() {
             let part = dot(shares, &open);
@@ -55,7 +50,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         }
         let (part, whole) = (dot(&held, &held).sqrt(), dot(&open, &open).sqrt());
         // Written so that NaN is no contradiction.
-        if !(R::constant(ALLOWED) < part && R::constant(LEAST_PART) * whole < part) {
+        if !(rows::OF_START.of::<R>() < part && R::constant(LEAST_PART) * whole < part) {
             return None;
         }
         let mut worst = (zero, zero);
@@ -69,7 +64,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
                 rows: ConflictingRows::of(S::ROWS, held.iter().map(|held| held.abs().to_f64())),
                 level: DerivativeOrder::Position,
                 residual: (worst.0 * worst.1).to_f64(),
-                required: (R::constant(ALLOWED) * worst.1).to_f64(),
+                required: (rows::OF_START.of::<R>() * worst.1).to_f64(),
             }
             .at(t.to_f64()),
         )

@@ -1,9 +1,7 @@
 //! Singular positions that a run reached or passed, as its steps show them.
 
 use crate::scalar::number::Real;
-
-/// Margin from which on nothing is taken for a passage.
-const NEAR: f64 = 0.1;
+use crate::tolerances::singular;
 
 /// Time (s) at which a run came so near to a singular position that it may have passed it.
 ///
@@ -22,7 +20,7 @@ impl<R: Real> Passage<R> {
     /// remainder, so that its next zero is within a step.
     pub(crate) fn between(before: (R, R), after: (R, R)) -> Option<Self> {
         let (t, margin) = if before.1 < after.1 { before } else { after };
-        let passes = margin < R::constant(NEAR) && margin < (after.1 - before.1).abs();
+        let passes = margin < singular::NO_PASSAGE.of() && margin < (after.1 - before.1).abs();
         passes.then_some(Passage { t, margin })
     }
 }

@@ -7,17 +7,11 @@
 
 use crate::dynamics::formulations::projection::project_position;
 use crate::dynamics::integrators::vector::State;
-use crate::dynamics::linear_systems::kkt::{System, truncation};
+use crate::dynamics::linear_systems::kkt::System;
 use crate::dynamics::model::{Counts, Model};
 use crate::mechanism::dynamic::Dynamic;
 use crate::scalar::number::Real;
-
-/// Distance by which a state is moved off the constraints to see if the rank rises, in the reference metric. It is far above the
-/// residual of a projection, 1e-14, and far above the part below which a row counts as dependent, 1e-10.
-const PROBE: f64 = 1e-4;
-
-/// Least ratio of that distance to the part below which a row counts as dependent: it decides in single precision.
-const PROBE_OVER_TRUNCATION: f64 = 64.0;
+use crate::tolerances::singular;
 
 /// `true` if the rank of Φ_q is less on the constraints next to `y` than off them.
 ///
@@ -32,7 +26,7 @@ pub(crate) fn rank_rises<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: 
         return false;
     }
     let mut beside = *y;
-    let probe = R::constant(PROBE).max(R::constant(PROBE_OVER_TRUNCATION) * truncation::<R>());
+    let probe = singular::PROBE.of::<R>();
     let (mut sign, scales) = (R::constant(1.0), &model.metric.coordinates);
     for (index, (q, scale)) in (0_u16..).zip(beside.q.iter_mut().zip(scales)) {
         // No two alike, so that no symmetry of the mechanism is kept.

@@ -1,30 +1,12 @@
 //! Diagnosis of a state from which no step size is accepted.
 
-use crate::dynamics::formulations::singular::limit_rows::ZONE;
 use crate::dynamics::integrators::vector::State;
-use crate::dynamics::linear_systems::kkt::{System, truncation};
+use crate::dynamics::linear_systems::kkt::System;
 use crate::dynamics::model::Model;
 use crate::failure::{Failure, FailureKind, checks};
 use crate::mechanism::dynamic::Dynamic;
 use crate::scalar::number::Real;
-
-/// Largest entry of a row of Φ_q that counts as 0, in √ε of the entry a thousandth of a reference length away. A row that is flat
-/// at a place holds it to the root of the 64 ε that its residual may have; its entries there are 360 √ε of those away from it.
-const FLAT: f64 = 512.0;
-
-/// Rate at which a row takes hold, of that of the motion.
-const TAKES_HOLD: f64 = 1e-6;
-
-/// Largest entry of a row of Φ_q that counts as 0 where a run starts, in ε of the entry a thousandth of a reference length away:
-/// the rounding of two points in one place, 64 ε, a thousand times.
-const FLAT_AT_START: f64 = 64e3;
-
-/// Residual of a row in the metric from which on a state has left the constraints and shows nothing about the mechanism.
-const LEFT: f64 = 1e-3;
-
-/// Inertia of a free motion over that of all of them which counts as none where no step is accurate enough: a bob of 1 kg on a cart
-/// of 1e-6 kg, the lightest of the ready mechanisms, has that much and moves.
-const LEAST_INERTIA: f64 = 1e-7;
+use crate::tolerances::{rows, singular};
 
 impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, R, N, M> {
     /// Obstacle to every step from a state: a row that no coordinate changes, a singular position, a motion without mass. None
@@ -37,24 +19,24 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         let phi_q = self.mechanism.phi_q(self.parameters, &position);
         let residuals = self.mechanism.phi(self.parameters, &position);
         // Written so that NaN is no obstacle.
-        let met = self.worst(&residuals, &self.metric.rows).0 < R::constant(LEFT);
+        let met = self.worst(&residuals, &self.metric.rows).0 < rows::LEFT.of();
         if !met {
             return None;
         }
         let system = System::new(&mass, &phi_q, self.metric);
-        let flat = system.flat_row(R::constant(FLAT) * R::EPSILON.sqrt());
+        let flat = system.flat_row(singular::FLAT.of());
         if let Some(index) = flat.filter(|index| !self.takes_hold(&position, y, *index)) {
             let row = checks::entry(S::ROWS, u16::try_from(index).unwrap_or(u16::MAX));
             return Some(FailureKind::VanishingGradient { row }.at(t.to_f64()));
         }
-        let margin = match system.factorize_rank_revealing(truncation::<R>(), S::COORDINATES, t) {
+        let margin = match system.factorize_rank_revealing(singular::DEPENDENT.of(), S::COORDINATES, t) {
             Ok(factors) => factors.margin(),
             Err(failure) => return Some(failure),
         };
-        if margin < R::constant(ZONE) {
+        if margin < singular::ZONE_OF_FORCES.of() {
             return Some(FailureKind::undecided(margin).at(t.to_f64()));
         }
-        system.require_inertia(R::constant(LEAST_INERTIA), S::COORDINATES, t).err()
+        system.require_inertia(singular::NO_INERTIA.of(), S::COORDINATES, t).err()
     }
 
     /// `true` if coordinates begin to change a row as soon as the mechanism moves on: bars that pass a line differ from a bar
@@ -67,7 +49,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         let change = self.mechanism.third_derivative(self.parameters, position, &y.qd, &row);
         let mut entries = change.map_or([R::constant(0.0); N], |(rate, _)| rate);
         entries.iter_mut().zip(&self.metric.coordinates).for_each(|(x, scale)| *x = *x * *scale * *scale);
-        (R::constant(TAKES_HOLD) * self.largest(&y.qd)).less(self.largest(&entries))
+        (singular::LEAST_RATE.of::<R>() * self.largest(&y.qd)).less(self.largest(&entries))
     }
 
     /// Fails where no coordinate changes a row at a state from which a run starts. Its accelerations are those without that row, and
@@ -75,7 +57,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
     pub(crate) fn require_no_flat_row(&self, t: R, y: &State<R, N, S::States>) -> Result<(), Failure> {
         let phi_q = self.mechanism.phi_q(self.parameters, &self.position(t, y));
         let system = System::new(&self.metric.mass(), &phi_q, self.metric);
-        let Some(index) = system.flat_row(R::constant(FLAT_AT_START) * R::EPSILON) else { return Ok(()) };
+        let Some(index) = system.flat_row(singular::FLAT_AT_START.of()) else { return Ok(()) };
         let row = checks::entry(S::ROWS, u16::try_from(index).unwrap_or(u16::MAX));
         Err(FailureKind::VanishingGradient { row }.at(t.to_f64()))
     }

@@ -15,6 +15,7 @@ use crate::dynamics::integrators::vector::Vector;
 use crate::dynamics::model::metric::Tolerance;
 use crate::failure::{Failure, FailureKind};
 use crate::scalar::number::{Real, Scalar};
+use crate::tolerances::motion;
 
 /// Radau IIA with three stages: order 5, L-stable, stiffly accurate, with an error estimate of order 3 and dense output of order 3.
 ///
@@ -54,12 +55,9 @@ const PIECES: u32 = 1 << 20;
 /// Parts of one step of fixed size that are tried.
 const MOST_TRIALS: u32 = 4096;
 
-/// Tolerance of the iteration in steps of fixed size, in the metric.
-const FIXED: f64 = 1e-10;
-
 /// The tolerance of the iteration in steps of fixed size.
 pub(crate) fn of_fixed_steps<R: Real>() -> Tolerance<R> {
-    let tolerance = R::constant(FIXED).max(Tolerance::least());
+    let tolerance = motion::OF_FIXED_STEPS.of();
     Tolerance { relative: tolerance, absolute: tolerance }
 }
 

@@ -11,6 +11,7 @@ use crate::dynamics::model::metric::worse;
 use crate::failure::Failure;
 use crate::mechanism::dynamic::Dynamic;
 use crate::scalar::number::Real;
+use crate::tolerances::motion;
 
 /// Iterations of a step: two to four where the tangents are good. A step that needs more is better made smaller.
 const MOST_ITERATIONS: u32 = 7;
@@ -20,9 +21,6 @@ const MOST_FIXED_ITERATIONS: u32 = 14;
 
 /// Part of the tolerance that the iteration may leave, at most: the estimate of the error does not see it.
 const OPEN: f64 = 0.03;
-
-/// Least part of the tolerance that the iteration can be asked for, in ε over the tolerance.
-const ROUNDINGS: f64 = 10.0;
 
 /// Both factorizations of a step.
 pub(in crate::dynamics) struct Solver<'a, S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> {
@@ -91,7 +89,7 @@ where
 
 /// Error that the iteration may leave, over the tolerance.
 fn enough<R: Real>(tolerance: R) -> R {
-    let least = R::constant(ROUNDINGS) * R::EPSILON / tolerance;
+    let least = motion::OF_STAGES.of::<R>() / tolerance;
     least.max(R::constant(OPEN).min(tolerance.sqrt()))
 }
 

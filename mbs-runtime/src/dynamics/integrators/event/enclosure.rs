@@ -1,16 +1,13 @@
 //! Bounds of functions of the state over a part of a step.
 
+use crate::dynamics::integrators::event::GROUP;
 use crate::dynamics::integrators::event::interpolant::{Interpolant, NODES};
-use crate::dynamics::integrators::event::{BLURRED, GROUP};
 use crate::dynamics::integrators::vector::State;
 use crate::mechanism::dynamic::Dynamic;
 use crate::mechanism::enclosure::{Enclosure, WithIntervals};
 use crate::scalar::interval::Interval;
 use crate::scalar::number::{Real, Scalar};
-
-/// Roundings of a coordinate that its enclosure may be wide by: those of its coefficients, sixteen of which are in a rate, and a
-/// lever of the function that is not one.
-const NOISE: f64 = 131_072.0;
+use crate::tolerances::motion;
 
 /// Share of its width that an enclosure keeps in half of a part where it tells nothing more.
 const KEPT: f64 = 0.75;
@@ -90,7 +87,7 @@ impl<R: Real, const N: usize> Part<R, N> {
                 value.unwrap_or(R::constant(f64::NAN))
             };
             let column = Interpolant::through(&mut column, start, end).ok()?;
-            let slack = R::constant(BLURRED) * R::EPSILON * column.largest();
+            let slack = motion::BLURRED.of::<R>() * column.largest();
             (*middle, *q, *qd) = column.enclosures(slack);
         }
         Some(part)
@@ -100,7 +97,7 @@ impl<R: Real, const N: usize> Part<R, N> {
     fn width(&self) -> (R, R) {
         let largest = |largest: R, q: &Interval<R>| largest.max(q.low().abs()).max(q.high().abs());
         let largest = self.q.iter().fold(R::constant(0.0), largest);
-        (self.times.1 - self.times.0, R::constant(NOISE) * R::EPSILON * largest)
+        (self.times.1 - self.times.0, motion::OF_ENCLOSURE.of::<R>() * largest)
     }
 
     /// Calls `see` with the mechanism, coordinates, velocities and time in the middle, then with those of all of the part. Velocities in

@@ -15,6 +15,7 @@ use crate::dynamics::integrators::event::enclosure::Enclosures;
 use crate::dynamics::integrators::event::interpolant::{Interpolant, NODES};
 use crate::mechanism::enclosure::Enclosure;
 use crate::scalar::number::Real;
+use crate::tolerances::motion;
 
 /// Functions that are evaluated together at most.
 pub const GROUP: usize = 8;
@@ -34,20 +35,11 @@ const MOST_ENCLOSED_PARTS: u32 = 4_096;
 /// Parts that the resolution may divide a step into; a step of more is to be cut.
 pub const MOST_RESOLVED: f64 = 512.0;
 
-/// Roundings of the largest value within a step up to which a value is none: those of some operations.
-pub const NONE: f64 = 64.0;
-
-/// The same for nine values of which the polynomial tells nothing more: its coefficients add up 560 roundings.
-const BLURRED: f64 = 2_048.0;
-
 /// Share of a part from which on a function that no polynomial fits is taken by the signs of its values.
 const ROUGH: f64 = 1.0 / 512.0;
 
 /// Roundings of a time by which a function that is exactly zero there is asked before it: one that has jumped to zero is zero there too.
 const STAYING_ROUNDINGS: f64 = 16.0;
-
-/// Smallest part in roundings of the time.
-const LEAST_ROUNDINGS: f64 = 4.0;
 
 /// Passages through zero that count.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -208,7 +200,7 @@ impl<R: Real> Search<'_, R> {
         start: R,
         end: R,
     ) -> Result<Option<R>, Unanswered<R>> {
-        let least = R::constant(LEAST_ROUNDINGS) * R::EPSILON * start.abs().max(end.abs());
+        let least = motion::LEAST_PART.of::<R>() * start.abs().max(end.abs());
         let (whole, half) = (end - start, R::constant(0.5));
         let (mut from, mut width) = (start, whole);
         let mut of_twice = None;
@@ -267,7 +259,7 @@ impl<R: Real> Search<'_, R> {
         // What bounds do not tell, nine values do not either.
         let is_open = enclosure.is_some() && self.scrutiny.bound.is_none();
         let is_monotone = enclosure.is_none_or(|enclosure| enclosure.is_monotone());
-        let blurred = part.largest() <= R::constant(BLURRED) * R::EPSILON * self.scale;
+        let blurred = part.largest() <= motion::BLURRED.of::<R>() * self.scale;
         match self.first_beyond(part) {
             Some(0) => Verdict::Passed(0),
             Some(index) => {
@@ -281,7 +273,7 @@ impl<R: Real> Search<'_, R> {
             None if !is_open && self.clears(part) => Verdict::Clear,
             None if blurred => {
                 let (index, least) = part.least();
-                let none = least <= R::constant(NONE) * R::EPSILON * self.scale;
+                let none = least <= motion::NO_VALUE.of::<R>() * self.scale;
                 if none && self.scrutiny.touching { Verdict::Touched(index) } else { Verdict::Clear }
             }
             None => Verdict::Unclear,
@@ -498,7 +490,7 @@ fn near_zero<R: Real>(
         let scale = part.largest().max(scrutiny.scale);
         let is_enclosed = enclosure.is_some();
         let search = Search { side: side.sign(), scrutiny: &scrutiny, scale, left: 1, is_enclosed };
-        let small = !positive && part.first().abs() <= R::constant(NONE) * R::EPSILON * scale;
+        let small = !positive && part.first().abs() <= motion::NO_VALUE.of::<R>() * scale;
         let clear = !small && matches!(search.verdict(&part, (false, *enclosure)), Verdict::Clear);
         *near = scrutiny.parts(end - start) > 1 || !clear;
     }

@@ -1,10 +1,9 @@
 //! An event function watched from step to step.
 
 use crate::dynamics::integrators::event::interpolant::Interpolant;
-use crate::dynamics::integrators::event::{
-    Direction, Function, NONE, Scrutiny, Unanswered, first_reach, is_nan,
-};
+use crate::dynamics::integrators::event::{Direction, Function, Scrutiny, Unanswered, first_reach, is_nan};
 use crate::scalar::number::Real;
+use crate::tolerances::motion;
 
 /// Passages of a step that do not count, before one that does.
 const MOST_IGNORED: u32 = 64;
@@ -14,9 +13,6 @@ const HALVINGS: u32 = 40;
 
 /// Values of a function next to one that counts as zero, over that one, from which on it is on a side.
 const AWAY: f64 = 4.0;
-
-/// Roundings of the largest value by which an event function may change where a state is solved anew.
-const SOLVED_ANEW: f64 = 1024.0;
 
 /// Event at which a run stopped, so that the next run does not stop there again.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,7 +30,7 @@ impl<R: Real> Stopped<R> {
 
     /// `true` if a function of `value` at `t` (s) is the one that stopped the run; `anew`: the state was solved again since.
     fn known(&self, t: R, value: R, anew: bool) -> bool {
-        let roundings = R::constant(SOLVED_ANEW) * R::EPSILON * self.scale;
+        let roundings = motion::SOLVED_ANEW.of::<R>() * self.scale;
         let allowed = if anew { R::constant(AWAY) * self.value.abs() + roundings } else { R::constant(0.0) };
         t == self.t && (value - self.value).abs() <= allowed
     }
@@ -105,7 +101,7 @@ pub(super) fn side<R: Real>(
     (start, end): (R, R),
     scale: R,
 ) -> Result<Option<(R, R)>, Unanswered<R>> {
-    let none = R::constant(NONE) * R::EPSILON * scale;
+    let none = motion::NO_VALUE.of::<R>() * scale;
     let (value, least) = (function.value(start), none.max(least(function, (start, end))?));
     if least < value.abs() {
         return Ok(Some((start, value.sign())));
@@ -115,9 +111,7 @@ pub(super) fn side<R: Real>(
 
 /// Roundings of the largest of nine values.
 fn least<R: Real>(function: &mut impl Function<R>, (start, end): (R, R)) -> Result<R, Unanswered<R>> {
-    Ok(R::constant(NONE)
-        * R::EPSILON
-        * Interpolant::through(&mut |t| function.value(t), start, end)?.largest())
+    Ok(motion::NO_VALUE.of::<R>() * Interpolant::through(&mut |t| function.value(t), start, end)?.largest())
 }
 
 /// The first time (s) after the start from which a function is larger than `none` and rounding, with its sign.

@@ -16,6 +16,7 @@ use crate::linear_algebra::factorization::Factorization;
 use crate::linear_algebra::lu::Lu;
 use crate::mechanism::normal_forces::Term;
 use crate::scalar::number::Real;
+use crate::tolerances::forces;
 
 /// Steps of Newton's method on signs and directions: random systems of 8 terms needed up to 6.
 const MOST_STEPS: u32 = 24;
@@ -32,9 +33,6 @@ const MOST_PARTS: u32 = 1 << 14;
 
 /// Parts of the simplex of norms that are looked at for all signs together: random systems of two norms needed up to 933, of three up to 16175.
 const MOST_DIVISIONS: u32 = 1 << 16;
-
-/// Rounding errors, in ε a term, of a sum c + B v that counts as zero, and of an equation that counts as met.
-const ROUNDINGS: f64 = 16.0;
 
 /// Solutions of a system.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -210,7 +208,7 @@ impl<R: Real, const K: usize> Piecewise<R, K> {
 
     /// `true` if no sign has changed, and no direction of a norm but by rounding.
     fn stand(&self, before: &[[R; 2]; K], after: &[[R; 2]; K]) -> bool {
-        let rounding = R::constant(ROUNDINGS) * R::EPSILON;
+        let rounding = forces::OF_PIECEWISE.of::<R>();
         before.iter().zip(after).zip(&self.terms).all(|((before, after), term)| match term {
             Term::Multiplier => true,
             Term::Absolute => before == after,
@@ -294,7 +292,7 @@ impl<R: Real, const K: usize> Piecewise<R, K> {
                     slopes.iter().zip(v).fold(offset.abs(), |sum, (slope, v)| sum + (*slope * *v).abs());
                 *rounding = *rounding + size;
             }
-            *rounding = *rounding * R::constant(ROUNDINGS * (K as f64 + 1.0)) * R::EPSILON;
+            *rounding = *rounding * (forces::OF_PIECEWISE.of::<R>() * R::constant(K as f64 + 1.0));
         }
         roundings
     }

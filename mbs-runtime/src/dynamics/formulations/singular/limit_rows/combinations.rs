@@ -1,6 +1,5 @@
 //! Combinations of rows that lose their hold, and the limits that replace them.
 
-use crate::dynamics::formulations::singular::limit_rows::SINGULAR;
 use crate::dynamics::formulations::unstabilized;
 use crate::dynamics::integrators::vector::State;
 use crate::dynamics::linear_systems::kkt::{Factors, System};
@@ -8,10 +7,7 @@ use crate::dynamics::model::{Model, Solved};
 use crate::failure::Failure;
 use crate::mechanism::dynamic::Dynamic;
 use crate::scalar::number::Real;
-
-/// Rate at which a combination of rows changes, of that of the motion, below which it counts as one that follows from others wherever
-/// the mechanism is.
-const LEAST_RATE: f64 = 1e-6;
+use crate::tolerances::singular;
 
 /// Change of an acceleration over a distance, in q̇² and q̈ of it (in the metric), that a motion which passes may have.
 const CHANGE: f64 = 30.0;
@@ -22,9 +18,6 @@ const NOISE: f64 = 8.0;
 /// Share of a velocity that may be off the branch which the motion passes on: νᵀγ is as large as the share of the motion's own.
 const ASIDE: f64 = 0.05;
 
-/// Rounding errors, in ε, of a row's terms.
-const ROUNDINGS: f64 = 64.0;
-
 /// Change of the velocity until the singular position is reached, of the velocity, of a motion that passes.
 const LASTING: f64 = 0.5;
 
@@ -34,9 +27,6 @@ const FAR: f64 = 3.0;
 
 /// Sweeps of rotations: few do, for they converge quadratically.
 const MOST_SWEEPS: usize = 30;
-
-/// Largest product of two directions that count as orthogonal, in ε.
-const ORTHOGONAL: f64 = 64.0;
 
 /// A combination ν of rows that loses its hold, in the metric.
 #[derive(Clone, Copy)]
@@ -96,7 +86,7 @@ impl<R: Real, const N: usize, const M: usize> Weak<R, N, M> {
             *found = Combination { shares, rate, free, right: right * R::constant(1.0 / 3.0), ..none };
         }
         weak.rotate();
-        weak.keep_changing(R::constant(LEAST_RATE) * model.largest(qd));
+        weak.keep_changing(singular::LEAST_RATE.of::<R>() * model.largest(qd));
         (weak.count > 0).then_some(weak)
     }
 
@@ -106,8 +96,8 @@ impl<R: Real, const N: usize, const M: usize> Weak<R, N, M> {
         for found in self.combinations.iter_mut().take(self.count) {
             found.margin = length(&system.combined(&found.shares));
             let distance = found.margin / length(&found.free) * speed;
-            found.limit =
-                found.margin < R::constant(SINGULAR) || (distance * distance).less(R::constant(FAR) * beside);
+            found.limit = found.margin < singular::LIMIT_ROWS.of()
+                || (distance * distance).less(R::constant(FAR) * beside);
         }
     }
 
@@ -234,7 +224,7 @@ impl<R: Real, const N: usize, const M: usize> Weak<R, N, M> {
         let phi = model.mechanism.phi(model.parameters, position);
         let phi_d = model.constraint_rates(position, &y.qd);
         let (speed, change) = (model.largest(&y.qd), model.largest(qdd));
-        let rounding = R::constant(ROUNDINGS) * R::EPSILON;
+        let rounding = singular::OF_COMBINATION.of::<R>();
         self.each().filter(|found| found.limit).all(|found| {
             let weak = system.combined(&found.shares);
             let multipliers = system.multipliers(&found.shares);
@@ -264,7 +254,7 @@ fn rotate_pair<R: Real, const N: usize, const M: usize>(
     let (a, b) = (dot(&one.free, &one.free), dot(&other.free, &other.free));
     let product = dot(&one.free, &other.free);
     // Written so that NaN ends it.
-    if !(R::constant(ORTHOGONAL) * R::EPSILON * (a * b).sqrt()).less(product.abs()) {
+    if !(singular::OF_COMBINATION.of::<R>() * (a * b).sqrt()).less(product.abs()) {
         return false;
     }
     let zeta = (b - a) / (product + product);

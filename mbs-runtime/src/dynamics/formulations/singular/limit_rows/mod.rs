@@ -18,28 +18,7 @@ use crate::dynamics::model::{Counts, Model, Solved};
 use crate::failure::Failure;
 use crate::mechanism::dynamic::Dynamic;
 use crate::scalar::number::Real;
-
-/// Margin below which a state is in the zone of a singular position: directions that the rows determine more weakly are
-/// not corrected.
-///
-/// Rounding ε in the rows makes ε/σ of a position and ε v/σ² of a velocity that is projected. At 1e-2 that is 1e-12, the
-/// error of the integration of a step there.
-pub(crate) const ZONE: f64 = 1e-2;
-
-/// Margin below which the limits of rows take the place of the rows.
-///
-/// At a distance σ the limit leaves out σ/3 of the change of an acceleration per distance, which is odd in σ. What it adds to a
-/// velocity on the way in it takes off on the way out, and σ³/10 of a position is left, 1e-10. With its first order it leaves out
-/// σ². The rows themselves make δ/σ² of the distance δ of a stage from the constraints.
-pub(crate) const SINGULAR: f64 = 1e-3;
-
-/// Margin below which the evaluations of adaptive steps are looked at, far within [`ZONE`].
-///
-/// A stage at a distance x from the constraints has other accelerations by x/σ² where it is carried along, or has limits, than
-/// where it has the rows. All stages of a step with the same right-hand side keep its order; one with another costs it. With
-/// limits in the whole [`ZONE`] 200 runs in reference points ended within 1.8e-6 m at 1e-9. With this they ended within 4.1e-7 m;
-/// at 1e-11 the whole zone took 2.4 times the evaluations.
-const OF_ADAPTIVE_STEPS: f64 = 5e-4;
+use crate::tolerances::singular;
 
 /// Changes `gamma` (M) such that a state off the constraints keeps its distance from them. Returns the largest coordinate of x
 /// below, in the metric.
@@ -63,12 +42,13 @@ fn carry_along<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
 }
 
 impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, R, N, M> {
-    /// Margin below which an evaluation is looked at: [`ZONE`], less in adaptive steps. All stages that are projected are so but for the
+    /// Margin below which an evaluation is looked at: [`singular::ZONE_OF_FORCES`], less in adaptive steps. All stages that are projected are so but for the
     /// directions that are weak in the zone.
     #[cold]
     #[inline(never)]
     pub(crate) fn zone(&self, stages: Stages) -> R {
-        R::constant(if self.first_order || stages == Stages::All { ZONE } else { OF_ADAPTIVE_STEPS })
+        let whole = self.first_order || stages == Stages::All;
+        if whole { singular::ZONE_OF_FORCES.of() } else { singular::ADAPTIVE_ZONE.of() }
     }
 
     /// Adds `factor` Φ̇_q x to `sum` (M), x: N. γ is quadratic in velocities, so that γ(q̇ + x) − γ(q̇ − x) = −4 Φ̇_q x.
@@ -184,9 +164,9 @@ fn zone<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     position: &S::Position,
     (system, raw): (&System<R, N, M>, &[R; M]),
 ) -> Result<Option<Zone<R, N, M>>, Failure> {
-    let strong = system.factorize_rank_revealing(R::constant(ZONE), S::COORDINATES, t)?;
+    let strong = system.factorize_rank_revealing(singular::ZONE_OF_FORCES.of(), S::COORDINATES, t)?;
     let Some(mut weak) = Weak::of(model, position, &y.qd, (system, &strong)) else { return Ok(None) };
-    let known = system.factorize_rank_revealing(R::constant(SINGULAR), S::COORDINATES, t)?;
+    let known = system.factorize_rank_revealing(singular::LIMIT_ROWS.of(), S::COORDINATES, t)?;
     let mut gamma = *raw;
     let beside = carry_along(model, position, y, &known, &mut gamma);
     weak.measure(system, model.largest(&y.qd), beside);

@@ -9,22 +9,18 @@
 mod tests;
 
 use crate::dynamics::linear_systems::piecewise::reduced::{Reduced, is_m_matrix};
-use crate::dynamics::linear_systems::piecewise::{Given, Piecewise, ROUNDINGS};
+use crate::dynamics::linear_systems::piecewise::{Given, Piecewise};
 use crate::linear_algebra::factorization::Factorization;
 use crate::linear_algebra::lu::Lu;
 use crate::mechanism::normal_forces::Term;
 use crate::scalar::number::Real;
+use crate::tolerances::forces;
 
-/// Parts that wait: three norms are divided at most 78 times until their edges are [`shortest`].
+/// Parts that wait: three norms are divided at most 78 times until their edges are [`forces::SHORTEST_EDGE`].
 const MOST_WAITING: usize = 80;
 
 /// Solutions of three equations of second degree.
 const MOST_KNOWN: usize = 8;
-
-/// Edge of a part that is not divided further: √ε, of which two solutions are not told apart.
-fn shortest<R: Real>() -> R {
-    R::EPSILON.sqrt()
-}
 
 /// The corners of a part.
 type Simplex<R, const V: usize> = [[R; V]; V];
@@ -195,7 +191,7 @@ impl<R: Real, const V: usize, const K: usize> Norms<R, V, K> {
                 let terms = sums.iter().flat_map(|slopes| slopes.iter().zip(x));
                 *rounding = rounding.max(terms.fold(own, |sum, (slope, x)| sum + (*slope * *x).abs()));
             }
-            *rounding = *rounding * R::constant(ROUNDINGS * V as f64) * R::EPSILON;
+            *rounding = *rounding * (forces::OF_PIECEWISE.of::<R>() * R::constant(V as f64));
         }
         roundings
     }
@@ -205,7 +201,7 @@ impl<R: Real, const V: usize, const K: usize> Norms<R, V, K> {
         let centre = centre(part);
         let breaks = |slopes: &[R; V]| {
             let size = |x: &[R; V]| slopes.iter().zip(x).fold(zero, |sum, (a, b)| sum + (*a * *b).abs());
-            let rounding = R::constant(ROUNDINGS * V as f64) * R::EPSILON;
+            let rounding = forces::OF_PIECEWISE.of::<R>() * R::constant(V as f64);
             part.iter().all(|x| dot(slopes, x) < -(rounding * size(x)))
         };
         if self.signs.iter().any(breaks) {
@@ -320,7 +316,7 @@ fn is_inside<R: Real, const V: usize>(part: &Simplex<R, V>, x: &[R; V]) -> bool 
 
 /// Both halves of a part, divided at its longest edge; none where that is short.
 fn halved<R: Real, const V: usize>(part: &Simplex<R, V>) -> Option<(Simplex<R, V>, Simplex<R, V>)> {
-    let (mut longest, mut ends) = (shortest::<R>() * shortest::<R>(), None);
+    let (mut longest, mut ends) = (forces::SHORTEST_EDGE.of::<R>() * forces::SHORTEST_EDGE.of::<R>(), None);
     for a in 0..V {
         for b in a + 1..V {
             let edge = part[a].iter().zip(&part[b]).map(|(a, b)| (*a - *b) * (*a - *b));
