@@ -186,11 +186,11 @@ fn derivatives(model: &Model, graph: &Graph, clock: &Clock, value: NodeId) -> u8
     left.min().unwrap_or(2).min(2)
 }
 
-/// The largest length among constants, numbers and parameters; where there is none that of the guesses, 1 m where there is none either.
+/// The largest length that counts; where all are zero that of the guesses, 1 m where there is none either.
 fn reference_length(model: &Model, g: &mut Graph) -> NodeId {
     let mut longest = g.constant(model.longest.as_ref().map_or(0.0, |longest| longest.length));
-    for index in model.lengths() {
-        let parameter = g.leaf(Leaf::Parameter(index as u32));
+    for index in &model.lengths {
+        let parameter = g.leaf(Leaf::Parameter(*index as u32));
         let length = g.unary(Unary::Abs, parameter);
         longest = g.binary(Binary::Max, longest, length);
     }

@@ -4,7 +4,7 @@ use proc_macro2::Span;
 
 use super::bare::Bare;
 use super::elaborate::{Elaborator, Fault};
-use super::expression::Node;
+use super::expression::{Id, Node};
 use super::units::Dimension;
 use super::value::{Quantity, Scalar, Value};
 use crate::symbolic::{Binary, Unary};
@@ -141,12 +141,9 @@ impl Elaborator<'_> {
         quantity: Quantity,
         span: Span,
     ) -> Result<Scalar, Fault> {
-        Ok(Scalar {
-            id: self.push_unary(function, a.id, span)?,
-            quantity,
-            bare: Bare::unary(function, a.bare),
-            span,
-        })
+        let id = self.push_unary(function, a.id, span)?;
+        self.keep_length(id, [a.id; 2], quantity);
+        Ok(Scalar { id, quantity, bare: Bare::unary(function, a.bare), span })
     }
 
     /// A function of two scalars.
@@ -170,12 +167,17 @@ impl Elaborator<'_> {
         quantity: Quantity,
         span: Span,
     ) -> Result<Scalar, Fault> {
-        Ok(Scalar {
-            id: self.push_binary(function, a.id, b.id, span)?,
-            quantity,
-            bare: Bare::binary(function, a.bare, b.bare),
-            span,
-        })
+        let id = self.push_binary(function, a.id, b.id, span)?;
+        self.keep_length(id, [a.id, b.id], quantity);
+        Ok(Scalar { id, quantity, bare: Bare::binary(function, a.bare, b.bare), span })
+    }
+
+    /// Before: a value computed from others. After: where it is a number in metres, square metres and so on, it is made of their
+    /// lengths; the millimetre of a stiffness or a speed is none of the mechanism.
+    fn keep_length(&mut self, id: Id, operands: [Id; 2], quantity: Quantity) {
+        if quantity.dimension().is_power_of_length() {
+            self.expressions.inherit_length(id, operands.into_iter());
+        }
     }
 
     /// `Σ aᵢ bᵢ`, all terms of one unit.

@@ -14,7 +14,7 @@ use super::rates::Reach;
 use super::turns::turning;
 use super::units::Dimension;
 use super::value::{Quantity, Scalar, Value};
-use super::{Coordinate, CoordinateField, Field, Longest, Model, Role, Variable, VariableKind};
+use super::{Coordinate, CoordinateField, Field, Model, Role, Variable, VariableKind};
 use crate::diagnostics::Diagnostics;
 use crate::syntax::ast::{Declares, Expression, Loop, Name, Statement, StatementKind, Type, Unit};
 
@@ -130,11 +130,8 @@ impl Declarations<'_> {
             reach: Reach::Position,
             needs: Reach::Position,
             groups: &[],
-            longest: self.model.longest.take(),
         };
-        let result = run(&mut work);
-        self.model.longest = work.longest;
-        result
+        run(&mut work)
     }
 
     /// Marks names of a kind that got no value.
@@ -157,20 +154,16 @@ impl Declarations<'_> {
         for index in self.order(&definitions) {
             let Some((name, unit, expression)) = constants.get(index) else { continue };
             let dimension = Dimension::of(unit, self.diagnostics);
-            let lengths = self.model.longest.clone();
+            let known = self.model.expressions.len();
             let value = self.elaborate(|work| {
                 let value = work.value(expression)?;
                 let value = initialiser(work, value, dimension.ok_or(Fault)?)?;
                 numbers(work, expression, &value, "a constant")?;
                 Ok::<_, Fault>(in_unit(value, unit))
             });
-            if dimension != Some(Dimension::METRE) {
-                // The millimetre of a stiffness is no length of the mechanism.
-                self.model.longest = lengths;
-            }
             match value {
                 Ok(value) => {
-                    self.note_lengths(&value, &name.text, name.span);
+                    self.name_lengths(&value, known, &name.text, name.span);
                     self.names.define(&name.text, value);
                 }
                 Err(Fault) => self.names.give_up(&name.text),
@@ -198,13 +191,12 @@ impl Declarations<'_> {
         self.names.declared_at(&name.text).is_some_and(|span| same_place(span, name.span))
     }
 
-    fn note_lengths(&mut self, value: &Value, name: &str, span: Span) {
-        for item in &value.items {
-            if item.quantity == Quantity::Known(Dimension::METRE)
-                && let Node::Number(length) = self.model.expressions.node(item.id)
-            {
-                Longest::note(&mut self.model.longest, length, || name.to_owned(), span);
-            }
+    /// Names the lengths of a value; those of the first `known` expressions keep their name.
+    fn name_lengths(&mut self, value: &Value, known: usize, name: &str, span: Span) {
+        let is_length =
+            |item: &&Scalar| item.quantity == Quantity::Known(Dimension::METRE) && item.id.index() >= known;
+        for item in value.items.iter().filter(is_length) {
+            self.model.expressions.name_length(item.id, |_| name.to_owned(), span);
         }
     }
 
@@ -383,7 +375,7 @@ impl Declarations<'_> {
             return;
         }
         let (dimension, size) = (declared.dimension, declared.size);
-        let dimensions = core::mem::replace(&mut self.model.longest, self.model.longest_guess.take());
+        let known = self.model.expressions.len();
         let guesses = guess.filter(|_| !declared.faulty).map(|expression| {
             self.elaborate(|work| {
                 let value = work.value(expression)?;
@@ -393,13 +385,12 @@ impl Declarations<'_> {
         });
         let guesses: Vec<Option<Id>> = match guesses {
             Some(Ok(value)) => {
-                self.note_lengths(&value, &format!("guess of {}", name.text), name.span);
+                self.name_lengths(&value, known, &format!("guess of {}", name.text), name.span);
                 value.items.iter().map(|item| Some(item.id)).collect()
             }
             Some(Err(Fault)) => vec![Some(self.model.expressions.push(Node::Number(0.0))); size],
             None => vec![None; size],
         };
-        self.model.longest_guess = core::mem::replace(&mut self.model.longest, dimensions);
         let first = self.model.coordinates.len();
         let unit = kind.unit.text.clone();
         for (component, guess) in component_names(&name.text, &declared.shape).zip(guesses) {

@@ -2,6 +2,7 @@
 
 use proc_macro2::Span;
 
+use super::Reference;
 use super::bare::Bare;
 use super::counts::follows_literals;
 use super::declared_functions;
@@ -13,7 +14,6 @@ use super::rates::Reach;
 use super::references::{REFERRING, is_reference};
 use super::units::{Dimension, in_unit};
 use super::value::{Quantity, Scalar, Value};
-use super::{Longest, Reference};
 use crate::diagnostics::Diagnostics;
 use crate::symbolic::{Binary, Unary};
 use crate::syntax::ast::{Expression, Instruction, Operation, Operator, Unit};
@@ -41,8 +41,6 @@ pub struct Elaborator<'a> {
     pub needs: Reach,
     /// Groups that `margin` and `ratio` can refer to.
     pub groups: &'a [Reference],
-    /// Largest length of the text so far.
-    pub longest: Option<Longest>,
 }
 
 /// A `sum` that is being unrolled.
@@ -190,10 +188,10 @@ impl Elaborator<'_> {
         if value == 0.0 && number != 0.0 {
             return Err(self.fault(span, "this number is too small in SI units", "choose another unit"));
         }
-        if dimension == Dimension::METRE {
-            Longest::note(&mut self.longest, value, || format!("{} m", value.abs()), span);
-        }
         let id = self.expressions.push(Node::Number(value));
+        if dimension == Dimension::METRE {
+            self.expressions.name_length(id, |length| format!("{length} m"), span);
+        }
         let scalar = Scalar { id, quantity: Quantity::Known(dimension), bare: Bare::of(unit), span };
         Ok(Value::scalar(scalar, span))
     }

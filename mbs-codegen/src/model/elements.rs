@@ -249,7 +249,6 @@ impl Resolver<'_> {
             Kind::Orientation => (Dimension::NUMBER, Reach::Position),
         };
         let user = format!("`{}`", field.name.text);
-        let lengths = self.model.longest.clone();
         let value = self.elaborate(reach, |work| {
             let value = work.value(&field.value)?;
             let value = initialiser(work, value, dimension)?;
@@ -260,21 +259,7 @@ impl Resolver<'_> {
                 Kind::Orientation => parameters(work, &value, &user).map(|_| ())?,
             }
             Ok::<_, Fault>(value)
-        });
-        let measures = match kind {
-            Kind::Constant(dimension) | Kind::Vector(dimension) => dimension == Dimension::METRE,
-            Kind::Scalar(dimension, _) => {
-                let is_constant =
-                    |value: &Value| value.items.iter().all(|item| self.model.is_constant(item.id));
-                dimension == Dimension::METRE || !value.as_ref().is_ok_and(is_constant)
-            }
-            Kind::Point | Kind::Inertia | Kind::Orientation => true,
-        };
-        if !measures {
-            // The millimetre of a speed or a stiffness is no length of the mechanism.
-            self.model.longest = lengths;
-        }
-        let value = value?;
+        })?;
         if reach == Reach::Position {
             self.stateless(&value)?;
         }
@@ -485,16 +470,13 @@ impl Resolver<'_> {
         coordinate: &Value,
         per: Dimension,
     ) -> Result<Value, Fault> {
-        let dimensions = core::mem::replace(&mut self.model.longest, self.model.longest_guess.take());
         let value = self.elaborate(Reach::Position, |work| {
             let value = work.value(value)?;
             let dimension =
                 coordinate.items.first().map(|item| item.quantity.dimension()).unwrap_or_default();
             let value = initialiser(work, value, dimension.over(per))?;
             filling(work, value, &coordinate.shape)
-        });
-        self.model.longest_guess = core::mem::replace(&mut self.model.longest, dimensions);
-        let value = value?;
+        })?;
         if value.items.iter().all(|item| self.model.is_constant(item.id)) {
             return Ok(value);
         }

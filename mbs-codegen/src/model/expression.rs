@@ -1,7 +1,10 @@
 //! Scalar expressions in one arena; operands always precede their users.
 
+use std::collections::BTreeMap;
+
 use proc_macro2::Span;
 
+use super::reference_length::Length;
 use crate::symbolic::{Binary, Unary};
 
 /// Index into [`Expressions`].
@@ -54,6 +57,10 @@ pub struct Expressions {
     nodes: Vec<Node>,
     operations: usize,
     calls: Vec<Call>,
+    /// Lengths of the text, in the order in which they were met.
+    lengths: Vec<Length>,
+    /// Numbers that are lengths or their powers, each with the largest length that it is made of.
+    measures: BTreeMap<Id, usize>,
 }
 
 impl Expressions {
@@ -74,6 +81,42 @@ impl Expressions {
     /// Calls of declared functions, in the order in which they were added.
     pub fn calls(&self) -> &[Call] {
         &self.calls
+    }
+
+    /// Gives a number in metres its name as a length of the text. Zero is none.
+    pub fn name_length(&mut self, id: Id, name: impl FnOnce(f64) -> String, span: Span) {
+        if let Node::Number(number) = self.node(id)
+            && number != 0.0
+        {
+            let length = number.abs();
+            self.measures.insert(id, self.lengths.len());
+            self.lengths.push(Length { length, name: name(length), span });
+        }
+    }
+
+    /// `true` if a number is a length of the text, or made of one.
+    pub fn measures(&self, id: Id) -> bool {
+        self.measures.contains_key(&id)
+    }
+
+    /// Before: a number computed from others. After: it is made of their lengths.
+    pub fn inherit_length(&mut self, id: Id, operands: impl Iterator<Item = Id>) {
+        let lengths = operands.filter_map(|operand| self.measures.get(&operand).copied());
+        if let (Node::Number(_), Some(longest)) = (self.node(id), self.longest_of(lengths)) {
+            self.measures.insert(id, longest);
+        }
+    }
+
+    /// The largest length that expressions marked in `reached` are made of.
+    pub fn longest(&self, reached: &[bool]) -> Option<Length> {
+        let reached = self.measures.iter().filter(|(id, _)| reached.get(id.index()) == Some(&true));
+        self.longest_of(reached.map(|(_, length)| *length)).and_then(|index| self.lengths.get(index)).cloned()
+    }
+
+    /// The longest of `lengths`. Of equal ones the later counts: it names the purpose of an earlier number.
+    fn longest_of(&self, lengths: impl Iterator<Item = usize>) -> Option<usize> {
+        let length = |index: &usize| self.lengths.get(*index).map_or(0.0, |length| length.length);
+        lengths.max_by(|a, b| length(a).total_cmp(&length(b)).then(a.cmp(b)))
     }
 
     /// The expression.

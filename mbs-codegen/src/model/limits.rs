@@ -21,10 +21,7 @@ impl Resolver<'_> {
         let group = self.group(name, "limit")?;
         let [low, value, high] = self.elaborate(Reach::Position, |work| {
             let value = work.value(value);
-            // A bound of 1e9 m that means none does not show the size of the mechanism.
-            let lengths = work.longest.clone();
             let [low, high] = [low, high].map(|part| work.value(part));
-            work.longest = lengths;
             let (low, value, high) = (low?, value?, high?);
             let scalar = [&low, &value, &high].map(|part| work.scalar(part, "a limit", part.span));
             let [low, value, high] = scalar;

@@ -26,6 +26,7 @@ mod order;
 mod orientation;
 mod pins;
 pub mod rates;
+pub mod reference_length;
 pub mod references;
 pub mod resolve;
 pub mod scenes;
@@ -44,6 +45,7 @@ use proc_macro2::Span;
 use crate::symbolic::Binary;
 use dynamics::Dynamics;
 use expression::{Expressions, Id, Node};
+use reference_length::Length;
 use units::Dimension;
 
 /// A mechanism with every name resolved.
@@ -77,31 +79,12 @@ pub struct Model {
     pub outputs: Vec<Output>,
     /// Bodies, forces and first-order states, where the text has any.
     pub dynamics: Option<Dynamics>,
-    /// Largest length among constants and numbers; among guesses and starts too, where the former give none.
-    pub longest: Option<Longest>,
+    /// Largest length among the constants and numbers that determine the reference length.
+    pub longest: Option<Length>,
+    /// Indices of the parameters that determine it.
+    pub lengths: Vec<usize>,
     /// Largest length among guesses and starts.
-    pub longest_guess: Option<Longest>,
-}
-
-/// A length of the text, and its place there.
-#[derive(Clone, Debug)]
-pub struct Longest {
-    /// Its magnitude (m).
-    pub length: f64,
-    /// The constant, `guess of x`, or the number itself.
-    pub name: String,
-    /// Place in the text.
-    pub span: Span,
-}
-
-impl Longest {
-    /// The larger of `known` and a length. Of equal ones the later counts: it names the purpose of an earlier number.
-    fn note(known: &mut Option<Self>, length: f64, name: impl FnOnce() -> String, span: Span) {
-        let length = length.abs();
-        if known.as_ref().is_none_or(|known| known.length <= length) && length > 0.0 {
-            *known = Some(Longest { length, name: name(), span });
-        }
-    }
+    pub longest_guess: Option<Length>,
 }
 
 impl Model {
@@ -111,54 +94,9 @@ impl Model {
         self.functions.is_empty() && self.phases.is_empty()
     }
 
-    /// Before: all rows. After: guesses and starts set the reference length where no constant, number or parameter is a length, or
-    /// where rows have lengths of another origin: of an input, a function, a speed or an area. Elsewhere they do not, for they may be
-    /// far off: a mechanism in millimetres with its guess in metres is the same mechanism.
-    fn settle_reference_length(&mut self) {
-        let declared = self.longest.is_some() || self.lengths().next().is_some();
-        let is_open = self
-            .rows
-            .iter()
-            .any(|row| self.expressions.contain(row.residual, |node| self.brings_length(node)));
-        if let Some(Longest { length, name, span }) =
-            self.longest_guess.clone().filter(|_| is_open || !declared)
-        {
-            Longest::note(&mut self.longest, length, || name, span);
-        }
-    }
-
-    /// `true` if a node brings a length whose size the text does not give: a variable or a call of a declared function.
-    fn brings_length(&self, node: Node) -> bool {
-        match node {
-            Node::Variable(index) => self.variables.get(index).is_some_and(|variable| {
-                let is_length = variable.dimension == Dimension::METRE;
-                variable.dimension.metres() != 0.0 && (!is_length || variable.kind != VariableKind::Parameter)
-            }),
-            Node::Call { function, .. } => self.functions.get(function).is_some_and(|function| {
-                function.dimensions.iter().flatten().any(|dimension| dimension.metres() != 0.0)
-            }),
-            _ => false,
-        }
-    }
-
     /// Fields that keep the phases, in the order of these.
     pub fn phase_fields(&self) -> impl Iterator<Item = &Field> {
         self.fields.iter().filter(|field| field.role == Role::Phase)
-    }
-
-    /// Indices of the parameters that are lengths.
-    pub fn lengths(&self) -> impl Iterator<Item = usize> {
-        let is_length = |variable: &Variable| {
-            variable.kind == VariableKind::Parameter && variable.dimension == Dimension::METRE
-        };
-        let variables = self.variables.iter().enumerate();
-        variables.filter(move |(_, variable)| is_length(variable)).map(|(index, _)| index)
-    }
-
-    /// `true` if some coordinate or row is measured by the reference length.
-    pub fn is_measured_by_length(&self) -> bool {
-        let rows = self.rows.iter().map(|row| row.dimension);
-        self.coordinates.iter().map(|c| c.dimension).chain(rows).any(|dimension| dimension.metres() != 0.0)
     }
 
     /// `true` if a value depends on numbers and parameters alone.

@@ -112,11 +112,8 @@ impl Resolver<'_> {
             reach,
             needs: Reach::Position,
             groups: &self.model.references,
-            longest: self.model.longest.take(),
         };
-        let result = run(&mut work);
-        self.model.longest = work.longest;
-        result
+        run(&mut work)
     }
 
     fn run(&mut self, statements: &[Statement]) {

@@ -78,6 +78,12 @@ impl Dimension {
         f64::from(self.0[0]) / f64::from(WHOLE)
     }
 
+    /// `true` for metres, square metres and so on.
+    pub fn is_power_of_length(self) -> bool {
+        let metres = self.metres();
+        metres > 0.0 && Self::METRE.power(metres) == Some(self)
+    }
+
     fn of_symbol(symbol: &str) -> Option<Self> {
         SYMBOLS
             .iter()

@@ -113,7 +113,6 @@ impl<'a> Places<'a> {
             reach: Reach::Position,
             needs: Reach::Position,
             groups: &[],
-            longest: None,
         })
     }
 

@@ -48,11 +48,11 @@ impl Entry {
     }
 }
 
-/// Lengths whose largest is the reference length, the unit of length of the reference metric. Without any of them it is the
-/// largest guess, or 1 m.
+/// Lengths whose largest is the reference length, the unit of length of the reference metric. They are those of rows and of places
+/// of bodies and forces; where these have none, those of guesses and laws of forces. If all are 0 it is the largest guess, or 1 m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reference {
-    /// The largest length (m) among constants and numbers; among guesses too where rows have lengths of another origin.
+    /// The largest length (m) among constants and numbers; guesses are some where rows have lengths of another origin.
     pub longest: Option<(&'static Entry, f64)>,
     /// Indices of parameters that are lengths.
     pub parameters: &'static [u16],

@@ -250,7 +250,7 @@ fn an_angle_beyond_the_resolution_of_its_type_is_refused() {
 }
 
 mechanism! {
-    /// A double rocker in line at once; far from it something long.
+    /// A double rocker in line at once; far from it a post.
     pub mechanism InLine;
     const L4: m = 4;
     param rod: m = 2;
@@ -258,7 +258,9 @@ mechanism! {
     coord a: rad = 0.3;
     coord b: rad = 0;
     coord c: rad = 0;
+    coord post: m = 1;
     constraint closure { rod*unit(b) + 2m*unit(c) == [L4, 0] + a*1m*unit(0); }
+    constraint distance { post == far; }
     drive crank: a == 0.0*t/1s;
 }
 
@@ -290,7 +292,7 @@ fn a_singular_position_names_what_lengths_are_measured_by() {
     assert_eq!(name(InLine { far: -40.0, ..InLine::default() }), Some(("far", "m")));
     assert!(reference(Angles::<f64>::default()).is_none());
     let entry = InLine::<f64>::default().reference().expect("a constant");
-    assert_eq!((entry.name, <InLine as Mechanism<f64, 3, 3>>::COORDINATES[0].line - entry.line), ("L4", 3));
+    assert_eq!((entry.name, <InLine as Mechanism<f64, 4, 4>>::COORDINATES[0].line - entry.line), ("L4", 3));
 }
 
 #[test]

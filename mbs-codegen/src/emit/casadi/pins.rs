@@ -5,10 +5,9 @@ use std::fmt::Write;
 use crate::emit::casadi::dynamics::or_zero;
 use crate::emit::casadi::variable;
 use crate::equations::{Attribution, On, RowMotion};
+use crate::model::Model;
 use crate::model::dynamics::{Action, Dynamics, Line};
 use crate::model::expression::Id;
-use crate::model::units::Dimension;
-use crate::model::{Model, VariableKind};
 
 /// Before: a text with masses, of which an output asks for forces of pins. After: `pins` holds them, two components a pin.
 ///
@@ -21,10 +20,8 @@ pub fn sums(model: &Model, dynamics: &Dynamics, attribution: &Attribution, text:
         "    bodies, gravity, joints, acting, length = [], [], [], [], ca.SX({:?})",
         model.longest.as_ref().map_or(0.0, |longest| longest.length)
     );
-    for (index, variable) in model.variables.iter().enumerate() {
-        if variable.kind == VariableKind::Parameter && variable.dimension == Dimension::METRE {
-            let _ = writeln!(text, "    length = ca.fmax(length, ca.fabs(v[{index}]))");
-        }
+    for index in &model.lengths {
+        let _ = writeln!(text, "    length = ca.fmax(length, ca.fabs(v[{index}]))");
     }
     for body in &dynamics.bodies {
         let (inertia, angle) = match body.in_plane() {

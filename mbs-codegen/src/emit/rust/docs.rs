@@ -123,11 +123,11 @@ fn reference(model: &Model, lines: &mut Vec<String>) {
         return;
     }
     let longest = model.longest.iter().map(|longest| format!("`{}` ({} m)", longest.name, longest.length));
-    let parameters = model.lengths().filter_map(|index| model.variables.get(index));
+    let parameters = model.lengths.iter().filter_map(|index| model.variables.get(*index));
     let parameters = parameters.map(|parameter| format!("`{}`", parameter.name));
     let candidates: Vec<String> = longest.chain(parameters).collect();
     lines.push(match candidates.as_slice() {
-        [] => "Reference length: 1 m, for the text has no length.".into(),
+        [] => "Reference length: 1 m, for no place, row, law or guess has a length.".into(),
         [one] => format!("Reference length: {one}."),
         _ => format!("Reference length: the largest of {}.", candidates.join(", ")),
     });

@@ -13,8 +13,9 @@ use crate::emit::rust::functions::Bodies;
 use crate::emit::rust::generics::Generics;
 use crate::emit::rust::scenes;
 use crate::emit::rust::view::coordinates_view;
+use crate::model::reference_length::Length;
 use crate::model::scenes::{Scene, Scenes};
-use crate::model::{Function, Longest, Model, Role};
+use crate::model::{Function, Model, Role};
 use crate::syntax::Text;
 
 /// Before: bodies of all functions of all scenes. After: everything that the user's module gets.
@@ -505,13 +506,13 @@ fn turning_inputs(model: &Model) -> Option<TokenStream> {
 
 /// Sources of the reference length, where something is measured by it.
 fn reference(model: &Model, runtime: &TokenStream) -> Option<TokenStream> {
-    let parameters: Vec<u16> = model.lengths().filter_map(|index| u16::try_from(index).ok()).collect();
+    let parameters: Vec<u16> = model.lengths.iter().filter_map(|index| u16::try_from(*index).ok()).collect();
     if !model.is_measured_by_length() || (model.longest.is_none() && parameters.is_empty()) {
         return None;
     }
     let longest = match &model.longest {
         None => quote! { ::core::option::Option::None },
-        Some(Longest { length, name, span }) => {
+        Some(Length { length, name, span }) => {
             let line = quote_spanned!(*span=> ::core::line!());
             quote! {
                 ::core::option::Option::Some((
