@@ -216,7 +216,8 @@ fn implementations(text: &Text, scenes: &Scenes, part: &Part<'_>) -> TokenStream
     }
 }
 
-/// Coordinates and multipliers beyond which methods with dense matrices of all of them leave no room on the stack.
+/// Coordinates and multipliers beyond which methods with dense matrices of all of them leave no room on the stack: the runtime's
+/// `Radau5::MOST_UNKNOWNS`, with which `tests/house/tests/shared_numbers.rs` compares it.
 const LARGE: usize = 120;
 
 /// `impl Reveal`: the sizes and the traits of a scene in double precision.

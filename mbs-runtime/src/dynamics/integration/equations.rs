@@ -4,7 +4,7 @@ use crate::dynamics::formulations::singular::passage::Passage;
 use crate::dynamics::integration::phases::{ORDER_OF_INTEGRALS, Phased, advanced};
 use crate::dynamics::integration::radau;
 use crate::dynamics::integration::radau::slopes::Slopes;
-use crate::dynamics::integration::radau::{MOST_UNKNOWNS, newton};
+use crate::dynamics::integration::radau::{Radau5, newton};
 use crate::dynamics::integrators::embedded::Embedded;
 use crate::dynamics::integrators::equation::{Collocated, Collocation, Equation, ErrorNorm};
 use crate::dynamics::integrators::event::{Dense, Scrutiny};
@@ -330,7 +330,7 @@ where
     ) -> Result<Collocated<Self::State>, Failure> {
         const {
             assert!(
-                N + M <= MOST_UNKNOWNS,
+                N + M <= Radau5::MOST_UNKNOWNS,
                 "an implicit step takes at most 120 coordinates and rows together: its matrices are on the stack"
             );
         }

@@ -25,7 +25,7 @@ use crate::tolerances::motion;
 /// If they do not converge, as across the kink of smoothed friction, the step is made smaller. A step of fixed size is then
 /// taken in parts, and its iteration ends at 1e-10 in the reference metric.
 ///
-/// The factors are on the stack, see [`Radau5::stack`]; N + M above 120 does not compile:
+/// The factors are on the stack, see [`Radau5::stack`]; N + M above [`Radau5::MOST_UNKNOWNS`] does not compile:
 ///
 /// ```compile_fail
 /// use mbs_runtime::dynamics::{Explicit, Projection, Radau5, Simulation};
@@ -43,9 +43,6 @@ use crate::tolerances::motion;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Radau5;
 
-/// Most coordinates and rows together: the matrices of a step then take 1.5 MB of stack in double precision.
-pub(crate) const MOST_UNKNOWNS: usize = 120;
-
 /// Ratio of corrections that the next step may be expected to have: it grows with the step.
 const CONTRACTION: f64 = 0.5;
 
@@ -62,6 +59,9 @@ pub(crate) fn of_fixed_steps<R: Real>() -> Tolerance<R> {
 }
 
 impl Radau5 {
+    /// Most coordinates and rows together: the matrices of a step then take 1.5 MB of stack in double precision.
+    pub const MOST_UNKNOWNS: usize = 120;
+
     /// Bytes of stack for the matrices of a step, for a mechanism `S` of N coordinates and M rows: slopes of the
     /// accelerations, the real and the complex factors.
     pub const fn stack<S, R, const N: usize, const M: usize>() -> usize
