@@ -41,11 +41,7 @@ impl<R: Real> BlockSolver<R> for Budgeted<R> {
     ) -> ([R; K], R::Lanes<Outcome>) {
         let extent = self.extent;
         let mut best = Best { x, worst: Worst::none(), closes: false, any: false };
-        let mut watched = |x: &[R; K]| {
-            let (residuals, jacobian) = evaluate(x);
-            best.meets(block, extent, x, &residuals, &jacobian);
-            (residuals, jacobian)
-        };
+        let mut watched = |x: &[R; K]| best.meets(block, extent, x, evaluate(x));
         let steps = self.budget.newton.saturating_sub(1);
         let first = newton::<R, K, F>(block, x, true, extent, steps, &mut watched);
         if first.converged {
@@ -56,11 +52,7 @@ impl<R: Real> BlockSolver<R> for Budgeted<R> {
         // The last point of Newton's method was evaluated, not judged.
         let fallback = !best.closes && self.budget.fallback > 0;
         if fallback {
-            let mut watched = |x: &[R; K]| {
-                let (residuals, jacobian) = evaluate(x);
-                best.meets(block, extent, x, &residuals, &jacobian);
-                (residuals, jacobian)
-            };
+            let mut watched = |x: &[R; K]| best.meets(block, extent, x, evaluate(x));
             let second = levenberg_marquardt(block, x, true, extent, self.budget.fallback, &mut watched);
             evaluations = evaluations.saturating_add(second.evaluations);
         }
@@ -77,11 +69,7 @@ impl<R: Real> BlockSolver<R> for Budgeted<R> {
     ) -> ([R; K], R::Lanes<Outcome>) {
         let extent = self.extent;
         let mut best = Best { x, worst: Worst::none(), closes: false, any: false };
-        let mut watched = |x: &[R; K]| {
-            let (residuals, jacobian) = evaluate(x);
-            best.meets(block, extent, x, &residuals, &jacobian);
-            (residuals, jacobian)
-        };
+        let mut watched = |x: &[R; K]| best.meets(block, extent, x, evaluate(x));
         let steps = self.budget.newton.saturating_sub(1);
         let first = gauss_newton((block, widths), x, true, extent, steps, &mut watched);
         if first.attempt.converged || first.contradicts {
@@ -91,11 +79,7 @@ impl<R: Real> BlockSolver<R> for Budgeted<R> {
         let mut evaluations = first.attempt.evaluations;
         let fallback = !best.closes && self.budget.fallback > 0;
         if fallback {
-            let mut watched = |x: &[R; K]| {
-                let (residuals, jacobian) = evaluate(x);
-                best.meets(block, extent, x, &residuals, &jacobian);
-                (residuals, jacobian)
-            };
+            let mut watched = |x: &[R; K]| best.meets(block, extent, x, evaluate(x));
             let second = levenberg_marquardt(block, x, true, extent, self.budget.fallback, &mut watched);
             evaluations = evaluations.saturating_add(second.evaluations);
         }
@@ -133,24 +117,24 @@ impl<R: Real, const K: usize> Best<R, K> {
         (self.x, R::per_lane(|_| outcome))
     }
 
+    /// Takes up the point `x` with its residuals and Jacobian, and returns these.
     fn meets<const M: usize>(
         &mut self,
         block: &Block<R, K, M>,
         extent: R,
         x: &[R; K],
-        residuals: &[R; M],
-        jacobian: &[[R; K]; M],
-    ) {
-        if !all_finite(residuals, jacobian) {
-            return;
+        (residuals, jacobian): ([R; M], [[R; K]; M]),
+    ) -> ([R; M], [[R; K]; M]) {
+        if all_finite(&residuals, &jacobian) {
+            let tolerances = required(&block.row_scales, x, &jacobian);
+            let worst = Worst::of_block(block, &residuals, &tolerances);
+            if !self.any || worst.ratio < self.worst.ratio {
+                let allowances = outer_rounding(extent, &block.coordinate_scales, &jacobian);
+                let closes = within(&residuals, &tolerances, &allowances);
+                *self = Best { x: *x, worst, closes, any: true };
+            }
         }
-        let tolerances = required(&block.row_scales, x, jacobian);
-        let worst = Worst::of_block(block, residuals, &tolerances);
-        if !self.any || worst.ratio < self.worst.ratio {
-            let allowances = outer_rounding(extent, &block.coordinate_scales, jacobian);
-            let closes = within(residuals, &tolerances, &allowances);
-            *self = Best { x: *x, worst, closes, any: true };
-        }
+        (residuals, jacobian)
     }
 }
 

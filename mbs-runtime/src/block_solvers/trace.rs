@@ -19,6 +19,8 @@ pub trait Trace<T: Scalar> {
         residuals: &[T; M],
         jacobian: &[[T; K]; M],
     );
+    /// The solver asked for both positions of that block by its formula, and ends at `taken` (K).
+    fn formula<const K: usize>(&mut self, _block: &Block<T, K>, _roots: &Roots<T, K>, _taken: &[T; K]) {}
     /// The block ended, lane by lane.
     fn end(&mut self, outcome: &T::Lanes<Outcome>);
 }
@@ -44,21 +46,28 @@ impl<'a, S, L> Traced<'a, S, L> {
     }
 }
 
+/// `evaluate` of a block that begins, with each of its results told to `trace`.
+fn told<T: Scalar, L: Trace<T>, const K: usize, const M: usize>(
+    trace: &mut L,
+    block: &Block<T, K, M>,
+    mut evaluate: impl FnMut(&[T; K]) -> ([T; M], [[T; K]; M]),
+) -> impl FnMut(&[T; K]) -> ([T; M], [[T; K]; M]) {
+    trace.block(block);
+    move |x| {
+        let (residuals, jacobian) = evaluate(x);
+        trace.iterate(block, x, &residuals, &jacobian);
+        (residuals, jacobian)
+    }
+}
+
 impl<T: Scalar, S: BlockSolver<T>, L: Trace<T>> BlockSolver<T> for Traced<'_, S, L> {
     fn solve<const K: usize, F: Factorization<T, K>>(
         &mut self,
         block: &Block<T, K>,
         x: [T; K],
-        mut evaluate: impl FnMut(&[T; K]) -> ([T; K], [[T; K]; K]),
+        evaluate: impl FnMut(&[T; K]) -> ([T; K], [[T; K]; K]),
     ) -> ([T; K], T::Lanes<Outcome>) {
-        self.trace.block(block);
-        let trace = &mut *self.trace;
-        let watched = |x: &[T; K]| {
-            let (residuals, jacobian) = evaluate(x);
-            trace.iterate(block, x, &residuals, &jacobian);
-            (residuals, jacobian)
-        };
-        let (x, outcome) = self.solver.solve::<K, F>(block, x, watched);
+        let (x, outcome) = self.solver.solve::<K, F>(block, x, told(self.trace, block, evaluate));
         self.trace.end(&outcome);
         (x, outcome)
     }
@@ -67,17 +76,11 @@ impl<T: Scalar, S: BlockSolver<T>, L: Trace<T>> BlockSolver<T> for Traced<'_, S,
         &mut self,
         block: &Block<T, K>,
         x: [T; K],
-        mut evaluate: impl FnMut(&[T; K]) -> ([T; K], [[T; K]; K]),
+        evaluate: impl FnMut(&[T; K]) -> ([T; K], [[T; K]; K]),
         holds: impl FnMut(&[T; K]) -> T::Mask,
     ) -> ([T; K], T::Lanes<Outcome>) {
-        self.trace.block(block);
-        let trace = &mut *self.trace;
-        let watched = |x: &[T; K]| {
-            let (residuals, jacobian) = evaluate(x);
-            trace.iterate(block, x, &residuals, &jacobian);
-            (residuals, jacobian)
-        };
-        let (x, outcome) = self.solver.solve_branched::<K, F>(block, x, watched, holds);
+        let evaluate = told(self.trace, block, evaluate);
+        let (x, outcome) = self.solver.solve_branched::<K, F>(block, x, evaluate, holds);
         self.trace.end(&outcome);
         (x, outcome)
     }
@@ -86,18 +89,17 @@ impl<T: Scalar, S: BlockSolver<T>, L: Trace<T>> BlockSolver<T> for Traced<'_, S,
         &mut self,
         block: &Block<T, K>,
         x: [T; K],
-        mut evaluate: impl FnMut(&[T; K]) -> ([T; K], [[T; K]; K]),
+        evaluate: impl FnMut(&[T; K]) -> ([T; K], [[T; K]; K]),
         holds: impl FnMut(&[T; K]) -> T::Mask,
         roots: impl FnOnce(&[T; K]) -> Roots<T, K>,
     ) -> ([T; K], T::Lanes<Outcome>) {
-        self.trace.block(block);
-        let trace = &mut *self.trace;
-        let watched = |x: &[T; K]| {
-            let (residuals, jacobian) = evaluate(x);
-            trace.iterate(block, x, &residuals, &jacobian);
-            (residuals, jacobian)
-        };
-        let (x, outcome) = self.solver.solve_closed::<K, F>(block, x, watched, holds, roots);
+        let evaluate = told(self.trace, block, evaluate);
+        let mut asked = None;
+        let roots = |x: &[T; K]| *asked.insert(roots(x));
+        let (x, outcome) = self.solver.solve_closed::<K, F>(block, x, evaluate, holds, roots);
+        if let Some(roots) = asked {
+            self.trace.formula(block, &roots, &x);
+        }
         self.trace.end(&outcome);
         (x, outcome)
     }
@@ -107,17 +109,11 @@ impl<T: Scalar, S: BlockSolver<T>, L: Trace<T>> BlockSolver<T> for Traced<'_, S,
         block: &Block<T, K, M>,
         widths: &Widths<T, M>,
         x: [T; K],
-        mut evaluate: impl FnMut(&[T; K]) -> ([T; M], [[T; K]; M]),
+        evaluate: impl FnMut(&[T; K]) -> ([T; M], [[T; K]; M]),
         holds: impl FnMut(&[T; K]) -> T::Mask,
     ) -> ([T; K], T::Lanes<Outcome>) {
-        self.trace.block(block);
-        let trace = &mut *self.trace;
-        let watched = |x: &[T; K]| {
-            let (residuals, jacobian) = evaluate(x);
-            trace.iterate(block, x, &residuals, &jacobian);
-            (residuals, jacobian)
-        };
-        let (x, outcome) = self.solver.solve_redundant::<K, M>(block, widths, x, watched, holds);
+        let evaluate = told(self.trace, block, evaluate);
+        let (x, outcome) = self.solver.solve_redundant::<K, M>(block, widths, x, evaluate, holds);
         self.trace.end(&outcome);
         (x, outcome)
     }

@@ -1,8 +1,6 @@
 //! Blocks that the assembly takes from formulas of both their positions, where plain Newton would iterate.
 
-use mbs_runtime::{
-    AssemblySolver, Block, BlockSolver, Factorization, Kinematic, Outcome, Roots, Widths, extent,
-};
+use mbs_runtime::{AssemblySolver, Block, Kinematic, Outcome, Roots, Trace, Traced, extent};
 
 /// A block with the positions that formulas give it.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,63 +23,34 @@ pub fn formulas<S: Kinematic<f64, N, M>, const N: usize, const M: usize>(
     mechanism.start_phases(guess, t);
     let parameters = mechanism.parameters();
     let extent = extent(guess, &mechanism.coordinate_scales(&parameters));
-    let mut watched = Watched { solver: AssemblySolver::new(extent), formulas: Vec::new() };
-    mechanism.solve_blocks(&parameters, &mut guess.clone(), t, &mut watched);
-    watched.formulas
+    let mut record = Record(Vec::new());
+    let mut solver = Traced::new(AssemblySolver::new(extent), &mut record);
+    mechanism.solve_blocks(&parameters, &mut guess.clone(), t, &mut solver);
+    record.0
 }
 
-/// The assembly's solver, with a record of its formulas.
-struct Watched {
-    solver: AssemblySolver<f64>,
-    formulas: Vec<Formula>,
-}
+/// Formulas that the assembly's solver evaluated.
+struct Record(Vec<Formula>);
 
-impl BlockSolver<f64> for Watched {
-    fn solve<const K: usize, F: Factorization<f64, K>>(
+impl Trace<f64> for Record {
+    fn block<const K: usize, const M: usize>(&mut self, _: &Block<f64, K, M>) {}
+
+    fn iterate<const K: usize, const M: usize>(
         &mut self,
-        block: &Block<f64, K>,
-        x: [f64; K],
-        evaluate: impl FnMut(&[f64; K]) -> ([f64; K], [[f64; K]; K]),
-    ) -> ([f64; K], [Outcome; 1]) {
-        self.solver.solve::<K, F>(block, x, evaluate)
+        _: &Block<f64, K, M>,
+        _: &[f64; K],
+        _: &[f64; M],
+        _: &[[f64; K]; M],
+    ) {
     }
 
-    fn solve_branched<const K: usize, F: Factorization<f64, K>>(
-        &mut self,
-        block: &Block<f64, K>,
-        x: [f64; K],
-        evaluate: impl FnMut(&[f64; K]) -> ([f64; K], [[f64; K]; K]),
-        holds: impl FnMut(&[f64; K]) -> bool,
-    ) -> ([f64; K], [Outcome; 1]) {
-        self.solver.solve_branched::<K, F>(block, x, evaluate, holds)
-    }
-
-    fn solve_closed<const K: usize, F: Factorization<f64, K>>(
-        &mut self,
-        block: &Block<f64, K>,
-        x: [f64; K],
-        evaluate: impl FnMut(&[f64; K]) -> ([f64; K], [[f64; K]; K]),
-        holds: impl FnMut(&[f64; K]) -> bool,
-        roots: impl FnOnce(&[f64; K]) -> Roots<f64, K>,
-    ) -> ([f64; K], [Outcome; 1]) {
-        let both = roots(&x);
-        let (taken, outcome) = self.solver.solve_closed::<K, F>(block, x, evaluate, holds, |_| both);
-        self.formulas.push(Formula {
+    fn formula<const K: usize>(&mut self, block: &Block<f64, K>, roots: &Roots<f64, K>, taken: &[f64; K]) {
+        self.0.push(Formula {
             coordinates: block.coordinates.iter().map(|index| usize::from(*index)).collect(),
-            positions: both.real.then(|| both.x.map(|x| x.to_vec())),
+            positions: roots.real.then(|| roots.x.map(|x| x.to_vec())),
             taken: taken.to_vec(),
         });
-        (taken, outcome)
     }
 
-    fn solve_redundant<const K: usize, const M: usize>(
-        &mut self,
-        block: &Block<f64, K, M>,
-        widths: &Widths<f64, M>,
-        x: [f64; K],
-        evaluate: impl FnMut(&[f64; K]) -> ([f64; M], [[f64; K]; M]),
-        holds: impl FnMut(&[f64; K]) -> bool,
-    ) -> ([f64; K], [Outcome; 1]) {
-        self.solver.solve_redundant::<K, M>(block, widths, x, evaluate, holds)
-    }
+    fn end(&mut self, _: &[Outcome; 1]) {}
 }
