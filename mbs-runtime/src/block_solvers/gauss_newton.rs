@@ -5,7 +5,7 @@ use crate::block_solvers::levenberg_marquardt::{OTHER_STARTS, TRIALS, levenberg_
 use crate::block_solvers::multistart::displaced;
 use crate::block_solvers::newton::{Attempt, ITERATIONS, all_finite, capped, largest_ratio, within};
 use crate::linear_algebra::rectangular::Orthogonal;
-use crate::linear_algebra::vectors::select;
+use crate::linear_algebra::vectors::{select, times};
 use crate::mechanism::Block;
 use crate::mechanism::outcome::Outcome;
 use crate::mechanism::widths::Widths;
@@ -84,7 +84,7 @@ pub(crate) fn gauss_newton<T: Scalar, const K: usize, const M: usize>(
         }
         let (factors, _) = Orthogonal::factorize(&jacobian, &block.row_scales, &block.coordinate_scales);
         let step = factors.solve(&residuals.map(|r| -r));
-        let change = product(&jacobian, &step);
+        let change = times(&jacobian, &step);
         let mut allowances = outer_rounding(extent, &block.coordinate_scales, &jacobian);
         allowances.iter_mut().zip(&granted).for_each(|(allowed, granted)| *allowed = *allowed + *granted);
         let settled = open & within(&change, &tolerances, &none);
@@ -172,15 +172,6 @@ pub(crate) fn search<T: Scalar, const K: usize, const M: usize>(
         done = done | right;
     }
     (found, plain)
-}
-
-/// `jacobian` times `step`.
-pub(crate) fn product<T: Scalar, const K: usize, const M: usize>(
-    jacobian: &[[T; K]; M],
-    step: &[T; K],
-) -> [T; M] {
-    jacobian
-        .map(|row| row.iter().zip(step).fold(T::constant(0.0), |sum, (entry, change)| sum + *entry * *change))
 }
 
 #[cfg(test)]

@@ -1,9 +1,8 @@
 //! Agreement of redundant rows in their rates.
 
-use crate::block_solvers::gauss_newton::product;
 use crate::failure::conflicting_rows::ConflictingRows;
 use crate::failure::{DerivativeOrder, Failure, FailureKind};
-use crate::linear_algebra::vectors::largest_difference;
+use crate::linear_algebra::vectors::{largest_difference, times};
 use crate::mechanism::Mechanism;
 use crate::mechanism::widths::largest_width;
 use crate::scalar::number::Real;
@@ -73,7 +72,7 @@ fn rate_failure<S: Mechanism<R, N, M>, R: Real, const N: usize, const M: usize>(
     t: R,
 ) -> Option<Failure> {
     let (row_scales, scales) = (mechanism.row_scales(parameters), mechanism.coordinate_scales(parameters));
-    let mut open = product(&mechanism.phi_q(parameters, position), rates.rates);
+    let mut open = times(&mechanism.phi_q(parameters, position), rates.rates);
     open.iter_mut().zip(rates.right).zip(&row_scales).for_each(|((open, right), scale)| {
         *open = ((*open - *right) / *scale).abs();
     });

@@ -57,6 +57,12 @@ pub(crate) fn weights<T: Scalar, const N: usize>(scales: &[T; N]) -> [T; N] {
     weights
 }
 
-pub(crate) fn dot<R: Real, const N: usize>(a: &[R; N], b: &[R; N]) -> R {
-    a.iter().zip(b).fold(R::constant(0.0), |sum, (a, b)| sum + *a * *b)
+/// Scalar product, summed from 0 in the order of the components.
+pub(crate) fn dot<T: Scalar, const N: usize>(a: &[T; N], b: &[T; N]) -> T {
+    a.iter().zip(b).fold(T::constant(0.0), |sum, (a, b)| sum + *a * *b)
+}
+
+/// `matrix` (M rows of N) times `x`: M, each component a [`dot`].
+pub(crate) fn times<T: Scalar, const N: usize, const M: usize>(matrix: &[[T; N]; M], x: &[T; N]) -> [T; M] {
+    matrix.map(|row| dot(&row, x))
 }

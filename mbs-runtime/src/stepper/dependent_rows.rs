@@ -1,5 +1,6 @@
 //! Rank of the constraints at the present position, and the rows that follow from others.
 
+use crate::linear_algebra::vectors::dot;
 use crate::mechanism::{Entry, Kinematic};
 use crate::scalar::number::Real;
 use crate::stepper::Stepper;
@@ -72,8 +73,4 @@ fn remainder<R: Real, const N: usize>(row: [R; N], basis: &[[R; N]; N]) -> Optio
 pub(crate) fn unit<R: Real, const N: usize>(vector: [R; N], least: R) -> Option<[R; N]> {
     let length = dot(&vector, &vector).sqrt();
     (length > least && length.is_finite()).then(|| vector.map(|entry| entry / length))
-}
-
-fn dot<R: Real, const N: usize>(a: &[R; N], b: &[R; N]) -> R {
-    a.iter().zip(b).fold(R::constant(0.0), |sum, (a, b)| sum + *a * *b)
 }

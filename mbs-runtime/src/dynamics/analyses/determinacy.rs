@@ -6,6 +6,7 @@
 use crate::dynamics::linear_systems::kkt::{Factors, System};
 use crate::dynamics::model::metric::Metric;
 use crate::failure::Failure;
+use crate::linear_algebra::vectors::dot;
 use crate::mechanism::dynamic::{Dynamic, DynamicState};
 use crate::mechanism::{Entry, Mechanism};
 use crate::scalar::number::Real;
@@ -151,8 +152,4 @@ impl<R: Real, const M: usize> Determinacy<R, M> {
             }
         }
     }
-}
-
-fn dot<R: Real, const M: usize>(a: &[R; M], b: &[R; M]) -> R {
-    a.iter().zip(b).fold(R::constant(0.0), |sum, (a, b)| sum + *a * *b)
 }

@@ -11,6 +11,7 @@ use crate::dynamics::model::instant::Instant;
 use crate::dynamics::model::method::require_slopes;
 use crate::dynamics::model::metric::Metric;
 use crate::failure::Failure;
+use crate::linear_algebra::vectors::{dot, times};
 use crate::mechanism::dynamic::{Dynamic, StateSlope};
 use crate::scalar::number::Real;
 use crate::tolerances::{forces, singular};
@@ -275,12 +276,4 @@ fn reduced<R: Real, const N: usize>(
         }
     }
     reduced
-}
-
-fn dot<R: Real, const N: usize>(a: &[R; N], b: &[R; N]) -> R {
-    a.iter().zip(b).fold(R::constant(0.0), |sum, (a, b)| sum + *a * *b)
-}
-
-fn times<R: Real, const N: usize>(matrix: &[[R; N]; N], x: &[R; N]) -> [R; N] {
-    matrix.map(|row| dot(&row, x))
 }

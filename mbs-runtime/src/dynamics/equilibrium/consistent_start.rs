@@ -6,6 +6,7 @@ use crate::dynamics::linear_systems::kkt::{Factors, System};
 use crate::dynamics::model::metric::{Metric, worse};
 use crate::dynamics::model::{Counts, Model};
 use crate::failure::{Failure, FailureKind, checks};
+use crate::linear_algebra::vectors::dot;
 use crate::mechanism::Entry;
 use crate::mechanism::dynamic::Dynamic;
 use crate::scalar::number::Real;
@@ -178,7 +179,6 @@ fn require_decided<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>
     let factors = system.factorize_rank_revealing(singular::DOUBTFUL.of(), S::COORDINATES, t)?;
     let mut gamma = model.mechanism.gamma(model.parameters, &position, &y.qd);
     gamma.iter_mut().zip(factors.row_scales()).for_each(|(part, scale)| *part = *part / *scale);
-    let dot = |a: &[R; M], b: &[R; M]| a.iter().zip(b).fold(zero, |sum, (a, b)| sum + *a * *b);
     let speed = model.largest(&y.qd);
     let allowed = singular::UNANSWERED.of::<R>() * dot(&gamma, &gamma).sqrt()
         + singular::DOUBTFUL.of::<R>() * speed * speed;
@@ -196,7 +196,6 @@ fn weak_combination<R: Real, const N: usize, const M: usize>(
     without: &Factors<R, N, M>,
 ) -> [R; M] {
     let zero = R::constant(0.0);
-    let dot = |a: &[R; M], b: &[R; M]| a.iter().zip(b).fold(zero, |sum, (a, b)| sum + *a * *b);
     let (known, mut longest) = (factors.idle_shares(), (zero, [zero; M]));
     for share in without.idle_shares() {
         let own = known.iter().fold(share, |own, known| own.plus(-dot(&own, known), &[1.0], [known]));

@@ -6,7 +6,7 @@ use crate::dynamics::linear_systems::tangent::Tangent;
 use crate::dynamics::model::Model;
 use crate::failure::Failure;
 use crate::linear_algebra::orthogonal::minimum_norm;
-use crate::linear_algebra::vectors::dot;
+use crate::linear_algebra::vectors::{dot, times};
 use crate::mechanism::dynamic::Dynamic;
 use crate::scalar::number::Real;
 use crate::tolerances::{forces, singular};
@@ -167,8 +167,4 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         let system = System::new(&self.metric.mass(), &phi_q, self.metric);
         system.factorize_rank_revealing(singular::DEPENDENT.of(), S::COORDINATES, t)
     }
-}
-
-pub(crate) fn times<R: Real, const N: usize>(matrix: &[[R; N]; N], x: &[R; N]) -> [R; N] {
-    matrix.map(|row| dot(&row, x))
 }

@@ -1,10 +1,10 @@
 //! Newton's method for a rest under integral controls: coordinates, multipliers and the states that integrate, solved together.
 
-use crate::dynamics::equilibrium::free_stiffness::{Answer, FreeStiffness, times};
+use crate::dynamics::equilibrium::free_stiffness::{Answer, FreeStiffness};
 use crate::dynamics::integrators::vector::{State, Vector};
 use crate::dynamics::linear_systems::integrals::Integrals;
 use crate::dynamics::model::Model;
-use crate::linear_algebra::vectors::dot;
+use crate::linear_algebra::vectors::{dot, times};
 use crate::mechanism::dynamic::{Dynamic, StateSlope};
 use crate::scalar::number::Real;
 use crate::tolerances::forces;

@@ -11,6 +11,7 @@ use crate::dynamics::model::Model;
 use crate::failure::{Failure, FailureKind, checks};
 use crate::linear_algebra::factorization::Factorization;
 use crate::linear_algebra::lu::Lu;
+use crate::linear_algebra::vectors::dot;
 use crate::mechanism::dynamic::Dynamic;
 use crate::mechanism::normal_forces::{NormalForces, Term, WithNormalForces};
 use crate::scalar::number::Real;
@@ -37,10 +38,6 @@ impl<R: Real, const N: usize, const M: usize, const K: usize> NormalForces<R, N,
         }
         values
     }
-}
-
-fn dot<R: Real, const L: usize>(a: &[R; L], b: &[R; L]) -> R {
-    a.iter().zip(b).fold(R::constant(0.0), |sum, (a, b)| sum + *a * *b)
 }
 
 /// Multipliers that balance the forces which depend on them.

@@ -5,6 +5,7 @@ use crate::dynamics::linear_systems::kkt::{Factors, System};
 use crate::dynamics::model::Model;
 use crate::failure::Failure;
 use crate::linear_algebra::orthogonal::pivot_order;
+use crate::linear_algebra::vectors::times;
 use crate::mechanism::dynamic::Dynamic;
 use crate::scalar::number::Real;
 use crate::tolerances::singular;
@@ -82,7 +83,7 @@ impl<'a, S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Variation
     pub(crate) fn motion(&self, index: usize) -> FreeMotion<R, N> {
         let mut place = [R::constant(0.0); N];
         place.iter_mut().skip(index).take(1).for_each(|component| *component = R::constant(1.0));
-        let carried = self.dependent(&product(&self.phi_q, &place).map(|open| -open));
+        let carried = self.dependent(&times(&self.phi_q, &place).map(|open| -open));
         place = place.plus(R::constant(1.0), &[1.0], [&carried]);
         let rate = self.dependent(&self.rows_rate(&self.y.qd, &place).map(|open| -open));
         let mixed = self.model.mechanism.phi_qt_qd(self.model.parameters, self.position, &place);
@@ -133,8 +134,4 @@ impl<'a, S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Variation
         let parts = x.iter().zip(&self.model.metric.coordinates).map(|(x, scale)| (*x / *scale).abs());
         parts.fold(R::constant(0.0), |largest, part| largest.max(part))
     }
-}
-
-fn product<R: Real, const N: usize, const M: usize>(matrix: &[[R; N]; M], x: &[R; N]) -> [R; M] {
-    matrix.map(|row| row.iter().zip(x).fold(R::constant(0.0), |sum, (entry, x)| sum + *entry * *x))
 }

@@ -1,6 +1,7 @@
 //! The system where rows are dependent or nearly so: Φ_q rank-revealing, M on the motions that it leaves free.
 
 use crate::linear_algebra::orthogonal::Reflection;
+use crate::linear_algebra::vectors::times;
 use crate::scalar::number::Real;
 use crate::tolerances::singular;
 
@@ -314,10 +315,6 @@ impl<R: Real, const N: usize, const M: usize> NullSpace<R, N, M> {
         }
         unique
     }
-}
-
-fn times<R: Real, const N: usize>(matrix: &[[R; N]; N], x: &[R; N]) -> [R; N] {
-    matrix.map(|row| row.iter().zip(x).fold(R::constant(0.0), |sum, (a, b)| sum + *a * *b))
 }
 
 fn difference<R: Real, const N: usize>(a: &[R; N], b: &[R; N]) -> [R; N] {

@@ -5,6 +5,7 @@ use crate::dynamics::linear_systems::kkt::System;
 use crate::dynamics::model::{Counts, Model};
 use crate::failure::conflicting_rows::ConflictingRows;
 use crate::failure::{DerivativeOrder, Failure, FailureKind};
+use crate::linear_algebra::vectors::dot;
 use crate::mechanism::dynamic::Dynamic;
 use crate::scalar::number::Real;
 use crate::tolerances::{rows, singular};
@@ -69,8 +70,4 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
             .at(t.to_f64()),
         )
     }
-}
-
-fn dot<R: Real, const M: usize>(a: &[R; M], b: &[R; M]) -> R {
-    a.iter().zip(b).fold(R::constant(0.0), |sum, (a, b)| sum + *a * *b)
 }

@@ -6,7 +6,7 @@ use crate::dynamics::linear_systems::kkt::Factors;
 use crate::dynamics::linear_systems::tangent::Tangent;
 use crate::dynamics::model::Model;
 use crate::failure::Failure;
-use crate::linear_algebra::vectors::dot;
+use crate::linear_algebra::vectors::{dot, times};
 use crate::mechanism::dynamic::Dynamic;
 use crate::scalar::number::Real;
 
@@ -94,7 +94,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> About<'_, S, 
         let (mut x, mut change) = self.factors.solve(&force, rows);
         if S::FORCE_USES_MULTIPLIERS {
             for _ in 0..ROUNDS_OF_FRICTION {
-                let rubbing = self.friction.map(|row| dot(&row, &change));
+                let rubbing = times(&self.friction, &change);
                 let force = force.plus(R::constant(1.0), &[1.0], [&rubbing]);
                 (x, change) = self.factors.solve(&force, rows);
             }

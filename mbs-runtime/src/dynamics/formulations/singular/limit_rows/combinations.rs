@@ -5,6 +5,7 @@ use crate::dynamics::integrators::vector::State;
 use crate::dynamics::linear_systems::kkt::{Factors, System};
 use crate::dynamics::model::{Model, Solved};
 use crate::failure::Failure;
+use crate::linear_algebra::vectors::dot;
 use crate::mechanism::dynamic::Dynamic;
 use crate::scalar::number::Real;
 use crate::tolerances::singular;
@@ -278,8 +279,4 @@ fn turn_pairs<R: Real, const L: usize>((cosine, sine): (R, R), one: &mut [R; L],
 
 fn length<R: Real, const L: usize>(x: &[R; L]) -> R {
     dot(x, x).sqrt()
-}
-
-pub(super) fn dot<R: Real, const L: usize>(a: &[R; L], b: &[R; L]) -> R {
-    a.iter().zip(b).fold(R::constant(0.0), |sum, (a, b)| sum + *a * *b)
 }

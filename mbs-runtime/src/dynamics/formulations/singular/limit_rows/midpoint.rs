@@ -5,10 +5,11 @@
 //! q̈ there the mean of both ends', that is 2 rᵀq̈ = c − rᵀq̈₀: r and c half way, q̈₀ that of the singular position, where the limit is
 //! exact. r is the direction of the reaction to the same order.
 
-use crate::dynamics::formulations::singular::limit_rows::combinations::{Weak, dot};
+use crate::dynamics::formulations::singular::limit_rows::combinations::Weak;
 use crate::dynamics::formulations::singular::limit_rows::{system_at, zone};
 use crate::dynamics::integrators::vector::{State, Vector};
 use crate::dynamics::model::{Model, Solved};
+use crate::linear_algebra::vectors::dot;
 use crate::mechanism::dynamic::Dynamic;
 use crate::scalar::number::Real;
 

@@ -12,6 +12,7 @@ use crate::dynamics::linear_systems::piecewise::reduced::{Reduced, is_m_matrix};
 use crate::dynamics::linear_systems::piecewise::{Given, Piecewise};
 use crate::linear_algebra::factorization::Factorization;
 use crate::linear_algebra::lu::Lu;
+use crate::linear_algebra::vectors::dot;
 use crate::mechanism::normal_forces::Term;
 use crate::scalar::number::Real;
 use crate::tolerances::forces;
@@ -333,8 +334,4 @@ fn halved<R: Real, const V: usize>(part: &Simplex<R, V>) -> Option<(Simplex<R, V
     *first.get_mut(a)? = middle;
     *second.get_mut(b)? = middle;
     Some((first, second))
-}
-
-fn dot<R: Real, const V: usize>(a: &[R; V], b: &[R; V]) -> R {
-    a.iter().zip(b).fold(R::constant(0.0), |sum, (a, b)| sum + *a * *b)
 }
