@@ -1,6 +1,6 @@
 //! Order 5 with an estimate of order 4: the pair for accuracies from 1e-3 to 1e-7.
 
-use crate::dynamics::integrators::embedded::{Embedded, StepAttempt, Taken};
+use crate::dynamics::integrators::embedded::{Embedded, StepAttempt, Taken, hermite, nested};
 use crate::dynamics::integrators::equation::{Equation, ErrorNorm};
 use crate::dynamics::integrators::fixed_step::FixedStep;
 use crate::dynamics::integrators::vector::Vector;
@@ -44,7 +44,7 @@ impl FixedStep for DormandPrince5 {
         y: &S::State,
         rate: &S::State,
     ) -> Result<S::State, Failure> {
-        Ok(stages(equation, t, h, y, rate)?.y)
+        Ok(Self::trial(equation, (t, h), (y, rate), &())?.y)
     }
 }
 
@@ -58,13 +58,21 @@ impl Embedded for DormandPrince5 {
     type Dense<Y: Copy> = [Y; 5];
 
     #[inline]
-    fn trial<R: Real, S: Equation<R>>(
+    fn trial<T: Scalar, S: Equation<T>>(
         equation: &mut S,
-        (t, h): (R, R),
-        (y, rate): (&S::State, &S::State),
+        (t, h): (T, T),
+        (y, k1): (&S::State, &S::State),
         _: &(),
     ) -> Result<StepAttempt<S::State, [S::State; 5]>, Failure> {
-        stages(equation, t, h, y, rate)
+        let at = |c: f64| t + T::constant(c) * h;
+        let k2 = equation.rate(at(0.2), &y.plus(h, &[0.2], [k1]))?;
+        let k3 = equation.rate(at(0.3), &y.plus(h, &A3, [k1, &k2]))?;
+        let k4 = equation.rate(at(0.8), &y.plus(h, &A4, [k1, &k2, &k3]))?;
+        let k5 = equation.rate(at(8.0 / 9.0), &y.plus(h, &A5, [k1, &k2, &k3, &k4]))?;
+        let k6 = equation.rate(t + h, &y.plus(h, &A6, [k1, &k2, &k3, &k4, &k5]))?;
+        let next = y.plus(h, &B, [k1, &k3, &k4, &k5, &k6]);
+        let k7 = equation.rate(t + h, &next)?;
+        Ok(StepAttempt { y: next, stages: [k3, k4, k5, k6, k7] })
     }
 
     #[inline]
@@ -89,42 +97,15 @@ impl Embedded for DormandPrince5 {
         _: &mut S,
         step: &Taken<'_, R, S::State, [S::State; 5]>,
     ) -> Result<[S::State; 5], Failure> {
-        let (Taken { h, .. }, (y, k1), (end, end_rate)) = (*step, step.start, step.end);
+        let (Taken { h, .. }, (y, k1)) = (*step, step.start);
         let [k3, k4, k5, k6, k7] = step.stages;
-        let one = R::constant(1.0);
-        let change = end.plus(-one, &[1.0], [y]);
-        let bend = change.zero().plus(h, &[1.0], [k1]).plus(-one, &[1.0], [&change]);
-        let twist = change.plus(-h, &[1.0], [end_rate]).plus(-one, &[1.0], [&bend]);
+        let [change, bend, twist] = hermite(h, step.start, step.end);
         let rest = y.zero().plus(h, &D, [k1, k3, k4, k5, k6, k7]);
         Ok([*y, change, bend, twist, rest])
     }
 
     #[inline]
-    fn interpolate<R: Real, Y: Vector<R>>([y, change, bend, twist, rest]: &[Y; 5], theta: R) -> Y {
-        let left = R::constant(1.0) - theta;
-        let inner = twist.plus(left, &[1.0], [rest]);
-        let inner = bend.plus(theta, &[1.0], [&inner]);
-        let inner = change.plus(left, &[1.0], [&inner]);
-        y.plus(theta, &[1.0], [&inner])
+    fn interpolate<T: Scalar, Y: Vector<T>>([start, terms @ .., last]: &[Y; 5], theta: T) -> Y {
+        nested(start, (terms, last), theta)
     }
-}
-
-/// The stages of a step and its solution.
-#[inline(always)]
-fn stages<T: Scalar, S: Equation<T>>(
-    equation: &mut S,
-    t: T,
-    h: T,
-    y: &S::State,
-    k1: &S::State,
-) -> Result<StepAttempt<S::State, [S::State; 5]>, Failure> {
-    let at = |c: f64| t + T::constant(c) * h;
-    let k2 = equation.rate(at(0.2), &y.plus(h, &[0.2], [k1]))?;
-    let k3 = equation.rate(at(0.3), &y.plus(h, &A3, [k1, &k2]))?;
-    let k4 = equation.rate(at(0.8), &y.plus(h, &A4, [k1, &k2, &k3]))?;
-    let k5 = equation.rate(at(8.0 / 9.0), &y.plus(h, &A5, [k1, &k2, &k3, &k4]))?;
-    let k6 = equation.rate(t + h, &y.plus(h, &A6, [k1, &k2, &k3, &k4, &k5]))?;
-    let next = y.plus(h, &B, [k1, &k3, &k4, &k5, &k6]);
-    let k7 = equation.rate(t + h, &next)?;
-    Ok(StepAttempt { y: next, stages: [k3, k4, k5, k6, k7] })
 }

@@ -1,6 +1,6 @@
 //! Order 8 with estimates of orders 5 and 3: the method for accuracies of 1e-7 and beyond.
 
-use crate::dynamics::integrators::embedded::{Embedded, StepAttempt, Taken};
+use crate::dynamics::integrators::embedded::{Embedded, StepAttempt, Taken, hermite, nested};
 use crate::dynamics::integrators::equation::{Equation, ErrorNorm};
 use crate::dynamics::integrators::fixed_step::FixedStep;
 use crate::dynamics::integrators::vector::Vector;
@@ -236,7 +236,7 @@ impl FixedStep for DormandPrince8 {
         y: &S::State,
         rate: &S::State,
     ) -> Result<S::State, Failure> {
-        Ok(stages(equation, t, h, y, rate)?.y)
+        Ok(Self::trial(equation, (t, h), (y, rate), &())?.y)
     }
 }
 
@@ -253,13 +253,28 @@ impl Embedded for DormandPrince8 {
     type Dense<Y: Copy> = [Y; 8];
 
     #[inline]
-    fn trial<R: Real, S: Equation<R>>(
+    fn trial<T: Scalar, S: Equation<T>>(
         equation: &mut S,
-        (t, h): (R, R),
-        (y, rate): (&S::State, &S::State),
+        (t, h): (T, T),
+        (y, k1): (&S::State, &S::State),
         _: &(),
     ) -> Result<StepAttempt<S::State, [S::State; 7]>, Failure> {
-        stages(equation, t, h, y, rate)
+        let [_, c2, c3, c4, c5, c6, c7, c8, c9, c10, c11, ..] = C;
+        let at = |c: f64| t + T::constant(c) * h;
+        let k2 = equation.rate(at(c2), &y.plus(h, &A2, [k1]))?;
+        let k3 = equation.rate(at(c3), &y.plus(h, &A3, [k1, &k2]))?;
+        let k4 = equation.rate(at(c4), &y.plus(h, &A4, [k1, &k3]))?;
+        let k5 = equation.rate(at(c5), &y.plus(h, &A5, [k1, &k3, &k4]))?;
+        let k6 = equation.rate(at(c6), &y.plus(h, &A6, [k1, &k4, &k5]))?;
+        let k7 = equation.rate(at(c7), &y.plus(h, &A7, [k1, &k4, &k5, &k6]))?;
+        let k8 = equation.rate(at(c8), &y.plus(h, &A8, [k1, &k4, &k5, &k6, &k7]))?;
+        let k9 = equation.rate(at(c9), &y.plus(h, &A9, [k1, &k4, &k5, &k6, &k7, &k8]))?;
+        let k10 = equation.rate(at(c10), &y.plus(h, &A10, [k1, &k4, &k5, &k6, &k7, &k8, &k9]))?;
+        let k11 = equation.rate(at(c11), &y.plus(h, &A11, [k1, &k4, &k5, &k6, &k7, &k8, &k9, &k10]))?;
+        let last = y.plus(h, &A12, [k1, &k4, &k5, &k6, &k7, &k8, &k9, &k10, &k11]);
+        let k12 = equation.rate(t + h, &last)?;
+        let next = y.plus(h, &B, [k1, &k6, &k7, &k8, &k9, &k10, &k11, &k12]);
+        Ok(StepAttempt { y: next, stages: [k6, k7, k8, k9, k10, k11, k12] })
     }
 
     #[inline]
@@ -286,7 +301,7 @@ impl Embedded for DormandPrince8 {
         equation: &mut S,
         step: &Taken<'_, R, S::State, [S::State; 7]>,
     ) -> Result<[S::State; 8], Failure> {
-        let (Taken { t, h, .. }, (y, k1), (end, k13)) = (*step, step.start, step.end);
+        let (Taken { t, h, .. }, (y, k1), (_, k13)) = (*step, step.start, step.end);
         let [k6, k7, k8, k9, k10, k11, k12] = step.stages;
         let [.., c14, c15, c16] = C;
         let at = |c: f64| t + R::constant(c) * h;
@@ -294,50 +309,14 @@ impl Embedded for DormandPrince8 {
         let k15 = equation.rate(at(c15), &y.plus(h, &A15, [k1, k6, k7, k8, k11, k12, k13, &k14]))?;
         let k16 = equation.rate(at(c16), &y.plus(h, &A16, [k1, k6, k7, k8, k9, k13, &k14, &k15]))?;
         let stages = [k1, k6, k7, k8, k9, k10, k11, k12, k13, &k14, &k15, &k16];
-        let one = R::constant(1.0);
-        let change = end.plus(-one, &[1.0], [y]);
-        let bend = change.zero().plus(h, &[1.0], [k1]).plus(-one, &[1.0], [&change]);
-        let twist = change.plus(-h, &[1.0], [k13]).plus(-one, &[1.0], [&bend]);
+        let [change, bend, twist] = hermite(h, step.start, step.end);
         let sums = [D4, D5, D6, D7].map(|weights| y.zero().plus(h, &weights, stages));
         let [fourth, fifth, sixth, seventh] = sums;
         Ok([*y, change, bend, twist, fourth, fifth, sixth, seventh])
     }
 
     #[inline]
-    fn interpolate<R: Real, Y: Vector<R>>(dense: &[Y; 8], theta: R) -> Y {
-        let left = R::constant(1.0) - theta;
-        let [y, coefficients @ .., last] = dense;
-        let mut inner = *last;
-        for (index, coefficient) in coefficients.iter().enumerate().rev() {
-            inner = coefficient.plus(if index % 2 == 0 { left } else { theta }, &[1.0], [&inner]);
-        }
-        y.plus(theta, &[1.0], [&inner])
+    fn interpolate<T: Scalar, Y: Vector<T>>([start, terms @ .., last]: &[Y; 8], theta: T) -> Y {
+        nested(start, (terms, last), theta)
     }
-}
-
-/// The stages of a step and its solution.
-#[inline(always)]
-fn stages<T: Scalar, S: Equation<T>>(
-    equation: &mut S,
-    t: T,
-    h: T,
-    y: &S::State,
-    k1: &S::State,
-) -> Result<StepAttempt<S::State, [S::State; 7]>, Failure> {
-    let [_, c2, c3, c4, c5, c6, c7, c8, c9, c10, c11, ..] = C;
-    let at = |c: f64| t + T::constant(c) * h;
-    let k2 = equation.rate(at(c2), &y.plus(h, &A2, [k1]))?;
-    let k3 = equation.rate(at(c3), &y.plus(h, &A3, [k1, &k2]))?;
-    let k4 = equation.rate(at(c4), &y.plus(h, &A4, [k1, &k3]))?;
-    let k5 = equation.rate(at(c5), &y.plus(h, &A5, [k1, &k3, &k4]))?;
-    let k6 = equation.rate(at(c6), &y.plus(h, &A6, [k1, &k4, &k5]))?;
-    let k7 = equation.rate(at(c7), &y.plus(h, &A7, [k1, &k4, &k5, &k6]))?;
-    let k8 = equation.rate(at(c8), &y.plus(h, &A8, [k1, &k4, &k5, &k6, &k7]))?;
-    let k9 = equation.rate(at(c9), &y.plus(h, &A9, [k1, &k4, &k5, &k6, &k7, &k8]))?;
-    let k10 = equation.rate(at(c10), &y.plus(h, &A10, [k1, &k4, &k5, &k6, &k7, &k8, &k9]))?;
-    let k11 = equation.rate(at(c11), &y.plus(h, &A11, [k1, &k4, &k5, &k6, &k7, &k8, &k9, &k10]))?;
-    let last = y.plus(h, &A12, [k1, &k4, &k5, &k6, &k7, &k8, &k9, &k10, &k11]);
-    let k12 = equation.rate(t + h, &last)?;
-    let next = y.plus(h, &B, [k1, &k6, &k7, &k8, &k9, &k10, &k11, &k12]);
-    Ok(StepAttempt { y: next, stages: [k6, k7, k8, k9, k10, k11, k12] })
 }

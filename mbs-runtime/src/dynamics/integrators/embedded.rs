@@ -4,7 +4,7 @@ use crate::dynamics::integrators::equation::{Equation, ErrorNorm};
 use crate::dynamics::integrators::fixed_step::FixedStep;
 use crate::dynamics::integrators::vector::Vector;
 use crate::failure::Failure;
-use crate::scalar::number::Real;
+use crate::scalar::number::{Real, Scalar};
 
 /// An explicit Runge–Kutta method that estimates its own error and gives the solution between its steps.
 pub trait Embedded: FixedStep {
@@ -29,11 +29,11 @@ pub trait Embedded: FixedStep {
     ///
     /// # Errors
     /// Those of the equation.
-    fn trial<R: Real, E: Equation<R>>(
+    fn trial<T: Scalar, E: Equation<T>>(
         equation: &mut E,
-        span: (R, R),
+        span: (T, T),
         start: (&E::State, &E::State),
-        memory: &Self::Memory<R, E::State>,
+        memory: &Self::Memory<T, E::State>,
     ) -> Result<AttemptOf<Self, E::State>, Failure>;
 
     /// The error of a trial over its tolerance.
@@ -64,7 +64,7 @@ pub trait Embedded: FixedStep {
     ) -> Result<Self::Dense<E::State>, Failure>;
 
     /// The polynomial at `theta`, 0 at the beginning of the step, 1 at its end.
-    fn interpolate<R: Real, Y: Vector<R>>(dense: &Self::Dense<Y>, theta: R) -> Y;
+    fn interpolate<T: Scalar, Y: Vector<T>>(dense: &Self::Dense<Y>, theta: T) -> Y;
 }
 
 /// Result of a trial step of method `X`.
@@ -92,4 +92,31 @@ pub struct Taken<'a, R, Y, K> {
     pub end: (&'a Y, &'a Y),
     /// Its rates in between.
     pub stages: &'a K,
+}
+
+/// Terms of [`nested`] that `start` and `end` of a step of `h` (s) fix, each a state and its rate: the cubic of Hermite.
+#[inline]
+pub(crate) fn hermite<R: Real, Y: Vector<R>>(h: R, (y, rate): (&Y, &Y), (end, end_rate): (&Y, &Y)) -> [Y; 3] {
+    let one = R::constant(1.0);
+    let change = end.plus(-one, &[1.0], [y]);
+    let bend = change.zero().plus(h, &[1.0], [rate]).plus(-one, &[1.0], [&change]);
+    let twist = change.plus(-h, &[1.0], [end_rate]).plus(-one, &[1.0], [&bend]);
+    [change, bend, twist]
+}
+
+/// y + θ (a + (1 − θ) (b + θ (c + (1 − θ) (…)))) with the terms a, b, c, …
+///
+/// Source: Hairer, Nørsett & Wanner 1993, §II.6.
+#[inline]
+pub(crate) fn nested<T: Scalar, Y: Vector<T>, const K: usize>(
+    y: &Y,
+    (terms, last): (&[Y; K], &Y),
+    theta: T,
+) -> Y {
+    let left = T::constant(1.0) - theta;
+    let mut inner = *last;
+    for (index, term) in terms.iter().enumerate().rev() {
+        inner = term.plus(if index % 2 == 0 { left } else { theta }, &[1.0], [&inner]);
+    }
+    y.plus(theta, &[1.0], [&inner])
 }

@@ -123,11 +123,11 @@ impl Embedded for Radau5 {
     type Dense<Y: Copy> = [Y; 4];
 
     #[inline(never)]
-    fn trial<R: Real, E: Equation<R>>(
+    fn trial<T: Scalar, E: Equation<T>>(
         equation: &mut E,
-        (t, h): (R, R),
+        (t, h): (T, T),
         (y, rate): (&E::State, &E::State),
-        memory: &Option<Past<R, E::State>>,
+        memory: &Option<Past<T, E::State>>,
     ) -> Result<StepAttempt<E::State, Collocated<E::State>>, Failure> {
         let mut step = Collocation::new(t, h, y, rate);
         if let Some(past) = memory {
@@ -135,7 +135,7 @@ impl Embedded for Radau5 {
         }
         let stages = equation.collocate(&step)?;
         let [_, _, change] = &stages.stages;
-        Ok(StepAttempt { y: y.plus(R::constant(1.0), &[1.0], [change]), stages })
+        Ok(StepAttempt { y: y.plus(T::constant(1.0), &[1.0], [change]), stages })
     }
 
     fn error<R: Real, E: ErrorNorm<R>>(
@@ -165,7 +165,7 @@ impl Embedded for Radau5 {
         Ok(course(step))
     }
 
-    fn interpolate<R: Real, Y: Vector<R>>([start, linear, quadratic, cubic]: &[Y; 4], theta: R) -> Y {
+    fn interpolate<T: Scalar, Y: Vector<T>>([start, linear, quadratic, cubic]: &[Y; 4], theta: T) -> Y {
         let bend = quadratic.plus(theta, &[1.0], [cubic]);
         let slope = linear.plus(theta, &[1.0], [&bend]);
         start.plus(theta, &[1.0], [&slope])
@@ -180,13 +180,13 @@ pub struct Past<R, Y> {
     course: [Y; 4],
 }
 
-impl<R: Real, Y: Vector<R>> Past<R, Y> {
+impl<T: Scalar, Y: Vector<T>> Past<T, Y> {
     /// Stages of a next step of `h` (s) less the state at its beginning, by the cubic.
-    fn predicted(&self, h: R) -> [Y; 3] {
-        let (one, ratio) = (R::constant(1.0), h / self.h);
-        let at = |theta: R| Radau5::interpolate(&self.course, theta);
+    fn predicted(&self, h: T) -> [Y; 3] {
+        let (one, ratio) = (T::constant(1.0), h / self.h);
+        let at = |theta: T| Radau5::interpolate(&self.course, theta);
         let end = at(one);
-        tableau::C.map(|c| at(one + R::constant(c) * ratio).plus(-one, &[1.0], [&end]))
+        tableau::C.map(|c| at(one + T::constant(c) * ratio).plus(-one, &[1.0], [&end]))
     }
 }
 
