@@ -5,6 +5,7 @@ use crate::dynamics::implicit::iteration::{Damping, MOST_ITERATIONS, MOST_ROUNDS
 use crate::dynamics::integrators::vector::{State, Vector};
 use crate::dynamics::linear_systems::kkt::{Factors, System};
 use crate::dynamics::linear_systems::tangent::{Tangent, add_outer};
+use crate::dynamics::model::forward::forward;
 use crate::dynamics::model::instant::Instant;
 use crate::dynamics::model::method::{Method, require_slopes};
 use crate::dynamics::model::metric::Metric;
@@ -40,16 +41,7 @@ pub struct AugmentedLagrangian;
 impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Method<S, R, N, M>
     for AugmentedLagrangian
 {
-    fn solve(
-        &self,
-        model: &Model<'_, S, R, N, M>,
-        t: R,
-        y: &State<R, N, S::States>,
-        lambda: &[R; M],
-        counts: &mut Counts,
-    ) -> Result<Solved<R, N, M, S::States>, Failure> {
-        Unstabilized.solve(model, t, y, lambda, counts)
-    }
+    forward! { |_| Unstabilized => solve }
 
     fn step(
         &self,

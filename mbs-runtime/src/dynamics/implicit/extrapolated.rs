@@ -4,6 +4,7 @@ use crate::dynamics::formulations::projection::Projection;
 use crate::dynamics::formulations::unstabilized::Unstabilized;
 use crate::dynamics::implicit::augmented_lagrangian::AugmentedLagrangian;
 use crate::dynamics::integrators::vector::{State, Vector};
+use crate::dynamics::model::forward::forward;
 use crate::dynamics::model::instant::Instant;
 use crate::dynamics::model::method::{Method, require_slopes};
 use crate::dynamics::model::{Counts, Formulation, Model, Solved};
@@ -25,16 +26,7 @@ use crate::scalar::number::Real;
 pub struct Extrapolated;
 
 impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Method<S, R, N, M> for Extrapolated {
-    fn solve(
-        &self,
-        model: &Model<'_, S, R, N, M>,
-        t: R,
-        y: &State<R, N, S::States>,
-        lambda: &[R; M],
-        counts: &mut Counts,
-    ) -> Result<Solved<R, N, M, S::States>, Failure> {
-        Unstabilized.solve(model, t, y, lambda, counts)
-    }
+    forward! { |_| Unstabilized => solve }
 
     fn step(
         &self,

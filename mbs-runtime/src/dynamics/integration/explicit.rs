@@ -6,6 +6,7 @@ use crate::dynamics::integration::phases::{ORDER_OF_INTEGRALS, Phased, stepped, 
 use crate::dynamics::integrators::fixed_step::FixedStep;
 use crate::dynamics::integrators::step_control::Point;
 use crate::dynamics::integrators::vector::State;
+use crate::dynamics::model::forward::forward;
 use crate::dynamics::model::instant::Instant;
 use crate::dynamics::model::method::{Method, require_slopes};
 use crate::dynamics::model::{Counts, Formulation, MethodWarning, Model, Solved};
@@ -36,16 +37,7 @@ where
     I: FixedStep,
     F: Formulation<S, R, N, M>,
 {
-    fn solve(
-        &self,
-        model: &Model<'_, S, R, N, M>,
-        t: R,
-        y: &State<R, N, S::States>,
-        lambda: &[R; M],
-        counts: &mut Counts,
-    ) -> Result<Solved<R, N, M, S::States>, Failure> {
-        self.formulation.solve(model, t, y, lambda, counts)
-    }
+    forward! { |it| it.formulation => solve, check_step, leaves_constraints, doubt }
 
     fn step(
         &self,
@@ -96,18 +88,6 @@ where
             require_slopes::<S, R, N, M>()?;
         }
         self.formulation.require_suitable()
-    }
-
-    fn check_step(&self, h: R, t: R) -> Result<(), Failure> {
-        self.formulation.check_step(h, t)
-    }
-
-    fn leaves_constraints(&self) -> bool {
-        self.formulation.leaves_constraints()
-    }
-
-    fn doubt(&self, h: R, span: R) -> Option<MethodWarning> {
-        self.formulation.doubt(h, span)
     }
 }
 

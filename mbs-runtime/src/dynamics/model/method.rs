@@ -1,6 +1,7 @@
 //! Contract of a method of integration for mechanisms.
 
 use crate::dynamics::integrators::vector::State;
+use crate::dynamics::model::forward::forward;
 use crate::dynamics::model::instant::Instant;
 use crate::dynamics::model::{Counts, MethodWarning, Model, Solved};
 use crate::failure::{Failure, FailureKind};
@@ -101,44 +102,5 @@ where
     R: Real,
     X: Method<S, R, N, M> + ?Sized,
 {
-    fn solve(
-        &self,
-        model: &Model<'_, S, R, N, M>,
-        t: R,
-        y: &State<R, N, S::States>,
-        lambda: &[R; M],
-        counts: &mut Counts,
-    ) -> Result<Solved<R, N, M, S::States>, Failure> {
-        (**self).solve(model, t, y, lambda, counts)
-    }
-
-    fn step(
-        &self,
-        model: &Model<'_, S, R, N, M>,
-        from: &Instant<R, N, M, S::States>,
-        h: R,
-        counts: &mut Counts,
-    ) -> Result<Instant<R, N, M, S::States>, Failure> {
-        (**self).step(model, from, h, counts)
-    }
-
-    fn phases_after(&self, model: &Model<'_, S, R, N, M>, t: R, h: R) -> Result<Option<S::Phases>, Failure> {
-        (**self).phases_after(model, t, h)
-    }
-
-    fn require_suitable(&self) -> Result<(), Failure> {
-        (**self).require_suitable()
-    }
-
-    fn check_step(&self, h: R, t: R) -> Result<(), Failure> {
-        (**self).check_step(h, t)
-    }
-
-    fn leaves_constraints(&self) -> bool {
-        (**self).leaves_constraints()
-    }
-
-    fn doubt(&self, h: R, span: R) -> Option<MethodWarning> {
-        (**self).doubt(h, span)
-    }
+    forward! { |it| **it => solve, step, phases_after, require_suitable, check_step, leaves_constraints, doubt }
 }

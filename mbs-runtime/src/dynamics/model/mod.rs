@@ -1,11 +1,13 @@
 //! Model of a mechanism for the methods: with its stage-0 values and its metric.
 
+pub(crate) mod forward;
 pub(crate) mod instant;
 pub(crate) mod method;
 pub(crate) mod metric;
 pub(crate) mod sign_checks;
 
 use crate::dynamics::integrators::vector::State;
+use crate::dynamics::model::forward::forward;
 use crate::dynamics::model::instant::Instant;
 use crate::dynamics::model::metric::Metric;
 use crate::failure::{Failure, FailureKind, checks};
@@ -164,63 +166,8 @@ where
     R: Real,
     F: Formulation<S, R, N, M> + ?Sized,
 {
-    fn solve(
-        &self,
-        model: &Model<'_, S, R, N, M>,
-        t: R,
-        y: &State<R, N, S::States>,
-        lambda: &[R; M],
-        counts: &mut Counts,
-    ) -> Result<Solved<R, N, M, S::States>, Failure> {
-        (**self).solve(model, t, y, lambda, counts)
-    }
-
-    fn solve_as_it_is(
-        &self,
-        model: &Model<'_, S, R, N, M>,
-        t: R,
-        y: &State<R, N, S::States>,
-        lambda: &[R; M],
-        counts: &mut Counts,
-    ) -> Result<Solved<R, N, M, S::States>, Failure> {
-        (**self).solve_as_it_is(model, t, y, lambda, counts)
-    }
-
-    fn project(
-        &self,
-        model: &Model<'_, S, R, N, M>,
-        t: R,
-        y: &mut State<R, N, S::States>,
-        counts: &mut Counts,
-    ) -> Result<(), Failure> {
-        (**self).project(model, t, y, counts)
-    }
-
-    fn project_and_solve(
-        &self,
-        model: &Model<'_, S, R, N, M>,
-        t: R,
-        y: &mut State<R, N, S::States>,
-        lambda: &[R; M],
-        counts: &mut Counts,
-    ) -> Result<Solved<R, N, M, S::States>, Failure> {
-        (**self).project_and_solve(model, t, y, lambda, counts)
-    }
-
-    fn require_suitable(&self) -> Result<(), Failure> {
-        (**self).require_suitable()
-    }
-
-    fn check_step(&self, h: R, t: R) -> Result<(), Failure> {
-        (**self).check_step(h, t)
-    }
-
-    fn leaves_constraints(&self) -> bool {
-        (**self).leaves_constraints()
-    }
-
-    fn doubt(&self, h: R, span: R) -> Option<MethodWarning> {
-        (**self).doubt(h, span)
+    forward! { |it| **it =>
+        solve, solve_as_it_is, project, project_and_solve, require_suitable, check_step, leaves_constraints, doubt
     }
 }
 
