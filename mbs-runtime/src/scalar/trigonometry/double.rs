@@ -2,7 +2,7 @@
 
 use core::f64::consts::FRAC_2_PI;
 
-use crate::scalar::trigonometry::{Angle, Arithmetic, Separate};
+use crate::scalar::trigonometry::{Angle, Arithmetic, Separate, by_bits};
 
 /// Largest |x| (rad) of the fast path: n, the number of quarter turns, has 16 bits there.
 pub(super) const LARGEST_ANGLE: f64 = 1e5;
@@ -78,17 +78,7 @@ fn reduced<A: Arithmetic<f64>, const FEW: bool>(x: f64) -> (f64, f64) {
         let (r, excess) = remainder(x, n);
         polynomials(r, excess)
     };
-    // sin and cos of n π/2 + …: odd quadrants exchange them, the second bit of n and of n + 1 is the sign.
-    let (sine, cosine) = (sine.to_bits(), cosine.to_bits());
-    let (first, second) = if FEW {
-        let odd = (((quadrant << 63) as i64) >> 63) as u64;
-        let exchanged = (sine ^ cosine) & odd;
-        (sine ^ exchanged, cosine ^ exchanged)
-    } else {
-        let odd = quadrant & 1 == 1;
-        if odd { (cosine, sine) } else { (sine, cosine) }
-    };
-    (signed(first, quadrant), signed(second, quadrant.wrapping_add(1)))
+    turned::<FEW>(quadrant, (sine, cosine))
 }
 
 /// r and excess with r − excess = x − n π/2. Source: Cody & Waite 1980, with the rounding of each difference kept in
@@ -139,8 +129,4 @@ fn series<A: Arithmetic<f64>>([a, b, c, d, e, f]: [f64; 6], square: f64, fourth:
     A::multiply_add(fourth, A::multiply_add(fourth, high, middle), low)
 }
 
-/// The number of the bits `value` with the sign that bit 1 of `quadrant` stands for.
-#[inline(always)]
-fn signed(value: u64, quadrant: u64) -> f64 {
-    f64::from_bits(value ^ ((quadrant & 2) << 62))
-}
+by_bits!(f64, u64, i64);

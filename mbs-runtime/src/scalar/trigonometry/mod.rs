@@ -48,6 +48,39 @@ trait Angle: Copy + Default + Mul<Output = Self> + Add<Output = Self> {
     fn far<const K: usize>(angles: [Self; K], near: ([Self; K], [Self; K])) -> ([Self; K], [Self; K]);
 }
 
+/// End of a kernel, by the bits of its numbers.
+macro_rules! by_bits {
+    ($number:ty, $bits:ty, $signed:ty) => {
+        /// Sine and cosine of an angle from those of its remainder: odd quadrants exchange them, the second bit of n and of n + 1 is
+        /// the sign.
+        #[inline(always)]
+        fn turned<const FEW: bool>(
+            quadrant: $bits,
+            (sine, cosine): ($number, $number),
+        ) -> ($number, $number) {
+            let (sine, cosine) = (sine.to_bits(), cosine.to_bits());
+            let (first, second) = if FEW {
+                let last = <$bits>::BITS - 1;
+                let odd = (((quadrant << last) as $signed) >> last) as $bits;
+                let exchanged = (sine ^ cosine) & odd;
+                (sine ^ exchanged, cosine ^ exchanged)
+            } else {
+                let odd = quadrant & 1 == 1;
+                if odd { (cosine, sine) } else { (sine, cosine) }
+            };
+            (signed(first, quadrant), signed(second, quadrant.wrapping_add(1)))
+        }
+
+        /// The number of the bits `value` with the sign that bit 1 of `quadrant` stands for.
+        #[inline(always)]
+        fn signed(value: $bits, quadrant: $bits) -> $number {
+            <$number>::from_bits(value ^ ((quadrant & 2) << (<$bits>::BITS - 2)))
+        }
+    };
+}
+
+use by_bits;
+
 /// Product and sum a b + c: fused, or each rounded.
 trait Arithmetic<T> {
     /// `true` if the product is not rounded.

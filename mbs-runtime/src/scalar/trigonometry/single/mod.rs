@@ -5,7 +5,7 @@ mod tests;
 
 use core::f32::consts::FRAC_2_PI;
 
-use crate::scalar::trigonometry::{Angle, Arithmetic};
+use crate::scalar::trigonometry::{Angle, Arithmetic, by_bits};
 
 /// Largest |x| (rad) of the fast path: n, the number of quarter turns, has 7 bits there.
 pub(super) const LARGEST_ANGLE: f32 = 128.0;
@@ -60,17 +60,7 @@ fn reduced<A: Arithmetic<f32>, const FEW: bool>(x: f32) -> (f32, f32) {
     let (quadrant, n) = (shifted.to_bits(), shifted - ROUNDER);
     let (r, excess) = remainder::<A>(x, n);
     let (sine, cosine) = polynomials::<A>(r, excess);
-    // sin and cos of n π/2 + …: odd quadrants exchange them, the second bit of n and of n + 1 is the sign.
-    let (sine, cosine) = (sine.to_bits(), cosine.to_bits());
-    let (first, second) = if FEW {
-        let odd = (((quadrant << 31) as i32) >> 31) as u32;
-        let exchanged = (sine ^ cosine) & odd;
-        (sine ^ exchanged, cosine ^ exchanged)
-    } else {
-        let odd = quadrant & 1 == 1;
-        if odd { (cosine, sine) } else { (sine, cosine) }
-    };
-    (signed(first, quadrant), signed(second, quadrant.wrapping_add(1)))
+    turned::<FEW>(quadrant, (sine, cosine))
 }
 
 /// r and excess with r − excess = x − n π/2. Source: Cody & Waite 1980, with the rounding of each difference kept in
@@ -101,8 +91,4 @@ fn series<A: Arithmetic<f32>>([a, b, c]: [f32; 3], square: f32, fourth: f32) -> 
     A::multiply_add(fourth, c, A::multiply_add(square, b, a))
 }
 
-/// The number of the bits `value` with the sign that bit 1 of `quadrant` stands for.
-#[inline(always)]
-fn signed(value: u32, quadrant: u32) -> f32 {
-    f32::from_bits(value ^ ((quadrant & 2) << 30))
-}
+by_bits!(f32, u32, i32);
