@@ -138,6 +138,18 @@ impl<R: Real, const L: usize> Lanes<R, L> {
     }
 }
 
+/// Functions of the numbers of each lane, by `each` or `zip`.
+macro_rules! lane_by_lane {
+    ($by:ident, $($name:ident $(($other:ident))?),*) => {
+        $(
+            #[inline(always)]
+            fn $name(self $(, $other: Self)?) -> Self {
+                self.$by($($other,)? R::$name)
+            }
+        )*
+    };
+}
+
 impl<R: Real, const L: usize> Scalar for Lanes<R, L> {
     type Real = R;
     type Mask = LaneMask<R, L>;
@@ -216,72 +228,6 @@ impl<R: Real, const L: usize> Scalar for Lanes<R, L> {
         }
         (sines, cosines)
     }
-    #[inline(always)]
-    fn abs(self) -> Self {
-        self.each(R::abs)
-    }
-    #[inline(always)]
-    fn sqrt(self) -> Self {
-        self.each(R::sqrt)
-    }
-    #[inline(always)]
-    fn exp(self) -> Self {
-        self.each(R::exp)
-    }
-    #[inline(always)]
-    fn ln(self) -> Self {
-        self.each(R::ln)
-    }
-    #[inline(always)]
-    fn tan(self) -> Self {
-        self.each(R::tan)
-    }
-    #[inline(always)]
-    fn asin(self) -> Self {
-        self.each(R::asin)
-    }
-    #[inline(always)]
-    fn acos(self) -> Self {
-        self.each(R::acos)
-    }
-    #[inline(always)]
-    fn atan(self) -> Self {
-        self.each(R::atan)
-    }
-    #[inline(always)]
-    fn atan2(self, x: Self) -> Self {
-        self.zip(x, R::atan2)
-    }
-    #[inline(always)]
-    fn sinh(self) -> Self {
-        self.each(R::sinh)
-    }
-    #[inline(always)]
-    fn cosh(self) -> Self {
-        self.each(R::cosh)
-    }
-    #[inline(always)]
-    fn tanh(self) -> Self {
-        self.each(R::tanh)
-    }
-    #[inline(always)]
-    fn asinh(self) -> Self {
-        self.each(R::asinh)
-    }
-    #[inline(always)]
-    fn acosh(self) -> Self {
-        self.each(R::acosh)
-    }
-    #[inline(always)]
-    fn atanh(self) -> Self {
-        self.each(R::atanh)
-    }
-    #[inline(always)]
-    fn powf(self, exponent: Self) -> Self {
-        self.zip(exponent, R::powf)
-    }
-    #[inline(always)]
-    fn hypot(self, other: Self) -> Self {
-        self.zip(other, R::hypot)
-    }
+    lane_by_lane!(each, abs, sqrt, exp, ln, tan, asin, acos, atan, sinh, cosh, tanh, asinh, acosh, atanh);
+    lane_by_lane!(zip, atan2(x), powf(exponent), hypot(other));
 }

@@ -164,9 +164,9 @@ pub trait Real: Scalar<Real = Self, Mask = bool> + PartialOrd {
     }
 }
 
+/// A floating-point type: the bits of a truth value, sines and cosines, and functions of the library `libm`.
 macro_rules! real {
-    ($real:ident, $word:ident, $sincos:path, $lanes:path, $sqrt:ident, $exp:ident, $ln:ident, $tan:ident, $asin:ident, $acos:ident, $atan:ident,
-     $atan2:ident, $sinh:ident, $cosh:ident, $tanh:ident, $asinh:ident, $acosh:ident, $atanh:ident, $pow:ident, $hypot:ident) => {
+    ($real:ident, $word:ident, $sincos:path, $lanes:path, { $($name:ident($($other:ident)?) = $function:ident,)* }) => {
         impl Scalar for $real {
             type Real = $real;
             type Mask = bool;
@@ -224,70 +224,12 @@ macro_rules! real {
             fn abs(self) -> Self {
                 <$real>::abs(self)
             }
-            #[inline(always)]
-            fn sqrt(self) -> Self {
-                libm::$sqrt(self)
-            }
-            #[inline(always)]
-            fn exp(self) -> Self {
-                libm::$exp(self)
-            }
-            #[inline(always)]
-            fn ln(self) -> Self {
-                libm::$ln(self)
-            }
-            #[inline(always)]
-            fn tan(self) -> Self {
-                libm::$tan(self)
-            }
-            #[inline(always)]
-            fn asin(self) -> Self {
-                libm::$asin(self)
-            }
-            #[inline(always)]
-            fn acos(self) -> Self {
-                libm::$acos(self)
-            }
-            #[inline(always)]
-            fn atan(self) -> Self {
-                libm::$atan(self)
-            }
-            #[inline(always)]
-            fn atan2(self, x: Self) -> Self {
-                libm::$atan2(self, x)
-            }
-            #[inline(always)]
-            fn sinh(self) -> Self {
-                libm::$sinh(self)
-            }
-            #[inline(always)]
-            fn cosh(self) -> Self {
-                libm::$cosh(self)
-            }
-            #[inline(always)]
-            fn tanh(self) -> Self {
-                libm::$tanh(self)
-            }
-            #[inline(always)]
-            fn asinh(self) -> Self {
-                libm::$asinh(self)
-            }
-            #[inline(always)]
-            fn acosh(self) -> Self {
-                libm::$acosh(self)
-            }
-            #[inline(always)]
-            fn atanh(self) -> Self {
-                libm::$atanh(self)
-            }
-            #[inline(always)]
-            fn powf(self, exponent: Self) -> Self {
-                libm::$pow(self, exponent)
-            }
-            #[inline(always)]
-            fn hypot(self, other: Self) -> Self {
-                libm::$hypot(self, other)
-            }
+            $(
+                #[inline(always)]
+                fn $name(self $(, $other: Self)?) -> Self {
+                    libm::$function(self $(, $other)?)
+                }
+            )*
         }
 
         impl Real for $real {
@@ -309,50 +251,17 @@ macro_rules! real {
     };
 }
 
-real!(
-    f64,
-    u64,
-    trigonometry::sin_cos,
-    trigonometry::sin_cos_of_lanes,
-    sqrt,
-    exp,
-    log,
-    tan,
-    asin,
-    acos,
-    atan,
-    atan2,
-    sinh,
-    cosh,
-    tanh,
-    asinh,
-    acosh,
-    atanh,
-    pow,
-    hypot
-);
-real!(
-    f32,
-    u32,
-    trigonometry::sin_cos_single,
-    trigonometry::sin_cos_of_lanes_single,
-    sqrtf,
-    expf,
-    logf,
-    tanf,
-    asinf,
-    acosf,
-    atanf,
-    atan2f,
-    sinhf,
-    coshf,
-    tanhf,
-    asinhf,
-    acoshf,
-    atanhf,
-    powf,
-    hypotf
-);
+real!(f64, u64, trigonometry::sin_cos, trigonometry::sin_cos_of_lanes, {
+    sqrt() = sqrt, exp() = exp, ln() = log, tan() = tan, asin() = asin, acos() = acos,
+    atan() = atan, atan2(x) = atan2, sinh() = sinh, cosh() = cosh, tanh() = tanh, asinh() = asinh,
+    acosh() = acosh, atanh() = atanh, powf(exponent) = pow, hypot(other) = hypot,
+});
+real!(f32, u32, trigonometry::sin_cos_single, trigonometry::sin_cos_of_lanes_single, {
+    sqrt() = sqrtf, exp() = expf, ln() = logf, tan() = tanf, asin() = asinf, acos() = acosf,
+    atan() = atanf, atan2(x) = atan2f, sinh() = sinhf, cosh() = coshf, tanh() = tanhf,
+    asinh() = asinhf, acosh() = acoshf, atanh() = atanhf, powf(exponent) = powf,
+    hypot(other) = hypotf,
+});
 
 /// An index that a number carries, of lane `lane`; the cast saturates.
 #[inline(always)]
