@@ -1,19 +1,14 @@
 //! Model → roots of one graph: Φ, Φ_q, Φ_t, Φ_tt, Φ_qt q̇, γ, branches, limits, phases, outputs, guesses,
 //! metric; M, Q and their derivatives, energies, powers.
 
-mod attribution;
 mod contacts;
 pub mod continuity;
 pub mod deferred;
 mod degree;
 mod dynamics;
-mod elimination;
-mod force_attachment;
 mod forces;
 mod gradients;
-mod joints;
 mod lower;
-mod manifold;
 mod non_negative;
 pub mod normal_forces;
 pub mod pins;
@@ -21,20 +16,18 @@ mod power_of_time;
 mod second_moments;
 mod spatial_inertia;
 pub mod turns;
-mod velocities;
 
 use std::collections::BTreeMap;
 
 use crate::model::Model;
 use crate::symbolic::{Graph, Leaf, Node, NodeId, tangent, tangents};
 
-pub use attribution::RowMotion;
 pub use contacts::{ByContact, Pressing, Push};
 pub use dynamics::{Dynamics, Gap, Slope, Sparse};
 use lower::Lowered;
 pub use lower::MARGIN;
 pub use non_negative::Of;
-pub use pins::{Attribution, On};
+pub use pins::{Attribution, On, RowMotion};
 
 /// All expressions of a model as nodes of one graph, in their order.
 pub fn lowered(model: &Model) -> (Graph, Vec<NodeId>) {

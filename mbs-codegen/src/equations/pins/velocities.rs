@@ -1,9 +1,9 @@
 //! Velocities of points and bodies at positions that fulfil the rows, in every motion that some of the rows allow.
 
 use super::attribution::scattered;
-use super::jacobian;
 use super::manifold::{Manifold, Orthogonal, Point, dot};
-use super::pins::{Given, frame};
+use super::{Given, frame};
+use crate::equations::jacobian;
 use crate::model::Model;
 use crate::model::dynamics::Dynamics as Declared;
 use crate::model::expression::Id;

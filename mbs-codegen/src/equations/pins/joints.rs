@@ -3,8 +3,8 @@
 //! At another place a pin's force would do work, and the sums over the bodies have no solution. Drives and guides that
 //! act on bodies directly do not matter: their forces are among the sums.
 
-use super::pins::{Attribution, Given};
 use super::velocities::{Here, Motions, Seen};
+use super::{Attribution, Given};
 use crate::model::Model;
 use crate::model::dynamics::{Dynamics as Declared, Pin};
 use crate::model::expression::Id;

@@ -2,7 +2,7 @@
 //!
 //! Found by equal motion at a few positions, not by how it is written: virtual displacements alone count.
 
-use super::jacobian;
+use crate::equations::jacobian;
 use crate::symbolic::evaluate::evaluate;
 use crate::symbolic::scattered;
 use crate::symbolic::{Graph, Leaf, NodeId};

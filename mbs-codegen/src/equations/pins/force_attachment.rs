@@ -4,9 +4,9 @@
 //! `on P of rod`, where a point belongs to several bodies.
 
 use super::attribution::{Frame, Slopes};
-use super::forces::{Acting, Place};
-use super::pins::{Fault, Given, On};
 use super::velocities::{Here, Motions, Seen};
+use super::{Fault, Given, On};
+use crate::equations::forces::{Acting, Place};
 use crate::model::Model;
 use crate::model::dynamics::{Action, Dynamics as Declared};
 use crate::symbolic::{Graph, NodeId};

@@ -4,7 +4,7 @@
 
 use std::collections::BTreeMap;
 
-use super::forces::Sum;
+use crate::equations::forces::Sum;
 use crate::symbolic::{Graph, NodeId};
 
 /// Entries of a column by their row; missing entries are zero.

@@ -4,14 +4,22 @@
 //! hold, are the unknowns, found by least squares of all sums. These have a solution wherever the rows are regular,
 //! whichever of the sums are redundant there.
 
+mod attribution;
+mod elimination;
+mod force_attachment;
+mod joints;
+mod manifold;
+mod velocities;
+
 use proc_macro2::Span;
 
-use super::attribution::{Frame, RowMotion, Slopes};
+pub use self::attribution::RowMotion;
+use self::attribution::{Frame, Slopes};
+use self::elimination::{Column, solve};
+use self::force_attachment::Points;
+use self::joints::{Misplaced, misplaced};
 use super::dynamics::Dynamics;
-use super::elimination::{Column, solve};
-use super::force_attachment::Points;
 use super::forces::{Place, Sum};
-use super::joints::{Misplaced, misplaced};
 use super::lower::{Clock, PIN};
 use super::{Equations, Row, again};
 use crate::diagnostics::Diagnostics;
