@@ -1,7 +1,7 @@
 //! Augmented Lagrangian of index 3 with projections: stiff and redundant mechanisms at coarse steps.
 
 use crate::dynamics::formulations::unstabilized::Unstabilized;
-use crate::dynamics::implicit::iteration::{Damping, MOST_ITERATIONS, MOST_ROUNDS};
+use crate::dynamics::implicit::iteration::{Damping, MOST_ITERATIONS, MOST_ROUNDS, Unknowns};
 use crate::dynamics::integrators::vector::{State, Vector};
 use crate::dynamics::linear_systems::kkt::{Factors, System};
 use crate::dynamics::linear_systems::tangent::{Tangent, add_outer};
@@ -128,11 +128,11 @@ impl AugmentedLagrangian {
             }
             // The springs alone take the rows' multipliers on, but those that friction hangs on, which belong to the coordinates.
             let moved = if S::FORCE_USES_MULTIPLIERS { taken.map(|part| -part) } else { lambda.zero() };
-            let whole = Balance { moved: step.map(|part| -part), lambda: moved };
-            let here = Balance { moved: change, lambda };
+            let whole = Unknowns { motion: step.map(|part| -part), lambda: moved };
+            let here = Unknowns { motion: change, lambda };
             let next = damping.next(&here, (&whole, last), |base, least| {
-                let (qd, bent) = trapezoidal(start, before, &base.moved, h);
-                let moved = State { q: start.q.plus(one, &[1.0], [&base.moved]), qd, ..y };
+                let (qd, bent) = trapezoidal(start, before, &base.motion, h);
+                let moved = State { q: start.q.plus(one, &[1.0], [&base.motion]), qd, ..y };
                 if S::FORCE_USES_MULTIPLIERS {
                     let weight = one / quarter;
                     let here = model.residual(t, &y, &qdd, &lambda, weight)?;
@@ -143,29 +143,9 @@ impl AugmentedLagrangian {
                 let imbalance = model.imbalance(&position, &y, &qdd, (&augmented, &bearing));
                 Ok((model.largest(&last.corrected::<S>(&imbalance, &phi).0), least))
             })?;
-            (Balance { moved: change, lambda }, closed) = next;
+            (Unknowns { motion: change, lambda }, closed) = next;
         }
         Err(model.unbalanced(&step, t, MOST_ROUNDS))
-    }
-}
-
-/// By how much coordinates (N) change in a step, and multipliers (M) at its end.
-#[derive(Clone, Copy)]
-struct Balance<R, const N: usize, const M: usize> {
-    moved: [R; N],
-    lambda: [R; M],
-}
-
-impl<R: Real, const N: usize, const M: usize> Vector<R> for Balance<R, N, M> {
-    #[inline(always)]
-    fn zero(&self) -> Self {
-        Balance { moved: self.moved.zero(), lambda: self.lambda.zero() }
-    }
-
-    #[inline(always)]
-    fn plus<const K: usize>(&self, h: R, weights: &[f64; K], terms: [&Self; K]) -> Self {
-        let moved = self.moved.plus(h, weights, terms.map(|term| &term.moved));
-        Balance { moved, lambda: self.lambda.plus(h, weights, terms.map(|term| &term.lambda)) }
     }
 }
 

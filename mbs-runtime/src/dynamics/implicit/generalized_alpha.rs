@@ -1,7 +1,7 @@
 //! Generalised-α on the equations of index 3: accuracy of order 2 with damping of vibrations that the step does not resolve.
 
 use crate::dynamics::formulations::unstabilized::Unstabilized;
-use crate::dynamics::implicit::iteration::{Damping, MOST_ITERATIONS, MOST_ROUNDS};
+use crate::dynamics::implicit::iteration::{Damping, MOST_ITERATIONS, MOST_ROUNDS, Unknowns};
 use crate::dynamics::integrators::vector::{State, Vector};
 use crate::dynamics::linear_systems::kkt::System;
 use crate::dynamics::linear_systems::tangent::Tangent;
@@ -97,6 +97,7 @@ impl GeneralizedAlpha {
         let of_q = (one - alpha_m) / (beta * h * h * (one - alpha_f));
         let mut qdd = *before;
         let mut lambda = from.solved.lambda;
+        // The accelerations a that the next step starts from.
         let a = |qdd: &[R; N]| {
             let weight = one / (one - alpha_m);
             let sum = a0.zero().plus((one - alpha_f) * weight, &[1.0], [qdd]);
@@ -132,11 +133,11 @@ impl GeneralizedAlpha {
             counts.iterations += 1;
             counts.evaluations += 1;
             step = correction;
-            let here = Balance { qdd, lambda };
-            let whole = Balance { qdd: step.map(|x| -of_q * x), lambda: change.map(|x| -x) };
+            let here = Unknowns { motion: qdd, lambda };
+            let whole = Unknowns { motion: step.map(|x| -of_q * x), lambda: change.map(|x| -x) };
             let standing = model.standing_after(&from.y.q, &step, &y.q, &mut last)?;
             if standing {
-                Balance { qdd, lambda } = here.plus(one, &[1.0], [&whole]);
+                Unknowns { motion: qdd, lambda } = here.plus(one, &[1.0], [&whole]);
                 y.q = y.q.plus(-one, &[1.0], [&step]);
                 y.qd = y.qd.plus(-gamma / (beta * h), &[1.0], [&step]);
                 model.trapezoid(from, h, &mut y, &rate);
@@ -146,23 +147,23 @@ impl GeneralizedAlpha {
                     require_resolved(model, (t, h), &y, (&qdd, &lambda), counts)?;
                 }
                 let solved = Solved { rate, lambda, margin: factors.margin() };
-                return Ok(Instant { t, y, solved, carried: self.carried(a0, before, &qdd) });
+                return Ok(Instant { t, y, solved, carried: a(&qdd) });
             }
             if damping.is_last() {
                 return Err(model.unbalanced(&step, t, MOST_ITERATIONS));
             }
-            (Balance { qdd, lambda }, _) = damping.next(&here, (&whole, last), |base, least| {
-                let before = moved(&y, &base.qdd);
+            (Unknowns { motion: qdd, lambda }, _) = damping.next(&here, (&whole, last), |base, least| {
+                let before = moved(&y, &base.motion);
                 if S::FORCE_USES_MULTIPLIERS {
-                    let here = model.residual(t, &y, &here.qdd, &here.lambda, of_q)?;
-                    return Ok((here, model.residual(t, &before, &base.qdd, &base.lambda, of_q)?));
+                    let here = model.residual(t, &y, &here.motion, &here.lambda, of_q)?;
+                    return Ok((here, model.residual(t, &before, &base.motion, &base.lambda, of_q)?));
                 }
                 let place = model.position(t, &before);
-                let tangent = Tangent::of(model, &place, &before, &base.qdd, &base.lambda);
+                let tangent = Tangent::of(model, &place, &before, &base.motion, &base.lambda);
                 let matrix = tangent.combined(of_q, gamma / (beta * h), one);
                 let phi_q = model.mechanism.phi_q(model.parameters, &place);
                 let last = System::new(&matrix, &phi_q, model.metric).factorize(S::COORDINATES, t)?;
-                let imbalance = model.imbalance(&position, &y, &here.qdd, (&here.lambda, &here.lambda));
+                let imbalance = model.imbalance(&position, &y, &here.motion, (&here.lambda, &here.lambda));
                 Ok((model.largest(&last.solve(&imbalance, &phi).0), least))
             })?;
         }
@@ -200,35 +201,4 @@ fn require_resolved<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize
     }
     let least = h * (blur / allowed).sqrt();
     Err(FailureKind::StepTooShort { step: h.to_f64(), least: least.to_f64() }.at(t.to_f64()))
-}
-
-/// Accelerations (N) and multipliers (M) of a step's end.
-#[derive(Clone, Copy)]
-struct Balance<R, const N: usize, const M: usize> {
-    qdd: [R; N],
-    lambda: [R; M],
-}
-
-impl<R: Real, const N: usize, const M: usize> Vector<R> for Balance<R, N, M> {
-    #[inline(always)]
-    fn zero(&self) -> Self {
-        Balance { qdd: self.qdd.zero(), lambda: self.lambda.zero() }
-    }
-
-    #[inline(always)]
-    fn plus<const K: usize>(&self, h: R, weights: &[f64; K], terms: [&Self; K]) -> Self {
-        let qdd = self.qdd.plus(h, weights, terms.map(|term| &term.qdd));
-        Balance { qdd, lambda: self.lambda.plus(h, weights, terms.map(|term| &term.lambda)) }
-    }
-}
-
-impl GeneralizedAlpha {
-    /// The accelerations a that the next step starts from.
-    fn carried<R: Real, const N: usize>(self, a0: &[R; N], before: &[R; N], qdd: &[R; N]) -> [R; N] {
-        let Coefficients { alpha_m, alpha_f, .. } = self.coefficients::<R>();
-        let one = R::constant(1.0);
-        let weight = one / (one - alpha_m);
-        let sum = a0.zero().plus((one - alpha_f) * weight, &[1.0], [qdd]);
-        sum.plus(alpha_f * weight, &[1.0], [before]).plus(-alpha_m * weight, &[1.0], [a0])
-    }
 }

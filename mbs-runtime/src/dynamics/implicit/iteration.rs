@@ -22,6 +22,26 @@ const FALLEN: f64 = 1e-2;
 /// Halvings of one correction: as many as lead from a step's length to the bend of a law that is smoothed over a millionth of it.
 const MOST_HALVINGS: u32 = 20;
 
+/// Unknowns of a step: changes of the coordinates, or accelerations (N), and multipliers at its end (M).
+#[derive(Clone, Copy)]
+pub(crate) struct Unknowns<R, const N: usize, const M: usize> {
+    pub motion: [R; N],
+    pub lambda: [R; M],
+}
+
+impl<R: Real, const N: usize, const M: usize> Vector<R> for Unknowns<R, N, M> {
+    #[inline(always)]
+    fn zero(&self) -> Self {
+        Unknowns { motion: self.motion.zero(), lambda: self.lambda.zero() }
+    }
+
+    #[inline(always)]
+    fn plus<const K: usize>(&self, h: R, weights: &[f64; K], terms: [&Self; K]) -> Self {
+        let motion = self.motion.plus(h, weights, terms.map(|term| &term.motion));
+        Unknowns { motion, lambda: self.lambda.plus(h, weights, terms.map(|term| &term.lambda)) }
+    }
+}
+
 /// Newton's method that does not overshoot a bend of the forces. Where a correction has not fallen, nor the one of the last
 /// tangents, half of the last correction is tried again.
 ///
