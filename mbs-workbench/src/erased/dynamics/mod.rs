@@ -11,6 +11,7 @@ mod loads;
 #[cfg(feature = "program")]
 pub mod modes;
 mod power_balance;
+mod record;
 pub mod rest;
 #[cfg(feature = "program")]
 mod settling;
