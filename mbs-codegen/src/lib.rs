@@ -34,12 +34,12 @@ mod program;
     )
 )]
 pub mod random;
-mod scattered;
+mod sample_points;
 mod structure;
 mod symbolic;
 mod syntax;
 #[doc(hidden)] // tests compare the language reference with it
-pub mod tables;
+pub mod vocabulary;
 
 use diagnostics::Diagnostics;
 pub use emit::casadi::stand_in;
@@ -47,7 +47,8 @@ use emit::formula::notation::Notation;
 pub use emit::formula::{DynamicFormulas, Formulas};
 pub use emit::report::{BlockReport, CoordinateReport, EntryKind, RowReport, StructureReport};
 use emit::rust::Lengths;
-use model::scenes::{Scene, Scenes};
+use model::scene::Scene;
+use model::scenes::Scenes;
 pub use picture::picture;
 use proc_macro2::TokenStream;
 pub use program::Operations;
@@ -259,6 +260,6 @@ fn in_scene<T>(
     if !found.faults.is_empty() {
         return Err(found.faults.to_text());
     }
-    let name = model::scenes::alias(&text.header, found.label().unwrap_or_default());
+    let name = model::selection::alias(&text.header, found.label().unwrap_or_default());
     view(&name, found).map_err(|faults| faults.to_text())
 }

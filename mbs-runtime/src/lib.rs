@@ -2,7 +2,7 @@
 //!
 //! A mechanism is a text of coordinates, constraints, drives and bodies. The macro differentiates it symbolically while the crate
 //! compiles, and implements [`Mechanism`] and, by what the text has, [`Kinematic`] and [`Dynamic`]. The solvers use these traits
-//! alone. Nothing allocates, nothing panics, and every failure is a [`Failure`] that names the row or the coordinate and its line.
+//! alone. Nothing allocates, nothing panics. A [`Failure`] names the row or coordinate to blame and its line, where there is one.
 //!
 //! ```
 //! use mbs_runtime::{Mechanism, Stepper, mechanism};
@@ -31,7 +31,7 @@
 //! # Ok::<(), mbs_runtime::Failure>(())
 //! ```
 //!
-//! Six programs are in the folder `examples`; the book of the project has the language and the methods.
+//! Six programs are in the folder `examples` of the crate; the book of the project (`book/`) has the language and the methods.
 //!
 //! # Tasks
 //!
@@ -45,14 +45,14 @@
 //! | reach of a driver | [`Stepper::reach_towards`], [`Stepper::reach_of`] |
 //! | one position without a motion | [`assemble()`], [`newton_raphson()`] |
 //! | rates at a position | [`solve_velocity`], [`solve_acceleration`] |
-//! | dependent rows, scaling | [`Stepper::redundancy`], [`Redundancy`], [`IllScaled`] |
+//! | constraints that follow from others, rows in unequal units | [`Stepper::redundancy`], [`Redundancy`], [`IllScaled`] |
 //! | many designs at once | [`Batch`], [`Lanes`] |
 //! | motion from forces | [`dynamics::Simulation`] |
 //! | forces from motion | [`dynamics::inverse()`] |
 //! | position of rest | [`dynamics::equilibrium()`] |
 //! | small motions, eigenvalues | [`dynamics::linearize()`] |
 //! | motion laws, splines through tables | [`driver`] |
-//! | code that takes any mechanism | [`Reveal`], [`Visitor`] |
+//! | a program for any mechanism, as the report | [`Reveal`], [`Visitor`] |
 //!
 //! # Symbols
 //!
@@ -64,13 +64,14 @@
 //! | Φ_q | M × N | Jacobian of the rows |
 //! | Φ_t, Φ_tt | M | explicit time derivatives; velocities solve Φ_q q̇ = −Φ_t |
 //! | γ | M | right-hand side of the accelerations: Φ_q q̈ = γ |
-//! | M | N × N | mass matrix |
+//! | **M** | N × N | mass matrix |
 //! | Q | N | generalized forces |
-//! | λ | M | multipliers: M q̈ + Φ_qᵀ λ = Q; the effort of a drive is −λ |
+//! | λ | M | Lagrange multipliers: **M** q̈ + Φ_qᵀ λ = Q; the driving force or torque of a drive is −λ |
 //! | h | 1 | length of a step (s) |
 //! | ε | 1 | machine epsilon of the number type, which tolerances scale with |
 //!
-//! Units are coherent SI, angles are in rad. N counts coordinates and M rows; both are part of the types.
+//! Values are in coherent SI units and rad; other units stand in the text alone. N counts coordinates and M rows; both are part of
+//! the types.
 //!
 //! # Features
 //!
@@ -156,15 +157,13 @@ pub use worst_case::{BlockWork, Work, WorstCase};
 /// Declares a mechanism: a struct with its parameters, and implementations of [`Mechanism`], of [`Kinematic`] if the
 /// rows fix every coordinate, and of [`Dynamic`] if the text has masses or forces.
 ///
-/// The text is a header and statements: `const`, `param`, `input`, `coord`, `let`, `constraint`, `drive`, `branch`,
-/// `limit`, `out`, `function` and `for`; for dynamics `body`, `gravity`, `force`, `torque`, `tsda`, `rsda`, `potential`,
-/// `kinetic`, `dissipation`, `state` and `start`; `effect` and `scene` for several mechanisms in one text. Units are
-/// checked, vectors are arrays, derivatives are exact. The emitted struct has the parameters and inputs as public fields,
-/// `Default`, and a view of the coordinates by name. Its documentation has shapes, sparsity, order of solution and operation
-/// counts. With functions it has a type parameter and a public field for each, before the scalar, and `new` that takes
-/// them. A constraint marked `redundant` may have rows that follow from others. With scenes it has a type parameter for the scene
-/// after the scalar's, [`AllEffects`] by default, and an alias for each scene. The language reference of the book explains every
-/// statement.
+/// The text is a header and statements. The most used are `param`, `coord`, `constraint`, `drive`, `branch` and `out`; for dynamics
+/// `body` and `force`. The language reference of the book (`book/src/language`) explains all of them.
+///
+/// The emitted struct has the parameters and inputs as public fields, `Default`, and a view of the coordinates by name. Its
+/// documentation has shapes, sparsity, order of solution and operation counts. With functions it has a type parameter and a public
+/// field for each, before the scalar, and `new` that takes them. With scenes it has a type parameter for the scene after the
+/// scalar's, [`AllEffects`] by default, and an alias for each scene.
 ///
 /// ```
 /// use mbs_runtime::{Mechanism, Stepper, mechanism};

@@ -7,7 +7,7 @@ use std::process::{Command, Stdio};
 use std::sync::LazyLock;
 use std::thread;
 
-use mbs_codegen::random::{ExpectedScene, Kind, STATES, State, TEXTS, expected, text};
+use mbs_codegen::random::{Evaluation, ExpectedScene, Features, STATES, TEXTS, expected, text};
 use mbs_tests::tools;
 use mbs_tests::written::WrittenCrate;
 
@@ -36,22 +36,22 @@ mbs-workbench = { path = "../../mbs-workbench", default-features = false }
 const PROGRAM: &str = include_str!("random_texts/program.rs");
 
 /// Kinds of the texts in turn.
-const KINDS: [Kind; 10] = [
-    Kind::Plain,
-    Kind::Functions,
-    Kind::Plain,
-    Kind::Scenes,
-    Kind::Plain,
-    Kind::Masses,
-    Kind::Functions,
-    Kind::Plain,
-    Kind::ScenesWithFunctions,
-    Kind::Plain,
+const KINDS: [Features; 10] = [
+    Features::Plain,
+    Features::Functions,
+    Features::Plain,
+    Features::Scenes,
+    Features::Plain,
+    Features::Masses,
+    Features::Functions,
+    Features::Plain,
+    Features::ScenesWithFunctions,
+    Features::Plain,
 ];
 
 /// A text of the sample.
 struct Sampled {
-    kind: Kind,
+    kind: Features,
     seed: u64,
     scenes: Vec<ExpectedScene>,
     /// `true` if the text is compiled in parts and loops, as long texts are.
@@ -67,7 +67,7 @@ impl Sampled {
 /// Spread over all seeds, refused texts left out.
 static TEXTS_OF_THE_SAMPLE: LazyLock<Vec<Sampled>> = LazyLock::new(|| {
     let step = TEXTS as usize / SAMPLE;
-    let sampled = |(index, (first, kind)): (usize, (u64, Kind))| {
+    let sampled = |(index, (first, kind)): (usize, (u64, Features))| {
         let is_cut = index % EVERY_CUT == 0;
         let mut seeds = first..first + step as u64;
         seeds
@@ -101,7 +101,7 @@ static CRATE: LazyLock<WrittenCrate> = LazyLock::new(|| {
         let n = states[0].0.q.len();
         let functions = if kind.has_functions() { "<StandIn<0>, StandIn<1>>" } else { "" };
         let of = format!("::<text_{seed}::Random{seed}{name}{functions}, {n}, {rows}>");
-        let masses = *kind == Kind::Masses;
+        let masses = *kind == Features::Masses;
         let call = if masses { "with_masses" } else { "values" };
         values += &format!("        {index} => {call}{of}(numbers),\n");
         // Those of masses are confirmed with the ready mechanisms: a facade of them is every method of integration once more.
@@ -128,7 +128,7 @@ fn compiled_texts_compute_what_second_order_taylor_arithmetic_computes() {
     let mut questions = String::new();
     for (index, (_, scene)) in scenes().enumerate() {
         for (state, _) in &scene.states {
-            let State { q, qd, qdd, t, variables, lambda, states } = state;
+            let Evaluation { q, qd, qdd, t, variables, lambda, states } = state;
             let numbers = [q.as_slice(), qd, qdd, &[*t], lambda, states, variables].concat();
             questions += &format!("{index}{}\n", line(numbers.into_iter()));
         }
@@ -176,7 +176,7 @@ fn compiled_texts_compute_what_second_order_taylor_arithmetic_computes() {
 fn fifty_digits_confirm_compiled_texts() {
     let said = tools::output(&mut run("digits"), "the tests need cargo, which runs them");
     let said = said.unwrap_or_else(|said| panic!("{said}"));
-    let plain = scenes().filter(|(text, _)| text.kind != Kind::Masses).count();
+    let plain = scenes().filter(|(text, _)| text.kind != Features::Masses).count();
     assert!(said.starts_with(&format!("{plain} mechanisms × ")), "{said}");
     println!("{said}");
 }

@@ -3,7 +3,7 @@
 use crate::emit::rust::docs;
 use crate::equations::Equations;
 use crate::model::Model;
-use crate::program::{Method, Operations, Program, Section};
+use crate::program::{BlockMethod, Operations, Program, Section};
 use crate::structure::Structure;
 use crate::structure::dyad::Dyad;
 use crate::structure::mobility::{Mobility, mobility};
@@ -140,8 +140,8 @@ fn operations(program: &Program) -> usize {
         &program.outputs,
     ];
     let iterations = program.blocks.iter().filter_map(|block| match &block.method {
-        Method::Newton(system) => Some(&system.section),
-        Method::Explicit { .. } => None,
+        BlockMethod::Newton(system) => Some(&system.section),
+        BlockMethod::Explicit { .. } => None,
     });
     let blocks = program.blocks.iter().map(|block| &block.before).chain(iterations);
     functions.into_iter().chain(blocks).map(count).sum()

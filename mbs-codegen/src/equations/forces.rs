@@ -3,7 +3,7 @@
 use super::jacobian;
 use super::lower::Clock;
 use super::power_of_time;
-use crate::model::dynamics::{Action, Dynamics as Declared, Line, Turn};
+use crate::model::dynamics::{Action, Dynamics as Declared, SpringDamper, Turn};
 use crate::model::expression::Id;
 use crate::symbolic::{Graph, Leaf, NodeId, Unary, tangent};
 
@@ -234,7 +234,7 @@ impl Work<'_> {
     }
 
     /// A tension between two points: k d + (c l̇ + f − k l₀) d/l pulls the end back, d from begin to end.
-    fn line(&mut self, g: &mut Graph, line: &Line, of: &impl Fn(Id) -> NodeId) -> Option<NodeId> {
+    fn line(&mut self, g: &mut Graph, line: &SpringDamper, of: &impl Fn(Id) -> NodeId) -> Option<NodeId> {
         let zero = g.constant(0.0);
         let span: Vec<NodeId> =
             line.from.iter().zip(&line.to).map(|(a, b)| g.subtract(of(*b), of(*a))).collect();

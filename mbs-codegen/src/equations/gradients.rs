@@ -3,7 +3,7 @@
 use super::Row;
 use crate::model::Model;
 use crate::symbolic::evaluate::evaluate;
-use crate::symbolic::scattered::scattered;
+use crate::symbolic::sample_points::scattered;
 use crate::symbolic::{Binary, Graph, Leaf, Node, NodeId, Stage, Unary};
 
 /// Times that the unit of a row may be off its gradient before the row is measured by the latter: bars of one linkage,

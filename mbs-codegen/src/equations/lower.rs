@@ -1,7 +1,8 @@
 //! The model's expressions as nodes of the graph.
 
 use crate::model::expression::{self, Id};
-use crate::model::{Model, VariableKind, units::Dimension};
+use crate::model::units::Dimension;
+use crate::model::{Model, VariableKind};
 use crate::symbolic::{Binary, Graph, Leaf, Node, NodeId, Stage, Unary, tangent};
 
 /// The graph with everything that needs no differentiation.

@@ -7,7 +7,7 @@ use crate::symbolic::{Binary, Graph, Leaf, Node, NodeId, Unary};
 
 /// Function that a term applies to its components.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum NormalFunction {
     /// The multiplier itself.
     Multiplier,
     /// The absolute value of one component.
@@ -20,7 +20,7 @@ pub enum Kind {
 #[derive(Debug)]
 pub struct Term {
     /// Its function.
-    pub kind: Kind,
+    pub kind: NormalFunction,
     /// One or two sums of multipliers and of terms before; multipliers from M on represent the terms.
     pub components: Vec<NodeId>,
     /// Its derivatives by each multiplier, one row a component.
@@ -74,7 +74,7 @@ pub fn normal_forces(g: &mut Graph, force: &[Option<NodeId>], rows: usize) -> Op
     let mut leaves: Vec<usize> = places.collect();
     for multiplier in plain_multipliers(g, &images, rows) {
         let component = g.leaf(Leaf::Multiplier(multiplier as u32));
-        terms.push((Kind::Multiplier, vec![component]));
+        terms.push((NormalFunction::Multiplier, vec![component]));
         leaves.push(multiplier);
     }
     let by = |g: &mut Graph, roots: &[NodeId], leaves: &[usize]| {
@@ -113,7 +113,7 @@ fn plain_multipliers(g: &Graph, roots: &[NodeId], rows: usize) -> Vec<usize> {
 struct Walk {
     /// Form of each node that depends on a multiplier, with its terms as leaves; `None` where it is no such sum.
     images: BTreeMap<NodeId, Option<NodeId>>,
-    terms: Vec<(Kind, Vec<NodeId>)>,
+    terms: Vec<(NormalFunction, Vec<NodeId>)>,
     rows: usize,
 }
 
@@ -146,11 +146,11 @@ impl Walk {
             }
             Node::Unary(Unary::Abs, a) => {
                 let a = self.image(a)?;
-                self.term(g, Kind::Absolute, vec![a])
+                self.term(g, NormalFunction::Absolute, vec![a])
             }
             Node::Unary(Unary::Sqrt, a) => {
                 let components = self.squares(g, a)?;
-                self.term(g, Kind::Norm, components)
+                self.term(g, NormalFunction::Norm, components)
             }
             Node::Binary(function @ (Binary::Add | Binary::Subtract), a, b) => {
                 let (a, b) = (self.image(a)?, self.image(b)?);
@@ -166,13 +166,13 @@ impl Walk {
             }
             Node::Binary(Binary::Hypot, a, b) => {
                 let components = vec![self.image(a)?, self.image(b)?];
-                self.term(g, Kind::Norm, components)
+                self.term(g, NormalFunction::Norm, components)
             }
             // max(a, b) = (a + b + |a − b|)/2
             Node::Binary(function @ (Binary::Min | Binary::Max), a, b) => {
                 let (a, b) = (self.image(a)?, self.image(b)?);
                 let apart = g.subtract(a, b);
-                let apart = self.term(g, Kind::Absolute, vec![apart]);
+                let apart = self.term(g, NormalFunction::Absolute, vec![apart]);
                 let sum = g.add(a, b);
                 let twice = if function == Binary::Max { g.add(sum, apart) } else { g.subtract(sum, apart) };
                 let half = g.constant(0.5);
@@ -197,7 +197,7 @@ impl Walk {
     }
 
     /// A leaf for a term.
-    fn term(&mut self, g: &mut Graph, kind: Kind, components: Vec<NodeId>) -> NodeId {
+    fn term(&mut self, g: &mut Graph, kind: NormalFunction, components: Vec<NodeId>) -> NodeId {
         let known = self.terms.iter().position(|(other, parts)| *other == kind && *parts == components);
         let place = known.unwrap_or(self.terms.len());
         if known.is_none() {

@@ -9,7 +9,7 @@ use proc_macro2::Span;
 use super::Equations;
 use crate::diagnostics::Diagnostics;
 use crate::model::expression::{self, Id};
-use crate::model::{Model, Row, VariableKind};
+use crate::model::{ConstraintRow, Model, VariableKind};
 use crate::symbolic::{Binary, Leaf, Node, NodeId, Unary};
 
 /// Most angles whose turns one value may add up; of more it counts as changing otherwise, which keeps the work linear.
@@ -225,7 +225,7 @@ fn coordinates(model: &Model) -> impl Iterator<Item = usize> + '_ {
 }
 
 /// `true` if the row is that of a drive that prescribes a rate: its phase turns with it.
-fn holds_a_phase(model: &Model, row: &Row) -> bool {
+fn holds_a_phase(model: &Model, row: &ConstraintRow) -> bool {
     let node = |id: Id| model.expressions.node(id);
     let is_phase = |id: Id| match node(id) {
         expression::Node::Variable(index) => model.phases.iter().any(|phase| phase.variable == index),

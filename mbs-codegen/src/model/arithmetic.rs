@@ -2,11 +2,11 @@
 
 use proc_macro2::Span;
 
-use super::bare::Bare;
-use super::elaborate::{Elaborator, Fault};
+use super::elaborator::Elaborator;
 use super::expression::{Id, Node};
+use super::unit_inference::Bare;
 use super::units::Dimension;
-use super::value::{Quantity, Scalar, Value};
+use super::value::{Fault, Quantity, Scalar, Value};
 use crate::symbolic::{Binary, Unary};
 use crate::syntax::ast::Operator;
 

@@ -1,11 +1,10 @@
 //! Bodies: their masses and rotations, in a plane or in space.
 
 use super::dynamics::{Body, Rotation};
-use super::elaborate::{Elaborator, Fault};
 use super::elements::{Given, ORIENTATION};
 use super::inertia::Inertia;
-use super::resolve::Resolver;
-use super::value::Value;
+use super::resolver::Resolver;
+use super::value::{Fault, Value};
 use crate::syntax::ast::Name;
 
 impl Resolver<'_> {
@@ -86,16 +85,6 @@ impl Resolver<'_> {
             ),
         };
         Err(self.fault(name.span, message, help))
-    }
-}
-
-/// One moment of inertia, [Jxx, Jyy, Jzz] or [Jxx, Jyy, Jzz, Jxy, Jxz, Jyz].
-pub fn inertia(work: &mut Elaborator<'_>, value: &Value) -> Result<(), Fault> {
-    match value.shape.as_slice() {
-        [] | [3 | 6] => Ok(()),
-        _ => {
-            Err(work.wrong_shape("`inertia`", "a scalar or a vector of 3 or 6 components", value, value.span))
-        }
     }
 }
 

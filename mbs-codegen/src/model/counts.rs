@@ -2,11 +2,11 @@
 
 use proc_macro2::Span;
 
-use super::elaborate::{Elaborator, Fault};
+use super::elaborator::Elaborator;
 use super::expression::Node;
 use super::operands::Operands;
 use super::units::Dimension;
-use super::value::Value;
+use super::value::{Fault, Value};
 use crate::syntax::ast::{Instruction, Operation};
 
 /// Longest array.

@@ -2,18 +2,17 @@
 
 use proc_macro2::Span;
 
-use super::bare::Bare;
 use super::counts::LONGEST;
-use super::dynamics::State;
-use super::elaborate::{Elaborator, Fault};
+use super::dynamics::FirstOrderState;
+use super::elaborator::Elaborator;
 use super::expression::{Id, Node};
 use super::initialiser::{definition, filling, in_unit, initialiser, numbers};
 use super::names::Names;
 use super::order::order;
-use super::rates::Reach;
 use super::turns::turning;
+use super::unit_inference::Bare;
 use super::units::Dimension;
-use super::value::{Quantity, Scalar, Value};
+use super::value::{Fault, Quantity, Reach, Scalar, Value};
 use super::{Coordinate, CoordinateField, Field, Model, Role, Variable, VariableKind};
 use crate::diagnostics::Diagnostics;
 use crate::syntax::ast::{Declares, Expression, Loop, Name, Statement, StatementKind, Type, Unit};
@@ -428,7 +427,7 @@ impl Declarations<'_> {
         let states = &mut self.model.dynamics.get_or_insert_default().states;
         let first = states.len();
         for (index, component) in component_names(&name.text, &declared.shape).enumerate() {
-            states.push(State {
+            states.push(FirstOrderState {
                 name: component,
                 unit: kind.unit.text.clone(),
                 start: starts.get(index).copied(),

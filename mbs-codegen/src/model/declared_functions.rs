@@ -1,31 +1,16 @@
-//! Functions that the text declares and the caller supplies: their declarations and their calls.
+//! Functions that the text declares and the caller supplies: their declarations, and that each is called.
 
 use std::collections::BTreeSet;
 
-use proc_macro2::Span;
-
 use super::Function;
-use super::bare::Bare;
 use super::declarations::Declarations;
-use super::elaborate::{Elaborator, Fault};
 use super::initialiser::{initialiser, numbers};
+use super::names::Callable;
+use super::unit_inference::Bare;
 use super::units::Dimension;
-use super::value::{Quantity, Scalar, Value};
+use super::value::{Fault, Quantity, Value};
 use crate::diagnostics::Diagnostics;
 use crate::syntax::ast::{Name, Operation, Signature, Statement, StatementKind};
-
-/// A declared function as expressions see it.
-#[derive(Clone, Copy, Debug)]
-pub struct Callable {
-    /// Index among the functions of the text.
-    index: usize,
-    /// Unit of the value.
-    unit: Dimension,
-    /// Unit of the argument.
-    argument: Dimension,
-    /// `Bare::Angle` if its values are angles.
-    bare: Bare,
-}
 
 impl Declarations<'_> {
     /// Declares a function; its period is a number.
@@ -86,49 +71,6 @@ impl Declarations<'_> {
             continuity: 0,
             period: None,
         });
-    }
-}
-
-/// Before: arguments in the order of the stack. After: the value of a declared function, or of its derivative of this
-/// order, or the fault reported.
-pub fn call(
-    work: &mut Elaborator<'_>,
-    function: Callable,
-    (name, order): (&str, u8),
-    arguments: Vec<Value>,
-    span: Span,
-) -> Result<Value, Fault> {
-    let written = if order == 0 { name.to_owned() } else { format!("{name}.d{order}") };
-    let [argument] = work.arguments(&written, arguments, span)?;
-    let scalar = work.scalar(&argument, &format!("`{written}`"), argument.span)?;
-    fits(work, &written, function.argument, scalar)?;
-    let mut unit = function.unit;
-    for _ in 0..order {
-        unit = unit.over(function.argument);
-    }
-    let id = work.expressions.push_call(function.index, order, scalar.id, span);
-    Ok(Value::scalar(Scalar { id, quantity: Quantity::Known(unit), bare: function.bare, span }, span))
-}
-
-/// The argument has the declared unit.
-fn fits(
-    work: &mut Elaborator<'_>,
-    written: &str,
-    declared: Dimension,
-    argument: Scalar,
-) -> Result<(), Fault> {
-    match argument.quantity {
-        Quantity::Known(unit) if unit != declared => {
-            let help = if argument.bare == Bare::Wholly {
-                "a bare number has no unit; write it with one: `100mm`, `30deg`"
-            } else {
-                "bring the argument to the unit that the declaration gives in parentheses"
-            };
-            let message =
-                format!("the argument of `{written}` has the unit `{unit}`; declared is `{declared}`");
-            Err(work.fault(argument.span, message, help))
-        }
-        _ => Ok(()),
     }
 }
 

@@ -1,12 +1,10 @@
 //! Drives: rows that prescribe a motion, or a rate whose integral the stepper keeps as a phase.
 
-use super::elaborate::Fault;
 use super::expression::{Id, Node};
-use super::rates::Reach;
-use super::resolve::Resolver;
+use super::resolver::Resolver;
 use super::units::Dimension;
-use super::value::{Quantity, Scalar};
-use super::{Field, Phase, Role, Row, Variable, VariableKind};
+use super::value::{Fault, Quantity, Reach, Scalar};
+use super::{ConstraintRow, Field, Phase, Role, Variable, VariableKind};
 use crate::symbolic::Binary;
 use crate::syntax::ast::{Equation, Expression, Instruction, Name, Operation};
 
@@ -66,7 +64,7 @@ impl Resolver<'_> {
             work.push_binary(Binary::Subtract, argument.id, value, equation.span)
         })?;
         self.model.phases.push(Phase { variable, argument: argument.id, speed: speed.id });
-        let row = Row {
+        let row = ConstraintRow {
             name: String::new(),
             dimension,
             residual,

@@ -27,7 +27,7 @@ pub struct Dynamics {
     /// Energies that `kinetic` adds (J).
     pub kinetics: Vec<Kinetic>,
     /// First-order states, component by component.
-    pub states: Vec<State>,
+    pub states: Vec<FirstOrderState>,
     /// Rates of the coordinates at the start, by coordinate.
     pub rates: Vec<(usize, Id)>,
     /// Coordinates whose start the text declares, ascending.
@@ -153,7 +153,7 @@ pub enum Action {
     /// Rayleigh's function R (W/2): the generalized forces are −∂R/∂q̇.
     Dissipation(Id),
     /// A tension between two points.
-    Line(Line),
+    Line(SpringDamper),
     /// A torque against an angle.
     Turn(Turn),
 }
@@ -162,7 +162,7 @@ pub enum Action {
 ///
 /// At zero length there is no direction: k (P − Q) is exact there; the terms of l₀, c and f vanish.
 #[derive(Debug)]
-pub struct Line {
+pub struct SpringDamper {
     /// Start point (m).
     pub from: Vec<Id>,
     /// End point (m).
@@ -198,7 +198,7 @@ pub struct Turn {
 
 /// A first-order state.
 #[derive(Debug)]
-pub struct State {
+pub struct FirstOrderState {
     /// Name, with the component's number for arrays.
     pub name: String,
     /// Unit as written.

@@ -2,46 +2,24 @@
 
 use proc_macro2::Span;
 
-use super::Reference;
-use super::bare::Bare;
 use super::counts::follows_literals;
-use super::declared_functions;
-use super::expression::{Expressions, Id, Node};
-use super::functions::{self, FUNCTIONS};
-use super::names::{Names, Symbol};
+use super::elaborator::Elaborator;
+use super::expression::Node;
+use super::functions;
+use super::names::{FUNCTIONS, Symbol};
 use super::operands::Operands;
-use super::rates::Reach;
 use super::references::{REFERRING, is_reference};
+use super::unit_inference::Bare;
 use super::units::{Dimension, in_unit};
-use super::value::{Quantity, Scalar, Value};
-use crate::diagnostics::Diagnostics;
-use crate::symbolic::{Binary, Unary};
+use super::value::{Fault, Quantity, Scalar, Value};
+use crate::symbolic::Unary;
 use crate::syntax::ast::{Expression, Instruction, Operation, Operator, Unit};
-
-/// A fault was reported.
-#[derive(Clone, Copy, Debug)]
-pub struct Fault;
 
 /// Most operations that a text may unroll to: their derivatives and stages are several times as many. Of a text that repeats itself
 /// these are the 100 000 of `cargo xtask growth`, and some more.
 pub const MOST_OPERATIONS: usize = 64_000;
 /// Most expressions, numbers included, which cost less.
 pub const MOST_EXPRESSIONS: usize = 200_000;
-/// Names that have a value without a declaration.
-pub(super) const CONSTANTS: [&str; 3] = ["t", "PI", "TAU"];
-
-/// Executes the postfix code of expressions.
-pub struct Elaborator<'a> {
-    pub expressions: &'a mut Expressions,
-    pub names: &'a mut Names,
-    pub diagnostics: &'a mut Diagnostics,
-    /// Quantities that are allowed here.
-    pub reach: Reach,
-    /// Quantities used here so far.
-    pub needs: Reach,
-    /// Groups that `margin` and `ratio` can refer to.
-    pub groups: &'a [Reference],
-}
 
 /// A `sum` that is being unrolled.
 struct Sum {
@@ -118,7 +96,7 @@ impl Elaborator<'_> {
                 let arguments = stack.pop_many(*arguments, self.names)?;
                 match (self.names.get(function), order) {
                     (Some(Symbol::Function(callable)), _) => {
-                        declared_functions::call(self, *callable, (function, *order), arguments, span)?
+                        functions::call_declared(self, *callable, (function, *order), arguments, span)?
                     }
                     (Some(Symbol::Faulty), _) if !FUNCTIONS.contains(&function.as_str()) => {
                         return Err(Fault);
@@ -196,15 +174,6 @@ impl Elaborator<'_> {
         Ok(Value::scalar(scalar, span))
     }
 
-    /// A bare number; `0` fits any unit.
-    pub fn number_literal(&mut self, value: f64, span: Span) -> Scalar {
-        let (quantity, bare) = match value == 0.0 {
-            true => (Quantity::Any, Bare::Zero),
-            false => (Quantity::Known(Dimension::NUMBER), Bare::Wholly),
-        };
-        Scalar { id: self.expressions.push(Node::Number(value)), quantity, bare, span }
-    }
-
     /// Value of a name that is no declared value.
     fn name(&mut self, name: &str, place: (&[Instruction], usize), span: Span) -> Result<Value, Fault> {
         match self.names.get(name) {
@@ -235,38 +204,5 @@ impl Elaborator<'_> {
             }
             _ => Err(self.unknown_name(name, place)),
         }
-    }
-
-    /// Reports a fault.
-    pub fn fault(&mut self, span: Span, message: impl Into<String>, help: impl Into<String>) -> Fault {
-        self.diagnostics.report(span, message, help);
-        Fault
-    }
-
-    /// Before: any operands. After: an expression of numbers is folded to its value, which must be finite.
-    pub fn push_unary(&mut self, function: Unary, a: Id, span: Span) -> Result<Id, Fault> {
-        match self.expressions.node(a) {
-            Node::Number(a) => self.folded((function.entry().value)(a), span),
-            _ => Ok(self.expressions.push(Node::Unary(function, a))),
-        }
-    }
-
-    /// Before: any operands. After: an expression of numbers is folded to its value, which must be finite.
-    pub fn push_binary(&mut self, function: Binary, a: Id, b: Id, span: Span) -> Result<Id, Fault> {
-        match (self.expressions.node(a), self.expressions.node(b)) {
-            (Node::Number(a), Node::Number(b)) => self.folded((function.entry().value)(a, b), span),
-            _ => Ok(self.expressions.push(Node::Binary(function, a, b))),
-        }
-    }
-
-    fn folded(&mut self, value: f64, span: Span) -> Result<Id, Fault> {
-        if value.is_finite() {
-            return Ok(self.expressions.push(Node::Number(value)));
-        }
-        Err(self.fault(
-            span,
-            "this is not a finite number",
-            "check for a division by zero, or a root or logarithm of a negative number",
-        ))
     }
 }

@@ -2,17 +2,16 @@
 
 use proc_macro2::Span;
 
-use super::bodies::inertia;
-use super::dynamics::{Action, Carrier, Dynamics, Force, Kinetic, Line, Turn};
-use super::elaborate::{Elaborator, Fault};
+use super::dynamics::{Action, Carrier, Dynamics, Force, Kinetic, SpringDamper, Turn};
+use super::elaborator::Elaborator;
 use super::expression::{Id, Node};
+use super::inertia::check_shape;
 use super::initialiser::{filling, fits_shape, initialiser};
 use super::non_negative::{Least, NonNegative};
-use super::orientation::{moments, parameters};
-use super::rates::Reach;
-use super::resolve::Resolver;
+use super::resolver::Resolver;
+use super::rotation::{moments, parameters};
 use super::units::Dimension;
-use super::value::{Quantity, Value};
+use super::value::{Fault, Quantity, Reach, Value};
 use crate::diagnostics::nearest;
 use crate::syntax::ast::{Element, Energy, Expression, Field, Joined, Load, Name, Statement, StatementKind};
 
@@ -36,7 +35,7 @@ const ENDS: [&str; 2] = ["from", "to"];
 
 /// Kind of value in a field.
 #[derive(Clone, Copy)]
-pub enum Kind {
+pub enum FieldKind {
     /// A number of a unit, of parameters alone.
     Constant(Dimension),
     /// A number of a unit, at the reach.
@@ -52,55 +51,55 @@ pub enum Kind {
 }
 
 /// A field of an element: its name, its kind of value, `true` if it must be given.
-pub type Known = (&'static str, Kind, bool);
+pub type Known = (&'static str, FieldKind, bool);
 
 /// Fields of an element, in the order of the reference.
 pub fn known(element: Element) -> Vec<Known> {
     let per_metre = Dimension::NEWTON.over(Dimension::METRE);
-    let scalar = |dimension| Kind::Scalar(dimension, Reach::Force);
+    let scalar = |dimension| FieldKind::Scalar(dimension, Reach::Force);
     match element {
         Element::Body => vec![
-            ("mass", Kind::Constant(Dimension::KILOGRAM), true),
-            ("com", Kind::Point, true),
-            ("inertia", Kind::Inertia, false),
-            ("angle", Kind::Scalar(Dimension::NUMBER, Reach::Position), false),
-            (ORIENTATION, Kind::Orientation, false),
+            ("mass", FieldKind::Constant(Dimension::KILOGRAM), true),
+            ("com", FieldKind::Point, true),
+            ("inertia", FieldKind::Inertia, false),
+            ("angle", FieldKind::Scalar(Dimension::NUMBER, Reach::Position), false),
+            (ORIENTATION, FieldKind::Orientation, false),
         ],
         Element::Gravity => {
             let acceleration = Dimension::METRE.over(Dimension::SECOND).over(Dimension::SECOND);
-            vec![("acceleration", Kind::Vector(acceleration), true)]
+            vec![("acceleration", FieldKind::Vector(acceleration), true)]
         }
         Element::Tsda => vec![
-            ("from", Kind::Point, true),
-            ("to", Kind::Point, true),
+            ("from", FieldKind::Point, true),
+            ("to", FieldKind::Point, true),
             ("stiffness", scalar(per_metre), false),
             ("length", scalar(Dimension::METRE), false),
             ("damping", scalar(per_metre.times(Dimension::SECOND)), false),
             ("actuator", scalar(Dimension::NEWTON), false),
         ],
         Element::Rsda => vec![
-            ("angle", Kind::Scalar(Dimension::NUMBER, Reach::Position), true),
+            ("angle", FieldKind::Scalar(Dimension::NUMBER, Reach::Position), true),
             ("stiffness", scalar(Dimension::JOULE), false),
             ("rest", scalar(Dimension::NUMBER), false),
             ("damping", scalar(Dimension::JOULE.times(Dimension::SECOND)), false),
             ("torque", scalar(Dimension::JOULE), false),
         ],
         Element::Friction => vec![
-            ("along", Kind::Scalar(Dimension::METRE, Reach::Position), true),
+            ("along", FieldKind::Scalar(Dimension::METRE, Reach::Position), true),
             ("normal", scalar(Dimension::NEWTON), true),
             ("coefficient", scalar(Dimension::NUMBER), true),
-            ("speed", Kind::Constant(Dimension::METRE.over(Dimension::SECOND)), true),
+            ("speed", FieldKind::Constant(Dimension::METRE.over(Dimension::SECOND)), true),
             ("viscous", scalar(per_metre.times(Dimension::SECOND)), false),
         ],
         Element::Contact => vec![
-            ("gap", Kind::Scalar(Dimension::METRE, Reach::Position), true),
+            ("gap", FieldKind::Scalar(Dimension::METRE, Reach::Position), true),
             ("stiffness", scalar(per_metre), true),
-            ("exponent", Kind::Constant(Dimension::NUMBER), false),
-            ("depth", Kind::Constant(Dimension::METRE), false),
+            ("exponent", FieldKind::Constant(Dimension::NUMBER), false),
+            ("depth", FieldKind::Constant(Dimension::METRE), false),
             ("damping", scalar(Dimension::SECOND.over(Dimension::METRE)), false),
             (
                 "bound",
-                Kind::Constant(Dimension::METRE.over(Dimension::SECOND).over(Dimension::SECOND)),
+                FieldKind::Constant(Dimension::METRE.over(Dimension::SECOND).over(Dimension::SECOND)),
                 false,
             ),
         ],
@@ -163,7 +162,7 @@ impl Resolver<'_> {
         }
         let constant = ["stiffness", "length"].iter().filter_map(|field| given.scalar(field));
         let stores = constant.into_iter().all(|id| self.model.is_constant(id));
-        let line = Line {
+        let line = SpringDamper {
             from,
             to,
             stiffness: given.scalar("stiffness"),
@@ -240,23 +239,23 @@ impl Resolver<'_> {
         }
     }
 
-    fn field(&mut self, field: &Field, kind: Kind) -> Result<Value, Fault> {
+    fn field(&mut self, field: &Field, kind: FieldKind) -> Result<Value, Fault> {
         let (dimension, reach) = match kind {
-            Kind::Constant(dimension) | Kind::Vector(dimension) => (dimension, Reach::Position),
-            Kind::Scalar(dimension, reach) => (dimension, reach),
-            Kind::Point => (Dimension::METRE, Reach::Position),
-            Kind::Inertia => (Dimension::INERTIA, Reach::Position),
-            Kind::Orientation => (Dimension::NUMBER, Reach::Position),
+            FieldKind::Constant(dimension) | FieldKind::Vector(dimension) => (dimension, Reach::Position),
+            FieldKind::Scalar(dimension, reach) => (dimension, reach),
+            FieldKind::Point => (Dimension::METRE, Reach::Position),
+            FieldKind::Inertia => (Dimension::INERTIA, Reach::Position),
+            FieldKind::Orientation => (Dimension::NUMBER, Reach::Position),
         };
         let user = format!("`{}`", field.name.text);
         let value = self.elaborate(reach, |work| {
             let value = work.value(&field.value)?;
             let value = initialiser(work, value, dimension)?;
             match kind {
-                Kind::Constant(_) | Kind::Scalar(..) => fits_shape(work, &value, &[])?,
-                Kind::Point | Kind::Vector(_) => point(work, &value, &user)?,
-                Kind::Inertia => inertia(work, &value)?,
-                Kind::Orientation => parameters(work, &value, &user).map(|_| ())?,
+                FieldKind::Constant(_) | FieldKind::Scalar(..) => fits_shape(work, &value, &[])?,
+                FieldKind::Point | FieldKind::Vector(_) => point(work, &value, &user)?,
+                FieldKind::Inertia => check_shape(work, &value)?,
+                FieldKind::Orientation => parameters(work, &value, &user).map(|_| ())?,
             }
             Ok::<_, Fault>(value)
         })?;
@@ -265,7 +264,8 @@ impl Resolver<'_> {
         }
         let varies = |work: &Self, item: Id, allowed: fn(Node) -> bool| !work.model.made_of(item, allowed);
         for item in &value.items {
-            if matches!(kind, Kind::Constant(_) | Kind::Inertia) && !self.model.is_constant(item.id) {
+            if matches!(kind, FieldKind::Constant(_) | FieldKind::Inertia) && !self.model.is_constant(item.id)
+            {
                 let message = format!("{user} varies");
                 let help = match field.name.text.as_str() {
                     "bound" => "make it of numbers and parameters: the largest of all of the motion",
@@ -274,7 +274,7 @@ impl Resolver<'_> {
                 return Err(self.fault(value.span, message, help));
             }
             let free = |node| !matches!(node, Node::Coordinate(_) | Node::State(_) | Node::Multiplier(_));
-            if matches!(kind, Kind::Vector(_)) && varies(self, item.id, free) {
+            if matches!(kind, FieldKind::Vector(_)) && varies(self, item.id, free) {
                 let message = format!("{user} depends on where the mechanism is");
                 return Err(self.fault(value.span, message, "write a field of forces as `potential V = …;`"));
             }

@@ -3,11 +3,11 @@
 use proc_macro2::Span;
 
 use super::dynamics::{Action, Contact};
-use super::elaborate::{Elaborator, Fault};
+use super::elaborator::Elaborator;
 use super::elements::Given;
 use super::expression::{Id, Node};
-use super::rates::Reach;
-use super::resolve::Resolver;
+use super::resolver::Resolver;
+use super::value::{Fault, Reach};
 use crate::symbolic::{Binary, Unary};
 use crate::syntax::ast::Name;
 

@@ -1,49 +1,15 @@
-//! The functions of the language: shapes, units, scalar definitions.
+//! The functions of the language and those that the caller supplies: shapes, units, scalar definitions.
 
 use proc_macro2::Span;
 
-use super::elaborate::{Elaborator, Fault};
-use super::orientation;
+use super::elaborator::Elaborator;
+use super::names::Callable;
+use super::rotation;
+use super::unit_inference::Bare;
 use super::units::Dimension;
-use super::value::{Quantity, Scalar, Value};
+use super::value::{Fault, Quantity, Scalar, Value};
 use crate::symbolic::operations::Units;
 use crate::symbolic::{Binary, Unary};
-
-/// Names of all functions.
-pub const FUNCTIONS: [&str; 32] = [
-    "sqrt",
-    "exp",
-    "ln",
-    "sin",
-    "cos",
-    "tan",
-    "asin",
-    "acos",
-    "atan",
-    "atan2",
-    "sinh",
-    "cosh",
-    "tanh",
-    "asinh",
-    "acosh",
-    "atanh",
-    "abs",
-    "sign",
-    "min",
-    "max",
-    "hypot",
-    "sum",
-    "dot",
-    "cross",
-    "norm",
-    "det",
-    "rot",
-    "unit",
-    "rotate",
-    "angular_velocity",
-    "der",
-    "der2",
-];
 
 /// Before: arguments in the order of the stack. After: the value of `function`, or the fault reported.
 pub fn call(
@@ -63,8 +29,8 @@ pub fn call(
         "det" => return det(work, arguments, span),
         "unit" => return unit(work, arguments, span),
         "rot" => return rot(work, arguments, span),
-        "rotate" => return orientation::rotate(work, arguments, span),
-        "angular_velocity" => return orientation::angular_velocity(work, arguments, span),
+        "rotate" => return rotation::rotate(work, arguments, span),
+        "angular_velocity" => return rotation::angular_velocity(work, arguments, span),
         "der" => return work.rate(arguments, "der", 1, span),
         "der2" => return work.rate(arguments, "der2", 2, span),
         "rate" => {
@@ -205,4 +171,47 @@ fn rot(work: &mut Elaborator<'_>, arguments: Vec<Value>, span: Span) -> Result<V
     let [sine, cosine] = sine_cosine(work, "rot", arguments, span)?;
     let minus = work.unary_scalar(Unary::Negate, sine, sine.quantity, span)?;
     Ok(Value { shape: vec![2, 2], items: vec![cosine, minus, sine, cosine], span })
+}
+
+/// Before: arguments in the order of the stack. After: the value of a declared function, or of its derivative of this
+/// order, or the fault reported.
+pub fn call_declared(
+    work: &mut Elaborator<'_>,
+    function: Callable,
+    (name, order): (&str, u8),
+    arguments: Vec<Value>,
+    span: Span,
+) -> Result<Value, Fault> {
+    let written = if order == 0 { name.to_owned() } else { format!("{name}.d{order}") };
+    let [argument] = work.arguments(&written, arguments, span)?;
+    let scalar = work.scalar(&argument, &format!("`{written}`"), argument.span)?;
+    fits(work, &written, function.argument, scalar)?;
+    let mut unit = function.unit;
+    for _ in 0..order {
+        unit = unit.over(function.argument);
+    }
+    let id = work.expressions.push_call(function.index, order, scalar.id, span);
+    Ok(Value::scalar(Scalar { id, quantity: Quantity::Known(unit), bare: function.bare, span }, span))
+}
+
+/// The argument has the declared unit.
+fn fits(
+    work: &mut Elaborator<'_>,
+    written: &str,
+    declared: Dimension,
+    argument: Scalar,
+) -> Result<(), Fault> {
+    match argument.quantity {
+        Quantity::Known(unit) if unit != declared => {
+            let help = if argument.bare == Bare::Wholly {
+                "a bare number has no unit; write it with one: `100mm`, `30deg`"
+            } else {
+                "bring the argument to the unit that the declaration gives in parentheses"
+            };
+            let message =
+                format!("the argument of `{written}` has the unit `{unit}`; declared is `{declared}`");
+            Err(work.fault(argument.span, message, help))
+        }
+        _ => Ok(()),
+    }
 }

@@ -2,8 +2,10 @@
 
 use proc_macro2::Span;
 
+use super::elaborator::Elaborator;
 use super::expression::Id;
-use super::non_negative::Impossible;
+use super::value::{Fault, Value};
+use crate::diagnostics::Diagnostic;
 
 /// Upper triangle of a matrix of inertia, row, column, entry, and whose it is.
 #[derive(Clone, Debug)]
@@ -23,9 +25,19 @@ const ROUNDING: f64 = 1e-9;
 /// Rotations of Jacobi's method, three a sweep: it doubles the digits each sweep once it is near.
 const ROTATIONS: usize = 30;
 
+/// One moment of inertia, [Jxx, Jyy, Jzz] or [Jxx, Jyy, Jzz, Jxy, Jxz, Jyz].
+pub fn check_shape(work: &mut Elaborator<'_>, value: &Value) -> Result<(), Fault> {
+    match value.shape.as_slice() {
+        [] | [3 | 6] => Ok(()),
+        _ => {
+            Err(work.wrong_shape("`inertia`", "a scalar or a vector of 3 or 6 components", value, value.span))
+        }
+    }
+}
+
 /// Reason why no body has this inertia, where all entries are known. A principal moment is negative, or the largest exceeds the
 /// sum of the others, ∫ (y² + z²) > ∫ (x² + z²) + ∫ (x² + y²). Negative entries of the diagonal have a message of their own.
-pub fn wrong(inertia: &Inertia, value: impl Fn(Id) -> Option<f64>) -> Option<Impossible> {
+pub fn wrong(inertia: &Inertia, value: impl Fn(Id) -> Option<f64>) -> Option<Diagnostic> {
     let mut matrix = [[0.0; 3]; 3];
     for (row, column, entry) in &inertia.entries {
         let entry = value(*entry).filter(|entry| entry.is_finite())?;
@@ -53,7 +65,7 @@ pub fn wrong(inertia: &Inertia, value: impl Fn(Id) -> Option<f64>) -> Option<Imp
     } else {
         return None;
     };
-    Some(Impossible { message, help, span: inertia.span })
+    Some(Diagnostic { message, help: help.into(), span: inertia.span })
 }
 
 /// Eigenvalues of a symmetric matrix, ascending, by Jacobi's rotations.

@@ -1,12 +1,11 @@
 //! Values after the `=` of a declaration: their unit, their shape, and the check that they are numbers.
 
-use super::bare::Bare;
-use super::elaborate::{Elaborator, Fault};
+use super::elaborator::Elaborator;
 use super::expression::Node;
 use super::names::Symbol;
-use super::rates::Reach;
+use super::unit_inference::Bare;
 use super::units::Dimension;
-use super::value::{Quantity, Scalar, Value};
+use super::value::{Fault, Quantity, Reach, Scalar, Value};
 use crate::syntax::ast::{Expression, Operation, Unit};
 
 /// The value of a `let`, in its unit where one is declared, and the quantities that must be allowed where it is used.

@@ -1,11 +1,9 @@
 //! Working ranges, and the coordinates that are meant as independent.
 
-use super::elaborate::Fault;
 use super::expression::{Id, Node};
 use super::initialiser::initialiser;
-use super::rates::Reach;
-use super::resolve::Resolver;
-use super::value::{Scalar, Value};
+use super::resolver::Resolver;
+use super::value::{Fault, Reach, Scalar, Value};
 use super::{Independent, Limit, VariableKind};
 use crate::syntax::ast::{Expression, Name};
 

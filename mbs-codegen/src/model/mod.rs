@@ -1,7 +1,6 @@
 //! ast → resolved model: every name, shape, unit and loop resolved; later stages do not change it.
 
 mod arithmetic;
-pub mod bare;
 mod bodies;
 mod compound;
 pub mod counts;
@@ -10,6 +9,7 @@ mod declared_functions;
 mod drives;
 pub mod dynamics;
 pub mod elaborate;
+pub mod elaborator;
 pub mod elements;
 pub mod expression;
 mod friction_contact;
@@ -26,13 +26,18 @@ mod order;
 mod orientation;
 mod pins;
 pub mod rates;
+mod reference_checks;
 pub mod reference_length;
 pub mod references;
 pub mod resolve;
+mod resolver;
+mod rotation;
+pub mod scene;
 pub mod scenes;
 pub mod selection;
 mod shared;
 mod turns;
+pub mod unit_inference;
 pub mod units;
 mod unknown_names;
 mod unused_elements;
@@ -64,7 +69,7 @@ pub struct Model {
     /// Parameters and inputs, component by component; inputs with rates count thrice.
     pub variables: Vec<Variable>,
     /// Rows of Φ.
-    pub rows: Vec<Row>,
+    pub rows: Vec<ConstraintRow>,
     /// Phases of drives that prescribe a rate.
     pub phases: Vec<Phase>,
     /// Branch conditions.
@@ -232,7 +237,7 @@ pub enum VariableKind {
 
 /// A row of Φ.
 #[derive(Debug)]
-pub struct Row {
+pub struct ConstraintRow {
     /// Name of its group, with its number where the group has several.
     pub name: String,
     /// Dimension of the residual.
@@ -251,7 +256,7 @@ pub struct Row {
     pub span: Span,
 }
 
-impl Row {
+impl ConstraintRow {
     /// Unit of the residual; that of an angle where the row fixes an angle.
     pub fn unit(&self, model: &Model) -> String {
         let is_angle = |id: Id| match model.expressions.node(id) {

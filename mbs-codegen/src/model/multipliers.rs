@@ -2,12 +2,11 @@
 
 use proc_macro2::Span;
 
-use super::bare::Bare;
-use super::elaborate::{Elaborator, Fault};
+use super::elaborator::Elaborator;
 use super::expression::Node;
-use super::rates::Reach;
+use super::unit_inference::Bare;
 use super::units::Dimension;
-use super::value::{Quantity, Scalar, Value};
+use super::value::{Fault, Quantity, Reach, Scalar, Value};
 use crate::diagnostics::nearest;
 use crate::symbolic::Unary;
 use crate::syntax::ast::{Name, Target};

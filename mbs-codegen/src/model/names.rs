@@ -1,23 +1,73 @@
-//! Names of the text and their meaning.
+//! Names of the text and their meaning; words that the language keeps for itself.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use proc_macro2::Span;
 
-use super::declared_functions::Callable;
-use super::functions::FUNCTIONS;
-use super::rates::Reach;
+use super::unit_inference::Bare;
 use super::units::Dimension;
-use super::value::Value;
+use super::value::{Reach, Value};
 use crate::diagnostics::Diagnostics;
 use crate::syntax::ast::Name;
-use crate::syntax::keywords::UNUSABLE;
+use crate::syntax::rust_identifiers::UNUSABLE;
 
 /// Names with a meaning of their own.
 pub const RESERVED: [&str; 13] = [
     "t", "PI", "TAU", "der", "der2", "rate", "lambda", "effort", "reaction", "margin", "ratio", "joint",
     "curve",
 ];
+
+/// Names of all functions.
+pub const FUNCTIONS: [&str; 32] = [
+    "sqrt",
+    "exp",
+    "ln",
+    "sin",
+    "cos",
+    "tan",
+    "asin",
+    "acos",
+    "atan",
+    "atan2",
+    "sinh",
+    "cosh",
+    "tanh",
+    "asinh",
+    "acosh",
+    "atanh",
+    "abs",
+    "sign",
+    "min",
+    "max",
+    "hypot",
+    "sum",
+    "dot",
+    "cross",
+    "norm",
+    "det",
+    "rot",
+    "unit",
+    "rotate",
+    "angular_velocity",
+    "der",
+    "der2",
+];
+
+/// Names that have a value without a declaration.
+pub(super) const CONSTANTS: [&str; 3] = ["t", "PI", "TAU"];
+
+/// A declared function as expressions see it.
+#[derive(Clone, Copy, Debug)]
+pub struct Callable {
+    /// Index among the functions of the text.
+    pub(super) index: usize,
+    /// Unit of the value.
+    pub(super) unit: Dimension,
+    /// Unit of the argument.
+    pub(super) argument: Dimension,
+    /// `Bare::Angle` if its values are angles.
+    pub(super) bare: Bare,
+}
 
 /// Meaning of a name.
 #[derive(Clone, Debug)]

@@ -4,7 +4,7 @@ use proc_macro2::Span;
 
 use super::expression::{Expressions, Id, Node};
 use super::{Model, VariableKind, inertia};
-use crate::diagnostics::Diagnostics;
+use crate::diagnostics::{Diagnostic, Diagnostics};
 
 /// The least value of a field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -48,26 +48,16 @@ pub struct NonNegative {
     pub span: Span,
 }
 
-/// A value that is physically impossible.
-pub struct Impossible {
-    /// Fault, with its owner and its amount.
-    pub message: String,
-    /// The cure.
-    pub help: &'static str,
-    /// Place in the text.
-    pub span: Span,
-}
-
 /// Before: a model. After: values that are impossible with the parameters' defaults are reported.
 pub fn check(model: &Model, diagnostics: &mut Diagnostics) {
-    for Impossible { message, help, span } in impossible(model, |_| None) {
+    for Diagnostic { message, help, span } in impossible(model, |_| None) {
         diagnostics.report(span, message, help);
     }
 }
 
 /// The impossible values. `given` knows variables by name; the other parameters have their defaults. Values that depend on
 /// inputs, states or the position of the mechanism are left to the caller.
-pub fn impossible(model: &Model, given: impl Fn(&str) -> Option<f64>) -> Vec<Impossible> {
+pub fn impossible(model: &Model, given: impl Fn(&str) -> Option<f64>) -> Vec<Diagnostic> {
     let Some(dynamics) = &model.dynamics else { return Vec::new() };
     if dynamics.signed.is_empty() && dynamics.inertias.is_empty() {
         return Vec::new();
@@ -88,7 +78,7 @@ pub fn impossible(model: &Model, given: impl Fn(&str) -> Option<f64>) -> Vec<Imp
 }
 
 /// Reason why a value is below its least one; `None` where it is not, or is not finite.
-fn wrong(signed: &NonNegative, value: f64) -> Option<Impossible> {
+fn wrong(signed: &NonNegative, value: f64) -> Option<Diagnostic> {
     let NonNegative { field, least, of, span, .. } = signed;
     if value.is_nan() || least.admits(value) {
         return None;
@@ -110,7 +100,7 @@ fn wrong(signed: &NonNegative, value: f64) -> Option<Impossible> {
         }
         _ => "masses and moments of inertia are at least 0",
     };
-    Some(Impossible { message, help, span: *span })
+    Some(Diagnostic { message, help: help.into(), span: *span })
 }
 
 /// Values of the expressions that depend on numbers and on leaves known to `leaf` alone.

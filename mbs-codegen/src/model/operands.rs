@@ -2,9 +2,8 @@
 
 use proc_macro2::Span;
 
-use super::elaborate::Fault;
 use super::names::{Names, Symbol};
-use super::value::{Scalar, Value};
+use super::value::{Fault, Scalar, Value};
 
 /// A stack of operands, made by an expression whose names live for `'a`.
 #[derive(Default)]

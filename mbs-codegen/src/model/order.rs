@@ -21,7 +21,7 @@ pub fn order(definitions: &[(&Name, &Expression)], diagnostics: &mut Diagnostics
         })
         .collect();
     let mut sorted = Vec::new();
-    let mut state = vec![State::New; definitions.len()];
+    let mut state = vec![Visit::New; definitions.len()];
     for root in 0..definitions.len() {
         visit(root, &uses, &mut state, &mut sorted, |cycle| {
             let names: Vec<&str> = cycle
@@ -42,7 +42,7 @@ pub fn order(definitions: &[(&Name, &Expression)], diagnostics: &mut Diagnostics
 }
 
 #[derive(Clone, Copy, PartialEq)]
-enum State {
+enum Visit {
     New,
     Open,
     Done,
@@ -53,20 +53,20 @@ enum State {
 fn visit(
     root: usize,
     uses: &[Vec<usize>],
-    state: &mut [State],
+    state: &mut [Visit],
     sorted: &mut Vec<usize>,
     mut report: impl FnMut(&[usize]),
 ) {
     let mut path: Vec<(usize, usize)> = vec![(root, 0)];
     while let Some(&(node, next)) = path.last() {
-        let here = state.get(node).copied().unwrap_or(State::Done);
-        if here == State::Done || here == State::Circular {
+        let here = state.get(node).copied().unwrap_or(Visit::Done);
+        if here == Visit::Done || here == Visit::Circular {
             path.pop();
             continue;
         }
-        set(state, node, State::Open);
+        set(state, node, Visit::Open);
         let Some(&used) = uses.get(node).and_then(|uses| uses.get(next)) else {
-            set(state, node, State::Done);
+            set(state, node, Visit::Done);
             sorted.push(node);
             path.pop();
             continue;
@@ -75,12 +75,12 @@ fn visit(
             top.1 += 1;
         }
         match state.get(used) {
-            Some(State::New) => path.push((used, 0)),
-            Some(State::Open) => {
+            Some(Visit::New) => path.push((used, 0)),
+            Some(Visit::Open) => {
                 let cycle: Vec<usize> = path.iter().map(|(i, _)| *i).skip_while(|i| *i != used).collect();
                 report(&cycle);
                 for member in cycle {
-                    set(state, member, State::Circular);
+                    set(state, member, Visit::Circular);
                 }
             }
             _ => {}
@@ -88,7 +88,7 @@ fn visit(
     }
 }
 
-fn set(state: &mut [State], node: usize, to: State) {
+fn set(state: &mut [Visit], node: usize, to: Visit) {
     if let Some(slot) = state.get_mut(node) {
         *slot = to;
     }

@@ -2,27 +2,14 @@
 
 use proc_macro2::Span;
 
-use super::elaborate::{Elaborator, Fault};
+use super::elaborator::Elaborator;
 use super::expression::Node;
 use super::units::Dimension;
-use super::value::{Quantity, Scalar, Value};
+use super::value::{Fault, Quantity, Reach, Scalar, Value};
 
 const RATES: &str = "write rates in `out` definitions and forces; a drive takes its rates from the time and from inputs with rates";
 const ACCELERATIONS: &str =
     "forces use positions and rates; what grows with the acceleration is a mass: `kinetic T = …;`";
-
-/// Quantities that an expression may use in addition to coordinates, parameters, inputs and the time.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Reach {
-    /// None of them.
-    Position,
-    /// `der(x)`, multipliers and first-order states.
-    Force,
-    /// `der2(x)` too.
-    Output,
-    /// Any rate: the definition of a `let`, whose uses are checked.
-    Let,
-}
 
 impl Elaborator<'_> {
     /// Total time derivative of one scalar or vector.

@@ -4,18 +4,18 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use proc_macro2::Span;
 
-use super::bare::Bare;
 use super::counts::MOST_ROUNDS;
-use super::declarations::{self, component_names};
-use super::elaborate::{Elaborator, Fault};
+use super::declarations::component_names;
+use super::elaborator::Elaborator;
 use super::elements::is_dynamic;
 use super::expression::{Id, Node};
 use super::initialiser::{definition, fits_shape, initialiser};
-use super::names::{Names, Rows, Symbol, report_double};
-use super::rates::Reach;
+use super::names::{Names, Rows, Symbol};
+use super::resolver::{LoopFrame, Pass, Resolver};
+use super::unit_inference::Bare;
 use super::units::Dimension;
-use super::value::{Quantity, Scalar, Value};
-use super::{Branch, Model, Output, Row, VariableKind, inputs, unused_elements};
+use super::value::{Fault, Quantity, Reach, Scalar, Value};
+use super::{Branch, ConstraintRow, Model, Output, VariableKind, declarations, inputs, unused_elements};
 use crate::diagnostics::Diagnostics;
 use crate::symbolic::Binary;
 use crate::syntax::ast::{
@@ -64,58 +64,7 @@ pub const MOST_ROWS: usize = 6_000;
 /// Most outputs, each with two derivatives.
 pub const MOST_OUTPUTS: usize = 2_000;
 
-/// A group of rows, branches or outputs under one name.
-struct Group {
-    name: Name,
-    kind: &'static str,
-    rows: Vec<usize>,
-}
-
-pub(super) struct Frame {
-    begin: usize,
-    variable: Name,
-    count: usize,
-    high: usize,
-    scope: usize,
-}
-
-/// Executes the statements that are no declarations.
-pub(super) struct Resolver<'a> {
-    pub(super) model: &'a mut Model,
-    pub(super) names: &'a mut Names,
-    pub(super) diagnostics: &'a mut Diagnostics,
-    /// Coordinates that a `start` gave its value.
-    pub(super) starts: BTreeSet<usize>,
-    /// Euler parameters whose length a row fixes already: the body that brought it, and the row.
-    pub(super) oriented: BTreeMap<Vec<Option<usize>>, (String, usize)>,
-    groups: Vec<Group>,
-    pub(super) loops: Vec<Frame>,
-    rounds: usize,
-    pass: Pass,
-}
-
-/// Statements resolved in one pass: multipliers, margins and ratios are known once all rows are.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Pass {
-    /// Constraints, drives, branches, starts.
-    Rows,
-    /// Bodies, forces, energies, rates of states, outputs.
-    Loads,
-}
-
 impl Resolver<'_> {
-    pub(super) fn elaborate<T>(&mut self, reach: Reach, run: impl FnOnce(&mut Elaborator<'_>) -> T) -> T {
-        let mut work = Elaborator {
-            expressions: &mut self.model.expressions,
-            names: self.names,
-            diagnostics: self.diagnostics,
-            reach,
-            needs: Reach::Position,
-            groups: &self.model.references,
-        };
-        run(&mut work)
-    }
-
     fn run(&mut self, statements: &[Statement]) {
         let mut next = 0;
         while let Some(statement) = statements.get(next) {
@@ -221,7 +170,7 @@ impl Resolver<'_> {
         let (low, high) = bounds.ok().filter(|(low, high)| low < high)?;
         let variable = head.variable.clone();
         let scope = self.names.enter(&variable.text, Symbol::Count(low));
-        self.loops.push(Frame { begin, variable, count: low, high, scope });
+        self.loops.push(LoopFrame { begin, variable, count: low, high, scope });
         Some(begin)
     }
 
@@ -249,28 +198,6 @@ impl Resolver<'_> {
         Some(begin)
     }
 
-    /// The group of a statement: a new one, or in a loop the one that an earlier round began.
-    pub(super) fn group(&mut self, name: &Name, kind: &'static str) -> Result<usize, Fault> {
-        let rows = |kind| matches!(kind, "constraint" | "drive");
-        let clash = |group: &Group| {
-            group.name.text == name.text
-                && rows(group.kind) == rows(kind)
-                && (rows(kind) || group.kind == kind)
-        };
-        if let Some(index) = self.groups.iter().position(clash) {
-            let first = self.groups.get(index).map_or(name.span, |group| group.name.span);
-            let same_statement = (first.start().line, first.start().column)
-                == (name.span.start().line, name.span.start().column);
-            if same_statement && !self.loops.is_empty() {
-                return Ok(index);
-            }
-            report_double(name, first, self.diagnostics);
-            return Err(Fault);
-        }
-        self.groups.push(Group { name: name.clone(), kind, rows: Vec::new() });
-        Ok(self.groups.len() - 1)
-    }
-
     fn constraint(&mut self, name: &Name, items: &[Item]) -> Result<(), Fault> {
         let group = self.group(name, "constraint")?;
         let outer = self.loops.len();
@@ -296,38 +223,6 @@ impl Resolver<'_> {
         Ok(())
     }
 
-    /// Number of rows, branches, limits or rounds of outputs that a group has so far.
-    pub(super) fn rows_of(&self, group: usize) -> usize {
-        self.groups.get(group).map_or(0, |group| group.rows.len())
-    }
-
-    /// Adds one to them.
-    pub(super) fn count_row(&mut self, group: usize, row: usize) {
-        if let Some(group) = self.groups.get_mut(group) {
-            group.rows.push(row);
-        }
-    }
-
-    /// Adds a row to a group.
-    pub(super) fn push_row(&mut self, group: usize, row: Row) {
-        self.count_row(group, self.model.rows.len());
-        self.model.rows.push(row);
-    }
-
-    /// `true` if an expression depends on such nodes among others.
-    pub(super) fn contains(&self, root: Id, is: impl Fn(Node) -> bool) -> bool {
-        self.model.expressions.contain(root, is)
-    }
-
-    /// Unit of an expression: as declared, where it is a coordinate.
-    pub(super) fn unit_of(&self, id: Id, dimension: Dimension) -> String {
-        match self.model.expressions.node(id) {
-            Node::Coordinate(index) => self.model.coordinates.get(index).map(|c| c.unit.clone()),
-            _ => None,
-        }
-        .unwrap_or_else(|| dimension.to_string())
-    }
-
     /// Adds one row a component.
     pub(super) fn equation(&mut self, equation: &Equation, group: usize) -> Result<(), Fault> {
         let (left, right) = self.elaborate(Reach::Position, |work| {
@@ -346,7 +241,8 @@ impl Resolver<'_> {
         for (residual, dimension) in residuals {
             let reversed = self.is_reversed(residual);
             let (name, driven, redundant) = (String::new(), false, false);
-            let row = Row { name, dimension, residual, driven, reversed, redundant, within: None, span };
+            let row =
+                ConstraintRow { name, dimension, residual, driven, reversed, redundant, within: None, span };
             self.push_row(group, row);
         }
         Ok(())
@@ -407,12 +303,6 @@ impl Resolver<'_> {
         }
         self.count_row(group, round);
         Ok(())
-    }
-
-    /// Names, kinds and rows of constraints and drives.
-    pub(super) fn row_groups(&self) -> impl Iterator<Item = (&str, &'static str, &[usize])> {
-        let groups = self.groups.iter().filter(|group| matches!(group.kind, "constraint" | "drive"));
-        groups.map(|group| (group.name.text.as_str(), group.kind, group.rows.as_slice()))
     }
 
     /// A group of one row gives the row its name; rows of larger ones are counted from 0.

@@ -3,16 +3,12 @@
 use proc_macro2::TokenStream;
 
 use super::declared_functions::check_called;
-use super::names::Names;
-use super::resolve::resolve;
-use super::selection::{Selection, select};
+use super::scene::Scene;
+use super::selection::{WHOLE, select};
 use super::{Model, shared};
 use crate::diagnostics::Diagnostics;
-use crate::syntax::ast::Name;
-use crate::syntax::{self, Header, Text};
-
-/// The scene of all effects.
-pub const WHOLE: &str = "AllEffects";
+use crate::syntax;
+use crate::syntax::Text;
 
 /// All scenes of a text.
 pub struct Scenes {
@@ -22,22 +18,6 @@ pub struct Scenes {
     pub whole: Option<Scene>,
     /// The fields of all scenes, and their variables; no other parts.
     pub shared: Model,
-}
-
-/// A scene with every name resolved.
-pub struct Scene {
-    /// `None` for the whole text.
-    pub name: Option<Name>,
-    /// Doc comment.
-    pub docs: Vec<String>,
-    /// Names of its effects.
-    pub effects: Vec<String>,
-    /// Meaning of its statements, as of a text without effects.
-    pub model: Model,
-    /// Meaning of its names.
-    pub names: Names,
-    /// Faults of its meaning.
-    pub faults: Diagnostics,
 }
 
 impl Scenes {
@@ -90,25 +70,6 @@ impl Scenes {
         let found = self.scenes.into_iter().chain(self.whole).find(|scene| scene.label() == wanted);
         found.ok_or_else(|| fault.unwrap_or_default())
     }
-}
-
-impl Scene {
-    fn resolve(selection: Selection) -> Self {
-        let Selection { name, docs, effects, statements } = selection;
-        let mut faults = Diagnostics::default();
-        let (model, names) = resolve(&statements, &mut faults);
-        Scene { name, docs, effects, model, names, faults }
-    }
-
-    /// The name that the text gives it.
-    pub fn label(&self) -> Option<&str> {
-        self.name.as_ref().map(|name| name.text.as_str())
-    }
-}
-
-/// Name of the mechanism in a scene: of the alias, of the beginning of the view of the coordinates.
-pub fn alias(header: &Header, scene: &str) -> String {
-    format!("{}{scene}", header.label())
 }
 
 /// The text and its scenes; `None` where it cannot be read at all.

@@ -3,11 +3,18 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::names::report_double;
-use super::scenes::{WHOLE, alias};
 use crate::diagnostics::{Diagnostics, nearest};
 use crate::syntax::ast::{Name, Statement, StatementKind};
-use crate::syntax::keywords::UNUSABLE;
+use crate::syntax::rust_identifiers::UNUSABLE;
 use crate::syntax::{Header, NAMELESS, OWN, declares_coordinate, stand_in};
+
+/// The scene of all effects.
+pub const WHOLE: &str = "AllEffects";
+
+/// Name of the mechanism in a scene: of the alias, of the beginning of the view of the coordinates.
+pub fn alias(header: &Header, scene: &str) -> String {
+    format!("{}{scene}", header.label())
+}
 
 /// Most scenes: each is translated by itself.
 pub const MOST_SCENES: usize = 64;

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::scenes::Scene;
+use super::scene::Scene;
 use super::{Field, Function, Model, Role, Variable};
 use crate::diagnostics::Diagnostics;
 use crate::syntax::ast::{Name, Statement, StatementKind};

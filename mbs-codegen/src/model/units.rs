@@ -2,10 +2,11 @@
 
 use std::fmt;
 
+use proc_macro2::Span;
+
 use crate::diagnostics::{Diagnostics, nearest};
 use crate::syntax::ast;
 use crate::syntax::unit_symbols::{SUFFIXES, SYMBOLS, as_product};
-use proc_macro2::Span;
 
 /// Exponents of the base units, in sixtieths, so that roots up to the sixth are exact.
 ///

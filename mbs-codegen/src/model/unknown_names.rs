@@ -3,11 +3,11 @@
 use proc_macro2::Span;
 
 use super::compound;
-use super::elaborate::{CONSTANTS, Elaborator, Fault};
-use super::functions::FUNCTIONS;
-use super::names::Symbol;
+use super::elaborator::Elaborator;
+use super::names::{CONSTANTS, FUNCTIONS, Symbol};
 use super::references::{REFERRING, is_reference};
 use super::units::with_suffix;
+use super::value::Fault;
 use crate::diagnostics::nearest;
 use crate::syntax::ast::{Expression, Instruction, Operation};
 

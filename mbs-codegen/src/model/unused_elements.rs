@@ -1,7 +1,7 @@
 //! Declarations without any effect: forces without a value or a place that moves, gravity without bodies.
 
 use super::Model;
-use super::dynamics::{Action, Dynamics, Force, Line, Turn};
+use super::dynamics::{Action, Dynamics, Force, SpringDamper, Turn};
 use super::expression::{Id, Node};
 use crate::diagnostics::Diagnostics;
 
@@ -28,7 +28,7 @@ pub fn check(model: &Model, diagnostics: &mut Diagnostics) {
 
 /// `true` if both ends of a tension are written alike.
 fn joins_a_point_to_itself(model: &Model, action: &Action) -> bool {
-    let Action::Line(Line { from, to, .. }) = action else { return false };
+    let Action::Line(SpringDamper { from, to, .. }) = action else { return false };
     let alike = |(a, b): (&Id, &Id)| a == b || model.expressions.node(*a) == model.expressions.node(*b);
     from.iter().zip(to).all(alike)
 }
@@ -47,7 +47,7 @@ fn gravity(dynamics: &Dynamics, diagnostics: &mut Diagnostics) {
 /// Reason why a spring and damper exerts no force, or has a field without effect.
 fn without_value(Force { name, action, .. }: &Force) -> Option<(String, &'static str)> {
     let (stiffness, others, rest, help) = match action {
-        Action::Line(Line { stiffness, length, damping, actuator, .. }) => (
+        Action::Line(SpringDamper { stiffness, length, damping, actuator, .. }) => (
             stiffness,
             [damping, actuator],
             length.map(|_| "length"),
@@ -74,7 +74,7 @@ fn places(action: &Action) -> Vec<Id> {
     match action {
         Action::Work(pairs) => pairs.iter().map(|(_, on)| *on).collect(),
         Action::Dissipation(value) => vec![*value],
-        Action::Line(Line { from, to, .. }) => from.iter().chain(to).copied().collect(),
+        Action::Line(SpringDamper { from, to, .. }) => from.iter().chain(to).copied().collect(),
         Action::Turn(Turn { angle, .. }) => vec![*angle],
     }
 }

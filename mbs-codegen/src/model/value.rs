@@ -2,8 +2,8 @@
 
 use proc_macro2::Span;
 
-use super::bare::Bare;
 use super::expression::Id;
+use super::unit_inference::Bare;
 use super::units::Dimension;
 
 /// Dimension of a scalar, or none: `0` fits any unit.
@@ -61,4 +61,21 @@ impl Value {
             }
         }
     }
+}
+
+/// A fault was reported.
+#[derive(Clone, Copy, Debug)]
+pub struct Fault;
+
+/// Quantities that an expression may use in addition to coordinates, parameters, inputs and the time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Reach {
+    /// None of them.
+    Position,
+    /// `der(x)`, multipliers and first-order states.
+    Force,
+    /// `der2(x)` too.
+    Output,
+    /// Any rate: the definition of a `let`, whose uses are checked.
+    Let,
 }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::expression::{Expressions, Id, Node};
-use crate::scattered::fraction;
+use crate::sample_points::fraction;
 use crate::symbolic::{Binary, Unary};
 
 /// Unit vectors that are tried. An analytic function that vanishes on an open part of the sphere vanishes on all of it. At

@@ -1,12 +1,10 @@
 //! Largest contradiction allowed between rows of a constraint marked `redundant`.
 
-use super::elaborate::Fault;
 use super::expression::Node;
 use super::initialiser::initialiser;
-use super::rates::Reach;
-use super::resolve::Resolver;
+use super::resolver::Resolver;
 use super::units::Dimension;
-use super::value::Value;
+use super::value::{Fault, Reach, Value};
 use crate::syntax::ast::Expression;
 
 impl Resolver<'_> {

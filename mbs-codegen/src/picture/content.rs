@@ -8,13 +8,13 @@ use super::places::{Known, Places};
 use super::{Preset, Shape, Span as Length, draw};
 use crate::diagnostics::Diagnostics;
 use crate::model::counts::MOST_ROUNDS;
-use crate::model::elaborate::Fault;
 use crate::model::expression::Expressions;
 use crate::model::initialiser::definition;
 use crate::model::names::{Names, Symbol};
-use crate::model::rates::Reach;
 use crate::model::resolve::behind_loop;
-use crate::model::scenes::Scene;
+use crate::model::scene::Scene;
+use crate::model::value::Fault;
+use crate::model::value::Reach;
 use crate::syntax::ast::{Expression, Loop, Name, Statement, StatementKind, Unit};
 use crate::syntax::picture::Picture;
 
@@ -86,7 +86,7 @@ fn selected<'s>(statements: &'s [Statement], scene: &Scene) -> Vec<&'s Statement
 }
 
 /// A loop that is being unrolled.
-struct Frame<'s> {
+struct OpenLoop<'s> {
     begin: usize,
     variable: &'s Name,
     count: usize,
@@ -97,7 +97,7 @@ struct Frame<'s> {
 pub struct Reader<'a, 's> {
     pub places: Places<'a>,
     pub content: Content,
-    loops: Vec<Frame<'s>>,
+    loops: Vec<OpenLoop<'s>>,
     rounds: usize,
     strict: bool,
     /// `true` after a statement with a fault, which is reported.
@@ -151,7 +151,7 @@ impl<'s> Reader<'_, 's> {
         });
         let (low, high) = bounds.ok().filter(|(low, high)| low < high)?;
         let scope = self.places.names.enter(&head.variable.text, Symbol::Count(low));
-        self.loops.push(Frame { begin, variable: &head.variable, count: low, high, scope });
+        self.loops.push(OpenLoop { begin, variable: &head.variable, count: low, high, scope });
         self.places.rounds.push(low);
         Some(begin)
     }

@@ -5,11 +5,11 @@ use proc_macro2::Span;
 use super::content::Reader;
 use super::places::{PlaceKind, Places, Wanted};
 use super::shape::{Along, Shape};
-use crate::model::elaborate::Fault;
 use crate::model::initialiser::{initialiser, numbers};
 use crate::model::units::Dimension;
+use crate::model::value::Fault;
 use crate::syntax::ast::Expression;
-use crate::syntax::picture::forms::{Form, Kind, Points, Takes};
+use crate::syntax::picture::forms::{Form, Points, ShapeKind, Takes};
 use crate::syntax::picture::{Argument, Shape as Written};
 
 /// Label of the view along the diagonal.
@@ -58,7 +58,7 @@ pub fn shape(reader: &mut Reader<'_, '_>, written: &Written) -> Result<(), Fault
         return Ok(());
     }
     let shape = match form.kind {
-        Kind::View => view(reader, written, label, &words)?,
+        ShapeKind::View => view(reader, written, label, &words)?,
         _ => of_points(form.kind, points, label, &mut words).ok_or(Fault)?,
     };
     reader.content.shapes.push(shape);
@@ -189,10 +189,14 @@ fn label(reader: &mut Reader<'_, '_>, written: &Written) -> String {
         return String::new();
     };
     let before = match written.form.kind {
-        Kind::Spring => &mut reader.spring,
-        Kind::Link | Kind::Plate | Kind::Slot | Kind::Wheel | Kind::Gear | Kind::Cam | Kind::Face => {
-            &mut reader.body
-        }
+        ShapeKind::Spring => &mut reader.spring,
+        ShapeKind::Link
+        | ShapeKind::Plate
+        | ShapeKind::Slot
+        | ShapeKind::Wheel
+        | ShapeKind::Gear
+        | ShapeKind::Cam
+        | ShapeKind::Face => &mut reader.body,
         _ => return label.text.clone(),
     };
     let start = label.span.start();
@@ -205,44 +209,44 @@ fn label(reader: &mut Reader<'_, '_>, written: &Written) -> String {
 }
 
 /// A shape of one point.
-fn at_point(kind: Kind, at: String, label: String, words: &Words) -> Option<Shape> {
+fn at_point(kind: ShapeKind, at: String, label: String, words: &Words) -> Option<Shape> {
     let along = words.along.clone();
     match kind {
-        Kind::Ground => Some(Shape::Ground { at }),
-        Kind::Joint => Some(Shape::Joint { at }),
-        Kind::Trace => Some(Shape::Trace { of: at, label }),
-        Kind::Slider => along.map(|along| Shape::Slider { at, along }),
-        Kind::Rail => along.map(|along| Shape::Rail { at, along }),
+        ShapeKind::Ground => Some(Shape::Ground { at }),
+        ShapeKind::Joint => Some(Shape::Joint { at }),
+        ShapeKind::Trace => Some(Shape::Trace { of: at, label }),
+        ShapeKind::Slider => along.map(|along| Shape::Slider { at, along }),
+        ShapeKind::Rail => along.map(|along| Shape::Rail { at, along }),
         _ => None,
     }
 }
 
 /// A shape of several points, their number checked.
-fn of_points(kind: Kind, points: Vec<String>, label: String, words: &mut Words) -> Option<Shape> {
+fn of_points(kind: ShapeKind, points: Vec<String>, label: String, words: &mut Words) -> Option<Shape> {
     let number = words.number;
     let first = || points.first().cloned().unwrap_or_default();
     Some(match kind {
-        Kind::Link => Shape::Link { points, label },
-        Kind::Plate => Shape::Plate { points, label },
-        Kind::Slot => Shape::Slot { points, label },
-        Kind::Spring => Shape::Spring { points: points.try_into().ok()?, label },
-        Kind::Wheel => Shape::Wheel { at: first(), rim: words.point("rim"), label },
-        Kind::Gear => {
+        ShapeKind::Link => Shape::Link { points, label },
+        ShapeKind::Plate => Shape::Plate { points, label },
+        ShapeKind::Slot => Shape::Slot { points, label },
+        ShapeKind::Spring => Shape::Spring { points: points.try_into().ok()?, label },
+        ShapeKind::Wheel => Shape::Wheel { at: first(), rim: words.point("rim"), label },
+        ShapeKind::Gear => {
             let inside = words.flags.contains(&"inside");
             Shape::Gear { at: first(), rim: words.point("rim"), teeth: number as u32, inside, label }
         }
-        Kind::Cam => {
+        ShapeKind::Cam => {
             Shape::Cam { at: first(), contact: words.point("contact"), turn: words.point("turn"), label }
         }
-        Kind::Face => Shape::Face { points: points.try_into().ok()?, back: words.point("back"), label },
-        Kind::Geneva => Shape::Geneva {
+        ShapeKind::Face => Shape::Face { points: points.try_into().ok()?, back: words.point("back"), label },
+        ShapeKind::Geneva => Shape::Geneva {
             at: first(),
             pin: words.point("pin"),
             wheel: words.point("wheel"),
             rim: words.point("rim"),
             slots: number as u32,
         },
-        Kind::Road => Shape::Road { at: first(), speed: number, label },
+        ShapeKind::Road => Shape::Road { at: first(), speed: number, label },
         _ => return None,
     })
 }

@@ -1,7 +1,7 @@
 //! Values of names in the picture.
 
-use crate::model::bare::Bare;
 use crate::model::expression::{Id, Node};
+use crate::model::unit_inference::Bare;
 use crate::model::units::Dimension;
 use crate::model::value::{Quantity, Scalar, Value};
 

@@ -20,7 +20,8 @@ pub use places::{Place, PlaceKind};
 pub use shape::{Along, Shape};
 
 use crate::diagnostics::Diagnostics;
-use crate::model::scenes::{Scene, Scenes};
+use crate::model::scene::Scene;
+use crate::model::scenes::Scenes;
 use crate::symbolic::{Graph, Leaf, NodeId, evaluate::evaluate};
 use crate::syntax::Text;
 
@@ -117,7 +118,7 @@ fn of_scene(
         true => known.ids.iter().filter_map(|id| nodes.get(id.index()).copied()).collect(),
         false => Vec::new(),
     };
-    let name = crate::model::scenes::alias(&text.header, scene.label().unwrap_or_default());
+    let name = crate::model::selection::alias(&text.header, scene.label().unwrap_or_default());
     Ok(Picture {
         title: title.unwrap_or(name),
         about: about.unwrap_or_else(|| documentation(text, &scene)),

@@ -6,13 +6,14 @@ use proc_macro2::Span;
 
 use super::found::{Found, Outside, Unit, component, first, numbered};
 use crate::diagnostics::{Diagnostics, nearest};
-use crate::model::bare::Bare;
 use crate::model::dynamics::{Action, Dynamics};
-use crate::model::elaborate::{Elaborator, Fault};
+use crate::model::elaborator::Elaborator;
 use crate::model::expression::{Expressions, Id};
 use crate::model::names::{Names, Symbol};
-use crate::model::rates::Reach;
+use crate::model::unit_inference::Bare;
 use crate::model::units::Dimension;
+use crate::model::value::Fault;
+use crate::model::value::Reach;
 use crate::model::value::{Quantity, Value};
 use crate::model::{Model, Output};
 use crate::syntax::ast::Expression;

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::schedule::{Line, Section, needed, schedule};
+use super::schedule::{Assignment, Section, needed, schedule};
 use crate::equations::Equations;
 use crate::structure::dyad::Dyad;
 use crate::structure::pivots::Order;
@@ -19,7 +19,7 @@ pub struct BlockProgram {
     /// Computed before the block's coordinates are known.
     pub before: Section,
     /// Solution method of the coordinates.
-    pub method: Method,
+    pub method: BlockMethod,
 }
 
 impl BlockProgram {
@@ -31,7 +31,7 @@ impl BlockProgram {
 
 /// Solution method of a block's coordinates.
 #[derive(Debug)]
-pub enum Method {
+pub enum BlockMethod {
     /// Assigned.
     Explicit {
         /// The coordinate's value.
@@ -111,14 +111,14 @@ pub fn order(
             Some(explicit) => {
                 let values = uses.companions.completed(graph, &known, vec![explicit.value]);
                 let before = schedule(graph, &values, &known);
-                (before, Method::Explicit { value: explicit.value, coefficient: explicit.coefficient })
+                (before, BlockMethod::Explicit { value: explicit.value, coefficient: explicit.coefficient })
             }
             None => newton(equations, block, decided.remove(&index).unwrap_or_default(), &mut known, &uses),
         };
         // Later blocks use what this one computed.
-        before.results.extend(before.lines.iter().flat_map(Line::values));
+        before.results.extend(before.lines.iter().flat_map(Assignment::values));
         known.extend(before.computed());
-        if let Method::Newton(system) = &method {
+        if let BlockMethod::Newton(system) = &method {
             known.extend(&system.kept);
         }
         programs.push(BlockProgram {
@@ -225,7 +225,7 @@ fn newton(
     branches: Vec<NodeId>,
     known: &mut BTreeSet<NodeId>,
     uses: &Uses<'_>,
-) -> (Section, Method) {
+) -> (Section, BlockMethod) {
     let graph = &equations.graph;
     let (phi, phi_q) = residuals_and_jacobian(equations, block);
     let roots: Vec<NodeId> = phi.iter().copied().chain(phi_q.iter().flatten().copied().flatten()).collect();
@@ -248,7 +248,7 @@ fn newton(
     });
     let order = block.order.clone();
     let system = System { section, kept, phi, phi_q, branches, branch_section, dyad, order };
-    (before, Method::Newton(Box::new(system)))
+    (before, BlockMethod::Newton(Box::new(system)))
 }
 
 /// Residuals and Jacobian of a block.

@@ -16,11 +16,11 @@ use crate::structure::Structure;
 use crate::symbolic::{Graph, NodeId};
 
 pub use angles::share_angles;
-pub use blocks::{BlockProgram, Method, System};
+pub use blocks::{BlockMethod, BlockProgram, System};
 pub use contacts::{ContactProgram, PushProgram};
 pub use dynamics::DynamicsProgram;
 pub use powers::take_roots;
-pub use schedule::{Angle, Jet, Line, Operations, Section};
+pub use schedule::{Angle, Assignment, FunctionDerivatives, Operations, Section};
 
 /// Everything that is emitted, in the order in which it is computed.
 #[derive(Debug)]
@@ -140,8 +140,8 @@ impl Program {
     pub fn length(&self) -> usize {
         let block = |block: &BlockProgram| {
             let iteration = match &block.method {
-                Method::Newton(system) => system.section.lines.len(),
-                Method::Explicit { .. } => 0,
+                BlockMethod::Newton(system) => system.section.lines.len(),
+                BlockMethod::Explicit { .. } => 0,
             };
             block.before.lines.len() + iteration
         };

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::schedule::{Section, schedule};
-use super::{Method, Program};
+use super::{BlockMethod, Program};
 use crate::equations::Equations;
 use crate::symbolic::NodeId;
 
@@ -33,7 +33,7 @@ pub fn motion(equations: &Equations, program: &Program) -> MotionProgram {
     let mut blocks = Vec::new();
     for block in &program.blocks {
         known.extend(block.before.computed());
-        if let Method::Newton(system) = &block.method {
+        if let BlockMethod::Newton(system) = &block.method {
             known.extend(&system.kept);
         }
         let rows = || block.rows.iter().filter_map(|row| equations.rows.get(*row));

@@ -10,7 +10,7 @@ use crate::symbolic::{Binary, Graph, Leaf, Node, NodeId, Unary};
 #[derive(Debug, Default)]
 pub struct Section {
     /// Operands precede their users.
-    pub lines: Vec<Line>,
+    pub lines: Vec<Assignment>,
     /// Number of its operations.
     pub operations: Operations,
     /// Values that are used after it.
@@ -20,46 +20,46 @@ pub struct Section {
 impl Section {
     /// Values that it computes.
     pub fn computed(&self) -> impl Iterator<Item = NodeId> + '_ {
-        self.lines.iter().flat_map(Line::values)
+        self.lines.iter().flat_map(Assignment::values)
     }
 }
 
 /// One `let`.
 #[derive(Debug)]
-pub enum Line {
+pub enum Assignment {
     /// One value.
     Value(NodeId),
     /// Sines and cosines of angles that are known together.
     SineCosine(Vec<Angle>),
     /// A declared function and its derivatives at one argument.
-    Jet(Jet),
+    Jet(FunctionDerivatives),
 }
 
-impl Line {
+impl Assignment {
     /// Values that it computes.
     pub fn values(&self) -> Vec<NodeId> {
         match self {
-            Line::Value(id) => vec![*id],
-            Line::SineCosine(angles) => {
+            Assignment::Value(id) => vec![*id],
+            Assignment::SineCosine(angles) => {
                 angles.iter().flat_map(|known| known.sine.into_iter().chain(known.cosine)).collect()
             }
-            Line::Jet(jet) => jet.orders.iter().copied().flatten().collect(),
+            Assignment::Jet(jet) => jet.orders.iter().copied().flatten().collect(),
         }
     }
 
     /// Values that it uses.
     pub fn operands(&self, graph: &Graph) -> Vec<NodeId> {
         match self {
-            Line::Value(id) => graph.node(*id).operands().collect(),
-            Line::SineCosine(angles) => angles.iter().map(|known| known.angle).collect(),
-            Line::Jet(jet) => vec![jet.argument],
+            Assignment::Value(id) => graph.node(*id).operands().collect(),
+            Assignment::SineCosine(angles) => angles.iter().map(|known| known.angle).collect(),
+            Assignment::Jet(jet) => vec![jet.argument],
         }
     }
 }
 
 /// A declared function at one argument, up to the highest derivative that is used.
 #[derive(Clone, Debug)]
-pub struct Jet {
+pub struct FunctionDerivatives {
     /// Index of the function.
     pub function: u32,
     /// Its argument.
@@ -83,7 +83,7 @@ pub struct Angle {
 #[derive(Default)]
 struct Level {
     /// All but sines and cosines, operands first.
-    lines: Vec<Line>,
+    lines: Vec<Assignment>,
     angles: BTreeMap<NodeId, Angle>,
 }
 
@@ -141,9 +141,9 @@ pub fn schedule(graph: &Graph, roots: &[NodeId], known: &BTreeSet<NodeId>) -> Se
             }
             Node::Call { function, argument, .. } => {
                 // The first order that is met brings all others along.
-                level.lines.extend(jets.remove(&(function, argument)).map(Line::Jet));
+                level.lines.extend(jets.remove(&(function, argument)).map(Assignment::Jet));
             }
-            _ => level.lines.push(Line::Value(id)),
+            _ => level.lines.push(Assignment::Value(id)),
         }
         if let Some(known) = depths.get_mut(id.index()) {
             *known = depth;
@@ -154,9 +154,9 @@ pub fn schedule(graph: &Graph, roots: &[NodeId], known: &BTreeSet<NodeId>) -> Se
     for Level { lines, angles } in levels.into_values() {
         for line in lines {
             match &line {
-                Line::Value(id) => count(graph.node(*id), &mut section.operations),
-                Line::Jet(_) => section.operations.calls += 1,
-                Line::SineCosine(_) => {}
+                Assignment::Value(id) => count(graph.node(*id), &mut section.operations),
+                Assignment::Jet(_) => section.operations.calls += 1,
+                Assignment::SineCosine(_) => {}
             }
             section.lines.push(line);
         }
@@ -164,7 +164,7 @@ pub fn schedule(graph: &Graph, roots: &[NodeId], known: &BTreeSet<NodeId>) -> Se
             section.operations.sine_cosines += angles.len();
             let mut angles: Vec<Angle> = angles.into_values().collect();
             angles.sort_by_key(|known| first.of(graph, known.angle));
-            section.lines.push(Line::SineCosine(angles));
+            section.lines.push(Assignment::SineCosine(angles));
         }
     }
     section
@@ -193,11 +193,15 @@ impl FirstCoordinates {
 }
 
 /// The calls among `nodes`, gathered by function and argument.
-fn jets(graph: &Graph, nodes: &[NodeId]) -> BTreeMap<(u32, NodeId), Jet> {
+fn jets(graph: &Graph, nodes: &[NodeId]) -> BTreeMap<(u32, NodeId), FunctionDerivatives> {
     let mut jets = BTreeMap::new();
     for id in nodes {
         let Node::Call { function, order, argument } = graph.node(*id) else { continue };
-        let jet = jets.entry((function, argument)).or_insert(Jet { function, argument, orders: Vec::new() });
+        let jet = jets.entry((function, argument)).or_insert(FunctionDerivatives {
+            function,
+            argument,
+            orders: Vec::new(),
+        });
         let order = usize::from(order);
         jet.orders.resize(jet.orders.len().max(order + 1), None);
         if let Some(slot) = jet.orders.get_mut(order) {

@@ -1,9 +1,9 @@
 //! Runs a program as the emitted code runs: stage by stage, line by line, without reading a value that was not computed.
 
 use super::law;
-use super::oracle::State;
+use super::oracle::Evaluation;
 use crate::equations::{Equations, Sparse};
-use crate::program::{Line, Program, Section, Stage};
+use crate::program::{Assignment, Program, Section, Stage};
 use crate::symbolic::{Graph, Leaf, Node, NodeId, Unary};
 
 /// A value of a function and its index there.
@@ -14,7 +14,7 @@ pub struct Found {
 }
 
 /// Values in the order of the oracle.
-pub fn run(equations: &Equations, program: &Program, state: &State) -> Vec<Found> {
+pub fn run(equations: &Equations, program: &Program, state: &Evaluation) -> Vec<Found> {
     let machine = Machine { graph: &equations.graph, state };
     let nothing = vec![None; equations.graph.len()];
     let parameters = machine.stage(&program.parameters, &nothing);
@@ -68,7 +68,7 @@ pub fn run(equations: &Equations, program: &Program, state: &State) -> Vec<Found
 
 struct Machine<'a> {
     graph: &'a Graph,
-    state: &'a State,
+    state: &'a Evaluation,
 }
 
 /// One slot a node of the graph, filled once it is computed.
@@ -90,11 +90,11 @@ impl Machine<'_> {
         let mut values = known.clone();
         for line in &section.lines {
             match line {
-                Line::Value(id) => {
+                Assignment::Value(id) => {
                     let value = self.operation(*id, &values);
                     values[id.index()] = Some(value);
                 }
-                Line::SineCosine(angles) => {
+                Assignment::SineCosine(angles) => {
                     for known in angles {
                         let angle = self.value(known.angle, &values);
                         for (function, id) in [(Unary::Sin, known.sine), (Unary::Cos, known.cosine)] {
@@ -104,7 +104,7 @@ impl Machine<'_> {
                         }
                     }
                 }
-                Line::Jet(jet) => {
+                Assignment::Jet(jet) => {
                     let argument = self.value(jet.argument, &values);
                     for (order, id) in jet.orders.iter().enumerate() {
                         if let Some(id) = id {

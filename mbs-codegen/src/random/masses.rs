@@ -1,8 +1,8 @@
 //! Masses and forces by virtual work, displacement by displacement, in arithmetic of mixed derivatives.
 
-use super::nilpotent::{AGAIN, DISPLACED, MOTION, Nilpotent, VARIED};
-use super::oracle::{Expected, State};
-use crate::model::dynamics::{Action, Body, Dynamics, Force, Line, Rotation, Turn};
+use super::mixed_derivatives::{AGAIN, DISPLACED, MOTION, Nilpotent, VARIED};
+use super::oracle::{Evaluation, Expected};
+use crate::model::dynamics::{Action, Body, Dynamics, Force, Rotation, SpringDamper, Turn};
 use crate::model::expression::{Id, Node};
 use crate::model::{Model, VariableKind};
 use crate::symbolic::Unary;
@@ -31,7 +31,7 @@ enum Path {
 struct Numbers(Vec<Nilpotent>);
 
 impl Numbers {
-    fn of(model: &Model, state: &State, motion: Path, [displaced, varied]: [Axis; 2]) -> Self {
+    fn of(model: &Model, state: &Evaluation, motion: Path, [displaced, varied]: [Axis; 2]) -> Self {
         let mut numbers: Vec<Nilpotent> = Vec::with_capacity(model.expressions.len());
         for (_, node) in model.expressions.iter() {
             let number = match node {
@@ -107,7 +107,7 @@ impl Numbers {
     }
 
     /// Tension of an element between two points: elastic part, other part, and its length.
-    fn line(&self, line: &Line) -> [Nilpotent; 3] {
+    fn line(&self, line: &SpringDamper) -> [Nilpotent; 3] {
         let mut square = Nilpotent::constant(0.0);
         for (from, to) in line.from.iter().zip(&line.to) {
             let d = self.at(*to).minus(self.at(*from));
@@ -177,7 +177,7 @@ impl Numbers {
 
     /// Power of a named force on the coordinates, and power of moved places on a spring that stores; `stopped`: the same
     /// state with the clock stopped.
-    fn power(&self, stopped: &Self, force: &Force, state: &State, model: &Model) -> Nilpotent {
+    fn power(&self, stopped: &Self, force: &Force, state: &Evaluation, model: &Model) -> Nilpotent {
         let zero = Nilpotent::constant(0.0);
         let element = |[elastic, other, place]: [Nilpotent; 3], still: [Nilpotent; 3], stores: bool| {
             let own = still[2].rate();
@@ -260,7 +260,7 @@ fn resisted(work: Nilpotent, [elastic, other, place]: [Nilpotent; 3]) -> Nilpote
 
 /// All functions in the order in which the interpreter gives them: M, M q̈, Q, Φ_qᵀ λ, ∂Q/∂q, ∂Q/∂q̇, (M q̈)_q, (Φ_qᵀ λ)_q, Φ̇_qᵀ λ, λᵀγ̇,
 /// kinetic and potential energy, powers, rates of states, outputs of multipliers and states. Matrices row by row.
-pub fn run(model: &Model, declared: &Dynamics, state: &State) -> Vec<Expected> {
+pub fn run(model: &Model, declared: &Dynamics, state: &Evaluation) -> Vec<Expected> {
     let n = state.q.len();
     let one = |number: Nilpotent, set: usize| Expected {
         value: number.v[set],
@@ -335,7 +335,7 @@ fn inertial(declared: &Dynamics, places: &Numbers, rates: &Numbers) -> Nilpotent
 }
 
 /// Φ̇_qᵀ λ, and λᵀΦ less its third derivative along the motion.
-fn third(model: &Model, state: &State) -> Vec<Expected> {
+fn third(model: &Model, state: &Evaluation) -> Vec<Expected> {
     let one = |number: Nilpotent, set: usize| Expected {
         value: number.v[set],
         bound: number.b[set],
@@ -353,7 +353,7 @@ fn third(model: &Model, state: &State) -> Vec<Expected> {
 }
 
 /// A component of Φ_qᵀ λ.
-fn reacting(model: &Model, numbers: &Numbers, state: &State) -> Nilpotent {
+fn reacting(model: &Model, numbers: &Numbers, state: &Evaluation) -> Nilpotent {
     model.rows.iter().zip(&state.lambda).fold(Nilpotent::constant(0.0), |sum, (row, lambda)| {
         sum.plus(numbers.at(row.residual).along(DISPLACED).times(Nilpotent::constant(*lambda)))
     })

@@ -7,21 +7,22 @@
 
 #[cfg(test)]
 mod interpreter;
-mod jet;
 mod law;
 mod masses;
-mod nilpotent;
+mod mixed_derivatives;
 mod oracle;
+mod taylor;
 mod text;
 
 use crate::diagnostics::Diagnostics;
 use crate::equations::Equations;
 use crate::model::Model;
-use crate::model::scenes::{Scene, Scenes};
+use crate::model::scene::Scene;
+use crate::model::scenes::Scenes;
 use crate::structure::Structure;
 use crate::{equations, structure, syntax};
 
-pub use oracle::{Expected, State};
+pub use oracle::{Evaluation, Expected};
 
 /// Texts and states of each; fixed, so that a failure names its text for good.
 pub const TEXTS: u64 = 2000;
@@ -35,7 +36,7 @@ const ROUNDINGS: f64 = 64.0 * f64::EPSILON / 2.0;
 
 /// Features of a random text in addition to the rest of the language.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum Features {
     /// None of them.
     Plain,
     /// Two declared functions.
@@ -48,21 +49,21 @@ pub enum Kind {
     Masses,
 }
 
-impl Kind {
+impl Features {
     /// `true` if the text declares functions: two, of which [`crate::stand_in`] gives the values.
     pub fn has_functions(self) -> bool {
-        matches!(self, Kind::Functions | Kind::ScenesWithFunctions)
+        matches!(self, Features::Functions | Features::ScenesWithFunctions)
     }
 
     /// Number of states at which a text of the sample is evaluated: with masses every entry of a matrix is an
     /// evaluation of its own.
     pub fn states(self) -> usize {
-        if self == Kind::Masses { STATES_WITH_MASSES } else { STATES }
+        if self == Features::Masses { STATES_WITH_MASSES } else { STATES }
     }
 }
 
 /// A seed's text.
-pub fn text(kind: Kind, seed: u64) -> String {
+pub fn text(kind: Features, seed: u64) -> String {
     text::write(kind, &mut Random(seed))
 }
 
@@ -74,18 +75,18 @@ pub struct ExpectedScene {
     pub rows: usize,
     /// At each state: Φ, Φ_q row by row, Φ_t, Φ_tt, Φ_qt q̇, γ, branches, outputs with rate and acceleration; then the
     /// functions of masses.
-    pub states: Vec<(State, Vec<Expected>)>,
+    pub states: Vec<(Evaluation, Vec<Expected>)>,
 }
 
 /// Values of a seed's text, scene by scene. `None` where the text is refused.
 ///
 /// # Panics
 /// If the front end finds a fault in it.
-pub fn expected(kind: Kind, seed: u64) -> Option<Vec<ExpectedScene>> {
+pub fn expected(kind: Features, seed: u64) -> Option<Vec<ExpectedScene>> {
     let scene = |understood: Option<Understood>| {
         let Understood { name, model, .. } = understood?;
         let states = states(&model, seed).into_iter().take(kind.states());
-        let beside = |state: State| {
+        let beside = |state: Evaluation| {
             let expected = oracle::run(&model, &state);
             (state, expected)
         };
@@ -125,9 +126,9 @@ fn understand_scenes(text: &str) -> Vec<Option<Understood>> {
     scenes.into_iter().map(up_to_structure).collect()
 }
 
-fn states(model: &Model, seed: u64) -> Vec<State> {
+fn states(model: &Model, seed: u64) -> Vec<Evaluation> {
     let mut random = Random(seed ^ 0x5eed);
-    (0..STATES).map(|_| State::draw(model, &mut random)).collect()
+    (0..STATES).map(|_| Evaluation::draw(model, &mut random)).collect()
 }
 
 /// Numbers from a seed: SplitMix64 (Steele, Lea, Flood 2014).
@@ -151,7 +152,7 @@ impl Random {
 fn random_texts_compute_what_second_order_taylor_arithmetic_computes() {
     let mut tally = Tally::default();
     for seed in 0..TEXTS {
-        let text = text(Kind::Plain, seed);
+        let text = text(Features::Plain, seed);
         tally.compare(understand(&text), seed, STATES, &text);
     }
     tally.report(TEXTS);
@@ -166,7 +167,7 @@ const TEXTS_WITH_SCENES: u64 = 300;
 fn each_scene_of_random_texts_computes_what_second_order_taylor_arithmetic_computes() {
     let mut tally = Tally::default();
     for seed in 0..TEXTS_WITH_SCENES {
-        let kind = if seed % 2 == 0 { Kind::Scenes } else { Kind::ScenesWithFunctions };
+        let kind = if seed % 2 == 0 { Features::Scenes } else { Features::ScenesWithFunctions };
         let text = text(kind, seed);
         let scenes = understand_scenes(&text);
         assert_eq!(scenes.len(), 3, "{text}");
@@ -186,7 +187,7 @@ const TEXTS_WITH_FUNCTIONS: u64 = 600;
 fn random_texts_with_functions_compute_what_second_order_taylor_arithmetic_computes() {
     let mut tally = Tally::default();
     for seed in 0..TEXTS_WITH_FUNCTIONS {
-        let text = text(Kind::Functions, seed);
+        let text = text(Features::Functions, seed);
         tally.compare(understand(&text), seed, STATES, &text);
     }
     tally.report(TEXTS_WITH_FUNCTIONS);
@@ -201,7 +202,7 @@ const TEXTS_WITH_MASSES: u64 = 100;
 fn random_texts_with_masses_compute_what_virtual_work_in_mixed_derivatives_computes() {
     let mut tally = Tally::default();
     for seed in 0..TEXTS_WITH_MASSES {
-        let text = text(Kind::Masses, seed);
+        let text = text(Features::Masses, seed);
         tally.compare(understand(&text), seed, STATES_WITH_MASSES, &text);
     }
     tally.report(TEXTS_WITH_MASSES);

@@ -1,14 +1,14 @@
 //! The model's expressions in second-order Taylor arithmetic.
 
-use super::jet::Jet;
 use super::law;
 use super::masses;
+use super::taylor::Jet;
 use super::{ROUNDINGS, Random};
 use crate::model::expression::Node;
 use crate::model::{Model, VariableKind};
 
 /// Data of one evaluation, exact numbers all.
-pub struct State {
+pub struct Evaluation {
     /// Coordinates: N.
     pub q: Vec<f64>,
     /// Velocities: N.
@@ -25,12 +25,12 @@ pub struct State {
     pub lambda: Vec<f64>,
 }
 
-impl State {
+impl Evaluation {
     /// Numbers within ±2; the constraints need not hold.
     pub(super) fn draw(model: &Model, random: &mut Random) -> Self {
         let mut numbers = |count: usize| (0..count).map(|_| random.number()).collect::<Vec<_>>();
         let n = model.coordinates.len();
-        State {
+        Evaluation {
             q: numbers(n),
             qd: numbers(n),
             qdd: numbers(n),
@@ -65,7 +65,7 @@ impl Expected {
 
 /// The line along which expressions are followed: how each leaf moves.
 #[derive(Clone, Copy)]
-struct Line {
+struct Direction {
     /// Time and inputs move.
     time: bool,
     /// Coordinates move with q̇.
@@ -78,22 +78,22 @@ struct Line {
 
 /// All functions in the order in which the interpreter gives them: Φ, Φ_q row by row, Φ_t, Φ_tt, Φ_qt q̇, γ,
 /// branches, outputs with rate and acceleration; then those of masses.
-pub fn run(model: &Model, state: &State) -> Vec<Expected> {
-    let still = Line { time: false, velocity: false, acceleration: false, axis: None };
+pub fn run(model: &Model, state: &Evaluation) -> Vec<Expected> {
+    let still = Direction { time: false, velocity: false, acceleration: false, axis: None };
     let rows: Vec<usize> = model.rows.iter().map(|row| row.residual.index()).collect();
-    let along = |line: Line| {
+    let along = |line: Direction| {
         let jets = evaluate(model, state, line);
         rows.iter().map(|row| jets[*row]).collect::<Vec<Jet>>()
     };
     let part = |jets: &[Jet], k: usize, sign: f64| -> Vec<Expected> {
         jets.iter().map(|jet| Expected { value: sign * jet.v[k], bound: jet.b[k], torn: jet.torn }).collect()
     };
-    let time = along(Line { time: true, ..still });
-    let motion = along(Line { velocity: true, ..still });
-    let both = along(Line { time: true, velocity: true, ..still });
+    let time = along(Direction { time: true, ..still });
+    let motion = along(Direction { velocity: true, ..still });
+    let both = along(Direction { time: true, velocity: true, ..still });
     let mut expected = part(&time, 0, 1.0);
     let columns: Vec<Vec<Jet>> =
-        (0..state.q.len()).map(|axis| along(Line { axis: Some(axis), ..still })).collect();
+        (0..state.q.len()).map(|axis| along(Direction { axis: Some(axis), ..still })).collect();
     for row in 0..rows.len() {
         expected.extend(columns.iter().flat_map(|column| part(&column[row..=row], 1, 1.0)));
     }
@@ -105,7 +105,8 @@ pub fn run(model: &Model, state: &State) -> Vec<Expected> {
         expected.push(Expected { value, bound: both.b[2] + motion.b[2] + time.b[2], torn: both.torn });
     }
     expected.extend(part(&both, 2, -1.0));
-    let jets = evaluate(model, state, Line { time: true, velocity: true, acceleration: true, axis: None });
+    let jets =
+        evaluate(model, state, Direction { time: true, velocity: true, acceleration: true, axis: None });
     expected
         .extend(model.branches.iter().flat_map(|branch| part(&jets[branch.value.index()..][..1], 0, 1.0)));
     for output in &model.outputs {
@@ -116,7 +117,7 @@ pub fn run(model: &Model, state: &State) -> Vec<Expected> {
 }
 
 /// One jet an expression.
-fn evaluate(model: &Model, state: &State, line: Line) -> Vec<Jet> {
+fn evaluate(model: &Model, state: &Evaluation, line: Direction) -> Vec<Jet> {
     let mut jets: Vec<Jet> = Vec::with_capacity(model.expressions.len());
     let moved = |on: bool, rate: f64| if on { rate } else { 0.0 };
     for (_, node) in model.expressions.iter() {

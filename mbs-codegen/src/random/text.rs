@@ -1,14 +1,14 @@
 //! Texts that use the whole language, each well defined at every state.
 
-use super::{Kind, Random};
+use super::{Features, Random};
 use crate::symbolic::Unary;
 
 /// A random text: scalar and vector coordinates, parameters, inputs with rates, `let`s, loops, drives, outputs.
-pub(super) fn write(kind: Kind, random: &mut Random) -> String {
+pub(super) fn write(kind: Features, random: &mut Random) -> String {
     match kind {
-        Kind::Plain | Kind::Functions => begin(random, kind.has_functions()).0,
-        Kind::Scenes | Kind::ScenesWithFunctions => with_scenes(random, kind.has_functions()),
-        Kind::Masses => with_masses(random),
+        Features::Plain | Features::Functions => begin(random, kind.has_functions()).0,
+        Features::Scenes | Features::ScenesWithFunctions => with_scenes(random, kind.has_functions()),
+        Features::Masses => with_masses(random),
     }
 }
 

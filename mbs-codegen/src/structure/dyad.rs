@@ -1,7 +1,7 @@
 //! Dyads and single unknowns among the blocks: those of which both solutions are known as formulas.
 
 use super::polynomial::{Atom, Directions, Monomial, ONE, Polynomial, expand};
-use crate::symbolic::scattered::scattered;
+use crate::symbolic::sample_points::scattered;
 use crate::symbolic::{Graph, Leaf, NodeId, evaluate::evaluate};
 
 /// Coefficients of a dyad or a single unknown, of earlier coordinates and time alone; the runtime's `Dyad` and `Single`

@@ -305,15 +305,19 @@ fn report_references(model: &Model, equations: &Equations, diagnostics: &mut Dia
 }
 
 /// A part that is not square: `starts` outnumber the `ends` that they are tied to.
-struct Part {
+struct NonSquarePart {
     starts: Vec<usize>,
     ends: Vec<usize>,
 }
 
 /// Before: unmatched nodes of one side, the edges from that side, and the match of each node of the other. After: all
 /// nodes that alternating paths reach from them, ascending, one part a connected piece.
-fn parts(free: impl Iterator<Item = usize>, edges: &[Vec<usize>], matched: &[Option<usize>]) -> Vec<Part> {
-    let mut pieces: Vec<Part> = Vec::new();
+fn parts(
+    free: impl Iterator<Item = usize>,
+    edges: &[Vec<usize>],
+    matched: &[Option<usize>],
+) -> Vec<NonSquarePart> {
+    let mut pieces: Vec<NonSquarePart> = Vec::new();
     // Piece that each piece is part of; itself, if there is none.
     let mut whole: Vec<usize> = Vec::new();
     let mut owners: BTreeMap<usize, usize> = BTreeMap::new();
@@ -336,17 +340,18 @@ fn parts(free: impl Iterator<Item = usize>, edges: &[Vec<usize>], matched: &[Opt
                 waiting.extend(next);
             }
         }
-        pieces.push(Part { starts, ends });
+        pieces.push(NonSquarePart { starts, ends });
     }
-    let mut parts: BTreeMap<usize, Part> = BTreeMap::new();
-    for (piece, Part { starts, ends }) in pieces.into_iter().enumerate() {
-        let part =
-            parts.entry(root(piece, &mut whole)).or_insert(Part { starts: Vec::new(), ends: Vec::new() });
+    let mut parts: BTreeMap<usize, NonSquarePart> = BTreeMap::new();
+    for (piece, NonSquarePart { starts, ends }) in pieces.into_iter().enumerate() {
+        let part = parts
+            .entry(root(piece, &mut whole))
+            .or_insert(NonSquarePart { starts: Vec::new(), ends: Vec::new() });
         part.starts.extend(starts);
         part.ends.extend(ends);
     }
-    let mut parts: Vec<Part> = parts.into_values().collect();
-    for Part { starts, ends } in &mut parts {
+    let mut parts: Vec<NonSquarePart> = parts.into_values().collect();
+    for NonSquarePart { starts, ends } in &mut parts {
         starts.sort_unstable();
         ends.sort_unstable();
     }

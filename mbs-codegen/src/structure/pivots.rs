@@ -3,7 +3,7 @@
 //! Closures are vectors. So a single entry of a loop, −L sin φ, vanishes within each turn, whereas the two rows for two
 //! angles do not. Pivots are therefore constant entries (numbers) or 2 × 2, and the remaining block is up to 3 × 3.
 
-use crate::symbolic::scattered::scattered;
+use crate::symbolic::sample_points::scattered;
 use crate::symbolic::{Graph, Leaf, NodeId, evaluate::evaluate};
 
 /// Smallest block that is worth an order: closed forms are shorter below.

@@ -10,7 +10,7 @@ pub mod graph;
 pub mod operations;
 mod powers;
 mod rules;
-pub mod scattered;
+pub mod sample_points;
 pub mod substitute;
 
 pub use angles::{AngleSum, add_angles};

@@ -4,7 +4,7 @@ use super::ast::{Declares, Equation, Expression, Item, StatementKind};
 use super::expression::expression;
 use super::parser::{GivenUp, Parser, Read};
 use super::statement::{at_statement, end, read_loop};
-use super::tokens::Kind;
+use super::tokens::TokenKind;
 
 const CONSTRAINT: &str = "write `constraint pin { x == L*cos(phi); y == L*sin(phi); }`";
 pub fn read_constraint(parser: &mut Parser<'_>) -> Read<StatementKind> {
@@ -72,7 +72,7 @@ fn width(parser: &mut Parser<'_>, redundant: bool) -> Read<Option<Expression>> {
 
 /// `true` if a statement begins here: a word followed by a name, as in no equation.
 fn misplaced(parser: &Parser<'_>) -> bool {
-    at_statement(parser) && matches!(parser.peek_at(1), Kind::Identifier(_))
+    at_statement(parser) && matches!(parser.peek_at(1), TokenKind::Identifier(_))
 }
 
 /// Reports a statement in a constraint; its name is known as faulty.
@@ -97,13 +97,13 @@ fn misplaced_statement(parser: &mut Parser<'_>) -> Read<Item> {
 fn behind_equation(parser: &mut Parser<'_>) -> bool {
     loop {
         match parser.peek() {
-            Kind::End => return false,
-            Kind::Close('}') => return true,
-            Kind::Punctuation(';', _) => {
+            TokenKind::End => return false,
+            TokenKind::Close('}') => return true,
+            TokenKind::Punctuation(';', _) => {
                 parser.skip(1);
                 return true;
             }
-            Kind::Open(_) => {
+            TokenKind::Open(_) => {
                 parser.skip(1);
                 parser.skip_group();
             }
@@ -117,7 +117,7 @@ pub fn equation(parser: &mut Parser<'_>, help: &str) -> Read<Equation> {
     let left = expression(parser)?;
     let span = parser.span();
     if !parser.at_pair('=', '=') {
-        let single = matches!(parser.peek(), Kind::Punctuation('=', _));
+        let single = matches!(parser.peek(), TokenKind::Punctuation('=', _));
         return parser.expected("`==`", if single { "the sign of an equation is `==`" } else { help });
     }
     parser.skip(2);

@@ -4,7 +4,7 @@ use proc_macro2::Span;
 
 use super::ast::{Expression, Instruction, Name, Operation, Operator, Target, Unit};
 use super::parser::{GivenUp, Parser, Read};
-use super::tokens::Kind;
+use super::tokens::TokenKind;
 use super::unit::{unit_behind_a_space, unit_of_number};
 
 /// Operator or bracket that waits for its right operand or its closing bracket.
@@ -74,25 +74,25 @@ impl Reader {
     fn operand(&mut self, parser: &mut Parser<'_>) -> Read<bool> {
         let span = parser.span();
         match parser.peek() {
-            Kind::Punctuation('-', _) => {
+            TokenKind::Punctuation('-', _) => {
                 parser.skip(1);
                 self.pending.push(Pending::Negate(span));
                 Ok(true)
             }
-            Kind::Punctuation('+', _) => {
+            TokenKind::Punctuation('+', _) => {
                 parser.expected("an operand", "remove the `+`; there is no unary plus")
             }
-            Kind::Open('(') => {
+            TokenKind::Open('(') => {
                 parser.skip(1);
                 self.pending.push(Pending::Parenthesis);
                 Ok(true)
             }
-            Kind::Open('[') => {
+            TokenKind::Open('[') => {
                 parser.skip(1);
                 self.pending.push(Pending::Array { length: 1, span });
                 Ok(true)
             }
-            Kind::Identifier(word) if word == "sum" && *parser.peek_at(1) == Kind::Open('(') => {
+            TokenKind::Identifier(word) if word == "sum" && *parser.peek_at(1) == TokenKind::Open('(') => {
                 parser.skip(2);
                 let variable = parser.name(SUM)?;
                 if !parser.take_word("in") {
@@ -101,16 +101,16 @@ impl Reader {
                 self.pending.push(Pending::SumLow { variable, span });
                 Ok(true)
             }
-            Kind::Identifier(word)
+            TokenKind::Identifier(word)
                 if self.references
                     && REFERRING.contains(&word.as_str())
-                    && *parser.peek_at(1) == Kind::Open('(') =>
+                    && *parser.peek_at(1) == TokenKind::Open('(') =>
             {
                 parser.skip(2);
                 self.reference(parser, word, span)?;
                 Ok(false)
             }
-            Kind::Identifier(word) => {
+            TokenKind::Identifier(word) => {
                 parser.skip(1);
                 if !parser.take('(') {
                     self.push(Operation::Name(word.clone()), span);
@@ -118,7 +118,7 @@ impl Reader {
                 }
                 Ok(self.call(parser, word.clone(), 0, span))
             }
-            Kind::Literal(text) => {
+            TokenKind::Literal(text) => {
                 let number = literal(parser, text)?;
                 self.push(number, span);
                 Ok(false)
@@ -145,7 +145,7 @@ impl Reader {
                 parser.expect(']', help)?;
             } else if parser.take('.') {
                 let count = match parser.peek() {
-                    Kind::Literal(text) => number(text, parser.span()),
+                    TokenKind::Literal(text) => number(text, parser.span()),
                     _ => None,
                 };
                 let Some(count) = count else { return parser.expected("the number of a row", help) };
@@ -168,7 +168,7 @@ impl Reader {
     /// end of the expression.
     fn behind_operand(&mut self, parser: &mut Parser<'_>) -> Read<Option<bool>> {
         let span = parser.span();
-        if let Kind::Punctuation(character, _) = parser.peek() {
+        if let TokenKind::Punctuation(character, _) = parser.peek() {
             let operator = match character {
                 '+' => Some(Operator::Add),
                 '-' => Some(Operator::Subtract),
@@ -185,13 +185,13 @@ impl Reader {
             }
         }
         match parser.peek() {
-            Kind::Open('[') => {
+            TokenKind::Open('[') => {
                 parser.skip(1);
                 self.pending.push(Pending::Index { indices: 1, span });
                 Ok(Some(true))
             }
-            Kind::Punctuation('.', false) => self.component(parser),
-            Kind::Punctuation(',', _) => {
+            TokenKind::Punctuation('.', false) => self.component(parser),
+            TokenKind::Punctuation(',', _) => {
                 self.reduce(0, true);
                 match self.pending.last_mut() {
                     Some(Pending::Call { arguments: count, .. })
@@ -211,12 +211,12 @@ impl Reader {
     fn component(&mut self, parser: &mut Parser<'_>) -> Read<Option<bool>> {
         let span = parser.span();
         parser.skip(1);
-        if let Kind::Identifier(word) = parser.peek()
-            && *parser.peek_at(1) == Kind::Open('(')
+        if let TokenKind::Identifier(word) = parser.peek()
+            && *parser.peek_at(1) == TokenKind::Open('(')
         {
             return self.derivative(parser, word);
         }
-        if let Kind::Literal(text) = parser.peek()
+        if let TokenKind::Literal(text) = parser.peek()
             && let Some(index) = number(text, span)
             && matches!(index, Operation::Number { integer: true, .. })
         {
@@ -260,7 +260,7 @@ impl Reader {
     /// Reads the token that closes a bracket, separates the parts of a `sum`, or ends the expression.
     fn bracket(&mut self, parser: &mut Parser<'_>) -> Read<Option<bool>> {
         self.reduce(0, true);
-        let close = matches!(parser.peek(), Kind::Close(_));
+        let close = matches!(parser.peek(), TokenKind::Close(_));
         match self.pending.pop() {
             None => return Ok(None),
             Some(Pending::SumLow { variable, span }) if parser.at_pair('.', '.') => {
@@ -270,7 +270,7 @@ impl Reader {
                 return Ok(Some(true));
             }
             Some(Pending::SumHigh { variable, span })
-                if matches!(parser.peek(), Kind::Punctuation(':', _)) =>
+                if matches!(parser.peek(), TokenKind::Punctuation(':', _)) =>
             {
                 parser.skip(1);
                 let begin = self.code.len();
@@ -351,7 +351,7 @@ fn literal(parser: &mut Parser<'_>, text: &str) -> Read<Operation> {
         }
         let digits = text.strip_suffix(unit.as_ref().map_or("", |unit| &unit.text)).unwrap_or(text);
         let joined = unit.is_some();
-        if *parser.peek() == Kind::Open('[') {
+        if *parser.peek() == TokenKind::Open('[') {
             if joined {
                 return parser.expected(
                     "an operator",
@@ -367,7 +367,7 @@ fn literal(parser: &mut Parser<'_>, text: &str) -> Read<Operation> {
             parser.diagnostics.report(parser.span(), message, format!("write `{number}`"));
             return Err(GivenUp);
         }
-        if let (Some(unit), Kind::Punctuation('^', _)) = (unit, parser.peek()) {
+        if let (Some(unit), TokenKind::Punctuation('^', _)) = (unit, parser.peek()) {
             two_readings(parser, span, digits, unit, joined);
         }
     }
@@ -379,9 +379,9 @@ const NUMBER: &str = "write numbers as `0.1`, `1e-3`, `100mm` or `30deg`, compou
 /// Reports a power of a number with a unit: is it the number's or the unit's alone?
 fn two_readings(parser: &mut Parser<'_>, span: Span, digits: &str, unit: &Unit, joined: bool) {
     let number = if joined { format!("{digits}{}", unit.text) } else { format!("{digits} [{}]", unit.text) };
-    let negative = matches!(parser.peek_at(1), Kind::Punctuation('-', _));
+    let negative = matches!(parser.peek_at(1), TokenKind::Punctuation('-', _));
     let exponent = match parser.peek_at(1 + usize::from(negative)) {
-        Kind::Literal(text) if text.bytes().all(|byte| byte.is_ascii_digit()) => {
+        TokenKind::Literal(text) if text.bytes().all(|byte| byte.is_ascii_digit()) => {
             format!("{}{text}", if negative { "-" } else { "" })
         }
         _ => "…".into(),

@@ -5,7 +5,7 @@ use syn::ext::IdentExt;
 use syn::parse::{Parse, ParseStream, Parser};
 use syn::{Attribute, Token, Visibility};
 
-use super::keywords::{UNUSABLE, identifier};
+use super::rust_identifiers::{UNUSABLE, identifier};
 use crate::diagnostics::Diagnostics;
 
 /// Head of a text, before its statements.

@@ -1,20 +1,37 @@
-//! Words of Rust as names.
+//! Words that begin a statement; [`super::statement`] calls the reader of each.
 
-use proc_macro2::{Ident, Span};
+/// Words that begin a statement of this version.
+pub const STATEMENTS: [&str; 29] = [
+    "const",
+    "param",
+    "input",
+    "function",
+    "coord",
+    "let",
+    "constraint",
+    "drive",
+    "branch",
+    "limit",
+    "independent",
+    "out",
+    "for",
+    "effect",
+    "scene",
+    "start",
+    "state",
+    "body",
+    "pin",
+    "gravity",
+    "force",
+    "torque",
+    "tsda",
+    "rsda",
+    "friction",
+    "contact",
+    "potential",
+    "kinetic",
+    "dissipation",
+];
 
-/// Words that cannot name anything, not even as raw identifiers.
-pub const UNUSABLE: [&str; 5] = ["self", "Self", "super", "crate", "_"];
-
-/// `true` if some edition keeps the word for itself; `syn` does not know those of 2024 yet.
-pub fn is_keyword(name: &str) -> bool {
-    name == "gen" || syn::parse_str::<Ident>(name).is_err()
-}
-
-/// The name as an identifier, raw where it is a keyword.
-pub fn identifier(name: &str, span: Span) -> Ident {
-    if is_keyword(name) && !UNUSABLE.contains(&name) {
-        Ident::new_raw(name, span)
-    } else {
-        Ident::new(name, span)
-    }
-}
+/// Words that begin a statement of the language which this version does not translate.
+pub const LATER: [&str; 2] = ["data", "include"];

@@ -5,9 +5,10 @@ mod constraint;
 mod dynamics;
 mod expression;
 mod header;
-pub mod keywords;
+mod keywords;
 mod parser;
 pub mod picture;
+pub mod rust_identifiers;
 mod scene;
 mod source;
 mod statement;
@@ -20,9 +21,9 @@ use proc_macro2::{Span, TokenStream};
 use crate::diagnostics::Diagnostics;
 pub use expression::REFERRING;
 pub use header::{Header, OWN};
+pub use keywords::{LATER, STATEMENTS};
 pub use scene::NAMELESS;
 use statement::parse;
-pub use statement::{LATER, STATEMENTS};
 
 /// A text as written.
 pub struct Text {

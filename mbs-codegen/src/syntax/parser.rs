@@ -3,7 +3,7 @@
 use proc_macro2::Span;
 
 use super::ast::{Declares, Name, StatementKind, Type};
-use super::tokens::{Kind, Token};
+use super::tokens::{Token, TokenKind};
 use crate::diagnostics::Diagnostics;
 
 /// A fault was reported; the statement is given up and reading continues after it.
@@ -23,7 +23,7 @@ pub struct Parser<'a> {
     pub faulty: Vec<StatementKind>,
 }
 
-static BEHIND: Kind = Kind::End;
+static BEHIND: TokenKind = TokenKind::End;
 
 impl<'a> Parser<'a> {
     /// `tokens` end with [`Kind::End`].
@@ -32,12 +32,12 @@ impl<'a> Parser<'a> {
     }
 
     /// The next token's kind.
-    pub fn peek(&self) -> &'a Kind {
+    pub fn peek(&self) -> &'a TokenKind {
         self.peek_at(0)
     }
 
     /// The kind of the token `ahead` places further on.
-    pub fn peek_at(&self, ahead: usize) -> &'a Kind {
+    pub fn peek_at(&self, ahead: usize) -> &'a TokenKind {
         self.tokens.get(self.next + ahead).map_or(&BEHIND, |token| &token.kind)
     }
 
@@ -59,7 +59,7 @@ impl<'a> Parser<'a> {
 
     /// Takes the next token if it is this punctuation.
     pub fn take(&mut self, character: char) -> bool {
-        let found = matches!(self.peek(), Kind::Punctuation(c, _) | Kind::Open(c) | Kind::Close(c) if *c == character);
+        let found = matches!(self.peek(), TokenKind::Punctuation(c, _) | TokenKind::Open(c) | TokenKind::Close(c) if *c == character);
         if found {
             self.skip(1);
         }
@@ -68,8 +68,8 @@ impl<'a> Parser<'a> {
 
     /// `true` if the next two tokens are this pair of punctuation.
     pub fn at_pair(&self, first: char, second: char) -> bool {
-        matches!(self.peek(), Kind::Punctuation(c, true) if *c == first)
-            && matches!(self.peek_at(1), Kind::Punctuation(c, _) if *c == second)
+        matches!(self.peek(), TokenKind::Punctuation(c, true) if *c == first)
+            && matches!(self.peek_at(1), TokenKind::Punctuation(c, _) if *c == second)
     }
 
     /// Takes the next token if it is this word.
@@ -83,7 +83,7 @@ impl<'a> Parser<'a> {
 
     /// `true` if the next token is this word.
     pub fn at_word(&self, word: &str) -> bool {
-        matches!(self.peek(), Kind::Identifier(text) if text == word)
+        matches!(self.peek(), TokenKind::Identifier(text) if text == word)
     }
 
     /// Reports that something else was expected here.
@@ -102,7 +102,7 @@ impl<'a> Parser<'a> {
     /// Takes a name or reports that it is missing.
     pub fn name(&mut self, help: &str) -> Read<Name> {
         match self.peek() {
-            Kind::Identifier(text) if text != "_" => {
+            TokenKind::Identifier(text) if text != "_" => {
                 let name = Name { text: text.clone(), span: self.span() };
                 self.skip(1);
                 Ok(name)
@@ -132,10 +132,10 @@ impl<'a> Parser<'a> {
     /// Skips to the token after the bracket that closes the one just before the cursor, or to the end.
     pub fn skip_group(&mut self) {
         let mut depth = 1;
-        while depth > 0 && *self.peek() != Kind::End {
+        while depth > 0 && *self.peek() != TokenKind::End {
             match self.peek() {
-                Kind::Open(_) => depth += 1,
-                Kind::Close(_) => depth -= 1,
+                TokenKind::Open(_) => depth += 1,
+                TokenKind::Close(_) => depth -= 1,
                 _ => {}
             }
             self.skip(1);
@@ -149,13 +149,15 @@ pub const DOC_ATTRIBUTE: usize = 6;
 /// The text where the tokens begin with `#[doc = "text"]`.
 pub fn doc_attribute(tokens: &[Token]) -> Option<String> {
     let [mark, open, word, equals, literal, close, ..] = tokens else { return None };
-    let is_doc = matches!(mark.kind, Kind::Punctuation('#', _))
-        && open.kind == Kind::Open('[')
-        && word.kind == Kind::Identifier("doc".into())
-        && matches!(equals.kind, Kind::Punctuation('=', _))
-        && close.kind == Kind::Close(']');
+    let is_doc = matches!(mark.kind, TokenKind::Punctuation('#', _))
+        && open.kind == TokenKind::Open('[')
+        && word.kind == TokenKind::Identifier("doc".into())
+        && matches!(equals.kind, TokenKind::Punctuation('=', _))
+        && close.kind == TokenKind::Close(']');
     match &literal.kind {
-        Kind::Literal(text) if is_doc => syn::parse_str::<syn::LitStr>(text).ok().map(|text| text.value()),
+        TokenKind::Literal(text) if is_doc => {
+            syn::parse_str::<syn::LitStr>(text).ok().map(|text| text.value())
+        }
         _ => None,
     }
 }

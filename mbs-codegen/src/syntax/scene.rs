@@ -5,7 +5,7 @@ use proc_macro2::Span;
 use super::ast::{Name, StatementKind};
 use super::parser::{GivenUp, Parser, Read};
 use super::statement::end;
-use super::tokens::Kind;
+use super::tokens::TokenKind;
 use crate::diagnostics::Diagnostics;
 
 /// Name of an effect without one, which is reported.
@@ -18,7 +18,7 @@ pub fn read_effect(parser: &mut Parser<'_>) -> Read<StatementKind> {
     let name = match parser.name(EFFECT) {
         Ok(name) => name,
         // Its statements are read nevertheless.
-        Err(GivenUp) if *parser.peek() == Kind::Open('{') => Name { text: NAMELESS.into(), span },
+        Err(GivenUp) if *parser.peek() == TokenKind::Open('{') => Name { text: NAMELESS.into(), span },
         Err(GivenUp) => return Err(GivenUp),
     };
     parser.expect('{', EFFECT)?;

@@ -1,6 +1,6 @@
 //! The text as the user laid it out, rebuilt from the tokens' positions.
 
-use super::tokens::{Kind, Token};
+use super::tokens::{Token, TokenKind};
 
 /// Lines and indentation of `tokens` as in the source file, comments left out, the left margin removed.
 ///
@@ -37,7 +37,7 @@ pub fn layout(tokens: &[Token]) -> String {
 /// Column of the first token of each line.
 fn first_columns(tokens: &[Token]) -> impl Iterator<Item = usize> + '_ {
     let mut line = 0;
-    tokens.iter().filter(|token| token.kind != Kind::End).filter_map(move |token| {
+    tokens.iter().filter(|token| token.kind != TokenKind::End).filter_map(move |token| {
         let start = token.span.start();
         let first = start.line > line;
         line = line.max(start.line);
@@ -46,14 +46,14 @@ fn first_columns(tokens: &[Token]) -> impl Iterator<Item = usize> + '_ {
 }
 
 fn needs_space(previous: &Token, token: &Token) -> bool {
-    let is_word = |token: &Token| matches!(token.kind, Kind::Identifier(_) | Kind::Literal(_));
+    let is_word = |token: &Token| matches!(token.kind, TokenKind::Identifier(_) | TokenKind::Literal(_));
     if is_word(previous) && is_word(token) {
         // Tokens of different files may seem to touch.
         return true;
     }
-    let joint = matches!(previous.kind, Kind::Punctuation(_, true));
+    let joint = matches!(previous.kind, TokenKind::Punctuation(_, true));
     let (end, start) = (previous.span.end(), token.span.start());
-    !joint && token.kind != Kind::End && (end.line, end.column) != (start.line, start.column)
+    !joint && token.kind != TokenKind::End && (end.line, end.column) != (start.line, start.column)
 }
 
 /// `/// text` where the tokens are the attribute that the compiler replaces it by, and the number of these tokens.
@@ -67,11 +67,11 @@ fn doc_comment(tokens: &[Token]) -> Option<(String, usize)> {
 
 fn written(token: &Token) -> String {
     match &token.kind {
-        Kind::Identifier(text) if token.raw => format!("r#{text}"),
-        Kind::Identifier(text) | Kind::Literal(text) => text.clone(),
-        Kind::Punctuation(character, _) | Kind::Open(character) | Kind::Close(character) => {
+        TokenKind::Identifier(text) if token.raw => format!("r#{text}"),
+        TokenKind::Identifier(text) | TokenKind::Literal(text) => text.clone(),
+        TokenKind::Punctuation(character, _) | TokenKind::Open(character) | TokenKind::Close(character) => {
             character.to_string()
         }
-        Kind::End => String::new(),
+        TokenKind::End => String::new(),
     }
 }

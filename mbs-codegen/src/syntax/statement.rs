@@ -7,48 +7,13 @@ use super::ast::{
 use super::constraint::{equation, read_constraint};
 use super::dynamics;
 use super::expression::{closed_range, expression};
+use super::keywords::{LATER, STATEMENTS};
 use super::parser::{DOC_ATTRIBUTE, GivenUp, Parser, Read, doc_attribute};
 use super::picture;
 use super::scene::{Open, read_effect, read_scene};
-use super::tokens::{Kind, Token};
+use super::tokens::{Token, TokenKind};
 use super::unit::{declared_type, unit};
 use crate::diagnostics::{Diagnostics, nearest};
-
-/// Words that begin a statement of this version.
-pub const STATEMENTS: [&str; 29] = [
-    "const",
-    "param",
-    "input",
-    "function",
-    "coord",
-    "let",
-    "constraint",
-    "drive",
-    "branch",
-    "limit",
-    "independent",
-    "out",
-    "for",
-    "effect",
-    "scene",
-    "start",
-    "state",
-    "body",
-    "pin",
-    "gravity",
-    "force",
-    "torque",
-    "tsda",
-    "rsda",
-    "friction",
-    "contact",
-    "potential",
-    "kinetic",
-    "dissipation",
-];
-
-/// Words that begin a statement of the language which this version does not translate.
-pub const LATER: [&str; 2] = ["data", "include"];
 
 /// Before: flat tokens after the header. After: all statements that could be read, loops and effects flattened and
 /// balanced, effects and scenes at the top level alone; every other one is reported.
@@ -56,7 +21,7 @@ pub fn parse(tokens: &[Token], diagnostics: &mut Diagnostics) -> Vec<Statement> 
     let mut parser = Parser::new(tokens, diagnostics);
     let mut statements = Vec::new();
     let mut open = Open::default();
-    while *parser.peek() != Kind::End {
+    while *parser.peek() != TokenKind::End {
         let docs = docs(&mut parser);
         if open.is_any() && parser.take('}') {
             statements.extend(open.close().map(|kind| Statement { docs, kind }));
@@ -79,7 +44,7 @@ pub fn parse(tokens: &[Token], diagnostics: &mut Diagnostics) -> Vec<Statement> 
 /// Lines of the doc comment before a statement; other attributes are reported.
 fn docs(parser: &mut Parser<'_>) -> Vec<String> {
     let mut lines = Vec::new();
-    while matches!(parser.peek(), Kind::Punctuation('#', _)) {
+    while matches!(parser.peek(), TokenKind::Punctuation('#', _)) {
         if let Some(line) = doc_attribute(parser.rest()) {
             lines.push(line);
             parser.skip(DOC_ATTRIBUTE);
@@ -106,8 +71,8 @@ fn resynchronise(parser: &mut Parser<'_>, start: &[Token]) {
     let mut open = Vec::new();
     for token in read {
         match token.kind {
-            Kind::Open(bracket) => open.push(bracket),
-            Kind::Close(_) => drop(open.pop()),
+            TokenKind::Open(bracket) => open.push(bracket),
+            TokenKind::Close(_) => drop(open.pop()),
             _ => {}
         }
     }
@@ -122,10 +87,10 @@ fn resynchronise(parser: &mut Parser<'_>, start: &[Token]) {
     }
     loop {
         match parser.peek() {
-            Kind::End => return,
-            Kind::Punctuation(';', _) => return parser.skip(1),
+            TokenKind::End => return,
+            TokenKind::Punctuation(';', _) => return parser.skip(1),
             _ if at_statement(parser) => return,
-            Kind::Open(bracket) => {
+            TokenKind::Open(bracket) => {
                 parser.skip(1);
                 parser.skip_group();
                 if *bracket == '{' {
@@ -140,11 +105,11 @@ fn resynchronise(parser: &mut Parser<'_>, start: &[Token]) {
 /// `true` if the next token begins a statement, or ends them.
 pub fn at_statement(parser: &Parser<'_>) -> bool {
     match parser.peek() {
-        Kind::End | Kind::Close('}') => true,
-        Kind::Identifier(word) => {
+        TokenKind::End | TokenKind::Close('}') => true,
+        TokenKind::Identifier(word) => {
             STATEMENTS.iter().chain(&LATER).any(|known| known == word) || picture::starts(parser)
         }
-        Kind::Punctuation('#', _) => doc_attribute(parser.rest()).is_some(),
+        TokenKind::Punctuation('#', _) => doc_attribute(parser.rest()).is_some(),
         _ => false,
     }
 }
@@ -159,18 +124,18 @@ pub fn end(parser: &mut Parser<'_>, help: &str) -> Read<()> {
         return Ok(());
     }
     match parser.peek() {
-        Kind::Identifier(_) | Kind::Literal(_) | Kind::Open('(') => parser
+        TokenKind::Identifier(_) | TokenKind::Literal(_) | TokenKind::Open('(') => parser
             .expected("an operator or `;`", "two operands need an operator: `2*x`; behind them stands a `;`"),
         _ => parser.expected("`;`", help),
     }
 }
 
 fn statement(parser: &mut Parser<'_>) -> Read<StatementKind> {
-    let Kind::Identifier(word) = parser.peek() else {
+    let TokenKind::Identifier(word) = parser.peek() else {
         return parser.expected("a statement", &known());
     };
     let span = parser.span();
-    if word == "der" && *parser.peek_at(1) == Kind::Open('(') {
+    if word == "der" && *parser.peek_at(1) == TokenKind::Open('(') {
         return dynamics::read_rate(parser);
     }
     if let Some(read) = reader(word) {
@@ -209,7 +174,7 @@ fn statement(parser: &mut Parser<'_>) -> Read<StatementKind> {
     parser.skip(1);
     match meant.and_then(reader) {
         // Read as the intended statement, so that its name is known.
-        Some(read) if matches!(parser.peek(), Kind::Identifier(_)) => read(parser),
+        Some(read) if matches!(parser.peek(), TokenKind::Identifier(_)) => read(parser),
         _ => Err(GivenUp),
     }
 }
@@ -334,7 +299,7 @@ fn read_function(parser: &mut Parser<'_>) -> Read<StatementKind> {
 
 /// `C0` to `C9`: the number of continuous derivatives.
 fn continuity(parser: &mut Parser<'_>) -> Read<u8> {
-    if let Kind::Identifier(word) = parser.peek()
+    if let TokenKind::Identifier(word) = parser.peek()
         && let Some([digit @ b'0'..=b'9']) = word.strip_prefix('C').map(str::as_bytes)
     {
         parser.skip(1);
@@ -390,11 +355,11 @@ fn read_branch(parser: &mut Parser<'_>) -> Read<StatementKind> {
     }
     parser.expect(':', BRANCH)?;
     let left = expression(parser)?;
-    let less = matches!(parser.peek(), Kind::Punctuation('<', _));
-    if !less && !matches!(parser.peek(), Kind::Punctuation('>', _)) {
+    let less = matches!(parser.peek(), TokenKind::Punctuation('<', _));
+    if !less && !matches!(parser.peek(), TokenKind::Punctuation('>', _)) {
         return parser.expected("`<` or `>`", BRANCH);
     }
-    if matches!(parser.peek_at(1), Kind::Punctuation('=', _)) {
+    if matches!(parser.peek_at(1), TokenKind::Punctuation('=', _)) {
         let (span, sign) = (parser.span(), if less { '<' } else { '>' });
         let help = format!("write `{sign}`: at equality two assemblies meet, and none is chosen");
         parser.diagnostics.report(span, format!("a branch cannot include equality: `{sign}=`"), help);

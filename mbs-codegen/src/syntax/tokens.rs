@@ -15,7 +15,7 @@ const LONGEST_QUOTE: usize = 40;
 /// A token of the flat list.
 #[derive(Clone, Debug)]
 pub struct Token {
-    pub kind: Kind,
+    pub kind: TokenKind,
     pub span: Span,
     /// `true` if an identifier was written `r#so`.
     pub raw: bool,
@@ -23,7 +23,7 @@ pub struct Token {
 
 /// Kind of a [`Token`].
 #[derive(Clone, Debug, PartialEq)]
-pub enum Kind {
+pub enum TokenKind {
     /// Without the `r#` of a raw identifier.
     Identifier(String),
     Literal(String),
@@ -39,16 +39,18 @@ impl Token {
     /// Quotation in a message, which is one line.
     pub fn describe(&self) -> String {
         match &self.kind {
-            Kind::Identifier(text) | Kind::Literal(text) => {
+            TokenKind::Identifier(text) | TokenKind::Literal(text) => {
                 let shown: String =
                     text.chars().take_while(|c| !c.is_control()).take(LONGEST_QUOTE).collect();
                 let rest = if shown.len() < text.len() { "…" } else { "" };
                 format!("`{shown}{rest}`")
             }
-            Kind::Punctuation(character, _) | Kind::Open(character) | Kind::Close(character) => {
+            TokenKind::Punctuation(character, _)
+            | TokenKind::Open(character)
+            | TokenKind::Close(character) => {
                 format!("`{character}`")
             }
-            Kind::End => "the end of the text".into(),
+            TokenKind::End => "the end of the text".into(),
         }
     }
 }
@@ -70,7 +72,7 @@ pub fn flatten(stream: TokenStream, diagnostics: &mut Diagnostics) -> Vec<Token>
         let Some((rest, close)) = open.last_mut() else { break };
         let Some(tree) = rest.next() else {
             if let Some((character, span)) = close.take() {
-                tokens.push(Token { kind: Kind::Close(character), span, raw: false });
+                tokens.push(Token { kind: TokenKind::Close(character), span, raw: false });
             }
             open.pop();
             continue;
@@ -88,7 +90,11 @@ pub fn flatten(stream: TokenStream, diagnostics: &mut Diagnostics) -> Vec<Token>
         match tree {
             TokenTree::Group(group) if depth > DEEPEST => {
                 // A zero fits in place of any expression, so that no further fault follows.
-                tokens.push(Token { kind: Kind::Literal("0".into()), span: group.span_open(), raw: false });
+                tokens.push(Token {
+                    kind: TokenKind::Literal("0".into()),
+                    span: group.span_open(),
+                    raw: false,
+                });
                 if !too_deep {
                     diagnostics.report(
                         group.span_open(),
@@ -107,7 +113,7 @@ pub fn flatten(stream: TokenStream, diagnostics: &mut Diagnostics) -> Vec<Token>
                 };
                 let inner = group.stream().into_iter().peekable();
                 let close = delimiters.map(|(from, to)| {
-                    tokens.push(Token { kind: Kind::Open(from), span: group.span_open(), raw: false });
+                    tokens.push(Token { kind: TokenKind::Open(from), span: group.span_open(), raw: false });
                     (to, group.span_close())
                 });
                 open.push((inner, close));
@@ -118,11 +124,11 @@ pub fn flatten(stream: TokenStream, diagnostics: &mut Diagnostics) -> Vec<Token>
                     Some(name) => (name.to_owned(), true),
                     None => (text, false),
                 };
-                tokens.push(Token { kind: Kind::Identifier(text), span: identifier.span(), raw });
+                tokens.push(Token { kind: TokenKind::Identifier(text), span: identifier.span(), raw });
             }
             TokenTree::Punct(mark) => {
                 tokens.push(Token {
-                    kind: Kind::Punctuation(mark.as_char(), mark.spacing() == Spacing::Joint),
+                    kind: TokenKind::Punctuation(mark.as_char(), mark.spacing() == Spacing::Joint),
                     span: mark.span(),
                     raw: false,
                 });
@@ -131,12 +137,12 @@ pub fn flatten(stream: TokenStream, diagnostics: &mut Diagnostics) -> Vec<Token>
                 }
             }
             TokenTree::Literal(literal) => {
-                let (kind, span) = (Kind::Literal(literal.to_string()), literal.span());
+                let (kind, span) = (TokenKind::Literal(literal.to_string()), literal.span());
                 tokens.push(Token { kind, span, raw: false });
             }
         }
     }
-    tokens.push(Token { kind: Kind::End, span: end, raw: false });
+    tokens.push(Token { kind: TokenKind::End, span: end, raw: false });
     tokens
 }
 
@@ -152,8 +158,8 @@ fn binds(previous: Option<&Token>, group: &Group, next: Option<&TokenTree>) -> b
         [_] | [] => (false, false, true),
         _ => (false, false, false),
     };
-    let behind =
-        previous.is_some_and(|token| matches!(token.kind, Kind::Punctuation('+' | '-' | '*' | '/' | '^', _)));
+    let behind = previous
+        .is_some_and(|token| matches!(token.kind, TokenKind::Punctuation('+' | '-' | '*' | '/' | '^', _)));
     let before = match next {
         Some(TokenTree::Punct(mark)) => match mark.as_char() {
             '^' if is_literal => return true,
@@ -177,7 +183,7 @@ mod tests {
 
     fn words(stream: TokenStream) -> String {
         let tokens = flatten(stream, &mut Diagnostics::default());
-        let words = tokens.iter().filter(|token| token.kind != Kind::End).map(Token::describe);
+        let words = tokens.iter().filter(|token| token.kind != TokenKind::End).map(Token::describe);
         words.collect::<String>().replace('`', "")
     }
 

@@ -3,7 +3,7 @@
 use super::ast::{Type, Unit};
 use super::expression::expression;
 use super::parser::{Parser, Read};
-use super::tokens::Kind;
+use super::tokens::TokenKind;
 use super::unit_symbols::{as_product, is_symbol};
 
 /// A unit, or `[unit; length, …]`; `help` shows the declaration that it belongs to.
@@ -18,7 +18,7 @@ const LENGTHS: &str = "write all lengths behind one `;`, the outermost first: `[
 
 /// Reads an array type after its `[`, the `]` included.
 fn array_type(parser: &mut Parser<'_>, help: &str) -> Read<Type> {
-    if matches!(parser.peek(), Kind::Open('[')) {
+    if matches!(parser.peek(), TokenKind::Open('[')) {
         return parser.expected("a unit", LENGTHS);
     }
     let unit = unit(parser)?;
@@ -27,7 +27,7 @@ fn array_type(parser: &mut Parser<'_>, help: &str) -> Read<Type> {
     while parser.take(',') {
         shape.push(expression(parser)?);
     }
-    if matches!(parser.peek(), Kind::Punctuation(';', _)) {
+    if matches!(parser.peek(), TokenKind::Punctuation(';', _)) {
         return parser.expected("`,` or `]`", LENGTHS);
     }
     parser.expect(']', help)?;
@@ -49,22 +49,22 @@ pub fn unit_of_number(parser: &mut Parser<'_>) -> Read<Unit> {
 /// The unit that begins at the next token, as far as its symbols are known; no token is taken.
 pub fn unit_behind_a_space(parser: &Parser<'_>) -> Option<String> {
     let symbol = |ahead: usize| match (parser.peek_at(ahead), parser.peek_at(ahead + 1)) {
-        (Kind::Identifier(_), Kind::Open('(')) => None,
-        (Kind::Identifier(word), _) if is_symbol(word) => Some(word.clone()),
-        (Kind::Identifier(word), _) => as_product(word),
+        (TokenKind::Identifier(_), TokenKind::Open('(')) => None,
+        (TokenKind::Identifier(word), _) if is_symbol(word) => Some(word.clone()),
+        (TokenKind::Identifier(word), _) => as_product(word),
         _ => None,
     };
     let mut text = symbol(0)?;
     let mut ahead = 1;
     loop {
-        if matches!(parser.peek_at(ahead), Kind::Punctuation('^', _)) {
-            let is_negative = matches!(parser.peek_at(ahead + 1), Kind::Punctuation('-', _));
+        if matches!(parser.peek_at(ahead), TokenKind::Punctuation('^', _)) {
+            let is_negative = matches!(parser.peek_at(ahead + 1), TokenKind::Punctuation('-', _));
             let digits = ahead + 1 + usize::from(is_negative);
-            let Kind::Literal(exponent) = parser.peek_at(digits) else { return Some(text) };
+            let TokenKind::Literal(exponent) = parser.peek_at(digits) else { return Some(text) };
             text = format!("{text}^{}{exponent}", if is_negative { "-" } else { "" });
             ahead = digits + 1;
         }
-        let (Kind::Punctuation(operator @ ('*' | '/'), _), Some(next)) =
+        let (TokenKind::Punctuation(operator @ ('*' | '/'), _), Some(next)) =
             (parser.peek_at(ahead), symbol(ahead + 1))
         else {
             return Some(text);
@@ -88,18 +88,18 @@ fn product(parser: &mut Parser<'_>, help: &str) -> Read<Unit> {
     loop {
         let begin = unit.factors.len();
         match parser.peek() {
-            Kind::Open('(') => {
+            TokenKind::Open('(') => {
                 parser.skip(1);
                 unit.text.push('(');
                 open.push((begin, sign));
                 sign = 1;
                 continue;
             }
-            Kind::Literal(one) if one == "1" => {
+            TokenKind::Literal(one) if one == "1" => {
                 parser.skip(1);
                 unit.text.push('1');
             }
-            Kind::Identifier(_) => {
+            TokenKind::Identifier(_) => {
                 let symbol = parser.name(help)?;
                 unit.text += &symbol.text;
                 unit.factors.push((symbol, 1));
@@ -131,7 +131,9 @@ fn finish_factor(parser: &mut Parser<'_>, unit: &mut Unit, begin: usize, sign: i
         if negative {
             unit.text.push('-');
         }
-        let Kind::Literal(text) = parser.peek() else { return parser.expected("an integer exponent", UNIT) };
+        let TokenKind::Literal(text) = parser.peek() else {
+            return parser.expected("an integer exponent", UNIT);
+        };
         let Some(power) = text.parse().ok().filter(|power: &i32| (0..=12).contains(power)) else {
             return parser.expected("an integer exponent up to 12", UNIT);
         };

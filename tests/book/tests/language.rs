@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use mbs_codegen::{expand_source, tables};
+use mbs_codegen::{expand_source, vocabulary};
 
 /// A folder or file of the workspace.
 fn path(name: &str) -> PathBuf {
@@ -56,9 +56,12 @@ fn inner_words() -> BTreeSet<String> {
 #[test]
 fn every_word_of_the_parser_stands_in_the_reference() {
     let words = words_in_code(&reference());
+    let known = vocabulary::statements()
+        .chain(vocabulary::FUNCTIONS)
+        .chain(vocabulary::referring())
+        .chain(vocabulary::reserved());
     let known =
-        tables::statements().chain(tables::FUNCTIONS).chain(tables::referring()).chain(tables::reserved());
-    let known = known.chain(tables::later()).chain(tables::drawn()).map(str::to_owned).chain(inner_words());
+        known.chain(vocabulary::later()).chain(vocabulary::drawn()).map(str::to_owned).chain(inner_words());
     let missing: Vec<String> = known.filter(|word| !words.contains(word)).collect();
     assert!(missing.is_empty(), "not in book/src/language: {missing:?}");
 }
@@ -68,10 +71,10 @@ fn the_grammar_and_the_parser_know_the_same_words() {
     let terminals = terminals();
     // `C0` to `C9`, the number 1 and derivatives are read by their letters.
     let read_by_letters = ["C", "1", "d1", "d2", "mechanism", "sum", "der"];
-    let known: BTreeSet<String> = tables::statements()
-        .chain(tables::referring().filter(|word| !["margin", "ratio"].contains(word)))
+    let known: BTreeSet<String> = vocabulary::statements()
+        .chain(vocabulary::referring().filter(|word| !["margin", "ratio"].contains(word)))
         .chain(read_by_letters)
-        .chain(tables::drawn())
+        .chain(vocabulary::drawn())
         .map(str::to_owned)
         .chain(inner_words())
         .collect();
@@ -84,7 +87,7 @@ fn the_grammar_and_the_parser_know_the_same_words() {
 #[test]
 fn a_statement_of_the_grammar_begins_a_statement() {
     for word in terminals() {
-        let begins = tables::statements().any(|known| known == word);
+        let begins = vocabulary::statements().any(|known| known == word);
         let text = format!("mechanism M; coord x: m; drive d: x == 1m; {word};");
         let message = expand_source(&text).err().unwrap_or_default();
         let refused = message.contains("begins no statement") || message.contains("second header");
@@ -116,15 +119,15 @@ fn assert_same(found: &BTreeSet<&str>, known: &BTreeSet<&str>, subject: &str) {
 #[test]
 fn the_tables_of_units_are_those_of_the_parser() {
     let text = reference();
-    assert_same(&column(&text, "| symbol |"), &tables::symbols().collect(), "symbols");
-    let suffixes = tables::SUFFIXES.iter().map(|(suffix, ..)| *suffix).collect();
+    assert_same(&column(&text, "| symbol |"), &vocabulary::symbols().collect(), "symbols");
+    let suffixes = vocabulary::SUFFIXES.iter().map(|(suffix, ..)| *suffix).collect();
     assert_same(&column(&text, "| suffix |"), &suffixes, "suffixes");
 }
 
 #[test]
 fn each_suffix_has_the_factor_of_the_table() {
     let text = reference();
-    for (suffix, factor, divisor, unit) in tables::SUFFIXES {
+    for (suffix, factor, divisor, unit) in vocabulary::SUFFIXES {
         let row = text.lines().find(|line| line.starts_with(&format!("| `{suffix}` |")));
         let row = row.unwrap_or_else(|| panic!("no row of `{suffix}`"));
         let cell = row.split('|').nth(2).expect("a value").trim();
@@ -144,14 +147,18 @@ fn the_tables_of_functions_are_those_of_the_parser() {
     let text = reference();
     let names: BTreeSet<&str> =
         column(&text, "| function |").into_iter().filter_map(|cell| cell.split(['(', ' ']).next()).collect();
-    assert_same(&names, &tables::FUNCTIONS.into_iter().chain(tables::referring()).collect(), "functions");
+    assert_same(
+        &names,
+        &vocabulary::FUNCTIONS.into_iter().chain(vocabulary::referring()).collect(),
+        "functions",
+    );
 }
 
 #[test]
 fn each_statement_with_fields_has_a_table_of_them() {
     let text = reference();
-    for word in tables::statements() {
-        let known: BTreeSet<(String, bool)> = tables::fields()
+    for word in vocabulary::statements() {
+        let known: BTreeSet<(String, bool)> = vocabulary::fields()
             .filter(|(statement, ..)| *statement == word)
             .map(|(_, field, required)| (field.to_owned(), required))
             .collect();
@@ -172,7 +179,7 @@ fn each_statement_with_fields_has_a_table_of_them() {
 #[test]
 fn the_table_of_limits_is_that_of_the_parser() {
     let text = reference();
-    for (name, limit) in tables::LIMITS {
+    for (name, limit) in vocabulary::LIMITS {
         let digits = limit.to_string();
         let cut = digits.len().saturating_sub(3);
         let written = match digits.split_at(cut) {

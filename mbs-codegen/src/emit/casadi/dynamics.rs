@@ -6,7 +6,7 @@ use crate::emit::casadi::pins;
 use crate::emit::casadi::{assignments, variable};
 use crate::equations::Attribution;
 use crate::model::Model;
-use crate::model::dynamics::{Action, Dynamics, Line, Rotation, Turn};
+use crate::model::dynamics::{Action, Dynamics, Rotation, SpringDamper, Turn};
 use crate::model::expression::Id;
 
 /// Before: a text with masses or forces. After: the definition is followed by `K`, the number of first-order states,
@@ -108,7 +108,7 @@ fn roots(dynamics: &Dynamics) -> Vec<Id> {
         match &force.action {
             Action::Work(pairs) => roots.extend(pairs.iter().flat_map(|(value, on)| [*value, *on])),
             Action::Dissipation(value) => roots.push(*value),
-            Action::Line(Line { from, to, stiffness, length, damping, actuator, .. }) => {
+            Action::Line(SpringDamper { from, to, stiffness, length, damping, actuator, .. }) => {
                 roots.extend(from.iter().chain(to));
                 roots.extend([stiffness, length, damping, actuator].into_iter().flatten());
             }
@@ -128,7 +128,7 @@ pub fn or_zero(value: Option<Id>) -> String {
     value.map_or_else(|| "ca.SX(0)".into(), variable)
 }
 
-fn tension(line: &Line, text: &mut String) {
+fn tension(line: &SpringDamper, text: &mut String) {
     let square = |(a, b): (&Id, &Id)| format!("({} - {}) ** 2", variable(*b), variable(*a));
     let squares: Vec<String> = line.from.iter().zip(&line.to).map(square).collect();
     let _ = writeln!(text, "    place = ca.sqrt({})", squares.join(" + "));

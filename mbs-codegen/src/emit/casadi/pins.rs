@@ -6,7 +6,7 @@ use crate::emit::casadi::dynamics::or_zero;
 use crate::emit::casadi::variable;
 use crate::equations::{Attribution, On, RowMotion};
 use crate::model::Model;
-use crate::model::dynamics::{Action, Dynamics, Line};
+use crate::model::dynamics::{Action, Dynamics, SpringDamper};
 use crate::model::expression::Id;
 
 /// Before: a text with masses, of which an output asks for forces of pins. After: `pins` holds them, two components a pin.
@@ -87,7 +87,7 @@ fn acting(dynamics: &Dynamics, attribution: &Attribution, text: &mut String) {
 }
 
 /// The force of a tension on its begin.
-fn pulled(line: &Line, text: &mut String) {
+fn pulled(line: &SpringDamper, text: &mut String) {
     let arm = |(a, b): (&Id, &Id)| format!("{} - {}", variable(*b), variable(*a));
     let arms: Vec<String> = line.from.iter().zip(&line.to).map(arm).collect();
     let _ = writeln!(text, "    arm = [{}]", arms.join(", "));

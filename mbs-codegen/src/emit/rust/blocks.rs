@@ -7,7 +7,7 @@ use crate::emit::rust::elimination::Eliminations;
 use crate::emit::rust::scope::{Scope, number};
 use crate::equations::Equations;
 use crate::model::Model;
-use crate::program::{BlockProgram, Method, Program, System};
+use crate::program::{BlockMethod, BlockProgram, Program, System};
 use crate::structure::dyad::Dyad;
 use crate::symbolic::NodeId;
 
@@ -43,12 +43,12 @@ pub fn position(
 ) {
     lets(&block.before, scope, text);
     match &block.method {
-        Method::Explicit { value, .. } => {
+        BlockMethod::Explicit { value, .. } => {
             for coordinate in &block.coordinates {
                 let _ = writeln!(text, "__q[{coordinate}] = {};", scope.operand(*value));
             }
         }
-        Method::Newton(system) => newton(equations, block, (system, factors), scope, text),
+        BlockMethod::Newton(system) => newton(equations, block, (system, factors), scope, text),
     }
 }
 

@@ -7,7 +7,7 @@ use proc_macro2::{Delimiter, Group, TokenStream, TokenTree};
 use quote::quote;
 
 use crate::emit::rust::scope::Scope;
-use crate::program::{Angle, Jet, Line, Section};
+use crate::program::{Angle, Assignment, FunctionDerivatives, Section};
 use crate::symbolic::{Node, NodeId, Unary};
 
 /// Placeholder of the runtime's path in the printed text.
@@ -86,8 +86,8 @@ fn chunks<'a>(
     section: &'a Section,
     results: &BTreeSet<NodeId>,
     scope: &Scope<'_>,
-) -> (Vec<&'a [Line]>, Vec<Vec<NodeId>>) {
-    let chunks: Vec<&[Line]> = section.lines.chunks(scope.lengths.body).collect();
+) -> (Vec<&'a [Assignment]>, Vec<Vec<NodeId>>) {
+    let chunks: Vec<&[Assignment]> = section.lines.chunks(scope.lengths.body).collect();
     // Values that chunks from here on use; collected from the back.
     let mut used = vec![false; scope.graph.len()];
     let mark = |ids: &[NodeId], used: &mut [bool]| {
@@ -99,7 +99,7 @@ fn chunks<'a>(
     let mut exports: Vec<Vec<NodeId>> = Vec::new();
     for chunk in chunks.iter().rev() {
         let is_used = |id: &NodeId| used.get(id.index()).copied().unwrap_or(false);
-        exports.push(chunk.iter().flat_map(Line::values).filter(is_used).collect());
+        exports.push(chunk.iter().flat_map(Assignment::values).filter(is_used).collect());
         chunk.iter().for_each(|line| mark(&line.operands(scope.graph), &mut used));
     }
     exports.reverse();
@@ -109,7 +109,7 @@ fn chunks<'a>(
 /// Prints chunks that stay functions of their own. The values that they pass on are taken from arrays where they are used,
 /// `kept` values from `__kept`.
 fn apart(
-    chunks: &[&[Line]],
+    chunks: &[&[Assignment]],
     exports: &[Vec<NodeId>],
     results: &BTreeSet<NodeId>,
     kept: &BTreeMap<NodeId, usize>,
@@ -174,12 +174,12 @@ impl Naming for Named<'_> {
 }
 
 /// Prints a line.
-pub fn print(line: &Line, scope: &Scope<'_>, text: &mut String) {
+pub fn print(line: &Assignment, scope: &Scope<'_>, text: &mut String) {
     let mut names = Named(scope);
     match line {
-        Line::Value(id) => value(*id, scope, &mut names, text),
-        Line::SineCosine(angles) => sine_cosine(angles, &mut names, text),
-        Line::Jet(called) => jet(called, scope, &mut names, text),
+        Assignment::Value(id) => value(*id, scope, &mut names, text),
+        Assignment::SineCosine(angles) => sine_cosine(angles, &mut names, text),
+        Assignment::Jet(called) => jet(called, scope, &mut names, text),
     }
 }
 
@@ -200,8 +200,8 @@ pub fn sine_cosine(angles: &[Angle], names: &mut impl Naming, text: &mut String)
 }
 
 /// Prints a call of a declared function.
-pub fn jet(jet: &Jet, scope: &Scope<'_>, names: &mut impl Naming, text: &mut String) {
-    let Jet { function, argument, orders } = jet;
+pub fn jet(jet: &FunctionDerivatives, scope: &Scope<'_>, names: &mut impl Naming, text: &mut String) {
+    let FunctionDerivatives { function, argument, orders } = jet;
     let defined = orders.iter().map(|id| id.map_or_else(|| "_".to_owned(), |id| names.defined(id)));
     let (defined, count) = (defined.collect::<Vec<_>>().join(", "), orders.len());
     let (kind, place) = scope.function(*function as usize);

@@ -2,9 +2,9 @@
 
 use crate::equations::Equations;
 use crate::equations::continuity::{self, Demand};
-use crate::model::dynamics::State;
+use crate::model::dynamics::FirstOrderState;
 use crate::model::{Model, Output};
-use crate::program::{Method, Operations, Program};
+use crate::program::{BlockMethod, Operations, Program};
 use crate::structure::dyad::Dyad;
 use crate::structure::mobility::{Mobility, mobility};
 use crate::structure::pivots::Pivot;
@@ -71,7 +71,7 @@ fn shapes(model: &Model, lines: &mut Vec<String>) {
                 ));
             }
         };
-        let state = |state: &State| format!("`{}` ({})", state.name, state.unit);
+        let state = |state: &FirstOrderState| format!("`{}` ({})", state.name, state.unit);
         let bodies: Vec<String> = dynamics.bodies.iter().map(|body| format!("`{}`", body.name)).collect();
         if !bodies.is_empty() {
             let word = if bodies.len() == 1 { "body" } else { "bodies" };
@@ -308,7 +308,7 @@ pub fn costs(program: &Program) -> Vec<(&'static str, Operations)> {
     let mut iteration = Operations::default();
     for block in blocks {
         before += block.before.operations;
-        if let Method::Newton(system) = &block.method {
+        if let BlockMethod::Newton(system) = &block.method {
             iteration += system.section.operations;
         }
     }

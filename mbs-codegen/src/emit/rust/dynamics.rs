@@ -11,7 +11,7 @@ use crate::emit::rust::contacts::{self, Blocks};
 use crate::emit::rust::functions::{array, body, matrix};
 use crate::emit::rust::scope::{Scope, number};
 use crate::equations::deferred::Slopes;
-use crate::equations::normal_forces::{Kind, NormalForces};
+use crate::equations::normal_forces::{NormalForces, NormalFunction};
 use crate::equations::{Dynamics, Equations, Gap, Of, Slope, Sparse};
 use crate::model::Model;
 use crate::model::dynamics::Dynamics as Declared;
@@ -184,9 +184,9 @@ fn assigned(rows: &str, matrix: &Sparse, scope: &Scope<'_>) -> String {
 /// Terms of Q in the multipliers, handed to the visitor.
 fn normal_forces(forces: &NormalForces, scope: &Scope<'_>) -> String {
     let kinds = forces.terms.iter().map(|term| match term.kind {
-        Kind::Multiplier => "__mbs::dynamics::Term::Multiplier",
-        Kind::Absolute => "__mbs::dynamics::Term::Absolute",
-        Kind::Norm => "__mbs::dynamics::Term::Norm",
+        NormalFunction::Multiplier => "__mbs::dynamics::Term::Multiplier",
+        NormalFunction::Absolute => "__mbs::dynamics::Term::Absolute",
+        NormalFunction::Norm => "__mbs::dynamics::Term::Norm",
     });
     let kinds = kinds.collect::<Vec<_>>().join(", ");
     let (n, m) = (scope.model.coordinates.len(), scope.model.rows.len());

@@ -7,11 +7,13 @@ use crate::emit::rust::code::tokens;
 use crate::emit::rust::generics::Generics;
 use crate::emit::rust::scenes::type_in;
 use crate::emit::rust::scope::{field_name, number, subscripts, variable};
-use crate::model::scenes::{Scene, Scenes, alias};
+use crate::model::scene::Scene;
+use crate::model::scenes::Scenes;
+use crate::model::selection::alias;
 use crate::model::{Field, Function, Model, Role};
 use crate::syntax::Text;
 use crate::syntax::ast::Name;
-use crate::syntax::keywords::identifier;
+use crate::syntax::rust_identifiers::identifier;
 
 /// Fields of type parameters that no other field uses.
 pub struct Markers {

@@ -8,11 +8,11 @@ use crate::emit::rust::blocks;
 use crate::emit::rust::code::{block, lets, tokens};
 use crate::emit::rust::dynamics::{self, DynamicBodies};
 use crate::emit::rust::elimination::Eliminations;
-use crate::emit::rust::given;
+use crate::emit::rust::jacobian_outputs;
 use crate::emit::rust::linear;
 use crate::emit::rust::long;
 use crate::emit::rust::long::lengths::Lengths;
-use crate::emit::rust::long::parts::{self, Frame};
+use crate::emit::rust::long::parts::{self, ExtraArguments};
 use crate::emit::rust::motion;
 use crate::emit::rust::phases;
 use crate::emit::rust::scope::{Scope, Written, number};
@@ -112,7 +112,7 @@ pub fn bodies(
         equations.rows.iter().map(part).collect()
     };
     let some = |nodes: &[NodeId]| -> Vec<Option<NodeId>> { nodes.iter().copied().map(Some).collect() };
-    let given = given::lets(equations, program, &scope);
+    let given = jacobian_outputs::lets(equations, program, &scope);
     let mut outputs_text = String::new();
     lets(&program.outputs, &scope, &mut outputs_text);
     outputs_text += &outputs(equations, &scope);
@@ -247,7 +247,7 @@ impl Emitter<'_> {
     fn stage(
         &mut self,
         (name, kind): (&str, &str),
-        frame: &Frame,
+        frame: &ExtraArguments,
         stage: &Stage,
         (scope, first): (&Scope<'_>, String),
     ) -> TokenStream {
@@ -263,7 +263,7 @@ impl Emitter<'_> {
 
     fn emitted(
         &mut self,
-        named: (&str, &Frame),
+        named: (&str, &ExtraArguments),
         section: &Section,
         results: &[Option<NodeId>],
         scope: &Scope<'_>,
@@ -278,7 +278,7 @@ impl Emitter<'_> {
 
     fn in_parts(
         &mut self,
-        (name, frame): (&str, &Frame),
+        (name, frame): (&str, &ExtraArguments),
         section: &Section,
         results: &[Option<NodeId>],
         scope: &Scope<'_>,
@@ -303,8 +303,8 @@ fn closed(contacts: usize) -> String {
     format!(", [true; {contacts}]")
 }
 
-fn frame(declared: &str, given: &str) -> Frame {
-    Frame { declared: declared.into(), given: given.into(), result: None }
+fn frame(declared: &str, given: &str) -> ExtraArguments {
+    ExtraArguments { declared: declared.into(), given: given.into(), result: None }
 }
 
 fn evaluation(equations: &Equations, scope: &Scope<'_>) -> String {

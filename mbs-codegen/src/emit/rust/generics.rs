@@ -4,9 +4,11 @@ use proc_macro2::{Ident, Span, TokenStream};
 use quote::{format_ident, quote};
 
 use crate::model::Model;
-use crate::model::scenes::{Scene, Scenes, alias};
+use crate::model::scene::Scene;
+use crate::model::scenes::Scenes;
+use crate::model::selection::alias;
 use crate::syntax::Text;
-use crate::syntax::keywords::is_keyword;
+use crate::syntax::rust_identifiers::is_keyword;
 
 /// Type parameters of a mechanism.
 pub struct Generics {

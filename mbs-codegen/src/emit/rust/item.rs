@@ -4,7 +4,7 @@ use proc_macro2::{Span, TokenStream};
 use quote::{quote, quote_spanned};
 
 use crate::diagnostics::Diagnostics;
-use crate::emit::rust::Part;
+use crate::emit::rust::SceneFunctions;
 use crate::emit::rust::dynamics;
 use crate::emit::rust::fields::{
     access, constructors, enclosed, field_docs, field_type, function_docs, ident, markers,
@@ -14,12 +14,18 @@ use crate::emit::rust::generics::Generics;
 use crate::emit::rust::scenes;
 use crate::emit::rust::view::coordinates_view;
 use crate::model::reference_length::Length;
-use crate::model::scenes::{Scene, Scenes};
+use crate::model::scene::Scene;
+use crate::model::scenes::Scenes;
 use crate::model::{Function, Model, Role};
 use crate::syntax::Text;
 
 /// Before: bodies of all functions of all scenes. After: everything that the user's module gets.
-pub fn item(text: &Text, scenes: &Scenes, parts: &[Part<'_>], left_out: Option<&Diagnostics>) -> TokenStream {
+pub fn item(
+    text: &Text,
+    scenes: &Scenes,
+    parts: &[SceneFunctions<'_>],
+    left_out: Option<&Diagnostics>,
+) -> TokenStream {
     let header = &text.header;
     let (visibility, name, runtime) = (&header.visibility, &header.name, &header.runtime);
     let attributes = &header.attributes;
@@ -55,9 +61,9 @@ pub fn item(text: &Text, scenes: &Scenes, parts: &[Part<'_>], left_out: Option<&
 }
 
 /// Trait implementations, with the types that only they name.
-fn implementations(text: &Text, scenes: &Scenes, part: &Part<'_>) -> TokenStream {
+fn implementations(text: &Text, scenes: &Scenes, part: &SceneFunctions<'_>) -> TokenStream {
     let runtime = &text.header.runtime;
-    let Part { scene, bodies, .. } = part;
+    let SceneFunctions { scene, bodies, .. } = part;
     let model = &scene.model;
     let name = scenes::type_in(text, scenes, scene, &quote! { T });
     let lane = scenes::type_in(text, scenes, scene, &quote! { T::Real });
@@ -221,7 +227,7 @@ fn implementations(text: &Text, scenes: &Scenes, part: &Part<'_>) -> TokenStream
 const LARGE: usize = 120;
 
 /// `impl Reveal`: the sizes and the traits of a scene in double precision.
-fn revealed(text: &Text, scenes: &Scenes, part: &Part<'_>, m: usize) -> TokenStream {
+fn revealed(text: &Text, scenes: &Scenes, part: &SceneFunctions<'_>, m: usize) -> TokenStream {
     let (runtime, model) = (&text.header.runtime, &part.scene.model);
     let name = scenes::type_in(text, scenes, part.scene, &quote! { ::core::primitive::f64 });
     let generics = Generics::of(text, scenes).revealed(model, runtime);
@@ -321,7 +327,7 @@ fn inlined(always: bool) -> TokenStream {
 fn partitioned(
     name: &TokenStream,
     (model, m): (&Model, usize),
-    (part, generics): (&Part<'_>, &TokenStream),
+    (part, generics): (&SceneFunctions<'_>, &TokenStream),
     runtime: &TokenStream,
 ) -> TokenStream {
     let n = model.coordinates.len();

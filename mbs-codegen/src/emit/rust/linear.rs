@@ -6,13 +6,13 @@ use std::fmt::Write;
 use crate::emit::rust::blocks::list;
 use crate::emit::rust::code::{bind, lets};
 use crate::emit::rust::elimination::Eliminations;
-use crate::emit::rust::given;
+use crate::emit::rust::jacobian_outputs;
 use crate::emit::rust::long::factorization::{Factorizations, Rounds};
 use crate::emit::rust::long::substitution::{Substitution, substitution};
-use crate::emit::rust::long::{self, Kind};
+use crate::emit::rust::long::{self, BlockKind};
 use crate::emit::rust::scope::{Scope, number};
 use crate::equations::Equations;
-use crate::program::{BlockProgram, Method, Program, System};
+use crate::program::{BlockMethod, BlockProgram, Program, System};
 use crate::symbolic::NodeId;
 
 /// Code of the linear systems.
@@ -40,8 +40,8 @@ pub fn linear(
     independent: &[usize],
     long: bool,
 ) -> Linear {
-    let entries = Entries::of(equations, program, scope, long);
-    let asked = given::blocks(equations, program, scope.model);
+    let entries = MatrixEntries::of(equations, program, scope, long);
+    let asked = jacobian_outputs::blocks(equations, program, scope.model);
     let kinds = if long { long::kinds(program) } else { BTreeMap::new() };
     let of_kinds = if long { long::factors(program, eliminations) } else { BTreeMap::new() };
     let mut rounds = Factorizations::default();
@@ -49,9 +49,9 @@ pub fn linear(
     for (index, block) in program.blocks.iter().enumerate() {
         let (mut place, size) = (format!("block{index}"), block.rows.len());
         let mut factors = eliminations.factorization(index, size);
-        if let Method::Newton(system) = &block.method {
+        if let BlockMethod::Newton(system) = &block.method {
             let asked = asked.contains(&index);
-            let kind = Kind::of(block, system);
+            let kind = BlockKind::of(block, system);
             match kinds.get(&kind).filter(|_| !asked && !block.has_surplus()) {
                 Some(number) => {
                     factors = of_kinds.get(&kind).cloned().unwrap_or(factors);
@@ -126,7 +126,7 @@ pub enum Factorized {
 pub fn diagonal(
     block: &BlockProgram,
     system: &System,
-    entries: &Entries<'_>,
+    entries: &MatrixEntries<'_>,
     (index, factors): (usize, &str),
     factorized: Factorized,
 ) -> Diagonal {
@@ -174,7 +174,7 @@ fn in_one(
     diagonals: &[Diagonal],
     rounds: &Rounds,
     program: &Program,
-    entries: &Entries<'_>,
+    entries: &MatrixEntries<'_>,
 ) -> (String, String) {
     let (mut fields, mut names) = (rounds.fields.clone(), rounds.names.clone());
     let mut text = String::new();
@@ -209,12 +209,12 @@ fn in_one(
 }
 
 /// The unknowns of a block from the right-hand sides and earlier unknowns.
-fn solution(block: &BlockProgram, (place, kind): (&str, &str), entries: &Entries<'_>) -> String {
+fn solution(block: &BlockProgram, (place, kind): (&str, &str), entries: &MatrixEntries<'_>) -> String {
     let right_sides = block.rows.iter().map(|row| entries.right_side(*row, block));
     let defines: Vec<String> = block.coordinates.iter().map(|coordinate| unknown(*coordinate)).collect();
     match &block.method {
-        Method::Explicit { coefficient, .. } => assigned(&defines, right_sides, *coefficient),
-        Method::Newton(_) => {
+        BlockMethod::Explicit { coefficient, .. } => assigned(&defines, right_sides, *coefficient),
+        BlockMethod::Newton(_) => {
             let (size, unknowns) = (block.rows.len(), defines.join(", "));
             let right_sides = list(right_sides);
             if block.has_surplus() {
@@ -230,7 +230,7 @@ fn solution(block: &BlockProgram, (place, kind): (&str, &str), entries: &Entries
 }
 
 /// Φ_qdᵀ λ = y_d, the last block first; empty where surplus rows leave λ open.
-fn transposed(program: &Program, places: &[(String, String)], entries: &Entries<'_>) -> String {
+fn transposed(program: &Program, places: &[(String, String)], entries: &MatrixEntries<'_>) -> String {
     if program.blocks.iter().any(BlockProgram::has_surplus) {
         return String::new();
     }
@@ -239,8 +239,8 @@ fn transposed(program: &Program, places: &[(String, String)], entries: &Entries<
         let right_sides = block.coordinates.iter().map(|c| entries.transposed(*c, Some(block), name));
         let defines: Vec<String> = block.rows.iter().map(|row| multiplier(*row)).collect();
         match &block.method {
-            Method::Explicit { coefficient, .. } => assigned(&defines, right_sides, *coefficient),
-            Method::Newton(_) => {
+            BlockMethod::Explicit { coefficient, .. } => assigned(&defines, right_sides, *coefficient),
+            BlockMethod::Newton(_) => {
                 let size = block.rows.len();
                 let (multipliers, right_sides) = (defines.join(", "), list(right_sides));
                 format!(
@@ -275,7 +275,7 @@ fn complete(solved: String, independent: &[usize], coordinates: usize) -> String
     text
 }
 
-fn reduce(solved: String, independent: &[usize], entries: &Entries<'_>) -> String {
+fn reduce(solved: String, independent: &[usize], entries: &MatrixEntries<'_>) -> String {
     let mut text = solved;
     for coordinate in independent {
         let place = format!("__y[{coordinate}]");
@@ -289,7 +289,7 @@ fn reduce(solved: String, independent: &[usize], entries: &Entries<'_>) -> Strin
 }
 
 /// Entries of Φ_q that are no numbers: those off the diagonal blocks, or all where the code is long.
-pub struct Entries<'a> {
+pub struct MatrixEntries<'a> {
     /// The equations.
     pub equations: &'a Equations,
     /// Scope of the code that uses them.
@@ -303,7 +303,7 @@ pub struct Entries<'a> {
     pub kept: BTreeMap<NodeId, usize>,
 }
 
-impl<'a> Entries<'a> {
+impl<'a> MatrixEntries<'a> {
     /// Those of a program.
     pub fn of(equations: &'a Equations, program: &Program, scope: &'a Scope<'a>, long: bool) -> Self {
         let varies = |entry: &NodeId| scope.graph.constant_value(*entry).is_none();
@@ -332,7 +332,7 @@ impl<'a> Entries<'a> {
         let all =
             all.flat_map(|(row, equation)| equation.phi_q.iter().map(move |(column, _)| (row, *column)));
         let places = all.enumerate().map(|(index, place)| (place, index)).collect();
-        Entries { equations, scope, long, places, columns, kept }
+        MatrixEntries { equations, scope, long, places, columns, kept }
     }
 
     /// An entry of a diagonal block.

@@ -9,8 +9,8 @@ mod elimination;
 mod fields;
 mod functions;
 mod generics;
-mod given;
 mod item;
+mod jacobian_outputs;
 mod linear;
 mod long;
 mod motion;
@@ -26,7 +26,8 @@ use proc_macro2::TokenStream;
 
 use crate::diagnostics::Diagnostics;
 use crate::equations::Equations;
-use crate::model::scenes::{Scene, Scenes};
+use crate::model::scene::Scene;
+use crate::model::scenes::Scenes;
 use crate::program::Program;
 use crate::structure::Structure;
 use crate::syntax::Text;
@@ -50,7 +51,7 @@ pub struct Translated<'a> {
 }
 
 /// A scene with the bodies of its functions.
-pub struct Part<'a> {
+pub struct SceneFunctions<'a> {
     /// The scene.
     pub scene: &'a Scene,
     /// `true` if its rows fix every coordinate.
@@ -86,7 +87,7 @@ pub fn rust(
             &generics.types_in(&scene.model),
             lengths,
         );
-        Part { scene, square: structure.square, surplus: structure.has_surplus(), docs, bodies }
+        SceneFunctions { scene, square: structure.square, surplus: structure.has_surplus(), docs, bodies }
     });
     item::item(text, scenes, &parts.collect::<Vec<_>>(), left_out)
 }

@@ -5,12 +5,12 @@ use std::fmt::Write;
 use crate::emit::rust::blocks::{self, list};
 use crate::emit::rust::code::lets;
 use crate::emit::rust::elimination::Eliminations;
-use crate::emit::rust::linear::{Entries, Factorized, diagonal, quotient};
+use crate::emit::rust::linear::{Factorized, MatrixEntries, diagonal, quotient};
 use crate::emit::rust::long;
 use crate::emit::rust::scope::{Scope, number};
 use crate::equations::Equations;
 use crate::program::motion::{self, BlockMotion};
-use crate::program::{BlockProgram, Method, Program};
+use crate::program::{BlockMethod, BlockProgram, Program};
 
 /// A compiler that saw where the rates are used would compute those of all blocks there, after the last position.
 const IN_PLACE: &str = "let [__q, __qd, __qdd] = ::core::hint::black_box(__motion);\n";
@@ -33,7 +33,7 @@ pub fn solve(
     if program.length() + motion.length() > scope.lengths.function {
         return None;
     }
-    let entries = Entries::of(equations, program, scope, false);
+    let entries = MatrixEntries::of(equations, program, scope, false);
     let mut text = blocks::start();
     text += IN_PLACE;
     let _ = writeln!(text, "let __margin = __mbs::Margin::<T>::regular();\nlet __sum = {};", number(0.0));
@@ -52,12 +52,12 @@ fn solved(
     block: &BlockProgram,
     rates: &BlockMotion,
     (index, factors): (usize, &str),
-    entries: &Entries<'_>,
+    entries: &MatrixEntries<'_>,
     text: &mut String,
 ) {
     let (equations, scope) = (entries.equations, entries.scope);
     lets(&rates.linear, scope, text);
-    if let Method::Newton(system) = &block.method {
+    if let BlockMethod::Newton(system) = &block.method {
         *text += &diagonal(block, system, entries, (index, factors), Factorized::Unguarded).text;
     }
     let right_sides = |array: &str, part: &dyn Fn(usize) -> String| -> Vec<String> {
@@ -82,12 +82,12 @@ fn assign(
     text: &mut String,
 ) {
     match &block.method {
-        Method::Explicit { coefficient, .. } => {
+        BlockMethod::Explicit { coefficient, .. } => {
             for (coordinate, value) in block.coordinates.iter().zip(right_sides) {
                 let _ = writeln!(text, "{array}[{coordinate}] = {};", quotient(&value, *coefficient));
             }
         }
-        Method::Newton(_) => {
+        BlockMethod::Newton(_) => {
             let (size, right_sides) = (block.rows.len(), list(right_sides.into_iter()));
             let unknowns = list(block.coordinates.iter().map(|coordinate| format!("{array}[{coordinate}]")));
             let _ = writeln!(

@@ -4,12 +4,14 @@ use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 
 use crate::diagnostics::Diagnostics;
-use crate::emit::rust::Part;
+use crate::emit::rust::SceneFunctions;
 use crate::emit::rust::fields::{ident, markers};
 use crate::emit::rust::generics::Generics;
-use crate::model::scenes::{Scene, Scenes, WHOLE, alias};
+use crate::model::scene::Scene;
+use crate::model::scenes::Scenes;
+use crate::model::selection::{WHOLE, alias};
 use crate::syntax::Text;
-use crate::syntax::keywords::identifier;
+use crate::syntax::rust_identifiers::identifier;
 
 /// The mechanism in a scene: `Name<T>`, with functions `Name<Lift, T>`, with scenes `Name<T, marker>`.
 pub fn type_in(text: &Text, scenes: &Scenes, scene: &Scene, scalar: &TokenStream) -> TokenStream {
@@ -36,7 +38,12 @@ pub fn source(text: &Text, scenes: &Scenes) -> TokenStream {
 }
 
 /// Lines of the struct's documentation after the text's own.
-pub fn docs(text: &Text, scenes: &Scenes, parts: &[Part<'_>], left_out: Option<&Diagnostics>) -> Vec<String> {
+pub fn docs(
+    text: &Text,
+    scenes: &Scenes,
+    parts: &[SceneFunctions<'_>],
+    left_out: Option<&Diagnostics>,
+) -> Vec<String> {
     let whole = parts.iter().filter(|part| part.scene.name.is_none()).flat_map(|part| part.docs.clone());
     if !scenes.are_declared() {
         return whole.collect();
@@ -57,7 +64,7 @@ pub fn docs(text: &Text, scenes: &Scenes, parts: &[Part<'_>], left_out: Option<&
 }
 
 /// Before: the scenes of a text. After: their markers, an alias each, and the conversion; empty for a text without.
-pub fn items(text: &Text, scenes: &Scenes, parts: &[Part<'_>]) -> TokenStream {
+pub fn items(text: &Text, scenes: &Scenes, parts: &[SceneFunctions<'_>]) -> TokenStream {
     if !scenes.are_declared() {
         return TokenStream::new();
     }
@@ -105,7 +112,7 @@ pub fn items(text: &Text, scenes: &Scenes, parts: &[Part<'_>]) -> TokenStream {
     }
 }
 
-fn marker_docs(part: &Part<'_>) -> Vec<String> {
+fn marker_docs(part: &SceneFunctions<'_>) -> Vec<String> {
     let mut lines = part.scene.docs.clone();
     if !lines.is_empty() {
         lines.push(String::new());

@@ -7,7 +7,7 @@ use crate::emit::rust::long::lengths::Lengths;
 use crate::equations::MARGIN;
 use crate::model::{Model, Role};
 use crate::symbolic::{Graph, Leaf, Node, NodeId, Stage};
-use crate::syntax::keywords::is_keyword;
+use crate::syntax::rust_identifiers::is_keyword;
 
 /// Values and names available within a function.
 pub struct Scope<'a> {

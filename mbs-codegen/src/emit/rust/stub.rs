@@ -3,7 +3,7 @@
 use proc_macro2::TokenStream;
 use quote::quote;
 
-use crate::emit::rust::Part;
+use crate::emit::rust::SceneFunctions;
 use crate::emit::rust::dynamics::DynamicBodies;
 use crate::emit::rust::functions::Bodies;
 use crate::emit::rust::item;
@@ -19,7 +19,7 @@ pub fn stub(text: &Text, scenes: &Scenes) -> TokenStream {
         // A text of dynamics may have fewer rows than coordinates; any other is meant to be square.
         let square = model.dynamics.is_none() || model.rows.len() == model.coordinates.len();
         let bodies = bodies(model, &text.header.runtime);
-        Part { scene, square, surplus: false, docs: Vec::new(), bodies }
+        SceneFunctions { scene, square, surplus: false, docs: Vec::new(), bodies }
     });
     item::item(text, scenes, &parts.collect::<Vec<_>>(), None)
 }

@@ -6,7 +6,8 @@ use quote::{format_ident, quote};
 use crate::emit::rust::code::tokens;
 use crate::emit::rust::fields::{array_type, ident, nested};
 use crate::emit::rust::scope::{field_name, subscripts};
-use crate::model::scenes::{Scene, alias};
+use crate::model::scene::Scene;
+use crate::model::selection::alias;
 use crate::model::{CoordinateField, Model};
 use crate::syntax::Text;
 

@@ -8,7 +8,7 @@ use quote::quote;
 use crate::emit::rust::elimination::{self, Cost};
 use crate::equations::Equations;
 use crate::model::{Model, Role};
-use crate::program::{Method, Operations, Program};
+use crate::program::{BlockMethod, Operations, Program};
 
 /// `Work { … }`: the counts that the documentation's table shows, as a constant.
 pub fn work(
@@ -34,8 +34,8 @@ pub fn work(
     let mut blocks = Kinds::default();
     for block in &program.blocks {
         let (unknowns, evaluation) = match &block.method {
-            Method::Explicit { .. } => (0, Operations::default()),
-            Method::Newton(system) => (block.coordinates.len(), system.section.operations),
+            BlockMethod::Explicit { .. } => (0, Operations::default()),
+            BlockMethod::Newton(system) => (block.coordinates.len(), system.section.operations),
         };
         let (before, evaluation) = (of(block.before.operations), of(evaluation));
         let rows = block.rows.len();

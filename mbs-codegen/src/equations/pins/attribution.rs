@@ -4,7 +4,7 @@
 
 use crate::equations::jacobian;
 use crate::symbolic::evaluate::evaluate;
-use crate::symbolic::scattered;
+use crate::symbolic::sample_points;
 use crate::symbolic::{Graph, Leaf, NodeId};
 
 /// Positions that are tried; a function that is not finite at one of them is not judged there.
@@ -22,7 +22,7 @@ pub struct Slopes {
 
 /// A plane body by the indices of its functions.
 #[derive(Clone, Copy, Debug)]
-pub struct Frame {
+pub struct PlaneBody {
     /// Both components of its centre of mass.
     pub centre: [usize; 2],
     /// Its angle; a point mass has none.
@@ -74,7 +74,7 @@ impl Slopes {
     }
 
     /// `true` if a point moves with a body.
-    pub fn carries(&self, body: &Frame, point: [usize; 2]) -> bool {
+    pub fn carries(&self, body: &PlaneBody, point: [usize; 2]) -> bool {
         [0, 1]
             .into_iter()
             .all(|component| self.hold(|sample, column| carried(sample, column, point, body, component)))
@@ -84,7 +84,7 @@ impl Slopes {
     pub fn motion_of(
         &self,
         function: usize,
-        bodies: &[Frame],
+        bodies: &[PlaneBody],
         joined: &[[Option<usize>; 2]],
     ) -> Option<RowMotion> {
         let alone = (0..bodies.len()).map(|body| (body, None));
@@ -141,7 +141,7 @@ fn carried(
     sample: &Sample,
     column: usize,
     point: [usize; 2],
-    body: &Frame,
+    body: &PlaneBody,
     component: usize,
 ) -> Option<(f64, f64)> {
     let value = |function: usize| sample.get(function).map(|(value, _)| *value);
@@ -158,5 +158,5 @@ fn carried(
 
 /// A value of a leaf, scattered but the same in every build; lengths and masses are positive.
 pub fn scattered(leaf: Leaf, trial: usize) -> f64 {
-    0.2 + scattered::scattered(leaf, trial)
+    0.2 + sample_points::scattered(leaf, trial)
 }

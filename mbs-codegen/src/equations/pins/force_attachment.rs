@@ -3,9 +3,9 @@
 //! A point of a joint belongs to both bodies, and no motion shows which of them carries a force there. The text names it,
 //! `on P of rod`, where a point belongs to several bodies.
 
-use super::attribution::{Frame, Slopes};
+use super::attribution::{PlaneBody, Slopes};
 use super::velocities::{Here, Motions, Seen};
-use super::{Fault, Given, On};
+use super::{Given, On, PinFault};
 use crate::equations::forces::{Acting, Place};
 use crate::model::Model;
 use crate::model::dynamics::{Action, Dynamics as Declared};
@@ -17,7 +17,7 @@ pub type Able = Vec<Option<usize>>;
 /// Points, and the bodies that may carry them.
 pub struct Points<'a> {
     pub slopes: &'a Slopes,
-    pub bodies: &'a [Frame],
+    pub bodies: &'a [PlaneBody],
     pub declared: &'a Declared,
     /// Node of each expression.
     pub nodes: &'a [NodeId],
@@ -64,13 +64,13 @@ impl Points<'_> {
 
     /// Carrier of the point of a part of a force: the body that the text names, the ground where nothing moves the point, or
     /// the one `able` body. `None` where no body carries it. `place` has the indices of its components.
-    pub fn carrier(&self, part: &Acting, place: [usize; 2], able: &Able) -> Result<Option<On>, Fault> {
+    pub fn carrier(&self, part: &Acting, place: [usize; 2], able: &Able) -> Result<Option<On>, PinFault> {
         let Some(force) = self.declared.forces.get(part.force) else { return Ok(None) };
         let stands = self.slopes.is_fixed_point(place);
         if let Some(said) = force.carriers.get(part.end).and_then(Option::as_ref) {
             return match said.body {
                 _ if able.contains(&said.body) || (said.body.is_none() && stands) => Ok(Some(on(said.body))),
-                _ => Err(Fault {
+                _ => Err(PinFault {
                     span: Some(said.span),
                     message: format!(
                         "`{}` does not act on `{}`: its point is none of that body",
@@ -91,7 +91,7 @@ impl Points<'_> {
                     (Action::Line(_), _) => "to: P of",
                     _ => "on P of",
                 };
-                Err(Fault {
+                Err(PinFault {
                     span: Some(force.span),
                     message: format!(
                         "the forces of pins are not known: `{}` acts on a point of `{first}` and of `{second}`",

@@ -7,17 +7,17 @@
 mod attribution;
 mod elimination;
 mod force_attachment;
-mod joints;
 mod manifold;
+mod places;
 mod velocities;
 
 use proc_macro2::Span;
 
 pub use self::attribution::RowMotion;
-use self::attribution::{Frame, Slopes};
+use self::attribution::{PlaneBody, Slopes};
 use self::elimination::{Column, solve};
 use self::force_attachment::Points;
-use self::joints::{Misplaced, misplaced};
+use self::places::{Misplaced, misplaced};
 use super::dynamics::Dynamics;
 use super::forces::{Place, Sum};
 use super::lower::{Clock, PIN};
@@ -95,7 +95,7 @@ pub fn complete(g: &mut Graph, model: &Model, declared: &Declared, derived: &mut
                 });
             }
         }
-        Err(Fault { span, message, help }) => {
+        Err(PinFault { span, message, help }) => {
             let span = span.or_else(|| declared.loads.get(load).map(|load| load.span));
             derived.undetermined = span.map(|span| Undetermined { span, message, help });
         }
@@ -142,16 +142,16 @@ pub fn attribution(model: &Model) -> Option<Attribution> {
 }
 
 /// Reason why the sums are unknown.
-pub(super) struct Fault {
+pub(super) struct PinFault {
     /// Token, if not the output that asks for a force.
     pub span: Option<Span>,
     pub message: String,
     pub help: String,
 }
 
-impl Fault {
+impl PinFault {
     fn new(message: String, help: &str) -> Self {
-        Fault { span: None, message, help: help.into() }
+        PinFault { span: None, message, help: help.into() }
     }
 }
 
@@ -162,7 +162,7 @@ fn forces(
     declared: &Declared,
     derived: &Dynamics,
     given: Given<'_>,
-) -> Result<(Vec<NodeId>, Attribution), Fault> {
+) -> Result<(Vec<NodeId>, Attribution), PinFault> {
     unattributable(declared)?;
     let work = Sums::new(g, model, declared, derived, given)?;
     let attribution = work.attribution(model, declared)?;
@@ -172,19 +172,19 @@ fn forces(
 }
 
 /// Refuses energies, whose bodies the text does not name, and bodies in space, which have more sums.
-fn unattributable(declared: &Declared) -> Result<(), Fault> {
+fn unattributable(declared: &Declared) -> Result<(), PinFault> {
     let dissipation = declared.forces.iter().find(|force| matches!(force.action, Action::Dissipation(_)));
     let named = declared.kinetics.first().map(|kinetic| kinetic.name.as_str());
     let named = named.or(dissipation.map(|force| force.name.as_str()));
     let named = named.or(declared.potentials.first().map(|_| "a potential"));
     if let Some(name) = named {
-        return Err(Fault::new(
+        return Err(PinFault::new(
             format!("the forces of pins are not known: on which body `{name}` acts is not said"),
             "write what acts as `body`, `gravity`, `force`, `torque`, `tsda` or `rsda`",
         ));
     }
     match declared.bodies.iter().find(|body| body.com.len() != 2) {
-        Some(body) => Err(Fault::new(
+        Some(body) => Err(PinFault::new(
             format!("the forces of pins are not known: `{}` is no body of the plane", body.name),
             "the sums of pins are those of plane bodies; `lambda(row)` has the force of a row",
         )),
@@ -196,7 +196,7 @@ fn unattributable(declared: &Declared) -> Result<(), Fault> {
 struct Sums<'a> {
     given: Given<'a>,
     slopes: Slopes,
-    bodies: Vec<Frame>,
+    bodies: Vec<PlaneBody>,
     /// Motion that each row measures.
     rows: Vec<Option<RowMotion>>,
     acting: Vec<(usize, On)>,
@@ -211,7 +211,7 @@ impl<'a> Sums<'a> {
         declared: &Declared,
         derived: &Dynamics,
         given: Given<'a>,
-    ) -> Result<Self, Fault> {
+    ) -> Result<Self, PinFault> {
         let zero = g.constant(0.0);
         let of = |id: Id| given.nodes.get(id.index()).copied().unwrap_or(zero);
         let mut functions = Vec::new();
@@ -223,7 +223,7 @@ impl<'a> Sums<'a> {
         for body in &declared.bodies {
             let (centre, angle) = frame(body, of, zero);
             frames.push((centre, angle));
-            bodies.push(Frame { centre: centre.map(&mut add), angle: angle.map(&mut add) });
+            bodies.push(PlaneBody { centre: centre.map(&mut add), angle: angle.map(&mut add) });
         }
         let rows: Vec<usize> = given.rows.iter().map(|row| add(row.phi)).collect();
         let places: Vec<[usize; 2]> = derived
@@ -251,7 +251,7 @@ impl<'a> Sums<'a> {
             };
             let Some(found) = found else {
                 let name = declared.forces.get(part.force).map_or("", |force| force.name.as_str());
-                return Err(Fault::new(
+                return Err(PinFault::new(
                     format!("the forces of pins are not known: on which body `{name}` acts is not said"),
                     "let it act on a point of a body, or on the angle of one or between two",
                 ));
@@ -263,13 +263,13 @@ impl<'a> Sums<'a> {
 
     /// Body of each force and drive, and the guides that hold bodies where pins do not. There are as many unknowns as
     /// sums, or the forces are indeterminate.
-    fn attribution(&self, model: &Model, declared: &Declared) -> Result<Attribution, Fault> {
+    fn attribution(&self, model: &Model, declared: &Declared) -> Result<Attribution, PinFault> {
         let mut driven = Vec::new();
         for (index, (row, motion)) in
             model.rows.iter().zip(&self.rows).enumerate().filter(|(_, (row, _))| row.driven)
         {
             let Some(motion) = motion else {
-                return Err(Fault::new(
+                return Err(PinFault::new(
                     format!(
                         "the forces of pins are not known: on which body the drive `{}` acts is not said",
                         row.name
@@ -294,7 +294,7 @@ impl<'a> Sums<'a> {
             found.rows.extend(guiding);
             return Ok(found);
         }
-        Err(Fault::new(
+        Err(PinFault::new(
             format!(
                 "the forces of pins are indeterminate: bodies have {equations} sums, of which {freedom} give the \
                  accelerations, for {} unknown forces and moments",

@@ -4,7 +4,7 @@
 #[derive(Debug)]
 pub struct Form {
     /// The kind of the shape.
-    pub kind: Kind,
+    pub kind: ShapeKind,
     /// The word after `draw`; `trace` is a statement of its own.
     pub word: &'static str,
     /// `true` if a label may precede the points.
@@ -19,7 +19,7 @@ pub struct Form {
 
 /// Kinds of shapes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum ShapeKind {
     View,
     Ground,
     Link,
@@ -70,7 +70,7 @@ pub enum Takes {
 
 /// A form without words.
 const fn plain(
-    kind: Kind,
+    kind: ShapeKind,
     word: &'static str,
     labelled: bool,
     points: Points,
@@ -84,14 +84,14 @@ const ALONG: &[(&str, Takes, bool)] = &[("along", Takes::Direction, true)];
 
 /// All forms of `draw`, in the order of the reference.
 pub static FORMS: [Form; 15] = [
-    plain(Kind::Ground, "ground", false, Points::Each, "draw ground O, D;"),
-    plain(Kind::Joint, "joint", false, Points::Each, "draw joint A, B;"),
-    plain(Kind::Link, "link", true, Points::AtLeast(2), "draw link crank: O, A;"),
-    plain(Kind::Plate, "plate", true, Points::AtLeast(3), "draw plate coupler: A, B, P;"),
-    plain(Kind::Slot, "slot", true, Points::AtLeast(2), "draw slot guide: A, B;"),
-    plain(Kind::Spring, "spring", true, Points::Exactly(2), "draw spring suspension: A, B;"),
+    plain(ShapeKind::Ground, "ground", false, Points::Each, "draw ground O, D;"),
+    plain(ShapeKind::Joint, "joint", false, Points::Each, "draw joint A, B;"),
+    plain(ShapeKind::Link, "link", true, Points::AtLeast(2), "draw link crank: O, A;"),
+    plain(ShapeKind::Plate, "plate", true, Points::AtLeast(3), "draw plate coupler: A, B, P;"),
+    plain(ShapeKind::Slot, "slot", true, Points::AtLeast(2), "draw slot guide: A, B;"),
+    plain(ShapeKind::Spring, "spring", true, Points::Exactly(2), "draw spring suspension: A, B;"),
     Form {
-        kind: Kind::Slider,
+        kind: ShapeKind::Slider,
         word: "slider",
         labelled: false,
         points: Points::Each,
@@ -99,7 +99,7 @@ pub static FORMS: [Form; 15] = [
         example: "draw slider S along [1, 0];",
     },
     Form {
-        kind: Kind::Rail,
+        kind: ShapeKind::Rail,
         word: "rail",
         labelled: false,
         points: Points::Each,
@@ -107,7 +107,7 @@ pub static FORMS: [Form; 15] = [
         example: "draw rail S along [1, 0];",
     },
     Form {
-        kind: Kind::Wheel,
+        kind: ShapeKind::Wheel,
         word: "wheel",
         labelled: true,
         points: Points::Exactly(1),
@@ -115,7 +115,7 @@ pub static FORMS: [Form; 15] = [
         example: "draw wheel roller: A rim R;",
     },
     Form {
-        kind: Kind::Gear,
+        kind: ShapeKind::Gear,
         word: "gear",
         labelled: true,
         points: Points::Exactly(1),
@@ -127,7 +127,7 @@ pub static FORMS: [Form; 15] = [
         example: "draw gear sun: O rim R teeth 20;",
     },
     Form {
-        kind: Kind::Cam,
+        kind: ShapeKind::Cam,
         word: "cam",
         labelled: true,
         points: Points::Exactly(1),
@@ -135,7 +135,7 @@ pub static FORMS: [Form; 15] = [
         example: "draw cam disc: O contact C turn theta;",
     },
     Form {
-        kind: Kind::Face,
+        kind: ShapeKind::Face,
         word: "face",
         labelled: true,
         points: Points::Exactly(2),
@@ -143,7 +143,7 @@ pub static FORMS: [Form; 15] = [
         example: "draw face follower: A, B back C;",
     },
     Form {
-        kind: Kind::Geneva,
+        kind: ShapeKind::Geneva,
         word: "geneva",
         labelled: false,
         points: Points::Exactly(1),
@@ -156,7 +156,7 @@ pub static FORMS: [Form; 15] = [
         example: "draw geneva O pin P wheel W rim R slots 6;",
     },
     Form {
-        kind: Kind::Road,
+        kind: ShapeKind::Road,
         word: "road",
         labelled: true,
         points: Points::Exactly(1),
@@ -164,7 +164,7 @@ pub static FORMS: [Form; 15] = [
         example: "draw road bumps: P speed 3 [m/s];",
     },
     Form {
-        kind: Kind::View,
+        kind: ShapeKind::View,
         word: "view",
         labelled: true,
         points: Points::Exactly(0),
@@ -179,12 +179,12 @@ pub static FORMS: [Form; 15] = [
 
 /// The form of `trace`.
 pub static TRACE: Form =
-    plain(Kind::Trace, "trace", true, Points::Each, "trace P;` or `trace \"coupler curve\": P;");
+    plain(ShapeKind::Trace, "trace", true, Points::Each, "trace P;` or `trace \"coupler curve\": P;");
 
 impl Form {
     /// Words before the points: `draw link`, `trace`.
     pub fn name(&self) -> String {
-        if self.kind == Kind::Trace { self.word.into() } else { format!("draw {}", self.word) }
+        if self.kind == ShapeKind::Trace { self.word.into() } else { format!("draw {}", self.word) }
     }
 
     /// The cure: an example.

@@ -9,12 +9,12 @@ use crate::syntax::ast::{Name, StatementKind};
 use crate::syntax::expression::expression;
 use crate::syntax::parser::{GivenUp, Parser, Read};
 use crate::syntax::statement::{at_statement, end};
-use crate::syntax::tokens::Kind;
+use crate::syntax::tokens::TokenKind;
 
 /// `true` where a statement of the picture begins: its word is a name where an operator or a bracket follows.
 pub fn starts(parser: &Parser<'_>) -> bool {
-    matches!(parser.peek(), Kind::Identifier(word) if PICTURES.contains(&word.as_str()))
-        && matches!(parser.peek_at(1), Kind::Identifier(_) | Kind::Literal(_))
+    matches!(parser.peek(), TokenKind::Identifier(word) if PICTURES.contains(&word.as_str()))
+        && matches!(parser.peek_at(1), TokenKind::Identifier(_) | TokenKind::Literal(_))
 }
 
 /// Reads a statement after `word`, one of [`PICTURES`] at `span`.
@@ -45,7 +45,7 @@ fn heading(parser: &mut Parser<'_>, help: &str) -> Read<String> {
 
 /// Takes a string, if one is next.
 fn string(parser: &mut Parser<'_>) -> Option<String> {
-    let Kind::Literal(literal) = parser.peek() else { return None };
+    let TokenKind::Literal(literal) = parser.peek() else { return None };
     let text = syn::parse_str::<syn::LitStr>(literal).ok()?.value();
     parser.skip(1);
     Some(text)
@@ -87,8 +87,8 @@ const SPAN: &str = "write `span turn(omega);` for one turn at this speed, or `sp
 
 /// `turn(omega)` or a time.
 fn read_span(parser: &mut Parser<'_>) -> Read<Picture> {
-    let is_turn = matches!(parser.peek(), Kind::Identifier(word) if word == TURN);
-    if !is_turn || *parser.peek_at(1) != Kind::Open('(') {
+    let is_turn = matches!(parser.peek(), TokenKind::Identifier(word) if word == TURN);
+    if !is_turn || *parser.peek_at(1) != TokenKind::Open('(') {
         let time = expression(parser)?;
         end(parser, SPAN)?;
         return Ok(Picture::Time(time));
@@ -120,8 +120,8 @@ fn draw(parser: &mut Parser<'_>) -> Read<Picture> {
 /// `[label:] point, … word argument …;`
 fn shape(parser: &mut Parser<'_>, form: &'static Form, span: Span) -> Read<Picture> {
     let help = form.help();
-    let is_label = matches!(parser.peek(), Kind::Identifier(_) | Kind::Literal(_))
-        && matches!(parser.peek_at(1), Kind::Punctuation(':', _));
+    let is_label = matches!(parser.peek(), TokenKind::Identifier(_) | TokenKind::Literal(_))
+        && matches!(parser.peek_at(1), TokenKind::Punctuation(':', _));
     let label = if is_label { Some(shape_label(parser, form, &help)?) } else { None };
     let mut points = Vec::new();
     if form.points != Points::Exactly(0) {
@@ -131,7 +131,7 @@ fn shape(parser: &mut Parser<'_>, form: &'static Form, span: Span) -> Read<Pictu
         }
     }
     let mut words = Vec::new();
-    while matches!(parser.peek(), Kind::Identifier(_)) {
+    while matches!(parser.peek(), TokenKind::Identifier(_)) {
         words.push(word(parser, form, &words, &help)?);
     }
     end(parser, &help)?;
@@ -167,7 +167,7 @@ fn word(parser: &mut Parser<'_>, form: &Form, before: &[Word], help: &str) -> Re
     let argument = match takes {
         Takes::Nothing => Argument::None,
         Takes::Point | Takes::Angle => Argument::Place(point(parser, help)?),
-        Takes::Direction if *parser.peek() != Kind::Open('[') => Argument::Place(place(parser, help)?),
+        Takes::Direction if *parser.peek() != TokenKind::Open('[') => Argument::Place(place(parser, help)?),
         Takes::Direction | Takes::Count | Takes::Speed | Takes::Axis => Argument::Value(expression(parser)?),
     };
     Ok(Word { name, argument })
@@ -175,7 +175,7 @@ fn word(parser: &mut Parser<'_>, form: &Form, before: &[Word], help: &str) -> Re
 
 /// A point or an angle by its name.
 fn point(parser: &mut Parser<'_>, help: &str) -> Read<Place> {
-    if matches!(parser.peek(), Kind::Open(_)) {
+    if matches!(parser.peek(), TokenKind::Open(_)) {
         let help = "declare it and draw it by its name: `let P = [x, y];`";
         return parser.expected("the name of a point", help);
     }

@@ -12,7 +12,7 @@ use self::margin::Scales;
 use self::printer::Printer;
 use self::value::Value;
 use crate::equations::Equations;
-use crate::program::{BlockProgram, Method, Operations, Program};
+use crate::program::{BlockMethod, BlockProgram, Operations, Program};
 use crate::symbolic::NodeId;
 
 /// Types of factors, and the type of each block.
@@ -90,7 +90,7 @@ struct Elimination {
 }
 
 fn elimination(equations: &Equations, block: &BlockProgram) -> Option<Elimination> {
-    let Method::Newton(system) = &block.method else { return None };
+    let BlockMethod::Newton(system) = &block.method else { return None };
     let order = system.order.as_ref()?;
     let scales = Scales::of(equations, block);
     let graph = &equations.graph;

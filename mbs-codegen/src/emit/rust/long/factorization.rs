@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use crate::emit::rust::blocks::list;
-use crate::emit::rust::linear::Entries;
+use crate::emit::rust::linear::MatrixEntries;
 use crate::emit::rust::long;
-use crate::emit::rust::long::parts::{Frame, Parts};
+use crate::emit::rust::long::parts::{ExtraArguments, Parts};
 use crate::emit::rust::long::statement::{Open, Operand, Statement};
 use crate::program::BlockProgram;
 use crate::symbolic::NodeId;
@@ -41,7 +41,7 @@ impl Factorizations {
         &mut self,
         kind: usize,
         block: &BlockProgram,
-        (factors, entries): (&str, &Entries<'_>),
+        (factors, entries): (&str, &MatrixEntries<'_>),
     ) -> String {
         let blocks = self.0.entry(kind).or_insert_with(|| Blocks {
             factors: factors.to_owned(),
@@ -57,7 +57,7 @@ impl Factorizations {
     }
 
     /// Before: all blocks are added. After: their factorization, kind after kind.
-    pub fn print(self, entries: &Entries<'_>) -> Rounds {
+    pub fn print(self, entries: &MatrixEntries<'_>) -> Rounds {
         let (model, equations) = (entries.scope.model, entries.equations);
         let mut rounds = Rounds {
             fields: String::new(),
@@ -81,7 +81,7 @@ impl Factorizations {
             let (count, group) = (statements.len(), parts.lengths.group);
             let _ = writeln!(rounds.fields, "/// Diagonal blocks.\nkind{kind}: [{factors}; {count}],");
             let _ = write!(rounds.names, "kind{kind}: __kind{kind}, ");
-            let frame = Frame {
+            let frame = ExtraArguments {
                 declared: format!(
                     "{declared}__blocks: &mut [{factors}; {count}], __margin: &mut __mbs::Margin<T>, "
                 ),
@@ -105,7 +105,7 @@ impl Factorizations {
 fn factorized(
     block: &BlockProgram,
     place: usize,
-    (factors, entries): (&str, &Entries<'_>),
+    (factors, entries): (&str, &MatrixEntries<'_>),
     open: &mut Open,
 ) -> String {
     let equations = entries.equations;

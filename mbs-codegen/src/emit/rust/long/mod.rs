@@ -16,12 +16,12 @@ use std::fmt::Write;
 use crate::emit::rust::blocks::{formula, list};
 use crate::emit::rust::elimination::{Eliminations, factorization};
 use crate::emit::rust::long::lengths::Lengths;
-use crate::emit::rust::long::parts::{Frame, Parts};
+use crate::emit::rust::long::parts::{ExtraArguments, Parts};
 use crate::emit::rust::long::statement::{PUT, Statement};
 use crate::emit::rust::scope::{Scope, number as number_of};
 use crate::equations::Equations;
 use crate::model::Model;
-use crate::program::{BlockProgram, Line, Method, Program, System};
+use crate::program::{Assignment, BlockMethod, BlockProgram, Program, System};
 use crate::symbolic::NodeId;
 
 /// `true` if all functions of a mechanism are emitted in parts.
@@ -37,7 +37,7 @@ pub fn has_many_blocks(program: &Program, lengths: Lengths) -> bool {
 
 /// Blocks that Newton's method solves.
 pub fn newton_blocks(program: &Program) -> usize {
-    program.blocks.iter().filter(|block| matches!(block.method, Method::Newton(_))).count()
+    program.blocks.iter().filter(|block| matches!(block.method, BlockMethod::Newton(_))).count()
 }
 
 /// Code of the solution.
@@ -49,8 +49,8 @@ pub struct Solution {
 }
 
 /// Step before an iteration, in the order of computation.
-enum Step<'a> {
-    Line(&'a Line),
+enum Preparation<'a> {
+    Line(&'a Assignment),
     /// A coordinate and its value.
     Assign(usize, NodeId),
 }
@@ -58,23 +58,23 @@ enum Step<'a> {
 /// Lines of bounded number, and the block solved after them.
 #[derive(Default)]
 struct Segment<'a> {
-    steps: Vec<Step<'a>>,
+    steps: Vec<Preparation<'a>>,
     newton: Option<(&'a BlockProgram, &'a System)>,
 }
 
 /// Blocks that one copy of the solvers solves: unknowns, rows, flags for a dyad and for branches that it decides.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Kind {
+pub struct BlockKind {
     unknowns: usize,
     rows: usize,
     dyad: bool,
     branched: bool,
 }
 
-impl Kind {
+impl BlockKind {
     /// The kind of a block.
     pub fn of(block: &BlockProgram, system: &System) -> Self {
-        Kind {
+        BlockKind {
             unknowns: block.coordinates.len(),
             rows: block.rows.len(),
             dyad: system.dyad.is_some(),
@@ -112,11 +112,11 @@ pub fn solve(
 }
 
 /// The kinds of a program's blocks, numbered.
-pub fn kinds(program: &Program) -> BTreeMap<Kind, usize> {
-    let mut kinds: BTreeMap<Kind, usize> = BTreeMap::new();
+pub fn kinds(program: &Program) -> BTreeMap<BlockKind, usize> {
+    let mut kinds: BTreeMap<BlockKind, usize> = BTreeMap::new();
     for block in &program.blocks {
-        if let Method::Newton(system) = &block.method {
-            kinds.insert(Kind::of(block, system), 0);
+        if let BlockMethod::Newton(system) = &block.method {
+            kinds.insert(BlockKind::of(block, system), 0);
         }
     }
     kinds.values_mut().enumerate().for_each(|(index, number)| *number = index);
@@ -124,11 +124,11 @@ pub fn kinds(program: &Program) -> BTreeMap<Kind, usize> {
 }
 
 /// Types of the factors of each kind: those of its blocks where all have one pattern, else those of any.
-pub fn factors(program: &Program, eliminations: &Eliminations) -> BTreeMap<Kind, String> {
-    let mut factors: BTreeMap<Kind, String> = BTreeMap::new();
+pub fn factors(program: &Program, eliminations: &Eliminations) -> BTreeMap<BlockKind, String> {
+    let mut factors: BTreeMap<BlockKind, String> = BTreeMap::new();
     for (index, block) in program.blocks.iter().enumerate() {
-        if let Method::Newton(system) = &block.method {
-            let (kind, size) = (Kind::of(block, system), block.rows.len());
+        if let BlockMethod::Newton(system) = &block.method {
+            let (kind, size) = (BlockKind::of(block, system), block.rows.len());
             let own = eliminations.factorization(index, size);
             let of_kind = factors.entry(kind).or_insert_with(|| own.clone());
             if *of_kind != own {
@@ -170,22 +170,22 @@ pub fn scales(model: &Model) -> String {
 const WHOLE_METRIC: &str = "__mbs::__private::chunks::Metric::Whole(&__row_scales, &__coordinate_scales)";
 
 /// `Metric::…` of each kind: numbers where all blocks of a kind have the same ones.
-fn metrics(program: &Program, equations: &Equations) -> BTreeMap<Kind, String> {
+fn metrics(program: &Program, equations: &Equations) -> BTreeMap<BlockKind, String> {
     let scale = |scales: &[NodeId], index: &usize| equations.graph.constant_value(*scales.get(*index)?);
     let scales = |all: &[NodeId], of: &[usize]| {
         Some(list(
             of.iter().map(|index| scale(all, index).map(number_of)).collect::<Option<Vec<_>>>()?.into_iter(),
         ))
     };
-    let mut metrics: BTreeMap<Kind, String> = BTreeMap::new();
+    let mut metrics: BTreeMap<BlockKind, String> = BTreeMap::new();
     for block in &program.blocks {
-        if let Method::Newton(system) = &block.method {
+        if let BlockMethod::Newton(system) = &block.method {
             let rows = scales(&equations.row_scales, &block.rows);
             let coordinates = scales(&equations.coordinate_scales, &block.coordinates);
             let own = rows.zip(coordinates).map_or(WHOLE_METRIC.to_owned(), |(rows, coordinates)| {
                 format!("__mbs::__private::chunks::Metric::Shared({rows}, {coordinates})")
             });
-            let of_kind = metrics.entry(Kind::of(block, system)).or_insert_with(|| own.clone());
+            let of_kind = metrics.entry(BlockKind::of(block, system)).or_insert_with(|| own.clone());
             if *of_kind != own {
                 *of_kind = WHOLE_METRIC.to_owned();
             }
@@ -208,27 +208,27 @@ fn segments(program: &Program) -> Vec<Segment<'_>> {
     let mut segments = vec![Segment::default()];
     for block in &program.blocks {
         for line in &block.before.lines {
-            push(Step::Line(line), &mut segments);
+            push(Preparation::Line(line), &mut segments);
         }
         match &block.method {
-            Method::Explicit { value, .. } => {
+            BlockMethod::Explicit { value, .. } => {
                 for coordinate in &block.coordinates {
-                    push(Step::Assign(*coordinate, *value), &mut segments);
+                    push(Preparation::Assign(*coordinate, *value), &mut segments);
                 }
             }
-            Method::Newton(system) => match segments.last_mut() {
+            BlockMethod::Newton(system) => match segments.last_mut() {
                 Some(last) if last.newton.is_none() => last.newton = Some((block, system)),
                 _ => segments.push(Segment { steps: Vec::new(), newton: Some((block, system)) }),
             },
         }
     }
     for line in &program.rest.lines {
-        push(Step::Line(line), &mut segments);
+        push(Preparation::Line(line), &mut segments);
     }
     segments
 }
 
-fn push<'a>(step: Step<'a>, segments: &mut Vec<Segment<'a>>) {
+fn push<'a>(step: Preparation<'a>, segments: &mut Vec<Segment<'a>>) {
     match segments.last_mut() {
         Some(last) if last.newton.is_none() => last.steps.push(step),
         _ => segments.push(Segment { steps: vec![step], newton: None }),
@@ -240,18 +240,18 @@ struct Emission<'a> {
     scope: &'a Scope<'a>,
     program: &'a Program,
     segments: Vec<Segment<'a>>,
-    kinds: BTreeMap<Kind, usize>,
-    factors: BTreeMap<Kind, String>,
-    metrics: BTreeMap<Kind, String>,
+    kinds: BTreeMap<BlockKind, usize>,
+    factors: BTreeMap<BlockKind, String>,
+    metrics: BTreeMap<BlockKind, String>,
 }
 
 impl Emission<'_> {
     /// Segments with a block of this kind.
-    fn of_kind(&self, kind: Kind) -> impl Iterator<Item = (usize, &BlockProgram, &System)> {
+    fn of_kind(&self, kind: BlockKind) -> impl Iterator<Item = (usize, &BlockProgram, &System)> {
         let blocks = self.segments.iter().enumerate();
         blocks
             .filter_map(|(number, segment)| segment.newton.map(|(block, system)| (number, block, system)))
-            .filter(move |(_, block, system)| Kind::of(block, system) == kind)
+            .filter(move |(_, block, system)| BlockKind::of(block, system) == kind)
     }
 
     /// `__before`: code before each block.
@@ -263,8 +263,8 @@ impl Emission<'_> {
             let mut arm = Vec::new();
             for step in steps {
                 match step {
-                    Step::Line(line) => parts.wordings.of_line(line, self.scope, &mut arm),
-                    Step::Assign(coordinate, value) => {
+                    Preparation::Line(line) => parts.wordings.of_line(line, self.scope, &mut arm),
+                    Preparation::Assign(coordinate, value) => {
                         arm.push(parts.wordings.assign(*coordinate, *value, self.scope));
                     }
                 }
@@ -275,8 +275,8 @@ impl Emission<'_> {
     }
 
     /// `__evaluate…`: residuals and Jacobian of an iterate.
-    fn evaluate(&self, kind: Kind, number: usize, parts: &mut Parts) {
-        let Kind { unknowns, rows, .. } = kind;
+    fn evaluate(&self, kind: BlockKind, number: usize, parts: &mut Parts) {
+        let BlockKind { unknowns, rows, .. } = kind;
         let result = format!("([T; {rows}], [[T; {unknowns}]; {rows}])");
         let mut arms = Vec::new();
         for (segment, block, system) in self.of_kind(kind) {
@@ -298,7 +298,7 @@ impl Emission<'_> {
     }
 
     /// `__holds…`: `true` if the branches hold that a block decides. Its values belong to a trial and are not passed on.
-    fn holds(&self, kind: Kind, number: usize, parts: &mut Parts) {
+    fn holds(&self, kind: BlockKind, number: usize, parts: &mut Parts) {
         if !kind.branched {
             return;
         }
@@ -319,7 +319,7 @@ impl Emission<'_> {
     }
 
     /// `__roots…`: both positions of a dyad.
-    fn roots(&self, kind: Kind, number: usize, parts: &mut Parts) {
+    fn roots(&self, kind: BlockKind, number: usize, parts: &mut Parts) {
         let mut arms = Vec::new();
         for (segment, _, system) in self.of_kind(kind) {
             let Some((dyad, section)) = &system.dyad else { continue };
@@ -336,7 +336,7 @@ impl Emission<'_> {
         }
     }
 
-    fn frame_of_block(&self, x: &str, unknowns: usize, result: String) -> Frame {
+    fn frame_of_block(&self, x: &str, unknowns: usize, result: String) -> ExtraArguments {
         let n = self.scope.model.coordinates.len();
         frame(format!("&[T; {n}]"), Some((x, format!("&[T; {unknowns}]"))), Some(result))
     }
@@ -374,7 +374,8 @@ impl Emission<'_> {
         choice.push((String::new(), "continue".into()));
         // Twice the number of its kind, plus 1 where code precedes the block, which is rare.
         let segment_of = |segment: &Segment<'_>| {
-            let kind = segment.newton.and_then(|(block, system)| self.kinds.get(&Kind::of(block, system)));
+            let kind =
+                segment.newton.and_then(|(block, system)| self.kinds.get(&BlockKind::of(block, system)));
             let kind = kind.copied().unwrap_or(self.kinds.len());
             (2 * kind + usize::from(!segment.steps.is_empty())).to_string()
         };
@@ -401,8 +402,9 @@ impl Emission<'_> {
     fn computed(&self) -> BTreeSet<NodeId> {
         let mut computed = BTreeSet::new();
         for Segment { steps, newton } in &self.segments {
-            let lines =
-                steps.iter().filter_map(|step| if let Step::Line(line) = step { Some(line) } else { None });
+            let lines = steps
+                .iter()
+                .filter_map(|step| if let Preparation::Line(line) = step { Some(line) } else { None });
             computed.extend(lines.flat_map(|line| line.values()));
             computed.extend(newton.iter().flat_map(|(_, system)| system.section.computed()));
         }
@@ -410,8 +412,8 @@ impl Emission<'_> {
     }
 
     /// The table of all blocks of a kind.
-    fn places(&self, kind: Kind, number: usize) -> String {
-        let Kind { unknowns, rows, .. } = kind;
+    fn places(&self, kind: BlockKind, number: usize) -> String {
+        let BlockKind { unknowns, rows, .. } = kind;
         let places = self.of_kind(kind).map(|(_, block, _)| place(block, self.scope));
         format!(
             "const __PLACES{number}: &[__mbs::__private::chunks::Place<{unknowns}, {rows}>] = &{};\n\
@@ -421,8 +423,8 @@ impl Emission<'_> {
     }
 
     /// The next block of a kind, solved.
-    fn solved(&self, kind: Kind, number: usize) -> String {
-        let Kind { unknowns, rows, dyad, branched } = kind;
+    fn solved(&self, kind: BlockKind, number: usize) -> String {
+        let BlockKind { unknowns, rows, dyad, branched } = kind;
         let factors = self.factors.get(&kind).map_or("", String::as_str);
         let metric = self.metrics.get(&kind).map_or(WHOLE_METRIC, String::as_str);
         let method = if rows > unknowns {
@@ -465,12 +467,12 @@ impl Emission<'_> {
 }
 
 /// Arguments of the functions of all segments.
-fn frame(q: String, more: Option<(&str, String)>, result: Option<String>) -> Frame {
+fn frame(q: String, more: Option<(&str, String)>, result: Option<String>) -> ExtraArguments {
     let (declared, given) = match more {
         Some((name, kind)) => (format!("{name}: {kind}, "), format!("{name}, ")),
         None => (String::new(), String::new()),
     };
-    Frame {
+    ExtraArguments {
         declared: format!("__p: &__Parameters<T>, __q: {q}, __t: T, {declared}"),
         given: format!("__p, __q, __t, {given}"),
         result,

@@ -25,7 +25,7 @@ const LONGEST_TAPE: usize = 1_000;
 
 /// Arguments of a family of methods, in addition to `self` and the passed values; a comma after each.
 #[derive(Clone, Default)]
-pub struct Frame {
+pub struct ExtraArguments {
     /// Declared form.
     pub declared: String,
     /// Form in which they are passed on.
@@ -35,9 +35,9 @@ pub struct Frame {
 }
 
 /// Method that computes part of a function.
-struct Method {
+struct PartMethod {
     name: String,
-    frame: Frame,
+    frame: ExtraArguments,
     /// Calls before anything else.
     calls: String,
     code: Code,
@@ -100,7 +100,7 @@ pub struct Parts {
     pub lengths: Lengths,
     /// Wordings of all statements.
     pub wordings: Wordings,
-    methods: Vec<Method>,
+    methods: Vec<PartMethod>,
     /// Methods that choose among others.
     choices: String,
     slots: BTreeMap<NodeId, usize>,
@@ -132,7 +132,7 @@ impl Parts {
     pub fn sequence(
         &mut self,
         name: &str,
-        frame: &Frame,
+        frame: &ExtraArguments,
         statements: &[Statement],
         (longest, recording): (usize, Option<&Scope<'_>>),
     ) -> String {
@@ -153,9 +153,9 @@ impl Parts {
                     Code::Rolled(Rolled::of(rounds.map(<[Statement]>::to_vec).collect()))
                 }
             };
-            let frame = Frame { result: None, ..frame.clone() };
+            let frame = ExtraArguments { result: None, ..frame.clone() };
             let (calls, inline) = (String::new(), "#[inline(never)]");
-            self.methods.push(Method { name, frame, calls, code, all: true, exports: true, inline });
+            self.methods.push(PartMethod { name, frame, calls, code, all: true, exports: true, inline });
         }
         calls
     }
@@ -207,7 +207,7 @@ impl Parts {
     pub fn choice(
         &mut self,
         name: &str,
-        frame: &Frame,
+        frame: &ExtraArguments,
         arms: Vec<(usize, Vec<Statement>)>,
         (count, exports, recording): (usize, bool, Option<&Scope<'_>>),
     ) {
@@ -257,7 +257,7 @@ impl Parts {
             let _ = writeln!(choice, "{pattern} => self.{name}(__k, {}__v),", frame.given);
             let code = tape.unwrap_or_else(|| Code::Rolled(Rolled::of(rounds)));
             let frame = frame.clone();
-            self.methods.push(Method { name, frame, calls, code, all: false, exports, inline });
+            self.methods.push(PartMethod { name, frame, calls, code, all: false, exports, inline });
         }
         if !result {
             choice += "_ => {}\n";
@@ -274,7 +274,7 @@ impl Parts {
     }
 
     /// Adds `__called…`, a choice that is never inlined.
-    pub fn called(&mut self, name: &str, frame: &Frame) {
+    pub fn called(&mut self, name: &str, frame: &ExtraArguments) {
         let of = name.trim_start_matches('_');
         let asked = "__s: ::core::primitive::usize, ";
         self.choices += &declared("#[inline(never)]", &format!("__called_{of}"), asked, frame);
@@ -289,7 +289,7 @@ impl Parts {
             |code: &Code| if let Code::Rolled(rolled) = code { rolled.kernels(&wordings) } else { 0 };
         let kernels: usize = methods.iter().map(|method| kernels(&method.code)).sum();
         let mut text = String::new();
-        for Method { name, frame, calls, code, all, exports, inline } in &methods {
+        for PartMethod { name, frame, calls, code, all, exports, inline } in &methods {
             let Text { tables, mut round } = match code {
                 Code::Rolled(rolled) => rolled.print(&slots, *exports, &wordings),
                 Code::Tape(tape) => Text { tables: String::new(), round: tape.print(&slots) },
@@ -315,7 +315,7 @@ impl Parts {
     }
 }
 
-fn declared(inline: &str, name: &str, asked: &str, frame: &Frame) -> String {
+fn declared(inline: &str, name: &str, asked: &str, frame: &ExtraArguments) -> String {
     let result = frame.result.as_ref().map_or(String::new(), |result| format!(" -> {result}"));
     format!(
         "{inline}\nfn {name}(&self, {asked}{}__v: &__mbs::__private::chunks::Passed<T, {PASSED}>){result} ",
@@ -334,7 +334,7 @@ pub struct Function {
 /// Before: a section and its results, 0 where there is none. After: a function of bounded parts.
 pub fn function(
     name: &str,
-    frame: &Frame,
+    frame: &ExtraArguments,
     (section, results): (&Section, &[Option<NodeId>]),
     scope: &Scope<'_>,
 ) -> Function {
@@ -364,7 +364,7 @@ pub fn function(
 /// Before: all code that shares passed values, and places that are taken already, below `next`. After: places of all passed
 /// values in the order of computation, and their number.
 fn slots(
-    methods: &[Method],
+    methods: &[PartMethod],
     taken: BTreeMap<NodeId, usize>,
     next: usize,
 ) -> (BTreeMap<NodeId, usize>, usize) {

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use crate::emit::rust::code::{Naming, SINE_COSINE, jet, sine_cosine, value};
 use crate::emit::rust::scope::{Scope, Written};
-use crate::program::Line;
+use crate::program::Assignment;
 use crate::symbolic::NodeId;
 
 /// Placeholder of an operand in a wording.
@@ -75,20 +75,20 @@ impl Wordings {
     }
 
     /// Statements of a line: many angles are taken a few at a time.
-    pub fn of_line(&mut self, line: &Line, scope: &Scope<'_>, statements: &mut Vec<Statement>) {
+    pub fn of_line(&mut self, line: &Assignment, scope: &Scope<'_>, statements: &mut Vec<Statement>) {
         match line {
-            Line::Value(id) => {
+            Assignment::Value(id) => {
                 statements
                     .push(self.statement(|open, text| value(*id, scope, &mut Marked { open, scope }, text)));
             }
-            Line::SineCosine(angles) => {
+            Assignment::SineCosine(angles) => {
                 for angles in angles.chunks(MOST_ANGLES) {
                     statements.push(
                         self.statement(|open, text| sine_cosine(angles, &mut Marked { open, scope }, text)),
                     );
                 }
             }
-            Line::Jet(called) => {
+            Assignment::Jet(called) => {
                 statements
                     .push(self.statement(|open, text| jet(called, scope, &mut Marked { open, scope }, text)));
             }

@@ -3,10 +3,10 @@
 use std::collections::BTreeMap;
 
 use crate::emit::rust::blocks::list;
-use crate::emit::rust::linear::{Entries, quotient};
-use crate::emit::rust::long::parts::{Frame, Parts};
+use crate::emit::rust::linear::{MatrixEntries, quotient};
+use crate::emit::rust::long::parts::{ExtraArguments, Parts};
 use crate::emit::rust::long::statement::{Open, Operand, Statement};
-use crate::program::{BlockProgram, Method, Program};
+use crate::program::{BlockMethod, BlockProgram, Program};
 use crate::symbolic::NodeId;
 
 /// Bodies of the functions, and the methods that they call.
@@ -23,7 +23,7 @@ pub fn substitution(
     program: &Program,
     places: &[(String, String)],
     independent: &[usize],
-    entries: &Entries<'_>,
+    entries: &MatrixEntries<'_>,
 ) -> Substitution {
     let (n, m) = (entries.scope.model.coordinates.len(), entries.equations.rows.len());
     let right_side = format!("__b: &[T; {m}], ");
@@ -51,7 +51,7 @@ fn forward(
     places: &[(String, String)],
     (given, n): (&[usize], usize),
     (declared, handed): (&str, &str),
-    entries: &Entries<'_>,
+    entries: &MatrixEntries<'_>,
 ) -> (String, String) {
     let mut parts = Parts::new(BTreeMap::new(), 0, entries.scope.lengths);
     let mut statements = Vec::new();
@@ -85,7 +85,7 @@ fn backward(
     program: &Program,
     places: &[(String, String)],
     independent: &[usize],
-    entries: &Entries<'_>,
+    entries: &MatrixEntries<'_>,
 ) -> (String, String) {
     let (n, m) = (entries.scope.model.coordinates.len(), entries.equations.rows.len());
     let mut parts = Parts::new(BTreeMap::new(), 0, entries.scope.lengths);
@@ -130,7 +130,7 @@ fn finished(
     unknowns: usize,
 ) -> (String, String) {
     let declared = format!("__factors: &__Factors<T>, {declared}");
-    let frame = Frame { declared, given: format!("__factors, {given}"), result: None };
+    let frame = ExtraArguments { declared, given: format!("__factors, {given}"), result: None };
     let group = parts.lengths.group;
     let calls = parts.sequence(name, &frame, &statements, (group, None));
     let (methods, passed) = parts.reserved(unknowns).print();
@@ -151,13 +151,13 @@ fn solved(
     };
     let puts: String = names.iter().zip(unknowns).map(put).collect();
     match &block.method {
-        Method::Explicit { coefficient, .. } => {
+        BlockMethod::Explicit { coefficient, .. } => {
             let assign = |(name, value): (&String, &String)| {
                 format!("let {name} = {};\n", quotient(value, *coefficient))
             };
             names.iter().zip(&right_sides).map(assign).collect::<String>() + &puts
         }
-        Method::Newton(_) => {
+        BlockMethod::Newton(_) => {
             let (names, right_sides) = (names.join(", "), list(right_sides.into_iter()));
             let of = if block.has_surplus() { "__surplus" } else { "__block" };
             format!(
@@ -185,7 +185,7 @@ fn element(array: &str, index: usize, open: &mut Open) -> String {
 fn subtracted(
     known: String,
     beside: impl Iterator<Item = (usize, NodeId)>,
-    entries: &Entries<'_>,
+    entries: &MatrixEntries<'_>,
     open: &mut Open,
 ) -> String {
     let mut text = known;

@@ -6,7 +6,7 @@ use std::fmt::Write;
 use crate::emit::rust::scope::{Scope, number};
 use crate::equations::{Equations, MARGIN};
 use crate::model::Model;
-use crate::program::{Method, Program};
+use crate::program::{BlockMethod, Program};
 use crate::symbolic::{Leaf, Node};
 
 /// `let`s before the outputs: the factors, a margin a group and ∂q/∂drive a drive, as far as outputs use them.
@@ -66,7 +66,7 @@ fn blocks_of(group: usize, program: &Program, model: &Model) -> Vec<usize> {
     let rows = model.references.get(group).map(|group| group.rows.as_slice()).unwrap_or_default();
     let mut found = BTreeMap::new();
     for (index, block) in program.blocks.iter().enumerate() {
-        if matches!(block.method, Method::Newton(_)) && block.rows.iter().any(|row| rows.contains(row)) {
+        if matches!(block.method, BlockMethod::Newton(_)) && block.rows.iter().any(|row| rows.contains(row)) {
             found.insert(index, ());
         }
     }

@@ -5,7 +5,7 @@ use crate::picture::MOST_SHAPES;
 use crate::syntax::picture::{PICTURES, TURN, forms};
 use crate::syntax::{LATER, REFERRING, STATEMENTS, ast::Element, tokens, unit_symbols};
 
-pub use crate::model::functions::FUNCTIONS;
+pub use crate::model::names::FUNCTIONS;
 pub use crate::syntax::unit_symbols::SUFFIXES;
 
 /// Words that begin a statement.

@@ -1,7 +1,7 @@
 //! Values of leaves at which graphs are tried.
 
 use super::graph::Leaf;
-use crate::scattered::fraction;
+use crate::sample_points::fraction;
 
 /// A value of a leaf from 0 up to 1, scattered but the same in every build.
 pub fn scattered(leaf: Leaf, trial: usize) -> f64 {

@@ -10,7 +10,7 @@ use crate::model::dynamics::{Dynamics as Declared, Pin};
 use crate::model::expression::Id;
 use crate::symbolic::{Graph, NodeId};
 
-/// Fault in the place of a pin.
+/// PinFault in the place of a pin.
 pub enum Misplaced {
     /// It is not a point of one of its bodies.
     Off {
@@ -54,7 +54,7 @@ pub fn misplaced(
     }
 }
 
-/// Fault of a pin at a position, if it is misplaced there; the outer `None` where a value is not finite.
+/// PinFault of a pin at a position, if it is misplaced there; the outer `None` where a value is not finite.
 fn at_pin(here: &Here<'_>, index: usize, pin: &Pin) -> Option<Option<Misplaced>> {
     let [first, second] = pin.bodies;
     let (with_first, with_second) = (here.carried(first, index)?, here.carried(second, index)?);
