@@ -36,10 +36,11 @@ impl fmt::Display for Failure {
                  off, required {required:.3e}; take a smaller step, or check that the mechanism can reach this position",
                 row.name, row.line, row.unit
             ),
-            FailureKind::NotFollowed { part, margin, .. } => write!(
+            FailureKind::NotFollowed { part, margin, single } => write!(
                 f,
                 "the way to the position at t = {time} s is lost after {part:.6} of it, at margin {margin:.3e}: beyond, the assembly is in \
-                 doubt; take a smaller step, or one that ends farther from the singular position"
+                 doubt; {}take a smaller step, or one that ends farther from the singular position",
+                if *single { "compute in `f64`, which decides nearer to singular positions, " } else { "" },
             ),
             FailureKind::OverBudget { evaluations, required, .. } if evaluations < required => write!(
                 f,

@@ -102,6 +102,8 @@ pub enum FailureKind {
         part: f64,
         /// Margin to singularity there.
         margin: f64,
+        /// Numbers of single precision: those of double precision decide nearer to singular positions.
+        single: bool,
     },
     /// The budget of a step ended on the path to the position that is sought. The next step goes on from there, unless the
     /// budget leaves fewer evaluations than any part of a path takes.
@@ -383,6 +385,11 @@ impl FailureKind {
             | FailureKind::NoStateEquilibrium { .. }
             | FailureKind::EquilibriumNotConverged { .. } => FailureSource::Equilibrium,
         }
+    }
+
+    /// [`NotFollowed`](FailureKind::NotFollowed) beyond a `part` of the way, at a `margin`.
+    pub(crate) fn not_followed<R: Real>(part: f64, margin: R) -> Self {
+        FailureKind::NotFollowed { part, margin: margin.to_f64(), single: is_single::<R>() }
     }
 
     /// [`Undecided`](FailureKind::Undecided) at a `margin`.

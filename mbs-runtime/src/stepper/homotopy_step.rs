@@ -87,7 +87,7 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
         if let Some(row) = end.jump {
             return FailureKind::Discontinuous { row: entry(S::ROWS, row), part }.at(time);
         }
-        let doubtful = FailureKind::NotFollowed { part, margin: end.margin.to_f64() }.at(time);
+        let doubtful = FailureKind::not_followed(part, end.margin).at(time);
         if limit < EVALUATIONS {
             return doubtful;
         }

@@ -260,7 +260,7 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
         let state = State::at(&mechanism, &parameters, found, Predecessor::Saved)?;
         if led.is_none() && !stands {
             // A position is near, but nothing tells that it is in the assembly.
-            return Err(FailureKind::NotFollowed { part: 0.0, margin: state.margin.to_f64() }.at(t.to_f64()));
+            return Err(FailureKind::not_followed(0.0, state.margin).at(t.to_f64()));
         }
         let mut stepper = Self::at(mechanism, parameters, state, Turns::new(saved.turns, t));
         if !leads(stepper.state.margin) {

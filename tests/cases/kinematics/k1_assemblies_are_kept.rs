@@ -53,18 +53,11 @@ fn holds(tally: Tally) {
     assert_eq!((tally.wrong, tally.off, tally.refused), (0, 0, 0), "{tally:?}");
 }
 
-/// Numbers of seven digits: a passage that rounding makes doubtful is refused, and so is each step until the crank is back.
-fn holds_in_single(tally: Tally) {
-    assert!(tally.passages > 100, "{tally:?}");
-    assert_eq!((tally.wrong, tally.off), (0, 0), "{tally:?}");
-    assert!(25 * tally.refused <= tally.steps, "{tally:?}");
-}
-
 macro_rules! kept {
-    ($($test:ident: $mechanism:expr, $real:ty, $by:expr, $holds:ident;)*) => {
+    ($($test:ident: $mechanism:expr, $real:ty, $by:expr;)*) => {
         $(#[test]
         fn $test() {
-            $holds(matrix::<_, $real, _>($mechanism, $by));
+            holds(matrix::<_, $real, _>($mechanism, $by));
         })*
     };
 }
@@ -73,31 +66,43 @@ macro_rules! kept {
 const AMPLE: Steps = Steps::Within(Budget { newton: 3_000, fallback: 0 });
 
 kept! {
-    time_in_a_vector_row_keeps_the_assembly: AnglesByTimeInARow::default(), f64, Steps::Advance, holds;
-    an_input_in_a_vector_row_keeps_the_assembly: AnglesByInputInARow::default(), f64, Steps::Advance, holds;
-    a_function_in_a_vector_row_keeps_the_assembly: AnglesByFunctionInARow::new(Twice), f64, Steps::Advance, holds;
-    angles_driven_by_time_keep_the_assembly: AnglesByTime::default(), f64, Steps::Advance, holds;
-    angles_driven_by_an_input_keep_the_assembly: AnglesByInput::default(), f64, Steps::Advance, holds;
-    angles_driven_by_a_rate_keep_the_assembly: AnglesByRate::default(), f64, Steps::Advance, holds;
-    angles_held_by_a_sine_keep_the_assembly: AnglesBySine::default(), f64, Steps::Advance, holds;
-    relative_angles_driven_by_time_keep_the_assembly: RelativeByTime::default(), f64, Steps::Advance, holds;
-    relative_angles_driven_by_an_input_keep_the_assembly: RelativeByInput::default(), f64, Steps::Advance, holds;
-    points_with_time_in_a_row_keep_the_assembly: NaturalByTimeInARow::default(), f64, Steps::Advance, holds;
-    points_with_an_input_in_a_row_keep_the_assembly: NaturalByInputInARow::default(), f64, Steps::Advance, holds;
-    points_driven_by_an_input_keep_the_assembly: NaturalByInput::default(), f64, Steps::Advance, holds;
-    points_driven_by_a_rate_keep_the_assembly: NaturalByRate::default(), f64, Steps::Advance, holds;
-    reference_points_keep_the_assembly: ReferencePointsByInput::default(), f64, Steps::Advance, holds;
-    mixed_coordinates_with_an_input_in_a_row_keep_the_assembly: MixedByInputInARow::default(), f64, Steps::Advance, holds;
-    mixed_coordinates_driven_by_time_keep_the_assembly: MixedByTime::default(), f64, Steps::Advance, holds;
-    bounded_steps_keep_the_assembly_of_angles: AnglesByInputInARow::default(), f64, AMPLE, holds;
-    bounded_steps_keep_the_assembly_of_points: NaturalByTimeInARow::default(), f64, AMPLE, holds;
-    bounded_steps_keep_the_assembly_of_a_rate: AnglesByRate::default(), f64, AMPLE, holds;
-    single_precision_keeps_the_assembly_with_time_in_a_row: AnglesByTimeInARow::default(), f32, Steps::Advance, holds_in_single;
-    single_precision_keeps_the_assembly_of_angles: AnglesByInput::default(), f32, Steps::Advance, holds_in_single;
-    single_precision_keeps_the_assembly_of_a_sine: AnglesBySine::default(), f32, Steps::Advance, holds_in_single;
-    single_precision_keeps_the_assembly_of_points: NaturalByInputInARow::default(), f32, Steps::Advance, holds_in_single;
-    single_precision_keeps_the_assembly_of_relative_angles: RelativeByTime::default(), f32, Steps::Advance, holds_in_single;
-    single_precision_keeps_the_assembly_of_a_rate: AnglesByRate::default(), f32, Steps::Advance, holds_in_single;
+    time_in_a_vector_row_keeps_the_assembly: AnglesByTimeInARow::default(), f64, Steps::Advance;
+    an_input_in_a_vector_row_keeps_the_assembly: AnglesByInputInARow::default(), f64, Steps::Advance;
+    a_function_in_a_vector_row_keeps_the_assembly: AnglesByFunctionInARow::new(Twice), f64, Steps::Advance;
+    angles_driven_by_time_keep_the_assembly: AnglesByTime::default(), f64, Steps::Advance;
+    angles_driven_by_an_input_keep_the_assembly: AnglesByInput::default(), f64, Steps::Advance;
+    angles_driven_by_a_rate_keep_the_assembly: AnglesByRate::default(), f64, Steps::Advance;
+    angles_held_by_a_sine_keep_the_assembly: AnglesBySine::default(), f64, Steps::Advance;
+    relative_angles_driven_by_time_keep_the_assembly: RelativeByTime::default(), f64, Steps::Advance;
+    relative_angles_driven_by_an_input_keep_the_assembly: RelativeByInput::default(), f64, Steps::Advance;
+    points_with_time_in_a_row_keep_the_assembly: NaturalByTimeInARow::default(), f64, Steps::Advance;
+    points_with_an_input_in_a_row_keep_the_assembly: NaturalByInputInARow::default(), f64, Steps::Advance;
+    points_driven_by_an_input_keep_the_assembly: NaturalByInput::default(), f64, Steps::Advance;
+    points_driven_by_a_rate_keep_the_assembly: NaturalByRate::default(), f64, Steps::Advance;
+    reference_points_keep_the_assembly: ReferencePointsByInput::default(), f64, Steps::Advance;
+    mixed_coordinates_with_an_input_in_a_row_keep_the_assembly: MixedByInputInARow::default(), f64, Steps::Advance;
+    mixed_coordinates_driven_by_time_keep_the_assembly: MixedByTime::default(), f64, Steps::Advance;
+    bounded_steps_keep_the_assembly_of_angles: AnglesByInputInARow::default(), f64, AMPLE;
+    bounded_steps_keep_the_assembly_of_points: NaturalByTimeInARow::default(), f64, AMPLE;
+    bounded_steps_keep_the_assembly_of_a_rate: AnglesByRate::default(), f64, AMPLE;
+    single_precision_keeps_the_assembly_with_time_in_a_row: AnglesByTimeInARow::default(), f32, Steps::Advance;
+    single_precision_keeps_the_assembly_of_angles: AnglesByInput::default(), f32, Steps::Advance;
+    single_precision_keeps_the_assembly_of_a_sine: AnglesBySine::default(), f32, Steps::Advance;
+    single_precision_keeps_the_assembly_of_points: NaturalByInputInARow::default(), f32, Steps::Advance;
+    single_precision_keeps_the_assembly_of_relative_angles: RelativeByTime::default(), f32, Steps::Advance;
+    single_precision_keeps_the_assembly_of_a_rate: AnglesByRate::default(), f32, Steps::Advance;
+    single_precision_keeps_the_assembly_with_an_input_in_a_row: AnglesByInputInARow::default(), f32, Steps::Advance;
+    single_precision_keeps_the_assembly_of_mixed_coordinates: MixedByTime::default(), f32, Steps::Advance;
+    single_precision_keeps_the_assembly_in_bounded_steps: MixedByInputInARow::default(), f32, AMPLE;
+}
+
+#[test]
+fn single_precision_keeps_the_assembly_of_reference_points() {
+    let tally = matrix::<_, f32, _>(ReferencePointsByInput::default(), Steps::Advance);
+    assert!(tally.passages > 100, "{tally:?}");
+    assert_eq!((tally.wrong, tally.off), (0, 0), "{tally:?}");
+    // The margin of nine coordinates is half of that of two: rounding leaves one passage of hundreds in doubt.
+    assert!(20_000 * tally.refused <= tally.steps, "{tally:?}");
 }
 
 /// Four runs in lanes, of every motion in every step.
@@ -140,7 +145,7 @@ fn lanes_keep_their_assemblies_in_single_precision() {
     let rate = in_lanes::<_, f32, 3>(AnglesByRate::<Lanes<f32, 4>>::default());
     for tally in [angles, points, rate] {
         assert_eq!((tally.wrong, tally.off), (0, 0), "{tally:?}");
-        assert!(25 * tally.refused <= tally.steps, "{tally:?}");
+        assert!(100 * tally.refused <= tally.steps, "{tally:?}");
     }
 }
 

@@ -84,7 +84,7 @@ fn short_links_keep_the_assembly_in_single_precision() {
 
 #[test]
 fn points_of_links_shorter_than_single_precision_resolves_are_refused() {
-    for length in [0.1, 0.05] {
+    for length in [0.1, 0.05, 0.02] {
         for linkage in [parallelogram(length), stretched(length)] {
             let turn = run::<_, f32, 4>(NaturalByTurn::default(), &linkage, Steps::Advance);
             let time = run::<_, f32, 4>(NaturalByTimeInARow::default(), &linkage, Steps::Advance);

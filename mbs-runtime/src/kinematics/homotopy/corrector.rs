@@ -18,6 +18,9 @@ const LARGEST_APPROACH_INSIDE: f64 = 1.0 / 16.0;
 /// other and do not meet, the other one is off the prediction from margin m by (μ/m)² of m.
 const LARGEST_APPROACH_OF_A_PASSAGE: f64 = 1.0 / 64.0;
 
+/// [`LARGEST_BEND`] where the determinant changes its sign: the limit of the third-order term decides there.
+const LARGEST_BEND_OF_A_PASSAGE: f64 = 2.0;
+
 /// Largest third-order term of a piece over the margin at its end: the next one is less, and a prediction that is off by more than the
 /// assemblies are apart may lead to the other one, as near to it as one likes.
 const LARGEST_TWIST: f64 = 0.25;
@@ -33,6 +36,9 @@ const LARGEST_PART: f64 = 0.25;
 /// The same of a step so small that it need not shrink further: some rounding is in it.
 const LEAST_PART: f64 = 1.0 / 64.0;
 
+/// Movement through the zero of a determinant, over its rounding, that tells two assemblies apart.
+const LEAST_ROUNDINGS: f64 = 2.0;
+
 /// Newton steps of a piece. From a quarter of the margin they end in rounding; a piece that does not is halved.
 const CORRECTIONS: u32 = 6;
 
@@ -47,37 +53,53 @@ fn closed<R: Real>() -> R {
     root * root * root
 }
 
-/// False for a piece that moves by `first`, no more than rounding, while its margin rises without a passage from where nothing leads on. A
-/// way turns back there where two assemblies do not meet; rounding turns back any other.
+/// End of a piece.
+pub(super) enum Landing<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> {
+    /// The spot that a piece leads to, and how much longer the next one may be.
+    Certain(Spot<S, R, N, M>, R),
+    /// Not certain; the spot at its end where a singular position in or behind the piece may be the cause.
+    Doubtful(Option<Spot<S, R, N, M>>),
+}
+
+/// False for a piece that moves by `first` and leaves open which way it takes where two assemblies come near: rounding turns it back.
+///
+/// Points of links so short that rounding is all of their movement to the zero of the determinant tell no passage from its opposite.
+/// The same holds for a margin that rises without a passage from where nothing leads on.
 fn is_resolved<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize>(
     at: &Spot<S, R, N, M>,
     next: &Spot<S, R, N, M>,
     first: R,
 ) -> bool {
-    let rises =
-        next.orientation == at.orientation && at.margin <= next.margin && !leads(at.margin + at.margin);
-    !(const { link_lengths::any(S::COORDINATES) } && rises) || link_lengths::rounding(at.margin) < first
+    if next.orientation != at.orientation {
+        return true;
+    }
+    if at.margin <= next.margin {
+        return leads(at.margin + at.margin) || link_lengths::rounding(at.margin) < first;
+    }
+    let through = first * (at.margin + next.margin) / (at.margin - next.margin);
+    let short = const { link_lengths::any(S::COORDINATES) } && next.margin < singular::PASSES.of();
+    !short || R::constant(LEAST_ROUNDINGS) * link_lengths::rounding(next.margin) < through
 }
 
 impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Walk<'_, '_, S, R, N, M> {
-    /// The spot at `share` that a piece of `length` from `at` leads to, if it is certain, and how much longer the next one may be.
+    /// End of a piece of `length` from `at` to `share`.
     pub(super) fn landed(
         &mut self,
         at: &Spot<S, R, N, M>,
         forecast: &Forecast<R, N>,
         share: R,
         length: R,
-    ) -> Option<(Spot<S, R, N, M>, R)> {
-        let (q, off) = self.corrected(forecast, share)?;
+    ) -> Landing<S, R, N, M> {
+        let Some((q, off)) = self.corrected(forecast, share) else { return Landing::Doubtful(None) };
         let mut way = q;
         way.iter_mut().zip(&forecast.q).for_each(|(way, from)| *way = *way - *from);
         let part = link_lengths::weighted(&way, &forecast.weights);
         if self.is_spent() {
-            return None;
+            return Landing::Doubtful(None);
         }
         let next = self.spot(q, share);
         if !self.holds(&q, share) {
-            return None;
+            return Landing::Doubtful(None);
         }
         let passage = next.orientation != at.orientation;
         // One that begins or ends too far away is not taken, but shows where the next one is to end.
@@ -87,14 +109,16 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Walk<'_, '_
             (_, true) => R::constant(LARGEST_APPROACH),
             _ => R::constant(LARGEST_APPROACH_INSIDE),
         };
-        let parts = [approach, R::constant(LARGEST_BEND), R::constant(LARGEST_TWIST)];
+        let bend = if tight { LARGEST_BEND_OF_A_PASSAGE } else { LARGEST_BEND };
+        let parts = [approach, R::constant(bend), R::constant(LARGEST_TWIST)];
         let allowed = parts.map(|part| part * next.margin);
         let most_part = if tight { approach } else { R::constant(LARGEST_PART) };
         // Written so that NaN is not near.
         let near = off <= allowed[0] && forecast.second <= allowed[1] && forecast.third <= allowed[2];
         let foreseen = part <= most_part && forecast.third_part <= R::constant(LARGEST_PART);
         if !(near && foreseen && is_resolved(at, &next, forecast.first)) {
-            return None;
+            let falls = next.margin < at.margin && !leads(at.margin + at.margin);
+            return Landing::Doubtful(Some(next).filter(|_| tight || falls && !passage));
         }
         // What is beyond a forecast's second order grows with the third power of the length at least.
         let ratio = (off / allowed[0]).max(forecast.second / allowed[1]).max(forecast.third / allowed[2]);
@@ -110,10 +134,10 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Walk<'_, '_
             if !smooth && next.margin < forecast.first
                 || !self.turns_little(forecast, &slope, length, next.margin)
             {
-                return None;
+                return Landing::Doubtful(None);
             }
         }
-        Some((next, growth.min(R::constant(LARGEST_GROWTH))))
+        Landing::Certain(next, growth.min(R::constant(LARGEST_GROWTH)))
     }
 
     /// `true` if the declared branches hold at `q` (N). Where two assemblies come nearer to each other than a piece is long, a
@@ -151,7 +175,7 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Walk<'_, '_
             }
             most = most.min((R::constant(LARGEST_PART) * part).max(R::constant(LEAST_PART)));
             let last = largest_difference(&step, &[R::constant(0.0); N], &scales);
-            if last * last <= closed::<R>() * margin.value {
+            if last * last <= closed::<R>() * margin.value && part <= R::constant(LEAST_PART) {
                 return Some((q, off));
             }
         }

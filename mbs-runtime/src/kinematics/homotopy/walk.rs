@@ -1,6 +1,7 @@
 //! A path that is being followed: its places, and the pieces one after the other.
 
-use crate::kinematics::homotopy::step_length::{aimed, next_piece, shortened};
+use crate::kinematics::homotopy::corrector::Landing;
+use crate::kinematics::homotopy::step_length::{aimed, beyond, is_far, next_piece, reach, shortened};
 use crate::kinematics::homotopy::{Followed, Homotopy, Leading, leads};
 use crate::linear_algebra::vectors::largest_difference;
 use crate::mechanism::{Kinematic, Margin};
@@ -9,6 +10,9 @@ use crate::tolerances::rows;
 
 /// Times that an end too near to a singular position is moved: two assemblies that do not meet there allow no other.
 const MOST_AIMS: u32 = 3;
+
+/// The same of a piece with a singular position in it.
+const MOST_AIMS_OF_A_PASSAGE: u32 = 16;
 
 /// Values and time at a place of the path.
 pub(super) struct Station<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> {
@@ -70,16 +74,26 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Walk<'_, '_
                 (piece, failed) = (shorter, length);
                 continue;
             }
-            let Some((next, growth)) = self.landed(&at, &forecast, share, length) else {
-                (piece, failed) = (half * length, length);
-                continue;
+            let reach = reach(at.margin, forecast.first);
+            let (next, growth) = match self.landed(&at, &forecast, share, length) {
+                Landing::Certain(next, growth) => (next, growth),
+                Landing::Doubtful(next) => {
+                    // Farther behind a singular position the assemblies are farther apart.
+                    let part = next.filter(|_| aims == 0).map(|next| beyond(&at, &next).min(reach));
+                    aims += u32::from(part.is_some());
+                    (piece, failed) = (part.filter(|part| one < *part).unwrap_or(half) * length, length);
+                    continue;
+                }
             };
-            if let Some(part) =
-                aimed(&at, &next, aims).filter(|_| aims < MOST_AIMS || next.orientation != at.orientation)
-            {
+            let passage = next.orientation != at.orientation;
+            if let Some(part) = aimed(&at, &next, aims).filter(|_| aims < MOST_AIMS || passage) {
                 aims += 1;
-                (piece, failed) = (part * length, length);
-                continue;
+                // No longer piece is tried, or this one was tried before.
+                let held = reach <= part.min(one) || MOST_AIMS_OF_A_PASSAGE < aims;
+                if !held || is_far(&at, &next) {
+                    (piece, failed) = (if held { half } else { part.min(reach) } * length, length);
+                    continue;
+                }
             }
             aims = 0;
             piece = next_piece(&at, &next, forecast.first, length, growth);
