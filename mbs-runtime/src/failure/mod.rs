@@ -226,9 +226,9 @@ pub enum FailureKind {
         /// The step (s) that the tolerance allows.
         step: f64,
     },
-    /// The tolerance of adaptive steps is finer than the number type resolves.
+    /// The tolerance of adaptive steps, or of positions, is finer than the number type resolves.
     UnresolvedTolerance {
-        /// Relative and absolute tolerance together.
+        /// Relative and absolute tolerance together, or that of positions.
         tolerance: f64,
         /// The smallest that is possible.
         least: f64,

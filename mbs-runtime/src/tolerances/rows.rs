@@ -8,6 +8,11 @@ use crate::tolerances::Law;
 /// is still 1.4e-14 of the length in `f64`.
 pub(crate) const OF_TERMS: Law = Law::ulps(64.0);
 
+/// Loosest position tolerance τ that a caller may give projections, over the square of the margin μ: the position is off by 2τ/μ at most
+/// (Kantorovich), the accelerations by some 6τ/μ² of their size, and six digits of them are right. In `f32` it is no more than
+/// rounding.
+pub(crate) const LOOSEST: Law = Law::at_least(2.5e-7, 64.0);
+
 /// Rounding errors of a coordinate that a closed row may hold, over the coordinate: half an ε for its own rounding, the same for each
 /// sum that it enters.
 pub(crate) const OF_COORDINATES: Law = Law::ulps(4.0);

@@ -10,6 +10,7 @@ mod integrators;
 mod linkage;
 mod methods;
 mod pendulum;
+mod position_tolerance;
 mod prescribed;
 mod singular;
 mod terms;

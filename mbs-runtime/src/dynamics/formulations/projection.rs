@@ -123,10 +123,17 @@ pub(crate) fn project_position<S: Dynamic<R, N, M>, R: Real, const N: usize, con
 ) -> Result<Option<Factors<R, N, M>>, Failure> {
     let none = [R::constant(0.0); N];
     let mut progress = Progress::new();
+    let mut own = rows::OF_TERMS.of();
+    if model.is_loosened() {
+        let factors = correction_factors(model, t, &model.position(t, y))?;
+        // Rows that depend on others, or nearly so, are met to rounding: off the constraints they may do no more.
+        own = if factors.rank() < M { own } else { model.closing(factors.margin()) };
+        progress.factors = Some(factors);
+    }
     for _ in 0..MOST_CORRECTIONS {
         let position = model.position(t, y);
         let phi = model.mechanism.phi(model.parameters, &position);
-        let ratio = model.worst(&phi, &model.position_tolerances(&position, &y.q)).0;
+        let ratio = model.worst(&phi, &model.tolerances(&position, &y.q, model.metric.rows, own)).0;
         if progress.ends(ratio, &y.q) {
             break;
         }
@@ -275,7 +282,19 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
 
     /// Residual that rounding can leave in each row: ε (64 ρᵢ + 4 Σⱼ |Φ_qᵢⱼ| |qⱼ|).
     pub(crate) fn position_tolerances(&self, position: &S::Position, q: &[R; N]) -> [R; M] {
-        self.tolerances(position, q, self.metric.rows)
+        self.tolerances(position, q, self.metric.rows, rows::OF_TERMS.of())
+    }
+
+    /// `true` if the caller has a looser position tolerance than rounding.
+    pub(crate) fn is_loosened(&self) -> bool {
+        rows::OF_TERMS.of::<R>() < self.position_tolerance
+    }
+
+    /// Residual over the row's scale at which a projection of positions ends next to a position of `margin`.
+    pub(crate) fn closing(&self, margin: R) -> R {
+        let rounding = rows::OF_TERMS.of::<R>();
+        let bound = rows::LOOSEST.of::<R>() * margin * margin;
+        self.position_tolerance.min(bound).max(rounding)
     }
 
     /// Residual that rounding can leave in each row's rate: ε (64 |Φ_t| + 68 Σⱼ |Φ_qᵢⱼ| |q̇ⱼ|), and as much as a row's scale per
@@ -287,15 +306,16 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         for (rate, scale) in floor.iter_mut().zip(&self.metric.rows) {
             *rate = rate.abs() + motion::AT_REST.of::<R>() * *scale;
         }
-        self.tolerances(position, &speeds, floor)
+        self.tolerances(position, &speeds, floor, rows::OF_TERMS.of())
     }
 
-    fn tolerances(&self, position: &S::Position, x: &[R; N], floor: [R; M]) -> [R; M] {
+    /// Residual that each row may have: `own` times its `floor`, and the rounding of `x` (N) in it.
+    pub(crate) fn tolerances(&self, position: &S::Position, x: &[R; N], floor: [R; M], own: R) -> [R; M] {
         let mut reach = [R::constant(0.0); M];
         self.add_products(position, x, R::abs, &mut reach);
         let mut tolerances = floor;
         for (tolerance, reach) in tolerances.iter_mut().zip(&reach) {
-            *tolerance = rows::OF_TERMS.of::<R>() * *tolerance + rows::OF_COORDINATES.of::<R>() * *reach;
+            *tolerance = own * *tolerance + rows::OF_COORDINATES.of::<R>() * *reach;
         }
         tolerances
     }

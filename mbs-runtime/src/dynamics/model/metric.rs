@@ -3,7 +3,7 @@
 use crate::failure::{Failure, FailureKind};
 use crate::mechanism::{Entry, Mechanism};
 use crate::scalar::number::{Real, Scalar};
-use crate::tolerances::motion;
+use crate::tolerances::{motion, rows};
 
 /// Rotation of angles (rad) by which the steepness of a row is measured apart from singular positions.
 const TURNED: f64 = 0.5;
@@ -185,6 +185,20 @@ impl<R: Real> Tolerance<R> {
     pub fn new(tolerance: f64) -> Self {
         Tolerance { relative: R::constant(tolerance), absolute: R::constant(tolerance) }
     }
+}
+
+/// Fails where a position tolerance is no positive number, below rounding, or above [`rows::LOOSEST`].
+pub(crate) fn require_position_tolerance<R: Real>(tolerance: R) -> Result<(), Failure> {
+    let [value, least, most] = [tolerance, rows::OF_TERMS.of(), rows::LOOSEST.of()].map(R::to_f64);
+    // Written so that NaN is refused.
+    if !(0.0 < value && value <= most) {
+        let name = "position tolerance";
+        return Err(FailureKind::InvalidMethodParameter { name, value, most }.without_time());
+    }
+    if value < least {
+        return Err(FailureKind::UnresolvedTolerance { tolerance: value, least }.without_time());
+    }
+    Ok(())
 }
 
 /// Fails where a number that sets a method is negative or none.

@@ -13,7 +13,7 @@ use crate::dynamics::model::metric::Metric;
 use crate::failure::{Failure, FailureKind, checks};
 use crate::mechanism::dynamic::Dynamic;
 use crate::scalar::number::Real;
-use crate::tolerances::forces;
+use crate::tolerances::{forces, rows};
 
 /// A mechanism with the values that do not change while it moves.
 pub struct Model<'a, S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> {
@@ -29,6 +29,8 @@ pub struct Model<'a, S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usiz
     pub rank_rises: bool,
     /// `true` if limits of rows next to a singular position have their first order: in steps of fixed size, and in their parts.
     pub first_order: bool,
+    /// Residual over the row's scale at which a projection of positions ends: 64 ε, or a looser tolerance of the caller.
+    pub position_tolerance: R,
 }
 
 /// Rates of one state, with the multipliers that belong to them.
@@ -189,7 +191,15 @@ pub enum MethodWarning {
 impl<'a, S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'a, S, R, N, M> {
     /// Model for single states: no work is integrated, the rank of Φ_q is that of its margin, no step is taken.
     pub fn of_states(mechanism: &'a S, parameters: &'a S::Parameters, metric: &'a Metric<R, N, M>) -> Self {
-        Model { mechanism, parameters, metric, balanced: false, rank_rises: false, first_order: false }
+        Model {
+            mechanism,
+            parameters,
+            metric,
+            balanced: false,
+            rank_rises: false,
+            first_order: false,
+            position_tolerance: rows::OF_TERMS.of(),
+        }
     }
 }
 
