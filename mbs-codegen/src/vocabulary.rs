@@ -1,6 +1,8 @@
 //! Words, symbols and limits of the language as the parser has them: the tests compare the language reference with them.
 
-use crate::model::{counts, declarations, elaborate, elements, names, references, resolve, selection};
+use crate::model::{
+    counts, declarations, elaborate, masses_and_forces, names, references, resolve, selection,
+};
 use crate::picture::MOST_SHAPES;
 use crate::syntax::picture::{PICTURES, TURN, forms};
 use crate::syntax::{LATER, REFERRING, STATEMENTS, ast::Element, tokens, unit_symbols};
@@ -50,7 +52,7 @@ pub fn fields() -> impl Iterator<Item = (&'static str, &'static str, bool)> {
         ("contact", Element::Contact),
     ];
     elements.into_iter().flat_map(|(word, element)| {
-        elements::known(element).into_iter().map(move |(field, _, required)| (word, field, required))
+        masses_and_forces::known(element).into_iter().map(move |(field, _, required)| (word, field, required))
     })
 }
 

@@ -4,8 +4,18 @@ use std::collections::BTreeMap;
 
 use proc_macro2::Span;
 
-use super::reference_length::Length;
 use crate::symbolic::{Binary, Unary};
+
+/// A length of the text, and its place there.
+#[derive(Clone, Debug)]
+pub struct Length {
+    /// Its magnitude (m).
+    pub length: f64,
+    /// The constant, `guess of x`, or the number itself.
+    pub name: String,
+    /// Place in the text.
+    pub span: Span,
+}
 
 /// Index into [`Expressions`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

@@ -4,8 +4,8 @@ use proc_macro2::Span;
 
 use super::dynamics::{Action, Contact};
 use super::elaborator::Elaborator;
-use super::elements::Given;
 use super::expression::{Id, Node};
+use super::masses_and_forces::Given;
 use super::resolver::Resolver;
 use super::value::{Fault, Reach};
 use crate::symbolic::{Binary, Unary};

@@ -3,6 +3,7 @@
 mod arithmetic;
 mod bodies;
 mod compound;
+mod constraints;
 pub mod counts;
 pub mod declarations;
 mod declared_functions;
@@ -10,7 +11,6 @@ mod drives;
 pub mod dynamics;
 pub mod elaborate;
 pub mod elaborator;
-pub mod elements;
 pub mod expression;
 mod friction_contact;
 pub mod functions;
@@ -18,6 +18,7 @@ mod inertia;
 pub mod initialiser;
 mod inputs;
 mod limits;
+pub mod masses_and_forces;
 mod multipliers;
 pub mod names;
 pub mod non_negative;
@@ -49,8 +50,8 @@ use proc_macro2::Span;
 
 use crate::symbolic::Binary;
 use dynamics::Dynamics;
+use expression::Length;
 use expression::{Expressions, Id, Node};
-use reference_length::Length;
 use units::Dimension;
 
 /// A mechanism with every name resolved.

@@ -1,22 +1,9 @@
 //! The reference length: lengths that the geometry of the text uses; where it uses none, those of guesses and laws of forces.
 
-use proc_macro2::Span;
-
 use super::dynamics::{Action, Dynamics, Rotation};
-use super::expression::{Id, Node};
+use super::expression::{Id, Length, Node};
 use super::units::Dimension;
 use super::{Model, VariableKind};
-
-/// A length of the text, and its place there.
-#[derive(Clone, Debug)]
-pub struct Length {
-    /// Its magnitude (m).
-    pub length: f64,
-    /// The constant, `guess of x`, or the number itself.
-    pub name: String,
-    /// Place in the text.
-    pub span: Span,
-}
 
 impl Model {
     /// Before: all expressions. After: the lengths that determine the reference length.

@@ -6,21 +6,16 @@ use proc_macro2::Span;
 
 use super::counts::MOST_ROUNDS;
 use super::declarations::component_names;
-use super::elaborator::Elaborator;
-use super::elements::is_dynamic;
-use super::expression::{Id, Node};
+use super::expression::Node;
 use super::initialiser::{definition, fits_shape, initialiser};
+use super::masses_and_forces::is_dynamic;
 use super::names::{Names, Rows, Symbol};
 use super::resolver::{LoopFrame, Pass, Resolver};
-use super::unit_inference::Bare;
 use super::units::Dimension;
-use super::value::{Fault, Quantity, Reach, Scalar, Value};
-use super::{Branch, ConstraintRow, Model, Output, VariableKind, declarations, inputs, unused_elements};
+use super::value::{Fault, Reach, Value};
+use super::{Model, Output, VariableKind, declarations, inputs, unused_elements};
 use crate::diagnostics::Diagnostics;
-use crate::symbolic::Binary;
-use crate::syntax::ast::{
-    Element, Equation, Expression, Item, Loop, Name, Statement, StatementKind, Type, Unit,
-};
+use crate::syntax::ast::{Element, Expression, Loop, Name, Statement, StatementKind, Type, Unit};
 
 /// Before: statements as written. After: the resolved model and the meaning of its names; every fault of meaning is reported.
 pub fn resolve(statements: &[Statement], diagnostics: &mut Diagnostics) -> (Model, Names) {
@@ -87,7 +82,7 @@ impl Resolver<'_> {
     }
 
     /// `true` if loops unroll to more rows, outputs or rounds than allowed; reported once.
-    fn too_large(&mut self) -> bool {
+    pub(super) fn too_large(&mut self) -> bool {
         let large = self.model.rows.len() > MOST_ROWS || self.model.outputs.len() > MOST_OUTPUTS;
         if large {
             let span = self.groups.last().map_or_else(Span::call_site, |group| group.name.span);
@@ -158,7 +153,7 @@ impl Resolver<'_> {
     }
 
     /// Begins a loop; `None` where its body is never executed.
-    fn enter(&mut self, head: &Loop, begin: usize) -> Option<usize> {
+    pub(super) fn enter(&mut self, head: &Loop, begin: usize) -> Option<usize> {
         self.count_round(head.variable.span);
         if !self.names.is_free(&head.variable, self.diagnostics) {
             return None;
@@ -184,7 +179,7 @@ impl Resolver<'_> {
     }
 
     /// Start of a loop's next round at the end of its body, or `None` after the last.
-    fn repeat(&mut self) -> Option<usize> {
+    pub(super) fn repeat(&mut self) -> Option<usize> {
         let mut frame = self.loops.pop()?;
         self.names.leave(frame.scope);
         self.count_round(frame.variable.span);
@@ -196,82 +191,6 @@ impl Resolver<'_> {
         let begin = frame.begin;
         self.loops.push(frame);
         Some(begin)
-    }
-
-    fn constraint(&mut self, name: &Name, items: &[Item]) -> Result<(), Fault> {
-        let group = self.group(name, "constraint")?;
-        let outer = self.loops.len();
-        let mut next = 0;
-        while let Some(item) = items.get(next) {
-            next += 1;
-            match item {
-                Item::For(head) => {
-                    let is_end = |item: &Item| matches!(item, Item::EndFor);
-                    let is_for = |item: &Item| matches!(item, Item::For(_));
-                    next = self.enter(head, next).unwrap_or_else(|| behind_loop(items, next, is_for, is_end));
-                }
-                Item::EndFor if self.loops.len() > outer => next = self.repeat().unwrap_or(next),
-                Item::EndFor => {}
-                Item::Equation(equation) => {
-                    let _reported = self.equation(equation, group);
-                }
-            }
-            if self.too_large() {
-                return Err(Fault);
-            }
-        }
-        Ok(())
-    }
-
-    /// Adds one row a component.
-    pub(super) fn equation(&mut self, equation: &Equation, group: usize) -> Result<(), Fault> {
-        let (left, right) = self.elaborate(Reach::Position, |work| {
-            let (left, right) = (work.value(&equation.left), work.value(&equation.right));
-            Ok::<_, Fault>((left?, right?))
-        })?;
-        let span = equation.span;
-        // `x == 0` holds for every component of a vector x.
-        let right = spread_zero(right, &left);
-        let left = spread_zero(left, &right);
-        let residuals = self.elaborate(Reach::Position, |work| {
-            work.same_shape(&left, &right, "`==`", right.span)?;
-            let pairs = left.items.iter().zip(&right.items);
-            pairs.map(|(a, b)| residual(work, *a, *b, span)).collect::<Result<Vec<_>, Fault>>()
-        })?;
-        for (residual, dimension) in residuals {
-            let reversed = self.is_reversed(residual);
-            let (name, driven, redundant) = (String::new(), false, false);
-            let row =
-                ConstraintRow { name, dimension, residual, driven, reversed, redundant, within: None, span };
-            self.push_row(group, row);
-        }
-        Ok(())
-    }
-
-    fn branch(
-        &mut self,
-        name: &Name,
-        at_start: bool,
-        larger: &Expression,
-        smaller: &Expression,
-    ) -> Result<(), Fault> {
-        let group = self.group(name, "branch")?;
-        let (value, dimension) = self.elaborate(Reach::Position, |work| {
-            let (larger, smaller) = (work.value(larger), work.value(smaller));
-            let (larger, smaller) = (larger?, smaller?);
-            let a = work.scalar(&larger, "a branch", larger.span)?;
-            let b = work.scalar(&smaller, "a branch", smaller.span)?;
-            residual(work, a, b, name.span)
-        })?;
-        self.count_row(group, self.model.branches.len());
-        self.model.branches.push(Branch {
-            name: name.text.clone(),
-            dimension,
-            at_start,
-            value,
-            span: name.span,
-        });
-        Ok(())
     }
 
     fn output(&mut self, name: &Name, kind: &Type, value: &Expression) -> Result<(), Fault> {
@@ -341,26 +260,6 @@ impl Resolver<'_> {
                 );
             }
         }
-    }
-}
-
-fn residual(work: &mut Elaborator<'_>, a: Scalar, b: Scalar, span: Span) -> Result<(Id, Dimension), Fault> {
-    let quantity = work.agree(a, b)?;
-    let id = if work.expressions.node(b.id) == Node::Number(0.0) {
-        a.id
-    } else {
-        work.push_binary(Binary::Subtract, a.id, b.id, span)?
-    };
-    Ok((id, quantity.dimension()))
-}
-
-/// A literal 0 in the shape of the other side.
-fn spread_zero(value: Value, other: &Value) -> Value {
-    match value.items.as_slice() {
-        [zero] if value.shape.is_empty() && zero.quantity == Quantity::Any && zero.bare == Bare::Zero => {
-            Value { shape: other.shape.clone(), items: vec![*zero; other.items.len()], span: value.span }
-        }
-        _ => value,
     }
 }
 

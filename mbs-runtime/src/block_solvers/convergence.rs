@@ -2,7 +2,7 @@
 
 use crate::mechanism::Block;
 use crate::scalar::number::{Real, Scalar, index};
-use crate::tolerances::rows;
+use crate::tolerances::positions;
 
 /// The residual that counts as zero: ε (64 ρᵢ + 4 Σⱼ |Jᵢⱼ| |xⱼ|), M, in the unit of the row.
 ///
@@ -20,7 +20,7 @@ pub(crate) fn required<T: Scalar, const K: usize, const M: usize>(
         for (entry, coordinate) in row.iter().zip(x) {
             reach = reach + (*entry * *coordinate).abs();
         }
-        *tolerance = rows::OF_TERMS.of::<T>() * *tolerance + rows::OF_COORDINATES.of::<T>() * reach;
+        *tolerance = positions::OF_TERMS.of::<T>() * *tolerance + positions::OF_COORDINATES.of::<T>() * reach;
     }
     required
 }
@@ -28,7 +28,7 @@ pub(crate) fn required<T: Scalar, const K: usize, const M: usize>(
 /// The part of [`required`] that no position changes: ε 64 ρ, the rounding of the row's own terms.
 #[inline(always)]
 pub(crate) fn own_rounding<T: Scalar>(row_scale: T) -> T {
-    rows::OF_TERMS.of::<T>() * row_scale
+    positions::OF_TERMS.of::<T>() * row_scale
 }
 
 /// Rounding of coordinates outside the block, granted besides [`required`]: 4 ε e Σⱼ |Jᵢⱼ| sⱼ with the extent e of all of q.
@@ -46,7 +46,7 @@ pub(crate) fn outer_rounding<T: Scalar, const K: usize, const M: usize>(
         for (entry, scale) in row.into_iter().zip(coordinate_scales) {
             reach = reach + (entry * *scale).abs();
         }
-        rows::OF_COORDINATES.of::<T>() * extent * reach
+        positions::OF_COORDINATES.of::<T>() * extent * reach
     })
 }
 

@@ -8,7 +8,7 @@ use crate::linear_algebra::vectors::select;
 use crate::mechanism::Block;
 use crate::mechanism::roots::Roots;
 use crate::scalar::number::Scalar;
-use crate::tolerances::rows;
+use crate::tolerances::positions;
 
 /// Two rows in two unknowns, written with the values known before them. `e(α)` is the vector (cos α, sin α).
 #[derive(Clone, Copy, Debug)]
@@ -199,7 +199,7 @@ fn quadratic<T: Scalar>(square: T, half: T, level: T, size: T) -> ([T; 2], T::Ma
 /// √discriminant, 0 where it is below; true where it is not, or by rounding alone; `size`: of its terms.
 fn root<T: Scalar>(discriminant: T, size: T) -> (T, T::Mask) {
     let zero = T::constant(0.0);
-    let slack = rows::IN_LINE.of::<T>() * size;
+    let slack = positions::IN_LINE.of::<T>() * size;
     (discriminant.max(zero).sqrt(), !discriminant.less(-slack))
 }
 

@@ -12,7 +12,7 @@ use crate::mechanism::roots::Roots;
 use crate::mechanism::widths::Widths;
 use crate::mechanism::{Block, BlockSolver};
 use crate::scalar::number::Scalar;
-use crate::tolerances::rows;
+use crate::tolerances::positions;
 
 /// Trial steps a start; one costs as much as a Newton step. From 1000 rad away 52 were measured on a four-bar.
 pub(crate) const TRIALS: u32 = 120;
@@ -329,7 +329,7 @@ impl<T: Scalar, const K: usize> NormalEquations<T, K> {
     /// `true` if the gradient is zero within rounding.
     fn is_stationary(&self) -> T::Mask {
         let gradient = self.gradient.iter().fold(T::constant(0.0), |sum, g| sum + *g * *g);
-        let bound = rows::STATIONARY.of::<T>() * self.trace() * self.cost;
+        let bound = positions::STATIONARY.of::<T>() * self.trace() * self.cost;
         !bound.less(gradient)
     }
 

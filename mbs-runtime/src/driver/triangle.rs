@@ -1,7 +1,7 @@
 //! Least squares with banded rows: one rotation after the other, never the normal equations.
 
 use crate::driver::error::FitError;
-use crate::tolerances::rows;
+use crate::tolerances::positions;
 
 /// A row of a fit's triangular factor: `W` entries from the diagonal on, `E` entries in the last columns.
 ///
@@ -89,7 +89,7 @@ impl<'a, const W: usize, const E: usize> Triangle<'a, W, E> {
         let banded = self.banded();
         let pivots = || self.0.iter().enumerate().map(|(index, row)| row.pivot(index, banded));
         let largest = pivots().fold(0.0, |largest: f64, pivot| largest.max(pivot.abs()));
-        let weak = |pivot: f64| !pivot.is_finite() || pivot.abs() <= rows::OF_FIT.of::<f64>() * largest;
+        let weak = |pivot: f64| !pivot.is_finite() || pivot.abs() <= positions::OF_FIT.of::<f64>() * largest;
         if let Some(knot) = pivots().position(weak) {
             return Err(FitError::Undetermined { knot });
         }

@@ -4,7 +4,7 @@ use crate::failure::{Failure, FailureKind};
 use crate::mechanism::limit::{Limit, size};
 use crate::mechanism::{Entry, Mechanism};
 use crate::scalar::number::{Real, Scalar};
-use crate::tolerances::rows;
+use crate::tolerances::positions;
 
 /// The first limit that is passed, if any.
 #[inline(always)]
@@ -103,7 +103,7 @@ pub(crate) fn coordinate_failure<S: Mechanism<R, N, M>, R: Real, const N: usize,
     scales: &[R; N],
     t: R,
 ) -> Option<Failure> {
-    let limit = rows::COARSEST_RESOLUTION.of::<R>();
+    let limit = positions::COARSEST_RESOLUTION.of::<R>();
     let resolved = |(coordinate, scale): (&R, &R)| R::EPSILON * coordinate.abs() <= limit * *scale;
     if q.iter().zip(scales).fold(true, |all, pair| all & resolved(pair)) {
         return None;

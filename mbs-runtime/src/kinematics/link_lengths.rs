@@ -3,7 +3,7 @@
 
 use crate::mechanism::Entry;
 use crate::scalar::number::{Real, Scalar};
-use crate::tolerances::rows;
+use crate::tolerances::positions;
 
 /// Largest difference of a rate from the one foreseen, over the sizes of both and of their change.
 ///
@@ -101,12 +101,12 @@ fn sizes<T: Scalar, const N: usize>(points: &Points<N>, scales: &[T; N], values:
 
 /// Movement over the margin that is rounding.
 pub(crate) fn rounding<R: Real>(margin: R) -> R {
-    rows::ROUNDED_MOVEMENT.of::<R>() / margin
+    positions::ROUNDED_MOVEMENT.of::<R>() / margin
 }
 
 /// Movement that is not looked at.
 pub(crate) fn least<T: Scalar>(margin: T) -> T {
-    rows::LEAST_MOVEMENT.of::<T>() * margin
+    positions::LEAST_MOVEMENT.of::<T>() * margin
 }
 
 /// `true` if no point's `differences` are more than `part` of its `movements` together and `least`; false for NaN.

@@ -2,7 +2,7 @@
 
 use crate::mechanism::Entry;
 use crate::scalar::number::{Real, Scalar};
-use crate::tolerances::rows;
+use crate::tolerances::positions;
 
 /// A quantity with the range that a `limit` of the text allows it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -39,7 +39,7 @@ impl<T: Scalar> Limit<T> {
     /// the larger bound. So a bound of 1e300, written for no bound, does not widen the other one.
     fn slack(&self, bound: T, size: T) -> T {
         let largest = self.low.abs().max(self.high.abs()).min(bound.abs().max(size));
-        rows::OF_BOUND.of::<T>() * largest
+        positions::OF_BOUND.of::<T>() * largest
     }
 
     /// Distances to the lower and to the upper bound: not negative as long as neither is passed. `size`: that of the coordinates.

@@ -1,7 +1,7 @@
 //! Contradiction that redundant rows may keep.
 
 use crate::scalar::number::Scalar;
-use crate::tolerances::rows;
+use crate::tolerances::positions;
 
 /// Contradiction that the rows of a block may keep: the widths that the text states, M, in the units of the rows.
 #[derive(Clone, Copy, Debug)]
@@ -26,12 +26,15 @@ impl<T: Scalar, const M: usize> Widths<T, M> {
     /// Least squares share a contradiction among all rows that take part in it, so rows without a width have the largest one
     /// of the block, in the reference metric.
     pub(crate) fn granted(&self, row_scales: &[T; M]) -> [T; M] {
-        let largest = largest_width(&self.0, row_scales).max(rows::OF_DIMENSIONS.of());
+        let largest = largest_width(&self.0, row_scales).max(positions::OF_DIMENSIONS.of());
         let mut granted = *row_scales;
         for (granted, width) in granted.iter_mut().zip(&self.0) {
             let stated = T::constant(0.0).less(*width);
-            *granted =
-                T::select(stated, width.max(rows::OF_DIMENSIONS.of::<T>() * *granted), largest * *granted);
+            *granted = T::select(
+                stated,
+                width.max(positions::OF_DIMENSIONS.of::<T>() * *granted),
+                largest * *granted,
+            );
         }
         granted
     }

@@ -9,7 +9,7 @@ use crate::kinematics::link_lengths;
 use crate::mechanism::{Kinematic, Margin, negated};
 use crate::scalar::number::{Real, Scalar, index};
 use crate::stepper::instant::is_coarse;
-use crate::tolerances::{rows, singular};
+use crate::tolerances::{positions, singular};
 
 /// Most coordinates that stay in registers from the end of a step to its state, which are written one by one.
 const FEW: usize = 8;
@@ -23,7 +23,7 @@ const QUICK_SECOND_ORDER_TERM: f64 = 1e-4;
 #[inline(always)]
 pub(crate) fn quick<R: Real>(with_lengths: bool) -> [f64; 2] {
     if with_lengths {
-        return [QUICK_SECOND_ORDER_TERM, rows::QUICK_APPROACH.of::<R>().to_f64()];
+        return [QUICK_SECOND_ORDER_TERM, positions::QUICK_APPROACH.of::<R>().to_f64()];
     }
     [LARGEST_SECOND_ORDER_TERM, link_lengths::APPROACH_OF_ANGLES]
 }
@@ -394,5 +394,5 @@ fn trusted<T: Scalar>(term: T, scale: T, most: f64) -> T::Mask {
 /// Sum of the coordinates' sizes in the reference metric up to which their rounding leaves digits enough.
 #[inline(always)]
 fn largest_size<T: Scalar>() -> T {
-    T::splat(rows::COARSEST_RESOLUTION.of::<T::Real>() / T::Real::EPSILON)
+    T::splat(positions::COARSEST_RESOLUTION.of::<T::Real>() / T::Real::EPSILON)
 }

@@ -11,12 +11,12 @@ use crate::linear_algebra::vectors::largest_difference;
 use crate::mechanism::{Kinematic, Margin, Mechanism};
 use crate::scalar::number::{Real, Scalar};
 use crate::stepper::state::State;
-use crate::tolerances::{rows, singular};
+use crate::tolerances::{positions, singular};
 
 /// `true` if a residual of `ratio` tolerances is seen in the accelerations at such a `margin`.
 #[inline(always)]
 pub(crate) fn is_coarse<T: Scalar>(ratio: T, margin: T) -> T::Mask {
-    (rows::COARSE.of::<T>() * margin * margin).max(rows::FINE.of()).less(ratio)
+    (positions::COARSE.of::<T>() * margin * margin).max(positions::FINE.of()).less(ratio)
 }
 
 /// Position found by a solver.

@@ -5,7 +5,7 @@ use crate::kinematics::least_squares_assembly::solve_nearest;
 use crate::mechanism::Kinematic;
 use crate::scalar::number::Real;
 use crate::stepper::Stepper;
-use crate::tolerances::rows;
+use crate::tolerances::positions;
 
 /// Halvings that reach [`WIDTH`] from the whole way, each of which may fail once more on a step that was too long.
 const HALVINGS: u32 = 64;
@@ -135,7 +135,7 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
             drive(&mut stepper, value).map(|()| stepper)
         };
         let mut search = Search { good: self.clone(), reachable: from, refused: to, failure: None };
-        let width = ((to - from) * rows::OF_REACH.of::<R>()).abs();
+        let width = ((to - from) * positions::OF_REACH.of::<R>()).abs();
         for _ in 0..RESUMPTIONS {
             search.refused = to;
             search.failure = match driven(&search.good, to) {

@@ -16,7 +16,7 @@ use crate::stepper::Stepper;
 use crate::stepper::instant::{Predecessor, SolvedPosition};
 use crate::stepper::state::State;
 use crate::stepper::whole_turns::Turns;
-use crate::tolerances::rows;
+use crate::tolerances::positions;
 
 /// Version of the layout of [`Saved`], in its first bytes. Neither erased (0xFF) nor zeroed memory has it.
 const VERSION: u32 = 4;
@@ -273,7 +273,7 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
 
 /// `true` if the values are those that were saved.
 fn same<R: Real>(saved: &[R], values: &[R]) -> bool {
-    let rounding = rows::OF_SAVED.of::<R>();
+    let rounding = positions::OF_SAVED.of::<R>();
     saved.iter().zip(values).all(|(saved, value)| (*saved - *value).abs() <= rounding * saved.abs())
 }
 

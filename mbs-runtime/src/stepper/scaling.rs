@@ -3,7 +3,7 @@
 use crate::mechanism::{Entry, Kinematic};
 use crate::scalar::number::Real;
 use crate::stepper::Stepper;
-use crate::tolerances::rows;
+use crate::tolerances::positions;
 
 /// A length of which rows that count as closed leave a noticeable part open.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,12 +31,12 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
         let reference = metres(S::COORDINATES, &scales).max(metres(S::ROWS, &rows));
         let farthest = S::COORDINATES.iter().zip(&self.state.q).filter(|(entry, _)| entry.unit == "m");
         let reach = farthest.fold(reference, |reach, (_, coordinate)| reach.max(coordinate.abs()));
-        let resolution = (rows::OF_TERMS.of::<R>() * reach).to_f64();
+        let resolution = (positions::OF_TERMS.of::<R>() * reach).to_f64();
         let mut shortest: Option<IllScaled> = None;
         for (index, variable) in S::VARIABLES.iter().enumerate().filter(|(_, entry)| entry.unit == "m") {
             let value = self.mechanism.get(index).map_or(0.0, |value| value.abs().to_f64());
             let shorter = shortest.is_none_or(|least| value < least.value);
-            if value > 0.0 && shorter && rows::COARSEST_PART.of::<f64>() * value < resolution {
+            if value > 0.0 && shorter && positions::COARSEST_PART.of::<f64>() * value < resolution {
                 shortest = Some(IllScaled { variable: *variable, value, resolution });
             }
         }

@@ -1,4 +1,5 @@
-//! Tolerances: each with its value as a law in ε, the distance from 1 to the next number of the number type.
+//! Tolerances: each with its value as a law in ε, the distance from 1 to the next number of the number type. Files: positions, singular
+//! positions, balances of forces, motion in time.
 //!
 //! A tolerance tells which numbers count as zero, as converged or as singular. Constants of a method, as the safety factor of a
 //! step control or Armijo's, stand with the method.
@@ -13,7 +14,7 @@
 
 pub(crate) mod forces;
 pub(crate) mod motion;
-pub(crate) mod rows;
+pub(crate) mod positions;
 pub(crate) mod singular;
 #[cfg(test)]
 mod tests;

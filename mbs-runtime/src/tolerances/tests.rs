@@ -1,30 +1,30 @@
-//! Values of the laws: in both number types those that the constants had where they were used, [`rows::UNMET`] in `f32` apart.
+//! Values of the laws: in both number types those that the constants had where they were used, [`positions::UNMET`] in `f32` apart.
 
-use super::{Law, forces, is_single, motion, rows, singular};
+use super::{Law, forces, is_single, motion, positions, singular};
 
 const DOUBLE: f64 = f64::EPSILON;
 const SINGLE: f32 = f32::EPSILON;
 
 /// Laws with their values in both number types.
 const VALUES: &[(&str, Law, f64, f32)] = &[
-    ("terms", rows::OF_TERMS, 64.0 * DOUBLE, 64.0 * SINGLE),
-    ("coordinates", rows::OF_COORDINATES, 4.0 * DOUBLE, 4.0 * SINGLE),
-    ("stationary", rows::STATIONARY, 1e-4 * DOUBLE, 1e-4 * SINGLE),
-    ("in line", rows::IN_LINE, 64.0 * DOUBLE, 64.0 * SINGLE),
-    ("dimensions", rows::OF_DIMENSIONS, 5e-14, 5e-14),
-    ("start", rows::OF_START, 1e-8, 64.0 * SINGLE),
-    ("left", rows::LEFT, 1e-3, 1e-3),
-    ("coarse", rows::COARSE, 70.0, 70.0),
-    ("fine", rows::FINE, 0.0625, 0.0625),
-    ("quick approach", rows::QUICK_APPROACH, 1e-5, 2e3 * SINGLE),
-    ("least movement", rows::LEAST_MOVEMENT, 1e-5, 1e3 * SINGLE),
-    ("rounded movement", rows::ROUNDED_MOVEMENT, 1e3 * DOUBLE, 1e3 * SINGLE),
-    ("shortest piece", rows::SHORTEST_PIECE, 64.0 * DOUBLE, 64.0 * SINGLE),
-    ("reach", rows::OF_REACH, 1e-9, 1e-9),
-    ("bound", rows::OF_BOUND, 64.0 * DOUBLE, 64.0 * SINGLE),
-    ("saved", rows::OF_SAVED, 16.0 * DOUBLE, 16.0 * SINGLE),
-    ("coarsest resolution", rows::COARSEST_RESOLUTION, 1e-3, 1e-3),
-    ("coarsest part", rows::COARSEST_PART, 1e-6, 1e-6),
+    ("terms", positions::OF_TERMS, 64.0 * DOUBLE, 64.0 * SINGLE),
+    ("coordinates", positions::OF_COORDINATES, 4.0 * DOUBLE, 4.0 * SINGLE),
+    ("stationary", positions::STATIONARY, 1e-4 * DOUBLE, 1e-4 * SINGLE),
+    ("in line", positions::IN_LINE, 64.0 * DOUBLE, 64.0 * SINGLE),
+    ("dimensions", positions::OF_DIMENSIONS, 5e-14, 5e-14),
+    ("start", positions::OF_START, 1e-8, 64.0 * SINGLE),
+    ("left", positions::LEFT, 1e-3, 1e-3),
+    ("coarse", positions::COARSE, 70.0, 70.0),
+    ("fine", positions::FINE, 0.0625, 0.0625),
+    ("quick approach", positions::QUICK_APPROACH, 1e-5, 2e3 * SINGLE),
+    ("least movement", positions::LEAST_MOVEMENT, 1e-5, 1e3 * SINGLE),
+    ("rounded movement", positions::ROUNDED_MOVEMENT, 1e3 * DOUBLE, 1e3 * SINGLE),
+    ("shortest piece", positions::SHORTEST_PIECE, 64.0 * DOUBLE, 64.0 * SINGLE),
+    ("reach", positions::OF_REACH, 1e-9, 1e-9),
+    ("bound", positions::OF_BOUND, 64.0 * DOUBLE, 64.0 * SINGLE),
+    ("saved", positions::OF_SAVED, 16.0 * DOUBLE, 16.0 * SINGLE),
+    ("coarsest resolution", positions::COARSEST_RESOLUTION, 1e-3, 1e-3),
+    ("coarsest part", positions::COARSEST_PART, 1e-6, 1e-6),
     ("zone", singular::ZONE, 1e-2, 630_000.0 * SINGLE),
     ("zone of forces", singular::ZONE_OF_FORCES, 1e-2, 1e-2),
     ("limit rows", singular::LIMIT_ROWS, 1e-3, 1e-3),
@@ -74,8 +74,8 @@ const VALUES: &[(&str, Law, f64, f32)] = &[
 
 /// Multiples of √ε.
 const ROOTS: &[(&str, Law, f64)] = &[
-    ("jump", rows::JUMP, 1.0),
-    ("fit", rows::OF_FIT, 1.0),
+    ("jump", positions::JUMP, 1.0),
+    ("fit", positions::OF_FIT, 1.0),
     ("least margin", singular::LEAST_MARGIN, 32.0),
     ("half the digits", singular::HALF_THE_DIGITS, 1.0),
     ("no passage rounded", singular::NO_PASSAGE_ROUNDED, 500.0),
@@ -103,7 +103,7 @@ fn laws_have_the_values_of_the_constants_before() {
         assert_eq!(law.of::<f64>().to_bits(), double.to_bits(), "{name}");
         assert_eq!(law.of::<f32>().to_bits(), single.to_bits(), "{name} in f32");
     }
-    assert_eq!(rows::OF_FIT.of::<f64>(), 1.0 / 67_108_864.0);
+    assert_eq!(positions::OF_FIT.of::<f64>(), 1.0 / 67_108_864.0);
 }
 
 #[test]
@@ -130,9 +130,9 @@ fn powers_need_no_root() {
 /// 1e8 tolerances of a row were 763 times its scale in `f32`, so that rows far off counted as met.
 #[test]
 fn rows_that_are_not_met_are_within_their_scale() {
-    let unmet = rows::UNMET.of::<f64>() / rows::OF_TERMS.of::<f64>();
+    let unmet = positions::UNMET.of::<f64>() / positions::OF_TERMS.of::<f64>();
     assert_eq!(unmet.to_bits(), 1e8_f64.to_bits());
-    assert_eq!(rows::UNMET.of::<f32>(), 0.031_25);
+    assert_eq!(positions::UNMET.of::<f32>(), 0.031_25);
 }
 
 #[test]

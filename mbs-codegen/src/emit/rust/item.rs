@@ -13,7 +13,7 @@ use crate::emit::rust::functions::Bodies;
 use crate::emit::rust::generics::Generics;
 use crate::emit::rust::scenes;
 use crate::emit::rust::view::coordinates_view;
-use crate::model::reference_length::Length;
+use crate::model::expression::Length;
 use crate::model::scene::Scene;
 use crate::model::scenes::Scenes;
 use crate::model::{Function, Model, Role};

@@ -10,7 +10,7 @@ use crate::linear_algebra::vectors::dot;
 use crate::mechanism::Entry;
 use crate::mechanism::dynamic::Dynamic;
 use crate::scalar::number::Real;
-use crate::tolerances::{motion, rows, singular};
+use crate::tolerances::{motion, positions, singular};
 
 /// Corrections of a start. Next to a position where the coordinates that may move lose rank each halves the distance alone: half
 /// the digits of an `f64` take 26, and as many lead there.
@@ -64,7 +64,7 @@ fn most_moved<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     indices: &[u16],
     unit: impl Fn(R, R) -> R,
 ) -> Option<MovedStart<R>> {
-    let allowed = rows::OF_START.of::<R>();
+    let allowed = positions::OF_START.of::<R>();
     let mut worst = (allowed, None);
     for index in indices {
         let at = |values: &[R; N]| values.get(usize::from(*index)).copied();

@@ -9,7 +9,7 @@ use crate::dynamics::model::{Counts, Formulation, Model, Solved};
 use crate::failure::{Failure, FailureKind, checks};
 use crate::mechanism::dynamic::Dynamic;
 use crate::scalar::number::Real;
-use crate::tolerances::{motion, rows, singular};
+use crate::tolerances::{motion, positions, singular};
 
 /// Corrections of one position: two do after a step, a start off the constraints needs a few more.
 const MOST_CORRECTIONS: u32 = 25;
@@ -123,7 +123,7 @@ pub(crate) fn project_position<S: Dynamic<R, N, M>, R: Real, const N: usize, con
 ) -> Result<Option<Factors<R, N, M>>, Failure> {
     let none = [R::constant(0.0); N];
     let mut progress = Progress::new();
-    let mut own = rows::OF_TERMS.of();
+    let mut own = positions::OF_TERMS.of();
     if model.is_loosened() {
         let factors = correction_factors(model, t, &model.position(t, y))?;
         // Rows that depend on others, or nearly so, are met to rounding: off the constraints they may do no more.
@@ -184,7 +184,7 @@ fn project_velocity<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize
 
 /// Largest residual over its tolerance with which the rows still are met.
 fn unmet<R: Real>() -> R {
-    rows::UNMET.of::<R>() / rows::OF_TERMS.of()
+    positions::UNMET.of::<R>() / positions::OF_TERMS.of()
 }
 
 /// The factors that corrections are solved with: without the directions that the rows determine too weakly.
@@ -256,7 +256,7 @@ impl<R: Real, const N: usize, const M: usize> Progress<R, N, M> {
         let zero = R::constant(0.0);
         let largest = |values: &[R; N]| values.iter().fold(zero, |largest, x| largest.max(x.abs()));
         let size = largest(x).max(largest(scales));
-        self.still = largest(step) <= rows::OF_COORDINATES.of::<R>() * size;
+        self.still = largest(step) <= positions::OF_COORDINATES.of::<R>() * size;
     }
 }
 
@@ -282,18 +282,18 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
 
     /// Residual that rounding can leave in each row: ε (64 ρᵢ + 4 Σⱼ |Φ_qᵢⱼ| |qⱼ|).
     pub(crate) fn position_tolerances(&self, position: &S::Position, q: &[R; N]) -> [R; M] {
-        self.tolerances(position, q, self.metric.rows, rows::OF_TERMS.of())
+        self.tolerances(position, q, self.metric.rows, positions::OF_TERMS.of())
     }
 
     /// `true` if the caller has a looser position tolerance than rounding.
     pub(crate) fn is_loosened(&self) -> bool {
-        rows::OF_TERMS.of::<R>() < self.position_tolerance
+        positions::OF_TERMS.of::<R>() < self.position_tolerance
     }
 
     /// Residual over the row's scale at which a projection of positions ends next to a position of `margin`.
     pub(crate) fn closing(&self, margin: R) -> R {
-        let rounding = rows::OF_TERMS.of::<R>();
-        let bound = rows::LOOSEST.of::<R>() * margin * margin;
+        let rounding = positions::OF_TERMS.of::<R>();
+        let bound = positions::LOOSEST.of::<R>() * margin * margin;
         self.position_tolerance.min(bound).max(rounding)
     }
 
@@ -301,12 +301,13 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
     /// 1000 seconds would leave, so that a mechanism at rest has a tolerance too.
     pub(crate) fn rate_tolerances(&self, position: &S::Position, qd: &[R; N]) -> [R; M] {
         let mut floor = self.mechanism.phi_t(self.parameters, position);
-        let speeds =
-            qd.map(|qd| qd * (R::constant(1.0) + rows::OF_TERMS.of::<R>() / rows::OF_COORDINATES.of()));
+        let speeds = qd.map(|qd| {
+            qd * (R::constant(1.0) + positions::OF_TERMS.of::<R>() / positions::OF_COORDINATES.of())
+        });
         for (rate, scale) in floor.iter_mut().zip(&self.metric.rows) {
             *rate = rate.abs() + motion::AT_REST.of::<R>() * *scale;
         }
-        self.tolerances(position, &speeds, floor, rows::OF_TERMS.of())
+        self.tolerances(position, &speeds, floor, positions::OF_TERMS.of())
     }
 
     /// Residual that each row may have: `own` times its `floor`, and the rounding of `x` (N) in it.
@@ -315,7 +316,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         self.add_products(position, x, R::abs, &mut reach);
         let mut tolerances = floor;
         for (tolerance, reach) in tolerances.iter_mut().zip(&reach) {
-            *tolerance = own * *tolerance + rows::OF_COORDINATES.of::<R>() * *reach;
+            *tolerance = own * *tolerance + positions::OF_COORDINATES.of::<R>() * *reach;
         }
         tolerances
     }
@@ -342,7 +343,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         let mut tolerances =
             self.rate_tolerances(position, &self.metric.coordinates.map(|scale| scale * speed));
         for (tolerance, scale) in tolerances.iter_mut().zip(&self.metric.rows) {
-            *tolerance = *tolerance + rows::OF_TERMS.of::<R>() * speed * *scale;
+            *tolerance = *tolerance + positions::OF_TERMS.of::<R>() * speed * *scale;
         }
         tolerances
     }

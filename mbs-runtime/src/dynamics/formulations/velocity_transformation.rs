@@ -10,7 +10,7 @@ use crate::mechanism::Mechanism;
 use crate::mechanism::dynamic::{Dynamic, Partitioned};
 use crate::mechanism::transformed::Transformed;
 use crate::scalar::number::{Real, Scalar};
-use crate::tolerances::{rows, singular};
+use crate::tolerances::{positions, singular};
 
 /// Corrections of positions, and of velocities: one or two do after a step.
 const MOST_CORRECTIONS: u32 = 10;
@@ -225,7 +225,7 @@ where
         let (partition, margin) = model.mechanism.partition(model.parameters, &position);
         let place = Place { position, partition, margin: margin.value * model.metric.blocks };
         let phi = model.mechanism.phi(model.parameters, &place.position);
-        let own = if model.is_loosened() { model.closing(place.margin) } else { rows::OF_TERMS.of() };
+        let own = if model.is_loosened() { model.closing(place.margin) } else { positions::OF_TERMS.of() };
         let tolerances = model.tolerances(&place.position, &y.q, model.metric.rows, own);
         if model.worst(&phi, &tolerances).0 <= R::constant(1.0) {
             return Some(place);

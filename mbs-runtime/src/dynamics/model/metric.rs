@@ -3,7 +3,7 @@
 use crate::failure::{Failure, FailureKind};
 use crate::mechanism::{Entry, Mechanism};
 use crate::scalar::number::{Real, Scalar};
-use crate::tolerances::{motion, rows};
+use crate::tolerances::{motion, positions};
 
 /// Rotation of angles (rad) by which the steepness of a row is measured apart from singular positions.
 const TURNED: f64 = 0.5;
@@ -187,9 +187,9 @@ impl<R: Real> Tolerance<R> {
     }
 }
 
-/// Fails where a position tolerance is no positive number, below rounding, or above [`rows::LOOSEST`].
+/// Fails where a position tolerance is no positive number, below rounding, or above [`positions::LOOSEST`].
 pub(crate) fn require_position_tolerance<R: Real>(tolerance: R) -> Result<(), Failure> {
-    let [value, least, most] = [tolerance, rows::OF_TERMS.of(), rows::LOOSEST.of()].map(R::to_f64);
+    let [value, least, most] = [tolerance, positions::OF_TERMS.of(), positions::LOOSEST.of()].map(R::to_f64);
     // Written so that NaN is refused.
     if !(0.0 < value && value <= most) {
         let name = "position tolerance";

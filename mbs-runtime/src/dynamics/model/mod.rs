@@ -13,7 +13,7 @@ use crate::dynamics::model::metric::Metric;
 use crate::failure::{Failure, FailureKind, checks};
 use crate::mechanism::dynamic::Dynamic;
 use crate::scalar::number::Real;
-use crate::tolerances::{forces, rows};
+use crate::tolerances::{forces, positions};
 
 /// A mechanism with the values that do not change while it moves.
 pub struct Model<'a, S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> {
@@ -198,7 +198,7 @@ impl<'a, S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'a,
             balanced: false,
             rank_rises: false,
             first_order: false,
-            position_tolerance: rows::OF_TERMS.of(),
+            position_tolerance: positions::OF_TERMS.of(),
         }
     }
 }

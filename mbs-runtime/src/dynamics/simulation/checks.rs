@@ -11,7 +11,7 @@ use crate::mechanism::dynamic::Dynamic;
 use crate::mechanism::limit::{Limit, size};
 use crate::scalar::interval::Interval;
 use crate::scalar::number::Real;
-use crate::tolerances::rows;
+use crate::tolerances::positions;
 
 /// Halvings of a step: as many digits as an `f64` has.
 const MOST_HALVINGS: u32 = 53;
@@ -82,7 +82,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
     pub(super) fn require_consistent(&self, t: R, y: &State<R, N, S::States>) -> Result<(), Failure> {
         let position = self.position(t, y);
         let one = R::constant(1.0);
-        let allowance = rows::OF_START.of::<R>();
+        let allowance = positions::OF_START.of::<R>();
         let phi = self.mechanism.phi(self.parameters, &position);
         let phi_q = self.mechanism.phi_q(self.parameters, &position);
         let mut allowed = self.metric.rows;

@@ -24,7 +24,7 @@ use crate::dynamics::model::{Counts, Formulation, Model};
 use crate::failure::Failure;
 use crate::mechanism::dynamic::Dynamic;
 use crate::scalar::number::Real;
-use crate::tolerances::{motion, rows};
+use crate::tolerances::{motion, positions};
 
 /// A mechanism in motion with method `X`. It owns everything, allocates nothing, and a failed call leaves it as it was.
 ///
@@ -184,7 +184,7 @@ where
             balanced: true,
             rank_rises: false,
             first_order: false,
-            position_tolerance: rows::OF_TERMS.of(),
+            position_tolerance: positions::OF_TERMS.of(),
         };
         let mut counts = Counts::default();
         let states = mechanism.start_states(&parameters);
@@ -237,7 +237,7 @@ where
             reference,
             known: None,
             tolerance: Tolerance { relative: tolerance, absolute: tolerance },
-            position_tolerance: rows::OF_TERMS.of(),
+            position_tolerance: positions::OF_TERMS.of(),
             adaptive: Adaptive::default(),
             scrutiny: Scrutiny::beyond(),
             stopped: None,

@@ -9,7 +9,7 @@ use crate::kinematics::position::branch_failure;
 use crate::linear_algebra::vectors::largest_difference;
 use crate::mechanism::Kinematic;
 use crate::scalar::number::Real;
-use crate::tolerances::{rows, singular};
+use crate::tolerances::{positions, singular};
 
 /// The same from where nothing leads on for certain: rounding has a part in the prediction.
 const LARGEST_APPROACH_INSIDE: f64 = 1.0 / 16.0;
@@ -122,7 +122,7 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Walk<'_, '_
         }
         // What is beyond a forecast's second order grows with the third power of the length at least.
         let ratio = (off / allowed[0]).max(forecast.second / allowed[1]).max(forecast.third / allowed[2]);
-        let growth = R::constant(0.8) * ratio.max(rows::SHORTEST_PIECE.of()).powf(R::constant(-THIRD));
+        let growth = R::constant(0.8) * ratio.max(positions::SHORTEST_PIECE.of()).powf(R::constant(-THIRD));
         // Nearer to a singular position the difference quotients are no slope.
         let square = forecast.first * forecast.first;
         if leads(R::constant(8.0) * next.margin) && square <= R::constant(4.0) * next.margin {

@@ -3,7 +3,7 @@
 use crate::kinematics::homotopy::walk::{Spot, Walk};
 use crate::mechanism::Kinematic;
 use crate::scalar::number::Real;
-use crate::tolerances::rows;
+use crate::tolerances::positions;
 
 /// Halvings from a whole way to where its values differ by their rounding alone.
 const BISECTIONS: u32 = 64;
@@ -17,7 +17,7 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Walk<'_, '_
         let mut row = None;
         for _ in 0..BISECTIONS {
             let middle = R::constant(0.5) * (ends[0] + ends[1]);
-            if ends[1] - ends[0] <= rows::SHORTEST_PIECE.of::<R>() {
+            if ends[1] - ends[0] <= positions::SHORTEST_PIECE.of::<R>() {
                 break;
             }
             if self.limit < self.evaluations.saturating_add(4) {
@@ -32,7 +32,7 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Walk<'_, '_
         let around = [(ends[0] - wide).max(R::constant(0.0)), (ends[1] + wide).min(one)];
         let [near, far] = [ends, around].map(|ends| self.change(at, ends).1);
         // What is continuous changes several times as much over nine times the way.
-        row.filter(|_| rows::JUMP.of::<R>() < near && far <= near + near)
+        row.filter(|_| positions::JUMP.of::<R>() < near && far <= near + near)
     }
 
     /// The row that changes most between two places of the way at the position of a spot, and by how much in the reference metric.

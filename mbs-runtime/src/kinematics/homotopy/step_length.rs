@@ -4,7 +4,7 @@ use crate::kinematics::homotopy::walk::{Spot, Walk};
 use crate::kinematics::homotopy::{LARGEST_PIECE, leads};
 use crate::mechanism::Kinematic;
 use crate::scalar::number::Real;
-use crate::tolerances::{rows, singular};
+use crate::tolerances::{positions, singular};
 
 /// A piece over the one before. Drivers may come round again within a long one, and look as if they had not moved.
 pub(super) const LARGEST_GROWTH: f64 = 4.0;
@@ -94,7 +94,7 @@ pub(super) fn next_piece<S: Kinematic<R, N, M>, R: Real, const N: usize, const M
     growth: R,
 ) -> R {
     let most = largest_movement(next.margin);
-    let piece = length * (most / first.max(rows::SHORTEST_PIECE.of())).min(growth);
+    let piece = length * (most / first.max(positions::SHORTEST_PIECE.of())).min(growth);
     if next.orientation == at.orientation && next.margin < singular::PASSES.of() && next.margin < at.margin {
         // Next to where the determinant is 0 if its margin falls as it did: just beyond.
         let slope = (at.margin - next.margin) / length;

@@ -6,7 +6,7 @@ use crate::kinematics::homotopy::{Followed, Homotopy, Leading, leads};
 use crate::linear_algebra::vectors::largest_difference;
 use crate::mechanism::{Kinematic, Margin};
 use crate::scalar::number::Real;
-use crate::tolerances::rows;
+use crate::tolerances::positions;
 
 /// Times that an end too near to a singular position is moved: two assemblies that do not meet there allow no other.
 const MOST_AIMS: u32 = 3;
@@ -64,7 +64,7 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Walk<'_, '_
         // A forecast takes two evaluations.
         while at.share < one
             && self.evaluations.saturating_add(1) < self.limit
-            && rows::SHORTEST_PIECE.of::<R>() <= piece
+            && positions::SHORTEST_PIECE.of::<R>() <= piece
         {
             let rest = one - at.share;
             let length = piece.min(rest);
@@ -102,14 +102,14 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Walk<'_, '_
                 leading = Leading { q: at.q, share: at.share, piece };
             }
         }
-        let lost = at.share < one && piece < rows::SHORTEST_PIECE.of();
+        let lost = at.share < one && piece < positions::SHORTEST_PIECE.of();
         let jump = if lost { self.jump(&at, failed) } else { None };
         let spent = at.share < one && !lost;
         if at.share <= leading.share {
             leading.piece = piece;
         }
         // A part of what is left of the way from there.
-        leading.piece = leading.piece / (one - leading.share).max(rows::SHORTEST_PIECE.of());
+        leading.piece = leading.piece / (one - leading.share).max(positions::SHORTEST_PIECE.of());
         let Spot { q, share, margin, .. } = at;
         Followed { q, share, margin, evaluations: self.evaluations, jump, spent, leading }
     }

@@ -8,7 +8,7 @@ use crate::failure::{DerivativeOrder, Failure, FailureKind};
 use crate::linear_algebra::vectors::dot;
 use crate::mechanism::dynamic::Dynamic;
 use crate::scalar::number::Real;
-use crate::tolerances::{rows, singular};
+use crate::tolerances::{positions, singular};
 
 /// Corrections on the way to where the rows are least open: as many as a start takes.
 const MOST_CORRECTIONS: u32 = 25;
@@ -51,7 +51,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         }
         let (part, whole) = (dot(&held, &held).sqrt(), dot(&open, &open).sqrt());
         // Written so that NaN is no contradiction.
-        if !(rows::OF_START.of::<R>() < part && R::constant(LEAST_PART) * whole < part) {
+        if !(positions::OF_START.of::<R>() < part && R::constant(LEAST_PART) * whole < part) {
             return None;
         }
         let mut worst = (zero, zero);
@@ -65,7 +65,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
                 rows: ConflictingRows::of(S::ROWS, held.iter().map(|held| held.abs().to_f64())),
                 level: DerivativeOrder::Position,
                 residual: (worst.0 * worst.1).to_f64(),
-                required: (rows::OF_START.of::<R>() * worst.1).to_f64(),
+                required: (positions::OF_START.of::<R>() * worst.1).to_f64(),
             }
             .at(t.to_f64()),
         )

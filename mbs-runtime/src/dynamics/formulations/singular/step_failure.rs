@@ -6,7 +6,7 @@ use crate::dynamics::model::Model;
 use crate::failure::{Failure, FailureKind, checks};
 use crate::mechanism::dynamic::Dynamic;
 use crate::scalar::number::Real;
-use crate::tolerances::{rows, singular};
+use crate::tolerances::{positions, singular};
 
 impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, R, N, M> {
     /// Obstacle to every step from a state: a row that no coordinate changes, a singular position, a motion without mass. None
@@ -19,7 +19,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         let phi_q = self.mechanism.phi_q(self.parameters, &position);
         let residuals = self.mechanism.phi(self.parameters, &position);
         // Written so that NaN is no obstacle.
-        let met = self.worst(&residuals, &self.metric.rows).0 < rows::LEFT.of();
+        let met = self.worst(&residuals, &self.metric.rows).0 < positions::LEFT.of();
         if !met {
             return None;
         }

@@ -1,4 +1,4 @@
-//! Residuals of rows, distances of positions, and the numbers that a text or a caller gives.
+//! Positions: residuals of rows at which one is found, distances, and the numbers that a text or a caller gives.
 
 use crate::tolerances::Law;
 

@@ -1,0 +1,113 @@
+//! Constraints and branches: equations → rows of Φ, conditions → expressions that are positive.
+
+use proc_macro2::Span;
+
+use super::elaborator::Elaborator;
+use super::expression::{Id, Node};
+use super::resolve::behind_loop;
+use super::resolver::Resolver;
+use super::unit_inference::Bare;
+use super::units::Dimension;
+use super::value::{Fault, Quantity, Reach, Scalar, Value};
+use super::{Branch, ConstraintRow};
+use crate::symbolic::Binary;
+use crate::syntax::ast::{Equation, Expression, Item, Name};
+
+impl Resolver<'_> {
+    /// Rows of a constraint, its loops unrolled.
+    pub(super) fn constraint(&mut self, name: &Name, items: &[Item]) -> Result<(), Fault> {
+        let group = self.group(name, "constraint")?;
+        let outer = self.loops.len();
+        let mut next = 0;
+        while let Some(item) = items.get(next) {
+            next += 1;
+            match item {
+                Item::For(head) => {
+                    let is_end = |item: &Item| matches!(item, Item::EndFor);
+                    let is_for = |item: &Item| matches!(item, Item::For(_));
+                    next = self.enter(head, next).unwrap_or_else(|| behind_loop(items, next, is_for, is_end));
+                }
+                Item::EndFor if self.loops.len() > outer => next = self.repeat().unwrap_or(next),
+                Item::EndFor => {}
+                Item::Equation(equation) => {
+                    let _reported = self.equation(equation, group);
+                }
+            }
+            if self.too_large() {
+                return Err(Fault);
+            }
+        }
+        Ok(())
+    }
+
+    /// Adds one row a component.
+    pub(super) fn equation(&mut self, equation: &Equation, group: usize) -> Result<(), Fault> {
+        let (left, right) = self.elaborate(Reach::Position, |work| {
+            let (left, right) = (work.value(&equation.left), work.value(&equation.right));
+            Ok::<_, Fault>((left?, right?))
+        })?;
+        let span = equation.span;
+        // `x == 0` holds for every component of a vector x.
+        let right = spread_zero(right, &left);
+        let left = spread_zero(left, &right);
+        let residuals = self.elaborate(Reach::Position, |work| {
+            work.same_shape(&left, &right, "`==`", right.span)?;
+            let pairs = left.items.iter().zip(&right.items);
+            pairs.map(|(a, b)| residual(work, *a, *b, span)).collect::<Result<Vec<_>, Fault>>()
+        })?;
+        for (residual, dimension) in residuals {
+            let reversed = self.is_reversed(residual);
+            let (name, driven, redundant) = (String::new(), false, false);
+            let row =
+                ConstraintRow { name, dimension, residual, driven, reversed, redundant, within: None, span };
+            self.push_row(group, row);
+        }
+        Ok(())
+    }
+
+    pub(super) fn branch(
+        &mut self,
+        name: &Name,
+        at_start: bool,
+        larger: &Expression,
+        smaller: &Expression,
+    ) -> Result<(), Fault> {
+        let group = self.group(name, "branch")?;
+        let (value, dimension) = self.elaborate(Reach::Position, |work| {
+            let (larger, smaller) = (work.value(larger), work.value(smaller));
+            let (larger, smaller) = (larger?, smaller?);
+            let a = work.scalar(&larger, "a branch", larger.span)?;
+            let b = work.scalar(&smaller, "a branch", smaller.span)?;
+            residual(work, a, b, name.span)
+        })?;
+        self.count_row(group, self.model.branches.len());
+        self.model.branches.push(Branch {
+            name: name.text.clone(),
+            dimension,
+            at_start,
+            value,
+            span: name.span,
+        });
+        Ok(())
+    }
+}
+
+fn residual(work: &mut Elaborator<'_>, a: Scalar, b: Scalar, span: Span) -> Result<(Id, Dimension), Fault> {
+    let quantity = work.agree(a, b)?;
+    let id = if work.expressions.node(b.id) == Node::Number(0.0) {
+        a.id
+    } else {
+        work.push_binary(Binary::Subtract, a.id, b.id, span)?
+    };
+    Ok((id, quantity.dimension()))
+}
+
+/// A literal 0 in the shape of the other side.
+fn spread_zero(value: Value, other: &Value) -> Value {
+    match value.items.as_slice() {
+        [zero] if value.shape.is_empty() && zero.quantity == Quantity::Any && zero.bare == Bare::Zero => {
+            Value { shape: other.shape.clone(), items: vec![*zero; other.items.len()], span: value.span }
+        }
+        _ => value,
+    }
+}
