@@ -81,8 +81,8 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
     /// Assembles `mechanism` from `guess` (N) at time `t` (s); velocity and acceleration follow.
     ///
     /// # Errors
-    /// Those of [`assemble`](crate::assemble()), [`FailureKind::Singular`] where the first position does not
-    /// determine rates, and [`FailureKind::BeyondLimit`].
+    /// Those of [`assemble`](crate::assemble()), [`Singular`](crate::FailureKind::Singular) where the first position does not
+    /// determine rates, and [`BeyondLimit`](crate::FailureKind::BeyondLimit).
     pub fn assemble(mut mechanism: S, guess: impl Into<[R; N]>, t: R) -> Result<Self, Failure> {
         let (guess, counts) = within_a_turn::<S, R, N, M>(guess.into());
         let assembled = assemble(&mechanism, guess, t)?;
@@ -138,8 +138,10 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
     /// Parameters, inputs and time go straight from their values there to the present ones, in pieces that keep the assembly.
     ///
     /// # Errors
-    /// [`FailureKind::NonFinite`], [`FailureKind::NotConverged`], [`FailureKind::NotFollowed`], [`FailureKind::Discontinuous`],
-    /// [`FailureKind::Singular`], [`FailureKind::WrongBranch`], [`FailureKind::BeyondLimit`]; the state is then bit for bit as before.
+    /// [`NonFinite`](crate::FailureKind::NonFinite), [`NotConverged`](crate::FailureKind::NotConverged),
+    /// [`NotFollowed`](crate::FailureKind::NotFollowed), [`Discontinuous`](crate::FailureKind::Discontinuous),
+    /// [`Singular`](crate::FailureKind::Singular), [`WrongBranch`](crate::FailureKind::WrongBranch),
+    /// [`BeyondLimit`](crate::FailureKind::BeyondLimit); the state is then bit for bit as before.
     #[inline]
     pub fn advance_to(&mut self, t: R) -> Result<Statistics, Failure> {
         match S::TURNS {
@@ -311,7 +313,7 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
     /// Outputs with their time derivatives.
     ///
     /// Not finite where a definition has no value at this position, the root of a negative number for instance; a
-    /// [`Sweep`] reports that as [`FailureKind::NonFinite`].
+    /// [`Sweep`] reports that as [`NonFinite`](crate::FailureKind::NonFinite).
     #[inline]
     pub fn outputs(&self) -> S::Outputs {
         self.mechanism.outputs(&self.parameters, &self.position(), &self.state.qd, &self.state.qdd)
