@@ -121,10 +121,13 @@ fn rates_on_the_way_into_the_limit_are_right_or_refused() {
             }
             Err(failure) => {
                 refused += 1;
-                assert!(
-                    matches!(failure, Failure { kind: FailureKind::Singular { .. }, .. }) && left < 1e-11,
-                    "{left:e}: {failure}"
-                );
+                // So near the lock the other assembly is no farther off than rounding: the way there may be refused too.
+                let is_honest = match failure.kind {
+                    FailureKind::Singular { .. } => left < 1e-11,
+                    FailureKind::NotFollowed { .. } => left < 1e-13,
+                    _ => false,
+                };
+                assert!(is_honest, "{left:e}: {failure}");
                 assert_eq!((stepper.t(), *stepper.q(), *stepper.qd()), before);
             }
         }
