@@ -20,6 +20,7 @@ mechanism! {
 
 fn main() -> Result<(), mbs_runtime::Failure> {
     let four_bar = FourBar { crank: 0.09, ..FourBar::default() };
+    // `parameters`: what is computed once from the fields, and needed at every instant.
     let guess = four_bar.guess(&four_bar.parameters());
     let mut motion = Stepper::assemble(four_bar, guess, 0.0)?;
     println!("time      rocker      speed         acceleration");
