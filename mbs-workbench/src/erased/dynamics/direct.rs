@@ -223,8 +223,12 @@ pub(crate) fn simulate<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
             Some(by_radau) => by_radau(mechanism, &start, steps, times, progress),
             None => {
                 let name = "number of coordinates and rows for `radau`";
-                Err(FailureKind::InvalidMethodParameter { name, value: (N + M) as f64, most: 120.0 }
-                    .without_time())
+                Err(FailureKind::InvalidMethodParameter {
+                    name,
+                    value: (N + M) as f64,
+                    most: Radau5::MOST_UNKNOWNS as f64,
+                }
+                .without_time())
             }
         },
         Stabilization::Implicit(Implicit { method, longest }) => match method {
