@@ -57,8 +57,7 @@ def dynamics(ca, q, v, t, der, z, l):
     def weighed(mass, point):
         return [mass * der(der(point[0])), mass * (der(der(point[1])) + g)]
 
-    # The longest default of a parameter counts as well as the present values.
-    length = ca.SX(0.18)
+    length = ca.SX(0)
     for known in [r, L, v[2]]:
         length = ca.fmax(length, ca.fabs(known))
     on_crank, on_rod = weighed(crank, [pin[0] / 2, pin[1] / 2]), weighed(rod, middle)
