@@ -149,6 +149,7 @@ pub fn check(model: &Model, equations: &Equations, diagnostics: &mut Diagnostics
                 (true, Angle::Coordinate(_)) => {
                     format!("prescribe a rate, `drive {}: rate({{}}) == …;`", row.name)
                 }
+                (true, Angle::Input(_)) => held_to_an_input(model, row).unwrap_or_else(|| CURE.to_owned()),
                 _ => CURE.to_owned(),
             };
             changes(model, angle, (&format!("row `{}`", row.name), row.span), &cure, diagnostics);
@@ -190,6 +191,22 @@ pub fn check(model: &Model, equations: &Equations, diagnostics: &mut Diagnostics
 
 const CURE: &str =
     "write `{}` within `sin`, `cos`, `unit`, `rot` or a function of period TAU, times a whole number";
+
+/// Cure of a drive that sets a coordinate equal to an input: rows without whole turns that say the same. Of other drives none.
+fn held_to_an_input(model: &Model, row: &ConstraintRow) -> Option<String> {
+    let node = |id: Id| model.expressions.node(id);
+    let expression::Node::Binary(Binary::Subtract, a, b) = node(row.residual) else { return None };
+    let index = match (node(a), node(b)) {
+        (expression::Node::Coordinate(index), expression::Node::Variable(_))
+        | (expression::Node::Variable(_), expression::Node::Coordinate(index)) => index,
+        _ => return None,
+    };
+    let (coordinate, drive) = (&model.coordinates.get(index)?.name, &row.name);
+    Some(format!(
+        "write `constraint {drive} {{ sin({coordinate} - {{}}) == 0; }}` and `branch {drive}_ahead: \
+         cos({coordinate} - {{}}) > 0;` in its place"
+    ))
+}
 
 /// Reports a value that changes with a turn of an angle; `{}` in the cure is its name.
 fn changes(

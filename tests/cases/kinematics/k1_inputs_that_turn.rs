@@ -143,6 +143,51 @@ fn two_inputs_at_once_go_straight_through_their_wraps() {
     assert!(distance(*one.q(), above(2.9)) < 1e-12);
 }
 
+mechanism! {
+    /// A wiper whose crank has a coordinate of its own.
+    pub mechanism DrivenCrank;
+    input theta: turn, rates;
+    coord crank: rad = 0;
+    coord rod: rad = 0.9;
+    coord arm: rad = 1.8;
+    constraint motor { sin(crank - theta) == 0; }
+    constraint closure { 0.10m*unit(crank) + 0.25m*unit(rod) == [0.30m, 0] + 0.20m*unit(arm); }
+    branch motor_ahead: cos(crank - theta) > 0;
+}
+
+mechanism! {
+    /// The same without that coordinate.
+    pub mechanism PrescribedCrank;
+    input theta: turn, rates;
+    coord rod: rad = 0.9;
+    coord arm: rad = 1.8;
+    constraint closure { 0.10m*unit(theta) + 0.25m*unit(rod) == [0.30m, 0] + 0.20m*unit(arm); }
+}
+
+/// The form that the message on `drive motor: crank == theta` names.
+#[test]
+fn a_coordinate_held_to_an_input_that_turns_follows_it() {
+    for step in [0.006, 0.3, -1.3, 2.5] {
+        let mut driven: Stepper<_, f64, 3> =
+            Stepper::assemble(DrivenCrank::default(), [0.0, 0.9, 1.8], 0.0).unwrap();
+        let mut prescribed: Stepper<_, f64, 2> =
+            Stepper::assemble(PrescribedCrank::default(), [0.9, 1.8], 0.0).unwrap();
+        for tick in 1..=1000 {
+            let angle = step * f64::from(tick);
+            let theta = Signal { value: angle.rem_euclid(TAU), rate: 6.0, acceleration: 2.0 };
+            driven.change(|wiper| wiper.theta = theta);
+            prescribed.change(|wiper| wiper.theta = theta);
+            driven.advance(1e-3).unwrap();
+            prescribed.advance(1e-3).unwrap();
+            assert!((driven.q()[0] - angle).abs() < 1e-11, "{step} {tick}");
+            let (q, qd, qdd) = (driven.q(), driven.qd(), driven.qdd());
+            assert!(distance([q[1], q[2]], *prescribed.q()) < 1e-11, "{step} {tick}");
+            assert!(distance([qd[1], qd[2]], *prescribed.qd()) < 1e-10, "{step} {tick}");
+            assert!(distance([qdd[1], qdd[2]], *prescribed.qdd()) < 1e-9, "{step} {tick}");
+        }
+    }
+}
+
 #[test]
 fn changes_that_wait_for_a_step_add_up_in_lanes_too() {
     let start = 3.0;
