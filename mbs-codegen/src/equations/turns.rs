@@ -201,7 +201,8 @@ fn held_to_an_input(model: &Model, row: &ConstraintRow) -> Option<String> {
         | (expression::Node::Variable(_), expression::Node::Coordinate(index)) => index,
         _ => return None,
     };
-    let (coordinate, drive) = (&model.coordinates.get(index)?.name, &row.name);
+    // The row of a vector has a number behind a dot, which no declared name has.
+    let (coordinate, drive) = (&model.coordinates.get(index)?.name, row.name.replace('.', "_"));
     Some(format!(
         "write `constraint {drive} {{ sin({coordinate} - {{}}) == 0; }}` and `branch {drive}_ahead: \
          cos({coordinate} - {{}}) > 0;` in its place"
