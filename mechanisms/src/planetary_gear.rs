@@ -101,7 +101,7 @@ mod tests {
         assert_moves_as(&motion, &names, 1e-13, columns);
     }
 
-    /// Where gears touch, neither slips on the other: velocities of bodies at the point of contact.
+    /// Rolling: touching gears have one velocity at the point of contact.
     #[test]
     fn the_planet_rolls_on_the_ring_and_on_the_sun() {
         let motion = one_turn(&CARD, 0, 24);

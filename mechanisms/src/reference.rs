@@ -1,4 +1,4 @@
-//! What the tests of the mechanisms share: reference tables and comparisons.
+//! Reference tables and comparisons that the tests of the mechanisms share.
 
 use core::f64::consts::{PI, TAU};
 

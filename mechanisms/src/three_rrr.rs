@@ -123,7 +123,7 @@ mod tests {
         })
     }
 
-    /// What remains is one equation in `ψ0`, the length of the third leg.
+    /// Closed form but for one scalar equation: the length of the third leg as a function of `ψ0`.
     #[test]
     fn the_motion_equals_the_closed_form_with_one_root() {
         let motion = one_turn(&CARD, 0, 180);

@@ -61,7 +61,7 @@ mechanism! {
     /// Every place where a declared function can stand.
     pub mechanism Everywhere;
     param p: rad = 0.3;
-    /// How far.
+    /// Lift of the follower.
     function lift: m(rad), C4, periodic TAU/1.3;
     function swing: rad(s), C3;
     input u: rad, rates;

@@ -285,7 +285,7 @@ mod through_macros {
     forwarded! {
         /// Forwarded.
         pub(super) mechanism Forwarded;
-        /// How long.
+        /// Length.
         param L: m = 2;
         coord x: m;
         drive d: x == L;
@@ -329,7 +329,7 @@ mod through_macros {
 #[test]
 fn a_source_that_a_macro_wrote_expands_to_the_same_code() {
     let source = <through_macros::Forwarded as Mechanism<f64, 1, 1>>::SOURCE;
-    let expected = "/// Forwarded.\npub(super) mechanism Forwarded;\n/// How long.\nparam L: m = 2;\ncoord x: m;\n\
+    let expected = "/// Forwarded.\npub(super) mechanism Forwarded;\n/// Length.\nparam L: m = 2;\ncoord x: m;\n\
                     drive d: x == L;";
     assert_eq!(source, expected);
 }

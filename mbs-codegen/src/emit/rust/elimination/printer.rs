@@ -65,8 +65,8 @@ impl Printer {
              #[derive(::core::clone::Clone, ::core::marker::Copy, ::core::fmt::Debug)]\n\
              pub struct {NAME}<T: __mbs::Scalar> {{\n\
              /// Inverses of pivots, multipliers, rows beside the pivots.\nvalues: [T; {count}],\n\
-             /// What is left at the end.\nlast: __mbs::Direct{rank}<T>,\n\
-             /// Where the determinant is negative.\nreverses: T::Mask,\n}}\n\
+             /// Factors of the rows that are left at the end.\nlast: __mbs::Direct{rank}<T>,\n\
+             /// Lanes with a negative determinant.\nreverses: T::Mask,\n}}\n\
              impl<T: __mbs::Scalar> __mbs::Elimination<T, {size}> for {NAME}<T> {{\n\
              #[inline]\nfn eliminate(__a: &[[T; {size}]; {size}], __row_scales: &[T; {size}], \
              __coordinate_scales: &[T; {size}]) -> (Self, T, T::Mask) {{\n{factors}\

@@ -10,7 +10,7 @@ entry_points! {
     fn jet[F: Function<T>, T: Scalar, const K: usize](function: &F, x: T) -> [T; K] {
         function.jet(x)
     }
-    /// Where a driver is less smooth.
+    /// Next breakpoint of a driver.
     fn breakpoint_after[F: Function<T>, T: Scalar](function: &F, x: f64) -> Option<f64> {
         function.breakpoint_after(x)
     }

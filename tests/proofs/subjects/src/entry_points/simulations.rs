@@ -55,7 +55,7 @@ entry_points! {
     ) -> (S::Outputs, S::Loads) {
         (simulation.outputs(), simulation.loads())
     }
-    /// What of the multipliers and loads is determined.
+    /// Multipliers and loads that are determined.
     fn determinacy[S: Dynamic<R, N, M>, X: Method<S, R, N, M>, R: Real, const N: usize, const M: usize](
         simulation: &Simulation<S, X, R, N, M>, unique: &mut [bool],
     ) -> Result<Determinacy<R, M>, Failure> {

@@ -89,7 +89,7 @@ entry_points! {
     ) -> bool {
         stepper.change(|mechanism| S::variable(name).is_some_and(|index| mechanism.set(index, value)))
     }
-    /// Where a motion stops: its bracket.
+    /// Bracket of the time at which a motion stops.
     fn stop[S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize](stepper: &Stepper<S, R, N, M>, t: R) -> Option<(R, R)> {
         stepper.reach_towards(t).map(|stop| (stop.reachable, stop.refused))
     }
@@ -97,7 +97,7 @@ entry_points! {
     fn ill_scaled[S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize](stepper: &Stepper<S, R, N, M>) -> Option<f64> {
         stepper.ill_scaled().map(|found| found.resolution)
     }
-    /// Where a variable stops.
+    /// Bracket of the value at which a variable stops.
     fn reach_of[S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize](
         stepper: &Stepper<S, R, N, M>, index: usize, value: R,
     ) -> Option<(R, R)> {
@@ -133,7 +133,7 @@ entry_points! {
     ) -> (S::Limits, usize) {
         (stepper.limits(), stepper.warnings().count())
     }
-    /// What the equations leave open.
+    /// Residuals, closure error and outputs.
     fn open[S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize](
         stepper: &Stepper<S, R, N, M>,
     ) -> ([R; M], R, S::Outputs) {
