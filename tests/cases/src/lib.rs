@@ -1,1 +1,13 @@
-//! Faults that were found, one file for each, named by its entry: the text with the fault and tests of its class.
+//! Faults that were found, one file for each: the text with the fault and tests of its class.
+//!
+//! A file's name begins with the code of its fault. The letter says how the fault was found, the number counts in the order of
+//! discovery:
+//!
+//! | code | found by | target |
+//! |---|---|---|
+//! | `k1` to `k8` | kinematics of independent texts, in `f64` and `f32` | `kinematics`; of the language `language` |
+//! | `d1` to `d22` | motions from forces of independent texts | `singular`, `events`, `friction`, `stiff`, `starts`; of the language `language` |
+//! | `t6` to `t8` | a line of the library changed on purpose, which no test noticed | the target of that line |
+//!
+//! The first line of each file says what the fault was. Several files with one code are tests of one class. A fault without a file of its own is
+//! tested beside the one with which it was found, or in the tests of the code that was changed.
