@@ -7,7 +7,7 @@ use crate::picture::MOST_SHAPES;
 use crate::syntax::picture::{PICTURES, TURN, forms};
 use crate::syntax::{LATER, REFERRING, STATEMENTS, ast::Element, tokens, unit_symbols};
 
-pub use crate::model::names::FUNCTIONS;
+pub use crate::model::names::functions;
 pub use crate::syntax::unit_symbols::SUFFIXES;
 
 /// Words that begin a statement.

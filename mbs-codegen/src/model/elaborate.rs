@@ -6,7 +6,7 @@ use super::counts::follows_literals;
 use super::elaborator::Elaborator;
 use super::expression::Node;
 use super::functions;
-use super::names::{FUNCTIONS, Symbol};
+use super::names::{Symbol, is_function};
 use super::operands::Operands;
 use super::references::{REFERRING, is_reference};
 use super::unit_inference::Bare;
@@ -98,7 +98,7 @@ impl Elaborator<'_> {
                     (Some(Symbol::Function(callable)), _) => {
                         functions::call_declared(self, *callable, (function, *order), arguments, span)?
                     }
-                    (Some(Symbol::Faulty), _) if !FUNCTIONS.contains(&function.as_str()) => {
+                    (Some(Symbol::Faulty), _) if !is_function(function) => {
                         return Err(Fault);
                     }
                     (Some(Symbol::Pending), _) => return Err(self.too_early(function, span)),

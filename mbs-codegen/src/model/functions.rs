@@ -43,7 +43,7 @@ pub fn call(
         }
         _ => {}
     }
-    let found = Unary::ALL.iter().find(|unary| **unary != Unary::Negate && unary.entry().name == function);
+    let found = Unary::called().find(|unary| unary.entry().name == function);
     let Some(unary) = found else { return Err(work.unknown_function(function, span)) };
     let [argument] = work.arguments(function, arguments, span)?;
     let scalar = work.scalar(&argument, &format!("`{function}`"), argument.span)?;
@@ -56,7 +56,7 @@ pub fn call(
         Units::Same => scalar.quantity,
         Units::Root => work.root(scalar.quantity, 0.5, span)?,
     };
-    work.unary(*unary, scalar, quantity, span)
+    work.unary(unary, scalar, quantity, span)
 }
 
 fn atan2(work: &mut Elaborator<'_>, arguments: Vec<Value>, span: Span) -> Result<Value, Fault> {

@@ -8,6 +8,7 @@ use super::unit_inference::Bare;
 use super::units::Dimension;
 use super::value::{Reach, Value};
 use crate::diagnostics::Diagnostics;
+use crate::symbolic::Unary;
 use crate::syntax::ast::Name;
 use crate::syntax::rust_identifiers::UNUSABLE;
 
@@ -17,26 +18,9 @@ pub const RESERVED: [&str; 13] = [
     "curve",
 ];
 
-/// Names of all functions.
-pub const FUNCTIONS: [&str; 32] = [
-    "sqrt",
-    "exp",
-    "ln",
-    "sin",
-    "cos",
-    "tan",
-    "asin",
-    "acos",
-    "atan",
+/// Functions of the language with several arguments, with vectors or with rates.
+const OTHER_FUNCTIONS: [&str; 15] = [
     "atan2",
-    "sinh",
-    "cosh",
-    "tanh",
-    "asinh",
-    "acosh",
-    "atanh",
-    "abs",
-    "sign",
     "min",
     "max",
     "hypot",
@@ -52,6 +36,16 @@ pub const FUNCTIONS: [&str; 32] = [
     "der",
     "der2",
 ];
+
+/// Names of all functions: those of one argument from the table of operations, then the others.
+pub fn functions<'a>() -> impl Iterator<Item = &'a str> {
+    Unary::called().map(|function| -> &'a str { function.entry().name }).chain(OTHER_FUNCTIONS)
+}
+
+/// `true` if `name` is that of a function of the language.
+pub fn is_function(name: &str) -> bool {
+    functions().any(|function| function == name)
+}
 
 /// Names that have a value without a declaration.
 pub(super) const CONSTANTS: [&str; 3] = ["t", "PI", "TAU"];
@@ -266,7 +260,7 @@ fn usable(name: &Name, diagnostics: &mut Diagnostics) -> bool {
     let text = name.text.as_str();
     let fault = if RESERVED.contains(&text) {
         format!("`{text}` is reserved by the language")
-    } else if FUNCTIONS.contains(&text) {
+    } else if is_function(text) {
         format!("`{text}` is the name of a function")
     } else if UNUSABLE.contains(&text) {
         format!("`{text}` is a word of Rust that cannot be a name")

@@ -4,7 +4,7 @@ use proc_macro2::Span;
 
 use super::compound;
 use super::elaborator::Elaborator;
-use super::names::{CONSTANTS, FUNCTIONS, Symbol};
+use super::names::{CONSTANTS, Symbol, functions, is_function};
 use super::references::{REFERRING, is_reference};
 use super::units::with_suffix;
 use super::value::Fault;
@@ -56,12 +56,12 @@ impl Elaborator<'_> {
     fn knows_function(&self, name: &str) -> bool {
         let declared =
             matches!(self.names.get(name), Some(Symbol::Function(_) | Symbol::Pending | Symbol::Faulty));
-        declared || FUNCTIONS.contains(&name)
+        declared || is_function(name)
     }
 
     /// A fault at the derivative of a function that is not declared.
     pub(super) fn no_derivative(&mut self, name: &str, span: Span) -> Fault {
-        if !FUNCTIONS.contains(&name) {
+        if !is_function(name) {
             return self.unknown_function(name, span);
         }
         let message = format!("`{name}` is no declared function, and has no `.d1` or `.d2`");
@@ -75,7 +75,7 @@ impl Elaborator<'_> {
             let message = format!("`{name}` is known inside its `for` alone, behind its declaration");
             return self.fault(span, message, "move this into the loop, or declare a `let` outside of it");
         }
-        let help = if FUNCTIONS.contains(&name) {
+        let help = if is_function(name) {
             format!("`{name}` is a function; write `{name}(…)`")
         } else if let Some(number) = compound::in_brackets(code, index) {
             format!("write a compound unit in brackets behind its number: `{number}`")
@@ -93,7 +93,7 @@ impl Elaborator<'_> {
 
     /// A fault at an unknown function.
     pub fn unknown_function(&mut self, name: &str, span: Span) -> Fault {
-        let known = || self.names.functions().chain(FUNCTIONS);
+        let known = || self.names.functions().chain(functions());
         let help = match nearest(name, known()) {
             Some(known) => format!("did you mean `{known}`?"),
             None => format!("known are {}", known().collect::<Vec<_>>().join(", ")),

@@ -101,6 +101,11 @@ macro_rules! unary {
             /// All functions of one argument.
             pub const ALL: [Unary; [$(stringify!($function)),*].len()] = [$(Unary::$function),*];
 
+            /// Functions that texts call by their names: all but the sign, which is an operator.
+            pub fn called() -> impl Iterator<Item = Unary> {
+                Unary::ALL.into_iter().filter(|function| *function != Unary::Negate)
+            }
+
             /// Its row of the table.
             pub fn entry(self) -> &'static UnaryEntry {
                 match self {
