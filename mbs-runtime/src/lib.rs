@@ -130,14 +130,14 @@ pub use mechanism::dynamic::{
     Dynamic, DynamicState, Energy, Gap, MissingSlope, NonNegative, Partitioned, StateSlope,
 };
 pub use mechanism::function::{Function, FunctionEntry};
-pub use mechanism::kept::Kept;
 pub use mechanism::limit::{Limit, WARNING_SHARE, Warning};
 pub use mechanism::operations::Operations;
 pub use mechanism::outcome::Outcome;
 pub use mechanism::phase::{Phase, Speed};
+pub use mechanism::redundant_widths::Widths;
 pub use mechanism::reveal::{Reveal, Visitor};
 pub use mechanism::roots::Roots;
-pub use mechanism::widths::Widths;
+pub use mechanism::saved_variables::Kept;
 pub use mechanism::{
     AllEffects, Block, BlockSolver, Entry, Evaluation, Kinematic, Margin, Mechanism, OutputValue, Reference,
     Signal, Solved,

@@ -23,7 +23,7 @@ pub struct Card {
     /// Folder of the crate's `Cargo.toml`.
     pub manifest: &'static str,
     /// Method for a motion from forces where the command line names none.
-    pub usual: Usual,
+    pub default_method: DefaultMethod,
     /// An instance with functions that a cross-check knows, where the text declares functions.
     pub stand_in: Option<Make>,
 }
@@ -43,7 +43,7 @@ macro_rules! card {
             constructor: ::core::stringify!($make),
             module: ::core::module_path!(),
             manifest: ::core::env!("CARGO_MANIFEST_DIR"),
-            usual: $crate::card::Usual::Projection,
+            default_method: $crate::card::DefaultMethod::Projection,
             stand_in: ::core::option::Option::None,
         }
     };
@@ -51,7 +51,7 @@ macro_rules! card {
 
 /// The method that is right for a mechanism; see [`mbs_runtime::dynamics`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Usual {
+pub enum DefaultMethod {
     /// Explicit steps, all rows together.
     Projection,
     /// Explicit steps through the blocks of the rows: of many rows the others take too long.
@@ -67,8 +67,8 @@ const SPAN: f64 = 1.0;
 
 impl Card {
     /// The card with another method for a motion from forces.
-    pub const fn moved_by(self, usual: Usual) -> Self {
-        Card { usual, ..self }
+    pub const fn moved_by(self, default_method: DefaultMethod) -> Self {
+        Card { default_method, ..self }
     }
 
     /// The card with an instance for cross-checks, whose functions are [`StandIn`](crate::verify::StandIn)s.

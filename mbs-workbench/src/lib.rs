@@ -11,6 +11,8 @@ pub mod card;
 #[cfg(feature = "program")]
 pub mod catalogue;
 #[cfg(feature = "program")]
+mod command_line;
+#[cfg(feature = "program")]
 mod commands;
 pub mod erased;
 #[cfg(feature = "program")]
@@ -19,8 +21,6 @@ pub mod motion;
 #[cfg(feature = "program")]
 pub mod output;
 #[cfg(feature = "program")]
-mod program;
-#[cfg(feature = "program")]
 pub mod tables;
 pub mod target_directory;
 #[cfg(feature = "program")]
@@ -28,4 +28,4 @@ pub mod teaching;
 pub mod verify;
 
 #[cfg(feature = "program")]
-pub use program::program;
+pub use command_line::program;

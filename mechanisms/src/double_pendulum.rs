@@ -65,7 +65,7 @@ mod tests {
 
     use super::*;
     use crate::reference::dynamics_of;
-    use mbs_workbench::erased::dynamics::direct::{Approach, Pair, Stabilization, Steps};
+    use mbs_workbench::erased::dynamics::direct_dynamics::{Approach, Pair, Stabilization, Steps};
     use mbs_workbench::mismatch::set;
     use mbs_workbench::motion::instants;
 

@@ -18,10 +18,10 @@
 
 use mbs_runtime::mechanism;
 use mbs_workbench::card;
-use mbs_workbench::card::{Card, Usual};
+use mbs_workbench::card::{Card, DefaultMethod};
 
 /// In the list of free mechanisms.
-pub const CARD: Card = card!(Governor::default()).moved_by(Usual::Extrapolated);
+pub const CARD: Card = card!(Governor::default()).moved_by(DefaultMethod::Extrapolated);
 
 mechanism! {
     /// A flyball governor: four degrees of freedom in 16 coordinates.

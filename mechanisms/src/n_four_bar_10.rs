@@ -4,10 +4,10 @@
 
 use mbs_runtime::mechanism;
 use mbs_workbench::card;
-use mbs_workbench::card::{Card, Usual};
+use mbs_workbench::card::{Card, DefaultMethod};
 
 /// In the list of free mechanisms.
-pub const CARD: Card = card!(NFourBar10::default()).moved_by(Usual::Velocity);
+pub const CARD: Card = card!(NFourBar10::default()).moved_by(DefaultMethod::Velocity);
 
 mechanism! {
     /// Ten parallelograms: one degree of freedom in 22 coordinates.

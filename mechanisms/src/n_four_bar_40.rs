@@ -4,10 +4,10 @@
 
 use mbs_runtime::mechanism;
 use mbs_workbench::card;
-use mbs_workbench::card::{Card, Usual};
+use mbs_workbench::card::{Card, DefaultMethod};
 
 /// In the list of free mechanisms.
-pub const CARD: Card = card!(NFourBar40::default()).moved_by(Usual::VelocityInEqualSteps);
+pub const CARD: Card = card!(NFourBar40::default()).moved_by(DefaultMethod::VelocityInEqualSteps);
 
 mechanism! {
     /// Forty parallelograms: one degree of freedom in 82 coordinates.

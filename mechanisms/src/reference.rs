@@ -5,7 +5,7 @@ use core::f64::consts::{PI, TAU};
 use crate::closed_form::{Jet, assert_moves_as, column};
 use mbs_workbench::card::{Card, Preset};
 use mbs_workbench::catalogue::sweep;
-use mbs_workbench::erased::dynamics::direct::{Approach, Pair, Simulated, Stabilization, Steps};
+use mbs_workbench::erased::dynamics::direct_dynamics::{Approach, Pair, Simulated, Stabilization, Steps};
 use mbs_workbench::erased::facade::Motion;
 use mbs_workbench::motion::instants;
 

@@ -7,7 +7,7 @@ use crate::block_solvers::levenberg_marquardt::levenberg_marquardt;
 use crate::block_solvers::newton::{all_finite, newton, within};
 use crate::linear_algebra::factorization::Factorization;
 use crate::mechanism::outcome::Outcome;
-use crate::mechanism::widths::Widths;
+use crate::mechanism::redundant_widths::Widths;
 use crate::mechanism::{Block, BlockSolver};
 use crate::scalar::number::Real;
 

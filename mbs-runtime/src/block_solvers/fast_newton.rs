@@ -4,7 +4,7 @@ use crate::block_solvers::convergence::{own_rounding, required};
 use crate::linear_algebra::factorization::Factorization;
 use crate::linear_algebra::vectors::{select, weights as reciprocals};
 use crate::mechanism::outcome::Outcome;
-use crate::mechanism::widths::Widths;
+use crate::mechanism::redundant_widths::Widths;
 use crate::mechanism::{Block, BlockSolver};
 use crate::scalar::number::Scalar;
 

@@ -8,7 +8,7 @@ use crate::linear_algebra::rectangular::Orthogonal;
 use crate::linear_algebra::vectors::{select, times};
 use crate::mechanism::Block;
 use crate::mechanism::outcome::Outcome;
-use crate::mechanism::widths::Widths;
+use crate::mechanism::redundant_widths::Widths;
 use crate::scalar::number::Scalar;
 
 /// Result of Gauss–Newton.

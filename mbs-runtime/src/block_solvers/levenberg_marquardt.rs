@@ -8,8 +8,8 @@ use crate::block_solvers::newton::{Attempt, ITERATIONS, all_finite, capped, newt
 use crate::linear_algebra::factorization::Factorization;
 use crate::linear_algebra::vectors::select;
 use crate::mechanism::outcome::Outcome;
+use crate::mechanism::redundant_widths::Widths;
 use crate::mechanism::roots::Roots;
-use crate::mechanism::widths::Widths;
 use crate::mechanism::{Block, BlockSolver};
 use crate::scalar::number::Scalar;
 use crate::tolerances::positions;

@@ -2,8 +2,8 @@
 
 use crate::linear_algebra::factorization::Factorization;
 use crate::mechanism::outcome::Outcome;
+use crate::mechanism::redundant_widths::Widths;
 use crate::mechanism::roots::Roots;
-use crate::mechanism::widths::Widths;
 use crate::mechanism::{Block, BlockSolver};
 use crate::scalar::number::Scalar;
 

@@ -4,7 +4,7 @@ use crate::failure::conflicting_rows::ConflictingRows;
 use crate::failure::{DerivativeOrder, Failure, FailureKind};
 use crate::linear_algebra::vectors::{largest_difference, times};
 use crate::mechanism::Mechanism;
-use crate::mechanism::widths::largest_width;
+use crate::mechanism::redundant_widths::largest_width;
 use crate::scalar::number::Real;
 use crate::tolerances::singular::LEAST_MARGIN;
 

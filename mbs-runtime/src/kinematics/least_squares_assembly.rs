@@ -9,7 +9,7 @@ use crate::kinematics::position::position_failure;
 use crate::linear_algebra::factorization::Factorization;
 use crate::linear_algebra::vectors::{extent, largest_difference};
 use crate::mechanism::outcome::Outcome;
-use crate::mechanism::widths::Widths;
+use crate::mechanism::redundant_widths::Widths;
 use crate::mechanism::{Block, BlockSolver, Kinematic, Mechanism};
 use crate::scalar::number::Real;
 

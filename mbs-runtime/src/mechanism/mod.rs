@@ -3,27 +3,27 @@
 pub(crate) mod dynamic;
 pub(crate) mod enclosure;
 pub(crate) mod function;
-pub(crate) mod kept;
 pub(crate) mod limit;
 pub(crate) mod normal_forces;
 pub(crate) mod operations;
 pub(crate) mod outcome;
 pub(crate) mod phase;
+pub(crate) mod redundant_widths;
 pub(crate) mod reveal;
 pub(crate) mod roots;
+pub(crate) mod saved_variables;
 pub(crate) mod transformed;
-pub(crate) mod widths;
 
 use core::hint::black_box;
 
 use crate::linear_algebra::factorization::Factorization;
 use crate::mechanism::function::FunctionEntry;
-use crate::mechanism::kept::Kept;
 use crate::mechanism::limit::Limit;
 use crate::mechanism::outcome::Outcome;
 use crate::mechanism::phase::Phase;
+use crate::mechanism::redundant_widths::Widths;
 use crate::mechanism::roots::Roots;
-use crate::mechanism::widths::Widths;
+use crate::mechanism::saved_variables::Kept;
 use crate::scalar::number::{Real, Scalar, index};
 
 /// The scene of a text with all its effects, which every mechanism is in unless a type says otherwise.

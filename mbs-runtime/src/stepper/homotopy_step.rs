@@ -12,7 +12,7 @@ use crate::mechanism::Kinematic;
 use crate::scalar::number::Real;
 use crate::stepper::Stepper;
 use crate::stepper::instant::{Predecessor, Rates, SolvedPosition};
-use crate::stepper::state::State;
+use crate::stepper::state::StepperState;
 
 /// Work in addition to the homotopy at the end of a path that is followed in bounded work: Newton's method then closes within two
 /// evaluations.
@@ -110,7 +110,7 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
         if self.led || !leads(self.state.margin) {
             return self.anchor;
         }
-        let State { t, q, .. } = self.state;
+        let StepperState { t, q, .. } = self.state;
         if self.changed {
             return Anchor { t, q, values: self.anchor.values };
         }

@@ -10,7 +10,7 @@ use crate::linear_algebra::determines_rates;
 use crate::linear_algebra::vectors::largest_difference;
 use crate::mechanism::{Kinematic, Margin, Mechanism};
 use crate::scalar::number::{Real, Scalar};
-use crate::stepper::state::State;
+use crate::stepper::state::StepperState;
 use crate::tolerances::{positions, singular};
 
 /// `true` if a residual of `ratio` tolerances is seen in the accelerations at such a `margin`.
@@ -38,7 +38,7 @@ pub(crate) enum Predecessor<'a, R, const N: usize> {
     /// A position that was one of this assembly.
     Saved,
     /// The state before the step.
-    State(&'a State<R, N>),
+    State(&'a StepperState<R, N>),
 }
 
 /// Velocities, accelerations and margin at the position of an instant.

@@ -22,7 +22,7 @@ use crate::kinematics::homotopy::{Anchor, LARGEST_PIECE, largest_change, leads, 
 use crate::mechanism::{Kinematic, Mechanism};
 use crate::scalar::number::Real;
 use crate::stepper::instant::{Predecessor, SolvedPosition};
-use crate::stepper::state::State;
+use crate::stepper::state::StepperState;
 use crate::stepper::sweep::Sweep;
 use crate::stepper::whole_turns::{Turns, within_a_turn};
 
@@ -66,7 +66,7 @@ pub struct Stepper<S: Mechanism<R, N, M>, R: Real, const N: usize, const M: usiz
     /// `true` if parameters or inputs were changed since the state was solved: its rates need not be those of the path
     /// to the new ones.
     pub(crate) changed: bool,
-    pub(crate) state: State<R, N>,
+    pub(crate) state: StepperState<R, N>,
     pub(crate) turns: Turns<R, N>,
     /// Start of the next path, if not at the state: the last position that leads on. Parameters and inputs that were
     /// changed at the state have their former values there.
@@ -91,7 +91,7 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
         let Assembled { q, statistics, .. } = assembled;
         let position = mechanism.position(&parameters, &q, t);
         let found = SolvedPosition { t, q, position, statistics, open: None };
-        let state = State::at(&mechanism, &parameters, found, Predecessor::Guess)?;
+        let state = StepperState::at(&mechanism, &parameters, found, Predecessor::Guess)?;
         let mut stepper = Self::at(mechanism, parameters, state, Turns::new(counts, t));
         stepper.take_turns_off();
         Ok(stepper)
@@ -101,7 +101,7 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
     pub(crate) fn at(
         mechanism: S,
         parameters: S::Parameters,
-        state: State<R, N>,
+        state: StepperState<R, N>,
         turns: Turns<R, N>,
     ) -> Self {
         let anchor = Anchor { t: state.t, q: state.q, values: mechanism.values() };

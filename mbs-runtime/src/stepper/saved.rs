@@ -9,12 +9,12 @@ use crate::kinematics::homotopy::{Anchor, EVALUATIONS, Homotopy, leads, put_shor
 use crate::kinematics::least_squares_assembly::solve_nearest;
 use crate::kinematics::position::solve_with_position;
 use crate::linear_algebra::vectors::largest_difference;
-use crate::mechanism::kept::Kept;
+use crate::mechanism::saved_variables::Kept;
 use crate::mechanism::{Kinematic, Mechanism};
 use crate::scalar::number::Real;
 use crate::stepper::Stepper;
 use crate::stepper::instant::{Predecessor, SolvedPosition};
-use crate::stepper::state::State;
+use crate::stepper::state::StepperState;
 use crate::stepper::whole_turns::Turns;
 use crate::tolerances::positions;
 
@@ -207,7 +207,7 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
     ///
     /// Changes that wait for a step are not in it.
     pub fn save(&self) -> Saved<N, S::Kept> {
-        let State { t, q, margin, .. } = self.state;
+        let StepperState { t, q, margin, .. } = self.state;
         let values = if self.changed && leads(margin) { self.anchor.values } else { self.mechanism.values() };
         let at = Anchor { t, q, values };
         let from = if self.led || !leads(margin) { &self.anchor } else { &at };
@@ -257,7 +257,7 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
         }
         let position = mechanism.position(&parameters, &q, t);
         let found = SolvedPosition { t, q, position, statistics, open: None };
-        let state = State::at(&mechanism, &parameters, found, Predecessor::Saved)?;
+        let state = StepperState::at(&mechanism, &parameters, found, Predecessor::Saved)?;
         if led.is_none() && !stands {
             // A position is near, but nothing tells that it is in the assembly.
             return Err(FailureKind::not_followed(0.0, state.margin).at(t.to_f64()));

@@ -11,7 +11,7 @@ use crate::scalar::number::Real;
 use crate::stepper::Stepper;
 use crate::stepper::fast_step::{FastStep, Judgement, Start, quick};
 use crate::stepper::instant::{Predecessor, Rates, SolvedPosition};
-use crate::stepper::state::State;
+use crate::stepper::state::StepperState;
 
 /// Distance from the prediction over the margin up to which a step needs no test.
 #[inline(always)]
@@ -25,7 +25,7 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
     pub(super) fn advanced(&mut self, t: R, phases: S::Phases) -> Result<Statistics, Failure> {
         // Rows that may contradict each other are always looked at.
         if M == N && self.is_ready() && !self.waits() {
-            let State { q, qd, qdd, margin, .. } = &self.state;
+            let StepperState { q, qd, qdd, margin, .. } = &self.state;
             let weights = &weights(&self.mechanism.coordinate_scales(&self.parameters));
             let start = Start { t: self.state.t, q, qd, qdd, margin: *margin, weights };
             let trial = FastStep::of(&self.mechanism, &self.parameters, &start, t, R::mask(true));
@@ -50,7 +50,7 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
     #[inline(never)]
     fn looked_at(&mut self, trial: &FastStep<R, N>, t: R, phases: S::Phases) -> Option<Statistics> {
         let scales = self.mechanism.coordinate_scales(&self.parameters);
-        let State { q, qd, qdd, margin, .. } = &self.state;
+        let StepperState { q, qd, qdd, margin, .. } = &self.state;
         let start = Start { t: self.state.t, q, qd, qdd, margin: *margin, weights: &scales };
         let Judgement { plain, coarse, doubtful } =
             trial.judgement(&start, t, &scales, const { link_lengths::any(S::COORDINATES) });
@@ -183,7 +183,7 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
         }
         let points = const { link_lengths::points(S::COORDINATES) };
         let metric = (&points, &scales);
-        let State { t, qd, qdd, .. } = &self.state;
+        let StepperState { t, qd, qdd, .. } = &self.state;
         let h = found.t - *t;
         let mut off = end;
         off.iter_mut().zip(&prediction.q).for_each(|(off, foreseen)| *off = *off - *foreseen);
@@ -197,7 +197,7 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
     /// The position at `t` as a regular state foresees it.
     #[inline(always)]
     pub(crate) fn predicted(&self, t: R) -> Prediction<R, N> {
-        let State { t: now, q, qd, qdd, repair, .. } = &self.state;
+        let StepperState { t: now, q, qd, qdd, repair, .. } = &self.state;
         let h = t - *now;
         let half_square = R::constant(0.5) * h * h;
         let scales = self.mechanism.coordinate_scales(&self.parameters);

@@ -14,7 +14,7 @@ use crate::tolerances::singular;
 /// (store-to-load forwarding).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(align(64))]
-pub(crate) struct State<R, const N: usize> {
+pub(crate) struct StepperState<R, const N: usize> {
     pub(crate) t: R,
     pub(crate) q: [R; N],
     pub(crate) qd: [R; N],
@@ -49,7 +49,7 @@ impl<R: Real> Drift<R> {
     }
 }
 
-impl<R: Real, const N: usize> State<R, N> {
+impl<R: Real, const N: usize> StepperState<R, N> {
     /// The state at a position that closes, or nearly so: not singular, in the declared assembly, with finite rates.
     #[inline(never)]
     pub(crate) fn at<S: Kinematic<R, N, M>, const M: usize>(
@@ -64,7 +64,7 @@ impl<R: Real, const N: usize> State<R, N> {
         }
         let mut state = match before {
             Predecessor::State(last) => *last,
-            Predecessor::Guess | Predecessor::Saved => State {
+            Predecessor::Guess | Predecessor::Saved => StepperState {
                 t: found.t,
                 q: found.q,
                 qd: rates.qd,

@@ -425,7 +425,7 @@ const fn way(work: &Work, evaluations: u32) -> Operations {
         .and(end)
 }
 
-/// `State::at`
+/// `StepperState::at`
 const fn state(work: &Work) -> Operations {
     let (n, m) = (work.coordinates as u64, work.rows as u64);
     let (branches, limits) = (work.branches as u64, work.limits as u64);

@@ -3,8 +3,8 @@
 use mbs_runtime::dynamics::{Adaptive, Point};
 use mbs_runtime::dynamics::{Dense, Monitor, Scrutiny};
 use mbs_runtime::dynamics::{
-    Direction, DormandPrince5, DormandPrince8, Embedded, Equation, ErrorNorm, FixedStep, RungeKutta4,
-    SemiImplicitEuler, State,
+    Direction, DormandPrince5, DormandPrince8, Embedded, Equation, ErrorNorm, FixedStep, IntegratorState,
+    RungeKutta4, SemiImplicitEuler,
 };
 use mbs_runtime::{Failure, FailureKind};
 
@@ -14,10 +14,10 @@ struct Oscillator {
 }
 
 impl Equation<f64> for Oscillator {
-    type State = State<f64, 1, [f64; 0]>;
+    type State = IntegratorState<f64, 1, [f64; 0]>;
 
     fn rate(&mut self, t: f64, y: &Self::State) -> Result<Self::State, Failure> {
-        Ok(State { q: y.qd, qd: [t - y.q[0]], states: [], work: 0.0 })
+        Ok(IntegratorState { q: y.qd, qd: [t - y.q[0]], states: [], work: 0.0 })
     }
 }
 
@@ -32,8 +32,8 @@ impl ErrorNorm<f64> for Oscillator {
     }
 }
 
-fn start() -> State<f64, 1, [f64; 0]> {
-    State { q: [1.0], qd: [0.0], states: [], work: 0.0 }
+fn start() -> IntegratorState<f64, 1, [f64; 0]> {
+    IntegratorState { q: [1.0], qd: [0.0], states: [], work: 0.0 }
 }
 
 fn exact(t: f64) -> f64 {

@@ -2,7 +2,8 @@
 
 use mbs_runtime::dynamics::{
     Baumgarte, Direction, DormandPrince5, DormandPrince8, Embedded, Explicit, FixedStep, Formulation, Method,
-    MethodWarning, Projection, RungeKutta4, SemiImplicitEuler, Simulation, Stages, Tolerance, Unstabilized,
+    MethodWarning, ProjectedStages, Projection, RungeKutta4, SemiImplicitEuler, Simulation, Tolerance,
+    Unstabilized,
 };
 use mbs_runtime::{Failure, FailureKind};
 
@@ -67,7 +68,7 @@ fn projected_methods_keep_their_order() {
 
 #[test]
 fn stages_on_the_constraints_give_the_same_motion() {
-    let method = Explicit::new(RungeKutta4, Projection { stages: Stages::All });
+    let method = Explicit::new(RungeKutta4, Projection { stages: ProjectedStages::All });
     let simulation = stepped(method, 4000);
     assert!(error(&simulation) < 2e-8, "{:e}", error(&simulation));
     assert!(simulation.counts().projected_stages >= 16_000);

@@ -1,8 +1,8 @@
 //! Loops whose bars come in line several times: the rows lose rank, and the motion goes on.
 
 use mbs_runtime::dynamics::{
-    DormandPrince8, Explicit, Extrapolated, Method, MethodWarning, Projection, RungeKutta4, Simulation,
-    Stages, Tolerance,
+    DormandPrince8, Explicit, Extrapolated, Method, MethodWarning, ProjectedStages, Projection, RungeKutta4,
+    Simulation, Tolerance,
 };
 use mbs_runtime::{Failure, FailureKind, mechanism};
 
@@ -61,7 +61,7 @@ fn one_and_two_loops_pass_ten_singular_positions() {
 
 #[test]
 fn stages_on_the_constraints_pass_singular_positions_too() {
-    let method = Explicit::new(RungeKutta4, Projection { stages: Stages::All });
+    let method = Explicit::new(RungeKutta4, Projection { stages: ProjectedStages::All });
     for h in [1e-3, 5e-3] {
         let error = error::<_, 6, 5>(method, (h, 1.0, 0.0)).unwrap();
         println!("h = {h}: {error:.1e}");
@@ -84,7 +84,7 @@ fn extrapolated_steps_pass_singular_positions_too() {
 /// One loop whose second upright is longer by `excess` (m), from rest at half a radian from the vertical.
 fn unequal(
     excess: f64,
-    stages: Stages,
+    stages: ProjectedStages,
 ) -> Simulation<Linkage<4, 3>, Explicit<DormandPrince8, Projection>, f64, 4, 3> {
     let (mut linkage, ..) = parallel_loops::<4, 3>(0.0, 0.0);
     linkage.rods[1].length += excess;
@@ -97,7 +97,7 @@ fn unequal(
 /// Of [`unequal`] the largest angle
 /// (rad) between both uprights before the first one is 0.3 m below its foot or 2 s are over, and the energy (J) that is not
 /// accounted for.
-fn with_a_longer_upright(excess: f64, stages: Stages) -> [f64; 2] {
+fn with_a_longer_upright(excess: f64, stages: ProjectedStages) -> [f64; 2] {
     let mut run = unequal(excess, stages);
     let mut opened = 0.0_f64;
     while run.q()[1] > -0.3 && run.t() < 2.0 {
@@ -113,7 +113,7 @@ fn with_a_longer_upright(excess: f64, stages: Stages) -> [f64; 2] {
 fn a_loop_whose_uprights_differ_turns_aside_where_its_bars_come_almost_in_line() {
     /// Of 15 J: it turns within 1e-4 of a second where the uprights differ by 1e-8.
     const DEFECT: f64 = 1e-5;
-    for stages in [Stages::None, Stages::All] {
+    for stages in [ProjectedStages::None, ProjectedStages::All] {
         for excess in [1e-4, -1e-4, 1e-6, -1e-6, 1e-8, -1e-8] {
             let [opened, defect] = with_a_longer_upright(excess, stages);
             println!(
@@ -133,10 +133,10 @@ fn where_rounding_decides_whether_a_loop_turns_aside_a_strict_run_goes_on_or_say
     const DEFECT: f64 = 1e-4;
     for excess in [1e-9, 3e-10, 1e-10, 5e-11, 2e-11, 1e-11] {
         for excess in [excess, -excess] {
-            let mut loose = unequal(excess, Stages::None);
+            let mut loose = unequal(excess, ProjectedStages::None);
             loose.advance_to(2.0).unwrap_or_else(|failure| panic!("{excess:e}: {failure}"));
             assert!(loose.balance().defect.abs() < DEFECT, "{excess:e}: {:e} J", loose.balance().defect);
-            let mut strict = unequal(excess, Stages::None).with_tolerance(Tolerance::new(1e-11));
+            let mut strict = unequal(excess, ProjectedStages::None).with_tolerance(Tolerance::new(1e-11));
             if let Err(failure) = strict.advance_to(2.0) {
                 assert_undecided_in_line(failure, strict.t(), [strict.q()[1], strict.q()[3]]);
             }
@@ -184,7 +184,7 @@ fn where_a_force_jumps_in_line_a_strict_run_stops_there_and_a_loose_one_goes_on(
     const JUMP: f64 = 1.0;
     let run = |jump: f64, tolerance: f64| {
         let switching: Switching = Switching { jump };
-        let method = Explicit::new(DormandPrince8, Projection { stages: Stages::None });
+        let method = Explicit::new(DormandPrince8, Projection { stages: ProjectedStages::None });
         let run = Simulation::start_from_text(switching, method, 0.0).expect("it starts");
         let mut run = run.with_tolerance(Tolerance::new(tolerance));
         (run.advance_to(2.0), run)
@@ -229,21 +229,21 @@ mechanism! {
 
 type Run = Simulation<Tied, Explicit<RungeKutta4, Projection>, f64, 4, 4>;
 
-fn tied(above: f64, below: f64, stages: Stages) -> Run {
+fn tied(above: f64, below: f64, stages: ProjectedStages) -> Run {
     let method = Explicit::new(RungeKutta4, Projection { stages });
     Simulation::start_from_text(Tied { above, below }, method, 0.0).expect("it starts")
 }
 
 #[test]
 fn a_rank_that_rises_behind_a_change_is_noticed() {
-    assert_eq!(tied(0.5, 0.0, Stages::None).doubt(1e-3), Some(MethodWarning::RisingRank));
-    let mut run = tied(0.0, 0.0, Stages::None);
+    assert_eq!(tied(0.5, 0.0, ProjectedStages::None).doubt(1e-3), Some(MethodWarning::RisingRank));
+    let mut run = tied(0.0, 0.0, ProjectedStages::None);
     run.step_to(0.1, 100).expect("it moves");
     assert_eq!(run.doubt(1e-3), None);
     run.change(|tied| tied.above = 0.5);
     run.step(1e-3).expect("it moves");
     assert_eq!(run.doubt(1e-3), Some(MethodWarning::RisingRank));
-    let mut run = tied(0.0, 0.0, Stages::WhereNeeded);
+    let mut run = tied(0.0, 0.0, ProjectedStages::WhereNeeded);
     run.step(1e-3).expect("it moves");
     assert_eq!(run.counts().projected_stages, 0);
     run.change(|tied| tied.above = 0.5);
@@ -253,14 +253,14 @@ fn a_rank_that_rises_behind_a_change_is_noticed() {
 
 #[test]
 fn a_rank_that_rises_behind_a_singular_position_is_noticed() {
-    let mut run = tied(0.0, 0.5, Stages::None);
+    let mut run = tied(0.0, 0.5, ProjectedStages::None);
     // In line after a quarter turn at 2 rad/s, 0.785 s.
     run.step_to(0.7, 70).expect("it moves");
     assert_eq!(run.doubt(1e-2), None);
     run.step_to(0.9, 20).expect("it moves");
     assert_eq!(run.doubt(1e-2), Some(MethodWarning::RisingRank));
     assert!(run.passage().is_some());
-    let mut twice = tied(0.0, 0.0, Stages::None);
+    let mut twice = tied(0.0, 0.0, ProjectedStages::None);
     twice.step_to(0.9, 90).expect("it moves");
     assert_eq!(twice.doubt(1e-2), None);
 }

@@ -1,7 +1,8 @@
 //! Single terms of the equations against formulas typed by hand: mass, springs, weight, efforts, the damping of violated rows.
 
 use mbs_runtime::dynamics::{
-    Baumgarte, Counts, Explicit, Formulation, Model, Penalty, RungeKutta4, Simulation, Solved, State, inverse,
+    Baumgarte, Counts, Explicit, Formulation, IntegratorState, Model, Penalty, RungeKutta4, Simulation,
+    Solved, inverse,
 };
 use mbs_runtime::{Dynamic, Failure, Mechanism, Stepper, mechanism};
 
@@ -135,7 +136,7 @@ impl<S: Dynamic<f64, N, M>, F: Formulation<S, f64, N, M>, const N: usize, const 
         &self,
         model: &Model<'_, S, f64, N, M>,
         t: f64,
-        y: &State<f64, N, S::States>,
+        y: &IntegratorState<f64, N, S::States>,
         lambda: &[f64; M],
         counts: &mut Counts,
     ) -> Result<Solved<f64, N, M, S::States>, Failure> {

@@ -56,12 +56,12 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut dyn Write) ->
     let found =
         basins(mechanism, axes, arguments.size, arguments.at, &mut |row| bar.set_position(row as u64));
     bar.finish_and_clear();
-    let standard = || target_directory().join("mbs").join(choice.subject.file_name()).join("basins.svg");
+    let standard = || target_directory().join("mbs").join(choice.target.file_name()).join("basins.svg");
     let path = arguments.out.clone().unwrap_or_else(standard);
     // Before the table, which may meet a reader that has left.
     let written = write_file(&path, &basins_picture::basins(mechanism, &found));
     let [across, up] = axes.map(|axis| mechanism.coordinates()[axis.coordinate].name);
-    writeln!(out, "{} at t = {} s", choice.subject.title(), arguments.at)?;
+    writeln!(out, "{} at t = {} s", choice.target.title(), arguments.at)?;
     writeln!(
         out,
         "{0} × {0} guesses of {across} and {up}; the other coordinates start as the text says\n",
@@ -89,7 +89,7 @@ fn axes(arguments: &Arguments, choice: &Choice) -> Result<[usize; 2], CommandErr
         (Some(_), Some(_)) => Err(CommandError::Usage("`--x` and `--y` must be two coordinates".into())),
         _ => Err(CommandError::Usage(format!(
             "`{}` has only one coordinate; a picture needs two",
-            choice.subject.name()
+            choice.target.name()
         ))),
     }
 }

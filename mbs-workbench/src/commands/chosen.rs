@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use crate::catalogue::Catalogue;
-use crate::erased::dynamics::direct::moved_to;
+use crate::erased::dynamics::direct_dynamics::moved_to;
 use crate::erased::erase::Erased;
 use crate::erased::experiment::state_at;
 use crate::erased::facade::{AnyEquations, AnyMechanism, State};
@@ -12,8 +12,8 @@ use crate::mismatch::{Mismatch, nearest};
 use clap::Args;
 use mbs_codegen::StructureReport;
 
-use super::subject::Target;
-use super::{CommandError, table};
+use super::target::Target;
+use super::{CommandError, summary};
 
 #[derive(Args)]
 pub struct Chosen {
@@ -26,29 +26,29 @@ pub struct Chosen {
 
 /// A mechanism with the parameters of its first preset and of the command line.
 pub struct Choice {
-    pub subject: Target,
+    pub target: Target,
     pub mechanism: Box<dyn AnyMechanism>,
 }
 
 /// A mechanism that its rows fix or that forces move, with the same parameters.
 pub struct Described {
-    pub subject: Target,
+    pub target: Target,
     instance: Erased,
 }
 
 impl Chosen {
     pub fn described(&self, catalogue: &Catalogue) -> Result<Described, CommandError> {
-        let subject = Target::find(catalogue, &self.name)?;
-        let instance = subject.sound_instance(&subject.runs()[0], &self.parameters)?;
-        Ok(Described { subject, instance })
+        let target = Target::find(catalogue, &self.name)?;
+        let instance = target.sound_instance(&target.runs()[0], &self.parameters)?;
+        Ok(Described { target, instance })
     }
 
     pub fn choice(&self, catalogue: &Catalogue) -> Result<Choice, CommandError> {
-        let subject = Target::find(catalogue, &self.name)?;
-        let instance = subject.instance(&subject.runs()[0], &self.parameters)?;
+        let target = Target::find(catalogue, &self.name)?;
+        let instance = target.instance(&target.runs()[0], &self.parameters)?;
         let free = || Mismatch::Free { name: self.name.clone() };
         let mechanism = instance.into_mechanism().ok_or_else(free)?;
-        Ok(Choice { subject, mechanism })
+        Ok(Choice { target, mechanism })
     }
 }
 
@@ -72,7 +72,7 @@ impl Described {
     pub fn state(&self, t: f64) -> Result<State, CommandError> {
         let state = match &self.instance {
             Erased::Fixed(mechanism) => {
-                state_at(mechanism.as_ref(), self.subject.duration(mechanism.as_ref())?, t)
+                state_at(mechanism.as_ref(), self.target.duration(mechanism.as_ref())?, t)
             }
             Erased::Free(mechanism) if t >= 0.0 => match mechanism.dynamics() {
                 Some(dynamics) => moved_to(dynamics, t),
@@ -84,7 +84,7 @@ impl Described {
                 ));
             }
         };
-        state.map_err(|failure| CommandError::Failed(format!("{}: {failure}", self.subject.name())))
+        state.map_err(|failure| CommandError::Failed(format!("{}: {failure}", self.target.name())))
     }
 }
 
@@ -96,7 +96,7 @@ impl Choice {
 
     /// Index of the coordinate called `name`.
     pub fn coordinate(&self, name: &str) -> Result<usize, CommandError> {
-        coordinate(self.mechanism.as_ref(), self.subject.name(), name)
+        coordinate(self.mechanism.as_ref(), self.target.name(), name)
     }
 
     /// `phi2 = 2.5 rad, …` for coordinates by their indices.
@@ -110,7 +110,7 @@ impl Choice {
         let coordinates = self.mechanism.coordinates();
         let value = |(index, value): (&usize, &f64)| {
             let entry = coordinates[*index];
-            format!("{} = {}{}", entry.name, table::short(*value), table::unit(entry.unit))
+            format!("{} = {}{}", entry.name, summary::short(*value), summary::unit(entry.unit))
         };
         indices.iter().zip(x).map(value).collect::<Vec<_>>().join(", ")
     }

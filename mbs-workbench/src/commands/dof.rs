@@ -30,7 +30,7 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut dyn Write) ->
     let report = choice.structure()?;
     let state = choice.state(arguments.at)?;
     let found = freedom(mechanism, &report, &state.q, arguments.at);
-    writeln!(out, "{} at t = {} s\n", choice.subject.title(), arguments.at)?;
+    writeln!(out, "{} at t = {} s\n", choice.target.title(), arguments.at)?;
     let Freedom { coordinates: n, constraints, drives, structural_rank, rank, whole_rank, .. } = found;
     writeln!(out, "coordinates n                {n}")?;
     writeln!(

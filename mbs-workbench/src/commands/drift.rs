@@ -4,7 +4,7 @@ use crate::catalogue::Catalogue;
 use std::io::Write;
 use std::path::PathBuf;
 
-use crate::erased::dynamics::direct::{Approach, Rule, Simulated, Steps};
+use crate::erased::dynamics::direct_dynamics::{Approach, Rule, Simulated, Steps};
 use crate::motion::instants;
 use crate::target_directory::target_directory;
 use crate::teaching::drift::{Curve, picture};
@@ -16,7 +16,7 @@ use super::analysis::{
 };
 use super::chosen::{assignment, write_file};
 use super::run::steps;
-use super::subject::Target;
+use super::target::Target;
 
 #[derive(Args)]
 pub struct Arguments {
@@ -46,7 +46,7 @@ pub struct Arguments {
 
 /// Prints the violation of the constraints and the energy defect of each method, and writes the picture.
 pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut dyn Write) -> Result<(), CommandError> {
-    let subject = Target::find(catalogue, &arguments.name)?;
+    let target = Target::find(catalogue, &arguments.name)?;
     let rule = arguments.integrator.rule().ok_or_else(|| {
         CommandError::Usage("adaptive steps hide what drifts: use `--integrator rk4` or `euler`".to_string())
     })?;
@@ -57,10 +57,10 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut dyn Write) ->
     if arguments.damping.is_penalty_given() && !arguments.methods.contains(&MethodName::Penalty) {
         return Err(CommandError::Usage("`--alpha` belongs to `--methods penalty`".to_string()));
     }
-    let instance = subject.sound_instance(&subject.runs()[0], &arguments.parameters)?;
-    let until = arguments.until.map_or_else(|| subject.duration(instance.equations()), Ok)?;
+    let instance = target.sound_instance(&target.runs()[0], &arguments.parameters)?;
+    let until = arguments.until.map_or_else(|| target.duration(instance.equations()), Ok)?;
     let times = instants(until, arguments.steps);
-    let dynamics = dynamics(&subject, &instance)?;
+    let dynamics = dynamics(&target, &instance)?;
     let mut found = Vec::new();
     for method in &arguments.methods {
         let stabilization = arguments.damping.stabilization(*method, f64::INFINITY);
@@ -68,7 +68,7 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut dyn Write) ->
         let name = method.to_possible_value().map_or_else(String::new, |value| value.get_name().to_string());
         let simulated = dynamics
             .simulate(&approach, &times, &mut |_| ())
-            .map_err(|failure| CommandError::Failed(format!("{}, {name}: {failure}", subject.name())))?;
+            .map_err(|failure| CommandError::Failed(format!("{}, {name}: {failure}", target.name())))?;
         found.push((name, simulated));
     }
     let implicit = match arguments.methods.iter().any(|method| method.is_implicit()) {
@@ -79,12 +79,12 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut dyn Write) ->
         Rule::RungeKutta4 => "RK4",
         Rule::SemiImplicitEuler => "semi-implicit Euler",
     };
-    let title = format!("{}: {integrator}{implicit} in {} steps", subject.title(), arguments.steps);
+    let title = format!("{}: {integrator}{implicit} in {} steps", target.title(), arguments.steps);
     let curves: Vec<Curve> = found
         .iter()
         .map(|(name, simulated)| Curve::of(name.clone(), &simulated.motion, simulated.failure.is_some()))
         .collect();
-    let standard = || target_directory().join("mbs").join(subject.file_name()).join("drift.svg");
+    let standard = || target_directory().join("mbs").join(target.file_name()).join("drift.svg");
     let path = arguments.out.clone().unwrap_or_else(standard);
     // Written before the table: printing fails if the reader of the output has left.
     let written = write_file(&path, &picture(&title, until, &curves));

@@ -27,7 +27,7 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut dyn Write) ->
         .map_err(CommandError::Failed)?;
     let dynamic = mbs_codegen::latex_dynamic_formulas(mechanism.source(), Some(mechanism.scene()))
         .map_err(CommandError::Failed)?;
-    let text = document(mechanism, &formulas, dynamic.as_ref(), choice.subject.title());
+    let text = document(mechanism, &formulas, dynamic.as_ref(), choice.target.title());
     match &arguments.out {
         None => out.write_all(text.as_bytes())?,
         Some(path) => {

@@ -14,7 +14,7 @@ pub fn run(catalogue: &Catalogue, out: &mut dyn Write) -> Result<(), CommandErro
         let mechanism = card.equations();
         let parameters = mechanism.variables().iter().enumerate().map(|(index, entry)| {
             let value = mechanism.get(index).unwrap_or(f64::NAN);
-            format!("{}={}{}", entry.name, super::table::short(value), super::table::unit(entry.unit))
+            format!("{}={}{}", entry.name, super::summary::short(value), super::summary::unit(entry.unit))
         });
         writeln!(out, "{:width$}  {}", "", parameters.collect::<Vec<_>>().join(", "))?;
     }

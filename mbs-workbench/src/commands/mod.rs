@@ -1,4 +1,4 @@
-//! The commands of `mbs`, one file each.
+//! The commands of `mbs`: one file each, but for the six analyses, whose options and reports are in `run.rs`.
 
 mod analysis;
 pub mod basins;
@@ -14,9 +14,9 @@ pub mod next;
 pub mod print;
 pub mod run;
 pub mod structure;
-mod subject;
-mod table;
-pub mod table_file;
+mod summary;
+pub mod table;
+mod target;
 pub mod verify;
 
 use std::fmt;

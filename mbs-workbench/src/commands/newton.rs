@@ -9,7 +9,7 @@ use clap::Args;
 use mbs_runtime::{Failure, FailureKind};
 
 use super::chosen::{Choice, Chosen, assignment, finite};
-use super::{CommandError, table};
+use super::{CommandError, summary};
 
 #[derive(Args)]
 pub struct Arguments {
@@ -43,10 +43,10 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut dyn Write) ->
         | Failure { kind: FailureKind::NonFinite { line: 0, .. }, .. }),
     ) = &protocol.found
     {
-        return Err(CommandError::Failed(format!("{}: {failure}", choice.subject.name())));
+        return Err(CommandError::Failed(format!("{}: {failure}", choice.target.name())));
     }
     let all: Vec<usize> = (0..guess.len()).collect();
-    writeln!(out, "{} at t = {} s", choice.subject.title(), arguments.at)?;
+    writeln!(out, "{} at t = {} s", choice.target.title(), arguments.at)?;
     writeln!(out, "guess: {}", choice.values(&all, &guess))?;
     writeln!(out, "residual and step: lengths in the reference metric (rad, or reference lengths)\n")?;
     if arguments.plain {
@@ -58,7 +58,7 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut dyn Write) ->
     write_formulas(out, &choice, &mechanism.experiment().formulas(&guess, arguments.at))?;
     match &protocol.found {
         Ok(q) => write_found(out, &choice, &all, q, arguments.at),
-        Err(failure) => Err(CommandError::Failed(format!("{}: {failure}", choice.subject.name()))),
+        Err(failure) => Err(CommandError::Failed(format!("{}: {failure}", choice.target.name()))),
     }
 }
 
@@ -148,7 +148,7 @@ fn write_found(
     let values = experiment.branch_values(q, t);
     for (branch, value) in experiment.branches().iter().zip(&values) {
         let verdict = if *value > 0.0 { "holds" } else { "does not hold: another assembly" };
-        let (value, unit) = (table::short(*value), table::unit(branch.unit));
+        let (value, unit) = (summary::short(*value), summary::unit(branch.unit));
         writeln!(out, "branch {} = {value}{unit}, required positive: {verdict}", branch.name)?;
     }
     if values.is_empty() {

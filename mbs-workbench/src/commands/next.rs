@@ -28,11 +28,11 @@ pub struct Arguments {
 /// Prints the result of every step size and the largest safe step of each way.
 pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut dyn Write) -> Result<(), CommandError> {
     let choice = arguments.chosen.choice(catalogue)?;
-    let duration = choice.subject.duration(choice.mechanism.as_ref())?;
+    let duration = choice.target.duration(choice.mechanism.as_ref())?;
     let course = Course::new(choice.mechanism.as_ref(), duration, arguments.starts)
-        .map_err(|failure| CommandError::Failed(format!("{}: {failure}", choice.subject.name())))?;
+        .map_err(|failure| CommandError::Failed(format!("{}: {failure}", choice.target.name())))?;
     let steps: Vec<f64> = PARTS.map(|part| duration / f64::from(part)).to_vec();
-    writeln!(out, "{}\n", choice.subject.title())?;
+    writeln!(out, "{}\n", choice.target.title())?;
     writeln!(out, "previous   full Newton–Raphson from the previous position")?;
     writeln!(out, "predicted  full Newton–Raphson from q + h·q̇ + h²/2·q̈")?;
     writeln!(
@@ -82,7 +82,7 @@ fn cell(trial: &Trial) -> String {
 
 /// A step in time, and of the driver where it turns at a constant rate.
 fn step(choice: &Choice, duration: f64, h: f64) -> String {
-    match choice.subject.span() {
+    match choice.target.span() {
         Some(Span::Turn { .. }) => format!("{:.5} s = {:>6.2}°", h, 360.0 * h / duration),
         Some(Span::Seconds(_)) | None => format!("{h:.5} s"),
     }

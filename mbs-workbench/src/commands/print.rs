@@ -72,7 +72,7 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut dyn Write) ->
     let mechanism = choice.equations();
     let dynamic = arguments.quantities.iter().any(|quantity| quantity.is_dynamic());
     if dynamic && mechanism.dynamics().is_none() {
-        let name = choice.subject.name();
+        let name = choice.target.name();
         return Err(CommandError::Usage(format!(
             "`{name}` has neither masses nor forces: no M, Q, lambda or energy"
         )));
@@ -80,7 +80,7 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut dyn Write) ->
     if arguments.symbols {
         let formulas = mbs_codegen::formulas(mechanism.source(), Some(mechanism.scene()))
             .map_err(CommandError::Failed)?;
-        writeln!(out, "{}", choice.subject.title())?;
+        writeln!(out, "{}", choice.target.title())?;
         for quantity in arguments.quantities.iter().filter(|quantity| !quantity.is_dynamic()) {
             write(out, &symbolic(&formulas, *quantity))?;
         }
@@ -97,7 +97,7 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut dyn Write) ->
         return Ok(());
     }
     let state = choice.state(arguments.at)?;
-    writeln!(out, "{} at t = {} s", choice.subject.title(), arguments.at)?;
+    writeln!(out, "{} at t = {} s", choice.target.title(), arguments.at)?;
     let (loads, masses) = match mechanism.dynamics().filter(|_| dynamic) {
         None => (Loads::default(), Masses::default()),
         Some(dynamics) => {

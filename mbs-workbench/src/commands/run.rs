@@ -5,8 +5,8 @@ use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use crate::card::Usual;
-use crate::erased::dynamics::linear::SmallMotions;
+use crate::card::DefaultMethod;
+use crate::erased::dynamics::linearization::SmallMotions;
 use crate::erased::erase::Erased;
 use crate::erased::facade::{AnyEquations, Motion};
 use crate::motion::drop_idle;
@@ -24,8 +24,8 @@ use super::analysis::{
     at_least_zero, tolerance,
 };
 use super::chosen::{assignment, write_file};
-use super::subject::Target;
-use super::{CommandError, positive, table};
+use super::target::Target;
+use super::{CommandError, positive, summary};
 
 /// Default number of steps: half a degree each, smooth in a picture and few enough for a page.
 const STEPS: usize = 720;
@@ -201,21 +201,21 @@ impl Arguments {
         Arguments { command: "modes", selection, analysis, guesses, at, span, integration }
     }
 
-    fn wish(&self, subject: &Target) -> Request {
-        let method = self.integration.method.unwrap_or(match subject.usual() {
-            Usual::Projection => MethodName::Projection,
-            Usual::Velocity | Usual::VelocityInEqualSteps => MethodName::Velocity,
-            Usual::Extrapolated => MethodName::Extrapolated,
+    fn request(&self, target: &Target) -> Request {
+        let method = self.integration.method.unwrap_or(match target.default_method() {
+            DefaultMethod::Projection => MethodName::Projection,
+            DefaultMethod::Velocity | DefaultMethod::VelocityInEqualSteps => MethodName::Velocity,
+            DefaultMethod::Extrapolated => MethodName::Extrapolated,
         });
-        let usual = match subject.usual() {
-            Usual::VelocityInEqualSteps
+        let default_method = match target.default_method() {
+            DefaultMethod::VelocityInEqualSteps
                 if self.integration.method.is_none() && self.integration.tolerance.is_none() =>
             {
                 IntegratorName::Rk4
             }
             _ => IntegratorName::Order8,
         };
-        let integrator = self.integration.integrator.unwrap_or(usual);
+        let integrator = self.integration.integrator.unwrap_or(default_method);
         let tolerance = self.integration.tolerance.unwrap_or(TOLERANCE);
         Request {
             analysis: self.analysis,
@@ -228,7 +228,7 @@ impl Arguments {
             at: self.at,
             until: self.span.until,
             steps: self.span.steps.unwrap_or(STEPS),
-            given: UsedOptions {
+            used_options: UsedOptions {
                 steps: self.span.steps.is_some(),
                 method: self.integration.method.is_some(),
                 integrator: self.integration.integrator.is_some(),
@@ -285,15 +285,15 @@ impl Arguments {
 
 /// Runs the presets, prints a table and writes the report. Nothing is written if a run fails.
 pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut dyn Write) -> Result<(), CommandError> {
-    let subject = Target::find(catalogue, &arguments.selection.name)?;
-    let instances = subject.instances(&arguments.selection.parameters)?;
-    let wish = arguments.wish(&subject);
+    let target = Target::find(catalogue, &arguments.selection.name)?;
+    let instances = target.instances(&arguments.selection.parameters)?;
+    let request = arguments.request(&target);
     let (mut done, mut left_out) = (Vec::new(), Vec::new());
     for (index, instance) in instances.iter().enumerate() {
-        match wish.done(&subject, instance) {
+        match request.done(&target, instance) {
             Ok(found) => done.extend(found.into_iter().map(|done| RunResult { instance: index, ..done })),
             // Under some of several loads there may be no equilibrium.
-            Err(CommandError::Failed(reason)) if wish.is_of_rest(&subject) => left_out.push(reason),
+            Err(CommandError::Failed(reason)) if request.is_of_rest(&target) => left_out.push(reason),
             Err(error) => return Err(error),
         }
     }
@@ -301,23 +301,23 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut dyn Write) ->
         return Err(CommandError::Failed(left_out.join("\n")));
     }
     drop_idle(&mut done.iter_mut().map(|done| &mut done.motion).collect::<Vec<_>>());
-    let standard = || target_directory().join("mbs").join(subject.file_name());
+    let standard = || target_directory().join("mbs").join(target.file_name());
     let directory = arguments.selection.out.clone().unwrap_or_else(standard);
     let mut facts = facts(&instances, &done);
     facts.extend(left_out.iter().map(|reason| ["left out".to_string(), reason.clone()]));
     // Written before the table: printing fails if the reader of the output has left.
     let mut files = vec![
-        ("report.html", page(arguments, &subject, &instances, &done, &facts)),
+        ("report.html", page(arguments, &target, &instances, &done, &facts)),
         ("motion.csv", values(&done)),
     ];
     files.extend(modes(&done).map(|modes| ("modes.csv", modes)));
     if let Some(path) = &arguments.selection.svg {
-        write_file(path, &animated(&subject, instances[done[0].instance].1.equations(), &done[0].motion)?)?;
+        write_file(path, &animated(&target, instances[done[0].instance].1.equations(), &done[0].motion)?)?;
     }
     let written = write_report(&directory, &files);
-    writeln!(out, "{}", subject.title())?;
+    writeln!(out, "{}", target.title())?;
     for done in &done {
-        table::write(out, subject.shapes(), &done.label, &done.motion, &done.figures)?;
+        summary::write(out, target.shapes(), &done.label, &done.motion, &done.figures)?;
     }
     for reason in &left_out {
         writeln!(out, "\nleft out: {reason}")?;
@@ -330,9 +330,9 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut dyn Write) ->
 }
 
 /// The motion as an animated picture.
-fn animated(subject: &Target, mechanism: &dyn AnyEquations, motion: &Motion) -> Result<String, CommandError> {
-    let places = places(subject.picture(), mechanism, motion, None);
-    animation(&shapes(subject.shapes()), motion, &places)
+fn animated(target: &Target, mechanism: &dyn AnyEquations, motion: &Motion) -> Result<String, CommandError> {
+    let places = places(target.picture(), mechanism, motion, None);
+    animation(&shapes(target.shapes()), motion, &places)
         .map_err(|reason| CommandError::Failed(format!("no animated drawing: {reason}")))
 }
 
@@ -342,7 +342,7 @@ fn facts(instances: &[(Preset, Erased)], done: &[RunResult]) -> Vec<[String; 2]>
     for (index, entry) in first.variables().iter().enumerate() {
         let written = |mechanism: &dyn AnyEquations| {
             let value = mechanism.get(index).unwrap_or(f64::NAN);
-            format!("{}{}", table::short(value), table::unit(entry.unit))
+            format!("{}{}", summary::short(value), summary::unit(entry.unit))
         };
         if instances.iter().all(|(_, other)| other.equations().get(index) == first.get(index)) {
             facts.push([entry.name.to_string(), written(first)]);
@@ -363,7 +363,7 @@ fn facts(instances: &[(Preset, Erased)], done: &[RunResult]) -> Vec<[String; 2]>
 
 fn page(
     arguments: &Arguments,
-    subject: &Target,
+    target: &Target,
     instances: &[(Preset, Erased)],
     done: &[RunResult],
     facts: &[[String; 2]],
@@ -373,7 +373,7 @@ fn page(
     let shown: Vec<Motion> = done.iter().map(|done| done.motion.decimate(shown)).collect();
     let drawn = done.iter().zip(&shown).map(|(done, motion)| {
         let mechanism = instances[done.instance].1.equations();
-        places(subject.picture(), mechanism, motion, done.small.as_ref())
+        places(target.picture(), mechanism, motion, done.small.as_ref())
     });
     let drawn: Vec<_> = drawn.collect();
     let mut runs = Vec::new();
@@ -387,14 +387,14 @@ fn page(
         });
     }
     html(&Report {
-        name: subject.name(),
-        title: subject.title(),
-        description: subject.description(),
+        name: target.name(),
+        title: target.title(),
+        description: target.description(),
         source: instances[0].1.equations().source(),
         command: &arguments.command(),
         facts,
         runs: &runs,
-        drawing: &shapes(subject.shapes()),
+        drawing: &shapes(target.shapes()),
     })
 }
 

@@ -27,7 +27,7 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut dyn Write) ->
     let report = choice.structure()?;
     let entries: usize = report.rows.iter().map(|row| row.entries.len()).sum();
     let (m, n) = (report.rows.len(), report.coordinates.len());
-    writeln!(out, "{}\n", choice.subject.title())?;
+    writeln!(out, "{}\n", choice.target.title())?;
     let title = format!(
         "Phi_q: {m} × {n}, {entries} of {} entries (1: a number, p: parameters alone, x: varies; in brackets: \
          the coordinate that a row is matched with)",

@@ -1,145 +1,175 @@
-//! The short table that a run prints.
+//! `mbs table`.
 
-use std::io::{self, Write};
-use std::time::Duration;
+use std::fs;
+use std::io::Write;
+use std::path::PathBuf;
 
-use crate::erased::facade::{Motion, OutputCurve, spread};
-use mbs_codegen::picture::Shape;
+use crate::tables::{Columns, Fault, Kind, Points, Spline, chart, close_period, constant, read, sample};
+use crate::target_directory::target_directory;
+use clap::Args;
+use mbs_runtime::driver::{End, FitError};
 
-/// Rows of the table, first and last instant included.
-const ROWS: usize = 9;
+use super::CommandError;
+use super::chosen::{finite, write_file};
 
-/// Motion of the first traced point at a few instants, and figures.
-pub fn write(
-    out: &mut dyn Write,
-    drawing: &[Shape],
-    label: &str,
-    motion: &Motion,
-    figures: &[[String; 2]],
-) -> io::Result<()> {
-    writeln!(out, "\n{label}")?;
-    let outputs = || motion.outputs.iter().map(|output| output.name);
-    let traced = drawing.iter().find_map(|shape| match shape {
-        Shape::Trace { of, label } if outputs().any(|name| name == format!("{of}.0")) => Some((of, label)),
-        _ => None,
-    });
-    if let Some((point, name)) = traced {
-        write_point(out, point, name, motion)?;
-    }
-    for [name, value] in figures {
-        writeln!(out, "  {name}: {value}")?;
-    }
-    Ok(())
+#[derive(Args)]
+pub struct Arguments {
+    /// Table of numbers as CSV: comma, semicolon or tab; `#` begins a comment
+    #[arg(required_unless_present = "sample")]
+    file: Option<PathBuf>,
+    /// Units of the columns, `-` for one that is not read [default: those in the header]
+    #[arg(long, value_name = "\"deg, mm\"", value_parser = Columns::parse)]
+    columns: Option<Columns>,
+    /// The table repeats after a turn: a periodic quintic spline instead of a cubic one
+    #[arg(long)]
+    periodic: bool,
+    /// The table repeats after this, in the unit of its first column
+    #[arg(long, value_name = "P", value_parser = positive_number)]
+    period: Option<f64>,
+    /// Evenly spaced knots of a fit by least squares [default: through every point]
+    #[arg(long, value_name = "N", value_parser = super::positive)]
+    knots: Option<usize>,
+    /// Slopes at both ends of a cubic spline, in SI [default: natural ends]
+    #[arg(long, value_name = "A,B", value_parser = slopes, allow_hyphen_values = true, conflicts_with_all = ["periodic", "period"])]
+    slopes: Option<[f64; 2]>,
+    /// Print the spline as a Rust constant of this name, and nothing else
+    #[arg(long, value_name = "NAME", value_parser = constant_name)]
+    rust: Option<String>,
+    /// File of the picture [default: mbs/table/FILE.svg in cargo's target directory]
+    #[arg(long, value_name = "FILE.svg")]
+    out: Option<PathBuf>,
+    /// Print a table to try this on, and nothing else
+    #[arg(long, conflicts_with_all = ["file", "rust"])]
+    sample: bool,
 }
 
-/// Cost and accuracy of the solver, as pairs of name and value.
-pub fn figures(motion: &Motion, step_time: Duration) -> [[String; 2]; 4] {
-    let count = motion.iterations.len().max(1) as f64;
-    let mean = motion.iterations.iter().map(|n| f64::from(*n)).sum::<f64>() / count;
-    let most = motion.iterations.iter().max().copied().unwrap_or(0);
-    let closure = motion.closure.iter().copied().fold(0.0, f64::max);
-    let margin = motion.margin.iter().copied().fold(f64::INFINITY, f64::min);
-    let pair = |name: &str, value: String| [name.to_string(), value];
-    [
-        pair("iterations", format!("{mean:.1} a step, at most {most}")),
-        pair("largest closure error", format!("{closure:.1e} of the reference length")),
-        pair("smallest margin to singularity", format!("{margin:.3}")),
-        pair("time a step", format!("{:.2} µs", step_time.as_secs_f64() * 1e6)),
-    ]
+fn positive_number(text: &str) -> Result<f64, String> {
+    finite(text)
+        .and_then(|number| if number > 0.0 { Ok(number) } else { Err("it must be above 0".to_string()) })
 }
 
-/// A number with six digits and no needless zeros.
-pub fn short(value: f64) -> String {
-    // No minus in front of a rounded zero.
-    let text = format!("{:.6}", if value.abs() < 5e-7 { 0.0 } else { value });
-    let trimmed = text.trim_end_matches('0').trim_end_matches('.');
-    if value != 0.0 && !(1e-4..1e7).contains(&value.abs()) {
-        format!("{value:e}")
+fn slopes(text: &str) -> Result<[f64; 2], String> {
+    let (first, last) = text.split_once(',').ok_or("write two slopes: `--slopes 0,0`")?;
+    Ok([finite(first)?, finite(last)?])
+}
+
+fn constant_name(text: &str) -> Result<String, String> {
+    if constant::is_name(text) {
+        Ok(text.to_string())
     } else {
-        trimmed.to_string()
+        Err("a constant's name is needed, like `LIFT`".to_string())
     }
 }
 
-/// A number of any size with the given number of digits and no needless zeros.
-pub fn significant(value: f64, digits: usize) -> String {
-    if value == 0.0 {
-        return "0".to_string();
-    }
-    let rounded = format!("{value:.*e}", digits.saturating_sub(1));
-    let exponent: i32 = rounded.split_once('e').and_then(|(_, power)| power.parse().ok()).unwrap_or(0);
-    let trimmed = |text: &str| match text.contains('.') {
-        true => text.trim_end_matches('0').trim_end_matches('.').to_string(),
-        false => text.to_string(),
+/// Fits a spline to a table: prints residual and noise and draws a picture, or prints the spline as Rust.
+pub fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<(), CommandError> {
+    let Some(file) = &arguments.file else {
+        let text = sample::valve_lift().map_err(|error| CommandError::Failed(error.to_string()))?;
+        return Ok(out.write_all(text.as_bytes())?);
     };
-    match (usize::try_from(exponent), rounded.split_once('e')) {
-        (Ok(power), _) if power < digits.max(6) => {
-            trimmed(&format!("{value:.*}", digits.saturating_sub(power + 1)))
-        }
-        (Err(_), _) if exponent >= -4 => {
-            let behind = digits.saturating_sub(1) + exponent.unsigned_abs() as usize;
-            trimmed(&format!("{value:.behind$}"))
-        }
-        (_, Some((mantissa, power))) => format!("{}e{power}", trimmed(mantissa)),
-        (_, None) => rounded,
+    let named = |message: String| CommandError::Failed(format!("{}: {message}", file.display()));
+    let bytes = fs::read(file).map_err(|error| named(format!("cannot be read: {error}")))?;
+    let faulty = |fault: Fault| named(fault.to_string());
+    let mut points = read(&bytes, arguments.columns.as_ref()).map_err(faulty)?;
+    let kind = kind(arguments, &points)?;
+    let mut repeated = false;
+    if let Kind::PeriodicQuintic(period) = kind {
+        repeated = close_period(&mut points, period).map_err(faulty)?;
     }
-}
-
-/// A unit after a number; none where it is 1.
-pub fn unit(unit: &str) -> String {
-    if unit == "1" { String::new() } else { format!(" {unit}") }
-}
-
-fn write_point(out: &mut dyn Write, point: &str, name: &str, motion: &Motion) -> io::Result<()> {
-    let component =
-        |suffix: &str| motion.outputs.iter().find(|output| output.name == format!("{point}{suffix}"));
-    let components: Vec<&OutputCurve> = [".0", ".1", ".2"].into_iter().map_while(component).collect();
-    writeln!(out, "  point {point} ({name}): position (m), velocity (m/s), acceleration (m/s²)")?;
-    write!(out, "  {:>9}", "t (s)")?;
-    for (mark, width) in [("", 10), ("v", 10), ("a", 11)] {
-        write!(out, " ")?;
-        for (axis, _) in ["x", "y", "z"].iter().zip(&components) {
-            write!(out, " {:>width$}", format!("{mark}{axis}"))?;
-        }
+    let fitted = Spline::fit(&points.x, &points.y, kind, arguments.knots).and_then(|spline| {
+        let gain = spline.noise_gain(&points.x, kind)?;
+        Ok((spline, gain))
+    });
+    let (spline, gain) = fitted.map_err(|error| named(explain(error, &points)))?;
+    let source = file.file_name().map_or_else(|| "table".into(), |name| name.to_string_lossy().into_owned());
+    if let Some(name) = &arguments.rust {
+        return Ok(out.write_all(constant::rust(name, &source, &points, &spline).as_bytes())?);
     }
-    writeln!(out)?;
-    for index in spread(motion.time.len(), ROWS) {
-        write!(out, "  {:>9.5}", motion.time[index])?;
-        let cell = |curve: &Option<Vec<f64>>| curve.as_ref().map_or(f64::NAN, |values| values[index]);
-        write!(out, " ")?;
-        components.iter().try_for_each(|curve| write!(out, " {:>10.6}", signless(curve.value[index], 6)))?;
-        write!(out, " ")?;
-        components.iter().try_for_each(|curve| write!(out, " {:>10.5}", signless(cell(&curve.rate), 5)))?;
-        write!(out, " ")?;
-        components
-            .iter()
-            .try_for_each(|curve| write!(out, " {:>11.4}", signless(cell(&curve.acceleration), 4)))?;
-        writeln!(out)?;
+    let picture = arguments
+        .out
+        .clone()
+        .unwrap_or_else(|| target_directory().join("mbs").join("table").join(&source).with_extension("svg"));
+    // Written before the lines: printing fails if the reader of the output has left.
+    let written = write_file(&picture, &chart::svg(&points, &spline));
+    write_summary(out, &points, &spline, kind, repeated)?;
+    let interpolated =
+        Spline::fit(&points.x, &points.y, kind, None).and_then(|s| s.noise_gain(&points.x, kind));
+    let second = points.columns.y.1.derivative(&points.columns.x.1, 2);
+    writeln!(
+        out,
+        "noise     1e-6 {} in each point is {:.2e} {second} in the second derivative",
+        points.columns.y.1.coherent,
+        1e-6 * gain
+    )?;
+    if let (Some(_), Ok(interpolated)) = (arguments.knots, interpolated) {
+        writeln!(out, "          {:.1} times less than through every point", interpolated / gain)?;
     }
+    written?;
+    writeln!(out, "picture   {}", picture.display())?;
     Ok(())
 }
 
-/// Zero without a sign where the number rounds to zero.
-fn signless(value: f64, digits: i32) -> f64 {
-    if value.abs() < 0.5 * 10_f64.powi(-digits) { 0.0 } else { value }
+fn kind(arguments: &Arguments, points: &Points) -> Result<Kind, CommandError> {
+    let unit = &points.columns.x.1;
+    match (arguments.period, arguments.periodic) {
+        (Some(period), _) => Ok(Kind::PeriodicQuintic(period * unit.factor)),
+        (None, true) => unit.turn().map(Kind::PeriodicQuintic).ok_or_else(|| {
+            CommandError::Usage(format!(
+                "a turn is no period of a column in {}\nhelp: say `--period`, in {0}",
+                unit.name
+            ))
+        }),
+        (None, false) => {
+            Ok(Kind::Cubic(arguments.slopes.map_or([End::Natural; 2], |slopes| slopes.map(End::Slope))))
+        }
+    }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
+fn write_summary(
+    out: &mut dyn Write,
+    points: &Points,
+    spline: &Spline,
+    kind: Kind,
+    repeated: bool,
+) -> std::io::Result<()> {
+    let (across, up) = (&points.columns.x.1, &points.columns.y.1);
+    let [x, y] = &points.names;
+    let [low, high] = [points.x[0], points.x[points.x.len() - 1]].map(|x| x / across.factor);
+    let extra = if repeated { "; the last line repeats the first" } else { "" };
+    writeln!(
+        out,
+        "points    {}: {y} ({}) over {x}, {low:.6} to {high:.6} {}{extra}",
+        points.x.len(),
+        up.name,
+        across.name
+    )?;
+    let (degree, smooth) = match kind {
+        Kind::Cubic(_) => ("cubic", 2),
+        Kind::PeriodicQuintic(_) => ("periodic quintic", 4),
+    };
+    writeln!(out, "spline    {degree}, {} knots, {smooth} continuous derivatives", spline.knots.len())?;
+    let (largest, mean, place) = spline.residual(&points.x, &points.y);
+    writeln!(
+        out,
+        "residual  at most {largest:.2e} {} (line {}), root mean square {mean:.2e} {0}",
+        up.coherent, points.lines[place]
+    )
+}
 
-    #[test]
-    fn significant_digits_are_kept_of_every_size() {
-        let found = [2.397_199_4, -0.000_123_456_789, 1.2e-5, 654_321.987, 9.999_999_9, 3e9, 0.0, -20.0];
-        let expected = ["2.397199", "-0.0001234568", "1.2e-5", "654322", "10", "3e9", "0", "-20"];
-        assert_eq!(found.map(|value| significant(value, 7)), expected);
-        assert_eq!((significant(0.1, 3), significant(1234.5, 3)), ("0.1".into(), "1234".into()));
-    }
-
-    #[test]
-    fn short_numbers_keep_what_matters() {
-        assert_eq!(
-            [0.2, 20.0, 0.0, core::f64::consts::TAU, 1e-9, -3.0].map(short),
-            ["0.2", "20", "0", "6.283185", "1e-9", "-3"]
-        );
+/// Message of a failed fit, with the line of the file and a cure.
+fn explain(error: FitError, points: &Points) -> String {
+    let column = &points.columns.x;
+    let at = |point: usize| points.lines.get(point).copied().unwrap_or(0);
+    let fault = |line: usize, cure: &str| {
+        Fault { line, column: column.0 + 1, message: error.to_string(), cure: cure.to_string() }.to_string()
+    };
+    match error {
+        FitError::TooFewPoints { given, .. } => fault(0, &format!("say `--knots {given}` at most")),
+        FitError::TooFewKnots { needed, .. } => fault(0, &format!("{needed} points and knots are the least")),
+        FitError::PointsNotIncreasing { point }
+        | FitError::PointOutside { point }
+        | FitError::PointNotFinite { point } => fault(at(point), "correct the line"),
+        FitError::Undetermined { .. } => fault(0, "fewer `--knots`, or more points where there are few"),
+        _ => fault(0, "check the table and the period"),
     }
 }

@@ -3,7 +3,7 @@
 use mbs_runtime::{Dynamic, Kinematic, Mechanism, Partitioned, Reveal, Visitor};
 
 use super::dynamics::AnyDynamics;
-use super::dynamics::direct::PartitionedFunctions;
+use super::dynamics::direct_dynamics::PartitionedFunctions;
 use super::facade::{AnyEquations, AnyMechanism, Facade};
 
 /// A mechanism of any size.

@@ -3,7 +3,7 @@
 use mbs_runtime::{Dynamic, DynamicState, Entry};
 
 use crate::erased::dynamics::AnyDynamics;
-use crate::erased::dynamics::direct::PartitionedFunctions;
+use crate::erased::dynamics::direct_dynamics::PartitionedFunctions;
 use crate::erased::facade::{Facade, Forced, State};
 
 /// States and multipliers of a state of motion, in addition to coordinates and their rates.

@@ -2,7 +2,7 @@
 
 use core::fmt::Write;
 
-use crate::erased::dynamics::linear::SmallMotions;
+use crate::erased::dynamics::linearization::SmallMotions;
 use crate::erased::facade::Motion;
 use crate::motion::{Forces, LoadCurve};
 

@@ -3,7 +3,7 @@
 use mbs_codegen::picture::Picture;
 use serde::Serialize;
 
-use crate::erased::dynamics::linear::SmallMotions;
+use crate::erased::dynamics::linearization::SmallMotions;
 use crate::erased::facade::AnyEquations;
 use crate::motion::Motion;
 

@@ -2,8 +2,8 @@
 
 use crate::{double_pendulum, governor, quarter_car};
 use mbs_workbench::card::Card;
-use mbs_workbench::erased::dynamics::linear::SmallMotions;
-use mbs_workbench::erased::dynamics::linear::Stability;
+use mbs_workbench::erased::dynamics::linearization::SmallMotions;
+use mbs_workbench::erased::dynamics::linearization::Stability;
 use mbs_workbench::erased::dynamics::modes::*;
 use nalgebra::{Complex, DVector};
 

@@ -3,7 +3,7 @@
 use crate::reference::dynamics_of;
 use crate::{car_axis, four_bar_mass, governor, quarter_car, slider_crank_mass};
 use mbs_workbench::card::Card;
-use mbs_workbench::erased::dynamics::direct::{
+use mbs_workbench::erased::dynamics::direct_dynamics::{
     Approach, Implicit, ImplicitMethod, Pair, Stabilization, Steps,
 };
 use mbs_workbench::motion::instants;

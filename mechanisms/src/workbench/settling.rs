@@ -3,7 +3,7 @@
 use crate::{double_pendulum, four_bar_mass, pendulum};
 use mbs_workbench::card::Card;
 use mbs_workbench::erased::dynamics::AnyDynamics;
-use mbs_workbench::erased::dynamics::linear::Stability;
+use mbs_workbench::erased::dynamics::linearization::Stability;
 
 /// Coordinates where the mechanism settles that rests unstably next to `guesses`.
 #[track_caller]

@@ -2,7 +2,7 @@
 
 use mbs_runtime::dynamics::{
     AugmentedLagrangian, Baumgarte, DormandPrince5, DormandPrince8, Explicit, Extrapolated, GeneralizedAlpha,
-    Method, Penalty, Projection, RungeKutta4, SemiImplicitEuler, Simulation, Stages, Unstabilized,
+    Method, Penalty, ProjectedStages, Projection, RungeKutta4, SemiImplicitEuler, Simulation, Unstabilized,
     VelocityTransformation,
 };
 use mbs_runtime::{Dynamic, Failure, FailureKind, mechanism};
@@ -99,7 +99,7 @@ fn no_step_of_any_method_ends_with_an_energy_from_nowhere() {
             }
             each!(
                 Explicit::new(RungeKutta4, Projection::default()),
-                Explicit::new(RungeKutta4, Projection { stages: Stages::All }),
+                Explicit::new(RungeKutta4, Projection { stages: ProjectedStages::All }),
                 Explicit::new(DormandPrince8, Projection::default()),
                 Explicit::new(DormandPrince5, Projection::default()),
                 Explicit::new(SemiImplicitEuler, Projection::default()),

@@ -36,7 +36,7 @@ const HOUSES: &[House] = &[
             "dynamics/linear_systems",
             "dynamics/formulations",
             "dynamics/implicit",
-            "dynamics/integration",
+            "dynamics/first_order_form",
             "dynamics/equilibrium",
             "dynamics/analyses",
             "dynamics/simulation",
@@ -75,7 +75,7 @@ const HOUSES: &[House] = &[
             "verify",
             "teaching",
             "commands",
-            "program",
+            "command_line",
         ],
     },
 ];

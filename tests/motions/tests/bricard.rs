@@ -2,7 +2,7 @@
 #![forbid(unsafe_code)]
 
 use mbs_runtime::dynamics::{
-    DormandPrince8, Explicit, MethodWarning, Projection, RungeKutta4, Simulation, Stages, Tolerance,
+    DormandPrince8, Explicit, MethodWarning, ProjectedStages, Projection, RungeKutta4, Simulation, Tolerance,
     equilibrium,
 };
 use mbs_runtime::{Dynamic, Mechanism};
@@ -75,7 +75,7 @@ fn bricards_loop_moves_as_one_degree_of_freedom_with_two_angles() {
     /// Distance of the loop's ends (m), error of the angles' relation, energy over the largest weight's, angle a step (rad).
     const EXACT: f64 = 1e-9;
     const STEP: f64 = 0.01;
-    let method = Explicit::new(DormandPrince8, Projection { stages: Stages::All });
+    let method = Explicit::new(DormandPrince8, Projection { stages: ProjectedStages::All });
     let run = Simulation::start_from_text(Bricard::<f64>::default(), method, 0.0).expect("it starts");
     let mut run = run.with_tolerance(Tolerance::new(1e-11));
     let mut worst = [0.0_f64; 4];
@@ -136,7 +136,7 @@ fn by_default_rk4_keeps_its_order_where_rows_follow_from_others_on_the_constrain
 
 #[test]
 fn stages_left_beside_the_constraints_are_doubtful_where_the_rank_rises_there() {
-    let run = in_equal_steps(Projection { stages: Stages::None }, 1e-3);
+    let run = in_equal_steps(Projection { stages: ProjectedStages::None }, 1e-3);
     assert_eq!(run.doubt(1e-3), Some(MethodWarning::RisingRank));
     println!("bricard, RK4 with stages beside the constraints: energy {:.2} J", run.balance().defect);
     assert!(run.balance().defect.abs() > 0.1);
@@ -144,7 +144,7 @@ fn stages_left_beside_the_constraints_are_doubtful_where_the_rank_rises_there() 
 
 #[test]
 fn by_default_order_eight_takes_steps_as_long_as_with_all_stages_projected() {
-    let counts = [Projection::default(), Projection { stages: Stages::All }].map(|projection| {
+    let counts = [Projection::default(), Projection { stages: ProjectedStages::All }].map(|projection| {
         let method = Explicit::new(DormandPrince8, projection);
         let mut run = Simulation::start_from_text(Bricard::<f64>::default(), method, 0.0).expect("it starts");
         run.advance_to(2.0).expect("it moves");

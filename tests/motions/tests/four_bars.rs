@@ -4,8 +4,8 @@
 use std::thread;
 
 use mbs_runtime::dynamics::{
-    DormandPrince8, Explicit, Formulation, Method, Projection, RungeKutta4, Simulation, Stages, Tolerance,
-    VelocityTransformation,
+    DormandPrince8, Explicit, Formulation, Method, ProjectedStages, Projection, RungeKutta4, Simulation,
+    Tolerance, VelocityTransformation,
 };
 use mbs_runtime::{Dynamic, Failure};
 use mechanisms::n_four_bar::NFourBar;
@@ -92,7 +92,7 @@ fn assert_within(errors: [f64; 3], bounds: [f64; 3]) {
 
 #[test]
 fn one_and_two_and_ten_loops_swing_as_one_pendulum() {
-    let all = Projection { stages: Stages::All };
+    let all = Projection { stages: ProjectedStages::All };
     assert_within(adaptive::<NFourBar1, _, 4, 3>(all), BOUNDS);
     assert_within(adaptive::<NFourBar, _, 6, 5>(all), BOUNDS);
     assert_within(adaptive::<NFourBar10, _, 22, 21>(VelocityTransformation), BOUNDS);

@@ -5,7 +5,7 @@
 use std::f64::consts::PI;
 
 use mbs_runtime::dynamics::{
-    DormandPrince5, DormandPrince8, Embedded, Explicit, Formulation, Projection, Simulation, Stages,
+    DormandPrince5, DormandPrince8, Embedded, Explicit, Formulation, ProjectedStages, Projection, Simulation,
     Tolerance, VelocityTransformation,
 };
 use mbs_runtime::{Dynamic, mechanism};
@@ -163,7 +163,7 @@ fn assert_projections_pass<S, const N: usize, const M: usize>(starts: u32)
 where
     S: Dynamic<f64, N, M> + Turned,
 {
-    let (ends, all) = (Projection::default(), Projection { stages: Stages::All });
+    let (ends, all) = (Projection::default(), Projection { stages: ProjectedStages::All });
     assert_all_pass::<S, _, _, N, M>("order 5, ends projected", DormandPrince5, ends, starts);
     assert_all_pass::<S, _, _, N, M>("order 8, ends projected", DormandPrince8, ends, starts);
     assert_all_pass::<S, _, _, N, M>("order 5, stages projected", DormandPrince5, all, starts);
@@ -187,7 +187,7 @@ fn two_loops_are_never_stuck() {
 #[test]
 fn ten_loops_are_never_stuck() {
     // A projection of 43 rows a stage takes long: fewer of those.
-    let all = Projection { stages: Stages::All };
+    let all = Projection { stages: ProjectedStages::All };
     assert_all_pass::<Ten, _, _, 22, 21>("order 8, stages projected", DormandPrince8, all, 6);
     assert_all_pass::<Ten, _, _, 22, 21>(
         "order 5, velocities",

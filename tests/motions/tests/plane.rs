@@ -3,7 +3,7 @@
 
 use core::f64::consts::{FRAC_PI_2, PI, SQRT_2};
 
-use mbs_runtime::dynamics::{DormandPrince8, Explicit, Projection, Simulation, Stages, Tolerance};
+use mbs_runtime::dynamics::{DormandPrince8, Explicit, ProjectedStages, Projection, Simulation, Tolerance};
 use mbs_runtime::{Dynamic, Mechanism};
 use mechanisms::andrews::Andrews;
 use mechanisms::cart_pole::CartPole;
@@ -17,7 +17,7 @@ fn started<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
     mechanism: S,
     tolerance: f64,
 ) -> Simulation<S, Accurate, f64, N, M> {
-    let method = Explicit::new(DormandPrince8, Projection { stages: Stages::All });
+    let method = Explicit::new(DormandPrince8, Projection { stages: ProjectedStages::All });
     let run = Simulation::start_from_text(mechanism, method, 0.0).expect("it starts");
     run.with_tolerance(Tolerance::new(tolerance))
 }

@@ -5,10 +5,10 @@ use mbs_runtime::Dynamic;
 use mbs_runtime::Mechanism;
 use mbs_runtime::dynamics::System;
 use mbs_runtime::dynamics::{
-    AugmentedLagrangian, DormandPrince8, Explicit, Extrapolated, Method, Metric, Projection, Simulation,
-    Stages, Tolerance,
+    AugmentedLagrangian, DormandPrince8, Explicit, Extrapolated, Method, Metric, ProjectedStages, Projection,
+    Simulation, Tolerance,
 };
-use mbs_workbench::card::Usual;
+use mbs_workbench::card::DefaultMethod;
 use mechanisms::bricard::Bricard;
 use mechanisms::governor::{self, Governor};
 
@@ -17,7 +17,7 @@ fn bricards_loop_keeps_its_energy_with_its_redundant_row() {
     /// Energy, of the largest kinetic one.
     const ENERGY: f64 = 1e-9;
     const INSTANTS: u32 = 100;
-    let method = Explicit::new(DormandPrince8, Projection { stages: Stages::All });
+    let method = Explicit::new(DormandPrince8, Projection { stages: ProjectedStages::All });
     let run = Simulation::start_from_text(Bricard::default(), method, 0.0).expect("it starts");
     let mut run = run.with_tolerance(Tolerance::new(1e-11));
     let (mut kinetic, mut defect, mut violation) = (0.0_f64, 0.0_f64, 0.0_f64);
@@ -228,7 +228,7 @@ fn the_stiff_governor_is_right_at_steps_many_times_its_fastest_time_by_the_metho
     assert!(coarse[1] > 50.0 * fine[1], "{extrapolated:?}");
     // The turn of the whole, summed up over 10 s, and the energy.
     assert!(extrapolated.iter().all(|[_, phi, energy]| *phi < 1e-5 && *energy < 1e-6), "{extrapolated:?}");
-    assert_eq!(governor::CARD.usual, Usual::Extrapolated, "what `mbs run governor` does");
+    assert_eq!(governor::CARD.default_method, DefaultMethod::Extrapolated, "what `mbs run governor` does");
     // Dampers ten and a hundred times as strong, which decay within a hundredth of a step and less.
     for factor in [10.0, 100.0] {
         let [rough, exact] = [100, 1000].map(|steps| {

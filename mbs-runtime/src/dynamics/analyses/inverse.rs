@@ -45,7 +45,7 @@
 
 use crate::dynamics::formulations::projection::Projection;
 use crate::dynamics::formulations::unstabilized::{Unstabilized, factorize};
-use crate::dynamics::integrators::vector::State;
+use crate::dynamics::integrators::vector::IntegratorState;
 use crate::dynamics::linear_systems::states::require_no_states;
 use crate::dynamics::model::metric::Metric;
 use crate::dynamics::model::sign_checks::parameter_failure;
@@ -127,7 +127,7 @@ pub fn inverse_with_states<S: Dynamic<R, N, M>, R: Real, const N: usize, const M
     let metric = Metric::next_to(mechanism, &parameters, t, q);
     let model = Model::of_states(mechanism, &parameters, &metric);
     let (zero, mut counts) = (R::constant(0.0), Counts::default());
-    let mut y = State { q: *q, qd: [zero; N], states: *states, work: zero };
+    let mut y = IntegratorState { q: *q, qd: [zero; N], states: *states, work: zero };
     model.check(t, &y)?;
     Projection::default().project(&model, t, &mut y, &mut counts)?;
     // All of the velocity at once: the steps of a projection are measured by a velocity that is there already.

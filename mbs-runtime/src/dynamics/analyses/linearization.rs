@@ -2,7 +2,7 @@
 
 use crate::dynamics::equilibrium::free_stiffness::FreeStiffness;
 use crate::dynamics::formulations::variation::{FreeMotion, Variation};
-use crate::dynamics::integrators::vector::{State, Vector};
+use crate::dynamics::integrators::vector::{IntegratorState, Vector};
 use crate::dynamics::linear_systems::kkt::System;
 use crate::dynamics::linear_systems::states::require_no_states;
 use crate::dynamics::linear_systems::tangent::Tangent;
@@ -96,7 +96,7 @@ pub fn linearize_in<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize
     independent: &[u16],
 ) -> Result<Linearization<R, N>, Failure> {
     require_no_states::<S, R, N, M>(t)?;
-    let y = State {
+    let y = IntegratorState {
         q: *q,
         qd: *qd,
         states: mechanism.start_states(&mechanism.parameters()),
@@ -126,7 +126,7 @@ pub type WithStates<R, const N: usize, P> = (Linearization<R, N>, Option<P>);
 /// The matrices about a state, and their coupling with first-order states.
 fn about<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     mechanism: &S,
-    (t, y, qdd): (R, &State<R, N, S::States>, &[R; N]),
+    (t, y, qdd): (R, &IntegratorState<R, N, S::States>, &[R; N]),
     lambda: &[R; M],
     independent: &[u16],
 ) -> Result<WithStates<R, N, S::StateSlopes>, Failure> {
@@ -171,7 +171,7 @@ fn about<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
 fn rests<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     model: &Model<'_, S, R, N, M>,
     t: R,
-    y: &State<R, N, S::States>,
+    y: &IntegratorState<R, N, S::States>,
     (position, qdd): (&S::Position, &[R; N]),
     lambda: &[R; M],
 ) -> Result<bool, Failure> {
@@ -185,7 +185,7 @@ fn rests<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
 fn has_moving_states<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     model: &Model<'_, S, R, N, M>,
     position: &S::Position,
-    y: &State<R, N, S::States>,
+    y: &IntegratorState<R, N, S::States>,
     (slopes, lambda): (Option<&S::StateSlopes>, &[R; M]),
 ) -> bool {
     let rates = model.mechanism.state_rates(model.parameters, position, &y.qd, &y.states, lambda);

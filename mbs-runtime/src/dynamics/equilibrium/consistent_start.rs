@@ -1,7 +1,7 @@
 //! The start of a text: declared values stay as declared, the rows give the rest.
 
 use crate::block_solvers::multistart::displaced;
-use crate::dynamics::integrators::vector::{State, Vector};
+use crate::dynamics::integrators::vector::{IntegratorState, Vector};
 use crate::dynamics::linear_systems::kkt::{Factors, System};
 use crate::dynamics::model::metric::{Metric, worse};
 use crate::dynamics::model::{Counts, Model};
@@ -44,8 +44,8 @@ pub struct MovedStart<R> {
 /// `declared`: as the start was given; `y`: as the motion begins.
 pub(crate) fn moved<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     model: &Model<'_, S, R, N, M>,
-    declared: &State<R, N, S::States>,
-    y: &State<R, N, S::States>,
+    declared: &IntegratorState<R, N, S::States>,
+    y: &IntegratorState<R, N, S::States>,
     (q, qd): (&[u16], &[u16]),
 ) -> Option<MovedStart<R>> {
     let speed = motion::AT_REST.of::<R>().max(model.largest(&declared.qd)).max(model.largest(&y.qd));
@@ -88,7 +88,7 @@ fn most_moved<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
 pub(crate) fn complete<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     model: &Model<'_, S, R, N, M>,
     t: R,
-    y: &mut State<R, N, S::States>,
+    y: &mut IntegratorState<R, N, S::States>,
     counts: &mut Counts,
 ) -> Result<(), Failure> {
     if S::STARTED.is_empty() {
@@ -121,7 +121,7 @@ pub(crate) fn complete<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: us
 fn completed_rates<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     model: &Model<'_, S, R, N, M>,
     t: R,
-    y: &State<R, N, S::States>,
+    y: &IntegratorState<R, N, S::States>,
     (position, rates): (&S::Position, &[R; M]),
 ) -> Result<([R; N], [R; N]), Failure> {
     let (zero, one, back) = (R::constant(0.0), R::constant(1.0), R::constant(-1.0));
@@ -171,7 +171,7 @@ fn completed_rates<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>
 fn require_decided<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     model: &Model<'_, S, R, N, M>,
     t: R,
-    y: &State<R, N, S::States>,
+    y: &IntegratorState<R, N, S::States>,
 ) -> Result<(), Failure> {
     let zero = R::constant(0.0);
     let position = model.position(t, y);
@@ -227,7 +227,7 @@ fn root_next_to_one<R: Real>(at_zero: R, at_one: R, at_back: R) -> R {
 fn completed<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     model: &Model<'_, S, R, N, M>,
     t: R,
-    y: &State<R, N, S::States>,
+    y: &IntegratorState<R, N, S::States>,
     counts: &mut Counts,
 ) -> Option<[R; N]> {
     let mut first = None;
@@ -269,7 +269,7 @@ pub fn closed<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     let metric = Metric::next_to(mechanism, &parameters, t, q);
     let model = Model::of_states(mechanism, &parameters, &metric);
     let (zero, states) = (R::constant(0.0), mechanism.start_states(&parameters));
-    let mut y = State { q: *q, qd: [zero; N], states, work: zero };
+    let mut y = IntegratorState { q: *q, qd: [zero; N], states, work: zero };
     model.check(t, &y)?;
     close(&model, t, &mut y, held, &mut Counts::default())?;
     Ok(y.q)
@@ -283,7 +283,7 @@ pub fn closed<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
 pub(crate) fn close<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     model: &Model<'_, S, R, N, M>,
     t: R,
-    y: &mut State<R, N, S::States>,
+    y: &mut IntegratorState<R, N, S::States>,
     held: &[u16],
     counts: &mut Counts,
 ) -> Result<(), Failure> {
@@ -311,7 +311,7 @@ pub(crate) fn close<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize
 fn corrected<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     model: &Model<'_, S, R, N, M>,
     t: R,
-    y: &State<R, N, S::States>,
+    y: &IntegratorState<R, N, S::States>,
     step: &[R; N],
     before: R,
 ) -> Option<[R; N]> {

@@ -3,7 +3,7 @@
 use crate::dynamics::equilibrium::free_stiffness::{Answer, FreeStiffness};
 use crate::dynamics::equilibrium::no_equilibrium;
 use crate::dynamics::equilibrium::with_integrators::Saddle;
-use crate::dynamics::integrators::vector::{State, Vector};
+use crate::dynamics::integrators::vector::{IntegratorState, Vector};
 use crate::dynamics::linear_systems::kkt::System;
 use crate::dynamics::linear_systems::tangent::Tangent;
 use crate::dynamics::model::Model;
@@ -45,7 +45,12 @@ pub(crate) struct Correction<R, const N: usize, const M: usize, Z> {
 
 impl<R: Real, const N: usize, const M: usize, Z: Copy + AsRef<[R]> + AsMut<[R]>> Correction<R, N, M, Z> {
     /// `y` and the multipliers `lambda` (M) after `share` of it.
-    pub(crate) fn moved(&self, y: &State<R, N, Z>, lambda: &[R; M], share: R) -> (State<R, N, Z>, [R; M]) {
+    pub(crate) fn moved(
+        &self,
+        y: &IntegratorState<R, N, Z>,
+        lambda: &[R; M],
+        share: R,
+    ) -> (IntegratorState<R, N, Z>, [R; M]) {
         let mut moved = *y;
         moved.q = y.q.plus(-share, &[1.0], [&self.step]);
         let states = moved.states.as_mut().iter_mut().zip(self.states.as_ref());
@@ -62,7 +67,7 @@ pub(crate) type CorrectionOf<S, R, const N: usize, const M: usize> =
 pub(crate) fn correction<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     model: &Model<'_, S, R, N, M>,
     t: R,
-    y: &State<R, N, S::States>,
+    y: &IntegratorState<R, N, S::States>,
     lambda: &[R; M],
 ) -> Result<CorrectionOf<S, R, N, M>, Failure> {
     let (zero, mut states) = (R::constant(0.0), y.states);
@@ -86,7 +91,7 @@ pub(crate) fn correction<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: 
 fn correction_with_integrals<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     model: &Model<'_, S, R, N, M>,
     t: R,
-    y: &State<R, N, S::States>,
+    y: &IntegratorState<R, N, S::States>,
     lambda: &[R; M],
 ) -> Result<Option<CorrectionOf<S, R, N, M>>, Failure> {
     let Some(saddle) = saddle(model, t, y, lambda)? else { return Ok(None) };
@@ -131,7 +136,7 @@ type Step<R, const N: usize, const M: usize> = ([R; N], [R; M]);
 fn regular<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     model: &Model<'_, S, R, N, M>,
     t: R,
-    y: &State<R, N, S::States>,
+    y: &IntegratorState<R, N, S::States>,
     lambda: &[R; M],
 ) -> Result<Option<Step<R, N, M>>, Failure> {
     let (mechanism, parameters, position) = (model.mechanism, model.parameters, model.position(t, y));
@@ -161,7 +166,7 @@ pub(crate) type SaddleOf<S, R, const N: usize, const M: usize> =
 pub(crate) fn saddle<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     model: &Model<'_, S, R, N, M>,
     t: R,
-    y: &State<R, N, S::States>,
+    y: &IntegratorState<R, N, S::States>,
     lambda: &[R; M],
 ) -> Result<Option<SaddleOf<S, R, N, M>>, Failure> {
     let Some(integrals) = Tangent::at_rest(model, &model.position(t, y), y, lambda).1 else {
@@ -177,7 +182,7 @@ pub(crate) fn saddle<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usiz
 fn answer_to_imbalance<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     model: &Model<'_, S, R, N, M>,
     t: R,
-    y: &State<R, N, S::States>,
+    y: &IntegratorState<R, N, S::States>,
     lambda: &[R; M],
     mut of: impl FnMut(&[R; N], &[R; M]) -> Answer<R, N, M>,
 ) -> Result<Answer<R, N, M>, Failure> {
@@ -196,7 +201,7 @@ fn answer_to_imbalance<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: us
 pub(crate) fn damped<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     model: &Model<'_, S, R, N, M>,
     t: R,
-    (y, lambda): (&State<R, N, S::States>, &[R; M]),
+    (y, lambda): (&IntegratorState<R, N, S::States>, &[R; M]),
     correction: &CorrectionOf<S, R, N, M>,
 ) -> R {
     let whole = capped(&correction.step, &model.metric.coordinates);
@@ -211,7 +216,7 @@ pub(crate) fn damped<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usiz
 fn damped_with_integrals<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     model: &Model<'_, S, R, N, M>,
     t: R,
-    (y, lambda): (&State<R, N, S::States>, &[R; M]),
+    (y, lambda): (&IntegratorState<R, N, S::States>, &[R; M]),
     correction: &CorrectionOf<S, R, N, M>,
 ) -> Option<R> {
     let saddle = saddle(model, t, y, lambda).ok()??;
@@ -246,7 +251,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
     pub(crate) fn borne(
         &self,
         (position, t): (&S::Position, R),
-        y: &State<R, N, S::States>,
+        y: &IntegratorState<R, N, S::States>,
         lambda: &[R; M],
         phi: &[R; M],
         mut answer: impl FnMut(&[R; N], &[R; M]) -> Answer<R, N, M>,

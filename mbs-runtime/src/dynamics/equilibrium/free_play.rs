@@ -1,7 +1,7 @@
 //! Free play: motions to one side of a rest that nothing answers, where the stiffness at the rest is that of the other side.
 
 use crate::dynamics::equilibrium::free_stiffness::FreeStiffness;
-use crate::dynamics::integrators::vector::{State, Vector};
+use crate::dynamics::integrators::vector::{IntegratorState, Vector};
 use crate::dynamics::model::Model;
 use crate::failure::Failure;
 use crate::mechanism::dynamic::Dynamic;
@@ -42,7 +42,7 @@ const HALF: f64 = 0.5;
 pub(crate) fn with_play<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     model: &Model<'_, S, R, N, M>,
     t: R,
-    y: &State<R, N, S::States>,
+    y: &IntegratorState<R, N, S::States>,
     lambda: &[R; M],
     mut indifferent: [bool; N],
 ) -> Result<[bool; N], Failure> {
@@ -79,13 +79,13 @@ fn probe_distance<R: Real, const N: usize>(q: &[R; N], scales: &[R; N]) -> R {
 
 /// A state, and its free stiffness.
 type Place<S, R, const N: usize, const M: usize> =
-    (State<R, N, <S as Dynamic<R, N, M>>::States>, FreeStiffness<R, N, M>);
+    (IntegratorState<R, N, <S as Dynamic<R, N, M>>::States>, FreeStiffness<R, N, M>);
 
 /// Positions at both sides of an equilibrium.
 struct Beside<'a, S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> {
     model: &'a Model<'a, S, R, N, M>,
     t: R,
-    y: &'a State<R, N, S::States>,
+    y: &'a IntegratorState<R, N, S::States>,
     lambda: &'a [R; M],
     here: &'a FreeStiffness<R, N, M>,
     aside: R,
@@ -128,7 +128,11 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Beside<'_, S,
 
     /// `share` of Newton's step at `y` with multipliers `lambda` (M); none where there is no stiffness.
     #[inline(never)]
-    fn relax(&self, share: R, (y, lambda): (&mut State<R, N, S::States>, &mut [R; M])) -> Option<()> {
+    fn relax(
+        &self,
+        share: R,
+        (y, lambda): (&mut IntegratorState<R, N, S::States>, &mut [R; M]),
+    ) -> Option<()> {
         let model = self.model;
         let there = FreeStiffness::of(model, self.t, y, lambda).ok()?;
         let position = model.position(self.t, y);
@@ -140,7 +144,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Beside<'_, S,
     }
 
     /// The direction (N) from the rest to `y`, where they are apart.
-    fn away(&self, y: &State<R, N, S::States>) -> Option<[R; N]> {
+    fn away(&self, y: &IntegratorState<R, N, S::States>) -> Option<[R; N]> {
         let motion = y.q.plus(R::constant(-1.0), &[1.0], [&self.y.q]);
         let distance = self.model.largest(&motion);
         (R::constant(AWAY) * self.aside).less(distance).then(|| motion.map(|part| part / distance))
@@ -180,7 +184,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Beside<'_, S,
     }
 
     /// The state at the side along `motion` (N); none where there is no motion.
-    fn beside(&self, motion: &[R; N]) -> Option<State<R, N, S::States>> {
+    fn beside(&self, motion: &[R; N]) -> Option<IntegratorState<R, N, S::States>> {
         let size = self.model.largest(motion);
         if !forces::INDIFFERENT.of::<R>().less(size) {
             return None;

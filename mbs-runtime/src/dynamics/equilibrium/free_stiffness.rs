@@ -1,6 +1,6 @@
 //! The stiffness of the motions that the rows leave free, of any rank: restoring forces, and motions that nothing answers.
 
-use crate::dynamics::integrators::vector::{State, Vector};
+use crate::dynamics::integrators::vector::{IntegratorState, Vector};
 use crate::dynamics::linear_systems::kkt::{Factors, System};
 use crate::dynamics::linear_systems::tangent::Tangent;
 use crate::dynamics::model::Model;
@@ -50,7 +50,7 @@ impl<R: Real, const N: usize, const M: usize> FreeStiffness<R, N, M> {
     pub(crate) fn of<S: Dynamic<R, N, M>>(
         model: &Model<'_, S, R, N, M>,
         t: R,
-        y: &State<R, N, S::States>,
+        y: &IntegratorState<R, N, S::States>,
         lambda: &[R; M],
     ) -> Result<Self, Failure> {
         let (zero, position) = (R::constant(0.0), model.position(t, y));

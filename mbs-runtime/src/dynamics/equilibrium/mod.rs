@@ -15,7 +15,7 @@ use crate::dynamics::equilibrium::free_play::with_play;
 use crate::dynamics::equilibrium::free_stiffness::{Answer, FreeStiffness};
 use crate::dynamics::equilibrium::states::resting_anywhere;
 use crate::dynamics::implicit::iteration::MOST_ITERATIONS;
-use crate::dynamics::integrators::vector::{State, Vector};
+use crate::dynamics::integrators::vector::{IntegratorState, Vector};
 use crate::dynamics::model::method::require_slopes_at_rest;
 use crate::dynamics::model::metric::Metric;
 use crate::dynamics::model::sign_checks::parameter_failure;
@@ -105,11 +105,11 @@ pub fn equilibrium_with_states<S: Dynamic<R, N, M>, R: Real, const N: usize, con
     let metric = Metric::next_to(mechanism, &parameters, t, q);
     let model = Model::of_states(mechanism, &parameters, &metric);
     let states = mechanism.start_states(&parameters);
-    let mut y = State { q: *q, qd: [R::constant(0.0); N], states, work: R::constant(0.0) };
+    let mut y = IntegratorState { q: *q, qd: [R::constant(0.0); N], states, work: R::constant(0.0) };
     model.check(t, &y)?;
     let mut found = balanced(&model, t, &mut y);
     if matches!(found, Err(Failure { kind: FailureKind::NoStateEquilibrium { .. }, .. })) {
-        y = State { q: perturb(q, &metric.coordinates), states, ..y };
+        y = IntegratorState { q: perturb(q, &metric.coordinates), states, ..y };
         found = balanced(&model, t, &mut y);
     }
     if let Some(found) = found? {
@@ -129,7 +129,7 @@ pub fn equilibrium_with_states<S: Dynamic<R, N, M>, R: Real, const N: usize, con
 fn require_no_integral<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     model: &Model<'_, S, R, N, M>,
     t: R,
-    y: &State<R, N, S::States>,
+    y: &IntegratorState<R, N, S::States>,
 ) -> Result<(), Failure> {
     let last = correction(model, t, y, &balancing(model, t, y)?.0)?;
     if last.integrated { Err(model.unbalanced(&last.step, t, MOST_ITERATIONS)) } else { Ok(()) }
@@ -150,7 +150,7 @@ pub fn undetermined_states<S: Dynamic<R, N, M>, R: Real, const N: usize, const M
     let (zero, parameters) = (R::constant(0.0), mechanism.parameters());
     let metric = Metric::next_to(mechanism, &parameters, t, &found.q);
     let model = Model::of_states(mechanism, &parameters, &metric);
-    let y = State { q: found.q, qd: [zero; N], states: *states, work: zero };
+    let y = IntegratorState { q: found.q, qd: [zero; N], states: *states, work: zero };
     model.check(t, &y)?;
     let mut undetermined = resting_anywhere(&model, t, &y, &found.lambda);
     if let Some(saddle) = saddle(&model, t, &y, &found.lambda)? {
@@ -176,7 +176,7 @@ fn perturb<R: Real, const N: usize>(q: &[R; N], scales: &[R; N]) -> [R; N] {
 fn balanced<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     model: &Model<'_, S, R, N, M>,
     t: R,
-    y: &mut State<R, N, S::States>,
+    y: &mut IntegratorState<R, N, S::States>,
 ) -> Result<Option<Equilibrium<R, N, M>>, Failure> {
     model.settle_states(t, y, &[R::constant(0.0); M])?;
     let (mut lambda, _) = balancing(model, t, y)?;
@@ -196,7 +196,7 @@ fn balanced<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
 fn stands_after_step<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     model: &Model<'_, S, R, N, M>,
     t: R,
-    (y, lambda): (&mut State<R, N, S::States>, &mut [R; M]),
+    (y, lambda): (&mut IntegratorState<R, N, S::States>, &mut [R; M]),
     last: &mut R,
 ) -> Result<Option<bool>, Failure> {
     model.settle_states(t, y, lambda)?;
@@ -218,7 +218,7 @@ fn stands_after_step<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usiz
 fn found_at<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     model: &Model<'_, S, R, N, M>,
     t: R,
-    y: &State<R, N, S::States>,
+    y: &IntegratorState<R, N, S::States>,
     lambda: &[R; M],
     integrated: bool,
 ) -> Result<Option<Equilibrium<R, N, M>>, Failure> {
@@ -242,7 +242,7 @@ fn found_at<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
 fn unanswered_coordinates<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     model: &Model<'_, S, R, N, M>,
     t: R,
-    y: &State<R, N, S::States>,
+    y: &IntegratorState<R, N, S::States>,
     (lambda, held): (&[R; M], &[R; M]),
 ) -> Result<[bool; N], Failure> {
     let scales = &model.metric.coordinates;
@@ -259,7 +259,7 @@ fn unanswered_coordinates<S: Dynamic<R, N, M>, R: Real, const N: usize, const M:
 fn is_balanced<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     model: &Model<'_, S, R, N, M>,
     t: R,
-    y: &State<R, N, S::States>,
+    y: &IntegratorState<R, N, S::States>,
 ) -> Result<bool, Failure> {
     let answer = answer(model, t, y)?;
     let near = largest(&answer.step, &model.metric.coordinates) <= forces::BALANCED.of();
@@ -273,7 +273,7 @@ fn is_balanced<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
 fn approach<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     model: &Model<'_, S, R, N, M>,
     t: R,
-    y: &mut State<R, N, S::States>,
+    y: &mut IntegratorState<R, N, S::States>,
 ) -> Result<(), Failure> {
     let mut counts = Counts::default();
     close(model, t, y, &[], &mut counts)?;
@@ -311,7 +311,7 @@ fn approach<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
 fn answer<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     model: &Model<'_, S, R, N, M>,
     t: R,
-    y: &State<R, N, S::States>,
+    y: &IntegratorState<R, N, S::States>,
 ) -> Result<Answer<R, N, M>, Failure> {
     let zero = R::constant(0.0);
     let (lambda, _) = balancing(model, t, y)?;
@@ -348,7 +348,7 @@ pub(crate) fn no_equilibrium<S: Dynamic<R, N, M>, R: Real, const N: usize, const
 fn balancing<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     model: &Model<'_, S, R, N, M>,
     t: R,
-    y: &State<R, N, S::States>,
+    y: &IntegratorState<R, N, S::States>,
 ) -> Result<([R; M], [bool; M]), Failure> {
     let zero = R::constant(0.0);
     let position = model.position(t, y);

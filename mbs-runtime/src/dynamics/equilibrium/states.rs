@@ -1,6 +1,6 @@
 //! First-order states at rest.
 
-use crate::dynamics::integrators::vector::State;
+use crate::dynamics::integrators::vector::IntegratorState;
 use crate::dynamics::linear_systems::integrals::{is_held, is_solved};
 use crate::dynamics::linear_systems::states::eliminate;
 use crate::dynamics::model::Model;
@@ -29,7 +29,8 @@ pub fn states_at_rest<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usi
     let (zero, parameters) = (R::constant(0.0), mechanism.parameters());
     let metric = Metric::next_to(mechanism, &parameters, t, q);
     let model = Model::of_states(mechanism, &parameters, &metric);
-    let mut y = State { q: *q, qd: [zero; N], states: mechanism.start_states(&parameters), work: zero };
+    let mut y =
+        IntegratorState { q: *q, qd: [zero; N], states: mechanism.start_states(&parameters), work: zero };
     model.check(t, &y)?;
     model.settle_states(t, &mut y, lambda)?;
     model.require_integrated(t, &y, lambda)?;
@@ -40,7 +41,7 @@ pub fn states_at_rest<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usi
 pub(crate) fn resting_anywhere<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     model: &Model<'_, S, R, N, M>,
     t: R,
-    y: &State<R, N, S::States>,
+    y: &IntegratorState<R, N, S::States>,
     lambda: &[R; M],
 ) -> S::States {
     let (mechanism, position) = (model.mechanism, model.position(t, y));

@@ -1,7 +1,7 @@
 //! Newton's method for a rest under integral controls: coordinates, multipliers and the states that integrate, solved together.
 
 use crate::dynamics::equilibrium::free_stiffness::{Answer, FreeStiffness};
-use crate::dynamics::integrators::vector::{State, Vector};
+use crate::dynamics::integrators::vector::{IntegratorState, Vector};
 use crate::dynamics::linear_systems::integrals::Integrals;
 use crate::dynamics::model::Model;
 use crate::linear_algebra::vectors::{dot, times};
@@ -157,7 +157,7 @@ where
         &self,
         model: &Model<'_, S, R, N, M>,
         t: R,
-        y: &State<R, N, Z>,
+        y: &IntegratorState<R, N, Z>,
         lambda: &[R; M],
     ) -> R
     where

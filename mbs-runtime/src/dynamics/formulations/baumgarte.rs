@@ -1,7 +1,7 @@
 //! Baumgarte's stabilisation: the constraints as damped oscillators.
 
 use crate::dynamics::formulations::unstabilized::{factorize, solve};
-use crate::dynamics::integrators::vector::State;
+use crate::dynamics::integrators::vector::IntegratorState;
 use crate::dynamics::model::metric::require_least;
 use crate::dynamics::model::{Counts, Formulation, MethodWarning, Model, Solved};
 use crate::failure::{Failure, FailureKind};
@@ -43,7 +43,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Formulation<S
         &self,
         model: &Model<'_, S, R, N, M>,
         t: R,
-        y: &State<R, N, S::States>,
+        y: &IntegratorState<R, N, S::States>,
         lambda: &[R; M],
         counts: &mut Counts,
     ) -> Result<Solved<R, N, M, S::States>, Failure> {

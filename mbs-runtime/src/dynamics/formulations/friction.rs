@@ -4,7 +4,7 @@
 //! sums and of norms of two. Its terms v = φ(g(λ)) then solve v = φ(c + B v), with B from one solution a term; all solutions are
 //! counted. Newton's method takes the derivative ∂Q/∂λ where Q depends on λ otherwise.
 
-use crate::dynamics::integrators::vector::{State, Vector};
+use crate::dynamics::integrators::vector::{IntegratorState, Vector};
 use crate::dynamics::linear_systems::kkt::{Factors, System};
 use crate::dynamics::linear_systems::piecewise::{Piecewise, Solutions};
 use crate::dynamics::model::Model;
@@ -154,7 +154,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
     pub(crate) fn require_unshared(
         &self,
         (position, t): (&S::Position, R),
-        y: &State<R, N, S::States>,
+        y: &IntegratorState<R, N, S::States>,
         lambda: &[R; M],
         factors: &Factors<R, N, M>,
     ) -> Result<(), Failure> {
@@ -182,7 +182,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
     pub(crate) fn require_unshared_by_rank(
         &self,
         (position, t): (&S::Position, R),
-        y: &State<R, N, S::States>,
+        y: &IntegratorState<R, N, S::States>,
         lambda: &[R; M],
     ) -> Result<(), Failure> {
         if !S::FORCE_USES_MULTIPLIERS || !S::REDUNDANT.contains(&true) {
@@ -218,7 +218,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         &self,
         standing: R,
         position: &S::Position,
-        (t, y): (R, &State<R, N, S::States>),
+        (t, y): (R, &IntegratorState<R, N, S::States>),
         lambda: &[R; M],
         solve: &mut impl FnMut(&[R; N], bool) -> ([R; N], [R; M]),
     ) -> Result<[R; M], Failure> {
@@ -255,7 +255,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         &self,
         standing: R,
         position: &S::Position,
-        y: &State<R, N, S::States>,
+        y: &IntegratorState<R, N, S::States>,
         lambda: &[R; M],
         solve: &mut impl FnMut(&[R; N], bool) -> ([R; N], [R; M]),
     ) -> Found<R, M> {
@@ -302,7 +302,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         &self,
         standing: R,
         position: &S::Position,
-        y: &State<R, N, S::States>,
+        y: &IntegratorState<R, N, S::States>,
         start: &[R; M],
         solve: &mut F,
     ) -> Option<[R; M]> {

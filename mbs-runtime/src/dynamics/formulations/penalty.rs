@@ -1,6 +1,6 @@
 //! Penalty at acceleration level: the lecture's method without multipliers.
 
-use crate::dynamics::integrators::vector::State;
+use crate::dynamics::integrators::vector::IntegratorState;
 use crate::dynamics::linear_systems::kkt::System;
 use crate::dynamics::model::metric::require_least;
 use crate::dynamics::model::{Counts, Formulation, Model, Solved};
@@ -38,7 +38,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Formulation<S
         &self,
         model: &Model<'_, S, R, N, M>,
         t: R,
-        y: &State<R, N, S::States>,
+        y: &IntegratorState<R, N, S::States>,
         lambda: &[R; M],
         counts: &mut Counts,
     ) -> Result<Solved<R, N, M, S::States>, Failure> {

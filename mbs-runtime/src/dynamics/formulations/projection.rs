@@ -2,7 +2,7 @@
 
 use crate::dynamics::formulations::singular::limit_rows::{Passing, at_limit};
 use crate::dynamics::formulations::unstabilized::{factorize, solve};
-use crate::dynamics::integrators::vector::{State, Vector};
+use crate::dynamics::integrators::vector::{IntegratorState, Vector};
 use crate::dynamics::linear_systems::kkt::{Factors, System};
 use crate::dynamics::model::metric::worse;
 use crate::dynamics::model::{Counts, Formulation, Model, Solved};
@@ -19,7 +19,7 @@ const STALE: f64 = 0.1;
 
 /// Stages of a step that are put onto the constraints before they are evaluated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Stages {
+pub enum ProjectedStages {
     /// All if rows follow from others on the constraints alone, none otherwise: off the constraints the rank of Φ_q
     /// rises, and accelerations grow with the inverse of the distance. Decided at the start, and again after changed parameters
     /// and singular positions.
@@ -40,7 +40,7 @@ pub enum Stages {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Projection {
     /// Stages that are projected too.
-    pub stages: Stages,
+    pub stages: ProjectedStages,
 }
 
 impl Projection {
@@ -48,10 +48,10 @@ impl Projection {
     fn stages_of<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
         &self,
         model: &Model<'_, S, R, N, M>,
-    ) -> Stages {
+    ) -> ProjectedStages {
         match self.stages {
-            Stages::WhereNeeded if model.rank_rises => Stages::All,
-            Stages::WhereNeeded => Stages::None,
+            ProjectedStages::WhereNeeded if model.rank_rises => ProjectedStages::All,
+            ProjectedStages::WhereNeeded => ProjectedStages::None,
             chosen => chosen,
         }
     }
@@ -62,12 +62,12 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Formulation<S
         &self,
         model: &Model<'_, S, R, N, M>,
         t: R,
-        y: &State<R, N, S::States>,
+        y: &IntegratorState<R, N, S::States>,
         lambda: &[R; M],
         counts: &mut Counts,
     ) -> Result<Solved<R, N, M, S::States>, Failure> {
         let (mut y, stages) = (*y, self.stages_of(model));
-        if stages == Stages::All {
+        if stages == ProjectedStages::All {
             counts.projected_stages += 1;
             self.project(model, t, &mut y, counts)?;
         }
@@ -88,17 +88,17 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Formulation<S
         &self,
         model: &Model<'_, S, R, N, M>,
         t: R,
-        y: &State<R, N, S::States>,
+        y: &IntegratorState<R, N, S::States>,
         lambda: &[R; M],
         counts: &mut Counts,
     ) -> Result<Solved<R, N, M, S::States>, Failure> {
-        let rises = model.rank_rises && self.stages != Stages::None;
-        let stages = if rises { Stages::All } else { Stages::None };
+        let rises = model.rank_rises && self.stages != ProjectedStages::None;
+        let stages = if rises { ProjectedStages::All } else { ProjectedStages::None };
         Projection { stages }.solve(model, t, y, lambda, counts)
     }
 
     fn leaves_constraints(&self) -> bool {
-        self.stages == Stages::None
+        self.stages == ProjectedStages::None
     }
 
     #[inline]
@@ -106,7 +106,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Formulation<S
         &self,
         model: &Model<'_, S, R, N, M>,
         t: R,
-        y: &mut State<R, N, S::States>,
+        y: &mut IntegratorState<R, N, S::States>,
         counts: &mut Counts,
     ) -> Result<(), Failure> {
         let factors = project_position(model, t, y, counts)?;
@@ -118,7 +118,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Formulation<S
 pub(crate) fn project_position<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     model: &Model<'_, S, R, N, M>,
     t: R,
-    y: &mut State<R, N, S::States>,
+    y: &mut IntegratorState<R, N, S::States>,
     counts: &mut Counts,
 ) -> Result<Option<Factors<R, N, M>>, Failure> {
     let none = [R::constant(0.0); N];
@@ -154,7 +154,7 @@ pub(crate) fn project_position<S: Dynamic<R, N, M>, R: Real, const N: usize, con
 fn project_velocity<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     model: &Model<'_, S, R, N, M>,
     t: R,
-    y: &mut State<R, N, S::States>,
+    y: &mut IntegratorState<R, N, S::States>,
     factors: Option<Factors<R, N, M>>,
     counts: &mut Counts,
 ) -> Result<(), Failure> {

@@ -1,6 +1,6 @@
 //! Index 1 with multipliers: accelerations from M q̈ + Φ_qᵀ λ = Q with Φ_q q̈ = γ.
 
-use crate::dynamics::integrators::vector::State;
+use crate::dynamics::integrators::vector::IntegratorState;
 use crate::dynamics::linear_systems::kkt::{Factors, System};
 use crate::dynamics::model::{Counts, Formulation, Model, Solved};
 use crate::failure::Failure;
@@ -20,7 +20,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Formulation<S
         &self,
         model: &Model<'_, S, R, N, M>,
         t: R,
-        y: &State<R, N, S::States>,
+        y: &IntegratorState<R, N, S::States>,
         lambda: &[R; M],
         counts: &mut Counts,
     ) -> Result<Solved<R, N, M, S::States>, Failure> {
@@ -55,7 +55,7 @@ pub(crate) fn factorize<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: u
 #[inline(always)]
 pub(crate) fn solve<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     model: &Model<'_, S, R, N, M>,
-    (t, y): (R, &State<R, N, S::States>),
+    (t, y): (R, &IntegratorState<R, N, S::States>),
     position: &S::Position,
     lambda: &[R; M],
     factors: &Factors<R, N, M>,

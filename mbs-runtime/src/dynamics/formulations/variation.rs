@@ -1,6 +1,6 @@
 //! Change along a motion of the motions that the rows leave free: R, Ṙ and R̈ in independent coordinates.
 
-use crate::dynamics::integrators::vector::{State, Vector};
+use crate::dynamics::integrators::vector::{IntegratorState, Vector};
 use crate::dynamics::linear_systems::kkt::{Factors, System};
 use crate::dynamics::model::Model;
 use crate::failure::Failure;
@@ -33,7 +33,7 @@ pub(crate) struct FreeMotion<R, const N: usize> {
 pub(crate) struct Variation<'a, S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> {
     model: &'a Model<'a, S, R, N, M>,
     t: R,
-    y: &'a State<R, N, S::States>,
+    y: &'a IntegratorState<R, N, S::States>,
     qdd: &'a [R; N],
     position: &'a S::Position,
     phi_q: [[R; N]; M],
@@ -48,7 +48,7 @@ impl<'a, S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Variation
     /// determine the others, with as many more as are needed.
     pub(crate) fn of(
         model: &'a Model<'a, S, R, N, M>,
-        (t, y, qdd): (R, &'a State<R, N, S::States>, &'a [R; N]),
+        (t, y, qdd): (R, &'a IntegratorState<R, N, S::States>, &'a [R; N]),
         position: &'a S::Position,
         preferred: &[u16],
     ) -> Result<Self, Failure> {

@@ -2,7 +2,7 @@
 
 use crate::dynamics::formulations::projection::Projection;
 use crate::dynamics::formulations::unstabilized;
-use crate::dynamics::integrators::vector::{State, Vector};
+use crate::dynamics::integrators::vector::{IntegratorState, Vector};
 use crate::dynamics::linear_systems::kkt::System;
 use crate::dynamics::model::{Counts, Formulation, Model, Solved};
 use crate::failure::Failure;
@@ -37,7 +37,7 @@ where
         &self,
         model: &Model<'_, S, R, N, M>,
         t: R,
-        y: &State<R, N, S::States>,
+        y: &IntegratorState<R, N, S::States>,
         lambda: &[R; M],
         counts: &mut Counts,
     ) -> Result<Solved<R, N, M, S::States>, Failure> {
@@ -55,7 +55,7 @@ where
         &self,
         model: &Model<'_, S, R, N, M>,
         t: R,
-        y: &mut State<R, N, S::States>,
+        y: &mut IntegratorState<R, N, S::States>,
         counts: &mut Counts,
     ) -> Result<(), Failure> {
         let before = *y;
@@ -71,7 +71,7 @@ where
         &self,
         model: &Model<'_, S, R, N, M>,
         t: R,
-        y: &mut State<R, N, S::States>,
+        y: &mut IntegratorState<R, N, S::States>,
         lambda: &[R; M],
         counts: &mut Counts,
     ) -> Result<Solved<R, N, M, S::States>, Failure> {
@@ -110,7 +110,7 @@ fn is_regular<R: Real>(margin: R) -> bool {
 #[inline(always)]
 fn solve_at<S, R: Real, const N: usize, const M: usize>(
     model: &Model<'_, S, R, N, M>,
-    (t, y): (R, &State<R, N, S::States>),
+    (t, y): (R, &IntegratorState<R, N, S::States>),
     (position, partition, margin): (&S::Position, &S::Partition, R),
     lambda: &[R; M],
     counts: &mut Counts,
@@ -147,7 +147,7 @@ where
 #[inline(never)]
 fn rechosen<S, R: Real, const N: usize, const M: usize>(
     model: &Model<'_, S, R, N, M>,
-    (t, y): (R, &State<R, N, S::States>),
+    (t, y): (R, &IntegratorState<R, N, S::States>),
     position: &S::Position,
     lambda: &[R; M],
     counts: &mut Counts,
@@ -173,7 +173,7 @@ where
 #[inline(never)]
 fn solve_apart<S, R: Real, const N: usize, const M: usize>(
     model: &Model<'_, S, R, N, M>,
-    (t, y): (R, &State<R, N, S::States>),
+    (t, y): (R, &IntegratorState<R, N, S::States>),
     place: &PlaceOf<S, R, N, M>,
     lambda: &[R; M],
     counts: &mut Counts,
@@ -190,7 +190,7 @@ where
 fn settled<S, R: Real, const N: usize, const M: usize>(
     model: &Model<'_, S, R, N, M>,
     t: R,
-    y: &mut State<R, N, S::States>,
+    y: &mut IntegratorState<R, N, S::States>,
     counts: &mut Counts,
 ) -> Option<PlaceOf<S, R, N, M>>
 where
@@ -214,7 +214,7 @@ where
 fn settled_position<S, R: Real, const N: usize, const M: usize>(
     model: &Model<'_, S, R, N, M>,
     t: R,
-    y: &mut State<R, N, S::States>,
+    y: &mut IntegratorState<R, N, S::States>,
     counts: &mut Counts,
 ) -> Option<PlaceOf<S, R, N, M>>
 where

@@ -2,7 +2,7 @@
 
 use crate::dynamics::formulations::unstabilized::Unstabilized;
 use crate::dynamics::implicit::iteration::{Damping, MOST_ITERATIONS, MOST_ROUNDS, Unknowns};
-use crate::dynamics::integrators::vector::{State, Vector};
+use crate::dynamics::integrators::vector::{IntegratorState, Vector};
 use crate::dynamics::linear_systems::kkt::{Factors, System};
 use crate::dynamics::linear_systems::tangent::{Tangent, add_outer};
 use crate::dynamics::model::forward::forward;
@@ -132,7 +132,7 @@ impl AugmentedLagrangian {
             let here = Unknowns { motion: change, lambda };
             let next = damping.next(&here, (&whole, last), |base, least| {
                 let (qd, bent) = trapezoidal(start, before, &base.motion, h);
-                let moved = State { q: start.q.plus(one, &[1.0], [&base.motion]), qd, ..y };
+                let moved = IntegratorState { q: start.q.plus(one, &[1.0], [&base.motion]), qd, ..y };
                 if S::FORCE_USES_MULTIPLIERS {
                     let weight = one / quarter;
                     let here = model.residual(t, &y, &qdd, &lambda, weight)?;
@@ -151,7 +151,7 @@ impl AugmentedLagrangian {
 
 /// Velocities and accelerations of the trapezoidal rule that lead from `start` to coordinates which are `change` (N) further.
 fn trapezoidal<R: Real, const N: usize, Z>(
-    start: &State<R, N, Z>,
+    start: &IntegratorState<R, N, Z>,
     before: &[R; N],
     change: &[R; N],
     h: R,
@@ -186,7 +186,7 @@ impl<R: Real, const N: usize, const M: usize> Penalized<R, N, M> {
         model: &Model<'_, S, R, N, M>,
         position: &S::Position,
         (t, h): (R, R),
-        (y, qdd, lambda): (&State<R, N, S::States>, &[R; N], &[R; M]),
+        (y, qdd, lambda): (&IntegratorState<R, N, S::States>, &[R; N], &[R; M]),
     ) -> Result<Self, Failure> {
         let quarter = R::constant(0.25) * h * h;
         let tangent = Tangent::of(model, position, y, qdd, lambda);
@@ -263,7 +263,7 @@ fn projected<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     model: &Model<'_, S, R, N, M>,
     from: &Instant<R, N, M, S::States>,
     h: R,
-    (mut y, qdd, lambda): (State<R, N, S::States>, [R; N], [R; M]),
+    (mut y, qdd, lambda): (IntegratorState<R, N, S::States>, [R; N], [R; M]),
 ) -> Result<Instant<R, N, M, S::States>, Failure> {
     let t = from.t + h;
     let position = model.position(t, &y);

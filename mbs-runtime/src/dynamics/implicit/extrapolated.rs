@@ -3,7 +3,7 @@
 use crate::dynamics::formulations::projection::Projection;
 use crate::dynamics::formulations::unstabilized::Unstabilized;
 use crate::dynamics::implicit::augmented_lagrangian::AugmentedLagrangian;
-use crate::dynamics::integrators::vector::{State, Vector};
+use crate::dynamics::integrators::vector::{IntegratorState, Vector};
 use crate::dynamics::model::forward::forward;
 use crate::dynamics::model::instant::Instant;
 use crate::dynamics::model::method::{Method, require_slopes};

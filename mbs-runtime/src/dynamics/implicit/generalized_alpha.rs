@@ -2,7 +2,7 @@
 
 use crate::dynamics::formulations::unstabilized::Unstabilized;
 use crate::dynamics::implicit::iteration::{Damping, MOST_ITERATIONS, MOST_ROUNDS, Unknowns};
-use crate::dynamics::integrators::vector::{State, Vector};
+use crate::dynamics::integrators::vector::{IntegratorState, Vector};
 use crate::dynamics::linear_systems::kkt::System;
 use crate::dynamics::linear_systems::tangent::Tangent;
 use crate::dynamics::model::forward::forward;
@@ -104,7 +104,7 @@ impl GeneralizedAlpha {
             sum.plus(alpha_f * weight, &[1.0], [before]).plus(-alpha_m * weight, &[1.0], [a0])
         };
         let half = R::constant(0.5);
-        let moved = |y: &State<R, N, S::States>, qdd: &[R; N]| {
+        let moved = |y: &IntegratorState<R, N, S::States>, qdd: &[R; N]| {
             let (mut y, a) = (*y, a(qdd));
             y.q = start.q.plus(h, &[1.0], [&start.qd]).plus(h * h * (half - beta), &[1.0], [a0]);
             y.q = y.q.plus(h * h * beta, &[1.0], [&a]);
@@ -178,7 +178,7 @@ impl GeneralizedAlpha {
 fn require_resolved<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     model: &Model<'_, S, R, N, M>,
     (t, h): (R, R),
-    y: &State<R, N, S::States>,
+    y: &IntegratorState<R, N, S::States>,
     (qdd, lambda): (&[R; N], &[R; M]),
     counts: &mut Counts,
 ) -> Result<(), Failure> {

@@ -1,7 +1,7 @@
 //! Common parts of implicit methods: the tangent of the equations of motion, and the end of their iterations.
 
 use crate::dynamics::formulations::unstabilized::Unstabilized;
-use crate::dynamics::integrators::vector::{State, Vector};
+use crate::dynamics::integrators::vector::{IntegratorState, Vector};
 use crate::dynamics::linear_systems::kkt::System;
 use crate::dynamics::model::instant::Instant;
 use crate::dynamics::model::{Counts, Formulation, Model};
@@ -135,7 +135,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
     pub(crate) fn imbalance(
         &self,
         position: &S::Position,
-        y: &State<R, N, S::States>,
+        y: &IntegratorState<R, N, S::States>,
         qdd: &[R; N],
         (lambda, bearing): (&[R; M], &[R; M]),
     ) -> [R; N] {
@@ -155,7 +155,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
     pub(crate) fn corrected(
         &self,
         (position, t): (&S::Position, R),
-        y: &State<R, N, S::States>,
+        y: &IntegratorState<R, N, S::States>,
         qdd: &[R; N],
         (lambda, bearing): (&[R; M], &[R; M]),
         phi: &[R; M],
@@ -191,7 +191,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
     pub(crate) fn residual(
         &self,
         t: R,
-        y: &State<R, N, S::States>,
+        y: &IntegratorState<R, N, S::States>,
         qdd: &[R; N],
         lambda: &[R; M],
         weight: R,
@@ -214,7 +214,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         &self,
         overshoots: bool,
         t: R,
-        (y, lambda): (&State<R, N, S::States>, &[R; M]),
+        (y, lambda): (&IntegratorState<R, N, S::States>, &[R; M]),
         counts: &mut Counts,
     ) -> [R; M] {
         if S::FORCE_USES_MULTIPLIERS && overshoots { self.held_by(t, (y, lambda), counts) } else { *lambda }
@@ -222,7 +222,12 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
 
     #[cold]
     #[inline(never)]
-    fn held_by(&self, t: R, (y, lambda): (&State<R, N, S::States>, &[R; M]), counts: &mut Counts) -> [R; M] {
+    fn held_by(
+        &self,
+        t: R,
+        (y, lambda): (&IntegratorState<R, N, S::States>, &[R; M]),
+        counts: &mut Counts,
+    ) -> [R; M] {
         let solved = Unstabilized.solve(self, t, y, lambda, counts);
         solved.map_or(*lambda, |solved| solved.lambda)
     }
@@ -232,8 +237,8 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         &self,
         from: &Instant<R, N, M, S::States>,
         h: R,
-        end: &mut State<R, N, S::States>,
-        rate: &State<R, N, S::States>,
+        end: &mut IntegratorState<R, N, S::States>,
+        rate: &IntegratorState<R, N, S::States>,
     ) {
         let moved = from.y.plus(h, &[0.5, 0.5], [&from.solved.rate, rate]);
         (end.states, end.work) = (moved.states, moved.work);

@@ -4,7 +4,7 @@ use crate::scalar::number::Scalar;
 
 /// A point that integrators add multiples of others to.
 ///
-/// Arrays are points; so is the [`State`] of a mechanism, whose `[T; 2 * N]` stable Rust cannot write.
+/// Arrays are points; so is the [`IntegratorState`] of a mechanism, whose `[T; 2 * N]` stable Rust cannot write.
 pub trait Vector<T: Scalar>: Copy {
     /// The origin, of the same shape.
     fn zero(&self) -> Self;
@@ -65,7 +65,7 @@ fn add_slices<T: Scalar, const K: usize>(sum: &mut [T], h: T, weights: &[f64; K]
 
 /// Position, velocity and first-order states of a mechanism; as a rate, the derivative of each part.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct State<T, const N: usize, Z> {
+pub struct IntegratorState<T, const N: usize, Z> {
     /// Coordinates q: N.
     pub q: [T; N],
     /// Velocities q̇: N, in coordinate unit per second.
@@ -76,12 +76,12 @@ pub struct State<T, const N: usize, Z> {
     pub work: T,
 }
 
-impl<T: Scalar, const N: usize, Z: Copy + AsRef<[T]> + AsMut<[T]>> Vector<T> for State<T, N, Z> {
+impl<T: Scalar, const N: usize, Z: Copy + AsRef<[T]> + AsMut<[T]>> Vector<T> for IntegratorState<T, N, Z> {
     #[inline(always)]
     fn zero(&self) -> Self {
         let mut zero = *self;
         zero.states.as_mut().iter_mut().for_each(|state| *state = T::constant(0.0));
-        State { q: self.q.zero(), qd: self.qd.zero(), states: zero.states, work: T::constant(0.0) }
+        IntegratorState { q: self.q.zero(), qd: self.qd.zero(), states: zero.states, work: T::constant(0.0) }
     }
 
     #[inline(always)]

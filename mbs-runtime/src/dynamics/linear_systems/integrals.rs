@@ -1,7 +1,7 @@
 //! First-order states that integrate a function of the coordinates, as an integral control does. Their rates do not depend on
 //! them, so that they rest wherever that function vanishes, and their force follows from the balance of forces.
 
-use crate::dynamics::integrators::vector::State;
+use crate::dynamics::integrators::vector::IntegratorState;
 use crate::dynamics::linear_systems::states::eliminate;
 use crate::dynamics::model::Model;
 use crate::dynamics::model::metric::Metric;
@@ -135,7 +135,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
     pub(crate) fn require_integrated(
         &self,
         t: R,
-        y: &State<R, N, S::States>,
+        y: &IntegratorState<R, N, S::States>,
         lambda: &[R; M],
     ) -> Result<(), Failure> {
         let position = self.position(t, y);
@@ -158,7 +158,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
     pub(crate) fn changes_integrals(
         &self,
         t: R,
-        y: &State<R, N, S::States>,
+        y: &IntegratorState<R, N, S::States>,
         lambda: &[R; M],
         (motion, share): (&[R; N], R),
     ) -> bool {

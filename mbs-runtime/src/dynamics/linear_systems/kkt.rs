@@ -58,7 +58,7 @@ impl<R: Real, const N: usize, const M: usize> System<R, N, M> {
             singular::LEAST_PIVOT.of::<R>() < health.margin && health.growth < R::constant(LARGEST_GROWTH);
         let sure = singular::SURE_PIVOT.of::<R>() < health.margin;
         if good && (sure || holds_well(&blocks)) {
-            return Ok(self.factors(Kind::Blocks(blocks), health.margin.sqrt()));
+            return Ok(self.factors(FactorKind::Blocks(blocks), health.margin.sqrt()));
         }
         self.factorize_rank_revealing(singular::DEPENDENT.of(), coordinates, t)
     }
@@ -74,7 +74,7 @@ impl<R: Real, const N: usize, const M: usize> System<R, N, M> {
     ) -> Result<Factors<R, N, M>, Failure> {
         let (blocks, health) = Blocks::factorize(&self.mass, &self.phi_q);
         if R::constant(0.0) < health.margin {
-            return Ok(self.factors(Kind::Blocks(blocks), health.margin.sqrt()));
+            return Ok(self.factors(FactorKind::Blocks(blocks), health.margin.sqrt()));
         }
         self.factorize_rank_revealing(singular::DEPENDENT.of(), coordinates, t)
     }
@@ -94,7 +94,7 @@ impl<R: Real, const N: usize, const M: usize> System<R, N, M> {
     ) -> Result<Factors<R, N, M>, Failure> {
         let null_space = self.null_space(truncation, singular::LEAST_INERTIA.of(), coordinates, t)?;
         let margin = null_space.margin();
-        Ok(self.factors(Kind::NullSpace(null_space), margin))
+        Ok(self.factors(FactorKind::NullSpace(null_space), margin))
     }
 
     /// Fails where a motion that the rows leave free moves less than `share` of the mass that all of them move.
@@ -155,7 +155,7 @@ impl<R: Real, const N: usize, const M: usize> System<R, N, M> {
         })
     }
 
-    fn factors(&self, kind: Kind<R, N, M>, margin: R) -> Factors<R, N, M> {
+    fn factors(&self, kind: FactorKind<R, N, M>, margin: R) -> Factors<R, N, M> {
         Factors { kind, margin, mass_weight: self.mass_weight, metric: self.metric }
     }
 }
@@ -185,7 +185,7 @@ fn holds_well<R: Real, const N: usize, const M: usize>(blocks: &Blocks<R, N, M>)
 /// A factorised system.
 #[derive(Clone, Copy, Debug)]
 pub struct Factors<R, const N: usize, const M: usize> {
-    kind: Kind<R, N, M>,
+    kind: FactorKind<R, N, M>,
     margin: R,
     mass_weight: R,
     metric: Metric<R, N, M>,
@@ -193,7 +193,7 @@ pub struct Factors<R, const N: usize, const M: usize> {
 
 #[derive(Clone, Copy, Debug)]
 #[allow(clippy::large_enum_variant, reason = "both live on the stack: nothing here allocates")]
-enum Kind<R, const N: usize, const M: usize> {
+enum FactorKind<R, const N: usize, const M: usize> {
     Blocks(Blocks<R, N, M>),
     NullSpace(NullSpace<R, N, M>),
 }
@@ -213,8 +213,8 @@ impl<R: Real, const N: usize, const M: usize> Factors<R, N, M> {
             .zip(&self.metric.rows)
             .for_each(|(component, scale)| *component = *component / *scale);
         let (mut x, mut lambda) = match &self.kind {
-            Kind::Blocks(blocks) => blocks.solve(upper, lower),
-            Kind::NullSpace(null_space) => null_space.solve(&upper, &lower),
+            FactorKind::Blocks(blocks) => blocks.solve(upper, lower),
+            FactorKind::NullSpace(null_space) => null_space.solve(&upper, &lower),
         };
         x.iter_mut()
             .zip(&self.metric.coordinates)
@@ -229,7 +229,7 @@ impl<R: Real, const N: usize, const M: usize> Factors<R, N, M> {
     /// them, then zeros. Of a rank-revealing factorization; of another none.
     pub fn free_motions(&self) -> [[R; N]; N] {
         let mut motions = [[R::constant(0.0); N]; N];
-        if let Kind::NullSpace(null_space) = &self.kind {
+        if let FactorKind::NullSpace(null_space) = &self.kind {
             for (motion, index) in motions.iter_mut().zip(null_space.rank()..N) {
                 *motion = null_space.unit(index);
                 motion.iter_mut().zip(&self.metric.coordinates).for_each(|(x, scale)| *x = *x * *scale);
@@ -241,7 +241,7 @@ impl<R: Real, const N: usize, const M: usize> Factors<R, N, M> {
     /// The part of `x` (N) of the metric that the rows leave free, in other axes of the same lengths and angles. Of a rank-revealing
     /// factorization; of another none.
     pub(crate) fn free_part(&self, x: &[R; N]) -> [R; N] {
-        if let Kind::NullSpace(null_space) = &self.kind {
+        if let FactorKind::NullSpace(null_space) = &self.kind {
             null_space.free_part(x)
         } else {
             [R::constant(0.0); N]
@@ -256,18 +256,18 @@ impl<R: Real, const N: usize, const M: usize> Factors<R, N, M> {
 
     /// `true` if the rank-revealing factorization was needed.
     pub fn is_rank_revealing(&self) -> bool {
-        matches!(self.kind, Kind::NullSpace(_))
+        matches!(self.kind, FactorKind::NullSpace(_))
     }
 
     /// Number of independent rows.
     pub fn rank(&self) -> usize {
-        if let Kind::NullSpace(null_space) = &self.kind { null_space.rank() } else { M }
+        if let FactorKind::NullSpace(null_space) = &self.kind { null_space.rank() } else { M }
     }
 
     /// Combinations of multipliers without effect, in the metric, M less the rank of them, then zeros.
     pub(crate) fn idle_shares(&self) -> [[R; M]; M] {
         let none = [[R::constant(0.0); M]; M];
-        if let Kind::NullSpace(null_space) = &self.kind { null_space.idle() } else { none }
+        if let FactorKind::NullSpace(null_space) = &self.kind { null_space.idle() } else { none }
     }
 
     /// Divisors of the rows: the metric's scales, or the rows' largest entries where those are more: M.
@@ -290,11 +290,19 @@ impl<R: Real, const N: usize, const M: usize> Factors<R, N, M> {
 
     /// `true` for each row that depends on the others: M.
     pub fn dependent_rows(&self) -> [bool; M] {
-        if let Kind::NullSpace(null_space) = &self.kind { null_space.dependent_rows() } else { [false; M] }
+        if let FactorKind::NullSpace(null_space) = &self.kind {
+            null_space.dependent_rows()
+        } else {
+            [false; M]
+        }
     }
 
     /// `true` for each multiplier that the system determines uniquely: M. The others are the shortest choice.
     pub fn unique_multipliers(&self) -> [bool; M] {
-        if let Kind::NullSpace(null_space) = &self.kind { null_space.unique_multipliers() } else { [true; M] }
+        if let FactorKind::NullSpace(null_space) = &self.kind {
+            null_space.unique_multipliers()
+        } else {
+            [true; M]
+        }
     }
 }

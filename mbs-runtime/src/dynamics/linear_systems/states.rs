@@ -1,6 +1,6 @@
 //! First-order states as further unknowns: their equilibrium values, and their part in small motions.
 
-use crate::dynamics::integrators::vector::State;
+use crate::dynamics::integrators::vector::IntegratorState;
 use crate::dynamics::linear_systems::integrals::{Integrals, IntegralsOf, dependence, is_held};
 use crate::dynamics::model::Model;
 use crate::dynamics::model::metric::worse;
@@ -28,7 +28,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
     pub(crate) fn settle_states(
         &self,
         t: R,
-        y: &mut State<R, N, S::States>,
+        y: &mut IntegratorState<R, N, S::States>,
         lambda: &[R; M],
     ) -> Result<(), Failure> {
         let Some(first) = S::STATES.first() else { return Ok(()) };
@@ -75,7 +75,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
     pub(crate) fn add_following_states(
         &self,
         position: &S::Position,
-        y: &State<R, N, S::States>,
+        y: &IntegratorState<R, N, S::States>,
         lambda: &[R; M],
         stiffness: &mut [[R; N]; N],
     ) -> IntegralsOf<S, R, N, M> {

@@ -1,6 +1,6 @@
 //! Tangent of the equations of motion: stiffness, damping and inertia about a state.
 
-use crate::dynamics::integrators::vector::State;
+use crate::dynamics::integrators::vector::IntegratorState;
 use crate::dynamics::linear_systems::integrals::IntegralsOf;
 use crate::dynamics::model::Model;
 use crate::mechanism::dynamic::Dynamic;
@@ -18,7 +18,7 @@ impl<R: Real, const N: usize> Tangent<R, N> {
     pub(crate) fn of<S: Dynamic<R, N, M>, const M: usize>(
         model: &Model<'_, S, R, N, M>,
         position: &S::Position,
-        y: &State<R, N, S::States>,
+        y: &IntegratorState<R, N, S::States>,
         qdd: &[R; N],
         lambda: &[R; M],
     ) -> Self {
@@ -37,7 +37,7 @@ impl<R: Real, const N: usize> Tangent<R, N> {
     pub(crate) fn at_rest<S: Dynamic<R, N, M>, const M: usize>(
         model: &Model<'_, S, R, N, M>,
         position: &S::Position,
-        y: &State<R, N, S::States>,
+        y: &IntegratorState<R, N, S::States>,
         lambda: &[R; M],
     ) -> (Self, IntegralsOf<S, R, N, M>) {
         let mut tangent = Tangent::of(model, position, y, &[R::constant(0.0); N], lambda);

@@ -8,22 +8,22 @@ macro_rules! forward {
     };
     (@solve $($by:tt)+) => {
         forward! { ($($by)+) solve(
-            model: &Model<'_, S, R, N, M>, t: R, y: &State<R, N, S::States>, lambda: &[R; M], counts: &mut Counts
+            model: &Model<'_, S, R, N, M>, t: R, y: &IntegratorState<R, N, S::States>, lambda: &[R; M], counts: &mut Counts
         ) -> Result<Solved<R, N, M, S::States>, Failure> }
     };
     (@solve_as_it_is $($by:tt)+) => {
         forward! { ($($by)+) solve_as_it_is(
-            model: &Model<'_, S, R, N, M>, t: R, y: &State<R, N, S::States>, lambda: &[R; M], counts: &mut Counts
+            model: &Model<'_, S, R, N, M>, t: R, y: &IntegratorState<R, N, S::States>, lambda: &[R; M], counts: &mut Counts
         ) -> Result<Solved<R, N, M, S::States>, Failure> }
     };
     (@project $($by:tt)+) => {
         forward! { ($($by)+) project(
-            model: &Model<'_, S, R, N, M>, t: R, y: &mut State<R, N, S::States>, counts: &mut Counts
+            model: &Model<'_, S, R, N, M>, t: R, y: &mut IntegratorState<R, N, S::States>, counts: &mut Counts
         ) -> Result<(), Failure> }
     };
     (@project_and_solve $($by:tt)+) => {
         forward! { ($($by)+) project_and_solve(
-            model: &Model<'_, S, R, N, M>, t: R, y: &mut State<R, N, S::States>, lambda: &[R; M], counts: &mut Counts
+            model: &Model<'_, S, R, N, M>, t: R, y: &mut IntegratorState<R, N, S::States>, lambda: &[R; M], counts: &mut Counts
         ) -> Result<Solved<R, N, M, S::States>, Failure> }
     };
     (@step $($by:tt)+) => {

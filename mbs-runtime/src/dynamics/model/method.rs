@@ -1,6 +1,6 @@
 //! Contract of a method of integration for mechanisms.
 
-use crate::dynamics::integrators::vector::State;
+use crate::dynamics::integrators::vector::IntegratorState;
 use crate::dynamics::model::forward::forward;
 use crate::dynamics::model::instant::Instant;
 use crate::dynamics::model::{Counts, MethodWarning, Model, Solved};
@@ -37,7 +37,7 @@ pub trait Method<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> {
         &self,
         model: &Model<'_, S, R, N, M>,
         t: R,
-        y: &State<R, N, S::States>,
+        y: &IntegratorState<R, N, S::States>,
         lambda: &[R; M],
         counts: &mut Counts,
     ) -> Result<Solved<R, N, M, S::States>, Failure>;

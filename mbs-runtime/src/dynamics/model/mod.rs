@@ -6,7 +6,7 @@ pub(crate) mod method;
 pub(crate) mod metric;
 pub(crate) mod sign_checks;
 
-use crate::dynamics::integrators::vector::State;
+use crate::dynamics::integrators::vector::IntegratorState;
 use crate::dynamics::model::forward::forward;
 use crate::dynamics::model::instant::Instant;
 use crate::dynamics::model::metric::Metric;
@@ -37,7 +37,7 @@ pub struct Model<'a, S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usiz
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Solved<R, const N: usize, const M: usize, Z> {
     /// q̇, q̈, ż and the power of forces and drives.
-    pub rate: State<R, N, Z>,
+    pub rate: IntegratorState<R, N, Z>,
     /// Multipliers λ: M.
     pub lambda: [R; M],
     /// Margin of Φ_q to a loss of rank: 0 at the loss, at most 1.
@@ -81,7 +81,7 @@ pub trait Formulation<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usi
         &self,
         model: &Model<'_, S, R, N, M>,
         t: R,
-        y: &State<R, N, S::States>,
+        y: &IntegratorState<R, N, S::States>,
         lambda: &[R; M],
         counts: &mut Counts,
     ) -> Result<Solved<R, N, M, S::States>, Failure>;
@@ -95,7 +95,7 @@ pub trait Formulation<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usi
         &self,
         model: &Model<'_, S, R, N, M>,
         t: R,
-        y: &State<R, N, S::States>,
+        y: &IntegratorState<R, N, S::States>,
         lambda: &[R; M],
         counts: &mut Counts,
     ) -> Result<Solved<R, N, M, S::States>, Failure> {
@@ -110,7 +110,7 @@ pub trait Formulation<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usi
         &self,
         _model: &Model<'_, S, R, N, M>,
         _t: R,
-        _y: &mut State<R, N, S::States>,
+        _y: &mut IntegratorState<R, N, S::States>,
         _counts: &mut Counts,
     ) -> Result<(), Failure> {
         Ok(())
@@ -126,7 +126,7 @@ pub trait Formulation<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usi
         &self,
         model: &Model<'_, S, R, N, M>,
         t: R,
-        y: &mut State<R, N, S::States>,
+        y: &mut IntegratorState<R, N, S::States>,
         lambda: &[R; M],
         counts: &mut Counts,
     ) -> Result<Solved<R, N, M, S::States>, Failure> {
@@ -206,7 +206,7 @@ impl<'a, S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'a,
 impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, R, N, M> {
     /// Stage-1 values of a state.
     #[inline(always)]
-    pub fn position(&self, t: R, y: &State<R, N, S::States>) -> S::Position {
+    pub fn position(&self, t: R, y: &IntegratorState<R, N, S::States>) -> S::Position {
         self.mechanism.position(self.parameters, &y.q, t)
     }
 
@@ -234,7 +234,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
     }
 
     /// Fails where a coordinate, velocity or state is no number, or a coordinate is not resolved.
-    pub(crate) fn check(&self, t: R, y: &State<R, N, S::States>) -> Result<(), Failure> {
+    pub(crate) fn check(&self, t: R, y: &IntegratorState<R, N, S::States>) -> Result<(), Failure> {
         let bad = checks::time_failure(t)
             .or_else(|| checks::coordinate_failure::<S, R, N, M>(&y.q, &self.metric.coordinates, t))
             .or_else(|| checks::non_finite(&y.qd, S::COORDINATES))
@@ -253,8 +253,8 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
     pub(crate) fn require_bounded(
         &self,
         t: R,
-        before: &State<R, N, S::States>,
-        after: &State<R, N, S::States>,
+        before: &IntegratorState<R, N, S::States>,
+        after: &IntegratorState<R, N, S::States>,
     ) -> Result<(), Failure> {
         let mut worst = (R::constant(LARGEST_MOTION), None);
         let moved = before.q.iter().zip(&after.q).zip(&self.metric.coordinates);
@@ -303,7 +303,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         S: Dynamic<R, N, M, States = Z>,
     {
         let (zero, most) = (R::constant(0.0), R::constant(LARGEST_GAIN));
-        let at = |model: &Model<'_, S, R, N, M>, t: R, y: &State<R, N, S::States>| {
+        let at = |model: &Model<'_, S, R, N, M>, t: R, y: &IntegratorState<R, N, S::States>| {
             model.mechanism.energy(model.parameters, &model.position(t, y), &y.qd)
         };
         let start = at(self, from.t, &from.y);
@@ -355,19 +355,25 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
     pub(crate) fn rates(
         &self,
         position: &S::Position,
-        y: &State<R, N, S::States>,
+        y: &IntegratorState<R, N, S::States>,
         qdd: [R; N],
         lambda: &[R; M],
-    ) -> State<R, N, S::States> {
+    ) -> IntegratorState<R, N, S::States> {
         let (mechanism, parameters) = (self.mechanism, self.parameters);
         let states = mechanism.state_rates(parameters, position, &y.qd, &y.states, lambda);
         let work = if self.balanced { self.power(position, y, &qdd, lambda) } else { R::constant(0.0) };
-        State { q: y.qd, qd: qdd, states, work }
+        IntegratorState { q: y.qd, qd: qdd, states, work }
     }
 
     /// Power (W) of the forces that are not potential, of the drives, and of the time where it carries masses along or
     /// changes a potential: Σ Pᵢ + λᵀ Φ_t + P_t.
-    fn power(&self, position: &S::Position, y: &State<R, N, S::States>, qdd: &[R; N], lambda: &[R; M]) -> R {
+    fn power(
+        &self,
+        position: &S::Position,
+        y: &IntegratorState<R, N, S::States>,
+        qdd: &[R; N],
+        lambda: &[R; M],
+    ) -> R {
         let powers = self.mechanism.powers(self.parameters, position, &y.qd, &y.states, lambda);
         let forces = powers.as_ref().iter().fold(R::constant(0.0), |sum, power| sum + *power);
         let moving = self.mechanism.phi_t(self.parameters, position);
@@ -382,7 +388,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
     pub(crate) fn balanced(
         &self,
         position: &S::Position,
-        at: (R, &State<R, N, S::States>),
+        at: (R, &IntegratorState<R, N, S::States>),
         lambda: &[R; M],
         solve: impl FnMut(&[R; N], bool) -> ([R; N], [R; M]),
     ) -> Result<Balanced<R, N, M>, Failure> {
@@ -395,7 +401,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         &self,
         standing: R,
         position: &S::Position,
-        at: (R, &State<R, N, S::States>),
+        at: (R, &IntegratorState<R, N, S::States>),
         lambda: &[R; M],
         mut solve: impl FnMut(&[R; N], bool) -> ([R; N], [R; M]),
     ) -> Result<Balanced<R, N, M>, Failure> {

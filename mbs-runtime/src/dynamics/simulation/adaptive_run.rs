@@ -1,8 +1,8 @@
 //! Runs with steps as long as a tolerance allows.
 
+use crate::dynamics::first_order_form::equations::{Equations, Moving};
+use crate::dynamics::first_order_form::explicit::{Explicit, beginning};
 use crate::dynamics::formulations::singular::passage::Passage;
-use crate::dynamics::integration::equations::{Equations, Moving};
-use crate::dynamics::integration::explicit::{Explicit, beginning};
 use crate::dynamics::integrators::embedded::Embedded;
 use crate::dynamics::integrators::equation::Equation;
 use crate::dynamics::integrators::event::monitor::Stopped;

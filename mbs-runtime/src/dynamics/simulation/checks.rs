@@ -2,7 +2,7 @@
 
 use crate::dynamics::integrators::event::enclosure::{Enclosures, Functions, GroupOver, Part};
 use crate::dynamics::integrators::event::{GROUP, Scrutiny, Unanswered, Watched, first_beyond};
-use crate::dynamics::integrators::vector::State;
+use crate::dynamics::integrators::vector::IntegratorState;
 use crate::dynamics::model::Model;
 use crate::failure::checks::{limit_failure, passed_failure};
 use crate::failure::{Failure, FailureKind};
@@ -18,7 +18,7 @@ const MOST_HALVINGS: u32 = 53;
 
 impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, R, N, M> {
     /// Kinetic and potential energy (J).
-    pub(super) fn total_energy(&self, t: R, y: &State<R, N, S::States>) -> R {
+    pub(super) fn total_energy(&self, t: R, y: &IntegratorState<R, N, S::States>) -> R {
         let energy = self.mechanism.energy(self.parameters, &self.position(t, y), &y.qd);
         energy.kinetic + energy.potential
     }
@@ -28,7 +28,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
     pub(in crate::dynamics) fn check_assembly(
         &self,
         from: R,
-        (t, y): (R, &State<R, N, S::States>),
+        (t, y): (R, &IntegratorState<R, N, S::States>),
         assembling: bool,
     ) -> Result<(), Failure> {
         if S::BRANCHES.is_empty() && S::LIMITS.is_empty() {
@@ -49,7 +49,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         &self,
         from: R,
         (start, end): (R, R),
-        at: impl Fn(R) -> State<R, N, S::States>,
+        at: impl Fn(R) -> IntegratorState<R, N, S::States>,
         resolution: Option<R>,
     ) -> Result<(), Failure> {
         if S::LIMITS.is_empty() {
@@ -72,14 +72,18 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         &self,
         from: R,
         (start, end): (R, R),
-        at: impl Fn(R) -> State<R, N, S::States>,
+        at: impl Fn(R) -> IntegratorState<R, N, S::States>,
     ) -> Result<(), Failure> {
         let check = |t: R| self.check_assembly(from, (t, &at(t)), false);
         check(end).map_err(|failure| first_failure(start, (end, failure), check))
     }
 
     /// Fails with the row that a start violates by more than it may.
-    pub(super) fn require_consistent(&self, t: R, y: &State<R, N, S::States>) -> Result<(), Failure> {
+    pub(super) fn require_consistent(
+        &self,
+        t: R,
+        y: &IntegratorState<R, N, S::States>,
+    ) -> Result<(), Failure> {
         let position = self.position(t, y);
         let one = R::constant(1.0);
         let allowance = positions::OF_START.of::<R>();
@@ -134,7 +138,7 @@ impl<S, R, At, const N: usize, const M: usize> Ranges<'_, S, R, At, N, M>
 where
     S: Dynamic<R, N, M>,
     R: Real,
-    At: Fn(R) -> State<R, N, S::States>,
+    At: Fn(R) -> IntegratorState<R, N, S::States>,
 {
     fn limits(&self, t: R) -> S::Limits {
         let q = (self.at)(t).q;
@@ -160,7 +164,7 @@ impl<S, R, At, const N: usize, const M: usize> Watched<R> for Ranges<'_, S, R, A
 where
     S: Dynamic<R, N, M>,
     R: Real,
-    At: Fn(R) -> State<R, N, S::States>,
+    At: Fn(R) -> IntegratorState<R, N, S::States>,
 {
     fn count(&self) -> usize {
         2 * S::LIMITS.len()

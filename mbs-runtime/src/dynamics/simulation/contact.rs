@@ -2,7 +2,7 @@
 
 use crate::dynamics::integrators::event::enclosure::{Enclosures, Functions, GroupOver, Part};
 use crate::dynamics::integrators::event::{GROUP, Scrutiny, Watched, first_beyond};
-use crate::dynamics::integrators::vector::State;
+use crate::dynamics::integrators::vector::IntegratorState;
 use crate::dynamics::model::Model;
 use crate::failure::{Failure, FailureKind, checks};
 use crate::mechanism::Entry;
@@ -13,7 +13,7 @@ use crate::tolerances::motion;
 
 impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, R, N, M> {
     /// Shows the gaps of a state at `t` (s), where inputs and phases are known at time `from` (s).
-    fn gaps(&self, from: R, (t, y): (R, &State<R, N, S::States>), see: impl FnMut(Gap<R>)) {
+    fn gaps(&self, from: R, (t, y): (R, &IntegratorState<R, N, S::States>), see: impl FnMut(Gap<R>)) {
         self.moved(from, t, |Model { mechanism, parameters, .. }| {
             mechanism.gaps(parameters, &mechanism.position(parameters, &y.q, t), &y.qd, see);
         });
@@ -23,7 +23,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
     pub(crate) fn leave_out(
         &self,
         from: R,
-        (t, y): (R, &State<R, N, S::States>),
+        (t, y): (R, &IntegratorState<R, N, S::States>),
         parameters: &mut S::Parameters,
     ) -> Open<R> {
         let (zero, none) = (R::constant(0.0), motion::NO_VALUE.of::<R>() * self.gap_scale());
@@ -55,7 +55,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         &self,
         (from, evaluated): (R, &[bool]),
         (start, end): (R, R),
-        at: impl Fn(R) -> State<R, N, S::States>,
+        at: impl Fn(R) -> IntegratorState<R, N, S::States>,
         scrutiny: &Scrutiny<R>,
     ) -> Result<Option<R>, Failure> {
         let scrutiny = Scrutiny { bound: None, scale: self.gap_scale(), touching: false, ..*scrutiny };
@@ -109,7 +109,7 @@ impl<S, R, At, const N: usize, const M: usize> Watched<R> for Contacts<'_, S, R,
 where
     S: Dynamic<R, N, M>,
     R: Real,
-    At: Fn(R) -> State<R, N, S::States>,
+    At: Fn(R) -> IntegratorState<R, N, S::States>,
 {
     fn count(&self) -> usize {
         S::CONTACTS.len()

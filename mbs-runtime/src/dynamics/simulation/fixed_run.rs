@@ -6,7 +6,7 @@ use crate::dynamics::integrators::event::{
     Direction, MOST_BOUNDED_PARTS, MOST_RESOLVED, Scrutiny, Unanswered,
 };
 use crate::dynamics::integrators::step_control::{MOST_RETAKES, Point, cubic};
-use crate::dynamics::integrators::vector::State;
+use crate::dynamics::integrators::vector::IntegratorState;
 use crate::dynamics::model::instant::Instant;
 use crate::dynamics::model::method::Method;
 use crate::dynamics::model::{Counts, Model};
@@ -52,7 +52,7 @@ impl<R: Real, P, const N: usize, const M: usize, Z: Copy + AsRef<[R]> + AsMut<[R
     }
 
     /// The state at `t` (s): of the cubic through both ends.
-    fn at(&self, t: R) -> State<R, N, Z> {
+    fn at(&self, t: R) -> IntegratorState<R, N, Z> {
         let (from, next) = (&self.from.instant, &self.next);
         if next.t <= t {
             return next.y;

@@ -8,14 +8,14 @@ pub(crate) mod reading;
 
 use crate::dynamics::equilibrium::consistent_start;
 use crate::dynamics::equilibrium::consistent_start::MovedStart;
+use crate::dynamics::first_order_form::phases::at_present;
 use crate::dynamics::formulations::projection::Projection;
 use crate::dynamics::formulations::singular::passage::Passage;
 use crate::dynamics::formulations::singular::rank::rank_rises;
-use crate::dynamics::integration::phases::at_present;
 use crate::dynamics::integrators::event::Scrutiny;
 use crate::dynamics::integrators::event::monitor::Stopped;
 use crate::dynamics::integrators::step_control::Adaptive;
-use crate::dynamics::integrators::vector::State;
+use crate::dynamics::integrators::vector::IntegratorState;
 use crate::dynamics::model::instant::Instant;
 use crate::dynamics::model::method::Method;
 use crate::dynamics::model::metric::{Metric, Tolerance, require_position_tolerance};
@@ -188,7 +188,7 @@ where
         };
         let mut counts = Counts::default();
         let states = mechanism.start_states(&parameters);
-        let mut y = State { q, qd, states, work: R::constant(0.0) };
+        let mut y = IntegratorState { q, qd, states, work: R::constant(0.0) };
         model.check(t, &y)?;
         match origin {
             Origin::Consistent => model
@@ -197,7 +197,7 @@ where
             Origin::Near => {}
             Origin::Text => consistent_start::complete(&model, t, &mut y, &mut counts)?,
         }
-        let declared = State { q, qd, ..y };
+        let declared = IntegratorState { q, qd, ..y };
         let near = y;
         Projection::default()
             .project(&model, t, &mut y, &mut counts)

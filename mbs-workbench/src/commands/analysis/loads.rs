@@ -4,7 +4,7 @@ use crate::erased::facade::Motion;
 use crate::motion::power_balance::{PowerCurve, PowerSource};
 use crate::motion::{DependentRow, Forces, LoadCurve};
 
-use crate::commands::table::significant;
+use crate::commands::summary::significant;
 
 /// Largest number of curves of one name and unit that have a line each; more of them share one line.
 const MOST_LINES: usize = 24;

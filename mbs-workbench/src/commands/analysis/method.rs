@@ -1,6 +1,6 @@
 //! Options of the command line for integrator and stabilisation of a motion from forces.
 
-use crate::erased::dynamics::direct::{Implicit, ImplicitMethod, Pair, Rule, Stabilization, Steps};
+use crate::erased::dynamics::direct_dynamics::{Implicit, ImplicitMethod, Pair, Rule, Stabilization, Steps};
 use clap::{Args, ValueEnum};
 use mbs_runtime::dynamics::{Baumgarte, Penalty, Tolerance};
 

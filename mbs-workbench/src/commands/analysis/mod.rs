@@ -1,29 +1,29 @@
 //! The analyses of the command line: each turns a mechanism into a motion with figures.
 
-mod direct;
-mod driven;
-mod given;
-mod linear;
+mod direct_dynamics;
+mod linearization;
 mod loads;
 mod method;
-mod rest;
+mod prescribed_motion;
+mod static_equilibrium;
+mod used_options;
 mod watch;
 
 use crate::erased::dynamics::AnyDynamics;
-use crate::erased::dynamics::direct::{Approach, Stabilization, Steps, equal};
-use crate::erased::dynamics::linear::SmallMotions;
+use crate::erased::dynamics::direct_dynamics::{Approach, Stabilization, Steps, equal};
+use crate::erased::dynamics::linearization::SmallMotions;
 use crate::erased::erase::Erased;
 use crate::erased::facade::{AnyMechanism, Motion};
 use crate::motion::instants;
 use mbs_codegen::picture::Preset;
 
-pub use self::direct::{doubtful, largest, undetermined};
-pub use self::given::UsedOptions;
+pub use self::direct_dynamics::{doubtful, largest, undetermined};
 pub use self::method::{Damping, IntegratorName, MethodName, above_zero, at_least_zero, tolerance};
+pub use self::used_options::UsedOptions;
 use self::watch::{Watch, progress};
 use super::CommandError;
 use super::chosen::coordinate;
-use super::subject::Target;
+use super::target::Target;
 
 /// Analysis of a mechanism, one for each command.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -65,20 +65,20 @@ pub struct Request {
     pub until: Option<f64>,
     pub steps: usize,
     /// Options of the command line for instants and integration of a motion.
-    pub given: UsedOptions,
+    pub used_options: UsedOptions,
 }
 
 impl Request {
     /// The analysis asked for, or the one that moves the mechanism.
-    pub fn analysis_of(&self, subject: &Target) -> Analysis {
-        let standard = if subject.is_free() { Analysis::Simulation } else { Analysis::Kinematics };
+    pub fn analysis_of(&self, target: &Target) -> Analysis {
+        let standard = if target.is_free() { Analysis::Simulation } else { Analysis::Kinematics };
         self.analysis.unwrap_or(standard)
     }
 
     /// The motion of `instance`, or its equilibrium and, if that is unstable, also the stable one reached from it.
     pub fn done(
         &self,
-        subject: &Target,
+        target: &Target,
         (preset, instance): &(Preset, Erased),
     ) -> Result<Vec<RunResult>, CommandError> {
         let done = |(index, AnalysisResult { motion, figures, small }): (usize, AnalysisResult)| {
@@ -92,48 +92,57 @@ impl Request {
             RunResult { instance: 0, label, description, motion, figures, small }
         };
         let fail =
-            |reason: String| CommandError::Failed(format!("{}, {}: {reason}", subject.name(), preset.label));
-        self.require_use(subject)?;
-        let (times, bar) = (self.times(subject, instance)?, progress(&preset.label));
-        self.require_end(subject, &times)?;
+            |reason: String| CommandError::Failed(format!("{}, {}: {reason}", target.name(), preset.label));
+        self.require_use(target)?;
+        let (times, bar) = (self.times(target, instance)?, progress(&preset.label));
+        self.require_end(target, &times)?;
         bar.set_length(times.len() as u64);
         let mut watch = Watch::new(&preset.label, times.len(), bar.is_hidden());
         let mut on_progress = |count: usize| {
             bar.set_position(count as u64);
             watch.on_progress(count, &mut std::io::stderr());
         };
-        let found = match self.analysis_of(subject) {
-            Analysis::Kinematics => driven::kinematic(fixed(subject, instance)?, &times, &mut on_progress),
+        let found = match self.analysis_of(target) {
+            Analysis::Kinematics => {
+                prescribed_motion::kinematic(fixed(target, instance)?, &times, &mut on_progress)
+            }
             Analysis::Inverse => {
-                let dynamics = dynamics(subject, instance)?;
-                driven::inverse(fixed(subject, instance)?, dynamics, &times, &mut on_progress)
+                let dynamics = dynamics(target, instance)?;
+                prescribed_motion::inverse(fixed(target, instance)?, dynamics, &times, &mut on_progress)
             }
             Analysis::Equilibrium => {
-                let found = rest::rests(dynamics(subject, instance)?, &self.guesses(subject, instance)?);
+                let found =
+                    static_equilibrium::rests(dynamics(target, instance)?, &self.guesses(target, instance)?);
                 bar.finish_and_clear();
                 return Ok(found.map_err(fail)?.into_iter().enumerate().map(done).collect());
             }
             Analysis::Modes => {
-                let dynamics = dynamics(subject, instance)?;
+                let dynamics = dynamics(target, instance)?;
                 match self.at {
-                    None => linear::linear(dynamics, rest::rest(dynamics, &self.guesses(subject, instance)?)),
-                    Some(_) => linear::linear(
+                    None => linearization::linear(
                         dynamics,
-                        direct::direct(dynamics, &self.approach(), &times, &mut on_progress),
+                        static_equilibrium::rest(dynamics, &self.guesses(target, instance)?),
+                    ),
+                    Some(_) => linearization::linear(
+                        dynamics,
+                        direct_dynamics::direct(dynamics, &self.approach(), &times, &mut on_progress),
                     ),
                 }
             }
-            Analysis::Simulation => {
-                direct::direct(dynamics(subject, instance)?, &self.approach(), &times, &mut on_progress)
-            }
+            Analysis::Simulation => direct_dynamics::direct(
+                dynamics(target, instance)?,
+                &self.approach(),
+                &times,
+                &mut on_progress,
+            ),
         };
         bar.finish_and_clear();
         found.map(|found| vec![done((0, found))]).map_err(fail)
     }
 
     /// `true` if the analysis looks for an equilibrium.
-    pub fn is_of_rest(&self, subject: &Target) -> bool {
-        match self.analysis_of(subject) {
+    pub fn is_of_rest(&self, target: &Target) -> bool {
+        match self.analysis_of(target) {
             Analysis::Equilibrium => true,
             Analysis::Modes => self.at.is_none(),
             Analysis::Kinematics | Analysis::Simulation | Analysis::Inverse => false,
@@ -141,8 +150,8 @@ impl Request {
     }
 
     /// `true` if the analysis integrates a motion from forces.
-    fn is_moved(&self, subject: &Target) -> bool {
-        match self.analysis_of(subject) {
+    fn is_moved(&self, target: &Target) -> bool {
+        match self.analysis_of(target) {
             Analysis::Simulation => true,
             Analysis::Modes => self.at.is_some(),
             Analysis::Kinematics | Analysis::Equilibrium | Analysis::Inverse => false,
@@ -154,31 +163,31 @@ impl Request {
     }
 
     /// The guesses by index.
-    fn guesses(&self, subject: &Target, instance: &Erased) -> Result<Vec<(usize, f64)>, CommandError> {
+    fn guesses(&self, target: &Target, instance: &Erased) -> Result<Vec<(usize, f64)>, CommandError> {
         let index = |(name, value): &(String, f64)| {
-            Ok((coordinate(instance.equations(), subject.name(), name)?, *value))
+            Ok((coordinate(instance.equations(), target.name(), name)?, *value))
         };
         self.guesses.iter().map(index).collect()
     }
 
-    fn times(&self, subject: &Target, instance: &Erased) -> Result<Vec<f64>, CommandError> {
+    fn times(&self, target: &Target, instance: &Erased) -> Result<Vec<f64>, CommandError> {
         let duration = match (self.at, self.until) {
             (Some(0.0), _) => return Ok(vec![0.0]),
             (Some(at), _) => at,
             (None, Some(until)) => until,
-            (None, None) => subject.duration(instance.equations())?,
+            (None, None) => target.duration(instance.equations())?,
         };
         // Default instants do not cut steps that the command line sets.
         let most = match self.approach().longest() {
-            Some(longest) if self.given.step && !self.given.steps => equal(duration, longest),
+            Some(longest) if self.used_options.step && !self.used_options.steps => equal(duration, longest),
             _ => u32::MAX,
         };
         Ok(instants(duration, self.steps.min(most as usize)))
     }
 }
 
-fn fixed<'a>(subject: &Target, instance: &'a Erased) -> Result<&'a dyn AnyMechanism, CommandError> {
-    let name = subject.name();
+fn fixed<'a>(target: &Target, instance: &'a Erased) -> Result<&'a dyn AnyMechanism, CommandError> {
+    let name = target.name();
     match instance {
         Erased::Fixed(mechanism) => Ok(mechanism.as_ref()),
         Erased::Free(_) => Err(CommandError::Usage(format!(
@@ -187,9 +196,9 @@ fn fixed<'a>(subject: &Target, instance: &'a Erased) -> Result<&'a dyn AnyMechan
     }
 }
 
-pub fn dynamics<'a>(subject: &Target, instance: &'a Erased) -> Result<&'a dyn AnyDynamics, CommandError> {
+pub fn dynamics<'a>(target: &Target, instance: &'a Erased) -> Result<&'a dyn AnyDynamics, CommandError> {
     instance.equations().dynamics().ok_or_else(|| {
-        let name = subject.name();
+        let name = target.name();
         CommandError::Usage(format!("`{name}` has neither masses nor forces; use `mbs kinematics {name}`"))
     })
 }

@@ -25,7 +25,7 @@ pub(super) fn multipliers<S: Dynamic<f64, N, M>, const N: usize, const M: usize>
     let parameters = mechanism.parameters();
     let metric = Metric::next_to(&mechanism, &parameters, state.t, &q);
     let model = Model::of_states(&mechanism, &parameters, &metric);
-    let y = dynamics::State { q, qd, states: mechanism.start_states(&parameters), work: 0.0 };
+    let y = dynamics::IntegratorState { q, qd, states: mechanism.start_states(&parameters), work: 0.0 };
     let solved = Unstabilized.solve(&model, state.t, &y, &[0.0; M], &mut Counts::default());
     let solved = solved.map_err(|failure| failure.to_string())?;
     Ok(Loads { states: y.states.as_ref().to_vec(), lambda: solved.lambda.to_vec() })

@@ -1,31 +1,31 @@
 //! Analyses of a mechanism with masses: direct dynamics, inverse dynamics, static equilibrium, small motions.
 
 mod determined;
-pub mod direct;
-pub mod driven;
+pub mod direct_dynamics;
 #[cfg(feature = "program")]
 mod first_order;
+pub mod inverse_dynamics;
 #[cfg(feature = "program")]
-pub mod linear;
+pub mod linearization;
 mod loads;
 #[cfg(feature = "program")]
 pub mod modes;
 mod power_balance;
 mod record;
-pub mod rest;
 #[cfg(feature = "program")]
 mod settling;
-mod single;
 pub mod start;
+pub mod static_equilibrium;
+mod work_by_source;
 
 use mbs_runtime::{Dynamic, Failure};
 
 use crate::erased::facade::{Facade, Motion, State};
 use crate::erased::masses::Loads;
-use direct::{Approach, PartitionedFunctions, Simulated};
+use direct_dynamics::{Approach, PartitionedFunctions, Simulated};
 #[cfg(feature = "program")]
-use linear::SmallMotions;
-use rest::Rest;
+use linearization::SmallMotions;
+use static_equilibrium::Rest;
 
 /// A mechanism with masses of any size, whose motion follows from forces.
 pub trait AnyDynamics {
@@ -80,17 +80,17 @@ where
         times: &[f64],
         progress: &mut dyn FnMut(usize),
     ) -> Result<Simulated, Failure> {
-        direct::simulate(&self.0, &self.1, approach, times, progress)
+        direct_dynamics::simulate(&self.0, &self.1, approach, times, progress)
     }
 
     fn add_forces(&self, motion: &mut Motion) -> Result<(), Failure> {
-        driven::add_forces(&self.0, motion)
+        inverse_dynamics::add_forces(&self.0, motion)
     }
 
     fn rest(&self, guesses: &[(usize, f64)]) -> Result<Rest, Failure> {
         let mechanism = &self.0;
         let start = (self.1.start)(mechanism, 0.0).0;
-        rest::rest(mechanism, &rest::begin(mechanism, start, guesses))
+        static_equilibrium::rest(mechanism, &static_equilibrium::begin(mechanism, start, guesses))
     }
 
     fn multipliers(&self, state: &State) -> Result<Loads, String> {
@@ -99,7 +99,7 @@ where
 
     #[cfg(feature = "program")]
     fn small_motions(&self, motion: &Motion) -> Result<SmallMotions, String> {
-        linear::small_motions(&self.0, self.1.independent, motion)
+        linearization::small_motions(&self.0, self.1.independent, motion)
     }
 
     #[cfg(feature = "program")]

@@ -5,7 +5,7 @@ use nalgebra::{Complex, DMatrix, DVector};
 use serde::Serialize;
 
 use super::first_order::FirstOrder;
-use super::linear::{SmallMotions, ZERO};
+use super::linearization::{SmallMotions, ZERO};
 
 /// Shift from an eigenvalue, as a part of the system's norm. A smaller one needs fewer iterations; with this one the matrix is
 /// still regular.

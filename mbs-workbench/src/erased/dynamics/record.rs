@@ -5,7 +5,7 @@ use std::time::Instant;
 use mbs_runtime::dynamics::{Counts, Method, Simulation};
 use mbs_runtime::{Dynamic, DynamicState, Failure, FailureKind};
 
-use super::direct::Simulated;
+use super::direct_dynamics::Simulated;
 use super::{determined, power_balance};
 use crate::erased::facade::Motion;
 use crate::motion::{self, Forces};

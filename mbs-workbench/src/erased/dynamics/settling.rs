@@ -3,9 +3,9 @@
 use mbs_runtime::dynamics::{DormandPrince5, Explicit, Simulation, Tolerance};
 use mbs_runtime::{Dynamic, Failure};
 
-use super::direct::{AnyFormulation, ENDS, advance_to};
-use super::linear::{SmallMotions, Stability, small_motions};
-use super::rest::{Rest, rest};
+use super::direct_dynamics::{AnyFormulation, ENDS, advance_to};
+use super::linearization::{SmallMotions, Stability, small_motions};
+use super::static_equilibrium::{Rest, rest};
 use crate::erased::facade::Motion;
 
 /// Push along the mode that grows fastest, in the reference metric (rad, or reference lengths). It is large enough to determine

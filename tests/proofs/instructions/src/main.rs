@@ -17,7 +17,7 @@ mod released;
 use std::hint::black_box;
 use std::process::ExitCode;
 
-use mbs_runtime::dynamics::{Counts, Formulation, Metric, Model, State, VelocityTransformation};
+use mbs_runtime::dynamics::{Counts, Formulation, IntegratorState, Metric, Model, VelocityTransformation};
 use mbs_runtime::{
     Batch, Dynamic, Kinematic, Lanes, Mechanism, Partitioned, Scalar, Signal, Stepper, mechanism,
 };
@@ -178,7 +178,7 @@ where
     let metric = Metric::of(&mechanism, &parameters);
     let model = Model::of_states(&mechanism, &parameters, &metric);
     let mut counts = Counts::default();
-    let y = State { q, qd: [0.7; N], states: mechanism.start_states(&parameters), work: 0.0 };
+    let y = IntegratorState { q, qd: [0.7; N], states: mechanism.start_states(&parameters), work: 0.0 };
     for _ in 0..count {
         let solved = VelocityTransformation.solve(&model, 0.0, black_box(&y), &[0.0; M], &mut counts);
         black_box(solved.expect("the mechanism is regular"));

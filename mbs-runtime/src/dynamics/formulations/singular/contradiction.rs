@@ -1,6 +1,6 @@
 //! Rows that contradict each other: the part of their residuals that no coordinate changes.
 
-use crate::dynamics::integrators::vector::{State, Vector};
+use crate::dynamics::integrators::vector::{IntegratorState, Vector};
 use crate::dynamics::linear_systems::kkt::System;
 use crate::dynamics::model::{Counts, Model};
 use crate::failure::conflicting_rows::ConflictingRows;
@@ -24,7 +24,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
     pub(crate) fn contradiction(
         &self,
         t: R,
-        y: &State<R, N, S::States>,
+        y: &IntegratorState<R, N, S::States>,
         counts: &mut Counts,
     ) -> Option<Failure> {
         let (zero, mut y) = (R::constant(0.0), *y);

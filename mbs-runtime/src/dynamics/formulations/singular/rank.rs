@@ -6,7 +6,7 @@
 //! by their own size however small δ is, with every residual at rounding.
 
 use crate::dynamics::formulations::projection::project_position;
-use crate::dynamics::integrators::vector::State;
+use crate::dynamics::integrators::vector::IntegratorState;
 use crate::dynamics::linear_systems::kkt::System;
 use crate::dynamics::model::{Counts, Model};
 use crate::mechanism::dynamic::Dynamic;
@@ -20,7 +20,7 @@ use crate::tolerances::singular;
 pub(crate) fn rank_rises<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     model: &Model<'_, S, R, N, M>,
     t: R,
-    y: &State<R, N, S::States>,
+    y: &IntegratorState<R, N, S::States>,
 ) -> bool {
     if rank(model, t, y).is_none_or(|here| here >= M) {
         return false;
@@ -44,7 +44,7 @@ pub(crate) fn rank_rises<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: 
 fn rank<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     model: &Model<'_, S, R, N, M>,
     t: R,
-    y: &State<R, N, S::States>,
+    y: &IntegratorState<R, N, S::States>,
 ) -> Option<usize> {
     let phi_q = model.mechanism.phi_q(model.parameters, &model.position(t, y));
     let system = System::new(&model.metric.mass(), &phi_q, model.metric);

@@ -1,6 +1,6 @@
 //! Diagnosis of a state from which no step size is accepted.
 
-use crate::dynamics::integrators::vector::State;
+use crate::dynamics::integrators::vector::IntegratorState;
 use crate::dynamics::linear_systems::kkt::System;
 use crate::dynamics::model::Model;
 use crate::failure::{Failure, FailureKind, checks};
@@ -13,7 +13,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
     /// where the state is as good as any.
     #[cold]
     #[inline(never)]
-    pub(crate) fn obstacle(&self, t: R, y: &State<R, N, S::States>) -> Option<Failure> {
+    pub(crate) fn obstacle(&self, t: R, y: &IntegratorState<R, N, S::States>) -> Option<Failure> {
         let position = self.position(t, y);
         let mass = self.mechanism.mass(self.parameters, &position);
         let phi_q = self.mechanism.phi_q(self.parameters, &position);
@@ -41,7 +41,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
 
     /// `true` if coordinates begin to change a row as soon as the mechanism moves on: bars that pass a line differ from a bar
     /// without length.
-    fn takes_hold(&self, position: &S::Position, y: &State<R, N, S::States>, index: usize) -> bool {
+    fn takes_hold(&self, position: &S::Position, y: &IntegratorState<R, N, S::States>, index: usize) -> bool {
         let mut row = [R::constant(0.0); M];
         if let (Some(place), Some(scale)) = (row.get_mut(index), self.metric.rows.get(index)) {
             *place = R::constant(1.0) / *scale;
@@ -54,7 +54,11 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
 
     /// Fails where no coordinate changes a row at a state from which a run starts. Its accelerations are those without that row, and
     /// where they keep it for a moment, as those of two points that fall side by side, no step would tell.
-    pub(crate) fn require_no_flat_row(&self, t: R, y: &State<R, N, S::States>) -> Result<(), Failure> {
+    pub(crate) fn require_no_flat_row(
+        &self,
+        t: R,
+        y: &IntegratorState<R, N, S::States>,
+    ) -> Result<(), Failure> {
         let phi_q = self.mechanism.phi_q(self.parameters, &self.position(t, y));
         let system = System::new(&self.metric.mass(), &phi_q, self.metric);
         let Some(index) = system.flat_row(singular::FLAT_AT_START.of()) else { return Ok(()) };
@@ -63,7 +67,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
     }
 
     /// Failure of a step from a state, or the obstacle found there.
-    pub(crate) fn traced(&self, failure: Failure, t: R, y: &State<R, N, S::States>) -> Failure {
+    pub(crate) fn traced(&self, failure: Failure, t: R, y: &IntegratorState<R, N, S::States>) -> Failure {
         let lost = matches!(
             failure,
             Failure { kind: FailureKind::Unbounded { .. }, .. }

@@ -2,7 +2,7 @@
 
 use crate::dynamics::integrators::event::GROUP;
 use crate::dynamics::integrators::event::interpolant::{Interpolant, NODES};
-use crate::dynamics::integrators::vector::State;
+use crate::dynamics::integrators::vector::IntegratorState;
 use crate::mechanism::dynamic::Dynamic;
 use crate::mechanism::enclosure::{Enclosure, WithIntervals};
 use crate::scalar::interval::Interval;
@@ -70,7 +70,7 @@ pub struct Part<R, const N: usize> {
 
 impl<R: Real, const N: usize> Part<R, N> {
     /// The coordinates between two times (s) as polynomials of degree 8 through nine states.
-    pub fn of<Z>(from: R, times: (R, R), at: impl Fn(R) -> State<R, N, Z>) -> Option<Self> {
+    pub fn of<Z>(from: R, times: (R, R), at: impl Fn(R) -> IntegratorState<R, N, Z>) -> Option<Self> {
         let (start, end) = times;
         let mut rows = [[R::constant(0.0); N]; NODES];
         for (index, row) in rows.iter_mut().enumerate() {

@@ -3,8 +3,8 @@
 use std::hint::black_box;
 
 use mbs_runtime::dynamics::{
-    Counts, DormandPrince5, DormandPrince8, Embedded, Explicit, Formulation, Metric, Model, Simulation,
-    State as Moving, Tolerance, VelocityTransformation,
+    Counts, DormandPrince5, DormandPrince8, Embedded, Explicit, Formulation, IntegratorState as Moving,
+    Metric, Model, Simulation, Tolerance, VelocityTransformation,
 };
 use mbs_runtime::{Dynamic, Lanes, Partitioned, Scalar};
 

@@ -1,7 +1,7 @@
 //! Combinations of rows that lose their hold, and the limits that replace them.
 
 use crate::dynamics::formulations::unstabilized;
-use crate::dynamics::integrators::vector::State;
+use crate::dynamics::integrators::vector::IntegratorState;
 use crate::dynamics::linear_systems::kkt::{Factors, System};
 use crate::dynamics::model::{Model, Solved};
 use crate::failure::Failure;
@@ -162,7 +162,7 @@ impl<R: Real, const N: usize, const M: usize> Weak<R, N, M> {
     pub(super) fn solve<S: Dynamic<R, N, M>>(
         &self,
         model: &Model<'_, S, R, N, M>,
-        (t, y): (R, &State<R, N, S::States>),
+        (t, y): (R, &IntegratorState<R, N, S::States>),
         position: &S::Position,
         lambda: &[R; M],
         gamma: &[R; M],
@@ -217,7 +217,7 @@ impl<R: Real, const N: usize, const M: usize> Weak<R, N, M> {
     pub(super) fn passes<S: Dynamic<R, N, M>>(
         &self,
         model: &Model<'_, S, R, N, M>,
-        (_, y): (R, &State<R, N, S::States>),
+        (_, y): (R, &IntegratorState<R, N, S::States>),
         position: &S::Position,
         (system, gamma): (&System<R, N, M>, &[R; M]),
         qdd: &[R; N],

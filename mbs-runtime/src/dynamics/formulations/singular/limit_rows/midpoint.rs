@@ -7,7 +7,7 @@
 
 use crate::dynamics::formulations::singular::limit_rows::combinations::Weak;
 use crate::dynamics::formulations::singular::limit_rows::{system_at, zone};
-use crate::dynamics::integrators::vector::{State, Vector};
+use crate::dynamics::integrators::vector::{IntegratorState, Vector};
 use crate::dynamics::model::{Model, Solved};
 use crate::linear_algebra::vectors::dot;
 use crate::mechanism::dynamic::Dynamic;
@@ -18,16 +18,16 @@ use crate::scalar::number::Real;
 #[inline(never)]
 pub(super) fn solve<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     model: &Model<'_, S, R, N, M>,
-    (t, y): (R, &State<R, N, S::States>),
+    (t, y): (R, &IntegratorState<R, N, S::States>),
     position: &S::Position,
     lambda: &[R; M],
     (gamma, back, limits): (&[R; M], R, usize),
-    rate: &State<R, N, S::States>,
+    rate: &IntegratorState<R, N, S::States>,
 ) -> Option<Solved<R, N, M, S::States>> {
     let moved = |share: f64| {
         let shift = R::constant(-share) * back;
         let q = y.q.plus(shift, &[1.0], [&y.qd]).plus(shift * shift, &[0.5], [&rate.qd]);
-        (t + shift, State { q, qd: y.qd.plus(shift, &[1.0], [&rate.qd]), ..*y })
+        (t + shift, IntegratorState { q, qd: y.qd.plus(shift, &[1.0], [&rate.qd]), ..*y })
     };
     let (then, state) = moved(1.0);
     let found = model.moved(t, then, |model| at_singular_position(model, (then, &state), lambda));
@@ -46,7 +46,7 @@ pub(super) fn solve<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize
 #[inline(never)]
 fn at_singular_position<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     model: &Model<'_, S, R, N, M>,
-    (t, y): (R, &State<R, N, S::States>),
+    (t, y): (R, &IntegratorState<R, N, S::States>),
     lambda: &[R; M],
 ) -> Option<(Weak<R, N, M>, [R; N])> {
     let position = model.position(t, y);
@@ -71,7 +71,7 @@ impl<R: Real, const N: usize, const M: usize> Weak<R, N, M> {
     fn take_middle<S: Dynamic<R, N, M>>(
         &mut self,
         model: &Model<'_, S, R, N, M>,
-        (t, y): (R, &State<R, N, S::States>),
+        (t, y): (R, &IntegratorState<R, N, S::States>),
         qdd: &[R; N],
     ) -> Option<()> {
         let position = model.position(t, y);

@@ -10,9 +10,9 @@
 pub(crate) mod combinations;
 pub(crate) mod midpoint;
 
-use crate::dynamics::formulations::projection::Stages;
+use crate::dynamics::formulations::projection::ProjectedStages;
 use crate::dynamics::formulations::singular::limit_rows::combinations::Weak;
-use crate::dynamics::integrators::vector::{State, Vector};
+use crate::dynamics::integrators::vector::{IntegratorState, Vector};
 use crate::dynamics::linear_systems::kkt::{Factors, System};
 use crate::dynamics::model::{Counts, Model, Solved};
 use crate::failure::Failure;
@@ -28,7 +28,7 @@ use crate::tolerances::singular;
 fn carry_along<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     model: &Model<'_, S, R, N, M>,
     position: &S::Position,
-    y: &State<R, N, S::States>,
+    y: &IntegratorState<R, N, S::States>,
     factors: &Factors<R, N, M>,
     gamma: &mut [R; M],
 ) -> R {
@@ -46,8 +46,8 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
     /// directions that are weak in the zone.
     #[cold]
     #[inline(never)]
-    pub(crate) fn zone(&self, stages: Stages) -> R {
-        let whole = self.first_order || stages == Stages::All;
+    pub(crate) fn zone(&self, stages: ProjectedStages) -> R {
+        let whole = self.first_order || stages == ProjectedStages::All;
         if whole { singular::ZONE_OF_FORCES.of() } else { singular::ADAPTIVE_ZONE.of() }
     }
 
@@ -82,7 +82,7 @@ type PassingOf<S, R, const N: usize, const M: usize> = Passing<R, N, M, <S as Dy
 #[inline(never)]
 pub(crate) fn is_at_limit<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     model: &Model<'_, S, R, N, M>,
-    (t, y): (R, &State<R, N, S::States>),
+    (t, y): (R, &IntegratorState<R, N, S::States>),
     lambda: &[R; M],
     margin: R,
 ) -> bool {
@@ -98,7 +98,7 @@ pub(crate) fn is_at_limit<S: Dynamic<R, N, M>, R: Real, const N: usize, const M:
 #[inline(never)]
 pub(crate) fn passes_within<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     model: &Model<'_, S, R, N, M>,
-    (t, y): (R, &State<R, N, S::States>),
+    (t, y): (R, &IntegratorState<R, N, S::States>),
     (time, near): (R, R),
 ) -> bool {
     let position = model.position(t, y);
@@ -113,7 +113,7 @@ pub(crate) fn passes_within<S: Dynamic<R, N, M>, R: Real, const N: usize, const 
 #[inline(never)]
 pub(crate) fn at_limit<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     model: &Model<'_, S, R, N, M>,
-    (t, y): (R, &State<R, N, S::States>),
+    (t, y): (R, &IntegratorState<R, N, S::States>),
     position: &S::Position,
     lambda: &[R; M],
     (raw, margin): (&[R; M], R),
@@ -160,7 +160,7 @@ type Zone<R, const N: usize, const M: usize> = (Weak<R, N, M>, [R; M]);
 #[inline(never)]
 fn zone<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     model: &Model<'_, S, R, N, M>,
-    (t, y): (R, &State<R, N, S::States>),
+    (t, y): (R, &IntegratorState<R, N, S::States>),
     position: &S::Position,
     (system, raw): (&System<R, N, M>, &[R; M]),
 ) -> Result<Option<Zone<R, N, M>>, Failure> {

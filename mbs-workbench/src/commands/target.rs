@@ -2,7 +2,7 @@
 
 use mbs_codegen::picture::{Picture, Preset, Shape, Span};
 
-use crate::card::{Card, Usual, duration, runs};
+use crate::card::{Card, DefaultMethod, duration, runs};
 use crate::catalogue::Catalogue;
 use crate::erased::erase::Erased;
 use crate::erased::facade::AnyEquations;
@@ -54,8 +54,8 @@ impl Target {
     }
 
     /// The method that moves it where the command line names none.
-    pub fn usual(&self) -> Usual {
-        self.card.usual
+    pub fn default_method(&self) -> DefaultMethod {
+        self.card.default_method
     }
 
     pub fn picture(&self) -> &Picture {
@@ -146,12 +146,12 @@ mod tests {
     fn what_the_command_line_sets_overrules_the_presets() {
         let cards = [card!(self::Crank::default())];
         let catalogue = Catalogue { cards: &cards };
-        let subject = Target::find(&catalogue, &cards[0].name()).expect("in the list");
+        let target = Target::find(&catalogue, &cards[0].name()).expect("in the list");
         let labels = |parameters: &[(String, f64)]| -> Vec<String> {
-            let instances = subject.instances(parameters).expect("parameters");
+            let instances = target.instances(parameters).expect("parameters");
             instances.into_iter().map(|(preset, _)| preset.label).collect()
         };
-        assert_eq!(labels(&[("omega".to_string(), 1.0)]).len(), subject.runs().len());
+        assert_eq!(labels(&[("omega".to_string(), 1.0)]).len(), target.runs().len());
         assert_eq!(labels(&[("side".to_string(), -1.0)]), ["as given"]);
     }
 }

@@ -4,11 +4,11 @@
 //! takes the same steps. The works of all such runs add up to the work of all supplies but for rounding, for any instants.
 
 use mbs_runtime::dynamics::{
-    AugmentedLagrangian, Counts, Formulation, Instant, Method, Model, Solved, State,
+    AugmentedLagrangian, Counts, Formulation, Instant, IntegratorState, Method, Model, Solved,
 };
 use mbs_runtime::{Dynamic, DynamicState, Failure};
 
-use super::direct::Simulated;
+use super::direct_dynamics::Simulated;
 use super::power_balance;
 use crate::motion::power_balance::PowerSource;
 
@@ -67,7 +67,7 @@ impl<X> Single<X> {
         &self,
         model: &Model<'_, S, f64, N, M>,
         t: f64,
-        y: &State<f64, N, S::States>,
+        y: &IntegratorState<f64, N, S::States>,
         solved: &Solved<f64, N, M, S::States>,
     ) -> f64 {
         let position = model.position(t, y);
@@ -82,7 +82,7 @@ impl<X> Single<X> {
         &self,
         model: &Model<'_, S, f64, N, M>,
         t: f64,
-        y: &State<f64, N, S::States>,
+        y: &IntegratorState<f64, N, S::States>,
         mut solved: Solved<f64, N, M, S::States>,
     ) -> Solved<f64, N, M, S::States> {
         solved.rate.work = self.power(model, t, y, &solved);
@@ -99,7 +99,7 @@ where
         &self,
         model: &Model<'_, S, f64, N, M>,
         t: f64,
-        y: &State<f64, N, S::States>,
+        y: &IntegratorState<f64, N, S::States>,
         lambda: &[f64; M],
         counts: &mut Counts,
     ) -> Result<Solved<f64, N, M, S::States>, Failure> {
@@ -111,7 +111,7 @@ where
         &self,
         model: &Model<'_, S, f64, N, M>,
         t: f64,
-        y: &State<f64, N, S::States>,
+        y: &IntegratorState<f64, N, S::States>,
         lambda: &[f64; M],
         counts: &mut Counts,
     ) -> Result<Solved<f64, N, M, S::States>, Failure> {
@@ -123,7 +123,7 @@ where
         &self,
         model: &Model<'_, S, f64, N, M>,
         t: f64,
-        y: &mut State<f64, N, S::States>,
+        y: &mut IntegratorState<f64, N, S::States>,
         counts: &mut Counts,
     ) -> Result<(), Failure> {
         self.by.project(model, t, y, counts)
@@ -133,7 +133,7 @@ where
         &self,
         model: &Model<'_, S, f64, N, M>,
         t: f64,
-        y: &mut State<f64, N, S::States>,
+        y: &mut IntegratorState<f64, N, S::States>,
         lambda: &[f64; M],
         counts: &mut Counts,
     ) -> Result<Solved<f64, N, M, S::States>, Failure> {
@@ -151,7 +151,7 @@ where
         &self,
         model: &Model<'_, S, f64, N, M>,
         t: f64,
-        y: &State<f64, N, S::States>,
+        y: &IntegratorState<f64, N, S::States>,
         lambda: &[f64; M],
         counts: &mut Counts,
     ) -> Result<Solved<f64, N, M, S::States>, Failure> {

@@ -1,13 +1,13 @@
 //! Positions of rest.
 
 use crate::erased::dynamics::AnyDynamics;
-use crate::erased::dynamics::linear::{SmallMotions, Stability};
-use crate::erased::dynamics::rest::Rest;
+use crate::erased::dynamics::linearization::{SmallMotions, Stability};
+use crate::erased::dynamics::static_equilibrium::Rest;
 use mbs_runtime::{Failure, FailureKind};
 
 use super::loads::loads;
 use super::{Analysed, AnalysisResult};
-use crate::commands::table::{self, significant};
+use crate::commands::summary::{self, significant};
 
 /// Rounding error of a coordinate that is 0, as a part of the largest coordinate of the same unit.
 const ROUNDING: f64 = 1e-12;
@@ -65,7 +65,7 @@ fn described(rest: &Rest, small: &Result<SmallMotions, String>) -> AnalysisResul
         let alike = motion.coordinates.iter().filter(|other| other.unit == coordinate.unit);
         let size = alike.map(|other| other.q[0].abs()).fold(0.0, f64::max);
         let settled = if coordinate.q[0].abs() <= ROUNDING * size { 0.0 } else { coordinate.q[0] };
-        let value = format!("{}{}", table::short(settled), table::unit(coordinate.unit));
+        let value = format!("{}{}", summary::short(settled), summary::unit(coordinate.unit));
         figures.push([format!("{} at rest", coordinate.name), value]);
     }
     figures.extend(loads(motion));

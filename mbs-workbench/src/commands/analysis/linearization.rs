@@ -3,11 +3,11 @@
 use core::f64::consts::TAU;
 
 use crate::erased::dynamics::AnyDynamics;
-use crate::erased::dynamics::linear::SmallMotions;
+use crate::erased::dynamics::linearization::SmallMotions;
 use crate::erased::dynamics::modes::{Mode, ModeKind};
 
 use super::{Analysed, AnalysisResult};
-use crate::commands::table::significant;
+use crate::commands::summary::significant;
 
 /// Digits of an eigenvalue: nearly coincident ones have errors of the size of a root of the rounding error.
 const DIGITS: usize = 7;

@@ -3,7 +3,7 @@
 use mbs_runtime::dynamics::{DormandPrince8, Explicit, Simulation, inverse_with_states};
 use mbs_runtime::{Dynamic, DynamicState, Failure};
 
-use super::direct::{AdaptiveRun, AnyFormulation, ENDS, advance_to};
+use super::direct_dynamics::{AdaptiveRun, AnyFormulation, ENDS, advance_to};
 use super::{determined, power_balance};
 use crate::erased::facade::Motion;
 use crate::motion::Forces;

@@ -2,7 +2,7 @@
 
 use super::Request;
 use crate::commands::CommandError;
-use crate::commands::subject::Target;
+use crate::commands::target::Target;
 
 /// Options present on the command line, and properties of the method that runs.
 #[derive(Clone, Copy, Default)]
@@ -35,50 +35,54 @@ pub struct UsedOptions {
 
 impl Request {
     /// Fails if the command line has an option that the analysis does not use.
-    pub(super) fn require_use(&self, subject: &Target) -> Result<(), CommandError> {
-        let moved = self.is_moved(subject);
+    pub(super) fn require_use(&self, target: &Target) -> Result<(), CommandError> {
+        let moved = self.is_moved(target);
         let of_motion =
             "is how a motion from forces is integrated: use `mbs simulate`, or `mbs modes` with `--at`";
-        let UsedOptions { implicit, damped, adaptive, .. } = self.given;
+        let UsedOptions { implicit, damped, adaptive, .. } = self.used_options;
         let useless = [
-            (!moved && self.given.method, "`--method`", of_motion),
-            (!moved && self.given.integrator, "`--integrator`", of_motion),
-            (!moved && self.given.step, "`--step`", of_motion),
-            (!moved && self.given.tolerance, "`--tolerance`", of_motion),
+            (!moved && self.used_options.method, "`--method`", of_motion),
+            (!moved && self.used_options.integrator, "`--integrator`", of_motion),
+            (!moved && self.used_options.step, "`--step`", of_motion),
+            (!moved && self.used_options.tolerance, "`--tolerance`", of_motion),
             (
-                !moved && self.given.damping,
+                !moved && self.used_options.damping,
                 "`--frequency` and `--damping`",
                 "belong to `--method baumgarte` or `penalty` of a motion from forces",
             ),
             (
-                !damped && self.given.damping,
+                !damped && self.used_options.damping,
                 "`--frequency` and `--damping`",
                 "belong to `--method baumgarte` or `penalty`",
             ),
-            (!moved && self.given.alpha, "`--alpha`", of_motion),
-            (!self.given.penalty && self.given.alpha, "`--alpha`", "belongs to `--method penalty`"),
+            (!moved && self.used_options.alpha, "`--alpha`", of_motion),
             (
-                implicit && self.given.integrator,
+                !self.used_options.penalty && self.used_options.alpha,
+                "`--alpha`",
+                "belongs to `--method penalty`",
+            ),
+            (
+                implicit && self.used_options.integrator,
                 "`--integrator`",
                 "is for methods without steps of their own; an implicit one takes `--step`",
             ),
             (
-                self.given.radau && self.given.integrator,
+                self.used_options.radau && self.used_options.integrator,
                 "`--integrator`",
                 "is for methods without steps of their own; `radau` adapts its steps to `--tolerance`",
             ),
             (
-                implicit && self.given.tolerance,
+                implicit && self.used_options.tolerance,
                 "`--tolerance`",
                 "is for adaptive steps; an implicit method takes `--step`",
             ),
             (
-                !implicit && adaptive && self.given.step,
+                !implicit && adaptive && self.used_options.step,
                 "`--step`",
                 "is for implicit methods and for `--integrator rk4` or `euler`; adaptive steps take `--tolerance`",
             ),
             (
-                !implicit && !adaptive && self.given.tolerance,
+                !implicit && !adaptive && self.used_options.tolerance,
                 "`--tolerance`",
                 "is for adaptive steps; equal ones take `--step`",
             ),
@@ -90,17 +94,18 @@ impl Request {
     }
 
     /// Fails if a motion from forces has too many equal steps for a reasonable time of computation.
-    pub(super) fn require_end(&self, subject: &Target, times: &[f64]) -> Result<(), CommandError> {
+    pub(super) fn require_end(&self, target: &Target, times: &[f64]) -> Result<(), CommandError> {
         /// One or two minutes for the smallest mechanisms.
         const MOST_STEPS: f64 = 1e8;
         let (Some(longest), Some(duration)) = (self.approach().longest(), times.last()) else {
             return Ok(());
         };
         let steps = duration / longest;
-        if steps <= MOST_STEPS || !self.is_moved(subject) {
+        if steps <= MOST_STEPS || !self.is_moved(target) {
             return Ok(());
         }
-        let adapt = if self.given.implicit { "" } else { ", or let them adapt: `--integrator order8`" };
+        let adapt =
+            if self.used_options.implicit { "" } else { ", or let them adapt: `--integrator order8`" };
         Err(CommandError::Usage(format!(
             "steps of {longest:e} s to t = {duration} s are {steps:.1e}, more than the {MOST_STEPS:.0e} of a run: end earlier, take \
              longer ones by `--step`{adapt}"

@@ -1,6 +1,6 @@
 //! Small motions about a position of rest or a moving state, and their eigenvalues.
 
-use mbs_runtime::dynamics::{Instant, Solved, State, linearize_with_states};
+use mbs_runtime::dynamics::{Instant, IntegratorState, Solved, linearize_with_states};
 use mbs_runtime::{Dynamic, Entry};
 use nalgebra::Schur;
 use serde::Serialize;
@@ -95,8 +95,8 @@ pub(crate) fn small_motions<S: Dynamic<f64, N, M>, const N: usize, const M: usiz
     let mut states = mechanism.start_states(&mechanism.parameters());
     let known = motion.dynamics.iter().flat_map(|forces| &forces.states);
     states.as_mut().iter_mut().zip(known).for_each(|(state, known)| *state = *known);
-    let y = State { q, qd, states, work: 0.0 };
-    let rate = State { q: qd, qd: qdd, states, work: 0.0 };
+    let y = IntegratorState { q, qd, states, work: 0.0 };
+    let rate = IntegratorState { q: qd, qd: qdd, states, work: 0.0 };
     let instant = Instant { t, y, solved: Solved { rate, lambda, margin: 1.0 }, carried: qdd };
     let found = linearize_with_states(&mechanism, &instant, independent);
     let (linear, slopes) = found.map_err(|failure| failure.to_string())?;
@@ -148,7 +148,7 @@ mod tests {
     use mbs_runtime::mechanism;
 
     use super::*;
-    use crate::erased::dynamics::direct::{Approach, Pair, Stabilization, Steps};
+    use crate::erased::dynamics::direct_dynamics::{Approach, Pair, Stabilization, Steps};
     use crate::erased::erase::erase;
     use crate::erased::facade::AnyEquations;
 

@@ -4,14 +4,14 @@ use std::time::Duration;
 
 use mbs_runtime::dynamics::{
     AugmentedLagrangian, Baumgarte, Counts, DormandPrince5, DormandPrince8, Embedded, Explicit, Extrapolated,
-    Formulation, GeneralizedAlpha, Method, MethodWarning, MovedStart, Penalty, Projection, Radau5,
-    RungeKutta4, SemiImplicitEuler, Simulation, Stages, Tolerance, Unstabilized, VelocityTransformation,
+    Formulation, GeneralizedAlpha, Method, MethodWarning, MovedStart, Penalty, ProjectedStages, Projection,
+    Radau5, RungeKutta4, SemiImplicitEuler, Simulation, Tolerance, Unstabilized, VelocityTransformation,
 };
 use mbs_runtime::{Dynamic, Failure, FailureKind, Partitioned};
 
 use super::record::Record;
-use super::single::{Quadrature, Single, add_works};
 use super::start::{Start, moved_start, start, text_start};
+use super::work_by_source::{Quadrature, Single, add_works};
 use super::{AnyDynamics, power_balance};
 use crate::erased::facade::{Motion, State};
 
@@ -189,7 +189,7 @@ impl<S, const N: usize> PartitionedFunctions<S, N> {
 pub(super) type AnyFormulation<'a, S, const N: usize, const M: usize> = &'a dyn Formulation<S, f64, N, M>;
 
 /// Ends of steps on the constraints, stages where the rows need it: for other analyses, as [`AnyFormulation`].
-pub(super) const ENDS: Projection = Projection { stages: Stages::WhereNeeded };
+pub(super) const ENDS: Projection = Projection { stages: ProjectedStages::WhereNeeded };
 
 /// Any method with steps of a given size, as [`AnyFormulation`].
 type AnyMethod<'a, S, const N: usize, const M: usize> = &'a dyn Method<S, f64, N, M>;
@@ -213,8 +213,8 @@ pub(crate) fn simulate<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
         Stabilization::Penalty(penalty) => by(&penalty),
         Stabilization::Projection => {
             let stages = match steps {
-                Steps::Adaptive { .. } => Stages::All,
-                Steps::Fixed(_) | Steps::Equal { .. } => Stages::WhereNeeded,
+                Steps::Adaptive { .. } => ProjectedStages::All,
+                Steps::Fixed(_) | Steps::Equal { .. } => ProjectedStages::WhereNeeded,
             };
             by(&Projection { stages })
         }
@@ -313,7 +313,7 @@ fn by_projection<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
     times: &[f64],
     progress: &mut dyn FnMut(usize),
 ) -> Result<Simulated, Failure> {
-    let all = Projection { stages: Stages::All };
+    let all = Projection { stages: ProjectedStages::All };
     let found = integrate(mechanism, &all, start, steps, times, progress)?;
     Ok(Simulated { replaced: true, ..found })
 }

@@ -61,7 +61,7 @@ enum Command {
     /// Compare one linkage in several kinds of coordinates
     Compare(commands::compare::Arguments),
     /// Lay a spline along a table from a file; say how far to trust it, draw it, print it as Rust
-    Table(commands::table_file::Arguments),
+    Table(commands::table::Arguments),
 }
 
 /// Stack of the program (bytes). Dense matrices are on it, for 82 coordinates with their multipliers half a megabyte each,
@@ -121,7 +121,7 @@ fn execute(catalogue: &Catalogue, command: Option<Command>) -> Result<(), Comman
         Some(Command::Dof(arguments)) => commands::dof::run(catalogue, &arguments, &mut out),
         Some(Command::Drift(arguments)) => commands::drift::run(catalogue, &arguments, &mut out),
         Some(Command::Compare(arguments)) => commands::compare::run(catalogue, &arguments, &mut out),
-        Some(Command::Table(arguments)) => commands::table_file::run(&arguments, &mut out),
+        Some(Command::Table(arguments)) => commands::table::run(&arguments, &mut out),
     }?;
     out.flush().map_err(CommandError::Output)
 }

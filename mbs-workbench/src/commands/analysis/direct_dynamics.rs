@@ -3,11 +3,11 @@
 use std::time::Duration;
 
 use crate::erased::dynamics::AnyDynamics;
-use crate::erased::dynamics::direct::{Approach, Simulated, Stabilization, equal};
+use crate::erased::dynamics::direct_dynamics::{Approach, Simulated, Stabilization, equal};
 use mbs_runtime::dynamics::{Counts, MethodWarning, MovedStart};
 use mbs_runtime::{Failure, FailureKind};
 
-use super::super::table::significant;
+use super::super::summary::significant;
 use super::loads::{energies, loads};
 use super::{Analysed, AnalysisResult};
 

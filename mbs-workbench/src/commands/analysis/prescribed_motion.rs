@@ -5,7 +5,7 @@ use crate::erased::facade::{AnyMechanism, MotionStop};
 
 use super::loads::{energies, loads};
 use super::{Analysed, AnalysisResult};
-use crate::commands::table;
+use crate::commands::summary;
 
 pub(super) fn kinematic(
     mechanism: &dyn AnyMechanism,
@@ -17,7 +17,7 @@ pub(super) fn kinematic(
     let timed = &times[..times.len().min(TIMED)];
     let found = mechanism.follow(times, on_progress).and_then(|motion| {
         let step_time = mechanism.time_a_step(timed)?;
-        let figures = table::figures(&motion, step_time).to_vec();
+        let figures = summary::figures(&motion, step_time).to_vec();
         Ok(AnalysisResult::of(motion, figures))
     });
     found.map_err(|failure| {

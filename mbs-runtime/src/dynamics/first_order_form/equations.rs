@@ -1,15 +1,15 @@
 //! The equations of motion as integrators see them.
 
+use crate::dynamics::first_order_form::phases::{ORDER_OF_INTEGRALS, Phased, advanced};
+use crate::dynamics::first_order_form::radau;
+use crate::dynamics::first_order_form::radau::slopes::Slopes;
+use crate::dynamics::first_order_form::radau::{Radau5, newton};
 use crate::dynamics::formulations::singular::passage::Passage;
-use crate::dynamics::integration::phases::{ORDER_OF_INTEGRALS, Phased, advanced};
-use crate::dynamics::integration::radau;
-use crate::dynamics::integration::radau::slopes::Slopes;
-use crate::dynamics::integration::radau::{Radau5, newton};
 use crate::dynamics::integrators::embedded::Embedded;
 use crate::dynamics::integrators::equation::{Collocated, Collocation, Equation, ErrorNorm};
 use crate::dynamics::integrators::event::{Dense, Scrutiny};
 use crate::dynamics::integrators::step_control::{Adaptive, Point};
-use crate::dynamics::integrators::vector::{State, Vector};
+use crate::dynamics::integrators::vector::{IntegratorState, Vector};
 use crate::dynamics::model::instant::Instant;
 use crate::dynamics::model::metric::{Tolerance, worse};
 use crate::dynamics::model::{Counts, Formulation, Model, Solved};
@@ -24,7 +24,7 @@ const SHOWN_SHARE: f64 = 0.25;
 
 /// State vector of a mechanism that is integrated.
 pub type Moving<S, R, const N: usize, const M: usize> =
-    Phased<State<R, N, <S as Dynamic<R, N, M>>::States>, <S as Mechanism<R, N, M>>::Phases>;
+    Phased<IntegratorState<R, N, <S as Dynamic<R, N, M>>::States>, <S as Mechanism<R, N, M>>::Phases>;
 
 /// The equations of motion as an integrator sees them.
 pub struct Equations<'a, S: Dynamic<R, N, M>, F, R: Real, const N: usize, const M: usize> {
@@ -42,7 +42,7 @@ pub struct Equations<'a, S: Dynamic<R, N, M>, F, R: Real, const N: usize, const 
     /// Multipliers (M) of the last evaluation.
     lambda: [R; M],
     /// Time (s), margin and state of the last step's end.
-    pub(crate) end: (R, R, State<R, N, S::States>),
+    pub(crate) end: (R, R, IntegratorState<R, N, S::States>),
     /// Time (s) and margin of the last instant that was shown.
     seen: (R, R),
     /// The first passage since `start`.
@@ -60,7 +60,7 @@ pub struct Equations<'a, S: Dynamic<R, N, M>, F, R: Real, const N: usize, const 
 
 /// Time (s), margin and state where a step begins, and the first passage before it.
 type Before<S, R, const N: usize, const M: usize> =
-    ((R, R, State<R, N, <S as Dynamic<R, N, M>>::States>), Option<Passage<R>>);
+    ((R, R, IntegratorState<R, N, <S as Dynamic<R, N, M>>::States>), Option<Passage<R>>);
 
 impl<'a, S, F, R, const N: usize, const M: usize> Equations<'a, S, F, R, N, M>
 where
@@ -277,7 +277,7 @@ where
 
     /// The rate of a state whose coordinates, velocities and first-order states have the rate `y`.
     #[inline(always)]
-    fn phased(&mut self, t: R, y: State<R, N, S::States>) -> Moving<S, R, N, M> {
+    fn phased(&mut self, t: R, y: IntegratorState<R, N, S::States>) -> Moving<S, R, N, M> {
         Phased { y, phases: self.phase_rates(t) }
     }
 

@@ -1,8 +1,8 @@
 //! s − J with a real or complex s, J the slopes of the equations of motion: factorised for the coordinates alone.
 
-use crate::dynamics::integration::equations::Moving;
-use crate::dynamics::integration::radau::slopes::Slopes;
-use crate::dynamics::integration::radau::split::{Number, Numbers, SplitLu, entry, product, reciprocal};
+use crate::dynamics::first_order_form::equations::Moving;
+use crate::dynamics::first_order_form::radau::slopes::Slopes;
+use crate::dynamics::first_order_form::radau::split::{Number, Numbers, SplitLu, entry, product, reciprocal};
 use crate::dynamics::integrators::vector::Vector;
 use crate::mechanism::dynamic::{Dynamic, StateSlope};
 use crate::scalar::number::Real;

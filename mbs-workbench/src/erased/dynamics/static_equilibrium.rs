@@ -1,7 +1,8 @@
 //! Static equilibrium of a mechanism under its forces.
 
 use mbs_runtime::dynamics::{
-    Counts, Equilibrium, Formulation, Metric, Model, State, Unstabilized, closed, equilibrium_with_states,
+    Counts, Equilibrium, Formulation, IntegratorState, Metric, Model, Unstabilized, closed,
+    equilibrium_with_states,
 };
 use mbs_runtime::{Dynamic, DynamicState, Failure};
 
@@ -113,7 +114,7 @@ fn margin<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
     let parameters = mechanism.parameters();
     let metric = Metric::next_to(mechanism, &parameters, 0.0, &found.q);
     let model = Model::of_states(mechanism, &parameters, &metric);
-    let y = State { q: found.q, qd: [0.0; N], states: *states, work: 0.0 };
+    let y = IntegratorState { q: found.q, qd: [0.0; N], states: *states, work: 0.0 };
     let solved = Unstabilized.solve(&model, 0.0, &y, &found.lambda, &mut Counts::default());
     solved.map_or(f64::NAN, |solved| solved.margin)
 }

@@ -1,9 +1,9 @@
 //! The stages of a step: simplified Newton iterations with a real and a complex system.
 
-use crate::dynamics::integration::equations::{Equations, Moving};
-use crate::dynamics::integration::radau::shifted::Shifted;
-use crate::dynamics::integration::radau::slopes::Slopes;
-use crate::dynamics::integration::radau::tableau::{C, COMPLEX, ERROR, REAL, T, T_INVERSE};
+use crate::dynamics::first_order_form::equations::{Equations, Moving};
+use crate::dynamics::first_order_form::radau::shifted::Shifted;
+use crate::dynamics::first_order_form::radau::slopes::Slopes;
+use crate::dynamics::first_order_form::radau::tableau::{C, COMPLEX, ERROR, REAL, T, T_INVERSE};
 use crate::dynamics::integrators::equation::{Collocated, Collocation, Equation, ErrorNorm};
 use crate::dynamics::integrators::vector::Vector;
 use crate::dynamics::model::Formulation;

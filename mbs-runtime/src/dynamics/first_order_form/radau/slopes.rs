@@ -1,7 +1,7 @@
 //! ∂q̈/∂q, ∂q̈/∂q̇ and ∂q̈/∂z on the constraints, from the tangents of the equations of motion.
 
 use crate::dynamics::formulations::projection::correction_factors;
-use crate::dynamics::integrators::vector::{State, Vector};
+use crate::dynamics::integrators::vector::{IntegratorState, Vector};
 use crate::dynamics::linear_systems::kkt::Factors;
 use crate::dynamics::linear_systems::tangent::Tangent;
 use crate::dynamics::model::Model;
@@ -29,7 +29,7 @@ pub(crate) struct Slopes<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: 
 struct About<'a, S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> {
     model: &'a Model<'a, S, R, N, M>,
     t: R,
-    y: &'a State<R, N, S::States>,
+    y: &'a IntegratorState<R, N, S::States>,
     qdd: &'a [R; N],
     position: S::Position,
     factors: Factors<R, N, M>,
@@ -45,7 +45,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Slopes<S, R, 
     #[inline(never)]
     pub(in crate::dynamics) fn of(
         model: &Model<'_, S, R, N, M>,
-        (t, y): (R, &State<R, N, S::States>),
+        (t, y): (R, &IntegratorState<R, N, S::States>),
         qdd: &[R; N],
         lambda: &[R; M],
     ) -> Result<Self, Failure> {
@@ -79,7 +79,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Slopes<S, R, 
 fn open<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     model: &Model<'_, S, R, N, M>,
     position: &S::Position,
-    y: &State<R, N, S::States>,
+    y: &IntegratorState<R, N, S::States>,
     qdd: &[R; N],
 ) -> [R; M] {
     let mut open = model.mechanism.gamma(model.parameters, position, &y.qd);

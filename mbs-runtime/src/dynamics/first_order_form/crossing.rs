@@ -8,12 +8,12 @@
 //! single precision that is a motion which the parts follow, with its energy kept. So a passage is refused there unless it keeps
 //! velocity and energy.
 
+use crate::dynamics::first_order_form::equations::{Equations, Moving};
 use crate::dynamics::formulations::singular::limit_rows::passes_within;
-use crate::dynamics::integration::equations::{Equations, Moving};
 use crate::dynamics::integrators::dormand_prince8::DormandPrince8;
 use crate::dynamics::integrators::embedded::Embedded;
 use crate::dynamics::integrators::step_control::{Accepted, Adaptive, Point};
-use crate::dynamics::integrators::vector::{State, Vector};
+use crate::dynamics::integrators::vector::{IntegratorState, Vector};
 use crate::dynamics::model::instant::Instant;
 use crate::dynamics::model::metric::Tolerance;
 use crate::dynamics::model::{Formulation, Model};
@@ -155,7 +155,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         if !self.balanced {
             return true;
         }
-        let at = |model: &Model<'_, S, R, N, M>, t: R, y: &State<R, N, S::States>| {
+        let at = |model: &Model<'_, S, R, N, M>, t: R, y: &IntegratorState<R, N, S::States>| {
             model.mechanism.energy(model.parameters, &model.position(t, y), &y.qd)
         };
         let start = at(self, from.t, &from.y);

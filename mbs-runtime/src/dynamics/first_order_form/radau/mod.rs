@@ -6,8 +6,8 @@ pub(crate) mod slopes;
 pub(crate) mod split;
 pub(crate) mod tableau;
 
-use crate::dynamics::integration::radau::newton::Solver;
-use crate::dynamics::integration::radau::slopes::Slopes;
+use crate::dynamics::first_order_form::radau::newton::Solver;
+use crate::dynamics::first_order_form::radau::slopes::Slopes;
 use crate::dynamics::integrators::embedded::{Embedded, StepAttempt, Taken};
 use crate::dynamics::integrators::equation::{Collocated, Collocation, Equation, ErrorNorm};
 use crate::dynamics::integrators::fixed_step::FixedStep;
