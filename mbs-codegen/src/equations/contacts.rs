@@ -1,7 +1,7 @@
 //! Forces of contacts, each by itself: an open one is left out of every evaluation.
 
-use super::dynamics::{Sparse, derivative};
 use super::jacobian;
+use super::sparse::{Sparse, derivative};
 use crate::model::dynamics::{Action, Dynamics as Declared};
 use crate::model::expression::Id;
 use crate::symbolic::{Graph, Leaf, Node, NodeId};

@@ -1,21 +1,20 @@
 //! Masses and forces → M, Q, their derivatives, energies and powers.
 
+use super::acting_bodies::{Attribution, Undetermined};
 use super::contacts::{ByContact, Push, by_contact};
 use super::deferred::Missing;
-use super::forces::{self, Acting, Sum};
+use super::forces::{self, Acting};
+use super::inertia::Inertia;
 use super::lower::Clock;
 use super::non_negative::{NonNegative, Of, signed};
 use super::normal_forces::{NormalForces, normal_forces};
-use super::pins::{Attribution, Undetermined};
-use super::power_of_time;
 use super::second_moments::second_moments;
-use super::{Row, again, jacobian};
+use super::sparse::{Sparse, derivative, hessian, mirrored, products, transposed};
+use super::sum::Sum;
+use super::{Row, again};
 use crate::model::dynamics::{Body, Dynamics as Declared, Rotation};
 use crate::model::expression::Id;
-use crate::symbolic::{Graph, Leaf, Node, NodeId, Stage, tangent};
-
-/// Rows of a matrix: column and entry, ascending; missing entries are structural zeros.
-pub type Sparse = Vec<Vec<(usize, NodeId)>>;
+use crate::symbolic::{Graph, Leaf, Node, NodeId, tangent};
 
 /// Derivatives of the forces by a first-order state, and of its rate.
 #[derive(Debug)]
@@ -197,7 +196,7 @@ pub fn derive(
     let of = |id: Id| nodes.get(id.index()).copied().unwrap_or(zero);
     let mut inertia = Inertia::new(count);
     for body in &declared.bodies {
-        inertia.body(g, body, &of, clock);
+        add_body(&mut inertia, g, body, &of, clock);
     }
     let mut not_quadratic = Vec::new();
     for (index, kinetic) in declared.kinetics.iter().enumerate() {
@@ -286,181 +285,20 @@ pub fn derive(
     }
 }
 
-/// Entries of the upper triangle of M, the inertia forces at q̈ = 0, the kinetic energy and the power of time alone in it.
-pub struct Inertia {
-    mass: Vec<Vec<(usize, Sum)>>,
-    bias: Vec<Sum>,
-    kinetic: Sum,
-    carried: Sum,
-}
-
-impl Inertia {
-    fn new(count: usize) -> Self {
-        let (mass, bias) = (vec![Vec::new(); count], vec![Sum::default(); count]);
-        Inertia { mass, bias, kinetic: Sum::default(), carried: Sum::default() }
+/// M = Σ m J ᵀJ + J_αᵀ I J_α with J = ∂com/∂q: no difference of large numbers.
+fn add_body(inertia: &mut Inertia, g: &mut Graph, body: &Body, of: &impl Fn(Id) -> NodeId, clock: &Clock) {
+    for component in &body.com {
+        inertia.point(g, of(*component), of(body.mass), clock);
     }
-
-    /// Number of coordinates.
-    pub fn coordinates(&self) -> usize {
-        self.bias.len()
-    }
-
-    /// Adds to the kinetic energy.
-    pub fn add_kinetic(&mut self, g: &mut Graph, energy: NodeId) {
-        self.kinetic.add(g, energy);
-    }
-
-    /// Adds to the power of time alone in it.
-    pub fn add_carried(&mut self, g: &mut Graph, power: NodeId) {
-        self.carried.add(g, power);
-    }
-
-    /// M = Σ m J ᵀJ + J_αᵀ I J_α with J = ∂com/∂q: no difference of large numbers.
-    fn body(&mut self, g: &mut Graph, body: &Body, of: &impl Fn(Id) -> NodeId, clock: &Clock) {
-        for component in &body.com {
-            self.point(g, of(*component), of(body.mass), clock);
-        }
-        match &body.rotation {
-            None => {}
-            Some(Rotation::Plane { inertia, angle }) => self.point(g, of(*angle), of(*inertia), clock),
-            Some(Rotation::Space { inertia, orientation }) => {
-                let inertia = inertia.iter().map(|(row, column, entry)| (*row, *column, of(*entry)));
-                let inertia: Vec<_> = inertia.collect();
-                self.turning(g, &inertia, orientation.map(of), clock);
-            }
+    match &body.rotation {
+        None => {}
+        Some(Rotation::Plane { inertia: moment, angle }) => inertia.point(g, of(*angle), of(*moment), clock),
+        Some(Rotation::Space { inertia: moments, orientation }) => {
+            let moments = moments.iter().map(|(row, column, entry)| (*row, *column, of(*entry)));
+            let moments: Vec<_> = moments.collect();
+            inertia.turning(g, &moments, orientation.map(of), clock);
         }
     }
-
-    /// A mass that moves along one function of q and t.
-    fn point(&mut self, g: &mut Graph, place: NodeId, mass: NodeId, clock: &Clock) {
-        if g.constant_value(mass) == Some(0.0) {
-            return;
-        }
-        let columns = jacobian(g, &[place], self.bias.len(), Leaf::Position).pop().unwrap_or_default();
-        for (index, (row, left)) in columns.iter().enumerate() {
-            for (column, right) in columns.iter().skip(index) {
-                let product = g.multiply(*left, *right);
-                let entry = g.multiply(mass, product);
-                self.add(g, *row, *column, entry);
-            }
-        }
-        let velocity = tangent(g, &[place], |g, leaf| clock.total(g, leaf, false));
-        let acceleration = again(g, &velocity, |g, leaf| clock.total(g, leaf, false)).pop().flatten();
-        if let Some(acceleration) = acceleration {
-            let inertia = g.multiply(mass, acceleration);
-            for (row, entry) in &columns {
-                let bias = g.multiply(*entry, inertia);
-                self.bias_at(g, *row, bias);
-            }
-        }
-        let velocity = velocity.into_iter().next().flatten();
-        power_of_time::point(g, place, velocity, mass, clock, &mut self.carried);
-        if let Some(velocity) = velocity {
-            let half = g.constant(0.5);
-            let square = g.multiply(velocity, velocity);
-            let half = g.multiply(half, mass);
-            let energy = g.multiply(half, square);
-            self.kinetic.add(g, energy);
-        }
-    }
-
-    /// d/dt(∂T/∂q̇) − ∂T/∂q of any T at most quadratic in the rates; false where it is of a higher degree.
-    fn energy(&mut self, g: &mut Graph, energy: NodeId, clock: &Clock) -> bool {
-        let count = self.bias.len();
-        self.kinetic.add(g, energy);
-        let momenta = jacobian(g, &[energy], count, Leaf::Velocity).pop().unwrap_or_default();
-        let roots: Vec<NodeId> = momenta.iter().map(|(_, momentum)| *momentum).collect();
-        let entries = jacobian(g, &roots, count, Leaf::Velocity);
-        for ((row, _), entries) in momenta.iter().zip(&entries) {
-            for (column, entry) in entries.iter().filter(|(column, _)| column >= row) {
-                if g.stage(*entry) > Stage::Position {
-                    return false;
-                }
-                self.add(g, *row, *column, *entry);
-            }
-        }
-        let changes = tangent(g, &roots, |g, leaf| clock.total(g, leaf, false));
-        for ((row, _), change) in momenta.iter().zip(changes) {
-            if let Some(change) = change {
-                self.bias_at(g, *row, change);
-            }
-        }
-        power_of_time::energy(g, energy, &momenta, clock, &mut self.carried);
-        for (row, slope) in jacobian(g, &[energy], count, Leaf::Position).into_iter().flatten() {
-            let opposite = g.negate(slope);
-            self.bias_at(g, row, opposite);
-        }
-        true
-    }
-
-    pub fn add(&mut self, g: &mut Graph, row: usize, column: usize, entry: NodeId) {
-        let Some(entries) = self.mass.get_mut(row) else { return };
-        match entries.iter_mut().find(|(known, _)| *known == column) {
-            Some((_, sum)) => sum.add(g, entry),
-            None => entries.push((column, Sum(Some(entry)))),
-        }
-    }
-
-    pub fn bias_at(&mut self, g: &mut Graph, row: usize, bias: NodeId) {
-        if let Some(sum) = self.bias.get_mut(row) {
-            sum.add(g, bias);
-        }
-    }
-}
-
-/// Before: the upper triangle in any order. After: all entries, ascending, each with its mirror image.
-fn mirrored(upper: Vec<Vec<(usize, Sum)>>) -> Sparse {
-    let mut rows: Sparse = vec![Vec::new(); upper.len()];
-    for (row, entries) in upper.into_iter().enumerate() {
-        for (column, Sum(entry)) in entries {
-            let Some(entry) = entry else { continue };
-            for (row, column) in
-                [(row, column), (column, row)].into_iter().take(1 + usize::from(row != column))
-            {
-                if let Some(row) = rows.get_mut(row) {
-                    row.push((column, entry));
-                }
-            }
-        }
-    }
-    for row in &mut rows {
-        row.sort_unstable_by_key(|(column, _)| *column);
-    }
-    rows
-}
-
-/// Columns of Φ_q as rows.
-fn transposed(rows: &[Row], count: usize) -> Sparse {
-    let mut columns = vec![Vec::new(); count];
-    for (index, row) in rows.iter().enumerate() {
-        for (column, entry) in &row.phi_q {
-            if let Some(column) = columns.get_mut(*column) {
-                column.push((index, *entry));
-            }
-        }
-    }
-    columns
-}
-
-/// A matrix times a vector of leaves.
-fn products(g: &mut Graph, matrix: &Sparse, vector: impl Fn(u32) -> Leaf) -> Vec<Option<NodeId>> {
-    let row = |row: &Vec<(usize, NodeId)>| {
-        let mut sum = Sum::default();
-        for (column, entry) in row {
-            let component = g.leaf(vector(*column as u32));
-            let product = g.multiply(*entry, component);
-            sum.add(g, product);
-        }
-        sum.0
-    };
-    matrix.iter().map(row).collect()
-}
-
-/// Entries of the derivative of roots that may be zero.
-pub fn derivative(g: &mut Graph, roots: &[Option<NodeId>], count: usize, axis: fn(u32) -> Leaf) -> Sparse {
-    let zero = g.constant(0.0);
-    let roots: Vec<NodeId> = roots.iter().map(|root| root.unwrap_or(zero)).collect();
-    jacobian(g, &roots, count, axis)
 }
 
 /// Derivatives of the forces by each state, and of each state's rate.
@@ -499,17 +337,4 @@ fn third(g: &mut Graph, rows: &[Row], reaction: &[Option<NodeId>], clock: &Clock
         right.add(g, product);
     }
     Third { row, right: right.0 }
-}
-
-/// Derivative of a gradient along the coordinates: the upper triangle, mirrored.
-fn hessian(g: &mut Graph, gradient: &[Option<NodeId>]) -> Sparse {
-    let mut upper: Vec<Vec<(usize, Sum)>> = vec![Vec::new(); gradient.len()];
-    for column in 0..gradient.len() {
-        let roots: Vec<Option<NodeId>> = gradient.iter().take(column + 1).copied().collect();
-        let axis = |g: &mut Graph, leaf| (leaf == Leaf::Position(column as u32)).then(|| g.constant(1.0));
-        for (row, entry) in upper.iter_mut().zip(again(g, &roots, axis)) {
-            row.extend(entry.map(|entry| (column, Sum(Some(entry)))));
-        }
-    }
-    mirrored(upper)
 }

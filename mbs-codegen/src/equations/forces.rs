@@ -3,32 +3,10 @@
 use super::jacobian;
 use super::lower::Clock;
 use super::power_of_time;
+use super::sum::Sum;
 use crate::model::dynamics::{Action, Dynamics as Declared, SpringDamper, Turn};
 use crate::model::expression::Id;
 use crate::symbolic::{Graph, Leaf, NodeId, Unary, tangent};
-
-/// A sum of which no term may be there yet.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Sum(pub Option<NodeId>);
-
-impl Sum {
-    /// Adds a term after the others.
-    pub fn add(&mut self, g: &mut Graph, term: NodeId) {
-        self.0 = Some(match self.0 {
-            Some(sum) => g.add(sum, term),
-            None => term,
-        });
-    }
-
-    /// Less a term that may be zero.
-    pub fn minus(self, g: &mut Graph, term: Option<NodeId>) -> Self {
-        Sum(match (self.0, term) {
-            (Some(sum), Some(term)) => Some(g.subtract(sum, term)),
-            (sum, None) => sum,
-            (None, Some(term)) => Some(g.negate(term)),
-        })
-    }
-}
 
 /// Place that a force acts on: a point of the plane, or an angle or a length.
 #[derive(Clone, Copy, Debug)]

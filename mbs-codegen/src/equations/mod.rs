@@ -1,6 +1,7 @@
 //! Model → roots of one graph: Φ, Φ_q, Φ_t, Φ_tt, Φ_qt q̇, γ, branches, limits, phases, outputs, guesses,
 //! metric; M, Q and their derivatives, energies, powers.
 
+mod acting_bodies;
 mod contacts;
 pub mod continuity;
 pub mod deferred;
@@ -8,13 +9,16 @@ mod degree;
 mod dynamics;
 mod forces;
 mod gradients;
+mod inertia;
 mod lower;
 mod non_negative;
 pub mod normal_forces;
 pub mod pins;
 mod power_of_time;
 mod second_moments;
+mod sparse;
 mod spatial_inertia;
+mod sum;
 pub mod turns;
 
 use std::collections::BTreeMap;
@@ -22,12 +26,13 @@ use std::collections::BTreeMap;
 use crate::model::Model;
 use crate::symbolic::{Graph, Leaf, Node, NodeId, tangent, tangents};
 
+pub use acting_bodies::{Attribution, On, RowMotion};
 pub use contacts::{ByContact, Pressing, Push};
-pub use dynamics::{Dynamics, Gap, Slope, Sparse};
+pub use dynamics::{Dynamics, Gap, Slope};
 use lower::Lowered;
 pub use lower::MARGIN;
 pub use non_negative::Of;
-pub use pins::{Attribution, On, RowMotion};
+pub use sparse::Sparse;
 
 /// All expressions of a model as nodes of one graph, in their order.
 pub fn lowered(model: &Model) -> (Graph, Vec<NodeId>) {

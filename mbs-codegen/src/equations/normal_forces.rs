@@ -2,7 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use super::{Sparse, jacobian};
+use super::jacobian;
+use super::sparse::Sparse;
 use crate::symbolic::{Binary, Graph, Leaf, Node, NodeId, Unary};
 
 /// Function that a term applies to its components.

@@ -5,8 +5,8 @@
 //! do in the rows: they are carried along within a step.
 
 use super::degree::is_quadratic;
-use super::forces::Sum;
 use super::lower::Clock;
+use super::sum::Sum;
 use crate::symbolic::{Graph, Leaf, NodeId, tangent};
 
 /// Derivatives of one function along parts of a motion; `None` is a structural zero.

@@ -3,10 +3,10 @@
 //! In the axes of the body ω' = 2 L(e) ė, L(e) = [−ε, e₀ 1 − ε̃], so that T = ½ ω'ᵀ J ω' = ½ (L ė)ᵀ 4J (L ė). L(a) b = −L(b) a
 //! turns ∂ω'/∂e into L(ė) and leaves nothing to differentiate but e. Source: Nikravesh 1988, §§6.5, 8.4.
 
-use super::dynamics::Inertia;
-use super::forces::Sum;
+use super::inertia::Inertia;
 use super::lower::Clock;
 use super::power_of_time::Rates;
+use super::sum::Sum;
 use super::{again, jacobian};
 use crate::symbolic::{Graph, Leaf, NodeId, tangent};
 

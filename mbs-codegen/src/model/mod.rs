@@ -37,6 +37,7 @@ pub mod scene;
 pub mod scenes;
 pub mod selection;
 mod shared;
+mod states_and_starts;
 mod turns;
 pub mod unit_inference;
 pub mod units;

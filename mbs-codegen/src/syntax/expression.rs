@@ -2,10 +2,10 @@
 
 use proc_macro2::Span;
 
-use super::ast::{Expression, Instruction, Name, Operation, Operator, Target, Unit};
+use super::ast::{Expression, Instruction, Name, Operation, Operator, Target};
+use super::number::{literal, number};
 use super::parser::{GivenUp, Parser, Read};
 use super::tokens::TokenKind;
-use super::unit::{unit_behind_a_space, unit_of_number};
 
 /// Operator or bracket that waits for its right operand or its closing bracket.
 enum Pending {
@@ -119,7 +119,7 @@ impl Reader {
                 Ok(self.call(parser, word.clone(), 0, span))
             }
             TokenKind::Literal(text) => {
-                let number = literal(parser, text)?;
+                let number = number(parser, text)?;
                 self.push(number, span);
                 Ok(false)
             }
@@ -145,7 +145,7 @@ impl Reader {
                 parser.expect(']', help)?;
             } else if parser.take('.') {
                 let count = match parser.peek() {
-                    TokenKind::Literal(text) => number(text, parser.span()),
+                    TokenKind::Literal(text) => literal(text, parser.span()),
                     _ => None,
                 };
                 let Some(count) = count else { return parser.expected("the number of a row", help) };
@@ -217,7 +217,7 @@ impl Reader {
             return self.derivative(parser, word);
         }
         if let TokenKind::Literal(text) = parser.peek()
-            && let Some(index) = number(text, span)
+            && let Some(index) = literal(text, span)
             && matches!(index, Operation::Number { integer: true, .. })
         {
             self.push(index, parser.span());
@@ -335,111 +335,6 @@ pub fn closed_range(parser: &mut Parser<'_>) -> bool {
         parser.diagnostics.report(span, "a range leaves out its upper bound, `..=` does not exist", help);
     }
     closed
-}
-
-/// A number with its unit, which is joined to it or follows in brackets.
-fn literal(parser: &mut Parser<'_>, text: &str) -> Read<Operation> {
-    let span = parser.span();
-    let Some(mut number) = number(text, span) else {
-        return parser.expected("a number", NUMBER);
-    };
-    parser.skip(1);
-    if let Operation::Number { value, unit, .. } = &mut number {
-        if let Some(fault) = range_fault(text, *value) {
-            parser.diagnostics.report(span, format!("`{text}` {fault}"), "choose another unit");
-            *value = 1.0;
-        }
-        let digits = text.strip_suffix(unit.as_ref().map_or("", |unit| &unit.text)).unwrap_or(text);
-        let joined = unit.is_some();
-        if *parser.peek() == TokenKind::Open('[') {
-            if joined {
-                return parser.expected(
-                    "an operator",
-                    "a number has one unit: joined to it, `4mm`, or in brackets, `4 [mm^2]`",
-                );
-            }
-            *unit = Some(unit_of_number(parser)?);
-        }
-        if let (None, Some(apart)) = (&unit, unit_behind_a_space(parser)) {
-            let number =
-                if is_alphanumeric(&apart) { format!("{text}{apart}") } else { format!("{text} [{apart}]") };
-            let message = format!("the unit `{apart}` stands apart from its number");
-            parser.diagnostics.report(parser.span(), message, format!("write `{number}`"));
-            return Err(GivenUp);
-        }
-        if let (Some(unit), TokenKind::Punctuation('^', _)) = (unit, parser.peek()) {
-            two_readings(parser, span, digits, unit, joined);
-        }
-    }
-    Ok(number)
-}
-
-const NUMBER: &str = "write numbers as `0.1`, `1e-3`, `100mm` or `30deg`, compound units as `4 [m^2]`";
-
-/// Reports a power of a number with a unit: is it the number's or the unit's alone?
-fn two_readings(parser: &mut Parser<'_>, span: Span, digits: &str, unit: &Unit, joined: bool) {
-    let number = if joined { format!("{digits}{}", unit.text) } else { format!("{digits} [{}]", unit.text) };
-    let negative = matches!(parser.peek_at(1), TokenKind::Punctuation('-', _));
-    let exponent = match parser.peek_at(1 + usize::from(negative)) {
-        TokenKind::Literal(text) if text.bytes().all(|byte| byte.is_ascii_digit()) => {
-            format!("{}{text}", if negative { "-" } else { "" })
-        }
-        _ => "…".into(),
-    };
-    let base = if is_alphanumeric(&unit.text) { unit.text.clone() } else { format!("({})", unit.text) };
-    parser.diagnostics.report(
-        span,
-        format!("`{number}^{exponent}` can be read in two ways"),
-        format!(
-            "write `{digits} [{base}^{exponent}]` for a power of the unit alone, `({number})^{exponent}` for a power of the number with its unit"
-        ),
-    );
-}
-
-/// `true` for a unit of one symbol without an exponent.
-fn is_alphanumeric(unit: &str) -> bool {
-    unit.bytes().all(|byte| byte.is_ascii_alphanumeric())
-}
-
-/// A literal as a number with the unit joined to it; `None` where it is no decimal number.
-fn number(literal: &str, span: Span) -> Option<Operation> {
-    let bytes = literal.as_bytes();
-    let digits = |from: usize| {
-        from + bytes.iter().skip(from).take_while(|byte| byte.is_ascii_digit() || **byte == b'_').count()
-    };
-    let at = |index: usize| bytes.get(index).copied().unwrap_or(0);
-    if !at(0).is_ascii_digit() {
-        return None;
-    }
-    let mut end = digits(0);
-    let mut integer = true;
-    if at(end) == b'.' {
-        integer = false;
-        end = digits(end + 1);
-    }
-    if matches!(at(end), b'e' | b'E') {
-        let exponent = end + 1 + usize::from(matches!(at(end + 1), b'+' | b'-'));
-        if at(exponent).is_ascii_digit() {
-            integer = false;
-            end = digits(exponent);
-        }
-    }
-    let value = literal.get(..end)?.replace('_', "").parse().ok()?;
-    let suffix = literal.get(end..).filter(|suffix| !suffix.is_empty()).map(str::to_owned);
-    let unit = suffix.map(|text| Unit { factors: vec![(Name { text: text.clone(), span }, 1)], text, span });
-    Some(Operation::Number { value, unit, integer })
-}
-
-/// Fault of a number that no `f64` approximates.
-fn range_fault(literal: &str, value: f64) -> Option<&'static str> {
-    let mut digits = literal.bytes().take_while(|byte| byte.is_ascii_digit() || matches!(byte, b'.' | b'_'));
-    if value.is_infinite() {
-        Some("is too large for a number")
-    } else if value == 0.0 && digits.any(|digit| matches!(digit, b'1'..=b'9')) {
-        Some("is too small for a number")
-    } else {
-        None
-    }
 }
 
 #[cfg(test)]

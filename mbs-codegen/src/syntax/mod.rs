@@ -6,6 +6,7 @@ mod dynamics;
 mod expression;
 mod header;
 mod keywords;
+mod number;
 mod parser;
 pub mod picture;
 pub mod rust_identifiers;

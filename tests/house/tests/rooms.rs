@@ -300,13 +300,21 @@ fn no_room_uses_one_that_stands_after_it() {
 }
 
 /// Rooms whose files use each other in one direction too.
-const WITHOUT_CIRCLES: [(&str, &str); 3] =
-    [("mbs-codegen/src", "model"), ("mbs-codegen/src", "structure"), ("mbs-codegen/src", "program")];
+const WITHOUT_CIRCLES: [(&str, &str); 5] = [
+    ("mbs-codegen/src", "model"),
+    ("mbs-codegen/src", "equations"),
+    ("mbs-codegen/src", "structure"),
+    ("mbs-codegen/src", "program"),
+    ("mbs-codegen/src", "emit/rust"),
+];
 
 /// Files of a room that each file uses; the room's own file, which declares the others, left out.
 fn uses(source: &str, room: &str) -> BTreeMap<String, BTreeSet<String>> {
     let modules = modules(&root().join(source));
-    let name = |path: &[String]| path.get(1).filter(|_| path[0] == room).cloned();
+    let room: Vec<&str> = room.split('/').collect();
+    let name = |path: &[String]| {
+        path.get(room.len()).filter(|_| room.iter().zip(path).all(|(room, name)| room == name)).cloned()
+    };
     let known: BTreeSet<String> = modules.keys().filter_map(|module| name(module)).collect();
     let mut uses: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
     for (module, file) in &modules {

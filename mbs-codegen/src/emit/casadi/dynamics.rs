@@ -2,8 +2,8 @@
 
 use std::fmt::Write;
 
-use crate::emit::casadi::pins;
 use crate::emit::casadi::{assignments, variable};
+use crate::emit::casadi::{or_zero, pins};
 use crate::equations::Attribution;
 use crate::model::Model;
 use crate::model::dynamics::{Action, Dynamics, Rotation, SpringDamper, Turn};
@@ -121,11 +121,6 @@ fn roots(dynamics: &Dynamics) -> Vec<Id> {
     roots.extend(dynamics.states.iter().filter_map(|state| state.rate));
     roots.extend(dynamics.pins.iter().flat_map(|pin| &pin.at));
     roots
-}
-
-/// A value, or 0 where none is given.
-pub fn or_zero(value: Option<Id>) -> String {
-    value.map_or_else(|| "ca.SX(0)".into(), variable)
 }
 
 fn tension(line: &SpringDamper, text: &mut String) {

@@ -111,6 +111,11 @@ pub fn variable(id: Id) -> String {
     format!("e{}", id.index())
 }
 
+/// A value, or 0 where none is given.
+pub fn or_zero(value: Option<Id>) -> String {
+    value.map_or_else(|| "ca.SX(0)".into(), variable)
+}
+
 /// `true` if an output contains a margin, so that no oracle has its value.
 fn has_margin(model: &Model, value: Id) -> bool {
     let marked = model.expressions.reachable([value]);

@@ -2,8 +2,7 @@
 
 use std::fmt::Write;
 
-use crate::emit::casadi::dynamics::or_zero;
-use crate::emit::casadi::variable;
+use crate::emit::casadi::{or_zero, variable};
 use crate::equations::{Attribution, On, RowMotion};
 use crate::model::Model;
 use crate::model::dynamics::{Action, Dynamics, SpringDamper};

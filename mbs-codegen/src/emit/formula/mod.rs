@@ -1,10 +1,12 @@
 //! The third back end: Φ and its derivatives as formulas to read.
 
+pub(crate) mod atom;
 pub(crate) mod notation;
 pub(crate) mod terms;
 
+use crate::emit::formula::atom::{Atom, Rank};
 use crate::emit::formula::notation::Notation;
-use crate::emit::formula::terms::{Atom, Rank, Sum};
+use crate::emit::formula::terms::Sum;
 use crate::equations::Equations;
 use crate::model::{Model, VariableKind};
 use crate::symbolic::{Binary, Graph, Leaf, Node, NodeId, Unary};

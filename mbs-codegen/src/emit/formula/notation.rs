@@ -1,6 +1,6 @@
 //! Notation of formulas: plain text, or LaTeX.
 
-use crate::emit::formula::terms::{Atom, Rank};
+use crate::emit::formula::atom::{Atom, Rank};
 use crate::symbolic::{Binary, Unary};
 
 /// A way to spell formulas.

@@ -2,9 +2,9 @@
 
 use std::fmt::Write;
 
-use crate::emit::rust::code::{lets, local};
+use crate::emit::rust::code::{lets, list};
 use crate::emit::rust::elimination::Eliminations;
-use crate::emit::rust::scope::{Scope, number};
+use crate::emit::rust::scope::{Scope, local, number};
 use crate::equations::Equations;
 use crate::model::Model;
 use crate::program::{BlockMethod, BlockProgram, Program, System};
@@ -170,9 +170,4 @@ pub fn widths(model: &Model, rows: &str) -> String {
         true => format!("&__mbs::Widths::of(&__mbs::Mechanism::widths(self, __p), &{rows}), "),
         false => "&__mbs::Widths::none(), ".into(),
     }
-}
-
-/// `[a, b, …]`
-pub fn list(items: impl Iterator<Item = String>) -> String {
-    format!("[{}]", items.collect::<Vec<_>>().join(", "))
 }

@@ -6,7 +6,7 @@ use std::fmt::Write;
 use proc_macro2::{Delimiter, Group, TokenStream, TokenTree};
 use quote::quote;
 
-use crate::emit::rust::scope::Scope;
+use crate::emit::rust::scope::{Scope, local};
 use crate::program::{Angle, Assignment, FunctionDerivatives, Section};
 use crate::symbolic::{Node, NodeId, Unary};
 
@@ -193,9 +193,9 @@ pub fn value(id: NodeId, scope: &Scope<'_>, names: &mut impl Naming, text: &mut 
 /// Prints sines and cosines of several angles.
 pub fn sine_cosine(angles: &[Angle], names: &mut impl Naming, text: &mut String) {
     let mut defined = |id: Option<NodeId>| id.map_or_else(|| "_".to_owned(), |id| names.defined(id));
-    let sines = list(angles, |angle| defined(angle.sine));
-    let cosines = list(angles, |angle| defined(angle.cosine));
-    let operands = list(angles, |known| names.operand(known.angle));
+    let sines = of_angles(angles, |angle| defined(angle.sine));
+    let cosines = of_angles(angles, |angle| defined(angle.cosine));
+    let operands = of_angles(angles, |known| names.operand(known.angle));
     let _ = writeln!(text, "let ([{sines}], [{cosines}]) = {SINE_COSINE}[{operands}]);");
 }
 
@@ -212,13 +212,44 @@ pub fn jet(jet: &FunctionDerivatives, scope: &Scope<'_>, names: &mut impl Naming
     );
 }
 
-fn list(angles: &[Angle], part: impl FnMut(&Angle) -> String) -> String {
+fn of_angles(angles: &[Angle], part: impl FnMut(&Angle) -> String) -> String {
     angles.iter().map(part).collect::<Vec<_>>().join(", ")
 }
 
-/// Name of the local variable of a node.
-pub fn local(id: NodeId) -> String {
-    format!("__n{}", id.index())
+/// Straight-line code, then its value, in braces.
+pub fn body(section: &Section, scope: &Scope<'_>, result: &str, runtime: &TokenStream) -> TokenStream {
+    let mut text = String::new();
+    lets(section, scope, &mut text);
+    text += result;
+    block(&text, runtime)
+}
+
+/// `[a, b, …]`
+pub fn list(items: impl Iterator<Item = String>) -> String {
+    format!("[{}]", items.collect::<Vec<_>>().join(", "))
+}
+
+/// `[a, 0, b, …]`
+pub fn array(nodes: impl Iterator<Item = Option<NodeId>>, scope: &Scope<'_>) -> String {
+    format!("[{}]", nodes.map(|id| scope.or_zero(id)).collect::<Vec<_>>().join(", "))
+}
+
+/// Rows of as many entries as there are coordinates. Zeros are not written one by one: a chain of 200 loops has
+/// 160 000 of them.
+pub fn matrix<'a>(
+    rows: impl ExactSizeIterator<Item = &'a Vec<(usize, NodeId)>>,
+    scope: &Scope<'_>,
+) -> String {
+    let (length, columns) = (rows.len(), scope.model.coordinates.len());
+    let zero = scope.or_zero(None);
+    let zeros = format!("[[{zero}; {columns}]; {length}]");
+    let mut text = String::new();
+    for (row, entries) in rows.enumerate() {
+        for (column, entry) in entries {
+            let _ = writeln!(text, "__rows[{row}][{column}] = {};", scope.operand(*entry));
+        }
+    }
+    if text.is_empty() { zeros } else { format!("let mut __rows = {zeros};\n{text}__rows") }
 }
 
 fn operation(node: Node, scope: &Scope<'_>, names: &mut impl Naming) -> String {

@@ -5,8 +5,7 @@ use std::fmt::Write;
 use proc_macro2::TokenStream;
 use quote::quote;
 
-use crate::emit::rust::code::{block, lets};
-use crate::emit::rust::functions::array;
+use crate::emit::rust::code::{array, block, lets};
 use crate::emit::rust::scope::Scope;
 use crate::equations::{ByContact, Pressing, Push, Sparse};
 use crate::program::{ContactProgram, PushProgram, Section};

@@ -5,7 +5,6 @@ use quote::{format_ident, quote};
 
 use crate::emit::rust::code::tokens;
 use crate::emit::rust::generics::Generics;
-use crate::emit::rust::scenes::type_in;
 use crate::emit::rust::scope::{field_name, number, subscripts, variable};
 use crate::model::scene::Scene;
 use crate::model::scenes::Scenes;
@@ -184,15 +183,19 @@ pub fn access(text: &Text, scenes: &Scenes, model: &Model) -> TokenStream {
     }
 }
 
-/// `enclosed`: the mechanism in intervals, where parts of a motion can be enclosed and something asks for it.
-pub fn enclosed(text: &Text, scenes: &Scenes, scene: &Scene, (model, m): (&Model, usize)) -> TokenStream {
+/// `enclosed`: the mechanism in intervals, of the type `target`, where parts of a motion can be enclosed and something asks for it.
+pub fn enclosed(
+    text: &Text,
+    scenes: &Scenes,
+    target: &TokenStream,
+    (model, m): (&Model, usize),
+) -> TokenStream {
     let contacts = model.dynamics.as_ref().is_some_and(|dynamics| !dynamics.contacts.is_empty());
     let is_asked = contacts || !model.limits.is_empty();
     if !is_asked || !model.can_be_enclosed() {
         return TokenStream::new();
     }
     let (name, runtime, n) = (&text.header.name, &text.header.runtime, model.coordinates.len());
-    let target = type_in(text, scenes, scene, &quote! { #runtime::Interval<T::Real> });
     let fields = converted(scenes, runtime, interval);
     quote! {
         fn enclosed<__V: #runtime::dynamics::WithIntervals<T, #n, #m>>(

@@ -5,13 +5,13 @@ use std::fmt::Write;
 use proc_macro2::TokenStream;
 
 use crate::emit::rust::blocks;
-use crate::emit::rust::code::{block, lets, tokens};
+use crate::emit::rust::code::{array, block, body, lets, matrix, tokens};
 use crate::emit::rust::dynamics::{self, DynamicBodies};
 use crate::emit::rust::elimination::Eliminations;
 use crate::emit::rust::jacobian_outputs;
+use crate::emit::rust::lengths::Lengths;
 use crate::emit::rust::linear;
 use crate::emit::rust::long;
-use crate::emit::rust::long::lengths::Lengths;
 use crate::emit::rust::long::parts::{self, ExtraArguments};
 use crate::emit::rust::motion;
 use crate::emit::rust::phases;
@@ -347,41 +347,10 @@ fn smooth_enough(demands: &[Demand], scope: &Scope<'_>) -> String {
     text
 }
 
-/// `[a, 0, b, …]`
-pub fn array(nodes: impl Iterator<Item = Option<NodeId>>, scope: &Scope<'_>) -> String {
-    format!("[{}]", nodes.map(|id| scope.or_zero(id)).collect::<Vec<_>>().join(", "))
-}
-
 /// Row, column and node of each entry of Φ_q, row by row.
 fn entries(equations: &Equations) -> impl Iterator<Item = (usize, usize, NodeId)> {
     let rows = equations.rows.iter().enumerate();
     rows.flat_map(|(row, equation)| equation.phi_q.iter().map(move |(column, entry)| (row, *column, *entry)))
-}
-
-/// Straight-line code, then its value, in braces.
-pub fn body(section: &Section, scope: &Scope<'_>, result: &str, runtime: &TokenStream) -> TokenStream {
-    let mut text = String::new();
-    lets(section, scope, &mut text);
-    text += result;
-    block(&text, runtime)
-}
-
-/// Rows of as many entries as there are coordinates. Zeros are not written one by one: a chain of 200 loops has
-/// 160 000 of them.
-pub fn matrix<'a>(
-    rows: impl ExactSizeIterator<Item = &'a Vec<(usize, NodeId)>>,
-    scope: &Scope<'_>,
-) -> String {
-    let (length, columns) = (rows.len(), scope.model.coordinates.len());
-    let zero = scope.or_zero(None);
-    let zeros = format!("[[{zero}; {columns}]; {length}]");
-    let mut text = String::new();
-    for (row, entries) in rows.enumerate() {
-        for (column, entry) in entries {
-            let _ = writeln!(text, "__rows[{row}][{column}] = {};", scope.operand(*entry));
-        }
-    }
-    if text.is_empty() { zeros } else { format!("let mut __rows = {zeros};\n{text}__rows") }
 }
 
 fn limits(equations: &Equations, scope: &Scope<'_>) -> String {

@@ -4,6 +4,7 @@ mod blocks;
 mod code;
 mod contacts;
 pub(crate) mod docs;
+mod dynamic_trait;
 mod dynamics;
 mod elimination;
 mod fields;
@@ -11,14 +12,17 @@ mod functions;
 mod generics;
 mod item;
 mod jacobian_outputs;
+mod lengths;
 mod linear;
 mod long;
+mod matrix_entries;
 mod motion;
 mod phases;
 mod scenes;
 mod scope;
 mod signals;
 mod stub;
+mod tables;
 mod view;
 mod work;
 
@@ -34,7 +38,7 @@ use crate::syntax::Text;
 
 use self::generics::Generics;
 
-pub use self::long::lengths::Lengths;
+pub use self::lengths::Lengths;
 
 pub use self::stub::stub;
 

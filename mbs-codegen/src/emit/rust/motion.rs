@@ -2,12 +2,13 @@
 
 use std::fmt::Write;
 
-use crate::emit::rust::blocks::{self, list};
-use crate::emit::rust::code::lets;
+use crate::emit::rust::blocks;
+use crate::emit::rust::code::{lets, list};
 use crate::emit::rust::elimination::Eliminations;
-use crate::emit::rust::linear::{Factorized, MatrixEntries, diagonal, quotient};
+use crate::emit::rust::linear::{Factorized, diagonal};
 use crate::emit::rust::long;
-use crate::emit::rust::scope::{Scope, number};
+use crate::emit::rust::matrix_entries::MatrixEntries;
+use crate::emit::rust::scope::{Scope, number, quotient};
 use crate::equations::Equations;
 use crate::program::motion::{self, BlockMotion};
 use crate::program::{BlockMethod, BlockProgram, Program};

@@ -2,8 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::emit::rust::code::local;
-use crate::emit::rust::long::lengths::Lengths;
+use crate::emit::rust::lengths::Lengths;
 use crate::equations::MARGIN;
 use crate::model::{Model, Role};
 use crate::symbolic::{Graph, Leaf, Node, NodeId, Stage};
@@ -123,6 +122,11 @@ impl Scope<'_> {
     }
 }
 
+/// Name of the local variable of a node.
+pub fn local(id: NodeId) -> String {
+    format!("__n{}", id.index())
+}
+
 /// A number of the scalar type.
 pub fn number(value: f64) -> String {
     if value.is_nan() {
@@ -131,6 +135,15 @@ pub fn number(value: f64) -> String {
         format!("T::constant(::core::primitive::f64::{}INFINITY)", if value < 0.0 { "NEG_" } else { "" })
     } else {
         format!("T::constant({value:?}f64)")
+    }
+}
+
+/// A value over a number.
+pub fn quotient(value: &str, divisor: f64) -> String {
+    match divisor {
+        1.0 => value.to_owned(),
+        -1.0 => format!("-({value})"),
+        other => format!("({value}) / {}", number(other)),
     }
 }
 

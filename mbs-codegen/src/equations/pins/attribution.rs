@@ -2,6 +2,7 @@
 //!
 //! Found by equal motion at a few positions, not by how it is written: virtual displacements alone count.
 
+use crate::equations::acting_bodies::RowMotion;
 use crate::equations::jacobian;
 use crate::symbolic::evaluate::evaluate;
 use crate::symbolic::sample_points;
@@ -27,15 +28,6 @@ pub struct PlaneBody {
     pub centre: [usize; 2],
     /// Its angle; a point mass has none.
     pub angle: Option<usize>,
-}
-
-/// Body motion that a scalar function of the position measures.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum RowMotion {
-    /// The angle of a body against another or the ground, times `sign`.
-    Angle { body: usize, against: Option<usize>, sign: f64 },
-    /// A component of the place of a body's centre of mass, times `sign`.
-    Component { body: usize, component: usize, sign: f64 },
 }
 
 impl Slopes {

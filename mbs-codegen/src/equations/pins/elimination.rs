@@ -4,7 +4,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::equations::forces::Sum;
+use crate::equations::sum::Sum;
 use crate::symbolic::{Graph, NodeId};
 
 /// Entries of a column by their row; missing entries are zero.

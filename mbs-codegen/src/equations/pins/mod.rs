@@ -13,14 +13,15 @@ mod velocities;
 
 use proc_macro2::Span;
 
-pub use self::attribution::RowMotion;
 use self::attribution::{PlaneBody, Slopes};
 use self::elimination::{Column, solve};
 use self::force_attachment::Points;
 use self::places::{Misplaced, misplaced};
+use super::acting_bodies::{Attribution, On, RowMotion, Undetermined};
 use super::dynamics::Dynamics;
-use super::forces::{Place, Sum};
+use super::forces::Place;
 use super::lower::{Clock, PIN};
+use super::sum::Sum;
 use super::{Equations, Row, again};
 use crate::diagnostics::Diagnostics;
 use crate::model::Model;
@@ -29,37 +30,8 @@ use crate::model::expression::Id;
 use crate::symbolic::substitute::substitute;
 use crate::symbolic::{Graph, Leaf, Node, NodeId, tangent};
 
-/// Reason why the forces of pins are unknown.
-#[derive(Clone, Debug)]
-pub struct Undetermined {
-    /// Output that asks for one, or pin at another place than its joint.
-    pub span: Span,
-    pub message: String,
-    pub help: String,
-}
-
-/// Body that each force and row acts on, and what holds bodies apart from pins.
-#[derive(Clone, Debug)]
-pub struct Attribution {
-    /// One a part of a named force, with the force's index: of a tension the part at its begin, then that at its end.
-    pub acting: Vec<(usize, On)>,
-    /// Rows whose multipliers act on bodies: drives, and guides.
-    pub rows: Vec<(usize, RowMotion)>,
-    /// Bodies and components, 2 for the angle, that the coordinates hold: forces and moments unknown as pins are.
-    pub held: Vec<(usize, usize)>,
-}
-
 /// Components held by the coordinates, and components held by rows.
 type Guides = (Vec<(usize, usize)>, Vec<(usize, RowMotion)>);
-
-/// Body or motion that a part of a force acts on.
-#[derive(Clone, Copy, Debug)]
-pub enum On {
-    Ground,
-    /// A point of a body.
-    Point(usize),
-    Moves(RowMotion),
-}
 
 /// Terms of the sums.
 #[derive(Clone, Copy)]

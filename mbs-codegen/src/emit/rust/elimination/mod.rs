@@ -3,13 +3,14 @@
 mod margin;
 mod pivots;
 mod printer;
+mod scales;
 mod substitution;
 mod value;
 
 use std::collections::BTreeMap;
 
-use self::margin::Scales;
 use self::printer::Printer;
+use self::scales::Scales;
 use self::value::Value;
 use crate::equations::Equations;
 use crate::program::{BlockMethod, BlockProgram, Operations, Program};

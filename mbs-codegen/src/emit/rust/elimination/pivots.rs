@@ -4,10 +4,10 @@ use std::fmt::Write;
 
 use super::printer::Printer;
 use super::value::{Entry, Value, negated};
-use crate::emit::rust::blocks::list;
+use crate::emit::rust::code::list;
 use crate::emit::rust::scope::number;
 use crate::program::Operations;
-use crate::structure::pivots::{Order, Pivot};
+use crate::structure::pivots::Pivot;
 
 /// Exclusive or of the sign so far and that of another pivot.
 const TURN: &str = "__reverses = (__reverses | __turn) & !(__reverses & __turn);";
@@ -191,18 +191,4 @@ impl Printer {
         self.operations += Operations { divisions: 1, multiplications: 1, selects: 3, ..Default::default() };
         self.comparisons += 2;
     }
-}
-
-/// `true` if the order of rows and that of columns differ by an odd permutation.
-pub(super) fn is_odd(order: &Order) -> bool {
-    let odd = |indices: Vec<usize>| {
-        let pairs = indices
-            .iter()
-            .enumerate()
-            .flat_map(|(place, index)| indices.iter().skip(place + 1).filter(move |later| *later < index));
-        pairs.count() % 2 == 1
-    };
-    let rows = order.pivots.iter().flat_map(|pivot| pivot.rows.clone()).collect();
-    let columns = order.pivots.iter().flat_map(|pivot| pivot.columns.clone()).collect();
-    odd(rows) != odd(columns)
 }

@@ -3,11 +3,10 @@
 use std::collections::BTreeSet;
 use std::fmt::Write;
 
-use super::margin::Scales;
-use super::pivots::is_odd;
+use super::scales::Scales;
 use super::value::{Entry, Value};
 use super::{Cost, Elimination, NAME};
-use crate::emit::rust::blocks::list;
+use crate::emit::rust::code::list;
 use crate::emit::rust::scope::number;
 use crate::program::Operations;
 use crate::structure::pivots::{Order, Pivot};
@@ -168,4 +167,18 @@ impl Printer {
             number => number,
         }
     }
+}
+
+/// `true` if the order of rows and that of columns differ by an odd permutation.
+fn is_odd(order: &Order) -> bool {
+    let odd = |indices: Vec<usize>| {
+        let pairs = indices
+            .iter()
+            .enumerate()
+            .flat_map(|(place, index)| indices.iter().skip(place + 1).filter(move |later| *later < index));
+        pairs.count() % 2 == 1
+    };
+    let rows = order.pivots.iter().flat_map(|pivot| pivot.rows.clone()).collect();
+    let columns = order.pivots.iter().flat_map(|pivot| pivot.columns.clone()).collect();
+    odd(rows) != odd(columns)
 }

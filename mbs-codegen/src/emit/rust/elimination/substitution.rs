@@ -5,7 +5,7 @@ use std::fmt::Write;
 use super::pivots::Eliminated;
 use super::printer::Printer;
 use super::value::{Entry, Value, at, negated, put};
-use crate::emit::rust::blocks::list;
+use crate::emit::rust::code::list;
 use crate::emit::rust::scope::number;
 use crate::structure::pivots::Pivot;
 

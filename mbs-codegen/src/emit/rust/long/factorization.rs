@@ -3,11 +3,11 @@
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-use crate::emit::rust::blocks::list;
-use crate::emit::rust::linear::MatrixEntries;
+use crate::emit::rust::code::list;
 use crate::emit::rust::long;
 use crate::emit::rust::long::parts::{ExtraArguments, Parts};
 use crate::emit::rust::long::statement::{Open, Operand, Statement};
+use crate::emit::rust::matrix_entries::MatrixEntries;
 use crate::program::BlockProgram;
 use crate::symbolic::NodeId;
 

@@ -2,7 +2,6 @@
 //! kind of block. Lines that differ from block to block are in functions of bounded length.
 
 pub(crate) mod factorization;
-pub(crate) mod lengths;
 pub(crate) mod parts;
 pub(crate) mod repetition;
 pub(crate) mod rolled;
@@ -13,9 +12,10 @@ pub(crate) mod tape;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 
-use crate::emit::rust::blocks::{formula, list};
+use crate::emit::rust::blocks::formula;
+use crate::emit::rust::code::list;
 use crate::emit::rust::elimination::{Eliminations, factorization};
-use crate::emit::rust::long::lengths::Lengths;
+use crate::emit::rust::lengths::Lengths;
 use crate::emit::rust::long::parts::{ExtraArguments, Parts};
 use crate::emit::rust::long::statement::{PUT, Statement};
 use crate::emit::rust::scope::{Scope, number as number_of};

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 use std::ops::Range;
 
-use crate::emit::rust::long::lengths::Lengths;
+use crate::emit::rust::lengths::Lengths;
 use crate::emit::rust::long::repetition::{Stretch, stretches};
 use crate::emit::rust::long::rolled::{Rolled, Text, earlier};
 use crate::emit::rust::long::statement::{KERNELS, PUT, Statement, Wordings};

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::emit::rust::long::lengths::Lengths;
+use crate::emit::rust::lengths::Lengths;
 
 /// A stretch of a sequence.
 #[derive(Clone, Debug, PartialEq, Eq)]

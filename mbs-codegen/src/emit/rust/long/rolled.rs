@@ -3,9 +3,8 @@
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-use crate::emit::rust::code::local;
 use crate::emit::rust::long::statement::{DEFINED, OPERAND, Operand, Statement, Wordings};
-use crate::emit::rust::scope::number;
+use crate::emit::rust::scope::{local, number};
 use crate::symbolic::NodeId;
 
 /// Place of discarded values.

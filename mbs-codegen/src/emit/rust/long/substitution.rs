@@ -2,10 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use crate::emit::rust::blocks::list;
-use crate::emit::rust::linear::{MatrixEntries, quotient};
+use crate::emit::rust::code::list;
 use crate::emit::rust::long::parts::{ExtraArguments, Parts};
 use crate::emit::rust::long::statement::{Open, Operand, Statement};
+use crate::emit::rust::matrix_entries::MatrixEntries;
+use crate::emit::rust::scope::quotient;
 use crate::program::{BlockMethod, BlockProgram, Program};
 use crate::symbolic::NodeId;
 
