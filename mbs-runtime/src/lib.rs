@@ -126,11 +126,13 @@ pub use linear_algebra::guarded::{Elimination, Guarded};
 pub use linear_algebra::lu::Lu;
 pub use linear_algebra::rectangular::Orthogonal;
 pub use linear_algebra::vectors::extent;
+pub use mechanism::block::{Block, BlockSolver};
 pub use mechanism::dynamic::{
     Dynamic, DynamicState, Energy, Gap, MissingSlope, NonNegative, Partitioned, StateSlope,
 };
 pub use mechanism::function::{Function, FunctionEntry};
 pub use mechanism::limit::{Limit, WARNING_SHARE, Warning};
+pub use mechanism::margin::Margin;
 pub use mechanism::operations::Operations;
 pub use mechanism::outcome::Outcome;
 pub use mechanism::phase::{Phase, Speed};
@@ -139,8 +141,7 @@ pub use mechanism::reveal::{Reveal, Visitor};
 pub use mechanism::roots::Roots;
 pub use mechanism::saved_variables::Kept;
 pub use mechanism::{
-    AllEffects, Block, BlockSolver, Entry, Evaluation, Kinematic, Margin, Mechanism, OutputValue, Reference,
-    Signal, Solved,
+    AllEffects, Entry, Evaluation, Kinematic, Mechanism, OutputValue, Reference, Signal, Solved,
 };
 pub use scalar::interval::Interval;
 pub use scalar::lanes::Lanes;
@@ -152,7 +153,8 @@ pub use stepper::reach::ReachLimit;
 pub use stepper::saved::{NEAR, Saved};
 pub use stepper::scaling::IllScaled;
 pub use stepper::sweep::{Frame, Sweep};
-pub use worst_case::{BlockWork, Work, WorstCase};
+pub use worst_case::WorstCase;
+pub use worst_case::work::{BlockWork, Work};
 
 /// Declares a mechanism: a struct with its parameters, and implementations of [`Mechanism`], of [`Kinematic`] if the
 /// rows fix every coordinate, and of [`Dynamic`] if the text has masses or forces.

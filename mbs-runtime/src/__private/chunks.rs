@@ -7,7 +7,7 @@
 use core::cell::Cell;
 
 use crate::linear_algebra::factorization::Factorization;
-use crate::mechanism::Block;
+use crate::mechanism::block::Block;
 use crate::scalar::number::Scalar;
 
 /// A part of a long function. It is never inlined into its caller, whose length would be that of all parts.

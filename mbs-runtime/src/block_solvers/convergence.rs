@@ -1,6 +1,6 @@
 //! Diagnosis of convergence: effort, and the row that was hardest to close.
 
-use crate::mechanism::Block;
+use crate::mechanism::block::Block;
 use crate::scalar::number::{Real, Scalar, index};
 use crate::tolerances::positions;
 

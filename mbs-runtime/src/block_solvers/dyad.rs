@@ -5,7 +5,7 @@ use crate::block_solvers::newton::{Attempt, ITERATIONS, newton};
 use crate::linear_algebra::factorization::Factorization;
 use crate::linear_algebra::is_regular;
 use crate::linear_algebra::vectors::select;
-use crate::mechanism::Block;
+use crate::mechanism::block::Block;
 use crate::mechanism::roots::Roots;
 use crate::scalar::number::Scalar;
 use crate::tolerances::positions;

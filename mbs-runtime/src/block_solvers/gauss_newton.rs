@@ -6,7 +6,7 @@ use crate::block_solvers::multistart::displaced;
 use crate::block_solvers::newton::{Attempt, ITERATIONS, all_finite, capped, largest_ratio, within};
 use crate::linear_algebra::rectangular::Orthogonal;
 use crate::linear_algebra::vectors::{select, times};
-use crate::mechanism::Block;
+use crate::mechanism::block::Block;
 use crate::mechanism::outcome::Outcome;
 use crate::mechanism::redundant_widths::Widths;
 use crate::scalar::number::Scalar;
@@ -179,7 +179,7 @@ mod tests {
     use super::*;
     use crate::block_solvers::levenberg_marquardt::AssemblySolver;
     use crate::block_solvers::newton::Newton;
-    use crate::mechanism::BlockSolver;
+    use crate::mechanism::block::BlockSolver;
     use crate::scalar::lanes::Lanes;
 
     fn block<T: Scalar, const K: usize, const M: usize>() -> Block<T, K, M> {

@@ -7,10 +7,10 @@ use crate::block_solvers::multistart::displaced;
 use crate::block_solvers::newton::{Attempt, ITERATIONS, all_finite, capped, newton, within};
 use crate::linear_algebra::factorization::Factorization;
 use crate::linear_algebra::vectors::select;
+use crate::mechanism::block::{Block, BlockSolver};
 use crate::mechanism::outcome::Outcome;
 use crate::mechanism::redundant_widths::Widths;
 use crate::mechanism::roots::Roots;
-use crate::mechanism::{Block, BlockSolver};
 use crate::scalar::number::Scalar;
 use crate::tolerances::positions;
 

@@ -8,8 +8,9 @@ use crate::failure::{DerivativeOrder, Failure, FailureKind};
 use crate::kinematics::least_squares_assembly::contradiction;
 use crate::linear_algebra::determines_rates;
 use crate::linear_algebra::vectors::{extent, largest_difference};
+use crate::mechanism::margin::Margin;
 use crate::mechanism::outcome::Outcome;
-use crate::mechanism::{Kinematic, Margin, Mechanism};
+use crate::mechanism::{Kinematic, Mechanism};
 use crate::scalar::number::Real;
 use crate::tolerances::singular::LEAST_MARGIN;
 

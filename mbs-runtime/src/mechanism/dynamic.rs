@@ -1,11 +1,13 @@
 //! Equations of motion as emitted for a text with bodies and forces: M q̈ + Φ_qᵀ λ = Q with Φ = 0.
 
+use crate::mechanism::block::BlockSolver;
 use crate::mechanism::enclosure::WithIntervals;
 use crate::mechanism::limit::Limit;
+use crate::mechanism::margin::Margin;
 use crate::mechanism::normal_forces::WithNormalForces;
 use crate::mechanism::outcome::Outcome;
 use crate::mechanism::transformed::Transformed;
-use crate::mechanism::{BlockSolver, Entry, Margin, Mechanism};
+use crate::mechanism::{Entry, Mechanism};
 use crate::scalar::number::Scalar;
 
 /// Kinetic and potential energy of one state (J).

@@ -1,9 +1,11 @@
 //! Contract with emitted code: a mechanism as functions of its coordinates.
 
+pub(crate) mod block;
 pub(crate) mod dynamic;
 pub(crate) mod enclosure;
 pub(crate) mod function;
 pub(crate) mod limit;
+pub(crate) mod margin;
 pub(crate) mod normal_forces;
 pub(crate) mod operations;
 pub(crate) mod outcome;
@@ -14,17 +16,14 @@ pub(crate) mod roots;
 pub(crate) mod saved_variables;
 pub(crate) mod transformed;
 
-use core::hint::black_box;
-
-use crate::linear_algebra::factorization::Factorization;
+use crate::mechanism::block::BlockSolver;
 use crate::mechanism::function::FunctionEntry;
 use crate::mechanism::limit::Limit;
+use crate::mechanism::margin::Margin;
 use crate::mechanism::outcome::Outcome;
 use crate::mechanism::phase::Phase;
-use crate::mechanism::redundant_widths::Widths;
-use crate::mechanism::roots::Roots;
 use crate::mechanism::saved_variables::Kept;
-use crate::scalar::number::{Real, Scalar, index};
+use crate::scalar::number::{Real, Scalar};
 
 /// The scene of a text with all its effects, which every mechanism is in unless a type says otherwise.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -306,83 +305,6 @@ pub trait Mechanism<T: Scalar, const N: usize, const M: usize>: Clone {
     }
 }
 
-/// Rows and coordinates of a diagonal block of the block-triangular order, and its share of the metric. It has more rows than
-/// coordinates, M > K, where some of them may follow from others.
-#[derive(Clone, Copy, Debug)]
-pub struct Block<T, const K: usize, const M: usize = K> {
-    /// Rows of Φ: M.
-    pub rows: [u16; M],
-    /// Coordinates solved for: K.
-    pub coordinates: [u16; K],
-    /// `true` for each coordinate that is an angle, whose steps are capped: K.
-    pub angles: [bool; K],
-    /// Reference metric of the rows: M.
-    pub row_scales: [T; M],
-    /// Reference metric of the coordinates: K.
-    pub coordinate_scales: [T; K],
-}
-
-/// Solves the nonlinear diagonal blocks as emitted code meets them; the strategy of Newton's method.
-pub trait BlockSolver<T: Scalar> {
-    /// `true` inlines the solver and its evaluation into every block: short code on the critical path of a step, which returns
-    /// with the point that it evaluated last. `false` shares one instance through a loop, which computes the same and calls the
-    /// evaluation.
-    const INLINED_PER_BLOCK: bool = false;
-
-    /// Finds `x` with residual 0 from the start value `x`; `evaluate` gives residual and Jacobian (rows).
-    ///
-    /// A lane that does not converge comes back with any finite `x`; the caller discards it.
-    fn solve<const K: usize, F: Factorization<T, K>>(
-        &mut self,
-        block: &Block<T, K>,
-        x: [T; K],
-        evaluate: impl FnMut(&[T; K]) -> ([T; K], [[T; K]; K]),
-    ) -> ([T; K], T::Lanes<Outcome>);
-
-    /// As [`solve`](Self::solve), for a block that decides branches of the text: `holds` says where they hold at `x`.
-    ///
-    /// A solver that starts next to the solution need not look, and this default does not.
-    #[inline(always)]
-    fn solve_branched<const K: usize, F: Factorization<T, K>>(
-        &mut self,
-        block: &Block<T, K>,
-        x: [T; K],
-        evaluate: impl FnMut(&[T; K]) -> ([T; K], [[T; K]; K]),
-        _holds: impl FnMut(&[T; K]) -> T::Mask,
-    ) -> ([T; K], T::Lanes<Outcome>) {
-        self.solve::<K, F>(block, x, evaluate)
-    }
-
-    /// As [`solve_branched`](Self::solve_branched), for a block of which `roots` computes both positions, near a point.
-    ///
-    /// A solver that starts next to the solution need not ask for them, and this default does not.
-    #[inline(always)]
-    fn solve_closed<const K: usize, F: Factorization<T, K>>(
-        &mut self,
-        block: &Block<T, K>,
-        x: [T; K],
-        evaluate: impl FnMut(&[T; K]) -> ([T; K], [[T; K]; K]),
-        holds: impl FnMut(&[T; K]) -> T::Mask,
-        _roots: impl FnOnce(&[T; K]) -> Roots<T, K>,
-    ) -> ([T; K], T::Lanes<Outcome>) {
-        self.solve_branched::<K, F>(block, x, evaluate, holds)
-    }
-
-    /// As [`solve_branched`](Self::solve_branched), for a block of M rows for K coordinates, M > K, of which some may
-    /// follow from others.
-    ///
-    /// The least residual counts as a solution if it is within every row's tolerance plus the share that `widths` allow.
-    /// Otherwise the rows contradict each other: [`Outcome::Inconsistent`].
-    fn solve_redundant<const K: usize, const M: usize>(
-        &mut self,
-        block: &Block<T, K, M>,
-        widths: &Widths<T, M>,
-        x: [T; K],
-        evaluate: impl FnMut(&[T; K]) -> ([T; M], [[T; K]; M]),
-        holds: impl FnMut(&[T; K]) -> T::Mask,
-    ) -> ([T; K], T::Lanes<Outcome>);
-}
-
 /// A mechanism whose rows fix every coordinate: as many rows as coordinates, or more where constraints are marked
 /// `redundant`. Emitted only where the structure says so.
 pub trait Kinematic<T: Scalar, const N: usize, const M: usize = N>: Mechanism<T, N, M> {
@@ -441,7 +363,7 @@ pub trait Kinematic<T: Scalar, const N: usize, const M: usize = N>: Mechanism<T,
 
     /// Factorises Φ_q block by block, once for velocity and acceleration.
     ///
-    /// Returns the factors and the smallest margin of any block (see [`Factorization::factorize`]).
+    /// Returns the factors and the smallest margin of any block (see [`Factorization::factorize`](crate::Factorization::factorize)).
     fn factorize(
         &self,
         parameters: &Self::Parameters,
@@ -473,73 +395,4 @@ pub(crate) fn negated<T: Scalar, const M: usize>(mut numbers: [T; M]) -> [T; M] 
         T::side_by_side();
     }
     numbers
-}
-
-/// Margin of a Jacobian to singularity, with the block that has it.
-#[derive(Clone, Copy, Debug)]
-pub struct Margin<T: Scalar> {
-    /// 0 where singular, at most 1, independent of units: the smallest of any diagonal block.
-    pub value: T,
-    /// Index of the first row of that block: a number, so that it is selected like everything else.
-    row: T,
-    /// Index of its first coordinate.
-    coordinate: T,
-    /// Signs of the blocks' determinants, one bit a block, a lane. Where a bit has changed from one position to the
-    /// next, the mechanism passed a singular position in between, or it is in another assembly. Bits of more than 64
-    /// blocks lie on each other; blocks of more rows than coordinates have no determinant and no bit.
-    pub orientation: T::Lanes<u64>,
-}
-
-impl<T: Scalar> Margin<T> {
-    /// The margin of a mechanism without any block that could become singular.
-    pub fn regular() -> Self {
-        let none = T::constant(0.0);
-        Margin { value: T::constant(1.0), row: none, coordinate: none, orientation: T::per_lane(|_| 0) }
-    }
-
-    /// The smaller one of this margin and that of a block with first row `row` and first coordinate `coordinate`.
-    #[inline(always)]
-    pub fn with_block(self, value: T, row: u16, coordinate: u16) -> Self {
-        let nearer = value.less(self.value);
-        Margin {
-            value: in_one_piece::<T, _>(T::select(nearer, value, self.value)),
-            row: T::select(nearer, T::constant(f64::from(row)), self.row),
-            coordinate: T::select(nearer, T::constant(f64::from(coordinate)), self.coordinate),
-            orientation: self.orientation,
-        }
-    }
-
-    /// Becomes the smaller one of this margin and that of a block with its first row and coordinate (indices below 65 536). Takes
-    /// up the sign of its determinant too: negative where `reverses`.
-    #[inline(always)]
-    pub fn take(&mut self, value: T, [row, coordinate]: [usize; 2], reverses: T::Mask) {
-        *self = self.with_block(value, row as u16, coordinate as u16).oriented(reverses);
-    }
-
-    /// Index of the first row of the block, of lane `lane`.
-    pub fn row(&self, lane: usize) -> u16 {
-        index(self.row, lane)
-    }
-
-    /// Index of its first coordinate, of lane `lane`.
-    pub fn coordinate(&self, lane: usize) -> u16 {
-        index(self.coordinate, lane)
-    }
-
-    /// This margin with the sign of one more block's determinant: negative where `reverses`.
-    #[inline(always)]
-    pub fn oriented(self, reverses: T::Mask) -> Self {
-        let turned = |lane: usize| {
-            let signs = self.orientation.as_ref().get(lane).copied().unwrap_or(0);
-            signs.rotate_left(1) ^ u64::from(T::test(reverses, lane))
-        };
-        Margin { orientation: in_one_piece::<T, _>(T::per_lane(turned)), ..self }
-    }
-}
-
-/// Keeps lanes that pass from block to block together: over so many blocks the compiler would lose sight of the lanes that
-/// belong together, and compute them in twos and ones.
-#[inline(always)]
-fn in_one_piece<T: Scalar, X>(lanes: X) -> X {
-    if T::LANES > 1 { black_box(lanes) } else { lanes }
 }

@@ -352,6 +352,8 @@ fn nalgebra_vectors_go_in_and_matrices_come_out() {
     let phi_q = mechanism.phi_q_matrix(&stepper.q_vector(), 0.01);
     let residual = phi_q * stepper.qd_vector() + mechanism.phi_t_vector(&stepper.q_vector(), 0.01);
     assert!(residual.amax() < 1e-13);
+    let gamma = mechanism.gamma_vector(&stepper.q_vector(), 0.01, &stepper.qd_vector());
+    assert!((phi_q * stepper.qdd_vector() - gamma).amax() < 1e-12 * gamma.amax());
     let rows = nalgebra::rows(&phi_q);
     assert_eq!(rows[2][3], phi_q[(2, 3)]);
     assert_eq!(nalgebra::matrix(&rows), phi_q);

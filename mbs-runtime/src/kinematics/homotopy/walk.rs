@@ -4,7 +4,8 @@ use crate::kinematics::homotopy::corrector::Landing;
 use crate::kinematics::homotopy::step_length::{aimed, beyond, is_far, next_piece, reach, shortened};
 use crate::kinematics::homotopy::{Followed, Homotopy, Leading, leads};
 use crate::linear_algebra::vectors::largest_difference;
-use crate::mechanism::{Kinematic, Margin};
+use crate::mechanism::Kinematic;
+use crate::mechanism::margin::Margin;
 use crate::scalar::number::Real;
 use crate::tolerances::positions;
 
