@@ -24,11 +24,11 @@ use crate::stepper::whole_turns::second;
 
 /// `L` mechanisms of one text, a lane each, each with its own design, time, state and failures.
 ///
-/// A step is taken in all lanes at once. An exceptional lane is stepped alone, by the [`Stepper`] that it would have as a single
-/// mechanism, without effect on the others: at no convergence, the singular zone, a passage, a branch, a limit, or a doubt about
-/// the assembly, as after an input that jumps. So each lane has, to round-off, the results of
-/// a single mechanism. Phases of drives that prescribe a rate move on in all lanes at once too. Where a coordinate turns, a lane
-/// is stepped alone only to take a whole turn off.
+/// A step is taken in all lanes at once. An exceptional lane is stepped alone, by the [`Stepper`] that it would have as a
+/// single mechanism, without effect on the others. Exceptions are no convergence, the singular zone, a passage, a branch, a
+/// limit, and an uncertain assembly, as after an input that jumps. So each lane has, to round-off, the results of a single
+/// mechanism. Phases of drives that prescribe a rate move on in all lanes at once too. Where a coordinate turns, a lane is
+/// stepped alone only to take a whole turn off.
 ///
 /// ```
 /// use mbs_runtime::{Batch, Lanes, mechanism};

@@ -1,8 +1,8 @@
 //! Driving functions: harmonics, polynomials, motion laws, trapezoidal velocity, splines through tables.
 //!
-//! Each is a [`Function`](crate::Function): value and derivatives at any scalar, lanes and `f32` included. The data are
-//! `f64` numbers that can be placed in flash. The place of an argument in a table is found in `f64`, lane by lane, and the
-//! distance to that place is not rounded to a coarser scalar first. An argument that is not finite gives NaN.
+//! Each is a [`Function`](crate::Function): value and derivatives at any scalar, lanes and `f32` included. The data are `f64`
+//! numbers that can be placed in flash. The place of an argument in a table is found in `f64`, lane by lane. The distance to
+//! that place is not rounded to a coarser scalar first. An argument that is not finite gives NaN.
 //!
 //! | driver | formula | continuous derivatives |
 //! |---|---|---|

@@ -28,11 +28,11 @@ pub struct Assembled<R, const N: usize> {
 
 /// Solves Φ(q, t) = 0 from `guess` (N) at time `t` (s) such that every declared branch holds.
 ///
-/// The guess comes first. Where it fails or leads to another assembly, a fixed list of starts around it is
-/// tried, up to π away in angles and two reference lengths in lengths. Each block is searched first, against the branches that
-/// it decides, then the mechanism as a whole. Angles are as the solver found them: whole
-/// turns of the guess are kept, none is taken off. A drive that prescribes a rate holds its coordinate at the guess.
-/// If drives alone hold the pivots of a dyad too far apart, no other start is tried.
+/// The guess comes first. Where it fails or leads to another assembly, a fixed list of starts around it is tried. They are up
+/// to π away in angles, two reference lengths in lengths. Each block is searched first, against the branches that it decides,
+/// then the mechanism as a whole. Angles are as the solver found them: whole turns of the guess are kept, none is taken off.
+/// A drive that prescribes a rate holds its coordinate at the guess. If drives alone hold the pivots of a dyad too far apart,
+/// no other start is tried.
 ///
 /// ```
 /// use mbs_runtime::{assemble, mechanism};
@@ -60,10 +60,10 @@ pub struct Assembled<R, const N: usize> {
 /// ```
 ///
 /// # Errors
-/// [`FailureKind::NonFinite`] for a guess, parameter, input or time that is no number, or a row that is none from
-/// every start; [`FailureKind::Unresolved`] for a guess too large to tell positions apart by; [`FailureKind::WrongBranch`] where positions were found but none in the declared assembly;
-/// [`FailureKind::NotAssemblable`] with the least residual found and the rows that hold it, or [`FailureKind::Inconsistent`]
-/// where these are rows of a block that has more of them than coordinates.
+/// [`FailureKind::NonFinite`] for a guess, parameter, input or time that is no number, or a row that is none from every
+/// start; [`FailureKind::Unresolved`] for a guess too large to tell positions apart by; [`FailureKind::WrongBranch`] where
+/// positions were found but none in the declared assembly; [`FailureKind::NotAssemblable`] with the least residual found and
+/// the rows that hold it; [`FailureKind::Inconsistent`] where these are rows of a block with fewer coordinates than rows.
 pub fn assemble<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize>(
     mechanism: &S,
     guess: impl Into<[R; N]>,

@@ -1,5 +1,5 @@
-//! Movements of coordinates that are lengths, judged by themselves. The movement of an angle is its number, while points of a
-//! link move by the turn times its length, which may be any part of the reference length.
+//! Movements of coordinates that are lengths, judged by themselves. The movement of an angle is its number. Points of a link
+//! move by the turn times its length, which may be any part of the reference length.
 
 use crate::mechanism::Entry;
 use crate::scalar::number::{Real, Scalar};

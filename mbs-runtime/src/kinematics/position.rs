@@ -39,9 +39,9 @@ impl<F, R: Copy> RegularFactors<F, R> {
 /// `start`: N, near the solution; `t` (s). Returns `q`: N, and its cost.
 ///
 /// # Errors
-/// [`FailureKind::NotConverged`] with the worst row, [`FailureKind::Inconsistent`] with the rows that contradict each other,
-/// [`FailureKind::NonFinite`] with the row that became NaN, or a start that is none; [`FailureKind::Unresolved`] for a start too
-/// large to tell positions apart by.
+/// [`FailureKind::NotConverged`] with the worst row; [`FailureKind::Inconsistent`] with the rows that contradict each other;
+/// [`FailureKind::NonFinite`] with the row that became NaN, or a start that is none; [`FailureKind::Unresolved`] for a start
+/// too large to tell positions apart by.
 #[inline(always)]
 pub fn solve_position<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize>(
     mechanism: &S,

@@ -5,8 +5,8 @@ use crate::scalar::number::Scalar;
 
 /// LU factors with partial pivoting of a block in the reference metric.
 ///
-/// Pivots are brought up by compare-and-swap of whole rows, so that no index depends on a number: each lane
-/// has its own order of rows, and no access is out of range.
+/// Pivots are brought up by compare-and-swap of whole rows, so that no index depends on a number. Each lane has its own order
+/// of rows, and no access is out of range.
 /// Source: Golub & Van Loan 2013, §3.4 (partial pivoting), §3.5.2 (scaling).
 #[derive(Clone, Copy, Debug)]
 pub struct Lu<T: Scalar, const K: usize> {

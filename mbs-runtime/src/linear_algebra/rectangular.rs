@@ -9,8 +9,8 @@ use crate::tolerances::singular;
 /// Unknowns up to which square blocks are measured by their determinant; here by the volume that the columns span.
 const LARGEST_MEASURED_BY_VOLUME: usize = 3;
 
-/// Column-pivoted QR factors of a block of M rows for K unknowns, M > K, in the reference metric: one solution of all
-/// rows by least squares, of all unknowns with minimum norm.
+/// Column-pivoted QR factors of a block of M rows for K unknowns, M > K, in the reference metric. They give one solution of
+/// all rows by least squares, of all unknowns with minimum norm.
 ///
 /// Each lane pivots for itself.
 /// Source: Golub & Van Loan 2013, §5.4.2 (pivoting), §5.5.2 (complete orthogonal decomposition).

@@ -13,8 +13,8 @@ pub trait Reveal: Sized + 'static {
 
 /// Code that takes a mechanism `S` of any size: one method a set of traits, with `N` coordinates and `M` rows.
 ///
-/// A mechanism is large where N + M is above [`Radau5::MOST_UNKNOWNS`](crate::dynamics::Radau5::MOST_UNKNOWNS): `Radau5` does not
-/// take it, and dense matrices of all its unknowns are large for a stack.
+/// A mechanism is large where N + M is above [`Radau5::MOST_UNKNOWNS`](crate::dynamics::Radau5::MOST_UNKNOWNS). `Radau5` does
+/// not take it, and dense matrices of all its unknowns are large for a stack.
 pub trait Visitor<S> {
     /// Result of the visit.
     type Output;

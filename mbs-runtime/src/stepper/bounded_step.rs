@@ -42,8 +42,8 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
     /// evaluation a period still follows the motion.
     ///
     /// [`Step::Refused`] with [`FailureKind::NonFinite`], [`FailureKind::NotConverged`] (too far from any position for the
-    /// budget, or there is none), [`FailureKind::OverBudget`] (the next step goes on where the budget ended), [`FailureKind::NotFollowed`],
-    /// [`FailureKind::Discontinuous`], [`FailureKind::Singular`], [`FailureKind::WrongBranch`],
+    /// budget, or there is none); [`FailureKind::OverBudget`] (the next step goes on where the budget ended);
+    /// [`FailureKind::NotFollowed`], [`FailureKind::Discontinuous`], [`FailureKind::Singular`], [`FailureKind::WrongBranch`],
     /// [`FailureKind::BeyondLimit`].
     #[inline]
     pub fn step(&mut self, h: R, budget: Budget) -> Step {

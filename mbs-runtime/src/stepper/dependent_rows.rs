@@ -27,9 +27,9 @@ impl<const M: usize> Redundancy<M> {
 impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, R, N, M> {
     /// Rows that follow from the others at the present position, to be asked once after the assembly.
     ///
-    /// A row counts as dependent if less than √ε of its length in the reference metric is outside the span of the rows
-    /// before it: marked rows are compared with all others and earlier marked ones. A dead centre makes rows
-    /// dependent too, so ask at a regular position.
+    /// A row counts as dependent if less than √ε of its length in the reference metric is outside the span of the rows before
+    /// it. Marked rows are compared with all others and earlier marked ones. A dead centre makes rows dependent too, so ask
+    /// at a regular position.
     pub fn redundancy(&self) -> Redundancy<M> {
         let phi_q = self.mechanism.phi_q(&self.parameters, &self.position());
         let scales = self.mechanism.coordinate_scales(&self.parameters);

@@ -130,9 +130,9 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
 
     /// Moves on to time `t` (s).
     ///
-    /// Next to a regular position: predicts q + h q̇ + h²/2 q̈, solves the position by Newton's method, factorises Φ_q once, and
-    /// solves velocity and acceleration with it. Such a step is taken if its assembly is certain: its second-order term is small,
-    /// it ends within a quarter of the margin of its prediction, and no determinant changes its sign.
+    /// Next to a regular position: predicts q + h q̇ + h²/2 q̈ and solves the position by Newton's method. One factorization
+    /// of Φ_q gives velocity and acceleration. Such a step is taken if its assembly is certain. Then its second-order term is
+    /// small, no determinant changes its sign, and it ends within a quarter of the margin of its prediction.
     ///
     /// Every other step follows the homotopy Φ(q, θ(σ), p(σ), phases(σ), t(σ)) = 0 from the last position that leads on.
     /// Parameters, inputs and time go straight from their values there to the present ones, in pieces that keep the assembly.
@@ -286,9 +286,9 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
     /// Number of singular positions passed since the assembly: changes of the sign of a block's determinant from
     /// one position to the next. A crank that goes over a change point and back has passed it twice.
     ///
-    /// The tangent decides which of the two assemblies that meet there is followed (see
-    /// [`advance_to`](Self::advance_to)). A step so long that the solver takes another assembly counts as a passage too:
-    /// an apparent passage at another place means that the step should be halved.
+    /// The tangent decides which of the two assemblies that meet there is followed (see [`advance_to`](Self::advance_to)). A
+    /// step so long that the solver takes another assembly counts as a passage too. If a passage is reported at another
+    /// place, halve the step.
     ///
     /// At the limit of its reach a driver turns back, and an assembly with it. No
     /// determinant changes its sign, no passage is counted, and the rates change theirs from one step to the next.

@@ -32,12 +32,12 @@ const OTHER_WORDS: usize = 6;
 /// be another one.
 pub const NEAR: f64 = 0.5;
 
-/// Time and position of a mechanism, and the values that drive it there, as plain numbers, `f64` for every number type: the data
-/// that must survive a reset.
+/// Time and position of a mechanism, and the values that drive it there, as plain numbers, `f64` for every number type. They
+/// are the data that must survive a reset.
 ///
-/// `V` is an array of `f64`, one for each variable: parameters, inputs (thrice with rates) and phases (thrice). It has them at the
-/// position, and at the last position that leads on, if that is another one: next to a change point the path begins there.
-/// Whole turns are stored in addition to the position.
+/// `V` is an array of `f64`, one for each variable: parameters, inputs (thrice with rates) and phases (thrice). It has them
+/// at the position, and at the last position that leads on, if that is another one. Next to a change point the path begins
+/// there. Whole turns are stored in addition to the position.
 ///
 /// As bytes: [`BYTES`](Self::BYTES) of them, little-endian words of eight, the last one a check value over the
 /// others.
@@ -217,10 +217,11 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
 
     /// Assembles `mechanism` at time `t` (s) next to a saved state; velocity and acceleration follow.
     ///
-    /// Follows the homotopy from the saved position, or from the last one that led on before it, to this time and to the parameters and
-    /// inputs of `mechanism`. The assembly is kept as by a step (see [`advance_to`](Self::advance_to)), at most [`NEAR`] away in
-    /// any coordinate. Branches that only pick the first assembly are not tested again. At the time and the values of the saved
-    /// state the position is the same to rounding; a drive that has moved on since counts as distance, whole turns included.
+    /// Follows the homotopy to this time and to the parameters and inputs of `mechanism`. It begins at the saved position, or
+    /// at the last one that led on before it. The assembly is kept as by a step (see [`advance_to`](Self::advance_to)), at
+    /// most [`NEAR`] away in any coordinate. Branches that only pick the first assembly are not tested again. At the time and
+    /// the values of the saved state the position is the same to rounding; a drive that has moved on since counts as
+    /// distance, whole turns included.
     ///
     /// # Errors
     /// [`FailureKind::MechanismMismatch`] for the state of another mechanism, [`FailureKind::TooFar`], [`FailureKind::WrongBranch`],

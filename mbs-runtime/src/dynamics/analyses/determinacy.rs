@@ -121,7 +121,7 @@ impl<R: Real, const M: usize> Determinacy<R, M> {
         self.entries.iter().zip(marks).filter(move |(_, found)| **found == mark).map(|(entry, _)| *entry)
     }
 
-    /// Marks in `unique`, one a load, those that are the same for every choice of the multipliers of `motion`: the whole
+    /// Marks in `unique`, one a load, those that are the same for every choice of the multipliers of `motion`. The whole
     /// force of a joint may be, where its rows share it in many ways.
     pub fn mark_loads<S: Dynamic<R, N, M>, const N: usize>(
         &self,

@@ -11,9 +11,9 @@ use crate::tolerances::forces;
 
 /// (M + Φ_qᵀ α Φ_q) q̈ = Q + Φ_qᵀ α (γ − 2ξω Φ̇ − ω² Φ), λ = α (Φ_q q̈ − γ + 2ξω Φ̇ + ω² Φ).
 ///
-/// To show a penalty method, not to compute with: the constraints are springs of finite stiffness, so the motion is that
-/// of another mechanism, wrong by about 1/α. A large α costs the digits that it gains, and at singular positions an
-/// explicit integrator with it is wrong at nearly every step size. Redundant rows need no care. Forces that depend on the multipliers
+/// To show a penalty method, not to compute with. The constraints are springs of finite stiffness, so the motion is that of
+/// another mechanism, wrong by about 1/α. A large α costs the digits that it gains, and at singular positions an explicit
+/// integrator with it is wrong at nearly every step size. Redundant rows need no care. Forces that depend on the multipliers
 /// have the digits that α leaves of these.
 /// Source: Bayo, García de Jalón & Serna 1988; García de Jalón & Bayo 1994, §5.1.4.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -25,8 +25,8 @@ pub trait FixedStep: Copy {
     ) -> Result<E::State, Failure>;
 }
 
-/// q̇ₙ₊₁ = q̇ₙ + h q̈ₙ, then qₙ₊₁ = qₙ + h q̇ₙ₊₁: one evaluation a step, order 1, and no drift of the energy of
-/// an oscillation as long as ω h < 2.
+/// q̇ₙ₊₁ = q̇ₙ + h q̈ₙ, then qₙ₊₁ = qₙ + h q̇ₙ₊₁. One evaluation a step, order 1, and no drift of the energy of an
+/// oscillation as long as ω h < 2.
 ///
 /// Source: Hairer, Lubich & Wanner 2006, §I.1.2 (symplectic Euler).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -92,7 +92,7 @@ where
     }
 
     /// Bound of the second time derivatives |g̈| (unit of g per second squared) of the event functions g of this run,
-    /// positive: none of their passages is missed then.
+    /// positive. With it none of their passages is missed.
     pub fn with_event_bound(self, bound: R) -> Self {
         Simulation { scrutiny: Scrutiny { bound: Some(bound), ..self.scrutiny }, ..self }
     }
@@ -103,8 +103,8 @@ where
     /// [`DormandPrince8`](crate::dynamics::integrators::dormand_prince8::DormandPrince8). The time is that of all steps in a row
     /// together, to rounding: the rounding of one step is made up for in the next.
     ///
-    /// A step that gains energy is refused. One that is inaccurate without that is not: its error would take a second step to
-    /// tell, and a long step of a uniform motion is exact, even over many turns. `advance_to` keeps to a tolerance.
+    /// A step that gains energy is refused. One that is inaccurate without that is not, because its error would take a second
+    /// step to tell. A long step of a uniform motion is exact, even over many turns. `advance_to` keeps to a tolerance.
     ///
     /// # Errors
     /// [`FailureKind::InvalidStep`], [`FailureKind::StepTooLong`], [`FailureKind::Unbounded`], [`FailureKind::EnergyGain`], those of the method,

@@ -135,7 +135,7 @@ where
         Self::starting(mechanism, method, t, (q.into(), qd.into()), Origin::Consistent)
     }
 
-    /// Starts next to `q` (N) and `qd` (N) at `t` (s): from the positions and velocities on the constraints that are
+    /// Starts next to `q` (N) and `qd` (N) at `t` (s). The positions and velocities are those on the constraints that are
     /// nearest in the mass's measure. [`moved_start`](Self::moved_start) gives the largest difference.
     ///
     /// # Errors

@@ -1,9 +1,9 @@
 //! Sine and cosine of many angles at once, inlined.
 //!
-//! `libm::sincos` takes one angle after the other, by branches on its size. Here |x| ≤ 1e5 rad goes without a
-//! branch (128 rad in single precision), so that the angles of a mechanism, or its lanes, share vector registers. With AVX2
-//! eight lanes take a third of libm's time, the four angles of a four-bar three quarters, whatever the quadrants. (For
-//! a single awaited angle whose quadrant the processor foresees, libm is as fast or faster.)
+//! `libm::sincos` takes one angle after the other, by branches on its size. Here |x| ≤ 1e5 rad (128 rad in single precision)
+//! goes without a branch. So the angles of a mechanism, or its lanes, share vector registers. With AVX2 eight lanes take a
+//! third of libm's time, the four angles of a four-bar three quarters, whatever the quadrants. (For a single awaited angle
+//! whose quadrant the processor foresees, libm is as fast or faster.)
 //!
 //! No multiplication is fused with an addition, so that all targets give the same bits. The feature `fma` trades that
 //! for a shorter kernel on targets that have the instruction. The feature `libm` takes the library's functions instead.
