@@ -7,6 +7,7 @@ pub mod continuity;
 pub mod deferred;
 mod degree;
 mod dynamics;
+pub mod folds;
 mod forces;
 mod gradients;
 mod inertia;

@@ -361,6 +361,10 @@ where
         self.waits = self.out | !are_valid(&self.mechanism);
         let change = largest_change(S::ANGLES, &self.solved, &self.mechanism.values());
         self.waits = self.waits | Lanes::constant(LARGEST_PIECE).less(change);
+        if S::MAY_FOLD {
+            // Only its own stepper knows what a lane was changed from.
+            self.waits = Lanes::<R, L>::mask(true);
+        }
         result
     }
 

@@ -31,7 +31,7 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
             let trial = FastStep::of(&self.mechanism, &self.parameters, &start, t, R::mask(true));
             // The homotopy decides what a passage leads to.
             if trial.orientation(0) == self.state.orientation {
-                if trial.quick {
+                if trial.quick && !self.may_have_folded() {
                     self.changed = false;
                     return Ok(self.state.follow(&trial, t));
                 }
@@ -57,9 +57,10 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
         if !plain {
             return None;
         }
-        if doubtful {
+        let folds = self.may_have_folded();
+        if doubtful || folds {
             let near = trial.correction <= R::constant(approach::<S, R, N, M>()) * trial.margin;
-            let settles = if self.changed && !near {
+            let settles = if folds || (self.changed && !near) {
                 self.tangent_leads(&trial.q, trial.margin, t, phases)
             } else {
                 let points = const { link_lengths::points(S::COORDINATES) };
@@ -107,6 +108,12 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
             }
         }
         self.along_the_way(t, phases, first, EVALUATIONS)
+    }
+
+    /// `true` if inputs were changed and the rows may have come back on their way: the rates that the caller gives need not tell.
+    #[inline(always)]
+    fn may_have_folded(&self) -> bool {
+        S::MAY_FOLD && self.changed
     }
 
     /// `true` if the state leads on by its rates.
@@ -178,7 +185,7 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
         }
         let approach = R::constant(approach::<S, R, N, M>());
         let near = largest_difference(&end, &prediction.q, &scales) <= approach * margin;
-        if self.changed && !near {
+        if self.may_have_folded() || (self.changed && !near) {
             return self.tangent_leads(&end, margin, found.t, phases);
         }
         let points = const { link_lengths::points(S::COORDINATES) };

@@ -6,6 +6,7 @@ use std::fmt::Write;
 use crate::emit::rust::code::lets;
 use crate::emit::rust::scope::{Scope, number, place};
 use crate::equations::Equations;
+use crate::equations::folds::may_fold;
 use crate::equations::turns::{Turning, turning};
 use crate::model::{Model, VariableKind};
 use crate::program::Program;
@@ -24,6 +25,11 @@ pub fn functions(equations: &Equations, program: &Program, scope: &Scope<'_>) ->
 /// `phase_rates`, from the inherent function.
 const RATES: &str = "#[inline]\nfn phase_rates(&self, __t: T) -> Self::Phases {\n\
                      self.__speeds(__t).map(__mbs::Phase::derivative)\n}\n";
+
+/// `MAY_FOLD`, where rows may come back on the way of an input.
+pub fn folds(equations: &Equations) -> &'static str {
+    if may_fold(equations) { "const MAY_FOLD: ::core::primitive::bool = true;\n" } else { "" }
+}
 
 /// `TURNS` and `turn_back`, where coordinates turn.
 pub fn turns(equations: &Equations, model: &Model) -> String {

@@ -61,8 +61,19 @@ pub enum Rates {
 
 /// Crank angles (rad), a start and samples, some `samples` of `step`.
 pub fn samples(motion: Motion, linkage: &Linkage, step: f64, count: usize, random: &mut Random) -> Vec<f64> {
+    samples_about(motion, linkage.centres, step, count, random)
+}
+
+/// The same about change points at crank angles `centres` (rad).
+pub fn samples_about(
+    motion: Motion,
+    centres: &[f64],
+    step: f64,
+    count: usize,
+    random: &mut Random,
+) -> Vec<f64> {
     let direction = random.one_of(&[1.0, -1.0]);
-    let centre = *linkage.centres.first().unwrap_or(&1.0);
+    let centre = *centres.first().unwrap_or(&1.0);
     // A start with room on both sides.
     let start = centre + direction * (0.3 + random.between(0.0, PI - 0.6));
     let mut angles = vec![start];
@@ -72,7 +83,7 @@ pub fn samples(motion: Motion, linkage: &Linkage, step: f64, count: usize, rando
         k += 1;
         let last = *angles.last().expect("a start");
         let next = last + heading * step;
-        let passed = linkage.centres.iter().find_map(|centre| {
+        let passed = centres.iter().find_map(|centre| {
             let turn = ((0.5 * (last + next) - centre) / TAU).round() * TAU + centre;
             ((last - turn) * (next - turn) < 0.0).then_some(turn)
         });
@@ -143,20 +154,33 @@ impl Tally {
         epsilon: f64,
         step: Result<[f64; 2], Failure>,
     ) -> bool {
+        let assemblies = [side, -side].map(|side| linkage.point(theta, side));
+        self.judge(assemblies, linkage.margin(theta), theta, epsilon, step)
+    }
+
+    /// Counts the result of a step to crank angle `theta` (rad), where the right point and that of the other assembly are
+    /// `assemblies` (m) and the margin to singularity is `margin`.
+    pub fn judge(
+        &mut self,
+        assemblies: [[f64; 2]; 2],
+        margin: f64,
+        theta: f64,
+        epsilon: f64,
+        step: Result<[f64; 2], Failure>,
+    ) -> bool {
         self.steps += 1;
         // Rounding error of a position at the margin there: of residuals, and of angles that have grown over many turns.
-        let open = (2e3 + 32.0 * theta.abs()) * epsilon / linkage.margin(theta).max(epsilon.sqrt());
+        let open = (2e3 + 32.0 * theta.abs()) * epsilon / margin.max(epsilon.sqrt());
         match step {
             Err(_) => {
-                let inside = linkage.margin(theta) < 0.05;
+                let inside = margin < 0.05;
                 self.refused_inside += u64::from(inside);
                 self.refused += u64::from(!inside);
                 false
             }
             Ok(point) => {
-                let right = distance(point, linkage.point(theta, side));
-                let wrong = distance(point, linkage.point(theta, -side));
-                let apart = linkage.separation(theta) > 4.0 * open;
+                let [right, wrong] = assemblies.map(|assembly| distance(point, assembly));
+                let apart = distance(assemblies[0], assemblies[1]) > 4.0 * open;
                 self.wrong += u64::from(apart && wrong < right);
                 self.off += u64::from(right.min(wrong) > open);
                 true

@@ -86,11 +86,6 @@ impl Linkage {
         [tip[0] + along * unit[0] - height * unit[1], tip[1] + along * unit[1] + height * unit[0]]
     }
 
-    /// Distance (m) between the two assemblies at crank angle `theta` (rad).
-    pub fn separation(&self, theta: f64) -> f64 {
-        2.0 * self.double_area(theta) / self.diagonal(theta).1
-    }
-
     /// Margin to singularity of coupler and rocker in the reference metric, 2 |det| over the sum of squares.
     pub fn margin(&self, theta: f64) -> f64 {
         2.0 * self.double_area(theta) / (self.coupler.powi(2) + self.rocker.powi(2))
