@@ -146,9 +146,8 @@ pub fn check(model: &Model, equations: &Equations, diagnostics: &mut Diagnostics
         let wrong = if holds_a_phase(model, row) { change.broken() } else { change.angle() };
         if let Some(angle) = wrong {
             let cure = match (row.driven, angle) {
-                (true, Angle::Coordinate(_)) => {
-                    format!("prescribe a rate, `drive {}: rate({{}}) == …;`", row.name)
-                }
+                (true, Angle::Coordinate(_)) => held_to_an_input(model, row)
+                    .unwrap_or_else(|| format!("prescribe a rate, `drive {}: rate({{}}) == …;`", row.name)),
                 (true, Angle::Input(_)) => held_to_an_input(model, row).unwrap_or_else(|| CURE.to_owned()),
                 _ => CURE.to_owned(),
             };
@@ -196,16 +195,21 @@ const CURE: &str =
 fn held_to_an_input(model: &Model, row: &ConstraintRow) -> Option<String> {
     let node = |id: Id| model.expressions.node(id);
     let expression::Node::Binary(Binary::Subtract, a, b) = node(row.residual) else { return None };
-    let index = match (node(a), node(b)) {
-        (expression::Node::Coordinate(index), expression::Node::Variable(_))
-        | (expression::Node::Variable(_), expression::Node::Coordinate(index)) => index,
+    let (index, variable) = match (node(a), node(b)) {
+        (expression::Node::Coordinate(index), expression::Node::Variable(variable))
+        | (expression::Node::Variable(variable), expression::Node::Coordinate(index)) => (index, variable),
         _ => return None,
     };
+    let input = model.variables.get(variable)?;
+    if !matches!(input.kind, VariableKind::Input | VariableKind::InputWithRates) {
+        return None;
+    }
     // The row of a vector has a number behind a dot, which no declared name has.
     let (coordinate, drive) = (&model.coordinates.get(index)?.name, row.name.replace('.', "_"));
+    let input = &input.name;
     Some(format!(
-        "write `constraint {drive} {{ sin({coordinate} - {{}}) == 0; }}` and `branch {drive}_ahead: \
-         cos({coordinate} - {{}}) > 0;` in its place"
+        "write `constraint {drive} {{ sin({coordinate} - {input}) == 0; }}` and `branch {drive}_ahead: \
+         cos({coordinate} - {input}) > 0;` in its place"
     ))
 }
 

@@ -2,7 +2,7 @@
 
 use core::f64::consts::{PI, TAU};
 
-use mbs_runtime::{Batch, Lanes, Real, Signal, Stepper, mechanism};
+use mbs_runtime::{Batch, Budget, Lanes, Real, Signal, Step, Stepper, mechanism};
 
 use crate::linkages::follow::*;
 use crate::linkages::texts::*;
@@ -186,6 +186,91 @@ fn a_coordinate_held_to_an_input_that_turns_follows_it() {
             assert!(distance([qdd[1], qdd[2]], *prescribed.qdd()) < 1e-9, "{step} {tick}");
         }
     }
+}
+
+mechanism! {
+    /// The driven crank, its angle without winding of its own.
+    pub mechanism TurningCrank;
+    input theta: turn, rates;
+    coord crank: turn = 0;
+    coord rod: rad = 0.9;
+    coord arm: rad = 1.8;
+    constraint motor { sin(crank - theta) == 0; }
+    constraint closure { 0.10m*unit(crank) + 0.25m*unit(rod) == [0.30m, 0] + 0.20m*unit(arm); }
+    branch motor_ahead: cos(crank - theta) > 0;
+}
+
+/// Largest distance between directions of such angles (rad).
+fn off(angles: [f64; 3], exact: [f64; 3]) -> f64 {
+    let chord = |(a, b): (f64, f64)| 2.0 * ((a - b) / 2.0).sin().abs();
+    angles.into_iter().zip(exact).map(chord).fold(0.0, f64::max)
+}
+
+/// The exact angles at a crank angle, from the text without the crank's coordinate.
+fn wiper(stepper: &mut Stepper<PrescribedCrank<f64>, f64, 2>, angle: f64) -> [f64; 3] {
+    stepper.change(|wiper| wiper.theta = turned(angle));
+    stepper.advance(1e-3).unwrap();
+    [angle, stepper.q()[0], stepper.q()[1]]
+}
+
+fn prescribed() -> Stepper<PrescribedCrank<f64>, f64, 2> {
+    Stepper::assemble(PrescribedCrank::default(), [0.9, 1.8], 0.0).unwrap()
+}
+
+macro_rules! held_to_an_input {
+    ($($test:ident: $mechanism:ident, $real:ident, $open:literal;)*) => {
+        $(#[test]
+        fn $test() {
+            let guess = [0.0, 0.9, 1.8].map(|angle: f64| angle as $real);
+            for step in [0.006, 0.3, -1.3, 2.5] {
+                let reading = |tick: i32, step: f64| (step * f64::from(tick)).rem_euclid(TAU) as $real;
+                let signal = |value: $real| Signal { value, rate: 6.0, acceleration: 2.0 };
+                for budget in [None, Some(Budget { newton: 300, fallback: 0 })] {
+                    let mechanism = $mechanism::<$real>::default();
+                    let mut driven: Stepper<_, $real, 3> = Stepper::assemble(mechanism, guess, 0.0).unwrap();
+                    let mut exact = prescribed();
+                    for tick in 1..=500 {
+                        let theta = reading(tick, step);
+                        driven.change(|wiper| wiper.theta = signal(theta));
+                        match budget {
+                            None => driven.advance(1e-3).map(|_| ()).unwrap(),
+                            Some(budget) => match driven.step(1e-3, budget) {
+                                Step::Done(_) => {}
+                                other => panic!("{step} {tick}: {other:?}"),
+                            },
+                        }
+                        let error = off(driven.q().map(Real::to_f64), wiper(&mut exact, theta.to_f64()));
+                        assert!(error < $open, "{step} {tick} {budget:?}: {error:e}");
+                    }
+                }
+                let lanes = $mechanism::<Lanes<$real, 2>>::default();
+                let mut batch: Batch<_, $real, 2, 3> = Batch::assemble(lanes, &[guess; 2], [0.0; 2]).unwrap();
+                let mut exact = [prescribed(), prescribed()];
+                for tick in 1..=500 {
+                    let theta = [reading(tick, step), reading(tick, -0.7 * step)];
+                    let of = |number: $real| Lanes([number; 2]);
+                    batch.change(|wiper| {
+                        wiper.theta = Signal { value: Lanes(theta), rate: of(6.0), acceleration: of(2.0) };
+                    });
+                    let t = batch.t().0.map(|t| t + 1e-3);
+                    for (lane, done) in batch.advance_to(t).into_iter().enumerate() {
+                        done.unwrap_or_else(|failure| panic!("{step} {tick} {lane}: {failure}"));
+                        let q = batch.q().map(|q| q.0[lane].to_f64());
+                        let error = off(q, wiper(&mut exact[lane], theta[lane].to_f64()));
+                        assert!(error < $open, "{step} {tick} {lane}: {error:e}");
+                    }
+                }
+            }
+        })*
+    };
+}
+
+// In `f32` a crank of ten turns and more has the rounding of its numbers, 64 ε of rows that are a third of the reference length.
+held_to_an_input! {
+    a_crank_of_radians_follows_its_encoder: DrivenCrank, f64, 1e-10;
+    a_crank_that_turns_follows_its_encoder: TurningCrank, f64, 1e-11;
+    a_crank_of_radians_follows_its_encoder_in_single_precision: DrivenCrank, f32, 1e-3;
+    a_crank_that_turns_follows_its_encoder_in_single_precision: TurningCrank, f32, 1e-4;
 }
 
 #[test]
