@@ -3,7 +3,7 @@
 use proc_macro2::Span;
 
 use super::elaborator::Elaborator;
-use super::expression::{Id, Node};
+use super::expression::Node;
 use super::unit_inference::Bare;
 use super::units::Dimension;
 use super::value::{Fault, Quantity, Scalar, Value};
@@ -142,7 +142,7 @@ impl Elaborator<'_> {
         span: Span,
     ) -> Result<Scalar, Fault> {
         let id = self.push_unary(function, a.id, span)?;
-        self.keep_length(id, [a.id; 2], quantity);
+        self.expressions.inherit_length(id, quantity.dimension(), [a.id].into_iter());
         Ok(Scalar { id, quantity, bare: Bare::unary(function, a.bare), span })
     }
 
@@ -168,16 +168,8 @@ impl Elaborator<'_> {
         span: Span,
     ) -> Result<Scalar, Fault> {
         let id = self.push_binary(function, a.id, b.id, span)?;
-        self.keep_length(id, [a.id, b.id], quantity);
+        self.expressions.inherit_length(id, quantity.dimension(), [a.id, b.id].into_iter());
         Ok(Scalar { id, quantity, bare: Bare::binary(function, a.bare, b.bare), span })
-    }
-
-    /// Before: a value computed from others. After: where it is a number in metres, square metres and so on, it is made of their
-    /// lengths; the millimetre of a stiffness or a speed is none of the mechanism.
-    fn keep_length(&mut self, id: Id, operands: [Id; 2], quantity: Quantity) {
-        if quantity.dimension().is_power_of_length() {
-            self.expressions.inherit_length(id, operands.into_iter());
-        }
     }
 
     /// `Σ aᵢ bᵢ`, all terms of one unit.

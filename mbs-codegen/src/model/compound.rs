@@ -9,7 +9,7 @@ pub fn in_brackets(code: &[Instruction], index: usize) -> Option<String> {
     let start = start(code, index)?;
     let Operation::Number { value, unit: Some(unit), .. } = &code.get(start)?.operation else { return None };
     let mut text = unit.text.clone();
-    let mut next = start + 1;
+    let mut next = start + 1 + closing(code, start + 1);
     while let Some((symbol, length)) = factor(code, next)
         && let Some(operator) = operator(code, next + length)
     {
@@ -22,17 +22,40 @@ pub fn in_brackets(code: &[Instruction], index: usize) -> Option<String> {
 
 /// `true` if the name at `index` follows the number that leads its chain.
 pub fn is_first(code: &[Instruction], index: usize) -> bool {
-    let before = index.checked_sub(1).and_then(|before| code.get(before));
-    matches!(before.map(|before| &before.operation), Some(Operation::Number { unit: Some(_), .. }))
+    leading(code, index).is_some()
+}
+
+/// Index of a number with a unit that ends in front of `index`, its sign and the product that it closes aside.
+fn leading(code: &[Instruction], index: usize) -> Option<usize> {
+    let number = code.get(..index)?.iter().rposition(|instruction| {
+        !matches!(
+            instruction.operation,
+            Operation::Negate | Operation::Binary(Operator::Multiply | Operator::Divide)
+        )
+    })?;
+    let has_unit = matches!(code.get(number)?.operation, Operation::Number { unit: Some(_), .. });
+    has_unit.then_some(number)
+}
+
+/// Instructions from `index` on that belong to the number in front: its sign, `-9.81m/s^2`, and a product, `3*2kg*m^2`.
+fn closing(code: &[Instruction], index: usize) -> usize {
+    let rest = code.get(index..).unwrap_or_default().iter();
+    rest.take_while(|instruction| {
+        matches!(
+            instruction.operation,
+            Operation::Negate | Operation::Binary(Operator::Multiply | Operator::Divide)
+        )
+    })
+    .count()
 }
 
 /// Index of the number that leads the chain of factors up to `index`.
 fn start(code: &[Instruction], mut index: usize) -> Option<usize> {
     loop {
-        let before = index.checked_sub(1)?;
-        if let Operation::Number { unit: Some(_), .. } = code.get(before)?.operation {
-            return Some(before);
+        if let Some(number) = leading(code, index) {
+            return Some(number);
         }
+        let before = index.checked_sub(1)?;
         operator(code, before)?;
         let lengths = [1, 3].into_iter();
         index = lengths

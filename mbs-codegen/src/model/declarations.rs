@@ -195,7 +195,7 @@ impl Declarations<'_> {
         let is_length =
             |item: &&Scalar| item.quantity == Quantity::Known(Dimension::METRE) && item.id.index() >= known;
         for item in value.items.iter().filter(is_length) {
-            self.model.expressions.name_length(item.id, |_| name.to_owned(), span);
+            self.model.expressions.name_length(item.id, Dimension::METRE, |_| name.to_owned(), span);
         }
     }
 

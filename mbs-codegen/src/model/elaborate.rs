@@ -167,9 +167,7 @@ impl Elaborator<'_> {
             return Err(self.fault(span, "this number is too small in SI units", "choose another unit"));
         }
         let id = self.expressions.push(Node::Number(value));
-        if dimension == Dimension::METRE {
-            self.expressions.name_length(id, |length| format!("{length} m"), span);
-        }
+        self.expressions.name_length(id, dimension, |length| format!("{length} m"), span);
         let scalar = Scalar { id, quantity: Quantity::Known(dimension), bare: Bare::of(unit), span };
         Ok(Value::scalar(scalar, span))
     }

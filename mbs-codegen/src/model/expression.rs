@@ -1,9 +1,10 @@
 //! Scalar expressions in one arena; operands always precede their users.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use proc_macro2::Span;
 
+use super::units::Dimension;
 use crate::symbolic::{Binary, Unary};
 
 /// A length of the text, and its place there.
@@ -71,6 +72,8 @@ pub struct Expressions {
     lengths: Vec<Length>,
     /// Numbers that are lengths or their powers, each with the largest length that it is made of.
     measures: BTreeMap<Id, usize>,
+    /// Numbers with metres in their unit that are no power of a length, as a speed.
+    rates_of_length: BTreeSet<Id>,
 }
 
 impl Expressions {
@@ -93,15 +96,31 @@ impl Expressions {
         &self.calls
     }
 
-    /// Gives a number in metres its name as a length of the text. Zero is none.
-    pub fn name_length(&mut self, id: Id, name: impl FnOnce(f64) -> String, span: Span) {
-        if let Node::Number(number) = self.node(id)
-            && number != 0.0
-        {
-            let length = number.abs();
-            self.measures.insert(id, self.lengths.len());
-            self.lengths.push(Length { length, name: name(length), span });
+    /// Before: a number of the unit `dimension`. After: in metres, square metres and so on it has its name as a length of the
+    /// text, the side of an area or a volume; in another unit with metres it is noted. Zero is none.
+    pub fn name_length(
+        &mut self,
+        id: Id,
+        dimension: Dimension,
+        name: impl FnOnce(f64) -> String,
+        span: Span,
+    ) {
+        let Node::Number(number) = self.node(id) else { return };
+        if number == 0.0 || dimension.metres() == 0.0 {
+            return;
         }
+        if !dimension.is_power_of_length() {
+            self.rates_of_length.insert(id);
+            return;
+        }
+        let length = dimension.side(number.abs());
+        self.measures.insert(id, self.lengths.len());
+        self.lengths.push(Length { length, name: name(length), span });
+    }
+
+    /// `true` if a number has metres in its unit and is no power of a length.
+    pub fn is_rate_of_length(&self, id: Id) -> bool {
+        self.rates_of_length.contains(&id)
     }
 
     /// `true` if a number is a length of the text, or made of one.
@@ -109,8 +128,15 @@ impl Expressions {
         self.measures.contains_key(&id)
     }
 
-    /// Before: a number computed from others. After: it is made of their lengths.
-    pub fn inherit_length(&mut self, id: Id, operands: impl Iterator<Item = Id>) {
+    /// Before: a number of the unit `dimension`, computed from others. After: in metres, square metres and so on it is made of
+    /// their lengths, in another unit with metres it is noted; the millimetre of a stiffness is none of the mechanism.
+    pub fn inherit_length(&mut self, id: Id, dimension: Dimension, operands: impl Iterator<Item = Id>) {
+        if !dimension.is_power_of_length() {
+            if let (Node::Number(_), true) = (self.node(id), dimension.metres() != 0.0) {
+                self.rates_of_length.insert(id);
+            }
+            return;
+        }
         let lengths = operands.filter_map(|operand| self.measures.get(&operand).copied());
         if let (Node::Number(_), Some(longest)) = (self.node(id), self.longest_of(lengths)) {
             self.measures.insert(id, longest);

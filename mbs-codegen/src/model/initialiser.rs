@@ -48,8 +48,8 @@ pub fn initialiser(work: &mut Elaborator<'_>, value: Value, declared: Dimension)
         if !takes_it {
             has_unit(work, *item, declared)?;
         }
-        if declared == Dimension::METRE && !work.expressions.measures(item.id) {
-            work.expressions.name_length(item.id, |length| format!("{length} m"), item.span);
+        if !work.expressions.measures(item.id) {
+            work.expressions.name_length(item.id, declared, |length| format!("{length} m"), item.span);
         }
         items.push(Scalar { quantity: Quantity::Known(declared), bare: Bare::Not, ..*item });
     }

@@ -8,15 +8,17 @@ use super::{Model, VariableKind};
 impl Model {
     /// Before: all expressions. After: the lengths that determine the reference length.
     ///
-    /// Rows and places of bodies, forces and pins count. Guesses and starts count in addition where rows have lengths of another
-    /// origin: of an input, a function, a speed or an area. They count with the laws of forces where nothing else is a length:
+    /// Rows and places of bodies, forces and pins count, an area by its root. Guesses and starts count in addition where rows have
+    /// lengths of another origin: of an input, a function or a speed. They count with the laws of forces where nothing else is a length:
     /// either may be far off the size of the mechanism. Bounds, widths, outputs and defaults never count.
     pub(super) fn settle_reference_length(&mut self) {
-        let is_open = self
-            .rows
-            .iter()
-            .any(|row| self.expressions.contain(row.residual, |node| self.brings_length(node)));
         let rows = self.rows.iter().map(|row| row.residual);
+        let in_rows = self.expressions.reachable(rows.clone());
+        let is_open = self
+            .expressions
+            .iter()
+            .filter(|(id, _)| in_rows.get(id.index()) == Some(&true))
+            .any(|(id, node)| self.brings_length(node) || self.expressions.is_rate_of_length(id));
         let guesses: Vec<Id> = self.coordinates.iter().filter_map(|coordinate| coordinate.guess).collect();
         let [places, laws] = self.dynamics.as_ref().map(of_dynamics).unwrap_or_default();
         let mut roots: Vec<Id> = rows.chain(places).collect();
@@ -184,6 +186,23 @@ mod tests {
                 let found = reference(&format!("{text} {}", other.replace("0.3 rate", &format!("{x} rate"))));
                 assert_eq!(found, expected, "{text} {other}");
             }
+        }
+    }
+
+    #[test]
+    fn an_area_counts_by_its_side_and_a_speed_lets_guesses_count() {
+        let small = "param g: m = 1e-5; coord x: m = 0.1;";
+        for four in ["4 [m^2]", "(2m)^2", "0.5 [m]*8m", "side", "4e6 [mm^2]"] {
+            let text = format!(
+                "const side: m^2 = 4; {small} constraint c {{ x^2 == {four}*sin(t/1s)^2 + g^2; }} branch one: x > 0;"
+            );
+            let expected = if four.contains('*') { 8.0 } else { 2.0 };
+            assert!((reference(&text) - expected).abs() < 1e-12, "{text}");
+        }
+        assert!((reference("coord x: m = 1; constraint c { x^3 == 8e-9 [m^3]; }") - 2e-3).abs() < 1e-15);
+        for speed in ["4 [m/s]*t", "4m/1s*t", "8 [m]/2s*t", "speed*t"] {
+            let text = format!("const speed: m/s = 4; {small} constraint c {{ x == {speed} + g; }}");
+            assert_eq!(reference(&text), 0.1, "{text}");
         }
     }
 

@@ -18,7 +18,7 @@ impl Resolver<'_> {
         span: Span,
     ) -> Result<(), Fault> {
         let state = self.elaborate(Reach::Force, |work| work.value(state))?;
-        let rate = self.elaborate(Reach::Force, |work| {
+        let found = self.elaborate(Reach::Force, |work| {
             let rate = work.value(rate)?;
             work.same_shape(&state, &rate, "`==`", rate.span)?;
             let dimensions = state.items.iter().map(|item| item.quantity.dimension().over(Dimension::SECOND));
@@ -28,8 +28,12 @@ impl Resolver<'_> {
                 work.agree(expected, **item)?;
             }
             Ok::<_, Fault>(rate)
-        })?;
-        for (state, rate) in state.items.iter().zip(&rate.items) {
+        });
+        // A faulty rate is one all the same: that it is missing would be a second fault.
+        let faulty = self.model.expressions.push(Node::Number(0.0));
+        let rates = found.as_ref().map(|rate| rate.items.iter().map(|item| item.id).collect());
+        let rates: Vec<_> = rates.unwrap_or_else(|_| vec![faulty; state.items.len()]);
+        for (state, rate) in state.items.iter().zip(rates) {
             let Node::State(index) = self.model.expressions.node(state.id) else {
                 let help = "only what `state z: … = 0;` declares has a rate of its own";
                 return Err(self.fault(state.span, "this is no state", help));
@@ -39,9 +43,9 @@ impl Resolver<'_> {
                 let message = format!("the rate of `{}` is given twice", slot.name);
                 return Err(self.fault(span, message, "remove one of the equations"));
             }
-            slot.rate = Some(rate.id);
+            slot.rate = Some(rate);
         }
-        Ok(())
+        found.map(|_| ())
     }
 
     /// `start x = value rate value;`

@@ -85,6 +85,16 @@ impl Dimension {
         metres > 0.0 && Self::METRE.power(metres) == Some(self)
     }
 
+    /// Side (m) of a positive `size` of this power of a length: of an area its root.
+    pub fn side(self, size: f64) -> f64 {
+        match self.metres() {
+            1.0 => size,
+            2.0 => size.sqrt(),
+            3.0 => size.cbrt(),
+            metres => size.powf(1.0 / metres),
+        }
+    }
+
     fn of_symbol(symbol: &str) -> Option<Self> {
         SYMBOLS
             .iter()

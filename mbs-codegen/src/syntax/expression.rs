@@ -225,6 +225,18 @@ impl Reader {
             self.push(Operation::Index { indices: 1 }, span);
             return Ok(Some(false));
         }
+        // Of `m.0.1` the two numbers are one token to Rust.
+        if let TokenKind::Literal(text) = parser.peek()
+            && let Some((row, column)) = text.split_once('.')
+            && let (Some(row), Some(column)) = (whole(row, span), whole(column, span))
+        {
+            for index in [row, column] {
+                self.push(index, parser.span());
+                self.push(Operation::Index { indices: 1 }, span);
+            }
+            parser.skip(1);
+            return Ok(Some(false));
+        }
         parser.expected("the number of a component", "write `p.0` or `p[0]`; of a matrix `m[0, 1]`")
     }
 
@@ -335,6 +347,12 @@ pub fn closed_range(parser: &mut Parser<'_>) -> bool {
         parser.diagnostics.report(span, "a range leaves out its upper bound, `..=` does not exist", help);
     }
     closed
+}
+
+/// The number that `digits` alone are.
+fn whole(digits: &str, span: Span) -> Option<Operation> {
+    let is_whole = !digits.is_empty() && digits.bytes().all(|byte| byte.is_ascii_digit());
+    is_whole.then(|| literal(digits, span)).flatten()
 }
 
 #[cfg(test)]
@@ -449,6 +467,8 @@ mod tests {
         assert_eq!(postfix("a - lift.d1(x + 1)^2"), "a x 1 add lift.d1/1 2 power subtract");
         assert_eq!(postfix("[a, b][1]"), "a b [2] 1 index/1");
         assert_eq!(postfix("p.1 + m[0, 1]"), "p 1 index/1 m 0 1 index/2 add");
+        assert_eq!(postfix("m.0.1 + a.2.10.3"), "m 0 index/1 1 index/1 a 2 index/1 10 index/1 3 index/1 add");
+        assert!(postfix("m.0.1e2").contains("expected the number of a component, found `0.1e2`"));
         assert_eq!(
             postfix("2*lambda(pin[i + 1]) - reaction(B, rod).1"),
             "2 i 1 add lambda(pin) multiply reaction(B,rod) 1 index/1 subtract"
