@@ -19,6 +19,37 @@ pub struct Diagnostic {
     pub span: Span,
 }
 
+/// A fault by its place in a text that is kept as a string; lines and columns count from 1, columns in characters.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Fault {
+    /// Line of its first character.
+    pub line: usize,
+    /// Column of its first character.
+    pub column: usize,
+    /// Line of its last character.
+    pub end_line: usize,
+    /// Column after its last character.
+    pub end_column: usize,
+    /// Message: lower case, no full stop, names in backticks.
+    pub message: String,
+    /// The cure.
+    pub help: String,
+}
+
+impl From<Diagnostic> for Fault {
+    fn from(Diagnostic { message, help, span }: Diagnostic) -> Self {
+        let (start, end) = (span.start(), span.end());
+        Fault {
+            line: start.line,
+            column: start.column + 1,
+            end_line: end.line,
+            end_column: end.column + 1,
+            message,
+            help,
+        }
+    }
+}
+
 /// All faults found so far; a stage reports as many as it can before it gives up.
 #[derive(Clone, Debug, Default)]
 pub struct Diagnostics {
@@ -63,6 +94,25 @@ impl Diagnostics {
         self.sorted().into_iter().next()
     }
 
+    /// Takes a fault back; `false` if there is none of this message at this place.
+    pub fn withdraw(&mut self, span: Span, message: &str) -> bool {
+        let before = self.faults.len();
+        self.faults.retain(|fault| !is_at(fault, span, message));
+        let start = span.start();
+        self.known.remove(&(start.line, start.column, message.to_owned()));
+        self.faults.len() < before
+    }
+
+    /// `true` if there is a fault of this message at this place.
+    pub fn holds(&self, span: Span, message: &str) -> bool {
+        self.faults.iter().any(|fault| is_at(fault, span, message))
+    }
+
+    /// Number of faults.
+    pub fn number(&self) -> usize {
+        self.faults.len()
+    }
+
     /// `true` if there is no fault so far.
     pub fn is_empty(&self) -> bool {
         self.faults.is_empty()
@@ -99,6 +149,12 @@ impl Diagnostics {
         }
         text
     }
+}
+
+/// `true` if a fault has this message and this place.
+fn is_at(fault: &Diagnostic, span: Span, message: &str) -> bool {
+    let (own, other) = (fault.span.start(), span.start());
+    (own.line, own.column) == (other.line, other.column) && fault.message == message
 }
 
 /// The known name nearest to `name`, if it is near enough to be a typing error; of several the one that begins most like it.

@@ -42,6 +42,7 @@ mod syntax;
 pub mod vocabulary;
 
 use diagnostics::Diagnostics;
+pub use diagnostics::Fault;
 pub use emit::casadi::stand_in;
 use emit::formula::notation::Notation;
 pub use emit::formula::{DynamicFormulas, Formulas};
@@ -149,6 +150,14 @@ fn expand_cut(source: &str, lengths: Lengths) -> Result<TokenStream, String> {
     let items = model::scenes::read_source(source, &mut diagnostics)
         .and_then(|(text, scenes)| translate(&text, &scenes, &mut diagnostics, lengths));
     items.ok_or_else(|| diagnostics.to_text())
+}
+
+/// The faults of a text that is kept as a string, in the order of the text; none where [`expand_source`] succeeds.
+pub fn faults(source: &str) -> Vec<Fault> {
+    let mut diagnostics = Diagnostics::default();
+    let _items = model::scenes::read_source(source, &mut diagnostics)
+        .and_then(|(text, scenes)| translate(&text, &scenes, &mut diagnostics, Lengths::USUAL));
+    diagnostics.sorted().into_iter().map(Fault::from).collect()
 }
 
 /// CasADi definition of a scene of a text that is kept as a string: a Python module with `define(ca, q, v, t, der)`.

@@ -4,6 +4,8 @@ use crate::model::{
     counts, declarations, elaborate, masses_and_forces, names, references, resolve, selection,
 };
 use crate::picture::MOST_SHAPES;
+#[cfg(test)]
+use crate::syntax::CALLED;
 use crate::syntax::picture::{PICTURES, TURN, forms};
 use crate::syntax::{LATER, REFERRING, STATEMENTS, ast::Element, tokens, unit_symbols};
 
@@ -70,3 +72,16 @@ pub const LIMITS: [(&str, usize); 11] = [
     ("scenes", selection::MOST_SCENES),
     ("shapes of a picture", MOST_SHAPES),
 ];
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::*;
+
+    #[test]
+    fn the_parser_knows_the_functions_that_have_a_meaning() {
+        let known: BTreeSet<&str> = functions().collect();
+        assert_eq!(CALLED.into_iter().collect::<BTreeSet<_>>(), known);
+    }
+}

@@ -4,6 +4,8 @@ use proc_macro2::Span;
 
 use super::elaborator::Elaborator;
 use super::expression::Node;
+use super::undeclared::OF_ANGLES;
+use super::unit_faults::{Place, UnitOf};
 use super::unit_inference::Bare;
 use super::units::Dimension;
 use super::value::{Fault, Quantity, Scalar, Value};
@@ -213,7 +215,7 @@ impl Elaborator<'_> {
                     "bring both sides to one unit"
                 };
                 let message = format!("units differ: `{y}` here, `{x}` on the other side");
-                Err(self.fault(b.span, message, help))
+                Err(self.unit_fault((Place::Terms, b, UnitOf::scalar(a)), message, help))
             }
         }
     }
@@ -228,6 +230,23 @@ impl Elaborator<'_> {
             )),
             _ => Ok(()),
         }
+    }
+
+    /// The argument of a function that takes an angle or a number.
+    pub fn argument_of(&mut self, function: &str, scalar: Scalar, span: Span) -> Result<(), Fault> {
+        let Quantity::Known(unit) = scalar.quantity else { return Ok(()) };
+        let is_angle = OF_ANGLES.contains(&function);
+        if unit == Dimension::NUMBER {
+            return Ok(());
+        }
+        let message = format!("the argument of `{function}` is in `{unit}`; it must be a number or an angle");
+        let wanted = UnitOf { dimension: Dimension::NUMBER, is_angle };
+        let place = Place::Argument(function.to_owned());
+        Err(self.unit_fault(
+            (place, Scalar { span, ..scalar }, wanted),
+            message,
+            "divide it by a quantity of the same unit",
+        ))
     }
 
     /// The only component of a scalar.

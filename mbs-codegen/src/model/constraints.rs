@@ -6,12 +6,14 @@ use super::elaborator::Elaborator;
 use super::expression::{Id, Node};
 use super::resolve::behind_loop;
 use super::resolver::Resolver;
+use super::unit_faults::Place;
 use super::unit_inference::Bare;
 use super::units::Dimension;
 use super::value::{Fault, Quantity, Reach, Scalar, Value};
+use super::written::operands;
 use super::{Branch, ConstraintRow};
 use crate::symbolic::Binary;
-use crate::syntax::ast::{Equation, Expression, Item, Name};
+use crate::syntax::ast::{Equation, Expression, Instruction, Item, Name, Operation};
 
 impl Resolver<'_> {
     /// Rows of a constraint, its loops unrolled.
@@ -51,9 +53,19 @@ impl Resolver<'_> {
         let right = spread_zero(right, &left);
         let left = spread_zero(left, &right);
         let residuals = self.elaborate(Reach::Position, |work| {
+            work.beside_angle(&left, &equation.right.code)?;
+            work.beside_angle(&right, &equation.left.code)?;
             work.same_shape(&left, &right, "`==`", right.span)?;
-            let pairs = left.items.iter().zip(&right.items);
-            pairs.map(|(a, b)| residual(work, *a, *b, span)).collect::<Result<Vec<_>, Fault>>()
+            let pairs = left.items.iter().zip(&right.items).enumerate();
+            let sides = |component: usize| {
+                let of = |side: &Expression| component_of(side, component);
+                (of(&equation.right), of(&equation.left))
+            };
+            let residuals = pairs.map(|(component, (a, b))| {
+                let (right, left) = sides(component);
+                work.concerning(Place::Sides, (&right, Some(&left)), |work| residual(work, *a, *b, span))
+            });
+            residuals.collect::<Result<Vec<_>, Fault>>()
         })?;
         for (residual, dimension) in residuals {
             let reversed = self.is_reversed(residual);
@@ -73,12 +85,15 @@ impl Resolver<'_> {
         smaller: &Expression,
     ) -> Result<(), Fault> {
         let group = self.group(name, "branch")?;
+        let (sides, written) = ((smaller, Some(larger)), larger);
         let (value, dimension) = self.elaborate(Reach::Position, |work| {
             let (larger, smaller) = (work.value(larger), work.value(smaller));
             let (larger, smaller) = (larger?, smaller?);
+            work.beside_angle(&larger, &sides.0.code)?;
+            work.beside_angle(&smaller, &written.code)?;
             let a = work.scalar(&larger, "a branch", larger.span)?;
             let b = work.scalar(&smaller, "a branch", smaller.span)?;
-            residual(work, a, b, name.span)
+            work.concerning(Place::Sides, sides, |work| residual(work, a, b, name.span))
         })?;
         self.count_row(group, self.model.branches.len());
         self.model.branches.push(Branch {
@@ -100,6 +115,19 @@ fn residual(work: &mut Elaborator<'_>, a: Scalar, b: Scalar, span: Span) -> Resu
         work.push_binary(Binary::Subtract, a.id, b.id, span)?
     };
     Ok((id, quantity.dimension()))
+}
+
+/// The component of a vector that is written out; of any other expression the whole.
+fn component_of(side: &Expression, component: usize) -> Expression {
+    let whole = || side.clone();
+    match side.code.split_last() {
+        Some((Instruction { operation: Operation::Array { length }, .. }, parts)) => {
+            operands(parts, parts.len(), *length)
+                .and_then(|parts| parts.get(component).map(|part| Expression { code: part.to_vec() }))
+                .unwrap_or_else(whole)
+        }
+        _ => whole(),
+    }
 }
 
 /// A literal 0 in the shape of the other side.

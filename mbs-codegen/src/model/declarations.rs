@@ -2,6 +2,7 @@
 
 use proc_macro2::Span;
 
+use super::bare_angles::is_of_angles;
 use super::counts::LONGEST;
 use super::dynamics::FirstOrderState;
 use super::elaborator::Elaborator;
@@ -10,6 +11,7 @@ use super::initialiser::{definition, filling, in_unit, initialiser, numbers};
 use super::names::Names;
 use super::order::order;
 use super::turns::turning;
+use super::unit_faults::Place;
 use super::unit_inference::Bare;
 use super::units::Dimension;
 use super::value::{Fault, Quantity, Reach, Scalar, Value};
@@ -155,8 +157,14 @@ impl Declarations<'_> {
             let dimension = Dimension::of(unit, self.diagnostics);
             let known = self.model.expressions.len();
             let value = self.elaborate(|work| {
+                if is_of_angles(unit) {
+                    work.bare_angles(&expression.code)?;
+                }
                 let value = work.value(expression)?;
-                let value = initialiser(work, value, dimension.ok_or(Fault)?)?;
+                let place = Place::Value(name.text.clone());
+                let dimension = dimension.ok_or(Fault)?;
+                let value =
+                    work.concerning(place, (expression, None), |work| initialiser(work, value, dimension))?;
                 numbers(work, expression, &value, "a constant")?;
                 Ok::<_, Fault>(in_unit(value, unit))
             });
@@ -253,8 +261,14 @@ impl Declarations<'_> {
             Some(_) if declared.faulty => None,
             Some(expression) => self
                 .elaborate(|work| {
+                    if is_of_angles(&kind.unit) {
+                        work.bare_angles(&expression.code)?;
+                    }
                     let value = work.value(expression)?;
-                    let value = initialiser(work, value, declared.dimension)?;
+                    let place = Place::Value(name.text.clone());
+                    let value = work.concerning(place, (expression, None), |work| {
+                        initialiser(work, value, declared.dimension)
+                    })?;
                     let value = filling(work, value, &declared.shape)?;
                     numbers(work, expression, &value, "a default")
                 })
@@ -377,8 +391,13 @@ impl Declarations<'_> {
         let known = self.model.expressions.len();
         let guesses = guess.filter(|_| !declared.faulty).map(|expression| {
             self.elaborate(|work| {
+                if is_of_angles(&kind.unit) {
+                    work.bare_angles(&expression.code)?;
+                }
                 let value = work.value(expression)?;
-                let value = initialiser(work, value, dimension)?;
+                let place = Place::Value(name.text.clone());
+                let value =
+                    work.concerning(place, (expression, None), |work| initialiser(work, value, dimension))?;
                 filling(work, value, &declared.shape)
             })
         });
@@ -418,7 +437,9 @@ impl Declarations<'_> {
         let starts = start.filter(|_| !declared.faulty).map(|expression| {
             self.elaborate(|work| {
                 let value = work.value(expression)?;
-                let value = initialiser(work, value, dimension)?;
+                let place = Place::Value(name.text.clone());
+                let value =
+                    work.concerning(place, (expression, None), |work| initialiser(work, value, dimension))?;
                 let value = filling(work, value, &declared.shape)?;
                 Ok::<_, Fault>(value.items.iter().map(|item| item.id).collect::<Vec<Id>>())
             })
@@ -451,7 +472,7 @@ impl Declarations<'_> {
         let definitions: Vec<_> = lets.iter().map(|(name, _, value)| (*name, *value)).collect();
         for index in self.order(&definitions) {
             let Some((name, unit, expression)) = lets.get(index) else { continue };
-            match self.elaborate(|work| definition(work, *unit, expression)) {
+            match self.elaborate(|work| definition(work, &name.text, *unit, expression)) {
                 Ok((value, needs)) => {
                     self.names.define_needs(&name.text, needs);
                     self.names.define(&name.text, value);
@@ -465,6 +486,7 @@ impl Declarations<'_> {
     /// so that neither its uses in the text nor those of its field are reported too.
     fn stand_in(&mut self, statement: &Statement) {
         let (name, declares, kind) = match &statement.kind {
+            StatementKind::Faulty { declares: Declares::Element, .. } => return,
             StatementKind::Faulty { name, declares, kind } => (name, *declares, kind.as_ref()),
             StatementKind::Const { name, .. } => (name, Declares::Value, None),
             StatementKind::Param { name, kind, .. } => (name, Declares::Param, Some(kind)),
@@ -507,7 +529,7 @@ impl Declarations<'_> {
             Declares::Input { rates } => self.input(name, docs, kind, rates),
             Declares::Coord => self.coordinate(name, docs, kind, None),
             Declares::Function => self.unknown_function(name, docs),
-            Declares::Value => {}
+            Declares::Value | Declares::Element => {}
         }
     }
 }

@@ -1,9 +1,13 @@
 //! Drives: rows that prescribe a motion, or a rate whose integral the stepper keeps as a phase.
 
+use proc_macro2::Span;
+
 use super::expression::{Id, Node};
 use super::resolver::Resolver;
+use super::unit_faults::Place;
 use super::units::Dimension;
 use super::value::{Fault, Quantity, Reach, Scalar};
+use super::written::written;
 use super::{ConstraintRow, Field, Phase, Role, Variable, VariableKind};
 use crate::symbolic::Binary;
 use crate::syntax::ast::{Equation, Expression, Instruction, Name, Operation};
@@ -12,6 +16,23 @@ impl Resolver<'_> {
     /// Adds the row of a drive.
     pub(super) fn drive(&mut self, name: &Name, equation: &Equation) -> Result<(), Fault> {
         let group = self.group(name, "drive")?;
+        if let Some((rate, argument, span)) = differentiated(equation) {
+            let order = if rate == "der" { "rate" } else { "…" };
+            let other = match differentiates(&equation.left) {
+                Some(_) => &equation.right,
+                None => &equation.left,
+            };
+            let (argument, other) = (written(argument), written(&other.code));
+            let help = match order {
+                "rate" => format!("write `drive {}: rate({argument}) == {other};`", name.text),
+                _ => format!(
+                    "give the motion itself as a function of the time: `drive {}: {argument} == …;`",
+                    name.text
+                ),
+            };
+            self.diagnostics.report(span, format!("a drive prescribes no `{rate}`"), help);
+            return Err(Fault);
+        }
         if let Some(argument) = rated(&equation.left) {
             return self.rate_drive(name, group, &argument, equation);
         }
@@ -41,7 +62,9 @@ impl Resolver<'_> {
             let argument = work.scalar(&argument, "`rate`", argument.span)?;
             let speed = work.scalar(&speed, "a prescribed rate", speed.span)?;
             let rate = argument.quantity.dimension().over(Dimension::SECOND);
-            work.agree(Scalar { quantity: Quantity::Known(rate), ..argument }, speed)?;
+            work.concerning(Place::Rate, (&equation.right, None), |work| {
+                work.agree(Scalar { quantity: Quantity::Known(rate), ..argument }, speed)
+            })?;
             Ok::<_, Fault>((argument, speed))
         })?;
         let kinds = [
@@ -120,6 +143,21 @@ impl Resolver<'_> {
         let name = Name { text, span: name.span };
         self.model.fields.push(Field { name, docs, unit, shape: Vec::new(), first, role: Role::Phase });
         Ok(first)
+    }
+}
+
+/// The `der` or `der2` that is all of one side of a drive, with its argument.
+fn differentiated(equation: &Equation) -> Option<(&str, &[Instruction], Span)> {
+    differentiates(&equation.left).or_else(|| differentiates(&equation.right))
+}
+
+fn differentiates(expression: &Expression) -> Option<(&str, &[Instruction], Span)> {
+    let (Instruction { operation, span }, argument) = expression.code.split_last()?;
+    match operation {
+        Operation::Call { function, order: 0, arguments: 1 } if function.starts_with("der") => {
+            Some((function, argument, *span))
+        }
+        _ => None,
     }
 }
 

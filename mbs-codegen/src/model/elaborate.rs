@@ -6,12 +6,14 @@ use super::counts::follows_literals;
 use super::elaborator::Elaborator;
 use super::expression::Node;
 use super::functions;
-use super::names::{Symbol, is_function};
+use super::names::{CONSTANTS, Symbol, is_function};
 use super::operands::Operands;
 use super::references::{REFERRING, is_reference};
+use super::undeclared::OF_ANGLES;
 use super::unit_inference::Bare;
 use super::units::{Dimension, in_unit};
 use super::value::{Fault, Quantity, Scalar, Value};
+use super::written;
 use crate::symbolic::Unary;
 use crate::syntax::ast::{Expression, Instruction, Operation, Operator, Unit};
 
@@ -45,9 +47,11 @@ impl Elaborator<'_> {
                     "shorten the loops",
                 ));
             }
+            let known = self.names.unit_faults.len();
             match self.step(expression, next, &mut stack, &mut sums) {
                 Ok(following) => next = following,
                 Err(fault) => {
+                    self.name_operands(&expression.code, next, known);
                     self.unknown_names(expression, next + 1);
                     break Err(fault);
                 }
@@ -84,6 +88,9 @@ impl Elaborator<'_> {
             }
             Operation::Binary(operator) => {
                 let (b, a) = (stack.pop(self.names)?, stack.pop(self.names)?);
+                if matches!(operator, Operator::Add | Operator::Subtract) {
+                    self.angles_in_sum(&expression.code, index, (&a, &b))?;
+                }
                 self.operator(*operator, &a, &b, span)?
             }
             Operation::Call { function, order: 0, arguments } if REFERRING.contains(&function.as_str()) => {
@@ -93,6 +100,10 @@ impl Elaborator<'_> {
                 self.referring(function, group, arguments, span)?
             }
             Operation::Call { function, order, arguments } => {
+                if *arguments == 1 && OF_ANGLES.contains(&function.as_str()) {
+                    let before = index.checked_sub(1).and_then(|at| expression.code.get(at..index));
+                    self.bare_angles(before.unwrap_or_default())?;
+                }
                 let arguments = stack.pop_many(*arguments, self.names)?;
                 match (self.names.get(function), order) {
                     (Some(Symbol::Function(callable)), _) => {
@@ -155,11 +166,41 @@ impl Elaborator<'_> {
         Ok(index + 1)
     }
 
+    /// Reports a bare number of more than two turns beside an angle.
+    fn angles_in_sum(
+        &mut self,
+        code: &[Instruction],
+        index: usize,
+        (a, b): (&Value, &Value),
+    ) -> Result<(), Fault> {
+        let is_bare = |value: &Value| {
+            value.shape.is_empty() && value.items.iter().all(|item| item.bare == Bare::Wholly)
+        };
+        if !is_bare(a) && !is_bare(b) {
+            return Ok(());
+        }
+        let Some(operands) = written::operands(code, index, 2) else { return Ok(()) };
+        match operands.as_slice() {
+            [left, right] => {
+                self.beside_angle(b, left)?;
+                self.beside_angle(a, right)
+            }
+            _ => Ok(()),
+        }
+    }
+
     /// A number as written, in SI.
     fn literal(&mut self, number: f64, unit: Option<&Unit>, span: Span) -> Result<Value, Fault> {
         let Some(unit) = unit else { return Ok(Value::scalar(self.number_literal(number, span), span)) };
-        let (value, dimension) =
-            in_unit(number, unit).map_err(|(at, message, help)| self.fault(at, message, help))?;
+        let (value, dimension) = in_unit(number, unit).map_err(|(at, message, help)| {
+            let name = unit.text.as_str();
+            let is_name = self.names.get(name).is_some() || CONSTANTS.contains(&name);
+            let help = match is_name {
+                true => format!("a product needs its operator: `{}*{name}`", written::number(number)),
+                false => help,
+            };
+            self.fault(at, message, help)
+        })?;
         if !value.is_finite() {
             return Err(self.fault(span, "this number is too large in SI units", "choose another unit"));
         }

@@ -5,11 +5,17 @@ use proc_macro2::Span;
 use super::Reference;
 use super::expression::{Expressions, Id, Node};
 use super::names::Names;
+use super::unit_faults::{Place, UnitFault, UnitOf, component_at};
 use super::unit_inference::Bare;
 use super::units::Dimension;
 use super::value::{Fault, Quantity, Reach, Scalar};
+use super::written;
 use crate::diagnostics::Diagnostics;
 use crate::symbolic::{Binary, Unary};
+use crate::syntax::ast::{Expression, Instruction, Operation};
+
+/// Most faults of units that are kept for an explanation.
+const MOST_UNIT_FAULTS: usize = 100;
 
 /// Executes the postfix code of expressions.
 pub struct Elaborator<'a> {
@@ -38,6 +44,72 @@ impl Elaborator<'_> {
     pub fn fault(&mut self, span: Span, message: impl Into<String>, help: impl Into<String>) -> Fault {
         self.diagnostics.report(span, message, help);
         Fault
+    }
+
+    /// Reports a unit that does not fit, and keeps it for the explanation.
+    pub fn unit_fault(
+        &mut self,
+        (place, found, wanted): (Place, Scalar, UnitOf),
+        message: String,
+        help: impl Into<String>,
+    ) -> Fault {
+        if self.names.unit_faults.len() < MOST_UNIT_FAULTS {
+            let (span, found) = (found.span, UnitOf::scalar(found));
+            let message = message.clone();
+            let (operand, other) = (Vec::new(), Vec::new());
+            self.names.unit_faults.push(UnitFault {
+                span,
+                message,
+                place,
+                found,
+                wanted,
+                operand,
+                other,
+                settled: false,
+            });
+        }
+        self.fault(found.span, message, help)
+    }
+
+    /// Runs a check of units; what it finds concerns this place, this expression and the one on the other side.
+    pub fn concerning<T>(
+        &mut self,
+        place: Place,
+        (operand, other): (&Expression, Option<&Expression>),
+        check: impl FnOnce(&mut Self) -> Result<T, Fault>,
+    ) -> Result<T, Fault> {
+        let before = self.names.unit_faults.len();
+        let result = check(self);
+        if result.is_err() {
+            for fault in self.names.unit_faults.iter_mut().skip(before).filter(|fault| !fault.settled) {
+                fault.place = place.clone();
+                fault.operand = component_at(&operand.code, fault.span).to_vec();
+                fault.other = other.map(|other| other.code.clone()).unwrap_or_default();
+                fault.settled = true;
+            }
+        }
+        result
+    }
+
+    /// Names the operands of the instruction at `index`, in which the units from the one at `first` on do not fit.
+    pub fn name_operands(&mut self, code: &[Instruction], index: usize, first: usize) {
+        let operands = match code.get(index).map(|instruction| &instruction.operation) {
+            Some(Operation::Binary(_)) => written::operands(code, index, 2),
+            Some(Operation::Call { arguments: arguments @ (1 | 2), .. }) => {
+                written::operands(code, index, *arguments)
+            }
+            _ => None,
+        };
+        for fault in self.names.unit_faults.iter_mut().skip(first).filter(|fault| !fault.settled) {
+            fault.settled = true;
+            let Some(operands) = &operands else { continue };
+            if let [.., operand] = operands.as_slice() {
+                fault.operand = component_at(operand, fault.span).to_vec();
+            }
+            if let [other, _] = operands.as_slice() {
+                fault.other = other.to_vec();
+            }
+        }
     }
 
     /// Before: any operands. After: an expression of numbers is folded to its value, which must be finite.

@@ -49,7 +49,7 @@ pub fn call(
     let scalar = work.scalar(&argument, &format!("`{function}`"), argument.span)?;
     let quantity = match unary.entry().units {
         Units::Number | Units::Angle => {
-            work.number(scalar, &format!("the argument of `{function}`"), argument.span)?;
+            work.argument_of(function, scalar, argument.span)?;
             Quantity::Known(Dimension::NUMBER)
         }
         Units::Any => Quantity::Known(Dimension::NUMBER),
@@ -154,7 +154,7 @@ fn sine_cosine(
 ) -> Result<[Scalar; 2], Fault> {
     let [angle] = work.arguments(name, arguments, span)?;
     let scalar = work.scalar(&angle, &format!("`{name}`"), angle.span)?;
-    work.number(scalar, &format!("the argument of `{name}`"), angle.span)?;
+    work.argument_of(name, scalar, angle.span)?;
     let quantity = Quantity::Known(Dimension::NUMBER);
     Ok([
         work.unary_scalar(Unary::Sin, scalar, quantity, span)?,

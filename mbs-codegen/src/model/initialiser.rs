@@ -3,6 +3,7 @@
 use super::elaborator::Elaborator;
 use super::expression::Node;
 use super::names::Symbol;
+use super::unit_faults::{Place, UnitOf};
 use super::unit_inference::Bare;
 use super::units::Dimension;
 use super::value::{Fault, Quantity, Reach, Scalar, Value};
@@ -11,20 +12,29 @@ use crate::syntax::ast::{Expression, Operation, Unit};
 /// The value of a `let`, in its unit where one is declared, and the quantities that must be allowed where it is used.
 pub fn definition(
     work: &mut Elaborator<'_>,
+    name: &str,
     unit: Option<&Unit>,
     expression: &Expression,
 ) -> Result<(Value, Reach), Fault> {
     work.reach = Reach::Let;
-    named(work, unit, expression).map(|value| (value, work.needs))
+    named(work, name, unit, expression).map(|value| (value, work.needs))
 }
 
-fn named(work: &mut Elaborator<'_>, unit: Option<&Unit>, expression: &Expression) -> Result<Value, Fault> {
+fn named(
+    work: &mut Elaborator<'_>,
+    name: &str,
+    unit: Option<&Unit>,
+    expression: &Expression,
+) -> Result<Value, Fault> {
     let value = work.value(expression)?;
     match unit {
         None => Ok(value),
         Some(unit) => {
             let dimension = Dimension::of(unit, work.diagnostics).ok_or(Fault)?;
-            Ok(in_unit(initialiser(work, value, dimension)?, unit))
+            let place = Place::Value(name.to_owned());
+            let value =
+                work.concerning(place, (expression, None), |work| initialiser(work, value, dimension))?;
+            Ok(in_unit(value, unit))
         }
     }
 }
@@ -62,9 +72,10 @@ fn has_unit(work: &mut Elaborator<'_>, item: Scalar, declared: Dimension) -> Res
         let message = format!("units differ: `1` here, `{declared}` on the other side");
         let help =
             format!("multiply it by a quantity of this unit, or write its number so: `1 [{declared}]*…`");
-        return Err(work.fault(item.span, message, help));
+        let wanted = UnitOf { dimension: declared, is_angle: false };
+        return Err(work.unit_fault((Place::Terms, item, wanted), message, help));
     }
-    let expected = Scalar { quantity: Quantity::Known(declared), ..item };
+    let expected = Scalar { quantity: Quantity::Known(declared), bare: Bare::Not, ..item };
     work.agree(expected, item).map(|_| ())
 }
 

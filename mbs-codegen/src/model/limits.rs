@@ -3,6 +3,7 @@
 use super::expression::{Id, Node};
 use super::initialiser::initialiser;
 use super::resolver::Resolver;
+use super::unit_faults::Place;
 use super::value::{Fault, Reach, Scalar, Value};
 use super::{Independent, Limit, VariableKind};
 use crate::syntax::ast::{Expression, Name};
@@ -17,19 +18,24 @@ impl Resolver<'_> {
         high: &Expression,
     ) -> Result<(), Fault> {
         let group = self.group(name, "limit")?;
+        let (of_low, middle, of_high) = (low, value, high);
         let [low, value, high] = self.elaborate(Reach::Position, |work| {
             let value = work.value(value);
             let [low, high] = [low, high].map(|part| work.value(part));
             let (low, value, high) = (low?, value?, high?);
+            work.beside_angle(&value, &of_low.code)?;
+            work.beside_angle(&value, &of_high.code)?;
             let scalar = [&low, &value, &high].map(|part| work.scalar(part, "a limit", part.span));
             let [low, value, high] = scalar;
             let (low, value, high) = (low?, value?, high?);
-            let mut bound = |bound: Scalar| {
+            let mut bound = |bound: Scalar, written: &Expression| {
                 let bound = Value::scalar(bound, bound.span);
-                let bound = initialiser(work, bound, value.quantity.dimension())?;
+                let bound = work.concerning(Place::Sides, (written, Some(middle)), |work| {
+                    initialiser(work, bound, value.quantity.dimension())
+                })?;
                 bound.items.first().copied().ok_or(Fault)
             };
-            Ok::<_, Fault>([bound(low)?, value, bound(high)?])
+            Ok::<_, Fault>([bound(low, of_low)?, value, bound(high, of_high)?])
         })?;
         for bound in [low, high] {
             if self.varies(bound.id) {

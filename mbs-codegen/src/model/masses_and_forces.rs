@@ -10,8 +10,10 @@ use super::initialiser::{fits_shape, initialiser};
 use super::non_negative::{Least, NonNegative};
 use super::resolver::Resolver;
 use super::rotation::{moments, parameters};
+use super::unit_faults::Place;
 use super::units::Dimension;
 use super::value::{Fault, Quantity, Reach, Value};
+use super::written::written;
 use crate::diagnostics::nearest;
 use crate::syntax::ast::{Element, Energy, Expression, Field, Joined, Load, Name, Statement, StatementKind};
 
@@ -128,7 +130,8 @@ impl Resolver<'_> {
     pub(super) fn element(&mut self, kind: Element, name: &Name, fields: &[Field]) -> Result<(), Fault> {
         let group = if kind == Element::Body { "body" } else { "force" };
         let full = self.numbered(name, group)?;
-        let given = self.fields(kind, name, fields)?;
+        let given =
+            self.fields(kind, name, fields).inspect_err(|_| self.names.mark_faulty_element(&name.text))?;
         match kind {
             Element::Body => self.body(name, full, &given),
             Element::Gravity => self.gravity(name, &given),
@@ -185,11 +188,18 @@ impl Resolver<'_> {
         let (kind_of, known) = (kind, known(kind));
         let mut given = Given(Vec::new());
         let mut faulty = false;
+        // A required field that another name was meant for is not missing too.
+        let mut misspelled: Vec<&str> = Vec::new();
+        let is_given = |wanted: &str| fields.iter().any(|field| field.name.text == wanted);
         for field in fields {
             let found = known.iter().find(|(known, ..)| *known == field.name.text);
             let Some((known_name, kind, _)) = found else {
                 let names: Vec<&str> = known.iter().map(|(known, ..)| *known).collect();
-                let help = match nearest(&field.name.text, names.iter().copied()) {
+                let begins = |name: &&str| field.name.text.len() > 2 && name.starts_with(&field.name.text);
+                let near = nearest(&field.name.text, names.iter().copied());
+                let meant = near.or_else(|| names.iter().copied().find(|name| begins(name)));
+                misspelled.extend(meant);
+                let help = match meant.filter(|meant| !is_given(meant)) {
                     Some(meant) => format!("did you mean `{meant}`?"),
                     None => format!("known are {}", names.join(", ")),
                 };
@@ -219,8 +229,8 @@ impl Resolver<'_> {
                 Err(Fault) => faulty = true,
             }
         }
-        let is_given = |wanted: &str| fields.iter().any(|field| field.name.text == wanted);
-        for (missing, ..) in known.iter().filter(|(known, _, needed)| *needed && !is_given(known)) {
+        let is_missing = |name: &str| !is_given(name) && !misspelled.contains(&name);
+        for (missing, ..) in known.iter().filter(|(known, _, needed)| *needed && is_missing(known)) {
             let message = format!("`{}` has no field `{missing}`", name.text);
             let _reported = self.fault(name.span, message, format!("write `{missing}: …` in its braces"));
             faulty = true;
@@ -249,10 +259,20 @@ impl Resolver<'_> {
         };
         let user = format!("`{}`", field.name.text);
         let value = self.elaborate(reach, |work| {
+            if matches!(field.name.text.as_str(), "angle" | "rest") {
+                work.bare_angles(&field.value.code)?;
+            }
             let value = work.value(&field.value)?;
-            let value = initialiser(work, value, dimension)?;
+            let place = Place::Field(field.name.text.clone());
+            let value =
+                work.concerning(place, (&field.value, None), |work| initialiser(work, value, dimension))?;
             match kind {
                 FieldKind::Constant(_) | FieldKind::Scalar(..) => fits_shape(work, &value, &[])?,
+                FieldKind::Vector(_) if value.shape.is_empty() => {
+                    let message = format!("{user} takes a vector of 2 or of 3 components, not a scalar");
+                    let help = format!("write it with its direction: `[0, {}]`", written(&field.value.code));
+                    return Err(work.fault(value.span, message, help));
+                }
                 FieldKind::Point | FieldKind::Vector(_) => point(work, &value, &user)?,
                 FieldKind::Inertia => check_shape(work, &value)?,
                 FieldKind::Orientation => parameters(work, &value, &user).map(|_| ())?,
@@ -317,8 +337,11 @@ impl Resolver<'_> {
         })?;
         self.stateless(&on)?;
         let value = self.elaborate(Reach::Force, |work| {
+            let written = value;
             let value = work.value(value)?;
-            let mut value = initialiser(work, value, dimension)?;
+            let place = Place::Field(name.text.clone());
+            let mut value =
+                work.concerning(place, (written, None), |work| initialiser(work, value, dimension))?;
             if kind == Load::Torque && on.shape == [4] {
                 vector_of_three(work, &value)?;
                 let parameters = parameters(work, &on, "a torque")?;
@@ -343,8 +366,11 @@ impl Resolver<'_> {
         };
         let reach = if kind == Energy::Potential { Reach::Position } else { Reach::Force };
         let (value, span) = self.elaborate(reach, |work| {
+            let written = value;
             let value = work.value(value)?;
-            let value = initialiser(work, value, dimension)?;
+            let place = Place::Field(name.text.clone());
+            let value =
+                work.concerning(place, (written, None), |work| initialiser(work, value, dimension))?;
             let scalar = work.scalar(&value, "an energy", value.span)?;
             Ok::<_, Fault>((scalar.id, value.span))
         })?;

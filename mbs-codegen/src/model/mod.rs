@@ -1,6 +1,7 @@
 //! ast → resolved model: every name, shape, unit and loop resolved; later stages do not change it.
 
 mod arithmetic;
+mod bare_angles;
 mod bodies;
 mod compound;
 mod constraints;
@@ -38,7 +39,10 @@ pub mod scenes;
 pub mod selection;
 mod shared;
 mod states_and_starts;
+mod surplus;
 mod turns;
+mod undeclared;
+pub mod unit_faults;
 pub mod unit_inference;
 pub mod units;
 mod unknown_names;
@@ -46,6 +50,7 @@ mod unused_elements;
 pub mod value;
 mod vanishing;
 mod width;
+mod written;
 
 use proc_macro2::Span;
 

@@ -4,12 +4,14 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use proc_macro2::Span;
 
+use super::undeclared::{Undeclared, Uses};
+use super::unit_faults::UnitFault;
 use super::unit_inference::Bare;
 use super::units::Dimension;
 use super::value::{Reach, Value};
 use crate::diagnostics::Diagnostics;
 use crate::symbolic::Unary;
-use crate::syntax::ast::Name;
+use crate::syntax::ast::{Declares, Name, Statement, StatementKind};
 use crate::syntax::rust_identifiers::UNUSABLE;
 
 /// Names with a meaning of their own.
@@ -105,6 +107,16 @@ pub struct Names {
     pins: BTreeMap<String, Vec<Joint>>,
     /// Quantities that a `let` uses, where these are more than positions.
     needs: BTreeMap<String, Reach>,
+    /// Names that effects declare which the scene does not select, with these effects.
+    pub elsewhere: BTreeMap<String, String>,
+    /// Uses of all names in the text.
+    pub uses: Uses,
+    /// Names that are declared nowhere, as they were reported.
+    pub undeclared: Vec<Undeclared>,
+    /// Units that do not fit, as they were reported.
+    pub unit_faults: Vec<UnitFault>,
+    /// Bodies and elements with a fault that was reported.
+    faulty_elements: BTreeSet<String>,
     /// `true` if the text has masses or forces, so that its rows have multipliers.
     pub dynamic: bool,
 }
@@ -173,6 +185,41 @@ impl Names {
         }
     }
 
+    /// The effect that declares a name and is not selected.
+    pub fn effect_of(&self, name: &str) -> Option<&str> {
+        self.elsewhere.get(name).map(String::as_str)
+    }
+
+    /// Notes bodies and elements that could not be read.
+    pub fn note_faulty(&mut self, statements: &[Statement]) {
+        for statement in statements {
+            if let StatementKind::Faulty { name, declares: Declares::Element, .. } = &statement.kind {
+                self.mark_faulty_element(&name.text);
+            }
+        }
+    }
+
+    /// Notes a body or an element with a fault that was reported.
+    pub fn mark_faulty_element(&mut self, name: &str) {
+        self.faulty_elements.insert(name.to_owned());
+    }
+
+    /// `true` if no body or element had a fault.
+    pub fn elements_are_sound(&self) -> bool {
+        self.faulty_elements.is_empty()
+    }
+
+    /// `true` if a body or element of this name, or one of its rounds, had a fault.
+    pub fn is_faulty_element(&self, name: &str) -> bool {
+        let base = name.split('.').next().unwrap_or(name);
+        self.faulty_elements.contains(base)
+    }
+
+    /// Marks a name that is declared nowhere and was reported, so that its other uses are not reported too.
+    pub fn report_once(&mut self, name: &str, span: Span) {
+        self.declared.entry(name.to_owned()).or_insert((Symbol::Faulty, span));
+    }
+
     /// Meaning of the name in the innermost scope.
     pub fn get(&self, name: &str) -> Option<&Symbol> {
         let scoped = self.scoped.iter().rev().find(|(known, _)| known == name).map(|(_, symbol)| symbol);
@@ -205,7 +252,12 @@ impl Names {
 
     /// All declared names.
     pub fn all(&self) -> impl Iterator<Item = &str> {
-        self.declared.keys().map(String::as_str).chain(self.scoped.iter().map(|(name, _)| name.as_str()))
+        let undeclared = |name: &&String| !self.undeclared.iter().any(|fault| fault.name == **name);
+        self.declared
+            .keys()
+            .filter(undeclared)
+            .map(String::as_str)
+            .chain(self.scoped.iter().map(|(name, _)| name.as_str()))
     }
 
     /// Gives a constraint or drive its rows.

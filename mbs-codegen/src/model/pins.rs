@@ -136,10 +136,10 @@ impl Resolver<'_> {
     pub(super) fn check_pins(&mut self) {
         let Some(dynamics) = &mut self.model.dynamics else { return };
         let bodies: Vec<String> = dynamics.bodies.iter().map(|body| body.name.clone()).collect();
-        let mut unknown = Vec::new();
+        let (mut unknown, names) = (Vec::new(), &*self.names);
         let mut body_of = |name: &str, span: Span, user: &dyn Fn() -> String| {
             let body = bodies.iter().position(|body| body == name);
-            if body.is_none() && name != GROUND {
+            if body.is_none() && name != GROUND && !names.is_faulty_element(name) {
                 unknown.push((name.to_owned(), span, user()));
             }
             body

@@ -11,16 +11,43 @@ use super::initialiser::{definition, fits_shape, initialiser};
 use super::masses_and_forces::is_dynamic;
 use super::names::{Names, Rows, Symbol};
 use super::resolver::{LoopFrame, Pass, Resolver};
+use super::unit_faults::Place;
 use super::units::Dimension;
 use super::value::{Fault, Reach, Value};
-use super::{Model, Output, VariableKind, declarations, inputs, unused_elements};
+use super::{Model, Output, VariableKind, declarations, inputs, undeclared, unit_faults, unused_elements};
 use crate::diagnostics::Diagnostics;
 use crate::syntax::ast::{Element, Expression, Loop, Name, Statement, StatementKind, Type, Unit};
 
-/// Before: statements as written. After: the resolved model and the meaning of its names; every fault of meaning is reported.
-pub fn resolve(statements: &[Statement], diagnostics: &mut Diagnostics) -> (Model, Names) {
+/// Before: statements as written. After: the resolved model and the meaning of its names; every fault of meaning is reported
+/// once, with its cure.
+///
+/// `elsewhere`: names that effects declare which the scene does not select, with these effects.
+pub fn resolve(
+    statements: &[Statement],
+    elsewhere: BTreeMap<String, String>,
+    diagnostics: &mut Diagnostics,
+) -> (Model, Names) {
+    let (model, mut names) = resolved_beside(statements, elsewhere, diagnostics);
+    undeclared::explain(statements, &mut names, diagnostics);
+    unit_faults::explain(statements, &mut names, diagnostics);
+    (model, names)
+}
+
+/// As [`resolve`]; undeclared names and faults of units are kept with the names, too.
+pub fn resolved(statements: &[Statement], diagnostics: &mut Diagnostics) -> (Model, Names) {
+    resolved_beside(statements, BTreeMap::new(), diagnostics)
+}
+
+fn resolved_beside(
+    statements: &[Statement],
+    elsewhere: BTreeMap<String, String>,
+    diagnostics: &mut Diagnostics,
+) -> (Model, Names) {
     let mut model = Model::default();
     let mut names = Names::default();
+    names.uses = undeclared::uses(statements);
+    names.note_faulty(statements);
+    names.elsewhere = elsewhere;
     declarations::declare(statements, &mut model, &mut names, diagnostics);
     let mut work = Resolver {
         model: &mut model,
@@ -50,7 +77,9 @@ pub fn resolve(statements: &[Statement], diagnostics: &mut Diagnostics) -> (Mode
     work.check_guesses();
     work.model.settle_reference_length();
     inputs::check(work.model, work.diagnostics);
-    unused_elements::check(work.model, work.diagnostics);
+    if work.names.elements_are_sound() {
+        unused_elements::check(work.model, work.diagnostics);
+    }
     (model, names)
 }
 
@@ -109,7 +138,7 @@ impl Resolver<'_> {
             StatementKind::Constraint { name, redundant, within, items } => {
                 let first = self.model.rows.len();
                 self.constraint(name, items)?;
-                self.model.rows.iter_mut().skip(first).for_each(|row| row.redundant = *redundant);
+                self.model.rows.iter_mut().skip(first).for_each(|row| row.redundant = redundant.is_some());
                 within.as_ref().map_or(Ok(()), |within| self.width(first, within))
             }
             StatementKind::Drive { name, equation } => self.drive(name, equation),
@@ -143,7 +172,7 @@ impl Resolver<'_> {
     /// A `let` in a loop: it holds to the end of the round.
     fn local(&mut self, name: &Name, unit: Option<&Unit>, value: &Expression) -> Result<(), Fault> {
         let free = self.names.is_free(name, self.diagnostics);
-        let defined = self.elaborate(Reach::Let, |work| definition(work, unit, value));
+        let defined = self.elaborate(Reach::Let, |work| definition(work, &name.text, unit, value));
         if free {
             let needs = defined.as_ref().map_or(Reach::Position, |(_, needs)| *needs);
             self.names.define_needs(&name.text, needs);
@@ -202,8 +231,11 @@ impl Resolver<'_> {
                 work.count(&value)
             });
             let shape = shape.collect::<Result<Vec<_>, Fault>>()?;
+            let written = value;
             let value = work.value(value)?;
-            let value = initialiser(work, value, dimension)?;
+            let place = Place::Value(name.text.clone());
+            let value =
+                work.concerning(place, (written, None), |work| initialiser(work, value, dimension))?;
             fits_shape(work, &value, &shape)?;
             Ok::<Value, Fault>(value)
         })?;

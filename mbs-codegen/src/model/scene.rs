@@ -25,9 +25,12 @@ pub struct Scene {
 
 impl Scene {
     pub(super) fn resolve(selection: Selection) -> Self {
-        let Selection { name, docs, effects, statements } = selection;
+        let Selection { name, docs, elsewhere, is_whole, effects, statements } = selection;
         let mut faults = Diagnostics::default();
-        let (model, names) = resolve(&statements, &mut faults);
+        let (model, names) = resolve(&statements, elsewhere, &mut faults);
+        if !is_whole {
+            faults = Diagnostics::default();
+        }
         Scene { name, docs, effects, model, names, faults }
     }
 

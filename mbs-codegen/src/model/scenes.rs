@@ -5,10 +5,11 @@ use proc_macro2::TokenStream;
 use super::declared_functions::check_called;
 use super::scene::Scene;
 use super::selection::{WHOLE, select};
-use super::{Model, shared};
+use super::{Model, shared, surplus};
 use crate::diagnostics::Diagnostics;
 use crate::syntax;
 use crate::syntax::Text;
+use crate::syntax::unreadable::{Unreadable, span_at, unreadable};
 
 /// All scenes of a text.
 pub struct Scenes {
@@ -34,8 +35,11 @@ impl Scenes {
         }
         let found: Vec<_> = scenes.iter().map(|scene| (scene.label(), scene.faults.clone())).collect();
         diagnostics.gather(&found, found.len());
-        let shared = shared::merge(&text.statements, &scenes, diagnostics);
+        let shared = shared::merge(&text.statements, (&scenes, whole.as_ref()), diagnostics);
         check_called(&text.statements, diagnostics);
+        if diagnostics.is_empty() {
+            surplus::check(&text.statements, scenes.iter().map(|scene| &scene.model), diagnostics);
+        }
         Scenes { scenes, whole, shared }
     }
 
@@ -77,11 +81,16 @@ pub fn read_source(source: &str, diagnostics: &mut Diagnostics) -> Option<(Text,
     let input = match source.parse::<TokenStream>() {
         Ok(input) => input,
         Err(fault) => {
-            diagnostics.report(
-                fault.span(),
-                format!("the text is no Rust token stream: {fault}"),
-                "close every bracket and quote",
-            );
+            match unreadable(source) {
+                Some(Unreadable { line, column, message, help }) => {
+                    diagnostics.report(span_at(line, column), message, help);
+                }
+                None => diagnostics.report(
+                    fault.span(),
+                    format!("the text is no Rust token stream: {fault}"),
+                    "close every bracket and quote",
+                ),
+            }
             return None;
         }
     };

@@ -25,6 +25,10 @@ pub struct Selection {
     pub name: Option<Name>,
     /// Doc comment.
     pub docs: Vec<String>,
+    /// Values that other effects declare, with these effects.
+    pub elsewhere: BTreeMap<String, String>,
+    /// `false` if it names an effect that the text lacks, which is reported.
+    pub is_whole: bool,
     /// Names of its effects.
     pub effects: Vec<String>,
     /// Statements of the selected effects, and those outside any effect.
@@ -54,10 +58,11 @@ pub fn select(
     let mut names: BTreeMap<String, &Name> = BTreeMap::new();
     let mut selections = Vec::new();
     for (name, docs, effects) in scenes.iter().take(MOST_SCENES) {
-        let chosen = work.choose(name, effects, diagnostics);
+        let (chosen, is_whole) = work.choose(name, effects, diagnostics);
         if is_free(header, name, &mut names, diagnostics) {
             let mut selection = work.selection(Some((*name).clone()), &chosen);
             selection.docs.clone_from(docs);
+            selection.is_whole = is_whole;
             complete(&mut selection, name, diagnostics);
             selections.push(selection);
         }
@@ -114,15 +119,31 @@ impl<'a> Effects<'a> {
     }
 
     /// Indices of the effects that a scene names; of equal names all, so that none of their declarations is missing.
-    fn choose(&mut self, scene: &Name, effects: &[Name], diagnostics: &mut Diagnostics) -> Vec<usize> {
-        let mut chosen = Vec::new();
+    /// Returns `false` too where one of them is unknown.
+    fn choose(
+        &mut self,
+        scene: &Name,
+        effects: &[Name],
+        diagnostics: &mut Diagnostics,
+    ) -> (Vec<usize>, bool) {
+        let (mut chosen, mut is_whole) = (Vec::<usize>::new(), true);
         for name in effects {
             let Some(indices) = self.declared.get(name.text.as_str()) else {
-                let help = match nearest(&name.text, self.declared.keys().copied()) {
+                let begins = |known: &&str| {
+                    known.len() > 2 && (name.text.starts_with(*known) || known.starts_with(&name.text))
+                };
+                let near = nearest(&name.text, self.declared.keys().copied());
+                let meant = near.or_else(|| self.declared.keys().copied().find(begins));
+                let help = match meant {
                     Some(meant) => format!("did you mean `{meant}`?"),
                     None => format!("declare it: `effect {} {{ … }}`", name.text),
                 };
                 diagnostics.report(name.span, format!("unknown effect `{}`", name.text), help);
+                // The scene is read as with the effect that is meant; without one its other faults only follow.
+                is_whole &= meant.is_some();
+                let meant = meant.and_then(|meant| self.declared.get(meant)).into_iter().flatten();
+                let meant: Vec<usize> = meant.copied().filter(|index| !chosen.contains(index)).collect();
+                chosen.extend(meant);
                 continue;
             };
             if indices.iter().any(|index| chosen.contains(index)) {
@@ -137,7 +158,7 @@ impl<'a> Effects<'a> {
                 }
             }
         }
-        chosen
+        (chosen, is_whole)
     }
 
     fn selection(&self, name: Option<Name>, chosen: &[usize]) -> Selection {
@@ -153,9 +174,24 @@ impl<'a> Effects<'a> {
         Selection {
             name,
             docs: Vec::new(),
+            is_whole: true,
+            elsewhere: self.elsewhere(chosen),
             effects: effects.map(|(name, _)| name.text.clone()).collect(),
             statements: statements.map(|(_, statement)| (*statement).clone()).collect(),
         }
+    }
+
+    /// Values that the effects declare which are not chosen.
+    fn elsewhere(&self, chosen: &[usize]) -> BTreeMap<String, String> {
+        let others = self.parts.iter().filter_map(|(effect, statement)| {
+            let effect = (*effect).filter(|effect| !chosen.contains(effect))?;
+            let (name, _) = self.selected.get(effect)?;
+            match declares(&statement.kind)? {
+                ("value", value) => Some((value.to_owned(), name.text.clone())),
+                _ => None,
+            }
+        });
+        others.collect()
     }
 
     /// `true` if an earlier effect has the same name, which is reported.

@@ -9,7 +9,13 @@ use crate::syntax::ast::{Name, Statement, StatementKind};
 
 /// Before: the models of all scenes. After: the fields and functions of all of them, those outside effects first, then
 /// effect after effect, in the order of the text. A name with two different meanings is reported.
-pub fn merge(statements: &[Statement], scenes: &[Scene], diagnostics: &mut Diagnostics) -> Model {
+///
+/// Effects that no scene selects, which is reported, are those of the whole text.
+pub fn merge(
+    statements: &[Statement],
+    (scenes, whole): (&[Scene], Option<&Scene>),
+    diagnostics: &mut Diagnostics,
+) -> Model {
     let known: Vec<BTreeMap<&str, &Field>> = scenes
         .iter()
         .map(|scene| scene.model.fields.iter().map(|field| (field.name.text.as_str(), field)).collect())
@@ -18,11 +24,21 @@ pub fn merge(statements: &[Statement], scenes: &[Scene], diagnostics: &mut Diagn
     let mut done = BTreeSet::new();
     // Other fields: the phase of a drive that prescribes a rate, or the name of a faulty statement.
     let others = scenes.iter().flat_map(|scene| &scene.model.fields).map(|field| field.name.text.as_str());
+    let of_whole = whole.into_iter().flat_map(|scene| scene.model.fields.iter());
+    let unselected: BTreeMap<&str, &Field> = match diagnostics.is_empty() {
+        true => BTreeMap::new(),
+        false => of_whole.map(|field| (field.name.text.as_str(), field)).collect(),
+    };
     for name in declared(statements).chain(others).filter(|name| done.insert(*name)) {
+        let alone = || Some((whole?, *unselected.get(name)?));
         let mut found = scenes.iter().zip(&known).filter_map(|(scene, known)| {
             known.get(name).map(|field| (scene, *field, variables(&scene.model, field)))
         });
-        let Some((_, field, variables)) = found.next() else { continue };
+        let first = found.next().or_else(|| {
+            let (whole, field) = alone()?;
+            Some((whole, field, variables(&whole.model, field)))
+        });
+        let Some((_, field, variables)) = first else { continue };
         for (scene, other, others) in found {
             if !is_same(field, variables, other, others) {
                 report((&field.name, &other.name, "field"), scene.label().unwrap_or_default(), diagnostics);

@@ -5,6 +5,7 @@ use proc_macro2::Span;
 use super::expression::Node;
 use super::initialiser::{filling, initialiser};
 use super::resolver::Resolver;
+use super::unit_faults::Place;
 use super::units::Dimension;
 use super::value::{Fault, Quantity, Reach, Scalar, Value};
 use crate::syntax::ast::Expression;
@@ -97,10 +98,16 @@ impl Resolver<'_> {
         per: Dimension,
     ) -> Result<Value, Fault> {
         let value = self.elaborate(Reach::Position, |work| {
+            let written = value;
             let value = work.value(value)?;
+            if per == Dimension::NUMBER {
+                work.beside_angle(coordinate, &written.code)?;
+            }
             let dimension =
                 coordinate.items.first().map(|item| item.quantity.dimension()).unwrap_or_default();
-            let value = initialiser(work, value, dimension.over(per))?;
+            let value = work.concerning(Place::Sides, (written, None), |work| {
+                initialiser(work, value, dimension.over(per))
+            })?;
             filling(work, value, &coordinate.shape)
         })?;
         if value.items.iter().all(|item| self.model.is_constant(item.id)) {

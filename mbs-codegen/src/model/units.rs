@@ -5,8 +5,9 @@ use std::fmt;
 use proc_macro2::Span;
 
 use crate::diagnostics::{Diagnostics, nearest};
+use crate::syntax::NUMBER_TYPES;
 use crate::syntax::ast;
-use crate::syntax::unit_symbols::{SUFFIXES, SYMBOLS, as_product};
+use crate::syntax::unit_symbols::{SUFFIXES, SYMBOLS, is_symbol, meant};
 
 /// Exponents of the base units, in sixtieths, so that roots up to the sixth are exact.
 ///
@@ -134,12 +135,16 @@ pub fn coherent(symbol: &str) -> Result<(f64, &'static str), (String, String)> {
 fn unknown_suffix(symbol: &str) -> (String, String) {
     let known =
         || SYMBOLS.iter().map(|(symbol, _)| *symbol).chain(SUFFIXES.iter().map(|(suffix, ..)| *suffix));
-    let help = match as_product(symbol).or_else(|| nearest(symbol, known()).map(str::to_owned)) {
+    let help = match meant(symbol).or_else(|| nearest(symbol, known()).map(str::to_owned)) {
         Some(known) => format!("did you mean `{known}`?"),
-        None => format!("known are {}", known().collect::<Vec<_>>().join(", ")),
+        None => USUAL.into(),
     };
     (format!("`{symbol}` is no known unit"), help)
 }
+
+/// Units that are met most.
+const USUAL: &str =
+    "usual are m, mm, kg, s, rad, deg, rpm, N, N*m, J, W, Pa; numbers without a unit have `1`";
 
 fn unknown_unit(symbol: &str) -> (String, String) {
     if let Some((_, _, _, coherent)) = SUFFIXES.iter().find(|(suffix, ..)| *suffix == symbol) {
@@ -148,10 +153,21 @@ fn unknown_unit(symbol: &str) -> (String, String) {
             format!("declare `{coherent}` and write the unit behind the number: `100{symbol}`"),
         );
     }
+    if NUMBER_TYPES.contains(&symbol) {
+        return (
+            format!("`{symbol}` is a type of numbers, no unit"),
+            "write the unit, such as `m` or `rad/s`; `1` where there is none".into(),
+        );
+    }
     let near = || nearest(symbol, SYMBOLS.iter().map(|(known, _)| *known)).map(str::to_owned);
-    let help = match as_product(symbol).or_else(near) {
-        Some(known) => format!("did you mean `{known}`?"),
-        None => format!("known are 1, {}", SYMBOLS.map(|(known, _)| known).join(", ")),
+    let help = match meant(symbol).or_else(near) {
+        Some(known) => match SUFFIXES.iter().find(|(suffix, ..)| *suffix == known) {
+            Some((.., coherent)) => {
+                format!("declare `{coherent}`, the SI unit, and write `{known}` behind numbers: `100{known}`")
+            }
+            None => format!("did you mean `{known}`?"),
+        },
+        None => USUAL.into(),
     };
     (format!("`{symbol}` is no known unit"), help)
 }
@@ -204,12 +220,10 @@ pub fn with_suffix(value: f64, suffix: &str) -> Result<(f64, Dimension), (String
         None => {
             let known =
                 SYMBOLS.iter().map(|(symbol, _)| *symbol).chain(SUFFIXES.iter().map(|(suffix, ..)| *suffix));
-            let help = match (as_product(suffix), nearest(suffix, known)) {
-                (Some(product), _) => format!("did you mean `{value} [{product}]`?"),
-                (None, Some(known)) => format!("did you mean `{value}{known}`?"),
-                (None, None) => {
-                    format!("known are the SI symbols and {}", SUFFIXES.map(|(suffix, ..)| suffix).join(", "))
-                }
+            let help = match meant(suffix).or_else(|| nearest(suffix, known).map(str::to_owned)) {
+                Some(meant) if is_symbol(&meant) => format!("did you mean `{value}{meant}`?"),
+                Some(meant) => format!("did you mean `{value} [{meant}]`?"),
+                None => USUAL.into(),
             };
             Err((format!("`{suffix}` is no known unit of a number"), help))
         }

@@ -6,10 +6,12 @@ use super::compound;
 use super::elaborator::Elaborator;
 use super::names::{CONSTANTS, Symbol, functions, is_function};
 use super::references::{REFERRING, is_reference};
+use super::undeclared::{Undeclared, meant_value, rate_of};
 use super::units::with_suffix;
-use super::value::Fault;
+use super::value::{Fault, Reach};
 use crate::diagnostics::nearest;
 use crate::syntax::ast::{Expression, Instruction, Operation};
+use crate::syntax::unit_symbols::DOTS;
 
 impl Elaborator<'_> {
     /// Reports the unknown names after a fault, which are not evaluated any more.
@@ -75,20 +77,56 @@ impl Elaborator<'_> {
             let message = format!("`{name}` is known inside its `for` alone, behind its declaration");
             return self.fault(span, message, "move this into the loop, or declare a `let` outside of it");
         }
-        let help = if is_function(name) {
+        let message = format!("unknown name `{name}`");
+        let is_value = |name: &str| matches!(self.names.get(name), Some(Symbol::Value(_)));
+        let dots = name.contains(DOTS);
+        let mut is_undeclared = false;
+        let help = if let Some(effect) = self.names.effect_of(name) {
+            format!("effect `{effect}` declares it: let the scene add it with `+ {effect}`")
+        } else if let Some(meant) = meant_value(name) {
+            meant
+        } else if dots {
+            format!("`·` is part of the name; write a product as `{}`", name.replace(DOTS, "*"))
+        } else if let Some((stem, order)) = rate_of(name, is_value) {
+            match (self.reach, order) {
+                (Reach::Position, 1) => {
+                    format!("a rate is written `der({stem})`, in a drive `rate({stem}) == …`")
+                }
+                (_, 1) => format!("a rate is written `der({stem})`"),
+                _ => format!("an acceleration is written `der2({stem})`"),
+            }
+        } else if is_function(name) {
             format!("`{name}` is a function; write `{name}(…)`")
         } else if let Some(number) = compound::in_brackets(code, index) {
             format!("write a compound unit in brackets behind its number: `{number}`")
         } else if let Some(known) = nearest(name, self.names.all().chain(CONSTANTS)) {
+            is_undeclared = true;
             format!("did you mean `{known}`?")
         } else if with_suffix(1.0, name).is_ok() {
             format!(
                 "a unit is joined to its number, `2{name}`, or stands in brackets behind it: `30 [rad/s]`"
             )
         } else {
+            is_undeclared = true;
             "declare it with `const`, `param`, `input`, `coord` or `let`".into()
         };
-        self.fault(span, format!("unknown name `{name}`"), help)
+        // A unit as a name has another cure at each of its uses.
+        if with_suffix(1.0, name).is_err() || is_undeclared {
+            self.names.report_once(name, span);
+        }
+        let span = match self.names.uses.get(name) {
+            Some((_, first)) if self.names.get(name).is_some() => *first,
+            _ => span,
+        };
+        if is_undeclared {
+            self.names.undeclared.push(Undeclared {
+                name: name.to_owned(),
+                span,
+                message: message.clone(),
+                is_function: false,
+            });
+        }
+        self.fault(span, message, help)
     }
 
     /// A fault at an unknown function.
@@ -96,8 +134,13 @@ impl Elaborator<'_> {
         let known = || self.names.functions().chain(functions());
         let help = match nearest(name, known()) {
             Some(known) => format!("did you mean `{known}`?"),
-            None => format!("known are {}", known().collect::<Vec<_>>().join(", ")),
+            None => format!("declare it: `function {name}: m(rad), C3;`"),
         };
-        self.fault(span, format!("unknown function `{name}`"), help)
+        let span = self.names.uses.get(name).map_or(span, |(_, first)| *first);
+        let message = format!("unknown function `{name}`");
+        self.names.report_once(name, span);
+        let (name, reported) = (name.to_owned(), message.clone());
+        self.names.undeclared.push(Undeclared { name, span, message: reported, is_function: true });
+        self.fault(span, message, help)
     }
 }

@@ -185,7 +185,7 @@ impl<'s> Reader<'_, 's> {
     /// A `let` in a loop: it holds to the end of the round.
     fn local(&mut self, name: &Name, unit: Option<&Unit>, value: &Expression) {
         let free = self.places.names.is_free(name, self.places.diagnostics);
-        let defined = self.places.elaborate(|work| definition(work, unit, value));
+        let defined = self.places.elaborate(|work| definition(work, &name.text, unit, value));
         if free {
             let needs = defined.as_ref().map_or(Reach::Position, |(_, needs)| *needs);
             let symbol = defined.map_or(Symbol::Faulty, |(value, _)| Symbol::Value(value));

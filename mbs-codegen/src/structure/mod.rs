@@ -16,7 +16,8 @@ use std::collections::BTreeMap;
 use crate::diagnostics::Diagnostics;
 use crate::equations::Equations;
 use crate::model::Model;
-use crate::symbolic::{Leaf, Node, NodeId, substitute::substitute};
+use crate::model::expression::{Id, Node as Written};
+use crate::symbolic::{Binary, Leaf, Node, NodeId, substitute::substitute};
 
 use dyad::Dyad;
 use matching::Matching;
@@ -84,6 +85,10 @@ pub fn analyse(model: &Model, equations: &mut Equations, diagnostics: &mut Diagn
     let rows: Vec<Vec<usize>> =
         equations.rows.iter().map(|row| row.phi_q.iter().map(|(column, _)| *column).collect()).collect();
     let matching = matching::match_in_order(&rows, model.coordinates.len(), surplus::order(model));
+    report_cancelled(model, equations, diagnostics);
+    if !diagnostics.is_empty() {
+        return None;
+    }
     match &equations.dynamics {
         Some(dynamics) => freedom::report(model, dynamics, &rows, diagnostics),
         None => report_missing(model, &rows, &matching, diagnostics),
@@ -245,15 +250,59 @@ fn report_missing(model: &Model, rows: &[Vec<usize>], matching: &Matching, diagn
     }
 }
 
-/// Names the rows that fix no coordinate, or too few.
-fn report_surplus(model: &Model, rows: &[Vec<usize>], matching: &Matching, diagnostics: &mut Diagnostics) {
-    for (row, _) in model.rows.iter().zip(rows).filter(|(_, columns)| columns.is_empty()) {
-        diagnostics.report(
-            row.span,
-            format!("row `{}` contains no coordinate", row.name),
-            "remove it, or write the coordinates that it ties",
-        );
+/// Names the rows without a coordinate: others that are missing only follow.
+fn report_cancelled(model: &Model, equations: &Equations, diagnostics: &mut Diagnostics) {
+    let vanishes = |entry: NodeId| match equations.graph.node(entry) {
+        Node::Binary(Binary::Subtract, a, b) => a == b,
+        _ => false,
+    };
+    let rows = model.rows.iter().zip(&equations.rows);
+    for (row, _) in rows.filter(|(_, row)| row.phi_q.iter().all(|(_, entry)| vanishes(*entry))) {
+        let written = coordinates_of(model, row.residual);
+        let names =
+            list(written.iter().filter_map(|index| Some(model.coordinates.get(*index)?.name.as_str())));
+        match written.as_slice() {
+            [] => diagnostics.report(
+                row.span,
+                format!("row `{}` contains no coordinate", row.name),
+                "remove it, or write the coordinates that it ties",
+            ),
+            _ => diagnostics.report(
+                row.span,
+                format!("row `{}` contains no coordinate: {names} cancels", row.name),
+                format!("both sides have the same term; leave {names} on one side alone"),
+            ),
+        }
     }
+}
+
+/// Coordinates that an expression is written with.
+fn coordinates_of(model: &Model, root: Id) -> Vec<usize> {
+    let reached = model.expressions.reachable([root]);
+    let nodes = model.expressions.iter().filter(|(id, _)| reached.get(id.index()) == Some(&true));
+    nodes
+        .filter_map(|(_, node)| match node {
+            Written::Coordinate(index) => Some(index),
+            _ => None,
+        })
+        .collect()
+}
+
+/// Kind of equations that a text with faults is taken to have, by the coordinates that its rows are written with: `true` where
+/// they fix every coordinate, and `true` where there are more than can be matched.
+pub fn shape_of(model: &Model) -> (bool, bool) {
+    if model.dynamics.is_none() {
+        return (true, false);
+    }
+    let rows: Vec<Vec<usize>> = model.rows.iter().map(|row| coordinates_of(model, row.residual)).collect();
+    let matching = matching::match_in_order(&rows, model.coordinates.len(), surplus::order(model));
+    let square = matching.free_columns().next().is_none();
+    let surplus = matching.free_rows().next().is_some();
+    if square && !surplus && is_uncounted(model) { (false, true) } else { (square, surplus) }
+}
+
+/// Names the rows that fix too few coordinates.
+fn report_surplus(model: &Model, rows: &[Vec<usize>], matching: &Matching, diagnostics: &mut Diagnostics) {
     let marked = |row: usize| model.rows.get(row).is_some_and(|row| row.redundant);
     let free = matching.free_rows().filter(|row| rows.get(*row).is_some_and(|c| !c.is_empty()));
     let free = free.filter(|row| !marked(*row));

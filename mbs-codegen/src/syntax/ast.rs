@@ -180,8 +180,8 @@ pub enum StatementKind {
     },
     Constraint {
         name: Name,
-        /// `true` if rows may follow from others.
-        redundant: bool,
+        /// The word by which rows may follow from others.
+        redundant: Option<Span>,
         /// Largest contradiction allowed between such rows.
         within: Option<Expression>,
         items: Vec<Item>,
@@ -339,6 +339,8 @@ pub enum Declares {
     },
     Coord,
     Function,
+    /// Bodies and elements, whose names are no values.
+    Element,
     /// Names without a field: constants, `let`s, declarations of later versions.
     Value,
 }

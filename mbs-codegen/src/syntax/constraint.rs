@@ -2,6 +2,7 @@
 
 use super::ast::{Declares, Equation, Expression, Item, StatementKind};
 use super::expression::expression;
+use super::foreign;
 use super::parser::{GivenUp, Parser, Read};
 use super::statement::{at_statement, end, read_loop};
 use super::tokens::TokenKind;
@@ -9,11 +10,9 @@ use super::tokens::TokenKind;
 const CONSTRAINT: &str = "write `constraint pin { x == L*cos(phi); y == L*sin(phi); }`";
 pub fn read_constraint(parser: &mut Parser<'_>) -> Read<StatementKind> {
     let name = parser.name(CONSTRAINT)?;
-    let redundant = parser.at_word("redundant");
-    if redundant {
-        parser.skip(1);
-    }
-    let within = width(parser, redundant)?;
+    let redundant = parser.at_word("redundant").then(|| parser.span());
+    parser.skip(usize::from(redundant.is_some()));
+    let within = width(parser, redundant.is_some())?;
     parser.expect('{', CONSTRAINT)?;
     let mut items = Vec::new();
     let mut loops = 0_usize;
@@ -117,6 +116,9 @@ pub fn equation(parser: &mut Parser<'_>, help: &str) -> Read<Equation> {
     let left = expression(parser)?;
     let span = parser.span();
     if !parser.at_pair('=', '=') {
+        if foreign::at_condition(parser) {
+            return foreign::condition(parser);
+        }
         let single = matches!(parser.peek(), TokenKind::Punctuation('=', _));
         return parser.expected("`==`", if single { "the sign of an equation is `==`" } else { help });
     }

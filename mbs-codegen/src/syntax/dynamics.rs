@@ -5,6 +5,7 @@ use super::ast::{
 };
 use super::constraint::equation;
 use super::expression::expression;
+use super::foreign;
 use super::parser::{Parser, Read};
 use super::statement::end;
 use super::unit::declared_type;
@@ -42,7 +43,12 @@ pub fn read_contact(parser: &mut Parser<'_>) -> Read<StatementKind> {
 
 /// `name { field: value, … }`
 fn element(parser: &mut Parser<'_>, kind: Element, help: &str) -> Read<StatementKind> {
-    let name = parser.name(help)?;
+    let (name, fields) = parser.declare(Declares::Element, help, |parser, _| read_fields(parser, help))?;
+    Ok(StatementKind::Element { kind, name, fields })
+}
+
+/// `{ field: value, … }`
+fn read_fields(parser: &mut Parser<'_>, help: &str) -> Read<Vec<Field>> {
     parser.expect('{', help)?;
     let mut fields = Vec::new();
     while !parser.take('}') {
@@ -55,7 +61,7 @@ fn element(parser: &mut Parser<'_>, kind: Element, help: &str) -> Read<Statement
             break;
         }
     }
-    Ok(StatementKind::Element { kind, name, fields })
+    Ok(fields)
 }
 
 const PIN: &str = "write `pin B: crank, rod at [x, y];`, two bodies, or one and `ground`, and a point";
@@ -130,7 +136,9 @@ pub fn read_dissipation(parser: &mut Parser<'_>) -> Read<StatementKind> {
 /// `name = value;`
 fn energy(parser: &mut Parser<'_>, kind: Energy, help: &str) -> Read<StatementKind> {
     let name = parser.name(help)?;
-    parser.expect('=', help)?;
+    if !foreign::takes_value(parser) {
+        return parser.expected("`=`", help);
+    }
     let value = expression(parser)?;
     end(parser, help)?;
     Ok(StatementKind::Energy { kind, name, value })
@@ -141,7 +149,7 @@ pub fn read_state(parser: &mut Parser<'_>) -> Read<StatementKind> {
     let (name, (kind, value)) = parser.declare(Declares::Value, STATE, |parser, _| {
         parser.expect(':', STATE)?;
         let kind = declared_type(parser, STATE)?;
-        let value = if parser.take('=') { Some(expression(parser)?) } else { None };
+        let value = if foreign::takes_value(parser) { Some(expression(parser)?) } else { None };
         end(parser, STATE)?;
         Ok((kind, value))
     })?;
@@ -171,7 +179,9 @@ const START: &str = "write `start phi1 = 0.3 rate 2.0;`";
 pub fn read_start(parser: &mut Parser<'_>) -> Read<StatementKind> {
     let span = parser.span();
     let coordinate = expression(parser)?;
-    parser.expect('=', START)?;
+    if !foreign::takes_value(parser) {
+        return parser.expected("`=`", START);
+    }
     let value = expression(parser)?;
     let rate: Option<Expression> = if parser.take_word("rate") { Some(expression(parser)?) } else { None };
     end(parser, START)?;

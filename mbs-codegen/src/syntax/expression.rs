@@ -3,6 +3,7 @@
 use proc_macro2::Span;
 
 use super::ast::{Expression, Instruction, Name, Operation, Operator, Target};
+use super::foreign::{self, Around, CALLED};
 use super::number::{literal, number};
 use super::parser::{GivenUp, Parser, Read};
 use super::tokens::TokenKind;
@@ -38,15 +39,21 @@ const NEGATE: u8 = 3;
 
 /// Reads the longest expression from here on.
 pub fn expression(parser: &mut Parser<'_>) -> Read<Expression> {
-    read(parser, true)
+    read(parser, true, false)
+}
+
+/// Reads one of several counts, which commas separate.
+pub fn count(parser: &mut Parser<'_>) -> Read<Expression> {
+    read(parser, true, true)
 }
 
 /// Functions of rows, drives, pins and bodies.
 pub const REFERRING: [&str; 3] = ["lambda", "effort", "reaction"];
 
 /// `references`: `true` if [`REFERRING`] functions are read as such; not in their own indices, so that they do not nest.
-fn read(parser: &mut Parser<'_>, references: bool) -> Read<Expression> {
-    let mut reader = Reader { code: Vec::new(), pending: Vec::new(), references };
+/// `counts`: `true` if a comma ends the expression.
+fn read(parser: &mut Parser<'_>, references: bool, counts: bool) -> Read<Expression> {
+    let mut reader = Reader { code: Vec::new(), pending: Vec::new(), references, counts };
     let mut operand = true;
     loop {
         if operand {
@@ -63,6 +70,7 @@ struct Reader {
     code: Vec<Instruction>,
     pending: Vec<Pending>,
     references: bool,
+    counts: bool,
 }
 
 impl Reader {
@@ -73,6 +81,9 @@ impl Reader {
     /// Reads where an operand is expected; returns `true` if an operand must come next.
     fn operand(&mut self, parser: &mut Parser<'_>) -> Read<bool> {
         let span = parser.span();
+        if foreign::at_condition(parser) {
+            return foreign::condition(parser);
+        }
         match parser.peek() {
             TokenKind::Punctuation('-', _) => {
                 parser.skip(1);
@@ -123,6 +134,12 @@ impl Reader {
                 self.push(number, span);
                 Ok(false)
             }
+            TokenKind::Punctuation('.', _) if matches!(parser.peek_at(1), TokenKind::Literal(_)) => {
+                let text = foreign::leading_dot(parser);
+                let number = number(parser, &text)?;
+                self.push(number, span);
+                Ok(false)
+            }
             _ => {
                 parser.expected("an expression", "write a number, a name, a function call, `[x, y]` or `(…)`")
             }
@@ -141,7 +158,7 @@ impl Reader {
             let name = parser.name(help)?;
             let mut indexed = true;
             if parser.take('[') {
-                self.code.extend(read(parser, false)?.code);
+                self.code.extend(read(parser, false, false)?.code);
                 parser.expect(']', help)?;
             } else if parser.take('.') {
                 let count = match parser.peek() {
@@ -168,6 +185,12 @@ impl Reader {
     /// end of the expression.
     fn behind_operand(&mut self, parser: &mut Parser<'_>) -> Read<Option<bool>> {
         let span = parser.span();
+        if parser.at_pair('*', '*') {
+            foreign::two_stars(parser);
+            self.reduce(strength(Operator::Power), false);
+            self.pending.push(Pending::Binary(Operator::Power, span));
+            return Ok(Some(true));
+        }
         if let TokenKind::Punctuation(character, _) = parser.peek() {
             let operator = match character {
                 '+' => Some(Operator::Add),
@@ -191,6 +214,15 @@ impl Reader {
                 Ok(Some(true))
             }
             TokenKind::Punctuation('.', false) => self.component(parser),
+            TokenKind::Punctuation('%', _) => foreign::percent(parser),
+            TokenKind::Punctuation('?', _) => foreign::condition(parser),
+            TokenKind::Punctuation(',', _) if !self.is_list() && foreign::decimal_comma(parser) => {
+                Ok(Some(false))
+            }
+            TokenKind::Punctuation(';', _) if matches!(self.innermost(), Some(Pending::Array { .. })) => {
+                self.reduce(0, true);
+                self.semicolon(parser)
+            }
             TokenKind::Punctuation(',', _) => {
                 self.reduce(0, true);
                 match self.pending.last_mut() {
@@ -245,6 +277,7 @@ impl Reader {
         let order = match word {
             "d1" => 1,
             "d2" => 2,
+            _ if CALLED.contains(&word) => return self.method(parser, word).map(Some),
             _ => {
                 let message = format!("`{word}` is no derivative that a text can use");
                 parser.diagnostics.report(parser.span(), message, DERIVATIVE);
@@ -257,6 +290,53 @@ impl Reader {
         };
         parser.skip(2);
         Ok(Some(self.call(parser, function, order, span)))
+    }
+
+    /// Reads the call of `math.sin(…)` or `phi.sin()`, which is reported, as `sin(…)`.
+    fn method(&mut self, parser: &mut Parser<'_>, word: &str) -> Read<bool> {
+        let Some(Instruction { operation: Operation::Name(owner), span }) = self.code.pop() else {
+            parser.diagnostics.report(
+                parser.span(),
+                "functions do not follow a dot",
+                format!("write `{word}(…)`"),
+            );
+            return Err(GivenUp);
+        };
+        foreign::method(parser, &owner, word);
+        parser.skip(2);
+        if parser.take(')') {
+            self.push(Operation::Name(owner), span);
+            self.push(Operation::Call { function: word.into(), order: 0, arguments: 1 }, span);
+            return Ok(false);
+        }
+        Ok(self.call(parser, word.into(), 0, span))
+    }
+
+    /// Takes the `;` between components of a vector, which is reported.
+    fn semicolon(&mut self, parser: &mut Parser<'_>) -> Read<Option<bool>> {
+        parser.diagnostics.report(
+            parser.span(),
+            "a `;` stands between the components of a vector",
+            "separate them by commas: `[x, y]`; a matrix is a vector of its rows",
+        );
+        if let Some(Pending::Array { length, .. }) = self.pending.last_mut() {
+            *length += 1;
+        }
+        parser.skip(1);
+        Ok(Some(true))
+    }
+
+    /// The innermost bracket that is open.
+    fn innermost(&self) -> Option<&Pending> {
+        self.pending.iter().rev().find(|pending| pending.is_bracket())
+    }
+
+    /// `true` where a comma separates parts of a list.
+    fn is_list(&self) -> bool {
+        match self.innermost() {
+            None => self.counts,
+            Some(bracket) => !matches!(bracket, Pending::Parenthesis),
+        }
     }
 
     /// Reads on after the opening parenthesis of a call; `true` if an operand must come next.
@@ -274,6 +354,9 @@ impl Reader {
         self.reduce(0, true);
         let close = matches!(parser.peek(), TokenKind::Close(_));
         match self.pending.pop() {
+            None if foreign::at_second_operand(parser) => {
+                return foreign::second_operand(parser, Around::Nothing);
+            }
             None => return Ok(None),
             Some(Pending::SumLow { variable, span }) if parser.at_pair('.', '.') => {
                 parser.skip(2);
@@ -291,6 +374,14 @@ impl Reader {
                 return Ok(Some(true));
             }
             Some(Pending::SumLow { .. } | Pending::SumHigh { .. }) => return parser.expected("a range", SUM),
+            Some(bracket) if !close && foreign::at_second_operand(parser) => {
+                let around = match bracket {
+                    Pending::Array { .. } => Around::Array,
+                    Pending::Call { .. } => Around::Call,
+                    _ => Around::Nothing,
+                };
+                return foreign::second_operand(parser, around);
+            }
             Some(_) if !close => {
                 return parser
                     .expected("an operator or a closing bracket", "two operands need an operator: `2*x`");
@@ -487,7 +578,7 @@ mod tests {
     #[test]
     fn a_missing_operand_or_operator_is_reported_at_its_place() {
         assert!(postfix("a + ;").starts_with("1:5: expected an expression, found `;`"));
-        assert!(postfix("(a b)").starts_with("1:4: expected an operator or a closing bracket, found `b`"));
+        assert!(postfix("(a b)").starts_with("1:4: an operator is missing between `a` and `b`"));
         assert!(postfix("f(a,)").starts_with("1:5: expected an expression, found `)`"));
     }
 }

@@ -4,6 +4,7 @@ pub mod ast;
 mod constraint;
 mod dynamics;
 mod expression;
+mod foreign;
 mod header;
 mod keywords;
 mod number;
@@ -16,11 +17,16 @@ mod statement;
 pub mod tokens;
 mod unit;
 pub mod unit_symbols;
+pub mod unreadable;
 
 use proc_macro2::{Span, TokenStream};
 
 use crate::diagnostics::Diagnostics;
 pub use expression::REFERRING;
+#[cfg(test)]
+pub use foreign::CALLED;
+pub use foreign::NUMBER_TYPES;
+use foreign::without_comments;
 pub use header::{Header, OWN};
 pub use keywords::{LATER, STATEMENTS};
 pub use scene::NAMELESS;
@@ -53,6 +59,7 @@ pub fn read(input: TokenStream, diagnostics: &mut Diagnostics) -> Option<Text> {
         return None;
     }
     let body = tokens::flatten(rest.into_iter().chain(body).collect(), diagnostics);
+    let body = without_comments(body, diagnostics);
     let mut statements = parse(&body, diagnostics);
     let pictured = picture::take(&mut statements);
     if !statements.iter().any(declares_coordinate) {

@@ -3,6 +3,7 @@
 use proc_macro2::Span;
 
 use super::ast::{Name, Operation, Unit};
+use super::foreign::NUMBER_TYPES;
 use super::parser::{GivenUp, Parser, Read};
 use super::tokens::TokenKind;
 use super::unit::{unit_behind_a_space, unit_of_number};
@@ -16,8 +17,14 @@ pub(super) fn number(parser: &mut Parser<'_>, text: &str) -> Read<Operation> {
     parser.skip(1);
     if let Operation::Number { value, unit, .. } = &mut number {
         if let Some(fault) = range_fault(text, *value) {
-            parser.diagnostics.report(span, format!("`{text}` {fault}"), "choose another unit");
+            parser.diagnostics.report(span, format!("`{text}` {fault}"), RANGE);
             *value = 1.0;
+        }
+        if let Some(suffix) = unit.as_ref().filter(|unit| NUMBER_TYPES.contains(&unit.text.as_str())) {
+            let digits = text.strip_suffix(&suffix.text).unwrap_or(text);
+            let message = format!("`{}` is a type of Rust, no unit", suffix.text);
+            parser.diagnostics.report(span, message, format!("write `{digits}`: all numbers are real"));
+            *unit = None;
         }
         let digits = text.strip_suffix(unit.as_ref().map_or("", |unit| &unit.text)).unwrap_or(text);
         let joined = unit.is_some();
@@ -44,6 +51,7 @@ pub(super) fn number(parser: &mut Parser<'_>, text: &str) -> Read<Operation> {
     Ok(number)
 }
 
+const RANGE: &str = "numbers reach from 2.2e-308 to 1.8e308; check the exponent";
 const NUMBER: &str = "write numbers as `0.1`, `1e-3`, `100mm` or `30deg`, compound units as `4 [m^2]`";
 
 /// Reports a power of a number with a unit: is it the number's or the unit's alone?

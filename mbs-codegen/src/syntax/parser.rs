@@ -3,6 +3,7 @@
 use proc_macro2::Span;
 
 use super::ast::{Declares, Name, StatementKind, Type};
+use super::foreign::{self, quoted};
 use super::tokens::{Token, TokenKind};
 use crate::diagnostics::Diagnostics;
 
@@ -50,6 +51,11 @@ impl<'a> Parser<'a> {
     /// The tokens from here on.
     pub fn rest(&self) -> &'a [Token] {
         self.tokens.get(self.next..).unwrap_or(&[])
+    }
+
+    /// The tokens before this one.
+    pub fn before(&self) -> &'a [Token] {
+        self.tokens.get(..self.next).unwrap_or(&[])
     }
 
     /// Advances by `count` tokens.
@@ -118,15 +124,33 @@ impl<'a> Parser<'a> {
         help: &str,
         read: impl FnOnce(&mut Self, &mut Option<Type>) -> Read<T>,
     ) -> Read<(Name, T)> {
+        let word = self.before().last().map_or_else(String::new, |token| quoted(std::slice::from_ref(token)));
         let name = self.name(help)?;
-        let mut kind = None;
-        match read(self, &mut kind) {
-            Ok(read) => Ok((name, read)),
-            Err(GivenUp) => {
-                self.faulty.push(StatementKind::Faulty { name, declares, kind });
-                Err(GivenUp)
-            }
+        let mut others = Vec::new();
+        if declares != Declares::Element
+            && matches!(self.peek(), TokenKind::Punctuation(',', _))
+            && matches!(self.peek_at(1), TokenKind::Identifier(_))
+        {
+            others = foreign::more_names(self, &word, &name.text);
         }
+        let mut kind = None;
+        let begin = self.next;
+        let read = match self.peek() {
+            TokenKind::Punctuation('=', _) if declares != Declares::Element && word != "let" => {
+                foreign::no_unit(self, &word, &name.text)
+            }
+            _ => read(self, &mut kind),
+        };
+        if read.is_err() {
+            let end = std::mem::replace(&mut self.next, begin);
+            others.extend(foreign::names_to_end(self));
+            self.next = end;
+            self.faulty.push(StatementKind::Faulty { name: name.clone(), declares, kind: kind.clone() });
+        }
+        let stand_in =
+            |(text, span)| StatementKind::Faulty { name: Name { text, span }, declares, kind: kind.clone() };
+        self.faulty.extend(others.into_iter().map(stand_in));
+        read.map(|read| (name, read))
     }
 
     /// Skips to the token after the bracket that closes the one just before the cursor, or to the end.

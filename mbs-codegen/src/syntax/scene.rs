@@ -3,8 +3,9 @@
 use proc_macro2::Span;
 
 use super::ast::{Name, StatementKind};
+use super::foreign;
 use super::parser::{GivenUp, Parser, Read};
-use super::statement::end;
+use super::statement::{at_statement, end};
 use super::tokens::TokenKind;
 use crate::diagnostics::Diagnostics;
 
@@ -33,7 +34,7 @@ const OF_SCENE: &str =
 pub fn read_scene(parser: &mut Parser<'_>) -> Read<StatementKind> {
     let name = parser.name(SCENE)?;
     let mut effects = Vec::new();
-    match read_effects(parser, &mut effects) {
+    match read_effects(parser, &name.text, &mut effects) {
         Ok(open) => Ok(StatementKind::Scene { name, effects, open }),
         Err(GivenUp) => {
             parser.faulty.push(StatementKind::Scene { name, effects, open: false });
@@ -43,11 +44,20 @@ pub fn read_scene(parser: &mut Parser<'_>) -> Read<StatementKind> {
 }
 
 /// Reads the effects after the `=`; returns `true` if braces follow, which are then open.
-fn read_effects(parser: &mut Parser<'_>, effects: &mut Vec<Name>) -> Read<bool> {
+fn read_effects(parser: &mut Parser<'_>, scene: &str, effects: &mut Vec<Name>) -> Read<bool> {
     parser.expect('=', SCENE)?;
-    effects.push(parser.name(SCENE)?);
+    if !matches!(parser.peek(), TokenKind::Open('[' | '(')) {
+        effects.push(parser.name(SCENE)?);
+    }
     while parser.take('+') {
         effects.push(parser.name(SCENE)?);
+    }
+    let is_list = matches!(parser.peek(), TokenKind::Identifier(_) | TokenKind::Open('[' | '('))
+        || matches!(parser.peek(), TokenKind::Punctuation(',' | '&' | '|', _));
+    if is_list && !at_statement(parser) {
+        let known: Vec<&str> = effects.iter().map(|name| name.text.as_str()).collect();
+        let more = foreign::effects_without_plus(parser, scene, &known);
+        effects.extend(more.into_iter().map(|(text, span)| Name { text, span }));
     }
     if parser.take('{') {
         return Ok(true);

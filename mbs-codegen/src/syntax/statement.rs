@@ -7,6 +7,7 @@ use super::ast::{
 use super::constraint::{equation, read_constraint};
 use super::dynamics;
 use super::expression::{closed_range, expression};
+use super::foreign;
 use super::keywords::{LATER, STATEMENTS};
 use super::parser::{DOC_ATTRIBUTE, GivenUp, Parser, Read, doc_attribute};
 use super::picture;
@@ -120,7 +121,7 @@ pub fn end(parser: &mut Parser<'_>, help: &str) -> Read<()> {
         return Ok(());
     }
     if at_statement(parser) {
-        let _reported = parser.expected::<()>("`;`", help);
+        foreign::missing_semicolon(parser);
         return Ok(());
     }
     match parser.peek() {
@@ -131,10 +132,21 @@ pub fn end(parser: &mut Parser<'_>, help: &str) -> Read<()> {
 }
 
 fn statement(parser: &mut Parser<'_>) -> Read<StatementKind> {
+    let span = parser.span();
+    if foreign::at_condition(parser) {
+        return foreign::condition(parser);
+    }
     let TokenKind::Identifier(word) = parser.peek() else {
+        if parser.take(';') {
+            parser.diagnostics.report(
+                span,
+                "a `;` ends no statement here",
+                "remove it: braces end a statement",
+            );
+            return Err(GivenUp);
+        }
         return parser.expected("a statement", &known());
     };
-    let span = parser.span();
     if word == "der" && *parser.peek_at(1) == TokenKind::Open('(') {
         return dynamics::read_rate(parser);
     }
@@ -227,7 +239,9 @@ fn read_const(parser: &mut Parser<'_>) -> Read<StatementKind> {
     let (name, (unit, value)) = parser.declare(Declares::Value, CONST, |parser, _| {
         parser.expect(':', CONST)?;
         let unit = unit(parser)?;
-        parser.expect('=', CONST)?;
+        if !foreign::takes_value(parser) {
+            return parser.expected("`=`", CONST);
+        }
         let value = expression(parser)?;
         end(parser, CONST)?;
         Ok((unit, value))
@@ -255,7 +269,7 @@ fn declaration(
     parser.declare(declares, help, |parser, kind| {
         parser.expect(':', help)?;
         let declared = kind.insert(declared_type(parser, help)?).clone();
-        let value = if parser.take('=') { Some(expression(parser)?) } else { None };
+        let value = if foreign::takes_value(parser) { Some(expression(parser)?) } else { None };
         end(parser, help)?;
         Ok((declared, value))
     })
@@ -313,9 +327,17 @@ fn continuity(parser: &mut Parser<'_>) -> Read<u8> {
 
 const LET: &str = "write `let a = [L1*cos(phi1), L1*sin(phi1)];`";
 fn read_let(parser: &mut Parser<'_>) -> Read<StatementKind> {
+    if parser.at_word("mut") && matches!(parser.peek_at(1), TokenKind::Identifier(_)) {
+        foreign::mutable(parser);
+        let name = parser.name(LET)?;
+        parser.faulty.push(StatementKind::Faulty { name, declares: Declares::Value, kind: None });
+        return Err(GivenUp);
+    }
     let (name, (unit, value)) = parser.declare(Declares::Value, LET, |parser, _| {
         let unit = if parser.take(':') { Some(unit(parser)?) } else { None };
-        parser.expect('=', LET)?;
+        if !foreign::takes_value(parser) {
+            return parser.expected("`=`", LET);
+        }
         let value = expression(parser)?;
         end(parser, LET)?;
         Ok((unit, value))
@@ -328,7 +350,7 @@ fn read_out(parser: &mut Parser<'_>) -> Read<StatementKind> {
     let name = parser.name(OUT)?;
     parser.expect(':', OUT)?;
     let kind = declared_type(parser, OUT)?;
-    if !parser.take('=') {
+    if !foreign::takes_value(parser) {
         let message = format!("output `{}` has no definition", name.text);
         parser.diagnostics.report(name.span, message, OUT);
         return Err(GivenUp);
@@ -354,10 +376,18 @@ fn read_branch(parser: &mut Parser<'_>) -> Read<StatementKind> {
         return parser.expected("`start`", BRANCH);
     }
     parser.expect(':', BRANCH)?;
+    let begin = parser.rest();
+    let written = |parser: &Parser<'_>| {
+        begin.get(..begin.len().saturating_sub(parser.rest().len())).unwrap_or_default()
+    };
     let left = expression(parser)?;
     let less = matches!(parser.peek(), TokenKind::Punctuation('<', _));
     if !less && !matches!(parser.peek(), TokenKind::Punctuation('>', _)) {
-        return parser.expected("`<` or `>`", BRANCH);
+        let sign = matches!(parser.peek(), TokenKind::Punctuation('!' | '=' | '≠', _));
+        return match sign {
+            true => foreign::no_inequality(parser, &name.text, written(parser)),
+            false => parser.expected("`<` or `>`", BRANCH),
+        };
     }
     if matches!(parser.peek_at(1), TokenKind::Punctuation('=', _)) {
         let (span, sign) = (parser.span(), if less { '<' } else { '>' });
@@ -367,6 +397,9 @@ fn read_branch(parser: &mut Parser<'_>) -> Read<StatementKind> {
     }
     parser.skip(1);
     let right = expression(parser)?;
+    if foreign::at_conjunction(parser) {
+        return foreign::two_conditions(parser, &name.text, written(parser));
+    }
     end(parser, BRANCH)?;
     let (larger, smaller) = if less { (right, left) } else { (left, right) };
     Ok(StatementKind::Branch { name, at_start, larger, smaller })

@@ -1,8 +1,10 @@
 //! Units and shapes of declarations.
 
-use super::ast::{Type, Unit};
-use super::expression::expression;
-use super::parser::{Parser, Read};
+use proc_macro2::Span;
+
+use super::ast::{Name, Type, Unit};
+use super::expression::count;
+use super::parser::{GivenUp, Parser, Read};
 use super::tokens::TokenKind;
 use super::unit_symbols::{as_product, is_symbol};
 
@@ -23,9 +25,9 @@ fn array_type(parser: &mut Parser<'_>, help: &str) -> Read<Type> {
     }
     let unit = unit(parser)?;
     parser.expect(';', help)?;
-    let mut shape = vec![expression(parser)?];
+    let mut shape = vec![count(parser)?];
     while parser.take(',') {
-        shape.push(expression(parser)?);
+        shape.push(count(parser)?);
     }
     if matches!(parser.peek(), TokenKind::Punctuation(';', _)) {
         return parser.expected("`,` or `]`", LENGTHS);
@@ -85,6 +87,8 @@ fn product(parser: &mut Parser<'_>, help: &str) -> Read<Unit> {
     // Index of the first factor within each open parenthesis, and the sign of its exponents.
     let mut open: Vec<(usize, i32)> = Vec::new();
     let mut sign = 1;
+    // Place of an operator between two units that is missing, or a dot.
+    let mut joined: Option<(Span, bool)> = None;
     loop {
         let begin = unit.factors.len();
         match parser.peek() {
@@ -113,13 +117,61 @@ fn product(parser: &mut Parser<'_>, help: &str) -> Read<Unit> {
                 finish_factor(parser, &mut unit, begin, outer)?;
             }
         }
+        let span = parser.span();
+        let is_dot = matches!(parser.peek(), TokenKind::Punctuation('.', _))
+            && matches!(parser.peek_at(1), TokenKind::Identifier(_));
+        if is_dot || at_unit(parser) {
+            joined.get_or_insert((span, is_dot));
+            parser.skip(usize::from(is_dot));
+            sign = 1;
+            unit.text.push('*');
+            continue;
+        }
         let multiplies = parser.take('*');
         if !multiplies && !parser.take('/') {
+            if let Some((span, is_dot)) = joined {
+                report_joined(parser, span, is_dot, &unit);
+                return Err(GivenUp);
+            }
             return if open.is_empty() { Ok(unit) } else { parser.expected("`)`", help) };
         }
         sign = if multiplies { 1 } else { -1 };
         unit.text.push(if multiplies { '*' } else { '/' });
     }
+}
+
+/// `true` at another unit that follows one without an operator.
+fn at_unit(parser: &Parser<'_>) -> bool {
+    matches!(parser.peek(), TokenKind::Identifier(word) if is_symbol(word))
+        && parser.peek_at(1) != &TokenKind::Open('{')
+}
+
+/// Reports units that a dot joins, or nothing.
+fn report_joined(parser: &mut Parser<'_>, span: Span, is_dot: bool, unit: &Unit) {
+    let message = match is_dot {
+        true => "`.` joins no units",
+        false => "an operator is missing between two units",
+    };
+    let written = written(&unit.factors);
+    let help = match unit.factors.as_slice() {
+        [(first, 1), (second, 1)] => {
+            format!("write `{written}` for the product, `{}/{}` for the quotient", first.text, second.text)
+        }
+        _ => format!("write `{written}`"),
+    };
+    parser.diagnostics.report(span, message, help);
+}
+
+/// A unit as products and quotients of its factors: `rad/s`, `N*m*s`.
+fn written(factors: &[(Name, i32)]) -> String {
+    let power = |name: &Name, exponent: i32| match exponent.abs() {
+        1 => name.text.clone(),
+        power => format!("{}^{power}", name.text),
+    };
+    let over: Vec<String> = factors.iter().filter(|(_, e)| *e > 0).map(|(name, e)| power(name, *e)).collect();
+    let under = factors.iter().filter(|(_, e)| *e < 0).map(|(name, e)| format!("/{}", power(name, *e)));
+    let over = if over.is_empty() { "1".into() } else { over.join("*") };
+    under.fold(over, |text, divisor| text + &divisor)
 }
 
 /// Reads `^ exponent` and applies it, and the sign of a division, to the factors from `begin` on.

@@ -70,12 +70,95 @@ pub fn is_symbol(word: &str) -> bool {
     SYMBOLS.iter().any(|(known, _)| *known == word) || SUFFIXES.iter().any(|(known, ..)| *known == word)
 }
 
-/// `N*m` of `Nm`, `kW*h` of `kWh`: the product of two symbols, the first of which ends with a capital letter.
+/// The coherent SI unit of a symbol.
+pub fn coherent_unit(symbol: &str) -> Option<&'static str> {
+    let known = SYMBOLS.iter().find(|(known, _)| *known == symbol).map(|(known, _)| *known);
+    known.or_else(|| SUFFIXES.iter().find(|(known, ..)| *known == symbol).map(|(.., unit)| *unit))
+}
+
+/// `N*m` of `Nm`, `N*m*s` of `Nms`, `kg*m` of `kgm`, `N*m` of `N·m`: the product of symbols written together. A symbol that
+/// ends with a capital letter, or the kilogram, is not the beginning of a longer one.
 pub fn as_product(word: &str) -> Option<String> {
-    let splits = word.char_indices().filter(|(_, letter)| letter.is_ascii_uppercase());
-    let mut parts = splits.filter_map(|(index, _)| word.split_at_checked(index + 1));
-    let (first, second) = parts.find(|(first, second)| is_symbol(first) && is_symbol(second))?;
-    Some(format!("{first}*{second}"))
+    let parts: Vec<&str> = word.split(DOTS).collect();
+    if parts.len() > 1 {
+        return parts.iter().all(|part| is_symbol(part)).then(|| parts.join("*"));
+    }
+    let splits = word.char_indices().filter(|(_, letter)| letter.is_ascii_uppercase() || *letter == 'g');
+    let parts = splits.filter_map(|(index, _)| word.split_at_checked(index + 1));
+    let mut parts = parts.filter(|(first, _)| is_symbol(first) && (*first == "kg" || !first.ends_with('g')));
+    parts.find_map(|(first, rest)| {
+        // Newton metres are the product that is meant: `Nms` is no millisecond.
+        let metres = rest.strip_prefix('m').filter(|rest| is_symbol(rest));
+        match metres {
+            Some(behind)
+                if first.ends_with('N')
+                    && !SUFFIXES.iter().any(|(known, ..)| *known == rest && behind == "m") =>
+            {
+                Some(format!("{first}*m*{behind}"))
+            }
+            _ if is_symbol(rest) => Some(format!("{first}*{rest}")),
+            _ => None,
+        }
+    })
+}
+
+/// Dots of products, which are letters to the lexer.
+pub const DOTS: [char; 2] = ['·', '•'];
+
+/// Units by other names, and the symbols that are meant.
+const OTHER_NAMES: [(&str, &str); 41] = [
+    ("sec", "s"),
+    ("secs", "s"),
+    ("second", "s"),
+    ("seconds", "s"),
+    ("sek", "s"),
+    ("minute", "min"),
+    ("minutes", "min"),
+    ("hour", "h"),
+    ("hours", "h"),
+    ("meter", "m"),
+    ("meters", "m"),
+    ("metre", "m"),
+    ("metres", "m"),
+    ("millimeter", "mm"),
+    ("millimeters", "mm"),
+    ("millimetre", "mm"),
+    ("millimetres", "mm"),
+    ("centimeter", "cm"),
+    ("centimetre", "cm"),
+    ("micron", "um"),
+    ("µm", "um"),
+    ("μm", "um"),
+    ("in", "inch"),
+    ("inches", "inch"),
+    ("kilogram", "kg"),
+    ("kilograms", "kg"),
+    ("kgs", "kg"),
+    ("g", "gram"),
+    ("grams", "gram"),
+    ("t", "tonne"),
+    ("radian", "rad"),
+    ("radians", "rad"),
+    ("degree", "deg"),
+    ("degrees", "deg"),
+    ("grad", "deg"),
+    ("rev", "turn"),
+    ("newton", "N"),
+    ("newtons", "N"),
+    ("joule", "J"),
+    ("hertz", "Hz"),
+    ("watt", "W"),
+];
+
+/// The symbol, power or product that a unit by another name means: `s` of `sec`, `m^2` of `m2`, `N*m` of `Nm`.
+pub fn meant(word: &str) -> Option<String> {
+    let lower = word.to_lowercase();
+    let named = OTHER_NAMES.iter().find(|(other, _)| *other == word || (word.len() > 2 && *other == lower));
+    let power = || {
+        let (base, exponent) = word.split_at_checked(word.len().checked_sub(1)?)?;
+        (is_symbol(base) && matches!(exponent, "2" | "3" | "4")).then(|| format!("{base}^{exponent}"))
+    };
+    named.map(|(_, symbol)| (*symbol).to_owned()).or_else(power).or_else(|| as_product(word))
 }
 
 #[cfg(test)]
@@ -87,6 +170,9 @@ mod tests {
         assert_eq!(as_product("Nm").as_deref(), Some("N*m"));
         assert_eq!(as_product("kNmm").as_deref(), Some("kN*mm"));
         assert_eq!(as_product("Ns").as_deref(), Some("N*s"));
+        assert_eq!(as_product("Nms").as_deref(), Some("N*m*s"));
+        assert_eq!(as_product("kgm").as_deref(), Some("kg*m"));
+        assert_eq!(as_product("N·m").as_deref(), Some("N*m"));
         for word in ["N", "mmm", "Nx", "", "Né"] {
             assert_eq!(as_product(word), None, "{word}");
         }

@@ -9,6 +9,7 @@ use crate::emit::rust::functions::Bodies;
 use crate::emit::rust::item;
 use crate::model::Model;
 use crate::model::scenes::Scenes;
+use crate::structure::shape_of;
 use crate::syntax::Text;
 
 /// Before: scenes with faults. After: the same items as without, with bodies that are never compiled to run.
@@ -16,10 +17,9 @@ pub fn stub(text: &Text, scenes: &Scenes) -> TokenStream {
     let all = scenes.scenes.iter().chain(&scenes.whole);
     let parts = all.map(|scene| {
         let model = &scene.model;
-        // A text of dynamics may have fewer rows than coordinates; any other is meant to be square.
-        let square = model.dynamics.is_none() || model.rows.len() == model.coordinates.len();
+        let (square, surplus) = shape_of(model);
         let bodies = bodies(model, &text.header.runtime);
-        SceneFunctions { scene, square, surplus: false, docs: Vec::new(), bodies }
+        SceneFunctions { scene, square, surplus, docs: Vec::new(), bodies }
     });
     item::item(text, scenes, &parts.collect::<Vec<_>>(), None)
 }

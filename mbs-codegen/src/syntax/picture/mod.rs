@@ -152,3 +152,8 @@ fn idle_loops(statements: &[Statement]) -> Vec<bool> {
     }
     idle
 }
+
+/// `true` for a word that may follow an expression in a picture.
+pub fn is_word(word: &str) -> bool {
+    word == TURN || forms::FORMS.iter().any(|form| form.words.iter().any(|(known, ..)| *known == word))
+}

@@ -1,0 +1,146 @@
+//! Texts that are no tokens of Rust: the character or bracket at which reading ends, and its cure.
+//!
+//! In a Rust source the compiler's lexer reports these before a macro sees them; texts kept as strings are explained here.
+
+use proc_macro2::{Span, TokenStream};
+
+/// Place of a fault, with message and cure; line and column count from 1.
+#[derive(Debug, PartialEq)]
+pub struct Unreadable {
+    pub line: usize,
+    pub column: usize,
+    pub message: String,
+    pub help: String,
+}
+
+/// Characters that are none of Rust's, and what stands in their place.
+const CHARACTERS: [(&str, &str); 13] = [
+    ("°º", "write degrees as a unit: `50deg`"),
+    ("×⋅∙∗", "write a product with `*`"),
+    ("÷", "write a quotient with `/`"),
+    ("−–—", "write a minus sign with `-`"),
+    ("≠", "write `<` or `>`, which tell two assemblies apart"),
+    ("≤", "write `<=`"),
+    ("≥", "write `<=` and the larger side behind it"),
+    ("≡", "write `==`"),
+    ("²", "write a square as `^2`"),
+    ("³", "write a cube as `^3`"),
+    ("√", "write a root as `sqrt(x)`"),
+    ("½¼¾", "write a fraction as a number: `0.5`"),
+    ("´’′‘`˙", "write a rate as `der(x)`, an acceleration as `der2(x)`"),
+];
+
+/// The first fault of a text that the lexer refuses; `None` where it is none of those that are known.
+pub fn unreadable(source: &str) -> Option<Unreadable> {
+    let mut open: Vec<(char, usize, usize)> = Vec::new();
+    let (mut line, mut column) = (1, 0);
+    let mut characters = source.chars().peekable();
+    let mut previous = ' ';
+    let fault = |line, column, message: String, help: &str| {
+        Some(Unreadable { line, column, message, help: help.into() })
+    };
+    while let Some(character) = characters.next() {
+        column += 1;
+        match character {
+            '\n' => (line, column) = (line + 1, 0),
+            '/' if characters.peek() == Some(&'/') => {
+                while characters.peek().is_some_and(|next| *next != '\n') {
+                    characters.next();
+                }
+            }
+            '"' => {
+                let begin = (line, column);
+                let mut is_closed = false;
+                let mut escaped = false;
+                for next in characters.by_ref() {
+                    column += 1;
+                    if next == '\n' {
+                        (line, column) = (line + 1, 0);
+                    }
+                    is_closed = next == '"' && !escaped;
+                    escaped = next == '\\' && !escaped;
+                    if is_closed {
+                        break;
+                    }
+                }
+                if !is_closed {
+                    return fault(
+                        begin.0,
+                        begin.1,
+                        "this quote is never closed".into(),
+                        "close it with `\"`",
+                    );
+                }
+            }
+            '\'' if previous.is_alphanumeric() || matches!(previous, '_' | ')' | ']') => {
+                let help = "write a rate as `der(x)`, an acceleration as `der2(x)`";
+                return fault(line, column, "a tick is no derivative".into(), help);
+            }
+            '(' | '[' | '{' => open.push((character, line, column)),
+            ')' | ']' | '}' => match open.pop() {
+                None => {
+                    let message = format!("`{character}` closes no bracket");
+                    return fault(line, column, message, "remove it, or open the bracket that it closes");
+                }
+                Some((bracket, ..)) if closing(bracket) == character => {}
+                Some(_) if !open.iter().any(|(outer, ..)| closing(*outer) == character) => {
+                    let message = format!("`{character}` closes no bracket");
+                    return fault(line, column, message, "remove it, or open the bracket that it closes");
+                }
+                Some((bracket, line, column)) => {
+                    let (message, help) = (
+                        format!("`{bracket}` is never closed"),
+                        format!("close it with `{}`", closing(bracket)),
+                    );
+                    return fault(line, column, message, &help);
+                }
+            },
+            _ => {
+                if let Some((_, help)) = CHARACTERS.iter().find(|(known, _)| known.contains(character)) {
+                    return fault(line, column, format!("`{character}` is no character of a text"), help);
+                }
+            }
+        }
+        previous = character;
+    }
+    let (bracket, line, column) = open.pop()?;
+    fault(
+        line,
+        column,
+        format!("`{bracket}` is never closed"),
+        &format!("close it with `{}`", closing(bracket)),
+    )
+}
+
+fn closing(bracket: char) -> char {
+    match bracket {
+        '(' => ')',
+        '[' => ']',
+        _ => '}',
+    }
+}
+
+/// A token's span at a place, in a text of blanks.
+pub fn span_at(line: usize, column: usize) -> Span {
+    let blanks = format!("{}{}x", "\n".repeat(line.saturating_sub(1)), " ".repeat(column.saturating_sub(1)));
+    let token = blanks.parse::<TokenStream>().ok().and_then(|tokens| tokens.into_iter().next());
+    token.map_or_else(Span::call_site, |token| token.span())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_place_is_that_of_the_character_or_of_the_open_bracket() {
+        let place = |text: &str| unreadable(text).map(|fault| (fault.line, fault.column));
+        assert_eq!(place("a\n  50°;"), Some((2, 5)));
+        assert_eq!(place("out w: rad/s = phi';"), Some((1, 19)));
+        assert_eq!(place("{ [a, (b; }"), Some((1, 7)));
+        assert_eq!(place("{ (a) // [\n"), Some((1, 1)));
+        assert_eq!(place("a)"), Some((1, 2)));
+        assert_eq!(place("title \"a°b\"; (c)"), None);
+        let span = span_at(3, 7).start();
+        assert_eq!((span.line, span.column), (3, 6));
+    }
+}
