@@ -3,11 +3,12 @@
 use std::f64::consts::TAU;
 
 use super::elaborator::Elaborator;
+use super::expression::Node;
 use super::unit_inference::Bare;
 use super::units::Dimension;
 use super::value::{Fault, Quantity, Scalar, Value};
 use super::written::number;
-use crate::syntax::ast::{Instruction, Operation, Unit};
+use crate::syntax::ast::{Instruction, Operation, Operator, Unit};
 
 /// Largest angle in radians that a number without a unit may be: guesses and bounds of machines stay within two turns.
 const LARGEST: f64 = 2.0 * TAU;
@@ -43,15 +44,50 @@ impl Elaborator<'_> {
         result
     }
 
+    /// `true` for a bare number of more than two turns.
+    pub fn is_large(&self, value: &Value) -> bool {
+        let is_large = |scalar: &Scalar| match self.expressions.node(scalar.id) {
+            Node::Number(number) => scalar.bare == Bare::Wholly && number.abs() > LARGEST,
+            _ => false,
+        };
+        value.items.iter().any(is_large)
+    }
+
     /// [`bare_angles`](Self::bare_angles) in a side of an equation or sum whose other side is an angle.
-    pub fn beside_angle(&mut self, other: &Value, code: &[Instruction]) -> Result<(), Fault> {
-        if other.items.iter().any(is_angle) { self.bare_angles(code) } else { Ok(()) }
+    pub fn beside_angle(
+        &mut self,
+        (other, of_other): (&Value, &[Instruction]),
+        code: &[Instruction],
+    ) -> Result<(), Fault> {
+        let is_beside = other.items.iter().any(is_angle) && is_linear(of_other);
+        if is_beside { self.bare_angles(code) } else { Ok(()) }
     }
 }
 
 /// `true` for an angle, not its rate.
 fn is_angle(scalar: &Scalar) -> bool {
     scalar.bare == Bare::Angle && scalar.quantity == Quantity::Known(Dimension::NUMBER)
+}
+
+/// `true` for a sum of names and of their multiples: the square of an angle is none.
+fn is_linear(code: &[Instruction]) -> bool {
+    let count = |wanted: fn(&Operation) -> bool| code.iter().filter(|part| wanted(&part.operation)).count();
+    let others = count(|operation| {
+        !matches!(
+            operation,
+            Operation::Number { .. }
+                | Operation::Name(_)
+                | Operation::Negate
+                | Operation::Index { .. }
+                | Operation::Array { .. }
+                | Operation::Binary(
+                    Operator::Add | Operator::Subtract | Operator::Multiply | Operator::Divide
+                )
+        )
+    });
+    let products =
+        count(|operation| matches!(operation, Operation::Binary(Operator::Multiply | Operator::Divide)));
+    others == 0 && (products == 0 || count(|operation| matches!(operation, Operation::Name(_))) < 2)
 }
 
 /// `true` for the unit of an angle.

@@ -53,8 +53,9 @@ impl Resolver<'_> {
         let right = spread_zero(right, &left);
         let left = spread_zero(left, &right);
         let residuals = self.elaborate(Reach::Position, |work| {
-            work.beside_angle(&left, &equation.right.code)?;
-            work.beside_angle(&right, &equation.left.code)?;
+            let (of_left, of_right) = (&equation.left.code, &equation.right.code);
+            work.beside_angle((&left, of_left), of_right)?;
+            work.beside_angle((&right, of_right), of_left)?;
             work.same_shape(&left, &right, "`==`", right.span)?;
             let pairs = left.items.iter().zip(&right.items).enumerate();
             let sides = |component: usize| {
@@ -89,8 +90,8 @@ impl Resolver<'_> {
         let (value, dimension) = self.elaborate(Reach::Position, |work| {
             let (larger, smaller) = (work.value(larger), work.value(smaller));
             let (larger, smaller) = (larger?, smaller?);
-            work.beside_angle(&larger, &sides.0.code)?;
-            work.beside_angle(&smaller, &written.code)?;
+            work.beside_angle((&larger, &written.code), &sides.0.code)?;
+            work.beside_angle((&smaller, &sides.0.code), &written.code)?;
             let a = work.scalar(&larger, "a branch", larger.span)?;
             let b = work.scalar(&smaller, "a branch", smaller.span)?;
             work.concerning(Place::Sides, sides, |work| residual(work, a, b, name.span))

@@ -173,17 +173,15 @@ impl Elaborator<'_> {
         index: usize,
         (a, b): (&Value, &Value),
     ) -> Result<(), Fault> {
-        let is_bare = |value: &Value| {
-            value.shape.is_empty() && value.items.iter().all(|item| item.bare == Bare::Wholly)
-        };
-        if !is_bare(a) && !is_bare(b) {
+        // Most sums have no such number, and their operands need not be found.
+        if !self.is_large(a) && !self.is_large(b) {
             return Ok(());
         }
         let Some(operands) = written::operands(code, index, 2) else { return Ok(()) };
         match operands.as_slice() {
             [left, right] => {
-                self.beside_angle(b, left)?;
-                self.beside_angle(a, right)
+                self.beside_angle((b, right), left)?;
+                self.beside_angle((a, left), right)
             }
             _ => Ok(()),
         }

@@ -23,8 +23,8 @@ impl Resolver<'_> {
             let value = work.value(value);
             let [low, high] = [low, high].map(|part| work.value(part));
             let (low, value, high) = (low?, value?, high?);
-            work.beside_angle(&value, &of_low.code)?;
-            work.beside_angle(&value, &of_high.code)?;
+            work.beside_angle((&value, &middle.code), &of_low.code)?;
+            work.beside_angle((&value, &middle.code), &of_high.code)?;
             let scalar = [&low, &value, &high].map(|part| work.scalar(part, "a limit", part.span));
             let [low, value, high] = scalar;
             let (low, value, high) = (low?, value?, high?);

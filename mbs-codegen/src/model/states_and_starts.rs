@@ -101,7 +101,7 @@ impl Resolver<'_> {
             let written = value;
             let value = work.value(value)?;
             if per == Dimension::NUMBER {
-                work.beside_angle(coordinate, &written.code)?;
+                work.beside_angle((coordinate, &[]), &written.code)?;
             }
             let dimension =
                 coordinate.items.first().map(|item| item.quantity.dimension()).unwrap_or_default();

@@ -297,13 +297,14 @@ pub fn percent<T>(parser: &mut Parser<'_>) -> Read<T> {
 
 const NO_IF: &str = "declare what decides as an input, `input command: rad, rates;`, or a law of the caller, `function law: rad(s), C2;`";
 
-/// `true` at a word or mark that begins a condition in other languages.
+/// `true` at a word or mark that begins a condition in other languages; a text may declare the words as names.
 pub fn at_condition(parser: &Parser<'_>) -> bool {
-    let word = |word: &str| parser.at_word(word);
-    let is_choice = ["if", "match", "when", "switch", "case"].into_iter().any(word);
-    is_choice && !matches!(parser.peek_at(1), TokenKind::Punctuation(..) | TokenKind::Close(_))
-        || word("if")
-        || matches!(parser.peek(), TokenKind::Punctuation('?', _))
+    let is_choice = ["if", "match", "when", "switch", "case"].into_iter().any(|word| parser.at_word(word));
+    match parser.peek_at(1) {
+        TokenKind::Identifier(_) | TokenKind::Literal(_) if is_choice => true,
+        TokenKind::Open('(') => parser.at_word("if"),
+        _ => matches!(parser.peek(), TokenKind::Punctuation('?', _)),
+    }
 }
 
 /// Reports a condition at the cursor, and skips it with all its cases.
