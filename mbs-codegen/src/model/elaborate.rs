@@ -173,8 +173,9 @@ impl Elaborator<'_> {
         index: usize,
         (a, b): (&Value, &Value),
     ) -> Result<(), Fault> {
-        // Most sums have no such number, and their operands need not be found.
-        if !self.is_large(a) && !self.is_large(b) {
+        // Operands are looked for in short expressions alone: a chain of n sums would cost n² steps.
+        let is_short = index < written::LONGEST;
+        if !is_short || !self.is_large(a) && !self.is_large(b) {
             return Ok(());
         }
         let Some(operands) = written::operands(code, index, 2) else { return Ok(()) };

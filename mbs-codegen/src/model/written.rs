@@ -3,7 +3,7 @@
 use crate::syntax::ast::{Instruction, Operation, Operator};
 
 /// Most instructions of an expression that a message quotes.
-const LONGEST: usize = 40;
+pub const LONGEST: usize = 40;
 
 /// Index of the first instruction of the value that the one at `end` completes.
 pub fn start(code: &[Instruction], end: usize) -> Option<usize> {
