@@ -14,7 +14,7 @@ use super::resolver::{LoopFrame, Pass, Resolver};
 use super::unit_faults::Place;
 use super::units::Dimension;
 use super::value::{Fault, Reach, Value};
-use super::{Model, Output, VariableKind, declarations, inputs, undeclared, unit_faults, unused_elements};
+use super::{Model, Output, VariableKind, declarations, inputs, undeclared, unit_cures, unused_elements};
 use crate::diagnostics::Diagnostics;
 use crate::syntax::ast::{Element, Expression, Loop, Name, Statement, StatementKind, Type, Unit};
 
@@ -29,7 +29,7 @@ pub fn resolve(
 ) -> (Model, Names) {
     let (model, mut names) = resolved_beside(statements, elsewhere, diagnostics);
     undeclared::explain(statements, &mut names, diagnostics);
-    unit_faults::explain(statements, &mut names, diagnostics);
+    unit_cures::explain(statements, &mut names, diagnostics);
     (model, names)
 }
 

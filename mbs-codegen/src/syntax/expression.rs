@@ -3,7 +3,8 @@
 use proc_macro2::Span;
 
 use super::ast::{Expression, Instruction, Name, Operation, Operator, Target};
-use super::foreign::{self, Around, CALLED};
+use super::foreign::{self, CALLED};
+use super::missing::{self, Around};
 use super::number::{literal, number};
 use super::parser::{GivenUp, Parser, Read};
 use super::tokens::TokenKind;
@@ -354,8 +355,8 @@ impl Reader {
         self.reduce(0, true);
         let close = matches!(parser.peek(), TokenKind::Close(_));
         match self.pending.pop() {
-            None if foreign::at_second_operand(parser) => {
-                return foreign::second_operand(parser, Around::Nothing);
+            None if missing::at_second_operand(parser) => {
+                return missing::second_operand(parser, Around::Nothing);
             }
             None => return Ok(None),
             Some(Pending::SumLow { variable, span }) if parser.at_pair('.', '.') => {
@@ -374,13 +375,13 @@ impl Reader {
                 return Ok(Some(true));
             }
             Some(Pending::SumLow { .. } | Pending::SumHigh { .. }) => return parser.expected("a range", SUM),
-            Some(bracket) if !close && foreign::at_second_operand(parser) => {
+            Some(bracket) if !close && missing::at_second_operand(parser) => {
                 let around = match bracket {
                     Pending::Array { .. } => Around::Array,
                     Pending::Call { .. } => Around::Call,
                     _ => Around::Nothing,
                 };
-                return foreign::second_operand(parser, around);
+                return missing::second_operand(parser, around);
             }
             Some(_) if !close => {
                 return parser

@@ -3,8 +3,8 @@
 use proc_macro2::Span;
 
 use super::parser::{GivenUp, Parser, Read, doc_attribute};
-use super::picture;
-use super::source::layout;
+use super::quotation::{length_of_group, operand_before, operand_behind, quoted, until_end};
+use super::statement::at_statement;
 use super::tokens::{Token, TokenKind};
 use crate::diagnostics::Diagnostics;
 
@@ -49,9 +49,6 @@ pub const CALLED: [&str; 32] = [
     "der",
     "der2",
 ];
-
-/// Words that may follow an expression.
-const BEHIND: [&str; 6] = ["on", "of", "at", "rate", "and", "or"];
 
 /// Before: flat tokens. After: the same without comments that begin with `#` or `%`, the first of which is reported.
 pub fn without_comments(tokens: Vec<Token>, diagnostics: &mut Diagnostics) -> Vec<Token> {
@@ -124,99 +121,6 @@ fn length_of_comment(rest: &[Token]) -> usize {
         token.span.start().line == line
     };
     rest.iter().take_while(is_inside).count().max(1)
-}
-
-/// Tokens of the operand that ends just before the cursor: a number, a name with indices, a call, a bracket.
-fn operand_before<'a>(parser: &Parser<'a>) -> &'a [Token] {
-    let before = parser.before();
-    let mut from = before.len();
-    loop {
-        let Some(last) = from.checked_sub(1).and_then(|index| before.get(index)) else { break };
-        let is_index = |at: usize| {
-            at.checked_sub(1)
-                .and_then(|dot| before.get(dot))
-                .is_some_and(|token| matches!(token.kind, TokenKind::Punctuation('.', _)))
-        };
-        match last.kind {
-            TokenKind::Close(_) => {
-                let Some(open) = matching_open(before, from - 1) else { break };
-                from = open;
-                // A call or an index has its name before the bracket.
-                let name = from.checked_sub(1).and_then(|index| before.get(index));
-                match name.map(|token| &token.kind) {
-                    Some(TokenKind::Identifier(_)) => from -= 1,
-                    Some(TokenKind::Close(')' | ']')) => continue,
-                    _ => {}
-                }
-                break;
-            }
-            TokenKind::Literal(_) if is_index(from - 1) => from -= 2,
-            TokenKind::Literal(_) | TokenKind::Identifier(_) => {
-                from -= 1;
-                break;
-            }
-            _ => break,
-        }
-    }
-    before.get(from..).unwrap_or_default()
-}
-
-/// Index of the bracket that the one at `close` closes.
-fn matching_open(tokens: &[Token], close: usize) -> Option<usize> {
-    let mut depth = 0_usize;
-    for index in (0..=close).rev() {
-        match tokens.get(index)?.kind {
-            TokenKind::Close(_) => depth += 1,
-            TokenKind::Open(_) => depth = depth.checked_sub(1)?,
-            _ => {}
-        }
-        if depth == 0 {
-            return Some(index);
-        }
-    }
-    None
-}
-
-/// Tokens of the operand that begins at the cursor.
-fn operand_behind<'a>(parser: &Parser<'a>) -> &'a [Token] {
-    let rest = parser.rest();
-    let kind = |index: usize| rest.get(index).map(|token| &token.kind);
-    let mut to = usize::from(matches!(kind(0), Some(TokenKind::Identifier(_) | TokenKind::Literal(_))));
-    loop {
-        match (kind(to), kind(to + 1)) {
-            (Some(TokenKind::Open('(' | '[')), _) => {
-                to += length_of_group(rest.get(to..).unwrap_or_default())
-            }
-            (Some(TokenKind::Punctuation('.', _)), Some(TokenKind::Literal(_))) => to += 2,
-            _ => return rest.get(..to).unwrap_or_default(),
-        }
-    }
-}
-
-/// Number of tokens of the bracket that begins here.
-fn length_of_group(tokens: &[Token]) -> usize {
-    let mut depth = 0_usize;
-    for (index, token) in tokens.iter().enumerate() {
-        match token.kind {
-            TokenKind::Open(_) => depth += 1,
-            TokenKind::Close(_) => depth = depth.saturating_sub(1),
-            TokenKind::End => return index,
-            _ => {}
-        }
-        if depth == 0 {
-            return index + 1;
-        }
-    }
-    tokens.len()
-}
-
-/// Most characters of a part of the text that a cure quotes.
-const LONGEST: usize = 60;
-
-/// Part of the text as written, in one line; `…` where it is long.
-pub fn quoted(tokens: &[Token]) -> String {
-    let text = layout(tokens).split_whitespace().collect::<Vec<_>>().join(" ");
-    if text.chars().count() > LONGEST { "…".into() } else { text }
 }
 
 /// Reports `**`, which is at the cursor.
@@ -319,66 +223,13 @@ pub fn condition<T>(parser: &mut Parser<'_>) -> Read<T> {
                 parser.skip(1);
                 parser.skip_group();
                 // A statement ends with its braces, unless another case follows.
-                if *bracket == '{' && super::statement::at_statement(parser) {
+                if *bracket == '{' && at_statement(parser) {
                     return Err(GivenUp);
                 }
             }
             _ => parser.skip(1),
         }
     }
-}
-
-/// `true` if an operand begins where an expression has ended, and no word that may follow one.
-pub fn at_second_operand(parser: &Parser<'_>) -> bool {
-    match parser.peek() {
-        TokenKind::Identifier(word) => {
-            let may_follow = BEHIND.contains(&word.as_str()) || picture::is_word(word);
-            !may_follow && !super::statement::at_statement(parser)
-        }
-        TokenKind::Literal(_) | TokenKind::Open('(') => true,
-        _ => false,
-    }
-}
-
-/// Bracket around two operands without an operator between them.
-#[derive(Clone, Copy, PartialEq)]
-pub enum Around {
-    Nothing,
-    Array,
-    Call,
-}
-
-/// Reports an operand at the cursor that follows another one without an operator.
-pub fn second_operand<T>(parser: &mut Parser<'_>, around: Around) -> Read<T> {
-    let (first, second) = (operand_before(parser), operand_behind(parser));
-    let (left, right, span) = (quoted(first), quoted(second), parser.span());
-    let name = match first {
-        [Token { kind: TokenKind::Identifier(name), .. }] => name.as_str(),
-        _ => "",
-    };
-    let (message, help) = if CALLED.contains(&name) {
-        let argument = match second {
-            [Token { kind: TokenKind::Open('('), .. }, ..] => right,
-            _ => format!("({right})"),
-        };
-        (
-            format!("`{name}` is a function, its argument stands in parentheses"),
-            format!("write `{name}{argument}`"),
-        )
-    } else if around == Around::Array {
-        let message = format!("a comma is missing between `{left}` and `{right}`");
-        (message, format!("write `[{left}, {right}]` for two components, `{left}*{right}` for a product"))
-    } else if around == Around::Call {
-        let message = format!("an operator or a comma is missing between `{left}` and `{right}`");
-        (message, format!("write `{left}*{right}` for a product, `{left}, {right}` for two arguments"))
-    } else {
-        (
-            format!("an operator is missing between `{left}` and `{right}`"),
-            format!("write `{left}*{right}` for a product"),
-        )
-    };
-    parser.diagnostics.report(span, message, help);
-    Err(GivenUp)
 }
 
 /// Reports `math.sin(…)` or `phi.sin()`: `word` is the function at the cursor, `owner` the name before the dot.
@@ -412,41 +263,6 @@ pub fn takes_value(parser: &mut Parser<'_>) -> bool {
         format!("a declaration sets its value with one `=`: `= {value};`"),
     );
     true
-}
-
-/// Tokens up to the end of the statement, outside of brackets.
-fn until_end<'a>(parser: &Parser<'a>) -> &'a [Token] {
-    let rest = parser.rest();
-    let mut depth = 0_usize;
-    let inside = rest.iter().take_while(|token| match token.kind {
-        TokenKind::End => false,
-        TokenKind::Punctuation(';', _) if depth == 0 => false,
-        TokenKind::Open(_) => {
-            depth += 1;
-            true
-        }
-        TokenKind::Close(_) => {
-            let inside = depth > 0;
-            depth = depth.saturating_sub(1);
-            inside
-        }
-        _ => true,
-    });
-    let length = inside.count();
-    rest.get(..length).unwrap_or_default()
-}
-
-/// Reports that the `;` of a statement is missing where the next one begins: behind the last token.
-pub fn missing_semicolon(parser: &mut Parser<'_>) {
-    let operand = quoted(operand_before(parser));
-    let Some(last) = parser.before().last() else { return };
-    let last_word =
-        if operand.is_empty() || operand == "…" { quoted(std::slice::from_ref(last)) } else { operand };
-    parser.diagnostics.report(
-        last.span,
-        format!("`;` is missing behind `{last_word}`"),
-        format!("write `{last_word};`"),
-    );
 }
 
 /// Reports `mut` of Rust, which is at the cursor; the tokens behind are those of a `let`.
@@ -510,100 +326,5 @@ pub fn two_conditions<T>(parser: &mut Parser<'_>, name: &str, condition: &[Token
         }
     };
     parser.diagnostics.report(span, "a branch has one condition", help);
-    Err(GivenUp)
-}
-
-/// Names of effects up to the end of a scene that does not add them with `+`, which is reported at the cursor.
-pub fn effects_without_plus(parser: &mut Parser<'_>, scene: &str, known: &[&str]) -> Vec<(String, Span)> {
-    let span = parser.span();
-    let is_end = |kind: &TokenKind| {
-        matches!(kind, TokenKind::End | TokenKind::Punctuation(';', _) | TokenKind::Open('{'))
-    };
-    let mut found = Vec::new();
-    while !is_end(parser.peek()) {
-        if let TokenKind::Identifier(name) = parser.peek() {
-            found.push((name.clone(), parser.span()));
-        }
-        parser.skip(1);
-    }
-    let names: Vec<&str> = known.iter().copied().chain(found.iter().map(|(name, _)| name.as_str())).collect();
-    parser.diagnostics.report(
-        span,
-        "effects of a scene are added with `+`",
-        format!("write `scene {scene} = {};`", names.join(" + ")),
-    );
-    found
-}
-
-/// Reports `,` behind the name of a declaration, and takes the names behind it.
-pub fn more_names(parser: &mut Parser<'_>, word: &str, first: &str) -> Vec<(String, Span)> {
-    let span = parser.span();
-    let mut names = Vec::new();
-    while matches!(parser.peek(), TokenKind::Punctuation(',', _))
-        && let TokenKind::Identifier(name) = parser.peek_at(1)
-    {
-        parser.skip(1);
-        names.push((name.clone(), parser.span()));
-        parser.skip(1);
-    }
-    let rest = quoted(until_end(parser));
-    let statement = |name: &str| match rest.as_str() {
-        "…" => format!("{word} {name}: …;"),
-        _ if rest.starts_with(':') => format!("{word} {name}{rest};"),
-        _ => format!("{word} {name} {rest};"),
-    };
-    let written: Vec<String> =
-        std::iter::once(first).chain(names.iter().map(|(name, _)| name.as_str())).map(statement).collect();
-    parser.diagnostics.report(span, "a declaration has one name", format!("write `{}`", written.join(" ")));
-    names
-}
-
-/// Names behind commas in the rest of a declaration that was given up: `param r = 1, l = 2;`.
-pub fn names_to_end(parser: &Parser<'_>) -> Vec<(String, Span)> {
-    let rest = until_end(parser);
-    let mut depth = 0_usize;
-    let mut names = Vec::new();
-    for window in rest.windows(3) {
-        let [comma, name, sign] = window else { continue };
-        match comma.kind {
-            TokenKind::Open(_) => depth += 1,
-            TokenKind::Close(_) => depth = depth.saturating_sub(1),
-            TokenKind::Punctuation(',', _) if depth == 0 => {
-                if let (TokenKind::Identifier(text), TokenKind::Punctuation(':' | '=' | ',', _)) =
-                    (&name.kind, &sign.kind)
-                {
-                    names.push((text.clone(), name.span));
-                }
-            }
-            _ => {}
-        }
-    }
-    names
-}
-
-/// Reports a declaration without a unit, whose `=` is at the cursor.
-pub fn no_unit<T>(parser: &mut Parser<'_>, word: &str, name: &str) -> Read<T> {
-    let span = parser.span();
-    let rest = parser.rest().get(1..).unwrap_or_default();
-    let length = rest
-        .iter()
-        .take_while(|token| !matches!(token.kind, TokenKind::Punctuation(';' | ',', _) | TokenKind::End))
-        .count();
-    let value = rest.get(..length).unwrap_or_default();
-    let unit = match value {
-        [Token { kind: TokenKind::Literal(text), .. }] => {
-            let suffix = text.trim_start_matches(|c: char| c.is_ascii_digit() || matches!(c, '.' | '_'));
-            super::unit_symbols::coherent_unit(suffix)
-        }
-        _ => None,
-    };
-    let unit = unit.unwrap_or("1");
-    let is_last = !matches!(rest.get(length).map(|token| &token.kind), Some(TokenKind::Punctuation(',', _)));
-    let others = if is_last { "" } else { ", and each further one in a statement of its own" };
-    parser.diagnostics.report(
-        span,
-        format!("`{name}` has no unit"),
-        format!("write `{word} {name}: {unit} = {};`{others}", quoted(value)),
-    );
     Err(GivenUp)
 }

@@ -3,7 +3,8 @@
 use proc_macro2::Span;
 
 use super::ast::{Declares, Name, StatementKind, Type};
-use super::foreign::{self, quoted};
+use super::missing;
+use super::quotation::quoted;
 use super::tokens::{Token, TokenKind};
 use crate::diagnostics::Diagnostics;
 
@@ -131,19 +132,19 @@ impl<'a> Parser<'a> {
             && matches!(self.peek(), TokenKind::Punctuation(',', _))
             && matches!(self.peek_at(1), TokenKind::Identifier(_))
         {
-            others = foreign::more_names(self, &word, &name.text);
+            others = missing::more_names(self, &word, &name.text);
         }
         let mut kind = None;
         let begin = self.next;
         let read = match self.peek() {
             TokenKind::Punctuation('=', _) if declares != Declares::Element && word != "let" => {
-                foreign::no_unit(self, &word, &name.text)
+                missing::no_unit(self, &word, &name.text)
             }
             _ => read(self, &mut kind),
         };
         if read.is_err() {
             let end = std::mem::replace(&mut self.next, begin);
-            others.extend(foreign::names_to_end(self));
+            others.extend(missing::names_to_end(self));
             self.next = end;
             self.faulty.push(StatementKind::Faulty { name: name.clone(), declares, kind: kind.clone() });
         }

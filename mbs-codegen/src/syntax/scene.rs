@@ -3,7 +3,7 @@
 use proc_macro2::Span;
 
 use super::ast::{Name, StatementKind};
-use super::foreign;
+use super::missing;
 use super::parser::{GivenUp, Parser, Read};
 use super::statement::{at_statement, end};
 use super::tokens::TokenKind;
@@ -56,7 +56,7 @@ fn read_effects(parser: &mut Parser<'_>, scene: &str, effects: &mut Vec<Name>) -
         || matches!(parser.peek(), TokenKind::Punctuation(',' | '&' | '|', _));
     if is_list && !at_statement(parser) {
         let known: Vec<&str> = effects.iter().map(|name| name.text.as_str()).collect();
-        let more = foreign::effects_without_plus(parser, scene, &known);
+        let more = missing::effects_without_plus(parser, scene, &known);
         effects.extend(more.into_iter().map(|(text, span)| Name { text, span }));
     }
     if parser.take('{') {

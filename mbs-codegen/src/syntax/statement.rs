@@ -9,6 +9,7 @@ use super::dynamics;
 use super::expression::{closed_range, expression};
 use super::foreign;
 use super::keywords::{LATER, STATEMENTS};
+use super::missing;
 use super::parser::{DOC_ATTRIBUTE, GivenUp, Parser, Read, doc_attribute};
 use super::picture;
 use super::scene::{Open, read_effect, read_scene};
@@ -121,7 +122,7 @@ pub fn end(parser: &mut Parser<'_>, help: &str) -> Read<()> {
         return Ok(());
     }
     if at_statement(parser) {
-        foreign::missing_semicolon(parser);
+        missing::missing_semicolon(parser);
         return Ok(());
     }
     match parser.peek() {
