@@ -58,13 +58,14 @@ impl Resolver<'_> {
             work.beside_angle((&right, of_right), of_left)?;
             work.same_shape(&left, &right, "`==`", right.span)?;
             let pairs = left.items.iter().zip(&right.items).enumerate();
-            let sides = |component: usize| {
-                let of = |side: &Expression| component_of(side, component);
-                (of(&equation.right), of(&equation.left))
-            };
             let residuals = pairs.map(|(component, (a, b))| {
-                let (right, left) = sides(component);
-                work.concerning(Place::Sides, (&right, Some(&left)), |work| residual(work, *a, *b, span))
+                let known = work.names.unit_faults.len();
+                let residual = residual(work, *a, *b, span);
+                if residual.is_err() {
+                    let sides = [of_right, of_left].map(|side| component_of(side, component));
+                    work.concern(known, Place::Sides, sides[0], sides[1]);
+                }
+                residual
             });
             residuals.collect::<Result<Vec<_>, Fault>>()
         })?;
@@ -119,15 +120,14 @@ fn residual(work: &mut Elaborator<'_>, a: Scalar, b: Scalar, span: Span) -> Resu
 }
 
 /// The component of a vector that is written out; of any other expression the whole.
-fn component_of(side: &Expression, component: usize) -> Expression {
-    let whole = || side.clone();
-    match side.code.split_last() {
+fn component_of(side: &[Instruction], component: usize) -> &[Instruction] {
+    match side.split_last() {
         Some((Instruction { operation: Operation::Array { length }, .. }, parts)) => {
             operands(parts, parts.len(), *length)
-                .and_then(|parts| parts.get(component).map(|part| Expression { code: part.to_vec() }))
-                .unwrap_or_else(whole)
+                .and_then(|parts| parts.get(component).copied())
+                .unwrap_or(side)
         }
-        _ => whole(),
+        _ => side,
     }
 }
 

@@ -81,14 +81,20 @@ impl Elaborator<'_> {
         let before = self.names.unit_faults.len();
         let result = check(self);
         if result.is_err() {
-            for fault in self.names.unit_faults.iter_mut().skip(before).filter(|fault| !fault.settled) {
-                fault.place = place.clone();
-                fault.operand = component_at(&operand.code, fault.span).to_vec();
-                fault.other = other.map(|other| other.code.clone()).unwrap_or_default();
-                fault.settled = true;
-            }
+            let other = other.map_or(&[][..], |other| &other.code);
+            self.concern(before, place, &operand.code, other);
         }
         result
+    }
+
+    /// The faults of units from the one at `first` on concern this place, this expression and the one on the other side.
+    pub fn concern(&mut self, first: usize, place: Place, operand: &[Instruction], other: &[Instruction]) {
+        for fault in self.names.unit_faults.iter_mut().skip(first).filter(|fault| !fault.settled) {
+            fault.place = place.clone();
+            fault.operand = component_at(operand, fault.span).to_vec();
+            fault.other = other.to_vec();
+            fault.settled = true;
+        }
     }
 
     /// Names the operands of the instruction at `index`, in which the units from the one at `first` on do not fit.
