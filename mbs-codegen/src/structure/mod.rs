@@ -294,6 +294,9 @@ pub fn shape_of(model: &Model) -> (bool, bool) {
     if model.dynamics.is_none() {
         return (true, false);
     }
+    if !model.rows.iter().any(|row| row.redundant) {
+        return (model.rows.len() == model.coordinates.len(), false);
+    }
     let rows: Vec<Vec<usize>> = model.rows.iter().map(|row| coordinates_of(model, row.residual)).collect();
     let matching = matching::match_in_order(&rows, model.coordinates.len(), surplus::order(model));
     let square = matching.free_columns().next().is_none();
