@@ -201,12 +201,27 @@ pub fn percent<T>(parser: &mut Parser<'_>) -> Read<T> {
 
 const NO_IF: &str = "declare what decides as an input, `input command: rad, rates;`, or a law of the caller, `function law: rad(s), C2;`";
 
+/// Words that begin a choice.
+const CHOICES: [&str; 5] = ["if", "match", "when", "switch", "case"];
+/// Words that join conditions.
+const CONJUNCTIONS: [&str; 2] = ["and", "or"];
+
+/// `true` if the next token is one of these words, none of which is of the language.
+fn at_one_of(parser: &Parser<'_>, words: &[&str]) -> bool {
+    matches!(parser.peek(), TokenKind::Identifier(word) if words.contains(&word.as_str()))
+}
+
+/// `true` at the `mut` of Rust before a name.
+pub fn at_mutable(parser: &Parser<'_>) -> bool {
+    at_one_of(parser, &["mut"]) && matches!(parser.peek_at(1), TokenKind::Identifier(_))
+}
+
 /// `true` at a word or mark that begins a condition in other languages; a text may declare the words as names.
 pub fn at_condition(parser: &Parser<'_>) -> bool {
-    let is_choice = ["if", "match", "when", "switch", "case"].into_iter().any(|word| parser.at_word(word));
+    let is_choice = at_one_of(parser, &CHOICES);
     match parser.peek_at(1) {
         TokenKind::Identifier(_) | TokenKind::Literal(_) if is_choice => true,
-        TokenKind::Open('(') => parser.at_word("if"),
+        TokenKind::Open('(') => at_one_of(parser, &["if"]),
         _ => matches!(parser.peek(), TokenKind::Punctuation('?', _)),
     }
 }
@@ -293,8 +308,7 @@ pub fn no_inequality<T>(parser: &mut Parser<'_>, name: &str, left: &[Token]) -> 
 
 /// `true` at a word or sign that joins two conditions.
 pub fn at_conjunction(parser: &Parser<'_>) -> bool {
-    parser.at_word("and")
-        || parser.at_word("or")
+    at_one_of(parser, &CONJUNCTIONS)
         || parser.at_pair('&', '&')
         || parser.at_pair('|', '|')
         || matches!(parser.peek(), TokenKind::Punctuation('<' | '>' | ',', _))
@@ -303,7 +317,7 @@ pub fn at_conjunction(parser: &Parser<'_>) -> bool {
 /// Reports a second condition of a branch, whose first one is `condition`.
 pub fn two_conditions<T>(parser: &mut Parser<'_>, name: &str, condition: &[Token]) -> Read<T> {
     let span = parser.span();
-    let either = parser.at_word("or") || parser.at_pair('|', '|');
+    let either = at_one_of(parser, &["or"]) || parser.at_pair('|', '|');
     let chained = matches!(parser.peek(), TokenKind::Punctuation('<' | '>', _));
     let condition = quoted(condition);
     if chained {
@@ -311,11 +325,7 @@ pub fn two_conditions<T>(parser: &mut Parser<'_>, name: &str, condition: &[Token
         parser.diagnostics.report(span, "a branch has one `<` or `>`", help);
         return Err(GivenUp);
     }
-    parser.skip(if parser.at_word("and") || parser.at_word("or") || parser.at_pair(',', ',') {
-        1
-    } else {
-        2
-    });
+    parser.skip(if at_one_of(parser, &CONJUNCTIONS) || parser.at_pair(',', ',') { 1 } else { 2 });
     let second = quoted(until_end(parser));
     let help = match either {
         true => {

@@ -328,7 +328,7 @@ fn continuity(parser: &mut Parser<'_>) -> Read<u8> {
 
 const LET: &str = "write `let a = [L1*cos(phi1), L1*sin(phi1)];`";
 fn read_let(parser: &mut Parser<'_>) -> Read<StatementKind> {
-    if parser.at_word("mut") && matches!(parser.peek_at(1), TokenKind::Identifier(_)) {
+    if foreign::at_mutable(parser) {
         foreign::mutable(parser);
         let name = parser.name(LET)?;
         parser.faulty.push(StatementKind::Faulty { name, declares: Declares::Value, kind: None });
