@@ -4,10 +4,10 @@ use proc_macro2::Span;
 
 use super::elaborator::Elaborator;
 use super::expression::Node;
-use super::undeclared::OF_ANGLES;
 use super::unit_faults::{Place, UnitOf};
 use super::unit_inference::Bare;
 use super::units::Dimension;
+use super::uses::OF_ANGLES;
 use super::value::{Fault, Quantity, Scalar, Value};
 use crate::symbolic::{Binary, Unary};
 use crate::syntax::ast::Operator;

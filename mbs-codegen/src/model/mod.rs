@@ -49,6 +49,7 @@ mod unit_trials;
 pub mod units;
 mod unknown_names;
 mod unused_elements;
+mod uses;
 pub mod value;
 mod vanishing;
 mod width;

@@ -4,10 +4,10 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use proc_macro2::Span;
 
-use super::undeclared::{Undeclared, Uses};
 use super::unit_faults::UnitFault;
 use super::unit_inference::Bare;
 use super::units::Dimension;
+use super::uses::{Undeclared, Uses};
 use super::value::{Reach, Value};
 use crate::diagnostics::Diagnostics;
 use crate::symbolic::Unary;

@@ -13,13 +13,14 @@ use super::names::{Names, Rows, Symbol};
 use super::resolver::{LoopFrame, Pass, Resolver};
 use super::unit_faults::Place;
 use super::units::Dimension;
+use super::uses::uses;
 use super::value::{Fault, Reach, Value};
-use super::{Model, Output, VariableKind, declarations, inputs, undeclared, unit_cures, unused_elements};
+use super::{Model, Output, VariableKind, declarations, inputs, unused_elements};
 use crate::diagnostics::Diagnostics;
 use crate::syntax::ast::{Element, Expression, Loop, Name, Statement, StatementKind, Type, Unit};
 
 /// Before: statements as written. After: the resolved model and the meaning of its names; every fault of meaning is reported
-/// once, with its cure.
+/// once. Undeclared names and faults of units are kept with the names: their cures need the text as a whole.
 ///
 /// `elsewhere`: names that effects declare which the scene does not select, with these effects.
 pub fn resolve(
@@ -27,25 +28,9 @@ pub fn resolve(
     elsewhere: BTreeMap<String, String>,
     diagnostics: &mut Diagnostics,
 ) -> (Model, Names) {
-    let (model, mut names) = resolved_beside(statements, elsewhere, diagnostics);
-    undeclared::explain(statements, &mut names, diagnostics);
-    unit_cures::explain(statements, &mut names, diagnostics);
-    (model, names)
-}
-
-/// As [`resolve`]; undeclared names and faults of units are kept with the names, too.
-pub fn resolved(statements: &[Statement], diagnostics: &mut Diagnostics) -> (Model, Names) {
-    resolved_beside(statements, BTreeMap::new(), diagnostics)
-}
-
-fn resolved_beside(
-    statements: &[Statement],
-    elsewhere: BTreeMap<String, String>,
-    diagnostics: &mut Diagnostics,
-) -> (Model, Names) {
     let mut model = Model::default();
     let mut names = Names::default();
-    names.uses = undeclared::uses(statements);
+    names.uses = uses(statements);
     names.note_faulty(statements);
     names.elsewhere = elsewhere;
     declarations::declare(statements, &mut model, &mut names, diagnostics);

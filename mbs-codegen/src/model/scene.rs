@@ -4,6 +4,7 @@ use super::Model;
 use super::names::Names;
 use super::resolve::resolve;
 use super::selection::Selection;
+use super::{undeclared, unit_cures};
 use crate::diagnostics::Diagnostics;
 use crate::syntax::ast::Name;
 
@@ -27,7 +28,9 @@ impl Scene {
     pub(super) fn resolve(selection: Selection) -> Self {
         let Selection { name, docs, elsewhere, is_whole, effects, statements } = selection;
         let mut faults = Diagnostics::default();
-        let (model, names) = resolve(&statements, elsewhere, &mut faults);
+        let (model, mut names) = resolve(&statements, elsewhere, &mut faults);
+        undeclared::explain(&statements, &mut names, &mut faults);
+        unit_cures::explain(&statements, &mut names, &mut faults);
         if !is_whole {
             faults = Diagnostics::default();
         }

@@ -5,35 +5,15 @@ use std::collections::BTreeMap;
 use proc_macro2::Span;
 
 use super::names::{CONSTANTS, Names, functions};
-use super::resolve::resolved;
+use super::resolve::resolve;
 use super::unit_faults::parsed;
+use super::uses::{OF_ANGLES, Undeclared};
 use super::written::{operands, start, written};
 use crate::diagnostics::{Diagnostics, nearest};
 use crate::syntax::ast::{
     Expression, Instruction, Name, Operation, Signature, Statement, StatementKind, Type,
 };
 use crate::syntax::unit_symbols::DOTS;
-
-/// Number of uses of each name, and the first place.
-pub type Uses = BTreeMap<String, (usize, Span)>;
-
-/// Uses of all names of values and functions in the expressions of statements.
-pub fn uses(statements: &[Statement]) -> Uses {
-    let mut found = Uses::new();
-    let place = |span: Span| (span.start().line, span.start().column);
-    for expression in statements.iter().flat_map(|statement| statement.kind.expressions()) {
-        for Instruction { operation, span } in &expression.code {
-            if let Operation::Name(name) | Operation::Call { function: name, .. } = operation {
-                let (count, first) = found.entry(name.clone()).or_insert((0, *span));
-                *count += 1;
-                if place(*span) < place(*first) {
-                    *first = *span;
-                }
-            }
-        }
-    }
-    found
-}
 
 /// Values of the language by other names.
 const OTHER_NAMES: [(&str, &str); 13] = [
@@ -96,15 +76,6 @@ fn is_sibling(name: &str, other: &str) -> bool {
     let stem = |text: &str| text.chars().filter(|c| !c.is_ascii_digit()).collect::<String>();
     let numbered = |text: &str| text.chars().any(|c| c.is_ascii_digit());
     name != other && numbered(name) && numbered(other) && stem(name) == stem(other)
-}
-
-/// A name that was reported, and the message.
-#[derive(Clone, Debug)]
-pub struct Undeclared {
-    pub name: String,
-    pub span: Span,
-    pub message: String,
-    pub is_function: bool,
 }
 
 /// Units that a name may have, those first that are met most.
@@ -254,7 +225,7 @@ fn leaves_no_fault(statements: &[Statement], kind: StatementKind, others: usize)
     let mut tried = statements.to_vec();
     tried.push(Statement { docs: Vec::new(), kind });
     let mut diagnostics = Diagnostics::default();
-    let (_, names) = resolved(&tried, &mut diagnostics);
+    let (_, names) = resolve(&tried, BTreeMap::new(), &mut diagnostics);
     names.unit_faults.is_empty() && diagnostics.number() <= others
 }
 
@@ -278,9 +249,6 @@ fn fitting(statements: &[Statement], name: &str, others: usize) -> Option<&'stat
     let first = fitting.next();
     first.filter(|_| fitting.next().is_none())
 }
-
-/// Functions of angles.
-pub const OF_ANGLES: [&str; 5] = ["sin", "cos", "tan", "unit", "rot"];
 
 /// `true` if the name stands in the argument of a function of angles.
 fn is_in_angle(statements: &[Statement], name: &str) -> bool {

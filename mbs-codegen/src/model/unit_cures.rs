@@ -5,7 +5,7 @@
 use proc_macro2::Span;
 
 use super::names::Names;
-use super::unit_faults::{Place, UnitFault, UnitOf};
+use super::unit_faults::{Place, UnitFault, UnitOf, count};
 use super::unit_trials::Declarations;
 use super::units::Dimension;
 use super::written::{Factor, factors, number, with_unit, written};
@@ -60,18 +60,6 @@ pub fn explain(statements: &[Statement], names: &mut Names, diagnostics: &mut Di
             diagnostics.report(span, work.message(fault), help);
         }
     }
-}
-
-/// Number of the faults that were reported: in a loop some are reported once and found several times.
-pub fn count(faults: &[UnitFault], diagnostics: &Diagnostics) -> usize {
-    let mut places: Vec<_> = faults
-        .iter()
-        .filter(|fault| diagnostics.holds(fault.span, &fault.message))
-        .map(|fault| (fault.span.start().line, fault.span.start().column, fault.message.as_str()))
-        .collect();
-    places.sort_unstable();
-    places.dedup();
-    places.len()
 }
 
 type Cure = (Span, String);

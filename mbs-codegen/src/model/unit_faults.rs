@@ -6,6 +6,7 @@ use super::unit_inference::Bare;
 use super::units::Dimension;
 use super::value::Scalar;
 use super::written::operands;
+use crate::diagnostics::Diagnostics;
 use crate::syntax::ast::{Instruction, Name, Operation, Unit};
 
 /// Kind of place at which a unit does not fit.
@@ -124,4 +125,16 @@ pub fn parsed(text: &str, span: Span) -> Option<Unit> {
         rest = behind.get(1..)?;
     }
     Some(Unit { factors, text: text.to_owned(), span })
+}
+
+/// Number of the faults that were reported: in a loop some are reported once and found several times.
+pub fn count(faults: &[UnitFault], diagnostics: &Diagnostics) -> usize {
+    let mut places: Vec<_> = faults
+        .iter()
+        .filter(|fault| diagnostics.holds(fault.span, &fault.message))
+        .map(|fault| (fault.span.start().line, fault.span.start().column, fault.message.as_str()))
+        .collect();
+    places.sort_unstable();
+    places.dedup();
+    places.len()
 }
