@@ -51,7 +51,7 @@ const LEAST_SHOWN: usize = 240;
 /// Mechanism, its parameters and the files to write: options of every analysis.
 #[derive(Args, Clone, Default)]
 pub struct Selection {
-    /// Name of the mechanism, as `mbs list` prints it
+    /// Name of the mechanism, as `mbs list` prints it, or a file with its text: FILE, FILE:Name, FILE:Name:Scene
     name: String,
     /// Set a parameter, in the unit that `mbs list` prints
     #[arg(long = "param", value_name = "NAME=VALUE", value_parser = assignment)]
@@ -98,7 +98,7 @@ pub struct Integration {
 #[derive(Args)]
 pub struct MotionArguments {
     #[command(flatten)]
-    selection: Selection,
+    pub selection: Selection,
     #[command(flatten)]
     span: Span,
     #[command(flatten)]
@@ -109,7 +109,7 @@ pub struct MotionArguments {
 #[derive(Args)]
 pub struct DrivenArguments {
     #[command(flatten)]
-    selection: Selection,
+    pub selection: Selection,
     #[command(flatten)]
     span: Span,
 }
@@ -118,7 +118,7 @@ pub struct DrivenArguments {
 #[derive(Args)]
 pub struct EquilibriumArguments {
     #[command(flatten)]
-    selection: Selection,
+    pub selection: Selection,
     /// Start the search for the equilibrium from another value of a coordinate, in the unit of the text
     #[arg(long = "guess", value_name = "NAME=VALUE", value_parser = assignment)]
     guesses: Vec<(String, f64)>,
@@ -128,7 +128,7 @@ pub struct EquilibriumArguments {
 #[derive(Args)]
 pub struct ModesArguments {
     #[command(flatten)]
-    selection: Selection,
+    pub selection: Selection,
     /// Start the search for the equilibrium from another value of a coordinate, in the unit of the text
     #[arg(long = "guess", value_name = "NAME=VALUE", value_parser = assignment)]
     guesses: Vec<(String, f64)>,
@@ -153,6 +153,13 @@ pub struct Arguments {
     at: Option<f64>,
     span: Span,
     integration: Integration,
+}
+
+impl Selection {
+    /// Name or file as it is written.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
 }
 
 impl Arguments {
