@@ -86,7 +86,9 @@ pub fn calls(rust: &str) -> Result<Vec<Call>, Fault> {
                 }
                 (name, mark) = (false, false);
             }
-            Some(TokenTree::Punct(punctuation)) => (name, mark) = (false, name && punctuation.as_char() == '!'),
+            Some(TokenTree::Punct(punctuation)) => {
+                (name, mark) = (false, name && punctuation.as_char() == '!')
+            }
             Some(TokenTree::Ident(word)) => (name, mark) = (word == "mechanism", false),
             Some(TokenTree::Literal(_)) => (name, mark) = (false, false),
         }

@@ -23,8 +23,7 @@ pub struct Arguments {
 /// Φ, Φ_q, Φ_t and γ, of a mechanism with masses M, Q and the energies too, as a document for `pdflatex`.
 pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut dyn Write) -> Result<(), CommandError> {
     let text = Text::find(catalogue, &arguments.chosen)?;
-    let formulas =
-        mbs_codegen::latex_formulas(&text.source, text.scene()).map_err(CommandError::Failed)?;
+    let formulas = mbs_codegen::latex_formulas(&text.source, text.scene()).map_err(CommandError::Failed)?;
     let dynamic =
         mbs_codegen::latex_dynamic_formulas(&text.source, text.scene()).map_err(CommandError::Failed)?;
     let text = document(&text.values, &formulas, dynamic.as_ref(), &text.title);

@@ -22,7 +22,16 @@ const FILES: [(&str, &str); 7] = [
 
 /// Names of crates that the new one would hide.
 const TAKEN: [&str; 10] = [
-    "alloc", "core", "mbs", "mbs_codegen", "mbs_macros", "mbs_runtime", "mbs_workbench", "proc_macro", "std", "test",
+    "alloc",
+    "core",
+    "mbs",
+    "mbs_codegen",
+    "mbs_macros",
+    "mbs_runtime",
+    "mbs_workbench",
+    "proc_macro",
+    "std",
+    "test",
 ];
 
 /// Names that some systems keep for devices.
@@ -261,7 +270,9 @@ mod tests {
     #[test]
     fn no_name_is_left_open_in_any_file() {
         let names = Names::of("wiper").expect("a name");
-        for source in [Source::Folder("/a b/\"c\"".into()), Source::Repository("https://example.org/mbs".into())] {
+        for source in
+            [Source::Folder("/a b/\"c\"".into()), Source::Repository("https://example.org/mbs".into())]
+        {
             for (path, text) in FILES {
                 let text = source.filled(&names.filled(text));
                 assert!(!text.contains("__"), "{path}: {text}");

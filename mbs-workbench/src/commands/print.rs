@@ -149,11 +149,7 @@ fn write(out: &mut dyn Write, matrix: &Named) -> Result<(), CommandError> {
     Ok(())
 }
 
-fn symbolic_dynamic(
-    rows: &[String],
-    formulas: &mbs_codegen::DynamicFormulas,
-    quantity: Quantity,
-) -> Named {
+fn symbolic_dynamic(rows: &[String], formulas: &mbs_codegen::DynamicFormulas, quantity: Quantity) -> Named {
     let mbs_codegen::DynamicFormulas { coordinates, mass, force, kinetic, potential, .. } = formulas;
     match quantity {
         Quantity::Mass => Named {

@@ -29,10 +29,11 @@ impl Text {
         }
         let described = chosen.described(catalogue)?;
         let mechanism = described.equations();
-        let values = mechanism.variables().iter().enumerate().map(|(index, entry)| Value {
-            unit: entry.unit.to_string(),
-            value: mechanism.get(index),
-        });
+        let values = mechanism
+            .variables()
+            .iter()
+            .enumerate()
+            .map(|(index, entry)| Value { unit: entry.unit.to_string(), value: mechanism.get(index) });
         Ok(Text {
             name: described.target.name().to_string(),
             title: described.target.title().to_string(),

@@ -36,10 +36,10 @@ impl Forge {
         progress: &mut dyn FnMut(&str),
     ) -> Result<PathBuf, ForgeError> {
         progress(&format!("building a program for `{}`", blueprint.name));
-        let mut built = self.cargo_build(folder, true, blueprint.is_closed, progress)?;
+        let mut built = self.cargo_build(folder, true, progress)?;
         if built.program.is_none() && built.errors.is_empty() && built.said.contains("offline") {
             progress("fetching crates");
-            built = self.cargo_build(folder, false, blueprint.is_closed, progress)?;
+            built = self.cargo_build(folder, false, progress)?;
         }
         let Built { program, errors, said } = built;
         if let Some(program) = program {
@@ -58,18 +58,18 @@ impl Forge {
         &self,
         folder: &Path,
         offline: bool,
-        once: bool,
         progress: &mut dyn FnMut(&str),
     ) -> Result<Built, ForgeError> {
         let mut command = Command::new(&self.cargo);
         command.args(["build", "--message-format", "json", "--manifest-path"]).arg(folder.join("Cargo.toml"));
         command.arg("--target-dir").arg(&self.target);
         command.args(offline.then_some("--offline")).args(self.release.then_some("--release"));
-        if once {
-            command.env("CARGO_INCREMENTAL", "0");
-        }
         // Settings of cargo and the toolchain are those of the caller.
-        command.current_dir(&self.workspace).stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
+        command
+            .current_dir(&self.workspace)
+            .stdin(Stdio::null())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped());
         let mut child = command.spawn().map_err(|error| not_started(&self.cargo, &error))?;
         let (output, complaints) = (child.stdout.take(), child.stderr.take());
         let reader = thread::spawn(move || {
@@ -80,7 +80,8 @@ impl Forge {
         });
         let mut built = Built { program: None, errors: Vec::new(), said: String::new() };
         let mut program = None;
-        for line in output.into_iter().flat_map(|output| BufReader::new(output).lines()).map_while(Result::ok) {
+        for line in output.into_iter().flat_map(|output| BufReader::new(output).lines()).map_while(Result::ok)
+        {
             let Ok(message) = serde_json::from_str::<Value>(&line) else { continue };
             match message["reason"].as_str() {
                 Some("compiler-artifact") => {

@@ -85,7 +85,9 @@ impl Forge {
             .or_else(|| Some(own.join("target")).filter(|path| path.is_dir()))
             .unwrap_or_else(target_directory);
         Forge {
-            cargo: std::env::var_os("CARGO").filter(|path| !path.is_empty()).unwrap_or_else(|| "cargo".into()),
+            cargo: std::env::var_os("CARGO")
+                .filter(|path| !path.is_empty())
+                .unwrap_or_else(|| "cargo".into()),
             target: std::path::absolute(&target).unwrap_or(target),
             workspace,
             release: !cfg!(debug_assertions),
@@ -136,28 +138,29 @@ impl Forge {
         if !lock_file.is_empty() && !folder.join("Cargo.lock").is_file() {
             write(&folder.join("Cargo.lock"), &lock_file)?;
         }
-        let built = self.build(&folder, blueprint, progress)?;
+        let built = self.build(&folder, blueprint, progress).inspect_err(|_| {
+            let profile = if self.release { "release" } else { "debug" };
+            clean(&self.target.join(profile), &package);
+        })?;
         let draft = folder.join("program.draft");
         fs::copy(&built, &draft).map_err(|error| cannot_write(&draft, &error))?;
         fs::rename(&draft, &program).map_err(|error| cannot_write(&program, &error))?;
-        if blueprint.is_closed {
-            self.clean(&built, &package);
+        if let (true, Some(profile)) = (blueprint.is_closed, built.parent()) {
+            clean(profile, &package);
         }
         retire(&works, &blueprint.name, &package);
         Ok(program)
     }
+}
 
-    /// Deletes what cargo keeps of a crate that will never be built again.
-    fn clean(&self, built: &Path, package: &str) {
-        let Some(profile) = built.parent() else { return };
-        let crate_name = package.replace('-', "_");
-        for folder in ["", "deps", ".fingerprint"] {
-            let entries = fs::read_dir(profile.join(folder)).into_iter().flatten().flatten();
-            for entry in entries {
-                let name = entry.file_name().to_string_lossy().replace('-', "_");
-                if name.starts_with(&crate_name) {
-                    remove(&entry.path());
-                }
+/// Deletes what cargo keeps of a crate that will not be built again, below the folder of its profile.
+fn clean(profile: &Path, package: &str) {
+    let crate_name = package.replace('-', "_");
+    for folder in ["", "deps", ".fingerprint", "incremental"] {
+        let entries = fs::read_dir(profile.join(folder)).into_iter().flatten().flatten();
+        for entry in entries {
+            if entry.file_name().to_string_lossy().replace('-', "_").starts_with(&crate_name) {
+                remove(&entry.path());
             }
         }
     }

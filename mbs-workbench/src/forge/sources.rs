@@ -69,7 +69,9 @@ mod tests {
     #[test]
     fn the_profiles_of_a_workspace_are_its_tables_of_that_name() {
         let found = profiles(&folder());
-        assert!(found.contains("[profile.dev]\n") && found.contains("[profile.release.package.mbs-codegen]\n"));
+        assert!(
+            found.contains("[profile.dev]\n") && found.contains("[profile.release.package.mbs-codegen]\n")
+        );
         assert!(!found.contains("[workspace") && !found.contains("members"), "{found}");
     }
 

@@ -81,8 +81,10 @@ impl TextFile {
     pub fn read(argument: &str) -> Result<Self, TextFileError> {
         let asked = Argument::of(argument);
         let path = asked.path.to_string();
-        let unreadable =
-            |error: std::io::Error| TextFileError::Unreadable { path: path.clone(), reason: error.to_string() };
+        let unreadable = |error: std::io::Error| TextFileError::Unreadable {
+            path: path.clone(),
+            reason: error.to_string(),
+        };
         let content = fs::read_to_string(&path).map_err(unreadable)?;
         let calls = calls(&path, &content)?;
         let call = choose(&asked, &calls)?;
@@ -218,7 +220,8 @@ mod tests {
     use super::*;
     use crate::target_directory::target_directory;
 
-    const CRANK: &str = "coord phi: rad;\n    drive motor: phi == 1rad/1s*t;\n    out A: [m; 2] = 1m*unit(phi);";
+    const CRANK: &str =
+        "coord phi: rad;\n    drive motor: phi == 1rad/1s*t;\n    out A: [m; 2] = 1m*unit(phi);";
 
     fn file(name: &str, content: &str) -> String {
         let folder = target_directory().join("tmp").join("text_file");
@@ -246,8 +249,7 @@ mod tests {
              effect fast {{ drive m: phi == 9rad/1s*t; }}\n    scene Slow = slow;\n    scene Fast = fast;\n  }}\n}}\n"
         );
         let path = file("two.rs", &source);
-        let known =
-            ["One", "Two:Slow", "Two:Fast"].map(|name| format!("{path}:{name}")).to_vec();
+        let known = ["One", "Two:Slow", "Two:Fast"].map(|name| format!("{path}:{name}")).to_vec();
         let several = TextFileError::Several { argument: path.clone(), known: known.clone() };
         assert_eq!(TextFile::read(&path).expect_err("two"), several);
         let unknown = |argument: String| TextFileError::Unknown { argument, known: known.clone() };
@@ -270,7 +272,10 @@ mod tests {
         assert!(!error.is_usage());
         let text = error.to_string();
         assert!(text.contains(&format!("  --> {path}:5:15\n")), "{text}");
-        assert!(text.contains("\n5 | \tparam L: m = 1kg; coord") && text.contains("\n  | \t             ^^^\n"), "{text}");
+        assert!(
+            text.contains("\n5 | \tparam L: m = 1kg; coord") && text.contains("\n  | \t             ^^^\n"),
+            "{text}"
+        );
     }
 
     #[test]
