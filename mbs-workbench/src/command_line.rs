@@ -42,6 +42,8 @@ enum Command {
     Equilibrium(commands::run::EquilibriumArguments),
     /// Compute eigenvalues and modes of small motions about the equilibrium, or about a state
     Modes(commands::run::ModesArguments),
+    /// Run the text of a file whenever it is saved; the page loads itself anew
+    Watch(commands::run::MotionArguments),
     /// Print the code that a mechanism's text becomes
     Expand(commands::expand::Arguments),
     /// Compare a mechanism's derivatives with CasADi's
@@ -86,6 +88,8 @@ impl Command {
             Command::Latex(of) => (of.chosen.name(), chosen(&of.chosen, true)),
             Command::Structure(of) => (of.chosen.name(), chosen(&of.chosen, true)),
             Command::Dof(of) => (of.chosen.name(), chosen(&of.chosen, of.at.is_none())),
+            // It builds as often as the file changes.
+            Command::Watch(_) => return None,
             Command::New(_)
             | Command::List
             | Command::Expand(_)
@@ -126,7 +130,7 @@ fn execute(catalogue: &Catalogue, command: Option<Command>) -> Result<ExitCode, 
         )));
     }
     if let Some(file) = command.as_ref().and_then(Command::file_to_build) {
-        return commands::of_file::run(catalogue, file);
+        return commands::of_file::run(catalogue, file, None);
     }
     let mut out = io::stdout().lock();
     let analysis = |of: Analysis, out: &mut dyn Write| commands::run::run(catalogue, &of, out);
@@ -143,6 +147,7 @@ fn execute(catalogue: &Catalogue, command: Option<Command>) -> Result<ExitCode, 
         Some(Command::Inverse(arguments)) => analysis(Analysis::inverse(arguments), &mut out),
         Some(Command::Equilibrium(arguments)) => analysis(Analysis::equilibrium(arguments), &mut out),
         Some(Command::Modes(arguments)) => analysis(Analysis::modes(arguments), &mut out),
+        Some(Command::Watch(arguments)) => commands::watch::run(catalogue, &arguments),
         Some(Command::Expand(arguments)) => commands::expand::run(catalogue, &arguments, &mut out),
         Some(Command::Verify(arguments)) => commands::verify::run(catalogue, &arguments, &mut out),
         Some(Command::Print(arguments)) => commands::print::run(catalogue, &arguments, &mut out),

@@ -2,8 +2,9 @@
 #![cfg(all(feature = "program", unix))]
 
 use std::fs;
+use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
 
 use mbs_workbench::card::{Card, DefaultMethod};
 use mbs_workbench::erased::erase::Erased;
@@ -127,6 +128,33 @@ fn a_new_crate_shows_a_page_and_its_tests_pass_and_it_runs_texts_of_files() {
     let (code, error) = failed(wiper(&["simulate", "crank.mbs"]));
     assert_eq!(code, Some(2));
     assert!(error.contains("use `mbs kinematics crank.mbs`"), "{error}");
+
+    // The page follows the file; a faulty text leaves it as it is.
+    let mut watch = Command::new(&program)
+        .args(["watch", "crank.mbs", "--steps", "8", "--out", "watched"])
+        .current_dir(&folder)
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("it starts");
+    let mut watched = BufReader::new(watch.stderr.take().expect("a pipe")).lines();
+    let mut until_it_waits = || -> String {
+        let lines = watched.by_ref().map_while(Result::ok);
+        lines.take_while(|line| !line.starts_with("watching ")).collect::<Vec<_>>().join("\n")
+    };
+    let version = || fs::read_to_string(folder.join("watched/version.js")).expect("a version");
+    assert_eq!(until_it_waits(), "");
+    let first = version();
+    fs::write(folder.join("crank.mbs"), TEXT.replace("unit(phi)", "unit(psi)")).expect("a text");
+    let error = until_it_waits();
+    assert!(error.contains("unknown name `psi`") && error.contains("crank.mbs:5:"), "{error}");
+    assert_eq!(version(), first);
+    fs::write(folder.join("crank.mbs"), TEXT.replace("1m*", "0.2m*")).expect("a text");
+    assert!(until_it_waits().contains("building a program for `crank`"));
+    assert_ne!(version(), first);
+    let page = fs::read_to_string(folder.join("watched/report.html")).expect("a page");
+    assert!(version().split('"').nth(1).is_some_and(|version| page.contains(version)));
+    watch.kill().and_then(|()| watch.wait()).expect("it ends");
 
     // A fault that the compiler alone sees, at its line of the file.
     fs::write(folder.join("faulty.mbs"), TEXT.replace("pub", "#[derive(NoSuch)]\npub")).expect("a text");

@@ -94,6 +94,7 @@ fn every_mechanism_and_command_stands_in_the_chapter_on_the_program() {
         "table",
         "expand",
         "verify",
+        "watch",
     ] {
         assert!(text.contains(&format!("## `mbs {command}`")), "no section on `mbs {command}`");
     }

@@ -21,6 +21,7 @@ pub mod table;
 mod target;
 mod text;
 pub mod verify;
+pub mod watch;
 
 use std::fmt;
 use std::io::{self, ErrorKind};

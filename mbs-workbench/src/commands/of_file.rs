@@ -1,6 +1,7 @@
 //! Commands on the text of a file that need code: a program of that text is built, and does what the command line says.
 
 use std::env;
+use std::ffi::OsString;
 use std::process::{Command, ExitCode};
 use std::time::Duration;
 
@@ -15,8 +16,16 @@ use crate::text_file::TextFile;
 /// The spinner turns while cargo works in its own process.
 const TICK: Duration = Duration::from_millis(100);
 
+/// A command that runs another one whenever the file is saved.
+pub struct Watch {
+    /// Its name on the command line.
+    pub command: &'static str,
+    /// The command that it runs, whose page loads itself anew.
+    pub runs: &'static str,
+}
+
 /// Runs the command line again in a program that has the mechanism of `argument`.
-pub fn run(catalogue: &Catalogue, argument: &str) -> Result<ExitCode, CommandError> {
+pub fn run(catalogue: &Catalogue, argument: &str, watch: Option<Watch>) -> Result<ExitCode, CommandError> {
     let text = TextFile::read(argument)?;
     let blueprint = Blueprint::of_text(&text)?;
     let manifest = catalogue.first().map(|card| card.manifest.as_ref());
@@ -36,7 +45,13 @@ pub fn run(catalogue: &Catalogue, argument: &str) -> Result<ExitCode, CommandErr
     let program = program?;
     let target = target_directory();
     let mut command = Command::new(&program);
-    command.args(env::args_os().skip(1)).env(STARTED_FROM, std::path::absolute(&target).unwrap_or(target));
+    let mut rest: Vec<OsString> = env::args_os().skip(1).collect();
+    if let Some(Watch { command, runs }) = watch {
+        // No option stands before a command.
+        rest.iter_mut().filter(|word| *word == command).take(1).for_each(|word| *word = runs.into());
+        rest.push("--reload".into());
+    }
+    command.args(rest).env(STARTED_FROM, std::path::absolute(&target).unwrap_or(target));
     let status = command
         .status()
         .map_err(|error| CommandError::Failed(format!("{} does not start: {error}", program.display())))?;

@@ -13,6 +13,7 @@ use crate::motion::drop_idle;
 use crate::output::animation::animation;
 use crate::output::csv;
 use crate::output::places::places;
+use crate::output::reload::{VERSION, reloading};
 use crate::output::report::{Report, Run, html};
 use crate::output::shapes::shapes;
 use crate::target_directory::target_directory;
@@ -59,6 +60,9 @@ pub struct Selection {
     /// Directory for the report [default: mbs/NAME in cargo's target directory]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// Let the page load itself anew when it is written again
+    #[arg(long)]
+    reload: bool,
     /// Also write the first motion as an SVG file that moves by itself
     #[arg(long, value_name = "FILE.svg")]
     svg: Option<PathBuf>,
@@ -313,11 +317,17 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut dyn Write) ->
     let mut facts = facts(&instances, &done);
     facts.extend(left_out.iter().map(|reason| ["left out".to_string(), reason.clone()]));
     // Written before the table: printing fails if the reader of the output has left.
-    let mut files = vec![
-        ("report.html", page(arguments, &target, &instances, &done, &facts)),
-        ("motion.csv", values(&done)),
-    ];
+    let page = page(arguments, &target, &instances, &done, &facts);
+    let (page, version) = match arguments.selection.reload {
+        true => {
+            let (page, version) = reloading(&page);
+            (page, Some(version))
+        }
+        false => (page, None),
+    };
+    let mut files = vec![("report.html", page), ("motion.csv", values(&done))];
     files.extend(modes(&done).map(|modes| ("modes.csv", modes)));
+    files.extend(version.map(|version| (VERSION, version)));
     if let Some(path) = &arguments.selection.svg {
         write_file(path, &animated(&target, instances[done[0].instance].1.equations(), &done[0].motion)?)?;
     }
@@ -330,7 +340,14 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut dyn Write) ->
         writeln!(out, "\nleft out: {reason}")?;
     }
     writeln!(out)?;
-    for (name, path) in ["report", "values", "modes "].iter().zip(written?) {
+    for path in written? {
+        let of = |file: &str| path.ends_with(file);
+        let name = match () {
+            () if of("report.html") => "report",
+            () if of("motion.csv") => "values",
+            () if of("modes.csv") => "modes ",
+            () => continue,
+        };
         writeln!(out, "{name}  {}", path.display())?;
     }
     Ok(())
