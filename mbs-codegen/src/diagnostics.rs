@@ -36,6 +36,13 @@ pub struct Fault {
     pub help: String,
 }
 
+impl Fault {
+    /// Characters of its token on the first line, at least 1.
+    pub fn width(&self) -> usize {
+        if self.end_line == self.line { self.end_column.saturating_sub(self.column).max(1) } else { 1 }
+    }
+}
+
 impl From<Diagnostic> for Fault {
     fn from(Diagnostic { message, help, span }: Diagnostic) -> Self {
         let (start, end) = (span.start(), span.end());

@@ -2,7 +2,7 @@
 //!
 //! Data flows one way, and no folder uses one to its right:
 //! tokens → `syntax` → `model` → `symbolic` → `equations` → `structure` → `program` → `emit` → tokens.
-//! `picture` is apart from this order: it reads `syntax`, `model`, `symbolic` and `equations`, and no stage reads it.
+//! `picture` and `outline` are apart from this order: they read what the stages before `emit` make, and no stage reads them.
 
 // A text may be anything; the compiler of a user must not see us panic.
 #![cfg_attr(
@@ -21,6 +21,7 @@ mod diagnostics;
 mod emit;
 mod equations;
 mod model;
+mod outline;
 pub mod picture;
 mod program;
 #[cfg(any(test, feature = "random"))]
@@ -50,6 +51,7 @@ pub use emit::report::{BlockReport, CoordinateReport, EntryKind, RowReport, Stru
 use emit::rust::Lengths;
 use model::scene::Scene;
 use model::scenes::Scenes;
+pub use outline::{Call, Outline, Variable, calls};
 pub use picture::picture;
 use proc_macro2::TokenStream;
 pub use program::Operations;
@@ -152,12 +154,25 @@ fn expand_cut(source: &str, lengths: Lengths) -> Result<TokenStream, String> {
     items.ok_or_else(|| diagnostics.to_text())
 }
 
-/// The faults of a text that is kept as a string, in the order of the text; none where [`expand_source`] succeeds.
-pub fn faults(source: &str) -> Vec<Fault> {
+/// Names of a text that is kept as a string, once it is checked and expanded.
+///
+/// # Errors
+/// All faults that the macro reports, in the order of the text.
+pub fn outline(source: &str) -> Result<Outline, Vec<Fault>> {
     let mut diagnostics = Diagnostics::default();
-    let _items = model::scenes::read_source(source, &mut diagnostics)
-        .and_then(|(text, scenes)| translate(&text, &scenes, &mut diagnostics, Lengths::USUAL));
-    diagnostics.sorted().into_iter().map(Fault::from).collect()
+    let read = model::scenes::read_source(source, &mut diagnostics)
+        .filter(|(text, scenes)| translate(text, scenes, &mut diagnostics, Lengths::USUAL).is_some());
+    read.map(|(text, scenes)| outline::names(&text, &scenes))
+        .ok_or_else(|| diagnostics.sorted().into_iter().map(Fault::from).collect())
+}
+
+/// Parameters and inputs of a scene (without a name the whole text) of a text that is kept as a string, in the order of its
+/// formulas.
+///
+/// # Errors
+/// As [`casadi_definition`].
+pub fn variables(source: &str, scene: Option<&str>) -> Result<Vec<Variable>, String> {
+    in_scene(source, scene, |_, scene| Ok(outline::variables(&scene.model)))
 }
 
 /// CasADi definition of a scene of a text that is kept as a string: a Python module with `define(ca, q, v, t, der)`.

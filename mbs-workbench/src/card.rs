@@ -223,7 +223,7 @@ fn name(constructor: &str, module: &str) -> String {
 }
 
 /// `FourBar` as `four_bar`.
-fn snake_case(name: &str) -> String {
+pub(crate) fn snake_case(name: &str) -> String {
     let mut found = String::new();
     let mut before_lower = false;
     for letter in name.chars() {

@@ -8,6 +8,8 @@ use crate::card::Card;
 use crate::erased::facade::AnyMechanism;
 use crate::mismatch::Mismatch;
 use crate::motion::{Motion, instants};
+use crate::target_directory::is_started;
+use crate::text_file::is_file;
 
 /// Kinds of coordinates that a linkage may be written in; the name of such a mechanism ends with the kind.
 pub const KINDS: [&str; 4] = ["relative", "reference_point", "natural", "mixed"];
@@ -56,6 +58,10 @@ impl<'a> Catalogue<'a> {
     /// # Errors
     /// [`Mismatch::Mechanism`] where there is none, with the known names; [`Mismatch::Scenes`] where it has several.
     pub fn find(self, name: &str) -> Result<&'a Card, Mismatch> {
+        // A program that was built for the text of a file has that text alone.
+        if let (true, [card]) = (is_file(name) && is_started(), self.cards) {
+            return Ok(card);
+        }
         self.cards.iter().find(|card| card.name() == name).ok_or_else(|| self.unknown(name))
     }
 

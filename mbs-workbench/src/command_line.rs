@@ -13,6 +13,8 @@ use crate::card::Card;
 use crate::catalogue::Catalogue;
 use crate::commands::run::Arguments as Analysis;
 use crate::commands::{self, CommandError};
+use crate::target_directory::is_started;
+use crate::text_file::is_file;
 
 /// Mechanisms as exact code: run, draw, print and check them.
 #[derive(Parser)]
@@ -24,6 +26,8 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
+    /// Write a crate with a mechanism to begin from
+    New(commands::new::Arguments),
     /// List the mechanisms
     List,
     /// Run the analysis that suits a mechanism; write a report page and a table of its motion
@@ -38,6 +42,8 @@ enum Command {
     Equilibrium(commands::run::EquilibriumArguments),
     /// Compute eigenvalues and modes of small motions about the equilibrium, or about a state
     Modes(commands::run::ModesArguments),
+    /// Run the text of a file whenever it is saved; the page loads itself anew
+    Watch(commands::run::MotionArguments),
     /// Print the code that a mechanism's text becomes
     Expand(commands::expand::Arguments),
     /// Compare a mechanism's derivatives with CasADi's
@@ -64,6 +70,36 @@ enum Command {
     Table(commands::table::Arguments),
 }
 
+impl Command {
+    /// The file that the command line names in place of a mechanism, where the command needs code for it.
+    fn file_to_build(&self) -> Option<&str> {
+        let chosen = |chosen: &'_ commands::chosen::Chosen, is_text: bool| !(is_text && chosen.is_plain());
+        let (name, needs_code) = match self {
+            Command::Run(of) | Command::Simulate(of) => (of.selection.name(), true),
+            Command::Kinematics(of) | Command::Inverse(of) => (of.selection.name(), true),
+            Command::Equilibrium(of) => (of.selection.name(), true),
+            Command::Modes(of) => (of.selection.name(), true),
+            Command::Verify(of) => (of.name.as_deref()?, true),
+            Command::Drift(of) => (of.name.as_str(), true),
+            Command::Newton(of) => (of.chosen.name(), true),
+            Command::Basins(of) => (of.chosen.name(), true),
+            Command::Next(of) => (of.chosen.name(), true),
+            Command::Print(of) => (of.chosen.name(), chosen(&of.chosen, of.symbols)),
+            Command::Latex(of) => (of.chosen.name(), chosen(&of.chosen, true)),
+            Command::Structure(of) => (of.chosen.name(), chosen(&of.chosen, true)),
+            Command::Dof(of) => (of.chosen.name(), chosen(&of.chosen, of.at.is_none())),
+            // It builds as often as the file changes.
+            Command::Watch(_) => return None,
+            Command::New(_)
+            | Command::List
+            | Command::Expand(_)
+            | Command::Compare(_)
+            | Command::Table(_) => return None,
+        };
+        (needs_code && is_file(name) && !is_started()).then_some(name)
+    }
+}
+
 /// Stack of the program (bytes). Dense matrices are on it, for 82 coordinates with their multipliers half a megabyte each,
 /// and a build without optimisation keeps every copy.
 const STACK: usize = 64 << 20;
@@ -75,10 +111,7 @@ const STACK: usize = 64 << 20;
 pub fn program(cards: &[Card]) -> ExitCode {
     let command = Arguments::parse().command;
     let catalogue = Catalogue { cards };
-    let run = || match execute(&catalogue, command) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => report(&error),
-    };
+    let run = || execute(&catalogue, command).unwrap_or_else(|error| report(&error));
     thread::scope(|scope| {
         let started = thread::Builder::new().stack_size(STACK).spawn_scoped(scope, run);
         match started.map(thread::ScopedJoinHandle::join) {
@@ -90,11 +123,14 @@ pub fn program(cards: &[Card]) -> ExitCode {
     })
 }
 
-fn execute(catalogue: &Catalogue, command: Option<Command>) -> Result<(), CommandError> {
+fn execute(catalogue: &Catalogue, command: Option<Command>) -> Result<ExitCode, CommandError> {
     if let Some(name) = catalogue.repeated() {
         return Err(CommandError::Usage(format!(
             "two mechanisms are called `{name}`; put each in a module of its own, or make it by a function of its own name"
         )));
+    }
+    if let Some(file) = command.as_ref().and_then(Command::file_to_build) {
+        return commands::of_file::run(catalogue, file, None);
     }
     let mut out = io::stdout().lock();
     let analysis = |of: Analysis, out: &mut dyn Write| commands::run::run(catalogue, &of, out);
@@ -103,6 +139,7 @@ fn execute(catalogue: &Catalogue, command: Option<Command>) -> Result<(), Comman
             Some(card) => analysis(Analysis::defaults(&card.name()), &mut out),
             None => commands::list::run(catalogue, &mut out),
         },
+        Some(Command::New(arguments)) => commands::new::run(&arguments, &mut out),
         Some(Command::List) => commands::list::run(catalogue, &mut out),
         Some(Command::Run(arguments)) => analysis(Analysis::run(arguments), &mut out),
         Some(Command::Kinematics(arguments)) => analysis(Analysis::kinematics(arguments), &mut out),
@@ -110,6 +147,7 @@ fn execute(catalogue: &Catalogue, command: Option<Command>) -> Result<(), Comman
         Some(Command::Inverse(arguments)) => analysis(Analysis::inverse(arguments), &mut out),
         Some(Command::Equilibrium(arguments)) => analysis(Analysis::equilibrium(arguments), &mut out),
         Some(Command::Modes(arguments)) => analysis(Analysis::modes(arguments), &mut out),
+        Some(Command::Watch(arguments)) => commands::watch::run(catalogue, &arguments),
         Some(Command::Expand(arguments)) => commands::expand::run(catalogue, &arguments, &mut out),
         Some(Command::Verify(arguments)) => commands::verify::run(catalogue, &arguments, &mut out),
         Some(Command::Print(arguments)) => commands::print::run(catalogue, &arguments, &mut out),
@@ -123,7 +161,8 @@ fn execute(catalogue: &Catalogue, command: Option<Command>) -> Result<(), Comman
         Some(Command::Compare(arguments)) => commands::compare::run(catalogue, &arguments, &mut out),
         Some(Command::Table(arguments)) => commands::table::run(&arguments, &mut out),
     }?;
-    out.flush().map_err(CommandError::Output)
+    out.flush().map_err(CommandError::Output)?;
+    Ok(ExitCode::SUCCESS)
 }
 
 fn report(error: &CommandError) -> ExitCode {

@@ -2,6 +2,7 @@
 //!
 //! [`program()`] is the command line over a list of mechanisms, a [`Catalogue`](catalogue::Catalogue); the crate `mechanisms` has the
 //! ready ones. [`erased`] runs a mechanism of any size behind one trait; it has all code that is generic over mechanisms.
+//! [`text_file`] reads mechanisms from files, [`forge`] builds programs of them.
 //! [`verify`] compares emitted code with CasADi, in a test of the crate that declares the mechanism too.
 //!
 //! Without the feature `program` there is no command line, only the comparison of a mechanism of one's own: [`erased`], [`verify`].
@@ -16,6 +17,9 @@ mod command_line;
 mod commands;
 pub mod erased;
 #[cfg(feature = "program")]
+pub mod forge;
+mod hash;
+#[cfg(feature = "program")]
 pub mod mismatch;
 pub mod motion;
 #[cfg(feature = "program")]
@@ -25,6 +29,8 @@ pub mod tables;
 pub mod target_directory;
 #[cfg(feature = "program")]
 pub mod teaching;
+#[cfg(feature = "program")]
+pub mod text_file;
 pub mod verify;
 
 #[cfg(feature = "program")]

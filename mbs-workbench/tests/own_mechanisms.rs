@@ -72,6 +72,48 @@ fn a_text_without_statements_runs_for_a_second_with_a_guessed_picture() {
 }
 
 #[test]
+fn a_file_is_read_without_a_build_and_says_what_the_built_mechanism_says() {
+    let file = format!("{}/examples/wiper.rs:Wiper", env!("CARGO_MANIFEST_DIR"));
+    for [command, option] in
+        [["structure", "wiper"], ["latex", "wiper"], ["expand", "wiper"], ["print", "--symbols"]]
+    {
+        let arguments = |name: &str| match option {
+            "wiper" => text(&[command, name]),
+            option => text(&[command, name, option, "q", "Phi", "Phi_q", "gamma"]),
+        };
+        let (built, read) = (arguments("wiper"), arguments(&file));
+        // The emitted code has the lines and the source of the text, which are those of the file.
+        match command {
+            "expand" => assert_eq!(built.lines().count(), read.lines().count()),
+            _ => assert_eq!(built, read, "{command}"),
+        }
+    }
+    let [built, read] = ["wiper", &file].map(|name| text(&["dof", name]));
+    for line in ["coordinates n ", "rows m ", "Grübler's count "] {
+        let of = |text: &str| text.lines().find(|found| found.starts_with(line)).map(str::to_string);
+        assert!(of(&built).is_some() && of(&built) == of(&read), "{read}");
+    }
+    assert!(read.contains(&format!("`mbs dof {file} --at 0`")), "{read}");
+}
+
+#[test]
+fn several_mechanisms_of_a_file_are_listed_and_one_with_functions_is_referred_to_a_crate() {
+    let file = format!("{}/examples/wiper.rs", env!("CARGO_MANIFEST_DIR"));
+    let failed = |arguments: &[&str], code: i32| {
+        let output = wiper(arguments);
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(code), "{said}");
+        said
+    };
+    let said = failed(&["run", &file], 2);
+    assert!(said.contains(&format!("name one:\n  {file}:Wiper\n  {file}:Follower\n")), "{said}");
+    let said = failed(&["run", &format!("{file}:Follower")], 1);
+    assert!(said.contains("`lift`") && said.contains("mbs new NAME"), "{said}");
+    let said = failed(&["compare", &format!("{file}:Wiper")], 2);
+    assert!(said.contains("name one of `mbs list`"), "{said}");
+}
+
+#[test]
 fn a_misspelt_name_gets_a_proposal() {
     let output = wiper(&["run", "wper"]);
     let said = String::from_utf8_lossy(&output.stderr).into_owned();

@@ -79,6 +79,7 @@ fn the_readme_has_the_two_commands_and_the_first_example() {
 fn every_mechanism_and_command_stands_in_the_chapter_on_the_program() {
     let text = read("book/src/program.md");
     for command in [
+        "new",
         "list",
         "run",
         "print",
@@ -93,6 +94,7 @@ fn every_mechanism_and_command_stands_in_the_chapter_on_the_program() {
         "table",
         "expand",
         "verify",
+        "watch",
     ] {
         assert!(text.contains(&format!("## `mbs {command}`")), "no section on `mbs {command}`");
     }

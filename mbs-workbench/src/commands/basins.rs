@@ -19,7 +19,7 @@ const LARGEST: usize = 400;
 #[derive(Args)]
 pub struct Arguments {
     #[command(flatten)]
-    chosen: Chosen,
+    pub chosen: Chosen,
     /// Coordinate across [default: the first of the largest block]
     #[arg(long, value_name = "NAME")]
     x: Option<String>,

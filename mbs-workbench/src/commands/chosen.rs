@@ -17,7 +17,7 @@ use super::{CommandError, summary};
 
 #[derive(Args)]
 pub struct Chosen {
-    /// Name of the mechanism, as `mbs list` prints it
+    /// Name of the mechanism, as `mbs list` prints it, or a file with its text: FILE, FILE:Name, FILE:Name:Scene
     name: String,
     /// Set a parameter, in the unit that `mbs list` prints
     #[arg(long = "param", value_name = "NAME=VALUE", value_parser = assignment)]
@@ -37,6 +37,16 @@ pub struct Described {
 }
 
 impl Chosen {
+    /// Name or file as it is written.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// `true` where no parameter is set.
+    pub fn is_plain(&self) -> bool {
+        self.parameters.is_empty()
+    }
+
     pub fn described(&self, catalogue: &Catalogue) -> Result<Described, CommandError> {
         let target = Target::find(catalogue, &self.name)?;
         let instance = target.sound_instance(&target.runs()[0], &self.parameters)?;

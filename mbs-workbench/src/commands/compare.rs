@@ -7,6 +7,7 @@ use crate::card::Card;
 use crate::catalogue::KINDS;
 use crate::mismatch::Mismatch;
 use crate::teaching::comparison::{Candidate, Fault, candidate, difference};
+use crate::text_file::is_file;
 use clap::Args;
 
 use super::{CommandError, positive};
@@ -17,7 +18,7 @@ const POINT: &str = "P";
 #[derive(Args)]
 pub struct Arguments {
     /// Name of the mechanism, as `mbs list` prints it
-    name: String,
+    pub name: String,
     /// Kinds of coordinates: `natural` stands for the mechanism NAME_natural, `relative` for NAME itself where there
     /// is no NAME_relative
     #[arg(long, value_delimiter = ',', default_values = KINDS)]
@@ -29,6 +30,10 @@ pub struct Arguments {
 
 /// Prints the cost of each set of coordinates and the differences between their motions.
 pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut dyn Write) -> Result<(), CommandError> {
+    if is_file(&arguments.name) {
+        let reason = "kinds of coordinates are variants in the list of mechanisms, and a file has one text of them; name one of `mbs list`";
+        return Err(CommandError::Usage(reason.to_string()));
+    }
     let cards = arguments.coordinates.iter().map(|kind| catalogue.variant(&arguments.name, kind));
     let cards = cards.collect::<Result<Vec<&Card>, Mismatch>>()?;
     let mut candidates = Vec::new();

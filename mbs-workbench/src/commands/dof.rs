@@ -4,19 +4,21 @@ use crate::catalogue::Catalogue;
 use std::io::Write;
 
 use crate::teaching::freedom::{Freedom, freedom};
+use crate::text_file::is_file;
 use clap::Args;
 use mbs_codegen::{Mobility, StructureReport};
 
 use super::CommandError;
 use super::chosen::{Chosen, finite};
+use super::text::Text;
 
 #[derive(Args)]
 pub struct Arguments {
     #[command(flatten)]
-    chosen: Chosen,
-    /// Time (s) of the position
-    #[arg(long, value_name = "T", default_value_t = 0.0, value_parser = finite, allow_negative_numbers = true)]
-    at: f64,
+    pub chosen: Chosen,
+    /// Time (s) of the position [default: 0; of a file none, and ranks are those that the sparsity allows]
+    #[arg(long, value_name = "T", value_parser = finite, allow_negative_numbers = true)]
+    pub at: Option<f64>,
 }
 
 /// Reason why coordinates less constraints equal Grübler's count.
@@ -25,12 +27,16 @@ const GRUBLER: &str = "Grübler counts 3 a body less 2 a joint; each set of coor
 
 /// Counts, ranks, independent and dependent coordinates.
 pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut dyn Write) -> Result<(), CommandError> {
+    if is_file(arguments.chosen.name()) && arguments.chosen.is_plain() && arguments.at.is_none() {
+        return counts(&Text::find(catalogue, &arguments.chosen)?, out);
+    }
+    let at = arguments.at.unwrap_or(0.0);
     let choice = arguments.chosen.described(catalogue)?;
     let mechanism = choice.equations();
     let report = choice.structure()?;
-    let state = choice.state(arguments.at)?;
-    let found = freedom(mechanism, &report, &state.q, arguments.at);
-    writeln!(out, "{} at t = {} s\n", choice.target.title(), arguments.at)?;
+    let state = choice.state(at)?;
+    let found = freedom(mechanism, &report, &state.q, at);
+    writeln!(out, "{} at t = {} s\n", choice.target.title(), at)?;
     let Freedom { coordinates: n, constraints, drives, structural_rank, rank, whole_rank, .. } = found;
     writeln!(out, "coordinates n                {n}")?;
     writeln!(
@@ -61,6 +67,33 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut dyn Write) ->
     if let Some(taken) = report.mobility.taken() {
         writeln!(out, "{}", apart(&report.mobility, taken))?;
     }
+    Ok(())
+}
+
+/// Counts that the text alone gives, without a position.
+fn counts(text: &Text, out: &mut dyn Write) -> Result<(), CommandError> {
+    let report = text.structure()?;
+    let Mobility { coordinates: n, constraints, drives, constraint_rank, rank, .. } = report.mobility;
+    writeln!(out, "{}\n", text.title)?;
+    writeln!(out, "coordinates n                {n}")?;
+    writeln!(
+        out,
+        "rows m                       {} ({constraints} of constraints, {drives} of drives)",
+        constraints + drives
+    )?;
+    writeln!(out, "rank of the constraints      at most {constraint_rank}, by their sparsity")?;
+    writeln!(out, "rank with the drives         at most {rank}, by their sparsity")?;
+    writeln!(out, "degrees of freedom           at least {n} − {constraint_rank} = {}", n - constraint_rank)?;
+    writeln!(out, "Grübler's count              {n} − {constraints} = {}", report.mobility.grubler())?;
+    let named: Vec<&str> =
+        report.independent.iter().map(|index| report.coordinates[*index].name.as_str()).collect();
+    let named = if named.is_empty() { "none are named".to_string() } else { named.join(", ") };
+    writeln!(out, "independent coordinates      {named}")?;
+    writeln!(out, "\n{GRUBLER}")?;
+    if let Some(taken) = report.mobility.taken() {
+        writeln!(out, "{}", apart(&report.mobility, taken))?;
+    }
+    writeln!(out, "Ranks at a position: `mbs dof {} --at 0`.", text.name)?;
     Ok(())
 }
 

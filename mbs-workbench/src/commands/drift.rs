@@ -20,8 +20,8 @@ use super::target::Target;
 
 #[derive(Args)]
 pub struct Arguments {
-    /// Name of a mechanism with masses, as `mbs list` prints it
-    name: String,
+    /// Name of a mechanism with masses, as `mbs list` prints it, or a file with its text: FILE, FILE:Name, FILE:Name:Scene
+    pub name: String,
     /// Set a parameter, in the unit that `mbs list` prints
     #[arg(long = "param", value_name = "NAME=VALUE", value_parser = assignment)]
     parameters: Vec<(String, f64)>,

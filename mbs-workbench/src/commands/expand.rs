@@ -3,20 +3,24 @@
 use crate::catalogue::Catalogue;
 use std::io::Write;
 
+use crate::text_file::{TextFile, is_file};
 use clap::Args;
 
 use super::CommandError;
 
 #[derive(Args)]
 pub struct Arguments {
-    /// Name of the mechanism, as `mbs list` prints it
-    name: String,
+    /// Name of the mechanism, as `mbs list` prints it, or a file with its text: FILE, FILE:Name, FILE:Name:Scene
+    pub name: String,
 }
 
 /// The emitted code, laid out as rustfmt would.
 pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut dyn Write) -> Result<(), CommandError> {
-    let source = catalogue.find(&arguments.name)?.equations().source();
-    let tokens = mbs_codegen::expand_source(source).map_err(CommandError::Failed)?;
+    let source = match is_file(&arguments.name) {
+        true => TextFile::read(&arguments.name)?.source,
+        false => catalogue.find(&arguments.name)?.equations().source().to_string(),
+    };
+    let tokens = mbs_codegen::expand_source(&source).map_err(CommandError::Failed)?;
     let file = syn::parse2(tokens)
         .map_err(|error| CommandError::Failed(format!("the emitted code is no Rust file: {error}")))?;
     out.write_all(prettyplease::unparse(&file).as_bytes())?;

@@ -9,11 +9,12 @@ use clap::Args;
 
 use super::CommandError;
 use super::chosen::{Chosen, write_file};
+use super::text::Text;
 
 #[derive(Args)]
 pub struct Arguments {
     #[command(flatten)]
-    chosen: Chosen,
+    pub chosen: Chosen,
     /// File to write [default: standard output]
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
@@ -21,13 +22,11 @@ pub struct Arguments {
 
 /// Φ, Φ_q, Φ_t and γ, of a mechanism with masses M, Q and the energies too, as a document for `pdflatex`.
 pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut dyn Write) -> Result<(), CommandError> {
-    let choice = arguments.chosen.described(catalogue)?;
-    let mechanism = choice.equations();
-    let formulas = mbs_codegen::latex_formulas(mechanism.source(), Some(mechanism.scene()))
-        .map_err(CommandError::Failed)?;
-    let dynamic = mbs_codegen::latex_dynamic_formulas(mechanism.source(), Some(mechanism.scene()))
-        .map_err(CommandError::Failed)?;
-    let text = document(mechanism, &formulas, dynamic.as_ref(), choice.target.title());
+    let text = Text::find(catalogue, &arguments.chosen)?;
+    let formulas = mbs_codegen::latex_formulas(&text.source, text.scene()).map_err(CommandError::Failed)?;
+    let dynamic =
+        mbs_codegen::latex_dynamic_formulas(&text.source, text.scene()).map_err(CommandError::Failed)?;
+    let text = document(&text.values, &formulas, dynamic.as_ref(), &text.title);
     match &arguments.out {
         None => out.write_all(text.as_bytes())?,
         Some(path) => {

@@ -2,27 +2,33 @@
 
 mod analysis;
 pub mod basins;
-mod chosen;
+pub mod chosen;
 pub mod compare;
 pub mod dof;
 pub mod drift;
 pub mod expand;
 pub mod latex;
 pub mod list;
+pub mod new;
 pub mod newton;
 pub mod next;
+pub mod of_file;
 pub mod print;
 pub mod run;
 pub mod structure;
 mod summary;
 pub mod table;
 mod target;
+mod text;
 pub mod verify;
+pub mod watch;
 
 use std::fmt;
 use std::io::{self, ErrorKind};
 
+use crate::forge::ForgeError;
 use crate::mismatch::Mismatch;
+use crate::text_file::TextFileError;
 
 /// Failure of a command.
 #[derive(Debug)]
@@ -67,6 +73,19 @@ impl From<io::Error> for CommandError {
 impl From<Mismatch> for CommandError {
     fn from(mismatch: Mismatch) -> Self {
         CommandError::Usage(mismatch.to_string())
+    }
+}
+
+impl From<TextFileError> for CommandError {
+    fn from(error: TextFileError) -> Self {
+        let text = error.to_string();
+        if error.is_usage() { CommandError::Usage(text) } else { CommandError::Failed(text) }
+    }
+}
+
+impl From<ForgeError> for CommandError {
+    fn from(error: ForgeError) -> Self {
+        CommandError::Failed(error.to_string())
     }
 }
 

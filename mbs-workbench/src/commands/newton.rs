@@ -14,7 +14,7 @@ use super::{CommandError, summary};
 #[derive(Args)]
 pub struct Arguments {
     #[command(flatten)]
-    chosen: Chosen,
+    pub chosen: Chosen,
     /// Start from another value of a coordinate than the text's guess, in the unit of the text
     #[arg(long = "guess", value_name = "NAME=VALUE", value_parser = assignment)]
     guesses: Vec<(String, f64)>,

@@ -19,7 +19,7 @@ const STARTS: usize = 24;
 #[derive(Args)]
 pub struct Arguments {
     #[command(flatten)]
-    chosen: Chosen,
+    pub chosen: Chosen,
     /// Positions, spread over the motion, from which each step is tried
     #[arg(long, default_value_t = STARTS, value_parser = positive)]
     starts: usize,

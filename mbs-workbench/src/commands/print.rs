@@ -11,11 +11,12 @@ use clap::{Args, ValueEnum};
 
 use super::CommandError;
 use super::chosen::{Chosen, finite};
+use super::text::Text;
 
 #[derive(Args)]
 pub struct Arguments {
     #[command(flatten)]
-    chosen: Chosen,
+    pub chosen: Chosen,
     /// Quantities to print
     #[arg(value_enum, default_values = ["Phi", "Phi_q", "Phi_t", "gamma"])]
     quantities: Vec<Quantity>,
@@ -24,7 +25,7 @@ pub struct Arguments {
     at: f64,
     /// Formulas instead of numbers
     #[arg(long, conflicts_with = "numbers")]
-    symbols: bool,
+    pub symbols: bool,
     /// Numbers at the solved position: the default
     #[arg(long)]
     numbers: bool,
@@ -68,33 +69,14 @@ impl Quantity {
 
 /// The matrices, names on rows and columns.
 pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut dyn Write) -> Result<(), CommandError> {
+    let dynamic = arguments.quantities.iter().any(|quantity| quantity.is_dynamic());
+    if arguments.symbols {
+        return formulas(&Text::find(catalogue, &arguments.chosen)?, &arguments.quantities, dynamic, out);
+    }
     let choice = arguments.chosen.described(catalogue)?;
     let mechanism = choice.equations();
-    let dynamic = arguments.quantities.iter().any(|quantity| quantity.is_dynamic());
     if dynamic && mechanism.dynamics().is_none() {
-        let name = choice.target.name();
-        return Err(CommandError::Usage(format!(
-            "`{name}` has neither masses nor forces: no M, Q, lambda or energy"
-        )));
-    }
-    if arguments.symbols {
-        let formulas = mbs_codegen::formulas(mechanism.source(), Some(mechanism.scene()))
-            .map_err(CommandError::Failed)?;
-        writeln!(out, "{}", choice.target.title())?;
-        for quantity in arguments.quantities.iter().filter(|quantity| !quantity.is_dynamic()) {
-            write(out, &symbolic(&formulas, *quantity))?;
-        }
-        define(out, &formulas.definitions)?;
-        if dynamic {
-            let formulas = mbs_codegen::dynamic_formulas(mechanism.source(), Some(mechanism.scene()))
-                .map_err(CommandError::Failed)?
-                .unwrap_or_default();
-            for quantity in arguments.quantities.iter().filter(|quantity| quantity.is_dynamic()) {
-                write(out, &symbolic_dynamic(mechanism, &formulas, *quantity))?;
-            }
-            define(out, &formulas.definitions)?;
-        }
-        return Ok(());
+        return Err(massless(choice.target.name()));
     }
     let state = choice.state(arguments.at)?;
     writeln!(out, "{} at t = {} s", choice.target.title(), arguments.at)?;
@@ -119,6 +101,39 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut dyn Write) ->
     Ok(())
 }
 
+fn massless(name: &str) -> CommandError {
+    CommandError::Usage(format!("`{name}` has neither masses nor forces: no M, Q, lambda or energy"))
+}
+
+/// The formulas of a text.
+fn formulas(
+    text: &Text,
+    quantities: &[Quantity],
+    dynamic: bool,
+    out: &mut dyn Write,
+) -> Result<(), CommandError> {
+    let formulas = mbs_codegen::formulas(&text.source, text.scene()).map_err(CommandError::Failed)?;
+    let of_masses = match dynamic {
+        true => mbs_codegen::dynamic_formulas(&text.source, text.scene()).map_err(CommandError::Failed)?,
+        false => None,
+    };
+    if dynamic && of_masses.is_none() {
+        return Err(massless(&text.name));
+    }
+    writeln!(out, "{}", text.title)?;
+    for quantity in quantities.iter().filter(|quantity| !quantity.is_dynamic()) {
+        write(out, &symbolic(&formulas, *quantity))?;
+    }
+    define(out, &formulas.definitions)?;
+    if let Some(of_masses) = of_masses {
+        for quantity in quantities.iter().filter(|quantity| quantity.is_dynamic()) {
+            write(out, &symbolic_dynamic(&formulas.rows, &of_masses, *quantity))?;
+        }
+        define(out, &of_masses.definitions)?;
+    }
+    Ok(())
+}
+
 fn define(out: &mut dyn Write, definitions: &[(String, String)]) -> Result<(), CommandError> {
     for (name, meaning) in definitions {
         writeln!(out, "\n{name} = {meaning}")?;
@@ -134,11 +149,7 @@ fn write(out: &mut dyn Write, matrix: &Named) -> Result<(), CommandError> {
     Ok(())
 }
 
-fn symbolic_dynamic(
-    mechanism: &dyn AnyEquations,
-    formulas: &mbs_codegen::DynamicFormulas,
-    quantity: Quantity,
-) -> Named {
+fn symbolic_dynamic(rows: &[String], formulas: &mbs_codegen::DynamicFormulas, quantity: Quantity) -> Named {
     let mbs_codegen::DynamicFormulas { coordinates, mass, force, kinetic, potential, .. } = formulas;
     match quantity {
         Quantity::Mass => Named {
@@ -153,9 +164,8 @@ fn symbolic_dynamic(
             Named::vector("energy", &names, &[kinetic.clone(), potential.clone()])
         }
         _ => {
-            let rows: Vec<String> = mechanism.rows().iter().map(|row| row.name.to_string()).collect();
             let names: Vec<String> = (0..rows.len()).map(|row| format!("lambda.{row}")).collect();
-            Named::vector("lambda: M qdd + Phi_q^T lambda = Q", &rows, &names)
+            Named::vector("lambda: M qdd + Phi_q^T lambda = Q", rows, &names)
         }
     }
     .aligned_left()

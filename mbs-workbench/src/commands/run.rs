@@ -13,6 +13,7 @@ use crate::motion::drop_idle;
 use crate::output::animation::animation;
 use crate::output::csv;
 use crate::output::places::places;
+use crate::output::reload::{VERSION, reloading};
 use crate::output::report::{Report, Run, html};
 use crate::output::shapes::shapes;
 use crate::target_directory::target_directory;
@@ -51,7 +52,7 @@ const LEAST_SHOWN: usize = 240;
 /// Mechanism, its parameters and the files to write: options of every analysis.
 #[derive(Args, Clone, Default)]
 pub struct Selection {
-    /// Name of the mechanism, as `mbs list` prints it
+    /// Name of the mechanism, as `mbs list` prints it, or a file with its text: FILE, FILE:Name, FILE:Name:Scene
     name: String,
     /// Set a parameter, in the unit that `mbs list` prints
     #[arg(long = "param", value_name = "NAME=VALUE", value_parser = assignment)]
@@ -59,6 +60,9 @@ pub struct Selection {
     /// Directory for the report [default: mbs/NAME in cargo's target directory]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// Let the page load itself anew when it is written again
+    #[arg(long)]
+    reload: bool,
     /// Also write the first motion as an SVG file that moves by itself
     #[arg(long, value_name = "FILE.svg")]
     svg: Option<PathBuf>,
@@ -98,7 +102,7 @@ pub struct Integration {
 #[derive(Args)]
 pub struct MotionArguments {
     #[command(flatten)]
-    selection: Selection,
+    pub selection: Selection,
     #[command(flatten)]
     span: Span,
     #[command(flatten)]
@@ -109,7 +113,7 @@ pub struct MotionArguments {
 #[derive(Args)]
 pub struct DrivenArguments {
     #[command(flatten)]
-    selection: Selection,
+    pub selection: Selection,
     #[command(flatten)]
     span: Span,
 }
@@ -118,7 +122,7 @@ pub struct DrivenArguments {
 #[derive(Args)]
 pub struct EquilibriumArguments {
     #[command(flatten)]
-    selection: Selection,
+    pub selection: Selection,
     /// Start the search for the equilibrium from another value of a coordinate, in the unit of the text
     #[arg(long = "guess", value_name = "NAME=VALUE", value_parser = assignment)]
     guesses: Vec<(String, f64)>,
@@ -128,7 +132,7 @@ pub struct EquilibriumArguments {
 #[derive(Args)]
 pub struct ModesArguments {
     #[command(flatten)]
-    selection: Selection,
+    pub selection: Selection,
     /// Start the search for the equilibrium from another value of a coordinate, in the unit of the text
     #[arg(long = "guess", value_name = "NAME=VALUE", value_parser = assignment)]
     guesses: Vec<(String, f64)>,
@@ -153,6 +157,13 @@ pub struct Arguments {
     at: Option<f64>,
     span: Span,
     integration: Integration,
+}
+
+impl Selection {
+    /// Name or file as it is written.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
 }
 
 impl Arguments {
@@ -306,11 +317,17 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut dyn Write) ->
     let mut facts = facts(&instances, &done);
     facts.extend(left_out.iter().map(|reason| ["left out".to_string(), reason.clone()]));
     // Written before the table: printing fails if the reader of the output has left.
-    let mut files = vec![
-        ("report.html", page(arguments, &target, &instances, &done, &facts)),
-        ("motion.csv", values(&done)),
-    ];
+    let page = page(arguments, &target, &instances, &done, &facts);
+    let (page, version) = match arguments.selection.reload {
+        true => {
+            let (page, version) = reloading(&page);
+            (page, Some(version))
+        }
+        false => (page, None),
+    };
+    let mut files = vec![("report.html", page), ("motion.csv", values(&done))];
     files.extend(modes(&done).map(|modes| ("modes.csv", modes)));
+    files.extend(version.map(|version| (VERSION, version)));
     if let Some(path) = &arguments.selection.svg {
         write_file(path, &animated(&target, instances[done[0].instance].1.equations(), &done[0].motion)?)?;
     }
@@ -323,7 +340,14 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut dyn Write) ->
         writeln!(out, "\nleft out: {reason}")?;
     }
     writeln!(out)?;
-    for (name, path) in ["report", "values", "modes "].iter().zip(written?) {
+    for path in written? {
+        let of = |file: &str| path.ends_with(file);
+        let name = match () {
+            () if of("report.html") => "report",
+            () if of("motion.csv") => "values",
+            () if of("modes.csv") => "modes ",
+            () => continue,
+        };
         writeln!(out, "{name}  {}", path.display())?;
     }
     Ok(())

@@ -11,11 +11,12 @@ use mbs_codegen::{BlockReport, EntryKind, StructureReport};
 
 use super::CommandError;
 use super::chosen::{Chosen, write_file};
+use super::text::Text;
 
 #[derive(Args)]
 pub struct Arguments {
     #[command(flatten)]
-    chosen: Chosen,
+    pub chosen: Chosen,
     /// Draw the ordered Jacobian with its blocks
     #[arg(long, value_name = "FILE.svg")]
     out: Option<PathBuf>,
@@ -23,11 +24,11 @@ pub struct Arguments {
 
 /// Sparsity, matching and the order of solution.
 pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut dyn Write) -> Result<(), CommandError> {
-    let choice = arguments.chosen.described(catalogue)?;
-    let report = choice.structure()?;
+    let text = Text::find(catalogue, &arguments.chosen)?;
+    let report = text.structure()?;
     let entries: usize = report.rows.iter().map(|row| row.entries.len()).sum();
     let (m, n) = (report.rows.len(), report.coordinates.len());
-    writeln!(out, "{}\n", choice.target.title())?;
+    writeln!(out, "{}\n", text.title)?;
     let title = format!(
         "Phi_q: {m} × {n}, {entries} of {} entries (1: a number, p: parameters alone, x: varies; in brackets: \
          the coordinate that a row is matched with)",

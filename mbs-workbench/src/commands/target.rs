@@ -9,6 +9,7 @@ use crate::erased::facade::AnyEquations;
 use crate::mismatch::{Mismatch, set};
 
 use super::CommandError;
+use crate::text_file::is_file;
 
 /// A mechanism of the list, its text read.
 pub struct Target {
@@ -25,7 +26,9 @@ impl Target {
         let card = *catalogue.find(name)?;
         let picture = card.picture()?;
         let runs = runs(&picture);
-        Ok(Target { card, name: card.name(), is_free: card.is_free(), picture, runs })
+        // Messages propose commands, so a file goes by what the command line says.
+        let name = if is_file(name) { name.to_string() } else { card.name() };
+        Ok(Target { card, name, is_free: card.is_free(), picture, runs })
     }
 
     pub fn name(&self) -> &str {

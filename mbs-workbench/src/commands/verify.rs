@@ -15,9 +15,9 @@ const TICK: Duration = Duration::from_millis(100);
 
 #[derive(Args)]
 pub struct Arguments {
-    /// Name of the mechanism, as `mbs list` prints it
+    /// Name of the mechanism, as `mbs list` prints it, or a file with its text: FILE, FILE:Name, FILE:Name:Scene
     #[arg(required_unless_present = "all", conflicts_with = "all")]
-    name: Option<String>,
+    pub name: Option<String>,
     /// All mechanisms
     #[arg(long)]
     all: bool,

@@ -5,7 +5,6 @@ use std::fmt::Write;
 use mbs_codegen::{DynamicFormulas, Formulas};
 
 use super::matrix::short;
-use crate::erased::facade::AnyEquations;
 
 /// A matrix that is wider than the line is shrunk to it.
 const PREAMBLE: &str = "\\documentclass[a4paper]{article}
@@ -19,10 +18,19 @@ const PREAMBLE: &str = "\\documentclass[a4paper]{article}
   \\ifdim\\wd\\wide>\\linewidth\\resizebox{\\linewidth}{!}{\\usebox{\\wide}}\\else\\usebox{\\wide}\\fi}
 ";
 
-/// The document of `mechanism` from its formulas in LaTeX's spelling, with `dynamic` ones where it has masses; `title` is plain
-/// text.
+/// Value of a parameter or input.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Value {
+    /// Unit as the text declares it.
+    pub unit: String,
+    /// The value in that unit, where there is one.
+    pub value: Option<f64>,
+}
+
+/// The document of a mechanism from its formulas in LaTeX's spelling, with `dynamic` ones where it has masses. `values` are in the
+/// order of the formulas' variables; `title` is plain text.
 pub fn document(
-    mechanism: &dyn AnyEquations,
+    values: &[Value],
     formulas: &Formulas,
     dynamic: Option<&DynamicFormulas>,
     title: &str,
@@ -34,7 +42,7 @@ pub fn document(
     let _ = writeln!(text, "\\section*{{{}}}\n", escaped(title));
     let transposed = format!("\\begin{{bmatrix}} {} \\end{{bmatrix}}", formulas.coordinates.join(" & "));
     display(&mut text, "Generalized coordinates", &format!("\\mathbf{{q}}^T = {transposed}"));
-    parameters(&mut text, mechanism, formulas);
+    parameters(&mut text, values, formulas);
     let rows = formulas.rows.iter().enumerate().map(|(k, row)| format!("{}:~${row}$", k + 1));
     let _ = writeln!(text, "Rows: {}.\n\n\\bigskip", rows.collect::<Vec<_>>().join(", "));
     abbreviations(&mut text, &formulas.definitions);
@@ -154,16 +162,16 @@ fn entries(text: &mut String, name: &str, symbol: &str, rows: &[Vec<String>]) {
     text.push_str("\\bigskip\n");
 }
 
-fn parameters(text: &mut String, mechanism: &dyn AnyEquations, formulas: &Formulas) {
-    let entries = mechanism.variables().iter().zip(&formulas.variables).enumerate();
+fn parameters(text: &mut String, values: &[Value], formulas: &Formulas) {
+    let entries = values.iter().zip(&formulas.variables);
     let list: Vec<String> = entries
-        .filter_map(|(index, (entry, symbol))| {
-            let value = short(mechanism.get(index)?);
+        .filter_map(|(entry, symbol)| {
+            let value = short(entry.value?);
             let value = match value.split_once('e') {
                 Some((digits, exponent)) => format!("{digits} \\cdot 10^{{{exponent}}}"),
                 None => value,
             };
-            let unit = if entry.unit == "1" { String::new() } else { format!("\\,{}", unit(entry.unit)) };
+            let unit = if entry.unit == "1" { String::new() } else { format!("\\,{}", unit(&entry.unit)) };
             Some(format!("${symbol} = {value}{unit}$"))
         })
         .collect();

@@ -5,6 +5,7 @@ pub mod csv;
 pub mod latex;
 pub mod matrix;
 pub mod places;
+pub mod reload;
 pub mod report;
 pub mod shapes;
 pub mod svg;

@@ -1,0 +1,125 @@
+//! Names of a text, and the texts of a Rust source: for programs that choose among texts and scenes.
+
+use proc_macro2::{TokenStream, TokenTree};
+
+use crate::diagnostics::{Diagnostic, Fault};
+use crate::model::Model;
+use crate::model::scene::Scene;
+use crate::model::scenes::Scenes;
+use crate::syntax::Text;
+
+/// Names that a text without faults declares.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Outline {
+    /// Name of the mechanism.
+    pub name: String,
+    /// Names of its scenes; none where it declares none.
+    pub scenes: Vec<String>,
+    /// Names of the functions that the caller gives.
+    pub functions: Vec<String>,
+}
+
+/// A parameter or input of a scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Variable {
+    /// Name, with the component's number for arrays.
+    pub name: String,
+    /// Unit as written.
+    pub unit: String,
+    /// Default value (coherent SI); 0 for an input.
+    pub default: f64,
+}
+
+/// A call of `mechanism!` in a Rust source.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Call {
+    /// Name of the mechanism; `None` where its header has none.
+    pub name: Option<String>,
+    /// The text at its own lines and columns: blanks stand for what is before it.
+    pub source: String,
+    /// Line of the call, from 1.
+    pub line: usize,
+}
+
+/// Calls of `mechanism!` in a Rust source, in its order.
+///
+/// # Errors
+/// The place where the source is no Rust.
+pub fn calls(rust: &str) -> Result<Vec<Call>, Fault> {
+    let tokens: TokenStream = rust.parse().map_err(|error: proc_macro2::LexError| {
+        Fault::from(Diagnostic {
+            message: format!("this is no Rust: {error}"),
+            help: "close every bracket and quote".into(),
+            span: error.span(),
+        })
+    })?;
+    let mut found = Vec::new();
+    let mut streams = vec![tokens.into_iter()];
+    // The last two tokens, where they are `mechanism` and `!`.
+    let (mut name, mut mark) = (false, false);
+    while let Some(stream) = streams.last_mut() {
+        match stream.next() {
+            None => {
+                streams.pop();
+                (name, mark) = (false, false);
+            }
+            Some(TokenTree::Group(group)) => {
+                if mark {
+                    found.extend(call(rust, &group));
+                } else {
+                    streams.push(group.stream().into_iter());
+                }
+                (name, mark) = (false, false);
+            }
+            Some(TokenTree::Punct(punctuation)) => {
+                (name, mark) = (false, name && punctuation.as_char() == '!')
+            }
+            Some(TokenTree::Ident(word)) => (name, mark) = (word == "mechanism", false),
+            Some(TokenTree::Literal(_)) => (name, mark) = (false, false),
+        }
+    }
+    Ok(found)
+}
+
+/// The call with the text in `group`; `None` in the definition of a macro, whose text has `$`.
+fn call(rust: &str, group: &proc_macro2::Group) -> Option<Call> {
+    let (open, close) = (group.span_open(), group.span_close());
+    let text = rust.get(open.byte_range().end..close.byte_range().start)?;
+    let mut name = None;
+    let mut before = false;
+    for token in group.stream() {
+        match token {
+            TokenTree::Punct(mark) if mark.as_char() == '$' => return None,
+            TokenTree::Punct(mark) if mark.as_char() == ';' => break,
+            TokenTree::Ident(word) if before && name.is_none() => {
+                name = Some(word.to_string().trim_start_matches("r#").to_owned());
+            }
+            TokenTree::Ident(word) => before = word == "mechanism",
+            _ => {}
+        }
+    }
+    let start = open.end();
+    let mut source = "\n".repeat(start.line.saturating_sub(1));
+    source.extend(std::iter::repeat_n(' ', start.column));
+    source += text;
+    Some(Call { name, source, line: open.start().line })
+}
+
+/// Before: a text without faults. After: its names.
+pub(crate) fn names(text: &Text, scenes: &Scenes) -> Outline {
+    Outline {
+        name: text.header.label(),
+        scenes: scenes.scenes.iter().filter_map(Scene::label).map(str::to_owned).collect(),
+        functions: scenes.shared.functions.iter().map(|function| function.name.text.clone()).collect(),
+    }
+}
+
+/// Before: a model. After: its parameters and inputs.
+pub(crate) fn variables(model: &Model) -> Vec<Variable> {
+    let variable = |variable: &crate::model::Variable| Variable {
+        name: variable.name.clone(),
+        unit: variable.unit.clone(),
+        default: variable.default,
+    };
+    model.variables.iter().map(variable).collect()
+}

@@ -1,0 +1,296 @@
+//! Mechanisms in files: a Rust source with `mechanism!` in it, or the bare text in a `.mbs` file.
+
+mod argument;
+pub mod excerpt;
+
+use core::fmt;
+use std::fs;
+
+pub use self::argument::{Argument, is_file};
+use mbs_codegen::{Call, Outline};
+
+/// A mechanism's text in a file, without faults, in a scene.
+#[derive(Clone, Debug)]
+pub struct TextFile {
+    /// Path of the file, as the command line names it.
+    pub path: String,
+    /// The whole file.
+    pub content: String,
+    /// The text, at its own lines and columns of the file.
+    pub source: String,
+    /// Name of the mechanism.
+    pub name: String,
+    /// Name of the scene; `None` where the text declares none.
+    pub scene: Option<String>,
+    /// Functions that the caller gives.
+    pub functions: Vec<String>,
+}
+
+/// Reason why there is no text, with the cure.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum TextFileError {
+    /// The file cannot be read.
+    Unreadable {
+        /// The file.
+        path: String,
+        /// Message of the operating system.
+        reason: String,
+    },
+    /// Neither a Rust source nor a bare text.
+    Suffix {
+        /// The file.
+        path: String,
+    },
+    /// No call of `mechanism!` in a Rust source.
+    Empty {
+        /// The file.
+        path: String,
+    },
+    /// Several mechanisms or scenes, and the command line names none of them.
+    Several {
+        /// What the command line names.
+        argument: String,
+        /// Arguments that name one.
+        known: Vec<String>,
+    },
+    /// No mechanism or scene of this name.
+    Unknown {
+        /// What the command line names.
+        argument: String,
+        /// Arguments that name one.
+        known: Vec<String>,
+    },
+    /// Several mechanisms of one name.
+    Repeated {
+        /// The file.
+        path: String,
+        /// The name.
+        name: String,
+        /// Lines of the calls.
+        lines: Vec<usize>,
+    },
+    /// Faults of the text, as the macro reports them.
+    Faults(String),
+}
+
+impl TextFile {
+    /// The text that `argument` names: `FILE`, `FILE:Name` or `FILE:Name:Scene`.
+    ///
+    /// # Errors
+    /// [`TextFileError`], faults of the text with their lines in the file.
+    pub fn read(argument: &str) -> Result<Self, TextFileError> {
+        let asked = Argument::of(argument);
+        let path = asked.path.to_string();
+        let unreadable = |error: std::io::Error| TextFileError::Unreadable {
+            path: path.clone(),
+            reason: error.to_string(),
+        };
+        let content = fs::read_to_string(&path).map_err(unreadable)?;
+        let calls = calls(&path, &content)?;
+        let call = choose(&asked, &calls)?;
+        let outline = outlined(&path, &content, call)?;
+        if asked.name.is_some_and(|name| name != outline.name) {
+            return Err(asked.unknown(&calls));
+        }
+        let scene = match (asked.scene, outline.scenes.as_slice()) {
+            (None, []) => None,
+            (None, [only]) => Some(only.clone()),
+            (None, _) => {
+                let known = arguments(&path, call, calls.len() > 1);
+                return Err(TextFileError::Several { argument: argument.to_string(), known });
+            }
+            (Some(scene), known) if known.iter().any(|name| name == scene) => Some(scene.to_string()),
+            (Some(_), _) => return Err(asked.unknown(&calls)),
+        };
+        let Outline { name, functions, .. } = outline;
+        Ok(TextFile { source: call.source.clone(), path, content, name, scene, functions })
+    }
+
+    /// Name of the emitted type in the scene.
+    pub fn type_name(&self) -> String {
+        format!("{}{}", self.name, self.scene.as_deref().unwrap_or_default())
+    }
+}
+
+fn calls(path: &str, content: &str) -> Result<Vec<Call>, TextFileError> {
+    if path.ends_with(".mbs") {
+        return Ok(vec![Call { name: None, source: content.to_string(), line: 1 }]);
+    }
+    if !path.ends_with(".rs") {
+        return Err(TextFileError::Suffix { path: path.to_string() });
+    }
+    let calls = mbs_codegen::calls(content)
+        .map_err(|fault| TextFileError::Faults(excerpt::faults(path, content, &[fault])))?;
+    if calls.is_empty() { Err(TextFileError::Empty { path: path.to_string() }) } else { Ok(calls) }
+}
+
+fn choose<'a>(asked: &Argument, calls: &'a [Call]) -> Result<&'a Call, TextFileError> {
+    let wanted = |call: &&Call| match (asked.name, &call.name) {
+        (Some(asked), Some(name)) => asked == name,
+        _ => true,
+    };
+    let found: Vec<&Call> = calls.iter().filter(wanted).collect();
+    match (found.as_slice(), asked.name) {
+        ([only], _) => Ok(only),
+        ([], _) => Err(asked.unknown(calls)),
+        (_, None) => Err(TextFileError::Several {
+            argument: asked.path.to_string(),
+            known: calls.iter().flat_map(|call| arguments(asked.path, call, true)).collect(),
+        }),
+        (several, Some(name)) => Err(TextFileError::Repeated {
+            path: asked.path.to_string(),
+            name: name.to_string(),
+            lines: several.iter().map(|call| call.line).collect(),
+        }),
+    }
+}
+
+fn outlined(path: &str, content: &str, call: &Call) -> Result<Outline, TextFileError> {
+    mbs_codegen::outline(&call.source)
+        .map_err(|faults| TextFileError::Faults(excerpt::faults(path, content, &faults)))
+}
+
+/// Arguments that name the scenes of a call; of a text with faults its name alone.
+fn arguments(path: &str, call: &Call, several: bool) -> Vec<String> {
+    let outline = mbs_codegen::outline(&call.source).ok();
+    let name = outline.as_ref().map(|outline| outline.name.clone()).or_else(|| call.name.clone());
+    let named = format!("{path}:{}", name.unwrap_or_default());
+    match outline {
+        Some(outline) if !outline.scenes.is_empty() => {
+            outline.scenes.iter().map(|scene| format!("{named}:{scene}")).collect()
+        }
+        Some(_) if !several => vec![path.to_string()],
+        _ => vec![named],
+    }
+}
+
+impl Argument<'_> {
+    fn unknown(&self, calls: &[Call]) -> TextFileError {
+        let of = |call: &Call| arguments(self.path, call, calls.len() > 1);
+        TextFileError::Unknown { argument: self.to_string(), known: calls.iter().flat_map(of).collect() }
+    }
+}
+
+impl TextFileError {
+    /// `true` where the command line is at fault, not the text.
+    pub fn is_usage(&self) -> bool {
+        !matches!(self, TextFileError::Faults(_))
+    }
+}
+
+impl fmt::Display for TextFileError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let list = |names: &[String]| names.iter().map(|name| format!("\n  {name}")).collect::<String>();
+        match self {
+            TextFileError::Unreadable { path, reason } => write!(
+                f,
+                "cannot read {path}: {reason}\nan argument with `/` or `.` is a file; `mbs list` prints the names of mechanisms"
+            ),
+            TextFileError::Suffix { path } => write!(
+                f,
+                "{path} is neither a Rust source (`.rs`, with `mechanism!` in it) nor the bare text of a mechanism (`.mbs`)"
+            ),
+            TextFileError::Empty { path } => write!(
+                f,
+                "{path} has no `mechanism!`\nput the text into `mbs_runtime::mechanism! {{ … }}`, or alone into a `.mbs` file"
+            ),
+            TextFileError::Several { argument, known } => {
+                write!(f, "{argument} has several mechanisms or scenes; name one:{}", list(known))
+            }
+            TextFileError::Unknown { argument, known } => {
+                write!(f, "there is no {argument}; known:{}", list(known))
+            }
+            TextFileError::Repeated { path, name, lines } => {
+                let lines: Vec<String> = lines.iter().map(usize::to_string).collect();
+                write!(
+                    f,
+                    "{path} has several mechanisms called `{name}` (lines {}); give each a name of its own",
+                    lines.join(", ")
+                )
+            }
+            TextFileError::Faults(text) => f.write_str(text),
+        }
+    }
+}
+
+impl core::error::Error for TextFileError {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::target_directory::target_directory;
+
+    const CRANK: &str =
+        "coord phi: rad;\n    drive motor: phi == 1rad/1s*t;\n    out A: [m; 2] = 1m*unit(phi);";
+
+    fn file(name: &str, content: &str) -> String {
+        let folder = target_directory().join("tmp").join("text_file");
+        fs::create_dir_all(&folder).expect("a folder");
+        let path = folder.join(name);
+        fs::write(&path, content).expect("a file");
+        path.display().to_string()
+    }
+
+    #[test]
+    fn a_bare_text_is_one_mechanism() {
+        let path = file("bare.mbs", &format!("// A crank.\npub mechanism Crank;\n{CRANK} // end"));
+        let text = TextFile::read(&path).expect("a text");
+        assert_eq!((text.name.as_str(), text.scene.as_deref()), ("Crank", None));
+        assert!(TextFile::read(&format!("{path}:Crank")).is_ok());
+        let error = TextFile::read(&format!("{path}:Rod")).expect_err("another name");
+        assert_eq!(error, TextFileError::Unknown { argument: format!("{path}:Rod"), known: vec![path] });
+    }
+
+    #[test]
+    fn mechanisms_and_scenes_of_a_source_are_chosen_by_name() {
+        let source = format!(
+            "//! Two.\nuse mbs_runtime::mechanism;\nmechanism! {{ pub mechanism One; {CRANK} }}\nmod inner {{\n  \
+             mbs_runtime::mechanism! {{\n    mechanism Two;\n    coord phi: rad;\n    effect slow {{ drive m: phi == 1rad/1s*t; }}\n    \
+             effect fast {{ drive m: phi == 9rad/1s*t; }}\n    scene Slow = slow;\n    scene Fast = fast;\n  }}\n}}\n"
+        );
+        let path = file("two.rs", &source);
+        let known = ["One", "Two:Slow", "Two:Fast"].map(|name| format!("{path}:{name}")).to_vec();
+        let several = TextFileError::Several { argument: path.clone(), known: known.clone() };
+        assert_eq!(TextFile::read(&path).expect_err("two"), several);
+        let unknown = |argument: String| TextFileError::Unknown { argument, known: known.clone() };
+        for wrong in ["Three", "One:Slow", "Two:Slower"].map(|name| format!("{path}:{name}")) {
+            assert_eq!(TextFile::read(&wrong).expect_err("unknown"), unknown(wrong));
+        }
+        let text = TextFile::read(&known[2]).expect("a scene");
+        assert_eq!((text.type_name().as_str(), text.scene.as_deref()), ("TwoFast", Some("Fast")));
+        let scenes = TextFile::read(&format!("{path}:Two")).expect_err("two scenes").to_string();
+        assert!(scenes.ends_with(&format!("name one:\n  {}\n  {}", known[1], known[2])), "{scenes}");
+    }
+
+    #[test]
+    fn a_fault_is_shown_at_its_line_of_the_file() {
+        let source = format!(
+            "fn before() {{}}\n\n\tmbs_runtime::mechanism! {{\n\tpub mechanism Crank;\n\tparam L: m = 1kg; {CRANK}\n}}"
+        );
+        let path = file("faulty.rs", &source);
+        let error = TextFile::read(&path).expect_err("a unit");
+        assert!(!error.is_usage());
+        let text = error.to_string();
+        assert!(text.contains(&format!("  --> {path}:5:15\n")), "{text}");
+        assert!(
+            text.contains("\n5 | \tparam L: m = 1kg; coord") && text.contains("\n  | \t             ^^^\n"),
+            "{text}"
+        );
+    }
+
+    #[test]
+    fn files_that_are_no_texts_are_refused_with_a_cure() {
+        for (path, cure) in [
+            (file("none.rs", "fn f() {}"), "put the text into"),
+            (file("note.txt", ""), "neither a Rust source"),
+            (file("macro.rs", "macro_rules! m { ($t:tt) => { mechanism! { $t } } }"), "put the text into"),
+            ("missing/file.mbs".to_string(), "cannot read"),
+        ] {
+            let error = TextFile::read(&path).expect_err("no text");
+            assert!(error.is_usage() && error.to_string().contains(cure), "{error}");
+        }
+        let open = file("open.rs", "fn f() {\n    (\n}");
+        let error = TextFile::read(&open).expect_err("a bracket");
+        assert!(error.to_string().contains("close every bracket"), "{error}");
+    }
+}
