@@ -77,8 +77,8 @@ fn a_parallelogram_starts_in_line_with_both_kinds_of_rates() {
         let (projected, transformed) = methods();
         let parallel = [speed, 0.0, speed];
         let runs = [
-            run!(Parallelogram::default(), projected, [0.0; 3], parallel),
-            run!(Parallelogram::default(), transformed, [0.0; 3], parallel),
+            run!(Parallelogram::<f64>::default(), projected, [0.0; 3], parallel),
+            run!(Parallelogram::<f64>::default(), transformed, [0.0; 3], parallel),
         ];
         for (q, qd, qdd) in runs {
             let [defect, turned] = of_uprights([q[0], q[2]], qd[0], speed, STIFFNESS);
@@ -88,8 +88,8 @@ fn a_parallelogram_starts_in_line_with_both_kinds_of_rates() {
         }
         // The other assembly: crank and coupler cross.
         let crossed = [speed, -speed, -2.0 * speed];
-        let (q, _, qdd) = run!(Parallelogram::default(), projected, [0.0; 3], crossed);
-        let (other, _, others) = run!(Parallelogram::default(), transformed, [0.0; 3], crossed);
+        let (q, _, qdd) = run!(Parallelogram::<f64>::default(), projected, [0.0; 3], crossed);
+        let (other, _, others) = run!(Parallelogram::<f64>::default(), transformed, [0.0; 3], crossed);
         assert!(q.iter().zip(other).all(|(q, other)| (q - other).abs() < 1e-5), "{q:?} {other:?}");
         assert!(qdd.iter().zip(others).all(|(qdd, other)| (qdd - other).abs() < 1e-9), "{qdd:?}");
         assert!(q[1].abs() > 0.01, "{q:?}");
@@ -99,7 +99,7 @@ fn a_parallelogram_starts_in_line_with_both_kinds_of_rates() {
 #[test]
 fn steps_of_fixed_size_start_there_too() {
     let method = Explicit::new(RungeKutta4, Projection::default());
-    let start = Simulation::start(Parallelogram::default(), method, 0.0, [0.0; 3], [5.0, 0.0, 5.0]);
+    let start = Simulation::start(Parallelogram::<f64>::default(), method, 0.0, [0.0; 3], [5.0, 0.0, 5.0]);
     let mut run = start.expect("it starts");
     run.step_to(2.0, 2000).expect("it turns");
     let [defect, turned] = of_uprights([run.q()[0], run.q()[2]], run.qd()[0], 5.0, STIFFNESS);
@@ -110,8 +110,8 @@ fn steps_of_fixed_size_start_there_too() {
 fn one_row_that_vanishes_holds_two_cranks_from_a_start_in_line() {
     let (projected, transformed) = methods();
     for (q, qd, qdd) in [
-        run!(TwoCranks::default(), projected, [0.0; 2], [5.0; 2]),
-        run!(TwoCranks::default(), transformed, [0.0; 2], [5.0; 2]),
+        run!(TwoCranks::<f64>::default(), projected, [0.0; 2], [5.0; 2]),
+        run!(TwoCranks::<f64>::default(), transformed, [0.0; 2], [5.0; 2]),
     ] {
         let [defect, turned] = of_uprights(q, qd[0], 5.0, 98.1);
         assert!(defect < 1e-7 && turned < 1e-9, "{q:?} {defect:e}");
@@ -131,18 +131,18 @@ fn rates_of_no_motion_in_line_and_bars_at_rest_are_refused() {
     let (projected, transformed) = methods();
     // The first derivative of the rows allows them, the second does not.
     for kind in [
-        refused!(Parallelogram::default(), projected, [0.0; 3], [5.0, -1.0, 2.0]),
-        refused!(Parallelogram::default(), transformed, [0.0; 3], [5.0, -1.0, 2.0]),
-        refused!(TwoCranks::default(), projected, [0.0; 2], [5.0, 1.0]),
-        refused!(TwoCranks::default(), projected, [0.0; 2], [5.0, -5.0]),
-        refused!(TwoPoints::default(), projected, [0.1, 0.0, 0.4, 0.0], [0.0, 5.0, 0.0, 1.0]),
-        refused!(TwoPoints::default(), projected, [0.1, 0.0, 0.4, 0.0], [0.0, 5.0, 0.0, -5.0]),
+        refused!(Parallelogram::<f64>::default(), projected, [0.0; 3], [5.0, -1.0, 2.0]),
+        refused!(Parallelogram::<f64>::default(), transformed, [0.0; 3], [5.0, -1.0, 2.0]),
+        refused!(TwoCranks::<f64>::default(), projected, [0.0; 2], [5.0, 1.0]),
+        refused!(TwoCranks::<f64>::default(), projected, [0.0; 2], [5.0, -5.0]),
+        refused!(TwoPoints::<f64>::default(), projected, [0.1, 0.0, 0.4, 0.0], [0.0, 5.0, 0.0, 1.0]),
+        refused!(TwoPoints::<f64>::default(), projected, [0.1, 0.0, 0.4, 0.0], [0.0, 5.0, 0.0, -5.0]),
     ] {
         assert!(matches!(kind, FailureKind::Undecided { .. }), "{kind:?}");
     }
     for kind in [
-        refused!(Parallelogram::default(), projected, [0.0; 3], [0.0; 3]),
-        refused!(TwoCranks::default(), projected, [0.0; 2], [0.0; 2]),
+        refused!(Parallelogram::<f64>::default(), projected, [0.0; 3], [0.0; 3]),
+        refused!(TwoCranks::<f64>::default(), projected, [0.0; 2], [0.0; 2]),
     ] {
         assert!(matches!(kind, FailureKind::VanishingGradient { .. }), "{kind:?}");
     }
@@ -152,9 +152,19 @@ fn rates_of_no_motion_in_line_and_bars_at_rest_are_refused() {
 fn a_method_without_limits_of_rows_starts_there_only_with_the_right_accelerations() {
     let crossed = [5.0, -5.0, -10.0];
     for kind in [
-        refused!(Parallelogram::default(), Explicit::new(RungeKutta4, Unstabilized), [0.0; 3], crossed),
-        refused!(Parallelogram::default(), Explicit::new(RungeKutta4, Penalty::default()), [0.0; 3], crossed),
-        refused!(Parallelogram::default(), GeneralizedAlpha::default(), [0.0; 3], crossed),
+        refused!(
+            Parallelogram::<f64>::default(),
+            Explicit::new(RungeKutta4, Unstabilized),
+            [0.0; 3],
+            crossed
+        ),
+        refused!(
+            Parallelogram::<f64>::default(),
+            Explicit::new(RungeKutta4, Penalty::default()),
+            [0.0; 3],
+            crossed
+        ),
+        refused!(Parallelogram::<f64>::default(), GeneralizedAlpha::default(), [0.0; 3], crossed),
     ] {
         assert!(matches!(kind, FailureKind::Undecided { .. }), "{kind:?}");
     }
@@ -163,7 +173,7 @@ fn a_method_without_limits_of_rows_starts_there_only_with_the_right_acceleration
 #[test]
 fn a_change_in_line_keeps_the_run() {
     let (projected, _) = methods();
-    let run = Simulation::start(Parallelogram::default(), projected, 0.0, [0.0; 3], [5.0, 0.0, 5.0]);
+    let run = Simulation::start(Parallelogram::<f64>::default(), projected, 0.0, [0.0; 3], [5.0, 0.0, 5.0]);
     let mut run = run.expect("it starts");
     run.change(|text| text.r = 0.12);
     let ended: Result<(), Failure> = run.advance_to(0.5);
