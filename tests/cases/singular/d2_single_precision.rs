@@ -1,7 +1,8 @@
 //! D2: steps of fixed size in single precision, which left their branch with bars in line, or gained energy there, and ended with `Ok`.
 
 use mbs_runtime::dynamics::{
-    Explicit, Formulation, Projection, RungeKutta4, Simulation, VelocityTransformation,
+    DormandPrince5, DormandPrince8, Embedded, Explicit, FixedStep, Formulation, ProjectedStages, Projection,
+    RungeKutta4, Simulation, Tolerance, VelocityTransformation,
 };
 use mbs_runtime::{Dynamic, mechanism};
 
@@ -156,4 +157,42 @@ fn no_step_in_single_precision_leaves_its_branch_with_ok() {
     let right: u32 = all.iter().map(|[right, ..]| right).sum();
     // Half of the runs in bar angles with rods of 1 m end.
     assert!(right >= 40, "{all:?}");
+}
+
+/// Runs with adaptive steps that end right, that end wrong and that are refused.
+fn adaptive<I: Embedded + FixedStep + Default, F: Formulation<Parallelogram<f32>, f32, 3, 2> + Copy>(
+    formulation: F,
+    tolerance: f64,
+) -> [u32; 3] {
+    let mut found = [0; 3];
+    for k in 0..40_u8 {
+        let text = Parallelogram::<f32> { r: 0.1, b: 0.3, speed: -20.0 - 0.1 * f32::from(k) };
+        let run = Simulation::start_from_text(text, Explicit::new(I::default(), formulation), 0.0);
+        let mut run = run.expect("it starts").with_tolerance(Tolerance::new(tolerance));
+        let place = match run.advance_to(SECONDS) {
+            Err(_) => 2,
+            // Uprights of the one assembly are parallel.
+            Ok(()) => usize::from(run.q()[1].abs().max((run.q()[0] - run.q()[2]).abs()) > 0.01),
+        };
+        found[place] += 1;
+    }
+    println!("adaptive, {tolerance:e}: {found:?} right, wrong, refused");
+    found
+}
+
+#[test]
+fn no_adaptive_step_in_single_precision_leaves_its_branch_with_ok() {
+    let all_stages = Projection { stages: ProjectedStages::All };
+    let mut all = Vec::new();
+    for tolerance in [1e-2, 1e-3, 1e-4] {
+        all.push(adaptive::<DormandPrince5, _>(Projection::default(), tolerance));
+        all.push(adaptive::<DormandPrince5, _>(all_stages, tolerance));
+        all.push(adaptive::<DormandPrince5, _>(VelocityTransformation, tolerance));
+        all.push(adaptive::<DormandPrince8, _>(Projection::default(), tolerance));
+        all.push(adaptive::<DormandPrince8, _>(VelocityTransformation, tolerance));
+    }
+    assert!(all.iter().all(|[_, wrong, _]| *wrong == 0), "{all:?}");
+    let right: u32 = all.iter().map(|[right, ..]| right).sum();
+    // A fifth of the runs: with steps too long to be turned aside by rounding.
+    assert!(right >= 100, "{all:?}");
 }

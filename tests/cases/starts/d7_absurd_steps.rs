@@ -138,3 +138,28 @@ fn long_steps_that_are_right_are_taken() {
         assert!((end - exact).abs() < 1e-9 * exact, "{end} {exact}");
     }
 }
+
+mechanism! {
+    /// A wheel that turns freely, and a shell.
+    pub mechanism Fast;
+    coord phi: rad = 0;
+    coord p: [m; 2] = [0, 1];
+    body wheel { mass: 1, inertia: 1, com: [0, 0], angle: phi }
+    body shell { mass: 1, com: p }
+    force weight: [0, -9.81] on p;
+    start phi = 0 rate 1000;
+    start p = [0, 1] rate [800, 800];
+}
+
+#[test]
+fn a_free_motion_is_as_far_as_its_rates_lead() {
+    for h in [10.0, 20.0, 1e3, 1e5] {
+        let method = Explicit::new(RungeKutta4, Projection::default());
+        let mut run = Simulation::start_from_text(Fast::<f64>::default(), method, 0.0).unwrap();
+        run.step(h).unwrap_or_else(|failure| panic!("{h} s: {failure}"));
+        let exact = [1000.0 * h, 800.0 * h, 1.0 + 800.0 * h - 0.5 * 9.81 * h * h];
+        for (found, exact) in run.q().iter().zip(exact) {
+            assert!((found - exact).abs() < 1e-12 * h * h.max(1e3), "{found} {exact}");
+        }
+    }
+}

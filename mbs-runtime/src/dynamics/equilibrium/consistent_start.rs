@@ -168,7 +168,7 @@ fn completed_rates<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>
 }
 
 /// Fails where the rows lose rank and no accelerations belong to the rates: motions part there, and the rates are of none of them.
-fn require_decided<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
+pub(crate) fn require_decided<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     model: &Model<'_, S, R, N, M>,
     t: R,
     y: &IntegratorState<R, N, S::States>,

@@ -11,8 +11,7 @@
 use crate::dynamics::first_order_form::equations::{Equations, Moving};
 use crate::dynamics::formulations::singular::limit_rows::passes_within;
 use crate::dynamics::integrators::dormand_prince8::DormandPrince8;
-use crate::dynamics::integrators::embedded::Embedded;
-use crate::dynamics::integrators::step_control::{Accepted, Adaptive, Point};
+use crate::dynamics::integrators::step_control::{Adaptive, Point};
 use crate::dynamics::integrators::vector::{IntegratorState, Vector};
 use crate::dynamics::model::instant::Instant;
 use crate::dynamics::model::metric::Tolerance;
@@ -38,6 +37,10 @@ const MOST_PARTS: u32 = 10_000;
 /// its ends. Two branches differ by much of the velocity; that of a parallelogram of short bars changes by 5e-4 of it within the
 /// distance.
 const ASIDE: f64 = 0.1;
+
+/// Distance of a step in the metric over the sum of the margins at its ends from which on it may have led over a singular position: a
+/// margin grows by the distance from there at most.
+const TWICE: f64 = 2.0;
 
 /// Margin of a step's ends from which on it is not looked at.
 pub(crate) fn near<R: Real>() -> R {
@@ -90,7 +93,8 @@ where
                 |_| None,
                 |equations, part| {
                     parts += 1;
-                    equations.require_lasting(part)?;
+                    let end = &part.end;
+                    equations.require_lasting((end.t, &end.y.y.qd, &end.rate.y.qd))?;
                     let step = (part.end.t - part.start.t).to_f64();
                     let time = part.end.t.to_f64();
                     if parts < MOST_PARTS {
@@ -111,30 +115,68 @@ where
         Err(failed.unwrap_or(FailureKind::StepTooSmall { step: 0.0 }.at(until.to_f64())))
     }
 
+    /// Fails where a step that can be made smaller may have left the branch of its motion, in numbers so coarse that the accelerations do
+    /// not tell. `entered`: its end is next to a singular position. Steps of fixed size and their parts are judged as a whole.
+    #[inline(always)]
+    pub(crate) fn require_branch_of_step(
+        &self,
+        next: &Instant<R, N, M, S::States>,
+        entered: bool,
+    ) -> Result<(), Failure> {
+        let is_exact = !is_coarse::<R>();
+        if is_exact || self.is_fixed() || self.model.first_order {
+            Ok(())
+        } else {
+            self.require_branch_of_coarse_step(next, entered)
+        }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn require_branch_of_coarse_step(
+        &self,
+        next: &Instant<R, N, M, S::States>,
+        entered: bool,
+    ) -> Result<(), Failure> {
+        let from = self.end;
+        let h = next.t - from.t;
+        let (before, after) = (from.solved.margin, next.solved.margin);
+        self.model.moved(self.start, from.t, |model| {
+            // A step may be longer than the way on which the margin tells of the position.
+            let over = before + after < R::constant(TWICE) * h * model.largest(&from.y.qd);
+            let near = before.min(after) < near();
+            if entered || over || near && is_next_to_singular_position(model, &from, h) {
+                model.require_one_branch(&from, next, self.narrowest())?;
+                return self.require_lasting((next.t, &next.y.qd, &next.solved.rate.qd));
+            }
+            Ok(())
+        })
+    }
+
     /// Fails where the velocity at the end of a part does not last over the distance within which rounding turns it.
-    fn require_lasting<I: Embedded>(&self, part: &Accepted<I, R, Moving<S, R, N, M>>) -> Result<(), Failure> {
-        let (model, end) = (self.model, &part.end);
-        let (speed, change) = (model.largest(&end.y.y.qd), model.largest(&end.rate.y.qd));
+    fn require_lasting(&self, (t, qd, qdd): (R, &[R; N], &[R; N])) -> Result<(), Failure> {
+        let (speed, change) = (self.model.largest(qd), self.model.largest(qdd));
         let turned = singular::TURNED.of::<R>() * change;
         // Written so that NaN does not last.
         if !is_coarse::<R>() || turned.less(R::constant(ASIDE) * speed * speed) {
             return Ok(());
         }
-        Err(FailureKind::undecided(self.end.1).at(end.t.to_f64()))
+        Err(FailureKind::undecided(self.end.solved.margin).at(t.to_f64()))
     }
 }
 
 impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, R, N, M> {
     /// Fails where a step next to a singular position may have left the branch of the motion, in numbers so coarse that the accelerations do
-    /// not tell.
+    /// not tell. `error`: part of the energy that the integration of a step may cost.
     #[cold]
     #[inline(never)]
     pub(crate) fn require_one_branch(
         &self,
         from: &Instant<R, N, M, S::States>,
         next: &Instant<R, N, M, S::States>,
+        error: R,
     ) -> Result<(), Failure> {
-        if !is_coarse::<R>() || (self.keeps_velocity(from, next) && self.keeps_energy(from, next)) {
+        if !is_coarse::<R>() || (self.keeps_velocity(from, next) && self.keeps_energy(from, next, error)) {
             return Ok(());
         }
         let margin = next.solved.margin.min(from.solved.margin);
@@ -151,7 +193,12 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
     }
 
     /// The energy changes over a step by the work supplied, where that is known.
-    fn keeps_energy(&self, from: &Instant<R, N, M, S::States>, next: &Instant<R, N, M, S::States>) -> bool {
+    fn keeps_energy(
+        &self,
+        from: &Instant<R, N, M, S::States>,
+        next: &Instant<R, N, M, S::States>,
+        error: R,
+    ) -> bool {
         if !self.balanced {
             return true;
         }
@@ -163,6 +210,6 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         let (gained, released) = (end.kinetic - start.kinetic, start.potential - end.potential);
         let defect = gained - released - (next.y.work - from.y.work);
         let known = start.kinetic + end.kinetic + released.abs();
-        defect.abs().less(motion::UNEXPLAINED.of::<R>() * known)
+        defect.abs().less(motion::UNEXPLAINED.of::<R>().max(error) * known)
     }
 }

@@ -41,8 +41,8 @@ pub struct Equations<'a, S: Dynamic<R, N, M>, F, R: Real, const N: usize, const 
     fixed: bool,
     /// Multipliers (M) of the last evaluation.
     lambda: [R; M],
-    /// Time (s), margin and state of the last step's end.
-    pub(crate) end: (R, R, IntegratorState<R, N, S::States>),
+    /// The last step's end.
+    pub(crate) end: Instant<R, N, M, S::States>,
     /// Time (s) and margin of the last instant that was shown.
     seen: (R, R),
     /// The first passage since `start`.
@@ -58,9 +58,9 @@ pub struct Equations<'a, S: Dynamic<R, N, M>, F, R: Real, const N: usize, const 
     pub(crate) counts: Counts,
 }
 
-/// Time (s), margin and state where a step begins, and the first passage before it.
+/// The instant at which a step begins, and the first passage before it.
 type Before<S, R, const N: usize, const M: usize> =
-    ((R, R, IntegratorState<R, N, <S as Dynamic<R, N, M>>::States>), Option<Passage<R>>);
+    (Instant<R, N, M, <S as Dynamic<R, N, M>>::States>, Option<Passage<R>>);
 
 impl<'a, S, F, R, const N: usize, const M: usize> Equations<'a, S, F, R, N, M>
 where
@@ -77,7 +77,7 @@ where
     ) -> Self {
         let (tolerance, start) = (radau::of_fixed_steps(), from.t);
         let seen = (from.t, from.solved.margin);
-        let (lambda, end) = (from.solved.lambda, (seen.0, seen.1, from.y));
+        let (lambda, end) = (from.solved.lambda, *from);
         let moving = (!S::PHASES.is_empty() || S::HAS_SIGNALS).then(|| model.mechanism.clone());
         Equations {
             model,
@@ -309,7 +309,7 @@ where
     fn rate(&mut self, t: R, y: &Self::State) -> Result<Self::State, Failure> {
         match self.solve(t, y) {
             Err(failure) if self.fixed => {
-                self.model.require_bounded(t, &self.end.2, &y.y)?;
+                self.model.require_bounded(t, &self.end, &y.y.q)?;
                 if !matches!(failure, Failure { kind: FailureKind::OffConstraints { .. }, .. }) {
                     return Err(failure);
                 }
@@ -345,13 +345,16 @@ where
 
     #[inline]
     fn settled_rate(&mut self, t: R, y: &mut Self::State) -> Result<Self::State, Failure> {
+        let singular = self.counts.singular;
         let solved = self.project_and_solve(t, y)?;
-        let (before, margin, _) = self.end;
+        let (before, margin) = (self.end.t, self.end.solved.margin);
+        let next = Instant { t, y: y.y, solved, carried: solved.rate.qd };
+        self.require_branch_of_step(&next, self.counts.singular != singular)?;
         if !S::CONTACTS.is_empty() {
             self.before = (self.end, self.passage);
         }
         self.passage = self.passage.or(Passage::between((before, margin), (t, solved.margin)));
-        self.end = (t, solved.margin, y.y);
+        self.end = next;
         Ok(self.phased(t, solved.rate))
     }
 }
@@ -364,7 +367,7 @@ where
 {
     /// In the zone of a singular position a ten-millionth of a radian, or of a reference length.
     fn least_step(&self) -> R {
-        let (_, margin, y) = &self.end;
+        let Instant { y, solved: Solved { margin, .. }, .. } = &self.end;
         let speed = self.model.largest(&y.qd);
         let step = singular::LEAST_MOTION.of::<R>() / speed;
         if *margin < singular::ZONE_OF_FORCES.of() && step.is_finite() { step } else { R::constant(0.0) }
@@ -398,7 +401,7 @@ where
     }
 
     fn obstacle(&self) -> Option<Failure> {
-        let (t, _, y) = &self.end;
+        let Instant { t, y, .. } = &self.end;
         self.model.moved(self.start, *t, |model| model.obstacle(*t, y))
     }
 

@@ -52,7 +52,7 @@ where
         let stepped = I::step(&mut motion, from.t, h, &start.y, &start.rate);
         let ended = stepped.and_then(|mut end| match motion.project_and_solve(t, &mut end) {
             Ok(solved) => Ok((end.y, solved)),
-            Err(failure) => model.require_bounded(t, &from.y, &end.y).and(Err(failure)),
+            Err(failure) => model.require_bounded(t, from, &end.y.q).and(Err(failure)),
         });
         let margin = ended.as_ref().map_or(from.solved.margin, |(_, solved)| solved.margin);
         let entered = motion.counts.singular != counts.singular;
@@ -66,7 +66,7 @@ where
                     let (y, solved) = ended?;
                     Instant { t, y, solved, carried: solved.rate.qd }
                 };
-                model.require_one_branch(from, &next)?;
+                model.require_one_branch(from, &next, R::constant(0.0))?;
                 *counts = motion.counts;
                 return Ok(next);
             }

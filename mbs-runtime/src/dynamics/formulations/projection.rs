@@ -74,8 +74,9 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Formulation<S
         let position = model.position(t, &y);
         let factors = factorize(model, t, &position, counts)?;
         let gamma = model.mechanism.gamma(model.parameters, &position, &y.qd);
-        if factors.margin() < singular::ZONE_OF_FORCES.of() && factors.margin() < model.zone(stages) {
-            let rows = (&gamma, factors.margin());
+        let margin = if factors.loses_rank(S::REDUNDANT) { R::constant(0.0) } else { factors.margin() };
+        if margin < singular::ZONE_OF_FORCES.of() && margin < model.zone(stages) {
+            let rows = (&gamma, margin);
             let found = at_limit(model, (t, &y), &position, lambda, rows, counts)?;
             if let Some(Passing { solved, .. }) = found {
                 return Ok(solved);

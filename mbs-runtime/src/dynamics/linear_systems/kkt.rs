@@ -79,8 +79,8 @@ impl<R: Real, const N: usize, const M: usize> System<R, N, M> {
         self.factorize_rank_revealing(singular::DEPENDENT.of(), coordinates, t)
     }
 
-    /// Factorises Φ_q rank-revealing and M on its null space; rows whose part of their own is below `truncation` count
-    /// as dependent.
+    /// Factorises Φ_q rank-revealing and M on its null space; rows whose part of their own is below `truncation`, of the longest row
+    /// or of 1 where all are shorter, count as dependent.
     ///
     /// # Errors
     /// As [`factorize`](Self::factorize).
@@ -110,9 +110,10 @@ impl<R: Real, const N: usize, const M: usize> System<R, N, M> {
         self.null_space(singular::DEPENDENT.of(), share, coordinates, t).map(|_| ())
     }
 
-    /// The first row of Φ_q without an entry above `least` in the metric.
-    pub(crate) fn flat_row(&self, least: R) -> Option<usize> {
-        self.phi_q.iter().position(|row| row.iter().all(|entry| entry.abs() < least))
+    /// The rows of Φ_q without an entry above `least` in the metric.
+    pub(crate) fn flat_rows(&self, least: R) -> impl Iterator<Item = usize> {
+        let flat = move |row: &[R; N]| row.iter().all(|entry| entry.abs() < least);
+        self.phi_q.iter().enumerate().filter(move |(_, row)| flat(row)).map(|(index, _)| index)
     }
 
     /// The combination of rows of the metric with `shares` (M): N.
@@ -248,8 +249,8 @@ impl<R: Real, const N: usize, const M: usize> Factors<R, N, M> {
         }
     }
 
-    /// Margin of Φ_q to a loss of rank: about its smallest over its largest singular value in the metric; of rows that
-    /// are dependent, that of the others.
+    /// Margin of Φ_q to a loss of rank: about its smallest singular value in the metric over its largest, or over 1 where all are
+    /// less; of rows that are dependent, that of the others.
     pub fn margin(&self) -> R {
         self.margin
     }
@@ -262,6 +263,12 @@ impl<R: Real, const N: usize, const M: usize> Factors<R, N, M> {
     /// Number of independent rows.
     pub fn rank(&self) -> usize {
         if let FactorKind::NullSpace(null_space) = &self.kind { null_space.rank() } else { M }
+    }
+
+    /// `true` if more rows depend on others than are declared `redundant`: those lost their hold at this position, or nowhere have one.
+    pub(crate) fn loses_rank(&self, redundant: &[bool]) -> bool {
+        let declared = redundant.iter().filter(|redundant| **redundant).count();
+        self.rank() + declared < M
     }
 
     /// Combinations of multipliers without effect, in the metric, M less the rank of them, then zeros.

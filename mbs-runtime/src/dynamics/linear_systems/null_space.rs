@@ -28,8 +28,10 @@ pub(crate) struct NullSpace<R, const N: usize, const M: usize> {
 }
 
 impl<R: Real, const N: usize, const M: usize> NullSpace<R, N, M> {
-    /// Factorises `mass` and `phi_q`; a row whose part of its own is below `truncation` times the longest row is
-    /// dependent.
+    /// Factorises `mass` and `phi_q`; a row whose part of its own is below `truncation` times the longest row, or times 1 where all
+    /// are shorter, is dependent.
+    ///
+    /// A row of the metric has an entry of 1 where it is steepest. So 1 is the measure where all rows lose their entries at once.
     ///
     /// Fails with the coordinate that moves most in a free motion whose inertia is below `inertia` of that of all of them.
     pub(crate) fn factorize(
@@ -71,7 +73,7 @@ impl<R: Real, const N: usize, const M: usize> NullSpace<R, N, M> {
             swap(&mut self.order, k, best.0);
             let length = best.1.max(zero).sqrt();
             if k == 0 {
-                longest = length;
+                longest = length.max(R::constant(1.0));
             }
             // Written so that NaN ends the loop.
             if !(truncation * longest).less(length) {

@@ -249,15 +249,18 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         scaled.fold(R::constant(0.0), |largest, value| largest.max(value))
     }
 
-    /// Fails with the coordinate that a step from `before` takes too far for a motion.
-    pub(crate) fn require_bounded(
+    /// Fails with the coordinate that a step from `from` to `after` (N), at `t` (s), takes too far for a motion: 1e4 in the metric, and
+    /// several times as far as rates and accelerations at its start lead.
+    pub(crate) fn require_bounded<Z>(
         &self,
         t: R,
-        before: &IntegratorState<R, N, S::States>,
-        after: &IntegratorState<R, N, S::States>,
+        from: &Instant<R, N, M, Z>,
+        after: &[R; N],
     ) -> Result<(), Failure> {
-        let mut worst = (R::constant(LARGEST_MOTION), None);
-        let moved = before.q.iter().zip(&after.q).zip(&self.metric.coordinates);
+        let (h, q, rate) = (t - from.t, &from.y.q, &from.solved.rate);
+        let led = h * (self.largest(&from.y.qd) + h * self.largest(&rate.qd));
+        let mut worst = (R::constant(LARGEST_MOTION).max(R::constant(LARGEST_EXCESS) * led), None);
+        let moved = q.iter().zip(after).zip(&self.metric.coordinates);
         for (index, ((before, after), scale)) in (0_u16..).zip(moved) {
             let distance = ((*after - *before) / *scale).abs();
             if worst.0 < distance || !distance.is_finite() {
@@ -280,7 +283,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
     where
         S: Dynamic<R, N, M, States = Z>,
     {
-        self.require_bounded(next.t, &from.y, &next.y)?;
+        self.require_bounded(next.t, from, &next.y.q)?;
         let gate = R::constant(LARGE_MOTION);
         let mut small = true;
         for (rate, scale) in next.y.qd.iter().zip(&self.metric.coordinates) {
@@ -441,9 +444,12 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
     }
 }
 
-/// Motion in one step of fixed size, in the reference metric (rad, or reference lengths), that no mechanism makes: the
-/// integration has lost it.
+/// Motion in one step of fixed size, in the reference metric (rad, or reference lengths), that a mechanism makes only as its rates
+/// lead: the integration has lost it.
 const LARGEST_MOTION: f64 = 1e4;
+
+/// Such a motion over that by the rates and accelerations at the start of the step. A free motion makes 1 of it at most.
+const LARGEST_EXCESS: f64 = 4.0;
 
 /// Motion in one step of fixed size by the rates of its end, in the reference metric (rad, or reference lengths), above which
 /// it is checked. A step of a control loop, or one that follows a motion at all, moves less.

@@ -3,7 +3,7 @@
 use crate::dynamics::integrators::event::enclosure::{Enclosures, Functions, GroupOver, Part};
 use crate::dynamics::integrators::event::{GROUP, Scrutiny, Unanswered, Watched, first_beyond};
 use crate::dynamics::integrators::vector::IntegratorState;
-use crate::dynamics::model::Model;
+use crate::dynamics::model::{Model, Solved};
 use crate::failure::checks::{limit_failure, passed_failure};
 use crate::failure::{Failure, FailureKind};
 use crate::kinematics::position;
@@ -76,6 +76,17 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
     ) -> Result<(), Failure> {
         let check = |t: R| self.check_assembly(from, (t, &at(t)), false);
         check(end).map_err(|failure| first_failure(start, (end, failure), check))
+    }
+
+    /// Rates and multipliers `solved` at a state from which a run goes on, unless a row that no coordinate changes does not hold them.
+    pub(super) fn require_held(
+        &self,
+        t: R,
+        y: &IntegratorState<R, N, S::States>,
+        solved: Result<Solved<R, N, M, S::States>, Failure>,
+    ) -> Result<Solved<R, N, M, S::States>, Failure> {
+        self.require_no_flat_row(t, y, solved.as_ref().ok().map(|solved| &solved.rate.qd))?;
+        solved
     }
 
     /// Fails with the row that a start violates by more than it may.

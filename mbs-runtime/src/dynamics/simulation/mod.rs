@@ -206,9 +206,10 @@ where
         let metric = Metric::next_to(&mechanism, &parameters, t, &y.q);
         model.metric = &metric;
         Projection::default().project(&model, t, &mut y, &mut counts)?;
-        model.require_no_flat_row(t, &y)?;
         model.rank_rises = rank_rises(&model, t, &y);
-        let solved = method.solve(&model, t, &y, &[R::constant(0.0); M], &mut counts)?;
+        let solved = method.solve(&model, t, &y, &[R::constant(0.0); M], &mut counts);
+        let solved = model.require_held(t, &y, solved)?;
+        consistent_start::require_decided(&model, t, &y)?;
         let now = Instant { t, y, solved, carried: solved.rate.qd };
         model.check_assembly(t, (t, &y), true)?;
         let rank_rises = model.rank_rises;
@@ -306,9 +307,9 @@ where
             return Ok(Fresh { instant: self.now, gained: R::constant(0.0), rank_rises });
         }
         Projection::default().project(&model, t, &mut y, counts)?;
-        model.require_no_flat_row(t, &y)?;
         model.rank_rises = model.rank_rises || rank_rises(&model, t, &y);
-        let solved = self.method.solve(&model, t, &y, &solved.lambda, counts)?;
+        let solved = self.method.solve(&model, t, &y, &solved.lambda, counts);
+        let solved = model.require_held(t, &y, solved)?;
         let gained = model.total_energy(t, &y) - model.total_energy(t, &self.now.y);
         let instant = Instant { t, y, solved, carried: solved.rate.qd };
         Ok(Fresh { instant, gained, rank_rises: model.rank_rises })
