@@ -2,6 +2,7 @@
 
 pub(crate) mod consistent_start;
 pub(crate) mod correction;
+pub(crate) mod dead_centre;
 pub(crate) mod free_play;
 pub(crate) mod free_stiffness;
 pub(crate) mod states;
