@@ -163,9 +163,8 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Way<'_, S, R,
     /// `true` if the forces at `place` push against the move.
     fn pushes_back(&self, place: &Place<S, R, N, M>) -> bool {
         let parts = place.1.pull.iter().zip(self.step).zip(&self.model.metric.coordinates);
-        let sum = parts.fold(R::constant(0.0), |sum, ((pull, step), scale)| {
-            sum + (*pull / *scale) * (*step / *scale)
-        });
+        let sum = parts
+            .fold(R::constant(0.0), |sum, ((pull, step), scale)| sum + (*pull / *scale) * (*step / *scale));
         sum < R::constant(0.0)
     }
 
