@@ -125,8 +125,8 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Way<'_, S, R,
         if leads_on { Ok(None) } else { Err(self.model.unbalanced(self.step, self.t, MOST_MOVES)) }
     }
 
-    /// The position after a move with the force that no stiffness answers, twice as long again until forces are nearer to balance or
-    /// push back.
+    /// The position after a move with the force that no stiffness answers, twice as long again until forces are much nearer to balance
+    /// or push back.
     #[cold]
     #[inline(never)]
     fn with_the_force(&self) -> Option<Place<S, R, N, M>> {
@@ -137,21 +137,22 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Way<'_, S, R,
         }
         let unit = self.answer.unanswered.map(|part| part * (R::constant(LARGEST_STEP) / size));
         let along = Way { step: &unit, ..*self };
-        let mut share = R::constant(1.0);
+        let (mut share, mut nearest) = (R::constant(1.0), None);
         for _ in 0..MOST_DOUBLINGS {
             if along.only_turns() && R::constant(WHOLE_TURN) < share * R::constant(LARGEST_STEP) {
-                return None;
+                break;
             }
-            let place = along.after(share).ok()?;
-            if along.comes_nearer(&place, (R::constant(1.0), PROMISED)) {
+            let Ok(place) = along.after(share) else { break };
+            if along.comes_nearer(&place, (R::constant(1.0), FAR)) {
                 return Some(place);
             }
             if along.pushes_back(&place) {
-                return along.between(R::constant(0.5) * share, share);
+                return nearest.or_else(|| along.between(R::constant(0.5) * share, share));
             }
+            nearest = Some(place).filter(|place| along.comes_nearer(place, (R::constant(1.0), PROMISED)));
             share = two * share;
         }
-        None
+        nearest
     }
 
     /// `true` if angles alone move.
