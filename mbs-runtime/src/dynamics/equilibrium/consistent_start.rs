@@ -1,6 +1,7 @@
 //! The start of a text: declared values stay as declared, the rows give the rest.
 
 use crate::block_solvers::multistart::displaced;
+use crate::dynamics::equilibrium::dead_centre;
 use crate::dynamics::integrators::vector::{IntegratorState, Vector};
 use crate::dynamics::linear_systems::kkt::{Factors, System};
 use crate::dynamics::model::metric::{Metric, worse};
@@ -105,7 +106,8 @@ pub(crate) fn complete<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: us
         let position = model.mechanism.position(model.parameters, &q, t);
         let left =
             model.worst(&model.constraint_rates(&position, &qd), &model.rate_tolerances(&position, &qd)).0;
-        if left <= before {
+        // As far off as before is a rate that nothing can take back, but for the rounding of the others.
+        if left <= before * (R::constant(1.0) + positions::OF_START.of()) {
             (y.q, y.qd) = (q, qd);
         }
         require_decided(model, t, y)?;
@@ -118,6 +120,8 @@ pub(crate) fn complete<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: us
 /// If the columns of the others have a singular value σ, rounding leaves ε/σ of the position open, and ε/σ² of the rate along
 /// its direction is in doubt. There the second derivative of the rows decides. With ν the left singular vector, νᵀγ is σ times an
 /// acceleration, 0 but for σ itself. The position is then the one at which this rate meets the rows, within their rounding.
+///
+/// Along the way out of a [dead centre](dead_centre) that rounding does not tell from the position no rate is taken.
 fn completed_rates<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     model: &Model<'_, S, R, N, M>,
     t: R,
@@ -127,11 +131,9 @@ fn completed_rates<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>
     let (zero, one, back) = (R::constant(0.0), R::constant(1.0), R::constant(-1.0));
     let none = [zero; N];
     let system = free_columns(model, position, S::STARTED_RATES);
-    let factors = system.factorize_rank_revealing(singular::WEAKEST_OF_START.of(), S::COORDINATES, t)?;
+    let truncation = dead_centre::truncation(model, t, y, &system, rates)?;
+    let factors = system.factorize_rank_revealing(truncation, S::COORDINATES, t)?;
     let found = y.qd.plus(back, &[1.0], [&factors.solve(&none, rates).0]);
-    if singular::DOUBTFUL.of::<R>() < factors.margin() {
-        return Ok((y.q, found));
-    }
     let without = system.factorize_rank_revealing(singular::DOUBTFUL.of(), S::COORDINATES, t)?;
     if without.rank() + 1 != factors.rank() {
         return Ok((y.q, found));
@@ -139,10 +141,7 @@ fn completed_rates<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>
     let certain = y.qd.plus(back, &[1.0], [&without.solve(&none, rates).0]);
     let along = found.plus(back, &[1.0], [&certain]);
     let weak = weak_combination(&factors, &without);
-    let weighed = |values: [R; M]| {
-        let parts = values.iter().zip(&weak).zip(factors.row_scales());
-        parts.fold(zero, |sum, ((value, weak), scale)| sum + *weak * *value / *scale)
-    };
+    let weighed = |values: [R; M]| dot(&weak, &weighed(values, &factors));
     let bent = |share: R| {
         let qd = certain.plus(share, &[1.0], [&along]);
         weighed(model.mechanism.gamma(model.parameters, position, &qd))
@@ -167,6 +166,15 @@ fn completed_rates<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>
     Ok(if closes { (q, qd) } else { (y.q, found) })
 }
 
+/// `values` (M) of the rows in the metric of `factors`.
+pub(crate) fn weighed<R: Real, const N: usize, const M: usize>(
+    mut values: [R; M],
+    factors: &Factors<R, N, M>,
+) -> [R; M] {
+    values.iter_mut().zip(factors.row_scales()).for_each(|(value, scale)| *value = *value / *scale);
+    values
+}
+
 /// Fails where the rows lose rank and no accelerations belong to the rates: motions part there, and the rates are of none of them.
 pub(crate) fn require_decided<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     model: &Model<'_, S, R, N, M>,
@@ -177,8 +185,7 @@ pub(crate) fn require_decided<S: Dynamic<R, N, M>, R: Real, const N: usize, cons
     let position = model.position(t, y);
     let system = free_columns(model, &position, &[]);
     let factors = system.factorize_rank_revealing(singular::DOUBTFUL.of(), S::COORDINATES, t)?;
-    let mut gamma = model.mechanism.gamma(model.parameters, &position, &y.qd);
-    gamma.iter_mut().zip(factors.row_scales()).for_each(|(part, scale)| *part = *part / *scale);
+    let gamma = weighed(model.mechanism.gamma(model.parameters, &position, &y.qd), &factors);
     let speed = model.largest(&y.qd);
     let allowed = singular::UNANSWERED.of::<R>() * dot(&gamma, &gamma).sqrt()
         + singular::DOUBTFUL.of::<R>() * speed * speed;

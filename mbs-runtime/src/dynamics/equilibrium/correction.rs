@@ -17,7 +17,7 @@ pub(crate) const LARGEST_STEP: f64 = 0.5;
 
 /// Largest part of the distance to an equilibrium after a step in which lengths may move farther than [`LARGEST_STEP`]: after
 /// a linear control it is rounding.
-const FAR: f64 = 0.5;
+pub(crate) const FAR: f64 = 0.5;
 
 /// Least part of the predicted decrease that a move must give. Source: Nocedal & Wright 2006, §3.1 (Armijo).
 pub(crate) const PROMISED: f64 = 1e-4;
@@ -290,7 +290,7 @@ pub(crate) fn capped<R: Real, const N: usize>(step: &[R; N], scales: &[R; N]) ->
 }
 
 /// The share of `step` (N) that turns no angle by more than [`LARGEST_STEP`].
-fn capped_turn<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(step: &[R; N]) -> R {
+pub(crate) fn capped_turn<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(step: &[R; N]) -> R {
     let most = R::constant(LARGEST_STEP);
     let turns = step.iter().zip(S::COORDINATES).filter(|(_, entry)| entry.is_angle());
     most / turns.fold(most, |largest, (step, _)| largest.max(step.abs()))

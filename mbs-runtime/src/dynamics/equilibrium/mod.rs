@@ -1,33 +1,29 @@
 //! Static equilibrium: where a mechanism rests.
 
+pub(crate) mod approach;
 pub(crate) mod consistent_start;
 pub(crate) mod correction;
+pub(crate) mod dead_centre;
 pub(crate) mod free_play;
 pub(crate) mod free_stiffness;
 pub(crate) mod states;
 pub(crate) mod with_integrators;
 
-use crate::dynamics::equilibrium::consistent_start::close;
-use crate::dynamics::equilibrium::correction::{
-    HALVINGS, PROMISED, capped, correction, damped, largest, saddle,
-};
+use crate::dynamics::equilibrium::approach::approach;
+use crate::dynamics::equilibrium::correction::{correction, damped, largest, saddle};
 use crate::dynamics::equilibrium::free_play::with_play;
 use crate::dynamics::equilibrium::free_stiffness::{Answer, FreeStiffness};
 use crate::dynamics::equilibrium::states::resting_anywhere;
 use crate::dynamics::implicit::iteration::MOST_ITERATIONS;
-use crate::dynamics::integrators::vector::{IntegratorState, Vector};
+use crate::dynamics::integrators::vector::IntegratorState;
+use crate::dynamics::model::Model;
 use crate::dynamics::model::method::require_slopes_at_rest;
 use crate::dynamics::model::metric::Metric;
 use crate::dynamics::model::sign_checks::parameter_failure;
-use crate::dynamics::model::{Counts, Model};
 use crate::failure::{Failure, FailureKind, checks};
 use crate::mechanism::dynamic::Dynamic;
 use crate::scalar::number::Real;
 use crate::tolerances::forces;
-
-/// Moves of the search for the place where the forces are nearest to balance: ten turns of a coordinate, or a dozen digits of
-/// a place where they only come near.
-const MOST_MOVES: u32 = 120;
 
 /// Distance by which a start is moved if no coordinate changes the integrand of a state, as at the turning point of a square. In
 /// the metric, less than the length of the shortest bars of a mechanism.
@@ -56,7 +52,8 @@ pub struct Equilibrium<R, const N: usize, const M: usize> {
 /// No mass has a part in it, except by gravity. The nearest equilibrium is found, stable or not: see
 /// [`linearize`](crate::dynamics::analyses::linearization::linearize()). Newton's method takes capped steps, the shortest where a motion meets no
 /// stiffness, and goes with the force where that pushes along such a motion. If it does not converge, the
-/// place is sought where the forces are nearest to balance.
+/// place is sought where the forces are nearest to balance, by moves as long as they come much nearer. Where a force stays
+/// the same, it is followed until another one answers it, however far.
 ///
 /// ```
 /// use mbs_runtime::dynamics::equilibrium;
@@ -266,49 +263,8 @@ fn is_balanced<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     Ok(near && !R::constant(0.0).less(answer.push))
 }
 
-/// Moves `y` to where the forces of the free motions are nearest to balance, along the rows.
-///
-/// # Errors
-/// [`FailureKind::NoEquilibrium`] where they do not come to balance there; [`FailureKind::OffConstraints`] where the rows cannot be met.
-fn approach<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
-    model: &Model<'_, S, R, N, M>,
-    t: R,
-    y: &mut IntegratorState<R, N, S::States>,
-) -> Result<(), Failure> {
-    let mut counts = Counts::default();
-    close(model, t, y, &[], &mut counts)?;
-    model.settle_states(t, y, &[R::constant(0.0); M])?;
-    for _ in 0..MOST_MOVES {
-        let answer = answer(model, t, y)?;
-        if !R::constant(0.0).less(answer.imbalance) {
-            return Ok(());
-        }
-        let mut share = capped(&answer.step, &model.metric.coordinates);
-        let mut nearer = None;
-        for _ in 0..HALVINGS {
-            let mut trial = *y;
-            trial.q = y.q.plus(-share, &[1.0], [&answer.step]);
-            let closed = close(model, t, &mut trial, &[], &mut counts)
-                .and_then(|()| model.settle_states(t, &mut trial, &[R::constant(0.0); M]))
-                .is_ok();
-            let promised = answer.imbalance * (R::constant(1.0) - R::constant(PROMISED) * share);
-            if closed && self::answer(model, t, &trial).is_ok_and(|answer| answer.imbalance.less(promised)) {
-                nearer = Some(trial);
-                break;
-            }
-            share = share * R::constant(0.5);
-        }
-        match nearer {
-            Some(trial) => *y = trial,
-            None => return Err(no_equilibrium(model, t, &answer.pull, answer.imbalance)),
-        }
-    }
-    let last = answer(model, t, y)?;
-    Err(no_equilibrium(model, t, &last.pull, last.imbalance))
-}
-
 /// The answer of the free stiffness to the forces at `y`, on the rows.
-fn answer<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
+pub(crate) fn answer<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     model: &Model<'_, S, R, N, M>,
     t: R,
     y: &IntegratorState<R, N, S::States>,

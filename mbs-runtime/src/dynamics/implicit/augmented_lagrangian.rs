@@ -1,5 +1,6 @@
 //! Augmented Lagrangian of index 3 with projections: stiff and redundant mechanisms at coarse steps.
 
+use crate::dynamics::formulations::projection::project_position;
 use crate::dynamics::formulations::unstabilized::Unstabilized;
 use crate::dynamics::implicit::iteration::{Damping, MOST_ITERATIONS, MOST_ROUNDS, Unknowns};
 use crate::dynamics::integrators::vector::{IntegratorState, Vector};
@@ -121,7 +122,7 @@ impl AugmentedLagrangian {
                 }
                 let (qd, qdd) = trapezoidal(start, before, &change, h);
                 (y.q, y.qd) = (start.q.plus(one, &[1.0], [&change]), qd);
-                return projected(model, from, h, (y, qdd, lambda));
+                return projected(model, (from, h), (y, qdd, lambda), counts);
             }
             if damping.is_last() {
                 return Err(model.unbalanced(&step, t, MOST_ITERATIONS));
@@ -258,15 +259,16 @@ impl<R: Real, const N: usize, const M: usize> Penalized<R, N, M> {
     }
 }
 
-/// The end of a step: velocities and accelerations on the constraints, Φ_q q̇ = −Φ_t and Φ_q q̈ = γ, and the multipliers of both.
+/// The end of a step: positions, velocities and accelerations on the constraints, Φ = 0, Φ_q q̇ = −Φ_t and Φ_q q̈ = γ, and the
+/// multipliers of the last two.
 fn projected<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     model: &Model<'_, S, R, N, M>,
-    from: &Instant<R, N, M, S::States>,
-    h: R,
+    (from, h): (&Instant<R, N, M, S::States>, R),
     (mut y, qdd, lambda): (IntegratorState<R, N, S::States>, [R; N], [R; M]),
+    counts: &mut Counts,
 ) -> Result<Instant<R, N, M, S::States>, Failure> {
     let t = from.t + h;
-    let position = model.position(t, &y);
+    let position = closed(model, t, &mut y, counts)?;
     let (mechanism, parameters) = (model.mechanism, model.parameters);
     let penalized = Penalized::of(model, &position, (t, h), (&y, &qdd, &lambda))?;
     y.qd = penalized.put(&y.qd, &mechanism.phi_t(parameters, &position).map(|rate| -rate)).0;
@@ -278,4 +280,27 @@ fn projected<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     let Metric { rows, coordinates, .. } = model.metric;
     let margin = margin_of_rows(&penalized.phi_q, rows, coordinates, singular::DEPENDENT.of());
     Ok(Instant { t, y, solved: Solved { rate, lambda, margin }, carried: qdd })
+}
+
+/// Before: the coordinates of an iteration that has ended. After: the rows hold. Returns the stage-1 values.
+///
+/// Corrections that are rounding say nothing of rows that the springs hold, and those grow weak with the square of the step.
+///
+/// # Errors
+/// [`FailureKind::OffConstraints`](crate::FailureKind::OffConstraints) where the rows are open by more than the iteration may leave.
+fn closed<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
+    model: &Model<'_, S, R, N, M>,
+    t: R,
+    y: &mut IntegratorState<R, N, S::States>,
+    counts: &mut Counts,
+) -> Result<S::Position, Failure> {
+    let (one, position) = (R::constant(1.0), model.position(t, y));
+    let phi = model.mechanism.phi(model.parameters, &position);
+    if model.worst(&phi, &model.position_tolerances(&position, &y.q)).0 <= one {
+        return Ok(position);
+    }
+    let allowed = model.metric.rows.map(|scale| forces::SLOW.of::<R>() * scale);
+    model.require(t, &phi, &allowed, one, false)?;
+    project_position(model, t, y, counts)?;
+    Ok(model.position(t, y))
 }

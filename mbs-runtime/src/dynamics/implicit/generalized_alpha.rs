@@ -14,7 +14,7 @@ use crate::failure::{Failure, FailureKind};
 use crate::linear_algebra::vectors::extent;
 use crate::mechanism::dynamic::Dynamic;
 use crate::scalar::number::Real;
-use crate::tolerances::forces;
+use crate::tolerances::{forces, positions};
 
 /// Generalised-α with Φ = 0 at every step's end; Φ̇ = 0 holds to order 2.
 ///
@@ -141,7 +141,12 @@ impl GeneralizedAlpha {
                 y.q = y.q.plus(-one, &[1.0], [&step]);
                 y.qd = y.qd.plus(-gamma / (beta * h), &[1.0], [&step]);
                 model.trapezoid(from, h, &mut y, &rate);
-                let rate = model.rates(&model.position(t, &y), &y, qdd, &lambda);
+                let end = model.position(t, &y);
+                // Rows that the factors count as dependent are not corrected.
+                let phi = model.mechanism.phi(model.parameters, &end);
+                let allowed = model.metric.rows.map(|scale| positions::UNMET.of::<R>() * scale);
+                model.require(t, &phi, &allowed, one, false)?;
+                let rate = model.rates(&end, &y, qdd, &lambda);
                 model.require_unshared_by_rank((&position, t), &y, &lambda)?;
                 if S::FORCE_USES_MULTIPLIERS {
                     require_resolved(model, (t, h), &y, (&qdd, &lambda), counts)?;

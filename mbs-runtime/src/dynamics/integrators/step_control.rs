@@ -83,6 +83,8 @@ pub struct Accepted<M: Embedded, R, Y: Copy> {
     pub start: Point<R, Y>,
     /// Its end, settled.
     pub end: Point<R, Y>,
+    /// Its estimated error over the tolerance.
+    pub error: R,
     stages: M::Stages<Y>,
 }
 
@@ -354,7 +356,7 @@ impl<R: Real> Adaptive<R> {
         let factor = if R::constant(0.0) < error { ideal * remembered } else { largest };
         self.in_tune = self.in_tune || factor < in_tune;
         self.last_error = error.max(R::constant(LEAST_ERROR));
-        let accepted = Accepted { start: *from, end: Point { t: end, y, rate }, stages: trial.stages };
+        let accepted = Accepted { start: *from, end: Point { t: end, y, rate }, error, stages: trial.stages };
         Ok((accepted, least.max(factor.min(largest))))
     }
 

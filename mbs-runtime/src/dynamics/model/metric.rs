@@ -116,6 +116,23 @@ impl<R: Real, const N: usize, const M: usize> Metric<R, N, M> {
         self.rows.map(|scale| largest / (scale * scale))
     }
 
+    /// Tolerances rtol ‖x‖ + atol scale of coordinates, ‖x‖ the largest of `before` and `after` (N) among those of the same unit: N.
+    #[inline]
+    pub(crate) fn allowed(&self, tolerance: &Tolerance<R>, before: &[R; N], after: &[R; N]) -> [R; N] {
+        let mut sizes = [R::constant(0.0); N];
+        for ((kind, x), y) in self.kinds.iter().zip(before).zip(after) {
+            if let Some(size) = sizes.get_mut(*kind) {
+                *size = size.max(x.abs()).max(y.abs());
+            }
+        }
+        let mut allowed = self.coordinates;
+        for (allowed, kind) in allowed.iter_mut().zip(&self.kinds) {
+            let size = sizes.get(*kind).copied().unwrap_or(*allowed);
+            *allowed = tolerance.relative * size + tolerance.absolute * *allowed;
+        }
+        allowed
+    }
+
     /// Of each of `errors` (N) the largest component over its tolerance rtol ‖x‖ + atol scale, ‖x‖ the largest of `before`
     /// and `after` (N) among the coordinates of the same unit.
     ///
@@ -129,17 +146,7 @@ impl<R: Real, const N: usize, const M: usize> Metric<R, N, M> {
         after: &[R; N],
         errors: [&[R; N]; K],
     ) -> [R; K] {
-        let mut sizes = [R::constant(0.0); N];
-        for ((kind, x), y) in self.kinds.iter().zip(before).zip(after) {
-            if let Some(size) = sizes.get_mut(*kind) {
-                *size = size.max(x.abs()).max(y.abs());
-            }
-        }
-        let mut allowed = self.coordinates;
-        for (allowed, kind) in allowed.iter_mut().zip(&self.kinds) {
-            let size = sizes.get(*kind).copied().unwrap_or(*allowed);
-            *allowed = tolerance.relative * size + tolerance.absolute * *allowed;
-        }
+        let allowed = self.allowed(tolerance, before, after);
         errors.map(|error| {
             let mut ratios = *error;
             ratios.iter_mut().zip(&allowed).for_each(|(error, allowed)| *error = error.abs() / *allowed);

@@ -216,10 +216,11 @@ where
         let mut equations = Equations::new(&model, formulation, &from, counts).with_tolerance(self.tolerance);
         equations = equations.with_resolution(self.scrutiny.resolution);
         let start = beginning(model.mechanism, &from);
-        let (mut stopped, mut last) = (None, start);
-        let (taken, resolution) = (adaptive.accepted, self.scrutiny.resolution);
+        let (mut stopped, mut last, mut errors) = (None, start, self.errors);
+        let (taken, resolution, tolerance) = (adaptive.accepted, self.scrutiny.resolution, self.tolerance);
         let run = adaptive.run::<I, _>(&mut equations, start, until, breakpoints, |equations, accepted| {
             let (start, mut end) = (accepted.start.t, accepted.end.t);
+            errors = errors + accepted.error;
             model.check(end, &accepted.end.y.y)?;
             let ends = model.check_assembly(from.t, (end, &accepted.end.y.y), false);
             if monitor.is_none() && S::LIMITS.is_empty() && ends.is_ok() {
@@ -239,7 +240,9 @@ where
                 }
             }
             let at = |t| course.at(t).y;
-            model.check_ranges(from.t, (start, end), at, resolution)?;
+            let (before, after) = (&accepted.start.y.y.q, &accepted.end.y.y.q);
+            let allowed = model.metric.allowed(&tolerance, before, after).map(|one| errors * one);
+            model.check_ranges(from.t, (start, end), at, (resolution, &allowed))?;
             model.check_end(from.t, (start, end), at)?;
             see(equations, accepted)?;
             last = accepted.end;
@@ -260,6 +263,7 @@ where
         let passage = equations.passage;
         counts.steps += u64::from(adaptive.accepted.wrapping_sub(taken));
         self.adaptive = adaptive.with_largest(self.adaptive.largest);
+        self.errors = errors;
         self.passage = self.passage.or(passage);
         self.rank_rises = rank_rises;
         self.take(Instant { t, y: y.y, solved, carried: solved.rate.qd }, Some(phases), counts);

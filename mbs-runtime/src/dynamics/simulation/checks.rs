@@ -1,9 +1,10 @@
 //! Conditions that a start and a step must keep: rows, branches, working ranges.
 
+use crate::dynamics::formulations::projection::project_position;
 use crate::dynamics::integrators::event::enclosure::{Enclosures, Functions, GroupOver, Part};
-use crate::dynamics::integrators::event::{GROUP, Scrutiny, Unanswered, Watched, first_beyond};
+use crate::dynamics::integrators::event::{GROUP, Scrutiny, Unanswered, Watched, far_side, first_beyond};
 use crate::dynamics::integrators::vector::IntegratorState;
-use crate::dynamics::model::{Model, Solved};
+use crate::dynamics::model::{Counts, Model, Solved};
 use crate::failure::checks::{limit_failure, passed_failure};
 use crate::failure::{Failure, FailureKind};
 use crate::kinematics::position;
@@ -43,38 +44,58 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         failure.map_or(Ok(()), Err)
     }
 
+    /// Fails where a declared branch does not hold, those apart that pick the assembly alone; `from`: the time (s) that inputs and
+    /// phases are known at.
+    pub(super) fn check_branches(
+        &self,
+        from: R,
+        (t, y): (R, &IntegratorState<R, N, S::States>),
+    ) -> Result<(), Failure> {
+        if S::BRANCHES.is_empty() {
+            return Ok(());
+        }
+        let failure = self.moved(from, t, |Model { mechanism, parameters, .. }| {
+            let position = mechanism.position(parameters, &y.q, t);
+            position::branch_failure(*mechanism, parameters, &position, t, false)
+        });
+        failure.map_or(Ok(()), Err)
+    }
+
     /// Fails with the first working range that is left along a step between `start` and `end` (s), with the time at which it is; `at`
-    /// gives the states of the step.
+    /// gives the states of the step, with the resolution (s) of the search and the `errors` (N) that the states may have.
+    ///
+    /// A range that is left by no more than these errors, or by states of which those on the rows leave none, is touched.
     pub(super) fn check_ranges(
         &self,
         from: R,
         (start, end): (R, R),
         at: impl Fn(R) -> IntegratorState<R, N, S::States>,
-        resolution: Option<R>,
+        (resolution, errors): (Option<R>, &[R; N]),
     ) -> Result<(), Failure> {
         if S::LIMITS.is_empty() {
             return Ok(());
         }
         let size = [start, end].map(|t| size(&self.metric.coordinates, &at(t).q));
         let size = size.into_iter().fold(R::constant(0.0), R::max);
-        let mut ranges = Ranges { model: self, from, resolution, size, at };
+        let mut ranges = Ranges { model: self, from, resolution, size, errors: None, at };
         match first_beyond(&mut ranges, (start, end)) {
             Ok(None) => Ok(()),
-            Ok(Some((member, t))) | Err((member, Unanswered::Undefined(t) | Unanswered::OutOfParts(t))) => {
+            Ok(Some(_)) => ranges.passed((start, end), errors),
+            Err((member, Unanswered::Undefined(t) | Unanswered::OutOfParts(t))) => {
                 Err(ranges.failure(member, t))
             }
         }
     }
 
-    /// [`check_assembly`](Self::check_assembly) at the end of a step from `start` (s), with the time at which the state passes a
-    /// limit; `at` gives the states of the step. A branch is tested at the end of the step.
+    /// [`check_branches`](Self::check_branches) at the end of a step from `start` (s), with the time at which the state passes a
+    /// branch; `at` gives the states of the step. A branch is tested at the end of the step.
     pub(super) fn check_end(
         &self,
         from: R,
         (start, end): (R, R),
         at: impl Fn(R) -> IntegratorState<R, N, S::States>,
     ) -> Result<(), Failure> {
-        let check = |t: R| self.check_assembly(from, (t, &at(t)), false);
+        let check = |t: R| self.check_branches(from, (t, &at(t)));
         check(end).map_err(|failure| first_failure(start, (end, failure), check))
     }
 
@@ -142,8 +163,13 @@ struct Ranges<'a, S: Dynamic<R, N, M>, R: Real, At, const N: usize, const M: usi
     resolution: Option<R>,
     /// That of the coordinates.
     size: R,
+    /// Errors (N) of the states by which the ranges are wider.
+    errors: Option<&'a [R; N]>,
     at: At,
 }
+
+/// Instants on the way to a limit at which it is looked for the last one that keeps it.
+const INSTANTS: u32 = 64;
 
 impl<S, R, At, const N: usize, const M: usize> Ranges<'_, S, R, At, N, M>
 where
@@ -152,10 +178,58 @@ where
     At: Fn(R) -> IntegratorState<R, N, S::States>,
 {
     fn limits(&self, t: R) -> S::Limits {
-        let q = (self.at)(t).q;
+        self.limits_at(t, &(self.at)(t).q)
+    }
+
+    /// The limits at coordinates `q` (N).
+    fn limits_at(&self, t: R, q: &[R; N]) -> S::Limits {
         self.model.moved(self.from, t, |Model { mechanism, parameters, .. }| {
-            mechanism.limits(parameters, &mechanism.position(parameters, &q, t))
+            mechanism.limits(parameters, &mechanism.position(parameters, q, t))
         })
+    }
+
+    /// Fails with the range that is left within a step by states on the rows, and by more than their `errors` (N), with the time at
+    /// which it is left.
+    #[cold]
+    #[inline(never)]
+    fn passed(&self, (start, end): (R, R), errors: &[R; N]) -> Result<(), Failure> {
+        let at = |t: R| {
+            let state = (self.at)(t);
+            let closed = self.model.moved(self.from, t, |model| {
+                let mut y = state;
+                project_position(model, t, &mut y, &mut Counts::default()).map(|_| y)
+            });
+            closed.unwrap_or(state)
+        };
+        let Ranges { model, from, resolution, size, .. } = *self;
+        let mut wider = Ranges { model, from, resolution, size, errors: Some(errors), at };
+        let (member, beyond) = match first_beyond(&mut wider, (start, end)) {
+            Ok(None) => return Ok(()),
+            Ok(Some(found)) => found,
+            Err((member, Unanswered::Undefined(t) | Unanswered::OutOfParts(t))) => {
+                return Err(wider.failure(member, t));
+            }
+        };
+        let (exact, zero) = (Ranges { errors: None, ..wider }, R::constant(0.0));
+        let left = |t: R| {
+            let limits = exact.limits(t);
+            let limit = limits.as_ref().get(member / 2).map(|limit| limit.left(size));
+            limit.map_or(zero, |[low, high]| if member.is_multiple_of(2) { low } else { high })
+        };
+        let (mut before, mut after) = (start, beyond);
+        for instant in (0..INSTANTS).rev() {
+            let t = start + (beyond - start) * R::constant(f64::from(instant) / f64::from(INSTANTS));
+            before = t;
+            if zero <= left(t) {
+                break;
+            }
+            after = t;
+        }
+        let bracket = [before, after].map(|t| (t, left(t)));
+        let [(_, kept), _] = bracket;
+        // A step may begin beyond its bound by the error of those before.
+        let t = if kept < zero { Ok(start) } else { far_side(bracket, |t| Ok(left(t))) };
+        Err(t.map_or_else(|failure| failure, |t| exact.failure(member, t)))
     }
 
     /// The failure of a range that is left at `t` (s).
@@ -190,6 +264,9 @@ where
     }
 
     fn enclosures(&mut self, first: usize, times: (R, R)) -> Option<Enclosures<R>> {
+        if self.errors.is_some() {
+            return None;
+        }
         let part = Part::of(self.from, times, &self.at)?;
         self.model.mechanism.enclosed(GroupOver { part, first, functions: Left { size: self.size } })
     }
@@ -199,6 +276,20 @@ where
         let left = limits.as_ref().iter().skip(first / 2).map(|limit| limit.left(self.size));
         for (pair, left) in values.chunks_exact_mut(2).zip(left) {
             pair.iter_mut().zip(left).for_each(|(value, left)| *value = left);
+        }
+        let Some(errors) = self.errors else { return };
+        let q = (self.at)(t).q;
+        for (index, error) in errors.iter().enumerate().filter(|(_, error)| R::constant(0.0) < **error) {
+            let mut aside = q;
+            aside.iter_mut().skip(index).take(1).for_each(|q| *q = *q + *error);
+            let moved = self.limits_at(t, &aside);
+            let changes = limits.as_ref().iter().zip(moved.as_ref()).skip(first / 2).map(|(limit, moved)| {
+                let value = moved.value - limit.value;
+                [value - (moved.low - limit.low), value - (moved.high - limit.high)]
+            });
+            for (pair, changes) in values.chunks_exact_mut(2).zip(changes) {
+                pair.iter_mut().zip(changes).for_each(|(value, change)| *value = *value + change.abs());
+            }
         }
     }
 }

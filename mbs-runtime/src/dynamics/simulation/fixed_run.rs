@@ -286,8 +286,9 @@ where
     /// Fails where a step leaves a working range or a branch.
     fn check_ahead(&self, ahead: &AheadOf<S, R, N, M>) -> Result<(), Failure> {
         let (model, (start, end)) = (self.model(), ahead.times());
-        model.check_ranges(start, (start, end), |t| ahead.at(t), self.scrutiny.resolution)?;
-        model.check_assembly(start, (end, &ahead.next.y), false)
+        let unknown = [R::constant(0.0); N];
+        model.check_ranges(start, (start, end), |t| ahead.at(t), (self.scrutiny.resolution, &unknown))?;
+        model.check_branches(start, (end, &ahead.next.y))
     }
 
     /// Takes a step.

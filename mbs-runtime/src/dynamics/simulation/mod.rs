@@ -91,6 +91,8 @@ pub struct Simulation<S: Dynamic<R, N, M>, X, R: Real, const N: usize, const M: 
     stopped: Option<Stopped<R>>,
     passage: Option<Passage<R>>,
     moved_start: Option<MovedStart<R>>,
+    /// Estimated errors of all adaptive steps together, each over its tolerance.
+    errors: R,
     counts: Counts,
 }
 
@@ -244,6 +246,7 @@ where
             stopped: None,
             passage: None,
             moved_start,
+            errors: R::constant(0.0),
             counts,
         })
     }
