@@ -109,6 +109,15 @@ impl Model {
         self.functions.is_empty() && self.phases.is_empty()
     }
 
+    /// Indices of the parameters and inputs that are angles, without their rates and without phases.
+    pub fn angles(&self) -> impl Iterator<Item = usize> + '_ {
+        let held = self.fields.iter().filter(|field| field.unit == "rad" && field.role != Role::Phase);
+        held.flat_map(|field| {
+            let parts = if field.role == Role::InputWithRates { 3 } else { 1 };
+            (0..field.shape.iter().product()).map(move |component: usize| field.first + parts * component)
+        })
+    }
+
     /// Fields that keep the phases, in the order of these.
     pub fn phase_fields(&self) -> impl Iterator<Item = &Field> {
         self.fields.iter().filter(|field| field.role == Role::Phase)

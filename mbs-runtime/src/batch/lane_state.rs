@@ -24,6 +24,8 @@ pub(super) struct Standing<R, const N: usize> {
     pub orientation: u64,
     /// `true` if parameters or inputs were changed since the lane was solved.
     pub changed: bool,
+    /// `true` if rows may have come back on the way of such a change.
+    pub folds: bool,
     /// `true` if they are not those of the stepper.
     pub outdated: bool,
 }
@@ -57,7 +59,7 @@ impl<R: Real, const N: usize> Standing<R, N> {
         if self.changed && stepper.leads() {
             stepper.lead_far();
         }
-        stepper.changed = self.changed;
+        (stepper.changed, stepper.folds) = (self.changed, self.folds);
         let mut phases = stepper.mechanism.phases();
         for (own, phase) in phases.as_mut().iter_mut().zip(mechanism.phases().as_ref()) {
             *own = phase.lane(lane);

@@ -11,7 +11,7 @@ use crate::batch::statistics::Notes;
 use crate::block_solvers::convergence::Statistics;
 use crate::failure::checks::are_valid;
 use crate::failure::{Failure, FailureKind};
-use crate::kinematics::homotopy::{LARGEST_PIECE, largest_change, put_short_way_round};
+use crate::kinematics::homotopy::{LARGEST_PIECE, differ, largest_change, put_short_way_round};
 use crate::kinematics::link_lengths;
 use crate::linear_algebra::vectors::weights;
 use crate::mechanism::phase::Phase;
@@ -83,6 +83,8 @@ where
     waits: LaneMask<R, L>,
     /// Lanes whose parameters or inputs were changed since they were solved.
     changed: [bool; L],
+    /// Changed lanes in which rows may have come back: their steppers tell.
+    folds: [bool; L],
     /// Lanes whose steppers do not have the parameters and inputs of the fields above.
     outdated: [bool; L],
     /// In changed lanes, parameters, inputs and phases as they were when the lane was solved.
@@ -161,6 +163,7 @@ where
             out,
             waits: out,
             changed: [false; L],
+            folds: [false; L],
             outdated: [false; L],
             retired,
             steppers,
@@ -349,10 +352,18 @@ where
         } else {
             self.keep_solved();
         }
-        let before = (!S::TURNING_INPUTS.is_empty()).then(|| self.mechanism.values());
+        let noted = !(S::TURNING_INPUTS.is_empty() && S::FOLDING.is_empty());
+        let before = noted.then(|| self.mechanism.values());
         let result = change(&mut self.mechanism);
         if let Some(before) = before {
             self.go_short_way_round(&before);
+            let now = self.mechanism.values();
+            let changed = self.changed;
+            for (lane, folds) in self.folds.iter_mut().enumerate() {
+                let [old, new] = [&before, &now].map(|values| values.as_ref());
+                let differs = differ(S::FOLDING, old, new, lane);
+                *folds = (at(&changed, lane, false) & *folds) | differs;
+            }
         }
         self.parameters = self.mechanism.parameters();
         self.weights = weights(&self.mechanism.coordinate_scales(&self.parameters));
@@ -361,10 +372,8 @@ where
         self.waits = self.out | !are_valid(&self.mechanism);
         let change = largest_change(S::ANGLES, &self.solved, &self.mechanism.values());
         self.waits = self.waits | Lanes::constant(LARGEST_PIECE).less(change);
-        if S::MAY_FOLD {
-            // Only its own stepper knows what a lane was changed from.
-            self.waits = Lanes::<R, L>::mask(true);
-        }
+        // Only its own stepper knows what a lane was changed from.
+        self.waits = self.waits | LaneMask::new(self.folds);
         result
     }
 
@@ -472,6 +481,7 @@ where
             passages: self.notes.passages(lane),
             orientation: self.notes.orientation(lane),
             changed: at(&self.changed, lane, false),
+            folds: at(&self.folds, lane, false),
             outdated: at(&self.outdated, lane, false),
         }
     }

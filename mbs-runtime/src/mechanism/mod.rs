@@ -156,9 +156,9 @@ pub trait Mechanism<T: Scalar, const N: usize, const M: usize>: Clone {
     /// Indices of inputs that the text declares as `turn`, without their rates. Nothing changes with a whole turn of theirs, and
     /// they change the short way round.
     const TURNING_INPUTS: &'static [u16] = &[];
-    /// `true` if rows may come back to where they were on the way of an input, as those of a stroke r cos θ do: a position next to the last
-    /// one is then no sign of a short way.
-    const MAY_FOLD: bool = false;
+    /// Indices of parameters and inputs on whose way rows may come back to where they were, as those of a stroke r cos θ do: a position
+    /// next to the last one is then no sign of a short way.
+    const FOLDING: &'static [u16] = &[];
     /// Lengths that determine the reference length; see [`reference`](Self::reference).
     const REFERENCE: Reference = Reference::NONE;
     /// Branch conditions.

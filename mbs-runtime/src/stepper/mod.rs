@@ -18,7 +18,9 @@ use crate::block_solvers::convergence::Statistics;
 use crate::failure::Failure;
 use crate::failure::checks::{are_valid, broken_variable, time_failure};
 use crate::kinematics::assembly::{Assembled, assemble};
-use crate::kinematics::homotopy::{Anchor, LARGEST_PIECE, largest_change, leads, put_short_way_round};
+use crate::kinematics::homotopy::{
+    Anchor, LARGEST_PIECE, differ, largest_change, leads, put_short_way_round,
+};
 use crate::mechanism::{Kinematic, Mechanism};
 use crate::scalar::number::Real;
 use crate::stepper::instant::{Predecessor, SolvedPosition};
@@ -66,6 +68,9 @@ pub struct Stepper<S: Mechanism<R, N, M>, R: Real, const N: usize, const M: usiz
     /// `true` if parameters or inputs were changed since the state was solved: its rates need not be those of the path
     /// to the new ones.
     pub(crate) changed: bool,
+    /// `true` if one of them was that may lead rows away and back: a position next to its prediction need not be the one that
+    /// the path leads to.
+    pub(crate) folds: bool,
     pub(crate) state: StepperState<R, N>,
     pub(crate) turns: Turns<R, N>,
     /// Start of the next path, if not at the state: the last position that leads on. Parameters and inputs that were
@@ -111,6 +116,7 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
             parameters,
             fault: None,
             changed: false,
+            folds: false,
             state,
             turns,
             anchor,
@@ -194,11 +200,13 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
         if leads && !self.changed {
             self.anchor.values = self.mechanism.values();
         }
-        let before = (!S::TURNING_INPUTS.is_empty()).then(|| self.mechanism.values());
+        let noted = !(S::TURNING_INPUTS.is_empty() && S::FOLDING.is_empty());
+        let before = noted.then(|| self.mechanism.values());
         let result = change(&mut self.mechanism);
         if let Some(before) = before {
             let (kept, now) = (self.anchor.values.as_mut(), self.mechanism.values());
             put_short_way_round(S::TURNING_INPUTS, kept, before.as_ref(), now.as_ref());
+            self.folds = (self.changed & self.folds) | differ(S::FOLDING, before.as_ref(), now.as_ref(), 0);
         }
         self.take_up();
         if leads {

@@ -110,10 +110,11 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
         self.along_the_way(t, phases, first, EVALUATIONS)
     }
 
-    /// `true` if inputs were changed and the rows may have come back on their way: the rates that the caller gives need not tell.
+    /// `true` if parameters or inputs were changed and the rows may have come back on their way: the rates that the caller gives need
+    /// not tell.
     #[inline(always)]
     fn may_have_folded(&self) -> bool {
-        S::MAY_FOLD && self.changed
+        !S::FOLDING.is_empty() && self.changed && self.folds
     }
 
     /// `true` if the state leads on by its rates.

@@ -48,7 +48,7 @@ macro_rules! constants {
             const VARIABLES: &'static [Entry];
             const ANGLES: &'static [u16];
             const TURNING_INPUTS: &'static [u16];
-            const MAY_FOLD: bool;
+            const FOLDING: &'static [u16];
             const REFERENCE: Reference;
             const BRANCHES: &'static [Entry];
             const BRANCHES_AT_START: &'static [bool];

@@ -8,6 +8,7 @@ mod k1_inputs_that_turn;
 mod k1_saved_states;
 mod k1_short_links;
 mod k1_ways_that_end;
+mod k1_ways_that_fold;
 mod k2_single_precision;
 mod k4_next_to_a_change_point;
 mod k5_accelerations_at_small_margins;

@@ -117,7 +117,7 @@ pub fn bodies(
     lets(&program.outputs, &scope, &mut outputs_text);
     outputs_text += &outputs(equations, &scope);
     let (phases, speeds) = phases::functions(equations, program, &bare);
-    let mut phases = phases::turns(equations, model) + phases::folds(equations) + &phases;
+    let mut phases = phases::turns(equations, model) + &phases::folds(equations, model) + &phases;
     if equations.dynamics.is_some() {
         phases += &signals::carry(model);
     }

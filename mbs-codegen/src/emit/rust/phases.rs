@@ -6,7 +6,7 @@ use std::fmt::Write;
 use crate::emit::rust::code::lets;
 use crate::emit::rust::scope::{Scope, number, place};
 use crate::equations::Equations;
-use crate::equations::folds::may_fold;
+use crate::equations::folds::folding;
 use crate::equations::turns::{Turning, turning};
 use crate::model::{Model, VariableKind};
 use crate::program::Program;
@@ -26,9 +26,13 @@ pub fn functions(equations: &Equations, program: &Program, scope: &Scope<'_>) ->
 const RATES: &str = "#[inline]\nfn phase_rates(&self, __t: T) -> Self::Phases {\n\
                      self.__speeds(__t).map(__mbs::Phase::derivative)\n}\n";
 
-/// `MAY_FOLD`, where rows may come back on the way of an input.
-pub fn folds(equations: &Equations) -> &'static str {
-    if may_fold(equations) { "const MAY_FOLD: ::core::primitive::bool = true;\n" } else { "" }
+/// `FOLDING`, where rows may come back on the way of a parameter or an input.
+pub fn folds(equations: &Equations, model: &Model) -> String {
+    let indices: Vec<String> = folding(model, equations).iter().map(|index| index.to_string()).collect();
+    if indices.is_empty() {
+        return String::new();
+    }
+    format!("const FOLDING: &'static [::core::primitive::u16] = &[{}];\n", indices.join(", "))
 }
 
 /// `TURNS` and `turn_back`, where coordinates turn.

@@ -8,7 +8,7 @@ use crate::emit::rust::scenes;
 use crate::model::expression::Length;
 use crate::model::scene::Scene;
 use crate::model::scenes::Scenes;
-use crate::model::{Function, Model, Role};
+use crate::model::{Function, Model};
 use crate::syntax::Text;
 
 /// Names, units and lines as constants.
@@ -64,12 +64,7 @@ pub(super) fn tables(text: &Text, scenes: &Scenes, scene: &Scene, bodies: &Bodie
 
 /// `ANGLES`, where a parameter or an input is one.
 fn angles(model: &Model) -> Option<TokenStream> {
-    let held = model.fields.iter().filter(|field| field.unit == "rad" && field.role != Role::Phase);
-    let indices = held.flat_map(|field| {
-        let parts = if field.role == Role::InputWithRates { 3 } else { 1 };
-        (0..field.shape.iter().product()).map(move |component: usize| field.first + parts * component)
-    });
-    let indices: Vec<u16> = indices.filter_map(|index| u16::try_from(index).ok()).collect();
+    let indices: Vec<u16> = model.angles().filter_map(|index| u16::try_from(index).ok()).collect();
     (!indices.is_empty()).then(|| {
         quote! {
             #[allow(clippy::zero_prefixed_literal, reason = "places in the text's order")]

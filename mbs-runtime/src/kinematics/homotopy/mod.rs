@@ -65,6 +65,16 @@ pub(crate) fn largest_change<T: Scalar, V: AsRef<[T]>>(angles: &[u16], old: &V, 
     pairs.fold(T::constant(0.0), |largest, (old, new)| (*new - *old).abs().max(largest))
 }
 
+/// `true` if one of those values that `indices` name is another one in a lane, bit for bit: where a change is seen not to touch them,
+/// the compiler compares nothing.
+#[inline(always)]
+pub(crate) fn differ<T: Scalar>(indices: &[u16], old: &[T], new: &[T], lane: usize) -> bool {
+    let bits = |value: &T| value.lane(lane).to_f64().to_bits();
+    let pairs =
+        indices.iter().filter_map(|index| old.get(usize::from(*index)).zip(new.get(usize::from(*index))));
+    pairs.fold(false, |any, (old, new)| any | (bits(old) != bits(new)))
+}
+
 /// Puts those `kept` values that `turning` are the indices of on by as many whole turns as the short way from `before` to `now` goes
 /// round: the way of their numbers is then the short one. A value before that is no number counts as the kept one.
 pub(crate) fn put_short_way_round<R: Real>(turning: &[u16], kept: &mut [R], before: &[R], now: &[R]) {
