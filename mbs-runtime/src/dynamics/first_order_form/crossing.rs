@@ -10,6 +10,7 @@
 
 use crate::dynamics::first_order_form::equations::{Equations, Moving};
 use crate::dynamics::formulations::singular::limit_rows::passes_within;
+use crate::dynamics::formulations::singular::passage::near;
 use crate::dynamics::integrators::dormand_prince8::DormandPrince8;
 use crate::dynamics::integrators::embedded::Embedded;
 use crate::dynamics::integrators::step_control::{Accepted, Adaptive, Point};
@@ -38,11 +39,6 @@ const MOST_PARTS: u32 = 10_000;
 /// its ends. Two branches differ by much of the velocity; that of a parallelogram of short bars changes by 5e-4 of it within the
 /// distance.
 const ASIDE: f64 = 0.1;
-
-/// Margin of a step's ends from which on it is not looked at.
-pub(crate) fn near<R: Real>() -> R {
-    singular::NO_PASSAGE.of::<R>() + singular::NO_PASSAGE_ROUNDED.of()
-}
 
 /// Numbers so coarse that steps resolve the turns which their rounding makes.
 fn is_coarse<R: Real>() -> bool {
@@ -102,6 +98,7 @@ where
             );
             match run.and_then(|end| Ok((end, self.solve(until, &end.y)?))) {
                 Ok((end, solved)) => {
+                    let solved = self.with_margin_of_rows(until, &end.y, solved);
                     let next = Instant { t: until, y: end.y.y, solved, carried: solved.rate.qd };
                     return Ok(next);
                 }

@@ -1,5 +1,6 @@
 //! Projection: positions and velocities put back onto the constraints by the shortest way in the mass's measure.
 
+use crate::dynamics::formulations::block_elimination;
 use crate::dynamics::formulations::singular::limit_rows::{Passing, at_limit};
 use crate::dynamics::formulations::unstabilized::{factorize, solve};
 use crate::dynamics::integrators::vector::{IntegratorState, Vector};
@@ -36,6 +37,11 @@ pub enum ProjectedStages {
 ///
 /// Δq solves M Δq + Φ_qᵀ μ = 0, Φ_q Δq = −Φ, repeated to rounding; then Δq̇ solves the same with
 /// −(Φ_q q̇ + Φ_t). Nothing is divided by M, which may be singular.
+///
+/// Accelerations and projections are solved through the factorised blocks of the rows, as by
+/// [`VelocityTransformation`](crate::dynamics::VelocityTransformation), where the independent coordinates determine the others well.
+/// Elsewhere M and all rows are factorised together; [`Counts::rechosen`] has the number of such evaluations. That is at turning
+/// points of the independent coordinates and next to singular positions. Texts with redundant rows have no blocks.
 /// Source: Eich 1993; García de Jalón & Gutiérrez-López 2013 for singular M.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Projection {
@@ -55,9 +61,44 @@ impl Projection {
             chosen => chosen,
         }
     }
+
+    /// Rates and multipliers at `(t, y)` by all rows together, with the limits of those that lose their hold.
+    #[inline(never)]
+    pub(crate) fn solve_by_rows<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
+        &self,
+        model: &Model<'_, S, R, N, M>,
+        (t, y): (R, &IntegratorState<R, N, S::States>),
+        lambda: &[R; M],
+        counts: &mut Counts,
+    ) -> Result<Solved<R, N, M, S::States>, Failure> {
+        let position = model.position(t, y);
+        let factors = factorize(model, t, &position, counts)?;
+        let gamma = model.mechanism.gamma(model.parameters, &position, &y.qd);
+        let zone = singular::ZONE_OF_FORCES.of();
+        if factors.margin() < zone && factors.margin() < model.zone(self.stages_of(model)) {
+            let rows = (&gamma, factors.margin());
+            let found = at_limit(model, (t, y), &position, lambda, rows, counts)?;
+            if let Some(Passing { solved, .. }) = found {
+                return Ok(solved);
+            }
+        }
+        // A text without blocks has never left them.
+        counts.rechosen += u64::from(has_blocks(model) && zone < factors.margin());
+        solve(model, (t, y), &position, lambda, &factors, &gamma)
+    }
+}
+
+/// `true` if blocks of the rows can take the place of all rows together. Where the rank rises off the constraints they fix
+/// nothing.
+#[inline(always)]
+fn has_blocks<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
+    model: &Model<'_, S, R, N, M>,
+) -> bool {
+    S::IS_PARTITIONED && !model.rank_rises
 }
 
 impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Formulation<S, R, N, M> for Projection {
+    #[inline]
     fn solve(
         &self,
         model: &Model<'_, S, R, N, M>,
@@ -66,22 +107,18 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Formulation<S
         lambda: &[R; M],
         counts: &mut Counts,
     ) -> Result<Solved<R, N, M, S::States>, Failure> {
-        let (mut y, stages) = (*y, self.stages_of(model));
-        if stages == ProjectedStages::All {
-            counts.projected_stages += 1;
-            self.project(model, t, &mut y, counts)?;
+        if self.stages_of(model) == ProjectedStages::All {
+            return self.project_and_solve(model, t, &mut { *y }, lambda, counts);
         }
-        let position = model.position(t, &y);
-        let factors = factorize(model, t, &position, counts)?;
-        let gamma = model.mechanism.gamma(model.parameters, &position, &y.qd);
-        if factors.margin() < singular::ZONE_OF_FORCES.of() && factors.margin() < model.zone(stages) {
-            let rows = (&gamma, factors.margin());
-            let found = at_limit(model, (t, &y), &position, lambda, rows, counts)?;
-            if let Some(Passing { solved, .. }) = found {
+        if has_blocks(model) {
+            let place = block_elimination::place(model, t, y);
+            if place.is_regular()
+                && let Some(solved) = block_elimination::solve(model, (t, y), &place, lambda, counts)?
+            {
                 return Ok(solved);
             }
         }
-        solve(model, (t, &y), &position, lambda, &factors, &gamma)
+        self.solve_by_rows(model, (t, y), lambda, counts)
     }
 
     fn solve_as_it_is(
@@ -109,9 +146,52 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Formulation<S
         y: &mut IntegratorState<R, N, S::States>,
         counts: &mut Counts,
     ) -> Result<(), Failure> {
-        let factors = project_position(model, t, y, counts)?;
-        project_velocity(model, t, y, factors, counts)
+        let before = *y;
+        if has_blocks(model) && block_elimination::settled(model, t, y, counts).is_some() {
+            return Ok(());
+        }
+        *y = before;
+        project_by_rows(model, t, y, counts)
     }
+
+    #[inline]
+    fn project_and_solve(
+        &self,
+        model: &Model<'_, S, R, N, M>,
+        t: R,
+        y: &mut IntegratorState<R, N, S::States>,
+        lambda: &[R; M],
+        counts: &mut Counts,
+    ) -> Result<Solved<R, N, M, S::States>, Failure> {
+        counts.projected_stages += u64::from(self.stages_of(model) == ProjectedStages::All);
+        let before = *y;
+        let settled = if has_blocks(model) { block_elimination::settled(model, t, y, counts) } else { None };
+        match settled {
+            Some(place) if place.is_regular() => {
+                if let Some(solved) = block_elimination::solve_apart(model, (t, y), &place, lambda, counts)? {
+                    return Ok(solved);
+                }
+            }
+            Some(_) => {}
+            None => {
+                *y = before;
+                project_by_rows(model, t, y, counts)?;
+            }
+        }
+        self.solve_by_rows(model, (t, y), lambda, counts)
+    }
+}
+
+/// Puts `y` onto Φ(q, t) = 0 and Φ_q q̇ = −Φ_t by all rows together, but for directions that they determine too weakly.
+#[inline(never)]
+pub(crate) fn project_by_rows<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
+    model: &Model<'_, S, R, N, M>,
+    t: R,
+    y: &mut IntegratorState<R, N, S::States>,
+    counts: &mut Counts,
+) -> Result<(), Failure> {
+    let factors = project_position(model, t, y, counts)?;
+    project_velocity(model, t, y, factors, counts)
 }
 
 /// Puts `y.q` onto Φ(q, t) = 0; returns the last factors, which are those of a position next to it.

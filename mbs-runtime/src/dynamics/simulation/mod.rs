@@ -209,6 +209,7 @@ where
         model.require_no_flat_row(t, &y)?;
         model.rank_rises = rank_rises(&model, t, &y);
         let solved = method.solve(&model, t, &y, &[R::constant(0.0); M], &mut counts)?;
+        let solved = model.with_margin_of_rows(t, &y, solved);
         let now = Instant { t, y, solved, carried: solved.rate.qd };
         model.check_assembly(t, (t, &y), true)?;
         let rank_rises = model.rank_rises;
@@ -309,6 +310,7 @@ where
         model.require_no_flat_row(t, &y)?;
         model.rank_rises = model.rank_rises || rank_rises(&model, t, &y);
         let solved = self.method.solve(&model, t, &y, &solved.lambda, counts)?;
+        let solved = model.with_margin_of_rows(t, &y, solved);
         let gained = model.total_energy(t, &y) - model.total_energy(t, &self.now.y);
         let instant = Instant { t, y, solved, carried: solved.rate.qd };
         Ok(Fresh { instant, gained, rank_rises: model.rank_rises })
