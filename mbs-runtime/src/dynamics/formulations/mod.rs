@@ -5,6 +5,7 @@ pub(crate) mod block_elimination;
 pub(crate) mod friction;
 pub(crate) mod penalty;
 pub(crate) mod projection;
+pub(crate) mod residuals;
 pub(crate) mod singular;
 pub(crate) mod unstabilized;
 pub(crate) mod variation;
