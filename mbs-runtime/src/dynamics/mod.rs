@@ -51,8 +51,8 @@
 //!
 //! | formulation | for | not for |
 //! |---|---|---|
-//! | [`Projection`] | the default: any rows, redundant ones and singular positions included; positions and velocities on the constraints to rounding, those of stages too where rows follow from others on the constraints alone | the last microsecond |
-//! | [`VelocityTransformation`] | the fast one: no matrix of multipliers, work in proportion to the coordinates; chooses other motions where its coordinates turn back, goes over to `Projection` where the rows lose rank, and counts both | redundant rows, where it always goes over |
+//! | [`Projection`] | the default: any rows, redundant ones and singular positions included; blocks of the rows where they determine the motion well, all rows together elsewhere; positions and velocities on the constraints to rounding, those of stages too where rows follow from others on the constraints alone | |
+//! | [`VelocityTransformation`] | the same blocks; orthogonal motions where its coordinates turn back, `Projection` where the rows lose rank | redundant rows, where it always goes over |
 //! | [`Baumgarte`] | steps of the least fixed cost in a control loop | ω h > 1 (refused), singular positions |
 //! | [`Unstabilized`] | short runs, and to see the drift | long ones |
 //! | [`Penalty`] | to see what a penalty is | results |

@@ -106,7 +106,7 @@ impl<T: Scalar, const N: usize, Z: AsRef<[T]> + AsMut<[T]>> StateSlope<T, N, Z> 
 
 /// A mechanism with masses and forces. Matrices are dense here, for methods that factorise them and for tests; the
 /// products that fast methods need are straight-line code without zeros.
-pub trait Dynamic<T: Scalar, const N: usize, const M: usize>: Mechanism<T, N, M> {
+pub trait Dynamic<T: Scalar, const N: usize, const M: usize>: Partitioned<T, N, M> {
     /// First-order states `z` of the text: an array.
     type States: Copy + AsRef<[T]> + AsMut<[T]>;
     /// One a first-order state, in the order of [`STATES`](Self::STATES).
@@ -365,7 +365,7 @@ pub trait Partitioned<T: Scalar, const N: usize, const M: usize>: Mechanism<T, N
     /// Returns the multipliers that balance the dependent entries: Φ_qdᵀ λ = y_d: M.
     fn reduce(&self, partition: &Self::Partition, y: &mut [T; N]) -> [T; M];
     /// q̈ (N) and λ (M) of a factorised partition for a force (N) and γ (M): the function
-    /// [`accelerations`](crate::dynamics::formulations::velocity_transformation::accelerations) with the number of independent
+    /// [`accelerations`](crate::dynamics::formulations::block_elimination::accelerations) with the number of independent
     /// coordinates, which stable Rust cannot compute from N and M.
     fn accelerations(
         &self,

@@ -1,6 +1,11 @@
 //! Rods between points in natural coordinates, written by hand: what the macro would emit, without the macro.
 
-use mbs_runtime::{Dynamic, DynamicState, Energy, Entry, Limit, Mechanism, OutputValue, Phase, StateSlope};
+use mbs_runtime::__private::accelerations;
+use mbs_runtime::dynamics::Transformed;
+use mbs_runtime::{
+    Block, BlockSolver, Direct1, Dynamic, DynamicState, Energy, Entry, Factorization, Limit, Margin,
+    Mechanism, Outcome, OutputValue, Partitioned, Phase, StateSlope,
+};
 
 /// One end of a rod.
 #[derive(Clone, Copy, Debug)]
@@ -212,6 +217,62 @@ impl<const N: usize, const M: usize> Mechanism<f64, N, M> for Linkage<N, M> {
     }
     fn outputs(&self, _: &(), _: &Self::Position, _: &[f64; N], _: &[f64; N]) -> [OutputValue<f64>; 0] {
         []
+    }
+}
+
+/// Of a pendulum with x as its independent coordinate: a turning point at either end of a wide swing. Others have no blocks.
+impl<const N: usize, const M: usize> Partitioned<f64, N, M> for Linkage<N, M> {
+    type Partition = (Direct1<f64>, f64);
+
+    const IS_PARTITIONED: bool = N == 2 && M == 1;
+    const INDEPENDENT: &'static [u16] = if N == 2 && M == 1 { &[0] } else { &[] };
+
+    fn solve_dependent<S: BlockSolver<f64>>(
+        &self,
+        _: &(),
+        q: &mut [f64; N],
+        _: f64,
+        solver: &mut S,
+    ) -> [Outcome; 1] {
+        let block = Block {
+            rows: [0],
+            coordinates: [1],
+            angles: [false],
+            row_scales: [1.0],
+            coordinate_scales: [1.0],
+        };
+        let x = q[0];
+        let ([y], outcome) =
+            solver.solve::<1, Direct1<f64>>(&block, [q[1]], |[y]| ([x * x + y * y - 1.0], [[2.0 * y]]));
+        q[1] = y;
+        outcome
+    }
+
+    fn partition(&self, _: &(), position: &Self::Position) -> (Self::Partition, Margin<f64>) {
+        let row = self.phi_q(&(), position)[0];
+        let (factors, margin) = Direct1::factorize(&[[row[1]]], &[1.0], &[1.0]);
+        ((factors, row[0]), Margin::regular().with_block(margin, 0, 1))
+    }
+
+    fn complete(&self, (factors, independent): &Self::Partition, b: &[f64; M], x: &mut [f64; N]) {
+        [x[1]] = factors.solve(&[b[0] - independent * x[0]]);
+    }
+
+    fn reduce(&self, (factors, independent): &Self::Partition, y: &mut [f64; N]) -> [f64; M] {
+        let [lambda] = factors.solve(&[y[1]]);
+        y[0] -= independent * lambda;
+        [lambda; M]
+    }
+
+    fn accelerations(
+        &self,
+        parameters: &<Self as Mechanism<f64, N, M>>::Parameters,
+        position: &<Self as Mechanism<f64, N, M>>::Position,
+        partition: &<Self as Partitioned<f64, N, M>>::Partition,
+        force: &[f64; N],
+        gamma: &[f64; M],
+    ) -> Transformed<f64, N, M> {
+        accelerations::<Self, f64, N, M, 1>(self, parameters, position, partition, force, gamma)
     }
 }
 

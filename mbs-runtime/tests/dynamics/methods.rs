@@ -4,67 +4,9 @@ use mbs_runtime::dynamics::{
     AugmentedLagrangian, Baumgarte, DormandPrince8, Explicit, Extrapolated, GeneralizedAlpha, Method,
     Penalty, Projection, RungeKutta4, Simulation, Tolerance, VelocityTransformation,
 };
-use mbs_runtime::{__private::accelerations, dynamics::Transformed};
-use mbs_runtime::{
-    Block, BlockSolver, Direct1, Dynamic, Factorization, Failure, FailureKind, Margin, Outcome, Partitioned,
-    mechanism,
-};
+use mbs_runtime::{Dynamic, Failure, FailureKind, mechanism};
 
 use crate::linkage::{End, Linkage, Rod, parallel_loops, pendulum};
-
-/// The pendulum with x as its independent coordinate: a turning point at either end of a wide swing.
-impl Partitioned<f64, 2, 1> for Linkage<2, 1> {
-    type Partition = (Direct1<f64>, f64);
-
-    const INDEPENDENT: &'static [u16] = &[0];
-
-    fn solve_dependent<S: BlockSolver<f64>>(
-        &self,
-        _: &(),
-        q: &mut [f64; 2],
-        _: f64,
-        solver: &mut S,
-    ) -> [Outcome; 1] {
-        let block = Block {
-            rows: [0],
-            coordinates: [1],
-            angles: [false],
-            row_scales: [1.0],
-            coordinate_scales: [1.0],
-        };
-        let x = q[0];
-        let ([y], outcome) =
-            solver.solve::<1, Direct1<f64>>(&block, [q[1]], |[y]| ([x * x + y * y - 1.0], [[2.0 * y]]));
-        q[1] = y;
-        outcome
-    }
-
-    fn partition(&self, _: &(), (q, _): &Self::Position) -> (Self::Partition, Margin<f64>) {
-        let (factors, margin) = Direct1::factorize(&[[2.0 * q[1]]], &[1.0], &[1.0]);
-        ((factors, 2.0 * q[0]), Margin::regular().with_block(margin, 0, 1))
-    }
-
-    fn complete(&self, (factors, independent): &Self::Partition, b: &[f64; 1], x: &mut [f64; 2]) {
-        [x[1]] = factors.solve(&[b[0] - independent * x[0]]);
-    }
-
-    fn reduce(&self, (factors, independent): &Self::Partition, y: &mut [f64; 2]) -> [f64; 1] {
-        let [lambda] = factors.solve(&[y[1]]);
-        y[0] -= independent * lambda;
-        [lambda]
-    }
-
-    fn accelerations(
-        &self,
-        (): &(),
-        position: &Self::Position,
-        partition: &Self::Partition,
-        force: &[f64; 2],
-        gamma: &[f64; 1],
-    ) -> Transformed<f64, 2, 1> {
-        accelerations::<Self, f64, 2, 1, 1>(self, &(), position, partition, force, gamma)
-    }
-}
 
 /// Released from the horizontal, at 10 s: x, y, ẋ, ẏ.
 const AT_TEN: [f64; 4] = [-0.2750874625761169, -0.961419205099125, 4.175598100951729, -1.1947490545604753];

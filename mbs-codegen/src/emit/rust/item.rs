@@ -369,7 +369,7 @@ fn partitioned(
                 &self,
                 __p: &<Self as #runtime::Mechanism<T, #n, #m>>::Parameters,
                 __s: &<Self as #runtime::Mechanism<T, #n, #m>>::Position,
-                __factors: &__Factors<T>,
+                __factors: &<Self as #runtime::Partitioned<T, #n, #m>>::Partition,
                 __force: &[T; #n],
                 __gamma: &[T; #m],
             ) -> #runtime::dynamics::Transformed<T, #n, #m>
@@ -418,7 +418,7 @@ fn unpartitioned(
                 &self,
                 _: &<Self as #runtime::Mechanism<T, #n, #m>>::Parameters,
                 _: &<Self as #runtime::Mechanism<T, #n, #m>>::Position,
-                _: &(),
+                _: &<Self as #runtime::Partitioned<T, #n, #m>>::Partition,
                 _: &[T; #n],
                 _: &[T; #m],
             ) -> #runtime::dynamics::Transformed<T, #n, #m> {

@@ -10,6 +10,7 @@
 
 use crate::dynamics::first_order_form::equations::{Equations, Moving};
 use crate::dynamics::formulations::singular::limit_rows::passes_within;
+use crate::dynamics::formulations::singular::passage::near;
 use crate::dynamics::integrators::dormand_prince8::DormandPrince8;
 use crate::dynamics::integrators::step_control::{Adaptive, Point};
 use crate::dynamics::integrators::vector::{IntegratorState, Vector};
@@ -41,11 +42,6 @@ const ASIDE: f64 = 0.1;
 /// Distance of a step in the metric over the sum of the margins at its ends from which on it may have led over a singular position: a
 /// margin grows by the distance from there at most.
 const TWICE: f64 = 2.0;
-
-/// Margin of a step's ends from which on it is not looked at.
-pub(crate) fn near<R: Real>() -> R {
-    singular::NO_PASSAGE.of::<R>() + singular::NO_PASSAGE_ROUNDED.of()
-}
 
 /// Numbers so coarse that steps resolve the turns which their rounding makes.
 fn is_coarse<R: Real>() -> bool {
@@ -106,6 +102,7 @@ where
             );
             match run.and_then(|end| Ok((end, self.solve(until, &end.y)?))) {
                 Ok((end, solved)) => {
+                    let solved = self.with_margin_of_rows(until, &end.y, solved);
                     let next = Instant { t: until, y: end.y.y, solved, carried: solved.rate.qd };
                     return Ok(next);
                 }

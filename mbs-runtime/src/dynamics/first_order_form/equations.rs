@@ -292,8 +292,18 @@ where
         self.at(t, phases, |model, formulation, lambda, counts| {
             let solved = formulation.project_and_solve(model, t, y, lambda, counts)?;
             *lambda = solved.lambda;
-            Ok(solved)
+            Ok(model.with_margin_of_rows(t, y, solved))
         })
+    }
+
+    /// See [`Model::with_margin_of_rows`].
+    pub(crate) fn with_margin_of_rows(
+        &mut self,
+        t: R,
+        y: &Moving<S, R, N, M>,
+        solved: Solved<R, N, M, S::States>,
+    ) -> Solved<R, N, M, S::States> {
+        self.at(t, &y.phases, |model, _, _, _| model.with_margin_of_rows(t, &y.y, solved))
     }
 }
 

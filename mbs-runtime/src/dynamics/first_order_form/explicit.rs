@@ -1,8 +1,9 @@
 //! A formulation with an integrator: methods that are explicit in the accelerations.
 
-use crate::dynamics::first_order_form::crossing::{MOST_ROWS, is_next_to_singular_position, near};
+use crate::dynamics::first_order_form::crossing::{MOST_ROWS, is_next_to_singular_position};
 use crate::dynamics::first_order_form::equations::{Equations, Moving};
 use crate::dynamics::first_order_form::phases::{ORDER_OF_INTEGRALS, Phased, stepped, unmoved};
+use crate::dynamics::formulations::singular::passage::near;
 use crate::dynamics::integrators::fixed_step::FixedStep;
 use crate::dynamics::integrators::step_control::Point;
 use crate::dynamics::integrators::vector::IntegratorState;

@@ -1,15 +1,15 @@
 //! Projection: positions and velocities put back onto the constraints by the shortest way in the mass's measure.
 
+use crate::dynamics::formulations::block_elimination;
 use crate::dynamics::formulations::singular::limit_rows::{Passing, at_limit};
 use crate::dynamics::formulations::unstabilized::{factorize, solve};
 use crate::dynamics::integrators::vector::{IntegratorState, Vector};
 use crate::dynamics::linear_systems::kkt::{Factors, System};
-use crate::dynamics::model::metric::worse;
 use crate::dynamics::model::{Counts, Formulation, Model, Solved};
-use crate::failure::{Failure, FailureKind, checks};
+use crate::failure::Failure;
 use crate::mechanism::dynamic::Dynamic;
 use crate::scalar::number::Real;
-use crate::tolerances::{motion, positions, singular};
+use crate::tolerances::{positions, singular};
 
 /// Corrections of one position: two do after a step, a start off the constraints needs a few more.
 const MOST_CORRECTIONS: u32 = 25;
@@ -36,6 +36,11 @@ pub enum ProjectedStages {
 ///
 /// Δq solves M Δq + Φ_qᵀ μ = 0, Φ_q Δq = −Φ, repeated to rounding; then Δq̇ solves the same with
 /// −(Φ_q q̇ + Φ_t). Nothing is divided by M, which may be singular.
+///
+/// Accelerations and projections are solved through the factorised blocks of the rows, as by
+/// [`VelocityTransformation`](crate::dynamics::VelocityTransformation), where the independent coordinates determine the others well.
+/// Elsewhere M and all rows are factorised together; [`Counts::rechosen`] has the number of such evaluations. That is at turning
+/// points of the independent coordinates and next to singular positions. Texts with redundant rows have no blocks.
 /// Source: Eich 1993; García de Jalón & Gutiérrez-López 2013 for singular M.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Projection {
@@ -55,9 +60,45 @@ impl Projection {
             chosen => chosen,
         }
     }
+
+    /// Rates and multipliers at `(t, y)` by all rows together, with the limits of those that lose their hold.
+    #[inline(never)]
+    pub(crate) fn solve_by_rows<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
+        &self,
+        model: &Model<'_, S, R, N, M>,
+        (t, y): (R, &IntegratorState<R, N, S::States>),
+        lambda: &[R; M],
+        counts: &mut Counts,
+    ) -> Result<Solved<R, N, M, S::States>, Failure> {
+        let position = model.position(t, y);
+        let factors = factorize(model, t, &position, counts)?;
+        let gamma = model.mechanism.gamma(model.parameters, &position, &y.qd);
+        let zone = singular::ZONE_OF_FORCES.of();
+        let margin = if factors.loses_rank(S::REDUNDANT) { R::constant(0.0) } else { factors.margin() };
+        if margin < zone && margin < model.zone(self.stages_of(model)) {
+            let rows = (&gamma, margin);
+            let found = at_limit(model, (t, y), &position, lambda, rows, counts)?;
+            if let Some(Passing { solved, .. }) = found {
+                return Ok(solved);
+            }
+        }
+        // A text without blocks has never left them.
+        counts.rechosen += u64::from(has_blocks(model) && zone < factors.margin());
+        solve(model, (t, y), &position, lambda, &factors, &gamma)
+    }
+}
+
+/// `true` if blocks of the rows can take the place of all rows together. Where the rank rises off the constraints they fix
+/// nothing.
+#[inline(always)]
+fn has_blocks<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
+    model: &Model<'_, S, R, N, M>,
+) -> bool {
+    S::IS_PARTITIONED && !model.rank_rises
 }
 
 impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Formulation<S, R, N, M> for Projection {
+    #[inline]
     fn solve(
         &self,
         model: &Model<'_, S, R, N, M>,
@@ -66,23 +107,18 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Formulation<S
         lambda: &[R; M],
         counts: &mut Counts,
     ) -> Result<Solved<R, N, M, S::States>, Failure> {
-        let (mut y, stages) = (*y, self.stages_of(model));
-        if stages == ProjectedStages::All {
-            counts.projected_stages += 1;
-            self.project(model, t, &mut y, counts)?;
+        if self.stages_of(model) == ProjectedStages::All {
+            return self.project_and_solve(model, t, &mut { *y }, lambda, counts);
         }
-        let position = model.position(t, &y);
-        let factors = factorize(model, t, &position, counts)?;
-        let gamma = model.mechanism.gamma(model.parameters, &position, &y.qd);
-        let margin = if factors.loses_rank(S::REDUNDANT) { R::constant(0.0) } else { factors.margin() };
-        if margin < singular::ZONE_OF_FORCES.of() && margin < model.zone(stages) {
-            let rows = (&gamma, margin);
-            let found = at_limit(model, (t, &y), &position, lambda, rows, counts)?;
-            if let Some(Passing { solved, .. }) = found {
+        if has_blocks(model) {
+            let place = block_elimination::place(model, t, y);
+            if place.is_regular()
+                && let Some(solved) = block_elimination::solve(model, (t, y), &place, lambda, counts)?
+            {
                 return Ok(solved);
             }
         }
-        solve(model, (t, &y), &position, lambda, &factors, &gamma)
+        self.solve_by_rows(model, (t, y), lambda, counts)
     }
 
     fn solve_as_it_is(
@@ -110,9 +146,52 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Formulation<S
         y: &mut IntegratorState<R, N, S::States>,
         counts: &mut Counts,
     ) -> Result<(), Failure> {
-        let factors = project_position(model, t, y, counts)?;
-        project_velocity(model, t, y, factors, counts)
+        let before = *y;
+        if has_blocks(model) && block_elimination::settled(model, t, y, counts).is_some() {
+            return Ok(());
+        }
+        *y = before;
+        project_by_rows(model, t, y, counts)
     }
+
+    #[inline]
+    fn project_and_solve(
+        &self,
+        model: &Model<'_, S, R, N, M>,
+        t: R,
+        y: &mut IntegratorState<R, N, S::States>,
+        lambda: &[R; M],
+        counts: &mut Counts,
+    ) -> Result<Solved<R, N, M, S::States>, Failure> {
+        counts.projected_stages += u64::from(self.stages_of(model) == ProjectedStages::All);
+        let before = *y;
+        let settled = if has_blocks(model) { block_elimination::settled(model, t, y, counts) } else { None };
+        match settled {
+            Some(place) if place.is_regular() => {
+                if let Some(solved) = block_elimination::solve_apart(model, (t, y), &place, lambda, counts)? {
+                    return Ok(solved);
+                }
+            }
+            Some(_) => {}
+            None => {
+                *y = before;
+                project_by_rows(model, t, y, counts)?;
+            }
+        }
+        self.solve_by_rows(model, (t, y), lambda, counts)
+    }
+}
+
+/// Puts `y` onto Φ(q, t) = 0 and Φ_q q̇ = −Φ_t by all rows together, but for directions that they determine too weakly.
+#[inline(never)]
+pub(crate) fn project_by_rows<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
+    model: &Model<'_, S, R, N, M>,
+    t: R,
+    y: &mut IntegratorState<R, N, S::States>,
+    counts: &mut Counts,
+) -> Result<(), Failure> {
+    let factors = project_position(model, t, y, counts)?;
+    project_velocity(model, t, y, factors, counts)
 }
 
 /// Puts `y.q` onto Φ(q, t) = 0; returns the last factors, which are those of a position next to it.
@@ -258,116 +337,5 @@ impl<R: Real, const N: usize, const M: usize> Progress<R, N, M> {
         let largest = |values: &[R; N]| values.iter().fold(zero, |largest, x| largest.max(x.abs()));
         let size = largest(x).max(largest(scales));
         self.still = largest(step) <= positions::OF_COORDINATES.of::<R>() * size;
-    }
-}
-
-impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, R, N, M> {
-    /// Φ̇ = Φ_q q̇ + Φ_t: M.
-    #[inline(always)]
-    pub(crate) fn constraint_rates(&self, position: &S::Position, qd: &[R; N]) -> [R; M] {
-        let mut rates = self.mechanism.phi_t(self.parameters, position);
-        self.add_products(position, qd, |product| product, &mut rates);
-        rates
-    }
-
-    /// Adds to each of `sums` (M) the `part` of Φ_qᵢⱼ xⱼ, for all entries that are not zero by structure.
-    #[inline(always)]
-    fn add_products(&self, position: &S::Position, x: &[R; N], part: impl Fn(R) -> R, sums: &mut [R; M]) {
-        let entries = self.mechanism.phi_q_entries(self.parameters, position);
-        for ((row, column), entry) in S::SPARSITY.iter().zip(entries.as_ref()) {
-            if let (Some(sum), Some(x)) = (sums.get_mut(usize::from(*row)), x.get(usize::from(*column))) {
-                *sum = *sum + part(*entry * *x);
-            }
-        }
-    }
-
-    /// Residual that rounding can leave in each row: ε (64 ρᵢ + 4 Σⱼ |Φ_qᵢⱼ| |qⱼ|).
-    pub(crate) fn position_tolerances(&self, position: &S::Position, q: &[R; N]) -> [R; M] {
-        self.tolerances(position, q, self.metric.rows, positions::OF_TERMS.of())
-    }
-
-    /// `true` if the caller has a looser position tolerance than rounding.
-    pub(crate) fn is_loosened(&self) -> bool {
-        positions::OF_TERMS.of::<R>() < self.position_tolerance
-    }
-
-    /// Residual over the row's scale at which a projection of positions ends next to a position of `margin`.
-    pub(crate) fn closing(&self, margin: R) -> R {
-        let rounding = positions::OF_TERMS.of::<R>();
-        let bound = positions::LOOSEST.of::<R>() * margin * margin;
-        self.position_tolerance.min(bound).max(rounding)
-    }
-
-    /// Residual that rounding can leave in each row's rate: ε (64 |Φ_t| + 68 Σⱼ |Φ_qᵢⱼ| |q̇ⱼ|), and as much as a row's scale per
-    /// 1000 seconds would leave, so that a mechanism at rest has a tolerance too.
-    pub(crate) fn rate_tolerances(&self, position: &S::Position, qd: &[R; N]) -> [R; M] {
-        let mut floor = self.mechanism.phi_t(self.parameters, position);
-        let speeds = qd.map(|qd| {
-            qd * (R::constant(1.0) + positions::OF_TERMS.of::<R>() / positions::OF_COORDINATES.of())
-        });
-        for (rate, scale) in floor.iter_mut().zip(&self.metric.rows) {
-            *rate = rate.abs() + motion::AT_REST.of::<R>() * *scale;
-        }
-        self.tolerances(position, &speeds, floor, positions::OF_TERMS.of())
-    }
-
-    /// Residual that each row may have: `own` times its `floor`, and the rounding of `x` (N) in it.
-    pub(crate) fn tolerances(&self, position: &S::Position, x: &[R; N], floor: [R; M], own: R) -> [R; M] {
-        let mut reach = [R::constant(0.0); M];
-        self.add_products(position, x, R::abs, &mut reach);
-        let mut tolerances = floor;
-        for (tolerance, reach) in tolerances.iter_mut().zip(&reach) {
-            *tolerance = own * *tolerance + positions::OF_COORDINATES.of::<R>() * *reach;
-        }
-        tolerances
-    }
-
-    /// The largest residual over its tolerance, and its row.
-    pub(crate) fn worst(&self, residuals: &[R; M], tolerances: &[R; M]) -> (R, usize) {
-        let mut worst = (R::constant(0.0), 0);
-        for (index, (residual, tolerance)) in residuals.iter().zip(tolerances).enumerate() {
-            let ratio = worse(worst.0, residual.abs() / *tolerance);
-            if ratio != worst.0 {
-                worst = (ratio, index);
-            }
-        }
-        worst
-    }
-
-    /// The same as if all coordinates moved as fast as the fastest one in the metric, and with a row's scale at that speed. So it
-    /// does not vanish where a rod lies along one axis of the frame and moves along the other, nor where all bars of a loop lie
-    /// along an axis, whose row along it has no entry left.
-    #[cold]
-    #[inline(never)]
-    fn frame_free_rate_tolerances(&self, position: &S::Position, qd: &[R; N]) -> [R; M] {
-        let speed = self.largest(qd);
-        let mut tolerances =
-            self.rate_tolerances(position, &self.metric.coordinates.map(|scale| scale * speed));
-        for (tolerance, scale) in tolerances.iter_mut().zip(&self.metric.rows) {
-            *tolerance = *tolerance + positions::OF_TERMS.of::<R>() * speed * *scale;
-        }
-        tolerances
-    }
-
-    /// Fails with the worst row where a residual exceeds `factor` times its tolerance, or is no number.
-    pub(crate) fn require(
-        &self,
-        t: R,
-        residuals: &[R; M],
-        tolerances: &[R; M],
-        factor: R,
-        rate: bool,
-    ) -> Result<(), Failure> {
-        let (ratio, index) = self.worst(residuals, tolerances);
-        if ratio <= factor {
-            return Ok(());
-        }
-        let at = |values: &[R; M]| values.get(index).copied().unwrap_or(R::constant(0.0));
-        let row = checks::entry(S::ROWS, u16::try_from(index).unwrap_or(u16::MAX));
-        let (residual, allowed) = (at(residuals).abs().to_f64(), (factor * at(tolerances)).to_f64());
-        if !at(residuals).is_finite() {
-            return Err(FailureKind::NonFinite { name: row.name, line: row.line }.without_time());
-        }
-        Err(FailureKind::OffConstraints { row, rate, residual, allowed }.at(t.to_f64()))
     }
 }

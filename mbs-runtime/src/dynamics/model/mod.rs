@@ -53,9 +53,9 @@ pub struct Counts {
     pub shown: u64,
     /// Of the evaluations, those with a rank-revealing factorization.
     pub rank_revealing: u64,
-    /// Of those, with independent motions chosen anew, where the independent coordinates turn back.
+    /// Of the evaluations of texts with blocks of rows, those by all rows together, where the independent coordinates turn back.
     pub rechosen: u64,
-    /// Of those, handed over by a method that needs independent motions where the rows lose rank.
+    /// Of the evaluations, those handed over by a method that needs independent motions where the rows lose rank.
     pub handed_over: u64,
     /// Stages that were put onto the constraints before they were evaluated.
     pub projected_stages: u64,

@@ -210,7 +210,7 @@ where
         Projection::default().project(&model, t, &mut y, &mut counts)?;
         model.rank_rises = rank_rises(&model, t, &y);
         let solved = method.solve(&model, t, &y, &[R::constant(0.0); M], &mut counts);
-        let solved = model.require_held(t, &y, solved)?;
+        let solved = model.with_margin_of_rows(t, &y, model.require_held(t, &y, solved)?);
         consistent_start::require_decided(&model, t, &y)?;
         let now = Instant { t, y, solved, carried: solved.rate.qd };
         model.check_assembly(t, (t, &y), true)?;
@@ -312,7 +312,7 @@ where
         Projection::default().project(&model, t, &mut y, counts)?;
         model.rank_rises = model.rank_rises || rank_rises(&model, t, &y);
         let solved = self.method.solve(&model, t, &y, &solved.lambda, counts);
-        let solved = model.require_held(t, &y, solved)?;
+        let solved = model.with_margin_of_rows(t, &y, model.require_held(t, &y, solved)?);
         let gained = model.total_energy(t, &y) - model.total_energy(t, &self.now.y);
         let instant = Instant { t, y, solved, carried: solved.rate.qd };
         Ok(Fresh { instant, gained, rank_rises: model.rank_rises })

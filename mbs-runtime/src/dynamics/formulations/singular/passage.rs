@@ -1,5 +1,9 @@
 //! Singular positions that a run reached or passed, as its steps show them.
 
+use crate::dynamics::integrators::vector::IntegratorState;
+use crate::dynamics::linear_systems::kkt::System;
+use crate::dynamics::model::{Model, Solved};
+use crate::mechanism::dynamic::Dynamic;
 use crate::scalar::number::Real;
 use crate::tolerances::singular;
 
@@ -22,6 +26,39 @@ impl<R: Real> Passage<R> {
         let (t, margin) = if before.1 < after.1 { before } else { after };
         let passes = margin < singular::NO_PASSAGE.of() && margin < (after.1 - before.1).abs();
         passes.then_some(Passage { t, margin })
+    }
+}
+
+/// Margin of a step's ends from which on it is not looked at.
+pub(crate) fn near<R: Real>() -> R {
+    singular::NO_PASSAGE.of::<R>() + singular::NO_PASSAGE_ROUNDED.of()
+}
+
+impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, R, N, M> {
+    /// `solved` at `(t, y)`, where a step begins or ends, with the margin of all rows. That of blocks is small too where independent
+    /// coordinates turn back, and nothing is passed there.
+    #[inline]
+    pub(crate) fn with_margin_of_rows(
+        &self,
+        t: R,
+        y: &IntegratorState<R, N, S::States>,
+        solved: Solved<R, N, M, S::States>,
+    ) -> Solved<R, N, M, S::States> {
+        if !S::IS_PARTITIONED || near::<R>() < solved.margin {
+            return solved;
+        }
+        Solved { margin: self.margin_of_rows(t, y).unwrap_or(solved.margin), ..solved }
+    }
+
+    /// None where no mass moves with a free motion.
+    #[cold]
+    #[inline(never)]
+    fn margin_of_rows(&self, t: R, y: &IntegratorState<R, N, S::States>) -> Option<R> {
+        let position = self.position(t, y);
+        let mass = self.mechanism.mass(self.parameters, &position);
+        let phi_q = self.mechanism.phi_q(self.parameters, &position);
+        let factors = System::new(&mass, &phi_q, self.metric).factorize(S::COORDINATES, t);
+        factors.ok().map(|factors| factors.margin())
     }
 }
 

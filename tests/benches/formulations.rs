@@ -1,0 +1,182 @@
+//! Formulations against each other in one run: whole motions by both pairs, as time at equal error.
+//!
+//! ```text
+//! cargo bench -p mbs-tests --bench formulations [NAME]
+//! ```
+//!
+//! Each motion is integrated with tolerances in steps of ten. The error is the largest of coordinates, and of rates over ten
+//! spans, at four instants, against the velocity transformation at the least tolerance; of texts with redundant rows against the
+//! projection. Times are the least of seven rounds in which all take turns. The time at an error is interpolated between the
+//! logarithms of both. The table has the time of the default over that of each other formulation; those that do not reach an error
+//! have a dash.
+#![forbid(unsafe_code)]
+
+use std::hint::black_box;
+use std::time::Instant;
+
+use mbs_runtime::dynamics::{
+    Baumgarte, DormandPrince5, DormandPrince8, Embedded, Explicit, Formulation, Projection, Simulation,
+    Tolerance, VelocityTransformation,
+};
+use mbs_runtime::{Dynamic, Failure, mechanism};
+
+mechanism! {
+    /// A plate on three parallel cranks without mass: one row of their heads follows from the others.
+    mechanism Plate;
+    param L: m = 0.5;
+    param d: m = 0.4;
+    coord alpha: [rad; 3] = 1;
+    coord p: [m; 2] = [0.67, 0.42];
+    coord psi: rad = 0;
+    body plate { mass: 3, inertia: 0.2, com: p, angle: psi }
+    gravity weight { acceleration: [0, -9.81] }
+    constraint heads redundant {
+        for i in 0..3 { [i*d, 0] + L*unit(alpha[i]) == p + rot(psi)*[(i - 1)*d, 0]; }
+    }
+    start alpha = [1, 1, 1] rate [0, 0, 0];
+}
+
+mechanism! {
+    /// A slider-crank in natural coordinates whose guide is typed twice.
+    mechanism Twin;
+    coord A: [m; 2] = [0.3, 0.4];
+    coord B: [m; 2] = [1.2, 0];
+    body crank { mass: 2, com: A }
+    body slider { mass: 1, com: B }
+    gravity weight { acceleration: [0, -9.81] }
+    constraint rods { dot(A, A) == 0.25 [m^2]; dot(B - A, B - A) == 0.97 [m^2]; }
+    constraint guide redundant { B[1] == 0; 2*B[1] == 0m; }
+    start A = [0.3, 0.4] rate [0, 0];
+}
+
+/// Tolerances: 10⁻ᵏ.
+const EXPONENTS: core::ops::RangeInclusive<i32> = 4..=12;
+
+/// Tolerance of the reference.
+const REFERENCE: f64 = 1e-13;
+
+/// Errors of the table.
+const ERRORS: [f64; 2] = [1e-6, 1e-9];
+
+const ROUNDS: usize = 7;
+
+/// Time (s) of one measurement at least.
+const SPAN: f64 = 2e-3;
+
+/// Values of a motion with a tolerance, at four instants.
+type Motion = Box<dyn Fn(f64) -> Result<Vec<f64>, Failure>>;
+
+fn motion<S, I, F, const N: usize, const M: usize>(integrator: I, formulation: F, end: f64) -> Motion
+where
+    S: Dynamic<f64, N, M> + Default + 'static,
+    I: Embedded + Copy + 'static,
+    F: Formulation<S, f64, N, M> + Copy + 'static,
+{
+    Box::new(move |tolerance| {
+        let method = Explicit::new(integrator, formulation);
+        let run = Simulation::start_from_text(S::default(), method, 0.0)?;
+        let mut run = run.without_work().with_tolerance(Tolerance::new(tolerance));
+        let mut values = Vec::new();
+        for quarter in 1..=4 {
+            run.advance_to(end * f64::from(quarter) / 4.0)?;
+            values.extend_from_slice(run.q());
+            values.extend(run.qd().iter().map(|rate| 0.1 * end * rate));
+        }
+        Ok(values)
+    })
+}
+
+/// Error and time (s) by tolerance; none where the motion fails.
+type Front = Vec<Option<(f64, f64)>>;
+
+/// Time (s) at `error`, between the two neighbours that it lies between; none where it is not reached.
+fn time_at(front: &Front, error: f64) -> Option<f64> {
+    let reached: Vec<(f64, f64)> = front.iter().flatten().copied().collect();
+    let pair = reached.windows(2).find(|pair| pair[1].0 <= error && error < pair[0].0)?;
+    let [(coarse, short), (fine, long)] = [pair[0], pair[1]];
+    let share = (coarse / error).ln() / (coarse / fine).ln();
+    Some(short * (long / short).powf(share))
+}
+
+fn difference(values: &[f64], reference: &[f64]) -> f64 {
+    let pairs = values.iter().zip(reference);
+    pairs.map(|(value, exact)| (value - exact).abs() / exact.abs().max(1.0)).fold(0.0, f64::max)
+}
+
+fn fronts(motions: &[Motion], reference: &[f64]) -> Vec<Front> {
+    let mut fronts = vec![Front::new(); motions.len()];
+    for exponent in EXPONENTS {
+        let tolerance = 10.0_f64.powi(-exponent);
+        let errors: Vec<Option<f64>> = motions
+            .iter()
+            .map(|motion| motion(tolerance).ok().map(|values| difference(&values, reference)))
+            .collect();
+        let mut times = vec![f64::INFINITY; motions.len()];
+        for _ in 0..ROUNDS {
+            for ((motion, time), error) in motions.iter().zip(&mut times).zip(&errors) {
+                if error.is_none() {
+                    continue;
+                }
+                let (start, mut runs) = (Instant::now(), 0_u32);
+                while start.elapsed().as_secs_f64() < SPAN {
+                    let _ = black_box(motion(tolerance).is_ok());
+                    runs += 1;
+                }
+                *time = time.min(start.elapsed().as_secs_f64() / f64::from(runs));
+            }
+        }
+        for ((front, error), time) in fronts.iter_mut().zip(errors).zip(times) {
+            front.push(error.map(|error| (error, time)));
+        }
+    }
+    fronts
+}
+
+fn problem<S, const N: usize, const M: usize>(name: &str, end: f64, asked: Option<&str>)
+where
+    S: Dynamic<f64, N, M> + Default + 'static,
+{
+    if asked.is_some_and(|asked| asked != name) {
+        return;
+    }
+    let motions = [
+        motion::<S, _, _, N, M>(DormandPrince8, Projection::default(), end),
+        motion::<S, _, _, N, M>(DormandPrince8, VelocityTransformation, end),
+        motion::<S, _, _, N, M>(DormandPrince8, Baumgarte::default(), end),
+        motion::<S, _, _, N, M>(DormandPrince5, VelocityTransformation, end),
+    ];
+    let exact = motions.iter().take(2).rev().find_map(|motion| motion(REFERENCE).ok());
+    let Some(reference) = exact.or_else(|| motions[0](1e-12).ok()) else {
+        println!("| {name} | no reference |");
+        return;
+    };
+    let fronts = fronts(&motions, &reference);
+    for error in ERRORS {
+        let Some(own) = time_at(&fronts[0], error) else { continue };
+        let ratios = fronts.iter().skip(1).map(|front| {
+            time_at(front, error).map_or("–".to_string(), |time| format!("{:.2}", own / time))
+        });
+        let ratios: Vec<String> = ratios.collect();
+        println!("| {name} | {error:.0e} | {:.3} | {} |", 1e3 * own, ratios.join(" | "));
+    }
+}
+
+fn main() {
+    let asked = std::env::args().skip(1).find(|argument| !argument.starts_with('-'));
+    let asked = asked.as_deref();
+    println!(
+        "| motion | error | default, ms | over velocity transformation | over Baumgarte | over order 5 |"
+    );
+    println!("|---|---|---|---|---|---|");
+    problem::<mechanisms::pendulum::Pendulum, 2, 1>("pendulum", 10.0, asked);
+    problem::<mechanisms::slider_crank_mass::CrankPistonReleased, 3, 2>("slider_crank", 0.6, asked);
+    problem::<mechanisms::andrews::Andrews, 7, 6>("andrews", 0.03, asked);
+    problem::<mechanisms::n_four_bar::NFourBar, 6, 5>("a02_2", 10.0, asked);
+    problem::<mechanisms::n_four_bar_10::NFourBar10, 22, 21>("a02_10", 10.0, asked);
+    problem::<mechanisms::bricard::Bricard, 23, 23>("bricard", 1.0, asked);
+    problem::<mechanisms::heavy_top::HeavyTop, 7, 4>("heavy_top", 0.5, asked);
+    problem::<mechanisms::car_axis::CarAxis, 4, 2>("car_axis", 3.0, asked);
+    problem::<mechanisms::governor::Governor, 16, 12>("governor", 0.1, asked);
+    problem::<Plate, 6, 6>("redundant_loop", 3.0, asked);
+    problem::<Twin, 4, 4>("redundant_row", 3.0, asked);
+}
