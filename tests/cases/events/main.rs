@@ -4,7 +4,7 @@
 mod counted;
 mod d10_settings;
 mod d21_tables;
-mod d26_touched_limits;
+mod d30_touched_limits;
 mod d3_contacts;
 mod d3_events;
 mod d3_fixed_steps;

@@ -1,7 +1,7 @@
 //! Motion from forces through singular positions.
 #![forbid(unsafe_code)]
 
-mod d23_all_rows_vanish;
+mod d25_all_rows_vanish;
 mod d2_four_bar;
 mod d2_parallelogram;
 mod d2_single_precision;

@@ -69,7 +69,7 @@ fn a_bound_that_the_rows_keep_is_touched() {
 fn a_bound_that_is_passed_is_told_at_its_time() {
     for below in [1e-1, 1e-3, 1e-5] {
         let top = 1.0 - below;
-        let left = top.asin() / 5.0;
+        let left = f64::asin(top) / 5.0;
         for tolerance in [1e-8, 1e-10] {
             macro_rules! told {
                 ($($method:expr),*) => {$(
@@ -80,7 +80,7 @@ fn a_bound_that_is_passed_is_told_at_its_time() {
                         panic!("{failure}")
                     };
                     // The error of the motion over the speed of the passage, 5 m/s cos φ.
-                    let allowed = 30.0 * tolerance / (5.0 * (FRAC_PI_2 - top.asin()));
+                    let allowed = 30.0 * tolerance / (5.0 * (FRAC_PI_2 - f64::asin(top)));
                     assert!(bound == top && (time - left).abs() < allowed, "{below:e} {tolerance:e}: {time} {left}");
                 )*};
             }
