@@ -7,7 +7,7 @@ use super::CommandError;
 use super::chosen::Chosen;
 use crate::catalogue::Catalogue;
 use crate::mismatch::Mismatch;
-use crate::output::latex::Value;
+use crate::output::latex::{Value, values};
 use crate::text_file::{TextFile, is_file};
 
 /// A text without faults in a scene.
@@ -29,17 +29,12 @@ impl Text {
         }
         let described = chosen.described(catalogue)?;
         let mechanism = described.equations();
-        let values = mechanism
-            .variables()
-            .iter()
-            .enumerate()
-            .map(|(index, entry)| Value { unit: entry.unit.to_string(), value: mechanism.get(index) });
         Ok(Text {
             name: described.target.name().to_string(),
             title: described.target.title().to_string(),
             source: mechanism.source().to_string(),
             scene: Some(mechanism.scene().to_string()),
-            values: values.collect(),
+            values: values(mechanism),
         })
     }
 
@@ -53,8 +48,8 @@ impl Text {
             let set = preset.iter().find(|(name, _)| *name == variable.name);
             Value { unit: variable.unit, value: Some(set.map_or(variable.default, |(_, value)| *value)) }
         };
-        let values = variables.into_iter().map(value).collect();
-        Ok(Text { name: argument.to_string(), title, source, scene, values })
+        let name = argument.to_string();
+        Ok(Text { name, title, source, scene, values: variables.into_iter().map(value).collect() })
     }
 
     pub fn scene(&self) -> Option<&str> {

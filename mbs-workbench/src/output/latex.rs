@@ -3,8 +3,10 @@
 use std::fmt::Write;
 
 use mbs_codegen::{DynamicFormulas, Formulas};
+use mbs_runtime::Entry;
 
 use super::matrix::short;
+use crate::erased::facade::AnyEquations;
 
 /// A matrix that is wider than the line is shrunk to it.
 const PREAMBLE: &str = "\\documentclass[a4paper]{article}
@@ -25,6 +27,13 @@ pub struct Value {
     pub unit: String,
     /// The value in that unit, where there is one.
     pub value: Option<f64>,
+}
+
+/// Values of a mechanism's parameters and inputs, in the order of its formulas.
+pub fn values(equations: &dyn AnyEquations) -> Vec<Value> {
+    let value =
+        |(index, entry): (usize, &Entry)| Value { unit: entry.unit.to_string(), value: equations.get(index) };
+    equations.variables().iter().enumerate().map(value).collect()
 }
 
 /// The document of a mechanism from its formulas in LaTeX's spelling, with `dynamic` ones where it has masses. `values` are in the

@@ -35,7 +35,8 @@ fn every_mechanism_is_a_well_formed_document() {
         let mechanism = card.equations();
         let formulas =
             mbs_codegen::latex_formulas(mechanism.source(), Some(mechanism.scene())).expect("a good text");
-        let text = document(mechanism.as_ref(), &formulas, None, &card.picture().expect("a text").title);
+        let text =
+            document(&values(mechanism.as_ref()), &formulas, None, &card.picture().expect("a text").title);
         assert_well_formed(&text);
         assert!(text.starts_with("\\documentclass") && text.ends_with("\\end{document}\n"));
     }
@@ -49,8 +50,12 @@ fn masses_and_forces_stand_behind_the_constraints() {
         let formulas = mbs_codegen::latex_formulas(source, scene).expect("a good text");
         let dynamic = mbs_codegen::latex_dynamic_formulas(source, scene).expect("a good text");
         let dynamic = dynamic.expect("it has masses");
-        let text =
-            document(mechanism.as_ref(), &formulas, Some(&dynamic), &card.picture().expect("a text").title);
+        let text = document(
+            &values(mechanism.as_ref()),
+            &formulas,
+            Some(&dynamic),
+            &card.picture().expect("a text").title,
+        );
         assert_well_formed(&text);
         let [motion, mass, force] = ["\\mathbf{M}\\,\\ddot{\\mathbf{q}}", "\\mathbf{M} = ", "\\mathbf{Q} = "]
             .map(|part| text.find(part));
@@ -64,7 +69,7 @@ fn the_pendulum_has_the_mass_and_the_weight_of_its_bob() {
     let dynamic = mbs_codegen::latex_dynamic_formulas(mechanism.source(), None).expect("a good text");
     let dynamic = dynamic.expect("it has masses");
     let formulas = mbs_codegen::latex_formulas(mechanism.source(), None).expect("a good text");
-    let text = document(mechanism.as_ref(), &formulas, Some(&dynamic), "");
+    let text = document(&values(mechanism.as_ref()), &formulas, Some(&dynamic), "");
     assert!(text.contains("\\mathbf{M} = \\begin{bmatrix}\n  m & 0 \\\\\n  0 & m\n\\end{bmatrix}"), "{text}");
     assert!(
         dynamic.force[1].starts_with('-') && ["g", "m"].iter().all(|part| dynamic.force[1].contains(part))

@@ -13,7 +13,7 @@ use crate::tolerances::singular;
 /// Ratio of two truncations, so close that singular values of different sizes are looked at one after the other.
 const FINER: f64 = 4.0;
 
-/// Part of the longest row of the free columns `system` at `y` from which on directions determine rates: above those of all dead
+/// Part of the longest row of the free columns `system` at `y`, or of 1 where all are shorter, from which on directions determine rates: above those of all dead
 /// centres. `rates` (M): of the rows, by the declared rates.
 ///
 /// Next to a dead centre a row is σ s + ½ κ s² along the weak direction s of the free columns. A declared rate that has a part b of the
@@ -26,7 +26,8 @@ pub(crate) fn truncation<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: 
     system: &System<R, N, M>,
     rates: &[R; M],
 ) -> Result<R, Failure> {
-    let longest = longest_row(system);
+    // The factorization measures short rows by 1.
+    let longest = longest_row(system).max(R::constant(1.0));
     let relative = |cut: R| cut / longest;
     let factorize = |cut: R| system.factorize_rank_revealing(relative(cut), S::COORDINATES, t);
     let (zone, mut cut) = (singular::ZONE_OF_FORCES.of::<R>(), singular::WEAKEST_OF_START.of::<R>());

@@ -1,7 +1,7 @@
 //! Singular positions that a run reached or passed, as its steps show them.
 
 use crate::dynamics::integrators::vector::IntegratorState;
-use crate::dynamics::linear_systems::kkt::System;
+use crate::dynamics::linear_systems::kkt::{Factors, System};
 use crate::dynamics::model::{Model, Solved};
 use crate::mechanism::dynamic::Dynamic;
 use crate::scalar::number::Real;
@@ -58,7 +58,10 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         let mass = self.mechanism.mass(self.parameters, &position);
         let phi_q = self.mechanism.phi_q(self.parameters, &position);
         let factors = System::new(&mass, &phi_q, self.metric).factorize(S::COORDINATES, t);
-        factors.ok().map(|factors| factors.margin())
+        let margin = |factors: Factors<R, N, M>| {
+            if factors.loses_rank(S::REDUNDANT) { R::constant(0.0) } else { factors.margin() }
+        };
+        factors.ok().map(margin)
     }
 }
 
