@@ -270,6 +270,7 @@ const _: () = {
                 omega: T::lane(self.omega, __lane),
             }
         }
+        const FOLDING: &'static [::core::primitive::u16] = &[0];
         #[inline]
         fn parameters(&self) -> __Parameters<T> {
             let __n59 = -self.omega;
