@@ -1,4 +1,4 @@
-//! What is missing: operators, commas, semicolons, units, keywords of further declarations.
+//! Missing operators, commas, semicolons, units, keywords of further declarations.
 
 use proc_macro2::Span;
 

@@ -48,14 +48,14 @@ pub enum TextFileError {
     },
     /// Several mechanisms or scenes, and the command line names none of them.
     Several {
-        /// What the command line names.
+        /// Argument of the command line.
         argument: String,
         /// Arguments that name one.
         known: Vec<String>,
     },
     /// No mechanism or scene of this name.
     Unknown {
-        /// What the command line names.
+        /// Argument of the command line.
         argument: String,
         /// Arguments that name one.
         known: Vec<String>,

@@ -46,7 +46,7 @@ impl Design {
     }
 }
 
-/// What drives a slider-crank.
+/// Drive of a slider-crank.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Driven {
     /// The crank: the slider is the point.
