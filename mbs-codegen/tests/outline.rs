@@ -66,7 +66,7 @@ fn faults_are_those_of_the_macro_with_their_lengths() {
         })
         .collect();
     assert_eq!(told, expand_source(text).expect_err("faults"));
-    assert_eq!(faults.iter().map(|fault| (fault.line, fault.width())).collect::<Vec<_>>(), [(3, 5), (4, 3)]);
+    assert_eq!(faults.iter().map(|fault| (fault.line, fault.width())).collect::<Vec<_>>(), [(3, 5), (4, 1)]);
 }
 
 #[test]

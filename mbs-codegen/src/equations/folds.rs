@@ -328,7 +328,7 @@ mod tests {
             ("constraint coupler { norm([x, y] - 0.1m*unit(theta)) == b; }", "b theta"),
             (
                 "let k = r*cos(theta); constraint bars { norm([x, y]) == r; norm([x, y] - [k, 0]) == b; }",
-                "r theta",
+                "r b theta",
             ),
         ] {
             assert_eq!(found(rows), expected, "{rows}");

@@ -17,7 +17,7 @@ use crate::tolerances::{positions, singular};
 /// `true` if a residual of `ratio` tolerances is seen in the accelerations at such a `margin`.
 #[inline(always)]
 pub(crate) fn is_coarse<T: Scalar>(ratio: T, margin: T) -> T::Mask {
-    (positions::COARSE.of::<T>() * margin * margin).max(positions::FINE.of()).less(ratio)
+    (positions::COARSE.of::<T>() * margin * margin * margin).max(positions::FINE.of()).less(ratio)
 }
 
 /// Position found by a solver.
@@ -150,7 +150,7 @@ fn factorized<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize>(
 
 impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> SolvedPosition<S, R, N, M> {
     /// One Newton step more, if it closes the rows better. At small margins the error of the position by a residual within its
-    /// tolerance is seen in the rates, by the square of the margin.
+    /// tolerance is seen in the rates, by the square or the cube of the margin.
     #[cold]
     #[inline(never)]
     fn polish(&mut self, mechanism: &S, parameters: &S::Parameters, factors: &S::Factors) {

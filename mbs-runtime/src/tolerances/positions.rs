@@ -39,11 +39,11 @@ pub(crate) const UNMET: Law = Law::at_least(1e8 * 64.0 * f64::EPSILON, 4096.0 * 
 /// Residual in the metric from which on a state has left the constraints and shows nothing about the mechanism.
 pub(crate) const LEFT: Law = Law::fixed(1e-3);
 
-/// Largest residual over its tolerance, and over the square of the margin μ, that is left in a position as it is.
+/// Largest residual over its tolerance, and over the cube of the margin μ, that is left in a position as it is.
 ///
-/// A residual of r reference lengths is an error of r/μ in the position and of 3 to 6 r/μ² of the acceleration in that (measured on
-/// sliders next to the end of their range). With [`OF_TERMS`] it is 27 000 ε or 6e-12 at most; above margins of 0.12 no step is looked
-/// at twice, and at 0.1 one of a hundred.
+/// A residual of r reference lengths is an error of r/μ in the position. In the acceleration it is 3 to 6 r/μ² on sliders next to the end
+/// of their range, and as much r/μ³ on parallelograms of points next to a change point. With [`OF_TERMS`] it is 27 000 ε or 6e-12 at most;
+/// above margins of 0.24 no step is looked at twice. Below 0.1 [`FINE`] decides.
 pub(crate) const COARSE: Law = Law::fixed(70.0);
 
 /// Largest residual over its tolerance that is rounding alone: 4 of 64 roundings. A further step does not lower it.

@@ -271,9 +271,9 @@ mod tests {
         let error = TextFile::read(&path).expect_err("a unit");
         assert!(!error.is_usage());
         let text = error.to_string();
-        assert!(text.contains(&format!("  --> {path}:5:15\n")), "{text}");
+        assert!(text.contains(&format!("  --> {path}:5:11\n")), "{text}");
         assert!(
-            text.contains("\n5 | \tparam L: m = 1kg; coord") && text.contains("\n  | \t             ^^^\n"),
+            text.contains("\n5 | \tparam L: m = 1kg; coord") && text.contains("\n  | \t         ^\n"),
             "{text}"
         );
     }

@@ -78,13 +78,20 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         let size = [start, end].map(|t| size(&self.metric.coordinates, &at(t).q));
         let size = size.into_iter().fold(R::constant(0.0), R::max);
         let mut ranges = Ranges { model: self, from, resolution, size, errors: None, at };
-        match first_beyond(&mut ranges, (start, end)) {
-            Ok(None) => Ok(()),
-            Ok(Some(_)) => ranges.passed((start, end), errors),
-            Err((member, Unanswered::Undefined(t) | Unanswered::OutOfParts(t))) => {
-                Err(ranges.failure(member, t))
+        let mut touched = start;
+        for _ in 0..MOST_TOUCHES {
+            match first_beyond(&mut ranges, (touched, end)) {
+                Ok(None) => return Ok(()),
+                Ok(Some((member, t))) => match ranges.next_inside((member, t), end, errors)? {
+                    Some(inside) => touched = inside,
+                    None => break,
+                },
+                Err((member, Unanswered::Undefined(t) | Unanswered::OutOfParts(t))) => {
+                    return Err(ranges.failure(member, t));
+                }
             }
         }
+        ranges.passed((start, end), errors)
     }
 
     /// [`check_branches`](Self::check_branches) at the end of a step from `start` (s), with the time at which the state passes a
@@ -168,6 +175,12 @@ struct Ranges<'a, S: Dynamic<R, N, M>, R: Real, At, const N: usize, const M: usi
     at: At,
 }
 
+/// Touches of limits within a step behind each of which is looked on as closely as in front of it.
+const MOST_TOUCHES: u32 = 16;
+
+/// Part of the rest of a step at which it is looked first behind a touch: 2⁻⁵³.
+const LEAST_PART: f64 = f64::EPSILON / 2.0;
+
 /// Instants on the way to a limit at which it is looked for the last one that keeps it.
 const INSTANTS: u32 = 64;
 
@@ -188,19 +201,54 @@ where
         })
     }
 
+    /// The states of the step on the rows.
+    fn closed(&self, t: R) -> IntegratorState<R, N, S::States> {
+        let state = (self.at)(t);
+        let closed = self.model.moved(self.from, t, |model| {
+            let mut y = state;
+            project_position(model, t, &mut y, &mut Counts::default()).map(|_| y)
+        });
+        closed.unwrap_or(state)
+    }
+
+    /// Distance to the bound of `member` at `t` (s).
+    fn left(&mut self, member: usize, t: R) -> R {
+        let mut values = [R::constant(0.0); GROUP];
+        self.values(t, member - member % GROUP, &mut values);
+        values.get(member % GROUP).copied().unwrap_or(R::constant(f64::NAN))
+    }
+
+    /// The next instant before `end` (s) at which the range of `member` is kept again that is reached at `t` (s); `None` where it is
+    /// not. Fails if states on the rows leave it behind `t` by more than their `errors` (N), however short that is: the instants are
+    /// twice as far from `t` as the one before.
+    #[cold]
+    #[inline(never)]
+    fn next_inside(&self, (member, t): (usize, R), end: R, errors: &[R; N]) -> Result<Option<R>, Failure> {
+        let zero = R::constant(0.0);
+        let Ranges { model, from, resolution, size, .. } = *self;
+        let at = |t: R| self.closed(t);
+        let mut wider = Ranges { model, from, resolution, size, errors: Some(errors), at };
+        let mut exact = Ranges { model, from, resolution, size, errors: None, at: |t: R| (self.at)(t) };
+        let mut ahead = R::constant(LEAST_PART) * (end - t);
+        while zero < ahead && ahead <= end - t {
+            let after = t + ahead;
+            if wider.left(member, after) < zero {
+                return Err(self.failure(member, t));
+            }
+            if t.less(after) && zero < exact.left(member, after) {
+                return Ok(Some(after));
+            }
+            ahead = ahead + ahead;
+        }
+        Ok(None)
+    }
+
     /// Fails with the range that is left within a step by states on the rows, and by more than their `errors` (N), with the time at
     /// which it is left.
     #[cold]
     #[inline(never)]
     fn passed(&self, (start, end): (R, R), errors: &[R; N]) -> Result<(), Failure> {
-        let at = |t: R| {
-            let state = (self.at)(t);
-            let closed = self.model.moved(self.from, t, |model| {
-                let mut y = state;
-                project_position(model, t, &mut y, &mut Counts::default()).map(|_| y)
-            });
-            closed.unwrap_or(state)
-        };
+        let at = |t: R| self.closed(t);
         let Ranges { model, from, resolution, size, .. } = *self;
         let mut wider = Ranges { model, from, resolution, size, errors: Some(errors), at };
         let (member, beyond) = match first_beyond(&mut wider, (start, end)) {

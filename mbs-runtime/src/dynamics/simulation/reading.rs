@@ -70,9 +70,12 @@ where
         &self.now
     }
 
-    /// Margin of Φ_q to a loss of rank: 0 at the loss, at most 1.
+    /// Margin of Φ_q to a loss of rank: 0 at the loss, at most 1. Where steps go through blocks of the rows, all rows are factorized
+    /// for it at the call.
     pub fn margin(&self) -> R {
-        self.now.solved.margin
+        let Instant { t, y, solved, .. } = &self.now;
+        let of_rows = if S::IS_PARTITIONED { self.model().margin_of_rows(*t, y) } else { None };
+        of_rows.unwrap_or(solved.margin)
     }
 
     /// First approach of the run to a singular position that it may have passed.

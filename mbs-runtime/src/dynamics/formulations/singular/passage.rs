@@ -50,10 +50,10 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         Solved { margin: self.margin_of_rows(t, y).unwrap_or(solved.margin), ..solved }
     }
 
-    /// None where no mass moves with a free motion.
+    /// Margin of all rows at `(t, y)`: 0 where they lose rank; `None` where no mass moves with a free motion.
     #[cold]
     #[inline(never)]
-    fn margin_of_rows(&self, t: R, y: &IntegratorState<R, N, S::States>) -> Option<R> {
+    pub(crate) fn margin_of_rows(&self, t: R, y: &IntegratorState<R, N, S::States>) -> Option<R> {
         let position = self.position(t, y);
         let mass = self.mechanism.mass(self.parameters, &position);
         let phi_q = self.mechanism.phi_q(self.parameters, &position);
