@@ -16,7 +16,7 @@ mechanism! {
 /// An encoder that wraps after a turn, with its speed (rad, rad/s).
 fn encoder(tick: u32) -> Signal<f64> {
     let angle = 6.0 * 1e-3 * f64::from(tick);
-    Signal { value: angle.rem_euclid(core::f64::consts::TAU), rate: 6.0, acceleration: 0.0 }
+    Signal::new(angle.rem_euclid(core::f64::consts::TAU), 6.0, 0.0)
 }
 
 fn main() -> Result<(), Failure> {
@@ -35,7 +35,7 @@ fn main() -> Result<(), Failure> {
             Step::Degraded { residual, row, .. } => println!("{} is open by {residual:e}", row.name),
             Step::Refused(failure) => println!("command held: {failure}"),
         }
-        last = motion.outputs()[0].value;
+        last = WiperOutputs::from(motion.outputs()).blade.value;
     }
     println!("after 2 s the blade is at {last:.6} rad; no step took more than {evaluations} evaluations");
 
@@ -45,8 +45,10 @@ fn main() -> Result<(), Failure> {
     let saved = Saved::from_le_bytes(&page[..length]).expect("the page is undamaged");
     let wiper = Wiper { theta: encoder(2010) };
     let again = Stepper::assemble_near(wiper, &saved, 0.0)?;
-    println!("{length} bytes bring it back: {:.6} rad, assembly kept: {}", again.outputs()[0].value, {
-        again.signature() == motion.signature()
-    });
+    println!(
+        "{length} bytes bring it back: {:.6} rad, assembly kept: {}",
+        WiperOutputs::from(again.outputs()).blade.value,
+        { again.signature() == motion.signature() }
+    );
     Ok(())
 }

@@ -2,13 +2,13 @@
 //!
 //! `cargo run --release --example control_loop`
 
-use __CRATE__::__TYPE__Measured;
+use __CRATE__::{__TYPE__Measured, __TYPE__MeasuredOutputs, __TYPE__MeasuredStepper};
 use mbs_runtime::{Budget, Failure, Mechanism, Saved, Signal, Step, Stepper};
 
 /// Angle (rad) of the crank with its rates, at a tick of one millisecond.
 fn encoder(tick: u32) -> Signal<f64> {
     let t = 1e-3 * f64::from(tick);
-    Signal { value: 6.0 * t, rate: 6.0, acceleration: 0.0 }
+    Signal::new(6.0 * t, 6.0, 0.0)
 }
 
 fn main() -> Result<(), Failure> {
@@ -17,7 +17,7 @@ fn main() -> Result<(), Failure> {
 
     let linkage = __TYPE__Measured::default();
     let guess = linkage.guess(&linkage.parameters());
-    let mut motion = Stepper::assemble(linkage, guess, 0.0)?;
+    let mut motion: __TYPE__MeasuredStepper = Stepper::assemble(linkage, guess, 0.0)?;
     for tick in 1..=2000 {
         motion.change(|linkage| linkage.angle = encoder(tick));
         match motion.step(1e-3, budget) {
@@ -26,8 +26,7 @@ fn main() -> Result<(), Failure> {
             Step::Refused(failure) => println!("the last position is kept: {failure}"),
         }
     }
-    // Outputs in the order of the text: O.0, O.1, P.0, P.1, swing.
-    let [.., swing] = motion.outputs();
+    let swing = __TYPE__MeasuredOutputs::from(motion.outputs()).swing;
     println!("after 2 s: rocker at {:.4} rad, {:.4} rad/s", swing.value, swing.rate.unwrap_or(f64::NAN));
 
     // An encoder that reads nonsense: the step is refused, the position is that of before.
@@ -45,7 +44,7 @@ fn main() -> Result<(), Failure> {
     let mut linkage = __TYPE__Measured::default();
     linkage.angle = encoder(2010);
     let again = Stepper::assemble_near(linkage, &saved, 0.0)?;
-    let [.., swing] = again.outputs();
+    let swing = __TYPE__MeasuredOutputs::from(again.outputs()).swing;
     println!("after a reset: rocker at {:.4} rad from {length} bytes", swing.value);
     Ok(())
 }

@@ -92,6 +92,8 @@ pub struct Model {
     pub independent: Vec<Independent>,
     /// Outputs, component by component.
     pub outputs: Vec<Output>,
+    /// Declared outputs that are no loads, in the order of the text.
+    pub output_fields: Vec<OutputField>,
     /// Bodies, forces and first-order states, where the text has any.
     pub dynamics: Option<Dynamics>,
     /// Largest length among the constants and numbers that determine the reference length.
@@ -369,4 +371,28 @@ pub struct Output {
     pub value: Id,
     /// The declaring token.
     pub span: Span,
+}
+
+/// A declared output, scalar or array; of a loop all its rounds.
+#[derive(Debug)]
+pub struct OutputField {
+    /// Name and token.
+    pub name: crate::syntax::ast::Name,
+    /// Unit as written.
+    pub unit: String,
+    /// Lengths of the array in the first round; none for a scalar.
+    pub shape: Vec<usize>,
+    /// Rounds of its loops; none outside of loops.
+    pub rounds: Option<usize>,
+    /// Indices of its components in [`Model::outputs`].
+    pub components: Vec<usize>,
+}
+
+impl OutputField {
+    /// Lengths of the array of all rounds. Rounds of different lengths, and vectors that are loads in part, make one list.
+    pub fn lengths(&self) -> Vec<usize> {
+        let lengths: Vec<usize> = self.rounds.into_iter().chain(self.shape.iter().copied()).collect();
+        let is_whole = lengths.iter().product::<usize>() == self.components.len();
+        if is_whole { lengths } else { vec![self.components.len()] }
+    }
 }

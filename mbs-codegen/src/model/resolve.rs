@@ -15,7 +15,7 @@ use super::unit_faults::Place;
 use super::units::Dimension;
 use super::uses::uses;
 use super::value::{Fault, Reach, Value};
-use super::{Model, Output, VariableKind, declarations, inputs, unused_elements};
+use super::{Model, Output, OutputField, VariableKind, declarations, inputs, unused_elements};
 use crate::diagnostics::Diagnostics;
 use crate::syntax::ast::{Element, Expression, Loop, Name, Statement, StatementKind, Type, Unit};
 
@@ -227,6 +227,7 @@ impl Resolver<'_> {
         self.check_reference(&value)?;
         let round = self.rows_of(group);
         let base = if self.loops.is_empty() { name.text.clone() } else { format!("{}.{round}", name.text) };
+        let mut components = Vec::new();
         for (component, item) in component_names(&base, &value.shape).zip(&value.items) {
             let unit = kind.unit.text.clone();
             let output = Output { name: component, unit, value: item.id, span: name.span };
@@ -234,11 +235,34 @@ impl Resolver<'_> {
             let is_load = self.model.dynamics.is_some() && !self.model.made_of(item.id, plain);
             match &mut self.model.dynamics {
                 Some(dynamics) if is_load => dynamics.loads.push(output),
-                _ => self.model.outputs.push(output),
+                _ => {
+                    components.push(self.model.outputs.len());
+                    self.model.outputs.push(output);
+                }
             }
         }
         self.count_row(group, round);
+        self.output_field(name, kind, value.shape, components);
         Ok(())
+    }
+
+    /// Adds `components` of a round to the declared output `name`.
+    fn output_field(&mut self, name: &Name, kind: &Type, shape: Vec<usize>, components: Vec<usize>) {
+        if components.is_empty() {
+            return;
+        }
+        let known = self.model.output_fields.iter_mut().find(|field| field.name.text == name.text);
+        match known {
+            Some(field) => {
+                field.rounds = field.rounds.map(|rounds| rounds.saturating_add(1));
+                field.components.extend(components);
+            }
+            None => {
+                let rounds = (!self.loops.is_empty()).then_some(1);
+                let (name, unit) = (name.clone(), kind.unit.text.clone());
+                self.model.output_fields.push(OutputField { name, unit, shape, rounds, components });
+            }
+        }
     }
 
     /// A group of one row gives the row its name; rows of larger ones are counted from 0.

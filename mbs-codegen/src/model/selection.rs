@@ -266,12 +266,16 @@ fn is_free<'a>(
         format!("names that begin with `{OWN}` are those of the emitted code")
     } else if header.label() == text {
         format!("`{text}` is the name of the mechanism")
-    } else if let Some(other) =
-        text.strip_suffix(VIEW).filter(|other| other.is_empty() || names.contains_key(*other))
+    } else if let Some((other, suffix)) = OF_SCENES.iter().find_map(|suffix| {
+        let other = text.strip_suffix(suffix)?;
+        (other.is_empty() || names.contains_key(other)).then_some((other, suffix))
+    }) {
+        format!("`{}{suffix}` is a type of the emitted code", alias(header, other))
+    } else if let Some((other, suffix)) =
+        OF_SCENES.iter().find_map(|suffix| Some((names.get(&format!("{text}{suffix}"))?, suffix)))
     {
-        format!("`{}{VIEW}` is the view of the coordinates by name", alias(header, other))
-    } else if let Some(other) = names.get(&format!("{text}{VIEW}")) {
-        format!("`{}` is the view of the coordinates by name", alias(header, &other.text))
+        let alias = alias(header, text);
+        format!("`{alias}{suffix}` is a type of the emitted code, and the name of scene `{}`", other.text)
     } else {
         names.insert(text.to_owned(), name);
         return true;
@@ -280,8 +284,17 @@ fn is_free<'a>(
     false
 }
 
-/// Suffix in the name of the view of the coordinates.
-const VIEW: &str = "Coordinates";
+/// Suffix in the name of the struct of the coordinates by name.
+pub const COORDINATES: &str = "Coordinates";
+
+/// The same of the outputs by name.
+pub const OUTPUTS: &str = "Outputs";
+
+/// Suffix in the name of the stepper.
+pub const STEPPER: &str = "Stepper";
+
+/// Suffixes of types that belong to a scene.
+pub const OF_SCENES: [&str; 3] = [COORDINATES, OUTPUTS, STEPPER];
 
 /// A scene needs a coordinate; it gets one where that is reported.
 fn complete(selection: &mut Selection, name: &Name, diagnostics: &mut Diagnostics) {

@@ -62,7 +62,7 @@ impl<R: Real, const L: usize> Notes<R, L> {
         Statistics {
             evaluations: self.evaluations.lane(lane).to_f64() as u32,
             fallback: at(&self.fallback, lane, false),
-            residual: self.residual.lane(lane).to_f64(),
+            residual_over_tolerance: self.residual.lane(lane).to_f64(),
             row: index(self.row, lane),
             correction: self.correction.lane(lane).to_f64(),
             passed: at(&self.passed, lane, false),
@@ -87,10 +87,11 @@ impl<R: Real, const L: usize> Notes<R, L> {
     }
 
     pub fn put(&mut self, lane: usize, drift: Drift<R>, statistics: Statistics) {
-        let Statistics { evaluations, fallback, residual, row, correction, passed } = statistics;
+        let Statistics { evaluations, fallback, residual_over_tolerance, row, correction, passed } =
+            statistics;
         set(&mut self.drift.change.0, lane, drift.change);
         set(&mut self.drift.time.0, lane, drift.time);
-        set(&mut self.residual.0, lane, R::constant(residual));
+        set(&mut self.residual.0, lane, R::constant(residual_over_tolerance));
         set(&mut self.correction.0, lane, R::constant(correction));
         set(&mut self.row.0, lane, R::constant(f64::from(row)));
         set(&mut self.evaluations.0, lane, R::constant(f64::from(evaluations)));

@@ -191,7 +191,7 @@ pub struct Statistics {
     pub fallback: bool,
     /// Largest |residual| over its tolerance, at most 1; of the rows that are solved for, not assigned. Where it is within
     /// ε 64 ρ, the rounding of the row's own terms, that is the tolerance.
-    pub residual: f64,
+    pub residual_over_tolerance: f64,
     /// Index in Φ of the row that holds it.
     pub row: u16,
     /// Largest difference between the position and its prediction, in the reference metric (rad, or reference
@@ -209,7 +209,7 @@ impl Statistics {
         Statistics {
             evaluations: diagnosis.evaluations,
             fallback: diagnosis.fallback,
-            residual: worst.ratio.to_f64(),
+            residual_over_tolerance: worst.ratio.to_f64(),
             row: worst.row(0),
             correction: 0.0,
             passed: false,

@@ -37,7 +37,7 @@ use crate::scalar::number::Scalar;
 /// let mut motion = Stepper::assemble(lift, guess, 0.0)?;
 /// for t in [0.25, 0.5, 2.0] {
 ///     let [value, rate, acceleration] = law.jet(t);
-///     motion.change(|lift| lift.height = Signal { value, rate, acceleration });
+///     motion.change(|lift| lift.height = Signal::new(value, rate, acceleration));
 ///     motion.advance_to(t)?;
 /// }
 /// assert!((motion.q()[0] - 175.0).abs() < 1e-9 && (motion.qd()[0] - 100.0).abs() < 1e-9);

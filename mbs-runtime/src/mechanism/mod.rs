@@ -74,6 +74,18 @@ pub struct Signal<T> {
 }
 
 impl<T: Scalar> Signal<T> {
+    /// A quantity with its first and second time derivatives, in the declared unit, per s and per s².
+    #[inline]
+    pub const fn new(value: T, rate: T, acceleration: T) -> Self {
+        Signal { value, rate, acceleration }
+    }
+
+    /// A quantity that does not move, in the declared unit.
+    #[inline]
+    pub fn at_rest(value: T) -> Self {
+        Signal::new(value, T::constant(0.0), T::constant(0.0))
+    }
+
     /// The signal `h` (s) later, at constant acceleration.
     #[inline]
     pub fn moved(self, h: T) -> Self {

@@ -128,7 +128,7 @@ impl<T: Scalar, const N: usize> FastStep<T, N> {
         Statistics {
             evaluations: self.evaluations,
             fallback: false,
-            residual: self.residual.lane(lane).to_f64(),
+            residual_over_tolerance: self.residual.lane(lane).to_f64(),
             row: if T::LANES > 1 { index(self.row, lane) } else { self.row_alone },
             correction: self.correction.lane(lane).to_f64(),
             passed,

@@ -83,7 +83,7 @@ impl<R: Real, const N: usize> Rates<R, N> {
         if !determines_rates(margin.value) {
             return Some(singular(mechanism, &margin, t));
         }
-        let coarse = M == N && is_coarse(R::constant(found.statistics.residual), margin.value);
+        let coarse = M == N && is_coarse(R::constant(found.statistics.residual_over_tolerance), margin.value);
         if (coarse || margin.value < singular::ZONE.of()) && found.open.is_none() {
             found.polish(mechanism, parameters, &factors);
             (factors, margin) = factorized(mechanism, parameters, &found.position);

@@ -48,16 +48,17 @@ const FORBIDDEN: [&str; 10] = [
     "proof_reached_a_panic",
 ];
 
-/// Builds the library with a feature, if any, and links it; the program, or the linker's complaint.
-fn linked(feature: Option<&str>) -> Result<PathBuf, String> {
+/// Builds the library with a profile and a feature, if any, and links it; the program, or the linker's complaint.
+fn linked(profile: &str, feature: Option<&str>) -> Result<PathBuf, String> {
     let workshop = Workshop::new(env!("CARGO_TARGET_TMPDIR"), "proofs", "");
-    let name = feature.unwrap_or("proof");
-    let mut arguments = vec!["--profile=linked", "--package=proof-freestanding"];
+    let name = format!("{}-{profile}", feature.unwrap_or("proof"));
+    let chosen = format!("--profile={profile}");
+    let mut arguments = vec![chosen.as_str(), "--package=proof-freestanding"];
     let feature = feature.map(|feature| format!("--features={feature}"));
     arguments.extend(feature.as_deref());
-    let product = "linked/libproof_freestanding.a";
+    let product = format!("{profile}/libproof_freestanding.a");
     let library = workshop
-        .build(&arguments, product, &format!("{name}.a"))
+        .build(&arguments, &product, &format!("{name}.a"))
         .unwrap_or_else(|complaint| panic!("the library does not compile:\n{complaint}"));
     let program = workshop.target().join(name);
     let mut link: Vec<String> =
@@ -70,28 +71,46 @@ fn linked(feature: Option<&str>) -> Result<PathBuf, String> {
     tools::compile(&link).map(|_| program)
 }
 
-#[test]
-fn emitted_code_and_solvers_link_with_nothing_but_memory_functions() {
-    let program = linked(None).unwrap_or_else(|complaint| panic!("a panic or an allocation:\n{complaint}"));
+/// Links the proof with a profile and looks at its symbols.
+fn prove(profile: &str) {
+    let program = linked(profile, None)
+        .unwrap_or_else(|complaint| panic!("{profile}: a panic or an allocation:\n{complaint}"));
     let symbols = tools::symbols(&program);
     for export in EXPORTS {
         assert!(symbols.iter().any(|(kind, name)| *kind == 'T' && name == export), "`{export}` is missing");
     }
     let undefined: Vec<_> = symbols.iter().filter(|(kind, _)| *kind == 'U').collect();
-    assert!(undefined.is_empty(), "{undefined:?}");
+    assert!(undefined.is_empty(), "{profile}: {undefined:?}");
     let suspicious = |name: &str| FORBIDDEN.iter().any(|part| name.contains(part));
     let suspicious: Vec<_> = symbols.iter().filter(|(_, name)| suspicious(name)).collect();
-    assert!(suspicious.is_empty(), "{suspicious:?}");
+    assert!(suspicious.is_empty(), "{profile}: {suspicious:?}");
+}
+
+#[test]
+fn emitted_code_and_solvers_link_with_nothing_but_memory_functions() {
+    prove("linked");
+}
+
+/// Levels at which checks that never fire are not all removed by themselves. Each is built with the controls.
+#[cfg(feature = "levels")]
+#[test]
+fn no_level_of_optimisation_leaves_a_path_to_a_panic() {
+    for profile in ["linked-s", "linked-z", "linked-2", "linked-1"] {
+        prove(profile);
+        for control in ["control-panics", "control-allocates"] {
+            assert!(linked(profile, Some(control)).is_err(), "{profile}: {control} went unnoticed");
+        }
+    }
 }
 
 #[test]
 fn an_index_out_of_range_is_rejected() {
-    let complaint = linked(Some("control-panics")).expect_err("a panic path went unnoticed");
+    let complaint = linked("linked", Some("control-panics")).expect_err("a panic path went unnoticed");
     assert!(complaint.contains("undefined") && complaint.contains("proof_reached_a_panic"), "{complaint}");
 }
 
 #[test]
 fn an_allocation_is_rejected() {
-    let complaint = linked(Some("control-allocates")).expect_err("an allocation went unnoticed");
+    let complaint = linked("linked", Some("control-allocates")).expect_err("an allocation went unnoticed");
     assert!(complaint.contains("undefined") && complaint.contains("malloc"), "{complaint}");
 }

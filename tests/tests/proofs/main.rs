@@ -2,5 +2,6 @@
 #![forbid(unsafe_code)]
 
 mod freestanding;
+mod from_c;
 mod panic_free;
 mod scene_code;

@@ -6,7 +6,7 @@ use quote::{format_ident, quote};
 use crate::model::Model;
 use crate::model::scene::Scene;
 use crate::model::scenes::Scenes;
-use crate::model::selection::alias;
+use crate::model::selection::{OF_SCENES, alias};
 use crate::syntax::Text;
 use crate::syntax::rust_identifiers::is_keyword;
 
@@ -25,7 +25,8 @@ impl Generics {
         let mut taken: Vec<String> = vec!["T".into(), "S".into(), "AllEffects".into()];
         for scene in [""].into_iter().chain(scenes.scenes.iter().filter_map(Scene::label)) {
             let alias = alias(&text.header, scene);
-            taken.extend([scene.to_owned(), format!("{alias}Coordinates"), alias]);
+            taken.extend(OF_SCENES.map(|suffix| format!("{alias}{suffix}")));
+            taken.extend([scene.to_owned(), alias]);
         }
         let functions = scenes.shared.functions.iter().map(|function| {
             let base = camel_case(&function.name.text);

@@ -13,7 +13,7 @@ use crate::emit::rust::functions::Bodies;
 use crate::emit::rust::generics::Generics;
 use crate::emit::rust::scenes;
 use crate::emit::rust::tables::tables;
-use crate::emit::rust::view::coordinates_view;
+use crate::emit::rust::view::{coordinates_view, outputs_view, stepper_alias};
 use crate::model::Model;
 use crate::model::scenes::Scenes;
 use crate::syntax::Text;
@@ -42,7 +42,11 @@ pub fn item(
     let constructors = constructors(text, scenes, &generics);
     let docs = scenes::docs(text, scenes, parts, left_out);
     let of_scenes = scenes::items(text, scenes, parts);
-    let views = parts.iter().map(|part| coordinates_view(text, part.scene));
+    let views = parts.iter().map(|part| {
+        let (coordinates, outputs) = (coordinates_view(text, part.scene), outputs_view(text, part.scene));
+        let stepper = part.square.then(|| stepper_alias(text, scenes, part.scene, rows(part)));
+        quote! { #coordinates #outputs #stepper }
+    });
     let private = parts.iter().map(|part| implementations(text, scenes, part));
     quote! {
         #(#attributes)*
@@ -59,6 +63,13 @@ pub fn item(
     }
 }
 
+/// Number of rows; the stub of a square text has as many as it was meant to have.
+fn rows(part: &SceneFunctions<'_>) -> usize {
+    let model = &part.scene.model;
+    let more = model.rows.len() > model.coordinates.len() && model.rows.iter().any(|row| row.redundant);
+    if part.square && !more { model.coordinates.len() } else { model.rows.len() }
+}
+
 /// Trait implementations, with the types that only they name.
 fn implementations(text: &Text, scenes: &Scenes, part: &SceneFunctions<'_>) -> TokenStream {
     let runtime = &text.header.runtime;
@@ -67,9 +78,7 @@ fn implementations(text: &Text, scenes: &Scenes, part: &SceneFunctions<'_>) -> T
     let name = scenes::type_in(text, scenes, scene, &quote! { T });
     let lane = scenes::type_in(text, scenes, scene, &quote! { T::Real });
     let callable = Generics::of(text, scenes).callable(model, runtime);
-    // The stub of a square text has as many rows as it was meant to have.
-    let more = model.rows.len() > model.coordinates.len() && model.rows.iter().any(|row| row.redundant);
-    let m = if part.square && !more { model.coordinates.len() } else { model.rows.len() };
+    let m = rows(part);
     let kinematic = part.square.then(|| kinematic(&name, (model, m), (bodies, &callable), runtime));
     // Surplus rows leave multipliers open that only all rows together determine.
     let is_partitioned = model.dynamics.is_some() && !part.surplus;

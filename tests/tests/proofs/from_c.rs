@@ -1,0 +1,62 @@
+//! A control loop in C calls a stepper that is compiled for size: the book's example, built and run.
+#![cfg(target_os = "linux")]
+
+use std::ffi::OsStr;
+use std::fs;
+use std::process::Command;
+
+use mbs_tests::proofs::{Workshop, directory};
+use mbs_tests::tools;
+
+#[test]
+fn a_loop_in_c_steps_a_mechanism_compiled_for_size() {
+    let workshop = Workshop::new(env!("CARGO_TARGET_TMPDIR"), "proofs", "");
+    let arguments = ["--profile=linked-s", "--package=wiper-from-c"];
+    let library = workshop
+        .build(&arguments, "linked-s/libwiper_from_c.a", "wiper_from_c.a")
+        .unwrap_or_else(|complaint| panic!("the library does not compile:\n{complaint}"));
+    let program = workshop.target().join("wiper_from_c");
+    let source = directory().join("from_c/main.c");
+    let mut link: Vec<&OsStr> =
+        ["-std=c11", "-Wall", "-Wextra", "-Werror", "-Os", "-Wl,--gc-sections"].map(OsStr::new).to_vec();
+    link.extend([
+        source.as_os_str(),
+        library.as_os_str(),
+        OsStr::new("-lm"),
+        OsStr::new("-o"),
+        program.as_os_str(),
+    ]);
+    // A path to a panic calls a function that is defined nowhere.
+    tools::compile(&link)
+        .unwrap_or_else(|complaint| panic!("a panic, or a fault of the example:\n{complaint}"));
+    let said = tools::output(&mut Command::new(&program), "the test has just linked it");
+    // From the closure: tan and cosine rules of the loop at a crank angle of 12 rad, and of 12 rad again after the reset.
+    let blade = blade(12.0);
+    let expected = format!(
+        "blade {blade:.5} rad, 1 refused\nblade {blade:.5} rad after a reset from 120 bytes, damaged page 2\n"
+    );
+    assert_eq!(said, Ok(expected));
+}
+
+/// Angle (rad) of the blade at a crank angle (rad), in closed form: the arm from the law of cosines about the distance of its
+/// bearing from the crank pin.
+fn blade(crank: f64) -> f64 {
+    let (x, y) = (0.10 * crank.cos() - 0.30, 0.10 * crank.sin());
+    let distance = x.hypot(y);
+    let opening = ((distance * distance + 0.20 * 0.20 - 0.25 * 0.25) / (2.0 * distance * 0.20)).acos();
+    let ahead = y.atan2(x) - opening;
+    (ahead + core::f64::consts::PI).rem_euclid(core::f64::consts::TAU) - core::f64::consts::PI
+}
+
+#[test]
+fn the_book_shows_the_example_as_it_is() {
+    let book = directory().join("../../book/src/control_loops.md");
+    let text = fs::read_to_string(&book).expect("a chapter");
+    for file in ["src/lib.rs", "wiper.h", "main.c"] {
+        let content =
+            fs::read_to_string(directory().join("from_c").join(file)).expect("a file of the example");
+        let (_, shown) = content.split_once("\n\n").expect("a head and a body");
+        let part = shown.split("unsafe extern \"C\" {").next().expect("a text").trim();
+        assert!(text.contains(part), "the chapter does not show {file}");
+    }
+}
