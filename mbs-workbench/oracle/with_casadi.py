@@ -168,7 +168,7 @@ def functions(c, definition):
     }, {"out_d": [order > 0 for order in orders], "out_dd": [order > 1 for order in orders]}
 
 
-def dynamics(c, definition, phi):
+def dynamics(c, definition, phi, gamma):
     """Functions of masses and forces, by Lagrange's equations: nothing but energies and works comes from the text."""
     words = Words(c.q)
     told = definition.dynamics(words, c.q, c.v, c.t, c.total, c.z, c.l)
@@ -190,7 +190,7 @@ def dynamics(c, definition, phi):
             force -= slope.T
             power -= ca.mtimes(slope, c.qd)
         powers.append(power)
-    mass_times = ca.mtimes(mass, c.qdd)
+    mass_times, rates = ca.mtimes(mass, c.qdd), column(told["rates"])
     reaction = ca.mtimes(ca.jacobian(phi, c.q).T, c.l)
     return {
         "mass": rows(mass),
@@ -198,12 +198,19 @@ def dynamics(c, definition, phi):
         "force": force,
         "force_q": rows(ca.jacobian(force, c.q)),
         "force_qd": rows(ca.jacobian(force, c.qd)),
+        "force_lambda": rows(ca.jacobian(force, c.l)),
+        "force_z": rows(ca.jacobian(force, c.z).T),
         "mass_times_q": rows(ca.jacobian(mass_times, c.q)),
         "reaction": reaction,
         "reaction_q": rows(ca.jacobian(reaction, c.q)),
+        "reaction_rate": ca.jacobian(ca.dot(c.l, c.along(phi, c.q, c.qd) + c.partial(phi)), c.q).T,
+        "gamma_rate": ca.dot(c.l, c.along(gamma, c.q, c.qd) + c.partial(gamma)),
         "energy": ca.vertcat(kinetic, potential),
         "powers": column(powers),
-        "state_rates": column(told["rates"]),
+        "state_rates": rates,
+        "state_rates_q": rows(ca.jacobian(rates, c.q)),
+        "state_rates_qd": rows(ca.jacobian(rates, c.qd)),
+        "state_rates_z": rows(ca.jacobian(rates, c.z)),
         "loads": column(told["loads"]),
         "loads_resolved": column([words.joints_resolved] * len(told["loads"])),
     }
@@ -218,14 +225,19 @@ def plain(value):
     return float(value)
 
 
-def evaluate(definition, states):
+def compiled(definition):
+    """All functions as one of CasADi's, their names, and which derivatives exist."""
     c = Calculus(definition)
     expressions, exists = functions(c, definition)
     if hasattr(definition, "dynamics"):
-        expressions |= dynamics(c, definition, expressions["phi"])
+        expressions |= dynamics(c, definition, expressions["phi"], expressions["gamma"])
     names = list(expressions)
     outputs = [ca.densify(expressions[name]) for name in names]
-    function = ca.Function("mechanism", [c.q, c.qd, c.qdd, c.t, c.v, c.z, c.l], outputs)
+    return ca.Function("mechanism", [c.q, c.qd, c.qdd, c.t, c.v, c.z, c.l], outputs), names, exists
+
+
+def evaluate(definition, states):
+    function, names, exists = compiled(definition)
 
     def stacked(key, size):
         # Of a mechanism without masses the states have no multipliers, and nothing depends on them.

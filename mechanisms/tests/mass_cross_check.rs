@@ -3,7 +3,8 @@
 
 use mbs_runtime::mechanism;
 use mbs_workbench::erased::erase::erase;
-use mbs_workbench::erased::facade::AnyEquations;
+use mbs_workbench::erased::facade::{AnyEquations, Description, Functions, State};
+use mbs_workbench::erased::masses::{Loads, Masses, Tables};
 use mbs_workbench::verify::compare::compare;
 use mbs_workbench::verify::{Oracle, generated_definition, states_of};
 use mechanisms::CATALOGUE;
@@ -154,6 +155,83 @@ fn casadi_confirms_every_function_of_masses_and_forces() {
         for function in ["M", "Q", "(Φ_qᵀ λ)_q", "energy"] {
             assert!(functions.contains(&function), "{function}");
         }
+    }
+}
+
+/// A mechanism with a fault in one function of masses and forces.
+struct Slipped {
+    mechanism: Box<dyn AnyEquations>,
+    slip: fn(&mut Masses),
+}
+
+impl AnyEquations for Slipped {
+    fn description(&self) -> &'static Description {
+        self.mechanism.description()
+    }
+    fn get(&self, index: usize) -> Option<f64> {
+        self.mechanism.get(index)
+    }
+    fn set(&mut self, index: usize, value: f64) -> bool {
+        self.mechanism.set(index, value)
+    }
+    fn coordinate_scales(&self) -> Vec<f64> {
+        self.mechanism.coordinate_scales()
+    }
+    fn row_scales(&self) -> Vec<f64> {
+        self.mechanism.row_scales()
+    }
+    fn evaluate(&self, state: &State) -> Functions {
+        self.mechanism.evaluate(state)
+    }
+    fn tables(&self) -> Option<Tables> {
+        self.mechanism.tables()
+    }
+    fn masses(&self, state: &State, loads: &Loads) -> Option<Masses> {
+        let mut masses = self.mechanism.masses(state, loads)?;
+        (self.slip)(&mut masses);
+        Some(masses)
+    }
+}
+
+/// A slip of 1e-9 in each function of masses and forces is found there and nowhere else.
+#[test]
+fn a_slip_in_every_quantity_is_found() {
+    fn off(values: &mut [f64]) {
+        let largest = values.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
+        let place = values.iter().position(|value| value.abs() == largest).expect("a value");
+        values[place] *= 1.0 + 1e-9;
+    }
+    let slips: [(&str, fn(&mut Masses)); 19] = [
+        ("M", |m| off(&mut m.mass)),
+        ("M q̈", |m| off(&mut m.mass_times)),
+        ("Q", |m| off(&mut m.force)),
+        ("∂Q/∂q", |m| off(&mut m.force_q)),
+        ("∂Q/∂q̇", |m| off(&mut m.force_qd)),
+        ("∂Q/∂λ", |m| off(&mut m.force_lambda)),
+        ("∂Q/∂z", |m| off(&mut m.force_z)),
+        ("(M q̈)_q", |m| off(&mut m.mass_times_q)),
+        ("Φ_qᵀ λ", |m| off(&mut m.reaction)),
+        ("(Φ_qᵀ λ)_q", |m| off(&mut m.reaction_q)),
+        ("Φ̇_qᵀ λ", |m| off(&mut m.reaction_rate)),
+        ("λᵀγ̇", |m| off(&mut m.gamma_rate)),
+        ("energy", |m| off(&mut m.energy)),
+        ("power", |m| off(&mut m.powers)),
+        ("ż", |m| off(&mut m.state_rates)),
+        ("∂ż/∂q", |m| off(&mut m.state_slopes[0])),
+        ("∂ż/∂q̇", |m| off(&mut m.state_slopes[1])),
+        ("∂ż/∂z", |m| off(&mut m.state_slopes[2])),
+        ("load", |m| off(&mut m.loads)),
+    ];
+    let oracle = Oracle::new(&|_| ()).unwrap_or_else(|error| panic!("{error}"));
+    let definition =
+        generated_definition(erase(Heap::default()).equations()).unwrap_or_else(|error| panic!("{error}"));
+    for (name, slip) in slips {
+        let mut slipped = Slipped { mechanism: erase(Heap::default()).into_equations(), slip };
+        let agreement =
+            compare(&mut slipped, &oracle, &definition, 30).unwrap_or_else(|error| panic!("{error}"));
+        let differing = agreement.functions.iter().filter(|function| function.error > 1e-13);
+        let differing: Vec<&str> = differing.map(|function| function.function).collect();
+        assert_eq!(differing, [name], "{agreement}");
     }
 }
 

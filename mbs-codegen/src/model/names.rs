@@ -314,11 +314,20 @@ fn usable(name: &Name, diagnostics: &mut Diagnostics) -> bool {
         format!("`{text}` is reserved by the language")
     } else if is_function(text) {
         format!("`{text}` is the name of a function")
-    } else if UNUSABLE.contains(&text) {
-        format!("`{text}` is a word of Rust that cannot be a name")
     } else {
-        return true;
+        return can_be_field(name, diagnostics);
     };
+    diagnostics.report(name.span, fault, format!("choose another name, `{text}_1` for instance"));
+    false
+}
+
+/// Reports names that no field of the emitted code can have.
+pub fn can_be_field(name: &Name, diagnostics: &mut Diagnostics) -> bool {
+    let text = name.text.as_str();
+    if !UNUSABLE.contains(&text) {
+        return true;
+    }
+    let fault = format!("`{text}` is a word of Rust that cannot be a name");
     diagnostics.report(name.span, fault, format!("choose another name, `{text}_1` for instance"));
     false
 }

@@ -9,7 +9,7 @@ use super::declarations::component_names;
 use super::expression::Node;
 use super::initialiser::{definition, fits_shape, initialiser};
 use super::masses_and_forces::is_dynamic;
-use super::names::{Names, Rows, Symbol};
+use super::names::{Names, Rows, Symbol, can_be_field};
 use super::resolver::{LoopFrame, Pass, Resolver};
 use super::unit_faults::Place;
 use super::units::Dimension;
@@ -208,6 +208,9 @@ impl Resolver<'_> {
     }
 
     fn output(&mut self, name: &Name, kind: &Type, value: &Expression) -> Result<(), Fault> {
+        if !can_be_field(name, self.diagnostics) {
+            return Err(Fault);
+        }
         let group = self.group(name, "out")?;
         let dimension = Dimension::of(&kind.unit, self.diagnostics).ok_or(Fault)?;
         let value = self.elaborate(Reach::Output, |work| {

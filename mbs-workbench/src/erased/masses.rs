@@ -1,6 +1,6 @@
 //! Mechanisms with masses and forces behind the object-safe traits.
 
-use mbs_runtime::{Dynamic, DynamicState, Entry};
+use mbs_runtime::{Dynamic, DynamicState, Entry, StateSlope};
 
 use crate::erased::dynamics::AnyDynamics;
 use crate::erased::dynamics::direct_dynamics::PartitionedFunctions;
@@ -39,18 +39,28 @@ pub struct Masses {
     pub force_q: Vec<f64>,
     /// ∂Q/∂q̇: N·N.
     pub force_qd: Vec<f64>,
+    /// ∂Q/∂λ: N·M.
+    pub force_lambda: Vec<f64>,
+    /// ∂Q/∂z of each first-order state: K·N.
+    pub force_z: Vec<f64>,
     /// (M q̈)_q with q̈ held: N·N.
     pub mass_times_q: Vec<f64>,
     /// Φ_qᵀ λ: N.
     pub reaction: Vec<f64>,
     /// (Φ_qᵀ λ)_q: N·N.
     pub reaction_q: Vec<f64>,
+    /// Φ̇_qᵀ λ: N; empty where the text does not know the third derivative of its rows.
+    pub reaction_rate: Vec<f64>,
+    /// λᵀγ̇, γ̇ the derivative of γ along (q̇, 1); empty likewise.
+    pub gamma_rate: Vec<f64>,
     /// Kinetic and potential energy (J).
     pub energy: Vec<f64>,
     /// Powers of the forces (W).
     pub powers: Vec<f64>,
     /// Rates of the first-order states.
     pub state_rates: Vec<f64>,
+    /// ∂ż/∂q, ∂ż/∂q̇ and ∂ż/∂z of each first-order state: K·N, K·N, K·K; empty where a function lacks a derivative.
+    pub state_slopes: [Vec<f64>; 3],
     /// Outputs of multipliers and states.
     pub loads: Vec<f64>,
 }
@@ -70,6 +80,12 @@ impl<S: Dynamic<f64, N, M>, const N: usize, const M: usize> Forced<S, N, M> for 
         let here = mechanism.position(&p, &q, state.t);
         let flat = |matrix: [[f64; N]; N]| matrix.as_flattened().to_vec();
         let energy = mechanism.energy(&p, &here, &qd);
+        let slopes = mechanism.state_slopes(&p, &here, &qd, &z, &lambda);
+        let slopes = slopes.as_ref().map_or(&[][..], |slopes| slopes.as_ref());
+        let by_state = |part: fn(&StateSlope<f64, N, S::States>) -> &[f64]| {
+            slopes.iter().flat_map(part).copied().collect()
+        };
+        let third = mechanism.third_derivative(&p, &here, &qd, &lambda);
         let motion = DynamicState { qd: &qd, qdd: &qdd, lambda: &lambda, states: &z };
         Some(Masses {
             mass: flat(mechanism.mass(&p, &here)),
@@ -77,12 +93,21 @@ impl<S: Dynamic<f64, N, M>, const N: usize, const M: usize> Forced<S, N, M> for 
             force: mechanism.force(&p, &here, &qd, &z, &lambda).to_vec(),
             force_q: flat(mechanism.force_q(&p, &here, &qd, &z, &lambda)),
             force_qd: flat(mechanism.force_qd(&p, &here, &qd, &z, &lambda)),
+            force_lambda: mechanism.force_lambda(&p, &here, &qd, &z, &lambda).as_flattened().to_vec(),
+            force_z: by_state(|slope| &slope.force),
             mass_times_q: flat(mechanism.mass_times_q(&p, &here, &qdd)),
             reaction: mechanism.reaction(&p, &here, &lambda).to_vec(),
             reaction_q: flat(mechanism.reaction_q(&p, &here, &lambda)),
+            reaction_rate: third.map_or_else(Vec::new, |(direction, _)| direction.to_vec()),
+            gamma_rate: third.map_or_else(Vec::new, |(_, rate)| vec![rate]),
             energy: vec![energy.kinetic, energy.potential],
             powers: mechanism.powers(&p, &here, &qd, &z, &lambda).as_ref().to_vec(),
             state_rates: mechanism.state_rates(&p, &here, &qd, &z, &lambda).as_ref().to_vec(),
+            state_slopes: [
+                by_state(|slope| &slope.q),
+                by_state(|slope| &slope.qd),
+                by_state(|slope| slope.states.as_ref()),
+            ],
             loads: mechanism.loads(&p, &here, &motion).as_ref().to_vec(),
         })
     }

@@ -30,8 +30,55 @@ pub struct Agreement {
     pub states: usize,
     /// Number of values compared.
     pub values: usize,
-    /// The largest error of each function.
+    /// The largest error of each function of which a value was compared.
     pub functions: Vec<LargestError>,
+    /// Number of values compared of each function that the mechanism has, and the reason where it is 0.
+    pub compared: Vec<(&'static str, usize, Option<Absence>)>,
+    /// Values beyond the bound that 50 digits decided.
+    pub decisions: Vec<Decision>,
+}
+
+/// Comparison of one function.
+#[derive(Clone, Debug)]
+pub struct Quantity {
+    /// The function, as the lecture writes it.
+    pub function: &'static str,
+    /// Number of values compared.
+    pub compared: usize,
+    /// Reason why none was, where the mechanism has the function.
+    pub absence: Option<Absence>,
+    /// The largest error.
+    pub largest: Option<LargestError>,
+}
+
+/// Reason why no value of a function was compared.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Absence {
+    /// The oracle has no word for it, as for a margin.
+    NoWord,
+    /// A declared function lacks a derivative that it needs.
+    NotEmitted,
+    /// The definitions of all outputs use up their derivatives.
+    NoDerivative,
+    /// There is none: the mechanism is not confirmed.
+    Unexplained,
+}
+
+/// A value off CasADi's by more than the bound, against CasADi's own expression in 50 digits.
+#[derive(Clone, Debug)]
+pub struct Decision {
+    /// The function.
+    pub function: &'static str,
+    /// Row, coordinate or output.
+    pub entry: String,
+    /// Index of the state.
+    pub state: usize,
+    /// Error against CasADi in double precision, as a part of the row's scale.
+    pub error: f64,
+    /// Error against 50 digits over 4 ε times the condition: at most 1 where rounding explains it.
+    pub share: f64,
+    /// Sum of the absolute values that CasADi's expression rounds on the way.
+    pub condition: f64,
 }
 
 /// The largest error of one function over all states.
@@ -86,7 +133,18 @@ impl Reference {
 impl Agreement {
     /// `true` if every error is within [`Reference::bound`].
     pub fn holds(&self) -> bool {
-        self.functions.iter().all(|function| function.error <= self.reference.bound())
+        let compared = self.compared.iter().all(|(.., absence)| *absence != Some(Absence::Unexplained));
+        compared && self.functions.iter().all(|function| function.error <= self.reference.bound())
+    }
+
+    /// Adds the comparison of a function.
+    pub(super) fn add(&mut self, quantity: Quantity) {
+        let Quantity { function, compared, absence, largest } = quantity;
+        if compared > 0 || absence.is_some() {
+            self.compared.push((function, compared, absence));
+        }
+        self.values += compared;
+        self.functions.extend(largest);
     }
 
     /// The function with the largest error.
@@ -114,14 +172,24 @@ impl Summary {
 
 impl fmt::Display for Agreement {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Agreement { mechanism, reference, states, values, functions } = self;
+        let Agreement { mechanism, reference, states, values, functions, compared, decisions } = self;
         let (name, measure) = (reference.name(), reference.measure());
         writeln!(
             f,
             "{mechanism} at {states} states beside {name}, {values} values; largest error as a part of {measure}:"
         )?;
-        for function in functions {
-            function.write(f, *reference)?;
+        for (name, values, absence) in compared {
+            match (functions.iter().find(|found| found.function == *name), absence) {
+                (Some(function), _) => function.write(f, *values, *reference)?,
+                (None, Some(absence)) => writeln!(f, "  {name:<14}{:>9} {absence}", 0)?,
+                (None, None) => {}
+            }
+        }
+        for Decision { function, entry, state, error, share, condition } in decisions {
+            writeln!(
+                f,
+                "  {function} {entry} at state {state} is off by {error:.2e}: by CasADi's expression in 50 digits {share:.2e} of 4 ε × {condition:.2e}"
+            )?;
         }
         let verdict = if self.holds() { "agrees" } else { "DIFFERS" };
         write!(f, "  {verdict} (bound {})", bound(*reference))
@@ -129,17 +197,28 @@ impl fmt::Display for Agreement {
 }
 
 impl LargestError {
-    fn write(&self, f: &mut fmt::Formatter<'_>, reference: Reference) -> fmt::Result {
+    fn write(&self, f: &mut fmt::Formatter<'_>, values: usize, reference: Reference) -> fmt::Result {
         let LargestError { function, entry, state, error, .. } = self;
         if *error == 0.0 {
-            return writeln!(f, "  {function:<14}{:>10}", 0);
+            return writeln!(f, "  {function:<14}{values:>9} values {:>9}", 0);
         }
-        write!(f, "  {function:<14}{error:>10.2e}  {entry} at state {state}")?;
+        write!(f, "  {function:<14}{values:>9} values {error:>9.2e}  {entry} at state {state}")?;
         if *error > reference.bound() {
             let value = |value: Option<f64>| value.map_or("none".to_string(), |value| value.to_string());
             write!(f, ": emitted {}, {} {}", value(self.emitted), reference.name(), value(self.oracle))?;
         }
         writeln!(f)
+    }
+}
+
+impl fmt::Display for Absence {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Absence::NoWord => "values: a definition has no word for it",
+            Absence::NotEmitted => "values: a declared function lacks a derivative for it",
+            Absence::NoDerivative => "values: the outputs use up their derivatives",
+            Absence::Unexplained => "values: NOT COMPARED",
+        })
     }
 }
 

@@ -2,8 +2,8 @@
 
 use mbs_runtime::{Entry, OutputValue};
 
-use super::agreement::LargestError;
-use super::oracle::{Answer, OracleError, Table, Values};
+use super::agreement::{Absence, Decision, LargestError, Quantity};
+use super::oracle::{Answer, OracleError, Precise, Table, Values};
 use super::states::Sample;
 use crate::erased::facade::{AnyEquations, Functions};
 use crate::erased::masses::Masses;
@@ -59,12 +59,14 @@ pub fn mass_layouts(mechanism: &dyn AnyEquations) -> Vec<Layout> {
     let Some(tables) = mechanism.tables() else { return Vec::new() };
     let names = |entries: &[Entry]| entries.iter().map(|e| e.name.to_string()).collect::<Vec<_>>();
     let columns = names(mechanism.coordinates());
-    let matrix = |function, key| Layout {
+    let table = |function, key, rows: &[String], columns: &[String]| Layout {
         function,
         key,
-        entries: columns.iter().flat_map(|i| columns.iter().map(move |j| format!("{i}, {j}"))).collect(),
+        entries: rows.iter().flat_map(|i| columns.iter().map(move |j| format!("{i}, {j}"))).collect(),
         row_length: columns.len().max(1),
     };
+    let matrix = |function, key| table(function, key, &columns, &columns);
+    let (states, rows) = (names(tables.states), names(mechanism.rows()));
     let vector = |function, key, entries: Vec<String>| Layout { function, key, entries, row_length: 1 };
     let energies = ["kinetic", "potential"].map(String::from).to_vec();
     vec![
@@ -73,12 +75,19 @@ pub fn mass_layouts(mechanism: &dyn AnyEquations) -> Vec<Layout> {
         vector("Q", "force", columns.clone()),
         matrix("∂Q/∂q", "force_q"),
         matrix("∂Q/∂q̇", "force_qd"),
+        table("∂Q/∂λ", "force_lambda", &columns, &rows),
+        table("∂Q/∂z", "force_z", &states, &columns),
         matrix("(M q̈)_q", "mass_times_q"),
         vector("Φ_qᵀ λ", "reaction", columns.clone()),
         matrix("(Φ_qᵀ λ)_q", "reaction_q"),
+        vector("Φ̇_qᵀ λ", "reaction_rate", columns.clone()),
+        vector("λᵀγ̇", "gamma_rate", vec!["rows".to_string()]),
         vector("energy", "energy", energies),
         vector("power", "powers", names(tables.forces)),
-        vector("d state/dt", "state_rates", names(tables.states)),
+        vector("ż", "state_rates", states.clone()),
+        table("∂ż/∂q", "state_rates_q", &states, &columns),
+        table("∂ż/∂q̇", "state_rates_qd", &states, &columns),
+        table("∂ż/∂z", "state_rates_z", &states, &states),
         vector("load", "loads", names(tables.loads)),
     ]
 }
@@ -92,6 +101,23 @@ impl Layout {
     /// Number of rows or outputs.
     pub fn rows(&self) -> usize {
         self.entries.len() / self.row_length
+    }
+
+    /// Judgement of an emitted value, off CasADi's by `error`, by CasADi's expression in 50 digits; `None` where rounding decides on a
+    /// kink of it.
+    pub fn decision(
+        &self,
+        (state, entry): (usize, usize),
+        error: f64,
+        emitted: f64,
+        exact: Precise,
+    ) -> Option<Decision> {
+        let condition = exact.bound?;
+        // The first difference is exact where the values are near each other.
+        let difference = ((emitted - exact.value) - exact.rest).abs();
+        let share = difference / (4.0 * f64::EPSILON * condition);
+        let (function, entry) = (self.function, self.entries[entry].clone());
+        Some(Decision { function, entry, state, error, share, condition })
     }
 
     /// The emitted values of this function.
@@ -121,22 +147,25 @@ impl Layout {
         }
     }
 
-    /// The entry with the largest error and the number of values compared. `measure` gives the difference between an emitted
-    /// value and the oracle's, `None` if there is nothing to compare.
-    pub fn largest_error<E>(
+    /// The quantity with its largest error and the number of values compared. `measure` gives the difference between an emitted
+    /// value and the oracle's at a state and an entry, `None` if there is nothing to compare.
+    pub fn compared<E>(
         &self,
         found: &Values,
         expected: &Table<E>,
-        mut measure: impl FnMut(usize, Option<f64>, Option<&E>) -> Option<Measured>,
-    ) -> (Option<LargestError>, usize) {
+        mut measure: impl FnMut((usize, usize), Option<f64>, Option<&E>) -> Option<Measured>,
+    ) -> Quantity {
         let (mut largest, mut compared): (Option<LargestError>, usize) = (None, 0);
+        let (mut emitted_values, mut wordless) = (0, 0);
         for (state, (found, expected)) in found.iter().zip(expected).enumerate() {
             for (entry, (emitted, expected)) in found.iter().zip(expected).enumerate() {
+                emitted_values += usize::from(emitted.is_some());
                 // An output of a margin, which definitions have no word for; a ratio next to a singular state.
                 if matches!(self.key, "out" | "loads") && expected.is_none() {
+                    wordless += 1;
                     continue;
                 }
-                let Some(measured) = measure(entry, *emitted, expected.as_ref()) else { continue };
+                let Some(measured) = measure((state, entry), *emitted, expected.as_ref()) else { continue };
                 compared += 1;
                 let Measured { error, oracle, scale } = measured;
                 if largest.as_ref().is_none_or(|largest| error > largest.error) {
@@ -146,9 +175,21 @@ impl Layout {
                 }
             }
         }
-        (largest, compared)
+        let absence = match (compared, self.entries.len()) {
+            (1.., _) | (_, 0) => None,
+            _ if wordless > 0 => Some(Absence::NoWord),
+            _ if MAY_LACK.contains(&self.key) && emitted_values == 0 => Some(Absence::NotEmitted),
+            // Outputs whose definitions use up both derivatives.
+            _ if matches!(self.key, "out_d" | "out_dd") && emitted_values == 0 => Some(Absence::NoDerivative),
+            _ => Some(Absence::Unexplained),
+        };
+        Quantity { function: self.function, compared, absence, largest }
     }
 }
+
+/// Functions that are not emitted where a declared function lacks a derivative.
+const MAY_LACK: [&str; 6] =
+    ["force_z", "reaction_rate", "gamma_rate", "state_rates_q", "state_rates_qd", "state_rates_z"];
 
 /// The emitted functions at a sample.
 pub fn emitted(mechanism: &mut dyn AnyEquations, sample: &Sample) -> Functions {
@@ -173,6 +214,13 @@ fn mass_values<'a>(masses: &'a Masses, key: &str) -> &'a [f64] {
         "force" => &masses.force,
         "force_q" => &masses.force_q,
         "force_qd" => &masses.force_qd,
+        "force_lambda" => &masses.force_lambda,
+        "force_z" => &masses.force_z,
+        "reaction_rate" => &masses.reaction_rate,
+        "gamma_rate" => &masses.gamma_rate,
+        "state_rates_q" => &masses.state_slopes[0],
+        "state_rates_qd" => &masses.state_slopes[1],
+        "state_rates_z" => &masses.state_slopes[2],
         "mass_times_q" => &masses.mass_times_q,
         "reaction" => &masses.reaction,
         "reaction_q" => &masses.reaction_q,

@@ -17,6 +17,7 @@ use super::states::Sample;
 const SCRIPT: &str = include_str!("../../oracle/oracle.py");
 const WITH_CASADI: &str = include_str!("../../oracle/with_casadi.py");
 const WITH_MPMATH: &str = include_str!("../../oracle/with_mpmath.py");
+const PRECISELY: &str = include_str!("../../oracle/precisely.py");
 
 /// CasADi and mpmath, ready to run.
 #[derive(Debug)]
@@ -147,6 +148,21 @@ impl Oracle {
         samples: &[Sample],
     ) -> Result<Answer<Precise>, OracleError> {
         self.ask(("with_mpmath", WITH_MPMATH), definition, samples)
+    }
+
+    /// Lets CasADi differentiate the definition (Python text) and evaluates its expressions at the samples in 50-digit arithmetic.
+    /// The bound of a value is the sum of the absolute values that they round on the way.
+    ///
+    /// # Errors
+    /// [`OracleError`] with Python's message.
+    pub fn evaluate_precisely(
+        &self,
+        definition: &str,
+        samples: &[Sample],
+    ) -> Result<Answer<Precise>, OracleError> {
+        let casadi = ScratchFile::new(self.environment.directory(), "with_casadi", WITH_CASADI)?;
+        let back_end = PRECISELY.replace("WITH_CASADI", &casadi.0.display().to_string());
+        self.ask(("precisely", &back_end), definition, samples)
     }
 
     fn ask<E: DeserializeOwned>(

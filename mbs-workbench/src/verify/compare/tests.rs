@@ -215,6 +215,32 @@ def define(ca, q, v, t, der):
     assert_eq!(bounds, [false, true]);
 }
 
+/// The first row by a detour that loses six digits: CasADi is off, the emitted values are not.
+#[test]
+fn fifty_digits_decide_where_casadi_itself_cancels() {
+    let detour = DEFINITION.replace("- x, theta", "- x + ca.exp(ca.log(x * x + 1e6)) - (x * x + 1e6), theta");
+    let compared = |fault: Fault, states: usize| {
+        let mut hand = Hand { variables: [0.3, 1.5, 0.0, 0.0], fault };
+        compare(&mut hand, &oracle(), &detour, states).unwrap_or_else(|error| panic!("{error}"))
+    };
+    let right = compared(|_| (), 12);
+    assert!(right.holds() && right.decisions.iter().any(|decision| decision.function == "Φ"), "{right}");
+    assert!(
+        right.decisions.iter().all(|decision| decision.share <= 1.0 && decision.condition > 1e5),
+        "{right}"
+    );
+    let wrong = compared(|f| f.phi[0] += 1e-7, 12);
+    assert!(!wrong.holds() && wrong.to_string().contains("DIFFERS"), "{wrong}");
+    // At so many states it is no matter of rounding.
+    assert!(!compared(|_| (), 200).holds());
+}
+
+#[test]
+fn a_function_that_has_entries_and_no_values_is_not_confirmed() {
+    let agreement = agreement(|f| f.phi_t.clear());
+    assert!(!agreement.holds() && agreement.to_string().contains("NOT COMPARED"), "{agreement}");
+}
+
 #[test]
 fn the_largest_error_names_row_and_coordinate() {
     let agreement = agreement(|f| f.phi_q[1] = 0.5);
