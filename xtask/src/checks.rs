@@ -36,10 +36,6 @@ pub fn full() -> Result<(), String> {
     need("cargo-llvm-lines", "`cargo install cargo-llvm-lines`")?;
     ci()?;
     step(&mut command("cargo", &["test", "-p", "mbs-motions", "--features", "long"]))?;
-    step(&mut command(
-        "cargo",
-        &["test", "-p", "mbs-tests", "--features", "levels", "--test", "proofs", "level"],
-    ))?;
     browser::run()?;
     documents::book()?;
     documents::package()?;

@@ -126,7 +126,8 @@ fn bars<T: Scalar>(
     let (found, real) = on_unit_circle(&line, level);
     let at = |e: [T; 2]| {
         let alpha = e[1].atan2(e[0]);
-        let f = [0, 1].map(|k| -(first[k] * e[0] + second[k] * e[1] + rest[k]));
+        let part = |first: T, second: T, rest: T| -(first * e[0] + second * e[1] + rest);
+        let f = [part(first[0], second[0], rest[0]), part(first[1], second[1], rest[1])];
         let beta = f[1].atan2(f[0]);
         let mut x = unknowns.map(|[p, q]| T::constant(p) * alpha + T::constant(q) * beta);
         x.iter_mut().zip(near).for_each(|(angle, near)| *angle = same_turn(*angle, *near));
@@ -148,7 +149,7 @@ fn slide<T: Scalar>(
     let (lengths, real) =
         quadratic(dot(&slope, &slope), dot(&slope, &rest), level, dot(&rest, &rest) + T::constant(1.0));
     let at = |s: T| {
-        let e = [0, 1].map(|k| -(slope[k] * s + rest[k]));
+        let e = [-(slope[0] * s + rest[0]), -(slope[1] * s + rest[1])];
         placed(e[1].atan2(e[0]), s, angle_first, near)
     };
     Roots { x: lengths.map(at), real }
@@ -166,7 +167,8 @@ fn telescope<T: Scalar>(
     let (own, distance) = (dot(&p, &p), dot(c, c));
     let (lengths, real) = quadratic(dot(&r, &r), dot(&r, &p), own - distance, own + distance);
     let at = |s: T| {
-        let [first, second] = [0, 1].map(|k| [a[0][k] + s * b[0][k], a[1][k] + s * b[1][k]]);
+        let first = [a[0][0] + s * b[0][0], a[1][0] + s * b[1][0]];
+        let second = [a[0][1] + s * b[0][1], a[1][1] + s * b[1][1]];
         let e = [-dot(&first, c), -dot(&second, c)];
         placed(e[1].atan2(e[0]), s, angle_first, near)
     };
@@ -183,7 +185,7 @@ fn circles<T: Scalar>(rows: &[[T; 4]; 2]) -> Roots<T, 2> {
     let normal = [other[1] - part * u, other[2] - part * v];
     let length = dot(&normal, &normal);
     let off = (dot(&normal, &centre) + other[3] - part * c) / length;
-    let foot = [0, 1].map(|k| centre[k] - off * normal[k]);
+    let foot = [centre[0] - off * normal[0], centre[1] - off * normal[1]];
     let apart = off * off * length;
     let (half, real) =
         root((radius - apart) / length, (dot(&centre, &centre) + (c / w).abs() + apart) / length);

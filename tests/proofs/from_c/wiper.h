@@ -4,9 +4,8 @@
 
 #define WIPER_SIZE 512
 
-typedef union {
-    double alignment;
-    unsigned char bytes[WIPER_SIZE];
+typedef struct {
+    _Alignas(64) unsigned char bytes[WIPER_SIZE];
 } wiper;
 
 enum { WIPER_DONE = 0, WIPER_DEGRADED = 1, WIPER_REFUSED = 2 };

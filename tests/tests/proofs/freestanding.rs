@@ -91,18 +91,6 @@ fn emitted_code_and_solvers_link_with_nothing_but_memory_functions() {
     prove("linked");
 }
 
-/// Levels at which checks that never fire are not all removed by themselves. Each is built with the controls.
-#[cfg(feature = "levels")]
-#[test]
-fn no_level_of_optimisation_leaves_a_path_to_a_panic() {
-    for profile in ["linked-s", "linked-z", "linked-2", "linked-1"] {
-        prove(profile);
-        for control in ["control-panics", "control-allocates"] {
-            assert!(linked(profile, Some(control)).is_err(), "{profile}: {control} went unnoticed");
-        }
-    }
-}
-
 #[test]
 fn an_index_out_of_range_is_rejected() {
     let complaint = linked("linked", Some("control-panics")).expect_err("a panic path went unnoticed");

@@ -14,9 +14,9 @@ mechanism! {
     out blade: rad = arm;
 }
 
-/// The loop's memory, which C provides: `WIPER_SIZE` bytes, aligned as a `double`.
+/// The loop's memory, which C provides: `WIPER_SIZE` bytes, aligned to 64 bytes.
 pub type Motion = WiperStepper<f32>;
-const _: () = assert!(size_of::<Motion>() <= 512 && align_of::<Motion>() <= align_of::<f64>());
+const _: () = assert!(size_of::<Motion>() <= 512 && align_of::<Motion>() <= 64);
 
 /// Begins at a measured angle (rad). Returns 0, or 2 where the mechanism cannot be assembled.
 ///
