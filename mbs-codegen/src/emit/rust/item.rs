@@ -67,9 +67,7 @@ fn implementations(text: &Text, scenes: &Scenes, part: &SceneFunctions<'_>) -> T
     let name = scenes::type_in(text, scenes, scene, &quote! { T });
     let lane = scenes::type_in(text, scenes, scene, &quote! { T::Real });
     let callable = Generics::of(text, scenes).callable(model, runtime);
-    // The stub of a square text has as many rows as it was meant to have.
-    let more = model.rows.len() > model.coordinates.len() && model.rows.iter().any(|row| row.redundant);
-    let m = if part.square && !more { model.coordinates.len() } else { model.rows.len() };
+    let m = model.rows.len();
     let kinematic = part.square.then(|| kinematic(&name, (model, m), (bodies, &callable), runtime));
     // Surplus rows leave multipliers open that only all rows together determine.
     let is_partitioned = model.dynamics.is_some() && !part.surplus;

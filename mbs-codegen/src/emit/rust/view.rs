@@ -35,22 +35,15 @@ pub fn coordinates_view(text: &Text, scene: &Scene) -> TokenStream {
         quote! { #ident: #value, }
     });
     let into = tokens(&listed(model), runtime);
-    // A text whose coordinates are all faulty still has a view, so that the fault alone is reported.
-    let (marker, marker_value) = if model.coordinate_fields.is_empty() {
-        let marker = quote! { ::core::marker::PhantomData };
-        (quote! { #[doc(hidden)] pub scalar: #marker<T>, }, quote! { scalar: #marker, })
-    } else {
-        (TokenStream::new(), TokenStream::new())
-    };
     quote! {
         #[doc = #title]
         #[allow(non_snake_case, reason = "the text names the coordinates")]
         #[derive(::core::clone::Clone, ::core::marker::Copy, ::core::fmt::Debug, ::core::cmp::PartialEq)]
-        #visibility struct #name<T = ::core::primitive::f64> { #(#fields)* #marker }
+        #visibility struct #name<T = ::core::primitive::f64> { #(#fields)* }
 
         impl<T: ::core::marker::Copy> ::core::convert::From<[T; #n]> for #name<T> {
             fn from(__q: [T; #n]) -> Self {
-                Self { #(#from)* #marker_value }
+                Self { #(#from)* }
             }
         }
 
