@@ -5,7 +5,7 @@
 const TEXT: &str = "mechanism M;
 param L: m = 0.5;
 param k: 1 = 2;
-input u: m;
+input u: m, rates;
 function lift: m(rad), C3, periodic TAU;
 function other: m(rad), C3;
 coord phi: rad = 0.3;

@@ -24,7 +24,8 @@ use super::analysis::{
     Analysis, Damping, IntegratorName, MethodName, Request, RunResult, UsedOptions, above_zero,
     at_least_zero, tolerance,
 };
-use super::chosen::{assignment, write_file};
+use super::assignment::{Assignment, assignment};
+use super::chosen::{svg_file, write_file};
 use super::target::Target;
 use super::{CommandError, positive, summary};
 
@@ -54,9 +55,9 @@ const LEAST_SHOWN: usize = 240;
 pub struct Selection {
     /// Name of the mechanism, as `mbs list` prints it, or a file with its text: FILE, FILE:Name, FILE:Name:Scene
     name: String,
-    /// Set a parameter, in the unit that `mbs list` prints
+    /// Set a parameter: a number in the unit that `mbs list` prints, or with a unit as `200mm`, `60rpm`, `4 [m^2]`
     #[arg(long = "param", value_name = "NAME=VALUE", value_parser = assignment)]
-    parameters: Vec<(String, f64)>,
+    parameters: Vec<Assignment>,
     /// Directory for the report [default: mbs/NAME in cargo's target directory]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -64,7 +65,7 @@ pub struct Selection {
     #[arg(long)]
     reload: bool,
     /// Also write the first motion as an SVG file that moves by itself
-    #[arg(long, value_name = "FILE.svg")]
+    #[arg(long, value_name = "FILE.svg", value_parser = svg_file)]
     svg: Option<PathBuf>,
 }
 
@@ -125,7 +126,7 @@ pub struct EquilibriumArguments {
     pub selection: Selection,
     /// Start the search for the equilibrium from another value of a coordinate, in the unit of the text
     #[arg(long = "guess", value_name = "NAME=VALUE", value_parser = assignment)]
-    guesses: Vec<(String, f64)>,
+    guesses: Vec<Assignment>,
 }
 
 /// Options of `mbs modes`.
@@ -135,7 +136,7 @@ pub struct ModesArguments {
     pub selection: Selection,
     /// Start the search for the equilibrium from another value of a coordinate, in the unit of the text
     #[arg(long = "guess", value_name = "NAME=VALUE", value_parser = assignment)]
-    guesses: Vec<(String, f64)>,
+    guesses: Vec<Assignment>,
     /// Time (s) of the state that small motions are about, followed there from the start [default: the equilibrium]
     #[arg(long, value_name = "T", value_parser = at_least_zero, allow_negative_numbers = true, conflicts_with = "guesses")]
     at: Option<f64>,
@@ -153,7 +154,7 @@ pub struct Arguments {
     command: &'static str,
     selection: Selection,
     analysis: Option<Analysis>,
-    guesses: Vec<(String, f64)>,
+    guesses: Vec<Assignment>,
     at: Option<f64>,
     span: Span,
     integration: Integration,
@@ -284,11 +285,11 @@ impl Arguments {
         if let Some(at) = self.at {
             command.push_str(&format!(" --at {at}"));
         }
-        for (name, value) in &self.guesses {
-            command.push_str(&format!(" --guess {name}={value}"));
+        for guess in &self.guesses {
+            command.push_str(&format!(" --guess {}", guess.written()));
         }
-        for (name, value) in &self.selection.parameters {
-            command.push_str(&format!(" --param {name}={value}"));
+        for parameter in &self.selection.parameters {
+            command.push_str(&format!(" --param {}", parameter.written()));
         }
         command
     }
@@ -299,6 +300,13 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut dyn Write) ->
     let target = Target::find(catalogue, &arguments.selection.name)?;
     let instances = target.instances(&arguments.selection.parameters)?;
     let request = arguments.request(&target);
+    let standard = || target_directory().join("mbs").join(target.file_name());
+    let directory = arguments.selection.out.clone().unwrap_or_else(standard);
+    require_writable(&directory)?;
+    let of_picture = arguments.selection.svg.as_deref().and_then(Path::parent);
+    if let Some(parent) = of_picture.filter(|parent| !parent.as_os_str().is_empty()) {
+        require_writable(parent)?;
+    }
     let (mut done, mut left_out) = (Vec::new(), Vec::new());
     for (index, instance) in instances.iter().enumerate() {
         match request.done(&target, instance) {
@@ -312,8 +320,7 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut dyn Write) ->
         return Err(CommandError::Failed(left_out.join("\n")));
     }
     drop_idle(&mut done.iter_mut().map(|done| &mut done.motion).collect::<Vec<_>>());
-    let standard = || target_directory().join("mbs").join(target.file_name());
-    let directory = arguments.selection.out.clone().unwrap_or_else(standard);
+    announce_size(&done);
     let mut facts = facts(&instances, &done);
     facts.extend(left_out.iter().map(|reason| ["left out".to_string(), reason.clone()]));
     // Written before the table: printing fails if the reader of the output has left.
@@ -363,10 +370,19 @@ fn animated(target: &Target, mechanism: &dyn AnyEquations, motion: &Motion) -> R
 fn facts(instances: &[(Preset, Erased)], done: &[RunResult]) -> Vec<[String; 2]> {
     let first = instances[0].1.equations();
     let mut facts = vec![["coordinates".to_string(), first.coordinates().len().to_string()]];
+    let declared = mbs_codegen::variables(first.source(), Some(first.scene())).unwrap_or_default();
     for (index, entry) in first.variables().iter().enumerate() {
+        let bounds = declared.iter().find(|variable| variable.name == entry.name);
+        let bounds = bounds.map_or_else(String::new, |variable| {
+            let [low, high] = variable.range.map(summary::short);
+            let range =
+                if variable.range[1].is_finite() { format!(", {low} to {high}") } else { String::new() };
+            let tolerance = variable.tolerance.map(|deviation| format!(" ± {}", summary::short(deviation)));
+            tolerance.unwrap_or_default() + &range
+        });
         let written = |mechanism: &dyn AnyEquations| {
             let value = mechanism.get(index).unwrap_or(f64::NAN);
-            format!("{}{}", summary::short(value), summary::unit(entry.unit))
+            format!("{}{}{bounds}", summary::short(value), summary::unit(entry.unit))
         };
         if instances.iter().all(|(_, other)| other.equations().get(index) == first.get(index)) {
             facts.push([entry.name.to_string(), written(first)]);
@@ -435,6 +451,61 @@ fn modes(done: &[RunResult]) -> Option<String> {
     (!small.is_empty()).then(|| csv::write_modes(&small))
 }
 
+/// Characters of a number with its comma in a table.
+const CELL: usize = 20;
+/// Size of a file (bytes) from which on it is announced.
+const LARGE: usize = 100_000_000;
+
+/// Says how large the table will be, where that is more than one expects.
+fn announce_size(done: &[RunResult]) {
+    let cells: usize = done.iter().map(|done| done.motion.time.len() * done.motion.columns()).sum();
+    if let Some(words) = size(cells) {
+        // If it cannot be said, the file says it.
+        let _ = writeln!(std::io::stderr(), "{words}");
+    }
+}
+
+/// Size of a table of so many numbers in words; `None` where it is small.
+fn size(cells: usize) -> Option<String> {
+    let bytes = cells.saturating_mul(CELL);
+    let gigabytes = bytes as f64 / 1e9;
+    (bytes > LARGE).then(|| {
+        format!(
+            "motion.csv will have about {gigabytes:.1} GB: {cells} numbers; `--steps` sets fewer instants"
+        )
+    })
+}
+
+/// Refuses a directory that nothing can be written into, before anything is computed. It is not made yet: a run may fail.
+fn require_writable(directory: &Path) -> Result<(), CommandError> {
+    let fail = |reason: &str| {
+        Err(CommandError::Failed(format!("cannot write into {}: {reason}", directory.display())))
+    };
+    let absolute = std::path::absolute(directory).unwrap_or_else(|_| directory.to_path_buf());
+    let Some(present) = absolute.ancestors().find(|ancestor| fs::symlink_metadata(ancestor).is_ok()) else {
+        return fail("there is no such place");
+    };
+    if !present.is_dir() {
+        let place = present.display();
+        return if present == absolute {
+            fail("it is no directory")
+        } else {
+            fail(&format!("{place} is no directory"))
+        };
+    }
+    let probe = present.join(format!(".mbs.{}.draft", std::process::id()));
+    match fs::create_dir(&probe) {
+        Ok(()) => {
+            drop(fs::remove_dir(&probe));
+            Ok(())
+        }
+        Err(error) => fail(&match present == absolute {
+            true => error.to_string(),
+            false => format!("{}: {error}", present.display()),
+        }),
+    }
+}
+
 /// Writes files of given names and texts. Each is written next to its place first, so that a full disk leaves no incomplete file.
 fn write_report(directory: &Path, files: &[(&str, String)]) -> Result<Vec<PathBuf>, CommandError> {
     let fail = |path: &Path, error: std::io::Error| {
@@ -444,7 +515,10 @@ fn write_report(directory: &Path, files: &[(&str, String)]) -> Result<Vec<PathBu
     let draft = |name: &str| directory.join(format!(".{name}.{}.draft", std::process::id()));
     let written = files
         .iter()
-        .try_for_each(|(name, text)| fs::write(draft(name), text).map_err(|error| fail(&draft(name), error)));
+        // The draft is not what the user has named.
+        .try_for_each(|(name, text)| {
+            fs::write(draft(name), text).map_err(|error| fail(&directory.join(name), error))
+        });
     let placed = written.and_then(|()| {
         files.iter().try_for_each(|(name, _)| {
             let place = directory.join(name);
@@ -479,6 +553,31 @@ mod tests {
         for bad in ["0", "-1", "1.5", "1000001", "99999999999", "two"] {
             assert!(steps(bad).is_err(), "{bad}");
         }
+    }
+
+    #[test]
+    fn large_tables_are_announced() {
+        assert_eq!(size(1_000_000), None);
+        let words = size(86 * 1_000_001).expect("a large table");
+        assert!(words.contains("1.7 GB") && words.contains("--steps"), "{words}");
+    }
+
+    #[test]
+    fn a_place_that_cannot_be_written_is_named_as_it_was_given() {
+        let scratch = target_directory().join("tmp").join(format!("writable-{}", std::process::id()));
+        fs::create_dir_all(&scratch).expect("a directory");
+        assert!(require_writable(&scratch).is_ok());
+        assert!(require_writable(&scratch.join("deep").join("er")).is_ok());
+        assert!(!scratch.join("deep").exists());
+        let file = scratch.join("file");
+        fs::write(&file, "").expect("a file");
+        for (path, reason) in [(file.clone(), "it is no directory"), (file.join("x"), "file is no directory")]
+        {
+            let error = require_writable(&path).expect_err("a file").to_string();
+            assert!(error.contains(&path.display().to_string()) && error.contains(reason), "{error}");
+            assert!(!error.contains("draft"), "{error}");
+        }
+        fs::remove_dir_all(scratch).expect("scratch");
     }
 
     #[test]
