@@ -201,7 +201,10 @@ fn a_place_that_cannot_be_written_is_told_before_anything_is_computed() {
 fn a_file_is_checked_and_listed_without_a_build() {
     let file = format!("{}/examples/wiper.rs", env!("CARGO_MANIFEST_DIR"));
     let listed = text(&["list", &file]);
-    assert!(listed.contains(&format!("{file}:Wiper  Windscreen wiper\n  crank=0.04 m, rod=0.25 m")), "{listed}");
+    assert!(
+        listed.contains(&format!("{file}:Wiper  Windscreen wiper\n  crank=0.04 m, rod=0.25 m")),
+        "{listed}"
+    );
     assert!(listed.contains(&format!("{file}:Follower  Follower\n")), "{listed}");
     let checked = text(&["check", &file]);
     assert!(checked.contains("warning: `closure` has two positions of `phi`, `psi`"), "{checked}");

@@ -16,6 +16,7 @@ pub mod newton;
 pub mod next;
 pub mod of_file;
 pub mod print;
+mod report_files;
 mod rows;
 pub mod run;
 pub mod structure;
