@@ -135,15 +135,14 @@ impl Diagnostics {
         faults
     }
 
-    /// One `compile_error!` a fault, spanned at the user's token.
-    pub fn to_tokens(&self) -> TokenStream {
-        self.sorted()
-            .into_iter()
-            .map(|fault| {
-                let text = format!("{}\n  help: {}", fault.message, fault.help);
-                quote_spanned!(fault.span=> ::core::compile_error! { #text })
-            })
-            .collect()
+    /// One `compile_error!` a fault, spanned at the user's token: all but the first as items, and the first as an expression.
+    pub fn to_tokens(&self) -> (TokenStream, TokenStream) {
+        let mut faults = self.sorted().into_iter().map(|fault| {
+            let text = format!("{}\n  help: {}", fault.message, fault.help);
+            quote_spanned!(fault.span=> ::core::compile_error! { #text })
+        });
+        let first = faults.next().unwrap_or_default();
+        (faults.collect(), first)
     }
 
     /// `line:column: message` and `help: cure`, two lines a fault; lines from 1, columns from 1.

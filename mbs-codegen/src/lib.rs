@@ -49,6 +49,7 @@ use emit::formula::notation::Notation;
 pub use emit::formula::{DynamicFormulas, Formulas};
 pub use emit::report::{BlockReport, CoordinateReport, EntryKind, RowReport, StructureReport};
 use emit::rust::Lengths;
+pub use model::quantity::{Quantity, quantity};
 use model::scene::Scene;
 use model::scenes::Scenes;
 pub use outline::{Call, Outline, Variable, calls};
@@ -59,19 +60,20 @@ pub use structure::mobility::Mobility;
 
 /// Expands the text of a mechanism, led by the runtime's path in parentheses (without it `::mbs_runtime`).
 ///
-/// A faulty text gives one `compile_error!` a fault, each on its token, and a stub in addition.
+/// A faulty text gives one `compile_error!` a fault, each on its token, and a stub that holds the first of them.
 pub fn expand(input: TokenStream) -> TokenStream {
     let mut diagnostics = Diagnostics::default();
-    let Some(text) = syntax::read(input, &mut diagnostics) else { return diagnostics.to_tokens() };
+    let Some(text) = syntax::read(input.clone(), &mut diagnostics) else {
+        let (mut items, first) = diagnostics.to_tokens();
+        items.extend(emit::rust::stub_of_tokens(input, &first));
+        return items;
+    };
     let scenes = Scenes::resolve(&text, &mut diagnostics);
-    match translate(&text, &scenes, &mut diagnostics, Lengths::USUAL) {
-        Some(items) => items,
-        None => {
-            let mut items = diagnostics.to_tokens();
-            items.extend(emit::rust::stub(&text, &scenes));
-            items
-        }
-    }
+    translate(&text, &scenes, &mut diagnostics, Lengths::USUAL).unwrap_or_else(|| {
+        let (mut items, first) = diagnostics.to_tokens();
+        items.extend(emit::rust::stub(&text, &scenes, &first));
+        items
+    })
 }
 
 /// The stages after the front end; `None` where a fault is known.
@@ -117,6 +119,7 @@ fn translate_scene(scene: &Scene) -> Result<emit::rust::Translated<'_>, Diagnost
     }
     let mut diagnostics = Diagnostics::default();
     model::non_negative::check(&scene.model, &mut diagnostics);
+    model::repeated::check(&scene.model, &mut diagnostics);
     let mut equations = equations::derive(&scene.model);
     equations::continuity::check(&scene.model, &equations, &mut diagnostics);
     equations::turns::check(&scene.model, &equations, &mut diagnostics);
@@ -164,6 +167,28 @@ pub fn outline(source: &str) -> Result<Outline, Vec<Fault>> {
         .filter(|(text, scenes)| translate(text, scenes, &mut diagnostics, Lengths::USUAL).is_some());
     read.map(|(text, scenes)| outline::names(&text, &scenes))
         .ok_or_else(|| diagnostics.sorted().into_iter().map(Fault::from).collect())
+}
+
+/// What may be wrong in a text without faults, and is no fault: names that nothing uses, assemblies that no branch chooses, guesses
+/// far from any assembly. In the order of the text.
+///
+/// # Errors
+/// All faults that the macro reports, in the order of the text.
+pub fn warnings(source: &str) -> Result<Vec<Fault>, Vec<Fault>> {
+    let of = |diagnostics: &Diagnostics| diagnostics.sorted().into_iter().map(Fault::from).collect();
+    let mut diagnostics = Diagnostics::default();
+    let Some((text, scenes)) = model::scenes::read_source(source, &mut diagnostics) else {
+        return Err(of(&diagnostics));
+    };
+    if translate(&text, &scenes, &mut diagnostics, Lengths::USUAL).is_none() {
+        return Err(of(&diagnostics));
+    }
+    let structures: Vec<_> = scenes
+        .scenes
+        .iter()
+        .filter_map(|scene| Some((scene, translate_scene(scene).ok()?.structure)))
+        .collect();
+    Ok(of(&outline::warnings::warnings(&text, &scenes, &structures)))
 }
 
 /// Parameters and inputs of a scene (without a name the whole text) of a text that is kept as a string, in the order of its
@@ -251,8 +276,8 @@ pub fn structure_of(source: &str, scene: Option<&str>) -> Result<StructureReport
     })
 }
 
-/// Physically impossible masses, moments of inertia, stiffnesses and the like of a scene (without a name the whole text), each
-/// in a phrase. `given` has parameters and inputs by name.
+/// Physically impossible lengths of links, masses, moments of inertia, stiffnesses and the like of a scene (without a name the whole
+/// text), each in a phrase. `given` has parameters and inputs by name.
 ///
 /// # Errors
 /// As [`casadi_definition`].
@@ -262,10 +287,9 @@ pub fn impossible_values(
     given: impl Fn(&str) -> Option<f64>,
 ) -> Result<Vec<String>, String> {
     in_scene(source, scene, |_, scene| {
-        Ok(model::non_negative::impossible(&scene.model, given)
-            .into_iter()
-            .map(|found| found.message)
-            .collect())
+        let lengths = model::link_lengths::impossible(&scene.model, &given);
+        let others = model::non_negative::impossible(&scene.model, given);
+        Ok(lengths.into_iter().chain(others.into_iter().map(|found| found.message)).collect())
     })
 }
 

@@ -1,5 +1,7 @@
 //! Names of a text, and the texts of a Rust source: for programs that choose among texts and scenes.
 
+pub mod warnings;
+
 use proc_macro2::{TokenStream, TokenTree};
 
 use crate::diagnostics::{Diagnostic, Fault};
@@ -28,6 +30,10 @@ pub struct Variable {
     pub unit: String,
     /// Default value (coherent SI); 0 for an input.
     pub default: f64,
+    /// Least and largest value that the text allows (coherent SI); infinite where it says nothing.
+    pub range: [f64; 2],
+    /// Largest deviation of a part that is made (coherent SI), where the text says it.
+    pub tolerance: Option<f64>,
 }
 
 /// A call of `mechanism!` in a Rust source.
@@ -120,6 +126,8 @@ pub(crate) fn variables(model: &Model) -> Vec<Variable> {
         name: variable.name.clone(),
         unit: variable.unit.clone(),
         default: variable.default,
+        range: variable.range,
+        tolerance: variable.tolerance,
     };
     model.variables.iter().map(variable).collect()
 }

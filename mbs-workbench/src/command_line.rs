@@ -7,12 +7,14 @@ use std::io::{self, Write};
 use std::process::ExitCode;
 use std::thread;
 
+use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{Parser, Subcommand};
 
 use crate::card::Card;
 use crate::catalogue::Catalogue;
 use crate::commands::run::Arguments as Analysis;
 use crate::commands::{self, CommandError};
+use crate::mismatch::nearest;
 use crate::target_directory::is_started;
 use crate::text_file::is_file;
 
@@ -28,8 +30,10 @@ struct Arguments {
 enum Command {
     /// Write a crate with a mechanism to begin from
     New(commands::new::Arguments),
-    /// List the mechanisms
-    List,
+    /// List the mechanisms, or those in a file
+    List(commands::list::Arguments),
+    /// Print faults and warnings of the texts in a file
+    Check(commands::check::Arguments),
     /// Run the analysis that suits a mechanism; write a report page and a table of its motion
     Run(commands::run::MotionArguments),
     /// Compute positions, velocities and accelerations that drives prescribe
@@ -91,7 +95,8 @@ impl Command {
             // It builds as often as the file changes.
             Command::Watch(_) => return None,
             Command::New(_)
-            | Command::List
+            | Command::List(_)
+            | Command::Check(_)
             | Command::Expand(_)
             | Command::Compare(_)
             | Command::Table(_) => return None,
@@ -109,8 +114,14 @@ const STACK: usize = 64 << 20;
 /// Exit codes: 0 done; 1 a mechanism could not be moved, a check failed, a file could not be written; 2 the command line
 /// or the list of mechanisms does not make sense.
 pub fn program(cards: &[Card]) -> ExitCode {
-    let command = Arguments::parse().command;
     let catalogue = Catalogue { cards };
+    let command = match Arguments::try_parse() {
+        Ok(arguments) => arguments.command,
+        Err(error) => match mechanism_as_command(&catalogue, &error) {
+            Some(hint) => return report(&CommandError::Usage(hint)),
+            None => error.exit(),
+        },
+    };
     let run = || execute(&catalogue, command).unwrap_or_else(|error| report(&error));
     thread::scope(|scope| {
         let started = thread::Builder::new().stack_size(STACK).spawn_scoped(scope, run);
@@ -121,6 +132,29 @@ pub fn program(cards: &[Card]) -> ExitCode {
             Err(error) => report(&CommandError::Failed(format!("cannot start a thread: {error}"))),
         }
     })
+}
+
+/// What was meant by a command that is the name of a mechanism or a file.
+fn mechanism_as_command(catalogue: &Catalogue, error: &clap::Error) -> Option<String> {
+    let is_unknown = error.kind() == ErrorKind::InvalidSubcommand;
+    let Some(ContextValue::String(word)) = error.get(ContextKind::InvalidSubcommand).filter(|_| is_unknown)
+    else {
+        return None;
+    };
+    // A command that is nearly written so is meant before a mechanism.
+    let has_proposal = error.get(ContextKind::SuggestedSubcommand).is_some();
+    let names: Vec<String> = catalogue.names().collect();
+    let same = names.iter().find(|name| name.eq_ignore_ascii_case(word));
+    let near = || nearest(word, names.iter().map(String::as_str)).map(str::to_owned);
+    let name = match same {
+        Some(name) => name.clone(),
+        None if is_file(word) => word.clone(),
+        None if has_proposal => return None,
+        None => near()?,
+    };
+    Some(format!(
+        "`{word}` is no command; a mechanism runs by `mbs run {name}`\n`mbs --help` lists the commands"
+    ))
 }
 
 fn execute(catalogue: &Catalogue, command: Option<Command>) -> Result<ExitCode, CommandError> {
@@ -137,10 +171,11 @@ fn execute(catalogue: &Catalogue, command: Option<Command>) -> Result<ExitCode, 
     match command {
         None => match catalogue.first() {
             Some(card) => analysis(Analysis::defaults(&card.name()), &mut out),
-            None => commands::list::run(catalogue, &mut out),
+            None => commands::list::run(catalogue, &commands::list::Arguments::default(), &mut out),
         },
         Some(Command::New(arguments)) => commands::new::run(&arguments, &mut out),
-        Some(Command::List) => commands::list::run(catalogue, &mut out),
+        Some(Command::List(arguments)) => commands::list::run(catalogue, &arguments, &mut out),
+        Some(Command::Check(arguments)) => commands::check::run(&arguments, &mut out),
         Some(Command::Run(arguments)) => analysis(Analysis::run(arguments), &mut out),
         Some(Command::Kinematics(arguments)) => analysis(Analysis::kinematics(arguments), &mut out),
         Some(Command::Simulate(arguments)) => analysis(Analysis::simulate(arguments), &mut out),

@@ -98,16 +98,56 @@ pub fn set(mechanism: &mut dyn AnyEquations, name: &str, value: f64) -> Result<(
 pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     /// Below this Jaro-Winkler similarity a proposal confuses more than it helps.
     const NEAR: f64 = 0.75;
-    let rated = known.into_iter().map(|known| (strsim::jaro_winkler(name, known), known));
+    // `FOUR_BAR` and `four-bar` are `four_bar`.
+    let plain = |text: &str| text.to_lowercase().replace(['-', ' '], "_");
+    let name = plain(name);
+    let rated = known.into_iter().map(|known| (strsim::jaro_winkler(&name, &plain(known)), known));
     rated.filter(|(nearness, _)| *nearness > NEAR).max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, known)| known)
 }
 
 fn write_known<S: AsRef<str>>(f: &mut fmt::Formatter<'_>, name: &str, known: &[S]) -> fmt::Result {
     let known: Vec<&str> = known.iter().map(AsRef::as_ref).collect();
+    if let Some(array) = array(name, &known) {
+        return write!(f, ": it is an array, {array}");
+    }
     if let Some(nearest) = nearest(name, known.iter().copied()) {
         write!(f, "; did you mean `{nearest}`?")?;
     }
-    write!(f, "\nknown: {}", known.join(", "))
+    write!(f, "\nknown: {}", wrapped(&known))
+}
+
+/// The components of the array called `name`: `m.0` … `m.6`; `None` where it is no array.
+pub fn array(name: &str, known: &[&str]) -> Option<String> {
+    let is_component = |known: &&&str| known.strip_prefix(name).is_some_and(|rest| rest.starts_with('.'));
+    let components: Vec<&&str> = known.iter().filter(is_component).collect();
+    match components.as_slice() {
+        [] => None,
+        [only] => Some(format!("`{only}`")),
+        [first, last] => Some(format!("`{first}`, `{last}`")),
+        [first, .., last] => Some(format!("`{first}` … `{last}`")),
+    }
+}
+
+/// Characters of a line of a list.
+const WIDTH: usize = 100;
+
+/// Names in lines that a terminal shows whole.
+pub fn wrapped(names: &[&str]) -> String {
+    let (mut text, mut column) = (String::new(), "known: ".len());
+    for (index, name) in names.iter().enumerate() {
+        let comma = if index + 1 < names.len() { "," } else { "" };
+        let length = name.chars().count() + comma.len() + 1;
+        if index > 0 && column + length > WIDTH {
+            text += "\n  ";
+            column = 2;
+        } else if index > 0 {
+            text.push(' ');
+        }
+        text += name;
+        text += comma;
+        column += length;
+    }
+    text
 }
 
 impl Mismatch {

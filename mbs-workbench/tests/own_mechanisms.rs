@@ -121,6 +121,119 @@ fn a_misspelt_name_gets_a_proposal() {
     assert!(said.contains("did you mean `wiper`?"), "{said}");
 }
 
+/// The message of a command that must fail with `code`.
+#[track_caller]
+fn failure(arguments: &[&str], code: i32) -> String {
+    let output = wiper(arguments);
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(code), "{arguments:?}: {said}");
+    assert!(output.stdout.is_empty() && !said.contains("panicked"), "{arguments:?}: {said}");
+    said
+}
+
+#[test]
+fn numbers_of_the_command_line_have_units() {
+    let folder = scratch("units");
+    let run = |parameters: &[&str]| {
+        let of = parameters.iter().flat_map(|parameter| ["--param", parameter]);
+        let place = ["run", "wiper", "--steps", "8", "--out", folder.to_str().expect("a path")];
+        text(&place.into_iter().chain(of).collect::<Vec<_>>());
+        fs::read_to_string(folder.join("motion.csv")).expect("a table")
+    };
+    let plain = run(&["crank=0.03", "speed=6.283185307179586"]);
+    assert_eq!(plain, run(&["crank=30mm", "speed=60rpm"]));
+    assert_eq!(plain, run(&["crank=3cm", "speed=1 [turn/s]"]));
+    assert_eq!(plain, run(&["crank=0.03 [m]", "speed=2*PI"]));
+    assert_ne!(plain, run(&["crank=31mm"]));
+    let guessed = text(&["newton", "wiper", "--guess", "phi=90deg"]);
+    assert!(guessed.contains("phi = 1.570796 rad"), "{guessed}");
+    for (arguments, words) in [
+        (["run", "wiper", "--param", "crank=60rpm"], "`crank` is in `m`, `60rpm` is in `1/s`"),
+        (["run", "wiper", "--param", "crank=30 mm"], "write `30mm`"),
+        (["run", "wiper", "--param", "crank=two"], "`two` is not a number"),
+        (["run", "wiper", "--param", "crank=nan"], "finite"),
+        (["run", "wiper", "--param", "crank=-40mm"], "`crank` is -0.04 m: a link has no negative length"),
+        (["run", "wiper", "--param", "rod=1e-300"], "lost in rounding"),
+        (["run", "wiper", "--param", "crnk=30mm"], "did you mean `crank`?"),
+        (["newton", "wiper", "--guess", "phi=30mm"], "`phi` is in `rad`, `30mm` is in `m`"),
+    ] {
+        let said = failure(&arguments, 2);
+        assert!(said.contains(words), "{arguments:?}: {said}");
+    }
+}
+
+#[test]
+fn a_mechanism_that_locks_is_told_in_one_line_with_its_row() {
+    let said = failure(&["run", "wiper", "--param", "crank=100mm"], 1);
+    let lines: Vec<&str> = said.lines().collect();
+    assert!(lines[0].contains("the mechanism locks: its motion ends at t = "), "{said}");
+    assert!(lines[0].contains("(line 12 of the text)"), "{said}");
+    assert_eq!(
+        lines[1..],
+        ["  12 | constraint closure { A + rod*unit(phi) == [base, 0] + rocker*unit(psi); }"],
+        "{said}"
+    );
+    let time = lines[0].split("t = ").nth(1).and_then(|rest| rest.split(' ').next()).expect("a time");
+    assert!(time.len() <= 8, "{said}");
+}
+
+#[test]
+fn a_name_of_a_mechanism_is_no_command_and_is_told_so() {
+    for word in ["wiper", "WIPER", "wipr"] {
+        let said = failure(&[word], 2);
+        assert!(said.contains("`mbs run wiper`"), "{said}");
+    }
+    assert!(failure(&["lst"], 2).contains("list"));
+    assert!(failure(&["run", "Wiper"], 2).contains("did you mean `wiper`?"));
+    assert!(failure(&["structure", "wiper", "--out", "x.png"], 2).contains("name it FILE.svg"));
+}
+
+#[test]
+fn a_place_that_cannot_be_written_is_told_before_anything_is_computed() {
+    let file = scratch("in_the_way");
+    fs::write(&file, "").expect("a file");
+    let place = file.join("deep");
+    let said = failure(&["run", "wiper", "--steps", "1000000", "--out", place.to_str().expect("a path")], 1);
+    assert!(said.contains(place.to_str().expect("a path")) && said.contains("is no directory"), "{said}");
+}
+
+#[test]
+fn a_file_is_checked_and_listed_without_a_build() {
+    let file = format!("{}/examples/wiper.rs", env!("CARGO_MANIFEST_DIR"));
+    let listed = text(&["list", &file]);
+    assert!(
+        listed.contains(&format!("{file}:Wiper  Windscreen wiper\n  crank=0.04 m, rod=0.25 m")),
+        "{listed}"
+    );
+    assert!(listed.contains(&format!("{file}:Follower  Follower\n")), "{listed}");
+    let checked = text(&["check", &file]);
+    assert!(checked.contains("warning: `closure` has two positions of `phi`, `psi`"), "{checked}");
+    assert!(checked.ends_with("2 texts without faults, 1 warning\n"), "{checked}");
+
+    let bare = scratch("warned.mbs");
+    let write = |rows: &str| fs::write(&bare, rows).expect("a file");
+    let path = bare.to_str().expect("a path");
+    write(
+        "mechanism Rod;\nparam L: m = 0.2 in 0.1..300mm, tolerance 0.1mm;\nconst k: N/m = 3;\ninput u: m;\n\
+         coord x: m = 5;\ncoord y: m = 0.2;\nconstraint ends { x == L + y; }\ndrive d: y == 0.2m;\n",
+    );
+    let checked = text(&["check", path]);
+    for words in [
+        "warning: constant `k` is used nowhere",
+        "warning: input `u` is used nowhere",
+        "warning: the guess leaves `ends` open by 4.6 m",
+        "3 | const k: N/m = 3;",
+        "1 text without faults, 3 warnings",
+    ] {
+        assert!(checked.contains(words), "{words} is missing in\n{checked}");
+    }
+    assert!(text(&["list", path]).contains("L=0.2 m (0.1 to 0.3), u=0 m"));
+    write("mechanism Rod;\nparam L: m = 0.2 in 0.3..0.4;\ncoord x: m;\ndrive d: x == L;\n");
+    let said = failure(&["check", path], 1);
+    assert!(said.contains("the default of `L`, 0.2, is outside of its range"), "{said}");
+    assert!(failure(&["check", "wiper"], 2).contains("is no file"));
+}
+
 #[test]
 fn the_tutorial_shows_the_picture_of_the_example() {
     let read = |path: &str| {

@@ -368,7 +368,7 @@ fn what_an_analysis_has_no_use_for_is_refused() {
             "belongs to `--method penalty`",
         ),
         (&["simulate", "pendulum", "--method", "penalty", "--alpha", "1e9"], "at most 1e8"),
-        (&["equilibrium", "pendulum", "--guess", "P=1"], "known: P.0, P.1"),
+        (&["equilibrium", "pendulum", "--guess", "P=1"], "it is an array, `P.0`, `P.1`"),
         (&["equilibrium", "four_bar"], "neither masses nor forces"),
     ];
     for (arguments, words) in cases {
@@ -516,10 +516,13 @@ fn a_mechanism_that_locks_on_its_way_says_when() {
     // Coupler and rocker in line: (0.6 m + 0.5 m)² = L1² + L4² − 2 L1 L4 cos θ.
     let turn = ((0.45_f64.powi(2) + 0.75_f64.powi(2) - 1.1_f64.powi(2)) / (2.0 * 0.45 * 0.75)).acos();
     let limit = turn / core::f64::consts::TAU;
-    let ends = message.split("ends between t = ").nth(1).expect("the bracket");
-    let times: Vec<f64> = ends.split([' ', ';']).filter_map(|word| word.parse().ok()).take(2).collect();
-    assert!(times[0] < limit + 1e-15 && limit - 1e-12 < times[1] && times[1] - times[0] < 1e-11, "{message}");
+    let ends = message.split("locks: its motion ends at t = ").nth(1).expect("the time");
+    let time: f64 = ends.split(' ').next().and_then(|word| word.parse().ok()).expect("the time");
+    assert!((time - limit).abs() < 1e-6, "{message}");
     assert!(message.contains("`closure.0` (line") && message.contains("`closure.1` (line"), "{message}");
+    // The row itself stands below, at its line of the text as the page shows it.
+    assert!(message.contains(" | constraint closure {"), "{message}");
+    assert_eq!(message.lines().filter(|line| line.contains("ends at")).count(), 1, "{message}");
     assert!(!scratch.0.exists());
 }
 
@@ -542,7 +545,7 @@ fn an_end_that_no_one_waits_for_is_refused_after_a_thousand_steps() {
 
 #[test]
 fn senseless_arguments_are_refused_in_plain_words() {
-    let cases: [(&[&str], &str); 22] = [
+    let cases: [(&[&str], &str); 35] = [
         (&["run", "four_bar", "--until", "-1"], "a number above 0"),
         (&["run", "pendulum", "--step", "-1"], "a number above 0"),
         (&["run", "pendulum", "--tolerance", "-1"], "a number above 0"),
@@ -565,6 +568,19 @@ fn senseless_arguments_are_refused_in_plain_words() {
         (&["run", "four_bar", "--param", "omega=1e999"], "finite"),
         (&["run", "four_bar", "--param", "omega=two"], "not a number"),
         (&["run", "four_bar", "--param", "omgea=2"], "did you mean `omega`?"),
+        (&["run", "four_bar", "--param", "L1=60rpm"], "`L1` is in `m`, `60rpm` is in `1/s`"),
+        (&["run", "four_bar", "--param", "L1=200 mm"], "write `200mm`"),
+        (&["run", "four_bar", "--param", "L1=-0.1"], "a link has no negative length"),
+        (&["run", "four_bar", "--param", "L1=1e-300"], "lost in rounding"),
+        (&["kinematics", "slider_crank", "--param", "r=-5cm"], "a link has no negative length"),
+        (&["run", "andrews", "--param", "m=1"], "it is an array, `m.0` … `m.6`"),
+        (&["equilibrium", "pendulum", "--guess", "P.0=2kg"], "`P.0` is in `m`, `2kg` is in `kg`"),
+        (&["run", "FOUR_BAR"], "did you mean `four_bar`?"),
+        (&["run", "four-bar"], "did you mean `four_bar`?"),
+        (&["four_bar"], "`mbs run four_bar`"),
+        (&["Four_Bar"], "`mbs run four_bar`"),
+        (&["simulat", "pendulum"], "`simulate`"),
+        (&["structure", "four_bar", "--out", "x.png"], "name it FILE.svg"),
         (&["run", "four_bar", "--param", "omega=0"], "never ends"),
         (&["verify"], "required"),
         (&["verify", "four_bar", "--states", "0"], "at least 1"),

@@ -29,7 +29,8 @@ impl Elaborator<'_> {
         }
         for (index, instruction) in code.iter().enumerate() {
             let Operation::Number { value, unit: None, .. } = instruction.operation else { continue };
-            if value <= LARGEST {
+            // The fault of a number that is none was reported.
+            if value <= LARGEST || value.is_nan() {
                 continue;
             }
             let is_negative =

@@ -1,14 +1,29 @@
 //! Compound units written as products, `2kg*m^2` or `30rad/s`: the form in brackets that is meant.
 
-use super::units::with_suffix;
+use super::units::{in_unit, with_suffix};
 use crate::syntax::ast::{Instruction, Operation, Operator};
+use crate::syntax::unit_symbols::{foreign_name, meant};
 
 /// The number in front of a chain of units that the name at `index` is part of, with all of them in brackets:
 /// `2 [kg*m^2]`; `None` where no number with a unit leads the chain.
 pub fn in_brackets(code: &[Instruction], index: usize) -> Option<String> {
-    let start = start(code, index)?;
+    let (text, end) = of_number_up_to(code, start(code, index)?)?;
+    (end > index).then_some(text)
+}
+
+/// The number at `index` with the units behind it in brackets, its own by the symbol that is meant: `1 [turn/min]` of `1rev/min`.
+pub fn of_number(code: &[Instruction], index: usize) -> Option<String> {
+    let (text, end) = of_number_up_to(code, index)?;
+    (end > index + 1 + closing(code, index + 1)).then_some(text)
+}
+
+/// The number at `start` with all units behind it, and the index behind them.
+fn of_number_up_to(code: &[Instruction], start: usize) -> Option<(String, usize)> {
     let Operation::Number { value, unit: Some(unit), .. } = &code.get(start)?.operation else { return None };
-    let mut text = unit.text.clone();
+    let mut text = match with_suffix(1.0, &unit.text).is_ok() || unit.text.contains(['*', '/', '^']) {
+        true => unit.text.clone(),
+        false => meant(&unit.text)?,
+    };
     let mut next = start + 1 + closing(code, start + 1);
     while let Some((symbol, length)) = factor(code, next)
         && let Some(operator) = operator(code, next + length)
@@ -17,12 +32,16 @@ pub fn in_brackets(code: &[Instruction], index: usize) -> Option<String> {
         text += &symbol;
         next += length + 1;
     }
-    (next > index).then(|| format!("{value} [{text}]"))
+    Some((format!("{value} [{text}]"), next))
 }
 
-/// `true` if the name at `index` follows the number that leads its chain.
+/// `true` if the name at `index` follows the number that leads its chain, whose own unit is known.
 pub fn is_first(code: &[Instruction], index: usize) -> bool {
-    leading(code, index).is_some()
+    let number = leading(code, index).and_then(|number| code.get(number));
+    number.is_some_and(|number| match &number.operation {
+        Operation::Number { value, unit: Some(unit), .. } => in_unit(*value, unit).is_ok(),
+        _ => false,
+    })
 }
 
 /// Index of a number with a unit that ends in front of `index`, its sign and the product that it closes aside.
@@ -68,13 +87,17 @@ fn start(code: &[Instruction], mut index: usize) -> Option<usize> {
 fn factor(code: &[Instruction], index: usize) -> Option<(String, usize)> {
     let operation = |index: usize| code.get(index).map(|instruction| &instruction.operation);
     let Some(Operation::Name(symbol)) = operation(index) else { return None };
-    with_suffix(1.0, symbol).ok()?;
+    let symbol = match with_suffix(1.0, symbol) {
+        Ok(_) => symbol.as_str(),
+        // One letter is a name of the text, or the time.
+        Err(_) => foreign_name(symbol).filter(|_| symbol.len() > 1)?,
+    };
     match (operation(index + 1), operation(index + 2)) {
         (
             Some(Operation::Number { value, unit: None, integer: true }),
             Some(Operation::Binary(Operator::Power)),
         ) => Some((format!("{symbol}^{value}"), 3)),
-        _ => Some((symbol.clone(), 1)),
+        _ => Some((symbol.to_owned(), 1)),
     }
 }
 

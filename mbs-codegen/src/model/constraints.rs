@@ -32,7 +32,9 @@ impl Resolver<'_> {
                 Item::EndFor if self.loops.len() > outer => next = self.repeat().unwrap_or(next),
                 Item::EndFor => {}
                 Item::Equation(equation) => {
-                    let _reported = self.equation(equation, group);
+                    if self.equation(equation, group).is_err() {
+                        self.names.mark_faulty_rows(&name.text);
+                    }
                 }
             }
             if self.too_large() {

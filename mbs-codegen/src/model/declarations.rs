@@ -17,7 +17,10 @@ use super::units::Dimension;
 use super::value::{Fault, Quantity, Reach, Scalar, Value};
 use super::{Coordinate, CoordinateField, Field, Model, Role, Variable, VariableKind};
 use crate::diagnostics::Diagnostics;
-use crate::syntax::ast::{Declares, Expression, Loop, Name, Statement, StatementKind, Type, Unit};
+use crate::syntax::ast::{Bounds, Declares, Expression, Loop, Name, Statement, StatementKind, Type, Unit};
+
+/// Range of a parameter about which the text says nothing.
+pub(super) const ANY: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
 
 /// Most coordinates. A step is linear in them and has arrays of as many on its stack; Φ_q as a whole, which no step asks
 /// for, is a dense array of 288 MB then.
@@ -51,7 +54,9 @@ pub fn declare(
     for statement in &top {
         let docs = statement.docs.clone();
         match &statement.kind {
-            StatementKind::Param { name, kind, value } => work.parameter(name, docs, kind, value.as_ref()),
+            StatementKind::Param { name, kind, value, bounds } => {
+                work.parameter(name, docs, kind, (value.as_ref(), bounds));
+            }
             StatementKind::Input { name, kind, rates } => work.input(name, docs, kind, *rates),
             StatementKind::Function { name, signature } => work.function(name, docs, signature),
             _ => {}
@@ -241,7 +246,13 @@ impl Declarations<'_> {
         Declared { dimension: dimension.unwrap_or_default(), bare: Bare::of(&kind.unit), shape, size, faulty }
     }
 
-    fn parameter(&mut self, name: &Name, docs: Vec<String>, kind: &Type, value: Option<&Expression>) {
+    fn parameter(
+        &mut self,
+        name: &Name,
+        docs: Vec<String>,
+        kind: &Type,
+        (value, bounds): (Option<&Expression>, &Bounds),
+    ) {
         let declared = self.declared(kind);
         if !self.owns(name) {
             return;
@@ -274,8 +285,14 @@ impl Declarations<'_> {
                 })
                 .ok(),
         };
+        let dimension = (!declared.faulty).then_some(declared.dimension);
+        let known = defaults.clone();
         let defaults = defaults.unwrap_or_else(|| vec![0.0; declared.size]);
+        let first = self.model.variables.len();
         self.parameter_field(name, docs, kind, declared, defaults);
+        if let Some(dimension) = dimension {
+            self.bound(name, first, (dimension, bounds), known.as_deref());
+        }
     }
 
     fn parameter_field(
@@ -317,6 +334,8 @@ impl Declarations<'_> {
                     unit: format!("{}/s{}", kind.unit.text, if order == 1 { "" } else { "^2" }),
                     dimension: dimension.over(seconds),
                     default: 0.0,
+                    range: ANY,
+                    tolerance: None,
                     turns: false,
                     kind: VariableKind::InputRate,
                     span: name.span,
@@ -346,6 +365,8 @@ impl Declarations<'_> {
             unit: kind.unit.text.clone(),
             dimension,
             default,
+            range: ANY,
+            tolerance: None,
             turns: false,
             kind: what,
             span: name.span,
@@ -486,7 +507,9 @@ impl Declarations<'_> {
     /// so that neither its uses in the text nor those of its field are reported too.
     fn stand_in(&mut self, statement: &Statement) {
         let (name, declares, kind) = match &statement.kind {
-            StatementKind::Faulty { declares: Declares::Element, .. } => return,
+            StatementKind::Faulty {
+                declares: Declares::Element | Declares::Rows | Declares::Rate, ..
+            } => return,
             StatementKind::Faulty { name, declares, kind } => (name, *declares, kind.as_ref()),
             StatementKind::Const { name, .. } => (name, Declares::Value, None),
             StatementKind::Param { name, kind, .. } => (name, Declares::Param, Some(kind)),
@@ -529,7 +552,7 @@ impl Declarations<'_> {
             Declares::Input { rates } => self.input(name, docs, kind, rates),
             Declares::Coord => self.coordinate(name, docs, kind, None),
             Declares::Function => self.unknown_function(name, docs),
-            Declares::Value | Declares::Element => {}
+            Declares::Value | Declares::Element | Declares::Rows | Declares::Rate => {}
         }
     }
 }

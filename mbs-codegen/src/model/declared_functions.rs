@@ -60,7 +60,7 @@ impl Declarations<'_> {
         });
     }
 
-    /// Replaces a declaration that could not be read, so that the stub has as many functions.
+    /// Replaces a declaration that could not be read, so that its calls are not reported too.
     pub(super) fn unknown_function(&mut self, name: &Name, docs: Vec<String>) {
         self.model.functions.push(Function {
             name: name.clone(),

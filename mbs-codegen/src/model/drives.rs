@@ -2,6 +2,7 @@
 
 use proc_macro2::Span;
 
+use super::declarations::ANY;
 use super::expression::{Id, Node};
 use super::resolver::Resolver;
 use super::unit_faults::Place;
@@ -129,6 +130,8 @@ impl Resolver<'_> {
         for (part, per, order) in parts {
             let seconds = Dimension::SECOND.power(f64::from(order)).unwrap_or_default();
             self.model.variables.push(Variable {
+                range: ANY,
+                tolerance: None,
                 name: format!("{text}{part}"),
                 unit: format!("{unit}{per}"),
                 dimension: dimension.over(seconds),

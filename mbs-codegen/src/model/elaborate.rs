@@ -2,6 +2,7 @@
 
 use proc_macro2::Span;
 
+use super::compound;
 use super::counts::follows_literals;
 use super::elaborator::Elaborator;
 use super::expression::Node;
@@ -16,6 +17,7 @@ use super::value::{Fault, Quantity, Scalar, Value};
 use super::written;
 use crate::symbolic::Unary;
 use crate::syntax::ast::{Expression, Instruction, Operation, Operator, Unit};
+use crate::syntax::unit_symbols::meant;
 
 /// Most operations that a text may unroll to: their derivatives and stages are several times as many. Of a text that repeats itself
 /// these are the 100 000 of `cargo xtask growth`, and some more.
@@ -74,7 +76,14 @@ impl Elaborator<'_> {
         let instruction = expression.code.get(index).ok_or(Fault)?;
         let span = instruction.span;
         let value = match &instruction.operation {
-            Operation::Number { value, unit, .. } => self.literal(*value, unit.as_ref(), span)?,
+            // Its fault was reported where it was read.
+            Operation::Number { value, .. } if value.is_nan() => return Err(Fault),
+            Operation::Number { value, unit: None, .. } => {
+                Value::scalar(self.number_literal(*value, span), span)
+            }
+            Operation::Number { value, unit: Some(unit), .. } => {
+                self.quantity(*value, unit, (&expression.code, index))?
+            }
             Operation::Name(_) if is_reference(&expression.code, index) => return Ok(index + 1),
             Operation::Name(name) if matches!(self.names.get(name), Some(Symbol::Value(_))) => {
                 self.allows(name, span)?;
@@ -188,15 +197,25 @@ impl Elaborator<'_> {
         }
     }
 
-    /// A number as written, in SI.
-    fn literal(&mut self, number: f64, unit: Option<&Unit>, span: Span) -> Result<Value, Fault> {
-        let Some(unit) = unit else { return Ok(Value::scalar(self.number_literal(number, span), span)) };
+    /// A number with its unit, in SI.
+    fn quantity(
+        &mut self,
+        number: f64,
+        unit: &Unit,
+        (code, index): (&[Instruction], usize),
+    ) -> Result<Value, Fault> {
+        let span = code.get(index).map_or(unit.span, |instruction| instruction.span);
         let (value, dimension) = in_unit(number, unit).map_err(|(at, message, help)| {
             let name = unit.text.as_str();
             let is_name = self.names.get(name).is_some() || CONSTANTS.contains(&name);
-            let help = match is_name {
-                true => format!("a product needs its operator: `{}*{name}`", written::number(number)),
-                false => help,
+            let product = || format!("a product needs its operator: `{}*{name}`", written::number(number));
+            let help = match (compound::of_number(code, index), meant(name)) {
+                (Some(number), _) => {
+                    format!("write a compound unit in brackets behind its number: `{number}`")
+                }
+                (None, Some(_)) if is_name => format!("{help} {}", product()),
+                _ if is_name => product(),
+                _ => help,
             };
             self.fault(at, message, help)
         })?;

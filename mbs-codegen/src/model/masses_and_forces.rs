@@ -316,12 +316,18 @@ impl Resolver<'_> {
             Load::Torque => (Dimension::JOULE, Dimension::NUMBER),
         };
         let on = self.elaborate(Reach::Position, |work| {
+            let written = on;
             let on = work.value(on)?;
             if kind == Load::Torque && on.shape != [4] {
                 work.scalar(&on, "a torque", on.span)?;
             }
             let fits = |quantity| quantity == Quantity::Any || quantity == Quantity::Known(along);
             if let Some(item) = on.items.iter().find(|item| !fits(item.quantity)) {
+                // A point is not meant as an angle: a unit of neither kind is one that does not fit.
+                if ![Dimension::NUMBER, Dimension::METRE].contains(&item.quantity.dimension()) {
+                    let place = Place::Field(name.text.clone());
+                    return work.concerning(place, (written, None), |work| initialiser(work, on, along));
+                }
                 let message = match kind {
                     Load::Force => {
                         format!("a force acts on a point, not on a `{}`", item.quantity.dimension())

@@ -19,6 +19,7 @@ mod inertia;
 pub mod initialiser;
 mod inputs;
 mod limits;
+pub mod link_lengths;
 pub mod masses_and_forces;
 mod multipliers;
 pub mod names;
@@ -27,10 +28,13 @@ mod operands;
 mod order;
 mod orientation;
 mod pins;
+pub mod quantity;
+mod ranges;
 pub mod rates;
 mod reference_checks;
 pub mod reference_length;
 pub mod references;
+pub mod repeated;
 pub mod resolve;
 mod resolver;
 mod rotation;
@@ -51,7 +55,7 @@ mod unknown_names;
 mod unused_elements;
 mod uses;
 pub mod value;
-mod vanishing;
+pub mod vanishing;
 mod width;
 mod written;
 
@@ -235,6 +239,10 @@ pub struct Variable {
     pub dimension: Dimension,
     /// Default value; 0 for inputs.
     pub default: f64,
+    /// Least and largest value that the text allows; infinite where it says nothing. No code depends on it.
+    pub range: [f64; 2],
+    /// Largest deviation of a part that is made, where the text says it.
+    pub tolerance: Option<f64>,
     /// `true` if the text declares it as `turn`: an input whose changes go the short way round.
     pub turns: bool,
     /// Its kind.

@@ -38,6 +38,9 @@ impl Elaborator<'_> {
                 "declare what moves: `body rod { mass: 2kg, com: P }`; without masses no row has a force";
             return Err(self.fault(span, format!("`{function}` stands in a text without masses"), help));
         }
+        if targets.iter().any(|target| self.names.has_faulty_rows(&target.name.text)) {
+            return Err(Fault);
+        }
         let [target] = targets else {
             let message = format!("`{function}` takes 1 name, not {}", targets.len());
             return Err(self.fault(span, message, format!("write `{function}(row)`")));

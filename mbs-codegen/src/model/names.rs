@@ -117,6 +117,10 @@ pub struct Names {
     pub unit_faults: Vec<UnitFault>,
     /// Bodies and elements with a fault that was reported.
     faulty_elements: BTreeSet<String>,
+    /// Constraints and drives some of whose rows have a fault that was reported.
+    faulty_rows: BTreeSet<String>,
+    /// `true` if the rate of some state has a fault that was reported.
+    pub faulty_rate: bool,
     /// `true` if the text has masses or forces, so that its rows have multipliers.
     pub dynamic: bool,
 }
@@ -193,8 +197,12 @@ impl Names {
     /// Notes bodies and elements that could not be read.
     pub fn note_faulty(&mut self, statements: &[Statement]) {
         for statement in statements {
-            if let StatementKind::Faulty { name, declares: Declares::Element, .. } = &statement.kind {
-                self.mark_faulty_element(&name.text);
+            let StatementKind::Faulty { name, declares, .. } = &statement.kind else { continue };
+            match declares {
+                Declares::Element => self.mark_faulty_element(&name.text),
+                Declares::Rows => self.mark_faulty_rows(&name.text),
+                Declares::Rate => self.faulty_rate = true,
+                _ => {}
             }
         }
     }
@@ -202,6 +210,16 @@ impl Names {
     /// Notes a body or an element with a fault that was reported.
     pub fn mark_faulty_element(&mut self, name: &str) {
         self.faulty_elements.insert(name.to_owned());
+    }
+
+    /// Notes a constraint or drive with a row whose fault was reported.
+    pub fn mark_faulty_rows(&mut self, name: &str) {
+        self.faulty_rows.insert(name.to_owned());
+    }
+
+    /// `true` if a row of this constraint or drive had a fault.
+    pub fn has_faulty_rows(&self, name: &str) -> bool {
+        self.faulty_rows.contains(name)
     }
 
     /// `true` if no body or element had a fault.

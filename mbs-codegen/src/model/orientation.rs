@@ -53,8 +53,8 @@ impl Resolver<'_> {
 
     /// Before: all rows. After: rows of the text that hold wherever e·e = 1 does, and add no other condition, are reported.
     ///
-    /// They are recognised by their leaves, the parameters of one body alone, and by their values at unit vectors,
-    /// not by how they are written.
+    /// They are recognised by their leaves, the parameters of bodies alone, and by their values at unit vectors, not by how they
+    /// are written.
     pub(super) fn check_normalisations(&mut self) {
         if self.oriented.is_empty() {
             return;
@@ -62,23 +62,39 @@ impl Resolver<'_> {
         let model = &*self.model;
         let bodies: Vec<(&String, usize)> = self.oriented.values().map(|(body, row)| (body, *row)).collect();
         let mut places = BTreeMap::new();
+        let mut shared = Vec::new();
         for (body, coordinates) in self.oriented.keys().enumerate() {
-            let coordinates = coordinates.iter().flatten().enumerate();
-            places.extend(coordinates.map(|(place, coordinate)| (*coordinate, (body, place))));
+            for (place, coordinate) in coordinates.iter().flatten().enumerate() {
+                shared.extend(places.insert(*coordinate, (body, place)).map(|_| *coordinate));
+            }
         }
+        // Two lengths of 1 over the same coordinates are no free choice of unit vectors.
+        places.retain(|coordinate, _| !shared.contains(coordinate));
         let parts = parts(&model.expressions, &places);
         let vanish = vanish(&model.expressions, &places);
         for (index, row) in model.rows.iter().enumerate() {
-            let Some(ParameterUse::Of(body)) = parts.get(row.residual.index()) else { continue };
-            let Some((body, own)) = bodies.get(*body).filter(|(_, own)| *own != index) else { continue };
-            if vanish.get(row.residual.index()) == Some(&true) {
-                let message = format!("the row `{}` repeats that of `{body}`", row.name);
-                let own = model.rows.get(*own).map_or(body.as_str(), |row| row.name.as_str());
-                let help = format!(
-                    "remove it: Euler parameters of a body bring their row e·e = 1, its multiplier is `lambda({own})`"
-                );
-                self.diagnostics.report(row.span, message, help);
+            let is_own = bodies.iter().any(|(_, own)| *own == index);
+            if is_own || vanish.get(row.residual.index()) != Some(&true) {
+                continue;
             }
+            let (message, help) = match parts.get(row.residual.index()) {
+                Some(ParameterUse::Of(body)) => {
+                    let Some((body, own)) = bodies.get(*body) else { continue };
+                    let own = model.rows.get(*own).map_or(body.as_str(), |row| row.name.as_str());
+                    (
+                        format!("the row `{}` repeats that of `{body}`", row.name),
+                        format!(
+                            "remove it: Euler parameters of a body bring their row e·e = 1, its multiplier is `lambda({own})`"
+                        ),
+                    )
+                }
+                Some(ParameterUse::OfSeveral) => (
+                    format!("the row `{}` follows from the lengths of Euler parameters", row.name),
+                    "remove it: Euler parameters of each body bring their row e·e = 1".to_owned(),
+                ),
+                _ => continue,
+            };
+            self.diagnostics.report(row.span, message, help);
         }
     }
 }
@@ -90,6 +106,8 @@ enum ParameterUse {
     Number,
     /// Those of one body, by its index.
     Of(usize),
+    /// Those of several bodies.
+    OfSeveral,
     /// Anything else.
     Other,
 }
@@ -109,7 +127,8 @@ fn parts(expressions: &Expressions, places: &BTreeMap<usize, (usize, usize)>) ->
             Node::Binary(_, a, b) => match (below(a), below(b)) {
                 (ParameterUse::Number, part) | (part, ParameterUse::Number) => part,
                 (a, b) if a == b => a,
-                _ => ParameterUse::Other,
+                (ParameterUse::Other, _) | (_, ParameterUse::Other) => ParameterUse::Other,
+                _ => ParameterUse::OfSeveral,
             },
             _ => ParameterUse::Other,
         };

@@ -37,6 +37,9 @@ impl Elaborator<'_> {
         let Some(Instruction { operation: Operation::Name(name), span: place }) = group else {
             return Err(self.fault(span, format!("`{function}` ends with no name"), help));
         };
+        if self.names.has_faulty_rows(name) {
+            return Err(Fault);
+        }
         if self.reach != Reach::Output {
             return Err(self.fault(
                 span,

@@ -45,7 +45,8 @@ pub fn resolve(
         rounds: 0,
         pass: Pass::Rows,
     };
-    if statements.iter().any(is_dynamic) {
+    // A mass that could not be read is one.
+    if statements.iter().any(is_dynamic) || !work.names.elements_are_sound() {
         work.model.dynamics.get_or_insert_default();
         work.names.dynamic = true;
     }
@@ -124,9 +125,13 @@ impl Resolver<'_> {
                 let first = self.model.rows.len();
                 self.constraint(name, items)?;
                 self.model.rows.iter_mut().skip(first).for_each(|row| row.redundant = redundant.is_some());
-                within.as_ref().map_or(Ok(()), |within| self.width(first, within))
+                // The unit of a width is that of the rows.
+                let within = within.as_ref().filter(|_| !self.names.has_faulty_rows(&name.text));
+                within.map_or(Ok(()), |within| self.width(first, within))
             }
-            StatementKind::Drive { name, equation } => self.drive(name, equation),
+            StatementKind::Drive { name, equation } => {
+                self.drive(name, equation).inspect_err(|_| self.names.mark_faulty_rows(&name.text))
+            }
             StatementKind::Branch { name, at_start, larger, smaller } => {
                 self.branch(name, *at_start, larger, smaller)
             }

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::names::report_double;
 use crate::diagnostics::{Diagnostics, nearest};
-use crate::syntax::ast::{Name, Statement, StatementKind};
+use crate::syntax::ast::{Declares, Name, Statement, StatementKind};
 use crate::syntax::rust_identifiers::UNUSABLE;
 use crate::syntax::{Header, NAMELESS, OWN, declares_coordinate, stand_in};
 
@@ -129,6 +129,11 @@ impl<'a> Effects<'a> {
         let (mut chosen, mut is_whole) = (Vec::<usize>::new(), true);
         for name in effects {
             let Some(indices) = self.declared.get(name.text.as_str()) else {
+                let is_faulty = |(_, statement): &(Option<usize>, &Statement)| matches!(&statement.kind, StatementKind::Faulty { name: known, .. } if known.text == name.text);
+                if self.parts.iter().any(is_faulty) {
+                    is_whole = false;
+                    continue;
+                }
                 let begins = |known: &&str| {
                     known.len() > 2 && (name.text.starts_with(*known) || known.starts_with(&name.text))
                 };
@@ -222,8 +227,10 @@ fn declares(kind: &StatementKind) -> Option<(&'static str, &str)> {
         | StatementKind::Coord { name, .. }
         | StatementKind::Let { name, .. }
         | StatementKind::Function { name, .. }
-        | StatementKind::State { name, .. }
-        | StatementKind::Faulty { name, .. } => ("value", name),
+        | StatementKind::State { name, .. } => ("value", name),
+        StatementKind::Faulty { name, declares: Declares::Element, .. } => ("load", name),
+        StatementKind::Faulty { declares: Declares::Rows | Declares::Rate, .. } => return None,
+        StatementKind::Faulty { name, .. } => ("value", name),
         StatementKind::Constraint { name, .. } | StatementKind::Drive { name, .. } => ("rows", name),
         StatementKind::Branch { name, .. } => ("branch", name),
         StatementKind::Limit { name, .. } => ("limit", name),

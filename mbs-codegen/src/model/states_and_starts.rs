@@ -4,6 +4,7 @@ use proc_macro2::Span;
 
 use super::expression::Node;
 use super::initialiser::{filling, initialiser};
+use super::names::Symbol;
 use super::resolver::Resolver;
 use super::unit_faults::Place;
 use super::units::Dimension;
@@ -131,7 +132,11 @@ impl Resolver<'_> {
 
     /// Every state has a rate, and its start is constant; no row, branch, limit or guess uses one.
     pub(super) fn check_states(&mut self) {
-        let model = &*self.model;
+        let (model, model_names) = (&*self.model, &*self.names);
+        let is_given_up = |name: &str| {
+            let declared = name.split('.').next().unwrap_or(name);
+            matches!(model_names.get(declared), Some(Symbol::Faulty))
+        };
         let Some(dynamics) = model.dynamics.as_ref().filter(|dynamics| !dynamics.states.is_empty()) else {
             return;
         };
@@ -151,7 +156,8 @@ impl Resolver<'_> {
                 let message = format!("the start of `{}` varies", state.name);
                 self.diagnostics.report(state.span, message, "make it of numbers, constants and parameters");
             }
-            if state.rate.is_none() {
+            let is_faulty = model_names.faulty_rate || is_given_up(&state.name);
+            if state.rate.is_none() && !is_faulty {
                 let message = format!("state `{}` has no rate", state.name);
                 self.diagnostics.report(state.span, message, format!("write `der({}) == …;`", state.name));
             }

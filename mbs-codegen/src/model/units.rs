@@ -7,7 +7,7 @@ use proc_macro2::Span;
 use crate::diagnostics::{Diagnostics, nearest};
 use crate::syntax::NUMBER_TYPES;
 use crate::syntax::ast;
-use crate::syntax::unit_symbols::{SUFFIXES, SYMBOLS, is_symbol, meant};
+use crate::syntax::unit_symbols::{SUFFIXES, SYMBOLS, in_si, is_symbol, meant};
 
 /// Exponents of the base units, in sixtieths, so that roots up to the sixth are exact.
 ///
@@ -136,10 +136,16 @@ fn unknown_suffix(symbol: &str) -> (String, String) {
     let known =
         || SYMBOLS.iter().map(|(symbol, _)| *symbol).chain(SUFFIXES.iter().map(|(suffix, ..)| *suffix));
     let help = match meant(symbol).or_else(|| nearest(symbol, known()).map(str::to_owned)) {
+        _ if in_si(1.0, symbol).is_some() => of_si(symbol),
         Some(known) => format!("did you mean `{known}`?"),
         None => USUAL.into(),
     };
     (format!("`{symbol}` is no known unit"), help)
+}
+
+/// A unit outside of the SI in one of the SI.
+fn of_si(symbol: &str) -> String {
+    format!("units are those of the SI: 1{symbol} is {}", in_si(1.0, symbol).unwrap_or_default())
 }
 
 /// Units that are met most.
@@ -161,6 +167,7 @@ fn unknown_unit(symbol: &str) -> (String, String) {
     }
     let near = || nearest(symbol, SYMBOLS.iter().map(|(known, _)| *known)).map(str::to_owned);
     let help = match meant(symbol).or_else(near) {
+        _ if in_si(1.0, symbol).is_some() => of_si(symbol),
         Some(known) => match SUFFIXES.iter().find(|(suffix, ..)| *suffix == known) {
             Some((.., coherent)) => {
                 format!("declare `{coherent}`, the SI unit, and write `{known}` behind numbers: `100{known}`")
@@ -220,6 +227,10 @@ pub fn with_suffix(value: f64, suffix: &str) -> Result<(f64, Dimension), (String
         None => {
             let known =
                 SYMBOLS.iter().map(|(symbol, _)| *symbol).chain(SUFFIXES.iter().map(|(suffix, ..)| *suffix));
+            if let Some(number) = in_si(value, suffix) {
+                let help = format!("units are those of the SI: write `{number}`");
+                return Err((format!("`{suffix}` is no known unit of a number"), help));
+            }
             let help = match meant(suffix).or_else(|| nearest(suffix, known).map(str::to_owned)) {
                 Some(meant) if is_symbol(&meant) => format!("did you mean `{value}{meant}`?"),
                 Some(meant) => format!("did you mean `{value} [{meant}]`?"),

@@ -288,22 +288,6 @@ fn coordinates_of(model: &Model, root: Id) -> Vec<usize> {
         .collect()
 }
 
-/// Kind of equations that a text with faults is taken to have, by the coordinates that its rows are written with: `true` where
-/// they fix every coordinate, and `true` where there are more than can be matched.
-pub fn shape_of(model: &Model) -> (bool, bool) {
-    if model.dynamics.is_none() {
-        return (true, false);
-    }
-    if !model.rows.iter().any(|row| row.redundant) {
-        return (model.rows.len() == model.coordinates.len(), false);
-    }
-    let rows: Vec<Vec<usize>> = model.rows.iter().map(|row| coordinates_of(model, row.residual)).collect();
-    let matching = matching::match_in_order(&rows, model.coordinates.len(), surplus::order(model));
-    let square = matching.free_columns().next().is_none();
-    let surplus = matching.free_rows().next().is_some();
-    if square && !surplus && is_uncounted(model) { (false, true) } else { (square, surplus) }
-}
-
 /// Names the rows that fix too few coordinates.
 fn report_surplus(model: &Model, rows: &[Vec<usize>], matching: &Matching, diagnostics: &mut Diagnostics) {
     let marked = |row: usize| model.rows.get(row).is_some_and(|row| row.redundant);

@@ -90,6 +90,13 @@ pub struct Unit {
     pub span: Span,
 }
 
+impl Unit {
+    /// A unit of one symbol.
+    pub fn of_symbol(symbol: &str, span: Span) -> Self {
+        Unit { factors: vec![(Name { text: symbol.to_owned(), span }, 1)], text: symbol.to_owned(), span }
+    }
+}
+
 /// Unit and shape of a declaration.
 #[derive(Clone, Debug)]
 pub struct Type {
@@ -158,6 +165,7 @@ pub enum StatementKind {
         name: Name,
         kind: Type,
         value: Option<Expression>,
+        bounds: Bounds,
     },
     Input {
         name: Name,
@@ -282,6 +290,15 @@ pub enum StatementKind {
     },
 }
 
+/// What a parameter may be: for programs, without code.
+#[derive(Clone, Debug, Default)]
+pub struct Bounds {
+    /// Least and largest value.
+    pub range: Option<(Expression, Expression)>,
+    /// Largest deviation of a part that is made.
+    pub tolerance: Option<Expression>,
+}
+
 /// `name: value` in the braces of an element.
 #[derive(Clone, Debug)]
 pub struct Field {
@@ -339,8 +356,12 @@ pub enum Declares {
     },
     Coord,
     Function,
-    /// Bodies and elements, whose names are no values.
+    /// Bodies, elements, forces and pins, whose names are no values.
     Element,
+    /// Constraints and drives, some of whose rows could not be read.
+    Rows,
+    /// The rate of a state.
+    Rate,
     /// Names without a field: constants, `let`s, declarations of later versions.
     Value,
 }
@@ -350,9 +371,12 @@ impl StatementKind {
     pub fn expressions(&self) -> Vec<&Expression> {
         match self {
             StatementKind::Const { value, .. } | StatementKind::Let { value, .. } => vec![value],
-            StatementKind::Param { kind, value, .. } | StatementKind::Coord { kind, guess: value, .. } => {
-                kind.shape.iter().chain(value).collect()
+            StatementKind::Param { kind, value, bounds, .. } => {
+                let Bounds { range, tolerance } = bounds;
+                let ends = range.iter().flat_map(|(low, high)| [low, high]);
+                kind.shape.iter().chain(value).chain(ends).chain(tolerance).collect()
             }
+            StatementKind::Coord { kind, guess: value, .. } => kind.shape.iter().chain(value).collect(),
             StatementKind::Input { kind, .. } => kind.shape.iter().collect(),
             StatementKind::Function { signature, .. } => signature.period.iter().collect(),
             StatementKind::Constraint { within, items, .. } => {

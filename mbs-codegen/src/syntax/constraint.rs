@@ -1,15 +1,20 @@
 //! Equations, and the constraints that group them.
 
-use super::ast::{Declares, Equation, Expression, Item, StatementKind};
+use super::ast::{Declares, Equation, Expression, Item, Name, StatementKind};
 use super::expression::expression;
 use super::foreign;
 use super::parser::{GivenUp, Parser, Read};
 use super::statement::{at_statement, end, read_loop};
-use super::tokens::TokenKind;
+use super::tokens::{Token, TokenKind};
 
 const CONSTRAINT: &str = "write `constraint pin { x == L*cos(phi); y == L*sin(phi); }`";
 pub fn read_constraint(parser: &mut Parser<'_>) -> Read<StatementKind> {
     let name = parser.name(CONSTRAINT)?;
+    read_rows(parser, name.clone()).inspect_err(|_| parser.faulty_rows(&name))
+}
+
+/// Reads a constraint after its name; rows that could not be read leave it faulty.
+fn read_rows(parser: &mut Parser<'_>, name: Name) -> Read<StatementKind> {
     let redundant = parser.at_word("redundant").then(|| parser.span());
     parser.skip(usize::from(redundant.is_some()));
     let within = width(parser, redundant.is_some())?;
@@ -30,6 +35,7 @@ pub fn read_constraint(parser: &mut Parser<'_>) -> Read<StatementKind> {
             }
             return Ok(StatementKind::Constraint { name, redundant, within, items });
         }
+        let start = parser.rest();
         let read = if parser.at_word("for") {
             parser.skip(1);
             read_loop(parser).map(|head| {
@@ -44,7 +50,10 @@ pub fn read_constraint(parser: &mut Parser<'_>) -> Read<StatementKind> {
         match read {
             Ok(item) => items.push(item),
             Err(GivenUp) => {
-                complete = false;
+                if std::mem::take(&mut complete) {
+                    parser.faulty_rows(&name);
+                }
+                close_brackets(parser, start);
                 if !behind_equation(parser) {
                     return Ok(StatementKind::Constraint { name, redundant, within, items });
                 }
@@ -90,6 +99,20 @@ fn misplaced_statement(parser: &mut Parser<'_>) -> Read<Item> {
         _ => Declares::Value,
     };
     parser.declare(declares, CONSTRAINT, |_, _| Err(GivenUp)).map(|(_, never)| never)
+}
+
+/// Leaves the brackets that were opened since `start` and are not closed.
+fn close_brackets(parser: &mut Parser<'_>, start: &[Token]) {
+    let read = start.get(..start.len().saturating_sub(parser.rest().len())).unwrap_or_default();
+    let mut open = 0_usize;
+    for token in read {
+        match token.kind {
+            TokenKind::Open(_) => open += 1,
+            TokenKind::Close(_) => open = open.saturating_sub(1),
+            _ => {}
+        }
+    }
+    (0..open).for_each(|_| parser.skip_group());
 }
 
 /// Skips to the token after the `;` of an equation that was given up; `false` where the constraint ends before one.

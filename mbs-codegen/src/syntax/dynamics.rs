@@ -1,7 +1,7 @@
 //! Statements of dynamics: bodies, elements, forces, energies, first-order states, starts.
 
 use super::ast::{
-    Declares, Element, Energy, Expression, Field, Instruction, Joined, Load, Operation, StatementKind,
+    Declares, Element, Energy, Expression, Field, Instruction, Joined, Load, Name, Operation, StatementKind,
 };
 use super::constraint::equation;
 use super::expression::expression;
@@ -66,17 +66,19 @@ fn read_fields(parser: &mut Parser<'_>, help: &str) -> Read<Vec<Field>> {
 
 const PIN: &str = "write `pin B: crank, rod at [x, y];`, two bodies, or one and `ground`, and a point";
 pub fn read_pin(parser: &mut Parser<'_>) -> Read<StatementKind> {
-    let name = parser.name(PIN)?;
-    parser.expect(':', PIN)?;
-    let first = joined(parser, PIN)?;
-    parser.expect(',', PIN)?;
-    let second = joined(parser, PIN)?;
-    if !parser.take_word("at") {
-        return parser.expected("`at`", PIN);
-    }
-    let at = expression(parser)?;
-    end(parser, PIN)?;
-    Ok(StatementKind::Pin { name, bodies: [first, second], at })
+    let (name, (bodies, at)) = parser.declare(Declares::Element, PIN, |parser, _| {
+        parser.expect(':', PIN)?;
+        let first = joined(parser, PIN)?;
+        parser.expect(',', PIN)?;
+        let second = joined(parser, PIN)?;
+        if !parser.take_word("at") {
+            return parser.expected("`at`", PIN);
+        }
+        let at = expression(parser)?;
+        end(parser, PIN)?;
+        Ok(([first, second], at))
+    })?;
+    Ok(StatementKind::Pin { name, bodies, at })
 }
 
 /// `rod` or `rods[i]`
@@ -109,15 +111,17 @@ pub fn read_torque(parser: &mut Parser<'_>) -> Read<StatementKind> {
 
 /// `name: value on displacement;`
 fn load(parser: &mut Parser<'_>, kind: Load, help: &str) -> Read<StatementKind> {
-    let name = parser.name(help)?;
-    parser.expect(':', help)?;
-    let value = expression(parser)?;
-    if !parser.take_word("on") {
-        return parser.expected("`on`", help);
-    }
-    let on = expression(parser)?;
-    let of = if kind == Load::Force { of_body(parser, help)? } else { None };
-    end(parser, help)?;
+    let (name, (value, on, of)) = parser.declare(Declares::Element, help, |parser, _| {
+        parser.expect(':', help)?;
+        let value = expression(parser)?;
+        if !parser.take_word("on") {
+            return parser.expected("`on`", help);
+        }
+        let on = expression(parser)?;
+        let of = if kind == Load::Force { of_body(parser, help)? } else { None };
+        end(parser, help)?;
+        Ok((value, on, of))
+    })?;
     Ok(StatementKind::Load { kind, name, value, on, of })
 }
 
@@ -135,12 +139,14 @@ pub fn read_dissipation(parser: &mut Parser<'_>) -> Read<StatementKind> {
 
 /// `name = value;`
 fn energy(parser: &mut Parser<'_>, kind: Energy, help: &str) -> Read<StatementKind> {
-    let name = parser.name(help)?;
-    if !foreign::takes_value(parser) {
-        return parser.expected("`=`", help);
-    }
-    let value = expression(parser)?;
-    end(parser, help)?;
+    let (name, value) = parser.declare(Declares::Element, help, |parser, _| {
+        if !foreign::takes_value(parser) {
+            return parser.expected("`=`", help);
+        }
+        let value = expression(parser)?;
+        end(parser, help)?;
+        Ok(value)
+    })?;
     Ok(StatementKind::Energy { kind, name, value })
 }
 
@@ -159,7 +165,10 @@ pub fn read_state(parser: &mut Parser<'_>) -> Read<StatementKind> {
 const RATE: &str = "write the rate of a state as `der(z) == (u - z)/T;`";
 /// The rate of a state, `der` included.
 pub fn read_rate(parser: &mut Parser<'_>) -> Read<StatementKind> {
-    let equation = equation(parser, RATE)?;
+    let name = Name { text: "der".into(), span: parser.span() };
+    let equation = equation(parser, RATE).inspect_err(|_| {
+        parser.faulty.push(StatementKind::Faulty { name, declares: Declares::Rate, kind: None });
+    })?;
     let mut state = equation.left;
     match state.code.pop() {
         Some(Instruction { operation: Operation::Call { function, order: 0, arguments: 1 }, .. })

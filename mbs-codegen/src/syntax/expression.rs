@@ -6,6 +6,7 @@ use super::ast::{Expression, Instruction, Name, Operation, Operator, Target};
 use super::foreign::{self, CALLED};
 use super::missing::{self, Around};
 use super::number::{literal, number};
+use super::number_notations;
 use super::parser::{GivenUp, Parser, Read};
 use super::tokens::TokenKind;
 
@@ -248,6 +249,13 @@ impl Reader {
             && *parser.peek_at(1) == TokenKind::Open('(')
         {
             return self.derivative(parser, word);
+        }
+        if let Some(Instruction { operation: Operation::Number { unit: None, .. }, .. }) = self.code.last()
+            && let Some(number) = number_notations::dot_without_digits(parser)
+            && let Some(last) = self.code.last_mut()
+        {
+            last.operation = number;
+            return Ok(Some(false));
         }
         if let TokenKind::Literal(text) = parser.peek()
             && let Some(index) = literal(text, span)

@@ -2,6 +2,7 @@
 
 use proc_macro2::Span;
 
+use super::number_notations::touch;
 use super::parser::{GivenUp, Parser, Read, doc_attribute};
 use super::quotation::{length_of_group, operand_before, operand_behind, quoted, until_end};
 use super::statement::at_statement;
@@ -151,10 +152,6 @@ pub fn leading_dot(parser: &mut Parser<'_>) -> String {
 pub fn decimal_comma(parser: &mut Parser<'_>) -> bool {
     let [.., whole] = parser.before() else { return false };
     let [comma, part, ..] = parser.rest() else { return false };
-    let touch = |a: &Token, b: &Token| {
-        let (end, start) = (a.span.end(), b.span.start());
-        (end.line, end.column) == (start.line, start.column)
-    };
     let (TokenKind::Literal(digits), TokenKind::Literal(decimals)) = (&whole.kind, &part.kind) else {
         return false;
     };

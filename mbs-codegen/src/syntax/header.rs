@@ -5,6 +5,7 @@ use syn::ext::IdentExt;
 use syn::parse::{Parse, ParseStream, Parser};
 use syn::{Attribute, Token, Visibility};
 
+use super::keywords::STATEMENTS;
 use super::rust_identifiers::{UNUSABLE, identifier};
 use crate::diagnostics::Diagnostics;
 
@@ -109,7 +110,10 @@ fn header(
     let end: syn::Result<Token![;]> = input.parse();
     let rest: TokenStream = input.parse()?;
     // After the name a statement may follow, its `;` forgotten, or tokens without meaning.
-    let is_statement = matches!(rest.clone().into_iter().next(), Some(TokenTree::Ident(_)));
+    let is_statement = match rest.clone().into_iter().next() {
+        Some(TokenTree::Ident(word)) => STATEMENTS.iter().any(|known| word == known),
+        _ => false,
+    };
     let rest = if is_statement { rest } else { TokenStream::new() };
     Ok((Header { runtime, attributes, visibility, name }, rest, end.err()))
 }

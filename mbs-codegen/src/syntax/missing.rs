@@ -2,7 +2,9 @@
 
 use proc_macro2::Span;
 
+use super::ast::{Declares, Name, StatementKind};
 use super::foreign::CALLED;
+use super::number_notations;
 use super::parser::{GivenUp, Parser, Read};
 use super::picture;
 use super::quotation::{operand_before, operand_behind, quoted, until_end};
@@ -11,7 +13,7 @@ use super::tokens::{Token, TokenKind};
 use super::unit_symbols::coherent_unit;
 
 /// Words that may follow an expression.
-const BEHIND: [&str; 6] = ["on", "of", "at", "rate", "and", "or"];
+const BEHIND: [&str; 7] = ["on", "of", "at", "in", "rate", "and", "or"];
 
 /// `true` if an operand begins where an expression has ended, and no word that may follow one.
 pub fn at_second_operand(parser: &Parser<'_>) -> bool {
@@ -41,7 +43,9 @@ pub fn second_operand<T>(parser: &mut Parser<'_>, around: Around) -> Read<T> {
         [Token { kind: TokenKind::Identifier(name), .. }] => name.as_str(),
         _ => "",
     };
-    let (message, help) = if CALLED.contains(&name) {
+    let (message, help) = if let Some(number) = number_notations::grouped(first, second) {
+        ("a space stands in a number".into(), format!("write `{number}`"))
+    } else if CALLED.contains(&name) {
         let argument = match second {
             [Token { kind: TokenKind::Open('('), .. }, ..] => right,
             _ => format!("({right})"),
@@ -89,6 +93,9 @@ pub fn effects_without_plus(parser: &mut Parser<'_>, scene: &str, known: &[&str]
     while !is_end(parser.peek()) {
         if let TokenKind::Identifier(name) = parser.peek() {
             found.push((name.clone(), parser.span()));
+            // A stray word is no effect that is missing as well.
+            let name = Name { text: name.clone(), span: parser.span() };
+            parser.faulty.push(StatementKind::Faulty { name, declares: Declares::Element, kind: None });
         }
         parser.skip(1);
     }

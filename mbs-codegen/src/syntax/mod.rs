@@ -9,6 +9,7 @@ mod header;
 mod keywords;
 mod missing;
 mod number;
+mod number_notations;
 mod parser;
 pub mod picture;
 mod quotation;
@@ -79,6 +80,30 @@ pub fn read(input: TokenStream, diagnostics: &mut Diagnostics) -> Option<Text> {
     Some(Text { header, statements, pictured, source: source::layout(&all) })
 }
 
+/// Before: any tokens. After: the expression that they are, all of them; `None` where a fault is reported.
+pub fn expression_of(input: TokenStream, diagnostics: &mut Diagnostics) -> Option<ast::Expression> {
+    whole(input, diagnostics, expression::expression)
+}
+
+/// Before: any tokens. After: the unit that they are, all of them; `None` where a fault is reported.
+pub fn unit_of(input: TokenStream, diagnostics: &mut Diagnostics) -> Option<ast::Unit> {
+    whole(input, diagnostics, unit::unit)
+}
+
+fn whole<T>(
+    input: TokenStream,
+    diagnostics: &mut Diagnostics,
+    read: impl FnOnce(&mut parser::Parser<'_>) -> parser::Read<T>,
+) -> Option<T> {
+    let tokens = tokens::flatten(input, diagnostics);
+    let mut parser = parser::Parser::new(&tokens, diagnostics);
+    let found = read(&mut parser).ok()?;
+    if *parser.peek() != tokens::TokenKind::End {
+        let _reported: parser::Read<()> = parser.expected("the end of the value", "write one value");
+    }
+    diagnostics.is_empty().then_some(found)
+}
+
 /// `true` if the statement declares a coordinate, even a faulty one.
 pub fn declares_coordinate(statement: &ast::Statement) -> bool {
     matches!(
@@ -92,7 +117,7 @@ pub fn declares_scene(statement: &ast::Statement) -> bool {
     matches!(statement.kind, ast::StatementKind::Scene { .. })
 }
 
-/// A coordinate where there is none, which is reported, so that the stub's types have a field.
+/// A coordinate where there is none, which is reported: no stage behind meets a text without one.
 pub fn stand_in(span: Span) -> ast::Statement {
     let name = ast::Name { text: "coordinate".into(), span };
     let kind = ast::StatementKind::Faulty { name, declares: ast::Declares::Coord, kind: None };

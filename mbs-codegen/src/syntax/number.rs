@@ -2,26 +2,31 @@
 
 use proc_macro2::Span;
 
-use super::ast::{Name, Operation, Unit};
+use super::ast::{Operation, Unit};
 use super::foreign::NUMBER_TYPES;
+use super::number_notations as notations;
 use super::parser::{GivenUp, Parser, Read};
 use super::tokens::TokenKind;
 use super::unit::{unit_behind_a_space, unit_of_number};
+use super::unit_symbols::is_symbol;
 
 /// A number with its unit, which is joined to it or follows in brackets.
 pub(super) fn number(parser: &mut Parser<'_>, text: &str) -> Read<Operation> {
     let span = parser.span();
-    let Some(mut number) = literal(text, span) else {
-        return parser.expected("a number", NUMBER);
+    let other = notations::in_another_base(parser, text, span);
+    let other = other.or_else(|| notations::without_exponent(parser, text, span));
+    let Some(mut number) = other.or_else(|| literal(text, span)) else {
+        let help = notations::in_quotes(text).map(|number| format!("write it without quotes: `{number}`"));
+        return parser.expected("a number", help.as_deref().unwrap_or(NUMBER));
     };
     parser.skip(1);
     if let Operation::Number { value, unit, .. } = &mut number {
         if let Some(fault) = range_fault(text, *value) {
             parser.diagnostics.report(span, format!("`{text}` {fault}"), RANGE);
-            *value = 1.0;
+            *value = f64::NAN;
         }
         if let Some(suffix) = unit.as_ref().filter(|unit| NUMBER_TYPES.contains(&unit.text.as_str())) {
-            let digits = text.strip_suffix(&suffix.text).unwrap_or(text);
+            let digits = text.strip_suffix(&suffix.text).unwrap_or(text).trim_end_matches('_');
             let message = format!("`{}` is a type of Rust, no unit", suffix.text);
             parser.diagnostics.report(span, message, format!("write `{digits}`: all numbers are real"));
             *unit = None;
@@ -35,12 +40,14 @@ pub(super) fn number(parser: &mut Parser<'_>, text: &str) -> Read<Operation> {
                     "a number has one unit: joined to it, `4mm`, or in brackets, `4 [mm^2]`",
                 );
             }
-            *unit = Some(unit_of_number(parser)?);
+            *unit = Some(unit_of_number(parser, digits)?);
+            second_unit(parser, digits, unit.as_ref())?;
+        } else if let (None, Some(found)) = (&unit, notations::unit_in_other_brackets(parser, digits)) {
+            *unit = Some(found);
         }
         if let (None, Some(apart)) = (&unit, unit_behind_a_space(parser)) {
-            let number =
-                if is_alphanumeric(&apart) { format!("{text}{apart}") } else { format!("{text} [{apart}]") };
-            let message = format!("the unit `{apart}` stands apart from its number");
+            let number = notations::with_unit(text, &apart.meant);
+            let message = format!("the unit `{}` stands apart from its number", apart.written);
             parser.diagnostics.report(parser.span(), message, format!("write `{number}`"));
             return Err(GivenUp);
         }
@@ -74,6 +81,21 @@ fn two_readings(parser: &mut Parser<'_>, span: Span, digits: &str, unit: &Unit, 
     );
 }
 
+/// Reports a unit behind the one that a number has in brackets: `2 [m] [s]`, `2 [m] s`.
+fn second_unit(parser: &mut Parser<'_>, digits: &str, unit: Option<&Unit>) -> Read<()> {
+    let Some(unit) = unit else { return Ok(()) };
+    let in_brackets = match (parser.peek(), parser.peek_at(1)) {
+        (TokenKind::Open('['), TokenKind::Identifier(word)) => is_symbol(word).then(|| word.clone()),
+        _ => None,
+    };
+    let Some(second) = in_brackets.or_else(|| Some(unit_behind_a_space(parser)?.meant)) else {
+        return Ok(());
+    };
+    let help = format!("write `{digits} [{}*{second}]` for the product of its units", unit.text);
+    parser.diagnostics.report(parser.span(), "a number has one unit", help);
+    Err(GivenUp)
+}
+
 /// `true` for a unit of one symbol without an exponent.
 fn is_alphanumeric(unit: &str) -> bool {
     unit.bytes().all(|byte| byte.is_ascii_alphanumeric())
@@ -104,7 +126,7 @@ pub(super) fn literal(text: &str, span: Span) -> Option<Operation> {
     }
     let value = text.get(..end)?.replace('_', "").parse().ok()?;
     let suffix = text.get(end..).filter(|suffix| !suffix.is_empty()).map(str::to_owned);
-    let unit = suffix.map(|text| Unit { factors: vec![(Name { text: text.clone(), span }, 1)], text, span });
+    let unit = suffix.map(|text| Unit::of_symbol(&text, span));
     Some(Operation::Number { value, unit, integer })
 }
 

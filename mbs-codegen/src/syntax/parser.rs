@@ -3,6 +3,7 @@
 use proc_macro2::Span;
 
 use super::ast::{Declares, Name, StatementKind, Type};
+use super::keywords::STATEMENTS;
 use super::missing;
 use super::quotation::quoted;
 use super::tokens::{Token, TokenKind};
@@ -137,7 +138,9 @@ impl<'a> Parser<'a> {
         let mut kind = None;
         let begin = self.next;
         let read = match self.peek() {
-            TokenKind::Punctuation('=', _) if declares != Declares::Element && word != "let" => {
+            TokenKind::Punctuation('=', _)
+                if declares != Declares::Element && word != "let" && STATEMENTS.contains(&word.as_str()) =>
+            {
                 missing::no_unit(self, &word, &name.text)
             }
             _ => read(self, &mut kind),
@@ -152,6 +155,12 @@ impl<'a> Parser<'a> {
             |(text, span)| StatementKind::Faulty { name: Name { text, span }, declares, kind: kind.clone() };
         self.faulty.extend(others.into_iter().map(stand_in));
         read.map(|read| (name, read))
+    }
+
+    /// Keeps the name of a constraint or drive with rows that could not be read.
+    pub fn faulty_rows(&mut self, name: &Name) {
+        let (name, kind) = (name.clone(), None);
+        self.faulty.push(StatementKind::Faulty { name, declares: Declares::Rows, kind });
     }
 
     /// Skips to the token after the bracket that closes the one just before the cursor, or to the end.

@@ -3,6 +3,7 @@
 use proc_macro2::Span;
 
 use super::ast::{Name, StatementKind};
+use super::foreign;
 use super::missing;
 use super::parser::{GivenUp, Parser, Read};
 use super::statement::{at_statement, end};
@@ -37,6 +38,16 @@ pub fn read_scene(parser: &mut Parser<'_>) -> Read<StatementKind> {
     match read_effects(parser, &name.text, &mut effects) {
         Ok(open) => Ok(StatementKind::Scene { name, effects, open }),
         Err(GivenUp) => {
+            // Effects may be called like statements.
+            let is_end = |kind: &TokenKind| {
+                matches!(kind, TokenKind::End | TokenKind::Punctuation(';', _) | TokenKind::Open('{'))
+            };
+            while !is_end(parser.peek()) {
+                if let TokenKind::Identifier(word) = parser.peek() {
+                    effects.push(Name { text: word.clone(), span: parser.span() });
+                }
+                parser.skip(1);
+            }
             parser.faulty.push(StatementKind::Scene { name, effects, open: false });
             Err(GivenUp)
         }
@@ -45,7 +56,9 @@ pub fn read_scene(parser: &mut Parser<'_>) -> Read<StatementKind> {
 
 /// Reads the effects after the `=`; returns `true` if braces follow, which are then open.
 fn read_effects(parser: &mut Parser<'_>, scene: &str, effects: &mut Vec<Name>) -> Read<bool> {
-    parser.expect('=', SCENE)?;
+    if !foreign::takes_value(parser) {
+        return parser.expected("`=`", SCENE);
+    }
     if !matches!(parser.peek(), TokenKind::Open('[' | '(')) {
         effects.push(parser.name(SCENE)?);
     }

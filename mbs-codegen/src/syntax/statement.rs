@@ -1,8 +1,7 @@
 //! Statements: one after the other; reading continues after each fault.
 
 use super::ast::{
-    Declares, Expression, Instruction, Loop, Name, Operation, Operator, Signature, Statement, StatementKind,
-    Type,
+    Bounds, Declares, Instruction, Loop, Name, Operation, Operator, Signature, Statement, StatementKind,
 };
 use super::constraint::{equation, read_constraint};
 use super::dynamics;
@@ -12,6 +11,7 @@ use super::keywords::{LATER, STATEMENTS};
 use super::missing;
 use super::parser::{DOC_ATTRIBUTE, GivenUp, Parser, Read, doc_attribute};
 use super::picture;
+use super::quotation::{length_of_group, until_end};
 use super::scene::{Open, read_effect, read_scene};
 use super::tokens::{Token, TokenKind};
 use super::unit::{declared_type, unit};
@@ -81,6 +81,14 @@ fn resynchronise(parser: &mut Parser<'_>, start: &[Token]) {
     if read.is_empty() {
         parser.skip(1);
     }
+    // A `;` in place of another sign: the statement goes on behind it.
+    let is_sign = read.len() > 1 && matches!(parser.peek(), TokenKind::Punctuation(';', _));
+    if is_sign && matches!(read.last().map(|last| &last.kind), Some(TokenKind::Close(')'))) {
+        parser.skip(1);
+        if at_statement(parser) {
+            return;
+        }
+    }
     while let Some(bracket) = open.pop() {
         parser.skip_group();
         if bracket == '{' && open.is_empty() {
@@ -108,12 +116,22 @@ fn resynchronise(parser: &mut Parser<'_>, start: &[Token]) {
 pub fn at_statement(parser: &Parser<'_>) -> bool {
     match parser.peek() {
         TokenKind::End | TokenKind::Close('}') => true,
+        TokenKind::Identifier(word) if word == "der" => is_rate_of_a_state(parser),
         TokenKind::Identifier(word) => {
             STATEMENTS.iter().chain(&LATER).any(|known| known == word) || picture::starts(parser)
         }
         TokenKind::Punctuation('#', _) => doc_attribute(parser.rest()).is_some(),
         _ => false,
     }
+}
+
+/// `true` at `der(z) ==`.
+fn is_rate_of_a_state(parser: &Parser<'_>) -> bool {
+    let behind = parser.rest().get(1..).unwrap_or_default();
+    let is_call = matches!(behind.first(), Some(Token { kind: TokenKind::Open('('), .. }));
+    let sign = behind.get(length_of_group(behind)..).unwrap_or_default();
+    let is_equals = |token: &Token| matches!(token.kind, TokenKind::Punctuation('=', _));
+    is_call && matches!(sign, [first, second, ..] if is_equals(first) && is_equals(second))
 }
 
 /// Takes the `;` of a statement; where the next one begins already it is reported, and not missed.
@@ -185,10 +203,27 @@ fn statement(parser: &mut Parser<'_>) -> Read<StatementKind> {
     };
     parser.diagnostics.report(span, format!("`{word}` begins no statement"), help);
     parser.skip(1);
-    match meant.and_then(reader) {
+    // Of two words as near, neither can be read as the other.
+    let is_one_of_two = matches!(meant, Some("tsda" | "rsda"));
+    match meant.filter(|_| !is_one_of_two).and_then(reader) {
         // Read as the intended statement, so that its name is known.
         Some(read) if matches!(parser.peek(), TokenKind::Identifier(_)) => read(parser),
-        _ => Err(GivenUp),
+        _ => {
+            // Whatever it declares, uses of its name are no faults of their own.
+            let declares = match (parser.peek(), parser.peek_at(1)) {
+                (TokenKind::Identifier(_), TokenKind::Punctuation(':' | '=', _)) => Declares::Value,
+                (TokenKind::Identifier(_), TokenKind::Open('{')) => Declares::Element,
+                _ => return Err(GivenUp),
+            };
+            let name = Name { text: parser.name("")?.text, span };
+            parser.faulty_rows(&name);
+            parser.faulty.push(StatementKind::Faulty { name, declares, kind: None });
+            let line = span.start().line;
+            let rest = until_end(parser).iter().take_while(|token| token.span.start().line == line);
+            let is_brace = |token: &Token| token.kind == TokenKind::Open('{');
+            parser.skip(rest.take_while(|token| !is_brace(token)).count());
+            Err(GivenUp)
+        }
     }
 }
 
@@ -252,28 +287,49 @@ fn read_const(parser: &mut Parser<'_>) -> Read<StatementKind> {
 
 const PARAM: &str = "write `param omega: rad/s = 10;` or `param L: [m; 2] = [0.1, 0.2];`";
 fn read_param(parser: &mut Parser<'_>) -> Read<StatementKind> {
-    let (name, (kind, value)) = declaration(parser, Declares::Param, PARAM)?;
-    Ok(StatementKind::Param { name, kind, value })
+    let (name, (kind, value, bounds)) = parser.declare(Declares::Param, PARAM, |parser, kind| {
+        parser.expect(':', PARAM)?;
+        let declared = kind.insert(declared_type(parser, PARAM)?).clone();
+        let value = if foreign::takes_value(parser) { Some(expression(parser)?) } else { None };
+        let bounds = bounds(parser)?;
+        end(parser, PARAM)?;
+        Ok((declared, value, bounds))
+    })?;
+    Ok(StatementKind::Param { name, kind, value, bounds })
+}
+
+const RANGE: &str =
+    "write `param L: m = 0.2 in 0.1..0.3;` or `param L: m = 0.2 in 0.1..0.3, tolerance 0.1mm;`";
+/// `in 0.1..0.3, tolerance 0.1mm`
+fn bounds(parser: &mut Parser<'_>) -> Read<Bounds> {
+    let mut bounds = Bounds::default();
+    if parser.take_word("in") {
+        let low = expression(parser)?;
+        if !parser.at_pair('.', '.') {
+            return parser.expected("`..`", RANGE);
+        }
+        parser.skip(2);
+        // Both ends belong to it.
+        parser.take('=');
+        bounds.range = Some((low, expression(parser)?));
+    }
+    let is_tolerance = matches!(parser.peek_at(1), TokenKind::Identifier(word) if word == "tolerance");
+    if is_tolerance && parser.take(',') && parser.take_word("tolerance") {
+        bounds.tolerance = Some(expression(parser)?);
+    }
+    Ok(bounds)
 }
 
 const COORD: &str = "write `coord phi: rad = 0.5;` or `coord p: [m; 2] = [0.1, 0.2];`";
 fn read_coord(parser: &mut Parser<'_>) -> Read<StatementKind> {
-    let (name, (kind, guess)) = declaration(parser, Declares::Coord, COORD)?;
+    let (name, (kind, guess)) = parser.declare(Declares::Coord, COORD, |parser, kind| {
+        parser.expect(':', COORD)?;
+        let declared = kind.insert(declared_type(parser, COORD)?).clone();
+        let guess = if foreign::takes_value(parser) { Some(expression(parser)?) } else { None };
+        end(parser, COORD)?;
+        Ok((declared, guess))
+    })?;
     Ok(StatementKind::Coord { name, kind, guess })
-}
-
-fn declaration(
-    parser: &mut Parser<'_>,
-    declares: Declares,
-    help: &str,
-) -> Read<(Name, (Type, Option<Expression>))> {
-    parser.declare(declares, help, |parser, kind| {
-        parser.expect(':', help)?;
-        let declared = kind.insert(declared_type(parser, help)?).clone();
-        let value = if foreign::takes_value(parser) { Some(expression(parser)?) } else { None };
-        end(parser, help)?;
-        Ok((declared, value))
-    })
 }
 
 const INPUT: &str = "write `input torque: N*m;` or `input theta: rad, rates;`";
@@ -281,7 +337,13 @@ fn read_input(parser: &mut Parser<'_>) -> Read<StatementKind> {
     let (name, (kind, rates)) = parser.declare(Declares::Input { rates: false }, INPUT, |parser, kind| {
         parser.expect(':', INPUT)?;
         let declared = kind.insert(declared_type(parser, INPUT)?).clone();
-        let rates = parser.take(',');
+        let is_semicolon = matches!(parser.peek(), TokenKind::Punctuation(';', _))
+            && matches!(parser.peek_at(1), TokenKind::Identifier(word) if word == "rates");
+        if is_semicolon {
+            let _reported: Read<()> = parser.expected("`,`", INPUT);
+            parser.skip(1);
+        }
+        let rates = is_semicolon || parser.take(',');
         if rates && !parser.take_word("rates") {
             return parser.expected("`rates`", INPUT);
         }
@@ -364,9 +426,17 @@ fn read_out(parser: &mut Parser<'_>) -> Read<StatementKind> {
 const DRIVE: &str = "write `drive crank: phi == omega*t;`";
 fn read_drive(parser: &mut Parser<'_>) -> Read<StatementKind> {
     let name = parser.name(DRIVE)?;
-    parser.expect(':', DRIVE)?;
-    let equation = equation(parser, DRIVE)?;
-    Ok(StatementKind::Drive { name, equation })
+    let mut read = || {
+        parser.expect(':', DRIVE)?;
+        equation(parser, DRIVE)
+    };
+    match read() {
+        Ok(equation) => Ok(StatementKind::Drive { name, equation }),
+        Err(GivenUp) => {
+            parser.faulty_rows(&name);
+            Err(GivenUp)
+        }
+    }
 }
 
 const BRANCH: &str = "write `branch open: sin(phi3 - phi2) > 0;` or `branch open at start: … > 0;`";

@@ -4,7 +4,10 @@ use proc_macro2::Span;
 
 use super::ast::{Name, Type, Unit};
 use super::expression::count;
+use super::foreign;
+use super::number_notations::by_another_name;
 use super::parser::{GivenUp, Parser, Read};
+use super::quotation::{operand_behind, quoted};
 use super::tokens::TokenKind;
 use super::unit_symbols::{as_product, is_symbol};
 
@@ -40,36 +43,62 @@ const UNIT: &str = "write a unit as `m`, `rad/s`, `N*m` or `kg*m^2`; `1` where t
 
 const UNIT_OF_NUMBER: &str = "brackets behind a number hold its unit, `4 [m^2]` or `30 [rad/s]`; a product needs its operator: `2*[x, y]`";
 
-/// Reads `[unit]` after a number.
-pub fn unit_of_number(parser: &mut Parser<'_>) -> Read<Unit> {
+/// Reads `[unit]` after the number with these digits.
+pub fn unit_of_number(parser: &mut Parser<'_>, digits: &str) -> Read<Unit> {
+    let span = parser.span();
     parser.skip(1);
+    if parser.take(']') {
+        let message = format!("the brackets behind `{digits}` hold no unit");
+        parser.diagnostics.report(
+            span,
+            message,
+            format!("write `{digits} [m]` with its unit, or `{digits}` alone"),
+        );
+        return Err(GivenUp);
+    }
     let unit = product(parser, UNIT_OF_NUMBER)?;
     parser.expect(']', UNIT_OF_NUMBER)?;
     Ok(unit)
 }
 
+/// A unit behind a space.
+pub struct Apart {
+    /// As it stands there.
+    pub written: String,
+    /// In the symbols of the language.
+    pub meant: String,
+}
+
 /// The unit that begins at the next token, as far as its symbols are known; no token is taken.
-pub fn unit_behind_a_space(parser: &Parser<'_>) -> Option<String> {
+pub fn unit_behind_a_space(parser: &Parser<'_>) -> Option<Apart> {
     let symbol = |ahead: usize| match (parser.peek_at(ahead), parser.peek_at(ahead + 1)) {
         (TokenKind::Identifier(_), TokenKind::Open('(')) => None,
         (TokenKind::Identifier(word), _) if is_symbol(word) => Some(word.clone()),
-        (TokenKind::Identifier(word), _) => as_product(word),
+        (TokenKind::Identifier(word), _) => as_product(word).or_else(|| by_another_name(parser, word)),
         _ => None,
     };
-    let mut text = symbol(0)?;
+    let first = symbol(0)?;
+    let mut text = first.clone();
+    let apart = |meant: String| {
+        let written = match parser.peek() {
+            TokenKind::Identifier(word) => meant.strip_prefix(&first).map(|rest| format!("{word}{rest}")),
+            _ => None,
+        };
+        Some(Apart { written: written.unwrap_or_else(|| meant.clone()), meant })
+    };
     let mut ahead = 1;
     loop {
         if matches!(parser.peek_at(ahead), TokenKind::Punctuation('^', _)) {
             let is_negative = matches!(parser.peek_at(ahead + 1), TokenKind::Punctuation('-', _));
             let digits = ahead + 1 + usize::from(is_negative);
-            let TokenKind::Literal(exponent) = parser.peek_at(digits) else { return Some(text) };
+            let TokenKind::Literal(exponent) = parser.peek_at(digits) else { return apart(text) };
             text = format!("{text}^{}{exponent}", if is_negative { "-" } else { "" });
             ahead = digits + 1;
         }
         let (TokenKind::Punctuation(operator @ ('*' | '/'), _), Some(next)) =
             (parser.peek_at(ahead), symbol(ahead + 1))
         else {
-            return Some(text);
+            return apart(text);
         };
         text.push(*operator);
         text += &next;
@@ -176,25 +205,53 @@ fn written(factors: &[(Name, i32)]) -> String {
 
 /// Reads `^ exponent` and applies it, and the sign of a division, to the factors from `begin` on.
 fn finish_factor(parser: &mut Parser<'_>, unit: &mut Unit, begin: usize, sign: i32) -> Read<()> {
+    let stars = parser.at_pair('*', '*');
+    if stars {
+        foreign::two_stars(parser);
+    }
     let mut exponent = sign;
-    if parser.take('^') {
+    if stars || parser.take('^') {
         unit.text.push('^');
         let negative = parser.take('-');
         if negative {
             unit.text.push('-');
         }
-        let TokenKind::Literal(text) = parser.peek() else {
-            return parser.expected("an integer exponent", UNIT);
+        let power = match parser.peek() {
+            TokenKind::Literal(text) => text.parse().ok().filter(|power: &i32| (0..=12).contains(power)),
+            _ => None,
         };
-        let Some(power) = text.parse().ok().filter(|power: &i32| (0..=12).contains(power)) else {
-            return parser.expected("an integer exponent up to 12", UNIT);
-        };
+        let Some(power) = power else { return no_exponent(parser, unit, begin) };
+        unit.text += &power.to_string();
         parser.skip(1);
-        unit.text += text;
         exponent *= if negative { -power } else { power };
     }
     for (_, factor) in unit.factors.iter_mut().skip(begin) {
         *factor = factor.saturating_mul(exponent);
     }
     Ok(())
+}
+
+/// Reports what stands at the cursor in place of an exponent, behind the factors from `begin` on.
+fn no_exponent(parser: &mut Parser<'_>, unit: &Unit, begin: usize) -> Read<()> {
+    let base = written(unit.factors.get(begin..).unwrap_or_default());
+    let (span, exponent) = (parser.span(), quoted(operand_behind(parser)));
+    let number = exponent.trim_matches(['(', ')']).trim();
+    let (message, help) = match number.parse::<f64>() {
+        Ok(value) if value.fract() == 0.0 && value.abs() <= 12.0 => {
+            ("an exponent of a unit is written as an integer".into(), format!("write `{base}^{value}`"))
+        }
+        Ok(value) if value.fract() == 0.0 => (
+            format!("`{base}^{number}` is beyond the largest exponent"),
+            "exponents of units reach up to 12".into(),
+        ),
+        _ if number.is_empty() => {
+            ("an exponent of a unit is an integer".into(), format!("write it behind the `^`: `{base}^2`"))
+        }
+        _ => (
+            "an exponent of a unit is an integer".into(),
+            format!("raise a quantity to other powers: `(1 [{base}])^{exponent}`"),
+        ),
+    };
+    parser.diagnostics.report(span, message, help);
+    Err(GivenUp)
 }

@@ -150,15 +150,74 @@ const OTHER_NAMES: [(&str, &str); 41] = [
     ("watt", "W"),
 ];
 
-/// The symbol, power or product that a unit by another name means: `s` of `sec`, `m^2` of `m2`, `N*m` of `Nm`.
-pub fn meant(word: &str) -> Option<String> {
+/// The symbol that a unit by another name means.
+pub fn foreign_name(word: &str) -> Option<&'static str> {
     let lower = word.to_lowercase();
     let named = OTHER_NAMES.iter().find(|(other, _)| *other == word || (word.len() > 2 && *other == lower));
+    named.map(|(_, symbol)| *symbol)
+}
+
+/// The symbol, power or product that a unit by another name means: `s` of `sec`, `m^2` of `m2`, `N*m` of `Nm`, `kg*m^2` of `kgm2`.
+pub fn meant(word: &str) -> Option<String> {
     let power = || {
         let (base, exponent) = word.split_at_checked(word.len().checked_sub(1)?)?;
-        (is_symbol(base) && matches!(exponent, "2" | "3" | "4")).then(|| format!("{base}^{exponent}"))
+        let is_power = matches!(exponent, "2" | "3" | "4");
+        let base = match is_symbol(base) {
+            true => base.to_owned(),
+            false => foreign_name(base).map(str::to_owned).or_else(|| as_product(base))?,
+        };
+        is_power.then(|| format!("{base}^{exponent}"))
     };
-    named.map(|(_, symbol)| (*symbol).to_owned()).or_else(power).or_else(|| as_product(word))
+    // A thousand is a small letter: `Km` is no kelvin metre.
+    let thousand = || {
+        let small = format!("k{}", word.strip_prefix('K')?);
+        is_symbol(&small).then_some(small)
+    };
+    let named = foreign_name(word).map(str::to_owned);
+    named.or_else(power).or_else(thousand).or_else(|| as_product(word))
+}
+
+/// Units outside of the SI: their values, and the units that these are in.
+const NO_SI: [(&str, f64, &str); 28] = [
+    ("dm", 0.1, "m"),
+    ("ft", 0.3048, "m"),
+    ("foot", 0.3048, "m"),
+    ("feet", 0.3048, "m"),
+    ("yd", 0.9144, "m"),
+    ("mi", 1609.344, "m"),
+    ("mile", 1609.344, "m"),
+    ("miles", 1609.344, "m"),
+    ("mil", 2.54e-5, "m"),
+    ("thou", 2.54e-5, "m"),
+    ("lb", 0.453_592_37, "kg"),
+    ("lbs", 0.453_592_37, "kg"),
+    ("lbm", 0.453_592_37, "kg"),
+    ("oz", 0.028_349_523_125, "kg"),
+    ("lbf", 4.448_221_615_260_5, "N"),
+    ("kgf", 9.806_65, "N"),
+    ("kp", 9.806_65, "N"),
+    ("dyn", 1e-5, "N"),
+    ("psi", 6_894.757_293_168_4, "Pa"),
+    ("atm", 101_325.0, "Pa"),
+    ("hp", 745.699_871_582_27, "W"),
+    ("l", 1e-3, "m^3"),
+    ("L", 1e-3, "m^3"),
+    ("liter", 1e-3, "m^3"),
+    ("litre", 1e-3, "m^3"),
+    ("mph", 0.447_04, "m/s"),
+    ("kmh", 1.0, "km/h"),
+    ("kph", 1.0, "km/h"),
+];
+
+/// A number in a unit outside of the SI as one in an SI unit: `0.6096m` of 2 and `ft`.
+pub fn in_si(value: f64, word: &str) -> Option<String> {
+    let (_, factor, unit) = NO_SI.iter().find(|(other, ..)| *other == word)?;
+    // Digits of the product beyond those of the factors are rounding.
+    let value = format!("{:.12e}", value * factor).parse::<f64>().ok()?;
+    Some(match unit.chars().all(char::is_alphanumeric) {
+        true => format!("{value}{unit}"),
+        false => format!("{value} [{unit}]"),
+    })
 }
 
 #[cfg(test)]
@@ -173,6 +232,13 @@ mod tests {
         assert_eq!(as_product("Nms").as_deref(), Some("N*m*s"));
         assert_eq!(as_product("kgm").as_deref(), Some("kg*m"));
         assert_eq!(as_product("N·m").as_deref(), Some("N*m"));
+        for (word, meaning) in
+            [("kgm2", "kg*m^2"), ("in2", "inch^2"), ("Km", "km"), ("KN", "kN"), ("m2", "m^2")]
+        {
+            assert_eq!(meant(word).as_deref(), Some(meaning));
+        }
+        assert_eq!(in_si(3.0, "ft").as_deref(), Some("0.9144m"));
+        assert_eq!(in_si(2.0, "L").as_deref(), Some("0.002 [m^3]"));
         for word in ["N", "mmm", "Nx", "", "Né"] {
             assert_eq!(as_product(word), None, "{word}");
         }

@@ -35,7 +35,8 @@ pub fn unreadable(source: &str) -> Option<Unreadable> {
     let mut open: Vec<(char, usize, usize)> = Vec::new();
     let (mut line, mut column) = (1, 0);
     let mut characters = source.chars().peekable();
-    let mut previous = ' ';
+    // First character of the word that the previous one ends.
+    let (mut previous, mut first) = (' ', ' ');
     let fault = |line, column, message: String, help: &str| {
         Some(Unreadable { line, column, message, help: help.into() })
     };
@@ -47,6 +48,9 @@ pub fn unreadable(source: &str) -> Option<Unreadable> {
                 while characters.peek().is_some_and(|next| *next != '\n') {
                     characters.next();
                 }
+            }
+            '"' if first.is_ascii_digit() => {
+                return fault(line, column, "a quote is no unit".into(), "write inches as a unit: `2inch`");
             }
             '"' => {
                 let begin = (line, column);
@@ -71,6 +75,11 @@ pub fn unreadable(source: &str) -> Option<Unreadable> {
                         "close it with `\"`",
                     );
                 }
+            }
+            '\'' if first.is_ascii_digit() => {
+                let help =
+                    "write thousands without a sign, `1000`, and feet or minutes of arc in another unit";
+                return fault(line, column, "a tick stands behind a number".into(), help);
             }
             '\'' if previous.is_alphanumeric() || matches!(previous, '_' | ')' | ']') => {
                 let help = "write a rate as `der(x)`, an acceleration as `der2(x)`";
@@ -101,6 +110,12 @@ pub fn unreadable(source: &str) -> Option<Unreadable> {
                 }
             }
         }
+        let is_word = |c: char| c.is_alphanumeric() || c == '_';
+        first = match (is_word(previous), is_word(character)) {
+            (true, true) => first,
+            (false, true) => character,
+            _ => ' ',
+        };
         previous = character;
     }
     let (bracket, line, column) = open.pop()?;
@@ -139,6 +154,10 @@ mod tests {
         assert_eq!(place("{ [a, (b; }"), Some((1, 7)));
         assert_eq!(place("{ (a) // [\n"), Some((1, 1)));
         assert_eq!(place("a)"), Some((1, 2)));
+        let message = |text: &str| unreadable(text).map(|fault| fault.message).unwrap_or_default();
+        assert_eq!(message("L1 == 5'"), "a tick stands behind a number");
+        assert_eq!(message("L1 == phi1'"), "a tick is no derivative");
+        assert_eq!(message("L1 == 2\""), "a quote is no unit");
         assert_eq!(place("title \"a°b\"; (c)"), None);
         let span = span_at(3, 7).start();
         assert_eq!((span.line, span.column), (3, 6));

@@ -11,7 +11,7 @@ use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::CommandError;
-use super::chosen::{Choice, Chosen, finite, write_file};
+use super::chosen::{Choice, Chosen, finite, svg_file, write_file};
 
 /// Guesses along an axis, at most: the picture stays below 2 MB.
 const LARGEST: usize = 400;
@@ -33,7 +33,7 @@ pub struct Arguments {
     #[arg(long, value_name = "T", default_value_t = 0.0, value_parser = finite, allow_negative_numbers = true)]
     at: f64,
     /// File of the picture [default: mbs/NAME/basins.svg in cargo's target directory]
-    #[arg(long, value_name = "FILE.svg")]
+    #[arg(long, value_name = "FILE.svg", value_parser = svg_file)]
     out: Option<PathBuf>,
 }
 

@@ -1,17 +1,18 @@
 //! Arguments that the teaching commands share: mechanism, parameters, time and output file.
 
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use crate::catalogue::Catalogue;
 use crate::erased::dynamics::direct_dynamics::moved_to;
 use crate::erased::erase::Erased;
 use crate::erased::experiment::state_at;
 use crate::erased::facade::{AnyEquations, AnyMechanism, State};
-use crate::mismatch::{Mismatch, nearest};
+use crate::mismatch::{Mismatch, array, nearest, wrapped};
 use clap::Args;
 use mbs_codegen::StructureReport;
 
+use super::assignment::{Assignment, assignment};
 use super::target::Target;
 use super::{CommandError, summary};
 
@@ -19,9 +20,9 @@ use super::{CommandError, summary};
 pub struct Chosen {
     /// Name of the mechanism, as `mbs list` prints it, or a file with its text: FILE, FILE:Name, FILE:Name:Scene
     name: String,
-    /// Set a parameter, in the unit that `mbs list` prints
+    /// Set a parameter: a number in the unit that `mbs list` prints, or with a unit as `200mm`, `60rpm`, `4 [m^2]`
     #[arg(long = "param", value_name = "NAME=VALUE", value_parser = assignment)]
-    parameters: Vec<(String, f64)>,
+    parameters: Vec<Assignment>,
 }
 
 /// A mechanism with the parameters of its first preset and of the command line.
@@ -49,7 +50,7 @@ impl Chosen {
 
     pub fn described(&self, catalogue: &Catalogue) -> Result<Described, CommandError> {
         let target = Target::find(catalogue, &self.name)?;
-        let instance = target.sound_instance(&target.runs()[0], &self.parameters)?;
+        let instance = target.instance(&target.runs()[0], &self.parameters)?;
         Ok(Described { target, instance })
     }
 
@@ -94,7 +95,7 @@ impl Described {
                 ));
             }
         };
-        state.map_err(|failure| CommandError::Failed(format!("{}: {failure}", self.target.name())))
+        state.map_err(|failure| self.target.failed(self.equations(), &failure.to_string()))
     }
 }
 
@@ -131,21 +132,16 @@ pub fn coordinate(mechanism: &dyn AnyEquations, card: &str, name: &str) -> Resul
     let coordinates = mechanism.coordinates();
     coordinates.iter().position(|entry| entry.name == name).ok_or_else(|| {
         let known: Vec<&str> = coordinates.iter().map(|entry| entry.name).collect();
+        if let Some(array) = array(name, &known) {
+            return CommandError::Usage(format!(
+                "`{card}` has no coordinate `{name}`: it is an array, {array}"
+            ));
+        }
         let near = nearest(name, known.iter().copied());
         let near = near.map_or_else(String::new, |near| format!("; did you mean `{near}`?"));
-        let list = known.join(", ");
+        let list = wrapped(&known);
         CommandError::Usage(format!("`{card}` has no coordinate `{name}`{near}\nknown: {list}"))
     })
-}
-
-/// `NAME=VALUE` with a finite number.
-pub fn assignment(text: &str) -> Result<(String, f64), String> {
-    let (name, value) = text.split_once('=').ok_or("write it as NAME=VALUE, for example omega=20")?;
-    let (name, value) = (name.trim(), value.trim());
-    if name.is_empty() {
-        return Err("a name is needed before the `=`".to_string());
-    }
-    finite(value).map(|value| (name.to_string(), value))
 }
 
 /// A finite number.
@@ -157,6 +153,13 @@ pub fn finite(text: &str) -> Result<f64, String> {
     }
 }
 
+/// The path of a picture, whose suffix says what it is.
+pub fn svg_file(text: &str) -> Result<PathBuf, String> {
+    let path = PathBuf::from(text);
+    let is_svg = path.extension().is_some_and(|suffix| suffix.eq_ignore_ascii_case("svg"));
+    is_svg.then_some(path).ok_or_else(|| "the picture is SVG: name it FILE.svg".to_string())
+}
+
 /// Writes a file, its directory included.
 pub fn write_file(path: &Path, text: &str) -> Result<(), CommandError> {
     let fail =
@@ -165,17 +168,4 @@ pub fn write_file(path: &Path, text: &str) -> Result<(), CommandError> {
         fs::create_dir_all(directory).map_err(fail)?;
     }
     fs::write(path, text).map_err(fail)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn assignments_are_names_with_finite_numbers() {
-        assert_eq!(assignment("omega=2e1"), Ok(("omega".to_string(), 20.0)));
-        for bad in ["omega", "=2", "omega=", "omega=nan", "omega=1e999", "omega=two"] {
-            assert!(assignment(bad).is_err(), "{bad}");
-        }
-    }
 }

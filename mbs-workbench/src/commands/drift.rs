@@ -14,7 +14,8 @@ use super::CommandError;
 use super::analysis::{
     Damping, IntegratorName, MethodName, above_zero, doubtful, dynamics, largest, undetermined,
 };
-use super::chosen::{assignment, write_file};
+use super::assignment::{Assignment, assignment};
+use super::chosen::{svg_file, write_file};
 use super::run::steps;
 use super::target::Target;
 
@@ -22,9 +23,9 @@ use super::target::Target;
 pub struct Arguments {
     /// Name of a mechanism with masses, as `mbs list` prints it, or a file with its text: FILE, FILE:Name, FILE:Name:Scene
     pub name: String,
-    /// Set a parameter, in the unit that `mbs list` prints
+    /// Set a parameter: a number in the unit that `mbs list` prints, or with a unit as `200mm`, `60rpm`, `4 [m^2]`
     #[arg(long = "param", value_name = "NAME=VALUE", value_parser = assignment)]
-    parameters: Vec<(String, f64)>,
+    parameters: Vec<Assignment>,
     /// Stabilisation methods, one curve each
     #[arg(long, value_enum, value_delimiter = ',', default_value = "none,baumgarte,projection")]
     methods: Vec<MethodName>,
@@ -40,7 +41,7 @@ pub struct Arguments {
     #[command(flatten)]
     damping: Damping,
     /// File of the picture [default: mbs/NAME/drift.svg in cargo's target directory]
-    #[arg(long, value_name = "FILE.svg")]
+    #[arg(long, value_name = "FILE.svg", value_parser = svg_file)]
     out: Option<PathBuf>,
 }
 
@@ -57,7 +58,7 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut dyn Write) ->
     if arguments.damping.is_penalty_given() && !arguments.methods.contains(&MethodName::Penalty) {
         return Err(CommandError::Usage("`--alpha` belongs to `--methods penalty`".to_string()));
     }
-    let instance = target.sound_instance(&target.runs()[0], &arguments.parameters)?;
+    let instance = target.instance(&target.runs()[0], &arguments.parameters)?;
     let until = arguments.until.map_or_else(|| target.duration(instance.equations()), Ok)?;
     let times = instants(until, arguments.steps);
     let dynamics = dynamics(&target, &instance)?;
@@ -68,7 +69,7 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut dyn Write) ->
         let name = method.to_possible_value().map_or_else(String::new, |value| value.get_name().to_string());
         let simulated = dynamics
             .simulate(&approach, &times, &mut |_| ())
-            .map_err(|failure| CommandError::Failed(format!("{}, {name}: {failure}", target.name())))?;
+            .map_err(|failure| target.failed(instance.equations(), &format!("{name}: {failure}")))?;
         found.push((name, simulated));
     }
     let implicit = match arguments.methods.iter().any(|method| method.is_implicit()) {

@@ -1,7 +1,9 @@
 //! The commands of `mbs`: one file each, but for the six analyses, whose options and reports are in `run.rs`.
 
 mod analysis;
+mod assignment;
 pub mod basins;
+pub mod check;
 pub mod chosen;
 pub mod compare;
 pub mod dof;
@@ -14,6 +16,8 @@ pub mod newton;
 pub mod next;
 pub mod of_file;
 pub mod print;
+mod report_files;
+mod rows;
 pub mod run;
 pub mod structure;
 mod summary;

@@ -8,7 +8,8 @@ use crate::erased::formulas::Formula;
 use clap::Args;
 use mbs_runtime::{Failure, FailureKind};
 
-use super::chosen::{Choice, Chosen, assignment, finite};
+use super::assignment::{Assignment, assignment};
+use super::chosen::{Choice, Chosen, finite};
 use super::{CommandError, summary};
 
 #[derive(Args)]
@@ -17,7 +18,7 @@ pub struct Arguments {
     pub chosen: Chosen,
     /// Start from another value of a coordinate than the text's guess, in the unit of the text
     #[arg(long = "guess", value_name = "NAME=VALUE", value_parser = assignment)]
-    guesses: Vec<(String, f64)>,
+    guesses: Vec<Assignment>,
     /// Time (s) of the position
     #[arg(long, value_name = "T", default_value_t = 0.0, value_parser = finite, allow_negative_numbers = true)]
     at: f64,
@@ -34,8 +35,9 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut dyn Write) ->
     let choice = arguments.chosen.choice(catalogue)?;
     let mechanism = choice.mechanism.as_ref();
     let mut guess = mechanism.experiment().guess();
-    for (name, value) in &arguments.guesses {
-        guess[choice.coordinate(name)?] = *value;
+    for given in &arguments.guesses {
+        let index = choice.coordinate(&given.name)?;
+        guess[index] = given.in_unit(mechanism.coordinates()[index].unit)?;
     }
     let protocol = mechanism.experiment().iterations(&guess, arguments.at, arguments.plain);
     if let Err(
@@ -43,7 +45,7 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut dyn Write) ->
         | Failure { kind: FailureKind::NonFinite { line: 0, .. }, .. }),
     ) = &protocol.found
     {
-        return Err(CommandError::Failed(format!("{}: {failure}", choice.target.name())));
+        return Err(choice.target.failed(mechanism, &failure.to_string()));
     }
     let all: Vec<usize> = (0..guess.len()).collect();
     writeln!(out, "{} at t = {} s", choice.target.title(), arguments.at)?;
@@ -58,7 +60,7 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut dyn Write) ->
     write_formulas(out, &choice, &mechanism.experiment().formulas(&guess, arguments.at))?;
     match &protocol.found {
         Ok(q) => write_found(out, &choice, &all, q, arguments.at),
-        Err(failure) => Err(CommandError::Failed(format!("{}: {failure}", choice.target.name()))),
+        Err(failure) => Err(choice.target.failed(mechanism, &failure.to_string())),
     }
 }
 

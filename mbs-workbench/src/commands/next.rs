@@ -30,7 +30,7 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut dyn Write) ->
     let choice = arguments.chosen.choice(catalogue)?;
     let duration = choice.target.duration(choice.mechanism.as_ref())?;
     let course = Course::new(choice.mechanism.as_ref(), duration, arguments.starts)
-        .map_err(|failure| CommandError::Failed(format!("{}: {failure}", choice.target.name())))?;
+        .map_err(|failure| choice.target.failed(choice.mechanism.as_ref(), &failure.to_string()))?;
     let steps: Vec<f64> = PARTS.map(|part| duration / f64::from(part)).to_vec();
     writeln!(out, "{}\n", choice.target.title())?;
     writeln!(out, "previous   full Newton–Raphson from the previous position")?;

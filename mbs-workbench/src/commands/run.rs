@@ -1,7 +1,6 @@
 //! The analyses of the command line: `mbs run`, `kinematics`, `simulate`, `inverse`, `equilibrium`, `modes`.
 
 use crate::catalogue::Catalogue;
-use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -24,7 +23,9 @@ use super::analysis::{
     Analysis, Damping, IntegratorName, MethodName, Request, RunResult, UsedOptions, above_zero,
     at_least_zero, tolerance,
 };
-use super::chosen::{assignment, write_file};
+use super::assignment::{Assignment, assignment};
+use super::chosen::{svg_file, write_file};
+use super::report_files::{announce_size, require_writable, write_report};
 use super::target::Target;
 use super::{CommandError, positive, summary};
 
@@ -54,9 +55,9 @@ const LEAST_SHOWN: usize = 240;
 pub struct Selection {
     /// Name of the mechanism, as `mbs list` prints it, or a file with its text: FILE, FILE:Name, FILE:Name:Scene
     name: String,
-    /// Set a parameter, in the unit that `mbs list` prints
+    /// Set a parameter: a number in the unit that `mbs list` prints, or with a unit as `200mm`, `60rpm`, `4 [m^2]`
     #[arg(long = "param", value_name = "NAME=VALUE", value_parser = assignment)]
-    parameters: Vec<(String, f64)>,
+    parameters: Vec<Assignment>,
     /// Directory for the report [default: mbs/NAME in cargo's target directory]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -64,7 +65,7 @@ pub struct Selection {
     #[arg(long)]
     reload: bool,
     /// Also write the first motion as an SVG file that moves by itself
-    #[arg(long, value_name = "FILE.svg")]
+    #[arg(long, value_name = "FILE.svg", value_parser = svg_file)]
     svg: Option<PathBuf>,
 }
 
@@ -125,7 +126,7 @@ pub struct EquilibriumArguments {
     pub selection: Selection,
     /// Start the search for the equilibrium from another value of a coordinate, in the unit of the text
     #[arg(long = "guess", value_name = "NAME=VALUE", value_parser = assignment)]
-    guesses: Vec<(String, f64)>,
+    guesses: Vec<Assignment>,
 }
 
 /// Options of `mbs modes`.
@@ -135,7 +136,7 @@ pub struct ModesArguments {
     pub selection: Selection,
     /// Start the search for the equilibrium from another value of a coordinate, in the unit of the text
     #[arg(long = "guess", value_name = "NAME=VALUE", value_parser = assignment)]
-    guesses: Vec<(String, f64)>,
+    guesses: Vec<Assignment>,
     /// Time (s) of the state that small motions are about, followed there from the start [default: the equilibrium]
     #[arg(long, value_name = "T", value_parser = at_least_zero, allow_negative_numbers = true, conflicts_with = "guesses")]
     at: Option<f64>,
@@ -153,7 +154,7 @@ pub struct Arguments {
     command: &'static str,
     selection: Selection,
     analysis: Option<Analysis>,
-    guesses: Vec<(String, f64)>,
+    guesses: Vec<Assignment>,
     at: Option<f64>,
     span: Span,
     integration: Integration,
@@ -284,11 +285,11 @@ impl Arguments {
         if let Some(at) = self.at {
             command.push_str(&format!(" --at {at}"));
         }
-        for (name, value) in &self.guesses {
-            command.push_str(&format!(" --guess {name}={value}"));
+        for guess in &self.guesses {
+            command.push_str(&format!(" --guess {}", guess.written()));
         }
-        for (name, value) in &self.selection.parameters {
-            command.push_str(&format!(" --param {name}={value}"));
+        for parameter in &self.selection.parameters {
+            command.push_str(&format!(" --param {}", parameter.written()));
         }
         command
     }
@@ -299,6 +300,13 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut dyn Write) ->
     let target = Target::find(catalogue, &arguments.selection.name)?;
     let instances = target.instances(&arguments.selection.parameters)?;
     let request = arguments.request(&target);
+    let standard = || target_directory().join("mbs").join(target.file_name());
+    let directory = arguments.selection.out.clone().unwrap_or_else(standard);
+    require_writable(&directory)?;
+    let of_picture = arguments.selection.svg.as_deref().and_then(Path::parent);
+    if let Some(parent) = of_picture.filter(|parent| !parent.as_os_str().is_empty()) {
+        require_writable(parent)?;
+    }
     let (mut done, mut left_out) = (Vec::new(), Vec::new());
     for (index, instance) in instances.iter().enumerate() {
         match request.done(&target, instance) {
@@ -312,8 +320,7 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut dyn Write) ->
         return Err(CommandError::Failed(left_out.join("\n")));
     }
     drop_idle(&mut done.iter_mut().map(|done| &mut done.motion).collect::<Vec<_>>());
-    let standard = || target_directory().join("mbs").join(target.file_name());
-    let directory = arguments.selection.out.clone().unwrap_or_else(standard);
+    announce_size(done.iter().map(|done| &done.motion));
     let mut facts = facts(&instances, &done);
     facts.extend(left_out.iter().map(|reason| ["left out".to_string(), reason.clone()]));
     // Written before the table: printing fails if the reader of the output has left.
@@ -363,10 +370,19 @@ fn animated(target: &Target, mechanism: &dyn AnyEquations, motion: &Motion) -> R
 fn facts(instances: &[(Preset, Erased)], done: &[RunResult]) -> Vec<[String; 2]> {
     let first = instances[0].1.equations();
     let mut facts = vec![["coordinates".to_string(), first.coordinates().len().to_string()]];
+    let declared = mbs_codegen::variables(first.source(), Some(first.scene())).unwrap_or_default();
     for (index, entry) in first.variables().iter().enumerate() {
+        let bounds = declared.iter().find(|variable| variable.name == entry.name);
+        let bounds = bounds.map_or_else(String::new, |variable| {
+            let [low, high] = variable.range.map(summary::short);
+            let range =
+                if variable.range[1].is_finite() { format!(", {low} to {high}") } else { String::new() };
+            let tolerance = variable.tolerance.map(|deviation| format!(" ± {}", summary::short(deviation)));
+            tolerance.unwrap_or_default() + &range
+        });
         let written = |mechanism: &dyn AnyEquations| {
             let value = mechanism.get(index).unwrap_or(f64::NAN);
-            format!("{}{}", summary::short(value), summary::unit(entry.unit))
+            format!("{}{}{bounds}", summary::short(value), summary::unit(entry.unit))
         };
         if instances.iter().all(|(_, other)| other.equations().get(index) == first.get(index)) {
             facts.push([entry.name.to_string(), written(first)]);
@@ -435,29 +451,6 @@ fn modes(done: &[RunResult]) -> Option<String> {
     (!small.is_empty()).then(|| csv::write_modes(&small))
 }
 
-/// Writes files of given names and texts. Each is written next to its place first, so that a full disk leaves no incomplete file.
-fn write_report(directory: &Path, files: &[(&str, String)]) -> Result<Vec<PathBuf>, CommandError> {
-    let fail = |path: &Path, error: std::io::Error| {
-        CommandError::Failed(format!("cannot write {}: {error}", path.display()))
-    };
-    fs::create_dir_all(directory).map_err(|error| fail(directory, error))?;
-    let draft = |name: &str| directory.join(format!(".{name}.{}.draft", std::process::id()));
-    let written = files
-        .iter()
-        .try_for_each(|(name, text)| fs::write(draft(name), text).map_err(|error| fail(&draft(name), error)));
-    let placed = written.and_then(|()| {
-        files.iter().try_for_each(|(name, _)| {
-            let place = directory.join(name);
-            fs::rename(draft(name), &place).map_err(|error| fail(&place, error))
-        })
-    });
-    if placed.is_err() {
-        // Removes the temporary files; those already in place are complete.
-        files.iter().for_each(|(name, _)| drop(fs::remove_file(draft(name))));
-    }
-    placed.map(|()| files.iter().map(|(name, _)| directory.join(name)).collect())
-}
-
 /// Most steps of a run: its motion is held in memory and written as text.
 const MOST_STEPS: usize = 1_000_000;
 
@@ -479,16 +472,5 @@ mod tests {
         for bad in ["0", "-1", "1.5", "1000001", "99999999999", "two"] {
             assert!(steps(bad).is_err(), "{bad}");
         }
-    }
-
-    #[test]
-    fn a_report_that_cannot_be_written_leaves_nothing() {
-        let directory = target_directory().join("tmp").join(format!("report-{}", std::process::id()));
-        fs::create_dir_all(directory.join("motion.csv")).expect("a directory in the way");
-        let files = [("report.html", "page".to_string()), ("motion.csv", "values".to_string())];
-        assert!(write_report(&directory, &files).is_err());
-        let left = fs::read_dir(&directory).expect("the directory").flatten();
-        assert!(left.into_iter().all(|file| !file.file_name().to_string_lossy().ends_with("draft")));
-        fs::remove_dir_all(directory).expect("scratch");
     }
 }

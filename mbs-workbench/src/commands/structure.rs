@@ -10,7 +10,7 @@ use clap::Args;
 use mbs_codegen::{BlockReport, EntryKind, StructureReport};
 
 use super::CommandError;
-use super::chosen::{Chosen, write_file};
+use super::chosen::{Chosen, svg_file, write_file};
 use super::text::Text;
 
 #[derive(Args)]
@@ -18,7 +18,7 @@ pub struct Arguments {
     #[command(flatten)]
     pub chosen: Chosen,
     /// Draw the ordered Jacobian with its blocks
-    #[arg(long, value_name = "FILE.svg")]
+    #[arg(long, value_name = "FILE.svg", value_parser = svg_file)]
     out: Option<PathBuf>,
 }
 

@@ -10,7 +10,7 @@ use clap::Args;
 use mbs_runtime::driver::{End, FitError};
 
 use super::CommandError;
-use super::chosen::{finite, write_file};
+use super::chosen::{finite, svg_file, write_file};
 
 #[derive(Args)]
 pub struct Arguments {
@@ -36,7 +36,7 @@ pub struct Arguments {
     #[arg(long, value_name = "NAME", value_parser = constant_name)]
     rust: Option<String>,
     /// File of the picture [default: mbs/table/FILE.svg in cargo's target directory]
-    #[arg(long, value_name = "FILE.svg")]
+    #[arg(long, value_name = "FILE.svg", value_parser = svg_file)]
     out: Option<PathBuf>,
     /// Print a table to try this on, and nothing else
     #[arg(long, conflicts_with_all = ["file", "rust"])]

@@ -9,6 +9,8 @@ use crate::erased::facade::AnyEquations;
 use crate::mismatch::{Mismatch, set};
 
 use super::CommandError;
+use super::assignment::{Assignment, with_unit};
+use super::rows::with_rows;
 use crate::text_file::is_file;
 
 /// A mechanism of the list, its text read.
@@ -75,29 +77,37 @@ impl Target {
     }
 
     /// An instance with the preset's parameters and those of the command line.
-    pub fn instance(&self, preset: &Preset, parameters: &[(String, f64)]) -> Result<Erased, Mismatch> {
+    ///
+    /// Lengths, masses, moments of inertia and stiffnesses of the command line are physically possible.
+    pub fn instance(&self, preset: &Preset, parameters: &[Assignment]) -> Result<Erased, CommandError> {
         let mut instance = self.card.instance(preset)?;
-        for (name, value) in parameters {
-            set(instance.equations_mut(), name, *value).map_err(|mismatch| mismatch.of(&self.name))?;
+        for parameter in parameters {
+            let equations = instance.equations_mut();
+            let unit = equations.variables().iter().find(|entry| entry.name == parameter.name);
+            let value = unit.map_or(Ok(0.0), |entry| parameter.in_unit(entry.unit))?;
+            set(equations, &parameter.name, value).map_err(|mismatch| mismatch.of(&self.name))?;
         }
-        Ok(instance)
-    }
-
-    /// [`instance`](Self::instance), if every mass, moment of inertia and stiffness is physically possible.
-    pub fn sound_instance(
-        &self,
-        preset: &Preset,
-        parameters: &[(String, f64)],
-    ) -> Result<Erased, CommandError> {
-        let instance = self.instance(preset, parameters)?;
         let equations = instance.equations();
-        if parameters.is_empty() || equations.tables().is_none() {
+        if parameters.is_empty() {
             return Ok(instance);
         }
         let value = |name: &str| {
             let index = equations.variables().iter().position(|entry| entry.name == name)?;
             equations.get(index)
         };
+        let declared = mbs_codegen::variables(equations.source(), Some(equations.scene()));
+        for variable in declared.map_err(CommandError::Failed)? {
+            let given = parameters.iter().any(|parameter| parameter.name == variable.name);
+            let found = value(&variable.name).unwrap_or(variable.default);
+            let [low, high] = variable.range;
+            if given && !(low..=high).contains(&found) {
+                let [found, low, high] = [found, low, high].map(|end| with_unit(end, &variable.unit));
+                return Err(CommandError::Usage(format!(
+                    "`{}` is {found}: the text allows {low} to {high}",
+                    variable.name
+                )));
+            }
+        }
         let found = mbs_codegen::impossible_values(equations.source(), Some(equations.scene()), value);
         match found.map_err(CommandError::Failed)?.as_slice() {
             [] => Ok(instance),
@@ -106,21 +116,27 @@ impl Target {
     }
 
     /// One instance for each preset; a single one if the command line sets the parameters in which presets differ.
-    pub fn instances(&self, parameters: &[(String, f64)]) -> Result<Vec<(Preset, Erased)>, CommandError> {
+    pub fn instances(&self, parameters: &[Assignment]) -> Result<Vec<(Preset, Erased)>, CommandError> {
         let as_given = || Preset {
             label: "as given".to_string(),
             description: "parameters of the command line".to_string(),
             set: Vec::new(),
         };
-        let given = |name: &str| parameters.iter().any(|(given, _)| given == name);
+        let given = |name: &str| parameters.iter().any(|given| given.name == name);
         let overridden = self.runs.iter().flat_map(|run| &run.set).any(|(name, _)| given(name));
         let presets = if overridden { vec![as_given()] } else { self.runs.clone() };
         let mut instances = Vec::new();
         for preset in presets {
-            let instance = self.sound_instance(&preset, parameters)?;
+            let instance = self.instance(&preset, parameters)?;
             instances.push((preset, instance));
         }
         Ok(instances)
+    }
+
+    /// Reason of a failure with the mechanism's name, and the rows that it names.
+    pub fn failed(&self, mechanism: &dyn AnyEquations, reason: &str) -> CommandError {
+        let reason = with_rows(reason, mechanism.source(), is_file(&self.name));
+        CommandError::Failed(format!("{}: {reason}", self.name))
     }
 
     /// Duration (s) of the motion of `mechanism`.
@@ -133,10 +149,11 @@ impl Target {
 mod tests {
     use super::*;
     use crate::card;
+    use crate::commands::assignment::assignment;
 
     mbs_runtime::mechanism! {
         pub mechanism Crank;
-        param omega: rad/s = 1;
+        param omega: rad/s = 1 in 0.1..600rpm, tolerance 0.01;
         param side: 1 = 1;
         coord phi: rad;
         drive motor: phi == side*omega*t;
@@ -146,15 +163,29 @@ mod tests {
     }
 
     #[test]
+    fn values_outside_of_a_range_are_refused() {
+        let cards = [card!(self::Crank::default())];
+        let catalogue = Catalogue { cards: &cards };
+        let target = Target::find(&catalogue, &cards[0].name()).expect("in the list");
+        let given = |text: &str| target.instances(&[assignment(text).expect("a number")]).map(|_| ());
+        assert!(given("omega=600rpm").is_ok() && given("omega=0.1").is_ok());
+        let message = given("omega=1000rpm").expect_err("too fast").to_string();
+        assert_eq!(message, "`omega` is 104.72 rad/s: the text allows 0.1 rad/s to 62.8319 rad/s");
+        assert!(given("omega=0").is_err());
+    }
+
+    #[test]
     fn what_the_command_line_sets_overrules_the_presets() {
         let cards = [card!(self::Crank::default())];
         let catalogue = Catalogue { cards: &cards };
         let target = Target::find(&catalogue, &cards[0].name()).expect("in the list");
-        let labels = |parameters: &[(String, f64)]| -> Vec<String> {
-            let instances = target.instances(parameters).expect("parameters");
+        let labels = |parameters: &[&str]| -> Vec<String> {
+            let parameters: Vec<Assignment> =
+                parameters.iter().map(|text| assignment(text).expect("a number")).collect();
+            let instances = target.instances(&parameters).expect("parameters");
             instances.into_iter().map(|(preset, _)| preset.label).collect()
         };
-        assert_eq!(labels(&[("omega".to_string(), 1.0)]).len(), target.runs().len());
-        assert_eq!(labels(&[("side".to_string(), -1.0)]), ["as given"]);
+        assert_eq!(labels(&["omega=60rpm"]).len(), target.runs().len());
+        assert_eq!(labels(&["side=-1"]), ["as given"]);
     }
 }

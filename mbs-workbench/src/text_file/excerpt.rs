@@ -47,6 +47,16 @@ pub fn faults(path: &str, content: &str, faults: &[Fault]) -> String {
     joined(&faults.iter().map(shown).collect::<Vec<_>>())
 }
 
+/// Warnings of a text that stands in `content`, the file at `path`.
+pub fn warnings(path: &str, content: &str, warnings: &[Fault]) -> Vec<String> {
+    let shown = |fault: &Fault| {
+        let Fault { line, column, message, help, .. } = fault;
+        let excerpt = Excerpt { path, content, line: *line, column: *column, length: fault.width() };
+        excerpt.message(message, &[("help", help)]).replacen("error: ", "warning: ", 1)
+    };
+    warnings.iter().map(shown).collect()
+}
+
 /// Messages one below the other, as the text of an error that the program prints behind `error: `.
 pub fn joined(messages: &[String]) -> String {
     let text = messages.join("\n");

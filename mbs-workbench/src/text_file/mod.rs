@@ -112,6 +112,69 @@ impl TextFile {
     }
 }
 
+/// Number of the texts in the file of an argument, and their warnings as a compiler shows them.
+///
+/// # Errors
+/// As [`TextFile::read`]; the faults of all texts.
+pub fn checked(argument: &str) -> Result<(usize, Vec<String>), TextFileError> {
+    let (path, content, calls) = texts(argument)?;
+    let (mut faults, mut warnings) = (Vec::new(), Vec::new());
+    for call in &calls {
+        match mbs_codegen::warnings(&call.source) {
+            Ok(found) => warnings.extend(found),
+            Err(found) => faults.extend(found),
+        }
+    }
+    if faults.is_empty() {
+        Ok((calls.len(), excerpt::warnings(&path, &content, &warnings)))
+    } else {
+        Err(TextFileError::Faults(excerpt::faults(&path, &content, &faults)))
+    }
+}
+
+/// A mechanism or scene in a file.
+pub struct Listed {
+    /// Argument of the command line that names it.
+    pub argument: String,
+    /// Title of its picture.
+    pub title: String,
+    /// Its parameters and inputs.
+    pub variables: Vec<mbs_codegen::Variable>,
+}
+
+/// All mechanisms and scenes in the file of an argument.
+///
+/// # Errors
+/// As [`TextFile::read`].
+pub fn listed(argument: &str) -> Result<Vec<Listed>, TextFileError> {
+    let (path, content, calls) = texts(argument)?;
+    let mut found = Vec::new();
+    for call in &calls {
+        let outline = outlined(&path, &content, call)?;
+        let scenes = outline.scenes.iter().map(|scene| Some(scene.as_str()));
+        let scenes: Vec<Option<&str>> = if outline.scenes.is_empty() { vec![None] } else { scenes.collect() };
+        for (argument, scene) in arguments(&path, call, calls.len() > 1).into_iter().zip(scenes) {
+            let title = mbs_codegen::picture(&call.source, scene).map(|picture| picture.title);
+            let variables = mbs_codegen::variables(&call.source, scene);
+            found.push(Listed {
+                argument,
+                title: title.map_err(TextFileError::Faults)?,
+                variables: variables.map_err(TextFileError::Faults)?,
+            });
+        }
+    }
+    Ok(found)
+}
+
+/// Path, content and texts of the file of an argument.
+fn texts(argument: &str) -> Result<(String, String, Vec<Call>), TextFileError> {
+    let path = Argument::of(argument).path.to_string();
+    let content = fs::read_to_string(&path)
+        .map_err(|error| TextFileError::Unreadable { path: path.clone(), reason: error.to_string() })?;
+    let calls = calls(&path, &content)?;
+    Ok((path, content, calls))
+}
+
 fn calls(path: &str, content: &str) -> Result<Vec<Call>, TextFileError> {
     if path.ends_with(".mbs") {
         return Ok(vec![Call { name: None, source: content.to_string(), line: 1 }]);

@@ -6,7 +6,7 @@
 //! | code | found by | target |
 //! |---|---|---|
 //! | `k1` to `k8` | kinematics of independent texts, in `f64` and `f32` | `kinematics`; of the language `language` |
-//! | `d1` to `d30` | motions from forces of independent texts | `singular`, `events`, `friction`, `stiff`, `starts`; of the language `language` |
+//! | `d1` to `d31` | motions from forces of independent texts | `singular`, `events`, `friction`, `stiff`, `starts`; of the language `language` |
 //! | `t6` to `t8` | a line of the library changed on purpose, which no test noticed | the target of that line |
 //!
 //! The first line of each file says what the fault was. Several files with one code are tests of one class. A fault without a file of its own is

@@ -53,38 +53,6 @@ pub struct DynamicBodies {
     pub loads: TokenStream,
 }
 
-impl DynamicBodies {
-    /// The same body for every function.
-    pub fn all(body: impl Fn() -> TokenStream) -> Self {
-        DynamicBodies {
-            force_uses_multipliers: true,
-            start_states: body(),
-            start_rates: body(),
-            signed: TokenStream::new(),
-            missing: TokenStream::new(),
-            gaps: TokenStream::new(),
-            limit_rates: TokenStream::new(),
-            mass: body(),
-            mass_times: body(),
-            force: body(),
-            force_q: body(),
-            force_qd: body(),
-            force_lambda: None,
-            normal_forces: None,
-            mass_times_q: body(),
-            reaction: body(),
-            reaction_q: body(),
-            third: None,
-            energy: body(),
-            powers: body(),
-            carried: None,
-            state_rates: body(),
-            state_slopes: None,
-            loads: body(),
-        }
-    }
-}
-
 /// Before: the program of a model. After: one body a function, where the text has masses or forces.
 pub fn bodies(
     equations: &Equations,

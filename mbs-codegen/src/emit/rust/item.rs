@@ -44,7 +44,7 @@ pub fn item(
     let of_scenes = scenes::items(text, scenes, parts);
     let views = parts.iter().map(|part| {
         let (coordinates, outputs) = (coordinates_view(text, part.scene), outputs_view(text, part.scene));
-        let stepper = part.square.then(|| stepper_alias(text, scenes, part.scene, rows(part)));
+        let stepper = part.square.then(|| stepper_alias(text, scenes, part.scene));
         quote! { #coordinates #outputs #stepper }
     });
     let private = parts.iter().map(|part| implementations(text, scenes, part));
@@ -63,13 +63,6 @@ pub fn item(
     }
 }
 
-/// Number of rows; the stub of a square text has as many as it was meant to have.
-fn rows(part: &SceneFunctions<'_>) -> usize {
-    let model = &part.scene.model;
-    let more = model.rows.len() > model.coordinates.len() && model.rows.iter().any(|row| row.redundant);
-    if part.square && !more { model.coordinates.len() } else { model.rows.len() }
-}
-
 /// Trait implementations, with the types that only they name.
 fn implementations(text: &Text, scenes: &Scenes, part: &SceneFunctions<'_>) -> TokenStream {
     let runtime = &text.header.runtime;
@@ -78,7 +71,7 @@ fn implementations(text: &Text, scenes: &Scenes, part: &SceneFunctions<'_>) -> T
     let name = scenes::type_in(text, scenes, scene, &quote! { T });
     let lane = scenes::type_in(text, scenes, scene, &quote! { T::Real });
     let callable = Generics::of(text, scenes).callable(model, runtime);
-    let m = rows(part);
+    let m = model.rows.len();
     let kinematic = part.square.then(|| kinematic(&name, (model, m), (bodies, &callable), runtime));
     // Surplus rows leave multipliers open that only all rows together determine.
     let is_partitioned = model.dynamics.is_some() && !part.surplus;

@@ -40,7 +40,7 @@ use self::generics::Generics;
 
 pub use self::lengths::Lengths;
 
-pub use self::stub::stub;
+pub use self::stub::{stub, stub_of_tokens};
 
 /// A scene with the results of all stages.
 pub struct Translated<'a> {

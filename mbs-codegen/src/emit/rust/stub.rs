@@ -1,74 +1,171 @@
-//! Items emitted together with errors, so that the code that uses them gives no further ones.
+//! Names that stand beside errors, so that the code that uses them gives no further ones.
+//!
+//! The first error of the text is a constant, and every type is generic over it. The compiler says nothing about a type with a
+//! faulty constant: not on its fields, its methods, its traits, or how many rows it has. So the stub needs to know names alone.
+//! Only patterns look fields up by name; fields are kept for them.
 
-use proc_macro2::TokenStream;
-use quote::quote;
+use std::collections::BTreeSet;
 
-use crate::emit::rust::SceneFunctions;
-use crate::emit::rust::dynamics::DynamicBodies;
-use crate::emit::rust::functions::Bodies;
-use crate::emit::rust::item;
-use crate::model::Model;
+use proc_macro2::{Delimiter, Ident, Span, TokenStream, TokenTree};
+use quote::{format_ident, quote};
+
+use crate::emit::rust::fields::ident;
+use crate::emit::rust::generics::Generics;
+use crate::model::scene::Scene;
 use crate::model::scenes::Scenes;
-use crate::structure::shape_of;
-use crate::syntax::Text;
+use crate::model::selection::alias;
+use crate::syntax::rust_identifiers::{UNUSABLE, identifier};
+use crate::syntax::{OWN, Text};
 
-/// Before: scenes with faults. After: the same items as without, with bodies that are never compiled to run.
-pub fn stub(text: &Text, scenes: &Scenes) -> TokenStream {
-    let all = scenes.scenes.iter().chain(&scenes.whole);
-    let parts = all.map(|scene| {
-        let model = &scene.model;
-        let (square, surplus) = shape_of(model);
-        let bodies = bodies(model, &text.header.runtime);
-        SceneFunctions { scene, square, surplus, docs: Vec::new(), bodies }
-    });
-    item::item(text, scenes, &parts.collect::<Vec<_>>(), None)
+/// Type parameters of the stub beyond those of the text: a declaration of a function may be out of recognition.
+const SPARE: usize = 4;
+
+/// Before: a text with faults, the first of them as an expression. After: the struct, the views and the scenes by their names.
+pub fn stub(text: &Text, scenes: &Scenes, fault: &TokenStream) -> TokenStream {
+    let (header, generics) = (&text.header, Generics::of(text, scenes));
+    let visibility = &header.visibility;
+    let docs = header.attributes.iter().filter(|attribute| attribute.path().is_ident("doc"));
+    let fields: Vec<Ident> = {
+        let functions = scenes.shared.functions.iter().map(|function| &function.name);
+        scenes.shared.fields.iter().map(|field| &field.name).chain(functions).map(ident).collect()
+    };
+    let mut items = Items::new(&header.label(), fault, generics.functions().count() + SPARE);
+    items.push((&quote! { #(#docs)* #visibility }, header.name.clone()), &fields);
+    let all = || scenes.scenes.iter().chain(&scenes.whole);
+    for scene in all() {
+        let name = alias(header, scene.label().unwrap_or_default());
+        if let Some(label) = &scene.name {
+            items.push((&quote! { #visibility }, identifier(&name, label.span)), &fields);
+        }
+        let view = format_ident!("{name}Coordinates");
+        let coordinates: Vec<Ident> =
+            scene.model.coordinate_fields.iter().map(|field| ident(&field.name)).collect();
+        items.push((&quote! { #visibility }, view), &coordinates);
+    }
+    items.scenes(&quote! { #visibility }, all().filter_map(|scene: &Scene| scene.name.as_ref()).map(ident));
+    items.tokens
 }
 
-fn bodies(model: &Model, runtime: &TokenStream) -> Bodies {
-    let body = || quote! { { ::core::unreachable!() } };
-    Bodies {
-        orders: vec![0; model.functions.len()],
-        contacts: None,
-        kept_parameters: 0,
-        kept_position: 0,
-        parameters: body(),
-        guess: body(),
-        coordinate_scales: body(),
-        row_scales: body(),
-        widths: None,
-        position: body(),
-        phi: body(),
-        phi_q: body(),
-        phi_q_entries: body(),
-        sparsity: Vec::new(),
-        phi_t: body(),
-        phi_tt: body(),
-        phi_qt_qd: body(),
-        gamma: body(),
-        evaluate: Some(body()),
-        branches: body(),
-        limits: body(),
-        phases: quote! {},
-        speeds: quote! {},
-        outputs: body(),
-        factors: quote! {
-            #[derive(::core::clone::Clone, ::core::marker::Copy, ::core::fmt::Debug)]
-            pub struct __Factors<T>([T; 0]);
-        },
-        short: false,
-        factorizes_in_line: false,
-        solve_with_position: body(),
-        solve_blocks: None,
-        solve_motion: None,
-        methods: TokenStream::new(),
-        parts: TokenStream::new(),
-        factorize: body(),
-        solve_linear: body(),
-        // A constant: the compiler computes it.
-        work: quote! { #runtime::Work::NONE },
-        independent: Vec::new(),
-        complete: body(),
-        reduce: body(),
-        dynamics: model.dynamics.as_ref().map(|_| DynamicBodies::all(body)),
+/// [`stub`] of a text that cannot be read: what its tokens say of its name and of those of its scenes. Without a name it is the
+/// fault alone, as an item.
+pub fn stub_of_tokens(input: TokenStream, fault: &TokenStream) -> TokenStream {
+    let mut words = Vec::new();
+    for tree in input {
+        match tree {
+            // Tokens of a caller's macro, or an effect.
+            TokenTree::Group(group) if matches!(group.delimiter(), Delimiter::None | Delimiter::Brace) => {
+                words.extend(group.stream());
+            }
+            tree => words.push(tree),
+        }
+    }
+    let named = |keyword: &str| -> Vec<Ident> {
+        let pairs = words.windows(2).filter_map(|pair| match pair {
+            [TokenTree::Ident(word), TokenTree::Ident(name)] if *word == keyword => Some(name),
+            _ => None,
+        });
+        pairs.filter_map(usable).collect()
+    };
+    let Some(name) = named("mechanism").into_iter().next() else { return fault.clone() };
+    let label = name.to_string().trim_start_matches("r#").to_owned();
+    let public = quote! { pub };
+    let mut items = Items::new(&label, fault, SPARE);
+    let fields: Vec<Ident> = ["param", "input", "function"].into_iter().flat_map(named).collect();
+    let coordinates = named("coord");
+    items.push((&public, name), &fields);
+    items.push((&public, format_ident!("{label}Coordinates")), &coordinates);
+    let scenes = named("scene");
+    for scene in &scenes {
+        let name = format!("{label}{}", scene.to_string().trim_start_matches("r#"));
+        items.push((&public, format_ident!("{name}Coordinates")), &coordinates);
+        items.push((&public, identifier(&name, scene.span())), &fields);
+    }
+    items.scenes(&public, scenes.into_iter());
+    items.tokens
+}
+
+/// A name that a type may have.
+fn usable(name: &Ident) -> Option<Ident> {
+    let text = name.to_string();
+    let text = text.trim_start_matches("r#");
+    let fits = !UNUSABLE.contains(&text) && !text.starts_with(OWN);
+    fits.then(|| identifier(text, name.span()))
+}
+
+/// Items of the stub, each name once.
+struct Items {
+    tokens: TokenStream,
+    known: BTreeSet<String>,
+    /// Name of the mechanism, of which those of hidden items are made.
+    label: String,
+    /// Name of the faulty constant.
+    fault: Ident,
+    parameters: Vec<Ident>,
+}
+
+impl Items {
+    fn new(label: &str, fault: &TokenStream, parameters: usize) -> Self {
+        let constant = format_ident!("__{label}Fault");
+        Items {
+            tokens: quote! {
+                #[doc(hidden)]
+                #[allow(dead_code, non_upper_case_globals, reason = "named after the mechanism")]
+                const #constant: ::core::primitive::usize = #fault;
+            },
+            known: BTreeSet::new(),
+            label: label.into(),
+            fault: constant,
+            // The scalar and the scene are two of them.
+            parameters: (0..parameters + 2).map(|index| format_ident!("__P{index}")).collect(),
+        }
+    }
+
+    /// A struct with a faulty constant, under a name that takes any number of type arguments.
+    fn push(&mut self, (head, name): (&TokenStream, Ident), fields: &[Ident]) {
+        if !self.known.insert(name.to_string()) {
+            return;
+        }
+        let (fault, parameters) = (&self.fault, &self.parameters);
+        let hidden =
+            format_ident!("__{}", name.to_string().trim_start_matches("r#"), span = Span::call_site());
+        let marker = quote! { ::core::marker::PhantomData };
+        let mut known = BTreeSet::new();
+        let fields: Vec<&Ident> = fields.iter().filter(|field| known.insert(field.to_string())).collect();
+        let none = fields.is_empty().then(|| quote! { pub __parameters: #marker<P>, });
+        self.tokens.extend(quote! {
+            #[doc(hidden)]
+            #[allow(dead_code, non_snake_case, non_camel_case_types, unreachable_pub, reason = "named by the text")]
+            pub struct #hidden<P, const FAULT: ::core::primitive::usize> {
+                #(pub #fields: #marker<(P, [(); FAULT])>,)*
+                #none
+            }
+            #[allow(dead_code, non_camel_case_types, reason = "named by the text")]
+            #head type #name<#(#parameters = ()),*> = #hidden<(#(#parameters,)*), { #fault }>;
+        });
+    }
+
+    /// Types that stand for the scenes. By a glob, equal names of scenes in one module are no fault.
+    fn scenes(&mut self, visibility: &TokenStream, names: impl Iterator<Item = Ident>) {
+        let module = format_ident!("__{}Scenes", self.label);
+        let mut known = BTreeSet::new();
+        let names: Vec<Ident> = names.filter(|name| known.insert(name.to_string())).collect();
+        if names.is_empty() {
+            return;
+        }
+        self.tokens.extend(quote! {
+            #[doc(hidden)]
+            #[allow(dead_code, non_snake_case, non_camel_case_types, unreachable_pub, reason = "named by the text")]
+            mod #module {
+                #(
+                    #[derive(
+                        ::core::clone::Clone, ::core::marker::Copy, ::core::fmt::Debug, ::core::default::Default,
+                        ::core::cmp::PartialEq, ::core::cmp::Eq
+                    )]
+                    pub struct #names {}
+                )*
+            }
+            #[allow(unused_imports, ambiguous_glob_reexports, reason = "not every caller uses them")]
+            #visibility use #module::*;
+        });
     }
 }

@@ -38,22 +38,15 @@ pub fn coordinates_view(text: &Text, scene: &Scene) -> TokenStream {
         quote! { #ident: #value, }
     });
     let into = tokens(&listed(model), runtime);
-    // A text whose coordinates are all faulty still has a view, so that the fault alone is reported.
-    let (marker, marker_value) = if model.coordinate_fields.is_empty() {
-        let marker = quote! { ::core::marker::PhantomData };
-        (quote! { #[doc(hidden)] pub scalar: #marker<T>, }, quote! { scalar: #marker, })
-    } else {
-        (TokenStream::new(), TokenStream::new())
-    };
     quote! {
         #[doc = #title]
         #[allow(non_snake_case, reason = "the text names the coordinates")]
         #[derive(::core::clone::Clone, ::core::marker::Copy, ::core::fmt::Debug, ::core::cmp::PartialEq)]
-        #visibility struct #name<T = ::core::primitive::f64> { #(#fields)* #marker }
+        #visibility struct #name<T = ::core::primitive::f64> { #(#fields)* }
 
         impl<T: ::core::marker::Copy> ::core::convert::From<[T; #n]> for #name<T> {
             fn from(__q: [T; #n]) -> Self {
-                Self { #(#from)* #marker_value }
+                Self { #(#from)* }
             }
         }
 
@@ -103,7 +96,7 @@ pub fn outputs_view(text: &Text, scene: &Scene) -> TokenStream {
 }
 
 /// The stepper of a scene whose rows fix every coordinate, by a short name.
-pub fn stepper_alias(text: &Text, scenes: &Scenes, scene: &Scene, rows: usize) -> TokenStream {
+pub fn stepper_alias(text: &Text, scenes: &Scenes, scene: &Scene) -> TokenStream {
     let (visibility, runtime) = (&text.header.visibility, &text.header.runtime);
     let alias = alias(&text.header, scene.label().unwrap_or_default());
     let name = format_ident!("{alias}{STEPPER}");
@@ -111,7 +104,7 @@ pub fn stepper_alias(text: &Text, scenes: &Scenes, scene: &Scene, rows: usize) -
     let generics = Generics::of(text, scenes);
     let functions = generics.functions();
     let mechanism = type_in(text, scenes, scene, &quote! { T });
-    let n = scene.model.coordinates.len();
+    let (n, rows) = (scene.model.coordinates.len(), scene.model.rows.len());
     quote! {
         #[doc = #title]
         #[allow(dead_code, non_camel_case_types, reason = "a short name for who wants it")]

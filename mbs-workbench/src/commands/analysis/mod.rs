@@ -22,6 +22,7 @@ pub use self::method::{Damping, IntegratorName, MethodName, above_zero, at_least
 pub use self::used_options::UsedOptions;
 use self::watch::{Watch, progress};
 use super::CommandError;
+use super::assignment::Assignment;
 use super::chosen::coordinate;
 use super::target::Target;
 
@@ -59,7 +60,7 @@ pub struct Request {
     /// Steps of an explicit method.
     pub steps_of_method: Steps,
     /// Coordinates by name that the search for a position of rest starts from.
-    pub guesses: Vec<(String, f64)>,
+    pub guesses: Vec<Assignment>,
     /// Time (s) of the state that small motions are about.
     pub at: Option<f64>,
     pub until: Option<f64>,
@@ -92,7 +93,7 @@ impl Request {
             RunResult { instance: 0, label, description, motion, figures, small }
         };
         let fail =
-            |reason: String| CommandError::Failed(format!("{}, {}: {reason}", target.name(), preset.label));
+            |reason: String| target.failed(instance.equations(), &format!("{}: {reason}", preset.label));
         self.require_use(target)?;
         let (times, bar) = (self.times(target, instance)?, progress(&preset.label));
         self.require_end(target, &times)?;
@@ -164,8 +165,10 @@ impl Request {
 
     /// The guesses by index.
     fn guesses(&self, target: &Target, instance: &Erased) -> Result<Vec<(usize, f64)>, CommandError> {
-        let index = |(name, value): &(String, f64)| {
-            Ok((coordinate(instance.equations(), target.name(), name)?, *value))
+        let equations = instance.equations();
+        let index = |guess: &Assignment| {
+            let index = coordinate(equations, target.name(), &guess.name)?;
+            Ok((index, guess.in_unit(equations.coordinates()[index].unit)?))
         };
         self.guesses.iter().map(index).collect()
     }

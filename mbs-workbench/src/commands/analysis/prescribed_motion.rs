@@ -5,7 +5,7 @@ use crate::erased::facade::{AnyMechanism, MotionStop};
 
 use super::loads::{energies, loads};
 use super::{Analysed, AnalysisResult};
-use crate::commands::summary;
+use crate::commands::summary::{self, significant};
 
 pub(super) fn kinematic(
     mechanism: &dyn AnyMechanism,
@@ -20,18 +20,19 @@ pub(super) fn kinematic(
         let figures = summary::figures(&motion, step_time).to_vec();
         Ok(AnalysisResult::of(motion, figures))
     });
-    found.map_err(|failure| {
-        let stop = mechanism.stop(times).map_or_else(String::new, |stop| described(&stop));
-        format!("{failure}{stop}")
+    found.map_err(|failure| match mechanism.stop(times) {
+        // The failure of the step that leads beyond it only follows.
+        Some(stop) => described(&stop, times.last().copied().unwrap_or(0.0)),
+        None => failure.to_string(),
     })
 }
 
-/// Bracket in time of the motion's end, as lines below the failure.
-fn described(stop: &MotionStop) -> String {
-    let MotionStop { reachable, refused, failure } = stop;
-    format!(
-        "\nthe motion ends between t = {reachable} s and t = {refused} s; at the end of that step\n{failure}"
-    )
+/// End of the motion in one line.
+fn described(stop: &MotionStop, end: f64) -> String {
+    let MotionStop { reachable, failure, .. } = stop;
+    let [reached, end] = [*reachable, end].map(|time| significant(time, 6));
+    let reason = failure.to_string().replace('\n', " ");
+    format!("the mechanism locks: its motion ends at t = {reached} s of {end} s; {reason}")
 }
 
 pub(super) fn inverse(

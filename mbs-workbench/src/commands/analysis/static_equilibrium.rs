@@ -64,7 +64,9 @@ fn described(rest: &Rest, small: &Result<SmallMotions, String>) -> AnalysisResul
     for coordinate in &motion.coordinates {
         let alike = motion.coordinates.iter().filter(|other| other.unit == coordinate.unit);
         let size = alike.map(|other| other.q[0].abs()).fold(0.0, f64::max);
-        let settled = if coordinate.q[0].abs() <= ROUNDING * size { 0.0 } else { coordinate.q[0] };
+        // Where all are 0, rounding is that of a millimetre or a milliradian.
+        let is_rounding = coordinate.q[0].abs() <= ROUNDING * size.max(1e-3);
+        let settled = if is_rounding { 0.0 } else { coordinate.q[0] };
         let value = format!("{}{}", summary::short(settled), summary::unit(coordinate.unit));
         figures.push([format!("{} at rest", coordinate.name), value]);
     }

@@ -1,0 +1,131 @@
+//! What may be wrong in a text without faults: a macro cannot warn, a program can.
+
+use std::collections::BTreeMap;
+
+use proc_macro2::{Span, TokenStream, TokenTree};
+
+use crate::diagnostics::Diagnostics;
+use crate::model::expression::Node;
+use crate::model::scene::Scene;
+use crate::model::scenes::Scenes;
+use crate::model::vanishing::values;
+use crate::structure::Structure;
+use crate::syntax::Text;
+use crate::syntax::ast::{Name, StatementKind};
+
+/// Part of its terms by which a row may be open at the guess: a guess that is meant is nearer.
+const FAR: f64 = 0.5;
+
+/// Before: a text without faults, with the structure of its scenes. After: names that nothing uses, assemblies that no branch
+/// chooses, guesses that leave rows wide open.
+pub fn warnings(text: &Text, scenes: &Scenes, structures: &[(&Scene, Structure)]) -> Diagnostics {
+    let mut warnings = Diagnostics::default();
+    unused(text, &mut warnings);
+    let number = scenes.scenes.len();
+    let found: Vec<_> = structures
+        .iter()
+        .map(|(scene, structure)| {
+            let mut warnings = Diagnostics::default();
+            unchosen(scene, structure, &mut warnings);
+            open(scene, &mut warnings);
+            (scene.label(), warnings)
+        })
+        .collect();
+    warnings.gather(&found, number);
+    warnings
+}
+
+/// Names that stand in the text once, where they are declared.
+fn unused(text: &Text, warnings: &mut Diagnostics) {
+    let mut counts: BTreeMap<String, usize> = BTreeMap::new();
+    let mut streams: Vec<TokenStream> = text.source.parse().into_iter().collect();
+    while let Some(stream) = streams.pop() {
+        for token in stream {
+            match token {
+                TokenTree::Group(group) => streams.push(group.stream()),
+                TokenTree::Ident(word) => {
+                    *counts.entry(word.to_string().trim_start_matches("r#").to_owned()).or_default() += 1;
+                }
+                _ => {}
+            }
+        }
+    }
+    for statement in &text.statements {
+        let (word, name): (&str, &Name) = match &statement.kind {
+            StatementKind::Const { name, .. } => ("constant", name),
+            StatementKind::Param { name, .. } => ("parameter", name),
+            StatementKind::Input { name, .. } => ("input", name),
+            StatementKind::Let { name, .. } => ("`let`", name),
+            _ => continue,
+        };
+        if counts.get(&name.text) == Some(&1) {
+            let message = format!("{word} `{}` is used nowhere", name.text);
+            warnings.report(name.span, message, "remove it, or use it");
+        }
+    }
+}
+
+/// Loops of two assemblies in a scene without a branch.
+fn unchosen(scene: &Scene, structure: &Structure, warnings: &mut Diagnostics) {
+    let model = &scene.model;
+    if !model.branches.is_empty() {
+        return;
+    }
+    for block in structure.blocks.iter().filter(|block| block.dyad.is_some()) {
+        let Some(row) = block.rows.first().and_then(|row| model.rows.get(*row)) else { continue };
+        let names: Vec<String> = block
+            .coordinates
+            .iter()
+            .filter_map(|index| model.coordinates.get(*index))
+            .map(|coordinate| format!("`{}`", coordinate.name))
+            .collect();
+        let group = row.name.split('.').next().unwrap_or(&row.name);
+        warnings.report(
+            row.span,
+            format!("`{group}` has two positions of {}, and no branch chooses one", names.join(", ")),
+            "the one next to the guess is taken; declare it: `branch open: sin(phi3 - phi2) > 0;`",
+        );
+    }
+}
+
+/// Rows that the guess does not nearly meet, at time 0 with the defaults.
+fn open(scene: &Scene, warnings: &mut Diagnostics) {
+    let model = &scene.model;
+    let variable = |index: usize| model.variables.get(index).map(|variable| variable.default);
+    let of_design = |node: Node| match node {
+        Node::Variable(index) => variable(index),
+        _ => None,
+    };
+    let guesses = values(&model.expressions, of_design, |_, _, _| None);
+    let guess = |index: usize| {
+        let guess = model.coordinates.get(index)?.guess?;
+        guesses.get(guess.index()).copied().flatten().map(|(value, _)| value)
+    };
+    let at_guess = |node: Node| match node {
+        Node::Coordinate(index) => guess(index),
+        Node::Variable(index) => variable(index),
+        _ => Some(0.0),
+    };
+    let found = values(&model.expressions, at_guess, |_, _, _| None);
+    let mut told: Vec<&str> = Vec::new();
+    for row in model.rows.iter().filter(|row| !row.driven) {
+        let Some((value, size)) = found.get(row.residual.index()).copied().flatten() else { continue };
+        let group = row.name.split('.').next().unwrap_or(&row.name);
+        if value.abs() > FAR * size && !told.contains(&group) {
+            told.push(group);
+            let message =
+                format!("the guess leaves `{}` open by {}", row.name, amount(value.abs(), &row.unit(model)));
+            report(warnings, row.span, message);
+        }
+    }
+}
+
+fn report(warnings: &mut Diagnostics, span: Span, message: String) {
+    warnings.report(span, message, "write guesses, the values behind `coord`, near an assembly");
+}
+
+/// A number in three digits with its unit.
+fn amount(value: f64, unit: &str) -> String {
+    let digits = format!("{value:.2e}").parse::<f64>().unwrap_or(value);
+    if unit == "1" { digits.to_string() } else { format!("{digits} {unit}") }
+}
