@@ -15,6 +15,7 @@ pub fn ci() -> Result<(), String> {
     need("cc", "install a C compiler")?;
     need("nm", "install binutils")?;
     step(&mut command("cargo", &["fmt", "--all", "--check"]))?;
+    built_once()?;
     step(&mut command("cargo", &["fmt", "--all", "--check", "--manifest-path", "tests/proofs/Cargo.toml"]))?;
     step(&mut command(
         "cargo",
@@ -42,6 +43,14 @@ pub fn full() -> Result<(), String> {
     growth::run()?;
     lines::run(false)?;
     oldest()
+}
+
+/// Fails where a crate is built twice, for the macro and for the tests: with other features, or in another version.
+fn built_once() -> Result<(), String> {
+    let kinds = ["tree", "--workspace", "--edges", "normal,build,dev", "--duplicates", "--depth", "0"];
+    println!("\n== crates that are built twice");
+    let twice = output(&mut command("cargo", &kinds))?;
+    if twice.trim().is_empty() { Ok(()) } else { Err(format!("built twice:\n{twice}")) }
 }
 
 /// Compiles with the oldest compiler, where rustup has it.

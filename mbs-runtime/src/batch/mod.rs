@@ -221,7 +221,7 @@ where
     fn moved(&mut self, t: [R; L]) -> Option<[Result<Statistics, Failure>; L]> {
         let before = self.mechanism.phases();
         let (from, to) = self.span(t);
-        if !S::PHASES.is_empty() {
+        if const { !S::PHASES.is_empty() } {
             self.mechanism.advance_phases(from, to);
         }
         let Batch { mechanism, parameters, weights, q, qd, qdd, margin, .. } = &*self;
@@ -242,7 +242,7 @@ where
                 *old = *new;
             }
         }
-        if !S::TURNS.is_empty() {
+        if const { !S::TURNS.is_empty() } {
             self.take_turns_off();
         }
         None
@@ -261,7 +261,7 @@ where
     /// Lets the time of the lanes of `moved` be `t` (s).
     #[inline(always)]
     fn pass_time(&mut self, moved: LaneMask<R, L>, t: Lanes<R, L>) {
-        if S::TURNS.is_empty() {
+        if const { S::TURNS.is_empty() } {
             self.t = Lanes::select(moved, t, self.t);
             return;
         }
@@ -332,7 +332,7 @@ where
         merge(&mut self.margin, &trial.margin);
         self.changed = from_fn(|lane| at(&self.changed, lane, false) && !Lanes::<R, L>::test(plain, lane));
         self.pass_time(plain, Lanes(t));
-        if !S::TURNS.is_empty() {
+        if const { !S::TURNS.is_empty() } {
             self.take_turns_off();
         }
         from_fn(|lane| {

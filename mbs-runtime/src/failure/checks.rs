@@ -15,7 +15,7 @@ pub(crate) fn limit_failure<S: Mechanism<R, N, M>, R: Real, const N: usize, cons
     (t, q): (R, &[R; N]),
     scales: &[R; N],
 ) -> Option<Failure> {
-    if S::LIMITS.is_empty() {
+    if const { S::LIMITS.is_empty() } {
         return None;
     }
     let limits = mechanism.limits(parameters, position);

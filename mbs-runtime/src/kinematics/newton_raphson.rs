@@ -103,7 +103,7 @@ fn newton_step<R: Real, const N: usize, const M: usize>(
     coordinate_scales: &[R; N],
 ) -> ([R; N], R) {
     let right = phi.map(|r| -r);
-    if M > N {
+    if const { M > N } {
         let (factors, margin) = Orthogonal::factorize(phi_q, row_scales, coordinate_scales);
         return (factors.solve(&right), margin);
     }

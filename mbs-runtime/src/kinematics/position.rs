@@ -86,7 +86,7 @@ pub(crate) fn next_position<S: Kinematic<R, N, M>, R: Real, const N: usize, cons
     let failure = position_failure::<S, R, N, M>(outcome, solver.diagnosis(), t);
     let failure = match failure {
         // Only a block with surplus rows can be inconsistent.
-        Some(failure) if M > N => Some(contradiction(mechanism, parameters, q, t, failure)),
+        Some(failure) if const { M > N } => Some(contradiction(mechanism, parameters, q, t, failure)),
         failure => failure,
     };
     let mut statistics = Statistics::of(solver.diagnosis());

@@ -272,7 +272,7 @@ impl<'a, T: Scalar, const N: usize> Start<'a, T, N> {
         let h = t - self.t;
         let half_square = T::constant(0.5) * h * h;
         let alone = size_of::<T>() == size_of::<T::Real>();
-        if alone && N > FEW {
+        if const { N > FEW } && alone {
             return self.predicted_side_by_side(h, scales, most);
         }
         let mut predicted = *self.q;
@@ -294,7 +294,7 @@ impl<'a, T: Scalar, const N: usize> Start<'a, T, N> {
             }
             all = all & trusted;
             *coordinate = first + second;
-            if N > FEW {
+            if const { N > FEW } {
                 T::side_by_side();
             }
         }

@@ -109,7 +109,7 @@ impl<R: Real, const N: usize> Rates<R, N> {
             return Some(failure);
         }
         // The rates of a position that does not close contradict each other by what it is open.
-        if M > N && found.open.is_none() {
+        if const { M > N } && found.open.is_none() {
             return disagreement(mechanism, parameters, position, (&self.qd, &self.qdd), self.margin, t);
         }
         found.open.and_then(|open| self.repaired(mechanism, parameters, found, &factors, open))

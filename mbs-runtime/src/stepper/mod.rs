@@ -173,7 +173,7 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
         step: impl FnOnce(&mut Self, S::Phases) -> Result<X, Failure>,
     ) -> Result<X, Failure> {
         let before = self.mechanism.phases();
-        if S::PHASES.is_empty() {
+        if const { S::PHASES.is_empty() } {
             return step(self, before);
         }
         self.mechanism.advance_phases(self.state.t, t);

@@ -24,7 +24,7 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
     #[inline(always)]
     pub(super) fn advanced(&mut self, t: R, phases: S::Phases) -> Result<Statistics, Failure> {
         // Rows that may contradict each other are always looked at.
-        if M == N && self.is_ready() && !self.waits() {
+        if const { M == N } && self.is_ready() && !self.waits() {
             let StepperState { q, qd, qdd, margin, .. } = &self.state;
             let weights = &weights(&self.mechanism.coordinate_scales(&self.parameters));
             let start = Start { t: self.state.t, q, qd, qdd, margin: *margin, weights };
@@ -97,7 +97,7 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
     fn advanced_with_care(&mut self, t: R, phases: S::Phases) -> Result<Statistics, Failure> {
         let ready = self.is_ready();
         let mut first = 0;
-        if ready && (M > N || self.state.repair.is_some()) {
+        if ready && (const { M > N } || self.state.repair.is_some()) {
             let prediction = self.predicted(t);
             let mut q = prediction.q;
             let (position, statistics, failure) = next_position(&self.mechanism, &self.parameters, &mut q, t);
@@ -114,7 +114,7 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
     /// not tell.
     #[inline(always)]
     fn may_have_folded(&self) -> bool {
-        !S::FOLDING.is_empty() && self.changed && self.folds
+        self.changed && self.folds && const { !S::FOLDING.is_empty() }
     }
 
     /// `true` if the state leads on by its rates.

@@ -3,8 +3,8 @@
 use mbs_runtime::dynamics::{Adaptive, Point};
 use mbs_runtime::dynamics::{Dense, Monitor, Scrutiny};
 use mbs_runtime::dynamics::{
-    Direction, DormandPrince5, DormandPrince8, Embedded, Equation, ErrorNorm, FixedStep, IntegratorState,
-    RungeKutta4, SemiImplicitEuler,
+    Direction, DormandPrince5, DormandPrince8, Either, Embedded, Equation, ErrorNorm, FixedStep,
+    IntegratorState, RungeKutta4, SemiImplicitEuler,
 };
 use mbs_runtime::{Failure, FailureKind};
 
@@ -41,20 +41,20 @@ fn exact(t: f64) -> f64 {
 }
 
 /// Error at t = 2 after `steps` equal steps.
-fn error<I: FixedStep>(steps: u32) -> f64 {
+fn error<I: FixedStep + Default>(steps: u32) -> f64 {
     let mut equation = Oscillator { tolerance: 1.0 };
     let h = 2.0 / f64::from(steps);
     let mut y = start();
     for step in 0..steps {
         let t = f64::from(step) * h;
         let rate = equation.rate(t, &y).unwrap();
-        y = I::step(&mut equation, t, h, &y, &rate).unwrap();
+        y = I::default().step(&mut equation, t, h, &y, &rate).unwrap();
     }
     (y.q[0] - exact(2.0)).abs()
 }
 
 /// log₂ of what halving the step gains.
-fn order<I: FixedStep>(steps: u32) -> f64 {
+fn order<I: FixedStep + Default>(steps: u32) -> f64 {
     (error::<I>(steps) / error::<I>(2 * steps)).log2()
 }
 
@@ -72,12 +72,12 @@ fn fixed_steps_converge_with_the_order_of_their_method() {
 }
 
 /// Largest error of the polynomial of one step of `h` from the start.
-fn dense_error<M: Embedded>(h: f64) -> f64 {
+fn dense_error<M: Embedded + Default>(h: f64) -> f64 {
     let mut equation = Oscillator { tolerance: 1e30 };
     let mut adaptive = Adaptive::default().with_first(h);
     let y = start();
     let from = Point { t: 0.0, y, rate: equation.rate(0.0, &y).unwrap() };
-    let accepted = adaptive.step::<M, _>(&mut equation, &from, h, false).unwrap();
+    let accepted = adaptive.step(M::default(), &mut equation, &from, h, false).unwrap();
     let polynomial = accepted.polynomial(&mut equation).unwrap();
     let parts = (1..20).map(|part| f64::from(part) * h / 20.0);
     parts.map(|t| (polynomial.at(t).q[0] - exact(t)).abs()).fold(0.0, f64::max)
@@ -91,12 +91,12 @@ fn dense_output_of_one_step_has_the_order_of_its_polynomial() {
     assert!((seventh - 8.0).abs() < 0.5, "{seventh}");
 }
 
-fn adaptive_error<M: Embedded>(tolerance: f64) -> (f64, u32) {
+fn adaptive_error<M: Embedded + Default>(tolerance: f64) -> (f64, u32) {
     let mut equation = Oscillator { tolerance };
     let y = start();
     let from = Point { t: 0.0, y, rate: equation.rate(0.0, &y).unwrap() };
     let mut adaptive = Adaptive::default();
-    let end = adaptive.run::<M, _>(&mut equation, from, 20.0, |_| None, |_, _| Ok(true)).unwrap();
+    let end = adaptive.run(M::default(), &mut equation, from, 20.0, |_| None, |_, _| Ok(true)).unwrap();
     assert_eq!(end.t, 20.0);
     ((end.y.q[0] - exact(20.0)).abs(), adaptive.accepted)
 }
@@ -114,6 +114,46 @@ fn adaptive_steps_follow_the_tolerance() {
     assert!(4 * few < many, "{few} {many}");
 }
 
+/// Ends, polynomials and counts of a run by `method`, bit by bit.
+fn bits<M: Embedded>(method: M) -> (Vec<u64>, [u32; 2]) {
+    let mut equation = Oscillator { tolerance: 1e-8 };
+    let y = start();
+    let from = Point { t: 0.0, y, rate: equation.rate(0.0, &y).unwrap() };
+    let (mut adaptive, mut bits) = (Adaptive::default(), Vec::new());
+    adaptive
+        .run(
+            method,
+            &mut equation,
+            from,
+            20.0,
+            |_| None,
+            |equation, accepted| {
+                let (start, end) = (accepted.start.t, &accepted.end);
+                let between = accepted.polynomial(equation)?.at(0.5 * (start + end.t));
+                bits.extend([end.t, end.y.q[0], between.q[0], between.qd[0]].map(f64::to_bits));
+                Ok(true)
+            },
+        )
+        .unwrap();
+    let fixed = method.step(&mut equation, 0.0, 0.1, &y, &from.rate).unwrap();
+    bits.push(fixed.q[0].to_bits());
+    (bits, [adaptive.accepted, adaptive.rejected])
+}
+
+#[test]
+fn an_integrator_that_is_chosen_at_run_time_takes_the_same_steps() {
+    type One = Either<DormandPrince8, DormandPrince5>;
+    assert_eq!(bits::<One>(Either::First(DormandPrince8)), bits(DormandPrince8));
+    assert_eq!(bits::<One>(Either::Second(DormandPrince5)), bits(DormandPrince5));
+    assert_ne!(bits(DormandPrince5), bits(DormandPrince8));
+    for (method, order) in [(Either::First(SemiImplicitEuler), 1), (Either::Second(RungeKutta4), 4)] {
+        assert!(method.order() == order && !method.uses_slopes());
+    }
+    let radau: Either<RungeKutta4, mbs_runtime::dynamics::Radau5> =
+        Either::Second(mbs_runtime::dynamics::Radau5);
+    assert!(radau.order() == 5 && radau.uses_slopes());
+}
+
 #[test]
 fn a_passage_through_zero_is_found_in_its_direction() {
     // q̇ = 1 − sin t − cos t passes zero falling at 0 and rising at π/2.
@@ -124,7 +164,8 @@ fn a_passage_through_zero_is_found_in_its_direction() {
     let mut adaptive = Adaptive::default();
     let mut monitor = Monitor::new(Direction::Rising, Scrutiny::beyond(), (0.0, 0.0), (None, false));
     adaptive
-        .run::<DormandPrince8, _>(
+        .run(
+            DormandPrince8,
             &mut equation,
             from,
             7.0,
@@ -166,7 +207,7 @@ fn a_declared_jump_costs_neither_accuracy_nor_rejected_steps() {
         let mut adaptive = Adaptive::default();
         let from = Point { t: 0.0, y: [0.0], rate: [0.0] };
         let next = |t: f64| (declared && t < 1.0 / 3.0).then_some(1.0 / 3.0);
-        let end = adaptive.run::<DormandPrince8, _>(&mut Jump, from, 1.0, next, |_, _| Ok(true)).unwrap();
+        let end = adaptive.run(DormandPrince8, &mut Jump, from, 1.0, next, |_, _| Ok(true)).unwrap();
         ((end.y[0] - 2.0 / 3.0).abs(), adaptive.rejected)
     };
     let (error, rejected) = run(true);
@@ -195,13 +236,8 @@ impl ErrorNorm<f64> for Explosion {
 fn where_no_step_is_small_enough_the_failure_says_so() {
     let from = Point { t: 0.0, y: [1.0], rate: [1.0] };
     let run = |until: f64| {
-        let run = Adaptive::default().run::<DormandPrince5, _>(
-            &mut Explosion,
-            from,
-            until,
-            |_| None,
-            |_, _| Ok(true),
-        );
+        let run =
+            Adaptive::default().run(DormandPrince5, &mut Explosion, from, until, |_| None, |_, _| Ok(true));
         run.unwrap_err()
     };
     let Failure { kind: FailureKind::StepTooSmall { .. }, time: Some(time) } = run(2.0) else {
@@ -250,7 +286,7 @@ fn a_step_is_not_made_smaller_than_the_equation_says_is_worth_trying() {
     let from = Point { t: 0.0, y: [0.0], rate: [1.0] };
     let asked = |least: f64| {
         let (mut noise, mut adaptive) = (Noise { least, asked: 0 }, Adaptive::default().with_first(0.1));
-        let failure = adaptive.step::<DormandPrince5, _>(&mut noise, &from, 1.0, false).unwrap_err();
+        let failure = adaptive.step(DormandPrince5, &mut noise, &from, 1.0, false).unwrap_err();
         assert!(matches!(failure, Failure { kind: FailureKind::Undecided { .. }, .. }), "{failure}");
         (noise.asked, adaptive.step)
     };
@@ -265,7 +301,7 @@ fn an_end_that_is_not_ahead_is_refused() {
     let from = Point { t: 1.0, y: [1.0], rate: [1.0] };
     for until in [1.0, 0.0, f64::NAN, f64::INFINITY] {
         let failure = Adaptive::default()
-            .run::<DormandPrince5, _>(&mut Explosion, from, until, |_| None, |_, _| Ok(true))
+            .run(DormandPrince5, &mut Explosion, from, until, |_| None, |_, _| Ok(true))
             .unwrap_err();
         assert!(matches!(failure, Failure { kind: FailureKind::InvalidStep { .. }, .. }), "{failure}");
     }

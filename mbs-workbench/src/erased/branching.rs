@@ -174,11 +174,22 @@ impl<S: Kinematic<f64, N, M>, const N: usize, const M: usize> Kinematic<f64, N, 
     }
 }
 
-/// A solver that accepts any position if branches do not count.
-struct Judging<'a, B> {
+/// A solver that accepts any position if branches do not count. A block is known to it by its size alone, so that solvers off the
+/// critical path of a step are compiled once for all blocks of all mechanisms.
+pub(crate) struct Judging<'a, B> {
     solver: &'a mut B,
     counted: bool,
 }
+
+impl<'a, B> Judging<'a, B> {
+    /// `solver` with the branches of the text.
+    pub(crate) fn declared(solver: &'a mut B) -> Self {
+        Judging { solver, counted: true }
+    }
+}
+
+/// Residuals (M) and Jacobian of a block of K coordinates.
+type Evaluated<const K: usize, const M: usize = K> = ([f64; M], [[f64; K]; M]);
 
 impl<B: BlockSolver<f64>> BlockSolver<f64> for Judging<'_, B> {
     const INLINED_PER_BLOCK: bool = B::INLINED_PER_BLOCK;
@@ -187,8 +198,12 @@ impl<B: BlockSolver<f64>> BlockSolver<f64> for Judging<'_, B> {
         &mut self,
         block: &Block<f64, K>,
         x: [f64; K],
-        evaluate: impl FnMut(&[f64; K]) -> ([f64; K], [[f64; K]; K]),
+        mut evaluate: impl FnMut(&[f64; K]) -> Evaluated<K>,
     ) -> ([f64; K], [Outcome; 1]) {
+        if B::INLINED_PER_BLOCK {
+            return self.solver.solve::<K, F>(block, x, evaluate);
+        }
+        let evaluate: &mut dyn FnMut(&[f64; K]) -> Evaluated<K> = &mut evaluate;
         self.solver.solve::<K, F>(block, x, evaluate)
     }
 
@@ -196,23 +211,38 @@ impl<B: BlockSolver<f64>> BlockSolver<f64> for Judging<'_, B> {
         &mut self,
         block: &Block<f64, K>,
         x: [f64; K],
-        evaluate: impl FnMut(&[f64; K]) -> ([f64; K], [[f64; K]; K]),
+        mut evaluate: impl FnMut(&[f64; K]) -> Evaluated<K>,
         mut holds: impl FnMut(&[f64; K]) -> bool,
     ) -> ([f64; K], [Outcome; 1]) {
         let counted = self.counted;
-        self.solver.solve_branched::<K, F>(block, x, evaluate, |x| !counted || holds(x))
+        let mut holds = |x: &[f64; K]| !counted || holds(x);
+        if B::INLINED_PER_BLOCK {
+            return self.solver.solve_branched::<K, F>(block, x, evaluate, holds);
+        }
+        let evaluate: &mut dyn FnMut(&[f64; K]) -> Evaluated<K> = &mut evaluate;
+        let holds: &mut dyn FnMut(&[f64; K]) -> bool = &mut holds;
+        self.solver.solve_branched::<K, F>(block, x, evaluate, holds)
     }
 
     fn solve_closed<const K: usize, F: Factorization<f64, K>>(
         &mut self,
         block: &Block<f64, K>,
         x: [f64; K],
-        evaluate: impl FnMut(&[f64; K]) -> ([f64; K], [[f64; K]; K]),
+        mut evaluate: impl FnMut(&[f64; K]) -> Evaluated<K>,
         mut holds: impl FnMut(&[f64; K]) -> bool,
         roots: impl FnOnce(&[f64; K]) -> Roots<f64, K>,
     ) -> ([f64; K], [Outcome; 1]) {
         let counted = self.counted;
-        self.solver.solve_closed::<K, F>(block, x, evaluate, |x| !counted || holds(x), roots)
+        let mut holds = |x: &[f64; K]| !counted || holds(x);
+        if B::INLINED_PER_BLOCK {
+            return self.solver.solve_closed::<K, F>(block, x, evaluate, holds, roots);
+        }
+        let mut roots = Some(roots);
+        let mut roots = |near: &[f64; K]| roots.take().expect("a formula is evaluated once")(near);
+        let evaluate: &mut dyn FnMut(&[f64; K]) -> Evaluated<K> = &mut evaluate;
+        let holds: &mut dyn FnMut(&[f64; K]) -> bool = &mut holds;
+        let roots: &mut dyn FnMut(&[f64; K]) -> Roots<f64, K> = &mut roots;
+        self.solver.solve_closed::<K, F>(block, x, evaluate, holds, roots)
     }
 
     fn solve_redundant<const K: usize, const M: usize>(
@@ -220,11 +250,17 @@ impl<B: BlockSolver<f64>> BlockSolver<f64> for Judging<'_, B> {
         block: &Block<f64, K, M>,
         widths: &Widths<f64, M>,
         x: [f64; K],
-        evaluate: impl FnMut(&[f64; K]) -> ([f64; M], [[f64; K]; M]),
+        mut evaluate: impl FnMut(&[f64; K]) -> Evaluated<K, M>,
         mut holds: impl FnMut(&[f64; K]) -> bool,
     ) -> ([f64; K], [Outcome; 1]) {
         let counted = self.counted;
-        self.solver.solve_redundant::<K, M>(block, widths, x, evaluate, |x| !counted || holds(x))
+        let mut holds = |x: &[f64; K]| !counted || holds(x);
+        if B::INLINED_PER_BLOCK {
+            return self.solver.solve_redundant::<K, M>(block, widths, x, evaluate, holds);
+        }
+        let evaluate: &mut dyn FnMut(&[f64; K]) -> Evaluated<K, M> = &mut evaluate;
+        let holds: &mut dyn FnMut(&[f64; K]) -> bool = &mut holds;
+        self.solver.solve_redundant::<K, M>(block, widths, x, evaluate, holds)
     }
 }
 

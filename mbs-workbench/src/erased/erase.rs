@@ -4,6 +4,7 @@ use mbs_runtime::{Dynamic, Kinematic, Mechanism, Partitioned, Reveal, Visitor};
 
 use super::dynamics::AnyDynamics;
 use super::dynamics::direct_dynamics::PartitionedFunctions;
+use super::dynamics::integrators::{All, ExplicitOnly};
 use super::facade::{AnyEquations, AnyMechanism, Facade};
 
 /// A mechanism of any size.
@@ -81,7 +82,7 @@ impl<S: 'static> Visitor<S> for Erase {
     where
         S: Kinematic<f64, N, M> + Dynamic<f64, N, M> + Partitioned<f64, N, M>,
     {
-        let partitioned = PartitionedFunctions::of::<M>();
+        let partitioned = PartitionedFunctions::<S, All, N, M>::of();
         Erased::Fixed(Box::new(Facade::<S, N, M, _>(mechanism, partitioned)))
     }
 
@@ -89,7 +90,7 @@ impl<S: 'static> Visitor<S> for Erase {
     where
         S: Dynamic<f64, N, M> + Partitioned<f64, N, M>,
     {
-        let partitioned = PartitionedFunctions::of::<M>();
+        let partitioned = PartitionedFunctions::<S, All, N, M>::of();
         Erased::Free(Box::new(Facade::<S, N, M, _>(mechanism, partitioned)))
     }
 
@@ -97,7 +98,7 @@ impl<S: 'static> Visitor<S> for Erase {
     where
         S: Kinematic<f64, N, M> + Dynamic<f64, N, M> + Partitioned<f64, N, M>,
     {
-        let partitioned = PartitionedFunctions::of_large::<M>();
+        let partitioned = PartitionedFunctions::<S, ExplicitOnly, N, M>::of();
         Erased::Fixed(Box::new(Facade::<S, N, M, _>(mechanism, partitioned)))
     }
 
@@ -105,7 +106,7 @@ impl<S: 'static> Visitor<S> for Erase {
     where
         S: Dynamic<f64, N, M> + Partitioned<f64, N, M>,
     {
-        let partitioned = PartitionedFunctions::of_large::<M>();
+        let partitioned = PartitionedFunctions::<S, ExplicitOnly, N, M>::of();
         Erased::Free(Box::new(Facade::<S, N, M, _>(mechanism, partitioned)))
     }
 }

@@ -8,7 +8,7 @@ use mbs_runtime::{
 };
 
 use super::formulas::{Formula, formulas};
-use crate::erased::branching::Branching;
+use crate::erased::branching::{Branching, Judging};
 use crate::erased::facade::{AnyMechanism, Facade, State};
 use crate::motion::instants;
 
@@ -174,7 +174,7 @@ impl<S: Kinematic<f64, N, M>, F, const N: usize, const M: usize> Facade<S, N, M,
         let mut recorder = Recorder::default();
         let extent = extent(guess, &self.0.coordinate_scales(&parameters));
         let mut solver = Traced::new(Newton::new(extent), &mut recorder);
-        self.0.solve_blocks(&parameters, &mut guess.clone(), t, &mut solver);
+        self.0.solve_blocks(&parameters, &mut guess.clone(), t, &mut Judging::declared(&mut solver));
         // Once more for the failure itself; the solver is deterministic.
         let declared = Branching::declared(self.0.clone());
         let found = solve_position(&declared, &parameters, guess, t).map(|(q, _)| q.to_vec());

@@ -1,5 +1,6 @@
 //! Blocks that the assembly takes from formulas of both their positions, where plain Newton would iterate.
 
+use crate::erased::branching::Judging;
 use mbs_runtime::{AssemblySolver, Block, Kinematic, Outcome, Roots, Trace, Traced, extent};
 
 /// A block with the positions that formulas give it.
@@ -25,7 +26,7 @@ pub fn formulas<S: Kinematic<f64, N, M>, const N: usize, const M: usize>(
     let extent = extent(guess, &mechanism.coordinate_scales(&parameters));
     let mut record = Record(Vec::new());
     let mut solver = Traced::new(AssemblySolver::new(extent), &mut record);
-    mechanism.solve_blocks(&parameters, &mut guess.clone(), t, &mut solver);
+    mechanism.solve_blocks(&parameters, &mut guess.clone(), t, &mut Judging::declared(&mut solver));
     record.0
 }
 

@@ -4,6 +4,7 @@ use mbs_runtime::{Dynamic, DynamicState, Entry, StateSlope};
 
 use crate::erased::dynamics::AnyDynamics;
 use crate::erased::dynamics::direct_dynamics::PartitionedFunctions;
+use crate::erased::dynamics::integrators::Integrators;
 use crate::erased::facade::{Facade, Forced, State};
 
 /// States and multipliers of a state of motion, in addition to coordinates and their rates.
@@ -65,7 +66,11 @@ pub struct Masses {
     pub loads: Vec<f64>,
 }
 
-impl<S: Dynamic<f64, N, M>, const N: usize, const M: usize> Forced<S, N, M> for PartitionedFunctions<S, N> {
+impl<S, I, const N: usize, const M: usize> Forced<S, N, M> for PartitionedFunctions<S, I, N, M>
+where
+    S: Dynamic<f64, N, M> + 'static,
+    I: Integrators,
+{
     const TABLES: Option<Tables> = Some(Tables { states: S::STATES, forces: S::FORCES, loads: S::LOADS });
 
     fn masses(mechanism: &S, state: &State, loads: &Loads) -> Option<Masses> {

@@ -2,6 +2,7 @@
 
 use std::time::Instant;
 
+use super::runs::{StepsToEvent, ToEvent};
 use mbs_runtime::dynamics::{Direction, DormandPrince5, DormandPrince8, Explicit, Projection, Simulation};
 use mbs_runtime::{Failure, FailureKind, mechanism};
 
@@ -28,7 +29,7 @@ fn a_setting_that_is_not_positive_is_told_by_its_name() {
             for failure in [
                 run.advance_to(1.0).expect_err("no setting"),
                 run.sample(1.0, 3, |_| ()).expect_err("no setting"),
-                run.advance_until_event(1.0, Direction::Any, |t, _, _| t - 0.5).expect_err("no setting"),
+                run.to_event(1.0, Direction::Any, &mut |t, _, _| t - 0.5).expect_err("no setting"),
             ] {
                 let Failure { kind: FailureKind::InvalidMethodParameter { name, .. }, .. } = failure else {
                     panic!("{failure}")
@@ -50,10 +51,12 @@ fn a_bound_without_end_and_a_resolution_beyond_what_is_looked_at_are_told() {
     let unbounded = run.with_event_bound(f64::INFINITY);
     let fine = run.with_event_resolution(1e-12);
     let fixed = |mut run: Simulation<_, _, _, 1, 0>| {
-        run.step_until_event(1.0, 100, Direction::Any, |t, _, _| t - 0.5).expect_err("a setting").to_string()
+        run.steps_to_event(1.0, 100, Direction::Any, &mut |t, _, _| t - 0.5)
+            .expect_err("a setting")
+            .to_string()
     };
     let mut adaptive = unbounded;
-    let told = adaptive.advance_until_event(1.0, Direction::Any, |t, _, _| t - 0.5);
+    let told = adaptive.to_event(1.0, Direction::Any, &mut |t, _, _| t - 0.5);
     let told = told.expect_err("a setting").to_string();
     assert_eq!(told, fixed(unbounded));
     assert_eq!(told, "the method's event bound is inf: it must be a number and at least 0");
@@ -91,7 +94,7 @@ fn a_failed_run_leaves_the_next_one_as_if_it_had_not_been() {
         assert!(run.advance_to(f64::NAN).is_err());
         assert!(run.advance_to(-1.0).is_err());
         let nan = |_: f64, _: &[f64; 1], _: &[f64; 1]| f64::NAN;
-        assert!(run.advance_until_event(1.0, Direction::Any, nan).is_err());
+        assert!(run.to_event(1.0, Direction::Any, &mut { nan }).is_err());
     }
     run.advance_to(1.0).expect("it runs");
     let mut other = start;

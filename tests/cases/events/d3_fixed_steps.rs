@@ -1,5 +1,7 @@
 //! D3 in steps of fixed size: events are located by shortening the step, contacts cut it, limits hold within it.
 
+use super::runs::StepsToEvent;
+use super::texts::{Ball, Oscillator, Roofed};
 use mbs_runtime::dynamics::{
     AugmentedLagrangian, Baumgarte, Direction, Explicit, GeneralizedAlpha, Method, Projection, RungeKutta4,
     SemiImplicitEuler, Simulation, VelocityTransformation,
@@ -7,33 +9,11 @@ use mbs_runtime::dynamics::{
 use mbs_runtime::{Failure, FailureKind, mechanism};
 
 mechanism! {
-    pub mechanism Ball;
-    coord y: m = 0;
-    body ball { mass: 1, com: [0, y] }
-    gravity weight { acceleration: [0, -9.81] }
-}
-
-mechanism! {
-    pub mechanism Oscillator;
-    coord x: m = 1;
-    body mass { mass: 1, com: [x, 0] }
-    tsda spring { from: [0, 0], to: [x + 5m, 0], stiffness: 1, length: 5m }
-}
-
-mechanism! {
     pub mechanism Bounded;
     coord y: m = 0;
     body ball { mass: 1, com: [0, y] }
     gravity weight { acceleration: [0, -9.81] }
     limit height: -10m <= y <= 1.9m;
-}
-
-mechanism! {
-    pub mechanism Roofed;
-    coord y: m = 0;
-    body ball { mass: 1, com: [0, y] }
-    gravity weight { acceleration: [0, -9.81] }
-    contact roof { gap: 1.9m - y, stiffness: 1e6 }
 }
 
 const G: f64 = 9.81;
@@ -49,13 +29,13 @@ fn an_event_between_two_ends_of_a_step_is_found() {
         let method = Explicit::new(RungeKutta4, Projection::default());
         let mut run = Simulation::start(Ball::default(), method, 0.0, [0.0], [speed]).expect("a start");
         for time in times {
-            let found = run.step_until_event(last, steps, Direction::Any, |_, q, _| q[0] - height);
+            let found = run.steps_to_event(last, steps, Direction::Any, &mut |_, q, _| q[0] - height);
             let allowed = 1e-13 / (G * half) + 1e-12;
             assert!(found.expect("it runs"), "{throw} {time}");
             assert!((run.t() - time).abs() < allowed, "{throw} {steps}: {} {time} {half:e}", run.t());
         }
         assert!(
-            !run.step_until_event(last, steps, Direction::Any, |_, q, _| q[0] - height).expect("it runs")
+            !run.steps_to_event(last, steps, Direction::Any, &mut |_, q, _| q[0] - height).expect("it runs")
         );
         assert_eq!(run.t(), last);
     }
@@ -64,7 +44,7 @@ fn an_event_between_two_ends_of_a_step_is_found() {
 /// The first zero of cos t by steps of 2/23 s: on the solution of the method, whose error is that of its order.
 fn first_zero<X: Method<Oscillator<f64>, f64, 1, 0>>(method: X) -> (f64, f64) {
     let mut run = Simulation::start(Oscillator::default(), method, 0.0, [1.0], [0.0]).expect("a start");
-    let found = run.step_until_event(2.0, 23, Direction::Falling, |_, q, _| q[0]);
+    let found = run.steps_to_event(2.0, 23, Direction::Falling, &mut |_, q, _| q[0]);
     assert!(found.expect("it runs"));
     (run.t() - core::f64::consts::FRAC_PI_2, run.q()[0])
 }
@@ -91,15 +71,15 @@ fn an_event_function_that_is_nan_or_a_resolution_that_steps_cannot_give_is_told(
     for from in [0.0, 0.31, 0.5] {
         let mut run = run;
         let event = |t: f64, _: &[f64; 1], _: &[f64; 1]| if from <= t { f64::NAN } else { 1.0 };
-        let failure = run.step_until_event(1.0, 10, Direction::Any, event).expect_err("no number");
+        let failure = run.steps_to_event(1.0, 10, Direction::Any, &mut { event }).expect_err("no number");
         assert_eq!(failure, FailureKind::NonFinite { name: "event function", line: 0 }.without_time());
         assert!(run.t() <= from);
     }
     let mut fine = run.with_event_resolution(1e-6);
     let event = |t: f64, _: &[f64; 1], _: &[f64; 1]| t - 0.5;
-    let failure = fine.step_until_event(1.0, 10, Direction::Any, event).expect_err("too fine");
+    let failure = fine.steps_to_event(1.0, 10, Direction::Any, &mut { event }).expect_err("too fine");
     assert!(matches!(failure, Failure { kind: FailureKind::InvalidMethodParameter { .. }, .. }), "{failure}");
-    assert!(fine.step_until_event(1.0, 1000, Direction::Any, event).expect("it runs"));
+    assert!(fine.steps_to_event(1.0, 1000, Direction::Any, &mut { event }).expect("it runs"));
     assert!((fine.t() - 0.5).abs() < 1e-14);
 }
 

@@ -1,6 +1,7 @@
 //! D3: an open contact costs no operation in the stages of a step; fixed steps that meet one.
 
 use super::counted::{Counted, counted};
+use super::texts::Roofed;
 use mbs_runtime::dynamics::{
     AugmentedLagrangian, DormandPrince5, DormandPrince8, Explicit, GeneralizedAlpha, Method, Projection,
     Radau5, RungeKutta4, SemiImplicitEuler, Simulation, VelocityTransformation,
@@ -135,14 +136,6 @@ fn a_run_with_open_contacts_adds_their_gaps_once_a_step() {
             free.0 / free.1
         );
     }
-}
-
-mechanism! {
-    pub mechanism Roofed;
-    coord y: m = 0;
-    body ball { mass: 1, com: [0, y] }
-    gravity weight { acceleration: [0, -9.81] }
-    contact roof { gap: 1.9m - y, stiffness: 1e6 }
 }
 
 /// A ball of 3 m/s in steps from a tenth of the contact's 3 ms to nearly twice that. A step does not have the force of a contact

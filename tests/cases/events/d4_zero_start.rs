@@ -1,14 +1,8 @@
 //! D4: a start that is zero but for rounding.
 
+use super::texts::Ball;
 use mbs_runtime::dynamics::{DormandPrince5, DormandPrince8, Explicit, Projection, Simulation};
 use mbs_runtime::mechanism;
-
-mechanism! {
-    pub mechanism Drop;
-    coord y: m = 0;
-    body ball { mass: 1, com: [0, y] }
-    gravity weight { acceleration: [0, -9.81] }
-}
 
 mechanism! {
     pub mechanism Pushed;
@@ -28,7 +22,7 @@ fn a_start_that_is_zero_but_for_rounding_runs() {
         for (q, qd) in [(0.0, small), (small, 0.0), (small, small), (-small, small)] {
             for until in [1e-3, 1.0, 10.0, 1000.0] {
                 let method = Explicit::new(DormandPrince8, Projection::default());
-                let mut run = Simulation::start(Drop::default(), method, 0.0, [q], [qd]).expect("a start");
+                let mut run = Simulation::start(Ball::default(), method, 0.0, [q], [qd]).expect("a start");
                 run.advance_to(until).unwrap_or_else(|failure| panic!("{q:e} {qd:e} {until}: {failure}"));
                 let y = q + qd * until - 0.5 * 9.81 * until * until;
                 assert!((run.q()[0] - y).abs() <= 1e-12 * y.abs().max(1.0), "{q:e} {qd:e} {until}");

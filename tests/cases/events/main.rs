@@ -14,4 +14,6 @@ mod d3_many;
 mod d3_open_contacts;
 mod d3_spikes;
 mod d4_zero_start;
+mod runs;
 mod t7_contact_damping;
+mod texts;

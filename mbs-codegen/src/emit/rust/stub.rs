@@ -13,7 +13,8 @@ use crate::emit::rust::fields::ident;
 use crate::emit::rust::generics::Generics;
 use crate::model::scene::Scene;
 use crate::model::scenes::Scenes;
-use crate::model::selection::alias;
+use crate::model::selection::{COORDINATES, OUTPUTS, STEPPER, alias};
+use crate::syntax::ast::StatementKind;
 use crate::syntax::rust_identifiers::{UNUSABLE, identifier};
 use crate::syntax::{OWN, Text};
 
@@ -29,6 +30,15 @@ pub fn stub(text: &Text, scenes: &Scenes, fault: &TokenStream) -> TokenStream {
         let functions = scenes.shared.functions.iter().map(|function| &function.name);
         scenes.shared.fields.iter().map(|field| &field.name).chain(functions).map(ident).collect()
     };
+    // Those that have a fault are fields too.
+    let outputs: Vec<Ident> = text
+        .statements
+        .iter()
+        .filter_map(|statement| match &statement.kind {
+            StatementKind::Out { name, .. } if !UNUSABLE.contains(&name.text.as_str()) => Some(ident(name)),
+            _ => None,
+        })
+        .collect();
     let mut items = Items::new(&header.label(), fault, generics.functions().count() + SPARE);
     items.push((&quote! { #(#docs)* #visibility }, header.name.clone()), &fields);
     let all = || scenes.scenes.iter().chain(&scenes.whole);
@@ -37,10 +47,9 @@ pub fn stub(text: &Text, scenes: &Scenes, fault: &TokenStream) -> TokenStream {
         if let Some(label) = &scene.name {
             items.push((&quote! { #visibility }, identifier(&name, label.span)), &fields);
         }
-        let view = format_ident!("{name}Coordinates");
         let coordinates: Vec<Ident> =
             scene.model.coordinate_fields.iter().map(|field| ident(&field.name)).collect();
-        items.push((&quote! { #visibility }, view), &coordinates);
+        items.views(&quote! { #visibility }, &name, (&coordinates, &outputs));
     }
     items.scenes(&quote! { #visibility }, all().filter_map(|scene: &Scene| scene.name.as_ref()).map(ident));
     items.tokens
@@ -71,13 +80,13 @@ pub fn stub_of_tokens(input: TokenStream, fault: &TokenStream) -> TokenStream {
     let public = quote! { pub };
     let mut items = Items::new(&label, fault, SPARE);
     let fields: Vec<Ident> = ["param", "input", "function"].into_iter().flat_map(named).collect();
-    let coordinates = named("coord");
+    let (coordinates, outputs) = (named("coord"), named("out"));
     items.push((&public, name), &fields);
-    items.push((&public, format_ident!("{label}Coordinates")), &coordinates);
+    items.views(&public, &label, (&coordinates, &outputs));
     let scenes = named("scene");
     for scene in &scenes {
         let name = format!("{label}{}", scene.to_string().trim_start_matches("r#"));
-        items.push((&public, format_ident!("{name}Coordinates")), &coordinates);
+        items.views(&public, &name, (&coordinates, &outputs));
         items.push((&public, identifier(&name, scene.span())), &fields);
     }
     items.scenes(&public, scenes.into_iter());
@@ -142,6 +151,13 @@ impl Items {
             #[allow(dead_code, non_camel_case_types, reason = "named by the text")]
             #head type #name<#(#parameters = ()),*> = #hidden<(#(#parameters,)*), { #fault }>;
         });
+    }
+
+    /// Coordinates and outputs by name, and the stepper, of a scene whose type is called `alias`.
+    fn views(&mut self, head: &TokenStream, alias: &str, (coordinates, outputs): (&[Ident], &[Ident])) {
+        for (suffix, fields) in [(COORDINATES, coordinates), (OUTPUTS, outputs), (STEPPER, &[])] {
+            self.push((head, format_ident!("{alias}{suffix}")), fields);
+        }
     }
 
     /// Types that stand for the scenes. By a glob, equal names of scenes in one module are no fault.

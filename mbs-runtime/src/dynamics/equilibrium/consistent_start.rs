@@ -92,13 +92,13 @@ pub(crate) fn complete<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: us
     y: &mut IntegratorState<R, N, S::States>,
     counts: &mut Counts,
 ) -> Result<(), Failure> {
-    if S::STARTED.is_empty() {
+    if const { S::STARTED.is_empty() } {
         return Ok(());
     }
     if let Some(q) = completed(model, t, y, counts) {
         y.q = q;
     }
-    if !S::STARTED_RATES.is_empty() {
+    if const { !S::STARTED_RATES.is_empty() } {
         let position = model.position(t, y);
         let rates = model.constraint_rates(&position, &y.qd);
         let (q, qd) = completed_rates(model, t, y, (&position, &rates))?;

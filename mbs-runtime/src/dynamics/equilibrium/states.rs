@@ -23,7 +23,7 @@ pub fn states_at_rest<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usi
     q: &[R; N],
     lambda: &[R; M],
 ) -> Result<S::States, Failure> {
-    if !S::STATES.is_empty() {
+    if const { !S::STATES.is_empty() } {
         require_slopes_at_rest::<S, R, N, M>()?;
     }
     let (zero, parameters) = (R::constant(0.0), mechanism.parameters());

@@ -82,7 +82,8 @@ where
             let tolerance = law.of();
             self.divide(Tolerance { relative: tolerance, absolute: tolerance });
             let mut parts = 0;
-            let run = Adaptive::default().run::<DormandPrince8, _>(
+            let run = Adaptive::default().run(
+                DormandPrince8,
                 self,
                 start,
                 until,

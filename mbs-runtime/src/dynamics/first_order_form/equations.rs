@@ -129,6 +129,7 @@ where
     /// off the constraints to be projected, of the state that smaller steps lead to.
     pub(crate) fn shown<I: Embedded>(
         &mut self,
+        method: I,
         t: R,
         from: &Point<R, Moving<S, R, N, M>>,
         y: &mut Moving<S, R, N, M>,
@@ -141,7 +142,7 @@ where
         self.fixed = false;
         let first = R::constant(SHOWN_SHARE) * (t - from.t);
         let mut steps = Adaptive::default().with_first(first);
-        let run = steps.run::<I, _>(self, *from, t, |_| None, |_, _| Ok(true));
+        let run = steps.run(method, self, *from, t, |_| None, |_, _| Ok(true));
         self.fixed = true;
         *y = run.map_err(|_| failure).map_or(before, |point| point.y);
         self.project_and_solve(t, y)
@@ -149,7 +150,7 @@ where
 
     /// Evaluates all contacts, as at an instant by itself.
     pub(crate) fn with_all_contacts(&mut self) {
-        if !S::CONTACTS.is_empty() {
+        if const { !S::CONTACTS.is_empty() } {
             self.parameters = Some(*self.model.parameters);
         }
     }
@@ -197,17 +198,17 @@ where
         increments: &S::Phases,
         solve: impl FnOnce(&Model<'_, S, R, N, M>, &F, &mut [R; M], &mut Counts) -> X,
     ) -> X {
-        let phases = if S::PHASES.is_empty() { *increments } else { self.phases(t, increments) };
+        let phases = if const { S::PHASES.is_empty() } { *increments } else { self.phases(t, increments) };
         let Equations { model, formulation, start, moving, integrating, parameters, lambda, counts, .. } =
             self;
         let model = *model;
         let parameters = match parameters {
-            Some(parameters) if !S::CONTACTS.is_empty() => parameters,
+            Some(parameters) if const { !S::CONTACTS.is_empty() } => parameters,
             _ => model.parameters,
         };
         let present = Model { parameters, ..*model };
         let Some(mechanism) = moving else {
-            let model = if S::CONTACTS.is_empty() { model } else { &present };
+            let model = if const { S::CONTACTS.is_empty() } { model } else { &present };
             return solve(model, formulation, lambda, counts);
         };
         mechanism.carry_signals(model.mechanism, t - *start);
@@ -360,7 +361,7 @@ where
         let (before, margin) = (self.end.t, self.end.solved.margin);
         let next = Instant { t, y: y.y, solved, carried: solved.rate.qd };
         self.require_branch_of_step(&next, self.counts.singular != singular)?;
-        if !S::CONTACTS.is_empty() {
+        if const { !S::CONTACTS.is_empty() } {
             self.before = (self.end, self.passage);
         }
         self.passage = self.passage.or(Passage::between((before, margin), (t, solved.margin)));
@@ -375,6 +376,8 @@ where
     F: Formulation<S, R, N, M>,
     R: Real,
 {
+    const MAY_KINK: bool = !S::CONTACTS.is_empty();
+
     /// In the zone of a singular position a ten-millionth of a radian, or of a reference length.
     fn least_step(&self) -> R {
         let Instant { y, solved: Solved { margin, .. }, .. } = &self.end;
@@ -385,7 +388,7 @@ where
 
     #[inline(always)]
     fn begin(&mut self, t: R, y: &Self::State) -> bool {
-        if S::CONTACTS.is_empty() {
+        if const { S::CONTACTS.is_empty() } {
             return false;
         }
         let Some(parameters) = &mut self.parameters else { return false };
@@ -397,10 +400,13 @@ where
     #[inline(always)]
     fn may_kink(&mut self, to: R) -> bool {
         let is_quiet = to <= self.quiet;
-        !S::CONTACTS.is_empty() && !is_quiet
+        Self::MAY_KINK && !is_quiet
     }
 
     fn kink(&mut self, step: &impl Dense<R, State = Self::State>) -> Result<Option<R>, Failure> {
+        if const { S::CONTACTS.is_empty() } {
+            return Ok(None);
+        }
         let ends = (step.start(), step.end());
         let evaluated = S::evaluated(self.parameters.as_ref().unwrap_or(self.model.parameters));
         self.model.contact_change((self.start, evaluated), ends, |t| step.at(t).y, &self.scrutiny)

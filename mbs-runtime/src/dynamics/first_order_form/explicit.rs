@@ -47,10 +47,11 @@ where
         h: R,
         counts: &mut Counts,
     ) -> Result<Instant<R, N, M, S::States>, Failure> {
-        let mut motion = Equations::new(model, &self.formulation, from, *counts).of_fixed_steps(I::ORDER);
+        let mut motion =
+            Equations::new(model, &self.formulation, from, *counts).of_fixed_steps(self.integrator.order());
         let t = from.t + h;
         let start = beginning(model.mechanism, from);
-        let stepped = I::step(&mut motion, from.t, h, &start.y, &start.rate);
+        let stepped = self.integrator.step(&mut motion, from.t, h, &start.y, &start.rate);
         let ended = stepped.and_then(|mut end| match motion.project_and_solve(t, &mut end) {
             Ok(solved) => Ok((end.y, solved)),
             Err(failure) => model.require_bounded(t, from, &end.y.q).and(Err(failure)),
@@ -58,9 +59,9 @@ where
         let margin = ended.as_ref().map_or(from.solved.margin, |(_, solved)| solved.margin);
         let entered = motion.counts.singular != counts.singular;
         if entered || margin.min(from.solved.margin) < near() {
-            let keeps = !(I::USES_SLOPES || self.formulation.leaves_constraints());
+            let keeps = !(self.integrator.uses_slopes() || self.formulation.leaves_constraints());
             if keeps && (entered || is_next_to_singular_position(model, from, h)) {
-                let next = if M <= MOST_ROWS {
+                let next = if const { M <= MOST_ROWS } {
                     // What the step itself failed with says more than its parts do.
                     motion.in_parts(start, t).map_err(|failure| ended.err().unwrap_or(failure))?
                 } else {
@@ -78,14 +79,14 @@ where
     }
 
     fn phases_after(&self, model: &Model<'_, S, R, N, M>, t: R, h: R) -> Result<Option<S::Phases>, Failure> {
-        if S::PHASES.is_empty() || I::ORDER <= ORDER_OF_INTEGRALS {
+        if const { S::PHASES.is_empty() } || self.integrator.order() <= ORDER_OF_INTEGRALS {
             return Ok(None);
         }
-        stepped::<I, S, R, N, M>(model.mechanism, t, h).map(Some)
+        stepped(&self.integrator, model.mechanism, t, h).map(Some)
     }
 
     fn require_suitable(&self) -> Result<(), Failure> {
-        if I::USES_SLOPES {
+        if self.integrator.uses_slopes() {
             require_slopes::<S, R, N, M>()?;
         }
         self.formulation.require_suitable()

@@ -112,11 +112,12 @@ impl<S: Mechanism<T, N, M>, T: Scalar, const N: usize, const M: usize> Equation<
     }
 }
 
-/// The phases after a step of `h` from `t` (s) by method `I`: those that the stages of its own steps come to.
+/// The phases after a step of `h` from `t` (s) by `method`: those that the stages of its own steps come to.
 ///
 /// # Errors
 /// None of its own.
 pub(crate) fn stepped<I: FixedStep, S, R: Real, const N: usize, const M: usize>(
+    method: &I,
     mechanism: &S,
     t: R,
     h: R,
@@ -128,7 +129,7 @@ where
     let mut equation = Rates::<S, R, N, M> { start: mechanism, from: t, moved: mechanism.clone() };
     let y: Bare<R, S::Phases> = Phased { y: [], phases: unmoved(start) };
     let rate = equation.rate(t, &y)?;
-    let end = I::step(&mut equation, t, h, &y, &rate)?;
+    let end = method.step(&mut equation, t, h, &y, &rate)?;
     let rates = equation.rate(t + h, &end)?;
     Ok(advanced(start, &end.phases, &rates.phases))
 }

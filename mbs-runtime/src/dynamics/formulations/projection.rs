@@ -89,7 +89,7 @@ impl Projection {
 }
 
 /// `true` if blocks of the rows can take the place of all rows together. Where the rank rises off the constraints they fix
-/// nothing.
+/// nothing. Callers ask for `IS_PARTITIONED` themselves: what the compiler does not see there it compiles in vain.
 #[inline(always)]
 fn has_blocks<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     model: &Model<'_, S, R, N, M>,
@@ -110,7 +110,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Formulation<S
         if self.stages_of(model) == ProjectedStages::All {
             return self.project_and_solve(model, t, &mut { *y }, lambda, counts);
         }
-        if has_blocks(model) {
+        if S::IS_PARTITIONED && has_blocks(model) {
             let place = block_elimination::place(model, t, y);
             if place.is_regular()
                 && let Some(solved) = block_elimination::solve(model, (t, y), &place, lambda, counts)?
@@ -147,7 +147,8 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Formulation<S
         counts: &mut Counts,
     ) -> Result<(), Failure> {
         let before = *y;
-        if has_blocks(model) && block_elimination::settled(model, t, y, counts).is_some() {
+        if S::IS_PARTITIONED && has_blocks(model) && block_elimination::settled(model, t, y, counts).is_some()
+        {
             return Ok(());
         }
         *y = before;
@@ -165,7 +166,11 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Formulation<S
     ) -> Result<Solved<R, N, M, S::States>, Failure> {
         counts.projected_stages += u64::from(self.stages_of(model) == ProjectedStages::All);
         let before = *y;
-        let settled = if has_blocks(model) { block_elimination::settled(model, t, y, counts) } else { None };
+        let settled = if S::IS_PARTITIONED && has_blocks(model) {
+            block_elimination::settled(model, t, y, counts)
+        } else {
+            None
+        };
         match settled {
             Some(place) if place.is_regular() => {
                 if let Some(solved) = block_elimination::solve_apart(model, (t, y), &place, lambda, counts)? {

@@ -96,7 +96,7 @@ impl AugmentedLagrangian {
             }
             // Without the spring of this iteration, which goes beyond what it will come to.
             let mut bearing = lambda;
-            if S::FORCE_USES_MULTIPLIERS || !S::STATES.is_empty() {
+            if const { S::FORCE_USES_MULTIPLIERS || !S::STATES.is_empty() } {
                 let gamma = model.mechanism.gamma(model.parameters, &position, &y.qd);
                 bearing = lambda.plus(R::constant(1.0), &[1.0], [&penalized.put(&qdd, &gamma).1]);
             }

@@ -1,6 +1,6 @@
 //! Order 5 with an estimate of order 4: the pair for accuracies from 1e-3 to 1e-7.
 
-use crate::dynamics::integrators::embedded::{Embedded, StepAttempt, Taken, hermite, nested};
+use crate::dynamics::integrators::embedded::{Embedded, StepAttempt, StepControl, Taken, hermite, nested};
 use crate::dynamics::integrators::equation::{Equation, ErrorNorm};
 use crate::dynamics::integrators::fixed_step::FixedStep;
 use crate::dynamics::integrators::vector::Vector;
@@ -33,32 +33,39 @@ const D: [f64; 6] = [
 ];
 
 impl FixedStep for DormandPrince5 {
-    const ORDER: u32 = 5;
+    #[inline]
+    fn order(&self) -> u32 {
+        5
+    }
 
     /// The solution of order 5, whatever its error.
     #[inline]
     fn step<T: Scalar, S: Equation<T>>(
+        &self,
         equation: &mut S,
         t: T,
         h: T,
         y: &S::State,
         rate: &S::State,
     ) -> Result<S::State, Failure> {
-        Ok(Self::trial(equation, (t, h), (y, rate), &())?.y)
+        Ok(self.trial(equation, (t, h), (y, rate), &())?.y)
     }
 }
 
 impl Embedded for DormandPrince5 {
-    const ERROR_ORDER: u32 = 5;
-    const LARGEST_GROWTH: f64 = 10.0;
-    const MEMORY: f64 = 0.04;
     /// Stages 3 to 7.
     type Stages<Y: Copy> = [Y; 5];
     type Memory<R: Copy, Y: Copy> = ();
     type Dense<Y: Copy> = [Y; 5];
 
     #[inline]
+    fn control(&self) -> StepControl {
+        StepControl { memory: 0.04, ..StepControl::of(5, 10.0) }
+    }
+
+    #[inline]
     fn trial<T: Scalar, S: Equation<T>>(
+        &self,
         equation: &mut S,
         (t, h): (T, T),
         (y, k1): (&S::State, &S::State),

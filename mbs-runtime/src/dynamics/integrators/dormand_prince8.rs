@@ -1,6 +1,6 @@
 //! Order 8 with estimates of orders 5 and 3: the method for accuracies of 1e-7 and beyond.
 
-use crate::dynamics::integrators::embedded::{Embedded, StepAttempt, Taken, hermite, nested};
+use crate::dynamics::integrators::embedded::{Embedded, StepAttempt, StepControl, Taken, hermite, nested};
 use crate::dynamics::integrators::equation::{Equation, ErrorNorm};
 use crate::dynamics::integrators::fixed_step::FixedStep;
 use crate::dynamics::integrators::vector::Vector;
@@ -225,35 +225,41 @@ const D7: [f64; 12] = [
 const THIRD_ORDER_SHARE: f64 = 0.01;
 
 impl FixedStep for DormandPrince8 {
-    const ORDER: u32 = 8;
+    #[inline]
+    fn order(&self) -> u32 {
+        8
+    }
 
     /// The solution of order 8, whatever its error.
     #[inline]
     fn step<T: Scalar, S: Equation<T>>(
+        &self,
         equation: &mut S,
         t: T,
         h: T,
         y: &S::State,
         rate: &S::State,
     ) -> Result<S::State, Failure> {
-        Ok(Self::trial(equation, (t, h), (y, rate), &())?.y)
+        Ok(self.trial(equation, (t, h), (y, rate), &())?.y)
     }
 }
 
 impl Embedded for DormandPrince8 {
-    const ERROR_ORDER: u32 = 8;
-    const LARGEST_GROWTH: f64 = 6.0;
-    /// The estimate of order 5 changes its sign now and then, and with it the error goes through zero. A step that then grows six
-    /// times may meet the next such place: of 100 motions of one crank at 1e-8 two were 30 times as far off as the others.
-    const LARGEST_GROWTH_IN_TUNE: f64 = 2.0;
-    const MEMORY: f64 = 0.0;
     /// Stages 6 to 12.
     type Stages<Y: Copy> = [Y; 7];
     type Memory<R: Copy, Y: Copy> = ();
     type Dense<Y: Copy> = [Y; 8];
 
+    /// The estimate of order 5 changes its sign now and then, and with it the error goes through zero. A step that then grows six
+    /// times may meet the next such place: of 100 motions of one crank at 1e-8 two were 30 times as far off as the others.
+    #[inline]
+    fn control(&self) -> StepControl {
+        StepControl { largest_growth_in_tune: 2.0, ..StepControl::of(8, 6.0) }
+    }
+
     #[inline]
     fn trial<T: Scalar, S: Equation<T>>(
+        &self,
         equation: &mut S,
         (t, h): (T, T),
         (y, k1): (&S::State, &S::State),

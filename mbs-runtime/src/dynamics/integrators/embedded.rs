@@ -8,16 +8,6 @@ use crate::scalar::number::{Real, Scalar};
 
 /// An explicit Runge–Kutta method that estimates its own error and gives the solution between its steps.
 pub trait Embedded: FixedStep {
-    /// Exponent of the step size in the error estimate.
-    const ERROR_ORDER: u32;
-    /// Largest factor by which a step may grow.
-    const LARGEST_GROWTH: f64;
-    /// The same once steps are in tune with the motion, where the estimate may be small by chance.
-    const LARGEST_GROWTH_IN_TUNE: f64 = Self::LARGEST_GROWTH;
-    /// Share of the last step's error in the choice of the next, β of the controller.
-    const MEMORY: f64;
-    /// Factor by which a step that failed is tried again.
-    const RETRY: f64 = 0.2;
     /// Data that a step leaves for the next one.
     type Memory<R: Copy, Y: Copy>: Copy + Default;
     /// Rates that later calls use again.
@@ -25,11 +15,15 @@ pub trait Embedded: FixedStep {
     /// The polynomial of a step.
     type Dense<Y: Copy>: Copy;
 
+    /// Numbers of the control of its steps.
+    fn control(&self) -> StepControl;
+
     /// A step from `start`, a state and its rate, after the one that left `memory`; `span`: its beginning and its length (s).
     ///
     /// # Errors
     /// Those of the equation.
     fn trial<T: Scalar, E: Equation<T>>(
+        &self,
         equation: &mut E,
         span: (T, T),
         start: (&E::State, &E::State),
@@ -46,8 +40,9 @@ pub trait Embedded: FixedStep {
     ) -> R;
 
     /// The largest factor by which the next step may grow.
-    fn growth<Y: Copy>(_stages: &Self::Stages<Y>) -> f64 {
-        Self::LARGEST_GROWTH
+    #[inline]
+    fn growth<Y: Copy>(&self, _stages: &Self::Stages<Y>) -> f64 {
+        self.control().largest_growth
     }
 
     /// Data that an accepted step leaves for the next one.
@@ -65,6 +60,35 @@ pub trait Embedded: FixedStep {
 
     /// The polynomial at `theta`, 0 at the beginning of the step, 1 at its end.
     fn interpolate<T: Scalar, Y: Vector<T>>(dense: &Self::Dense<Y>, theta: T) -> Y;
+}
+
+/// Numbers by which the size of a method's steps is controlled.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StepControl {
+    /// Exponent of the step size in the error estimate.
+    pub error_order: u32,
+    /// Largest factor by which a step may grow.
+    pub largest_growth: f64,
+    /// The same once steps are in tune with the motion, where the estimate may be small by chance.
+    pub largest_growth_in_tune: f64,
+    /// Share of the last step's error in the choice of the next, β of the controller.
+    pub memory: f64,
+    /// Factor by which a step that failed is tried again.
+    pub retry: f64,
+}
+
+impl StepControl {
+    /// Of an estimate of `error_order`: steps grow by `largest_growth` at most, without memory, and failed ones are tried with a fifth.
+    #[inline]
+    pub const fn of(error_order: u32, largest_growth: f64) -> Self {
+        StepControl {
+            error_order,
+            largest_growth,
+            largest_growth_in_tune: largest_growth,
+            memory: 0.0,
+            retry: 0.2,
+        }
+    }
 }
 
 /// Result of a trial step of method `X`.
@@ -92,6 +116,13 @@ pub struct Taken<'a, R, Y, K> {
     pub end: (&'a Y, &'a Y),
     /// Its rates in between.
     pub stages: &'a K,
+}
+
+impl<'a, R: Copy, Y, K> Taken<'a, R, Y, K> {
+    /// The same step with `stages`.
+    pub(crate) fn with<L>(&self, stages: &'a L) -> Taken<'a, R, Y, L> {
+        Taken { t: self.t, h: self.h, start: self.start, end: self.end, stages }
+    }
 }
 
 /// Terms of [`nested`] that `start` and `end` of a step of `h` (s) fix, each a state and its rate: the cubic of Hermite.

@@ -88,6 +88,9 @@ pub struct Collocated<Y> {
 
 /// An equation with tolerances, for an adaptive integrator.
 pub trait ErrorNorm<T: Scalar>: Equation<T> {
+    /// `false` where no step of it has a time at which it is not smooth, so that no search for one is compiled.
+    const MAY_KINK: bool = true;
+
     /// Of each of `errors` the largest component over its tolerance, for a step from `before` to `after`: accepted up to 1.
     fn measure<const K: usize>(
         &self,

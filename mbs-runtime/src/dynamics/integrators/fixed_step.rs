@@ -8,15 +8,20 @@ use crate::scalar::number::Scalar;
 /// An explicit method with steps of the caller's size: fixed work, no memory of earlier steps.
 pub trait FixedStep: Copy {
     /// Order of convergence.
-    const ORDER: u32;
+    fn order(&self) -> u32;
+
     /// `true` if its steps need derivatives of the forces.
-    const USES_SLOPES: bool = false;
+    #[inline]
+    fn uses_slopes(&self) -> bool {
+        false
+    }
 
     /// The state at `t + h`, not yet settled, from the state `y` at `t` (s) and its rate.
     ///
     /// # Errors
     /// Those of the equation.
     fn step<T: Scalar, E: Equation<T>>(
+        &self,
         equation: &mut E,
         t: T,
         h: T,
@@ -33,10 +38,14 @@ pub trait FixedStep: Copy {
 pub struct SemiImplicitEuler;
 
 impl FixedStep for SemiImplicitEuler {
-    const ORDER: u32 = 1;
+    #[inline]
+    fn order(&self) -> u32 {
+        1
+    }
 
     #[inline]
     fn step<T: Scalar, E: Equation<T>>(
+        &self,
         _: &mut E,
         _: T,
         h: T,
@@ -54,10 +63,14 @@ impl FixedStep for SemiImplicitEuler {
 pub struct RungeKutta4;
 
 impl FixedStep for RungeKutta4 {
-    const ORDER: u32 = 4;
+    #[inline]
+    fn order(&self) -> u32 {
+        4
+    }
 
     #[inline]
     fn step<T: Scalar, E: Equation<T>>(
+        &self,
         equation: &mut E,
         t: T,
         h: T,

@@ -2,6 +2,7 @@
 
 pub(crate) mod dormand_prince5;
 pub(crate) mod dormand_prince8;
+pub(crate) mod either;
 pub(crate) mod embedded;
 pub(crate) mod equation;
 pub(crate) mod event;

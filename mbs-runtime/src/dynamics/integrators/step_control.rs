@@ -227,17 +227,19 @@ impl<R: Real> Adaptive<R> {
     /// the cause, or the failure of the equation at the smallest step; [`FailureKind::OutOfReach`].
     pub fn step<M: Embedded, E: ErrorNorm<R>>(
         &mut self,
+        method: M,
         equation: &mut E,
         from: &Point<R, E::State>,
         until: R,
         breaks: bool,
     ) -> Result<Accepted<M, R, E::State>, Failure> {
-        self.step_after(equation, from, (until, breaks), &M::Memory::default())
+        self.step_after(method, equation, from, (until, breaks), &M::Memory::default())
     }
 
     /// [`step`](Self::step) after the one that left `memory`.
     fn step_after<M: Embedded, E: ErrorNorm<R>>(
         &mut self,
+        method: M,
         equation: &mut E,
         from: &Point<R, E::State>,
         (until, breaks): (R, bool),
@@ -246,9 +248,9 @@ impl<R: Real> Adaptive<R> {
         let mut planned = match self.step {
             Some(step) => step,
             None => {
-                let (first, _) = first_step::<M, R, E>(equation, from, until, R::constant(0.0))?;
+                let (first, _) = first_step(method, equation, from, until, R::constant(0.0))?;
                 if first < R::EPSILON * until.abs() {
-                    resolved_first_step::<M, R, E>(equation, from, until)?
+                    resolved_first_step(method, equation, from, until)?
                 } else {
                     first
                 }
@@ -263,9 +265,9 @@ impl<R: Real> Adaptive<R> {
             let latest = if ends && breaks { just_before(end) } else { end };
             let trial = {
                 let mut clamped = Clamped { equation: &mut *equation, latest };
-                M::trial(&mut clamped, (from.t, end - from.t), (&from.y, &from.rate), memory)
+                method.trial(&mut clamped, (from.t, end - from.t), (&from.y, &from.rate), memory)
             };
-            match self.judged::<M, E>(equation, from, end, trial) {
+            match self.judged(method, equation, from, end, trial) {
                 Ok((accepted, factor)) => {
                     let next = h * factor;
                     // A step cut short by the end says nothing against the one that was planned.
@@ -293,6 +295,7 @@ impl<R: Real> Adaptive<R> {
     #[inline(never)]
     fn up_to_kink<M: Embedded, E: ErrorNorm<R>>(
         &mut self,
+        method: M,
         equation: &mut E,
         mut accepted: Accepted<M, R, E::State>,
     ) -> Result<Accepted<M, R, E::State>, Failure> {
@@ -309,7 +312,7 @@ impl<R: Real> Adaptive<R> {
             self.accepted = self.accepted.saturating_sub(1);
             self.rejected = self.rejected.saturating_add(1);
             equation.retake();
-            accepted = self.step::<M, E>(equation, &start, until, false)?;
+            accepted = self.step(method, equation, &start, until, false)?;
             // A step cut short says nothing against the one that was planned.
             if until <= accepted.end.t {
                 self.step = planned;
@@ -331,15 +334,16 @@ impl<R: Real> Adaptive<R> {
     /// The trial settled and accepted with the factor for the next step, or rejected with the factor for this one.
     fn judged<M: Embedded, E: ErrorNorm<R>>(
         &mut self,
+        method: M,
         equation: &mut E,
         from: &Point<R, E::State>,
         end: R,
         trial: Result<AttemptOf<M, E::State>, Failure>,
     ) -> Judgement<M, R, E::State> {
-        let least = R::constant(LEAST_GROWTH);
-        let trial = trial.map_err(|failure| (Some(failure), R::constant(M::RETRY)))?;
+        let (least, control) = (R::constant(LEAST_GROWTH), method.control());
+        let trial = trial.map_err(|failure| (Some(failure), R::constant(control.retry)))?;
         let error = M::error(equation, end - from.t, &from.y, &from.rate, &trial);
-        let exponent = 1.0 / f64::from(M::ERROR_ORDER) - 0.75 * M::MEMORY;
+        let exponent = 1.0 / f64::from(control.error_order) - 0.75 * control.memory;
         let ideal = R::constant(SAFETY) / error.powf(R::constant(exponent));
         if !error.is_finite() || error > R::constant(1.0) {
             let factor = if ideal.is_finite() { least.max(ideal) } else { least };
@@ -347,9 +351,9 @@ impl<R: Real> Adaptive<R> {
         }
         let mut y = trial.y;
         let rate = equation.settled_rate(end, &mut y).map_err(|failure| (Some(failure), least))?;
-        let remembered = self.last_error.powf(R::constant(M::MEMORY));
-        let in_tune = R::constant(M::LARGEST_GROWTH_IN_TUNE);
-        let mut largest = R::constant(if self.growth_barred { 1.0 } else { M::growth(&trial.stages) });
+        let remembered = self.last_error.powf(R::constant(control.memory));
+        let in_tune = R::constant(control.largest_growth_in_tune);
+        let mut largest = R::constant(if self.growth_barred { 1.0 } else { method.growth(&trial.stages) });
         if self.in_tune {
             largest = largest.min(in_tune);
         }
@@ -370,6 +374,7 @@ impl<R: Real> Adaptive<R> {
     /// [`step`](Self::step).
     pub fn run<M: Embedded, E: ErrorNorm<R>>(
         &mut self,
+        method: M,
         equation: &mut E,
         from: Point<R, E::State>,
         until: R,
@@ -395,9 +400,9 @@ impl<R: Real> Adaptive<R> {
             }
             let next_break = breakpoints(now.t).filter(|next| now.t < *next && *next <= until);
             let end = (next_break.unwrap_or(until), next_break.is_some());
-            let mut accepted = self.step_after::<M, E>(equation, &now, end, &memory)?;
-            if equation.may_kink(accepted.end.t) {
-                accepted = self.up_to_kink::<M, E>(equation, accepted)?;
+            let mut accepted = self.step_after(method, equation, &now, end, &memory)?;
+            if E::MAY_KINK && equation.may_kink(accepted.end.t) {
+                accepted = self.up_to_kink(method, equation, accepted)?;
             }
             memory = M::remember(&accepted.taken());
             now = accepted.end;
@@ -419,11 +424,12 @@ fn out_of_reach<R: Real>(step: R, t: R, until: R) -> Failure {
 #[cold]
 #[inline(never)]
 fn resolved_first_step<M: Embedded, R: Real, E: ErrorNorm<R>>(
+    method: M,
     equation: &mut E,
     from: &Point<R, E::State>,
     until: R,
 ) -> Result<R, Failure> {
-    let (first, bent) = first_step::<M, R, E>(equation, from, until, R::constant(1.0))?;
+    let (first, bent) = first_step(method, equation, from, until, R::constant(1.0))?;
     if bent < R::EPSILON * until.abs() {
         return Err(out_of_reach(bent, from.t, until));
     }
@@ -436,6 +442,7 @@ fn resolved_first_step<M: Embedded, R: Real, E: ErrorNorm<R>>(
 ///
 /// Source: Hairer, Nørsett & Wanner 1993, §II.4 (starting step size).
 fn first_step<M: Embedded, R: Real, E: ErrorNorm<R>>(
+    method: M,
     equation: &mut E,
     from: &Point<R, E::State>,
     until: R,
@@ -456,7 +463,7 @@ fn first_step<M: Embedded, R: Real, E: ErrorNorm<R>>(
     let [change] = equation.measure(&from.y, &from.y, [&change]);
     let curvature = change / guess;
     let steepest = speed.max(curvature);
-    let exponent = R::constant(1.0 / f64::from(M::ERROR_ORDER));
+    let exponent = R::constant(1.0 / f64::from(method.control().error_order));
     let second = if zero < steepest { (share / steepest).powf(exponent) } else { guess };
     let step = (R::constant(100.0) * guess).min(second).min(span);
     if zero < step && step.is_finite() {

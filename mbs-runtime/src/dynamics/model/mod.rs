@@ -214,7 +214,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
     /// rate, are moved on from time `from` (s).
     #[inline(always)]
     pub(crate) fn moved<X>(&self, from: R, to: R, solve: impl FnOnce(&Model<'_, S, R, N, M>) -> X) -> X {
-        if S::PHASES.is_empty() && !S::HAS_SIGNALS {
+        if const { S::PHASES.is_empty() && !S::HAS_SIGNALS } {
             return solve(self);
         }
         let mut mechanism = self.mechanism.clone();

@@ -17,14 +17,32 @@ use crate::failure::Failure;
 use crate::mechanism::dynamic::Dynamic;
 use crate::scalar::number::Real;
 
-/// Absence of an event, with a closure's type rather than a function pointer's: nothing is called through a pointer then, and a
-/// linked binary can be shown to have no panic.
-#[allow(clippy::type_complexity, reason = "a type that no one can write, of a call that is none")]
-fn no_event<R: Real, const N: usize>() -> Option<(Direction, impl FnMut(R, &[R; N], &[R; N]) -> R)> {
-    fn none<E>(_: E) -> Option<(Direction, E)> {
-        None
+/// Event function of a run. A run without one compiles no search: `IS_ANY` is known to the compiler.
+trait EventFunction<R, const N: usize> {
+    /// `false` where there is none.
+    const IS_ANY: bool;
+
+    /// Its value at time `t` (s), coordinates `q` and velocities `qd` (N).
+    fn at(&mut self, t: R, q: &[R; N], qd: &[R; N]) -> R;
+}
+
+/// No event.
+struct NoEvent;
+
+impl<R: Real, const N: usize> EventFunction<R, N> for NoEvent {
+    const IS_ANY: bool = false;
+
+    fn at(&mut self, t: R, _: &[R; N], _: &[R; N]) -> R {
+        t
     }
-    none(|t: R, _: &[R; N], _: &[R; N]| t)
+}
+
+impl<R, F: FnMut(R, &[R; N], &[R; N]) -> R, const N: usize> EventFunction<R, N> for F {
+    const IS_ANY: bool = true;
+
+    fn at(&mut self, t: R, q: &[R; N], qd: &[R; N]) -> R {
+        self(t, q, qd)
+    }
 }
 
 /// Figures of a run at the end of a step.
@@ -67,7 +85,7 @@ where
     /// the method; [`BeyondLimit`](crate::FailureKind::BeyondLimit) and [`WrongBranch`](crate::FailureKind::WrongBranch) with the time at which the limit is passed within a
     /// step. The state is then that at the end of the last step that was accepted.
     pub fn advance_to(&mut self, until: R) -> Result<(), Failure> {
-        self.advance(until, |_| None, no_event(), |_, _| Ok(())).map(|_| ())
+        self.advance(until, |_| None, None::<(Direction, NoEvent)>, |_, _| Ok(())).map(|_| ())
     }
 
     /// As [`advance_to`](Self::advance_to), hitting the times that `breakpoints` gives: the next one after its
@@ -80,7 +98,7 @@ where
         until: R,
         breakpoints: impl FnMut(R) -> Option<R>,
     ) -> Result<(), Failure> {
-        self.advance(until, breakpoints, no_event(), |_, _| Ok(())).map(|_| ())
+        self.advance(until, breakpoints, None::<(Direction, NoEvent)>, |_, _| Ok(())).map(|_| ())
     }
 
     /// As [`advance_to`](Self::advance_to), but stops where `event` of time, coordinates and velocities first reaches zero, even
@@ -147,6 +165,7 @@ where
     ) -> Result<(), Failure> {
         let (from, count) = (self.now.t, R::constant(f64::from(samples)));
         let (mut index, mut accepted_steps) = (1, self.adaptive.accepted);
+        let method = self.method.integrator;
         if until == from {
             self.stand()?;
             let (phases, counts) = (self.mechanism.phases(), self.counts);
@@ -157,7 +176,7 @@ where
         self.advance(
             until,
             |_| None,
-            no_event(),
+            None::<(Direction, NoEvent)>,
             |equations, accepted| {
                 let mut polynomial = None;
                 accepted_steps = accepted_steps.wrapping_add(1);
@@ -171,7 +190,7 @@ where
                         let known = *polynomial.get_or_insert_with(|| accepted.polynomial(equations).ok());
                         let between = || known.map_or_else(|| accepted.cubic(t), |known| known.at(t));
                         let mut y = if t < accepted.end.t { between() } else { accepted.end.y };
-                        let solved = equations.shown::<I>(t, &accepted.start, &mut y)?;
+                        let solved = equations.shown(method, t, &accepted.start, &mut y)?;
                         let phases = equations.phases(t, &y.phases);
                         Ok((Instant { t, y: y.y, solved, carried: solved.rate.qd }, phases))
                     })?;
@@ -187,11 +206,11 @@ where
     }
 
     /// Runs to `until`, or to the first `event`; returns `true` if it was an event. `see` is shown each step.
-    fn advance(
+    fn advance<E: EventFunction<R, N>>(
         &mut self,
         until: R,
         breakpoints: impl FnMut(R) -> Option<R>,
-        mut event: Option<(Direction, impl FnMut(R, &[R; N], &[R; N]) -> R)>,
+        mut event: Option<(Direction, E)>,
         mut see: impl FnMut(
             &mut Equations<'_, S, F, R, N, M>,
             &Accepted<I, R, Moving<S, R, N, M>>,
@@ -208,20 +227,27 @@ where
         self.tolerance.require_resolved(self.now.t)?;
         let Fresh { instant: from, gained, rank_rises } = self.fresh(&mut counts)?;
         let mut monitor = match &mut event {
-            Some((direction, event)) => Some(self.monitor(*direction, &from, event)?),
+            Some((direction, event)) => {
+                Some(self.monitor(*direction, &from, &mut |t, q, qd| event.at(t, q, qd))?)
+            }
             None => None,
         };
         let model = Model { rank_rises, ..self.model() };
-        let formulation = &self.method.formulation;
+        let (method, formulation) = (self.method.integrator, &self.method.formulation);
         let mut equations = Equations::new(&model, formulation, &from, counts).with_tolerance(self.tolerance);
         equations = equations.with_resolution(self.scrutiny.resolution);
         let start = beginning(model.mechanism, &from);
         let (mut stopped, mut last, mut errors) = (None, start, self.errors);
         let (taken, resolution, tolerance) = (adaptive.accepted, self.scrutiny.resolution, self.tolerance);
-        let run = adaptive.run::<I, _>(&mut equations, start, until, breakpoints, |equations, accepted| {
+        let run = adaptive.run(method, &mut equations, start, until, breakpoints, |equations, accepted| {
             let (start, mut end) = (accepted.start.t, accepted.end.t);
             errors = errors + accepted.error;
             model.check(end, &accepted.end.y.y)?;
+            if const { !E::IS_ANY && S::LIMITS.is_empty() && S::BRANCHES.is_empty() } {
+                see(equations, accepted)?;
+                last = accepted.end;
+                return Ok(true);
+            }
             let ends = model.check_assembly(from.t, (end, &accepted.end.y.y), false);
             if monitor.is_none() && S::LIMITS.is_empty() && ends.is_ok() {
                 see(equations, accepted)?;
@@ -229,10 +255,12 @@ where
                 return Ok(true);
             }
             let course = equations.apart(|equations| accepted.course(equations));
-            if let (Some(monitor), Some((_, event))) = (&mut monitor, &mut event) {
+            if E::IS_ANY
+                && let (Some(monitor), Some((_, event))) = (&mut monitor, &mut event)
+            {
                 let found = monitor.first((start, end), |t| {
                     let y = course.at(t).y;
-                    event(t, &y.q, &y.qd)
+                    event.at(t, &y.q, &y.qd)
                 });
                 if let Some(reach) = found.map_err(event_failure)? {
                     stopped = Some((reach, course.at(reach.t)));
@@ -270,7 +298,7 @@ where
         self.passed = passage.is_some();
         self.reference = self.reference + gained;
         if let (Some((reach, _)), Some((_, event))) = (stopped, &mut event) {
-            self.stopped = Some(Stopped::new(t, event(t, &self.now.y.q, &self.now.y.qd), reach.scale));
+            self.stopped = Some(Stopped::new(t, event.at(t, &self.now.y.q, &self.now.y.qd), reach.scale));
         }
         failure.map_or(Ok(stopped.is_some()), Err)
     }

@@ -32,7 +32,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         (t, y): (R, &IntegratorState<R, N, S::States>),
         assembling: bool,
     ) -> Result<(), Failure> {
-        if S::BRANCHES.is_empty() && S::LIMITS.is_empty() {
+        if const { S::BRANCHES.is_empty() && S::LIMITS.is_empty() } {
             return Ok(());
         }
         let failure = self.moved(from, t, |Model { mechanism, parameters, .. }| {
@@ -51,7 +51,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         from: R,
         (t, y): (R, &IntegratorState<R, N, S::States>),
     ) -> Result<(), Failure> {
-        if S::BRANCHES.is_empty() {
+        if const { S::BRANCHES.is_empty() } {
             return Ok(());
         }
         let failure = self.moved(from, t, |Model { mechanism, parameters, .. }| {
@@ -72,7 +72,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         at: impl Fn(R) -> IntegratorState<R, N, S::States>,
         (resolution, errors): (Option<R>, &[R; N]),
     ) -> Result<(), Failure> {
-        if S::LIMITS.is_empty() {
+        if const { S::LIMITS.is_empty() } {
             return Ok(());
         }
         let size = [start, end].map(|t| size(&self.metric.coordinates, &at(t).q));

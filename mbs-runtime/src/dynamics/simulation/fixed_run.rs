@@ -132,7 +132,7 @@ where
 
     /// A step of `h` (s), as it is.
     fn stepped(&mut self, h: R) -> Result<(), Failure> {
-        if !S::CONTACTS.is_empty() {
+        if const { !S::CONTACTS.is_empty() } {
             return self.step_with_contacts(h);
         }
         let ahead = self.ahead(h, self.counts, false)?;
@@ -258,7 +258,9 @@ where
         let (from, rank_rises) = (&fresh.instant, fresh.rank_rises);
         let model = Model { rank_rises, first_order: true, ..self.model() };
         let mut parameters = &self.parameters;
-        if let Some(open) = open.filter(|_| !S::CONTACTS.is_empty()) {
+        if const { !S::CONTACTS.is_empty() }
+            && let Some(open) = open
+        {
             let (left_out, quiet) = open.insert((self.parameters, from.t));
             *quiet = model.leave_out(from.t, (from.t, &from.y), left_out).until;
             parameters = left_out;
@@ -311,7 +313,7 @@ where
         let (model, (start, end)) = (self.model(), ahead.times());
         let (parameters, quiet) =
             open.as_ref().map_or((&self.parameters, start), |(parameters, quiet)| (parameters, *quiet));
-        if end <= quiet || S::CONTACTS.is_empty() {
+        if const { S::CONTACTS.is_empty() } || end <= quiet {
             return Ok(None);
         }
         let evaluated = (start, S::evaluated(parameters));
@@ -322,7 +324,7 @@ where
 
     /// A step of `h` (s), or up to where a contact closes or opens. Nothing after that is judged.
     fn ahead_to_kink(&self, h: R) -> Result<AheadOf<S, R, N, M>, Failure> {
-        if S::CONTACTS.is_empty() {
+        if const { S::CONTACTS.is_empty() } {
             return self.ahead(h, self.counts, false);
         }
         let mut trial = self.trial_with_contacts(h, self.counts)?;

@@ -336,13 +336,13 @@ where
             let start = self.mechanism.clone();
             self.mechanism.carry_signals(&start, next.t - self.now.t);
         }
-        if !S::PHASES.is_empty() {
+        if const { !S::PHASES.is_empty() } {
             match phases {
                 Some(phases) => self.mechanism.set_phases(phases),
                 None => self.mechanism.advance_phases(self.now.t, next.t),
             }
         }
-        if S::HAS_SIGNALS || !S::PHASES.is_empty() {
+        if const { S::HAS_SIGNALS || !S::PHASES.is_empty() } {
             self.parameters = self.mechanism.parameters();
         }
         self.now = next;
@@ -373,7 +373,7 @@ where
         let before = self.model().total_energy(self.now.t, &self.now.y);
         let before = self.known.unwrap_or(before);
         let result = change(&mut self.mechanism);
-        if !S::PHASES.is_empty() {
+        if const { !S::PHASES.is_empty() } {
             self.mechanism.set_phases(at_present(&self.mechanism, self.now.t));
         }
         self.parameters = self.mechanism.parameters();

@@ -143,7 +143,7 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Walk<'_, '_
     /// `true` if the declared branches hold at `q` (N). Where two assemblies come nearer to each other than a piece is long, a
     /// step may jump to the other one; the branches detect it.
     fn holds(&mut self, q: &[R; N], share: R) -> bool {
-        if S::BRANCHES.is_empty() {
+        if const { S::BRANCHES.is_empty() } {
             return true;
         }
         let station = self.station(share);

@@ -1,14 +1,16 @@
 //! Direct dynamics: the motion that forces cause, by a chosen formulation.
 
+use core::marker::PhantomData;
 use std::time::Duration;
 
 use mbs_runtime::dynamics::{
-    AugmentedLagrangian, Baumgarte, Counts, DormandPrince5, DormandPrince8, Embedded, Explicit, Extrapolated,
-    Formulation, GeneralizedAlpha, Method, MethodWarning, MovedStart, Penalty, ProjectedStages, Projection,
-    Radau5, RungeKutta4, SemiImplicitEuler, Simulation, Tolerance, Unstabilized, VelocityTransformation,
+    AugmentedLagrangian, Baumgarte, Counts, Embedded, Explicit, Extrapolated, Formulation, GeneralizedAlpha,
+    Method, MethodWarning, MovedStart, Penalty, ProjectedStages, Projection, Radau5, Simulation, Tolerance,
+    Unstabilized, VelocityTransformation,
 };
 use mbs_runtime::{Dynamic, Failure, FailureKind, Partitioned};
 
+use super::integrators::Integrators;
 use super::record::Record;
 use super::start::{Start, moved_start, start, text_start};
 use super::work_by_source::{Quadrature, Single, add_works};
@@ -144,43 +146,41 @@ pub struct Simulated {
     pub elapsed: Duration,
 }
 
-/// A simulation of a mechanism of type `S` from a start through times (s), by one formulation.
-pub type Simulate<S, const N: usize> =
-    fn(&S, &Start<N>, Steps, &[f64], &mut dyn FnMut(usize)) -> Result<Simulated, Failure>;
-
-/// Functions that need the partition into dependent and independent coordinates, for a mechanism of type `S`.
-#[derive(Clone, Copy, Debug)]
-pub struct PartitionedFunctions<S, const N: usize> {
+/// Functions that need the partition into dependent and independent coordinates, for a mechanism of type `S` that is moved by
+/// integrators of `I`.
+pub struct PartitionedFunctions<S: 'static, I, const N: usize, const M: usize> {
     /// The start at a time (s).
     pub start: fn(&S, f64) -> Start<N>,
-    /// A motion from a start through times (s).
-    pub by_velocity: Simulate<S, N>,
-    /// The same by steps of Radau IIA; none where its matrices are too large for a stack.
-    pub by_radau: Option<Simulate<S, N>>,
+    /// Formulation in independent coordinates; that in all rows together where there are none.
+    pub velocity: fn() -> AnyFormulation<'static, S, N, M>,
+    /// `true` if there are independent coordinates.
+    pub is_partitioned: bool,
     /// The independent coordinates: as the text names them, or chosen.
     pub independent: &'static [u16],
+    integrators: PhantomData<I>,
 }
 
-impl<S, const N: usize> PartitionedFunctions<S, N> {
+impl<S: 'static, I, const N: usize, const M: usize> Clone for PartitionedFunctions<S, I, N, M> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<S: 'static, I, const N: usize, const M: usize> Copy for PartitionedFunctions<S, I, N, M> {}
+
+impl<S, I, const N: usize, const M: usize> PartitionedFunctions<S, I, N, M>
+where
+    S: Dynamic<f64, N, M> + Partitioned<f64, N, M> + 'static,
+{
     /// Functions of `S`. If rows follow from one another there are no blocks of them. The motion then begins at the text's start
     /// and is projected onto all rows together.
-    pub fn of<const M: usize>() -> Self
-    where
-        S: Dynamic<f64, N, M> + Partitioned<f64, N, M>,
-    {
-        PartitionedFunctions { by_radau: Some(by_radau::<S, N, M>), ..Self::of_large::<M>() }
-    }
-
-    /// Functions of `S` with more coordinates and rows than a step of Radau IIA may have.
-    pub fn of_large<const M: usize>() -> Self
-    where
-        S: Dynamic<f64, N, M> + Partitioned<f64, N, M>,
-    {
+    pub fn of() -> Self {
         PartitionedFunctions {
             start: if S::IS_PARTITIONED { start::<S, N, M> } else { text_start::<S, N, M> },
-            by_velocity: if S::IS_PARTITIONED { by_velocity::<S, N, M> } else { by_projection::<S, N, M> },
-            by_radau: None,
+            velocity: if S::IS_PARTITIONED { || &VelocityTransformation } else { || &STAGES },
+            is_partitioned: S::IS_PARTITIONED,
             independent: <S as Partitioned<f64, N, M>>::INDEPENDENT,
+            integrators: PhantomData,
         }
     }
 }
@@ -191,36 +191,43 @@ pub(super) type AnyFormulation<'a, S, const N: usize, const M: usize> = &'a dyn 
 /// Ends of steps on the constraints, stages where the rows need it: for other analyses, as [`AnyFormulation`].
 pub(super) const ENDS: Projection = Projection { stages: ProjectedStages::WhereNeeded };
 
+/// Ends of steps and all stages on the constraints.
+const STAGES: Projection = Projection { stages: ProjectedStages::All };
+
 /// Any method with steps of a given size, as [`AnyFormulation`].
 type AnyMethod<'a, S, const N: usize, const M: usize> = &'a dyn Method<S, f64, N, M>;
 
 /// Follows `mechanism` from the text's start through `times` (s).
-pub(crate) fn simulate<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
+pub(crate) fn simulate<S: Dynamic<f64, N, M> + 'static, I: Integrators, const N: usize, const M: usize>(
     mechanism: &S,
-    partitioned: &PartitionedFunctions<S, N>,
+    partitioned: &PartitionedFunctions<S, I, N, M>,
     approach: &Approach,
     times: &[f64],
     progress: &mut dyn FnMut(usize),
 ) -> Result<Simulated, Failure> {
     let steps = approach.steps;
     let start = (partitioned.start)(mechanism, times.first().copied().unwrap_or(0.0));
-    let mut by = |formulation: AnyFormulation<'_, S, N, M>| {
-        integrate(mechanism, formulation, &start, steps, times, progress)
+    let mut by = |formulation: AnyFormulation<'_, S, N, M>, integrators: Chosen<I>| {
+        integrate::<S, I, N, M>(mechanism, formulation, integrators, &start, steps, times, progress)
     };
+    let explicit = chosen::<I>(steps);
     let found = match approach.stabilization {
-        Stabilization::None => by(&Unstabilized),
-        Stabilization::Baumgarte(baumgarte) => by(&baumgarte),
-        Stabilization::Penalty(penalty) => by(&penalty),
+        Stabilization::None => by(&Unstabilized, explicit),
+        Stabilization::Baumgarte(baumgarte) => by(&baumgarte, explicit),
+        Stabilization::Penalty(penalty) => by(&penalty, explicit),
         Stabilization::Projection => {
             let stages = match steps {
                 Steps::Adaptive { .. } => ProjectedStages::All,
                 Steps::Fixed(_) | Steps::Equal { .. } => ProjectedStages::WhereNeeded,
             };
-            by(&Projection { stages })
+            by(&Projection { stages }, explicit)
         }
-        Stabilization::Velocity => (partitioned.by_velocity)(mechanism, &start, steps, times, progress),
-        Stabilization::Radau => match partitioned.by_radau {
-            Some(by_radau) => by_radau(mechanism, &start, steps, times, progress),
+        Stabilization::Velocity => {
+            let found = by((partitioned.velocity)(), explicit);
+            found.map(|found| Simulated { replaced: !partitioned.is_partitioned, ..found })
+        }
+        Stabilization::Radau => match I::RADAU {
+            Some(radau) => by(&ENDS, radau),
             None => {
                 let name = "number of coordinates and rows for `radau`";
                 Err(FailureKind::InvalidMethodParameter {
@@ -266,7 +273,7 @@ fn implicit<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
 ) -> Result<Simulated, Failure> {
     let count = |span| equal(span, longest);
     let mut found = stepped(mechanism, by.0, start, times, progress, &count)?;
-    add_works(&mut found, |supply| {
+    add_works(&mut found, &|supply| {
         stepped(mechanism, &Single { by, supply }, start, times, &mut |_| (), &count)
     });
     Ok(found)
@@ -291,104 +298,44 @@ pub fn equal(span: f64, longest: f64) -> u32 {
     ((span / longest - ROUNDING).ceil().max(1.0)) as u32
 }
 
-/// By independent coordinates, for mechanisms that have them.
-fn by_velocity<S, const N: usize, const M: usize>(
-    mechanism: &S,
-    start: &Start<N>,
-    steps: Steps,
-    times: &[f64],
-    progress: &mut dyn FnMut(usize),
-) -> Result<Simulated, Failure>
-where
-    S: Dynamic<f64, N, M> + Partitioned<f64, N, M>,
-{
-    integrate(mechanism, &VelocityTransformation, start, steps, times, progress)
+/// Integrators of adaptive and of fixed steps.
+type Chosen<I> = (<I as Integrators>::Adaptive, <I as Integrators>::Fixed);
+
+/// The explicit ones of `steps`; of the kind that they are not any.
+fn chosen<I: Integrators>(steps: Steps) -> Chosen<I> {
+    let (pair, rule) = match steps {
+        Steps::Adaptive { pair, .. } => (pair, Rule::RungeKutta4),
+        Steps::Fixed(rule) | Steps::Equal { rule, .. } => (Pair::Order8, rule),
+    };
+    (I::pair(pair), I::rule(rule))
 }
 
-/// By all rows together, for mechanisms without independent coordinates.
-fn by_projection<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
+/// By steps of `integrators`, and the work of each supply.
+fn integrate<S: Dynamic<f64, N, M>, I: Integrators, const N: usize, const M: usize>(
     mechanism: &S,
-    start: &Start<N>,
-    steps: Steps,
-    times: &[f64],
-    progress: &mut dyn FnMut(usize),
-) -> Result<Simulated, Failure> {
-    let all = Projection { stages: ProjectedStages::All };
-    let found = integrate(mechanism, &all, start, steps, times, progress)?;
-    Ok(Simulated { replaced: true, ..found })
-}
-
-/// By steps of Radau IIA with projection, and the work of each supply.
-fn by_radau<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
-    mechanism: &S,
+    formulation: AnyFormulation<'_, S, N, M>,
+    (adaptive_steps, fixed_steps): Chosen<I>,
     start: &Start<N>,
     steps: Steps,
     times: &[f64],
     progress: &mut dyn FnMut(usize),
 ) -> Result<Simulated, Failure> {
     let run = |formulation: AnyFormulation<'_, S, N, M>, progress: &mut dyn FnMut(usize)| {
-        let method = Explicit::new(Radau5, formulation);
+        let fixed = Explicit::new(fixed_steps, formulation);
         match steps {
             Steps::Adaptive { tolerance, .. } => {
+                let method = Explicit::new(adaptive_steps, formulation);
                 adaptive(mechanism, method, start, tolerance, times, progress)
             }
             Steps::Equal { longest, .. } => {
-                stepped(mechanism, &method, start, times, progress, &|span| equal(span, longest))
+                stepped(mechanism, &fixed, start, times, progress, &|span| equal(span, longest))
             }
-            Steps::Fixed(_) => stepped(mechanism, &method, start, times, progress, &|_| 1),
+            Steps::Fixed(_) => stepped(mechanism, &fixed, start, times, progress, &|_| 1),
         }
     };
-    let mut found = run(&ENDS, progress)?;
-    add_works(&mut found, |supply| {
-        run(&Single { by: &ENDS as AnyFormulation<'_, S, N, M>, supply }, &mut |_| ())
-    });
+    let mut found = run(formulation, progress)?;
+    add_works(&mut found, &|supply| run(&Single { by: formulation, supply }, &mut |_| ()));
     Ok(found)
-}
-
-/// By steps of an explicit method, and the work of each supply.
-fn integrate<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
-    mechanism: &S,
-    formulation: AnyFormulation<'_, S, N, M>,
-    start: &Start<N>,
-    steps: Steps,
-    times: &[f64],
-    progress: &mut dyn FnMut(usize),
-) -> Result<Simulated, Failure> {
-    let mut found = explicit(mechanism, formulation, start, steps, times, progress)?;
-    add_works(&mut found, |supply| {
-        explicit(mechanism, &Single { by: formulation, supply }, start, steps, times, &mut |_| ())
-    });
-    Ok(found)
-}
-
-fn explicit<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
-    mechanism: &S,
-    formulation: AnyFormulation<'_, S, N, M>,
-    start: &Start<N>,
-    steps: Steps,
-    times: &[f64],
-    progress: &mut dyn FnMut(usize),
-) -> Result<Simulated, Failure> {
-    let count = |span: f64| match steps {
-        Steps::Equal { longest, .. } => equal(span, longest),
-        Steps::Fixed(_) | Steps::Adaptive { .. } => 1,
-    };
-    match steps {
-        Steps::Adaptive { pair: Pair::Order8, tolerance } => {
-            adaptive(mechanism, Explicit::new(DormandPrince8, formulation), start, tolerance, times, progress)
-        }
-        Steps::Adaptive { pair: Pair::Order5, tolerance } => {
-            adaptive(mechanism, Explicit::new(DormandPrince5, formulation), start, tolerance, times, progress)
-        }
-        Steps::Fixed(Rule::RungeKutta4) | Steps::Equal { rule: Rule::RungeKutta4, .. } => {
-            let method = Explicit::new(RungeKutta4, formulation);
-            stepped(mechanism, &method, start, times, progress, &count)
-        }
-        Steps::Fixed(Rule::SemiImplicitEuler) | Steps::Equal { rule: Rule::SemiImplicitEuler, .. } => {
-            let method = Explicit::new(SemiImplicitEuler, formulation);
-            stepped(mechanism, &method, start, times, progress, &count)
-        }
-    }
 }
 
 /// A motion in adaptive steps.

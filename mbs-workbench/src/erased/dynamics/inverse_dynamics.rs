@@ -1,15 +1,16 @@
 //! Inverse dynamics: the forces of a motion that drives prescribe.
 
-use mbs_runtime::dynamics::{DormandPrince8, Explicit, Simulation, inverse_with_states};
+use mbs_runtime::dynamics::{Explicit, Simulation, inverse_with_states};
 use mbs_runtime::{Dynamic, DynamicState, Failure};
 
-use super::direct_dynamics::{AdaptiveRun, AnyFormulation, ENDS, advance_to};
+use super::direct_dynamics::{AdaptiveRun, AnyFormulation, ENDS, Pair, advance_to};
+use super::integrators::Integrators;
 use super::{determined, power_balance};
 use crate::erased::facade::Motion;
 use crate::motion::Forces;
 
 /// Adds energies, loads, multipliers, powers and works to the positions of `motion`, at which the rows hold.
-pub(crate) fn add_forces<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
+pub(crate) fn add_forces<S: Dynamic<f64, N, M>, I: Integrators, const N: usize, const M: usize>(
     mechanism: &S,
     motion: &mut Motion,
 ) -> Result<(), Failure> {
@@ -24,7 +25,7 @@ pub(crate) fn add_forces<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
             Some(from) => mechanism.advance_phases(from, *t),
         }
         let parameters = mechanism.parameters();
-        let states = states_at(&mut run, &mechanism, *t, &q)?;
+        let states = states_at::<S, I, N, M>(&mut run, &mechanism, *t, &q)?;
         let driven = inverse_with_states(&mechanism, *t, &q, &states)?;
         let position = mechanism.position(&parameters, &driven.q, *t);
         let energy = mechanism.energy(&parameters, &position, &driven.qd);
@@ -42,11 +43,11 @@ pub(crate) fn add_forces<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
 }
 
 /// A motion with masses that is integrated for its first-order states.
-type Run<'a, S, const N: usize, const M: usize> = AdaptiveRun<'a, S, DormandPrince8, N, M>;
+type Run<'a, S, I, const N: usize, const M: usize> = AdaptiveRun<'a, S, <I as Integrators>::Adaptive, N, M>;
 
 /// The first-order states at `t` (s), integrated along the motion: `run` goes on from call to call, and starts at the first.
-fn states_at<'a, S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
-    run: &mut Option<Run<'a, S, N, M>>,
+fn states_at<'a, S: Dynamic<f64, N, M>, I: Integrators, const N: usize, const M: usize>(
+    run: &mut Option<Run<'a, S, I, N, M>>,
     mechanism: &S,
     t: f64,
     q: &[f64; N],
@@ -57,7 +58,7 @@ fn states_at<'a, S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
     let mut moved = match run.take() {
         Some(run) => run,
         None => {
-            let method = Explicit::new(DormandPrince8, &ENDS as AnyFormulation<'a, S, N, M>);
+            let method = Explicit::new(I::pair(Pair::Order8), &ENDS as AnyFormulation<'a, S, N, M>);
             Simulation::start_near(mechanism.clone(), method, t, *q, [0.0; N])?
         }
     };

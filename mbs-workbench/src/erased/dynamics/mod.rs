@@ -4,6 +4,7 @@ mod determined;
 pub mod direct_dynamics;
 #[cfg(feature = "program")]
 mod first_order;
+pub mod integrators;
 pub mod inverse_dynamics;
 #[cfg(feature = "program")]
 pub mod linearization;
@@ -23,6 +24,7 @@ use mbs_runtime::{Dynamic, Failure};
 use crate::erased::facade::{Facade, Motion, State};
 use crate::erased::masses::Loads;
 use direct_dynamics::{Approach, PartitionedFunctions, Simulated};
+use integrators::Integrators;
 #[cfg(feature = "program")]
 use linearization::SmallMotions;
 use static_equilibrium::Rest;
@@ -70,9 +72,10 @@ pub trait AnyDynamics {
     fn settled(&self, unstable: &Rest, small: &SmallMotions) -> Option<Rest>;
 }
 
-impl<S, const N: usize, const M: usize> AnyDynamics for Facade<S, N, M, PartitionedFunctions<S, N>>
+impl<S, I, const N: usize, const M: usize> AnyDynamics for Facade<S, N, M, PartitionedFunctions<S, I, N, M>>
 where
-    S: Dynamic<f64, N, M>,
+    S: Dynamic<f64, N, M> + 'static,
+    I: Integrators,
 {
     fn simulate(
         &self,
@@ -84,7 +87,7 @@ where
     }
 
     fn add_forces(&self, motion: &mut Motion) -> Result<(), Failure> {
-        inverse_dynamics::add_forces(&self.0, motion)
+        inverse_dynamics::add_forces::<S, I, N, M>(&self.0, motion)
     }
 
     fn rest(&self, guesses: &[(usize, f64)]) -> Result<Rest, Failure> {
@@ -105,7 +108,7 @@ where
     #[cfg(feature = "program")]
     fn settled(&self, unstable: &Rest, small: &SmallMotions) -> Option<Rest> {
         let independent = self.1.independent;
-        let fall = || settling::settled(&self.0, independent, &unstable.motion, small);
+        let fall = || settling::settled::<S, I, N, M>(&self.0, independent, &unstable.motion, small);
         (!unstable.held).then(fall).flatten()
     }
 }

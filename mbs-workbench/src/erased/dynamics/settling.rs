@@ -1,9 +1,10 @@
 //! Stable equilibrium reached from an unstable one.
 
-use mbs_runtime::dynamics::{DormandPrince5, Explicit, Simulation, Tolerance};
+use mbs_runtime::dynamics::{Explicit, Simulation, Tolerance};
 use mbs_runtime::{Dynamic, Failure};
 
-use super::direct_dynamics::{AnyFormulation, ENDS, advance_to};
+use super::direct_dynamics::{AnyFormulation, ENDS, Pair, advance_to};
+use super::integrators::Integrators;
 use super::linearization::{SmallMotions, Stability, small_motions};
 use super::static_equilibrium::{Rest, rest};
 use crate::erased::facade::Motion;
@@ -33,7 +34,7 @@ const TOLERANCE: f64 = 1e-6;
 ///
 /// Whenever the kinetic energy begins to fall all velocities are set to zero, so that the potential energy falls from stop to
 /// stop. Source: Barnes 1999 (dynamic relaxation with kinetic damping).
-pub(crate) fn settled<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
+pub(crate) fn settled<S: Dynamic<f64, N, M>, I: Integrators, const N: usize, const M: usize>(
     mechanism: &S,
     independent: &[u16],
     unstable: &Motion,
@@ -59,7 +60,7 @@ pub(crate) fn settled<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
     };
     [1.0, -1.0]
         .into_iter()
-        .find_map(|side| fallen(mechanism, pushed(side), growth / PIECES, &mut stable).ok()?)
+        .find_map(|side| fallen::<S, I, N, M>(mechanism, pushed(side), growth / PIECES, &mut stable).ok()?)
 }
 
 /// Potential energy (J) of an equilibrium.
@@ -68,14 +69,14 @@ fn potential(motion: &Motion) -> Option<f64> {
 }
 
 /// First equilibrium that `stable` finds from the stops of the motion from `q` (N), whose energy is checked every `piece` (s).
-fn fallen<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
+fn fallen<S: Dynamic<f64, N, M>, I: Integrators, const N: usize, const M: usize>(
     mechanism: &S,
     q: [f64; N],
     piece: f64,
-    stable: &mut impl FnMut(&[f64; N]) -> Option<Rest>,
+    stable: &mut dyn FnMut(&[f64; N]) -> Option<Rest>,
 ) -> Result<Option<Rest>, Failure> {
     let stopped = |q: [f64; N]| {
-        let method = Explicit::new(DormandPrince5, &ENDS as AnyFormulation<'_, S, N, M>);
+        let method = Explicit::new(I::pair(Pair::Order5), &ENDS as AnyFormulation<'_, S, N, M>);
         let run = Simulation::start_near(mechanism.clone(), method, 0.0, q, [0.0; N])?;
         Ok::<_, Failure>(run.with_tolerance(Tolerance::new(TOLERANCE)))
     };

@@ -3,6 +3,7 @@
 use mbs_runtime::dynamics::MovedStart;
 use mbs_runtime::{Dynamic, Newton, Outcome, Partitioned};
 
+use crate::erased::branching::Judging;
 use crate::motion::Motion;
 
 /// Residual of a row in the reference metric, or of its rate (1/s), that counts as met: numbers typed with nine digits.
@@ -28,7 +29,8 @@ where
     if !met(&mechanism.phi(&parameters, &mechanism.position(&parameters, &q, t))) {
         let lengths = mechanism.coordinate_scales(&parameters);
         let extent = guess.iter().zip(lengths).map(|(q, scale)| (q / scale).abs()).fold(1.0, f64::max);
-        let outcome = mechanism.solve_dependent(&parameters, &mut q, t, &mut Newton::new(extent));
+        let mut newton = Newton::new(extent);
+        let outcome = mechanism.solve_dependent(&parameters, &mut q, t, &mut Judging::declared(&mut newton));
         if outcome.iter().any(|outcome| *outcome != Outcome::Converged) {
             q = guess;
         }

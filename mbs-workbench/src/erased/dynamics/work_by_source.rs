@@ -34,7 +34,7 @@ pub(super) enum Quadrature {
 
 /// Sets the work of each supply of `found` to the one that `run` integrates for it alone. If a single supply acts, the work of
 /// all is its own.
-pub(super) fn add_works(found: &mut Simulated, run: impl Fn(usize) -> Result<Simulated, Failure>) {
+pub(super) fn add_works(found: &mut Simulated, run: &dyn Fn(usize) -> Result<Simulated, Failure>) {
     let Some(forces) = &mut found.motion.dynamics else { return };
     let acting: Vec<usize> =
         (0..).zip(&forces.supplies).filter(|(_, s)| acts(&s.power)).map(|(k, _)| k).collect();

@@ -8,7 +8,7 @@ pub(crate) mod tableau;
 
 use crate::dynamics::first_order_form::radau::newton::Solver;
 use crate::dynamics::first_order_form::radau::slopes::Slopes;
-use crate::dynamics::integrators::embedded::{Embedded, StepAttempt, Taken};
+use crate::dynamics::integrators::embedded::{Embedded, StepAttempt, StepControl, Taken};
 use crate::dynamics::integrators::equation::{Collocated, Collocation, Equation, ErrorNorm};
 use crate::dynamics::integrators::fixed_step::FixedStep;
 use crate::dynamics::integrators::vector::Vector;
@@ -46,6 +46,9 @@ pub struct Radau5;
 /// Ratio of corrections that the next step may be expected to have: it grows with the step.
 const CONTRACTION: f64 = 0.5;
 
+/// Largest factor by which a step may grow.
+const LARGEST_GROWTH: f64 = 8.0;
+
 /// Ratio of a step of fixed size to its smallest parts, taken where the iteration for its stages does not converge.
 const PIECES: u32 = 1 << 20;
 
@@ -74,11 +77,19 @@ impl Radau5 {
 }
 
 impl FixedStep for Radau5 {
-    const ORDER: u32 = 5;
-    const USES_SLOPES: bool = true;
+    #[inline]
+    fn order(&self) -> u32 {
+        5
+    }
+
+    #[inline]
+    fn uses_slopes(&self) -> bool {
+        true
+    }
 
     #[inline(never)]
     fn step<T: Scalar, E: Equation<T>>(
+        &self,
         equation: &mut E,
         t: T,
         h: T,
@@ -114,16 +125,18 @@ impl FixedStep for Radau5 {
 }
 
 impl Embedded for Radau5 {
-    const ERROR_ORDER: u32 = 4;
-    const LARGEST_GROWTH: f64 = 8.0;
-    const MEMORY: f64 = 0.0;
-    const RETRY: f64 = 0.5;
     type Memory<R: Copy, Y: Copy> = Option<Past<R, Y>>;
     type Stages<Y: Copy> = Collocated<Y>;
     type Dense<Y: Copy> = [Y; 4];
 
+    #[inline]
+    fn control(&self) -> StepControl {
+        StepControl { retry: 0.5, ..StepControl::of(4, LARGEST_GROWTH) }
+    }
+
     #[inline(never)]
     fn trial<T: Scalar, E: Equation<T>>(
+        &self,
         equation: &mut E,
         (t, h): (T, T),
         (y, rate): (&E::State, &E::State),
@@ -149,8 +162,8 @@ impl Embedded for Radau5 {
         error
     }
 
-    fn growth<Y: Copy>(stages: &Collocated<Y>) -> f64 {
-        (CONTRACTION / stages.contraction).clamp(1.0, Self::LARGEST_GROWTH)
+    fn growth<Y: Copy>(&self, stages: &Collocated<Y>) -> f64 {
+        (CONTRACTION / stages.contraction).clamp(1.0, LARGEST_GROWTH)
     }
 
     fn remember<R: Real, Y: Vector<R>>(step: &Taken<'_, R, Y, Collocated<Y>>) -> Option<Past<R, Y>> {

@@ -104,7 +104,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> About<'_, S, 
 
     /// (γ − Φ_q q̈)_q eⱼ: M, of coordinate `index`; by differences, good to half the digits.
     fn rows_by_place(&self, index: usize) -> [R; M] {
-        if M == 0 {
+        if const { M == 0 } {
             return [R::constant(0.0); M];
         }
         let scale = self.model.metric.coordinates.get(index).copied().unwrap_or(R::constant(1.0));
@@ -117,7 +117,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> About<'_, S, 
 
     /// γ_q̇ eⱼ: M. γ is quadratic in the velocities, so a central difference has no remainder.
     fn rows_by_speed(&self, index: usize) -> [R; M] {
-        if M == 0 {
+        if const { M == 0 } {
             return [R::constant(0.0); M];
         }
         let scale = self.model.metric.coordinates.get(index).copied().unwrap_or(R::constant(1.0));

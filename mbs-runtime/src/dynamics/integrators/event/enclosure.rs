@@ -80,13 +80,11 @@ impl<R: Real, const N: usize> Part<R, N> {
         let mut part = Part { from, times, middle: [none; N], q: [none; N], qd: [none; N] };
         let all = part.middle.iter_mut().zip(&mut part.q).zip(&mut part.qd).enumerate();
         for (coordinate, ((middle, q), qd)) in all {
-            let mut index = 0;
-            let mut column = |_| {
-                let value = rows.get(index).and_then(|row| row.get(coordinate)).copied();
-                index += 1;
-                value.unwrap_or(R::constant(f64::NAN))
-            };
-            let column = Interpolant::through(&mut column, start, end).ok()?;
+            let mut values = [R::constant(f64::NAN); NODES];
+            for (value, row) in values.iter_mut().zip(&rows) {
+                row.get(coordinate).into_iter().for_each(|q| *value = *q);
+            }
+            let column = Interpolant::through_values(values, start, end).ok()?;
             let slack = motion::BLURRED.of::<R>() * column.largest();
             (*middle, *q, *qd) = column.enclosures(slack);
         }

@@ -53,6 +53,21 @@ impl<R: Real> Interpolant<R> {
                 return Err(Unanswered::Undefined(t));
             }
         }
+        Ok(Self::of(values, start, end))
+    }
+
+    /// Through nine values that are known; apart from whoever finds them, so that it is compiled once a number type.
+    ///
+    /// # Errors
+    /// The first time (s) at which a value is not finite.
+    pub(super) fn through_values(values: [R; NODES], start: R, end: R) -> Result<Self, Unanswered<R>> {
+        match values.iter().position(|value| !value.is_finite()) {
+            Some(index) => Err(Unanswered::Undefined(Self::instant(start, end, index))),
+            None => Ok(Self::of(values, start, end)),
+        }
+    }
+
+    fn of(values: [R; NODES], start: R, end: R) -> Self {
         let mut coefficients = values;
         for (index, coefficient) in coefficients.iter_mut().enumerate() {
             *coefficient = if index < COEFFICIENTS.len() {
@@ -61,7 +76,7 @@ impl<R: Real> Interpolant<R> {
                 weighted(NODES - 1 - index, values.iter().rev())
             };
         }
-        Ok(Interpolant { start, end, values, coefficients })
+        Interpolant { start, end, values, coefficients }
     }
 
     /// Time (s) of instant `index` of nine.

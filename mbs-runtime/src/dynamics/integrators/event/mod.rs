@@ -479,13 +479,11 @@ fn near_zero<R: Real>(
     for (member, (near, enclosure)) in open.filter(|(_, (near, _))| **near) {
         let scrutiny = watched.scrutiny(first + member, start);
         let positive = watched.positive(first + member);
-        let mut index = 0;
-        let mut column = |_| {
-            let value = rows.get(index).and_then(|row| row.get(member)).copied();
-            index += 1;
-            value.unwrap_or(R::constant(0.0))
-        };
-        let part = Interpolant::through(&mut column, start, end).map_err(|why| (member, why))?;
+        let mut column = [R::constant(0.0); NODES];
+        for (value, row) in column.iter_mut().zip(&rows) {
+            row.get(member).into_iter().for_each(|known| *value = *known);
+        }
+        let part = Interpolant::through_values(column, start, end).map_err(|why| (member, why))?;
         let side = if positive { R::constant(1.0) } else { part.first() };
         let scale = part.largest().max(scrutiny.scale);
         let is_enclosed = enclosure.is_some();
