@@ -1,37 +1,52 @@
 //! Motions that drives prescribe, and the forces that they take.
 
 use crate::erased::dynamics::AnyDynamics;
-use crate::erased::facade::{AnyMechanism, MotionStop};
+use crate::erased::facade::{AnyMechanism, Motion, MotionStop};
+use mbs_runtime::Failure;
 
+use super::early_end::EarlyEnd;
 use super::loads::{energies, loads};
 use super::{Analysed, AnalysisResult};
 use crate::commands::summary;
 
+/// The motion at `times`; up to its end and with the reason, where it ends before.
 pub(super) fn kinematic(
     mechanism: &dyn AnyMechanism,
     times: &[f64],
     on_progress: &mut dyn FnMut(usize),
 ) -> Analysed {
-    /// Instants timed: enough for a mean, short for any number of steps.
-    const TIMED: usize = 10_000;
-    let timed = &times[..times.len().min(TIMED)];
-    let found = mechanism.follow(times, on_progress).and_then(|motion| {
-        let step_time = mechanism.time_a_step(timed)?;
-        let figures = summary::figures(&motion, step_time).to_vec();
-        Ok(AnalysisResult::of(motion, figures))
-    });
-    found.map_err(|failure| {
-        let stop = mechanism.stop(times).map_or_else(String::new, |stop| described(&stop));
-        format!("{failure}{stop}")
-    })
+    let failure = match mechanism.follow(times, on_progress) {
+        Ok(motion) => return described(mechanism, motion).map_err(|failure| failure.to_string()),
+        Err(failure) => failure,
+    };
+    let Some(MotionStop { reachable, failure: beyond, .. }) = mechanism.stop(times) else {
+        return Err(failure.to_string());
+    };
+    let before: Vec<f64> = times.iter().copied().filter(|time| *time < reachable).collect();
+    let reached = [before.as_slice(), &[reachable]].concat();
+    // At the end itself the rates may be refused.
+    let motion = mechanism
+        .follow(&reached, on_progress)
+        .or_else(|_| mechanism.follow(&before, on_progress))
+        .map_err(|failure| failure.to_string())?;
+    let ended = EarlyEnd::new(reachable, &beyond);
+    if motion.time.len() < 2 {
+        return Err(ended.message);
+    }
+    let mut found = described(mechanism, motion).map_err(|failure| failure.to_string())?;
+    found.figures.push(["early end".to_string(), ended.line.clone()]);
+    found.ended = Some(ended);
+    Ok(found)
 }
 
-/// Bracket in time of the motion's end, as lines below the failure.
-fn described(stop: &MotionStop) -> String {
-    let MotionStop { reachable, refused, failure } = stop;
-    format!(
-        "\nthe motion ends between t = {reachable} s and t = {refused} s; at the end of that step\n{failure}"
-    )
+/// The motion with its figures.
+fn described(mechanism: &dyn AnyMechanism, motion: Motion) -> Result<AnalysisResult, Failure> {
+    /// Instants timed: enough for a mean, short for any number of steps.
+    const TIMED: usize = 10_000;
+    let timed = &motion.time[..motion.time.len().min(TIMED)];
+    let step_time = mechanism.time_a_step(timed)?;
+    let figures = summary::figures(&motion, step_time).to_vec();
+    Ok(AnalysisResult::of(motion, figures))
 }
 
 pub(super) fn inverse(
@@ -40,9 +55,19 @@ pub(super) fn inverse(
     times: &[f64],
     on_progress: &mut dyn FnMut(usize),
 ) -> Analysed {
-    let AnalysisResult { mut motion, mut figures, .. } = kinematic(mechanism, times, on_progress)?;
-    dynamics.add_forces(&mut motion).map_err(|failure| failure.to_string())?;
-    figures.extend(energies(&motion));
-    figures.extend(loads(&motion));
-    Ok(AnalysisResult::of(motion, figures))
+    let mut found = kinematic(mechanism, times, on_progress)?;
+    let added = match (dynamics.add_forces(&mut found.motion), found.motion.time.split_last()) {
+        // At the end of a motion forces may grow beyond bounds.
+        (Err(_), Some((_, before))) if found.ended.is_some() && before.len() > 1 => {
+            let mut motion = mechanism.follow(before, on_progress).map_err(|failure| failure.to_string())?;
+            let added = dynamics.add_forces(&mut motion);
+            found.motion = motion;
+            added
+        }
+        (added, _) => added,
+    };
+    added.map_err(|failure| failure.to_string())?;
+    let forces = [energies(&found.motion), loads(&found.motion)].concat();
+    found.figures.extend(forces);
+    Ok(found)
 }
