@@ -111,7 +111,7 @@ async function forces(page) {
     assert.ok(drawn > 0 && drawn <= arrows, 'arrows in the drawing');
     assert.ok(await page.$$eval('.small-panels .axis-title', titles => titles.some(title => title.textContent.includes('N·m'))), 'a torque');
     const legend = await page.$eval('#loads .legend', legend => legend.textContent);
-    assert.ok(legend.includes('magnitude') && legend.includes('x') && legend.includes('y'), legend);
+    assert.ok(legend.includes('|F|') && legend.includes('x') && legend.includes('y'), legend);
 }
 
 /** A page of a motion that ends early: the end in words and marked in the drawing and the plots. */

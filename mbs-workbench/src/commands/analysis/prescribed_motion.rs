@@ -24,11 +24,11 @@ pub(super) fn kinematic(
     };
     let before: Vec<f64> = times.iter().copied().filter(|time| *time < reachable).collect();
     let reached = [before.as_slice(), &[reachable]].concat();
-    // At the end itself the rates may be refused.
-    let motion = mechanism
-        .follow(&reached, on_progress)
-        .or_else(|_| mechanism.follow(&before, on_progress))
-        .map_err(|failure| failure.to_string())?;
+    // At the end itself the rates may be refused, or grow beyond all bounds.
+    let motion = match mechanism.follow(&reached, on_progress) {
+        Ok(motion) if !is_unbounded_at_its_end(&motion) => motion,
+        _ => mechanism.follow(&before, on_progress).map_err(|failure| failure.to_string())?,
+    };
     let ended = EarlyEnd::new(reachable, &beyond);
     if motion.time.len() < 2 {
         return Err(ended.message);
@@ -37,6 +37,17 @@ pub(super) fn kinematic(
     found.figures.push(["early end".to_string(), ended.line.clone()]);
     found.ended = Some(ended);
     Ok(found)
+}
+
+/// `true` if a rate at the last instant is many times what it was before: so it is where a mechanism locks.
+fn is_unbounded_at_its_end(motion: &Motion) -> bool {
+    const MANY: f64 = 5.0;
+    motion.coordinates.iter().any(|curve| match curve.qd.split_last() {
+        Some((last, before)) => {
+            last.abs() > MANY * before.iter().fold(0.0, |most: f64, rate| most.max(rate.abs()))
+        }
+        None => false,
+    })
 }
 
 /// The motion with its figures.

@@ -112,7 +112,9 @@ function createStage(root, options) {
     const reach = [0, 1].map(i => extent(drawn.flatMap(run => [...[...known].map(name => vector(run, name)[i]), covered(i)(run)])));
     const [dx, dy] = reach.map(([low, high]) => high - low);
     const size = Math.max(dx, dy) || 1;
-    const long = LONG * dy < dx;
+    // An orbit leaves the layout of the page as it is, however thin the picture becomes.
+    const long = space && space.turned ? view.long : LONG * dy < dx;
+    view.long = long;
     if (options === large) document.querySelector(".viewer").classList.toggle("long", long);
     view.width = Math.max(root.parentNode.clientWidth - 2, 200);
     const small = { left: 26, right: 26, top: 32, bottom: 30 };
@@ -133,7 +135,7 @@ function createStage(root, options) {
     let [cx, cy] = reach.map(([low, high]) => (low + high) / 2);
     if (space && options === large) {
       const middle = middleInSpace(drawn), seenAt = [dot(space.right, middle), dot(space.up, middle)];
-      if (!space.turned || !held || held.width !== view.width) held = { width: view.width, height: view.height, scale: view.scale, from: [cx - seenAt[0], cy - seenAt[1]] };
+      if (!space.turned || !held) held = { width: view.width, height: view.height, scale: view.scale, from: [cx - seenAt[0], cy - seenAt[1]] };
       [view.scale, view.height] = [held.scale, held.height];
       [cx, cy] = [seenAt[0] + held.from[0], seenAt[1] + held.from[1]];
     }

@@ -82,8 +82,8 @@ function createForces(host, kind) {
   const vectors = all.some(({ parts }) => parts.length > 1), most = Math.max(...all.map(({ parts }) => parts.length));
   const components = vectors ? AXES.slice(0, most) : [];
   const units = new Map(all.map(({ unit }) => [unit, largest(runs.flatMap(run => all.filter(one => one.unit === unit).map(one => magnitude(run, kind, one))))]));
-  const one = units.size === 1 ? ` [${unitText(all[0].unit)}]` : "", now = (vectors ? "magnitude" : moves ? "now" : "value") + one;
-  const [table, line] = createTable(["", now, ...components, ...(moves ? ["least", "largest"] : vectors && most === 2 ? ["direction"] : [])]);
+  const one = units.size === 1 ? ` [${unitText(all[0].unit)}]` : "", now = (vectors ? "|F|" : moves ? "now" : "value") + one;
+  const [table, line] = createTable(["", now, ...components, ...(moves ? ["least", "largest"] : vectors && most === 2 ? ["angle"] : [])]);
   host.append(table);
   const rows = all.map(one => {
     const format = formatter(units.get(one.unit), 5), isVector = one.parts.length > 1;
@@ -104,7 +104,7 @@ function createForcePlots(host) {
   if (!all.length) return;
   const row = el("div", { className: "panels small-panels" });
   const most = Math.max(...all.map(({ parts }) => parts.length));
-  const names = most > 1 ? ["magnitude", ...AXES.slice(0, most)] : [];
+  const names = most > 1 ? ["|F|", ...AXES.slice(0, most)] : [];
   const group = { series: names.map((name, index) => ({ name, index: 0, dash: ["none", "7 3", "2 3", "10 3 2 3"][index],
     colour: index ? colour(index - 1) : "var(--ink)", wide: index === 0, hidden: false })) };
   const made = [], redraw = () => { for (const plot of made) { plot.layout(); plot.frame(); } };
