@@ -37,23 +37,27 @@ function merged(all) {
   return kept;
 }
 
-/** What is below 1e-12 of the largest value of its kind and unit becomes 0; a position also below that of the largest drawn one. */
+/**
+ * What is below 1e-12 of the largest value of its kind and unit becomes 0. A position counts as large as the largest drawn one, an angle as large as
+ * 1 rad, a rate as large as its quantity over the time of the motion.
+ */
 function clean(runs) {
   const groups = new Map();
-  const drawn = largest(runs.flatMap(run => [...(run.outputs || []), ...(run.places || [])]).filter(({ unit }) => !unit || unit === "m").map(({ value }) => value));
-  const known = { "coordinates m q": drawn, "outputs m value": drawn, "coordinates rad q": 1, "outputs rad value": 1 };
   const add = (key, values) => { if (values) groups.set(key, [...(groups.get(key) || []), values]); };
   for (const run of runs) {
     for (const kind of ["coordinates", "outputs", "loads", "multipliers"]) {
-      for (const entry of entriesOf(run, kind)) {
-        for (const key of ["q", "qd", "qdd", "value", "rate", "acceleration"]) add(`${kind} ${entry.unit} ${key}`, entry[key]);
-      }
+      for (const entry of entriesOf(run, kind)) [["q", "value"], ["qd", "rate"], ["qdd", "acceleration"]].forEach((keys, order) => keys.forEach(key => add(`${order} ${kind} ${entry.unit}`, entry[key])));
     }
     for (const supply of forcesOf(run).supplies || []) for (const key of ["power", "work"]) add(key, supply[key]);
     for (const key of ["kinetic", "potential", "work"]) add("energy", forcesOf(run)[key]);
   }
-  for (const [key, columns] of groups) {
-    const least = NOISE * Math.max(largest(columns), known[key] || 0);
+  const drawn = largest(runs.flatMap(run => [...(run.outputs || []), ...(run.places || [])]).filter(({ unit }) => !unit || unit === "m").map(({ value }) => value));
+  const sizes = new Map(), [first, last] = extent(runs.map(run => run.time));
+  for (const [key, columns] of [...groups].sort(([a], [b]) => a < b ? -1 : 1)) {
+    const [, order, kind] = /^(\d) (.*)$/.exec(key) || [], before = order > 0 && last > first ? sizes.get(`${order - 1} ${kind}`) / (last - first) : 0;
+    const known = { "0 coordinates m": drawn, "0 outputs m": drawn, "0 coordinates rad": 1, "0 outputs rad": 1 }[key] || before || 0;
+    sizes.set(key, Math.max(largest(columns), known));
+    const least = NOISE * sizes.get(key);
     for (const values of columns) values.forEach((x, k) => { if (Math.abs(x) < least) values[k] = 0; });
   }
 }

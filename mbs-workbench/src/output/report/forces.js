@@ -83,15 +83,14 @@ function createForces(host, kind) {
   const components = vectors ? AXES.slice(0, most) : [];
   const units = new Map(all.map(({ unit }) => [unit, largest(runs.flatMap(run => all.filter(one => one.unit === unit).map(one => magnitude(run, kind, one))))]));
   const one = units.size === 1 ? ` [${unitText(all[0].unit)}]` : "", now = (vectors ? "|F|" : moves ? "now" : "value") + one;
-  const [table, line] = createTable(["", now, ...components, ...(moves ? ["least", "largest"] : vectors && most === 2 ? ["angle"] : [])]);
+  const [table, line] = createTable(["", now, ...(moves ? ["largest", "least"] : []), ...components, ...(!moves && vectors && most === 2 ? ["angle"] : [])]);
   host.append(table);
   const rows = all.map(one => {
     const format = formatter(units.get(one.unit), 5), isVector = one.parts.length > 1;
     return line(one.name, (units.size === 1 ? "" : unitText(one.unit)) + markOf(kind, one.parts[0]), (run, k) => {
       const size = magnitude(run, kind, one), parts = isVector ? one.parts.map(part => valuesOf(run, kind, part)[k]) : [];
-      const cells = [format(size[k]), ...components.map((_, i) => i < parts.length ? format(parts[i]) : "")];
-      if (moves) cells.push(...extent([size]).map(format));
-      else if (vectors && most === 2) cells.push(isVector && size[k] > 0 ? `${formatter(180, 4)(Math.atan2(parts[1], parts[0]) * 180 / Math.PI)}°` : "");
+      const cells = [format(size[k]), ...(moves ? extent([size]).reverse().map(format) : []), ...components.map((_, i) => i < parts.length ? format(parts[i]) : "")];
+      if (!moves && vectors && most === 2) cells.push(isVector && size[k] > 0 ? `${formatter(180, 4)(Math.atan2(parts[1], parts[0]) * 180 / Math.PI)}°` : "");
       return cells;
     });
   });
