@@ -78,7 +78,7 @@ async function use(page) {
     const video = !filmed;
     filmed = true;
     for (const tool of [tools.frames, tools.loops, tools.abscissa, tools.degrees, tools.camera, tools.switches, tools.zoomOfPlots,
-        tools.cursor, tools.styles, tools.units, tools.digits, tools.folded]) await tool(page);
+        tools.cursor, tools.styles, tools.units, tools.digits, tools.zeros, tools.folded]) await tool(page);
     await tools.files(page, video);
 }
 
@@ -96,7 +96,7 @@ async function rest(page) {
     const forces = await page.$$eval('#stage .force', arrows => arrows.filter(arrow => arrow.getAttribute('d')).length);
     const expected = await page.evaluate(() => JSON.parse(document.querySelector('#data').textContent).forces.length);
     assert.ok(expected === 0 || forces > 0, 'reactions are drawn');
-    for (const tool of [tools.camera, tools.degrees, tools.units, tools.digits, tools.folded]) await tool(page);
+    for (const tool of [tools.camera, tools.degrees, tools.units, tools.digits, tools.zeros, tools.folded]) await tool(page);
     await tools.files(page, false);
 }
 
@@ -138,6 +138,10 @@ async function swing(page) {
 
 async function fitsAPhone(page) {
     await page.setViewportSize({ width: 360, height: 740 });
+    // The page lays itself out anew in the next frame.
+    await page.evaluate(() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(() => requestAnimationFrame(done)))));
     const width = await page.evaluate(() => document.documentElement.scrollWidth);
-    assert.ok(width <= 360, `${width} pixels wide on a phone of 360`);
+    const wide = await page.$$eval('body *', nodes => nodes.filter(node => node.getBoundingClientRect().right > 362 && !node.closest('.scroll, aside, pre, svg'))
+        .map(node => `${node.tagName} ${node.id} ${node.className} ${node.textContent.slice(0, 30)}`));
+    assert.ok(width <= 360, `${width} pixels wide on a phone of 360: ${wide.slice(0, 4)}`);
 }

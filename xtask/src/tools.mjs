@@ -206,6 +206,15 @@ export async function digits(page) {
     }
 }
 
+/** What rounding leaves of zero is shown as zero, at any instant. */
+export async function zeros(page) {
+    for (const part of [0, .13, .5, .77, 1]) {
+        await page.$eval('#scrub', (scrub, part) => { scrub.value = Math.round(part * scrub.max); scrub.dispatchEvent(new Event('input')); }, part);
+        const texts = await page.$$eval('#values td, #loads td', cells => cells.map(cell => cell.textContent));
+        assert.deepEqual(texts.filter(text => /×10⁻(¹[³⁴⁵⁶⁷⁸⁹]|[²³⁴⁵⁶⁷⁸⁹][⁰¹²³⁴⁵⁶⁷⁸⁹])/.test(text)), [], 'noise in place of zero');
+    }
+}
+
 export async function folded(page) {
     if (await page.isHidden('#fold-multipliers')) return;
     assert.equal(await page.$eval('#fold-multipliers', fold => fold.open), false, 'multipliers are folded away');

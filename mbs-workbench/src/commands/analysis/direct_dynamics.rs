@@ -22,7 +22,7 @@ pub(super) fn direct(
     let end = found.failure.map(|failure| {
         let message = ended(failure, approach.stabilization);
         let t = found.motion.time.last().copied().unwrap_or_default();
-        EarlyEnd { message, ..EarlyEnd::new(t, &failure) }
+        EarlyEnd::new(t, &failure).with_message(&message)
     });
     // A start alone is no motion.
     if let Some(end) = end.as_ref().filter(|_| found.motion.time.len() < 2) {

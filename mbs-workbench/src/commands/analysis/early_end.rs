@@ -22,6 +22,11 @@ impl EarlyEnd {
         let line = format!("the motion ends at t = {} s: {}", significant(t, DIGITS), reason(failure));
         EarlyEnd { message: line.clone(), line }
     }
+
+    /// The same with a message of several lines.
+    pub fn with_message(self, message: &str) -> Self {
+        EarlyEnd { message: shortened(message), ..self }
+    }
 }
 
 /// Reason of a failure without its time and cure, numbers in four digits.
@@ -29,6 +34,12 @@ fn reason(failure: &Failure) -> String {
     if let FailureKind::NotAssemblable { rows, .. } = &failure.kind {
         let how = if rows.rows().nth(1).is_some() { "together" } else { "with what is driven" };
         return format!("beyond, {rows} cannot hold {how}");
+    }
+    if let FailureKind::Undecided { margin, .. } = &failure.kind {
+        let margin = significant(*margin, 2);
+        return format!(
+            "rounding decides where the motion goes, next to a singular position (margin {margin})"
+        );
     }
     let text = failure.to_string();
     let text = match failure.time {
@@ -64,6 +75,9 @@ fn decimal(text: &str) -> usize {
         return 0;
     }
     let end = whole + 1 + digits(whole + 1);
+    if end == whole + 1 {
+        return 0;
+    }
     let sign = usize::from(text[end..].starts_with("e-") || text[end..].starts_with("e+"));
     if !text[end..].starts_with('e') || digits(end + 1 + sign) == 0 {
         return end;

@@ -34,6 +34,12 @@ function loadOf(run, name) {
   return found[0] && found[1] ? found.filter(Boolean).map(load => load.value) : null;
 }
 
+/** The largest size of an arrow, but for a few that stand out: those are drawn shorter. */
+function usualSize(values) {
+  const sorted = [...values].sort((a, b) => a - b), high = sorted[Math.floor(.97 * (sorted.length - 1))];
+  return Math.min(sorted[sorted.length - 1] || 0, 1.3 * high || Infinity);
+}
+
 /** A coordinate or a scalar output over time, or null where the run has none of this name. */
 function scalar(run, name) {
   const coordinate = (run.coordinates || []).find(coordinate => coordinate.name === name);
@@ -64,12 +70,13 @@ function createStage(root, options) {
   root.setAttribute("aria-label", `Animated drawing: ${data.title}`);
 
   const speeds = {};
+  const sizes = columns => columns[0].map((_, k) => Math.hypot(...columns.map(c => c[k]))).filter(finite);
   for (const key of ["rate", "acceleration"]) {
-    speeds[key] = Math.hypot(...[0, 1].map(i => largest(runs.flatMap(run => traces.map(trace => (vector(run, trace.of, key) || [])[i])))));
+    speeds[key] = usualSize(runs.flatMap(run => traces.map(trace => vector(run, trace.of, key)).filter(Boolean).flatMap(sizes)));
   }
-  /** Largest force that the drawing shows (N). */
-  const most = largest(runs.flatMap(run => (data.forces || []).map(({ of }) => loadOf(run, of)).filter(Boolean)
-    .map(components => components[0].map((_, k) => Math.hypot(...components.map(c => c[k]))))));
+  /** Forces as the drawing measures them (N), and the largest one. */
+  const loads = runs.flatMap(run => (data.forces || []).map(({ of }) => loadOf(run, of)).filter(Boolean).flatMap(sizes));
+  const most = { usual: usualSize(loads), largest: largest([loads]) };
   const LEGIBLE = 26; // pixels of a usual bar
   const LONG = 6; // times as wide as high: over the whole page
   const view = {}; // width, height, scale and the maps X, Y from metres to pixels

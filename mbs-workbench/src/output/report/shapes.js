@@ -263,12 +263,15 @@ function createBuilders({ view, items, options, speeds, most, distanceAtStart, p
     const node = svg("path", { class: "arrow", style: `stroke: var(--${name})` });
     f.arrows.append(node);
     return k => {
-      const [u, v] = values && options.shows(name) && speeds[key] > 0 ? values.map(c => c[k] / speeds[key] * view.arrow) : [0, 0];
+      const [u, v] = values && options.shows(name) && speeds[key] > 0 ? bounded(values.map(c => c[k] / speeds[key] * view.arrow)) : [0, 0];
       const at = f.at(item.of, k), d = arrowPath(at, [u, v]);
       node.setAttribute("d", d);
       if (d) f.obstacles.push([at, [at[0] + u, at[1] - v]]);
     };
   }
+
+  /** No longer than the picture can take. */
+  const bounded = ([u, v]) => { const over = Math.max(Math.hypot(u, v) / (1.4 * view.arrow), 1); return [u / over, v / over]; };
 
   /** An arrow from a point, its end and its head as a path in pixels; empty where it is too short to be seen. */
   function arrowPath([x, y], [u, v]) {
@@ -281,11 +284,11 @@ function createBuilders({ view, items, options, speeds, most, distanceAtStart, p
   function force(item, f) {
     const components = loadOf(f.run, item.of), node = svg("path", { class: "arrow force" }), text = svg("text", { class: "label value", "text-anchor": "middle" });
     if (!components) return () => {};
-    const format = formatter(most, 4);
+    const format = formatter(most.largest, 4);
     f.arrows.append(node);
     f.text.append(text);
     return k => {
-      const [u, v] = options.shows("forces") && most > 0 ? components.slice(0, 2).map(c => c[k] / most * view.arrow * 1.25) : [0, 0];
+      const [u, v] = options.shows("forces") && most.usual > 0 ? bounded(components.slice(0, 2).map(c => c[k] / most.usual * view.arrow * 1.25)) : [0, 0];
       const at = f.at(item.at, k), d = arrowPath(at, [u, v]), length = Math.hypot(u, v);
       node.setAttribute("d", d);
       text.textContent = d && !moves && !f.ghost ? `${format(Math.hypot(...components.map(c => c[k])))} N` : "";
