@@ -69,14 +69,18 @@ function createStage(root, options) {
   if (missing.length && options === large) byId("caption").textContent = `Not drawn, since no output has this name: ${missing.join(", ")}.`;
   root.setAttribute("aria-label", `Animated drawing: ${data.title}`);
 
-  const speeds = {};
   const sizes = columns => columns[0].map((_, k) => Math.hypot(...columns.map(c => c[k]))).filter(finite);
-  for (const key of ["rate", "acceleration"]) {
-    speeds[key] = usualSize(runs.flatMap(run => traces.map(trace => vector(run, trace.of, key)).filter(Boolean).flatMap(sizes)));
+  const arrows = {
+    rate: run => traces.map(trace => vector(run, trace.of, "rate")), acceleration: run => traces.map(trace => vector(run, trace.of, "acceleration")),
+    force: run => (data.forces || []).map(({ of }) => loadOf(run, of)),
+  };
+  const measures = new Map();
+  /** The size that is drawn as a long arrow, of a run by itself or of all that are compared. */
+  function measure(key, run) {
+    const id = `${key} ${state.overlay ? "" : runs.indexOf(run)}`;
+    if (!measures.has(id)) measures.set(id, usualSize((state.overlay ? runs : [run]).flatMap(run => arrows[key](run).filter(Boolean).flatMap(sizes))));
+    return measures.get(id);
   }
-  /** Forces as the drawing measures them (N), and the largest one. */
-  const loads = runs.flatMap(run => (data.forces || []).map(({ of }) => loadOf(run, of)).filter(Boolean).flatMap(sizes));
-  const most = { usual: usualSize(loads), largest: largest([loads]) };
   const LEGIBLE = 26; // pixels of a usual bar
   const LONG = 6; // times as wide as high: over the whole page
   const view = {}; // width, height, scale and the maps X, Y from metres to pixels
@@ -234,7 +238,7 @@ function createStage(root, options) {
     if (order.some((node, i) => layer.children[i] !== node)) layer.append(...order);
   }
 
-  const { builders, label, aroundPoint, force } = createBuilders({ view, items, options, speeds, most, distanceAtStart, profile, moduleOf, colourOf, onRail });
+  const { builders, label, aroundPoint, force } = createBuilders({ view, items, options, measure, distanceAtStart, profile, moduleOf, colourOf, onRail });
 
   return {
     view, camera,

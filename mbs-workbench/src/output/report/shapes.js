@@ -1,7 +1,7 @@
 // ---------------------------------------------------------------- shapes of the drawing
 
 /** Builders of the shapes of a stage: each adds nodes to the layers of a figure and returns what moves them to sample k. */
-function createBuilders({ view, items, options, speeds, most, distanceAtStart, profile, moduleOf, colourOf, onRail }) {
+function createBuilders({ view, items, options, measure, distanceAtStart, profile, moduleOf, colourOf, onRail }) {
   /** Hatching below the line from x0 to x1 at height y. */
   function hatching(x0, x1, y) {
     const n = Math.max(3, Math.round((x1 - x0) / 7)), step = (x1 - x0) / n, deep = Math.min(7, Math.max(step, 2));
@@ -259,11 +259,11 @@ function createBuilders({ view, items, options, speeds, most, distanceAtStart, p
   };
 
   function arrow(item, f, key) {
-    const values = vector(f.run, item.of, key), name = key === "rate" ? "velocity" : key;
+    const values = vector(f.run, item.of, key), name = key === "rate" ? "velocity" : key, unit = values ? measure(key, f.run) : 0;
     const node = svg("path", { class: "arrow", style: `stroke: var(--${name})` });
     f.arrows.append(node);
     return k => {
-      const [u, v] = values && options.shows(name) && speeds[key] > 0 ? bounded(values.map(c => c[k] / speeds[key] * view.arrow)) : [0, 0];
+      const [u, v] = values && options.shows(name) && unit > 0 ? bounded(values.map(c => c[k] / unit * view.arrow)) : [0, 0];
       const at = f.at(item.of, k), d = arrowPath(at, [u, v]);
       node.setAttribute("d", d);
       if (d) f.obstacles.push([at, [at[0] + u, at[1] - v]]);
@@ -284,11 +284,11 @@ function createBuilders({ view, items, options, speeds, most, distanceAtStart, p
   function force(item, f) {
     const components = loadOf(f.run, item.of), node = svg("path", { class: "arrow force" }), text = svg("text", { class: "label value", "text-anchor": "middle" });
     if (!components) return () => {};
-    const format = formatter(most.largest, 4);
+    const unit = measure("force", f.run), format = formatter(unit, 4);
     f.arrows.append(node);
     f.text.append(text);
     return k => {
-      const [u, v] = options.shows("forces") && most.usual > 0 ? bounded(components.slice(0, 2).map(c => c[k] / most.usual * view.arrow * 1.25)) : [0, 0];
+      const [u, v] = options.shows("forces") && unit > 0 ? bounded(components.slice(0, 2).map(c => c[k] / unit * view.arrow * 1.25)) : [0, 0];
       const at = f.at(item.at, k), d = arrowPath(at, [u, v]), length = Math.hypot(u, v);
       node.setAttribute("d", d);
       text.textContent = d && !moves && !f.ghost ? `${format(Math.hypot(...components.map(c => c[k])))} N` : "";
