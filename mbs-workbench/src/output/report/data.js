@@ -25,10 +25,11 @@ if (!runs.length) {
 }
 const formatTime = formatter(Math.max(Math.abs(start), Math.abs(end)), 4);
 
-/** Rests of one position count once, their labels joined: the way there has no part in a rest. */
+/** Rests of one position with the same forces and modes count once, their labels joined: the way there has no part in a rest. */
 function merged(all) {
-  const kept = [];
-  const at = run => JSON.stringify([(run.coordinates || []).map(c => c.q.map(x => x.toPrecision(5))), (run.verdict || {}).course]);
+  const kept = [], digits = x => finite(x) ? x.toPrecision(5) : x;
+  const at = run => JSON.stringify([(run.coordinates || []).map(c => c.q.map(digits)), [...entriesOf(run, "loads"), ...entriesOf(run, "multipliers")].map(load => load.value.map(digits)),
+    run.small && run.small.eigenvalues.map(z => z.map(digits)), (run.verdict || {}).course]);
   for (const run of all) {
     const same = run.time.length === 1 ? kept.find(other => at(other) === at(run)) : null;
     if (same) Object.assign(same, { label: `${same.label}, ${run.label}`, description: "" });
