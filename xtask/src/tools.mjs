@@ -86,9 +86,9 @@ export async function abscissa(page) {
 
 export async function degrees(page) {
     if (await page.isHidden('#degrees')) return;
-    const texts = () => page.$$eval('#values td', cells => cells.map(cell => cell.textContent).join());
-    assert.ok((await axisTitles(page)).concat(await texts()).some(text => text.includes('°')), 'degrees at first');
-    await changes(texts, () => page.uncheck('#degrees'), 'values in radians');
+    const texts = () => page.$$eval('#values td, .plot .axis-title', cells => cells.map(cell => cell.textContent).join());
+    assert.ok((await texts()).includes('°'), 'degrees at first');
+    await changes(texts, () => page.uncheck('#degrees'), 'values or plots in radians');
     assert.ok(!(await axisTitles(page)).some(title => title.includes('°')), 'no plot in degrees');
     await page.check('#degrees');
 }
@@ -184,7 +184,12 @@ export async function files(page, withVideo) {
     await page.$eval('#speed', speed => { speed.value = 10; speed.dispatchEvent(new Event('change')); });
     const [, video] = await download(page, '#save-webm');
     assert.deepEqual([...video.subarray(0, 4)], [0x1a, 0x45, 0xdf, 0xa3], 'a WebM');
-    assert.ok(video.length > 2000, `${video.length} bytes of video`);
+    const width = await page.evaluate(async bytes => {
+        const video = Object.assign(document.createElement('video'), { muted: true, src: URL.createObjectURL(new Blob([new Uint8Array(bytes)], { type: 'video/webm' })) });
+        await new Promise((done, fail) => { video.onloadeddata = done; video.onerror = () => fail(video.error); });
+        return video.videoWidth;
+    }, [...video]);
+    assert.ok(width > 600, `${width} pixels of video`);
 }
 
 export async function units(page) {

@@ -25,9 +25,9 @@ pub(super) fn kinematic(
     let before: Vec<f64> = times.iter().copied().filter(|time| *time < reachable).collect();
     let reached = [before.as_slice(), &[reachable]].concat();
     // At the end itself the rates may be refused, or grow beyond all bounds.
-    let motion = match mechanism.follow(&reached, on_progress) {
+    let motion = match mechanism.follow(&reached, &mut |_| ()) {
         Ok(motion) if !is_unbounded_at_its_end(&motion) => motion,
-        _ => mechanism.follow(&before, on_progress).map_err(|failure| failure.to_string())?,
+        _ => mechanism.follow(&before, &mut |_| ()).map_err(|failure| failure.to_string())?,
     };
     let ended = EarlyEnd::new(reachable, &beyond);
     if motion.time.len() < 2 {
@@ -70,7 +70,7 @@ pub(super) fn inverse(
     let added = match (dynamics.add_forces(&mut found.motion), found.motion.time.split_last()) {
         // At the end of a motion forces may grow beyond bounds.
         (Err(_), Some((_, before))) if found.ended.is_some() && before.len() > 1 => {
-            let mut motion = mechanism.follow(before, on_progress).map_err(|failure| failure.to_string())?;
+            let mut motion = mechanism.follow(before, &mut |_| ()).map_err(|failure| failure.to_string())?;
             let added = dynamics.add_forces(&mut motion);
             found.motion = motion;
             added

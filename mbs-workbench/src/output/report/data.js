@@ -29,7 +29,7 @@ const formatTime = formatter(Math.max(Math.abs(start), Math.abs(end)), 4);
 function merged(all) {
   const kept = [], digits = x => finite(x) ? x.toPrecision(5) : x;
   const at = run => JSON.stringify([(run.coordinates || []).map(c => c.q.map(digits)), [...entriesOf(run, "loads"), ...entriesOf(run, "multipliers")].map(load => load.value.map(digits)),
-    run.small && run.small.eigenvalues.map(z => z.map(digits)), (run.verdict || {}).course]);
+    run.small && run.small.eigenvalues.map(z => z.map(x => Math.abs(x) < 1e-6 * run.small.norm ? 0 : digits(x))), (run.verdict || {}).course]);
   for (const run of all) {
     const same = run.time.length === 1 ? kept.find(other => at(other) === at(run)) : null;
     if (same) Object.assign(same, { label: `${same.label}, ${run.label}`, description: "" });

@@ -1,6 +1,7 @@
 // ---------------------------------------------------------------- files that the page writes
 
 const FRAME_RATE = 30, SHORTEST_VIDEO = 2, LONGEST_VIDEO = 30; // frames a second, seconds
+const HEADER = 1000; // bytes of a video without a picture, at most
 
 function saveFile(name, blob) {
   const href = URL.createObjectURL(blob), link = el("a", { href, download: name });
@@ -75,20 +76,22 @@ let recording = null;
 /** One pass of the drawing at the chosen speed as a video. */
 async function saveVideo(root, name, button) {
   if (recording) { recording.ended = true; return; }
-  const type = ["video/webm;codecs=vp9", "video/webm", "video/mp4"].find(type => window.MediaRecorder && MediaRecorder.isTypeSupported(type));
+  const type = ["video/webm;codecs=vp8", "video/webm", "video/mp4"].find(type => window.MediaRecorder && MediaRecorder.isTypeSupported(type));
   if (!type) { button.textContent = "no video here"; return; }
   const before = state.t, label = button.textContent, chunks = [];
+  let written = 0;
   recording = { ended: false };
   play(false);
   setTime(start);
   const canvas = await rasterised(root, 2), recorder = new MediaRecorder(canvas.captureStream(FRAME_RATE), { mimeType: type, videoBitsPerSecond: 8e6 });
   const done = new Promise(resolve => { recorder.onstop = resolve; });
-  recorder.ondataavailable = event => chunks.push(event.data);
-  recorder.start();
+  recorder.ondataavailable = event => { chunks.push(event.data); written += event.data.size; };
+  recorder.start(500);
   const begin = performance.now(), length = clamp((end - start) / state.speed, SHORTEST_VIDEO, LONGEST_VIDEO), pace = Math.min(state.speed, (end - start) / length);
-  for (let now = 0; now < length && !recording.ended; now = (performance.now() - begin) / 1000) {
-    setTime(start + now * pace);
-    button.textContent = `Stop (${Math.round(100 * now / length)} %)`;
+  // An encoder that begins late gets its last picture until it has written one.
+  for (let now = 0; (now < length || (written < HEADER && now < length + LONGEST_VIDEO)) && !recording.ended; now = (performance.now() - begin) / 1000) {
+    setTime(start + Math.min(now, length) * pace);
+    button.textContent = `Stop (${Math.min(100, Math.round(100 * now / length))} %)`;
     await rasterised(root, 2, canvas);
     await new Promise(requestAnimationFrame);
   }
