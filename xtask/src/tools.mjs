@@ -80,7 +80,8 @@ export async function abscissa(page) {
     await page.selectOption('#over', '');
     assert.ok((await axisTitles(page)).some(title => title.startsWith('t [')), 'plots over time');
     const name = await page.$eval('#over option:last-child', option => option.value);
-    await changes(() => curves(page), () => page.selectOption('#over', name), 'curves over an angle');
+    // At constant speed from 0 the curves keep their shape: the axis tells.
+    await changes(async () => (await axisTitles(page)).join(), () => page.selectOption('#over', name), 'plots over an angle');
     assert.ok((await axisTitles(page)).some(title => title === `${name} [°]`), `${name} in degrees`);
 }
 

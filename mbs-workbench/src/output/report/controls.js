@@ -96,6 +96,7 @@ function select(index) {
 
 function createAssembly() {
   const host = byId("assembly");
+  host.hidden = runs.length < 2; // one choice is none
   const choices = runs.map((run, i) => [String(i), run.label]);
   if (runs.length > 1) choices.push(["both", runs.length > 2 ? "all" : "both"]);
   for (const [value, label] of choices) {

@@ -45,10 +45,24 @@ function createLegend(title, group, mark, changed) {
 const markOf = (kind, name) => runs.some(run => entriesOf(run, kind).some(entry => entry.name === name && entry.shared)) ? " (not unique)" : "";
 const find = (run, kind, name) => entriesOf(run, kind).find(entry => entry.name === name);
 
+/** The coordinate that an output is in every run, or none. */
+function coordinateOf(output) {
+  const equal = (a, b) => { const most = NOISE * 1e3 * largest([a]); return a.every((x, k) => Math.abs(x - b[k]) <= most); };
+  return (runs[0].coordinates || []).find(c => c.unit === output.unit && runs.every(run => {
+    const [value, q] = [(find(run, "outputs", output.name) || {}).value, (run.coordinates.find(other => other.name === c.name) || {}).q];
+    return value && q && value.length === q.length && equal(value, q);
+  }));
+}
+
 /** A group of plots a unit: values with rates and accelerations where the data have them. */
 function createSeries(host, kind, symbols, keys) {
-  const units = new Map();
-  for (const { name, unit } of entriesOf(runs[0], kind)) units.set(unit, [...(units.get(unit) || []), name]);
+  const units = new Map(), same = [];
+  for (const entry of entriesOf(runs[0], kind)) {
+    const { name, unit } = entry, twin = kind === "outputs" && plotted(name) ? coordinateOf(entry) : null;
+    if (twin) same.push(`${name} is ${twin.name}`);
+    else units.set(unit, [...(units.get(unit) || []), name]);
+  }
+  if (same.length) host.append(el("p", { className: "same", textContent: `Plotted with the coordinates: ${same.join(", ")}.` }));
   for (const [unit, all] of units) {
     const names = kind === "outputs" ? all.filter(plotted) : all;
     if (!names.length) continue;

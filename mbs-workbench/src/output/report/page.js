@@ -73,16 +73,42 @@ function trimmed(text) {
   return lines.map(line => line.slice(indent)).join("\n");
 }
 
+const MOST_COLUMNS = 4; // runs whose facts stand side by side
+
+/** Facts, those of several runs in one line with a column a run. */
+function createFacts() {
+  const table = byId("facts"), labels = given.map(run => run.label), side = labels.length > 1 && labels.length <= MOST_COLUMNS, lines = new Map();
+  for (const [name, value] of data.facts || []) {
+    const label = side && labels.find(label => name.endsWith(`, ${label}`) && !labels.some(longer => longer !== label && longer.endsWith(`, ${label}`) && name.endsWith(`, ${longer}`)));
+    const key = label ? name.slice(0, -label.length - 2) : name;
+    lines.set(key, { ...lines.get(key), [label || ""]: unitsIn(value) });
+  }
+  if (side && [...lines.values()].some(values => !("" in values))) {
+    table.prepend(el("thead", {}, el("tr", {}, el("th"), ...labels.map(textContent => el("th", { scope: "col", textContent })))));
+  }
+  for (const [name, values] of lines) {
+    const cells = "" in values ? [el("td", { colSpan: side ? labels.length : 1, textContent: values[""] })] : labels.map(label => el("td", { textContent: values[label] || "" }));
+    table.tBodies[0].append(el("tr", {}, el("th", { scope: "row", textContent: name }), ...cells));
+  }
+  fold([...table.tBodies[0].rows], "facts", button => table.after(button));
+}
+
+/** Links to the sections that the page has. */
+function createContents() {
+  const links = [...document.querySelectorAll("main h2")].filter(h => h.offsetParent).map((h, i) => {
+    h.id = h.id || `section-${i}`;
+    return el("a", { href: `#${h.id}`, textContent: h.textContent });
+  });
+  byId("contents").replaceChildren(...links);
+}
+
 function createText() {
   byId("kicker").textContent = `mbs · ${data.name}`;
   byId("title").textContent = data.title;
   byId("description").textContent = data.description || "";
   byId("command").textContent = data.command || "";
   byId("command").parentNode.hidden = !data.command;
-  for (const [name, value] of data.facts || []) {
-    byId("facts").tBodies[0].append(el("tr", {}, el("th", { scope: "row", textContent: name }), el("td", { textContent: unitsIn(value) })));
-  }
-  fold([...byId("facts").tBodies[0].rows], "facts", button => byId("facts").after(button));
+  createFacts();
   byId("view").textContent = space ? `Seen ${space.label}, until you turn it: the path and the arrows are projections; numbers and plots are of the vectors in space.` : "";
   byId("view").hidden = !space;
   byId("source").firstChild.textContent = trimmed(data.source || "");
@@ -132,6 +158,7 @@ if (runs.length) {
   byId("plots").hidden = !moves;
   byId("plots").dataset.drag = state.drag;
   layout();
+  createContents();
   let width = document.body.clientWidth;
   const resized = () => { // heights change with the content, only the width asks for a new layout
     if (document.body.clientWidth !== width) { width = document.body.clientWidth; layout(); }

@@ -113,7 +113,7 @@ function createPlot(host, panel, group) {
     const listed = new Set([...now].sort((a, b) => a.away - b.away).slice(0, NEAREST));
     const rows = now.filter(one => listed.has(one)).map(({ curve, y }) => {
       const label = state.overlay ? `${curve.name} ${curve.run.label}` : curve.name || panel.title;
-      return el("div", {}, swatch(curve.colour, curve.dash), el("span", { textContent: label }), el("span", { textContent: curve.format(y) }));
+      return el("div", {}, swatch(curve.colour, curve.dash), el("span", { textContent: label }), el("span", { textContent: `${curve.format(y)} ${shownUnit(panel.unit)}`.replace(/ 1$/, "") }));
     });
     const { curve, k } = now[0], t = `t = ${formatTime(curve.run.time[k])} s`;
     const angle = state.over ? `${state.over} = ${formatter(largest([curve.over]), 5)(curve.over[k])}${shownUnit("rad") === "°" ? "°" : " rad"}, ` : "";

@@ -260,13 +260,20 @@ function createBuilders({ view, items, options, measure, distanceAtStart, profil
 
   function arrow(item, f, key) {
     const values = vector(f.run, item.of, key), name = key === "rate" ? "velocity" : key, unit = values ? measure(key, f.run) : 0;
-    const node = svg("path", { class: "arrow", style: `stroke: var(--${name})` });
-    f.arrows.append(node);
+    const node = svg("path", { class: "arrow", style: `stroke: var(--${name})` }), halo = svg("path", { class: "halo" });
+    const letter = svg("text", { class: "letter", "text-anchor": "middle", style: `fill: var(--${name})` }, name[0]);
+    f.arrows.append(halo, node, letter);
     return k => {
       const [u, v] = values && options.shows(name) && unit > 0 ? bounded(values.map(c => c[k] / unit * view.arrow)) : [0, 0];
       const at = f.at(item.of, k), d = arrowPath(at, [u, v]);
       node.setAttribute("d", d);
-      if (d) f.obstacles.push([at, [at[0] + u, at[1] - v]]);
+      halo.setAttribute("d", d);
+      letter.toggleAttribute("hidden", !d || f.ghost || !options.shows("labels"));
+      if (!d) return;
+      const length = Math.hypot(u, v);
+      letter.setAttribute("x", (at[0] + u * (1 + 11 / length)).toFixed(1));
+      letter.setAttribute("y", (at[1] - v * (1 + 11 / length) + 4).toFixed(1));
+      f.obstacles.push([at, [at[0] + u, at[1] - v]]);
     };
   }
 
@@ -282,15 +289,16 @@ function createBuilders({ view, items, options, measure, distanceAtStart, profil
 
   /** The force of an output at its place, with its magnitude where nothing moves. */
   function force(item, f) {
-    const components = loadOf(f.run, item.of), node = svg("path", { class: "arrow force" }), text = svg("text", { class: "label value", "text-anchor": "middle" });
+    const components = loadOf(f.run, item.of), node = svg("path", { class: "arrow force" }), halo = svg("path", { class: "halo" }), text = svg("text", { class: "label value", "text-anchor": "middle" });
     if (!components) return () => {};
     const unit = measure("force", f.run), format = formatter(unit, 4);
-    f.arrows.append(node);
+    f.arrows.append(halo, node);
     f.text.append(text);
     return k => {
       const [u, v] = options.shows("forces") && unit > 0 ? bounded(components.slice(0, 2).map(c => c[k] / unit * view.arrow * 1.25)) : [0, 0];
       const at = f.at(item.at, k), d = arrowPath(at, [u, v]), length = Math.hypot(u, v);
       node.setAttribute("d", d);
+      halo.setAttribute("d", d);
       text.textContent = d && !moves && !f.ghost ? `${format(Math.hypot(...components.map(c => c[k])))} N` : "";
       if (!d) return;
       const [tx, ty] = [at[0] + u, at[1] - v];
