@@ -366,3 +366,34 @@ fn every_ready_mechanism_has_a_picture() {
         }
     }
 }
+
+#[test]
+fn outputs_that_are_forces_in_pins_have_their_places() {
+    let text = "pub mechanism Arm;
+        param L: m = 0.5;
+        coord phi: rad = 0.3;
+        let tip = L*unit(phi);
+        body arm { mass: 2kg, inertia: 0.1 [kg*m^2], com: tip/2, angle: phi }
+        body load { mass: 1kg, com: tip }
+        gravity weight { acceleration: [0, -9.81] }
+        pin bearing: ground, arm at [0, 0];
+        pin end: arm, load at tip;
+        start phi = 0.3 rate 0;
+        out on_arm: [N; 2] = reaction(bearing, arm);
+        out on_load: [N; 2] = reaction(end, load);
+        out back: [N; 2] = reaction(end, arm);
+        out twice: [N; 2] = 2*reaction(end, arm);
+        out along: N = dot(reaction(end, arm), unit(phi));
+        draw link arm: bearing, end;";
+    let picture = picture(text, None).unwrap_or_else(|faults| panic!("{faults}"));
+    let found: Vec<(&str, &str)> =
+        picture.forces.iter().map(|force| (force.output.as_str(), force.at.as_str())).collect();
+    assert_eq!(found, [("on_arm", "bearing"), ("on_load", "end"), ("back", "end")]);
+    let at = |name: &str| {
+        let place = picture.places().iter().position(|place| place.name == name).expect("a place");
+        picture.points([&[0.3], &[0.0], &[0.0]], 0.0, &[0.5])[place]
+    };
+    assert_eq!(at("bearing"), [0.0; 3]);
+    assert!((at("end")[0] - 0.5 * 0.3_f64.cos()).abs() < 1e-15, "{:?}", at("end"));
+    assert_eq!(picture.places().iter().filter(|place| place.name == "end").count(), 1, "each place once");
+}

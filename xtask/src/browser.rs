@@ -1,4 +1,4 @@
-//! Reports of all mechanisms in headless Chromium; `xtask/src/page.mjs` uses each page.
+//! Reports of all mechanisms in headless Chromium; `xtask/src/page.mjs` uses each page, `xtask/src/tools.mjs` each of its tools.
 
 use std::fs;
 use std::path::Path;
@@ -12,6 +12,15 @@ const DRIVER: &str = "playwright-core@1.55.0";
 
 /// Mechanisms at rest, which have modes in place of a motion.
 const WITH_MODES: [&str; 3] = ["double_pendulum", "quarter_car", "governor"];
+
+/// Mechanisms whose rests are judged: unstable ones with the stable ones that they fall to, and a stable one alone.
+const WITH_RESTS: [&str; 3] = ["four_bar_mass:Released", "slider_crank_mass:Released", "pendulum"];
+
+/// Driven mechanisms with masses, whose forces are plotted.
+const WITH_FORCES: [&str; 2] = ["four_bar_mass:Driven", "slider_crank_mass:Driven"];
+
+/// A crank longer than its rod: the motion ends, the command fails, and the page is written up to there.
+const ENDED: [&str; 4] = ["kinematics", "slider_crank", "--param", "r=0.2"];
 
 /// Writes the report of each mechanism and opens it.
 ///
@@ -33,7 +42,9 @@ pub fn run() -> Result<(), String> {
     let pages = reports(&target().join("debug/mbs-catalogue"), &scratch)?;
     // Next to node_modules, where Node looks for it.
     let page = scratch.join("page.mjs");
-    fs::copy(root().join("xtask/src/page.mjs"), &page).map_err(written)?;
+    for file in ["page.mjs", "tools.mjs"] {
+        fs::copy(root().join("xtask/src").join(file), scratch.join(file)).map_err(written)?;
+    }
     let chromium = output(&mut command("sh", &["-c", "command -v chromium"]))?;
     crate::shell::run(command("node", &[]).arg(page).arg(chromium.trim()).args(pages))
 }
@@ -46,8 +57,11 @@ fn reports(program: &Path, scratch: &Path) -> Result<Vec<String>, String> {
     let names = names.filter_map(|line| line.split_whitespace().next());
     let mut wanted: Vec<(String, Vec<&str>)> =
         names.map(|name| (name.to_string(), [&["run"], &options(name)[..]].concat())).collect();
-    let modes = WITH_MODES.map(|name| (format!("{name}-linear"), vec!["modes", name]));
-    wanted.extend(modes);
+    let scenes = |name: &str| name.replace(':', "_");
+    wanted.extend(WITH_MODES.map(|name| (format!("{name}-linear"), vec!["modes", name])));
+    wanted.extend(WITH_RESTS.map(|name| (format!("{}-rest", scenes(name)), vec!["equilibrium", name])));
+    wanted.extend(WITH_FORCES.map(|name| (format!("{}-inverse", scenes(name)), vec!["inverse", name])));
+    wanted.push(("slider_crank-ended".to_string(), ENDED.to_vec()));
     let pages =
         wanted.iter().map(|(name, _)| format!("{}/report.html", scratch.join(name).display())).collect();
     let queue = Mutex::new(wanted.iter());
@@ -56,7 +70,12 @@ fn reports(program: &Path, scratch: &Path) -> Result<Vec<String>, String> {
             let next = queue.lock().map_err(|_| "a report has failed")?.next();
             let Some((name, options)) = next else { return Ok::<(), String>(()) };
             let mut run = command(program, options);
-            output(run.arg("--out").arg(scratch.join(name)))?;
+            let written = output(run.arg("--out").arg(scratch.join(name)));
+            if options[..] != ENDED[..] {
+                written?;
+            } else if written.is_ok() {
+                return Err(format!("{}: a motion that ends early must fail", ENDED.join(" ")));
+            }
         }
     };
     thread::scope(|scope| {

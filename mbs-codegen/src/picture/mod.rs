@@ -7,6 +7,7 @@ mod content;
 mod draw;
 mod found;
 mod guess;
+mod pin_forces;
 mod places;
 mod settings;
 mod shape;
@@ -38,6 +39,8 @@ pub struct Picture {
     pub span: Option<Span>,
     /// Shapes in the order of the text.
     pub shapes: Vec<Shape>,
+    /// Outputs that are the force in a pin, each with the place of its pin.
+    pub forces: Vec<PinForce>,
     /// `true` if the text draws no shape and the shapes are guessed from its points.
     pub is_guessed: bool,
     /// Points, angles and directions of the shapes, each once.
@@ -45,6 +48,15 @@ pub struct Picture {
     graph: Graph,
     /// Components of each place; none where only the mechanism can evaluate them.
     roots: Vec<Vec<NodeId>>,
+}
+
+/// The force in a pin as an output, `out bearing: [N; 2] = reaction(O, crank);`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct PinForce {
+    /// Name of the output without its component.
+    pub output: String,
+    /// Name of the [`Place`] at which it acts.
+    pub at: String,
 }
 
 /// A motion worth showing: parameters and inputs that differ from the defaults of the text.
@@ -108,6 +120,13 @@ fn of_scene(
         let used: BTreeSet<&str> = content.shapes.iter().flat_map(Shape::points).collect();
         content.places.retain(|known| used.contains(known.place.name.as_str()));
     }
+    let mut forces = Vec::new();
+    if diagnostics.is_empty() {
+        let mut places = Places::new(&scene.model, &mut names, &mut expressions, &mut diagnostics);
+        places.keep(content.places);
+        forces = pin_forces::pin_forces(&mut places);
+        content.places = places.known;
+    }
     if !diagnostics.is_empty() {
         return Err(diagnostics.to_text());
     }
@@ -125,6 +144,7 @@ fn of_scene(
         presets,
         span,
         shapes,
+        forces,
         is_guessed,
         roots: places.iter().map(node).collect(),
         places: places.into_iter().map(|known| known.place).collect(),

@@ -106,6 +106,14 @@ impl<'a> Places<'a> {
         Places { model, names, expressions, diagnostics, known, rounds, by_name, outside, outputs }
     }
 
+    /// Takes over places that are known already.
+    pub fn keep(&mut self, known: Vec<Known>) {
+        for known in known {
+            self.by_name.insert(known.place.name.clone(), self.known.len());
+            self.known.push(known);
+        }
+    }
+
     pub fn elaborate<T>(&mut self, run: impl FnOnce(&mut Elaborator<'_>) -> T) -> T {
         run(&mut Elaborator {
             expressions: self.expressions,
@@ -168,6 +176,11 @@ impl<'a> Places<'a> {
             return Ok(Found::point(name, &pin.at));
         }
         self.value(place, counts, &name)
+    }
+
+    /// `true` if an output, or the first component of one, has this name.
+    pub fn is_output(&self, name: &str) -> bool {
+        self.output(name).is_some()
     }
 
     /// The output of this name, with its components.

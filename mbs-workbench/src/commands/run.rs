@@ -13,7 +13,7 @@ use crate::output::animation::animation;
 use crate::output::csv;
 use crate::output::places::places;
 use crate::output::reload::{VERSION, reloading};
-use crate::output::report::{Report, Run, html};
+use crate::output::report::{ForceArrow, Report, Run, html};
 use crate::output::shapes::shapes;
 use crate::target_directory::target_directory;
 use clap::{Args, ValueEnum};
@@ -295,7 +295,8 @@ impl Arguments {
     }
 }
 
-/// Runs the presets, prints a table and writes the report. Nothing is written if a run fails.
+/// Runs the presets, prints a table and writes the report. Nothing is written if a run fails at its start; one that ends before its time
+/// has its page up to there, and the command fails.
 pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut dyn Write) -> Result<(), CommandError> {
     let target = Target::find(catalogue, &arguments.selection.name)?;
     let instances = target.instances(&arguments.selection.parameters)?;
@@ -357,7 +358,14 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut dyn Write) ->
         };
         writeln!(out, "{name}  {}", path.display())?;
     }
-    Ok(())
+    let ended = done.iter().filter_map(|done| {
+        let message = &done.ended.as_ref()?.message;
+        Some(format!("{}, {}: {message}", target.name(), done.label))
+    });
+    match ended.collect::<Vec<_>>().as_slice() {
+        [] => Ok(()),
+        ended => Err(CommandError::Failed(ended.join("\n"))),
+    }
 }
 
 /// The motion as an animated picture.
@@ -423,9 +431,14 @@ fn page(
             description: &done.description,
             motion,
             places,
+            verdict: done.verdict.as_ref(),
+            ended: done.ended.as_ref().map(|ended| ended.line.as_str()),
             small: done.small.as_ref(),
         });
     }
+    let forces = &target.picture().forces;
+    let forces: Vec<ForceArrow> =
+        forces.iter().map(|force| ForceArrow { of: &force.output, at: &force.at }).collect();
     html(&Report {
         name: target.name(),
         title: target.title(),
@@ -435,6 +448,8 @@ fn page(
         facts,
         runs: &runs,
         drawing: &shapes(target.shapes()),
+        forces: &forces,
+        analysis: arguments.request(target).analysis_of(target).word(),
     })
 }
 

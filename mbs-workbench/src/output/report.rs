@@ -12,15 +12,27 @@ const STYLE: &str = include_str!("report/page.css");
 const SCRIPT: &str = concat!(
     include_str!("report/elements.js"),
     "\n",
+    include_str!("report/data.js"),
+    "\n",
     include_str!("report/outlines.js"),
+    "\n",
+    include_str!("report/shapes.js"),
     "\n",
     include_str!("report/drawing.js"),
     "\n",
+    include_str!("report/camera.js"),
+    "\n",
+    include_str!("report/save.js"),
+    "\n",
     include_str!("report/plots.js"),
+    "\n",
+    include_str!("report/groups.js"),
     "\n",
     include_str!("report/forces.js"),
     "\n",
     include_str!("report/modes.js"),
+    "\n",
+    include_str!("report/controls.js"),
     "\n",
     include_str!("report/page.js"),
 );
@@ -44,6 +56,28 @@ pub struct Report<'a> {
     pub runs: &'a [Run<'a>],
     /// Shapes as [`shapes`](crate::output::shapes::shapes()) writes them.
     pub drawing: &'a [serde_json::Value],
+    /// Outputs that are forces at places of the drawing.
+    pub forces: &'a [ForceArrow<'a>],
+    /// The analysis: `kinematics`, `simulation`, `equilibrium`, `inverse` or `modes`.
+    pub analysis: &'a str,
+}
+
+/// A force that is drawn as an arrow.
+#[derive(Clone, Debug, Serialize)]
+pub struct ForceArrow<'a> {
+    /// Name of the output, a vector (N).
+    pub of: &'a str,
+    /// Name of the place at which it acts, in the run's places.
+    pub at: &'a str,
+}
+
+/// Verdict on a position of rest.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Verdict {
+    /// One of `fixed`, `stable`, `marginal`, `indifferent`, `unstable` and `unknown`.
+    pub course: &'static str,
+    /// The verdict in words.
+    pub text: String,
 }
 
 /// A motion with its name.
@@ -59,6 +93,12 @@ pub struct Run<'a> {
     /// Drawn places that are no outputs.
     #[serde(skip_serializing_if = "<[PlaceCurve]>::is_empty")]
     pub places: &'a [PlaceCurve],
+    /// Verdict on a position of rest.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub verdict: Option<&'a Verdict>,
+    /// Time and reason in one line, where the motion ends before its time.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub ended: Option<&'a str>,
     /// Small motions about its last instant.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub small: Option<&'a SmallMotions>,
@@ -118,7 +158,17 @@ mod tests {
             source,
             command: "mbs run name",
             facts: &[["steps".to_string(), "1".to_string()]],
-            runs: &[Run { label: "one", description: "", motion: &motion, places: &[], small: None }],
+            runs: &[Run {
+                label: "one",
+                description: "",
+                motion: &motion,
+                places: &[],
+                verdict: None,
+                ended: Some("the motion ends at t = 0 s"),
+                small: None,
+            }],
+            forces: &[ForceArrow { of: "bearing", at: "O" }],
+            analysis: "kinematics",
             drawing: &shapes(&[
                 Shape::Joint { at: name("O") },
                 Shape::Slider { at: name("S"), along: Along::Fixed([1.0, 0.0]) },
@@ -142,9 +192,18 @@ mod tests {
         assert_eq!(data["runs"][0]["closure"][0], 1e-17);
         assert_eq!(data["facts"][0], serde_json::json!(["steps", "1"]));
         assert_eq!(data["drawing"][1], serde_json::json!({"kind": "slider", "at": "S", "along": [1.0, 0.0]}));
+        assert_eq!(data["runs"][0]["ended"], "the motion ends at t = 0 s");
+        assert_eq!(data["forces"][0], serde_json::json!({"of": "bearing", "at": "O"}));
         assert_eq!(data["drawing"][3]["along"], "phi");
         assert_eq!(data["drawing"][4]["points"], serde_json::json!(["L", "R"]));
         assert_eq!(data["drawing"][2], serde_json::json!({"kind": "trace", "of": "P", "label": "curve"}));
+    }
+
+    #[test]
+    fn a_page_without_data_is_small() {
+        let most = 200_000;
+        let bare = PAGE.len() + STYLE.len() + SCRIPT.len();
+        assert!(bare <= most, "{bare} bytes without data, at most {most} are allowed");
     }
 
     #[test]

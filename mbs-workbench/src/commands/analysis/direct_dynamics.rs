@@ -8,6 +8,7 @@ use mbs_runtime::dynamics::{Counts, MethodWarning, MovedStart};
 use mbs_runtime::{Failure, FailureKind};
 
 use super::super::summary::significant;
+use super::early_end::EarlyEnd;
 use super::loads::{energies, loads};
 use super::{Analysed, AnalysisResult};
 
@@ -18,10 +19,17 @@ pub(super) fn direct(
     on_progress: &mut dyn FnMut(usize),
 ) -> Analysed {
     let found = dynamics.simulate(approach, times, on_progress).map_err(|failure| failure.to_string())?;
-    if let Some(failure) = found.failure {
-        return Err(ended(failure, approach.stabilization));
+    let end = found.failure.map(|failure| {
+        let message = ended(failure, approach.stabilization);
+        let t = found.motion.time.last().copied().unwrap_or_default();
+        EarlyEnd::new(t, &failure).with_message(&message)
+    });
+    // A start alone is no motion.
+    if let Some(end) = end.as_ref().filter(|_| found.motion.time.len() < 2) {
+        return Err(end.message.clone());
     }
     let mut figures = balance(&found);
+    figures.extend(end.iter().map(|end| ["early end".to_string(), end.line.clone()]));
     let span = times.get(1).zip(times.first()).map(|(next, first)| next - first);
     if let Some((span, longest)) = span.zip(approach.longest()) {
         let length = span / f64::from(equal(span, longest));
@@ -29,7 +37,7 @@ pub(super) fn direct(
     }
     figures.extend(energies(&found.motion));
     figures.extend(loads(&found.motion));
-    Ok(AnalysisResult::of(found.motion, figures))
+    Ok(AnalysisResult { ended: end, ..AnalysisResult::of(found.motion, figures) })
 }
 
 /// Reason why a motion from forces ended; at a singular position that its stabilisation cannot pass, also the cure.

@@ -14,7 +14,10 @@ const DIGITS: usize = 7;
 
 /// Eigenvalues of small motions about the last instant of the result.
 pub(super) fn linear(dynamics: &dyn AnyDynamics, found: Analysed) -> Analysed {
-    let AnalysisResult { motion, mut figures, .. } = found?;
+    let AnalysisResult { motion, mut figures, verdict, ended, .. } = found?;
+    if let Some(ended) = ended {
+        return Err(ended.message);
+    }
     let small = dynamics.small_motions(&motion)?;
     let about = match (small.frozen, motion.time.last()) {
         (true, Some(t)) => {
@@ -36,7 +39,7 @@ pub(super) fn linear(dynamics: &dyn AnyDynamics, found: Analysed) -> Analysed {
     for mode in &small.modes {
         figures.push([numbered(&mode.of), spelt(mode, small.frozen)]);
     }
-    Ok(AnalysisResult { small: Some(small), ..AnalysisResult::of(motion, figures) })
+    Ok(AnalysisResult { verdict, small: Some(small), ..AnalysisResult::of(motion, figures) })
 }
 
 /// The numbers of eigenvalues, counted from 1.

@@ -1,6 +1,7 @@
 //! The analyses of the command line: each turns a mechanism into a motion with figures.
 
 mod direct_dynamics;
+mod early_end;
 mod linearization;
 mod loads;
 mod method;
@@ -15,9 +16,11 @@ use crate::erased::dynamics::linearization::SmallMotions;
 use crate::erased::erase::Erased;
 use crate::erased::facade::{AnyMechanism, Motion};
 use crate::motion::instants;
+use crate::output::report::Verdict;
 use mbs_codegen::picture::Preset;
 
 pub use self::direct_dynamics::{doubtful, largest, undetermined};
+pub use self::early_end::EarlyEnd;
 pub use self::method::{Damping, IntegratorName, MethodName, above_zero, at_least_zero, tolerance};
 pub use self::used_options::UsedOptions;
 use self::watch::{Watch, progress};
@@ -41,6 +44,19 @@ pub enum Analysis {
     Modes,
 }
 
+impl Analysis {
+    /// Name on the page.
+    pub fn word(self) -> &'static str {
+        match self {
+            Analysis::Kinematics => "kinematics",
+            Analysis::Simulation => "simulation",
+            Analysis::Equilibrium => "equilibrium",
+            Analysis::Inverse => "inverse",
+            Analysis::Modes => "modes",
+        }
+    }
+}
+
 /// A motion with its figures.
 pub struct RunResult {
     /// Index of the instance that it is of.
@@ -49,6 +65,10 @@ pub struct RunResult {
     pub description: String,
     pub motion: Motion,
     pub figures: Vec<[String; 2]>,
+    /// Verdict on a position of rest.
+    pub verdict: Option<Verdict>,
+    /// End of a motion before its time.
+    pub ended: Option<EarlyEnd>,
     /// Small motions about its last instant, where they were asked for.
     pub small: Option<SmallMotions>,
 }
@@ -82,7 +102,8 @@ impl Request {
         target: &Target,
         (preset, instance): &(Preset, Erased),
     ) -> Result<Vec<RunResult>, CommandError> {
-        let done = |(index, AnalysisResult { motion, figures, small }): (usize, AnalysisResult)| {
+        let done = |(index, found): (usize, AnalysisResult)| {
+            let AnalysisResult { motion, figures, verdict, ended, small } = found;
             // The stable equilibrium reached from an unstable one.
             let (settled, description) = match index {
                 0 => ("", preset.description.as_str()),
@@ -90,7 +111,7 @@ impl Request {
             };
             let label = format!("{}{settled}", preset.label);
             let description = description.to_string();
-            RunResult { instance: 0, label, description, motion, figures, small }
+            RunResult { instance: 0, label, description, motion, figures, verdict, ended, small }
         };
         let fail =
             |reason: String| target.failed(instance.equations(), &format!("{}: {reason}", preset.label));
@@ -210,6 +231,10 @@ pub fn dynamics<'a>(target: &Target, instance: &'a Erased) -> Result<&'a dyn Any
 struct AnalysisResult {
     motion: Motion,
     figures: Vec<[String; 2]>,
+    /// Verdict on a position of rest.
+    verdict: Option<Verdict>,
+    /// End of a motion before its time.
+    ended: Option<EarlyEnd>,
     /// Small motions about its last instant.
     small: Option<SmallMotions>,
 }
@@ -219,6 +244,6 @@ type Analysed = Result<AnalysisResult, String>;
 
 impl AnalysisResult {
     fn of(motion: Motion, figures: Vec<[String; 2]>) -> Self {
-        AnalysisResult { motion, figures, small: None }
+        AnalysisResult { motion, figures, verdict: None, ended: None, small: None }
     }
 }

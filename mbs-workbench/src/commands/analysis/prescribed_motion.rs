@@ -1,38 +1,63 @@
 //! Motions that drives prescribe, and the forces that they take.
 
 use crate::erased::dynamics::AnyDynamics;
-use crate::erased::facade::{AnyMechanism, MotionStop};
+use crate::erased::facade::{AnyMechanism, Motion, MotionStop};
+use mbs_runtime::Failure;
 
+use super::early_end::EarlyEnd;
 use super::loads::{energies, loads};
 use super::{Analysed, AnalysisResult};
-use crate::commands::summary::{self, significant};
+use crate::commands::summary;
 
+/// The motion at `times`; up to its end and with the reason, where it ends before.
 pub(super) fn kinematic(
     mechanism: &dyn AnyMechanism,
     times: &[f64],
     on_progress: &mut dyn FnMut(usize),
 ) -> Analysed {
-    /// Instants timed: enough for a mean, short for any number of steps.
-    const TIMED: usize = 10_000;
-    let timed = &times[..times.len().min(TIMED)];
-    let found = mechanism.follow(times, on_progress).and_then(|motion| {
-        let step_time = mechanism.time_a_step(timed)?;
-        let figures = summary::figures(&motion, step_time).to_vec();
-        Ok(AnalysisResult::of(motion, figures))
-    });
-    found.map_err(|failure| match mechanism.stop(times) {
-        // The failure of the step that leads beyond it only follows.
-        Some(stop) => described(&stop, times.last().copied().unwrap_or(0.0)),
-        None => failure.to_string(),
+    let failure = match mechanism.follow(times, on_progress) {
+        Ok(motion) => return described(mechanism, motion).map_err(|failure| failure.to_string()),
+        Err(failure) => failure,
+    };
+    let Some(MotionStop { reachable, failure: beyond, .. }) = mechanism.stop(times) else {
+        return Err(failure.to_string());
+    };
+    let before: Vec<f64> = times.iter().copied().filter(|time| *time < reachable).collect();
+    let reached = [before.as_slice(), &[reachable]].concat();
+    // At the end itself the rates may be refused, or grow beyond all bounds.
+    let motion = match mechanism.follow(&reached, &mut |_| ()) {
+        Ok(motion) if !is_unbounded_at_its_end(&motion) => motion,
+        _ => mechanism.follow(&before, &mut |_| ()).map_err(|failure| failure.to_string())?,
+    };
+    let ended = EarlyEnd::new(reachable, &beyond);
+    if motion.time.len() < 2 {
+        return Err(ended.message);
+    }
+    let mut found = described(mechanism, motion).map_err(|failure| failure.to_string())?;
+    found.figures.push(["early end".to_string(), ended.line.clone()]);
+    found.ended = Some(ended);
+    Ok(found)
+}
+
+/// `true` if a rate at the last instant is many times what it was before: so it is where a mechanism locks.
+fn is_unbounded_at_its_end(motion: &Motion) -> bool {
+    const MANY: f64 = 5.0;
+    motion.coordinates.iter().any(|curve| match curve.qd.split_last() {
+        Some((last, before)) => {
+            last.abs() > MANY * before.iter().fold(0.0, |most: f64, rate| most.max(rate.abs()))
+        }
+        None => false,
     })
 }
 
-/// End of the motion in one line.
-fn described(stop: &MotionStop, end: f64) -> String {
-    let MotionStop { reachable, failure, .. } = stop;
-    let [reached, end] = [*reachable, end].map(|time| significant(time, 6));
-    let reason = failure.to_string().replace('\n', " ");
-    format!("the mechanism locks: its motion ends at t = {reached} s of {end} s; {reason}")
+/// The motion with its figures.
+fn described(mechanism: &dyn AnyMechanism, motion: Motion) -> Result<AnalysisResult, Failure> {
+    /// Instants timed: enough for a mean, short for any number of steps.
+    const TIMED: usize = 10_000;
+    let timed = &motion.time[..motion.time.len().min(TIMED)];
+    let step_time = mechanism.time_a_step(timed)?;
+    let figures = summary::figures(&motion, step_time).to_vec();
+    Ok(AnalysisResult::of(motion, figures))
 }
 
 pub(super) fn inverse(
@@ -41,9 +66,19 @@ pub(super) fn inverse(
     times: &[f64],
     on_progress: &mut dyn FnMut(usize),
 ) -> Analysed {
-    let AnalysisResult { mut motion, mut figures, .. } = kinematic(mechanism, times, on_progress)?;
-    dynamics.add_forces(&mut motion).map_err(|failure| failure.to_string())?;
-    figures.extend(energies(&motion));
-    figures.extend(loads(&motion));
-    Ok(AnalysisResult::of(motion, figures))
+    let mut found = kinematic(mechanism, times, on_progress)?;
+    let added = match (dynamics.add_forces(&mut found.motion), found.motion.time.split_last()) {
+        // At the end of a motion forces may grow beyond bounds.
+        (Err(_), Some((_, before))) if found.ended.is_some() && before.len() > 1 => {
+            let mut motion = mechanism.follow(before, &mut |_| ()).map_err(|failure| failure.to_string())?;
+            let added = dynamics.add_forces(&mut motion);
+            found.motion = motion;
+            added
+        }
+        (added, _) => added,
+    };
+    added.map_err(|failure| failure.to_string())?;
+    let forces = [energies(&found.motion), loads(&found.motion)].concat();
+    found.figures.extend(forces);
+    Ok(found)
 }

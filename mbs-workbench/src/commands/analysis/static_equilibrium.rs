@@ -3,6 +3,8 @@
 use crate::erased::dynamics::AnyDynamics;
 use crate::erased::dynamics::linearization::{SmallMotions, Stability};
 use crate::erased::dynamics::static_equilibrium::Rest;
+use crate::erased::facade::Motion;
+use crate::output::report::Verdict;
 use mbs_runtime::{Failure, FailureKind};
 
 use super::loads::loads;
@@ -32,6 +34,9 @@ pub(super) fn rests(
         }
     };
     found[0].figures.insert(2, ["a stable rest is".to_string(), word]);
+    if let Some(verdict) = &mut found[0].verdict {
+        verdict.text = fall(small.fate(), settled.as_ref().map(|settled| &settled.motion), rest.held);
+    }
     if let Some(settled) = settled {
         found.push(described(&settled, &dynamics.small_motions(&settled.motion)));
     }
@@ -47,9 +52,12 @@ pub(super) fn rest(dynamics: &dyn AnyDynamics, guesses: &[(usize, f64)]) -> Anal
 fn described(rest: &Rest, small: &Result<SmallMotions, String>) -> AnalysisResult {
     let Rest { motion, indifferent, held } = rest;
     let mut figures = vec![["iterations".to_string(), motion.iterations[0].to_string()]];
-    let small = small.as_ref().map(|small| stability(small.fate()));
-    figures
-        .push(["this rest is".to_string(), small.unwrap_or_else(|reason| format!("not judged: {reason}"))]);
+    let (course, text) = match small {
+        Ok(small) => (course(small.fate()), stability(small.fate())),
+        Err(reason) => ("unknown", format!("not judged: {reason}")),
+    };
+    let verdict = Verdict { course, text };
+    figures.push(["this rest is".to_string(), verdict.text.clone()]);
     if !indifferent.is_empty() {
         let names = indifferent.join(", ");
         figures.push([
@@ -71,7 +79,39 @@ fn described(rest: &Rest, small: &Result<SmallMotions, String>) -> AnalysisResul
         figures.push([format!("{} at rest", coordinate.name), value]);
     }
     figures.extend(loads(motion));
-    AnalysisResult::of(motion.clone(), figures)
+    AnalysisResult { verdict: Some(verdict), ..AnalysisResult::of(motion.clone(), figures) }
+}
+
+/// Name of a stability on the page.
+fn course(fate: Stability) -> &'static str {
+    match fate {
+        Stability::Fixed => "fixed",
+        Stability::Unstable { .. } => "unstable",
+        Stability::Indifferent(_) => "indifferent",
+        Stability::Marginal => "marginal",
+        Stability::Stable => "stable",
+    }
+}
+
+/// Verdict on an unstable rest: the stable one that it falls to, and the time in which small motions grow.
+fn fall(fate: Stability, settled: Option<&Motion>, held: bool) -> String {
+    /// Coordinates that name a position.
+    const NAMED: usize = 3;
+    let Stability::Unstable { time_constant } = fate else { return stability(fate) };
+    let grows = format!("e-fold {} s", significant(time_constant, 4));
+    let Some(settled) = settled else {
+        let reason = if held { "not looked for, as forces or rows depend on the time" } else { "none found" };
+        return format!("unstable; {grows}; a stable rest: {reason}");
+    };
+    let place = settled.coordinates.iter().take(NAMED).map(|curve| {
+        let value = curve.q.first().copied().unwrap_or_default();
+        match curve.unit {
+            "rad" => format!("{} = {}°", curve.name, significant(value.to_degrees(), 4)),
+            unit => format!("{} = {}{}", curve.name, significant(value, 4), summary::unit(unit)),
+        }
+    });
+    let more = if settled.coordinates.len() > NAMED { ", …" } else { "" };
+    format!("unstable; falls to the stable one at {}{more}; {grows}", place.collect::<Vec<_>>().join(", "))
 }
 
 /// Stability of an equilibrium in one phrase: growth or decay of small motions about it.

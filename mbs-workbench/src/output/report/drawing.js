@@ -1,7 +1,9 @@
 // ---------------------------------------------------------------- the drawing
 
-/** How points in space are seen, where the drawing has a view. */
+/** Directions in which points in space are seen, where the drawing has a view; an orbit turns them. */
 const space = drawing.find(item => item.kind === "view");
+const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 
 /** Outputs of a run, and what it draws beside them. */
 const columns = run => [...(run.outputs || []), ...(run.places || [])];
@@ -24,6 +26,18 @@ function vector(run, name, key = "value") {
     known.set(id, space && all && all.length === 3 ? [along(space.right), along(space.up)] : all);
   }
   return known.get(id);
+}
+
+/** Components of a vector of the loads over time, or null. */
+function loadOf(run, name) {
+  const found = [0, 1, 2].map(i => entriesOf(run, "loads").find(load => load.name === `${name}.${i}`));
+  return found[0] && found[1] ? found.filter(Boolean).map(load => load.value) : null;
+}
+
+/** The largest size of an arrow, but for a few that stand out: those are drawn shorter. */
+function usualSize(values) {
+  const sorted = [...values].sort((a, b) => a - b), high = sorted[Math.floor(.97 * (sorted.length - 1))];
+  return Math.min(sorted[sorted.length - 1] || 0, 1.3 * high || Infinity);
 }
 
 /** A coordinate or a scalar output over time, or null where the run has none of this name. */
@@ -55,14 +69,23 @@ function createStage(root, options) {
   if (missing.length && options === large) byId("caption").textContent = `Not drawn, since no output has this name: ${missing.join(", ")}.`;
   root.setAttribute("aria-label", `Animated drawing: ${data.title}`);
 
-  const speeds = {};
-  for (const key of ["rate", "acceleration"]) {
-    speeds[key] = Math.hypot(...[0, 1].map(i => largest(runs.flatMap(run => traces.map(trace => (vector(run, trace.of, key) || [])[i])))));
+  const sizes = columns => columns[0].map((_, k) => Math.hypot(...columns.map(c => c[k]))).filter(finite);
+  const arrows = {
+    rate: run => traces.map(trace => vector(run, trace.of, "rate")), acceleration: run => traces.map(trace => vector(run, trace.of, "acceleration")),
+    force: run => (data.forces || []).map(({ of }) => loadOf(run, of)),
+  };
+  const measures = new Map();
+  /** The size that is drawn as a long arrow, of a run by itself or of all that are compared. */
+  function measure(key, run) {
+    const id = `${key} ${state.overlay ? "" : runs.indexOf(run)}`;
+    if (!measures.has(id)) measures.set(id, usualSize((state.overlay ? runs : [run]).flatMap(run => arrows[key](run).filter(Boolean).flatMap(sizes))));
+    return measures.get(id);
   }
+  const LEGIBLE = 26; // pixels of a usual bar
   const LONG = 6; // times as wide as high: over the whole page
-  const RING = 3.4; // modules from the pitch circle of a ring gear to its outer edge
   const view = {}; // width, height, scale and the maps X, Y from metres to pixels
-  let figures = [];
+  const camera = { zoom: options === large ? 0 : 1, first: 1, dx: 0, dy: 0 }; // times the scale that shows all, and pixels from its middle
+  let figures = [], held = null; // scale and middle, which an orbit leaves as they are
 
   /** Distance (m) of two points at the first instant. */
   function distanceAtStart(run, a, b) {
@@ -100,24 +123,56 @@ function createStage(root, options) {
     const reach = [0, 1].map(i => extent(drawn.flatMap(run => [...[...known].map(name => vector(run, name)[i]), covered(i)(run)])));
     const [dx, dy] = reach.map(([low, high]) => high - low);
     const size = Math.max(dx, dy) || 1;
-    const long = LONG * dy < dx;
+    // An orbit leaves the layout of the page as it is, however thin the picture becomes.
+    const long = space && space.turned ? view.long : LONG * dy < dx;
+    view.long = long;
     if (options === large) document.querySelector(".viewer").classList.toggle("long", long);
     view.width = Math.max(root.parentNode.clientWidth - 2, 200);
-    const small = { left: 20, right: 20, top: 18, bottom: 24 };
+    const small = { left: 26, right: 26, top: 32, bottom: 30 };
     const pad = !options.axes ? small : view.width < 500 ? { left: 58, right: 34, top: 40, bottom: 60 } : { left: 78, right: 46, top: 46, bottom: 70 };
     const wide = view.width - pad.left - pad.right;
-    view.height = Math.round(clamp(dy / (dx || size) * wide + pad.top + pad.bottom, long ? 0 : options.least(view.width), options.axes ? 580 : 260));
-    const high = view.height - pad.top - pad.bottom;
-    view.scale = Math.min(wide / (dx || size), high / (dy || size));
-    const [cx, cy] = reach.map(([low, high]) => (low + high) / 2);
-    view.X = x => pad.left + wide / 2 + (x - cx) * view.scale;
-    view.Y = y => pad.top + high / 2 - (y - cy) * view.scale;
+    view.height = Math.round(clamp(dy / (dx || size) * wide + pad.top + pad.bottom, long ? 0 : options.least(view.width), options.axes ? 580 : 420));
+    view.scale = Math.min(wide / (dx || size), (view.height - pad.top - pad.bottom) / (dy || size));
     // No thicker than a quarter of what bars are long in the middle.
-    const lengths = items.filter(item => item.points && item.points.length > 1).map(item => distanceAtStart(drawn[0], ...item.points) * view.scale);
-    const middle = lengths.sort((a, b) => a - b)[lengths.length >> 1] || Infinity;
-    view.bar = clamp(Math.min(view.width, view.height) * .03, Math.min(options.axes ? 9 : 6, Math.max(middle / 4, 3)), 15);
+    const lengths = items.filter(item => item.points && item.points.length > 1).map(item => distanceAtStart(drawn[0], ...item.points));
+    const usual = lengths.sort((a, b) => a - b)[lengths.length >> 1] || Infinity;
+    if (options === large && camera.zoom === 0) { // first a part of what would be too small to see, where its path is
+      camera.zoom = clamp(LEGIBLE / (usual * view.scale), 1, 4);
+      if (camera.zoom < 1.6) camera.zoom = 1;
+      camera.first = camera.zoom;
+      camera.dx = -(camera.zoom - 1) * wide / 2;
+    }
+    if (options === large && camera.first > 1) view.height = Math.max(view.height, Math.round(dy * view.scale * camera.first + pad.top + pad.bottom));
+    let [cx, cy] = reach.map(([low, high]) => (low + high) / 2);
+    if (space && options === large) {
+      const middle = middleInSpace(drawn), seenAt = [dot(space.right, middle), dot(space.up, middle)];
+      if (!space.turned || !held) held = { width: view.width, height: view.height, scale: view.scale, from: [cx - seenAt[0], cy - seenAt[1]] };
+      [view.scale, view.height] = [held.scale, held.height];
+      [cx, cy] = [seenAt[0] + held.from[0], seenAt[1] + held.from[1]];
+    }
+    view.scale *= camera.zoom;
+    const middle = [pad.left + wide / 2, pad.top + (view.height - pad.top - pad.bottom) / 2];
+    view.middle = middle;
+    view.X = x => middle[0] + camera.dx + (x - cx) * view.scale;
+    view.Y = y => middle[1] + camera.dy - (y - cy) * view.scale;
+    view.bar = clamp(Math.min(view.width, view.height) * .03, Math.min(options.axes ? 9 : 6, Math.max(usual * view.scale / 4, 2)), 15);
+    view.thin = clamp(view.bar / 8, .3, 1); // of lines, where all is small
+    root.style.setProperty("--thin", view.thin);
     view.arrow = Math.min(view.width, view.height) * .22;
     for (const [key, value] of Object.entries({ width: view.width, height: view.height, viewBox: `0 0 ${view.width} ${view.height}` })) root.setAttribute(key, value);
+  }
+
+  /** Middle of all points in space over all instants. */
+  function middleInSpace(drawn) {
+    const all = drawn.flatMap(run => [...known].map(name => components(run, name)).filter(c => c && c.length === 3));
+    return [0, 1, 2].map(i => { const [low, high] = extent(all.map(c => c[i])); return (low + high) / 2; });
+  }
+
+  /** The axes of space in a corner. */
+  function triad() {
+    const [x, y] = [view.width - 44, 44], axes = ["x", "y", "z"].map((name, i) => [name, 26 * space.right[i], -26 * space.up[i]]);
+    return svg("g", { class: "triad" }, ...axes.flatMap(([name, u, v]) => [svg("path", { d: `M${x} ${y}l${u.toFixed(1)} ${v.toFixed(1)}` }),
+      svg("text", { x: x + u * 1.35, y: y + v * 1.35 + 4, "text-anchor": "middle" }, name)]));
   }
 
   function grid() {
@@ -144,297 +199,53 @@ function createStage(root, options) {
     return group;
   }
 
-  /** Hatching below the line from x0 to x1 at height y. */
-  function hatching(x0, x1, y) {
-    const n = Math.max(3, Math.round((x1 - x0) / 7)), step = (x1 - x0) / n;
-    let d = `M${x0} ${y}H${x1}`;
-    for (let i = 0; i < n; i++) d += `M${x0 + (i + 1) * step} ${y}l-6 7`;
-    return svg("path", { class: "hatch", d });
-  }
-
-  /** Direction of a guide in pixels as an angle in degrees, turned so that its hatching is below or at the right. */
-  function inclination(item) {
-    const [x, y] = item.along && Math.hypot(...item.along) > 0 ? item.along : [1, 0];
-    let angle = Math.atan2(-y, x) * 180 / Math.PI;
-    if (angle > 90) angle -= 180;
-    if (angle <= -90) angle += 180;
-    return angle === 90 ? -90 : angle;
-  }
-
-  const blockSize = () => [view.bar * 2.9, view.bar * 1.8];
-  const slotWidth = () => view.bar * 1.15;
-  const degrees = (a, b) => Math.atan2(b[1] - a[1], b[0] - a[0]) * 180 / Math.PI; // in pixels
-
-  /** A function of the sample that gives the direction of a slide in pixels (degrees). */
-  function directionOf(item, f) {
-    if (typeof item.along !== "string") { const angle = inclination(item); return () => angle; }
-    const pair = vector(f.run, item.along), angle = scalar(f.run, item.along);
-    return k => -(pair ? Math.atan2(pair[1][k], pair[0][k]) : angle ? angle[k] : 0) * 180 / Math.PI;
-  }
-
-  // One builder a kind: adds nodes to the layers of a figure and returns what moves them to sample k.
-  const builders = {
-    ground(item, f) {
-      const b = view.bar * 1.25, node = svg("g", {}, svg("path", { class: "support", d: `M0 0L${b} ${b * 1.7}H${-b}Z` }), hatching(-b * 1.5, b * 1.5, b * 1.7));
-      f.under.append(node);
-      const pin = builders.joint(item, f);
-      return k => {
-        const [x, y] = f.at(item.at, k);
-        node.setAttribute("transform", `translate(${x} ${y})`);
-        f.obstacles.push([[x, y], [x, y + 2 * b]]);
-        pin(k);
-      };
-    },
-    joint(item, f) {
-      const node = svg("circle", { class: "pin", r: view.bar * .36 });
-      f.pins.append(node);
-      return k => node.setAttribute("transform", `translate(${f.at(item.at, k)})`);
-    },
-    rail(item, f) {
-      const angle = directionOf(item, f)(0), [cos, sin] = [Math.cos(angle * Math.PI / 180), Math.sin(angle * Math.PI / 180)];
-      const [xs, ys] = vector(f.run, item.at);
-      const way = xs.map((x, k) => (view.X(x) - view.X(xs[0])) * cos + (view.Y(ys[k]) - view.Y(ys[0])) * sin);
-      const [low, high] = extent([way]), [w, h] = blockSize();
-      const node = svg("g", { transform: `translate(${f.at(item.at, 0)}) rotate(${angle})` }, hatching(low - w, high + w, h / 2));
-      f.under.append(node);
-      return () => {};
-    },
-    slider(item, f) {
-      // On a rail of its own below everything; on a bar or in a slot where it stands in the list.
-      const rail = onRail(item), slotted = !rail && items.some(other => other.kind === "slot");
-      const [w, h] = slotted ? [view.bar * 2, slotWidth() - 2] : blockSize();
-      const node = svg("rect", { class: "block", x: -w / 2, y: -h / 2, width: w, height: h, rx: 2 });
-      (rail ? f.under : f.bodies).append(node);
-      const pin = builders.joint(item, f), direction = directionOf(item, f);
-      return k => {
-        const [x, y] = f.at(item.at, k), angle = direction(k);
-        const [cos, sin] = [Math.cos(angle * Math.PI / 180) / 2, Math.sin(angle * Math.PI / 180) / 2];
-        node.setAttribute("transform", `translate(${x} ${y}) rotate(${angle})`);
-        for (const side of [h, 0, -h]) {
-          const [cx, cy] = [x - side * sin, y + side * cos];
-          f.obstacles.push([[cx - w * cos, cy - w * sin], [cx + w * cos, cy + w * sin]]);
-        }
-        pin(k);
-      };
-    },
-    wheel(item, f) {
-      const radius = distanceAtStart(f.run, item.at, item.rim) * view.scale;
-      const mark = svg("path", { class: "mark", d: `M${radius * .45} 0H${radius * .85}` });
-      return round(item, f, radius, [svg("circle", { class: "disc", r: radius, style: `fill: ${colourOf(item)}` }), mark]);
-    },
-    gear(item, f) {
-      const radius = distanceAtStart(f.run, item.at, item.rim) * view.scale, m = moduleOf(f.run, item) * view.scale;
-      const outline = teeth(radius, item.teeth, m, item.inside);
-      const rim = item.inside ? circlePath(radius + RING * m) : circlePath(Math.max(radius * .12, 3));
-      const parts = [svg("path", { class: "disc", "fill-rule": "evenodd", d: outline + rim, style: `fill: ${colourOf(item)}` })];
-      if (!item.inside) parts.push(svg("circle", { class: "mark", cx: radius - 2.6 * m, r: Math.max(m * .5, 2) }));
-      return round(item, f, item.inside ? radius + 2.3 * m : radius, parts);
-    },
-    cam(item, f) {
-      const points = profile(f.run, item).map(([x, y]) => [x * view.scale, -y * view.scale]), turn = scalar(f.run, item.turn);
-      const node = svg("polygon", { class: "disc", points: points.map(p => p.map(c => c.toFixed(2))).join(" "), style: `fill: ${colourOf(item)}` });
-      const reach = largest([points.map(p => Math.hypot(...p))]);
-      return round(item, f, reach, [node, svg("path", { class: "mark", d: `M0 ${-reach * .12}V${-reach * .36}` })], k => turn ? -turn[k] * 180 / Math.PI : 0);
-    },
-    face(item, f) {
-      const node = svg("g"), colour = colourOf(item), thick = view.bar;
-      const parts = [["bar-edge", view.bar], ["bar", view.bar - 3]].map(([name, width]) =>
-        svg("line", { class: name, "stroke-width": width, style: name === "bar" ? `stroke: ${colour}` : "" }));
-      const plate = svg("polygon", { class: "disc", style: `fill: ${colour}` });
-      node.append(...parts, plate);
-      f.bodies.append(node);
-      if (item.label && !f.ghost) label(f, item.label, "label", besideBody(f, item));
-      return k => {
-        const [a, b] = item.points.map(name => f.at(name, k)), back = f.at(item.back, k);
-        const length = Math.hypot(b[0] - a[0], b[1] - a[1]) || 1, [ux, uy] = [(b[0] - a[0]) / length, (b[1] - a[1]) / length];
-        const along = (back[0] - a[0]) * ux + (back[1] - a[1]) * uy, foot = [a[0] + along * ux, a[1] + along * uy];
-        const away = Math.hypot(back[0] - foot[0], back[1] - foot[1]) || 1;
-        const [nx, ny] = [(back[0] - foot[0]) / away * thick, (back[1] - foot[1]) / away * thick];
-        plate.setAttribute("points", [a, b, [b[0] + nx, b[1] + ny], [a[0] + nx, a[1] + ny]].join(" "));
-        for (const part of parts) {
-          for (const [key, value] of [["x1", foot[0] + nx / 2], ["y1", foot[1] + ny / 2], ["x2", back[0]], ["y2", back[1]]]) part.setAttribute(key, value);
-        }
-        f.obstacles.push([a, b], [foot, back]);
-      };
-    },
-    geneva(item, f) {
-      const [d, r1, r2] = [[item.at, item.wheel], [item.at, item.pin], [item.wheel, item.rim]].map(pair => distanceAtStart(f.run, ...pair) * view.scale);
-      const step = 180 / item.slots, pin = r1 * .08, lock = r1 * .76;
-      const wheel = svg("g", {}, svg("path", { class: "disc", d: maltese(d, r1, r2, item.slots, pin, lock), style: "fill: var(--b1)" }));
-      const driver = svg("g", {}, svg("path", { class: "disc", d: lockingDisc(d, r2, lock), style: "fill: var(--b0)" }),
-        ...[["bar-edge", 0], ["bar", 3]].map(([name, less]) => svg("path", { class: name, d: `M0 0H${r1}`, "stroke-width": view.bar - less, style: less ? "stroke: var(--b0)" : "" })),
-        svg("circle", { class: "disc", cx: r1, r: pin, style: "fill: var(--b3)" }));
-      f.bodies.append(wheel, driver);
-      return k => {
-        const [o, a, c, r] = [item.at, item.pin, item.wheel, item.rim].map(name => f.at(name, k));
-        wheel.setAttribute("transform", `translate(${c}) rotate(${degrees(c, r) - step})`);
-        driver.setAttribute("transform", `translate(${o}) rotate(${degrees(o, a)})`);
-        f.obstacles.push([o, a]);
-      };
-    },
-    slot(item, f) {
-      const inside = slotWidth();
-      return body(item, f, "polyline", inside + view.bar, [svg("polyline", { class: "bar-edge", "stroke-width": inside }), svg("polyline", { class: "gap", "stroke-width": inside - 2.5 })]);
-    },
-    spring(item, f) {
-      const node = svg("polyline", { class: "coil" });
-      f.bodies.append(node);
-      if (item.label && !f.ghost) label(f, item.label, "label", besideBody(f, item));
-      return k => {
-        const [a, b] = item.points.map(name => f.at(name, k)), [dx, dy] = [b[0] - a[0], b[1] - a[1]];
-        const length = Math.hypot(dx, dy) || 1, [nx, ny] = [-dy / length * view.bar * .6, dx / length * view.bar * .6];
-        // A straight end, eight half coils, a straight end.
-        const coils = [...Array(9).keys()].map(i => [.15 + .7 * i / 8, i % 8 ? (i % 2 ? 1 : -1) : 0]);
-        const points = [[0, 0], ...coils, [1, 0]].map(([s, side]) => [a[0] + s * dx + side * nx, a[1] + s * dy + side * ny]);
-        node.setAttribute("points", points.map(p => p.map(c => c.toFixed(2))).join(" "));
-        f.obstacles.push([a, b]);
-      };
-    },
-    link: (item, f) => body(item, f, "polyline"),
-    plate: (item, f) => body(item, f, "polygon"),
-    road(item, f) {
-      const soil = svg("path", { class: "soil" }), line = svg("path", { class: "road" });
-      f.under.append(soil, line);
-      if (item.label && !f.ghost) label(f, item.label, "label", k => { const [x, y] = f.at(item.at, k); return [[x + 8 * view.bar, y + 2 * view.bar]]; });
-      const [xs, ys] = vector(f.run, item.at), time = f.run.time, last = time.length - 1;
-      return k => {
-        // What is met later lies ahead.
-        const along = j => view.X(xs[k] + (time[j] - time[k]) * item.speed), from = options.axes ? 40 : 0, to = view.width;
-        const met = [...time.keys()].filter(j => from < along(j) && along(j) < to).map(j => [along(j), view.Y(ys[j])]);
-        const points = [[Math.min(from, met.length ? met[0][0] : from), view.Y(ys[met.length && along(0) < from ? sampleAt(time, time[k] + (from - view.X(xs[k])) / view.scale / item.speed) : 0])], ...met,
-          [to, view.Y(ys[along(last) < to ? last : sampleAt(time, time[k] + (to - view.X(xs[k])) / view.scale / item.speed)])]];
-        const d = `M${points.map(p => p.map(c => c.toFixed(1))).join("L")}`;
-        line.setAttribute("d", d);
-        soil.setAttribute("d", `${d}V${view.Y(0) + 2.2 * view.bar}H${from}Z`);
-      };
-    },
-    trace(item, f) {
-      const [xs, ys] = vector(f.run, item.of);
-      const style = `stroke: var(--trace${traces.indexOf(item) % 2})`;
-      let all = ""; // a prefix of this text is the part travelled
-      const ends = xs.map((x, k) => {
-        if (finite(x) && finite(ys[k])) all += `${view.X(x).toFixed(1)},${view.Y(ys[k]).toFixed(1)} `;
-        return all.length;
-      });
-      const travelled = svg("polyline", { class: "trace travelled", style });
-      f.traces.append(svg("polyline", { class: "trace", style, points: all }), travelled);
-      const dot = svg("circle", { r: view.bar * .36, style: `fill: var(--trace${traces.indexOf(item) % 2}); stroke: var(--halo)` });
-      f.pins.append(dot);
-      const arrows = ["rate", "acceleration"].map(key => arrow(item, f, key));
-      return k => {
-        travelled.setAttribute("points", all.slice(0, ends[k]));
-        dot.setAttribute("transform", `translate(${f.at(item.of, k)})`);
-        for (const update of arrows) update(k);
-      };
-    },
-  };
-
-  function body(item, f, tag, width = view.bar, inner = []) {
-    const colour = colourOf(item), solid = tag === "polygon";
-    const edge = svg(tag, { class: "bar-edge", "stroke-width": width });
-    const bar = svg(tag, { class: "bar", "stroke-width": width - 3, style: `stroke: ${colour}` });
-    const parts = [edge, bar, ...inner];
-    if (solid) parts.unshift(svg(tag, { style: `fill: ${colour}; fill-opacity: .4; stroke: none` }));
-    f.bodies.append(...parts);
-    if (item.label && !f.ghost) label(f, item.label, "label", besideBody(f, item));
-    return k => {
-      const points = item.points.map(name => f.at(name, k));
-      for (const part of parts) part.setAttribute("points", points.join(" "));
-      points.forEach((point, i) => { if (i || solid) f.obstacles.push([points.at(i - 1), point]); });
-    };
-  }
-
-  /** A body about `item.at` of a radius in pixels, turned by `angle(k)` in degrees or towards its rim. */
-  function round(item, f, radius, parts, angle = k => degrees(f.at(item.at, k), f.at(item.rim, k))) {
-    const node = svg("g", {}, ...parts);
-    f.bodies.append(node);
-    if (item.label && !f.ghost) label(f, item.label, "label", aroundDisc(f, item, radius));
-    return k => node.setAttribute("transform", `translate(${f.at(item.at, k)}) rotate(${angle(k)})`);
-  }
-
-  /**
-   * A label that keeps clear of bars, arrows and other labels: `places(k, width)` lists where its centre
-   * may be, each with a penalty in pixels.
-   * It moves to another place only where that is clearly better, so that it does not flicker.
-   */
-  function label(f, text, className, places) {
-    const node = svg("text", { class: className, "text-anchor": "middle" }, text), width = 7 * text.length;
-    let pick = 0;
-    f.text.append(node);
-    f.labels.push(k => {
-      const candidates = places(k, width);
-      const room = ([x, y, penalty = 0]) => -penalty + Math.min(view.bar / 2 + 8, ...f.obstacles.flatMap(([a, b]) => [-.5, -.25, 0, .25, .5].map(s => distance([x + s * (width - 6), y], a, b))));
-      const rooms = candidates.map(room), best = rooms.indexOf(Math.max(...rooms));
-      if (rooms[best] > rooms[pick] + 4) pick = best;
-      const [x, y] = candidates[pick];
-      node.setAttribute("x", x.toFixed(1));
-      node.setAttribute("y", (y + 4).toFixed(1));
-      f.obstacles.push([[x - width / 2, y], [x + width / 2, y]]);
-    });
-  }
-
-  const aroundPoint = (f, name) => (k, width) => {
-    const [x, y] = f.at(name, k), away = view.bar / 2 + 12;
-    return [5, 7, 4, 6, 0, 2, 3, 1].map(i => [Math.cos(i * Math.PI / 4), Math.sin(i * Math.PI / 4)])
-      .flatMap(([dx, dy]) => [[away, 0], [1.8 * away, 5]].map(([r, penalty]) => [x + dx * (r + width / 2 - 5), y + dy * r, penalty]));
-  };
-
-  /** In the middle of a plate, at either side of a bar about its middle. */
-  const besideBody = (f, item) => (k, width) => {
-    const points = item.points.map(name => f.at(name, k)), [a, b] = [points[0], points[points.length - 1]];
-    const [x, y] = [0, 1].map(i => points.reduce((sum, p) => sum + p[i], 0) / points.length);
-    if (item.kind === "plate") return [[x, y]];
-    const length = Math.hypot(b[0] - a[0], b[1] - a[1]) || 1, [nx, ny] = [(a[1] - b[1]) / length, (b[0] - a[0]) / length];
-    return [0, -.22, .22].flatMap(s => [1, -1].map(side => [s, side * (view.bar / 2 + 10 + Math.abs(nx) * (width / 2 - 3))]))
-      .map(([s, r]) => [x + s * (b[0] - a[0]) + nx * r, y + s * (b[1] - a[1]) + ny * r]);
-  };
-
-  /** Inside a disc where it is large, else around it. */
-  const aroundDisc = (f, item, radius) => (k, width) => {
-    const [x, y] = f.at(item.at, k), inside = radius > width / 2 + 14, place = radius * (item.inside ? 1 : .62); // on a ring's rim
-    return [2, 6, 1, 3, 5, 7, 0, 4].map(i => [Math.cos(i * Math.PI / 4), Math.sin(i * Math.PI / 4)])
-      .map(([dx, dy]) => inside ? [x + dx * place, y + dy * place] : [x + dx * (radius + width / 2 + 6), y + dy * (radius + 12)]);
-  };
-
-  function arrow(item, f, key) {
-    const values = vector(f.run, item.of, key), name = key === "rate" ? "velocity" : key;
-    const node = svg("path", { class: "arrow", style: `stroke: var(--${name})` });
-    f.arrows.append(node);
-    return k => {
-      const [u, v] = values && options.shows(name) && speeds[key] > 0 ? values.map(c => c[k] / speeds[key] * view.arrow) : [0, 0];
-      const length = Math.hypot(u, v);
-      if (!(length > 1.5)) return node.setAttribute("d", "");
-      const [x, y] = f.at(item.of, k), [tx, ty] = [x + u, y - v], head = Math.min(9, length * .6) / length;
-      const wing = side => `${tx - head * (u + side * v * .5)} ${ty + head * (v - side * u * .5)}`;
-      f.obstacles.push([[x, y], [tx, ty]]);
-      node.setAttribute("d", `M${x} ${y}L${tx} ${ty}M${wing(1)}L${tx} ${ty}L${wing(-1)}`);
-    };
-  }
-
   function figure(run, ghost) {
     const f = { run, ghost, labels: [], obstacles: [], node: svg("g", ghost ? { class: "ghost" } : {}) };
     for (const layer of ["under", "traces", "bodies", "pins", "arrows", "text"]) f.node.append(f[layer] = svg("g"));
-    const values = new Map([...known].map(name => [name, vector(run, name)]));
+    const values = new Map([...known].map(name => [name, vector(run, name)])), parts = [];
+    for (const { at } of data.forces || []) if (!values.has(at)) values.set(at, vector(run, at));
     f.at = (name, k) => { const [x, y] = values.get(name); return [+view.X(x[k]).toFixed(2), +view.Y(y[k]).toFixed(2)]; };
-    const updates = items.filter(item => builders[item.kind]).map(item => builders[item.kind](item, f));
-    if (!ghost) for (const name of [...known].filter(name => !name.includes("_"))) label(f, name, "name", aroundPoint(f, name));
+    const layer = f.bodies;
+    const updates = items.filter(item => builders[item.kind]).map(item => {
+      f.bodies = svg("g");
+      layer.append(f.bodies);
+      parts.push([item, f.bodies]);
+      return builders[item.kind](item, f);
+    });
+    updates.push(...(data.forces || []).filter(({ at }) => values.get(at)).map(item => force(item, f)));
+    if (!ghost) for (const name of [...known].filter(name => !name.includes("_"))) if (options.axes || known.size < MANY) label(f, name, "name", aroundPoint(f, name));
     else if (known.size) label(f, run.label, "label", aroundPoint(f, traces.length ? traces[0].of : names[0]));
     f.labels.reverse(); // names of points settle before those of bodies
     f.update = () => {
       const k = options.at(run);
       f.obstacles = [];
       for (const update of updates) update(k);
-      f.text.style.display = options.shows("labels") ? "" : "none";
+      if (space) sortByDepth(layer, parts, run, k);
+      f.text.toggleAttribute("hidden", !options.shows("labels"));
       if (options.shows("labels")) for (const settle of f.labels) settle(k);
     };
     return f;
   }
 
+  /** Nearer bodies over farther ones. */
+  function sortByDepth(layer, parts, run, k) {
+    const towards = cross(space.right, space.up);
+    const depth = item => {
+      const all = pointsOf(item).map(name => components(run, name)).filter(c => c && c.length === 3);
+      return all.reduce((sum, c) => sum + dot(towards, c.map(values => values[k])), 0) / (all.length || 1);
+    };
+    const order = parts.map(([item, node]) => [depth(item), node]).sort((a, b) => a[0] - b[0]).map(([, node]) => node);
+    if (order.some((node, i) => layer.children[i] !== node)) layer.append(...order);
+  }
+
+  const { builders, label, aroundPoint, force } = createBuilders({ view, items, options, measure, distanceAtStart, profile, moduleOf, colourOf, onRail });
+
   return {
+    view, camera,
     layout() {
       fit();
       figures = options.runs().map((run, order) => figure(run, order > 0));
-      root.replaceChildren(...(options.axes ? [grid()] : []), ...figures.map(f => f.node).reverse());
+      root.replaceChildren(...(options.axes ? [grid()] : []), ...figures.map(f => f.node).reverse(), ...(options.axes && space ? [triad()] : []));
     },
     frame() { for (const f of figures) f.update(); },
   };

@@ -34,11 +34,14 @@ const largest = arrays => { const [low, high] = extent(arrays); return Math.max(
 const superscript = n => String(n).replace(/./g, c => c === "-" ? "⁻" : "⁰¹²³⁴⁵⁶⁷⁸⁹"[c]);
 const minus = text => text.replace("-", "−");
 
+/** Part of the largest value of its kind below which a value is what rounding leaves of 0. */
+const NOISE = 1e-12;
+
 /** A formatter with as many decimals as a quantity up to `max` needs: digits do not dance while it changes. */
 function formatter(max, digits = 5) {
   if (max > 0 && (max < 1e-3 || max >= 1e6)) return x => {
     if (!finite(x)) return "–";
-    if (x === 0) return "0";
+    if (Math.abs(x) < NOISE * max) return "0";
     const [mantissa, exponent] = x.toExponential(digits - 2).split("e");
     return `${minus(mantissa)}×10${superscript(Number(exponent))}`;
   };
@@ -72,63 +75,40 @@ function linearTicks(low, high, step) {
   return { ticks, factor: exponent ? `10${superscript(exponent)} ` : "" };
 }
 
+/** A unit in one spelling, as `m/s²` and `N·m`. */
+const unitText = unit => (unit || "1").replace(/\((\w+\/\w+)\)\/s/, "$1/s").replace(/\*/g, "·").replace(/\^(-?\d+)/g, (_, n) => n.replace(/./g, c => "⁰¹²³⁴⁵⁶⁷⁸⁹"[c] || "⁻"))
+  .replace(/\/s\/s$/, "/s²").replace(/\/s²\/s$/, "/s³");
+
+/** Units of a sentence in that spelling; what is no unit stays. */
+const unitsIn = text => text.replace(/(^|[\d∞. ])((?:kg|m|s|A|K|mol|cd|rad|N|J|W|Pa|Hz|V|C|F|H|T)(?:[*\/^](?:\d|-\d|kg|mol|rad|Pa|Hz|[msAKNJWVCFHT]))+)(?![\w(])/g,
+  (_, before, unit) => before + unitText(unit));
+
 /** The unit of the first or second derivative. */
 function derived(unit, order) {
-  if (order === 0) return unit || "1";
-  const [, base, power] = /^(.*?)(?:\/s([²³]?))?$/.exec(unit || "1");
-  const before = unit && unit.includes("/s") ? { "": 1, "²": 2, "³": 3 }[power || ""] : 0;
-  return `${base}/s${["", "", "²", "³", "⁴", "⁵"][before + order]}`;
+  const base = unitText(unit);
+  if (order === 0) return base;
+  const [, rest, power] = /^(.*?)(?:\/s([²³]?))?$/.exec(base);
+  const before = base.includes("/s") ? { "": 1, "²": 2, "³": 3 }[power || ""] : 0;
+  return `${rest}/s${["", "", "²", "³", "⁴", "⁵"][before + order]}`;
 }
 
-// ---------------------------------------------------------------- data and state
-
-const data = JSON.parse(byId("data").textContent);
-const runs = (data.runs || []).filter(run => run.time && run.time.length);
-const drawing = data.drawing || [];
-const state = { t: 0, primary: 0, overlay: false, playing: false, speed: 1, velocity: true, acceleration: true, labels: true };
-const views = []; // each { layout(), frame() }: the former after a change of size or choice, the latter after one of time
-
-if (!runs.length) {
-  byId("problem").textContent = "The data hold no run: nothing to draw.";
-  byId("problem").hidden = false;
-}
-const [start, end] = extent(runs.map(run => run.time));
-const formatTime = formatter(Math.max(Math.abs(start), Math.abs(end)), 4);
-const traces = drawing.filter(item => item.kind === "trace");
-
-/** Runs on show, the primary one first. */
-const shown = () => state.overlay ? [runs[state.primary], ...runs.filter((_, i) => i !== state.primary)] : [runs[state.primary]];
-const dash = order => ["none", "6 3", "2 3", "9 3 2 3"][order % 4];
-
-/** Index of the instant nearest to `t`: every number on show is one of the solver's, none is interpolated. */
-function sampleAt(time, t) {
-  let low = 0, high = time.length - 1;
-  while (high - low > 1) {
-    const middle = (low + high) >> 1;
-    if (time[middle] <= t) low = middle; else high = middle;
-  }
-  return t - time[low] <= time[high] - t ? low : high;
-}
-
-const sample = (run, t = state.t) => sampleAt(run.time, t);
+/** `true` of angles and their rates. */
+const isAngle = unit => /^rad(\/s[²³]?)?$/.test(unitText(unit));
 
 /** Beyond so many lines a list shows only its first ones, and the others where asked. */
 const MANY = 24, FIRST = 8;
 
-/** Hides all but the first of many `nodes` behind a button that `place` puts somewhere. */
-function fold(nodes, noun, place) {
+/** Hides all but the first of many `nodes` behind a button that `place` puts somewhere; `shown` is told whether all are there. */
+function fold(nodes, noun, place, shown = () => {}) {
   if (nodes.length <= MANY) return;
   const button = el("button", { type: "button", className: "more" });
   const show = open => {
     nodes.slice(FIRST).forEach(node => { node.hidden = !open; });
     button.textContent = open ? `only the first ${FIRST} ${noun}` : `all ${nodes.length} ${noun}`;
     button.setAttribute("aria-expanded", String(open));
+    shown(open);
   };
   button.addEventListener("click", () => show(button.getAttribute("aria-expanded") !== "true"));
   show(false);
   place(button);
 }
-
-const layout = () => { if (runs.length) for (const view of views) view.layout(); frame(); };
-const frame = () => { if (runs.length) for (const view of views) view.frame(); };
-const setTime = t => { state.t = clamp(t, start, end); frame(); };

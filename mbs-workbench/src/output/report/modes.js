@@ -36,20 +36,23 @@ function plane(small, width) {
   return root;
 }
 
-/** Every eigenvalue with what it means, a pair in one line. */
+/** Every eigenvalue with what it means, a pair in one line; columns that no eigenvalue fills are left out. */
 function eigenvalues(small) {
-  const head = ["eigenvalues", "λ [1/s]", "frequency", "damping ratio", "e-fold time", "course"];
-  const body = el("tbody");
-  for (const mode of small.modes) {
-    const { course } = mode, [real, imaginary] = valueOf(mode, mode.eigenvalue);
+  const lines = small.modes.map(mode => {
+    const { course } = mode, [real, imaginary] = valueOf(mode, mode.eigenvalue), swings = imaginary > 0;
     const still = course === "marginal" || course === "indifferent", part = still ? "0" : significant(real);
-    const value = imaginary > 0 ? `${part} ± ${significant(imaginary)} i` : part;
-    const cells = [value, imaginary > 0 ? `${significant(imaginary / 2 / Math.PI)} Hz` : "–",
-      imaginary > 0 && !still ? significant(-real / Math.hypot(real, imaginary), 4) : "–", still ? "–" : `${significant(1 / Math.abs(real), 4)} s`];
-    const dot = svg("svg", { width: 12, height: 12, "aria-hidden": "true" }, svg("circle", { cx: 6, cy: 7, r: 4.5, style: `fill: ${COURSES[course]}` }));
-    body.append(el("tr", {}, el("th", { scope: "row", textContent: numbersOf(mode) }), ...cells.map(textContent => el("td", { textContent })),
-      el("td", {}, dot, small.frozen ? " at this moment" : ` ${course}`)));
-  }
+    return { mode, cells: [swings ? `${part} ± ${significant(imaginary)} i` : part, swings ? `${significant(imaginary / 2 / Math.PI)} Hz` : "",
+      swings && !still ? significant(-real / Math.hypot(real, imaginary), 4) : "", still ? "" : `${significant(1 / Math.abs(real), 4)} s`] };
+  });
+  const titles = ["λ [1/s]", "frequency", "damping ratio", "e-fold time"], filled = titles.map((_, i) => i === 0 || lines.some(({ cells }) => cells[i]));
+  const head = ["mode", ...(small.modes.some((mode, i) => mode.of.length !== 1 || mode.of[0] !== i) ? ["eigenvalues"] : []), ...titles.filter((_, i) => filled[i]), "course"];
+  const body = el("tbody");
+  lines.forEach(({ mode, cells }, number) => {
+    const dot = svg("svg", { width: 12, height: 12, "aria-hidden": "true" }, svg("circle", { cx: 6, cy: 7, r: 4.5, style: `fill: ${COURSES[mode.course]}` }));
+    body.append(el("tr", {}, el("th", { scope: "row", textContent: number + 1 }), ...(head[1] === "eigenvalues" ? [el("td", { className: "numbers", textContent: numbersOf(mode) })] : []),
+      ...cells.filter((_, i) => filled[i]).map(textContent => el("td", { textContent: textContent || "–" })),
+      el("td", {}, dot, small.frozen ? " at this moment" : ` ${mode.course}`)));
+  });
   return el("div", { className: "scroll" }, el("table", { className: "forces" },
     el("thead", {}, el("tr", {}, ...head.map(text => el("th", { scope: "col", textContent: text })))), body));
 }
@@ -79,6 +82,8 @@ function amplitude(run, mode) {
   return most > 1e-9 * size ? PART * size / most : 0;
 }
 
+let swinging = null; // timer of all modes
+
 /** A picture of a mode: one pose, the opposite one and the pose at rest pale; under a pointer it goes through its cycle. */
 function modePicture(run, mode, number) {
   const root = svg("svg", { class: "stage", role: "img", "aria-label": `Mode ${number}` }), share = amplitude(run, mode);
@@ -89,33 +94,45 @@ function modePicture(run, mode, number) {
   const pace = imaginary > 0 ? `${significant(imaginary / 2 / Math.PI, 4)} Hz` : mode.course === "indifferent" ? "no force answers" : `${real < 0 ? "decays" : "grows"} by e in ${significant(1 / Math.abs(real), 4)} s`;
   const caption = el("figcaption", {}, el("b", { textContent: `Mode ${number}` }), ` ${pace}, ${mode.course}${share ? "" : ": nothing of the drawing moves"}`);
   const picture = el("figure", { className: "mode" }, root, caption);
-  const stage = createStage(root, { runs: () => poses, at: pose => pose.k, shows: () => false, least: () => 130, axes: false });
+  const stage = createStage(root, { runs: () => poses, at: pose => pose.k, shows: what => what === "trace", least: width => Math.min(260, width * .7), axes: false });
+  /** One phase on, or back to the first. */
+  const swing = on => { there.k = on ? (there.k + 1) % PHASES : 0; if (!picture.hidden) stage.frame(); };
   let timer = null;
-  picture.addEventListener("pointerenter", () => {
-    timer = timer || setInterval(() => { there.k = (there.k + 1) % PHASES; stage.frame(); }, 60);
-  });
-  picture.addEventListener("pointerleave", () => { clearInterval(timer); timer = null; there.k = 0; stage.frame(); });
-  return [picture, stage];
+  picture.addEventListener("pointerenter", () => { timer = swinging ? null : timer || setInterval(() => swing(true), 60); });
+  picture.addEventListener("pointerleave", () => { if (timer) { clearInterval(timer); timer = null; swing(false); } });
+  return [picture, stage, swing];
 }
+
+const MOST_SWINGING = 8; // modes that swing together
 
 /** Eigenvalues and modes of the run on show. */
 function createSmall(host) {
   if (!runs.some(run => run.small)) return;
+  let made = [];
+  const toggle = el("button", { type: "button", id: "swing" });
+  const swing = on => {
+    clearInterval(swinging);
+    swinging = on ? setInterval(() => { for (const [, , swing] of made) swing(true); }, 60) : null;
+    if (!on) for (const [, , swing] of made) swing(false);
+    toggle.textContent = on ? "Stop the modes" : "Swing the modes";
+    toggle.setAttribute("aria-pressed", String(on));
+  };
+  toggle.addEventListener("click", () => swing(!swinging));
   views.push({
     layout() {
       const run = runs[state.primary], { small } = run;
       if (!small) return host.replaceChildren();
       const left = el("div"), pictures = el("div", { className: "modes" });
       const about = small.frozen ? "About a state that moves: eigenvalues of one moment, which do not decide about stability."
-        : "About the position of rest. Where the plane is shaded motions die out. Beside each mode the opposite pose and the rest, pale; under the pointer it moves.";
-      host.replaceChildren(el("p", { className: "hint", textContent: about }), el("div", { className: "small" }, left, eigenvalues(small)), pictures);
-      if (small.eigenvalues.length) left.append(plane(small, Math.max(left.clientWidth, 200)));
-      if (!drawing.length) return;
-      const made = small.modes.map((mode, i) => modePicture(run, mode, i + 1));
+        : "About the position of rest. Where the plane is shaded motions die out. Beside each mode the opposite pose and the rest, pale.";
+      made = drawing.length ? small.modes.map((mode, i) => modePicture(run, mode, i + 1)) : [];
       pictures.append(...made.map(([picture]) => picture));
+      host.replaceChildren(...(made.length ? [toggle, pictures] : []), el("p", { className: "hint", textContent: about }), el("div", { className: "small" }, left, eigenvalues(small)));
+      if (small.eigenvalues.length) left.append(plane(small, Math.max(left.clientWidth, 200)));
       const draw = () => { for (const [picture, stage] of made) if (!picture.hidden) { stage.layout(); stage.frame(); } };
       fold(made.map(([picture]) => picture), "modes", button => { pictures.after(button); button.addEventListener("click", draw); });
       draw();
+      swing(Boolean(made.length) && made.length <= MOST_SWINGING && !matchMedia("(prefers-reduced-motion: reduce)").matches);
     },
     frame() {},
   });

@@ -1,5 +1,7 @@
 // ---------------------------------------------------------------- outlines in pixels
 
+const RING = 3.4; // modules from the pitch circle of a ring gear to its outer edge
+
 const circlePath = r => `M${r} 0A${r} ${r} 0 1 1 ${-r} 0A${r} ${r} 0 1 1 ${r} 0Z`;
 const polar = (r, a) => `${(r * Math.cos(a)).toFixed(2)} ${(r * Math.sin(a)).toFixed(2)}`;
 

@@ -1,124 +1,66 @@
 // ---------------------------------------------------------------- values at the current time
 
+const SYMBOLS = ["q", "q̇", "q̈"];
+
+/** A table of the coordinates: every column has one number of decimals a unit; a rest has no rates. */
 function createValues() {
-  const body = byId("values").tBodies[0], cells = [];
+  const table = byId("values"), body = table.tBodies[0], cells = [];
+  const keys = moves ? ["q", "qd", "qdd"] : ["q"];
+  table.tHead.rows[0].append(...keys.map((_, i) => el("th", { scope: "col", textContent: moves ? SYMBOLS[i] : "at rest" })));
+  const get = (run, name, key) => ((run.coordinates || []).find(c => c.name === name) || {})[key] || [];
   for (const { name, unit } of runs[0].coordinates || []) {
     const row = el("tr", {}, el("th", { scope: "row", textContent: name, title: name }));
-    ["q", "qd", "qdd"].forEach((key, order) => {
-      const get = run => ((run.coordinates || []).find(c => c.name === name) || {})[key] || [];
-      const max = largest(runs.map(get)), angle = unit === "rad";
-      const number = el("span"), degrees = el("span", { className: "degrees" });
-      const cell = el("td", {}, number, el("small", { textContent: ` ${derived(unit, order)}` }), ...(angle ? [degrees] : []));
-      const format = formatter(max, 5), formatDegrees = formatter(max * 180 / Math.PI, 4);
-      cells.push(k => {
-        const x = get(runs[state.primary])[k];
-        number.textContent = format(x);
-        cell.dataset.value = x;
-        if (angle) degrees.textContent = formatDegrees(finite(x) ? x * 180 / Math.PI : x) + "°" + ["", "/s", "/s²"][order];
-      });
+    keys.forEach((key, order) => {
+      const number = el("span"), small = el("small"), cell = el("td", {}, number, small);
+      cells.push({ name, unit, key, order, number, small, cell });
       row.append(cell);
     });
     body.append(row);
   }
-  fold([...body.rows], "coordinates", button => byId("values").after(button));
+  fold([...body.rows], "coordinates", button => table.after(button));
   const time = el("span");
   byId("time").append(el("i", { textContent: "t" }), " = ", time, " s");
+  byId("time").hidden = !moves;
   return {
     layout() {
-      const run = runs[state.primary];
+      const run = runs[state.primary], formats = new Map();
       byId("run").textContent = [run.label, run.description].filter(Boolean).join(": ");
+      byId("ended").textContent = run.ended || "";
+      byId("ended").hidden = !run.ended;
+      for (const one of cells) {
+        const group = `${one.unit} ${one.key}`, alike = cells.filter(other => `${other.unit} ${other.key}` === group);
+        if (!formats.has(group)) formats.set(group, formatter(scaleOf(one.unit) * Math.max(one.key === "q" && isAngle(one.unit) ? 1 : 0, largest(runs.flatMap(run => alike.map(other => get(run, other.name, one.key))))), 5));
+        one.format = formats.get(group);
+        one.small.textContent = ` ${shownUnit(derived(one.unit, one.order))}`.replace(/^ 1$/, "");
+      }
     },
     frame() {
-      const k = sample(runs[state.primary]);
-      byId("time").dataset.value = runs[state.primary].time[k];
-      time.textContent = formatTime(runs[state.primary].time[k]);
-      for (const update of cells) update(k);
+      const run = runs[state.primary], k = sample(run);
+      byId("time").dataset.value = run.time[k];
+      time.textContent = formatTime(run.time[k]);
+      for (const { name, unit, key, number, cell, format } of cells) {
+        const x = get(run, name, key)[k];
+        number.textContent = format(finite(x) ? x * scaleOf(unit) : x);
+        cell.dataset.value = x;
+        cell.title = String(x);
+      }
     },
   };
 }
 
-// ---------------------------------------------------------------- controls
-
-let last = null;
-function tick(now) {
-  if (!state.playing) return;
-  const step = last === null ? 0 : Math.min((now - last) / 1000, .1) * state.speed; // a hidden tab does not jump ahead
-  last = now;
-  const t = state.t + step;
-  setTime(t < end ? t : start);
-  requestAnimationFrame(tick);
-}
-
-function play(on) {
-  if (on === state.playing || (on && end <= start)) return;
-  state.playing = on;
-  last = null;
-  byId("play").textContent = on ? "Pause" : "Play";
-  if (on) requestAnimationFrame(tick);
-}
-
-function createTransport() {
-  const scrub = byId("scrub"), speed = byId("speed");
-  for (const factor of [10, 5, 2, 1, .5, .25, .1, .05, .02, .01, .001]) speed.append(el("option", { value: factor, textContent: `${factor}×` }));
-  // A first round that takes some four seconds, real time for anything longer.
-  const first = [...speed.options].find(option => option.value <= clamp((end - start) / 4, .001, 1));
-  speed.value = (first || speed.options[3]).value;
-  state.speed = Number(speed.value);
-  speed.addEventListener("change", () => { state.speed = Number(speed.value); });
-  byId("play").addEventListener("click", () => play(!state.playing));
-  scrub.addEventListener("input", () => { play(false); setTime(runs[state.primary].time[Number(scrub.value)]); });
-  document.addEventListener("keydown", event => {
-    if (event.key !== " " || event.repeat || event.ctrlKey || event.metaKey || event.altKey) return;
-    if (event.target.closest("button, select, input:not([type=range])")) return; // these know the key themselves
-    event.preventDefault();
-    play(!state.playing);
+/** The verdict on every rest in words, before all else; a click shows the rest. */
+function createVerdicts() {
+  const host = byId("verdicts"), judged = runs.filter(run => run.verdict);
+  const lines = judged.map(run => {
+    const { course, text } = run.verdict, dot = svg("svg", { width: 14, height: 14, "aria-hidden": "true" }, svg("circle", { cx: 7, cy: 7, r: 6, style: `fill: ${COURSES[course] || "var(--s6)"}` }));
+    const line = el("button", { type: "button", className: "verdict" }, dot, el("span", {}, ...(judged.length > 1 ? [el("b", { textContent: `${run.label}: ` })] : []), unitsIn(text).replace(/(^|[ =])-(?=\d)/g, "$1−")));
+    line.dataset.course = course;
+    line.addEventListener("click", () => select(runs.indexOf(run)));
+    host.append(line);
+    return [run, line];
   });
-  return {
-    layout() { scrub.max = runs[state.primary].time.length - 1; },
-    frame() {
-      scrub.value = sample(runs[state.primary]);
-      scrub.setAttribute("aria-valuetext", `${formatTime(state.t)} seconds`);
-    },
-  };
-}
-
-function createAssembly() {
-  const host = byId("assembly");
-  const choices = runs.map((run, i) => [String(i), run.label]);
-  if (runs.length > 1) choices.push(["both", runs.length > 2 ? "all" : "both"]);
-  for (const [value, label] of choices) {
-    const input = el("input", { type: "radio", name: "assembly", value, checked: value === "0" });
-    input.addEventListener("change", () => {
-      state.overlay = value === "both";
-      if (!state.overlay) state.primary = Number(value);
-      layout();
-    });
-    host.append(el("label", {}, input, label));
-  }
-}
-
-/** What the drawing shows, with the present speed and acceleration of the first traced point. */
-function createShow() {
-  const host = byId("show"), readouts = [];
-  traces.forEach((trace, i) => {
-    if (trace.label) host.append(el("span", { className: "key", title: `path of ${trace.of}` }, swatch(`var(--trace${i % 2})`), trace.label));
-  });
-  const add = (key, label, colour, ...more) => {
-    const input = el("input", { type: "checkbox", id: `show-${key}`, checked: state[key] });
-    input.addEventListener("change", () => { state[key] = input.checked; frame(); });
-    host.append(el("label", {}, input, ...(colour ? [swatch(colour)] : []), label, ...more));
-  };
-  for (const [key, name, unit] of [["rate", "velocity", "m/s"], ["acceleration", "acceleration", "m/s²"]]) {
-    const with_ = traces.filter(trace => runs.some(run => vector(run, trace.of, key)));
-    if (!with_.length) continue;
-    const readout = el("output", { title: `of ${with_[0].of}` });
-    const norm = (run, k) => { const v = components(run, with_[0].of, key); return v ? Math.hypot(...v.map(c => c[k])) : null; };
-    const format = formatter(largest(runs.map(run => run.time.map((_, k) => norm(run, k)))), 4);
-    readouts.push(() => { const run = runs[state.primary]; readout.textContent = `${format(norm(run, sample(run)))} ${unit}`; });
-    add(name, name, `var(--${name})`, readout);
-  }
-  add("labels", "names", null);
-  return { layout() {}, frame() { for (const update of readouts) update(); } };
+  host.hidden = !lines.length;
+  return { layout() { for (const [run, line] of lines) line.setAttribute("aria-pressed", String(runs[state.primary] === run)); }, frame() {} };
 }
 
 // ---------------------------------------------------------------- text
@@ -131,49 +73,92 @@ function trimmed(text) {
   return lines.map(line => line.slice(indent)).join("\n");
 }
 
+const MOST_COLUMNS = 4; // runs whose facts stand side by side
+
+/** Facts, those of several runs in one line with a column a run. */
+function createFacts() {
+  const table = byId("facts"), labels = given.map(run => run.label), side = labels.length > 1 && labels.length <= MOST_COLUMNS, lines = new Map();
+  for (const [name, value] of data.facts || []) {
+    const label = side && labels.find(label => name.endsWith(`, ${label}`) && !labels.some(longer => longer !== label && longer.endsWith(`, ${label}`) && name.endsWith(`, ${longer}`)));
+    const key = label ? name.slice(0, -label.length - 2) : name;
+    lines.set(key, { ...lines.get(key), [label || ""]: unitsIn(value) });
+  }
+  if (side && [...lines.values()].some(values => !("" in values))) {
+    table.prepend(el("thead", {}, el("tr", {}, el("th"), ...labels.map(textContent => el("th", { scope: "col", textContent })))));
+  }
+  for (const [name, values] of lines) {
+    const cells = "" in values ? [el("td", { colSpan: side ? labels.length : 1, textContent: values[""] })] : labels.map(label => el("td", { textContent: values[label] || "" }));
+    table.tBodies[0].append(el("tr", {}, el("th", { scope: "row", textContent: name }), ...cells));
+  }
+  fold([...table.tBodies[0].rows], "facts", button => table.after(button));
+}
+
+/** Links to the sections that the page has. */
+function createContents() {
+  const links = [...document.querySelectorAll("main h2")].filter(h => h.offsetParent).map((h, i) => {
+    h.id = h.id || `section-${i}`;
+    return el("a", { href: `#${h.id}`, textContent: h.textContent });
+  });
+  byId("contents").replaceChildren(...links);
+}
+
 function createText() {
   byId("kicker").textContent = `mbs · ${data.name}`;
   byId("title").textContent = data.title;
   byId("description").textContent = data.description || "";
   byId("command").textContent = data.command || "";
   byId("command").parentNode.hidden = !data.command;
-  for (const [name, value] of data.facts || []) {
-    byId("facts").tBodies[0].append(el("tr", {}, el("th", { scope: "row", textContent: name }), el("td", { textContent: value })));
-  }
-  fold([...byId("facts").tBodies[0].rows], "facts", button => byId("facts").after(button));
-  byId("view").textContent = space ? `Seen ${space.label}: the path and the arrows are projections, lengths along the line of sight do not show; numbers and `
-    + "plots are of the vectors in space." : "";
+  createFacts();
+  byId("view").textContent = space ? `Seen ${space.label}, until you turn it: the path and the arrows are projections; numbers and plots are of the vectors in space.` : "";
   byId("view").hidden = !space;
   byId("source").firstChild.textContent = trimmed(data.source || "");
   const samples = runs.map(run => run.time.length), same = new Set(samples).size === 1;
   const count = same ? samples[0] : samples.join(", ");
   byId("footer").textContent = `Every pose and every number on this page is a sample of a run of the solver (samples a run: ${count}), none is `
-    + "interpolated. SI units, angles in radians where no other unit is given. The page is self-contained: it loads nothing.";
+    + "interpolated. SI units, angles as chosen above. What is below 1e-12 of the largest value of its kind is shown as 0. The page is self-contained: it loads nothing.";
 }
 
 // ---------------------------------------------------------------- start
 
 createText();
 if (runs.length) {
-  state.t = start;
+  const isOfModes = runs.some(run => run.small), stage = createStage(byId("stage"), large);
+  document.body.classList.toggle("rest", !moves);
+  document.body.classList.toggle("linear", isOfModes);
+  if (isOfModes && !moves) {
+    document.querySelector("main").prepend(byId("small").parentNode);
+    document.querySelector(".viewer").before(el("h2", { textContent: "Position of rest" }));
+  }
+  createTools();
   createAssembly();
-  views.push(createStage(byId("stage"), large), createTransport(), createShow(), createValues());
+  createKeys();
+  createSave();
+  views.push(createVerdicts(), stage, createTransport(), createShow(), createValues());
+  createCamera(byId("stage"), stage);
   createSmall(byId("small"));
-  for (const kind of ["loads", "multipliers"]) createForces(byId(kind), kind);
-  if (end > start) {
-    createSeries(byId("coordinates"), "coordinates", ["q", "q̇", "q̈"], ["q", "qd", "qdd"]);
+  createForces(byId("loads"), "loads");
+  if (moves) {
+    createForcePlots(byId("loads"));
+    createSeries(byId("coordinates"), "coordinates", SYMBOLS, ["q", "qd", "qdd"]);
     createSeries(byId("outputs"), "outputs", ["value", "rate", "acceleration"], ["value", "rate", "acceleration"]);
     createEnergy(byId("energy"));
     createSupplies(byId("energy"));
-    for (const kind of ["loads", "multipliers"]) createSeries(byId(kind), kind, ["value"], ["value"]);
     createSolver(byId("solver"));
   }
-  // Of a position at rest there is nothing to plot.
-  byId("small").parentNode.hidden = !runs.some(run => run.small);
-  for (const id of ["coordinates", "outputs", "energy", "loads", "multipliers", "solver"]) byId(id).parentNode.hidden = !byId(id).childElementCount;
-  byId("play").parentNode.hidden = !(end > start);
-  document.querySelector("main > .hint").hidden = !(end > start);
+  createMultipliers(byId("multipliers"));
+  // Forces are what an inverse analysis is asked for.
+  if (data.analysis === "inverse") byId("plots").after(byId("loads").parentNode, byId("fold-multipliers").parentNode);
+  byId("small").parentNode.hidden = !isOfModes;
+  for (const id of ["coordinates", "outputs", "energy", "loads", "multipliers", "solver"]) byId(id).closest("section").hidden = !byId(id).childElementCount;
+  if (!moves && byId("loads").querySelectorAll("tbody tr").length <= FIRST) { // beside the drawing of a rest there is room
+    byId("loads").closest("section").hidden = true;
+    document.querySelector("aside").append(byId("loads"));
+  }
+  byId("play").parentNode.hidden = !moves;
+  byId("plots").hidden = !moves;
+  byId("plots").dataset.drag = state.drag;
   layout();
+  createContents();
   let width = document.body.clientWidth;
   const resized = () => { // heights change with the content, only the width asks for a new layout
     if (document.body.clientWidth !== width) { width = document.body.clientWidth; layout(); }
