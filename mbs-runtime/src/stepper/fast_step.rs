@@ -98,27 +98,57 @@ impl<T: Scalar, const N: usize> FastStep<T, N> {
         let [most_second, most_way] = quick::<T::Real>(const { link_lengths::any(S::COORDINATES) });
         let (prediction, foreseen) = start.predicted(t, &scales, most_second);
         let most_way = T::constant(most_way);
-        let mut solver = FastNewton::new(lanes);
         // Lanes keep a processor busy as they are, and a compiler sees them together in short stages. Each way is judged where it
         // ends: what both had to put down for one judge would be copied.
         if S::BLOCK_BY_BLOCK && T::LANES == 1 {
             let zeros = [T::constant(0.0); N];
-            let mut motion = [prediction, zeros, zeros];
+            let (mut motion, mut solver) = ([prediction, zeros, zeros], FastNewton::new(lanes));
             let solved = &mechanism.solve_motion(parameters, &mut motion, t, &mut solver);
-            let sum = solved.sum + sum_of_rates(&motion[1], &motion[2]);
-            let judge =
-                Judge { mechanism, parameters, start, prediction: &prediction, foreseen, most_way, solver };
-            return judge.judged(motion, (&solved.position, &solved.margin), sum);
+            if T::all(solved.ordered) {
+                let sum = solved.sum + sum_of_rates(&motion[1], &motion[2]);
+                let judge =
+                    Judge { mechanism, parameters, start, prediction: &prediction, foreseen, most_way, solver };
+                return judge.judged(motion, (&solved.position, &solved.margin), sum);
+            }
+            // The addresses of copies.
+            let (prediction, t, foreseen) = (prediction, t, foreseen);
+            return Self::by_stages((mechanism, parameters), start, (&prediction, foreseen), &t, lanes);
         }
-        let mut q = prediction;
+        Self::in_stages((mechanism, parameters), start, (&prediction, foreseen), t, lanes)
+    }
+
+    /// [`in_stages`](Self::in_stages), out of the way.
+    #[cold]
+    #[inline(never)]
+    fn by_stages<S: Kinematic<T, N, M>, const M: usize>(
+        mechanism: (&S, &S::Parameters),
+        start: &Start<'_, T, N>,
+        prediction: (&[T; N], T::Mask),
+        t: &T,
+        lanes: T::Mask,
+    ) -> Self {
+        Self::in_stages(mechanism, start, prediction, *t, lanes)
+    }
+
+    /// The step from its prediction, all positions before all rates; with pivoting where a block asks for it.
+    #[inline(always)]
+    fn in_stages<S: Kinematic<T, N, M>, const M: usize>(
+        (mechanism, parameters): (&S, &S::Parameters),
+        start: &Start<'_, T, N>,
+        (prediction, foreseen): (&[T; N], T::Mask),
+        t: T,
+        lanes: T::Mask,
+    ) -> Self {
+        let [_, most_way] = quick::<T::Real>(const { link_lengths::any(S::COORDINATES) });
+        let most_way = T::constant(most_way);
+        let (mut q, mut solver) = (*prediction, FastNewton::new(lanes));
         // By reference: what is long would be moved out of the pairs.
         let (_, position) = &mechanism.solve_with_position(parameters, &mut q, t, &mut solver);
         let (factors, margin) = &mechanism.factorize(parameters, position);
         let qd = mechanism.solve_linear(factors, &negated(mechanism.phi_t(parameters, position)));
         let qdd = mechanism.solve_linear(factors, &mechanism.gamma(parameters, position, &qd));
         let sum = sum_of_rates(&qd, &qdd);
-        let judge =
-            Judge { mechanism, parameters, start, prediction: &prediction, foreseen, most_way, solver };
+        let judge = Judge { mechanism, parameters, start, prediction, foreseen, most_way, solver };
         judge.judged([q, qd, qdd], (position, margin), sum)
     }
 
