@@ -257,7 +257,8 @@ fn table(found: &[(&Linkage, Ratios)], notes: &str) -> String {
         }
         let (count, [least, median, most]) = (ratios.len(), spread(ratios));
         let [must, aim] = [must, aim].map(|x| if x.is_nan() { String::new() } else { format!("{x:.1}") });
-        let _ = writeln!(text, "| {work} | {count} | {least:.2} | {median:.2} | {most:.2} | {must} | {aim} |");
+        let _ =
+            writeln!(text, "| {work} | {count} | {least:.2} | {median:.2} | {most:.2} | {must} | {aim} |");
     };
     for (sines, work, goals) in
         [(false, "evaluation, few sines", [1.1, f64::NAN]), (true, "evaluation, with sines", [3.5, f64::NAN])]

@@ -20,6 +20,9 @@ const FEW: usize = 8;
 /// less, no link of a thousandth turns by half a radian.
 const QUICK_SECOND_ORDER_TERM: f64 = 1e-4;
 
+/// Largest terms of higher order over the largest second-order term: a quarter of it.
+const LARGEST_BEND: f64 = 0.125;
+
 /// Longest step, in steps before, that is predicted from the rates before that one as well.
 const LONGEST_FORESEEN: f64 = 2.0;
 
@@ -113,8 +116,15 @@ impl<T: Scalar, const N: usize> FastStep<T, N> {
             let solved = &mechanism.solve_motion(parameters, &mut motion, t, &mut solver);
             if T::all(solved.ordered) {
                 let sum = solved.sum + sum_of_rates(&motion[1], &motion[2]);
-                let judge =
-                    Judge { mechanism, parameters, start, prediction: &prediction, foreseen, most_way, solver };
+                let judge = Judge {
+                    mechanism,
+                    parameters,
+                    start,
+                    prediction: &prediction,
+                    foreseen,
+                    most_way,
+                    solver,
+                };
                 return judge.judged(motion, (&solved.position, &solved.margin), sum);
             }
             // The addresses of copies.
@@ -361,19 +371,19 @@ impl<'a, T: Scalar, const N: usize> Start<'a, T, N> {
         (predicted, all)
     }
 
-    /// [`predicted`](Self::predicted) with terms of third and fourth order, from the rates q̇₀ and q̈₀ a step of h₀ = h/ρ before:
+    /// `predicted` with terms of third and fourth order, from the rates q̇₀ and q̈₀ a step of h₀ = h/ρ before:
     /// ρ h²/3 (2 q̈ + q̈₀ − 3 a) + ρ² h²/4 (q̈ + q̈₀ − 2 a), where a = (q̇ − q̇₀)/h₀.
     ///
-    /// They must be less than `most` together, as the second-order term. Source: Hairer, Nørsett & Wanner 1993, §III.1 (interpolation of the values before).
+    /// Without them where one is as much as `most`, or where the largest one is no small part of the largest second-order term, as
+    /// after a jump of the accelerations. Source: Hairer, Nørsett & Wanner 1993, §III.1 (interpolation of the values before).
     #[inline(always)]
     fn with_bend(
         &self,
         bend: &Bend<T, N>,
         h: T,
         (scales, most): (&[T; N], f64),
-        (mut predicted, mut all): ([T; N], T::Mask),
+        (mut predicted, all): ([T; N], T::Mask),
     ) -> ([T; N], T::Mask) {
-        let alone = size_of::<T>() == size_of::<T::Real>();
         let (square, ratio) = (h * h, h / bend.time);
         // Not a step the other way, nor a much longer one.
         let follows = T::constant(0.0).less(ratio) & ratio.less(T::constant(LONGEST_FORESEEN));
@@ -382,25 +392,38 @@ impl<'a, T: Scalar, const N: usize> Start<'a, T, N> {
         let fourth = square * ratio * ratio * T::constant(0.25);
         let (now, then) = ((third + third) + fourth, third + fourth);
         let mean = (T::constant(3.0) * third + (fourth + fourth)) / bend.time;
+        let zero = T::constant(0.0);
+        let (mut largest, mut largest_second) = (zero, zero);
         let rates = self.qd.iter().zip(self.qdd).zip(bend.qd.iter().zip(&bend.qdd));
-        for ((coordinate, ((rate, acceleration), (last_rate, last_acceleration))), scale) in
-            predicted.iter_mut().zip(rates).zip(scales)
+        for ((coordinate, ((rate, acceleration), (last_rate, last_acceleration))), weight) in
+            predicted.iter_mut().zip(rates).zip(self.weights)
         {
             let more = (then * *last_acceleration - mean * (*rate - *last_rate)) + now * *acceleration;
-            // As in `predicted`: a branch a coordinate.
-            let sound = trusted(more, *scale, most);
-            if alone && N <= FEW && !T::all(sound) {
-                let scales = *scales;
-                let (predicted, _) = predicted_far(self.rates(), h, &scales, most);
-                return (predicted, T::mask(false));
+            let size = more.abs() * *weight;
+            // As in `predicted_plainly`: a branch a coordinate.
+            if N <= FEW && !T::all(size.less(T::constant(most))) {
+                return self.predicted_without(h, scales, most);
             }
-            all = all & sound;
+            largest = largest.max(size);
+            largest_second = largest_second.max(acceleration.abs() * *weight);
             *coordinate = *coordinate + more;
             if N > FEW {
                 T::side_by_side();
             }
         }
+        let limit = T::constant(LARGEST_BEND) * square * largest_second;
+        if !T::all(!limit.less(largest) & largest.less(T::constant(most))) {
+            return self.predicted_without(h, scales, most);
+        }
         (predicted, all)
+    }
+
+    /// The prediction without further terms.
+    #[cold]
+    #[inline(never)]
+    fn predicted_without(&self, h: T, scales: &[T; N], most: f64) -> ([T; N], T::Mask) {
+        let (predicted, [_, near]) = predicted_far(self.rates(), h, scales, most);
+        (predicted, near)
     }
 
     /// [`predicted`](Self::predicted) for so many coordinates that the last step has stored them together, after all blocks.

@@ -128,7 +128,13 @@ where
 
 /// Newton's method from the prediction until the rows are below their tolerances, then the rates.
 #[inline(always)]
-fn step<L: Solver<N>, const N: usize>(peer: Peer, h: f64, tolerances: &[f64; N], t: f64, motion: &mut Motion<N>) {
+fn step<L: Solver<N>, const N: usize>(
+    peer: Peer,
+    h: f64,
+    tolerances: &[f64; N],
+    t: f64,
+    motion: &mut Motion<N>,
+) {
     for k in 0..N {
         motion.q[k] += h * (motion.qd[k] + 0.5 * h * motion.qdd[k]);
     }
@@ -181,7 +187,8 @@ where
         Ok(start) => start,
         Err(failure) => return println!("{name} left out: {failure}"),
     };
-    let of = |stepper: &Stepper<S, f64, N>| Motion { q: *stepper.q(), qd: *stepper.qd(), qdd: *stepper.qdd() };
+    let of =
+        |stepper: &Stepper<S, f64, N>| Motion { q: *stepper.q(), qd: *stepper.qd(), qdd: *stepper.qdd() };
     let (first, mut stepper, mut own) = (of(&start), start.clone(), Vec::new());
     for k in 1..=STEPS {
         if let Err(failure) = stepper.advance_to(time(k)) {
@@ -318,10 +325,9 @@ fn processor_time() -> f64 {
 
 fn main() {
     let rounds = std::env::args().nth(1).and_then(|rounds| rounds.parse().ok()).unwrap_or(31);
-// LINKAGES
+    // LINKAGES
 }
 
 unsafe extern "C" {
-// FUNCTIONS
+    // FUNCTIONS
 }
-

@@ -54,7 +54,9 @@ pub fn solve(
         solved(block, rates, (index, &factors.0, factors.1), &entries, &mut text);
     }
     lets(&motion.rest, scope, &mut text);
-    text += &format!("__mbs::Solved {{ position: {position}, margin: __margin, sum: __sum, ordered: __ordered }}");
+    text += &format!(
+        "__mbs::Solved {{ position: {position}, margin: __margin, sum: __sum, ordered: __ordered }}"
+    );
     Some(text)
 }
 

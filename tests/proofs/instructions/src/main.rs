@@ -52,7 +52,6 @@ mechanism! {
     const La: m = 0.25;
     const Lb: m = 0.15;
     const Ld: m = 0.25;
-    const pivot: [m; 2] = [-0.15, 0.16];
     const r: m = 0.05;
     const l: m = 0.30;
     coord theta: rad = 0;
@@ -62,7 +61,7 @@ mechanism! {
     coord delta: rad = 0;
     let a = La*unit(alpha);
     constraint four_bar { a + Lb*unit(beta) == [d, 0] + Ld*unit(gamma); }
-    constraint rod { pivot + r*unit(theta) + l*unit(delta) == a + rot(beta)*[75mm, -80mm]; }
+    constraint rod { [-150mm, 160mm] + r*unit(theta) + l*unit(delta) == a + rot(beta)*[75mm, -80mm]; }
     drive crank: theta == TAU*t/1s;
     branch open: sin(gamma - beta) > 0;
 }
@@ -156,8 +155,7 @@ fn main() -> ExitCode {
 }
 
 /// Jansen's leg at the start (rad, m).
-const LEG: [f64; 11] =
-    [0.0, -0.019, 0.029, -0.031, -0.046, -0.068, 0.02, -0.066, -0.037, -0.053, -0.09];
+const LEG: [f64; 11] = [0.0, -0.019, 0.029, -0.031, -0.046, -0.068, 0.02, -0.066, -0.037, -0.053, -0.09];
 
 /// Uprights upright.
 fn upright<const N: usize>() -> [f64; N] {

@@ -3,8 +3,8 @@
 use std::collections::BTreeSet;
 use std::fmt::Write;
 
-use super::scales::Scales;
 use super::pivots::Eliminated;
+use super::scales::Scales;
 use super::value::{Entry, Value};
 use super::{Cost, Elimination, NAME};
 use crate::emit::rust::code::list;

@@ -101,10 +101,7 @@ impl Printer {
                     scales("__row_scales", others),
                     scales("__coordinate_scales", places)
                 );
-                writeln!(
-                    self.text,
-                    "let ([{unknowns}], _) = {kind}::{method}(&{rows}, &{right}, {scales});"
-                )
+                writeln!(self.text, "let ([{unknowns}], _) = {kind}::{method}(&{rows}, &{right}, {scales});")
             }
             false => writeln!(self.text, "let [{unknowns}] = {kind}::{method}(&self.last, &{right});"),
         };
