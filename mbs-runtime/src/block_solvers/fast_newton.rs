@@ -85,7 +85,7 @@ impl<T: Scalar> FastNewton<T> {
             if T::all(done) || evaluations == EVALUATIONS {
                 break residuals;
             }
-            let (step, _) = F::solve_once(&jacobian, &residuals, &block.row_scales, &block.coordinate_scales);
+            let step = F::newton_step(&jacobian, &residuals, &block.row_scales, &block.coordinate_scales);
             let mut next = x;
             for (component, change) in next.iter_mut().zip(&step) {
                 *component = *component - *change;
@@ -123,7 +123,7 @@ impl<T: Scalar> FastNewton<T> {
                     break;
                 }
             }
-            let (step, _) = F::solve_once(&jacobian, &residuals, &block.row_scales, &block.coordinate_scales);
+            let step = F::newton_step(&jacobian, &residuals, &block.row_scales, &block.coordinate_scales);
             for (component, change) in x.iter_mut().zip(&step) {
                 *component = *component - *change;
             }

@@ -1,6 +1,7 @@
 //! Movements of coordinates that are lengths, judged by themselves. The movement of an angle is its number. Points of a link
 //! move by the turn times its length, which may be any part of the reference length.
 
+use crate::linear_algebra::vectors::weights as reciprocals;
 use crate::mechanism::Entry;
 use crate::scalar::number::{Real, Scalar};
 use crate::tolerances::positions;
@@ -88,12 +89,13 @@ const fn is_length(unit: &str) -> bool {
     !matches!(unit.as_bytes(), b"rad" | b"1" | b"")
 }
 
-/// The largest of a point's `values`, in the reference metric, at its first coordinate.
-fn sizes<T: Scalar, const N: usize>(points: &Points<N>, scales: &[T; N], values: &[T; N]) -> [T; N] {
+/// The largest of a point's `values`, in the reference metric, at its first coordinate; `weights`: reciprocals of the scales.
+#[inline(always)]
+fn sizes<T: Scalar, const N: usize>(points: &Points<N>, weights: &[T; N], values: &[T; N]) -> [T; N] {
     let mut sizes = [T::constant(0.0); N];
-    for ((first, value), scale) in points.iter().zip(values).zip(scales) {
+    for ((first, value), weight) in points.iter().zip(values).zip(weights) {
         if let Some(size) = first.and_then(|first| sizes.get_mut(first)) {
-            *size = size.max((*value / *scale).abs());
+            *size = size.max((*value * *weight).abs());
         }
     }
     sizes
@@ -110,6 +112,7 @@ pub(crate) fn least<T: Scalar>(margin: T) -> T {
 }
 
 /// `true` if no point's `differences` are more than `part` of its `movements` together and `least`; false for NaN.
+#[inline(always)]
 fn are_parts<T: Scalar, const N: usize, const K: usize>(
     (points, scales): (&Points<N>, &[T; N]),
     differences: &[T; N],
@@ -118,13 +121,14 @@ fn are_parts<T: Scalar, const N: usize, const K: usize>(
     least: T,
 ) -> T::Mask {
     let mut most = [least; N];
+    let weights = reciprocals(scales);
     for movement in movements {
-        let sizes = sizes(points, scales, movement);
+        let sizes = sizes(points, &weights, movement);
         most.iter_mut().zip(sizes).for_each(|(most, size)| *most = *most + part * size);
     }
-    let all = points.iter().zip(differences).zip(scales).map(|((first, difference), scale)| {
+    let all = points.iter().zip(differences).zip(&weights).map(|((first, difference), weight)| {
         let most = first.and_then(|first| most.get(first).copied());
-        most.map_or(T::mask(true), |most| (*difference / *scale).abs().less(most))
+        most.map_or(T::mask(true), |most| (*difference * *weight).abs().less(most))
     });
     all.fold(T::mask(true), |all, one| all & one)
 }
@@ -136,6 +140,7 @@ fn largest_bend<T: Scalar>(margin: T) -> T {
 
 /// `true` if the rates of points agree to a quarter with those predicted from the rates before and their change over `h` (s): no
 /// link turned by much more than a radian. `before` and `change`: rate and acceleration, N; movements up to `least` are ignored.
+#[inline(always)]
 pub(crate) fn turn_little<T: Scalar, const N: usize>(
     metric: (&Points<N>, &[T; N]),
     [before, change, after]: [&[T; N]; 3],
@@ -168,6 +173,7 @@ pub(crate) fn bend_little<T: Scalar, const N: usize>(
 
 /// `true` if coordinates are at their prediction but for `off`, within an eighth of their movement over `h` (s) by rates and
 /// their change: no function jumped.
+#[inline(always)]
 pub(crate) fn are_foreseen<T: Scalar, const N: usize>(
     metric: (&Points<N>, &[T; N]),
     off: &[T; N],
@@ -195,7 +201,8 @@ pub(crate) fn weights<R: Real, const N: usize>(
 ) -> [R; N] {
     // A point at rest is off by what the forecast of others leaves out.
     let least = rounding(margin).max(least(margin));
-    let [first, second] = [first, second].map(|term| sizes(points, scales, term));
+    let reciprocals = reciprocals(scales);
+    let [first, second] = [first, second].map(|term| sizes(points, &reciprocals, term));
     let mut weights = [R::constant(0.0); N];
     for ((weight, point), scale) in weights.iter_mut().zip(points).zip(scales) {
         let terms = point.and_then(|point| first.get(point).zip(second.get(point)));

@@ -32,6 +32,11 @@ pub trait Factorization<T: Scalar, const K: usize>: Copy {
         let (factors, margin) = Self::factorize(a, row_scales, coordinate_scales);
         (factors.solve(b), crate::linear_algebra::is_regular(margin))
     }
+    /// As [`solve_once`](Self::solve_once), where nobody asks for the margin; of no use where the block is singular.
+    #[inline(always)]
+    fn newton_step(a: &[[T; K]; K], b: &[T; K], row_scales: &[T; K], coordinate_scales: &[T; K]) -> [T; K] {
+        Self::solve_once(a, b, row_scales, coordinate_scales).0
+    }
     /// Solves `a x = b`.
     fn solve(&self, b: &[T; K]) -> [T; K];
     /// Solves `aᵀ x = b`.

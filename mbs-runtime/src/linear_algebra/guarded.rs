@@ -18,6 +18,18 @@ pub trait Elimination<T: Scalar, const K: usize>: Copy {
     /// Returns the factors, the margin, and the lanes in which every multiplier is below [`LARGEST_MULTIPLIER`]. Elsewhere the
     /// factors, which may not be finite, are of no use.
     fn eliminate(a: &[[T; K]; K], row_scales: &[T; K], coordinate_scales: &[T; K]) -> (Self, T, T::Mask);
+    /// Solves `a x = b` without factors for a second solution, with the lanes in which every multiplier is below
+    /// [`LARGEST_MULTIPLIER`]; elsewhere the solution is of no use.
+    #[inline]
+    fn solve_once(
+        a: &[[T; K]; K],
+        b: &[T; K],
+        row_scales: &[T; K],
+        coordinate_scales: &[T; K],
+    ) -> ([T; K], T::Mask) {
+        let (factors, _, bounded) = Self::eliminate(a, row_scales, coordinate_scales);
+        (factors.solve(b), bounded)
+    }
     /// Solves `a x = b`.
     fn solve(&self, b: &[T; K]) -> [T; K];
     /// Solves `aᵀ x = b`.
@@ -27,13 +39,14 @@ pub trait Elimination<T: Scalar, const K: usize>: Copy {
 }
 
 /// Factors by the order `E`, or with pivoting in all lanes where a lane asks for it.
+///
+/// Both have places of their own, so that those of the order stay in registers.
 #[derive(Clone, Copy, Debug)]
-#[allow(clippy::large_enum_variant, reason = "both live on the stack: nothing here allocates")]
-pub enum Guarded<E, T: Scalar, const K: usize> {
-    /// In the order of the emitted code.
-    Ordered(E),
+pub struct Guarded<E, T: Scalar, const K: usize> {
+    /// In the order of the emitted code; of no use where there are others.
+    ordered: E,
     /// With pivoting.
-    Pivoted(Lu<T, K>),
+    pivoted: Option<Lu<T, K>>,
 }
 
 /// The way that is rarely taken, out of the way of the other.
@@ -47,6 +60,47 @@ fn pivoted<T: Scalar, const K: usize>(
     Lu::factorize(a, row_scales, coordinate_scales)
 }
 
+/// [`pivoted`] and its solution. By value, so that the numbers of the caller stay in registers.
+#[cold]
+#[inline(never)]
+fn solve_pivoted<T: Scalar, const K: usize>(
+    a: [[T; K]; K],
+    b: [T; K],
+    row_scales: [T; K],
+    coordinate_scales: [T; K],
+) -> [T; K] {
+    pivoted(&a, &row_scales, &coordinate_scales).0.solve(&b)
+}
+
+/// The elimination, once for all who do not need it in line.
+#[inline]
+fn eliminated<E: Elimination<T, K>, T: Scalar, const K: usize>(
+    a: &[[T; K]; K],
+    row_scales: &[T; K],
+    coordinate_scales: &[T; K],
+) -> (E, T, T::Mask) {
+    E::eliminate(a, row_scales, coordinate_scales)
+}
+
+impl<E: Elimination<T, K>, T: Scalar, const K: usize> Guarded<E, T, K> {
+    /// These factors where they are `bounded`, others elsewhere.
+    #[inline(always)]
+    fn or_pivoted(
+        (ordered, margin, bounded): (E, T, T::Mask),
+        a: &[[T; K]; K],
+        row_scales: &[T; K],
+        coordinate_scales: &[T; K],
+    ) -> (Self, T) {
+        if T::all(bounded) {
+            return (Guarded { ordered, pivoted: None }, margin);
+        }
+        // The addresses of copies.
+        let (a, row_scales, coordinate_scales) = (*a, *row_scales, *coordinate_scales);
+        let (factors, margin) = pivoted(&a, &row_scales, &coordinate_scales);
+        (Guarded { ordered, pivoted: Some(factors) }, margin)
+    }
+}
+
 impl<E: Elimination<T, K>, T: Scalar, const K: usize> Factorization<T, K> for Guarded<E, T, K> {
     /// The margin is the smallest size of a pivot over the largest entry, in the reference metric. Sizes are those by the
     /// best rows, so that the margin does not depend on the order by more than a small factor. For two rows it is their
@@ -54,35 +108,44 @@ impl<E: Elimination<T, K>, T: Scalar, const K: usize> Factorization<T, K> for Gu
     /// entry times its own margin.
     #[inline(always)]
     fn factorize(a: &[[T; K]; K], row_scales: &[T; K], coordinate_scales: &[T; K]) -> (Self, T) {
-        let (factors, margin, bounded) = E::eliminate(a, row_scales, coordinate_scales);
-        if T::all(bounded) {
-            return (Guarded::Ordered(factors), margin);
-        }
-        let (factors, margin) = pivoted(a, row_scales, coordinate_scales);
-        (Guarded::Pivoted(factors), margin)
+        let factors = eliminated::<E, T, K>(a, row_scales, coordinate_scales);
+        Self::or_pivoted(factors, a, row_scales, coordinate_scales)
+    }
+
+    #[inline(always)]
+    fn factorize_unguarded(a: &[[T; K]; K], row_scales: &[T; K], coordinate_scales: &[T; K]) -> (Self, T, T) {
+        let factors = E::eliminate(a, row_scales, coordinate_scales);
+        let (factors, margin) = Self::or_pivoted(factors, a, row_scales, coordinate_scales);
+        (factors, margin, margin)
+    }
+
+    #[inline(always)]
+    fn newton_step(a: &[[T; K]; K], b: &[T; K], row_scales: &[T; K], coordinate_scales: &[T; K]) -> [T; K] {
+        let (x, bounded) = E::solve_once(a, b, row_scales, coordinate_scales);
+        if T::all(bounded) { x } else { solve_pivoted(*a, *b, *row_scales, *coordinate_scales) }
     }
 
     #[inline(always)]
     fn solve(&self, b: &[T; K]) -> [T; K] {
-        match self {
-            Guarded::Ordered(factors) => factors.solve(b),
-            Guarded::Pivoted(factors) => factors.solve(b),
+        match &self.pivoted {
+            None => self.ordered.solve(b),
+            Some(factors) => factors.solve_called(b),
         }
     }
 
     #[inline(always)]
     fn solve_transposed(&self, b: &[T; K]) -> [T; K] {
-        match self {
-            Guarded::Ordered(factors) => factors.solve_transposed(b),
-            Guarded::Pivoted(factors) => factors.solve_transposed(b),
+        match &self.pivoted {
+            None => self.ordered.solve_transposed(b),
+            Some(factors) => factors.solve_transposed_called(b),
         }
     }
 
     #[inline(always)]
     fn reverses(&self) -> T::Mask {
-        match self {
-            Guarded::Ordered(factors) => factors.reverses(),
-            Guarded::Pivoted(factors) => factors.reverses(),
+        match &self.pivoted {
+            None => self.ordered.reverses(),
+            Some(factors) => factors.reverses(),
         }
     }
 }

@@ -373,7 +373,7 @@ pub trait Kinematic<T: Scalar, const N: usize, const M: usize = N>: Mechanism<T,
         let (factors, margin) = self.factorize(parameters, &position);
         *qd = self.solve_linear(&factors, &negated(self.phi_t(parameters, &position)));
         *qdd = self.solve_linear(&factors, &self.gamma(parameters, &position, qd));
-        Solved { position, margin, sum: margin.value }
+        Solved { position, margin, sum: margin.value, ordered: T::mask(true) }
     }
 
     /// Factorises Φ_q block by block, once for velocity and acceleration.
@@ -400,6 +400,9 @@ pub struct Solved<P, T: Scalar> {
     /// Finite where no block is singular, and where none is too large or too small for the number type. Elsewhere factors and
     /// rates are of no use.
     pub sum: T,
+    /// Lanes in which blocks with an elimination order of their own kept their multipliers small. Elsewhere rates and margin are
+    /// of no use: these blocks need pivoting.
+    pub ordered: T::Mask,
 }
 
 /// The numbers with the other sign.

@@ -10,6 +10,7 @@ use crate::mechanism::margin::Margin;
 use crate::mechanism::{Kinematic, negated};
 use crate::scalar::number::{Real, Scalar, index};
 use crate::stepper::instant::is_coarse;
+use crate::stepper::state::Bend;
 use crate::tolerances::{positions, singular};
 
 /// Most coordinates that stay in registers from the end of a step to its state, which are written one by one.
@@ -18,6 +19,12 @@ const FEW: usize = 8;
 /// Second-order term (reference lengths) from which on a step of a mechanism with coordinates that are lengths is checked. With
 /// less, no link of a thousandth turns by half a radian.
 const QUICK_SECOND_ORDER_TERM: f64 = 1e-4;
+
+/// Largest terms of higher order over the largest second-order term: a quarter of it.
+const LARGEST_BEND: f64 = 0.125;
+
+/// Longest step, in steps before, that is predicted from the rates before that one as well.
+const LONGEST_FORESEEN: f64 = 2.0;
 
 /// Second-order term, and distance from the prediction over the margin, up to which a step needs no test, `with_lengths` among
 /// the coordinates or without.
@@ -38,6 +45,8 @@ pub(crate) struct Start<'a, T, const N: usize> {
     pub margin: T,
     /// Reciprocals of the coordinates' scales in the reference metric.
     pub weights: &'a [T; N],
+    /// Rates before the last step, where its prediction was far off.
+    pub bend: Option<&'a Bend<T, N>>,
 }
 
 /// Result of a step.
@@ -81,7 +90,8 @@ pub(crate) struct Judgement<T: Scalar> {
 }
 
 impl<T: Scalar, const N: usize> FastStep<T, N> {
-    /// Solves position, velocity and acceleration at `t` from the prediction q + h q̇ + h²/2 q̈.
+    /// Solves position, velocity and acceleration at `t` from the prediction q + h q̇ + h²/2 q̈, of higher order where the last steps
+    /// had to be corrected twice.
     ///
     /// Not plain is a step from or into the singular zone, one too long to be foreseen, and one that does not converge or is not
     /// finite. Nor is one that ends so far from the prediction that it may be in another assembly, violates a branch or leaves a
@@ -98,27 +108,64 @@ impl<T: Scalar, const N: usize> FastStep<T, N> {
         let [most_second, most_way] = quick::<T::Real>(const { link_lengths::any(S::COORDINATES) });
         let (prediction, foreseen) = start.predicted(t, &scales, most_second);
         let most_way = T::constant(most_way);
-        let mut solver = FastNewton::new(lanes);
         // Lanes keep a processor busy as they are, and a compiler sees them together in short stages. Each way is judged where it
         // ends: what both had to put down for one judge would be copied.
         if S::BLOCK_BY_BLOCK && T::LANES == 1 {
             let zeros = [T::constant(0.0); N];
-            let mut motion = [prediction, zeros, zeros];
+            let (mut motion, mut solver) = ([prediction, zeros, zeros], FastNewton::new(lanes));
             let solved = &mechanism.solve_motion(parameters, &mut motion, t, &mut solver);
-            let sum = solved.sum + sum_of_rates(&motion[1], &motion[2]);
-            let judge =
-                Judge { mechanism, parameters, start, prediction: &prediction, foreseen, most_way, solver };
-            return judge.judged(motion, (&solved.position, &solved.margin), sum);
+            if T::all(solved.ordered) {
+                let sum = solved.sum + sum_of_rates(&motion[1], &motion[2]);
+                let judge = Judge {
+                    mechanism,
+                    parameters,
+                    start,
+                    prediction: &prediction,
+                    foreseen,
+                    most_way,
+                    solver,
+                };
+                return judge.judged(motion, (&solved.position, &solved.margin), sum);
+            }
+            // The addresses of copies.
+            let (prediction, t, foreseen) = (prediction, t, foreseen);
+            return Self::by_stages((mechanism, parameters), start, (&prediction, foreseen), &t, lanes);
         }
-        let mut q = prediction;
+        Self::in_stages((mechanism, parameters), start, (&prediction, foreseen), t, lanes)
+    }
+
+    /// [`in_stages`](Self::in_stages), out of the way.
+    #[cold]
+    #[inline(never)]
+    fn by_stages<S: Kinematic<T, N, M>, const M: usize>(
+        mechanism: (&S, &S::Parameters),
+        start: &Start<'_, T, N>,
+        prediction: (&[T; N], T::Mask),
+        t: &T,
+        lanes: T::Mask,
+    ) -> Self {
+        Self::in_stages(mechanism, start, prediction, *t, lanes)
+    }
+
+    /// The step from its prediction, all positions before all rates; with pivoting where a block asks for it.
+    #[inline(always)]
+    fn in_stages<S: Kinematic<T, N, M>, const M: usize>(
+        (mechanism, parameters): (&S, &S::Parameters),
+        start: &Start<'_, T, N>,
+        (prediction, foreseen): (&[T; N], T::Mask),
+        t: T,
+        lanes: T::Mask,
+    ) -> Self {
+        let [_, most_way] = quick::<T::Real>(const { link_lengths::any(S::COORDINATES) });
+        let most_way = T::constant(most_way);
+        let (mut q, mut solver) = (*prediction, FastNewton::new(lanes));
         // By reference: what is long would be moved out of the pairs.
         let (_, position) = &mechanism.solve_with_position(parameters, &mut q, t, &mut solver);
         let (factors, margin) = &mechanism.factorize(parameters, position);
         let qd = mechanism.solve_linear(factors, &negated(mechanism.phi_t(parameters, position)));
         let qdd = mechanism.solve_linear(factors, &mechanism.gamma(parameters, position, &qd));
         let sum = sum_of_rates(&qd, &qdd);
-        let judge =
-            Judge { mechanism, parameters, start, prediction: &prediction, foreseen, most_way, solver };
+        let judge = Judge { mechanism, parameters, start, prediction, foreseen, most_way, solver };
         judge.judged([q, qd, qdd], (position, margin), sum)
     }
 
@@ -152,7 +199,14 @@ impl<T: Scalar, const N: usize> FastStep<T, N> {
         with_lengths: bool,
     ) -> Judgement<T> {
         let [most_second, most_way] = quick::<T::Real>(with_lengths);
-        let (_, [trusted, near]) = predicted_far(start.rates(), t - start.t, scales, most_second);
+        let h = t - start.t;
+        let half_square = T::constant(0.5) * h * h;
+        let (mut trusted, mut near) = (T::mask(true), T::mask(true));
+        for (acceleration, scale) in start.qdd.iter().zip(scales) {
+            let second = half_square * *acceleration;
+            trusted = trusted & self::trusted(second, *scale, LARGEST_SECOND_ORDER_TERM);
+            near = near & self::trusted(second, *scale, most_second);
+        }
         // Written so that NaN is not plain.
         Judgement {
             plain: self.is_sound()
@@ -169,8 +223,7 @@ impl<T: Scalar, const N: usize> FastStep<T, N> {
     }
 
     /// `true` if the links of a doubtful step from `start` to `t` turned as predicted, so little that the assembly is kept.
-    #[cold]
-    #[inline(never)]
+    #[inline(always)] // for the points are known where it is asked
     pub(crate) fn settles(
         &self,
         metric: (&link_lengths::Points<N>, &[T; N]),
@@ -178,11 +231,17 @@ impl<T: Scalar, const N: usize> FastStep<T, N> {
         t: T,
     ) -> T::Mask {
         let h = t - start.t;
-        let (prediction, [_, near]) = predicted_far(start.rates(), h, metric.1, QUICK_SECOND_ORDER_TERM);
+        let half_square = T::constant(0.5) * h * h;
+        let (mut off, mut near) = (self.q, T::mask(true));
+        let [q, qd, qdd] = start.rates();
+        let before = q.iter().zip(qd.iter().zip(qdd)).zip(metric.1);
+        for (off, ((place, (rate, acceleration)), scale)) in off.iter_mut().zip(before) {
+            let second = half_square * *acceleration;
+            near = near & trusted(second, *scale, QUICK_SECOND_ORDER_TERM);
+            *off = *off - (*place + h * *rate + second);
+        }
         let least = link_lengths::least(self.margin);
         let little = link_lengths::turn_little(metric, [start.qd, start.qdd, &self.qd], h, least);
-        let mut off = self.q;
-        off.iter_mut().zip(&prediction).for_each(|(off, foreseen)| *off = *off - *foreseen);
         let foreseen = link_lengths::are_foreseen(metric, &off, [start.qd, start.qdd], (h, self.margin));
         (near | little) & foreseen
     }
@@ -266,9 +325,20 @@ impl<'a, T: Scalar, const N: usize> Start<'a, T, N> {
         [self.q, self.qd, self.qdd]
     }
 
-    /// q + h q̇ + h²/2 q̈, and the lanes in which the last term is less than `most` reference lengths (or rad).
+    /// q + h q̇ + h²/2 q̈, and the lanes in which the last term is less than `most` reference lengths (or rad). With terms of higher
+    /// order where there is a bend.
     #[inline(always)]
     fn predicted(&self, t: T, scales: &[T; N], most: f64) -> ([T; N], T::Mask) {
+        let predicted = self.predicted_plainly(t, scales, most);
+        match self.bend {
+            Some(bend) => self.with_bend(bend, t - self.t, (scales, most), predicted),
+            None => predicted,
+        }
+    }
+
+    /// Without these terms.
+    #[inline(always)]
+    fn predicted_plainly(&self, t: T, scales: &[T; N], most: f64) -> ([T; N], T::Mask) {
         let h = t - self.t;
         let half_square = T::constant(0.5) * h * h;
         let alone = size_of::<T>() == size_of::<T::Real>();
@@ -299,6 +369,61 @@ impl<'a, T: Scalar, const N: usize> Start<'a, T, N> {
             }
         }
         (predicted, all)
+    }
+
+    /// `predicted` with terms of third and fourth order, from the rates q̇₀ and q̈₀ a step of h₀ = h/ρ before:
+    /// ρ h²/3 (2 q̈ + q̈₀ − 3 a) + ρ² h²/4 (q̈ + q̈₀ − 2 a), where a = (q̇ − q̇₀)/h₀.
+    ///
+    /// Without them where one is as much as `most`, or where the largest one is no small part of the largest second-order term, as
+    /// after a jump of the accelerations. Source: Hairer, Nørsett & Wanner 1993, §III.1 (interpolation of the values before).
+    #[inline(always)]
+    fn with_bend(
+        &self,
+        bend: &Bend<T, N>,
+        h: T,
+        (scales, most): (&[T; N], f64),
+        (mut predicted, all): ([T; N], T::Mask),
+    ) -> ([T; N], T::Mask) {
+        let (square, ratio) = (h * h, h / bend.time);
+        // Not a step the other way, nor a much longer one.
+        let follows = T::constant(0.0).less(ratio) & ratio.less(T::constant(LONGEST_FORESEEN));
+        let ratio = T::select(follows, ratio, T::constant(0.0));
+        let third = square * ratio * T::constant(1.0 / 3.0);
+        let fourth = square * ratio * ratio * T::constant(0.25);
+        let (now, then) = ((third + third) + fourth, third + fourth);
+        let mean = (T::constant(3.0) * third + (fourth + fourth)) / bend.time;
+        let zero = T::constant(0.0);
+        let (mut largest, mut largest_second) = (zero, zero);
+        let rates = self.qd.iter().zip(self.qdd).zip(bend.qd.iter().zip(&bend.qdd));
+        for ((coordinate, ((rate, acceleration), (last_rate, last_acceleration))), weight) in
+            predicted.iter_mut().zip(rates).zip(self.weights)
+        {
+            let more = (then * *last_acceleration - mean * (*rate - *last_rate)) + now * *acceleration;
+            let size = more.abs() * *weight;
+            // As in `predicted_plainly`: a branch a coordinate.
+            if N <= FEW && !T::all(size.less(T::constant(most))) {
+                return self.predicted_without(h, scales, most);
+            }
+            largest = largest.max(size);
+            largest_second = largest_second.max(acceleration.abs() * *weight);
+            *coordinate = *coordinate + more;
+            if N > FEW {
+                T::side_by_side();
+            }
+        }
+        let limit = T::constant(LARGEST_BEND) * square * largest_second;
+        if !T::all(!limit.less(largest) & largest.less(T::constant(most))) {
+            return self.predicted_without(h, scales, most);
+        }
+        (predicted, all)
+    }
+
+    /// The prediction without further terms.
+    #[cold]
+    #[inline(never)]
+    fn predicted_without(&self, h: T, scales: &[T; N], most: f64) -> ([T; N], T::Mask) {
+        let (predicted, [_, near]) = predicted_far(self.rates(), h, scales, most);
+        (predicted, near)
     }
 
     /// [`predicted`](Self::predicted) for so many coordinates that the last step has stored them together, after all blocks.

@@ -116,6 +116,18 @@ pub enum Factorized {
     },
     /// Unguarded factors, for callers that check the sum of all blocks' witnesses.
     Unguarded,
+    /// Factors in the block's own order, for callers that ask if multipliers were bounded.
+    Ordered,
+}
+
+impl Factorized {
+    /// Trait of the factors.
+    pub fn contract(self) -> &'static str {
+        match self {
+            Factorized::Ordered => "Elimination",
+            Factorized::Guarded { .. } | Factorized::Unguarded => "Factorization",
+        }
+    }
 }
 
 /// The factors of a block, and their part of the margin.
@@ -151,11 +163,15 @@ pub fn diagonal(
             Factorized::Unguarded => format!(
                 "let (__block{index}, __value, __witness) = <{kind} as __mbs::Factorization<T, {size}>>::factorize_unguarded{given};\nlet __sum = __sum + __witness;"
             ),
+            Factorized::Ordered => format!(
+                "let (__block{index}, __value, __bounded) = <{kind} as __mbs::Elimination<T, {size}>>::eliminate{given};\nlet __ordered = __ordered & __bounded;"
+            ),
         };
+        let contract = factorized.contract();
         text = format!(
             "{call}\n\
              let __margin = __margin.with_block(__value, {row}, {coordinate})\
-             .oriented(<{kind} as __mbs::Factorization<T, {size}>>::reverses(&__block{index}));\n"
+             .oriented(<{kind} as __mbs::{contract}<T, {size}>>::reverses(&__block{index}));\n"
         );
     }
     let asked = matches!(factorized, Factorized::Guarded { asked: true });

@@ -22,7 +22,7 @@ use mbs_runtime::{
     Batch, Dynamic, Kinematic, Lanes, Mechanism, Partitioned, Scalar, Signal, Stepper, mechanism,
 };
 use released::{NFourBar10, NFourBar40, Squeezer};
-use texts::{Andrews, Chain10, Chain40, CommandedFourBar, FourBar};
+use texts::{AdjustableFourBar, Andrews, Chain10, Chain40, CommandedFourBar, FourBar};
 
 chain! {
     /// One loop.
@@ -45,15 +45,75 @@ chain! {
     Chain200, 200
 }
 
+mechanism! {
+    /// A six-bar driven off its loop: four angles are one block.
+    pub mechanism SixBar;
+    const d: m = 0.30;
+    const La: m = 0.25;
+    const Lb: m = 0.15;
+    const Ld: m = 0.25;
+    const r: m = 0.05;
+    const l: m = 0.30;
+    coord theta: rad = 0;
+    coord alpha: rad = 1.1;
+    coord beta: rad = 0.16;
+    coord gamma: rad = 1.7;
+    coord delta: rad = 0;
+    let a = La*unit(alpha);
+    constraint four_bar { a + Lb*unit(beta) == [d, 0] + Ld*unit(gamma); }
+    constraint rod { [-150mm, 160mm] + r*unit(theta) + l*unit(delta) == a + rot(beta)*[75mm, -80mm]; }
+    drive crank: theta == TAU*t/1s;
+    branch open: sin(gamma - beta) > 0;
+}
+
+mechanism! {
+    /// Jansen's leg: five dyads in natural coordinates, lengths as parameters.
+    pub mechanism Leg;
+    param m: m = 15mm;
+    param bars: [m; 10] = [50mm, 41.5mm, 61.9mm, 39.3mm, 55.8mm, 40.1mm, 39.4mm, 36.7mm, 65.7mm, 49mm];
+    coord theta: rad = 0;
+    coord top: [m; 2] = [-19mm, 29mm];
+    coord knee: [m; 2] = [-31mm, -46mm];
+    coord rear: [m; 2] = [-68mm, 20mm];
+    coord heel: [m; 2] = [-66mm, -37mm];
+    coord foot: [m; 2] = [-53mm, -90mm];
+    let crank = m*unit(theta);
+    let pivot = [-38mm, -7.8mm];
+    constraint upper {
+        dot(top - crank, top - crank) == bars[0]^2;
+        dot(top - pivot, top - pivot) == bars[1]^2;
+    }
+    constraint lower {
+        dot(knee - crank, knee - crank) == bars[2]^2;
+        dot(knee - pivot, knee - pivot) == bars[3]^2;
+    }
+    constraint shoulder {
+        dot(rear - top, rear - top) == bars[4]^2;
+        dot(rear - pivot, rear - pivot) == bars[5]^2;
+    }
+    constraint parallel {
+        dot(heel - rear, heel - rear) == bars[6]^2;
+        dot(heel - knee, heel - knee) == bars[7]^2;
+    }
+    constraint shank {
+        dot(foot - heel, foot - heel) == bars[8]^2;
+        dot(foot - knee, foot - knee) == bars[9]^2;
+    }
+    drive turn: theta == -TAU*t/1s;
+}
+
 /// Time of a step (s).
 const STEP: f64 = 1e-3;
+
+/// Time of a step (s) so long that its prediction must be corrected twice, unless it is of higher order.
+const LONG_STEP: f64 = 1.0 / 360.0;
 
 const LANES: usize = 8;
 
 /// A work by name, done so many times.
 type Work = (&'static str, fn(u32));
 
-const WORKS: [Work; 19] = [
+const WORKS: [Work; 23] = [
     ("evaluate_four_bar", evaluate::<FourBar, 5>),
     ("evaluate_andrews", evaluate::<Andrews, 7>),
     ("evaluate_chain", evaluate::<Chain10, 22>),
@@ -62,6 +122,12 @@ const WORKS: [Work; 19] = [
     ("step_four_bar_in_8_lanes", |count| batch(FourBar::default(), [0.0, 0.0, 0.0, 0.9, 1.8], count)),
     ("step_four_bar_with_inputs", commanded_steps),
     ("step_four_bar_with_inputs_in_8_lanes", commanded_batch),
+    ("step_four_bar_with_parameters", |count| {
+        steps(AdjustableFourBar::default(), [0.0, 0.0, 0.0, 0.9, 1.8], count);
+    }),
+    ("step_six_bar", |count| steps(SixBar::default(), [0.0, 1.1, 0.16, 1.7, 0.0], count)),
+    ("step_leg", |count| steps(Leg::default(), LEG, count)),
+    ("long_step_leg", |count| steps_of(LONG_STEP, Leg::default(), LEG, count)),
     ("step_chain_of_1", |count| steps(Chain1::default(), upright(), count)),
     ("step_chain_of_10", |count| steps(Chain10::default(), upright(), count)),
     ("step_chain_of_10_in_8_lanes", |count| batch(Chain10::default(), upright(), count)),
@@ -88,6 +154,9 @@ fn main() -> ExitCode {
     ExitCode::SUCCESS
 }
 
+/// Jansen's leg at the start (rad, m).
+const LEG: [f64; 11] = [0.0, -0.019, 0.029, -0.031, -0.046, -0.068, 0.02, -0.066, -0.037, -0.053, -0.09];
+
 /// Uprights upright.
 fn upright<const N: usize>() -> [f64; N] {
     std::array::from_fn(|k| (k % 2) as f64)
@@ -113,9 +182,15 @@ fn evaluate_lanes(count: u32) {
 }
 
 fn steps<S: Kinematic<f64, N>, const N: usize>(mechanism: S, guess: [f64; N], count: u32) {
+    steps_of(STEP, mechanism, guess, count);
+}
+
+/// Steps of `h` (s).
+#[inline(always)]
+fn steps_of<S: Kinematic<f64, N>, const N: usize>(h: f64, mechanism: S, guess: [f64; N], count: u32) {
     let mut stepper = Stepper::assemble(mechanism, guess, 0.0).expect("it can be assembled");
     for k in 1..=count {
-        stepper.advance_to(f64::from(k) * STEP).expect("the mechanism is regular");
+        stepper.advance_to(f64::from(k) * h).expect("the mechanism is regular");
     }
     black_box(stepper.q());
 }

@@ -30,6 +30,20 @@ impl Printer {
         text
     }
 
+    /// The factor that brings the determinant of a pivot with these places into the reference metric; none for 1.
+    pub(super) fn unit(&mut self, places: [(usize, usize); 2]) -> Entry {
+        let weights = places.map(|(row, _)| format!("__weight{}", self.scales.row(row))).join(" * ");
+        let mut unit = weights;
+        self.operations.multiplications += 1;
+        for (_, column) in places {
+            if let Some(scale) = self.scales.columns.get(column).copied().flatten() {
+                let _ = write!(unit, " * __coordinate_scales[{scale}]");
+                self.operations.multiplications += 1;
+            }
+        }
+        Some(self.name(&unit))
+    }
+
     /// The largest of the entries in the reference metric, as text: those of one scale are compared before they are weighted.
     pub(super) fn largest(&mut self, places: impl Iterator<Item = (usize, usize)>) -> String {
         let mut groups: BTreeMap<(usize, Option<usize>), (usize, usize, String)> = BTreeMap::new();
@@ -60,7 +74,7 @@ impl Printer {
 
     /// The largest entry of a pivot's columns; empty for a single entry.
     pub(super) fn block(&mut self, pivot: &Pivot) -> String {
-        if pivot.rows.len() < 2 {
+        if pivot.rows.len() < 2 || self.once {
             return String::new();
         }
         let size = self.entries.len();
@@ -70,18 +84,33 @@ impl Printer {
     }
 
     /// Prints the update by the size of a pivot, as the best choice of rows for its columns would leave it; for two rows the
-    /// determinant over their largest entry.
-    pub(super) fn measure(&mut self, pivot: &Pivot, determinant: Entry, block: &str, growth: &str) {
-        let Some(determinant) = determinant else { return };
+    /// determinant over their largest entry. That of a `closing` pivot is in the reference metric already, and a factor of
+    /// `growth`.
+    pub(super) fn measure(
+        &mut self,
+        pivot: &Pivot,
+        determinant: Entry,
+        block: &str,
+        (growth, closing): (&str, bool),
+    ) {
+        let Some(determinant) = determinant.filter(|_| !self.once) else { return };
         let mut size = self.absolute(&determinant);
-        for (row, column) in pivot.rows.iter().zip(&pivot.columns) {
+        let own = size.clone();
+        for (row, column) in pivot.rows.iter().zip(&pivot.columns).filter(|_| !closing) {
             size = self.weighted(size, *row, *column);
         }
         if !block.is_empty() {
             size = format!("{size} / {block}");
             self.operations.divisions += 1;
         }
-        if !growth.is_empty() {
+        if closing && !growth.is_empty() {
+            // The determinant times the largest multiplier of at least 1.
+            size = match block.is_empty() {
+                true => format!("T::max({own}, {growth})"),
+                false => format!("T::max({own}, {growth}) / {block}"),
+            };
+            self.operations.selects += 1;
+        } else if !growth.is_empty() {
             size = format!("{size} * T::max(__one, {growth})");
             self.operations.multiplications += 1;
             self.operations.selects += 1;

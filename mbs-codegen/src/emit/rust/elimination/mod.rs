@@ -42,6 +42,11 @@ impl Eliminations {
         Eliminations { types, of_block }
     }
 
+    /// Type of the factors of a diagonal block in its own order, where it has one.
+    pub fn ordered(&self, index: usize) -> Option<String> {
+        self.of_block.get(&index).map(|number| format!("{}<T>", name(*number)))
+    }
+
     /// Type of the factors of a diagonal block.
     pub fn factorization(&self, index: usize, size: usize) -> String {
         match self.of_block.get(&index) {

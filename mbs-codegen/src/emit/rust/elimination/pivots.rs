@@ -21,18 +21,42 @@ pub(super) struct Eliminated {
     pub(super) multipliers: Vec<(usize, Vec<Entry>)>,
     /// Columns outside the pivot, and the pivot's rows there.
     pub(super) upper: Vec<(usize, Vec<Entry>)>,
+    /// Determinant by which the rows below were multiplied in place of a division; none where they were not.
+    pub(super) factor: Entry,
+}
+
+/// The inverse of a pivot, as the elimination uses it and as the solutions do.
+#[derive(Default)]
+struct Inverse {
+    /// With the determinant as a factor where the pivot is the closing one.
+    used: Vec<Vec<Entry>>,
+    kept: Vec<Vec<Entry>>,
 }
 
 impl Printer {
-    pub(super) fn eliminate(&mut self, pivot: &Pivot) -> Eliminated {
+    /// Eliminates a pivot. The rows below the `closing` one, which the closed form follows, are multiplied by its determinant: so
+    /// nothing waits for its reciprocal. The determinant is returned, too.
+    pub(super) fn eliminate(&mut self, pivot: &Pivot, closing: bool) -> (Eliminated, Entry) {
+        let mut factor = None;
         let (inverse, determinant) = match (pivot.rows.as_slice(), pivot.columns.as_slice()) {
-            (&[first, second], &[left, right]) => self.inverse([first, second], [left, right]),
-            (&[row], &[column]) => (vec![vec![self.reciprocal(row, column)]], self.entry(row, column)),
-            _ => (Vec::new(), None),
+            (&[first, second], &[left, right]) if closing => {
+                let (adjugate, inverse, determinant) = self.adjugate([first, second], [left, right]);
+                factor = determinant.clone();
+                (Inverse { used: adjugate, kept: inverse }, determinant)
+            }
+            (&[first, second], &[left, right]) => {
+                let (inverse, determinant) = self.inverse([first, second], [left, right]);
+                (Inverse { used: inverse.clone(), kept: inverse }, determinant)
+            }
+            (&[row], &[column]) => {
+                let inverse = vec![vec![self.reciprocal(row, column)]];
+                (Inverse { used: inverse.clone(), kept: inverse }, self.entry(row, column))
+            }
+            _ => (Inverse::default(), None),
         };
         let size = self.entries.len();
         let (mut growth, block) = (String::new(), self.block(pivot));
-        let rows: Vec<usize> = (0..size).filter(|row| !pivot.rows.contains(row)).collect();
+        let rows: Vec<usize> = self.rest.iter().copied().filter(|row| !pivot.rows.contains(row)).collect();
         let columns: Vec<usize> = (0..size).filter(|column| !pivot.columns.contains(column)).collect();
         let above = |printer: &Self, column: usize| -> Vec<Entry> {
             pivot.rows.iter().map(|row| printer.entry(*row, column)).collect()
@@ -42,25 +66,34 @@ impl Printer {
         let upper: Vec<(usize, Vec<Entry>)> =
             upper.into_iter().filter(|(_, entries)| entries.iter().any(Option::is_some)).collect();
         let mut multipliers = Vec::new();
-        for row in rows {
-            let below: Vec<Entry> = pivot.columns.iter().map(|column| self.entry(row, *column)).collect();
-            if below.iter().all(Option::is_none) {
+        for row in &rows {
+            let below: Vec<Entry> = pivot.columns.iter().map(|column| self.entry(*row, *column)).collect();
+            if below.iter().all(Option::is_none) && factor.is_none() {
                 continue;
             }
             let factors: Vec<Entry> =
-                (0..pivot.rows.len()).map(|k| self.multiplier(&below, &inverse, k)).collect();
-            for (factor, of) in factors.iter().zip(&pivot.rows) {
-                self.bound(factor, row, *of, &mut growth);
+                (0..pivot.rows.len()).map(|k| self.multiplier(&below, &inverse.used, k)).collect();
+            for (multiplier, of) in factors.iter().zip(&pivot.rows) {
+                self.bound(multiplier, &factor, (*row, *of), &mut growth);
             }
-            for (column, entries) in &upper {
-                let start = self.entry(row, *column);
-                let products = factors.iter().cloned().zip(entries.iter().cloned()).collect();
+            for column in &columns {
+                let entries = upper.iter().find(|(above, _)| above == column);
+                let start = self.entry(*row, *column);
+                let start = self.times(start, &factor);
+                let products = match entries {
+                    Some((_, entries)) => factors.iter().cloned().zip(entries.iter().cloned()).collect(),
+                    None => Vec::new(),
+                };
                 let value = self.less(start, products);
-                self.set(row, *column, value);
+                self.set(*row, *column, value);
             }
-            multipliers.push((row, factors));
+            multipliers.push((*row, factors));
+            if self.once {
+                self.text += "if T::LANES == 1 && !T::all(__bounded) {\nreturn (*__b, __bounded);\n}\n";
+            }
         }
-        self.measure(pivot, determinant, &block, &growth);
+        self.measure(pivot, determinant, &block, (&growth, factor.is_some()));
+        self.rest = rows;
         for row in &pivot.rows {
             (0..size).for_each(|column| self.set(*row, column, None));
         }
@@ -70,12 +103,13 @@ impl Printer {
         let mut keep_all = |entries: Vec<Entry>| -> Vec<Entry> {
             entries.into_iter().map(|entry| self.keep(entry)).collect()
         };
-        Eliminated {
-            inverse: inverse.into_iter().map(&mut keep_all).collect(),
-            multipliers: multipliers.into_iter().map(|(row, entries)| (row, keep_all(entries))).collect(),
-            upper: upper.into_iter().map(|(column, entries)| (column, keep_all(entries))).collect(),
-            pivot: pivot.clone(),
-        }
+        let (inverse, multipliers, upper) = (
+            inverse.kept.into_iter().map(&mut keep_all).collect(),
+            multipliers.into_iter().map(|(row, entries)| (row, keep_all(entries))).collect(),
+            upper.into_iter().map(|(column, entries)| (column, keep_all(entries))).collect(),
+        );
+        let kept = self.keep(factor.clone());
+        (Eliminated { inverse, multipliers, upper, factor: kept, pivot: pivot.clone() }, factor)
     }
 
     /// Σ over the pivot's columns of the row's entries times column `k` of the inverse.
@@ -124,6 +158,33 @@ impl Printer {
         (inverse, Some(determinant))
     }
 
+    /// The adjugate of two rows times the metric of their determinant, their inverse, and the determinant in the reference
+    /// metric.
+    fn adjugate(
+        &mut self,
+        [first, second]: [usize; 2],
+        [left, right]: [usize; 2],
+    ) -> (Vec<Vec<Entry>>, Vec<Vec<Entry>>, Entry) {
+        let places = [(first, left), (first, right), (second, left), (second, right)];
+        let plain = places.map(|(row, column)| self.entry(row, column));
+        let unit = self.unit([(first, left), (second, right)]);
+        let [p, q, r, s] = plain.clone().map(|entry| self.times(entry, &unit));
+        let [own_p, own_q, ..] = plain;
+        let cross = self.less(None, vec![(own_q, r.clone())]);
+        let determinant = self.less(cross, vec![(negated(&own_p), s.clone())]).unwrap_or(Value::Number(0.0));
+        self.turn(&determinant);
+        self.operations.divisions += 1;
+        let reciprocal = self.name(&format!("__one / {}", determinant.text()));
+        self.finite(&reciprocal);
+        let reciprocal = Some(reciprocal);
+        let adjugate = vec![vec![s, negated(&q)], vec![negated(&r), p]];
+        let mut inverse = Vec::new();
+        for line in &adjugate {
+            inverse.push(line.iter().map(|entry| self.times(entry.clone(), &reciprocal)).collect());
+        }
+        (adjugate, inverse, Some(determinant))
+    }
+
     /// Notes that a reciprocal must be finite: a pivot without entries below it has no multiplier that would show it.
     fn finite(&mut self, reciprocal: &Value) {
         let _ = writeln!(self.text, "__bounded = __bounded & T::is_finite({});", reciprocal.text());
@@ -132,6 +193,9 @@ impl Printer {
 
     /// Prints the update by the sign of a pivot's determinant.
     fn turn(&mut self, determinant: &Value) {
+        if self.once {
+            return;
+        }
         match determinant {
             Value::Number(value) => self.odd ^= *value < 0.0,
             Value::Local(name) => {
@@ -141,12 +205,12 @@ impl Printer {
         }
     }
 
-    /// Prints the bound on the multiplier of row `of` in `row`; `growth` is the largest of these.
-    fn bound(&mut self, multiplier: &Entry, row: usize, of: usize, growth: &mut String) {
+    /// Prints the bound on the multiplier of row `of` in `row`, times `factor`; `growth` is the largest of these.
+    fn bound(&mut self, multiplier: &Entry, factor: &Entry, (row, of): (usize, usize), growth: &mut String) {
         let (from, to) = (self.scales.row(of), self.scales.row(row));
         let mut size = match multiplier {
             None => return,
-            Some(Value::Number(value)) if from == to && value.abs() <= 1.0 => return,
+            Some(Value::Number(value)) if from == to && value.abs() <= 1.0 && factor.is_none() => return,
             Some(multiplier) => format!("T::abs({})", multiplier.text()),
         };
         if from != to {
@@ -154,7 +218,14 @@ impl Printer {
             self.operations.multiplications += 2;
         }
         let size = self.name(&size).text();
-        let _ = writeln!(self.text, "__bounded = __bounded & T::less({size}, __limit);");
+        let limit = match factor {
+            None => "__limit".to_owned(),
+            Some(factor) => {
+                self.operations.multiplications += 1;
+                format!("__limit * T::abs({})", factor.text())
+            }
+        };
+        let _ = writeln!(self.text, "__bounded = __bounded & T::less({size}, {limit});");
         self.operations.selects += 1;
         self.comparisons += 1;
         if !growth.is_empty() {
@@ -165,19 +236,26 @@ impl Printer {
         }
     }
 
-    /// Closed form of the rows and columns that are left, and the margin of all.
-    pub(super) fn last(&mut self, last: &Pivot, odd: bool) {
+    /// Closed form of the rows and columns that are left, times the determinant `factor` of the pivot before, and the margin of
+    /// all.
+    pub(super) fn last(&mut self, last: &Pivot, odd: bool, factor: &Entry) {
         let rank = last.rows.len();
         let zero = || number(0.0);
-        let text = |entry: Entry| entry.map_or_else(zero, |value| value.text());
-        let rows = last.rows.iter().map(|row| list(last.columns.iter().map(|c| text(self.entry(*row, *c)))));
-        let rows = list(rows);
+        let rows = self.rows_of(last);
         let scales = |name: &str, indices: &[usize]| list(indices.iter().map(|i| format!("{name}[{i}]")));
         let (row_scales, coordinate_scales) =
             (scales("__row_scales", &last.rows), scales("__coordinate_scales", &last.columns));
         let places = last.rows.iter().flat_map(|row| last.columns.iter().map(|column| (*row, *column)));
-        let left = self.largest(places);
-        let odd = if odd != self.odd { "__reverses = !__reverses;\n" } else { "" };
+        let mut left = self.largest(places);
+        if let Some(factor) = factor {
+            left = format!("{left} / T::abs({})", factor.text());
+            self.operations.divisions += 1;
+        }
+        let mut odd = if odd != self.odd { "__reverses = !__reverses;\n" } else { "" }.to_owned();
+        if let (Some(factor), 1 | 3) = (factor, rank) {
+            let _ = write!(odd, "let __turn = T::less({}, {});\n{TURN}\n", factor.text(), zero());
+            self.comparisons += 1;
+        }
         let _ = write!(
             self.text,
             "let (__last, __own) = <__mbs::Direct{rank}<T> as __mbs::Factorization<T, {rank}>>::factorize(\
@@ -190,5 +268,11 @@ impl Printer {
         );
         self.operations += Operations { divisions: 1, multiplications: 1, selects: 3, ..Default::default() };
         self.comparisons += 2;
+    }
+
+    /// The rows and columns that are left, as text.
+    pub(super) fn rows_of(&self, last: &Pivot) -> String {
+        let text = |entry: Entry| entry.map_or_else(|| number(0.0), |value| value.text());
+        list(last.rows.iter().map(|row| list(last.columns.iter().map(|c| text(self.entry(*row, *c))))))
     }
 }

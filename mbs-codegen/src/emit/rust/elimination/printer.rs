@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 use std::fmt::Write;
 
+use super::pivots::Eliminated;
 use super::scales::Scales;
 use super::value::{Entry, Value};
 use super::{Cost, Elimination, NAME};
@@ -11,8 +12,11 @@ use crate::emit::rust::scope::number;
 use crate::program::Operations;
 use crate::structure::pivots::{Order, Pivot};
 
+/// Largest block whose solution for a step of Newton's method has code of its own, in line with the iteration.
+const LARGEST_IN_LINE: usize = 8;
+
 /// Code of a type, printed so far.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub(super) struct Printer {
     pub(super) entries: Vec<Vec<Entry>>,
     pub(super) scales: Scales,
@@ -26,12 +30,17 @@ pub(super) struct Printer {
     pub(super) odd: bool,
     /// Names that the factors keep, in the order of their array.
     pub(super) kept: Vec<String>,
+    /// Rows that are not eliminated yet.
+    pub(super) rest: Vec<usize>,
+    /// `true` for one solution without factors and margin.
+    pub(super) once: bool,
 }
 
 impl Printer {
     pub(super) fn print(mut self, order: &Order) -> Elimination {
         let size = self.entries.len();
-        let (mut done, mut last) = (Vec::new(), None);
+        self.rest = (0..size).collect();
+        let once = (size <= LARGEST_IN_LINE).then(|| self.clone().solve_once(order));
         self.text = "let __one = T::constant(1.0);\n\
                      let __limit = T::constant(__mbs::__private::LARGEST_MULTIPLIER);\n\
                      let mut __bounded = T::mask(true);\n\
@@ -42,16 +51,8 @@ impl Printer {
         let places = (0..size).flat_map(|row| (0..size).map(move |column| (row, column)));
         let largest = self.largest(places);
         let _ = writeln!(self.text, "let __largest = {largest};");
-        for (index, pivot) in order.pivots.iter().enumerate() {
-            if index + 1 == order.pivots.len() {
-                last = Some(pivot.clone());
-            } else {
-                let eliminated = self.eliminate(pivot);
-                done.push(eliminated);
-            }
-        }
-        let last = last.unwrap_or(Pivot { rows: Vec::new(), columns: Vec::new() });
-        self.last(&last, is_odd(order));
+        let (done, last, factor) = self.eliminate_all(order);
+        self.last(&last, is_odd(order), &factor);
         let elimination = core::mem::take(&mut self.operations);
         let factors = core::mem::take(&mut self.text);
         let solve = self.solve(&done, &last);
@@ -59,6 +60,7 @@ impl Printer {
         let transposed = self.transposed(&done, &last);
         let (kept, count) = (list(self.kept.iter().cloned()), self.kept.len());
         let rank = last.rows.len();
+        let once = once.unwrap_or_default();
         let text = format!(
             "/// Factors of {size} unknowns in the order that their sparsity makes the shortest.\n\
              #[derive(::core::clone::Clone, ::core::marker::Copy, ::core::fmt::Debug)]\n\
@@ -67,15 +69,48 @@ impl Printer {
              /// Factors of the rows that are left at the end.\nlast: __mbs::Direct{rank}<T>,\n\
              /// Lanes with a negative determinant.\nreverses: T::Mask,\n}}\n\
              impl<T: __mbs::Scalar> __mbs::Elimination<T, {size}> for {NAME}<T> {{\n\
-             #[inline]\nfn eliminate(__a: &[[T; {size}]; {size}], __row_scales: &[T; {size}], \
+             #[inline(always)]\nfn eliminate(__a: &[[T; {size}]; {size}], __row_scales: &[T; {size}], \
              __coordinate_scales: &[T; {size}]) -> (Self, T, T::Mask) {{\n{factors}\
              ({NAME} {{ values: {kept}, last: __last, reverses: __reverses }}, __margin, __bounded)\n}}\n\
-             #[inline]\nfn solve(&self, __b: &[T; {size}]) -> [T; {size}] {{\n{solve}}}\n\
+             {once}#[inline(always)]\nfn solve(&self, __b: &[T; {size}]) -> [T; {size}] {{\n{solve}}}\n\
              #[inline]\nfn solve_transposed(&self, __b: &[T; {size}]) -> [T; {size}] {{\n{transposed}}}\n\
              #[inline]\nfn reverses(&self) -> T::Mask {{ self.reverses }}\n}}\n"
         );
         let cost = Cost { elimination, comparisons: self.comparisons, substitution, last: rank };
         Elimination { text, cost }
+    }
+
+    /// Eliminates all pivots but the last, which is returned with the factor of its rows.
+    fn eliminate_all(&mut self, order: &Order) -> (Vec<Eliminated>, Pivot, Entry) {
+        let Some((last, pivots)) = order.pivots.split_last() else {
+            return (Vec::new(), Pivot { rows: Vec::new(), columns: Vec::new() }, None);
+        };
+        let (mut done, mut factor) = (Vec::new(), None);
+        for (index, pivot) in pivots.iter().enumerate() {
+            let (eliminated, own) = self.eliminate(pivot, index + 1 == pivots.len());
+            factor = own;
+            done.push(eliminated);
+        }
+        (done, last.clone(), factor)
+    }
+
+    /// The function that solves once, without margin and factors.
+    fn solve_once(mut self, order: &Order) -> String {
+        let size = self.entries.len();
+        self.once = true;
+        self.text = "let __one = T::constant(1.0);\n\
+                     let __limit = T::constant(__mbs::__private::LARGEST_MULTIPLIER);\n\
+                     let mut __bounded = T::mask(true);\n"
+            .into();
+        self.scales_of_rows();
+        let (done, last, _) = self.eliminate_all(order);
+        let x = self.solve(&done, &last);
+        let (code, x) = x.trim_end().rsplit_once('\n').unwrap_or(("", &x));
+        format!(
+            "#[inline(always)]\nfn solve_once(__a: &[[T; {size}]; {size}], __b: &[T; {size}], \
+             __row_scales: &[T; {size}], __coordinate_scales: &[T; {size}]) -> ([T; {size}], T::Mask) {{\n\
+             {code}\n({x}, __bounded)\n}}\n"
+        )
     }
 
     /// Reciprocals of the rows' scales, each once.
@@ -97,6 +132,16 @@ impl Printer {
         if let Some(entry) = self.entries.get_mut(row).and_then(|row| row.get_mut(column)) {
             *entry = value;
         }
+    }
+
+    /// `entry` times `factor`; as it is without one.
+    pub(super) fn times(&mut self, entry: Entry, factor: &Entry) -> Entry {
+        let (Some(value), Some(factor)) = (&entry, factor) else { return entry };
+        if let (Value::Number(a), Value::Number(b)) = (value, factor) {
+            return Some(Value::Number(a * b));
+        }
+        let (negative, product) = self.product(value, factor);
+        Some(self.name(&format!("{}{product}", if negative { "-" } else { "" })))
     }
 
     /// `start − Σ a b`, as a number where all are, else under a name of its own.
@@ -157,6 +202,7 @@ impl Printer {
     /// Reference to a value that the factors store; numbers are written where they are used.
     pub(super) fn keep(&mut self, value: Entry) -> Entry {
         match value {
+            value if self.once => value,
             Some(Value::Local(name)) => {
                 let index = self.kept.iter().position(|kept| *kept == name).unwrap_or(self.kept.len());
                 if index == self.kept.len() {

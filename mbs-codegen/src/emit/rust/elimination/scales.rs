@@ -5,7 +5,7 @@ use crate::program::BlockProgram;
 use crate::symbolic::NodeId;
 
 /// Scale of each row and column, by its index in the block: equal scales share the first index.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub(super) struct Scales {
     pub(super) rows: Vec<usize>,
     /// `None` for 1.

@@ -15,14 +15,17 @@ impl Printer {
         let size = self.entries.len();
         let given = |index: usize| Some(Value::Local(format!("__b[{index}]")));
         let (mut b, mut x): (Vec<Entry>, Vec<Entry>) = ((0..size).map(given).collect(), vec![None; size]);
-        for Eliminated { pivot, multipliers, .. } in done {
+        for Eliminated { pivot, multipliers, factor, .. } in done {
             for (row, factors) in multipliers {
                 let products = factors.iter().cloned().zip(pivot.rows.iter().map(|of| at(&b, *of))).collect();
-                let value = self.less(at(&b, *row), products);
+                let start = self.times(at(&b, *row), factor);
+                let value = self.less(start, products);
                 put(&mut b, *row, value);
             }
         }
-        self.solve_last("solve", last.rows.iter().map(|row| at(&b, *row)), &last.columns, &mut x);
+        let method = if self.once { "solve_once" } else { "solve" };
+        let right = last.rows.iter().map(|row| at(&b, *row));
+        self.solve_last(method, right, (&last.columns, &last.rows), &mut x);
         for Eliminated { pivot, inverse, upper, .. } in done.iter().rev() {
             let mut rest = Vec::new();
             for (k, row) in pivot.rows.iter().enumerate() {
@@ -59,13 +62,19 @@ impl Printer {
                 put(&mut b, *column, value);
             }
         }
-        self.solve_last("solve_transposed", last.columns.iter().map(|c| at(&b, *c)), &last.rows, &mut x);
-        for Eliminated { pivot, multipliers, .. } in done.iter().rev() {
+        let right = last.columns.iter().map(|column| at(&b, *column));
+        self.solve_last("solve_transposed", right, (&last.rows, &last.columns), &mut x);
+        for Eliminated { pivot, multipliers, factor, .. } in done.iter().rev() {
             for (k, row) in pivot.rows.iter().enumerate() {
                 let products =
                     multipliers.iter().map(|(below, factors)| (at(factors, k), at(&x, *below))).collect();
                 let value = self.less(at(&x, *row), products);
                 put(&mut x, *row, value);
+            }
+            // What was solved belongs to rows that are multiplied by the factor.
+            for (below, _) in multipliers {
+                let value = self.times(at(&x, *below), factor);
+                put(&mut x, *below, value);
             }
         }
         self.finish(&x)
@@ -75,17 +84,27 @@ impl Printer {
         &mut self,
         method: &str,
         right: impl Iterator<Item = Entry>,
-        places: &[usize],
+        (places, others): (&[usize], &[usize]),
         x: &mut [Entry],
     ) {
         let rank = places.len();
         let right = list(right.map(|entry| entry.map_or_else(|| number(0.0), |value| value.text())));
         let names: Vec<String> = places.iter().map(|place| format!("__l{place}")).collect();
-        let _ = writeln!(
-            self.text,
-            "let [{}] = <__mbs::Direct{rank}<T> as __mbs::Factorization<T, {rank}>>::{method}(&self.last, &{right});",
-            names.join(", ")
-        );
+        let unknowns = names.join(", ");
+        let kind = format!("<__mbs::Direct{rank}<T> as __mbs::Factorization<T, {rank}>>");
+        let _ = match self.once {
+            true => {
+                let rows = self.rows_of(&Pivot { rows: others.to_vec(), columns: places.to_vec() });
+                let scales = |name: &str, of: &[usize]| list(of.iter().map(|i| format!("{name}[{i}]")));
+                let scales = format!(
+                    "&{}, &{}",
+                    scales("__row_scales", others),
+                    scales("__coordinate_scales", places)
+                );
+                writeln!(self.text, "let ([{unknowns}], _) = {kind}::{method}(&{rows}, &{right}, {scales});")
+            }
+            false => writeln!(self.text, "let [{unknowns}] = {kind}::{method}(&self.last, &{right});"),
+        };
         for (place, name) in places.iter().zip(names) {
             put(x, *place, Some(Value::Local(name)));
         }

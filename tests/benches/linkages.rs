@@ -1,0 +1,290 @@
+//! Every ready linkage and twenty random ones against CasADi's C with dense LU and with nalgebra's, at equal accuracy.
+//!
+//! ```text
+//! cargo bench -p mbs-tests --bench linkages
+//! ```
+//!
+//! Writes a crate with the texts of all ready mechanisms whose rows fix them, and of random linkages that assemble and turn, and
+//! CasADi's C of each. The peers take the coarsest tolerance that is as accurate as the emitted code. `-- --only NAME,NAME` takes some,
+//! `-- --rounds 5` is a quick trial, `-- --docs` writes the table next to this file as well. Fails if a result is wrong, not if it is slow.
+#![forbid(unsafe_code)]
+
+#[path = "linkages/random.rs"]
+mod random;
+
+use std::env;
+use std::fmt::Write;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, ExitCode};
+
+use mbs_codegen::{casadi_definition, structure_of};
+use mbs_tests::tools;
+use mbs_workbench::verify::environment::Environment;
+use mechanisms::CATALOGUE;
+
+const REQUIREMENTS: &str = include_str!("../proofs/peers/requirements.txt");
+const PEERS: &str = include_str!("linkages/peers.py");
+const PROGRAM: &str = include_str!("linkages/program.rs");
+
+/// Random linkages.
+const RANDOM: usize = 20;
+
+/// Largest error of a step, relative to the largest position, velocity and acceleration.
+const LARGEST_ERROR: f64 = 1e-10;
+
+/// Largest linkage that a dense peer is worth being compared with.
+const LARGEST: usize = 24;
+
+/// A text with what the peers need.
+struct Linkage {
+    /// Name of the module and of the peer's functions.
+    name: String,
+    type_name: String,
+    text: String,
+    definition: String,
+    values: Vec<f64>,
+    duration: f64,
+    coordinates: usize,
+    class: &'static str,
+    /// `true` if a quarter of the coordinates or more are angles.
+    has_sines: bool,
+}
+
+/// Measured ratios of a linkage: evaluation, step, step against nalgebra; times (ns) of evaluation and step; errors.
+struct Ratios {
+    ratios: [f64; 3],
+    times: [f64; 2],
+    errors: [f64; 2],
+}
+
+const CLASSES: [(&str, f64, f64); 4] = [
+    ("blocks of three and more unknowns", 4.5, 6.0),
+    ("chains of dyads", 7.0, 9.0),
+    ("single dyads", 10.0, 12.0),
+    ("no dyad", f64::NAN, f64::NAN),
+];
+
+fn main() -> ExitCode {
+    let arguments: Vec<String> = env::args().collect();
+    if !arguments.iter().any(|argument| argument == "--bench") {
+        println!("nothing is measured without `cargo bench`");
+        return ExitCode::SUCCESS;
+    }
+    let after = |name: &str| {
+        arguments.iter().position(|argument| argument == name).and_then(|index| arguments.get(index + 1))
+    };
+    let rounds = after("--rounds").map_or("31", String::as_str);
+    let only: Option<Vec<&str>> = after("--only").map(|names| names.split(',').collect());
+    match measured(rounds, only.as_deref()) {
+        Ok(text) => {
+            println!("{text}");
+            let mut files = vec![Path::new(env!("CARGO_TARGET_TMPDIR")).with_file_name("bench/linkages.md")];
+            if arguments.iter().any(|argument| argument == "--docs") {
+                files.push(PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/benches/linkages.md")));
+            }
+            for file in files {
+                let made = fs::create_dir_all(file.with_file_name("")).and_then(|()| fs::write(&file, &text));
+                made.unwrap_or_else(|error| eprintln!("cannot write {}: {error}", file.display()));
+            }
+            ExitCode::SUCCESS
+        }
+        Err(reason) => {
+            eprintln!("{reason}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn measured(rounds: &str, only: Option<&[&str]>) -> Result<String, String> {
+    let mut linkages = ready();
+    linkages.extend(random::texts(RANDOM).into_iter().map(|(name, text)| of_random(&name, text)));
+    linkages.retain(|linkage| only.is_none_or(|only| only.contains(&linkage.name.as_str())));
+    let program = build(&linkages)?;
+    let lines = tools::output(Command::new(program).arg(rounds), "it was built a moment ago")?;
+    let (mut found, mut faults, mut notes) = (Vec::new(), Vec::new(), String::new());
+    for line in lines.lines() {
+        let (name, rest) = line.split_once(' ').unwrap_or((line, ""));
+        let Some(linkage) = linkages.iter().find(|linkage| linkage.name == name) else { continue };
+        let numbers: Vec<f64> = rest.split(' ').filter_map(|word| word.parse().ok()).collect();
+        let [error, peers_error, evaluation, step, dense, time, step_time] = numbers[..] else {
+            let _ = writeln!(notes, "- {name}: {rest}");
+            continue;
+        };
+        if error.is_nan() || error > LARGEST_ERROR {
+            faults.push(format!("{name}: error {error:e}, allowed are {LARGEST_ERROR:e}"));
+        }
+        let ratios = [evaluation, step, dense];
+        found.push((linkage, Ratios { ratios, times: [time, step_time], errors: [error, peers_error] }));
+    }
+    if faults.is_empty() { Ok(table(&found, &notes)) } else { Err(faults.join("\n")) }
+}
+
+/// Ready mechanisms of as many rows as coordinates, without functions of the caller.
+fn ready() -> Vec<Linkage> {
+    let mut linkages = Vec::new();
+    for card in CATALOGUE.fixed() {
+        let Ok(mechanism) = card.mechanism() else { continue };
+        let (coordinates, scene) = (mechanism.coordinates().len(), mechanism.scene());
+        let fits = mechanism.rows().len() == coordinates && coordinates <= LARGEST;
+        if !fits || !mechanism.functions().is_empty() || scene != "AllEffects" {
+            continue;
+        }
+        let count = mechanism.variables().len();
+        let values: Option<Vec<f64>> = (0..count).map(|index| mechanism.get(index)).collect();
+        let (Some(values), Ok(duration)) = (values, card.duration(mechanism.as_ref())) else { continue };
+        linkages.push(of((card.name(), mechanism.type_name()), mechanism.source().into(), values, duration));
+    }
+    linkages
+}
+
+fn of_random(name: &str, text: String) -> Linkage {
+    of((name.to_lowercase(), name), text, Vec::new(), 1.0)
+}
+
+fn of((name, type_name): (String, &str), text: String, values: Vec<f64>, duration: f64) -> Linkage {
+    let definition = casadi_definition(&text, None).unwrap_or_else(|fault| panic!("{name}: {fault}\n{text}"));
+    let structure = structure_of(&text, None).unwrap_or_else(|fault| panic!("{name}: {fault}\n{text}"));
+    let solved = structure.blocks.iter().filter(|block| !block.explicit).map(|block| block.rows.len());
+    let sizes: Vec<usize> = solved.collect();
+    let class = match sizes.iter().max() {
+        None => CLASSES[3].0,
+        Some(3..) => CLASSES[0].0,
+        Some(_) if sizes.len() > 1 => CLASSES[1].0,
+        Some(_) => CLASSES[2].0,
+    };
+    let angles = structure.coordinates.iter().filter(|coordinate| coordinate.unit == "rad").count();
+    let coordinates = structure.coordinates.len();
+    Linkage {
+        name,
+        type_name: type_name.into(),
+        text,
+        definition,
+        values,
+        duration,
+        coordinates,
+        class,
+        has_sines: 4 * angles >= coordinates,
+    }
+}
+
+/// Writes the crate and the peers' C, and builds both for this processor.
+fn build(linkages: &[Linkage]) -> Result<PathBuf, String> {
+    let directory = Path::new(env!("CARGO_TARGET_TMPDIR")).join("linkages");
+    let sources = directory.join("peers");
+    let wrong = |error: std::io::Error| format!("{}: {error}", directory.display());
+    let _ = fs::remove_dir_all(&sources);
+    fs::create_dir_all(&sources).map_err(wrong)?;
+    fs::create_dir_all(directory.join("src")).map_err(wrong)?;
+    for Linkage { name, definition, values, .. } in linkages {
+        let text = format!("{definition}\n\nVALUES = {values:?}\n");
+        fs::write(sources.join(format!("{name}.py")), text).map_err(wrong)?;
+    }
+    let environment = Environment::ready_for(REQUIREMENTS, &|step| eprintln!("{step}"));
+    let environment = environment.map_err(|error| error.to_string())?;
+    let script = directory.join("peers.py");
+    fs::write(&script, PEERS).map_err(wrong)?;
+    eprintln!("generating the peers' code of {} linkages", linkages.len());
+    tools::output(Command::new(environment.python()).arg(&script).arg(&sources), "CasADi writes the peers")?;
+    let workspace = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let manifest = format!(
+        "[package]\nname = \"linkages\"\nversion = \"0.0.0\"\nedition = \"2024\"\n\n[dependencies]\n\
+         mbs-runtime = {{ path = {:?}, default-features = false, features = [\"fma\"] }}\nnalgebra = \"0.35\"\n\n\
+         [build-dependencies]\ncc = \"1.2\"\n\n[profile.release]\nlto = \"fat\"\ncodegen-units = 1\npanic = \"abort\"\n\n\
+         [profile.release.package.mbs-codegen]\nopt-level = 0\ncodegen-units = 16\n\n[workspace]\n",
+        workspace.join("mbs-runtime")
+    );
+    fs::write(directory.join("Cargo.toml"), manifest).map_err(wrong)?;
+    fs::write(directory.join("build.rs"), BUILD).map_err(wrong)?;
+    let lock = "tests/proofs/Cargo.lock";
+    fs::copy(workspace.join(lock), directory.join("Cargo.lock")).map_err(wrong)?;
+    fs::write(directory.join("src/main.rs"), program(linkages)).map_err(wrong)?;
+    eprintln!("building");
+    let mut cargo = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    cargo.args(["build", "--release", "--quiet"]).current_dir(&directory);
+    cargo.env("CARGO_TARGET_DIR", directory.join("target")).env("RUSTFLAGS", "-C target-cpu=native");
+    tools::output(&mut cargo, "the bench needs cargo, which runs it")?;
+    Ok(directory.join("target/release/linkages"))
+}
+
+/// Compiles the C code.
+const BUILD: &str = r#"fn main() {
+    println!("cargo::rerun-if-changed=peers");
+    let files = std::fs::read_dir("peers").expect("the directory").map(|entry| entry.expect("an entry").path());
+    let files = files.filter(|path| path.extension().is_some_and(|extension| extension == "c"));
+    cc::Build::new().opt_level(3).flag("-march=native").warnings(false).files(files).compile("peers");
+}
+"#;
+
+fn program(linkages: &[Linkage]) -> String {
+    let (mut calls, mut functions, mut modules) = (String::new(), String::new(), String::new());
+    for Linkage { name, type_name, text, duration, coordinates, .. } in linkages {
+        let _ = writeln!(
+            calls,
+            "    linkage::<{name}::{type_name}, {coordinates}, {{ <{name}::{type_name} as Mechanism<f64, {coordinates}, {coordinates}>>::SPARSITY.len() }}>(\"{name}\", \
+             Peer {{ all: {name}_all, rows: {name}_rows, gamma: {name}_gamma }}, {duration:?}, rounds);"
+        );
+        for part in ["all", "rows", "gamma"] {
+            let _ = writeln!(
+                functions,
+                "    fn {name}_{part}(a: *const *const f64, r: *mut *mut f64, i: *mut c_longlong, w: *mut f64, m: c_int) -> c_int;"
+            );
+        }
+        let _ = writeln!(modules, "mod {name} {{\n    mbs_runtime::mechanism! {{\n{text}\n    }}\n}}");
+    }
+    PROGRAM.replace("// LINKAGES\n", &calls).replace("// FUNCTIONS\n", &functions) + &modules
+}
+
+/// Smallest, median and largest of the ratios.
+fn spread(mut ratios: Vec<f64>) -> [f64; 3] {
+    ratios.sort_by(f64::total_cmp);
+    let at = |index: usize| ratios.get(index).copied().unwrap_or(f64::NAN);
+    [at(0), at(ratios.len() / 2), at(ratios.len().saturating_sub(1))]
+}
+
+fn table(found: &[(&Linkage, Ratios)], notes: &str) -> String {
+    let mut text = String::from(
+        "# Linkages against their peers\n\n\
+         `cargo bench -p mbs-tests --bench linkages -- --docs` writes this file. Ratios are the peer's time over ours, medians of rounds \
+         in which all took turns, with `target-cpu=native`. A peer's step is Newton's method from the prediction on CasADi's C, with dense \
+         LU by hand or nalgebra's, to the coarsest tolerance of its rows that is as accurate as the emitted code, then both rates from one \
+         factorization. Steps: 360 a motion.\n\n\
+         | compared | linkages | smallest | median | largest | must | aim |\n|---|---|---|---|---|---|---|\n",
+    );
+    let mut line = |work: &str, ratios: Vec<f64>, [must, aim]: [f64; 2]| {
+        if ratios.is_empty() {
+            return;
+        }
+        let (count, [least, median, most]) = (ratios.len(), spread(ratios));
+        let [must, aim] = [must, aim].map(|x| if x.is_nan() { String::new() } else { format!("{x:.1}") });
+        let _ =
+            writeln!(text, "| {work} | {count} | {least:.2} | {median:.2} | {most:.2} | {must} | {aim} |");
+    };
+    for (sines, work, goals) in
+        [(false, "evaluation, few sines", [1.1, f64::NAN]), (true, "evaluation, with sines", [3.5, f64::NAN])]
+    {
+        let of = found.iter().filter(|(linkage, _)| linkage.has_sines == sines);
+        line(work, of.map(|(_, ratios)| ratios.ratios[0]).collect(), goals);
+    }
+    for (class, must, aim) in CLASSES {
+        for (index, peer) in [(1, "LU"), (2, "nalgebra")] {
+            let of = found.iter().filter(|(linkage, _)| linkage.class == class);
+            let ratios = of.map(|(_, ratios)| ratios.ratios[index]).collect();
+            line(&format!("step, {class}, against {peer}"), ratios, [must, aim]);
+        }
+    }
+    text += "\n| linkage | coordinates | structure | evaluation | step, LU | step, nalgebra | evaluation, ns | step, ns | error | peer's error |\n\
+             |---|---|---|---|---|---|---|---|---|---|\n";
+    for (linkage, Ratios { ratios: [a, b, c], times: [time, step], errors: [own, peers] }) in found {
+        let Linkage { name, coordinates, class, .. } = linkage;
+        let _ = writeln!(
+            text,
+            "| {} | {coordinates} | {class} | {a:.2} | {b:.2} | {c:.2} | {time:.1} | {step:.1} | {own:.1e} | {peers:.1e} |",
+            name.replace('_', " ")
+        );
+    }
+    if !notes.is_empty() {
+        text += &format!("\nLeft out:\n\n{notes}");
+    }
+    text
+}

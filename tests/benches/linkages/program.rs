@@ -1,0 +1,333 @@
+//! Emitted code against CasADi's C with dense LU, and with nalgebra's.
+
+use std::ffi::{c_int, c_longlong};
+use std::hint::black_box;
+
+use mbs_runtime::{Kinematic, Mechanism, Stepper};
+use nalgebra::{Const, DimMin, SMatrix, SVector};
+
+type Function =
+    unsafe extern "C" fn(*const *const f64, *mut *mut f64, *mut c_longlong, *mut f64, c_int) -> c_int;
+
+/// Functions that CasADi wrote.
+#[derive(Clone, Copy)]
+struct Peer {
+    all: Function,
+    rows: Function,
+    gamma: Function,
+}
+
+/// Steps of a motion.
+const STEPS: u32 = 360;
+
+/// Tolerances of the peers' rows over their scales, coarse ones first.
+const TOLERANCES: [f64; 7] = [1e-9, 1e-10, 1e-11, 1e-12, 1e-13, 1e-14, 1e-15];
+
+/// Error that counts as equal, over ours; and that of any right motion.
+const EQUAL: f64 = 1.25;
+const RIGHT: f64 = 2e-14;
+
+/// States that are evaluated.
+const STATES: usize = 60;
+
+static mut WORK: ([c_longlong; 4096], [f64; 65536]) = ([0; 4096], [0.0; 65536]);
+
+fn call(function: Function, arguments: &[*const f64], results: &mut [*mut f64]) {
+    // SAFETY: arrays of the sizes that the function was generated for, and one thread.
+    unsafe {
+        let (integers, numbers) = ((&raw mut WORK.0).cast(), (&raw mut WORK.1).cast());
+        function(arguments.as_ptr(), results.as_mut_ptr(), integers, numbers, 0);
+    }
+}
+
+#[derive(Clone, Copy)]
+struct Motion<const N: usize> {
+    q: [f64; N],
+    qd: [f64; N],
+    qdd: [f64; N],
+}
+
+/// LU with partial pivoting, column by column.
+struct Lu<const N: usize>([[f64; N]; N], [usize; N]);
+
+trait Solver<const N: usize> {
+    fn factorized(columns: &[[f64; N]; N]) -> Self;
+    fn solve(&self, b: &mut [f64; N]);
+}
+
+impl<const N: usize> Solver<N> for Lu<N> {
+    #[inline(always)]
+    fn factorized(columns: &[[f64; N]; N]) -> Self {
+        let (mut a, mut swaps) = (*columns, [0; N]);
+        for k in 0..N {
+            let mut best = k;
+            for i in k + 1..N {
+                if a[k][i].abs() > a[k][best].abs() {
+                    best = i;
+                }
+            }
+            swaps[k] = best;
+            if best != k {
+                a.iter_mut().for_each(|column| column.swap(k, best));
+            }
+            let reciprocal = 1.0 / a[k][k];
+            for i in k + 1..N {
+                a[k][i] *= reciprocal;
+            }
+            for c in k + 1..N {
+                let factor = a[c][k];
+                for i in k + 1..N {
+                    a[c][i] -= factor * a[k][i];
+                }
+            }
+        }
+        Lu(a, swaps)
+    }
+
+    #[inline(always)]
+    fn solve(&self, b: &mut [f64; N]) {
+        let Lu(a, swaps) = self;
+        for k in 0..N {
+            b.swap(k, swaps[k]);
+        }
+        for k in 0..N {
+            for i in k + 1..N {
+                b[i] -= b[k] * a[k][i];
+            }
+        }
+        for k in (0..N).rev() {
+            b[k] /= a[k][k];
+            for i in 0..k {
+                b[i] -= b[k] * a[k][i];
+            }
+        }
+    }
+}
+
+struct Nalgebra<const N: usize>(nalgebra::LU<f64, Const<N>, Const<N>>)
+where
+    Const<N>: DimMin<Const<N>, Output = Const<N>>;
+
+impl<const N: usize> Solver<N> for Nalgebra<N>
+where
+    Const<N>: DimMin<Const<N>, Output = Const<N>>,
+{
+    #[inline(always)]
+    fn factorized(columns: &[[f64; N]; N]) -> Self {
+        Nalgebra(SMatrix::<f64, N, N>::from(*columns).lu())
+    }
+
+    #[inline(always)]
+    fn solve(&self, b: &mut [f64; N]) {
+        let mut x = SVector::<f64, N>::from(*b);
+        if self.0.solve_mut(&mut x) {
+            *b = x.into();
+        }
+    }
+}
+
+/// Newton's method from the prediction until the rows are below their tolerances, then the rates.
+#[inline(always)]
+fn step<L: Solver<N>, const N: usize>(
+    peer: Peer,
+    h: f64,
+    tolerances: &[f64; N],
+    t: f64,
+    motion: &mut Motion<N>,
+) {
+    for k in 0..N {
+        motion.q[k] += h * (motion.qd[k] + 0.5 * h * motion.qdd[k]);
+    }
+    let (mut phi, mut columns, mut phi_t) = ([0.0; N], [[0.0; N]; N], [0.0; N]);
+    for _ in 0..8 {
+        let mut results = [phi.as_mut_ptr(), columns.as_mut_ptr().cast(), phi_t.as_mut_ptr()];
+        call(peer.rows, &[motion.q.as_ptr(), &raw const t], &mut results);
+        if phi.iter().zip(tolerances).all(|(phi, tolerance)| phi.abs() < *tolerance) {
+            break;
+        }
+        L::factorized(&columns).solve(&mut phi);
+        for k in 0..N {
+            motion.q[k] -= phi[k];
+        }
+    }
+    let factors = L::factorized(&columns);
+    motion.qd = phi_t.map(|rate| -rate);
+    factors.solve(&mut motion.qd);
+    call(peer.gamma, &[motion.q.as_ptr(), motion.qd.as_ptr(), &raw const t], &mut [motion.qdd.as_mut_ptr()]);
+    factors.solve(&mut motion.qdd);
+}
+
+/// Largest difference of two motions over the largest value of q, q̇ and q̈.
+fn difference<const N: usize>(a: &[Motion<N>], b: &[Motion<N>]) -> f64 {
+    let mut largest = 0.0_f64;
+    for part in [|m: &Motion<N>| m.q, |m: &Motion<N>| m.qd, |m: &Motion<N>| m.qdd] {
+        let size = a.iter().flat_map(part).fold(1e-300_f64, |size, x| size.max(x.abs()));
+        for (a, b) in a.iter().zip(b) {
+            for (a, b) in part(a).iter().zip(part(b)) {
+                let error = (a - b).abs() / size;
+                largest = if error <= largest { largest } else { error };
+            }
+        }
+    }
+    largest
+}
+
+type Case = (f64, Box<dyn FnMut()>);
+
+fn linkage<S, const N: usize, const Z: usize>(name: &str, peer: Peer, duration: f64, rounds: usize)
+where
+    S: Kinematic<f64, N> + Mechanism<f64, N, N, Entries = [f64; Z]> + Default + Copy + 'static,
+    Stepper<S, f64, N>: Clone,
+    Const<N>: DimMin<Const<N>, Output = Const<N>>,
+{
+    let (mechanism, h) = (S::default(), duration / f64::from(STEPS));
+    let parameters = mechanism.parameters();
+    let time = move |k: u32| f64::from(k) * h;
+    let start = match Stepper::<S, f64, N>::assemble(mechanism, mechanism.guess(&parameters), 0.0) {
+        Ok(start) => start,
+        Err(failure) => return println!("{name} left out: {failure}"),
+    };
+    let of =
+        |stepper: &Stepper<S, f64, N>| Motion { q: *stepper.q(), qd: *stepper.qd(), qdd: *stepper.qdd() };
+    let (first, mut stepper, mut own) = (of(&start), start.clone(), Vec::new());
+    for k in 1..=STEPS {
+        if let Err(failure) = stepper.advance_to(time(k)) {
+            return println!("{name} left out: {failure}");
+        }
+        own.push(of(&stepper));
+    }
+    let scales = mechanism.row_scales(&parameters).map(f64::abs);
+    let motion = |tolerance: f64| -> Vec<Motion<N>> {
+        let (mut motion, tolerances) = (first, scales.map(|scale| tolerance * scale));
+        let mut through = |k| {
+            step::<Lu<N>, N>(peer, h, &tolerances, time(k), &mut motion);
+            motion
+        };
+        (1..=STEPS).map(&mut through).collect()
+    };
+    let truth = motion(0.0);
+    let error = difference(&truth, &own);
+    let equal = |tolerance: &&f64| difference(&truth, &motion(**tolerance)) <= RIGHT.max(EQUAL * error);
+    let tolerance = TOLERANCES.iter().find(equal).copied().unwrap_or(1e-15);
+    let tolerances = scales.map(|scale| tolerance * scale);
+    let peers_error = difference(&truth, &motion(tolerance));
+
+    let states: Vec<(Motion<N>, f64)> =
+        own.iter().zip(1..).map(|(motion, k)| (*motion, time(k))).step_by(STEPS as usize / STATES).collect();
+    let theirs = states.clone();
+    let evaluate_peer = move || {
+        let (mut a, mut b, mut c, mut d) = ([0.0; N], [0.0; Z], [0.0; N], [0.0; N]);
+        for (motion, t) in black_box(&theirs) {
+            let mut results = [a.as_mut_ptr(), b.as_mut_ptr(), c.as_mut_ptr(), d.as_mut_ptr()];
+            call(peer.all, &[motion.q.as_ptr(), motion.qd.as_ptr(), &raw const *t], &mut results);
+            black_box(&results);
+        }
+    };
+    let evaluate = move || {
+        let mut out = ([0.0; N], [0.0; Z], [0.0; N], [0.0; N]);
+        for (motion, t) in black_box(&states) {
+            evaluated(black_box(&mechanism), motion, *t, black_box(&mut out));
+        }
+    };
+    let peers_steps = |step: fn(Peer, f64, &[f64; N], f64, &mut Motion<N>)| -> Box<dyn FnMut()> {
+        Box::new(move || {
+            let mut motion = *black_box(&first);
+            (1..=STEPS).for_each(|k| step(peer, h, &tolerances, time(k), &mut motion));
+            black_box(&motion);
+        })
+    };
+    let steps = move || {
+        let mut stepper = black_box(&start).clone();
+        for k in 1..=STEPS {
+            black_box(stepper.advance_to(time(k)).is_ok());
+        }
+        black_box(stepper.q());
+    };
+    let mut cases: [Case; 5] = [
+        (STATES as f64, Box::new(evaluate_peer)),
+        (STATES as f64, Box::new(evaluate)),
+        (f64::from(STEPS), peers_steps(step::<Lu<N>, N>)),
+        (f64::from(STEPS), peers_steps(step::<Nalgebra<N>, N>)),
+        (f64::from(STEPS), Box::new(steps)),
+    ];
+    let times = timed(&mut cases, rounds);
+    let ratio = |peer: usize, own: usize| {
+        let mut ratios: Vec<f64> = times[peer].iter().zip(&times[own]).map(|(a, b)| a / b).collect();
+        ratios.sort_by(f64::total_cmp);
+        ratios.get(ratios.len() / 2).copied().unwrap_or(f64::NAN)
+    };
+    let own_time = |case: usize| times[case].iter().copied().fold(f64::INFINITY, f64::min);
+    println!(
+        "{name} {error:e} {peers_error:e} {} {} {} {} {}",
+        ratio(0, 1),
+        ratio(2, 4),
+        ratio(3, 4),
+        own_time(1),
+        own_time(4)
+    );
+}
+
+#[inline(never)]
+fn evaluated<S, const N: usize, const Z: usize>(
+    mechanism: &S,
+    motion: &Motion<N>,
+    t: f64,
+    out: &mut ([f64; N], [f64; Z], [f64; N], [f64; N]),
+) where
+    S: Mechanism<f64, N, N, Entries = [f64; Z]>,
+{
+    let e = mechanism.evaluate(&mechanism.parameters(), &motion.q, t, &motion.qd);
+    *out = (e.phi, e.phi_q_entries, e.phi_t, e.gamma);
+}
+
+/// Times (ns) of one evaluation or step in rounds in which all cases take turns.
+fn timed(cases: &mut [Case], rounds: usize) -> Vec<Vec<f64>> {
+    let repetitions: Vec<u32> = cases
+        .iter_mut()
+        .map(|(_, run)| {
+            run();
+            let start = processor_time();
+            (0..3).for_each(|_| run());
+            (1e-3 * 3.0 / (processor_time() - start)).clamp(1.0, 1e5) as u32
+        })
+        .collect();
+    let mut times = vec![Vec::new(); cases.len()];
+    for round in 0..rounds {
+        for place in 0..cases.len() {
+            let index = (place + 3 * round) % cases.len();
+            let (work, run) = &mut cases[index];
+            let start = processor_time();
+            (0..repetitions[index]).for_each(|_| run());
+            times[index].push(1e9 * (processor_time() - start) / (f64::from(repetitions[index]) * *work));
+        }
+    }
+    times
+}
+
+/// Processor time (s) of this thread.
+#[cfg(target_os = "linux")]
+fn processor_time() -> f64 {
+    unsafe extern "C" {
+        fn clock_gettime(clock: c_int, time: *mut [std::ffi::c_long; 2]) -> c_int;
+    }
+    let mut time = [0; 2];
+    // SAFETY: the structure of a 64-bit Linux, which is written to; 3 is the thread's clock.
+    unsafe { clock_gettime(3, &mut time) };
+    time[0] as f64 + 1e-9 * time[1] as f64
+}
+
+/// Elsewhere the wall-clock time (s).
+#[cfg(not(target_os = "linux"))]
+fn processor_time() -> f64 {
+    static START: std::sync::OnceLock<std::time::Instant> = std::sync::OnceLock::new();
+    START.get_or_init(std::time::Instant::now).elapsed().as_secs_f64()
+}
+
+fn main() {
+    let rounds = std::env::args().nth(1).and_then(|rounds| rounds.parse().ok()).unwrap_or(31);
+    // LINKAGES
+}
+
+unsafe extern "C" {
+    // FUNCTIONS
+}
