@@ -158,10 +158,12 @@ fn casadi_confirms_every_function_of_masses_and_forces() {
     }
 }
 
+type Slip = fn(&mut Masses);
+
 /// A mechanism with a fault in one function of masses and forces.
 struct Slipped {
     mechanism: Box<dyn AnyEquations>,
-    slip: fn(&mut Masses),
+    slip: Slip,
 }
 
 impl AnyEquations for Slipped {
@@ -201,7 +203,7 @@ fn a_slip_in_every_quantity_is_found() {
         let place = values.iter().position(|value| value.abs() == largest).expect("a value");
         values[place] *= 1.0 + 1e-9;
     }
-    let slips: [(&str, fn(&mut Masses)); 19] = [
+    let slips: [(&str, Slip); 19] = [
         ("M", |m| off(&mut m.mass)),
         ("M q̈", |m| off(&mut m.mass_times)),
         ("Q", |m| off(&mut m.force)),

@@ -197,10 +197,8 @@ fn eliminated(mut rows: [[f64; 5]; 4]) -> Option<[f64; 4]> {
             return None;
         }
         for i in (0..4).filter(|i| *i != k) {
-            let factor = rows[i][k] / rows[k][k];
-            for j in k..5 {
-                rows[i][j] -= factor * rows[k][j];
-            }
+            let (pivot, factor) = (rows[k], rows[i][k] / rows[k][k]);
+            rows[i].iter_mut().zip(pivot).for_each(|(entry, upper)| *entry -= factor * upper);
         }
     }
     Some([0, 1, 2, 3].map(|k| rows[k][4] / rows[k][k]))
