@@ -31,7 +31,13 @@ pub(super) fn kinematic(
 fn described(stop: &MotionStop, end: f64) -> String {
     let MotionStop { reachable, failure, .. } = stop;
     let [reached, end] = [*reachable, end].map(|time| significant(time, 6));
-    let reason = failure.to_string().replace('\n', " ");
+    let mut reason = failure.to_string().replace('\n', " ");
+    // The time stands in front, in fewer digits.
+    if let Some((before, behind)) = reason.split_once(" at t = ")
+        && let Some((_, behind)) = behind.split_once(" s")
+    {
+        reason = format!("{before}{behind}");
+    }
     format!("the mechanism locks: its motion ends at t = {reached} s of {end} s; {reason}")
 }
 
