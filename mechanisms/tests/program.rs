@@ -599,6 +599,24 @@ fn a_page_of_a_rest_has_its_verdict_and_the_places_of_its_reactions() {
     }
 }
 
+/// The cart's place is free: no force answers it, so it stays where the command line names it.
+#[test]
+fn a_coordinate_that_a_guess_names_is_held_where_no_force_moves_it() {
+    for (guesses, place) in
+        [(&["x=0.1"][..], "0.1 m"), (&["x=5"], "5 m"), (&["P.0=-300cm", "phi=-1"], "-3 m")]
+    {
+        let scratch = Scratch::new(&format!("held{}", guesses.concat()));
+        let options: Vec<&str> = guesses.iter().flat_map(|guess| ["--guess", guess]).collect();
+        let text = standard_output(run_into(
+            &scratch,
+            &[&["equilibrium", "cart_pole"], options.as_slice()].concat(),
+        ));
+        for name in ["x", "P.0"] {
+            assert!(text.contains(&format!("  {name} at rest: {place}\n")), "{guesses:?}: {text}");
+        }
+    }
+}
+
 #[test]
 fn an_unknown_mechanism_gets_a_proposal() {
     for command in ["run", "expand", "verify"] {

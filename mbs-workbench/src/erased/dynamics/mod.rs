@@ -49,7 +49,8 @@ pub trait AnyDynamics {
     /// Those of inverse dynamics.
     fn add_forces(&self, motion: &mut Motion) -> Result<(), Failure>;
     /// The equilibrium next to the text's start, at time 0. `guesses` are coordinates by their indices from which the search
-    /// starts in place of the text's; the others follow them so that the rows hold.
+    /// starts in place of the text's; the others follow them so that the rows hold. Named coordinates that no force answers are
+    /// at their values in the equilibrium.
     ///
     /// # Errors
     /// Those of the search for an equilibrium.
@@ -93,7 +94,9 @@ where
     fn rest(&self, guesses: &[(usize, f64)]) -> Result<Rest, Failure> {
         let mechanism = &self.0;
         let start = (self.1.start)(mechanism, 0.0).0;
-        static_equilibrium::rest(mechanism, &static_equilibrium::begin(mechanism, start, guesses))
+        let found =
+            static_equilibrium::rest(mechanism, &static_equilibrium::begin(mechanism, start, guesses))?;
+        Ok(static_equilibrium::at_guesses(mechanism, found, guesses))
     }
 
     fn multipliers(&self, state: &State) -> Result<Loads, String> {

@@ -54,6 +54,49 @@ pub(crate) fn begin<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
     if guesses.is_empty() { start } else { q }
 }
 
+/// Most moves along the positions of rest, and the part of a coordinate's scale that is near enough.
+const MOVES: usize = 8;
+const NAMED: f64 = 1e-9;
+
+/// Before: an equilibrium, and the guesses that it was searched from. After: the same where no force answers, with the coordinates
+/// that the guesses name at their values: the search has moved them together with others.
+pub(crate) fn at_guesses<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
+    mechanism: &S,
+    mut found: Rest,
+    guesses: &[(usize, f64)],
+) -> Rest {
+    let position = |rest: &Rest| core::array::from_fn(|index: usize| rest.motion.coordinates[index].q[0]);
+    let scales = mechanism.coordinate_scales(&mechanism.parameters());
+    for _ in 0..MOVES {
+        let q: [f64; N] = position(&found);
+        let off = |(index, value): &(usize, f64)| ((value - q[*index]) / scales[*index]).abs();
+        let free =
+            guesses.iter().filter(|(index, _)| found.indifferent.contains(&S::COORDINATES[*index].name));
+        let farthest = free.max_by(|a, b| off(a).total_cmp(&off(b)));
+        let Some((index, value)) = farthest.filter(|guess| off(guess) > NAMED).copied() else {
+            return found;
+        };
+        let held: Vec<u16> = u16::try_from(index).into_iter().collect();
+        let moved_to = |from: [f64; N]| {
+            let q = closed(mechanism, 0.0, &from, &held).ok()?;
+            rest(mechanism, &q).ok()
+        };
+        // A rest beside this one shows the way along them.
+        let mut beside = q;
+        beside[index] = value;
+        let Some(other) = moved_to(beside) else { return found };
+        let to: [f64; N] = position(&other);
+        let way = to[index] - q[index];
+        let ahead = core::array::from_fn(|i| q[i] + (to[i] - q[i]) * (value - q[index]) / way);
+        let is_way = way.abs() > NAMED * scales[index];
+        found = match is_way.then(|| moved_to(ahead)).flatten() {
+            Some(ahead) if (position(&ahead)[index] - value).abs() < (to[index] - value).abs() => ahead,
+            _ => other,
+        };
+    }
+    found
+}
+
 /// The equilibrium next to `q` (N) at time 0, with its loads and multipliers.
 pub(crate) fn rest<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
     mechanism: &S,
