@@ -93,6 +93,12 @@ fn write_point(out: &mut dyn Write, point: &str, name: &str, motion: &Motion) ->
     let component =
         |suffix: &str| motion.outputs.iter().find(|output| output.name == format!("{point}{suffix}"));
     let components: Vec<&OutputCurve> = [".0", ".1", ".2"].into_iter().map_while(component).collect();
+    if motion.time.len() == 1 {
+        // A rest has neither time nor rates.
+        let place = |curve: &&OutputCurve| format!("{:.6}", signless(curve.value[0], 6));
+        let place: Vec<String> = components.iter().map(place).collect();
+        return writeln!(out, "  point {point} ({name}): {} m", place.join(", "));
+    }
     writeln!(out, "  point {point} ({name}): position (m), velocity (m/s), acceleration (m/s²)")?;
     write!(out, "  {:>9}", "t (s)")?;
     for (mark, width) in [("", 10), ("v", 10), ("a", 11)] {
