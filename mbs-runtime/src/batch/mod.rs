@@ -225,7 +225,7 @@ where
             self.mechanism.advance_phases(from, to);
         }
         let Batch { mechanism, parameters, weights, q, qd, qdd, margin, .. } = &*self;
-        let start = Start { t: from, q, qd, qdd, margin: *margin, weights, bend: None };
+        let start = Start { t: from, q, qd, qdd, margin: *margin, weights };
         let trial = FastStep::of(mechanism, parameters, &start, to, !self.waits);
         if !Lanes::<R, L>::all(trial.quick) || self.notes.passes(&trial.orientation) {
             // The address of a copy, so that the trial itself stays in registers.
@@ -308,7 +308,7 @@ where
         let passes = LaneMask::new(from_fn(|lane| trial.orientation(lane) != self.notes.orientation(lane)));
         let (from, to) = self.span(t);
         let Batch { q, qd, qdd, margin, weights, .. } = &*self;
-        let start = Start { t: from, q, qd, qdd, margin: *margin, weights, bend: None };
+        let start = Start { t: from, q, qd, qdd, margin: *margin, weights };
         let scales = self.mechanism.coordinate_scales(&self.parameters);
         let judgement = trial.judgement(&start, to, &scales, const { link_lengths::any(S::COORDINATES) });
         let mut plain = judgement.plain & !judgement.coarse & !passes;

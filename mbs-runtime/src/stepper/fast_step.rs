@@ -10,7 +10,6 @@ use crate::mechanism::margin::Margin;
 use crate::mechanism::{Kinematic, negated};
 use crate::scalar::number::{Real, Scalar, index};
 use crate::stepper::instant::is_coarse;
-use crate::stepper::state::Bend;
 use crate::tolerances::{positions, singular};
 
 /// Most coordinates that stay in registers from the end of a step to its state, which are written one by one.
@@ -19,12 +18,6 @@ const FEW: usize = 8;
 /// Second-order term (reference lengths) from which on a step of a mechanism with coordinates that are lengths is checked. With
 /// less, no link of a thousandth turns by half a radian.
 const QUICK_SECOND_ORDER_TERM: f64 = 1e-4;
-
-/// Largest terms of higher order over the largest second-order term: a quarter of it.
-const LARGEST_BEND: f64 = 0.125;
-
-/// Longest step, in steps before, that is predicted from the rates before that one as well.
-const LONGEST_FORESEEN: f64 = 2.0;
 
 /// Second-order term, and distance from the prediction over the margin, up to which a step needs no test, `with_lengths` among
 /// the coordinates or without.
@@ -45,8 +38,6 @@ pub(crate) struct Start<'a, T, const N: usize> {
     pub margin: T,
     /// Reciprocals of the coordinates' scales in the reference metric.
     pub weights: &'a [T; N],
-    /// Rates before the last step, where its prediction was far off.
-    pub bend: Option<&'a Bend<T, N>>,
 }
 
 /// Result of a step.
@@ -90,8 +81,7 @@ pub(crate) struct Judgement<T: Scalar> {
 }
 
 impl<T: Scalar, const N: usize> FastStep<T, N> {
-    /// Solves position, velocity and acceleration at `t` from the prediction q + h q̇ + h²/2 q̈, of higher order where the last steps
-    /// had to be corrected twice.
+    /// Solves position, velocity and acceleration at `t` from the prediction q + h q̇ + h²/2 q̈.
     ///
     /// Not plain is a step from or into the singular zone, one too long to be foreseen, and one that does not converge or is not
     /// finite. Nor is one that ends so far from the prediction that it may be in another assembly, violates a branch or leaves a
@@ -325,20 +315,9 @@ impl<'a, T: Scalar, const N: usize> Start<'a, T, N> {
         [self.q, self.qd, self.qdd]
     }
 
-    /// q + h q̇ + h²/2 q̈, and the lanes in which the last term is less than `most` reference lengths (or rad). With terms of higher
-    /// order where there is a bend.
+    /// q + h q̇ + h²/2 q̈, and the lanes in which the last term is less than `most` reference lengths (or rad).
     #[inline(always)]
     fn predicted(&self, t: T, scales: &[T; N], most: f64) -> ([T; N], T::Mask) {
-        let predicted = self.predicted_plainly(t, scales, most);
-        match self.bend {
-            Some(bend) => self.with_bend(bend, t - self.t, (scales, most), predicted),
-            None => predicted,
-        }
-    }
-
-    /// Without these terms.
-    #[inline(always)]
-    fn predicted_plainly(&self, t: T, scales: &[T; N], most: f64) -> ([T; N], T::Mask) {
         let h = t - self.t;
         let half_square = T::constant(0.5) * h * h;
         let alone = size_of::<T>() == size_of::<T::Real>();
@@ -369,61 +348,6 @@ impl<'a, T: Scalar, const N: usize> Start<'a, T, N> {
             }
         }
         (predicted, all)
-    }
-
-    /// `predicted` with terms of third and fourth order, from the rates q̇₀ and q̈₀ a step of h₀ = h/ρ before:
-    /// ρ h²/3 (2 q̈ + q̈₀ − 3 a) + ρ² h²/4 (q̈ + q̈₀ − 2 a), where a = (q̇ − q̇₀)/h₀.
-    ///
-    /// Without them where one is as much as `most`, or where the largest one is no small part of the largest second-order term, as
-    /// after a jump of the accelerations. Source: Hairer, Nørsett & Wanner 1993, §III.1 (interpolation of the values before).
-    #[inline(always)]
-    fn with_bend(
-        &self,
-        bend: &Bend<T, N>,
-        h: T,
-        (scales, most): (&[T; N], f64),
-        (mut predicted, all): ([T; N], T::Mask),
-    ) -> ([T; N], T::Mask) {
-        let (square, ratio) = (h * h, h / bend.time);
-        // Not a step the other way, nor a much longer one.
-        let follows = T::constant(0.0).less(ratio) & ratio.less(T::constant(LONGEST_FORESEEN));
-        let ratio = T::select(follows, ratio, T::constant(0.0));
-        let third = square * ratio * T::constant(1.0 / 3.0);
-        let fourth = square * ratio * ratio * T::constant(0.25);
-        let (now, then) = ((third + third) + fourth, third + fourth);
-        let mean = (T::constant(3.0) * third + (fourth + fourth)) / bend.time;
-        let zero = T::constant(0.0);
-        let (mut largest, mut largest_second) = (zero, zero);
-        let rates = self.qd.iter().zip(self.qdd).zip(bend.qd.iter().zip(&bend.qdd));
-        for ((coordinate, ((rate, acceleration), (last_rate, last_acceleration))), weight) in
-            predicted.iter_mut().zip(rates).zip(self.weights)
-        {
-            let more = (then * *last_acceleration - mean * (*rate - *last_rate)) + now * *acceleration;
-            let size = more.abs() * *weight;
-            // As in `predicted_plainly`: a branch a coordinate.
-            if N <= FEW && !T::all(size.less(T::constant(most))) {
-                return self.predicted_without(h, scales, most);
-            }
-            largest = largest.max(size);
-            largest_second = largest_second.max(acceleration.abs() * *weight);
-            *coordinate = *coordinate + more;
-            if N > FEW {
-                T::side_by_side();
-            }
-        }
-        let limit = T::constant(LARGEST_BEND) * square * largest_second;
-        if !T::all(!limit.less(largest) & largest.less(T::constant(most))) {
-            return self.predicted_without(h, scales, most);
-        }
-        (predicted, all)
-    }
-
-    /// The prediction without further terms.
-    #[cold]
-    #[inline(never)]
-    fn predicted_without(&self, h: T, scales: &[T; N], most: f64) -> ([T; N], T::Mask) {
-        let (predicted, [_, near]) = predicted_far(self.rates(), h, scales, most);
-        (predicted, near)
     }
 
     /// [`predicted`](Self::predicted) for so many coordinates that the last step has stored them together, after all blocks.

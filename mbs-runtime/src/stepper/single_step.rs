@@ -25,10 +25,9 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
     pub(super) fn advanced(&mut self, t: R, phases: S::Phases) -> Result<Statistics, Failure> {
         // Rows that may contradict each other are always looked at.
         if const { M == N } && self.is_ready() && !self.waits() {
-            let StepperState { q, qd, qdd, margin, bend, .. } = &self.state;
+            let StepperState { q, qd, qdd, margin, .. } = &self.state;
             let weights = &weights(&self.mechanism.coordinate_scales(&self.parameters));
-            let bend = bend.is_kept.then_some(bend);
-            let start = Start { t: self.state.t, q, qd, qdd, margin: *margin, weights, bend };
+            let start = Start { t: self.state.t, q, qd, qdd, margin: *margin, weights };
             let trial = FastStep::of(&self.mechanism, &self.parameters, &start, t, R::mask(true));
             // The homotopy decides what a passage leads to.
             if trial.orientation(0) == self.state.orientation {
@@ -52,7 +51,7 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
     fn looked_at(&mut self, trial: &FastStep<R, N>, t: R, phases: S::Phases) -> Option<Statistics> {
         let scales = self.mechanism.coordinate_scales(&self.parameters);
         let StepperState { q, qd, qdd, margin, .. } = &self.state;
-        let start = Start { t: self.state.t, q, qd, qdd, margin: *margin, weights: &scales, bend: None };
+        let start = Start { t: self.state.t, q, qd, qdd, margin: *margin, weights: &scales };
         let Judgement { plain, coarse, doubtful } =
             trial.judgement(&start, t, &scales, const { link_lengths::any(S::COORDINATES) });
         if !plain {

@@ -28,34 +28,7 @@ pub(crate) struct StepperState<R, const N: usize> {
     pub(crate) passages: u32,
     /// The Newton step that is still to be made, where the position does not close.
     pub(crate) repair: Option<[R; N]>,
-    /// Rates at the start of the last step, for predictions of fourth order.
-    pub(crate) bend: Bend<R, N>,
 }
-
-/// Rates at the start of the last step, kept once a step needed more than two evaluations: with the terms of third and fourth order
-/// that follow from their change the next one needs two.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Bend<T, const N: usize> {
-    /// Velocities at its start: N.
-    pub qd: [T; N],
-    /// Accelerations at its start: N.
-    pub qdd: [T; N],
-    /// Time (s) that it took; 0 where nothing is kept.
-    pub time: T,
-    /// `true` if they are kept.
-    pub is_kept: bool,
-}
-
-impl<R: Real, const N: usize> Bend<R, N> {
-    /// Nothing is kept.
-    pub fn none() -> Self {
-        let zero = R::constant(0.0);
-        Bend { qd: [zero; N], qdd: [zero; N], time: zero, is_kept: false }
-    }
-}
-
-/// Evaluations of a step whose prediction is near enough: the position that it leads to is one Newton step away.
-const FEW_EVALUATIONS: u32 = 2;
 
 /// Change of the margin in the last step, and the time (s) that it took; few ask for the quotient, which is not computed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -102,7 +75,6 @@ impl<R: Real, const N: usize> StepperState<R, N> {
                 orientation: rates.orientation,
                 passages: 0,
                 repair: None,
-                bend: Bend::none(),
             },
         };
         state.move_on(found, rates);
@@ -126,7 +98,6 @@ impl<R: Real, const N: usize> StepperState<R, N> {
         (self.margin, self.orientation, self.repair) = (margin, orientation, repair);
         self.statistics = Statistics { passed, ..statistics };
         self.passages = self.passages.saturating_add(u32::from(passed));
-        self.bend.is_kept = false;
     }
 
     /// Becomes the state at the end of a plain step without a passage. Returns its cost: read from the state, it would wait for
@@ -136,9 +107,6 @@ impl<R: Real, const N: usize> StepperState<R, N> {
         let statistics = trial.statistics(0, false);
         if t != self.t {
             self.drift = Drift { change: trial.margin - self.margin, time: t - self.t };
-            if statistics.evaluations > FEW_EVALUATIONS || self.bend.is_kept {
-                self.bend = Bend { qd: self.qd, qdd: self.qdd, time: t - self.t, is_kept: true };
-            }
         }
         (self.t, self.q, self.qd, self.qdd) = (t, trial.q, trial.qd, trial.qdd);
         self.margin = trial.margin;
@@ -149,7 +117,6 @@ impl<R: Real, const N: usize> StepperState<R, N> {
     /// Puts time, position, velocity and acceleration with their margin in place, as another keeper of the state has them.
     pub(crate) fn set(&mut self, (t, q, qd, qdd): (R, [R; N], [R; N], [R; N]), margin: R) {
         (self.t, self.q, self.qd, self.qdd, self.margin) = (t, q, qd, qdd, margin);
-        self.bend.is_kept = false;
     }
 
     /// Puts in place the notes of that keeper on the last step, and on all.

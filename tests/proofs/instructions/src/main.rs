@@ -105,7 +105,7 @@ mechanism! {
 /// Time of a step (s).
 const STEP: f64 = 1e-3;
 
-/// Time of a step (s) so long that its prediction must be corrected twice, unless it is of higher order.
+/// Time of a step (s) so long that its prediction must be corrected twice.
 const LONG_STEP: f64 = 1.0 / 360.0;
 
 const LANES: usize = 8;
