@@ -64,14 +64,17 @@ pub use structure::mobility::Mobility;
 pub fn expand(input: TokenStream) -> TokenStream {
     let mut diagnostics = Diagnostics::default();
     let Some(text) = syntax::read(input.clone(), &mut diagnostics) else {
-        let (mut items, first) = diagnostics.to_tokens();
-        items.extend(emit::rust::stub_of_tokens(input, &first));
+        let (others, first) = diagnostics.to_tokens();
+        let mut items = emit::rust::stub_of_tokens(input, &first);
+        items.extend(others);
         return items;
     };
     let scenes = Scenes::resolve(&text, &mut diagnostics);
     translate(&text, &scenes, &mut diagnostics, Lengths::USUAL).unwrap_or_else(|| {
-        let (mut items, first) = diagnostics.to_tokens();
-        items.extend(emit::rust::stub(&text, &scenes, &first));
+        // The compiler tells them in this order.
+        let (others, first) = diagnostics.to_tokens();
+        let mut items = emit::rust::stub(&text, &scenes, &first);
+        items.extend(others);
         items
     })
 }

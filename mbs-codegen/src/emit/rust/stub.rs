@@ -14,7 +14,7 @@ use crate::emit::rust::generics::Generics;
 use crate::model::scene::Scene;
 use crate::model::scenes::Scenes;
 use crate::model::selection::{COORDINATES, OUTPUTS, STEPPER, alias};
-use crate::syntax::ast::StatementKind;
+use crate::syntax::ast::{Declares, StatementKind};
 use crate::syntax::rust_identifiers::{UNUSABLE, identifier};
 use crate::syntax::{OWN, Text};
 
@@ -51,7 +51,24 @@ pub fn stub(text: &Text, scenes: &Scenes, fault: &TokenStream) -> TokenStream {
             scene.model.coordinate_fields.iter().map(|field| ident(&field.name)).collect();
         items.views(&quote! { #visibility }, &name, (&coordinates, &outputs));
     }
-    items.scenes(&quote! { #visibility }, all().filter_map(|scene: &Scene| scene.name.as_ref()).map(ident));
+    // What a word of no kind declares may be a scene.
+    let lost: Vec<Ident> = text
+        .statements
+        .iter()
+        .filter_map(|statement| match &statement.kind {
+            StatementKind::Faulty { name, declares: Declares::Value, .. } if scenes.are_declared() => {
+                usable(&ident(name))
+            }
+            _ => None,
+        })
+        .collect();
+    for name in &lost {
+        let label = alias(header, name.to_string().trim_start_matches("r#"));
+        items.push((&quote! { #visibility }, identifier(&label, name.span())), &fields);
+        items.views(&quote! { #visibility }, &label, (&[], &[]));
+    }
+    let named = all().filter_map(|scene: &Scene| scene.name.as_ref()).map(ident);
+    items.scenes(&quote! { #visibility }, named.chain(lost));
     items.tokens
 }
 
