@@ -88,3 +88,7 @@ fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
     // SAFETY: no linked program contains the call.
     unsafe { mechanism_reached_a_panic() }
 }
+
+/// On hosted targets the core library is compiled to unwind, and asks for this function. Nothing here unwinds.
+#[unsafe(no_mangle)]
+pub extern "C" fn rust_eh_personality() {}
