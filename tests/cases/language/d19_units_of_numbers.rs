@@ -40,7 +40,7 @@ fn brackets_hold_a_unit_behind_a_number_alone() {
         ("2 [L]", "`L` is no known unit"),
         ("2m [s]", "a number has one unit"),
         ("2 [m", "`[` is never closed"),
-        ("2 []", "expected a unit"),
+        ("2 []", "hold no unit"),
         ("2 [m^99]", "an integer exponent up to 12"),
         ("2 [m] [m]", "an index"),
         ("1e-300 [(nm^12)^12]", "too small"),
