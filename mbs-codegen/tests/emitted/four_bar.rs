@@ -99,6 +99,35 @@ for [T; 5usize] {
         [__named.x2, __named.y2, __named.phi1, __named.phi2, __named.phi3]
     }
 }
+/// Outputs of [`FourBar`] by name, with their time derivatives.
+#[allow(non_snake_case, dead_code, reason = "the text names the outputs")]
+#[derive(
+    ::core::clone::Clone,
+    ::core::marker::Copy,
+    ::core::fmt::Debug,
+    ::core::cmp::PartialEq
+)]
+pub struct FourBarOutputs<T = ::core::primitive::f64> {
+    /// Output (`rad`).
+    pub transmission_angle: ::mbs_runtime::OutputValue<T>,
+}
+impl<
+    T: ::core::marker::Copy,
+> ::core::convert::From<[::mbs_runtime::OutputValue<T>; 1usize]> for FourBarOutputs<T> {
+    fn from(__outputs: [::mbs_runtime::OutputValue<T>; 1usize]) -> Self {
+        Self {
+            transmission_angle: __outputs[0],
+        }
+    }
+}
+/// Stepper of [`FourBar`]; it is made by `Stepper::assemble`.
+#[allow(dead_code, non_camel_case_types, reason = "a short name for who wants it")]
+pub type FourBarStepper<T = ::core::primitive::f64> = ::mbs_runtime::Stepper<
+    FourBar<T>,
+    T,
+    5usize,
+    5usize,
+>;
 #[allow(clippy::approx_constant, reason = "numbers of the text stay as they are")]
 const _: () = {
     /// Values of parameters alone.
