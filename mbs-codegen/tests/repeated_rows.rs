@@ -65,7 +65,7 @@ fn a_row_in_another_form_is_reported() {
         for (one, other) in [(first, second), (second, first)] {
             let found = faults(&format!("constraint a {{ {one}; }} constraint b {{ {other}; }}"));
             assert_eq!(found.len(), 1, "{one} and {other}: {found:?}");
-            assert!(found[0].contains("`b` is the row `a` of line"), "{one} and {other}: {found:?}");
+            assert!(found[0].contains("`b` is the row `a` once more"), "{one} and {other}: {found:?}");
         }
         let marked = faults(&format!("constraint a {{ {first}; }} constraint b redundant {{ {second}; }}"));
         assert!(marked.is_empty(), "{first} and {second}: {marked:?}");

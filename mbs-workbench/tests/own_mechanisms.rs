@@ -163,19 +163,20 @@ fn numbers_of_the_command_line_have_units() {
 }
 
 #[test]
-fn a_mechanism_that_locks_is_told_in_one_line_with_its_row() {
+fn a_mechanism_that_locks_is_told_in_one_line_and_has_its_page() {
     // Crank and base in line are longer than rod and rocker: 0.335 m, 0.33 m.
-    let said = failure(&["run", "wiper", "--param", "crank=75mm", "--param", "base=260mm"], 1);
-    let lines: Vec<&str> = said.lines().collect();
-    assert!(lines[0].contains("the motion ends at t = "), "{said}");
-    assert!(lines[0].contains("(line 12 of the text)"), "{said}");
-    assert_eq!(
-        lines[1..],
-        ["  12 | constraint closure { A + rod*unit(phi) == [base, 0] + rocker*unit(psi); }"],
-        "{said}"
-    );
-    let time = lines[0].split("t = ").nth(1).and_then(|rest| rest.split(' ').next()).expect("a time");
-    assert!(time.len() <= 8, "{said}");
+    let folder = scratch("locks");
+    let place = ["--out", folder.to_str().expect("a path")];
+    let output =
+        wiper(&[&["run", "wiper", "--param", "crank=75mm", "--param", "base=260mm"][..], &place].concat());
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    for line in said.lines() {
+        let (_, end) = line.split_once("the motion ends at t = ").expect(&said);
+        assert!(end.contains("`closure.0` (line"), "{said}");
+        assert!(end.split(' ').next().is_some_and(|time| time.len() <= 8), "{said}");
+    }
+    assert!(folder.join("report.html").is_file(), "{said}");
 }
 
 #[test]

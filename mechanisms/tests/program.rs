@@ -442,7 +442,7 @@ fn rest_is_found_beside_what_no_force_answers_and_is_called_by_its_name() {
     }
     // Of two loads one is too large for the weights to hold.
     let text = run(&["slider_crank_mass:Released"]);
-    let reason = "left out: slider_crank_mass:Released, torque: no position of rest at t = 0 s";
+    let reason = "left out: slider_crank_mass:Released: torque: no position of rest at t = 0 s";
     assert!(text.contains("theta at rest: 1.570796 rad") && text.contains(reason), "{text}");
     assert!(scratch.text("report.html").contains("torque: no position of rest at t = 0 s"));
     let message = failure(mbs(&["equilibrium", "slider_crank_mass:Released", "--param", "tau=1"]), 1);
@@ -670,7 +670,7 @@ fn senseless_arguments_are_refused_in_plain_words() {
         (&["run", "four-bar"], "did you mean `four_bar`?"),
         (&["four_bar"], "`mbs run four_bar`"),
         (&["Four_Bar"], "`mbs run four_bar`"),
-        (&["simulat", "pendulum"], "`simulate`"),
+        (&["simulat", "pendulum"], "'simulate'"),
         (&["structure", "four_bar", "--out", "x.png"], "name it FILE.svg"),
         (&["run", "four_bar", "--param", "omega=0"], "never ends"),
         (&["verify"], "required"),

@@ -113,15 +113,12 @@ fn at(expressions: &Expressions, trial: usize) -> Vec<Option<Sized>> {
 
 fn report(one: &ConstraintRow, other: &ConstraintRow, diagnostics: &mut Diagnostics) {
     let line = one.span.start().line;
-    let message = format!(
-        "the row `{}` is the row `{}` of line {line} once more, up to a factor",
-        other.name, one.name
-    );
+    let message = format!("the row `{}` is the row `{}` once more, up to a factor", other.name, one.name);
     let group = other.name.split('.').next().unwrap_or(&other.name);
     let help = match other.driven || one.driven {
-        true => "remove one of them: they hold the same coordinates".to_owned(),
+        true => format!("remove it or the one in line {line}: they hold the same coordinates"),
         false => format!(
-            "remove one of them; rows that may follow from others are marked: `constraint {group} redundant {{ … }}`"
+            "remove it or the one in line {line}; rows that may follow from others are marked: `constraint {group} redundant {{ … }}`"
         ),
     };
     diagnostics.report(other.span, message, help);

@@ -131,7 +131,7 @@ pub fn more_names(parser: &mut Parser<'_>, word: &str, first: &str) -> Vec<(Stri
     names
 }
 
-/// Names behind commas in the rest of a declaration that was given up: `param r = 1, l = 2;`.
+/// Names behind commas in the rest of a declaration that was given up: `param r = 1, l = 2;`. The word `rates` is none.
 pub fn names_to_end(parser: &Parser<'_>) -> Vec<(String, Span)> {
     let rest = until_end(parser);
     let mut depth = 0_usize;
@@ -144,6 +144,7 @@ pub fn names_to_end(parser: &Parser<'_>) -> Vec<(String, Span)> {
             TokenKind::Punctuation(',', _) if depth == 0 => {
                 if let (TokenKind::Identifier(text), TokenKind::Punctuation(':' | '=' | ',', _)) =
                     (&name.kind, &sign.kind)
+                    && text != "rates"
                 {
                     names.push((text.clone(), name.span));
                 }

@@ -41,7 +41,7 @@ fn brackets_hold_a_unit_behind_a_number_alone() {
         ("2m [s]", "a number has one unit"),
         ("2 [m", "`[` is never closed"),
         ("2 []", "hold no unit"),
-        ("2 [m^99]", "an integer exponent up to 12"),
+        ("2 [m^99]", "reach up to 12"),
         ("2 [m] [m]", "an index"),
         ("1e-300 [(nm^12)^12]", "too small"),
         ("1e300 [(km^12)^12]", "too large"),
