@@ -112,6 +112,12 @@ fn a_new_crate_shows_a_page_and_its_tests_pass_and_it_runs_texts_of_files() {
     let wiper = |arguments: &[&str]| {
         Command::new(&program).args(arguments).current_dir(&folder).output().expect("the program starts")
     };
+    // What an earlier run of this test has built would be taken.
+    for entry in fs::read_dir(target.join("mbs")).into_iter().flatten().flatten() {
+        if entry.file_name().to_string_lossy().starts_with("crank-") {
+            fs::remove_dir_all(entry.path()).expect("an old program");
+        }
+    }
     fs::write(folder.join("crank.mbs"), TEXT).expect("a text");
     let run = ["run", "crank.mbs", "--steps", "8", "--out", "crank"];
     let first = wiper(&run);
