@@ -38,7 +38,13 @@ pub unsafe extern "C" fn wiper_start(place: *mut Motion, angle: f32) -> i32 {
 /// # Safety
 /// `wiper_start` has returned 0 for `motion`; `blade` points to a number.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn wiper_step(motion: *mut Motion, period: f32, angle: f32, rate: f32, blade: *mut f32) -> i32 {
+pub unsafe extern "C" fn wiper_step(
+    motion: *mut Motion,
+    period: f32,
+    angle: f32,
+    rate: f32,
+    blade: *mut f32,
+) -> i32 {
     // SAFETY: the caller's pointers are valid, and no other thread uses them.
     let (motion, blade) = unsafe { (&mut *motion, &mut *blade) };
     motion.change(|wiper| wiper.theta = Signal::new(angle, rate, 0.0));
@@ -67,7 +73,12 @@ pub unsafe extern "C" fn wiper_save(motion: *const Motion, page: *mut u8, length
 /// # Safety
 /// `place` points to memory for a [`Motion`], `page` to `length` bytes.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn wiper_restore(place: *mut Motion, page: *const u8, length: usize, angle: f32) -> i32 {
+pub unsafe extern "C" fn wiper_restore(
+    place: *mut Motion,
+    page: *const u8,
+    length: usize,
+    angle: f32,
+) -> i32 {
     // SAFETY: the caller's pointers are valid.
     let page = unsafe { core::slice::from_raw_parts(page, length) };
     let Some(saved) = Saved::from_le_bytes(page) else { return 2 };
