@@ -172,8 +172,8 @@ pub fn outline(source: &str) -> Result<Outline, Vec<Fault>> {
         .ok_or_else(|| diagnostics.sorted().into_iter().map(Fault::from).collect())
 }
 
-/// What may be wrong in a text without faults, and is no fault: names that nothing uses, assemblies that no branch chooses, guesses
-/// far from any assembly. In the order of the text.
+/// Warnings about a text without faults, in its order: names that nothing uses, assemblies that no branch chooses, guesses far from
+/// any assembly.
 ///
 /// # Errors
 /// All faults that the macro reports, in the order of the text.

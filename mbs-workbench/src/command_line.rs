@@ -134,7 +134,7 @@ pub fn program(cards: &[Card]) -> ExitCode {
     })
 }
 
-/// What was meant by a command that is the name of a mechanism or a file.
+/// Command that was meant where the name of a mechanism or a file stands in its place.
 fn mechanism_as_command(catalogue: &Catalogue, error: &clap::Error) -> Option<String> {
     let is_unknown = error.kind() == ErrorKind::InvalidSubcommand;
     let Some(ContextValue::String(word)) = error.get(ContextKind::InvalidSubcommand).filter(|_| is_unknown)

@@ -1,4 +1,4 @@
-//! What may be wrong in a text without faults: a macro cannot warn, a program can.
+//! Warnings about a text without faults: a macro cannot warn, a program can.
 
 use std::collections::BTreeMap;
 

@@ -290,7 +290,7 @@ pub enum StatementKind {
     },
 }
 
-/// What a parameter may be: for programs, without code.
+/// Range and tolerance of a parameter: for programs, without code.
 #[derive(Clone, Debug, Default)]
 pub struct Bounds {
     /// Least and largest value.
