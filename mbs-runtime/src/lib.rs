@@ -83,7 +83,16 @@
 #![no_std]
 #![forbid(unsafe_code)]
 // Whether an index is in range, LLVM decides, and a proof on the linked binary shows that it did (`tests/proofs`).
-#![cfg_attr(not(test), deny(clippy::expect_used, clippy::panic, clippy::unreachable, clippy::unwrap_used))]
+#![cfg_attr(
+    not(test),
+    deny(
+        clippy::expect_used,
+        clippy::indexing_slicing,
+        clippy::panic,
+        clippy::unreachable,
+        clippy::unwrap_used
+    )
+)]
 
 #[doc(hidden)] // emitted code calls it
 pub mod __private;

@@ -47,7 +47,10 @@ impl Knots<'_> {
                 }
                 from_left = times_linear(&share, x - left, 1.0);
             }
-            splines[degree] = from_left;
+            // The last of `degree` + 1, at most W.
+            if let Some(last) = splines.get_mut(degree) {
+                *last = from_left;
+            }
         }
         splines
     }
