@@ -172,6 +172,16 @@ pub fn outline(source: &str) -> Result<Outline, Vec<Fault>> {
         .ok_or_else(|| diagnostics.sorted().into_iter().map(Fault::from).collect())
 }
 
+/// Faults of the form of a text that is kept as a string: what keeps its statements from being read.
+///
+/// Names, units and equations are not looked at, so a text that is not finished has none.
+pub fn faults_of_form(source: &str) -> Vec<Fault> {
+    let mut diagnostics = Diagnostics::default();
+    let _statements = model::scenes::tokens_of(source, &mut diagnostics)
+        .and_then(|tokens| syntax::read(tokens, &mut diagnostics));
+    diagnostics.sorted().into_iter().map(Fault::from).collect()
+}
+
 /// Warnings about a text without faults, in its order: names that nothing uses, assemblies that no branch chooses, guesses far from
 /// any assembly.
 ///

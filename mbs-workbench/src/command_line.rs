@@ -34,6 +34,8 @@ enum Command {
     List(commands::list::Arguments),
     /// Print faults and warnings of the texts in a file
     Check(commands::check::Arguments),
+    /// Lay out the texts in files: blanks, lines, indentation
+    Fmt(commands::fmt::Arguments),
     /// Run the analysis that suits a mechanism; write a report page and a table of its motion
     Run(commands::run::MotionArguments),
     /// Compute positions, velocities and accelerations that drives prescribe
@@ -97,6 +99,7 @@ impl Command {
             Command::New(_)
             | Command::List(_)
             | Command::Check(_)
+            | Command::Fmt(_)
             | Command::Expand(_)
             | Command::Compare(_)
             | Command::Table(_) => return None,
@@ -176,6 +179,7 @@ fn execute(catalogue: &Catalogue, command: Option<Command>) -> Result<ExitCode, 
         Some(Command::New(arguments)) => commands::new::run(&arguments, &mut out),
         Some(Command::List(arguments)) => commands::list::run(catalogue, &arguments, &mut out),
         Some(Command::Check(arguments)) => commands::check::run(&arguments, &mut out),
+        Some(Command::Fmt(arguments)) => commands::fmt::run(&arguments, &mut out),
         Some(Command::Run(arguments)) => analysis(Analysis::run(arguments), &mut out),
         Some(Command::Kinematics(arguments)) => analysis(Analysis::kinematics(arguments), &mut out),
         Some(Command::Simulate(arguments)) => analysis(Analysis::simulate(arguments), &mut out),

@@ -9,6 +9,7 @@ pub mod compare;
 pub mod dof;
 pub mod drift;
 pub mod expand;
+pub mod fmt;
 pub mod latex;
 pub mod list;
 pub mod new;
@@ -27,7 +28,7 @@ mod text;
 pub mod verify;
 pub mod watch;
 
-use std::fmt;
+use core::fmt::{Display, Formatter, Result as Written};
 use std::io::{self, ErrorKind};
 
 use crate::forge::ForgeError;
@@ -59,8 +60,8 @@ impl CommandError {
     }
 }
 
-impl fmt::Display for CommandError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+impl Display for CommandError {
+    fn fmt(&self, f: &mut Formatter<'_>) -> Written {
         match self {
             CommandError::Usage(text) | CommandError::Failed(text) => f.write_str(text),
             CommandError::Output(error) => write!(f, "cannot write the output: {error}"),

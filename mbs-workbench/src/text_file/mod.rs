@@ -177,7 +177,7 @@ fn texts(argument: &str) -> Result<(String, String, Vec<Call>), TextFileError> {
 
 fn calls(path: &str, content: &str) -> Result<Vec<Call>, TextFileError> {
     if path.ends_with(".mbs") {
-        return Ok(vec![Call { name: None, source: content.to_string(), line: 1 }]);
+        return Ok(vec![Call { name: None, source: content.to_string(), line: 1, place: 0..content.len() }]);
     }
     if !path.ends_with(".rs") {
         return Err(TextFileError::Suffix { path: path.to_string() });
