@@ -18,13 +18,14 @@ fn texts_stand_at_their_own_lines_and_columns() {
     let mut found = 0;
     for path in ready() {
         let source = fs::read_to_string(&path).expect("a source");
-        for Call { name, source: text, line } in calls(&source).expect("a Rust source") {
+        for Call { name, source: text, line, place } in calls(&source).expect("a Rust source") {
             let name = name.expect("a name");
             let here = text.lines().position(|line| line.contains(&format!("mechanism {name};")));
             let there = source.lines().position(|line| line.contains(&format!("mechanism {name};")));
             assert!(here.is_some() && here == there, "{}: {name}", path.display());
             assert!(source.lines().nth(line - 1).is_some_and(|line| line.contains("mechanism!")));
             assert_eq!(outline(&text).expect("no faults").name, name);
+            assert!(text.ends_with(&source[place]), "{name}");
             found += 1;
         }
     }

@@ -12,6 +12,7 @@ pub mod expand;
 pub mod fmt;
 pub mod latex;
 pub mod list;
+mod measured;
 pub mod new;
 pub mod newton;
 pub mod next;

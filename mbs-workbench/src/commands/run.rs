@@ -13,7 +13,7 @@ use crate::output::animation::animation;
 use crate::output::csv;
 use crate::output::places::places;
 use crate::output::reload::{VERSION, reloading};
-use crate::output::report::{ForceArrow, Report, Run, html};
+use crate::output::report::{ForceArrow, Overlay, Report, Run, html};
 use crate::output::shapes::shapes;
 use crate::target_directory::target_directory;
 use clap::{Args, ValueEnum};
@@ -25,6 +25,7 @@ use super::analysis::{
 };
 use super::assignment::{Assignment, assignment};
 use super::chosen::{svg_file, write_file};
+use super::measured::{Tables, compared, thinned};
 use super::report_files::{announce_size, require_writable, write_report};
 use super::target::Target;
 use super::{CommandError, positive, summary};
@@ -107,6 +108,8 @@ pub struct MotionArguments {
     #[command(flatten)]
     span: Span,
     #[command(flatten)]
+    tables: Tables,
+    #[command(flatten)]
     integration: Integration,
 }
 
@@ -117,6 +120,8 @@ pub struct DrivenArguments {
     pub selection: Selection,
     #[command(flatten)]
     span: Span,
+    #[command(flatten)]
+    tables: Tables,
 }
 
 /// Options of `mbs equilibrium`.
@@ -157,6 +162,7 @@ pub struct Arguments {
     guesses: Vec<Assignment>,
     at: Option<f64>,
     span: Span,
+    tables: Tables,
     integration: Integration,
 }
 
@@ -176,8 +182,8 @@ impl Arguments {
 
     /// `mbs run`: the analysis that suits the mechanism.
     pub fn run(arguments: MotionArguments) -> Self {
-        let MotionArguments { selection, span, integration } = arguments;
-        Arguments { command: "run", selection, span, integration, ..Arguments::default() }
+        let MotionArguments { selection, span, tables, integration } = arguments;
+        Arguments { command: "run", selection, span, tables, integration, ..Arguments::default() }
     }
 
     /// `mbs simulate`.
@@ -186,9 +192,9 @@ impl Arguments {
     }
 
     /// `mbs kinematics`.
-    pub fn kinematics(DrivenArguments { selection, span }: DrivenArguments) -> Self {
+    pub fn kinematics(DrivenArguments { selection, span, tables }: DrivenArguments) -> Self {
         let analysis = Some(Analysis::Kinematics);
-        Arguments { command: "kinematics", analysis, selection, span, ..Arguments::default() }
+        Arguments { command: "kinematics", analysis, selection, span, tables, ..Arguments::default() }
     }
 
     /// `mbs inverse`.
@@ -210,7 +216,8 @@ impl Arguments {
     pub fn modes(arguments: ModesArguments) -> Self {
         let ModesArguments { selection, guesses, at, steps, integration } = arguments;
         let (analysis, span) = (Some(Analysis::Modes), Span { until: None, steps });
-        Arguments { command: "modes", selection, analysis, guesses, at, span, integration }
+        let tables = Tables::default();
+        Arguments { command: "modes", selection, analysis, guesses, at, span, tables, integration }
     }
 
     fn request(&self, target: &Target) -> Request {
@@ -275,6 +282,7 @@ impl Arguments {
         if let Some(integrator) = self.integration.integrator {
             command.push_str(&format!(" --integrator {}", named(&|| integrator.to_possible_value())));
         }
+        command.push_str(&self.tables.command());
         command.push_str(&self.integration.damping.command());
         if let Some(step) = self.integration.step {
             command.push_str(&format!(" --step {step:e}"));
@@ -299,8 +307,13 @@ impl Arguments {
 /// has its page up to there, and the command fails.
 pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut dyn Write) -> Result<(), CommandError> {
     let target = Target::find(catalogue, &arguments.selection.name)?;
-    let instances = target.instances(&arguments.selection.parameters)?;
-    let request = arguments.request(&target);
+    let mut instances = target.instances(&arguments.selection.parameters)?;
+    let mut request = arguments.request(&target);
+    if let Some(range) = arguments.tables.feed(&target, request.analysis_of(&target), &mut instances)? {
+        let until = *request.until.get_or_insert(range[1]);
+        arguments.tables.require_data(range, until)?;
+    }
+    let overlays = arguments.tables.overlays(instances[0].1.equations(), &target)?;
     let standard = || target_directory().join("mbs").join(target.file_name());
     let directory = arguments.selection.out.clone().unwrap_or_else(standard);
     require_writable(&directory)?;
@@ -321,11 +334,14 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut dyn Write) ->
         return Err(CommandError::Failed(left_out.join("\n")));
     }
     drop_idle(&mut done.iter_mut().map(|done| &mut done.motion).collect::<Vec<_>>());
+    for done in &mut done {
+        done.figures.extend(overlays.iter().filter_map(|overlay| compared(overlay, &done.motion)));
+    }
     announce_size(done.iter().map(|done| &done.motion));
-    let mut facts = facts(&instances, &done);
+    let mut facts = facts(&instances, &done, &arguments.tables);
     facts.extend(left_out.iter().map(|reason| ["left out".to_string(), reason.clone()]));
     // Written before the table: printing fails if the reader of the output has left.
-    let page = page(arguments, &target, &instances, &done, &facts);
+    let page = page(arguments, &target, &instances, &done, (&facts, &thinned(&overlays)));
     let (page, version) = match arguments.selection.reload {
         true => {
             let (page, version) = reloading(&page);
@@ -375,11 +391,20 @@ fn animated(target: &Target, mechanism: &dyn AnyEquations, motion: &Motion) -> R
         .map_err(|reason| CommandError::Failed(format!("no animated drawing: {reason}")))
 }
 
-fn facts(instances: &[(Preset, Erased)], done: &[RunResult]) -> Vec<[String; 2]> {
+fn facts(instances: &[(Preset, Erased)], done: &[RunResult], tables: &Tables) -> Vec<[String; 2]> {
     let first = instances[0].1.equations();
     let mut facts = vec![["coordinates".to_string(), first.coordinates().len().to_string()]];
     let declared = mbs_codegen::variables(first.source(), Some(first.scene())).unwrap_or_default();
+    let is_of =
+        |entry: &str, input: &str| entry.strip_prefix(input).is_some_and(|rest| rest.starts_with('.'));
     for (index, entry) in first.variables().iter().enumerate() {
+        if let Some((_, followed)) = tables.followed().find(|(input, _)| *input == entry.name) {
+            facts.push([entry.name.to_string(), followed]);
+            continue;
+        }
+        if tables.followed().any(|(input, _)| is_of(entry.name, input)) {
+            continue;
+        }
         let bounds = declared.iter().find(|variable| variable.name == entry.name);
         let bounds = bounds.map_or_else(String::new, |variable| {
             let [low, high] = variable.range.map(summary::short);
@@ -414,7 +439,7 @@ fn page(
     target: &Target,
     instances: &[(Preset, Erased)],
     done: &[RunResult],
-    facts: &[[String; 2]],
+    (facts, overlays): (&[[String; 2]], &[Overlay]),
 ) -> String {
     let columns: usize = done.iter().map(|done| done.motion.columns()).sum();
     let shown = (NUMBERS / columns.max(1)).clamp(LEAST_SHOWN, SHOWN);
@@ -449,6 +474,7 @@ fn page(
         runs: &runs,
         drawing: &shapes(target.shapes()),
         forces: &forces,
+        overlays,
         analysis: arguments.request(target).analysis_of(target).word(),
     })
 }

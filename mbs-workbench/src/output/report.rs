@@ -58,6 +58,9 @@ pub struct Report<'a> {
     pub drawing: &'a [serde_json::Value],
     /// Outputs that are forces at places of the drawing.
     pub forces: &'a [ForceArrow<'a>],
+    /// Measured points.
+    #[serde(skip_serializing_if = "<[Overlay]>::is_empty")]
+    pub overlays: &'a [Overlay],
     /// The analysis: `kinematics`, `simulation`, `equilibrium`, `inverse` or `modes`.
     pub analysis: &'a str,
 }
@@ -69,6 +72,19 @@ pub struct ForceArrow<'a> {
     pub of: &'a str,
     /// Name of the place at which it acts, in the run's places.
     pub at: &'a str,
+}
+
+/// Measured points that are drawn over a curve.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Overlay {
+    /// Name of the output or the coordinate.
+    pub of: String,
+    /// File that they are from.
+    pub file: String,
+    /// Times (s).
+    pub time: Vec<f64>,
+    /// Values, in the unit of the curve.
+    pub value: Vec<f64>,
 }
 
 /// Verdict on a position of rest.
@@ -168,6 +184,7 @@ mod tests {
                 small: None,
             }],
             forces: &[ForceArrow { of: "bearing", at: "O" }],
+            overlays: &[],
             analysis: "kinematics",
             drawing: &shapes(&[
                 Shape::Joint { at: name("O") },

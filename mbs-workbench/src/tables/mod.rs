@@ -1,10 +1,11 @@
 //! Tables from files: a measured lift, a law from elsewhere, as splines for the runtime.
 //!
 //! [`read`] parses a file and converts its units to SI; [`Spline::fit`] fits a spline to the points;
-//! [`chart`] draws it, [`constant`] writes it as Rust, [`sample`] is a file to try it on.
+//! [`measured`] reads quantities over the time, [`chart`] draws a spline, [`constant`] writes it as Rust, [`sample`] is a file to try it on.
 
 pub mod chart;
 pub mod constant;
+pub mod measured;
 mod reader;
 pub mod sample;
 mod spline;
