@@ -1,5 +1,6 @@
 //! Names of a text, and the texts of a Rust source: for programs that choose among texts and scenes.
 
+pub mod declarations;
 pub mod warnings;
 
 use core::ops::Range;

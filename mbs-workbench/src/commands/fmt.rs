@@ -4,8 +4,10 @@ use std::fs;
 use std::io::Write;
 
 use clap::Args;
+use serde_json::json;
 
 use super::CommandError;
+use super::document::{Output, fault};
 use crate::layout::{Layout, bare, rust};
 use crate::text_file::{TextFileError, excerpt, is_file};
 
@@ -20,7 +22,7 @@ pub struct Arguments {
 }
 
 /// Lays out the texts of all files. One that cannot be read stays as it is, and is the failure of the command.
-pub fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<(), CommandError> {
+pub fn run(arguments: &Arguments, out: &mut Output) -> Result<(), CommandError> {
     let (mut reasons, mut differing) = (Vec::new(), 0_usize);
     for path in &arguments.files {
         match laid_out(path, arguments.check, out)? {
@@ -45,7 +47,7 @@ enum Outcome {
     Faulty(String),
 }
 
-fn laid_out(path: &str, is_check: bool, out: &mut dyn Write) -> Result<Outcome, CommandError> {
+fn laid_out(path: &str, is_check: bool, out: &mut Output) -> Result<Outcome, CommandError> {
     if !is_file(path) {
         return Err(CommandError::Usage(format!(
             "`{path}` is no file: `mbs fmt FILE` takes `.rs` and `.mbs`"
@@ -57,11 +59,18 @@ fn laid_out(path: &str, is_check: bool, out: &mut dyn Write) -> Result<Outcome, 
         _ if path.ends_with(".mbs") => bare(&content),
         _ if path.ends_with(".rs") => match rust(&content) {
             Ok(layout) => layout,
-            Err(fault) => return Ok(Outcome::Faulty(excerpt::faults(path, &content, &[fault]))),
+            Err(found) => {
+                out.push("laid_out", json!({ "path": path, "is_same": true, "faults": [fault(&found)] }));
+                return Ok(Outcome::Faulty(excerpt::faults(path, &content, &[found])));
+            }
         },
         _ => return Err(TextFileError::Suffix { path: path.to_string() }.into()),
     };
     let is_same = laid == content;
+    out.push(
+        "laid_out",
+        json!({ "path": path, "is_same": is_same, "faults": faults.iter().map(fault).collect::<Vec<_>>() }),
+    );
     if !is_same && is_check {
         let (line, [before, after]) = first_difference(&content, &laid);
         writeln!(out, "{path}:{line}\n- {before}\n+ {after}")?;

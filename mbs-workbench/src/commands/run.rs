@@ -2,7 +2,7 @@
 
 use crate::catalogue::Catalogue;
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use crate::card::DefaultMethod;
 use crate::erased::dynamics::linearization::SmallMotions;
@@ -11,6 +11,7 @@ use crate::erased::facade::{AnyEquations, Motion};
 use crate::motion::drop_idle;
 use crate::output::animation::animation;
 use crate::output::csv;
+use crate::output::origin::Origin;
 use crate::output::places::places;
 use crate::output::reload::{VERSION, reloading};
 use crate::output::report::{ForceArrow, Overlay, Report, Run, html};
@@ -18,13 +19,16 @@ use crate::output::shapes::shapes;
 use crate::target_directory::target_directory;
 use clap::{Args, ValueEnum};
 use mbs_codegen::picture::Preset;
+use mbs_runtime::Entry;
+use serde_json::{Value, json};
 
 use super::analysis::{
     Analysis, Damping, IntegratorName, MethodName, Request, RunResult, UsedOptions, above_zero,
     at_least_zero, tolerance,
 };
 use super::assignment::{Assignment, assignment};
-use super::chosen::{svg_file, write_file};
+use super::chosen::{require_named, svg_file, write_file};
+use super::document::Output;
 use super::measured::{Tables, compared, thinned};
 use super::report_files::{announce_size, require_writable, write_report};
 use super::target::Target;
@@ -305,7 +309,7 @@ impl Arguments {
 
 /// Runs the presets, prints a table and writes the report. Nothing is written if a run fails at its start; one that ends before its time
 /// has its page up to there, and the command fails.
-pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut dyn Write) -> Result<(), CommandError> {
+pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut Output) -> Result<(), CommandError> {
     let target = Target::find(catalogue, &arguments.selection.name)?;
     let mut instances = target.instances(&arguments.selection.parameters)?;
     let mut request = arguments.request(&target);
@@ -317,10 +321,7 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut dyn Write) ->
     let standard = || target_directory().join("mbs").join(target.file_name());
     let directory = arguments.selection.out.clone().unwrap_or_else(standard);
     require_writable(&directory)?;
-    let of_picture = arguments.selection.svg.as_deref().and_then(Path::parent);
-    if let Some(parent) = of_picture.filter(|parent| !parent.as_os_str().is_empty()) {
-        require_writable(parent)?;
-    }
+    require_named(arguments.selection.svg.as_ref())?;
     let (mut done, mut left_out) = (Vec::new(), Vec::new());
     for (index, instance) in instances.iter().enumerate() {
         match request.done(&target, instance) {
@@ -342,6 +343,7 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut dyn Write) ->
     facts.extend(left_out.iter().map(|reason| ["left out".to_string(), reason.clone()]));
     // Written before the table: printing fails if the reader of the output has left.
     let page = page(arguments, &target, &instances, &done, (&facts, &thinned(&overlays)));
+    let origin = out.put_mechanism(&target, instances[0].1.equations());
     let (page, version) = match arguments.selection.reload {
         true => {
             let (page, version) = reloading(&page);
@@ -349,13 +351,21 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut dyn Write) ->
         }
         false => (page, None),
     };
-    let mut files = vec![("report.html", page), ("motion.csv", values(&done))];
-    files.extend(modes(&done).map(|modes| ("modes.csv", modes)));
+    let mut files = vec![("report.html", page), ("motion.csv", origin.csv(&values(&done)))];
+    files.extend(modes(&done).map(|modes| ("modes.csv", origin.csv(&modes))));
     files.extend(version.map(|version| (VERSION, version)));
     if let Some(path) = &arguments.selection.svg {
-        write_file(path, &animated(&target, instances[done[0].instance].1.equations(), &done[0].motion)?)?;
+        let picture = animated(&target, instances[done[0].instance].1.equations(), &done[0].motion)?;
+        write_file(path, &origin.svg(&picture))?;
+        out.put_file("picture", path);
     }
     let written = write_report(&directory, &files);
+    out.put("analysis", request.analysis_of(&target).word());
+    out.put("command", arguments.command());
+    out.put("left_out", &left_out);
+    if out.is_document() {
+        done.iter().for_each(|done| out.push("runs", described(done, &instances[done.instance].1)));
+    }
     writeln!(out, "{}", target.title())?;
     for done in &done {
         summary::write(out, target.shapes(), &done.label, &done.motion, &done.figures)?;
@@ -372,6 +382,7 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut dyn Write) ->
             () if of("modes.csv") => "modes ",
             () => continue,
         };
+        out.put_file(name.trim(), &path);
         writeln!(out, "{name}  {}", path.display())?;
     }
     let ended = done.iter().filter_map(|done| {
@@ -380,8 +391,21 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut dyn Write) ->
     });
     match ended.collect::<Vec<_>>().as_slice() {
         [] => Ok(()),
-        ended => Err(CommandError::Failed(ended.join("\n"))),
+        // Rows of all runs stand below them once.
+        ended => Err(CommandError::Failed(target.quoted(instances[0].1.equations(), &ended.join("\n")))),
     }
+}
+
+/// A run as data: parameters, figures, and the whole motion.
+fn described(done: &RunResult, instance: &Erased) -> Value {
+    let equations = instance.equations();
+    let variable = |(index, entry): (usize, &Entry)| json!({ "name": entry.name, "unit": entry.unit, "value": equations.get(index) });
+    let variables: Vec<Value> = equations.variables().iter().enumerate().map(variable).collect();
+    json!({
+        "label": done.label, "description": done.description, "variables": variables, "figures": done.figures,
+        "verdict": done.verdict, "ended": done.ended.as_ref().map(|ended| &ended.line), "motion": done.motion,
+        "small_motions": done.small,
+    })
 }
 
 /// The motion as an animated picture.
@@ -475,6 +499,7 @@ fn page(
         drawing: &shapes(target.shapes()),
         forces: &forces,
         overlays,
+        origin: &Origin::of_text(target.name(), instances[0].1.equations().source()).line(),
         analysis: arguments.request(target).analysis_of(target).word(),
     })
 }

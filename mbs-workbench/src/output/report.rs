@@ -48,6 +48,8 @@ pub struct Report<'a> {
     pub description: &'a str,
     /// The text of the mechanism.
     pub source: &'a str,
+    /// Program, version and hash of the text.
+    pub origin: &'a str,
     /// The command that makes this page again.
     pub command: &'a str,
     /// Pairs of a name and a value worth knowing.
@@ -126,8 +128,10 @@ pub fn html(report: &Report) -> String {
     // A script element must contain neither `</script>` nor `<!--`, which comments of a text may have.
     let json = json.replace('<', "\\u003c");
     let title = escaped(report.title);
+    let origin = escaped(report.origin).replace('"', "&quot;");
     let marks = [
         ("/*TITLE*/", title.as_str()),
+        ("/*ORIGIN*/", origin.as_str()),
         ("/*STYLE*/", STYLE),
         ("/*DATA*/", json.as_str()),
         ("/*SCRIPT*/", SCRIPT),
@@ -172,6 +176,7 @@ mod tests {
             title: "A & B",
             description: "",
             source,
+            origin: "mbs 1, \"name\", text 2",
             command: "mbs run name",
             facts: &[["steps".to_string(), "1".to_string()]],
             runs: &[Run {
@@ -233,7 +238,8 @@ mod tests {
     fn all_marks_are_filled_and_nothing_is_fetched() {
         let page = page("text");
         assert!(page.contains("<title>A &amp; B</title>"));
-        for mark in ["/*TITLE*/", "/*STYLE*/", "/*DATA*/", "/*SCRIPT*/"] {
+        assert!(page.contains("<meta name=\"generator\" content=\"mbs 1, &quot;name&quot;, text 2\">"));
+        for mark in ["/*TITLE*/", "/*ORIGIN*/", "/*STYLE*/", "/*DATA*/", "/*SCRIPT*/"] {
             assert!(!page.contains(mark), "{mark}");
         }
         for fetch in ["src=\"http", "href=\"http", "url(http", "@import", "fetch(", "import("] {

@@ -12,5 +12,5 @@ mod spline;
 mod unit;
 
 pub use reader::{Columns, Fault, Points, read};
-pub use spline::{Kind, Spline, close_period};
+pub use spline::{Kind, SEED, Spline, close_period};
 pub use unit::Unit;
