@@ -196,7 +196,7 @@ fn mechanism_as_command(catalogue: &Catalogue, error: &clap::Error) -> Option<St
 /// Runs the command; its results, and its error, are one document where that is asked for.
 fn execute(catalogue: &Catalogue, command: Option<Command>, is_document: bool) -> ExitCode {
     // Without a command the first mechanism runs, and without mechanisms there is an empty list.
-    let standard = if catalogue.first().is_some() { "run" } else { "list" };
+    let standard = if catalogue.is_empty() { "list" } else { "run" };
     let schema = command.as_ref().map_or(standard, Command::schema);
     let mut stdout = io::stdout().lock();
     let mut out = Output::new(&mut stdout, is_document.then_some(schema));

@@ -22,6 +22,7 @@ pub mod print;
 mod report_files;
 mod rows;
 pub mod run;
+mod run_files;
 pub mod structure;
 mod summary;
 pub mod table;

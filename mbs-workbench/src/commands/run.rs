@@ -5,22 +5,10 @@ use std::io::Write;
 use std::path::PathBuf;
 
 use crate::card::DefaultMethod;
-use crate::erased::dynamics::linearization::SmallMotions;
-use crate::erased::erase::Erased;
-use crate::erased::facade::{AnyEquations, Motion};
 use crate::motion::drop_idle;
-use crate::output::animation::animation;
-use crate::output::csv;
-use crate::output::origin::Origin;
-use crate::output::places::places;
 use crate::output::reload::{VERSION, reloading};
-use crate::output::report::{ForceArrow, Overlay, Report, Run, html};
-use crate::output::shapes::shapes;
 use crate::target_directory::target_directory;
 use clap::{Args, ValueEnum};
-use mbs_codegen::picture::Preset;
-use mbs_runtime::Entry;
-use serde_json::{Value, json};
 
 use super::analysis::{
     Analysis, Damping, IntegratorName, MethodName, Request, RunResult, UsedOptions, above_zero,
@@ -31,6 +19,7 @@ use super::chosen::{require_named, svg_file, write_file};
 use super::document::Output;
 use super::measured::{Tables, compared, thinned};
 use super::report_files::{announce_size, require_writable, write_report};
+use super::run_files::{PageContent, animated, described, facts, modes, page, values};
 use super::target::Target;
 use super::{CommandError, positive, summary};
 
@@ -45,15 +34,6 @@ const STEP: f64 = 1e-3;
 
 /// Step (s) of RK4 with which a swing of one second is correct to six digits.
 const EQUAL_STEP: f64 = 2.5e-3;
-
-/// Instants of a run on the page, at most; beyond them a browser slows down and an eye sees no more.
-const SHOWN: usize = 2000;
-
-/// Numbers of all runs on the page, at most: two megabytes of text, which a page opens with at once.
-const NUMBERS: usize = 170_000;
-
-/// Instants of a run on the page, however many columns it has: twenty-four a second of a motion of ten.
-const LEAST_SHOWN: usize = 240;
 
 /// Mechanism, its parameters and the files to write: options of every analysis.
 #[derive(Args, Clone, Default)]
@@ -342,7 +322,13 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut Output) -> Re
     let mut facts = facts(&instances, &done, &arguments.tables);
     facts.extend(left_out.iter().map(|reason| ["left out".to_string(), reason.clone()]));
     // Written before the table: printing fails if the reader of the output has left.
-    let page = page(arguments, &target, &instances, &done, (&facts, &thinned(&overlays)));
+    let content = PageContent {
+        command: &arguments.command(),
+        analysis: request.analysis_of(&target).word(),
+        facts: &facts,
+        overlays: &thinned(&overlays),
+    };
+    let page = page(&target, &instances, &done, &content);
     let origin = out.put_mechanism(&target, instances[0].1.equations());
     let (page, version) = match arguments.selection.reload {
         true => {
@@ -394,127 +380,6 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut Output) -> Re
         // Rows of all runs stand below them once.
         ended => Err(CommandError::Failed(target.quoted(instances[0].1.equations(), &ended.join("\n")))),
     }
-}
-
-/// A run as data: parameters, figures, and the whole motion.
-fn described(done: &RunResult, instance: &Erased) -> Value {
-    let equations = instance.equations();
-    let variable = |(index, entry): (usize, &Entry)| json!({ "name": entry.name, "unit": entry.unit, "value": equations.get(index) });
-    let variables: Vec<Value> = equations.variables().iter().enumerate().map(variable).collect();
-    json!({
-        "label": done.label, "description": done.description, "variables": variables, "figures": done.figures,
-        "verdict": done.verdict, "ended": done.ended.as_ref().map(|ended| &ended.line), "motion": done.motion,
-        "small_motions": done.small,
-    })
-}
-
-/// The motion as an animated picture.
-fn animated(target: &Target, mechanism: &dyn AnyEquations, motion: &Motion) -> Result<String, CommandError> {
-    let places = places(target.picture(), mechanism, motion, None);
-    animation(&shapes(target.shapes()), motion, &places)
-        .map_err(|reason| CommandError::Failed(format!("no animated drawing: {reason}")))
-}
-
-fn facts(instances: &[(Preset, Erased)], done: &[RunResult], tables: &Tables) -> Vec<[String; 2]> {
-    let first = instances[0].1.equations();
-    let mut facts = vec![["coordinates".to_string(), first.coordinates().len().to_string()]];
-    let declared = mbs_codegen::variables(first.source(), Some(first.scene())).unwrap_or_default();
-    let is_of =
-        |entry: &str, input: &str| entry.strip_prefix(input).is_some_and(|rest| rest.starts_with('.'));
-    for (index, entry) in first.variables().iter().enumerate() {
-        if let Some((_, followed)) = tables.followed().find(|(input, _)| *input == entry.name) {
-            facts.push([entry.name.to_string(), followed]);
-            continue;
-        }
-        if tables.followed().any(|(input, _)| is_of(entry.name, input)) {
-            continue;
-        }
-        let bounds = declared.iter().find(|variable| variable.name == entry.name);
-        let bounds = bounds.map_or_else(String::new, |variable| {
-            let [low, high] = variable.range.map(summary::short);
-            let range =
-                if variable.range[1].is_finite() { format!(", {low} to {high}") } else { String::new() };
-            let tolerance = variable.tolerance.map(|deviation| format!(" ± {}", summary::short(deviation)));
-            tolerance.unwrap_or_default() + &range
-        });
-        let written = |mechanism: &dyn AnyEquations| {
-            let value = mechanism.get(index).unwrap_or(f64::NAN);
-            format!("{}{}{bounds}", summary::short(value), summary::unit(entry.unit))
-        };
-        if instances.iter().all(|(_, other)| other.equations().get(index) == first.get(index)) {
-            facts.push([entry.name.to_string(), written(first)]);
-            continue;
-        }
-        for (preset, instance) in instances {
-            facts.push([format!("{}, {}", entry.name, preset.label), written(instance.equations())]);
-        }
-    }
-    for done in done {
-        facts.push([format!("instants, {}", done.label), done.motion.time.len().to_string()]);
-        for [name, value] in &done.figures {
-            facts.push([format!("{name}, {}", done.label), value.clone()]);
-        }
-    }
-    facts
-}
-
-fn page(
-    arguments: &Arguments,
-    target: &Target,
-    instances: &[(Preset, Erased)],
-    done: &[RunResult],
-    (facts, overlays): (&[[String; 2]], &[Overlay]),
-) -> String {
-    let columns: usize = done.iter().map(|done| done.motion.columns()).sum();
-    let shown = (NUMBERS / columns.max(1)).clamp(LEAST_SHOWN, SHOWN);
-    let shown: Vec<Motion> = done.iter().map(|done| done.motion.decimate(shown)).collect();
-    let drawn = done.iter().zip(&shown).map(|(done, motion)| {
-        let mechanism = instances[done.instance].1.equations();
-        places(target.picture(), mechanism, motion, done.small.as_ref())
-    });
-    let drawn: Vec<_> = drawn.collect();
-    let mut runs = Vec::new();
-    for ((done, motion), places) in done.iter().zip(&shown).zip(&drawn) {
-        runs.push(Run {
-            label: &done.label,
-            description: &done.description,
-            motion,
-            places,
-            verdict: done.verdict.as_ref(),
-            ended: done.ended.as_ref().map(|ended| ended.line.as_str()),
-            small: done.small.as_ref(),
-        });
-    }
-    let forces = &target.picture().forces;
-    let forces: Vec<ForceArrow> =
-        forces.iter().map(|force| ForceArrow { of: &force.output, at: &force.at }).collect();
-    html(&Report {
-        name: target.name(),
-        title: target.title(),
-        description: target.description(),
-        source: instances[0].1.equations().source(),
-        command: &arguments.command(),
-        facts,
-        runs: &runs,
-        drawing: &shapes(target.shapes()),
-        forces: &forces,
-        overlays,
-        origin: &Origin::of_text(target.name(), instances[0].1.equations().source()).line(),
-        analysis: arguments.request(target).analysis_of(target).word(),
-    })
-}
-
-fn values(done: &[RunResult]) -> String {
-    csv::write(&done.iter().map(|done| (done.label.as_str(), &done.motion)).collect::<Vec<_>>())
-}
-
-/// Small motions as values, where they were asked for.
-fn modes(done: &[RunResult]) -> Option<String> {
-    let small: Vec<(&str, &Motion, &SmallMotions)> = done
-        .iter()
-        .filter_map(|done| Some((done.label.as_str(), &done.motion, done.small.as_ref()?)))
-        .collect();
-    (!small.is_empty()).then(|| csv::write_modes(&small))
 }
 
 /// Most steps of a run: its motion is held in memory and written as text.

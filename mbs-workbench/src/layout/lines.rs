@@ -65,8 +65,8 @@ impl<'a> Statement<'a> {
         }
         let begins = vec![false; pieces.len()];
         let mut statement = Statement { pieces, begins, partner, within };
-        for index in 1..pieces.len() {
-            if statement.is_forced(index) || (pieces[index].line_ends > 0 && statement.may_begin(index)) {
+        for (index, piece) in pieces.iter().enumerate().skip(1) {
+            if statement.is_forced(index) || (piece.line_ends > 0 && statement.may_begin(index)) {
                 statement.begin(index);
             }
         }
@@ -90,8 +90,7 @@ impl<'a> Statement<'a> {
             let open = self.partner[index] + 1;
             piece.kind == Kind::Close && self.begins.get(open).is_some_and(|begins| *begins)
         };
-        (before.kind == Kind::Open && piece.kind != Kind::Close)
-            || (before.is(",") && piece.kind != Kind::Close)
+        (piece.kind != Kind::Close && (before.kind == Kind::Open || before.is(",")))
             || has_begun()
             || (is_between(index) && piece.text != "=")
             || is_between(index - 1)

@@ -94,8 +94,11 @@ fn fits(unit: &Unit, declared: &str, seconds: usize) -> bool {
     found.is_some_and(|found| found.fits(&format!("{declared}{per}")))
 }
 
-/// Columns of times, values, rates and accelerations; `true` where the last two are there.
-fn columns(head: &Head, name: &str, unit: &str) -> Result<(Vec<(usize, Unit)>, [bool; 2]), Fault> {
+/// Columns with their indices and units, and `true` where those of rates and accelerations are among them.
+type Chosen = (Vec<(usize, Unit)>, [bool; 2]);
+
+/// Columns of times, values, rates and accelerations.
+fn columns(head: &Head, name: &str, unit: &str) -> Result<Chosen, Fault> {
     let fault = |message: String, cure: &str| Fault::new(head.line, 0, message, cure);
     let header = format!("write a header with units: `t (s), {name} ({unit})`");
     if !head.is_header {
