@@ -409,3 +409,25 @@ fn faults_of_measured_tables_name_file_line_column_and_cure() {
     assert!(failure(&["run", "probe", "--input", &given, "--input", &given], 2).contains("twice"));
     assert!(failure(&["inverse", "probe", "--input", &given], 2).contains("mbs kinematics probe"));
 }
+
+#[test]
+fn a_motion_that_an_input_locks_is_told_with_its_time() {
+    let folder = scratch("locked-input");
+    fs::create_dir_all(&folder).expect("a folder");
+    let theta = folder.join("theta.csv");
+    fs::write(&theta, measured(3)).expect("a table");
+    let (input, place) = (format!("theta={}", theta.display()), folder.to_str().expect("a path"));
+    let arguments = ["run", "probe", "--param", "reach=80mm", "--input", &input, "--out", place];
+    let output = wiper(&arguments);
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    // The slider is at 0 where the sine is 0.8.
+    let (mut low, mut high) = (0.0, 0.5);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if law(middle)[0] < 0.8_f64.asin() { low = middle } else { high = middle }
+    }
+    assert!(said.contains(&format!("the motion ends at t = {low:.4} s: ")), "{low} {said}");
+    assert!(said.contains(" | norm([x, arm*sin(phi)]) == reach;"), "{said}");
+    assert!(folder.join("report.html").exists());
+}

@@ -330,6 +330,9 @@ where
     fn stop(&self, times: &[f64]) -> Option<MotionStop> {
         let (first, rest) = times.split_first()?;
         let mut stepper = self.assembled(*first).ok()?;
+        if !self.2.0.is_empty() {
+            return self.stop_with_inputs(stepper, *first, rest);
+        }
         let beyond = rest.iter().find(|time| self.lead(&mut stepper, **time).is_err())?;
         let ReachLimit { reachable, refused, failure, .. } = stepper.reach_towards(*beyond)?;
         Some(MotionStop { reachable, refused, failure })
@@ -340,12 +343,43 @@ where
     }
 }
 
+/// Halvings of the instant in which a motion ends: to a millionth of it.
+const HALVINGS: usize = 20;
+
 impl<S: Kinematic<f64, N, M>, F, const N: usize, const M: usize> Facade<S, N, M, F> {
     fn assembled(&self, t: f64) -> Result<Stepper<Branching<S>, f64, N, M>, Failure> {
         let mut mechanism = self.0.clone();
         self.2.set(&mut mechanism, t);
         let guess = mechanism.guess(&mechanism.parameters());
         Stepper::assemble(Branching::declared(mechanism), guess, t)
+    }
+
+    /// As [`AnyMechanism::stop`], from a motion at `reachable` (s): the end is bisected along the courses of the inputs.
+    fn stop_with_inputs(
+        &self,
+        mut stepper: Stepper<Branching<S>, f64, N, M>,
+        mut reachable: f64,
+        times: &[f64],
+    ) -> Option<MotionStop> {
+        let (mut refused, mut failure) = times.iter().find_map(|time| {
+            let mut next = stepper.clone();
+            match self.lead(&mut next, *time) {
+                Ok(()) => {
+                    (stepper, reachable) = (next, *time);
+                    None
+                }
+                Err(failure) => Some((*time, failure)),
+            }
+        })?;
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (reachable + refused);
+            let mut next = stepper.clone();
+            match self.lead(&mut next, middle) {
+                Ok(()) => (stepper, reachable) = (next, middle),
+                Err(found) => (refused, failure) = (middle, found),
+            }
+        }
+        Some(MotionStop { reachable, refused, failure })
     }
 
     /// A step to `t` (s) with the inputs of that time.
