@@ -52,6 +52,7 @@ use emit::rust::Lengths;
 pub use model::quantity::{Quantity, quantity};
 use model::scene::Scene;
 use model::scenes::Scenes;
+pub use outline::declarations::Declaration;
 pub use outline::{Call, Outline, Variable, calls};
 pub use picture::picture;
 use proc_macro2::TokenStream;
@@ -172,6 +173,16 @@ pub fn outline(source: &str) -> Result<Outline, Vec<Fault>> {
         .ok_or_else(|| diagnostics.sorted().into_iter().map(Fault::from).collect())
 }
 
+/// Faults of the form of a text that is kept as a string: what keeps its statements from being read.
+///
+/// Names, units and equations are not looked at, so a text that is not finished has none.
+pub fn faults_of_form(source: &str) -> Vec<Fault> {
+    let mut diagnostics = Diagnostics::default();
+    let _statements = model::scenes::tokens_of(source, &mut diagnostics)
+        .and_then(|tokens| syntax::read(tokens, &mut diagnostics));
+    diagnostics.sorted().into_iter().map(Fault::from).collect()
+}
+
 /// Warnings about a text without faults, in its order: names that nothing uses, assemblies that no branch chooses, guesses far from
 /// any assembly.
 ///
@@ -201,6 +212,21 @@ pub fn warnings(source: &str) -> Result<Vec<Fault>, Vec<Fault>> {
 /// As [`casadi_definition`].
 pub fn variables(source: &str, scene: Option<&str>) -> Result<Vec<Variable>, String> {
     in_scene(source, scene, |_, scene| Ok(outline::variables(&scene.model)))
+}
+
+/// Names of a scene (without a name the whole text) of a text that is kept as a string, with the statements that declare them; a row
+/// with its equation. Names of the scene are the first; behind them those of all statements.
+///
+/// # Errors
+/// As [`casadi_definition`].
+pub fn declarations(source: &str, scene: Option<&str>) -> Result<Vec<Declaration>, String> {
+    let mut diagnostics = Diagnostics::default();
+    let (text, scenes) = match model::scenes::read_source(source, &mut diagnostics) {
+        Some(read) if diagnostics.is_empty() => read,
+        _ => return Err(diagnostics.to_text()),
+    };
+    let found = scenes.find(scene)?;
+    Ok(outline::declarations::declarations(source, &text, &found.model))
 }
 
 /// CasADi definition of a scene of a text that is kept as a string: a Python module with `define(ca, q, v, t, der)`.

@@ -1,13 +1,16 @@
 //! Names of a text, and the texts of a Rust source: for programs that choose among texts and scenes.
 
+pub mod declarations;
 pub mod warnings;
+
+use core::ops::Range;
 
 use proc_macro2::{TokenStream, TokenTree};
 
 use crate::diagnostics::{Diagnostic, Fault};
-use crate::model::Model;
 use crate::model::scene::Scene;
 use crate::model::scenes::Scenes;
+use crate::model::{Model, VariableKind};
 use crate::syntax::Text;
 
 /// Names that a text without faults declares.
@@ -34,6 +37,8 @@ pub struct Variable {
     pub range: [f64; 2],
     /// Largest deviation of a part that is made (coherent SI), where the text says it.
     pub tolerance: Option<f64>,
+    /// `true` for an input, `false` for a parameter and for the rates of an input.
+    pub is_input: bool,
 }
 
 /// A call of `mechanism!` in a Rust source.
@@ -45,6 +50,8 @@ pub struct Call {
     pub source: String,
     /// Line of the call, from 1.
     pub line: usize,
+    /// Place of the text between the brackets of the call, in bytes of the Rust source.
+    pub place: Range<usize>,
 }
 
 /// Calls of `mechanism!` in a Rust source, in its order.
@@ -90,7 +97,8 @@ pub fn calls(rust: &str) -> Result<Vec<Call>, Fault> {
 /// The call with the text in `group`; `None` in the definition of a macro, whose text has `$`.
 fn call(rust: &str, group: &proc_macro2::Group) -> Option<Call> {
     let (open, close) = (group.span_open(), group.span_close());
-    let text = rust.get(open.byte_range().end..close.byte_range().start)?;
+    let place = open.byte_range().end..close.byte_range().start;
+    let text = rust.get(place.clone())?;
     let mut name = None;
     let mut before = false;
     for token in group.stream() {
@@ -108,7 +116,7 @@ fn call(rust: &str, group: &proc_macro2::Group) -> Option<Call> {
     let mut source = "\n".repeat(start.line.saturating_sub(1));
     source.extend(std::iter::repeat_n(' ', start.column));
     source += text;
-    Some(Call { name, source, line: open.start().line })
+    Some(Call { name, source, line: open.start().line, place })
 }
 
 /// Before: a text without faults. After: its names.
@@ -128,6 +136,7 @@ pub(crate) fn variables(model: &Model) -> Vec<Variable> {
         default: variable.default,
         range: variable.range,
         tolerance: variable.tolerance,
+        is_input: matches!(variable.kind, VariableKind::Input | VariableKind::InputWithRates),
     };
     model.variables.iter().map(variable).collect()
 }

@@ -18,13 +18,14 @@ fn texts_stand_at_their_own_lines_and_columns() {
     let mut found = 0;
     for path in ready() {
         let source = fs::read_to_string(&path).expect("a source");
-        for Call { name, source: text, line } in calls(&source).expect("a Rust source") {
+        for Call { name, source: text, line, place } in calls(&source).expect("a Rust source") {
             let name = name.expect("a name");
             let here = text.lines().position(|line| line.contains(&format!("mechanism {name};")));
             let there = source.lines().position(|line| line.contains(&format!("mechanism {name};")));
             assert!(here.is_some() && here == there, "{}: {name}", path.display());
             assert!(source.lines().nth(line - 1).is_some_and(|line| line.contains("mechanism!")));
             assert_eq!(outline(&text).expect("no faults").name, name);
+            assert!(text.ends_with(&source[place]), "{name}");
             found += 1;
         }
     }
@@ -85,4 +86,33 @@ fn calls_are_found_in_any_brackets_and_not_in_macros_comments_or_strings() {
     // Columns count characters, not bytes.
     let call = calls("/* größe */ mechanism! { mechanism M; }").expect("tokens").remove(0);
     assert_eq!(call.source.find("mechanism M"), Some("/* groesse */ mechanism! { ".chars().count() - 2));
+}
+
+#[test]
+fn faults_of_the_form_are_told_without_those_of_names_and_units() {
+    let form =
+        |text: &str| mbs_codegen::faults_of_form(text).iter().map(|fault| fault.line).collect::<Vec<_>>();
+    assert_eq!(form("mechanism A;\ncoord phi: rad;\nout a: m = nowhere + 1s;\n"), []);
+    assert_eq!(form("mechanism A;\ncoord phi: rad\nout a: m = 1;\n"), [2]);
+    assert_eq!(form("mechanism A;\ncoord phi: rad;\nout a: m = (1;\n").len(), 1);
+    assert_eq!(form("").len(), 1);
+}
+
+#[test]
+fn names_are_quoted_with_their_statements() {
+    let text = "pub mechanism A;\n/// Length.\nparam L: m = 1; coord p: [m; 2];\nconstraint c {\n    for i in 0..2 {\n        \
+                p[i] == // side\n            L;\n    }\n}\nbody b {\n    mass: 1kg, com: p }\nlet twice = 2*L;\n";
+    let found = mbs_codegen::declarations(text, None).expect("a text");
+    let of = |name: &str| {
+        let found = found.iter().find(|declaration| declaration.name == name).expect(name);
+        (found.line, found.text.as_str())
+    };
+    assert_eq!(of("L"), (3, "param L: m = 1;"));
+    assert_eq!(of("p.1"), (3, "coord p: [m; 2];"));
+    assert_eq!((of("c.0"), of("c.1")), ((6, "p[i] == L;"), (6, "p[i] == L;")));
+    assert_eq!(of("c"), (4, "constraint c"));
+    assert_eq!(of("b"), (10, "body b"));
+    assert_eq!(of("twice"), (12, "let twice = 2*L;"));
+    assert!(mbs_codegen::declarations("mechanism A;", None).is_err());
+    assert!(mbs_codegen::declarations(text, Some("None")).is_err());
 }

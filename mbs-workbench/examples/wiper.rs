@@ -47,6 +47,24 @@ mechanism! {
     out P: [m; 2] = [0, y];
 }
 
+mechanism! {
+    /// A rocker that a measured angle moves.
+    pub mechanism Probe;
+    param arm: m = 100mm;
+    param reach: m = 150mm;
+    input theta: rad, rates;
+    coord phi: rad;
+    let A = arm*unit(theta);
+    drive encoder: phi == theta;
+    out angle: rad = phi;
+    out tip: [m; 2] = arm*unit(phi);
+    coord x: m = 0.1;
+    constraint slide { norm([x, arm*sin(phi)]) == reach; }
+    branch right: x > 0;
+    draw joint A;
+    title "Measured rocker";
+}
+
 /// A lift of ten millimetres in one turn.
 #[derive(Clone, Copy, Debug)]
 struct Lift;
@@ -70,5 +88,5 @@ fn cam() -> Follower<Lift> {
 }
 
 fn main() -> ExitCode {
-    mbs_workbench::program(&[card!(Wiper::default()), card!(cam())])
+    mbs_workbench::program(&[card!(Wiper::default()), card!(cam()), card!(Probe::default())])
 }

@@ -12,6 +12,7 @@ use clap::{Parser, Subcommand};
 
 use crate::card::Card;
 use crate::catalogue::Catalogue;
+use crate::commands::document::Output;
 use crate::commands::run::Arguments as Analysis;
 use crate::commands::{self, CommandError};
 use crate::mismatch::nearest;
@@ -24,6 +25,9 @@ use crate::text_file::is_file;
 struct Arguments {
     #[command(subcommand)]
     command: Option<Command>,
+    /// Print the results as one JSON document
+    #[arg(long, global = true)]
+    json: bool,
 }
 
 #[derive(Subcommand)]
@@ -34,6 +38,8 @@ enum Command {
     List(commands::list::Arguments),
     /// Print faults and warnings of the texts in a file
     Check(commands::check::Arguments),
+    /// Lay out the texts in files: blanks, lines, indentation
+    Fmt(commands::fmt::Arguments),
     /// Run the analysis that suits a mechanism; write a report page and a table of its motion
     Run(commands::run::MotionArguments),
     /// Compute positions, velocities and accelerations that drives prescribe
@@ -75,6 +81,35 @@ enum Command {
 }
 
 impl Command {
+    /// Name of the document with its results; the analyses have one of the same fields.
+    fn schema(&self) -> &'static str {
+        match self {
+            Command::New(_) => "new",
+            Command::List(_) => "list",
+            Command::Check(_) => "check",
+            Command::Fmt(_) => "fmt",
+            Command::Run(_)
+            | Command::Kinematics(_)
+            | Command::Simulate(_)
+            | Command::Inverse(_)
+            | Command::Equilibrium(_)
+            | Command::Modes(_)
+            | Command::Watch(_) => "run",
+            Command::Expand(_) => "expand",
+            Command::Verify(_) => "verify",
+            Command::Print(_) => "print",
+            Command::Latex(_) => "latex",
+            Command::Structure(_) => "structure",
+            Command::Newton(_) => "newton",
+            Command::Basins(_) => "basins",
+            Command::Next(_) => "next",
+            Command::Dof(_) => "dof",
+            Command::Drift(_) => "drift",
+            Command::Compare(_) => "compare",
+            Command::Table(_) => "table",
+        }
+    }
+
     /// The file that the command line names in place of a mechanism, where the command needs code for it.
     fn file_to_build(&self) -> Option<&str> {
         let chosen = |chosen: &'_ commands::chosen::Chosen, is_text: bool| !(is_text && chosen.is_plain());
@@ -97,6 +132,7 @@ impl Command {
             Command::New(_)
             | Command::List(_)
             | Command::Check(_)
+            | Command::Fmt(_)
             | Command::Expand(_)
             | Command::Compare(_)
             | Command::Table(_) => return None,
@@ -115,14 +151,14 @@ const STACK: usize = 64 << 20;
 /// or the list of mechanisms does not make sense.
 pub fn program(cards: &[Card]) -> ExitCode {
     let catalogue = Catalogue { cards };
-    let command = match Arguments::try_parse() {
-        Ok(arguments) => arguments.command,
+    let Arguments { command, json } = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
         Err(error) => match mechanism_as_command(&catalogue, &error) {
             Some(hint) => return report(&CommandError::Usage(hint)),
             None => error.exit(),
         },
     };
-    let run = || execute(&catalogue, command).unwrap_or_else(|error| report(&error));
+    let run = || execute(&catalogue, command, json);
     thread::scope(|scope| {
         let started = thread::Builder::new().stack_size(STACK).spawn_scoped(scope, run);
         match started.map(thread::ScopedJoinHandle::join) {
@@ -157,47 +193,75 @@ fn mechanism_as_command(catalogue: &Catalogue, error: &clap::Error) -> Option<St
     ))
 }
 
-fn execute(catalogue: &Catalogue, command: Option<Command>) -> Result<ExitCode, CommandError> {
+/// Runs the command; its results, and its error, are one document where that is asked for.
+fn execute(catalogue: &Catalogue, command: Option<Command>, is_document: bool) -> ExitCode {
+    // Without a command the first mechanism runs, and without mechanisms there is an empty list.
+    let standard = if catalogue.is_empty() { "list" } else { "run" };
+    let schema = command.as_ref().map_or(standard, Command::schema);
+    let mut stdout = io::stdout().lock();
+    let mut out = Output::new(&mut stdout, is_document.then_some(schema));
+    let done = done(catalogue, command, &mut out);
+    // What was built for a file has printed the document itself.
+    let ended = if let Ok(Done::Elsewhere(_)) = &done { Ok(()) } else { out.end(done.as_ref().err()) };
+    let code = match done {
+        Ok(Done::Here) => ExitCode::SUCCESS,
+        Ok(Done::Elsewhere(code)) => code,
+        Err(error) => report(&error),
+    };
+    ended.map_or_else(|error| report(&CommandError::Output(error)), |()| code)
+}
+
+/// Program that ran a command.
+enum Done {
+    Here,
+    /// One that was built for the text of a file, with its exit code.
+    Elsewhere(ExitCode),
+}
+
+fn done(catalogue: &Catalogue, command: Option<Command>, out: &mut Output) -> Result<Done, CommandError> {
     if let Some(name) = catalogue.repeated() {
         return Err(CommandError::Usage(format!(
             "two mechanisms are called `{name}`; put each in a module of its own, or make it by a function of its own name"
         )));
     }
     if let Some(file) = command.as_ref().and_then(Command::file_to_build) {
-        return commands::of_file::run(catalogue, file, None);
+        return commands::of_file::run(catalogue, file, None).map(Done::Elsewhere);
     }
-    let mut out = io::stdout().lock();
-    let analysis = |of: Analysis, out: &mut dyn Write| commands::run::run(catalogue, &of, out);
+    let analysis = |of: Analysis, out: &mut Output| commands::run::run(catalogue, &of, out);
     match command {
         None => match catalogue.first() {
-            Some(card) => analysis(Analysis::defaults(&card.name()), &mut out),
-            None => commands::list::run(catalogue, &commands::list::Arguments::default(), &mut out),
+            Some(card) => analysis(Analysis::defaults(&card.name()), out),
+            None => commands::list::run(catalogue, &commands::list::Arguments::default(), out),
         },
-        Some(Command::New(arguments)) => commands::new::run(&arguments, &mut out),
-        Some(Command::List(arguments)) => commands::list::run(catalogue, &arguments, &mut out),
-        Some(Command::Check(arguments)) => commands::check::run(&arguments, &mut out),
-        Some(Command::Run(arguments)) => analysis(Analysis::run(arguments), &mut out),
-        Some(Command::Kinematics(arguments)) => analysis(Analysis::kinematics(arguments), &mut out),
-        Some(Command::Simulate(arguments)) => analysis(Analysis::simulate(arguments), &mut out),
-        Some(Command::Inverse(arguments)) => analysis(Analysis::inverse(arguments), &mut out),
-        Some(Command::Equilibrium(arguments)) => analysis(Analysis::equilibrium(arguments), &mut out),
-        Some(Command::Modes(arguments)) => analysis(Analysis::modes(arguments), &mut out),
+        Some(Command::New(arguments)) => commands::new::run(&arguments, out),
+        Some(Command::List(arguments)) => commands::list::run(catalogue, &arguments, out),
+        Some(Command::Check(arguments)) => commands::check::run(&arguments, out),
+        Some(Command::Fmt(arguments)) => commands::fmt::run(&arguments, out),
+        Some(Command::Run(arguments)) => analysis(Analysis::run(arguments), out),
+        Some(Command::Kinematics(arguments)) => analysis(Analysis::kinematics(arguments), out),
+        Some(Command::Simulate(arguments)) => analysis(Analysis::simulate(arguments), out),
+        Some(Command::Inverse(arguments)) => analysis(Analysis::inverse(arguments), out),
+        Some(Command::Equilibrium(arguments)) => analysis(Analysis::equilibrium(arguments), out),
+        Some(Command::Modes(arguments)) => analysis(Analysis::modes(arguments), out),
+        Some(Command::Watch(_)) if out.is_document() => Err(CommandError::Usage(
+            "`mbs watch` does not end, so it has no document; use `mbs run --json`".to_string(),
+        )),
         Some(Command::Watch(arguments)) => commands::watch::run(catalogue, &arguments),
-        Some(Command::Expand(arguments)) => commands::expand::run(catalogue, &arguments, &mut out),
-        Some(Command::Verify(arguments)) => commands::verify::run(catalogue, &arguments, &mut out),
-        Some(Command::Print(arguments)) => commands::print::run(catalogue, &arguments, &mut out),
-        Some(Command::Latex(arguments)) => commands::latex::run(catalogue, &arguments, &mut out),
-        Some(Command::Structure(arguments)) => commands::structure::run(catalogue, &arguments, &mut out),
-        Some(Command::Newton(arguments)) => commands::newton::run(catalogue, &arguments, &mut out),
-        Some(Command::Basins(arguments)) => commands::basins::run(catalogue, &arguments, &mut out),
-        Some(Command::Next(arguments)) => commands::next::run(catalogue, &arguments, &mut out),
-        Some(Command::Dof(arguments)) => commands::dof::run(catalogue, &arguments, &mut out),
-        Some(Command::Drift(arguments)) => commands::drift::run(catalogue, &arguments, &mut out),
-        Some(Command::Compare(arguments)) => commands::compare::run(catalogue, &arguments, &mut out),
-        Some(Command::Table(arguments)) => commands::table::run(&arguments, &mut out),
+        Some(Command::Expand(arguments)) => commands::expand::run(catalogue, &arguments, out),
+        Some(Command::Verify(arguments)) => commands::verify::run(catalogue, &arguments, out),
+        Some(Command::Print(arguments)) => commands::print::run(catalogue, &arguments, out),
+        Some(Command::Latex(arguments)) => commands::latex::run(catalogue, &arguments, out),
+        Some(Command::Structure(arguments)) => commands::structure::run(catalogue, &arguments, out),
+        Some(Command::Newton(arguments)) => commands::newton::run(catalogue, &arguments, out),
+        Some(Command::Basins(arguments)) => commands::basins::run(catalogue, &arguments, out),
+        Some(Command::Next(arguments)) => commands::next::run(catalogue, &arguments, out),
+        Some(Command::Dof(arguments)) => commands::dof::run(catalogue, &arguments, out),
+        Some(Command::Drift(arguments)) => commands::drift::run(catalogue, &arguments, out),
+        Some(Command::Compare(arguments)) => commands::compare::run(catalogue, &arguments, out),
+        Some(Command::Table(arguments)) => commands::table::run(&arguments, out),
     }?;
     out.flush().map_err(CommandError::Output)?;
-    Ok(ExitCode::SUCCESS)
+    Ok(Done::Here)
 }
 
 fn report(error: &CommandError) -> ExitCode {

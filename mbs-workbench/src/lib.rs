@@ -20,6 +20,8 @@ pub mod erased;
 pub mod forge;
 mod hash;
 #[cfg(feature = "program")]
+pub mod layout;
+#[cfg(feature = "program")]
 pub mod mismatch;
 pub mod motion;
 #[cfg(feature = "program")]

@@ -15,8 +15,13 @@ impl Scratch {
         Scratch(path)
     }
 
+    /// A file of the report; of a table what stands below the line that names its origin.
     fn text(&self, file: &str) -> String {
-        fs::read_to_string(self.0.join(file)).expect("a file of the report")
+        let text = fs::read_to_string(self.0.join(file)).expect("a file of the report");
+        match text.strip_prefix("# mbs ").and_then(|rest| rest.split_once('\n')) {
+            Some((_, table)) => table.to_string(),
+            None => text,
+        }
     }
 }
 
@@ -250,6 +255,7 @@ fn small_motions_are_those_of_the_text_s_independent_coordinates_where_they_dete
 #[test]
 fn a_lost_run_is_lost_and_not_one_that_passed_a_singular_position() {
     let scratch = Scratch::new("lost");
+    fs::create_dir_all(&scratch.0).expect("a directory");
     let picture = scratch.0.join("drift.svg");
     let drift = |arguments: &[&str]| {
         let out = ["--out", picture.to_str().expect("a path of the build")];
@@ -520,9 +526,14 @@ fn early_end(scratch: &Scratch, arguments: &[&str]) -> String {
     let output = run_into(scratch, arguments);
     let message = String::from_utf8(output.stderr).expect("UTF-8");
     assert_eq!(output.status.code(), Some(1), "{message}");
+    // One line a run; below them the rows, each with its equation.
+    let is_row =
+        |line: &&str| line.trim_start().starts_with(|c: char| c.is_ascii_digit()) && line.contains(" | ");
+    let (rows, runs): (Vec<&str>, Vec<&str>) = message.lines().partition(is_row);
+    assert!(runs.iter().all(|line| line.contains("the motion ends at t = ")), "one line a run: {message}");
     assert!(
-        message.lines().all(|line| line.contains("the motion ends at t = ")),
-        "one line a run: {message}"
+        !rows.is_empty() && rows.iter().all(|row| row.contains(" == ") && row.ends_with(';')),
+        "{message}"
     );
     let text = String::from_utf8(output.stdout).expect("UTF-8");
     assert!(text.contains("report  "), "{text}");

@@ -95,6 +95,8 @@ fn every_mechanism_and_command_stands_in_the_chapter_on_the_program() {
         "expand",
         "verify",
         "watch",
+        "check",
+        "fmt",
     ] {
         assert!(text.contains(&format!("## `mbs {command}`")), "no section on `mbs {command}`");
     }

@@ -78,8 +78,15 @@ impl Scenes {
 
 /// The text and its scenes; `None` where it cannot be read at all.
 pub fn read_source(source: &str, diagnostics: &mut Diagnostics) -> Option<(Text, Scenes)> {
-    let input = match source.parse::<TokenStream>() {
-        Ok(input) => input,
+    let text = syntax::read(tokens_of(source, diagnostics)?, diagnostics)?;
+    let scenes = Scenes::resolve(&text, diagnostics);
+    Some((text, scenes))
+}
+
+/// Before: a text that is kept as a string. After: its tokens, or the reason why there are none, reported.
+pub fn tokens_of(source: &str, diagnostics: &mut Diagnostics) -> Option<TokenStream> {
+    match source.parse::<TokenStream>() {
+        Ok(input) => Some(input),
         Err(fault) => {
             match unreadable(source) {
                 Some(Unreadable { line, column, message, help }) => {
@@ -91,10 +98,7 @@ pub fn read_source(source: &str, diagnostics: &mut Diagnostics) -> Option<(Text,
                     "close every bracket and quote",
                 ),
             }
-            return None;
+            None
         }
-    };
-    let text = syntax::read(input, diagnostics)?;
-    let scenes = Scenes::resolve(&text, diagnostics);
-    Some((text, scenes))
+    }
 }

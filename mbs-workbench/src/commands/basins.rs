@@ -5,13 +5,15 @@ use std::io::Write;
 use std::path::PathBuf;
 
 use crate::target_directory::target_directory;
-use crate::teaching::basins::{Axis, Basins, basins};
+use crate::teaching::basins::{Axis, Basins, Method, basins};
 use crate::teaching::basins_picture::{self, describe, heading};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
+use serde_json::json;
 
 use super::CommandError;
-use super::chosen::{Choice, Chosen, finite, svg_file, write_file};
+use super::chosen::{Choice, Chosen, finite, require_named, svg_file, write_file};
+use super::document::Output;
 
 /// Guesses along an axis, at most: the picture stays below 2 MB.
 const LARGEST: usize = 400;
@@ -45,7 +47,8 @@ fn size(text: &str) -> Result<usize, String> {
 }
 
 /// Shares of the assemblies by each method, and the picture.
-pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut dyn Write) -> Result<(), CommandError> {
+pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut Output) -> Result<(), CommandError> {
+    require_named(arguments.out.as_ref())?;
     let choice = arguments.chosen.choice(catalogue)?;
     let mechanism = choice.mechanism.as_ref();
     let axes = axes(arguments, &choice)?.map(|coordinate| Axis::of(mechanism, coordinate));
@@ -59,7 +62,8 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut dyn Write) ->
     let standard = || target_directory().join("mbs").join(choice.target.file_name()).join("basins.svg");
     let path = arguments.out.clone().unwrap_or_else(standard);
     // Before the table, which may meet a reader that has left.
-    let written = write_file(&path, &basins_picture::basins(mechanism, &found));
+    let origin = out.put_mechanism(&choice.target, mechanism);
+    let written = write_file(&path, &origin.svg(&basins_picture::basins(mechanism, &found)));
     let [across, up] = axes.map(|axis| mechanism.coordinates()[axis.coordinate].name);
     writeln!(out, "{} at t = {} s", choice.target.title(), arguments.at)?;
     writeln!(
@@ -67,10 +71,33 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut dyn Write) ->
         "{0} × {0} guesses of {across} and {up}; the other coordinates start as the text says\n",
         arguments.size
     )?;
+    out.put("t", arguments.at);
+    out.put("size", arguments.size);
+    out.put("axes", json!([across, up]));
+    let shares = |solution: Option<usize>| -> serde_json::Map<String, serde_json::Value> {
+        found.maps.iter().map(|map| (word(map.method).to_string(), json!(map.share(solution)))).collect()
+    };
+    for (index, solution) in found.solutions.iter().enumerate() {
+        out.push(
+            "assemblies",
+            json!({ "q": solution.q, "is_declared": solution.is_declared(), "shares": shares(Some(index)) }),
+        );
+    }
+    out.put("not_found", shares(None));
     write_shares(out, &choice, &found)?;
     written?;
+    out.put_file("picture", &path);
     writeln!(out, "\npicture  {}", path.display())?;
     Ok(())
+}
+
+/// Name of a method in the document.
+fn word(method: Method) -> &'static str {
+    match method {
+        Method::Plain => "newton_raphson",
+        Method::Assemble => "assemble",
+        Method::Declared => "assemble_declared",
+    }
 }
 
 /// Coordinates of the axes: those of the command line, else the first two of the largest block, filled up from the others.

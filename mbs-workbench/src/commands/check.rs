@@ -5,6 +5,7 @@ use std::io::Write;
 use clap::Args;
 
 use super::CommandError;
+use super::document::{Output, fault};
 use crate::text_file::{checked, is_file};
 
 #[derive(Args)]
@@ -16,14 +17,22 @@ pub struct Arguments {
 /// Prints the warnings of all texts in the file, and how many there are.
 ///
 /// Faults of the texts are the failure of the command.
-pub fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<(), CommandError> {
+pub fn run(arguments: &Arguments, out: &mut Output) -> Result<(), CommandError> {
     if !is_file(&arguments.file) {
         return Err(CommandError::Usage(format!(
             "`{}` is no file: its texts are compiled, and without faults; `mbs check FILE` takes `.rs` and `.mbs`",
             arguments.file
         )));
     }
-    let (texts, warnings) = checked(&arguments.file)?;
+    let found = checked(&arguments.file)?;
+    out.put("file", &arguments.file);
+    out.put("texts", found.texts);
+    out.put("faults", found.faults.iter().map(fault).collect::<Vec<_>>());
+    out.put("warnings", found.warnings.iter().map(fault).collect::<Vec<_>>());
+    if let Some(error) = found.error() {
+        return Err(error.into());
+    }
+    let (texts, warnings) = (found.texts, found.shown_warnings());
     for warning in &warnings {
         writeln!(out, "{warning}")?;
     }

@@ -13,6 +13,7 @@ use clap::Args;
 use mbs_codegen::StructureReport;
 
 use super::assignment::{Assignment, assignment};
+use super::report_files::require_place;
 use super::target::Target;
 use super::{CommandError, summary};
 
@@ -158,6 +159,11 @@ pub fn svg_file(text: &str) -> Result<PathBuf, String> {
     let path = PathBuf::from(text);
     let is_svg = path.extension().is_some_and(|suffix| suffix.eq_ignore_ascii_case("svg"));
     is_svg.then_some(path).ok_or_else(|| "the picture is SVG: name it FILE.svg".to_string())
+}
+
+/// Refuses a file that cannot be written where the command line names one, before anything is computed.
+pub fn require_named(path: Option<&PathBuf>) -> Result<(), CommandError> {
+    path.map_or(Ok(()), |path| require_place(path))
 }
 
 /// Writes a file, its directory included.

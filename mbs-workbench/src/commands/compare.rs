@@ -6,10 +6,13 @@ use std::io::Write;
 use crate::card::Card;
 use crate::catalogue::KINDS;
 use crate::mismatch::Mismatch;
+use crate::output::origin::Origin;
 use crate::teaching::comparison::{Candidate, Fault, candidate, difference};
 use crate::text_file::is_file;
 use clap::Args;
+use serde_json::json;
 
+use super::document::Output;
 use super::{CommandError, positive};
 
 /// The point whose motion is compared.
@@ -29,7 +32,7 @@ pub struct Arguments {
 }
 
 /// Prints the cost of each set of coordinates and the differences between their motions.
-pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut dyn Write) -> Result<(), CommandError> {
+pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut Output) -> Result<(), CommandError> {
     if is_file(&arguments.name) {
         let reason = "kinds of coordinates are variants in the list of mechanisms, and a file has one text of them; name one of `mbs list`";
         return Err(CommandError::Usage(reason.to_string()));
@@ -48,6 +51,17 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut dyn Write) ->
     )?;
     for candidate in &candidates {
         write_line(out, candidate, width)?;
+        let Candidate { name, coordinates, rows, entries, largest_block, operations, .. } = candidate;
+        let source = catalogue.find(name)?.equations().source();
+        out.push(
+            "candidates",
+            json!({
+                "name": name, "hash": Origin::of_text(name, source).hash, "coordinates": coordinates, "rows": rows,
+                "entries": entries, "largest_block": largest_block, "operations": operations,
+                "step_time": candidate.step_time.as_secs_f64(), "condition": candidate.condition,
+                "margin": candidate.margin,
+            }),
+        );
     }
     writeln!(
         out,
@@ -56,6 +70,15 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut dyn Write) ->
     )?;
     let Some((first, others)) = candidates.split_first() else { return Ok(()) };
     for other in others {
+        if let Some([place, velocity, acceleration]) = difference(&first.motion, &other.motion, POINT) {
+            out.push(
+                "differences",
+                json!({
+                    "of": other.name, "against": first.name, "point": POINT, "position": place, "velocity": velocity,
+                    "acceleration": acceleration,
+                }),
+            );
+        }
         match difference(&first.motion, &other.motion, POINT) {
             Some([place, velocity, acceleration]) => writeln!(
                 out,

@@ -7,9 +7,11 @@ use crate::teaching::freedom::{Freedom, freedom};
 use crate::text_file::is_file;
 use clap::Args;
 use mbs_codegen::{Mobility, StructureReport};
+use serde_json::json;
 
 use super::CommandError;
 use super::chosen::{Chosen, finite};
+use super::document::Output;
 use super::text::Text;
 
 #[derive(Args)]
@@ -26,7 +28,7 @@ const GRUBLER: &str = "Grübler counts 3 a body less 2 a joint; each set of coor
                        equations\nof joints, so that n − constraints is that count. Rows that follow from others count too.";
 
 /// Counts, ranks, independent and dependent coordinates.
-pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut dyn Write) -> Result<(), CommandError> {
+pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut Output) -> Result<(), CommandError> {
     if is_file(arguments.chosen.name()) && arguments.chosen.is_plain() && arguments.at.is_none() {
         return counts(&Text::find(catalogue, &arguments.chosen)?, out);
     }
@@ -36,9 +38,30 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut dyn Write) ->
     let report = choice.structure()?;
     let state = choice.state(at)?;
     let found = freedom(mechanism, &report, &state.q, at);
+    out.put_mechanism(&choice.target, mechanism);
     writeln!(out, "{} at t = {} s\n", choice.target.title(), at)?;
     let Freedom { coordinates: n, constraints, drives, structural_rank, rank, whole_rank, .. } = found;
     writeln!(out, "coordinates n                {n}")?;
+    let named = |indices: &[usize]| -> Vec<&str> {
+        indices.iter().map(|index| mechanism.coordinates()[*index].name).collect()
+    };
+    let follows: Vec<&str> = found.redundant.iter().map(|row| mechanism.rows()[*row].name).collect();
+    for (field, value) in [
+        ("t", json!(at)),
+        ("coordinates", json!(n)),
+        ("constraints", json!(constraints)),
+        ("drives", json!(drives)),
+        ("rank_of_constraints", json!(rank)),
+        ("largest_rank_of_constraints", json!(structural_rank)),
+        ("rank", json!(whole_rank)),
+        ("freedom", json!(n - rank)),
+        ("grubler", json!(report.mobility.grubler())),
+        ("independent", json!(named(&found.independent))),
+        ("dependent", json!(named(&found.dependent))),
+        ("redundant_rows", json!(follows)),
+    ] {
+        out.put(field, value);
+    }
     writeln!(
         out,
         "rows m                       {} ({constraints} of constraints, {drives} of drives)",
@@ -71,9 +94,25 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut dyn Write) ->
 }
 
 /// Counts that the text alone gives, without a position.
-fn counts(text: &Text, out: &mut dyn Write) -> Result<(), CommandError> {
+fn counts(text: &Text, out: &mut Output) -> Result<(), CommandError> {
     let report = text.structure()?;
     let Mobility { coordinates: n, constraints, drives, constraint_rank, rank, .. } = report.mobility;
+    text.put(out);
+    let independent: Vec<&str> =
+        report.independent.iter().map(|index| report.coordinates[*index].name.as_str()).collect();
+    for (field, value) in [
+        ("t", json!(null)),
+        ("coordinates", json!(n)),
+        ("constraints", json!(constraints)),
+        ("drives", json!(drives)),
+        ("largest_rank_of_constraints", json!(constraint_rank)),
+        ("largest_rank", json!(rank)),
+        ("least_freedom", json!(n - constraint_rank)),
+        ("grubler", json!(report.mobility.grubler())),
+        ("independent", json!(independent)),
+    ] {
+        out.put(field, value);
+    }
     writeln!(out, "{}\n", text.title)?;
     writeln!(out, "coordinates n                {n}")?;
     writeln!(

@@ -9,13 +9,15 @@ use crate::motion::instants;
 use crate::target_directory::target_directory;
 use crate::teaching::drift::{Curve, picture};
 use clap::{Args, ValueEnum};
+use serde_json::json;
 
 use super::CommandError;
 use super::analysis::{
     Damping, IntegratorName, MethodName, above_zero, doubtful, dynamics, largest, undetermined,
 };
 use super::assignment::{Assignment, assignment};
-use super::chosen::{svg_file, write_file};
+use super::chosen::{require_named, svg_file, write_file};
+use super::document::Output;
 use super::run::steps;
 use super::target::Target;
 
@@ -46,7 +48,8 @@ pub struct Arguments {
 }
 
 /// Prints the violation of the constraints and the energy defect of each method, and writes the picture.
-pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut dyn Write) -> Result<(), CommandError> {
+pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut Output) -> Result<(), CommandError> {
+    require_named(arguments.out.as_ref())?;
     let target = Target::find(catalogue, &arguments.name)?;
     let rule = arguments.integrator.rule().ok_or_else(|| {
         CommandError::Usage("adaptive steps hide what drifts: use `--integrator rk4` or `euler`".to_string())
@@ -88,7 +91,10 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut dyn Write) ->
     let standard = || target_directory().join("mbs").join(target.file_name()).join("drift.svg");
     let path = arguments.out.clone().unwrap_or_else(standard);
     // Written before the table: printing fails if the reader of the output has left.
-    let written = write_file(&path, &picture(&title, until, &curves));
+    let origin = out.put_mechanism(&target, instance.equations());
+    let written = write_file(&path, &origin.svg(&picture(&title, until, &curves)));
+    out.put("until", until);
+    out.put("steps", arguments.steps);
     writeln!(out, "{title}, to t = {until} s\n")?;
     writeln!(
         out,
@@ -97,9 +103,21 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut dyn Write) ->
     )?;
     for (name, simulated) in &found {
         write_line(out, name, simulated)?;
+        let forces = simulated.motion.dynamics.clone().unwrap_or_default();
+        out.push(
+            "methods",
+            json!({
+                "name": name, "largest_closure": largest(&simulated.motion.closure),
+                "largest_closure_rate": largest(&forces.closure_rate), "largest_energy_defect": largest(&forces.defect),
+                "evaluations": simulated.counts.evaluations,
+                "failure": simulated.failure.as_ref().map(ToString::to_string),
+                "undetermined_from": simulated.undetermined,
+            }),
+        );
     }
     writeln!(out, "\n|Φ| and |Φ̇|: each row measured in the reference metric")?;
     written?;
+    out.put_file("picture", &path);
     writeln!(out, "\npicture  {}", path.display())?;
     Ok(())
 }

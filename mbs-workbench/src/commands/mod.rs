@@ -6,11 +6,14 @@ pub mod basins;
 pub mod check;
 pub mod chosen;
 pub mod compare;
+pub mod document;
 pub mod dof;
 pub mod drift;
 pub mod expand;
+pub mod fmt;
 pub mod latex;
 pub mod list;
+mod measured;
 pub mod new;
 pub mod newton;
 pub mod next;
@@ -19,6 +22,7 @@ pub mod print;
 mod report_files;
 mod rows;
 pub mod run;
+mod run_files;
 pub mod structure;
 mod summary;
 pub mod table;
@@ -27,7 +31,7 @@ mod text;
 pub mod verify;
 pub mod watch;
 
-use std::fmt;
+use core::fmt::{Display, Formatter, Result as Written};
 use std::io::{self, ErrorKind};
 
 use crate::forge::ForgeError;
@@ -59,8 +63,8 @@ impl CommandError {
     }
 }
 
-impl fmt::Display for CommandError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+impl Display for CommandError {
+    fn fmt(&self, f: &mut Formatter<'_>) -> Written {
         match self {
             CommandError::Usage(text) | CommandError::Failed(text) => f.write_str(text),
             CommandError::Output(error) => write!(f, "cannot write the output: {error}"),

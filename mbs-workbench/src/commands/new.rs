@@ -8,6 +8,7 @@ use clap::Args;
 
 use super::CommandError;
 use super::chosen::write_file;
+use super::document::Output;
 
 /// Files of a new crate, with the text that each is made from.
 const FILES: [(&str, &str); 7] = [
@@ -58,7 +59,7 @@ struct Names {
 }
 
 /// Writes a library with a text, its program, a test and an example.
-pub fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<(), CommandError> {
+pub fn run(arguments: &Arguments, out: &mut Output) -> Result<(), CommandError> {
     let names = Names::of(&arguments.name)?;
     let folder = Path::new(&names.package);
     if folder.symlink_metadata().is_ok() {
@@ -86,6 +87,10 @@ pub fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<(), CommandErro
         drop(fs::remove_dir_all(&draft));
     }
     placed?;
+    out.put("crate", &names.package);
+    for (path, _) in FILES {
+        out.put_file("source", &folder.join(path));
+    }
     writeln!(out, "{}: a mechanism to begin from", names.package)?;
     for (path, content) in [
         ("src/lib.rs", "its text, in a library without std"),

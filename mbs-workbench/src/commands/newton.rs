@@ -3,13 +3,15 @@
 use crate::catalogue::Catalogue;
 use std::io::Write;
 
-use crate::erased::experiment::{BlockProtocol, Protocol};
+use crate::erased::experiment::{BlockProtocol, IterateProtocol, Protocol};
 use crate::erased::formulas::Formula;
 use clap::Args;
-use mbs_runtime::{Failure, FailureKind};
+use mbs_runtime::{Entry, Failure, FailureKind};
+use serde_json::{Value, json};
 
 use super::assignment::{Assignment, assignment};
 use super::chosen::{Choice, Chosen, finite};
+use super::document::Output;
 use super::{CommandError, summary};
 
 #[derive(Args)]
@@ -31,7 +33,7 @@ pub struct Arguments {
 const SHOWN: usize = 5;
 
 /// Prints the iterations and the assembly to which they converge.
-pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut dyn Write) -> Result<(), CommandError> {
+pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut Output) -> Result<(), CommandError> {
     let choice = arguments.chosen.choice(catalogue)?;
     let mechanism = choice.mechanism.as_ref();
     let mut guess = mechanism.experiment().guess();
@@ -48,6 +50,7 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut dyn Write) ->
         return Err(choice.target.failed(mechanism, &failure.to_string()));
     }
     let all: Vec<usize> = (0..guess.len()).collect();
+    describe_in(out, &choice, &protocol, (&guess, arguments.at));
     writeln!(out, "{} at t = {} s", choice.target.title(), arguments.at)?;
     writeln!(out, "guess: {}", choice.values(&all, &guess))?;
     writeln!(out, "residual and step: lengths in the reference metric (rad, or reference lengths)\n")?;
@@ -61,6 +64,39 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut dyn Write) ->
     match &protocol.found {
         Ok(q) => write_found(out, &choice, &all, q, arguments.at),
         Err(failure) => Err(choice.target.failed(mechanism, &failure.to_string())),
+    }
+}
+
+/// Guess, iterations, branches and the position found as data.
+fn describe_in(out: &mut Output, choice: &Choice, protocol: &Protocol, (guess, t): (&[f64], f64)) {
+    let mechanism = choice.mechanism.as_ref();
+    let coordinates = mechanism.coordinates();
+    let position = |q: &[f64]| -> Vec<Value> {
+        let value = |(entry, value): (&Entry, &f64)| json!({ "name": entry.name, "unit": entry.unit, "value": value });
+        coordinates.iter().zip(q).map(value).collect()
+    };
+    out.put_mechanism(&choice.target, mechanism);
+    out.put("t", t);
+    out.put("guess", position(guess));
+    out.put("blocks", json!([]));
+    for block in &protocol.blocks {
+        let names: Vec<&str> = block.coordinates.iter().map(|index| coordinates[*index].name).collect();
+        let rows: Vec<&str> = block.rows.iter().map(|row| mechanism.rows()[*row].name).collect();
+        let iterate = |(k, iterate): (usize, &IterateProtocol)| {
+            json!({
+                "values": iterate.x, "residual": iterate.residual, "step": iterate.step, "order": block.order(k),
+            })
+        };
+        let iterates: Vec<Value> = block.iterates.iter().enumerate().map(iterate).collect();
+        out.push("blocks", json!({ "coordinates": names, "rows": rows, "iterates": iterates }));
+    }
+    out.put("found", protocol.found.as_ref().ok().map(|q| position(q)));
+    let experiment = mechanism.experiment();
+    out.put("branches", json!([]));
+    if let Ok(q) = &protocol.found {
+        for (branch, value) in experiment.branches().iter().zip(experiment.branch_values(q, t)) {
+            out.push("branches", json!({ "name": branch.name, "value": value, "holds": value > 0.0 }));
+        }
     }
 }
 

@@ -6,8 +6,10 @@ use std::io::Write;
 use crate::teaching::next_position::{Course, Trial, WAYS, Way};
 use clap::Args;
 use mbs_codegen::picture::Span;
+use serde_json::json;
 
 use super::chosen::{Choice, Chosen};
+use super::document::Output;
 use super::{CommandError, positive};
 
 /// Steps of the table, in parts of the motion's duration.
@@ -26,12 +28,13 @@ pub struct Arguments {
 }
 
 /// Prints the result of every step size and the largest safe step of each way.
-pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut dyn Write) -> Result<(), CommandError> {
+pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut Output) -> Result<(), CommandError> {
     let choice = arguments.chosen.choice(catalogue)?;
     let duration = choice.target.duration(choice.mechanism.as_ref())?;
     let course = Course::new(choice.mechanism.as_ref(), duration, arguments.starts)
         .map_err(|failure| choice.target.failed(choice.mechanism.as_ref(), &failure.to_string()))?;
     let steps: Vec<f64> = PARTS.map(|part| duration / f64::from(part)).to_vec();
+    out.put_mechanism(&choice.target, choice.mechanism.as_ref());
     writeln!(out, "{}\n", choice.target.title())?;
     writeln!(out, "previous   full Newton–Raphson from the previous position")?;
     writeln!(out, "predicted  full Newton–Raphson from q + h·q̇ + h²/2·q̈")?;
@@ -54,10 +57,20 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut dyn Write) ->
         let trials: String =
             WAYS.iter().map(|way| format!("  {:>22}", cell(&course.trial(*way, *h)))).collect();
         writeln!(out, "{:>24}{trials}", step(&choice, duration, *h))?;
+        for way in WAYS {
+            let Trial { count, right, wrong, iterations } = course.trial(way, *h);
+            out.push(
+                "trials",
+                json!({
+                    "way": name(way), "step": h, "starts": count, "right": right, "wrong": wrong, "iterations": iterations,
+                }),
+            );
+        }
     }
     writeln!(out, "\nlargest step up to which all are right")?;
     for way in WAYS {
         let safe = course.largest_safe_step(way, &steps);
+        out.push("largest_steps", json!({ "way": name(way), "step": safe }));
         let more = if steps.last().is_some_and(|last| safe >= *last) { " or more" } else { "" };
         writeln!(out, "  {:9}  {}{more}", name(way), step(&choice, duration, safe))?;
     }

@@ -6,11 +6,13 @@ use std::io::Write;
 use crate::erased::facade::{AnyEquations, State};
 use crate::erased::masses::{Loads, Masses};
 use crate::motion::multiplier_unit;
-use crate::output::matrix::{Named, number};
+use crate::output::matrix::Named;
 use clap::{Args, ValueEnum};
+use serde_json::json;
 
 use super::CommandError;
 use super::chosen::{Chosen, finite};
+use super::document::Output;
 use super::text::Text;
 
 #[derive(Args)]
@@ -68,7 +70,7 @@ impl Quantity {
 }
 
 /// The matrices, names on rows and columns.
-pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut dyn Write) -> Result<(), CommandError> {
+pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut Output) -> Result<(), CommandError> {
     let dynamic = arguments.quantities.iter().any(|quantity| quantity.is_dynamic());
     if arguments.symbols {
         return formulas(&Text::find(catalogue, &arguments.chosen)?, &arguments.quantities, dynamic, out);
@@ -79,6 +81,8 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut dyn Write) ->
         return Err(massless(choice.target.name()));
     }
     let state = choice.state(arguments.at)?;
+    out.put_mechanism(&choice.target, mechanism);
+    out.put("t", arguments.at);
     writeln!(out, "{} at t = {} s", choice.target.title(), arguments.at)?;
     let (loads, masses) = match mechanism.dynamics().filter(|_| dynamic) {
         None => (Loads::default(), Masses::default()),
@@ -110,8 +114,9 @@ fn formulas(
     text: &Text,
     quantities: &[Quantity],
     dynamic: bool,
-    out: &mut dyn Write,
+    out: &mut Output,
 ) -> Result<(), CommandError> {
+    text.put(out);
     let formulas = mbs_codegen::formulas(&text.source, text.scene()).map_err(CommandError::Failed)?;
     let of_masses = match dynamic {
         true => mbs_codegen::dynamic_formulas(&text.source, text.scene()).map_err(CommandError::Failed)?,
@@ -134,14 +139,26 @@ fn formulas(
     Ok(())
 }
 
-fn define(out: &mut dyn Write, definitions: &[(String, String)]) -> Result<(), CommandError> {
+fn define(out: &mut Output, definitions: &[(String, String)]) -> Result<(), CommandError> {
     for (name, meaning) in definitions {
+        out.push("definitions", json!({ "name": name, "formula": meaning }));
         writeln!(out, "\n{name} = {meaning}")?;
     }
     Ok(())
 }
 
-fn write(out: &mut dyn Write, matrix: &Named) -> Result<(), CommandError> {
+fn write(out: &mut Output, matrix: &Named) -> Result<(), CommandError> {
+    let Named { title, rows, columns, cells, values } = matrix;
+    let columns = (!columns.is_empty()).then(|| columns.iter().map(|name| name.trim()).collect::<Vec<_>>());
+    let quantity = json!({ "name": title.split(':').next(), "rows": rows, "columns": columns });
+    let cells: Vec<Vec<&str>> =
+        cells.iter().map(|row| row.iter().map(|cell| cell.trim()).collect()).collect();
+    let content = match values.is_empty() {
+        true => json!({ "formulas": cells }),
+        false => json!({ "values": values }),
+    };
+    let both = [quantity, content].into_iter().filter_map(|part| part.as_object().cloned()).flatten();
+    out.push("quantities", both.collect::<serde_json::Map<_, _>>());
     writeln!(out)?;
     for line in matrix.lines() {
         writeln!(out, "{line}")?;
@@ -157,6 +174,7 @@ fn symbolic_dynamic(rows: &[String], formulas: &mbs_codegen::DynamicFormulas, qu
             rows: coordinates.clone(),
             columns: coordinates.clone(),
             cells: mass.clone(),
+            ..Named::default()
         },
         Quantity::Force => Named::vector("Q", coordinates, force),
         Quantity::Energy => {
@@ -178,24 +196,24 @@ fn numeric_dynamic(
 ) -> Named {
     let names =
         |entries: &[mbs_runtime::Entry]| entries.iter().map(|e| e.name.to_string()).collect::<Vec<_>>();
-    let cells = |values: &[f64]| values.iter().copied().map(number).collect::<Vec<_>>();
     let coordinates = names(mechanism.coordinates());
     match quantity {
         Quantity::Mass => Named {
             title: "M".into(),
             rows: coordinates.clone(),
-            cells: masses.mass.chunks(coordinates.len().max(1)).map(cells).collect(),
-            columns: coordinates,
-        },
-        Quantity::Force => Named::vector("Q", &coordinates, &cells(&masses.force)),
+            columns: coordinates.clone(),
+            ..Named::default()
+        }
+        .with_values(&masses.mass),
+        Quantity::Force => Named::vector("Q", &coordinates, &[]).with_values(&masses.force),
         Quantity::Energy => {
             let names = ["kinetic (J)", "potential (J)"].map(str::to_string);
-            Named::vector("energy", &names, &cells(&masses.energy))
+            Named::vector("energy", &names, &[]).with_values(&masses.energy)
         }
         _ => {
             let unit = |row: &mbs_runtime::Entry| format!("{} ({})", row.name, multiplier_unit(row.unit));
             let rows: Vec<String> = mechanism.rows().iter().map(unit).collect();
-            Named::vector("lambda", &rows, &cells(&loads.lambda))
+            Named::vector("lambda", &rows, &[]).with_values(&loads.lambda)
         }
     }
 }
@@ -216,6 +234,7 @@ fn symbolic(formulas: &mbs_codegen::Formulas, quantity: Quantity) -> Named {
             rows: rows.clone(),
             columns: coordinates.clone(),
             cells: formulas.phi_q.clone(),
+            ..Named::default()
         },
         // Printed with masses and forces.
         Quantity::Mass | Quantity::Force | Quantity::Multipliers | Quantity::Energy => Named::default(),
@@ -232,11 +251,11 @@ fn numeric(mechanism: &dyn AnyEquations, state: &State, quantity: Quantity) -> N
         };
         entries.iter().map(with_unit).collect::<Vec<_>>()
     };
-    let cells = |values: &[f64]| values.iter().copied().map(number).collect::<Vec<_>>();
-    let of_rows =
-        |title, per, values: &[f64]| Named::vector(title, &names(mechanism.rows(), per), &cells(values));
+    let of_rows = |title, per, values: &[f64]| {
+        Named::vector(title, &names(mechanism.rows(), per), &[]).with_values(values)
+    };
     let of_columns = |title, per, values: &[f64]| {
-        Named::vector(title, &names(mechanism.coordinates(), per), &cells(values))
+        Named::vector(title, &names(mechanism.coordinates(), per), &[]).with_values(values)
     };
     match quantity {
         Quantity::Position => of_columns("q", "", &state.q),
@@ -250,8 +269,9 @@ fn numeric(mechanism: &dyn AnyEquations, state: &State, quantity: Quantity) -> N
             title: "Phi_q".into(),
             rows: names(mechanism.rows(), ""),
             columns: mechanism.coordinates().iter().map(|entry| entry.name.to_string()).collect(),
-            cells: functions.phi_q.chunks(state.q.len().max(1)).map(cells).collect(),
-        },
+            ..Named::default()
+        }
+        .with_values(&functions.phi_q),
         // Printed with masses and forces.
         Quantity::Mass | Quantity::Force | Quantity::Multipliers | Quantity::Energy => Named::default(),
     }

@@ -62,6 +62,19 @@ pub fn require_writable(directory: &Path) -> Result<(), CommandError> {
     }
 }
 
+/// Refuses a file in a directory that is not there, before anything is computed: a name that is mistyped makes no directory.
+pub fn require_place(path: &Path) -> Result<(), CommandError> {
+    let parent = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    if !parent.is_dir() {
+        let reason = match parent.exists() {
+            true => format!("{} is no directory", parent.display()),
+            false => format!("there is no directory {}; make it first", parent.display()),
+        };
+        return Err(CommandError::Failed(format!("cannot write {}: {reason}", path.display())));
+    }
+    require_writable(parent)
+}
+
 /// Writes files of given names and texts. Each is written next to its place first, so that a full disk leaves no incomplete file.
 pub fn write_report(directory: &Path, files: &[(&str, String)]) -> Result<Vec<PathBuf>, CommandError> {
     let fail = |path: &Path, error: std::io::Error| {

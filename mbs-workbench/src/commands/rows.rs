@@ -1,10 +1,12 @@
 //! Rows of a text in the messages of failures: the statement that declares each, at its line of the text.
 
-/// Before: a message with rows as `name` (line 55), counted in the source that the program was built from, and the text of the
-/// mechanism. After: lines are those of the text, and the rows stand below.
+use mbs_codegen::Declaration;
+
+/// Before: a message with rows as `name` (line 55), counted in the source that the program was built from, and the declarations of the
+/// text. After: lines are those of the text, and the rows stand below.
 ///
 /// `keeps_lines`: `true` where the source is the user's own file, whose lines stay.
-pub fn with_rows(message: &str, source: &str, keeps_lines: bool) -> String {
+pub fn with_rows(message: &str, declarations: &[Declaration], keeps_lines: bool) -> String {
     let (mut text, mut rest) = (String::new(), message);
     let mut rows: Vec<(String, &str)> = Vec::new();
     while let Some((before, behind)) = rest.split_once("` (line ") {
@@ -13,13 +15,13 @@ pub fn with_rows(message: &str, source: &str, keeps_lines: bool) -> String {
         let (number, after) = behind.split_once(')').unwrap_or((behind, ""));
         let name = before.rsplit('`').next().unwrap_or_default();
         rest = after;
-        let Some((line, statement)) = declared(source, name) else {
+        let Some(Declaration { line, text: statement, .. }) = declared(declarations, name) else {
             text += &format!(" (line {number})");
             continue;
         };
         let shown = if keeps_lines { number.to_string() } else { line.to_string() };
         text += &format!(" (line {shown}{})", if keeps_lines { "" } else { " of the text" });
-        if !rows.iter().any(|(_, known)| *known == statement) {
+        if !rows.iter().any(|(line, known)| *known == statement && *line == shown) {
             rows.push((shown, statement));
         }
     }
@@ -31,75 +33,52 @@ pub fn with_rows(message: &str, source: &str, keeps_lines: bool) -> String {
     text
 }
 
-/// Words that a named statement begins with.
-const KEYWORDS: [&str; 23] = [
-    "constraint",
-    "drive",
-    "branch",
-    "limit",
-    "coord",
-    "param",
-    "input",
-    "state",
-    "out",
-    "body",
-    "pin",
-    "gravity",
-    "force",
-    "torque",
-    "tsda",
-    "rsda",
-    "friction",
-    "contact",
-    "potential",
-    "kinetic",
-    "dissipation",
-    "function",
-    "let",
-];
-
-/// Line, from 1, and text of the line on which the statement of this name, or of its component, begins.
-fn declared<'a>(source: &'a str, name: &str) -> Option<(usize, &'a str)> {
-    let begins = |line: &str, name: &str| {
-        KEYWORDS.iter().any(|keyword| {
-            line.match_indices(keyword).any(|(at, _)| {
-                let is_word = |c: char| c.is_alphanumeric() || c == '_';
-                let (before, behind) = (&line[..at], &line[at + keyword.len()..]);
-                let behind =
-                    behind.strip_prefix(' ').and_then(|behind| behind.trim_start().strip_prefix(name));
-                !before.ends_with(is_word) && behind.is_some_and(|behind| !behind.starts_with(is_word))
-            })
-        })
-    };
-    // `closure.0` is a row of `closure`, `bob.mass` a field of `bob`.
-    let names = [name, name.split('.').next().unwrap_or(name)];
-    names.iter().find_map(|name| {
-        let found = source.lines().enumerate().find(|(_, line)| begins(line, name))?;
-        Some((found.0 + 1, found.1.trim()))
-    })
+/// The statement of this name; of `bob.mass`, which is a field, that of `bob`.
+fn declared<'a>(declarations: &'a [Declaration], name: &str) -> Option<&'a Declaration> {
+    let find = |name: &str| declarations.iter().find(|declaration| declaration.name == name);
+    find(name).or_else(|| find(name.split('.').next().unwrap_or(name)))
 }
 
 #[cfg(test)]
 mod tests {
+    use mbs_codegen::declarations;
+
     use super::*;
 
-    const SOURCE: &str = "mechanism Crank;\nparam drive_ratio: 1 = 2;\ncoord phi: rad;\nconstraint closure {\n    phi == 1;\n}\ndrive closure_2: phi == t/1s;\n";
+    const SOURCE: &str = "mechanism Crank;\nparam drive_ratio: 1 = 2;\ncoord phi: rad; coord p: [m; 2];\n\
+                          constraint closure {\n    p.0 == 1m*cos(phi); // across\n    p.1\n        == 1m*sin(phi);\n}\n\
+                          /// A motor.\ndrive closure_2: phi == t/1s;\nbody bob { mass: 1, com: p }\n";
 
     #[test]
     fn rows_of_a_message_stand_below_it() {
+        let known = declarations(SOURCE, None).expect("a text");
         let message =
             "rows around `closure.0` (line 55), `closure.1` (line 55) and `closure_2` (line 58) contradict";
         assert_eq!(
-            with_rows(message, SOURCE, false),
-            "rows around `closure.0` (line 4 of the text), `closure.1` (line 4 of the text) and `closure_2` (line 7 of the text) \
-             contradict\n  4 | constraint closure {\n  7 | drive closure_2: phi == t/1s;"
+            with_rows(message, &known, false),
+            "rows around `closure.0` (line 5 of the text), `closure.1` (line 7 of the text) and `closure_2` (line 10 of the text) \
+             contradict\n   5 | p.0 == 1m*cos(phi);\n   7 | p.1 == 1m*sin(phi);\n  10 | drive closure_2: phi == t/1s;"
         );
         assert_eq!(
-            with_rows("`phi` (line 12) jumps", SOURCE, true),
+            with_rows("`phi` (line 12) jumps", &known, true),
             "`phi` (line 12) jumps\n  12 | coord phi: rad;"
         );
+        // A field is quoted with the statement that it stands in.
+        assert!(with_rows("`bob.mass` (line 3) is 0", &known, true).ends_with("\n  3 | body bob"));
         for message in ["`other` (line 3) is none", "no row", "`open (line"] {
-            assert_eq!(with_rows(message, SOURCE, false), message);
+            assert_eq!(with_rows(message, &known, false), message);
         }
+    }
+
+    #[test]
+    fn names_are_those_of_the_scene() {
+        let text = "mechanism A;\ncoord phi: rad;\neffect a { drive d: phi == t/1s; }\neffect b {\n    drive d: phi == 2*t/1s;\n}\n\
+                    scene One = a;\nscene Two = b;\n";
+        let row = |scene: &str| {
+            let known = declarations(text, Some(scene)).expect("a text");
+            with_rows("`d` (line 9) is open", &known, false)
+        };
+        assert!(row("One").ends_with("\n  3 | drive d: phi == t/1s;"), "{}", row("One"));
+        assert!(row("Two").ends_with("\n  5 | drive d: phi == 2*t/1s;"), "{}", row("Two"));
     }
 }

@@ -2,30 +2,24 @@
 
 use crate::catalogue::Catalogue;
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use crate::card::DefaultMethod;
-use crate::erased::dynamics::linearization::SmallMotions;
-use crate::erased::erase::Erased;
-use crate::erased::facade::{AnyEquations, Motion};
 use crate::motion::drop_idle;
-use crate::output::animation::animation;
-use crate::output::csv;
-use crate::output::places::places;
 use crate::output::reload::{VERSION, reloading};
-use crate::output::report::{ForceArrow, Report, Run, html};
-use crate::output::shapes::shapes;
 use crate::target_directory::target_directory;
 use clap::{Args, ValueEnum};
-use mbs_codegen::picture::Preset;
 
 use super::analysis::{
     Analysis, Damping, IntegratorName, MethodName, Request, RunResult, UsedOptions, above_zero,
     at_least_zero, tolerance,
 };
 use super::assignment::{Assignment, assignment};
-use super::chosen::{svg_file, write_file};
+use super::chosen::{require_named, svg_file, write_file};
+use super::document::Output;
+use super::measured::{Tables, compared, thinned};
 use super::report_files::{announce_size, require_writable, write_report};
+use super::run_files::{PageContent, animated, described, facts, modes, page, values};
 use super::target::Target;
 use super::{CommandError, positive, summary};
 
@@ -40,15 +34,6 @@ const STEP: f64 = 1e-3;
 
 /// Step (s) of RK4 with which a swing of one second is correct to six digits.
 const EQUAL_STEP: f64 = 2.5e-3;
-
-/// Instants of a run on the page, at most; beyond them a browser slows down and an eye sees no more.
-const SHOWN: usize = 2000;
-
-/// Numbers of all runs on the page, at most: two megabytes of text, which a page opens with at once.
-const NUMBERS: usize = 170_000;
-
-/// Instants of a run on the page, however many columns it has: twenty-four a second of a motion of ten.
-const LEAST_SHOWN: usize = 240;
 
 /// Mechanism, its parameters and the files to write: options of every analysis.
 #[derive(Args, Clone, Default)]
@@ -107,6 +92,8 @@ pub struct MotionArguments {
     #[command(flatten)]
     span: Span,
     #[command(flatten)]
+    tables: Tables,
+    #[command(flatten)]
     integration: Integration,
 }
 
@@ -117,6 +104,8 @@ pub struct DrivenArguments {
     pub selection: Selection,
     #[command(flatten)]
     span: Span,
+    #[command(flatten)]
+    tables: Tables,
 }
 
 /// Options of `mbs equilibrium`.
@@ -157,6 +146,7 @@ pub struct Arguments {
     guesses: Vec<Assignment>,
     at: Option<f64>,
     span: Span,
+    tables: Tables,
     integration: Integration,
 }
 
@@ -176,8 +166,8 @@ impl Arguments {
 
     /// `mbs run`: the analysis that suits the mechanism.
     pub fn run(arguments: MotionArguments) -> Self {
-        let MotionArguments { selection, span, integration } = arguments;
-        Arguments { command: "run", selection, span, integration, ..Arguments::default() }
+        let MotionArguments { selection, span, tables, integration } = arguments;
+        Arguments { command: "run", selection, span, tables, integration, ..Arguments::default() }
     }
 
     /// `mbs simulate`.
@@ -186,9 +176,9 @@ impl Arguments {
     }
 
     /// `mbs kinematics`.
-    pub fn kinematics(DrivenArguments { selection, span }: DrivenArguments) -> Self {
+    pub fn kinematics(DrivenArguments { selection, span, tables }: DrivenArguments) -> Self {
         let analysis = Some(Analysis::Kinematics);
-        Arguments { command: "kinematics", analysis, selection, span, ..Arguments::default() }
+        Arguments { command: "kinematics", analysis, selection, span, tables, ..Arguments::default() }
     }
 
     /// `mbs inverse`.
@@ -210,7 +200,8 @@ impl Arguments {
     pub fn modes(arguments: ModesArguments) -> Self {
         let ModesArguments { selection, guesses, at, steps, integration } = arguments;
         let (analysis, span) = (Some(Analysis::Modes), Span { until: None, steps });
-        Arguments { command: "modes", selection, analysis, guesses, at, span, integration }
+        let tables = Tables::default();
+        Arguments { command: "modes", selection, analysis, guesses, at, span, tables, integration }
     }
 
     fn request(&self, target: &Target) -> Request {
@@ -275,6 +266,7 @@ impl Arguments {
         if let Some(integrator) = self.integration.integrator {
             command.push_str(&format!(" --integrator {}", named(&|| integrator.to_possible_value())));
         }
+        command.push_str(&self.tables.command());
         command.push_str(&self.integration.damping.command());
         if let Some(step) = self.integration.step {
             command.push_str(&format!(" --step {step:e}"));
@@ -297,17 +289,19 @@ impl Arguments {
 
 /// Runs the presets, prints a table and writes the report. Nothing is written if a run fails at its start; one that ends before its time
 /// has its page up to there, and the command fails.
-pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut dyn Write) -> Result<(), CommandError> {
+pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut Output) -> Result<(), CommandError> {
     let target = Target::find(catalogue, &arguments.selection.name)?;
-    let instances = target.instances(&arguments.selection.parameters)?;
-    let request = arguments.request(&target);
+    let mut instances = target.instances(&arguments.selection.parameters)?;
+    let mut request = arguments.request(&target);
+    if let Some(range) = arguments.tables.feed(&target, request.analysis_of(&target), &mut instances)? {
+        let until = *request.until.get_or_insert(range[1]);
+        arguments.tables.require_data(range, until)?;
+    }
+    let overlays = arguments.tables.overlays(instances[0].1.equations(), &target)?;
     let standard = || target_directory().join("mbs").join(target.file_name());
     let directory = arguments.selection.out.clone().unwrap_or_else(standard);
     require_writable(&directory)?;
-    let of_picture = arguments.selection.svg.as_deref().and_then(Path::parent);
-    if let Some(parent) = of_picture.filter(|parent| !parent.as_os_str().is_empty()) {
-        require_writable(parent)?;
-    }
+    require_named(arguments.selection.svg.as_ref())?;
     let (mut done, mut left_out) = (Vec::new(), Vec::new());
     for (index, instance) in instances.iter().enumerate() {
         match request.done(&target, instance) {
@@ -321,11 +315,21 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut dyn Write) ->
         return Err(CommandError::Failed(left_out.join("\n")));
     }
     drop_idle(&mut done.iter_mut().map(|done| &mut done.motion).collect::<Vec<_>>());
+    for done in &mut done {
+        done.figures.extend(overlays.iter().filter_map(|overlay| compared(overlay, &done.motion)));
+    }
     announce_size(done.iter().map(|done| &done.motion));
-    let mut facts = facts(&instances, &done);
+    let mut facts = facts(&instances, &done, &arguments.tables);
     facts.extend(left_out.iter().map(|reason| ["left out".to_string(), reason.clone()]));
     // Written before the table: printing fails if the reader of the output has left.
-    let page = page(arguments, &target, &instances, &done, &facts);
+    let content = PageContent {
+        command: &arguments.command(),
+        analysis: request.analysis_of(&target).word(),
+        facts: &facts,
+        overlays: &thinned(&overlays),
+    };
+    let page = page(&target, &instances, &done, &content);
+    let origin = out.put_mechanism(&target, instances[0].1.equations());
     let (page, version) = match arguments.selection.reload {
         true => {
             let (page, version) = reloading(&page);
@@ -333,13 +337,21 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut dyn Write) ->
         }
         false => (page, None),
     };
-    let mut files = vec![("report.html", page), ("motion.csv", values(&done))];
-    files.extend(modes(&done).map(|modes| ("modes.csv", modes)));
+    let mut files = vec![("report.html", page), ("motion.csv", origin.csv(&values(&done)))];
+    files.extend(modes(&done).map(|modes| ("modes.csv", origin.csv(&modes))));
     files.extend(version.map(|version| (VERSION, version)));
     if let Some(path) = &arguments.selection.svg {
-        write_file(path, &animated(&target, instances[done[0].instance].1.equations(), &done[0].motion)?)?;
+        let picture = animated(&target, instances[done[0].instance].1.equations(), &done[0].motion)?;
+        write_file(path, &origin.svg(&picture))?;
+        out.put_file("picture", path);
     }
     let written = write_report(&directory, &files);
+    out.put("analysis", request.analysis_of(&target).word());
+    out.put("command", arguments.command());
+    out.put("left_out", &left_out);
+    if out.is_document() {
+        done.iter().for_each(|done| out.push("runs", described(done, &instances[done.instance].1)));
+    }
     writeln!(out, "{}", target.title())?;
     for done in &done {
         summary::write(out, target.shapes(), &done.label, &done.motion, &done.figures)?;
@@ -356,6 +368,7 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut dyn Write) ->
             () if of("modes.csv") => "modes ",
             () => continue,
         };
+        out.put_file(name.trim(), &path);
         writeln!(out, "{name}  {}", path.display())?;
     }
     let ended = done.iter().filter_map(|done| {
@@ -364,106 +377,9 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut dyn Write) ->
     });
     match ended.collect::<Vec<_>>().as_slice() {
         [] => Ok(()),
-        ended => Err(CommandError::Failed(ended.join("\n"))),
+        // Rows of all runs stand below them once.
+        ended => Err(CommandError::Failed(target.quoted(instances[0].1.equations(), &ended.join("\n")))),
     }
-}
-
-/// The motion as an animated picture.
-fn animated(target: &Target, mechanism: &dyn AnyEquations, motion: &Motion) -> Result<String, CommandError> {
-    let places = places(target.picture(), mechanism, motion, None);
-    animation(&shapes(target.shapes()), motion, &places)
-        .map_err(|reason| CommandError::Failed(format!("no animated drawing: {reason}")))
-}
-
-fn facts(instances: &[(Preset, Erased)], done: &[RunResult]) -> Vec<[String; 2]> {
-    let first = instances[0].1.equations();
-    let mut facts = vec![["coordinates".to_string(), first.coordinates().len().to_string()]];
-    let declared = mbs_codegen::variables(first.source(), Some(first.scene())).unwrap_or_default();
-    for (index, entry) in first.variables().iter().enumerate() {
-        let bounds = declared.iter().find(|variable| variable.name == entry.name);
-        let bounds = bounds.map_or_else(String::new, |variable| {
-            let [low, high] = variable.range.map(summary::short);
-            let range =
-                if variable.range[1].is_finite() { format!(", {low} to {high}") } else { String::new() };
-            let tolerance = variable.tolerance.map(|deviation| format!(" ± {}", summary::short(deviation)));
-            tolerance.unwrap_or_default() + &range
-        });
-        let written = |mechanism: &dyn AnyEquations| {
-            let value = mechanism.get(index).unwrap_or(f64::NAN);
-            format!("{}{}{bounds}", summary::short(value), summary::unit(entry.unit))
-        };
-        if instances.iter().all(|(_, other)| other.equations().get(index) == first.get(index)) {
-            facts.push([entry.name.to_string(), written(first)]);
-            continue;
-        }
-        for (preset, instance) in instances {
-            facts.push([format!("{}, {}", entry.name, preset.label), written(instance.equations())]);
-        }
-    }
-    for done in done {
-        facts.push([format!("instants, {}", done.label), done.motion.time.len().to_string()]);
-        for [name, value] in &done.figures {
-            facts.push([format!("{name}, {}", done.label), value.clone()]);
-        }
-    }
-    facts
-}
-
-fn page(
-    arguments: &Arguments,
-    target: &Target,
-    instances: &[(Preset, Erased)],
-    done: &[RunResult],
-    facts: &[[String; 2]],
-) -> String {
-    let columns: usize = done.iter().map(|done| done.motion.columns()).sum();
-    let shown = (NUMBERS / columns.max(1)).clamp(LEAST_SHOWN, SHOWN);
-    let shown: Vec<Motion> = done.iter().map(|done| done.motion.decimate(shown)).collect();
-    let drawn = done.iter().zip(&shown).map(|(done, motion)| {
-        let mechanism = instances[done.instance].1.equations();
-        places(target.picture(), mechanism, motion, done.small.as_ref())
-    });
-    let drawn: Vec<_> = drawn.collect();
-    let mut runs = Vec::new();
-    for ((done, motion), places) in done.iter().zip(&shown).zip(&drawn) {
-        runs.push(Run {
-            label: &done.label,
-            description: &done.description,
-            motion,
-            places,
-            verdict: done.verdict.as_ref(),
-            ended: done.ended.as_ref().map(|ended| ended.line.as_str()),
-            small: done.small.as_ref(),
-        });
-    }
-    let forces = &target.picture().forces;
-    let forces: Vec<ForceArrow> =
-        forces.iter().map(|force| ForceArrow { of: &force.output, at: &force.at }).collect();
-    html(&Report {
-        name: target.name(),
-        title: target.title(),
-        description: target.description(),
-        source: instances[0].1.equations().source(),
-        command: &arguments.command(),
-        facts,
-        runs: &runs,
-        drawing: &shapes(target.shapes()),
-        forces: &forces,
-        analysis: arguments.request(target).analysis_of(target).word(),
-    })
-}
-
-fn values(done: &[RunResult]) -> String {
-    csv::write(&done.iter().map(|done| (done.label.as_str(), &done.motion)).collect::<Vec<_>>())
-}
-
-/// Small motions as values, where they were asked for.
-fn modes(done: &[RunResult]) -> Option<String> {
-    let small: Vec<(&str, &Motion, &SmallMotions)> = done
-        .iter()
-        .filter_map(|done| Some((done.label.as_str(), &done.motion, done.small.as_ref()?)))
-        .collect();
-    (!small.is_empty()).then(|| csv::write_modes(&small))
 }
 
 /// Most steps of a run: its motion is held in memory and written as text.

@@ -8,9 +8,11 @@ use crate::output::matrix::Named;
 use crate::output::svg;
 use clap::Args;
 use mbs_codegen::{BlockReport, EntryKind, StructureReport};
+use serde_json::json;
 
 use super::CommandError;
-use super::chosen::{Chosen, svg_file, write_file};
+use super::chosen::{Chosen, require_named, svg_file, write_file};
+use super::document::Output;
 use super::text::Text;
 
 #[derive(Args)]
@@ -23,9 +25,12 @@ pub struct Arguments {
 }
 
 /// Sparsity, matching and the order of solution.
-pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut dyn Write) -> Result<(), CommandError> {
+pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut Output) -> Result<(), CommandError> {
+    require_named(arguments.out.as_ref())?;
     let text = Text::find(catalogue, &arguments.chosen)?;
     let report = text.structure()?;
+    let origin = text.put(out);
+    describe_in(out, &report);
     let entries: usize = report.rows.iter().map(|row| row.entries.len()).sum();
     let (m, n) = (report.rows.len(), report.coordinates.len());
     writeln!(out, "{}\n", text.title)?;
@@ -59,10 +64,45 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut dyn Write) ->
         writeln!(out, "independent: {}, which forces move", given.join(", "))?;
     }
     if let Some(path) = &arguments.out {
-        write_file(path, &svg::structure(&report))?;
+        write_file(path, &origin.svg(&svg::structure(&report)))?;
+        out.put_file("picture", path);
         writeln!(out, "\npicture  {}", path.display())?;
     }
     Ok(())
+}
+
+/// Rows, coordinates and blocks as data; blocks in the order in which they are solved.
+fn describe_in(out: &mut Output, report: &StructureReport) {
+    let name = |index: &usize| report.coordinates[*index].name.as_str();
+    let kind = |kind: &EntryKind| match kind {
+        EntryKind::Number => "number",
+        EntryKind::Parameters => "parameters",
+        EntryKind::Varies => "varies",
+    };
+    for coordinate in &report.coordinates {
+        out.push("coordinates", json!({ "name": coordinate.name, "unit": coordinate.unit }));
+    }
+    for row in &report.rows {
+        let entry =
+            |(column, of): &(usize, EntryKind)| json!({ "coordinate": name(column), "kind": kind(of) });
+        out.push(
+            "rows",
+            json!({
+                "name": row.name, "unit": row.unit, "is_drive": row.driven, "is_redundant": row.redundant,
+                "matched": row.matched.as_ref().map(name), "entries": row.entries.iter().map(entry).collect::<Vec<_>>(),
+            }),
+        );
+    }
+    out.put("blocks", json!([]));
+    for block in &report.blocks {
+        let rows: Vec<&str> = block.rows.iter().map(|row| report.rows[*row].name.as_str()).collect();
+        let coordinates: Vec<&str> = block.coordinates.iter().map(name).collect();
+        out.push(
+            "blocks",
+            json!({ "rows": rows, "coordinates": coordinates, "is_explicit": block.explicit, "dyad": block.dyad }),
+        );
+    }
+    out.put("operations", report.operations);
 }
 
 fn sparsity(report: &StructureReport, title: String) -> Named {
@@ -84,6 +124,7 @@ fn sparsity(report: &StructureReport, title: String) -> Named {
         cells: (0..report.rows.len())
             .map(|row| (0..columns).map(|column| cell(row, column)).collect())
             .collect(),
+        ..Named::default()
     }
 }
 

@@ -4,13 +4,18 @@ use std::fs;
 use std::io::Write;
 use std::path::PathBuf;
 
-use crate::tables::{Columns, Fault, Kind, Points, Spline, chart, close_period, constant, read, sample};
+use crate::output::origin::Origin;
+use crate::tables::{
+    Columns, Fault, Kind, Points, SEED, Spline, chart, close_period, constant, read, sample,
+};
 use crate::target_directory::target_directory;
 use clap::Args;
 use mbs_runtime::driver::{End, FitError};
+use serde_json::json;
 
 use super::CommandError;
-use super::chosen::{finite, svg_file, write_file};
+use super::chosen::{finite, require_named, svg_file, write_file};
+use super::document::Output;
 
 #[derive(Args)]
 pub struct Arguments {
@@ -62,9 +67,11 @@ fn constant_name(text: &str) -> Result<String, String> {
 }
 
 /// Fits a spline to a table: prints residual and noise and draws a picture, or prints the spline as Rust.
-pub fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<(), CommandError> {
+pub fn run(arguments: &Arguments, out: &mut Output) -> Result<(), CommandError> {
+    require_named(arguments.out.as_ref())?;
     let Some(file) = &arguments.file else {
         let text = sample::valve_lift().map_err(|error| CommandError::Failed(error.to_string()))?;
+        out.put("sample", &text);
         return Ok(out.write_all(text.as_bytes())?);
     };
     let named = |message: String| CommandError::Failed(format!("{}: {message}", file.display()));
@@ -83,14 +90,19 @@ pub fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<(), CommandErro
     let (spline, gain) = fitted.map_err(|error| named(explain(error, &points)))?;
     let source = file.file_name().map_or_else(|| "table".into(), |name| name.to_string_lossy().into_owned());
     if let Some(name) = &arguments.rust {
-        return Ok(out.write_all(constant::rust(name, &source, &points, &spline).as_bytes())?);
+        let code = constant::rust(name, &source, &points, &spline);
+        out.put("code", &code);
+        return Ok(out.write_all(code.as_bytes())?);
     }
+    let origin = Origin::of_table(&source, &bytes);
+    out.put("table", json!({ "path": file.display().to_string(), "hash": origin.hash }));
     let picture = arguments
         .out
         .clone()
         .unwrap_or_else(|| target_directory().join("mbs").join("table").join(&source).with_extension("svg"));
     // Written before the lines: printing fails if the reader of the output has left.
-    let written = write_file(&picture, &chart::svg(&points, &spline));
+    let written = write_file(&picture, &origin.svg(&chart::svg(&points, &spline)));
+    describe_in(out, &points, &spline, kind, gain);
     write_summary(out, &points, &spline, kind, repeated)?;
     let interpolated =
         Spline::fit(&points.x, &points.y, kind, None).and_then(|s| s.noise_gain(&points.x, kind));
@@ -105,6 +117,7 @@ pub fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<(), CommandErro
         writeln!(out, "          {:.1} times less than through every point", interpolated / gain)?;
     }
     written?;
+    out.put_file("picture", &picture);
     writeln!(out, "picture   {}", picture.display())?;
     Ok(())
 }
@@ -123,6 +136,22 @@ fn kind(arguments: &Arguments, points: &Points) -> Result<Kind, CommandError> {
             Ok(Kind::Cubic(arguments.slopes.map_or([End::Natural; 2], |slopes| slopes.map(End::Slope))))
         }
     }
+}
+
+/// Points, spline, residual and noise as data, in SI.
+fn describe_in(out: &mut Output, points: &Points, spline: &Spline, kind: Kind, gain: f64) {
+    let (largest, mean, place) = spline.residual(&points.x, &points.y);
+    let columns = [&points.columns.x.1, &points.columns.y.1];
+    let columns: Vec<_> = points.names.iter().zip(columns).collect();
+    let column = |(name, unit): &(&String, &crate::tables::Unit)| json!({ "name": name, "unit": unit.name, "factor": unit.factor });
+    out.put("columns", columns.iter().map(column).collect::<Vec<_>>());
+    out.put("points", points.x.len());
+    out.put("knots", spline.knots.len());
+    out.put("spline", if matches!(kind, Kind::Cubic(_)) { "cubic" } else { "periodic quintic" });
+    out.put("largest_residual", json!({ "value": largest, "line": points.lines[place] }));
+    out.put("mean_residual", mean);
+    out.put("noise_gain", gain);
+    out.put("seed", SEED);
 }
 
 fn write_summary(

@@ -133,9 +133,15 @@ impl Target {
         Ok(instances)
     }
 
+    /// A message with the rows that it names.
+    pub fn quoted(&self, mechanism: &dyn AnyEquations, message: &str) -> String {
+        let known = mbs_codegen::declarations(mechanism.source(), Some(mechanism.scene()));
+        with_rows(message, &known.unwrap_or_default(), is_file(&self.name))
+    }
+
     /// Reason of a failure with the mechanism's name, and the rows that it names.
     pub fn failed(&self, mechanism: &dyn AnyEquations, reason: &str) -> CommandError {
-        let reason = with_rows(reason, mechanism.source(), is_file(&self.name));
+        let reason = self.quoted(mechanism, reason);
         CommandError::Failed(format!("{}: {reason}", self.name))
     }
 

@@ -5,9 +5,11 @@ use mbs_codegen::picture::{Picture, picture};
 
 use super::CommandError;
 use super::chosen::Chosen;
+use super::document::{Output, WHOLE};
 use crate::catalogue::Catalogue;
 use crate::mismatch::Mismatch;
 use crate::output::latex::{Value, values};
+use crate::output::origin::Origin;
 use crate::text_file::{TextFile, is_file};
 
 /// A text without faults in a scene.
@@ -50,6 +52,14 @@ impl Text {
         };
         let name = argument.to_string();
         Ok(Text { name, title, source, scene, values: variables.into_iter().map(value).collect() })
+    }
+
+    /// Names the text in the output; its origin is that of the files.
+    pub fn put(&self, out: &mut Output) -> Origin {
+        let origin = Origin::of_text(&self.name, &self.source);
+        let scene = self.scene().filter(|scene| *scene != WHOLE);
+        out.put_text(&origin, &self.title, scene);
+        origin
     }
 
     pub fn scene(&self) -> Option<&str> {

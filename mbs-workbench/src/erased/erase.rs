@@ -5,7 +5,7 @@ use mbs_runtime::{Dynamic, Kinematic, Mechanism, Partitioned, Reveal, Visitor};
 use super::dynamics::AnyDynamics;
 use super::dynamics::direct_dynamics::PartitionedFunctions;
 use super::dynamics::integrators::{All, ExplicitOnly};
-use super::facade::{AnyEquations, AnyMechanism, Facade};
+use super::facade::{AnyEquations, AnyMechanism, Facade, Feeds};
 
 /// A mechanism of any size.
 pub enum Erased {
@@ -83,7 +83,7 @@ impl<S: 'static> Visitor<S> for Erase {
         S: Kinematic<f64, N, M> + Dynamic<f64, N, M> + Partitioned<f64, N, M>,
     {
         let partitioned = PartitionedFunctions::<S, All, N, M>::of();
-        Erased::Fixed(Box::new(Facade::<S, N, M, _>(mechanism, partitioned)))
+        Erased::Fixed(Box::new(Facade::<S, N, M, _>(mechanism, partitioned, Feeds::default())))
     }
 
     fn free<const N: usize, const M: usize>(self, mechanism: S) -> Erased
@@ -91,7 +91,7 @@ impl<S: 'static> Visitor<S> for Erase {
         S: Dynamic<f64, N, M> + Partitioned<f64, N, M>,
     {
         let partitioned = PartitionedFunctions::<S, All, N, M>::of();
-        Erased::Free(Box::new(Facade::<S, N, M, _>(mechanism, partitioned)))
+        Erased::Free(Box::new(Facade::<S, N, M, _>(mechanism, partitioned, Feeds::default())))
     }
 
     fn large_driven<const N: usize, const M: usize>(self, mechanism: S) -> Erased
@@ -99,7 +99,7 @@ impl<S: 'static> Visitor<S> for Erase {
         S: Kinematic<f64, N, M> + Dynamic<f64, N, M> + Partitioned<f64, N, M>,
     {
         let partitioned = PartitionedFunctions::<S, ExplicitOnly, N, M>::of();
-        Erased::Fixed(Box::new(Facade::<S, N, M, _>(mechanism, partitioned)))
+        Erased::Fixed(Box::new(Facade::<S, N, M, _>(mechanism, partitioned, Feeds::default())))
     }
 
     fn large_free<const N: usize, const M: usize>(self, mechanism: S) -> Erased
@@ -107,6 +107,6 @@ impl<S: 'static> Visitor<S> for Erase {
         S: Dynamic<f64, N, M> + Partitioned<f64, N, M>,
     {
         let partitioned = PartitionedFunctions::<S, ExplicitOnly, N, M>::of();
-        Erased::Free(Box::new(Facade::<S, N, M, _>(mechanism, partitioned)))
+        Erased::Free(Box::new(Facade::<S, N, M, _>(mechanism, partitioned, Feeds::default())))
     }
 }

@@ -13,6 +13,7 @@ use crate::erased::dynamics::AnyDynamics;
 use crate::erased::experiment::Experiment;
 use crate::erased::masses::{Loads, Masses, Tables};
 use crate::motion;
+use crate::motion::course::Course;
 pub use crate::motion::{CoordinateCurve, Motion, OutputCurve, State, spread};
 
 /// Names and functions of a mechanism of any size, with its parameters; it need not be square. Vectors are in the
@@ -24,6 +25,15 @@ pub trait AnyEquations {
     fn get(&self, index: usize) -> Option<f64>;
     /// Sets a parameter or input, in the unit of the text; false where there is none at `index`.
     fn set(&mut self, index: usize, value: f64) -> bool;
+    /// Makes the input at `index` follow `course` in the unit of the text, with its rates where the text asks for them. Motions that
+    /// drives prescribe have it at every instant. `false` where it cannot be.
+    fn feed(&mut self, _index: usize, _course: Course) -> bool {
+        false
+    }
+    /// Value of a parameter or input at `t` (s), in the unit of the text.
+    fn get_at(&self, index: usize, _t: f64) -> Option<f64> {
+        self.get(index)
+    }
     /// Reference metric of the coordinates: 1 for angles, the reference length for lengths: N.
     fn coordinate_scales(&self) -> Vec<f64>;
     /// Reference metric of the rows: the reference length to the power that the row has of metres: M.
@@ -180,7 +190,28 @@ pub struct Functions {
 
 /// A mechanism of `N` coordinates and `M` rows behind the common face, with its masses and forces where `F` has them.
 #[derive(Clone, Debug)]
-pub struct Facade<S, const N: usize, const M: usize = N, F = ()>(pub S, pub(super) F);
+pub struct Facade<S, const N: usize, const M: usize = N, F = ()>(pub S, pub(super) F, pub(super) Feeds);
+
+/// Courses of inputs by the index of the value, `true` where its rates are the variables behind it.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Feeds(Vec<(usize, bool, Course)>);
+
+impl Feeds {
+    /// Values of variables at `t` (s), by index.
+    fn at(&self, t: f64) -> impl Iterator<Item = (usize, f64)> + '_ {
+        self.0.iter().flat_map(move |(index, has_rates, course)| {
+            let count = if *has_rates { 3 } else { 1 };
+            course.at(t).into_iter().take(count).enumerate().map(move |(order, value)| (index + order, value))
+        })
+    }
+
+    /// `mechanism` with the values at `t` (s).
+    fn set<S: Mechanism<f64, N, M>, const N: usize, const M: usize>(&self, mechanism: &mut S, t: f64) {
+        for (index, value) in self.at(t) {
+            mechanism.set(index, value);
+        }
+    }
+}
 
 /// Masses and forces of `S`, as a part of its [`Facade`]; `()` where it has none.
 pub trait Forced<S, const N: usize, const M: usize>: Sized {
@@ -202,7 +233,7 @@ impl<S, const N: usize, const M: usize> Forced<S, N, M> for () {}
 impl<S, const N: usize, const M: usize> Facade<S, N, M> {
     /// `mechanism` without its masses and forces.
     pub fn of(mechanism: S) -> Self {
-        Facade(mechanism, ())
+        Facade(mechanism, (), Feeds::default())
     }
 }
 
@@ -219,6 +250,18 @@ where
     }
     fn set(&mut self, index: usize, value: f64) -> bool {
         self.0.set(index, value)
+    }
+    fn feed(&mut self, index: usize, course: Course) -> bool {
+        let Some(entry) = S::VARIABLES.get(index) else { return false };
+        let rate = format!("{}.rate", entry.name);
+        let has_rates = S::VARIABLES.get(index + 1).is_some_and(|next| next.name == rate);
+        self.2.0.retain(|(known, ..)| *known != index);
+        self.2.0.push((index, has_rates, course));
+        true
+    }
+    fn get_at(&self, index: usize, t: f64) -> Option<f64> {
+        let fed = self.2.at(t).find(|(fed, _)| *fed == index);
+        fed.map(|(_, value)| value).or_else(|| self.0.get(index))
     }
     fn coordinate_scales(&self) -> Vec<f64> {
         self.0.coordinate_scales(&self.0.parameters()).to_vec()
@@ -266,7 +309,7 @@ where
         push(&mut motion, &stepper.frame());
         for (done, time) in rest.iter().enumerate() {
             progress(done + 1);
-            stepper.advance_to(*time)?;
+            self.lead(&mut stepper, *time)?;
             push(&mut motion, &stepper.frame());
         }
         progress(times.len());
@@ -278,7 +321,7 @@ where
         let mut stepper = self.assembled(*first)?;
         let start = Instant::now();
         for time in rest {
-            stepper.advance_to(*time)?;
+            self.lead(&mut stepper, *time)?;
             black_box(stepper.outputs());
         }
         Ok(start.elapsed() / u32::try_from(rest.len().max(1)).unwrap_or(u32::MAX))
@@ -287,7 +330,10 @@ where
     fn stop(&self, times: &[f64]) -> Option<MotionStop> {
         let (first, rest) = times.split_first()?;
         let mut stepper = self.assembled(*first).ok()?;
-        let beyond = rest.iter().find(|time| stepper.advance_to(**time).is_err())?;
+        if !self.2.0.is_empty() {
+            return self.stop_with_inputs(stepper, *first, rest);
+        }
+        let beyond = rest.iter().find(|time| self.lead(&mut stepper, **time).is_err())?;
         let ReachLimit { reachable, refused, failure, .. } = stepper.reach_towards(*beyond)?;
         Some(MotionStop { reachable, refused, failure })
     }
@@ -297,9 +343,51 @@ where
     }
 }
 
+/// Halvings of the instant in which a motion ends: to a millionth of it.
+const HALVINGS: usize = 20;
+
 impl<S: Kinematic<f64, N, M>, F, const N: usize, const M: usize> Facade<S, N, M, F> {
     fn assembled(&self, t: f64) -> Result<Stepper<Branching<S>, f64, N, M>, Failure> {
-        Stepper::assemble(Branching::declared(self.0.clone()), self.0.guess(&self.0.parameters()), t)
+        let mut mechanism = self.0.clone();
+        self.2.set(&mut mechanism, t);
+        let guess = mechanism.guess(&mechanism.parameters());
+        Stepper::assemble(Branching::declared(mechanism), guess, t)
+    }
+
+    /// As [`AnyMechanism::stop`], from a motion at `reachable` (s): the end is bisected along the courses of the inputs.
+    fn stop_with_inputs(
+        &self,
+        mut stepper: Stepper<Branching<S>, f64, N, M>,
+        mut reachable: f64,
+        times: &[f64],
+    ) -> Option<MotionStop> {
+        let (mut refused, mut failure) = times.iter().find_map(|time| {
+            let mut next = stepper.clone();
+            match self.lead(&mut next, *time) {
+                Ok(()) => {
+                    (stepper, reachable) = (next, *time);
+                    None
+                }
+                Err(failure) => Some((*time, failure)),
+            }
+        })?;
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (reachable + refused);
+            let mut next = stepper.clone();
+            match self.lead(&mut next, middle) {
+                Ok(()) => (stepper, reachable) = (next, middle),
+                Err(found) => (refused, failure) = (middle, found),
+            }
+        }
+        Some(MotionStop { reachable, refused, failure })
+    }
+
+    /// A step to `t` (s) with the inputs of that time.
+    fn lead(&self, stepper: &mut Stepper<Branching<S>, f64, N, M>, t: f64) -> Result<(), Failure> {
+        if !self.2.0.is_empty() {
+            stepper.change(|mechanism| self.2.set(mechanism, t));
+        }
+        stepper.advance_to(t).map(|_| ())
     }
 }
 

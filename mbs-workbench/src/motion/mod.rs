@@ -1,5 +1,6 @@
 //! Motions as plain columns.
 
+pub mod course;
 pub mod power_balance;
 
 use mbs_runtime::{Energy, Entry, OutputValue};

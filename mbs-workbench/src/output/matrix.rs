@@ -11,13 +11,22 @@ pub struct Named {
     pub columns: Vec<String>,
     /// Entries, row by row.
     pub cells: Vec<Vec<String>>,
+    /// Numbers of the entries, row by row; none for formulas.
+    pub values: Vec<Vec<f64>>,
 }
 
 impl Named {
     /// A column with a name a row.
     pub fn vector(title: &str, rows: &[String], cells: &[String]) -> Self {
         let cells = cells.iter().map(|cell| vec![cell.clone()]).collect();
-        Named { title: title.into(), rows: rows.to_vec(), columns: Vec::new(), cells }
+        Named { title: title.into(), rows: rows.to_vec(), cells, ..Named::default() }
+    }
+
+    /// The same with numbers as entries, row by row.
+    pub fn with_values(mut self, values: &[f64]) -> Self {
+        self.values = values.chunks(self.columns.len().max(1)).map(<[f64]>::to_vec).collect();
+        self.cells = self.values.iter().map(|row| row.iter().copied().map(number).collect()).collect();
+        self
     }
 
     /// The same with entries padded on their right, as formulas are read.
@@ -94,6 +103,7 @@ mod tests {
             rows: words(&["long", "b"]),
             columns: words(&["x", "phi"]),
             cells: vec![words(&["1", "-2.5"]), words(&["0", "3"])],
+            ..Named::default()
         };
         assert_eq!(matrix.lines(), ["A", "        x   phi", "  long  1  -2.5", "  b     0     3"]);
         let vector = Named::vector("v", &words(&["a"]), &words(&["7"]));

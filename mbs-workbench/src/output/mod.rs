@@ -4,6 +4,7 @@ pub mod animation;
 pub mod csv;
 pub mod latex;
 pub mod matrix;
+pub mod origin;
 pub mod places;
 pub mod reload;
 pub mod report;

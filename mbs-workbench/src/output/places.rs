@@ -46,14 +46,16 @@ pub fn places(
         return Vec::new();
     }
     let count = mechanism.variables().len();
-    let variables: Vec<f64> = (0..count).map(|index| mechanism.get(index).unwrap_or(f64::NAN)).collect();
     let at = |k: usize, shift: &dyn Fn(usize) -> f64| {
         let column = |pick: fn(&crate::motion::CoordinateCurve) -> &Vec<f64>| -> Vec<f64> {
             motion.coordinates.iter().map(|curve| pick(curve).get(k).copied().unwrap_or(f64::NAN)).collect()
         };
         let (mut q, qd, qdd) = (column(|c| &c.q), column(|c| &c.qd), column(|c| &c.qdd));
         q.iter_mut().enumerate().for_each(|(index, value)| *value += shift(index));
-        picture.points([&q, &qd, &qdd], motion.time[k], &variables)
+        let t = motion.time[k];
+        let variables: Vec<f64> =
+            (0..count).map(|index| mechanism.get_at(index, t).unwrap_or(f64::NAN)).collect();
+        picture.points([&q, &qd, &qdd], t, &variables)
     };
     let points: Vec<_> = (0..motion.time.len()).map(|k| at(k, &|_| 0.0)).collect();
     let last = motion.time.len().saturating_sub(1);

@@ -48,6 +48,8 @@ pub struct Report<'a> {
     pub description: &'a str,
     /// The text of the mechanism.
     pub source: &'a str,
+    /// Program, version and hash of the text.
+    pub origin: &'a str,
     /// The command that makes this page again.
     pub command: &'a str,
     /// Pairs of a name and a value worth knowing.
@@ -58,6 +60,9 @@ pub struct Report<'a> {
     pub drawing: &'a [serde_json::Value],
     /// Outputs that are forces at places of the drawing.
     pub forces: &'a [ForceArrow<'a>],
+    /// Measured points.
+    #[serde(skip_serializing_if = "<[Overlay]>::is_empty")]
+    pub overlays: &'a [Overlay],
     /// The analysis: `kinematics`, `simulation`, `equilibrium`, `inverse` or `modes`.
     pub analysis: &'a str,
 }
@@ -69,6 +74,19 @@ pub struct ForceArrow<'a> {
     pub of: &'a str,
     /// Name of the place at which it acts, in the run's places.
     pub at: &'a str,
+}
+
+/// Measured points that are drawn over a curve.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Overlay {
+    /// Name of the output or the coordinate.
+    pub of: String,
+    /// File that they are from.
+    pub file: String,
+    /// Times (s).
+    pub time: Vec<f64>,
+    /// Values, in the unit of the curve.
+    pub value: Vec<f64>,
 }
 
 /// Verdict on a position of rest.
@@ -110,8 +128,10 @@ pub fn html(report: &Report) -> String {
     // A script element must contain neither `</script>` nor `<!--`, which comments of a text may have.
     let json = json.replace('<', "\\u003c");
     let title = escaped(report.title);
+    let origin = escaped(report.origin).replace('"', "&quot;");
     let marks = [
         ("/*TITLE*/", title.as_str()),
+        ("/*ORIGIN*/", origin.as_str()),
         ("/*STYLE*/", STYLE),
         ("/*DATA*/", json.as_str()),
         ("/*SCRIPT*/", SCRIPT),
@@ -156,6 +176,7 @@ mod tests {
             title: "A & B",
             description: "",
             source,
+            origin: "mbs 1, \"name\", text 2",
             command: "mbs run name",
             facts: &[["steps".to_string(), "1".to_string()]],
             runs: &[Run {
@@ -168,6 +189,7 @@ mod tests {
                 small: None,
             }],
             forces: &[ForceArrow { of: "bearing", at: "O" }],
+            overlays: &[],
             analysis: "kinematics",
             drawing: &shapes(&[
                 Shape::Joint { at: name("O") },
@@ -216,7 +238,8 @@ mod tests {
     fn all_marks_are_filled_and_nothing_is_fetched() {
         let page = page("text");
         assert!(page.contains("<title>A &amp; B</title>"));
-        for mark in ["/*TITLE*/", "/*STYLE*/", "/*DATA*/", "/*SCRIPT*/"] {
+        assert!(page.contains("<meta name=\"generator\" content=\"mbs 1, &quot;name&quot;, text 2\">"));
+        for mark in ["/*TITLE*/", "/*ORIGIN*/", "/*STYLE*/", "/*DATA*/", "/*SCRIPT*/"] {
             assert!(!page.contains(mark), "{mark}");
         }
         for fetch in ["src=\"http", "href=\"http", "url(http", "@import", "fetch(", "import("] {

@@ -64,14 +64,45 @@ impl Columns {
     }
 
     /// From a header like `cam (deg), lift [mm]`.
-    fn of_header(cells: &[String]) -> Option<Self> {
-        let mut read = cells.iter().enumerate().filter_map(|(index, cell)| {
+    fn of_header(head: &Head) -> Option<Self> {
+        let read = head.with_units().into_iter().map(|(index, _, unit)| (index, unit));
+        let [x, y] = <[_; 2]>::try_from(read.collect::<Vec<_>>()).ok()?;
+        Some(Columns { x, y })
+    }
+}
+
+/// Columns of a file in SI, the first one increasing.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Table {
+    /// Columns that were read: index in the file and unit.
+    pub columns: Vec<(usize, Unit)>,
+    /// Names of the header; empty where there is none.
+    pub names: Vec<String>,
+    /// Numbers of each column.
+    pub values: Vec<Vec<f64>>,
+    /// Line of each row in the file.
+    pub lines: Vec<usize>,
+}
+
+/// Head of a file.
+pub struct Head<'a> {
+    /// Its cells; of the first line of numbers where the file has no header.
+    pub cells: &'a [String],
+    /// `true` where it is a header, without a number.
+    pub is_header: bool,
+    /// Its line in the file, from 1.
+    pub line: usize,
+}
+
+impl Head<'_> {
+    /// Names and units of the columns that have a unit, as `cam (deg)`, with their indices.
+    pub fn with_units(&self) -> Vec<(usize, String, Unit)> {
+        let read = |(index, cell): (usize, &String)| {
             let open = cell.rfind(['(', '['])?;
             let unit = cell.get(open + 1..)?.trim_end().strip_suffix([')', ']'])?;
-            Some((index, Unit::parse(unit).ok()?))
-        });
-        let columns = Columns { x: read.next()?, y: read.next()? };
-        read.next().is_none().then_some(columns)
+            Some((index, cell.get(..open)?.trim().to_string(), Unit::parse(unit).ok()?))
+        };
+        self.cells.iter().enumerate().filter(|_| self.is_header).filter_map(read).collect()
     }
 }
 
@@ -98,6 +129,36 @@ pub struct Points {
 /// # Errors
 /// The first fault.
 pub fn read(bytes: &[u8], columns: Option<&Columns>) -> Result<Points, Fault> {
+    let table = read_columns(bytes, |head| {
+        let Columns { x, y } = columns.cloned().or_else(|| Columns::of_header(head)).ok_or_else(|| {
+            Fault::new(
+                head.line,
+                0,
+                "the units of the columns are not known".to_string(),
+                "say `--columns \"deg, mm\"`, or write a header `cam (deg), lift (mm)`",
+            )
+        })?;
+        Ok(vec![x, y])
+    })?;
+    let Table { columns, names, values, lines } = table;
+    let [x, y] = <[_; 2]>::try_from(columns).expect("two columns are asked for");
+    let [abscissae, ordinates] = <[_; 2]>::try_from(values).expect("two columns are read");
+    let name = |index: usize, otherwise: &str| match names.get(index) {
+        Some(cell) => cell.split(['(', '[']).next().unwrap_or("").trim().to_string(),
+        None => otherwise.to_string(),
+    };
+    let names = [name(x.0, "x"), name(y.0, "y")];
+    Ok(Points { columns: Columns { x, y }, names, x: abscissae, y: ordinates, lines })
+}
+
+/// Reads the columns of a file that `choose` finds in its head, the first of them increasing; see [`read`].
+///
+/// # Errors
+/// The first fault.
+pub fn read_columns(
+    bytes: &[u8],
+    choose: impl FnOnce(&Head) -> Result<Vec<(usize, Unit)>, Fault>,
+) -> Result<Table, Fault> {
     if bytes.starts_with(&[0xFF, 0xFE]) || bytes.starts_with(&[0xFE, 0xFF]) || bytes.contains(&0) {
         return Err(Fault::new(0, 0, "the file is not text in UTF-8".to_string(), "save it as CSV in UTF-8"));
     }
@@ -113,44 +174,29 @@ pub fn read(bytes: &[u8], columns: Option<&Columns>) -> Result<Points, Fault> {
     let (first_number, first) = lines.next().ok_or_else(nothing)?;
     let separator = [';', '\t'].into_iter().find(|c| first.contains(*c)).unwrap_or(',');
     let head = cells(first, separator);
-    let has_header = !head.iter().any(|cell| number(cell, separator).is_some());
-    let columns = match columns.cloned().or_else(|| Columns::of_header(&head).filter(|_| has_header)) {
-        Some(columns) => columns,
-        None => {
-            let message = "the units of the columns are not known".to_string();
-            return Err(Fault::new(
-                first_number,
-                0,
-                message,
-                "say `--columns \"deg, mm\"`, or write a header `cam (deg), lift (mm)`",
-            ));
-        }
-    };
-    let name = |index: usize, otherwise: &str| match head.get(index).filter(|_| has_header) {
-        Some(cell) => cell.split(['(', '[']).next().unwrap_or("").trim().to_string(),
-        None => otherwise.to_string(),
-    };
-    let names = [name(columns.x.0, "x"), name(columns.y.0, "y")];
-    let mut points = Points { columns, names, x: Vec::new(), y: Vec::new(), lines: Vec::new() };
-    let body = (!has_header).then_some((first_number, first)).into_iter().chain(lines);
+    let is_header = !head.iter().any(|cell| number(cell, separator).is_some());
+    let columns = choose(&Head { cells: &head, is_header, line: first_number })?;
+    let mut values = vec![Vec::new(); columns.len()];
+    let mut numbers = Vec::new();
+    let body = (!is_header).then_some((first_number, first)).into_iter().chain(lines);
     for (line, text) in body {
         let row = cells(text, separator);
-        let x = value(&row, &points.columns.x, line, separator)?;
-        let y = value(&row, &points.columns.y, line, separator)?;
-        if points.x.last().is_some_and(|before| x <= *before) {
-            let message = format!("{} is not above the line before", row[points.columns.x.0]);
-            return Err(Fault::new(
-                line,
-                points.columns.x.0 + 1,
-                message,
-                "sort the lines and remove repeated ones",
-            ));
+        for (column, values) in columns.iter().zip(&mut values) {
+            values.push(value(&row, column, line, separator)?);
         }
-        points.x.push(x);
-        points.y.push(y);
-        points.lines.push(line);
+        let rises = values.first().is_none_or(|x| x.windows(2).last().is_none_or(|pair| pair[0] < pair[1]));
+        if !rises {
+            let index = columns[0].0;
+            let message = format!("{} is not above the line before", row[index]);
+            return Err(Fault::new(line, index + 1, message, "sort the lines and remove repeated ones"));
+        }
+        numbers.push(line);
     }
-    if points.x.is_empty() { Err(nothing()) } else { Ok(points) }
+    if numbers.is_empty() {
+        return Err(nothing());
+    }
+    let names = if is_header { head } else { Vec::new() };
+    Ok(Table { columns, names, values, lines: numbers })
 }
 
 /// The cells of a line, without quotes and the blanks around them.

@@ -33,6 +33,9 @@ pub struct Spline {
 /// Vectors of random signs for [`Spline::noise_gain`]: with a dozen knots the root mean square is correct to a tenth.
 const SIGNS: u64 = 16;
 
+/// Seed of the random signs.
+pub const SEED: u64 = 1;
+
 /// Sampling points for each knot at which the second derivative of noise is evaluated.
 const PLACES: usize = 4;
 
@@ -113,7 +116,7 @@ impl Spline {
         };
         let [first, last] = self.range();
         let places = PLACES * self.knots.len();
-        let (mut squares, mut state) = (0.0, 1_u64);
+        let (mut squares, mut state) = (0.0, SEED);
         for _ in 0..SIGNS {
             let signs: Vec<f64> = x.iter().map(|_| sign(&mut state)).collect();
             let fit = Self::along(x, &signs, kind, self.knots.clone())?;

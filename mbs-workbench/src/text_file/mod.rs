@@ -7,7 +7,7 @@ use core::fmt;
 use std::fs;
 
 pub use self::argument::{Argument, is_file};
-use mbs_codegen::{Call, Outline};
+use mbs_codegen::{Call, Fault, Outline};
 
 /// A mechanism's text in a file, without faults, in a scene.
 #[derive(Clone, Debug)]
@@ -112,11 +112,36 @@ impl TextFile {
     }
 }
 
-/// Number of the texts in the file of an argument, and their warnings as a compiler shows them.
+/// Faults and warnings of the texts in a file.
+pub struct Checked {
+    /// Number of texts.
+    pub texts: usize,
+    /// Faults of all texts.
+    pub faults: Vec<Fault>,
+    /// Warnings about texts without faults.
+    pub warnings: Vec<Fault>,
+    path: String,
+    content: String,
+}
+
+impl Checked {
+    /// The faults as a compiler shows them; `None` where there are none.
+    pub fn error(&self) -> Option<TextFileError> {
+        let Checked { path, content, faults, .. } = self;
+        (!faults.is_empty()).then(|| TextFileError::Faults(excerpt::faults(path, content, faults)))
+    }
+
+    /// The warnings as a compiler shows them.
+    pub fn shown_warnings(&self) -> Vec<String> {
+        excerpt::warnings(&self.path, &self.content, &self.warnings)
+    }
+}
+
+/// Faults and warnings of the texts in the file of an argument.
 ///
 /// # Errors
-/// As [`TextFile::read`]; the faults of all texts.
-pub fn checked(argument: &str) -> Result<(usize, Vec<String>), TextFileError> {
+/// As [`TextFile::read`], where there are no texts.
+pub fn checked(argument: &str) -> Result<Checked, TextFileError> {
     let (path, content, calls) = texts(argument)?;
     let (mut faults, mut warnings) = (Vec::new(), Vec::new());
     for call in &calls {
@@ -125,11 +150,7 @@ pub fn checked(argument: &str) -> Result<(usize, Vec<String>), TextFileError> {
             Err(found) => faults.extend(found),
         }
     }
-    if faults.is_empty() {
-        Ok((calls.len(), excerpt::warnings(&path, &content, &warnings)))
-    } else {
-        Err(TextFileError::Faults(excerpt::faults(&path, &content, &faults)))
-    }
+    Ok(Checked { texts: calls.len(), faults, warnings, path, content })
 }
 
 /// A mechanism or scene in a file.
@@ -177,7 +198,7 @@ fn texts(argument: &str) -> Result<(String, String, Vec<Call>), TextFileError> {
 
 fn calls(path: &str, content: &str) -> Result<Vec<Call>, TextFileError> {
     if path.ends_with(".mbs") {
-        return Ok(vec![Call { name: None, source: content.to_string(), line: 1 }]);
+        return Ok(vec![Call { name: None, source: content.to_string(), line: 1, place: 0..content.len() }]);
     }
     if !path.ends_with(".rs") {
         return Err(TextFileError::Suffix { path: path.to_string() });

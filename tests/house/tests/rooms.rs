@@ -72,6 +72,7 @@ const HOUSES: &[House] = &[
             "output",
             "tables",
             "mismatch",
+            "layout",
             "text_file",
             "card",
             "catalogue",

@@ -103,7 +103,17 @@ impl Request {
         (preset, instance): &(Preset, Erased),
     ) -> Result<Vec<RunResult>, CommandError> {
         let done = |(index, found): (usize, AnalysisResult)| {
-            let AnalysisResult { motion, figures, verdict, ended, small } = found;
+            let AnalysisResult { motion, mut figures, verdict, ended, small } = found;
+            // Lines are those of the text; its rows stand below the message of the failure alone.
+            let ended = ended.map(|ended| {
+                let quoted = target.quoted(instance.equations(), &ended.line);
+                let line = quoted.lines().next().unwrap_or_default().to_string();
+                figures
+                    .iter_mut()
+                    .filter(|[_, value]| *value == ended.line)
+                    .for_each(|[_, value]| value.clone_from(&line));
+                EarlyEnd { line, message: ended.message }
+            });
             // The stable equilibrium reached from an unstable one.
             let (settled, description) = match index {
                 0 => ("", preset.description.as_str()),

@@ -105,6 +105,9 @@ function unevenness(coordinate) {
   return (high - low) / (Math.max(Math.abs(low), Math.abs(high)) || 1);
 }
 
+/** Measured points of a curve: tables with times and values. */
+const measuredOf = name => (data.overlays || []).filter(overlay => overlay.of === name);
+
 const perRadian = () => state.degrees ? 180 / Math.PI : 1;
 /** Factor and unit of a quantity on show. */
 const scaleOf = unit => isAngle(unit) ? perRadian() : 1;
@@ -117,6 +120,13 @@ function abscissae(run) {
   const factor = perRadian(), key = `${runs.indexOf(run)} ${state.over} ${factor}`;
   if (!angles.has(key)) angles.set(key, run.coordinates.find(c => c.name === state.over).q.map(x => x * factor));
   return angles.get(key);
+}
+/** Abscissa of a run at a time, between two of its instants on the line through them; none outside of the motion. */
+function abscissaAt(run, t) {
+  const times = run.time, over = abscissae(run), k = sampleAt(times, t), last = times.length - 1;
+  if (!(t >= times[0] && t <= times[last])) return null;
+  const i = Math.min(times[k] > t ? k - 1 : k, last - 1);
+  return i < 0 ? over[0] : over[i] + (over[i + 1] - over[i]) * (t - times[i]) / (times[i + 1] - times[i]);
 }
 const overTitle = () => state.over || "t";
 const overUnit = () => state.over ? shownUnit("rad") : "s";

@@ -58,7 +58,7 @@ function coordinateOf(output) {
 function createSeries(host, kind, symbols, keys) {
   const units = new Map(), same = [];
   for (const entry of entriesOf(runs[0], kind)) {
-    const { name, unit } = entry, twin = kind === "outputs" && plotted(name) ? coordinateOf(entry) : null;
+    const { name, unit } = entry, twin = kind === "outputs" && plotted(name) && !measuredOf(name).length ? coordinateOf(entry) : null;
     if (twin) same.push(`${name} is ${twin.name}`);
     else units.set(unit, [...(units.get(unit) || []), name]);
   }
@@ -66,15 +66,16 @@ function createSeries(host, kind, symbols, keys) {
   for (const [unit, all] of units) {
     const names = kind === "outputs" ? all.filter(plotted) : all;
     if (!names.length) continue;
-    const panels = keys.map((key, order) => ({ title: symbols[order], unit: derived(unit, order), get: (run, series) => (find(run, kind, series.name) || {})[key] }))
+    const panels = keys.map((key, order) => ({ title: symbols[order], unit: derived(unit, order), measured: order ? () => [] : measuredOf, get: (run, series) => (find(run, kind, series.name) || {})[key] }))
       .filter(panel => runs.some(run => names.some(name => panel.get(run, { name }))));
     const title = { rad: "Angles", m: "Lengths" }[unit] || (unit && unit !== "1" ? `In ${unitText(unit)}` : "Without unit");
-    createGroup(host, title, names, panels, name => markOf(kind, name));
+    createGroup(host, title, names, panels, name => markOf(kind, name) + measuredOf(name).map(({ file }) => `, dots: ${file}`).join(""));
   }
 }
 
 /** Points that only serve the drawing need no plot. */
 function plotted(name) {
+  if (measuredOf(name).length) return true;
   const [, point] = /^(.*)\.\d+$/.exec(name) || [];
   return traces.some(trace => trace.of === point) || !drawing.some(item => pointsOf(item).includes(point));
 }

@@ -54,7 +54,7 @@ function createPlot(host, panel, group) {
   const box = el("div", { className: "plot" }, root, cursor, tip, save), clip = `clip${plots.length}`;
   const dots = svg("g", { class: "dots" }), chosen = svg("rect", { class: "chosen", visibility: "hidden" });
   const area = { left: 54, right: 12, top: 31, bottom: 36 };
-  let curves = [], axis, width, height, range = [0, 1], own = null, hovered = false, from = null;
+  let curves = [], points = [], axis, width, height, range = [0, 1], own = null, hovered = false, from = null;
   host.append(box);
 
   const wide = () => width - area.left - area.right, tall = () => height - area.top - area.bottom;
@@ -73,6 +73,12 @@ function createPlot(host, panel, group) {
     });
     const style = `stroke: ${curve.colour}; stroke-dasharray: ${curve.dash}${curve.wide ? "; stroke-width: 2.8" : ""}`;
     return svg("path", { class: curve.order ? "curve ghost" : "curve", d, style });
+  }
+
+  /** Measured points of a series, one path of dots. */
+  function measured({ colour, places }) {
+    const d = places.map(([x, y]) => `M${X(x).toFixed(1)} ${clamp(Y(y), -9e3, 9e3).toFixed(1)}h0`).join("");
+    return svg("path", { class: "measured", d, style: `stroke: ${colour}; stroke-width: 4.5; stroke-linecap: round; fill: none; opacity: .75` });
   }
 
   function axes() {
@@ -194,9 +200,12 @@ function createPlot(host, panel, group) {
         dash: series.dash || dash(order, series.index, group.series.length), over: abscissae(run), values: scaled(panel.get(run, series)) }))).filter(curve => curve.values);
       const most = largest(curves.map(curve => curve.values));
       for (const curve of curves) curve.format = formatter(panel.log ? 0.5 * LOWEST : most, panel.whole ? 1 : 6);
-      axis = ordinate(panel, curves.map(curve => curve.values.filter((_, k) => inside(curve.over[k]))), height, own);
+      const placed = ({ time, value }) => time.map((t, k) => [abscissaAt(shown()[0], t), value[k] * factor]).filter(([x]) => x !== null);
+      points = (panel.measured ? visible : []).flatMap(({ name, colour }) => panel.measured(name).map(table => ({ colour, places: placed(table) })));
+      const inRange = points.map(({ places }) => places.filter(([x]) => inside(x)).map(([, y]) => y));
+      axis = ordinate(panel, [...curves.map(curve => curve.values.filter((_, k) => inside(curve.over[k]))), ...inRange], height, own);
       area.left = Math.max(54, 12 + widest(axis.ticks.map(([, text, power]) => text + (power || ""))));
-      const clipped = svg("g", { "clip-path": `url(#${clip})` }, ...curves.map(path).reverse(), dots);
+      const clipped = svg("g", { "clip-path": `url(#${clip})` }, ...curves.map(path).reverse(), ...points.map(measured), dots);
       const window = svg("clipPath", { id: clip }, svg("rect", { x: area.left - 1, y: area.top - 1, width: wide() + 2, height: tall() + 2 }));
       root.replaceChildren(window, ...axes(), clipped, chosen);
       cursor.style.top = `${area.top}px`;
