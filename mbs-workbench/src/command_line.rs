@@ -14,6 +14,7 @@ use crate::card::Card;
 use crate::catalogue::Catalogue;
 use crate::commands::run::Arguments as Analysis;
 use crate::commands::{self, CommandError};
+use crate::erased::costs::Comparable;
 use crate::mismatch::nearest;
 use crate::target_directory::is_started;
 use crate::text_file::is_file;
@@ -70,6 +71,8 @@ enum Command {
     Drift(commands::drift::Arguments),
     /// Compare one linkage in several kinds of coordinates
     Compare(commands::compare::Arguments),
+    /// Show what accuracy costs: the true error of each method, step and type of number over its time
+    Cost(commands::cost::Arguments),
     /// Lay a spline along a table from a file; say how far to trust it, draw it, print it as Rust
     Table(commands::table::Arguments),
 }
@@ -99,6 +102,8 @@ impl Command {
             | Command::Check(_)
             | Command::Expand(_)
             | Command::Compare(_)
+            // It builds a program of its own.
+            | Command::Cost(_)
             | Command::Table(_) => return None,
         };
         (needs_code && is_file(name) && !is_started()).then_some(name)
@@ -122,7 +127,26 @@ pub fn program(cards: &[Card]) -> ExitCode {
             None => error.exit(),
         },
     };
-    let run = || execute(&catalogue, command).unwrap_or_else(|error| report(&error));
+    on_large_stack(|| execute(&catalogue, command).unwrap_or_else(|error| report(&error)))
+}
+
+/// The study of `mbs cost` in a program that was built for one mechanism: `card` names it, `make` has it in all numbers, with
+/// parameters and inputs by their indices.
+pub fn cost_program(card: Card, make: fn(&[(usize, f64)]) -> Comparable) -> ExitCode {
+    let cards = [card];
+    let catalogue = Catalogue { cards: &cards };
+    match Arguments::try_parse().map(|arguments| arguments.command) {
+        Ok(Some(Command::Cost(arguments))) => on_large_stack(|| {
+            let mut out = io::stdout().lock();
+            commands::cost::study(&catalogue, &arguments, make, &mut out).unwrap_or_else(|error| report(&error))
+        }),
+        Ok(_) => report(&CommandError::Usage("this program has the command `cost` alone".to_string())),
+        Err(error) => error.exit(),
+    }
+}
+
+/// Runs `run` in a thread with room for matrices of all unknowns.
+fn on_large_stack(run: impl FnOnce() -> ExitCode + Send) -> ExitCode {
     thread::scope(|scope| {
         let started = thread::Builder::new().stack_size(STACK).spawn_scoped(scope, run);
         match started.map(thread::ScopedJoinHandle::join) {
@@ -194,6 +218,7 @@ fn execute(catalogue: &Catalogue, command: Option<Command>) -> Result<ExitCode, 
         Some(Command::Dof(arguments)) => commands::dof::run(catalogue, &arguments, &mut out),
         Some(Command::Drift(arguments)) => commands::drift::run(catalogue, &arguments, &mut out),
         Some(Command::Compare(arguments)) => commands::compare::run(catalogue, &arguments, &mut out),
+        Some(Command::Cost(arguments)) => return commands::cost::run(catalogue, &arguments),
         Some(Command::Table(arguments)) => commands::table::run(&arguments, &mut out),
     }?;
     out.flush().map_err(CommandError::Output)?;

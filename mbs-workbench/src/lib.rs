@@ -15,6 +15,8 @@ pub mod catalogue;
 mod command_line;
 #[cfg(feature = "program")]
 mod commands;
+#[cfg(feature = "program")]
+pub mod cost;
 pub mod erased;
 #[cfg(feature = "program")]
 pub mod forge;
@@ -34,4 +36,4 @@ pub mod text_file;
 pub mod verify;
 
 #[cfg(feature = "program")]
-pub use command_line::program;
+pub use command_line::{cost_program, program};

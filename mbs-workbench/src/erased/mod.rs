@@ -2,9 +2,17 @@
 
 mod branching;
 pub mod dynamics;
+#[cfg(feature = "program")]
+pub mod costs;
 pub mod erase;
+#[cfg(feature = "program")]
+pub mod exact;
 pub mod experiment;
 pub mod facade;
 pub mod formulas;
 pub mod lanes;
 pub mod masses;
+#[cfg(feature = "program")]
+pub mod timed_runs;
+#[cfg(feature = "program")]
+pub mod timed_steps;
