@@ -19,6 +19,12 @@ pub const WIDTHS: f64 = 100.0;
 /// Error over the expected one that makes a point wrong.
 const WRONG: f64 = 10.0;
 
+/// A run may take so many times as long as the finest of the first curve.
+const DEAREST: f64 = 60.0;
+
+/// Longest time (s) that a run may take in any case.
+const CHEAP: f64 = 2e-3;
+
 /// Runs of which the shortest time counts.
 const RUNS: u32 = 5;
 
@@ -210,7 +216,8 @@ pub fn moved_study(
         let other = if method.is_implicit() { Leg::Extrapolated } else { Leg::Collocated };
         of(other).map_or(any, |(_, reference)| reference)
     };
-    let mut points = Vec::new();
+    let mut points: Vec<Point> = Vec::new();
+    let mut longest = extent.longest;
     let methods =
         if extent.methods.is_empty() { MotionMethod::all() } else { extent.methods.clone() };
     let curves: Vec<(Numbers, MotionMethod)> = [Numbers::Double, Numbers::Single]
@@ -221,7 +228,12 @@ pub fn moved_study(
         let share = index as f64 / curves.len() as f64;
         let name = Setting::Motion { numbers: *numbers, method: *method, resolution: Resolution::Steps(0) };
         progress(&name.curve(), 0.7 * share);
-        let found = curve(mechanism, (*numbers, *method), &times, extent, judge(*method), &sizes, width);
+        let own = Extent { longest, ..extent.clone() };
+        let found = curve(mechanism, (*numbers, *method), &times, &own, judge(*method), &sizes, width);
+        if points.is_empty() {
+            let finest = found.iter().map(|point| point.effort.elapsed.as_secs_f64()).fold(0.0, f64::max);
+            longest = (DEAREST * finest).max(CHEAP).min(extent.longest);
+        }
         points.extend(found);
     }
     for round in 1..RUNS {

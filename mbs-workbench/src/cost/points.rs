@@ -72,6 +72,9 @@ impl Point {
     }
 }
 
+/// Share of the best error so far that a dearer point must stay below to be on the front: what differs by less is the same.
+const GAIN: f64 = 0.7;
+
 /// Indices of the points that no other one beats in error and time, from coarse to fine.
 pub fn front(points: &[Point]) -> Vec<usize> {
     let mut known: Vec<(usize, f64, f64)> = points
@@ -84,7 +87,7 @@ pub fn front(points: &[Point]) -> Vec<usize> {
     let mut best = f64::INFINITY;
     let mut front = Vec::new();
     for (index, error, _) in known {
-        if error < best {
+        if error < GAIN * best {
             best = error;
             front.push(index);
         }

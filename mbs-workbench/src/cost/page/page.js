@@ -77,7 +77,7 @@ const chart = (place, value, words) => {
   const best = usable.filter(({ point }) => point.verdict === "right" || point.verdict === "hollow")
     .sort((a, b) => value(a.point) - value(b.point) || a.point.error - b.point.error);
   let lowest = Infinity;
-  const front = best.filter(({ point }) => (point.error < lowest ? ((lowest = point.error), true) : false));
+  const front = best.filter(({ point }) => (point.error < 0.7 * lowest ? ((lowest = point.error), true) : false));
   if (front.length) {
     svgElement("path", { class: "frontier", d: "M" + front.map(({ point }) => `${atX(value(point))} ${atLog(size(point))}`).join("L") }, svg);
   }
