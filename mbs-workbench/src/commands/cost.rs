@@ -79,7 +79,16 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments) -> Result<ExitCode, Com
     if let Some(directory) = &arguments.out {
         require_writable(directory)?;
     }
-    started(&forge, &blueprint, std::env::args_os().skip(1).collect())
+    let arguments = std::env::args_os().skip(1).collect();
+    started(&forge, &blueprint, arguments).map_err(|error| match error {
+        CommandError::Failed(reason) if blueprint.origin.is_none() && reason.starts_with("error:") => {
+            CommandError::Failed(format!(
+                "the study is built in a program of its own: what the card's constructor names must be public, and a function that \
+                 it passes must take every `Scalar`\n{reason}"
+            ))
+        }
+        error => error,
+    })
 }
 
 /// Methods with one of the words in their names; all where there are none.

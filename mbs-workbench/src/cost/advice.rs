@@ -1,6 +1,6 @@
 //! The choice in one sentence, and as Rust.
 
-use crate::cost::points::{Point, cheapest};
+use crate::cost::points::{Point, cheapest, cheapest_in_lanes};
 use crate::cost::setting::{
     Closing, FormulationName, ImplicitName, MotionMethod, Numbers, Resolution, Setting,
 };
@@ -55,6 +55,9 @@ pub fn sentence(points: &[Point], asked: f64) -> String {
         }
         _ => "; ten times coarser saves nothing.".to_string(),
     };
+    if let Some(lanes) = cheapest_in_lanes(points, asked).filter(|lanes| lanes.time < chosen.time) {
+        text += &format!(" Many at once: {}, {}.", lanes.setting, time_text(lanes.time, true));
+    }
     let single = points.iter().filter(|point| point.setting.numbers() == Numbers::Single);
     let floor = single.filter_map(Point::error).fold(f64::INFINITY, f64::min);
     if floor.is_finite() {

@@ -10,3 +10,5 @@ pub mod points;
 pub mod reference;
 pub mod result;
 pub mod setting;
+#[cfg(test)]
+mod tests;

@@ -16,6 +16,9 @@ pub const PARTS: u32 = 480;
 /// Points whose error is below so many widths of the reference have its width as bar.
 pub const WIDTHS: f64 = 100.0;
 
+/// Steps over those of the coarser run from which on both tell the error.
+const FINER: f64 = 1.1;
+
 /// Error over the expected one that makes a point wrong.
 const WRONG: f64 = 10.0;
 
@@ -82,11 +85,7 @@ impl Sizes {
         let rates = shots().flat_map(|shot| shot.at.qd.iter().zip(&scales).map(|(qd, scale)| qd.high / scale));
         let reactions =
             shots().flat_map(|shot| shot.observed.reaction.iter().zip(&scales).map(|(r, scale)| r.high * scale));
-        let energies = shots().map(|shot| shot.observed.energy.high);
-        let first = reference.shots.first().map_or(0.0, |shot| shot.observed.energy.high);
-        let change = energies.clone().map(|energy| energy - first).fold(0.0, |a: f64, b| a.max(b.abs()));
-        // A motion that keeps its energy is measured by the kinetic and potential energy that it exchanges: by its size.
-        let energy = if change > 1e-9 * size(energies.clone()) { change } else { size(energies) };
+        let energy = size(shots().map(|shot| shot.observed.kinetic.high));
         let count = reference.shots.first().map_or(0, |shot| shot.observed.outputs.len());
         let outputs = (0..count).map(|k| size(shots().map(move |shot| shot.observed.outputs[k].high)));
         let (rate, reaction) = (size(rates), size(reactions));
@@ -293,7 +292,7 @@ fn curve(
         return Vec::new();
     }
     let mut points: Vec<Point> = Vec::new();
-    let mut last: Option<Vec<Seen>> = None;
+    let mut last: Option<(Vec<Seen>, u64)> = None;
     let mut gained_nothing = 0;
     for resolution in ladder(method, numbers) {
         let setting = Setting::Motion { numbers, method, resolution };
@@ -310,7 +309,10 @@ fn curve(
             }
         };
         let Some(errors) = errors(&seen, reference, sizes, &extent.watched) else { continue };
-        let expected = last.as_ref().and_then(|last| between(last, &seen, sizes, &extent.watched));
+        // Runs of the same steps tell nothing of their error.
+        let is_finer = last.as_ref().is_none_or(|(_, steps)| effort.steps as f64 > FINER * *steps as f64);
+        let coarser = last.as_ref().filter(|_| is_finer);
+        let expected = coarser.and_then(|(last, _)| between(last, &seen, sizes, &extent.watched));
         let verdict = verdict(numbers, method, errors.judged, expected, width);
         let before = points.last().and_then(|point| match point.outcome {
             Outcome::Done { errors, .. } => Some(errors.judged),
@@ -324,7 +326,9 @@ fn curve(
             effort,
             time: f64::NAN,
         });
-        last = Some(seen);
+        if is_finer {
+            last = Some((seen, effort.steps));
+        }
         // The next one takes at least as long again.
         if effort.elapsed.as_secs_f64() > extent.longest || gained_nothing >= 2 {
             break;

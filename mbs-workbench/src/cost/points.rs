@@ -14,7 +14,7 @@ pub struct Errors {
     pub rate: f64,
     /// Of accelerations (drives), or of Φ_qᵀ λ (forces), over the largest of the motion.
     pub second: f64,
-    /// Of the energy, over the largest change of the motion; 0 where there are no masses.
+    /// Of the energy, over the largest kinetic energy of the motion; 0 where there are no masses.
     pub energy: f64,
     /// Largest violation of a row in the reference metric.
     pub violation: f64,
@@ -63,6 +63,11 @@ pub struct Point {
 }
 
 impl Point {
+    /// `true` for a run of one mechanism; lanes are of use for many at once.
+    pub fn is_single(&self) -> bool {
+        matches!(self.setting, Setting::Motion { .. } | Setting::Kinematics { lanes: 1, .. })
+    }
+
     /// Its error, where it is trusted.
     pub fn error(&self) -> Option<f64> {
         match &self.outcome {
@@ -75,11 +80,12 @@ impl Point {
 /// Share of the best error so far that a dearer point must stay below to be on the front: what differs by less is the same.
 const GAIN: f64 = 0.7;
 
-/// Indices of the points that no other one beats in error and time, from coarse to fine.
+/// Indices of the points of one mechanism that no other one beats in error and time, from coarse to fine.
 pub fn front(points: &[Point]) -> Vec<usize> {
     let mut known: Vec<(usize, f64, f64)> = points
         .iter()
         .enumerate()
+        .filter(|(_, point)| point.is_single())
         .filter_map(|(index, point)| Some((index, point.error()?, point.time)))
         .filter(|(_, error, time)| error.is_finite() && time.is_finite())
         .collect();
@@ -95,10 +101,18 @@ pub fn front(points: &[Point]) -> Vec<usize> {
     front
 }
 
-/// The cheapest trusted point with an error of at most `asked`.
+/// The cheapest trusted point of one mechanism with an error of at most `asked`.
 pub fn cheapest(points: &[Point], asked: f64) -> Option<&Point> {
-    let reaching = points.iter().filter(|point| point.error().is_some_and(|error| error <= asked));
-    reaching.min_by(|a, b| a.time.total_cmp(&b.time))
+    reaching(points, asked).filter(|point| point.is_single()).min_by(|a, b| a.time.total_cmp(&b.time))
+}
+
+/// The cheapest trusted point of many mechanisms at once with an error of at most `asked`; its time is that of one.
+pub fn cheapest_in_lanes(points: &[Point], asked: f64) -> Option<&Point> {
+    reaching(points, asked).filter(|point| !point.is_single()).min_by(|a, b| a.time.total_cmp(&b.time))
+}
+
+fn reaching(points: &[Point], asked: f64) -> impl Iterator<Item = &Point> {
+    points.iter().filter(move |point| point.error().is_some_and(|error| error <= asked))
 }
 
 #[cfg(test)]

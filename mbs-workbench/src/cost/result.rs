@@ -57,6 +57,8 @@ struct Curve {
     /// Index of its mark.
     mark: usize,
     dashed: bool,
+    /// `true` for many mechanisms at once.
+    lanes: bool,
     points: Vec<PagePoint>,
 }
 
@@ -142,7 +144,8 @@ impl CostResult {
             let name = point.setting.curve();
             let (colour, mark, dashed) = style(&point.setting);
             if curves.last().is_none_or(|curve| curve.name != name) {
-                curves.push(Curve { name, colour, mark, dashed, points: Vec::new() });
+                let lanes = !point.is_single();
+                curves.push(Curve { name, colour, mark, dashed, lanes, points: Vec::new() });
             }
             let rust = crate::cost::advice::rust(&point.setting, &self.constructor, self.until);
             let page = match &point.outcome {

@@ -61,6 +61,8 @@ pub struct Observed<T> {
     pub reaction: Vec<T>,
     /// Kinetic and potential energy (J).
     pub energy: T,
+    /// Kinetic energy (J).
+    pub kinetic: T,
     /// Outputs, then outputs of loads, component by component.
     pub outputs: Vec<T>,
 }
@@ -229,6 +231,7 @@ where
     Observed {
         reaction: mechanism.reaction(parameters, position, moving.lambda).to_vec(),
         energy: energy.kinetic + energy.potential,
+        kinetic: energy.kinetic,
         outputs: outputs.chain(loads.as_ref().iter().copied()).collect(),
     }
 }

@@ -95,7 +95,7 @@ where
     let position = mechanism.position(&parameters, run.q(), run.t());
     let moving =
         DynamicState { qd: run.qd(), qdd: run.qdd(), lambda: run.lambda(), states: run.states() };
-    let Observed { reaction, energy, outputs } = observed(mechanism, (&parameters, &position), &moving);
+    let Observed { reaction, energy, kinetic, outputs } = observed(mechanism, (&parameters, &position), &moving);
     let numbers = |values: &[R]| values.iter().map(|value| value.to_f64()).collect::<Vec<f64>>();
     Seen {
         t: run.t().to_f64(),
@@ -104,6 +104,7 @@ where
         observed: Observed {
             reaction: numbers(&reaction),
             energy: energy.to_f64(),
+            kinetic: kinetic.to_f64(),
             outputs: numbers(&outputs),
         },
         violation: run.balance().phi.to_f64(),

@@ -22,12 +22,12 @@ const short = (value) => {
 const all = [];
 DATA.curves.forEach((curve, c) => curve.points.forEach((point, p) => all.push({ curve, c, point, p })));
 const done = all.filter(({ point }) => point.error !== undefined);
-const trusted = done.filter(({ point }) => point.verdict === "right" || point.verdict === "hollow");
+const trusted = done.filter(({ curve, point }) => !curve.lanes && (point.verdict === "right" || point.verdict === "hollow"));
 const shown = new Set();
 let asked = DATA.asked;
 const showFront = () => {
   shown.clear();
-  DATA.curves.forEach((curve, c) => { if (curve.points.some((point) => point.front)) shown.add(c); });
+  DATA.curves.forEach((curve, c) => { if (curve.lanes || curve.points.some((point) => point.front)) shown.add(c); });
   if (shown.size === 0) DATA.curves.forEach((_, c) => shown.add(c));
 };
 showFront();
@@ -74,7 +74,7 @@ const chart = (place, value, words) => {
   svgElement("text", { x: (left + width - right) / 2, y: height - 10, "text-anchor": "middle" }, svg).textContent = words;
   const label = svgElement("text", { x: 14, y: height / 2, "text-anchor": "middle", transform: `rotate(-90 14 ${height / 2})` }, svg);
   label.textContent = `error of the ${DATA.judged}`;
-  const best = usable.filter(({ point }) => point.verdict === "right" || point.verdict === "hollow")
+  const best = usable.filter((entry) => trusted.includes(entry))
     .sort((a, b) => value(a.point) - value(b.point) || a.point.error - b.point.error);
   let lowest = Infinity;
   const front = best.filter(({ point }) => (point.error < 0.7 * lowest ? ((lowest = point.error), true) : false));
