@@ -26,6 +26,8 @@ pub struct Accurate<S: Dynamic<R, N, M>, X, R: Real, const N: usize, const M: us
     run: Simulation<S, X, R, N, M>,
     accuracy: R,
     estimate: Option<R>,
+    /// Right-hand sides of all runs.
+    evaluations: u64,
 }
 
 impl<S, I, F, R, const N: usize, const M: usize> Simulation<S, Explicit<I, F>, R, N, M>
@@ -105,7 +107,7 @@ where
             let (accuracy, best) = (accuracy.to_f64(), least.to_f64());
             return Err(FailureKind::Unreachable { accuracy, best }.without_time());
         }
-        Ok(Accurate { run: self, accuracy, estimate: None })
+        Ok(Accurate { run: self, accuracy, estimate: None, evaluations: 0 })
     }
 }
 
@@ -199,10 +201,13 @@ where
     /// [`Simulation::advance_to`]. The state is then as before.
     pub fn advance_to(&mut self, until: R) -> Result<(), Failure> {
         let ratio = R::constant(accuracy::RATIO);
-        let at = |tolerance: R| -> Result<Simulation<S, Explicit<I, F>, R, N, M>, Failure> {
+        let mut evaluations = self.evaluations;
+        let before = self.run.counts.evaluations;
+        let mut at = |tolerance: R| -> Result<Simulation<S, Explicit<I, F>, R, N, M>, Failure> {
             let tolerance = Tolerance { relative: tolerance, absolute: tolerance };
             let mut run = self.run.clone().with_tolerance(tolerance);
             run.advance_to(until)?;
+            evaluations += run.counts.evaluations - before;
             Ok(run)
         };
         let coarsest = R::constant(accuracy::COARSEST_STEPS);
@@ -228,8 +233,7 @@ where
                 let left = second * second / (first - second).max(R::constant(f64::MIN_POSITIVE));
                 best = Some(best.map_or(left, |best| best.min(left)));
                 if left <= wanted && second <= wanted * ratio {
-                    self.estimate = Some(left);
-                    self.run = fine;
+                    *self = Accurate { run: fine, estimate: Some(left), evaluations, ..*self };
                     return Ok(());
                 }
             } else if tells && second <= R::constant(accuracy::NOISE) * Tolerance::<R>::least() {
@@ -243,6 +247,11 @@ where
     /// Estimated error of the last [`advance_to`](Self::advance_to) in the reference metric (rad, reference lengths); none before.
     pub fn error_estimate(&self) -> Option<R> {
         self.estimate
+    }
+
+    /// Right-hand sides of all runs so far, those that only told the error included.
+    pub fn evaluations(&self) -> u64 {
+        self.evaluations
     }
 
     /// The run, to read.
