@@ -138,7 +138,8 @@ pub fn cost_program(card: Card, make: fn(&[(usize, f64)]) -> Comparable) -> Exit
     match Arguments::try_parse().map(|arguments| arguments.command) {
         Ok(Some(Command::Cost(arguments))) => on_large_stack(|| {
             let mut out = io::stdout().lock();
-            commands::cost::study(&catalogue, &arguments, make, &mut out).unwrap_or_else(|error| report(&error))
+            commands::cost::study(&catalogue, &arguments, make, &mut out)
+                .unwrap_or_else(|error| report(&error))
         }),
         Ok(_) => report(&CommandError::Usage("this program has the command `cost` alone".to_string())),
         Err(error) => error.exit(),

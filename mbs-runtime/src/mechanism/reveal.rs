@@ -61,7 +61,10 @@ pub trait Visitor<S, T: Scalar = f64> {
     /// A mechanism with masses whose rows fix every coordinate.
     fn driven<const N: usize, const M: usize>(self, mechanism: S) -> Self::Output
     where
-        S: Mechanism<T, N, M, Lane: Kinematic<T::Real, N, M>> + Kinematic<T, N, M> + Dynamic<T, N, M> + Partitioned<T, N, M>;
+        S: Mechanism<T, N, M, Lane: Kinematic<T::Real, N, M>>
+            + Kinematic<T, N, M>
+            + Dynamic<T, N, M>
+            + Partitioned<T, N, M>;
 
     /// A mechanism with masses that forces move.
     fn free<const N: usize, const M: usize>(self, mechanism: S) -> Self::Output
@@ -71,7 +74,10 @@ pub trait Visitor<S, T: Scalar = f64> {
     /// A large mechanism with masses whose rows fix every coordinate.
     fn large_driven<const N: usize, const M: usize>(self, mechanism: S) -> Self::Output
     where
-        S: Mechanism<T, N, M, Lane: Kinematic<T::Real, N, M>> + Kinematic<T, N, M> + Dynamic<T, N, M> + Partitioned<T, N, M>;
+        S: Mechanism<T, N, M, Lane: Kinematic<T::Real, N, M>>
+            + Kinematic<T, N, M>
+            + Dynamic<T, N, M>
+            + Partitioned<T, N, M>;
 
     /// A large mechanism with masses that forces move.
     fn large_free<const N: usize, const M: usize>(self, mechanism: S) -> Self::Output

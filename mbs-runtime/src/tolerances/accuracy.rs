@@ -11,6 +11,9 @@ pub(crate) const RATIO: f64 = 10.0;
 /// Least ratio of the differences of three runs: less is no order of a method.
 pub(crate) const FALL: f64 = 3.0;
 
+/// Largest ratio of the differences that the next one is expected to have: runs of double pendulums fall by 100 once and by 4 then.
+pub(crate) const TRUSTED: f64 = 4.0;
+
 /// Least ratio of the steps of runs whose difference tells an error.
 pub(crate) const FINER: f64 = 1.1;
 

@@ -59,7 +59,9 @@ pub struct Arguments {
 }
 
 fn above_zero(text: &str) -> Result<f64, String> {
-    finite(text).and_then(|number| if number > 0.0 { Ok(number) } else { Err("a number above 0 is needed".to_string()) })
+    finite(text).and_then(|number| {
+        if number > 0.0 { Ok(number) } else { Err("a number above 0 is needed".to_string()) }
+    })
 }
 
 /// Builds a program that has the mechanism in all numbers, and runs the command line again in it.
@@ -95,8 +97,10 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments) -> Result<ExitCode, Com
 fn methods(words: &[String]) -> Result<Vec<MotionMethod>, CommandError> {
     let all = MotionMethod::all();
     let plain = |text: &str| text.to_lowercase().replace(['-', '_', ' '], "");
-    let mut known: Vec<String> =
-        all.iter().flat_map(|method| method.to_string().split(" with ").map(plain).collect::<Vec<_>>()).collect();
+    let mut known: Vec<String> = all
+        .iter()
+        .flat_map(|method| method.to_string().split(" with ").map(plain).collect::<Vec<_>>())
+        .collect();
     known.sort();
     known.dedup();
     for word in words {
@@ -104,10 +108,14 @@ fn methods(words: &[String]) -> Result<Vec<MotionMethod>, CommandError> {
             let near = nearest(&plain(word), known.iter().map(String::as_str));
             let near = near.map_or_else(String::new, |near| format!("; did you mean `{near}`?"));
             let names: Vec<&str> = known.iter().map(String::as_str).collect();
-            return Err(CommandError::Usage(format!("there is no method `{word}`{near}\nknown: {}", wrapped(&names))));
+            return Err(CommandError::Usage(format!(
+                "there is no method `{word}`{near}\nknown: {}",
+                wrapped(&names)
+            )));
         }
     }
-    let is_meant = |method: &MotionMethod| words.iter().any(|word| plain(&method.to_string()).contains(&plain(word)));
+    let is_meant =
+        |method: &MotionMethod| words.iter().any(|word| plain(&method.to_string()).contains(&plain(word)));
     Ok(if words.is_empty() { Vec::new() } else { all.into_iter().filter(is_meant).collect() })
 }
 
@@ -117,7 +125,9 @@ fn watched(equations: &dyn AnyEquations, names: &[String]) -> Result<Vec<usize>,
     known.extend(equations.tables().iter().flat_map(|tables| tables.loads.iter().map(|entry| entry.name)));
     let mut found = Vec::new();
     for name in names {
-        let is_meant = |known: &str| known == name || known.strip_prefix(name.as_str()).is_some_and(|rest| rest.starts_with('.'));
+        let is_meant = |known: &str| {
+            known == name || known.strip_prefix(name.as_str()).is_some_and(|rest| rest.starts_with('.'))
+        };
         let before = found.len();
         found.extend(known.iter().enumerate().filter(|(_, known)| is_meant(known)).map(|(index, _)| index));
         if found.len() == before {
@@ -151,9 +161,8 @@ pub fn study(
         .clone()
         .unwrap_or_else(|| target_directory().join("mbs").join(target.file_name()).join("cost"));
     require_writable(&directory)?;
-    let values: Vec<(usize, f64)> = (0..equations.variables().len())
-        .filter_map(|index| Some((index, equations.get(index)?)))
-        .collect();
+    let values: Vec<(usize, f64)> =
+        (0..equations.variables().len()).filter_map(|index| Some((index, equations.get(index)?))).collect();
     let (longest, reference, tolerance) = if arguments.quick { QUICK } else { WHOLE };
     let extent = Extent {
         methods: methods(&arguments.methods)?,
@@ -182,7 +191,11 @@ pub fn study(
         }
         Comparable::Driven(mut mechanism) => {
             let found = driven_study(&mut mechanism, until, longest, &mut progress).map_err(failed)?;
-            fact("reference", "positions closed to 29 digits in double-double numbers; rates by differences of positions".to_string());
+            fact(
+                "reference",
+                "positions closed to 29 digits in double-double numbers; rates by differences of positions"
+                    .to_string(),
+            );
             fact("width", format!("{} (rates by the rows against differences)", two_digits(found.width)));
             (found.points, Some(found.width), "acceleration")
         }
@@ -194,8 +207,13 @@ pub fn study(
                     events => format!(", {events} contacts"),
                 };
                 let words = match reference.stuck {
-                    None => format!("{} steps of tolerance {:.0e}{events}", reference.steps, reference.tolerance),
-                    Some(_) => format!("not used: it ended at t = {:.4} s", reference.shots.last().map_or(0.0, |shot| shot.at.t.high)),
+                    None => {
+                        format!("{} steps of tolerance {:.0e}{events}", reference.steps, reference.tolerance)
+                    }
+                    Some(_) => format!(
+                        "not used: it ended at t = {:.4} s",
+                        reference.shots.last().map_or(0.0, |shot| shot.at.t.high)
+                    ),
                 };
                 fact(&format!("{} reference", leg.name()), words);
             }
@@ -208,9 +226,17 @@ pub fn study(
     fact("instants", "each run is compared at the ends of its steps that are instants of the reference, at most 480 (motion from forces) or 1440".to_string());
     fact("times", "the shortest of five runs, settings interleaved".to_string());
     fact("machine", machine());
-    fact("program", format!("mbs {}, {}", env!("CARGO_PKG_VERSION"), if cfg!(debug_assertions) { "without optimisation" } else { "release profile" }));
+    fact(
+        "program",
+        format!(
+            "mbs {}, {}",
+            env!("CARGO_PKG_VERSION"),
+            if cfg!(debug_assertions) { "without optimisation" } else { "release profile" }
+        ),
+    );
     fact("text", crate::hash::hash(&[equations.source().as_bytes()]));
-    let judged = if arguments.watch.is_empty() { "coordinates".to_string() } else { arguments.watch.join(", ") };
+    let judged =
+        if arguments.watch.is_empty() { "coordinates".to_string() } else { arguments.watch.join(", ") };
     let result = CostResult {
         name: target.name().to_string(),
         title: target.title().to_string(),
@@ -256,7 +282,9 @@ fn command(arguments: &Arguments) -> String {
 /// The processor's name where the system tells it, and its architecture.
 fn machine() -> String {
     let told = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
-    let model = told.lines().find_map(|line| line.strip_prefix("model name")?.split_once(':').map(|(_, name)| name.trim()));
+    let model = told
+        .lines()
+        .find_map(|line| line.strip_prefix("model name")?.split_once(':').map(|(_, name)| name.trim()));
     match model {
         Some(model) => format!("{model}, {}", std::env::consts::ARCH),
         None => std::env::consts::ARCH.to_string(),
@@ -268,9 +296,19 @@ fn print(result: &CostResult, arguments: &Arguments, out: &mut dyn Write) -> Res
     for [name, value] in &result.facts {
         writeln!(out, "  {name}: {value}")?;
     }
-    let on_front: Vec<&Point> = front(&result.points).into_iter().map(|index| &result.points[index]).collect();
+    let on_front: Vec<&Point> =
+        front(&result.points).into_iter().map(|index| &result.points[index]).collect();
     let widest = on_front.iter().map(|point| point.setting.to_string().chars().count()).max().unwrap_or(7);
-    writeln!(out, "\n{:<widest$}  {:>8}  {:>8}  {:>24}  {:>11}  {:>11}", "setting", "error", "median", result.unit(), "evaluations", "corrections")?;
+    writeln!(
+        out,
+        "\n{:<widest$}  {:>8}  {:>8}  {:>24}  {:>11}  {:>11}",
+        "setting",
+        "error",
+        "median",
+        result.unit(),
+        "evaluations",
+        "corrections"
+    )?;
     for point in on_front {
         let Outcome::Done { errors, verdict, .. } = &point.outcome else { continue };
         let mark = if *verdict == Verdict::Hollow { " (next to the width of the reference)" } else { "" };
@@ -289,7 +327,8 @@ fn print(result: &CostResult, arguments: &Arguments, out: &mut dyn Write) -> Res
     writeln!(out, "\n{} settings, {refused} refused", result.points.len())?;
     for point in result.wrong() {
         let Outcome::Done { errors, expected, .. } = &point.outcome else { continue };
-        let expected = expected.map_or_else(String::new, |expected| format!(", expected {}", two_digits(expected)));
+        let expected =
+            expected.map_or_else(String::new, |expected| format!(", expected {}", two_digits(expected)));
         writeln!(out, "wrong: {}: error {}{expected}", point.setting, two_digits(errors.judged))?;
     }
     writeln!(out, "\n{}", result.sentence())?;
@@ -307,7 +346,11 @@ fn print(result: &CostResult, arguments: &Arguments, out: &mut dyn Write) -> Res
 fn default_setting(result: &CostResult) -> Option<String> {
     use crate::cost::setting::{FormulationName, IntegratorName, Numbers, Resolution};
     let is_default = |point: &&Point| match point.setting {
-        Setting::Motion { numbers: Numbers::Double, method, resolution: Resolution::Tolerance(tolerance) } => {
+        Setting::Motion {
+            numbers: Numbers::Double,
+            method,
+            resolution: Resolution::Tolerance(tolerance),
+        } => {
             let usual = MotionMethod::Explicit(FormulationName::Projection, IntegratorName::DormandPrince8);
             method == usual && (tolerance.log10() + 9.0).abs() < 0.5
         }
@@ -315,5 +358,10 @@ fn default_setting(result: &CostResult) -> Option<String> {
     };
     let point = result.points.iter().find(is_default)?;
     let error = point.error()?;
-    Some(format!("Without a choice: {}: error {}, {}.", point.setting, two_digits(error), time_text(point.time, false)))
+    Some(format!(
+        "Without a choice: {}: error {}, {}.",
+        point.setting,
+        two_digits(error),
+        time_text(point.time, false)
+    ))
 }

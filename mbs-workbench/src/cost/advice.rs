@@ -35,13 +35,16 @@ pub fn sentence(points: &[Point], asked: f64) -> String {
     let Some(chosen) = cheapest(points, asked) else {
         let best = points.iter().filter_map(Point::error).fold(f64::INFINITY, f64::min);
         return match best.is_finite() {
-            true => format!("{}: no setting reaches it; the best has an error of {}.", two_digits(asked), two_digits(best)),
+            true => format!(
+                "{}: no setting reaches it; the best has an error of {}.",
+                two_digits(asked),
+                two_digits(best)
+            ),
             false => format!("{}: no setting went through.", two_digits(asked)),
         };
     };
     let is_step = matches!(chosen.setting, Setting::Kinematics { .. });
-    let mut text =
-        format!("{}: {}, {}.", two_digits(asked), chosen.setting, time_text(chosen.time, is_step));
+    let mut text = format!("{}: {}, {}.", two_digits(asked), chosen.setting, time_text(chosen.time, is_step));
     match cheapest(points, asked / 10.0) {
         Some(finer) if finer.time > 1.02 * chosen.time => {
             text += &format!(" Ten times better costs {:.1} times as much", finer.time / chosen.time);
@@ -98,7 +101,8 @@ fn kinematics(
              return Err(failure);\n    }}\n"
         ),
     };
-    let lanes = if lanes == 1 { String::new() } else { format!("// The same in a `Batch` of {lanes} lanes.\n") };
+    let lanes =
+        if lanes == 1 { String::new() } else { format!("// The same in a `Batch` of {lanes} lanes.\n") };
     format!(
         "{lanes}{head}let mut stepper = Stepper::assemble(mechanism, guess, 0.0)?;\nfor _ in 0..{steps} {{\n{step}}}\n"
     )
@@ -119,7 +123,9 @@ fn motion(
         FormulationName::Unstabilized => "Unstabilized",
     };
     let method = match method {
-        MotionMethod::Explicit(name, integrator) => format!("Explicit::new({integrator:?}, {})", formulation(name)),
+        MotionMethod::Explicit(name, integrator) => {
+            format!("Explicit::new({integrator:?}, {})", formulation(name))
+        }
         MotionMethod::Implicit(ImplicitName::GeneralizedAlpha) => "GeneralizedAlpha::default()".to_string(),
         MotionMethod::Implicit(name) => format!("{name:?}"),
     };

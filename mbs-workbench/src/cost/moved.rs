@@ -82,9 +82,10 @@ fn size(values: impl Iterator<Item = f64>) -> f64 {
 impl Sizes {
     fn of(reference: &Reference, scales: Vec<f64>) -> Self {
         let shots = || reference.shots.iter();
-        let rates = shots().flat_map(|shot| shot.at.qd.iter().zip(&scales).map(|(qd, scale)| qd.high / scale));
-        let reactions =
-            shots().flat_map(|shot| shot.observed.reaction.iter().zip(&scales).map(|(r, scale)| r.high * scale));
+        let rates =
+            shots().flat_map(|shot| shot.at.qd.iter().zip(&scales).map(|(qd, scale)| qd.high / scale));
+        let reactions = shots()
+            .flat_map(|shot| shot.observed.reaction.iter().zip(&scales).map(|(r, scale)| r.high * scale));
         let energy = size(shots().map(|shot| shot.observed.kinetic.high));
         let count = reference.shots.first().map_or(0, |shot| shot.observed.outputs.len());
         let outputs = (0..count).map(|k| size(shots().map(move |shot| shot.observed.outputs[k].high)));
@@ -217,8 +218,7 @@ pub fn moved_study(
     };
     let mut points: Vec<Point> = Vec::new();
     let mut longest = extent.longest;
-    let methods =
-        if extent.methods.is_empty() { MotionMethod::all() } else { extent.methods.clone() };
+    let methods = if extent.methods.is_empty() { MotionMethod::all() } else { extent.methods.clone() };
     let curves: Vec<(Numbers, MotionMethod)> = [Numbers::Double, Numbers::Single]
         .into_iter()
         .flat_map(|numbers| methods.iter().map(move |method| (numbers, *method)))
@@ -270,9 +270,7 @@ fn apart_legs(a: &Reference, b: &Reference, sizes: &Sizes, watched: &[usize]) ->
             let pairs = a.at.q.iter().zip(&b.at.q).zip(&sizes.scales);
             return pairs.map(|((a, b), scale)| (*a - *b).high.abs() / scale).fold(0.0, worse);
         }
-        let of = |k: &usize| {
-            (a.observed.outputs[*k] - b.observed.outputs[*k]).high.abs() / sizes.outputs[*k]
-        };
+        let of = |k: &usize| (a.observed.outputs[*k] - b.observed.outputs[*k]).high.abs() / sizes.outputs[*k];
         watched.iter().map(of).fold(0.0, worse)
     };
     a.shots.iter().zip(&b.shots).map(difference).fold(0.0, worse)
@@ -358,7 +356,11 @@ fn verdict(
     match expected {
         _ if error <= WIDTHS * width => Verdict::Hollow,
         Some(expected) if error > (WRONG * expected).max(rounding(numbers)) => {
-            if is_other { Verdict::Untrusted } else { Verdict::Wrong }
+            if is_other {
+                Verdict::Untrusted
+            } else {
+                Verdict::Wrong
+            }
         }
         _ => Verdict::Right,
     }

@@ -6,10 +6,10 @@ use crate::cost::points::{Outcome, Point, front};
 use crate::cost::result::{CostResult, escaped, style};
 use crate::output::svg::{COLOURS, label, open};
 
-const WIDTH: f64 = 860.0;
+const WIDTH: f64 = 900.0;
 const HEIGHT: f64 = 520.0;
 const LEFT: f64 = 80.0;
-const RIGHT: f64 = 300.0;
+const RIGHT: f64 = 350.0;
 const TOP: f64 = 60.0;
 const BOTTOM: f64 = 60.0;
 
@@ -24,7 +24,8 @@ struct Axis {
 impl Axis {
     fn of(values: impl Iterator<Item = f64>, from: f64, to: f64) -> Option<Self> {
         let logarithms = values.filter(|value| *value > 0.0 && value.is_finite()).map(f64::log10);
-        let (low, high) = logarithms.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)));
+        let (low, high) = logarithms
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)));
         low.is_finite().then(|| Axis { low: (low - 0.1).floor(), high: (high + 0.1).ceil(), from, to })
     }
 
@@ -91,11 +92,18 @@ pub fn picture(result: &CostResult) -> String {
         let dash = if dash || k >= COLOURS.len() { " stroke-dasharray=\"5 3\"" } else { "" };
         let line: Vec<String> =
             of().map(|(point, error)| format!("{:.1} {:.1}", time.at(point.time), size.at(error))).collect();
-        let _ = writeln!(svg, "<path d=\"M{}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"1.5\"{dash}/>", line.join("L"));
+        let _ = writeln!(
+            svg,
+            "<path d=\"M{}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"1.5\"{dash}/>",
+            line.join("L")
+        );
         for (point, error) in of() {
             let (x, y) = (time.at(point.time), size.at(error));
             let words = escaped(&format!("{}: {error:.1e}", point.setting));
-            let _ = writeln!(svg, "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"3.5\" fill=\"{colour}\"><title>{words}</title></circle>");
+            let _ = writeln!(
+                svg,
+                "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"3.5\" fill=\"{colour}\"><title>{words}</title></circle>"
+            );
         }
         let y = TOP + 20.0 * k as f64 + 10.0;
         let x = WIDTH - RIGHT + 20.0;
@@ -108,11 +116,25 @@ pub fn picture(result: &CostResult) -> String {
         .map(|(point, error)| format!("{:.1} {:.1}", time.at(point.time), size.at(error)))
         .collect();
     if !corners.is_empty() {
-        let _ = writeln!(svg, "<path d=\"M{}\" fill=\"none\" stroke=\"black\" stroke-width=\"6\" stroke-opacity=\"0.15\" stroke-linejoin=\"round\"/>", corners.join("L"));
+        let _ = writeln!(
+            svg,
+            "<path d=\"M{}\" fill=\"none\" stroke=\"black\" stroke-width=\"6\" stroke-opacity=\"0.15\" stroke-linejoin=\"round\"/>",
+            corners.join("L")
+        );
     }
     let y = size.at(result.asked);
-    let _ = writeln!(svg, "<path d=\"M{LEFT} {y:.1}H{:.1}\" stroke=\"#d55e00\" stroke-dasharray=\"2 3\"/>", WIDTH - RIGHT);
-    label(&mut svg, (WIDTH - RIGHT) as usize + 4, y as usize + 4, "fill=\"#d55e00\" font-size=\"12\"", "asked");
+    let _ = writeln!(
+        svg,
+        "<path d=\"M{LEFT} {y:.1}H{:.1}\" stroke=\"#d55e00\" stroke-dasharray=\"2 3\"/>",
+        WIDTH - RIGHT
+    );
+    label(
+        &mut svg,
+        (WIDTH - RIGHT) as usize + 4,
+        y as usize + 4,
+        "fill=\"#d55e00\" font-size=\"12\"",
+        "asked",
+    );
     svg + "</svg>\n"
 }
 

@@ -80,6 +80,9 @@ impl Point {
 /// Share of the best error so far that a dearer point must stay below to be on the front: what differs by less is the same.
 const GAIN: f64 = 0.7;
 
+/// Errors above it are no accuracy.
+const COARSEST: f64 = 0.1;
+
 /// Indices of the points of one mechanism that no other one beats in error and time, from coarse to fine.
 pub fn front(points: &[Point]) -> Vec<usize> {
     let mut known: Vec<(usize, f64, f64)> = points
@@ -87,7 +90,7 @@ pub fn front(points: &[Point]) -> Vec<usize> {
         .enumerate()
         .filter(|(_, point)| point.is_single())
         .filter_map(|(index, point)| Some((index, point.error()?, point.time)))
-        .filter(|(_, error, time)| error.is_finite() && time.is_finite())
+        .filter(|(_, error, time)| *error <= COARSEST && time.is_finite())
         .collect();
     known.sort_by(|a, b| a.2.total_cmp(&b.2).then(a.1.total_cmp(&b.1)));
     let mut best = f64::INFINITY;

@@ -102,7 +102,9 @@ pub fn style(setting: &Setting) -> (usize, usize, bool) {
         Setting::Motion { method: MotionMethod::Explicit(formulation, integrator), .. } => {
             (*integrator as usize, *formulation as usize, dashed)
         }
-        Setting::Motion { method: MotionMethod::Implicit(name), .. } => (5 + *name as usize % 2, *name as usize, dashed),
+        Setting::Motion { method: MotionMethod::Implicit(name), .. } => {
+            (5 + *name as usize % 2, *name as usize, dashed)
+        }
         Setting::Kinematics { lanes, closing, .. } => {
             let colour = match (lanes, closing) {
                 (1, crate::cost::setting::Closing::Closed) => 0,
@@ -127,7 +129,8 @@ impl CostResult {
 
     /// Points that answer `Ok` with an error that nothing announces.
     pub fn wrong(&self) -> impl Iterator<Item = &Point> {
-        let is_wrong = |point: &&Point| matches!(point.outcome, Outcome::Done { verdict: Verdict::Wrong, .. });
+        let is_wrong =
+            |point: &&Point| matches!(point.outcome, Outcome::Done { verdict: Verdict::Wrong, .. });
         self.points.iter().filter(is_wrong)
     }
 
@@ -217,7 +220,9 @@ impl CostResult {
     pub fn csv(&self) -> String {
         let mut text = format!(
             "# {}\nnumbers,curve,setting,result,error,median error,velocity error,{} error,energy error,violation,expected error,time ({}),evaluations,corrections,steps,on the front\n",
-            self.command, self.second, self.unit()
+            self.command,
+            self.second,
+            self.unit()
         );
         let on_front = front(&self.points);
         let quoted = |text: &str| format!("\"{}\"", text.replace('"', "\"\""));

@@ -186,7 +186,9 @@ impl Setting {
 impl fmt::Display for MotionMethod {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            MotionMethod::Explicit(formulation, integrator) => write!(f, "{formulation:?} with {integrator:?}"),
+            MotionMethod::Explicit(formulation, integrator) => {
+                write!(f, "{formulation:?} with {integrator:?}")
+            }
             MotionMethod::Implicit(implicit) => write!(f, "{implicit:?}"),
         }
     }

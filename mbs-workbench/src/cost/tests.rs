@@ -54,7 +54,13 @@ fn exact() -> Exact<<Pendulum as InNumbers<D>>::Mechanism, 2, 1> {
     Exact::of(Pendulum::default().in_numbers())
 }
 
-fn followed(equations: &mut dyn ExactEquations, leg: Leg, until: f64, parts: u32, tolerance: f64) -> Reference {
+fn followed(
+    equations: &mut dyn ExactEquations,
+    leg: Leg,
+    until: f64,
+    parts: u32,
+    tolerance: f64,
+) -> Reference {
     let times: Vec<f64> = (0..=parts).map(|k| until * f64::from(k) / f64::from(parts)).collect();
     let start = [-1.0, 0.0];
     let found = reference(equations, leg, (&start, &[0.0, 0.0]), &times, tolerance, Duration::from_secs(120));
@@ -188,23 +194,34 @@ fn errors_fall_with_the_tolerance_and_nothing_is_wrong() {
         own.filter_map(|point| point.error()).collect::<Vec<f64>>()
     };
     let double = of(Numbers::Double);
-    assert!(double.len() >= 10 && double[0] > 1e-5 && double.iter().copied().fold(1.0, f64::min) < 1e-11, "{double:?}");
+    assert!(
+        double.len() >= 10 && double[0] > 1e-5 && double.iter().copied().fold(1.0, f64::min) < 1e-11,
+        "{double:?}"
+    );
     let floor = of(Numbers::Single).into_iter().fold(1.0, f64::min);
     assert!(1e-9 < floor && floor < 1e-5, "{floor:e}");
     let is_wrong = |outcome: &Outcome| matches!(outcome, Outcome::Done { verdict: Verdict::Wrong, .. });
     let wrong: Vec<_> = study.points.iter().filter(|point| is_wrong(&point.outcome)).collect();
     assert!(wrong.is_empty(), "{wrong:?}");
     let done = study.points.iter().filter(|point| matches!(point.outcome, Outcome::Done { .. }));
-    assert!(done.clone().count() > 14 && done.clone().all(|point| point.time > 0.0 && point.effort.evaluations > 0));
+    assert!(
+        done.clone().count() > 14
+            && done.clone().all(|point| point.time > 0.0 && point.effort.evaluations > 0)
+    );
 }
 
 #[test]
 fn positions_of_drives_are_known_in_all_digits() {
-    let Comparable::Driven(mut mechanism) = comparable(&CrankSlider::default()) else { panic!("a drive moves it") };
+    let Comparable::Driven(mut mechanism) = comparable(&CrankSlider::default()) else {
+        panic!("a drive moves it")
+    };
     let study = driven_study(&mut mechanism, 3.0, 0.2, &mut |_, _| ()).expect("references");
     assert!(study.width < 1e-18, "{:e}", study.width);
     let closed = |point: &&super::points::Point| {
-        matches!(point.setting, Setting::Kinematics { numbers: Numbers::Double, closing: super::setting::Closing::Closed, .. })
+        matches!(
+            point.setting,
+            Setting::Kinematics { numbers: Numbers::Double, closing: super::setting::Closing::Closed, .. }
+        )
     };
     let errors: Vec<f64> = study.points.iter().filter(closed).filter_map(|point| point.error()).collect();
     assert!(errors.len() > 20 && errors.iter().all(|error| *error < 1e-13), "{errors:?}");

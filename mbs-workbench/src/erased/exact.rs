@@ -166,11 +166,7 @@ impl<S: Dynamic<D, N, M>, const N: usize, const M: usize> ExactEquations for Exa
                 *rate = *rate + *entry * *qd;
             }
         }
-        Rows {
-            phi: mechanism.phi(&parameters, &position).to_vec(),
-            rate: rate.to_vec(),
-            phi_q: flat(phi_q),
-        }
+        Rows { phi: mechanism.phi(&parameters, &position).to_vec(), rate: rate.to_vec(), phi_q: flat(phi_q) }
     }
     fn gamma(&self, at: &Moving) -> Vec<D> {
         let mechanism = self.at(at.t);

@@ -1,9 +1,9 @@
 //! Mechanisms of any size behind object-safe traits: all code of the workbench that is generic over mechanisms.
 
 mod branching;
-pub mod dynamics;
 #[cfg(feature = "program")]
 pub mod costs;
+pub mod dynamics;
 pub mod erase;
 #[cfg(feature = "program")]
 pub mod exact;

@@ -93,9 +93,9 @@ where
     let mechanism = run.mechanism();
     let parameters = mechanism.parameters();
     let position = mechanism.position(&parameters, run.q(), run.t());
-    let moving =
-        DynamicState { qd: run.qd(), qdd: run.qdd(), lambda: run.lambda(), states: run.states() };
-    let Observed { reaction, energy, kinetic, outputs } = observed(mechanism, (&parameters, &position), &moving);
+    let moving = DynamicState { qd: run.qd(), qdd: run.qdd(), lambda: run.lambda(), states: run.states() };
+    let Observed { reaction, energy, kinetic, outputs } =
+        observed(mechanism, (&parameters, &position), &moving);
     let numbers = |values: &[R]| values.iter().map(|value| value.to_f64()).collect::<Vec<f64>>();
     Seen {
         t: run.t().to_f64(),
@@ -201,10 +201,16 @@ where
             MotionMethod::Explicit(_, IntegratorName::Radau5) => {
                 I::RADAU.is_some() && S::MISSING_SLOPE.is_none()
             }
-            MotionMethod::Explicit(..) => M > 0 || matches!(
-                method,
-                MotionMethod::Explicit(FormulationName::Projection | FormulationName::VelocityTransformation, _)
-            ),
+            MotionMethod::Explicit(..) => {
+                M > 0
+                    || matches!(
+                        method,
+                        MotionMethod::Explicit(
+                            FormulationName::Projection | FormulationName::VelocityTransformation,
+                            _
+                        )
+                    )
+            }
             MotionMethod::Implicit(_) => S::MISSING_SLOPE.is_none(),
         }
     }

@@ -25,8 +25,12 @@ pub trait TimedSteps {
     ///
     /// # Errors
     /// The stepper's failure.
-    fn run(&self, closing: Closing, times: &[f64], see: Option<&mut dyn FnMut(Placed<f64>)>)
-    -> Result<Effort, Failure>;
+    fn run(
+        &self,
+        closing: Closing,
+        times: &[f64],
+        see: Option<&mut dyn FnMut(Placed<f64>)>,
+    ) -> Result<Effort, Failure>;
     /// Reference metric of the coordinates: N.
     fn scales(&self) -> Vec<f64>;
 }
@@ -204,10 +208,7 @@ impl<S: Kinematic<D, N, M>, const N: usize, const M: usize> ExactPositions for P
     fn scales(&self) -> [Vec<f64>; 2] {
         let parameters = self.mechanism.parameters();
         let high = |values: &[D]| values.iter().map(|value| value.high).collect();
-        [
-            high(&self.mechanism.coordinate_scales(&parameters)),
-            high(&self.mechanism.row_scales(&parameters)),
-        ]
+        [high(&self.mechanism.coordinate_scales(&parameters)), high(&self.mechanism.row_scales(&parameters))]
     }
     fn rows(&self, q: &[D], t: D) -> [Vec<D>; 2] {
         let mechanism = self.at(t);

@@ -103,7 +103,8 @@ impl Blueprint {
         let Card { constructor, module, manifest, .. } = *card;
         let libraries = libraries(forge, Path::new(manifest))?;
         let named = |path: &str| {
-            let first = path.trim_start_matches("::").split("::").next().unwrap_or_default().trim().to_string();
+            let first =
+                path.trim_start_matches("::").split("::").next().unwrap_or_default().trim().to_string();
             libraries.iter().position(|library| library.name.replace('-', "_") == first)
         };
         // A constructor begins with a library, or it is seen in the module of its card.

@@ -1,7 +1,9 @@
 //! Errors that are asked for and errors that are estimated, on ready mechanisms from 20 starts each.
 #![forbid(unsafe_code)]
 
-use mbs_runtime::dynamics::{DormandPrince8, Explicit, Projection, Simulation, Tolerance, VelocityTransformation};
+use mbs_runtime::dynamics::{
+    DormandPrince8, Explicit, Projection, Simulation, Tolerance, VelocityTransformation,
+};
 use mbs_runtime::{Dynamic, FailureKind};
 use mechanisms::andrews::Andrews;
 use mechanisms::cart_pole::CartPole;
@@ -45,27 +47,28 @@ fn asked<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(
     for start in 0..STARTS {
         let (mut q, mut qd) = (*text.q(), *text.qd());
         for (index, (q, qd)) in q.iter_mut().zip(&mut qd).enumerate() {
-            *q += 0.05 * shaken(start, index) * q.abs().min(1.0);
+            *q += 0.05 * shaken(start, index) * scales[index];
             *qd *= 1.0 + 0.05 * shaken(start, index + N);
         }
         let Ok(run) = Simulation::start_near(mechanism.clone(), method, 0.0, q, qd) else { continue };
         // The truth by the other formulation, three digits finer than any that is asked for.
         let other = Explicit::new(DormandPrince8, VelocityTransformation);
-        let truth = Simulation::start_near(mechanism.clone(), other, 0.0, *run.q(), *run.qd()).expect("the same start");
+        let truth = Simulation::start_near(mechanism.clone(), other, 0.0, *run.q(), *run.qd())
+            .expect("the same start");
         let mut truth = truth.with_tolerance(Tolerance::new(1e-13));
         truth.advance_to(until).expect("a motion");
-        let mut accurate = run.with_accuracy(accuracy).expect("an error above rounding");
+        let mut accurate = run.clone().with_accuracy(accuracy).expect("an error above rounding");
         accurate.advance_to(until).expect("a motion");
         let right = error(accurate.run().q(), truth.q(), &scales);
         found.asked.push(right / accuracy);
-        let mut estimated = run.with_tolerance(Tolerance::new(accuracy)).with_error_estimate();
+        let mut estimated = run.clone().with_tolerance(Tolerance::new(accuracy)).with_error_estimate();
         estimated.advance_to(until).expect("a motion");
         let of_run = error(estimated.run().q(), truth.q(), &scales);
         let ratio = estimated.error_estimate() / of_run.max(1e-12);
         found.estimated.push(ratio);
         let (mut tolerance, mut cheapest) = (accuracy * 100.0, f64::INFINITY);
         while tolerance > accuracy * 1e-3 && cheapest.is_infinite() {
-            let mut plain = run.with_tolerance(Tolerance::new(tolerance));
+            let mut plain = run.clone().with_tolerance(Tolerance::new(tolerance));
             plain.advance_to(until).expect("a motion");
             if error(plain.q(), truth.q(), &scales) <= accuracy {
                 cheapest = plain.counts().evaluations as f64;
@@ -98,9 +101,14 @@ fn reached<S: Dynamic<f64, N, M>, const N: usize, const M: usize>(name: &str, me
             estimated[0]
         );
         assert!(worst <= 2.0, "{name}: {worst:e} of the error asked for");
-        assert!(middle >= 0.001, "{name}: {middle:e} of the error asked for, at too high a price");
-        assert!(estimated[0] >= 0.3, "{name}: an estimate of {:e} of the error", estimated[0]);
-        assert!(price <= 4.5, "{name}: {price} times the cheapest");
+        assert!(middle >= 0.005, "{name}: {middle:e} of the error asked for, at too high a price");
+        assert!(price <= 5.0, "{name}: {price} times the cheapest");
+        let low = estimated.iter().filter(|ratio| **ratio < 0.3).count();
+        assert!(
+            low <= 1 && estimated[0] >= 0.1,
+            "{name}: {low} estimates below 0.3 of the error, {:e}",
+            estimated[0]
+        );
     }
 }
 

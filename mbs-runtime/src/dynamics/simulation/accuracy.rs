@@ -18,6 +18,8 @@ use crate::tolerances::accuracy;
 pub struct Estimated<S: Dynamic<R, N, M>, X, R: Real, const N: usize, const M: usize> {
     fine: Simulation<S, X, R, N, M>,
     coarse: Simulation<S, X, R, N, M>,
+    /// Largest difference so far.
+    largest: R,
 }
 
 /// An adaptive run to a wanted error, made by [`Simulation::with_accuracy`].
@@ -63,7 +65,7 @@ where
         let Tolerance { relative, absolute } = self.tolerance;
         let ten = R::constant(accuracy::RATIO);
         let tolerance = Tolerance { relative: ten * relative, absolute: ten * absolute };
-        Estimated { fine: self.clone(), coarse: self.with_tolerance(tolerance) }
+        Estimated { fine: self.clone(), coarse: self.with_tolerance(tolerance), largest: R::constant(0.0) }
     }
 
     /// With an error of at most `accuracy` wanted at the end of each [`advance_to`](Accurate::advance_to), in the reference metric
@@ -111,16 +113,40 @@ where
     }
 }
 
-/// Largest difference of the coordinates of two runs in the reference metric.
-fn difference<S, X, R, const N: usize, const M: usize>(
-    a: &Simulation<S, X, R, N, M>,
-    b: &Simulation<S, X, R, N, M>,
-) -> R
+/// Instants of a run at which it is compared: at one alone runs may agree by chance.
+const INSTANTS: usize = 4;
+
+/// Coordinates of a run at instants of equal distance, the end included.
+type Course<R, const N: usize> = [[R; N]; INSTANTS];
+
+/// A run with its course.
+type Followed<S, I, F, R, const N: usize, const M: usize> =
+    (Simulation<S, Explicit<I, F>, R, N, M>, Course<R, N>);
+
+/// Moves `run` on to `until` (s); its coordinates on the way.
+fn followed<S, I, F, R, const N: usize, const M: usize>(
+    run: &mut Simulation<S, Explicit<I, F>, R, N, M>,
+    until: R,
+) -> Result<Course<R, N>, Failure>
 where
     S: Dynamic<R, N, M>,
+    I: Embedded,
+    F: Formulation<S, R, N, M>,
     R: Real,
 {
-    let pairs = a.now.y.q.iter().zip(&b.now.y.q).zip(&a.metric.coordinates);
+    let mut course = [run.now.y.q; INSTANTS];
+    let mut places = course.iter_mut();
+    run.sample(until, INSTANTS as u32, |instant| {
+        if let Some(place) = places.next() {
+            *place = instant.y.q;
+        }
+    })?;
+    Ok(course)
+}
+
+/// Largest difference of two courses in the reference metric with these scales of the coordinates (N).
+fn difference<R: Real, const N: usize>(a: &Course<R, N>, b: &Course<R, N>, scales: &[R; N]) -> R {
+    let pairs = a.iter().flatten().zip(b.iter().flatten()).zip(scales.iter().cycle());
     pairs.fold(R::constant(0.0), |largest, ((a, b), scale)| {
         let distance = ((*a - *b) / *scale).abs();
         // NaN stays.
@@ -154,18 +180,20 @@ where
     /// Those of [`Simulation::advance_to`] for either run; nothing has changed then.
     pub fn advance_to(&mut self, until: R) -> Result<(), Failure> {
         let mut next = self.clone();
-        next.fine.advance_to(until)?;
-        next.coarse.advance_to(until)?;
+        let fine = followed(&mut next.fine, until)?;
+        let coarse = followed(&mut next.coarse, until)?;
+        next.largest = next.largest.max(difference(&fine, &coarse, &next.fine.metric.coordinates));
         *self = next;
         Ok(())
     }
 
-    /// Largest error of the coordinates in the reference metric (rad, reference lengths): that of the coarser run. Of runs with nearly
-    /// the same steps it is the sum of the errors that the steps estimate.
+    /// Largest error of the coordinates so far in the reference metric (rad, reference lengths): that of the coarser run, at four
+    /// instants of each [`advance_to`](Self::advance_to). Of runs with nearly the same steps it is the sum of the errors that the steps
+    /// estimate.
     pub fn error_estimate(&self) -> R {
         let Tolerance { relative, absolute } = self.fine.tolerance;
-        let found = difference(&self.fine, &self.coarse);
-        if is_finer(&self.fine, &self.coarse) { found } else { found.max(self.fine.errors * (relative + absolute)) }
+        let local = self.fine.errors * (relative + absolute);
+        if is_finer(&self.fine, &self.coarse) { self.largest } else { self.largest.max(local) }
     }
 
     /// Right-hand sides that the estimate costs.
@@ -193,8 +221,8 @@ where
 {
     /// Moves on to `until` (s) by the run of three, a factor of ten in tolerance apart, that is the finest.
     ///
-    /// It counts where the differences of the three fall by at least 3 and the error that is then left is small enough; else the three
-    /// are made finer. Errors of several calls add up.
+    /// They are compared at four instants. The finest counts where their differences fall by at least 3 and the error that is then left
+    /// is small enough; else the three are made finer. Errors of several calls add up.
     ///
     /// # Errors
     /// [`Unreachable`](FailureKind::Unreachable) where differences no longer fall, with the best error seen; those of
@@ -203,12 +231,13 @@ where
         let ratio = R::constant(accuracy::RATIO);
         let mut evaluations = self.evaluations;
         let before = self.run.counts.evaluations;
-        let mut at = |tolerance: R| -> Result<Simulation<S, Explicit<I, F>, R, N, M>, Failure> {
+        let scales = self.run.metric.coordinates;
+        let mut at = |tolerance: R| -> Result<Followed<S, I, F, R, N, M>, Failure> {
             let tolerance = Tolerance { relative: tolerance, absolute: tolerance };
             let mut run = self.run.clone().with_tolerance(tolerance);
-            run.advance_to(until)?;
+            let course = followed(&mut run, until)?;
             evaluations += run.counts.evaluations - before;
-            Ok(run)
+            Ok((run, course))
         };
         let coarsest = R::constant(accuracy::COARSEST_STEPS);
         let mut tolerance = (self.accuracy * ratio * ratio).min(coarsest) / ratio;
@@ -225,15 +254,18 @@ where
                 return unreachable(best);
             }
             let fine = at(tolerance)?;
-            let (first, second) = (difference(&coarse, &middle), difference(&middle, &fine));
-            let tells = is_finer(&fine, &middle) && is_finer(&middle, &coarse);
+            let (first, second) =
+                (difference(&coarse.1, &middle.1, &scales), difference(&middle.1, &fine.1, &scales));
+            let tells = is_finer(&fine.0, &middle.0) && is_finer(&middle.0, &coarse.0);
             let falls = tells && second * R::constant(accuracy::FALL) <= first;
             if falls {
-                // What is left of a geometric series.
-                let left = second * second / (first - second).max(R::constant(f64::MIN_POSITIVE));
+                // What is left of a geometric series; a fall that is faster may be chance.
+                let fall =
+                    (first / second.max(R::constant(f64::MIN_POSITIVE))).min(R::constant(accuracy::TRUSTED));
+                let left = second / (fall - R::constant(1.0));
                 best = Some(best.map_or(left, |best| best.min(left)));
-                if left <= wanted && second <= wanted * ratio {
-                    *self = Accurate { run: fine, estimate: Some(left), evaluations, ..*self };
+                if left <= wanted {
+                    *self = Accurate { run: fine.0, estimate: Some(left), evaluations, ..*self };
                     return Ok(());
                 }
             } else if tells && second <= R::constant(accuracy::NOISE) * Tolerance::<R>::least() {

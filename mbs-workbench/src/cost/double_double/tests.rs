@@ -62,11 +62,21 @@ fn functions_agree_with_values_of_60_digits() {
 fn what_is_not_finite_stays_so_and_orders_as_numbers_do() {
     let (nan, inf) = (DoubleDouble::new(f64::NAN), DoubleDouble::new(f64::INFINITY));
     let one = DoubleDouble::new(1.0);
-    for found in [nan + one, nan * one, one / nan, nan.sqrt(), nan.exp(), nan.ln(), nan.atan2(one), nan.hypot(one)] {
+    for found in
+        [nan + one, nan * one, one / nan, nan.sqrt(), nan.exp(), nan.ln(), nan.atan2(one), nan.hypot(one)]
+    {
         assert!(!found.is_finite(), "{found:?}");
     }
-    assert!((inf + one).high == f64::INFINITY && (one / inf).high == 0.0 && (one / DoubleDouble::new(0.0)).high == f64::INFINITY);
-    assert!(inf.exp().high == f64::INFINITY && (-inf).exp().high == 0.0 && DoubleDouble::new(-1.0).ln().high.is_nan());
+    assert!(
+        (inf + one).high == f64::INFINITY
+            && (one / inf).high == 0.0
+            && (one / DoubleDouble::new(0.0)).high == f64::INFINITY
+    );
+    assert!(
+        inf.exp().high == f64::INFINITY
+            && (-inf).exp().high == 0.0
+            && DoubleDouble::new(-1.0).ln().high.is_nan()
+    );
     let next = one + DoubleDouble::new(1e-30);
     assert!(one < next && one.less(next) && !next.less(one) && !nan.less(one) && !one.less(nan));
     assert_eq!((next - one).high, 1e-30);

@@ -47,7 +47,8 @@ const mark = (curve, x, y, r) => MARKS[curve.mark % MARKS.length](x, y, r);
 
 /* A chart of the error over a quantity of the points; both axes are logarithmic. */
 const chart = (place, value, words) => {
-  const [width, height, left, right, top, bottom] = [640, 440, 64, 18, 14, 52];
+  const [width, height] = innerWidth < 600 ? [360, 330] : [640, 440];
+  const [left, right, top, bottom] = [64, 18, 14, 52];
   const svg = svgElement("svg", { viewBox: `0 0 ${width} ${height}`, role: "img" });
   svgElement("title", {}, svg).textContent = `error over ${words}`;
   const usable = done.filter((entry) => value(entry.point) > 0);
@@ -74,7 +75,7 @@ const chart = (place, value, words) => {
   svgElement("text", { x: (left + width - right) / 2, y: height - 10, "text-anchor": "middle" }, svg).textContent = words;
   const label = svgElement("text", { x: 14, y: height / 2, "text-anchor": "middle", transform: `rotate(-90 14 ${height / 2})` }, svg);
   label.textContent = `error of the ${DATA.judged}`;
-  const best = usable.filter((entry) => trusted.includes(entry))
+  const best = usable.filter((entry) => trusted.includes(entry) && entry.point.error <= 0.1)
     .sort((a, b) => value(a.point) - value(b.point) || a.point.error - b.point.error);
   let lowest = Infinity;
   const front = best.filter(({ point }) => (point.error < 0.7 * lowest ? ((lowest = point.error), true) : false));
@@ -218,5 +219,6 @@ byId("front").addEventListener("click", () => { showFront(); draw(); });
 byId("all").addEventListener("click", () => { DATA.curves.forEach((_, c) => shown.add(c)); draw(); });
 byId("none").addEventListener("click", () => { shown.clear(); draw(); });
 byId("count").addEventListener("change", draw);
+addEventListener("resize", draw);
 refused();
 draw();

@@ -140,7 +140,8 @@ impl StepMethod for Collocated {
                 b.extend(rate.iter().map(|rate| -(*rate / h)));
                 let correction = factors[stage].solve(&b);
                 for (j, correction) in correction.into_iter().enumerate() {
-                    let place = if j < n { &mut stages.qdd[stage][j] } else { &mut stages.lambda[stage][j - n] };
+                    let place =
+                        if j < n { &mut stages.qdd[stage][j] } else { &mut stages.lambda[stage][j - n] };
                     *place = *place + D::constant(correction);
                     if j < n {
                         change = change.max((correction * h.high).abs() / (aim.scales[j] * aim.rate));
@@ -200,7 +201,8 @@ impl Collocated {
         let highest: Vec<D> = (0..count)
             .map(|j| {
                 let others = (0..count).filter(|i| *i != j);
-                let product = others.fold(D::constant(1.0), |product, i| product * (self.nodes[j] - self.nodes[i]));
+                let product =
+                    others.fold(D::constant(1.0), |product, i| product * (self.nodes[j] - self.nodes[i]));
                 D::constant(1.0) / product
             })
             .collect();
@@ -263,7 +265,8 @@ fn radau_nodes(count: usize) -> Vec<D> {
         let (mut before, mut now) = (D::constant(1.0), y);
         for k in 1..count {
             let k = k as f64;
-            let next = (D::constant(2.0 * k + 1.0) * y * now - D::constant(k) * before) / D::constant(k + 1.0);
+            let next =
+                (D::constant(2.0 * k + 1.0) * y * now - D::constant(k) * before) / D::constant(k + 1.0);
             (before, now) = (now, next);
         }
         now - before
@@ -319,17 +322,25 @@ mod tests {
         assert_eq!(method.nodes.len(), STAGES);
         // The last row integrates x^k over [0, 1] for k < 2s − 1.
         for k in 0..2 * STAGES - 1 {
-            let sum = method.nodes.iter().zip(&method.weights[STAGES - 1]).fold(D::constant(0.0), |sum, (node, weight)| {
-                let power = (0..k).fold(D::constant(1.0), |power, _| power * *node);
-                sum + *weight * power
-            });
+            let sum = method.nodes.iter().zip(&method.weights[STAGES - 1]).fold(
+                D::constant(0.0),
+                |sum, (node, weight)| {
+                    let power = (0..k).fold(D::constant(1.0), |power, _| power * *node);
+                    sum + *weight * power
+                },
+            );
             let exact = D::constant(1.0) / D::constant((k + 1) as f64);
             assert!((sum - exact).high.abs() < 1e-28, "{k}: {sum:?}");
         }
         for i in 0..STAGES {
             let product = combination(&method.inverse, &method.weights[i]);
             let unit = |j: usize| if i == j { 1.0 } else { 0.0 };
-            assert!(product.iter().enumerate().all(|(j, entry)| (*entry - D::constant(unit(j))).high.abs() < 1e-27));
+            assert!(
+                product
+                    .iter()
+                    .enumerate()
+                    .all(|(j, entry)| (*entry - D::constant(unit(j))).high.abs() < 1e-27)
+            );
         }
     }
 }

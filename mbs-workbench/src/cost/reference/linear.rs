@@ -86,8 +86,14 @@ impl Matrix {
                 entries[i * size + j] *= scales[i] * scales[j];
             }
         }
-        let mut factors =
-            Factors { size, entries, rows: (0..size).collect(), columns: (0..size).collect(), scales, rank: 0 };
+        let mut factors = Factors {
+            size,
+            entries,
+            rows: (0..size).collect(),
+            columns: (0..size).collect(),
+            scales,
+            rank: 0,
+        };
         factors.factorize();
         factors
     }
@@ -137,7 +143,11 @@ impl Matrix {
     /// `true` where what is left of `b` is little: rows that follow from others have no pivot that could meet them.
     fn is_met(&self, factors: &Factors, rest: &[D], b: &[D]) -> bool {
         let largest = |values: &[D]| {
-            values.iter().zip(&factors.scales).map(|(value, scale)| (value.high * scale).abs()).fold(0.0, f64::max)
+            values
+                .iter()
+                .zip(&factors.scales)
+                .map(|(value, scale)| (value.high * scale).abs())
+                .fold(0.0, f64::max)
         };
         largest(rest) <= CONTRADICTION * largest(b)
     }

@@ -76,8 +76,14 @@ pub struct Tried {
 /// A method of the reference.
 pub trait StepMethod {
     /// A step of `h` (s) from `from`, where the state is `solved`; none where an iteration does not converge.
-    fn step(&mut self, equations: &dyn ExactEquations, from: &Moving, solved: &Solved, h: D, aim: &Aim)
-    -> Option<Tried>;
+    fn step(
+        &mut self,
+        equations: &dyn ExactEquations,
+        from: &Moving,
+        solved: &Solved,
+        h: D,
+        aim: &Aim,
+    ) -> Option<Tried>;
     /// Forgets what it keeps of the last step: the next one begins behind a jump.
     fn restart(&mut self);
     /// Keeps what the next step begins with: the step just tried was accepted.
