@@ -37,15 +37,16 @@ struct Stages {
     states: Vec<Vec<D>>,
 }
 
-impl Collocated {
-    /// The method with its nodes and weights.
-    pub fn new() -> Self {
+impl Default for Collocated {
+    fn default() -> Self {
         let nodes = radau_nodes(STAGES);
         let weights: Vec<Vec<D>> = nodes.iter().map(|node| integrals(&nodes, *node)).collect();
         let inverse = inverse(&weights);
         Collocated { nodes, weights, inverse, last: None, tried: None }
     }
+}
 
+impl Collocated {
     /// The polynomial through stages of the last step, at the stages of the next one of `h` (s).
     fn predicted(&self, last: &Stages, values: &[Vec<D>], h: D) -> Vec<Vec<D>> {
         let ratio = h / last.h;
@@ -318,7 +319,7 @@ mod tests {
 
     #[test]
     fn weights_integrate_polynomials_and_invert() {
-        let method = Collocated::new();
+        let method = Collocated::default();
         assert_eq!(method.nodes.len(), STAGES);
         // The last row integrates x^k over [0, 1] for k < 2s − 1.
         for k in 0..2 * STAGES - 1 {

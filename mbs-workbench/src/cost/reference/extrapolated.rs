@@ -15,13 +15,6 @@ const EARLY: usize = 6;
 /// Explicit steps of high order.
 pub struct Extrapolated;
 
-impl Extrapolated {
-    /// The method.
-    pub fn new() -> Self {
-        Extrapolated
-    }
-}
-
 /// Rates of a state.
 struct Rates {
     qd: Vec<D>,

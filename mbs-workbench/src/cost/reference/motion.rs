@@ -225,8 +225,8 @@ pub fn reference(
     budget: Duration,
 ) -> Reference {
     let mut method: Box<dyn StepMethod> = match leg {
-        Leg::Extrapolated => Box::new(Extrapolated::new()),
-        Leg::Collocated => Box::new(Collocated::new()),
+        Leg::Extrapolated => Box::new(Extrapolated),
+        Leg::Collocated => Box::new(Collocated::default()),
     };
     let exact = |values: &[f64]| values.iter().map(|value| D::constant(*value)).collect::<Vec<D>>();
     let first = times.first().copied().unwrap_or(0.0);
@@ -331,9 +331,7 @@ impl Course {
             let share = at_low / (at_low - at_high);
             let between = if share.high > 1e-3 && share.high < 0.999_999 { share } else { D::constant(0.5) };
             let middle = low + width * between;
-            let Some(tried) = self.tried(equations, method, middle, aim) else {
-                return None;
-            };
+            let tried = self.tried(equations, method, middle, aim)?;
             let value = gap(&tried.end);
             if before[crossed] * value.high < 0.0 {
                 (high, at_high, end) = (middle, value, tried.end);
