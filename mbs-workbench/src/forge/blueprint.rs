@@ -94,12 +94,18 @@ impl Blueprint {
         })
     }
 
-    /// The study of `mbs cost` for the mechanism of `card`, on top of the library that declares it. It is built with what the
-    /// library is at that time.
+    /// A program called `name` on top of the library that declares the mechanism of `card`; `main` makes its source from the
+    /// constructor. It is built with what the library is at that time.
     ///
     /// # Errors
-    /// [`ForgeError::NoLibrary`] where neither the constructor nor the module of the card begins with a library.
-    pub fn cost_of_card(forge: &Forge, card: &Card) -> Result<Self, ForgeError> {
+    /// [`ForgeError::NoLibrary`] where neither the constructor nor the module of the card begins with a library that the card's crate
+    /// is or depends on by path.
+    pub fn of_card(
+        forge: &Forge,
+        card: &Card,
+        name: &str,
+        main: impl FnOnce(&str) -> String,
+    ) -> Result<Self, ForgeError> {
         let Card { constructor, module, manifest, .. } = *card;
         let libraries = libraries(forge, Path::new(manifest))?;
         let named = |path: &str| {
@@ -113,17 +119,31 @@ impl Blueprint {
             (None, Some(library)) => (library, format!("#[allow(unused_imports)]\nuse ::{module}::*;\n")),
             (None, None) => return Err(ForgeError::NoLibrary { constructor: constructor.to_string() }),
         };
-        let main = format!(
-            "{HEAD}\n{scope}\nuse mbs_workbench::card::Card;\n\n\
-             const CARD: Card = Card {{ constructor: {constructor:?}, module: {module:?}, manifest: {manifest:?}, \
-             ..mbs_workbench::card!({constructor}) }};\n\n\
-             fn main() -> ExitCode {{\n    \
-             mbs_workbench::cost_program(CARD, mbs_workbench::comparable!({constructor}))\n}}\n"
-        );
-        let name = format!("{}_cost", card.file_name());
         let library = libraries.into_iter().nth(library);
-        let manifest = dependencies(library.as_slice());
-        Ok(Blueprint { name, manifest, main, origin: None, is_closed: false })
+        Ok(Blueprint {
+            name: name.to_string(),
+            manifest: dependencies(library.as_slice()),
+            main: scope + &main(constructor),
+            origin: None,
+            is_closed: false,
+        })
+    }
+
+    /// The study of `mbs cost` for the mechanism of `card`.
+    ///
+    /// # Errors
+    /// As [`of_card`](Self::of_card).
+    pub fn cost_of_card(forge: &Forge, card: &Card) -> Result<Self, ForgeError> {
+        let Card { module, manifest, .. } = *card;
+        Self::of_card(forge, card, &format!("{}_cost", card.file_name()), |constructor| {
+            format!(
+                "{HEAD}\n\nuse mbs_workbench::card::Card;\n\n\
+                 const CARD: Card = Card {{ constructor: {constructor:?}, module: {module:?}, manifest: {manifest:?}, \
+                 ..mbs_workbench::card!({constructor}) }};\n\n\
+                 fn main() -> ExitCode {{\n    \
+                 mbs_workbench::cost_program(CARD, mbs_workbench::comparable!({constructor}))\n}}\n"
+            )
+        })
     }
 
     /// `Cargo.toml` of the crate called `package`.
