@@ -17,6 +17,8 @@ mod command_line;
 mod commands;
 #[cfg(feature = "program")]
 pub mod cost;
+#[cfg(feature = "program")]
+pub mod double_double;
 pub mod erased;
 #[cfg(feature = "program")]
 pub mod forge;
@@ -26,6 +28,8 @@ pub mod mismatch;
 pub mod motion;
 #[cfg(feature = "program")]
 pub mod output;
+#[cfg(feature = "program")]
+pub mod setting;
 #[cfg(feature = "program")]
 pub mod tables;
 pub mod target_directory;

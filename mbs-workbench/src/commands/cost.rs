@@ -20,11 +20,11 @@ use crate::cost::moved::{Extent, NoReference, moved_study};
 use crate::cost::picture::picture;
 use crate::cost::points::{Outcome, Point, Verdict, cheapest, front};
 use crate::cost::result::CostResult;
-use crate::cost::setting::{MotionMethod, Setting};
 use crate::erased::costs::Comparable;
 use crate::erased::facade::AnyEquations;
 use crate::forge::{Blueprint, Forge};
 use crate::mismatch::{nearest, wrapped};
+use crate::setting::{MotionMethod, Setting};
 use crate::target_directory::target_directory;
 use crate::text_file::{TextFile, is_file};
 
@@ -344,7 +344,7 @@ fn print(result: &CostResult, arguments: &Arguments, out: &mut dyn Write) -> Res
 
 /// Error and time of what one gets without a choice.
 fn default_setting(result: &CostResult) -> Option<String> {
-    use crate::cost::setting::{FormulationName, IntegratorName, Numbers, Resolution};
+    use crate::setting::{FormulationName, IntegratorName, Numbers, Resolution};
     let is_default = |point: &&Point| match point.setting {
         Setting::Motion {
             numbers: Numbers::Double,

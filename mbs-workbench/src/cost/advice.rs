@@ -1,9 +1,7 @@
 //! The choice in one sentence, and as Rust.
 
 use crate::cost::points::{Point, cheapest, cheapest_in_lanes};
-use crate::cost::setting::{
-    Closing, FormulationName, ImplicitName, MotionMethod, Numbers, Resolution, Setting,
-};
+use crate::setting::{Closing, FormulationName, ImplicitName, MotionMethod, Numbers, Resolution, Setting};
 
 /// Two digits of a number.
 pub fn two_digits(value: f64) -> String {

@@ -2,14 +2,14 @@
 
 use mbs_runtime::Scalar;
 
-use crate::cost::double_double::DoubleDouble as D;
 use crate::cost::moved::{NoReference, WIDTHS};
 use crate::cost::points::{Errors, Outcome, Point, Verdict};
 use crate::cost::reference::linear::Matrix;
-use crate::cost::setting::{Closing, Numbers, Setting};
+use crate::double_double::DoubleDouble as D;
 use crate::erased::costs::DrivenCosts;
 use crate::erased::timed_runs::Effort;
 use crate::erased::timed_steps::{ExactPositions, Placed};
+use crate::setting::{Closing, Numbers, Setting};
 
 /// Instants of the reference: a quarter of a degree over a turn.
 pub const PARTS: u32 = 1440;

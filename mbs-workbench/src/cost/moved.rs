@@ -2,13 +2,13 @@
 
 use std::time::Duration;
 
-use crate::cost::double_double::DoubleDouble as D;
 use crate::cost::points::{Errors, Outcome, Point, Verdict};
 use crate::cost::reference::motion::Stuck;
 use crate::cost::reference::{Leg, Reference, reference};
-use crate::cost::setting::{FormulationName, MotionMethod, Numbers, Resolution, Setting};
+use crate::double_double::DoubleDouble as D;
 use crate::erased::costs::MovedCosts;
 use crate::erased::timed_runs::{Effort, Seen};
+use crate::setting::{FormulationName, MotionMethod, Numbers, Resolution, Setting};
 
 /// Instants at which errors are taken.
 pub const PARTS: u32 = 480;

@@ -1,7 +1,7 @@
 //! Points of the study: a setting with its true error, its time and its counts.
 
-use crate::cost::setting::Setting;
 use crate::erased::timed_runs::Effort;
+use crate::setting::Setting;
 
 /// Errors of a run at its instants: the largest counts.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -121,7 +121,7 @@ fn reaching(points: &[Point], asked: f64) -> impl Iterator<Item = &Point> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cost::setting::{Closing, Numbers};
+    use crate::setting::{Closing, Numbers};
 
     fn point(error: f64, time: f64, verdict: Verdict) -> Point {
         let setting =

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use crate::cost::advice::sentence;
 use crate::cost::points::{Outcome, Point, Verdict, front};
-use crate::cost::setting::{MotionMethod, Numbers, Setting};
+use crate::setting::{MotionMethod, Numbers, Setting};
 
 /// A study with its words.
 pub struct CostResult {
@@ -107,8 +107,8 @@ pub fn style(setting: &Setting) -> (usize, usize, bool) {
         }
         Setting::Kinematics { lanes, closing, .. } => {
             let colour = match (lanes, closing) {
-                (1, crate::cost::setting::Closing::Closed) => 0,
-                (1, crate::cost::setting::Closing::Evaluations(most)) => *most as usize,
+                (1, crate::setting::Closing::Closed) => 0,
+                (1, crate::setting::Closing::Evaluations(most)) => *most as usize,
                 (lanes, _) => 3 + lanes.ilog2() as usize / 2,
             };
             (colour % 7, colour % 5, dashed)

@@ -3,17 +3,17 @@ use std::time::Duration;
 use mbs_runtime::dynamics::{DormandPrince8, Equation, FixedStep, Vector};
 use mbs_runtime::{Failure, InNumbers, Reveal, Scalar};
 
-use super::double_double::DoubleDouble as D;
 use super::kinematics::driven_study;
 use super::moved::{Extent, moved_study};
 use super::points::{Outcome, Verdict};
 use super::reference::{Leg, Reference, reference};
-use super::setting::{FormulationName, IntegratorName, MotionMethod, Numbers, Setting};
+use crate::double_double::DoubleDouble as D;
 use crate::erased::costs::{Comparable, MovedCosts, comparable};
 use crate::erased::dynamics::direct_dynamics::{Pair, Rule};
 use crate::erased::dynamics::integrators::Integrators;
 use crate::erased::exact::{Exact, ExactEquations, Moving, Observed, Rows, Sizes, Terms};
 use crate::erased::timed_runs::Runs;
+use crate::setting::{Closing, FormulationName, IntegratorName, MotionMethod, Numbers, Setting};
 
 mbs_runtime::mechanism! {
     /// A01 of the IFToMM benchmark: a point mass on a rod, in Cartesian coordinates.
@@ -220,7 +220,7 @@ fn positions_of_drives_are_known_in_all_digits() {
     let closed = |point: &&super::points::Point| {
         matches!(
             point.setting,
-            Setting::Kinematics { numbers: Numbers::Double, closing: super::setting::Closing::Closed, .. }
+            Setting::Kinematics { numbers: Numbers::Double, closing: Closing::Closed, .. }
         )
     };
     let errors: Vec<f64> = study.points.iter().filter(closed).filter_map(|point| point.error()).collect();

@@ -8,8 +8,8 @@ use super::dynamics::integrators::{All, ExplicitOnly};
 use super::exact::{Exact, ExactEquations};
 use super::timed_runs::{Runs, TimedRuns};
 use super::timed_steps::{ExactPositions, InLanes, Positions, Single, TimedSteps};
-use crate::cost::double_double::DoubleDouble as D;
-use crate::cost::setting::Numbers;
+use crate::double_double::DoubleDouble as D;
+use crate::setting::Numbers;
 
 /// A mechanism whose settings can be compared.
 pub enum Comparable {

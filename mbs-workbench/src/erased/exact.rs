@@ -2,7 +2,7 @@
 
 use mbs_runtime::{Dynamic, DynamicState, Scalar};
 
-use crate::cost::double_double::DoubleDouble as D;
+use crate::double_double::DoubleDouble as D;
 
 /// Numbers of coordinates, rows, first-order states and contacts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -12,7 +12,7 @@ use mbs_runtime::{Dynamic, DynamicState, Failure, FailureKind, Partitioned, Real
 use super::dynamics::direct_dynamics::{Pair, Rule};
 use super::dynamics::integrators::Integrators;
 use super::exact::{Observed, observed};
-use crate::cost::setting::{FormulationName, ImplicitName, IntegratorName, MotionMethod, Resolution};
+use crate::setting::{FormulationName, ImplicitName, IntegratorName, MotionMethod, Resolution};
 
 /// A state of a run at an instant.
 #[derive(Clone, Debug)]

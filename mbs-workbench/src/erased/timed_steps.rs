@@ -6,8 +6,8 @@ use std::time::Instant;
 use mbs_runtime::{Batch, Budget, Failure, Kinematic, Lanes, Mechanism, Real, Scalar, Step, Stepper};
 
 use super::timed_runs::Effort;
-use crate::cost::double_double::DoubleDouble as D;
-use crate::cost::setting::Closing;
+use crate::double_double::DoubleDouble as D;
+use crate::setting::Closing;
 
 /// A state of a motion that drives prescribe: time (s), q, q̇, q̈ (N each).
 #[derive(Clone, Debug)]

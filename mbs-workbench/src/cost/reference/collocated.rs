@@ -6,7 +6,7 @@ use mbs_runtime::Scalar;
 
 use super::linear::{Factors, Matrix};
 use super::motion::{Aim, Solved, StepMethod, Tried};
-use crate::cost::double_double::DoubleDouble as D;
+use crate::double_double::DoubleDouble as D;
 use crate::erased::exact::{ExactEquations, Moving};
 
 /// Stages: order 9.

@@ -3,7 +3,7 @@
 use mbs_runtime::Scalar;
 
 use super::motion::{Aim, Solved, StepMethod, Tried, accelerations};
-use crate::cost::double_double::DoubleDouble as D;
+use crate::double_double::DoubleDouble as D;
 use crate::erased::exact::{ExactEquations, Moving};
 
 /// Columns of the extrapolation: order 2 × 10.

@@ -4,7 +4,7 @@
 
 use mbs_runtime::Scalar;
 
-use crate::cost::double_double::DoubleDouble as D;
+use crate::double_double::DoubleDouble as D;
 
 /// A square matrix, row by row.
 #[derive(Clone, Debug)]

@@ -7,7 +7,7 @@ use mbs_runtime::Scalar;
 use super::collocated::Collocated;
 use super::extrapolated::Extrapolated;
 use super::linear::Matrix;
-use crate::cost::double_double::DoubleDouble as D;
+use crate::double_double::DoubleDouble as D;
 use crate::erased::exact::{ExactEquations, Moving, Observed};
 
 /// Kind of a reference method.

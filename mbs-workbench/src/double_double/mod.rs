@@ -9,7 +9,7 @@ use core::ops::{Add, Div, Mul, Neg, Sub};
 
 use mbs_runtime::{Real, Scalar};
 
-use super::elementary;
+mod elementary;
 
 /// The unevaluated sum of two numbers, the second at most half a unit in the last place of the first.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -27,7 +27,7 @@ impl DoubleDouble {
     }
 
     /// The sum of two parts, the first at least as large as the second.
-    pub(super) fn sum(large: f64, small: f64) -> Self {
+    fn sum(large: f64, small: f64) -> Self {
         let high = large + small;
         // An infinite sum leaves no rest.
         let low = if high.is_finite() { small - (high - large) } else { 0.0 };
@@ -35,12 +35,12 @@ impl DoubleDouble {
     }
 
     /// The product with a power of two, which is exact.
-    pub(super) fn scaled(self, power: f64) -> Self {
+    pub fn scaled(self, power: f64) -> Self {
         DoubleDouble { high: self.high * power, low: self.low * power }
     }
 
     /// The product with itself.
-    pub(super) fn square(self) -> Self {
+    fn square(self) -> Self {
         self * self
     }
 }

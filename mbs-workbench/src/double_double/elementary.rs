@@ -1,6 +1,6 @@
 //! Functions of [`DoubleDouble`]: series after a reduction of the argument, and Newton's method from the value in `f64`.
 
-use super::double_double::DoubleDouble;
+use super::DoubleDouble;
 
 /// ln 2 in three parts.
 const LN_2: [f64; 3] = [core::f64::consts::LN_2, 2.319_046_813_846_299_6e-17, 5.707_708_438_416_212e-34];
