@@ -146,7 +146,7 @@ pub use mechanism::operations::Operations;
 pub use mechanism::outcome::Outcome;
 pub use mechanism::phase::{Phase, Speed};
 pub use mechanism::redundant_widths::Widths;
-pub use mechanism::reveal::{Reveal, Visitor};
+pub use mechanism::reveal::{InNumbers, Reveal, Visitor};
 pub use mechanism::roots::Roots;
 pub use mechanism::saved_variables::Kept;
 pub use mechanism::{

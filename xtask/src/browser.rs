@@ -1,4 +1,5 @@
-//! Reports of all mechanisms in headless Chromium; `xtask/src/page.mjs` uses each page, `xtask/src/tools.mjs` each of its tools.
+//! Reports of all mechanisms in headless Chromium; `xtask/src/page.mjs` uses each page, `xtask/src/tools.mjs` each of its tools,
+//! `xtask/src/cost.mjs` the page of `mbs cost`.
 
 use std::fs;
 use std::path::Path;
@@ -22,6 +23,9 @@ const WITH_FORCES: [&str; 2] = ["four_bar_mass:Driven", "slider_crank_mass:Drive
 /// A crank longer than its rod: the motion ends, the command fails, and the page is written up to there.
 const ENDED: [&str; 4] = ["kinematics", "slider_crank", "--param", "r=0.2"];
 
+/// A study of what accuracy costs, short enough for a build without optimisation.
+const COST: [&str; 7] = ["cost", "pendulum", "--quick", "--until", "0.3", "--methods", "projection"];
+
 /// Writes the report of each mechanism and opens it.
 ///
 /// # Errors
@@ -42,7 +46,7 @@ pub fn run() -> Result<(), String> {
     let pages = reports(&target().join("debug/mbs-catalogue"), &scratch)?;
     // Next to node_modules, where Node looks for it.
     let page = scratch.join("page.mjs");
-    for file in ["page.mjs", "tools.mjs"] {
+    for file in ["page.mjs", "tools.mjs", "cost.mjs"] {
         fs::copy(root().join("xtask/src").join(file), scratch.join(file)).map_err(written)?;
     }
     let chromium = output(&mut command("sh", &["-c", "command -v chromium"]))?;
@@ -62,8 +66,12 @@ fn reports(program: &Path, scratch: &Path) -> Result<Vec<String>, String> {
     wanted.extend(WITH_RESTS.map(|name| (format!("{}-rest", scenes(name)), vec!["equilibrium", name])));
     wanted.extend(WITH_FORCES.map(|name| (format!("{}-inverse", scenes(name)), vec!["inverse", name])));
     wanted.push(("slider_crank-ended".to_string(), ENDED.to_vec()));
-    let pages =
-        wanted.iter().map(|(name, _)| format!("{}/report.html", scratch.join(name).display())).collect();
+    wanted.push(("pendulum-cost".to_string(), COST.to_vec()));
+    let page = |options: &[&str]| if options == COST { "cost.html" } else { "report.html" };
+    let pages = wanted
+        .iter()
+        .map(|(name, options)| format!("{}/{}", scratch.join(name).display(), page(options)))
+        .collect();
     let queue = Mutex::new(wanted.iter());
     let worker = || {
         loop {
