@@ -22,6 +22,9 @@ const WITH_FORCES: [&str; 2] = ["four_bar_mass:Driven", "slider_crank_mass:Drive
 /// A crank longer than its rod: the motion ends, the command fails, and the page is written up to there.
 const ENDED: [&str; 4] = ["kinematics", "slider_crank", "--param", "r=0.2"];
 
+/// Measured points that are drawn over a curve, one of them beyond the end of the motion.
+const MEASURED: &str = "t (s), rocker (deg)\n0.1, 91\n0.25, 80\n0.5, 95\n0.75, 110\n1.5, 90\n";
+
 /// Writes the report of each mechanism and opens it.
 ///
 /// # Errors
@@ -62,6 +65,10 @@ fn reports(program: &Path, scratch: &Path) -> Result<Vec<String>, String> {
     wanted.extend(WITH_RESTS.map(|name| (format!("{}-rest", scenes(name)), vec!["equilibrium", name])));
     wanted.extend(WITH_FORCES.map(|name| (format!("{}-inverse", scenes(name)), vec!["inverse", name])));
     wanted.push(("slider_crank-ended".to_string(), ENDED.to_vec()));
+    let table = scratch.join("rocker.csv");
+    fs::write(&table, MEASURED).map_err(|error| format!("{}: {error}", table.display()))?;
+    let overlay = format!("phi3={}", table.display());
+    wanted.push(("four_bar-overlaid".to_string(), vec!["run", "four_bar", "--overlay", &overlay]));
     let pages =
         wanted.iter().map(|(name, _)| format!("{}/report.html", scratch.join(name).display())).collect();
     let queue = Mutex::new(wanted.iter());
