@@ -26,6 +26,9 @@ const ENDED: [&str; 4] = ["kinematics", "slider_crank", "--param", "r=0.2"];
 /// A study of what accuracy costs, short enough for a build without optimisation.
 const COST: [&str; 7] = ["cost", "pendulum", "--quick", "--until", "0.3", "--methods", "projection"];
 
+/// Measured points that are drawn over a curve, one of them beyond the end of the motion.
+const MEASURED: &str = "t (s), rocker (deg)\n0.1, 91\n0.25, 80\n0.5, 95\n0.75, 110\n1.5, 90\n";
+
 /// Writes the report of each mechanism and opens it.
 ///
 /// # Errors
@@ -66,6 +69,10 @@ fn reports(program: &Path, scratch: &Path) -> Result<Vec<String>, String> {
     wanted.extend(WITH_RESTS.map(|name| (format!("{}-rest", scenes(name)), vec!["equilibrium", name])));
     wanted.extend(WITH_FORCES.map(|name| (format!("{}-inverse", scenes(name)), vec!["inverse", name])));
     wanted.push(("slider_crank-ended".to_string(), ENDED.to_vec()));
+    let table = scratch.join("rocker.csv");
+    fs::write(&table, MEASURED).map_err(|error| format!("{}: {error}", table.display()))?;
+    let overlay = format!("phi3={}", table.display());
+    wanted.push(("four_bar-overlaid".to_string(), vec!["run", "four_bar", "--overlay", &overlay]));
     wanted.push(("pendulum-cost".to_string(), COST.to_vec()));
     let page = |options: &[&str]| if options == COST { "cost.html" } else { "report.html" };
     let pages = wanted

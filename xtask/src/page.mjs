@@ -41,6 +41,7 @@ async function open(report) {
     else await use(page);
     if (kind === 'inverse') await forces(page);
     if (report.includes('-ended/')) await end(page);
+    if (report.includes('-overlaid/')) await overlaid(page);
     await fitsAPhone(page);
     assert.deepEqual(complaints, [], report);
     await page.close();
@@ -125,6 +126,22 @@ async function forces(page) {
 }
 
 /** A page of a motion that ends early: the end in words and marked in the drawing and the plots. */
+/** Measured points are dots over the curve, over the time and over an angle. */
+async function overlaid(page) {
+    const dots = () => page.$$eval('path.measured', paths => paths.map(path => path.getAttribute('d').split('M').length - 1));
+    assert.deepEqual(await dots(), [4], 'the points within the motion are drawn, in one plot');
+    const legends = await page.$$eval('.legend', legends => legends.map(legend => legend.textContent).join(' '));
+    assert.match(legends, /phi3, dots: .*rocker[.]csv/, 'the legend names the table');
+    const places = () => page.$eval('path.measured', path => path.getAttribute('d'));
+    const overTime = await places(), choice = await page.$('#over');
+    const angle = await choice.$$eval('option', options => options.map(option => option.value).find(value => value !== ''));
+    await choice.selectOption(angle);
+    assert.deepEqual(await dots(), [4], 'they stay over an angle');
+    const numbers = d => d.match(/-?[0-9.]+/g).map(Number);
+    const moved = numbers(await places()).map((x, k) => Math.abs(x - numbers(overTime)[k]));
+    assert.ok(moved.every(distance => distance < 1), 'at constant speed they stand where they were');
+}
+
 async function end(page) {
     assert.match(await page.textContent('#ended'), /^the motion ends at t = [\d.]+ s: /);
     assert.ok(await page.$eval('#stage', stage => stage.querySelector('path.end') !== null), 'marked in the drawing');
