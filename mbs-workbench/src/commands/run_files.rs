@@ -94,7 +94,7 @@ pub fn facts(instances: &[(Preset, Erased)], done: &[RunResult], tables: &Tables
     facts
 }
 
-/// What a page has besides the motions.
+/// Content of a page besides the motions.
 pub struct PageContent<'a> {
     /// The command line again.
     pub command: &'a str,

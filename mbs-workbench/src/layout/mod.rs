@@ -1,10 +1,10 @@
 //! Texts laid out: one statement a line, blanks and indentation by rule. Tokens and comments stay as they are.
 //!
-//! Before: the content of a file, [`crate::text_file`]. [`pieces`] has the tokens of a text with the comments between them, [`blanks`]
-//! says which stand apart, [`lines`] breaks a statement into lines, [`statements`] lays out blocks.
+//! `pieces` has the tokens of a text with the comments between them, and `blanks` says which stand apart. `lines` breaks a statement
+//! into lines, `statements` lays out blocks.
 //!
 //! Line ends of the author stay where a statement may have one: behind brackets and commas, next to operators. A line of more than
-//! [`lines::WIDTH`] characters is broken. So a matrix keeps its rows, and a second layout changes nothing.
+//! 120 characters is broken. So a matrix keeps its rows, and a second layout changes nothing.
 
 mod blanks;
 mod lines;

@@ -1,7 +1,8 @@
 //! A quantity over the time, smooth between instants at which it is known.
 
-/// Value, rate and acceleration at instants, with polynomials of degree 5 between them (quintic Hermite interpolation): all three are
-/// continuous, and the rate and the acceleration are the exact derivatives of the value.
+/// Value, rate and acceleration at instants, with polynomials of degree 5 between them (quintic Hermite interpolation).
+///
+/// All three are continuous, and rate and acceleration are the exact derivatives of the value.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Course {
     /// Instants (s), increasing.

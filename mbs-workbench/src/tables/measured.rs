@@ -31,7 +31,7 @@ impl Measured {
     ///
     /// The times are in the column called `t` or `time`, else in the first one in a unit of time. The values are in the column called
     /// `name`, else in the one that is left beside times and rates. Rates and accelerations are in columns called as the values with
-    /// `_d` and `_dd` behind, as in tables of `mbs`, else in those whose units are those of rates.
+    /// `_d` and `_dd` behind, as in tables of `mbs`. Else they are in those with the units of rates.
     ///
     /// # Errors
     /// The first fault.
