@@ -32,9 +32,9 @@ fn orders() -> [(MotionMethod, f64, f64); 7] {
         (projected(IntegratorName::RungeKutta4), 4.0, 0.5),
         (MotionMethod::Implicit(ImplicitName::AugmentedLagrangian), 2.0, 0.3),
         (MotionMethod::Implicit(ImplicitName::GeneralizedAlpha), 2.0, 0.3),
-        (projected(IntegratorName::DormandPrince5), 5.0, 1.0),
-        (projected(IntegratorName::DormandPrince8), 8.0, 1.5),
-        (projected(IntegratorName::Radau5), 5.0, 1.0),
+        (projected(IntegratorName::DormandPrince5), 5.0, 1.5),
+        (projected(IntegratorName::DormandPrince8), 8.0, 2.0),
+        (projected(IntegratorName::Radau5), 5.0, 1.5),
     ]
 }
 
