@@ -77,7 +77,8 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments) -> Result<ExitCode, Com
         let instance = target.instance(&target.runs()[0], &arguments.parameters)?;
         watched(instance.equations(), &arguments.watch)?;
         methods(&arguments.methods)?;
-        Blueprint::cost_of_card(&forge, target.card())?
+        let source = instance.equations().source();
+        Blueprint::cost_of_card(&forge, target.card(), source)?
     };
     if let Some(directory) = &arguments.out {
         require_writable(directory)?;

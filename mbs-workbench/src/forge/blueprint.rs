@@ -129,19 +129,35 @@ impl Blueprint {
         })
     }
 
-    /// The study of `mbs cost` for the mechanism of `card`.
+    /// The study of `mbs cost` for the mechanism of `card` with this text: from the text alone where the constructor is that of the
+    /// text's defaults, else on top of the library, which is built anew for it.
     ///
     /// # Errors
     /// As [`of_card`](Self::of_card).
-    pub fn cost_of_card(forge: &Forge, card: &Card) -> Result<Self, ForgeError> {
-        let Card { module, manifest, .. } = *card;
-        Self::of_card(forge, card, &format!("{}_cost", card.file_name()), |constructor| {
+    pub fn cost_of_card(forge: &Forge, card: &Card, source: &str) -> Result<Self, ForgeError> {
+        let Card { constructor, module, manifest, .. } = *card;
+        let name = format!("{}_cost", card.file_name());
+        let items = |constructor: &str| {
             format!(
-                "{HEAD}\n\nuse mbs_workbench::card::Card;\n\n\
-                 const CARD: Card = Card {{ constructor: {constructor:?}, module: {module:?}, manifest: {manifest:?}, \
-                 ..mbs_workbench::card!({constructor}) }};\n\n\
-                 fn main() -> ExitCode {{\n    \
-                 mbs_workbench::cost_program(CARD, mbs_workbench::comparable!({constructor}))\n}}\n"
+                "pub const CARD: ::mbs_workbench::card::Card = ::mbs_workbench::card::Card {{ constructor: {constructor:?}, \
+                 module: {module:?}, manifest: {manifest:?}, ..::mbs_workbench::card!({constructor}) }};\n\
+                 pub const COSTS: fn(&[(usize, f64)]) -> ::mbs_workbench::erased::costs::Comparable = \
+                 ::mbs_workbench::comparable!({constructor});\n"
+            )
+        };
+        let kind = constructor.strip_suffix("::default()").unwrap_or_default();
+        if syn::parse_str::<syn::Ident>(kind).is_ok() {
+            let main = format!(
+                "{HEAD}\n\nmod studied {{\n::mbs_runtime::mechanism! {{\n{source}\n}}\n{}}}\n\n\
+                 fn main() -> ExitCode {{\n    mbs_workbench::cost_program(studied::CARD, studied::COSTS)\n}}\n",
+                items(constructor)
+            );
+            return Ok(Blueprint { name, manifest: dependencies(&[]), main, origin: None, is_closed: true });
+        }
+        Self::of_card(forge, card, &name, |constructor| {
+            format!(
+                "{HEAD}\n\n{}\nfn main() -> ExitCode {{\n    mbs_workbench::cost_program(CARD, COSTS)\n}}\n",
+                items(constructor)
             )
         })
     }
