@@ -5,6 +5,7 @@
 use nalgebra::SMatrix;
 use nalgebra::SVector;
 
+use crate::linear_algebra::parts::transposed;
 use crate::mechanism::{Kinematic, Mechanism};
 use crate::scalar::number::{Real, Scalar};
 use crate::stepper::Stepper;
@@ -24,16 +25,6 @@ pub fn matrix<T: Scalar + PartialEq, const M: usize, const N: usize>(rows: &[[T;
 pub fn rows<T: Scalar + PartialEq, const M: usize, const N: usize>(matrix: &SMatrix<T, M, N>) -> [[T; N]; M] {
     let columns: [[T; M]; N] = matrix.data.0;
     transposed(&columns)
-}
-
-fn transposed<T: Scalar, const M: usize, const N: usize>(rows: &[[T; N]; M]) -> [[T; M]; N] {
-    let mut columns = [[T::constant(0.0); M]; N];
-    for (j, column) in columns.iter_mut().enumerate() {
-        for (entry, row) in column.iter_mut().zip(rows) {
-            *entry = row[j];
-        }
-    }
-    columns
 }
 
 /// Vectors and matrices of a mechanism at `q` (N), `q̇` (N) and `t` (s), evaluated from the start each time.

@@ -15,6 +15,7 @@ use crate::catalogue::Catalogue;
 use crate::commands::document::Output;
 use crate::commands::run::Arguments as Analysis;
 use crate::commands::{self, CommandError};
+use crate::erased::costs::Comparable;
 use crate::mismatch::nearest;
 use crate::target_directory::is_started;
 use crate::text_file::is_file;
@@ -76,6 +77,8 @@ enum Command {
     Drift(commands::drift::Arguments),
     /// Compare one linkage in several kinds of coordinates
     Compare(commands::compare::Arguments),
+    /// Show what accuracy costs: the true error of each method, step and type of number over its time
+    Cost(commands::cost::Arguments),
     /// Lay a spline along a table from a file; say how far to trust it, draw it, print it as Rust
     Table(commands::table::Arguments),
 }
@@ -106,6 +109,7 @@ impl Command {
             Command::Dof(_) => "dof",
             Command::Drift(_) => "drift",
             Command::Compare(_) => "compare",
+            Command::Cost(_) => "cost",
             Command::Table(_) => "table",
         }
     }
@@ -135,6 +139,8 @@ impl Command {
             | Command::Fmt(_)
             | Command::Expand(_)
             | Command::Compare(_)
+            // It builds a program of its own.
+            | Command::Cost(_)
             | Command::Table(_) => return None,
         };
         (needs_code && is_file(name) && !is_started()).then_some(name)
@@ -158,7 +164,30 @@ pub fn program(cards: &[Card]) -> ExitCode {
             None => error.exit(),
         },
     };
-    let run = || execute(&catalogue, command, json);
+    on_large_stack(|| execute(&catalogue, command, json))
+}
+
+/// The study of `mbs cost` in a program that was built for one mechanism: `card` names it, `make` has it in all numbers, with
+/// parameters and inputs by their indices.
+pub fn cost_program(card: Card, make: fn(&[(usize, f64)]) -> Comparable) -> ExitCode {
+    let cards = [card];
+    let catalogue = Catalogue { cards: &cards };
+    match Arguments::try_parse() {
+        Ok(Arguments { command: Some(Command::Cost(arguments)), json }) => on_large_stack(|| {
+            let mut stdout = io::stdout().lock();
+            let mut out = Output::new(&mut stdout, json.then_some("cost"));
+            let found = commands::cost::study(&catalogue, &arguments, make, &mut out);
+            let ended = out.end(found.as_ref().err());
+            let code = found.unwrap_or_else(|error| report(&error));
+            ended.map_or_else(|error| report(&CommandError::Output(error)), |()| code)
+        }),
+        Ok(_) => report(&CommandError::Usage("this program has the command `cost` alone".to_string())),
+        Err(error) => error.exit(),
+    }
+}
+
+/// Runs `run` in a thread with room for matrices of all unknowns.
+fn on_large_stack(run: impl FnOnce() -> ExitCode + Send) -> ExitCode {
     thread::scope(|scope| {
         let started = thread::Builder::new().stack_size(STACK).spawn_scoped(scope, run);
         match started.map(thread::ScopedJoinHandle::join) {
@@ -258,6 +287,9 @@ fn done(catalogue: &Catalogue, command: Option<Command>, out: &mut Output) -> Re
         Some(Command::Dof(arguments)) => commands::dof::run(catalogue, &arguments, out),
         Some(Command::Drift(arguments)) => commands::drift::run(catalogue, &arguments, out),
         Some(Command::Compare(arguments)) => commands::compare::run(catalogue, &arguments, out),
+        Some(Command::Cost(arguments)) => {
+            return commands::cost::run(catalogue, &arguments).map(Done::Elsewhere);
+        }
         Some(Command::Table(arguments)) => commands::table::run(&arguments, out),
     }?;
     out.flush().map_err(CommandError::Output)?;

@@ -15,6 +15,10 @@ pub mod catalogue;
 mod command_line;
 #[cfg(feature = "program")]
 mod commands;
+#[cfg(feature = "program")]
+pub mod cost;
+#[cfg(feature = "program")]
+pub mod double_double;
 pub mod erased;
 #[cfg(feature = "program")]
 pub mod forge;
@@ -27,6 +31,8 @@ pub mod motion;
 #[cfg(feature = "program")]
 pub mod output;
 #[cfg(feature = "program")]
+pub mod setting;
+#[cfg(feature = "program")]
 pub mod tables;
 pub mod target_directory;
 #[cfg(feature = "program")]
@@ -36,4 +42,4 @@ pub mod text_file;
 pub mod verify;
 
 #[cfg(feature = "program")]
-pub use command_line::program;
+pub use command_line::{cost_program, program};

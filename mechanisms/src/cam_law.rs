@@ -77,7 +77,7 @@ const LEAVES: f64 = PI;
 const BACK: f64 = 5.0;
 
 /// The law that `mbs` shows.
-const LAW: Law = {
+pub const LAW: Law = {
     let parts =
         [Segment::to(HEIGHT, RISEN), Segment::dwell(LEAVES), Segment::to(0.0, BACK), Segment::dwell(TAU)];
     match Law::new(0.0, parts) {

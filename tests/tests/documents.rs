@@ -90,6 +90,7 @@ fn every_mechanism_and_command_stands_in_the_chapter_on_the_program() {
         "next",
         "dof",
         "drift",
+        "cost",
         "compare",
         "table",
         "expand",

@@ -1,4 +1,5 @@
-//! Reports of all mechanisms in headless Chromium; `xtask/src/page.mjs` uses each page, `xtask/src/tools.mjs` each of its tools.
+//! Reports of all mechanisms in headless Chromium; `xtask/src/page.mjs` uses each page, `xtask/src/tools.mjs` each of its tools,
+//! `xtask/src/cost.mjs` the page of `mbs cost`.
 
 use std::fs;
 use std::path::Path;
@@ -21,6 +22,9 @@ const WITH_FORCES: [&str; 2] = ["four_bar_mass:Driven", "slider_crank_mass:Drive
 
 /// A crank longer than its rod: the motion ends, the command fails, and the page is written up to there.
 const ENDED: [&str; 4] = ["kinematics", "slider_crank", "--param", "r=0.2"];
+
+/// A study of what accuracy costs, short enough for a build without optimisation.
+const COST: [&str; 7] = ["cost", "pendulum", "--quick", "--until", "0.3", "--methods", "projection"];
 
 /// Measured points that are drawn over a curve, one of them beyond the end of the motion.
 const MEASURED: &str = "t (s), rocker (deg)\n0.1, 91\n0.25, 80\n0.5, 95\n0.75, 110\n1.5, 90\n";
@@ -45,7 +49,7 @@ pub fn run() -> Result<(), String> {
     let pages = reports(&target().join("debug/mbs-catalogue"), &scratch)?;
     // Next to node_modules, where Node looks for it.
     let page = scratch.join("page.mjs");
-    for file in ["page.mjs", "tools.mjs"] {
+    for file in ["page.mjs", "tools.mjs", "cost.mjs"] {
         fs::copy(root().join("xtask/src").join(file), scratch.join(file)).map_err(written)?;
     }
     let chromium = output(&mut command("sh", &["-c", "command -v chromium"]))?;
@@ -69,8 +73,12 @@ fn reports(program: &Path, scratch: &Path) -> Result<Vec<String>, String> {
     fs::write(&table, MEASURED).map_err(|error| format!("{}: {error}", table.display()))?;
     let overlay = format!("phi3={}", table.display());
     wanted.push(("four_bar-overlaid".to_string(), vec!["run", "four_bar", "--overlay", &overlay]));
-    let pages =
-        wanted.iter().map(|(name, _)| format!("{}/report.html", scratch.join(name).display())).collect();
+    wanted.push(("pendulum-cost".to_string(), COST.to_vec()));
+    let page = |options: &[&str]| if options == COST { "cost.html" } else { "report.html" };
+    let pages = wanted
+        .iter()
+        .map(|(name, options)| format!("{}/{}", scratch.join(name).display(), page(options)))
+        .collect();
     let queue = Mutex::new(wanted.iter());
     let worker = || {
         loop {

@@ -19,7 +19,16 @@ pub fn ci() -> Result<(), String> {
     step(&mut command("cargo", &["fmt", "--all", "--check", "--manifest-path", "tests/proofs/Cargo.toml"]))?;
     step(&mut command(
         "cargo",
-        &["clippy", "--workspace", "--all-targets", "--features", "mbs-motions/long", "--", "-D", "warnings"],
+        &[
+            "clippy",
+            "--workspace",
+            "--all-targets",
+            "--features",
+            "mbs-motions/long,mbs-tests/long",
+            "--",
+            "-D",
+            "warnings",
+        ],
     ))?;
     documents::rustdoc()?;
     step(&mut command("cargo", &["test", "--workspace"]))?;
@@ -37,6 +46,8 @@ pub fn full() -> Result<(), String> {
     need("cargo-llvm-lines", "`cargo install cargo-llvm-lines`")?;
     ci()?;
     step(&mut command("cargo", &["test", "-p", "mbs-motions", "--features", "long"]))?;
+    let proofs = ["test", "-p", "mbs-tests", "--features", "long", "--test", "proofs", "freestanding"];
+    step(&mut command("cargo", &proofs))?;
     browser::run()?;
     documents::book()?;
     documents::package()?;

@@ -1,6 +1,7 @@
 // Uses a report as a reader would and checks what moved: node page.mjs CHROMIUM REPORT...
 import assert from 'node:assert/strict';
 import { chromium } from 'playwright-core';
+import { study } from './cost.mjs';
 import * as tools from './tools.mjs';
 
 const [executablePath, ...reports] = process.argv.slice(2);
@@ -27,6 +28,13 @@ async function open(report) {
     page.on('pageerror', error => complaints.push(error.message));
     page.on('request', request => /^(file|data|blob):/.test(request.url()) || complaints.push(`asks for ${request.url()}`));
     await page.goto(`file://${report}`);
+    if (report.endsWith('/cost.html')) {
+        await study(page);
+        assert.deepEqual(complaints, [], report);
+        await page.close();
+        console.log(`${report.split('/').at(-2)}: curves, figures, dragged error, fits`);
+        return;
+    }
     const kind = await page.evaluate(() => JSON.parse(document.querySelector('#data').textContent).analysis);
     const rests = await page.isHidden('#play');
     if (rests) await (kind === 'equilibrium' ? rest(page) : swing(page));

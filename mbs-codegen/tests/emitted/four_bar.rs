@@ -953,8 +953,20 @@ const _: () = {
         }
     }
 };
-impl ::mbs_runtime::Reveal for FourBar<::core::primitive::f64> {
-    fn reveal<__V: ::mbs_runtime::Visitor<Self>>(self, __visitor: __V) -> __V::Output {
+impl<T: ::mbs_runtime::Scalar> ::mbs_runtime::Reveal<T> for FourBar<T> {
+    fn reveal<__V: ::mbs_runtime::Visitor<Self, T>>(
+        self,
+        __visitor: __V,
+    ) -> __V::Output {
         __visitor.kinematic::<5usize, 5usize>(self)
+    }
+}
+impl<__U: ::mbs_runtime::Scalar> ::mbs_runtime::InNumbers<__U>
+for FourBar<::core::primitive::f64> {
+    type Mechanism = FourBar<__U>;
+    fn in_numbers(&self) -> Self::Mechanism {
+        FourBar {
+            omega: __U::constant(self.omega),
+        }
     }
 }

@@ -7,6 +7,7 @@
 //! results have the same bits.
 
 use core::cell::Cell;
+use core::slice::from_ref;
 
 use crate::scalar::number::Scalar;
 
@@ -67,7 +68,7 @@ impl<'a, T: Scalar> Machine<'a, T> {
     fn room(&mut self, count: usize) -> &'a [Cell<T>] {
         let room = self.values.get(self.next..).unwrap_or_default();
         self.next = self.next.saturating_add(count);
-        room
+        room.get(..count).unwrap_or(room)
     }
 
     /// The value of a number.
@@ -168,16 +169,14 @@ impl<'a, T: Scalar> Machine<'a, T> {
     /// All sines, then all cosines: as many as a processor takes at once, then the rest.
     fn sines_and_cosines(&mut self, round: &[u8]) {
         let (angles, _) = round.as_chunks();
-        let (sines, cosines) = (self.room(angles.len()), self.room(angles.len()));
-        let places = sines.chunks(SIDE_BY_SIDE).zip(cosines.chunks(SIDE_BY_SIDE));
-        for ((sines, cosines), angles) in places.zip(angles.chunks(SIDE_BY_SIDE)) {
-            match <&[[u8; 2]; SIDE_BY_SIDE]>::try_from(angles) {
-                Ok(angles) => self.of_angles(sines, cosines, angles),
-                Err(_) => {
-                    let each = sines.chunks(1).zip(cosines.chunks(1)).zip(angles);
-                    each.for_each(|((sine, cosine), angle)| self.of_angles(sine, cosine, &[*angle]));
-                }
-            }
+        let (sines, last_sines) = self.room(angles.len()).as_chunks::<SIDE_BY_SIDE>();
+        let (cosines, last_cosines) = self.room(angles.len()).as_chunks::<SIDE_BY_SIDE>();
+        let (angles, last_angles) = angles.as_chunks::<SIDE_BY_SIDE>();
+        for ((sines, cosines), angles) in sines.iter().zip(cosines).zip(angles) {
+            self.of_angles(sines, cosines, angles);
+        }
+        for ((sine, cosine), angle) in last_sines.iter().zip(last_cosines).zip(last_angles) {
+            self.of_angles(from_ref(sine), from_ref(cosine), &[*angle]);
         }
     }
 

@@ -6,6 +6,7 @@ use crate::block_solvers::gauss_newton;
 use crate::block_solvers::multistart::displaced;
 use crate::block_solvers::newton::{Attempt, ITERATIONS, all_finite, capped, newton, within};
 use crate::linear_algebra::factorization::Factorization;
+use crate::linear_algebra::parts::{diagonal, diagonal_mut, tail, tail_mut};
 use crate::linear_algebra::vectors::select;
 use crate::mechanism::block::{Block, BlockSolver};
 use crate::mechanism::outcome::Outcome;
@@ -323,7 +324,7 @@ impl<T: Scalar, const K: usize> NormalEquations<T, K> {
     }
 
     fn trace(&self) -> T {
-        (0..K).fold(T::constant(0.0), |sum, k| sum + self.matrix[k][k])
+        diagonal(&self.matrix).fold(T::constant(0.0), |sum, entry| sum + *entry)
     }
 
     /// `true` if the gradient is zero within rounding.
@@ -339,29 +340,34 @@ impl<T: Scalar, const K: usize> NormalEquations<T, K> {
         let mean = self.trace() / T::constant(K as f64);
         let added = damping * self.cost.sqrt().min(one) * mean;
         let mut matrix = self.matrix;
-        for (k, row) in matrix.iter_mut().enumerate() {
-            row[k] = row[k] + added;
-        }
+        diagonal_mut(&mut matrix).for_each(|entry| *entry = *entry + added);
         // Cholesky without square roots, L D Lᵀ in place; a pivot lost to rounding is replaced by the damping.
         let mut x = self.gradient.map(|g| -g);
         for k in 0..K {
+            // Row k and component k, of K; then those below.
+            let ([upper, below @ ..], [known, open @ ..]) = (tail_mut(&mut matrix, k), tail_mut(&mut x, k))
+            else {
+                break;
+            };
+            let [pivot, upper @ ..] = tail_mut(upper, k) else { break };
             let floor = T::select(zero.less(added), added, one);
-            let pivot = T::select(zero.less(matrix[k][k]), matrix[k][k], floor);
-            matrix[k][k] = pivot;
-            let upper = matrix[k];
-            for i in k + 1..K {
-                let multiplier = upper[i] / pivot;
-                for j in k + 1..K {
-                    matrix[i][j] = matrix[i][j] - multiplier * upper[j];
+            *pivot = T::select(zero.less(*pivot), *pivot, floor);
+            for ((lower, component), entry) in below.iter_mut().zip(open).zip(&*upper) {
+                let multiplier = *entry / *pivot;
+                for (lower, upper) in tail_mut(lower, k + 1).iter_mut().zip(&*upper) {
+                    *lower = *lower - multiplier * *upper;
                 }
-                x[i] = x[i] - multiplier * x[k];
+                *component = *component - multiplier * *known;
             }
         }
-        for k in (0..K).rev() {
-            for j in k + 1..K {
-                x[k] = x[k] - matrix[k][j] * x[j];
+        for (k, row) in matrix.iter().enumerate().rev() {
+            let ([pivot, upper @ ..], [component, known @ ..]) = (tail(row, k), tail_mut(&mut x, k)) else {
+                break;
+            };
+            for (entry, known) in upper.iter().zip(known) {
+                *component = *component - *entry * *known;
             }
-            x[k] = x[k] / matrix[k][k];
+            *component = *component / *pivot;
         }
         x.iter_mut()
             .zip(block.coordinate_scales)

@@ -1,5 +1,7 @@
 //! B-splines.
 
+use core::num::NonZeroUsize;
+
 /// An increasing sequence of knots that goes on beyond its ends.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Knots<'a> {
@@ -9,14 +11,19 @@ pub(super) struct Knots<'a> {
 }
 
 impl Knots<'_> {
+    /// The knot at an index, which may be beyond the ends; NaN of no knots.
     fn at(&self, index: isize) -> f64 {
-        let count = isize::try_from(self.places.len()).unwrap_or(isize::MAX).max(1);
-        let (turn, place) = match self.period {
-            Some(_) => (index.div_euclid(count), index.rem_euclid(count)),
-            None => (0, index.clamp(0, count - 1)),
+        let Some(count) = NonZeroUsize::new(self.places.len()) else { return f64::NAN };
+        let (turn, place) = match (self.period, usize::try_from(index)) {
+            (Some(_), Ok(index)) => ((index / count) as f64, index % count),
+            // −1 is the last one of the turn before.
+            (Some(_), Err(_)) => {
+                let before = index.unsigned_abs() - 1;
+                (-1.0 - (before / count) as f64, count.get() - 1 - before % count)
+            }
+            (None, index) => (0.0, index.unwrap_or(0).min(count.get() - 1)),
         };
-        let place = usize::try_from(place).ok().and_then(|place| self.places.get(place));
-        place.copied().unwrap_or(f64::NAN) + turn as f64 * self.period.unwrap_or(0.0)
+        self.places.get(place).copied().unwrap_or(f64::NAN) + turn * self.period.unwrap_or(0.0)
     }
 
     /// Index of the interval that holds `x`; the first or the last one beyond the ends.
@@ -47,7 +54,10 @@ impl Knots<'_> {
                 }
                 from_left = times_linear(&share, x - left, 1.0);
             }
-            splines[degree] = from_left;
+            // The last of `degree` + 1, at most W.
+            if let Some(last) = splines.get_mut(degree) {
+                *last = from_left;
+            }
         }
         splines
     }

@@ -2,6 +2,7 @@
 
 use core::array::from_fn;
 
+use crate::linear_algebra::parts::at;
 use crate::scalar::number::{Real, Scalar};
 
 /// Σ `coefficients[j]` (x − `origin`)ʲ.
@@ -19,7 +20,7 @@ pub(super) fn jet<T: Scalar, const C: usize, const K: usize>(
 ) -> [T; K] {
     let pieces = T::per_lane(|lane| piece(x.lane(lane).to_f64()));
     let distance = distance(x, &pieces, |piece: &Piece<C>| piece.origin);
-    taylor::<T, C, K>(from_fn(|j| each(&pieces, |piece: &Piece<C>| piece.coefficients[j])), distance)
+    taylor::<T, C, K>(from_fn(|j| each(&pieces, |piece: &Piece<C>| at(&piece.coefficients, j))), distance)
 }
 
 /// `x` less the origin of each lane, which may have more digits than the scalar.

@@ -33,8 +33,7 @@ pub(super) fn check_knots(knots: &[f64], needed: usize) -> Result<(), FitError> 
 
 /// Index of the first number that is not above the one before it.
 fn disorder(numbers: &[f64]) -> Option<usize> {
-    numbers
-        .windows(2)
-        .position(|pair| !matches!(pair, [before, after] if before < after))
-        .map(|index| index + 1)
+    let mut pairs = numbers.iter().zip(numbers.iter().skip(1));
+    let increases = |(before, after): (&f64, &f64)| before < after;
+    pairs.position(|pair| !increases(pair)).map(|index| index + 1)
 }

@@ -1,5 +1,7 @@
 //! Periodic quintic splines along points.
 
+use core::num::NonZeroUsize;
+
 use crate::driver::basis::{Knots, combine};
 use crate::driver::error::FitError;
 use crate::driver::piecewise::turns;
@@ -41,7 +43,7 @@ pub fn fit_periodic_quintic(
     if x.len() < knots.len() {
         return Err(FitError::TooFewPoints { given: x.len(), needed: knots.len() });
     }
-    let count = knots.len();
+    let count = NonZeroUsize::new(knots.len()).ok_or(FitError::Room)?;
     let knots = Knots { places: knots, period: Some(period) };
     let mut triangle = Triangle::new(rows);
     for (x, y) in x.iter().zip(y) {
@@ -53,7 +55,7 @@ pub fn fit_periodic_quintic(
     }
     // The unknown that multiplies the B-spline from knot i − 5 to knot i + 1 stands for the knot in the middle.
     triangle.solve().map_err(|error| match error {
-        FitError::Undetermined { knot } => FitError::Undetermined { knot: (knot + count - 2) % count },
+        FitError::Undetermined { knot } => FitError::Undetermined { knot: (knot + count.get() - 2) % count },
         other => other,
     })?;
     let unknown = |index: usize| rows.get(index % count).map_or(0.0, |row| row.right);
@@ -67,8 +69,8 @@ pub fn fit_periodic_quintic(
 /// The equation of `splines` in an interval, unknowns counted around the period, and the first unknown of its band.
 ///
 /// The last five unknowns are in the tail.
-fn equation(count: usize, interval: usize, splines: [f64; WIDTH], y: f64) -> (usize, QuinticRow) {
-    let banded = count.saturating_sub(WIDTH - 1);
+fn equation(count: NonZeroUsize, interval: usize, splines: [f64; WIDTH], y: f64) -> (usize, QuinticRow) {
+    let banded = count.get().saturating_sub(WIDTH - 1);
     // A band that wraps around begins at the first unknown.
     let start = if interval < banded { interval } else { 0 };
     let mut row = Row { right: y, ..Row::EMPTY };

@@ -66,8 +66,8 @@ impl<L: Law, const S: usize> Segments<L, S> {
         let Some(mut height) = last_height(&segments) else { return Err(LawError::NoHeight) };
         let nothing = Stretch { origin: start, rate: 0.0, from: height, rise: 0.0 };
         let (mut stretches, mut origin, mut index) = ([nothing; S], start, 0);
-        while index < S {
-            let segment = segments[index];
+        let (mut rest, mut open): (&[Segment], &mut [Stretch]) = (&segments, &mut stretches);
+        while let ([segment, others @ ..], [stretch, behind @ ..]) = (rest, open) {
             let to = if segment.moves { segment.height } else { height };
             if !(segment.until.is_finite() && to.is_finite() && (to - height).is_finite()) {
                 return Err(LawError::SegmentNotFinite(index));
@@ -76,8 +76,9 @@ impl<L: Law, const S: usize> Segments<L, S> {
             if !(duration > 0.0 && (1.0 / duration).is_finite()) {
                 return Err(LawError::SegmentEmpty(index));
             }
-            stretches[index] = Stretch { origin, rate: 1.0 / duration, from: height, rise: to - height };
+            *stretch = Stretch { origin, rate: 1.0 / duration, from: height, rise: to - height };
             (height, origin, index) = (to, segment.until, index + 1);
+            (rest, open) = (others, behind);
         }
         Ok(Segments { start, period: origin - start, stretches, law: PhantomData })
     }
@@ -99,13 +100,12 @@ impl<L: Law, const S: usize> Segments<L, S> {
 
 /// The height at which the last segment ends.
 const fn last_height<const S: usize>(segments: &[Segment; S]) -> Option<f64> {
-    let mut height = None;
-    let mut index = 0;
-    while index < S {
-        if segments[index].moves {
-            height = Some(segments[index].height);
+    let (mut height, mut rest): (_, &[Segment]) = (None, segments);
+    while let [segment, others @ ..] = rest {
+        if segment.moves {
+            height = Some(segment.height);
         }
-        index += 1;
+        rest = others;
     }
     height
 }

@@ -157,6 +157,14 @@ impl fmt::Display for Failure {
                 "rounding alone is more than a tolerance of {tolerance:e} allows: at least {least:.1e} is needed in numbers of \
                  this type"
             ),
+            FailureKind::Unreachable { accuracy, best } if best.is_finite() => write!(
+                f,
+                "an error of {accuracy:e} cannot be reached: the best estimate is {best:.1e}; ask for more than that, or end earlier"
+            ),
+            FailureKind::Unreachable { accuracy, .. } => write!(
+                f,
+                "an error of {accuracy:e} cannot be reached: errors do not fall with the tolerance; end earlier"
+            ),
             FailureKind::Undecided { margin, single } => write!(
                 f,
                 "rounding{} decides where the motion goes at t = {time} s, next to a singular position (margin {margin:.1e}): \

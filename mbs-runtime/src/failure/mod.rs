@@ -233,6 +233,13 @@ pub enum FailureKind {
         /// The smallest that is possible.
         least: f64,
     },
+    /// The error that is asked for at the end of a run cannot be reached: rounding, or a motion that forgets its start, is larger.
+    Unreachable {
+        /// Error asked for, in the reference metric.
+        accuracy: f64,
+        /// The least one that was estimated.
+        best: f64,
+    },
     /// Next to a singular position no step is accurate enough: rounding decides where the motion goes.
     Undecided {
         /// Margin of Φ_q to a loss of rank.
@@ -355,6 +362,7 @@ impl FailureKind {
             | FailureKind::InvalidMethodParameter { .. }
             | FailureKind::InvalidStep { .. }
             | FailureKind::UnresolvedTolerance { .. }
+            | FailureKind::Unreachable { .. }
             | FailureKind::StatesUnknown { .. }
             | FailureKind::NotSmooth { .. }
             | FailureKind::MechanismMismatch { .. } => FailureSource::Input,

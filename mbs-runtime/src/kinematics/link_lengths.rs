@@ -46,43 +46,44 @@ pub(crate) const fn any(coordinates: &[Entry]) -> bool {
 pub(crate) const fn points<const N: usize>(coordinates: &[Entry]) -> Points<N> {
     let mut points = [None; N];
     let mut last: Option<(&[u8], usize)> = None;
-    let mut index = 0;
-    while index < N && index < coordinates.len() {
-        let entry = &coordinates[index];
+    let (mut rest, mut open, mut index): (_, &mut [_], _) = (coordinates, &mut points, 0);
+    while let ([entry, others @ ..], [point, behind @ ..]) = (rest, open) {
         if is_length(entry.unit) {
             let name = name_of_vector(entry.name.as_bytes());
             let first = match last {
                 Some((before, first)) if are_equal(before, name) => first,
                 _ => index,
             };
-            points[index] = Some(first);
+            *point = Some(first);
             last = Some((name, first));
         } else {
             last = None;
         }
-        index += 1;
+        (rest, open, index) = (others, behind, index + 1);
     }
     points
 }
 
 /// The name before the last dot; nothing where there is none.
 const fn name_of_vector(name: &[u8]) -> &[u8] {
-    let mut end = name.len();
-    while end > 0 {
-        end -= 1;
-        if name[end] == b'.' {
-            return name.split_at(end).0;
+    let mut rest = name;
+    while let [before @ .., last] = rest {
+        if *last == b'.' {
+            return before;
         }
+        rest = before;
     }
     &[]
 }
 
-const fn are_equal(a: &[u8], b: &[u8]) -> bool {
-    let mut index = 0;
-    while index < a.len() && index < b.len() && a[index] == b[index] {
-        index += 1;
+const fn are_equal(mut a: &[u8], mut b: &[u8]) -> bool {
+    while let ([first, a_rest @ ..], [second, b_rest @ ..]) = (a, b) {
+        if *first != *second {
+            return false;
+        }
+        (a, b) = (a_rest, b_rest);
     }
-    index == a.len() && index == b.len()
+    a.is_empty() && b.is_empty()
 }
 
 const fn is_length(unit: &str) -> bool {

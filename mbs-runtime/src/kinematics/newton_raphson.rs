@@ -7,6 +7,7 @@ use crate::failure::{Failure, FailureKind};
 use crate::linear_algebra::factorization::Factorization;
 use crate::linear_algebra::lu::Lu;
 use crate::linear_algebra::orthogonal::least_independent_column;
+use crate::linear_algebra::parts::transposed;
 use crate::linear_algebra::rectangular::Orthogonal;
 use crate::mechanism::Mechanism;
 use crate::scalar::number::Real;
@@ -147,13 +148,9 @@ fn singular<S: Mechanism<R, N, M>, R: Real, const N: usize, const M: usize>(
     margin: R,
     t: R,
 ) -> Failure {
-    let mut transposed = [[R::constant(0.0); M]; N];
-    for (j, row) in transposed.iter_mut().enumerate() {
-        row.iter_mut().zip(phi_q).for_each(|(entry, source)| *entry = source[j]);
-    }
     let one = R::constant(1.0);
     let (columns, rows) = (coordinate_scales.map(|scale| one / scale), row_scales.map(|scale| one / scale));
-    let row = least_independent_column(&transposed, &columns, &rows);
+    let row = least_independent_column(&transposed(phi_q), &columns, &rows);
     let coordinate = least_independent_column(phi_q, row_scales, coordinate_scales);
     let index = |column: usize| u16::try_from(column).unwrap_or(u16::MAX);
     FailureKind::Singular {

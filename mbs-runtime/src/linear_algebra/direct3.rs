@@ -49,8 +49,8 @@ impl<T: Scalar> Factorization<T, 3> for Direct3<T> {
 
     #[inline(always)]
     fn solve_transposed(&self, b: &[T; 3]) -> [T; 3] {
-        let ([b1, b2, b3], [r1, r2, r3]) = (*b, self.inverse);
-        core::array::from_fn(|k| r1[k] * b1 + r2[k] * b2 + r3[k] * b3)
+        let ([b1, b2, b3], [[r1, r2, r3], [s1, s2, s3], [t1, t2, t3]]) = (*b, self.inverse);
+        [r1 * b1 + s1 * b2 + t1 * b3, r2 * b1 + s2 * b2 + t2 * b3, r3 * b1 + s3 * b2 + t3 * b3]
     }
 
     #[inline(always)]

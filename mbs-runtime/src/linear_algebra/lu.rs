@@ -1,12 +1,15 @@
 //! Four and more unknowns: Gaussian elimination that pivots in every lane for itself.
 
+use core::slice::from_mut;
+
 use crate::linear_algebra::factorization::Factorization;
+use crate::linear_algebra::parts::{at, tail, tail_mut};
 use crate::scalar::number::Scalar;
 
 /// LU factors with partial pivoting of a block in the reference metric.
 ///
 /// Pivots are brought up by compare-and-swap of whole rows, so that no index depends on a number. Each lane has its own order
-/// of rows, and no access is out of range.
+/// of rows. Step k works on the rows from k on: the first of them is the upper one, and there is one in each of the K steps.
 /// Source: Golub & Van Loan 2013, §3.4 (partial pivoting), §3.5.2 (scaling).
 #[derive(Clone, Copy, Debug)]
 pub struct Lu<T: Scalar, const K: usize> {
@@ -28,27 +31,24 @@ impl<T: Scalar, const K: usize> Factorization<T, K> for Lu<T, K> {
         let mut swaps = [[T::mask(false); K]; K];
         let mut pivot_reciprocals = [one; K];
         let (mut regular, mut least, mut largest) = (T::mask(true), T::constant(f64::MAX), zero);
-        for k in 0..K {
-            for i in k + 1..K {
-                swaps[k][i] = rows[k][k].abs().less(rows[i][k].abs());
-                let (upper, lower) = (rows[k], rows[i]);
-                for j in 0..K {
-                    rows[k][j] = T::select(swaps[k][i], lower[j], upper[j]);
-                    rows[i][j] = T::select(swaps[k][i], upper[j], lower[j]);
-                }
+        for (k, (swaps, reciprocal)) in swaps.iter_mut().zip(&mut pivot_reciprocals).enumerate() {
+            let [upper, below @ ..] = tail_mut(&mut rows, k) else { break };
+            for (lower, swap) in below.iter_mut().zip(tail_mut(swaps, k + 1)) {
+                *swap = at(upper, k).abs().less(at(lower, k).abs());
+                exchange(*swap, upper, lower);
             }
-            let pivot = rows[k][k];
+            let pivot = at(upper, k);
             let usable = zero.less(pivot.abs()) & (one / pivot).is_finite();
             regular = regular & usable & pivot.is_finite();
             least = least.min(pivot.abs());
             largest = largest.max(pivot.abs());
-            pivot_reciprocals[k] = one / T::select(usable, pivot, one);
-            let upper = rows[k];
-            for lower in rows.iter_mut().skip(k + 1) {
-                let multiplier = lower[k] * pivot_reciprocals[k];
-                lower[k] = multiplier;
-                for j in k + 1..K {
-                    lower[j] = lower[j] - multiplier * upper[j];
+            *reciprocal = one / T::select(usable, pivot, one);
+            let beside = tail(upper, k + 1);
+            for lower in below {
+                let [multiplier, lower @ ..] = tail_mut(lower, k) else { break };
+                *multiplier = *multiplier * *reciprocal;
+                for (lower, upper) in lower.iter_mut().zip(beside) {
+                    *lower = *lower - *multiplier * *upper;
                 }
             }
         }
@@ -67,23 +67,24 @@ impl<T: Scalar, const K: usize> Factorization<T, K> for Lu<T, K> {
         for (component, weight) in x.iter_mut().zip(&self.row_weights) {
             *component = *component * *weight;
         }
-        for k in 0..K {
-            for i in k + 1..K {
-                let (upper, lower) = (x[k], x[i]);
-                x[k] = T::select(self.swaps[k][i], lower, upper);
-                x[i] = T::select(self.swaps[k][i], upper, lower);
+        for (k, swaps) in self.swaps.iter().enumerate() {
+            let [upper, below @ ..] = tail_mut(&mut x, k) else { break };
+            for (lower, swap) in below.iter_mut().zip(tail(swaps, k + 1)) {
+                exchange(*swap, from_mut(upper), from_mut(lower));
             }
         }
         for k in 0..K {
-            for i in k + 1..K {
-                x[i] = x[i] - self.factors[i][k] * x[k];
+            let [known, below @ ..] = tail_mut(&mut x, k) else { break };
+            for (component, row) in below.iter_mut().zip(tail(&self.factors, k + 1)) {
+                *component = *component - at(row, k) * *known;
             }
         }
-        for k in (0..K).rev() {
-            for j in k + 1..K {
-                x[k] = x[k] - self.factors[k][j] * x[j];
+        for (k, (row, reciprocal)) in self.factors.iter().zip(&self.pivot_reciprocals).enumerate().rev() {
+            let [component, known @ ..] = tail_mut(&mut x, k) else { break };
+            for (entry, known) in tail(row, k + 1).iter().zip(known) {
+                *component = *component - *entry * *known;
             }
-            x[k] = x[k] * self.pivot_reciprocals[k];
+            *component = *component * *reciprocal;
         }
         for (component, scale) in x.iter_mut().zip(&self.coordinate_scales) {
             *component = *component * *scale;
@@ -98,22 +99,23 @@ impl<T: Scalar, const K: usize> Factorization<T, K> for Lu<T, K> {
         for (component, scale) in x.iter_mut().zip(&self.coordinate_scales) {
             *component = *component * *scale;
         }
-        for k in 0..K {
-            x[k] = x[k] * self.pivot_reciprocals[k];
-            for j in k + 1..K {
-                x[j] = x[j] - self.factors[k][j] * x[k];
+        for (k, (row, reciprocal)) in self.factors.iter().zip(&self.pivot_reciprocals).enumerate() {
+            let [known, behind @ ..] = tail_mut(&mut x, k) else { break };
+            *known = *known * *reciprocal;
+            for (component, entry) in behind.iter_mut().zip(tail(row, k + 1)) {
+                *component = *component - *entry * *known;
             }
         }
         for k in (0..K).rev() {
-            for i in k + 1..K {
-                x[k] = x[k] - self.factors[i][k] * x[i];
+            let [component, known @ ..] = tail_mut(&mut x, k) else { break };
+            for (row, known) in tail(&self.factors, k + 1).iter().zip(known) {
+                *component = *component - at(row, k) * *known;
             }
         }
-        for k in (0..K).rev() {
-            for i in (k + 1..K).rev() {
-                let (upper, lower) = (x[k], x[i]);
-                x[k] = T::select(self.swaps[k][i], lower, upper);
-                x[i] = T::select(self.swaps[k][i], upper, lower);
+        for (k, swaps) in self.swaps.iter().enumerate().rev() {
+            let [upper, below @ ..] = tail_mut(&mut x, k) else { break };
+            for (lower, swap) in below.iter_mut().zip(tail(swaps, k + 1)).rev() {
+                exchange(*swap, from_mut(upper), from_mut(lower));
             }
         }
         for (component, weight) in x.iter_mut().zip(&self.row_weights) {
@@ -127,13 +129,19 @@ impl<T: Scalar, const K: usize> Factorization<T, K> for Lu<T, K> {
     fn reverses(&self) -> T::Mask {
         let mut odd = T::mask(false);
         let mut turn = |mask: T::Mask| odd = (odd | mask) & !(odd & mask);
-        for k in 0..K {
-            turn(self.pivot_reciprocals[k].less(T::constant(0.0)));
-            for i in k + 1..K {
-                turn(self.swaps[k][i]);
-            }
+        for (k, (swaps, reciprocal)) in self.swaps.iter().zip(&self.pivot_reciprocals).enumerate() {
+            turn(reciprocal.less(T::constant(0.0)));
+            tail(swaps, k + 1).iter().for_each(|swap| turn(*swap));
         }
         odd
+    }
+}
+
+/// Swaps `upper` and `lower`, component by component, in the lanes of `swap`.
+#[inline(always)]
+fn exchange<T: Scalar>(swap: T::Mask, upper: &mut [T], lower: &mut [T]) {
+    for (upper, lower) in upper.iter_mut().zip(lower) {
+        (*upper, *lower) = (T::select(swap, *lower, *upper), T::select(swap, *upper, *lower));
     }
 }
 

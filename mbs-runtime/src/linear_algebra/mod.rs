@@ -8,6 +8,7 @@ pub(crate) mod factorization;
 pub(crate) mod guarded;
 pub(crate) mod lu;
 pub(crate) mod orthogonal;
+pub(crate) mod parts;
 pub(crate) mod rectangular;
 pub(crate) mod vectors;
 

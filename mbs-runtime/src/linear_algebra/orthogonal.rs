@@ -1,5 +1,8 @@
 //! Minimum-norm solution of a system of any rank: complete orthogonal decomposition.
 
+use core::mem::swap;
+
+use crate::linear_algebra::parts::{at, tail_mut, transposed};
 use crate::scalar::number::Real;
 
 /// The minimum-norm least-squares solution of `a x ≈ b` and the rank of `a`, both in the reference metric.
@@ -66,12 +69,7 @@ pub(super) fn scaled_columns<R: Real, const M: usize, const K: usize>(
     row_scales: &[R; M],
     coordinate_scales: &[R; K],
 ) -> [[R; M]; K] {
-    let rows = crate::linear_algebra::in_metric(a, row_scales, coordinate_scales);
-    let mut columns = [[R::constant(0.0); M]; K];
-    for (j, column) in columns.iter_mut().enumerate() {
-        column.iter_mut().zip(&rows).for_each(|(entry, row)| *entry = row[j]);
-    }
-    columns
+    transposed(&crate::linear_algebra::in_metric(a, row_scales, coordinate_scales))
 }
 
 /// A column-pivoted QR factorization.
@@ -134,14 +132,20 @@ pub(super) fn pivoted<R: Real, const M: usize, const K: usize>(
     let mut order = core::array::from_fn(|j| j);
     let mut reflections = [Reflection::none(); K];
     let (mut rank, mut largest) = (0, R::constant(0.0));
-    for k in 0..K {
-        for j in k + 1..K {
-            if square_from(&columns[j], k) > square_from(&columns[k], k) {
-                columns.swap(k, j);
-                order.swap(k, j);
+    for (k, reflection) in reflections.iter_mut().enumerate() {
+        // Column k, of K, and its index; then those that remain.
+        let ([column, others @ ..], [index, indices @ ..]) =
+            (tail_mut(&mut columns, k), tail_mut(&mut order, k))
+        else {
+            break;
+        };
+        for (other, other_index) in others.iter_mut().zip(indices) {
+            if square_from(other, k) > square_from(column, k) {
+                swap(column, other);
+                swap(index, other_index);
             }
         }
-        let length = square_from(&columns[k], k).sqrt();
+        let length = square_from(column, k).sqrt();
         if k == 0 {
             largest = length;
         }
@@ -150,11 +154,9 @@ pub(super) fn pivoted<R: Real, const M: usize, const K: usize>(
             break;
         }
         rank = k + 1;
-        let reflection = Reflection::of(&columns[k], k);
-        for column in columns.iter_mut().skip(k) {
-            reflection.apply(column);
-        }
-        reflections[k] = reflection;
+        *reflection = Reflection::of(column, k);
+        reflection.apply(column);
+        others.iter_mut().for_each(|other| reflection.apply(other));
     }
     Pivoted { columns, order, reflections, rank }
 }
@@ -188,25 +190,22 @@ fn least_norm<R: Real, const M: usize, const K: usize>(
     let mut rows = [[zero; K]; M];
     for (i, row) in rows.iter_mut().enumerate().take(rank) {
         for (j, (entry, column)) in row.iter_mut().zip(columns).enumerate() {
-            *entry = if j < i { zero } else { column[i] };
+            *entry = if j < i { zero } else { at(column, i) };
         }
     }
     let mut reflections = [Reflection::none(); M];
     let mut z = [zero; K];
-    for k in 0..M {
-        if k >= rank || k >= K {
-            break;
-        }
-        reflections[k] = Reflection::of(&rows[k], k);
-        for row in rows.iter_mut().skip(k) {
-            reflections[k].apply(row);
-        }
+    for (k, (reflection, y)) in reflections.iter_mut().zip(y).enumerate().take(rank.min(K)) {
+        let [row, below @ ..] = tail_mut(&mut rows, k) else { break };
+        *reflection = Reflection::of(row, k);
+        reflection.apply(row);
+        below.iter_mut().for_each(|row| reflection.apply(row));
         // Forward substitution with row k of the lower factor, whose diagonal is not 0 because the rank says so.
-        let mut rest = y[k];
-        for j in 0..k {
-            rest = rest - rows[k][j] * z[j];
+        let known = row.iter().zip(&z).take(k);
+        let rest = known.fold(*y, |rest, (entry, known)| rest - *entry * *known);
+        if let Some(component) = z.get_mut(k) {
+            *component = rest / at(row, k);
         }
-        z[k] = rest / rows[k][k];
     }
     for reflection in reflections.iter().rev() {
         reflection.apply(&mut z);

@@ -6,6 +6,7 @@ use crate::block_solvers::convergence::Statistics;
 use crate::block_solvers::fast_newton::FastNewton;
 use crate::kinematics::homotopy::{LARGEST_APPROACH, LARGEST_SECOND_ORDER_TERM};
 use crate::kinematics::link_lengths;
+use crate::linear_algebra::parts::at;
 use crate::mechanism::margin::Margin;
 use crate::mechanism::{Kinematic, negated};
 use crate::scalar::number::{Real, Scalar, index};
@@ -402,8 +403,9 @@ fn way_and_size<T: Scalar, const N: usize>(q: &[T; N], predicted: &[T; N], weigh
             (way.max(((*place - *predicted) * *weight).abs()), size + place.abs() * *weight)
         });
     }
-    let ways: [T; N] = from_fn(|index| ((q[index] - predicted[index]) * weights[index]).abs());
-    let sizes: [T; N] = from_fn(|index| q[index].abs() * weights[index]);
+    // Each number from its place: copies that are changed one by one would be written and loaded again.
+    let ways: [T; N] = from_fn(|index| ((at(q, index) - at(predicted, index)) * at(weights, index)).abs());
+    let sizes: [T; N] = from_fn(|index| at(q, index).abs() * at(weights, index));
     (in_four_parts(&ways, T::max), in_four_parts(&sizes, T::add))
 }
 
@@ -415,7 +417,7 @@ fn sum_of_rates<T: Scalar, const N: usize>(qd: &[T; N], qdd: &[T; N]) -> T {
         // As in [`way_and_size`].
         return rates.fold(T::constant(0.0), |sum, (rate, change)| sum + (*rate + *change));
     }
-    let changes: [T; N] = from_fn(|index| qd[index] + qdd[index]);
+    let changes: [T; N] = from_fn(|index| at(qd, index) + at(qdd, index));
     in_four_parts(&changes, T::add)
 }
 

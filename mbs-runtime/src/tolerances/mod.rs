@@ -1,7 +1,8 @@
 //! Tolerances: each with its value as a law in ε, the distance from 1 to the next number of the number type.
 //!
 //! `positions` decides when an assembly has converged, `singular` where a position counts as singular. `forces` decides when
-//! forces balance and rows follow from others, `motion` when a step in time is accepted and an event is found.
+//! forces balance and rows follow from others, `motion` when a step in time is accepted and an event is found, `accuracy` when a
+//! whole run is accurate enough.
 //!
 //! A tolerance tells which numbers count as zero, as converged or as singular. Constants of a method, as the safety factor of a
 //! step control or Armijo's, stand with the method.
@@ -14,6 +15,7 @@
 //! | [`Law::at_least`] | max(c, k ε) | errors of typed numbers and of models, which rounding may exceed |
 //! | [`Law::fixed`] | c | ratios to another tolerance, and quantities far above rounding |
 
+pub(crate) mod accuracy;
 pub(crate) mod forces;
 pub(crate) mod motion;
 pub(crate) mod positions;

@@ -72,11 +72,10 @@ impl Budget {
     /// The blocks by the solver of `step`.
     const fn solution(self, work: &Work) -> Operations {
         let mut total = Operations::NONE;
-        let mut index = 0;
-        while index < work.blocks.len() {
-            let block = &work.blocks[index];
+        let mut rest = work.blocks;
+        while let [block, others @ ..] = rest {
             total = total.and(self.block(block).times(block.count as u64));
-            index += 1;
+            rest = others;
         }
         total
     }
@@ -148,16 +147,15 @@ const fn has_surplus(work: &Work) -> bool {
 /// `Kinematic::factorize`: Φ_q, each block with its margin and the sign of its determinant.
 const fn factors(work: &Work) -> Operations {
     let mut total = work.phi_q;
-    let mut index = 0;
-    while index < work.blocks.len() {
-        let block = &work.blocks[index];
+    let mut rest = work.blocks;
+    while let [block, others @ ..] = rest {
         let k = block.unknowns as u64;
         if k > 0 {
             let signs = if k > 3 { k } else { 1 };
             let factors = block.factorize().and(compare(1 + signs)).and(select(1));
             total = total.and(factors.times(block.count as u64));
         }
-        index += 1;
+        rest = others;
     }
     total
 }
@@ -165,13 +163,12 @@ const fn factors(work: &Work) -> Operations {
 /// `Kinematic::solve_linear`, as if every entry were off the diagonal blocks.
 const fn linear(work: &Work) -> Operations {
     let mut total = products(work.entries as u64).and(add(work.rows as u64)).and(divide(work.rows as u64));
-    let mut index = 0;
-    while index < work.blocks.len() {
-        let block = &work.blocks[index];
+    let mut rest = work.blocks;
+    while let [block, others @ ..] = rest {
         if block.unknowns > 0 {
             total = total.and(block.solve().times(block.count as u64));
         }
-        index += 1;
+        rest = others;
     }
     total
 }

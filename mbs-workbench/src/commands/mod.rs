@@ -6,6 +6,7 @@ pub mod basins;
 pub mod check;
 pub mod chosen;
 pub mod compare;
+pub mod cost;
 pub mod document;
 pub mod dof;
 pub mod drift;

@@ -29,11 +29,26 @@ pub fn run(catalogue: &Catalogue, argument: &str, watch: Option<Watch>) -> Resul
     let text = TextFile::read(argument)?;
     let blueprint = Blueprint::of_text(&text)?;
     let manifest = catalogue.first().map(|card| card.manifest.as_ref());
+    let mut rest: Vec<OsString> = env::args_os().skip(1).collect();
+    if let Some(Watch { command, runs }) = watch {
+        // No option stands before a command.
+        rest.iter_mut().filter(|word| *word == command).take(1).for_each(|word| *word = runs.into());
+        rest.push("--reload".into());
+    }
+    started(&Forge::of_caller(manifest), &blueprint, rest)
+}
+
+/// Builds the program of a blueprint and runs it with `arguments`; its exit code.
+pub fn started(
+    forge: &Forge,
+    blueprint: &Blueprint,
+    arguments: Vec<OsString>,
+) -> Result<ExitCode, CommandError> {
     let style = ProgressStyle::with_template("{spinner} {elapsed} {msg}").expect("a valid template");
     let bar = ProgressBar::new_spinner().with_style(style);
     bar.enable_steady_tick(TICK);
     let mut begun = false;
-    let program = Forge::of_caller(manifest).program(&blueprint, &mut |step| {
+    let program = forge.program(blueprint, &mut |step| {
         // Without a terminal one line says why nothing happens yet.
         if bar.is_hidden() && !begun {
             eprintln!("{step}");
@@ -45,13 +60,7 @@ pub fn run(catalogue: &Catalogue, argument: &str, watch: Option<Watch>) -> Resul
     let program = program?;
     let target = target_directory();
     let mut command = Command::new(&program);
-    let mut rest: Vec<OsString> = env::args_os().skip(1).collect();
-    if let Some(Watch { command, runs }) = watch {
-        // No option stands before a command.
-        rest.iter_mut().filter(|word| *word == command).take(1).for_each(|word| *word = runs.into());
-        rest.push("--reload".into());
-    }
-    command.args(rest).env(STARTED_FROM, std::path::absolute(&target).unwrap_or(target));
+    command.args(arguments).env(STARTED_FROM, std::path::absolute(&target).unwrap_or(target));
     let status = command
         .status()
         .map_err(|error| CommandError::Failed(format!("{} does not start: {error}", program.display())))?;

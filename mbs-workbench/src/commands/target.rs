@@ -37,6 +37,11 @@ impl Target {
         &self.name
     }
 
+    /// Its entry of the list.
+    pub fn card(&self) -> &Card {
+        &self.card
+    }
+
     /// The name as part of a path.
     pub fn file_name(&self) -> String {
         self.card.file_name()

@@ -1,10 +1,18 @@
 //! Mechanisms of any size behind object-safe traits: all code of the workbench that is generic over mechanisms.
 
 mod branching;
+#[cfg(feature = "program")]
+pub mod costs;
 pub mod dynamics;
 pub mod erase;
+#[cfg(feature = "program")]
+pub mod exact;
 pub mod experiment;
 pub mod facade;
 pub mod formulas;
 pub mod lanes;
 pub mod masses;
+#[cfg(feature = "program")]
+pub mod timed_runs;
+#[cfg(feature = "program")]
+pub mod timed_steps;

@@ -42,6 +42,30 @@ impl Blueprint {
     /// # Errors
     /// [`ForgeError::Functions`] where the text calls functions of the caller.
     pub fn of_text(text: &TextFile) -> Result<Self, ForgeError> {
+        Self::for_text(text, "", "", |module| format!("mbs_workbench::program(&[{module}::CARD])"))
+    }
+
+    /// The study of `mbs cost` for the mechanism of a text.
+    ///
+    /// # Errors
+    /// As [`of_text`](Self::of_text).
+    pub fn cost_of_text(text: &TextFile) -> Result<Self, ForgeError> {
+        let costs = format!(
+            "pub const COSTS: fn(&[(usize, f64)]) -> ::mbs_workbench::erased::costs::Comparable = \
+             ::mbs_workbench::comparable!({}::default());",
+            text.type_name()
+        );
+        let body = |module: &str| format!("mbs_workbench::cost_program({module}::CARD, {module}::COSTS)");
+        Self::for_text(text, "_cost", &costs, body)
+    }
+
+    /// A program for the mechanism of a text; `items` stand beside its card, `body` is that of `main`.
+    fn for_text(
+        text: &TextFile,
+        suffix: &str,
+        items: &str,
+        body: impl FnOnce(&str) -> String,
+    ) -> Result<Self, ForgeError> {
         if !text.functions.is_empty() {
             let functions = text.functions.clone();
             return Err(ForgeError::Functions { mechanism: text.type_name(), functions });
@@ -56,12 +80,13 @@ impl Blueprint {
         let card = format!("::mbs_workbench::card!({}::default())", text.type_name());
         // The user's lines keep their numbers, so nothing stands above them.
         let main = format!(
-            "{before}{prefix}{source}\n}} pub const CARD: ::mbs_workbench::card::Card = {card}; }}\n\n{HEAD}\n\n\
-             fn main() -> ExitCode {{\n    mbs_workbench::program(&[{module}::CARD])\n}}\n"
+            "{before}{prefix}{source}\n}} pub const CARD: ::mbs_workbench::card::Card = {card}; {items} }}\n\n{HEAD}\n\n\
+             fn main() -> ExitCode {{\n    {}\n}}\n",
+            body(&module)
         );
         let shifted = (lines + 1, prefix.chars().count());
         Ok(Blueprint {
-            name: snake_case(&text.type_name()),
+            name: format!("{}{suffix}", snake_case(&text.type_name())),
             manifest: dependencies(&[]),
             main,
             origin: Some(Origin { path: text.path.clone(), content: text.content.clone(), shifted }),
@@ -73,26 +98,51 @@ impl Blueprint {
     /// constructor. It is built with what the library is at that time.
     ///
     /// # Errors
-    /// [`ForgeError::NoLibrary`] where the constructor does not begin with a library that the card's crate depends on by path.
+    /// [`ForgeError::NoLibrary`] where neither the constructor nor the module of the card begins with a library that the card's crate
+    /// is or depends on by path.
     pub fn of_card(
         forge: &Forge,
         card: &Card,
         name: &str,
         main: impl FnOnce(&str) -> String,
     ) -> Result<Self, ForgeError> {
-        let constructor = card.constructor;
-        let no_library = || ForgeError::NoLibrary { constructor: constructor.to_string() };
-        let first = constructor.trim_start_matches("::").split("::").next().unwrap_or_default().trim();
-        let library = libraries(forge, Path::new(card.manifest))?
-            .into_iter()
-            .find(|library| library.name.replace('-', "_") == first)
-            .ok_or_else(no_library)?;
+        let Card { constructor, module, manifest, .. } = *card;
+        let libraries = libraries(forge, Path::new(manifest))?;
+        let named = |path: &str| {
+            let first =
+                path.trim_start_matches("::").split("::").next().unwrap_or_default().trim().to_string();
+            libraries.iter().position(|library| library.name.replace('-', "_") == first)
+        };
+        // A constructor begins with a library, or it is seen in the module of its card.
+        let (library, scope) = match (named(constructor), named(module)) {
+            (Some(library), _) => (library, String::new()),
+            (None, Some(library)) => (library, format!("#[allow(unused_imports)]\nuse ::{module}::*;\n")),
+            (None, None) => return Err(ForgeError::NoLibrary { constructor: constructor.to_string() }),
+        };
+        let library = libraries.into_iter().nth(library);
         Ok(Blueprint {
             name: name.to_string(),
-            manifest: dependencies(&[library]),
-            main: main(constructor),
+            manifest: dependencies(library.as_slice()),
+            main: scope + &main(constructor),
             origin: None,
             is_closed: false,
+        })
+    }
+
+    /// The study of `mbs cost` for the mechanism of `card`.
+    ///
+    /// # Errors
+    /// As [`of_card`](Self::of_card).
+    pub fn cost_of_card(forge: &Forge, card: &Card) -> Result<Self, ForgeError> {
+        let Card { module, manifest, .. } = *card;
+        Self::of_card(forge, card, &format!("{}_cost", card.file_name()), |constructor| {
+            format!(
+                "{HEAD}\n\nuse mbs_workbench::card::Card;\n\n\
+                 const CARD: Card = Card {{ constructor: {constructor:?}, module: {module:?}, manifest: {manifest:?}, \
+                 ..mbs_workbench::card!({constructor}) }};\n\n\
+                 fn main() -> ExitCode {{\n    \
+                 mbs_workbench::cost_program(CARD, mbs_workbench::comparable!({constructor}))\n}}\n"
+            )
         })
     }
 
@@ -128,17 +178,31 @@ fn libraries(forge: &Forge, manifest: &Path) -> Result<Vec<Library>, ForgeError>
     let metadata: serde_json::Value = serde_json::from_slice(&output.stdout)
         .map_err(|error| ForgeError::Cargo(format!("`cargo metadata` printed no JSON: {error}")))?;
     let packages = metadata["packages"].as_array().into_iter().flatten();
-    let own = packages.filter(|package| {
-        let path = package["manifest_path"].as_str().map(Path::new);
-        path.is_some_and(|path| path == manifest || path.canonicalize().ok() == manifest.canonicalize().ok())
-    });
-    let dependencies = own.filter_map(|package| package["dependencies"].as_array()).flatten();
+    let own: Vec<&serde_json::Value> = packages
+        .filter(|package| {
+            let path = package["manifest_path"].as_str().map(Path::new);
+            path.is_some_and(|path| {
+                path == manifest || path.canonicalize().ok() == manifest.canonicalize().ok()
+            })
+        })
+        .collect();
+    let dependencies = own.iter().filter_map(|package| package["dependencies"].as_array()).flatten();
     let library = |dependency: &serde_json::Value| {
         let package = dependency["name"].as_str()?.to_string();
         let name = dependency["rename"].as_str().map_or_else(|| package.clone(), str::to_string);
         Some(Library { name, package, path: dependency["path"].as_str()?.to_string() })
     };
-    Ok(dependencies.filter_map(library).collect())
+    let itself = own.iter().filter_map(|package| {
+        let targets = package["targets"].as_array().into_iter().flatten();
+        let is_library = |target: &&serde_json::Value| {
+            let kinds = target["kind"].as_array().into_iter().flatten();
+            kinds.filter_map(serde_json::Value::as_str).any(|kind| matches!(kind, "lib" | "rlib"))
+        };
+        let name = targets.filter(is_library).find_map(|target| target["name"].as_str())?.to_string();
+        let path = manifest.parent()?.display().to_string();
+        Some(Library { name, package: package["name"].as_str()?.to_string(), path })
+    });
+    Ok(itself.chain(dependencies.filter_map(library)).collect())
 }
 
 /// The runtime, the program and libraries, as a program of the same sources has them.

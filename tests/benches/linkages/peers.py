@@ -23,7 +23,10 @@ def write(name):
         def __getattr__(self, word):
             return getattr(ca, word)
 
-    rows, _ = definition.define(Words(), ca.vertsplit(q), [ca.SX(value) for value in definition.VALUES], t, None)
+    def rate(value):
+        return ca.jtimes(value, q, qd) + ca.jacobian(value, t)
+
+    rows, _ = definition.define(Words(), ca.vertsplit(q), [ca.SX(value) for value in definition.VALUES], t, rate)
     phi = ca.vertcat(*rows)
     phi_q, phi_t = ca.jacobian(phi, q), ca.densify(ca.jacobian(phi, t))
     phi_d = ca.mtimes(phi_q, qd) + phi_t

@@ -67,6 +67,8 @@ const HOUSES: &[House] = &[
         rooms: &[
             "target_directory",
             "hash",
+            "double_double",
+            "setting",
             "motion",
             "erased",
             "output",
@@ -79,6 +81,7 @@ const HOUSES: &[House] = &[
             "forge",
             "verify",
             "teaching",
+            "cost",
             "commands",
             "command_line",
         ],

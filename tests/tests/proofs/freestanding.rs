@@ -1,7 +1,7 @@
 //! No allocation and no panic, proven by the linker: emitted code and solvers link as a static program without any
-//! library. The only undefined symbols are the four functions on memory that the compiler itself calls.
+//! library. The only undefined symbols are the five functions on memory that the compiler itself calls.
 //!
-//! The program is `tests/proofs/freestanding`. ELF linkers only.
+//! At `opt-level` 3 and `"s"`; at 1, 2 and `"z"` with the feature `long`. The program is `tests/proofs/freestanding`. ELF linkers only.
 #![cfg(target_os = "linux")]
 
 use std::ffi::OsStr;
@@ -32,7 +32,7 @@ const EXPORTS: [&str; 18] = [
 ];
 
 /// The only symbols that may come from elsewhere.
-const MEMORY: [&str; 4] = ["memcpy", "memmove", "memset", "memcmp"];
+const MEMORY: [&str; 5] = ["memcpy", "memmove", "memset", "memcmp", "bcmp"];
 
 /// Parts of names that only code with a panic or an allocation contains.
 const FORBIDDEN: [&str; 10] = [
@@ -86,15 +86,36 @@ fn prove(profile: &str) {
     assert!(suspicious.is_empty(), "{profile}: {suspicious:?}");
 }
 
+/// Links a program with an index that may be out of range, which must fail.
+fn reject_an_index_out_of_range(profile: &str) {
+    let complaint = linked(profile, Some("control-panics")).expect_err("a panic path went unnoticed");
+    let found = complaint.contains("undefined") && complaint.contains("proof_reached_a_panic");
+    assert!(found, "{profile}: {complaint}");
+}
+
 #[test]
 fn emitted_code_and_solvers_link_with_nothing_but_memory_functions() {
     prove("linked");
 }
 
 #[test]
+fn compiled_for_size_they_do_too() {
+    prove("linked-s");
+}
+
+#[cfg(feature = "long")]
+#[test]
+fn at_every_other_level_they_do_too() {
+    for profile in ["linked-z", "linked-2", "linked-1"] {
+        reject_an_index_out_of_range(profile);
+        prove(profile);
+    }
+}
+
+#[test]
 fn an_index_out_of_range_is_rejected() {
-    let complaint = linked("linked", Some("control-panics")).expect_err("a panic path went unnoticed");
-    assert!(complaint.contains("undefined") && complaint.contains("proof_reached_a_panic"), "{complaint}");
+    reject_an_index_out_of_range("linked");
+    reject_an_index_out_of_range("linked-s");
 }
 
 #[test]

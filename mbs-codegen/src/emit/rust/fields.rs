@@ -208,6 +208,12 @@ pub fn enclosed(
     }
 }
 
+/// A mechanism in double precision as one in the numbers `__U`.
+pub fn in_other_numbers(text: &Text, scenes: &Scenes) -> TokenStream {
+    let (name, fields) = (&text.header.name, converted(scenes, &text.header.runtime, rounded));
+    quote! { #name { #fields } }
+}
+
 /// The fields of the mechanism in another type of number, each component as `component` has it, and its functions.
 fn converted(
     scenes: &Scenes,
@@ -241,6 +247,25 @@ fn interval(field: &Field, component: usize) -> String {
             let zero = "__mbs::Interval::of(<T::Real as __mbs::Scalar>::constant(0.0))";
             format!("__mbs::Phase::new({zero}, __mbs::Speed {{ value: {zero}, rate: {zero} }})")
         }
+    }
+}
+
+/// A field of a mechanism in double precision, in the numbers `__U`.
+fn rounded(field: &Field, component: usize) -> String {
+    let place = format!("self.{}{}", field_name(&field.name.text), subscripts(component, &field.shape));
+    let of = |place: &str| format!("__U::constant({place})");
+    let part = |part: &str| of(&format!("{place}.{part}"));
+    match field.role {
+        Role::Parameter | Role::Input => of(&place),
+        Role::InputWithRates => {
+            format!("__mbs::Signal::new({}, {}, {})", part("value"), part("rate"), part("acceleration"))
+        }
+        Role::Phase => format!(
+            "__mbs::Phase::new({}, __mbs::Speed {{ value: {}, rate: {} }})",
+            part("value"),
+            part("rate"),
+            part("acceleration")
+        ),
     }
 }
 

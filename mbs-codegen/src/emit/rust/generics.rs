@@ -79,14 +79,23 @@ impl Generics {
         quote! { #(#functions,)* T: #runtime::Scalar }
     }
 
-    /// `Lift: Function<f64> + …`: of an implementation for a scene in double precision.
+    /// `Lift: Function<T> + … + 'static, T: Scalar`: of a scene that shows its sizes.
     pub fn revealed(&self, model: &Model, runtime: &TokenStream) -> TokenStream {
         let called = |name: &str| model.functions.iter().any(|function| function.name.text == name);
         let functions = self.functions.iter().map(|(name, kind)| {
-            let function = called(name).then(|| quote! { #runtime::Function<::core::primitive::f64> + });
+            let function = called(name).then(|| {
+                let function = quote! { #runtime::Function };
+                quote! { #function<T> + #function<T::Real> + }
+            });
             quote! { #kind: #function ::core::clone::Clone + 'static }
         });
-        quote! { #(#functions),* }
+        quote! { #(#functions,)* T: #runtime::Scalar }
+    }
+
+    /// `Lift: Clone, __U: Scalar`: of a scene in other numbers.
+    pub fn in_numbers(&self, runtime: &TokenStream) -> TokenStream {
+        let functions = self.functions();
+        quote! { #(#functions: ::core::clone::Clone,)* __U: #runtime::Scalar }
     }
 
     /// `Lift, T, S`: arguments of the struct where it is used.

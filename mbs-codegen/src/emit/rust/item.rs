@@ -7,7 +7,7 @@ use crate::diagnostics::Diagnostics;
 use crate::emit::rust::SceneFunctions;
 use crate::emit::rust::dynamic_trait;
 use crate::emit::rust::fields::{
-    access, constructors, enclosed, field_docs, field_type, function_docs, ident, markers,
+    access, constructors, enclosed, field_docs, field_type, function_docs, ident, in_other_numbers, markers,
 };
 use crate::emit::rust::functions::Bodies;
 use crate::emit::rust::generics::Generics;
@@ -228,11 +228,15 @@ fn implementations(text: &Text, scenes: &Scenes, part: &SceneFunctions<'_>) -> T
 /// `Radau5::MOST_UNKNOWNS`, with which `tests/house/tests/shared_numbers.rs` compares it.
 const LARGE: usize = 120;
 
-/// `impl Reveal`: the sizes and the traits of a scene in double precision.
+/// `impl Reveal`: the sizes and the traits of a scene; `impl InNumbers`: the scene in other numbers than double precision.
 fn revealed(text: &Text, scenes: &Scenes, part: &SceneFunctions<'_>, m: usize) -> TokenStream {
     let (runtime, model) = (&text.header.runtime, &part.scene.model);
-    let name = scenes::type_in(text, scenes, part.scene, &quote! { ::core::primitive::f64 });
-    let generics = Generics::of(text, scenes).revealed(model, runtime);
+    let in_numbers = |numbers| scenes::type_in(text, scenes, part.scene, &numbers);
+    let [name, double, other] =
+        [quote! { T }, quote! { ::core::primitive::f64 }, quote! { __U }].map(in_numbers);
+    let generics = Generics::of(text, scenes);
+    let (generics, of_other) = (generics.revealed(model, runtime), generics.in_numbers(runtime));
+    let fields = in_other_numbers(text, scenes);
     let n = model.coordinates.len();
     let method = match (model.dynamics.is_some(), part.square, n + m > LARGE) {
         (false, false, _) => "described",
@@ -244,10 +248,14 @@ fn revealed(text: &Text, scenes: &Scenes, part: &SceneFunctions<'_>, m: usize) -
     };
     let method = quote::format_ident!("{method}");
     quote! {
-        impl<#generics> #runtime::Reveal for #name {
-            fn reveal<__V: #runtime::Visitor<Self>>(self, __visitor: __V) -> __V::Output {
+        impl<#generics> #runtime::Reveal<T> for #name {
+            fn reveal<__V: #runtime::Visitor<Self, T>>(self, __visitor: __V) -> __V::Output {
                 __visitor.#method::<#n, #m>(self)
             }
+        }
+        impl<#of_other> #runtime::InNumbers<__U> for #double {
+            type Mechanism = #other;
+            fn in_numbers(&self) -> Self::Mechanism { #fields }
         }
     }
 }

@@ -3,6 +3,7 @@
 use crate::dynamics::integrators::vector::{IntegratorState, Vector};
 use crate::dynamics::model::{Counts, Model, Solved};
 use crate::failure::Failure;
+use crate::linear_algebra::parts::at;
 use crate::mechanism::Mechanism;
 use crate::mechanism::dynamic::{Dynamic, Partitioned};
 use crate::mechanism::transformed::Transformed;
@@ -228,21 +229,23 @@ fn solve_symmetric<T: Scalar, const F: usize>(mut a: [[T; F]; F], mut b: [T; F])
     let (zero, one) = (T::constant(0.0), T::constant(1.0));
     let mut inert = true;
     for k in 0..F {
-        let (pivot_row, pivot_right) = (a[k], b[k]);
-        let positive = zero.less(pivot_row[k]);
+        // Row k, of F.
+        let (Some(pivot_row), pivot_right) = (a.get(k).copied(), at(&b, k)) else { break };
+        let pivot = at(&pivot_row, k);
+        let positive = zero.less(pivot);
         inert &= T::all(positive);
-        let reciprocal = one / T::select(positive, pivot_row[k], one);
+        let reciprocal = one / T::select(positive, pivot, one);
         for (i, (row, right)) in a.iter_mut().zip(&mut b).enumerate() {
             if i == k {
+                row.iter_mut().skip(k + 1).for_each(|x| *x = *x * reciprocal);
+                *right = pivot_right * reciprocal;
                 continue;
             }
-            let multiplier = row[k] * reciprocal;
+            let multiplier = at(row, k) * reciprocal;
             row.iter_mut().zip(&pivot_row).skip(k + 1).for_each(|(x, above)| *x = *x - multiplier * *above);
             *right = *right - multiplier * pivot_right;
         }
-        a[k].iter_mut().skip(k + 1).for_each(|x| *x = *x * reciprocal);
-        b[k] = pivot_right * reciprocal;
-        // Rows above were cleared against the unscaled row; scaling it now leaves them right.
+        // All rows were cleared against the unscaled one, of which a copy was kept.
     }
     (b, inert)
 }

@@ -322,7 +322,7 @@ where
     fn values(&mut self, t: R, first: usize, values: &mut [R; GROUP]) {
         let limits = self.limits(t);
         let left = limits.as_ref().iter().skip(first / 2).map(|limit| limit.left(self.size));
-        for (pair, left) in values.chunks_exact_mut(2).zip(left) {
+        for (pair, left) in values.as_chunks_mut::<2>().0.iter_mut().zip(left) {
             pair.iter_mut().zip(left).for_each(|(value, left)| *value = left);
         }
         let Some(errors) = self.errors else { return };
@@ -335,7 +335,7 @@ where
                 let value = moved.value - limit.value;
                 [value - (moved.low - limit.low), value - (moved.high - limit.high)]
             });
-            for (pair, changes) in values.chunks_exact_mut(2).zip(changes) {
+            for (pair, changes) in values.as_chunks_mut::<2>().0.iter_mut().zip(changes) {
                 pair.iter_mut().zip(changes).for_each(|(value, change)| *value = *value + change.abs());
             }
         }

@@ -1,5 +1,6 @@
 //! A mechanism that moves by its forces: state and mechanism in one place, one call a step.
 
+pub(crate) mod accuracy;
 pub(crate) mod adaptive_run;
 pub(crate) mod checks;
 pub(crate) mod contact;

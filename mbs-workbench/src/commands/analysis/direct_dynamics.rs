@@ -3,11 +3,11 @@
 use std::time::Duration;
 
 use crate::erased::dynamics::AnyDynamics;
-use crate::erased::dynamics::direct_dynamics::{Approach, Simulated, Stabilization, equal};
+use crate::erased::dynamics::direct_dynamics::{Approach, Simulated, Stabilization, Steps, equal};
 use mbs_runtime::dynamics::{Counts, MethodWarning, MovedStart};
 use mbs_runtime::{Failure, FailureKind};
 
-use super::super::summary::significant;
+use super::super::summary::{significant, unit};
 use super::early_end::EarlyEnd;
 use super::loads::{energies, loads};
 use super::{Analysed, AnalysisResult};
@@ -29,6 +29,7 @@ pub(super) fn direct(
         return Err(end.message.clone());
     }
     let mut figures = balance(&found);
+    figures.extend(estimated_error(dynamics, approach, times, &found));
     figures.extend(end.iter().map(|end| ["early end".to_string(), end.line.clone()]));
     let span = times.get(1).zip(times.first()).map(|(next, first)| next - first);
     if let Some((span, longest)) = span.zip(approach.longest()) {
@@ -38,6 +39,34 @@ pub(super) fn direct(
     figures.extend(energies(&found.motion));
     figures.extend(loads(&found.motion));
     Ok(AnalysisResult { ended: end, ..AnalysisResult::of(found.motion, figures) })
+}
+
+/// Errors of the coordinates at the end of adaptive steps: their difference from a run of ten times the tolerance, in each unit the
+/// largest. None where both runs have nearly the same steps.
+fn estimated_error(
+    dynamics: &dyn AnyDynamics,
+    approach: &Approach,
+    times: &[f64],
+    found: &Simulated,
+) -> Option<[String; 2]> {
+    let Steps::Adaptive { pair, tolerance } = approach.steps else { return None };
+    let (first, last) = (*times.first()?, *times.last()?);
+    let steps = Steps::Adaptive { pair, tolerance: 10.0 * tolerance };
+    let coarse = dynamics.simulate(&Approach { steps, ..*approach }, &[first, last], &mut |_| ()).ok()?;
+    let is_whole = found.failure.is_none() && coarse.failure.is_none();
+    if !is_whole || 10 * found.counts.steps < 11 * coarse.counts.steps {
+        return None;
+    }
+    let mut errors: Vec<(&str, f64)> = Vec::new();
+    for (fine, coarse) in found.motion.coordinates.iter().zip(&coarse.motion.coordinates) {
+        let error = (fine.q.last()? - coarse.q.last()?).abs();
+        match errors.iter_mut().find(|(of, _)| *of == fine.unit) {
+            Some((_, largest)) => *largest = largest.max(error),
+            None => errors.push((fine.unit, error)),
+        }
+    }
+    let words: Vec<String> = errors.iter().map(|(of, error)| format!("{error:.0e}{}", unit(of))).collect();
+    Some(["estimated error at the end".to_string(), words.join(", ")])
 }
 
 /// Reason why a motion from forces ended; at a singular position that its stabilisation cannot pass, also the cure.

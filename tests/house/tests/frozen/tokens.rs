@@ -82,7 +82,7 @@ fn is_documentation(brackets: Option<&TokenTree>) -> bool {
 fn reveals(item: &Item) -> bool {
     let Item::Impl(implementation) = item else { return false };
     let name = implementation.trait_.as_ref().and_then(|(path, _)| path.segments.last());
-    name.is_some_and(|name| name.ident == "Reveal")
+    name.is_some_and(|name| name.ident == "Reveal" || name.ident == "InNumbers")
 }
 
 /// The texts between the braces of `mechanism! { … }` in the Rust files below a directory.

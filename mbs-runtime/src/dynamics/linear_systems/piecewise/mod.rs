@@ -14,6 +14,7 @@ mod tests;
 use crate::dynamics::linear_systems::piecewise::reduced::Reduced;
 use crate::linear_algebra::factorization::Factorization;
 use crate::linear_algebra::lu::Lu;
+use crate::linear_algebra::parts::identity;
 use crate::mechanism::normal_forces::Term;
 use crate::scalar::number::Real;
 use crate::tolerances::forces;
@@ -173,16 +174,17 @@ impl<R: Real, const K: usize> Piecewise<R, K> {
     /// v of (I − u B) v = u c, the terms that are `held` at their values; none where that is singular.
     fn linear(&self, directions: &[[R; 2]; K], held: impl Fn(usize) -> Option<R>) -> Option<[R; K]> {
         let (zero, one) = (R::constant(0.0), R::constant(1.0));
-        let (mut matrix, mut right) = ([[zero; K]; K], [zero; K]);
-        for j in 0..K {
-            matrix[j][j] = one;
-            if let Some(value) = held(j) {
-                right[j] = value;
+        let (mut matrix, mut right) = (identity(), [zero; K]);
+        let rows = matrix.iter_mut().zip(&mut right);
+        let terms = directions.iter().zip(self.offset.iter().zip(&self.slope));
+        for (term, ((row, right), (direction, (offset, slope)))) in rows.zip(terms).enumerate() {
+            if let Some(value) = held(term) {
+                *right = value;
                 continue;
             }
-            for ((u, offset), slopes) in directions[j].iter().zip(&self.offset[j]).zip(&self.slope[j]) {
-                right[j] = right[j] + *u * *offset;
-                for (entry, slope) in matrix[j].iter_mut().zip(slopes) {
+            for ((u, offset), slopes) in direction.iter().zip(offset).zip(slope) {
+                *right = *right + *u * *offset;
+                for (entry, slope) in row.iter_mut().zip(slopes) {
                     *entry = *entry - *u * *slope;
                 }
             }

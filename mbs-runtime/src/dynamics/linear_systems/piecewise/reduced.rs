@@ -1,6 +1,7 @@
 //! The open terms of a part alone.
 
 use crate::dynamics::linear_systems::piecewise::{Given, Piecewise};
+use crate::linear_algebra::parts::{at, diagonal_mut, tail_mut, taken};
 use crate::scalar::number::Real;
 
 /// Terms that a part leaves open, with the others expressed by them: v = φ(c + B v) of the open ones alone.
@@ -17,22 +18,20 @@ impl<R: Real, const K: usize> Piecewise<R, K> {
         let open = self.open(given);
         let Piecewise { mut offset, mut slope, .. } = *self;
         let directions = self.directions(given, &[zero; K]);
-        for l in 0..K {
-            if open[l] {
+        for (term, (open, [sign, _])) in open.iter().zip(directions).enumerate() {
+            if *open {
                 continue;
             }
-            let sign = directions[l][0];
-            let pivot = one - sign * slope[l][0][l];
+            let ([constant, _], [mut shares, _]) = (*offset.get(term)?, *slope.get(term)?);
+            let pivot = one - sign * taken(&mut shares, term);
             let factor = sign / pivot;
             if !factor.is_finite() {
                 return None;
             }
-            let (constant, mut shares) = (factor * offset[l][0], slope[l][0].map(|slope| factor * slope));
-            shares[l] = zero;
+            let (constant, shares) = (factor * constant, shares.map(|slope| factor * slope));
             for (offsets, slopes) in offset.iter_mut().zip(&mut slope) {
                 for (offset, slopes) in offsets.iter_mut().zip(slopes) {
-                    let own = slopes[l];
-                    slopes[l] = zero;
+                    let own = taken(slopes, term);
                     *offset = *offset + own * constant;
                     slopes.iter_mut().zip(&shares).for_each(|(slope, share)| *slope = *slope + own * *share);
                 }
@@ -80,16 +79,17 @@ impl<R: Real, const K: usize> Reduced<R, K> {
 pub(super) fn is_m_matrix<R: Real, const V: usize>(spread: &[[R; V]; V]) -> bool {
     let (zero, one) = (R::constant(0.0), R::constant(1.0));
     let mut matrix = spread.map(|row| row.map(|entry| zero - entry));
-    (0..V).for_each(|k| matrix[k][k] = one + matrix[k][k]);
+    diagonal_mut(&mut matrix).for_each(|entry| *entry = one + *entry);
     for k in 0..V {
-        let upper = matrix[k];
+        let [upper, below @ ..] = tail_mut(&mut matrix, k) else { return false };
+        let pivot = at(upper, k);
         // Written so that NaN does not contract.
-        if !zero.less(upper[k]) {
+        if !zero.less(pivot) {
             return false;
         }
-        for row in matrix.iter_mut().skip(k + 1) {
-            let factor = row[k] / upper[k];
-            row.iter_mut().zip(&upper).skip(k).for_each(|(entry, above)| *entry = *entry - factor * *above);
+        for row in below {
+            let factor = at(row, k) / pivot;
+            row.iter_mut().zip(&*upper).skip(k).for_each(|(entry, above)| *entry = *entry - factor * *above);
         }
     }
     true

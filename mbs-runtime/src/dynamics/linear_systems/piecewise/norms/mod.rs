@@ -8,10 +8,13 @@
 #[cfg(test)]
 mod tests;
 
+use core::iter::once;
+
 use crate::dynamics::linear_systems::piecewise::reduced::{Reduced, is_m_matrix};
 use crate::dynamics::linear_systems::piecewise::{Given, Piecewise};
 use crate::linear_algebra::factorization::Factorization;
 use crate::linear_algebra::lu::Lu;
+use crate::linear_algebra::parts::{at, identity, transposed};
 use crate::linear_algebra::vectors::dot;
 use crate::mechanism::normal_forces::Term;
 use crate::scalar::number::Real;
@@ -64,19 +67,17 @@ impl<R: Real, const K: usize> Piecewise<R, K> {
         let norms = Norms::<R, V, K>::new(&self.terms, reduced, scale, &directions);
         let place = |term: usize| open().position(|open| open == term);
         let solve = |x: &[R; V]| {
-            let factor = one / (scale * x[0]);
+            let factor = one / (scale * at(x, 0));
             let held = |term: usize| Some(factor * *x.get(1 + place(term)?)?);
             let start = self.linear(&directions, held)?;
             let v = self.newton(given, &start).or_else(|| self.met(given, &start))?;
             let mut found = [zero; V];
-            found[0] = one / scale;
-            let values = open().filter_map(|term| v.get(term));
-            found.iter_mut().skip(1).zip(values).for_each(|(x, v)| *x = *v);
+            let values = once(one / scale).chain(open().filter_map(|term| v.get(term).copied()));
+            found.iter_mut().zip(values).for_each(|(x, v)| *x = v);
             let sum = found.iter().fold(zero, |sum, x| sum + *x);
             Some((found.map(|x| x / sum), v))
         };
-        let mut whole = [[zero; V]; V];
-        (0..V).for_each(|a| whole[a][a] = one);
+        let mut whole = identity();
         let mut show = |v: [R; K]| {
             if self.keeps(given, &v) {
                 show(v);
@@ -84,7 +85,9 @@ impl<R: Real, const K: usize> Piecewise<R, K> {
         };
         if size == zero {
             // Without c no norm is a solution, and any other would be one in every size: of s = 0 too.
-            whole[0] = whole[1];
+            if let [first, second, ..] = whole.as_mut_slice() {
+                *first = *second;
+            }
             let nothing = self.linear(&directions, |term| place(term).map(|_| zero));
             return norms.isolate(whole, parts, |_| None, &mut show) && nothing.map(show).is_some();
         }
@@ -111,11 +114,11 @@ impl<R: Real, const V: usize, const K: usize> Norms<R, V, K> {
         let slopes = |term: usize, component: usize| {
             let mut slopes = [zero; V];
             let offset = reduced.offset.get(term).and_then(|offsets| offsets.get(component));
-            slopes[0] = scale * offset.copied().unwrap_or(zero);
-            if let Some(all) = reduced.slope.get(term).and_then(|slopes| slopes.get(component)) {
-                let open = all.iter().zip(&reduced.open).filter(|(_, open)| **open);
-                slopes.iter_mut().skip(1).zip(open).for_each(|(slope, (own, _))| *slope = *own);
-            }
+            let by_scale = scale * offset.copied().unwrap_or(zero);
+            let all = reduced.slope.get(term).and_then(|slopes| slopes.get(component));
+            let open = all.into_iter().flatten().zip(&reduced.open).filter(|(_, open)| **open);
+            let all = once(by_scale).chain(open.map(|(own, _)| *own));
+            slopes.iter_mut().zip(all).for_each(|(slope, own)| *slope = own);
             slopes
         };
         let mut norms = Norms { sums: [[[zero; V]; 2]; V], signs: [[zero; V]; K] };
@@ -211,22 +214,26 @@ impl<R: Real, const V: usize, const K: usize> Norms<R, V, K> {
         let roundings = self.roundings(part);
         // Rows of ∂G/∂μ at the centre, their largest change in the box, and G there.
         let (mut slope, mut change, mut value) = ([[zero; V]; V], [[zero; V]; V], [zero; V]);
-        slope[0][0] = one;
-        for i in 1..V {
-            let (middle, rounding) = (self.sum(i, &centre), roundings[i]);
+        slope.iter_mut().flatten().take(1).for_each(|entry| *entry = one);
+        let rows = slope.iter_mut().zip(&mut change).zip(value.iter_mut().zip(&roundings)).enumerate();
+        for (i, ((slope, change), (value, rounding))) in rows.skip(1) {
+            let (middle, rounding) = (self.sum(i, &centre), *rounding);
             let length = middle[0].hypot(middle[1]);
             let corners = part.map(|x| self.sum(i, &x));
+            let (Some([first_x, first_y]), Some(first)) = (corners.first(), part.first()) else {
+                return Verdict::Unknown;
+            };
             let mut radius = zero;
             for [x, y] in corners.iter().skip(1) {
-                radius = radius + (*x - corners[0][0]).hypot(*y - corners[0][1]);
+                radius = radius + (*x - *first_x).hypot(*y - *first_y);
             }
             // Elsewhere the direction of the norm may be any.
             let directed = radius < length;
             let u = if zero < length { middle.map(|w| w / length) } else { [zero; 2] };
             let (mut above, mut below) = (true, true);
             for (x, [wx, wy]) in part.iter().zip(&corners) {
-                above &= rounding < x[i] - wx.hypot(*wy);
-                below &= x[i] - (u[0] * *wx + u[1] * *wy) < -rounding;
+                above &= rounding < at(x, i) - wx.hypot(*wy);
+                below &= at(x, i) - (u[0] * *wx + u[1] * *wy) < -rounding;
             }
             if above || below {
                 return Verdict::None;
@@ -236,11 +243,12 @@ impl<R: Real, const V: usize, const K: usize> Norms<R, V, K> {
             // The chord of the angle of that sine.
             let half = R::constant(0.5) * (one + (one - share * share).max(zero).sqrt());
             let turned = if directed { share / half.sqrt() } else { one };
-            value[i] = centre[i] - length;
-            for k in 1..V {
-                let [x, y] = [corners[k][0] - corners[0][0], corners[k][1] - corners[0][1]];
-                slope[i][k] = part[k][i] - part[0][i] - (u[0] * x + u[1] * y);
-                change[i][k] = turned * x.hypot(y) + rounding + rounding;
+            *value = at(&centre, i) - length;
+            let columns = slope.iter_mut().zip(change).zip(part.iter().zip(&corners));
+            for ((slope, change), (corner, [x, y])) in columns.skip(1) {
+                let [x, y] = [*x - *first_x, *y - *first_y];
+                *slope = at(corner, i) - at(first, i) - (u[0] * x + u[1] * y);
+                *change = turned * x.hypot(y) + rounding + rounding;
             }
         }
         judged(&slope, &change, &value, &roundings)
@@ -261,15 +269,15 @@ fn judged<R: Real, const V: usize>(
     }
     // |J⁻¹| times the changes, and times the roundings.
     let (mut spread, mut rounding) = ([[zero; V]; V], [zero; V]);
-    for j in 1..V {
-        let mut unit = [zero; V];
-        unit[j] = one;
-        let column = factors.solve(&unit);
-        for i in 1..V {
-            let size = column[i].abs();
-            rounding[i] = rounding[i] + size * roundings[j];
-            for k in 1..V {
-                spread[i][k] = spread[i][k] + size * change[j][k];
+    let units = identity::<R, V>();
+    for (unit, (change, own)) in units.iter().zip(change.iter().zip(roundings)).skip(1) {
+        let column = factors.solve(unit);
+        let rows = column.iter().zip(rounding.iter_mut().zip(&mut spread));
+        for (entry, (rounding, spread)) in rows.skip(1) {
+            let size = entry.abs();
+            *rounding = *rounding + size * *own;
+            for (spread, change) in spread.iter_mut().zip(change).skip(1) {
+                *spread = *spread + size * *change;
             }
         }
     }
@@ -278,9 +286,9 @@ fn judged<R: Real, const V: usize>(
     let step = factors.solve(value);
     let (mut first, mut room) = (one, zero);
     let mut outside = false;
-    for i in 1..V {
-        let share = R::constant(1.0 / V as f64) - step[i];
-        let near = rounding[i] + reach * spread[i].iter().fold(zero, |sum, spread| sum + *spread);
+    for (step, (rounding, spread)) in step.iter().zip(rounding.iter().zip(&spread)).skip(1) {
+        let share = R::constant(1.0 / V as f64) - *step;
+        let near = *rounding + reach * spread.iter().fold(zero, |sum, spread| sum + *spread);
         outside |= share < -near;
         (first, room) = (first - share, room + near);
     }
@@ -303,13 +311,7 @@ fn centre<R: Real, const V: usize>(part: &Simplex<R, V>) -> [R; V] {
 /// `true` if x is in the box around a part: its shares of all corners but the first differ from those of the centre by at most 1.
 fn is_inside<R: Real, const V: usize>(part: &Simplex<R, V>, x: &[R; V]) -> bool {
     let (zero, one) = (R::constant(0.0), R::constant(1.0));
-    let mut columns = [[zero; V]; V];
-    for (component, row) in columns.iter_mut().enumerate() {
-        row.iter_mut()
-            .zip(part)
-            .for_each(|(entry, corner)| *entry = corner.get(component).copied().unwrap_or(zero));
-    }
-    let (factors, margin) = Lu::factorize(&columns, &[one; V], &[one; V]);
+    let (factors, margin) = Lu::factorize(&transposed(part), &[one; V], &[one; V]);
     let shares = factors.solve(x);
     let middle = R::constant(1.0 / V as f64);
     zero < margin && shares.iter().skip(1).all(|share| (*share - middle).abs() <= one)
@@ -318,9 +320,9 @@ fn is_inside<R: Real, const V: usize>(part: &Simplex<R, V>, x: &[R; V]) -> bool 
 /// Both halves of a part, divided at its longest edge; none where that is short.
 fn halved<R: Real, const V: usize>(part: &Simplex<R, V>) -> Option<(Simplex<R, V>, Simplex<R, V>)> {
     let (mut longest, mut ends) = (forces::SHORTEST_EDGE.of::<R>() * forces::SHORTEST_EDGE.of::<R>(), None);
-    for a in 0..V {
-        for b in a + 1..V {
-            let edge = part[a].iter().zip(&part[b]).map(|(a, b)| (*a - *b) * (*a - *b));
+    for (a, from) in part.iter().enumerate() {
+        for (b, to) in part.iter().enumerate().skip(a + 1) {
+            let edge = from.iter().zip(to).map(|(a, b)| (*a - *b) * (*a - *b));
             let length = edge.fold(R::constant(0.0), |sum, square| sum + square);
             if longest < length {
                 (longest, ends) = (length, Some((a, b)));

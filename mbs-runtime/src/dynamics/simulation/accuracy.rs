@@ -1,0 +1,306 @@
+//! Errors of adaptive runs: an estimate beside the run, and a run to a wanted error.
+
+use crate::dynamics::first_order_form::explicit::Explicit;
+use crate::dynamics::integrators::embedded::Embedded;
+use crate::dynamics::model::Formulation;
+use crate::dynamics::model::metric::Tolerance;
+use crate::dynamics::simulation::Simulation;
+use crate::failure::{Failure, FailureKind};
+use crate::mechanism::dynamic::Dynamic;
+use crate::scalar::number::Real;
+use crate::tolerances::accuracy;
+
+/// An adaptive run with a run of ten times its tolerance beside it, made by [`Simulation::with_error_estimate`].
+///
+/// The difference of both is the error of the coarser one, so a safe estimate of the error of the finer one. It is of use where
+/// errors follow the tolerance; a motion that is chaotic beyond its horizon has differences as large as the motion.
+#[derive(Clone, Copy)]
+pub struct Estimated<S: Dynamic<R, N, M>, X, R: Real, const N: usize, const M: usize> {
+    fine: Simulation<S, X, R, N, M>,
+    coarse: Simulation<S, X, R, N, M>,
+    /// Largest difference so far.
+    largest: R,
+}
+
+/// An adaptive run to a wanted error, made by [`Simulation::with_accuracy`].
+#[derive(Clone, Copy)]
+pub struct Accurate<S: Dynamic<R, N, M>, X, R: Real, const N: usize, const M: usize> {
+    run: Simulation<S, X, R, N, M>,
+    accuracy: R,
+    estimate: Option<R>,
+    /// Right-hand sides of all runs.
+    evaluations: u64,
+}
+
+impl<S, I, F, R, const N: usize, const M: usize> Simulation<S, Explicit<I, F>, R, N, M>
+where
+    S: Dynamic<R, N, M>,
+    I: Embedded,
+    F: Formulation<S, R, N, M> + Clone,
+    R: Real,
+{
+    /// With a run of ten times the tolerance beside it, which tells the error.
+    ///
+    /// ```
+    /// use mbs_runtime::dynamics::{DormandPrince8, Explicit, Projection, Simulation, Tolerance};
+    /// use mbs_runtime::mechanism;
+    ///
+    /// # mechanism! {
+    /// #     /// A pendulum of a rod.
+    /// #     pub mechanism Pendulum;
+    /// #     coord phi: rad = -1;
+    /// #     body rod { mass: 1, com: 0.5m*unit(phi), inertia: 1/12, angle: phi }
+    /// #     gravity weight { acceleration: [0, -9.81] }
+    /// #     start phi = -60deg rate 0;
+    /// # }
+    ///
+    /// let method = Explicit::new(DormandPrince8, Projection::default());
+    /// let run = Simulation::start_from_text(Pendulum::default(), method, 0.0_f64)?;
+    /// let mut run = run.with_tolerance(Tolerance::new(1e-9)).with_error_estimate();
+    /// run.advance_to(2.0)?;
+    /// assert!(run.error_estimate() < 1e-6);
+    /// # Ok::<(), mbs_runtime::Failure>(())
+    /// ```
+    pub fn with_error_estimate(self) -> Estimated<S, Explicit<I, F>, R, N, M> {
+        let Tolerance { relative, absolute } = self.tolerance;
+        let ten = R::constant(accuracy::RATIO);
+        let tolerance = Tolerance { relative: ten * relative, absolute: ten * absolute };
+        Estimated { fine: self.clone(), coarse: self.with_tolerance(tolerance), largest: R::constant(0.0) }
+    }
+
+    /// With an error of at most `accuracy` wanted at the end of each [`advance_to`](Accurate::advance_to), in the reference metric
+    /// (rad, reference lengths), in place of a tolerance of steps.
+    ///
+    /// ```
+    /// use mbs_runtime::dynamics::{DormandPrince8, Explicit, Projection, Simulation};
+    /// use mbs_runtime::{FailureKind, mechanism};
+    ///
+    /// # mechanism! {
+    /// #     /// A pendulum of a rod.
+    /// #     pub mechanism Pendulum;
+    /// #     coord phi: rad = -1;
+    /// #     body rod { mass: 1, com: 0.5m*unit(phi), inertia: 1/12, angle: phi }
+    /// #     gravity weight { acceleration: [0, -9.81] }
+    /// #     start phi = -60deg rate 0;
+    /// # }
+    ///
+    /// let method = Explicit::new(DormandPrince8, Projection::default());
+    /// let run = Simulation::start_from_text(Pendulum::default(), method, 0.0_f64)?;
+    /// let mut run = run.with_accuracy(1e-8)?;
+    /// run.advance_to(2.0)?;
+    /// assert!(run.error_estimate() <= Some(1e-8));
+    /// assert!(run.with_accuracy(1e-30).is_err_and(|failure| {
+    ///     matches!(failure.kind, FailureKind::Unreachable { .. })
+    /// }));
+    /// # Ok::<(), mbs_runtime::Failure>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`InvalidMethodParameter`](FailureKind::InvalidMethodParameter) for NaN, for 0 and less, and above 0.1;
+    /// [`Unreachable`](FailureKind::Unreachable) below 100 ε.
+    pub fn with_accuracy(self, accuracy: R) -> Result<Accurate<S, Explicit<I, F>, R, N, M>, Failure> {
+        let most = R::constant(accuracy::COARSEST);
+        if !(R::constant(0.0) < accuracy && accuracy <= most) {
+            let (value, most) = (accuracy.to_f64(), most.to_f64());
+            return Err(FailureKind::InvalidMethodParameter { name: "accuracy", value, most }.without_time());
+        }
+        let least = accuracy::LEAST.of::<R>();
+        if accuracy < least {
+            let (accuracy, best) = (accuracy.to_f64(), least.to_f64());
+            return Err(FailureKind::Unreachable { accuracy, best }.without_time());
+        }
+        Ok(Accurate { run: self, accuracy, estimate: None, evaluations: 0 })
+    }
+}
+
+/// Instants of a run at which it is compared: at one alone runs may agree by chance.
+const INSTANTS: usize = 4;
+
+/// Coordinates of a run at instants of equal distance, the end included.
+type Course<R, const N: usize> = [[R; N]; INSTANTS];
+
+/// A run with its course.
+type Followed<S, I, F, R, const N: usize, const M: usize> =
+    (Simulation<S, Explicit<I, F>, R, N, M>, Course<R, N>);
+
+/// Moves `run` on to `until` (s); its coordinates on the way.
+fn followed<S, I, F, R, const N: usize, const M: usize>(
+    run: &mut Simulation<S, Explicit<I, F>, R, N, M>,
+    until: R,
+) -> Result<Course<R, N>, Failure>
+where
+    S: Dynamic<R, N, M>,
+    I: Embedded,
+    F: Formulation<S, R, N, M>,
+    R: Real,
+{
+    let mut course = [run.now.y.q; INSTANTS];
+    let mut places = course.iter_mut();
+    run.sample(until, INSTANTS as u32, |instant| {
+        if let Some(place) = places.next() {
+            *place = instant.y.q;
+        }
+    })?;
+    Ok(course)
+}
+
+/// Largest difference of two courses in the reference metric with these scales of the coordinates (N).
+fn difference<R: Real, const N: usize>(a: &Course<R, N>, b: &Course<R, N>, scales: &[R; N]) -> R {
+    let pairs = a.iter().flatten().zip(b.iter().flatten()).zip(scales.iter().cycle());
+    pairs.fold(R::constant(0.0), |largest, ((a, b), scale)| {
+        let distance = ((*a - *b) / *scale).abs();
+        // NaN stays.
+        if distance <= largest { largest } else { distance }
+    })
+}
+
+/// `true` where `fine` has so many more steps that the difference of both tells an error.
+fn is_finer<S, X, R, const N: usize, const M: usize>(
+    fine: &Simulation<S, X, R, N, M>,
+    coarse: &Simulation<S, X, R, N, M>,
+) -> bool
+where
+    S: Dynamic<R, N, M>,
+    R: Real,
+{
+    let steps = |run: &Simulation<S, X, R, N, M>| f64::from(run.adaptive.accepted);
+    steps(fine) >= accuracy::FINER * steps(coarse)
+}
+
+impl<S, I, F, R, const N: usize, const M: usize> Estimated<S, Explicit<I, F>, R, N, M>
+where
+    S: Dynamic<R, N, M>,
+    I: Embedded,
+    F: Formulation<S, R, N, M> + Clone,
+    R: Real,
+{
+    /// Moves both runs on to `until` (s).
+    ///
+    /// # Errors
+    /// Those of [`Simulation::advance_to`] for either run; nothing has changed then.
+    pub fn advance_to(&mut self, until: R) -> Result<(), Failure> {
+        let mut next = self.clone();
+        let fine = followed(&mut next.fine, until)?;
+        let coarse = followed(&mut next.coarse, until)?;
+        next.largest = next.largest.max(difference(&fine, &coarse, &next.fine.metric.coordinates));
+        *self = next;
+        Ok(())
+    }
+
+    /// Largest error of the coordinates so far in the reference metric (rad, reference lengths): that of the coarser run, at four
+    /// instants of each [`advance_to`](Self::advance_to). Of runs with nearly the same steps it is the sum of the errors that the steps
+    /// estimate.
+    pub fn error_estimate(&self) -> R {
+        let Tolerance { relative, absolute } = self.fine.tolerance;
+        let local = self.fine.errors * (relative + absolute);
+        if is_finer(&self.fine, &self.coarse) { self.largest } else { self.largest.max(local) }
+    }
+
+    /// Right-hand sides that the estimate costs.
+    pub fn evaluations_of_estimate(&self) -> u64 {
+        self.coarse.counts.evaluations
+    }
+
+    /// The finer run, to read.
+    pub fn run(&self) -> &Simulation<S, Explicit<I, F>, R, N, M> {
+        &self.fine
+    }
+
+    /// The finer run, to go on without an estimate.
+    pub fn into_run(self) -> Simulation<S, Explicit<I, F>, R, N, M> {
+        self.fine
+    }
+}
+
+impl<S, I, F, R, const N: usize, const M: usize> Accurate<S, Explicit<I, F>, R, N, M>
+where
+    S: Dynamic<R, N, M>,
+    I: Embedded,
+    F: Formulation<S, R, N, M> + Clone,
+    R: Real,
+{
+    /// Moves on to `until` (s) by the run of three, a factor of ten in tolerance apart, that is the finest.
+    ///
+    /// They are compared at four instants. The finest counts where their differences fall by at least 3 and the error that is then left
+    /// is small enough; else the three are made finer. Errors of several calls add up.
+    ///
+    /// # Errors
+    /// [`Unreachable`](FailureKind::Unreachable) where differences no longer fall, with the best error seen; those of
+    /// [`Simulation::advance_to`]. The state is then as before.
+    pub fn advance_to(&mut self, until: R) -> Result<(), Failure> {
+        let ratio = R::constant(accuracy::RATIO);
+        let mut evaluations = self.evaluations;
+        let before = self.run.counts.evaluations;
+        let scales = self.run.metric.coordinates;
+        let mut at = |tolerance: R| -> Result<Followed<S, I, F, R, N, M>, Failure> {
+            let tolerance = Tolerance { relative: tolerance, absolute: tolerance };
+            let mut run = self.run.clone().with_tolerance(tolerance);
+            let course = followed(&mut run, until)?;
+            evaluations += run.counts.evaluations - before;
+            Ok((run, course))
+        };
+        let coarsest = R::constant(accuracy::COARSEST_STEPS);
+        let mut tolerance = (self.accuracy * ratio * ratio).min(coarsest) / ratio;
+        let (mut coarse, mut middle) = (at(tolerance * ratio)?, at(tolerance)?);
+        let mut best: Option<R> = None;
+        let wanted = self.accuracy;
+        let unreachable = |best: Option<R>| {
+            let best = best.map_or(f64::INFINITY, R::to_f64);
+            Err(FailureKind::Unreachable { accuracy: wanted.to_f64(), best }.at(until.to_f64()))
+        };
+        loop {
+            tolerance = tolerance / ratio;
+            if tolerance + tolerance < Tolerance::<R>::least() {
+                return unreachable(best);
+            }
+            let fine = at(tolerance)?;
+            let (first, second) =
+                (difference(&coarse.1, &middle.1, &scales), difference(&middle.1, &fine.1, &scales));
+            let tells = is_finer(&fine.0, &middle.0) && is_finer(&middle.0, &coarse.0);
+            let falls = tells && second * R::constant(accuracy::FALL) <= first;
+            if falls {
+                // What is left of a geometric series; a fall that is faster may be chance.
+                let fall =
+                    (first / second.max(R::constant(f64::MIN_POSITIVE))).min(R::constant(accuracy::TRUSTED));
+                let left = second / (fall - R::constant(1.0));
+                best = Some(best.map_or(left, |best| best.min(left)));
+                if left <= wanted {
+                    *self = Accurate { run: fine.0, estimate: Some(left), evaluations, ..*self };
+                    return Ok(());
+                }
+            } else if tells && second <= R::constant(accuracy::NOISE) * Tolerance::<R>::least() {
+                // Rounding is all that the last digits show.
+                return unreachable(Some(best.map_or(second, |best| best.min(second))));
+            }
+            (coarse, middle) = (middle, fine);
+        }
+    }
+
+    /// Estimated error of the last [`advance_to`](Self::advance_to) in the reference metric (rad, reference lengths); none before.
+    pub fn error_estimate(&self) -> Option<R> {
+        self.estimate
+    }
+
+    /// Right-hand sides of all runs so far, those that only told the error included.
+    pub fn evaluations(&self) -> u64 {
+        self.evaluations
+    }
+
+    /// The run, to read.
+    pub fn run(&self) -> &Simulation<S, Explicit<I, F>, R, N, M> {
+        &self.run
+    }
+
+    /// The run, to go on with its last tolerance.
+    pub fn into_run(self) -> Simulation<S, Explicit<I, F>, R, N, M> {
+        self.run
+    }
+
+    /// The run with another accuracy.
+    ///
+    /// # Errors
+    /// As [`Simulation::with_accuracy`].
+    pub fn with_accuracy(self, accuracy: R) -> Result<Self, Failure> {
+        self.run.with_accuracy(accuracy)
+    }
+}

@@ -1,0 +1,382 @@
+//! `mbs cost`.
+
+use std::io::Write;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::Args;
+use indicatif::{ProgressBar, ProgressStyle};
+
+use super::assignment::{Assignment, assignment};
+use super::chosen::finite;
+use super::document::Output;
+use super::of_file::started;
+use super::report_files::{require_writable, write_report};
+use super::target::Target;
+use super::{CommandError, summary};
+use crate::catalogue::Catalogue;
+use crate::cost::advice::{rust, time_text, two_digits};
+use crate::cost::kinematics::driven_study;
+use crate::cost::moved::{Extent, NoReference, moved_study};
+use crate::cost::picture::picture;
+use crate::cost::points::{Outcome, Point, Verdict, cheapest, front};
+use crate::cost::result::CostResult;
+use crate::erased::costs::Comparable;
+use crate::erased::facade::AnyEquations;
+use crate::forge::{Blueprint, Forge};
+use crate::mismatch::{nearest, wrapped};
+use crate::setting::{MotionMethod, Setting};
+use crate::target_directory::target_directory;
+use crate::text_file::{TextFile, is_file};
+
+#[derive(Args)]
+pub struct Arguments {
+    /// Name of the mechanism, as `mbs list` prints it, or a file with its text: FILE, FILE:Name, FILE:Name:Scene
+    name: String,
+    /// Set a parameter: a number in the unit that `mbs list` prints, or with a unit as `200mm`, `60rpm`, `4 [m^2]`
+    #[arg(long = "param", value_name = "NAME=VALUE", value_parser = assignment)]
+    parameters: Vec<Assignment>,
+    /// End of the motion (s) [default: that of `mbs run`]
+    #[arg(long, value_name = "T", value_parser = above_zero, allow_negative_numbers = true)]
+    until: Option<f64>,
+    /// Error that the advice is for: in the reference metric (rad, reference lengths), of outputs relative to their largest
+    #[arg(long, value_name = "E", default_value = "1e-6", value_parser = above_zero, allow_negative_numbers = true)]
+    error: f64,
+    /// Judge these outputs in place of the coordinates
+    #[arg(long, value_name = "OUT", value_delimiter = ',')]
+    watch: Vec<String>,
+    /// Methods to compare, by parts of their names: `projection`, `dormandprince8`, `radau5` [default: all]
+    #[arg(long, value_name = "METHOD", value_delimiter = ',')]
+    methods: Vec<String>,
+    /// Fewer and shorter runs: an overview
+    #[arg(long)]
+    quick: bool,
+    /// Print the advice as Rust to paste
+    #[arg(long)]
+    rust: bool,
+    /// Directory of page, picture and table [default: mbs/NAME/cost in cargo's target directory]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+}
+
+fn above_zero(text: &str) -> Result<f64, String> {
+    finite(text).and_then(|number| {
+        if number > 0.0 { Ok(number) } else { Err("a number above 0 is needed".to_string()) }
+    })
+}
+
+/// Builds a program that has the mechanism in all numbers, and runs the command line again in it.
+pub fn run(catalogue: &Catalogue, arguments: &Arguments) -> Result<ExitCode, CommandError> {
+    let forge = Forge::of_caller(catalogue.first().map(|card| card.manifest.as_ref()));
+    let blueprint = if is_file(&arguments.name) {
+        methods(&arguments.methods)?;
+        Blueprint::cost_of_text(&TextFile::read(&arguments.name)?)?
+    } else {
+        // What is wrong on the command line is said before anything is built.
+        let target = Target::find(catalogue, &arguments.name)?;
+        let instance = target.instance(&target.runs()[0], &arguments.parameters)?;
+        watched(instance.equations(), &arguments.watch)?;
+        methods(&arguments.methods)?;
+        Blueprint::cost_of_card(&forge, target.card())?
+    };
+    if let Some(directory) = &arguments.out {
+        require_writable(directory)?;
+    }
+    let arguments = std::env::args_os().skip(1).collect();
+    started(&forge, &blueprint, arguments).map_err(|error| match error {
+        CommandError::Failed(reason) if blueprint.origin.is_none() && reason.starts_with("error:") => {
+            CommandError::Failed(format!(
+                "the study is built in a program of its own: what the card's constructor names must be public, and a function that \
+                 it passes must take every `Scalar`\n{reason}"
+            ))
+        }
+        error => error,
+    })
+}
+
+/// Methods with one of the words in their names; all where there are none.
+fn methods(words: &[String]) -> Result<Vec<MotionMethod>, CommandError> {
+    let all = MotionMethod::all();
+    let plain = |text: &str| text.to_lowercase().replace(['-', '_', ' '], "");
+    let mut known: Vec<String> = all
+        .iter()
+        .flat_map(|method| method.to_string().split(" with ").map(plain).collect::<Vec<_>>())
+        .collect();
+    known.sort();
+    known.dedup();
+    for word in words {
+        if !known.iter().any(|name| name.contains(&plain(word))) {
+            let near = nearest(&plain(word), known.iter().map(String::as_str));
+            let near = near.map_or_else(String::new, |near| format!("; did you mean `{near}`?"));
+            let names: Vec<&str> = known.iter().map(String::as_str).collect();
+            return Err(CommandError::Usage(format!(
+                "there is no method `{word}`{near}\nknown: {}",
+                wrapped(&names)
+            )));
+        }
+    }
+    let is_meant =
+        |method: &MotionMethod| words.iter().any(|word| plain(&method.to_string()).contains(&plain(word)));
+    Ok(if words.is_empty() { Vec::new() } else { all.into_iter().filter(is_meant).collect() })
+}
+
+/// Indices of components of the outputs of these names; loads stand behind outputs.
+fn watched(equations: &dyn AnyEquations, names: &[String]) -> Result<Vec<usize>, CommandError> {
+    let mut known: Vec<&str> = equations.outputs().iter().map(|entry| entry.name).collect();
+    known.extend(equations.tables().iter().flat_map(|tables| tables.loads.iter().map(|entry| entry.name)));
+    let mut found = Vec::new();
+    for name in names {
+        let is_meant = |known: &str| {
+            known == name || known.strip_prefix(name.as_str()).is_some_and(|rest| rest.starts_with('.'))
+        };
+        let before = found.len();
+        found.extend(known.iter().enumerate().filter(|(_, known)| is_meant(known)).map(|(index, _)| index));
+        if found.len() == before {
+            let near = nearest(name, known.iter().copied());
+            let near = near.map_or_else(String::new, |near| format!("; did you mean `{near}`?"));
+            let list = if known.is_empty() { "none".to_string() } else { wrapped(&known) };
+            return Err(CommandError::Usage(format!("there is no output `{name}`{near}\nknown: {list}")));
+        }
+    }
+    Ok(found)
+}
+
+/// Longest runs and times of references: whole, and for an overview.
+const WHOLE: (f64, f64, f64) = (0.25, 40.0, 1e-17);
+const QUICK: (f64, f64, f64) = (0.02, 8.0, 1e-14);
+
+/// The study itself, in a program that has the mechanism of `catalogue` in all numbers.
+pub fn study(
+    catalogue: &Catalogue,
+    arguments: &Arguments,
+    make: fn(&[(usize, f64)]) -> Comparable,
+    out: &mut Output,
+) -> Result<ExitCode, CommandError> {
+    let target = Target::find(catalogue, &arguments.name)?;
+    let instance = target.instance(&target.runs()[0], &arguments.parameters)?;
+    let equations = instance.equations();
+    let watched = watched(equations, &arguments.watch)?;
+    let until = arguments.until.map_or_else(|| target.duration(equations), Ok)?;
+    let directory = arguments
+        .out
+        .clone()
+        .unwrap_or_else(|| target_directory().join("mbs").join(target.file_name()).join("cost"));
+    require_writable(&directory)?;
+    let values: Vec<(usize, f64)> =
+        (0..equations.variables().len()).filter_map(|index| Some((index, equations.get(index)?))).collect();
+    let (longest, reference, tolerance) = if arguments.quick { QUICK } else { WHOLE };
+    let extent = Extent {
+        methods: methods(&arguments.methods)?,
+        longest,
+        reference,
+        tolerance,
+        watched: watched.clone(),
+    };
+    let style = ProgressStyle::with_template("{bar:30} {percent}% {msg}").expect("a valid template");
+    let bar = ProgressBar::new(1000).with_style(style);
+    let mut progress = |words: &str, share: f64| {
+        bar.set_message(words.to_string());
+        bar.set_position((1000.0 * share) as u64);
+    };
+    let failed = |found: NoReference| {
+        CommandError::Failed(format!("{}: no true solution to compare with: {}", target.name(), found.reason))
+    };
+    let mut facts = Vec::new();
+    let mut fact = |name: &str, value: String| facts.push([name.to_string(), value]);
+    let (points, width, second) = match make(&values) {
+        Comparable::Still => {
+            return Err(CommandError::Usage(format!(
+                "`{}` has no motion: its rows leave coordinates free, and it has no masses",
+                target.name()
+            )));
+        }
+        Comparable::Driven(_) if !(arguments.methods.is_empty() && arguments.watch.is_empty()) => {
+            return Err(CommandError::Usage(format!(
+                "drives move `{}`: `--methods` and `--watch` are for motions from forces",
+                target.name()
+            )));
+        }
+        Comparable::Driven(mut mechanism) => {
+            let found = driven_study(&mut mechanism, until, longest, &mut progress).map_err(failed)?;
+            fact(
+                "reference",
+                "positions closed to 29 digits in double-double numbers; rates by differences of positions"
+                    .to_string(),
+            );
+            fact("width", format!("{} (rates by the rows against differences)", two_digits(found.width)));
+            (found.points, Some(found.width), "acceleration")
+        }
+        Comparable::Moved(mut mechanism) => {
+            let found = moved_study(&mut mechanism, until, &extent, &mut progress).map_err(failed)?;
+            for (leg, reference) in &found.references {
+                let events = match reference.events {
+                    0 => String::new(),
+                    events => format!(", {events} contacts"),
+                };
+                let words = match reference.stuck {
+                    None => {
+                        format!("{} steps of tolerance {:.0e}{events}", reference.steps, reference.tolerance)
+                    }
+                    Some(_) => format!(
+                        "not used: it ended at t = {:.4} s",
+                        reference.shots.last().map_or(0.0, |shot| shot.at.t.high)
+                    ),
+                };
+                fact(&format!("{} reference", leg.name()), words);
+            }
+            let words = found.width.map_or_else(|| "not known: one reference alone".to_string(), two_digits);
+            fact("width of the reference", words);
+            (found.points, found.width, "reaction")
+        }
+    };
+    bar.finish_and_clear();
+    fact("instants", "each run is compared at the ends of its steps that are instants of the reference, at most 480 (motion from forces) or 1440".to_string());
+    fact("times", "the shortest of five runs, settings interleaved".to_string());
+    fact("machine", machine());
+    fact(
+        "program",
+        format!(
+            "mbs {}, {}",
+            env!("CARGO_PKG_VERSION"),
+            if cfg!(debug_assertions) { "without optimisation" } else { "release profile" }
+        ),
+    );
+    let origin = out.put_mechanism(&target, equations);
+    fact("text", origin.hash.clone());
+    let judged =
+        if arguments.watch.is_empty() { "coordinates".to_string() } else { arguments.watch.join(", ") };
+    let result = CostResult {
+        origin: origin.line(),
+        name: target.name().to_string(),
+        title: target.title().to_string(),
+        command: command(arguments),
+        constructor: target.card().constructor.to_string(),
+        until,
+        asked: arguments.error,
+        points,
+        width,
+        judged,
+        second,
+        facts,
+    };
+    print(&result, arguments, out)?;
+    out.put("result", result.document());
+    let files = [
+        ("cost.html", result.page()),
+        ("cost.svg", origin.svg(&picture(&result))),
+        ("cost.csv", origin.csv(&result.csv())),
+    ];
+    for (kind, path) in ["page", "picture", "table"].iter().zip(write_report(&directory, &files)?) {
+        out.put_file(kind, &path);
+        writeln!(out, "{kind:<8} {}", path.display())?;
+    }
+    let wrong = result.wrong().count();
+    out.flush()?;
+    Ok(if wrong > 0 { ExitCode::FAILURE } else { ExitCode::SUCCESS })
+}
+
+/// The command line that makes the same study.
+fn command(arguments: &Arguments) -> String {
+    let mut words = vec!["mbs".to_string(), "cost".to_string(), arguments.name.clone()];
+    words.extend(arguments.parameters.iter().flat_map(|given| ["--param".to_string(), given.written()]));
+    if let Some(until) = arguments.until {
+        words.extend(["--until".to_string(), summary::short(until)]);
+    }
+    words.extend(["--error".to_string(), format!("{:e}", arguments.error)]);
+    for (name, values) in [("--watch", &arguments.watch), ("--methods", &arguments.methods)] {
+        if !values.is_empty() {
+            words.extend([name.to_string(), values.join(",")]);
+        }
+    }
+    if arguments.quick {
+        words.push("--quick".to_string());
+    }
+    words.join(" ")
+}
+
+/// The processor's name where the system tells it, and its architecture.
+fn machine() -> String {
+    let told = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+    let model = told
+        .lines()
+        .find_map(|line| line.strip_prefix("model name")?.split_once(':').map(|(_, name)| name.trim()));
+    match model {
+        Some(model) => format!("{model}, {}", std::env::consts::ARCH),
+        None => std::env::consts::ARCH.to_string(),
+    }
+}
+
+fn print(result: &CostResult, arguments: &Arguments, out: &mut dyn Write) -> Result<(), CommandError> {
+    writeln!(out, "{}, to t = {} s", result.title, summary::short(result.until))?;
+    for [name, value] in &result.facts {
+        writeln!(out, "  {name}: {value}")?;
+    }
+    let on_front: Vec<&Point> =
+        front(&result.points).into_iter().map(|index| &result.points[index]).collect();
+    let widest = on_front.iter().map(|point| point.setting.to_string().chars().count()).max().unwrap_or(7);
+    writeln!(
+        out,
+        "\n{:<widest$}  {:>8}  {:>8}  {:>24}  {:>11}  {:>11}",
+        "setting",
+        "error",
+        "median",
+        result.unit(),
+        "evaluations",
+        "corrections"
+    )?;
+    for point in on_front {
+        let Outcome::Done { errors, verdict, .. } = &point.outcome else { continue };
+        let mark = if *verdict == Verdict::Hollow { " (next to the width of the reference)" } else { "" };
+        writeln!(
+            out,
+            "{:<widest$}  {:>8}  {:>8}  {:>24}  {:>11}  {:>11}{mark}",
+            point.setting.to_string(),
+            two_digits(errors.judged),
+            two_digits(errors.median),
+            summary::significant(point.time, 3),
+            point.effort.evaluations,
+            point.effort.corrections
+        )?;
+    }
+    let refused = result.points.iter().filter(|point| matches!(point.outcome, Outcome::Refused(_))).count();
+    writeln!(out, "\n{} settings, {refused} refused", result.points.len())?;
+    for point in result.wrong() {
+        let Outcome::Done { errors, expected, .. } = &point.outcome else { continue };
+        let expected =
+            expected.map_or_else(String::new, |expected| format!(", expected {}", two_digits(expected)));
+        writeln!(out, "wrong: {}: error {}{expected}", point.setting, two_digits(errors.judged))?;
+    }
+    writeln!(out, "\n{}", result.sentence())?;
+    if let Some(alone) = default_setting(result) {
+        writeln!(out, "{alone}")?;
+    }
+    if let (true, Some(chosen)) = (arguments.rust, cheapest(&result.points, result.asked)) {
+        writeln!(out, "\n{}", rust(&chosen.setting, &result.constructor, result.until))?;
+    }
+    writeln!(out)?;
+    Ok(())
+}
+
+/// Error and time of what one gets without a choice.
+fn default_setting(result: &CostResult) -> Option<String> {
+    use crate::setting::{FormulationName, IntegratorName, Numbers, Resolution};
+    let is_default = |point: &&Point| match point.setting {
+        Setting::Motion {
+            numbers: Numbers::Double,
+            method,
+            resolution: Resolution::Tolerance(tolerance),
+        } => {
+            let usual = MotionMethod::Explicit(FormulationName::Projection, IntegratorName::DormandPrince8);
+            method == usual && (tolerance.log10() + 9.0).abs() < 0.5
+        }
+        _ => false,
+    };
+    let point = result.points.iter().find(is_default)?;
+    let error = point.error()?;
+    Some(format!(
+        "Without a choice: {}: error {}, {}.",
+        point.setting,
+        two_digits(error),
+        time_text(point.time, false)
+    ))
+}

@@ -1,0 +1,388 @@
+//! The study of a motion from forces: two references, all settings, their errors and times.
+
+use std::time::Duration;
+
+use crate::cost::points::{Errors, Outcome, Point, Verdict};
+use crate::cost::reference::motion::Stuck;
+use crate::cost::reference::{Leg, Reference, reference};
+use crate::double_double::DoubleDouble as D;
+use crate::erased::costs::MovedCosts;
+use crate::erased::timed_runs::{Effort, Seen};
+use crate::setting::{FormulationName, MotionMethod, Numbers, Resolution, Setting};
+
+/// Instants at which errors are taken.
+pub const PARTS: u32 = 480;
+
+/// Points whose error is below so many widths of the reference have its width as bar.
+pub const WIDTHS: f64 = 100.0;
+
+/// Steps over those of the coarser run from which on both tell the error.
+const FINER: f64 = 1.1;
+
+/// Error over the expected one that makes a point wrong.
+const WRONG: f64 = 10.0;
+
+/// A run may take so many times as long as the finest of the first curve.
+const DEAREST: f64 = 60.0;
+
+/// Longest time (s) that a run may take in any case.
+const CHEAP: f64 = 2e-3;
+
+/// Runs of which the shortest time counts.
+const RUNS: u32 = 5;
+
+/// Extent of a study.
+#[derive(Clone, Debug)]
+pub struct Extent {
+    /// Methods to compare; all where empty.
+    pub methods: Vec<MotionMethod>,
+    /// Longest run (s): a curve ends where it is passed.
+    pub longest: f64,
+    /// Time (s) for each reference.
+    pub reference: f64,
+    /// Tolerance of the references' steps.
+    pub tolerance: f64,
+    /// Indices of the outputs that are judged in place of the coordinates.
+    pub watched: Vec<usize>,
+}
+
+/// A study of a motion from forces.
+#[derive(Clone, Debug)]
+pub struct MovedStudy {
+    /// All points, curve by curve.
+    pub points: Vec<Point>,
+    /// References by kind.
+    pub references: Vec<(Leg, Reference)>,
+    /// Difference of the references in the judged quantity; none of one alone.
+    pub width: Option<f64>,
+}
+
+/// Why there is no study.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct NoReference {
+    /// Reason in words.
+    pub reason: String,
+}
+
+/// Largest values of a motion, by which errors are measured.
+struct Sizes {
+    scales: Vec<f64>,
+    rate: f64,
+    reaction: f64,
+    energy: f64,
+    outputs: Vec<f64>,
+}
+
+/// Largest magnitude; 1 where all are 0.
+fn size(values: impl Iterator<Item = f64>) -> f64 {
+    let largest = values.map(f64::abs).fold(0.0, f64::max);
+    if largest > 0.0 { largest } else { 1.0 }
+}
+
+impl Sizes {
+    fn of(reference: &Reference, scales: Vec<f64>) -> Self {
+        let shots = || reference.shots.iter();
+        let rates =
+            shots().flat_map(|shot| shot.at.qd.iter().zip(&scales).map(|(qd, scale)| qd.high / scale));
+        let reactions = shots()
+            .flat_map(|shot| shot.observed.reaction.iter().zip(&scales).map(|(r, scale)| r.high * scale));
+        let energy = size(shots().map(|shot| shot.observed.kinetic.high));
+        let count = reference.shots.first().map_or(0, |shot| shot.observed.outputs.len());
+        let outputs = (0..count).map(|k| size(shots().map(move |shot| shot.observed.outputs[k].high)));
+        let (rate, reaction) = (size(rates), size(reactions));
+        let outputs = outputs.collect();
+        Sizes { rate, reaction, energy, outputs, scales }
+    }
+}
+
+/// Difference of a value and the reference, in `f64`.
+fn apart(value: f64, reference: D) -> f64 {
+    ((value - reference.high) - reference.low).abs()
+}
+
+/// The larger one; NaN stays.
+fn worse(a: f64, b: f64) -> f64 {
+    if a.is_nan() || a > b { a } else { b }
+}
+
+/// Error of the judged quantity at one instant.
+fn judged(seen: &Seen, shot: &crate::cost::reference::Shot, sizes: &Sizes, watched: &[usize]) -> f64 {
+    if watched.is_empty() {
+        let pairs = seen.q.iter().zip(&shot.at.q).zip(&sizes.scales);
+        return pairs.map(|((q, exact), scale)| apart(*q, *exact) / scale).fold(0.0, worse);
+    }
+    let of = |k: &usize| apart(seen.observed.outputs[*k], shot.observed.outputs[*k]) / sizes.outputs[*k];
+    watched.iter().map(of).fold(0.0, worse)
+}
+
+fn errors(run: &[Seen], reference: &Reference, sizes: &Sizes, watched: &[usize]) -> Option<Errors> {
+    let parts = reference.shots.len().checked_sub(1)?;
+    let stride = parts / run.len().checked_sub(1)?.max(1);
+    let mut all = Vec::new();
+    let mut errors = Errors::default();
+    for (seen, shot) in run.iter().zip(reference.shots.iter().step_by(stride.max(1))) {
+        all.push(judged(seen, shot, sizes, watched));
+        let rate = seen.qd.iter().zip(&shot.at.qd).zip(&sizes.scales);
+        let rate = rate.map(|((qd, exact), scale)| apart(*qd, *exact) / scale / sizes.rate).fold(0.0, worse);
+        let reaction = seen.observed.reaction.iter().zip(&shot.observed.reaction).zip(&sizes.scales);
+        let reaction = reaction.map(|((r, exact), scale)| apart(*r, *exact) * scale / sizes.reaction);
+        errors.rate = worse(errors.rate, rate);
+        errors.second = worse(errors.second, reaction.fold(0.0, worse));
+        let energy = apart(seen.observed.energy, shot.observed.energy) / sizes.energy;
+        errors.energy = worse(errors.energy, energy);
+        errors.violation = worse(errors.violation, seen.violation);
+    }
+    errors.judged = all.iter().copied().fold(0.0, worse);
+    all.sort_by(f64::total_cmp);
+    errors.median = all.get(all.len() / 2).copied().unwrap_or(0.0);
+    Some(errors)
+}
+
+/// Largest difference of two runs in the judged quantity, at the instants that both have.
+fn between(a: &[Seen], b: &[Seen], sizes: &Sizes, watched: &[usize]) -> Option<f64> {
+    let (few, many) = if a.len() <= b.len() { (a, b) } else { (b, a) };
+    let stride = many.len().checked_sub(1)? / few.len().checked_sub(1)?.max(1);
+    let difference = |(a, b): (&Seen, &Seen)| {
+        if watched.is_empty() {
+            let pairs = a.q.iter().zip(&b.q).zip(&sizes.scales);
+            return pairs.map(|((a, b), scale)| (a - b).abs() / scale).fold(0.0, worse);
+        }
+        let of = |k: &usize| (a.observed.outputs[*k] - b.observed.outputs[*k]).abs() / sizes.outputs[*k];
+        watched.iter().map(of).fold(0.0, worse)
+    };
+    Some(few.iter().zip(many.iter().step_by(stride.max(1))).map(difference).fold(0.0, worse))
+}
+
+/// Resolutions of a curve from coarse to fine.
+fn ladder(method: MotionMethod, numbers: Numbers) -> Vec<Resolution> {
+    if method.is_adaptive() {
+        let finest = if numbers == Numbers::Single { 6 } else { 13 };
+        return (2..=finest).map(|digits| Resolution::Tolerance(10.0_f64.powi(-digits))).collect();
+    }
+    let most = if numbers == Numbers::Single { 8 } else { 16 };
+    (0..most).map(|power| Resolution::Steps((PARTS / 8) << power)).collect()
+}
+
+/// Errors at which finer steps gain nothing more.
+fn floor(numbers: Numbers) -> f64 {
+    match numbers {
+        Numbers::Double => 1e-12,
+        Numbers::Single => 1e-4,
+    }
+}
+
+/// Compares all settings of `mechanism` over `until` (s). `progress` gets what is done, in words, and the part of it.
+///
+/// # Errors
+/// [`NoReference`] where no reference reaches the end.
+pub fn moved_study(
+    mechanism: &mut MovedCosts,
+    until: f64,
+    extent: &Extent,
+    progress: &mut dyn FnMut(&str, f64),
+) -> Result<MovedStudy, NoReference> {
+    let times: Vec<f64> = (0..=PARTS).map(|k| until * f64::from(k) / f64::from(PARTS)).collect();
+    let no_reference = |reason: String| NoReference { reason };
+    let double = mechanism.runs.iter().find(|(numbers, _)| *numbers == Numbers::Double);
+    let double = double.ok_or_else(|| no_reference("there are no runs in f64".to_string()))?;
+    let [q, qd] = double.1.start(0.0).map_err(|failure| no_reference(failure.to_string()))?;
+    let mut references = Vec::new();
+    for leg in [Leg::Extrapolated, Leg::Collocated] {
+        progress(&format!("{} reference", leg.name()), 0.0);
+        references.push((leg, best(mechanism, leg, (&q, &qd), &times, extent)));
+    }
+    let whole = |reference: &Reference| reference.stuck.is_none();
+    if !references.iter().any(|(_, reference)| whole(reference)) {
+        let reasons = references.iter().map(|(leg, reference)| {
+            let t = reference.shots.last().map_or(0.0, |shot| shot.at.t.high);
+            let why = match reference.stuck {
+                Some(Stuck::OutOfTime) => "takes too long",
+                _ => "needs steps that are too small",
+            };
+            format!("the {} reference {why} (it came to t = {t:.4} s)", leg.name())
+        });
+        return Err(no_reference(reasons.collect::<Vec<_>>().join("; ")));
+    }
+    let scales = mechanism.exact.scales();
+    let of = |leg: Leg| references.iter().find(|(own, reference)| *own == leg && whole(reference));
+    let any = of(Leg::Collocated).or_else(|| of(Leg::Extrapolated)).map(|(_, reference)| reference);
+    let any = any.ok_or_else(|| no_reference("no reference is whole".to_string()))?;
+    let sizes = Sizes::of(any, scales);
+    let width = match (of(Leg::Extrapolated), of(Leg::Collocated)) {
+        (Some((_, a)), Some((_, b))) => Some(apart_legs(a, b, &sizes, &extent.watched)),
+        _ => None,
+    };
+    let judge = |method: MotionMethod| {
+        let other = if method.is_implicit() { Leg::Extrapolated } else { Leg::Collocated };
+        of(other).map_or(any, |(_, reference)| reference)
+    };
+    let mut points: Vec<Point> = Vec::new();
+    let mut longest = extent.longest;
+    let methods = if extent.methods.is_empty() { MotionMethod::all() } else { extent.methods.clone() };
+    let curves: Vec<(Numbers, MotionMethod)> = [Numbers::Double, Numbers::Single]
+        .into_iter()
+        .flat_map(|numbers| methods.iter().map(move |method| (numbers, *method)))
+        .collect();
+    for (index, (numbers, method)) in curves.iter().enumerate() {
+        let share = index as f64 / curves.len() as f64;
+        let name = Setting::Motion { numbers: *numbers, method: *method, resolution: Resolution::Steps(0) };
+        progress(&name.curve(), 0.7 * share);
+        let own = Extent { longest, ..extent.clone() };
+        let found = curve(mechanism, (*numbers, *method), &times, &own, judge(*method), &sizes, width);
+        if points.is_empty() {
+            let finest = found.iter().map(|point| point.effort.elapsed.as_secs_f64()).fold(0.0, f64::max);
+            longest = (DEAREST * finest).max(CHEAP).min(extent.longest);
+        }
+        points.extend(found);
+    }
+    for round in 1..RUNS {
+        progress("times", 0.7 + 0.3 * f64::from(round) / f64::from(RUNS));
+        for point in &mut points {
+            time_again(mechanism, point, &times);
+        }
+    }
+    points.iter_mut().for_each(|point| point.time = point.effort.elapsed.as_secs_f64() * 1e6 / until);
+    Ok(MovedStudy { points, references, width })
+}
+
+/// The reference of the finest steps that are in time.
+fn best(
+    mechanism: &mut MovedCosts,
+    leg: Leg,
+    start: (&[f64], &[f64]),
+    times: &[f64],
+    extent: &Extent,
+) -> Reference {
+    let budget = Duration::from_secs_f64(extent.reference);
+    let exact = mechanism.exact.as_mut();
+    // A coarse one first tells if the fine one will be in time.
+    let coarse = reference(exact, leg, start, times, 1e-10, budget);
+    if coarse.stuck.is_some() {
+        return coarse;
+    }
+    let fine = reference(exact, leg, start, times, extent.tolerance, budget.mul_f64(2.0));
+    if fine.stuck.is_none() { fine } else { coarse }
+}
+
+fn apart_legs(a: &Reference, b: &Reference, sizes: &Sizes, watched: &[usize]) -> f64 {
+    let difference = |(a, b): (&crate::cost::reference::Shot, &crate::cost::reference::Shot)| {
+        if watched.is_empty() {
+            let pairs = a.at.q.iter().zip(&b.at.q).zip(&sizes.scales);
+            return pairs.map(|((a, b), scale)| (*a - *b).high.abs() / scale).fold(0.0, worse);
+        }
+        let of = |k: &usize| (a.observed.outputs[*k] - b.observed.outputs[*k]).high.abs() / sizes.outputs[*k];
+        watched.iter().map(of).fold(0.0, worse)
+    };
+    a.shots.iter().zip(&b.shots).map(difference).fold(0.0, worse)
+}
+
+fn curve(
+    mechanism: &MovedCosts,
+    (numbers, method): (Numbers, MotionMethod),
+    times: &[f64],
+    extent: &Extent,
+    reference: &Reference,
+    sizes: &Sizes,
+    width: Option<f64>,
+) -> Vec<Point> {
+    let Some((_, runs)) = mechanism.runs.iter().find(|(own, _)| *own == numbers) else { return Vec::new() };
+    if !runs.admits(method) {
+        return Vec::new();
+    }
+    let mut points: Vec<Point> = Vec::new();
+    let mut last: Option<(Vec<Seen>, u64)> = None;
+    let mut gained_nothing = 0;
+    for resolution in ladder(method, numbers) {
+        let setting = Setting::Motion { numbers, method, resolution };
+        let mut seen = Vec::new();
+        let ran = runs.run(method, resolution, times, Some(&mut |state| seen.push(state)));
+        let timed = ran.and_then(|_| runs.run(method, resolution, times, None));
+        let effort = match timed {
+            Ok(effort) => effort,
+            Err(failure) => {
+                let outcome = Outcome::Refused(failure.to_string());
+                points.push(Point { setting, outcome, effort: Effort::default(), time: f64::NAN });
+                last = None;
+                continue;
+            }
+        };
+        let Some(errors) = errors(&seen, reference, sizes, &extent.watched) else { continue };
+        // Runs of the same steps tell nothing of their error.
+        let is_finer = last.as_ref().is_none_or(|(_, steps)| effort.steps as f64 > FINER * *steps as f64);
+        let coarser = last.as_ref().filter(|_| is_finer);
+        let expected = coarser.and_then(|(last, _)| between(last, &seen, sizes, &extent.watched));
+        let verdict = verdict(numbers, method, errors.judged, expected, width);
+        let before = points.last().and_then(|point| match point.outcome {
+            Outcome::Done { errors, .. } => Some(errors.judged),
+            Outcome::Refused(_) => None,
+        });
+        let gains = before.is_none_or(|before| errors.judged < 0.7 * before);
+        gained_nothing = if gains || errors.judged > floor(numbers) { 0 } else { gained_nothing + 1 };
+        points.push(Point {
+            setting,
+            outcome: Outcome::Done { errors, expected, verdict },
+            effort,
+            time: f64::NAN,
+        });
+        if is_finer {
+            last = Some((seen, effort.steps));
+        }
+        // The next one takes at least as long again.
+        if effort.elapsed.as_secs_f64() > extent.longest || gained_nothing >= 2 {
+            break;
+        }
+    }
+    points
+}
+
+/// Errors that rounding alone explains.
+fn rounding(numbers: Numbers) -> f64 {
+    match numbers {
+        Numbers::Double => 1e-10,
+        Numbers::Single => 1e-2,
+    }
+}
+
+fn verdict(
+    numbers: Numbers,
+    method: MotionMethod,
+    error: f64,
+    expected: Option<f64>,
+    width: Option<f64>,
+) -> Verdict {
+    // A penalty changes the problem: its error stays whatever the steps.
+    let is_other = matches!(method, MotionMethod::Explicit(FormulationName::Penalty, _));
+    let width = width.unwrap_or(0.0);
+    match expected {
+        _ if error <= WIDTHS * width => Verdict::Hollow,
+        Some(expected) if error > (WRONG * expected).max(rounding(numbers)) => {
+            if is_other {
+                Verdict::Untrusted
+            } else {
+                Verdict::Wrong
+            }
+        }
+        _ => Verdict::Right,
+    }
+}
+
+fn time_again(mechanism: &MovedCosts, point: &mut Point, times: &[f64]) {
+    let Setting::Motion { numbers, method, resolution } = point.setting else { return };
+    let Some((_, runs)) = mechanism.runs.iter().find(|(own, _)| *own == numbers) else { return };
+    if matches!(point.outcome, Outcome::Refused(_)) {
+        return;
+    }
+    if let Ok(effort) = runs.run(method, resolution, times, None) {
+        point.effort.elapsed = point.effort.elapsed.min(effort.elapsed);
+    }
+}
+
+impl Leg {
+    /// Its kind in a word.
+    pub fn name(self) -> &'static str {
+        match self {
+            Leg::Extrapolated => "extrapolated",
+            Leg::Collocated => "collocated",
+        }
+    }
+}

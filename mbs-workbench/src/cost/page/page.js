@@ -1,0 +1,224 @@
+"use strict";
+const COLOURS = ["#0072b2", "#e69f00", "#009e73", "#d55e00", "#56b4e9", "#cc79a7", "#8a8f00"];
+const byId = (id) => document.getElementById(id);
+const svgElement = (name, attributes, parent) => {
+  const element = document.createElementNS("http://www.w3.org/2000/svg", name);
+  for (const [key, value] of Object.entries(attributes)) element.setAttribute(key, value);
+  if (parent) parent.append(element);
+  return element;
+};
+const element = (name, text, parent) => {
+  const made = document.createElement(name);
+  if (text !== undefined) made.textContent = text;
+  if (parent) parent.append(made);
+  return made;
+};
+const short = (value) => {
+  if (value === undefined || value === null) return "";
+  if (value === 0) return "0";
+  return Math.abs(value) >= 1e-3 && Math.abs(value) < 1e5 ? String(Number(value.toPrecision(3))) : value.toExponential(1);
+};
+
+const all = [];
+DATA.curves.forEach((curve, c) => curve.points.forEach((point, p) => all.push({ curve, c, point, p })));
+const done = all.filter(({ point }) => point.error !== undefined);
+const trusted = done.filter(({ curve, point }) => !curve.lanes && (point.verdict === "right" || point.verdict === "hollow"));
+const shown = new Set();
+let asked = DATA.asked;
+const showFront = () => {
+  shown.clear();
+  DATA.curves.forEach((curve, c) => { if (curve.lanes || curve.points.some((point) => point.front)) shown.add(c); });
+  if (shown.size === 0) DATA.curves.forEach((_, c) => shown.add(c));
+};
+showFront();
+
+/* The cheapest trusted point with at most the error asked for. */
+const cheapest = (error) => trusted.filter(({ point }) => point.error <= error)
+  .sort((a, b) => a.point.time - b.point.time)[0];
+
+const MARKS = [
+  (x, y, r) => `M${x - r} ${y}a${r} ${r} 0 1 0 ${2 * r} 0a${r} ${r} 0 1 0 ${-2 * r} 0`,
+  (x, y, r) => `M${x - r} ${y - r}h${2 * r}v${2 * r}h${-2 * r}z`,
+  (x, y, r) => `M${x} ${y - 1.3 * r}L${x + 1.2 * r} ${y + r}H${x - 1.2 * r}z`,
+  (x, y, r) => `M${x} ${y - 1.4 * r}L${x + 1.4 * r} ${y}L${x} ${y + 1.4 * r}L${x - 1.4 * r} ${y}z`,
+  (x, y, r) => `M${x} ${y + 1.3 * r}L${x + 1.2 * r} ${y - r}H${x - 1.2 * r}z`,
+];
+const mark = (curve, x, y, r) => MARKS[curve.mark % MARKS.length](x, y, r);
+
+/* A chart of the error over a quantity of the points; both axes are logarithmic. */
+const chart = (place, value, words) => {
+  const [width, height] = innerWidth < 600 ? [360, 330] : [640, 440];
+  const [left, right, top, bottom] = [64, 18, 14, 52];
+  const svg = svgElement("svg", { viewBox: `0 0 ${width} ${height}`, role: "img" });
+  svgElement("title", {}, svg).textContent = `error over ${words}`;
+  const usable = done.filter((entry) => value(entry.point) > 0);
+  const ends = (numbers) => [Math.floor(Math.min(...numbers) - 0.08), Math.ceil(Math.max(...numbers) + 0.08)];
+  const size = (point) => Math.log10(Math.min(Math.max(point.error, 1e-17), 10));
+  const [x0, x1] = usable.length ? ends(usable.map((entry) => Math.log10(value(entry.point)))) : [0, 1];
+  const [y0, y1] = ends([...usable.map((entry) => size(entry.point)), Math.log10(asked)]);
+  const atX = (number) => left + (Math.log10(number) - x0) / (x1 - x0) * (width - left - right);
+  const atLog = (number) => height - bottom - (number - y0) / (y1 - y0) * (height - top - bottom);
+  const power = (x, y, exponent, anchor) => {
+    const text = svgElement("text", { x, y, "text-anchor": anchor }, svg);
+    text.append("10");
+    const raised = svgElement("tspan", { dy: -5, "font-size": 9 }, text);
+    raised.textContent = exponent;
+  };
+  for (let k = x0; k <= x1; k += Math.max(1, Math.ceil((x1 - x0) / 8))) {
+    svgElement("path", { class: "grid", d: `M${atX(10 ** k)} ${top}V${height - bottom}` }, svg);
+    power(atX(10 ** k), height - bottom + 18, k, "middle");
+  }
+  for (let k = y0; k <= y1; k += Math.max(1, Math.ceil((y1 - y0) / 9))) {
+    svgElement("path", { class: "grid", d: `M${left} ${atLog(k)}H${width - right}` }, svg);
+    power(left - 8, atLog(k) + 4, k, "end");
+  }
+  svgElement("text", { x: (left + width - right) / 2, y: height - 10, "text-anchor": "middle" }, svg).textContent = words;
+  const label = svgElement("text", { x: 14, y: height / 2, "text-anchor": "middle", transform: `rotate(-90 14 ${height / 2})` }, svg);
+  label.textContent = `error of the ${DATA.judged}`;
+  const best = usable.filter((entry) => trusted.includes(entry) && entry.point.error <= 0.1)
+    .sort((a, b) => value(a.point) - value(b.point) || a.point.error - b.point.error);
+  let lowest = Infinity;
+  const front = best.filter(({ point }) => (point.error < 0.7 * lowest ? ((lowest = point.error), true) : false));
+  if (front.length) {
+    svgElement("path", { class: "frontier", d: "M" + front.map(({ point }) => `${atX(value(point))} ${atLog(size(point))}`).join("L") }, svg);
+  }
+  DATA.curves.forEach((curve, c) => {
+    if (!shown.has(c)) return;
+    const colour = COLOURS[curve.colour % COLOURS.length];
+    const points = curve.points.filter((point) => point.error !== undefined && value(point) > 0);
+    const dash = curve.dashed ? { "stroke-dasharray": "6 4" } : {};
+    if (points.length > 1) {
+      const d = "M" + points.map((point) => `${atX(value(point))} ${atLog(size(point))}`).join("L");
+      svgElement("path", { d, fill: "none", stroke: colour, "stroke-width": 1.6, ...dash }, svg);
+    }
+    for (const point of points) {
+      const [x, y] = [atX(value(point)), atLog(size(point))];
+      const filled = point.verdict === "right";
+      const spot = svgElement("path", {
+        d: mark(curve, x, y, 4.2), stroke: point.verdict === "wrong" ? "#d0021b" : colour,
+        fill: filled ? colour : "var(--panel)", "stroke-width": point.verdict === "wrong" ? 3 : 1.6, "data-curve": curve.name, class: "spot",
+      }, svg);
+      if (point.verdict === "hollow" && DATA.width) {
+        const ends = [point.error + DATA.width, Math.max(point.error - DATA.width, 1e-17)].map((end) => atLog(Math.log10(end)));
+        svgElement("path", { d: `M${x} ${ends[0]}V${ends[1]}`, stroke: colour }, svg);
+      }
+      const area = svgElement("circle", { cx: x, cy: y, r: 10, fill: "transparent", class: "area" }, svg);
+      const tell = (event) => tip(event, curve, point);
+      area.addEventListener("pointerenter", tell);
+      area.addEventListener("pointermove", tell);
+      area.addEventListener("pointerleave", () => { byId("tip").hidden = true; });
+      area.addEventListener("click", () => choose({ curve, point }));
+    }
+  });
+  const y = atLog(Math.log10(asked));
+  svgElement("path", { class: "asked", d: `M${left} ${y}H${width - right}` }, svg);
+  svgElement("text", { class: "word", x: width - right - 4, y: y - 6, "text-anchor": "end" }, svg).textContent = `asked ${short(asked)}`;
+  const handle = svgElement("path", { class: "handle", d: `M${left} ${y}H${width - right}` }, svg);
+  handle.addEventListener("pointerdown", (event) => {
+    event.preventDefault();
+    const move = (moved) => {
+      const box = byId(place).querySelector("svg").getBoundingClientRect();
+      const inside = (moved.clientY - box.top) / box.height * height;
+      const exponent = y0 + (height - bottom - inside) / (height - top - bottom) * (y1 - y0);
+      asked = Number((10 ** Math.min(Math.max(exponent, y0), y1)).toPrecision(2));
+      draw();
+    };
+    const end = () => { removeEventListener("pointermove", move); removeEventListener("pointerup", end); };
+    addEventListener("pointermove", move);
+    addEventListener("pointerup", end);
+  });
+  byId(place).replaceChildren(svg);
+};
+
+const figures = (point) => [
+  ["error", short(point.error)], ["median", short(point.median)], ["velocity", short(point.rate)],
+  [DATA.second, short(point.second)], ...(point.energy ? [["energy", short(point.energy)]] : []),
+  ...(point.violation ? [["violation", short(point.violation)]] : []),
+  ...(point.expected !== undefined ? [["expected", short(point.expected)]] : []),
+  ["time", `${short(point.time)} ${DATA.unit}`], ["evaluations", point.evaluations], ["steps", point.steps], ["verdict", point.verdict],
+];
+const tip = (event, curve, point) => {
+  const box = byId("tip");
+  box.replaceChildren();
+  element("b", `${curve.name}, ${point.label}`, box);
+  const table = element("table", undefined, box);
+  for (const [name, value] of figures(point)) {
+    const row = element("tr", undefined, table);
+    element("td", name, row);
+    element("td", String(value), row);
+  }
+  box.hidden = false;
+  const [w, h] = [box.offsetWidth, box.offsetHeight];
+  box.style.left = `${Math.max(4, Math.min(event.clientX + 14, innerWidth - w - 4))}px`;
+  box.style.top = `${event.clientY + 14 + h > innerHeight ? Math.max(4, event.clientY - h - 14) : event.clientY + 14}px`;
+};
+const choose = (entry) => {
+  byId("chosen").textContent = entry
+    ? `${entry.curve.name}, ${entry.point.label}: error ${short(entry.point.error)}, ${short(entry.point.time)} ${DATA.unit}`
+    : `no setting reaches ${short(asked)}`;
+  byId("rust").textContent = entry ? entry.point.rust : "";
+};
+const legend = () => {
+  const place = byId("legend");
+  place.replaceChildren();
+  DATA.curves.forEach((curve, c) => {
+    const button = element("button", undefined, place);
+    const colour = COLOURS[curve.colour % COLOURS.length];
+    const svg = svgElement("svg", { viewBox: "0 0 40 14" }, button);
+    svgElement("path", { d: "M1 7H39", stroke: colour, "stroke-width": 2, ...(curve.dashed ? { "stroke-dasharray": "6 4" } : {}) }, svg);
+    svgElement("path", { d: mark(curve, 20, 7, 4.2), fill: colour }, svg);
+    element("span", curve.name, button);
+    button.className = shown.has(c) ? "" : "off";
+    button.setAttribute("aria-pressed", String(shown.has(c)));
+    button.addEventListener("click", () => { if (!shown.delete(c)) shown.add(c); draw(); });
+  });
+};
+const table = () => {
+  const place = byId("table");
+  place.replaceChildren();
+  const head = element("tr", undefined, place);
+  ["setting", "error", "median", "velocity", DATA.second, DATA.unit, "evaluations", "steps"].forEach((name) => element("th", name, head));
+  const chosen = cheapest(asked);
+  for (const { curve, point } of trusted.filter((entry) => entry.point.front).sort((a, b) => a.point.time - b.point.time)) {
+    const row = element("tr", undefined, place);
+    if (chosen && chosen.point === point) row.className = "chosen";
+    [`${curve.name}, ${point.label}`, short(point.error), short(point.median), short(point.rate), short(point.second), short(point.time), point.evaluations, point.steps]
+      .forEach((text) => element("td", String(text), row));
+  }
+};
+const refused = () => {
+  const place = byId("refused");
+  const lost = all.filter(({ point }) => point.refused !== undefined || point.verdict === "wrong" || point.verdict === "untrusted" || point.error === undefined);
+  byId("refused-panel").hidden = lost.length === 0;
+  const groups = new Map();
+  for (const { curve, point } of lost) {
+    const reason = point.refused ?? `${point.verdict}: error ${short(point.error)}, expected ${short(point.expected)}`;
+    const key = `${curve.name}\u0000${reason}`;
+    groups.set(key, [...(groups.get(key) ?? []), point]);
+  }
+  for (const [key, points] of groups) {
+    const [name, reason] = key.split("\u0000");
+    const line = element("p", `${name}, ${points.map((point) => point.label).join("; ")}: ${reason}`, place);
+    if (points[0].verdict === "wrong") line.className = "wrong";
+  }
+};
+const draw = () => {
+  chart("time", (point) => point.time, `time (${DATA.unit})`);
+  const count = byId("count").value;
+  const of = { evaluations: (point) => point.evaluations, steps: (point) => point.steps, work: (point) => point.evaluations + point.corrections };
+  chart("counts", of[count], byId("count").selectedOptions[0].textContent);
+  legend();
+  table();
+  choose(cheapest(asked));
+};
+byId("title").textContent = `${DATA.title}: cost of accuracy`;
+byId("sentence").textContent = DATA.sentence;
+byId("command").textContent = DATA.command;
+for (const [name, value] of DATA.facts) { element("dt", name, byId("facts")); element("dd", value, byId("facts")); }
+byId("front").addEventListener("click", () => { showFront(); draw(); });
+byId("all").addEventListener("click", () => { DATA.curves.forEach((_, c) => shown.add(c)); draw(); });
+byId("none").addEventListener("click", () => { shown.clear(); draw(); });
+byId("count").addEventListener("change", draw);
+addEventListener("resize", draw);
+refused();
+draw();

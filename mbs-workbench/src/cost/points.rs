@@ -1,0 +1,147 @@
+//! Points of the study: a setting with its true error, its time and its counts.
+
+use crate::erased::timed_runs::Effort;
+use crate::setting::Setting;
+
+/// Errors of a run at its instants: the largest counts.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Errors {
+    /// Of the quantity that is judged: coordinates in the reference metric, or the watched outputs.
+    pub judged: f64,
+    /// Its median over the instants.
+    pub median: f64,
+    /// Of velocities, over the largest of the motion.
+    pub rate: f64,
+    /// Of accelerations (drives), or of Φ_qᵀ λ (forces), over the largest of the motion.
+    pub second: f64,
+    /// Of the energy, over the largest kinetic energy of the motion; 0 where there are no masses.
+    pub energy: f64,
+    /// Largest violation of a row in the reference metric.
+    pub violation: f64,
+}
+
+/// Judgement of a point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// The error is what the neighbouring points let expect.
+    Right,
+    /// The error is below 100 widths of the reference: it is known with that width alone.
+    Hollow,
+    /// The run itself warns of its result, or its method changes the problem.
+    Untrusted,
+    /// `Ok` with an error of more than ten times the expected one.
+    Wrong,
+}
+
+/// Result of a setting.
+#[derive(Clone, Debug)]
+pub enum Outcome {
+    /// It went through.
+    Done {
+        /// True errors.
+        errors: Errors,
+        /// Error that the next coarser point of its curve lets expect; none of the coarsest.
+        expected: Option<f64>,
+        /// Judgement.
+        verdict: Verdict,
+    },
+    /// It ended with a failure, in words.
+    Refused(String),
+}
+
+/// A setting with its result.
+#[derive(Clone, Debug)]
+pub struct Point {
+    /// The setting.
+    pub setting: Setting,
+    /// Result.
+    pub outcome: Outcome,
+    /// Counts and the shortest time.
+    pub effort: Effort,
+    /// Time (µs) a second of the motion; of kinematics a step (ns).
+    pub time: f64,
+}
+
+impl Point {
+    /// `true` for a run of one mechanism; lanes are of use for many at once.
+    pub fn is_single(&self) -> bool {
+        matches!(self.setting, Setting::Motion { .. } | Setting::Kinematics { lanes: 1, .. })
+    }
+
+    /// Its error, where it is trusted.
+    pub fn error(&self) -> Option<f64> {
+        match &self.outcome {
+            Outcome::Done { errors, verdict: Verdict::Right | Verdict::Hollow, .. } => Some(errors.judged),
+            _ => None,
+        }
+    }
+}
+
+/// Share of the best error so far that a dearer point must stay below to be on the front: what differs by less is the same.
+const GAIN: f64 = 0.7;
+
+/// Errors above it are no accuracy.
+const COARSEST: f64 = 0.1;
+
+/// Indices of the points of one mechanism that no other one beats in error and time, from coarse to fine.
+pub fn front(points: &[Point]) -> Vec<usize> {
+    let mut known: Vec<(usize, f64, f64)> = points
+        .iter()
+        .enumerate()
+        .filter(|(_, point)| point.is_single())
+        .filter_map(|(index, point)| Some((index, point.error()?, point.time)))
+        .filter(|(_, error, time)| *error <= COARSEST && time.is_finite())
+        .collect();
+    known.sort_by(|a, b| a.2.total_cmp(&b.2).then(a.1.total_cmp(&b.1)));
+    let mut best = f64::INFINITY;
+    let mut front = Vec::new();
+    for (index, error, _) in known {
+        if error < GAIN * best {
+            best = error;
+            front.push(index);
+        }
+    }
+    front
+}
+
+/// The cheapest trusted point of one mechanism with an error of at most `asked`.
+pub fn cheapest(points: &[Point], asked: f64) -> Option<&Point> {
+    reaching(points, asked).filter(|point| point.is_single()).min_by(|a, b| a.time.total_cmp(&b.time))
+}
+
+/// The cheapest trusted point of many mechanisms at once with an error of at most `asked`; its time is that of one.
+pub fn cheapest_in_lanes(points: &[Point], asked: f64) -> Option<&Point> {
+    reaching(points, asked).filter(|point| !point.is_single()).min_by(|a, b| a.time.total_cmp(&b.time))
+}
+
+fn reaching(points: &[Point], asked: f64) -> impl Iterator<Item = &Point> {
+    points.iter().filter(move |point| point.error().is_some_and(|error| error <= asked))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::setting::{Closing, Numbers};
+
+    fn point(error: f64, time: f64, verdict: Verdict) -> Point {
+        let setting =
+            Setting::Kinematics { numbers: Numbers::Double, lanes: 1, closing: Closing::Closed, steps: 1 };
+        let errors = Errors { judged: error, ..Errors::default() };
+        let outcome = Outcome::Done { errors, expected: None, verdict };
+        Point { setting, outcome, effort: Effort::default(), time }
+    }
+
+    #[test]
+    fn the_front_has_what_nothing_beats() {
+        let points = [
+            point(1e-3, 1.0, Verdict::Right),
+            point(1e-2, 2.0, Verdict::Right),
+            point(1e-6, 3.0, Verdict::Right),
+            point(1e-9, 2.5, Verdict::Wrong),
+            point(1e-8, 9.0, Verdict::Hollow),
+        ];
+        assert_eq!(front(&points), [0, 2, 4]);
+        assert_eq!(cheapest(&points, 1e-5).map(|point| point.time), Some(3.0));
+        assert!(cheapest(&points, 1e-12).is_none());
+    }
+}

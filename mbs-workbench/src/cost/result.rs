@@ -1,0 +1,274 @@
+//! The result of a study: what its table, page, picture and files show.
+
+use serde::Serialize;
+
+use crate::cost::advice::sentence;
+use crate::cost::points::{Outcome, Point, Verdict, front};
+use crate::setting::{MotionMethod, Numbers, Setting};
+
+/// A study with its words.
+pub struct CostResult {
+    /// Program, version and text.
+    pub origin: String,
+    /// Name on the command line.
+    pub name: String,
+    /// Heading.
+    pub title: String,
+    /// The command that makes it again.
+    pub command: String,
+    /// Constructor of the mechanism, for Rust.
+    pub constructor: String,
+    /// End of the motion (s).
+    pub until: f64,
+    /// Error asked for.
+    pub asked: f64,
+    /// All points, curve by curve.
+    pub points: Vec<Point>,
+    /// Width of the reference; none where one leg alone went through.
+    pub width: Option<f64>,
+    /// Quantity that is judged, in words.
+    pub judged: String,
+    /// Quantity of [`Errors::second`](crate::cost::points::Errors::second), in words.
+    pub second: &'static str,
+    /// Pairs of a name and a value: references, machine, versions.
+    pub facts: Vec<[String; 2]>,
+}
+
+/// Data of the page.
+#[derive(Serialize)]
+struct Page<'a> {
+    name: &'a str,
+    title: &'a str,
+    command: &'a str,
+    unit: &'static str,
+    judged: &'a str,
+    second: &'static str,
+    asked: f64,
+    sentence: String,
+    width: Option<f64>,
+    facts: &'a [[String; 2]],
+    curves: Vec<Curve>,
+}
+
+/// A curve of the page.
+#[derive(Serialize)]
+struct Curve {
+    name: String,
+    /// Index of its colour.
+    colour: usize,
+    /// Index of its mark.
+    mark: usize,
+    dashed: bool,
+    /// `true` for many mechanisms at once.
+    lanes: bool,
+    points: Vec<PagePoint>,
+}
+
+/// A point of the page.
+#[derive(Serialize)]
+struct PagePoint {
+    label: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    refused: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    error: Option<f64>,
+    median: f64,
+    rate: f64,
+    second: f64,
+    energy: f64,
+    violation: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    expected: Option<f64>,
+    verdict: &'static str,
+    front: bool,
+    time: f64,
+    evaluations: u64,
+    corrections: u64,
+    steps: u64,
+    rust: String,
+}
+
+fn verdict(verdict: Verdict) -> &'static str {
+    match verdict {
+        Verdict::Right => "right",
+        Verdict::Hollow => "hollow",
+        Verdict::Untrusted => "untrusted",
+        Verdict::Wrong => "wrong",
+    }
+}
+
+/// Indices of colour and mark: colours tell integrators apart, marks formulations.
+pub fn style(setting: &Setting) -> (usize, usize, bool) {
+    let dashed = setting.numbers() == Numbers::Single;
+    match setting {
+        Setting::Motion { method: MotionMethod::Explicit(formulation, integrator), .. } => {
+            (*integrator as usize, *formulation as usize, dashed)
+        }
+        Setting::Motion { method: MotionMethod::Implicit(name), .. } => {
+            (5 + *name as usize % 2, *name as usize, dashed)
+        }
+        Setting::Kinematics { lanes, closing, .. } => {
+            let colour = match (lanes, closing) {
+                (1, crate::setting::Closing::Closed) => 0,
+                (1, crate::setting::Closing::Evaluations(most)) => *most as usize,
+                (lanes, _) => 3 + lanes.ilog2() as usize / 2,
+            };
+            (colour % 7, colour % 5, dashed)
+        }
+    }
+}
+
+impl CostResult {
+    /// `true` for times of a step.
+    pub fn is_step(&self) -> bool {
+        self.points.iter().any(|point| matches!(point.setting, Setting::Kinematics { .. }))
+    }
+
+    /// The choice in one sentence.
+    pub fn sentence(&self) -> String {
+        sentence(&self.points, self.asked)
+    }
+
+    /// Points that answer `Ok` with an error that nothing announces.
+    pub fn wrong(&self) -> impl Iterator<Item = &Point> {
+        let is_wrong =
+            |point: &&Point| matches!(point.outcome, Outcome::Done { verdict: Verdict::Wrong, .. });
+        self.points.iter().filter(is_wrong)
+    }
+
+    /// The unit of times in words.
+    pub fn unit(&self) -> &'static str {
+        if self.is_step() { "ns a step" } else { "µs a simulated second" }
+    }
+
+    /// Data of the page, and of the document.
+    fn data(&self) -> Page<'_> {
+        let on_front = front(&self.points);
+        let mut curves: Vec<Curve> = Vec::new();
+        for (index, point) in self.points.iter().enumerate() {
+            let name = point.setting.curve();
+            let (colour, mark, dashed) = style(&point.setting);
+            if curves.last().is_none_or(|curve| curve.name != name) {
+                let lanes = !point.is_single();
+                curves.push(Curve { name, colour, mark, dashed, lanes, points: Vec::new() });
+            }
+            let rust = crate::cost::advice::rust(&point.setting, &self.constructor, self.until);
+            let page = match &point.outcome {
+                Outcome::Refused(reason) => PagePoint {
+                    label: point.setting.label(),
+                    refused: Some(reason.clone()),
+                    error: None,
+                    median: 0.0,
+                    rate: 0.0,
+                    second: 0.0,
+                    energy: 0.0,
+                    violation: 0.0,
+                    expected: None,
+                    verdict: "refused",
+                    front: false,
+                    time: 0.0,
+                    evaluations: 0,
+                    corrections: 0,
+                    steps: 0,
+                    rust,
+                },
+                Outcome::Done { errors, expected, verdict: judgement } => PagePoint {
+                    label: point.setting.label(),
+                    refused: None,
+                    error: Some(errors.judged).filter(|error| error.is_finite()),
+                    median: errors.median,
+                    rate: errors.rate,
+                    second: errors.second,
+                    energy: errors.energy,
+                    violation: errors.violation,
+                    expected: *expected,
+                    verdict: verdict(*judgement),
+                    front: on_front.contains(&index),
+                    time: point.time,
+                    evaluations: point.effort.evaluations,
+                    corrections: point.effort.corrections,
+                    steps: point.effort.steps,
+                    rust,
+                },
+            };
+            if let Some(curve) = curves.last_mut() {
+                curve.points.push(page);
+            }
+        }
+        Page {
+            name: &self.name,
+            title: &self.title,
+            command: &self.command,
+            unit: self.unit(),
+            judged: &self.judged,
+            second: self.second,
+            asked: self.asked,
+            sentence: self.sentence(),
+            width: self.width,
+            facts: &self.facts,
+            curves,
+        }
+    }
+
+    /// Data of the page, for a document of the command.
+    pub fn document(&self) -> serde_json::Value {
+        serde_json::to_value(self.data()).expect("plain data has a JSON form")
+    }
+
+    /// The self-contained page.
+    pub fn page(&self) -> String {
+        let json = serde_json::to_string(&self.data()).expect("plain data has a JSON form");
+        // A script element must contain neither `</script>` nor `<!--`.
+        let json = json.replace('<', "\\u003c");
+        include_str!("page/page.html")
+            .replace("{{title}}", &escaped(&self.title))
+            .replace("{{origin}}", &escaped(&self.origin))
+            .replace("{{style}}", include_str!("page/page.css"))
+            .replace("{{script}}", include_str!("page/page.js"))
+            .replace("{{data}}", &json)
+    }
+
+    /// One line a point.
+    pub fn csv(&self) -> String {
+        let mut text = format!(
+            "numbers,curve,setting,result,error,median error,velocity error,{} error,energy error,violation,expected error,time ({}),evaluations,corrections,steps,on the front\n",
+            self.second,
+            self.unit()
+        );
+        let on_front = front(&self.points);
+        let quoted = |text: &str| format!("\"{}\"", text.replace('"', "\"\""));
+        for (index, point) in self.points.iter().enumerate() {
+            let head = [
+                point.setting.numbers().name().to_string(),
+                quoted(&point.setting.curve()),
+                quoted(&point.setting.label()),
+            ];
+            let rest = match &point.outcome {
+                Outcome::Refused(reason) => vec![quoted(reason)],
+                Outcome::Done { errors, expected, verdict: judgement } => vec![
+                    verdict(*judgement).to_string(),
+                    format!("{:e}", errors.judged),
+                    format!("{:e}", errors.median),
+                    format!("{:e}", errors.rate),
+                    format!("{:e}", errors.second),
+                    format!("{:e}", errors.energy),
+                    format!("{:e}", errors.violation),
+                    expected.map_or_else(String::new, |expected| format!("{expected:e}")),
+                    format!("{:.4}", point.time),
+                    point.effort.evaluations.to_string(),
+                    point.effort.corrections.to_string(),
+                    point.effort.steps.to_string(),
+                    on_front.contains(&index).to_string(),
+                ],
+            };
+            text += &head.into_iter().chain(rest).collect::<Vec<_>>().join(",");
+            text.push('\n');
+        }
+        text
+    }
+}
+
+/// Text of an element.
+pub fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+}

@@ -1,0 +1,275 @@
+//! Runs of settings for motion from forces, timed and recorded, in any type of number.
+
+use core::marker::PhantomData;
+use std::time::{Duration, Instant};
+
+use mbs_runtime::dynamics::{
+    AugmentedLagrangian, Baumgarte, Counts, Explicit, Extrapolated, Formulation, GeneralizedAlpha, Method,
+    Penalty, Projection, Simulation, Tolerance, Unstabilized, VelocityTransformation,
+};
+use mbs_runtime::{Dynamic, DynamicState, Failure, FailureKind, Partitioned, Real};
+
+use super::dynamics::direct_dynamics::{Pair, Rule};
+use super::dynamics::integrators::Integrators;
+use super::exact::{Observed, observed};
+use crate::setting::{FormulationName, ImplicitName, IntegratorName, MotionMethod, Resolution};
+
+/// A state of a run at an instant.
+#[derive(Clone, Debug)]
+pub struct Seen {
+    /// Time (s).
+    pub t: f64,
+    /// Coordinates: N.
+    pub q: Vec<f64>,
+    /// Velocities: N.
+    pub qd: Vec<f64>,
+    /// Reactions, energy, outputs.
+    pub observed: Observed<f64>,
+    /// Largest violation of a row in the reference metric.
+    pub violation: f64,
+}
+
+/// Effort of a run.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Effort {
+    /// Right-hand sides evaluated.
+    pub evaluations: u64,
+    /// Corrections by projections and iterations of implicit steps: factorizations beside those of the evaluations.
+    pub corrections: u64,
+    /// Steps taken.
+    pub steps: u64,
+    /// Time of computation.
+    pub elapsed: Duration,
+}
+
+/// Runs of a mechanism with masses.
+pub trait TimedRuns {
+    /// Coordinates and velocities of the start (N each) at `t` (s).
+    ///
+    /// # Errors
+    /// The mechanism cannot start.
+    fn start(&self, t: f64) -> Result<[Vec<f64>; 2], Failure>;
+    /// `true` where the method suits the mechanism.
+    fn admits(&self, method: MotionMethod) -> bool;
+    /// The motion through `times` (s), at equal distances; with `see` its instants are shown, without it nothing is computed
+    /// beside the motion. Of fewer steps than instants, those are shown at which a step ends.
+    ///
+    /// # Errors
+    /// Those of the run.
+    fn run(
+        &self,
+        method: MotionMethod,
+        resolution: Resolution,
+        times: &[f64],
+        see: Option<&mut dyn FnMut(Seen)>,
+    ) -> Result<Effort, Failure>;
+}
+
+/// A mechanism in numbers `R`, moved by integrators of `I`.
+pub struct Runs<S, I, R, const N: usize, const M: usize> {
+    mechanism: S,
+    kind: PhantomData<(I, R)>,
+}
+
+impl<S, I, R, const N: usize, const M: usize> Runs<S, I, R, N, M> {
+    /// `mechanism` as it is.
+    pub fn of(mechanism: S) -> Self {
+        Runs { mechanism, kind: PhantomData }
+    }
+}
+
+type AnyFormulation<'a, S, R, const N: usize, const M: usize> = &'a dyn Formulation<S, R, N, M>;
+type AnyMethod<'a, S, R, const N: usize, const M: usize> = &'a dyn Method<S, R, N, M>;
+
+/// Shows instants of a run.
+type See<'a> = Option<&'a mut dyn FnMut(Seen)>;
+
+fn seen<S, X, R, const N: usize, const M: usize>(run: &Simulation<S, X, R, N, M>) -> Seen
+where
+    S: Dynamic<R, N, M>,
+    X: Method<S, R, N, M>,
+    R: Real,
+{
+    let mechanism = run.mechanism();
+    let parameters = mechanism.parameters();
+    let position = mechanism.position(&parameters, run.q(), run.t());
+    let moving = DynamicState { qd: run.qd(), qdd: run.qdd(), lambda: run.lambda(), states: run.states() };
+    let Observed { reaction, energy, kinetic, outputs } =
+        observed(mechanism, (&parameters, &position), &moving);
+    let numbers = |values: &[R]| values.iter().map(|value| value.to_f64()).collect::<Vec<f64>>();
+    Seen {
+        t: run.t().to_f64(),
+        q: numbers(run.q()),
+        qd: numbers(run.qd()),
+        observed: Observed {
+            reaction: numbers(&reaction),
+            energy: energy.to_f64(),
+            kinetic: kinetic.to_f64(),
+            outputs: numbers(&outputs),
+        },
+        violation: run.balance().phi.to_f64(),
+    }
+}
+
+fn effort(counts: Counts, began: Instant) -> Effort {
+    Effort {
+        evaluations: counts.evaluations,
+        corrections: counts.corrections + counts.iterations,
+        steps: counts.steps,
+        elapsed: began.elapsed(),
+    }
+}
+
+impl<S, I, R, const N: usize, const M: usize> Runs<S, I, R, N, M>
+where
+    S: Dynamic<R, N, M> + Partitioned<R, N, M>,
+    I: Integrators,
+    R: Real,
+{
+    fn adaptive(
+        &self,
+        formulation: AnyFormulation<'_, S, R, N, M>,
+        integrator: I::Adaptive,
+        tolerance: f64,
+        times: &[f64],
+        see: See<'_>,
+    ) -> Result<Effort, Failure> {
+        let (first, last) = ends(times);
+        let method = Explicit::new(integrator, formulation);
+        let start = Simulation::start_from_text(self.mechanism.clone(), method, R::constant(first))?;
+        let tolerance = Tolerance { relative: R::constant(tolerance), absolute: R::constant(tolerance) };
+        let mut run = start.with_tolerance(tolerance).without_work();
+        let began = Instant::now();
+        let show = |run: &Simulation<S, _, R, N, M>, see: &mut dyn FnMut(Seen)| see(seen(run));
+        match see {
+            Some(see) => {
+                show(&run, see);
+                let samples = u32::try_from(times.len().saturating_sub(1)).unwrap_or(u32::MAX);
+                run.watch(R::constant(last), samples, |run| show(run, see))?;
+            }
+            None => run.advance_to(R::constant(last))?,
+        }
+        Ok(effort(run.counts(), began))
+    }
+
+    fn fixed(
+        &self,
+        method: AnyMethod<'_, S, R, N, M>,
+        steps: u32,
+        times: &[f64],
+        see: See<'_>,
+    ) -> Result<Effort, Failure> {
+        let (first, last) = ends(times);
+        let start = Simulation::start_from_text(self.mechanism.clone(), method, R::constant(first))?;
+        let mut run = start.without_work();
+        let began = Instant::now();
+        let Some(see) = see else {
+            run.step_to(R::constant(last), steps)?;
+            return Ok(effort(run.counts(), began));
+        };
+        see(seen(&run));
+        let parts = u32::try_from(times.len().saturating_sub(1)).unwrap_or(u32::MAX).max(1);
+        let (each, stride) = (steps.div_euclid(parts).max(1), parts.div_euclid(steps.max(1)).max(1));
+        for time in times.iter().skip(stride as usize).step_by(stride as usize) {
+            run.step_to(R::constant(*time), each)?;
+            see(seen(&run));
+        }
+        Ok(effort(run.counts(), began))
+    }
+}
+
+/// First and last of `times`.
+fn ends(times: &[f64]) -> (f64, f64) {
+    (times.first().copied().unwrap_or(0.0), times.last().copied().unwrap_or(0.0))
+}
+
+impl<S, I, R, const N: usize, const M: usize> TimedRuns for Runs<S, I, R, N, M>
+where
+    S: Dynamic<R, N, M> + Partitioned<R, N, M>,
+    I: Integrators,
+    R: Real,
+{
+    fn start(&self, t: f64) -> Result<[Vec<f64>; 2], Failure> {
+        let method: AnyMethod<'_, S, R, N, M> = &AugmentedLagrangian;
+        let run = Simulation::start_from_text(self.mechanism.clone(), method, R::constant(t))?;
+        Ok([run.q(), run.qd()].map(|values| values.iter().map(|value| value.to_f64()).collect()))
+    }
+
+    fn admits(&self, method: MotionMethod) -> bool {
+        match method {
+            MotionMethod::Explicit(FormulationName::VelocityTransformation, _) if !S::IS_PARTITIONED => false,
+            MotionMethod::Explicit(_, IntegratorName::Radau5) => {
+                I::RADAU.is_some() && S::MISSING_SLOPE.is_none()
+            }
+            MotionMethod::Explicit(..) => {
+                M > 0
+                    || matches!(
+                        method,
+                        MotionMethod::Explicit(
+                            FormulationName::Projection | FormulationName::VelocityTransformation,
+                            _
+                        )
+                    )
+            }
+            MotionMethod::Implicit(_) => S::MISSING_SLOPE.is_none(),
+        }
+    }
+
+    fn run(
+        &self,
+        method: MotionMethod,
+        resolution: Resolution,
+        times: &[f64],
+        see: See<'_>,
+    ) -> Result<Effort, Failure> {
+        let (baumgarte, penalty, projection) =
+            (Baumgarte::default(), Penalty::default(), Projection::default());
+        let formulation = |name| -> AnyFormulation<'_, S, R, N, M> {
+            match name {
+                FormulationName::Projection => &projection,
+                FormulationName::VelocityTransformation => &VelocityTransformation,
+                FormulationName::Baumgarte => &baumgarte,
+                FormulationName::Penalty => &penalty,
+                FormulationName::Unstabilized => &Unstabilized,
+            }
+        };
+        match (method, resolution) {
+            (MotionMethod::Explicit(name, integrator), Resolution::Tolerance(tolerance)) => {
+                let pair = match integrator {
+                    IntegratorName::DormandPrince5 => Some(I::pair(Pair::Order5)),
+                    IntegratorName::Radau5 => I::RADAU.map(|radau| radau.0),
+                    _ => Some(I::pair(Pair::Order8)),
+                };
+                let Some(pair) = pair else { return Err(too_large::<N, M>()) };
+                self.adaptive(formulation(name), pair, tolerance, times, see)
+            }
+            (MotionMethod::Explicit(name, integrator), Resolution::Steps(steps)) => {
+                let rule = match integrator {
+                    IntegratorName::SemiImplicitEuler => Rule::SemiImplicitEuler,
+                    _ => Rule::RungeKutta4,
+                };
+                let method = Explicit::new(I::rule(rule), formulation(name));
+                self.fixed(&method, steps, times, see)
+            }
+            (MotionMethod::Implicit(name), resolution) => {
+                let alpha = GeneralizedAlpha::default();
+                let method: AnyMethod<'_, S, R, N, M> = match name {
+                    ImplicitName::AugmentedLagrangian => &AugmentedLagrangian,
+                    ImplicitName::Extrapolated => &Extrapolated,
+                    ImplicitName::GeneralizedAlpha => &alpha,
+                };
+                let Resolution::Steps(steps) = resolution else { return Err(too_large::<N, M>()) };
+                self.fixed(method, steps, times, see)
+            }
+        }
+    }
+}
+
+fn too_large<const N: usize, const M: usize>() -> Failure {
+    FailureKind::InvalidMethodParameter {
+        name: "number of coordinates and rows",
+        value: (N + M) as f64,
+        most: mbs_runtime::dynamics::Radau5::MOST_UNKNOWNS as f64,
+    }
+    .without_time()
+}
