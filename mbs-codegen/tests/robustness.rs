@@ -193,6 +193,14 @@ fn check(text: &str) -> Option<String> {
         Err(report) => report,
     });
     assert!(picture.is_empty() || !report.is_empty(), "{picture}{text}");
+    let source = text.to_owned();
+    let form = expands(text, move || {
+        let form = mbs_codegen::faults_of_form(&source);
+        let quoted = mbs_codegen::declarations(&source, None);
+        assert!(quoted.is_err() || form.is_empty(), "{form:?}");
+        form.into_iter().map(|fault| fault.message).collect()
+    });
+    assert!(form.is_empty() || !report.is_empty(), "{form}{text}");
     // Structure is no matter of a definition.
     assert!(definition.is_empty() || !report.is_empty(), "{text}");
     if let Ok(tokens) = text.parse::<TokenStream>() {

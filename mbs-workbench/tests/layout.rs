@@ -152,3 +152,51 @@ fn texts_on_one_line_are_laid_out() {
         }
     }
 }
+
+/// Texts with characters lost, doubled or put in are refused, or laid out once and for all; nothing panics.
+#[test]
+fn spoilt_texts_are_refused_or_laid_out() {
+    const PUT_IN: [&str; 16] = [
+        "{", "}", "[", "(", ")", ";", ",", "-", "/* x */", "// y\n", "\n", "\n\n\n", "/// z\n", "\"", "é",
+        "/*",
+    ];
+    let mut state = 7_u64;
+    let mut next = |below: usize| {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        usize::try_from(state >> 33).expect("31 bits") % below
+    };
+    let (mut laid, mut refused) = (0, 0);
+    for (path, content) in sources(&["mechanisms/src"]) {
+        for call in calls(&content).expect("Rust") {
+            let letters: Vec<char> = content[call.place].chars().collect();
+            for _ in 0..40 {
+                let mut spoilt = letters.clone();
+                for _ in 0..=next(2) {
+                    let at = next(spoilt.len());
+                    match next(3) {
+                        0 => drop(spoilt.drain(at..(at + 1 + next(3)).min(spoilt.len()))),
+                        1 => spoilt.insert(at, letters[at.min(letters.len() - 1)]),
+                        _ => drop(spoilt.splice(at..at, PUT_IN[next(PUT_IN.len())].chars())),
+                    }
+                }
+                let text: String = spoilt.iter().collect();
+                let layout = bare(&text);
+                if layout.faults.is_empty() {
+                    assert_eq!(bare(&layout.content), layout, "{}:\n{text}", path.display());
+                    let of = |text: &str| listed(text.parse().expect("tokens"));
+                    assert_eq!(of(&text), of(&layout.content), "{}", path.display());
+                    laid += 1;
+                } else {
+                    assert_eq!(layout.content, text);
+                    // What can be read has a layout.
+                    let is_known =
+                        layout.faults.iter().all(|fault| !fault.help.starts_with("report this text"));
+                    assert!(is_known, "{:?}\n{text}", layout.faults);
+                    refused += 1;
+                }
+            }
+        }
+    }
+    println!("{laid} laid out, {refused} refused");
+    assert!(laid > 400 && refused > 400, "{laid} {refused}");
+}

@@ -196,20 +196,31 @@ pub struct Facade<S, const N: usize, const M: usize = N, F = ()>(pub S, pub(supe
 #[derive(Clone, Debug, Default)]
 pub(super) struct Feeds(Vec<(usize, bool, Course)>);
 
+// Nothing here is generic, so that it is compiled once.
 impl Feeds {
-    /// Values of variables at `t` (s), by index.
-    fn at(&self, t: f64) -> impl Iterator<Item = (usize, f64)> + '_ {
-        self.0.iter().flat_map(move |(index, has_rates, course)| {
-            let count = if *has_rates { 3 } else { 1 };
-            course.at(t).into_iter().take(count).enumerate().map(move |(order, value)| (index + order, value))
-        })
+    /// Makes the input at `index` of `entries` follow `course`.
+    fn feed(&mut self, entries: &[Entry], index: usize, course: Course) -> bool {
+        let Some(entry) = entries.get(index) else { return false };
+        let rate = format!("{}.rate", entry.name);
+        let has_rates = entries.get(index + 1).is_some_and(|next| next.name == rate);
+        self.0.retain(|(known, ..)| *known != index);
+        self.0.push((index, has_rates, course));
+        true
     }
 
-    /// `mechanism` with the values at `t` (s).
-    fn set<S: Mechanism<f64, N, M>, const N: usize, const M: usize>(&self, mechanism: &mut S, t: f64) {
-        for (index, value) in self.at(t) {
-            mechanism.set(index, value);
-        }
+    /// Values of variables at `t` (s), by index.
+    fn at(&self, t: f64) -> Vec<(usize, f64)> {
+        let values = |(index, has_rates, course): &(usize, bool, Course)| {
+            let (index, count) = (*index, if *has_rates { 3 } else { 1 });
+            let values = course.at(t).into_iter().take(count).enumerate();
+            values.map(move |(order, value)| (index + order, value)).collect::<Vec<_>>()
+        };
+        self.0.iter().flat_map(values).collect()
+    }
+
+    /// Value of the variable at `index` at `t` (s), where it follows a course.
+    fn value(&self, index: usize, t: f64) -> Option<f64> {
+        self.at(t).into_iter().find(|(fed, _)| *fed == index).map(|(_, value)| value)
     }
 }
 
@@ -252,16 +263,10 @@ where
         self.0.set(index, value)
     }
     fn feed(&mut self, index: usize, course: Course) -> bool {
-        let Some(entry) = S::VARIABLES.get(index) else { return false };
-        let rate = format!("{}.rate", entry.name);
-        let has_rates = S::VARIABLES.get(index + 1).is_some_and(|next| next.name == rate);
-        self.2.0.retain(|(known, ..)| *known != index);
-        self.2.0.push((index, has_rates, course));
-        true
+        self.2.feed(S::VARIABLES, index, course)
     }
     fn get_at(&self, index: usize, t: f64) -> Option<f64> {
-        let fed = self.2.at(t).find(|(fed, _)| *fed == index);
-        fed.map(|(_, value)| value).or_else(|| self.0.get(index))
+        self.2.value(index, t).or_else(|| self.0.get(index))
     }
     fn coordinate_scales(&self) -> Vec<f64> {
         self.0.coordinate_scales(&self.0.parameters()).to_vec()
@@ -330,11 +335,29 @@ where
     fn stop(&self, times: &[f64]) -> Option<MotionStop> {
         let (first, rest) = times.split_first()?;
         let mut stepper = self.assembled(*first).ok()?;
-        if !self.2.0.is_empty() {
-            return self.stop_with_inputs(stepper, *first, rest);
+        let (mut reachable, mut refused, mut failure) = (*first, *first, None);
+        for time in rest {
+            match self.lead(&mut stepper, *time) {
+                Ok(()) => reachable = *time,
+                Err(found) => {
+                    (refused, failure) = (*time, Some(found));
+                    break;
+                }
+            }
         }
-        let beyond = rest.iter().find(|time| self.lead(&mut stepper, **time).is_err())?;
-        let ReachLimit { reachable, refused, failure, .. } = stepper.reach_towards(*beyond)?;
+        let mut failure = failure?;
+        if self.2.0.is_empty() {
+            let ReachLimit { reachable, refused, failure, .. } = stepper.reach_towards(refused)?;
+            return Some(MotionStop { reachable, refused, failure });
+        }
+        // A refused step leaves the position as it is, so the end is bisected along the courses of the inputs.
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (reachable + refused);
+            match self.lead(&mut stepper, middle) {
+                Ok(()) => reachable = middle,
+                Err(found) => (refused, failure) = (middle, found),
+            }
+        }
         Some(MotionStop { reachable, refused, failure })
     }
 
@@ -348,44 +371,23 @@ const HALVINGS: usize = 20;
 
 impl<S: Kinematic<f64, N, M>, F, const N: usize, const M: usize> Facade<S, N, M, F> {
     fn assembled(&self, t: f64) -> Result<Stepper<Branching<S>, f64, N, M>, Failure> {
-        let mut mechanism = self.0.clone();
-        self.2.set(&mut mechanism, t);
+        let mut mechanism = Branching::declared(self.0.clone());
+        self.set_inputs(&mut mechanism, t);
         let guess = mechanism.guess(&mechanism.parameters());
-        Stepper::assemble(Branching::declared(mechanism), guess, t)
+        Stepper::assemble(mechanism, guess, t)
     }
 
-    /// As [`AnyMechanism::stop`], from a motion at `reachable` (s): the end is bisected along the courses of the inputs.
-    fn stop_with_inputs(
-        &self,
-        mut stepper: Stepper<Branching<S>, f64, N, M>,
-        mut reachable: f64,
-        times: &[f64],
-    ) -> Option<MotionStop> {
-        let (mut refused, mut failure) = times.iter().find_map(|time| {
-            let mut next = stepper.clone();
-            match self.lead(&mut next, *time) {
-                Ok(()) => {
-                    (stepper, reachable) = (next, *time);
-                    None
-                }
-                Err(failure) => Some((*time, failure)),
-            }
-        })?;
-        for _ in 0..HALVINGS {
-            let middle = 0.5 * (reachable + refused);
-            let mut next = stepper.clone();
-            match self.lead(&mut next, middle) {
-                Ok(()) => (stepper, reachable) = (next, middle),
-                Err(found) => (refused, failure) = (middle, found),
-            }
+    /// The mechanism with its inputs of the time `t` (s).
+    fn set_inputs(&self, mechanism: &mut Branching<S>, t: f64) {
+        for (index, value) in self.2.at(t) {
+            mechanism.set(index, value);
         }
-        Some(MotionStop { reachable, refused, failure })
     }
 
     /// A step to `t` (s) with the inputs of that time.
     fn lead(&self, stepper: &mut Stepper<Branching<S>, f64, N, M>, t: f64) -> Result<(), Failure> {
         if !self.2.0.is_empty() {
-            stepper.change(|mechanism| self.2.set(mechanism, t));
+            stepper.change(|mechanism| self.set_inputs(mechanism, t));
         }
         stepper.advance_to(t).map(|_| ())
     }
