@@ -65,7 +65,7 @@ mod tests {
 
     #[test]
     fn parts_end_where_the_vector_does() {
-        let mut x = [1.0, 2.0, 3.0];
+        let mut x = [1.0_f64, 2.0, 3.0];
         assert_eq!((tail(&x, 1), tail(&x, 3), tail(&x, 4)), (&[2.0, 3.0][..], &[][..], &[][..]));
         assert_eq!(tail_mut(&mut x, 2), [3.0]);
         assert!(tail_mut(&mut x, 4).is_empty());
