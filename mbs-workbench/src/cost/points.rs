@@ -1,7 +1,7 @@
 //! Points of the study: a setting with its true error, its time and its counts.
 
 use crate::erased::timed_runs::Effort;
-use crate::setting::Setting;
+use crate::setting::{FormulationName, MotionMethod, Setting};
 
 /// Errors of a run at its instants: the largest counts.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -68,6 +68,17 @@ impl Point {
         matches!(self.setting, Setting::Motion { .. } | Setting::Kinematics { lanes: 1, .. })
     }
 
+    /// `true` for a setting to choose: without a stabilisation the error grows with the time, however small it is at the end.
+    pub fn is_advised(&self) -> bool {
+        let method = match self.setting {
+            Setting::Motion { method, .. } => Some(method),
+            Setting::Kinematics { .. } => None,
+        };
+        let is_unstabilized =
+            matches!(method, Some(MotionMethod::Explicit(FormulationName::Unstabilized, _)));
+        self.is_single() && !is_unstabilized
+    }
+
     /// Its error, where it is trusted.
     pub fn error(&self) -> Option<f64> {
         match &self.outcome {
@@ -106,7 +117,7 @@ pub fn front(points: &[Point]) -> Vec<usize> {
 
 /// The cheapest trusted point of one mechanism with an error of at most `asked`.
 pub fn cheapest(points: &[Point], asked: f64) -> Option<&Point> {
-    reaching(points, asked).filter(|point| point.is_single()).min_by(|a, b| a.time.total_cmp(&b.time))
+    reaching(points, asked).filter(|point| point.is_advised()).min_by(|a, b| a.time.total_cmp(&b.time))
 }
 
 /// The cheapest trusted point of many mechanisms at once with an error of at most `asked`; its time is that of one.

@@ -61,6 +61,8 @@ struct Curve {
     dashed: bool,
     /// `true` for many mechanisms at once.
     lanes: bool,
+    /// `true` for settings to choose.
+    advised: bool,
     points: Vec<PagePoint>,
 }
 
@@ -150,7 +152,8 @@ impl CostResult {
             let (colour, mark, dashed) = style(&point.setting);
             if curves.last().is_none_or(|curve| curve.name != name) {
                 let lanes = !point.is_single();
-                curves.push(Curve { name, colour, mark, dashed, lanes, points: Vec::new() });
+                let advised = point.is_advised();
+                curves.push(Curve { name, colour, mark, dashed, lanes, advised, points: Vec::new() });
             }
             let rust = crate::cost::advice::rust(&point.setting, &self.constructor, self.until);
             let page = match &point.outcome {

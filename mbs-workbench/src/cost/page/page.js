@@ -33,7 +33,7 @@ const showFront = () => {
 showFront();
 
 /* The cheapest trusted point with at most the error asked for. */
-const cheapest = (error) => trusted.filter(({ point }) => point.error <= error)
+const cheapest = (error) => trusted.filter(({ curve, point }) => curve.advised && point.error <= error)
   .sort((a, b) => a.point.time - b.point.time)[0];
 
 const MARKS = [
