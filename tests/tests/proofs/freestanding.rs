@@ -1,7 +1,7 @@
 //! No allocation and no panic, proven by the linker: emitted code and solvers link as a static program without any
 //! library. The only undefined symbols are the five functions on memory that the compiler itself calls.
 //!
-//! At `opt-level` 3 and `"s"`; at 1, 2 and `"z"` with the feature `long`. The program is `tests/proofs/freestanding`. ELF linkers only.
+//! At `opt-level` 3; at 1, 2, `"s"` and `"z"` with the feature `long`. The program is `tests/proofs/freestanding`. ELF linkers only.
 #![cfg(target_os = "linux")]
 
 use std::ffi::OsStr;
@@ -98,15 +98,10 @@ fn emitted_code_and_solvers_link_with_nothing_but_memory_functions() {
     prove("linked");
 }
 
-#[test]
-fn compiled_for_size_they_do_too() {
-    prove("linked-s");
-}
-
 #[cfg(feature = "long")]
 #[test]
 fn at_every_other_level_they_do_too() {
-    for profile in ["linked-z", "linked-2", "linked-1"] {
+    for profile in ["linked-s", "linked-z", "linked-2", "linked-1"] {
         reject_an_index_out_of_range(profile);
         prove(profile);
     }
@@ -115,7 +110,6 @@ fn at_every_other_level_they_do_too() {
 #[test]
 fn an_index_out_of_range_is_rejected() {
     reject_an_index_out_of_range("linked");
-    reject_an_index_out_of_range("linked-s");
 }
 
 #[test]
