@@ -49,7 +49,10 @@ fn slope(points: &[(f64, f64)]) -> f64 {
     up / down
 }
 
-fn study(make: &dyn Fn(&[(usize, f64)]) -> Comparable, until: f64) -> MovedStudy {
+/// A mechanism in all numbers, with parameters by their indices.
+type Make = fn(&[(usize, f64)]) -> Comparable;
+
+fn study(make: Make, until: f64) -> MovedStudy {
     let Comparable::Moved(mut mechanism) = make(&[]) else { panic!("forces move it") };
     let methods = orders().map(|(method, _, _)| method).to_vec();
     let extent = Extent { methods, longest: 0.4, reference: 300.0, tolerance: 1e-14, watched: Vec::new() };
@@ -66,10 +69,10 @@ fn steps(point: &mbs_workbench::cost::points::Point) -> f64 {
 #[test]
 fn methods_have_their_orders_their_counts_and_nothing_wrong() {
     let mut counts = String::from("# mechanism, setting: evaluations, steps\n");
-    let mechanisms: [(&str, &dyn Fn(&[(usize, f64)]) -> Comparable, f64); 3] = [
-        ("pendulum", &comparable!(Pendulum::default()), 1.0),
-        ("double pendulum", &comparable!(DoublePendulum::default()), 1.2),
-        ("slider-crank", &comparable!(CrankPistonReleased::default()), 0.5),
+    let mechanisms: [(&str, Make, f64); 3] = [
+        ("pendulum", comparable!(Pendulum::default()), 1.0),
+        ("double pendulum", comparable!(DoublePendulum::default()), 1.2),
+        ("slider-crank", comparable!(CrankPistonReleased::default()), 0.5),
     ];
     for (name, make, until) in mechanisms {
         let found = study(make, until);
