@@ -167,7 +167,7 @@ pub fn program(cards: &[Card]) -> ExitCode {
     on_large_stack(|| execute(&catalogue, command, json))
 }
 
-/// The study of `mbs cost` in a program that was built for one mechanism: `card` names it, `make` has it in all numbers, with
+/// The study of `mbs cost` in a program that was built for one mechanism. `card` names it; `make` makes it in all numbers from
 /// parameters and inputs by their indices.
 pub fn cost_program(card: Card, make: fn(&[(usize, f64)]) -> Comparable) -> ExitCode {
     let cards = [card];

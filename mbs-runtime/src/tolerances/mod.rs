@@ -1,8 +1,8 @@
 //! Tolerances: each with its value as a law in ε, the distance from 1 to the next number of the number type.
 //!
 //! `positions` decides when an assembly has converged, `singular` where a position counts as singular. `forces` decides when
-//! forces balance and rows follow from others, `motion` when a step in time is accepted and an event is found, `accuracy` when a
-//! whole run is accurate enough.
+//! forces balance and rows follow from others, `motion` when a step in time is accepted and an event is found. `accuracy` decides
+//! when a whole run is accurate enough.
 //!
 //! A tolerance tells which numbers count as zero, as converged or as singular. Constants of a method, as the safety factor of a
 //! step control or Armijo's, stand with the method.

@@ -57,7 +57,7 @@ pub struct MovedStudy {
     pub width: Option<f64>,
 }
 
-/// Why there is no study.
+/// Reason why there is no study.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NoReference {
     /// Reason in words.

@@ -129,8 +129,8 @@ impl Blueprint {
         })
     }
 
-    /// The study of `mbs cost` for the mechanism of `card` with this text: from the text alone where the constructor is that of the
-    /// text's defaults, else on top of the library, which is built anew for it.
+    /// The study of `mbs cost` for the mechanism of `card` with this text. It is made from the text alone if the constructor is that of
+    /// the text's defaults; else on top of the library, which is built anew for it.
     ///
     /// # Errors
     /// As [`of_card`](Self::of_card).

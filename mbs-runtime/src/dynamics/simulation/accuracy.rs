@@ -68,8 +68,8 @@ where
         Estimated { fine: self.clone(), coarse: self.with_tolerance(tolerance), largest: R::constant(0.0) }
     }
 
-    /// With an error of at most `accuracy` wanted at the end of each [`advance_to`](Accurate::advance_to), in the reference metric
-    /// (rad, reference lengths), in place of a tolerance of steps.
+    /// With a wanted error in place of a tolerance of steps: at most `accuracy` at the end of each
+    /// [`advance_to`](Accurate::advance_to), in the reference metric (rad, reference lengths).
     ///
     /// ```
     /// use mbs_runtime::dynamics::{DormandPrince8, Explicit, Projection, Simulation};
