@@ -1,6 +1,6 @@
 //! Parts of vectors and matrices, for any index: no access needs a check that may panic.
 //!
-//! What the compiler sees to be in range costs nothing. No optimisation has to see it, as it would for `x[k]`.
+//! An index that the compiler sees to be in range costs nothing. No optimisation has to see it, as it would for `x[k]`.
 
 use crate::scalar::number::Scalar;
 

@@ -16,7 +16,7 @@ mod elementary;
 pub struct DoubleDouble {
     /// The sum, rounded.
     pub high: f64,
-    /// What rounding took off.
+    /// The part that rounding took off.
     pub low: f64,
 }
 
