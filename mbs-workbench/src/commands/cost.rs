@@ -67,7 +67,9 @@ fn above_zero(text: &str) -> Result<f64, String> {
 
 /// Builds a program that has the mechanism in all numbers, and runs the command line again in it.
 pub fn run(catalogue: &Catalogue, arguments: &Arguments) -> Result<ExitCode, CommandError> {
-    let forge = Forge::of_caller(catalogue.first().map(|card| card.manifest.as_ref()));
+    let caller = Forge::of_caller(catalogue.first().map(|card| card.manifest.as_ref()));
+    // Times of a program that is not optimised say nothing.
+    let forge = Forge { release: true, ..caller };
     let blueprint = if is_file(&arguments.name) {
         methods(&arguments.methods)?;
         Blueprint::cost_of_text(&TextFile::read(&arguments.name)?)?
@@ -234,14 +236,7 @@ pub fn study(
     fact("instants", "each run is compared at the ends of its steps that are instants of the reference, at most 480 (motion from forces) or 1440".to_string());
     fact("times", "the shortest of five runs, settings interleaved".to_string());
     fact("machine", machine());
-    fact(
-        "program",
-        format!(
-            "mbs {}, {}",
-            env!("CARGO_PKG_VERSION"),
-            if cfg!(debug_assertions) { "without optimisation" } else { "release profile" }
-        ),
-    );
+    fact("program", format!("mbs {}, release profile", env!("CARGO_PKG_VERSION")));
     let origin = out.put_mechanism(&target, equations);
     fact("text", origin.hash.clone());
     let judged =
