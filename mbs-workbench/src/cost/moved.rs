@@ -196,7 +196,7 @@ pub fn moved_study(
         let reasons = references.iter().map(|(leg, reference)| {
             let t = reference.shots.last().map_or(0.0, |shot| shot.at.t.high);
             let why = match reference.stuck {
-                Some(Stuck::OutOfTime) => "takes too long",
+                Some(Stuck::OutOfTime) => "takes too long; `--until` ends it earlier",
                 _ => "needs steps that are too small",
             };
             format!("the {} reference {why} (it came to t = {t:.4} s)", leg.name())

@@ -108,6 +108,11 @@ impl Matrix {
     /// The solution of `self` x = `b` to all digits; a basic one where rows follow from others. None where corrections do not fall:
     /// the matrix is singular to sixteen digits, or `b` contradicts the rows.
     pub fn solve(&self, factors: &Factors, b: &[D]) -> Option<Vec<D>> {
+        self.solve_within(factors, b, 0.0)
+    }
+
+    /// As [`solve`](Self::solve), where rows that follow from others may contradict them by `slack`: the rounding of the text's constants.
+    pub fn solve_within(&self, factors: &Factors, b: &[D], slack: f64) -> Option<Vec<D>> {
         let mut x = vec![D::constant(0.0); self.size];
         let mut rest = b.to_vec();
         let mut last = f64::INFINITY;
@@ -126,11 +131,11 @@ impl Matrix {
             }
             rest = self.times(&x).iter().zip(b).map(|(product, b)| *b - *product).collect();
             if size <= FOUND * total || size == 0.0 {
-                return self.is_met(factors, &rest, b).then_some(x);
+                return self.is_met(factors, (&rest, b), slack).then_some(x);
             }
             if size > FALL * last {
                 // Rounding of the last digits is all that is left where corrections were small already.
-                let is_found = last <= ROUNDING * total && self.is_met(factors, &rest, b);
+                let is_found = last <= ROUNDING * total && self.is_met(factors, (&rest, b), slack);
                 return is_found.then_some(x);
             }
             last = size;
@@ -141,7 +146,7 @@ impl Matrix {
 
 impl Matrix {
     /// `true` where what is left of `b` is little: rows that follow from others have no pivot that could meet them.
-    fn is_met(&self, factors: &Factors, rest: &[D], b: &[D]) -> bool {
+    fn is_met(&self, factors: &Factors, (rest, b): (&[D], &[D]), slack: f64) -> bool {
         let largest = |values: &[D]| {
             values
                 .iter()
@@ -149,7 +154,7 @@ impl Matrix {
                 .map(|(value, scale)| (value.high * scale).abs())
                 .fold(0.0, f64::max)
         };
-        largest(rest) <= CONTRADICTION * largest(b)
+        largest(rest) <= CONTRADICTION * largest(b) + slack
     }
 }
 
@@ -254,6 +259,8 @@ mod tests {
         let found = doubled.solve(&doubled.factors(), &[number(4.0), number(1.0), number(1.0)]);
         let found = found.expect("consistent rows");
         assert_eq!((found[0].high, (found[1] + found[2]).high), (1.0, 2.0));
-        assert!(doubled.solve(&doubled.factors(), &[number(4.0), number(1.0), number(2.0)]).is_none());
+        let contradiction = [number(4.0), number(1.0), number(1.0 + 1e-9)];
+        assert!(doubled.solve(&doubled.factors(), &contradiction).is_none());
+        assert!(doubled.solve_within(&doubled.factors(), &contradiction, 1e-8).is_some());
     }
 }

@@ -127,6 +127,9 @@ const SHORTEST: f64 = 1e-13;
 /// Residual of a row at which a projection ends.
 const CLOSED: f64 = 1e-29;
 
+/// Contradiction of rows that follow from others, by the rounding of the text's constants.
+const ROUNDED: f64 = 1e-14;
+
 /// Corrections of a projection.
 const CORRECTIONS: usize = 12;
 
@@ -182,7 +185,7 @@ pub fn project(equations: &dyn ExactEquations, at: &mut Moving) -> bool {
         let matrix = Matrix::saddle(n, m, &mass, |i, j| rows.phi_q[j * n + i], &rows.phi_q);
         let mut right = vec![D::constant(0.0); n];
         right.extend(open.iter().map(|open| -*open));
-        matrix.solve(&matrix.factors(), &right)
+        matrix.solve_within(&matrix.factors(), &right, ROUNDED)
     };
     let open = |residuals: &[D]| {
         residuals.iter().zip(&scales).map(|(residual, scale)| (residual.high / scale).abs()).fold(0.0, worse)
