@@ -77,6 +77,9 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments) -> Result<ExitCode, Com
         // What is wrong on the command line is said before anything is built.
         let target = Target::find(catalogue, &arguments.name)?;
         let instance = target.instance(&target.runs()[0], &arguments.parameters)?;
+        if !target.is_free() && arguments.is_for_forces() {
+            return Err(driven(&target));
+        }
         watched(instance.equations(), &arguments.watch)?;
         methods(&arguments.methods)?;
         let source = instance.equations().source();
@@ -95,6 +98,21 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments) -> Result<ExitCode, Com
         }
         error => error,
     })
+}
+
+/// The refusal of options that a motion from drives has no use for.
+fn driven(target: &Target) -> CommandError {
+    let name = target.name();
+    CommandError::Usage(format!(
+        "drives move `{name}`: `--methods` and `--watch` are for motions from forces"
+    ))
+}
+
+impl Arguments {
+    /// `true` with options for motions from forces alone.
+    fn is_for_forces(&self) -> bool {
+        !(self.methods.is_empty() && self.watch.is_empty())
+    }
 }
 
 /// Methods with one of the words in their names; all where there are none.
@@ -193,12 +211,7 @@ pub fn study(
                 target.name()
             )));
         }
-        Comparable::Driven(_) if !(arguments.methods.is_empty() && arguments.watch.is_empty()) => {
-            return Err(CommandError::Usage(format!(
-                "drives move `{}`: `--methods` and `--watch` are for motions from forces",
-                target.name()
-            )));
-        }
+        Comparable::Driven(_) if arguments.is_for_forces() => return Err(driven(&target)),
         Comparable::Driven(mut mechanism) => {
             let found = driven_study(&mut mechanism, until, longest, &mut progress).map_err(failed)?;
             fact(
