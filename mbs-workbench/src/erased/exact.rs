@@ -13,7 +13,7 @@ pub struct Sizes {
     pub rows: usize,
     /// First-order states.
     pub states: usize,
-    /// Contacts, with limits of friction none: events are gaps that change their sign.
+    /// Contacts; their gaps change sign at events.
     pub contacts: usize,
 }
 
