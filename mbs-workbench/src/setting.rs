@@ -130,17 +130,6 @@ impl MotionMethod {
     pub fn is_implicit(self) -> bool {
         matches!(self, MotionMethod::Explicit(_, IntegratorName::Radau5) | MotionMethod::Implicit(_))
     }
-
-    /// Order of its error in the step, of adaptive steps in the tolerance.
-    pub fn order(self) -> f64 {
-        match self {
-            MotionMethod::Explicit(_, IntegratorName::RungeKutta4) => 4.0,
-            MotionMethod::Explicit(_, IntegratorName::SemiImplicitEuler) => 1.0,
-            MotionMethod::Explicit(..) => 1.0,
-            MotionMethod::Implicit(ImplicitName::Extrapolated) => 3.0,
-            MotionMethod::Implicit(_) => 2.0,
-        }
-    }
 }
 
 impl Numbers {

@@ -4,7 +4,7 @@ use mbs_runtime::Scalar;
 
 use crate::cost::moved::{NoReference, WIDTHS};
 use crate::cost::points::{Errors, Outcome, Point, Verdict};
-use crate::cost::reference::linear::Matrix;
+use crate::cost::reference::linear::{Matrix, worse};
 use crate::double_double::DoubleDouble as D;
 use crate::erased::costs::DrivenCosts;
 use crate::erased::timed_runs::Effort;
@@ -83,10 +83,6 @@ fn correction(exact: &dyn ExactPositions, open: &[D], phi_q: &[D]) -> Option<Vec
     let mut right = vec![D::constant(0.0); n];
     right.extend(open.iter().map(|open| -*open));
     matrix.solve(&matrix.factors(), &right).map(|found| found[..n].to_vec())
-}
-
-fn worse(a: f64, b: f64) -> f64 {
-    if a.is_nan() || a > b { a } else { b }
 }
 
 /// The derivative of `value` at `t` (s) by differences over `h` (s).

@@ -3,6 +3,7 @@
 use std::time::Duration;
 
 use crate::cost::points::{Errors, Outcome, Point, Verdict};
+use crate::cost::reference::linear::worse;
 use crate::cost::reference::motion::Stuck;
 use crate::cost::reference::{Leg, Reference, reference};
 use crate::double_double::DoubleDouble as D;
@@ -98,11 +99,6 @@ impl Sizes {
 /// Difference of a value and the reference, in `f64`.
 fn apart(value: f64, reference: D) -> f64 {
     ((value - reference.high) - reference.low).abs()
-}
-
-/// The larger one; NaN stays.
-fn worse(a: f64, b: f64) -> f64 {
-    if a.is_nan() || a > b { a } else { b }
 }
 
 /// Error of the judged quantity at one instant.

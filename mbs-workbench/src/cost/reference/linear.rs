@@ -42,6 +42,11 @@ const CONTRADICTION: f64 = 1e-10;
 /// Factor by which corrections must fall.
 const FALL: f64 = 0.5;
 
+/// The larger one; NaN stays.
+pub fn worse(a: f64, b: f64) -> f64 {
+    if a.is_nan() || a > b { a } else { b }
+}
+
 impl Matrix {
     /// Zeros.
     pub fn zero(size: usize) -> Self {

@@ -6,7 +6,7 @@ use mbs_runtime::Scalar;
 
 use super::collocated::Collocated;
 use super::extrapolated::Extrapolated;
-use super::linear::Matrix;
+use super::linear::{Matrix, worse};
 use crate::double_double::DoubleDouble as D;
 use crate::erased::exact::{ExactEquations, Moving, Observed};
 
@@ -114,11 +114,6 @@ impl Aim {
         let states = of(&a.states, &b.states, &mut self.states.iter().copied());
         worse(worse(q, qd), states)
     }
-}
-
-/// The larger one; NaN stays.
-fn worse(a: f64, b: f64) -> f64 {
-    if a.is_nan() || a > b { a } else { b }
 }
 
 /// Shortest step over the span.
