@@ -279,9 +279,14 @@ pub fn study(
         out.put_file(kind, &path);
         writeln!(out, "{kind:<8} {}", path.display())?;
     }
-    let wrong = result.wrong().count();
     out.flush()?;
-    Ok(if wrong > 0 { ExitCode::FAILURE } else { ExitCode::SUCCESS })
+    match result.wrong().count() {
+        0 => Ok(ExitCode::SUCCESS),
+        wrong => Err(CommandError::Failed(format!(
+            "{wrong} of {} settings are wrong: they answered with more than ten times the error that is expected",
+            result.points.len()
+        ))),
+    }
 }
 
 /// The command line that makes the same study.

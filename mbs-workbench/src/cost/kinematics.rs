@@ -216,8 +216,9 @@ pub fn driven_study(
                     }
                     Ok(effort) => {
                         let Some(errors) = judge(&seen) else { continue };
-                        let verdict = verdict(*numbers, closing, &errors, last, steps, width);
-                        let expected = last.map(|(error, _)| error);
+                        let expected = expected(closing, last, steps);
+                        let before = last.map_or(0.0, |(error, _)| error);
+                        let verdict = verdict(*numbers, closing, &errors, (before, expected), width);
                         let outcome = Outcome::Done { errors, expected, verdict };
                         let too_long = effort.elapsed.as_secs_f64() > longest;
                         points.push(Point { setting: setting(steps), outcome, effort, time: f64::NAN });
@@ -248,21 +249,25 @@ fn rounding(numbers: Numbers) -> f64 {
     }
 }
 
-/// A step that closes has an error of rounding at any length. One that a budget ends is of order 3 in its length, the order of its
-/// prediction: finer steps that are not better are wrong.
+/// Error that the next coarser point lets expect of a step that a budget ends: of order 3 in its length, that of its prediction.
+fn expected(closing: Closing, last: Option<(f64, u32)>, steps: u32) -> Option<f64> {
+    let last = last.filter(|_| closing != Closing::Closed);
+    last.map(|(before, coarser)| before * (f64::from(coarser) / f64::from(steps)).powi(3))
+}
+
+/// A step that closes has an error of rounding at any length. Of one that a budget ends, ten times the `expected` error, and more than
+/// that of the coarser point `before`, is wrong.
 fn verdict(
     numbers: Numbers,
     closing: Closing,
     errors: &Errors,
-    last: Option<(f64, u32)>,
-    steps: u32,
+    (before, expected): (f64, Option<f64>),
     width: f64,
 ) -> Verdict {
-    let is_wrong = match (closing, last) {
+    let is_wrong = match (closing, expected) {
         (Closing::Closed, _) => errors.judged > rounding(numbers),
-        (Closing::Evaluations(_), Some((before, coarser))) => {
-            let order = (f64::from(coarser) / f64::from(steps)).powi(3);
-            errors.judged > (10.0 * before * order).max(before).max(rounding(numbers))
+        (Closing::Evaluations(_), Some(expected)) => {
+            errors.judged > (10.0 * expected).max(before).max(rounding(numbers))
         }
         (Closing::Evaluations(_), None) => false,
     };
