@@ -23,6 +23,10 @@ const LARGEST_BEND_OF_MARGIN: f64 = 0.5;
 /// margin.
 const LEAST_BEND: f64 = 1.0 / 32.0;
 
+/// Movement over the margin up to which the forecast of other coordinates says what a point is off by. The other assembly of a link is off
+/// by twice the margin times its length, which counts above a thousandth.
+const LARGEST_SHARE: f64 = 1e-3;
+
 /// Distance of an angle from its prediction over the margin up to which it needs no test.
 pub(crate) const APPROACH_OF_ANGLES: f64 = 1.0 / 256.0;
 
@@ -112,16 +116,16 @@ pub(crate) fn least<T: Scalar>(margin: T) -> T {
     positions::LEAST_MOVEMENT.of::<T>() * margin
 }
 
-/// `true` if no point's `differences` are more than `part` of its `movements` together and `least`; false for NaN.
+/// `true` if no point's `differences` are more than `part` of its `movements` together and `most` (N, at its first coordinate); false for
+/// NaN.
 #[inline(always)]
 fn are_parts<T: Scalar, const N: usize, const K: usize>(
     (points, scales): (&Points<N>, &[T; N]),
     differences: &[T; N],
     movements: [&[T; N]; K],
     part: T,
-    least: T,
+    mut most: [T; N],
 ) -> T::Mask {
-    let mut most = [least; N];
     let weights = reciprocals(scales);
     for movement in movements {
         let sizes = sizes(points, &weights, movement);
@@ -140,13 +144,14 @@ fn largest_bend<T: Scalar>(margin: T) -> T {
 }
 
 /// `true` if the rates of points agree to a quarter with those predicted from the rates before and their change over `h` (s): no
-/// link turned by much more than a radian. `before` and `change`: rate and acceleration, N; movements up to `least` are ignored.
+/// link turned by much more than a radian. `before` and `change`: rate and acceleration, N; movements of points up to `least` (N) are
+/// ignored.
 #[inline(always)]
 pub(crate) fn turn_little<T: Scalar, const N: usize>(
     metric: (&Points<N>, &[T; N]),
     [before, change, after]: [&[T; N]; 3],
     h: T,
-    least: T,
+    least: [T; N],
 ) -> T::Mask {
     let moved = |rates: &[T; N]| rates.map(|rate| h * rate);
     let [before, change, after] = [moved(before), moved(&moved(change)), moved(after)];
@@ -169,7 +174,7 @@ pub(crate) fn bend_little<T: Scalar, const N: usize>(
     let slight = T::constant(LEAST_BEND) * margin;
     let angles = metric.0.iter().zip(&bend).filter(|(point, _)| point.is_none());
     let angles = angles.fold(T::mask(true), |all, (_, bend)| all & bend.abs().less(slight));
-    angles & are_parts(metric, &bend, [tangent, way], largest_bend(margin), least(margin))
+    angles & are_parts(metric, &bend, [tangent, way], largest_bend(margin), [least(margin); N])
 }
 
 /// `true` if coordinates are at their prediction but for `off`, within an eighth of their movement over `h` (s) by rates and
@@ -189,26 +194,45 @@ pub(crate) fn are_foreseen<T: Scalar, const N: usize>(
         angles.filter(|((point, _), _)| point.is_none()).fold(T::mask(true), |all, ((_, off), terms)| {
             all & off.abs().less(part * (terms.0.abs() + terms.1.abs()) + slight)
         });
-    angles & are_parts(metric, off, [&terms[0], &terms[1]], largest_bend(margin), least(margin))
+    angles & are_parts(metric, off, [&terms[0], &terms[1]], largest_bend(margin), [least(margin); N])
+}
+
+/// Distances of points (N, at their first coordinates) from where a forecast has them that others cause. A point at rest is off by what
+/// the forecast of those leaves out, a part of their term of the `second` order (N): pieces move by the root of the margin at most.
+pub(crate) fn caused_by_others<R: Real, const N: usize>(
+    points: &Points<N>,
+    scales: &[R; N],
+    second: &[R; N],
+    margin: R,
+) -> [R; N] {
+    let (weights, most) = (reciprocals(scales), R::constant(LARGEST_SHARE) * margin);
+    let mut caused = [R::constant(0.0); N];
+    for (place, caused) in caused.iter_mut().enumerate() {
+        let terms = points.iter().zip(second).zip(&weights);
+        let others = terms.filter(|((point, _), _)| **point != Some(place));
+        let largest =
+            others.fold(*caused, |largest, ((_, term), weight)| largest.max((*term * *weight).abs()));
+        *caused = largest.min(most);
+    }
+    caused
 }
 
 /// Reciprocals of the movements of points in a piece of a way, N, which differences are measured by; 0 for all that is no length.
-/// `first`, `second`: the terms of its prediction; `margin` where it begins.
+/// `first`, `second`: the terms of its prediction; `caused`: distances that are others'; `margin` where it begins.
 pub(crate) fn weights<R: Real, const N: usize>(
     points: &Points<N>,
     scales: &[R; N],
-    [first, second]: [&[R; N]; 2],
+    [first, second, caused]: [&[R; N]; 3],
     margin: R,
 ) -> [R; N] {
-    // A point at rest is off by what the forecast of others leaves out.
     let least = rounding(margin).max(least(margin));
     let reciprocals = reciprocals(scales);
     let [first, second] = [first, second].map(|term| sizes(points, &reciprocals, term));
     let mut weights = [R::constant(0.0); N];
     for ((weight, point), scale) in weights.iter_mut().zip(points).zip(scales) {
-        let terms = point.and_then(|point| first.get(point).zip(second.get(point)));
-        if let Some((first, second)) = terms {
-            *weight = R::constant(1.0) / ((*first + *second).max(least) * *scale);
+        let terms = point.and_then(|point| first.get(point).zip(second.get(point)).zip(caused.get(point)));
+        if let Some(((first, second), caused)) = terms {
+            *weight = R::constant(1.0) / ((*first + *second).max(least).max(*caused) * *scale);
         }
     }
     weights
@@ -256,7 +280,8 @@ mod tests {
                         // One second for a turn at 1 rad/s.
                         let [before, after] = [before, after].map(|rates| rates.map(|rate| turn * rate));
                         let change = change.map(|change| turn * turn * change);
-                        let told = turn_little((&points, &[1.0; 4]), [&before, &change, &after], 1.0, 1e-9);
+                        let told =
+                            turn_little((&points, &[1.0; 4]), [&before, &change, &after], 1.0, [1e-9; 4]);
                         assert_eq!(told, little, "{length} {turn} {start} {other}");
                     }
                 }

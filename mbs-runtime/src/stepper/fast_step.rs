@@ -231,7 +231,7 @@ impl<T: Scalar, const N: usize> FastStep<T, N> {
             near = near & trusted(second, *scale, QUICK_SECOND_ORDER_TERM);
             *off = *off - (*place + h * *rate + second);
         }
-        let least = link_lengths::least(self.margin);
+        let least = [link_lengths::least(self.margin); N];
         let little = link_lengths::turn_little(metric, [start.qd, start.qdd, &self.qd], h, least);
         let foreseen = link_lengths::are_foreseen(metric, &off, [start.qd, start.qdd], (h, self.margin));
         (near | little) & foreseen

@@ -196,7 +196,7 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Stepper<S, 
         let mut off = end;
         off.iter_mut().zip(&prediction.q).for_each(|(off, foreseen)| *off = *off - *foreseen);
         let foreseen =
-            link_lengths::turn_little(metric, [qd, qdd, &rates.qd], h, link_lengths::least(margin))
+            link_lengths::turn_little(metric, [qd, qdd, &rates.qd], h, [link_lengths::least(margin); N])
                 && link_lengths::are_foreseen(metric, &off, [qd, qdd], (h, margin));
         // Inputs that stand still although their rates say otherwise, and positions that did not close.
         foreseen || self.tangent_leads(&end, margin, found.t, phases)

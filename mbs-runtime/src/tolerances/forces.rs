@@ -25,6 +25,9 @@ pub(crate) const SHORTEST_EDGE: Law = Law::root(1.0);
 /// of a soft direction; the rounding of 0 counts where that is more.
 pub(crate) const NO_STIFFNESS: Law = Law::at_least(1e-9, 256.0);
 
+/// Force over stiffness times coordinate that is none: half an ε of the coordinate, and as much for each of the forces that cancel.
+pub(crate) const UNRESOLVED: Law = Law::ulps(4.0);
+
 /// Part of a coordinate in an indifferent motion, in the metric, from which it counts as indifferent.
 pub(crate) const INDIFFERENT: Law = Law::fixed(1e-6);
 

@@ -42,6 +42,7 @@ const VALUES: &[(&str, Law, f64, f32)] = &[
     ("flat at start", singular::FLAT_AT_START, 64e3 * DOUBLE, 64e3 * SINGLE),
     ("least rate", singular::LEAST_RATE, 1e-6, 1e-6),
     ("combination", singular::OF_COMBINATION, 64.0 * DOUBLE, 64.0 * SINGLE),
+    ("unresolved", forces::UNRESOLVED, 4.0 * DOUBLE, 4.0 * SINGLE),
     ("standing", forces::STANDING, 16.0 * DOUBLE, 16.0 * SINGLE),
     ("cancelled", forces::CANCELLED, 1e-8, 256.0 * SINGLE),
     ("piecewise", forces::OF_PIECEWISE, 16.0 * DOUBLE, 16.0 * SINGLE),

@@ -5,6 +5,7 @@ mod linkages;
 mod k1_assemblies_are_kept;
 mod k1_dead_centres;
 mod k1_inputs_that_turn;
+mod k1_points_at_rest;
 mod k1_saved_states;
 mod k1_short_links;
 mod k1_ways_that_end;

@@ -1,4 +1,5 @@
-//! D24: beyond 80 reference lengths `equilibrium` denied rests that exist, with one linear spring.
+//! D27: beyond 80 reference lengths `equilibrium` denied rests that exist, with one linear spring. So it did where a soft one balances a
+//! weight to rounding.
 
 use mbs_runtime::dynamics::equilibrium;
 use mbs_runtime::{Failure, FailureKind, mechanism};
@@ -62,6 +63,19 @@ mechanism! {
     tsda cable { from: [0, 0], to: [x, y], stiffness: 1000, length: 1 }
 }
 
+mechanism! {
+    /// A weight on a soft spring, and one that hangs on it by a stiff one.
+    pub mechanism Soft;
+    param k: N/m = 1e-6;
+    coord x: m = 0;
+    coord y: m = 0;
+    body upper { mass: 1, com: [0, x] }
+    body lower { mass: 2, com: [0, x + y] }
+    gravity g { acceleration: [0, -9.81] }
+    tsda soft { from: [0, 0], to: [0, x], stiffness: k }
+    tsda stiff { from: [0, x], to: [0, x + y], stiffness: 100*k }
+}
+
 /// Distances from a rest: some steps to coordinates that are hardly resolved.
 const FAR: [f64; 6] = [1.0, 10.0, 100.0, 3e3, 1e6, 1e9];
 
@@ -108,6 +122,23 @@ fn a_search_that_still_comes_nearer_denies_no_rest() {
                 Err(Failure { kind: FailureKind::EquilibriumNotConverged { .. }, .. }) if far > 50.0 => {}
                 Err(failure) => panic!("{far} {direction:?}: {failure}"),
             }
+        }
+    }
+}
+
+/// Weights stretch soft springs by as many reference lengths as their stiffness asks for, and balance to rounding of a coordinate.
+#[test]
+fn a_soft_spring_balances_a_weight() {
+    for k in [1.0, 1e-3, 1e-5, 1e-6, 1e-7] {
+        for start in [0.0, 1.0, -5e3] {
+            let rest = equilibrium(&Soft { k }, 0.0, &[start, -start]);
+            let rest = rest.unwrap_or_else(|failure| panic!("{k:e} {start}: {failure}"));
+            let [x, y] = [-3.0 * 9.81 / k, -2.0 * 9.81 / (100.0 * k)];
+            assert!(
+                (rest.q[0] / x - 1.0).abs() < 1e-12 && (rest.q[1] / y - 1.0).abs() < 1e-9,
+                "{k:e}: {rest:?}"
+            );
+            assert_eq!(rest.indifferent, [false; 2]);
         }
     }
 }

@@ -27,6 +27,8 @@ pub(crate) struct FreeStiffness<R, const N: usize, const M: usize> {
     pub size: R,
     /// Energy (J) an angle of 1 below which nothing answers.
     nothing: R,
+    /// Force (J) that the resolution of the coordinates leaves: it is more where soft springs balance far away.
+    unresolved: R,
 }
 
 /// The answer of a free stiffness to forces.
@@ -58,17 +60,21 @@ impl<R: Real, const N: usize, const M: usize> FreeStiffness<R, N, M> {
         let factors = model.free_factors(&position, t)?;
         let force = model.mechanism.force(model.parameters, &position, &y.qd, &y.states, lambda);
         let scales = &model.metric.coordinates;
-        let mut size = zero;
+        let (mut size, mut reached) = (zero, zero);
         for ((row, force), scale) in stiffness.iter().zip(&force).zip(scales) {
             size = size.max((*force * *scale).abs());
-            for (entry, other) in row.iter().zip(scales) {
+            let mut sum = zero;
+            for ((entry, other), q) in row.iter().zip(scales).zip(&y.q) {
                 size = size.max((*entry * *scale * *other).abs());
+                sum = sum + (*entry * *scale * *q).abs();
             }
+            reached = reached.max(sum);
         }
         let motions = factors.free_motions();
         let reduced = projected(&motions, &stiffness);
         let (freedom, nothing) = (N.saturating_sub(factors.rank()), forces::NO_STIFFNESS.of::<R>() * size);
-        Ok(FreeStiffness { factors, freedom, motions, stiffness, reduced, size, nothing })
+        let unresolved = forces::UNRESOLVED.of::<R>() * reached;
+        Ok(FreeStiffness { factors, freedom, motions, stiffness, reduced, size, nothing, unresolved })
     }
 
     /// The answer to `imbalance` (N) where the rows are open by `phi` (M).
@@ -82,13 +88,14 @@ impl<R: Real, const N: usize, const M: usize> FreeStiffness<R, N, M> {
         let step = closing.plus(one, &[1.0], [&self.moved(&found)]);
         let rest = imbalance.plus(-one, &[1.0], [&times(&self.stiffness, &step)]);
         let (push, whole) = (dot(&left, &left).sqrt(), dot(&wanted, &wanted).sqrt());
+        let none = self.nothing.max(self.unresolved);
         Answer {
             step,
             change: self.factors.solve(&rest, &[zero; M]).1,
             unanswered: self.moved(&left),
-            push: if self.nothing.less(push) { push } else { zero },
+            push: if none.less(push) { push } else { zero },
             pull: self.moved(&wanted),
-            imbalance: if self.nothing.less(whole) { whole } else { zero },
+            imbalance: if none.less(whole) { whole } else { zero },
         }
     }
 

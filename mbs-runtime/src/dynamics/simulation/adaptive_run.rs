@@ -16,6 +16,7 @@ use crate::dynamics::simulation::{Fresh, Simulation};
 use crate::failure::Failure;
 use crate::mechanism::dynamic::Dynamic;
 use crate::scalar::number::Real;
+use crate::tolerances::motion;
 
 /// Event function of a run. A run without one compiles no search: `IS_ANY` is known to the compiler.
 trait EventFunction<R, const N: usize> {
@@ -269,7 +270,8 @@ where
             }
             let at = |t| course.at(t).y;
             let (before, after) = (&accepted.start.y.y.q, &accepted.end.y.y.q);
-            let allowed = model.metric.allowed(&tolerance, before, after).map(|one| errors * one);
+            let touched = errors.min(motion::TOUCHED.of());
+            let allowed = model.metric.allowed(&tolerance, before, after).map(|one| touched * one);
             model.check_ranges(from.t, (start, end), at, (resolution, &allowed))?;
             model.check_end(from.t, (start, end), at)?;
             see(equations, accepted)?;

@@ -188,7 +188,8 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Walk<'_, '_
         change.iter_mut().zip(&forecast.start).for_each(|(tip, start)| *tip = (*tip - *start) / length);
         let scales = self.way.mechanism.coordinate_scales(&self.way.mechanism.parameters());
         let points = const { link_lengths::points(S::COORDINATES) };
-        let least = link_lengths::rounding(margin);
+        let rounding = link_lengths::rounding(margin);
+        let least = forecast.caused.map(|caused| caused.max(rounding));
         link_lengths::turn_little((&points, &scales), [&forecast.start, &change, slope], length, least)
     }
 }

@@ -30,6 +30,8 @@ pub(super) struct Forecast<R, const N: usize> {
     pub(super) slope: [R; N],
     /// Reciprocals of the movements of lengths.
     pub(super) weights: [R; N],
+    /// Distances of points from the forecast that others cause, at their first coordinates.
+    pub(super) caused: [R; N],
 }
 
 /// A linear combination.
@@ -86,10 +88,11 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Walk<'_, '_
         let scales = self.way.mechanism.coordinate_scales(&stations[2].parameters);
         let straight = slope.map(|rate| length * rate);
         let points = const { link_lengths::points(S::COORDINATES) };
-        let weights = link_lengths::weights(&points, &scales, [&straight, &bend], at.margin);
+        let caused = link_lengths::caused_by_others(&points, &scales, &bend, at.margin);
+        let weights = link_lengths::weights(&points, &scales, [&straight, &bend, &caused], at.margin);
         let (second, third) = (self.size(&bend), self.size(&twist));
         let third_part = link_lengths::weighted(&twist, &weights);
-        Forecast { q, first, second, third, third_part, start: slope, slope: tip, weights }
+        Forecast { q, first, second, third, third_part, start: slope, slope: tip, weights, caused }
     }
 
     /// Term at the end of a piece of `length` from the residuals of the rows along a parabola, with the `weights` of its order.
