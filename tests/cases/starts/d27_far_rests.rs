@@ -131,7 +131,7 @@ fn a_search_that_still_comes_nearer_denies_no_rest() {
 fn a_soft_spring_balances_a_weight() {
     for k in [1.0, 1e-3, 1e-5, 1e-6, 1e-7] {
         for start in [0.0, 1.0, -5e3] {
-            let rest = equilibrium(&Soft { k }, 0.0, &[start, -start]);
+            let rest = equilibrium(&Soft::<f64> { k }, 0.0, &[start, -start]);
             let rest = rest.unwrap_or_else(|failure| panic!("{k:e} {start}: {failure}"));
             let [x, y] = [-3.0 * 9.81 / k, -2.0 * 9.81 / (100.0 * k)];
             assert!(
