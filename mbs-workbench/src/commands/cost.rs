@@ -1,7 +1,8 @@
 //! `mbs cost`.
 
+use std::cell::RefCell;
 use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Args;
@@ -17,10 +18,12 @@ use super::{CommandError, summary};
 use crate::catalogue::Catalogue;
 use crate::cost::advice::{rust, time_text, two_digits};
 use crate::cost::kinematics::driven_study;
-use crate::cost::moved::{Extent, NoReference, moved_study};
+use crate::cost::moved::{Extent, MovedStudy, NoReference, moved_study};
+use crate::cost::peers::{Described, PeerPoint, Question, ask_all};
 use crate::cost::picture::picture;
 use crate::cost::points::{Outcome, Point, Verdict, cheapest, front};
 use crate::cost::result::CostResult;
+use crate::double_double::DoubleDouble;
 use crate::erased::costs::Comparable;
 use crate::erased::facade::AnyEquations;
 use crate::forge::{Blueprint, Forge};
@@ -28,6 +31,7 @@ use crate::mismatch::{nearest, wrapped};
 use crate::setting::{MotionMethod, Setting};
 use crate::target_directory::target_directory;
 use crate::text_file::{TextFile, is_file};
+use crate::verify::generated_definition;
 
 #[derive(Args)]
 pub struct Arguments {
@@ -51,6 +55,9 @@ pub struct Arguments {
     /// Fewer and shorter runs: an overview
     #[arg(long)]
     quick: bool,
+    /// Compare with other programs, which pip installs: SciPy, CVODES, IDAS on CasADi's equations; MuJoCo, Exudyn, Drake, Pinocchio
+    #[arg(long)]
+    peers: bool,
     /// Print the advice as Rust to paste
     #[arg(long)]
     rust: bool,
@@ -104,14 +111,14 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments) -> Result<ExitCode, Com
 fn driven(target: &Target) -> CommandError {
     let name = target.name();
     CommandError::Usage(format!(
-        "drives move `{name}`: `--methods` and `--watch` are for motions from forces"
+        "drives move `{name}`: `--methods`, `--watch` and `--peers` are for motions from forces"
     ))
 }
 
 impl Arguments {
     /// `true` with options for motions from forces alone.
     fn is_for_forces(&self) -> bool {
-        !(self.methods.is_empty() && self.watch.is_empty())
+        !(self.methods.is_empty() && self.watch.is_empty()) || self.peers
     }
 }
 
@@ -204,6 +211,7 @@ pub fn study(
     };
     let mut facts = Vec::new();
     let mut fact = |name: &str, value: String| facts.push([name.to_string(), value]);
+    let mut peers = Vec::new();
     let (points, width, second) = match make(&values) {
         Comparable::Still => {
             return Err(CommandError::Usage(format!(
@@ -242,6 +250,10 @@ pub fn study(
             }
             let words = found.width.map_or_else(|| "not known: one reference alone".to_string(), two_digits);
             fact("width of the reference", words);
+            if arguments.peers {
+                peers = ask_peers(&found, &target, equations, arguments, &mut progress);
+                fact("other programs", "in processes of their own, one core, the shortest of five runs".to_string());
+            }
             (found.points, found.width, "reaction")
         }
     };
@@ -263,6 +275,7 @@ pub fn study(
         until,
         asked: arguments.error,
         points,
+        peers,
         width,
         judged,
         second,
@@ -289,6 +302,54 @@ pub fn study(
     }
 }
 
+/// Runs of other programs on the motion of a study.
+fn ask_peers(
+    study: &MovedStudy,
+    target: &Target,
+    equations: &dyn AnyEquations,
+    arguments: &Arguments,
+    progress: &mut dyn FnMut(&str, f64),
+) -> Vec<PeerPoint> {
+    let Some(start) = study.judge().and_then(|reference| reference.shots.first()) else { return Vec::new() };
+    let doubles = |values: &[DoubleDouble]| values.iter().map(|value| value.high).collect::<Vec<f64>>();
+    let variables = equations.variables();
+    let v: Vec<f64> =
+        (0..variables.len()).map(|index| equations.get(index).unwrap_or_default()).collect();
+    let parameters =
+        variables.iter().zip(&v).map(|(entry, value)| (entry.name.to_string(), (*value).into())).collect();
+    // Each pair of decades; of an overview fewer.
+    let digits = if arguments.quick { vec![4, 6, 8] } else { vec![4, 6, 8, 10, 12] };
+    let question = Question {
+        name: target.file_name().to_string(),
+        times: study.times.clone(),
+        q: doubles(&start.at.q),
+        qd: doubles(&start.at.qd),
+        z: doubles(&start.at.states),
+        v,
+        parameters,
+        digits,
+        longest: if arguments.quick { 0.5 } else { 4.0 },
+    };
+    let functions = equations.functions().iter().map(|function| function.name).collect::<Vec<_>>();
+    let definition = match functions[..] {
+        [] => generated_definition(equations).map_err(|error| error.to_string()),
+        _ => Err(format!("it calls functions of its crate ({})", functions.join(", "))),
+    };
+    // Beside the crate's manifest, or beside the file with the text.
+    let place = match is_file(&arguments.name) {
+        true => Path::new(arguments.name.split(':').next().unwrap_or_default()).parent().map(Path::to_path_buf),
+        false => Some(PathBuf::from(target.card().manifest)),
+    };
+    let tree = place.unwrap_or_default().join("peers").join(format!("{}.py", target.file_name()));
+    let progress = RefCell::new(progress);
+    ask_all(
+        &question,
+        &Described { definition, tree },
+        &|q, qd| study.errors_of(q, qd),
+        &|words| progress.borrow_mut()(words, 1.0),
+    )
+}
+
 /// The command line that makes the same study.
 fn command(arguments: &Arguments) -> String {
     let mut words = vec!["mbs".to_string(), "cost".to_string(), arguments.name.clone()];
@@ -302,8 +363,10 @@ fn command(arguments: &Arguments) -> String {
             words.extend([name.to_string(), values.join(",")]);
         }
     }
-    if arguments.quick {
-        words.push("--quick".to_string());
+    for (name, is_given) in [("--quick", arguments.quick), ("--peers", arguments.peers)] {
+        if is_given {
+            words.push(name.to_string());
+        }
     }
     words.join(" ")
 }
@@ -364,11 +427,48 @@ fn print(result: &CostResult, arguments: &Arguments, out: &mut dyn Write) -> Res
     if let Some(alone) = default_setting(result) {
         writeln!(out, "{alone}")?;
     }
+    print_peers(result, out)?;
     if let (true, Some(chosen)) = (arguments.rust, cheapest(&result.points, result.asked)) {
         writeln!(out, "\n{}", rust(&chosen.setting, &result.constructor, result.until))?;
     }
     writeln!(out)?;
     Ok(())
+}
+
+/// The cheapest run of each other program that reaches the asked error, its time over ours; reasons of those without one.
+fn print_peers(result: &CostResult, out: &mut dyn Write) -> Result<(), CommandError> {
+    if result.peers.is_empty() {
+        return Ok(());
+    }
+    let own = cheapest(&result.points, result.asked).map(|point| point.time);
+    writeln!(out, "\nOther programs at an error of at most {}:", two_digits(result.asked))?;
+    let mut names: Vec<&str> = result.peers.iter().map(|peer| peer.program.as_str()).collect();
+    names.dedup();
+    let widest = names.iter().map(|name| name.chars().count()).max().unwrap_or(0);
+    for name in names {
+        let runs = || result.peers.iter().filter(|peer| peer.program == name);
+        let done = || runs().filter_map(|peer| Some((peer, peer.outcome.as_ref().ok()?)));
+        let reached = done().filter(|(_, run)| run.errors.judged <= result.asked);
+        if let Some((peer, run)) = reached.min_by(|a, b| a.1.time.total_cmp(&b.1.time)) {
+            let ratio = own.map_or_else(String::new, |own| format!(", {} times ours", two_figures(run.time / own)));
+            let (error, time) = (two_digits(run.errors.judged), time_text(run.time, false));
+            writeln!(out, "  {name:<widest$}  {}: error {error}, {time}{ratio}", peer.setting)?;
+            continue;
+        }
+        let best = done().map(|(_, run)| run.errors.judged).fold(f64::INFINITY, f64::min);
+        let why = runs().find_map(|peer| peer.outcome.as_ref().err());
+        match (best.is_finite(), why) {
+            (true, _) => writeln!(out, "  {name:<widest$}  not reached; its best error is {}", two_digits(best))?,
+            (false, Some(why)) => writeln!(out, "  {name:<widest$}  {why}")?,
+            (false, None) => writeln!(out, "  {name:<widest$}  no finite state")?,
+        }
+    }
+    Ok(())
+}
+
+/// A ratio with two figures.
+fn two_figures(ratio: f64) -> String {
+    if ratio >= 10.0 { format!("{ratio:.0}") } else { format!("{ratio:.1}") }
 }
 
 /// Error and time of what one gets without a choice.

@@ -3,6 +3,7 @@
 pub mod advice;
 pub mod kinematics;
 pub mod moved;
+pub mod peers;
 pub mod picture;
 pub mod points;
 pub mod reference;

@@ -48,11 +48,32 @@ fn error(point: &Point) -> Option<f64> {
     }
 }
 
+/// Times and errors of other programs by name; those without one finished run are left out.
+fn peers(result: &CostResult) -> Vec<(&str, Vec<(f64, f64)>)> {
+    let mut curves: Vec<(&str, Vec<(f64, f64)>)> = Vec::new();
+    for peer in &result.peers {
+        let Ok(run) = &peer.outcome else { continue };
+        if !run.errors.judged.is_finite() {
+            continue;
+        }
+        let point = (run.time, run.errors.judged.max(1e-17));
+        match curves.last_mut().filter(|(name, _)| *name == peer.program) {
+            Some((_, points)) => points.push(point),
+            None => curves.push((&peer.program, vec![point])),
+        }
+    }
+    curves
+}
+
 /// The curves that reach the front in colour, all other points in grey, the front as a line, the error asked for.
 pub fn picture(result: &CostResult) -> String {
     let done = || result.points.iter().filter_map(|point| Some((point, error(point)?)));
-    let time = Axis::of(done().map(|(point, _)| point.time), LEFT, WIDTH - RIGHT);
-    let size = Axis::of(done().map(|(_, error)| error.min(10.0)).chain([result.asked]), HEIGHT - BOTTOM, TOP);
+    let peers = peers(result);
+    let seen = || peers.iter().flat_map(|(_, points)| points.iter().copied());
+    let times = done().map(|(point, _)| point.time).chain(seen().map(|(time, _)| time));
+    let errors = done().map(|(_, error)| error).chain(seen().map(|(_, error)| error));
+    let time = Axis::of(times, LEFT, WIDTH - RIGHT);
+    let size = Axis::of(errors.map(|error| error.min(10.0)).chain([result.asked]), HEIGHT - BOTTOM, TOP);
     let mut svg = open(WIDTH as usize, HEIGHT as usize);
     label(&mut svg, LEFT as usize, 24, "font-size=\"16\" font-weight=\"bold\"", &result.title);
     let words = format!("error of the {} over time ({})", result.judged, result.unit());
@@ -109,6 +130,26 @@ pub fn picture(result: &CostResult) -> String {
         let x = WIDTH - RIGHT + 20.0;
         let _ = writeln!(svg, "<path d=\"M{x} {y:.1}h22\" stroke=\"{colour}\" stroke-width=\"3\"{dash}/>");
         label(&mut svg, (x + 28.0) as usize, (y + 4.0) as usize, "font-size=\"12\"", name);
+    }
+    for (k, (name, points)) in peers.iter().enumerate() {
+        let colour = COLOURS[k % COLOURS.len()];
+        let at = |(t, error): &(f64, f64)| (time.at(*t), size.at(*error));
+        let line: Vec<String> = points.iter().map(at).map(|(x, y)| format!("{x:.1} {y:.1}")).collect();
+        let stroke = format!("fill=\"none\" stroke=\"{colour}\"");
+        let _ = writeln!(svg, "<path d=\"M{}\" {stroke} stroke-dasharray=\"1.5 2.5\"/>", line.join("L"));
+        for (x, y) in points.iter().map(at) {
+            let _ = writeln!(
+                svg,
+                "<path d=\"M{:.1} {:.1}l6 6m0 -6l-6 6\" {stroke}/>",
+                x - 3.0,
+                y - 3.0
+            );
+        }
+        let y = TOP + 16.0 * k as f64 + 20.0 * names.len() as f64 + 24.0;
+        let x = WIDTH - RIGHT + 20.0;
+        let _ = writeln!(svg, "<path d=\"M{x} {y:.1}h22\" {stroke} stroke-dasharray=\"1.5 2.5\"/>");
+        let _ = writeln!(svg, "<path d=\"M{} {:.1}l6 6m0 -6l-6 6\" {stroke}/>", x + 8.0, y - 3.0);
+        label(&mut svg, (x + 28.0) as usize, (y + 4.0) as usize, "font-size=\"11\"", name);
     }
     let corners: Vec<String> = on_front
         .iter()

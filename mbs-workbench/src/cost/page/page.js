@@ -22,12 +22,12 @@ const short = (value) => {
 const all = [];
 DATA.curves.forEach((curve, c) => curve.points.forEach((point, p) => all.push({ curve, c, point, p })));
 const done = all.filter(({ point }) => point.error !== undefined);
-const trusted = done.filter(({ curve, point }) => !curve.lanes && (point.verdict === "right" || point.verdict === "hollow"));
+const trusted = done.filter(({ curve, point }) => !curve.lanes && !curve.peer && (point.verdict === "right" || point.verdict === "hollow"));
 const shown = new Set();
 let asked = DATA.asked;
 const showFront = () => {
   shown.clear();
-  DATA.curves.forEach((curve, c) => { if (curve.lanes || curve.points.some((point) => point.front)) shown.add(c); });
+  DATA.curves.forEach((curve, c) => { if (curve.lanes || curve.peer || curve.points.some((point) => point.front)) shown.add(c); });
   if (shown.size === 0) DATA.curves.forEach((_, c) => shown.add(c));
 };
 showFront();
@@ -42,7 +42,9 @@ const MARKS = [
   (x, y, r) => `M${x} ${y - 1.3 * r}L${x + 1.2 * r} ${y + r}H${x - 1.2 * r}z`,
   (x, y, r) => `M${x} ${y - 1.4 * r}L${x + 1.4 * r} ${y}L${x} ${y + 1.4 * r}L${x - 1.4 * r} ${y}z`,
   (x, y, r) => `M${x} ${y + 1.3 * r}L${x + 1.2 * r} ${y - r}H${x - 1.2 * r}z`,
+  (x, y, r) => `M${x - r} ${y - r}L${x + r} ${y + r}M${x - r} ${y + r}L${x + r} ${y - r}`,
 ];
+const dashes = (curve) => curve.peer ? { "stroke-dasharray": "2 3" } : curve.dashed ? { "stroke-dasharray": "6 4" } : {};
 const mark = (curve, x, y, r) => MARKS[curve.mark % MARKS.length](x, y, r);
 
 /* A chart of the error over a quantity of the points; both axes are logarithmic. */
@@ -86,7 +88,7 @@ const chart = (place, value, words) => {
     if (!shown.has(c)) return;
     const colour = COLOURS[curve.colour % COLOURS.length];
     const points = curve.points.filter((point) => point.error !== undefined && value(point) > 0);
-    const dash = curve.dashed ? { "stroke-dasharray": "6 4" } : {};
+    const dash = dashes(curve);
     if (points.length > 1) {
       const d = "M" + points.map((point) => `${atX(value(point))} ${atLog(size(point))}`).join("L");
       svgElement("path", { d, fill: "none", stroke: colour, "stroke-width": 1.6, ...dash }, svg);
@@ -131,11 +133,12 @@ const chart = (place, value, words) => {
 };
 
 const figures = (point) => [
-  ["error", short(point.error)], ["median", short(point.median)], ["velocity", short(point.rate)],
-  [DATA.second, short(point.second)], ...(point.energy ? [["energy", short(point.energy)]] : []),
+  ["error", short(point.error)], ["median", short(point.median)], ...(point.rate === null ? [] : [["velocity", short(point.rate)]]),
+  ...(point.second === null ? [] : [[DATA.second, short(point.second)]]), ...(point.energy ? [["energy", short(point.energy)]] : []),
   ...(point.violation ? [["violation", short(point.violation)]] : []),
   ...(point.expected !== undefined ? [["expected", short(point.expected)]] : []),
-  ["time", `${short(point.time)} ${DATA.unit}`], ["evaluations", point.evaluations], ["steps", point.steps], ["verdict", point.verdict],
+  ["time", `${short(point.time)} ${DATA.unit}`], ["evaluations", point.evaluations || "not told"],
+  ...(point.steps ? [["steps", point.steps]] : []), ["verdict", point.verdict],
 ];
 const tip = (event, curve, point) => {
   const box = byId("tip");
@@ -165,8 +168,8 @@ const legend = () => {
     const button = element("button", undefined, place);
     const colour = COLOURS[curve.colour % COLOURS.length];
     const svg = svgElement("svg", { viewBox: "0 0 40 14" }, button);
-    svgElement("path", { d: "M1 7H39", stroke: colour, "stroke-width": 2, ...(curve.dashed ? { "stroke-dasharray": "6 4" } : {}) }, svg);
-    svgElement("path", { d: mark(curve, 20, 7, 4.2), fill: colour }, svg);
+    svgElement("path", { d: "M1 7H39", stroke: colour, "stroke-width": 2, ...dashes(curve) }, svg);
+    svgElement("path", { d: mark(curve, 20, 7, 4.2), fill: colour, stroke: colour }, svg);
     element("span", curve.name, button);
     button.className = shown.has(c) ? "" : "off";
     button.setAttribute("aria-pressed", String(shown.has(c)));
@@ -192,7 +195,7 @@ const refused = () => {
   byId("refused-panel").hidden = lost.length === 0;
   const groups = new Map();
   for (const { curve, point } of lost) {
-    const reason = point.refused ?? `${point.verdict}: error ${short(point.error)}, expected ${short(point.expected)}`;
+    const reason = point.refused ?? (curve.peer ? "the states are not finite" : null) ?? `${point.verdict}: error ${short(point.error)}, expected ${short(point.expected)}`;
     const key = `${curve.name}\u0000${reason}`;
     groups.set(key, [...(groups.get(key) ?? []), point]);
   }
@@ -202,6 +205,23 @@ const refused = () => {
     if (points[0].verdict === "wrong") line.className = "wrong";
   }
 };
+const peers = () => {
+  const curves = DATA.curves.filter((curve) => curve.peer);
+  byId("peers-panel").hidden = curves.length === 0;
+  const place = byId("peers");
+  place.replaceChildren();
+  const head = element("tr", undefined, place);
+  ["program", "setting", "error", DATA.unit, "times ours"].forEach((name) => element("th", name, head));
+  const own = cheapest(asked);
+  for (const curve of curves) {
+    const reached = curve.points.filter((point) => point.error !== undefined && point.error <= asked);
+    const best = reached.sort((a, b) => a.time - b.time)[0];
+    const row = element("tr", undefined, place);
+    const lost = curve.points.every((point) => point.refused) ? "refused, see below" : "not reached";
+    (best ? [curve.name, best.label, short(best.error), short(best.time), own ? short(best.time / own.time) : ""] : [curve.name, lost, "", "", ""])
+      .forEach((text) => element("td", String(text), row));
+  }
+};
 const draw = () => {
   chart("time", (point) => point.time, `time (${DATA.unit})`);
   const count = byId("count").value;
@@ -209,6 +229,7 @@ const draw = () => {
   chart("counts", of[count], byId("count").selectedOptions[0].textContent);
   legend();
   table();
+  peers();
   choose(cheapest(asked));
 };
 byId("title").textContent = `${DATA.title}: cost of accuracy`;
