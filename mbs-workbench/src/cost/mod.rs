@@ -8,5 +8,6 @@ pub mod picture;
 pub mod points;
 pub mod reference;
 pub mod result;
+pub mod splines;
 #[cfg(test)]
 mod tests;

@@ -248,7 +248,8 @@ pub fn moved_study(
 impl MovedStudy {
     /// The reference that runs of others are judged by.
     pub fn judge(&self) -> Option<&Reference> {
-        let whole = |leg: Leg| self.references.iter().find(|(own, found)| *own == leg && found.stuck.is_none());
+        let whole =
+            |leg: Leg| self.references.iter().find(|(own, found)| *own == leg && found.stuck.is_none());
         whole(Leg::Collocated).or_else(|| whole(Leg::Extrapolated)).map(|(_, reference)| reference)
     }
 

@@ -14,7 +14,7 @@ const TOP: f64 = 60.0;
 const BOTTOM: f64 = 60.0;
 
 /// A logarithmic axis.
-struct Axis {
+pub(super) struct Axis {
     low: f64,
     high: f64,
     from: f64,
@@ -22,20 +22,20 @@ struct Axis {
 }
 
 impl Axis {
-    fn of(values: impl Iterator<Item = f64>, from: f64, to: f64) -> Option<Self> {
+    pub(super) fn of(values: impl Iterator<Item = f64>, from: f64, to: f64) -> Option<Self> {
         let logarithms = values.filter(|value| *value > 0.0 && value.is_finite()).map(f64::log10);
         let (low, high) = logarithms
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)));
         low.is_finite().then(|| Axis { low: (low - 0.1).floor(), high: (high + 0.1).ceil(), from, to })
     }
 
-    fn at(&self, value: f64) -> f64 {
+    pub(super) fn at(&self, value: f64) -> f64 {
         let share = (value.max(1e-300).log10() - self.low) / (self.high - self.low);
         self.from + share.clamp(0.0, 1.0) * (self.to - self.from)
     }
 
     /// Powers of ten with their places.
-    fn marks(&self) -> impl Iterator<Item = (i32, f64)> + '_ {
+    pub(super) fn marks(&self) -> impl Iterator<Item = (i32, f64)> + '_ {
         let step = (((self.high - self.low) / 8.0).ceil() as usize).max(1);
         (self.low as i32..=self.high as i32).step_by(step).map(|power| (power, self.at(10.0_f64.powi(power))))
     }
@@ -138,12 +138,7 @@ pub fn picture(result: &CostResult) -> String {
         let stroke = format!("fill=\"none\" stroke=\"{colour}\"");
         let _ = writeln!(svg, "<path d=\"M{}\" {stroke} stroke-dasharray=\"1.5 2.5\"/>", line.join("L"));
         for (x, y) in points.iter().map(at) {
-            let _ = writeln!(
-                svg,
-                "<path d=\"M{:.1} {:.1}l6 6m0 -6l-6 6\" {stroke}/>",
-                x - 3.0,
-                y - 3.0
-            );
+            let _ = writeln!(svg, "<path d=\"M{:.1} {:.1}l6 6m0 -6l-6 6\" {stroke}/>", x - 3.0, y - 3.0);
         }
         let y = TOP + 16.0 * k as f64 + 20.0 * names.len() as f64 + 24.0;
         let x = WIDTH - RIGHT + 20.0;
@@ -179,7 +174,7 @@ pub fn picture(result: &CostResult) -> String {
     svg + "</svg>\n"
 }
 
-fn power_of_ten(svg: &mut String, x: f64, y: f64, anchor: &str, power: i32) {
+pub(super) fn power_of_ten(svg: &mut String, x: f64, y: f64, anchor: &str, power: i32) {
     let _ = writeln!(
         svg,
         "<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"{anchor}\">10<tspan dy=\"-5\" font-size=\"9\">{power}</tspan></text>"

@@ -5,7 +5,9 @@ use serde::Serialize;
 use crate::cost::advice::sentence;
 use crate::cost::peers::{PeerPoint, PeerRun};
 use crate::cost::points::{Errors, Outcome, Point, Verdict, front};
+use crate::cost::splines::{self, PageValley};
 use crate::setting::{MotionMethod, Numbers, Setting};
+use crate::tables::valley::Valley;
 
 /// A study with its words.
 pub struct CostResult {
@@ -27,6 +29,8 @@ pub struct CostResult {
     pub points: Vec<Point>,
     /// Runs of other programs, curve by curve.
     pub peers: Vec<PeerPoint>,
+    /// Tables of the mechanism's functions.
+    pub valleys: Vec<Valley>,
     /// Width of the reference; none where one leg alone went through.
     pub width: Option<f64>,
     /// Quantity that is judged, in words.
@@ -51,6 +55,7 @@ struct Page<'a> {
     width: Option<f64>,
     facts: &'a [[String; 2]],
     curves: Vec<Curve>,
+    splines: Vec<PageValley<'a>>,
 }
 
 /// A curve of the page.
@@ -221,6 +226,7 @@ impl CostResult {
             width: self.width,
             facts: &self.facts,
             curves,
+            splines: splines::page(&self.valleys),
         }
     }
 
@@ -309,8 +315,7 @@ impl CostResult {
         }
         for peer in &self.peers {
             let head = ["f64".to_string(), quoted(&peer.program), quoted(&peer.setting)];
-            let number =
-                |value: f64| if value.is_finite() { format!("{value:e}") } else { String::new() };
+            let number = |value: f64| if value.is_finite() { format!("{value:e}") } else { String::new() };
             let rest = match &peer.outcome {
                 Err(reason) => vec![quoted(reason)],
                 Ok(PeerRun { errors, time, evaluations }) => {

@@ -222,6 +222,57 @@ const peers = () => {
       .forEach((text) => element("td", String(text), row));
   }
 };
+/* Errors of splines along tables of a function over the number of points, for one rounding and one derivative. */
+const splines = () => {
+  byId("splines-panel").hidden = DATA.splines.length === 0;
+  if (DATA.splines.length === 0) return;
+  const of = DATA.splines[Number(byId("spline-function").value)];
+  const rounding = Number(byId("spline-rounding").value);
+  const order = Number(byId("spline-order").value);
+  const points = of.points.filter((point) => point.rounding === rounding);
+  const [width, height] = innerWidth < 600 ? [360, 300] : [640, 340];
+  const [left, right, top, bottom] = [64, 18, 14, 52];
+  const svg = svgElement("svg", { viewBox: `0 0 ${width} ${height}`, role: "img" });
+  svgElement("title", {}, svg).textContent = `error of the ${["value", "first derivative", "second derivative"][order]} over points`;
+  const sizes = [...new Set(of.points.map((point) => point.points))].sort((a, b) => a - b);
+  const [x0, x1] = [Math.log10(sizes[0]), Math.log10(sizes[sizes.length - 1])];
+  const log = (point) => Math.log10(Math.max(point.errors[order], 1e-17));
+  const all = of.points.map(log);
+  const [y0, y1] = [Math.floor(Math.min(...all)), Math.ceil(Math.max(...all))];
+  const atX = (number) => left + (Math.log10(number) - x0) / (x1 - x0) * (width - left - right);
+  const atY = (value) => height - bottom - (value - y0) / (y1 - y0) * (height - top - bottom);
+  for (const number of sizes) {
+    svgElement("path", { class: "grid", d: `M${atX(number)} ${top}V${height - bottom}` }, svg);
+    svgElement("text", { x: atX(number), y: height - bottom + 18, "text-anchor": "middle" }, svg).textContent = number;
+  }
+  for (let k = y0; k <= y1; k += Math.max(1, Math.ceil((y1 - y0) / 8))) {
+    svgElement("path", { class: "grid", d: `M${left} ${atY(k)}H${width - right}` }, svg);
+    const text = svgElement("text", { x: left - 8, y: atY(k) + 4, "text-anchor": "end" }, svg);
+    text.append("10");
+    svgElement("tspan", { dy: -5, "font-size": 9 }, text).textContent = k;
+  }
+  svgElement("text", { x: (left + width - right) / 2, y: height - 10, "text-anchor": "middle" }, svg).textContent = "points a period";
+  const legend = byId("spline-legend");
+  legend.replaceChildren();
+  of.forms.forEach((form, f) => {
+    const own = points.filter((point) => point.form === f).sort((a, b) => a.points - b.points);
+    const colour = COLOURS[f % COLOURS.length];
+    const line = "M" + own.map((point) => `${atX(point.points)} ${atY(log(point))}`).join("L");
+    if (own.length) svgElement("path", { d: line, fill: "none", stroke: colour, "stroke-width": 1.6 }, svg);
+    for (const point of own) {
+      const spot = svgElement("circle", { cx: atX(point.points), cy: atY(log(point)), r: 4, fill: colour }, svg);
+      svgElement("title", {}, spot).textContent = `${form}: ${point.points} points, ${point.knots} knots, ${short(point.errors[order])}`;
+    }
+    const entry = element("span", undefined, legend);
+    const sample = svgElement("svg", { viewBox: "0 0 40 14" }, entry);
+    svgElement("path", { d: "M1 7H39", stroke: colour, "stroke-width": 2 }, sample);
+    element("span", form, entry);
+  });
+  const least = points.reduce((a, b) => (log(b) < log(a) ? b : a), points[0]);
+  if (least) svgElement("circle", { cx: atX(least.points), cy: atY(log(least)), r: 8, class: "least" }, svg);
+  byId("spline-sentence").textContent = of.sentences[rounding] ?? "";
+  byId("splines").replaceChildren(svg);
+};
 const draw = () => {
   chart("time", (point) => point.time, `time (${DATA.unit})`);
   const count = byId("count").value;
@@ -230,12 +281,20 @@ const draw = () => {
   legend();
   table();
   peers();
+  splines();
   choose(cheapest(asked));
 };
 byId("title").textContent = `${DATA.title}: cost of accuracy`;
 byId("sentence").textContent = DATA.sentence;
 byId("command").textContent = DATA.command;
 for (const [name, value] of DATA.facts) { element("dt", name, byId("facts")); element("dd", value, byId("facts")); }
+DATA.splines.forEach((of, k) => { element("option", of.name, byId("spline-function")).value = k; });
+(DATA.splines[0]?.roundings ?? []).forEach((rounding, k) => {
+  const words = rounding === 0 ? "exact points" : `rounded to ${rounding.toExponential(0)} ${DATA.splines[0].unit}`;
+  element("option", words, byId("spline-rounding")).value = k;
+});
+byId("spline-rounding").value = 4;
+for (const name of ["spline-function", "spline-rounding", "spline-order"]) byId(name).addEventListener("change", splines);
 byId("front").addEventListener("click", () => { showFront(); draw(); });
 byId("all").addEventListener("click", () => { DATA.curves.forEach((_, c) => shown.add(c)); draw(); });
 byId("none").addEventListener("click", () => { shown.clear(); draw(); });
