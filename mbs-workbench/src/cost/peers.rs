@@ -111,11 +111,14 @@ pub struct Described {
     pub tree: PathBuf,
 }
 
+/// Errors of coordinates and velocities at the instants of a question.
+pub type Judge<'a> = &'a dyn Fn(&[Vec<f64>], Option<&[Vec<f64>]>) -> Errors;
+
 /// Asks all programs. `judge` gives the errors of states at the instants (coordinates, velocities); `progress` gets what is being done.
 pub fn ask_all(
     question: &Question,
     described: &Described,
-    judge: &dyn Fn(&[Vec<f64>], Option<&[Vec<f64>]>) -> Errors,
+    judge: Judge,
     progress: &dyn Fn(&str),
 ) -> Vec<PeerPoint> {
     let mut points = Vec::new();
@@ -166,7 +169,7 @@ fn ask(
     environment: &Environment,
     question: &Question,
     described: &Described,
-    judge: &dyn Fn(&[Vec<f64>], Option<&[Vec<f64>]>) -> Errors,
+    judge: Judge,
     progress: &dyn Fn(&str),
     points: &mut Vec<PeerPoint>,
 ) {
