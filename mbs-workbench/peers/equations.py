@@ -142,6 +142,7 @@ def sundials_run(equations, problem, plugin, options, start, times):
         # Few enough for a singular position to end the run, not to stall it.
         told = options | {"abstol": tolerance, "reltol": tolerance, "max_num_steps": 200_000}
         whole = ca.integrator("whole", plugin, problem, times[0], list(times[1:]), told)
+        told |= {"max_num_steps": 200_000 * len(times)}
         last = ca.integrator("last", plugin, problem, times[0], [times[-1]], told)
         states = np.array(whole(**start)["xf"]).T
         if not np.isfinite(states).all():

@@ -69,6 +69,7 @@ def ladder(program, settings, run, longest):
         began = time.perf_counter()
         try:
             (q, qd), again, evaluations = run(value)
+            seconds = shortest(again, longest)
         except Late:
             tell(program=program, setting=setting, refused=f"takes more than {longest:g} s")
             return
@@ -79,7 +80,6 @@ def ladder(program, settings, run, longest):
                 return
             continue
         lost = 0
-        seconds = shortest(again, longest)
         tell(program=program, setting=setting, seconds=seconds, evaluations=evaluations, q=q, qd=qd)
         if time.perf_counter() - began > 4 * longest or seconds > longest:
             return

@@ -383,7 +383,7 @@ fn ask_peers(
         v,
         parameters,
         digits,
-        longest: if arguments.quick { 0.5 } else { 4.0 },
+        longest: if arguments.quick { 0.3 } else { 1.5 },
     };
     let functions = equations.functions().iter().map(|function| function.name).collect::<Vec<_>>();
     let definition = match functions[..] {

@@ -188,7 +188,7 @@ fn laws(constructor: &str, functions: &[FunctionEntry]) -> String {
     let law = |function: &FunctionEntry| {
         let name = function.name;
         format!(
-            "({name:?}, {{ let mechanism = {constructor}; \
+            "({name:?}, {{ let mechanism = ::mbs_workbench::tables::valley::in_doubles({constructor}); \
              ::std::boxed::Box::new(move |x: f64| ::mbs_runtime::Function::jet::<3>(&mechanism.{name}, x)) as _ }}), "
         )
     };

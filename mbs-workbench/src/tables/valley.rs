@@ -5,6 +5,7 @@
 
 use core::fmt;
 
+use mbs_runtime::Reveal;
 use mbs_runtime::driver::End;
 
 use super::spline::{Kind, Spline};
@@ -14,6 +15,11 @@ pub type Law<'a> = &'a dyn Fn(f64) -> [f64; 3];
 
 /// A function of a mechanism's caller, with its name in the text.
 pub type NamedLaw = (&'static str, Box<dyn Fn(f64) -> [f64; 3]>);
+
+/// `mechanism` in `f64`, which an expression alone may leave open.
+pub fn in_doubles<S: Reveal>(mechanism: S) -> S {
+    mechanism
+}
 
 /// Form of a spline along a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
