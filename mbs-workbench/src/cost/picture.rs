@@ -166,9 +166,9 @@ pub fn picture(result: &CostResult) -> String {
     );
     label(
         &mut svg,
-        (WIDTH - RIGHT) as usize + 4,
-        y as usize + 4,
-        "fill=\"#d55e00\" font-size=\"12\"",
+        (WIDTH - RIGHT) as usize - 4,
+        y as usize - 4,
+        "fill=\"#d55e00\" font-size=\"12\" text-anchor=\"end\"",
         "asked",
     );
     svg + "</svg>\n"

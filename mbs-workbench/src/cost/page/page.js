@@ -201,7 +201,8 @@ const refused = () => {
   }
   for (const [key, points] of groups) {
     const [name, reason] = key.split("\u0000");
-    const line = element("p", `${name}, ${points.map((point) => point.label).join("; ")}: ${reason}`, place);
+    const labels = points.map((point) => point.label).filter((label) => label !== "").join("; ");
+    const line = element("p", `${name}${labels && ", "}${labels}: ${reason}`, place);
     if (points[0].verdict === "wrong") line.className = "wrong";
   }
 };
