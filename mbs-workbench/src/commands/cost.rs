@@ -257,8 +257,11 @@ pub fn study(
                 "positions closed to 29 digits in double-double numbers; rates by differences of positions"
                     .to_string(),
             );
-            fact("width", format!("{} (rates by the rows against differences)", two_digits(found.width)));
-            (found.points, Some(found.width), "acceleration")
+            fact(
+                "width of rates",
+                format!("{}, by the rows against differences of positions", two_digits(found.width)),
+            );
+            (found.points, None, "acceleration")
         }
         Comparable::Moved(mut mechanism) => {
             let found = moved_study(&mut mechanism, until, &extent, &mut progress).map_err(failed)?;

@@ -115,18 +115,29 @@ pub fn front(points: &[Point]) -> Vec<usize> {
     front
 }
 
-/// The cheapest trusted point of one mechanism with an error of at most `asked`.
+/// Error asked for over that of a setting which is advised: other parameters change errors by up to this factor.
+const MARGIN: f64 = 2.0;
+
+/// The cheapest trusted point of one mechanism that reaches `asked` with a margin.
 pub fn cheapest(points: &[Point], asked: f64) -> Option<&Point> {
     reaching(points, asked).filter(|point| point.is_advised()).min_by(|a, b| a.time.total_cmp(&b.time))
 }
 
-/// The cheapest trusted point of many mechanisms at once with an error of at most `asked`; its time is that of one.
+/// The cheapest trusted point of many mechanisms at once that reaches `asked` with a margin; its time is that of one.
 pub fn cheapest_in_lanes(points: &[Point], asked: f64) -> Option<&Point> {
     reaching(points, asked).filter(|point| !point.is_single()).min_by(|a, b| a.time.total_cmp(&b.time))
 }
 
+/// Points with their error, and that of the next finer one of their curve, below `asked` by the margin: where finer steps make it worse,
+/// rounding decides, and the point is small by chance.
 fn reaching(points: &[Point], asked: f64) -> impl Iterator<Item = &Point> {
-    points.iter().filter(move |point| point.error().is_some_and(|error| error <= asked))
+    let reaches = move |point: &Point| point.error().is_some_and(|error| MARGIN * error <= asked);
+    points.iter().enumerate().filter_map(move |(index, point)| {
+        let curve = point.setting.curve();
+        let finer = points.get(index + 1).filter(|finer| finer.setting.curve() == curve);
+        (reaches(point) && finer.is_none_or(|finer| finer.error().is_none() || reaches(finer)))
+            .then_some(point)
+    })
 }
 
 #[cfg(test)]
@@ -152,7 +163,20 @@ mod tests {
             point(1e-8, 9.0, Verdict::Hollow),
         ];
         assert_eq!(front(&points), [0, 2, 4]);
-        assert_eq!(cheapest(&points, 1e-5).map(|point| point.time), Some(3.0));
         assert!(cheapest(&points, 1e-12).is_none());
+    }
+
+    #[test]
+    fn the_advice_has_a_margin_and_is_no_chance() {
+        let points = [
+            point(1e-3, 1.0, Verdict::Right),
+            point(4e-7, 2.0, Verdict::Right),
+            point(3e-6, 3.0, Verdict::Right),
+            point(8e-7, 4.0, Verdict::Right),
+            point(1e-8, 5.0, Verdict::Right),
+        ];
+        // The second is followed by a worse one, the fourth has no margin.
+        assert_eq!(cheapest(&points, 1e-6).map(|point| point.time), Some(5.0));
+        assert_eq!(cheapest(&points, 1e-5).map(|point| point.time), Some(2.0));
     }
 }

@@ -2,9 +2,9 @@
 
 use serde::Serialize;
 
-use crate::cost::advice::sentence;
+use crate::cost::advice::{rust, sentence};
 use crate::cost::peers::{PeerPoint, PeerRun};
-use crate::cost::points::{Errors, Outcome, Point, Verdict, front};
+use crate::cost::points::{Errors, Outcome, Point, Verdict, cheapest, front};
 use crate::cost::splines::{self, PageValley};
 use crate::setting::{MotionMethod, Numbers, Setting};
 use crate::tables::valley::Valley;
@@ -52,10 +52,21 @@ struct Page<'a> {
     second: &'static str,
     asked: f64,
     sentence: String,
+    /// The setting that the sentence names.
+    choice: Option<Choice>,
     width: Option<f64>,
     facts: &'a [[String; 2]],
     curves: Vec<Curve>,
     splines: Vec<PageValley<'a>>,
+}
+
+/// The setting to take for the error asked for.
+#[derive(Serialize)]
+struct Choice {
+    setting: String,
+    error: Option<f64>,
+    time: f64,
+    rust: String,
 }
 
 /// A curve of the page.
@@ -195,7 +206,7 @@ impl CostResult {
                 let points = Vec::new();
                 curves.push(Curve { name, colour, mark, dashed, lanes, advised, peer: false, points });
             }
-            let rust = crate::cost::advice::rust(&point.setting, &self.constructor, self.until);
+            let rust = rust(&point.setting, &self.constructor, self.until);
             let mut page = match &point.outcome {
                 Outcome::Refused(reason) => PagePoint::refused(point.setting.label(), reason),
                 Outcome::Done { errors, expected, verdict: judgement } => PagePoint {
@@ -223,6 +234,12 @@ impl CostResult {
             second: self.second,
             asked: self.asked,
             sentence: self.sentence(),
+            choice: cheapest(&self.points, self.asked).map(|point| Choice {
+                setting: point.setting.to_string(),
+                error: point.error(),
+                time: point.time,
+                rust: rust(&point.setting, &self.constructor, self.until),
+            }),
             width: self.width,
             facts: &self.facts,
             curves,

@@ -32,9 +32,11 @@ const showFront = () => {
 };
 showFront();
 
-/* The cheapest trusted point with at most the error asked for. */
-const cheapest = (error) => trusted.filter(({ curve, point }) => curve.advised && point.error <= error)
-  .sort((a, b) => a.point.time - b.point.time)[0];
+/* The cheapest trusted point that reaches the error with a margin of 2, as the next finer one of its curve does. */
+const cheapest = (error) => trusted.filter(({ curve, point, p }) => {
+  const finer = curve.points[p + 1];
+  return curve.advised && 2 * point.error <= error && (finer?.error === undefined || 2 * finer.error <= error);
+}).sort((a, b) => a.point.time - b.point.time)[0];
 
 const MARKS = [
   (x, y, r) => `M${x - r} ${y}a${r} ${r} 0 1 0 ${2 * r} 0a${r} ${r} 0 1 0 ${-2 * r} 0`,
@@ -196,11 +198,14 @@ const refused = () => {
   const groups = new Map();
   for (const { curve, point } of lost) {
     const reason = point.refused ?? (curve.peer ? "the states are not finite" : null) ?? `${point.verdict}: error ${short(point.error)}, expected ${short(point.expected)}`;
-    const key = `${curve.name}\u0000${reason}`;
-    groups.set(key, [...(groups.get(key) ?? []), point]);
+    // Reasons that differ by their numbers alone are one.
+    const key = `${curve.name}\u0000${reason.replace(/\d+(\.\d+)?(e-?\d+)?/g, "#")}`;
+    const group = groups.get(key) ?? { name: curve.name, reason, points: [] };
+    group.points.push(point);
+    groups.set(key, group);
   }
-  for (const [key, points] of groups) {
-    const [name, reason] = key.split("\u0000");
+  for (const { name, reason: told, points } of groups.values()) {
+    const reason = told.replace(/\d+\.\d{6,}(e-?\d+)?/g, (number) => short(Number(number)));
     const labels = points.map((point) => point.label).filter((label) => label !== "").join("; ");
     const line = element("p", `${name}${labels && ", "}${labels}: ${reason}`, place);
     if (points[0].verdict === "wrong") line.className = "wrong";
