@@ -20,6 +20,7 @@ use crate::cost::advice::two_digits;
 use crate::cost::kinematics::driven_study;
 use crate::cost::moved::{Extent, MovedStudy, NoReference, moved_study};
 use crate::cost::peers::{Described, PeerPoint, Question, ask_all};
+use crate::cost::perturbed::perturb;
 use crate::cost::picture::picture;
 use crate::cost::result::CostResult;
 use crate::cost::splines;
@@ -264,7 +265,9 @@ pub fn study(
             (found.points, None, "acceleration")
         }
         Comparable::Moved(mut mechanism) => {
-            let found = moved_study(&mut mechanism, until, &extent, &mut progress).map_err(failed)?;
+            let mut found = moved_study(&mut mechanism, until, &extent, &mut progress).map_err(failed)?;
+            progress("perturbed parameters", 1.0);
+            perturb(&mut found.points, make, &values, until, &extent);
             for (leg, reference) in &found.references {
                 let events = match reference.events {
                     0 => String::new(),

@@ -211,7 +211,13 @@ pub fn driven_study(
                     Err(failure) => {
                         let outcome = Outcome::Refused(failure.to_string());
                         let effort = Effort::default();
-                        points.push(Point { setting: setting(steps), outcome, effort, time: f64::NAN });
+                        points.push(Point {
+                            setting: setting(steps),
+                            outcome,
+                            effort,
+                            time: f64::NAN,
+                            perturbed: None,
+                        });
                         last = None;
                     }
                     Ok(effort) => {
@@ -221,7 +227,13 @@ pub fn driven_study(
                         let verdict = verdict(*numbers, closing, &errors, (before, expected));
                         let outcome = Outcome::Done { errors, expected, verdict };
                         let too_long = effort.elapsed.as_secs_f64() > longest;
-                        points.push(Point { setting: setting(steps), outcome, effort, time: f64::NAN });
+                        points.push(Point {
+                            setting: setting(steps),
+                            outcome,
+                            effort,
+                            time: f64::NAN,
+                            perturbed: None,
+                        });
                         last = Some((errors.judged, steps));
                         if too_long {
                             break;

@@ -4,6 +4,7 @@ pub mod advice;
 pub mod kinematics;
 pub mod moved;
 pub mod peers;
+pub mod perturbed;
 pub mod picture;
 pub mod points;
 pub mod reference;

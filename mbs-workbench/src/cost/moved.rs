@@ -334,7 +334,13 @@ fn curve(
             Ok(effort) => effort,
             Err(failure) => {
                 let outcome = Outcome::Refused(failure.to_string());
-                points.push(Point { setting, outcome, effort: Effort::default(), time: f64::NAN });
+                points.push(Point {
+                    setting,
+                    outcome,
+                    effort: Effort::default(),
+                    time: f64::NAN,
+                    perturbed: None,
+                });
                 last = None;
                 continue;
             }
@@ -356,6 +362,7 @@ fn curve(
             outcome: Outcome::Done { errors, expected, verdict },
             effort,
             time: f64::NAN,
+            perturbed: None,
         });
         if is_finer {
             last = Some((seen, effort.steps));

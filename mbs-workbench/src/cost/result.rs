@@ -82,6 +82,8 @@ struct Curve {
     lanes: bool,
     /// `true` for settings to choose.
     advised: bool,
+    /// ε of its numbers.
+    epsilon: f64,
     /// `true` for other programs.
     peer: bool,
     points: Vec<PagePoint>,
@@ -102,6 +104,9 @@ struct PagePoint {
     violation: f64,
     #[serde(skip_serializing_if = "Option::is_none")]
     expected: Option<f64>,
+    /// Largest error for perturbed parameters.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    perturbed: Option<f64>,
     verdict: &'static str,
     front: bool,
     time: f64,
@@ -123,6 +128,7 @@ impl PagePoint {
             energy: errors.energy,
             violation: errors.violation,
             expected: None,
+            perturbed: None,
             verdict: "",
             front: false,
             time,
@@ -204,13 +210,25 @@ impl CostResult {
                 let lanes = !point.is_single();
                 let advised = point.is_advised();
                 let points = Vec::new();
-                curves.push(Curve { name, colour, mark, dashed, lanes, advised, peer: false, points });
+                let epsilon = point.setting.numbers().epsilon();
+                curves.push(Curve {
+                    name,
+                    colour,
+                    mark,
+                    dashed,
+                    lanes,
+                    advised,
+                    epsilon,
+                    peer: false,
+                    points,
+                });
             }
             let rust = rust(&point.setting, &self.constructor, self.until);
             let mut page = match &point.outcome {
                 Outcome::Refused(reason) => PagePoint::refused(point.setting.label(), reason),
                 Outcome::Done { errors, expected, verdict: judgement } => PagePoint {
                     expected: *expected,
+                    perturbed: point.perturbed.filter(|error| error.is_finite()),
                     verdict: verdict(*judgement),
                     front: on_front.contains(&index),
                     evaluations: point.effort.evaluations,
@@ -268,6 +286,7 @@ impl CostResult {
                     dashed: true,
                     lanes: false,
                     advised: false,
+                    epsilon: f64::EPSILON,
                     peer: true,
                     points: vec![page],
                 }),

@@ -2,6 +2,7 @@
 //! as it is printed.
 #![forbid(unsafe_code)]
 
+#[rustfmt::skip]
 #[path = "advice/printed.rs"]
 mod printed;
 
@@ -13,6 +14,7 @@ use mbs_runtime::Mechanism;
 use mbs_workbench::comparable;
 use mbs_workbench::cost::advice::rust;
 use mbs_workbench::cost::moved::{Extent, moved_study};
+use mbs_workbench::cost::perturbed::perturb;
 use mbs_workbench::cost::points::cheapest;
 use mbs_workbench::cost::reference::{Leg, reference};
 use mbs_workbench::erased::costs::{Comparable, MovedCosts};
@@ -130,10 +132,12 @@ fn the_advice_reaches_what_it_promises_for_perturbed_parameters() {
             tolerance: 1e-12,
             watched: Vec::new(),
         };
-        let found = moved_study(&mut own, until, &extent, &mut |_, _| ()).expect("references");
+        let mut found = moved_study(&mut own, until, &extent, &mut |_, _| ()).expect("references");
+        let values = values();
+        let given: Vec<(usize, f64)> = values.iter().copied().enumerate().collect();
+        perturb(&mut found.points, make, &given, until, &extent);
         let chosen =
             cheapest(&found.points, asked).unwrap_or_else(|| panic!("{name}: nothing reaches {asked:e}"));
-        let values = values();
         let mut ratios = Vec::new();
         let mut start = 0;
         while ratios.len() < STARTS as usize {
@@ -200,8 +204,15 @@ fn the_rust_of_the_advice_compiles_as_it_is_printed_and_moves_the_pendulum() {
     let truth =
         reference(exact.exact.as_mut(), Leg::Collocated, (start[0], start[1]), &[0.0, 1.0], 1e-12, budget);
     let truth = truth.shots.last().expect("an end").at.q[1].high;
+    let mut refused = 0;
     for (run, setting) in printed::ALL.iter().zip(&settings) {
-        let found = run().unwrap_or_else(|failure| panic!("{setting}: {failure}"));
-        assert!((found - truth).abs() < 2e-2, "{setting}: {found} {truth}");
+        // A setting that the program refuses is refused as Rust too, and no other.
+        let is_refused = error(&mut exact, *setting, 1.0).is_none();
+        refused += u32::from(is_refused);
+        match run() {
+            Ok(found) => assert!(!is_refused && (found - truth).abs() < 2e-2, "{setting}: {found} {truth}"),
+            Err(failure) => assert!(is_refused, "{setting}: {failure}"),
+        }
     }
+    assert!(refused < 6, "{refused} of {} settings are refused", settings.len());
 }

@@ -32,11 +32,16 @@ const showFront = () => {
 };
 showFront();
 
-/* The cheapest trusted point that reaches the error with a margin of 2, as the next finer one of its curve does. */
-const cheapest = (error) => trusted.filter(({ curve, point, p }) => {
+/* The cheapest trusted point that reaches the error, for perturbed parameters too. Where these were not run: with a margin of 2, as the next
+   finer one of its curve does. */
+const hasRuns = trusted.some(({ point }) => point.perturbed !== undefined);
+const reaches = ({ curve, point, p }, error) => {
+  if (!curve.advised || error < 100 * curve.epsilon) return false;
+  if (hasRuns) return point.error <= error && point.perturbed <= error;
   const finer = curve.points[p + 1];
-  return curve.advised && 2 * point.error <= error && (finer?.error === undefined || 2 * finer.error <= error);
-}).sort((a, b) => a.point.time - b.point.time)[0];
+  return 2 * point.error <= error && (finer?.error === undefined || 2 * finer.error <= error);
+};
+const cheapest = (error) => trusted.filter((entry) => reaches(entry, error)).sort((a, b) => a.point.time - b.point.time)[0];
 
 const MARKS = [
   (x, y, r) => `M${x - r} ${y}a${r} ${r} 0 1 0 ${2 * r} 0a${r} ${r} 0 1 0 ${-2 * r} 0`,
@@ -139,6 +144,7 @@ const figures = (point) => [
   ...(point.second === null ? [] : [[DATA.second, short(point.second)]]), ...(point.energy ? [["energy", short(point.energy)]] : []),
   ...(point.violation ? [["violation", short(point.violation)]] : []),
   ...(point.expected !== undefined ? [["expected", short(point.expected)]] : []),
+  ...(point.perturbed !== undefined ? [["other parameters", short(point.perturbed)]] : []),
   ["time", `${short(point.time)} ${DATA.unit}`], ["evaluations", point.evaluations || "not told"],
   ...(point.steps ? [["steps", point.steps]] : []), ["verdict", point.verdict],
 ];
