@@ -210,7 +210,7 @@ fn the_rust_of_the_advice_compiles_as_it_is_printed_and_moves_the_pendulum() {
         let is_refused = error(&mut exact, *setting, 1.0).is_none();
         refused += u32::from(is_refused);
         match run() {
-            Ok(found) => assert!(!is_refused && (found - truth).abs() < 2e-2, "{setting}: {found} {truth}"),
+            Ok(found) => assert!(!is_refused && (found - truth).abs() < 5e-2, "{setting}: {found} {truth}"),
             Err(failure) => assert!(is_refused, "{setting}: {failure}"),
         }
     }
