@@ -350,7 +350,7 @@ fn curve(
         let is_finer = last.as_ref().is_none_or(|(_, steps)| effort.steps as f64 > FINER * *steps as f64);
         let coarser = last.as_ref().filter(|_| is_finer);
         let expected = coarser.and_then(|(last, _)| between(last, &seen, sizes, &extent.watched));
-        let verdict = verdict(numbers, method, errors.judged, expected, width);
+        let verdict = verdict((numbers, method), effort.unfinished, errors.judged, expected, width);
         let before = points.last().and_then(|point| match point.outcome {
             Outcome::Done { errors, .. } => Some(errors.judged),
             Outcome::Refused(_) => None,
@@ -384,8 +384,8 @@ fn rounding(numbers: Numbers) -> f64 {
 }
 
 fn verdict(
-    numbers: Numbers,
-    method: MotionMethod,
+    (numbers, method): (Numbers, MotionMethod),
+    unfinished: u64,
     error: f64,
     expected: Option<f64>,
     width: Option<f64>,
@@ -396,7 +396,7 @@ fn verdict(
     match expected {
         _ if error <= WIDTHS * width => Verdict::Hollow,
         Some(expected) if error > (WRONG * expected).max(rounding(numbers)) => {
-            if is_other {
+            if is_other || unfinished > 0 {
                 Verdict::Untrusted
             } else {
                 Verdict::Wrong
