@@ -17,6 +17,7 @@ use crate::commands::run::Arguments as Analysis;
 use crate::commands::{self, CommandError};
 use crate::erased::costs::Comparable;
 use crate::mismatch::nearest;
+use crate::tables::valley::NamedLaw;
 use crate::target_directory::is_started;
 use crate::text_file::is_file;
 
@@ -168,15 +169,19 @@ pub fn program(cards: &[Card]) -> ExitCode {
 }
 
 /// The study of `mbs cost` in a program that was built for one mechanism. `card` names it; `make` makes it in all numbers from
-/// parameters and inputs by their indices.
-pub fn cost_program(card: Card, make: fn(&[(usize, f64)]) -> Comparable) -> ExitCode {
+/// parameters and inputs by their indices, `laws` the functions of its caller.
+pub fn cost_program(
+    card: Card,
+    make: fn(&[(usize, f64)]) -> Comparable,
+    laws: fn() -> Vec<NamedLaw>,
+) -> ExitCode {
     let cards = [card];
     let catalogue = Catalogue { cards: &cards };
     match Arguments::try_parse() {
         Ok(Arguments { command: Some(Command::Cost(arguments)), json }) => on_large_stack(|| {
             let mut stdout = io::stdout().lock();
             let mut out = Output::new(&mut stdout, json.then_some("cost"));
-            let found = commands::cost::study(&catalogue, &arguments, make, &mut out);
+            let found = commands::cost::study(&catalogue, &arguments, make, &laws(), &mut out);
             let ended = out.end(found.as_ref().err());
             let code = found.unwrap_or_else(|error| report(&error));
             ended.map_or_else(|error| report(&CommandError::Output(error)), |()| code)
@@ -288,7 +293,9 @@ fn done(catalogue: &Catalogue, command: Option<Command>, out: &mut Output) -> Re
         Some(Command::Drift(arguments)) => commands::drift::run(catalogue, &arguments, out),
         Some(Command::Compare(arguments)) => commands::compare::run(catalogue, &arguments, out),
         Some(Command::Cost(arguments)) => {
-            return commands::cost::run(catalogue, &arguments).map(Done::Elsewhere);
+            let code = commands::cost::run(catalogue, &arguments, out)?;
+            // An index is this program's own document.
+            return Ok(if arguments.is_index() { Done::Here } else { Done::Elsewhere(code) });
         }
         Some(Command::Table(arguments)) => commands::table::run(&arguments, out),
     }?;

@@ -133,6 +133,14 @@ impl MotionMethod {
 }
 
 impl Numbers {
+    /// Distance of 1 from the next number.
+    pub fn epsilon(self) -> f64 {
+        match self {
+            Numbers::Double => f64::EPSILON,
+            Numbers::Single => f64::from(f32::EPSILON),
+        }
+    }
+
     /// The type's name in Rust.
     pub fn name(self) -> &'static str {
         match self {

@@ -1,7 +1,7 @@
 //! Two tiers of checks: a change must pass the first, a release the second.
 
 use crate::shell::{command, exists, need, output, root, step};
-use crate::{browser, documents, growth, instructions, lines};
+use crate::{browser, costs, documents, growth, instructions, lines};
 
 /// The oldest compiler that the workspace names.
 const OLDEST: &str = "1.89";
@@ -53,6 +53,8 @@ pub fn full() -> Result<(), String> {
     documents::package()?;
     growth::run()?;
     lines::run(false)?;
+    costs::peers()?;
+    costs::index()?;
     oldest()
 }
 

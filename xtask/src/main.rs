@@ -2,6 +2,7 @@
 
 mod browser;
 mod checks;
+mod costs;
 mod documents;
 mod growth;
 mod instructions;
@@ -15,13 +16,14 @@ const USAGE: &str = "\
 cargo xtask TASK
 
 ci                       what a change must pass: format, lints, documents, tests, counts of instructions
-full                     `ci`, long motions, reports in a browser, the book, packages, growth, lines, Rust 1.89 where it is installed
+full                     `ci`, long motions, reports in a browser, the book, packages, growth, lines, costs, Rust 1.89 where it is installed
 bench [OPTIONS]          kinematics and dynamics against their peers; `--docs` writes the tables of the book
 growth                   times that a compiler takes over long mechanisms
 instructions [--update]  instructions of evaluations and steps, compared with the stored counts or stored
 lines [--update]         lines of LLVM code that the workbench costs a mechanism, compared with the stored ones or stored
 docs                     documentation of all crates without warnings, doc tests of README and book, the book
 browser                  reports of all mechanisms in headless Chromium
+costs                    `mbs cost` of all mechanisms, and of the pendulum with other programs
 package                  packages of all crates, each compiled as a registry would have it
 words [--count]          reader's aid: doc comments that begin with a question word, sentences of more than 25 words";
 
@@ -47,6 +49,7 @@ fn main() -> ExitCode {
         ("lines", ["--update"]) => lines::run(true),
         ("docs", []) => documents::all(),
         ("browser", []) => browser::run(),
+        ("costs", []) => costs::peers().and_then(|()| costs::index()),
         ("package", []) => documents::package(),
         ("words", []) => words::run(false),
         ("words", ["--count"]) => words::run(true),

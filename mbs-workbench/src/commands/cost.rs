@@ -1,7 +1,8 @@
 //! `mbs cost`.
 
+use std::cell::RefCell;
 use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Args;
@@ -13,26 +14,35 @@ use super::document::Output;
 use super::of_file::started;
 use super::report_files::{require_writable, write_report};
 use super::target::Target;
-use super::{CommandError, summary};
+use super::{CommandError, atlas, cost_words, summary};
 use crate::catalogue::Catalogue;
-use crate::cost::advice::{rust, time_text, two_digits};
+use crate::cost::advice::two_digits;
 use crate::cost::kinematics::driven_study;
-use crate::cost::moved::{Extent, NoReference, moved_study};
+use crate::cost::moved::{Extent, MovedStudy, NoReference, moved_study};
+use crate::cost::peers::{Described, PeerPoint, Question, ask_all};
+use crate::cost::perturbed::perturb;
 use crate::cost::picture::picture;
-use crate::cost::points::{Outcome, Point, Verdict, cheapest, front};
 use crate::cost::result::CostResult;
+use crate::cost::splines;
+use crate::double_double::DoubleDouble;
 use crate::erased::costs::Comparable;
 use crate::erased::facade::AnyEquations;
 use crate::forge::{Blueprint, Forge};
 use crate::mismatch::{nearest, wrapped};
-use crate::setting::{MotionMethod, Setting};
+use crate::setting::MotionMethod;
+use crate::tables::valley::{NamedLaw, Valley};
 use crate::target_directory::target_directory;
 use crate::text_file::{TextFile, is_file};
+use crate::verify::generated_definition;
 
 #[derive(Args)]
 pub struct Arguments {
     /// Name of the mechanism, as `mbs list` prints it, or a file with its text: FILE, FILE:Name, FILE:Name:Scene
-    name: String,
+    #[arg(required_unless_present = "all")]
+    name: Option<String>,
+    /// Study all mechanisms of the list, and write an index of their pictures
+    #[arg(long, conflicts_with_all = ["name", "parameters", "until", "watch", "rust", "peers"])]
+    all: bool,
     /// Set a parameter: a number in the unit that `mbs list` prints, or with a unit as `200mm`, `60rpm`, `4 [m^2]`
     #[arg(long = "param", value_name = "NAME=VALUE", value_parser = assignment)]
     parameters: Vec<Assignment>,
@@ -51,6 +61,9 @@ pub struct Arguments {
     /// Fewer and shorter runs: an overview
     #[arg(long)]
     quick: bool,
+    /// Compare with other programs, which pip installs: SciPy, CVODES, IDAS on CasADi's equations; MuJoCo, Exudyn, Drake, Pinocchio
+    #[arg(long)]
+    peers: bool,
     /// Print the advice as Rust to paste
     #[arg(long)]
     rust: bool,
@@ -66,16 +79,20 @@ fn above_zero(text: &str) -> Result<f64, String> {
 }
 
 /// Builds a program that has the mechanism in all numbers, and runs the command line again in it.
-pub fn run(catalogue: &Catalogue, arguments: &Arguments) -> Result<ExitCode, CommandError> {
+pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut Output) -> Result<ExitCode, CommandError> {
+    if arguments.all {
+        methods(&arguments.methods)?;
+        return atlas::run(catalogue, &options(arguments), arguments.out.clone(), out);
+    }
     let caller = Forge::of_caller(catalogue.first().map(|card| card.manifest.as_ref()));
     // Times of a program that is not optimised say nothing.
     let forge = Forge { release: true, ..caller };
-    let blueprint = if is_file(&arguments.name) {
+    let blueprint = if is_file(arguments.name()) {
         methods(&arguments.methods)?;
-        Blueprint::cost_of_text(&TextFile::read(&arguments.name)?)?
+        Blueprint::cost_of_text(&TextFile::read(arguments.name())?)?
     } else {
         // What is wrong on the command line is said before anything is built.
-        let target = Target::find(catalogue, &arguments.name)?;
+        let target = Target::find(catalogue, arguments.name())?;
         let instance = target.instance(&target.runs()[0], &arguments.parameters)?;
         if !target.is_free() && arguments.is_for_forces() {
             return Err(driven(&target));
@@ -83,7 +100,8 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments) -> Result<ExitCode, Com
         watched(instance.equations(), &arguments.watch)?;
         methods(&arguments.methods)?;
         let source = instance.equations().source();
-        Blueprint::cost_of_card(&forge, target.card(), source)?
+        let functions = instance.equations().functions();
+        Blueprint::cost_of_card(&forge, target.card(), source, functions)?
     };
     if let Some(directory) = &arguments.out {
         require_writable(directory)?;
@@ -104,14 +122,24 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments) -> Result<ExitCode, Com
 fn driven(target: &Target) -> CommandError {
     let name = target.name();
     CommandError::Usage(format!(
-        "drives move `{name}`: `--methods` and `--watch` are for motions from forces"
+        "drives move `{name}`: `--methods`, `--watch` and `--peers` are for motions from forces"
     ))
 }
 
 impl Arguments {
+    /// The mechanism or file.
+    fn name(&self) -> &str {
+        self.name.as_deref().unwrap_or_default()
+    }
+
+    /// `true` where all mechanisms are studied.
+    pub fn is_index(&self) -> bool {
+        self.all
+    }
+
     /// `true` with options for motions from forces alone.
     fn is_for_forces(&self) -> bool {
-        !(self.methods.is_empty() && self.watch.is_empty())
+        !(self.methods.is_empty() && self.watch.is_empty()) || self.peers
     }
 }
 
@@ -171,9 +199,10 @@ pub fn study(
     catalogue: &Catalogue,
     arguments: &Arguments,
     make: fn(&[(usize, f64)]) -> Comparable,
+    laws: &[NamedLaw],
     out: &mut Output,
 ) -> Result<ExitCode, CommandError> {
-    let target = Target::find(catalogue, &arguments.name)?;
+    let target = Target::find(catalogue, arguments.name())?;
     let instance = target.instance(&target.runs()[0], &arguments.parameters)?;
     let equations = instance.equations();
     let watched = watched(equations, &arguments.watch)?;
@@ -199,17 +228,27 @@ pub fn study(
         bar.set_message(words.to_string());
         bar.set_position((1000.0 * share) as u64);
     };
+    let origin = out.put_mechanism(&target, equations);
+    let mut without = |reason: String| {
+        out.put("no_study", &reason);
+        reason
+    };
     let failed = |found: NoReference| {
-        CommandError::Failed(format!("{}: no true solution to compare with: {}", target.name(), found.reason))
+        CommandError::Failed(without(format!(
+            "{}: no true solution to compare with: {}",
+            target.name(),
+            found.reason
+        )))
     };
     let mut facts = Vec::new();
     let mut fact = |name: &str, value: String| facts.push([name.to_string(), value]);
+    let mut peers = Vec::new();
     let (points, width, second) = match make(&values) {
         Comparable::Still => {
-            return Err(CommandError::Usage(format!(
-                "`{}` has no motion: its rows leave coordinates free, and it has no masses",
-                target.name()
-            )));
+            let name = target.name();
+            return Err(CommandError::Usage(without(format!(
+                "`{name}` has no motion: its rows leave coordinates free, and it has no masses"
+            ))));
         }
         Comparable::Driven(_) if arguments.is_for_forces() => return Err(driven(&target)),
         Comparable::Driven(mut mechanism) => {
@@ -219,11 +258,16 @@ pub fn study(
                 "positions closed to 29 digits in double-double numbers; rates by differences of positions"
                     .to_string(),
             );
-            fact("width", format!("{} (rates by the rows against differences)", two_digits(found.width)));
-            (found.points, Some(found.width), "acceleration")
+            fact(
+                "width of rates",
+                format!("{}, by the rows against differences of positions", two_digits(found.width)),
+            );
+            (found.points, None, "acceleration")
         }
         Comparable::Moved(mut mechanism) => {
-            let found = moved_study(&mut mechanism, until, &extent, &mut progress).map_err(failed)?;
+            let mut found = moved_study(&mut mechanism, until, &extent, &mut progress).map_err(failed)?;
+            progress("perturbed parameters", 1.0);
+            perturb(&mut found.points, make, &values, until, &extent);
             for (leg, reference) in &found.references {
                 let events = match reference.events {
                     0 => String::new(),
@@ -242,15 +286,22 @@ pub fn study(
             }
             let words = found.width.map_or_else(|| "not known: one reference alone".to_string(), two_digits);
             fact("width of the reference", words);
+            if arguments.peers {
+                peers = ask_peers(&found, &target, equations, arguments, &mut progress);
+                fact(
+                    "other programs",
+                    "in processes of their own, one core, the shortest of five runs".to_string(),
+                );
+            }
             (found.points, found.width, "reaction")
         }
     };
+    let valleys = valleys(equations, laws, &mut progress);
     bar.finish_and_clear();
     fact("instants", "each run is compared at the ends of its steps that are instants of the reference, at most 480 (motion from forces) or 1440".to_string());
     fact("times", "the shortest of five runs, settings interleaved".to_string());
     fact("machine", machine());
     fact("program", format!("mbs {}, release profile", env!("CARGO_PKG_VERSION")));
-    let origin = out.put_mechanism(&target, equations);
     fact("text", origin.hash.clone());
     let judged =
         if arguments.watch.is_empty() { "coordinates".to_string() } else { arguments.watch.join(", ") };
@@ -263,19 +314,27 @@ pub fn study(
         until,
         asked: arguments.error,
         points,
+        peers,
+        valleys,
         width,
         judged,
         second,
         facts,
     };
-    print(&result, arguments, out)?;
+    cost_words::print(&result, arguments.rust, out)?;
     out.put("result", result.document());
-    let files = [
+    let mut files = vec![
         ("cost.html", result.page()),
         ("cost.svg", origin.svg(&picture(&result))),
         ("cost.csv", origin.csv(&result.csv())),
     ];
-    for (kind, path) in ["page", "picture", "table"].iter().zip(write_report(&directory, &files)?) {
+    let mut kinds = vec!["page", "picture", "table"];
+    if !result.valleys.is_empty() {
+        files.push(("splines.svg", origin.svg(&splines::picture(&result.valleys))));
+        files.push(("splines.csv", origin.csv(&splines::csv(&result.valleys))));
+        kinds.extend(["picture", "table"]);
+    }
+    for (kind, path) in kinds.iter().zip(write_report(&directory, &files)?) {
         out.put_file(kind, &path);
         writeln!(out, "{kind:<8} {}", path.display())?;
     }
@@ -289,9 +348,78 @@ pub fn study(
     }
 }
 
+/// Tables of the periodic functions of the caller.
+fn valleys(
+    equations: &dyn AnyEquations,
+    laws: &[NamedLaw],
+    progress: &mut dyn FnMut(&str, f64),
+) -> Vec<Valley> {
+    let mut found = Vec::new();
+    for (name, law) in laws {
+        let entry = equations.functions().iter().find(|entry| entry.name == *name);
+        let Some((entry, period)) = entry.and_then(|entry| Some((entry, entry.period?))) else { continue };
+        progress(&format!("tables of {name}"), 1.0);
+        found.push(Valley::of(name, [entry.unit, entry.argument_unit], law, period));
+    }
+    found
+}
+
+/// Runs of other programs on the motion of a study.
+fn ask_peers(
+    study: &MovedStudy,
+    target: &Target,
+    equations: &dyn AnyEquations,
+    arguments: &Arguments,
+    progress: &mut dyn FnMut(&str, f64),
+) -> Vec<PeerPoint> {
+    let Some(start) = study.judge().and_then(|reference| reference.shots.first()) else { return Vec::new() };
+    let doubles = |values: &[DoubleDouble]| values.iter().map(|value| value.high).collect::<Vec<f64>>();
+    let variables = equations.variables();
+    let v: Vec<f64> = (0..variables.len()).map(|index| equations.get(index).unwrap_or_default()).collect();
+    let parameters =
+        variables.iter().zip(&v).map(|(entry, value)| (entry.name.to_string(), (*value).into())).collect();
+    // Each pair of decades; of an overview fewer.
+    let digits = if arguments.quick { vec![4, 6, 8] } else { vec![4, 6, 8, 10, 12] };
+    let question = Question {
+        name: target.file_name().to_string(),
+        times: study.times.clone(),
+        q: doubles(&start.at.q),
+        qd: doubles(&start.at.qd),
+        z: doubles(&start.at.states),
+        v,
+        parameters,
+        digits,
+        longest: if arguments.quick { 0.3 } else { 1.5 },
+    };
+    let functions = equations.functions().iter().map(|function| function.name).collect::<Vec<_>>();
+    let definition = match functions[..] {
+        [] => generated_definition(equations).map_err(|error| error.to_string()),
+        _ => Err(format!("it calls functions of its crate ({})", functions.join(", "))),
+    };
+    // Beside the crate's manifest, or beside the file with the text.
+    let place = match is_file(arguments.name()) {
+        true => {
+            Path::new(arguments.name().split(':').next().unwrap_or_default()).parent().map(Path::to_path_buf)
+        }
+        false => Some(PathBuf::from(target.card().manifest)),
+    };
+    let tree = place.unwrap_or_default().join("peers").join(format!("{}.py", target.file_name()));
+    let progress = RefCell::new(progress);
+    ask_all(&question, &Described { definition, tree }, &|q, qd| study.errors_of(q, qd), &|words| {
+        progress.borrow_mut()(words, 1.0)
+    })
+}
+
 /// The command line that makes the same study.
 fn command(arguments: &Arguments) -> String {
-    let mut words = vec!["mbs".to_string(), "cost".to_string(), arguments.name.clone()];
+    let mut words = vec!["mbs".to_string(), "cost".to_string(), arguments.name().to_string()];
+    words.extend(options(arguments));
+    words.join(" ")
+}
+
+/// The options that a study depends on.
+fn options(arguments: &Arguments) -> Vec<String> {
+    let mut words = Vec::new();
     words.extend(arguments.parameters.iter().flat_map(|given| ["--param".to_string(), given.written()]));
     if let Some(until) = arguments.until {
         words.extend(["--until".to_string(), summary::short(until)]);
@@ -302,10 +430,12 @@ fn command(arguments: &Arguments) -> String {
             words.extend([name.to_string(), values.join(",")]);
         }
     }
-    if arguments.quick {
-        words.push("--quick".to_string());
+    for (name, is_given) in [("--quick", arguments.quick), ("--peers", arguments.peers)] {
+        if is_given {
+            words.push(name.to_string());
+        }
     }
-    words.join(" ")
+    words
 }
 
 /// The processor's name where the system tells it, and its architecture.
@@ -318,79 +448,4 @@ fn machine() -> String {
         Some(model) => format!("{model}, {}", std::env::consts::ARCH),
         None => std::env::consts::ARCH.to_string(),
     }
-}
-
-fn print(result: &CostResult, arguments: &Arguments, out: &mut dyn Write) -> Result<(), CommandError> {
-    writeln!(out, "{}, to t = {} s", result.title, summary::short(result.until))?;
-    for [name, value] in &result.facts {
-        writeln!(out, "  {name}: {value}")?;
-    }
-    let on_front: Vec<&Point> =
-        front(&result.points).into_iter().map(|index| &result.points[index]).collect();
-    let widest = on_front.iter().map(|point| point.setting.to_string().chars().count()).max().unwrap_or(7);
-    writeln!(
-        out,
-        "\n{:<widest$}  {:>8}  {:>8}  {:>24}  {:>11}  {:>11}",
-        "setting",
-        "error",
-        "median",
-        result.unit(),
-        "evaluations",
-        "corrections"
-    )?;
-    for point in on_front {
-        let Outcome::Done { errors, verdict, .. } = &point.outcome else { continue };
-        let mark = if *verdict == Verdict::Hollow { " (next to the width of the reference)" } else { "" };
-        writeln!(
-            out,
-            "{:<widest$}  {:>8}  {:>8}  {:>24}  {:>11}  {:>11}{mark}",
-            point.setting.to_string(),
-            two_digits(errors.judged),
-            two_digits(errors.median),
-            summary::significant(point.time, 3),
-            point.effort.evaluations,
-            point.effort.corrections
-        )?;
-    }
-    let refused = result.points.iter().filter(|point| matches!(point.outcome, Outcome::Refused(_))).count();
-    writeln!(out, "\n{} settings, {refused} refused", result.points.len())?;
-    for point in result.wrong() {
-        let Outcome::Done { errors, expected, .. } = &point.outcome else { continue };
-        let expected =
-            expected.map_or_else(String::new, |expected| format!(", expected {}", two_digits(expected)));
-        writeln!(out, "wrong: {}: error {}{expected}", point.setting, two_digits(errors.judged))?;
-    }
-    writeln!(out, "\n{}", result.sentence())?;
-    if let Some(alone) = default_setting(result) {
-        writeln!(out, "{alone}")?;
-    }
-    if let (true, Some(chosen)) = (arguments.rust, cheapest(&result.points, result.asked)) {
-        writeln!(out, "\n{}", rust(&chosen.setting, &result.constructor, result.until))?;
-    }
-    writeln!(out)?;
-    Ok(())
-}
-
-/// Error and time of what one gets without a choice.
-fn default_setting(result: &CostResult) -> Option<String> {
-    use crate::setting::{FormulationName, IntegratorName, Numbers, Resolution};
-    let is_default = |point: &&Point| match point.setting {
-        Setting::Motion {
-            numbers: Numbers::Double,
-            method,
-            resolution: Resolution::Tolerance(tolerance),
-        } => {
-            let usual = MotionMethod::Explicit(FormulationName::Projection, IntegratorName::DormandPrince8);
-            method == usual && (tolerance.log10() + 9.0).abs() < 0.5
-        }
-        _ => false,
-    };
-    let point = result.points.iter().find(is_default)?;
-    let error = point.error()?;
-    Some(format!(
-        "Without a choice: {}: error {}, {}.",
-        point.setting,
-        two_digits(error),
-        time_text(point.time, false)
-    ))
 }

@@ -2,11 +2,13 @@
 
 mod analysis;
 mod assignment;
+mod atlas;
 pub mod basins;
 pub mod check;
 pub mod chosen;
 pub mod compare;
 pub mod cost;
+mod cost_words;
 pub mod document;
 pub mod dof;
 pub mod drift;

@@ -5,6 +5,7 @@ use std::io::Write;
 use std::path::PathBuf;
 
 use crate::output::origin::Origin;
+use crate::tables::knots::{Advice, Estimate};
 use crate::tables::{
     Columns, Fault, Kind, Points, SEED, Spline, chart, close_period, constant, read, sample,
 };
@@ -116,6 +117,9 @@ pub fn run(arguments: &Arguments, out: &mut Output) -> Result<(), CommandError> 
     if let (Some(_), Ok(interpolated)) = (arguments.knots, interpolated) {
         writeln!(out, "          {:.1} times less than through every point", interpolated / gain)?;
     }
+    if let Ok(Some(advice)) = Advice::of(&points, kind) {
+        advise(out, &points, &advice, arguments.knots)?;
+    }
     written?;
     out.put_file("picture", &picture);
     writeln!(out, "picture   {}", picture.display())?;
@@ -136,6 +140,51 @@ fn kind(arguments: &Arguments, points: &Points) -> Result<Kind, CommandError> {
             Ok(Kind::Cubic(arguments.slopes.map_or([End::Natural; 2], |slopes| slopes.map(End::Slope))))
         }
     }
+}
+
+/// The number of knots at which the second derivative is best, as estimated from the table.
+fn advise(
+    out: &mut Output,
+    points: &Points,
+    advice: &Advice,
+    knots: Option<usize>,
+) -> Result<(), CommandError> {
+    let Some(best) = advice.best() else { return Ok(()) };
+    let estimate = |one: &Estimate| json!({ "knots": one.knots, "noise": one.noise, "loss": one.loss, "error": one.error() });
+    out.put(
+        "advice",
+        json!({
+            "knots": best.knots, "deviation": advice.deviation,
+            "estimates": advice.estimates.iter().map(estimate).collect::<Vec<_>>(),
+        }),
+    );
+    let (across, up) = (&points.columns.x.1, &points.columns.y.1);
+    let second = up.derivative(across, 2);
+    writeln!(
+        out,
+        "advice    {}: the points deviate by {:.1e} {}, the second derivative then by {:.1e} {second}",
+        if knots == Some(best.knots) {
+            "keep these knots".to_string()
+        } else {
+            format!("--knots {}", best.knots)
+        },
+        advice.deviation,
+        up.coherent,
+        best.error()
+    )?;
+    let others = advice.estimates.iter().filter(|one| one.knots != best.knots);
+    let near = others.filter(|one| one.knots.max(best.knots) <= 2 * one.knots.min(best.knots));
+    for one in near {
+        writeln!(
+            out,
+            "          {:>4} knots: {:.1e} (noise {:.1e}, smoothing {:.1e})",
+            one.knots,
+            one.error(),
+            one.noise,
+            one.loss
+        )?;
+    }
+    Ok(())
 }
 
 /// Points, spline, residual and noise as data, in SI.

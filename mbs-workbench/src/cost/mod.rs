@@ -3,9 +3,12 @@
 pub mod advice;
 pub mod kinematics;
 pub mod moved;
+pub mod peers;
+pub mod perturbed;
 pub mod picture;
 pub mod points;
 pub mod reference;
 pub mod result;
+pub mod splines;
 #[cfg(test)]
 mod tests;

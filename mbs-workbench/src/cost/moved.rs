@@ -56,6 +56,9 @@ pub struct MovedStudy {
     pub references: Vec<(Leg, Reference)>,
     /// Difference of the references in the judged quantity; none of one alone.
     pub width: Option<f64>,
+    /// Instants (s), at equal distances.
+    pub times: Vec<f64>,
+    sizes: Sizes,
 }
 
 /// Reason why there is no study.
@@ -66,6 +69,7 @@ pub struct NoReference {
 }
 
 /// Largest values of a motion, by which errors are measured.
+#[derive(Clone, Debug)]
 struct Sizes {
     scales: Vec<f64>,
     rate: f64,
@@ -238,7 +242,40 @@ pub fn moved_study(
         }
     }
     points.iter_mut().for_each(|point| point.time = point.effort.elapsed.as_secs_f64() * 1e6 / until);
-    Ok(MovedStudy { points, references, width })
+    Ok(MovedStudy { points, references, width, times, sizes })
+}
+
+impl MovedStudy {
+    /// The reference that runs of others are judged by.
+    pub fn judge(&self) -> Option<&Reference> {
+        let whole =
+            |leg: Leg| self.references.iter().find(|(own, found)| *own == leg && found.stuck.is_none());
+        whole(Leg::Collocated).or_else(|| whole(Leg::Extrapolated)).map(|(_, reference)| reference)
+    }
+
+    /// Errors of coordinates and velocities at the instants. What is not given is NaN, and all of it where instants are missing.
+    pub fn errors_of(&self, q: &[Vec<f64>], qd: Option<&[Vec<f64>]>) -> Errors {
+        let none = f64::NAN;
+        let mut errors =
+            Errors { judged: none, median: none, rate: none, second: none, energy: none, violation: none };
+        let Some(reference) = self.judge().filter(|reference| reference.shots.len() == q.len()) else {
+            return errors;
+        };
+        let apart_of = |values: &[f64], exact: &[D]| {
+            let pairs = values.iter().zip(exact).zip(&self.sizes.scales);
+            pairs.map(|((value, exact), scale)| apart(*value, *exact) / scale).fold(0.0, worse)
+        };
+        let mut all: Vec<f64> =
+            q.iter().zip(&reference.shots).map(|(q, shot)| apart_of(q, &shot.at.q)).collect();
+        errors.judged = all.iter().copied().fold(0.0, worse);
+        all.sort_by(f64::total_cmp);
+        errors.median = all.get(all.len() / 2).copied().unwrap_or(none);
+        if let Some(qd) = qd.filter(|qd| qd.len() == q.len()) {
+            let rates = qd.iter().zip(&reference.shots).map(|(qd, shot)| apart_of(qd, &shot.at.qd));
+            errors.rate = rates.fold(0.0, worse) / self.sizes.rate;
+        }
+        errors
+    }
 }
 
 /// The reference of the finest steps that are in time.
@@ -297,7 +334,13 @@ fn curve(
             Ok(effort) => effort,
             Err(failure) => {
                 let outcome = Outcome::Refused(failure.to_string());
-                points.push(Point { setting, outcome, effort: Effort::default(), time: f64::NAN });
+                points.push(Point {
+                    setting,
+                    outcome,
+                    effort: Effort::default(),
+                    time: f64::NAN,
+                    perturbed: None,
+                });
                 last = None;
                 continue;
             }
@@ -307,7 +350,7 @@ fn curve(
         let is_finer = last.as_ref().is_none_or(|(_, steps)| effort.steps as f64 > FINER * *steps as f64);
         let coarser = last.as_ref().filter(|_| is_finer);
         let expected = coarser.and_then(|(last, _)| between(last, &seen, sizes, &extent.watched));
-        let verdict = verdict(numbers, method, errors.judged, expected, width);
+        let verdict = verdict((numbers, method), effort.unfinished, errors.judged, expected, width);
         let before = points.last().and_then(|point| match point.outcome {
             Outcome::Done { errors, .. } => Some(errors.judged),
             Outcome::Refused(_) => None,
@@ -319,6 +362,7 @@ fn curve(
             outcome: Outcome::Done { errors, expected, verdict },
             effort,
             time: f64::NAN,
+            perturbed: None,
         });
         if is_finer {
             last = Some((seen, effort.steps));
@@ -340,8 +384,8 @@ fn rounding(numbers: Numbers) -> f64 {
 }
 
 fn verdict(
-    numbers: Numbers,
-    method: MotionMethod,
+    (numbers, method): (Numbers, MotionMethod),
+    unfinished: u64,
     error: f64,
     expected: Option<f64>,
     width: Option<f64>,
@@ -352,7 +396,7 @@ fn verdict(
     match expected {
         _ if error <= WIDTHS * width => Verdict::Hollow,
         Some(expected) if error > (WRONG * expected).max(rounding(numbers)) => {
-            if is_other {
+            if is_other || unfinished > 0 {
                 Verdict::Untrusted
             } else {
                 Verdict::Wrong

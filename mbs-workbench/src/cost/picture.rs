@@ -14,7 +14,7 @@ const TOP: f64 = 60.0;
 const BOTTOM: f64 = 60.0;
 
 /// A logarithmic axis.
-struct Axis {
+pub(super) struct Axis {
     low: f64,
     high: f64,
     from: f64,
@@ -22,20 +22,20 @@ struct Axis {
 }
 
 impl Axis {
-    fn of(values: impl Iterator<Item = f64>, from: f64, to: f64) -> Option<Self> {
+    pub(super) fn of(values: impl Iterator<Item = f64>, from: f64, to: f64) -> Option<Self> {
         let logarithms = values.filter(|value| *value > 0.0 && value.is_finite()).map(f64::log10);
         let (low, high) = logarithms
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)));
         low.is_finite().then(|| Axis { low: (low - 0.1).floor(), high: (high + 0.1).ceil(), from, to })
     }
 
-    fn at(&self, value: f64) -> f64 {
+    pub(super) fn at(&self, value: f64) -> f64 {
         let share = (value.max(1e-300).log10() - self.low) / (self.high - self.low);
         self.from + share.clamp(0.0, 1.0) * (self.to - self.from)
     }
 
     /// Powers of ten with their places.
-    fn marks(&self) -> impl Iterator<Item = (i32, f64)> + '_ {
+    pub(super) fn marks(&self) -> impl Iterator<Item = (i32, f64)> + '_ {
         let step = (((self.high - self.low) / 8.0).ceil() as usize).max(1);
         (self.low as i32..=self.high as i32).step_by(step).map(|power| (power, self.at(10.0_f64.powi(power))))
     }
@@ -48,11 +48,32 @@ fn error(point: &Point) -> Option<f64> {
     }
 }
 
+/// Times and errors of other programs by name; those without one finished run are left out.
+fn peers(result: &CostResult) -> Vec<(&str, Vec<(f64, f64)>)> {
+    let mut curves: Vec<(&str, Vec<(f64, f64)>)> = Vec::new();
+    for peer in &result.peers {
+        let Ok(run) = &peer.outcome else { continue };
+        if !run.errors.judged.is_finite() {
+            continue;
+        }
+        let point = (run.time, run.errors.judged.max(1e-17));
+        match curves.last_mut().filter(|(name, _)| *name == peer.program) {
+            Some((_, points)) => points.push(point),
+            None => curves.push((&peer.program, vec![point])),
+        }
+    }
+    curves
+}
+
 /// The curves that reach the front in colour, all other points in grey, the front as a line, the error asked for.
 pub fn picture(result: &CostResult) -> String {
     let done = || result.points.iter().filter_map(|point| Some((point, error(point)?)));
-    let time = Axis::of(done().map(|(point, _)| point.time), LEFT, WIDTH - RIGHT);
-    let size = Axis::of(done().map(|(_, error)| error.min(10.0)).chain([result.asked]), HEIGHT - BOTTOM, TOP);
+    let peers = peers(result);
+    let seen = || peers.iter().flat_map(|(_, points)| points.iter().copied());
+    let times = done().map(|(point, _)| point.time).chain(seen().map(|(time, _)| time));
+    let errors = done().map(|(_, error)| error).chain(seen().map(|(_, error)| error));
+    let time = Axis::of(times, LEFT, WIDTH - RIGHT);
+    let size = Axis::of(errors.map(|error| error.min(10.0)).chain([result.asked]), HEIGHT - BOTTOM, TOP);
     let mut svg = open(WIDTH as usize, HEIGHT as usize);
     label(&mut svg, LEFT as usize, 24, "font-size=\"16\" font-weight=\"bold\"", &result.title);
     let words = format!("error of the {} over time ({})", result.judged, result.unit());
@@ -110,6 +131,21 @@ pub fn picture(result: &CostResult) -> String {
         let _ = writeln!(svg, "<path d=\"M{x} {y:.1}h22\" stroke=\"{colour}\" stroke-width=\"3\"{dash}/>");
         label(&mut svg, (x + 28.0) as usize, (y + 4.0) as usize, "font-size=\"12\"", name);
     }
+    for (k, (name, points)) in peers.iter().enumerate() {
+        let colour = COLOURS[k % COLOURS.len()];
+        let at = |(t, error): &(f64, f64)| (time.at(*t), size.at(*error));
+        let line: Vec<String> = points.iter().map(at).map(|(x, y)| format!("{x:.1} {y:.1}")).collect();
+        let stroke = format!("fill=\"none\" stroke=\"{colour}\"");
+        let _ = writeln!(svg, "<path d=\"M{}\" {stroke} stroke-dasharray=\"1.5 2.5\"/>", line.join("L"));
+        for (x, y) in points.iter().map(at) {
+            let _ = writeln!(svg, "<path d=\"M{:.1} {:.1}l6 6m0 -6l-6 6\" {stroke}/>", x - 3.0, y - 3.0);
+        }
+        let y = TOP + 16.0 * k as f64 + 20.0 * names.len() as f64 + 24.0;
+        let x = WIDTH - RIGHT + 20.0;
+        let _ = writeln!(svg, "<path d=\"M{x} {y:.1}h22\" {stroke} stroke-dasharray=\"1.5 2.5\"/>");
+        let _ = writeln!(svg, "<path d=\"M{} {:.1}l6 6m0 -6l-6 6\" {stroke}/>", x + 8.0, y - 3.0);
+        label(&mut svg, (x + 28.0) as usize, (y + 4.0) as usize, "font-size=\"11\"", name);
+    }
     let corners: Vec<String> = on_front
         .iter()
         .filter_map(|index| Some((&result.points[*index], error(&result.points[*index])?)))
@@ -130,15 +166,15 @@ pub fn picture(result: &CostResult) -> String {
     );
     label(
         &mut svg,
-        (WIDTH - RIGHT) as usize + 4,
-        y as usize + 4,
-        "fill=\"#d55e00\" font-size=\"12\"",
+        (WIDTH - RIGHT) as usize - 4,
+        y as usize - 4,
+        "fill=\"#d55e00\" font-size=\"12\" text-anchor=\"end\"",
         "asked",
     );
     svg + "</svg>\n"
 }
 
-fn power_of_ten(svg: &mut String, x: f64, y: f64, anchor: &str, power: i32) {
+pub(super) fn power_of_ten(svg: &mut String, x: f64, y: f64, anchor: &str, power: i32) {
     let _ = writeln!(
         svg,
         "<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"{anchor}\">10<tspan dy=\"-5\" font-size=\"9\">{power}</tspan></text>"

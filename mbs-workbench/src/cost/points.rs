@@ -60,6 +60,8 @@ pub struct Point {
     pub effort: Effort,
     /// Time (µs) a second of the motion; of kinematics a step (ns).
     pub time: f64,
+    /// Largest error for perturbed parameters, of points on the front of motions from forces.
+    pub perturbed: Option<f64>,
 }
 
 impl Point {
@@ -115,18 +117,42 @@ pub fn front(points: &[Point]) -> Vec<usize> {
     front
 }
 
-/// The cheapest trusted point of one mechanism with an error of at most `asked`.
+/// Error asked for over that of a setting which is advised: other parameters change errors by up to this factor.
+const MARGIN: f64 = 2.0;
+
+/// Least error for which a type of number is advised, over its ε: parameters are rounded to it, and those of a text may be round by chance.
+/// That of `with_accuracy`.
+const ROUNDINGS: f64 = 100.0;
+
+/// The cheapest trusted point of one mechanism that reaches `asked` with a margin.
 pub fn cheapest(points: &[Point], asked: f64) -> Option<&Point> {
     reaching(points, asked).filter(|point| point.is_advised()).min_by(|a, b| a.time.total_cmp(&b.time))
 }
 
-/// The cheapest trusted point of many mechanisms at once with an error of at most `asked`; its time is that of one.
+/// The cheapest trusted point of many mechanisms at once that reaches `asked` with a margin; its time is that of one.
 pub fn cheapest_in_lanes(points: &[Point], asked: f64) -> Option<&Point> {
     reaching(points, asked).filter(|point| !point.is_single()).min_by(|a, b| a.time.total_cmp(&b.time))
 }
 
+/// Points whose error is below `asked`, for perturbed parameters too. Where these were not run, the margin and the next finer point of the
+/// curve stand for them: where finer steps make it worse, rounding decides, and the point is small by chance.
 fn reaching(points: &[Point], asked: f64) -> impl Iterator<Item = &Point> {
-    points.iter().filter(move |point| point.error().is_some_and(|error| error <= asked))
+    let is_below =
+        move |point: &Point, margin: f64| point.error().is_some_and(|error| margin * error <= asked);
+    let has_runs = points.iter().any(|point| point.perturbed.is_some());
+    points.iter().enumerate().filter_map(move |(index, point)| {
+        if asked < ROUNDINGS * point.setting.numbers().epsilon() {
+            return None;
+        }
+        if has_runs && point.is_single() {
+            let is_sure = point.perturbed.is_some_and(|error| error <= asked) && is_below(point, 1.0);
+            return is_sure.then_some(point);
+        }
+        let curve = point.setting.curve();
+        let finer = points.get(index + 1).filter(|finer| finer.setting.curve() == curve);
+        let finer = finer.is_none_or(|finer| finer.error().is_none() || is_below(finer, MARGIN));
+        (is_below(point, MARGIN) && finer).then_some(point)
+    })
 }
 
 #[cfg(test)]
@@ -139,7 +165,7 @@ mod tests {
             Setting::Kinematics { numbers: Numbers::Double, lanes: 1, closing: Closing::Closed, steps: 1 };
         let errors = Errors { judged: error, ..Errors::default() };
         let outcome = Outcome::Done { errors, expected: None, verdict };
-        Point { setting, outcome, effort: Effort::default(), time }
+        Point { setting, outcome, effort: Effort::default(), time, perturbed: None }
     }
 
     #[test]
@@ -152,7 +178,25 @@ mod tests {
             point(1e-8, 9.0, Verdict::Hollow),
         ];
         assert_eq!(front(&points), [0, 2, 4]);
-        assert_eq!(cheapest(&points, 1e-5).map(|point| point.time), Some(3.0));
         assert!(cheapest(&points, 1e-12).is_none());
+    }
+
+    #[test]
+    fn the_advice_has_a_margin_and_is_no_chance() {
+        let points = [
+            point(1e-3, 1.0, Verdict::Right),
+            point(4e-7, 2.0, Verdict::Right),
+            point(3e-6, 3.0, Verdict::Right),
+            point(8e-7, 4.0, Verdict::Right),
+            point(1e-8, 5.0, Verdict::Right),
+        ];
+        // The second is followed by a worse one, the fourth has no margin.
+        assert_eq!(cheapest(&points, 1e-6).map(|point| point.time), Some(5.0));
+        assert_eq!(cheapest(&points, 1e-5).map(|point| point.time), Some(2.0));
+        // Runs for other parameters tell more.
+        let mut points = points;
+        points[1].perturbed = Some(2e-6);
+        points[3].perturbed = Some(9e-7);
+        assert_eq!(cheapest(&points, 1e-6).map(|point| point.time), Some(4.0));
     }
 }

@@ -2,9 +2,12 @@
 
 use serde::Serialize;
 
-use crate::cost::advice::sentence;
-use crate::cost::points::{Outcome, Point, Verdict, front};
+use crate::cost::advice::{rust, sentence};
+use crate::cost::peers::{PeerPoint, PeerRun};
+use crate::cost::points::{Errors, Outcome, Point, Verdict, cheapest, front};
+use crate::cost::splines::{self, PageValley};
 use crate::setting::{MotionMethod, Numbers, Setting};
+use crate::tables::valley::Valley;
 
 /// A study with its words.
 pub struct CostResult {
@@ -24,6 +27,10 @@ pub struct CostResult {
     pub asked: f64,
     /// All points, curve by curve.
     pub points: Vec<Point>,
+    /// Runs of other programs, curve by curve.
+    pub peers: Vec<PeerPoint>,
+    /// Tables of the mechanism's functions.
+    pub valleys: Vec<Valley>,
     /// Width of the reference; none where one leg alone went through.
     pub width: Option<f64>,
     /// Quantity that is judged, in words.
@@ -45,9 +52,21 @@ struct Page<'a> {
     second: &'static str,
     asked: f64,
     sentence: String,
+    /// The setting that the sentence names.
+    choice: Option<Choice>,
     width: Option<f64>,
     facts: &'a [[String; 2]],
     curves: Vec<Curve>,
+    splines: Vec<PageValley<'a>>,
+}
+
+/// The setting to take for the error asked for.
+#[derive(Serialize)]
+struct Choice {
+    setting: String,
+    error: Option<f64>,
+    time: f64,
+    rust: String,
 }
 
 /// A curve of the page.
@@ -63,6 +82,10 @@ struct Curve {
     lanes: bool,
     /// `true` for settings to choose.
     advised: bool,
+    /// ε of its numbers.
+    epsilon: f64,
+    /// `true` for other programs.
+    peer: bool,
     points: Vec<PagePoint>,
 }
 
@@ -81,6 +104,9 @@ struct PagePoint {
     violation: f64,
     #[serde(skip_serializing_if = "Option::is_none")]
     expected: Option<f64>,
+    /// Largest error for perturbed parameters.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    perturbed: Option<f64>,
     verdict: &'static str,
     front: bool,
     time: f64,
@@ -88,6 +114,36 @@ struct PagePoint {
     corrections: u64,
     steps: u64,
     rust: String,
+}
+
+impl PagePoint {
+    fn done(label: String, errors: &Errors, time: f64) -> Self {
+        PagePoint {
+            label,
+            refused: None,
+            error: Some(errors.judged).filter(|error| error.is_finite()),
+            median: errors.median,
+            rate: errors.rate,
+            second: errors.second,
+            energy: errors.energy,
+            violation: errors.violation,
+            expected: None,
+            perturbed: None,
+            verdict: "",
+            front: false,
+            time,
+            evaluations: 0,
+            corrections: 0,
+            steps: 0,
+            rust: String::new(),
+        }
+    }
+
+    fn refused(label: String, reason: &str) -> Self {
+        let refused = Some(reason.to_string());
+        let none = PagePoint::done(label, &Errors::default(), 0.0);
+        PagePoint { refused, error: None, verdict: "refused", ..none }
+    }
 }
 
 fn verdict(verdict: Verdict) -> &'static str {
@@ -153,51 +209,40 @@ impl CostResult {
             if curves.last().is_none_or(|curve| curve.name != name) {
                 let lanes = !point.is_single();
                 let advised = point.is_advised();
-                curves.push(Curve { name, colour, mark, dashed, lanes, advised, points: Vec::new() });
+                let points = Vec::new();
+                let epsilon = point.setting.numbers().epsilon();
+                curves.push(Curve {
+                    name,
+                    colour,
+                    mark,
+                    dashed,
+                    lanes,
+                    advised,
+                    epsilon,
+                    peer: false,
+                    points,
+                });
             }
-            let rust = crate::cost::advice::rust(&point.setting, &self.constructor, self.until);
-            let page = match &point.outcome {
-                Outcome::Refused(reason) => PagePoint {
-                    label: point.setting.label(),
-                    refused: Some(reason.clone()),
-                    error: None,
-                    median: 0.0,
-                    rate: 0.0,
-                    second: 0.0,
-                    energy: 0.0,
-                    violation: 0.0,
-                    expected: None,
-                    verdict: "refused",
-                    front: false,
-                    time: 0.0,
-                    evaluations: 0,
-                    corrections: 0,
-                    steps: 0,
-                    rust,
-                },
+            let rust = rust(&point.setting, &self.constructor, self.until);
+            let mut page = match &point.outcome {
+                Outcome::Refused(reason) => PagePoint::refused(point.setting.label(), reason),
                 Outcome::Done { errors, expected, verdict: judgement } => PagePoint {
-                    label: point.setting.label(),
-                    refused: None,
-                    error: Some(errors.judged).filter(|error| error.is_finite()),
-                    median: errors.median,
-                    rate: errors.rate,
-                    second: errors.second,
-                    energy: errors.energy,
-                    violation: errors.violation,
                     expected: *expected,
+                    perturbed: point.perturbed.filter(|error| error.is_finite()),
                     verdict: verdict(*judgement),
                     front: on_front.contains(&index),
-                    time: point.time,
                     evaluations: point.effort.evaluations,
                     corrections: point.effort.corrections,
                     steps: point.effort.steps,
-                    rust,
+                    ..PagePoint::done(point.setting.label(), errors, point.time)
                 },
             };
+            page.rust = rust;
             if let Some(curve) = curves.last_mut() {
                 curve.points.push(page);
             }
         }
+        curves.extend(self.peer_curves());
         Page {
             name: &self.name,
             title: &self.title,
@@ -207,10 +252,47 @@ impl CostResult {
             second: self.second,
             asked: self.asked,
             sentence: self.sentence(),
+            choice: cheapest(&self.points, self.asked).map(|point| Choice {
+                setting: point.setting.to_string(),
+                error: point.error(),
+                time: point.time,
+                rust: rust(&point.setting, &self.constructor, self.until),
+            }),
             width: self.width,
             facts: &self.facts,
             curves,
+            splines: splines::page(&self.valleys),
         }
+    }
+
+    /// Curves of other programs.
+    fn peer_curves(&self) -> Vec<Curve> {
+        let mut curves: Vec<Curve> = Vec::new();
+        for peer in &self.peers {
+            let page = match &peer.outcome {
+                Err(reason) => PagePoint::refused(peer.setting.clone(), reason),
+                Ok(run) => PagePoint {
+                    verdict: "right",
+                    evaluations: run.evaluations,
+                    ..PagePoint::done(peer.setting.clone(), &run.errors, run.time)
+                },
+            };
+            match curves.last_mut().filter(|curve| curve.name == peer.program) {
+                Some(curve) => curve.points.push(page),
+                None => curves.push(Curve {
+                    name: peer.program.clone(),
+                    colour: curves.len(),
+                    mark: 5,
+                    dashed: true,
+                    lanes: false,
+                    advised: false,
+                    epsilon: f64::EPSILON,
+                    peer: true,
+                    points: vec![page],
+                }),
+            }
+        }
+        curves
     }
 
     /// Data of the page, for a document of the command.
@@ -263,6 +345,25 @@ impl CostResult {
                     point.effort.steps.to_string(),
                     on_front.contains(&index).to_string(),
                 ],
+            };
+            text += &head.into_iter().chain(rest).collect::<Vec<_>>().join(",");
+            text.push('\n');
+        }
+        for peer in &self.peers {
+            let head = ["f64".to_string(), quoted(&peer.program), quoted(&peer.setting)];
+            let number = |value: f64| if value.is_finite() { format!("{value:e}") } else { String::new() };
+            let rest = match &peer.outcome {
+                Err(reason) => vec![quoted(reason)],
+                Ok(PeerRun { errors, time, evaluations }) => {
+                    let errors = [errors.judged, errors.median, errors.rate];
+                    let mut rest = vec!["other program".to_string()];
+                    rest.extend(errors.map(number));
+                    // Reactions, energy, violation and the expected error are not known.
+                    rest.extend([const { String::new() }; 4]);
+                    rest.extend([format!("{time:.4}"), evaluations.to_string()]);
+                    rest.extend(["", "", "false"].map(str::to_string));
+                    rest
+                }
             };
             text += &head.into_iter().chain(rest).collect::<Vec<_>>().join(",");
             text.push('\n');

@@ -38,6 +38,8 @@ pub struct Effort {
     pub corrections: u64,
     /// Steps taken.
     pub steps: u64,
+    /// Iterations that ended before their corrections were rounding: the run's own warning.
+    pub unfinished: u64,
     /// Time of computation.
     pub elapsed: Duration,
 }
@@ -116,6 +118,7 @@ fn effort(counts: Counts, began: Instant) -> Effort {
         evaluations: counts.evaluations,
         corrections: counts.corrections + counts.iterations,
         steps: counts.steps,
+        unfinished: counts.unfinished,
         elapsed: began.elapsed(),
     }
 }

@@ -3,6 +3,8 @@
 use std::path::Path;
 use std::process::Command;
 
+use mbs_runtime::FunctionEntry;
+
 use super::{Forge, ForgeError, not_started, sources};
 use crate::card::{Card, snake_case};
 use crate::text_file::TextFile;
@@ -55,7 +57,9 @@ impl Blueprint {
              ::mbs_workbench::comparable!({}::default());",
             text.type_name()
         );
-        let body = |module: &str| format!("mbs_workbench::cost_program({module}::CARD, {module}::COSTS)");
+        let body = |module: &str| {
+            format!("mbs_workbench::cost_program({module}::CARD, {module}::COSTS, || Vec::new())")
+        };
         Self::for_text(text, "_cost", &costs, body)
     }
 
@@ -129,12 +133,17 @@ impl Blueprint {
         })
     }
 
-    /// The study of `mbs cost` for the mechanism of `card` with this text. It is made from the text alone if the constructor is that of
+    /// The study of `mbs cost` for the mechanism of `card` with this text and these `functions` of the caller. It is made from the text alone if the constructor is that of
     /// the text's defaults; else on top of the library, which is built anew for it.
     ///
     /// # Errors
     /// As [`of_card`](Self::of_card).
-    pub fn cost_of_card(forge: &Forge, card: &Card, source: &str) -> Result<Self, ForgeError> {
+    pub fn cost_of_card(
+        forge: &Forge,
+        card: &Card,
+        source: &str,
+        functions: &[FunctionEntry],
+    ) -> Result<Self, ForgeError> {
         let Card { constructor, module, manifest, .. } = *card;
         let name = format!("{}_cost", card.file_name());
         let items = |constructor: &str| {
@@ -142,21 +151,22 @@ impl Blueprint {
                 "pub const CARD: ::mbs_workbench::card::Card = ::mbs_workbench::card::Card {{ constructor: {constructor:?}, \
                  module: {module:?}, manifest: {manifest:?}, ..::mbs_workbench::card!({constructor}) }};\n\
                  pub const COSTS: fn(&[(usize, f64)]) -> ::mbs_workbench::erased::costs::Comparable = \
-                 ::mbs_workbench::comparable!({constructor});\n"
+                 ::mbs_workbench::comparable!({constructor});\n{}",
+                laws(constructor, functions)
             )
         };
         let kind = constructor.strip_suffix("::default()").unwrap_or_default();
         if syn::parse_str::<syn::Ident>(kind).is_ok() {
             let main = format!(
                 "{HEAD}\n\nmod studied {{\n::mbs_runtime::mechanism! {{\n{source}\n}}\n{}}}\n\n\
-                 fn main() -> ExitCode {{\n    mbs_workbench::cost_program(studied::CARD, studied::COSTS)\n}}\n",
+                 fn main() -> ExitCode {{\n    mbs_workbench::cost_program(studied::CARD, studied::COSTS, studied::LAWS)\n}}\n",
                 items(constructor)
             );
             return Ok(Blueprint { name, manifest: dependencies(&[]), main, origin: None, is_closed: true });
         }
         Self::of_card(forge, card, &name, |constructor| {
             format!(
-                "{HEAD}\n\n{}\nfn main() -> ExitCode {{\n    mbs_workbench::cost_program(CARD, COSTS)\n}}\n",
+                "{HEAD}\n\n{}\nfn main() -> ExitCode {{\n    mbs_workbench::cost_program(CARD, COSTS, LAWS)\n}}\n",
                 items(constructor)
             )
         })
@@ -171,6 +181,21 @@ impl Blueprint {
             self.manifest
         )
     }
+}
+
+/// The functions of the caller that have two derivatives, by their names: an item of Rust.
+fn laws(constructor: &str, functions: &[FunctionEntry]) -> String {
+    let law = |function: &FunctionEntry| {
+        let name = function.name;
+        format!(
+            "({name:?}, {{ let mechanism = ::mbs_workbench::tables::valley::in_doubles({constructor}); \
+             ::std::boxed::Box::new(move |x: f64| ::mbs_runtime::Function::jet::<3>(&mechanism.{name}, x)) as _ }}), "
+        )
+    };
+    let laws: String = functions.iter().filter(|function| function.continuity >= 2).map(law).collect();
+    format!(
+        "pub const LAWS: fn() -> ::std::vec::Vec<::mbs_workbench::tables::valley::NamedLaw> = || ::std::vec![{laws}];\n"
+    )
 }
 
 /// A library that a crate depends on by path.

@@ -42,7 +42,9 @@ pub fn state(sources: &Path) -> String {
     for name in CRATES {
         let root = sources.join(name);
         describe(&root.join("Cargo.toml"), &mut state);
-        let mut folders = vec![root.join("src")];
+        // What the sources include stands beside them.
+        let mut folders: Vec<PathBuf> =
+            ["src", "data", "oracle", "peers", "template"].iter().map(|folder| root.join(folder)).collect();
         while let Some(folder) = folders.pop() {
             let mut entries: Vec<PathBuf> =
                 fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path()).collect();

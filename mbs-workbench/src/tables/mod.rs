@@ -1,15 +1,18 @@
 //! Tables from files: a measured lift, a law from elsewhere, as splines for the runtime.
 //!
-//! [`read`] parses a file and converts its units to SI; [`Spline::fit`] fits a spline to the points;
-//! [`measured`] reads quantities over the time, [`chart`] draws a spline, [`constant`] writes it as Rust, [`sample`] is a file to try it on.
+//! [`read`] parses a file and converts its units to SI; [`Spline::fit`] fits a spline to the points; [`knots`] finds how many knots it
+//! should have; [`valley`] shows what points, rounding and knots cost; [`measured`] reads quantities over the time, [`chart`] draws a
+//! spline, [`constant`] writes it as Rust, [`sample`] is a file to try it on.
 
 pub mod chart;
 pub mod constant;
+pub mod knots;
 pub mod measured;
 mod reader;
 pub mod sample;
 mod spline;
 mod unit;
+pub mod valley;
 
 pub use reader::{Columns, Fault, Points, read};
 pub use spline::{Kind, SEED, Spline, close_period};

@@ -22,19 +22,26 @@ const short = (value) => {
 const all = [];
 DATA.curves.forEach((curve, c) => curve.points.forEach((point, p) => all.push({ curve, c, point, p })));
 const done = all.filter(({ point }) => point.error !== undefined);
-const trusted = done.filter(({ curve, point }) => !curve.lanes && (point.verdict === "right" || point.verdict === "hollow"));
+const trusted = done.filter(({ curve, point }) => !curve.lanes && !curve.peer && (point.verdict === "right" || point.verdict === "hollow"));
 const shown = new Set();
 let asked = DATA.asked;
 const showFront = () => {
   shown.clear();
-  DATA.curves.forEach((curve, c) => { if (curve.lanes || curve.points.some((point) => point.front)) shown.add(c); });
+  DATA.curves.forEach((curve, c) => { if (curve.lanes || curve.peer || curve.points.some((point) => point.front)) shown.add(c); });
   if (shown.size === 0) DATA.curves.forEach((_, c) => shown.add(c));
 };
 showFront();
 
-/* The cheapest trusted point with at most the error asked for. */
-const cheapest = (error) => trusted.filter(({ curve, point }) => curve.advised && point.error <= error)
-  .sort((a, b) => a.point.time - b.point.time)[0];
+/* The cheapest trusted point that reaches the error, for perturbed parameters too. Where these were not run: with a margin of 2, as the next
+   finer one of its curve does. */
+const hasRuns = trusted.some(({ point }) => point.perturbed !== undefined);
+const reaches = ({ curve, point, p }, error) => {
+  if (!curve.advised || error < 100 * curve.epsilon) return false;
+  if (hasRuns) return point.error <= error && point.perturbed <= error;
+  const finer = curve.points[p + 1];
+  return 2 * point.error <= error && (finer?.error === undefined || 2 * finer.error <= error);
+};
+const cheapest = (error) => trusted.filter((entry) => reaches(entry, error)).sort((a, b) => a.point.time - b.point.time)[0];
 
 const MARKS = [
   (x, y, r) => `M${x - r} ${y}a${r} ${r} 0 1 0 ${2 * r} 0a${r} ${r} 0 1 0 ${-2 * r} 0`,
@@ -42,7 +49,9 @@ const MARKS = [
   (x, y, r) => `M${x} ${y - 1.3 * r}L${x + 1.2 * r} ${y + r}H${x - 1.2 * r}z`,
   (x, y, r) => `M${x} ${y - 1.4 * r}L${x + 1.4 * r} ${y}L${x} ${y + 1.4 * r}L${x - 1.4 * r} ${y}z`,
   (x, y, r) => `M${x} ${y + 1.3 * r}L${x + 1.2 * r} ${y - r}H${x - 1.2 * r}z`,
+  (x, y, r) => `M${x - r} ${y - r}L${x + r} ${y + r}M${x - r} ${y + r}L${x + r} ${y - r}`,
 ];
+const dashes = (curve) => curve.peer ? { "stroke-dasharray": "2 3" } : curve.dashed ? { "stroke-dasharray": "6 4" } : {};
 const mark = (curve, x, y, r) => MARKS[curve.mark % MARKS.length](x, y, r);
 
 /* A chart of the error over a quantity of the points; both axes are logarithmic. */
@@ -86,7 +95,7 @@ const chart = (place, value, words) => {
     if (!shown.has(c)) return;
     const colour = COLOURS[curve.colour % COLOURS.length];
     const points = curve.points.filter((point) => point.error !== undefined && value(point) > 0);
-    const dash = curve.dashed ? { "stroke-dasharray": "6 4" } : {};
+    const dash = dashes(curve);
     if (points.length > 1) {
       const d = "M" + points.map((point) => `${atX(value(point))} ${atLog(size(point))}`).join("L");
       svgElement("path", { d, fill: "none", stroke: colour, "stroke-width": 1.6, ...dash }, svg);
@@ -131,11 +140,13 @@ const chart = (place, value, words) => {
 };
 
 const figures = (point) => [
-  ["error", short(point.error)], ["median", short(point.median)], ["velocity", short(point.rate)],
-  [DATA.second, short(point.second)], ...(point.energy ? [["energy", short(point.energy)]] : []),
+  ["error", short(point.error)], ["median", short(point.median)], ...(point.rate === null ? [] : [["velocity", short(point.rate)]]),
+  ...(point.second === null ? [] : [[DATA.second, short(point.second)]]), ...(point.energy ? [["energy", short(point.energy)]] : []),
   ...(point.violation ? [["violation", short(point.violation)]] : []),
   ...(point.expected !== undefined ? [["expected", short(point.expected)]] : []),
-  ["time", `${short(point.time)} ${DATA.unit}`], ["evaluations", point.evaluations], ["steps", point.steps], ["verdict", point.verdict],
+  ...(point.perturbed !== undefined ? [["other parameters", short(point.perturbed)]] : []),
+  ["time", `${short(point.time)} ${DATA.unit}`], ["evaluations", point.evaluations || "not told"],
+  ...(point.steps ? [["steps", point.steps]] : []), ["verdict", point.verdict],
 ];
 const tip = (event, curve, point) => {
   const box = byId("tip");
@@ -165,8 +176,8 @@ const legend = () => {
     const button = element("button", undefined, place);
     const colour = COLOURS[curve.colour % COLOURS.length];
     const svg = svgElement("svg", { viewBox: "0 0 40 14" }, button);
-    svgElement("path", { d: "M1 7H39", stroke: colour, "stroke-width": 2, ...(curve.dashed ? { "stroke-dasharray": "6 4" } : {}) }, svg);
-    svgElement("path", { d: mark(curve, 20, 7, 4.2), fill: colour }, svg);
+    svgElement("path", { d: "M1 7H39", stroke: colour, "stroke-width": 2, ...dashes(curve) }, svg);
+    svgElement("path", { d: mark(curve, 20, 7, 4.2), fill: colour, stroke: colour }, svg);
     element("span", curve.name, button);
     button.className = shown.has(c) ? "" : "off";
     button.setAttribute("aria-pressed", String(shown.has(c)));
@@ -192,15 +203,87 @@ const refused = () => {
   byId("refused-panel").hidden = lost.length === 0;
   const groups = new Map();
   for (const { curve, point } of lost) {
-    const reason = point.refused ?? `${point.verdict}: error ${short(point.error)}, expected ${short(point.expected)}`;
-    const key = `${curve.name}\u0000${reason}`;
-    groups.set(key, [...(groups.get(key) ?? []), point]);
+    const reason = point.refused ?? (curve.peer ? "the states are not finite" : null) ?? `${point.verdict}: error ${short(point.error)}, expected ${short(point.expected)}`;
+    // Reasons that differ by their numbers alone are one.
+    const key = `${curve.name}\u0000${reason.replace(/\d+(\.\d+)?(e-?\d+)?/g, "#")}`;
+    const group = groups.get(key) ?? { name: curve.name, reason, points: [] };
+    group.points.push(point);
+    groups.set(key, group);
   }
-  for (const [key, points] of groups) {
-    const [name, reason] = key.split("\u0000");
-    const line = element("p", `${name}, ${points.map((point) => point.label).join("; ")}: ${reason}`, place);
+  for (const { name, reason: told, points } of groups.values()) {
+    const reason = told.replace(/\d+\.\d{6,}(e-?\d+)?/g, (number) => short(Number(number)));
+    const labels = points.map((point) => point.label).filter((label) => label !== "").join("; ");
+    const line = element("p", `${name}${labels && ", "}${labels}: ${reason}`, place);
     if (points[0].verdict === "wrong") line.className = "wrong";
   }
+};
+const peers = () => {
+  const curves = DATA.curves.filter((curve) => curve.peer);
+  byId("peers-panel").hidden = curves.length === 0;
+  const place = byId("peers");
+  place.replaceChildren();
+  const head = element("tr", undefined, place);
+  ["program", "setting", "error", DATA.unit, "times ours"].forEach((name) => element("th", name, head));
+  const own = cheapest(asked);
+  for (const curve of curves) {
+    const reached = curve.points.filter((point) => point.error !== undefined && point.error <= asked);
+    const best = reached.sort((a, b) => a.time - b.time)[0];
+    const row = element("tr", undefined, place);
+    const lost = curve.points.every((point) => point.refused) ? "refused, see below" : "not reached";
+    (best ? [curve.name, best.label, short(best.error), short(best.time), own ? short(best.time / own.time) : ""] : [curve.name, lost, "", "", ""])
+      .forEach((text) => element("td", String(text), row));
+  }
+};
+/* Errors of splines along tables of a function over the number of points, for one rounding and one derivative. */
+const splines = () => {
+  byId("splines-panel").hidden = DATA.splines.length === 0;
+  if (DATA.splines.length === 0) return;
+  const of = DATA.splines[Number(byId("spline-function").value)];
+  const rounding = Number(byId("spline-rounding").value);
+  const order = Number(byId("spline-order").value);
+  const points = of.points.filter((point) => point.rounding === rounding);
+  const [width, height] = innerWidth < 600 ? [360, 300] : [640, 340];
+  const [left, right, top, bottom] = [64, 18, 14, 52];
+  const svg = svgElement("svg", { viewBox: `0 0 ${width} ${height}`, role: "img" });
+  svgElement("title", {}, svg).textContent = `error of the ${["value", "first derivative", "second derivative"][order]} over points`;
+  const sizes = [...new Set(of.points.map((point) => point.points))].sort((a, b) => a - b);
+  const [x0, x1] = [Math.log10(sizes[0]), Math.log10(sizes[sizes.length - 1])];
+  const log = (point) => Math.log10(Math.max(point.errors[order], 1e-17));
+  const all = of.points.map(log);
+  const [y0, y1] = [Math.floor(Math.min(...all)), Math.ceil(Math.max(...all))];
+  const atX = (number) => left + (Math.log10(number) - x0) / (x1 - x0) * (width - left - right);
+  const atY = (value) => height - bottom - (value - y0) / (y1 - y0) * (height - top - bottom);
+  for (const number of sizes) {
+    svgElement("path", { class: "grid", d: `M${atX(number)} ${top}V${height - bottom}` }, svg);
+    svgElement("text", { x: atX(number), y: height - bottom + 18, "text-anchor": "middle" }, svg).textContent = number;
+  }
+  for (let k = y0; k <= y1; k += Math.max(1, Math.ceil((y1 - y0) / 8))) {
+    svgElement("path", { class: "grid", d: `M${left} ${atY(k)}H${width - right}` }, svg);
+    const text = svgElement("text", { x: left - 8, y: atY(k) + 4, "text-anchor": "end" }, svg);
+    text.append("10");
+    svgElement("tspan", { dy: -5, "font-size": 9 }, text).textContent = k;
+  }
+  svgElement("text", { x: (left + width - right) / 2, y: height - 10, "text-anchor": "middle" }, svg).textContent = "points a period";
+  const legend = byId("spline-legend");
+  legend.replaceChildren();
+  of.forms.forEach((form, f) => {
+    const own = points.filter((point) => point.form === f).sort((a, b) => a.points - b.points);
+    const colour = COLOURS[f % COLOURS.length];
+    const line = "M" + own.map((point) => `${atX(point.points)} ${atY(log(point))}`).join("L");
+    if (own.length) svgElement("path", { d: line, fill: "none", stroke: colour, "stroke-width": 1.6 }, svg);
+    for (const point of own) {
+      const spot = svgElement("circle", { cx: atX(point.points), cy: atY(log(point)), r: 4, fill: colour }, svg);
+      svgElement("title", {}, spot).textContent = `${form}: ${point.points} points, ${point.knots} knots, ${short(point.errors[order])}`;
+    }
+    const entry = element("span", undefined, legend);
+    const sample = svgElement("svg", { viewBox: "0 0 40 14" }, entry);
+    svgElement("path", { d: "M1 7H39", stroke: colour, "stroke-width": 2 }, sample);
+    element("span", form, entry);
+  });
+  const least = points.reduce((a, b) => (log(b) < log(a) ? b : a), points[0]);
+  if (least) svgElement("circle", { cx: atX(least.points), cy: atY(log(least)), r: 8, class: "least" }, svg);
+  byId("spline-sentence").textContent = of.sentences[rounding] ?? "";
+  byId("splines").replaceChildren(svg);
 };
 const draw = () => {
   chart("time", (point) => point.time, `time (${DATA.unit})`);
@@ -209,12 +292,21 @@ const draw = () => {
   chart("counts", of[count], byId("count").selectedOptions[0].textContent);
   legend();
   table();
+  peers();
+  splines();
   choose(cheapest(asked));
 };
 byId("title").textContent = `${DATA.title}: cost of accuracy`;
 byId("sentence").textContent = DATA.sentence;
 byId("command").textContent = DATA.command;
 for (const [name, value] of DATA.facts) { element("dt", name, byId("facts")); element("dd", value, byId("facts")); }
+DATA.splines.forEach((of, k) => { element("option", of.name, byId("spline-function")).value = k; });
+(DATA.splines[0]?.roundings ?? []).forEach((rounding, k) => {
+  const words = rounding === 0 ? "exact points" : `rounded to ${rounding.toExponential(0)} ${DATA.splines[0].unit}`;
+  element("option", words, byId("spline-rounding")).value = k;
+});
+byId("spline-rounding").value = 4;
+for (const name of ["spline-function", "spline-rounding", "spline-order"]) byId(name).addEventListener("change", splines);
 byId("front").addEventListener("click", () => { showFront(); draw(); });
 byId("all").addEventListener("click", () => { DATA.curves.forEach((_, c) => shown.add(c)); draw(); });
 byId("none").addEventListener("click", () => { shown.clear(); draw(); });
