@@ -22,6 +22,8 @@ pub mod double_double;
 pub mod erased;
 #[cfg(feature = "program")]
 pub mod forge;
+#[cfg(feature = "program")]
+pub mod hard_cases;
 mod hash;
 #[cfg(feature = "program")]
 pub mod layout;
