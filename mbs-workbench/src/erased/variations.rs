@@ -46,6 +46,8 @@ pub trait DrivenVariants {
 pub trait MovedVariants {
     /// Indices of the coordinates that the text starts.
     fn started(&self) -> Vec<usize>;
+    /// `true` for each row that may follow from others; empty where none may.
+    fn redundant(&self) -> Vec<bool>;
     /// The text's guess and rates: N each.
     fn guess(&self) -> [Vec<f64>; 2];
     /// Coordinates and velocities of the start next to these (N each).
@@ -172,6 +174,7 @@ type Back = Box<dyn Fn(Seen) -> Seen>;
 trait Changeable {
     fn runs(&self) -> &dyn TimedRuns;
     fn started(&self) -> Vec<usize>;
+    fn redundant(&self) -> Vec<bool>;
     fn guess(&self) -> [Vec<f64>; 2];
     fn changed(&self, change: &Change, start: &[Vec<f64>; 2]) -> (Box<dyn TimedRuns>, Back);
 }
@@ -208,6 +211,9 @@ where
     fn started(&self) -> Vec<usize> {
         S::STARTED.iter().map(|index| usize::from(*index)).collect()
     }
+    fn redundant(&self) -> Vec<bool> {
+        S::REDUNDANT.to_vec()
+    }
     fn guess(&self) -> [Vec<f64>; 2] {
         let parameters = self.mechanism.parameters();
         [self.mechanism.guess(&parameters).to_vec(), self.mechanism.start_rates(&parameters).to_vec()]
@@ -241,6 +247,9 @@ impl Moved {
 impl MovedVariants for Moved {
     fn started(&self) -> Vec<usize> {
         self.double.started()
+    }
+    fn redundant(&self) -> Vec<bool> {
+        self.double.redundant()
     }
     fn guess(&self) -> [Vec<f64>; 2] {
         self.double.guess()
