@@ -90,10 +90,7 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments) -> Result<ExitCode, Com
 
 /// The refusal of methods where drives move the mechanism.
 fn driven(target: &Target) -> CommandError {
-    CommandError::Usage(format!(
-        "drives move `{}`: `--methods` is for motions from forces",
-        target.name()
-    ))
+    CommandError::Usage(format!("drives move `{}`: `--methods` is for motions from forces", target.name()))
 }
 
 /// The study itself, in a program that has the mechanism of `catalogue` in all variants.
@@ -141,11 +138,15 @@ pub fn study(
     result.origin = origin.line();
     result.command = command(arguments, true);
     result.replay = format!("{} --replay ", command(arguments, false));
+    let references = match target.is_free() {
+        true => "projection at tolerance 1e-11, and a formulation of another kind",
+        false => "steps of a sixteenth",
+    };
     result.facts = [
         ("motion", format!("to t = {} s", summary::short(until))),
         ("variants", format!("{}, each from its seed", extent.seeds.len())),
         ("oracle", "the statements of the text, interpreted: rows, energies, forces".to_string()),
-        ("references", "projection at tolerance 1e-11, and a formulation of another kind".to_string()),
+        ("references", references.to_string()),
         ("machine", machine()),
         ("text", origin.hash.clone()),
     ]
@@ -201,7 +202,8 @@ fn print(result: &MatrixResult, arguments: &Arguments, out: &mut dyn Write) -> R
     writeln!(out, "\n{}", result.matrix())?;
     if arguments.replay.is_some() {
         for outcome in &result.outcomes {
-            let figure = |value: Option<f64>| value.map_or_else(|| "–".to_string(), |value| format!("{value:.1e}"));
+            let figure =
+                |value: Option<f64>| value.map_or_else(|| "–".to_string(), |value| format!("{value:.1e}"));
             writeln!(
                 out,
                 "seed {}, {}: {}, {}: {}, error {}, bound {}, work {}{}{}",
@@ -226,7 +228,13 @@ fn print(result: &MatrixResult, arguments: &Arguments, out: &mut dyn Write) -> R
             writeln!(out, "  {} {count}: {words}\n    {}{seed}", verdict.name(), result.replay)?;
         }
         if reasons.len() > SHOWN {
-            writeln!(out, "  {} {}: {} more reasons on the page", verdict.name(), "…", reasons.len() - SHOWN)?;
+            writeln!(
+                out,
+                "  {} {}: {} more reasons on the page",
+                verdict.name(),
+                "…",
+                reasons.len() - SHOWN
+            )?;
         }
     }
     for (words, count) in result.not_made() {

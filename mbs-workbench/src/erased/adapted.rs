@@ -9,71 +9,7 @@ use mbs_runtime::{
     MissingSlope, NonNegative, Outcome, Partitioned, Reference, Scalar, StateSlope,
 };
 
-/// Other coordinates, rows and start of a mechanism.
-#[derive(Clone, Debug)]
-pub struct Adaption<const N: usize, const M: usize> {
-    /// Row that each one is, and its factor: M.
-    pub rows: [(usize, f64); M],
-    /// A: N rows of N, orthogonal in the reference metric.
-    pub map: [[f64; N]; N],
-    /// b: N.
-    pub shift: [f64; N],
-    /// Positions and velocities of the start, in the coordinates of the text: N each.
-    pub start: [[f64; N]; 2],
-}
-
-impl<const N: usize, const M: usize> Adaption<N, M> {
-    /// Coordinates and rows of the text, from this start.
-    pub fn none(start: [[f64; N]; 2]) -> Self {
-        let rows = core::array::from_fn(|row| (row, 1.0));
-        let map = core::array::from_fn(|i| core::array::from_fn(|j| f64::from(u8::from(i == j))));
-        Adaption { rows, map, shift: [0.0; N], start }
-    }
-
-    /// A x: N.
-    pub fn direction<T: Scalar>(&self, x: &[T; N]) -> [T; N] {
-        core::array::from_fn(|i| sum(self.map[i].iter().zip(x)))
-    }
-
-    /// A x + b: N.
-    pub fn position<T: Scalar>(&self, x: &[T; N]) -> [T; N] {
-        let mut q = self.direction(x);
-        q.iter_mut().zip(self.shift).for_each(|(q, shift)| *q = *q + T::constant(shift));
-        q
-    }
-
-    /// Aᵀ f: N.
-    fn force<T: Scalar>(&self, f: &[T; N]) -> [T; N] {
-        core::array::from_fn(|j| sum(self.map.iter().map(|row| &row[j]).zip(f)))
-    }
-
-    /// Aᵀ F A: N rows of N.
-    fn both<T: Scalar>(&self, matrix: &[[T; N]; N]) -> [[T; N]; N] {
-        let half: [[T; N]; N] = core::array::from_fn(|i| self.force(&matrix[i]));
-        let column = |j: usize| self.force(&half.map(|row| row[j]));
-        let columns: [[T; N]; N] = core::array::from_fn(column);
-        core::array::from_fn(|i| core::array::from_fn(|j| columns[j][i]))
-    }
-
-    fn rows<T: Scalar>(&self, values: &[T; M]) -> [T; M] {
-        self.rows.map(|(row, factor)| values[row] * T::constant(factor))
-    }
-
-    /// Multipliers of the rows of the text.
-    pub fn multipliers<T: Scalar>(&self, lambda: &[T; M]) -> [T; M] {
-        let mut own = [T::constant(0.0); M];
-        for ((row, factor), lambda) in self.rows.iter().zip(lambda) {
-            own[*row] = *lambda * T::constant(*factor);
-        }
-        own
-    }
-}
-
-fn sum<'a, T: Scalar>(pairs: impl Iterator<Item = (&'a f64, &'a T)>) -> T {
-    pairs
-        .filter(|(factor, _)| **factor != 0.0)
-        .fold(T::constant(0.0), |sum, (factor, x)| sum + T::constant(*factor) * *x)
-}
+use super::adaption::Adaption;
 
 /// The mechanism seen through an [`Adaption`].
 #[derive(Clone, Debug)]
@@ -202,30 +138,30 @@ where
         self.mechanism.position(parameters, &self.adaption.position(q), t)
     }
     fn phi(&self, parameters: &Self::Parameters, position: &Self::Position) -> [T; M] {
-        self.adaption.rows(&self.mechanism.phi(parameters, position))
+        self.adaption.in_rows(&self.mechanism.phi(parameters, position))
     }
     fn phi_q(&self, parameters: &Self::Parameters, position: &Self::Position) -> [[T; N]; M] {
         let phi_q = self.mechanism.phi_q(parameters, position);
-        self.adaption.rows.map(|(row, factor)| {
-            self.adaption.force(&phi_q[row]).map(|entry| entry * T::constant(factor))
-        })
+        self.adaption
+            .rows
+            .map(|(row, factor)| self.adaption.force(&phi_q[row]).map(|entry| entry * T::constant(factor)))
     }
     fn phi_q_entries(&self, parameters: &Self::Parameters, position: &Self::Position) -> Self::Entries {
         Entries(self.phi_q(parameters, position))
     }
     fn phi_t(&self, parameters: &Self::Parameters, position: &Self::Position) -> [T; M] {
-        self.adaption.rows(&self.mechanism.phi_t(parameters, position))
+        self.adaption.in_rows(&self.mechanism.phi_t(parameters, position))
     }
     fn phi_tt(&self, parameters: &Self::Parameters, position: &Self::Position) -> [T; M] {
-        self.adaption.rows(&self.mechanism.phi_tt(parameters, position))
+        self.adaption.in_rows(&self.mechanism.phi_tt(parameters, position))
     }
     fn phi_qt_qd(&self, parameters: &Self::Parameters, position: &Self::Position, qd: &[T; N]) -> [T; M] {
         let qd = self.adaption.direction(qd);
-        self.adaption.rows(&self.mechanism.phi_qt_qd(parameters, position, &qd))
+        self.adaption.in_rows(&self.mechanism.phi_qt_qd(parameters, position, &qd))
     }
     fn gamma(&self, parameters: &Self::Parameters, position: &Self::Position, qd: &[T; N]) -> [T; M] {
         let qd = self.adaption.direction(qd);
-        self.adaption.rows(&self.mechanism.gamma(parameters, position, &qd))
+        self.adaption.in_rows(&self.mechanism.gamma(parameters, position, &qd))
     }
     fn branches(&self, parameters: &Self::Parameters, position: &Self::Position) -> Self::Branches {
         self.mechanism.branches(parameters, position)
@@ -384,9 +320,10 @@ where
     ) -> [[T; M]; N] {
         let (qd, lambda) = (self.adaption.direction(qd), self.adaption.multipliers(lambda));
         let slopes = self.mechanism.force_lambda(parameters, position, &qd, states, &lambda);
-        let columns = self.adaption.rows.map(|(row, factor)| {
-            self.adaption.force(&slopes.map(|slope| slope[row] * T::constant(factor)))
-        });
+        let columns = self
+            .adaption
+            .rows
+            .map(|(row, factor)| self.adaption.force(&slopes.map(|slope| slope[row] * T::constant(factor))));
         core::array::from_fn(|i| core::array::from_fn(|j| columns[j][i]))
     }
     fn mass_times_q(
@@ -398,12 +335,7 @@ where
         let x = self.adaption.direction(x);
         self.adaption.both(&self.mechanism.mass_times_q(parameters, position, &x))
     }
-    fn reaction(
-        &self,
-        parameters: &Self::Parameters,
-        position: &Self::Position,
-        lambda: &[T; M],
-    ) -> [T; N] {
+    fn reaction(&self, parameters: &Self::Parameters, position: &Self::Position, lambda: &[T; M]) -> [T; N] {
         let lambda = self.adaption.multipliers(lambda);
         self.adaption.force(&self.mechanism.reaction(parameters, position, &lambda))
     }

@@ -2,6 +2,8 @@
 
 #[cfg(feature = "program")]
 pub mod adapted;
+#[cfg(feature = "program")]
+pub mod adaption;
 mod branching;
 #[cfg(feature = "program")]
 pub mod costs;

@@ -6,7 +6,8 @@ use mbs_runtime::{
     Dynamic, Failure, InNumbers, Kinematic, Lanes, Mechanism, Partitioned, Real, Reveal, Visitor,
 };
 
-use super::adapted::{Adapted, Adaption};
+use super::adapted::Adapted;
+use super::adaption::Adaption;
 use super::dynamics::integrators::{All, ExplicitOnly, Integrators};
 use super::timed_runs::{Effort, Runs, Seen, TimedRuns};
 use super::timed_steps::{InLanes, Single, TimedSteps};
@@ -132,7 +133,9 @@ fn array<const K: usize>(values: &[f64]) -> [f64; K] {
     <[f64; K]>::try_from(values).unwrap_or([0.0; K])
 }
 
-impl<S: Kinematic<R, N, M> + 'static, R: Real, const N: usize, const M: usize> Beside for OfSingle<S, R, N, M> {
+impl<S: Kinematic<R, N, M> + 'static, R: Real, const N: usize, const M: usize> Beside
+    for OfSingle<S, R, N, M>
+{
     fn beside(&self, shift: &[f64]) -> Box<dyn TimedSteps> {
         Box::new(Single::<S, R, N, M>::beside(self.0.clone(), array(shift)))
     }

@@ -170,7 +170,12 @@ impl Blueprint {
     ///
     /// # Errors
     /// As [`of_card`](Self::of_card).
-    pub fn study_of_card(study: &Study, forge: &Forge, card: &Card, source: &str) -> Result<Self, ForgeError> {
+    pub fn study_of_card(
+        study: &Study,
+        forge: &Forge,
+        card: &Card,
+        source: &str,
+    ) -> Result<Self, ForgeError> {
         let Card { constructor, module, manifest, .. } = *card;
         let name = format!("{}{}", card.file_name(), study.suffix);
         let items = |constructor: &str| {

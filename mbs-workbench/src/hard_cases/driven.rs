@@ -33,7 +33,10 @@ pub fn driven_outcomes(
             break;
         }
         let variation = Variation::of(*seed, subject);
-        progress(&format!("variant {seed}: {}", variation.class.name()), index as f64 / extent.seeds.len() as f64);
+        progress(
+            &format!("variant {seed}: {}", variation.class.name()),
+            index as f64 / extent.seeds.len() as f64,
+        );
         let (mechanism, oracle) = make(&variation.values).ok_or("the oracle cannot read the text")?;
         let numbers = if variation.class == Class::Single { Numbers::Single } else { Numbers::Double };
         let lanes = if variation.class == Class::Lanes { LANES } else { 1 };
@@ -89,14 +92,15 @@ fn outcome(
     let is_closed = closing == Closing::Closed;
     let largest = run.iter().flat_map(|placed| placed.motion[0].iter().zip(scales));
     let largest = largest.map(|(q, scale)| (q / scale).abs()).fold(1.0, f64::max);
-    let bound = match (numbers, is_closed) {
-        (Numbers::Double, true) => 1e-9,
-        // A bounded step says itself how far its rows are open; the assembly must be the same.
-        (Numbers::Double, false) => 1e-3,
-        (Numbers::Single, _) => 1e-3,
-    } * largest;
+    // A bounded step says itself how far its rows are open; the assembly must be the same. Next to a singular position the root
+    // of the rounding in the rows is left in the position.
+    let [open, bound] = match (numbers, is_closed) {
+        (Numbers::Double, true) => [1e-11, 1e-7],
+        _ => [1e-3; 2],
+    }
+    .map(|bound| bound * largest);
     outcome.bound = Some(bound);
-    let bounds = Bounds { rows: bound, balance: bound, estimate: bound, rounding: bound };
+    let bounds = Bounds { rows: open, balance: open, estimate: bound, rounding: bound };
     let states: Vec<State> = run.iter().map(of_driven).collect();
     let judgement = judge(&states, oracle, scales, bounds, variation.seed);
     outcome.not_made = judgement.not_made;
@@ -108,7 +112,9 @@ fn outcome(
     let apart = fine.as_ref().ok().map(|(fine, _)| {
         let pairs = run.iter().zip(fine.iter().step_by(FINER as usize));
         let pairs = pairs.flat_map(|(a, b)| a.motion[0].iter().zip(&b.motion[0]).zip(scales));
-        pairs.map(|((a, b), scale)| ((a - b) / scale).abs()).fold(0.0, |a: f64, b| if b.is_nan() { b } else { a.max(b) })
+        pairs
+            .map(|((a, b), scale)| ((a - b) / scale).abs())
+            .fold(0.0, |a: f64, b| if b.is_nan() { b } else { a.max(b) })
     });
     outcome.error = apart;
     if let Err(reason) = fine {
@@ -116,7 +122,7 @@ fn outcome(
     }
     let (verdict, reason) = match (judgement.wrong.or(branch), apart) {
         (Some(reason), _) => (Verdict::Wrong, reason),
-        (None, Some(apart)) if !(apart <= 10.0 * bound) => {
+        (None, Some(apart)) if !(apart <= bound) => {
             (Verdict::Wrong, format!("steps of a sixteenth lead to another position, by {apart:.1e}"))
         }
         _ => (Verdict::Right, String::new()),

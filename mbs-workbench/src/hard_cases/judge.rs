@@ -92,11 +92,14 @@ fn looks(run: &[State]) -> impl Iterator<Item = &State> {
 
 /// Φ, Φ̇ and Φ̈ are 0.
 fn rows(run: &[State], oracle: &Oracle, scales: &[f64], bounds: Bounds, found: &mut Judgement) {
-    let Some(first) = run.first() else { return };
-    let gradients = match oracle.gradients(first, scales) {
-        Ok(gradients) => gradients,
-        Err(gap) => return found.gap("rows", gap),
-    };
+    let mut gradients = vec![0.0_f64; oracle.row_count()];
+    // A gradient may vanish at a singular position; it is measured where it is largest.
+    for state in run.iter().step_by((run.len() / 3).max(1)) {
+        match oracle.gradients(state, scales) {
+            Ok(here) => gradients.iter_mut().zip(here).for_each(|(known, here)| *known = known.max(here)),
+            Err(gap) => return found.gap("rows", gap),
+        }
+    }
     let pace = run.iter().map(|state| extent(&state.qd, scales)).fold(0.0, f64::max);
     let push = run.iter().map(|state| extent(&state.qdd, scales)).fold(pace * pace, f64::max);
     for state in looks(run) {

@@ -4,6 +4,7 @@ mod driven;
 mod judge;
 mod moved;
 pub mod oracle;
+mod references;
 pub mod result;
 pub mod study;
 #[cfg(test)]

@@ -1,16 +1,14 @@
 //! Variants of a motion from forces by every method, each against two references and the oracle.
 
-use crate::erased::timed_runs::{Effort, Seen};
+use crate::erased::timed_runs::Seen;
 use crate::erased::variations::{Change, MovedVariants};
 use crate::hard_cases::judge::{Bounds, judge, of_moved};
 use crate::hard_cases::oracle::Oracle;
+use crate::hard_cases::references::{FIRST, PARTS, References, Run, Varied, apart, instants, references};
 use crate::hard_cases::study::{Clock, Extent};
 use crate::hard_cases::variation::{Class, Subject, Variation};
 use crate::hard_cases::verdict::{Outcome, Verdict};
-use crate::setting::{FormulationName, ImplicitName, IntegratorName, MotionMethod, Numbers, Resolution};
-
-/// Intervals between the instants of a run.
-pub const PARTS: u32 = 64;
+use crate::setting::{FormulationName, MotionMethod, Numbers, Resolution};
 
 /// Tolerance of adaptive runs in `f64` and `f32`.
 const TOLERANCES: [f64; 2] = [1e-8, 1e-4];
@@ -27,60 +25,6 @@ const CLAIMED: f64 = 1e-3;
 /// Bound of the error over the run's own estimate.
 const TRUSTED: f64 = 30.0;
 
-/// The formulation and integrator that others are compared with.
-const FIRST: MotionMethod =
-    MotionMethod::Explicit(FormulationName::Projection, IntegratorName::DormandPrince8);
-
-/// Formulations of another kind, the preferred one first.
-const SECOND: [MotionMethod; 3] = [
-    MotionMethod::Explicit(FormulationName::VelocityTransformation, IntegratorName::DormandPrince8),
-    MotionMethod::Implicit(ImplicitName::Extrapolated),
-    MotionMethod::Explicit(FormulationName::Baumgarte, IntegratorName::DormandPrince8),
-];
-
-type Run = Vec<Seen>;
-
-/// Motions of a variant's mechanism by two formulations of different kind.
-struct References {
-    first: Run,
-    /// Its own estimate.
-    estimate: f64,
-    /// Difference to a formulation of another kind, with its estimate and its name.
-    other: Option<(f64, f64, String)>,
-    /// Reason where there is no other.
-    alone: String,
-}
-
-/// A mechanism with the values of a variant.
-struct Varied<'a> {
-    mechanism: Box<dyn MovedVariants + 'a>,
-    oracle: Oracle,
-    change: Change,
-    start: Option<[Vec<f64>; 2]>,
-    numbers: Numbers,
-}
-
-impl Varied<'_> {
-    fn run(&self, method: MotionMethod, resolution: Resolution, times: &[f64]) -> Result<(Run, Effort), String> {
-        let mut seen = Vec::new();
-        let see = &mut |state| seen.push(state);
-        let ran = match &self.start {
-            Some(start) => self.mechanism.run_changed(&self.change, start, method, resolution, times, see),
-            None => self.mechanism.run(self.numbers, method, resolution, times, see),
-        };
-        ran.map(|effort| (seen, effort)).map_err(|failure| failure.to_string())
-    }
-}
-
-/// Largest difference of two runs at the instants that both have, in the reference metric.
-pub fn apart(a: &[Seen], b: &[Seen], scales: &[f64]) -> f64 {
-    let (few, many) = if a.len() <= b.len() { (a, b) } else { (b, a) };
-    let stride = (many.len().saturating_sub(1) / few.len().saturating_sub(1).max(1)).max(1);
-    let pairs = few.iter().zip(many.iter().step_by(stride));
-    let pairs = pairs.flat_map(|(a, b)| a.q.iter().zip(&b.q).zip(scales));
-    pairs.map(|((a, b), scale)| ((a - b) / scale).abs()).fold(0.0, |a: f64, b| if b.is_nan() { b } else { a.max(b) })
-}
-
 /// Largest way of a coordinate from its start, at most 1 in the reference metric.
 fn motion(run: &[Seen], scales: &[f64]) -> f64 {
     apart(run, &vec![run[0].clone(); run.len()], scales).clamp(1e-12, 1.0)
@@ -91,15 +35,6 @@ fn finer(resolution: Resolution, factor: f64) -> Resolution {
         Resolution::Tolerance(tolerance) => Resolution::Tolerance(tolerance / factor.powi(4)),
         Resolution::Steps(steps) => Resolution::Steps(((f64::from(steps) * factor).round() as u32).max(1)),
     }
-}
-
-/// Whole steps between instants: a factor changes the number of instants, not the steps between them.
-fn instants(until: f64, resolution: Resolution) -> Vec<f64> {
-    let parts = match resolution {
-        Resolution::Steps(steps) => (steps / (steps / PARTS).max(1)).max(1),
-        Resolution::Tolerance(_) => PARTS,
-    };
-    (0..=parts).map(|k| until * f64::from(k) / f64::from(parts)).collect()
 }
 
 /// Runs all variants of `extent` by all methods.
@@ -138,8 +73,12 @@ pub fn moved_outcomes(
     let of = |varied: &Varied<'_>| references(varied, extent.until, scales);
     progress("references", 0.0);
     let usual = of(&plain)?;
-    let methods: Vec<MotionMethod> =
-        extent.methods.iter().copied().filter(|method| plain.mechanism.admits(*method, Numbers::Double)).collect();
+    let methods: Vec<MotionMethod> = extent
+        .methods
+        .iter()
+        .copied()
+        .filter(|method| plain.mechanism.admits(*method, Numbers::Double))
+        .collect();
     let mut bases = Vec::new();
     for method in &methods {
         bases.push(base(&plain, *method, extent.until, scales, clock));
@@ -147,7 +86,10 @@ pub fn moved_outcomes(
     let mut outcomes = Vec::new();
     for (index, seed) in extent.seeds.iter().enumerate() {
         let variation = Variation::of(*seed, subject);
-        progress(&format!("variant {seed}: {}", variation.class.name()), index as f64 / extent.seeds.len() as f64);
+        progress(
+            &format!("variant {seed}: {}", variation.class.name()),
+            index as f64 / extent.seeds.len() as f64,
+        );
         if clock.is_over() {
             break;
         }
@@ -185,50 +127,6 @@ fn judged<'a>(
     })
 }
 
-/// References of a mechanism.
-fn references(varied: &Varied<'_>, until: f64, scales: &[f64]) -> Result<References, String> {
-    let times = instants(until, Resolution::Tolerance(1.0));
-    let (first, _) = varied.run(FIRST, Resolution::Tolerance(1e-11), &times)?;
-    let (coarse, _) = varied.run(FIRST, Resolution::Tolerance(1e-9), &times)?;
-    let estimate = apart(&first, &coarse, scales);
-    let mut alone = "no formulation of another kind suits it".to_string();
-    for method in SECOND {
-        let is_partitioned = !matches!(method, MotionMethod::Explicit(FormulationName::VelocityTransformation, _))
-            || varied.start.is_none();
-        if !is_partitioned || !varied.mechanism.admits(method, Numbers::Double) {
-            continue;
-        }
-        match second(varied, method, &times, scales) {
-            Ok((run, own)) => {
-                let other = Some((apart(&first, &run, scales), own, method.to_string()));
-                return Ok(References { first, estimate, other, alone: String::new() });
-            }
-            Err(reason) => alone = format!("{method}: {reason}"),
-        }
-    }
-    Ok(References { first, estimate, other: None, alone })
-}
-
-/// A run by another formulation, with its own estimate.
-fn second(varied: &Varied<'_>, method: MotionMethod, times: &[f64], scales: &[f64]) -> Result<(Run, f64), String> {
-    if method.is_adaptive() {
-        let (fine, _) = varied.run(method, Resolution::Tolerance(1e-10), times)?;
-        let (coarse, _) = varied.run(method, Resolution::Tolerance(1e-8), times)?;
-        let estimate = apart(&fine, &coarse, scales);
-        return Ok((fine, estimate));
-    }
-    let mut coarse = varied.run(method, Resolution::Steps(8 * PARTS), times)?.0;
-    let mut steps = 16 * PARTS;
-    loop {
-        let (fine, _) = varied.run(method, Resolution::Steps(steps), times)?;
-        let estimate = apart(&fine, &coarse, scales);
-        if estimate < 1e-6 || steps >= 128 * PARTS {
-            return Ok((fine, estimate));
-        }
-        (coarse, steps) = (fine, 2 * steps);
-    }
-}
-
 /// The reference resolution of a method in both types of number; a reason where no step reaches the estimate.
 fn base(
     plain: &Varied<'_>,
@@ -263,7 +161,10 @@ fn base(
 /// `true` for methods whose rows are open by design: their drift is part of the error.
 fn drifts(method: MotionMethod) -> bool {
     use FormulationName::{Baumgarte, Penalty, Unstabilized};
-    matches!(method, MotionMethod::Explicit(Baumgarte | Penalty | Unstabilized, _) | MotionMethod::Implicit(_))
+    matches!(
+        method,
+        MotionMethod::Explicit(Baumgarte | Penalty | Unstabilized, _) | MotionMethod::Implicit(_)
+    )
 }
 
 fn outcome(
@@ -318,7 +219,8 @@ fn outcome(
     let epsilon = if is_single { f64::from(f32::EPSILON) } else { f64::EPSILON };
     // Rounding adds up over the steps, and acts on distances from the origin of the frame.
     let rounding = 1e3 * epsilon * moved * (effort.steps.max(1) as f64).sqrt();
-    let width = references.estimate + references.other.as_ref().map_or(0.0, |(apart, own, _)| apart.min(*own));
+    let width =
+        references.estimate + references.other.as_ref().map_or(0.0, |(apart, own, _)| apart.min(*own));
     let bound = TRUSTED * estimate + 10.0 * width + rounding;
     outcome.bound = Some(bound);
     let is_soft = matches!(method, MotionMethod::Explicit(FormulationName::Penalty, _));
@@ -340,12 +242,18 @@ fn outcome(
     };
     outcome.not_made = judgement.not_made;
     if is_soft {
-        outcome.not_made.push("rows, balance and formulations: springs in place of rows are another problem".to_string());
+        outcome
+            .not_made
+            .push("rows, balance and formulations: springs in place of rows are another problem".to_string());
     }
     if references.other.is_none() {
         outcome.not_made.push(format!("two formulations: {}", references.alone));
     }
-    outcome.error = Some(if is_shared { apart(&run, &references.first, scales) } else { at_end(&run, &references.first, scales) });
+    outcome.error = Some(if is_shared {
+        apart(&run, &references.first, scales)
+    } else {
+        at_end(&run, &references.first, scales)
+    });
     let error = outcome.error.unwrap_or(f64::NAN);
     let disagree = references.other.as_ref().filter(|(apart, own, _)| {
         *apart > TRUSTED * (references.estimate + own) + 10.0 * rounding && method == FIRST
@@ -353,12 +261,18 @@ fn outcome(
     let (verdict, reason) = if let Some(reason) = judgement.wrong {
         (Verdict::Wrong, reason)
     } else if let Some((apart, own, name)) = disagree {
-        let words = format!("{FIRST} and {name} differ by {apart:.1e}, their estimates are {:.1e} and {own:.1e}", references.estimate);
+        let words = format!(
+            "{FIRST} and {name} differ by {apart:.1e}, their estimates are {:.1e} and {own:.1e}",
+            references.estimate
+        );
         (Verdict::Wrong, words)
     } else if !(error <= bound) && !is_soft {
         (Verdict::Wrong, format!("an error of {error:.1e} where {bound:.1e} is expected"))
     } else if !(estimate <= CLAIMED * motion(&references.first, scales)) && !is_single {
-        (Verdict::Refused, format!("half the step changes the motion by {estimate:.1e}: no digits are claimed"))
+        (
+            Verdict::Refused,
+            format!("half the step changes the motion by {estimate:.1e}: no digits are claimed"),
+        )
     } else {
         (Verdict::Right, String::new())
     };
@@ -379,6 +293,8 @@ fn course(run: &[Seen], scales: &[f64]) -> Vec<f64> {
         let all = run.iter().map(|seen| seen.q[j] / scales[j]);
         all.clone().fold(f64::NEG_INFINITY, f64::max) - all.fold(f64::INFINITY, f64::min)
     };
-    let Some(widest) = (0..scales.len()).max_by(|a, b| width(*a).total_cmp(&width(*b))) else { return Vec::new() };
+    let Some(widest) = (0..scales.len()).max_by(|a, b| width(*a).total_cmp(&width(*b))) else {
+        return Vec::new();
+    };
     run.iter().step_by(2).map(|seen| seen.q[widest]).collect()
 }

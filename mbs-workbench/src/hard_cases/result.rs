@@ -76,6 +76,16 @@ struct Data<'a> {
     facts: &'a [[String; 2]],
 }
 
+/// The words of a reason, its digits left out.
+fn without_numbers(reason: &str) -> String {
+    reason
+        .chars()
+        .filter(|letter| !letter.is_ascii_digit())
+        .collect::<String>()
+        .replace("e-", "")
+        .replace('.', "")
+}
+
 /// Values in the order in which they come first.
 fn in_order<'a>(values: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
     let mut known = Vec::new();
@@ -162,14 +172,16 @@ impl MatrixResult {
         }
     }
 
-    /// Reasons of a verdict with their number, the most frequent first; each with the line that replays one.
+    /// Reasons of a verdict with their number, the most frequent first, and a seed of each; reasons that differ in numbers are one.
     pub fn reasons(&self, verdict: Verdict) -> Vec<(String, usize, u64)> {
-        let mut known: BTreeMap<String, (usize, u64)> = BTreeMap::new();
+        let mut known: BTreeMap<String, (String, usize, u64)> = BTreeMap::new();
         for outcome in self.outcomes.iter().filter(|outcome| outcome.verdict == verdict) {
             let words = format!("{}, {}: {}", outcome.method, outcome.class.name(), outcome.reason);
-            known.entry(words).or_insert((0, outcome.seed)).0 += 1;
+            let plain =
+                format!("{}, {}: {}", outcome.method, outcome.class.name(), without_numbers(&outcome.reason));
+            known.entry(plain).or_insert((words, 0, outcome.seed)).1 += 1;
         }
-        let mut all: Vec<_> = known.into_iter().map(|(words, (count, seed))| (words, count, seed)).collect();
+        let mut all: Vec<_> = known.into_values().collect();
         all.sort_by(|a, b| b.1.cmp(&a.1).then(a.0.cmp(&b.0)));
         all
     }
@@ -177,8 +189,10 @@ impl MatrixResult {
     /// Checks that were not made, with the number of runs.
     pub fn not_made(&self) -> Vec<(String, usize)> {
         let mut known: BTreeMap<&str, usize> = BTreeMap::new();
+        let mut shown: BTreeMap<String, &str> = BTreeMap::new();
         for words in self.outcomes.iter().flat_map(|outcome| &outcome.not_made) {
-            *known.entry(words).or_default() += 1;
+            let first = *shown.entry(without_numbers(words)).or_insert(words);
+            *known.entry(first).or_default() += 1;
         }
         known.into_iter().map(|(words, count)| (words.to_string(), count)).collect()
     }

@@ -119,7 +119,8 @@ impl Own<'_> {
         let shaken: Vec<usize> = (0..count).filter(|j| !started.contains(j)).collect();
         let redundant = moved.map(MovedVariants::redundant).unwrap_or_default();
         let kinds = equations.rows().iter().enumerate().map(|(row, entry)| {
-            let unit = entry.unit.bytes().fold(7_u64, |hash, byte| hash.wrapping_mul(31).wrapping_add(byte.into()));
+            let unit =
+                entry.unit.bytes().fold(7_u64, |hash, byte| hash.wrapping_mul(31).wrapping_add(byte.into()));
             2 * unit + u64::from(redundant.get(row).copied().unwrap_or(false))
         });
         let kinds: Vec<u64> = kinds.collect();
@@ -158,7 +159,11 @@ fn points(equations: &dyn AnyEquations) -> Vec<Vec<usize>> {
             None => points.push((array, vec![index])),
         }
     }
-    points.into_iter().map(|(_, components)| components).filter(|point| matches!(point.len(), 2 | 3)).collect()
+    points
+        .into_iter()
+        .map(|(_, components)| components)
+        .filter(|point| matches!(point.len(), 2 | 3))
+        .collect()
 }
 
 /// Runs all variants of a mechanism.

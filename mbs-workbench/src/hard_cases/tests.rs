@@ -5,7 +5,8 @@ use crate::erased::facade::AnyEquations;
 use crate::erased::variations::Variable;
 use crate::hard_cases::result::MatrixResult;
 use crate::hard_cases::study::{Clock, Extent, Own, study};
-use crate::hard_cases::verdict::Verdict;
+use crate::hard_cases::variation::Class;
+use crate::hard_cases::verdict::{Outcome, Verdict};
 use crate::setting::{FormulationName, ImplicitName, IntegratorName, MotionMethod};
 
 mbs_runtime::mechanism! {
@@ -107,11 +108,19 @@ fn variants_of_a_pendulum_are_right_by_every_method() {
 fn an_emitted_row_or_force_that_is_not_the_texts_is_wrong() {
     let equations = erase(Pendulum::default()).into_equations();
     let (row, force) = (crate::variable!(OtherRow::default()), crate::variable!(OtherForce::default()));
-    for (make, words) in [(row as fn(&[(usize, f64)]) -> Variable, "is open by"), (force, "M q̈ + Φ_qᵀλ − Q")] {
+    for (make, words) in [(row as fn(&[(usize, f64)]) -> Variable, "is open by"), (force, "M q̈ + Φ_qᵀλ − Q")]
+    {
         let result = result(make, equations.as_ref(), &METHODS[..1], 0.3);
-        let wrong = result.count(Verdict::Wrong);
-        assert_eq!(wrong, result.outcomes.len(), "{}", all(&result));
-        assert!(result.reasons(Verdict::Wrong).iter().any(|(reason, ..)| reason.contains(words)), "{}", all(&result));
+        // Single precision does not tell a force from one that is a thousandth off.
+        let is_double = |outcome: &&Outcome| outcome.class != Class::Single;
+        let double = || result.outcomes.iter().filter(is_double);
+        assert!(double().count() > 10, "{}", all(&result));
+        assert!(double().all(|outcome| outcome.verdict == Verdict::Wrong), "{}", all(&result));
+        assert!(
+            result.reasons(Verdict::Wrong).iter().any(|(reason, ..)| reason.contains(words)),
+            "{}",
+            all(&result)
+        );
     }
 }
 
@@ -124,7 +133,14 @@ fn variants_of_a_motion_from_drives_are_right_and_a_late_motor_is_wrong() {
     assert!(kinds.iter().all(|kind| result.matrix().contains(kind)), "{}", all(&result));
     let late = self::result(crate::variable!(OtherDrive::default()), equations.as_ref(), &[], 3.0);
     let closed = late.outcomes.iter().filter(|outcome| outcome.method.ends_with("closed"));
-    assert!(closed.clone().count() > 5 && closed.clone().all(|outcome| outcome.verdict == Verdict::Wrong || outcome.class.name() == "f32"), "{}", all(&late));
+    assert!(
+        closed.clone().count() > 5
+            && closed
+                .clone()
+                .all(|outcome| outcome.verdict == Verdict::Wrong || outcome.class == Class::Single),
+        "{}",
+        all(&late)
+    );
 }
 
 #[test]
@@ -133,7 +149,8 @@ fn a_page_holds_all_variants_and_a_seed_replays_one() {
     let own = Own { make: crate::variable!(Pendulum::default()), equations: equations.as_ref() };
     let run = |seeds: Vec<u64>| {
         let extent = Extent { methods: METHODS[..1].to_vec(), seeds, until: 0.2 };
-        let found = study(&own, &extent, &Clock::of(Duration::from_secs(600)), &mut |_, _| ()).expect("a study");
+        let found =
+            study(&own, &extent, &Clock::of(Duration::from_secs(600)), &mut |_, _| ()).expect("a study");
         MatrixResult::of(found, "own".to_string(), "Own <b>".to_string())
     };
     let (whole, one) = (run((0..6).collect()), run(vec![4]));

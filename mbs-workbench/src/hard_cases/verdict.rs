@@ -84,7 +84,8 @@ pub fn cells(outcomes: &mut [Outcome]) -> Vec<Cell> {
         }
     }
     for cell in &cells {
-        let mut work: Vec<u64> = cell.outcomes.iter().map(|index| outcomes[*index].work).filter(|work| *work > 0).collect();
+        let mut work: Vec<u64> =
+            cell.outcomes.iter().map(|index| outcomes[*index].work).filter(|work| *work > 0).collect();
         work.sort_unstable();
         let Some(median) = work.get(work.len() / 2).copied() else { continue };
         for index in &cell.outcomes {

@@ -85,7 +85,8 @@ fn interpreted_texts_agree_with_emitted_code() {
         let equations = card.equations();
         match oracle(equations.as_ref()) {
             Ok(oracle) => {
-                let found = (0..3).map(|_| apart(equations.as_ref(), &oracle, &mut noise)).fold(0.0, f64::max);
+                let found =
+                    (0..3).map(|_| apart(equations.as_ref(), &oracle, &mut noise)).fold(0.0, f64::max);
                 assert!(found < 1e-11, "{}: {found:e}", card.name());
                 checked += 1;
             }

@@ -45,7 +45,11 @@ impl Value {
     /// The count that it is.
     pub fn count(&self) -> Result<usize, Gap> {
         let value = self.number()?.value.v;
-        if value >= 0.0 && value.fract() == 0.0 { Ok(value as usize) } else { Err(Gap(format!("{value} as a count"))) }
+        if value >= 0.0 && value.fract() == 0.0 {
+            Ok(value as usize)
+        } else {
+            Err(Gap(format!("{value} as a count")))
+        }
     }
 }
 
@@ -216,7 +220,8 @@ pub fn value(expression: &Expression, scope: &Scope<'_>) -> Result<Value, Gap> {
                     (None, [only]) => Value::scalar(*only),
                     (None, _) => Value::vector(items),
                     (Some(index), _) => {
-                        let item = items.get(index).ok_or_else(|| Gap("a row beyond the last".to_string()))?;
+                        let item =
+                            items.get(index).ok_or_else(|| Gap("a row beyond the last".to_string()))?;
                         Value::scalar(*item)
                     }
                 }

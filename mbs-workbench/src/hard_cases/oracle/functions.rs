@@ -60,7 +60,8 @@ pub fn call(function: &str, arguments: Vec<Value>) -> Result<Value, Gap> {
         }
         ("unit" | "rot", [angle]) => {
             let angle = angle.number()?;
-            let [cos, sin] = [angle.function("cos"), angle.function("sin")].map(|part| part.ok_or_else(wrong));
+            let [cos, sin] =
+                [angle.function("cos"), angle.function("sin")].map(|part| part.ok_or_else(wrong));
             let (cos, sin) = (cos?, sin?);
             Ok(match function {
                 "unit" => Value::vector(vec![cos, sin]),
@@ -74,7 +75,9 @@ pub fn call(function: &str, arguments: Vec<Value>) -> Result<Value, Gap> {
         ("angular_velocity", [e]) => {
             Ok(Value::vector(angular_velocity(&e.items, 1.0).ok_or_else(wrong)?.to_vec()))
         }
-        ("der", [a]) => Ok(Value { shape: a.shape.clone(), items: a.items.iter().map(|a| a.der()).collect() }),
+        ("der", [a]) => {
+            Ok(Value { shape: a.shape.clone(), items: a.items.iter().map(|a| a.der()).collect() })
+        }
         (_, [a]) => {
             let found = a.number()?.function(function);
             Ok(Value::scalar(found.ok_or_else(|| Gap(format!("the function `{function}`")))?))

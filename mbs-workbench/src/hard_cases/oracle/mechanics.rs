@@ -77,7 +77,8 @@ pub fn mechanics(placed: &[Placed], names: &Names) -> Result<Mechanics, Gap> {
             }
             // A field that varies in time is a force.
             let parts = field.iter().zip(com);
-            let along = |(g, place): (&Number, &Number)| Along { force: mass.value.v * g.value.v, place: *place };
+            let along =
+                |(g, place): (&Number, &Number)| Along { force: mass.value.v * g.value.v, place: *place };
             found.forces.extend(parts.map(along));
         }
     }

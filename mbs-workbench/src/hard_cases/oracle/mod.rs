@@ -8,6 +8,7 @@ mod evaluation;
 mod functions;
 mod mechanics;
 mod number;
+mod state;
 #[cfg(test)]
 mod tests;
 mod tree;
@@ -15,63 +16,17 @@ mod tree;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use mbs_codegen::syntax_tree::{Element, Equation, Expression, Item, Operation, Operator, StatementKind, Type};
+use mbs_codegen::syntax_tree::{
+    Element, Equation, Expression, Item, Operation, Operator, StatementKind, Type,
+};
 
 pub use self::evaluation::Gap;
 use self::evaluation::{Definition, Names, Scope, Value, joined, value};
 use self::functions::dot;
 use self::mechanics::mechanics;
 use self::number::{Dual, Number};
+pub use self::state::{Balance, Row, State};
 use self::tree::{Placed, equations, unrolled};
-
-/// A state of motion in the order of the text.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct State {
-    /// Time (s).
-    pub t: f64,
-    /// Coordinates: N.
-    pub q: Vec<f64>,
-    /// Velocities: N.
-    pub qd: Vec<f64>,
-    /// Accelerations: N.
-    pub qdd: Vec<f64>,
-    /// Multipliers: M.
-    pub lambda: Vec<f64>,
-    /// First-order states.
-    pub states: Vec<f64>,
-}
-
-/// A row with its time derivatives along the motion.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Row {
-    /// Φ; none of a drive that prescribes a rate, whose phase the text does not tell.
-    pub phi: Option<f64>,
-    /// Φ̇.
-    pub rate: f64,
-    /// Φ̈.
-    pub second: f64,
-}
-
-/// A sum that should be zero, with the sum of the magnitudes of its terms.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Balance {
-    /// The sum.
-    pub sum: f64,
-    /// Its terms.
-    pub size: f64,
-}
-
-impl Balance {
-    fn add(&mut self, term: f64) {
-        self.sum += term;
-        self.size += term.abs();
-    }
-
-    /// The sum as a part of its terms.
-    pub fn open(&self) -> f64 {
-        if self.size > 0.0 { self.sum.abs() / self.size } else { self.sum.abs() }
-    }
-}
 
 /// Direction of the first derivative.
 #[derive(Clone, Copy)]
@@ -149,20 +104,24 @@ impl Oracle {
             }
         }
         let (given, definitions) = (Arc::new(names.moving), Arc::new(definitions));
-        let mut oracle =
-            Oracle { placed, coordinates, states, given, definitions, groups: Vec::new(), turning: Vec::new() };
+        let mut oracle = Oracle {
+            placed,
+            coordinates,
+            states,
+            given,
+            definitions,
+            groups: Vec::new(),
+            turning: Vec::new(),
+        };
         // A first look at a state without two equal numbers tells which bodies turn with coordinates, and how many rows there are.
         let count = oracle.states.iter().map(|(_, shape)| shape.iter().product::<usize>()).sum();
         let apart = |first: f64| (0..oracle.size()).map(|j| first + 0.017 * j as f64).collect::<Vec<_>>();
-        let state = State {
-            q: apart(0.5),
-            qd: apart(0.3),
-            states: vec![0.0; count],
-            ..State::default()
-        };
+        let state = State { q: apart(0.5), qd: apart(0.3), states: vec![0.0; count], ..State::default() };
         oracle.turning = oracle.turning_bodies(&oracle.names(&state, Along::Nothing), &state)?;
         let mut groups = Vec::new();
-        oracle.each_row(&oracle.names(&state, Along::Nothing), &mut |group, rows, _| groups.push((group.to_string(), rows)))?;
+        oracle.each_row(&oracle.names(&state, Along::Nothing), &mut |group, rows, _| {
+            groups.push((group.to_string(), rows))
+        })?;
         oracle.groups = groups;
         Ok(oracle)
     }
@@ -404,6 +363,7 @@ fn residual(equation: &Equation, scope: &Scope<'_>) -> Result<Value, Gap> {
 /// The argument of `rate(…)` where it is all of the left side.
 fn prescribed(equation: &Equation) -> Option<Expression> {
     let (last, argument) = equation.left.code.split_last()?;
-    let is_rate = matches!(&last.operation, Operation::Call { function, order: 0, arguments: 1 } if function == "rate");
+    let is_rate =
+        matches!(&last.operation, Operation::Call { function, order: 0, arguments: 1 } if function == "rate");
     is_rate.then(|| Expression { code: argument.to_vec() })
 }

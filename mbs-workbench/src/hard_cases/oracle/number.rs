@@ -296,9 +296,8 @@ mod tests {
         for (name, f) in known {
             let shift = if name == "acosh" { Number::still(2.0) } else { Number::still(0.0) };
             let found = (moving() + shift).function(name).expect("a function");
-            let slope = |x: f64| {
-                (8.0 * (f(x + h) - f(x - h)) - (f(x + 2.0 * h) - f(x - 2.0 * h))) / (12.0 * h)
-            };
+            let slope =
+                |x: f64| (8.0 * (f(x + h) - f(x - h)) - (f(x + 2.0 * h) - f(x - 2.0 * h))) / (12.0 * h);
             let curvature = |x: f64| (f(x + h) - 2.0 * f(x) + f(x - h)) / (h * h);
             let x = moving().value;
             let (first, second) = (slope(0.3), curvature(0.3));
@@ -327,7 +326,9 @@ mod tests {
         assert!(apart(y.atan2(x).function("tan").expect("a function"), y / x) < 1e-12);
         let by_logarithm = y.power(x).expect("a power").function("ln").expect("a function");
         assert!(apart(by_logarithm, x * y.function("ln").expect("a function")) < 1e-13);
-        assert!(x.hypot(y) .power(Number::still(2.0)).is_some_and(|square| apart(square, x * x + y * y) < 1e-14));
+        assert!(
+            x.hypot(y).power(Number::still(2.0)).is_some_and(|square| apart(square, x * x + y * y) < 1e-14)
+        );
     }
 
     #[test]

@@ -69,11 +69,12 @@ fn a_fault_in_any_part_of_the_state_shows() {
 fn loops_effects_and_sums_are_read_in_the_order_of_the_text() {
     let source = "mechanism Chain; const N: 1 = 3; coord a: [rad; N]; coord s: m; \
         effect up { for i in 0..N { let share = 1 [m]*(i + 1); constraint c { share*sin(a[i]) == 0; } } } \
-        effect down { constraint d { s == 0; } } constraint e { for i in 0..2 { s == 2*sum(j in 0..i + 1, a[j])*1 [m]; } } \
+        effect down { constraint d { s == 0; } } constraint e { for i in 0..2 { s == 2*sum(j in 0..i + 1: a[j])*1 [m]; } } \
         scene Up = up; scene Down = down;";
     let of = |scene| Oracle::read(source, scene, &|_| None).expect("a text");
     assert_eq!((of(None).row_count(), of(Some("Up")).row_count(), of(Some("Down")).row_count()), (6, 5, 3));
-    let state = State { q: vec![0.1, 0.2, 0.3, 0.5], qd: vec![0.0; 4], qdd: vec![0.0; 4], ..State::default() };
+    let state =
+        State { q: vec![0.1, 0.2, 0.3, 0.5], qd: vec![0.0; 4], qdd: vec![0.0; 4], ..State::default() };
     let rows = of(Some("Up")).rows(&state).expect("rows");
     let phi: Vec<f64> = rows.iter().filter_map(|row| row.phi).collect();
     let expected = [0.1_f64.sin(), 2.0 * 0.2_f64.sin(), 3.0 * 0.3_f64.sin(), 0.5 - 0.2, 0.5 - 0.6];
@@ -85,7 +86,10 @@ fn what_is_not_evaluated_is_named() {
     let with = |rest: &str| format!("{PENDULUM} {rest}");
     let oracle = read(&with("force pull: [reaction(rod, bob), 0] on p;"));
     let found = oracle.map(|oracle| oracle.equations_of_motion(&lowest(1.0), &[1.0, 0.0]));
-    assert!(matches!(&found, Ok(Err(Gap(words))) | Err(Gap(words)) if words.contains("reaction")), "{found:?}");
+    assert!(
+        matches!(&found, Ok(Err(Gap(words))) | Err(Gap(words)) if words.contains("reaction")),
+        "{found:?}"
+    );
     let Gap(words) = read(&with("function lift: m(rad), C3;")).expect_err("a function");
     assert!(words.contains("`lift`"), "{words}");
     let Gap(words) = read(&with("param unknown: m = 1;")).expect_err("a value");
@@ -102,7 +106,9 @@ fn of_the_compiler_of_texts_the_syntax_alone_is_used() {
             continue;
         }
         let text = fs::read_to_string(&path).expect("a source");
-        for (crate_name, allowed) in [("mbs_codegen::", "syntax_tree::"), ("mbs_runtime", ""), ("crate::", "")] {
+        for (crate_name, allowed) in
+            [("mbs_codegen::", "syntax_tree::"), ("mbs_runtime", ""), ("crate::", "")]
+        {
             for rest in text.split(crate_name).skip(1) {
                 assert!(!allowed.is_empty() && rest.starts_with(allowed), "{}: {crate_name}", path.display());
                 seen += 1;

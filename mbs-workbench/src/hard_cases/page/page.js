@@ -104,7 +104,7 @@ if (worst) worst();
 
 const reasons = new Map();
 for (const outcome of DATA.outcomes.filter((outcome) => outcome.verdict !== "right")) {
-  const key = [outcome.verdict, outcome.method, outcome.kind, outcome.reason].join("\n");
+  const key = [outcome.verdict, outcome.method, outcome.kind, outcome.reason.replace(/[-\d.e]+/g, "")].join("\n");
   const known = reasons.get(key);
   if (known) known.count += 1;
   else reasons.set(key, { ...outcome, count: 1 });

@@ -7,7 +7,9 @@ use mbs_runtime::dynamics::{
     AugmentedLagrangian, Baumgarte, DormandPrince5, DormandPrince8, Explicit, Extrapolated, GeneralizedAlpha,
     Projection, RungeKutta4, Simulation, Tolerance, VelocityTransformation, equilibrium, inverse,
 };
-use mbs_runtime::{Batch, Budget, Failure, Lanes, Mechanism, Step, Stepper, assemble, mechanism, newton_raphson};
+use mbs_runtime::{
+    Batch, Budget, Failure, Lanes, Mechanism, Step, Stepper, assemble, mechanism, newton_raphson,
+};
 
 mechanism! {
     /// A slider-crank that a measured angle and a time law drive, with a load.
@@ -45,8 +47,7 @@ mechanism! {
 }
 
 /// NaN, infinities, numbers whose square overflows, denormals and zeros.
-const BAD: [f64; 9] =
-    [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e308, -1e308, 5e-324, -5e-324, 0.0, -0.0];
+const BAD: [f64; 9] = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e308, -1e308, 5e-324, -5e-324, 0.0, -0.0];
 
 /// A failure may take so long, the best of three.
 const SOON: Duration = Duration::from_millis(20);
@@ -157,10 +158,15 @@ fn motions_from_drives_refuse_or_answer() {
         }
         step(&mut tried, "h of `advance`", bad, &|s, bad| s.advance(bad).map(|_| ()));
         step(&mut tried, "t of `advance_to`", bad, &|s, bad| s.advance_to(bad).map(|_| ()));
-        step(&mut tried, "h of `step`", bad, &|s, bad| match s.step(bad, Budget { newton: 3, fallback: 1 }) {
-            Step::Refused(failure) => Err(failure),
-            _ => s.advance(0.0).map(|_| ()),
-        });
+        step(
+            &mut tried,
+            "h of `step`",
+            bad,
+            &|s, bad| match s.step(bad, Budget { newton: 3, fallback: 1 }) {
+                Step::Refused(failure) => Err(failure),
+                _ => s.advance(0.0).map(|_| ()),
+            },
+        );
         for index in 0..Press::<f64>::VARIABLES.len() {
             let name = Press::<f64>::VARIABLES[index].name;
             step(&mut tried, &format!("`{name}` of a `Stepper`"), bad, &|s, bad| {
@@ -210,14 +216,22 @@ macro_rules! by_method {
                     let mut given = [0.8, -0.6, 0.0, 0.0, 0.0];
                     given[j] = bad;
                     let [x, y, vx, vy, t] = given;
-                    let found = Simulation::<Swing, _, f64, 2, 1>::start(Swing::default(), $method, t, [x, y], [vx, vy]);
+                    let found = Simulation::<Swing, _, f64, 2, 1>::start(
+                        Swing::default(),
+                        $method,
+                        t,
+                        [x, y],
+                        [vx, vy],
+                    );
                     let found = found.map(|run| placed(run.q(), run.qd(), run.qdd(), run.balance().phi));
                     (found, Vec::new(), Vec::new())
                 });
             }
-            let moved = |act: &dyn Fn(&mut Simulation<Swing, _, f64, 2, 1>, f64) -> Result<(), Failure>, bad: f64| {
+            let moved = |act: &dyn Fn(&mut Simulation<Swing, _, f64, 2, 1>, f64) -> Result<(), Failure>,
+                         bad: f64| {
                 let mut run =
-                    Simulation::<Swing, _, f64, 2, 1>::start_from_text(Swing::default(), $method, 0.0).expect("a start");
+                    Simulation::<Swing, _, f64, 2, 1>::start_from_text(Swing::default(), $method, 0.0)
+                        .expect("a start");
                 run.step(1e-3).expect("a step");
                 let state = |run: &Simulation<Swing, _, f64, 2, 1>| {
                     bits(&[run.q(), run.qd(), run.qdd(), run.lambda(), &[run.t()]])
@@ -266,12 +280,17 @@ fn adaptive_runs_rest_and_inverse_dynamics_refuse_or_answer() {
         // A span without end is none that a run could refuse soon; its ends are.
         if !(bad.is_finite() && bad.abs() > 1.0) {
             tried.call("t of an adaptive run", bad, &|bad| {
-                let mut run = Simulation::<Swing, _, f64, 2, 1>::start_from_text(Swing::default(), method(), 0.0)
-                    .expect("a start");
+                let mut run =
+                    Simulation::<Swing, _, f64, 2, 1>::start_from_text(Swing::default(), method(), 0.0)
+                        .expect("a start");
                 let state = |run: &Simulation<Swing, _, f64, 2, 1>| bits(&[run.q(), run.qd(), &[run.t()]]);
                 let before = state(&run);
                 let answer = run.advance_to(bad);
-                (answer.map(|()| placed(run.q(), run.qd(), run.qdd(), run.balance().phi)), before, state(&run))
+                (
+                    answer.map(|()| placed(run.q(), run.qd(), run.qdd(), run.balance().phi)),
+                    before,
+                    state(&run),
+                )
             });
         }
         tried.call("the tolerance of an adaptive run", bad, &|bad| {
