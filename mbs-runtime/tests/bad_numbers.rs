@@ -8,7 +8,7 @@ use mbs_runtime::dynamics::{
     Projection, RungeKutta4, Simulation, Tolerance, VelocityTransformation, equilibrium, inverse,
 };
 use mbs_runtime::{
-    Batch, Budget, Failure, Lanes, Mechanism, Step, Stepper, assemble, mechanism, newton_raphson,
+    Batch, Budget, Failure, Lanes, Mechanism, Scalar, Step, Stepper, assemble, mechanism, newton_raphson,
 };
 
 mechanism! {
