@@ -2,7 +2,7 @@
 
 use crate::erased::timed_steps::{Placed, TimedSteps};
 use crate::erased::variations::{DrivenVariants, LANES};
-use crate::hard_cases::judge::{Bounds, judge, of_driven};
+use crate::hard_cases::judge::{Bounds, exceeds, judge, of_driven};
 use crate::hard_cases::oracle::{Oracle, State};
 use crate::hard_cases::study::{Clock, Extent};
 use crate::hard_cases::variation::{Class, Subject, Variation};
@@ -122,7 +122,7 @@ fn outcome(
     }
     let (verdict, reason) = match (judgement.wrong.or(branch), apart) {
         (Some(reason), _) => (Verdict::Wrong, reason),
-        (None, Some(apart)) if !(apart <= bound) => {
+        (None, Some(apart)) if exceeds(apart, bound) => {
             (Verdict::Wrong, format!("steps of a sixteenth lead to another position, by {apart:.1e}"))
         }
         _ => (Verdict::Right, String::new()),

@@ -53,6 +53,11 @@ fn extent(values: &[f64], scales: &[f64]) -> f64 {
     parts.fold(0.0, |a: f64, b| if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) })
 }
 
+/// `true` where a value is above its bound, or none.
+pub fn exceeds(value: f64, bound: f64) -> bool {
+    value.is_nan() || value > bound
+}
+
 /// A state that is judged.
 pub fn of_moved(seen: &Seen) -> State {
     let Seen { t, q, qd, qdd, lambda, states, .. } = seen.clone();
@@ -110,7 +115,7 @@ fn rows(run: &[State], oracle: &Oracle, scales: &[f64], bounds: Bounds, found: &
         for (index, (row, gradient)) in rows.iter().zip(&gradients).enumerate() {
             let gradient = gradient.max(f64::MIN_POSITIVE);
             let open = row.phi.unwrap_or(0.0).abs() / gradient;
-            if !(open <= bounds.rows) {
+            if exceeds(open, bounds.rows) {
                 let open = digits(open);
                 found.fault(format!("row {index} is open by {open} at t = {:.4} s", state.t));
             }
@@ -118,7 +123,7 @@ fn rows(run: &[State], oracle: &Oracle, scales: &[f64], bounds: Bounds, found: &
             for (what, value, size) in rates {
                 let open = value.abs() / gradient / (1.0 + size);
                 // Accelerations come from a saddle-point system, whose rows close to fewer digits.
-                if !(open <= 100.0 * bounds.rows) {
+                if exceeds(open, 100.0 * bounds.rows) {
                     let open = digits(open);
                     found.fault(format!("{what} leave row {index} by {open} at t = {:.4} s", state.t));
                 }
@@ -149,7 +154,7 @@ fn velocities(run: &[State], scales: &[f64], bounds: Bounds, found: &mut Judgeme
         .collect();
     over.sort_by(|a, b| a.0.total_cmp(&b.0));
     // A kink between two instants is met by few of them, a wrong velocity by all.
-    if let Some((over, miss)) = over.get(over.len() / 2).filter(|(over, _)| !(*over <= 1.0)) {
+    if let Some((over, miss)) = over.get(over.len() / 2).filter(|(over, _)| exceeds(*over, 1.0)) {
         found.fault(format!(
             "q and the integral of q̇ differ by {} in half of the intervals, {over:.0} times what the steps explain",
             digits(*miss)
@@ -180,7 +185,7 @@ fn balance(
     worst.sort_by(|a, b| a.0.total_cmp(&b.0));
     // Next to a singular position multipliers are cut: two looks may be there.
     if let Some((open, t)) = worst.len().checked_sub(3).map(|index| worst[index])
-        && !(open <= bounds.balance)
+        && exceeds(open, bounds.balance)
     {
         let open = digits(open);
         found.fault(format!("M q̈ + Φ_qᵀλ − Q is open by {open} of its terms, at t = {t:.4} s and later"));
@@ -210,7 +215,7 @@ fn energy(run: &[State], oracle: &Oracle, bounds: Bounds, found: &mut Judgement)
     let size = scale.max(bounds.size_of_energy(run, oracle));
     let allowed = 2.0 * (sum(2) - work).abs() + (100.0 * bounds.estimate + bounds.rounding) * size;
     let miss = (last - first - work).abs();
-    if !(miss <= allowed) {
+    if exceeds(miss, allowed) {
         let [miss, size] = [miss, size].map(digits);
         found.fault(format!("energy and work differ by {miss} J of {size} J, more than the steps explain"));
     }

@@ -2,7 +2,7 @@
 
 use crate::erased::timed_runs::Seen;
 use crate::erased::variations::{Change, MovedVariants};
-use crate::hard_cases::judge::{Bounds, judge, of_moved};
+use crate::hard_cases::judge::{Bounds, exceeds, judge, of_moved};
 use crate::hard_cases::oracle::Oracle;
 use crate::hard_cases::references::{FIRST, PARTS, References, Run, Varied, apart, instants, references};
 use crate::hard_cases::study::{Clock, Extent};
@@ -266,9 +266,9 @@ fn outcome(
             references.estimate
         );
         (Verdict::Wrong, words)
-    } else if !(error <= bound) && !is_soft {
+    } else if exceeds(error, bound) && !is_soft {
         (Verdict::Wrong, format!("an error of {error:.1e} where {bound:.1e} is expected"))
-    } else if !(estimate <= CLAIMED * motion(&references.first, scales)) && !is_single {
+    } else if exceeds(estimate, CLAIMED * motion(&references.first, scales)) && !is_single {
         (
             Verdict::Refused,
             format!("half the step changes the motion by {estimate:.1e}: no digits are claimed"),
