@@ -16,6 +16,7 @@ use crate::commands::document::Output;
 use crate::commands::run::Arguments as Analysis;
 use crate::commands::{self, CommandError};
 use crate::erased::costs::Comparable;
+use crate::erased::variations::Variable;
 use crate::mismatch::nearest;
 use crate::tables::valley::NamedLaw;
 use crate::target_directory::is_started;
@@ -80,6 +81,8 @@ enum Command {
     Compare(commands::compare::Arguments),
     /// Show what accuracy costs: the true error of each method, step and type of number over its time
     Cost(commands::cost::Arguments),
+    /// Run a mechanism in many hard variants by every method: right, refused, late or wrong, judged by the text itself
+    HardCases(commands::hard_cases::Arguments),
     /// Lay a spline along a table from a file; say how far to trust it, draw it, print it as Rust
     Table(commands::table::Arguments),
 }
@@ -111,6 +114,7 @@ impl Command {
             Command::Drift(_) => "drift",
             Command::Compare(_) => "compare",
             Command::Cost(_) => "cost",
+            Command::HardCases(_) => "hard-cases",
             Command::Table(_) => "table",
         }
     }
@@ -140,8 +144,9 @@ impl Command {
             | Command::Fmt(_)
             | Command::Expand(_)
             | Command::Compare(_)
-            // It builds a program of its own.
+            // They build a program of their own.
             | Command::Cost(_)
+            | Command::HardCases(_)
             | Command::Table(_) => return None,
         };
         (needs_code && is_file(name) && !is_started()).then_some(name)
@@ -175,18 +180,38 @@ pub fn cost_program(
     make: fn(&[(usize, f64)]) -> Comparable,
     laws: fn() -> Vec<NamedLaw>,
 ) -> ExitCode {
+    study_program(card, "cost", |command, catalogue, out| match command {
+        Command::Cost(arguments) => Some(commands::cost::study(catalogue, arguments, make, &laws(), out)),
+        _ => None,
+    })
+}
+
+/// The study of `mbs hard-cases` in such a program.
+pub fn hard_cases_program(card: Card, make: fn(&[(usize, f64)]) -> Variable) -> ExitCode {
+    study_program(card, "hard-cases", |command, catalogue, out| match command {
+        Command::HardCases(arguments) => Some(commands::hard_cases::study(catalogue, arguments, make, out)),
+        _ => None,
+    })
+}
+
+/// A program with one command for one mechanism; `study` gives none for another command.
+fn study_program(
+    card: Card,
+    name: &str,
+    study: impl FnOnce(&Command, &Catalogue, &mut Output) -> Option<Result<ExitCode, CommandError>> + Send,
+) -> ExitCode {
     let cards = [card];
     let catalogue = Catalogue { cards: &cards };
     match Arguments::try_parse() {
-        Ok(Arguments { command: Some(Command::Cost(arguments)), json }) => on_large_stack(|| {
+        Ok(Arguments { command: Some(command), json }) if command.schema() == name => on_large_stack(|| {
             let mut stdout = io::stdout().lock();
-            let mut out = Output::new(&mut stdout, json.then_some("cost"));
-            let found = commands::cost::study(&catalogue, &arguments, make, &laws(), &mut out);
+            let mut out = Output::new(&mut stdout, json.then_some(name));
+            let Some(found) = study(&command, &catalogue, &mut out) else { return ExitCode::FAILURE };
             let ended = out.end(found.as_ref().err());
             let code = found.unwrap_or_else(|error| report(&error));
             ended.map_or_else(|error| report(&CommandError::Output(error)), |()| code)
         }),
-        Ok(_) => report(&CommandError::Usage("this program has the command `cost` alone".to_string())),
+        Ok(_) => report(&CommandError::Usage(format!("this program has the command `{name}` alone"))),
         Err(error) => error.exit(),
     }
 }
@@ -292,6 +317,9 @@ fn done(catalogue: &Catalogue, command: Option<Command>, out: &mut Output) -> Re
         Some(Command::Dof(arguments)) => commands::dof::run(catalogue, &arguments, out),
         Some(Command::Drift(arguments)) => commands::drift::run(catalogue, &arguments, out),
         Some(Command::Compare(arguments)) => commands::compare::run(catalogue, &arguments, out),
+        Some(Command::HardCases(arguments)) => {
+            return commands::hard_cases::run(catalogue, &arguments).map(Done::Elsewhere);
+        }
         Some(Command::Cost(arguments)) => {
             let code = commands::cost::run(catalogue, &arguments, out)?;
             // An index is this program's own document.

@@ -22,6 +22,8 @@ pub mod double_double;
 pub mod erased;
 #[cfg(feature = "program")]
 pub mod forge;
+#[cfg(feature = "program")]
+pub mod hard_cases;
 mod hash;
 #[cfg(feature = "program")]
 pub mod layout;
@@ -42,4 +44,4 @@ pub mod text_file;
 pub mod verify;
 
 #[cfg(feature = "program")]
-pub use command_line::{cost_program, program};
+pub use command_line::{cost_program, hard_cases_program, program};

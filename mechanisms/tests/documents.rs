@@ -83,6 +83,7 @@ const COMMANDS: [&[&str]; 31] = [
     &["compare", "four_bar"],
     // It builds a program; `cargo xtask browser` runs it.
     &["cost", "four_bar", "--watch", "swing"],
+    &["hard-cases", "four_bar", "--methods", "projection"],
     &["table", "table.csv", "--out", "t.svg"],
     &["run", "nowhere"],
 ];

@@ -1,5 +1,6 @@
 //! Tokens → [`ast`], spans kept, error-tolerant, iterative for all nested texts.
 
+#[allow(missing_docs, reason = "fields are named as the grammar names them")]
 pub mod ast;
 mod constraint;
 mod dynamics;

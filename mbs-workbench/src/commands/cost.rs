@@ -27,7 +27,7 @@ use crate::cost::splines;
 use crate::double_double::DoubleDouble;
 use crate::erased::costs::Comparable;
 use crate::erased::facade::AnyEquations;
-use crate::forge::{Blueprint, Forge};
+use crate::forge::{Blueprint, Forge, Study};
 use crate::mismatch::{nearest, wrapped};
 use crate::setting::MotionMethod;
 use crate::tables::valley::{NamedLaw, Valley};
@@ -72,7 +72,7 @@ pub struct Arguments {
     out: Option<PathBuf>,
 }
 
-fn above_zero(text: &str) -> Result<f64, String> {
+pub(super) fn above_zero(text: &str) -> Result<f64, String> {
     finite(text).and_then(|number| {
         if number > 0.0 { Ok(number) } else { Err("a number above 0 is needed".to_string()) }
     })
@@ -89,7 +89,7 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut Output) -> Re
     let forge = Forge { release: true, ..caller };
     let blueprint = if is_file(arguments.name()) {
         methods(&arguments.methods)?;
-        Blueprint::cost_of_text(&TextFile::read(arguments.name())?)?
+        Blueprint::study_of_text(&Study::COST, &TextFile::read(arguments.name())?)?
     } else {
         // What is wrong on the command line is said before anything is built.
         let target = Target::find(catalogue, arguments.name())?;
@@ -101,13 +101,22 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut Output) -> Re
         methods(&arguments.methods)?;
         let source = instance.equations().source();
         let functions = instance.equations().functions();
-        Blueprint::cost_of_card(&forge, target.card(), source, functions)?
+        Blueprint::study_of_card(&Study::COST, &forge, target.card(), (source, functions))?
     };
     if let Some(directory) = &arguments.out {
         require_writable(directory)?;
     }
     let arguments = std::env::args_os().skip(1).collect();
-    started(&forge, &blueprint, arguments).map_err(|error| match error {
+    studied(&forge, &blueprint, arguments)
+}
+
+/// Builds the program of a study and runs it.
+pub(super) fn studied(
+    forge: &Forge,
+    blueprint: &Blueprint,
+    arguments: Vec<std::ffi::OsString>,
+) -> Result<ExitCode, CommandError> {
+    started(forge, blueprint, arguments).map_err(|error| match error {
         CommandError::Failed(reason) if blueprint.origin.is_none() && reason.starts_with("error:") => {
             CommandError::Failed(format!(
                 "the study is built in a program of its own: what the card's constructor names must be public, and a function that \
@@ -144,7 +153,7 @@ impl Arguments {
 }
 
 /// Methods with one of the words in their names; all where there are none.
-fn methods(words: &[String]) -> Result<Vec<MotionMethod>, CommandError> {
+pub(super) fn methods(words: &[String]) -> Result<Vec<MotionMethod>, CommandError> {
     let all = MotionMethod::all();
     let plain = |text: &str| text.to_lowercase().replace(['-', '_', ' '], "");
     let mut known: Vec<String> = all
@@ -439,7 +448,7 @@ fn options(arguments: &Arguments) -> Vec<String> {
 }
 
 /// The processor's name where the system tells it, and its architecture.
-fn machine() -> String {
+pub(super) fn machine() -> String {
     let told = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
     let model = told
         .lines()

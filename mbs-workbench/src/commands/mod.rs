@@ -14,6 +14,7 @@ pub mod dof;
 pub mod drift;
 pub mod expand;
 pub mod fmt;
+pub mod hard_cases;
 pub mod latex;
 pub mod list;
 mod measured;

@@ -1,5 +1,9 @@
 //! Mechanisms of any size behind object-safe traits: all code of the workbench that is generic over mechanisms.
 
+#[cfg(feature = "program")]
+pub mod adapted;
+#[cfg(feature = "program")]
+pub mod adaption;
 mod branching;
 #[cfg(feature = "program")]
 pub mod costs;
@@ -16,3 +20,5 @@ pub mod masses;
 pub mod timed_runs;
 #[cfg(feature = "program")]
 pub mod timed_steps;
+#[cfg(feature = "program")]
+pub mod variations;

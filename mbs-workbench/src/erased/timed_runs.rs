@@ -23,6 +23,12 @@ pub struct Seen {
     pub q: Vec<f64>,
     /// Velocities: N.
     pub qd: Vec<f64>,
+    /// Accelerations: N.
+    pub qdd: Vec<f64>,
+    /// Multipliers: M.
+    pub lambda: Vec<f64>,
+    /// First-order states.
+    pub states: Vec<f64>,
     /// Reactions, energy, outputs.
     pub observed: Observed<f64>,
     /// Largest violation of a row in the reference metric.
@@ -103,6 +109,9 @@ where
         t: run.t().to_f64(),
         q: numbers(run.q()),
         qd: numbers(run.qd()),
+        qdd: numbers(run.qdd()),
+        lambda: numbers(run.lambda()),
+        states: numbers(run.states().as_ref()),
         observed: Observed {
             reaction: numbers(&reaction),
             energy: energy.to_f64(),

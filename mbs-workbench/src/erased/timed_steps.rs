@@ -36,7 +36,12 @@ pub trait TimedSteps {
 }
 
 /// A mechanism in numbers `R`, one at a time.
-pub struct Single<S, R, const N: usize, const M: usize>(S, PhantomData<R>);
+pub struct Single<S, R, const N: usize, const M: usize> {
+    mechanism: S,
+    /// Distance of the guess from that of the text.
+    shift: [f64; N],
+    kind: PhantomData<R>,
+}
 
 /// A mechanism in `L` lanes of `R`.
 pub struct InLanes<S, R, const L: usize, const N: usize, const M: usize>(S, PhantomData<R>);
@@ -44,7 +49,12 @@ pub struct InLanes<S, R, const L: usize, const N: usize, const M: usize>(S, Phan
 impl<S, R, const N: usize, const M: usize> Single<S, R, N, M> {
     /// `mechanism` as it is.
     pub fn of(mechanism: S) -> Self {
-        Single(mechanism, PhantomData)
+        Self::beside(mechanism, [0.0; N])
+    }
+
+    /// `mechanism` with a guess `shift` beside that of the text.
+    pub fn beside(mechanism: S, shift: [f64; N]) -> Self {
+        Single { mechanism, shift, kind: PhantomData }
     }
 }
 
@@ -67,8 +77,9 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> TimedSteps 
         see: Option<&mut dyn FnMut(Placed<f64>)>,
     ) -> Result<Effort, Failure> {
         let first = R::constant(times.first().copied().unwrap_or(0.0));
-        let parameters = self.0.parameters();
-        let mut stepper = Stepper::assemble(self.0.clone(), self.0.guess(&parameters), first)?;
+        let mut guess = self.mechanism.guess(&self.mechanism.parameters());
+        guess.iter_mut().zip(self.shift).for_each(|(q, shift)| *q = *q + R::constant(shift));
+        let mut stepper = Stepper::assemble(self.mechanism.clone(), guess, first)?;
         let mut nothing = |_: Placed<f64>| ();
         let is_watched = see.is_some();
         let see: &mut dyn FnMut(Placed<f64>) = see.unwrap_or(&mut nothing);
@@ -102,7 +113,7 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> TimedSteps 
     }
 
     fn scales(&self) -> Vec<f64> {
-        numbers(&self.0.coordinate_scales(&self.0.parameters()))
+        numbers(&self.mechanism.coordinate_scales(&self.mechanism.parameters()))
     }
 }
 

@@ -27,6 +27,53 @@ pub struct Blueprint {
     pub is_closed: bool,
 }
 
+/// A study that is built in a program of its own: it has the mechanism in more numbers than `mbs` does.
+#[derive(Clone, Copy, Debug)]
+pub struct Study {
+    /// What it adds to the name of the program.
+    suffix: &'static str,
+    /// Type of all that it needs of the mechanism, a macro that makes this, and the program: in `mbs_workbench`.
+    kind: &'static str,
+    make: &'static str,
+    program: &'static str,
+    /// `true` where the program takes the functions of the caller.
+    with_laws: bool,
+}
+
+impl Study {
+    /// That of `mbs cost`.
+    pub const COST: Study = Study {
+        suffix: "_cost",
+        kind: "erased::costs::Comparable",
+        make: "comparable",
+        program: "cost_program",
+        with_laws: true,
+    };
+    /// That of `mbs hard-cases`.
+    pub const HARD_CASES: Study = Study {
+        suffix: "_hard_cases",
+        kind: "erased::variations::Variable",
+        make: "variable",
+        program: "hard_cases_program",
+        with_laws: false,
+    };
+
+    /// The constants that make the mechanism of `constructor`, and its `functions` of the caller.
+    fn item(&self, constructor: &str, functions: &[FunctionEntry]) -> String {
+        let Study { kind, make, .. } = self;
+        let laws = if self.with_laws { laws(constructor, functions) } else { String::new() };
+        format!(
+            "pub const STUDIED: fn(&[(usize, f64)]) -> ::mbs_workbench::{kind} = ::mbs_workbench::{make}!({constructor}); {laws}"
+        )
+    }
+
+    /// The call of the program, with names in `module` (`module::`).
+    fn call(&self, module: &str) -> String {
+        let laws = if self.with_laws { format!(", {module}LAWS") } else { String::new() };
+        format!("mbs_workbench::{}({module}CARD, {module}STUDIED{laws})", self.program)
+    }
+}
+
 /// The user's file that a source file was made from.
 #[derive(Clone, Debug)]
 pub struct Origin {
@@ -47,20 +94,13 @@ impl Blueprint {
         Self::for_text(text, "", "", |module| format!("mbs_workbench::program(&[{module}::CARD])"))
     }
 
-    /// The study of `mbs cost` for the mechanism of a text.
+    /// A study of the mechanism of a text.
     ///
     /// # Errors
     /// As [`of_text`](Self::of_text).
-    pub fn cost_of_text(text: &TextFile) -> Result<Self, ForgeError> {
-        let costs = format!(
-            "pub const COSTS: fn(&[(usize, f64)]) -> ::mbs_workbench::erased::costs::Comparable = \
-             ::mbs_workbench::comparable!({}::default());",
-            text.type_name()
-        );
-        let body = |module: &str| {
-            format!("mbs_workbench::cost_program({module}::CARD, {module}::COSTS, || Vec::new())")
-        };
-        Self::for_text(text, "_cost", &costs, body)
+    pub fn study_of_text(study: &Study, text: &TextFile) -> Result<Self, ForgeError> {
+        let item = study.item(&format!("{}::default()", text.type_name()), &[]);
+        Self::for_text(text, study.suffix, &item, |module| study.call(&format!("{module}::")))
     }
 
     /// A program for the mechanism of a text; `items` stand beside its card, `body` is that of `main`.
@@ -133,42 +173,39 @@ impl Blueprint {
         })
     }
 
-    /// The study of `mbs cost` for the mechanism of `card` with this text and these `functions` of the caller. It is made from the text alone if the constructor is that of
-    /// the text's defaults; else on top of the library, which is built anew for it.
+    /// A study of the mechanism of `card` with this text and these functions of the caller. It is made from the text alone if the
+    /// constructor is that of the text's defaults; else on top of the library, which is built anew for it.
     ///
     /// # Errors
     /// As [`of_card`](Self::of_card).
-    pub fn cost_of_card(
+    pub fn study_of_card(
+        study: &Study,
         forge: &Forge,
         card: &Card,
-        source: &str,
-        functions: &[FunctionEntry],
+        (source, functions): (&str, &[FunctionEntry]),
     ) -> Result<Self, ForgeError> {
         let Card { constructor, module, manifest, .. } = *card;
-        let name = format!("{}_cost", card.file_name());
+        let name = format!("{}{}", card.file_name(), study.suffix);
         let items = |constructor: &str| {
             format!(
                 "pub const CARD: ::mbs_workbench::card::Card = ::mbs_workbench::card::Card {{ constructor: {constructor:?}, \
-                 module: {module:?}, manifest: {manifest:?}, ..::mbs_workbench::card!({constructor}) }};\n\
-                 pub const COSTS: fn(&[(usize, f64)]) -> ::mbs_workbench::erased::costs::Comparable = \
-                 ::mbs_workbench::comparable!({constructor});\n{}",
-                laws(constructor, functions)
+                 module: {module:?}, manifest: {manifest:?}, ..::mbs_workbench::card!({constructor}) }};\n{}\n",
+                study.item(constructor, functions)
             )
         };
         let kind = constructor.strip_suffix("::default()").unwrap_or_default();
         if syn::parse_str::<syn::Ident>(kind).is_ok() {
             let main = format!(
                 "{HEAD}\n\nmod studied {{\n::mbs_runtime::mechanism! {{\n{source}\n}}\n{}}}\n\n\
-                 fn main() -> ExitCode {{\n    mbs_workbench::cost_program(studied::CARD, studied::COSTS, studied::LAWS)\n}}\n",
-                items(constructor)
+                 fn main() -> ExitCode {{\n    {}\n}}\n",
+                items(constructor),
+                study.call("studied::")
             );
             return Ok(Blueprint { name, manifest: dependencies(&[]), main, origin: None, is_closed: true });
         }
         Self::of_card(forge, card, &name, |constructor| {
-            format!(
-                "{HEAD}\n\n{}\nfn main() -> ExitCode {{\n    mbs_workbench::cost_program(CARD, COSTS, LAWS)\n}}\n",
-                items(constructor)
-            )
+            let (items, call) = (items(constructor), study.call(""));
+            format!("{HEAD}\n\n{items}\nfn main() -> ExitCode {{\n    {call}\n}}\n")
         })
     }
 

@@ -12,6 +12,7 @@ mod latex;
 mod modes;
 mod motion;
 mod next_position;
+mod oracle;
 mod picture;
 mod powers;
 mod settling;

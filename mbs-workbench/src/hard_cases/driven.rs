@@ -1,0 +1,134 @@
+//! Variants of a motion that drives prescribe, each judged by the oracle and by a run in finer steps.
+
+use crate::erased::timed_steps::{Placed, TimedSteps};
+use crate::erased::variations::{DrivenVariants, LANES};
+use crate::hard_cases::judge::{Bounds, exceeds, judge, of_driven};
+use crate::hard_cases::oracle::{Oracle, State};
+use crate::hard_cases::study::{Clock, Extent};
+use crate::hard_cases::variation::{Class, Subject, Variation};
+use crate::hard_cases::verdict::{Outcome, Verdict};
+use crate::setting::{Closing, Numbers};
+
+/// Steps over the span, and how many finer ones tell if the assembly is the same.
+const STEPS: f64 = 96.0;
+const FINER: u32 = 16;
+
+/// Ends of the iterations that are compared.
+const CLOSINGS: [Closing; 3] = [Closing::Closed, Closing::Evaluations(3), Closing::Evaluations(2)];
+
+/// A mechanism that drives move, and its text, with values of a variant.
+pub type Made = (Box<dyn DrivenVariants>, Oracle);
+
+/// A mechanism with values of parameters and inputs; none that does not exist.
+pub type Make<'a> = &'a dyn Fn(&[(usize, f64)]) -> Option<Made>;
+
+/// Runs all variants of `extent`.
+pub fn driven_outcomes(
+    make: Make,
+    subject: &Subject,
+    extent: &Extent,
+    clock: &Clock,
+    progress: &mut dyn FnMut(&str, f64),
+) -> Result<Vec<Outcome>, String> {
+    let mut outcomes = Vec::new();
+    for (index, seed) in extent.seeds.iter().enumerate() {
+        if clock.is_over() {
+            break;
+        }
+        let variation = Variation::of(*seed, subject);
+        progress(
+            &format!("variant {seed}: {}", variation.class.name()),
+            index as f64 / extent.seeds.len() as f64,
+        );
+        let (mechanism, oracle) = make(&variation.values).ok_or("the oracle cannot read the text")?;
+        let numbers = if variation.class == Class::Single { Numbers::Single } else { Numbers::Double };
+        let lanes = if variation.class == Class::Lanes { LANES } else { 1 };
+        let Some(runs) = mechanism.runs(numbers, lanes, &variation.shift) else { continue };
+        let Some(fine) = mechanism.runs(Numbers::Double, 1, &variation.shift) else { continue };
+        let steps = (STEPS * variation.finer).round().max(2.0) as u32;
+        let fine = positions(fine.as_ref(), Closing::Closed, extent.until, FINER * steps);
+        for closing in CLOSINGS.iter().filter(|closing| lanes == 1 || **closing == Closing::Closed) {
+            let run = positions(runs.as_ref(), *closing, extent.until, steps);
+            let method = if lanes == 1 { format!("Stepper, {closing}") } else { format!("Batch of {lanes}") };
+            outcomes.push(outcome(&variation, method, (run, &fine), &oracle, (subject, numbers, *closing)));
+        }
+    }
+    Ok(outcomes)
+}
+
+type Positions = Result<(Vec<Placed<f64>>, u64), String>;
+
+fn positions(runs: &dyn TimedSteps, closing: Closing, until: f64, steps: u32) -> Positions {
+    let times: Vec<f64> = (0..=steps).map(|k| until * f64::from(k) / f64::from(steps)).collect();
+    let mut seen = Vec::new();
+    let effort = runs.run(closing, &times, Some(&mut |placed| seen.push(placed)));
+    effort.map(|effort| (seen, effort.evaluations)).map_err(|failure| failure.to_string())
+}
+
+fn outcome(
+    variation: &Variation,
+    method: String,
+    (run, fine): (Positions, &Positions),
+    oracle: &Oracle,
+    (subject, numbers, closing): (&Subject, Numbers, Closing),
+) -> Outcome {
+    let mut outcome = Outcome {
+        seed: variation.seed,
+        class: variation.class,
+        method,
+        variant: variation.words.clone(),
+        verdict: Verdict::Refused,
+        error: None,
+        bound: None,
+        reason: String::new(),
+        not_made: Vec::new(),
+        work: 0,
+        course: Vec::new(),
+    };
+    let (run, work) = match run {
+        Ok(run) => run,
+        Err(reason) => return Outcome { reason, ..outcome },
+    };
+    outcome.work = work;
+    let scales = &subject.scales;
+    outcome.course = run.iter().step_by(3).filter_map(|placed| placed.motion[0].last().copied()).collect();
+    let is_closed = closing == Closing::Closed;
+    let largest = run.iter().flat_map(|placed| placed.motion[0].iter().zip(scales));
+    let largest = largest.map(|(q, scale)| (q / scale).abs()).fold(1.0, f64::max);
+    // A bounded step says itself how far its rows are open; the assembly must be the same. Next to a singular position the root
+    // of the rounding in the rows is left in the position.
+    let [open, bound] = match (numbers, is_closed) {
+        (Numbers::Double, true) => [1e-11, 1e-7],
+        _ => [1e-3; 2],
+    }
+    .map(|bound| bound * largest);
+    outcome.bound = Some(bound);
+    let bounds = Bounds { rows: open, balance: open, estimate: bound, rounding: bound };
+    let states: Vec<State> = run.iter().map(of_driven).collect();
+    let judgement = judge(&states, oracle, scales, bounds, variation.seed);
+    outcome.not_made = judgement.not_made;
+    let branch = states.iter().find_map(|state| {
+        let values = oracle.branches(state).ok()?;
+        let left = values.into_iter().find(|(_, value)| *value < -bound)?;
+        Some(format!("branch `{}` is left at t = {:.4} s, and nothing was said", left.0, state.t))
+    });
+    let apart = fine.as_ref().ok().map(|(fine, _)| {
+        let pairs = run.iter().zip(fine.iter().step_by(FINER as usize));
+        let pairs = pairs.flat_map(|(a, b)| a.motion[0].iter().zip(&b.motion[0]).zip(scales));
+        pairs
+            .map(|((a, b), scale)| ((a - b) / scale).abs())
+            .fold(0.0, |a: f64, b| if b.is_nan() { b } else { a.max(b) })
+    });
+    outcome.error = apart;
+    if let Err(reason) = fine {
+        outcome.not_made.push(format!("steps of a sixteenth: {reason}"));
+    }
+    let (verdict, reason) = match (judgement.wrong.or(branch), apart) {
+        (Some(reason), _) => (Verdict::Wrong, reason),
+        (None, Some(apart)) if exceeds(apart, bound) => {
+            (Verdict::Wrong, format!("steps of a sixteenth lead to another position, by {apart:.1e}"))
+        }
+        _ => (Verdict::Right, String::new()),
+    };
+    Outcome { verdict, reason, ..outcome }
+}

@@ -1,0 +1,234 @@
+//! Judgement of a run by the oracle: rows, velocities against positions, equations of motion, energy.
+
+use crate::erased::timed_runs::Seen;
+use crate::erased::timed_steps::Placed;
+use crate::hard_cases::oracle::{Gap, Oracle, State};
+use crate::hard_cases::variation::Random;
+
+/// Instants of a run at which the text is interpreted.
+const LOOKS: usize = 16;
+
+/// Bounds that a run must keep, as parts of what is compared.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bounds {
+    /// Of rows and their derivatives: as parts of the reference lengths, and of the largest rates.
+    pub rows: f64,
+    /// Of M q̈ + Φ_qᵀ λ − Q, as a part of its terms.
+    pub balance: f64,
+    /// Estimate of the run's own error in the reference metric.
+    pub estimate: f64,
+    /// Difference that rounding explains.
+    pub rounding: f64,
+}
+
+/// What a judgement came to.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Judgement {
+    /// The first fault, in words.
+    pub wrong: Option<String>,
+    /// Checks that were not made, with the reasons.
+    pub not_made: Vec<String>,
+}
+
+impl Judgement {
+    fn fault(&mut self, words: String) {
+        self.wrong.get_or_insert(words);
+    }
+
+    fn gap(&mut self, check: &str, Gap(reason): Gap) {
+        let words = format!("{check}: the oracle does not evaluate {reason}");
+        if !self.not_made.contains(&words) {
+            self.not_made.push(words);
+        }
+    }
+}
+
+fn digits(value: f64) -> String {
+    format!("{value:.1e}")
+}
+
+/// Largest magnitude over the scales; NaN stays.
+fn extent(values: &[f64], scales: &[f64]) -> f64 {
+    let parts = values.iter().zip(scales).map(|(value, scale)| (value / scale).abs());
+    parts.fold(0.0, |a: f64, b| if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) })
+}
+
+/// `true` where a value is above its bound, or none.
+pub fn exceeds(value: f64, bound: f64) -> bool {
+    value.is_nan() || value > bound
+}
+
+/// A state that is judged.
+pub fn of_moved(seen: &Seen) -> State {
+    let Seen { t, q, qd, qdd, lambda, states, .. } = seen.clone();
+    State { t, q, qd, qdd, lambda, states }
+}
+
+/// A state that is judged, of a motion that drives prescribe.
+pub fn of_driven(placed: &Placed<f64>) -> State {
+    let [q, qd, qdd] = placed.motion.clone();
+    State { t: placed.t, q, qd, qdd, ..State::default() }
+}
+
+/// Judges a run at equal distances of time, by the text as `oracle` reads it. `scales`: reference metric of the coordinates.
+pub fn judge(run: &[State], oracle: &Oracle, scales: &[f64], bounds: Bounds, seed: u64) -> Judgement {
+    let mut found = Judgement::default();
+    for state in run {
+        let all = state.q.iter().chain(&state.qd).chain(&state.qdd).chain(&state.lambda).chain(&state.states);
+        if let Some(value) = all.into_iter().find(|value| !value.is_finite()) {
+            found.fault(format!("`Ok` with {value} at t = {:.4} s", state.t));
+            return found;
+        }
+    }
+    rows(run, oracle, scales, bounds, &mut found);
+    velocities(run, scales, bounds, &mut found);
+    if oracle.is_dynamic() && run.iter().any(|state| !state.lambda.is_empty() || oracle.row_count() == 0) {
+        balance(run, oracle, scales, bounds, (seed, &mut found));
+        energy(run, oracle, bounds, &mut found);
+    }
+    found
+}
+
+/// Instants at equal distances, the first and the last among them.
+fn looks(run: &[State]) -> impl Iterator<Item = &State> {
+    let stride = run.len().saturating_sub(1).div_ceil(LOOKS - 1).max(1);
+    run.iter().step_by(stride)
+}
+
+/// Φ, Φ̇ and Φ̈ are 0.
+fn rows(run: &[State], oracle: &Oracle, scales: &[f64], bounds: Bounds, found: &mut Judgement) {
+    let mut gradients = vec![0.0_f64; oracle.row_count()];
+    // A gradient may vanish at a singular position; it is measured where it is largest.
+    for state in run.iter().step_by((run.len() / 3).max(1)) {
+        match oracle.gradients(state, scales) {
+            Ok(here) => gradients.iter_mut().zip(here).for_each(|(known, here)| *known = known.max(here)),
+            Err(gap) => return found.gap("rows", gap),
+        }
+    }
+    let pace = run.iter().map(|state| extent(&state.qd, scales)).fold(0.0, f64::max);
+    let push = run.iter().map(|state| extent(&state.qdd, scales)).fold(pace * pace, f64::max);
+    for state in looks(run) {
+        let rows = match oracle.rows(state) {
+            Ok(rows) => rows,
+            Err(gap) => return found.gap("rows", gap),
+        };
+        for (index, (row, gradient)) in rows.iter().zip(&gradients).enumerate() {
+            let gradient = gradient.max(f64::MIN_POSITIVE);
+            let open = row.phi.unwrap_or(0.0).abs() / gradient;
+            if exceeds(open, bounds.rows) {
+                let open = digits(open);
+                found.fault(format!("row {index} is open by {open} at t = {:.4} s", state.t));
+            }
+            let rates = [("velocities", row.rate, pace), ("accelerations", row.second, push)];
+            for (what, value, size) in rates {
+                let open = value.abs() / gradient / (1.0 + size);
+                // Accelerations come from a saddle-point system, whose rows close to fewer digits.
+                if exceeds(open, 100.0 * bounds.rows) {
+                    let open = digits(open);
+                    found.fault(format!("{what} leave row {index} by {open} at t = {:.4} s", state.t));
+                }
+            }
+        }
+    }
+}
+
+/// q changes by the integral of q̇: Hermite's rule of order 6 through q̇ and q̈ of both ends, once over one interval and once over
+/// two; what truncation explains falls 32 times between them.
+fn velocities(run: &[State], scales: &[f64], bounds: Bounds, found: &mut Judgement) {
+    let miss = |a: &State, b: &State| {
+        let h = b.t - a.t;
+        let miss = |j: usize| {
+            let mean = 0.5 * (a.qd[j] + b.qd[j]) + h / 12.0 * (a.qdd[j] - b.qdd[j]);
+            b.q[j] - a.q[j] - h * mean
+        };
+        extent(&(0..a.q.len()).map(miss).collect::<Vec<_>>(), scales)
+    };
+    let mut over: Vec<(f64, f64)> = run
+        .windows(3)
+        .step_by(2)
+        .map(|three| {
+            let one = miss(&three[0], &three[1]).max(miss(&three[1], &three[2]));
+            let allowed = miss(&three[0], &three[2]) / 8.0 + 10.0 * bounds.estimate + bounds.rounding;
+            (one / allowed, one)
+        })
+        .collect();
+    over.sort_by(|a, b| a.0.total_cmp(&b.0));
+    // A kink between two instants is met by few of them, a wrong velocity by all.
+    if let Some((over, miss)) = over.get(over.len() / 2).filter(|(over, _)| exceeds(*over, 1.0)) {
+        found.fault(format!(
+            "q and the integral of q̇ differ by {} in half of the intervals, {over:.0} times what the steps explain",
+            digits(*miss)
+        ));
+    }
+}
+
+/// wᵀ(M q̈ + Φ_qᵀ λ − Q) is 0 along two directions that the seed gives.
+fn balance(
+    run: &[State],
+    oracle: &Oracle,
+    scales: &[f64],
+    bounds: Bounds,
+    (seed, found): (u64, &mut Judgement),
+) {
+    let mut random = Random::of(seed ^ 0xba1a);
+    let mut worst: Vec<(f64, f64)> = Vec::new();
+    for state in looks(run) {
+        let w: Vec<f64> = scales
+            .iter()
+            .map(|scale| scale * random.between(0.5, 1.0) * if random.index(2) == 0 { 1.0 } else { -1.0 })
+            .collect();
+        match oracle.equations_of_motion(state, &w) {
+            Ok(balance) => worst.push((balance.open(), state.t)),
+            Err(gap) => return found.gap("equations of motion", gap),
+        }
+    }
+    worst.sort_by(|a, b| a.0.total_cmp(&b.0));
+    // Next to a singular position multipliers are cut: two looks may be there.
+    if let Some((open, t)) = worst.len().checked_sub(3).map(|index| worst[index])
+        && exceeds(open, bounds.balance)
+    {
+        let open = digits(open);
+        found.fault(format!("M q̈ + Φ_qᵀλ − Q is open by {open} of its terms, at t = {t:.4} s and later"));
+    }
+}
+
+/// The energy changes by the work of q̇ and q̈: Simpson's rule over intervals and over twice as long ones.
+fn energy(run: &[State], oracle: &Oracle, bounds: Bounds, found: &mut Judgement) {
+    let mut all = Vec::new();
+    for state in run {
+        match oracle.energy(state) {
+            Ok(energy) => all.push((state.t, energy)),
+            Err(gap) => return found.gap("energy", gap),
+        }
+    }
+    let whole = all.len().saturating_sub(1) / 4 * 4;
+    let sum = |stride: usize| {
+        let parts = all[..=whole].iter().step_by(stride).collect::<Vec<_>>();
+        let simpson = |three: &[&(f64, [f64; 2])]| {
+            (three[2].0 - three[0].0) / 6.0 * (three[0].1[1] + 4.0 * three[1].1[1] + three[2].1[1])
+        };
+        parts.windows(3).step_by(2).map(simpson).sum::<f64>()
+    };
+    let (Some((_, [first, _])), Some((_, [last, _]))) = (all.first(), all.get(whole)) else { return };
+    let work = sum(1);
+    let scale = all.iter().map(|(_, [energy, _])| (energy - first).abs()).fold(0.0, f64::max);
+    let size = scale.max(bounds.size_of_energy(run, oracle));
+    let allowed = 2.0 * (sum(2) - work).abs() + (100.0 * bounds.estimate + bounds.rounding) * size;
+    let miss = (last - first - work).abs();
+    if exceeds(miss, allowed) {
+        let [miss, size] = [miss, size].map(digits);
+        found.fault(format!("energy and work differ by {miss} J of {size} J, more than the steps explain"));
+    }
+}
+
+impl Bounds {
+    /// Largest kinetic energy (J): velocities alone have it.
+    fn size_of_energy(self, run: &[State], oracle: &Oracle) -> f64 {
+        let kinetic = |state: &State| {
+            let still = State { qd: vec![0.0; state.qd.len()], ..state.clone() };
+            let difference = oracle.energy(state).ok()?[0] - oracle.energy(&still).ok()?[0];
+            Some(difference.abs())
+        };
+        looks(run).filter_map(kinetic).fold(f64::MIN_POSITIVE, f64::max)
+    }
+}

@@ -1,0 +1,13 @@
+//! Hard cases: a mechanism by every method in many variants, each run judged by an oracle of its own.
+
+mod driven;
+mod judge;
+mod moved;
+pub mod oracle;
+mod references;
+pub mod result;
+pub mod study;
+#[cfg(test)]
+mod tests;
+pub mod variation;
+pub mod verdict;

@@ -1,0 +1,303 @@
+//! Variants of a motion from forces by every method, each against two references and the oracle.
+
+use crate::erased::timed_runs::Seen;
+use crate::erased::variations::{Change, MovedVariants};
+use crate::hard_cases::judge::{Bounds, exceeds, judge, of_moved};
+use crate::hard_cases::oracle::Oracle;
+use crate::hard_cases::references::{FIRST, PARTS, References, Run, Varied, apart, instants, references};
+use crate::hard_cases::study::{Clock, Extent};
+use crate::hard_cases::variation::{Class, Subject, Variation};
+use crate::hard_cases::verdict::{Outcome, Verdict};
+use crate::setting::{FormulationName, MotionMethod, Numbers, Resolution};
+
+/// Tolerance of adaptive runs in `f64` and `f32`.
+const TOLERANCES: [f64; 2] = [1e-8, 1e-4];
+
+/// Estimate that the reference step of equal steps must reach, in the reference metric.
+const FINE: f64 = 3e-5;
+
+/// Most steps of equal size.
+const MOST_STEPS: u32 = PARTS << 10;
+
+/// Part of the motion that a run's own estimate must stay below.
+const CLAIMED: f64 = 1e-3;
+
+/// Bound of the error over the run's own estimate.
+const TRUSTED: f64 = 30.0;
+
+/// Largest way of a coordinate from its start, at most 1 in the reference metric.
+fn motion(run: &[Seen], scales: &[f64]) -> f64 {
+    apart(run, &vec![run[0].clone(); run.len()], scales).clamp(1e-12, 1.0)
+}
+
+fn finer(resolution: Resolution, factor: f64) -> Resolution {
+    match resolution {
+        Resolution::Tolerance(tolerance) => Resolution::Tolerance(tolerance / factor.powi(4)),
+        Resolution::Steps(steps) => Resolution::Steps(((f64::from(steps) * factor).round() as u32).max(1)),
+    }
+}
+
+/// A mechanism that forces move, and its text, with values of parameters and inputs; none that does not exist.
+pub type Make<'a> = &'a dyn Fn(&[(usize, f64)]) -> Option<(Box<dyn MovedVariants>, Oracle)>;
+
+/// Runs all variants of `extent` by all methods.
+///
+/// # Errors
+/// The mechanism does not move as the text has it.
+pub fn moved_outcomes(
+    make: Make,
+    subject: &Subject,
+    extent: &Extent,
+    clock: &Clock,
+    progress: &mut dyn FnMut(&str, f64),
+) -> Result<Vec<Outcome>, String> {
+    let scales = &subject.scales;
+    let varied = |variation: Option<&Variation>| -> Result<Varied<'static>, String> {
+        let values = variation.map_or(&[][..], |variation| &variation.values);
+        let (mechanism, oracle) = make(values).ok_or("the oracle cannot read the text")?;
+        let numbers = match variation.map(|variation| variation.class) {
+            Some(Class::Single) => Numbers::Single,
+            _ => Numbers::Double,
+        };
+        let start = match variation.map(|variation| variation.class) {
+            Some(Class::Guess | Class::Rows | Class::Frame) => {
+                let [mut q, qd] = mechanism.guess();
+                let shift = variation.map_or(&[][..], |variation| &variation.shift);
+                q.iter_mut().zip(shift).for_each(|(q, shift)| *q += shift);
+                let found = mechanism.start(&[q, qd]);
+                Some(found.map_err(|failure| format!("the start: {failure}"))?)
+            }
+            _ => None,
+        };
+        let change = variation.map_or_else(Change::default, |variation| variation.change.clone());
+        Ok(Varied { mechanism, oracle, change, start, numbers })
+    };
+    let plain = varied(None)?;
+    let of = |varied: &Varied<'_>| references(varied, extent.until, scales);
+    progress("references", 0.0);
+    let usual = of(&plain)?;
+    let methods: Vec<MotionMethod> = extent
+        .methods
+        .iter()
+        .copied()
+        .filter(|method| plain.mechanism.admits(*method, Numbers::Double))
+        .collect();
+    let mut bases = Vec::new();
+    for method in &methods {
+        bases.push(base(&plain, *method, extent.until, scales, clock));
+    }
+    let mut outcomes = Vec::new();
+    for (index, seed) in extent.seeds.iter().enumerate() {
+        let variation = Variation::of(*seed, subject);
+        progress(
+            &format!("variant {seed}: {}", variation.class.name()),
+            index as f64 / extent.seeds.len() as f64,
+        );
+        if clock.is_over() {
+            break;
+        }
+        let made = varied(Some(&variation));
+        let own = match variation.class {
+            Class::Parameters | Class::Guess => made.as_ref().ok().map(&of),
+            // The same start as in the coordinates of the text, so the same motion.
+            Class::Rows | Class::Frame => made.as_ref().ok().map(|made| {
+                of(&Varied { change: Change::default(), start: made.start.clone(), ..varied(None)? })
+            }),
+            _ => None,
+        };
+        for (method, base) in methods.iter().zip(&bases) {
+            if let Some(references) = judged(&made, &usual, own.as_ref()) {
+                outcomes.push(outcome(&variation, *method, base, references, (extent, scales)));
+            }
+        }
+    }
+    Ok(outcomes)
+}
+
+/// A variant that can be run with its references, or the reason why it is refused.
+type Judged<'a> = Result<(&'a Varied<'a>, &'a References), String>;
+
+fn judged<'a>(
+    made: &'a Result<Varied<'static>, String>,
+    usual: &'a References,
+    own: Option<&'a Result<References, String>>,
+) -> Option<Judged<'a>> {
+    Some(match (made, own) {
+        (Err(reason), _) => Err(reason.clone()),
+        (Ok(_), Some(Err(reason))) => Err(reason.clone()),
+        (Ok(made), Some(Ok(own))) => Ok((made, own)),
+        (Ok(made), None) => Ok((made, usual)),
+    })
+}
+
+/// The reference resolution of a method in both types of number; a reason where no step reaches the estimate.
+fn base(
+    plain: &Varied<'_>,
+    method: MotionMethod,
+    until: f64,
+    scales: &[f64],
+    clock: &Clock,
+) -> Result<[Resolution; 2], String> {
+    if method.is_adaptive() {
+        return Ok(TOLERANCES.map(Resolution::Tolerance));
+    }
+    let times = instants(until, Resolution::Steps(PARTS));
+    let mut steps = PARTS;
+    let mut last: Option<Run> = None;
+    let mut reason = String::new();
+    while steps <= MOST_STEPS && !clock.is_over() {
+        match plain.run(method, Resolution::Steps(steps), &times) {
+            Ok((run, _)) => {
+                if last.as_ref().is_some_and(|last| apart(last, &run, scales) < FINE) {
+                    return Ok([Resolution::Steps(steps), Resolution::Steps(steps / 2)]);
+                }
+                reason = format!("{steps} steps still change the motion by more than {FINE:e}");
+                last = Some(run);
+            }
+            Err(failure) => (reason, last) = (failure, None),
+        }
+        steps *= 2;
+    }
+    Err(reason)
+}
+
+/// `true` for methods whose rows are open by design: their drift is part of the error.
+fn drifts(method: MotionMethod) -> bool {
+    use FormulationName::{Baumgarte, Penalty, Unstabilized};
+    matches!(
+        method,
+        MotionMethod::Explicit(Baumgarte | Penalty | Unstabilized, _) | MotionMethod::Implicit(_)
+    )
+}
+
+fn outcome(
+    variation: &Variation,
+    method: MotionMethod,
+    base: &Result<[Resolution; 2], String>,
+    judged: Judged<'_>,
+    (extent, scales): (&Extent, &[f64]),
+) -> Outcome {
+    let mut outcome = Outcome {
+        seed: variation.seed,
+        class: variation.class,
+        method: method.to_string(),
+        variant: variation.words.clone(),
+        verdict: Verdict::Refused,
+        error: None,
+        bound: None,
+        reason: String::new(),
+        not_made: Vec::new(),
+        work: 0,
+        course: Vec::new(),
+    };
+    let base = match base {
+        Ok(base) => base,
+        Err(reason) => return Outcome { reason: reason.clone(), ..outcome },
+    };
+    let (varied, references) = match judged {
+        Ok(judged) => judged,
+        Err(reason) => return Outcome { reason, ..outcome },
+    };
+    let is_single = varied.numbers == Numbers::Single;
+    let resolution = finer(base[usize::from(is_single)], variation.finer);
+    let times = instants(extent.until, resolution);
+    // Steps that are no multiple of the instants have instants of their own.
+    let is_shared = times.len() == references.first.len();
+    let (run, effort) = match varied.run(method, resolution, &times) {
+        Ok(ran) => ran,
+        Err(reason) => return Outcome { reason, ..outcome },
+    };
+    outcome.work = effort.evaluations + effort.corrections;
+    outcome.course = course(&run, scales);
+    let fine = match varied.run(method, finer(resolution, 2.0), &times) {
+        Ok((fine, _)) => fine,
+        Err(reason) => return Outcome { reason: format!("at half the step: {reason}"), ..outcome },
+    };
+    let estimate = apart(&run, &fine, scales);
+    let moved = references.first.first().map_or(0.0, |first| {
+        let shifts = first.q.iter().zip(scales).map(|(q, scale)| (q / scale).abs());
+        let frame = variation.change.shift.iter().zip(scales).map(|(b, scale)| (b / scale).abs());
+        shifts.chain(frame).fold(1.0, f64::max)
+    });
+    let epsilon = if is_single { f64::from(f32::EPSILON) } else { f64::EPSILON };
+    // Rounding adds up over the steps, and acts on distances from the origin of the frame.
+    let rounding = 1e3 * epsilon * moved * (effort.steps.max(1) as f64).sqrt();
+    let width =
+        references.estimate + references.other.as_ref().map_or(0.0, |(apart, own, _)| apart.min(*own));
+    let bound = TRUSTED * estimate + 10.0 * width + rounding;
+    outcome.bound = Some(bound);
+    let is_soft = matches!(method, MotionMethod::Explicit(FormulationName::Penalty, _));
+    let mut bounds = Bounds {
+        rows: if is_single { 2e-4 } else { 1e-8 } * moved,
+        balance: if is_single { 2e-3 } else { 1e-7 } * moved.sqrt(),
+        estimate,
+        rounding: 10.0 * rounding,
+    };
+    if drifts(method) {
+        bounds.rows += 100.0 * estimate + 1e-6;
+        bounds.balance = bounds.balance.max(1e-5);
+    }
+    let states: Vec<_> = run.iter().map(of_moved).collect();
+    let judgement = if is_soft {
+        Default::default()
+    } else {
+        judge(&states, &varied.oracle, scales, bounds, variation.seed)
+    };
+    outcome.not_made = judgement.not_made;
+    if is_soft {
+        outcome
+            .not_made
+            .push("rows, balance and formulations: springs in place of rows are another problem".to_string());
+    }
+    if references.other.is_none() {
+        outcome.not_made.push(format!("two formulations: {}", references.alone));
+    }
+    outcome.error = Some(if is_shared {
+        apart(&run, &references.first, scales)
+    } else {
+        at_end(&run, &references.first, scales)
+    });
+    let error = outcome.error.unwrap_or(f64::NAN);
+    let disagree = references.other.as_ref().filter(|(apart, own, _)| {
+        *apart > TRUSTED * (references.estimate + own) + 10.0 * rounding && method == FIRST
+    });
+    let (verdict, reason) = if let Some(reason) = judgement.wrong {
+        (Verdict::Wrong, reason)
+    } else if let Some((apart, own, name)) = disagree {
+        let words = format!(
+            "{FIRST} and {name} differ by {apart:.1e}, their estimates are {:.1e} and {own:.1e}",
+            references.estimate
+        );
+        (Verdict::Wrong, words)
+    } else if exceeds(error, bound) && !is_soft {
+        (Verdict::Wrong, format!("an error of {error:.1e} where {bound:.1e} is expected"))
+    } else if exceeds(estimate, CLAIMED * motion(&references.first, scales)) && !is_single {
+        (
+            Verdict::Refused,
+            format!("half the step changes the motion by {estimate:.1e}: no digits are claimed"),
+        )
+    } else {
+        (Verdict::Right, String::new())
+    };
+    Outcome { verdict, reason, ..outcome }
+}
+
+/// Distance at the end alone.
+fn at_end(a: &[Seen], b: &[Seen], scales: &[f64]) -> f64 {
+    match (a.last(), b.last()) {
+        (Some(a), Some(b)) => apart(core::slice::from_ref(a), core::slice::from_ref(b), scales),
+        _ => f64::NAN,
+    }
+}
+
+/// The coordinate that moves most, at some instants.
+fn course(run: &[Seen], scales: &[f64]) -> Vec<f64> {
+    let width = |j: usize| {
+        let all = run.iter().map(|seen| seen.q[j] / scales[j]);
+        all.clone().fold(f64::NEG_INFINITY, f64::max) - all.fold(f64::INFINITY, f64::min)
+    };
+    let Some(widest) = (0..scales.len()).max_by(|a, b| width(*a).total_cmp(&width(*b))) else {
+        return Vec::new();
+    };
+    run.iter().step_by(2).map(|seen| seen.q[widest]).collect()
+}

@@ -1,0 +1,368 @@
+//! An oracle of its own for a mechanism: the text itself, interpreted.
+//!
+//! Of the compiler of texts it uses the statements as they are written, nothing behind them: names, shapes, units, derivatives,
+//! energies and forces are read and computed here. So no fault of resolving, differentiation, structure or emission is shared. It
+//! shares the reader of the language. A part of the language that it does not evaluate is a [`Gap`], which is told.
+
+mod evaluation;
+mod functions;
+mod mechanics;
+mod number;
+mod state;
+#[cfg(test)]
+mod tests;
+mod tree;
+
+use std::collections::BTreeMap;
+use std::rc::Rc;
+
+use mbs_codegen::syntax_tree::{
+    Element, Equation, Expression, Item, Operation, Operator, StatementKind, Type,
+};
+
+pub use self::evaluation::Gap;
+use self::evaluation::{Definition, Names, Scope, Value, joined, value};
+use self::functions::dot;
+use self::mechanics::mechanics;
+use self::number::{Dual, Number};
+pub use self::state::{Balance, Row, State};
+use self::tree::{Placed, equations, unrolled};
+
+/// Direction of the first derivative.
+#[derive(Clone, Copy)]
+enum Along<'a> {
+    Nothing,
+    Positions(&'a [f64]),
+    Velocities(&'a [f64]),
+}
+
+/// A mechanism as its text says it.
+#[derive(Debug)]
+pub struct Oracle {
+    placed: Vec<Placed>,
+    /// Names and shapes of coordinates and of first-order states.
+    coordinates: Vec<(String, Vec<usize>)>,
+    states: Vec<(String, Vec<usize>)>,
+    /// Constants, parameters and inputs.
+    given: Rc<BTreeMap<String, Value>>,
+    definitions: Rc<BTreeMap<String, Vec<Definition>>>,
+    /// Names of constraints and drives, with the indices of their rows.
+    groups: Vec<(String, core::ops::Range<usize>)>,
+    /// Bodies whose Euler parameters are coordinates, by their places in the text: each has a row of its own, e·e = 1.
+    turning: Vec<usize>,
+}
+
+/// Components of an array in their order.
+fn components(name: &str, shape: &[usize]) -> Vec<String> {
+    let mut names = vec![name.to_string()];
+    for length in shape {
+        names = names.iter().flat_map(|name| (0..*length).map(move |k| format!("{name}.{k}"))).collect();
+    }
+    names
+}
+
+/// Name of a constraint, indices of its rows, their values, and whether a drive gives them.
+type See<'a> = &'a mut dyn FnMut(&str, core::ops::Range<usize>, &[(Number, bool)]);
+
+impl Oracle {
+    /// The text in a scene (`None`: all effects), with values of its parameters and inputs by component.
+    ///
+    /// # Errors
+    /// The part of the text that cannot be read.
+    pub fn read(source: &str, scene: Option<&str>, known: &dyn Fn(&str) -> Option<f64>) -> Result<Self, Gap> {
+        let placed = unrolled(source, scene).map_err(Gap)?;
+        let mut names = Names::default();
+        let (mut coordinates, mut states) = (Vec::new(), Vec::new());
+        let mut definitions: BTreeMap<String, Vec<Definition>> = BTreeMap::new();
+        for Placed { kind, rounds } in &placed {
+            match kind {
+                StatementKind::Const { name, value: expression, .. } => {
+                    let found = value(expression, &Scope::of(&names, rounds))?;
+                    names.moving.insert(name.text.clone(), found);
+                }
+                StatementKind::Param { name, kind, .. } | StatementKind::Input { name, kind, .. } => {
+                    let shape = shape(kind, &names)?;
+                    let component = |name: String| match known(&name) {
+                        Some(value) => Ok(Number::still(value)),
+                        None => Err(Gap(format!("`{name}`, whose value is not known"))),
+                    };
+                    let items: Result<Vec<_>, _> =
+                        components(&name.text, &shape).into_iter().map(component).collect();
+                    names.moving.insert(name.text.clone(), Value { shape, items: items? });
+                }
+                StatementKind::Coord { name, kind, .. } => {
+                    coordinates.push((name.text.clone(), shape(kind, &names)?));
+                }
+                StatementKind::State { name, kind, .. } => {
+                    states.push((name.text.clone(), shape(kind, &names)?));
+                }
+                StatementKind::Let { name, value, .. } => {
+                    let definition = Definition { rounds: rounds.clone(), value: value.clone() };
+                    definitions.entry(name.text.clone()).or_default().push(definition);
+                }
+                StatementKind::Function { name, .. } => {
+                    return Err(Gap(format!("the caller's function `{}`", name.text)));
+                }
+                _ => {}
+            }
+        }
+        let (given, definitions) = (Rc::new(names.moving), Rc::new(definitions));
+        let mut oracle = Oracle {
+            placed,
+            coordinates,
+            states,
+            given,
+            definitions,
+            groups: Vec::new(),
+            turning: Vec::new(),
+        };
+        // A first look at a state without two equal numbers tells which bodies turn with coordinates, and how many rows there are.
+        let count = oracle.states.iter().map(|(_, shape)| shape.iter().product::<usize>()).sum();
+        let apart = |first: f64| (0..oracle.size()).map(|j| first + 0.017 * j as f64).collect::<Vec<_>>();
+        let state = State { q: apart(0.5), qd: apart(0.3), states: vec![0.0; count], ..State::default() };
+        oracle.turning = oracle.turning_bodies(&oracle.names(&state, Along::Nothing), &state)?;
+        let mut groups = Vec::new();
+        oracle.each_row(&oracle.names(&state, Along::Nothing), &mut |group, rows, _| {
+            groups.push((group.to_string(), rows))
+        })?;
+        oracle.groups = groups;
+        Ok(oracle)
+    }
+
+    /// Number of coordinates.
+    pub fn size(&self) -> usize {
+        self.coordinates.iter().map(|(_, shape)| shape.iter().product::<usize>()).sum()
+    }
+
+    /// Number of rows.
+    pub fn row_count(&self) -> usize {
+        self.groups.last().map_or(0, |(_, rows)| rows.end)
+    }
+
+    fn names(&self, state: &State, along: Along<'_>) -> Names {
+        let time = Dual { v: state.t, b: 1.0, ..Dual::default() };
+        let mut names = Names {
+            given: self.given.clone(),
+            definitions: self.definitions.clone(),
+            time: Number { value: time, rate: Dual::still(1.0) },
+            ..Names::default()
+        };
+        let mut j = 0;
+        for (name, shape) in &self.coordinates {
+            let length = shape.iter().product::<usize>();
+            let items = (j..j + length).map(|j| {
+                let part = |values: &[f64]| values.get(j).copied().unwrap_or(0.0);
+                let (on_q, on_qd) = match along {
+                    Along::Nothing => (0.0, 0.0),
+                    Along::Positions(w) => (part(w), 0.0),
+                    Along::Velocities(w) => (0.0, part(w)),
+                };
+                Number {
+                    value: Dual { v: part(&state.q), a: on_q, b: part(&state.qd), c: 0.0 },
+                    rate: Dual { v: part(&state.qd), a: on_qd, b: part(&state.qdd), c: 0.0 },
+                }
+            });
+            let value = Value { shape: shape.clone(), items: items.collect() };
+            names.moving.insert(name.clone(), value);
+            j += length;
+        }
+        let mut k = 0;
+        for (name, shape) in &self.states {
+            let length = shape.iter().product::<usize>();
+            let number = |k| Number::still(state.states.get(k).copied().unwrap_or(f64::NAN));
+            let items = (k..k + length).map(number).collect();
+            names.moving.insert(name.clone(), Value { shape: shape.clone(), items });
+            k += length;
+        }
+        let multiplier = |row| Number::still(state.lambda.get(row).copied().unwrap_or(f64::NAN));
+        for (group, rows) in &self.groups {
+            names.lambda.entry(group.clone()).or_default().extend(rows.clone().map(multiplier));
+        }
+        names
+    }
+
+    /// Bodies whose orientation has coordinates among its components; of those with the same ones the first.
+    fn turning_bodies(&self, names: &Names, state: &State) -> Result<Vec<usize>, Gap> {
+        let mut known: Vec<Vec<Option<usize>>> = Vec::new();
+        let mut bodies = Vec::new();
+        for (index, placed) in self.placed.iter().enumerate() {
+            let Some(e) = orientation(placed, names)? else { continue };
+            let coordinate = |e: &Number| {
+                (0..state.q.len()).find(|j| e.value.v == state.q[*j] && e.rate.v == state.qd[*j])
+            };
+            let found: Vec<_> = e.iter().map(coordinate).collect();
+            if found.iter().all(Option::is_none) || known.contains(&found) {
+                continue;
+            }
+            if found.iter().all(Option::is_some) {
+                known.push(found);
+            }
+            bodies.push(index);
+        }
+        Ok(bodies)
+    }
+
+    /// Shows `see` the rows of each equation: its constraint, their indices, their values.
+    fn each_row(&self, names: &Names, see: See<'_>) -> Result<(), Gap> {
+        let mut count = 0;
+        let mut show = |group: &str, found: Vec<(Number, bool)>| {
+            see(group, count..count + found.len(), &found);
+            count += found.len();
+        };
+        for (index, placed) in self.placed.iter().enumerate() {
+            let Placed { kind, rounds } = placed;
+            match kind {
+                StatementKind::Element { name, .. } if self.turning.contains(&index) => {
+                    let e = orientation(placed, names)?.unwrap_or_default();
+                    let square = dot(&e, &e) - Number::still(1.0);
+                    show(&name.text, vec![(square, true)]);
+                }
+                StatementKind::Constraint { name, items, .. } => {
+                    let mut rounds = rounds.clone();
+                    equations(items, names, &mut rounds, &mut |item, rounds| {
+                        if let Item::Equation(equation) = item {
+                            let found = residual(equation, &Scope::of(names, rounds))?;
+                            show(&name.text, found.items.into_iter().map(|number| (number, true)).collect());
+                        }
+                        Ok(())
+                    })?;
+                }
+                StatementKind::Drive { name, equation } => {
+                    let scope = Scope::of(names, rounds);
+                    let found = match prescribed(equation) {
+                        None => {
+                            let found = residual(equation, &scope)?;
+                            found.items.into_iter().map(|number| (number, true)).collect()
+                        }
+                        Some(driven) => {
+                            let driven = value(&driven, &scope)?.number()?;
+                            let asked = value(&equation.right, &scope)?.number()?;
+                            // The rate is known, the phase itself is not.
+                            vec![(Number { rate: driven.rate - asked.value, ..driven }, false)]
+                        }
+                    };
+                    show(&name.text, found);
+                }
+                _ => {}
+            }
+        }
+        Ok(())
+    }
+
+    /// Σ |∂Φ/∂q_j| s_j of each row: what moves it where all coordinates move by their scales `scales`.
+    ///
+    /// # Errors
+    /// The part of the rows that cannot be evaluated.
+    pub fn gradients(&self, state: &State, scales: &[f64]) -> Result<Vec<f64>, Gap> {
+        let mut gradients = vec![0.0; self.row_count()];
+        for (j, scale) in scales.iter().enumerate() {
+            let mut w = vec![0.0; scales.len()];
+            w[j] = *scale;
+            self.each_row(&self.names(state, Along::Positions(&w)), &mut |_, rows, found| {
+                let sums = gradients[rows].iter_mut().zip(found);
+                sums.for_each(|(sum, (number, _))| *sum += number.value.a.abs());
+            })?;
+        }
+        Ok(gradients)
+    }
+
+    /// The rows at a state.
+    ///
+    /// # Errors
+    /// The part of the rows that cannot be evaluated.
+    pub fn rows(&self, state: &State) -> Result<Vec<Row>, Gap> {
+        let mut all = Vec::new();
+        self.each_row(&self.names(state, Along::Nothing), &mut |_, _, found| {
+            let row = |(number, is_known): &(Number, bool)| Row {
+                phi: is_known.then_some(number.value.v),
+                rate: number.rate.v,
+                second: number.rate.b,
+            };
+            all.extend(found.iter().map(row));
+        })?;
+        Ok(all)
+    }
+
+    /// wᵀ(M q̈ + Φ_qᵀ λ − Q) by Lagrange's equations, from the energies and the work of the forces along w (N).
+    ///
+    /// # Errors
+    /// The part of the text that cannot be evaluated.
+    pub fn equations_of_motion(&self, state: &State, w: &[f64]) -> Result<Balance, Gap> {
+        let (at, moving) = (self.names(state, Along::Positions(w)), self.names(state, Along::Velocities(w)));
+        let (place, pace) = (mechanics(&self.placed, &at)?, mechanics(&self.placed, &moving)?);
+        let mut balance = Balance::default();
+        pace.kinetic.iter().for_each(|kinetic| balance.add(kinetic.c));
+        place.kinetic.iter().for_each(|kinetic| balance.add(-kinetic.a));
+        place.potential.iter().for_each(|potential| balance.add(potential.a));
+        pace.dissipation.iter().for_each(|dissipation| balance.add(dissipation.a));
+        place.forces.iter().for_each(|along| balance.add(-along.force * along.place.value.a));
+        self.each_row(&at, &mut |_, rows, found| {
+            for ((number, _), row) in found.iter().zip(rows) {
+                balance.add(state.lambda.get(row).copied().unwrap_or(f64::NAN) * number.value.a);
+            }
+        })?;
+        Ok(balance)
+    }
+
+    /// Kinetic and potential energy, T + V (J), and its rate (W) that velocities and accelerations give it.
+    ///
+    /// # Errors
+    /// The part of the energies that cannot be evaluated.
+    pub fn energy(&self, state: &State) -> Result<[f64; 2], Gap> {
+        let found = mechanics(&self.placed, &self.names(state, Along::Nothing))?;
+        let all = found.kinetic.iter().chain(&found.potential);
+        Ok(all.fold([0.0; 2], |[energy, rate], part| [energy + part.v, rate + part.b]))
+    }
+
+    /// Values of the branches that hold always, each positive where it holds.
+    ///
+    /// # Errors
+    /// The part of a branch that cannot be evaluated.
+    pub fn branches(&self, state: &State) -> Result<Vec<(String, f64)>, Gap> {
+        let names = self.names(state, Along::Nothing);
+        let mut found = Vec::new();
+        for Placed { kind, rounds } in &self.placed {
+            if let StatementKind::Branch { name, at_start: false, larger, smaller } = kind {
+                let scope = Scope::of(&names, rounds);
+                let [larger, smaller] = [larger, smaller].map(|side| value(side, &scope)?.number());
+                found.push((name.text.clone(), (larger? - smaller?).value.v));
+            }
+        }
+        Ok(found)
+    }
+
+    /// `true` with masses or forces.
+    pub fn is_dynamic(&self) -> bool {
+        let is = |placed: &Placed| {
+            matches!(
+                placed.kind,
+                StatementKind::Element { .. } | StatementKind::Load { .. } | StatementKind::Energy { .. }
+            )
+        };
+        self.placed.iter().any(is)
+    }
+}
+
+fn shape(kind: &Type, names: &Names) -> Result<Vec<usize>, Gap> {
+    kind.shape.iter().map(|length| value(length, &Scope::of(names, &[]))?.count()).collect()
+}
+
+/// The orientation of a body that has one.
+fn orientation(placed: &Placed, names: &Names) -> Result<Option<Vec<Number>>, Gap> {
+    let StatementKind::Element { kind: Element::Body, fields, .. } = &placed.kind else { return Ok(None) };
+    let Some(field) = fields.iter().find(|field| field.name.text == "orientation") else { return Ok(None) };
+    Ok(Some(value(&field.value, &Scope::of(names, &placed.rounds))?.items))
+}
+
+/// Left side less right side.
+fn residual(equation: &Equation, scope: &Scope<'_>) -> Result<Value, Gap> {
+    joined(Operator::Subtract, value(&equation.left, scope)?, value(&equation.right, scope)?)
+}
+
+/// The argument of `rate(…)` where it is all of the left side.
+fn prescribed(equation: &Equation) -> Option<Expression> {
+    let (last, argument) = equation.left.code.split_last()?;
+    let is_rate =
+        matches!(&last.operation, Operation::Call { function, order: 0, arguments: 1 } if function == "rate");
+    is_rate.then(|| Expression { code: argument.to_vec() })
+}

@@ -1,0 +1,119 @@
+//! The oracle against closed forms, and its independence of the compiler of texts.
+
+use std::fs;
+use std::path::Path;
+
+use super::{Gap, Oracle, State};
+
+const PENDULUM: &str = "mechanism Pendulum; param L: m = 2; param mass: kg = 3; coord p: [m; 2]; \
+    body bob { mass: mass, com: p } gravity weight { acceleration: [0, -10] } \
+    constraint rod { dot(p, p) == L^2; } branch below: p[1] < 0;";
+
+fn read(source: &str) -> Result<Oracle, Gap> {
+    let known = |name: &str| match name {
+        "L" => Some(2.0),
+        "mass" => Some(3.0),
+        _ => None,
+    };
+    Oracle::read(source, None, &known)
+}
+
+/// The pendulum at its lowest point, with the speed `v`.
+fn lowest(v: f64) -> State {
+    // a = v²/L upwards; the row's force is −2 p λ.
+    let lambda = 3.0 * (10.0 + v * v / 2.0) / 4.0;
+    State {
+        q: vec![0.0, -2.0],
+        qd: vec![v, 0.0],
+        qdd: vec![0.0, v * v / 2.0],
+        lambda: vec![lambda],
+        ..State::default()
+    }
+}
+
+#[test]
+fn the_pendulum_has_its_closed_form() {
+    let oracle = read(PENDULUM).expect("a text");
+    let state = lowest(1.5);
+    let row = oracle.rows(&state).expect("rows")[0];
+    assert_eq!((row.phi, row.rate), (Some(0.0), 0.0));
+    assert!(row.second.abs() < 1e-15, "{row:?}");
+    let [energy, rate] = oracle.energy(&state).expect("an energy");
+    assert!((energy - (1.5 * 2.25 - 60.0)).abs() < 1e-13 && rate.abs() < 1e-13, "{energy} {rate}");
+    for w in [[1.0, 0.0], [0.0, 1.0], [0.3, -0.7]] {
+        let balance = oracle.equations_of_motion(&state, &w).expect("a balance");
+        assert!(balance.open() < 1e-15, "{balance:?}");
+    }
+    assert_eq!(oracle.branches(&state).expect("branches"), [("below".to_string(), 2.0)]);
+    assert_eq!(oracle.gradients(&state, &[1.0, 1.0]).expect("gradients"), [4.0]);
+}
+
+#[test]
+fn a_fault_in_any_part_of_the_state_shows() {
+    let oracle = read(PENDULUM).expect("a text");
+    let faulty = |change: fn(&mut State)| {
+        let mut state = lowest(1.5);
+        change(&mut state);
+        let row = oracle.rows(&state).expect("rows")[0];
+        let balance = oracle.equations_of_motion(&state, &[0.4, 0.9]).expect("a balance").open();
+        [row.phi.unwrap_or(0.0).abs(), row.rate.abs(), row.second.abs(), balance].map(|open| open > 1e-7)
+    };
+    assert_eq!(faulty(|_| ()), [false; 4]);
+    assert!(faulty(|state| state.q[1] *= 1.0 + 1e-6)[0]);
+    assert!(faulty(|state| state.qd[1] += 1e-6)[1]);
+    assert_eq!(faulty(|state| state.qdd[1] += 1e-5)[2..], [true, true]);
+    assert!(faulty(|state| state.lambda[0] *= 1.0 + 1e-5)[3]);
+}
+
+#[test]
+fn loops_effects_and_sums_are_read_in_the_order_of_the_text() {
+    let source = "mechanism Chain; const N: 1 = 3; coord a: [rad; N]; coord s: m; \
+        effect up { for i in 0..N { let share = 1 [m]*(i + 1); constraint c { share*sin(a[i]) == 0; } } } \
+        effect down { constraint d { s == 0; } } constraint e { for i in 0..2 { s == 2*sum(j in 0..i + 1: a[j])*1 [m]; } } \
+        scene Up = up; scene Down = down;";
+    let of = |scene| Oracle::read(source, scene, &|_| None).expect("a text");
+    assert_eq!((of(None).row_count(), of(Some("Up")).row_count(), of(Some("Down")).row_count()), (6, 5, 3));
+    let state =
+        State { q: vec![0.1, 0.2, 0.3, 0.5], qd: vec![0.0; 4], qdd: vec![0.0; 4], ..State::default() };
+    let rows = of(Some("Up")).rows(&state).expect("rows");
+    let phi: Vec<f64> = rows.iter().filter_map(|row| row.phi).collect();
+    let expected = [0.1_f64.sin(), 2.0 * 0.2_f64.sin(), 3.0 * 0.3_f64.sin(), 0.5 - 0.2, 0.5 - 0.6];
+    assert!(phi.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-15) && phi.len() == 5, "{phi:?}");
+}
+
+#[test]
+fn what_is_not_evaluated_is_named() {
+    let with = |rest: &str| format!("{PENDULUM} {rest}");
+    let oracle = read(&with("force pull: [reaction(rod, bob), 0] on p;"));
+    let found = oracle.map(|oracle| oracle.equations_of_motion(&lowest(1.0), &[1.0, 0.0]));
+    assert!(
+        matches!(&found, Ok(Err(Gap(words))) | Err(Gap(words)) if words.contains("reaction")),
+        "{found:?}"
+    );
+    let Gap(words) = read(&with("function lift: m(rad), C3;")).expect_err("a function");
+    assert!(words.contains("`lift`"), "{words}");
+    let Gap(words) = read(&with("param unknown: m = 1;")).expect_err("a value");
+    assert!(words.contains("`unknown`"), "{words}");
+}
+
+#[test]
+fn of_the_compiler_of_texts_the_syntax_alone_is_used() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/hard_cases/oracle");
+    let mut seen = 0;
+    for entry in fs::read_dir(folder).expect("a folder") {
+        let path = entry.expect("a file").path();
+        if path.ends_with("tests.rs") {
+            continue;
+        }
+        let text = fs::read_to_string(&path).expect("a source");
+        for (crate_name, allowed) in
+            [("mbs_codegen::", "syntax_tree::"), ("mbs_runtime", ""), ("crate::", "")]
+        {
+            for rest in text.split(crate_name).skip(1) {
+                assert!(!allowed.is_empty() && rest.starts_with(allowed), "{}: {crate_name}", path.display());
+                seen += 1;
+            }
+        }
+    }
+    assert!(seen >= 4, "{seen}");
+}

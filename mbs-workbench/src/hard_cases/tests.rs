@@ -1,0 +1,175 @@
+use std::time::Duration;
+
+use crate::erased::erase::erase;
+use crate::erased::facade::AnyEquations;
+use crate::erased::variations::Variable;
+use crate::hard_cases::result::MatrixResult;
+use crate::hard_cases::study::{Clock, Extent, Own, study};
+use crate::hard_cases::variation::Class;
+use crate::hard_cases::verdict::{Outcome, Verdict};
+use crate::setting::{FormulationName, ImplicitName, IntegratorName, MotionMethod};
+
+mbs_runtime::mechanism! {
+    /// A point mass on a rod, in Cartesian coordinates.
+    pub mechanism Pendulum;
+    param length: m = 1 in 0.9..1.1;
+    param g: m/s^2 = 9.81;
+    coord p: [m; 2] = [1, -0.1];
+    body bob { mass: 1, com: p }
+    gravity weight { acceleration: [0, -g] }
+    constraint rod { dot(p, p) == length^2; }
+}
+
+mbs_runtime::mechanism! {
+    /// The same with a row that is wrong by a thousandth.
+    pub mechanism OtherRow;
+    param length: m = 1 in 0.9..1.1;
+    param g: m/s^2 = 9.81;
+    coord p: [m; 2] = [1, -0.1];
+    body bob { mass: 1, com: p }
+    gravity weight { acceleration: [0, -g] }
+    constraint rod { dot(p, p) == 1.001*length^2; }
+}
+
+mbs_runtime::mechanism! {
+    /// The same with a force that is wrong by a thousandth.
+    pub mechanism OtherForce;
+    param length: m = 1 in 0.9..1.1;
+    param g: m/s^2 = 9.81;
+    coord p: [m; 2] = [1, -0.1];
+    body bob { mass: 1, com: p }
+    gravity weight { acceleration: [0, -1.001*g] }
+    constraint rod { dot(p, p) == length^2; }
+}
+
+mbs_runtime::mechanism! {
+    /// A crank with its slider.
+    pub mechanism CrankSlider;
+    param crank: m = 0.1 in 0.08..0.12;
+    param speed: rad/s = 2;
+    coord phi: rad;
+    coord psi: rad = -0.3;
+    coord x: m = 0.4;
+    constraint loop_ { crank*unit(phi) + 0.3m*unit(psi) == [x, 0]; }
+    drive motor: phi == speed*t + 0.4;
+    branch rod_ahead: cos(psi) > 0;
+}
+
+mbs_runtime::mechanism! {
+    /// The same with a motor that is late by a thousandth of a radian.
+    pub mechanism OtherDrive;
+    param crank: m = 0.1 in 0.08..0.12;
+    param speed: rad/s = 2;
+    coord phi: rad;
+    coord psi: rad = -0.3;
+    coord x: m = 0.4;
+    constraint loop_ { crank*unit(phi) + 0.3m*unit(psi) == [x, 0]; }
+    drive motor: phi == speed*t + 0.399;
+    branch rod_ahead: cos(psi) > 0;
+}
+
+const METHODS: [MotionMethod; 3] = [
+    MotionMethod::Explicit(FormulationName::Projection, IntegratorName::DormandPrince8),
+    MotionMethod::Explicit(FormulationName::Baumgarte, IntegratorName::RungeKutta4),
+    MotionMethod::Implicit(ImplicitName::Extrapolated),
+];
+
+fn result(
+    make: fn(&[(usize, f64)]) -> Variable,
+    equations: &dyn AnyEquations,
+    methods: &[MotionMethod],
+    until: f64,
+) -> MatrixResult {
+    let extent = Extent { methods: methods.to_vec(), seeds: (0..14).collect(), until };
+    let clock = Clock::of(Duration::from_secs(600));
+    let found = study(&Own { make, equations }, &extent, &clock, &mut |_, _| ()).expect("a study");
+    MatrixResult::of(found, "own".to_string(), "Own".to_string())
+}
+
+/// All that a failed assertion should show.
+fn all(result: &MatrixResult) -> String {
+    let reasons = [Verdict::Wrong, Verdict::Refused, Verdict::Late].map(|verdict| result.reasons(verdict));
+    format!("{}\n{}\n{reasons:#?}\n{:#?}", result.matrix(), result.sentence(), result.left_out)
+}
+
+#[test]
+fn variants_of_a_pendulum_are_right_by_every_method() {
+    let equations = erase(Pendulum::default()).into_equations();
+    let result = result(crate::variable!(Pendulum::default()), equations.as_ref(), &METHODS, 0.6);
+    assert_eq!(result.count(Verdict::Right), result.outcomes.len(), "{}", all(&result));
+    let kinds = ["steps", "parameters", "guess", "rows", "frame", "f32"];
+    assert!(kinds.iter().all(|kind| result.matrix().contains(kind)), "{}", all(&result));
+    assert_eq!((result.outcomes.len(), result.left_out.len()), (42, 1), "{}", all(&result));
+    assert!(result.not_made().is_empty(), "{:?}", result.not_made());
+    assert!(result.outcomes.iter().all(|outcome| outcome.error.is_some_and(|error| error > 0.0)));
+}
+
+#[test]
+fn an_emitted_row_or_force_that_is_not_the_texts_is_wrong() {
+    let equations = erase(Pendulum::default()).into_equations();
+    let (row, force) = (crate::variable!(OtherRow::default()), crate::variable!(OtherForce::default()));
+    for (make, words) in [(row as fn(&[(usize, f64)]) -> Variable, "is open by"), (force, "M q̈ + Φ_qᵀλ − Q")]
+    {
+        let result = result(make, equations.as_ref(), &METHODS[..1], 0.3);
+        // Single precision does not tell a force from one that is a thousandth off.
+        let is_double = |outcome: &&Outcome| outcome.class != Class::Single;
+        let double = || result.outcomes.iter().filter(is_double);
+        assert!(double().count() > 10, "{}", all(&result));
+        assert!(double().all(|outcome| outcome.verdict == Verdict::Wrong), "{}", all(&result));
+        assert!(
+            result.reasons(Verdict::Wrong).iter().any(|(reason, ..)| reason.contains(words)),
+            "{}",
+            all(&result)
+        );
+    }
+}
+
+#[test]
+fn variants_of_a_motion_from_drives_are_right_and_a_late_motor_is_wrong() {
+    let equations = erase(CrankSlider::default()).into_equations();
+    let result = result(crate::variable!(CrankSlider::default()), equations.as_ref(), &[], 3.0);
+    assert_eq!(result.count(Verdict::Right), result.outcomes.len(), "{}", all(&result));
+    let kinds = ["steps", "parameters", "guess", "f32", "lanes"];
+    assert!(kinds.iter().all(|kind| result.matrix().contains(kind)), "{}", all(&result));
+    let late = self::result(crate::variable!(OtherDrive::default()), equations.as_ref(), &[], 3.0);
+    let closed = late.outcomes.iter().filter(|outcome| outcome.method.ends_with("closed"));
+    assert!(
+        closed.clone().count() > 5
+            && closed
+                .clone()
+                .all(|outcome| outcome.verdict == Verdict::Wrong || outcome.class == Class::Single),
+        "{}",
+        all(&late)
+    );
+}
+
+#[test]
+fn a_page_holds_all_variants_and_a_seed_replays_one() {
+    let equations = erase(Pendulum::default()).into_equations();
+    let own = Own { make: crate::variable!(Pendulum::default()), equations: equations.as_ref() };
+    let run = |seeds: Vec<u64>| {
+        let extent = Extent { methods: METHODS[..1].to_vec(), seeds, until: 0.2 };
+        let found =
+            study(&own, &extent, &Clock::of(Duration::from_secs(600)), &mut |_, _| ()).expect("a study");
+        MatrixResult::of(found, "own".to_string(), "Own <b>".to_string())
+    };
+    let (whole, one) = (run((0..6).collect()), run(vec![4]));
+    let figures = |result: &MatrixResult| {
+        let outcome = result.outcomes.iter().find(|outcome| outcome.seed == 4).expect("the seed");
+        (outcome.variant.clone(), outcome.error, outcome.bound, outcome.work)
+    };
+    assert_eq!(figures(&whole), figures(&one));
+    let page = whole.page();
+    assert!(page.contains("Own &lt;b&gt;: hard cases") && !page.contains("{{"), "{page:.200}");
+    assert_eq!(whole.document()["outcomes"].as_array().map(Vec::len), Some(6));
+    assert_eq!(whole.csv().lines().count(), 7);
+}
+
+#[test]
+fn there_is_an_end_to_the_time() {
+    let equations = erase(Pendulum::default()).into_equations();
+    let own = Own { make: crate::variable!(Pendulum::default()), equations: equations.as_ref() };
+    let extent = Extent { methods: METHODS[..1].to_vec(), seeds: (0..9).collect(), until: 0.1 };
+    let found = study(&own, &extent, &Clock::of(Duration::ZERO), &mut |_, _| ()).expect("a study");
+    assert_eq!((found.outcomes.len(), found.not_run), (0, 9));
+}

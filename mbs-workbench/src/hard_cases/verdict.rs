@@ -1,0 +1,156 @@
+//! Verdicts of variants, and the matrix that they make.
+
+use crate::hard_cases::variation::Class;
+
+/// Verdict on a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Verdict {
+    /// The error is within its bound, and all checks hold.
+    Right,
+    /// Right, with ten times the work of the median of its cell or more.
+    Late,
+    /// A failure of the library, or a run that claims no digits.
+    Refused,
+    /// `Ok`, and not right.
+    Wrong,
+}
+
+impl Verdict {
+    /// In a word.
+    pub fn name(self) -> &'static str {
+        match self {
+            Verdict::Right => "right",
+            Verdict::Late => "late",
+            Verdict::Refused => "refused",
+            Verdict::Wrong => "wrong",
+        }
+    }
+}
+
+/// A run of a variant with its verdict.
+#[derive(Clone, Debug)]
+pub struct Outcome {
+    /// Seed of the variant.
+    pub seed: u64,
+    /// Kind of the variant.
+    pub class: Class,
+    /// Name of the method.
+    pub method: String,
+    /// The variant in words.
+    pub variant: String,
+    /// Verdict.
+    pub verdict: Verdict,
+    /// Largest distance from the reference in the reference metric.
+    pub error: Option<f64>,
+    /// Bound that the error must keep.
+    pub bound: Option<f64>,
+    /// Reason of a verdict that is not right, in words.
+    pub reason: String,
+    /// Checks that were not made.
+    pub not_made: Vec<String>,
+    /// Evaluations and corrections of the run.
+    pub work: u64,
+    /// Course of the first coordinate that moves, for a picture.
+    pub course: Vec<f64>,
+}
+
+/// Variants of one kind by one method.
+#[derive(Clone, Debug)]
+pub struct Cell {
+    /// Kind.
+    pub class: Class,
+    /// Method.
+    pub method: String,
+    /// Indices of the outcomes.
+    pub outcomes: Vec<usize>,
+}
+
+/// Work over the median's from which on a run is late.
+const LATE: f64 = 10.0;
+
+/// Cells in the order of kinds and methods; marks what is late.
+pub fn cells(outcomes: &mut [Outcome]) -> Vec<Cell> {
+    let mut cells: Vec<Cell> = Vec::new();
+    for (index, outcome) in outcomes.iter().enumerate() {
+        let known =
+            cells.iter_mut().find(|cell| cell.class == outcome.class && cell.method == outcome.method);
+        match known {
+            Some(cell) => cell.outcomes.push(index),
+            None => cells.push(Cell {
+                class: outcome.class,
+                method: outcome.method.clone(),
+                outcomes: vec![index],
+            }),
+        }
+    }
+    for cell in &cells {
+        let mut work: Vec<u64> =
+            cell.outcomes.iter().map(|index| outcomes[*index].work).filter(|work| *work > 0).collect();
+        work.sort_unstable();
+        let Some(median) = work.get(work.len() / 2).copied() else { continue };
+        for index in &cell.outcomes {
+            let outcome = &mut outcomes[*index];
+            let times = outcome.work as f64 / median as f64;
+            if outcome.verdict == Verdict::Right && times > LATE {
+                outcome.verdict = Verdict::Late;
+                outcome.reason = format!("{times:.0} times the work of the median");
+            }
+        }
+    }
+    cells
+}
+
+impl Cell {
+    /// The worst verdict, and the number of outcomes that have it.
+    pub fn worst(&self, outcomes: &[Outcome]) -> (Verdict, usize) {
+        let verdicts = self.outcomes.iter().map(|index| outcomes[*index].verdict);
+        let worst = verdicts.clone().max().unwrap_or(Verdict::Right);
+        (worst, verdicts.filter(|verdict| *verdict == worst).count())
+    }
+
+    /// Largest error over its bound.
+    pub fn closest(&self, outcomes: &[Outcome]) -> Option<f64> {
+        let ratio = |index: &usize| {
+            let Outcome { error, bound, .. } = &outcomes[*index];
+            Some((*error)? / (*bound)?)
+        };
+        self.outcomes.iter().filter_map(ratio).reduce(f64::max)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn outcome(method: &str, verdict: Verdict, work: u64) -> Outcome {
+        Outcome {
+            seed: 0,
+            class: Class::Steps,
+            method: method.to_string(),
+            variant: String::new(),
+            verdict,
+            error: Some(1e-9),
+            bound: Some(1e-8),
+            reason: String::new(),
+            not_made: Vec::new(),
+            work,
+            course: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn a_cell_has_the_worst_of_its_variants_and_ten_medians_of_work_are_late() {
+        let mut outcomes = vec![
+            outcome("a", Verdict::Right, 10),
+            outcome("a", Verdict::Right, 101),
+            outcome("a", Verdict::Right, 9),
+            outcome("b", Verdict::Right, 5),
+            outcome("b", Verdict::Wrong, 5),
+            outcome("b", Verdict::Refused, 0),
+        ];
+        let cells = cells(&mut outcomes);
+        let worst: Vec<_> = cells.iter().map(|cell| cell.worst(&outcomes)).collect();
+        assert_eq!(worst, [(Verdict::Late, 1), (Verdict::Wrong, 1)]);
+        assert!(cells[0].closest(&outcomes).is_some_and(|ratio| (ratio - 0.1).abs() < 1e-12));
+    }
+}
