@@ -80,6 +80,8 @@ enum Command {
     Compare(commands::compare::Arguments),
     /// Show what accuracy costs: the true error of each method, step and type of number over its time
     Cost(commands::cost::Arguments),
+    /// Make the profile of a cam from its lift law; say which limits it breaks, find the least cam
+    Cam(commands::cam::Arguments),
     /// Lay a spline along a table from a file; say how far to trust it, draw it, print it as Rust
     Table(commands::table::Arguments),
 }
@@ -111,6 +113,7 @@ impl Command {
             Command::Drift(_) => "drift",
             Command::Compare(_) => "compare",
             Command::Cost(_) => "cost",
+            Command::Cam(_) => "cam",
             Command::Table(_) => "table",
         }
     }
@@ -142,6 +145,7 @@ impl Command {
             | Command::Compare(_)
             // It builds a program of its own.
             | Command::Cost(_)
+            | Command::Cam(_)
             | Command::Table(_) => return None,
         };
         (needs_code && is_file(name) && !is_started()).then_some(name)
@@ -297,6 +301,7 @@ fn done(catalogue: &Catalogue, command: Option<Command>, out: &mut Output) -> Re
             // An index is this program's own document.
             return Ok(if arguments.is_index() { Done::Here } else { Done::Elsewhere(code) });
         }
+        Some(Command::Cam(arguments)) => commands::cam::run(&arguments, out),
         Some(Command::Table(arguments)) => commands::table::run(&arguments, out),
     }?;
     out.flush().map_err(CommandError::Output)?;

@@ -9,11 +9,13 @@
 use core::error::Error;
 use core::fmt;
 
+pub mod files;
 pub mod follower;
 pub mod jet;
 pub mod lift;
 pub mod limits;
-
+pub mod measured;
+pub mod page;
 mod search;
 pub mod shapes;
 #[cfg(test)]

@@ -4,6 +4,7 @@ mod analysis;
 mod assignment;
 mod atlas;
 pub mod basins;
+pub mod cam;
 pub mod check;
 pub mod chosen;
 pub mod compare;
