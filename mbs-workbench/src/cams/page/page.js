@@ -43,22 +43,23 @@ for (const [name, unit, values, factor, limits = []] of CHARTS) {
   panel.firstChild.textContent = `${name} (${unit})`;
   byId("charts").append(panel);
   const [width, height] = innerWidth < 600 ? [340, 210] : [640, 240];
-  const [left, right, top, bottom] = [62, 12, 10, 26];
+  const [left, right, top, bottom] = [62, 16, 10, 26];
   const svg = make("svg", { viewBox: `0 0 ${width} ${height}`, role: "img" }, panel);
   make("title", {}, svg).textContent = `${name} over the cam angle`;
   const numbers = values.map((value) => value === null ? NaN : value * factor);
-  /* A cusp has no finite curvature: the axis leaves out the highest half percent. */
+  /* A cusp has no finite curvature: the axis leaves out the highest fiftieth. */
   const sorted = numbers.filter(Number.isFinite).sort((a, b) => a - b);
-  const cut = limits.includes("undercut") || limits.includes("Hertz pressure") ? Math.floor(sorted.length / 200) : 0;
+  const cut = DATA.verdicts[0].kept ? 0 : limits.includes("undercut") || limits.includes("Hertz pressure") || values === DATA.d2r ? Math.floor(sorted.length / 50) : 0;
   let [low, high] = [sorted[cut] ?? 0, sorted[sorted.length - 1 - cut] ?? 1];
-  if (high - low < 1e-9 * (Math.abs(high) + 1e-9)) [low, high] = [Math.min(low, 0) - 0.5, Math.max(high, 0) + 0.5];
+  /* A range of rounding is none. */
+  if (high - low < 1e-9 * Math.max(Math.abs(high), 1)) [low, high] = [Math.min(low, 0) - 0.5, Math.max(high, 0) + 0.5];
   const pad = 0.06 * (high - low); low -= pad; high += pad;
   const [from, to] = [degrees[0], degrees[0] + 360];
   const x = (angle) => left + (angle - from) / (to - from) * (width - left - right);
   const y = (value) => height - bottom - (Math.min(Math.max(value, low), high) - low) / (high - low) * (height - top - bottom);
   for (let angle = Math.ceil(from / 60) * 60; angle <= to; angle += 60) {
     make("path", { class: "grid", d: `M${x(angle)} ${top}V${height - bottom}` }, svg);
-    make("text", { x: x(angle), y: height - 9, "text-anchor": "middle" }, svg).textContent = `${angle}°`;
+    make("text", { x: x(angle), y: height - 9, "text-anchor": x(angle) > width - 28 ? "end" : "middle" }, svg).textContent = `${angle}°`;
   }
   for (const value of ticks(low, high, 5)) {
     make("path", { class: value === 0 ? "zero" : "grid", d: `M${left} ${y(value)}H${width - right}` }, svg);
@@ -90,8 +91,8 @@ const row = (cells, tag) => {
 row(["limit", "bound", "value", "at", ""], "th");
 for (const one of DATA.verdicts) {
   const [factor, unit] = UNIT[one.name];
-  const bound = `${one.least ? (one.name === "undercut" ? ">" : "≥") : "≤"} ${short(one.bound * factor)} ${unit}`;
-  const value = one.value === null ? (one.name === "grinding wheel" ? "convex" : "∞") : `${short(one.value * factor)} ${unit}`;
+  const bound = `${one.least ? (one.name === "undercut" ? ">" : "≥") : "≤"} ${short(one.bound * factor)}${unit === "°" ? "" : " "}${unit}`;
+  const value = one.value === null ? (one.name === "grinding wheel" ? "convex" : "∞") : `${short(one.value * factor)}${unit === "°" ? "" : " "}${unit}`;
   const line = row([one.name, bound, value, one.value === null && one.kept ? "" : `${(one.angle * DEGREE).toFixed(1)}°`, one.kept ? "kept" : "broken"], "td");
   if (!one.kept) line.lastChild.className = "broken";
 }
