@@ -4,6 +4,7 @@ use core::f64::consts::TAU;
 use core::fmt::Write;
 
 use super::follower::{Cam, Place};
+use crate::output::svg::{COLOURS, label, open};
 use crate::tables::{Columns, Kind, Points, Spline, constant};
 
 /// Places of one turn at equal cam angles, from its beginning on.
@@ -41,6 +42,36 @@ pub fn dxf(places: &[(f64, Place<f64>)]) -> String {
         let _ = write!(text, "0\nVERTEX\n8\nCAM\n10\n{x:.9}\n20\n{y:.9}\n30\n0.0\n");
     }
     text + "0\nSEQEND\n8\nCAM\n0\nENDSEC\n0\nEOF\n"
+}
+
+/// Contour and base circle to scale as a picture, with a scale of ten millimetres.
+pub fn svg(places: &[(f64, Place<f64>)], base: f64) -> String {
+    const SIDE: f64 = 460.0;
+    let reach = places.iter().map(|(_, place)| place.polar[0]).fold(base, f64::max);
+    let pixels = 0.45 * SIDE / reach;
+    let mut svg = open(SIDE as usize, SIDE as usize);
+    let mut path = String::new();
+    for (k, (_, place)) in places.iter().enumerate() {
+        let [x, y] = place.contour.map(|x| pixels * x);
+        let pen = if k == 0 { "M" } else { "L" };
+        let _ = write!(path, "{pen}{:.2} {:.2}", 0.5 * SIDE + x, 0.5 * SIDE - y);
+    }
+    let (centre, [blue, orange, ..]) = (0.5 * SIDE, COLOURS);
+    let _ = writeln!(svg, "<path d=\"{path}Z\" fill=\"#d8e3ee\" stroke=\"{blue}\" stroke-width=\"2\"/>");
+    let _ = writeln!(
+        svg,
+        "<circle cx=\"{centre}\" cy=\"{centre}\" r=\"{:.2}\" fill=\"none\" stroke=\"{orange}\" stroke-dasharray=\"5 4\"/>",
+        base * pixels
+    );
+    let _ = writeln!(svg, "<path d=\"M{0} {centre}h16m-8 -8v16\" stroke=\"black\"/>", centre - 8.0);
+    let _ = writeln!(
+        svg,
+        "<path d=\"M12 {}h{:.2}\" stroke=\"black\" stroke-width=\"3\"/>",
+        SIDE - 12.0,
+        0.01 * pixels
+    );
+    label(&mut svg, 12, SIDE as usize - 20, "", "10 mm");
+    svg + "</svg>\n"
 }
 
 /// The polar radius of the pitch curve, of a flat face that of the contour, as a periodic quintic over the polar angle.

@@ -38,6 +38,9 @@ pub struct Recovered {
 /// Points beyond so many deviations are outliers.
 const OUTLIER: f64 = 6.0;
 
+/// A deviation below this share of the radius is none: no gauge is as fine.
+const FINEST: f64 = 1e-7;
+
 /// More outliers than this share of the points are no outliers.
 const MOST_OUTLIERS: f64 = 0.05;
 
@@ -108,9 +111,9 @@ impl Profile {
             let found = residuals.clone();
             residuals.sort_by(f64::total_cmp);
             // Median of the magnitudes over that of a normal distribution.
-            let deviation = residuals[residuals.len() / 2] / 0.6745;
+            let deviation = (residuals[residuals.len() / 2] / 0.6745).max(FINEST * self.radii[kept[0]]);
             let worst = found.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1)).map_or(0, |(k, _)| k);
-            if deviation > 0.0 && found[worst] > OUTLIER * deviation {
+            if found[worst] > OUTLIER * deviation {
                 // Neighbours follow an outlier: the largest goes alone.
                 outliers.push(kept.remove(worst));
                 if outliers.len() as f64 > MOST_OUTLIERS * self.angles.len() as f64 {

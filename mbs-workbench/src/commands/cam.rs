@@ -11,7 +11,7 @@ pub use super::cam_options::Arguments;
 use super::cam_options::{Sense, Sizes};
 use super::chosen::write_file;
 use super::document::Output;
-use crate::cams::files::{csv, dxf, rust, turn};
+use crate::cams::files::{csv, dxf, rust, svg, turn};
 use crate::cams::follower::{Cam, Direction, Follower};
 use crate::cams::limits::{Least, Size, Verdict, examine, least_size};
 use crate::cams::measured::Profile;
@@ -82,6 +82,7 @@ pub fn run(arguments: &Arguments, out: &mut Output) -> Result<(), CommandError> 
         ("page", "cam.html", page::html(&data, &origin.line())),
         ("profile", "profile.csv", origin.csv(&csv(&places, cam.follower.lifts_by_angle()))),
         ("drawing", "profile.dxf", dxf(&places)),
+        ("picture", "profile.svg", origin.svg(&svg(&places, cam.follower.base()))),
     ];
     for (kind, file, text) in files {
         let path = directory.join(file);
@@ -90,7 +91,7 @@ pub fn run(arguments: &Arguments, out: &mut Output) -> Result<(), CommandError> 
     }
     describe(out, &cam, &verdicts, least.as_ref(), &sentence);
     print(out, &cam, &verdicts, &sentence)?;
-    writeln!(out, "files        {}: cam.html, profile.csv, profile.dxf", directory.display())?;
+    writeln!(out, "files        {}: cam.html, profile.csv, profile.dxf, profile.svg", directory.display())?;
     Ok(())
 }
 
