@@ -81,7 +81,7 @@ enum Command {
     /// Show what accuracy costs: the true error of each method, step and type of number over its time
     Cost(commands::cost::Arguments),
     /// Make the profile of a cam from its lift law; say which limits it breaks, find the least cam
-    Cam(commands::cam::Arguments),
+    Cam(Box<commands::cam::Arguments>),
     /// Lay a spline along a table from a file; say how far to trust it, draw it, print it as Rust
     Table(commands::table::Arguments),
 }

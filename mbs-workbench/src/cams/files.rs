@@ -120,7 +120,9 @@ mod tests {
         assert_eq!(drawing.matches("VERTEX").count(), 90);
         // Pairs of code and value.
         let codes: Vec<&str> = drawing.lines().step_by(2).collect();
-        assert!(codes.iter().all(|code| code.parse::<u16>().is_ok()) && drawing.lines().count() % 2 == 0);
+        assert!(
+            codes.iter().all(|code| code.parse::<u16>().is_ok()) && drawing.lines().count().is_multiple_of(2)
+        );
     }
 
     #[test]

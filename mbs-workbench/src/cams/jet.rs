@@ -72,6 +72,16 @@ impl<T: Real> Jet<T> {
         self * self
     }
 
+    /// The quotient, term by term.
+    fn over(self, other: Self) -> Self {
+        let mut quotient = [T::constant(f64::NAN); 4];
+        for k in 0..4 {
+            let rest = (0..k).fold(self.0[k], |rest, j| rest - quotient[j] * other.0[k - j]);
+            quotient[k] = rest / other.0[0];
+        }
+        Jet(quotient)
+    }
+
     /// The square root of a series with a positive value.
     pub fn sqrt(self) -> Self {
         let [a, b, c, d] = self.0;
@@ -207,12 +217,7 @@ impl<T: Real> Div for Jet<T> {
     type Output = Self;
 
     fn div(self, other: Self) -> Self {
-        let mut quotient = [T::constant(f64::NAN); 4];
-        for k in 0..4 {
-            let rest = (0..k).fold(self.0[k], |rest, j| rest - quotient[j] * other.0[k - j]);
-            quotient[k] = rest / other.0[0];
-        }
-        Jet(quotient)
+        self.over(other)
     }
 }
 

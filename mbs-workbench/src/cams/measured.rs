@@ -214,7 +214,8 @@ fn touched(
     let theta = (fixed - of).scaled(sigma);
     let speed = theta.rate();
     // The cam angle runs against the polar angle where the flank is not undercut.
-    if !(speed.value() * sigma < 0.0) {
+    let runs_against = speed.value() * sigma < 0.0;
+    if !runs_against {
         let why = format!(
             "at a polar angle of {:.2} deg the follower cannot touch: the flank is hollow there",
             polar.to_degrees()

@@ -179,7 +179,8 @@ impl EvenPowers {
     /// Value and derivatives at `x`; 0 beyond the ends.
     pub fn jet<T: Real>(&self, x: T) -> [T; ORDERS] {
         let one = T::constant(1.0);
-        if !(x.abs() < one) {
+        let is_within = x.abs() < one;
+        if !is_within {
             return [T::constant(if x.is_finite() { 0.0 } else { f64::NAN }); ORDERS];
         }
         let mut terms = vec![T::constant(0.0); self.exponents.last().map_or(1, |p| *p as usize + 1)];

@@ -130,7 +130,8 @@ const show = (k) => {
     /* The face about the foot of the perpendicular from the cam's centre. */
     const p = contact[0] * nx + contact[1] * ny, foot = [p * nx, p * ny];
     path += `M${foot[0] + face * ny} ${-(foot[1] - face * nx)}L${foot[0] - face * ny} ${-(foot[1] + face * nx)}`;
-    path += pivot ? `M${pivot[0]} ${-pivot[1]}L${foot[0]} ${-foot[1]}` : `M0 ${-foot[1]}V${-y1}`;
+    const away = pivot ? p - pivot[0] * nx - pivot[1] * ny : 0;
+    path += pivot ? `M${pivot[0]} ${-pivot[1]}L${pivot[0] + away * nx} ${-(pivot[1] + away * ny)}L${foot[0]} ${-foot[1]}` : `M0 ${-foot[1]}V${-y1}`;
   }
   if (pivot) path += circle(pivot[0], -pivot[1], 1.5);
   follower.setAttribute("d", path);
