@@ -83,6 +83,8 @@ enum Command {
     Cost(commands::cost::Arguments),
     /// Run a mechanism in many hard variants by every method: right, refused, late or wrong, judged by the text itself
     HardCases(commands::hard_cases::Arguments),
+    /// Make the profile of a cam from its lift law; say which limits it breaks, find the least cam
+    Cam(Box<commands::cam::Arguments>),
     /// Lay a spline along a table from a file; say how far to trust it, draw it, print it as Rust
     Table(commands::table::Arguments),
 }
@@ -115,6 +117,7 @@ impl Command {
             Command::Compare(_) => "compare",
             Command::Cost(_) => "cost",
             Command::HardCases(_) => "hard-cases",
+            Command::Cam(_) => "cam",
             Command::Table(_) => "table",
         }
     }
@@ -147,6 +150,7 @@ impl Command {
             // They build a program of their own.
             | Command::Cost(_)
             | Command::HardCases(_)
+            | Command::Cam(_)
             | Command::Table(_) => return None,
         };
         (needs_code && is_file(name) && !is_started()).then_some(name)
@@ -325,6 +329,7 @@ fn done(catalogue: &Catalogue, command: Option<Command>, out: &mut Output) -> Re
             // An index is this program's own document.
             return Ok(if arguments.is_index() { Done::Here } else { Done::Elsewhere(code) });
         }
+        Some(Command::Cam(arguments)) => commands::cam::run(&arguments, out),
         Some(Command::Table(arguments)) => commands::table::run(&arguments, out),
     }?;
     out.flush().map_err(CommandError::Output)?;

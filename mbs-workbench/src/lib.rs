@@ -8,6 +8,8 @@
 //! Without the feature `program` there is no command line, only the comparison of a mechanism of one's own: [`erased`], [`verify`].
 
 #[cfg(feature = "program")]
+pub mod cams;
+#[cfg(feature = "program")]
 pub mod card;
 #[cfg(feature = "program")]
 pub mod catalogue;

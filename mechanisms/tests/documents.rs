@@ -52,7 +52,7 @@ const TEXT: &str = "mechanism Bar;\nparam w: rad/s = 1 in 0.1..9, tolerance 0.1;
 const TABLE: &str = "t (s),x (mm)\n0,1\n1,2\n2,4\n3,8\n4,16\n";
 
 /// A command line for each command, and more where the fields differ.
-const COMMANDS: [&[&str]; 31] = [
+const COMMANDS: [&[&str]; 34] = [
     &["list"],
     &["list", "bar.mbs"],
     &["check", "bar.mbs"],
@@ -85,15 +85,69 @@ const COMMANDS: [&[&str]; 31] = [
     &["cost", "four_bar", "--watch", "swing"],
     &["hard-cases", "four_bar", "--methods", "projection"],
     &["table", "table.csv", "--out", "t.svg"],
+    &[
+        "cam",
+        "345",
+        "--lift",
+        "4mm",
+        "--rise",
+        "60deg",
+        "--follower",
+        "roller",
+        "--roller",
+        "6mm",
+        "--least",
+        "base",
+        "--radius",
+        "2mm",
+        "--out",
+        "cam",
+    ],
+    &[
+        "cam",
+        "345",
+        "--lift",
+        "4mm",
+        "--rise",
+        "60deg",
+        "--follower",
+        "flat",
+        "--base",
+        "18mm",
+        "--rust",
+        "CAM",
+    ],
+    &[
+        "cam",
+        "profile.csv",
+        "--measured",
+        "--follower",
+        "roller",
+        "--base",
+        "18mm",
+        "--roller",
+        "6mm",
+        "--out",
+        "cam",
+    ],
     &["run", "nowhere"],
 ];
 
 #[test]
 fn every_command_prints_one_document_of_a_stable_schema() {
     let folder = scratch();
-    for (name, content) in
-        [("bar.mbs", TEXT), ("bad.mbs", "mechanism Bar;\ncoord phi: rad\n"), ("table.csv", TABLE)]
-    {
+    // A circle beside its centre, as a gauge gives its points.
+    let point = |k: i32| {
+        let (sine, cosine) = f64::from(k).to_radians().sin_cos();
+        format!("{:.4},{:.4}\n", 1.0 + 18.0 * cosine, 18.0 * sine)
+    };
+    let profile = format!("x (mm),y (mm)\n{}", (0..360).map(point).collect::<String>());
+    for (name, content) in [
+        ("profile.csv", profile.as_str()),
+        ("bar.mbs", TEXT),
+        ("bad.mbs", "mechanism Bar;\ncoord phi: rad\n"),
+        ("table.csv", TABLE),
+    ] {
         fs::write(folder.join(name), content).expect("a file");
     }
     let mut schemas: BTreeMap<String, BTreeMap<String, BTreeSet<&str>>> = BTreeMap::new();

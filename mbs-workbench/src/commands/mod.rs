@@ -4,6 +4,8 @@ mod analysis;
 mod assignment;
 mod atlas;
 pub mod basins;
+pub mod cam;
+mod cam_options;
 pub mod check;
 pub mod chosen;
 pub mod compare;

@@ -14,6 +14,6 @@ mod spline;
 mod unit;
 pub mod valley;
 
-pub use reader::{Columns, Fault, Points, read};
+pub use reader::{Columns, Fault, Points, read, read_unordered};
 pub use spline::{Kind, SEED, Spline, close_period};
 pub use unit::Unit;

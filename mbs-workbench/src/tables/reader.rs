@@ -129,7 +129,11 @@ pub struct Points {
 /// # Errors
 /// The first fault.
 pub fn read(bytes: &[u8], columns: Option<&Columns>) -> Result<Points, Fault> {
-    let table = read_columns(bytes, |head| {
+    read_points(bytes, columns, true)
+}
+
+fn read_points(bytes: &[u8], columns: Option<&Columns>, is_ordered: bool) -> Result<Points, Fault> {
+    let choose = |head: &Head| {
         let Columns { x, y } = columns.cloned().or_else(|| Columns::of_header(head)).ok_or_else(|| {
             Fault::new(
                 head.line,
@@ -139,7 +143,8 @@ pub fn read(bytes: &[u8], columns: Option<&Columns>) -> Result<Points, Fault> {
             )
         })?;
         Ok(vec![x, y])
-    })?;
+    };
+    let table = read_rows(bytes, choose, is_ordered)?;
     let Table { columns, names, values, lines } = table;
     let [x, y] = <[_; 2]>::try_from(columns).expect("two columns are asked for");
     let [abscissae, ordinates] = <[_; 2]>::try_from(values).expect("two columns are read");
@@ -158,6 +163,22 @@ pub fn read(bytes: &[u8], columns: Option<&Columns>) -> Result<Points, Fault> {
 pub fn read_columns(
     bytes: &[u8],
     choose: impl FnOnce(&Head) -> Result<Vec<(usize, Unit)>, Fault>,
+) -> Result<Table, Fault> {
+    read_rows(bytes, choose, true)
+}
+
+/// As [`read`], with abscissae in any order: `x` of the result need not increase.
+///
+/// # Errors
+/// The first fault.
+pub fn read_unordered(bytes: &[u8], columns: Option<&Columns>) -> Result<Points, Fault> {
+    read_points(bytes, columns, false)
+}
+
+fn read_rows(
+    bytes: &[u8],
+    choose: impl FnOnce(&Head) -> Result<Vec<(usize, Unit)>, Fault>,
+    is_ordered: bool,
 ) -> Result<Table, Fault> {
     if bytes.starts_with(&[0xFF, 0xFE]) || bytes.starts_with(&[0xFE, 0xFF]) || bytes.contains(&0) {
         return Err(Fault::new(0, 0, "the file is not text in UTF-8".to_string(), "save it as CSV in UTF-8"));
@@ -185,7 +206,7 @@ pub fn read_columns(
             values.push(value(&row, column, line, separator)?);
         }
         let rises = values.first().is_none_or(|x| x.windows(2).last().is_none_or(|pair| pair[0] < pair[1]));
-        if !rises {
+        if is_ordered && !rises {
             let index = columns[0].0;
             let message = format!("{} is not above the line before", row[index]);
             return Err(Fault::new(line, index + 1, message, "sort the lines and remove repeated ones"));

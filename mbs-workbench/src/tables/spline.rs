@@ -1,7 +1,7 @@
 //! A spline along the points of a table, with estimates of its error.
 
-use mbs_runtime::Function;
 use mbs_runtime::driver::{CubicRow, End, FitError, QuinticRow, Table, fit_cubic, fit_periodic_quintic};
+use mbs_runtime::{Function, Scalar};
 
 use super::Points;
 use super::reader::Fault;
@@ -71,10 +71,20 @@ impl Spline {
 
     /// Value and three derivatives.
     pub fn derivatives(&self, x: f64) -> [f64; 4] {
+        self.jet(x)
+    }
+
+    /// Value and `K` − 1 derivatives in any scalar.
+    pub fn jet<T: Scalar, const K: usize>(&self, x: T) -> [T; K] {
         match &self.pieces {
             Pieces::Cubic(pieces) => Table::open(&self.knots, pieces).jet(x),
             Pieces::Quintic(pieces, period) => Table::periodic(&self.knots, pieces, *period).jet(x),
         }
+    }
+
+    /// Number of continuous derivatives.
+    pub fn order(&self) -> usize {
+        if matches!(self.pieces, Pieces::Cubic(_)) { 2 } else { 4 }
     }
 
     /// Argument of the first and the last place.

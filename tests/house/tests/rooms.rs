@@ -74,6 +74,7 @@ const HOUSES: &[House] = &[
             "erased",
             "output",
             "tables",
+            "cams",
             "mismatch",
             "layout",
             "text_file",

@@ -1,0 +1,133 @@
+//! Profiles as files: CSV, DXF, a spline as a Rust constant.
+
+use core::f64::consts::TAU;
+use core::fmt::Write;
+
+use super::follower::{Cam, Place};
+use crate::output::svg::{COLOURS, label, open};
+use crate::tables::{Columns, Kind, Points, Spline, constant};
+
+/// Places of one turn at equal cam angles, from its beginning on.
+pub fn turn(cam: &Cam, count: usize) -> Vec<(f64, Place<f64>)> {
+    let place = |k: usize| cam.lift.origin() + TAU * k as f64 / count as f64;
+    (0..count).map(|k| (place(k), cam.place(place(k)))).collect()
+}
+
+/// One line a place: cam angle, lift with derivatives, contour, pitch curve, radii, pressure angle, sliding.
+pub fn csv(places: &[(f64, Place<f64>)], by_angle: bool) -> String {
+    let unit = if by_angle { "rad" } else { "m" };
+    let mut text = format!(
+        "theta (rad),lift ({unit}),velocity ({unit}/rad),acceleration ({unit}/rad^2),jerk ({unit}/rad^3),contour x (m),contour y (m),\
+         pitch x (m),pitch y (m),polar radius (m),polar angle (rad),d2r (m/rad^2),radius of curvature (m),pressure angle (rad),\
+         sliding (m/rad)\n"
+    );
+    for (theta, p) in places {
+        let numbers =
+            [&[*theta][..], &p.lift, &p.contour, &p.pitch, &p.polar, &[p.radius, p.pressure, p.sliding]];
+        let cells: Vec<String> = numbers.concat().iter().map(|x| format!("{x:?}")).collect();
+        let _ = writeln!(text, "{}", cells.join(","));
+    }
+    text
+}
+
+/// The contour as a closed polyline of DXF R12, in millimetres.
+///
+/// Source: Autodesk, DXF Reference, release 12 (entities POLYLINE, VERTEX, SEQEND).
+pub fn dxf(places: &[(f64, Place<f64>)]) -> String {
+    let mut text =
+        String::from("0\nSECTION\n2\nHEADER\n9\n$ACADVER\n1\nAC1009\n0\nENDSEC\n0\nSECTION\n2\nENTITIES\n");
+    text += "0\nPOLYLINE\n8\nCAM\n66\n1\n70\n1\n10\n0.0\n20\n0.0\n30\n0.0\n";
+    for (_, place) in places {
+        let [x, y] = place.contour.map(|x| 1e3 * x);
+        let _ = write!(text, "0\nVERTEX\n8\nCAM\n10\n{x:.9}\n20\n{y:.9}\n30\n0.0\n");
+    }
+    text + "0\nSEQEND\n8\nCAM\n0\nENDSEC\n0\nEOF\n"
+}
+
+/// Contour and base circle to scale as a picture, with a scale of ten millimetres.
+pub fn svg(places: &[(f64, Place<f64>)], base: f64) -> String {
+    const SIDE: f64 = 460.0;
+    let reach = places.iter().map(|(_, place)| place.polar[0]).fold(base, f64::max);
+    let pixels = 0.45 * SIDE / reach;
+    let mut svg = open(SIDE as usize, SIDE as usize);
+    let mut path = String::new();
+    for (k, (_, place)) in places.iter().enumerate() {
+        let [x, y] = place.contour.map(|x| pixels * x);
+        let pen = if k == 0 { "M" } else { "L" };
+        let _ = write!(path, "{pen}{:.2} {:.2}", 0.5 * SIDE + x, 0.5 * SIDE - y);
+    }
+    let (centre, [blue, orange, ..]) = (0.5 * SIDE, COLOURS);
+    let _ = writeln!(svg, "<path d=\"{path}Z\" fill=\"#d8e3ee\" stroke=\"{blue}\" stroke-width=\"2\"/>");
+    let _ = writeln!(
+        svg,
+        "<circle cx=\"{centre}\" cy=\"{centre}\" r=\"{:.2}\" fill=\"none\" stroke=\"{orange}\" stroke-dasharray=\"5 4\"/>",
+        base * pixels
+    );
+    let _ = writeln!(svg, "<path d=\"M{0} {centre}h16m-8 -8v16\" stroke=\"black\"/>", centre - 8.0);
+    let _ = writeln!(
+        svg,
+        "<path d=\"M12 {}h{:.2}\" stroke=\"black\" stroke-width=\"3\"/>",
+        SIDE - 12.0,
+        0.01 * pixels
+    );
+    label(&mut svg, 12, SIDE as usize - 20, "", "10 mm");
+    svg + "</svg>\n"
+}
+
+/// The polar radius of the pitch curve, of a flat face that of the contour, as a periodic quintic over the polar angle.
+///
+/// # Errors
+/// A message where the curve is not star-shaped about the cam's centre.
+pub fn rust(name: &str, source: &str, places: &[(f64, Place<f64>)]) -> Result<String, String> {
+    let mut points: Vec<(f64, f64)> =
+        places.iter().map(|(_, p)| (p.pitch[1].atan2(p.pitch[0]), p.pitch[0].hypot(p.pitch[1]))).collect();
+    let step = |pair: &[(f64, f64)]| (pair[1].0 - pair[0].0 + TAU / 2.0).rem_euclid(TAU) - TAU / 2.0;
+    let steps: Vec<f64> = points.windows(2).map(step).collect();
+    if !(steps.iter().all(|step| *step > 0.0) || steps.iter().all(|step| *step < 0.0)) {
+        return Err(
+            "the curve runs back about the cam's centre: it has no polar radius; take the CSV".to_string()
+        );
+    }
+    points.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let (x, y): (Vec<f64>, Vec<f64>) = points.into_iter().unzip();
+    let spline = Spline::fit(&x, &y, Kind::PeriodicQuintic(TAU), None).map_err(|error| error.to_string())?;
+    let columns = Columns::parse("rad, m")?;
+    let names = ["polar angle", "radius of the pitch curve"].map(String::from);
+    let lines = (1..=x.len()).collect();
+    Ok(constant::rust(name, source, &Points { columns, names, x, y, lines }, &spline))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::follower::{Direction, Follower};
+    use super::super::lift::{Flank, Lift};
+    use super::*;
+
+    fn cam() -> Cam {
+        let law = Lift::flanks(Flank::Polynomial345, 0.006, [1.2, 0.5, 1.2]).expect("a law");
+        let follower = Follower::Roller { base: 0.02, radius: 0.006, offset: 0.0 };
+        Cam::new(law, follower, Direction::CounterClockwise).expect("a cam")
+    }
+
+    #[test]
+    fn files_have_every_point() {
+        let places = turn(&cam(), 90);
+        let text = csv(&places, false);
+        assert_eq!(text.lines().count(), 91);
+        let columns = text.lines().next().expect("a header").split(',').count();
+        assert!(text.lines().all(|line| line.split(',').count() == columns));
+        let drawing = dxf(&places);
+        assert_eq!(drawing.matches("VERTEX").count(), 90);
+        // Pairs of code and value.
+        let codes: Vec<&str> = drawing.lines().step_by(2).collect();
+        assert!(
+            codes.iter().all(|code| code.parse::<u16>().is_ok()) && drawing.lines().count().is_multiple_of(2)
+        );
+    }
+
+    #[test]
+    fn the_constant_is_rust() {
+        let code = rust("PITCH", "cam", &turn(&cam(), 90)).expect("code");
+        assert!(syn::parse_file(&code).is_ok() && code.contains("PeriodicQuintic<90>"), "{code}");
+    }
+}

@@ -1,0 +1,356 @@
+//! Limits of a profile: undercut, radii, grinding wheel, pressure angle, Hertz pressure; and the least cam that keeps to them.
+
+use core::f64::consts::PI;
+
+use super::CamError;
+use super::follower::{Cam, Follower, Place};
+use super::search::{least, pieces};
+
+/// Force between follower and cam with what Hertz's pressure of a line contact needs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Load {
+    /// Normal force (N).
+    pub force: f64,
+    /// Width of the contact (m).
+    pub width: f64,
+    /// Contact modulus E* (Pa): 1/E* = (1 − ν₁²)/E₁ + (1 − ν₂²)/E₂.
+    pub modulus: f64,
+}
+
+impl Load {
+    /// E* of two bodies from Young's moduli (Pa) and Poisson's ratios.
+    pub fn contact_modulus(young: [f64; 2], poisson: [f64; 2]) -> f64 {
+        1.0 / ((1.0 - poisson[0] * poisson[0]) / young[0] + (1.0 - poisson[1] * poisson[1]) / young[1])
+    }
+
+    /// Largest pressure √(F E*/(π b R)) (Pa) with 1/R = 1/R_c + 1/ρ; infinite where the bodies do not meet in one line.
+    ///
+    /// Source: Johnson 1985, Contact Mechanics, §4.2.
+    pub fn pressure(&self, radius: f64, pad: Option<f64>) -> f64 {
+        let bent = 1.0 / radius + pad.map_or(0.0, |pad| 1.0 / pad);
+        if bent > 0.0 { (self.force * self.modulus * bent / (PI * self.width)).sqrt() } else { f64::INFINITY }
+    }
+}
+
+/// Limits; what is not named is not limited, but an undercut is always a fault.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Limits {
+    /// Least radius of a convex contour (m).
+    pub radius: Option<f64>,
+    /// Radius of the grinding wheel, which a concave flank must exceed (m).
+    pub wheel: Option<f64>,
+    /// Largest pressure angle (rad).
+    pub pressure_angle: Option<f64>,
+    /// Largest Hertz pressure (Pa), and its load.
+    pub hertz: Option<(f64, Load)>,
+    /// Half the width of a flat face (m).
+    pub half_face: Option<f64>,
+    /// Largest radius of the contour (m).
+    pub outer: Option<f64>,
+}
+
+/// A limit that is examined.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Limit {
+    /// The contour has no cusp and no loop.
+    Undercut,
+    /// Least radius of a convex contour.
+    Radius(f64),
+    /// Radius of the grinding wheel.
+    Wheel(f64),
+    /// Largest pressure angle.
+    PressureAngle(f64),
+    /// Largest Hertz pressure.
+    Hertz(f64, Load),
+    /// Half the width of the face.
+    HalfFace(f64),
+    /// Largest radius of the contour.
+    Outer(f64),
+}
+
+/// The place of a turn that comes closest to a limit, or breaks it most.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Verdict {
+    /// Limit.
+    pub limit: Limit,
+    /// Value there (SI).
+    pub value: f64,
+    /// Cam angle (rad).
+    pub angle: f64,
+    /// `true` if the limit is kept.
+    pub kept: bool,
+    /// Distance from the limit, positive where it is kept (in units of [`Limit::margin`]).
+    margin: f64,
+}
+
+impl Limits {
+    /// The limits that are given, undercut first.
+    pub fn list(&self) -> Vec<Limit> {
+        let given = [
+            self.radius.map(Limit::Radius),
+            self.wheel.map(Limit::Wheel),
+            self.pressure_angle.map(Limit::PressureAngle),
+            self.hertz.map(|(most, load)| Limit::Hertz(most, load)),
+            self.half_face.map(Limit::HalfFace),
+            self.outer.map(Limit::Outer),
+        ];
+        [Limit::Undercut].into_iter().chain(given.into_iter().flatten()).collect()
+    }
+}
+
+impl Limit {
+    /// Its name in messages.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Limit::Undercut => "undercut",
+            Limit::Radius(_) => "radius of curvature",
+            Limit::Wheel(_) => "grinding wheel",
+            Limit::PressureAngle(_) => "pressure angle",
+            Limit::Hertz(..) => "Hertz pressure",
+            Limit::HalfFace(_) => "half face width",
+            Limit::Outer(_) => "outer radius",
+        }
+    }
+
+    /// The bound (SI); 0 for an undercut.
+    pub fn bound(&self) -> f64 {
+        match *self {
+            Limit::Undercut => 0.0,
+            Limit::Radius(bound)
+            | Limit::Wheel(bound)
+            | Limit::PressureAngle(bound)
+            | Limit::Hertz(bound, _)
+            | Limit::HalfFace(bound)
+            | Limit::Outer(bound) => bound,
+        }
+    }
+
+    /// `true` if the value may not fall below the bound.
+    pub fn is_least(&self) -> bool {
+        matches!(self, Limit::Undercut | Limit::Radius(_) | Limit::Wheel(_))
+    }
+
+    /// Value at a place: a radius, an angle, a pressure.
+    pub fn value(&self, place: &Place<f64>, pad: Option<f64>) -> f64 {
+        match self {
+            Limit::Undercut | Limit::Radius(_) => place.radius,
+            // Radius of a concave flank; a convex one is beyond every wheel.
+            Limit::Wheel(_) => {
+                if place.radius < 0.0 {
+                    -place.radius
+                } else {
+                    f64::INFINITY
+                }
+            }
+            Limit::PressureAngle(_) => place.pressure.abs(),
+            Limit::Hertz(_, load) => load.pressure(place.radius, pad),
+            Limit::HalfFace(_) => place.along.abs(),
+            Limit::Outer(_) => place.polar[0],
+        }
+    }
+
+    /// Distance from the limit, not negative where it is kept, continuous through straight flanks.
+    ///
+    /// Lengths count in metres with a flat face, curvatures of the pitch curve times the pad's radius with a pad.
+    fn margin(&self, place: &Place<f64>, pad: Option<f64>) -> f64 {
+        let bent = |pad: f64| pad / place.pitch_radius;
+        match (*self, pad) {
+            (Limit::Undercut, Some(pad)) => 1.0 - bent(pad),
+            (Limit::Undercut, None) => place.radius,
+            (Limit::Radius(least), Some(pad)) => pad / (least + pad) - bent(pad),
+            (Limit::Radius(least), None) => place.radius - least,
+            (Limit::Wheel(wheel), Some(pad)) => {
+                let free = 1.0 - bent(pad);
+                if free > 0.0 { bent(pad) / free + pad / wheel } else { -1.0 }
+            }
+            // A flat face touches no concave flank.
+            (Limit::Wheel(wheel), None) => {
+                if place.radius < 0.0 {
+                    -place.radius - wheel
+                } else {
+                    wheel
+                }
+            }
+            (Limit::PressureAngle(most), _) => most - place.pressure.abs(),
+            (Limit::Hertz(most, load), _) => 1.0 - load.pressure(place.radius, pad) / most,
+            (Limit::HalfFace(most), _) => most - place.along.abs(),
+            (Limit::Outer(most), _) => most - place.polar[0],
+        }
+    }
+}
+
+/// The closest place of each limit over a turn.
+pub fn examine(cam: &Cam, limits: &Limits) -> Vec<Verdict> {
+    let pad = cam.follower.pad();
+    let pieces = pieces(&cam.lift.joints());
+    let places: Vec<Vec<Place<f64>>> =
+        pieces.iter().map(|piece| piece.iter().map(|theta| cam.place(*theta)).collect()).collect();
+    let verdict = |limit: Limit| {
+        let sampled: Vec<Vec<f64>> =
+            places.iter().map(|piece| piece.iter().map(|place| limit.margin(place, pad)).collect()).collect();
+        let (angle, margin) = least(&pieces, &sampled, |theta| limit.margin(&cam.place(theta), pad));
+        let value = limit.value(&cam.place(angle), pad);
+        let strict = limit == Limit::Undercut;
+        Verdict { limit, value, angle, kept: if strict { margin > 0.0 } else { margin >= 0.0 }, margin }
+    };
+    limits.list().into_iter().map(verdict).collect()
+}
+
+/// Dimension that is made as small as limits allow.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Size {
+    /// Radius of the base circle.
+    Base,
+    /// Radius of the roller or pad.
+    Pad,
+}
+
+/// The least size, with the limit that a smaller one would break.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Least {
+    /// Radius (m).
+    pub size: f64,
+    /// Limit that is met with equality; none where the smallest size that was tried keeps to all.
+    pub active: Option<Limit>,
+    /// Cam of this size.
+    pub cam: Cam,
+    /// All limits of this cam.
+    pub verdicts: Vec<Verdict>,
+}
+
+/// Sizes that are tried, each by this factor above the one before.
+const RATIO: f64 = 1.1;
+
+/// Name of what is broken where a follower cannot be built at a size.
+const REACH: &str = "reach of the follower";
+
+fn resized(cam: &Cam, size: Size, value: f64) -> Result<Cam, CamError> {
+    let mut follower = cam.follower;
+    match (&mut follower, size) {
+        (
+            Follower::Flat { base }
+            | Follower::Roller { base, .. }
+            | Follower::OscillatingFlat { base, .. }
+            | Follower::OscillatingRoller { base, .. },
+            Size::Base,
+        ) => *base = value,
+        (Follower::Roller { radius, .. } | Follower::OscillatingRoller { radius, .. }, Size::Pad) => {
+            *radius = value
+        }
+        (_, Size::Pad) => {
+            return Err(CamError::Value("pad", "this follower has no pad whose radius is free".to_string()));
+        }
+        (_, Size::Base) => {
+            return Err(CamError::Value(
+                "base circle",
+                "the pad's place fixes the base circle of a rocker".to_string(),
+            ));
+        }
+    }
+    Cam::new(cam.lift.clone(), follower, cam.direction)
+}
+
+/// The least size within `range` (m) at which all limits are kept; the given size of `cam` does not count.
+///
+/// Sizes are tried by 10 %, then the first step from broken to kept is halved down to rounding.
+///
+/// # Errors
+/// [`CamError::Contradiction`] names two limits that no size keeps together, [`CamError::Never`] a single one.
+pub fn least_size(cam: &Cam, limits: &Limits, size: Size, range: [f64; 2]) -> Result<Least, CamError> {
+    let list = limits.list();
+    // Errors of a kind that no size mends.
+    if let Err(CamError::Value(name @ ("pad" | "base circle"), why)) = resized(cam, size, range[0]) {
+        return Err(CamError::Value(name, why));
+    }
+    let verdicts = |value: f64| resized(cam, size, value).ok().map(|cam| examine(&cam, limits));
+    let kept =
+        |verdicts: &Option<Vec<Verdict>>| verdicts.as_ref().is_some_and(|all| all.iter().all(|one| one.kept));
+    let count = ((range[1] / range[0]).ln() / RATIO.ln()).ceil().max(1.0) as usize;
+    let sizes: Vec<f64> =
+        (0..=count).map(|k| range[0] * (range[1] / range[0]).powf(k as f64 / count as f64)).collect();
+    let mut tried = Vec::new();
+    for value in &sizes {
+        let found = verdicts(*value);
+        let is_kept = kept(&found);
+        tried.push(found);
+        if is_kept {
+            break;
+        }
+    }
+    if !tried.last().is_some_and(&kept) {
+        return Err(contradiction(&list, &sizes, &tried, &verdicts));
+    }
+    let last = tried.len() - 1;
+    let finish = |value: f64, active: Option<Limit>| {
+        let cam = resized(cam, size, value)?;
+        let verdicts = examine(&cam, limits);
+        Ok(Least { size: value, active, cam, verdicts })
+    };
+    if last == 0 {
+        return finish(sizes[0], None);
+    }
+    let (broken, value) = halve(sizes[last - 1], sizes[last], |value| kept(&verdicts(value)));
+    // A hair below, one limit is broken: the active one.
+    let active = match verdicts(broken) {
+        Some(all) => all.into_iter().filter(|one| !one.kept).map(|one| one.limit).next(),
+        None => None,
+    };
+    finish(value, active)
+}
+
+/// Halves between a size where `holds` is false and one where it is true, down to neighbours.
+fn halve(mut fails: f64, mut holds_at: f64, holds: impl Fn(f64) -> bool) -> (f64, f64) {
+    for _ in 0..100 {
+        let middle = 0.5 * (fails + holds_at);
+        if middle == fails || middle == holds_at {
+            break;
+        }
+        if holds(middle) { holds_at = middle } else { fails = middle }
+    }
+    (fails, holds_at)
+}
+
+/// The limit, or the two limits, that no size keeps.
+fn contradiction(
+    list: &[Limit],
+    sizes: &[f64],
+    tried: &[Option<Vec<Verdict>>],
+    verdicts: &impl Fn(f64) -> Option<Vec<Verdict>>,
+) -> CamError {
+    // One more limit: the follower can be built. The others are not judged where it cannot.
+    let of = |found: &Option<Vec<Verdict>>, which: usize| match found {
+        Some(all) => all.get(which).is_none_or(|one| one.kept),
+        None => which < list.len(),
+    };
+    let name = |which: usize| list.get(which).map_or(REACH, Limit::name);
+    let count = list.len() + 1;
+    for which in 0..count {
+        let possible =
+            |found: &Option<Vec<Verdict>>| of(found, which) && (found.is_some() || which == list.len());
+        if !tried.iter().any(possible) {
+            return CamError::Never(name(which));
+        }
+    }
+    for first in 0..count {
+        for second in first + 1..count {
+            if tried.iter().any(|found| of(found, first) && of(found, second)) {
+                continue;
+            }
+            let start = |which: usize| tried.iter().position(|found| of(found, which)).unwrap_or(0);
+            let (larger, smaller) =
+                if start(first) > start(second) { (first, second) } else { (second, first) };
+            let from = start(larger);
+            let until = tried.iter().rposition(|found| of(found, smaller)).unwrap_or(0);
+            let least = match from {
+                0 => sizes[0],
+                _ => halve(sizes[from - 1], sizes[from], |value| of(&verdicts(value), larger)).1,
+            };
+            let most = match sizes.get(until + 1) {
+                Some(next) => halve(*next, sizes[until], |value| of(&verdicts(value), smaller)).1,
+                None => sizes[until],
+            };
+            return CamError::Contradiction { larger: (name(larger), least), smaller: (name(smaller), most) };
+        }
+    }
+    CamError::Value("limits", "no size keeps all of them, though each two are kept by some".to_string())
+}

@@ -1,0 +1,159 @@
+"use strict";
+const byId = (id) => document.getElementById(id);
+const make = (name, attributes, parent) => {
+  const element = document.createElementNS("http://www.w3.org/2000/svg", name);
+  for (const [key, value] of Object.entries(attributes)) element.setAttribute(key, value);
+  if (parent) parent.append(element);
+  return element;
+};
+const short = (value) => value === null || value === undefined ? "∞" : String(Number(value.toPrecision(4)));
+const DEGREE = 180 / Math.PI;
+byId("title").textContent = DATA.title;
+byId("sentence").textContent = DATA.sentence;
+byId("command").textContent = DATA.command;
+
+/* Quantities with the factor from SI to what is shown. */
+const [lift, per] = DATA.by_angle ? [DEGREE, "°"] : [1000, "mm"];
+const UNIT = {
+  undercut: [1000, "mm"], "radius of curvature": [1000, "mm"], "grinding wheel": [1000, "mm"], "pressure angle": [DEGREE, "°"],
+  "Hertz pressure": [1e-6, "MPa"], "half face width": [1000, "mm"], "outer radius": [1000, "mm"],
+};
+const CHARTS = [
+  ["Lift", per, DATA.lift[0], lift], ["Velocity", `${per}/rad`, DATA.lift[1], lift],
+  ["Acceleration", `${per}/rad²`, DATA.lift[2], lift], ["Jerk", `${per}/rad³`, DATA.lift[3], lift],
+  ["Curvature of the contour", "1/mm", DATA.curvature, 1e-3, ["undercut", "radius of curvature", "grinding wheel"]],
+  ["d²r/dϑ² of the polar contour", "mm/rad²", DATA.d2r, 1000],
+  ["Pressure angle", "°", DATA.pressure, DEGREE, ["pressure angle"]], ["Sliding velocity", "mm/rad", DATA.sliding, 1000],
+];
+if (DATA.hertz) CHARTS.push(["Hertz pressure", "MPa", DATA.hertz, 1e-6, ["Hertz pressure"]]);
+const degrees = DATA.theta.map((angle) => angle * DEGREE);
+const cursors = [];
+
+const ticks = (low, high, count) => {
+  const raw = (high - low) / count, power = 10 ** Math.floor(Math.log10(raw));
+  const step = [1, 2, 5, 10].map((k) => k * power).find((step) => step >= raw);
+  const found = [];
+  for (let k = Math.ceil(low / step - 1e-9); k * step <= high + 1e-9 * step; k++) found.push(Number((k * step).toPrecision(12)));
+  return found;
+};
+for (const [name, unit, values, factor, limits = []] of CHARTS) {
+  const panel = document.createElement("section");
+  panel.className = "panel";
+  panel.innerHTML = "<h2></h2>";
+  panel.firstChild.textContent = `${name} (${unit})`;
+  byId("charts").append(panel);
+  const [width, height] = innerWidth < 600 ? [340, 210] : [640, 240];
+  const [left, right, top, bottom] = [62, 16, 10, 26];
+  const svg = make("svg", { viewBox: `0 0 ${width} ${height}`, role: "img" }, panel);
+  make("title", {}, svg).textContent = `${name} over the cam angle`;
+  const numbers = values.map((value) => value === null ? NaN : value * factor);
+  /* A cusp has no finite curvature: the axis leaves out the highest fiftieth. */
+  const sorted = numbers.filter(Number.isFinite).sort((a, b) => a - b);
+  const cut = DATA.verdicts[0].kept ? 0 : limits.includes("undercut") || limits.includes("Hertz pressure") || values === DATA.d2r ? Math.floor(sorted.length / 50) : 0;
+  let [low, high] = [sorted[cut] ?? 0, sorted[sorted.length - 1 - cut] ?? 1];
+  /* A range of rounding is none. */
+  if (high - low < 1e-9 * Math.max(Math.abs(high), 1)) [low, high] = [Math.min(low, 0) - 0.5, Math.max(high, 0) + 0.5];
+  const pad = 0.06 * (high - low); low -= pad; high += pad;
+  const [from, to] = [degrees[0], degrees[0] + 360];
+  const x = (angle) => left + (angle - from) / (to - from) * (width - left - right);
+  const y = (value) => height - bottom - (Math.min(Math.max(value, low), high) - low) / (high - low) * (height - top - bottom);
+  for (let angle = Math.ceil(from / 60) * 60; angle <= to; angle += 60) {
+    make("path", { class: "grid", d: `M${x(angle)} ${top}V${height - bottom}` }, svg);
+    make("text", { x: x(angle), y: height - 9, "text-anchor": x(angle) > width - 28 ? "end" : "middle" }, svg).textContent = `${angle}°`;
+  }
+  for (const value of ticks(low, high, 5)) {
+    make("path", { class: value === 0 ? "zero" : "grid", d: `M${left} ${y(value)}H${width - right}` }, svg);
+    make("text", { x: left - 6, y: y(value) + 4, "text-anchor": "end" }, svg).textContent = short(value);
+  }
+  let path = "", pen = "M";
+  numbers.forEach((value, k) => {
+    if (!Number.isFinite(value)) { pen = "M"; return; }
+    path += `${pen}${x(degrees[k]).toFixed(1)} ${y(value).toFixed(2)}`; pen = "L";
+  });
+  make("path", { class: "curve", d: path }, svg);
+  DATA.verdicts.filter((one) => limits.includes(one.name) && !one.kept).forEach((one, row) => {
+    const at = x(one.angle * DEGREE);
+    make("path", { class: "bad", d: `M${at} ${top}V${height - bottom}` }, svg);
+    const right = at > width * 0.6;
+    const word = make("text", { class: "word", x: at + (right ? -5 : 5), y: top + 12 + 14 * row, "text-anchor": right ? "end" : "start" }, svg);
+    word.textContent = `${one.name} ${(one.angle * DEGREE).toFixed(1)}°`;
+  });
+  const line = make("path", { class: "cursor" }, svg);
+  cursors.push((k) => line.setAttribute("d", `M${x(degrees[k])} ${top}V${height - bottom}`));
+}
+
+const table = byId("limits");
+const row = (cells, tag) => {
+  const line = table.insertRow();
+  cells.forEach((cell) => { const made = document.createElement(tag); made.textContent = cell; line.append(made); });
+  return line;
+};
+row(["limit", "bound", "value", "at", ""], "th");
+for (const one of DATA.verdicts) {
+  const [factor, unit] = UNIT[one.name];
+  const bound = `${one.least ? (one.name === "undercut" ? ">" : "≥") : "≤"} ${short(one.bound * factor)}${unit === "°" ? "" : " "}${unit}`;
+  const value = one.value === null ? (one.name === "grinding wheel" ? "convex" : "∞") : `${short(one.value * factor)}${unit === "°" ? "" : " "}${unit}`;
+  const line = row([one.name, bound, value, one.value === null && one.kept ? "" : `${(one.angle * DEGREE).toFixed(1)}°`, one.kept ? "kept" : "broken"], "td");
+  if (!one.kept) line.lastChild.className = "broken";
+}
+
+/* The profile to scale, in millimetres, y upwards. */
+const mm = (list) => list.map((value) => value * 1000);
+const [cx, cy] = DATA.contour.map(mm), [fx, fy] = DATA.centre.map(mm);
+const reach = Math.max(...cx.map((x, k) => Math.hypot(x, cy[k])));
+const padRadius = (DATA.pad ?? 0) * 1000, face = (DATA.face ?? 0) * 1000;
+const pivot = DATA.pivot && DATA.pivot.map((value) => value * 1000);
+const spread = (list, more) => [Math.min(-reach, ...list.map((v) => v - more), ...more2), Math.max(reach, ...list.map((v) => v + more), ...more2)];
+let more2 = pivot ? [pivot[0] - 3, pivot[0] + 3] : [];
+const [x0, x1] = spread(fx, Math.max(padRadius, face));
+more2 = pivot ? [pivot[1] - 3, pivot[1] + 3] : [];
+const stem = pivot ? 0 : 0.7 * reach;
+let [y0, y1] = spread(fy, padRadius); y1 += stem;
+const edge = 0.06 * (x1 - x0);
+const svg = make("svg", { viewBox: `${x0 - edge} ${-y1 - edge} ${x1 - x0 + 2 * edge} ${y1 - y0 + 2 * edge}`, role: "img" }, byId("profile"));
+make("title", {}, svg).textContent = "the cam with its follower";
+const cam = make("g", {}, svg);
+make("path", { class: "cam", d: `M${cx.map((x, k) => `${x.toFixed(4)} ${(-cy[k]).toFixed(4)}`).join("L")}Z` }, cam);
+make("circle", { class: "base", r: DATA.base * 1000 }, cam);
+make("path", { class: "part", d: `M${-reach * 0.06} 0H${reach * 0.06}M0 ${-reach * 0.06}V${reach * 0.06}` }, svg);
+const follower = make("path", { class: "part" }, svg);
+const dot = make("circle", { class: "dot", r: reach * 0.025 }, svg);
+const circle = (x, y, r) => `M${x - r} ${y}a${r} ${r} 0 1 0 ${2 * r} 0a${r} ${r} 0 1 0 ${-2 * r} 0`;
+const show = (k) => {
+  cam.setAttribute("transform", `rotate(${-DATA.sense * degrees[k]})`);
+  const contact = DATA.contact.map((list) => list[k] * 1000), [nx, ny] = DATA.normal.map((list) => list[k]);
+  let path = "";
+  if (padRadius) {
+    path += circle(fx[k], -fy[k], padRadius);
+    path += pivot ? `M${pivot[0]} ${-pivot[1]}L${fx[k]} ${-fy[k]}` : `M${fx[k]} ${-fy[k]}V${-y1}`;
+  } else {
+    /* The face about the foot of the perpendicular from the cam's centre. */
+    const p = contact[0] * nx + contact[1] * ny, foot = [p * nx, p * ny];
+    path += `M${foot[0] + face * ny} ${-(foot[1] - face * nx)}L${foot[0] - face * ny} ${-(foot[1] + face * nx)}`;
+    const away = pivot ? p - pivot[0] * nx - pivot[1] * ny : 0;
+    path += pivot ? `M${pivot[0]} ${-pivot[1]}L${pivot[0] + away * nx} ${-(pivot[1] + away * ny)}L${foot[0]} ${-foot[1]}` : `M0 ${-foot[1]}V${-y1}`;
+  }
+  if (pivot) path += circle(pivot[0], -pivot[1], 1.5);
+  follower.setAttribute("d", path);
+  dot.setAttribute("cx", contact[0]); dot.setAttribute("cy", -contact[1]);
+  byId("at").textContent = `${degrees[k].toFixed(1)}°`;
+  cursors.forEach((set) => set(k));
+};
+const slider = byId("angle"), play = byId("play");
+slider.max = DATA.theta.length - 1;
+let running = false, begun = 0, first = 0;
+const frame = (time) => {
+  if (!running) return;
+  slider.value = Math.round(first + (time - begun) * 0.12) % DATA.theta.length;
+  show(Number(slider.value));
+  requestAnimationFrame(frame);
+};
+play.onclick = () => {
+  running = !running; play.textContent = running ? "pause" : "play";
+  begun = performance.now(); first = Number(slider.value);
+  if (running) requestAnimationFrame(frame);
+};
+slider.oninput = () => { running = false; play.textContent = "play"; show(Number(slider.value)); };
+/* The page opens at the largest lift of the flank. */
+slider.value = DATA.lift[1].indexOf(Math.max(...DATA.lift[1]));
+show(Number(slider.value));

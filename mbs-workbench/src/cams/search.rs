@@ -1,0 +1,86 @@
+//! Least values over a turn.
+
+/// Samples of a piece, and of each degree of it.
+const FEWEST: usize = 8;
+const A_DEGREE: f64 = 1.0;
+
+/// Distance from a joint at which one side of it counts (rad).
+const BESIDE: f64 = 1e-10;
+
+/// Golden section.
+const SECTION: f64 = 0.618_033_988_749_894_9;
+
+/// Sampling angles of each piece between joints, both of its sides included.
+pub fn pieces(joints: &[f64]) -> Vec<Vec<f64>> {
+    let piece = |pair: &[f64]| {
+        let [from, to] = [pair[0] + BESIDE, pair[1] - BESIDE];
+        let count = FEWEST.max(((to - from).to_degrees() * A_DEGREE).ceil() as usize);
+        (0..=count).map(|k| from + (to - from) * k as f64 / count as f64).collect()
+    };
+    joints.windows(2).filter(|pair| pair[1] - pair[0] > 4.0 * BESIDE).map(piece).collect()
+}
+
+/// Argument and value of the least `f` over samples of pieces, each local minimum refined; NaN counts as lowest.
+pub fn least(pieces: &[Vec<f64>], sampled: &[Vec<f64>], f: impl Fn(f64) -> f64) -> (f64, f64) {
+    let mut best = (f64::NAN, f64::INFINITY);
+    for (places, values) in pieces.iter().zip(sampled) {
+        for (k, value) in values.iter().enumerate() {
+            if value.is_nan() {
+                return (places[k], f64::NAN);
+            }
+            if *value < best.1 {
+                best = (places[k], *value);
+            }
+            let inner = k > 0 && k + 1 < values.len();
+            if inner
+                && values[k - 1] >= *value
+                && *value <= values[k + 1]
+                && values[k - 1] + values[k + 1] > 2.0 * value
+            {
+                let found = refine(places[k - 1], places[k + 1], &f);
+                if found.1 < best.1 {
+                    best = found;
+                }
+            }
+        }
+    }
+    best
+}
+
+/// Golden-section search. Source: Kiefer 1953.
+fn refine(mut from: f64, mut to: f64, f: &impl Fn(f64) -> f64) -> (f64, f64) {
+    let (mut a, mut b) = (to - SECTION * (to - from), from + SECTION * (to - from));
+    let (mut at_a, mut at_b) = (f(a), f(b));
+    while to - from > 1e-8 {
+        if at_a < at_b {
+            (to, b, at_b) = (b, a, at_a);
+            a = to - SECTION * (to - from);
+            at_a = f(a);
+        } else {
+            (from, a, at_a) = (a, b, at_b);
+            b = from + SECTION * (to - from);
+            at_b = f(b);
+        }
+    }
+    if at_a < at_b { (a, at_a) } else { (b, at_b) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn minima_within_and_at_joints_are_found() {
+        let pieces = pieces(&[0.0, 1.0, 3.0]);
+        let of = |f: &dyn Fn(f64) -> f64| {
+            let sampled: Vec<Vec<f64>> = pieces.iter().map(|p| p.iter().map(|x| f(*x)).collect()).collect();
+            least(&pieces, &sampled, f)
+        };
+        let (place, value) = of(&|x| (x - 1.2345).powi(2) - 5.0);
+        assert!((place - 1.2345).abs() < 1e-7 && (value + 5.0).abs() < 1e-15);
+        // A jump down at 1 counts with its lower side.
+        let (place, value) = of(&|x| if x < 1.0 { 2.0 - x } else { 3.0 + x });
+        assert!((place - 1.0).abs() < 1e-9 && (value - 1.0).abs() < 1e-9);
+        assert!(of(&|x| if x > 2.0 { f64::NAN } else { x }).1.is_nan());
+    }
+}

@@ -1,0 +1,227 @@
+//! `mbs cam`.
+
+use std::fs;
+use std::io::Write;
+use std::path::PathBuf;
+
+use serde_json::json;
+
+use super::CommandError;
+pub use super::cam_options::Arguments;
+use super::cam_options::{Sense, Sizes};
+use super::chosen::write_file;
+use super::document::Output;
+use crate::cams::files::{csv, dxf, rust, svg, turn};
+use crate::cams::follower::{Cam, Direction, Follower};
+use crate::cams::limits::{Least, Size, Verdict, examine, least_size};
+use crate::cams::measured::Profile;
+use crate::cams::page;
+use crate::output::origin::Origin;
+use crate::tables::read_unordered;
+use crate::target_directory::target_directory;
+
+/// Value and bound of a limit as the table shows them.
+fn shown(name: &str, value: f64) -> String {
+    if !value.is_finite() {
+        return "-".to_string();
+    }
+    match name {
+        "pressure angle" => format!("{:.4} deg", value.to_degrees()),
+        "Hertz pressure" => format!("{:.2} MPa", 1e-6 * value),
+        _ => format!("{:.5} mm", 1e3 * value),
+    }
+}
+
+/// Makes the profile of a cam, says where limits are broken, writes page, CSV and DXF, or prints a Rust constant.
+pub fn run(arguments: &Arguments, out: &mut Output) -> Result<(), CommandError> {
+    let follower = arguments.the_follower()?;
+    let direction =
+        if arguments.direction == Sense::Cw { Direction::Clockwise } else { Direction::CounterClockwise };
+    if arguments.measured {
+        return recover(arguments, &follower, direction, out);
+    }
+    let (lift, source) = arguments.law()?;
+    let limits = arguments.limits();
+    let least = match arguments.least {
+        None => None,
+        Some(size) => {
+            let size = if size == Sizes::Base { Size::Base } else { Size::Pad };
+            // From a tenth to a hundred times what the follower moves, or is away.
+            let scale = follower
+                .pivot()
+                .map_or_else(|| arguments.height().unwrap_or(0.01), |[x, y]| 0.5 * x.hypot(y));
+            let cam = Cam { lift: lift.clone(), follower, direction };
+            Some(least_size(&cam, &limits, size, [0.03 * scale, 100.0 * scale])?)
+        }
+    };
+    let (cam, verdicts) = match &least {
+        Some(found) => (found.cam.clone(), found.verdicts.clone()),
+        None => {
+            let cam = Cam::new(lift, follower, direction)?;
+            let verdicts = examine(&cam, &limits);
+            (cam, verdicts)
+        }
+    };
+    let name = PathBuf::from(&arguments.law)
+        .file_name()
+        .map_or_else(|| "cam".into(), |n| n.to_string_lossy().into_owned());
+    let places = turn(&cam, 720);
+    if let Some(constant) = &arguments.rust {
+        let code = rust(constant, &name, &places).map_err(CommandError::Failed)?;
+        out.put("code", &code);
+        return Ok(out.write_all(code.as_bytes())?);
+    }
+    let origin = Origin::of_table(&name, &source);
+    let directory = arguments.out.clone().unwrap_or_else(|| target_directory().join("mbs").join("cam"));
+    let sentence = sentence(arguments, &cam, &verdicts, least.as_ref());
+    let words: Vec<String> = std::env::args().skip(1).filter(|word| word != "--json").collect();
+    let quoted = |word: &String| if word.contains(' ') { format!("'{word}'") } else { word.clone() };
+    let command = format!("mbs {}", words.iter().map(quoted).collect::<Vec<_>>().join(" "));
+    let data = page::data(&format!("Cam {name}"), &sentence, &command, &cam, &limits, &verdicts);
+    let files = [
+        ("page", "cam.html", page::html(&data, &origin.line())),
+        ("profile", "profile.csv", origin.csv(&csv(&places, cam.follower.lifts_by_angle()))),
+        ("drawing", "profile.dxf", dxf(&places)),
+        ("picture", "profile.svg", origin.svg(&svg(&places, cam.follower.base()))),
+    ];
+    for (kind, file, text) in files {
+        let path = directory.join(file);
+        write_file(&path, &text)?;
+        out.put_file(kind, &path);
+    }
+    describe(out, &cam, &verdicts, least.as_ref(), &sentence);
+    print(out, &cam, &verdicts, &sentence)?;
+    writeln!(out, "files        {}: cam.html, profile.csv, profile.dxf, profile.svg", directory.display())?;
+    Ok(())
+}
+
+/// The lift of a measured profile, as a table.
+fn recover(
+    arguments: &Arguments,
+    follower: &Follower,
+    direction: Direction,
+    out: &mut Output,
+) -> Result<(), CommandError> {
+    let named = |message: String| CommandError::Failed(format!("{}: {message}", arguments.law));
+    let bytes = fs::read(&arguments.law).map_err(|error| named(format!("cannot be read: {error}")))?;
+    let points =
+        read_unordered(&bytes, arguments.columns.as_ref()).map_err(|fault| named(fault.to_string()))?;
+    let pairs: Vec<[f64; 2]> = points.x.iter().zip(&points.y).map(|(x, y)| [*x, *y]).collect();
+    let profile = match [&points.columns.x.1, &points.columns.y.1].map(|unit| unit.coherent.as_str()) {
+        ["rad", "m"] => Profile::polar(&pairs),
+        ["m", "m"] => Profile::cartesian(&pairs),
+        _ => {
+            let why = "a profile has an angle and a radius, or x and y\nhelp: name the columns, as `--columns \"deg, mm\"`";
+            return Err(named(why.to_string()));
+        }
+    };
+    let found = profile.and_then(|profile| profile.motion(follower, direction));
+    let found = found.map_err(|error| named(error.to_string()))?;
+    let by_angle = follower.lifts_by_angle();
+    let (unit, factor) = if by_angle { ("deg", 1_f64.to_degrees()) } else { ("mm", 1e3) };
+    let mut text = format!("theta (deg),lift ({unit}),velocity ({unit}/rad),acceleration ({unit}/rad^2)\n");
+    for (theta, motion) in &found.motion {
+        let [s, v, a] = motion.map(|value| factor * value);
+        text += &format!("{:?},{s:?},{v:?},{a:?}\n", theta.to_degrees());
+    }
+    let origin = Origin::of_table(&arguments.law, &bytes);
+    let directory = arguments.out.clone().unwrap_or_else(|| target_directory().join("mbs").join("cam"));
+    let path = directory.join("lift.csv");
+    write_file(&path, &origin.csv(&text))?;
+    out.put_file("lift", &path);
+    let outliers: Vec<usize> = found.outliers.clone();
+    out.put("knots", found.knots);
+    out.put("deviation", found.deviation);
+    out.put("second_error", found.second_error);
+    out.put("outliers", outliers.len());
+    writeln!(out, "points       {}, {} of them outliers that are left out", pairs.len(), outliers.len())?;
+    writeln!(out, "spline       periodic quintic with {} knots, as the noise allows", found.knots)?;
+    writeln!(out, "deviation    {:.2e} mm of a radius", 1e3 * found.deviation)?;
+    writeln!(out, "d2r          known to {:.2e} mm/rad^2, root mean square", 1e3 * found.second_error)?;
+    for order in 0..3 {
+        let name = ["lift", "velocity", "acceleration"][order];
+        let values = || found.motion.iter().map(|(_, motion)| factor * motion[order]);
+        let (low, high) =
+            (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max));
+        writeln!(out, "{name:<13}{low:.4} to {high:.4} {unit}{}", ["", "/rad", "/rad^2"][order])?;
+    }
+    writeln!(out, "file         {}", path.display())?;
+    Ok(())
+}
+
+fn sentence(arguments: &Arguments, cam: &Cam, verdicts: &[Verdict], least: Option<&Least>) -> String {
+    let broken: Vec<String> = verdicts
+        .iter()
+        .filter(|one| !one.kept)
+        .map(|one| format!("{} at {:.1} deg", one.limit.name(), one.angle.to_degrees()))
+        .collect();
+    let state = if broken.is_empty() {
+        "keeps all limits".to_string()
+    } else {
+        format!("breaks {}", broken.join(", "))
+    };
+    let mut text = format!("Base circle of {:.5} mm: the cam {state}.", 1e3 * cam.follower.base());
+    if let (Some(found), Some(size)) = (least, arguments.least) {
+        let size = if size == Sizes::Base { "base circle" } else { "pad" };
+        text = match found.active {
+            Some(limit) => format!(
+                "The least {size} has a radius of {:.6} mm: a smaller one breaks the limit on the {} of {}.",
+                1e3 * found.size,
+                limit.name(),
+                shown(limit.name(), limit.bound())
+            ),
+            None => format!(
+                "A {size} of {:.6} mm, the smallest that is tried, keeps all limits.",
+                1e3 * found.size
+            ),
+        };
+    }
+    text
+}
+
+fn describe(out: &mut Output, cam: &Cam, verdicts: &[Verdict], least: Option<&Least>, sentence: &str) {
+    let continuity = cam.lift.continuity();
+    out.put("sentence", sentence);
+    out.put(
+        "continuity",
+        json!({ "stated": continuity.stated, "jumps": continuity.jumps, "confirmed": continuity.confirms() }),
+    );
+    out.put("base", cam.follower.base());
+    out.put("pad", cam.follower.pad());
+    let verdict = |one: &Verdict| {
+        json!({
+            "name": one.limit.name(), "bound": one.limit.bound(), "value": page::finite(one.value), "angle": one.angle, "kept": one.kept,
+        })
+    };
+    out.put("limits", verdicts.iter().map(verdict).collect::<Vec<_>>());
+    out.put("active", least.and_then(|found| found.active).map(|limit| limit.name()));
+}
+
+fn print(out: &mut Output, cam: &Cam, verdicts: &[Verdict], sentence: &str) -> Result<(), CommandError> {
+    writeln!(out, "{sentence}")?;
+    let continuity = cam.lift.continuity();
+    let checked = if continuity.confirms() { "checked at its joints" } else { "NOT confirmed at its joints" };
+    writeln!(out, "law          {} continuous derivatives, {checked}", continuity.stated)?;
+    for order in 0..3 {
+        let (name, unit) = [("lift", ""), ("velocity", "/rad"), ("acceleration", "/rad^2")][order];
+        let values: Vec<f64> = (0..720)
+            .map(|k| cam.lift.jet(cam.lift.origin() + f64::from(k).to_radians() / 2.0)[order])
+            .collect();
+        let [low, high] = [
+            values.iter().copied().fold(f64::INFINITY, f64::min),
+            values.iter().copied().fold(f64::NEG_INFINITY, f64::max),
+        ];
+        let (factor, base) =
+            if cam.follower.lifts_by_angle() { (1_f64.to_degrees(), "deg") } else { (1e3, "mm") };
+        writeln!(out, "{name:<13}{:.4} to {:.4} {base}{unit}", factor * low, factor * high)?;
+    }
+    writeln!(out, "{:<22}{:>16}{:>16}{:>12}", "limit", "bound", "value", "at")?;
+    for one in verdicts {
+        let sign = if one.limit.is_least() { ">" } else { "<" };
+        let bound = format!("{sign} {}", shown(one.limit.name(), one.limit.bound()));
+        let mark = if one.kept { "" } else { "  broken" };
+        let (value, at) = (shown(one.limit.name(), one.value), format!("{:.2} deg", one.angle.to_degrees()));
+        writeln!(out, "{:<22}{bound:>16}{value:>16}{at:>12}{mark}", one.limit.name())?;
+    }
+    Ok(())
+}

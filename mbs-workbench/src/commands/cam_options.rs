@@ -1,0 +1,364 @@
+//! Options of `mbs cam`: law, follower, limits.
+
+use std::fs;
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+use mbs_codegen::quantity;
+
+use super::CommandError;
+use crate::cams::CamError;
+use crate::cams::follower::{Follower, Side};
+use crate::cams::lift::{FLANKS, Lift};
+use crate::cams::limits::{Limits, Load};
+use crate::mismatch::nearest;
+use crate::tables::{Columns, Kind, Spline, close_period, constant, read};
+
+/// Kind of follower.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Kinds {
+    /// Flat face on the axis
+    Flat,
+    /// Roller or round pad on an axis
+    Roller,
+    /// Flat face on an arm
+    OscillatingFlat,
+    /// Roller or round pad on an arm
+    OscillatingRoller,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Sense {
+    /// Counter-clockwise
+    Ccw,
+    /// Clockwise
+    Cw,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Sides {
+    /// Left of the line from the pivot to the cam
+    Left,
+    /// Right of it
+    Right,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Sizes {
+    /// Base circle
+    Base,
+    /// Roller or pad
+    Pad,
+}
+
+/// Options of `mbs cam`.
+#[derive(Args)]
+pub struct Arguments {
+    /// Law: `even:2,6,8,10,12`, `345`, `4567`, `cycloid`, `modified-sine`, `modified-trapezoid`, `harmonic`, `constant-velocity`; or a
+    /// table of the lift over one turn as CSV
+    pub law: String,
+    /// Kind of follower
+    #[arg(long, value_enum)]
+    pub follower: Kinds,
+    /// Largest lift, of an oscillating follower its angle
+    #[arg(long, value_name = "11mm")]
+    lift: Option<String>,
+    /// From rest to rest, of an even-power law
+    #[arg(long, value_name = "160deg", value_parser = angle)]
+    duration: Option<f64>,
+    /// Duration of the rise
+    #[arg(long, value_name = "90deg", value_parser = angle)]
+    rise: Option<f64>,
+    /// Duration of the dwell at full lift [default: 0deg]
+    #[arg(long, value_name = "30deg", value_parser = angle)]
+    dwell: Option<f64>,
+    /// Duration of the return [default: that of the rise]
+    #[arg(long = "return", value_name = "90deg", value_parser = angle)]
+    back: Option<f64>,
+    /// Height and duration of ramps of constant velocity before and after the lift
+    #[arg(long, value_name = "0.1mm,15deg")]
+    ramp: Option<String>,
+    /// Polydyne correction s + c s″, c = m ω²/k
+    #[arg(long, value_name = "C", value_parser = number)]
+    polydyne: Option<f64>,
+    /// The file is a measured profile about the cam's centre, polar as "deg, mm" or x and y as "mm, mm": find its lift
+    #[arg(long, conflicts_with_all = ["lift", "least", "rust", "polydyne"])]
+    pub measured: bool,
+    /// Units of the columns of a table [default: those in the header]
+    #[arg(long, value_name = "\"deg, mm\"", value_parser = Columns::parse)]
+    pub columns: Option<Columns>,
+    /// Knots of a least-squares fit to a table [default: through every point]
+    #[arg(long, value_name = "N", value_parser = super::positive)]
+    knots: Option<usize>,
+    /// Radius of the base circle
+    #[arg(long, value_name = "17mm", value_parser = length)]
+    base: Option<f64>,
+    /// Radius of the roller or pad
+    #[arg(long, value_name = "8mm", value_parser = length)]
+    roller: Option<f64>,
+    /// Distance of a roller's axis from the cam's centre [default: 0mm]
+    #[arg(long, value_name = "3mm", value_parser = length, allow_hyphen_values = true)]
+    offset: Option<f64>,
+    /// Pivot of an arm, from the cam's centre
+    #[arg(long, value_name = "60mm,10mm", value_parser = point, allow_hyphen_values = true)]
+    pivot: Option<[f64; 2]>,
+    /// From the pivot to the roller's centre
+    #[arg(long, value_name = "55mm", value_parser = length)]
+    arm: Option<f64>,
+    /// Distance of an oscillating face from its pivot, positive away from the cam [default: 0mm]
+    #[arg(long, value_name = "4mm", value_parser = length, allow_hyphen_values = true)]
+    face: Option<f64>,
+    /// Side of an arm, seen from its pivot
+    #[arg(long, value_enum, default_value = "left")]
+    side: Sides,
+    /// Sense of the cam's rotation
+    #[arg(long, value_enum, default_value = "ccw")]
+    pub direction: Sense,
+    /// Find the least radius that keeps all limits
+    #[arg(long, value_enum)]
+    pub least: Option<Sizes>,
+    /// Least radius of a convex contour
+    #[arg(long, value_name = "2mm", value_parser = length)]
+    radius: Option<f64>,
+    /// Radius of the grinding wheel, which concave flanks must exceed
+    #[arg(long, value_name = "60mm", value_parser = length)]
+    wheel: Option<f64>,
+    /// Largest pressure angle
+    #[arg(long, value_name = "30deg", value_parser = angle)]
+    pressure_angle: Option<f64>,
+    /// Largest radius of the contour
+    #[arg(long, value_name = "40mm", value_parser = length)]
+    outer: Option<f64>,
+    /// Half the width of a flat face
+    #[arg(long, value_name = "16mm", value_parser = length)]
+    half_face: Option<f64>,
+    /// Largest Hertz pressure; needs `--force` and `--width`
+    #[arg(long, value_name = "900MPa", value_parser = pressure, requires = "force", requires = "width")]
+    hertz: Option<f64>,
+    /// Normal force in the contact
+    #[arg(long, value_name = "800N", value_parser = force)]
+    force: Option<f64>,
+    /// Width of the contact
+    #[arg(long, value_name = "12mm", value_parser = length)]
+    width: Option<f64>,
+    /// Young's modulus of cam and follower
+    #[arg(long, value_name = "210GPa", value_parser = pressure, default_value = "210GPa")]
+    young: f64,
+    /// Poisson's ratio of both
+    #[arg(long, value_name = "0.3", value_parser = number, default_value = "0.3")]
+    poisson: f64,
+    /// Print the polar radius of the pitch curve as a Rust constant of this name, and nothing else
+    #[arg(long, value_name = "NAME", value_parser = constant_name)]
+    pub rust: Option<String>,
+    /// Directory of page, CSV and DXF [default: mbs/cam in cargo's target directory]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+}
+
+fn in_unit(text: &str, unit: &str, example: &str) -> Result<f64, String> {
+    let found = quantity(text.trim()).map_err(|(message, help)| format!("{message}; {help}"))?;
+    if found.unit.is_none() && found.value != 0.0 {
+        return Err(format!("a unit is needed, as in `{example}`"));
+    }
+    let fits = found.fits(unit) && found.value.is_finite();
+    if fits { Ok(found.value) } else { Err(format!("a quantity like `{example}` is needed")) }
+}
+
+fn length(text: &str) -> Result<f64, String> {
+    in_unit(text, "m", "12mm")
+}
+
+fn angle(text: &str) -> Result<f64, String> {
+    in_unit(text, "rad", "30deg")
+}
+
+fn force(text: &str) -> Result<f64, String> {
+    in_unit(text, "N", "800N")
+}
+
+fn pressure(text: &str) -> Result<f64, String> {
+    in_unit(text, "Pa", "900MPa")
+}
+
+fn number(text: &str) -> Result<f64, String> {
+    super::chosen::finite(text)
+}
+
+fn point(text: &str) -> Result<[f64; 2], String> {
+    let (x, y) = text.split_once(',').ok_or("write both coordinates: `60mm,10mm`")?;
+    Ok([length(x)?, length(y)?])
+}
+
+fn constant_name(text: &str) -> Result<String, String> {
+    if constant::is_name(text) {
+        Ok(text.to_string())
+    } else {
+        Err("a constant's name is needed, like `PITCH`".to_string())
+    }
+}
+
+fn usage(message: impl Into<String>) -> CommandError {
+    CommandError::Usage(message.into())
+}
+
+impl From<CamError> for CommandError {
+    fn from(error: CamError) -> Self {
+        CommandError::Failed(error.to_string())
+    }
+}
+
+impl Arguments {
+    pub fn turns(&self) -> bool {
+        matches!(self.follower, Kinds::OscillatingFlat | Kinds::OscillatingRoller)
+    }
+
+    /// The largest lift in SI; an angle for an arm, a length elsewhere.
+    pub fn height(&self) -> Result<f64, CommandError> {
+        let text = self.lift.as_deref().ok_or_else(|| {
+            usage(format!(
+                "a law needs its lift\nhelp: say `--lift {}`",
+                if self.turns() { "18deg" } else { "11mm" }
+            ))
+        })?;
+        let read = if self.turns() { angle(text) } else { length(text) };
+        read.map_err(|why| {
+            let of = if self.turns() {
+                "the lift of an oscillating follower is the angle of its arm"
+            } else {
+                "the lift is a length"
+            };
+            usage(format!("`--lift {text}`: {of}; {why}"))
+        })
+    }
+
+    pub fn law(&self) -> Result<(Lift, Vec<u8>), CommandError> {
+        let needed = |value: Option<f64>, option: &str| {
+            value.ok_or_else(|| usage(format!("the law `{}` needs `{option}`", self.law)))
+        };
+        let lift = if let Some(list) = self.law.strip_prefix("even:") {
+            let read: Result<Vec<u32>, _> = list.split(',').map(|p| p.trim().parse::<u32>()).collect();
+            let exponents = read
+                .map_err(|_| usage(format!("`{list}` are no exponents\nhelp: write `even:2,6,8,10,12`")))?;
+            Lift::hump(&exponents, self.height()?, needed(self.duration, "--duration 160deg")?)?
+        } else if let Some((_, flank)) = FLANKS.iter().find(|(name, _)| *name == self.law) {
+            let rise = needed(self.rise, "--rise 90deg")?;
+            Lift::flanks(
+                *flank,
+                self.height()?,
+                [rise, self.dwell.unwrap_or(0.0), self.back.unwrap_or(rise)],
+            )?
+        } else {
+            return self.table();
+        };
+        let lift = match &self.ramp {
+            None => lift,
+            Some(text) => {
+                let example = if self.turns() { "0.2deg,15deg" } else { "0.1mm,15deg" };
+                let wrong =
+                    |why: String| usage(format!("`--ramp {text}`: {why}\nhelp: write `--ramp {example}`"));
+                let (height, duration) = text
+                    .split_once(',')
+                    .ok_or_else(|| wrong("height and duration are needed".to_string()))?;
+                let height = if self.turns() { angle(height) } else { length(height) };
+                lift.with_ramps(height.map_err(wrong)?, angle(duration).map_err(wrong)?)?
+            }
+        };
+        Ok((self.corrected(lift)?, self.law.clone().into_bytes()))
+    }
+
+    fn corrected(&self, lift: Lift) -> Result<Lift, CommandError> {
+        Ok(match self.polydyne {
+            None => lift,
+            Some(c) => lift.with_polydyne(c)?,
+        })
+    }
+
+    /// A lift from a file.
+    fn table(&self) -> Result<(Lift, Vec<u8>), CommandError> {
+        let path = PathBuf::from(&self.law);
+        if path.extension().is_none() {
+            let known = FLANKS.iter().map(|(name, _)| *name).chain(["even:2,6,8,10,12"]);
+            let names: Vec<&str> = known.collect();
+            let near = nearest(&self.law, names.iter().copied());
+            let hint = near.map_or_else(
+                || format!("laws are {}", names.join(", ")),
+                |name| format!("did you mean `{name}`?"),
+            );
+            return Err(usage(format!("`{}` is no law and no file\nhelp: {hint}", self.law)));
+        }
+        let named = |message: String| CommandError::Failed(format!("{}: {message}", self.law));
+        let bytes = fs::read(&path).map_err(|error| named(format!("cannot be read: {error}")))?;
+        let mut points = read(&bytes, self.columns.as_ref()).map_err(|fault| named(fault.to_string()))?;
+        let (across, up) = (&points.columns.x.1, &points.columns.y.1);
+        let expected = if self.turns() { "rad" } else { "m" };
+        if across.coherent != "rad" || up.coherent != expected {
+            let why = format!(
+                "a lift in {} over an angle is needed, not {} over {}",
+                expected, up.name, across.name
+            );
+            return Err(named(format!("{why}\nhelp: name the columns, as `--columns \"deg, mm\"`")));
+        }
+        let period = core::f64::consts::TAU;
+        close_period(&mut points, period).map_err(|fault| named(fault.to_string()))?;
+        let spline = Spline::fit(&points.x, &points.y, Kind::PeriodicQuintic(period), self.knots);
+        let spline = spline.map_err(|error| named(format!("{error}\nhelp: another number of `--knots`")))?;
+        Ok((self.corrected(Lift::table(spline)?)?, bytes))
+    }
+
+    pub fn the_follower(&self) -> Result<Follower, CommandError> {
+        let needed = |value: Option<f64>, option: &str| {
+            value.ok_or_else(|| {
+                usage(format!("this follower needs `{option}`\nhelp: `mbs cam --help` tells its dimensions"))
+            })
+        };
+        let pivot = || self.pivot.ok_or_else(|| usage("an oscillating follower needs `--pivot 60mm,10mm`"));
+        // Where the size is sought, any one at which the follower can be built begins.
+        let side = if self.side == Sides::Left { Side::Left } else { Side::Right };
+        let base = match self.least {
+            Some(Sizes::Base) => self.base.unwrap_or(f64::NAN),
+            _ => needed(self.base, "--base 17mm")?,
+        };
+        let radius = || match self.least {
+            Some(Sizes::Pad) => Ok(self.roller.unwrap_or(f64::NAN)),
+            _ => needed(self.roller, "--roller 8mm"),
+        };
+        let foreign = |is_given: bool, option: &str| {
+            if is_given {
+                Err(usage(format!("`{option}` belongs to another follower\nhelp: leave it out")))
+            } else {
+                Ok(())
+            }
+        };
+        let is_flat = matches!(self.follower, Kinds::Flat | Kinds::OscillatingFlat);
+        foreign(self.roller.is_some() && is_flat, "--roller")?;
+        foreign(self.half_face.is_some() && !is_flat, "--half-face")?;
+        foreign(self.offset.is_some() && self.follower != Kinds::Roller, "--offset")?;
+        foreign(self.pivot.is_some() && !self.turns(), "--pivot")?;
+        foreign(self.arm.is_some() && self.follower != Kinds::OscillatingRoller, "--arm")?;
+        foreign(self.face.is_some() && self.follower != Kinds::OscillatingFlat, "--face")?;
+        Ok(match self.follower {
+            Kinds::Flat => Follower::Flat { base },
+            Kinds::Roller => Follower::Roller { base, radius: radius()?, offset: self.offset.unwrap_or(0.0) },
+            Kinds::OscillatingFlat => {
+                Follower::OscillatingFlat { base, pivot: pivot()?, face: self.face.unwrap_or(0.0), side }
+            }
+            Kinds::OscillatingRoller => {
+                let arm = needed(self.arm, "--arm 55mm")?;
+                Follower::OscillatingRoller { base, pivot: pivot()?, arm, radius: radius()?, side }
+            }
+        })
+    }
+
+    pub fn limits(&self) -> Limits {
+        let modulus = Load::contact_modulus([self.young; 2], [self.poisson; 2]);
+        let load = self.force.zip(self.width).map(|(force, width)| Load { force, width, modulus });
+        Limits {
+            radius: self.radius,
+            wheel: self.wheel,
+            pressure_angle: self.pressure_angle,
+            hertz: self.hertz.zip(load),
+            half_face: self.half_face,
+            outer: self.outer,
+        }
+    }
+}
