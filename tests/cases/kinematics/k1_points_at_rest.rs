@@ -177,8 +177,7 @@ fn lanes_keep_the_assembly_of_sums() {
 /// A coupler that keeps its direction stands still as a difference. A turn over both change points was given up after 30 000 evaluations.
 #[test]
 fn a_turn_takes_hundreds_of_evaluations() {
-    let mut means: Means = Means::default();
-    means.theta = Signal::at_rest(0.5);
+    let means: Means = Means { theta: Signal::at_rest(0.5), ..Means::default() };
     let start = of_means(PARALLELOGRAM.tip(0.5), PARALLELOGRAM.point(0.5, 1.0));
     let mut stepper: MeansStepper<f64> = Stepper::assemble(means, start, 0.0).expect("an assembly");
     stepper.change(|means| means.theta = Signal::at_rest(0.5 + TAU));
