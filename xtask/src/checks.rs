@@ -48,6 +48,8 @@ pub fn full() -> Result<(), String> {
     step(&mut command("cargo", &["test", "-p", "mbs-motions", "--features", "long"]))?;
     let proofs = ["test", "-p", "mbs-tests", "--features", "long", "--test", "proofs", "freestanding"];
     step(&mut command("cargo", &proofs))?;
+    let faults = ["test", "-p", "mbs-faults", "--features", "long", "--test", "nothing_follows"];
+    step(&mut command("cargo", &faults))?;
     browser::run()?;
     documents::book()?;
     documents::package()?;
