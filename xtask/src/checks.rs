@@ -46,7 +46,7 @@ pub fn full() -> Result<(), String> {
     need("cargo-llvm-lines", "`cargo install cargo-llvm-lines`")?;
     ci()?;
     step(&mut command("cargo", &["test", "-p", "mbs-motions", "--features", "long"]))?;
-    let proofs = ["test", "-p", "mbs-tests", "--features", "long", "--test", "proofs", "freestanding"];
+    let proofs = ["test", "-p", "mbs-tests", "--features", "long", "--test", "proofs"];
     step(&mut command("cargo", &proofs))?;
     let faults = ["test", "-p", "mbs-faults", "--features", "long", "--test", "nothing_follows"];
     step(&mut command("cargo", &faults))?;

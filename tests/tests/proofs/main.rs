@@ -3,5 +3,6 @@
 
 mod freestanding;
 mod from_c;
+#[cfg(feature = "long")]
 mod panic_free;
 mod scene_code;

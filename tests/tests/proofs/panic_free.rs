@@ -1,7 +1,7 @@
 //! No panic in any entry point, proven by `no-panic`: a function that can panic refers to a symbol that does not
 //! exist.
 //!
-//! The program is `tests/proofs/panic_free`; the entry points are those of `tests/proofs/subjects`.
+//! With the feature `long`; [`freestanding`](crate::freestanding) has the first tier. The program is `tests/proofs/panic_free`; the entry points are those of `tests/proofs/subjects`.
 
 use std::process::Command;
 
