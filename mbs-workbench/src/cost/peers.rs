@@ -32,6 +32,9 @@ const PROGRAMS: [(&str, &str, &str); 5] = [
     ("pinocchio", "Pinocchio", "pin==4.1.0\ncmeel-eigen==3.4.1\nnumpy==2.4.6\n"),
 ];
 
+/// Time (s) that a program may take to be compiled.
+const COMPILING: f64 = 300.0;
+
 /// Longest time of one program with all its settings, over the longest of one run.
 const SETTINGS: f64 = 40.0;
 
@@ -244,7 +247,7 @@ fn converse(
         .stderr(Stdio::piped())
         .spawn()
         .map_err(|error| format!("Python does not start: {error}"))?;
-    let limit = Duration::from_secs_f64(SETTINGS * question.longest + 60.0);
+    let limit = Duration::from_secs_f64(SETTINGS * question.longest + COMPILING);
     listen(&mut child, told.to_string(), limit, hear)
 }
 
