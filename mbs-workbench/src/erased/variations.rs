@@ -170,7 +170,7 @@ where
     }
 }
 
-/// What puts a state in the coordinates and rows of the text.
+/// Inverse of the change: puts a state in the coordinates and rows of the text.
 type Back = Box<dyn Fn(Seen) -> Seen>;
 
 /// Runs of a mechanism in `f64`, in other coordinates too.

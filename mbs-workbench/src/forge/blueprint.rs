@@ -30,7 +30,7 @@ pub struct Blueprint {
 /// A study that is built in a program of its own: it has the mechanism in more numbers than `mbs` does.
 #[derive(Clone, Copy, Debug)]
 pub struct Study {
-    /// What it adds to the name of the program.
+    /// Suffix of the program's name.
     suffix: &'static str,
     /// Type of all that it needs of the mechanism, a macro that makes this, and the program: in `mbs_workbench`.
     kind: &'static str,

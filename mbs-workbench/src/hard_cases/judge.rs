@@ -21,7 +21,7 @@ pub struct Bounds {
     pub rounding: f64,
 }
 
-/// What a judgement came to.
+/// Result of a judgement.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Judgement {
     /// The first fault, in words.

@@ -103,7 +103,7 @@ impl Own<'_> {
         }
     }
 
-    /// What of it can be varied, and the kinds of variants that do not suit it.
+    /// Parts of it that can be varied, and the kinds of variants that do not suit it.
     fn subject(&self, moved: Option<&dyn MovedVariants>) -> Result<(Subject, Vec<String>), String> {
         let equations = self.equations;
         let declared = mbs_codegen::variables(equations.source(), Some(equations.scene()))?;

@@ -49,7 +49,7 @@ impl Class {
     }
 }
 
-/// What of a mechanism can be varied.
+/// Parts of a mechanism that can be varied.
 #[derive(Clone, Debug, Default)]
 pub struct Subject {
     /// Kinds of variants that suit it; never empty.
