@@ -5,6 +5,7 @@ use serde_json::{Value, json};
 use super::files::turn;
 use super::follower::{Cam, Follower};
 use super::limits::{Limits, Verdict};
+use crate::output::page::Template;
 
 /// Places of a curve.
 const PLACES: usize = 720;
@@ -55,12 +56,10 @@ pub fn finite(value: f64) -> Option<f64> {
 
 /// The page with its data.
 pub fn html(data: &Value, origin: &str) -> String {
-    let text = data.to_string().replace('<', "\\u003c");
-    let escaped = |text: &str| text.replace('&', "&amp;").replace('<', "&lt;").replace('"', "&quot;");
-    include_str!("page/page.html")
-        .replace("{{title}}", &escaped(data["title"].as_str().unwrap_or("cam")))
-        .replace("{{origin}}", &escaped(origin))
-        .replace("{{style}}", include_str!("page/page.css"))
-        .replace("{{script}}", include_str!("page/page.js"))
-        .replace("{{data}}", &text)
+    const TEMPLATE: Template = Template {
+        html: include_str!("page/page.html"),
+        style: include_str!("page/page.css"),
+        script: include_str!("page/page.js"),
+    };
+    TEMPLATE.filled(data["title"].as_str().unwrap_or("cam"), origin, data)
 }

@@ -11,8 +11,8 @@ use super::CommandError;
 use super::document::Output;
 use super::report_files::{require_writable, write_report};
 use crate::catalogue::Catalogue;
-use crate::cost::result::escaped;
 use crate::output::origin::VERSION;
+use crate::output::page::escaped;
 use crate::target_directory::target_directory;
 
 /// A study as the index shows it.

@@ -3,7 +3,8 @@
 use std::fmt::Write;
 
 use crate::cost::points::{Outcome, Point, front};
-use crate::cost::result::{CostResult, escaped, style};
+use crate::cost::result::{CostResult, style};
+use crate::output::page::escaped;
 use crate::output::svg::{COLOURS, label, open};
 
 const WIDTH: f64 = 900.0;

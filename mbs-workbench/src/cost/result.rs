@@ -6,6 +6,7 @@ use crate::cost::advice::{rust, sentence};
 use crate::cost::peers::{PeerPoint, PeerRun};
 use crate::cost::points::{Errors, Outcome, Point, Verdict, cheapest, front};
 use crate::cost::splines::{self, PageValley};
+use crate::output::page::Template;
 use crate::setting::{MotionMethod, Numbers, Setting};
 use crate::tables::valley::Valley;
 
@@ -302,15 +303,12 @@ impl CostResult {
 
     /// The self-contained page.
     pub fn page(&self) -> String {
-        let json = serde_json::to_string(&self.data()).expect("plain data has a JSON form");
-        // A script element must contain neither `</script>` nor `<!--`.
-        let json = json.replace('<', "\\u003c");
-        include_str!("page/page.html")
-            .replace("{{title}}", &escaped(&self.title))
-            .replace("{{origin}}", &escaped(&self.origin))
-            .replace("{{style}}", include_str!("page/page.css"))
-            .replace("{{script}}", include_str!("page/page.js"))
-            .replace("{{data}}", &json)
+        const TEMPLATE: Template = Template {
+            html: include_str!("page/page.html"),
+            style: include_str!("page/page.css"),
+            script: include_str!("page/page.js"),
+        };
+        TEMPLATE.filled(&self.title, &self.origin, &self.data())
     }
 
     /// One line a point.
@@ -370,9 +368,4 @@ impl CostResult {
         }
         text
     }
-}
-
-/// Text of an element.
-pub fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }

@@ -5,9 +5,9 @@ use std::fmt::Write;
 
 use serde::Serialize;
 
-use crate::cost::result::escaped;
 use crate::hard_cases::study::Study;
 use crate::hard_cases::verdict::{Cell, Outcome, Verdict, cells};
+use crate::output::page::Template;
 
 /// A study with all that its page says.
 pub struct MatrixResult {
@@ -254,15 +254,12 @@ impl MatrixResult {
 
     /// The self-contained page.
     pub fn page(&self) -> String {
-        let json = serde_json::to_string(&self.data()).expect("plain data has a JSON form");
-        // A script element must contain neither `</script>` nor `<!--`.
-        let json = json.replace('<', "\\u003c");
-        include_str!("page/page.html")
-            .replace("{{title}}", &escaped(&self.title))
-            .replace("{{origin}}", &escaped(&self.origin))
-            .replace("{{style}}", include_str!("page/page.css"))
-            .replace("{{script}}", include_str!("page/page.js"))
-            .replace("{{data}}", &json)
+        const TEMPLATE: Template = Template {
+            html: include_str!("page/page.html"),
+            style: include_str!("page/page.css"),
+            script: include_str!("page/page.js"),
+        };
+        TEMPLATE.filled(&self.title, &self.origin, &self.data())
     }
 
     /// One line a run.

@@ -5,6 +5,7 @@ pub mod csv;
 pub mod latex;
 pub mod matrix;
 pub mod origin;
+pub(crate) mod page;
 pub mod places;
 pub mod reload;
 pub mod report;

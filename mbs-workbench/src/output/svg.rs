@@ -4,6 +4,8 @@ use std::fmt::Write;
 
 use mbs_codegen::{EntryKind, StructureReport};
 
+use crate::output::page::escaped;
+
 /// Okabe and Ito's colours, which the colour-blind can tell apart; grey is kept for failures.
 pub(crate) const COLOURS: [&str; 7] =
     ["#0072b2", "#e69f00", "#009e73", "#d55e00", "#56b4e9", "#f0e442", "#cc79a7"];
@@ -18,10 +20,6 @@ pub(crate) fn open(width: usize, height: usize) -> String {
          height=\"{height}\" font-family=\"sans-serif\" font-size=\"13\">\n<rect width=\"100%\" height=\"100%\" \
          fill=\"white\"/>\n"
     )
-}
-
-fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
 
 pub(crate) fn label(svg: &mut String, x: usize, y: usize, attributes: &str, text: &str) {
