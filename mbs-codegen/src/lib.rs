@@ -217,14 +217,16 @@ pub fn variables(source: &str, scene: Option<&str>) -> Result<Vec<Variable>, Str
     in_scene(source, scene, |_, scene| Ok(outline::variables(&scene.model)))
 }
 
-/// Outputs of a scene (without a name the whole text) of a text that is kept as a string: name, with the component's number for
-/// arrays, and unit.
+/// Outputs of a scene (without a name the whole text) of a text that is kept as a string, those that depend on multipliers last: name,
+/// with the component's number for arrays, and unit.
 ///
 /// # Errors
 /// As [`casadi_definition`].
 pub fn outputs(source: &str, scene: Option<&str>) -> Result<Vec<[String; 2]>, String> {
     in_scene(source, scene, |_, scene| {
-        Ok(scene.model.outputs.iter().map(|output| [output.name.clone(), output.unit.clone()]).collect())
+        let loads = scene.model.dynamics.iter().flat_map(|dynamics| &dynamics.loads);
+        let all = scene.model.outputs.iter().chain(loads);
+        Ok(all.map(|output| [output.name.clone(), output.unit.clone()]).collect())
     })
 }
 

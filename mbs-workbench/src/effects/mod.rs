@@ -9,3 +9,5 @@ pub mod result;
 pub mod scene;
 pub mod study;
 mod symbols;
+#[cfg(test)]
+mod tests;

@@ -59,7 +59,9 @@ pub fn percent(part: f64) -> String {
         _ if value < 1e-3 => format!("{value:.0e} %"),
         _ => {
             let digits = (1.0 - value.log10().floor()).clamp(0.0, 5.0) as usize;
-            format!("{value:.digits$} %")
+            let text = format!("{value:.digits$}");
+            let text = if digits > 0 { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
+            format!("{text} %")
         }
     }
 }
@@ -107,14 +109,7 @@ impl EffectsResult {
 
     /// Time of a step of a scene over that of the whole.
     pub fn share(&self, scene: Scene) -> Option<f64> {
-        let step = |scene| self.of(scene)?.measured.as_ref().map(|measured| measured.step);
-        Some(step(scene)? / step(self.study.whole())?)
-    }
-
-    /// Operations of a scene over those of the whole.
-    pub fn share_of_operations(&self, scene: Scene) -> Option<f64> {
-        let of = |scene| self.of(scene).map(|candidate| candidate.measures.operations as f64);
-        Some(of(scene)? / of(self.study.whole())?)
+        Some(self.study.step(scene)? / self.study.step(self.study.whole())?)
     }
 
     /// Names of the watched outputs in words.

@@ -85,11 +85,15 @@ impl Text {
     /// The first fault of the text with this scene alone.
     pub fn measures(&self, scene: Scene) -> Result<Measures, String> {
         let copy = self.copy(&[scene]);
+        // The name of a compared scene tells a reader nothing.
+        let plain = |words: &str| {
+            words.replace(&format!("in scene `{}`", scene.name()), "there").replace(&scene.name(), "the scene")
+        };
         // All that the macro checks: a scene that is pasted compiles.
         mbs_codegen::outline(&copy).map_err(|faults| {
-            faults.first().map_or_else(String::new, |fault| fault.message.clone())
+            faults.first().map_or_else(String::new, |fault| plain(&fault.message))
         })?;
-        let report = mbs_codegen::structure_of(&copy, Some(&scene.name()))?;
+        let report = mbs_codegen::structure_of(&copy, Some(&scene.name())).map_err(|faults| plain(&faults))?;
         Ok(Measures::of(&report))
     }
 }

@@ -40,6 +40,9 @@ impl Candidate {
     }
 }
 
+/// Part of the whole's time of a step up to which times are not told apart: they scatter by that much on a machine with other work.
+const NOISE: f64 = 0.02;
+
 /// All that a study found.
 #[derive(Clone, Debug)]
 pub struct Study {
@@ -61,6 +64,11 @@ impl Study {
     /// The whole.
     pub fn whole(&self) -> Scene {
         Scene::whole(self.text.effects.len())
+    }
+
+    /// Time of a step (s) of a scene.
+    pub fn step(&self, scene: Scene) -> Option<f64> {
+        self.candidate(scene)?.measured.as_ref().map(|measured| measured.step)
     }
 
     /// A scene that was looked at.
@@ -98,9 +106,14 @@ pub fn study(text: Text, order: &Order, within: f64, workshop: Workshop<'_>) -> 
             break;
         }
     }
-    // A scene of the first round may be cheaper than where the elimination ends.
+    // A scene of the first round may be cheaper than where the elimination ends. Times that differ by less than they are known to are
+    // one cost; then operations count, then effects.
+    let floor = NOISE * study.step(whole).unwrap_or_default();
     let within_bound = study.candidates.iter().filter(|(_, candidate)| candidate.is_within(within));
-    let cost = |(scene, candidate): &(&Scene, &Candidate)| (candidate.measures.operations, scene.len());
+    let cost = |(scene, candidate): &(&Scene, &Candidate)| {
+        let step = candidate.measured.as_ref().map_or(f64::INFINITY, |measured| measured.step);
+        ((step / floor).round() as i64, candidate.measures.operations, scene.len())
+    };
     if let Some((scene, _)) = within_bound.min_by_key(cost) {
         study.enough = *scene;
     }
@@ -155,12 +168,12 @@ impl Study {
 
     /// The scene within the bound that changes least for what it saves, of those with one effect less than `current`.
     fn cheapest_change(&self, current: Scene, nearest: &[Scene], within: f64) -> Option<Scene> {
-        let cost = self.candidate(current)?.measures.operations;
+        let (cost, floor) = (self.step(current)?, NOISE * self.step(self.whole())?);
         let ratio = |scene: Scene| {
             let candidate = self.candidate(scene).filter(|candidate| candidate.is_within(within))?;
-            // An effect that costs nothing, a parameter alone, is weighed as one operation.
-            let saved = cost.saturating_sub(candidate.measures.operations).max(1);
-            Some((candidate.largest() / saved as f64, scene))
+            // Of effects that take less than is measured the one with the smallest change is left out first.
+            let saved = (cost - self.step(scene)?).max(floor);
+            Some((candidate.largest() / saved, scene))
         };
         nearest.iter().filter_map(|scene| ratio(*scene)).min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, scene)| scene)
     }
