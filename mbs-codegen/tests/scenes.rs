@@ -117,8 +117,7 @@ fn engine() -> String {
 /// All items of the implementations for one scene, the linked masses and forces included.
 fn dynamic_items(text: &str, scene: Option<&str>) -> BTreeMap<String, String> {
     let tokens = mbs_codegen::expand_source(text).unwrap_or_else(|faults| panic!("{faults}"));
-    let mut found =
-        Found { traits: &["Mechanism", "Dynamic", "Partitioned"], scene, items: BTreeMap::new() };
+    let mut found = Found { traits: &["Mechanism", "Dynamic", "Partitioned"], scene, items: BTreeMap::new() };
     found.visit_file(&syn::parse2(tokens).expect("Rust"));
     assert!(found.items.len() > 60, "{:?}", found.items.keys());
     found.items

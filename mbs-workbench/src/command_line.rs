@@ -208,13 +208,16 @@ pub fn effects_program(scenes: &[NamedScene]) -> ExitCode {
     on_large_stack(|| {
         let mut text = String::new();
         let read = io::stdin().read_to_string(&mut text).map_err(|error| error.to_string());
-        let order = read.and_then(|_| serde_json::from_str::<Order>(&text).map_err(|error| error.to_string()));
+        let order =
+            read.and_then(|_| serde_json::from_str::<Order>(&text).map_err(|error| error.to_string()));
         match order {
             Ok(order) => match serde_json::to_writer(io::stdout().lock(), &measure(scenes, &order)) {
                 Ok(()) => ExitCode::SUCCESS,
                 Err(error) => report(&CommandError::Failed(format!("cannot write: {error}"))),
             },
-            Err(error) => report(&CommandError::Usage(format!("this program measures scenes for `mbs effects`: {error}"))),
+            Err(error) => report(&CommandError::Usage(format!(
+                "this program measures scenes for `mbs effects`: {error}"
+            ))),
         }
     })
 }

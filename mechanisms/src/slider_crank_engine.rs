@@ -149,8 +149,7 @@ mod tests {
     use crate::reference::{dynamics_at, load};
 
     /// Parameters that an effect vanishes with.
-    const SWITCHES: [&str; 8] =
-        ["bore", "g", "mu_liner", "viscous", "mu_pins", "stall", "drag", "stiffness"];
+    const SWITCHES: [&str; 8] = ["bore", "g", "mu_liner", "viscous", "mu_pins", "stall", "drag", "stiffness"];
 
     /// Of a case of the reference: those that it keeps.
     fn kept(case: &str) -> &'static [&'static str] {
@@ -193,11 +192,13 @@ mod tests {
             let mut worst = [0.0_f64; 3];
             for (k, [_, theta, omega, load]) in expected.iter().enumerate() {
                 let crank = &found.motion.coordinates[0];
-                let errors =
-                    [crank.q[k] - theta, (crank.qd[k] - omega) / 251.0, (side[k] - load) / most];
+                let errors = [crank.q[k] - theta, (crank.qd[k] - omega) / 251.0, (side[k] - load) / most];
                 worst.iter_mut().zip(errors).for_each(|(worst, error)| *worst = worst.max(error.abs()));
             }
-            println!("engine, {case}: angle {:.1e}, speed {:.1e}, side load {:.1e}", worst[0], worst[1], worst[2]);
+            println!(
+                "engine, {case}: angle {:.1e}, speed {:.1e}, side load {:.1e}",
+                worst[0], worst[1], worst[2]
+            );
             assert!(worst[0] < 1e-8 && worst[1] < 1e-8 && worst[2] < 1e-6, "{case}: {worst:?}");
         }
     }

@@ -28,19 +28,25 @@ fn mbs(folder: &Path, arguments: &[&str]) -> String {
 
 #[track_caller]
 fn result(folder: &Path, arguments: &[&str]) -> Value {
-    let text = mbs(folder, &[&["effects", "slider_crank_engine", "--json", "--out", "."], arguments].concat());
+    let text =
+        mbs(folder, &[&["effects", "slider_crank_engine", "--json", "--out", "."], arguments].concat());
     let document: Value = serde_json::from_str(&text).expect("a document");
     document["result"].clone()
 }
 
 /// A column of the table of a run of a scene.
 fn column(folder: &Path, scene: &str, name: &str) -> Vec<f64> {
-    mbs(folder, &["run", &format!("./engine.mbs:SliderCrankEngine:{scene}"), "--steps", "500", "--out", scene]);
+    mbs(
+        folder,
+        &["run", &format!("./engine.mbs:SliderCrankEngine:{scene}"), "--steps", "500", "--out", scene],
+    );
     let table = fs::read_to_string(folder.join(scene).join("motion.csv")).expect("a table");
     let mut lines = table.lines().filter(|line| !line.starts_with('#'));
     let head: Vec<&str> = lines.next().expect("names").split(',').collect();
     let index = head.iter().position(|column| column.split(' ').next() == Some(name)).expect("the column");
-    lines.map(|line| line.split(',').nth(index).and_then(|cell| cell.parse().ok()).expect("a number")).collect()
+    lines
+        .map(|line| line.split(',').nth(index).and_then(|cell| cell.parse().ok()).expect("a number"))
+        .collect()
 }
 
 #[test]

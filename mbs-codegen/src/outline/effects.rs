@@ -83,8 +83,7 @@ impl EffectGroups {
     /// Without scenes the copy is the scene of all its effects.
     pub fn with_scenes(&self, source: &str, kept: &[String], scenes: &[(String, Vec<String>)]) -> String {
         let left_out = self.effects.iter().zip(&self.effect_places).filter(|(name, _)| !kept.contains(name));
-        let places: Vec<&Range<usize>> =
-            left_out.map(|(_, place)| place).chain(&self.scene_places).collect();
+        let places: Vec<&Range<usize>> = left_out.map(|(_, place)| place).chain(&self.scene_places).collect();
         let is_out = |byte: usize| places.iter().any(|place| place.contains(&byte));
         let blank = |(byte, letter): (usize, char)| match letter {
             '\n' => '\n',

@@ -69,7 +69,7 @@ const INSTANTS: u32 = 4000;
 /// Longest time (s) of a run.
 const LIMIT: f64 = 60.0;
 
-/// Tolerance of motions: the tenth of a thousandth of the bound, at most that of `mbs run`, at least some rounding.
+/// Tolerance of motions: that of `mbs run`, for a small bound a hundred-thousandth of it.
 fn tolerance(within: f64) -> f64 {
     (1e-5 * within).clamp(1e-12, 1e-9)
 }
@@ -120,7 +120,8 @@ impl Subject {
         let scene = text.scene.as_deref();
         let Picture { title, presets, span, .. } = picture(&text.source, scene).map_err(unread)?;
         let known = mbs_codegen::variables(&text.source, scene).map_err(CommandError::Failed)?;
-        let mut values: Vec<(String, f64)> = presets.first().map(|preset| preset.set.clone()).unwrap_or_default();
+        let mut values: Vec<(String, f64)> =
+            presets.first().map(|preset| preset.set.clone()).unwrap_or_default();
         for given in &arguments.parameters {
             let Some(variable) = known.iter().find(|variable| variable.name == given.name) else {
                 let names: Vec<&str> = known.iter().map(|variable| variable.name.as_str()).collect();
@@ -139,7 +140,9 @@ impl Subject {
         }
         let value = |name: &str| {
             let set = values.iter().rev().find(|(known, _)| known == name).map(|(_, value)| *value);
-            set.or_else(|| known.iter().find(|variable| variable.name == name).map(|variable| variable.default))
+            set.or_else(|| {
+                known.iter().find(|variable| variable.name == name).map(|variable| variable.default)
+            })
         };
         let until = match (arguments.until, &span) {
             (Some(until), _) => until,
@@ -153,7 +156,6 @@ impl Subject {
                 turn
             }
         };
-        let until = until.to_owned();
         // The last of several values of a name counts.
         values.reverse();
         Ok(Subject {
@@ -209,7 +211,8 @@ impl Subject {
 
     /// Refuses outputs that the text does not have.
     fn require_outputs(&self, watched: &[String]) -> Result<(), CommandError> {
-        let known = mbs_codegen::outputs(&self.source, self.scene.as_deref()).map_err(CommandError::Failed)?;
+        let known =
+            mbs_codegen::outputs(&self.source, self.scene.as_deref()).map_err(CommandError::Failed)?;
         let known: Vec<&str> = known.iter().map(|[name, _]| name.as_str()).collect();
         if known.is_empty() {
             return Err(CommandError::Usage(format!(
@@ -289,11 +292,18 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments, out: &mut Output) -> Re
         false => format!("{INSTANTS} steps of the stepper, each closed"),
     };
     let facts = [
-        ("motion", format!("to t = {} s by {}", summary::short(order.until), if by_forces { "forces" } else { "drives" })),
+        (
+            "motion",
+            format!(
+                "to t = {} s by {}",
+                summary::short(order.until),
+                if by_forces { "forces" } else { "drives" }
+            ),
+        ),
         ("method", method),
         ("change", format!("at {} instants, over the range of the output in the whole", INSTANTS + 1)),
-        ("times", "the shortest of five runs, scenes in turns".to_string()),
-        ("elimination", format!("{} scenes in {} programs, built or found built", found.candidates.len(), found.rounds)),
+        ("times", "the shortest of up to 25 runs, scenes in turns".to_string()),
+        ("elimination", format!("{} scenes, rounds of programs: {}", found.candidates.len(), found.rounds)),
         ("machine", machine()),
         ("text", origin.hash.clone()),
     ];
@@ -353,7 +363,8 @@ fn measured_by(program: &Path, order: &Order) -> Result<Vec<Measured>, String> {
         let said = String::from_utf8_lossy(&output.stderr);
         return Err(format!("the program of the scenes failed: {}", said.trim()));
     }
-    serde_json::from_slice(&output.stdout).map_err(|error| format!("the program of the scenes printed no result: {error}"))
+    serde_json::from_slice(&output.stdout)
+        .map_err(|error| format!("the program of the scenes printed no result: {error}"))
 }
 
 /// The spinner turns while other processes work.

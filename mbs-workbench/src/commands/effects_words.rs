@@ -23,7 +23,16 @@ pub fn print(result: &EffectsResult, out: &mut dyn Write) -> Result<(), CommandE
     writeln!(
         out,
         "\n{:<widest$}  {:>11}  {:>5}  {:>10}  {:>8}  {:>9}  {:<names$}  {:>10}  {:>10}  {:>9}",
-        "effect", "coordinates", "rows", "operations", "bytes", "ns a step", "output", "largest", "at (s)", "RMS"
+        "effect",
+        "coordinates",
+        "rows",
+        "operations",
+        "bytes",
+        "ns a step",
+        "output",
+        "largest",
+        "at (s)",
+        "RMS"
     )?;
     for one in &found {
         print_one(one, [widest, names], out)?;
@@ -49,7 +58,11 @@ pub fn print(result: &EffectsResult, out: &mut dyn Write) -> Result<(), CommandE
     Ok(())
 }
 
-fn print_one(one: &Contribution, [widest, names]: [usize; 2], out: &mut dyn Write) -> Result<(), CommandError> {
+fn print_one(
+    one: &Contribution,
+    [widest, names]: [usize; 2],
+    out: &mut dyn Write,
+) -> Result<(), CommandError> {
     let number = |value: Option<String>| value.unwrap_or_else(|| "–".to_string());
     let head = format!(
         "{:<widest$}  {:>11}  {:>5}  {:>10}  {:>8}  {:>9}",

@@ -71,9 +71,10 @@ fn size(whole: &Curve, other: &Curve, times: &[f64], within: f64) -> Result<Size
             format!("not comparable: the runs have an error of {error:.0e} themselves")
         });
     }
-    let widest = [whole, other].into_iter().filter_map(|curve| curve.envelope.as_ref()).map(|[low, high]| {
-        low.iter().zip(high).map(|(low, high)| (high - low) / range).fold(0.0, f64::max)
-    });
+    let widest = [whole, other]
+        .into_iter()
+        .filter_map(|curve| curve.envelope.as_ref())
+        .map(|[low, high]| low.iter().zip(high).map(|(low, high)| (high - low) / range).fold(0.0, f64::max));
     let widest = widest.fold(0.0, f64::max);
     if within < widest {
         return Err("not comparable: impacts spread perturbed starts by more than the bound".to_string());

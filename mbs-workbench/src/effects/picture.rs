@@ -24,23 +24,25 @@ pub fn picture(result: &EffectsResult) -> String {
         .into_iter()
         .filter_map(|one| {
             let sizes = one.changes.iter().filter_map(|change| change.size.as_ref().ok());
-            let largest = sizes.map(|size| size.largest).fold(None, |most: Option<f64>, size| {
-                Some(most.map_or(size, |most| most.max(size)))
-            })?;
+            let largest = sizes
+                .map(|size| size.largest)
+                .fold(None, |most: Option<f64>, size| Some(most.map_or(size, |most| most.max(size))))?;
             let is_kept = kept.contains(&one.name);
             Some((one.name, 1e9 * one.step?, largest.max(LEAST), is_kept))
         })
         .collect();
     let mut svg = open(WIDTH as usize, HEIGHT as usize);
     label(&mut svg, LEFT as usize, 26, "font-size=\"16\" font-weight=\"bold\"", &result.title);
-    let words = "largest change of the watched outputs without an effect, over the time of a step that it takes";
+    let words =
+        "largest change of the watched outputs without an effect, over the time of a step that it takes";
     label(&mut svg, LEFT as usize, 46, "fill=\"#555\"", words);
     let logarithms = points.iter().map(|(_, _, change, _)| change.log10()).chain([result.within.log10()]);
     let (low, high) =
         logarithms.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
     let (low, high) = ((low - 0.2).floor(), (high + 0.2).ceil());
-    let (least, most) =
-        points.iter().fold((0.0_f64, 1.0_f64), |(low, high), (_, cost, ..)| (low.min(*cost), high.max(*cost)));
+    let (least, most) = points
+        .iter()
+        .fold((0.0_f64, 1.0_f64), |(low, high), (_, cost, ..)| (low.min(*cost), high.max(*cost)));
     let (least, most) = (least - 0.04 * (most - least), most + 0.04 * (most - least));
     let x = |cost: f64| LEFT + (cost - least) / (most - least) * (WIDTH - LEFT - RIGHT);
     let y = |change: f64| HEIGHT - BOTTOM - (change.log10() - low) / (high - low) * (HEIGHT - TOP - BOTTOM);
@@ -48,7 +50,12 @@ pub fn picture(result: &EffectsResult) -> String {
         let at = y(10.0_f64.powi(power));
         let _ = writeln!(svg, "<path d=\"M{LEFT} {at:.1}H{:.1}\" stroke=\"#ddd\"/>", WIDTH - RIGHT);
         let words = percent(10.0_f64.powi(power));
-        let _ = writeln!(svg, "<text x=\"{}\" y=\"{:.1}\" text-anchor=\"end\">{words}</text>", LEFT - 8.0, at + 4.0);
+        let _ = writeln!(
+            svg,
+            "<text x=\"{}\" y=\"{:.1}\" text-anchor=\"end\">{words}</text>",
+            LEFT - 8.0,
+            at + 4.0
+        );
     }
     for mark in marks(least, most) {
         let at = x(mark);
@@ -86,10 +93,21 @@ pub fn picture(result: &EffectsResult) -> String {
             at += 13.0;
         }
         labels.push((x, at));
-        let _ = writeln!(svg, "<text x=\"{:.1}\" y=\"{at:.1}\" font-size=\"12\">{}</text>", x + 9.0, escaped(&name));
+        let _ = writeln!(
+            svg,
+            "<text x=\"{:.1}\" y=\"{at:.1}\" font-size=\"12\">{}</text>",
+            x + 9.0,
+            escaped(&name)
+        );
     }
     let x = (WIDTH - RIGHT) as usize + 6;
-    label(&mut svg, x, TOP as usize + 8, &format!("fill=\"{}\" font-size=\"12\"", COLOURS[0]), "in the cheapest scene");
+    label(
+        &mut svg,
+        x,
+        TOP as usize + 8,
+        &format!("fill=\"{}\" font-size=\"12\"", COLOURS[0]),
+        "in the cheapest scene",
+    );
     label(&mut svg, x, TOP as usize + 24, &format!("fill=\"{FAILURE}\" font-size=\"12\""), "left out of it");
     svg + "</svg>\n"
 }

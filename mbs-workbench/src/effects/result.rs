@@ -125,7 +125,8 @@ impl EffectsResult {
     pub fn sentence(&self) -> String {
         let (enough, whole) = (self.study.enough, self.study.whole());
         let (within, outputs) = (percent(self.within), self.outputs_in_words());
-        if self.of(whole).is_none_or(|candidate| candidate.changes.iter().all(|change| change.size.is_err())) {
+        if self.of(whole).is_none_or(|candidate| candidate.changes.iter().all(|change| change.size.is_err()))
+        {
             let reasons = self.of(whole).map(|candidate| candidate.changes.as_slice()).unwrap_or_default();
             let reason = reasons.iter().find_map(|change| change.size.clone().err()).unwrap_or_default();
             return format!("no cheapest scene on {outputs}: {reason}");
@@ -136,9 +137,10 @@ impl EffectsResult {
             );
         }
         let share = self.share(enough).unwrap_or(1.0);
+        let effects = self.study.text.all_of(enough);
+        let words = if effects.is_empty() { "the base alone".to_string() } else { effects.join(" + ") };
         format!(
-            "cheapest scene within {within} of the whole on {outputs} (largest and RMS): {}, {share:.2} of its cost",
-            enough.words(&self.study.text.effects)
+            "cheapest scene within {within} of the whole on {outputs} (largest and RMS): {words}, {share:.2} of its cost"
         )
     }
 
@@ -203,7 +205,7 @@ impl EffectsResult {
             script: include_str!("page/page.js"),
         };
         /// Instants of a curve that are drawn.
-        const DRAWN: usize = 800;
+        const DRAWN: usize = 801;
         let mut data = self.document();
         data["title"] = json!(self.title);
         data["command"] = json!(self.command);

@@ -38,10 +38,6 @@ impl Scene {
     pub fn effects(self, all: &[String]) -> Vec<String> {
         all.iter().enumerate().filter(|(index, _)| self.has(*index)).map(|(_, name)| name.clone()).collect()
     }
-    /// Its effects in words: `gas + gravity`.
-    pub fn words(self, all: &[String]) -> String {
-        if self.is_empty() { "the base alone".to_string() } else { self.effects(all).join(" + ") }
-    }
     /// Name of its type: the numbers of its effects, for names of effects may not tell sets apart.
     pub fn name(self) -> String {
         format!("Compared{}", self.0)
@@ -87,13 +83,15 @@ impl Text {
         let copy = self.copy(&[scene]);
         // The name of a compared scene tells a reader nothing.
         let plain = |words: &str| {
-            words.replace(&format!("in scene `{}`", scene.name()), "there").replace(&scene.name(), "the scene")
+            words
+                .replace(&format!("in scene `{}`", scene.name()), "there")
+                .replace(&scene.name(), "the scene")
         };
         // All that the macro checks: a scene that is pasted compiles.
-        mbs_codegen::outline(&copy).map_err(|faults| {
-            faults.first().map_or_else(String::new, |fault| plain(&fault.message))
-        })?;
-        let report = mbs_codegen::structure_of(&copy, Some(&scene.name())).map_err(|faults| plain(&faults))?;
+        mbs_codegen::outline(&copy)
+            .map_err(|faults| faults.first().map_or_else(String::new, |fault| plain(&fault.message)))?;
+        let report =
+            mbs_codegen::structure_of(&copy, Some(&scene.name())).map_err(|faults| plain(&faults))?;
         Ok(Measures::of(&report))
     }
 }
@@ -123,15 +121,8 @@ impl Measures {
             "`state_rates`",
         ];
         let total = |operations: &Operations| {
-            let Operations {
-                additions,
-                multiplications,
-                divisions,
-                sine_cosines,
-                functions,
-                selects,
-                calls,
-            } = operations;
+            let Operations { additions, multiplications, divisions, sine_cosines, functions, selects, calls } =
+                operations;
             additions + multiplications + divisions + sine_cosines + functions + selects + calls
         };
         let is_square = report.rows.len() >= report.coordinates.len();

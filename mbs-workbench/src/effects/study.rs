@@ -175,6 +175,10 @@ impl Study {
             let saved = (cost - self.step(scene)?).max(floor);
             Some((candidate.largest() / saved, scene))
         };
-        nearest.iter().filter_map(|scene| ratio(*scene)).min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, scene)| scene)
+        nearest
+            .iter()
+            .filter_map(|scene| ratio(*scene))
+            .min_by(|a, b| a.0.total_cmp(&b.0))
+            .map(|(_, scene)| scene)
     }
 }

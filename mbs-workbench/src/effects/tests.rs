@@ -128,7 +128,8 @@ fn runs_with_errors_of_their_own_are_not_comparable() {
     other.outputs[0].error = 0.0;
     // An envelope as wide as the bound says nothing about it; a narrow one is compared by its ends.
     let values = other.outputs[0].values.clone();
-    let wider = |by: f64| Some([values.iter().map(|x| x - by).collect(), values.iter().map(|x| x + by).collect()]);
+    let wider =
+        |by: f64| Some([values.iter().map(|x| x - by).collect(), values.iter().map(|x| x + by).collect()]);
     other.outputs[0].envelope = wider(0.02);
     assert!(changes(&whole, &other, &times, 0.01)[0].size.is_err());
     other.outputs[0].envelope = wider(0.001);
@@ -141,6 +142,9 @@ fn runs_with_errors_of_their_own_are_not_comparable() {
 #[test]
 fn a_constant_output_is_compared_with_its_size() {
     assert_eq!((range(&[2.0, 2.0]), range(&[0.0, 0.0]), range(&[-1.0, 3.0])), (2.0, 1.0, 4.0));
-    assert_eq!((percent(0.0123), percent(0.31), percent(0.0)), ("1.2 %".into(), "31 %".into(), "0 %".to_string()));
+    assert_eq!(
+        (percent(0.0123), percent(0.31), percent(0.0)),
+        ("1.2 %".into(), "31 %".into(), "0 %".to_string())
+    );
     assert_eq!((percent(20.0), percent(1e-7)), ("> 1000 %".to_string(), "1e-5 %".to_string()));
 }

@@ -191,11 +191,7 @@ where
     fn contacts(&self) -> usize {
         0
     }
-    fn run(
-        &self,
-        asked: &Asked<'_>,
-        mut see: Option<&mut dyn FnMut(&[f64])>,
-    ) -> Result<Effort, String> {
+    fn run(&self, asked: &Asked<'_>, mut see: Option<&mut dyn FnMut(&[f64])>) -> Result<Effort, String> {
         let first = asked.times.first().copied().unwrap_or(0.0);
         let guess = self.mechanism.guess(&self.mechanism.parameters());
         let mut stepper = Stepper::assemble(self.mechanism.clone(), guess, first).map_err(told)?;
@@ -265,11 +261,7 @@ impl<S: Dynamic<f64, N, M>, const N: usize, const M: usize> SceneRuns for Moved<
     fn contacts(&self) -> usize {
         S::CONTACTS.len()
     }
-    fn run(
-        &self,
-        asked: &Asked<'_>,
-        mut see: Option<&mut dyn FnMut(&[f64])>,
-    ) -> Result<Effort, String> {
+    fn run(&self, asked: &Asked<'_>, mut see: Option<&mut dyn FnMut(&[f64])>) -> Result<Effort, String> {
         let first = asked.times.first().copied().unwrap_or(0.0);
         let (mut q, mut qd) = (self.start)(&self.mechanism, first);
         let scales = self.mechanism.coordinate_scales(&self.mechanism.parameters());

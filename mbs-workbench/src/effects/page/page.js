@@ -154,7 +154,7 @@ const tables = () => {
   const order = [...DATA.scenes].sort((a, b) => Number(b.is_within) - Number(a.is_within) || (a.share ?? 9) - (b.share ?? 9));
   for (const scene of order) {
     const row = element("tr", undefined, scenes, scene.is_enough ? "chosen" : undefined);
-    const name = scene.is_whole ? "all" : scene.effects.length === 0 ? "the base alone" : scene.effects.join(" + ");
+    const name = scene.is_whole ? "all" : scene.effects.length === 0 ? (DATA.kept.length === 0 ? "the base alone" : "those of all scenes alone") : scene.effects.join(" + ");
     const step = scene.step === null ? "–" : (1e9 * scene.step).toFixed(0);
     cells(row, [name, scene.coordinates || "–", scene.rows || "–", scene.operations || "–", scene.bytes ?? "–", step, short(scene.share), scene.steps ?? "–"]);
     const reason = scene.reason ?? scene.changes.find((change) => change.reason !== undefined)?.reason;
@@ -163,11 +163,13 @@ const tables = () => {
   }
 };
 byId("title").textContent = `${DATA.title}: effects`;
-byId("sentence").textContent = DATA.sentence;
+const sentence = DATA.sentence.replaceAll("`", "");
+byId("sentence").textContent = sentence.charAt(0).toUpperCase() + sentence.slice(1) + ".";
 byId("command").textContent = DATA.command;
 byId("paste").textContent = DATA.paste;
 if (enough && whole) {
-  byId("enough").textContent = enough.effects.length === 0 ? "the base alone" : enough.effects.join(" + ");
+  const own = [...enough.effects, ...DATA.kept];
+  byId("enough").textContent = own.length === 0 ? "the base alone" : own.join(" + ");
   const figure = (name, value) => { element("dt", name, byId("figures")); element("dd", value, byId("figures")); };
   figure("left out", whole.effects.filter((name) => !enough.effects.includes(name)).join(", ") || "nothing");
   figure("time of a step", `${(1e9 * enough.step).toFixed(0)} of ${(1e9 * whole.step).toFixed(0)} ns`);
