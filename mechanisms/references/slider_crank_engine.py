@@ -21,7 +21,7 @@ SINES = [208300, 290100, 274800, 221100, 191200, 172100, 146300, 106100, 70500, 
 RPM = 2 * np.pi / 60
 # The defaults of the text.
 ENGINE = dict(r=0.04, L=0.14, d=0.045, piston_mass=0.45, rod_mass=0.6, rod_inertia=2.2e-3, wheel=0.15, speed=2400 * RPM, bore=0.08,
-              g=9.81, mu_liner=0.08, viscous=4.0, mu_pins=0.01, stall=60.0, idle=6000 * RPM, drag=2e-4, stiffness=3000.0)
+              g=9.81, mu_liner=0.08, viscous=4.0, mu_pins=0.002, stall=60.0, idle=6000 * RPM, drag=2e-4, stiffness=3000.0)
 # Speed below which friction is smooth (m/s), radii of the pins (m), end and unloaded length of the spring (m).
 SMOOTH, BIG_END, SMALL_END, TOP, UNLOADED = 0.1, 0.022, 0.011, 0.26, 0.12
 

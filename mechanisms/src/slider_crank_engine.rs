@@ -103,7 +103,8 @@ mechanism! {
         }
     }
     effect pin_friction {
-        param mu_pins: 1 = 0.01;
+        /// With a film of oil.
+        param mu_pins: 1 = 0.002;
         friction big_end {
             along: 22mm*(phi - theta), normal: hypot(lambda(crank_pin.0), lambda(crank_pin.1)),
             coefficient: mu_pins, speed: 0.1 [m/s]

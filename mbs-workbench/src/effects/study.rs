@@ -106,17 +106,14 @@ pub fn study(text: Text, order: &Order, within: f64, workshop: Workshop<'_>) -> 
             break;
         }
     }
-    // A scene of the first round may be cheaper than where the elimination ends. Times that differ by less than they are known to are
-    // one cost; then operations count, then effects.
-    let floor = NOISE * study.step(whole).unwrap_or_default();
+    // A scene of the first round may be cheaper than where the elimination ends, by more than times are known to.
+    let cost = |scene: Scene| study.step(scene).unwrap_or(f64::INFINITY);
     let within_bound = study.candidates.iter().filter(|(_, candidate)| candidate.is_within(within));
-    let cost = |(scene, candidate): &(&Scene, &Candidate)| {
-        let step = candidate.measured.as_ref().map_or(f64::INFINITY, |measured| measured.step);
-        ((step / floor).round() as i64, candidate.measures.operations, scene.len())
+    let cheapest = within_bound.map(|(scene, _)| *scene).min_by(|a, b| cost(*a).total_cmp(&cost(*b)));
+    study.enough = match cheapest {
+        Some(scene) if cost(scene) < cost(current) - NOISE * cost(whole) => scene,
+        _ => current,
     };
-    if let Some((scene, _)) = within_bound.min_by_key(cost) {
-        study.enough = *scene;
-    }
     Ok(study)
 }
 
@@ -144,8 +141,16 @@ impl Study {
             return Ok(());
         }
         self.rounds += 1;
-        let names: Vec<String> = asked.iter().map(|scene| scene.name()).collect();
-        let measured = workshop(self.rounds, &self.text.copy(&asked), &names)?;
+        // Times of rounds are compared by that of the whole in each: the load of the machine changes.
+        let built: Vec<Scene> =
+            asked.iter().copied().chain((!asked.contains(&whole)).then_some(whole)).collect();
+        let names: Vec<String> = built.iter().map(|scene| scene.name()).collect();
+        let mut measured = workshop(self.rounds, &self.text.copy(&built), &names)?;
+        let again =
+            measured.iter().zip(&built).find(|(_, scene)| **scene == whole).map(|(found, _)| found.step);
+        if let (Some(first), Some(again)) = (self.step(whole), again.filter(|again| *again > 0.0)) {
+            measured.iter_mut().for_each(|found| found.step *= first / again);
+        }
         for (scene, found) in asked.iter().zip(measured) {
             if let Some(candidate) = self.candidates.get_mut(scene) {
                 candidate.reason = found.failure.as_ref().map(|reason| format!("no motion: {reason}"));

@@ -67,7 +67,7 @@ fn effects_are_left_out_while_the_outputs_stay_within_the_bound() {
     // Each of the small ones alone is within 1 %, and so are both, which nearly cancel.
     let (found, rounds) = studied(0.01);
     assert_eq!((found.enough, found.eliminated.len()), (Scene(0b001), 3));
-    // The dearer one with the smaller change goes first; then one scene of the next round is new but the one that was alone.
+    // The dearer one with the smaller change goes first. All scenes of the next rounds are known from the first.
     assert_eq!(found.eliminated[1], Scene(0b011));
     assert_eq!(rounds, [8]);
     // Without either the change is 0.8 % or 0.7 %: nothing can be left out within 0.5 % but both together.
