@@ -154,7 +154,10 @@ const tables = () => {
   const order = [...DATA.scenes].sort((a, b) => Number(b.is_within) - Number(a.is_within) || (a.share ?? 9) - (b.share ?? 9));
   for (const scene of order) {
     const row = element("tr", undefined, scenes, scene.is_enough ? "chosen" : undefined);
-    const name = scene.is_whole ? "all" : scene.effects.length === 0 ? (DATA.kept.length === 0 ? "the base alone" : "those of all scenes alone") : scene.effects.join(" + ");
+    const left = whole ? whole.effects.filter((name) => !scene.effects.includes(name)) : [];
+    const few = left.length < scene.effects.length ? `all but ${left.join(", ")}` : scene.effects.join(" + ");
+    const base = DATA.kept.length === 0 ? "the base alone" : "those of all scenes alone";
+    const name = scene.is_whole ? "all" : scene.effects.length === 0 ? base : few;
     const step = scene.step === null ? "–" : (1e9 * scene.step).toFixed(0);
     cells(row, [name, scene.coordinates || "–", scene.rows || "–", scene.operations || "–", scene.bytes ?? "–", step, short(scene.share), scene.steps ?? "–"]);
     const reason = scene.reason ?? scene.changes.find((change) => change.reason !== undefined)?.reason;
