@@ -86,14 +86,14 @@ fn oldest() -> Result<(), String> {
     step(check.env("CARGO_TARGET_DIR", crate::shell::target().join(OLDEST)))
 }
 
-/// Both benches; `options` are theirs.
+/// All benches against peers; `options` are theirs.
 ///
 /// # Errors
 /// A missing tool with its cure, or a bench that fails.
 pub fn bench(options: &[&str]) -> Result<(), String> {
     need("python3", "install Python 3.11 or newer with venv")?;
     need("cc", "install a C compiler")?;
-    for bench in ["kinematics", "dynamics"] {
+    for bench in ["kinematics", "dynamics", "linkages"] {
         let mut command = command("cargo", &["bench", "-p", "mbs-tests", "--bench", bench, "--"]);
         step(command.args(options).current_dir(root()))?;
     }
