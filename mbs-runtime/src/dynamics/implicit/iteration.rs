@@ -36,9 +36,9 @@ impl<R: Real, const N: usize, const M: usize> Vector<R> for Unknowns<R, N, M> {
     }
 
     #[inline(always)]
-    fn plus<const K: usize>(&self, h: R, weights: &[f64; K], terms: [&Self; K]) -> Self {
-        let motion = self.motion.plus(h, weights, terms.map(|term| &term.motion));
-        Unknowns { motion, lambda: self.lambda.plus(h, weights, terms.map(|term| &term.lambda)) }
+    fn add(&mut self, weight: R, term: &Self) {
+        self.motion.add(weight, &term.motion);
+        self.lambda.add(weight, &term.lambda);
     }
 }
 
