@@ -24,7 +24,7 @@ pub fn ci() -> Result<(), String> {
             "--workspace",
             "--all-targets",
             "--features",
-            "mbs-motions/long,mbs-tests/long",
+            "mbs-cases/long,mbs-motions/long,mbs-tests/long",
             "--",
             "-D",
             "warnings",
@@ -46,6 +46,7 @@ pub fn full() -> Result<(), String> {
     need("cargo-llvm-lines", "`cargo install cargo-llvm-lines`")?;
     ci()?;
     step(&mut command("cargo", &["test", "-p", "mbs-motions", "--features", "long"]))?;
+    step(&mut command("cargo", &["test", "-p", "mbs-cases", "--features", "long", "--test", "kinematics"]))?;
     let proofs = ["test", "-p", "mbs-tests", "--features", "long", "--test", "proofs"];
     step(&mut command("cargo", &proofs))?;
     let faults = ["test", "-p", "mbs-faults", "--features", "long", "--test", "nothing_follows"];
