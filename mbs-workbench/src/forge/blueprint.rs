@@ -25,6 +25,8 @@ pub struct Blueprint {
     pub origin: Option<Origin>,
     /// `true` if the blueprint holds all but the sources of `mbs`: the same one always gives the same program.
     pub is_closed: bool,
+    /// `true` if symbols of the program name types in full, and its scenes are compiled in parts.
+    pub is_measured: bool,
 }
 
 /// A study that is built in a program of its own: it has the mechanism in more numbers than `mbs` does.
@@ -135,6 +137,7 @@ impl Blueprint {
             main,
             origin: Some(Origin { path: text.path.clone(), content: text.content.clone(), shifted }),
             is_closed: true,
+            is_measured: false,
         })
     }
 
@@ -170,6 +173,7 @@ impl Blueprint {
             main: scope + &main(constructor),
             origin: None,
             is_closed: false,
+            is_measured: false,
         })
     }
 
@@ -201,12 +205,44 @@ impl Blueprint {
                 items(constructor),
                 study.call("studied::")
             );
-            return Ok(Blueprint { name, manifest: dependencies(&[]), main, origin: None, is_closed: true });
+            return Ok(Blueprint {
+                name,
+                manifest: dependencies(&[]),
+                main,
+                origin: None,
+                is_closed: true,
+                is_measured: false,
+            });
         }
         Self::of_card(forge, card, &name, |constructor| {
             let (items, call) = (items(constructor), study.call(""));
             format!("{HEAD}\n\n{items}\nfn main() -> ExitCode {{\n    {call}\n}}\n")
         })
+    }
+
+    /// A program that measures the scenes called `scenes` of the mechanism called `mechanism` in `text`, for the `round`th time.
+    pub fn of_scenes(mechanism: &str, text: &str, scenes: &[String], round: usize) -> Self {
+        let entries: String = scenes
+            .iter()
+            .map(|scene| {
+                format!(
+                    "    ({scene:?}, |values| ::mbs_workbench::erased::scene_runs::scene_runs({mechanism}{scene}::default(), values)),\n"
+                )
+            })
+            .collect();
+        let main = format!(
+            "{HEAD}\n\nmod compared {{\n::mbs_runtime::mechanism! {{\n{text}\n}}\n\n\
+             pub const SCENES: &[::mbs_workbench::effects::measurement::NamedScene] = &[\n{entries}];\n}}\n\n\
+             fn main() -> ExitCode {{\n    mbs_workbench::effects_program(compared::SCENES)\n}}\n"
+        );
+        Blueprint {
+            name: format!("{}_effects_{round}", snake_case(mechanism)),
+            manifest: dependencies(&[]),
+            main,
+            origin: None,
+            is_closed: true,
+            is_measured: true,
+        }
     }
 
     /// `Cargo.toml` of the crate called `package`.
