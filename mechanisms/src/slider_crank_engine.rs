@@ -21,7 +21,7 @@
 //! | `pin_friction` | pins: μ \|F\| tanh(ρ Δω/v₀) at the radius ρ with the pin's own force F |
 //! | `motor` | starter with the torque–speed line τ₀ (1 − ω/ω₀) |
 //! | `fan` | quadratic drag −c ω \|ω\| |
-//! | `spring` | helper spring on the piston |
+//! | `spring` | spring between head and piston |
 //!
 //! Numbers: a small petrol engine, round. The table is of a cycle with polytropic compression and heat by Wiebe's law.
 //! `mechanisms/references/slider_crank_engine.py` makes it, and solves the motion by equations that were derived by hand.
