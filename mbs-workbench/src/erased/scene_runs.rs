@@ -47,6 +47,9 @@ pub struct Effort {
     pub elapsed: Duration,
 }
 
+/// Gets the values of the outputs at each instant.
+pub type See<'a> = &'a mut dyn FnMut(&[f64]);
+
 /// Motions of a scene.
 pub trait SceneRuns {
     /// Mover of the scene.
@@ -59,7 +62,7 @@ pub trait SceneRuns {
     ///
     /// # Errors
     /// Reason why there is none.
-    fn run(&self, asked: &Asked<'_>, see: Option<&mut dyn FnMut(&[f64])>) -> Result<Effort, String>;
+    fn run(&self, asked: &Asked<'_>, see: Option<See<'_>>) -> Result<Effort, String>;
 }
 
 /// Motions of `mechanism` with `values` of parameters and inputs by their names; names that it does not have are left out.
@@ -191,7 +194,7 @@ where
     fn contacts(&self) -> usize {
         0
     }
-    fn run(&self, asked: &Asked<'_>, mut see: Option<&mut dyn FnMut(&[f64])>) -> Result<Effort, String> {
+    fn run(&self, asked: &Asked<'_>, mut see: Option<See<'_>>) -> Result<Effort, String> {
         let first = asked.times.first().copied().unwrap_or(0.0);
         let guess = self.mechanism.guess(&self.mechanism.parameters());
         let mut stepper = Stepper::assemble(self.mechanism.clone(), guess, first).map_err(told)?;
@@ -261,7 +264,7 @@ impl<S: Dynamic<f64, N, M>, const N: usize, const M: usize> SceneRuns for Moved<
     fn contacts(&self) -> usize {
         S::CONTACTS.len()
     }
-    fn run(&self, asked: &Asked<'_>, mut see: Option<&mut dyn FnMut(&[f64])>) -> Result<Effort, String> {
+    fn run(&self, asked: &Asked<'_>, mut see: Option<See<'_>>) -> Result<Effort, String> {
         let first = asked.times.first().copied().unwrap_or(0.0);
         let (mut q, mut qd) = (self.start)(&self.mechanism, first);
         let scales = self.mechanism.coordinate_scales(&self.mechanism.parameters());
