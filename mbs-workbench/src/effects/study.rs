@@ -41,7 +41,7 @@ impl Candidate {
 }
 
 /// Part of the whole's time of a step up to which times are not told apart: they scatter by that much on a machine with other work.
-const NOISE: f64 = 0.02;
+const NOISE: f64 = 0.05;
 
 /// All that a study found.
 #[derive(Clone, Debug)]
