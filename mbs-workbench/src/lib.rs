@@ -46,4 +46,4 @@ pub mod text_file;
 pub mod verify;
 
 #[cfg(feature = "program")]
-pub use command_line::{cost_program, hard_cases_program, program};
+pub use command_line::{cost_program, hard_cases_program, hard_cases_program_list, program};

@@ -16,6 +16,7 @@ pub mod dof;
 pub mod drift;
 pub mod expand;
 pub mod fmt;
+pub mod hard_case_list;
 pub mod hard_cases;
 pub mod latex;
 pub mod list;
