@@ -8,7 +8,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use super::CommandError;
 use super::cost::{machine, methods};
 use super::document::Output;
-use super::hard_cases::{Arguments, FEW, QUICK, VARIANTS, WHOLE, command, print, verdict};
+use super::hard_cases::{Arguments, FEW, VARIANTS, WHOLE, command, print, verdict};
 use super::report_files::{require_writable, write_report};
 use crate::forge::{Blueprint, Study};
 use crate::hard_cases::list::{Case, Listed, cases};
@@ -23,7 +23,7 @@ use crate::setting::MotionMethod;
 use crate::target_directory::target_directory;
 
 /// Variants of a case in an overview.
-const FEW_VARIANTS: u64 = 16;
+const FEW_VARIANTS: u64 = 8;
 
 /// Cases that are asked for.
 fn chosen(arguments: &Arguments) -> Result<Vec<Case>, CommandError> {
@@ -90,7 +90,8 @@ pub fn study(arguments: &Arguments, listed: &[Listed], out: &mut Output) -> Resu
             until,
             description: Some(description.clone()),
         };
-        let clock = Clock::of(if arguments.quick { QUICK } else { WHOLE });
+        // What is run does not depend on the machine.
+        let clock = Clock::of(WHOLE);
         let found = studied(&own, &extent, &clock, &mut progress);
         let found = found.unwrap_or_else(|reason| not_moved(&methods, reason));
         if found.not_run > 0 {

@@ -44,10 +44,10 @@ pub struct Arguments {
     /// Methods of a motion from forces, by parts of their names: `projection`, `radau5` [default: all]
     #[arg(long, value_name = "METHOD", value_delimiter = ',')]
     pub(super) methods: Vec<String>,
-    /// Number of variants [default: 100; of the built-in list with `--quick` 16]
+    /// Number of variants [default: 100; of the built-in list with `--quick` 8]
     #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u64).range(1..=100_000))]
     pub(super) variants: Option<u64>,
-    /// Six methods, and at most 45 s of computation
+    /// Six methods, and at most 45 s of computation; the built-in list in 8 variants of each case
     #[arg(long)]
     pub(super) quick: bool,
     /// Run the one variant with this seed, and print each verdict with its figures

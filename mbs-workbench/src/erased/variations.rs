@@ -40,7 +40,12 @@ pub trait MovedVariants {
     fn redundant(&self) -> Vec<bool>;
     /// The text's guess and rates: N each.
     fn guess(&self) -> [Vec<f64>; 2];
-    /// Coordinates and velocities of the start next to these (N each).
+    /// Coordinates and velocities of the start that the text has: N each.
+    ///
+    /// # Errors
+    /// The mechanism cannot start.
+    fn start_of_text(&self) -> Result<[Vec<f64>; 2], Failure>;
+    /// Coordinates and velocities of the start next to these (N each), all of which count as given.
     ///
     /// # Errors
     /// The mechanism cannot start there.
@@ -197,6 +202,9 @@ impl MovedVariants for Moved {
     }
     fn guess(&self) -> [Vec<f64>; 2] {
         self.double.guess()
+    }
+    fn start_of_text(&self) -> Result<[Vec<f64>; 2], Failure> {
+        self.double.runs().start(0.0)
     }
     fn start(&self, near: &[Vec<f64>; 2]) -> Result<[Vec<f64>; 2], Failure> {
         self.double.changed(&Change::default(), near).0.start(0.0)

@@ -25,7 +25,7 @@ pub struct Blueprint {
     pub origin: Option<Origin>,
     /// `true` if the blueprint holds all but the sources of `mbs`: the same one always gives the same program.
     pub is_closed: bool,
-    /// Parts that the compiler works on at a time, where it is not left to the profile.
+    /// Parts that the compiler works on at a time, in a program of many texts: it runs for seconds and is compiled for minutes.
     pub units: Option<u32>,
 }
 
@@ -254,7 +254,7 @@ impl Blueprint {
     /// `Cargo.toml` of the crate called `package`.
     pub(super) fn manifest(&self, package: &str) -> String {
         let units = self.units.map_or_else(String::new, |units| {
-            format!("\n[profile.release.package.{}]\ncodegen-units = {units}\n", quoted(package))
+            format!("\n[profile.release.package.{}]\ncodegen-units = {units}\nopt-level = 1\n", quoted(package))
         });
         format!(
             "# Written by `mbs`, which deletes it again.\n[package]\nname = {}\nversion = \"0.0.0\"\nedition = \"2024\"\npublish = false\n\n\

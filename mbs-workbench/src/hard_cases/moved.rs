@@ -62,7 +62,10 @@ pub fn moved_outcomes(
             _ => Numbers::Double,
         };
         let start = match variation.map(|variation| variation.class) {
-            Some(Class::Guess | Class::Rows | Class::Frame) => {
+            Some(Class::Rows | Class::Frame) => {
+                Some(mechanism.start_of_text().map_err(|failure| format!("the start: {failure}"))?)
+            }
+            Some(Class::Guess) => {
                 let [mut q, qd] = mechanism.guess();
                 let shift = variation.map_or(&[][..], |variation| &variation.shift);
                 q.iter_mut().zip(shift).for_each(|(q, shift)| *q += shift);

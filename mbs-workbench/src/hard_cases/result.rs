@@ -166,8 +166,11 @@ impl MatrixResult {
     /// All verdicts in one sentence.
     pub fn sentence(&self) -> String {
         let counts = [Verdict::Right, Verdict::Late, Verdict::Refused, Verdict::Wrong];
+        let foreseen = self.outcomes.iter().filter(|outcome| outcome.is_expected).count();
         let counts = counts.map(|verdict| format!("{} {}", self.count(verdict), verdict.name()));
-        format!("{} runs: {}.", self.outcomes.len(), counts.join(", "))
+        let foreseen =
+            if foreseen > 0 { format!(" {foreseen} of them were foreseen.") } else { String::new() };
+        format!("{} runs: {}.{foreseen}", self.outcomes.len(), counts.join(", "))
     }
 
     /// Share of the runs that take the elimination that was compiled for the text, in words.
@@ -212,15 +215,16 @@ impl MatrixResult {
     pub fn matrix(&self) -> String {
         let [rows, columns] = &self.axes;
         let width = |names: &[String]| names.iter().map(|name| name.chars().count()).max().unwrap_or(0);
-        let (widest, each) = (width(rows).max(6), width(columns).max(13));
+        let each = |column: &String| column.chars().count().max(13);
+        let widest = width(rows).max(6);
         let mut text = format!("{:<widest$}", self.heads[0]);
-        columns.iter().for_each(|column| text += &format!("  {column:>each$}"));
+        columns.iter().for_each(|column| text += &format!("  {column:>0$}", each(column)));
         text.push('\n');
         for row in rows {
             text += &format!("{row:<widest$}");
             for column in columns {
                 let words = self.cell(row, column).map_or_else(|| "–".to_string(), |cell| self.words(cell));
-                text += &format!("  {words:>each$}");
+                text += &format!("  {words:>0$}", each(column));
             }
             text.push('\n');
         }
@@ -236,11 +240,12 @@ impl MatrixResult {
         }
     }
 
-    /// Reasons of a verdict with their number, the most frequent first, and a line that replays each; reasons that differ in numbers
+    /// Reasons of a verdict that nobody foresaw, with their number, the most frequent first, and a line that replays each; reasons that differ in numbers
     /// are one.
     pub fn reasons(&self, verdict: Verdict) -> Vec<(String, usize, String)> {
         let mut known: BTreeMap<String, (String, usize, String)> = BTreeMap::new();
-        for outcome in self.outcomes.iter().filter(|outcome| outcome.verdict == verdict) {
+        let is_asked = |outcome: &&Outcome| outcome.verdict == verdict && !outcome.is_expected;
+        for outcome in self.outcomes.iter().filter(is_asked) {
             let case = if outcome.case.is_empty() { String::new() } else { format!("{}, ", outcome.case) };
             let place = format!("{case}{}, {}", outcome.method, outcome.class.name());
             let words = format!("{place}: {}", outcome.reason);

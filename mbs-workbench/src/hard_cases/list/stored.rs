@@ -70,7 +70,11 @@ impl Description {
         class: Class,
     ) -> Result<Option<Miss<'_>>, Gap> {
         let mut worst: Option<Miss<'_>> = None;
-        let holds = |known: &&Known| !known.except.iter().any(|name| name == class.name());
+        // From a shaken guess forces move the mechanism from another start.
+        let is_elsewhere = class == Class::Guess && oracle.is_dynamic();
+        let holds = |known: &&Known| {
+            !(known.except.iter().any(|name| name == class.name()) || is_elsewhere && known.when == When::End)
+        };
         if class == Class::Similar {
             return Ok(None);
         }
