@@ -254,7 +254,10 @@ impl Blueprint {
     /// `Cargo.toml` of the crate called `package`.
     pub(super) fn manifest(&self, package: &str) -> String {
         let units = self.units.map_or_else(String::new, |units| {
-            format!("\n[profile.release.package.{}]\ncodegen-units = {units}\nopt-level = 1\n", quoted(package))
+            format!(
+                "\n[profile.release.package.{}]\ncodegen-units = {units}\nopt-level = 1\n",
+                quoted(package)
+            )
         });
         format!(
             "# Written by `mbs`, which deletes it again.\n[package]\nname = {}\nversion = \"0.0.0\"\nedition = \"2024\"\npublish = false\n\n\

@@ -55,20 +55,40 @@ impl Similarity {
         2.0_f64.powi(self.power * (dimension.length + 3 * dimension.mass))
     }
 
-    /// `true` where the rows of `other`, whose parameters are those of `own` times their factors, are those of `own` times powers of
-    /// two: no number with a unit stands between them.
+    /// `true` where the rows of `other` are those of `own` times powers of two, and so are their sums of forces: no number with a unit
+    /// stands between them. The parameters of `other` are those of `own` times their factors.
     pub fn holds(self, own: &Oracle, other: &Oracle, coordinates: &[Dimension]) -> bool {
-        let q: Vec<f64> = (0..coordinates.len()).map(|j| 0.4 + 0.13 * j as f64).collect();
-        let state =
-            State { q: q.clone(), qd: vec![0.0; q.len()], qdd: vec![0.0; q.len()], ..State::default() };
-        let scaled = q.iter().zip(coordinates).map(|(q, dimension)| q * self.factor(*dimension)).collect();
-        let other_state = State { q: scaled, ..state.clone() };
-        let (Ok(rows), Ok(others)) = (own.rows(&state), other.rows(&other_state)) else { return false };
-        rows.iter().zip(&others).all(|(row, other)| {
-            let (a, b) = (row.phi.unwrap_or(0.0), other.phi.unwrap_or(0.0));
+        let part = |first: f64| (0..coordinates.len()).map(|j| first + 0.13 * j as f64).collect::<Vec<f64>>();
+        let sized = |values: Vec<f64>| {
+            let pairs = values.into_iter().zip(coordinates);
+            pairs.map(|(value, dimension)| value * self.factor(*dimension)).collect::<Vec<f64>>()
+        };
+        let state = |of: &dyn Fn(Vec<f64>) -> Vec<f64>| State {
+            q: of(part(0.4)),
+            qd: of(part(0.7)),
+            qdd: of(part(-0.3)),
+            lambda: vec![0.0; own.row_count()],
+            ..State::default()
+        };
+        let (state, other_state) = (state(&|values| values), state(&sized));
+        let is_power = |a: f64, b: f64| {
             let power = (b / a).log2();
             a == b || (power - power.round()).abs() < 1e-9
-        })
+        };
+        let (Ok(rows), Ok(others)) = (own.rows(&state), other.rows(&other_state)) else { return false };
+        let are_rows = rows
+            .iter()
+            .zip(&others)
+            .all(|(row, other)| is_power(row.phi.unwrap_or(0.0), other.phi.unwrap_or(0.0)));
+        if !are_rows || !own.is_dynamic() {
+            return are_rows;
+        }
+        let w = part(1.0);
+        let other_w = sized(w.clone());
+        match (own.equations_of_motion(&state, &w), other.equations_of_motion(&other_state, &other_w)) {
+            (Ok(own), Ok(other)) => is_power(own.sum, other.sum) && is_power(own.size, other.size),
+            _ => false,
+        }
     }
 }
 

@@ -97,11 +97,18 @@ fn variants_of_a_pendulum_are_right_by_every_method() {
     let equations = erase(Pendulum::default()).into_equations();
     let result = result(crate::variable!(Pendulum::default()), equations.as_ref(), &METHODS, 0.6);
     assert_eq!(result.count(Verdict::Right), result.outcomes.len(), "{}", all(&result));
-    let kinds = ["steps", "parameters", "guess", "rows", "frame", "f32"];
+    let kinds = ["steps", "parameters", "guess", "rows", "frame", "f32", "similar"];
     assert!(kinds.iter().all(|kind| result.matrix().contains(kind)), "{}", all(&result));
     assert_eq!((result.outcomes.len(), result.left_out.len()), (42, 1), "{}", all(&result));
     assert!(result.not_made().is_empty(), "{:?}", result.not_made());
-    assert!(result.outcomes.iter().all(|outcome| outcome.error.is_some_and(|error| error > 0.0)));
+    let mut others = result.outcomes.iter().filter(|outcome| outcome.class != Class::Similar);
+    assert!(others.all(|outcome| outcome.error.is_some_and(|error| error > 0.0)));
+    let mut similar = result.outcomes.iter().filter(|outcome| outcome.class == Class::Similar);
+    assert!(
+        similar.clone().count() == 6 && similar.all(|outcome| outcome.error < Some(1e-10)),
+        "{}",
+        all(&result)
+    );
 }
 
 #[test]
@@ -111,10 +118,10 @@ fn an_emitted_row_or_force_that_is_not_the_texts_is_wrong() {
     for (make, words) in [(row as fn(&[(usize, f64)]) -> Variable, "is open by"), (force, "M q̈ + Φ_qᵀλ − Q")]
     {
         let result = result(make, equations.as_ref(), &METHODS[..1], 0.3);
-        // Single precision does not tell a force from one that is a thousandth off.
-        let is_double = |outcome: &&Outcome| outcome.class != Class::Single;
+        // Single precision does not tell a force from one that is a thousandth off; similar ones have the same fault.
+        let is_double = |outcome: &&Outcome| !matches!(outcome.class, Class::Single | Class::Similar);
         let double = || result.outcomes.iter().filter(is_double);
-        assert!(double().count() > 10, "{}", all(&result));
+        assert!(double().count() >= 10, "{}", all(&result));
         assert!(double().all(|outcome| outcome.verdict == Verdict::Wrong), "{}", all(&result));
         assert!(
             result.reasons(Verdict::Wrong).iter().any(|(reason, ..)| reason.contains(words)),
