@@ -3,6 +3,7 @@ use std::time::Duration;
 use crate::erased::erase::erase;
 use crate::erased::facade::AnyEquations;
 use crate::erased::variations::Variable;
+use crate::hard_cases::list::description::Description;
 use crate::hard_cases::result::MatrixResult;
 use crate::hard_cases::study::{Clock, Extent, Own, study};
 use crate::hard_cases::variation::Class;
@@ -148,6 +149,41 @@ fn variants_of_a_motion_from_drives_are_right_and_a_late_motor_is_wrong() {
         "{}",
         all(&late)
     );
+}
+
+/// The pendulum as a case of the list, with a known value.
+fn as_a_case(known: &str) -> MatrixResult {
+    let text = format!(
+        "title = 'a'\norigin = 'b'\nwhy = 'c'\nelsewhere = 'd'\nhere = 'e'\n\
+         [bounds]\nadaptive = 1e-5\nimplicit = 1e-2\nsingle = 1e-2\n[[known]]\n{known}\nsource = 'f'\n"
+    );
+    let description = Description::read(&text).unwrap_or_else(|fault| panic!("{fault}"));
+    let equations = erase(Pendulum::default()).into_equations();
+    let own = Own { make: crate::variable!(Pendulum::default()), equations: equations.as_ref() };
+    let extent = Extent {
+        methods: METHODS.to_vec(),
+        seeds: (0..7).collect(),
+        until: 0.3,
+        description: Some(description),
+    };
+    let found = study(&own, &extent, &Clock::of(Duration::from_secs(600)), &mut |_, _| ()).expect("a study");
+    let outcomes = found.outcomes.into_iter().map(|outcome| Outcome { case: "own".to_string(), ..outcome });
+    let methods = METHODS.iter().map(ToString::to_string).collect();
+    MatrixResult::of_cases(outcomes.collect(), vec!["own".to_string()], methods)
+}
+
+#[test]
+fn a_case_of_the_list_is_judged_by_its_known_values() {
+    let right = as_a_case("value = 'energy'\nsize = 9.81");
+    // Baumgarte's oscillators have no bound, so they are not run.
+    assert_eq!((right.count(Verdict::Right), right.outcomes.len()), (14, 14), "{}", all(&right));
+    assert!(right.refusing().is_empty() && right.matrix().lines().count() == 2, "{}", all(&right));
+    let picture = crate::hard_cases::matrix::svg(&right.picture(), &right.sentence());
+    assert_eq!((picture.matches('✓').count(), picture.matches('✗').count()), (3, 1), "{picture}");
+    let wrong = as_a_case("value = 'p.0'\nwhen = 'end'\nis = 0.2\nexcept = ['parameters']");
+    // Similar mechanisms, other parameters and a shaken guess have other ends.
+    assert_eq!((wrong.count(Verdict::Wrong), wrong.outcomes.len()), (8, 14), "{}", all(&wrong));
+    assert!(wrong.page().contains("own") && wrong.csv().contains("\nown,"), "{}", all(&wrong));
 }
 
 #[test]
