@@ -37,6 +37,8 @@ const TEXTS: [(&str, &str); 4] = [
 
 /// Items of the implementations for one type, by trait and name, without the parts that may differ.
 struct Found<'a> {
+    /// Traits whose implementations are looked at.
+    traits: &'a [&'a str],
     scene: Option<&'a str>,
     items: BTreeMap<String, String>,
 }
@@ -49,7 +51,7 @@ impl Visit<'_> for Found<'_> {
             return visit_item_impl(self, block);
         };
         let name = path.segments.last().expect("a trait").ident.to_string();
-        if !["Mechanism", "Kinematic"].contains(&name.as_str()) {
+        if !self.traits.contains(&name.as_str()) {
             return;
         }
         for item in &block.items {
@@ -69,7 +71,7 @@ impl Visit<'_> for Found<'_> {
 
 fn items(text: &str, scene: Option<&str>) -> BTreeMap<String, String> {
     let tokens = mbs_codegen::expand_source(text).unwrap_or_else(|faults| panic!("{text}\n{faults}"));
-    let mut found = Found { scene, items: BTreeMap::new() };
+    let mut found = Found { traits: &["Mechanism", "Kinematic"], scene, items: BTreeMap::new() };
     found.visit_file(&syn::parse2(tokens).expect("Rust"));
     assert!(found.items.len() > 25, "{:?}", found.items.keys());
     found.items
@@ -101,6 +103,43 @@ fn a_scene_without_an_effect_computes_what_the_text_without_it_computes() {
                 assert_ne!(with[key], alone[key], "{key}");
             }
         }
+    }
+}
+
+/// The text of a ready mechanism with eight effects: masses, forces, friction on multipliers, springs.
+fn engine() -> String {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../mechanisms/src/slider_crank_engine.rs");
+    let source = std::fs::read_to_string(path).expect("the file of the engine");
+    let calls = mbs_codegen::calls(&source).expect("Rust");
+    calls.into_iter().next().expect("a mechanism").source
+}
+
+/// All items of the implementations for one scene, the linked masses and forces included.
+fn dynamic_items(text: &str, scene: Option<&str>) -> BTreeMap<String, String> {
+    let tokens = mbs_codegen::expand_source(text).unwrap_or_else(|faults| panic!("{faults}"));
+    let mut found = Found { traits: &["Mechanism", "Dynamic", "Partitioned"], scene, items: BTreeMap::new() };
+    found.visit_file(&syn::parse2(tokens).expect("Rust"));
+    assert!(found.items.len() > 50, "{:?}", found.items.keys());
+    found.items
+}
+
+#[test]
+fn scenes_of_the_engine_are_the_texts_in_which_their_other_effects_were_never_written() {
+    let text = engine();
+    let groups = mbs_codegen::effects(&text);
+    assert_eq!(groups.effects.len(), 8);
+    let whole = dynamic_items(&text, None);
+    for left_out in &groups.effects {
+        let others: Vec<String> = groups.effects.iter().filter(|name| *name != left_out).cloned().collect();
+        let scenes = [("Without".to_string(), others.clone()), ("All".to_string(), groups.effects.clone())];
+        let without = dynamic_items(&groups.with_scenes(&text, &groups.effects, &scenes), Some("Without"));
+        let never_written = dynamic_items(&groups.with_scenes(&text, &others, &[]), None);
+        assert_eq!(without.len(), never_written.len(), "{left_out}");
+        for (key, item) in &never_written {
+            assert!(without.get(key) == Some(item), "`{key}` without `{left_out}`");
+        }
+        // The control: with the effect some function differs.
+        assert!(never_written.iter().any(|(key, item)| whole.get(key) != Some(item)), "{left_out}");
     }
 }
 

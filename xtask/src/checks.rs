@@ -6,6 +6,15 @@ use crate::{browser, costs, documents, growth, instructions, lines, planted};
 /// The oldest compiler that the workspace names.
 const OLDEST: &str = "1.89";
 
+/// Packages and tests, all where none is named, that have more to do with the feature `long`.
+const LONG: [(&str, &str); 5] = [
+    ("mbs-motions", ""),
+    ("mbs-cases", "kinematics"),
+    ("mechanisms", "effects"),
+    ("mbs-tests", "proofs"),
+    ("mbs-faults", "nothing_follows"),
+];
+
 /// Format, lints, documentation, tests, counts of instructions.
 ///
 /// # Errors
@@ -24,7 +33,7 @@ pub fn ci() -> Result<(), String> {
             "--workspace",
             "--all-targets",
             "--features",
-            "mbs-motions/long,mbs-tests/long",
+            "mbs-cases/long,mbs-faults/long,mbs-motions/long,mbs-tests/long,mechanisms/long",
             "--",
             "-D",
             "warnings",
@@ -45,11 +54,11 @@ pub fn full() -> Result<(), String> {
     documents::need_book()?;
     need("cargo-llvm-lines", "`cargo install cargo-llvm-lines`")?;
     ci()?;
-    step(&mut command("cargo", &["test", "-p", "mbs-motions", "--features", "long"]))?;
-    let proofs = ["test", "-p", "mbs-tests", "--features", "long", "--test", "proofs"];
-    step(&mut command("cargo", &proofs))?;
-    let faults = ["test", "-p", "mbs-faults", "--features", "long", "--test", "nothing_follows"];
-    step(&mut command("cargo", &faults))?;
+    for (package, test) in LONG {
+        let only = ["--test", test];
+        let only = if test.is_empty() { &[][..] } else { &only };
+        step(command("cargo", &["test", "-p", package, "--features", "long"]).args(only))?;
+    }
     browser::run()?;
     documents::book()?;
     documents::package()?;
@@ -91,14 +100,14 @@ fn oldest() -> Result<(), String> {
     step(check.env("CARGO_TARGET_DIR", crate::shell::target().join(OLDEST)))
 }
 
-/// Both benches; `options` are theirs.
+/// All benches against peers; `options` are theirs.
 ///
 /// # Errors
 /// A missing tool with its cure, or a bench that fails.
 pub fn bench(options: &[&str]) -> Result<(), String> {
     need("python3", "install Python 3.11 or newer with venv")?;
     need("cc", "install a C compiler")?;
-    for bench in ["kinematics", "dynamics"] {
+    for bench in ["kinematics", "dynamics", "linkages"] {
         let mut command = command("cargo", &["bench", "-p", "mbs-tests", "--bench", bench, "--"]);
         step(command.args(options).current_dir(root()))?;
     }

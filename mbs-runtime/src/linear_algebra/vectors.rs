@@ -13,6 +13,23 @@ pub(crate) fn largest_difference<R: Real, const N: usize>(new: &[R; N], old: &[R
     largest(&parts)
 }
 
+/// Arrays whose components are all changed alike.
+pub(crate) trait Each<T: Scalar> {
+    /// Every component by `change`, in their order. A loop: `map` of arrays is five times the code for the compiler, for it provides for
+    /// panics midway.
+    fn each(self, change: impl FnMut(T) -> T) -> Self;
+}
+
+impl<T: Scalar, const K: usize> Each<T> for [T; K] {
+    #[inline(always)]
+    fn each(mut self, mut change: impl FnMut(T) -> T) -> Self {
+        for component in &mut self {
+            *component = change(*component);
+        }
+        self
+    }
+}
+
 /// Component by component `yes` where the mask is true, `no` elsewhere.
 #[inline(always)]
 pub(crate) fn select<T: Scalar, const K: usize>(mask: T::Mask, yes: &[T; K], no: &[T; K]) -> [T; K] {

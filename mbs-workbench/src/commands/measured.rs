@@ -78,7 +78,10 @@ impl Tables {
                 return Err(CommandError::Usage(format!("`--input {}` is given twice", given.name)));
             }
             let (index, unit) = input(instances[0].1.equations(), target.name(), &given.name)?;
-            let course = read(given, unit, Measured::course)?;
+            let course = read(given, unit, |measured| {
+                say_of_wraps(given, measured);
+                measured.course()
+            })?;
             let [first, last] = course.range();
             range = [range[0].max(first), range[1].min(last)];
             for (_, instance) in instances.iter_mut() {
@@ -122,6 +125,7 @@ impl Tables {
         let overlay = |given: &Named| {
             let unit = curve_unit(mechanism, target.name(), &given.name)?;
             let measured = read(given, unit, |measured| Ok(measured.clone()))?;
+            say_of_wraps(given, &measured);
             let Measured { time, value, .. } = measured;
             Ok(Overlay { of: given.name.clone(), file: given.path.clone(), time, value })
         };
@@ -187,6 +191,14 @@ fn linear(times: &[f64], values: &[f64], t: f64) -> f64 {
             start + (value - start) * (t - before) / (time - before)
         }
         _ => values.first().copied().unwrap_or(f64::NAN),
+    }
+}
+
+/// Tells of whole turns that were added to an angle.
+fn say_of_wraps(Named { name, path }: &Named, measured: &Measured) {
+    if measured.wraps > 0 {
+        let times = if measured.wraps == 1 { "once".into() } else { format!("{} times", measured.wraps) };
+        eprintln!("{path}: `{name}` jumps by a turn {times}: whole turns are added");
     }
 }
 

@@ -14,6 +14,8 @@ mod cost_words;
 pub mod document;
 pub mod dof;
 pub mod drift;
+pub mod effects;
+mod effects_words;
 pub mod expand;
 pub mod fmt;
 pub mod hard_case_list;

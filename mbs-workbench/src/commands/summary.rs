@@ -125,8 +125,8 @@ fn write_point(out: &mut dyn Write, point: &str, name: &str, motion: &Motion) ->
 }
 
 /// Zero without a sign where the number rounds to zero.
-fn signless(value: f64, digits: i32) -> f64 {
-    if value.abs() < 0.5 * 10_f64.powi(-digits) { 0.0 } else { value }
+pub fn signless(value: f64, digits: usize) -> f64 {
+    if value.abs() < 0.5 * 0.1_f64.powi(digits as i32) { 0.0 } else { value }
 }
 
 #[cfg(test)]

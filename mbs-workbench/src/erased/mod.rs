@@ -19,6 +19,8 @@ pub mod formulas;
 pub mod lanes;
 pub mod masses;
 #[cfg(feature = "program")]
+pub mod scene_runs;
+#[cfg(feature = "program")]
 pub mod timed_runs;
 #[cfg(feature = "program")]
 pub mod timed_steps;

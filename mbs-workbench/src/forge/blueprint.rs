@@ -27,6 +27,8 @@ pub struct Blueprint {
     pub is_closed: bool,
     /// Parts that the compiler works on at a time, in a program of many texts: it runs for seconds and is compiled for minutes.
     pub units: Option<u32>,
+    /// `true` if symbols of the program name types in full, and its scenes are compiled in parts.
+    pub is_measured: bool,
 }
 
 /// Parts of a program of many texts: they keep all cores busy.
@@ -141,6 +143,7 @@ impl Blueprint {
             origin: Some(Origin { path: text.path.clone(), content: text.content.clone(), shifted }),
             is_closed: true,
             units: None,
+            is_measured: false,
         })
     }
 
@@ -169,6 +172,7 @@ impl Blueprint {
             origin: None,
             is_closed: true,
             units: Some(UNITS),
+            is_measured: false,
         }
     }
 
@@ -205,6 +209,7 @@ impl Blueprint {
             origin: None,
             is_closed: false,
             units: None,
+            is_measured: false,
         })
     }
 
@@ -243,12 +248,39 @@ impl Blueprint {
                 origin: None,
                 is_closed: true,
                 units: None,
+                is_measured: false,
             });
         }
         Self::of_card(forge, card, &name, |constructor| {
             let (items, call) = (items(constructor), study.call(""));
             format!("{HEAD}\n\n{items}\nfn main() -> ExitCode {{\n    {call}\n}}\n")
         })
+    }
+
+    /// A program that measures the scenes called `scenes` of the mechanism called `mechanism` in `text`, for the `round`th time.
+    pub fn of_scenes(mechanism: &str, text: &str, scenes: &[String], round: usize) -> Self {
+        let entries: String = scenes
+            .iter()
+            .map(|scene| {
+                format!(
+                    "    ({scene:?}, |values| ::mbs_workbench::erased::scene_runs::scene_runs({mechanism}{scene}::default(), values)),\n"
+                )
+            })
+            .collect();
+        let main = format!(
+            "{HEAD}\n\nmod compared {{\n::mbs_runtime::mechanism! {{\n{text}\n}}\n\n\
+             pub const SCENES: &[::mbs_workbench::effects::measurement::NamedScene] = &[\n{entries}];\n}}\n\n\
+             fn main() -> ExitCode {{\n    mbs_workbench::effects_program(compared::SCENES)\n}}\n"
+        );
+        Blueprint {
+            name: format!("{}_effects_{round}", snake_case(mechanism)),
+            manifest: dependencies(&[]),
+            main,
+            origin: None,
+            is_closed: true,
+            units: None,
+            is_measured: true,
+        }
     }
 
     /// `Cargo.toml` of the crate called `package`.

@@ -178,7 +178,7 @@ fn outcome(
     }
     .map(|bound| bound * largest);
     outcome.bound = Some(bound);
-    let bounds = Bounds { rows: open, balance: open, estimate: bound, rounding: bound };
+    let bounds = Bounds { rows: open, balance: open, estimate: bound, rounding: bound, is_shown: true };
     let states: Vec<State> = run.iter().map(of_driven).collect();
     let judgement = judge(&states, oracle, scales, bounds, variation.seed);
     outcome.not_made = judgement.not_made;

@@ -24,6 +24,8 @@ pub struct Bounds {
     pub estimate: f64,
     /// Difference that rounding explains.
     pub rounding: f64,
+    /// `true` where the instants show the motion between them, so that rates can be integrated.
+    pub is_shown: bool,
 }
 
 /// Result of a judgement.
@@ -86,10 +88,18 @@ pub fn judge(run: &[State], oracle: &Oracle, scales: &[f64], bounds: Bounds, see
         }
     }
     rows(run, oracle, scales, bounds, &mut found);
-    velocities(run, oracle.turns(), scales, bounds, &mut found);
+    if bounds.is_shown {
+        velocities(run, oracle.turns(), scales, bounds, &mut found);
+    } else {
+        found
+            .not_made
+            .push("velocities and energy: the case says that its instants are too far apart".to_string());
+    }
     if oracle.is_dynamic() && run.iter().any(|state| !state.lambda.is_empty() || oracle.row_count() == 0) {
         balance(run, oracle, scales, bounds, (seed, &mut found));
-        energy(run, oracle, bounds, &mut found);
+        if bounds.is_shown {
+            energy(run, oracle, bounds, &mut found);
+        }
     }
     found
 }

@@ -253,6 +253,7 @@ fn outcome(
         balance: if is_single { 2e-3 } else { 1e-7 } * moved.sqrt(),
         estimate,
         rounding: 10.0 * rounding,
+        is_shown: extent.description.as_ref().is_none_or(|case| !case.unresolved),
     };
     if drifts(method) {
         bounds.rows += 100.0 * estimate + 1e-6;

@@ -1,5 +1,7 @@
 //! Measured quantities over the time: a column of times, one of values, and their rates where the file has them.
 
+use core::f64::consts::{PI, TAU};
+
 use mbs_codegen::{Quantity, quantity};
 use mbs_runtime::driver::End;
 
@@ -24,6 +26,8 @@ pub struct Measured {
     acceleration: Option<Vec<f64>>,
     /// Line of each row in the file.
     pub lines: Vec<usize>,
+    /// Jumps by a turn that were taken out of the values.
+    pub wraps: usize,
 }
 
 impl Measured {
@@ -32,6 +36,8 @@ impl Measured {
     /// The times are in the column called `t` or `time`, else in the first one in a unit of time. The values are in the column called
     /// `name`, else in the one that is left beside times and rates. Rates and accelerations are in columns called as the values with
     /// `_d` and `_dd` behind, as in tables of `mbs`. Else they are in those with the units of rates.
+    ///
+    /// Angles within one turn that jump by more than half a turn are those of an encoder: whole turns are added, so that they go on.
     ///
     /// # Errors
     /// The first fault.
@@ -44,9 +50,10 @@ impl Measured {
         })?;
         let mut values = table.values.into_iter();
         let mut next = |is_there: bool| if is_there { values.next() } else { None };
-        let (time, value) = (next(true).unwrap_or_default(), next(true).unwrap_or_default());
+        let (time, mut value) = (next(true).unwrap_or_default(), next(true).unwrap_or_default());
         let (rate, acceleration) = (next(has_rates[0]), next(has_rates[1]));
-        Ok(Measured { time, value, rate, acceleration, lines: table.lines })
+        let wraps = if matches!(unit, "rad" | "deg" | "turn") { unwrapped(&mut value) } else { 0 };
+        Ok(Measured { time, value, rate, acceleration, lines: table.lines, wraps })
     }
 
     /// A smooth course through all points.
@@ -85,6 +92,26 @@ impl Measured {
         let jets = self.time.iter().enumerate().map(jet).collect();
         Course::new(self.time.clone(), jets).ok_or_else(|| fault("the times do not increase".to_string()))
     }
+}
+
+/// Adds whole turns to angles (rad) that stay within one turn and jump by more than half of one. Number of jumps.
+fn unwrapped(angles: &mut [f64]) -> usize {
+    let least = angles.iter().copied().fold(f64::INFINITY, f64::min);
+    let most = angles.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    if most - least > TAU * (1.0 + 1e-9) {
+        return 0;
+    }
+    let (mut turns, mut jumps, mut before) = (0.0, 0, None);
+    for angle in angles {
+        let change = *angle - before.unwrap_or(*angle);
+        before = Some(*angle);
+        if change.abs() > PI {
+            turns -= change.signum();
+            jumps += 1;
+        }
+        *angle += TAU * turns;
+    }
+    jumps
 }
 
 /// `true` where a column in `unit` has quantities in `declared`, over a power of seconds.
@@ -178,6 +205,28 @@ mod tests {
         assert_eq!(found.acceleration, Some(vec![5.0, 6.0]));
         let found = read("t (s),angle (deg),speed (deg/s)\n0,1,180\n1,2,90\n");
         assert!((found.rate.expect("rates")[0] - core::f64::consts::PI).abs() < 1e-14);
+    }
+
+    #[test]
+    fn an_encoder_goes_on_where_it_wraps() {
+        for (start, speed) in [(0.1, 0.9), (-3.0, -2.9), (6.2, 3.0)] {
+            let angle = |k: i32| start + speed * f64::from(k);
+            for low in [0.0, -PI] {
+                let line = |k: i32| format!("{k},{}\n", (angle(k) - low).rem_euclid(TAU) + low);
+                let found = read(&format!("t (s),theta (rad)\n{}", (0..50).map(line).collect::<String>()));
+                let offset = found.value[0] - angle(0);
+                for (k, value) in (0..50).zip(&found.value) {
+                    assert!((value - offset - angle(k)).abs() < 1e-12, "{start} {speed} {low}: {k}");
+                }
+                let turns = found.wraps as f64 * TAU;
+                assert!((turns - (angle(49) - angle(0)).abs()).abs() < TAU, "{turns}");
+            }
+        }
+        // Numbers that go on, and quantities that are no angles, are taken as they are.
+        let found = read("t (s),theta (deg)\n0,0\n1,200\n2,400\n3,600\n");
+        assert_eq!((found.wraps, found.value[3] > 10.0), (0, true));
+        let found = Measured::read(b"t (s),x (m)\n0,0\n1,5\n2,1\n3,0\n", "x", "m").expect("lengths");
+        assert_eq!((found.wraps, found.value), (0, vec![0.0, 5.0, 1.0, 0.0]));
     }
 
     #[test]

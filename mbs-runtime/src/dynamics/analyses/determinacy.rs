@@ -6,7 +6,7 @@
 use crate::dynamics::linear_systems::kkt::{Factors, System};
 use crate::dynamics::model::metric::Metric;
 use crate::failure::Failure;
-use crate::linear_algebra::vectors::dot;
+use crate::linear_algebra::vectors::{Each, dot};
 use crate::mechanism::dynamic::{Dynamic, DynamicState};
 use crate::mechanism::{Entry, Mechanism};
 use crate::scalar::number::Real;
@@ -94,7 +94,7 @@ impl<R: Real, const M: usize> Determinacy<R, M> {
                 let length = dot(&own, &own).sqrt();
                 if let (true, Some(slot)) = (singular::OWN_PART.of::<R>().less(length), basis.get_mut(named))
                 {
-                    *slot = own.map(|part| part / length);
+                    *slot = own.each(|part| part / length);
                     *dependent = true;
                     named += 1;
                 }

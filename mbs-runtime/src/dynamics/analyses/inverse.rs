@@ -51,6 +51,7 @@ use crate::dynamics::model::metric::Metric;
 use crate::dynamics::model::sign_checks::parameter_failure;
 use crate::dynamics::model::{Counts, Formulation, Model, Solved};
 use crate::failure::Failure;
+use crate::linear_algebra::vectors::Each;
 use crate::mechanism::dynamic::{Dynamic, DynamicState};
 use crate::scalar::number::Real;
 
@@ -133,7 +134,7 @@ pub fn inverse_with_states<S: Dynamic<R, N, M>, R: Real, const N: usize, const M
     // All of the velocity at once: the steps of a projection are measured by a velocity that is there already.
     let position = model.position(t, &y);
     let factors = factorize(&model, t, &position, &mut counts)?;
-    let moving = mechanism.phi_t(&parameters, &position).map(|rate| -rate);
+    let moving = mechanism.phi_t(&parameters, &position).each(|rate| -rate);
     y.qd = factors.solve(&[zero; N], &moving).0;
     let solved: Solved<R, N, M, S::States> = Unstabilized.solve(&model, t, &y, &[zero; M], &mut counts)?;
     let (qd, qdd, lambda) = (y.qd, solved.rate.qd, solved.lambda);

@@ -9,6 +9,7 @@ use crate::dynamics::equilibrium::{answer, no_equilibrium};
 use crate::dynamics::integrators::vector::{IntegratorState, Vector};
 use crate::dynamics::model::{Counts, Model};
 use crate::failure::Failure;
+use crate::linear_algebra::vectors::Each;
 use crate::mechanism::dynamic::Dynamic;
 use crate::scalar::number::Real;
 
@@ -135,7 +136,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Way<'_, S, R,
         if !zero.less(self.answer.push) || !zero.less(size) {
             return None;
         }
-        let unit = self.answer.unanswered.map(|part| part * (R::constant(LARGEST_STEP) / size));
+        let unit = self.answer.unanswered.each(|part| part * (R::constant(LARGEST_STEP) / size));
         let along = Way { step: &unit, ..*self };
         let (mut share, mut nearest) = (R::constant(1.0), None);
         for _ in 0..MOST_DOUBLINGS {

@@ -8,6 +8,7 @@ use crate::dynamics::linear_systems::kkt::System;
 use crate::dynamics::linear_systems::tangent::Tangent;
 use crate::dynamics::model::Model;
 use crate::failure::{Failure, FailureKind};
+use crate::linear_algebra::vectors::Each;
 use crate::mechanism::dynamic::Dynamic;
 use crate::scalar::number::Real;
 
@@ -263,7 +264,9 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         let found = self.balanced(position, (t, y), lambda, |force, whole| {
             let found = match whole {
                 true => lambda.plus(-one, &[1.0], [&answer(&held.plus(-one, &[1.0], [force]), phi).change]),
-                false => nothing.plus(-one, &[1.0], [&answer(&force.map(|force| -force), &[zero; M]).change]),
+                false => {
+                    nothing.plus(-one, &[1.0], [&answer(&force.each(|force| -force), &[zero; M]).change])
+                }
             };
             ([zero; N], found)
         });

@@ -5,7 +5,7 @@ use crate::dynamics::integrators::vector::{IntegratorState, Vector};
 use crate::dynamics::linear_systems::kkt::{Factors, System};
 use crate::dynamics::model::Model;
 use crate::failure::Failure;
-use crate::linear_algebra::vectors::dot;
+use crate::linear_algebra::vectors::{Each, dot};
 use crate::mechanism::dynamic::Dynamic;
 use crate::scalar::number::Real;
 use crate::tolerances::singular;
@@ -97,7 +97,7 @@ impl<R: Real, const N: usize, const M: usize> Weak<R, N, M> {
         if !zero.less(size) {
             return false;
         }
-        let direction = direction.map(|component| component / size);
+        let direction = direction.each(|component| component / size);
         let displaced = |share: R| y.q.plus(share, &[1.0], [&direction]);
         let at = |q: &[R; N]| model.mechanism.position(model.parameters, q, t);
         let slope = |share: R| {

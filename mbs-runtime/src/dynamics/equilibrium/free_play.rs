@@ -4,6 +4,7 @@ use crate::dynamics::equilibrium::free_stiffness::FreeStiffness;
 use crate::dynamics::integrators::vector::{IntegratorState, Vector};
 use crate::dynamics::model::Model;
 use crate::failure::Failure;
+use crate::linear_algebra::vectors::Each;
 use crate::mechanism::dynamic::Dynamic;
 use crate::scalar::number::Real;
 use crate::tolerances::{forces, singular};
@@ -58,11 +59,12 @@ pub(crate) fn with_play<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: u
                 probe = probe.plus(R::constant(sign), &[1.0], [&beside.motion(second)]);
             }
             for sign in [1.0, -1.0] {
-                beside.mark(&probe.map(|part| R::constant(sign) * part), &mut indifferent);
+                beside.mark(&probe.each(|part| R::constant(sign) * part), &mut indifferent);
             }
         }
         for sign in [1.0, -1.0] {
-            if let Some(motion) = beside.relaxed(&beside.motion(first).map(|part| R::constant(sign) * part)) {
+            if let Some(motion) = beside.relaxed(&beside.motion(first).each(|part| R::constant(sign) * part))
+            {
                 beside.mark_idle(&motion, &mut indifferent);
             }
         }
@@ -107,7 +109,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Beside<'_, S,
         for index in 0..there.freedom {
             let idle = there.unanswered_part(index).0;
             self.mark_idle(&idle, indifferent);
-            self.mark_idle(&idle.map(|part| -part), indifferent);
+            self.mark_idle(&idle.each(|part| -part), indifferent);
         }
     }
 
@@ -147,7 +149,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Beside<'_, S,
     fn away(&self, y: &IntegratorState<R, N, S::States>) -> Option<[R; N]> {
         let motion = y.q.plus(R::constant(-1.0), &[1.0], [&self.y.q]);
         let distance = self.model.largest(&motion);
-        (R::constant(AWAY) * self.aside).less(distance).then(|| motion.map(|part| part / distance))
+        (R::constant(AWAY) * self.aside).less(distance).then(|| motion.each(|part| part / distance))
     }
 
     /// Marks the coordinates of `motion` (N) where forces balance along it too.

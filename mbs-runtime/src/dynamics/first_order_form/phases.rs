@@ -29,36 +29,25 @@ impl<T: Scalar, Y: Vector<T>, P: Copy + AsRef<[Phase<T>]> + AsMut<[Phase<T>]>> V
     }
 
     #[inline(always)]
-    fn plus<const K: usize>(&self, h: T, weights: &[f64; K], terms: [&Self; K]) -> Self {
-        let y = self.y.plus(h, weights, terms.map(|term| &term.y));
-        Phased { y, phases: moved(self.phases, h, weights, terms.map(|term| term.phases.as_ref())) }
+    fn add(&mut self, weight: T, term: &Self) {
+        self.y.add(weight, &term.y);
+        add(&mut self.phases, weight, &term.phases);
     }
 
     #[inline(always)]
     fn semi_implicit(&self, h: T, rate: &Self) -> Self {
-        let y = self.y.semi_implicit(h, &rate.y);
-        Phased { y, phases: moved(self.phases, h, &[1.0], [rate.phases.as_ref()]) }
+        let mut next = Phased { y: self.y.semi_implicit(h, &rate.y), phases: self.phases };
+        add(&mut next.phases, h, &rate.phases);
+        next
     }
 }
 
-/// `phases` plus h Σ weightₖ termₖ.
+/// Adds `weight` times the values of `term`.
 #[inline(always)]
-fn moved<T: Scalar, P: AsMut<[Phase<T>]>, const K: usize>(
-    mut phases: P,
-    h: T,
-    weights: &[f64; K],
-    terms: [&[Phase<T>]; K],
-) -> P {
-    for (index, phase) in phases.as_mut().iter_mut().enumerate() {
-        let mut change = T::constant(0.0);
-        for (weight, term) in weights.iter().zip(terms) {
-            if let Some(term) = term.get(index) {
-                change = change + T::constant(*weight) * term.value;
-            }
-        }
-        phase.value = phase.value + h * change;
+fn add<T: Scalar, P: AsRef<[Phase<T>]> + AsMut<[Phase<T>]>>(phases: &mut P, weight: T, term: &P) {
+    for (phase, term) in phases.as_mut().iter_mut().zip(term.as_ref()) {
+        phase.value = phase.value + weight * term.value;
     }
-    phases
 }
 
 /// As many phases, none moved on.

@@ -5,6 +5,7 @@ use crate::dynamics::linear_systems::kkt::System;
 use crate::dynamics::model::metric::require_least;
 use crate::dynamics::model::{Counts, Formulation, Model, Solved};
 use crate::failure::Failure;
+use crate::linear_algebra::vectors::Each;
 use crate::mechanism::dynamic::Dynamic;
 use crate::scalar::number::Real;
 use crate::tolerances::forces;
@@ -54,7 +55,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Formulation<S
         }
         let phi_q = mechanism.phi_q(parameters, &position);
         let mut matrix = mechanism.mass(parameters, &position);
-        let alpha = model.metric.weights(&matrix).map(|weight| R::constant(self.alpha) * weight);
+        let alpha = model.metric.weights(&matrix).each(|weight| R::constant(self.alpha) * weight);
         for (row, alpha) in phi_q.iter().zip(&alpha) {
             crate::dynamics::linear_systems::tangent::add_outer(&mut matrix, *alpha, row);
         }

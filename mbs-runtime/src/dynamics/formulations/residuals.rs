@@ -3,6 +3,7 @@
 use crate::dynamics::model::Model;
 use crate::dynamics::model::metric::worse;
 use crate::failure::{Failure, FailureKind, checks};
+use crate::linear_algebra::vectors::Each;
 use crate::mechanism::dynamic::Dynamic;
 use crate::scalar::number::Real;
 use crate::tolerances::{motion, positions};
@@ -48,7 +49,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
     /// 1000 seconds would leave, so that a mechanism at rest has a tolerance too.
     pub(crate) fn rate_tolerances(&self, position: &S::Position, qd: &[R; N]) -> [R; M] {
         let mut floor = self.mechanism.phi_t(self.parameters, position);
-        let speeds = qd.map(|qd| {
+        let speeds = qd.each(|qd| {
             qd * (R::constant(1.0) + positions::OF_TERMS.of::<R>() / positions::OF_COORDINATES.of())
         });
         for (rate, scale) in floor.iter_mut().zip(&self.metric.rows) {
@@ -88,7 +89,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
     pub(crate) fn frame_free_rate_tolerances(&self, position: &S::Position, qd: &[R; N]) -> [R; M] {
         let speed = self.largest(qd);
         let mut tolerances =
-            self.rate_tolerances(position, &self.metric.coordinates.map(|scale| scale * speed));
+            self.rate_tolerances(position, &self.metric.coordinates.each(|scale| scale * speed));
         for (tolerance, scale) in tolerances.iter_mut().zip(&self.metric.rows) {
             *tolerance = *tolerance + positions::OF_TERMS.of::<R>() * speed * *scale;
         }

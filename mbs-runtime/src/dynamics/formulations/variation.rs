@@ -5,7 +5,7 @@ use crate::dynamics::linear_systems::kkt::{Factors, System};
 use crate::dynamics::model::Model;
 use crate::failure::Failure;
 use crate::linear_algebra::orthogonal::pivot_order;
-use crate::linear_algebra::vectors::times;
+use crate::linear_algebra::vectors::{Each, times};
 use crate::mechanism::dynamic::Dynamic;
 use crate::scalar::number::Real;
 use crate::tolerances::singular;
@@ -83,9 +83,9 @@ impl<'a, S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Variation
     pub(crate) fn motion(&self, index: usize) -> FreeMotion<R, N> {
         let mut place = [R::constant(0.0); N];
         place.iter_mut().skip(index).take(1).for_each(|component| *component = R::constant(1.0));
-        let carried = self.dependent(&times(&self.phi_q, &place).map(|open| -open));
+        let carried = self.dependent(&times(&self.phi_q, &place).each(|open| -open));
         place = place.plus(R::constant(1.0), &[1.0], [&carried]);
-        let rate = self.dependent(&self.rows_rate(&self.y.qd, &place).map(|open| -open));
+        let rate = self.dependent(&self.rows_rate(&self.y.qd, &place).each(|open| -open));
         let mixed = self.model.mechanism.phi_qt_qd(self.model.parameters, self.position, &place);
         let bent = self.rows_rate(self.qdd, &place).plus(R::constant(-1.0), &[1.0], [&mixed]);
         // γ_q̇ ṙ is −2 Φ̇_q ṙ.
@@ -108,7 +108,7 @@ impl<'a, S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Variation
         let ahead = mechanism.gamma(parameters, self.position, &v.plus(share, &[1.0], [r]));
         let behind = mechanism.gamma(parameters, self.position, &v.plus(share, &[-1.0], [r]));
         let factor = R::constant(-0.25) / share;
-        ahead.plus(R::constant(-1.0), &[1.0], [&behind]).map(|difference| factor * difference)
+        ahead.plus(R::constant(-1.0), &[1.0], [&behind]).each(|difference| factor * difference)
     }
 
     /// γ_q r: M.
@@ -126,7 +126,7 @@ impl<'a, S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Variation
             let (ahead, behind) = (at(share), at(-share));
             sum = sum.plus(R::constant(weight), &[1.0, -1.0], [&ahead, &behind]);
         }
-        sum.map(|sum| sum / (R::constant(60.0) * reach))
+        sum.each(|sum| sum / (R::constant(60.0) * reach))
     }
 
     /// Largest component in the metric.

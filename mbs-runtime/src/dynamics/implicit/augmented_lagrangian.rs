@@ -13,6 +13,7 @@ use crate::dynamics::model::metric::Metric;
 use crate::dynamics::model::{Counts, Formulation, Model, Solved};
 use crate::failure::Failure;
 use crate::linear_algebra::orthogonal::margin_of_rows;
+use crate::linear_algebra::vectors::Each;
 use crate::mechanism::dynamic::Dynamic;
 use crate::scalar::number::Real;
 use crate::tolerances::{forces, singular};
@@ -128,8 +129,8 @@ impl AugmentedLagrangian {
                 return Err(model.unbalanced(&step, t, MOST_ITERATIONS));
             }
             // The springs alone take the rows' multipliers on, but those that friction hangs on, which belong to the coordinates.
-            let moved = if S::FORCE_USES_MULTIPLIERS { taken.map(|part| -part) } else { lambda.zero() };
-            let whole = Unknowns { motion: step.map(|part| -part), lambda: moved };
+            let moved = if S::FORCE_USES_MULTIPLIERS { taken.each(|part| -part) } else { lambda.zero() };
+            let whole = Unknowns { motion: step.each(|part| -part), lambda: moved };
             let here = Unknowns { motion: change, lambda };
             let next = damping.next(&here, (&whole, last), |base, least| {
                 let (qd, bent) = trapezoidal(start, before, &base.motion, h);
@@ -170,7 +171,7 @@ fn penalty<R: Real, const N: usize, const M: usize>(
     metric: &Metric<R, N, M>,
     quarter: R,
 ) -> [R; M] {
-    metric.weights(mass).map(|weight| R::constant(PENALTY) * weight / quarter)
+    metric.weights(mass).each(|weight| R::constant(PENALTY) * weight / quarter)
 }
 
 /// A = W + h²/4 Φ_qᵀ α Φ_q with W = M + h/2 C + h²/4 K, factorised.
@@ -205,7 +206,7 @@ impl<R: Real, const N: usize, const M: usize> Penalized<R, N, M> {
     /// The correction (N) that takes `imbalance` (N) away, and the decrease of the multipliers (M) by the part of `phi` (M) that
     /// it leaves. Where forces depend on the multipliers it leaves none.
     fn corrected<S: Dynamic<R, N, M>>(&self, imbalance: &[R; N], phi: &[R; M]) -> ([R; N], [R; M]) {
-        let mut step = self.factors.solve(imbalance, &[]).0.map(|step| step * self.quarter);
+        let mut step = self.factors.solve(imbalance, &[]).0.each(|step| step * self.quarter);
         let mut change = self.sprung(&step, phi);
         if S::FORCE_USES_MULTIPLIERS {
             self.close(phi, (&mut step, &mut change));
@@ -271,7 +272,7 @@ fn projected<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     let position = closed(model, t, &mut y, counts)?;
     let (mechanism, parameters) = (model.mechanism, model.parameters);
     let penalized = Penalized::of(model, &position, (t, h), (&y, &qdd, &lambda))?;
-    y.qd = penalized.put(&y.qd, &mechanism.phi_t(parameters, &position).map(|rate| -rate)).0;
+    y.qd = penalized.put(&y.qd, &mechanism.phi_t(parameters, &position).each(|rate| -rate)).0;
     let (qdd, taken) = penalized.put(&qdd, &mechanism.gamma(parameters, &position, &y.qd));
     let lambda = lambda.plus(R::constant(1.0), &[1.0], [&taken]);
     model.require_unshared_by_rank((&position, t), &y, &lambda)?;
@@ -299,7 +300,7 @@ fn closed<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
     if model.worst(&phi, &model.position_tolerances(&position, &y.q)).0 <= one {
         return Ok(position);
     }
-    let allowed = model.metric.rows.map(|scale| forces::SLOW.of::<R>() * scale);
+    let allowed = model.metric.rows.each(|scale| forces::SLOW.of::<R>() * scale);
     model.require(t, &phi, &allowed, one, false)?;
     project_position(model, t, y, counts)?;
     Ok(model.position(t, y))

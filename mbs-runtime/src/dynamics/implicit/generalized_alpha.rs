@@ -11,7 +11,7 @@ use crate::dynamics::model::method::{Method, require_slopes};
 use crate::dynamics::model::metric::require_between;
 use crate::dynamics::model::{Counts, Formulation, Model, Solved};
 use crate::failure::{Failure, FailureKind};
-use crate::linear_algebra::vectors::extent;
+use crate::linear_algebra::vectors::{Each, extent};
 use crate::mechanism::dynamic::Dynamic;
 use crate::scalar::number::Real;
 use crate::tolerances::{forces, positions};
@@ -134,7 +134,7 @@ impl GeneralizedAlpha {
             counts.evaluations += 1;
             step = correction;
             let here = Unknowns { motion: qdd, lambda };
-            let whole = Unknowns { motion: step.map(|x| -of_q * x), lambda: change.map(|x| -x) };
+            let whole = Unknowns { motion: step.each(|x| -of_q * x), lambda: change.each(|x| -x) };
             let standing = model.standing_after(&from.y.q, &step, &y.q, &mut last)?;
             if standing {
                 Unknowns { motion: qdd, lambda } = here.plus(one, &[1.0], [&whole]);
@@ -144,7 +144,7 @@ impl GeneralizedAlpha {
                 let end = model.position(t, &y);
                 // Rows that the factors count as dependent are not corrected.
                 let phi = model.mechanism.phi(model.parameters, &end);
-                let allowed = model.metric.rows.map(|scale| positions::UNMET.of::<R>() * scale);
+                let allowed = model.metric.rows.each(|scale| positions::UNMET.of::<R>() * scale);
                 model.require(t, &phi, &allowed, one, false)?;
                 let rate = model.rates(&end, &y, qdd, &lambda);
                 model.require_unshared_by_rank((&position, t), &y, &lambda)?;

@@ -6,6 +6,7 @@ use crate::dynamics::linear_systems::kkt::System;
 use crate::dynamics::model::instant::Instant;
 use crate::dynamics::model::{Counts, Formulation, Model};
 use crate::failure::{Failure, FailureKind, checks};
+use crate::linear_algebra::vectors::Each;
 use crate::mechanism::dynamic::Dynamic;
 use crate::scalar::number::Real;
 use crate::tolerances::forces;
@@ -36,9 +37,9 @@ impl<R: Real, const N: usize, const M: usize> Vector<R> for Unknowns<R, N, M> {
     }
 
     #[inline(always)]
-    fn plus<const K: usize>(&self, h: R, weights: &[f64; K], terms: [&Self; K]) -> Self {
-        let motion = self.motion.plus(h, weights, terms.map(|term| &term.motion));
-        Unknowns { motion, lambda: self.lambda.plus(h, weights, terms.map(|term| &term.lambda)) }
+    fn add(&mut self, weight: R, term: &Self) {
+        self.motion.add(weight, &term.motion);
+        self.lambda.add(weight, &term.lambda);
     }
 }
 
@@ -171,7 +172,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         let found = self.balanced(position, (t, y), bearing, |force, whole| {
             let (step, change) = match whole {
                 true => solve(&held.plus(-one, &[1.0], [force]), phi),
-                false => solve(&force.map(|force| -force), &[zero; M]),
+                false => solve(&force.each(|force| -force), &[zero; M]),
             };
             let before = if whole { *bearing } else { [zero; M] };
             (step, before.plus(-one, &[1.0], [&change]))
@@ -198,7 +199,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
     ) -> Result<R, Failure> {
         let (mechanism, parameters) = (self.mechanism, self.parameters);
         let position = self.position(t, y);
-        let mass = mechanism.mass(parameters, &position).map(|row| row.map(|entry| weight * entry));
+        let mass = mechanism.mass(parameters, &position).map(|row| row.each(|entry| weight * entry));
         let (phi, phi_q) = (mechanism.phi(parameters, &position), mechanism.phi_q(parameters, &position));
         let factors = System::new(&mass, &phi_q, self.metric).factorize(S::COORDINATES, t)?;
         let solve = |force: &[R; N], phi: &[R; M]| factors.solve(force, phi);

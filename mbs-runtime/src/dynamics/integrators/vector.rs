@@ -8,8 +8,21 @@ use crate::scalar::number::Scalar;
 pub trait Vector<T: Scalar>: Copy {
     /// The origin, of the same shape.
     fn zero(&self) -> Self;
+
+    /// Adds `weight` times `term`.
+    fn add(&mut self, weight: T, term: &Self);
+
     /// `self` + h Σ weightₖ termₖ. The sum is formed first, so that a small change keeps its digits.
-    fn plus<const K: usize>(&self, h: T, weights: &[f64; K], terms: [&Self; K]) -> Self;
+    #[inline(always)]
+    fn plus<const K: usize>(&self, h: T, weights: &[f64; K], terms: [&Self; K]) -> Self {
+        let mut change = self.zero();
+        for (weight, term) in weights.iter().zip(&terms) {
+            change.add(T::constant(*weight), term);
+        }
+        let mut sum = *self;
+        sum.add(h, &change);
+        sum
+    }
 
     /// A step of the semi-implicit Euler method: velocities by their rate, then coordinates by the new velocities.
     /// A point without such parts takes the explicit step.
@@ -26,40 +39,16 @@ impl<T: Scalar, const L: usize> Vector<T> for [T; L] {
     }
 
     #[inline(always)]
-    fn plus<const K: usize>(&self, h: T, weights: &[f64; K], terms: [&Self; K]) -> Self {
-        let mut sum = *self;
-        add(&mut sum, h, weights, terms);
-        sum
+    fn add(&mut self, weight: T, term: &Self) {
+        add(self, weight, term);
     }
 }
 
-/// Adds h Σ weightₖ termₖ to `sum`.
+/// Adds `weight` times `term` to `sum`.
 #[inline(always)]
-fn add<T: Scalar, const L: usize, const K: usize>(
-    sum: &mut [T; L],
-    h: T,
-    weights: &[f64; K],
-    terms: [&[T; L]; K],
-) {
-    let mut change = [T::constant(0.0); L];
-    for (weight, term) in weights.iter().zip(terms) {
-        let weight = T::constant(*weight);
-        change.iter_mut().zip(term).for_each(|(change, term)| *change = *change + weight * *term);
-    }
-    sum.iter_mut().zip(&change).for_each(|(component, change)| *component = *component + h * *change);
-}
-
-/// [`add`] where the type does not tell the length.
-#[inline(always)]
-fn add_slices<T: Scalar, const K: usize>(sum: &mut [T], h: T, weights: &[f64; K], terms: [&[T]; K]) {
-    for (index, component) in sum.iter_mut().enumerate() {
-        let mut change = T::constant(0.0);
-        for (weight, term) in weights.iter().zip(terms) {
-            if let Some(term) = term.get(index) {
-                change = change + T::constant(*weight) * *term;
-            }
-        }
-        *component = *component + h * change;
+fn add<T: Scalar>(sum: &mut [T], weight: T, term: &[T]) {
+    for (sum, term) in sum.iter_mut().zip(term) {
+        *sum = *sum + weight * *term;
     }
 }
 
@@ -85,14 +74,11 @@ impl<T: Scalar, const N: usize, Z: Copy + AsRef<[T]> + AsMut<[T]>> Vector<T> for
     }
 
     #[inline(always)]
-    fn plus<const K: usize>(&self, h: T, weights: &[f64; K], terms: [&Self; K]) -> Self {
-        let mut sum = *self;
-        add(&mut sum.q, h, weights, terms.map(|term| &term.q));
-        add(&mut sum.qd, h, weights, terms.map(|term| &term.qd));
-        add_slices(sum.states.as_mut(), h, weights, terms.map(|term| term.states.as_ref()));
-        let work = terms.map(|term| core::array::from_ref(&term.work));
-        add(core::array::from_mut(&mut sum.work), h, weights, work);
-        sum
+    fn add(&mut self, weight: T, term: &Self) {
+        add(&mut self.q, weight, &term.q);
+        add(&mut self.qd, weight, &term.qd);
+        add(self.states.as_mut(), weight, term.states.as_ref());
+        self.work = self.work + weight * term.work;
     }
 
     #[inline(always)]

@@ -4,6 +4,7 @@ use crate::dynamics::linear_systems::blocks::Blocks;
 use crate::dynamics::linear_systems::null_space::NullSpace;
 use crate::dynamics::model::metric::Metric;
 use crate::failure::{Failure, FailureKind};
+use crate::linear_algebra::vectors::Each;
 use crate::mechanism::Entry;
 use crate::scalar::number::Real;
 use crate::tolerances::singular;
@@ -291,7 +292,7 @@ impl<R: Real, const N: usize, const M: usize> Factors<R, N, M> {
                 largest = largest.max(share.abs());
             }
             let any = R::constant(0.0).less(largest);
-            shares.map(|share| if any { share / largest } else { share })
+            shares.each(|share| if any { share / largest } else { share })
         })
     }
 

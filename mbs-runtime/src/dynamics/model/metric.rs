@@ -1,6 +1,7 @@
 //! Reference metric of a mechanism's coordinates and rows, and kinds of coordinates.
 
 use crate::failure::{Failure, FailureKind};
+use crate::linear_algebra::vectors::Each;
 use crate::mechanism::{Entry, Mechanism};
 use crate::scalar::number::{Real, Scalar};
 use crate::tolerances::{motion, positions};
@@ -113,7 +114,7 @@ impl<R: Real, const N: usize, const M: usize> Metric<R, N, M> {
                 largest = largest.max((*entry * *scale * *other).abs());
             }
         }
-        self.rows.map(|scale| largest / (scale * scale))
+        self.rows.each(|scale| largest / (scale * scale))
     }
 
     /// Tolerances rtol ‖x‖ + atol scale of coordinates, ‖x‖ the largest of `before` and `after` (N) among those of the same unit: N.

@@ -14,6 +14,7 @@ use crate::dynamics::model::{Counts, Formulation, Model};
 use crate::dynamics::simulation::fixed_run::event_failure;
 use crate::dynamics::simulation::{Fresh, Simulation};
 use crate::failure::Failure;
+use crate::linear_algebra::vectors::Each;
 use crate::mechanism::dynamic::Dynamic;
 use crate::scalar::number::Real;
 use crate::tolerances::motion;
@@ -271,7 +272,7 @@ where
             let at = |t| course.at(t).y;
             let (before, after) = (&accepted.start.y.y.q, &accepted.end.y.y.q);
             let touched = errors.min(motion::TOUCHED.of());
-            let allowed = model.metric.allowed(&tolerance, before, after).map(|one| touched * one);
+            let allowed = model.metric.allowed(&tolerance, before, after).each(|one| touched * one);
             model.check_ranges(from.t, (start, end), at, (resolution, &allowed))?;
             model.check_end(from.t, (start, end), at)?;
             see(equations, accepted)?;

@@ -8,6 +8,7 @@ use crate::dynamics::model::{Counts, Model, Solved};
 use crate::failure::checks::{limit_failure, passed_failure};
 use crate::failure::{Failure, FailureKind};
 use crate::kinematics::position;
+use crate::linear_algebra::vectors::Each;
 use crate::mechanism::dynamic::Dynamic;
 use crate::mechanism::limit::{Limit, size};
 use crate::scalar::interval::Interval;
@@ -75,7 +76,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
         if const { S::LIMITS.is_empty() } {
             return Ok(());
         }
-        let size = [start, end].map(|t| size(&self.metric.coordinates, &at(t).q));
+        let size = [start, end].each(|t| size(&self.metric.coordinates, &at(t).q));
         let size = size.into_iter().fold(R::constant(0.0), R::max);
         let mut ranges = Ranges { model: self, from, resolution, size, errors: None, at };
         let mut touched = start;

@@ -4,7 +4,7 @@ use crate::erased::facade::Motion;
 use crate::motion::power_balance::{PowerCurve, PowerSource};
 use crate::motion::{DependentRow, Forces, LoadCurve};
 
-use crate::commands::summary::significant;
+use crate::commands::summary::{significant, signless};
 
 /// Largest number of curves of one name and unit that have a line each; more of them share one line.
 const MOST_LINES: usize = 24;
@@ -58,9 +58,11 @@ fn together(prefix: &str, curves: &[LoadCurve]) -> [String; 2] {
 
 /// Least and largest value, of a single one the value.
 fn range(values: &[f64], decimals: usize) -> String {
-    let least = values.iter().copied().fold(f64::INFINITY, f64::min);
-    let most = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    if values.len() == 1 { format!("{least:.6}") } else { format!("{least:.decimals$} to {most:.decimals$}") }
+    let digits = if values.len() == 1 { 6 } else { decimals };
+    let shown = |value: f64| format!("{:.digits$}", signless(value, digits));
+    let least = shown(values.iter().copied().fold(f64::INFINITY, f64::min));
+    let most = shown(values.iter().copied().fold(f64::NEG_INFINITY, f64::max));
+    if values.len() == 1 { least } else { format!("{least} to {most}") }
 }
 
 /// The work of each force and drive with the range of its power, and the energy balance.

@@ -26,6 +26,9 @@ pub struct Description {
     /// `true` for a case that takes minutes.
     #[serde(default)]
     pub long: bool,
+    /// `true` where contacts or vibrations lie between the instants of a run: rates are not integrated there.
+    #[serde(default)]
+    pub unresolved: bool,
     /// Largest error of each kind of method, as a part of the size of what is compared. Methods of other kinds are not run.
     #[serde(default)]
     pub bounds: BTreeMap<Kind, f64>,

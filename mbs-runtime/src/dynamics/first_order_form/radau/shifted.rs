@@ -4,6 +4,7 @@ use crate::dynamics::first_order_form::equations::Moving;
 use crate::dynamics::first_order_form::radau::slopes::Slopes;
 use crate::dynamics::first_order_form::radau::split::{Number, Numbers, SplitLu, entry, product, reciprocal};
 use crate::dynamics::integrators::vector::Vector;
+use crate::linear_algebra::vectors::Each;
 use crate::mechanism::dynamic::{Dynamic, StateSlope};
 use crate::scalar::number::Real;
 
@@ -102,7 +103,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize, const PARTS: 
         for place in &mut place {
             place.iter_mut().zip(&self.scales).for_each(|(place, scale)| *place = *place * *scale);
         }
-        let mut speed = q.map(|q| q.map(|q| -q));
+        let mut speed = q.map(|q| q.each(|q| -q));
         add_times(&mut speed, self.s, &place);
         let states = match (&self.states, states) {
             (Some(rows), Some(states)) => Some(carried(rows, states, &place)),
@@ -306,7 +307,7 @@ fn scale<R: Real, Z, P, const N: usize, const PARTS: usize>(
     Z: Copy + AsRef<[R]> + AsMut<[R]>,
     P: Copy + AsRef<[StateSlope<R, N, Z>]> + AsMut<[StateSlope<R, N, Z>]>,
 {
-    let mut less = factor.map(|part| -part);
+    let mut less = factor.each(|part| -part);
     if let Some(real) = less.first_mut() {
         *real = *real + R::constant(1.0);
     }

@@ -2,6 +2,7 @@
 
 use crate::dynamics::linear_systems::piecewise::{Given, Piecewise};
 use crate::linear_algebra::parts::{at, diagonal_mut, tail_mut, taken};
+use crate::linear_algebra::vectors::Each;
 use crate::scalar::number::Real;
 
 /// Terms that a part leaves open, with the others expressed by them: v = φ(c + B v) of the open ones alone.
@@ -28,7 +29,7 @@ impl<R: Real, const K: usize> Piecewise<R, K> {
             if !factor.is_finite() {
                 return None;
             }
-            let (constant, shares) = (factor * constant, shares.map(|slope| factor * slope));
+            let (constant, shares) = (factor * constant, shares.each(|slope| factor * slope));
             for (offsets, slopes) in offset.iter_mut().zip(&mut slope) {
                 for (offset, slopes) in offsets.iter_mut().zip(slopes) {
                     let own = taken(slopes, term);
@@ -78,7 +79,7 @@ impl<R: Real, const K: usize> Reduced<R, K> {
 /// Pivots of I − T positive, T of entries that are at least 0: its spectral radius is below 1.
 pub(super) fn is_m_matrix<R: Real, const V: usize>(spread: &[[R; V]; V]) -> bool {
     let (zero, one) = (R::constant(0.0), R::constant(1.0));
-    let mut matrix = spread.map(|row| row.map(|entry| zero - entry));
+    let mut matrix = spread.map(|row| row.each(|entry| zero - entry));
     diagonal_mut(&mut matrix).for_each(|entry| *entry = one + *entry);
     for k in 0..V {
         let [upper, below @ ..] = tail_mut(&mut matrix, k) else { return false };

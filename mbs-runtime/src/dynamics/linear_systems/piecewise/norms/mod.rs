@@ -15,7 +15,7 @@ use crate::dynamics::linear_systems::piecewise::{Given, Piecewise};
 use crate::linear_algebra::factorization::Factorization;
 use crate::linear_algebra::lu::Lu;
 use crate::linear_algebra::parts::{at, identity, transposed};
-use crate::linear_algebra::vectors::dot;
+use crate::linear_algebra::vectors::{Each, dot};
 use crate::mechanism::normal_forces::Term;
 use crate::scalar::number::Real;
 use crate::tolerances::forces;
@@ -75,7 +75,7 @@ impl<R: Real, const K: usize> Piecewise<R, K> {
             let values = once(one / scale).chain(open().filter_map(|term| v.get(term).copied()));
             found.iter_mut().zip(values).for_each(|(x, v)| *x = v);
             let sum = found.iter().fold(zero, |sum, x| sum + *x);
-            Some((found.map(|x| x / sum), v))
+            Some((found.each(|x| x / sum), v))
         };
         let mut whole = identity();
         let mut show = |v: [R; K]| {
@@ -128,7 +128,7 @@ impl<R: Real, const V: usize, const K: usize> Norms<R, V, K> {
         }
         for (term, (signs, [sign, _])) in norms.signs.iter_mut().zip(directions).enumerate() {
             if terms.get(term) == Some(&Term::Absolute) && reduced.open.get(term) == Some(&false) {
-                *signs = slopes(term, 0).map(|slope| *sign * slope);
+                *signs = slopes(term, 0).each(|slope| *sign * slope);
             }
         }
         norms
@@ -229,7 +229,7 @@ impl<R: Real, const V: usize, const K: usize> Norms<R, V, K> {
             }
             // Elsewhere the direction of the norm may be any.
             let directed = radius < length;
-            let u = if zero < length { middle.map(|w| w / length) } else { [zero; 2] };
+            let u = if zero < length { middle.each(|w| w / length) } else { [zero; 2] };
             let (mut above, mut below) = (true, true);
             for (x, [wx, wy]) in part.iter().zip(&corners) {
                 above &= rounding < at(x, i) - wx.hypot(*wy);

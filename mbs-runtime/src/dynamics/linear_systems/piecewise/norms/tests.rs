@@ -2,6 +2,7 @@ use std::vec::Vec;
 
 use crate::dynamics::linear_systems::piecewise::tests::{random, residual, system};
 use crate::dynamics::linear_systems::piecewise::{Piecewise, Solutions};
+use crate::linear_algebra::vectors::Each;
 use crate::mechanism::normal_forces::Term;
 
 extern crate std;
@@ -230,7 +231,7 @@ fn norms_in_any_unit_and_in_single_precision_have_as_many_solutions() {
         };
         let known = count(system.solve(&[0.0; 2]));
         for unit in [1e-9, 1e9] {
-            let offset = system.offset.map(|offset| offset.map(|c| unit * c));
+            let offset = system.offset.map(|offset| offset.each(|c| unit * c));
             assert_eq!(count(Piecewise { offset, ..system }.solve(&[0.0; 2])), known, "{unit}: {system:?}");
         }
         let offset = system.offset.map(|offset| offset.map(|c| c as f32));
