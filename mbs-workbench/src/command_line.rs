@@ -18,6 +18,7 @@ use crate::commands::{self, CommandError};
 use crate::effects::measurement::{NamedScene, Order, measure};
 use crate::erased::costs::Comparable;
 use crate::erased::variations::Variable;
+use crate::hard_cases::list::Listed;
 use crate::mismatch::nearest;
 use crate::tables::valley::NamedLaw;
 use crate::target_directory::is_started;
@@ -189,7 +190,7 @@ pub fn cost_program(
     make: fn(&[(usize, f64)]) -> Comparable,
     laws: fn() -> Vec<NamedLaw>,
 ) -> ExitCode {
-    study_program(card, "cost", |command, catalogue, out| match command {
+    study_program(&[card], "cost", |command, catalogue, out| match command {
         Command::Cost(arguments) => Some(commands::cost::study(catalogue, arguments, make, &laws(), out)),
         _ => None,
     })
@@ -197,8 +198,16 @@ pub fn cost_program(
 
 /// The study of `mbs hard-cases` in such a program.
 pub fn hard_cases_program(card: Card, make: fn(&[(usize, f64)]) -> Variable) -> ExitCode {
-    study_program(card, "hard-cases", |command, catalogue, out| match command {
+    study_program(&[card], "hard-cases", |command, catalogue, out| match command {
         Command::HardCases(arguments) => Some(commands::hard_cases::study(catalogue, arguments, make, out)),
+        _ => None,
+    })
+}
+
+/// The study of the list of hard cases, in a program that was built for its texts.
+pub fn hard_cases_program_list(cases: &[Listed]) -> ExitCode {
+    study_program(&[], "hard-cases", |command, _, out| match command {
+        Command::HardCases(arguments) => Some(commands::hard_case_list::study(arguments, cases, out)),
         _ => None,
     })
 }
@@ -224,12 +233,11 @@ pub fn effects_program(scenes: &[NamedScene]) -> ExitCode {
 
 /// A program with one command for one mechanism; `study` gives none for another command.
 fn study_program(
-    card: Card,
+    cards: &[Card],
     name: &str,
     study: impl FnOnce(&Command, &Catalogue, &mut Output) -> Option<Result<ExitCode, CommandError>> + Send,
 ) -> ExitCode {
-    let cards = [card];
-    let catalogue = Catalogue { cards: &cards };
+    let catalogue = Catalogue { cards };
     match Arguments::try_parse() {
         Ok(Arguments { command: Some(command), json }) if command.schema() == name => on_large_stack(|| {
             let mut stdout = io::stdout().lock();

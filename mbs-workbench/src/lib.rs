@@ -48,4 +48,4 @@ pub mod text_file;
 pub mod verify;
 
 #[cfg(feature = "program")]
-pub use command_line::{cost_program, effects_program, hard_cases_program, program};
+pub use command_line::{cost_program, effects_program, hard_cases_program, hard_cases_program_list, program};

@@ -1,7 +1,7 @@
 //! Two tiers of checks: a change must pass the first, a release the second.
 
 use crate::shell::{command, exists, need, output, root, step};
-use crate::{browser, costs, documents, growth, instructions, lines};
+use crate::{browser, costs, documents, growth, instructions, lines, planted};
 
 /// The oldest compiler that the workspace names.
 const OLDEST: &str = "1.89";
@@ -66,6 +66,11 @@ pub fn full() -> Result<(), String> {
     lines::run(false)?;
     costs::peers()?;
     costs::index()?;
+    step(&mut command(
+        "cargo",
+        &["run", "--release", "-p", "mbs-workbench", "--bin", "mbs", "--", "hard-cases", "--quick"],
+    ))?;
+    planted::run_all()?;
     oldest()
 }
 

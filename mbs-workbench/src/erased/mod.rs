@@ -7,6 +7,8 @@ pub mod adaption;
 mod branching;
 #[cfg(feature = "program")]
 pub mod costs;
+#[cfg(feature = "program")]
+pub mod driven_variations;
 pub mod dynamics;
 pub mod erase;
 #[cfg(feature = "program")]
