@@ -53,7 +53,7 @@ fn combined<R: Real, const M: usize>(weights: [R; 4], of: [&[R; M]; 4]) -> [R; M
     sum
 }
 
-/// `true` if the rows, opened by their drives alone, open nearly along a parabola, or by rounding. `open`: residuals (M) at the ends of the
+/// `true` if the rows, opened by their drives alone, open nearly along a parabola, or by rounding (to a hundredth). `open`: residuals (M) at the ends of the
 /// thirds of a piece, `probed`: at [`PROBE`] of it; `scales`: those of the rows.
 ///
 /// A crank that turns by φ in a piece has (2 sin(φ/6))² of its way in a third beyond the parabola. No Jacobian is in it: a short crank is
@@ -72,7 +72,7 @@ fn drives_turn_little<R: Real, const M: usize>(open: [&[R; M]; 4], probed: &[R; 
         beyond = beyond.max(third.abs()).max(((*probed - *foreseen) / *scale).abs());
     }
     // Written so that NaN is no little turn.
-    way <= positions::OF_TERMS.of() || beyond <= R::constant(LARGEST_TURN) * way
+    way <= positions::ROUNDED_MOVEMENT.of() || beyond <= R::constant(LARGEST_TURN) * way
 }
 
 impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Walk<'_, '_, S, R, N, M> {
