@@ -5,6 +5,7 @@ use core::f64::consts::{PI, TAU};
 use mbs_runtime::driver::{Cycloid, Law, Polynomial345, Polynomial4567, Rise};
 use mbs_runtime::{Function, Real};
 
+use super::bspline::BSpline;
 use super::shapes::{ConstantVelocity, EvenPowers, ModifiedSine, ModifiedTrapezoid, ORDERS, SimpleHarmonic};
 use super::{CamError, positive};
 use crate::tables::Spline;
@@ -47,6 +48,8 @@ enum Part {
     Step { flank: Flank, start: f64, duration: f64, height: f64 },
     /// A table over one turn.
     Table(Spline),
+    /// Polynomials between knots, 0 beyond them.
+    Pieces(BSpline),
 }
 
 /// A lift over the cam angle, periodic with a turn.
@@ -144,6 +147,7 @@ impl Part {
             }
             Part::Step { flank, start, duration, height } => flank.jet(x, *start, *duration, *height),
             Part::Table(spline) => spline.jet(x),
+            Part::Pieces(law) => law.jet(x),
         }
     }
 
@@ -152,6 +156,7 @@ impl Part {
             Part::Hump { law, .. } => law.order(),
             Part::Step { flank, .. } => flank.order(),
             Part::Table(spline) => spline.order(),
+            Part::Pieces(law) => law.order(),
         }
     }
 
@@ -162,6 +167,7 @@ impl Part {
                 flank.joints().iter().map(|share| start + share * duration).collect()
             }
             Part::Table(spline) => spline.knots.clone(),
+            Part::Pieces(law) => law.joints().to_vec(),
         }
     }
 }
@@ -206,6 +212,21 @@ impl Lift {
             return Err(CamError::Value("table", "a lift repeats after one turn".to_string()));
         }
         Ok(Lift { parts: vec![Part::Table(spline)], origin: first, span: [first, last], polydyne: 0.0 })
+    }
+
+    /// A B-spline with constraints on its derivatives, at rest beyond its knots.
+    ///
+    /// # Errors
+    /// [`CamError::Value`] of a law without a continuous velocity.
+    pub fn bspline(law: BSpline) -> Result<Self, CamError> {
+        let [first, last] = law.range();
+        if law.order() < 1 {
+            let why =
+                "the velocity jumps: constrain it to 0 at both ends, or let inner knots stand less often";
+            return Err(CamError::Value("B-spline", why.to_string()));
+        }
+        let origin = first - 0.5 * (TAU - (last - first));
+        Ok(Lift { parts: vec![Part::Pieces(law)], origin, span: [first, last], polydyne: 0.0 })
     }
 
     /// With ramps of constant velocity: `height` (m or rad) over `duration` (rad) before the opening and after the closing.

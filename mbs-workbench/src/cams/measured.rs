@@ -1,6 +1,7 @@
 //! From a measured profile to the lift that it makes, with its derivatives.
 //!
-//! The polar radius is a periodic quintic by least squares, with the knots that the noise allows ([`crate::tables::knots`]). Each point
+//! The polar radius is a periodic quintic by least squares, with the knots that the noise allows ([`crate::tables::knots`]), as dense as
+//! the points. Each place
 //! of the contour then says at which cam angle the follower touches it and how far it is lifted, with derivatives by series.
 
 use core::f64::consts::{FRAC_PI_2, TAU};
@@ -8,8 +9,8 @@ use core::f64::consts::{FRAC_PI_2, TAU};
 use super::CamError;
 use super::follower::{Direction, Follower};
 use super::jet::{Jet, Plane};
-use crate::tables::knots::Advice;
-use crate::tables::{Columns, Kind, Points, Spline};
+use crate::tables::knots::{Advice, Estimate};
+use crate::tables::{Kind, Spline};
 
 /// Points of a measured profile, about the cam's centre: polar angles (rad) and radii (m).
 #[derive(Clone, Debug, PartialEq)]
@@ -44,12 +45,21 @@ const FINEST: f64 = 1e-7;
 /// More outliers than this share of the points are no outliers.
 const MOST_OUTLIERS: f64 = 0.05;
 
+/// Points on each side of one that tell the distances about it.
+const NEIGHBOURS: usize = 8;
+
+/// Points on each side of one that are left out with it.
+const ABREAST: usize = 3;
+
 /// A gap may be as wide as so many distances between knots.
 const GAP: f64 = 2.0;
 
 /// Fewer knots over a gap may cost so many times the least error, or this share of the largest second derivative.
 const WORSE: f64 = 3.0;
 const SHARE: f64 = 0.005;
+
+/// An error of the second derivative above this share of its root mean square hides it.
+const HIDDEN: f64 = 0.5;
 
 /// Places of the recovered motion.
 const PLACES: usize = 720;
@@ -93,44 +103,34 @@ impl Profile {
     pub fn motion(&self, follower: &Follower, direction: Direction) -> Result<Recovered, CamError> {
         let fault = |why: String| Err(CamError::Value("measured profile", why));
         let (mut kept, mut outliers) = ((0..self.angles.len()).collect::<Vec<_>>(), Vec::new());
-        let (spline, advice, knots) = loop {
-            let points = self.points(&kept)?;
-            let kind = Kind::PeriodicQuintic(TAU);
-            let failed = |error: mbs_runtime::driver::FitError| {
-                CamError::Value(
-                    "measured profile",
-                    format!("{error}: measure more points where they are few"),
-                )
-            };
-            let advice = Advice::of(&points, kind).map_err(failed)?;
+        let (advice, best) = loop {
+            let advice = self.advice(&kept)?;
             let Some(advice) = advice else {
                 return fault("too few points to know their noise; 24 are the least".to_string());
             };
             let best = advice.best().map_or(12, |best| best.knots);
-            let spline = Spline::fit(&points.x, &points.y, kind, Some(best)).map_err(failed)?;
-            let mut residuals: Vec<f64> = kept
-                .iter()
-                .map(|k| (spline.derivatives(self.angles[*k])[0] - self.radii[*k]).abs())
-                .collect();
-            let found = residuals.clone();
-            residuals.sort_by(f64::total_cmp);
-            // Median of the magnitudes over that of a normal distribution.
-            let deviation = (residuals[residuals.len() / 2] / 0.6745).max(FINEST * self.radii[kept[0]]);
-            let worst = found.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1)).map_or(0, |(k, _)| k);
-            if found[worst] > OUTLIER * deviation {
-                // Neighbours follow an outlier: the largest goes alone.
-                outliers.push(kept.remove(worst));
-                if outliers.len() as f64 > MOST_OUTLIERS * self.angles.len() as f64 {
-                    return fault(format!(
-                        "more than {} points stand out: these are no outliers",
-                        outliers.len() - 1
-                    ));
-                }
-                continue;
+            let found = self.outliers(&mut kept, best)?;
+            if found.is_empty() {
+                break (advice, best);
             }
-            break (spline, advice, best);
+            outliers.extend(found);
+            if outliers.len() as f64 > MOST_OUTLIERS * self.angles.len() as f64 {
+                let most = (MOST_OUTLIERS * self.angles.len() as f64) as usize;
+                return fault(format!("more than {most} points stand out: these are no outliers"));
+            }
         };
-        let (spline, knots, second_error) = self.bridged(&kept, spline, &advice, knots)?;
+        let (spline, knots, second_error) = self.bridged(&kept, &advice, best)?;
+        let squares = (0..PLACES).map(|k| spline.derivatives(TAU * k as f64 / PLACES as f64)[2].powi(2));
+        let mean = (squares.sum::<f64>() / PLACES as f64).sqrt();
+        if second_error > HIDDEN * mean {
+            return fault(format!(
+                "noise of {:.2e} mm hides the acceleration: d2r has a root mean square of {:.2e} mm/rad^2, and an error of {:.2e}\n\
+                 help: measure more points, or finer",
+                1e3 * advice.deviation,
+                1e3 * mean,
+                1e3 * second_error
+            ));
+        }
         let mut motion = Vec::with_capacity(PLACES);
         for k in 0..PLACES {
             motion.push(touched(&spline, TAU * k as f64 / PLACES as f64, follower, direction)?);
@@ -140,55 +140,115 @@ impl Profile {
         Ok(Recovered { motion, knots, deviation: advice.deviation, second_error, outliers })
     }
 
-    /// The spline with at most two knots in the widest gap, its number of knots and the error of its second derivative.
+    /// Angles and radii of the points that are kept.
+    fn points(&self, kept: &[usize]) -> (Vec<f64>, Vec<f64>) {
+        kept.iter().map(|k| (self.angles[*k], self.radii[*k])).unzip()
+    }
+
+    fn advice(&self, kept: &[usize]) -> Result<Option<Advice>, CamError> {
+        let (x, y) = self.points(kept);
+        Advice::with(&x, &y, Kind::PeriodicQuintic(TAU), |count| among(&x, count)).map_err(failed)
+    }
+
+    fn fit(&self, kept: &[usize], knots: usize) -> Result<Spline, CamError> {
+        let (x, y) = self.points(kept);
+        let places = among(&x, knots);
+        Spline::along(&x, &y, Kind::PeriodicQuintic(TAU), places).map_err(failed)
+    }
+
+    /// Takes outliers out of `kept`, and returns them.
+    ///
+    /// A residual is noise, or what the knots cannot follow: a joint of the law. A fit without a group of neighbours misses all of them at
+    /// a joint; an outlier stands out of its group.
+    fn outliers(&self, kept: &mut Vec<usize>, knots: usize) -> Result<Vec<usize>, CamError> {
+        let mut found = Vec::new();
+        let mut cleared = vec![false; self.angles.len()];
+        let residual =
+            |spline: &Spline, k: usize| (spline.derivatives(self.angles[k])[0] - self.radii[k]).abs();
+        let mut spline = self.fit(kept, knots)?;
+        // One more than may be: the caller refuses.
+        while (found.len() as f64) <= MOST_OUTLIERS * self.angles.len() as f64 {
+            let residuals: Vec<f64> = kept.iter().map(|k| residual(&spline, *k)).collect();
+            let deviation = deviation(&residuals).max(FINEST * self.radii[kept[0]]);
+            let open = (0..kept.len()).filter(|k| residuals[*k] > OUTLIER * deviation && !cleared[kept[*k]]);
+            let Some(worst) = open.max_by(|a, b| residuals[*a].total_cmp(&residuals[*b])) else { break };
+            cleared[kept[worst]] = true;
+            let count = kept.len();
+            let group: Vec<usize> =
+                (0..=2 * ABREAST).map(|d| kept[(worst + count + d - ABREAST) % count]).collect();
+            let others: Vec<usize> = kept.iter().copied().filter(|k| !group.contains(k)).collect();
+            let without = self.fit(&others, knots.min(others.len()))?;
+            let missed: Vec<f64> = group.iter().map(|k| residual(&without, *k)).collect();
+            let scale = OUTLIER * deviation.max(self::deviation(&missed));
+            let odd: Vec<usize> =
+                group.iter().zip(missed).filter(|one| one.1 > scale).map(|one| *one.0).collect();
+            if !odd.is_empty() {
+                kept.retain(|k| !odd.contains(k));
+                found.extend(odd);
+                spline = self.fit(kept, knots.min(kept.len()))?;
+            }
+        }
+        Ok(found)
+    }
+
+    /// The spline whose distances between knots are at least half as wide as every gap, its number of knots and the error of its second
+    /// derivative.
     fn bridged(
         &self,
         kept: &[usize],
-        spline: Spline,
         advice: &Advice,
-        knots: usize,
+        best: usize,
     ) -> Result<(Spline, usize, f64), CamError> {
-        let best = advice.best().map_or(f64::NAN, |best| best.error());
-        let gap = |pair: &(usize, usize)| (self.angles[pair.1] - self.angles[pair.0]).rem_euclid(TAU);
-        let next = kept.iter().copied().zip(kept.iter().copied().cycle().skip(1));
-        let Some(widest) = next.max_by(|a, b| gap(a).total_cmp(&gap(b))) else {
-            return Ok((spline, knots, best));
+        let count = kept.len();
+        let step = |k: usize| (self.angles[kept[(k + 1) % count]] - self.angles[kept[k]]).rem_euclid(TAU);
+        // A gap in steps of its neighbours: knots lie as dense as points.
+        let width = |k: usize| {
+            let near = (1..=NEIGHBOURS).flat_map(|d| [(k + d) % count, (k + count - d) % count]);
+            step(k) / (near.map(step).sum::<f64>() / (2 * NEIGHBOURS) as f64)
         };
-        let most = (GAP * TAU / gap(&widest)) as usize;
-        if knots <= most {
-            return Ok((spline, knots, best));
+        let (widest, steps) = (0..count)
+            .map(|k| (k, width(k)))
+            .fold((0, 0.0), |most, one| if one.1 > most.1 { one } else { most });
+        let chosen = advice.estimates.iter().find(|one| one.knots == best);
+        let least = chosen.map_or(f64::NAN, Estimate::error);
+        let spline = self.fit(kept, best)?;
+        let most = (GAP * count as f64 / steps) as usize;
+        if best <= most {
+            return Ok((spline, best, least));
         }
         let largest = (0..PLACES).map(|k| spline.derivatives(TAU * k as f64 / PLACES as f64)[2].abs());
-        let allowed = (WORSE * best).max(SHARE * largest.fold(0.0, f64::max));
+        let allowed = (WORSE * least).max(SHARE * largest.fold(0.0, f64::max));
         let fewer = advice.estimates.iter().filter(|one| one.knots <= most);
         let fewer = fewer.min_by(|a, b| a.error().total_cmp(&b.error())).filter(|one| one.error() <= allowed);
         let Some(fewer) = fewer else {
             return Err(CamError::Value(
                 "measured profile",
                 format!(
-                    "no point lies between {:.2} and {:.2} deg, and details elsewhere are {:.2} deg wide\nhelp: measure there",
-                    self.angles[widest.0].to_degrees(),
-                    self.angles[widest.1].to_degrees(),
-                    360.0 / knots as f64
+                    "no point lies between {:.2} and {:.2} deg, and details elsewhere are {:.1} points wide\nhelp: measure there",
+                    self.angles[kept[widest]].to_degrees(),
+                    self.angles[kept[(widest + 1) % count]].to_degrees(),
+                    count as f64 / best as f64
                 ),
             ));
         };
-        let points = self.points(kept)?;
-        let spline = Spline::fit(&points.x, &points.y, Kind::PeriodicQuintic(TAU), Some(fewer.knots));
-        let spline = spline.map_err(|error| CamError::Value("measured profile", error.to_string()))?;
-        Ok((spline, fewer.knots, fewer.error()))
+        Ok((self.fit(kept, fewer.knots)?, fewer.knots, fewer.error()))
     }
+}
 
-    fn points(&self, kept: &[usize]) -> Result<Points, CamError> {
-        let columns = Columns::parse("rad, m").map_err(|why| CamError::Value("measured profile", why))?;
-        Ok(Points {
-            columns,
-            names: ["angle", "radius"].map(String::from),
-            x: kept.iter().map(|k| self.angles[*k]).collect(),
-            y: kept.iter().map(|k| self.radii[*k]).collect(),
-            lines: kept.iter().map(|k| k + 1).collect(),
-        })
-    }
+fn failed(error: mbs_runtime::driver::FitError) -> CamError {
+    CamError::Value("measured profile", format!("{error}: measure more points where they are few"))
+}
+
+/// Knots among points: as many points between each two of them.
+fn among(x: &[f64], count: usize) -> Vec<f64> {
+    (0..count).map(|k| x[k * x.len() / count]).collect()
+}
+
+/// Median of magnitudes over that of a normal distribution.
+fn deviation(magnitudes: &[f64]) -> f64 {
+    let mut sorted = magnitudes.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    sorted.get(sorted.len() / 2).map_or(0.0, |median| median / 0.6745)
 }
 
 /// Cam angle in [−π, π) at which the follower touches the contour at a polar angle, and its motion there.
@@ -260,102 +320,4 @@ fn touched(
 }
 
 #[cfg(test)]
-mod tests {
-    use super::super::follower::{Cam, Side};
-    use super::super::lift::Lift;
-    use super::*;
-
-    fn cam(follower: Follower, direction: Direction) -> Cam {
-        let height = if follower.lifts_by_angle() { 0.12 } else { 0.006 };
-        Cam::new(Lift::hump(&[2, 6, 8, 10, 12], height, 2.6).expect("a law"), follower, direction)
-            .expect("a cam")
-    }
-
-    fn followers() -> [Follower; 4] {
-        let pivot = [0.06, 0.01];
-        [
-            Follower::Flat { base: 0.03 },
-            Follower::Roller { base: 0.03, radius: 0.01, offset: 0.004 },
-            Follower::OscillatingFlat { base: 0.03, pivot, face: 0.004, side: Side::Left },
-            Follower::OscillatingRoller { base: 0.03, pivot, arm: 0.055, radius: 0.01, side: Side::Right },
-        ]
-    }
-
-    /// Points at unequal angles with noise, of the contour itself.
-    fn measured(cam: &Cam, count: usize, noise: f64, leave: impl Fn(f64) -> bool) -> Vec<[f64; 2]> {
-        let mut state = 5_u64;
-        let mut uniform = move || {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
-        };
-        let mut points = Vec::new();
-        for k in 0..count {
-            let place = cam.place(-3.1 + TAU * (k as f64 + 0.3 * uniform()) / count as f64);
-            let r = place.polar[0] + noise * uniform();
-            if !leave(place.polar[1]) {
-                points.push([r * place.polar[1].cos(), r * place.polar[1].sin()]);
-            }
-        }
-        points
-    }
-
-    /// Flat face and roller, in one sense each: the law comes back, within its noise of 1 µm.
-    #[test]
-    fn the_law_is_recovered_from_its_own_profile() {
-        let (ccw, cw) = (Direction::CounterClockwise, Direction::Clockwise);
-        for (follower, direction) in followers().into_iter().zip([ccw, cw]) {
-            {
-                let cam = cam(follower, direction);
-                let size = if follower.lifts_by_angle() { 0.12 } else { 0.006 };
-                let found = Profile::cartesian(&measured(&cam, 720, 4e-6, |_| false)).expect("points");
-                let found = found.motion(&follower, direction).expect("a motion");
-                for (theta, motion) in &found.motion {
-                    let exact = cam.lift.jet(*theta);
-                    assert!(
-                        (motion[0] - exact[0]).abs() < 3e-3 * size,
-                        "{follower:?} {theta}: {motion:?} {exact:?}"
-                    );
-                    assert!(
-                        (motion[2] - exact[2]).abs() < 0.6 * size,
-                        "{follower:?} {theta}: {motion:?} {exact:?}"
-                    );
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn noise_and_outliers_cost_what_is_estimated() {
-        let follower = followers()[0];
-        let cam = cam(follower, Direction::CounterClockwise);
-        let mut points = measured(&cam, 720, 4e-6, |_| false);
-        for k in [50, 300, 301, 600] {
-            points[k] = points[k].map(|x| x * 1.004);
-        }
-        let found = Profile::cartesian(&points)
-            .expect("points")
-            .motion(&follower, Direction::CounterClockwise)
-            .expect("a motion");
-        assert_eq!(found.outliers.len(), 4, "{:?}", found.outliers);
-        assert!((found.deviation / (4e-6 / 12_f64.sqrt()) - 1.0).abs() < 0.2, "{}", found.deviation);
-        let squares: f64 =
-            found.motion.iter().map(|(theta, m)| (m[2] - cam.lift.jet(*theta)[2]).powi(2)).sum();
-        let error = (squares / found.motion.len() as f64).sqrt();
-        assert!((0.4..2.5).contains(&(error / found.second_error)), "{error} {}", found.second_error);
-    }
-
-    #[test]
-    fn a_gap_is_refused_with_its_place() {
-        let follower = followers()[1];
-        let cam = cam(follower, Direction::CounterClockwise);
-        let points = measured(&cam, 360, 1e-7, |angle| (1.2..1.7).contains(&angle));
-        let refused =
-            Profile::cartesian(&points).expect("points").motion(&follower, Direction::CounterClockwise);
-        let message = refused.expect_err("a gap").to_string();
-        assert!(
-            message.contains("no point lies between 6") || message.contains("where they are few"),
-            "{message}"
-        );
-        assert!(Profile::polar(&[[0.0, 1.0]; 30]).is_err() && Profile::polar(&[[0.0, 1.0]]).is_err());
-    }
-}
+mod tests;

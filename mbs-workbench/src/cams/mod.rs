@@ -9,12 +9,14 @@
 use core::error::Error;
 use core::fmt;
 
+pub mod bspline;
 pub mod files;
 pub mod follower;
 pub mod jet;
 pub mod lift;
 pub mod limits;
 pub mod measured;
+pub mod noise;
 pub mod page;
 mod search;
 pub mod shapes;

@@ -5,6 +5,7 @@ use serde_json::{Value, json};
 use super::files::turn;
 use super::follower::{Cam, Follower};
 use super::limits::{Limits, Verdict};
+use super::noise::{KNOTS, Row, Study};
 use crate::output::page::Template;
 
 /// Places of a curve.
@@ -46,6 +47,17 @@ pub fn data(
             "name": one.limit.name(), "value": finite(one.value), "bound": one.limit.bound(), "angle": one.angle, "kept": one.kept,
             "least": one.limit.is_least(),
         })).collect::<Vec<_>>(),
+    })
+}
+
+/// Data of a study of noise in SI.
+pub fn noise(study: &Study) -> Value {
+    let column = |of: &dyn Fn(&Row) -> Option<f64>| study.rows.iter().map(of).collect::<Vec<_>>();
+    let fitted = (0..KNOTS.len()).map(|k| column(&|row| row.fitted[k])).collect::<Vec<_>>();
+    json!({
+        "width": study.width, "largest": study.largest, "knots": KNOTS,
+        "points": study.rows.iter().map(|row| row.points).collect::<Vec<_>>(),
+        "through": column(&|row| Some(row.through)), "expected": column(&|row| Some(row.expected)), "fitted": fitted,
     })
 }
 

@@ -15,7 +15,7 @@ use crate::cams::files::{csv, dxf, rust, svg, turn};
 use crate::cams::follower::{Cam, Direction, Follower};
 use crate::cams::limits::{Least, Size, Verdict, examine, least_size};
 use crate::cams::measured::Profile;
-use crate::cams::page;
+use crate::cams::{noise, page};
 use crate::output::origin::Origin;
 use crate::tables::read_unordered;
 use crate::target_directory::target_directory;
@@ -77,7 +77,10 @@ pub fn run(arguments: &Arguments, out: &mut Output) -> Result<(), CommandError> 
     let words: Vec<String> = std::env::args().skip(1).filter(|word| word != "--json").collect();
     let quoted = |word: &String| if word.contains(' ') { format!("'{word}'") } else { word.clone() };
     let command = format!("mbs {}", words.iter().map(quoted).collect::<Vec<_>>().join(" "));
-    let data = page::data(&format!("Cam {name}"), &sentence, &command, &cam, &limits, &verdicts);
+    let mut data = page::data(&format!("Cam {name}"), &sentence, &command, &cam, &limits, &verdicts);
+    let noise = arguments.noise()?.map(|width| noise::study(&cam.lift, width)).transpose();
+    let noise = noise.map_err(|error| CommandError::Failed(error.to_string()))?;
+    data["noise"] = noise.as_ref().map(page::noise).into();
     let files = [
         ("page", "cam.html", page::html(&data, &origin.line())),
         ("profile", "profile.csv", origin.csv(&csv(&places, cam.follower.lifts_by_angle()))),
@@ -91,6 +94,10 @@ pub fn run(arguments: &Arguments, out: &mut Output) -> Result<(), CommandError> 
     }
     describe(out, &cam, &verdicts, least.as_ref(), &sentence);
     print(out, &cam, &verdicts, &sentence)?;
+    if let Some(study) = &noise {
+        out.put("noise", page::noise(study));
+        print_noise(out, study, cam.follower.lifts_by_angle())?;
+    }
     writeln!(out, "files        {}: cam.html, profile.csv, profile.dxf, profile.svg", directory.display())?;
     Ok(())
 }
@@ -146,6 +153,35 @@ fn recover(
         writeln!(out, "{name:<13}{low:.4} to {high:.4} {unit}{}", ["", "/rad", "/rad^2"][order])?;
     }
     writeln!(out, "file         {}", path.display())?;
+    Ok(())
+}
+
+/// Noise of the acceleration against points and knots.
+fn print_noise(out: &mut Output, study: &noise::Study, by_angle: bool) -> Result<(), CommandError> {
+    let (factor, unit) = if by_angle { (1_f64.to_degrees(), "deg") } else { (1e3, "mm") };
+    writeln!(
+        out,
+        "noise of the acceleration of a table of the lift with uniform noise of {:.2e} {unit}, over 8 seeds ({unit}/rad^2)",
+        factor * study.width
+    )?;
+    let heads: String =
+        noise::KNOTS.iter().map(|knots| format!("{:>12}", format!("{knots} knots"))).collect();
+    writeln!(out, "{:>8}{:>14}{:>14}{heads}", "points", "through all", "√3 q N²/4π²")?;
+    for row in &study.rows {
+        let cells: String = row
+            .fitted
+            .iter()
+            .map(|cell| cell.map_or("-".to_string(), |error| format!("{:.4}", factor * error)))
+            .map(|cell| format!("{cell:>12}"))
+            .collect();
+        writeln!(
+            out,
+            "{:>8}{:>14.4}{:>14.4}{cells}",
+            row.points,
+            factor * row.through,
+            factor * row.expected
+        )?;
+    }
     Ok(())
 }
 

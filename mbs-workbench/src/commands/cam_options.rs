@@ -8,6 +8,7 @@ use mbs_codegen::quantity;
 
 use super::CommandError;
 use crate::cams::CamError;
+use crate::cams::bspline::text;
 use crate::cams::follower::{Follower, Side};
 use crate::cams::lift::{FLANKS, Lift};
 use crate::cams::limits::{Limits, Load};
@@ -54,8 +55,8 @@ pub enum Sizes {
 /// Options of `mbs cam`.
 #[derive(Args)]
 pub struct Arguments {
-    /// Law: `even:2,6,8,10,12`, `345`, `4567`, `cycloid`, `modified-sine`, `modified-trapezoid`, `harmonic`, `constant-velocity`; or a
-    /// table of the lift over one turn as CSV
+    /// Law: `even:2,6,8,10,12`, `345`, `4567`, `cycloid`, `modified-sine`, `modified-trapezoid`, `harmonic`, `constant-velocity`;
+    /// `bspline:FILE` or `bspline:degree 5; knots …; at …`; or a table of the lift over one turn as CSV
     pub law: String,
     /// Kind of follower
     #[arg(long, value_enum)]
@@ -114,6 +115,9 @@ pub struct Arguments {
     /// Sense of the cam's rotation
     #[arg(long, value_enum, default_value = "ccw")]
     pub direction: Sense,
+    /// Noise of a table of the lift, its whole width: tell that of the acceleration against points and knots
+    #[arg(long, value_name = "1um", conflicts_with_all = ["measured", "rust"])]
+    noise: Option<String>,
     /// Find the least radius that keeps all limits
     #[arg(long, value_enum)]
     pub least: Option<Sizes>,
@@ -231,6 +235,16 @@ impl Arguments {
         })
     }
 
+    /// Width of the noise in a table of the lift.
+    pub fn noise(&self) -> Result<Option<f64>, CommandError> {
+        let read = |text: &String| if self.turns() { angle(text) } else { length(text) };
+        let width = self.noise.as_ref().map(read).transpose();
+        match width.map_err(|why| usage(format!("`--noise`: {why}")))? {
+            Some(width) if width <= 0.0 => Err(usage("`--noise` is a width above 0")),
+            width => Ok(width),
+        }
+    }
+
     pub fn law(&self) -> Result<(Lift, Vec<u8>), CommandError> {
         let needed = |value: Option<f64>, option: &str| {
             value.ok_or_else(|| usage(format!("the law `{}` needs `{option}`", self.law)))
@@ -247,6 +261,8 @@ impl Arguments {
                 self.height()?,
                 [rise, self.dwell.unwrap_or(0.0), self.back.unwrap_or(rise)],
             )?
+        } else if let Some(text) = self.law.strip_prefix("bspline:") {
+            Lift::bspline(text::parse(&self.bspline(text)?, self.turns())?)?
         } else {
             return self.table();
         };
@@ -264,6 +280,21 @@ impl Arguments {
             }
         };
         Ok((self.corrected(lift)?, self.law.clone().into_bytes()))
+    }
+
+    /// The text of a B-spline law, of the command line or in a file.
+    fn bspline(&self, text: &str) -> Result<String, CommandError> {
+        if self.lift.is_some() {
+            return Err(usage("the constraints of a B-spline have its lift\nhelp: leave out `--lift`"));
+        }
+        if text.contains([';', ' ']) {
+            return Ok(text.to_string());
+        }
+        let named = |why: String| CommandError::Failed(format!("{text}: {why}"));
+        fs::read_to_string(text).map_err(|error| {
+            let help = "help: name a file, or write the law itself as `bspline:degree 5; knots …; at …`";
+            named(format!("cannot be read: {error}\n{help}"))
+        })
     }
 
     fn corrected(&self, lift: Lift) -> Result<Lift, CommandError> {

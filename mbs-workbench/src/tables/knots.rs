@@ -8,7 +8,7 @@
 use mbs_runtime::driver::FitError;
 
 use super::Points;
-use super::spline::{Kind, Spline};
+use super::spline::{Kind, Spline, even};
 
 /// Points a knot of the fits that are compared.
 const SHARES: [f64; 10] = [2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 12.0, 16.0, 24.0];
@@ -74,18 +74,30 @@ impl Advice {
     /// # Errors
     /// [`FitError`], as the fits themselves.
     pub fn of(points: &Points, kind: Kind) -> Result<Option<Self>, FitError> {
-        let (x, y) = (&points.x, &points.y);
+        Self::with(&points.x, &points.y, kind, |count| even(&points.x, kind, count))
+    }
+
+    /// Estimates for points whose knots `places` tells by their number.
+    ///
+    /// # Errors
+    /// [`FitError`], as the fits themselves.
+    pub fn with(
+        x: &[f64],
+        y: &[f64],
+        kind: Kind,
+        places: impl Fn(usize) -> Vec<f64>,
+    ) -> Result<Option<Self>, FitError> {
         let count = |share: f64| (x.len() as f64 / share) as usize;
         if count(SHARES[0]) < FEWEST {
             return Ok(None);
         }
         let mut fits: Vec<Fit> = Vec::new();
         for knots in SHARES.map(count).into_iter().filter(|knots| *knots >= FEWEST) {
-            let fit = Spline::fit(x, y, kind, Some(knots))?;
+            let fit = Spline::along(x, y, kind, places(knots))?;
             let [first, last] = fit.range();
-            let places = PLACES * x.len();
-            let place = |k: usize| first + (last - first) * (k as f64 + 0.5) / places as f64;
-            let second = (0..places).map(|k| fit.derivatives(place(k))[2]).collect();
+            let samples = PLACES * x.len();
+            let place = |k: usize| first + (last - first) * (k as f64 + 0.5) / samples as f64;
+            let second = (0..samples).map(|k| fit.derivatives(place(k))[2]).collect();
             let (_, mean, _) = fit.residual(x, y);
             let variance = mean * mean * x.len() as f64 / (x.len() - knots) as f64;
             fits.push(Fit { knots, gain: fit.noise_gain(x, kind)?, second, variance });

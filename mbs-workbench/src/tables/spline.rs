@@ -52,7 +52,11 @@ impl Spline {
         Self::along(x, y, kind, knots)
     }
 
-    fn along(x: &[f64], y: &[f64], kind: Kind, knots: Vec<f64>) -> Result<Self, FitError> {
+    /// Along the points with these knots.
+    ///
+    /// # Errors
+    /// [`FitError`], with the point or the knot.
+    pub fn along(x: &[f64], y: &[f64], kind: Kind, knots: Vec<f64>) -> Result<Self, FitError> {
         let count = knots.len();
         let pieces = match kind {
             Kind::Cubic(ends) => {
@@ -147,7 +151,7 @@ fn sign(state: &mut u64) -> f64 {
 }
 
 /// Knots from the first point on, evenly to the last one or around the period.
-fn even(x: &[f64], kind: Kind, count: usize) -> Vec<f64> {
+pub(super) fn even(x: &[f64], kind: Kind, count: usize) -> Vec<f64> {
     let (Some(first), Some(last)) = (x.first(), x.last()) else { return Vec::new() };
     match kind {
         Kind::PeriodicQuintic(period) => {

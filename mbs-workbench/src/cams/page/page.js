@@ -83,8 +83,8 @@ for (const [name, unit, values, factor, limits = []] of CHARTS) {
 }
 
 const table = byId("limits");
-const row = (cells, tag) => {
-  const line = table.insertRow();
+const row = (cells, tag, into = table) => {
+  const line = into.insertRow();
   cells.forEach((cell) => { const made = document.createElement(tag); made.textContent = cell; line.append(made); });
   return line;
 };
@@ -157,3 +157,50 @@ slider.oninput = () => { running = false; play.textContent = "play"; show(Number
 /* The page opens at the largest lift of the flank. */
 slider.value = DATA.lift[1].indexOf(Math.max(...DATA.lift[1]));
 show(Number(slider.value));
+
+/* Noise of the acceleration of a table of the lift, in double logarithmic scale. */
+if (DATA.noise) {
+  const N = DATA.noise, unit = `${per}/rad²`;
+  const panel = document.createElement("section");
+  panel.className = "panel wide";
+  panel.innerHTML = "<h2></h2><p></p><div class='pair'><div></div><div class='scroll'><table></table></div></div>";
+  panel.children[0].textContent = `Noise of the acceleration of a table of the lift (${unit})`;
+  panel.children[1].textContent = `Uniform noise with a width of ${short(N.width * lift)} ${per} in the lift, root mean square over 8 seeds. A cubic spline through all points has √3 q N²/(2π)²; quintic fits with fewer knots keep most of it out.`;
+  byId("charts").append(panel);
+  const lines = [["through all", N.through, "line0"], ["√3 q N²/(2π)²", N.expected, "line0 dashed"]];
+  N.knots.forEach((knots, k) => lines.push([`${knots} knots`, N.fitted[k], `line${k + 1}`]));
+  const [width, height, left, right, top, bottom] = [560, 300, 62, 92, 12, 34];
+  const holder = panel.children[2];
+  const drawing = make("svg", { viewBox: `0 0 ${width} ${height}`, role: "img" }, holder.children[0]);
+  make("title", {}, drawing).textContent = "noise of the acceleration over the number of points";
+  const known = lines.flatMap(([, values]) => values).filter((value) => value > 0).map((value) => Math.log10(value * lift));
+  const [low, high] = [Math.floor(Math.min(...known)), Math.ceil(Math.max(...known))];
+  const first = Math.log2(N.points[0]), last = Math.log2(N.points[N.points.length - 1]);
+  const x = (points) => left + (Math.log2(points) - first) / (last - first) * (width - left - right);
+  const y = (value) => height - bottom - (Math.log10(value * lift) - low) / (high - low) * (height - top - bottom);
+  for (const points of N.points) {
+    make("path", { class: "grid", d: `M${x(points)} ${top}V${height - bottom}` }, drawing);
+    make("text", { x: x(points), y: height - bottom + 16, "text-anchor": "middle" }, drawing).textContent = points;
+  }
+  make("text", { x: (left + width - right) / 2, y: height - 3, "text-anchor": "middle" }, drawing).textContent = "points a turn";
+  for (let power = low; power <= high; power++) {
+    const at = y(10 ** power / lift);
+    make("path", { class: "grid", d: `M${left} ${at}H${width - right}` }, drawing);
+    make("text", { x: left - 6, y: at + 4, "text-anchor": "end" }, drawing).textContent = short(10 ** power);
+  }
+  let free = Infinity;
+  const ends = lines.map(([name, values, style]) => [name, values[values.length - 1], style]).filter(([name]) => !name.startsWith("√"));
+  for (const [, values, style] of lines) {
+    const known = N.points.map((points, k) => [points, values[k]]).filter(([, value]) => value > 0);
+    make("path", { class: `noise ${style}`, d: `M${known.map(([points, value]) => `${x(points).toFixed(1)} ${y(value).toFixed(1)}`).join("L")}` }, drawing);
+    if (!style.includes("dashed")) known.forEach(([points, value]) => make("circle", { class: `noise ${style} spot`, cx: x(points), cy: y(value), r: 3 }, drawing));
+  }
+  /* Names at the ends, the lowest first, one line apart. */
+  ends.sort((a, b) => a[1] - b[1]).forEach(([name, value]) => {
+    free = Math.min(free - 13, y(value) + 4);
+    make("text", { x: width - right + 8, y: free }, drawing).textContent = name;
+  });
+  const noiseTable = holder.children[1].firstChild;
+  row(["points", ...lines.map(([name]) => name)], "th", noiseTable);
+  N.points.forEach((points, k) => row([points, ...lines.map(([, values]) => values[k] === null ? "" : short(values[k] * lift))], "td", noiseTable));
+}
