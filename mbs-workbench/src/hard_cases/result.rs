@@ -319,9 +319,9 @@ impl MatrixResult {
     pub fn document(&self) -> serde_json::Value {
         let mut value = serde_json::to_value(self.data()).expect("plain data has a JSON form");
         for outcome in value["outcomes"].as_array_mut().into_iter().flatten() {
-            outcome
-                .as_object_mut()
-                .map(|fields| fields.retain(|name, _| name != "course" && name != "place"));
+            if let Some(fields) = outcome.as_object_mut() {
+                fields.retain(|name, _| name != "course" && name != "place");
+            }
         }
         value
     }

@@ -75,9 +75,12 @@ fn drives_turn_little<R: Real, const M: usize>(open: [&[R; M]; 4], probed: &[R; 
     way <= positions::ROUNDED_MOVEMENT.of() || beyond <= R::constant(LARGEST_TURN) * way
 }
 
+/// Stations at the thirds of a piece.
+type Thirds<S, R, const N: usize, const M: usize> = [Station<S, R, N, M>; 3];
+
 impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Walk<'_, '_, S, R, N, M> {
     /// dq/dσ at a spot, by a one-sided difference quotient over `length`, and the stations that it was taken at.
-    pub(super) fn slope(&mut self, at: &Spot<S, R, N, M>, length: R) -> ([R; N], [Station<S, R, N, M>; 3]) {
+    pub(super) fn slope(&mut self, at: &Spot<S, R, N, M>, length: R) -> ([R; N], Thirds<S, R, N, M>) {
         let (slope, stations, _) = self.slope_and_openings(at, length);
         (slope, stations)
     }
@@ -87,7 +90,7 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Walk<'_, '_
         &mut self,
         at: &Spot<S, R, N, M>,
         length: R,
-    ) -> ([R; N], [Station<S, R, N, M>; 3], [[R; M]; 3]) {
+    ) -> ([R; N], Thirds<S, R, N, M>, [[R; M]; 3]) {
         let third = R::constant(THIRD) * length;
         let stations = [third, third + third, length].map(|ahead| self.station(at.share + ahead));
         let [one, two, three] = stations.each_ref().map(|station| self.residuals(station, &at.q));
