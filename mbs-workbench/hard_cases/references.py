@@ -160,6 +160,34 @@ def two_scales():
     return integrated(f, [0.5, 0.5, 0.0, 0.0], 1.0)
 
 
+def press():
+    """Angle and speed of the crank after 0.2 s: the force S of the rod and the sign of the guide's force N solve two linear equations."""
+    r, rod, inertia, mass, torque, mu, slow = 0.05, 0.06, 2e-3, 0.4, 0.3, 0.3, 0.02
+
+    def f(t, y):
+        a, w = y
+        sine = -r * np.sin(a) / rod
+        cosine = np.sqrt(1 - sine**2)
+        turn = -r * np.cos(a) * w / (rod * cosine)
+        speed = -r * np.sin(a) * w - rod * sine * turn
+        # x'' = gain a'' + rest from both rows differentiated twice.
+        gain = -r * np.sin(a) + r * np.cos(a) * sine / cosine
+        bend = (r * np.sin(a) * w**2 + rod * sine * turn**2) / (rod * cosine)
+        rest = -r * np.cos(a) * w**2 - rod * cosine * turn**2 - rod * sine * bend
+        arm = r * (sine * np.cos(a) - cosine * np.sin(a))
+        found = []
+        for sign in (1.0, -1.0):
+            rub = mu * np.tanh(speed / slow) * sign
+            # S cos ψ − rub (m g − S sin ψ) = m (gain (τ − S arm)/I + rest)
+            force = (mass * (gain * torque / inertia + rest) + rub * mass * G) / (cosine + rub * sine + mass * gain * arm / inertia)
+            if sign * (mass * G - force * sine) >= 0:
+                found.append(force)
+        assert found and max(found) - min(found) < 1e-9 * (1 + abs(found[0])), (t, found)
+        return [w, (torque - found[0] * arm) / inertia]
+
+    return solve_ivp(f, (0.0, 0.2), [0.3, 40.0], method="DOP853", rtol=1e-12, atol=1e-13, max_step=1e-4).y[:, -1]
+
+
 if __name__ == "__main__":
-    for case in (parallelogram, stiff_and_soft, massless_rod, sleeping_top, roof, friction_limit, stick_slip, two_scales, bouncing_ball, light_cart):
+    for case in (press, parallelogram, stiff_and_soft, massless_rod, sleeping_top, roof, friction_limit, stick_slip, two_scales, bouncing_ball, light_cart):
         print(case.__name__, case(), flush=True)

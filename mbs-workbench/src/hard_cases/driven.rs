@@ -8,7 +8,7 @@ use crate::hard_cases::oracle::{Oracle, State};
 use crate::hard_cases::similar::{compared, in_other_size, in_size};
 use crate::hard_cases::study::{Clock, Extent};
 use crate::hard_cases::variation::{Class, Subject, Variation};
-use crate::hard_cases::verdict::{Outcome, Verdict};
+use crate::hard_cases::verdict::{Outcome, Verdict, larger};
 use crate::setting::{Closing, Numbers};
 
 /// Steps over the span, and how many finer ones tell if the assembly is the same.
@@ -193,7 +193,7 @@ fn outcome(
             pairs.flat_map(|(a, b)| a.motion[0].iter().zip(&b.motion[0]).zip(scales).zip(oracle.turns()));
         pairs
             .map(|(((a, b), scale), turns)| ((if *turns { less_turns(a - b) } else { a - b }) / scale).abs())
-            .fold(0.0, |a: f64, b| if b.is_nan() { b } else { a.max(b) })
+            .fold(0.0, larger)
     });
     outcome.error = apart;
     if let Err((reason, _)) = fine {

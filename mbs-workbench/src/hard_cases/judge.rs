@@ -6,6 +6,7 @@ use crate::erased::timed_runs::Seen;
 use crate::erased::timed_steps::Placed;
 use crate::hard_cases::oracle::{Gap, Oracle, State};
 use crate::hard_cases::variation::Random;
+use crate::hard_cases::verdict::larger;
 
 /// Instants of a run at which the text is interpreted.
 const LOOKS: usize = 16;
@@ -57,7 +58,7 @@ fn digits(value: f64) -> String {
 /// Largest magnitude over the scales; NaN stays.
 fn extent(values: &[f64], scales: &[f64]) -> f64 {
     let parts = values.iter().zip(scales).map(|(value, scale)| (value / scale).abs());
-    parts.fold(0.0, |a: f64, b| if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) })
+    parts.fold(0.0, larger)
 }
 
 /// `true` where a value is above its bound, or none.

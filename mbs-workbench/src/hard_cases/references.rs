@@ -5,6 +5,7 @@ use mbs_runtime::Failure;
 use crate::erased::timed_runs::{Effort, Seen};
 use crate::erased::variations::{Change, MovedVariants};
 use crate::hard_cases::oracle::Oracle;
+use crate::hard_cases::verdict::larger;
 use crate::setting::{FormulationName, ImplicitName, IntegratorName, MotionMethod, Numbers, Resolution};
 
 /// Intervals between the instants of a run.
@@ -84,9 +85,7 @@ pub fn apart(a: &[Seen], b: &[Seen], scales: &[f64]) -> f64 {
     let stride = (many.len().saturating_sub(1) / few.len().saturating_sub(1).max(1)).max(1);
     let pairs = few.iter().zip(many.iter().step_by(stride));
     let pairs = pairs.flat_map(|(a, b)| a.q.iter().zip(&b.q).zip(scales));
-    pairs
-        .map(|((a, b), scale)| ((a - b) / scale).abs())
-        .fold(0.0, |a: f64, b| if b.is_nan() { b } else { a.max(b) })
+    pairs.map(|((a, b), scale)| ((a - b) / scale).abs()).fold(0.0, larger)
 }
 
 /// Whole steps between instants: a factor changes the number of instants, not the steps between them.

@@ -3,7 +3,7 @@
 use crate::erased::timed_runs::Seen;
 use crate::hard_cases::judge::exceeds;
 use crate::hard_cases::variation::{Subject, Variation};
-use crate::hard_cases::verdict::{Outcome, Verdict};
+use crate::hard_cases::verdict::{Outcome, Verdict, larger};
 
 /// Largest difference of a similar run, in the reference metric of the mechanism itself.
 const SAME: f64 = 1e-10;
@@ -31,9 +31,7 @@ pub fn compared(
     scales: &[f64],
 ) -> Outcome {
     let pairs = other.iter().zip(own).flat_map(|(a, b)| a.iter().zip(b).zip(scales));
-    let apart = pairs
-        .map(|((a, b), scale)| ((a - b) / scale).abs())
-        .fold(0.0, |a: f64, b| if b.is_nan() { b } else { a.max(b) });
+    let apart = pairs.map(|((a, b), scale)| ((a - b) / scale).abs()).fold(0.0, larger);
     let (error, bound) = (Some(apart), Some(SAME));
     let outcome = Outcome { error, bound, work, ..outcome };
     if other.len() != own.len() || exceeds(apart, SAME) {

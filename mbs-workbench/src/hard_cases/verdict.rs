@@ -134,6 +134,11 @@ impl Cell {
     }
 }
 
+/// The larger of two errors; NaN stays, so that no later number hides it.
+pub(super) fn larger(a: f64, b: f64) -> f64 {
+    if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -162,9 +162,10 @@ fn distances<R: Real>() -> impl Iterator<Item = f64> {
     (1..=32).map(|k| 0.005 * f64::from(k)).filter(move |d| least < *d)
 }
 
-/// Error that a position at a distance `d` from a change point may have.
+/// Error that a position at a distance `d` from a change point may have: open rows within their tolerance of 64 roundings, and the rounding
+/// of the coordinates, over the margin.
 fn allowed<R: Real>(d: f64) -> f64 {
-    64.0 * R::EPSILON.to_f64() / d
+    96.0 * R::EPSILON.to_f64() / d
 }
 
 /// Positions behind the change point, taken by `step`; returns the number of steps refused.

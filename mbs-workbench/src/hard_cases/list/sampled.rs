@@ -10,7 +10,7 @@ use crate::hard_cases::list::stored::Miss;
 use crate::hard_cases::oracle::{Gap, Oracle, State};
 use crate::hard_cases::study::Extent;
 use crate::hard_cases::variation::{Class, Random, Subject, Variation};
-use crate::hard_cases::verdict::{Outcome, Verdict};
+use crate::hard_cases::verdict::{Outcome, Verdict, larger};
 use crate::setting::Numbers;
 
 /// A case with an encoder.
@@ -100,7 +100,7 @@ impl Encoder<'_> {
         let known = self.case.worst(core::slice::from_ref(state), oracle, class)?;
         let known = known.map_or(0.0, |Miss { error, .. }| error);
         let rows = oracle.rows(state)?.into_iter().map(|row| row.phi.unwrap_or(0.0).abs());
-        Ok(rows.fold(known, |a: f64, b| if b.is_nan() { b } else { a.max(b) }))
+        Ok(rows.fold(known, larger))
     }
 
     /// Time stamps (s) and angles (rad) of the samples of a variant.

@@ -6,7 +6,7 @@ use crate::double_double::DoubleDouble;
 use crate::hard_cases::list::description::{Description, Kind, Known, When};
 use crate::hard_cases::oracle::{Gap, Oracle, Quantity, State};
 use crate::hard_cases::variation::{Class, Variation};
-use crate::hard_cases::verdict::{Outcome, Verdict};
+use crate::hard_cases::verdict::{Outcome, Verdict, larger};
 
 /// Name of the change of the energy among the known values.
 const ENERGY: &str = "energy";
@@ -117,6 +117,6 @@ impl Known {
             None => [0.0; 2],
         };
         let all = [value - self.is, rates[0], rates[1]].map(|part| part.abs() / self.size);
-        all.into_iter().fold(0.0, |a: f64, b| if b.is_nan() { b } else { a.max(b) })
+        all.into_iter().fold(0.0, larger)
     }
 }
