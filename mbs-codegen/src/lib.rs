@@ -55,6 +55,7 @@ pub use model::quantity::{Quantity, quantity};
 use model::scene::Scene;
 use model::scenes::Scenes;
 pub use outline::declarations::Declaration;
+pub use outline::effects::{EffectGroups, effects, statement as scene_statement};
 pub use outline::{Call, Outline, Variable, calls};
 pub use picture::picture;
 use proc_macro2::TokenStream;
@@ -214,6 +215,19 @@ pub fn warnings(source: &str) -> Result<Vec<Fault>, Vec<Fault>> {
 /// As [`casadi_definition`].
 pub fn variables(source: &str, scene: Option<&str>) -> Result<Vec<Variable>, String> {
     in_scene(source, scene, |_, scene| Ok(outline::variables(&scene.model)))
+}
+
+/// Outputs of a scene (without a name the whole text) of a text that is kept as a string, those that depend on multipliers last: name,
+/// with the component's number for arrays, and unit.
+///
+/// # Errors
+/// As [`casadi_definition`].
+pub fn outputs(source: &str, scene: Option<&str>) -> Result<Vec<[String; 2]>, String> {
+    in_scene(source, scene, |_, scene| {
+        let loads = scene.model.dynamics.iter().flat_map(|dynamics| &dynamics.loads);
+        let all = scene.model.outputs.iter().chain(loads);
+        Ok(all.map(|output| [output.name.clone(), output.unit.clone()]).collect())
+    })
 }
 
 /// Names of a scene (without a name the whole text) of a text that is kept as a string, with the statements that declare them; a row

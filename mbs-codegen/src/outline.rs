@@ -1,6 +1,7 @@
 //! Names of a text, and the texts of a Rust source: for programs that choose among texts and scenes.
 
 pub mod declarations;
+pub mod effects;
 pub mod warnings;
 
 use core::ops::Range;

@@ -37,6 +37,8 @@ const TEXTS: [(&str, &str); 4] = [
 
 /// Items of the implementations for one type, by trait and name, without the parts that may differ.
 struct Found<'a> {
+    /// Traits whose implementations are looked at.
+    traits: &'a [&'a str],
     scene: Option<&'a str>,
     items: BTreeMap<String, String>,
 }
@@ -49,7 +51,7 @@ impl Visit<'_> for Found<'_> {
             return visit_item_impl(self, block);
         };
         let name = path.segments.last().expect("a trait").ident.to_string();
-        if !["Mechanism", "Kinematic"].contains(&name.as_str()) {
+        if !self.traits.contains(&name.as_str()) {
             return;
         }
         for item in &block.items {
@@ -69,7 +71,7 @@ impl Visit<'_> for Found<'_> {
 
 fn items(text: &str, scene: Option<&str>) -> BTreeMap<String, String> {
     let tokens = mbs_codegen::expand_source(text).unwrap_or_else(|faults| panic!("{text}\n{faults}"));
-    let mut found = Found { scene, items: BTreeMap::new() };
+    let mut found = Found { traits: &["Mechanism", "Kinematic"], scene, items: BTreeMap::new() };
     found.visit_file(&syn::parse2(tokens).expect("Rust"));
     assert!(found.items.len() > 25, "{:?}", found.items.keys());
     found.items
@@ -102,6 +104,53 @@ fn a_scene_without_an_effect_computes_what_the_text_without_it_computes() {
             }
         }
     }
+}
+
+/// The text of a ready mechanism with eight effects: masses, forces, friction on multipliers, springs.
+fn engine() -> String {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../mechanisms/src/slider_crank_engine.rs");
+    let source = std::fs::read_to_string(path).expect("the file of the engine");
+    let calls = mbs_codegen::calls(&source).expect("Rust");
+    calls.into_iter().next().expect("a mechanism").source
+}
+
+/// Items of the implementations for each of `scenes`, those of masses and forces included.
+fn dynamic_items(text: &str, scenes: &[Option<&str>]) -> Vec<BTreeMap<String, String>> {
+    let tokens = mbs_codegen::expand_source(text).unwrap_or_else(|faults| panic!("{faults}"));
+    let file = syn::parse2(tokens).expect("Rust");
+    let of = |scene: &Option<&str>| {
+        let traits = &["Mechanism", "Dynamic", "Partitioned"];
+        let mut found = Found { traits, scene: *scene, items: BTreeMap::new() };
+        found.visit_file(&file);
+        assert!(found.items.len() > 50, "{:?}", found.items.keys());
+        found.items
+    };
+    scenes.iter().map(of).collect()
+}
+
+#[test]
+fn scenes_of_the_engine_are_the_texts_in_which_their_other_effects_were_never_written() {
+    let text = engine();
+    let groups = mbs_codegen::effects(&text);
+    assert_eq!(groups.effects.len(), 8);
+    let others = |left_out: &String| -> Vec<String> {
+        groups.effects.iter().filter(|name| *name != left_out).cloned().collect()
+    };
+    let scenes: Vec<(String, Vec<String>)> =
+        groups.effects.iter().map(|name| (format!("Without_{name}"), others(name))).collect();
+    let copy = groups.with_scenes(&text, &groups.effects, &scenes);
+    let names: Vec<Option<&str>> = scenes.iter().map(|(name, _)| Some(name.as_str())).collect();
+    let found = dynamic_items(&copy, &names);
+    for (left_out, without) in groups.effects.iter().zip(&found) {
+        let never_written =
+            dynamic_items(&groups.with_scenes(&text, &others(left_out), &[]), &[None]).remove(0);
+        assert_eq!(without.len(), never_written.len(), "{left_out}");
+        for (key, item) in &never_written {
+            assert!(without.get(key) == Some(item), "`{key}` without `{left_out}`");
+        }
+    }
+    // The control: no two of them are alike.
+    assert!(found.windows(2).all(|pair| pair[0] != pair[1]));
 }
 
 #[test]

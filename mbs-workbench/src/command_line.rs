@@ -3,7 +3,7 @@
 //! Exit codes: 0 done; 1 a mechanism could not be moved, a check failed, a file could not be written; 2 the
 //! command line does not make sense.
 
-use std::io::{self, Write};
+use std::io::{self, Read, Write};
 use std::process::ExitCode;
 use std::thread;
 
@@ -15,8 +15,10 @@ use crate::catalogue::Catalogue;
 use crate::commands::document::Output;
 use crate::commands::run::Arguments as Analysis;
 use crate::commands::{self, CommandError};
+use crate::effects::measurement::{NamedScene, Order, measure};
 use crate::erased::costs::Comparable;
 use crate::erased::variations::Variable;
+use crate::hard_cases::list::Listed;
 use crate::mismatch::nearest;
 use crate::tables::valley::NamedLaw;
 use crate::target_directory::is_started;
@@ -81,6 +83,8 @@ enum Command {
     Compare(commands::compare::Arguments),
     /// Show what accuracy costs: the true error of each method, step and type of number over its time
     Cost(commands::cost::Arguments),
+    /// Show which effects of a text a scene needs: what each one changes and costs, and the cheapest scene that is near enough
+    Effects(commands::effects::Arguments),
     /// Run a mechanism in many hard variants by every method: right, refused, late or wrong, judged by the text itself
     HardCases(commands::hard_cases::Arguments),
     /// Make the profile of a cam from its lift law; say which limits it breaks, find the least cam
@@ -116,6 +120,7 @@ impl Command {
             Command::Drift(_) => "drift",
             Command::Compare(_) => "compare",
             Command::Cost(_) => "cost",
+            Command::Effects(_) => "effects",
             Command::HardCases(_) => "hard-cases",
             Command::Cam(_) => "cam",
             Command::Table(_) => "table",
@@ -149,6 +154,7 @@ impl Command {
             | Command::Compare(_)
             // They build a program of their own.
             | Command::Cost(_)
+            | Command::Effects(_)
             | Command::HardCases(_)
             | Command::Cam(_)
             | Command::Table(_) => return None,
@@ -184,7 +190,7 @@ pub fn cost_program(
     make: fn(&[(usize, f64)]) -> Comparable,
     laws: fn() -> Vec<NamedLaw>,
 ) -> ExitCode {
-    study_program(card, "cost", |command, catalogue, out| match command {
+    study_program(&[card], "cost", |command, catalogue, out| match command {
         Command::Cost(arguments) => Some(commands::cost::study(catalogue, arguments, make, &laws(), out)),
         _ => None,
     })
@@ -192,20 +198,46 @@ pub fn cost_program(
 
 /// The study of `mbs hard-cases` in such a program.
 pub fn hard_cases_program(card: Card, make: fn(&[(usize, f64)]) -> Variable) -> ExitCode {
-    study_program(card, "hard-cases", |command, catalogue, out| match command {
+    study_program(&[card], "hard-cases", |command, catalogue, out| match command {
         Command::HardCases(arguments) => Some(commands::hard_cases::study(catalogue, arguments, make, out)),
         _ => None,
     })
 }
 
+/// The study of the list of hard cases, in a program that was built for its texts.
+pub fn hard_cases_program_list(cases: &[Listed]) -> ExitCode {
+    study_program(&[], "hard-cases", |command, _, out| match command {
+        Command::HardCases(arguments) => Some(commands::hard_case_list::study(arguments, cases, out)),
+        _ => None,
+    })
+}
+
+/// A program that measures scenes: it reads an order as JSON and prints what it measured.
+pub fn effects_program(scenes: &[NamedScene]) -> ExitCode {
+    on_large_stack(|| {
+        let mut text = String::new();
+        let read = io::stdin().read_to_string(&mut text).map_err(|error| error.to_string());
+        let order =
+            read.and_then(|_| serde_json::from_str::<Order>(&text).map_err(|error| error.to_string()));
+        match order {
+            Ok(order) => match serde_json::to_writer(io::stdout().lock(), &measure(scenes, &order)) {
+                Ok(()) => ExitCode::SUCCESS,
+                Err(error) => report(&CommandError::Failed(format!("cannot write: {error}"))),
+            },
+            Err(error) => report(&CommandError::Usage(format!(
+                "this program measures scenes for `mbs effects`: {error}"
+            ))),
+        }
+    })
+}
+
 /// A program with one command for one mechanism; `study` gives none for another command.
 fn study_program(
-    card: Card,
+    cards: &[Card],
     name: &str,
     study: impl FnOnce(&Command, &Catalogue, &mut Output) -> Option<Result<ExitCode, CommandError>> + Send,
 ) -> ExitCode {
-    let cards = [card];
-    let catalogue = Catalogue { cards: &cards };
+    let catalogue = Catalogue { cards };
     match Arguments::try_parse() {
         Ok(Arguments { command: Some(command), json }) if command.schema() == name => on_large_stack(|| {
             let mut stdout = io::stdout().lock();
@@ -329,6 +361,7 @@ fn done(catalogue: &Catalogue, command: Option<Command>, out: &mut Output) -> Re
             // An index is this program's own document.
             return Ok(if arguments.is_index() { Done::Here } else { Done::Elsewhere(code) });
         }
+        Some(Command::Effects(arguments)) => commands::effects::run(catalogue, &arguments, out),
         Some(Command::Cam(arguments)) => commands::cam::run(&arguments, out),
         Some(Command::Table(arguments)) => commands::table::run(&arguments, out),
     }?;

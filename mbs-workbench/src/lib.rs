@@ -21,6 +21,8 @@ mod commands;
 pub mod cost;
 #[cfg(feature = "program")]
 pub mod double_double;
+#[cfg(feature = "program")]
+pub mod effects;
 pub mod erased;
 #[cfg(feature = "program")]
 pub mod forge;
@@ -46,4 +48,4 @@ pub mod text_file;
 pub mod verify;
 
 #[cfg(feature = "program")]
-pub use command_line::{cost_program, hard_cases_program, program};
+pub use command_line::{cost_program, effects_program, hard_cases_program, hard_cases_program_list, program};

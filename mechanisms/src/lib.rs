@@ -46,6 +46,7 @@ pub mod quarter_car;
 pub mod quick_return;
 pub mod scotch_yoke;
 pub mod slider_crank;
+pub mod slider_crank_engine;
 pub mod slider_crank_mass;
 pub mod slider_crank_scenes;
 pub mod stephenson;
@@ -108,6 +109,7 @@ pub static CATALOGUE: Catalogue = Catalogue {
         quarter_car::CARD,
         bricard::CARD,
         governor::CARD,
+        slider_crank_engine::CARD,
         slider_crank_mass::RELEASED,
         four_bar_mass::RELEASED,
     ],

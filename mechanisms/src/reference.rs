@@ -93,12 +93,19 @@ pub fn dynamics_of(card: &Card, run: usize, steps: usize) -> Simulated {
     let run = preset(card, run);
     let mechanism = card.instance(&run).expect("parameters of the preset");
     let duration = card.duration(mechanism.equations()).expect("a duration");
+    dynamics_at(card, &run, &instants(duration, steps))
+}
+
+/// The same at `times` (s) of equal distances.
+#[track_caller]
+pub fn dynamics_at(card: &Card, run: &Preset, times: &[f64]) -> Simulated {
+    let mechanism = card.instance(run).expect("parameters of the preset");
     let dynamics = mechanism.dynamics().expect("it has masses");
     let approach = Approach {
         stabilization: Stabilization::Projection,
         steps: Steps::Adaptive { pair: Pair::Order8, tolerance: 1e-12 },
     };
-    let found = dynamics.simulate(&approach, &instants(duration, steps), &mut |_| ());
+    let found = dynamics.simulate(&approach, times, &mut |_| ());
     let found = found.unwrap_or_else(|failure| panic!("{}, {}: {failure}", card.name(), run.label));
     assert_eq!(found.failure, None, "{}, {}", card.name(), run.label);
     found

@@ -52,7 +52,7 @@ const TEXT: &str = "mechanism Bar;\nparam w: rad/s = 1 in 0.1..9, tolerance 0.1;
 const TABLE: &str = "t (s),x (mm)\n0,1\n1,2\n2,4\n3,8\n4,16\n";
 
 /// A command line for each command, and more where the fields differ.
-const COMMANDS: [&[&str]; 35] = [
+const COMMANDS: [&[&str]; 36] = [
     &["list"],
     &["list", "bar.mbs"],
     &["check", "bar.mbs"],
@@ -84,6 +84,7 @@ const COMMANDS: [&[&str]; 35] = [
     // It builds a program; `cargo xtask browser` runs it.
     &["cost", "four_bar", "--watch", "swing"],
     &["hard-cases", "four_bar", "--methods", "projection"],
+    &["effects", "four_bar"],
     &["table", "table.csv", "--out", "t.svg"],
     &[
         "cam",

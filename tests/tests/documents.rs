@@ -91,6 +91,7 @@ fn every_mechanism_and_command_stands_in_the_chapter_on_the_program() {
         "dof",
         "drift",
         "cost",
+        "effects",
         "compare",
         "table",
         "expand",

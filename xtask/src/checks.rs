@@ -1,10 +1,19 @@
 //! Two tiers of checks: a change must pass the first, a release the second.
 
 use crate::shell::{command, exists, need, output, root, step};
-use crate::{browser, costs, documents, growth, instructions, lines};
+use crate::{browser, costs, documents, growth, instructions, lines, planted};
 
 /// The oldest compiler that the workspace names.
 const OLDEST: &str = "1.89";
+
+/// Packages and tests, all where none is named, that have more to do with the feature `long`.
+const LONG: [(&str, &str); 5] = [
+    ("mbs-motions", ""),
+    ("mbs-cases", "kinematics"),
+    ("mechanisms", "effects"),
+    ("mbs-tests", "proofs"),
+    ("mbs-faults", "nothing_follows"),
+];
 
 /// Format, lints, documentation, tests, counts of instructions.
 ///
@@ -24,7 +33,7 @@ pub fn ci() -> Result<(), String> {
             "--workspace",
             "--all-targets",
             "--features",
-            "mbs-motions/long,mbs-tests/long",
+            "mbs-cases/long,mbs-faults/long,mbs-motions/long,mbs-tests/long,mechanisms/long",
             "--",
             "-D",
             "warnings",
@@ -45,11 +54,11 @@ pub fn full() -> Result<(), String> {
     documents::need_book()?;
     need("cargo-llvm-lines", "`cargo install cargo-llvm-lines`")?;
     ci()?;
-    step(&mut command("cargo", &["test", "-p", "mbs-motions", "--features", "long"]))?;
-    let proofs = ["test", "-p", "mbs-tests", "--features", "long", "--test", "proofs"];
-    step(&mut command("cargo", &proofs))?;
-    let faults = ["test", "-p", "mbs-faults", "--features", "long", "--test", "nothing_follows"];
-    step(&mut command("cargo", &faults))?;
+    for (package, test) in LONG {
+        let only = ["--test", test];
+        let only = if test.is_empty() { &[][..] } else { &only };
+        step(command("cargo", &["test", "-p", package, "--features", "long"]).args(only))?;
+    }
     browser::run()?;
     documents::book()?;
     documents::package()?;
@@ -57,6 +66,11 @@ pub fn full() -> Result<(), String> {
     lines::run(false)?;
     costs::peers()?;
     costs::index()?;
+    step(&mut command(
+        "cargo",
+        &["run", "--release", "-p", "mbs-workbench", "--bin", "mbs", "--", "hard-cases", "--quick"],
+    ))?;
+    planted::run_all()?;
     oldest()
 }
 

@@ -7,6 +7,7 @@ mod documents;
 mod growth;
 mod instructions;
 mod lines;
+mod planted;
 mod shell;
 mod words;
 
@@ -24,6 +25,7 @@ lines [--update]         lines of LLVM code that the workbench costs a mechanism
 docs                     documentation of all crates without warnings, doc tests of README and book, the book
 browser                  reports of all mechanisms in headless Chromium
 costs                    `mbs cost` of all mechanisms, and of the pendulum with other programs
+planted                  planted faults: each must turn a cell of the matrix of hard cases to wrong
 package                  packages of all crates, each compiled as a registry would have it
 words [--count]          reader's aid: doc comments that begin with a question word, sentences of more than 25 words";
 
@@ -50,6 +52,7 @@ fn main() -> ExitCode {
         ("docs", []) => documents::all(),
         ("browser", []) => browser::run(),
         ("costs", []) => costs::peers().and_then(|()| costs::index()),
+        ("planted", []) => planted::run_all(),
         ("package", []) => documents::package(),
         ("words", []) => words::run(false),
         ("words", ["--count"]) => words::run(true),

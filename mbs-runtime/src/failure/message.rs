@@ -135,6 +135,11 @@ impl fmt::Display for Failure {
                 f,
                 "a step of {step:e} s from t = {time} s leads nowhere: it must be positive and change the time"
             ),
+            FailureKind::NoSteps { until } => write!(
+                f,
+                "no steps lead from t = {time} s to t = {} s: their number is 0; give 1 or more, or let `advance_to` choose them",
+                Time(*until)
+            ),
             FailureKind::Unbounded { coordinate, value, .. } => write!(
                 f,
                 "the motion grows without bound: a step takes `{}` (line {}) to {value:.3e} {} at t = {time} s; take smaller \
@@ -168,8 +173,8 @@ impl fmt::Display for Failure {
             FailureKind::Undecided { margin, single } => write!(
                 f,
                 "rounding{} decides where the motion goes at t = {time} s, next to a singular position (margin {margin:.1e}): \
-                 {}project onto the constraints, give the dimensions all their digits, or loosen the tolerance; of a start, declare \
-                 the rates of all coordinates or start beside it",
+                 {}take `Projection` if the formulation is another one, give the dimensions all their digits, or loosen the tolerance; of \
+                 a start, declare the rates of all coordinates or start beside it",
                 if *single { " of `f32`" } else { "" },
                 if *single { "compute in `f64`, which decides nearer to it; or " } else { "" },
             ),

@@ -205,6 +205,11 @@ pub enum FailureKind {
         /// The step (s).
         step: f64,
     },
+    /// An end that is to be reached in 0 steps of equal size.
+    NoSteps {
+        /// The end (s).
+        until: f64,
+    },
     /// A step takes a coordinate farther than a mechanism moves: the integration has lost the motion.
     Unbounded {
         /// The coordinate that it takes farthest, in the reference metric.
@@ -361,6 +366,7 @@ impl FailureKind {
             | FailureKind::Unresolved { .. }
             | FailureKind::InvalidMethodParameter { .. }
             | FailureKind::InvalidStep { .. }
+            | FailureKind::NoSteps { .. }
             | FailureKind::UnresolvedTolerance { .. }
             | FailureKind::Unreachable { .. }
             | FailureKind::StatesUnknown { .. }

@@ -39,8 +39,11 @@ fn steps_that_lead_nowhere_are_refused_and_the_state_stays() {
         let failure = simulation.step(h).unwrap_err();
         assert!(matches!(failure, Failure { kind: FailureKind::InvalidStep { .. }, .. }), "{failure}");
     }
-    let failure = simulation.step_to(1.0, 0).unwrap_err();
-    assert!(matches!(failure, Failure { kind: FailureKind::InvalidStep { .. }, .. }), "{failure}");
+    for until in [1.0, 0.0] {
+        let failure = simulation.step_to(until, 0).unwrap_err();
+        assert!(matches!(failure, Failure { kind: FailureKind::NoSteps { .. }, .. }), "{failure}");
+        assert!(failure.to_string().contains("their number is 0"), "{failure}");
+    }
     assert!(simulation.step(1e300).is_err());
     assert_eq!(before, *simulation.instant());
     let mut late: Pendulum =

@@ -13,7 +13,7 @@ use super::cost::{above_zero, machine, methods, studied};
 use super::document::Output;
 use super::report_files::{require_writable, write_report};
 use super::target::Target;
-use super::{CommandError, summary};
+use super::{CommandError, hard_case_list, summary};
 use crate::catalogue::Catalogue;
 use crate::erased::variations::Variable;
 use crate::forge::{Blueprint, Forge, Study};
@@ -27,36 +27,46 @@ use crate::text_file::{TextFile, is_file};
 #[derive(Args)]
 pub struct Arguments {
     /// Name of the mechanism, as `mbs list` prints it, or a file with its text: FILE, FILE:Name, FILE:Name:Scene
-    name: String,
+    /// [default: the built-in list of cases]
+    pub(super) name: Option<String>,
+    /// Cases of the built-in list by their names [default: all but the long ones]
+    #[arg(long, value_name = "CASE", value_delimiter = ',', conflicts_with = "name")]
+    pub(super) cases: Vec<String>,
+    /// Run the long cases of the built-in list too: minutes each
+    #[arg(long, conflicts_with = "name")]
+    pub(super) long: bool,
     /// Set a parameter: a number in the unit that `mbs list` prints, or with a unit as `200mm`, `60rpm`, `4 [m^2]`
-    #[arg(long = "param", value_name = "NAME=VALUE", value_parser = assignment)]
+    #[arg(long = "param", value_name = "NAME=VALUE", value_parser = assignment, requires = "name")]
     parameters: Vec<Assignment>,
     /// End of the motion (s) [default: that of `mbs run`]
-    #[arg(long, value_name = "T", value_parser = above_zero, allow_negative_numbers = true)]
+    #[arg(long, value_name = "T", value_parser = above_zero, allow_negative_numbers = true, requires = "name")]
     until: Option<f64>,
     /// Methods of a motion from forces, by parts of their names: `projection`, `radau5` [default: all]
     #[arg(long, value_name = "METHOD", value_delimiter = ',')]
-    methods: Vec<String>,
-    /// Number of variants
-    #[arg(long, value_name = "COUNT", default_value_t = 100, value_parser = clap::value_parser!(u64).range(1..=100_000))]
-    variants: u64,
-    /// Six methods, and at most 45 s of computation
+    pub(super) methods: Vec<String>,
+    /// Number of variants [default: 100; of the built-in list with `--quick` 8]
+    #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u64).range(1..=100_000))]
+    pub(super) variants: Option<u64>,
+    /// Six methods, and at most 45 s of computation; the built-in list in 8 variants of each case
     #[arg(long)]
-    quick: bool,
+    pub(super) quick: bool,
     /// Run the one variant with this seed, and print each verdict with its figures
     #[arg(long, value_name = "SEED")]
-    replay: Option<u64>,
+    pub(super) replay: Option<u64>,
     /// Directory of page and table [default: mbs/NAME/hard-cases in cargo's target directory]
     #[arg(long, value_name = "DIR")]
-    out: Option<PathBuf>,
+    pub(super) out: Option<PathBuf>,
 }
 
 /// Longest time of a study: whole, and of an overview.
-const WHOLE: Duration = Duration::from_secs(1800);
-const QUICK: Duration = Duration::from_secs(45);
+pub(super) const WHOLE: Duration = Duration::from_secs(1800);
+pub(super) const QUICK: Duration = Duration::from_secs(45);
+
+/// Variants of a mechanism.
+pub(super) const VARIANTS: u64 = 100;
 
 /// Methods of an overview.
-const FEW: [MotionMethod; 6] = [
+pub(super) const FEW: [MotionMethod; 6] = [
     MotionMethod::Explicit(FormulationName::Projection, IntegratorName::DormandPrince8),
     MotionMethod::Explicit(FormulationName::Projection, IntegratorName::Radau5),
     MotionMethod::Explicit(FormulationName::Projection, IntegratorName::RungeKutta4),
@@ -71,16 +81,18 @@ pub fn run(catalogue: &Catalogue, arguments: &Arguments) -> Result<ExitCode, Com
     let forge = Forge { release: true, ..caller };
     // What is wrong on the command line is said before anything is built.
     methods(&arguments.methods)?;
-    let blueprint = if is_file(&arguments.name) {
-        Blueprint::study_of_text(&Study::HARD_CASES, &TextFile::read(&arguments.name)?)?
-    } else {
-        let target = Target::find(catalogue, &arguments.name)?;
+    let blueprint = if let Some(name) = arguments.name.as_deref().filter(|name| is_file(name)) {
+        Blueprint::study_of_text(&Study::HARD_CASES, &TextFile::read(name)?)?
+    } else if let Some(name) = &arguments.name {
+        let target = Target::find(catalogue, name)?;
         let instance = target.instance(&target.runs()[0], &arguments.parameters)?;
         if !target.is_free() && !arguments.methods.is_empty() {
             return Err(driven(&target));
         }
         let source = instance.equations().source();
         Blueprint::study_of_card(&Study::HARD_CASES, &forge, target.card(), (source, &[]))?
+    } else {
+        hard_case_list::blueprint(arguments)?
     };
     if let Some(directory) = &arguments.out {
         require_writable(directory)?;
@@ -100,7 +112,7 @@ pub fn study(
     make: fn(&[(usize, f64)]) -> Variable,
     out: &mut Output,
 ) -> Result<ExitCode, CommandError> {
-    let target = Target::find(catalogue, &arguments.name)?;
+    let target = Target::find(catalogue, arguments.name.as_deref().unwrap_or_default())?;
     let instance = target.instance(&target.runs()[0], &arguments.parameters)?;
     let equations = instance.equations();
     if !target.is_free() && !arguments.methods.is_empty() {
@@ -119,9 +131,9 @@ pub fn study(
     };
     let seeds = match arguments.replay {
         Some(seed) => vec![seed],
-        None => (0..arguments.variants).collect(),
+        None => (0..arguments.variants.unwrap_or(VARIANTS)).collect(),
     };
-    let extent = Extent { methods, seeds, until };
+    let extent = Extent { methods, seeds, until, description: None };
     let allowed = if arguments.quick { QUICK } else { WHOLE };
     let style = ProgressStyle::with_template("{bar:30} {percent}% {msg}").expect("a valid template");
     let bar = ProgressBar::new(1000).with_style(style);
@@ -147,6 +159,7 @@ pub fn study(
         ("variants", format!("{}, each from its seed", extent.seeds.len())),
         ("oracle", "the statements of the text, interpreted: rows, energies, forces".to_string()),
         ("references", references.to_string()),
+        ("elimination", result.elimination()),
         ("machine", machine()),
         ("text", origin.hash.clone()),
     ]
@@ -160,6 +173,11 @@ pub fn study(
         writeln!(out, "{kind:<8} {}", path.display())?;
     }
     out.flush()?;
+    verdict(&result)
+}
+
+/// Failure of the command where a run is wrong.
+pub(super) fn verdict(result: &MatrixResult) -> Result<ExitCode, CommandError> {
     match result.count(Verdict::Wrong) {
         0 => Ok(ExitCode::SUCCESS),
         wrong => Err(CommandError::Failed(format!(
@@ -170,17 +188,21 @@ pub fn study(
 }
 
 /// The command line that makes the same study; `whole`: with the number of variants.
-fn command(arguments: &Arguments, whole: bool) -> String {
-    let mut words = vec!["mbs".to_string(), "hard-cases".to_string(), arguments.name.clone()];
+pub(super) fn command(arguments: &Arguments, whole: bool) -> String {
+    let mut words = vec!["mbs".to_string(), "hard-cases".to_string()];
+    words.extend(arguments.name.clone());
     words.extend(arguments.parameters.iter().flat_map(|given| ["--param".to_string(), given.written()]));
     if let Some(until) = arguments.until {
         words.extend(["--until".to_string(), summary::short(until)]);
     }
+    if arguments.long {
+        words.push("--long".to_string());
+    }
     if !arguments.methods.is_empty() {
         words.extend(["--methods".to_string(), arguments.methods.join(",")]);
     }
-    if whole && arguments.variants != 100 {
-        words.extend(["--variants".to_string(), arguments.variants.to_string()]);
+    if let (true, Some(variants)) = (whole, arguments.variants) {
+        words.extend(["--variants".to_string(), variants.to_string()]);
     }
     if arguments.quick {
         words.push("--quick".to_string());
@@ -194,7 +216,11 @@ fn command(arguments: &Arguments, whole: bool) -> String {
 /// Reasons of a verdict that are printed.
 const SHOWN: usize = 12;
 
-fn print(result: &MatrixResult, arguments: &Arguments, out: &mut dyn Write) -> Result<(), CommandError> {
+pub(super) fn print(
+    result: &MatrixResult,
+    arguments: &Arguments,
+    out: &mut dyn Write,
+) -> Result<(), CommandError> {
     writeln!(out, "{}", result.title)?;
     for [name, value] in &result.facts {
         writeln!(out, "  {name}: {value}")?;
@@ -206,7 +232,9 @@ fn print(result: &MatrixResult, arguments: &Arguments, out: &mut dyn Write) -> R
                 |value: Option<f64>| value.map_or_else(|| "–".to_string(), |value| format!("{value:.1e}"));
             writeln!(
                 out,
-                "seed {}, {}: {}, {}: {}, error {}, bound {}, work {}{}{}",
+                "{}{}seed {}, {}: {}, {}: {}, error {}, bound {}, work {}{}{}",
+                outcome.case,
+                if outcome.case.is_empty() { "" } else { ", " },
                 outcome.seed,
                 outcome.class.name(),
                 outcome.variant,
@@ -224,8 +252,8 @@ fn print(result: &MatrixResult, arguments: &Arguments, out: &mut dyn Write) -> R
     writeln!(out, "{}", result.sentence())?;
     for verdict in [Verdict::Wrong, Verdict::Refused, Verdict::Late] {
         let reasons = result.reasons(verdict);
-        for (words, count, seed) in reasons.iter().take(SHOWN) {
-            writeln!(out, "  {} {count}: {words}\n    {}{seed}", verdict.name(), result.replay)?;
+        for (words, count, replay) in reasons.iter().take(SHOWN) {
+            writeln!(out, "  {} {count}: {words}\n    {replay}", verdict.name())?;
         }
         if reasons.len() > SHOWN {
             writeln!(out, "  {} …: {} more reasons on the page", verdict.name(), reasons.len() - SHOWN)?;

@@ -7,6 +7,8 @@ pub mod adaption;
 mod branching;
 #[cfg(feature = "program")]
 pub mod costs;
+#[cfg(feature = "program")]
+pub mod driven_variations;
 pub mod dynamics;
 pub mod erase;
 #[cfg(feature = "program")]
@@ -16,6 +18,8 @@ pub mod facade;
 pub mod formulas;
 pub mod lanes;
 pub mod masses;
+#[cfg(feature = "program")]
+pub mod scene_runs;
 #[cfg(feature = "program")]
 pub mod timed_runs;
 #[cfg(feature = "program")]

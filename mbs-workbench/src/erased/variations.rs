@@ -2,15 +2,13 @@
 
 use core::marker::PhantomData;
 
-use mbs_runtime::{
-    Dynamic, Failure, InNumbers, Kinematic, Lanes, Mechanism, Partitioned, Real, Reveal, Visitor,
-};
+use mbs_runtime::{Dynamic, Failure, InNumbers, Kinematic, Lanes, Mechanism, Partitioned, Reveal, Visitor};
 
 use super::adapted::Adapted;
 use super::adaption::Adaption;
+use super::driven_variations::{Beside, Driven, DrivenVariants, OfBatch, OfSingle, array};
 use super::dynamics::integrators::{All, ExplicitOnly, Integrators};
 use super::timed_runs::{Effort, Runs, Seen, TimedRuns};
-use super::timed_steps::{InLanes, Single, TimedSteps};
 use crate::setting::{MotionMethod, Numbers, Resolution};
 
 /// Other coordinates, rows and start of a mechanism of any size: see [`Adaption`].
@@ -24,9 +22,6 @@ pub struct Change {
     pub shift: Vec<f64>,
 }
 
-/// Lanes of a variant in lanes.
-pub const LANES: u32 = 4;
-
 /// A mechanism whose variants can be run, by what moves it.
 pub enum Variable {
     /// Nothing.
@@ -37,12 +32,6 @@ pub enum Variable {
     Moved(Box<dyn MovedVariants>),
 }
 
-/// Variants of a mechanism that drives move.
-pub trait DrivenVariants {
-    /// Runs of `lanes` (1 or [`LANES`]) in a type of number, from a guess `shift` (N, or none) beside that of the text.
-    fn runs(&self, numbers: Numbers, lanes: u32, shift: &[f64]) -> Option<Box<dyn TimedSteps>>;
-}
-
 /// Variants of a mechanism that forces move.
 pub trait MovedVariants {
     /// Indices of the coordinates that the text starts.
@@ -51,7 +40,12 @@ pub trait MovedVariants {
     fn redundant(&self) -> Vec<bool>;
     /// The text's guess and rates: N each.
     fn guess(&self) -> [Vec<f64>; 2];
-    /// Coordinates and velocities of the start next to these (N each).
+    /// Coordinates and velocities of the start that the text has: N each.
+    ///
+    /// # Errors
+    /// The mechanism cannot start.
+    fn start_of_text(&self) -> Result<[Vec<f64>; 2], Failure>;
+    /// Coordinates and velocities of the start next to these (N each), all of which count as given.
     ///
     /// # Errors
     /// The mechanism cannot start there.
@@ -119,54 +113,6 @@ where
             let Form::Moved(single) = single else { return Variable::Still };
             Variable::Moved(Box::new(Moved { double, single }))
         }
-    }
-}
-
-/// Makes runs from a guess beside that of the text.
-trait Beside {
-    fn beside(&self, shift: &[f64]) -> Box<dyn TimedSteps>;
-}
-
-struct OfSingle<S, R, const N: usize, const M: usize>(S, PhantomData<R>);
-
-fn array<const K: usize>(values: &[f64]) -> [f64; K] {
-    <[f64; K]>::try_from(values).unwrap_or([0.0; K])
-}
-
-impl<S: Kinematic<R, N, M> + 'static, R: Real, const N: usize, const M: usize> Beside
-    for OfSingle<S, R, N, M>
-{
-    fn beside(&self, shift: &[f64]) -> Box<dyn TimedSteps> {
-        Box::new(Single::<S, R, N, M>::beside(self.0.clone(), array(shift)))
-    }
-}
-
-struct Driven {
-    double: Box<dyn Beside>,
-    single: Box<dyn Beside>,
-    lanes: Option<Box<dyn Beside>>,
-}
-
-impl DrivenVariants for Driven {
-    fn runs(&self, numbers: Numbers, lanes: u32, shift: &[f64]) -> Option<Box<dyn TimedSteps>> {
-        match (numbers, lanes) {
-            (Numbers::Double, 1) => Some(self.double.beside(shift)),
-            (Numbers::Single, 1) => Some(self.single.beside(shift)),
-            (Numbers::Double, LANES) => Some(self.lanes.as_ref()?.beside(&[])),
-            _ => None,
-        }
-    }
-}
-
-struct OfBatch<S, const N: usize, const M: usize>(S);
-
-impl<S, const N: usize, const M: usize> Beside for OfBatch<S, N, M>
-where
-    S: Kinematic<Lanes<f64, 4>, N, M> + 'static,
-    S::Lane: Kinematic<f64, N, M>,
-{
-    fn beside(&self, _: &[f64]) -> Box<dyn TimedSteps> {
-        Box::new(InLanes::<S, f64, 4, N, M>::of(self.0.clone()))
     }
 }
 
@@ -256,6 +202,9 @@ impl MovedVariants for Moved {
     }
     fn guess(&self) -> [Vec<f64>; 2] {
         self.double.guess()
+    }
+    fn start_of_text(&self) -> Result<[Vec<f64>; 2], Failure> {
+        self.double.runs().start(0.0)
     }
     fn start(&self, near: &[Vec<f64>; 2]) -> Result<[Vec<f64>; 2], Failure> {
         self.double.changed(&Change::default(), near).0.start(0.0)

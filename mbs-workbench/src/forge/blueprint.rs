@@ -25,7 +25,14 @@ pub struct Blueprint {
     pub origin: Option<Origin>,
     /// `true` if the blueprint holds all but the sources of `mbs`: the same one always gives the same program.
     pub is_closed: bool,
+    /// Parts that the compiler works on at a time, in a program of many texts: it runs for seconds and is compiled for minutes.
+    pub units: Option<u32>,
+    /// `true` if symbols of the program name types in full, and its scenes are compiled in parts.
+    pub is_measured: bool,
 }
+
+/// Parts of a program of many texts: they keep all cores busy.
+const UNITS: u32 = 16;
 
 /// A study that is built in a program of its own: it has the mechanism in more numbers than `mbs` does.
 #[derive(Clone, Copy, Debug)]
@@ -135,7 +142,38 @@ impl Blueprint {
             main,
             origin: Some(Origin { path: text.path.clone(), content: text.content.clone(), shifted }),
             is_closed: true,
+            units: None,
+            is_measured: false,
         })
+    }
+
+    /// A study of many texts in one program: name of each and of its type, and its text. The program takes a list of names, cards and
+    /// what the study needs.
+    pub fn study_of_texts(study: &Study, name: &str, texts: &[(&str, String, &str)]) -> Self {
+        let mut main = format!("{HEAD}\n");
+        let mut list = String::new();
+        for (module, kind, text) in texts {
+            let constructor = format!("{kind}::default()");
+            main += &format!(
+                "\nmod {module} {{\n::mbs_runtime::mechanism! {{\n{text}\n}}\n\
+                 pub const CARD: ::mbs_workbench::card::Card = ::mbs_workbench::card!({constructor});\n{}\n}}\n",
+                study.item(&constructor, &[])
+            );
+            list += &format!("({module:?}, {module}::CARD, {module}::STUDIED), ");
+        }
+        main += &format!(
+            "\nfn main() -> ExitCode {{\n    mbs_workbench::{}_list(&[{list}])\n}}\n",
+            study.program
+        );
+        Blueprint {
+            name: format!("{name}{}", study.suffix),
+            manifest: dependencies(&[]),
+            main,
+            origin: None,
+            is_closed: true,
+            units: Some(UNITS),
+            is_measured: false,
+        }
     }
 
     /// A program called `name` on top of the library that declares the mechanism of `card`; `main` makes its source from the
@@ -170,6 +208,8 @@ impl Blueprint {
             main: scope + &main(constructor),
             origin: None,
             is_closed: false,
+            units: None,
+            is_measured: false,
         })
     }
 
@@ -201,7 +241,15 @@ impl Blueprint {
                 items(constructor),
                 study.call("studied::")
             );
-            return Ok(Blueprint { name, manifest: dependencies(&[]), main, origin: None, is_closed: true });
+            return Ok(Blueprint {
+                name,
+                manifest: dependencies(&[]),
+                main,
+                origin: None,
+                is_closed: true,
+                units: None,
+                is_measured: false,
+            });
         }
         Self::of_card(forge, card, &name, |constructor| {
             let (items, call) = (items(constructor), study.call(""));
@@ -209,11 +257,43 @@ impl Blueprint {
         })
     }
 
+    /// A program that measures the scenes called `scenes` of the mechanism called `mechanism` in `text`, for the `round`th time.
+    pub fn of_scenes(mechanism: &str, text: &str, scenes: &[String], round: usize) -> Self {
+        let entries: String = scenes
+            .iter()
+            .map(|scene| {
+                format!(
+                    "    ({scene:?}, |values| ::mbs_workbench::erased::scene_runs::scene_runs({mechanism}{scene}::default(), values)),\n"
+                )
+            })
+            .collect();
+        let main = format!(
+            "{HEAD}\n\nmod compared {{\n::mbs_runtime::mechanism! {{\n{text}\n}}\n\n\
+             pub const SCENES: &[::mbs_workbench::effects::measurement::NamedScene] = &[\n{entries}];\n}}\n\n\
+             fn main() -> ExitCode {{\n    mbs_workbench::effects_program(compared::SCENES)\n}}\n"
+        );
+        Blueprint {
+            name: format!("{}_effects_{round}", snake_case(mechanism)),
+            manifest: dependencies(&[]),
+            main,
+            origin: None,
+            is_closed: true,
+            units: None,
+            is_measured: true,
+        }
+    }
+
     /// `Cargo.toml` of the crate called `package`.
     pub(super) fn manifest(&self, package: &str) -> String {
+        let units = self.units.map_or_else(String::new, |units| {
+            format!(
+                "\n[profile.release.package.{}]\ncodegen-units = {units}\nopt-level = 1\n",
+                quoted(package)
+            )
+        });
         format!(
             "# Written by `mbs`, which deletes it again.\n[package]\nname = {}\nversion = \"0.0.0\"\nedition = \"2024\"\npublish = false\n\n\
-             [dependencies]\n{}\n[workspace]\n",
+             [dependencies]\n{}\n[workspace]\n{units}",
             quoted(package),
             self.manifest
         )

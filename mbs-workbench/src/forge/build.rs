@@ -36,10 +36,10 @@ impl Forge {
         progress: &mut dyn FnMut(&str),
     ) -> Result<PathBuf, ForgeError> {
         progress(&format!("building a program for `{}`", blueprint.name));
-        let mut built = self.cargo_build(folder, true, progress)?;
+        let mut built = self.cargo_build(folder, blueprint, true, progress)?;
         if built.program.is_none() && built.errors.is_empty() && built.said.contains("offline") {
             progress("fetching crates");
-            built = self.cargo_build(folder, false, progress)?;
+            built = self.cargo_build(folder, blueprint, false, progress)?;
         }
         let Built { program, errors, said } = built;
         if let Some(program) = program {
@@ -57,13 +57,19 @@ impl Forge {
     fn cargo_build(
         &self,
         folder: &Path,
+        blueprint: &Blueprint,
         offline: bool,
         progress: &mut dyn FnMut(&str),
     ) -> Result<Built, ForgeError> {
         let mut command = Command::new(&self.cargo);
-        command.args(["build", "--message-format", "json", "--manifest-path"]).arg(folder.join("Cargo.toml"));
+        let action = if blueprint.is_measured { "rustc" } else { "build" };
+        command.args([action, "--message-format", "json", "--manifest-path"]).arg(folder.join("Cargo.toml"));
         command.arg("--target-dir").arg(&self.target);
         command.args(offline.then_some("--offline")).args(self.release.then_some("--release"));
+        if blueprint.is_measured {
+            // Of the program itself alone: what it depends on is not built anew.
+            command.args(["--", "-C", "symbol-mangling-version=v0", "-C", "codegen-units=16"]);
+        }
         // Settings of cargo and the toolchain are those of the caller.
         command
             .current_dir(&self.workspace)

@@ -1,9 +1,11 @@
 //! Variants of a motion that drives prescribe, each judged by the oracle and by a run in finer steps.
 
+use crate::erased::driven_variations::{DrivenVariants, LANES};
 use crate::erased::timed_steps::{Placed, TimedSteps};
-use crate::erased::variations::{DrivenVariants, LANES};
-use crate::hard_cases::judge::{Bounds, exceeds, judge, of_driven};
+use crate::hard_cases::judge::{Bounds, exceeds, judge, less_turns, of_driven};
+use crate::hard_cases::list::description::Kind;
 use crate::hard_cases::oracle::{Oracle, State};
+use crate::hard_cases::similar::{compared, in_other_size, in_size};
 use crate::hard_cases::study::{Clock, Extent};
 use crate::hard_cases::variation::{Class, Subject, Variation};
 use crate::hard_cases::verdict::{Outcome, Verdict};
@@ -43,26 +45,111 @@ pub fn driven_outcomes(
         let (mechanism, oracle) = make(&variation.values).ok_or("the oracle cannot read the text")?;
         let numbers = if variation.class == Class::Single { Numbers::Single } else { Numbers::Double };
         let lanes = if variation.class == Class::Lanes { LANES } else { 1 };
+        if variation.class == Class::Similar {
+            let Some((own, _)) = make(&[]) else { continue };
+            let pair = [own.as_ref(), mechanism.as_ref()];
+            outcomes.extend(similar_outcomes(pair, &variation, subject, extent));
+            continue;
+        }
         let Some(runs) = mechanism.runs(numbers, lanes, &variation.shift) else { continue };
         let Some(fine) = mechanism.runs(Numbers::Double, 1, &variation.shift) else { continue };
         let steps = (STEPS * variation.finer).round().max(2.0) as u32;
         let fine = positions(fine.as_ref(), Closing::Closed, extent.until, FINER * steps);
-        for closing in CLOSINGS.iter().filter(|closing| lanes == 1 || **closing == Closing::Closed) {
+        let suits =
+            |closing: &Closing| (lanes == 1 || *closing == Closing::Closed) && extent.has(kind(*closing));
+        for closing in CLOSINGS.iter().filter(|closing| suits(closing)) {
             let run = positions(runs.as_ref(), *closing, extent.until, steps);
             let method = if lanes == 1 { format!("Stepper, {closing}") } else { format!("Batch of {lanes}") };
-            outcomes.push(outcome(&variation, method, (run, &fine), &oracle, (subject, numbers, *closing)));
+            let failed = run.as_ref().err().and_then(|(_, time)| *time);
+            let states: Vec<State> = run.iter().flat_map(|(run, _)| run.iter().map(of_driven)).collect();
+            let found = outcome(&variation, method, (run, &fine), &oracle, (subject, numbers, *closing));
+            outcomes.push(match &extent.description {
+                Some(case) if case.refused.is_some() => case.refused(found, failed),
+                Some(case) => case.judged(found, kind(*closing), &variation, (&states, &oracle)),
+                None => found,
+            });
         }
     }
     Ok(outcomes)
 }
 
-type Positions = Result<(Vec<Placed<f64>>, u64), String>;
+/// A similar mechanism beside the mechanism itself, from guesses that are similar.
+fn similar_outcomes(
+    [own, other]: [&dyn DrivenVariants; 2],
+    variation: &Variation,
+    subject: &Subject,
+    extent: &Extent,
+) -> Vec<Outcome> {
+    let mut shift = own.guess();
+    in_other_size(&mut shift, variation, subject);
+    shift.iter_mut().zip(other.guess()).for_each(|(shift, guess)| *shift -= guess);
+    let (Some(runs), Some(own_runs)) =
+        (other.runs(Numbers::Double, 1, &shift), own.runs(Numbers::Double, 1, &[]))
+    else {
+        return Vec::new();
+    };
+    let steps = STEPS as u32;
+    let mut outcomes = Vec::new();
+    for closing in CLOSINGS.iter().filter(|closing| extent.has(kind(**closing))) {
+        let run = positions(runs.as_ref(), *closing, extent.until, steps);
+        let own_run = positions(own_runs.as_ref(), *closing, extent.until, steps);
+        let refused =
+            Outcome { verdict: Verdict::Refused, ..blank(variation, format!("Stepper, {closing}")) };
+        outcomes.push(match (run, own_run) {
+            (Err((reason, failed)), _) => {
+                let outcome = Outcome { reason, ..refused };
+                match &extent.description {
+                    Some(case) => case.refused(outcome, failed),
+                    None => outcome,
+                }
+            }
+            (Ok(_), Err((reason, _))) => {
+                Outcome { reason: format!("the mechanism itself: {reason}"), ..refused }
+            }
+            (Ok((run, work)), Ok((own_run, own_work))) => {
+                let places =
+                    |run: &[Placed<f64>]| run.iter().map(|placed| placed.motion[0].clone()).collect();
+                let mut places_of_other: Vec<Vec<f64>> = places(&run);
+                places_of_other.iter_mut().for_each(|q| in_size(q, variation, subject));
+                let places_of_own: Vec<Vec<f64>> = places(&own_run);
+                compared(refused, (&places_of_other, &places_of_own), (work, own_work), &subject.scales)
+            }
+        });
+    }
+    outcomes
+}
+
+/// An outcome without a verdict.
+pub fn blank(variation: &Variation, method: String) -> Outcome {
+    Outcome {
+        case: String::new(),
+        seed: variation.seed,
+        class: variation.class,
+        method,
+        variant: variation.words.clone(),
+        verdict: Verdict::Refused,
+        error: None,
+        bound: None,
+        reason: String::new(),
+        is_expected: false,
+        not_made: Vec::new(),
+        work: 0,
+        course: Vec::new(),
+    }
+}
+
+fn kind(closing: Closing) -> Kind {
+    if closing == Closing::Closed { Kind::Drives } else { Kind::Bounded }
+}
+
+/// Positions with the number of evaluations, or the reason why there are none, with its time (s).
+type Positions = Result<(Vec<Placed<f64>>, u64), (String, Option<f64>)>;
 
 fn positions(runs: &dyn TimedSteps, closing: Closing, until: f64, steps: u32) -> Positions {
     let times: Vec<f64> = (0..=steps).map(|k| until * f64::from(k) / f64::from(steps)).collect();
     let mut seen = Vec::new();
     let effort = runs.run(closing, &times, Some(&mut |placed| seen.push(placed)));
-    effort.map(|effort| (seen, effort.evaluations)).map_err(|failure| failure.to_string())
+    effort.map(|effort| (seen, effort.evaluations)).map_err(|failure| (failure.to_string(), failure.time))
 }
 
 fn outcome(
@@ -72,22 +159,10 @@ fn outcome(
     oracle: &Oracle,
     (subject, numbers, closing): (&Subject, Numbers, Closing),
 ) -> Outcome {
-    let mut outcome = Outcome {
-        seed: variation.seed,
-        class: variation.class,
-        method,
-        variant: variation.words.clone(),
-        verdict: Verdict::Refused,
-        error: None,
-        bound: None,
-        reason: String::new(),
-        not_made: Vec::new(),
-        work: 0,
-        course: Vec::new(),
-    };
+    let mut outcome = blank(variation, method);
     let (run, work) = match run {
         Ok(run) => run,
-        Err(reason) => return Outcome { reason, ..outcome },
+        Err((reason, _)) => return Outcome { reason, ..outcome },
     };
     outcome.work = work;
     let scales = &subject.scales;
@@ -103,7 +178,7 @@ fn outcome(
     }
     .map(|bound| bound * largest);
     outcome.bound = Some(bound);
-    let bounds = Bounds { rows: open, balance: open, estimate: bound, rounding: bound };
+    let bounds = Bounds { rows: open, balance: open, estimate: bound, rounding: bound, is_shown: true };
     let states: Vec<State> = run.iter().map(of_driven).collect();
     let judgement = judge(&states, oracle, scales, bounds, variation.seed);
     outcome.not_made = judgement.not_made;
@@ -114,13 +189,14 @@ fn outcome(
     });
     let apart = fine.as_ref().ok().map(|(fine, _)| {
         let pairs = run.iter().zip(fine.iter().step_by(FINER as usize));
-        let pairs = pairs.flat_map(|(a, b)| a.motion[0].iter().zip(&b.motion[0]).zip(scales));
+        let pairs =
+            pairs.flat_map(|(a, b)| a.motion[0].iter().zip(&b.motion[0]).zip(scales).zip(oracle.turns()));
         pairs
-            .map(|((a, b), scale)| ((a - b) / scale).abs())
+            .map(|(((a, b), scale), turns)| ((if *turns { less_turns(a - b) } else { a - b }) / scale).abs())
             .fold(0.0, |a: f64, b| if b.is_nan() { b } else { a.max(b) })
     });
     outcome.error = apart;
-    if let Err(reason) = fine {
+    if let Err((reason, _)) = fine {
         outcome.not_made.push(format!("steps of a sixteenth: {reason}"));
     }
     let (verdict, reason) = match (judgement.wrong.or(branch), apart) {

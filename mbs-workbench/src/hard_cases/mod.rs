@@ -2,10 +2,14 @@
 
 mod driven;
 mod judge;
+pub mod list;
+pub mod matrix;
 mod moved;
 pub mod oracle;
 mod references;
 pub mod result;
+mod similar;
+pub mod similarity;
 pub mod study;
 #[cfg(test)]
 mod tests;

@@ -1,10 +1,12 @@
 //! Variants of a motion from forces by every method, each against two references and the oracle.
 
-use crate::erased::timed_runs::Seen;
+use crate::erased::timed_runs::{Effort, Seen};
 use crate::erased::variations::{Change, MovedVariants};
 use crate::hard_cases::judge::{Bounds, exceeds, judge, of_moved};
+use crate::hard_cases::list::description::Kind;
 use crate::hard_cases::oracle::Oracle;
 use crate::hard_cases::references::{FIRST, PARTS, References, Run, Varied, apart, instants, references};
+use crate::hard_cases::similar::{compared, in_other_size, in_size, positions};
 use crate::hard_cases::study::{Clock, Extent};
 use crate::hard_cases::variation::{Class, Subject, Variation};
 use crate::hard_cases::verdict::{Outcome, Verdict};
@@ -60,12 +62,27 @@ pub fn moved_outcomes(
             _ => Numbers::Double,
         };
         let start = match variation.map(|variation| variation.class) {
-            Some(Class::Guess | Class::Rows | Class::Frame) => {
+            Some(Class::Rows | Class::Frame) => {
+                Some(mechanism.start_of_text().map_err(|failure| format!("the start: {failure}"))?)
+            }
+            Some(Class::Guess) => {
                 let [mut q, qd] = mechanism.guess();
                 let shift = variation.map_or(&[][..], |variation| &variation.shift);
                 q.iter_mut().zip(shift).for_each(|(q, shift)| *q += shift);
                 let found = mechanism.start(&[q, qd]);
                 Some(found.map_err(|failure| format!("the start: {failure}"))?)
+            }
+            // A guess in metres would be a far one.
+            Some(Class::Similar) => {
+                let [similar, own] =
+                    [values, &[][..]].map(|values| make(values).map(|(made, _)| made.guess()));
+                let mut asked = own.ok_or("the oracle cannot read the text")?;
+                if let Some(variation) = variation {
+                    asked.iter_mut().for_each(|values| in_other_size(values, variation, subject));
+                }
+                let found =
+                    if similar.as_ref() == Some(&asked) { None } else { Some(mechanism.start(&asked)) };
+                found.transpose().map_err(|failure| format!("the start: {failure}"))?
             }
             _ => None,
         };
@@ -73,6 +90,9 @@ pub fn moved_outcomes(
         Ok(Varied { mechanism, oracle, change, start, numbers })
     };
     let plain = varied(None)?;
+    if extent.is_refused() {
+        return Ok(refused_outcomes(&varied, subject, extent));
+    }
     let of = |varied: &Varied<'_>| references(varied, extent.until, scales);
     progress("references", 0.0);
     let usual = of(&plain)?;
@@ -80,7 +100,7 @@ pub fn moved_outcomes(
         .methods
         .iter()
         .copied()
-        .filter(|method| plain.mechanism.admits(*method, Numbers::Double))
+        .filter(|method| plain.mechanism.admits(*method, Numbers::Double) && extent.has(Kind::of(*method)))
         .collect();
     let mut bases = Vec::new();
     for method in &methods {
@@ -105,6 +125,19 @@ pub fn moved_outcomes(
             }),
             _ => None,
         };
+        if variation.class == Class::Similar {
+            let Ok(made) = &made else { continue };
+            // Both take the way of the text, or both that of a given start.
+            let mut own = varied(None)?;
+            if made.start.is_some() {
+                let started = own.mechanism.start(&own.mechanism.guess());
+                own.start = Some(started.map_err(|failure| failure.to_string())?);
+            }
+            for (method, base) in methods.iter().zip(&bases) {
+                outcomes.push(similar_outcome([&own, made], &variation, (*method, base), (subject, extent)));
+            }
+            continue;
+        }
         for (method, base) in methods.iter().zip(&bases) {
             if let Some(references) = judged(&made, &usual, own.as_ref()) {
                 outcomes.push(outcome(&variation, *method, base, references, (extent, scales)));
@@ -177,19 +210,7 @@ fn outcome(
     judged: Judged<'_>,
     (extent, scales): (&Extent, &[f64]),
 ) -> Outcome {
-    let mut outcome = Outcome {
-        seed: variation.seed,
-        class: variation.class,
-        method: method.to_string(),
-        variant: variation.words.clone(),
-        verdict: Verdict::Refused,
-        error: None,
-        bound: None,
-        reason: String::new(),
-        not_made: Vec::new(),
-        work: 0,
-        course: Vec::new(),
-    };
+    let mut outcome = refusal(variation, method);
     let base = match base {
         Ok(base) => base,
         Err(reason) => return Outcome { reason: reason.clone(), ..outcome },
@@ -232,6 +253,7 @@ fn outcome(
         balance: if is_single { 2e-3 } else { 1e-7 } * moved.sqrt(),
         estimate,
         rounding: 10.0 * rounding,
+        is_shown: extent.description.as_ref().is_none_or(|case| !case.unresolved),
     };
     if drifts(method) {
         bounds.rows += 100.0 * estimate + 1e-6;
@@ -279,7 +301,89 @@ fn outcome(
     } else {
         (Verdict::Right, String::new())
     };
-    Outcome { verdict, reason, ..outcome }
+    let outcome = Outcome { verdict, reason, ..outcome };
+    match &extent.description {
+        Some(case) => case.judged(outcome, Kind::of(method), variation, (&states, &varied.oracle)),
+        None => outcome,
+    }
+}
+
+/// A similar mechanism beside the mechanism itself.
+fn similar_outcome(
+    [own, other]: [&Varied<'_>; 2],
+    variation: &Variation,
+    (method, base): (MotionMethod, &Result<[Resolution; 2], String>),
+    (subject, extent): (&Subject, &Extent),
+) -> Outcome {
+    let refused = refusal(variation, method);
+    let base = match base {
+        Ok(base) => base,
+        Err(reason) => return Outcome { reason: reason.clone(), ..refused },
+    };
+    let times = instants(extent.until, base[0]);
+    let runs = [other, own].map(|varied| varied.run(method, base[0], &times));
+    match runs {
+        [Err(reason), _] => Outcome { reason, ..refused },
+        [Ok(_), Err(reason)] => Outcome { reason: format!("the mechanism itself: {reason}"), ..refused },
+        [Ok((run, effort)), Ok((own_run, own_effort))] => {
+            let mut places = positions(&run);
+            places.iter_mut().for_each(|q| in_size(q, variation, subject));
+            let work = |effort: &Effort| effort.evaluations + effort.corrections;
+            let work = (work(&effort), work(&own_effort));
+            compared(refused, (&places, &positions(&own_run)), work, &subject.scales)
+        }
+    }
+}
+
+/// A run that is refused for a reason that is not yet known.
+fn refusal(variation: &Variation, method: MotionMethod) -> Outcome {
+    Outcome {
+        case: String::new(),
+        seed: variation.seed,
+        class: variation.class,
+        method: method.to_string(),
+        variant: variation.words.clone(),
+        verdict: Verdict::Refused,
+        error: None,
+        bound: None,
+        reason: String::new(),
+        is_expected: false,
+        not_made: Vec::new(),
+        work: 0,
+        course: Vec::new(),
+    }
+}
+
+/// Variants of a motion that there is none of.
+fn refused_outcomes(
+    varied: &dyn Fn(Option<&Variation>) -> Result<Varied<'static>, String>,
+    subject: &Subject,
+    extent: &Extent,
+) -> Vec<Outcome> {
+    let Some(case) = &extent.description else { return Vec::new() };
+    let mut outcomes = Vec::new();
+    for seed in &extent.seeds {
+        let variation = Variation::of(*seed, subject);
+        for method in &extent.methods {
+            let run = varied(Some(&variation)).map(|varied| {
+                let resolution = match method.is_adaptive() {
+                    true => Resolution::Tolerance(TOLERANCES[usize::from(varied.numbers == Numbers::Single)]),
+                    false => Resolution::Steps(8 * PARTS),
+                };
+                let times = instants(extent.until, resolution);
+                let is_suited = varied.mechanism.admits(*method, varied.numbers);
+                is_suited.then(|| varied.ran(*method, finer(resolution, variation.finer), &times).map(|_| ()))
+            });
+            let (verdict, reason, failed) = match run {
+                Ok(None) => continue,
+                Ok(Some(Ok(()))) => (Verdict::Right, String::new(), None),
+                Ok(Some(Err(failure))) => (Verdict::Refused, failure.to_string(), failure.time),
+                Err(reason) => (Verdict::Refused, reason, None),
+            };
+            outcomes.push(case.refused(Outcome { verdict, reason, ..refusal(&variation, *method) }, failed));
+        }
+    }
+    outcomes
 }
 
 /// Distance at the end alone.

@@ -1,5 +1,7 @@
 //! Motions that runs are compared with: one formulation in fine steps, and one of another kind.
 
+use mbs_runtime::Failure;
+
 use crate::erased::timed_runs::{Effort, Seen};
 use crate::erased::variations::{Change, MovedVariants};
 use crate::hard_cases::oracle::Oracle;
@@ -56,13 +58,23 @@ impl Varied<'_> {
         resolution: Resolution,
         times: &[f64],
     ) -> Result<(Run, Effort), String> {
+        self.ran(method, resolution, times).map_err(|failure| failure.to_string())
+    }
+
+    /// A run, or its failure.
+    pub fn ran(
+        &self,
+        method: MotionMethod,
+        resolution: Resolution,
+        times: &[f64],
+    ) -> Result<(Run, Effort), Failure> {
         let mut seen = Vec::new();
         let see = &mut |state| seen.push(state);
         let ran = match &self.start {
             Some(start) => self.mechanism.run_changed(&self.change, start, method, resolution, times, see),
             None => self.mechanism.run(self.numbers, method, resolution, times, see),
         };
-        ran.map(|effort| (seen, effort)).map_err(|failure| failure.to_string())
+        ran.map(|effort| (seen, effort))
     }
 }
 

@@ -6,7 +6,8 @@ use std::fmt::Write;
 use serde::Serialize;
 
 use crate::hard_cases::study::Study;
-use crate::hard_cases::verdict::{Cell, Outcome, Verdict, cells};
+use crate::hard_cases::variation::Class;
+use crate::hard_cases::verdict::{Cell, Outcome, Place, Verdict, cells};
 use crate::output::page::Template;
 
 /// A study with all that its page says.
@@ -19,12 +20,15 @@ pub struct MatrixResult {
     pub title: String,
     /// The command line that makes it again.
     pub command: String,
-    /// The same for one variant, its seed left out at the end.
+    /// The same for one variant, its seed left out at the end; `CASE` stands for the name of a case.
     pub replay: String,
     /// Heading of what differs from row to row, and from column to column, of the matrix.
     pub heads: [String; 2],
     /// All variants.
     pub outcomes: Vec<Outcome>,
+    place: Place,
+    /// Names of rows and columns in their order.
+    axes: [Vec<String>; 2],
     cells: Vec<Cell>,
     /// Kinds of variants that were left out, with the reasons.
     pub left_out: Vec<String>,
@@ -36,6 +40,8 @@ pub struct MatrixResult {
 
 #[derive(Serialize)]
 struct OutcomeData<'a> {
+    #[serde(skip_serializing_if = "str::is_empty")]
+    case: &'a str,
     seed: u64,
     kind: &'a str,
     method: &'a str,
@@ -44,19 +50,23 @@ struct OutcomeData<'a> {
     error: Option<f64>,
     bound: Option<f64>,
     reason: &'a str,
+    is_expected: bool,
     not_made: &'a [String],
     work: u64,
     course: &'a [f64],
+    /// Row and column.
+    place: [&'a str; 2],
 }
 
 #[derive(Serialize)]
 struct CellData<'a> {
-    kind: &'a str,
-    method: &'a str,
+    row: &'a str,
+    column: &'a str,
     worst: &'a str,
     of_worst: usize,
     variants: usize,
     closest: Option<f64>,
+    is_expected: bool,
 }
 
 #[derive(Serialize)]
@@ -67,8 +77,8 @@ struct Data<'a> {
     replay: &'a str,
     sentence: String,
     heads: &'a [String; 2],
-    kinds: Vec<&'a str>,
-    methods: Vec<&'a str>,
+    rows: &'a [String],
+    columns: &'a [String],
     cells: Vec<CellData<'a>>,
     outcomes: Vec<OutcomeData<'a>>,
     left_out: &'a [String],
@@ -87,32 +97,63 @@ fn without_numbers(reason: &str) -> String {
 }
 
 /// Values in the order in which they come first.
-fn in_order<'a>(values: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
-    let mut known = Vec::new();
+pub fn in_order<'a>(values: impl Iterator<Item = &'a str>) -> Vec<String> {
+    let mut known: Vec<String> = Vec::new();
     values.for_each(|value| {
-        if !known.contains(&value) {
-            known.push(value);
+        if known.iter().all(|known| known != value) {
+            known.push(value.to_string());
         }
     });
     known
 }
 
+/// A matrix as a picture shows it.
+pub struct Picture<'a> {
+    /// Names of the rows.
+    pub rows: &'a [String],
+    /// Names of the columns.
+    pub columns: &'a [String],
+    /// Worst verdict of each place, row by row, with `true` where as many refusals were foreseen.
+    pub cells: Vec<Vec<Option<(Verdict, bool)>>>,
+}
+
 impl MatrixResult {
-    /// The result of `study`; its other fields are set by the caller.
+    /// The result of a mechanism of one's own, methods over kinds of variants; its other fields are set by the caller.
     pub fn of(study: Study, name: String, title: String) -> Self {
-        let Study { mut outcomes, left_out, not_run } = study;
-        let cells = cells(&mut outcomes);
+        let Study { outcomes, left_out, not_run } = study;
+        let mut kinds: Vec<_> = outcomes.iter().map(|outcome| outcome.class).collect();
+        kinds.sort_unstable();
+        kinds.dedup();
+        let kinds = kinds.into_iter().map(|class| class.name().to_string()).collect();
+        let methods = in_order(outcomes.iter().map(|outcome| outcome.method.as_str()));
+        let place: Place = |outcome| [&outcome.method, outcome.class.name()];
+        let heads = ["method", "variants"].map(str::to_string);
+        let result = Self::placed(outcomes, place, [methods, kinds], heads);
+        MatrixResult { name, title, left_out, not_run, ..result }
+    }
+
+    /// The result of a list of cases, cases over methods.
+    pub fn of_cases(outcomes: Vec<Outcome>, cases: Vec<String>, methods: Vec<String>) -> Self {
+        let place: Place = |outcome| [&outcome.case, &outcome.method];
+        let heads = ["case", "methods"].map(str::to_string);
+        Self::placed(outcomes, place, [cases, methods], heads)
+    }
+
+    fn placed(mut outcomes: Vec<Outcome>, place: Place, axes: [Vec<String>; 2], heads: [String; 2]) -> Self {
+        let cells = cells(&mut outcomes, place);
         MatrixResult {
             origin: String::new(),
-            name,
-            title,
+            name: String::new(),
+            title: String::new(),
             command: String::new(),
             replay: String::new(),
-            heads: ["method".to_string(), "variants".to_string()],
+            heads,
             outcomes,
+            place,
+            axes,
             cells,
-            left_out,
-            not_run,
+            left_out: Vec::new(),
+            not_run: 0,
             facts: Vec::new(),
         }
     }
@@ -125,38 +166,65 @@ impl MatrixResult {
     /// All verdicts in one sentence.
     pub fn sentence(&self) -> String {
         let counts = [Verdict::Right, Verdict::Late, Verdict::Refused, Verdict::Wrong];
+        let foreseen = self.outcomes.iter().filter(|outcome| outcome.is_expected).count();
         let counts = counts.map(|verdict| format!("{} {}", self.count(verdict), verdict.name()));
-        format!("{} runs: {}.", self.outcomes.len(), counts.join(", "))
+        let foreseen =
+            if foreseen > 0 { format!(" {foreseen} of them were foreseen.") } else { String::new() };
+        format!("{} runs: {}.{foreseen}", self.outcomes.len(), counts.join(", "))
     }
 
-    fn kinds(&self) -> Vec<&str> {
-        let mut kinds: Vec<_> = self.outcomes.iter().map(|outcome| outcome.class).collect();
-        kinds.sort_unstable();
-        kinds.dedup();
-        kinds.into_iter().map(|class| class.name()).collect()
+    /// Share of the runs that take the elimination that was compiled for the text, in words.
+    pub fn elimination(&self) -> String {
+        let is_adapted = |outcome: &&Outcome| {
+            matches!(outcome.class, Class::Rows | Class::Frame | Class::Guess)
+                && !outcome.method.starts_with("Stepper")
+        };
+        let [all, adapted] = [self.outcomes.len(), self.outcomes.iter().filter(is_adapted).count()];
+        format!(
+            "that of the text in {} of {all} runs, of other rows and coordinates in {adapted}",
+            all - adapted
+        )
     }
 
-    fn methods(&self) -> Vec<&str> {
-        in_order(self.outcomes.iter().map(|outcome| outcome.method.as_str()))
+    /// Cells in which more runs are refused or late than one in twenty, and nobody foresaw it: row, column, their number.
+    pub fn refusing(&self) -> Vec<(&str, &str, usize)> {
+        let odd = |cell: &Cell| cell.too_many(&self.outcomes);
+        self.cells
+            .iter()
+            .filter_map(|cell| Some((cell.place[0].as_str(), cell.place[1].as_str(), odd(cell)?)))
+            .collect()
     }
 
-    fn cell(&self, kind: &str, method: &str) -> Option<&Cell> {
-        self.cells.iter().find(|cell| cell.class.name() == kind && cell.method == method)
+    fn cell(&self, row: &str, column: &str) -> Option<&Cell> {
+        self.cells.iter().find(|cell| cell.place == [row, column])
     }
 
-    /// The matrix as lines of text, one a method.
+    /// Names of rows and columns, and the worst verdict of each place with `true` where it was foreseen.
+    pub fn picture(&self) -> Picture<'_> {
+        let [rows, columns] = &self.axes;
+        let worst = |row: &String, column: &String| {
+            let cell = self.cell(row, column)?;
+            let (worst, _) = cell.worst(&self.outcomes);
+            Some((worst, cell.too_many(&self.outcomes).is_none()))
+        };
+        let cells = rows.iter().map(|row| columns.iter().map(|column| worst(row, column)).collect());
+        Picture { rows, columns, cells: cells.collect() }
+    }
+
+    /// The matrix as lines of text.
     pub fn matrix(&self) -> String {
-        let kinds = self.kinds();
-        let methods = self.methods();
-        let widest = methods.iter().map(|method| method.chars().count()).max().unwrap_or(6).max(6);
+        let [rows, columns] = &self.axes;
+        let width = |names: &[String]| names.iter().map(|name| name.chars().count()).max().unwrap_or(0);
+        let each = |column: &String| column.chars().count().max(13);
+        let widest = width(rows).max(6);
         let mut text = format!("{:<widest$}", self.heads[0]);
-        kinds.iter().for_each(|kind| text += &format!("  {kind:>13}"));
+        columns.iter().for_each(|column| text += &format!("  {column:>0$}", each(column)));
         text.push('\n');
-        for method in methods {
-            text += &format!("{method:<widest$}");
-            for kind in &kinds {
-                let words = self.cell(kind, method).map_or_else(|| "–".to_string(), |cell| self.words(cell));
-                text += &format!("  {words:>13}");
+        for row in rows {
+            text += &format!("{row:<widest$}");
+            for column in columns {
+                let words = self.cell(row, column).map_or_else(|| "–".to_string(), |cell| self.words(cell));
+                text += &format!("  {words:>0$}", each(column));
             }
             text.push('\n');
         }
@@ -172,14 +240,18 @@ impl MatrixResult {
         }
     }
 
-    /// Reasons of a verdict with their number, the most frequent first, and a seed of each; reasons that differ in numbers are one.
-    pub fn reasons(&self, verdict: Verdict) -> Vec<(String, usize, u64)> {
-        let mut known: BTreeMap<String, (String, usize, u64)> = BTreeMap::new();
-        for outcome in self.outcomes.iter().filter(|outcome| outcome.verdict == verdict) {
-            let words = format!("{}, {}: {}", outcome.method, outcome.class.name(), outcome.reason);
-            let plain =
-                format!("{}, {}: {}", outcome.method, outcome.class.name(), without_numbers(&outcome.reason));
-            known.entry(plain).or_insert((words, 0, outcome.seed)).1 += 1;
+    /// Reasons of a verdict that nobody foresaw, with their number, the most frequent first, and a line that replays each; reasons that differ in numbers
+    /// are one.
+    pub fn reasons(&self, verdict: Verdict) -> Vec<(String, usize, String)> {
+        let mut known: BTreeMap<String, (String, usize, String)> = BTreeMap::new();
+        let is_asked = |outcome: &&Outcome| outcome.verdict == verdict && !outcome.is_expected;
+        for outcome in self.outcomes.iter().filter(is_asked) {
+            let case = if outcome.case.is_empty() { String::new() } else { format!("{}, ", outcome.case) };
+            let place = format!("{case}{}, {}", outcome.method, outcome.class.name());
+            let words = format!("{place}: {}", outcome.reason);
+            let plain = format!("{place}: {}", without_numbers(&outcome.reason));
+            let replay = format!("{}{}", self.replay.replace("CASE", &outcome.case), outcome.seed);
+            known.entry(plain).or_insert((words, 0, replay)).1 += 1;
         }
         let mut all: Vec<_> = known.into_values().collect();
         all.sort_by(|a, b| b.1.cmp(&a.1).then(a.0.cmp(&b.0)));
@@ -198,22 +270,20 @@ impl MatrixResult {
     }
 
     fn data(&self) -> Data<'_> {
-        let cell = |cell: &Cell| {
+        let cells = self.cells.iter().map(|cell| {
             let (worst, of_worst) = cell.worst(&self.outcomes);
-            (worst, of_worst, cell.closest(&self.outcomes))
-        };
-        let cells = self.cells.iter().map(|own| {
-            let (worst, of_worst, closest) = cell(own);
             CellData {
-                kind: own.class.name(),
-                method: &own.method,
+                row: &cell.place[0],
+                column: &cell.place[1],
                 worst: worst.name(),
                 of_worst,
-                variants: own.outcomes.len(),
-                closest,
+                variants: cell.outcomes.len(),
+                closest: cell.closest(&self.outcomes),
+                is_expected: cell.too_many(&self.outcomes).is_none(),
             }
         });
         let outcomes = self.outcomes.iter().map(|outcome| OutcomeData {
+            case: &outcome.case,
             seed: outcome.seed,
             kind: outcome.class.name(),
             method: &outcome.method,
@@ -222,9 +292,11 @@ impl MatrixResult {
             error: outcome.error,
             bound: outcome.bound,
             reason: &outcome.reason,
+            is_expected: outcome.is_expected,
             not_made: &outcome.not_made,
             work: outcome.work,
             course: &outcome.course,
+            place: (self.place)(outcome),
         });
         Data {
             name: &self.name,
@@ -233,8 +305,8 @@ impl MatrixResult {
             replay: &self.replay,
             sentence: self.sentence(),
             heads: &self.heads,
-            kinds: self.kinds(),
-            methods: self.methods(),
+            rows: &self.axes[0],
+            columns: &self.axes[1],
             cells: cells.collect(),
             outcomes: outcomes.collect(),
             left_out: &self.left_out,
@@ -247,7 +319,9 @@ impl MatrixResult {
     pub fn document(&self) -> serde_json::Value {
         let mut value = serde_json::to_value(self.data()).expect("plain data has a JSON form");
         for outcome in value["outcomes"].as_array_mut().into_iter().flatten() {
-            outcome.as_object_mut().map(|fields| fields.remove("course"));
+            if let Some(fields) = outcome.as_object_mut() {
+                fields.retain(|name, _| name != "course" && name != "place");
+            }
         }
         value
     }
@@ -264,18 +338,20 @@ impl MatrixResult {
 
     /// One line a run.
     pub fn csv(&self) -> String {
-        let mut text = "seed,kind,method,verdict,error,bound,work,variant,reason\n".to_string();
+        let mut text = "case,seed,kind,method,verdict,expected,error,bound,work,variant,reason\n".to_string();
         let quoted = |text: &str| format!("\"{}\"", text.replace('"', "\"\"").replace('\n', " "));
         let number = |value: Option<f64>| value.map_or_else(String::new, |value| format!("{value:e}"));
         for outcome in &self.outcomes {
             // Writing to a string succeeds.
             let _ = writeln!(
                 text,
-                "{},{},{},{},{},{},{},{},{}",
+                "{},{},{},{},{},{},{},{},{},{},{}",
+                outcome.case,
                 outcome.seed,
                 outcome.class.name(),
                 quoted(&outcome.method),
                 outcome.verdict.name(),
+                outcome.is_expected,
                 number(outcome.error),
                 number(outcome.bound),
                 outcome.work,

@@ -5,8 +5,11 @@ use std::time::{Duration, Instant};
 use crate::erased::facade::AnyEquations;
 use crate::erased::variations::{MovedVariants, Variable};
 use crate::hard_cases::driven::driven_outcomes;
+use crate::hard_cases::list::description::{Description, Kind};
+use crate::hard_cases::list::sampled::Encoder;
 use crate::hard_cases::moved::moved_outcomes;
 use crate::hard_cases::oracle::{Gap, Oracle};
+use crate::hard_cases::similarity::{Dimension, Similarity};
 use crate::hard_cases::variation::{Class, Subject};
 use crate::hard_cases::verdict::Outcome;
 use crate::setting::MotionMethod;
@@ -20,6 +23,20 @@ pub struct Extent {
     pub seeds: Vec<u64>,
     /// End of the motion (s).
     pub until: f64,
+    /// Known values and bounds of a case of the list.
+    pub description: Option<Description>,
+}
+
+impl Extent {
+    /// `true` where a kind of method is run.
+    pub fn has(&self, kind: Kind) -> bool {
+        self.description.as_ref().is_none_or(|case| case.refused.is_some() || case.bounds.contains_key(&kind))
+    }
+
+    /// `true` where no run has an answer.
+    pub fn is_refused(&self) -> bool {
+        self.description.as_ref().is_some_and(|case| case.refused.is_some())
+    }
 }
 
 /// Time that a study may take.
@@ -125,6 +142,8 @@ impl Own<'_> {
         });
         let kinds: Vec<u64> = kinds.collect();
         let points = points(equations);
+        let (sized, dimensions) = self.dimensions();
+        let is_similar = self.is_similar(&sized, &dimensions);
         let mut left_out = Vec::new();
         let reason = |class: Class| match class {
             Class::Parameters if ranges.is_empty() => Some("no parameter declares a range, `in 0.1..0.2`"),
@@ -135,6 +154,9 @@ impl Own<'_> {
             Class::Rows if kinds.is_empty() => Some("there are no rows"),
             Class::Frame if points.is_empty() => Some("no coordinates are the components of a point"),
             Class::Lanes if moved.is_some() => Some("lanes are for motions that drives prescribe"),
+            Class::Similar if !is_similar => {
+                Some("numbers with units stand in the text, or no parameter has a length or a mass")
+            }
             _ => None,
         };
         let mut classes = Vec::new();
@@ -145,7 +167,29 @@ impl Own<'_> {
             }
         }
         let scales = equations.coordinate_scales();
-        Ok((Subject { classes, ranges, scales, shaken, points, kinds }, left_out))
+        Ok((Subject { classes, ranges, scales, shaken, points, sized, dimensions, kinds }, left_out))
+    }
+
+    /// Index, value and dimension of each parameter, and the dimensions of the coordinates; none where a unit is not known.
+    fn dimensions(&self) -> (Vec<(usize, f64, Dimension)>, Vec<Dimension>) {
+        let variables = self.equations.variables().iter().enumerate();
+        let sized = variables
+            .map(|(index, entry)| Some((index, self.equations.get(index)?, Dimension::of(entry.unit)?)));
+        let coordinates = self.equations.coordinates().iter().map(|entry| Dimension::of(entry.unit));
+        let (sized, coordinates): (Option<Vec<_>>, Option<Vec<_>>) = (sized.collect(), coordinates.collect());
+        (sized.unwrap_or_default(), coordinates.unwrap_or_default())
+    }
+
+    /// `true` where the parameters alone give the mechanism its size.
+    fn is_similar(&self, sized: &[(usize, f64, Dimension)], coordinates: &[Dimension]) -> bool {
+        let similarity = Similarity { power: 3 };
+        let values: Vec<_> = sized
+            .iter()
+            .map(|(index, value, dimension)| (*index, value * similarity.factor(*dimension)))
+            .collect();
+        let has_size = sized.iter().any(|(_, _, dimension)| *dimension != Dimension::default());
+        let (Ok(own), Ok(other)) = (self.oracle(&[]), self.oracle(&values)) else { return false };
+        has_size && coordinates.len() == own.size() && similarity.holds(&own, &other, coordinates)
     }
 }
 
@@ -182,6 +226,17 @@ pub fn study(
         Variable::Still => return Err("its rows leave coordinates free, and it has no masses".to_string()),
         Variable::Driven(_) => {
             let (subject, left_out) = own.subject(None)?;
+            if let Some(case) = &extent.description
+                && let Some(samples) = &case.samples
+            {
+                let index = own.equations.variables().iter().position(|entry| entry.name == samples.input);
+                let index = index.ok_or_else(|| format!("`{}` is no input", samples.input))?;
+                let mut oracle = own.oracle(&[]).map_err(|Gap(reason)| reason)?;
+                let Variable::Driven(mechanism) = own.made(&[]) else { return Err("no drives".to_string()) };
+                let encoder = Encoder { case, samples, index };
+                let outcomes = encoder.outcomes(mechanism.as_ref(), &mut oracle, &subject, extent)?;
+                return Ok(Study { outcomes, left_out, not_run: 0 });
+            }
             let make = |values: &[(usize, f64)]| match own.made(values) {
                 Variable::Driven(mechanism) => Some((mechanism, own.oracle(values).ok()?)),
                 _ => None,

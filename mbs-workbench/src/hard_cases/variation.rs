@@ -3,6 +3,7 @@
 use core::f64::consts::TAU;
 
 use crate::erased::variations::Change;
+use crate::hard_cases::similarity::{Dimension, POWERS, Similarity};
 
 /// Kind of a variant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -21,11 +22,13 @@ pub enum Class {
     Single,
     /// Four lanes.
     Lanes,
+    /// A similar mechanism of another size.
+    Similar,
 }
 
 impl Class {
     /// All kinds.
-    pub const ALL: [Class; 7] = [
+    pub const ALL: [Class; 8] = [
         Class::Steps,
         Class::Parameters,
         Class::Guess,
@@ -33,6 +36,7 @@ impl Class {
         Class::Frame,
         Class::Single,
         Class::Lanes,
+        Class::Similar,
     ];
 
     /// Its name in the matrix.
@@ -45,6 +49,7 @@ impl Class {
             Class::Frame => "frame",
             Class::Single => "f32",
             Class::Lanes => "lanes",
+            Class::Similar => "similar",
         }
     }
 }
@@ -62,6 +67,10 @@ pub struct Subject {
     pub shaken: Vec<usize>,
     /// Indices of the components of each point of the plane or of space.
     pub points: Vec<Vec<usize>>,
+    /// Index, value and dimension of each parameter, for similar mechanisms.
+    pub sized: Vec<(usize, f64, Dimension)>,
+    /// Dimension of each coordinate: N, or none.
+    pub dimensions: Vec<Dimension>,
     /// For each row a number that it shares with those it may change places with: M.
     pub kinds: Vec<u64>,
 }
@@ -81,6 +90,8 @@ pub struct Variation {
     pub shift: Vec<f64>,
     /// Other coordinates and rows.
     pub change: Change,
+    /// Size of a similar mechanism.
+    pub similarity: Similarity,
     /// The variant in words.
     pub words: String,
 }
@@ -133,6 +144,7 @@ impl Variation {
             values: Vec::new(),
             shift: Vec::new(),
             change: Change::default(),
+            similarity: Similarity { power: 0 },
             words: "as the text has it".to_string(),
         };
         match class {
@@ -158,6 +170,16 @@ impl Variation {
                 variation.words = "rows in another order, times 1e-3 to 1e3".to_string();
             }
             Class::Frame => variation.frame(subject, random),
+            Class::Similar => {
+                let [low, high] = POWERS;
+                let power = low + random.index((high - low + 1) as usize) as i32;
+                variation.similarity = Similarity { power };
+                let value = |(index, value, dimension): &(usize, f64, Dimension)| {
+                    (*index, value * variation.similarity.factor(*dimension))
+                };
+                variation.values = subject.sized.iter().map(value).collect();
+                variation.words = format!("a similar mechanism, 2^{power} times as large");
+            }
             Class::Single | Class::Lanes => {
                 variation.finer = random.between(0.95, 1.05);
                 let numbers = if class == Class::Single { "f32" } else { "four lanes" };
@@ -213,20 +235,23 @@ mod tests {
             shaken: vec![2],
             points: vec![vec![1, 2]],
             kinds: vec![0, 1, 0, 1, 0],
+            sized: vec![(0, 2.0, Dimension { length: 1, mass: 0 })],
+            dimensions: vec![Dimension::default(); 3],
         }
     }
 
     #[test]
     fn a_seed_gives_one_variant_and_seeds_give_all_kinds() {
         let subject = subject();
-        let all: Vec<Variation> = (0..70).map(|seed| Variation::of(seed, &subject)).collect();
+        let all: Vec<Variation> = (0..80).map(|seed| Variation::of(seed, &subject)).collect();
         assert_eq!(all[13], Variation::of(13, &subject));
         for class in Class::ALL {
             assert_eq!(all.iter().filter(|variation| variation.class == class).count(), 10, "{class:?}");
         }
-        let parameters = all.iter().flat_map(|variation| &variation.values);
+        let ranged = all.iter().filter(|variation| variation.class == Class::Parameters);
+        let parameters = ranged.flat_map(|variation| &variation.values);
         assert!(parameters.clone().count() == 10 && parameters.clone().all(|(_, v)| (0.1..=0.2).contains(v)));
-        let factors: Vec<f64> = (0..280).map(|seed| Variation::of(seed, &subject).finer).collect();
+        let factors: Vec<f64> = (0..320).map(|seed| Variation::of(seed, &subject).finer).collect();
         assert!(factors.iter().any(|f| *f < 0.6) && factors.iter().any(|f| *f > 3.5), "{factors:?}");
     }
 

@@ -1,5 +1,7 @@
 //! Verdicts of variants, and the matrix that they make.
 
+use std::collections::BTreeMap;
+
 use crate::hard_cases::variation::Class;
 
 /// Verdict on a run.
@@ -30,6 +32,8 @@ impl Verdict {
 /// A run of a variant with its verdict.
 #[derive(Clone, Debug)]
 pub struct Outcome {
+    /// Name of the case; empty for a mechanism of one's own.
+    pub case: String,
     /// Seed of the variant.
     pub seed: u64,
     /// Kind of the variant.
@@ -46,6 +50,8 @@ pub struct Outcome {
     pub bound: Option<f64>,
     /// Reason of a verdict that is not right, in words.
     pub reason: String,
+    /// `true` for a refusal that is right, or that was foreseen.
+    pub is_expected: bool,
     /// Checks that were not made.
     pub not_made: Vec<String>,
     /// Evaluations and corrections of the run.
@@ -54,13 +60,14 @@ pub struct Outcome {
     pub course: Vec<f64>,
 }
 
-/// Variants of one kind by one method.
+/// Names of the row and the column of a matrix that an outcome belongs to.
+pub type Place = fn(&Outcome) -> [&str; 2];
+
+/// Runs in one place of a matrix.
 #[derive(Clone, Debug)]
 pub struct Cell {
-    /// Kind.
-    pub class: Class,
-    /// Method.
-    pub method: String,
+    /// Names of its row and its column.
+    pub place: [String; 2],
     /// Indices of the outcomes.
     pub outcomes: Vec<usize>,
 }
@@ -68,19 +75,19 @@ pub struct Cell {
 /// Work over the median's from which on a run is late.
 const LATE: f64 = 10.0;
 
-/// Cells in the order of kinds and methods; marks what is late.
-pub fn cells(outcomes: &mut [Outcome]) -> Vec<Cell> {
+/// Share of a cell's runs that may be refused or late without having been foreseen.
+const SPARED: f64 = 0.05;
+
+/// Cells in the order in which they come; marks what is late.
+pub fn cells(outcomes: &mut [Outcome], place: Place) -> Vec<Cell> {
     let mut cells: Vec<Cell> = Vec::new();
+    let mut known: BTreeMap<[&str; 2], usize> = BTreeMap::new();
     for (index, outcome) in outcomes.iter().enumerate() {
-        let known =
-            cells.iter_mut().find(|cell| cell.class == outcome.class && cell.method == outcome.method);
-        match known {
+        let own = place(outcome);
+        let cell = *known.entry(own).or_insert(cells.len());
+        match cells.get_mut(cell) {
             Some(cell) => cell.outcomes.push(index),
-            None => cells.push(Cell {
-                class: outcome.class,
-                method: outcome.method.clone(),
-                outcomes: vec![index],
-            }),
+            None => cells.push(Cell { place: own.map(str::to_string), outcomes: vec![index] }),
         }
     }
     for cell in &cells {
@@ -108,6 +115,15 @@ impl Cell {
         (worst, verdicts.filter(|verdict| *verdict == worst).count())
     }
 
+    /// Number of refused and late runs that nobody foresaw, where they are more than one in twenty.
+    pub fn too_many(&self, outcomes: &[Outcome]) -> Option<usize> {
+        let is_odd = |outcome: &Outcome| {
+            matches!(outcome.verdict, Verdict::Refused | Verdict::Late) && !outcome.is_expected
+        };
+        let odd = self.outcomes.iter().filter(|index| is_odd(&outcomes[**index])).count();
+        (odd as f64 > SPARED * self.outcomes.len() as f64).then_some(odd)
+    }
+
     /// Largest error over its bound.
     pub fn closest(&self, outcomes: &[Outcome]) -> Option<f64> {
         let ratio = |index: &usize| {
@@ -124,6 +140,7 @@ mod tests {
 
     fn outcome(method: &str, verdict: Verdict, work: u64) -> Outcome {
         Outcome {
+            case: String::new(),
             seed: 0,
             class: Class::Steps,
             method: method.to_string(),
@@ -132,6 +149,7 @@ mod tests {
             error: Some(1e-9),
             bound: Some(1e-8),
             reason: String::new(),
+            is_expected: false,
             not_made: Vec::new(),
             work,
             course: Vec::new(),
@@ -148,7 +166,7 @@ mod tests {
             outcome("b", Verdict::Wrong, 5),
             outcome("b", Verdict::Refused, 0),
         ];
-        let cells = cells(&mut outcomes);
+        let cells = cells(&mut outcomes, |outcome| [&outcome.method, outcome.class.name()]);
         let worst: Vec<_> = cells.iter().map(|cell| cell.worst(&outcomes)).collect();
         assert_eq!(worst, [(Verdict::Late, 1), (Verdict::Wrong, 1)]);
         assert!(cells[0].closest(&outcomes).is_some_and(|ratio| (ratio - 0.1).abs() < 1e-12));

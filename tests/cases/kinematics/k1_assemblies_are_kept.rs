@@ -69,31 +69,36 @@ kept! {
     time_in_a_vector_row_keeps_the_assembly: AnglesByTimeInARow::default(), f64, Steps::Advance;
     an_input_in_a_vector_row_keeps_the_assembly: AnglesByInputInARow::default(), f64, Steps::Advance;
     a_function_in_a_vector_row_keeps_the_assembly: AnglesByFunctionInARow::new(Twice), f64, Steps::Advance;
-    angles_driven_by_time_keep_the_assembly: AnglesByTime::default(), f64, Steps::Advance;
     angles_driven_by_an_input_keep_the_assembly: AnglesByInput::default(), f64, Steps::Advance;
     angles_driven_by_a_rate_keep_the_assembly: AnglesByRate::default(), f64, Steps::Advance;
-    angles_held_by_a_sine_keep_the_assembly: AnglesBySine::default(), f64, Steps::Advance;
-    relative_angles_driven_by_time_keep_the_assembly: RelativeByTime::default(), f64, Steps::Advance;
     relative_angles_driven_by_an_input_keep_the_assembly: RelativeByInput::default(), f64, Steps::Advance;
     points_with_time_in_a_row_keep_the_assembly: NaturalByTimeInARow::default(), f64, Steps::Advance;
-    points_with_an_input_in_a_row_keep_the_assembly: NaturalByInputInARow::default(), f64, Steps::Advance;
     points_driven_by_an_input_keep_the_assembly: NaturalByInput::default(), f64, Steps::Advance;
-    points_driven_by_a_rate_keep_the_assembly: NaturalByRate::default(), f64, Steps::Advance;
     reference_points_keep_the_assembly: ReferencePointsByInput::default(), f64, Steps::Advance;
     mixed_coordinates_with_an_input_in_a_row_keep_the_assembly: MixedByInputInARow::default(), f64, Steps::Advance;
-    mixed_coordinates_driven_by_time_keep_the_assembly: MixedByTime::default(), f64, Steps::Advance;
     bounded_steps_keep_the_assembly_of_angles: AnglesByInputInARow::default(), f64, AMPLE;
     bounded_steps_keep_the_assembly_of_points: NaturalByTimeInARow::default(), f64, AMPLE;
+    single_precision_keeps_the_assembly_of_angles: AnglesByInput::default(), f32, Steps::Advance;
+    single_precision_keeps_the_assembly_of_points: NaturalByInputInARow::default(), f32, Steps::Advance;
+    single_precision_keeps_the_assembly_of_a_rate: AnglesByRate::default(), f32, Steps::Advance;
+    single_precision_keeps_the_assembly_in_bounded_steps: MixedByInputInARow::default(), f32, AMPLE;
+}
+
+// A way to drive or a kind of coordinates that another test has in another combination.
+#[cfg(feature = "long")]
+kept! {
+    angles_driven_by_time_keep_the_assembly: AnglesByTime::default(), f64, Steps::Advance;
+    angles_held_by_a_sine_keep_the_assembly: AnglesBySine::default(), f64, Steps::Advance;
+    relative_angles_driven_by_time_keep_the_assembly: RelativeByTime::default(), f64, Steps::Advance;
+    points_with_an_input_in_a_row_keep_the_assembly: NaturalByInputInARow::default(), f64, Steps::Advance;
+    points_driven_by_a_rate_keep_the_assembly: NaturalByRate::default(), f64, Steps::Advance;
+    mixed_coordinates_driven_by_time_keep_the_assembly: MixedByTime::default(), f64, Steps::Advance;
     bounded_steps_keep_the_assembly_of_a_rate: AnglesByRate::default(), f64, AMPLE;
     single_precision_keeps_the_assembly_with_time_in_a_row: AnglesByTimeInARow::default(), f32, Steps::Advance;
-    single_precision_keeps_the_assembly_of_angles: AnglesByInput::default(), f32, Steps::Advance;
     single_precision_keeps_the_assembly_of_a_sine: AnglesBySine::default(), f32, Steps::Advance;
-    single_precision_keeps_the_assembly_of_points: NaturalByInputInARow::default(), f32, Steps::Advance;
     single_precision_keeps_the_assembly_of_relative_angles: RelativeByTime::default(), f32, Steps::Advance;
-    single_precision_keeps_the_assembly_of_a_rate: AnglesByRate::default(), f32, Steps::Advance;
     single_precision_keeps_the_assembly_with_an_input_in_a_row: AnglesByInputInARow::default(), f32, Steps::Advance;
     single_precision_keeps_the_assembly_of_mixed_coordinates: MixedByTime::default(), f32, Steps::Advance;
-    single_precision_keeps_the_assembly_in_bounded_steps: MixedByInputInARow::default(), f32, AMPLE;
 }
 
 #[test]

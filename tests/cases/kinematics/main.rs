@@ -8,6 +8,7 @@ mod k1_inputs_that_turn;
 mod k1_points_at_rest;
 mod k1_saved_states;
 mod k1_short_links;
+mod k1_short_links_in_sums;
 mod k1_ways_that_end;
 mod k1_ways_that_fold;
 mod k2_single_precision;

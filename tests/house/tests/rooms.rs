@@ -85,6 +85,7 @@ const HOUSES: &[House] = &[
             "teaching",
             "cost",
             "hard_cases",
+            "effects",
             "commands",
             "command_line",
         ],

@@ -144,7 +144,7 @@ where
     /// Moves on to `until` (s) in `steps` equal steps; not at all where `until` is the present time.
     ///
     /// # Errors
-    /// As [`step`](Self::step); the state is then that before the step that failed.
+    /// [`FailureKind::NoSteps`] for 0 `steps`, else as [`step`](Self::step); the state is then that before the step that failed.
     pub fn step_to(&mut self, until: R, steps: u32) -> Result<(), Failure> {
         let from = self.now.t;
         self.require_steps(until, steps)?;
@@ -221,8 +221,7 @@ where
 
     fn require_steps(&self, until: R, steps: u32) -> Result<(), Failure> {
         if steps == 0 {
-            let step = ((until - self.now.t) / R::constant(0.0)).to_f64();
-            return Err(FailureKind::InvalidStep { step }.at(self.now.t.to_f64()));
+            return Err(FailureKind::NoSteps { until: until.to_f64() }.at(self.now.t.to_f64()));
         }
         Ok(())
     }

@@ -3,7 +3,7 @@
 use crate::kinematics::homotopy::predictor::{Forecast, THIRD};
 use crate::kinematics::homotopy::step_length::LARGEST_GROWTH;
 use crate::kinematics::homotopy::walk::{Spot, Walk};
-use crate::kinematics::homotopy::{LARGEST_APPROACH, LARGEST_BEND, leads};
+use crate::kinematics::homotopy::{LARGEST_APPROACH, LARGEST_BEND, Turned, leads};
 use crate::kinematics::link_lengths;
 use crate::kinematics::position::branch_failure;
 use crate::linear_algebra::vectors::largest_difference;
@@ -32,6 +32,10 @@ const LARGEST_KINK: f64 = 0.25;
 /// Largest distance of a length from its prediction to its solution, over its movement in the piece. Also the largest Newton step
 /// after the first one, over the first one. A link that turns by a radian has a sixth and a tenth, however short it is.
 const LARGEST_PART: f64 = 0.25;
+
+/// Largest difference of the margin at a prediction from that of its solution, over it. The solution of another assembly is as far from the
+/// zero of the determinant on its other side: twice the margin.
+const LARGEST_CHANGE_OF_MARGIN: f64 = 0.5;
 
 /// The same of a step so small that it need not shrink further: some rounding is in it.
 const LEAST_PART: f64 = 1.0 / 64.0;
@@ -90,7 +94,7 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Walk<'_, '_
         share: R,
         length: R,
     ) -> Landing<S, R, N, M> {
-        let Some((q, off)) = self.corrected(forecast, share) else { return Landing::Doubtful(None) };
+        let Some((q, off, turned)) = self.corrected(forecast, share) else { return Landing::Doubtful(None) };
         let mut way = q;
         way.iter_mut().zip(&forecast.q).for_each(|(way, from)| *way = *way - *from);
         let part = link_lengths::weighted(&way, &forecast.weights);
@@ -112,11 +116,20 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Walk<'_, '_
         let bend = if tight { LARGEST_BEND_OF_A_PASSAGE } else { LARGEST_BEND };
         let parts = [approach, R::constant(bend), R::constant(LARGEST_TWIST)];
         let allowed = parts.map(|part| part * next.margin);
-        let most_part = if tight { approach } else { R::constant(LARGEST_PART) };
+        let change = if tight { approach } else { R::constant(LARGEST_CHANGE_OF_MARGIN) };
+        let most_part = R::constant(LARGEST_PART);
         // Written so that NaN is not near.
         let near = off <= allowed[0] && forecast.second <= allowed[1] && forecast.third <= allowed[2];
-        let foreseen = part <= most_part && forecast.third_part <= R::constant(LARGEST_PART);
-        if !(near && foreseen && is_resolved(at, &next, forecast.first)) {
+        let foreseen = forecast.drives_little
+            && part <= most_part
+            && forecast.third_part <= most_part
+            && turned.is_within(change, next.margin, next.orientation);
+        let alike = next.response.is_like(&at.response, passage)
+            || forecast.first <= link_lengths::rounding(next.margin);
+        // The end of the way may be as near to a change point as it likes: nothing is continued from there.
+        let told =
+            is_resolved(at, &next, forecast.first) && (R::constant(1.0) <= share || self.is_resolved(&next));
+        if !(near && foreseen && alike && told) {
             let falls = next.margin < at.margin && !leads(at.margin + at.margin);
             return Landing::Doubtful(Some(next).filter(|_| tight || falls && !passage));
         }
@@ -151,12 +164,12 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Walk<'_, '_
         branch_failure(mechanism, &station.parameters, &position, station.t, false).is_none()
     }
 
-    /// Newton's method from a `prediction` at a `share` of the path, if it ends nearby, with its distance from there.
-    fn corrected(&mut self, forecast: &Forecast<R, N>, share: R) -> Option<([R; N], R)> {
+    /// Newton's method from a `prediction` at a `share` of the path, if it ends nearby, with its distance from there and the margin there.
+    fn corrected(&mut self, forecast: &Forecast<R, N>, share: R) -> Option<([R; N], R, Turned<R>)> {
         let station = self.station(share);
         let scales = self.way.mechanism.coordinate_scales(&station.parameters);
         let prediction = &forecast.q;
-        let (mut q, mut most) = (*prediction, R::constant(LARGEST_PART));
+        let (mut q, mut most, mut turned) = (*prediction, R::constant(LARGEST_PART), None);
         for _ in 0..CORRECTIONS {
             if self.is_spent() {
                 return None;
@@ -164,6 +177,7 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Walk<'_, '_
             self.evaluations = self.evaluations.saturating_add(1);
             let (mechanism, position) = self.position(&station, &q);
             let (factors, margin) = mechanism.factorize(&station.parameters, &position);
+            let turned = *turned.get_or_insert(Turned::of(&margin));
             let step = mechanism.solve_linear(&factors, &station.open(mechanism, &position));
             q.iter_mut().zip(&step).for_each(|(coordinate, change)| *coordinate = *coordinate - *change);
             let off = largest_difference(&q, prediction, &scales);
@@ -176,7 +190,7 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Walk<'_, '_
             most = most.min((R::constant(LARGEST_PART) * part).max(R::constant(LEAST_PART)));
             let last = largest_difference(&step, &[R::constant(0.0); N], &scales);
             if last * last <= closed::<R>() * margin.value && part <= R::constant(LEAST_PART) {
-                return Some((q, off));
+                return Some((q, off, turned));
             }
         }
         None

@@ -3,6 +3,7 @@
 mod corrector;
 mod discontinuity;
 mod predictor;
+mod response;
 mod step_length;
 mod walk;
 
@@ -90,6 +91,13 @@ pub(crate) fn put_short_way_round<R: Real>(turning: &[u16], kept: &mut [R], befo
             *kept = R::constant(old + turns * TAU);
         }
     }
+}
+
+/// Margin of a position, and the signs of its determinants.
+#[derive(Clone, Copy)]
+struct Turned<R> {
+    margin: R,
+    orientation: u64,
 }
 
 /// A position as one before it foresees it.

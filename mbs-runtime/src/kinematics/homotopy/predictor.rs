@@ -4,6 +4,7 @@ use crate::kinematics::homotopy::walk::{Spot, Station, Walk};
 use crate::kinematics::link_lengths;
 use crate::mechanism::Kinematic;
 use crate::scalar::number::Real;
+use crate::tolerances::positions;
 
 /// Part of a piece between the points of its difference quotients, which are all in it. So they are as exact as its prediction.
 /// Next to where assemblies cross, their error counts by the inverse margin, and is of the fourth order.
@@ -12,6 +13,13 @@ pub(super) const THIRD: f64 = 1.0 / 3.0;
 /// −c₂ and −c₃ of c₂ s² + c₃ s³ + c₄ s⁴ from its values at s = 0, 1/3, 2/3 and 1; the first is rounding and in all of them.
 const SECOND_ORDER: [f64; 4] = [21.25, -27.0, 6.75, -1.0];
 const THIRD_ORDER: [f64; 4] = [-45.0, 67.5, -27.0, 4.5];
+
+/// Part of a piece at which its drives are looked at between the thirds, and the weights of the cubic through those there.
+const PROBE: f64 = 0.382;
+const AT_PROBE: [f64; 4] = [-0.038_527_356, 0.907_240_068, 0.155_101_932, -0.023_814_644];
+
+/// Largest part of the way of drives in a third of a piece that is beyond a parabola: that of a crank which turns by 1.5 rad.
+const LARGEST_TURN: f64 = 0.25;
 
 /// Prediction of the next piece from a spot.
 pub(super) struct Forecast<R, const N: usize> {
@@ -32,6 +40,8 @@ pub(super) struct Forecast<R, const N: usize> {
     pub(super) weights: [R; N],
     /// Distances of points from the forecast that others cause, at their first coordinates.
     pub(super) caused: [R; N],
+    /// `true` if what drives the rows turns little on the way.
+    pub(super) drives_little: bool,
 }
 
 /// A linear combination.
@@ -43,22 +53,61 @@ fn combined<R: Real, const M: usize>(weights: [R; 4], of: [&[R; M]; 4]) -> [R; M
     sum
 }
 
+/// `true` if the rows, opened by their drives alone, open nearly along a parabola, or by rounding (to a hundredth). `open`: residuals (M) at the ends of the
+/// thirds of a piece, `probed`: at [`PROBE`] of it; `scales`: those of the rows.
+///
+/// A crank that turns by φ in a piece has (2 sin(φ/6))² of its way in a third beyond the parabola. No Jacobian is in it: a short crank is
+/// told where rounding over the margin hides the movement of its end. One that turns by as many turns as there are thirds is told between.
+fn drives_turn_little<R: Real, const M: usize>(open: [&[R; M]; 4], probed: &[R; M], scales: &[R; M]) -> bool {
+    let (mut way, mut beyond) = (R::constant(0.0), R::constant(0.0));
+    let foreseen = combined(AT_PROBE.map(R::constant), open);
+    let [zero, one, two, three] = open;
+    let ends = zero.iter().zip(one).zip(two.iter().zip(three));
+    for ((((zero, one), (two, three)), scale), (probed, foreseen)) in
+        ends.zip(scales).zip(probed.iter().zip(&foreseen))
+    {
+        let parts = [*one - *zero, *two - *one, *three - *two, *probed - *zero].map(|part| part / *scale);
+        way = parts.iter().fold(way, |way, part| way.max(part.abs()));
+        let third = parts[2] - parts[1] - (parts[1] - parts[0]);
+        beyond = beyond.max(third.abs()).max(((*probed - *foreseen) / *scale).abs());
+    }
+    // Written so that NaN is no little turn.
+    way <= positions::ROUNDED_MOVEMENT.of() || beyond <= R::constant(LARGEST_TURN) * way
+}
+
+/// Stations at the thirds of a piece.
+type Thirds<S, R, const N: usize, const M: usize> = [Station<S, R, N, M>; 3];
+
 impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Walk<'_, '_, S, R, N, M> {
     /// dq/dσ at a spot, by a one-sided difference quotient over `length`, and the stations that it was taken at.
-    pub(super) fn slope(&mut self, at: &Spot<S, R, N, M>, length: R) -> ([R; N], [Station<S, R, N, M>; 3]) {
+    pub(super) fn slope(&mut self, at: &Spot<S, R, N, M>, length: R) -> ([R; N], Thirds<S, R, N, M>) {
+        let (slope, stations, _) = self.slope_and_openings(at, length);
+        (slope, stations)
+    }
+
+    /// [`slope`](Self::slope), with the residuals of the rows at its stations.
+    fn slope_and_openings(
+        &mut self,
+        at: &Spot<S, R, N, M>,
+        length: R,
+    ) -> ([R; N], Thirds<S, R, N, M>, [[R; M]; 3]) {
         let third = R::constant(THIRD) * length;
         let stations = [third, third + third, length].map(|ahead| self.station(at.share + ahead));
         let [one, two, three] = stations.each_ref().map(|station| self.residuals(station, &at.q));
         let weights = [-11.0, 18.0, -9.0, 2.0].map(|weight| R::constant(-weight / 6.0) / third);
         let rate = combined(weights, [&at.rest, &one, &two, &three]);
-        (self.way.mechanism.solve_linear(&at.factors, &rate), stations)
+        (self.way.mechanism.solve_linear(&at.factors, &rate), stations, [one, two, three])
     }
 
     /// Taylor's polynomial of the third order: the slope, then the curvature from the residuals of the rows along it, then the
     /// term from those along the parabola. Counts as two evaluations.
     pub(super) fn forecast(&mut self, at: &Spot<S, R, N, M>, length: R) -> Forecast<R, N> {
         self.evaluations = self.evaluations.saturating_add(2);
-        let (slope, stations) = self.slope(at, length);
+        let (slope, stations, [one, two, three]) = self.slope_and_openings(at, length);
+        let probe = self.station(at.share + R::constant(PROBE) * length);
+        let probed = self.residuals(&probe, &at.q);
+        let row_scales = self.way.mechanism.row_scales(&probe.parameters);
+        let drives_little = drives_turn_little([&at.rest, &one, &two, &three], &probed, &row_scales);
         let third = R::constant(THIRD) * length;
         let along = |times: R| {
             let mut q = at.q;
@@ -92,7 +141,18 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Walk<'_, '_
         let weights = link_lengths::weights(&points, &scales, [&straight, &bend, &caused], at.margin);
         let (second, third) = (self.size(&bend), self.size(&twist));
         let third_part = link_lengths::weighted(&twist, &weights);
-        Forecast { q, first, second, third, third_part, start: slope, slope: tip, weights, caused }
+        Forecast {
+            q,
+            first,
+            second,
+            third,
+            third_part,
+            start: slope,
+            slope: tip,
+            weights,
+            caused,
+            drives_little,
+        }
     }
 
     /// Term at the end of a piece of `length` from the residuals of the rows along a parabola, with the `weights` of its order.

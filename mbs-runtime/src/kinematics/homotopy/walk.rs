@@ -1,6 +1,7 @@
 //! A path that is being followed: its places, and the pieces one after the other.
 
 use crate::kinematics::homotopy::corrector::Landing;
+use crate::kinematics::homotopy::response::Response;
 use crate::kinematics::homotopy::step_length::{aimed, beyond, is_far, next_piece, reach, shortened};
 use crate::kinematics::homotopy::{Followed, Homotopy, Leading, leads};
 use crate::linear_algebra::vectors::largest_difference;
@@ -33,6 +34,8 @@ pub(super) struct Spot<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: 
     pub(super) rest: [R; M],
     pub(super) margin: R,
     pub(super) orientation: u64,
+    /// Answers of the coordinates to open rows.
+    pub(super) response: Response<R, N>,
 }
 
 impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Station<S, R, N, M> {
@@ -147,7 +150,8 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Walk<'_, '_
             mechanism.factorize(&station.parameters, &position);
         let rest = station.open(mechanism, &position);
         let orientation = orientation.as_ref().first().copied().unwrap_or(0);
-        Spot { q, share, factors, rest, margin, orientation }
+        let response = Response::of(mechanism, &station.parameters, &factors);
+        Spot { q, share, factors, rest, margin, orientation, response }
     }
 
     pub(super) fn size(&self, difference: &[R; N]) -> R {

@@ -8,6 +8,7 @@ mod evaluation;
 mod functions;
 mod mechanics;
 mod number;
+mod quantities;
 mod state;
 #[cfg(test)]
 mod tests;
@@ -25,7 +26,7 @@ use self::evaluation::{Definition, Names, Scope, Value, joined, value};
 use self::functions::dot;
 use self::mechanics::mechanics;
 use self::number::{Dual, Number};
-pub use self::state::{Balance, Row, State};
+pub use self::state::{Balance, Quantity, Row, State};
 use self::tree::{Placed, equations, unrolled};
 
 /// Direction of the first derivative.
@@ -43,6 +44,8 @@ pub struct Oracle {
     /// Names and shapes of coordinates and of first-order states.
     coordinates: Vec<(String, Vec<usize>)>,
     states: Vec<(String, Vec<usize>)>,
+    /// `true` for each coordinate that is the same after a whole turn.
+    turns: Vec<bool>,
     /// Constants, parameters and inputs.
     given: Rc<BTreeMap<String, Value>>,
     definitions: Rc<BTreeMap<String, Vec<Definition>>>,
@@ -72,7 +75,7 @@ impl Oracle {
     pub fn read(source: &str, scene: Option<&str>, known: &dyn Fn(&str) -> Option<f64>) -> Result<Self, Gap> {
         let placed = unrolled(source, scene).map_err(Gap)?;
         let mut names = Names::default();
-        let (mut coordinates, mut states) = (Vec::new(), Vec::new());
+        let (mut coordinates, mut states, mut turns) = (Vec::new(), Vec::new(), Vec::new());
         let mut definitions: BTreeMap<String, Vec<Definition>> = BTreeMap::new();
         for Placed { kind, rounds } in &placed {
             match kind {
@@ -91,7 +94,10 @@ impl Oracle {
                     names.moving.insert(name.text.clone(), Value { shape, items: items? });
                 }
                 StatementKind::Coord { name, kind, .. } => {
-                    coordinates.push((name.text.clone(), shape(kind, &names)?));
+                    let shape = shape(kind, &names)?;
+                    let count = shape.iter().product::<usize>();
+                    turns.extend(core::iter::repeat_n(kind.unit.text == "turn", count));
+                    coordinates.push((name.text.clone(), shape));
                 }
                 StatementKind::State { name, kind, .. } => {
                     states.push((name.text.clone(), shape(kind, &names)?));
@@ -111,6 +117,7 @@ impl Oracle {
             placed,
             coordinates,
             states,
+            turns,
             given,
             definitions,
             groups: Vec::new(),
@@ -132,6 +139,20 @@ impl Oracle {
     /// Number of coordinates.
     pub fn size(&self) -> usize {
         self.coordinates.iter().map(|(_, shape)| shape.iter().product::<usize>()).sum()
+    }
+
+    /// `true` for each coordinate that is the same after a whole turn: N.
+    pub fn turns(&self) -> &[bool] {
+        &self.turns
+    }
+
+    /// Gives the first component of a parameter or an input another value.
+    pub fn set(&mut self, name: &str, value: f64) {
+        if let Some(known) = Rc::make_mut(&mut self.given).get_mut(name)
+            && let Some(first) = known.items.first_mut()
+        {
+            *first = Number::still(value);
+        }
     }
 
     /// Number of rows.

@@ -28,6 +28,17 @@ pub struct Row {
     pub second: f64,
 }
 
+/// A component of a coordinate or an output with its time derivatives along the motion.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Quantity {
+    /// Value.
+    pub value: f64,
+    /// First derivative.
+    pub rate: f64,
+    /// Second derivative.
+    pub second: f64,
+}
+
 /// A sum that should be zero, with the sum of the magnitudes of its terms.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Balance {

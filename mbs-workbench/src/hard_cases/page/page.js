@@ -20,6 +20,8 @@ function words(cell) {
   return cell.closest === null ? "right" : `right ${short(cell.closest)}`;
 }
 
+const again = (outcome) => `${DATA.replay.replace("CASE", outcome.case)}${outcome.seed}`;
+
 function sparkline(course) {
   const svg = document.createElementNS("http://www.w3.org/2000/svg", "svg");
   const seen = course.filter((value) => value !== null);
@@ -38,14 +40,14 @@ function open(cell, button) {
   document.querySelectorAll("#matrix .chosen").forEach((other) => other.classList.remove("chosen"));
   button.classList.add("chosen");
   by("opened").hidden = false;
-  by("opened-title").textContent = `${cell.method}, ${cell.kind}`;
+  by("opened-title").textContent = `${cell.row}, ${cell.column}`;
   const table = by("variants");
   table.replaceChildren();
   const head = element("tr");
   for (const name of ["seed", "verdict", "error", "bound", "variant and reason", "course", "replay"]) head.append(element("th", name));
   table.append(head);
   const rank = ["wrong", "refused", "late", "right"];
-  const own = DATA.outcomes.filter((outcome) => outcome.kind === cell.kind && outcome.method === cell.method);
+  const own = DATA.outcomes.filter((outcome) => outcome.place[0] === cell.row && outcome.place[1] === cell.column);
   own.sort((a, b) => rank.indexOf(a.verdict) - rank.indexOf(b.verdict) || a.seed - b.seed);
   for (const outcome of own) {
     const row = element("tr", undefined, outcome.verdict);
@@ -53,14 +55,14 @@ function open(cell, button) {
     const verdict = element("td");
     verdict.append(element("span", `${MARKS[outcome.verdict]} ${outcome.verdict}`, "tag"));
     row.append(verdict, element("td", short(outcome.error)), element("td", short(outcome.bound)));
-    const why = element("td", outcome.variant);
+    const why = element("td", `${outcome.kind}: ${outcome.variant}`);
     if (outcome.reason) why.append(element("br"), element("b", outcome.reason));
     row.append(why);
     const picture = element("td");
     picture.append(sparkline(outcome.course));
     row.append(picture);
     const replay = element("td");
-    replay.append(element("code", `${DATA.replay}${outcome.seed}`));
+    replay.append(element("code", again(outcome)));
     row.append(replay);
     table.append(row);
   }
@@ -74,19 +76,19 @@ for (const verdict of Object.keys(MARKS)) {
   by("legend").append(entry);
 }
 const head = element("tr");
-head.append(element("th", DATA.heads[0]), ...DATA.kinds.map((kind) => element("th", kind)));
+head.append(element("th", DATA.heads[0]), ...DATA.columns.map((column) => element("th", column)));
 const thead = element("thead");
 thead.append(head);
 const body = element("tbody");
 let worst = null;
-for (const method of DATA.methods) {
+for (const name of DATA.rows) {
   const row = element("tr");
-  row.append(element("th", method));
-  for (const kind of DATA.kinds) {
-    const cell = DATA.cells.find((cell) => cell.kind === kind && cell.method === method);
+  row.append(element("th", name));
+  for (const column of DATA.columns) {
+    const cell = DATA.cells.find((cell) => cell.row === name && cell.column === column);
     const place = element("td");
     if (cell) {
-      const button = element("button", undefined, cell.worst);
+      const button = element("button", undefined, cell.worst === "refused" && !cell.is_expected ? "refused odd" : cell.worst);
       button.append(element("span", MARKS[cell.worst], "mark"), words(cell));
       button.addEventListener("click", () => open(cell, button));
       if (cell.worst === "wrong" && !worst) worst = () => open(cell, button);
@@ -103,8 +105,8 @@ by("matrix").append(thead, body);
 if (worst) worst();
 
 const reasons = new Map();
-for (const outcome of DATA.outcomes.filter((outcome) => outcome.verdict !== "right")) {
-  const key = [outcome.verdict, outcome.method, outcome.kind, outcome.reason.replace(/[-\d.e]+/g, "")].join("\n");
+for (const outcome of DATA.outcomes.filter((outcome) => outcome.verdict !== "right" && !outcome.is_expected)) {
+  const key = [outcome.verdict, outcome.case, outcome.method, outcome.kind, outcome.reason.replace(/[-\d.e]+/g, "")].join("\n");
   const known = reasons.get(key);
   if (known) known.count += 1;
   else reasons.set(key, { ...outcome, count: 1 });
@@ -113,8 +115,8 @@ const rank = { wrong: 0, refused: 1, late: 2 };
 const sorted = [...reasons.values()].sort((a, b) => rank[a.verdict] - rank[b.verdict] || b.count - a.count);
 for (const found of sorted.slice(0, 60)) {
   const line = element("p", undefined, found.verdict);
-  line.append(element("span", `${MARKS[found.verdict]} ${found.count}`, "tag"), ` ${found.method}, ${found.kind}: ${found.reason} `);
-  line.append(element("code", `${DATA.replay}${found.seed}`));
+  line.append(element("span", `${MARKS[found.verdict]} ${found.count}`, "tag"), ` ${found.case ? `${found.case}, ` : ""}${found.method}, ${found.kind}: ${found.reason} `);
+  line.append(element("code", again(found)));
   by("reasons").append(line);
 }
 if (sorted.length === 0) by("reasons-panel").hidden = true;

@@ -1,6 +1,8 @@
 //! Four-bars that fold flat, and one that does not: their assemblies in closed form.
 
 pub mod follow;
+// Some texts are of the second tier alone.
+#[cfg_attr(not(feature = "long"), allow(dead_code))]
 pub mod texts;
 
 use core::f64::consts::PI;

@@ -1,0 +1,94 @@
+//! The matrix of a list of cases as a picture in SVG.
+
+use core::fmt::Write;
+
+use crate::hard_cases::result::Picture;
+use crate::hard_cases::verdict::Verdict;
+use crate::output::page::escaped;
+
+/// Height of a row, width of a column, room for the names of rows and columns.
+const ROW: usize = 20;
+const COLUMN: usize = 46;
+const NAMES: usize = 330;
+const HEADS: usize = 150;
+
+/// Colour and mark of a place: colours that differ for the colour-blind, marks without them.
+fn look(verdict: Verdict, is_expected: bool) -> (&'static str, &'static str) {
+    match (verdict, is_expected) {
+        (Verdict::Right, _) => ("#0072b2", "✓"),
+        (Verdict::Late, _) => ("#e69f00", "◷"),
+        (Verdict::Refused, true) => ("#8a8f99", "–"),
+        (Verdict::Refused, false) => ("#b8bcc4", "?"),
+        (Verdict::Wrong, _) => ("#d55e00", "✗"),
+    }
+}
+
+/// The picture.
+pub fn svg(picture: &Picture<'_>, sentence: &str) -> String {
+    let width = NAMES + COLUMN * picture.columns.len() + 90;
+    let height = HEADS + ROW * picture.rows.len() + 54;
+    let mut text = format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" height=\"{height}\" \
+         font-family=\"system-ui, sans-serif\" font-size=\"12\">\n<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n"
+    );
+    for (column, name) in picture.columns.iter().enumerate() {
+        let x = NAMES + COLUMN * column + COLUMN / 2;
+        let y = HEADS - 8;
+        // Writing to a string succeeds.
+        let _ = writeln!(
+            text,
+            "<text x=\"{x}\" y=\"{y}\" transform=\"rotate(-35 {x} {y})\" fill=\"#1c2330\">{}</text>",
+            escaped(name)
+        );
+    }
+    for (row, name) in picture.rows.iter().enumerate() {
+        let y = HEADS + ROW * row;
+        let _ = writeln!(
+            text,
+            "<text x=\"{}\" y=\"{}\" text-anchor=\"end\" fill=\"#1c2330\">{}</text>",
+            NAMES - 8,
+            y + 14,
+            escaped(name)
+        );
+        for (column, cell) in picture.cells[row].iter().enumerate() {
+            let x = NAMES + COLUMN * column;
+            let Some((verdict, is_expected)) = cell else { continue };
+            let (colour, mark) = look(*verdict, *is_expected);
+            let _ = writeln!(
+                text,
+                "<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" rx=\"3\" fill=\"{colour}\"/>\
+                 <text x=\"{}\" y=\"{}\" text-anchor=\"middle\" fill=\"#fff\" font-weight=\"700\">{mark}</text>",
+                x + 1,
+                y + 1,
+                COLUMN - 2,
+                ROW - 2,
+                x + COLUMN / 2,
+                y + 14
+            );
+        }
+    }
+    let y = HEADS + ROW * picture.rows.len() + 22;
+    let legend = [
+        (Verdict::Right, true, "right"),
+        (Verdict::Late, true, "late"),
+        (Verdict::Refused, true, "refused, as foreseen"),
+        (Verdict::Refused, false, "refused"),
+        (Verdict::Wrong, true, "wrong"),
+    ];
+    let mut x = 12;
+    for (verdict, is_expected, name) in legend {
+        let (colour, mark) = look(verdict, is_expected);
+        let _ = writeln!(
+            text,
+            "<rect x=\"{x}\" y=\"{}\" width=\"20\" height=\"18\" rx=\"3\" fill=\"{colour}\"/>\
+             <text x=\"{}\" y=\"{y}\" text-anchor=\"middle\" fill=\"#fff\" font-weight=\"700\">{mark}</text>\
+             <text x=\"{}\" y=\"{y}\" fill=\"#66707f\">{name}</text>",
+            y - 14,
+            x + 10,
+            x + 26
+        );
+        x += 44 + 7 * name.len();
+    }
+    let _ = writeln!(text, "<text x=\"12\" y=\"{}\" fill=\"#66707f\">{}</text>", y + 24, escaped(sentence));
+    text + "</svg>\n"
+}

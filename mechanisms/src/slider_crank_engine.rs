@@ -1,0 +1,206 @@
+//! The slider-crank of a four-stroke engine whose forces are effects: which of them does the piston's side load need?
+//!
+//! ```text
+//!      ┌──┐
+//!      │[]│ P    cylinder along y, its liner holds the piston
+//!      │/ │
+//!      /         φ: rod against the y axis (rad)
+//!   A o
+//!      \
+//!       o O      θ: crank against the y axis (rad), 0 where the charge is lit
+//! ```
+//!
+//! Lengths in metres, masses in kg, `q = [θ φ c p]`. The rows are the joints, so their multipliers are the forces in the pins.
+//!
+//! | effect | law |
+//! |---|---|
+//! | `gas` | pressure of the cylinder over the crank angle as a table of 20 harmonics of θ/2, one working cycle in two turns |
+//! | `rod` | mass and moment of inertia of the rod |
+//! | `gravity` | weight of all bodies |
+//! | `liner_friction` | rings: μ \|N\| tanh(ẏ/v₀) + c ẏ with the piston's own side load N |
+//! | `pin_friction` | pins: μ \|F\| tanh(ρ Δω/v₀) at the radius ρ with the pin's own force F |
+//! | `motor` | starter with the torque–speed line τ₀ (1 − ω/ω₀) |
+//! | `fan` | quadratic drag −c ω \|ω\| |
+//! | `spring` | spring between head and piston |
+//!
+//! Numbers: a small petrol engine, round. The table is of a cycle with polytropic compression and heat by Wiebe's law.
+//! `mechanisms/references/slider_crank_engine.py` makes it, and solves the motion by equations that were derived by hand.
+
+use mbs_runtime::mechanism;
+use mbs_workbench::card;
+use mbs_workbench::card::Card;
+
+/// In the list of free mechanisms.
+pub const CARD: Card = card!(SliderCrankEngine::default());
+
+mechanism! {
+    /// Slider-crank of a four-stroke engine.
+    pub mechanism SliderCrankEngine;
+    /// Radius of the crank.
+    param r: m = 40mm in 10mm..100mm;
+    /// Length of the rod, and distance of its centre of mass from the crank pin.
+    param L: m = 140mm in 60mm..400mm;
+    param d: m = 45mm;
+    param piston_mass: kg = 0.45;
+    /// Moment of inertia of crank and flywheel.
+    param wheel: kg*m^2 = 0.15;
+    /// Speed at the start.
+    param speed: rad/s = 2400rpm;
+
+    coord theta: rad = 0;
+    coord phi: rad = 0;
+    coord c: [m; 2] = [0, 85mm];
+    coord p: [m; 2] = [0, 180mm];
+    let pin = r*[-sin(theta), cos(theta)];
+    let along = [-sin(phi), cos(phi)];
+    body crank { mass: 5kg, com: [0, 0], inertia: wheel, angle: theta }
+    body piston { mass: piston_mass, com: p }
+    constraint crank_pin { c - d*along == pin; }
+    constraint piston_pin { p == c + (L - d)*along; }
+    constraint liner { p[0] == 0; }
+    branch upright: cos(phi) > 0;
+    start theta = 0 rate speed;
+
+    out O: [m; 2] = [0, 0];
+    out A: [m; 2] = pin;
+    out P: [m; 2] = p;
+    /// Force of the piston on the liner.
+    out side_load: N = lambda(liner);
+    /// Force in the crank pin.
+    out pin_force: N = hypot(lambda(crank_pin.0), lambda(crank_pin.1));
+    /// Speed of the crank.
+    out crank_speed: rad/s = der(theta);
+
+    /// Gas in the cylinder above that of the surroundings.
+    effect gas {
+        param bore: m = 80mm in 0..200mm;
+        const MEAN: Pa = 366600;
+        const COSINES: Pa = [
+            650400, 458000, 279800, 173300, 110100, 55900, 3100, -30800, -43500, -42900,
+            -43800, -45200, -44600, -36900, -28400, -21500, -19100, -16100, -12300, -7100
+        ];
+        const SINES: Pa = [
+            208300, 290100, 274800, 221100, 191200, 172100, 146300, 106100, 70500, 47100,
+            34900, 22400, 8800, -2700, -7200, -7200, -6900, -8700, -10300, -9400
+        ];
+        let pressure = MEAN + sum(k in 0..20: COSINES[k]*cos((k + 1)*theta/2) + SINES[k]*sin((k + 1)*theta/2));
+        force gas: [0, -PI/4*bore^2*pressure] on p;
+    }
+    effect rod {
+        param rod_mass: kg = 0.6;
+        param rod_inertia: kg*m^2 = 2.2e-3;
+        body rod { mass: rod_mass, com: c, inertia: rod_inertia, angle: phi }
+    }
+    effect gravity {
+        param g: m/s^2 = 9.81;
+        gravity weight { acceleration: [0, -g] }
+    }
+    effect liner_friction {
+        param mu_liner: 1 = 0.08;
+        param viscous: N*s/m = 4;
+        friction rings {
+            along: p[1], normal: lambda(liner), coefficient: mu_liner, speed: 0.1 [m/s], viscous: viscous
+        }
+    }
+    effect pin_friction {
+        /// With a film of oil.
+        param mu_pins: 1 = 0.002;
+        friction big_end {
+            along: 22mm*(phi - theta), normal: hypot(lambda(crank_pin.0), lambda(crank_pin.1)),
+            coefficient: mu_pins, speed: 0.1 [m/s]
+        }
+        friction small_end {
+            along: 11mm*phi, normal: hypot(lambda(piston_pin.0), lambda(piston_pin.1)),
+            coefficient: 2*mu_pins, speed: 0.1 [m/s]
+        }
+    }
+    effect motor {
+        param stall: N*m = 60;
+        param idle: rad/s = 6000rpm;
+        torque motor: stall*(1 - der(theta)/idle) on theta;
+    }
+    effect fan {
+        param drag: N*m*s^2 = 2e-4;
+        torque fan: -drag*der(theta)*abs(der(theta)) on theta;
+    }
+    effect spring {
+        param stiffness: N/m = 3000;
+        tsda spring { from: [0, 260mm], to: p, stiffness: stiffness, length: 120mm }
+    }
+
+    title "Slider-crank engine";
+    about "One working cycle of a small four-stroke engine, with forces as effects: `mbs effects slider_crank_engine` \
+           tells which of them a result needs.";
+    preset cycle "two turns from the dead centre at 2400/min" {}
+    span 50ms;
+    draw ground O;
+    draw rail P along [0, 1];
+    draw slider P along [0, 1];
+    draw link crank: O, A;
+    draw link rod: A, P;
+    draw joint O, A, P;
+    trace piston: P;
+}
+
+#[cfg(test)]
+mod tests {
+    use mbs_workbench::card::Preset;
+
+    use super::*;
+    use crate::reference::{dynamics_at, load};
+
+    /// Parameters that an effect vanishes with.
+    const SWITCHES: [&str; 8] = ["bore", "g", "mu_liner", "viscous", "mu_pins", "stall", "drag", "stiffness"];
+
+    /// Of a case of the reference: those that it keeps.
+    fn kept(case: &str) -> &'static [&'static str] {
+        match case {
+            "all" => &SWITCHES,
+            "gas" => &["bore"],
+            "gravity" => &["g"],
+            "liner_friction" => &["mu_liner", "viscous"],
+            "pin_friction" => &["mu_pins"],
+            "motor" => &["stall"],
+            "fan" => &["drag"],
+            "spring" => &["stiffness"],
+            other => panic!("no case {other}"),
+        }
+    }
+
+    #[test]
+    fn all_effects_and_each_alone_move_as_equations_derived_by_hand() {
+        let reference = include_str!("../references/slider_crank_engine.txt");
+        let mut cases: Vec<(&str, Vec<[f64; 4]>)> = Vec::new();
+        for line in reference.lines().filter(|line| !line.starts_with('#')) {
+            let (case, numbers) = line.split_once(' ').expect("a case");
+            let numbers: Vec<f64> =
+                numbers.split(' ').map(|number| number.parse().expect("a number")).collect();
+            if cases.last().is_none_or(|(known, _)| *known != case) {
+                cases.push((case, Vec::new()));
+            }
+            let numbers = <[f64; 4]>::try_from(numbers).expect("four numbers");
+            cases.last_mut().expect("a case").1.push(numbers);
+        }
+        assert_eq!(cases.len(), 8);
+        for (case, expected) in cases {
+            let set = SWITCHES.iter().filter(|name| !kept(case).contains(name));
+            let set = set.map(|name| ((*name).to_string(), 0.0)).collect();
+            let run = Preset { label: case.to_string(), description: String::new(), set };
+            let times: Vec<f64> = expected.iter().map(|[t, ..]| *t).collect();
+            let found = dynamics_at(&CARD, &run, &times);
+            let side = load(&found.motion, "side_load");
+            let most = expected.iter().fold(0.0_f64, |most, [.., side]| most.max(side.abs()));
+            let mut worst = [0.0_f64; 3];
+            for (k, [_, theta, omega, load]) in expected.iter().enumerate() {
+                let crank = &found.motion.coordinates[0];
+                let errors = [crank.q[k] - theta, (crank.qd[k] - omega) / 251.0, (side[k] - load) / most];
+                worst.iter_mut().zip(errors).for_each(|(worst, error)| *worst = worst.max(error.abs()));
+            }
+            println!(
+                "engine, {case}: angle {:.1e}, speed {:.1e}, side load {:.1e}",
+                worst[0], worst[1], worst[2]
+            );
+            assert!(worst[0] < 1e-8 && worst[1] < 1e-8 && worst[2] < 1e-6, "{case}: {worst:?}");
+        }
+    }
+}

@@ -1,0 +1,129 @@
+//! Planted faults: each patch in `xtask/planted` makes a copy of the sources wrong, and the matrix of hard cases must say so.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use crate::shell::{command, need, output, root, run, target};
+
+/// Folder of the patches.
+const FOLDER: &str = "xtask/planted";
+
+/// Head of the line of a patch that names its cases.
+const CASES: &str = "Cases: ";
+
+/// A fault.
+struct Fault {
+    path: PathBuf,
+    /// First line of its patch.
+    title: String,
+    /// Cases that show it.
+    cases: String,
+}
+
+/// Plants all faults one after the other.
+///
+/// # Errors
+/// A patch that no longer applies, a build that fails, or a fault that no cell shows.
+pub fn run_all() -> Result<(), String> {
+    need("git", "install git")?;
+    let faults = faults()?;
+    let folder = target().join("planted");
+    let copy = folder.join("sources");
+    copied(&copy)?;
+    let mut cases: Vec<&str> = faults.iter().flat_map(|fault| fault.cases.split(',')).collect();
+    cases.sort_unstable();
+    cases.dedup();
+    println!("\n== sources as they are: {}", cases.join(", "));
+    let wrong = wrong(&copy, &cases.join(","), &folder.join("as_they_are"))?;
+    if wrong > 0 {
+        return Err(format!("{wrong} runs are wrong without a fault"));
+    }
+    let mut missed = Vec::new();
+    for fault in &faults {
+        let name = fault.path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        println!("\n== {name}: {}", fault.title);
+        applied(&copy, fault, &[])?;
+        let found = self::wrong(&copy, &fault.cases, &folder.join(&name));
+        // The next fault is planted alone.
+        applied(&copy, fault, &["--reverse"])?;
+        let found = found?;
+        println!("{found} runs are wrong");
+        if found == 0 {
+            missed.push(name);
+        }
+    }
+    match missed.as_slice() {
+        [] => Ok(()),
+        names => Err(format!(
+            "no cell shows {}: add a case to mbs-workbench/hard_cases that does, and name it in the patch",
+            names.join(", ")
+        )),
+    }
+}
+
+fn faults() -> Result<Vec<Fault>, String> {
+    let folder = root().join(FOLDER);
+    let entries = fs::read_dir(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+    let mut paths: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
+    paths.retain(|path| path.extension().is_some_and(|suffix| suffix == "patch"));
+    paths.sort();
+    paths.into_iter().map(fault).collect()
+}
+
+fn fault(path: PathBuf) -> Result<Fault, String> {
+    let text = fs::read_to_string(&path).map_err(|error| format!("{}: {error}", path.display()))?;
+    let title = text.lines().next().unwrap_or_default().to_string();
+    let cases = text.lines().find_map(|line| line.strip_prefix(CASES));
+    let cases = cases.ok_or_else(|| format!("{}: no line `{CASES}name,name`", path.display()))?;
+    Ok(Fault { title, cases: cases.trim().to_string(), path })
+}
+
+/// Copies what git knows, and leaves alone what has not changed.
+fn copied(copy: &Path) -> Result<(), String> {
+    let names = output(&mut command("git", &["ls-files", "--cached", "--others", "--exclude-standard"]))?;
+    for name in names.lines() {
+        let (from, to) = (root().join(name), copy.join(name));
+        // A file that was deleted and not yet committed.
+        let Ok(content) = fs::read(&from) else { continue };
+        if fs::read(&to).is_ok_and(|present| present == content) {
+            continue;
+        }
+        let written = to.parent().map_or(Ok(()), fs::create_dir_all).and_then(|()| fs::write(&to, content));
+        written.map_err(|error| format!("{}: {error}", to.display()))?;
+    }
+    Ok(())
+}
+
+fn applied(copy: &Path, fault: &Fault, options: &[&str]) -> Result<(), String> {
+    let patch = fault.path.display().to_string();
+    // Within a work tree git would leave out paths that are not of it.
+    let mut apply = command("git", &["apply", "--unsafe-paths"]);
+    apply
+        .args(options)
+        .arg(&patch)
+        .current_dir(copy)
+        .env("GIT_CEILING_DIRECTORIES", copy.parent().unwrap_or(copy));
+    run(&mut apply).map_err(|reason| {
+        format!(
+            "{reason}\nthe patch no longer applies: plant the fault by hand in {}, and store `diff -u` of it with the first two lines \
+             of {patch}",
+            copy.display()
+        )
+    })
+}
+
+/// Number of wrong runs of some cases.
+fn wrong(copy: &Path, cases: &str, out: &Path) -> Result<usize, String> {
+    let table = out.join("hard-cases.csv");
+    // A table of an earlier run tells nothing.
+    drop(fs::remove_file(&table));
+    let out = out.display().to_string();
+    let mut study =
+        command("cargo", &["run", "--quiet", "--release", "-p", "mbs-workbench", "--bin", "mbs", "--"]);
+    study.args(["hard-cases", "--quick", "--cases", cases, "--out", &out]);
+    study.current_dir(copy).env("CARGO_TARGET_DIR", target().join("planted").join("target"));
+    let status = study.stdout(std::process::Stdio::null()).status().map_err(|error| error.to_string())?;
+    let table = fs::read_to_string(&table)
+        .map_err(|error| format!("{}: {error}; the study ended with {status}", table.display()))?;
+    Ok(table.lines().filter(|line| line.contains(",wrong,")).count())
+}
