@@ -245,3 +245,28 @@ fn a_width_below_zero_is_refused_by_its_row() {
     refused(steps[0].expect_err("a width below zero in a lane"));
     assert!(steps[2].is_ok() && steps[3].is_ok());
 }
+
+mechanism! {
+    /// Two parallelograms of one crank in line at 0 and half a turn, every row redundant: they keep each other.
+    pub mechanism Locomotive;
+    coord alpha: rad = 0.4;
+    coord psi: rad = 0;
+    coord beta: rad = 0.4;
+    coord gamma: rad = 0.4;
+    constraint first redundant { 1m*unit(alpha) + 2m*unit(psi) == [2m, 0] + 1m*unit(beta); }
+    constraint second redundant { 1m*unit(alpha) + 1m*unit(psi) == [1m, 0] + 1m*unit(gamma); }
+    drive crank: alpha == 0.4 + 3*t/1s;
+}
+
+#[test]
+fn redundant_parallelograms_lead_on_from_every_position() {
+    let mut locomotive =
+        Stepper::assemble(Locomotive::default(), [0.4, 0.0, 0.4, 0.4], 0.0).expect("an assembly");
+    for k in 1..=3000 {
+        let t = 0.003 * f64::from(k);
+        locomotive.advance_to(t).unwrap_or_else(|failure| panic!("{t}: {failure}"));
+        let [alpha, psi, beta, gamma] = *locomotive.q();
+        let off = [psi, beta - alpha, gamma - alpha].into_iter().fold(0.0, |off: f64, x| off.max(x.abs()));
+        assert!(off < 1e-7, "{t}: {off:e}");
+    }
+}

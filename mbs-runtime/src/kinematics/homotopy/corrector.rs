@@ -117,18 +117,20 @@ impl<S: Kinematic<R, N, M>, R: Real, const N: usize, const M: usize> Walk<'_, '_
         let parts = [approach, R::constant(bend), R::constant(LARGEST_TWIST)];
         let allowed = parts.map(|part| part * next.margin);
         let change = if tight { approach } else { R::constant(LARGEST_CHANGE_OF_MARGIN) };
-        let most_part = R::constant(LARGEST_PART);
+        // Answers to open redundant rows are those of a choice of them, which is another one next to a change point.
+        let square = const { M == N };
+        let most_part = if tight && !square { approach } else { R::constant(LARGEST_PART) };
         // Written so that NaN is not near.
         let near = off <= allowed[0] && forecast.second <= allowed[1] && forecast.third <= allowed[2];
-        let foreseen = forecast.drives_little
-            && part <= most_part
-            && forecast.third_part <= most_part
-            && turned.is_within(change, next.margin, next.orientation);
-        let alike = next.response.is_like(&at.response, passage)
+        let turns_little =
+            !square || forecast.drives_little && turned.is_within(change, next.margin, next.orientation);
+        let foreseen = turns_little && part <= most_part && forecast.third_part <= R::constant(LARGEST_PART);
+        let alike = !square
+            || next.response.is_like(&at.response, passage)
             || forecast.first <= link_lengths::rounding(next.margin);
         // The end of the way may be as near to a change point as it likes: nothing is continued from there.
-        let told =
-            is_resolved(at, &next, forecast.first) && (R::constant(1.0) <= share || self.is_resolved(&next));
+        let told = is_resolved(at, &next, forecast.first)
+            && (!square || R::constant(1.0) <= share || self.is_resolved(&next));
         if !(near && foreseen && alike && told) {
             let falls = next.margin < at.margin && !leads(at.margin + at.margin);
             return Landing::Doubtful(Some(next).filter(|_| tight || falls && !passage));
