@@ -99,19 +99,27 @@ mechanism! {
         param mu_liner: 1 = 0.08;
         param viscous: N*s/m = 4;
         friction rings {
-            along: p[1], normal: lambda(liner), coefficient: mu_liner, speed: 0.1 [m/s], viscous: viscous
+            along: p[1],
+            normal: lambda(liner),
+            coefficient: mu_liner,
+            speed: 0.1 [m/s],
+            viscous: viscous
         }
     }
     effect pin_friction {
         /// With a film of oil.
         param mu_pins: 1 = 0.002;
         friction big_end {
-            along: 22mm*(phi - theta), normal: hypot(lambda(crank_pin.0), lambda(crank_pin.1)),
-            coefficient: mu_pins, speed: 0.1 [m/s]
+            along: 22mm*(phi - theta),
+            normal: hypot(lambda(crank_pin.0), lambda(crank_pin.1)),
+            coefficient: mu_pins,
+            speed: 0.1 [m/s]
         }
         friction small_end {
-            along: 11mm*phi, normal: hypot(lambda(piston_pin.0), lambda(piston_pin.1)),
-            coefficient: 2*mu_pins, speed: 0.1 [m/s]
+            along: 11mm*phi,
+            normal: hypot(lambda(piston_pin.0), lambda(piston_pin.1)),
+            coefficient: 2*mu_pins,
+            speed: 0.1 [m/s]
         }
     }
     effect motor {
