@@ -79,7 +79,7 @@ fn subtract(from: &mut [f64], factor: f64, what: &[f64]) {
 }
 
 impl Rows {
-    /// What of `row` is orthogonal to the directions, with its combination of constraints.
+    /// Part of `row` that is orthogonal to the directions, with its combination of constraints.
     fn rest(&self, mut row: Vec<f64>, mut combination: Vec<f64>) -> (Vec<f64>, Vec<f64>) {
         // Twice: once leaves rounding along the directions.
         for _ in 0..2 {

@@ -15,8 +15,8 @@ const LARGEST_CHANGE: f64 = 0.8;
 
 /// J⁻¹ b for two generic b, of the size of the rows' scales.
 ///
-/// Where a link turns by α so do its rows in the Jacobian, and the answers of all coordinates that it holds. They change by 2 sin(α/2) of
-/// themselves: the length of the link does not enter, nor do lengths that coordinates move by together.
+/// A link that turns by α turns its rows in the Jacobian by α too, and the answers of all coordinates that it holds. They change by
+/// 2 sin(α/2) of themselves: the length of the link does not enter, nor do lengths that coordinates move by together.
 #[derive(Clone, Copy)]
 pub(super) struct Response<R, const N: usize>([[R; N]; 2]);
 

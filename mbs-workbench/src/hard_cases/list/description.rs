@@ -1,4 +1,4 @@
-//! What stands beside the text of a case: why it is hard, references and bounds, what is outside of its range.
+//! Descriptions beside the texts of cases: difficulty, references and bounds, variants outside of the range.
 
 use std::collections::BTreeMap;
 
@@ -13,13 +13,13 @@ use crate::setting::{FormulationName, IntegratorName, MotionMethod};
 pub struct Description {
     /// Title in the matrix.
     pub title: String,
-    /// Where it comes from.
+    /// Source of the case.
     pub origin: String,
-    /// Why it is hard.
+    /// Reason of its difficulty.
     pub why: String,
-    /// What fails elsewhere.
+    /// Failure of other programs or methods.
     pub elsewhere: String,
-    /// What is done here.
+    /// Cure of this library.
     pub here: String,
     /// End of the motion (s); else that of the text's `span`.
     pub until: Option<f64>,
@@ -87,7 +87,7 @@ pub struct Known {
     pub rate: Option<f64>,
     /// Angular velocity (rad/s) of an angle that is this times the time, exactly, less whole turns; `is` and `rate` are left out.
     pub turning: Option<f64>,
-    /// Where the number comes from.
+    /// Source of the number.
     pub source: String,
     /// Kinds of variants that have another one: `parameters`, `guess`.
     #[serde(default)]

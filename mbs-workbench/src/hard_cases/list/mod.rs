@@ -26,7 +26,7 @@ pub struct Case {
     pub name: String,
     /// Text of its mechanism.
     pub text: String,
-    /// What is known of it.
+    /// Its references, bounds and range.
     pub description: Description,
 }
 
