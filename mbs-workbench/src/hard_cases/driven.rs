@@ -94,7 +94,7 @@ fn similar_outcomes(
         let run = positions(runs.as_ref(), *closing, extent.until, steps);
         let own_run = positions(own_runs.as_ref(), *closing, extent.until, steps);
         let refused =
-            Outcome { verdict: Verdict::Refused, ..blank(variation, format!("Stepper, {closing}")) };
+            Outcome { verdict: Verdict::Refused, ..Outcome::blank(variation, format!("Stepper, {closing}")) };
         outcomes.push(match (run, own_run) {
             (Err((reason, failed)), _) => {
                 let outcome = Outcome { reason, ..refused };
@@ -119,25 +119,6 @@ fn similar_outcomes(
     outcomes
 }
 
-/// An outcome without a verdict.
-pub fn blank(variation: &Variation, method: String) -> Outcome {
-    Outcome {
-        case: String::new(),
-        seed: variation.seed,
-        class: variation.class,
-        method,
-        variant: variation.words.clone(),
-        verdict: Verdict::Refused,
-        error: None,
-        bound: None,
-        reason: String::new(),
-        is_expected: false,
-        not_made: Vec::new(),
-        work: 0,
-        course: Vec::new(),
-    }
-}
-
 fn kind(closing: Closing) -> Kind {
     if closing == Closing::Closed { Kind::Drives } else { Kind::Bounded }
 }
@@ -159,7 +140,7 @@ fn outcome(
     oracle: &Oracle,
     (subject, numbers, closing): (&Subject, Numbers, Closing),
 ) -> Outcome {
-    let mut outcome = blank(variation, method);
+    let mut outcome = Outcome::blank(variation, method);
     let (run, work) = match run {
         Ok(run) => run,
         Err((reason, _)) => return Outcome { reason, ..outcome },

@@ -210,7 +210,7 @@ fn outcome(
     judged: Judged<'_>,
     (extent, scales): (&Extent, &[f64]),
 ) -> Outcome {
-    let mut outcome = refusal(variation, method);
+    let mut outcome = Outcome::blank(variation, method.to_string());
     let base = match base {
         Ok(base) => base,
         Err(reason) => return Outcome { reason: reason.clone(), ..outcome },
@@ -315,7 +315,7 @@ fn similar_outcome(
     (method, base): (MotionMethod, &Result<[Resolution; 2], String>),
     (subject, extent): (&Subject, &Extent),
 ) -> Outcome {
-    let refused = refusal(variation, method);
+    let refused = Outcome::blank(variation, method.to_string());
     let base = match base {
         Ok(base) => base,
         Err(reason) => return Outcome { reason: reason.clone(), ..refused },
@@ -332,25 +332,6 @@ fn similar_outcome(
             let work = (work(&effort), work(&own_effort));
             compared(refused, (&places, &positions(&own_run)), work, &subject.scales)
         }
-    }
-}
-
-/// A run that is refused for a reason that is not yet known.
-fn refusal(variation: &Variation, method: MotionMethod) -> Outcome {
-    Outcome {
-        case: String::new(),
-        seed: variation.seed,
-        class: variation.class,
-        method: method.to_string(),
-        variant: variation.words.clone(),
-        verdict: Verdict::Refused,
-        error: None,
-        bound: None,
-        reason: String::new(),
-        is_expected: false,
-        not_made: Vec::new(),
-        work: 0,
-        course: Vec::new(),
     }
 }
 
@@ -380,7 +361,10 @@ fn refused_outcomes(
                 Ok(Some(Err(failure))) => (Verdict::Refused, failure.to_string(), failure.time),
                 Err(reason) => (Verdict::Refused, reason, None),
             };
-            outcomes.push(case.refused(Outcome { verdict, reason, ..refusal(&variation, *method) }, failed));
+            outcomes.push(case.refused(
+                Outcome { verdict, reason, ..Outcome::blank(&variation, method.to_string()) },
+                failed,
+            ));
         }
     }
     outcomes

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::hard_cases::variation::Class;
+use crate::hard_cases::variation::{Class, Variation};
 
 /// Verdict on a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -58,6 +58,27 @@ pub struct Outcome {
     pub work: u64,
     /// Course of the first coordinate that moves, for a picture.
     pub course: Vec<f64>,
+}
+
+impl Outcome {
+    /// A run of a variant by a method that is not yet judged: refused for no reason.
+    pub fn blank(variation: &Variation, method: String) -> Self {
+        Outcome {
+            case: String::new(),
+            seed: variation.seed,
+            class: variation.class,
+            method,
+            variant: variation.words.clone(),
+            verdict: Verdict::Refused,
+            error: None,
+            bound: None,
+            reason: String::new(),
+            is_expected: false,
+            not_made: Vec::new(),
+            work: 0,
+            course: Vec::new(),
+        }
+    }
 }
 
 /// Names of the row and the column of a matrix that an outcome belongs to.

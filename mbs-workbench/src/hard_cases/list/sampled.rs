@@ -3,7 +3,6 @@
 use core::f64::consts::TAU;
 
 use crate::erased::driven_variations::DrivenVariants;
-use crate::hard_cases::driven::blank;
 use crate::hard_cases::judge::{exceeds, of_driven};
 use crate::hard_cases::list::description::{Description, Kind, Samples};
 use crate::hard_cases::list::stored::Miss;
@@ -46,7 +45,7 @@ impl Encoder<'_> {
                 samples.len(),
                 self.samples.bits
             );
-            let outcome = blank(&Variation { words, ..variation }, "Stepper, closed".to_string());
+            let outcome = Outcome::blank(&Variation { words, ..variation }, "Stepper, closed".to_string());
             outcomes.push(self.outcome(mechanism, oracle, &samples, (outcome, bound)));
         }
         Ok(outcomes)
