@@ -1,37 +1,11 @@
 //! K1: links much shorter than the reference length turned far within one step, and ended in the other assembly with `Ok`.
 
-use core::f64::consts::PI;
-
 use mbs_runtime::{Budget, Real};
 
 use crate::k1_inputs_that_turn::the_short_way;
 use crate::linkages::follow::*;
 use crate::linkages::texts::*;
 use crate::linkages::*;
-
-/// A parallelogram with cranks of `length` on rods of 1 m.
-fn parallelogram(length: f64) -> Linkage {
-    Linkage {
-        name: "short/1/short/1",
-        crank: length,
-        rocker: length,
-        coupler: 1.0,
-        ground: 1.0,
-        centres: &[0.0, PI],
-    }
-}
-
-/// A crank of `length` that stretches two rods of 1 m once a turn.
-fn stretched(length: f64) -> Linkage {
-    Linkage {
-        name: "short/1/1/2 - short",
-        crank: length,
-        rocker: 1.0,
-        coupler: 1.0,
-        ground: 2.0 - length,
-        centres: &[PI],
-    }
-}
 
 /// Every motion in such steps, with rates and without.
 fn run<S: Case<R, N> + Copy, R: Real, const N: usize>(mechanism: S, linkage: &Linkage, by: Steps) -> Tally {

@@ -1,8 +1,6 @@
 //! K1: with short cranks, mean and difference of two joints ended in the other assembly with `Ok`. The difference stands still, so rounding
 //! was more than its movement: passages were given up next to the change point, and rounding turned the mechanism back.
 
-use core::f64::consts::PI;
-
 use mbs_runtime::{Real, Scalar, mechanism};
 
 use crate::k1_points_at_rest::MeansByTime;
@@ -43,30 +41,6 @@ impl<T: Scalar> Case<T, 5> for MeansByRate<T> {
     }
     fn point(_linkage: &Linkage, q: [f64; 5]) -> [f64; 2] {
         [q[1] + q[3] / 2.0, q[2] + q[4] / 2.0]
-    }
-}
-
-/// A parallelogram with cranks of `length` on rods of 1 m.
-fn parallelogram(length: f64) -> Linkage {
-    Linkage {
-        name: "short/1/short/1",
-        crank: length,
-        rocker: length,
-        coupler: 1.0,
-        ground: 1.0,
-        centres: &[0.0, PI],
-    }
-}
-
-/// A crank of `length` that stretches two rods of 1 m once a turn.
-fn stretched(length: f64) -> Linkage {
-    Linkage {
-        name: "short/1/1/2 - short",
-        crank: length,
-        rocker: 1.0,
-        coupler: 1.0,
-        ground: 2.0 - length,
-        centres: &[PI],
     }
 }
 

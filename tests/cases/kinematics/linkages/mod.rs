@@ -37,6 +37,30 @@ pub const DRAG_LINK: Linkage = Linkage {
 
 pub const LINKAGES: [Linkage; 4] = [PARALLELOGRAM, STRETCHED, SLENDER, DRAG_LINK];
 
+/// A parallelogram with cranks of `length` on rods of 1 m.
+pub fn parallelogram(length: f64) -> Linkage {
+    Linkage {
+        name: "short/1/short/1",
+        crank: length,
+        rocker: length,
+        coupler: 1.0,
+        ground: 1.0,
+        centres: &[0.0, PI],
+    }
+}
+
+/// A crank of `length` that stretches two rods of 1 m once a turn.
+pub fn stretched(length: f64) -> Linkage {
+    Linkage {
+        name: "short/1/1/2 - short",
+        crank: length,
+        rocker: 1.0,
+        coupler: 1.0,
+        ground: 2.0 - length,
+        centres: &[PI],
+    }
+}
+
 impl Linkage {
     /// Tip of the crank at angle `theta` (rad).
     pub fn tip(&self, theta: f64) -> [f64; 2] {
