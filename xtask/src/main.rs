@@ -17,7 +17,8 @@ const USAGE: &str = "\
 cargo xtask TASK
 
 ci                       what a change must pass: format, lints, documents, tests, counts of instructions
-full                     `ci`, long motions, reports in a browser, the book, packages, growth, lines, costs, Rust 1.89 where it is installed
+full                     `ci`, tests with `long`, reports in a browser, the book, packages, growth, lines, costs, hard cases, planted faults, Rust 1.89
+                         where it is installed
 bench [OPTIONS]          kinematics, dynamics and linkages against their peers; `--docs` writes the tables of the book
 growth                   times that a compiler takes over long mechanisms
 instructions [--update]  instructions of evaluations and steps, compared with the stored counts or stored
