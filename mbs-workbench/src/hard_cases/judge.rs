@@ -108,7 +108,7 @@ pub fn judge(
     if oracle.is_dynamic() && run.iter().any(|state| !state.lambda.is_empty() || oracle.row_count() == 0) {
         balance(run, oracle, scales, bounds, (seed, &mut found));
         if bounds.is_shown {
-            energy(run, oracle, bounds, &mut found);
+            energy([run, fine], oracle, bounds, &mut found);
         }
     }
     found
@@ -261,15 +261,23 @@ fn balance(
     }
 }
 
-/// The energy changes by the work of q̇ and q̈: Simpson's rule over four intervals, and over twice as long ones.
-fn energy(run: &[State], oracle: &Oracle, bounds: Bounds, found: &mut Judgement) {
-    let mut all = Vec::new();
-    for state in run {
-        match oracle.energy(state) {
-            Ok(energy) => all.push((state.t, energy)),
-            Err(gap) => return found.gap("energy", gap),
-        }
-    }
+/// Energies (J) and their rates (W) at the instants of a run.
+fn energies(run: &[State], oracle: &Oracle) -> Result<Vec<(f64, [f64; 2])>, Gap> {
+    run.iter().map(|state| Ok((state.t, oracle.energy(state)?))).collect()
+}
+
+/// The energy changes by the work of q̇ and q̈: Simpson's rule over four intervals, and over twice as long ones. Errors of the powers
+/// are those that half the step shows.
+fn energy([run, fine]: [&[State]; 2], oracle: &Oracle, bounds: Bounds, found: &mut Judgement) {
+    let (all, fine) = match energies(run, oracle).and_then(|all| Ok((all, energies(fine, oracle)?))) {
+        Ok(both) => both,
+        Err(gap) => return found.gap("energy", gap),
+    };
+    let doubts: Vec<f64> = all.iter().zip(&fine).map(|(a, b)| (a.1[1] - b.1[1]).abs()).collect();
+    let doubt = |from: usize| {
+        let largest = doubts.iter().skip(from).take(5).fold(0.0, |largest: f64, doubt| largest.max(*doubt));
+        if largest.is_finite() { largest } else { 0.0 }
+    };
     let Some((_, [first, _])) = all.first().copied() else { return };
     let scale = all.iter().map(|(_, [energy, _])| (energy - first).abs()).fold(0.0, f64::max);
     let size = scale.max(bounds.size_of_energy(run, oracle));
@@ -278,11 +286,12 @@ fn energy(run: &[State], oracle: &Oracle, bounds: Bounds, found: &mut Judgement)
     };
     let mut over: Vec<(f64, f64)> = all
         .windows(5)
+        .enumerate()
         .step_by(4)
-        .map(|five| {
+        .map(|(from, five)| {
             let [a, b, c, d, e] = five else { return (0.0, 0.0) };
             let work = simpson(a, b, c) + simpson(c, d, e);
-            let explained = 2.0 * (simpson(a, c, e) - work).abs();
+            let explained = 2.0 * (simpson(a, c, e) - work).abs() + 2.0 * (e.0 - a.0) * doubt(from);
             let miss = (e.1[0] - a.1[0] - work).abs();
             (miss / (explained + (100.0 * bounds.estimate + bounds.rounding) * size), miss)
         })
