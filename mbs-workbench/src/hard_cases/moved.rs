@@ -18,6 +18,9 @@ const TOLERANCES: [f64; 2] = [1e-8, 1e-4];
 /// Estimate that the reference step of equal steps must reach, in the reference metric.
 const FINE: f64 = 3e-5;
 
+/// Error of the coarsest variant of equal steps over that of half the reference step's number, which the reference step is judged by.
+const COARSEST: f64 = 2.0;
+
 /// Most steps of equal size.
 const MOST_STEPS: u32 = PARTS << 10;
 
@@ -105,9 +108,11 @@ pub fn moved_outcomes(
         .copied()
         .filter(|method| plain.mechanism.admits(*method, Numbers::Double) && extent.has(Kind::of(*method)))
         .collect();
+    // Of a small motion as many digits are claimed by the coarsest variant.
+    let fine = FINE.min(CLAIMED * motion(&usual.first, scales) / COARSEST);
     let mut bases = Vec::new();
     for method in &methods {
-        bases.push(base(&plain, *method, extent.until, scales, clock));
+        bases.push(base(&plain, (*method, fine), extent.until, scales, clock));
     }
     let mut outcomes = Vec::new();
     for (index, seed) in extent.seeds.iter().enumerate() {
@@ -169,7 +174,7 @@ fn judged<'a>(
 /// The reference resolution of a method in both types of number; a reason where no step reaches the estimate.
 fn base(
     plain: &Varied<'_>,
-    method: MotionMethod,
+    (method, fine): (MotionMethod, f64),
     until: f64,
     scales: &[f64],
     clock: &Clock,
@@ -184,10 +189,10 @@ fn base(
     while steps <= MOST_STEPS && !clock.is_over() {
         match plain.run(method, Resolution::Steps(steps), &times) {
             Ok((run, _)) => {
-                if last.as_ref().is_some_and(|last| apart(last, &run, scales) < FINE) {
+                if last.as_ref().is_some_and(|last| apart(last, &run, scales) < fine) {
                     return Ok([Resolution::Steps(steps), Resolution::Steps(steps / 2)]);
                 }
-                reason = format!("{steps} steps still change the motion by more than {FINE:e}");
+                reason = format!("{steps} steps still change the motion by more than {fine:.0e}");
                 last = Some(run);
             }
             Err(failure) => (reason, last) = (failure, None),
