@@ -204,11 +204,12 @@ pub enum StatementKind {
         larger: Expression,
         smaller: Expression,
     },
+    /// `low <= value <= high`, or one bound alone: `low <= value`, `value <= high`.
     Limit {
         name: Name,
-        low: Expression,
-        value: Expression,
-        high: Expression,
+        first: Expression,
+        second: Expression,
+        third: Option<Expression>,
     },
     Independent {
         names: Vec<Name>,
@@ -384,7 +385,9 @@ impl StatementKind {
             }
             StatementKind::Drive { equation, .. } => vec![&equation.left, &equation.right],
             StatementKind::Branch { larger, smaller, .. } => vec![larger, smaller],
-            StatementKind::Limit { low, value, high, .. } => vec![low, value, high],
+            StatementKind::Limit { first, second, third, .. } => {
+                [first, second].into_iter().chain(third).collect()
+            }
             StatementKind::Out { kind, value, .. } => kind.shape.iter().chain([value]).collect(),
             StatementKind::Element { fields, .. } => fields
                 .iter()
