@@ -55,7 +55,8 @@ impl Resolver<'_> {
         let written = [second, first].into_iter().chain(third);
         let expanded = written.map(|part| self.with_output(name, part)).collect::<Result<Vec<_>, _>>()?;
         let parts = self.elaborate(Reach::Position, |work| {
-            let values: Vec<_> = expanded.iter().map(|(part, kind)| part_of(work, part, kind.as_ref())).collect();
+            let values: Vec<_> =
+                expanded.iter().map(|(part, kind)| part_of(work, part, kind.as_ref())).collect();
             values.into_iter().collect::<Result<Vec<Part<'_>>, Fault>>()
         })?;
         let (low, value, high) = match parts.as_slice() {
@@ -144,7 +145,10 @@ impl Resolver<'_> {
         let (None, Some((kind, definition))) = (self.names.get(name), self.outputs.get(name.as_str())) else {
             return own;
         };
-        if !rest.iter().all(|part| matches!(part.operation, Operation::Number { .. } | Operation::Index { .. })) {
+        if !rest
+            .iter()
+            .all(|part| matches!(part.operation, Operation::Number { .. } | Operation::Index { .. }))
+        {
             return own;
         }
         let takes_more = definition.code.iter().any(|instruction| match &instruction.operation {
@@ -156,7 +160,10 @@ impl Resolver<'_> {
             _ => false,
         });
         if takes_more {
-            let message = format!("limit `{}` bounds output `{name}`, which is no function of the position", limit.text);
+            let message = format!(
+                "limit `{}` bounds output `{name}`, which is no function of the position",
+                limit.text
+            );
             let help = "a limit bounds coordinates, parameters, inputs and the time; read this output with `outputs`";
             self.diagnostics.report(first.span, message, help);
             return Err(Fault);

@@ -132,6 +132,12 @@ pub struct Equation {
 #[derive(Clone, Debug)]
 pub enum Item {
     Equation(Equation),
+    /// `point on curve;`, `span` is that of the `on`.
+    On {
+        point: Expression,
+        curve: Name,
+        span: Span,
+    },
     For(Loop),
     EndFor,
 }
@@ -185,6 +191,13 @@ pub enum StatementKind {
     Function {
         name: Name,
         signature: Signature,
+    },
+    /// `curve name = polar R about centre turned angle;`
+    Curve {
+        name: Name,
+        centre: Expression,
+        /// R at the angle by which the curve is turned: the angle, then the call.
+        radius: Expression,
     },
     Constraint {
         name: Name,
@@ -380,6 +393,7 @@ impl StatementKind {
             StatementKind::Coord { kind, guess: value, .. } => kind.shape.iter().chain(value).collect(),
             StatementKind::Input { kind, .. } => kind.shape.iter().collect(),
             StatementKind::Function { signature, .. } => signature.period.iter().collect(),
+            StatementKind::Curve { centre, radius, .. } => vec![centre, radius],
             StatementKind::Constraint { within, items, .. } => {
                 within.iter().chain(items.iter().flat_map(Item::expressions)).collect()
             }
@@ -427,6 +441,7 @@ impl Item {
     fn expressions(&self) -> Vec<&Expression> {
         match self {
             Item::Equation(equation) => vec![&equation.left, &equation.right],
+            Item::On { point, .. } => vec![point],
             Item::For(head) => vec![&head.low, &head.high],
             Item::EndFor => Vec::new(),
         }

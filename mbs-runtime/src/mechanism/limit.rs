@@ -107,7 +107,8 @@ mod tests {
 
     #[test]
     fn one_bound_is_passed_on_its_side_alone() {
-        let [above, below] = [-2.0, 0.0].map(|low| move |value| Limit { low, value, high: OPEN }.passed(|| 1.0));
+        let [above, below] =
+            [-2.0, 0.0].map(|low| move |value| Limit { low, value, high: OPEN }.passed(|| 1.0));
         assert_eq!([-2.0, 0.0, 1e9].map(above), [None; 3]);
         assert_eq!([above(-2.1), above(f64::NAN)], [Some(-2.0), Some(OPEN)]);
         assert_eq!([0.0, 1.0].map(below), [None; 2]);
