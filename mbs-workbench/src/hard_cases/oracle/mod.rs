@@ -245,6 +245,10 @@ impl Oracle {
                             let found = residual(equation, &Scope::of(names, rounds))?;
                             show(&name.text, found.items.into_iter().map(|number| (number, true)).collect());
                         }
+                        // A row that is left out would be one that always holds.
+                        if let Item::On { curve, .. } = item {
+                            return Err(Gap(format!("the curve `{}`", curve.text)));
+                        }
                         Ok(())
                     })?;
                 }
