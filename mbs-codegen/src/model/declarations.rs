@@ -10,6 +10,7 @@ use super::expression::{Id, Node};
 use super::initialiser::{definition, filling, in_unit, initialiser, numbers};
 use super::names::Names;
 use super::order::order;
+use super::seen_order::late_lets;
 use super::turns::turning;
 use super::unit_faults::Place;
 use super::unit_inference::Bare;
@@ -91,6 +92,11 @@ pub fn declare(
     for statement in faulty.into_iter().chain(in_loops) {
         work.stand_in(statement);
     }
+    let late = late_lets(&top);
+    for name in &late {
+        work.names.postpone(name);
+    }
+    work.names.seen.late = late;
     work.lets(&top);
     work.give_up(&top, |_| true);
 }
@@ -488,7 +494,7 @@ impl Declarations<'_> {
                 StatementKind::Let { name, unit, value } => Some((name, unit.as_ref(), value)),
                 _ => None,
             })
-            .filter(|(name, ..)| self.owns(name))
+            .filter(|(name, ..)| self.owns(name) && !self.names.seen.late.contains(&name.text))
             .collect();
         let definitions: Vec<_> = lets.iter().map(|(name, _, value)| (*name, *value)).collect();
         for index in self.order(&definitions) {
