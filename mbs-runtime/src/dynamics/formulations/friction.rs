@@ -345,8 +345,7 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
                 }
                 share = share * R::constant(0.5);
             }
-            let small =
-                self.weighted(&step) <= forces::STUCK_MULTIPLIERS.of::<R>() * self.weighted(&known);
+            let small = self.weighted(&step) <= forces::STUCK_MULTIPLIERS.of::<R>() * self.weighted(&known);
             let left = self.weighted(&trial.1);
             // Near a solution each step takes off most of what is left; less is rounding of the balance.
             if small && !(R::constant(2.0) * left).less(size) {
