@@ -19,6 +19,8 @@ pub mod normal_forces;
 pub mod pins;
 mod power_of_time;
 mod second_moments;
+#[cfg(test)]
+mod seen_tests;
 mod sparse;
 mod spatial_inertia;
 mod sum;

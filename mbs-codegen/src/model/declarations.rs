@@ -12,6 +12,7 @@ use super::expression::{Id, Node};
 use super::initialiser::{definition, filling, in_unit, initialiser, numbers};
 use super::names::Names;
 use super::order::order;
+use super::seen_order::late_lets;
 use super::turns::turning;
 use super::unit_faults::Place;
 use super::unit_inference::Bare;
@@ -93,6 +94,11 @@ pub fn declare(
     for statement in faulty.into_iter().chain(in_loops) {
         work.stand_in(statement);
     }
+    let late = late_lets(&top);
+    for name in &late {
+        work.names.postpone(name);
+    }
+    work.names.seen.late = late;
     work.lets(&top);
     work.give_up(&top, |_| true);
 }
@@ -487,7 +493,12 @@ impl Declarations<'_> {
     /// `let`s and curves, each after those that it uses.
     fn lets(&mut self, top: &[&Statement]) {
         let own = top.iter().filter(|statement| declared_name(statement).is_some_and(|name| self.owns(name)));
-        let own: Vec<&StatementKind> = own.map(|statement| &statement.kind).collect();
+        let is_late = |kind: &&StatementKind| match kind {
+            StatementKind::Let { name, .. } => self.names.seen.late.contains(&name.text),
+            _ => false,
+        };
+        let own: Vec<&StatementKind> =
+            own.map(|statement| &statement.kind).filter(|kind| !is_late(kind)).collect();
         let definitions = own.iter().filter_map(|kind| match kind {
             StatementKind::Let { name, value, .. } => Some((*kind, name, Cow::Borrowed(value))),
             StatementKind::Curve { name, centre, radius } => {

@@ -258,6 +258,7 @@ impl Elaborator<'_> {
                 return Err(self.fault(span, format!("`{name}` is a curve"), help));
             }
             Some(Symbol::Pending) => return Err(self.too_early(name, span)),
+            Some(Symbol::Later) => return Err(self.of_forces(name, span)),
             Some(Symbol::Faulty) => return Err(Fault),
             Some(Symbol::Value(_)) | None => {}
         }

@@ -42,6 +42,8 @@ mod resolver;
 mod rotation;
 pub mod scene;
 pub mod scenes;
+pub mod seen;
+mod seen_order;
 pub mod selection;
 mod shared;
 mod states_and_starts;

@@ -5,6 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use proc_macro2::Span;
 
 use super::curves::{Curve, OF_CURVES};
+use super::seen::Seen;
 use super::unit_faults::UnitFault;
 use super::unit_inference::Bare;
 use super::units::Dimension;
@@ -93,6 +94,8 @@ pub enum Symbol {
     Count(usize),
     /// Declared, but not usable here yet.
     Pending,
+    /// A `let` of forces by their names, which are not known yet.
+    Later,
     /// Declared with a fault that was reported.
     Faulty,
 }
@@ -113,6 +116,15 @@ pub struct Joint {
     pub bodies: [String; 2],
 }
 
+/// Names that effects declare which the scene does not select, with these effects.
+#[derive(Clone, Debug, Default)]
+pub struct Elsewhere {
+    /// Values.
+    pub values: BTreeMap<String, String>,
+    /// Bodies, forces and pins.
+    pub loads: BTreeMap<String, String>,
+}
+
 /// Names of values, with the scopes of loops and sums; names of rows and pins apart.
 #[derive(Clone, Debug, Default)]
 pub struct Names {
@@ -122,10 +134,12 @@ pub struct Names {
     local: BTreeSet<String>,
     rows: BTreeMap<String, Rows>,
     pins: BTreeMap<String, Vec<Joint>>,
+    /// Forces that expressions may refer to.
+    pub seen: Seen,
     /// Quantities that a `let` uses, where these are more than positions.
     needs: BTreeMap<String, Reach>,
     /// Names that effects declare which the scene does not select, with these effects.
-    pub elsewhere: BTreeMap<String, String>,
+    pub elsewhere: Elsewhere,
     /// Uses of all names in the text.
     pub uses: Uses,
     /// Names that are declared nowhere, as they were reported.
@@ -221,7 +235,26 @@ impl Names {
 
     /// The effect that declares a name and is not selected.
     pub fn effect_of(&self, name: &str) -> Option<&str> {
-        self.elsewhere.get(name).map(String::as_str)
+        self.elsewhere.values.get(name).map(String::as_str)
+    }
+
+    /// The effect that declares a body or a force and is not selected.
+    pub fn effect_of_load(&self, name: &str) -> Option<&str> {
+        self.elsewhere.loads.get(name).map(String::as_str)
+    }
+
+    /// Marks a declared name whose value is known among the forces alone.
+    pub fn postpone(&mut self, name: &str) {
+        if let Some((symbol @ Symbol::Pending, _)) = self.declared.get_mut(name) {
+            *symbol = Symbol::Later;
+        }
+    }
+
+    /// Gives a name of [`Names::postpone`] its meaning.
+    pub fn settle(&mut self, name: &str, meaning: Symbol) {
+        if let Some((symbol @ Symbol::Later, _)) = self.declared.get_mut(name) {
+            *symbol = meaning;
+        }
     }
 
     /// Notes bodies and elements that could not be read.

@@ -1,10 +1,8 @@
 //! Names that are declared nowhere: which other name is meant, or the declaration that fits their uses.
 
-use std::collections::BTreeMap;
-
 use proc_macro2::Span;
 
-use super::names::{CONSTANTS, Names, functions};
+use super::names::{CONSTANTS, Elsewhere, Names, functions};
 use super::resolve::resolve;
 use super::unit_faults::parsed;
 use super::uses::{OF_ANGLES, Undeclared};
@@ -225,7 +223,7 @@ fn leaves_no_fault(statements: &[Statement], kind: StatementKind, others: usize)
     let mut tried = statements.to_vec();
     tried.push(Statement { docs: Vec::new(), kind });
     let mut diagnostics = Diagnostics::default();
-    let (_, names) = resolve(&tried, BTreeMap::new(), &mut diagnostics);
+    let (_, names) = resolve(&tried, Elsewhere::default(), &mut diagnostics);
     names.unit_faults.is_empty() && diagnostics.number() <= others
 }
 

@@ -27,7 +27,7 @@ pub mod unreadable;
 use proc_macro2::{Span, TokenStream};
 
 use crate::diagnostics::Diagnostics;
-pub use expression::REFERRING;
+pub use expression::{OF_FORCES, REFERRING};
 #[cfg(test)]
 pub use foreign::CALLED;
 pub use foreign::NUMBER_TYPES;
