@@ -306,6 +306,16 @@ impl Cam {
         }
     }
 
+    /// Centre of the pad in the cam's frame at the cam angle `theta` (rad); the nearest point of a flat face.
+    pub(super) fn pitch<T: Real>(&self, theta: T) -> Plane<T> {
+        let turn = Jet::variable(theta).scaled(self.direction.sign());
+        let back = Plane::direction(-turn);
+        match self.pose(Jet::of_derivatives(self.lift.jet(theta))).0 {
+            Pose::Pad(centre, _) => back * centre,
+            Pose::Face(normal, distance) => back * Plane::direction(normal).times(distance),
+        }
+    }
+
     /// Profile and follower at the cam angle `theta` (rad).
     pub fn place<T: Real>(&self, theta: T) -> Place<T> {
         let lift = self.lift.jet(theta);

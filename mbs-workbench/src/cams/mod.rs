@@ -1,7 +1,7 @@
 //! Cams: from a lift law to a profile in closed form, its limits, the least size, and from a measured profile back to the lift.
 //!
 //! [`lift`] makes laws with exact derivatives, [`follower`] the profile that moves a follower by them, [`limits`] what a profile may
-//! not exceed and the least cam that keeps to it, [`measured`] the lift that a measured profile makes. [`files`] writes profiles,
+//! not exceed and the least cam that keeps to it, [`pitch`] the pitch curve as a function of a text, [`measured`] the lift that a measured profile makes. [`files`] writes profiles,
 //! [`page`] the page of `mbs cam`.
 //!
 //! A cam turns about the origin. Its angle θ counts from the start of the law; lengths are in metres, angles in radians.
@@ -18,6 +18,9 @@ pub mod limits;
 pub mod measured;
 pub mod noise;
 pub mod page;
+pub mod pitch;
+#[cfg(test)]
+mod pitch_tests;
 mod search;
 pub mod shapes;
 #[cfg(test)]

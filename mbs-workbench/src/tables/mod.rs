@@ -1,7 +1,7 @@
 //! Tables from files: a measured lift, a law from elsewhere, as splines for the runtime.
 //!
 //! [`read`] parses a file and converts its units to SI; [`Spline::fit`] fits a spline to the points; [`knots`] finds how many knots it
-//! should have; [`valley`] shows what points, rounding and knots cost; [`measured`] reads quantities over the time, [`chart`] draws a
+//! should have; [`Table`] is the function of a text; [`valley`] shows what points, rounding and knots cost; [`measured`] reads quantities over the time, [`chart`] draws a
 //! spline, [`constant`] writes it as Rust, [`sample`] is a file to try it on.
 
 pub mod chart;
@@ -11,9 +11,11 @@ pub mod measured;
 mod reader;
 pub mod sample;
 mod spline;
+mod table;
 mod unit;
 pub mod valley;
 
 pub use reader::{Columns, Fault, Points, read, read_unordered};
 pub use spline::{Kind, SEED, Spline, close_period};
+pub use table::{Table, TableError};
 pub use unit::Unit;

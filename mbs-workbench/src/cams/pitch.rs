@@ -1,0 +1,138 @@
+//! Pitch curve of a cam as a function of a text: its polar radius over the polar angle, in closed form.
+//!
+//! The centre of the pad has z(θ) = r e^{iw} in the cam's frame. r and w are known with their derivatives over θ, so R(w) = r(θ(w)) is
+//! one equation in θ, w(θ) = w, and R′ = r′/w′, R″ = (R′)′/w′ by the chain rule.
+
+use core::f64::consts::TAU;
+
+use mbs_runtime::Function;
+
+use super::CamError;
+use super::follower::Cam;
+use super::jet::{Jet, Plane};
+
+/// Places of a turn at which the polar angle is known: brackets of the search.
+const PLACES: usize = 720;
+
+/// Most steps of the search. Halving alone needs 52.
+const MOST_STEPS: usize = 60;
+
+/// Polar radius (m) over the polar angle (rad), with `ORDER` continuous derivatives, at most 3.
+///
+/// It is the function of `curve cam = polar pitch about C turned theta;`. A cam that turns clockwise has `turned -theta`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Pitch<const ORDER: usize> {
+    cam: Cam,
+    /// 1 where the polar angle grows with the cam angle, else −1.
+    sense: f64,
+    /// Polar angle at the first place.
+    first: f64,
+    /// Growth of the polar angle from there on, at places of equal cam angle; the last one is a turn.
+    growth: Vec<f64>,
+    /// Polar angles at which pieces of the law meet.
+    joints: Vec<f64>,
+}
+
+impl<const ORDER: usize> Pitch<ORDER> {
+    /// The pitch curve of a cam with a pad.
+    ///
+    /// # Errors
+    /// [`CamError::Value`] for a flat face, a law with fewer continuous derivatives than `ORDER`, and a pitch curve that a direction
+    /// from the cam's centre meets twice.
+    pub fn new(cam: &Cam) -> Result<Self, CamError> {
+        const { assert!(ORDER <= 3, "three derivatives are known") };
+        let fault = |name, why: String| Err(CamError::Value(name, why));
+        if cam.follower.pad().is_none() {
+            return fault("pitch curve", "a flat face has none".to_string());
+        }
+        if cam.lift.order() < ORDER {
+            let why = format!("{} continuous derivatives, {ORDER} are needed", cam.lift.order());
+            return fault("law", why);
+        }
+        // The rotation carries the profile the other way.
+        let sense = -cam.direction.sign();
+        let mut pitch = Pitch { cam: cam.clone(), sense, first: 0.0, growth: vec![0.0], joints: Vec::new() };
+        let (mut known, mut total) = (0.0, 0.0);
+        for place in 0..=PLACES {
+            let theta = pitch.theta(place);
+            let angle = pitch.at(theta).angle();
+            if !(sense * angle.rate().value() > 0.0) {
+                let why = format!("it has no polar radius at {:.3} deg of the cam", theta.to_degrees());
+                return fault("pitch curve", why);
+            }
+            match place {
+                0 => pitch.first = angle.value(),
+                _ => {
+                    total += (sense * (angle.value() - known)).rem_euclid(TAU);
+                    pitch.growth.push(total);
+                }
+            }
+            known = angle.value();
+        }
+        // A last step to the first place may be a rounding short of a turn, and none beyond it.
+        if (total - TAU).abs() > 1e-9 {
+            return fault("pitch curve", "it does not go round the cam's centre once".to_string());
+        }
+        let joints = cam.lift.joints();
+        pitch.joints = joints.iter().map(|theta| pitch.at(*theta).angle().value()).collect();
+        Ok(pitch)
+    }
+
+    fn theta(&self, place: usize) -> f64 {
+        self.cam.lift.origin() + TAU * place as f64 / PLACES as f64
+    }
+
+    fn at(&self, theta: f64) -> Plane<f64> {
+        self.cam.pitch(theta)
+    }
+
+    /// The cam angle (rad) at which the pad's centre has the polar angle `w`. NaN for NaN.
+    pub fn cam_angle(&self, w: f64) -> f64 {
+        let ahead = (self.sense * (w - self.first)).rem_euclid(TAU);
+        let place = self.growth.partition_point(|growth| *growth <= ahead).clamp(1, PLACES);
+        let (mut low, mut high) = (self.theta(place - 1), self.theta(place));
+        let mut theta = 0.5 * (low + high);
+        for _ in 0..MOST_STEPS {
+            let z = self.at(theta);
+            let [x, y] = z.value();
+            let (sine, cosine) = w.sin_cos();
+            // The angle that is left, small and without its whole turns.
+            let left = self.sense * (cosine * y - sine * x).atan2(cosine * x + sine * y);
+            if left < 0.0 {
+                low = theta;
+            } else {
+                high = theta;
+            }
+            let step = left / (self.sense * z.angle().rate().value());
+            let next = theta - step;
+            if step.abs() <= f64::EPSILON * theta.abs().max(1.0) {
+                return next;
+            }
+            theta = if low < next && next < high { next } else { 0.5 * (low + high) };
+        }
+        theta
+    }
+}
+
+impl<const ORDER: usize> Function<f64> for Pitch<ORDER> {
+    const ORDER: usize = ORDER;
+
+    fn jet<const K: usize>(&self, x: f64) -> [f64; K] {
+        let z = self.at(self.cam_angle(x));
+        let (radius, pace) = (z.length(), z.angle().rate());
+        let over = |value: Jet<f64>| value.rate() / pace;
+        let first = over(radius);
+        let second = over(first);
+        let derivatives = [radius, first, second, over(second)].map(Jet::value);
+        core::array::from_fn(|order| derivatives.get(order).copied().unwrap_or(f64::NAN))
+    }
+
+    fn breakpoint_after(&self, x: f64) -> Option<f64> {
+        let ahead = |joint: &f64| {
+            let ahead = (joint - x).rem_euclid(TAU);
+            if ahead > 0.0 { ahead } else { TAU }
+        };
+        let next = self.joints.iter().map(ahead).reduce(f64::min)?;
+        Some(x + next).filter(|place| *place > x)
+    }
+}
