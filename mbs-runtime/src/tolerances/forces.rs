@@ -68,9 +68,13 @@ pub(crate) const STUCK: Law = Law::fixed(1e-9);
 pub(crate) const OF_MOVEMENT: Law = Law::ulps(4.0);
 
 /// Largest correction (rad, or reference lengths) with which a step of the augmented Lagrangian method may end that has not converged.
-/// Next to a singular position the multiplier of the weak direction converges slowly, and the positions hardly move with it. Below the
-/// error of the trapezoidal rule at the steps that the method is for.
+/// Next to a singular position the multiplier of the weak direction converges slowly. Below the error of the trapezoidal rule at the
+/// longest steps that the method is for.
 pub(crate) const SLOW: Law = Law::fixed(1e-5);
+
+/// Part of a direction of the rows that springs take off by which it counts as hidden by rounding, and of the open rows that is left open:
+/// products of a matrix that keeps twelve of sixteen digits.
+pub(crate) const HIDDEN: Law = Law::ulps(4096.0);
 
 /// Acceleration that one rounding of the positions makes over a step, of that of the motion, below which multipliers are resolved.
 pub(crate) const UNSEEN: Law = Law::fixed(1e-3);

@@ -56,6 +56,7 @@ const VALUES: &[(&str, Law, f64, f32)] = &[
     ("stuck", forces::STUCK, 1e-9, 1e-9),
     ("movement", forces::OF_MOVEMENT, 4.0 * DOUBLE, 4.0 * SINGLE),
     ("slow", forces::SLOW, 1e-5, 1e-5),
+    ("hidden", forces::HIDDEN, 4096.0 * DOUBLE, 4096.0 * SINGLE),
     ("unseen", forces::UNSEEN, 1e-3, 1e-3),
     ("least", motion::LEAST, 32.0 * DOUBLE, 32.0 * SINGLE),
     ("default", motion::DEFAULT, 1e-9, 32.0 * SINGLE),

@@ -26,6 +26,18 @@ const PENALTY: f64 = 1e4;
 /// normal force that feeds back by b would have 1/(1 − b) of the rest after the first, a ten thousandth.
 const SWEEPS: u32 = 3;
 
+/// Corrections by springs alone. Regular positions take no more; next to a singular one the multiplier of the weak direction has hardly begun.
+const MOST_SPRUNG: u32 = 6;
+
+/// Part of the correction before from which on one falls slowly. The springs leave a ten thousandth where the rows are independent.
+const SLOWLY: f64 = 0.25;
+
+/// Largest correction (rad, or reference lengths) from which slow ones take the multipliers along: farther away the forces bend.
+const NEARBY: f64 = 1e-3;
+
+/// Directions of the rows in one correction that takes the multipliers along: those that the springs hold well count as one.
+const MOST_DIRECTIONS: usize = 8;
+
 /// Trapezoidal rule for M q̈ + Φ_qᵀ (λ + α Φ) = Q with λ ← λ + α Φ, then velocities and accelerations put onto Φ̇ = 0 and
 /// Φ̈ = 0 by the same matrix.
 ///
@@ -36,6 +48,9 @@ const SWEEPS: u32 = 3;
 /// The λ that holds the rows at a step's end compensates the rule's own error there too, a third of the change of the
 /// accelerations in the step: it is of order 1. With the force of the projection of the accelerations it is that of the state, of
 /// order 2. Friction, first-order states, power and loads are given this one.
+///
+/// Next to a singular position the springs hold a direction by the square of the margin, and its multiplier grows with its reciprocal.
+/// There corrections close the rows and take the multipliers along.
 /// Source: Bayo & Ledesma 1996; Cuadrado, Cardenal, Morer & Bayo 2004 for the projections with K and C.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct AugmentedLagrangian;
@@ -78,7 +93,9 @@ impl AugmentedLagrangian {
         let (mut lambda, mut rate) = (from.solved.lambda, from.solved.rate);
         let (mut step, mut last) = ([R::constant(0.0); N], R::constant(f64::MAX));
         let (mut damping, mut closed) = (Damping::new(1.0), false);
-        for _ in 0..MOST_ROUNDS {
+        let mut linked = false;
+        for round in 0..MOST_ROUNDS {
+            let carries = S::FORCE_USES_MULTIPLIERS || linked;
             let (qd, qdd) = trapezoidal(start, before, &change, h);
             (y.q, y.qd) = (start.q.plus(one, &[1.0], [&change]), qd);
             model.trapezoid(from, h, &mut y, &rate);
@@ -91,8 +108,7 @@ impl AugmentedLagrangian {
                 augmented.iter_mut().zip(&mut lambda).zip(&penalized.alpha).zip(&phi)
             {
                 // What the last correction left open, and the spring that closes it; a part of one leaves open what is not its own.
-                *lambda =
-                    if closed && !S::FORCE_USES_MULTIPLIERS { *lambda + *alpha * *phi } else { *lambda };
+                *lambda = if closed && !carries { *lambda + *alpha * *phi } else { *lambda };
                 *augmented = *lambda + *alpha * *phi;
             }
             // Without the spring of this iteration, which goes beyond what it will come to.
@@ -108,17 +124,22 @@ impl AugmentedLagrangian {
                 &qdd,
                 (&augmented, &bearing),
                 &phi,
-                |imbalance, phi| penalized.corrected::<S>(imbalance, phi),
+                |imbalance, phi| penalized.corrected::<S>(imbalance, phi, linked),
             )?;
             step = correction;
             counts.iterations += 1;
             counts.evaluations += 1;
+            let earlier = last;
             let standing = model.standing_after(&from.y.q, &step, &y.q, &mut last)?;
-            let slow = damping.is_last() && last < forces::SLOW.of();
-            counts.unfinished += u64::from(slow && !standing);
-            if standing || slow {
+            // Springs that close the rows slowly may stand still long before they have.
+            let is_slow = earlier <= last || MOST_SPRUNG <= round && R::constant(SLOWLY) * earlier <= last;
+            let links = is_slow && !linked && !damping.has_halved() && self.is_open(last);
+            let bent = (&qdd, before, quarter);
+            let ended = !standing && damping.is_last() && self.may_end(model, (last, earlier), bent);
+            counts.unfinished += u64::from(ended);
+            if standing && !links || ended {
                 change = change.plus(-one, &[1.0], [&step]);
-                if S::FORCE_USES_MULTIPLIERS {
+                if carries {
                     lambda = lambda.plus(-one, &[1.0], [&taken]);
                 }
                 let (qd, qdd) = trapezoidal(start, before, &change, h);
@@ -129,7 +150,7 @@ impl AugmentedLagrangian {
                 return Err(model.unbalanced(&step, t, MOST_ITERATIONS));
             }
             // The springs alone take the rows' multipliers on, but those that friction hangs on, which belong to the coordinates.
-            let moved = if S::FORCE_USES_MULTIPLIERS { taken.each(|part| -part) } else { lambda.zero() };
+            let moved = if carries { taken.each(|part| -part) } else { lambda.zero() };
             let whole = Unknowns { motion: step.each(|part| -part), lambda: moved };
             let here = Unknowns { motion: change, lambda };
             let next = damping.next(&here, (&whole, last), |base, least| {
@@ -143,11 +164,38 @@ impl AugmentedLagrangian {
                 let place = model.position(t, &moved);
                 let last = Penalized::of(model, &place, (t, h), (&moved, &bent, &base.lambda))?;
                 let imbalance = model.imbalance(&position, &y, &qdd, (&augmented, &bearing));
-                Ok((model.largest(&last.corrected::<S>(&imbalance, &phi).0), least))
+                Ok((model.largest(&last.corrected::<S>(&imbalance, &phi, linked).0), least))
             })?;
             (Unknowns { motion: change, lambda }, closed) = next;
+            if links {
+                // What the springs have taken on in this correction.
+                lambda = if carries { lambda } else { lambda.plus(-one, &[1.0], [&taken]) };
+                (linked, damping) = (true, Damping::new(1.0));
+            }
         }
         Err(model.unbalanced(&step, t, MOST_ROUNDS))
+    }
+
+    /// `true` for a correction of `size` that is more than rounding, and near the end of the step.
+    fn is_open<R: Real>(self, size: R) -> bool {
+        forces::CORRECTED.of::<R>() < size && size < R::constant(NEARBY)
+    }
+
+    /// `true` if a step may end with a correction of `size` behind one of size `earlier`, which have not converged. All that are to
+    /// follow are less than the error that the trapezoidal rule has in the step, h²/12 of the change of the accelerations.
+    #[cold]
+    #[inline(never)]
+    fn may_end<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize>(
+        self,
+        model: &Model<'_, S, R, N, M>,
+        (size, earlier): (R, R),
+        (qdd, before, quarter): (&[R; N], &[R; N], R),
+    ) -> bool {
+        let change = model.largest(&qdd.plus(R::constant(-1.0), &[1.0], [before]));
+        let error = (quarter * change / R::constant(3.0)).max(forces::CORRECTED.of());
+        let rest = size * size / (earlier - size);
+        // Written so that NaN is too much.
+        R::constant(0.0) <= rest && rest <= error && rest <= forces::SLOW.of() && size < forces::SLOW.of()
     }
 }
 
@@ -204,11 +252,18 @@ impl<R: Real, const N: usize, const M: usize> Penalized<R, N, M> {
     }
 
     /// The correction (N) that takes `imbalance` (N) away, and the decrease of the multipliers (M) by the part of `phi` (M) that
-    /// it leaves. Where forces depend on the multipliers it leaves none.
-    fn corrected<S: Dynamic<R, N, M>>(&self, imbalance: &[R; N], phi: &[R; M]) -> ([R; N], [R; M]) {
+    /// it leaves. Where forces depend on the multipliers, or it is `linked` to them, it leaves none.
+    fn corrected<S: Dynamic<R, N, M>>(
+        &self,
+        imbalance: &[R; N],
+        phi: &[R; M],
+        linked: bool,
+    ) -> ([R; N], [R; M]) {
         let mut step = self.factors.solve(imbalance, &[]).0.each(|step| step * self.quarter);
         let mut change = self.sprung(&step, phi);
-        if S::FORCE_USES_MULTIPLIERS {
+        if linked {
+            self.link((&mut step, &mut change));
+        } else if S::FORCE_USES_MULTIPLIERS {
             self.close(phi, (&mut step, &mut change));
         }
         (step, change)
@@ -237,6 +292,54 @@ impl<R: Real, const N: usize, const M: usize> Penalized<R, N, M> {
             *step = step.plus(-one, &[1.0], [&self.factors.solve(&force, &[]).0]);
             fallen = self.sprung(step, phi);
             *change = change.plus(one, &[1.0], [&fallen]);
+        }
+    }
+
+    /// [`close`](Self::close) by generalised conjugate residuals: a direction that the springs hold weakly takes one product, and all others
+    /// together two or three. One that rounding hides is left out. Source: Eisenstat, Elman & Schultz 1983.
+    #[cold]
+    #[inline(never)]
+    fn link(&self, (step, change): (&mut [R; N], &mut [R; M])) {
+        let (one, zero) = (R::constant(1.0), R::constant(0.0));
+        // Forces over the springs are openings.
+        let product = |a: &[R; M], b: &[R; M]| {
+            let parts = a.iter().zip(b).zip(&self.alpha);
+            parts.fold(zero, |sum, ((a, b), alpha)| sum + *a * *b / *alpha)
+        };
+        let hidden = forces::HIDDEN.of::<R>() * forces::HIDDEN.of::<R>();
+        let none = [zero; M];
+        let mut left = change.each(|change| -change);
+        let all = product(&left, &left);
+        // Directions (M), the movements by them (N), and the forces that these take off, with their squares.
+        let mut known = [(none, [zero; N], none, one); MOST_DIRECTIONS];
+        for count in 0..MOST_DIRECTIONS {
+            let mut force = [zero; N];
+            for (row, left) in self.phi_q.iter().zip(&left) {
+                let weight = self.quarter * *left;
+                force.iter_mut().zip(row).for_each(|(sum, entry)| *sum = *sum + weight * *entry);
+            }
+            let (mut along, mut moved) = (left, self.factors.solve(&force, &[]).0);
+            let mut taken = self.sprung(&moved, &none);
+            for (direction, movement, force, square) in known.iter().take(count) {
+                let weight = -(product(&taken, force) / *square);
+                along = along.plus(weight, &[1.0], [direction]);
+                moved = moved.plus(weight, &[1.0], [movement]);
+                taken = taken.plus(weight, &[1.0], [force]);
+            }
+            let square = product(&taken, &taken);
+            if !(hidden * product(&along, &along)).less(square) {
+                return;
+            }
+            let share = product(&left, &taken) / square;
+            *step = step.plus(share, &[1.0], [&moved]);
+            *change = change.plus(share, &[-1.0, 1.0], [&along, &taken]);
+            left = left.plus(-share, &[1.0], [&taken]);
+            if product(&left, &left) <= hidden * all {
+                return;
+            }
+            if let Some(place) = known.get_mut(count) {
+                *place = (along, moved, taken, square);
+            }
         }
     }
 
