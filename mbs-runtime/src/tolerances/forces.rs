@@ -72,9 +72,9 @@ pub(crate) const OF_MOVEMENT: Law = Law::ulps(4.0);
 /// longest steps that the method is for.
 pub(crate) const SLOW: Law = Law::fixed(1e-5);
 
-/// Part of a direction of the rows that springs take off by which it counts as hidden by rounding, and of the open rows that is left open:
-/// products of a matrix that keeps twelve of sixteen digits.
-pub(crate) const HIDDEN: Law = Law::ulps(4096.0);
+/// Part of a direction of the rows that springs take off, below which its multiplier is left as it is: the square of a margin of 1e-6 and
+/// the springs' factor of 1e4. There rounding of the rows moves the coordinates as far as the force of a step does.
+pub(crate) const HIDDEN: Law = Law::root(1.0);
 
 /// Acceleration that one rounding of the positions makes over a step, of that of the motion, below which multipliers are resolved.
 pub(crate) const UNSEEN: Law = Law::fixed(1e-3);
