@@ -4,6 +4,8 @@
 mod acting_bodies;
 mod contacts;
 pub mod continuity;
+#[cfg(test)]
+mod curves_tests;
 pub mod deferred;
 mod degree;
 mod dynamics;
@@ -17,6 +19,8 @@ pub mod normal_forces;
 pub mod pins;
 mod power_of_time;
 mod second_moments;
+#[cfg(test)]
+mod seen_tests;
 mod sparse;
 mod spatial_inertia;
 mod sum;

@@ -161,7 +161,7 @@ pub enum Action {
 /// Spring, damper and actuator between two points: tension k (l − l₀) + c l̇ + f.
 ///
 /// At zero length there is no direction: k (P − Q) is exact there; the terms of l₀, c and f vanish.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct SpringDamper {
     /// Start point (m).
     pub from: Vec<Id>,
@@ -180,7 +180,7 @@ pub struct SpringDamper {
 }
 
 /// Spring, damper and actuator on an angle: −(k (α − α₀) + c α̇ + τ).
-#[derive(Debug)]
+#[derive(Clone, Copy, Debug)]
 pub struct Turn {
     /// α
     pub angle: Id,

@@ -7,6 +7,7 @@ use super::elaborator::Elaborator;
 use super::expression::{Id, Node};
 use super::masses_and_forces::Given;
 use super::resolver::Resolver;
+use super::seen::Force as Seen;
 use super::value::{Fault, Reach};
 use crate::symbolic::{Binary, Unary};
 use crate::syntax::ast::Name;
@@ -33,6 +34,7 @@ impl Resolver<'_> {
             }
             work.push_unary(Unary::Negate, force, span)
         })?;
+        self.names.seen.define(&name.text, Seen::Friction { along, force });
         self.force(name, full, Action::Work(vec![(force, along)]));
         Ok(())
     }
@@ -70,6 +72,7 @@ impl Resolver<'_> {
         let dynamics = self.dynamics();
         let force_index = dynamics.forces.len();
         dynamics.contacts.push(Contact { name: full.clone(), force: force_index, gap, bound, span });
+        self.names.seen.define(&name.text, Seen::Contact { gap, force });
         self.force(name, full, Action::Work(vec![(force, gap)]));
         Ok(())
     }

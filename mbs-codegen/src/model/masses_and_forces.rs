@@ -10,6 +10,7 @@ use super::initialiser::{fits_shape, initialiser};
 use super::non_negative::{Least, NonNegative};
 use super::resolver::Resolver;
 use super::rotation::{moments, parameters};
+use super::seen::Force as Seen;
 use super::unit_faults::Place;
 use super::units::Dimension;
 use super::value::{Fault, Quantity, Reach, Value};
@@ -150,6 +151,7 @@ impl Resolver<'_> {
                     torque: given.scalar("torque"),
                     stores,
                 };
+                self.names.seen.define(&name.text, Seen::Turn(turn));
                 self.force(name, full, Action::Turn(turn));
                 Ok(())
             }
@@ -179,6 +181,7 @@ impl Resolver<'_> {
             let field = fields.iter().find(|field| field.name.text == end);
             *carrier = self.carrier(field.and_then(|field| field.of.as_ref()))?;
         }
+        self.names.seen.define(&name.text, Seen::Line(line.clone()));
         self.force_on(name, full, Action::Line(line), carriers);
         Ok(())
     }
@@ -342,12 +345,13 @@ impl Resolver<'_> {
             Ok(on)
         })?;
         self.stateless(&on)?;
-        let value = self.elaborate(Reach::Force, |work| {
+        let (given, value) = self.elaborate(Reach::Force, |work| {
             let written = value;
             let value = work.value(value)?;
             let place = Place::Field(name.text.clone());
-            let mut value =
+            let given =
                 work.concerning(place, (written, None), |work| initialiser(work, value, dimension))?;
+            let mut value = given.clone();
             if kind == Load::Torque && on.shape == [4] {
                 vector_of_three(work, &value)?;
                 let parameters = parameters(work, &on, "a torque")?;
@@ -355,9 +359,10 @@ impl Resolver<'_> {
             } else {
                 work.same_shape(&on, &value, "`on`", value.span)?;
             }
-            Ok::<_, Fault>(value)
+            Ok::<_, Fault>((given, value))
         })?;
-        let pairs = value.items.iter().zip(&on.items).map(|(value, on)| (value.id, on.id)).collect();
+        let pairs: Vec<_> = value.items.iter().zip(&on.items).map(|(value, on)| (value.id, on.id)).collect();
+        self.names.seen.define(&name.text, Seen::Load { value: given, pairs: pairs.clone() });
         let carrier = self.carrier(of)?;
         self.force_on(name, full, Action::Work(pairs), [carrier, None]);
         Ok(())

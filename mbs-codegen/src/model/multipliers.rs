@@ -9,6 +9,7 @@ use super::units::Dimension;
 use super::value::{Fault, Quantity, Reach, Scalar, Value};
 use crate::diagnostics::nearest;
 use crate::symbolic::Unary;
+use crate::syntax::OF_FORCES;
 use crate::syntax::ast::{Name, Target};
 
 impl Elaborator<'_> {
@@ -22,6 +23,9 @@ impl Elaborator<'_> {
     ) -> Result<Value, Fault> {
         if function == "reaction" {
             return self.reaction(targets, counts, span);
+        }
+        if OF_FORCES.contains(&function) {
+            return self.of_force(function, targets, counts, span);
         }
         if matches!(self.reach, Reach::Position | Reach::Let) {
             return Err(self.fault(

@@ -4,6 +4,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use proc_macro2::Span;
 
+use super::curves::{Curve, OF_CURVES};
+use super::seen::Seen;
 use super::unit_faults::UnitFault;
 use super::unit_inference::Bare;
 use super::units::Dimension;
@@ -39,14 +41,28 @@ const OTHER_FUNCTIONS: [&str; 15] = [
     "der2",
 ];
 
+/// The function of partial derivatives.
+pub const PARTIAL: &str = "d";
+
 /// Names of all functions: those of one argument from the table of operations, then the others.
 pub fn functions<'a>() -> impl Iterator<Item = &'a str> {
+    kept().chain(OF_CURVES).chain([PARTIAL])
+}
+
+/// Names of functions that nothing else can have. Others take two arguments, as no function of the caller does, so that these and
+/// values may have their names.
+fn kept<'a>() -> impl Iterator<Item = &'a str> {
     Unary::called().map(|function| -> &'a str { function.entry().name }).chain(OTHER_FUNCTIONS)
 }
 
-/// `true` if `name` is that of a function of the language.
+/// `true` if `name` is that of a function of the language, and of nothing else.
 pub fn is_function(name: &str) -> bool {
-    functions().any(|function| function == name)
+    kept().any(|function| function == name)
+}
+
+/// `true` if a call of `name` with so many arguments is one of a function of the language that shares its name.
+pub fn is_of_two(name: &str, arguments: usize) -> bool {
+    arguments == 2 && (name == PARTIAL || OF_CURVES.contains(&name))
 }
 
 /// Names that have a value without a declaration.
@@ -72,10 +88,14 @@ pub enum Symbol {
     Value(Value),
     /// A declared function.
     Function(Callable),
+    /// A declared curve.
+    Curve(Box<Curve>),
     /// A count of a loop or a sum.
     Count(usize),
     /// Declared, but not usable here yet.
     Pending,
+    /// A `let` of forces by their names, which are not known yet.
+    Later,
     /// Declared with a fault that was reported.
     Faulty,
 }
@@ -96,6 +116,15 @@ pub struct Joint {
     pub bodies: [String; 2],
 }
 
+/// Names that effects declare which the scene does not select, with these effects.
+#[derive(Clone, Debug, Default)]
+pub struct Elsewhere {
+    /// Values.
+    pub values: BTreeMap<String, String>,
+    /// Bodies, forces and pins.
+    pub loads: BTreeMap<String, String>,
+}
+
 /// Names of values, with the scopes of loops and sums; names of rows and pins apart.
 #[derive(Clone, Debug, Default)]
 pub struct Names {
@@ -105,10 +134,12 @@ pub struct Names {
     local: BTreeSet<String>,
     rows: BTreeMap<String, Rows>,
     pins: BTreeMap<String, Vec<Joint>>,
+    /// Forces that expressions may refer to.
+    pub seen: Seen,
     /// Quantities that a `let` uses, where these are more than positions.
     needs: BTreeMap<String, Reach>,
     /// Names that effects declare which the scene does not select, with these effects.
-    pub elsewhere: BTreeMap<String, String>,
+    pub elsewhere: Elsewhere,
     /// Uses of all names in the text.
     pub uses: Uses,
     /// Names that are declared nowhere, as they were reported.
@@ -182,6 +213,19 @@ impl Names {
         }
     }
 
+    /// Gives a declared name its curve.
+    pub fn define_curve(&mut self, name: &str, curve: Curve) {
+        if let Some((symbol @ Symbol::Pending, _)) = self.declared.get_mut(name) {
+            *symbol = Symbol::Curve(Box::new(curve));
+        }
+    }
+
+    /// All curves.
+    pub fn curves(&self) -> impl Iterator<Item = &str> {
+        let is_curve = |symbol: &Symbol| matches!(symbol, Symbol::Curve(_));
+        self.declared.iter().filter(move |(_, (symbol, _))| is_curve(symbol)).map(|(name, _)| name.as_str())
+    }
+
     /// Marks a declared name that got no value, so that its uses are not reported too.
     pub fn give_up(&mut self, name: &str) {
         if let Some((symbol @ Symbol::Pending, _)) = self.declared.get_mut(name) {
@@ -191,7 +235,26 @@ impl Names {
 
     /// The effect that declares a name and is not selected.
     pub fn effect_of(&self, name: &str) -> Option<&str> {
-        self.elsewhere.get(name).map(String::as_str)
+        self.elsewhere.values.get(name).map(String::as_str)
+    }
+
+    /// The effect that declares a body or a force and is not selected.
+    pub fn effect_of_load(&self, name: &str) -> Option<&str> {
+        self.elsewhere.loads.get(name).map(String::as_str)
+    }
+
+    /// Marks a declared name whose value is known among the forces alone.
+    pub fn postpone(&mut self, name: &str) {
+        if let Some((symbol @ Symbol::Pending, _)) = self.declared.get_mut(name) {
+            *symbol = Symbol::Later;
+        }
+    }
+
+    /// Gives a name of [`Names::postpone`] its meaning.
+    pub fn settle(&mut self, name: &str, meaning: Symbol) {
+        if let Some((symbol @ Symbol::Later, _)) = self.declared.get_mut(name) {
+            *symbol = meaning;
+        }
     }
 
     /// Notes bodies and elements that could not be read.

@@ -41,16 +41,21 @@ pub fn order(definitions: &[(&Name, &Expression)], diagnostics: &mut Diagnostics
     sorted
 }
 
+/// State of a definition in the search.
 #[derive(Clone, Copy, PartialEq)]
-enum Visit {
+pub enum Visit {
+    /// Not yet met.
     New,
+    /// Met, its uses are being visited.
     Open,
+    /// Behind all that it uses.
     Done,
+    /// Part of a circle.
     Circular,
 }
 
-/// Depth-first search on an explicit stack.
-fn visit(
+/// Depth-first search on an explicit stack: `root` behind all that it uses; members of each circle are reported.
+pub fn visit(
     root: usize,
     uses: &[Vec<usize>],
     state: &mut [Visit],

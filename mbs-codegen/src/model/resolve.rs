@@ -9,13 +9,13 @@ use super::declarations::component_names;
 use super::expression::Node;
 use super::initialiser::{definition, fits_shape, initialiser};
 use super::masses_and_forces::is_dynamic;
-use super::names::{Names, Rows, Symbol, can_be_field};
+use super::names::{Elsewhere, Names, Rows, Symbol, can_be_field};
 use super::resolver::{LoopFrame, Pass, Resolver};
 use super::unit_faults::Place;
 use super::units::Dimension;
 use super::uses::uses;
 use super::value::{Fault, Reach, Value};
-use super::{Model, Output, OutputField, VariableKind, declarations, inputs, unused_elements};
+use super::{Model, Output, OutputField, VariableKind, declarations, inputs, limits, unused_elements};
 use crate::diagnostics::Diagnostics;
 use crate::syntax::ast::{Element, Expression, Loop, Name, Statement, StatementKind, Type, Unit};
 
@@ -25,7 +25,7 @@ use crate::syntax::ast::{Element, Expression, Loop, Name, Statement, StatementKi
 /// `elsewhere`: names that effects declare which the scene does not select, with these effects.
 pub fn resolve(
     statements: &[Statement],
-    elsewhere: BTreeMap<String, String>,
+    elsewhere: Elsewhere,
     diagnostics: &mut Diagnostics,
 ) -> (Model, Names) {
     let mut model = Model::default();
@@ -40,6 +40,7 @@ pub fn resolve(
         diagnostics,
         starts: BTreeSet::new(),
         oriented: BTreeMap::new(),
+        outputs: limits::outputs(statements),
         groups: Vec::new(),
         loops: Vec::new(),
         rounds: 0,
@@ -55,7 +56,8 @@ pub fn resolve(
     work.model.references = work.references();
     if !work.too_large() {
         (work.pass, work.rounds) = (Pass::Loads, 0);
-        work.run(statements);
+        let arranged = work.arranged(statements);
+        work.run(arranged.as_deref().unwrap_or(statements));
         work.check_states();
         work.check_pins();
     }
@@ -135,7 +137,9 @@ impl Resolver<'_> {
             StatementKind::Branch { name, at_start, larger, smaller } => {
                 self.branch(name, *at_start, larger, smaller)
             }
-            StatementKind::Limit { name, low, value, high } => self.limit(name, low, value, high),
+            StatementKind::Limit { name, first, second, third } => {
+                self.limit(name, [first, second], third.as_ref())
+            }
             StatementKind::Independent { names } => self.independent(names),
             StatementKind::Element { kind: Element::Body, name, fields } => self.normalisation(name, fields),
             StatementKind::Pin { name, bodies, at } => self.pin(name, bodies, at),
@@ -155,6 +159,7 @@ impl Resolver<'_> {
             }
             StatementKind::Energy { kind, name, value } => self.energy(*kind, name, value),
             StatementKind::Rate { state, rate, span } => self.rate_of_state(state, rate, *span),
+            StatementKind::Let { name, unit, value } => self.late_let(name, unit.as_ref(), value),
             _ => Ok(()),
         }
     }
@@ -162,6 +167,10 @@ impl Resolver<'_> {
     /// A `let` in a loop: it holds to the end of the round.
     fn local(&mut self, name: &Name, unit: Option<&Unit>, value: &Expression) -> Result<(), Fault> {
         let free = self.names.is_free(name, self.diagnostics);
+        if free && self.pass == Pass::Rows && self.names.is_late(value) {
+            self.names.enter(&name.text, Symbol::Later);
+            return Ok(());
+        }
         let defined = self.elaborate(Reach::Let, |work| definition(work, &name.text, unit, value));
         if free {
             let needs = defined.as_ref().map_or(Reach::Position, |(_, needs)| *needs);

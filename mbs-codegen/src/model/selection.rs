@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::names::report_double;
+use super::names::{Elsewhere, report_double};
 use crate::diagnostics::{Diagnostics, nearest};
 use crate::syntax::ast::{Declares, Name, Statement, StatementKind};
 use crate::syntax::rust_identifiers::UNUSABLE;
@@ -25,8 +25,8 @@ pub struct Selection {
     pub name: Option<Name>,
     /// Doc comment.
     pub docs: Vec<String>,
-    /// Values that other effects declare, with these effects.
-    pub elsewhere: BTreeMap<String, String>,
+    /// Names that other effects declare, with these effects.
+    pub elsewhere: Elsewhere,
     /// `false` if it names an effect that the text lacks, which is reported.
     pub is_whole: bool,
     /// Names of its effects.
@@ -186,17 +186,22 @@ impl<'a> Effects<'a> {
         }
     }
 
-    /// Values that the effects declare which are not chosen.
-    fn elsewhere(&self, chosen: &[usize]) -> BTreeMap<String, String> {
-        let others = self.parts.iter().filter_map(|(effect, statement)| {
-            let effect = (*effect).filter(|effect| !chosen.contains(effect))?;
-            let (name, _) = self.selected.get(effect)?;
-            match declares(&statement.kind)? {
-                ("value", value) => Some((value.to_owned(), name.text.clone())),
+    /// Names that the effects declare which are not chosen.
+    fn elsewhere(&self, chosen: &[usize]) -> Elsewhere {
+        let mut elsewhere = Elsewhere::default();
+        for (effect, statement) in &self.parts {
+            let effect = (*effect).filter(|effect| !chosen.contains(effect));
+            let Some((effect, _)) = effect.and_then(|effect| self.selected.get(effect)) else { continue };
+            let names = match declares(&statement.kind) {
+                Some(("value", name)) => Some((name, &mut elsewhere.values)),
+                Some(("load", name)) => Some((name, &mut elsewhere.loads)),
                 _ => None,
+            };
+            if let Some((name, names)) = names {
+                names.insert(name.to_owned(), effect.text.clone());
             }
-        });
-        others.collect()
+        }
+        elsewhere
     }
 
     /// `true` if an earlier effect has the same name, which is reported.
@@ -227,6 +232,7 @@ fn declares(kind: &StatementKind) -> Option<(&'static str, &str)> {
         | StatementKind::Coord { name, .. }
         | StatementKind::Let { name, .. }
         | StatementKind::Function { name, .. }
+        | StatementKind::Curve { name, .. }
         | StatementKind::State { name, .. } => ("value", name),
         StatementKind::Faulty { name, declares: Declares::Element, .. } => ("load", name),
         StatementKind::Faulty { declares: Declares::Rows | Declares::Rate, .. } => return None,

@@ -1,10 +1,8 @@
 //! Names that are declared nowhere: which other name is meant, or the declaration that fits their uses.
 
-use std::collections::BTreeMap;
-
 use proc_macro2::Span;
 
-use super::names::{CONSTANTS, Names, functions};
+use super::names::{CONSTANTS, Elsewhere, Names, functions};
 use super::resolve::resolve;
 use super::unit_faults::parsed;
 use super::uses::{OF_ANGLES, Undeclared};
@@ -225,7 +223,7 @@ fn leaves_no_fault(statements: &[Statement], kind: StatementKind, others: usize)
     let mut tried = statements.to_vec();
     tried.push(Statement { docs: Vec::new(), kind });
     let mut diagnostics = Diagnostics::default();
-    let (_, names) = resolve(&tried, BTreeMap::new(), &mut diagnostics);
+    let (_, names) = resolve(&tried, Elsewhere::default(), &mut diagnostics);
     names.unit_faults.is_empty() && diagnostics.number() <= others
 }
 
@@ -324,6 +322,9 @@ pub fn meant_function(name: &str, arguments: &[String]) -> Option<String> {
         "sqr" | "square" | "sq" => format!("write a square as a power: `{}`", power(first, "2")),
         "cube" => format!("write it as a power: `{}`", power(first, "3")),
         "pow" | "power" | "powf" | "powi" => format!("write a power with `^`: `{}`", power(first, second)),
+        "circle" => {
+            format!("a curve is that of the centre of a circle that rolls on it: write the centre, `{first}`")
+        }
         "radians" | "deg2rad" => format!("a number takes its unit: `{first}deg`"),
         "sind" | "cosd" | "tand" => format!("write `{}({first}deg)`", name.trim_end_matches('d')),
         _ => {

@@ -1,9 +1,8 @@
 //! Declarations at fault: with another unit of one, the text is resolved again and has fewer faults of units.
 
-use std::collections::BTreeMap;
-
 use proc_macro2::Span;
 
+use super::names::Elsewhere;
 use super::resolve::resolve;
 use super::unit_faults::{Place, UnitFault, UnitOf, count, parsed};
 use super::units::Dimension;
@@ -118,7 +117,7 @@ impl Declarations<'_> {
             set_unit(&mut statement.kind, unit);
         }
         let mut diagnostics = Diagnostics::default();
-        let (_, names) = resolve(&statements, BTreeMap::new(), &mut diagnostics);
+        let (_, names) = resolve(&statements, Elsewhere::default(), &mut diagnostics);
         let place = |fault: &UnitFault| (fault.span.start().line, fault.span.start().column);
         let left: Vec<_> = names.unit_faults.iter().map(place).collect();
         let known: Vec<_> = self.faults.iter().map(place).collect();

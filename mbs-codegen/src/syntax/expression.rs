@@ -49,8 +49,11 @@ pub fn count(parser: &mut Parser<'_>) -> Read<Expression> {
     read(parser, true, true)
 }
 
-/// Functions of rows, drives, pins and bodies.
-pub const REFERRING: [&str; 3] = ["lambda", "effort", "reaction"];
+/// Functions of rows, drives, pins and bodies, then those of [`OF_FORCES`].
+pub const REFERRING: [&str; 8] = ["lambda", "effort", "reaction", "force", "gap", "normal", "slip", "power"];
+
+/// Functions of forces by their names. A text may declare these words: then they are its own.
+pub const OF_FORCES: [&str; 5] = ["force", "gap", "normal", "slip", "power"];
 
 /// `references`: `true` if [`REFERRING`] functions are read as such; not in their own indices, so that they do not nest.
 /// `counts`: `true` if a comma ends the expression.
@@ -66,6 +69,20 @@ fn read(parser: &mut Parser<'_>, references: bool, counts: bool) -> Read<Express
             return Ok(Expression { code: reader.code });
         }
     }
+}
+
+/// `true` if a name stands in the parentheses behind `word`, alone or with a count, and the text has no function of its own of
+/// this name.
+fn names_a_force(parser: &Parser<'_>, word: &str) -> bool {
+    let name = matches!(parser.peek_at(2), TokenKind::Identifier(_));
+    let behind = match parser.peek_at(3) {
+        TokenKind::Close(')') | TokenKind::Open('[') => true,
+        // A second argument of `power` is an exponent.
+        TokenKind::Punctuation(',', _) => word != "power",
+        TokenKind::Punctuation('.', _) => matches!(parser.peek_at(4), TokenKind::Literal(_)),
+        _ => false,
+    };
+    name && behind && !parser.declares_function(word)
 }
 
 struct Reader {
@@ -117,7 +134,8 @@ impl Reader {
             TokenKind::Identifier(word)
                 if self.references
                     && REFERRING.contains(&word.as_str())
-                    && *parser.peek_at(1) == TokenKind::Open('(') =>
+                    && *parser.peek_at(1) == TokenKind::Open('(')
+                    && (!OF_FORCES.contains(&word.as_str()) || names_a_force(parser, word)) =>
             {
                 parser.skip(2);
                 self.reference(parser, word, span)?;
@@ -153,6 +171,11 @@ impl Reader {
         let help = match function {
             "lambda" => "write `lambda(closure[0])`, a row of a constraint",
             "effort" => "write `effort(crank)`, the name of a drive",
+            "force" => "write `force(spring)`, or `force(springs[0])` for one of a loop",
+            "gap" => "write `gap(cam)`, the name of a contact",
+            "normal" => "write `normal(cam)`, the name of a contact",
+            "slip" => "write `slip(guide)`, the name of a friction",
+            "power" => "write `power(spring)`, the name of a force",
             _ => "write `reaction(B, rod)`, a pin and a body",
         };
         let mut targets = Vec::new();

@@ -3,6 +3,7 @@
 #[allow(missing_docs, reason = "fields are named as the grammar names them")]
 pub mod ast;
 mod constraint;
+mod curve;
 mod dynamics;
 mod expression;
 mod foreign;
@@ -26,7 +27,7 @@ pub mod unreadable;
 use proc_macro2::{Span, TokenStream};
 
 use crate::diagnostics::Diagnostics;
-pub use expression::REFERRING;
+pub use expression::{OF_FORCES, REFERRING};
 #[cfg(test)]
 pub use foreign::CALLED;
 pub use foreign::NUMBER_TYPES;

@@ -1,5 +1,7 @@
 //! A cursor over the flat list of tokens.
 
+use std::collections::BTreeSet;
+
 use proc_macro2::Span;
 
 use super::ast::{Declares, Name, StatementKind, Type};
@@ -24,6 +26,8 @@ pub struct Parser<'a> {
     pub diagnostics: &'a mut Diagnostics,
     /// Declarations and scenes that were given up after their name.
     pub faulty: Vec<StatementKind>,
+    /// Names behind the word `function`.
+    functions: BTreeSet<&'a str>,
 }
 
 static BEHIND: TokenKind = TokenKind::End;
@@ -31,7 +35,19 @@ static BEHIND: TokenKind = TokenKind::End;
 impl<'a> Parser<'a> {
     /// `tokens` end with [`Kind::End`].
     pub fn new(tokens: &'a [Token], diagnostics: &'a mut Diagnostics) -> Self {
-        Parser { tokens, next: 0, diagnostics, faulty: Vec::new() }
+        let pairs = tokens.iter().zip(tokens.iter().skip(1));
+        let functions = pairs.filter_map(|(word, name)| match (&word.kind, &name.kind) {
+            (TokenKind::Identifier(word), TokenKind::Identifier(name)) if word == "function" => {
+                Some(name.as_str())
+            }
+            _ => None,
+        });
+        Parser { tokens, next: 0, diagnostics, faulty: Vec::new(), functions: functions.collect() }
+    }
+
+    /// `true` if the text declares a function of this name.
+    pub fn declares_function(&self, name: &str) -> bool {
+        self.functions.contains(name)
     }
 
     /// The next token's kind.
@@ -139,7 +155,9 @@ impl<'a> Parser<'a> {
         let begin = self.next;
         let read = match self.peek() {
             TokenKind::Punctuation('=', _)
-                if declares != Declares::Element && word != "let" && STATEMENTS.contains(&word.as_str()) =>
+                if declares != Declares::Element
+                    && !matches!(word.as_str(), "let" | "curve")
+                    && STATEMENTS.contains(&word.as_str()) =>
             {
                 missing::no_unit(self, &word, &name.text)
             }
