@@ -68,9 +68,13 @@ pub(crate) const STUCK: Law = Law::fixed(1e-9);
 pub(crate) const OF_MOVEMENT: Law = Law::ulps(4.0);
 
 /// Largest correction (rad, or reference lengths) with which a step of the augmented Lagrangian method may end that has not converged.
-/// Next to a singular position the multiplier of the weak direction converges slowly, and the positions hardly move with it. Below the
-/// error of the trapezoidal rule at the steps that the method is for.
+/// Next to a singular position the multiplier of the weak direction converges slowly. Below the error of the trapezoidal rule at the
+/// longest steps that the method is for.
 pub(crate) const SLOW: Law = Law::fixed(1e-5);
+
+/// Part of a direction of the rows that springs take off, below which its multiplier is left as it is: the square of a margin of 1e-6 and
+/// the springs' factor of 1e4. There rounding of the rows moves the coordinates as far as the force of a step does.
+pub(crate) const HIDDEN: Law = Law::root(1.0);
 
 /// Acceleration that one rounding of the positions makes over a step, of that of the motion, below which multipliers are resolved.
 pub(crate) const UNSEEN: Law = Law::fixed(1e-3);

@@ -84,6 +84,7 @@ const ROOTS: &[(&str, Law, f64)] = &[
     ("weakest of a start", singular::WEAKEST_OF_START, 0.125),
     ("flat", singular::FLAT, 512.0),
     ("apart", forces::APART, 16.0),
+    ("hidden", forces::HIDDEN, 1.0),
     ("stuck multipliers", forces::STUCK_MULTIPLIERS, 1e-2),
     ("shortest edge", forces::SHORTEST_EDGE, 1.0),
     ("beside", forces::BESIDE, 4.0),

@@ -2,6 +2,7 @@
 #![forbid(unsafe_code)]
 
 mod d25_all_rows_vanish;
+mod d2_augmented_lagrangian;
 mod d2_four_bar;
 mod d2_parallelogram;
 mod d2_single_precision;

@@ -4,3 +4,4 @@ pub(crate) mod augmented_lagrangian;
 pub(crate) mod extrapolated;
 pub(crate) mod generalized_alpha;
 pub(crate) mod iteration;
+pub(crate) mod springs;

@@ -67,7 +67,7 @@ pub struct Counts {
     pub steps: u64,
     /// Iterations of implicit methods.
     pub iterations: u64,
-    /// Steps of the augmented Lagrangian that ended with a multiplier still moving, next to a singular position.
+    /// Steps of the augmented Lagrangian that ended with a multiplier still moving: by less than the error of the rule in the step.
     pub unfinished: u64,
 }
 
