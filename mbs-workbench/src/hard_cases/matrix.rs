@@ -6,11 +6,18 @@ use crate::hard_cases::result::Picture;
 use crate::hard_cases::verdict::Verdict;
 use crate::output::page::escaped;
 
-/// Height of a row, width of a column, room for the names of rows and columns.
+/// Height of a row and width of a column.
 const ROW: usize = 20;
 const COLUMN: usize = 46;
-const NAMES: usize = 330;
-const HEADS: usize = 150;
+
+/// Width of a letter, and how far it rises in a name that leans by 35°.
+const LETTER: f64 = 7.0;
+const RISE: f64 = 4.1;
+
+/// Characters of the longest name.
+fn longest(names: &[String]) -> f64 {
+    names.iter().map(|name| name.chars().count()).max().unwrap_or(0) as f64
+}
 
 /// Colour and mark of a place: colours that differ for the colour-blind, marks without them.
 fn look(verdict: Verdict, is_expected: bool) -> (&'static str, &'static str) {
@@ -25,15 +32,18 @@ fn look(verdict: Verdict, is_expected: bool) -> (&'static str, &'static str) {
 
 /// The picture.
 pub fn svg(picture: &Picture<'_>, sentence: &str) -> String {
-    let width = NAMES + COLUMN * picture.columns.len() + 90;
-    let height = HEADS + ROW * picture.rows.len() + 54;
+    // Room for the names of rows and of columns.
+    let names = (LETTER * longest(picture.rows)) as usize + 20;
+    let heads = (RISE * longest(picture.columns)) as usize + 24;
+    let width = (names + COLUMN * picture.columns.len() + 130).max(520);
+    let height = heads + ROW * picture.rows.len() + 54;
     let mut text = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" height=\"{height}\" \
          font-family=\"system-ui, sans-serif\" font-size=\"12\">\n<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n"
     );
     for (column, name) in picture.columns.iter().enumerate() {
-        let x = NAMES + COLUMN * column + COLUMN / 2;
-        let y = HEADS - 8;
+        let x = names + COLUMN * column + COLUMN / 2;
+        let y = heads - 8;
         // Writing to a string succeeds.
         let _ = writeln!(
             text,
@@ -42,16 +52,16 @@ pub fn svg(picture: &Picture<'_>, sentence: &str) -> String {
         );
     }
     for (row, name) in picture.rows.iter().enumerate() {
-        let y = HEADS + ROW * row;
+        let y = heads + ROW * row;
         let _ = writeln!(
             text,
             "<text x=\"{}\" y=\"{}\" text-anchor=\"end\" fill=\"#1c2330\">{}</text>",
-            NAMES - 8,
+            names - 8,
             y + 14,
             escaped(name)
         );
         for (column, cell) in picture.cells[row].iter().enumerate() {
-            let x = NAMES + COLUMN * column;
+            let x = names + COLUMN * column;
             let Some((verdict, is_expected)) = cell else { continue };
             let (colour, mark) = look(*verdict, *is_expected);
             let _ = writeln!(
@@ -67,7 +77,7 @@ pub fn svg(picture: &Picture<'_>, sentence: &str) -> String {
             );
         }
     }
-    let y = HEADS + ROW * picture.rows.len() + 22;
+    let y = heads + ROW * picture.rows.len() + 22;
     let legend = [
         (Verdict::Right, true, "right"),
         (Verdict::Late, true, "late"),
