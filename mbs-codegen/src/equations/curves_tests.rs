@@ -135,7 +135,7 @@ curve cam = polar pitch about C turned theta;
 constraint rides { A on cam; distance(A, cam) == 0; }
 drive turn: theta == 1rad;
 out gap: m = distance(A, cam);
-out outwards: [1; 2] = normal(A, cam);
+out outwards: [1; 2] = outward(A, cam);
 out slope: [1; 2] = d(norm(A - C) - pitch(atan2(A.1 - C.1, A.0 - C.0) - theta), A);
 ";
 

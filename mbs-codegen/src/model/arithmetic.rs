@@ -287,7 +287,7 @@ impl Elaborator<'_> {
             "rotate" => "e, v",
             "angular_velocity" => "e",
             "d" => "z, u",
-            "distance" | "normal" => "A, cam",
+            "distance" | "outward" => "A, cam",
             "dot" | "cross" | "min" | "max" | "hypot" => "a, b",
             _ => "x",
         };

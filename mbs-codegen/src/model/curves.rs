@@ -21,7 +21,7 @@ use crate::symbolic::Binary;
 use crate::syntax::ast::{Expression, Instruction, Name, Operation, Operator};
 
 /// Functions of a point and a curve.
-pub const OF_CURVES: [&str; 2] = ["distance", "normal"];
+pub const OF_CURVES: [&str; 2] = ["distance", "outward"];
 
 /// Relative error of a period as a part of a turn: that of its decimals.
 const OF_PERIOD: f64 = 1e-12;
@@ -114,7 +114,7 @@ fn is_point(work: &mut Elaborator<'_>, value: &Value, what: &str) -> Result<[Sca
 }
 
 impl Elaborator<'_> {
-    /// `distance(A, curve)` or `normal(A, curve)`, where `curve` is the instruction before the call.
+    /// `distance(A, curve)` or `outward(A, curve)`, where `curve` is the instruction before the call.
     pub(super) fn of_curve(
         &mut self,
         function: &str,

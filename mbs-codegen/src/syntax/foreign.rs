@@ -50,7 +50,7 @@ pub const CALLED: [&str; 35] = [
     "der",
     "der2",
     "distance",
-    "normal",
+    "outward",
     "d",
 ];
 

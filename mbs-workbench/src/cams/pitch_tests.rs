@@ -31,7 +31,7 @@ mbs_runtime::mechanism! {
     branch finger: cos(psi) > 0;
     out lift: m = 8mm - tip.1;
     out gap: m = distance(pad, cam);
-    out pressure: rad = asin(dot(normal(pad, cam), d(pad, psi))/norm(d(pad, psi)));
+    out pressure: rad = asin(dot(outward(pad, cam), d(pad, psi))/norm(d(pad, psi)));
     out leverage: m = d(tip.1, psi);
     limit open: lift <= 11.5mm;
     limit seat: -1mm <= lift;
