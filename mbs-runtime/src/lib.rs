@@ -140,7 +140,7 @@ pub use mechanism::dynamic::{
     Dynamic, DynamicState, Energy, Gap, MissingSlope, NonNegative, Partitioned, StateSlope,
 };
 pub use mechanism::function::{Function, FunctionEntry};
-pub use mechanism::limit::{Limit, WARNING_SHARE, Warning};
+pub use mechanism::limit::{Limit, OPEN, WARNING_SHARE, Warning};
 pub use mechanism::margin::Margin;
 pub use mechanism::operations::Operations;
 pub use mechanism::outcome::Outcome;

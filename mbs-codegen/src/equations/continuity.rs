@@ -1,6 +1,7 @@
 //! Derivatives of declared functions that the equations need, checked against the continuity that the text declares.
 
 use std::collections::BTreeMap;
+use std::f64::consts::TAU;
 
 use proc_macro2::Span;
 
@@ -39,8 +40,9 @@ pub fn check(model: &Model, equations: &Equations, diagnostics: &mut Diagnostics
         let Some(function) = model.functions.get(function).filter(|f| f.continuity < order) else { continue };
         let (name, declared) = (&function.name.text, function.continuity);
         let (unit, argument) = (&function.unit, &function.argument_unit);
+        let closed = if function.period == Some(TAU) { ", periodic TAU" } else { "" };
         let mut help = format!(
-            "supply a smoother function and declare it, `function {name}: {unit}({argument}), C{order};`"
+            "supply a smoother function and declare it, `function {name}: {unit}({argument}), C{order}{closed};`"
         );
         // Before a coordinate is known a caller can compute it, and knows which side of a jump holds.
         if !contains_coordinate(equations, place) {

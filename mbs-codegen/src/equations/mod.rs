@@ -4,6 +4,8 @@
 mod acting_bodies;
 mod contacts;
 pub mod continuity;
+#[cfg(test)]
+mod curves_tests;
 pub mod deferred;
 mod degree;
 mod dynamics;

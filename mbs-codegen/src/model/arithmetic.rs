@@ -286,6 +286,8 @@ impl Elaborator<'_> {
             "norm" => "v",
             "rotate" => "e, v",
             "angular_velocity" => "e",
+            "d" => "z, u",
+            "distance" | "normal" => "A, cam",
             "dot" | "cross" | "min" | "max" | "hypot" => "a, b",
             _ => "x",
         };

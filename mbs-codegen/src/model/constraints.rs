@@ -31,6 +31,11 @@ impl Resolver<'_> {
                 }
                 Item::EndFor if self.loops.len() > outer => next = self.repeat().unwrap_or(next),
                 Item::EndFor => {}
+                Item::On { point, curve, span } => {
+                    if self.on_curve(point, curve, *span, group).is_err() {
+                        self.names.mark_faulty_rows(&name.text);
+                    }
+                }
                 Item::Equation(equation) => {
                     if self.equation(equation, group).is_err() {
                         self.names.mark_faulty_rows(&name.text);

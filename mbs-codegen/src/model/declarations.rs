@@ -1,5 +1,7 @@
 //! Declarations: constants, parameters, inputs, coordinates and `let`s.
 
+use std::borrow::Cow;
+
 use proc_macro2::Span;
 
 use super::bare_angles::is_of_angles;
@@ -122,7 +124,8 @@ fn declared_name(statement: &Statement) -> Option<&Name> {
         | StatementKind::Coord { name, .. }
         | StatementKind::State { name, .. }
         | StatementKind::Function { name, .. }
-        | StatementKind::Let { name, .. } => Some(name),
+        | StatementKind::Let { name, .. }
+        | StatementKind::Curve { name, .. } => Some(name),
         _ => None,
     }
 }
@@ -487,24 +490,44 @@ impl Declarations<'_> {
         self.define(name, &declared, ids);
     }
 
+    /// `let`s and curves, each after those that it uses.
     fn lets(&mut self, top: &[&Statement]) {
-        let lets: Vec<(&Name, Option<&Unit>, &Expression)> = top
-            .iter()
-            .filter_map(|statement| match &statement.kind {
-                StatementKind::Let { name, unit, value } => Some((name, unit.as_ref(), value)),
-                _ => None,
-            })
-            .filter(|(name, ..)| self.owns(name) && !self.names.seen.late.contains(&name.text))
-            .collect();
-        let definitions: Vec<_> = lets.iter().map(|(name, _, value)| (*name, *value)).collect();
-        for index in self.order(&definitions) {
-            let Some((name, unit, expression)) = lets.get(index) else { continue };
-            match self.elaborate(|work| definition(work, &name.text, *unit, expression)) {
-                Ok((value, needs)) => {
-                    self.names.define_needs(&name.text, needs);
-                    self.names.define(&name.text, value);
+        let own = top.iter().filter(|statement| declared_name(statement).is_some_and(|name| self.owns(name)));
+        let is_late = |kind: &&StatementKind| match kind {
+            StatementKind::Let { name, .. } => self.names.seen.late.contains(&name.text),
+            _ => false,
+        };
+        let own: Vec<&StatementKind> =
+            own.map(|statement| &statement.kind).filter(|kind| !is_late(kind)).collect();
+        let definitions = own.iter().filter_map(|kind| match kind {
+            StatementKind::Let { name, value, .. } => Some((*kind, name, Cow::Borrowed(value))),
+            StatementKind::Curve { name, centre, radius } => {
+                let code = [centre.code.as_slice(), radius.code.as_slice()].concat();
+                Some((*kind, name, Cow::Owned(Expression { code })))
+            }
+            _ => None,
+        });
+        let definitions: Vec<_> = definitions.collect();
+        let uses: Vec<(&Name, &Expression)> =
+            definitions.iter().map(|(_, name, uses)| (*name, uses.as_ref())).collect();
+        for index in self.order(&uses) {
+            let needs = match definitions.get(index) {
+                Some((StatementKind::Let { name, unit, value }, ..)) => self
+                    .elaborate(|work| definition(work, &name.text, unit.as_ref(), value))
+                    .map(|(value, needs)| (name, needs, self.names.define(&name.text, value))),
+                Some((StatementKind::Curve { name, centre, radius }, ..)) => self
+                    .curve(centre, radius)
+                    .map(|(curve, needs)| (name, needs, self.names.define_curve(&name.text, curve))),
+                _ => continue,
+            };
+            match needs {
+                Ok((name, needs, ())) => self.names.define_needs(&name.text, needs),
+                Err(Fault) => {
+                    definitions
+                        .get(index)
+                        .into_iter()
+                        .for_each(|(_, name, _)| self.names.give_up(&name.text));
                 }
-                Err(Fault) => self.names.give_up(&name.text),
             }
         }
     }
@@ -525,6 +548,7 @@ impl Declarations<'_> {
             StatementKind::Coord { name, kind, .. } => (name, Declares::Coord, Some(kind)),
             StatementKind::State { name, .. } => (name, Declares::Value, None),
             StatementKind::Function { name, .. } => (name, Declares::Function, None),
+            StatementKind::Curve { name, .. } => (name, Declares::Value, None),
             _ => return,
         };
         if !matches!(statement.kind, StatementKind::Faulty { .. }) {
@@ -533,6 +557,9 @@ impl Declarations<'_> {
                 format!("`{}` is declared inside a loop", name.text),
                 match declares {
                     Declares::Function => "declare it before the loop",
+                    Declares::Value if matches!(statement.kind, StatementKind::Curve { .. }) => {
+                        "declare it before the loop; points in the loop may be on it"
+                    }
                     _ => "declare an array before the loop: `coord p: [m; 2] = …;`",
                 },
             );

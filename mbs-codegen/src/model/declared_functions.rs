@@ -10,7 +10,7 @@ use super::unit_inference::Bare;
 use super::units::Dimension;
 use super::value::{Fault, Quantity, Value};
 use crate::diagnostics::Diagnostics;
-use crate::syntax::ast::{Name, Operation, Signature, Statement, StatementKind};
+use crate::syntax::ast::{Item, Name, Operation, Signature, Statement, StatementKind};
 
 impl Declarations<'_> {
     /// Declares a function; its period is a number.
@@ -94,6 +94,33 @@ pub fn check_called(statements: &[Statement], diagnostics: &mut Diagnostics) {
         {
             let help = format!("call it, `{}(x)`, or remove the declaration", name.text);
             diagnostics.report(name.span, format!("function `{}` is never called", name.text), help);
+        }
+    }
+    check_curves(statements, diagnostics);
+}
+
+/// Reports curves that nothing uses, as functions: their radius would be one that is never called.
+fn check_curves(statements: &[Statement], diagnostics: &mut Diagnostics) {
+    let instructions = statements.iter().flat_map(|s| s.kind.expressions()).flat_map(|e| &e.code);
+    let named = instructions.filter_map(|instruction| match &instruction.operation {
+        Operation::Name(name) => Some(name.as_str()),
+        _ => None,
+    });
+    let items = statements.iter().flat_map(|statement| match &statement.kind {
+        StatementKind::Constraint { items, .. } => items.as_slice(),
+        _ => &[],
+    });
+    let touched = items.filter_map(|item| match item {
+        Item::On { curve, .. } => Some(curve.text.as_str()),
+        _ => None,
+    });
+    let used: BTreeSet<&str> = named.chain(touched).collect();
+    for statement in statements {
+        if let StatementKind::Curve { name, .. } = &statement.kind
+            && !used.contains(name.text.as_str())
+        {
+            let help = format!("write `A on {}` in a constraint, or remove the declaration", name.text);
+            diagnostics.report(name.span, format!("curve `{}` is never used", name.text), help);
         }
     }
 }

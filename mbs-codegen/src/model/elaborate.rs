@@ -7,7 +7,7 @@ use super::counts::follows_literals;
 use super::elaborator::Elaborator;
 use super::expression::Node;
 use super::functions;
-use super::names::{CONSTANTS, Symbol, is_function};
+use super::names::{CONSTANTS, PARTIAL, Symbol, is_function, is_of_two};
 use super::operands::Operands;
 use super::references::{REFERRING, is_reference};
 use super::unit_inference::Bare;
@@ -107,6 +107,17 @@ impl Elaborator<'_> {
                 let values = arguments.saturating_sub(1);
                 let arguments = stack.pop_many(values, self.names)?;
                 self.referring(function, group, arguments, span)?
+            }
+            Operation::Call { function, order: 0, arguments } if is_of_two(function, *arguments) => {
+                let is_of_curve = function != PARTIAL;
+                let curve = index.checked_sub(1).and_then(|before| expression.code.get(before));
+                let is_name = matches!(curve.map(|curve| &curve.operation), Some(Operation::Name(_)));
+                let values = if is_of_curve && is_name { 1 } else { 2 };
+                let arguments = stack.pop_many(values, self.names)?;
+                match is_of_curve {
+                    true => self.of_curve(function, curve, arguments, span)?,
+                    false => self.partial(arguments, span)?,
+                }
             }
             Operation::Call { function, order, arguments } => {
                 if *arguments == 1 && OF_ANGLES.contains(&function.as_str()) {
@@ -241,6 +252,10 @@ impl Elaborator<'_> {
             Some(Symbol::Function(_)) => {
                 let message = format!("`{name}` is a function");
                 return Err(self.fault(span, message, format!("write `{name}(…)`")));
+            }
+            Some(Symbol::Curve(_)) => {
+                let help = format!("write `A on {name}` in a constraint, or `distance(A, {name})`");
+                return Err(self.fault(span, format!("`{name}` is a curve"), help));
             }
             Some(Symbol::Pending) => return Err(self.too_early(name, span)),
             Some(Symbol::Later) => return Err(self.of_forces(name, span)),

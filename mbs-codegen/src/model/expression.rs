@@ -67,6 +67,8 @@ pub struct Call {
 pub struct Expressions {
     nodes: Vec<Node>,
     operations: usize,
+    /// Expressions that partial derivatives went through.
+    visited: usize,
     calls: Vec<Call>,
     /// Lengths of the text, in the order in which they were met.
     lengths: Vec<Length>,
@@ -89,6 +91,24 @@ impl Expressions {
         let id = self.push(Node::Call { function, order, argument });
         self.calls.push(Call { id, span });
         id
+    }
+
+    /// Counts `more` expressions that a partial derivative goes through; `false` where all of them are more than `most`.
+    pub fn spend(&mut self, more: usize, most: usize) -> bool {
+        self.visited = self.visited.saturating_add(more);
+        self.visited <= most
+    }
+
+    /// `roots` and the expressions that they depend on, operands first.
+    pub fn operands_first(&self, roots: &[Id]) -> BTreeSet<Id> {
+        let mut found = BTreeSet::new();
+        let mut waiting = roots.to_vec();
+        while let Some(id) = waiting.pop() {
+            if found.insert(id) {
+                waiting.extend(self.node(id).operands());
+            }
+        }
+        found
     }
 
     /// Calls of declared functions, in the order in which they were added.

@@ -3,7 +3,7 @@
 use proc_macro2::Span;
 
 use super::elaborator::Elaborator;
-use super::names::Callable;
+use super::names::{Callable, is_of_two};
 use super::rotation;
 use super::unit_inference::Bare;
 use super::units::Dimension;
@@ -33,6 +33,9 @@ pub fn call(
         "angular_velocity" => return rotation::angular_velocity(work, arguments, span),
         "der" => return work.rate(arguments, "der", 1, span),
         "der2" => return work.rate(arguments, "der2", 2, span),
+        _ if is_of_two(function, 2) && work.names.get(function).is_none() => {
+            return Err(work.arity(function, "2 arguments", arguments.len(), span));
+        }
         "rate" => {
             let [_] = work.arguments("rate", arguments, span)?;
             return Err(work.fault(

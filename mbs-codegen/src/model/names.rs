@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use proc_macro2::Span;
 
+use super::curves::{Curve, OF_CURVES};
 use super::seen::Seen;
 use super::unit_faults::UnitFault;
 use super::unit_inference::Bare;
@@ -40,14 +41,28 @@ const OTHER_FUNCTIONS: [&str; 15] = [
     "der2",
 ];
 
+/// The function of partial derivatives.
+pub const PARTIAL: &str = "d";
+
 /// Names of all functions: those of one argument from the table of operations, then the others.
 pub fn functions<'a>() -> impl Iterator<Item = &'a str> {
+    kept().chain(OF_CURVES).chain([PARTIAL])
+}
+
+/// Names of functions that nothing else can have. Others take two arguments, as no function of the caller does, so that these and
+/// values may have their names.
+fn kept<'a>() -> impl Iterator<Item = &'a str> {
     Unary::called().map(|function| -> &'a str { function.entry().name }).chain(OTHER_FUNCTIONS)
 }
 
-/// `true` if `name` is that of a function of the language.
+/// `true` if `name` is that of a function of the language, and of nothing else.
 pub fn is_function(name: &str) -> bool {
-    functions().any(|function| function == name)
+    kept().any(|function| function == name)
+}
+
+/// `true` if a call of `name` with so many arguments is one of a function of the language that shares its name.
+pub fn is_of_two(name: &str, arguments: usize) -> bool {
+    arguments == 2 && (name == PARTIAL || OF_CURVES.contains(&name))
 }
 
 /// Names that have a value without a declaration.
@@ -73,6 +88,8 @@ pub enum Symbol {
     Value(Value),
     /// A declared function.
     Function(Callable),
+    /// A declared curve.
+    Curve(Box<Curve>),
     /// A count of a loop or a sum.
     Count(usize),
     /// Declared, but not usable here yet.
@@ -194,6 +211,19 @@ impl Names {
         if let Some((symbol @ Symbol::Pending, _)) = self.declared.get_mut(name) {
             *symbol = Symbol::Function(callable);
         }
+    }
+
+    /// Gives a declared name its curve.
+    pub fn define_curve(&mut self, name: &str, curve: Curve) {
+        if let Some((symbol @ Symbol::Pending, _)) = self.declared.get_mut(name) {
+            *symbol = Symbol::Curve(Box::new(curve));
+        }
+    }
+
+    /// All curves.
+    pub fn curves(&self) -> impl Iterator<Item = &str> {
+        let is_curve = |symbol: &Symbol| matches!(symbol, Symbol::Curve(_));
+        self.declared.iter().filter(move |(_, (symbol, _))| is_curve(symbol)).map(|(name, _)| name.as_str())
     }
 
     /// Marks a declared name that got no value, so that its uses are not reported too.

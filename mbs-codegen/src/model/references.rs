@@ -2,6 +2,7 @@
 
 use proc_macro2::Span;
 
+use super::curves::OF_CURVES;
 use super::elaborator::Elaborator;
 use super::expression::Node;
 use super::unit_inference::Bare;
@@ -17,7 +18,8 @@ pub const REFERRING: [&str; 2] = ["margin", "ratio"];
 pub fn is_reference(code: &[Instruction], index: usize) -> bool {
     matches!(
         code.get(index + 1).map(|next| &next.operation),
-        Some(Operation::Call { function, .. }) if REFERRING.contains(&function.as_str())
+        Some(Operation::Call { function, arguments, .. })
+            if REFERRING.contains(&function.as_str()) || *arguments == 2 && OF_CURVES.contains(&function.as_str())
     )
 }
 

@@ -15,7 +15,7 @@ use super::unit_faults::Place;
 use super::units::Dimension;
 use super::uses::uses;
 use super::value::{Fault, Reach, Value};
-use super::{Model, Output, OutputField, VariableKind, declarations, inputs, unused_elements};
+use super::{Model, Output, OutputField, VariableKind, declarations, inputs, limits, unused_elements};
 use crate::diagnostics::Diagnostics;
 use crate::syntax::ast::{Element, Expression, Loop, Name, Statement, StatementKind, Type, Unit};
 
@@ -40,6 +40,7 @@ pub fn resolve(
         diagnostics,
         starts: BTreeSet::new(),
         oriented: BTreeMap::new(),
+        outputs: limits::outputs(statements),
         groups: Vec::new(),
         loops: Vec::new(),
         rounds: 0,
@@ -136,7 +137,9 @@ impl Resolver<'_> {
             StatementKind::Branch { name, at_start, larger, smaller } => {
                 self.branch(name, *at_start, larger, smaller)
             }
-            StatementKind::Limit { name, low, value, high } => self.limit(name, low, value, high),
+            StatementKind::Limit { name, first, second, third } => {
+                self.limit(name, [first, second], third.as_ref())
+            }
             StatementKind::Independent { names } => self.independent(names),
             StatementKind::Element { kind: Element::Body, name, fields } => self.normalisation(name, fields),
             StatementKind::Pin { name, bodies, at } => self.pin(name, bodies, at),

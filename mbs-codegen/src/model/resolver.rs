@@ -9,7 +9,7 @@ use super::units::Dimension;
 use super::value::{Fault, Reach};
 use super::{ConstraintRow, Model};
 use crate::diagnostics::Diagnostics;
-use crate::syntax::ast::Name;
+use crate::syntax::ast::{Expression, Name, Type};
 
 /// A group of rows, branches or outputs under one name.
 pub(super) struct Group {
@@ -36,6 +36,8 @@ pub(super) struct Resolver<'a> {
     pub(super) starts: BTreeSet<usize>,
     /// Euler parameters whose length a row fixes already: the body that brought it, and the row.
     pub(super) oriented: BTreeMap<Vec<Option<usize>>, (String, usize)>,
+    /// Definitions of outputs outside of loops, with their types.
+    pub(super) outputs: BTreeMap<&'a str, (&'a Type, &'a Expression)>,
     pub(super) groups: Vec<Group>,
     pub(super) loops: Vec<LoopFrame>,
     pub(super) rounds: usize,

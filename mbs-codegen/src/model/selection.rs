@@ -232,6 +232,7 @@ fn declares(kind: &StatementKind) -> Option<(&'static str, &str)> {
         | StatementKind::Coord { name, .. }
         | StatementKind::Let { name, .. }
         | StatementKind::Function { name, .. }
+        | StatementKind::Curve { name, .. }
         | StatementKind::State { name, .. } => ("value", name),
         StatementKind::Faulty { name, declares: Declares::Element, .. } => ("load", name),
         StatementKind::Faulty { declares: Declares::Rows | Declares::Rate, .. } => return None,

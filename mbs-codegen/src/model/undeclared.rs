@@ -322,6 +322,9 @@ pub fn meant_function(name: &str, arguments: &[String]) -> Option<String> {
         "sqr" | "square" | "sq" => format!("write a square as a power: `{}`", power(first, "2")),
         "cube" => format!("write it as a power: `{}`", power(first, "3")),
         "pow" | "power" | "powf" | "powi" => format!("write a power with `^`: `{}`", power(first, second)),
+        "circle" => {
+            format!("a curve is that of the centre of a circle that rolls on it: write the centre, `{first}`")
+        }
         "radians" | "deg2rad" => format!("a number takes its unit: `{first}deg`"),
         "sind" | "cosd" | "tand" => format!("write `{}({first}deg)`", name.trim_end_matches('d')),
         _ => {

@@ -4,7 +4,7 @@ use proc_macro2::Span;
 
 use super::compound;
 use super::elaborator::Elaborator;
-use super::names::{CONSTANTS, Symbol, functions, is_function};
+use super::names::{CONSTANTS, Symbol, functions, is_function, is_of_two};
 use super::references::{REFERRING, is_reference};
 use super::undeclared::{meant_value, rate_of};
 use super::units::with_suffix;
@@ -34,6 +34,7 @@ impl Elaborator<'_> {
                         self.unknown_name(name, (&expression.code, index));
                     }
                 }
+                Operation::Call { function, arguments, .. } if is_of_two(function, *arguments) => {}
                 Operation::Call { function, .. }
                     if function != "rate"
                         && !REFERRING.contains(&function.as_str())
@@ -133,7 +134,7 @@ impl Elaborator<'_> {
     /// A fault at an unknown function.
     pub fn unknown_function(&mut self, name: &str, span: Span) -> Fault {
         let known = || self.names.functions().chain(functions());
-        let help = match nearest(name, known()) {
+        let help = match nearest(name, known().filter(|known| *known != name)) {
             Some(known) => format!("did you mean `{known}`?"),
             None => format!("declare it: `function {name}: m(rad), C3;`"),
         };

@@ -49,6 +49,7 @@ fn named(kind: &StatementKind) -> Option<&Name> {
         | StatementKind::Coord { name, .. }
         | StatementKind::Let { name, .. }
         | StatementKind::Function { name, .. }
+        | StatementKind::Curve { name, .. }
         | StatementKind::Constraint { name, .. }
         | StatementKind::Drive { name, .. }
         | StatementKind::Branch { name, .. }

@@ -56,6 +56,7 @@ fn unused(text: &Text, warnings: &mut Diagnostics) {
             StatementKind::Param { name, .. } => ("parameter", name),
             StatementKind::Input { name, .. } => ("input", name),
             StatementKind::Let { name, .. } => ("`let`", name),
+            StatementKind::Curve { name, .. } => ("curve", name),
             _ => continue,
         };
         if counts.get(&name.text) == Some(&1) {

@@ -209,7 +209,9 @@ impl<'a> Places<'a> {
         let value = match self.names.get(&place.name.text) {
             Some(Symbol::Value(value)) => value,
             Some(Symbol::Pending | Symbol::Later | Symbol::Faulty) => return Err(Fault),
-            Some(Symbol::Function(_) | Symbol::Count(_)) | None => return Err(self.unknown(place, name)),
+            Some(Symbol::Function(_) | Symbol::Curve(_) | Symbol::Count(_)) | None => {
+                return Err(self.unknown(place, name));
+            }
         };
         let Some((shape, items)) = component(value, counts) else { return Err(self.unknown(place, name)) };
         let (ids, unit) = (items.iter().map(|item| item.id).collect(), Unit::of(items));

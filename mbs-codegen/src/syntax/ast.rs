@@ -132,6 +132,12 @@ pub struct Equation {
 #[derive(Clone, Debug)]
 pub enum Item {
     Equation(Equation),
+    /// `point on curve;`, `span` is that of the `on`.
+    On {
+        point: Expression,
+        curve: Name,
+        span: Span,
+    },
     For(Loop),
     EndFor,
 }
@@ -186,6 +192,13 @@ pub enum StatementKind {
         name: Name,
         signature: Signature,
     },
+    /// `curve name = polar R about centre turned angle;`
+    Curve {
+        name: Name,
+        centre: Expression,
+        /// R at the angle by which the curve is turned: the angle, then the call.
+        radius: Expression,
+    },
     Constraint {
         name: Name,
         /// The word by which rows may follow from others.
@@ -204,11 +217,12 @@ pub enum StatementKind {
         larger: Expression,
         smaller: Expression,
     },
+    /// `low <= value <= high`, or one bound alone: `low <= value`, `value <= high`.
     Limit {
         name: Name,
-        low: Expression,
-        value: Expression,
-        high: Expression,
+        first: Expression,
+        second: Expression,
+        third: Option<Expression>,
     },
     Independent {
         names: Vec<Name>,
@@ -379,12 +393,15 @@ impl StatementKind {
             StatementKind::Coord { kind, guess: value, .. } => kind.shape.iter().chain(value).collect(),
             StatementKind::Input { kind, .. } => kind.shape.iter().collect(),
             StatementKind::Function { signature, .. } => signature.period.iter().collect(),
+            StatementKind::Curve { centre, radius, .. } => vec![centre, radius],
             StatementKind::Constraint { within, items, .. } => {
                 within.iter().chain(items.iter().flat_map(Item::expressions)).collect()
             }
             StatementKind::Drive { equation, .. } => vec![&equation.left, &equation.right],
             StatementKind::Branch { larger, smaller, .. } => vec![larger, smaller],
-            StatementKind::Limit { low, value, high, .. } => vec![low, value, high],
+            StatementKind::Limit { first, second, third, .. } => {
+                [first, second].into_iter().chain(third).collect()
+            }
             StatementKind::Out { kind, value, .. } => kind.shape.iter().chain([value]).collect(),
             StatementKind::Element { fields, .. } => fields
                 .iter()
@@ -424,6 +441,7 @@ impl Item {
     fn expressions(&self) -> Vec<&Expression> {
         match self {
             Item::Equation(equation) => vec![&equation.left, &equation.right],
+            Item::On { point, .. } => vec![point],
             Item::For(head) => vec![&head.low, &head.high],
             Item::EndFor => Vec::new(),
         }

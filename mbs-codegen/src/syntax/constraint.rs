@@ -1,6 +1,7 @@
 //! Equations, and the constraints that group them.
 
 use super::ast::{Declares, Equation, Expression, Item, Name, StatementKind};
+use super::curve;
 use super::expression::expression;
 use super::foreign;
 use super::parser::{GivenUp, Parser, Read};
@@ -45,7 +46,7 @@ fn read_rows(parser: &mut Parser<'_>, name: Name) -> Read<StatementKind> {
         } else if misplaced(parser) {
             misplaced_statement(parser)
         } else {
-            equation(parser, CONSTRAINT).map(Item::Equation)
+            row(parser)
         };
         match read {
             Ok(item) => items.push(item),
@@ -134,9 +135,26 @@ fn behind_equation(parser: &mut Parser<'_>) -> bool {
     }
 }
 
+/// `left == right;` or `point on curve;`
+fn row(parser: &mut Parser<'_>) -> Read<Item> {
+    let left = expression(parser)?;
+    let span = parser.span();
+    if parser.take_word("on") {
+        let curve = parser.name(curve::ON)?;
+        end(parser, curve::ON)?;
+        return Ok(Item::On { point: left, curve, span });
+    }
+    behind_left(parser, left, CONSTRAINT).map(Item::Equation)
+}
+
 /// `left == right;`
 pub fn equation(parser: &mut Parser<'_>, help: &str) -> Read<Equation> {
     let left = expression(parser)?;
+    behind_left(parser, left, help)
+}
+
+/// Reads an equation on from its `==`.
+fn behind_left(parser: &mut Parser<'_>, left: Expression, help: &str) -> Read<Equation> {
     let span = parser.span();
     if !parser.at_pair('=', '=') {
         if foreign::at_condition(parser) {

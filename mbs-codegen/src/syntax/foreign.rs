@@ -16,7 +16,7 @@ pub const NUMBER_TYPES: [&str; 20] = [
 ];
 
 /// Functions that a text calls by these names; a test compares them with those that have a meaning.
-pub const CALLED: [&str; 32] = [
+pub const CALLED: [&str; 35] = [
     "sqrt",
     "exp",
     "ln",
@@ -49,6 +49,9 @@ pub const CALLED: [&str; 32] = [
     "angular_velocity",
     "der",
     "der2",
+    "distance",
+    "normal",
+    "d",
 ];
 
 /// Before: flat tokens. After: the same without comments that begin with `#` or `%`, the first of which is reported.

@@ -1,13 +1,14 @@
 //! Words that begin a statement; [`super::statement`] calls the reader of each.
 
 /// Words that begin a statement of this version.
-pub const STATEMENTS: [&str; 29] = [
+pub const STATEMENTS: [&str; 30] = [
     "const",
     "param",
     "input",
     "function",
     "coord",
     "let",
+    "curve",
     "constraint",
     "drive",
     "branch",

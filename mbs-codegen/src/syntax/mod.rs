@@ -3,6 +3,7 @@
 #[allow(missing_docs, reason = "fields are named as the grammar names them")]
 pub mod ast;
 mod constraint;
+mod curve;
 mod dynamics;
 mod expression;
 mod foreign;

@@ -155,7 +155,9 @@ impl<'a> Parser<'a> {
         let begin = self.next;
         let read = match self.peek() {
             TokenKind::Punctuation('=', _)
-                if declares != Declares::Element && word != "let" && STATEMENTS.contains(&word.as_str()) =>
+                if declares != Declares::Element
+                    && !matches!(word.as_str(), "let" | "curve")
+                    && STATEMENTS.contains(&word.as_str()) =>
             {
                 missing::no_unit(self, &word, &name.text)
             }

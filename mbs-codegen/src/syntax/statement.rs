@@ -4,6 +4,7 @@ use super::ast::{
     Bounds, Declares, Instruction, Loop, Name, Operation, Operator, Signature, Statement, StatementKind,
 };
 use super::constraint::{equation, read_constraint};
+use super::curve;
 use super::dynamics;
 use super::expression::{closed_range, expression};
 use super::foreign;
@@ -243,6 +244,7 @@ fn reader(word: &str) -> Option<Reader> {
         "function" => read_function,
         "coord" => read_coord,
         "let" => read_let,
+        "curve" => curve::read_curve,
         "constraint" => read_constraint,
         "drive" => read_drive,
         "branch" => read_branch,
@@ -476,17 +478,22 @@ fn read_branch(parser: &mut Parser<'_>) -> Read<StatementKind> {
     Ok(StatementKind::Branch { name, at_start, larger, smaller })
 }
 
-const LIMIT: &str = "write `limit stroke: 0.02 <= x <= 0.11;`";
+const LIMIT: &str = "write `limit stroke: 0.02 <= x <= 0.11;`, with one bound `limit stroke: x <= 0.11;`";
 fn read_limit(parser: &mut Parser<'_>) -> Read<StatementKind> {
     let name = parser.name(LIMIT)?;
     parser.expect(':', LIMIT)?;
-    let low = expression(parser)?;
+    let first = expression(parser)?;
     at_most(parser)?;
-    let value = expression(parser)?;
-    at_most(parser)?;
-    let high = expression(parser)?;
+    let second = expression(parser)?;
+    let has_third = !matches!(parser.peek(), TokenKind::Punctuation(';', _));
+    let third = if has_third {
+        at_most(parser)?;
+        Some(expression(parser)?)
+    } else {
+        None
+    };
     end(parser, LIMIT)?;
-    Ok(StatementKind::Limit { name, low, value, high })
+    Ok(StatementKind::Limit { name, first, second, third })
 }
 
 /// `<=`

@@ -7,11 +7,11 @@ use crate::tolerances::positions;
 /// A quantity with the range that a `limit` of the text allows it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limit<T> {
-    /// Lower bound, in the limit's unit.
+    /// Lower bound, in the limit's unit; −[`OPEN`] where the text gives an upper one alone.
     pub low: T,
     /// The quantity.
     pub value: T,
-    /// Upper bound.
+    /// Upper bound; [`OPEN`] where the text gives a lower one alone.
     pub high: T,
 }
 
@@ -24,7 +24,8 @@ pub struct Warning {
     pub value: f64,
     /// The bound that is near.
     pub bound: f64,
-    /// Distance to it, as a share of the range: 0 at the bound, at most [`WARNING_SHARE`].
+    /// Distance to it, as a share of the range, of the bound itself where the range has one bound alone: 0 at the bound, at
+    /// most [`WARNING_SHARE`].
     pub left: f64,
 }
 
@@ -33,6 +34,9 @@ pub struct Warning {
 /// A twentieth at either end leaves nine tenths of the range free of warnings. A quantity that swings over the
 /// whole range as a sine spends a seventh of a half period in the last twentieth: time to react.
 pub const WARNING_SHARE: f64 = 0.05;
+
+/// Magnitude of the bound on the side that a limit leaves open: larger than any quantity, and finite in single precision.
+pub const OPEN: f64 = 1e30;
 
 impl<T: Scalar> Limit<T> {
     /// Distance by which a quantity of coordinates of at most `size` may exceed `bound`: roundings of both, but of no more than
@@ -64,11 +68,17 @@ impl<R: Real> Limit<R> {
         (!below).then_some(self.high)
     }
 
-    /// The nearer bound and the distance to it as a share of the range.
+    /// The nearer bound and the distance to it as a share of the range; of one bound alone as a share of that bound.
     pub(crate) fn nearer(&self) -> (R, R) {
-        let range = self.high - self.low;
+        let open = R::constant(OPEN);
+        let range = match (self.low <= -open, open <= self.high) {
+            (true, false) => self.high.abs(),
+            (false, true) => self.low.abs(),
+            _ => self.high - self.low,
+        };
         let (below, above) = (self.value - self.low, self.high - self.value);
         let (bound, left) = if below < above { (self.low, below) } else { (self.high, above) };
+        // A bound of 0 alone has no share: 0 at it, without end off it.
         (bound, (left / range).max(R::constant(0.0)))
     }
 }
@@ -93,6 +103,24 @@ mod tests {
         assert_eq!([-1.0, 0.0, 3.0, 3.0 + 4e-15].map(passed), [None; 4]);
         assert_eq!((passed(-1.0001), passed(3.0001)), (Some(-1.0), Some(3.0)));
         assert_eq!(passed(f64::NAN), Some(3.0));
+    }
+
+    #[test]
+    fn one_bound_is_passed_on_its_side_alone() {
+        let [above, below] =
+            [-2.0, 0.0].map(|low| move |value| Limit { low, value, high: OPEN }.passed(|| 1.0));
+        assert_eq!([-2.0, 0.0, 1e9].map(above), [None; 3]);
+        assert_eq!([above(-2.1), above(f64::NAN)], [Some(-2.0), Some(OPEN)]);
+        assert_eq!([0.0, 1.0].map(below), [None; 2]);
+        let narrow = |value: f32| Limit { low: -OPEN as f32, value, high: 3.0 }.passed(|| 1.0);
+        assert_eq!([narrow(-1e20), narrow(3.0), narrow(3.1)], [None, None, Some(3.0)]);
+    }
+
+    #[test]
+    fn what_is_left_of_one_bound_is_a_share_of_it() {
+        let left = |low: f64, value| Limit { low, value, high: OPEN }.nearer();
+        assert_eq!((left(-2.0, -1.5), left(2.0, 2.0)), ((-2.0, 0.25), (2.0, 0.0)));
+        assert_eq!((left(0.0, 0.0).1, left(0.0, 1e-9).1), (0.0, f64::INFINITY));
     }
 
     #[test]

@@ -1,7 +1,11 @@
 //! `mbs hard-cases` without a name: the built-in list of cases by every method.
 
 use std::io::Write;
+use std::num::NonZero;
+use std::panic::resume_unwind;
 use std::process::ExitCode;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::thread::{available_parallelism, scope};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
@@ -68,55 +72,14 @@ pub fn study(arguments: &Arguments, listed: &[Listed], out: &mut Output) -> Resu
     let seeds: Vec<u64> = arguments.replay.map_or_else(|| (0..variants).collect(), |seed| vec![seed]);
     let style = ProgressStyle::with_template("{bar:30} {percent}% {msg}").expect("a valid template");
     let bar = ProgressBar::new(1000 * cases.len() as u64).with_style(style);
-    let (mut outcomes, mut left_out, mut titles) = (Vec::new(), Vec::new(), Vec::new());
-    for (index, case) in cases.iter().enumerate() {
-        let description = &case.description;
-        let Some((_, card, make)) = listed.iter().find(|(name, ..)| *name == case.name) else {
-            return Err(CommandError::Failed(format!("this program was built without `{}`", case.name)));
-        };
-        let mut progress = |words: &str, share: f64| {
-            bar.set_message(format!("{}: {words}", case.name));
-            bar.set_position(1000 * index as u64 + (1000.0 * share) as u64);
-        };
-        let equations = card.equations();
-        let until = match description.until {
-            Some(until) => until,
-            None => card.duration(equations.as_ref())?,
-        };
-        let own = Own { make: *make, equations: equations.as_ref() };
-        let extent = Extent {
-            methods: methods.clone(),
-            seeds: seeds.clone(),
-            until,
-            description: Some(description.clone()),
-        };
-        // What is run does not depend on the machine.
-        let clock = Clock::of(WHOLE);
-        let found = studied(&own, &extent, &clock, &mut progress);
-        let found = found.unwrap_or_else(|reason| not_moved(&methods, reason));
-        if found.not_run > 0 {
-            left_out.push(format!("{}: {} variants, for which there was no time", case.name, found.not_run));
-        }
-        outcomes.extend(found.outcomes.into_iter().map(|outcome| {
-            let is_foreseen = description.is_outside(&outcome.method, outcome.class)
-                && matches!(outcome.verdict, Verdict::Refused | Verdict::Late);
-            let is_expected = outcome.is_expected || is_foreseen;
-            Outcome { case: case.name.clone(), is_expected, ..outcome }
-        }));
-        left_out.extend(description.outside.iter().map(|outside| {
-            let all = |names: &[String], whole: &str| {
-                if names.is_empty() { whole.to_string() } else { names.join(", ") }
-            };
-            format!(
-                "{}, outside of the range, {}, {}: {}",
-                case.name,
-                all(&outside.methods, "all methods"),
-                all(&outside.variants, "all variants"),
-                outside.why
-            )
-        }));
-        titles.push(case.name.clone());
+    let work = Work { listed, methods: &methods, seeds: &seeds, bar: &bar };
+    let (mut outcomes, mut left_out) = (Vec::new(), Vec::new());
+    for found in work.all(&cases) {
+        let found = found?;
+        outcomes.extend(found.outcomes);
+        left_out.extend(found.left_out);
     }
+    let titles: Vec<String> = cases.iter().map(|case| case.name.clone()).collect();
     bar.finish_and_clear();
     let mut columns: Vec<String> = methods.iter().map(ToString::to_string).collect();
     columns.extend(in_order(outcomes.iter().map(|outcome| outcome.method.as_str())));
@@ -161,6 +124,91 @@ pub fn study(arguments: &Arguments, listed: &[Listed], out: &mut Output) -> Resu
     }
     out.flush()?;
     verdict(&result)
+}
+
+/// Cases to run, by the cores of the machine.
+struct Work<'a> {
+    listed: &'a [Listed],
+    methods: &'a [MotionMethod],
+    seeds: &'a [u64],
+    bar: &'a ProgressBar,
+}
+
+impl Work<'_> {
+    /// All cases, in their order; what is found does not depend on the number of cores.
+    fn all(&self, cases: &[Case]) -> Vec<Result<Found, CommandError>> {
+        let next = AtomicUsize::new(0);
+        let cores = available_parallelism().map_or(1, NonZero::get).min(cases.len());
+        let some = || {
+            let mut found = Vec::new();
+            while let Some((index, case)) = cases.iter().enumerate().nth(next.fetch_add(1, Ordering::Relaxed))
+            {
+                found.push((index, self.one(case)));
+            }
+            found
+        };
+        let mut found: Vec<_> = scope(|threads| {
+            let started: Vec<_> = (0..cores).map(|_| threads.spawn(some)).collect();
+            let ended = started.into_iter().map(|thread| thread.join());
+            ended.flat_map(|found| found.unwrap_or_else(|panic| resume_unwind(panic))).collect()
+        });
+        found.sort_by_key(|(index, _)| *index);
+        found.into_iter().map(|(_, found)| found).collect()
+    }
+
+    /// A case by all methods.
+    fn one(&self, case: &Case) -> Result<Found, CommandError> {
+        let description = &case.description;
+        let Some((_, card, make)) = self.listed.iter().find(|(name, ..)| *name == case.name) else {
+            return Err(CommandError::Failed(format!("this program was built without `{}`", case.name)));
+        };
+        let mut done = 0;
+        let mut progress = |words: &str, share: f64| {
+            self.bar.set_message(format!("{}: {words}", case.name));
+            let reached = (1000.0 * share) as u64;
+            self.bar.inc(reached.saturating_sub(done));
+            done = done.max(reached);
+        };
+        let equations = card.equations();
+        let until = match description.until {
+            Some(until) => until,
+            None => card.duration(equations.as_ref())?,
+        };
+        let own = Own { make: *make, equations: equations.as_ref() };
+        let extent = Extent {
+            methods: self.methods.to_vec(),
+            seeds: self.seeds.to_vec(),
+            until,
+            description: Some(description.clone()),
+        };
+        // What is run does not depend on the machine.
+        let found = studied(&own, &extent, &Clock::of(WHOLE), &mut progress);
+        self.bar.inc(1000_u64.saturating_sub(done));
+        let found = found.unwrap_or_else(|reason| not_moved(self.methods, reason));
+        let mut left_out = Vec::new();
+        if found.not_run > 0 {
+            left_out.push(format!("{}: {} variants, for which there was no time", case.name, found.not_run));
+        }
+        left_out.extend(description.outside.iter().map(|outside| {
+            let all = |names: &[String], whole: &str| {
+                if names.is_empty() { whole.to_string() } else { names.join(", ") }
+            };
+            format!(
+                "{}, outside of the range, {}, {}: {}",
+                case.name,
+                all(&outside.methods, "all methods"),
+                all(&outside.variants, "all variants"),
+                outside.why
+            )
+        }));
+        let outcomes = found.outcomes.into_iter().map(|outcome| {
+            let is_foreseen = description.is_outside(&outcome.method, outcome.class)
+                && matches!(outcome.verdict, Verdict::Refused | Verdict::Late);
+            let is_expected = outcome.is_expected || is_foreseen;
+            Outcome { case: case.name.clone(), is_expected, ..outcome }
+        });
+        Ok(Found { outcomes: outcomes.collect(), left_out, not_run: found.not_run })
+    }
 }
 
 /// A case without a motion: all methods are refused.

@@ -159,9 +159,11 @@ fn outcome(
     }
     .map(|bound| bound * largest);
     outcome.bound = Some(bound);
-    let bounds = Bounds { rows: open, balance: open, estimate: bound, rounding: bound, is_shown: true };
+    let digit = numbers.epsilon() * largest;
+    let bounds =
+        Bounds { rows: open, balance: open, estimate: bound, rounding: bound, digit, is_shown: true };
     let states: Vec<State> = run.iter().map(of_driven).collect();
-    let judgement = judge(&states, oracle, scales, bounds, variation.seed);
+    let judgement = judge([&states, &[]], oracle, scales, bounds, variation.seed);
     outcome.not_made = judgement.not_made;
     let branch = states.iter().find_map(|state| {
         let values = oracle.branches(state).ok()?;

@@ -25,6 +25,8 @@ pub struct Bounds {
     pub estimate: f64,
     /// Difference that rounding explains.
     pub rounding: f64,
+    /// Rounding of one position, as a part of its size in the reference metric, and of one velocity, as a part of itself.
+    pub digit: f64,
     /// `true` where the instants show the motion between them, so that rates can be integrated.
     pub is_shown: bool,
 }
@@ -78,8 +80,15 @@ pub fn of_driven(placed: &Placed<f64>) -> State {
     State { t: placed.t, q, qd, qdd, ..State::default() }
 }
 
-/// Judges a run at equal distances of time, by the text as `oracle` reads it. `scales`: reference metric of the coordinates.
-pub fn judge(run: &[State], oracle: &Oracle, scales: &[f64], bounds: Bounds, seed: u64) -> Judgement {
+/// Judges a run at equal distances of time, by the text as `oracle` reads it. `fine`: the run of half the step at the same
+/// instants, empty where there is none; `scales`: reference metric of the coordinates.
+pub fn judge(
+    [run, fine]: [&[State]; 2],
+    oracle: &Oracle,
+    scales: &[f64],
+    bounds: Bounds,
+    seed: u64,
+) -> Judgement {
     let mut found = Judgement::default();
     for state in run {
         let all = state.q.iter().chain(&state.qd).chain(&state.qdd).chain(&state.lambda).chain(&state.states);
@@ -90,7 +99,7 @@ pub fn judge(run: &[State], oracle: &Oracle, scales: &[f64], bounds: Bounds, see
     }
     rows(run, oracle, scales, bounds, &mut found);
     if bounds.is_shown {
-        velocities(run, oracle.turns(), scales, bounds, &mut found);
+        velocities([run, fine], oracle.turns(), scales, bounds, &mut found);
     } else {
         found
             .not_made
@@ -99,7 +108,7 @@ pub fn judge(run: &[State], oracle: &Oracle, scales: &[f64], bounds: Bounds, see
     if oracle.is_dynamic() && run.iter().any(|state| !state.lambda.is_empty() || oracle.row_count() == 0) {
         balance(run, oracle, scales, bounds, (seed, &mut found));
         if bounds.is_shown {
-            energy(run, oracle, bounds, &mut found);
+            energy([run, fine], oracle, bounds, &mut found);
         }
     }
     found
@@ -154,8 +163,24 @@ pub fn less_turns(angle: f64) -> f64 {
 }
 
 /// q changes by the integral of q̇: Hermite's rule of order 6 through q̇ and q̈ of both ends, once over one interval and once over
-/// two; what truncation explains falls 32 times between them.
-fn velocities(run: &[State], turns: &[bool], scales: &[f64], bounds: Bounds, found: &mut Judgement) {
+/// two; what truncation explains falls 32 times between them. Errors of q̇ and q̈ are those that half the step shows: beside stiff
+/// springs small errors of q are large ones of q̈.
+fn velocities(
+    [run, fine]: [&[State]; 2],
+    turns: &[bool],
+    scales: &[f64],
+    bounds: Bounds,
+    found: &mut Judgement,
+) {
+    let doubts: Vec<[f64; 2]> = run.iter().zip(fine).map(|(a, b)| doubts(a, b, scales)).collect();
+    let doubt = |index: usize| {
+        let h = run[index + 1].t - run[index].t;
+        let of =
+            |index: usize| doubts.get(index).map_or(0.0, |[rate, second]| h * rate + h * h / 12.0 * second);
+        let sum = of(index) + of(index + 1);
+        // A run at half the step that is NaN explains nothing.
+        if sum.is_finite() { sum } else { 0.0 }
+    };
     let miss = |a: &State, b: &State| {
         let h = b.t - a.t;
         let miss = |j: usize| {
@@ -167,11 +192,13 @@ fn velocities(run: &[State], turns: &[bool], scales: &[f64], bounds: Bounds, fou
     };
     let mut over: Vec<(f64, f64)> = run
         .windows(3)
+        .enumerate()
         .step_by(2)
-        .filter_map(|three| {
+        .filter_map(|(index, three)| {
             let twice = miss(&three[0], &three[2]);
             let one = miss(&three[0], &three[1]).max(miss(&three[1], &three[2]));
-            let allowed = twice / 8.0 + 10.0 * bounds.estimate + bounds.rounding;
+            let own = bounds.estimate + doubt(index).max(doubt(index + 1));
+            let allowed = twice / 8.0 + 10.0 * own + bounds.rounding;
             // Steps of whole turns do not show what is between their ends.
             let is_shown = !exceeds(twice, RESOLVED) || twice.is_nan();
             is_shown.then_some((one / allowed, one))
@@ -192,7 +219,13 @@ fn velocities(run: &[State], turns: &[bool], scales: &[f64], bounds: Bounds, fou
     }
 }
 
-/// wᵀ(M q̈ + Φ_qᵀ λ − Q) is 0 along two directions that the seed gives.
+/// Largest differences of q̇ and q̈ of two runs at an instant, in the reference metric.
+fn doubts(run: &State, fine: &State, scales: &[f64]) -> [f64; 2] {
+    [(&run.qd, &fine.qd), (&run.qdd, &fine.qdd)]
+        .map(|(a, b)| extent(&a.iter().zip(b).map(|(a, b)| a - b).collect::<Vec<_>>(), scales))
+}
+
+/// wᵀ(M q̈ + Φ_qᵀ λ − Q) is 0 along two directions that the seed gives, less what rounding of positions and velocities makes of it.
 fn balance(
     run: &[State],
     oracle: &Oracle,
@@ -208,6 +241,12 @@ fn balance(
             .map(|scale| scale * random.between(0.5, 1.0) * if random.index(2) == 0 { 1.0 } else { -1.0 })
             .collect();
         match oracle.equations_of_motion(state, &w) {
+            Ok(balance) if exceeds(balance.open(), bounds.balance) => {
+                match oracle.rounding_of_equations(state, &w, (scales, bounds.digit)) {
+                    Ok(rounding) => worst.push((balance.without(rounding).open(), state.t)),
+                    Err(gap) => return found.gap("equations of motion", gap),
+                }
+            }
             Ok(balance) => worst.push((balance.open(), state.t)),
             Err(gap) => return found.gap("equations of motion", gap),
         }
@@ -222,15 +261,23 @@ fn balance(
     }
 }
 
-/// The energy changes by the work of q̇ and q̈: Simpson's rule over four intervals, and over twice as long ones.
-fn energy(run: &[State], oracle: &Oracle, bounds: Bounds, found: &mut Judgement) {
-    let mut all = Vec::new();
-    for state in run {
-        match oracle.energy(state) {
-            Ok(energy) => all.push((state.t, energy)),
-            Err(gap) => return found.gap("energy", gap),
-        }
-    }
+/// Energies (J) and their rates (W) at the instants of a run.
+fn energies(run: &[State], oracle: &Oracle) -> Result<Vec<(f64, [f64; 2])>, Gap> {
+    run.iter().map(|state| Ok((state.t, oracle.energy(state)?))).collect()
+}
+
+/// The energy changes by the work of q̇ and q̈: Simpson's rule over four intervals, and over twice as long ones. Errors of the powers
+/// are those that half the step shows.
+fn energy([run, fine]: [&[State]; 2], oracle: &Oracle, bounds: Bounds, found: &mut Judgement) {
+    let (all, fine) = match energies(run, oracle).and_then(|all| Ok((all, energies(fine, oracle)?))) {
+        Ok(both) => both,
+        Err(gap) => return found.gap("energy", gap),
+    };
+    let doubts: Vec<f64> = all.iter().zip(&fine).map(|(a, b)| (a.1[1] - b.1[1]).abs()).collect();
+    let doubt = |from: usize| {
+        let largest = doubts.iter().skip(from).take(5).fold(0.0, |largest: f64, doubt| largest.max(*doubt));
+        if largest.is_finite() { largest } else { 0.0 }
+    };
     let Some((_, [first, _])) = all.first().copied() else { return };
     let scale = all.iter().map(|(_, [energy, _])| (energy - first).abs()).fold(0.0, f64::max);
     let size = scale.max(bounds.size_of_energy(run, oracle));
@@ -239,11 +286,12 @@ fn energy(run: &[State], oracle: &Oracle, bounds: Bounds, found: &mut Judgement)
     };
     let mut over: Vec<(f64, f64)> = all
         .windows(5)
+        .enumerate()
         .step_by(4)
-        .map(|five| {
+        .map(|(from, five)| {
             let [a, b, c, d, e] = five else { return (0.0, 0.0) };
             let work = simpson(a, b, c) + simpson(c, d, e);
-            let explained = 2.0 * (simpson(a, c, e) - work).abs();
+            let explained = 2.0 * (simpson(a, c, e) - work).abs() + 2.0 * (e.0 - a.0) * doubt(from);
             let miss = (e.1[0] - a.1[0] - work).abs();
             (miss / (explained + (100.0 * bounds.estimate + bounds.rounding) * size), miss)
         })

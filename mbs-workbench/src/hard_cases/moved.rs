@@ -18,6 +18,9 @@ const TOLERANCES: [f64; 2] = [1e-8, 1e-4];
 /// Estimate that the reference step of equal steps must reach, in the reference metric.
 const FINE: f64 = 3e-5;
 
+/// Error of the coarsest variant of equal steps over that of half the reference step's number, which the reference step is judged by.
+const COARSEST: f64 = 2.0;
+
 /// Most steps of equal size.
 const MOST_STEPS: u32 = PARTS << 10;
 
@@ -26,6 +29,9 @@ const CLAIMED: f64 = 1e-3;
 
 /// Bound of the error over the run's own estimate.
 const TRUSTED: f64 = 30.0;
+
+/// Rounding of a position or velocity in ε.
+const DIGITS: f64 = 4.0;
 
 /// Largest way of a coordinate from its start, at most 1 in the reference metric.
 fn motion(run: &[Seen], scales: &[f64]) -> f64 {
@@ -102,9 +108,11 @@ pub fn moved_outcomes(
         .copied()
         .filter(|method| plain.mechanism.admits(*method, Numbers::Double) && extent.has(Kind::of(*method)))
         .collect();
+    // Of a small motion as many digits are claimed by the coarsest variant.
+    let fine = FINE.min(CLAIMED * motion(&usual.first, scales) / COARSEST);
     let mut bases = Vec::new();
     for method in &methods {
-        bases.push(base(&plain, *method, extent.until, scales, clock));
+        bases.push(base(&plain, (*method, fine), extent.until, scales, clock));
     }
     let mut outcomes = Vec::new();
     for (index, seed) in extent.seeds.iter().enumerate() {
@@ -166,7 +174,7 @@ fn judged<'a>(
 /// The reference resolution of a method in both types of number; a reason where no step reaches the estimate.
 fn base(
     plain: &Varied<'_>,
-    method: MotionMethod,
+    (method, fine): (MotionMethod, f64),
     until: f64,
     scales: &[f64],
     clock: &Clock,
@@ -181,10 +189,10 @@ fn base(
     while steps <= MOST_STEPS && !clock.is_over() {
         match plain.run(method, Resolution::Steps(steps), &times) {
             Ok((run, _)) => {
-                if last.as_ref().is_some_and(|last| apart(last, &run, scales) < FINE) {
+                if last.as_ref().is_some_and(|last| apart(last, &run, scales) < fine) {
                     return Ok([Resolution::Steps(steps), Resolution::Steps(steps / 2)]);
                 }
-                reason = format!("{steps} steps still change the motion by more than {FINE:e}");
+                reason = format!("{steps} steps still change the motion by more than {fine:.0e}");
                 last = Some(run);
             }
             Err(failure) => (reason, last) = (failure, None),
@@ -234,13 +242,19 @@ fn outcome(
         Ok((fine, _)) => fine,
         Err(reason) => return Outcome { reason: format!("at half the step: {reason}"), ..outcome },
     };
-    let estimate = apart(&run, &fine, scales);
+    let estimate = match coarse_by_events(varied, method, (resolution, &times)) {
+        Some(Ok(finest)) => apart(&run, &fine, scales).max(apart(&fine, &finest, scales)),
+        Some(Err(reason)) => {
+            return Outcome { reason: format!("at an eighth of the step: {reason}"), ..outcome };
+        }
+        None => apart(&run, &fine, scales),
+    };
     let moved = references.first.first().map_or(0.0, |first| {
         let shifts = first.q.iter().zip(scales).map(|(q, scale)| (q / scale).abs());
         let frame = variation.change.shift.iter().zip(scales).map(|(b, scale)| (b / scale).abs());
         shifts.chain(frame).fold(1.0, f64::max)
     });
-    let epsilon = if is_single { f64::from(f32::EPSILON) } else { f64::EPSILON };
+    let epsilon = varied.numbers.epsilon();
     // Rounding adds up over the steps, and acts on distances from the origin of the frame.
     let rounding = 1e3 * epsilon * moved * (effort.steps.max(1) as f64).sqrt();
     let width =
@@ -253,17 +267,18 @@ fn outcome(
         balance: if is_single { 2e-3 } else { 1e-7 } * moved.sqrt(),
         estimate,
         rounding: 10.0 * rounding,
+        digit: DIGITS * epsilon * moved,
         is_shown: extent.description.as_ref().is_none_or(|case| !case.unresolved),
     };
     if drifts(method) {
         bounds.rows += 100.0 * estimate + 1e-6;
         bounds.balance = bounds.balance.max(1e-5);
     }
-    let states: Vec<_> = run.iter().map(of_moved).collect();
+    let [states, fine_states] = [&run, &fine].map(|run| run.iter().map(of_moved).collect::<Vec<_>>());
     let judgement = if is_soft {
         Default::default()
     } else {
-        judge(&states, &varied.oracle, scales, bounds, variation.seed)
+        judge([&states, &fine_states], &varied.oracle, scales, bounds, variation.seed)
     };
     outcome.not_made = judgement.not_made;
     if is_soft {
@@ -306,6 +321,17 @@ fn outcome(
         Some(case) => case.judged(outcome, Kind::of(method), variation, (&states, &varied.oracle)),
         None => outcome,
     }
+}
+
+/// A run at an eighth of equal steps, where contacts end steps: a contact that is shorter than half a step is one step for both, and
+/// their difference shows nothing of it.
+fn coarse_by_events(
+    varied: &Varied<'_>,
+    method: MotionMethod,
+    (resolution, times): (Resolution, &[f64]),
+) -> Option<Result<Run, String>> {
+    (varied.oracle.has_contacts() && !method.is_adaptive())
+        .then(|| varied.run(method, finer(resolution, 8.0), times).map(|(run, _)| run))
 }
 
 /// A similar mechanism beside the mechanism itself.

@@ -3,7 +3,9 @@ use std::time::Duration;
 use crate::erased::erase::erase;
 use crate::erased::facade::AnyEquations;
 use crate::erased::variations::Variable;
+use crate::hard_cases::judge::{Bounds, judge};
 use crate::hard_cases::list::description::Description;
+use crate::hard_cases::oracle::{Oracle, State};
 use crate::hard_cases::result::MatrixResult;
 use crate::hard_cases::study::{Clock, Extent, Own, study};
 use crate::hard_cases::variation::Class;
@@ -216,4 +218,38 @@ fn there_is_an_end_to_the_time() {
         Extent { methods: METHODS[..1].to_vec(), seeds: (0..9).collect(), until: 0.1, description: None };
     let found = study(&own, &extent, &Clock::of(Duration::ZERO), &mut |_, _| ()).expect("a study");
     assert_eq!((found.outcomes.len(), found.not_run), (0, 9));
+}
+
+#[test]
+fn half_the_step_excuses_a_noise_of_accelerations_and_no_wrong_velocity() {
+    let oracle = Oracle::read("mechanism Cart; coord x: m = 0; drive push: x == sin(t/1s);", None, &|_| None)
+        .expect("a text");
+    let bounds = Bounds {
+        rows: f64::INFINITY,
+        balance: 1.0,
+        estimate: 1e-12,
+        rounding: 1e-12,
+        digit: 0.0,
+        is_shown: true,
+    };
+    let run = |factor: f64, noise: f64| -> Vec<State> {
+        let at = |index: u32| {
+            let t = f64::from(index) / 64.0;
+            let sign = if index.is_multiple_of(2) { 1.0 } else { -1.0 };
+            State {
+                t,
+                q: vec![t.sin()],
+                qd: vec![factor * t.cos()],
+                qdd: vec![-t.sin() + sign * noise],
+                ..State::default()
+            }
+        };
+        (0..=64).map(at).collect()
+    };
+    let wrong = |run: &[State], fine: &[State]| judge([run, fine], &oracle, &[1.0], bounds, 1).wrong;
+    let [right, noisy, fast] = [run(1.0, 0.0), run(1.0, 1e-3), run(1.001, 0.0)];
+    assert_eq!(wrong(&right, &right), None);
+    assert!(wrong(&noisy, &[]).is_some(), "nothing says that it is noise");
+    assert_eq!(wrong(&noisy, &right), None);
+    assert!(wrong(&fast, &fast).is_some(), "half the step has the same wrong velocity");
 }

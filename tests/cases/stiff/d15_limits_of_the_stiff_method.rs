@@ -100,3 +100,40 @@ fn a_tolerance_that_is_not_resolved_is_refused_and_a_run_in_pieces_is_the_same()
     println!("in pieces: {apart:.1e} m");
     assert!(apart < 1e-8, "{apart:e}");
 }
+
+mechanism! {
+    /// Two masses with a stiff spring between them and a soft one to the ground.
+    pub mechanism StiffAndSoft;
+    param stiffness: N/m = 1e9;
+    coord x: m = 0.1;
+    coord y: m = 0.1;
+    body one { mass: 1, com: [x, 0] }
+    body other { mass: 1, com: [y, 0] }
+    tsda soft { from: [-1, 0], to: [x, 0], stiffness: 10, length: 1 }
+    tsda stiff { from: [x, 0], to: [y + 1m, 0], stiffness: stiffness, length: 1, damping: 2e4 }
+    start x = 0.1 rate 0;
+    start y = 0.1 rate 0;
+}
+
+#[test]
+fn the_last_digit_of_a_stiff_spring_does_not_shorten_steps() {
+    // With 1e10 N/m the last digit of a metre is 2e-6 N, and a tolerance of 1e-11 follows the vibration that this excites.
+    for (stiffness, last) in [(1e8, 11), (1e9, 11), (1e10, 10)] {
+        let mut before = f64::INFINITY;
+        for decade in 6..=last {
+            let tolerance = 10.0_f64.powi(-decade);
+            let spring = StiffAndSoft { stiffness };
+            let run = Simulation::start_from_text(spring, radau(), 0.0_f64).expect("it starts");
+            let mut run = run.with_tolerance(Tolerance::new(tolerance));
+            run.advance_to(1.0).expect("it moves");
+            // Both masses as one, but for the stretch of the stiff spring.
+            let apart = (run.q()[0] - 0.1 * 5.0_f64.sqrt().cos()).abs();
+            let evaluations = run.counts().evaluations as f64;
+            println!("{stiffness:e} N/m, {tolerance:e}: {evaluations} evaluations, {apart:.1e} m");
+            assert!(apart < 100.0 * tolerance + 10.0 / stiffness, "{apart:e}");
+            // Ten times better takes 10^(1/4) times the steps.
+            assert!(evaluations < 3.0 * before, "{evaluations} after {before}");
+            before = evaluations;
+        }
+    }
+}

@@ -345,10 +345,14 @@ impl<S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> Model<'_, S, 
                 }
                 share = share * R::constant(0.5);
             }
-            if !self.weighted(&trial.1).less(size) {
-                let small =
-                    self.weighted(&step) <= forces::STUCK_MULTIPLIERS.of::<R>() * self.weighted(&known);
-                return small.then_some(after);
+            let small = self.weighted(&step) <= forces::STUCK_MULTIPLIERS.of::<R>() * self.weighted(&known);
+            let left = self.weighted(&trial.1);
+            // Near a solution each step takes off most of what is left; less is rounding of the balance.
+            if small && !(R::constant(2.0) * left).less(size) {
+                return Some(after);
+            }
+            if !left.less(size) {
+                return None;
             }
             (known, residual) = trial;
         }

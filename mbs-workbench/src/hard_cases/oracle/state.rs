@@ -54,6 +54,13 @@ impl Balance {
         self.size += term.abs();
     }
 
+    /// The sum less an error of at most `error`.
+    pub fn without(self, error: f64) -> Self {
+        // Written so that NaN stays.
+        let sum = self.sum.abs() - error;
+        Balance { sum: if sum < 0.0 { 0.0 } else { sum }, ..self }
+    }
+
     /// The sum as a part of its terms.
     pub fn open(&self) -> f64 {
         if self.size > 0.0 { self.sum.abs() / self.size } else { self.sum.abs() }

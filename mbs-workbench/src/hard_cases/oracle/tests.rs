@@ -117,3 +117,30 @@ fn of_the_compiler_of_texts_the_syntax_alone_is_used() {
     }
     assert!(seen >= 4, "{seen}");
 }
+
+#[test]
+fn the_last_digit_of_a_stiff_spring_is_rounding_and_a_wrong_force_is_not() {
+    let oracle = read(
+        "mechanism Stiff; coord x: m = 1; coord y: m = 1; body one { mass: 1, com: [x, 0] } \
+         body other { mass: 1, com: [y, 0] } \
+         tsda stiff { from: [x, 0], to: [y + 1m, 0], stiffness: 1e9, length: 1 } \
+         tsda soft { from: [-1, 0], to: [x, 0], stiffness: 10, length: 1 }",
+    )
+    .expect("a text");
+    // The spring pulls `one` by 5 N and `other` by −5 N, as far as digits of metres have that stretch.
+    let state =
+        State { q: vec![1.0, 1.0 + 5e-9], qd: vec![0.3; 2], qdd: vec![5.0 - 10.0, -5.0], ..State::default() };
+    let open = |state: &State| {
+        let w = [0.7, -0.9];
+        let balance = oracle.equations_of_motion(state, &w).expect("a balance");
+        let rounding =
+            oracle.rounding_of_equations(state, &w, (&[1.0; 2], 4.0 * f64::EPSILON)).expect("its rounding");
+        [balance.open(), balance.without(rounding).open()]
+    };
+    let [as_it_is, without] = open(&state);
+    assert!(as_it_is > 1e-9 && without == 0.0, "{as_it_is:e} {without:e}");
+    let wrong = State { qdd: vec![-5.001, -5.0], ..state };
+    let [_, without] = open(&wrong);
+    assert!(without > 1e-5, "{without:e}");
+    assert!(!oracle.has_contacts());
+}

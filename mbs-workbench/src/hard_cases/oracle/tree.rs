@@ -137,13 +137,13 @@ pub fn equations<'a>(
     while let Some(item) = items.get(next) {
         next += 1;
         match item {
-            Item::Equation(_) => see(item, rounds)?,
+            Item::Equation(_) | Item::On { .. } => see(item, rounds)?,
             Item::EndFor => {}
             Item::For(head) => {
                 let length = length(&items[next..], |item| match item {
                     Item::For(_) => 1,
                     Item::EndFor => -1,
-                    Item::Equation(_) => 0,
+                    Item::Equation(_) | Item::On { .. } => 0,
                 });
                 for count in range(head, &Scope::of(names, rounds))? {
                     // Nothing is declared in a constraint, so its rounds need no numbers.

@@ -22,6 +22,12 @@ const MOST_FIXED_ITERATIONS: u32 = 14;
 /// Part of the tolerance that the iteration may leave, at most: the estimate of the error does not see it.
 const OPEN: f64 = 0.03;
 
+/// Part of the tolerance that rounding of the stages may be, at most.
+const ROUNDED: f64 = 1.0;
+
+/// Corrections that rounding explains, over the rounding of one position.
+const ROUNDINGS: f64 = 4.0;
+
 /// Both factorizations of a step.
 pub(in crate::dynamics) struct Solver<'a, S: Dynamic<R, N, M>, R: Real, const N: usize, const M: usize> {
     slopes: &'a Slopes<S, R, N, M>,
@@ -67,7 +73,8 @@ where
     };
     let fixed = equations.is_fixed();
     let rounds = if fixed { MOST_FIXED_ITERATIONS } else { MOST_ITERATIONS };
-    let mut iteration = Iteration::new(&step.predicted, enough(equations.narrowest()));
+    let rounding = rounding(equations, step);
+    let mut iteration = Iteration::new(&step.predicted, enough(equations.narrowest()), rounding);
     let mut worst = *step.rate;
     for round in 1..=rounds {
         let (correction, size) = correction(equations, &solver, step, &iteration.transformed)?;
@@ -91,6 +98,28 @@ where
 fn enough<R: Real>(tolerance: R) -> R {
     let least = motion::OF_STAGES.of::<R>() / tolerance;
     least.max(R::constant(OPEN).min(tolerance.sqrt()))
+}
+
+/// Size of corrections over the tolerance that rounding of positions explains: beside stiff springs the last digit of a position
+/// moves the velocity by itself over the step, however near the stages are.
+fn rounding<S, F, R, const N: usize, const M: usize>(
+    equations: &Equations<'_, S, F, R, N, M>,
+    step: &Collocation<'_, R, Moving<S, R, N, M>>,
+) -> R
+where
+    S: Dynamic<R, N, M>,
+    F: Formulation<S, R, N, M>,
+    R: Real,
+{
+    let mut moved = step.y.zero();
+    let (digit, over) = (R::constant(ROUNDINGS) * R::EPSILON, R::constant(REAL) / step.h);
+    let sizes = step.y.y.q.iter().zip(equations.scales());
+    for ((q, qd), (size, scale)) in moved.y.q.iter_mut().zip(&mut moved.y.qd).zip(sizes) {
+        *q = digit * size.abs().max(*scale);
+        *qd = over * *q;
+    }
+    let [size] = equations.measure(step.y, step.y, [&moved]);
+    size.min(R::constant(ROUNDED))
 }
 
 /// The changes to the stages of which `transformed` are in the basis of both systems.
@@ -170,17 +199,20 @@ struct Iteration<R, Y> {
     size: Option<R>,
     /// Error that may be left, over the tolerance.
     enough: R,
+    /// Size of corrections over the tolerance that rounding explains.
+    rounding: R,
     /// Largest ratio of one correction to the one before.
     contraction: R,
 }
 
 impl<R: Real, Y: Vector<R>> Iteration<R, Y> {
-    fn new([a, b, c]: &[Y; 3], enough: R) -> Self {
+    fn new([a, b, c]: &[Y; 3], enough: R, rounding: R) -> Self {
         let transformed = T_INVERSE.map(|row| a.zero().plus(R::constant(1.0), &row, [a, b, c]));
-        Iteration { transformed, size: None, enough, contraction: R::constant(0.0) }
+        Iteration { transformed, size: None, enough, rounding, contraction: R::constant(0.0) }
     }
 
     /// Adds a correction of `size` over the tolerance; stuck where it does not fall, or not fast enough for the rounds that are `left`.
+    /// A correction that rounding explains does not fall any further.
     ///
     /// Source: Hairer & Wanner 1996, §IV.8 (stopping criterion).
     fn take(&mut self, correction: &[Y; 3], size: R, left: u32) -> Outcome {
@@ -188,7 +220,8 @@ impl<R: Real, Y: Vector<R>> Iteration<R, Y> {
         let rate = self.size.map(|before| size / before);
         // Written so that NaN is stuck.
         let falls = rate.is_none_or(|rate| rate < one);
-        if !falls || !size.is_finite() {
+        let is_rounding = size <= self.rounding;
+        if !size.is_finite() || !falls && !is_rounding {
             return Outcome::Stuck;
         }
         let parts = self.transformed.iter_mut().zip(correction);
@@ -198,12 +231,19 @@ impl<R: Real, Y: Vector<R>> Iteration<R, Y> {
             return Outcome::Converged;
         }
         let Some(rate) = rate else { return Outcome::On };
+        if !falls {
+            return Outcome::Converged;
+        }
         self.contraction = self.contraction.max(rate);
         let open = rate / (one - rate) * size;
         if open < self.enough {
             return Outcome::Converged;
         }
         let hopeless = self.enough < rate.powf(R::constant(f64::from(left))) * open;
-        if hopeless { Outcome::Stuck } else { Outcome::On }
+        match hopeless {
+            true if is_rounding => Outcome::Converged,
+            true => Outcome::Stuck,
+            false => Outcome::On,
+        }
     }
 }

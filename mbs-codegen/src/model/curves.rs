@@ -1,0 +1,237 @@
+//! Curves, points on them, distances to them and their normals, as rows and functions of the text.
+//!
+//! A polar curve is star-shaped: r = R(w − θ) about its centre C, w the angle of a point A seen from C. It has one row, r − R, and no
+//! coordinate of its own. A circle that rolls on a contour is a point, its centre, on the pitch curve, which lies the circle's
+//! radius outside: so every curve here is one of points.
+
+use std::f64::consts::TAU;
+
+use proc_macro2::Span;
+
+use super::declarations::Declarations;
+use super::elaborator::Elaborator;
+use super::names::{Callable, Symbol};
+use super::resolver::Resolver;
+use super::unit_inference::Bare;
+use super::units::Dimension;
+use super::value::{Fault, Quantity, Reach, Scalar, Value};
+use super::{ConstraintRow, functions};
+use crate::diagnostics::nearest;
+use crate::symbolic::Binary;
+use crate::syntax::ast::{Expression, Instruction, Name, Operation, Operator};
+
+/// Functions of a point and a curve.
+pub const OF_CURVES: [&str; 2] = ["distance", "normal"];
+
+/// Relative error of a period as a part of a turn: that of its decimals.
+const OF_PERIOD: f64 = 1e-12;
+
+/// A curve by its polar radius.
+#[derive(Clone, Debug)]
+pub struct Curve {
+    radius: Callable,
+    /// Name of the radius.
+    function: String,
+    centre: Value,
+    /// Angle by which it is turned.
+    turned: Value,
+}
+
+/// A point as a curve sees it.
+struct Seen {
+    /// From the centre (m).
+    from: [Scalar; 2],
+    /// Distance to the centre.
+    r: Scalar,
+    /// R there.
+    radius: Scalar,
+    /// Polar angle in the axes of the curve.
+    angle: Scalar,
+}
+
+impl Declarations<'_> {
+    /// The curve of a declaration, and the quantities that must be allowed where it is used.
+    pub(super) fn curve(
+        &mut self,
+        centre: &Expression,
+        radius: &Expression,
+    ) -> Result<(Curve, Reach), Fault> {
+        let Some((Instruction { operation: Operation::Call { function, .. }, span }, turned)) =
+            radius.code.split_last()
+        else {
+            return Err(Fault);
+        };
+        let callable = match self.names.get(function) {
+            Some(Symbol::Function(callable)) => *callable,
+            Some(Symbol::Faulty) => return Err(Fault),
+            _ => {
+                let message = format!("`{function}` is no declared function");
+                let help =
+                    format!("declare the polar radius: `function {function}: m(rad), C3, periodic TAU;`");
+                self.diagnostics.report(*span, message, help);
+                return Err(Fault);
+            }
+        };
+        let period = self.model.functions.get(callable.index).and_then(|function| function.period);
+        let closes = period.is_some_and(|period| {
+            let turns = TAU / period;
+            (turns - turns.round()).abs() <= OF_PERIOD * turns
+        });
+        let of_angle = callable.unit == Dimension::METRE && callable.argument == Dimension::NUMBER;
+        if !closes || !of_angle {
+            let message =
+                format!("`{function}` is no polar radius: a length over an angle, closed after a turn");
+            let help = format!("declare it as `function {function}: m(rad), C3, periodic TAU;`");
+            self.diagnostics.report(*span, message, help);
+            return Err(Fault);
+        }
+        let turned = Expression { code: turned.to_vec() };
+        self.elaborate(|work| {
+            work.reach = Reach::Let;
+            let (centre, turned) = (work.value(centre), work.value(&turned));
+            let (centre, turned) = (centre?, turned?);
+            is_point(work, &centre, "the centre of a curve")?;
+            let angle = work.scalar(&turned, "`turned`", turned.span)?;
+            work.number(angle, "the angle of a curve", turned.span)?;
+            let function = function.clone();
+            Ok((Curve { radius: callable, function, centre, turned }, work.needs))
+        })
+    }
+}
+
+/// Two components in metres.
+fn is_point(work: &mut Elaborator<'_>, value: &Value, what: &str) -> Result<[Scalar; 2], Fault> {
+    let [x, y] = value.items.as_slice() else {
+        return Err(work.wrong_shape(what, "a point of 2 components", value, value.span));
+    };
+    if value.shape.len() != 1 {
+        return Err(work.wrong_shape(what, "a point of 2 components", value, value.span));
+    }
+    let metre = Scalar { quantity: Quantity::Known(Dimension::METRE), bare: Bare::Not, ..*x };
+    work.agree(metre, *x)?;
+    work.agree(metre, *y)?;
+    Ok([*x, *y])
+}
+
+impl Elaborator<'_> {
+    /// `distance(A, curve)` or `normal(A, curve)`, where `curve` is the instruction before the call.
+    pub(super) fn of_curve(
+        &mut self,
+        function: &str,
+        curve: Option<&Instruction>,
+        arguments: Vec<Value>,
+        span: Span,
+    ) -> Result<Value, Fault> {
+        let point = arguments.into_iter().next().ok_or(Fault)?;
+        let curve = match curve {
+            Some(Instruction { operation: Operation::Name(name), span }) => self.curve_of(name, *span)?,
+            _ => {
+                let help = format!(
+                    "write `{function}(A, cam)`, a point and a curve; between points it is `norm(A - B)`"
+                );
+                return Err(self.fault(span, format!("`{function}` ends with no curve"), help));
+            }
+        };
+        let seen = self.seen(&curve, &point, span)?;
+        let slope = self.radius(&curve, 1, seen.angle, span)?;
+        let slope = self.over(slope, seen.r, span)?;
+        let one = self.number_literal(1.0, span);
+        let quantity = Quantity::Known(Dimension::NUMBER);
+        let steepness = self.binary_scalar(Binary::Hypot, one, slope, quantity, span)?;
+        match function {
+            "distance" => {
+                let gap = self.binary_scalar(Binary::Subtract, seen.r, seen.radius, seen.r.quantity, span)?;
+                Ok(Value::scalar(self.over(gap, steepness, span)?, span))
+            }
+            _ => {
+                // e_r − (R′/r) e_t, over its length r √(1 + (R′/r)²).
+                let [x, y] = seen.from;
+                let [of_x, of_y] = [self.multiply(slope, x, span)?, self.multiply(slope, y, span)?];
+                let x = self.binary_scalar(Binary::Add, x, of_y, x.quantity, span)?;
+                let y = self.binary_scalar(Binary::Subtract, y, of_x, y.quantity, span)?;
+                let length = self.multiply(seen.r, steepness, span)?;
+                let items = vec![self.over(x, length, span)?, self.over(y, length, span)?];
+                Ok(Value { shape: vec![2], items, span })
+            }
+        }
+    }
+
+    /// The curve of a name.
+    fn curve_of(&mut self, name: &str, span: Span) -> Result<Curve, Fault> {
+        match self.names.get(name) {
+            Some(Symbol::Curve(curve)) => {
+                let curve = (**curve).clone();
+                self.allows(name, span)?;
+                return Ok(curve);
+            }
+            Some(Symbol::Faulty | Symbol::Pending) => return Err(Fault),
+            _ => {}
+        }
+        let help = match nearest(name, self.names.curves()) {
+            Some(known) => format!("did you mean `{known}`?"),
+            None if self.names.get(name).is_some() => {
+                "name a curve, declared `curve cam = polar R about C turned theta;`; between points it is `norm(A - B)`".into()
+            }
+            None => format!("declare it: `curve {name} = polar R about C turned theta;`"),
+        };
+        Err(self.fault(span, format!("`{name}` is no curve"), help))
+    }
+
+    fn seen(&mut self, curve: &Curve, point: &Value, span: Span) -> Result<Seen, Fault> {
+        is_point(self, point, "a point on a curve")?;
+        let from = self.operator(Operator::Subtract, point, &curve.centre, span)?;
+        let [x, y] = from.items.as_slice() else { return Err(Fault) };
+        let [x, y] = [*x, *y];
+        let r = self.binary_scalar(Binary::Hypot, x, y, Quantity::Known(Dimension::METRE), span)?;
+        let number = Quantity::Known(Dimension::NUMBER);
+        let polar = self.binary_scalar(Binary::Atan2, y, x, number, span)?;
+        let turned = self.scalar(&curve.turned, "`turned`", span)?;
+        let angle = self.binary_scalar(Binary::Subtract, polar, turned, number, span)?;
+        let radius = self.radius(curve, 0, angle, span)?;
+        Ok(Seen { from: [x, y], r, radius, angle })
+    }
+
+    /// R, or its derivative of this order, at an angle.
+    fn radius(&mut self, curve: &Curve, order: u8, angle: Scalar, span: Span) -> Result<Scalar, Fault> {
+        let angle = Value::scalar(angle, span);
+        let called = (curve.function.as_str(), order);
+        let value = functions::call_declared(self, curve.radius, called, vec![angle], span)?;
+        self.scalar(&value, "a curve", span)
+    }
+
+    fn over(&mut self, a: Scalar, b: Scalar, span: Span) -> Result<Scalar, Fault> {
+        let quantity = Quantity::Known(a.quantity.dimension().over(b.quantity.dimension()));
+        self.binary_scalar(Binary::Divide, a, b, quantity, span)
+    }
+}
+
+impl Resolver<'_> {
+    /// Adds the row of `point on curve`.
+    pub(super) fn on_curve(
+        &mut self,
+        point: &Expression,
+        curve: &Name,
+        span: Span,
+        group: usize,
+    ) -> Result<(), Fault> {
+        let residual = self.elaborate(Reach::Position, |work| {
+            let (point, curve) = (work.value(point), work.curve_of(&curve.text, curve.span));
+            let seen = work.seen(&curve?, &point?, span)?;
+            work.binary_scalar(Binary::Subtract, seen.r, seen.radius, seen.r.quantity, span)
+        })?;
+        self.push_row(
+            group,
+            ConstraintRow {
+                name: String::new(),
+                dimension: Dimension::METRE,
+                residual: residual.id,
+                driven: false,
+                reversed: false,
+                redundant: false,
+                within: None,
+                span,
+            },
+        );
+        Ok(())
+    }
+}
