@@ -18,6 +18,8 @@ mod non_negative;
 pub mod normal_forces;
 pub mod pins;
 mod power_of_time;
+#[cfg(test)]
+mod restitution_tests;
 mod second_moments;
 #[cfg(test)]
 mod seen_tests;

@@ -55,7 +55,7 @@ const PAIRS: [(&str, &str, &str); 17] = [
     ("N", "force(stops[1])", "200 [N/m]*max(0.4m - p[0], 0)"),
 ];
 
-fn derived(text: &str) -> (Model, Equations) {
+pub(super) fn derived(text: &str) -> (Model, Equations) {
     let mut diagnostics = Diagnostics::default();
     let read = read_source(text, &mut diagnostics);
     assert!(diagnostics.is_empty(), "{}", diagnostics.to_text());
@@ -68,6 +68,11 @@ fn derived(text: &str) -> (Model, Equations) {
 fn value(graph: &Graph, node: Option<NodeId>, trial: usize) -> f64 {
     let leaf = |leaf: Leaf| 2.0 * scattered(leaf, trial) - 0.7;
     node.map_or(0.0, |node| evaluate(graph, &[node], leaf).pop().unwrap_or(f64::NAN))
+}
+
+/// Value of one node.
+pub(super) fn value_at(graph: &Graph, node: NodeId, leaf: impl Fn(Leaf) -> f64) -> f64 {
+    evaluate(graph, &[node], leaf).pop().unwrap_or(f64::NAN)
 }
 
 fn assert_near(found: f64, wanted: f64, of: &str) {

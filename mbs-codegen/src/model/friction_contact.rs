@@ -65,7 +65,7 @@ impl Resolver<'_> {
                 ));
             }
         };
-        let damping = given.scalar("damping");
+        let damping = self.damping(name, given)?;
         let force =
             self.elaborate(Reach::Force, |work| pressing(work, gap, stiffness, (power, damping), name.span))?;
         let (bound, span) = (given.scalar("bound"), name.span);

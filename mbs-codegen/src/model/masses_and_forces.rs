@@ -100,6 +100,8 @@ pub fn known(element: Element) -> Vec<Known> {
             ("exponent", FieldKind::Constant(Dimension::NUMBER), false),
             ("depth", FieldKind::Constant(Dimension::METRE), false),
             ("damping", scalar(Dimension::SECOND.over(Dimension::METRE)), false),
+            ("restitution", FieldKind::Constant(Dimension::NUMBER), false),
+            ("approach", FieldKind::Constant(Dimension::METRE.over(Dimension::SECOND)), false),
             (
                 "bound",
                 FieldKind::Constant(Dimension::METRE.over(Dimension::SECOND).over(Dimension::SECOND)),

@@ -39,6 +39,7 @@ pub mod references;
 pub mod repeated;
 pub mod resolve;
 mod resolver;
+mod restitution;
 mod rotation;
 pub mod scene;
 pub mod scenes;

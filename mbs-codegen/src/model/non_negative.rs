@@ -20,7 +20,7 @@ impl Least {
     pub fn of(field: &str) -> Option<Self> {
         match field {
             "mass" | "inertia" | "stiffness" | "damping" | "coefficient" | "viscous" => Some(Least::Zero),
-            "speed" | "depth" | "exponent" | "bound" => Some(Least::AboveZero),
+            "speed" | "depth" | "exponent" | "bound" | "restitution" | "approach" => Some(Least::AboveZero),
             _ => None,
         }
     }
@@ -95,6 +95,11 @@ fn wrong(signed: &NonNegative, value: f64) -> Option<Diagnostic> {
         "speed" => "friction is smooth below this speed: write a small one, `speed: 1mm/1s`",
         "depth" => "the stiffness is force over depth there: write a depth that is reached, `depth: 1mm`",
         "exponent" => "the force rises with the depth to this power: `exponent: 1.5` for spheres",
+        "restitution" => "a contact without any rebound has a small one: `restitution: 0.01`",
+        "1 - restitution" => {
+            "a rebound faster than the approach feeds energy in: it is above 0 and at most 1"
+        }
+        "approach" => "it is the speed at touch for which the restitution holds: `approach: 0.5`",
         "bound" => {
             "it is the largest |second time derivative| of the open gap: under its weight alone `bound: 9.81`"
         }
