@@ -74,36 +74,15 @@ fn read(parser: &mut Parser<'_>, references: bool, counts: bool) -> Read<Express
 /// `true` if a name stands in the parentheses behind `word`, alone or with a count, and the text has no function of its own of
 /// this name.
 fn names_a_force(parser: &Parser<'_>, word: &str) -> bool {
-    // A second argument of `power` is an exponent, of `normal` a curve.
-    let is_second = !matches!(word, "power" | "normal");
     let name = matches!(parser.peek_at(2), TokenKind::Identifier(_));
     let behind = match parser.peek_at(3) {
-        TokenKind::Close(')') => true,
-        TokenKind::Open('[') => {
-            is_second || matches!(parser.peek_at(behind_bracket(parser, 3)), TokenKind::Close(')'))
-        }
-        TokenKind::Punctuation(',', _) => is_second,
+        TokenKind::Close(')') | TokenKind::Open('[') => true,
+        // A second argument of `power` is an exponent.
+        TokenKind::Punctuation(',', _) => word != "power",
         TokenKind::Punctuation('.', _) => matches!(parser.peek_at(4), TokenKind::Literal(_)),
         _ => false,
     };
     name && behind && !parser.declares_function(word)
-}
-
-/// The place behind the bracket that opens at `place`, both counted from here.
-fn behind_bracket(parser: &Parser<'_>, place: usize) -> usize {
-    let (mut at, mut depth) = (place, 0_usize);
-    loop {
-        match parser.peek_at(at) {
-            TokenKind::Open(_) => depth += 1,
-            TokenKind::Close(_) => depth = depth.saturating_sub(1),
-            TokenKind::End => return at,
-            _ => {}
-        }
-        at += 1;
-        if depth == 0 {
-            return at;
-        }
-    }
 }
 
 struct Reader {
