@@ -56,7 +56,8 @@ impl<const ORDER: usize> Pitch<ORDER> {
         for place in 0..=PLACES {
             let theta = pitch.theta(place);
             let angle = pitch.at(theta).angle();
-            if !(sense * angle.rate().value() > 0.0) {
+            let turning = sense * angle.rate().value();
+            if turning.is_nan() || turning <= 0.0 {
                 let why = format!("it has no polar radius at {:.3} deg of the cam", theta.to_degrees());
                 return fault("pitch curve", why);
             }
