@@ -19,8 +19,6 @@ pub mod measured;
 pub mod noise;
 pub mod page;
 pub mod pitch;
-#[cfg(test)]
-mod pitch_tests;
 mod search;
 pub mod shapes;
 #[cfg(test)]

@@ -137,3 +137,7 @@ impl<const ORDER: usize> Function<f64> for Pitch<ORDER> {
         Some(x + next).filter(|place| *place > x)
     }
 }
+
+#[cfg(test)]
+#[path = "pitch_tests.rs"]
+mod tests;

@@ -4,10 +4,10 @@ use core::f64::consts::TAU;
 
 use mbs_runtime::{Function, Stepper};
 
-use super::CamError;
-use super::follower::{Cam, Direction, Follower};
-use super::lift::{Flank, Lift};
-use super::pitch::Pitch;
+use super::Pitch;
+use crate::cams::CamError;
+use crate::cams::follower::{Cam, Direction, Follower};
+use crate::cams::lift::{Flank, Lift};
 use crate::tables::Table;
 
 mbs_runtime::mechanism! {
@@ -128,7 +128,7 @@ fn a_pitch_curve_without_a_polar_radius_is_refused() {
         pivot: [0.06, 0.0],
         arm: 0.055,
         radius: 0.01,
-        side: super::follower::Side::Left,
+        side: crate::cams::follower::Side::Left,
     };
     let cam = Cam::new(law, swinging, Direction::CounterClockwise).expect("a cam");
     let found = refused(&cam);
