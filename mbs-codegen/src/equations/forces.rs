@@ -4,8 +4,9 @@ use super::jacobian;
 use super::lower::Clock;
 use super::power_of_time;
 use super::sum::Sum;
-use crate::model::dynamics::{Action, Dynamics as Declared, SpringDamper, Turn};
+use crate::model::dynamics::{Action, Dynamics as Declared};
 use crate::model::expression::Id;
+use crate::model::springs::{SpringDamper, Turn};
 use crate::symbolic::{Graph, Leaf, NodeId, Unary, tangent};
 
 /// Place that a force acts on: a point of the plane, or an angle or a length.

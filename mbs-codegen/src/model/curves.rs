@@ -10,7 +10,7 @@ use proc_macro2::Span;
 
 use super::declarations::Declarations;
 use super::elaborator::Elaborator;
-use super::names::{Callable, Symbol};
+use super::names::{Curve, Symbol};
 use super::resolver::Resolver;
 use super::unit_inference::Bare;
 use super::units::Dimension;
@@ -20,22 +20,8 @@ use crate::diagnostics::nearest;
 use crate::symbolic::Binary;
 use crate::syntax::ast::{Expression, Instruction, Name, Operation, Operator};
 
-/// Functions of a point and a curve.
-pub const OF_CURVES: [&str; 2] = ["distance", "outward"];
-
 /// Relative error of a period as a part of a turn: that of its decimals.
 const OF_PERIOD: f64 = 1e-12;
-
-/// A curve by its polar radius.
-#[derive(Clone, Debug)]
-pub struct Curve {
-    radius: Callable,
-    /// Name of the radius.
-    function: String,
-    centre: Value,
-    /// Angle by which it is turned.
-    turned: Value,
-}
 
 /// A point as a curve sees it.
 struct Seen {

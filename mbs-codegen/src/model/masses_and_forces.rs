@@ -2,15 +2,16 @@
 
 use proc_macro2::Span;
 
-use super::dynamics::{Action, Carrier, Dynamics, Force, Kinetic, SpringDamper, Turn};
+use super::dynamics::{Action, Carrier, Dynamics, Force, Kinetic};
 use super::elaborator::Elaborator;
 use super::expression::{Id, Node};
+use super::forces_by_name::Force as Seen;
 use super::inertia::check_shape;
 use super::initialiser::{fits_shape, initialiser};
 use super::non_negative::{Least, NonNegative};
 use super::resolver::Resolver;
 use super::rotation::{moments, parameters};
-use super::seen::Force as Seen;
+use super::springs::{SpringDamper, Turn};
 use super::unit_faults::Place;
 use super::units::Dimension;
 use super::value::{Fault, Quantity, Reach, Value};

@@ -4,8 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use proc_macro2::Span;
 
-use super::curves::{Curve, OF_CURVES};
-use super::seen::Seen;
+use super::forces_by_name::Seen;
 use super::unit_faults::UnitFault;
 use super::unit_inference::Bare;
 use super::units::Dimension;
@@ -40,6 +39,9 @@ const OTHER_FUNCTIONS: [&str; 15] = [
     "der",
     "der2",
 ];
+
+/// Functions of a point and a curve.
+pub const OF_CURVES: [&str; 2] = ["distance", "outward"];
 
 /// The function of partial derivatives.
 pub const PARTIAL: &str = "d";
@@ -79,6 +81,17 @@ pub struct Callable {
     pub(super) argument: Dimension,
     /// `Bare::Angle` if its values are angles.
     pub(super) bare: Bare,
+}
+
+/// A curve by its polar radius.
+#[derive(Clone, Debug)]
+pub struct Curve {
+    pub(super) radius: Callable,
+    /// Name of the radius.
+    pub(super) function: String,
+    pub(super) centre: Value,
+    /// Angle by which it is turned.
+    pub(super) turned: Value,
 }
 
 /// Meaning of a name.

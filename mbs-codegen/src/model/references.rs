@@ -2,9 +2,9 @@
 
 use proc_macro2::Span;
 
-use super::curves::OF_CURVES;
 use super::elaborator::Elaborator;
 use super::expression::Node;
+use super::names::OF_CURVES;
 use super::unit_inference::Bare;
 use super::units::Dimension;
 use super::value::{Fault, Quantity, Reach, Scalar, Value};

@@ -2,12 +2,13 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::forces_by_name::Declared;
 use super::initialiser::definition;
 use super::names::{Names, Symbol};
 use super::order::{Visit, visit};
 use super::resolve::behind_loop;
 use super::resolver::Resolver;
-use super::seen::{CIRCLE, Declared, word};
+use super::seen::{CIRCLE, word};
 use super::value::{Fault, Reach};
 use crate::syntax::OF_FORCES;
 use crate::syntax::ast::{Expression, Instruction, Name, Operation, Statement, StatementKind, Unit};

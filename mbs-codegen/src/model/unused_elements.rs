@@ -1,8 +1,9 @@
 //! Declarations without any effect: forces without a value or a place that moves, gravity without bodies.
 
 use super::Model;
-use super::dynamics::{Action, Dynamics, Force, SpringDamper, Turn};
+use super::dynamics::{Action, Dynamics, Force};
 use super::expression::{Id, Node};
+use super::springs::{SpringDamper, Turn};
 use crate::diagnostics::Diagnostics;
 
 /// Before: a resolved model. After: forces without effect are reported.

@@ -2,8 +2,9 @@
 
 use super::mixed_derivatives::{AGAIN, DISPLACED, MOTION, Nilpotent, VARIED};
 use super::oracle::{Evaluation, Expected};
-use crate::model::dynamics::{Action, Body, Dynamics, Force, Rotation, SpringDamper, Turn};
+use crate::model::dynamics::{Action, Body, Dynamics, Force, Rotation};
 use crate::model::expression::{Id, Node};
+use crate::model::springs::{SpringDamper, Turn};
 use crate::model::{Model, VariableKind};
 use crate::symbolic::Unary;
 

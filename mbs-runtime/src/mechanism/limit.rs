@@ -79,7 +79,8 @@ impl<R: Real> Limit<R> {
         let (below, above) = (self.value - self.low, self.high - self.value);
         let (bound, left) = if below < above { (self.low, below) } else { (self.high, above) };
         // A bound of 0 alone has no share: 0 at it, without end off it.
-        (bound, (left / range).max(R::constant(0.0)))
+        let zero = R::constant(0.0);
+        (bound, if left <= zero { zero } else { left / range })
     }
 }
 

@@ -6,8 +6,9 @@ use crate::emit::casadi::{assignments, variable};
 use crate::emit::casadi::{or_zero, pins};
 use crate::equations::Attribution;
 use crate::model::Model;
-use crate::model::dynamics::{Action, Dynamics, Rotation, SpringDamper, Turn};
+use crate::model::dynamics::{Action, Dynamics, Rotation};
 use crate::model::expression::Id;
+use crate::model::springs::{SpringDamper, Turn};
 
 /// Before: a text with masses or forces. After: the definition is followed by `K`, the number of first-order states,
 /// and `dynamics(ca, q, v, t, der, z, l)`.

@@ -5,8 +5,9 @@ use std::fmt::Write;
 use crate::emit::casadi::{or_zero, variable};
 use crate::equations::{Attribution, On, RowMotion};
 use crate::model::Model;
-use crate::model::dynamics::{Action, Dynamics, SpringDamper};
+use crate::model::dynamics::{Action, Dynamics};
 use crate::model::expression::Id;
+use crate::model::springs::SpringDamper;
 
 /// Before: a text with masses, of which an output asks for forces of pins. After: `pins` holds them, two components a pin.
 ///

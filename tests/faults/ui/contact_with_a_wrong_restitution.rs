@@ -1,0 +1,13 @@
+#![deny(warnings)]
+use mbs_runtime::mechanism;
+
+mechanism! {
+    pub mechanism M;
+    param e: 1 = 1.2;
+    coord x: m = 0.3;
+    body cart { mass: 2kg, com: [x, 0] }
+    contact a { gap: x, stiffness: 1e4, restitution: e, approach: 0.5 }
+    contact b { gap: x, stiffness: 1e4, restitution: 0, approach: 0.5 }
+}
+
+fn main() {}

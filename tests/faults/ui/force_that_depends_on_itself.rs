@@ -1,0 +1,23 @@
+#![deny(warnings)]
+use mbs_runtime::mechanism;
+
+mechanism! {
+    pub mechanism M;
+    coord x: m = 0.3;
+    coord p: [m; 2] = [0.5, 0.1];
+    body cart { mass: 2kg, com: [x, 0] }
+    body bob { mass: 1kg, com: p }
+    constraint held { p[1] == 0; }
+    pin joint: cart, bob at p;
+    potential field = 3 [J/m]*x;
+    tsda spring { from: [0, 0], to: [x, 0], stiffness: 100 }
+    contact stop { gap: 0.5m - x, stiffness: 1e4 }
+    for i in 0..2 { contact stops { gap: p[0] - i*1m, stiffness: 1e4 } }
+    friction rub { along: x, normal: 2*press, coefficient: 0.1, speed: 1mm/1s }
+    let press = 1N + force(pushed);
+    force pushed: force(rub) on x;
+    force own: 0.1*force(own) on x;
+    out both: N = force(rub) + press;
+}
+
+fn main() {}

@@ -1,0 +1,15 @@
+#![deny(warnings)]
+use mbs_runtime::mechanism;
+
+mechanism! {
+    pub mechanism Rod;
+    param L: m = 0.5;
+    coord phi: rad = 0.1;
+    coord p: [m; 2] = [0.5, 0];
+    constraint tip { p == L*unit(phi); }
+    drive crank: phi == t/1s;
+    const longest: m = 1;
+    limit stroke: 0.4m <= longest;
+}
+
+fn main() {}
