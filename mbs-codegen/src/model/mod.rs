@@ -20,6 +20,7 @@ pub mod functions;
 mod inertia;
 pub mod initialiser;
 mod inputs;
+mod late_lets;
 mod limits;
 pub mod link_lengths;
 pub mod masses_and_forces;

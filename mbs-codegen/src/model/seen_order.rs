@@ -4,53 +4,14 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::forces_by_name::Declared;
 use super::initialiser::definition;
+use super::late_lets::{Referred, referred};
 use super::names::{Names, Symbol};
 use super::order::{Visit, visit};
 use super::resolve::behind_loop;
 use super::resolver::Resolver;
 use super::seen::{CIRCLE, word};
 use super::value::{Fault, Reach};
-use crate::syntax::OF_FORCES;
-use crate::syntax::ast::{Expression, Instruction, Name, Operation, Statement, StatementKind, Unit};
-
-/// A name that statements refer to: a force, or a `let` of forces.
-type Referred<'a> = (bool, &'a str);
-
-/// Names in an expression: of forces, and of values.
-fn referred(expression: &Expression) -> impl Iterator<Item = Referred<'_>> {
-    expression.code.iter().flat_map(|Instruction { operation, .. }| {
-        let (value, forces) = match operation {
-            Operation::Name(name) => (Some((false, name.as_str())), &[][..]),
-            Operation::Reference { function, targets } if OF_FORCES.contains(&function.as_str()) => {
-                (None, targets.as_slice())
-            }
-            _ => (None, &[][..]),
-        };
-        value.into_iter().chain(forces.iter().map(|target| (true, target.name.text.as_str())))
-    })
-}
-
-/// Before: the statements outside loops. After: the names of each `let` that refers to a force, by itself or by another.
-pub(super) fn late_lets(statements: &[&Statement]) -> BTreeSet<String> {
-    let mut users: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
-    let mut waiting = Vec::new();
-    for statement in statements {
-        let StatementKind::Let { name, value, .. } = &statement.kind else { continue };
-        for (is_force, used) in referred(value) {
-            match is_force {
-                true => waiting.push(name.text.as_str()),
-                false => users.entry(used).or_default().push(&name.text),
-            }
-        }
-    }
-    let mut late = BTreeSet::new();
-    while let Some(name) = waiting.pop() {
-        if late.insert(name.to_owned()) {
-            waiting.extend(users.get(name).into_iter().flatten());
-        }
-    }
-    late
-}
+use crate::syntax::ast::{Expression, Name, Statement, StatementKind, Unit};
 
 impl Names {
     /// `true` if an expression refers to a force, by itself or by a `let`.
