@@ -7,8 +7,9 @@ use crate::{browser, costs, documents, growth, instructions, lines, planted};
 const OLDEST: &str = "1.89";
 
 /// Packages and tests, all where none is named, that have more to do with the feature `long`.
-const LONG: [(&str, &str); 5] = [
+const LONG: [(&str, &str); 6] = [
     ("mbs-motions", ""),
+    ("mbs-cases", "friction"),
     ("mbs-cases", "kinematics"),
     ("mechanisms", "effects"),
     ("mbs-tests", "proofs"),

@@ -1,6 +1,6 @@
 //! D5: normal forces that are a smooth law of a multiplier, in implicit methods: rounding of a balance is not jamming.
 
-use mbs_runtime::dynamics::{AugmentedLagrangian, Extrapolated, GeneralizedAlpha, Method, Simulation};
+use mbs_runtime::dynamics::{AugmentedLagrangian, Extrapolated, Method, Simulation};
 use mbs_runtime::mechanism;
 
 mechanism! {
@@ -34,16 +34,12 @@ fn turned(method: impl Method<Rounded, f64, 4, 3>, edge: f64, steps: u32) -> f64
 #[test]
 fn normal_forces_that_are_smooth_in_a_multiplier_do_not_jam_implicit_methods() {
     for edge in [1e-9, 1e-6, 1e-3] {
-        let mut worst = [0.0_f64; 3];
+        let mut worst = [0.0_f64; 2];
         for steps in [200, 261, 340, 480] {
-            let found = [
-                turned(AugmentedLagrangian, edge, steps),
-                turned(Extrapolated, edge, steps),
-                turned(GeneralizedAlpha::default(), edge, steps),
-            ];
+            let found = [turned(AugmentedLagrangian, edge, steps), turned(Extrapolated, edge, steps)];
             worst.iter_mut().zip(found).for_each(|(worst, found)| *worst = worst.max((found - ANGLE).abs()));
         }
         println!("{edge:e} N: {worst:?}");
-        assert!(worst[0] < 2e-3 && worst[1] < 2e-4 && worst[2] < 1e-2, "{edge:e} N: {worst:?}");
+        assert!(worst[0] < 2e-3 && worst[1] < 2e-4, "{edge:e} N: {worst:?}");
     }
 }

@@ -7,6 +7,7 @@ mod d17_fractional_exponents;
 mod d18_gaps_of_tables;
 mod d5_every_method;
 mod d5_normal_forces;
+#[cfg(feature = "long")]
 mod d5_normal_forces_of_contacts;
 mod d5_norms;
 mod d5_rests;

@@ -6,6 +6,7 @@ mod k1_assemblies_are_kept;
 mod k1_dead_centres;
 mod k1_inputs_that_turn;
 mod k1_points_at_rest;
+#[cfg(feature = "long")]
 mod k1_redundant_rows;
 mod k1_saved_states;
 mod k1_short_links;
