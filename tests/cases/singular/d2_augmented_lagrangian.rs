@@ -71,3 +71,16 @@ fn short_steps_of_the_augmented_lagrangian_take_multipliers_along_that_springs_h
         [design.upright * q[0].cos(), design.upright * q[0].sin()]
     });
 }
+
+#[test]
+fn short_steps_at_regular_positions_are_not_refused() {
+    for steps in [100, 1000, 10_000, 100_000] {
+        let design = Design::USUAL;
+        let text = <Natural2 as Designed>::designed(&design);
+        let mut run = Simulation::start_from_text(text, AugmentedLagrangian, 0.0).expect("it starts");
+        let h = 0.01 / f64::from(steps);
+        for step in 0..100 {
+            run.step(h).unwrap_or_else(|failure| panic!("step {step} of {h:e} s: {failure}"));
+        }
+    }
+}

@@ -129,7 +129,12 @@ impl AugmentedLagrangian {
                 || is_slow && !damping.has_halved() && forces::CORRECTED.of::<R>() < last;
             let links = weak && !linked && last < R::constant(NEARBY);
             let bent = (&qdd, before, quarter);
-            let ended = !standing && damping.is_last() && Self::may_end(model, (last, earlier), bent);
+            // Where the rows hold all directions, corrections that no longer fall are rounding of short steps.
+            let may_end = match from.solved.margin < R::constant(WEAK) {
+                true => Self::may_end(model, (last, earlier), bent),
+                false => last < forces::SLOW.of(),
+            };
+            let ended = !standing && damping.is_last() && may_end;
             counts.unfinished += u64::from(ended);
             if standing && !links || ended {
                 change = change.plus(-one, &[1.0], [&step]);
