@@ -155,7 +155,7 @@ fn the_power_by_name_is_that_of_the_balance() {
     }
 }
 
-/// What names no force has its forces and outputs in the order of the text.
+/// Statements that name no force stay in the order of the text.
 #[test]
 fn a_force_stands_in_front_of_what_refers_to_it() {
     let (model, _) = derived(&format!("{TEXT} out last: N = force(rub); out first: m = x;"));

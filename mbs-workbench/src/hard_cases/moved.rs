@@ -242,7 +242,7 @@ fn outcome(
         Ok((fine, _)) => fine,
         Err(reason) => return Outcome { reason: format!("at half the step: {reason}"), ..outcome },
     };
-    let estimate = match coarse_by_events(varied, method, (resolution, &times)) {
+    let estimate = match eighth_of_the_step(varied, method, (resolution, &times)) {
         Some(Ok(finest)) => apart(&run, &fine, scales).max(apart(&fine, &finest, scales)),
         Some(Err(reason)) => {
             return Outcome { reason: format!("at an eighth of the step: {reason}"), ..outcome };
@@ -325,7 +325,7 @@ fn outcome(
 
 /// A run at an eighth of equal steps, where contacts end steps: a contact that is shorter than half a step is one step for both, and
 /// their difference shows nothing of it.
-fn coarse_by_events(
+fn eighth_of_the_step(
     varied: &Varied<'_>,
     method: MotionMethod,
     (resolution, times): (Resolution, &[f64]),
