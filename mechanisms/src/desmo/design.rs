@@ -42,6 +42,13 @@ impl Function<f64> for Curve {
             Curve::Table(spline) => spline.jet(x),
         }
     }
+
+    fn breakpoint_after(&self, x: f64) -> Option<f64> {
+        match self {
+            Curve::Exact(pitch) => pitch.breakpoint_after(x),
+            Curve::Table(_) => None,
+        }
+    }
 }
 
 /// A rocker between a cam and the valve: places at lift 0 in the fixed frame (m).
@@ -77,7 +84,7 @@ fn apart(from: [f64; 2], to: [f64; 2]) -> [f64; 2] {
 }
 
 impl Design {
-    /// The pair of the catalogue, for any law and sense: a finger on a base circle of 12 mm, and a bell crank with an arm of 29 mm on a
+    /// The pair of the catalogue, for any law and sense. A finger runs on a base circle of 12 mm, a bell crank with an arm of 29 mm on a
     /// cam of 17 mm.
     pub fn ready(law: Lift, direction: Direction) -> Self {
         const ARM: f64 = 0.029;

@@ -28,7 +28,7 @@
 //! | `spring` | an ordinary valve spring |
 //!
 //! The pitch curves of both cams are functions of the text. [`Design`] makes them from a lift law, in closed form. Radii of pads are in
-//! the curves alone, and the gap of a pad and its cam is the distance of its centre from the pitch curve.
+//! the curves alone: the gap of a pad and its cam is the distance of its centre from the pitch curve.
 //!
 //! Numbers: chosen here, none of a valvetrain in production. Source of the synthesis: Norton, Cam Design and Manufacturing Handbook,
 //! ch. 7; of the contact: Hunt and Crossley 1975.

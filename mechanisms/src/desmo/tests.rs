@@ -5,8 +5,10 @@ use core::f64::consts::{PI, TAU};
 use mbs_runtime::Stepper;
 use mbs_workbench::cams::follower::Direction;
 use mbs_workbench::cams::lift::{Flank, Lift};
+use mbs_workbench::study::Values;
 
 use super::Design;
+use super::study::STUDY;
 
 /// Largest differences of lift, velocity and acceleration from the law over a turn at 1 rad/s, and how far the distance of both
 /// rockers varies.
@@ -45,5 +47,20 @@ fn the_valve_moves_by_its_law_and_both_rockers_keep_their_distance() {
             );
             assert!(lift < 1e-14 && velocity < 1e-13 && acceleration < 1e-12 && apart < 2e-12);
         }
+    }
+}
+
+#[test]
+fn a_study_refuses_values_that_it_cannot_run_with() {
+    for (name, value, expected) in [
+        ("turns", 0.0, "`turns` must be above 0"),
+        ("points", 3.0, "`points` is 0 or at least 16"),
+        ("lift", -0.01, "lift"),
+        ("lift", 0.1, "does not reach the cam"),
+    ] {
+        let mut values = Values::of(&STUDY);
+        values.set(name, value).expect("a parameter");
+        let refused = (STUDY.run)(&values, &mut |_| ()).map(|_| ()).expect_err(name).to_string();
+        assert!(refused.contains(expected), "{name}: {refused}");
     }
 }

@@ -7,9 +7,6 @@ const CENTRE: [f64; 2] = [0.012, 0.020];
 /// Half the duration of the lift (rad), and its height (m).
 const HALF: f64 = 80.0 * PI / 180.0;
 const LIFT: f64 = 0.011;
-/// Contact: N/m^1.5 and s/m.
-const K: f64 = 5e10;
-const D: f64 = 1.5;
 
 /// Lift (m) and forces (N) of nose, tip, seat, heel, fork.
 #[derive(Clone, Copy, Debug)]
@@ -33,6 +30,8 @@ pub struct Own {
     speed: f64,
     play: [f64; 2],
     guide: [f64; 2],
+    /// K (N/m^1.5) and D (s/m) of all contacts.
+    contact: [f64; 2],
 }
 
 fn law(theta: f64) -> [f64; 3] {
@@ -127,11 +126,6 @@ impl Rocker {
     }
 }
 
-fn normal(gap: f64, rate: f64) -> f64 {
-    let depth = (-gap).max(0.0);
-    K * depth * depth.sqrt() * (1.0 - D * rate).max(0.0)
-}
-
 type State = [f64; 6];
 
 impl Own {
@@ -145,7 +139,18 @@ impl Own {
         let angle = line[1].atan2(line[0]) - (half / 0.029).acos();
         let closer =
             Rocker { pivot, cam: [0.029 * angle.cos(), 0.029 * angle.sin()], valve: [-0.035, -0.003] };
-        Own { opener, closer, speed, play, guide }
+        Own { opener, closer, speed, play, guide, contact: [5e10, 1.5] }
+    }
+
+    /// With another K and D.
+    #[cfg(feature = "long")]
+    pub fn with_contact(self, contact: [f64; 2]) -> Self {
+        Own { contact, ..self }
+    }
+
+    fn normal(&self, gap: f64, rate: f64) -> f64 {
+        let ([k, d], depth) = (self.contact, (-gap).max(0.0));
+        k * depth * depth.sqrt() * (1.0 - d * rate).max(0.0)
     }
 
     /// Forces and the rates of the state.
@@ -157,11 +162,11 @@ impl Own {
         let [opened, opened_q] = self.opener.way(opener);
         let [closed, closed_q] = self.closer.way(closer);
         let forces = [
-            normal(nose, nose_q * opener_rate + nose_t * self.speed),
-            normal(s - opened + self.play[0], rate - opened_q * opener_rate),
-            normal(s, rate),
-            normal(heel, heel_q * closer_rate + heel_t * self.speed),
-            normal(closed - s + self.play[1], closed_q * closer_rate - rate),
+            self.normal(nose, nose_q * opener_rate + nose_t * self.speed),
+            self.normal(s - opened + self.play[0], rate - opened_q * opener_rate),
+            self.normal(s, rate),
+            self.normal(heel, heel_q * closer_rate + heel_t * self.speed),
+            self.normal(closed - s + self.play[1], closed_q * closer_rate - rate),
         ];
         let [on_opener, tip, seat, on_closer, fork] = forces;
         let friction = self.guide[0] * rate + self.guide[1] * (rate / 0.05).tanh();
