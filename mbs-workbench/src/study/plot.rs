@@ -75,6 +75,9 @@ fn eighths(low: f64, high: f64) -> Vec<f64> {
 }
 
 fn written(value: f64) -> String {
+    if value != 0.0 && value.abs() < 1e-4 {
+        return format!("{value:.1e}");
+    }
     let text = format!("{:.6}", value);
     let text = text.trim_end_matches('0').trim_end_matches('.');
     if text == "-0" || text.is_empty() { "0".to_string() } else { text.to_string() }
@@ -214,7 +217,11 @@ mod tests {
         for [low, high] in [[1e-9, 3e-9], [-7e5, 2e4], [12.0, 12.5]] {
             let found = ticks(low, high);
             assert!((2..=7).contains(&found.len()), "{found:?}");
-            assert!(found.iter().all(|tick| low <= *tick && *tick <= high), "{found:?}");
+            let rounding = 1e-9 * (high - low);
+            assert!(
+                found.iter().all(|tick| low - rounding <= *tick && *tick <= high + rounding),
+                "{found:?}"
+            );
         }
     }
 

@@ -230,7 +230,7 @@ pub fn sensitivity(chain: &Chain) -> Result<Section, StudyError> {
 
 /// Number in [0, 1) of a sequence that fills the cube evenly. Source: Roberts 2018, the R3 sequence.
 fn spread(run: u32, axis: i32) -> f64 {
-    const GOLDEN: f64 = 1.220_744_084_605_759_5;
+    const GOLDEN: f64 = 1.220_744_084_605_759_6;
     (0.5 + f64::from(run) * GOLDEN.powi(-axis)).fract()
 }
 

@@ -228,11 +228,11 @@ impl Own {
         const TOLERANCE: State = [1e-12, 1e-12, 3e-14, 1e-8, 1e-8, 3e-10];
         let mut slopes = [self.rates(t, y).1; 7];
         let mut next = *y;
-        for stage in 0..6 {
+        for (stage, (row, c)) in A.iter().zip(C).enumerate() {
             next = core::array::from_fn(|k| {
-                y[k] + h * A[stage].iter().zip(&slopes).map(|(a, slope)| a * slope[k]).sum::<f64>()
+                y[k] + h * row.iter().zip(&slopes).map(|(a, slope)| a * slope[k]).sum::<f64>()
             });
-            slopes[stage + 1] = self.rates(t + C[stage] * h, &next).1;
+            slopes[stage + 1] = self.rates(t + c * h, &next).1;
         }
         let error = (0..6).fold(0.0, |most: f64, k| {
             let error = h * E.iter().zip(&slopes).map(|(e, slope)| e * slope[k]).sum::<f64>();
