@@ -4,9 +4,6 @@
 
 use core::f64::consts::{PI, TAU};
 
-#[cfg(feature = "long")]
-#[path = "desmo/long.rs"]
-mod long;
 #[path = "desmo/own.rs"]
 mod own;
 

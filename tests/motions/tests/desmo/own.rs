@@ -142,12 +142,6 @@ impl Own {
         Own { opener, closer, speed, play, guide, contact: [5e10, 1.5] }
     }
 
-    /// With another K and D.
-    #[cfg(feature = "long")]
-    pub fn with_contact(self, contact: [f64; 2]) -> Self {
-        Own { contact, ..self }
-    }
-
     fn normal(&self, gap: f64, rate: f64) -> f64 {
         let ([k, d], depth) = (self.contact, (-gap).max(0.0));
         k * depth * depth.sqrt() * (1.0 - d * rate).max(0.0)
