@@ -31,8 +31,8 @@ pub struct Blueprint {
     pub is_measured: bool,
 }
 
-/// Parts of a program of many texts: they keep all cores busy.
-const UNITS: u32 = 16;
+/// Parts of a program of many texts. Each has a copy of the inlined functions that it calls.
+const UNITS: u32 = 4;
 
 /// A study that is built in a program of its own: it has the mechanism in more numbers than `mbs` does.
 #[derive(Clone, Copy, Debug)]
