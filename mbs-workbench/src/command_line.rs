@@ -89,6 +89,8 @@ enum Command {
     HardCases(commands::hard_cases::Arguments),
     /// Make the profile of a cam from its lift law; say which limits it breaks, find the least cam
     Cam(Box<commands::cam::Arguments>),
+    /// Run the study that a mechanism brings: a chain of computations with one page; without a name, list the studies
+    Study(commands::study::Arguments),
     /// Lay a spline along a table from a file; say how far to trust it, draw it, print it as Rust
     Table(commands::table::Arguments),
 }
@@ -123,6 +125,7 @@ impl Command {
             Command::Effects(_) => "effects",
             Command::HardCases(_) => "hard-cases",
             Command::Cam(_) => "cam",
+            Command::Study(_) => "study",
             Command::Table(_) => "table",
         }
     }
@@ -157,6 +160,7 @@ impl Command {
             | Command::Effects(_)
             | Command::HardCases(_)
             | Command::Cam(_)
+            | Command::Study(_)
             | Command::Table(_) => return None,
         };
         (needs_code && is_file(name) && !is_started()).then_some(name)
@@ -363,6 +367,7 @@ fn done(catalogue: &Catalogue, command: Option<Command>, out: &mut Output) -> Re
         }
         Some(Command::Effects(arguments)) => commands::effects::run(catalogue, &arguments, out),
         Some(Command::Cam(arguments)) => commands::cam::run(&arguments, out),
+        Some(Command::Study(arguments)) => commands::study::run(catalogue, &arguments, out),
         Some(Command::Table(arguments)) => commands::table::run(&arguments, out),
     }?;
     out.flush().map_err(CommandError::Output)?;
