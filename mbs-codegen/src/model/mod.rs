@@ -117,8 +117,8 @@ pub struct Model {
 }
 
 impl Model {
-    /// `true` if functions of the text can be bounded over parts of a motion: it calls no function of the caller's, and no drive
-    /// prescribes a rate.
+    /// `true` if functions of the text can be bounded over parts of a motion. So it is where the text calls no function of the
+    /// caller and no drive prescribes a rate.
     pub fn can_be_enclosed(&self) -> bool {
         self.functions.is_empty() && self.phases.is_empty()
     }

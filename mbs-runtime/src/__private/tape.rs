@@ -1,10 +1,10 @@
 //! Operations of long irregular functions as data: one loop works through them, where code of as many lines would keep a
 //! compiler busy for minutes.
 //!
-//! A tape is a row of runs, each of one operation. A run has its sign, the number of the array that it reads (2 bytes), the
-//! number of its rounds (2 bytes), and its operands, round by round. The result of a round follows all earlier results.
-//! Numbers of values take 2 bytes, places in arrays 3, the lowest first. The operations are those of straight code, so the
-//! results have the same bits.
+//! A tape is a row of runs, each of one operation. A run has its opcode (1 byte), the number of the array that it reads (2
+//! bytes), and the number of its rounds (2 bytes). Its operands follow, round by round. The result of a round follows all
+//! earlier results. Numbers of values take 2 bytes, places in arrays 3, the lowest first. The operations are those of
+//! straight code, so the results have the same bits.
 
 use core::cell::Cell;
 use core::slice::from_ref;

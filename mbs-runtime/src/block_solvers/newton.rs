@@ -44,8 +44,8 @@ pub struct Newton<T: Scalar> {
 }
 
 impl<T: Scalar> Newton<T> {
-    /// A solver for coordinates of which the largest is `extent` in the reference metric (see
-    /// [`extent`](crate::linear_algebra::vectors::extent)), from which the rounding of their sums in a row follows.
+    /// A solver for coordinates of which the largest is `extent` in the reference metric, see
+    /// [`extent`](crate::linear_algebra::vectors::extent). It gives the rounding of their sums in a row.
     #[inline(always)]
     pub fn new(extent: T) -> Self {
         Newton { extent, diagnosis: Diagnosis::new() }

@@ -22,8 +22,8 @@ pub fn in_other_size(values: &mut [f64], variation: &Variation, subject: &Subjec
     }
 }
 
-/// `outcome` with the verdict of the comparison: positions of both runs at the same instants, in the size of the mechanism itself,
-/// and the work of both.
+/// `outcome` with the verdict of the comparison of two runs. Compared are positions at the same instants, in the size of the
+/// mechanism itself, and the numbers of evaluations.
 pub fn compared(
     outcome: Outcome,
     (other, own): (&[Vec<f64>], &[Vec<f64>]),

@@ -55,8 +55,8 @@ impl Similarity {
         2.0_f64.powi(self.power * (dimension.length + 3 * dimension.mass))
     }
 
-    /// `true` where the rows of `other` are those of `own` times powers of two, and so are their sums of forces: no number with a unit
-    /// stands between them. The parameters of `other` are those of `own` times their factors.
+    /// `true` where the rows and the sums of forces of `other` are those of `own` times powers of two. Then no number with a unit is
+    /// hidden in the text. The parameters of `other` are those of `own` times their factors.
     pub fn holds(self, own: &Oracle, other: &Oracle, coordinates: &[Dimension]) -> bool {
         let part = |first: f64| (0..coordinates.len()).map(|j| first + 0.13 * j as f64).collect::<Vec<f64>>();
         let sized = |values: Vec<f64>| {

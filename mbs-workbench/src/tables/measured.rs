@@ -37,7 +37,7 @@ impl Measured {
     /// `name`, else in the one that is left beside times and rates. Rates and accelerations are in columns called as the values with
     /// `_d` and `_dd` behind, as in tables of `mbs`. Else they are in those with the units of rates.
     ///
-    /// Angles within one turn that jump by more than half a turn are those of an encoder: whole turns are added, so that they go on.
+    /// Angles within one turn that jump by more than half a turn are those of an encoder. Whole turns are added, so that they go on.
     ///
     /// # Errors
     /// The first fault.

@@ -42,8 +42,8 @@ impl Table {
     /// A last line that repeats the first one a turn later is taken as the same point.
     ///
     /// # Errors
-    /// [`TableError`]: a file that cannot be read, a unit, a cell, the order of the lines, a turn that is not covered, a curve that
-    /// does not close.
+    /// [`TableError`]: a file that cannot be read, a faulty unit or cell, lines out of order, a turn not covered, a curve not
+    /// closed.
     pub fn from_csv(path: impl AsRef<Path>, columns: &str) -> Result<Self, TableError> {
         Self::of_file(path.as_ref(), columns, None)
     }

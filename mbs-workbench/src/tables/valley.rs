@@ -1,6 +1,6 @@
 //! Errors of splines along tables of a known function, by number of points, rounding of the ordinates and number of knots.
 //!
-//! More points bring a spline closer to the function, but its second derivative multiplies what the ordinates are rounded by with the
+//! More points bring a spline closer to the function. But its second derivative multiplies the rounding of the ordinates by the
 //! square of the number of knots. Between both the error has a lowest point.
 
 use core::fmt;

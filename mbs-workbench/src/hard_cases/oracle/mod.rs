@@ -1,6 +1,6 @@
 //! An oracle of its own for a mechanism: the text itself, interpreted.
 //!
-//! Of the compiler of texts it uses the statements as they are written, nothing behind them: names, shapes, units, derivatives,
+//! Of the compiler of texts it uses the statements as they are written, nothing behind them. Names, shapes, units, derivatives,
 //! energies and forces are read and computed here. So no fault of resolving, differentiation, structure or emission is shared. It
 //! shares the reader of the language. A part of the language that it does not evaluate is a [`Gap`], which is told.
 
