@@ -119,7 +119,7 @@ mod tests {
     }
 
     #[test]
-    fn it_returns_to_where_it_began() {
+    fn coordinates_return_after_one_turn() {
         let motion = one_turn(&CARD, 0, 180);
         for coordinate in &motion.coordinates[1..] {
             let (first, last) = (coordinate.q[0], coordinate.q[180]);

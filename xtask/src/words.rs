@@ -39,13 +39,15 @@ pub fn run(count: bool) -> Result<(), String> {
         }
     }
     let mut documents = files(&root().join("book/src"), "md")?;
-    documents.push(root().join("README.md"));
+    documents.extend(["README.md", "ARCHITECTURE.md", "CONTRIBUTING.md"].map(|name| root().join(name)));
     for path in documents {
         long.extend(findings(&path, 1, &read(&path)?));
     }
     print("doc comments that begin with What, Whether, How or Where", &questions, count);
     print(
-        &format!("sentences of more than {MOST} words in README, book and public documentation"),
+        &format!(
+            "sentences of more than {MOST} words in README, ARCHITECTURE, CONTRIBUTING, book and public docs"
+        ),
         &long,
         count,
     );

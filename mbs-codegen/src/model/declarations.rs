@@ -109,17 +109,7 @@ fn split_at_loops(statements: &[Statement]) -> (Vec<&Statement>, Vec<&Statement>
 }
 
 fn declared_name(statement: &Statement) -> Option<&Name> {
-    match &statement.kind {
-        StatementKind::Const { name, .. }
-        | StatementKind::Param { name, .. }
-        | StatementKind::Input { name, .. }
-        | StatementKind::Coord { name, .. }
-        | StatementKind::State { name, .. }
-        | StatementKind::Function { name, .. }
-        | StatementKind::Let { name, .. }
-        | StatementKind::Curve { name, .. } => Some(name),
-        _ => None,
-    }
+    statement.kind.declared().filter(|(kind, _)| *kind == "value").map(|(_, name)| name)
 }
 
 pub(super) struct Declarations<'a> {

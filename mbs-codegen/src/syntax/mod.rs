@@ -6,6 +6,7 @@ mod branch_and_limit;
 mod constraint;
 mod curve;
 mod declaration;
+mod declared_names;
 mod dot_suffix;
 mod dynamics;
 mod expression;

@@ -9,7 +9,7 @@ use crate::linear_algebra::vectors::weights;
 use crate::mechanism::Kinematic;
 use crate::mechanism::phase::Phase;
 use crate::scalar::lanes::{LaneMask, Lanes};
-use crate::scalar::number::Real;
+use crate::scalar::number::{Real, Scalar};
 use crate::stepper::Stepper;
 use crate::stepper::whole_turns::second;
 

@@ -2,7 +2,7 @@
 //!
 //! Powers of two round nothing, so that a solver without a length of its own does the same steps, bit by bit.
 
-use crate::hard_cases::oracle::{Oracle, State};
+use crate::hard_cases::oracle::{Oracle, OracleState};
 
 /// Exponents of length and mass in a unit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -63,12 +63,12 @@ impl Similarity {
             let pairs = values.into_iter().zip(coordinates);
             pairs.map(|(value, dimension)| value * self.factor(*dimension)).collect::<Vec<f64>>()
         };
-        let state = |of: &dyn Fn(Vec<f64>) -> Vec<f64>| State {
+        let state = |of: &dyn Fn(Vec<f64>) -> Vec<f64>| OracleState {
             q: of(part(0.4)),
             qd: of(part(0.7)),
             qdd: of(part(-0.3)),
             lambda: vec![0.0; own.row_count()],
-            ..State::default()
+            ..OracleState::default()
         };
         let (state, other_state) = (state(&|values| values), state(&sized));
         let is_power = |a: f64, b: f64| {
