@@ -120,8 +120,8 @@ pub struct Dynamics {
     pub gaps: Vec<Gap>,
     /// Q contact by contact, where there are contacts.
     pub by_contact: Option<ByContact>,
-    /// Time derivatives of the working ranges, where the text calls no function and no drive prescribes a rate: then parts of a motion
-    /// can be enclosed.
+    /// Time derivatives of the working ranges, by which parts of a motion can be enclosed. Given where the text calls no function and
+    /// no drive prescribes a rate.
     pub limit_rates: Vec<[Option<NodeId>; 3]>,
     /// Derivatives that are left out of ∂Q/∂q, ∂Q/∂q̇, (M x)_q, (Φ_qᵀ λ)_q and the slopes, for declared functions are not
     /// smooth enough.

@@ -8,7 +8,10 @@ mod constraints;
 pub mod counts;
 pub mod curves;
 pub mod declarations;
+mod declared_coordinates;
+mod declared_fields;
 mod declared_functions;
+pub mod declared_types;
 mod drives;
 pub mod dynamics;
 pub mod elaborate;
@@ -117,8 +120,8 @@ pub struct Model {
 }
 
 impl Model {
-    /// `true` if functions of the text can be bounded over parts of a motion: it calls no function of the caller's, and no drive
-    /// prescribes a rate.
+    /// `true` if functions of the text can be bounded over parts of a motion. So it is where the text calls no function of the
+    /// caller and no drive prescribes a rate.
     pub fn can_be_enclosed(&self) -> bool {
         self.functions.is_empty() && self.phases.is_empty()
     }

@@ -180,8 +180,8 @@ impl Blueprint {
     /// constructor. It is built with what the library is at that time.
     ///
     /// # Errors
-    /// [`ForgeError::NoLibrary`] where neither the constructor nor the module of the card begins with a library that the card's crate
-    /// is or depends on by path.
+    /// [`ForgeError::NoLibrary`] where neither the constructor nor the module of the card begins with a known library. Known are the
+    /// card's crate and those that it depends on by path.
     pub fn of_card(
         forge: &Forge,
         card: &Card,
