@@ -3,7 +3,7 @@
 use super::acting_bodies::{Attribution, Undetermined};
 use super::contacts::{ByContact, Push, by_contact};
 use super::deferred::Missing;
-use super::forces::{self, Acting};
+use super::generalized_forces::{self, Acting};
 use super::inertia::Inertia;
 use super::lower::Clock;
 use super::non_negative::{NonNegative, Of, signed};
@@ -205,14 +205,14 @@ pub fn derive(
         }
     }
     let Inertia { mass, bias, kinetic, carried } = inertia;
-    let forces::Forces { force, potential, powers, acting, carried } =
-        forces::derive(g, declared, &of, clock, (count, carried, &[]));
+    let generalized_forces::Forces { force, potential, powers, acting, carried } =
+        generalized_forces::derive(g, declared, &of, clock, (count, carried, &[]));
     let less_bias = |g: &mut Graph, force: Vec<Sum>| -> Vec<Option<NodeId>> {
         force.into_iter().zip(&bias).map(|(force, bias)| force.minus(g, bias.0).0).collect()
     };
     let force = less_bias(g, force);
     let by_contact = by_contact(g, declared, &of, &powers, |g, contacts| {
-        let others = forces::derive(g, declared, &of, clock, (count, carried, contacts));
+        let others = generalized_forces::derive(g, declared, &of, clock, (count, carried, contacts));
         less_bias(g, others.force)
     });
 

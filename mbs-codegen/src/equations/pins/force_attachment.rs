@@ -6,7 +6,7 @@
 use super::attribution::{PlaneBody, Slopes};
 use super::velocities::{Here, Motions, Seen};
 use super::{Given, On, PinFault};
-use crate::equations::forces::{Acting, Place};
+use crate::equations::generalized_forces::{Acting, Place};
 use crate::model::Model;
 use crate::model::dynamics::{Action, Dynamics as Declared};
 use crate::symbolic::{Graph, NodeId};
