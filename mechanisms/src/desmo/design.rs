@@ -8,7 +8,7 @@ use mbs_workbench::cams::CamError;
 use mbs_workbench::cams::follower::{Cam, Direction, Follower};
 use mbs_workbench::cams::lift::Lift;
 use mbs_workbench::cams::pitch::Pitch;
-use mbs_workbench::tables::{Kind, Spline};
+use mbs_workbench::tables::{Spline, SplineKind};
 
 use super::{Desmo, Kinematic};
 
@@ -29,7 +29,7 @@ impl Curve {
     pub fn table(&self, points: u32) -> Result<Self, FitError> {
         let angles: Vec<f64> = (0..points).map(|k| TAU * f64::from(k) / f64::from(points)).collect();
         let radii: Vec<f64> = angles.iter().map(|angle| self.jet::<1>(*angle)[0]).collect();
-        Spline::fit(&angles, &radii, Kind::PeriodicQuintic(TAU), None).map(Curve::Table)
+        Spline::fit(&angles, &radii, SplineKind::PeriodicQuintic(TAU), None).map(Curve::Table)
     }
 }
 
